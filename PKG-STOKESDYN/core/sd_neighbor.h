@@ -1,0 +1,45 @@
+/* Neighbour lists of our own: which spheres see which.
+ *
+ * LAMMPS's lists leave out what contacts do not need (neigh_modify exclude molecule/intra, special_bonds), and those are the
+ * very pairs that hydrodynamics needs. So the pairs are found here, from the same owned and ghost atoms, once per re-neighbouring. */
+#ifndef SD_NEIGHBOR_H
+#define SD_NEIGHBOR_H
+
+#include <stdint.h>
+
+#include "sd_product.h"
+#include "sd_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Pairs with their memory; zero-initialise, sd_neighbors_free in the end. */
+typedef struct {
+  sd_pairs pairs;
+  long *first;
+  int *neighbor;
+  long capacity;                          /* of neighbor */
+  int rows;                               /* capacity of first, less one */
+} sd_neighbors;
+
+void sd_neighbors_free(sd_neighbors *list);
+
+/* Room for rows targets and count pairs; contents are kept. SD_OK or SD_ENOMEMORY. */
+sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count);
+
+/* All directed pairs closer than cutoff: targets 0 ... n-1, sources 0 ... n_all-1, a target is no source of its own.
+ *   x [3 n_all], cutoff finite > 0. By cells of side cutoff: O(n_all + pairs). SD_OK or SD_ENOMEMORY. */
+sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff);
+
+/* All directed pairs of one clump: equal molecule ID, not 0. Each partner once, as the image closest to the target
+ * (ghosts of one sphere share its tag; the first in order of index wins a tie), and closer than cutoff (INFINITY: the whole clump).
+ *   x [3 n_all], tag [n_all], molecule [n_all]
+ *   order [n_all]   scratch;  on return sorted by molecule, tag, index */
+sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag, const int64_t *molecule, int n, int n_all,
+                             double cutoff, int *order);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

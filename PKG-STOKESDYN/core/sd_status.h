@@ -1,0 +1,30 @@
+/* Status codes of the core, with their texts in one list. The glue puts command, numbers and the way out around them. */
+#ifndef SD_STATUS_H
+#define SD_STATUS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SD_STATUS_LIST(_) \
+  _(SD_OK, "converged") \
+  _(SD_EMAXITER, "iterations used up") \
+  _(SD_ESTAGNATED, "stopped at the accuracy of double precision, above the tolerance") \
+  _(SD_EDIVERGED, "diverged") \
+  _(SD_EINDEFINITE, "the mobility matrix is not positive definite") \
+  _(SD_ESINGULAR, "the mobility matrix is singular") \
+  _(SD_ENOTFINITE, "met a value that is not a finite number") \
+  _(SD_ENOMEMORY, "out of memory")
+
+typedef enum {
+#define SD_STATUS_CODE(code, text) code,
+  SD_STATUS_LIST(SD_STATUS_CODE)
+#undef SD_STATUS_CODE
+} sd_status;
+
+const char *sd_status_string(sd_status status);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,121 @@
+#include "keywords.h"
+
+#include "error.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+void fail(LAMMPS *lmp, const std::string &message)
+{
+  // The std::string overload: no fmt types among our symbols, and no fmt in the message.
+  lmp->error->all(FLERR, message);
+  abort();    // error->all does not return
+}
+
+std::string text(double value)
+{
+  char buffer[40];
+  snprintf(buffer, sizeof(buffer), "%.6g", value);
+  return buffer;
+}
+
+std::vector<std::string> words(int narg, char **arg)
+{
+  return std::vector<std::string>(arg, arg + narg);
+}
+
+bool is_number(const std::string &word, double &value)
+{
+  if (word.empty() || std::isspace((unsigned char) word[0])) return false;
+  char *end;
+  const double v = strtod(word.c_str(), &end);
+  if (*end != '\0') return false;
+  value = v;
+  return true;
+}
+
+Keywords::Keywords(LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args, size_t begin) :
+    lmp(lmp), command(command), args(args), at(begin)
+{
+}
+
+bool Keywords::next()
+{
+  if (at >= args.size()) return false;
+  key = args[at++];
+  return true;
+}
+
+std::string Keywords::word()
+{
+  if (at >= args.size()) refuse("value missing");
+  return args[at++];
+}
+
+double Keywords::number()
+{
+  const std::string w = word();
+  double value = 0.0;
+  if (!is_number(w, value)) refuse("'" + w + "' is not a number");
+  if (!std::isfinite(value)) refuse("'" + w + "' is not a finite number");
+  return value;
+}
+
+double Keywords::positive()
+{
+  const double value = number();
+  if (!(value > 0.0)) refuse("'" + args[at - 1] + "' must be > 0");
+  return value;
+}
+
+double Keywords::not_negative()
+{
+  const double value = number();
+  if (!(value >= 0.0)) refuse("'" + args[at - 1] + "' must be >= 0");
+  return value;
+}
+
+bigint Keywords::integer(bigint lowest, bigint highest)
+{
+  const std::string w = word();
+  char *end;
+  const long long value = strtoll(w.c_str(), &end, 10);
+  if (w.empty() || *end != '\0') refuse("'" + w + "' is not an integer");
+  if (value < lowest) refuse("'" + w + "' must be >= " + std::to_string(lowest));
+  if (value > highest) refuse("'" + w + "' must be <= " + std::to_string(highest));
+  return value;
+}
+
+bool Keywords::yes_no()
+{
+  return choice({"no", "yes"}) == 1;
+}
+
+size_t Keywords::choice(std::initializer_list<const char *> options)
+{
+  const std::string w = word();
+  std::string list;
+  size_t i = 0;
+  for (const char *option : options) {
+    if (w == option) return i;
+    list += (i++ ? ", " : "") + std::string(option);
+  }
+  refuse("'" + w + "' is none of: " + list);
+}
+
+void Keywords::unknown() const
+{
+  fail(lmp, command + ": unknown keyword '" + key + "'");
+}
+
+void Keywords::refuse(const std::string &why) const
+{
+  fail(lmp, command + ": keyword " + key + ": " + why);
+}
+
+}    // namespace StokesDyn

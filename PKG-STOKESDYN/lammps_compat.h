@@ -1,0 +1,56 @@
+/* Every difference between LAMMPS versions, 29Sep2021 to today, in one place. SD_HAVE_* come from cmake/LammpsFeatures.cmake,
+ * which reads them off the headers. */
+#ifndef SD_LAMMPS_COMPAT_H
+#define SD_LAMMPS_COMPAT_H
+
+#include "comm.h"
+#include "domain.h"
+#include "fix.h"
+#include "modify.h"
+#include "pair.h"
+#include "region.h"
+
+#include <string>
+
+namespace StokesDyn {
+namespace Compat {
+
+  inline void forward_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Pair *pair)
+  {
+#if SD_HAVE_COMM_THIS
+    comm->forward_comm(pair);
+#else
+    comm->forward_comm_pair(pair);
+#endif
+  }
+
+  /* nullptr if there is none */
+  inline LAMMPS_NS::Region *region(LAMMPS_NS::Domain *domain, const std::string &id)
+  {
+#if SD_HAVE_REGION_PTR
+    return domain->get_region_by_id(id);
+#else
+    const int i = domain->find_region(id.c_str());
+    return i < 0 ? nullptr : domain->regions[i];
+#endif
+  }
+
+  /* nullptr if there is none */
+  inline LAMMPS_NS::Fix *fix(LAMMPS_NS::Modify *modify, const std::string &id)
+  {
+    const int i = modify->find_fix(id);
+    return i < 0 ? nullptr : modify->fix[i];
+  }
+
+  inline void minimum_image(LAMMPS_NS::Domain *domain, double *d)
+  {
+#if SD_MINIMG_FLERR
+    domain->minimum_image(FLERR, d);
+#else
+    domain->minimum_image(d);
+#endif
+  }
+
+}    // namespace Compat
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,482 @@
+#include "pair_stokes_dynamics.h"
+
+#include "fix_stokes_dynamics.h"
+#include "keywords.h"
+#include "lammps_compat.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "memory.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+static const std::string COMMAND = "Pair style stokes_dynamics";
+static const char *STATE_ID = "STOKES_DYNAMICS_STATE";
+
+PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), scene(lmp, this, COMMAND)
+{
+  single_enable = 0;
+  respa_enable = 0;
+  manybody_flag = 1;
+  one_coeff = 1;
+  restartinfo = 1;
+  no_virial_fdotr_compute = 1;    // drag acts between sphere and fluid: its x.F depends on the origin
+  comm_forward = 3;
+  nextra = 4;                     // compute pair: iterations, residual, unconverged solves, dissipation
+  pvector = new double[nextra];
+  for (int k = 0; k < nextra; k++) pvector[k] = 0.0;
+}
+
+PairStokesDynamics::~PairStokesDynamics()
+{
+  if (fix_state && modify->nfix && Compat::fix(modify, STATE_ID)) modify->delete_fix(STATE_ID);
+  delete[] pvector;
+  if (allocated) {
+    memory->destroy(setflag);
+    memory->destroy(cutsq);
+  }
+}
+
+// --- settings ----------------------------------------------------------------------------------------------
+
+void PairStokesDynamics::settings(int narg, char **arg)
+{
+  args = words(narg, arg);
+  parse();
+  if (fix_state) fix_state->forget();
+}
+
+void PairStokesDynamics::parse()
+{
+  update_every = 1;
+  add_force = false;
+  tolerance = 1e-3;
+  max_iter = 100;
+  algorithm = 1;
+  visc = Field();
+  for (auto &u : fluid_velocity) u = Field(0.0);
+  region_id.clear();
+  group_id = "all";
+  scene.settings = Scene::Settings();
+  scene.lists_are_stale();
+
+  bool has_visc = false, has_cutoff = false;
+  Keywords in(lmp, COMMAND, args);
+  while (in.next()) {
+    if (in.is("cut_off_distance")) {
+      if (in.more() && in.peek() == "inf") {
+        in.word();
+        scene.settings.cutoff = INFINITY;
+      } else
+        scene.settings.cutoff = in.positive();
+      has_cutoff = true;
+    } else if (in.is("update_every"))
+      update_every = in.integer(1);
+    else if (in.is("clumps_only"))
+      scene.settings.clumps_only = in.yes_no();
+    else if (in.is("visc")) {
+      visc = Field::parse(in);
+      if (!visc.is_variable() && !(visc.number() > 0.0)) in.refuse("'" + text(visc.number()) + "' must be > 0");
+      has_visc = true;
+    } else if (in.is("region"))
+      region_id = in.word();
+    else if (in.is("group"))
+      group_id = in.word();
+    else if (in.is("add_force"))
+      add_force = in.yes_no();
+    else if (in.is("relative_tolerance"))
+      tolerance = in.positive();
+    else if (in.is("max_iter"))
+      max_iter = in.integer(1);
+    else if (in.is("algorithm"))
+      algorithm = 1 + in.choice({"1", "2"});
+    else if (in.is("fluid_velocity"))
+      for (auto &u : fluid_velocity) u = Field::parse(in);
+    else if (in.is("tensor"))
+      scene.settings.tensor = in.choice({"rpy", "oseen"}) == 0 ? SD_TENSOR_RPY : SD_TENSOR_OSEEN;
+    else if (in.is("rotation") || in.is("rigid_clumps") || in.is("shell") || in.is("taper") || in.is("precondition") || in.is("warm_start"))
+      in.refuse("not available in this version");
+    else
+      in.unknown();
+  }
+  if (!has_visc) fail(lmp, COMMAND + ": keyword visc is required: the dynamic viscosity");
+  if (!has_cutoff) {
+    if (!scene.settings.clumps_only) fail(lmp, COMMAND + ": keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
+    scene.settings.cutoff = INFINITY;
+  }
+}
+
+void PairStokesDynamics::coeff(int narg, char **arg)
+{
+  if (narg != 2 || strcmp(arg[0], "*") != 0 || strcmp(arg[1], "*") != 0)
+    fail(lmp, COMMAND + ": the only form of pair_coeff is: pair_coeff * * (use the keywords group and region to select spheres)");
+  if (!allocated) allocate();
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) setflag[i][j] = 1;
+}
+
+void PairStokesDynamics::allocate()
+{
+  allocated = 1;
+  const int n = atom->ntypes;
+  memory->create(setflag, n + 1, n + 1, "pair:setflag");
+  memory->create(cutsq, n + 1, n + 1, "pair:cutsq");
+  for (int i = 1; i <= n; i++)
+    for (int j = i; j <= n; j++) setflag[i][j] = 0;
+}
+
+void PairStokesDynamics::init_style()
+{
+  if (update->whichflag == 2)
+    fail(lmp, COMMAND + " cannot be minimised: a drag depends on velocities and has no energy; use 'pair_style none' meanwhile");
+  if (force->pair_match(STYLE, 1) != this) fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
+  if (!atom->radius_flag) fail(lmp, COMMAND + " requires an atom style with radius, such as sphere");
+  if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
+  if (scene.settings.clumps_only && !atom->molecule_flag)
+    fail(lmp, COMMAND + ": keyword clumps_only: yes requires molecule IDs (atom_style hybrid sphere bond, or fix property/atom mol)");
+  if (scene.all_pairs())
+    for (int d = 0; d < domain->dimension; d++)
+      if (domain->periodicity[d])
+        fail(lmp, COMMAND + ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or clumps_only yes");
+
+  double largest = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, 2.0 * atom->radius[i]);
+  MPI_Allreduce(&largest, &largest_diameter, 1, MPI_DOUBLE, MPI_MAX, world);
+
+  region = nullptr;
+  if (!region_id.empty() && !(region = Compat::region(domain, region_id)))
+    fail(lmp, COMMAND + ": keyword region: region '" + region_id + "' does not exist");
+  igroup = group->find(group_id);
+  if (igroup < 0) fail(lmp, COMMAND + ": keyword group: group '" + group_id + "' does not exist");
+  groupbit = group->bitmask[igroup];
+  visc.init(lmp, COMMAND + ": keyword visc");
+  for (auto &u : fluid_velocity) u.init(lmp, COMMAND + ": keyword fluid_velocity");
+
+  // Here and not in the constructor: in read_restart, what the restart file holds for this fix is not known yet when the pair style is made.
+  fix_state = static_cast<FixStokesDynamicsState *>(Compat::fix(modify, STATE_ID));
+  if (!fix_state) {
+    modify->add_fix(std::string(STATE_ID) + " all " + FixStokesDynamicsState::STYLE);
+    fix_state = static_cast<FixStokesDynamicsState *>(Compat::fix(modify, STATE_ID));
+  }
+
+  bool applied = add_force;
+  for (int i = 0; i < modify->nfix; i++)
+    if (strcmp(modify->fix[i]->style, FixStokesDynamics::STYLE) == 0)
+      applied = applied || static_cast<FixStokesDynamics *>(modify->fix[i])->applies(add_force);
+  if (!applied && !warned_nobody_applies) {
+    warned_nobody_applies = true;
+    if (comm->me == 0)
+      error->warning(FLERR, std::string(COMMAND + ": nothing applies the force: add_force is no and no fix stokes_dynamics applies it"));
+  }
+  scene.lists_are_stale();
+  warned_unconverged = false;
+}
+
+double PairStokesDynamics::init_one(int i, int j)
+{
+  if (setflag[i][j] == 0) fail(lmp, COMMAND + ": pair_coeff * * is missing");
+  // Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is returned all the same, since
+  // LAMMPS warns of lost atoms and stops sorting them when there is none.
+  return std::isfinite(scene.settings.cutoff) ? scene.settings.cutoff : largest_diameter;
+}
+
+void *PairStokesDynamics::extract(const char *name, int &dim)
+{
+  dim = 0;
+  if (strcmp(name, "visc") == 0 && !visc.is_variable()) return visc.address();
+  return nullptr;
+}
+
+double PairStokesDynamics::memory_usage()
+{
+  return scene.memory_usage() + sizeof(double) * (double) (eta.capacity() + u_inf.capacity() + slip.capacity() + drag.capacity() +
+                                                           solution.capacity() + work.capacity());
+}
+
+// --- a step ------------------------------------------------------------------------------------------------
+
+bool PairStokesDynamics::selected(int i) const
+{
+  const double *x = atom->x[i];
+  return (atom->mask[i] & groupbit) && (!region || region->match(x[0], x[1], x[2]));
+}
+
+enum Fault { NONE, POSITION, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY };
+
+static bool finite(const double *v)
+{
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+int PairStokesDynamics::faulty(int i) const
+{
+  if (!finite(atom->x[i])) return POSITION;
+  if (!active[i]) return NONE;
+  if (!finite(atom->v[i])) return VELOCITY;
+  if (!(atom->radius[i] > 0.0) || !std::isfinite(atom->radius[i])) return RADIUS;
+  if (!(eta[i] > 0.0) || !std::isfinite(eta[i])) return VISCOSITY;
+  if (!finite(&u_inf[3 * (size_t) i])) return FLUID_VELOCITY;
+  return NONE;
+}
+
+/* One rank has found a faulty atom; all ranks end the run with the name of the first. */
+void PairStokesDynamics::complain()
+{
+  const bigint none = MAXBIGINT;
+  bigint mine = none, first;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const int fault = faulty(i)) mine = std::min(mine, (bigint) atom->tag[i] * 8 + fault);
+  MPI_Allreduce(&mine, &first, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  double value = 0.0, sum;
+  if (mine == first)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->tag[i] == first / 8) switch (first % 8) {
+          case RADIUS:
+            value = atom->radius[i];
+            break;
+          case VISCOSITY:
+            value = eta[i];
+            break;
+        }
+  MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
+  const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ", atom " + std::to_string(first / 8) + ": ";
+  switch (first % 8) {
+    case POSITION:
+      fail(lmp, who + "its position is not a finite number");
+    case VELOCITY:
+      fail(lmp, who + "its velocity is not a finite number");
+    case RADIUS:
+      fail(lmp, who + "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)");
+    case VISCOSITY:
+      fail(lmp, who + "keyword visc: its viscosity " + text(sum) + " must be > 0");
+    default:
+      fail(lmp, who + "keyword fluid_velocity: the fluid velocity there is not a finite number");
+  }
+}
+
+bool PairStokesDynamics::numbers_only() const
+{
+  return !visc.is_variable() && !fluid_velocity[0].is_variable() && !fluid_velocity[1].is_variable() && !fluid_velocity[2].is_variable();
+}
+
+/* Who takes part, viscosity, fluid velocity, slip. */
+void PairStokesDynamics::state_of_the_step()
+{
+  const int n = atom->nlocal;
+  active.resize(n);
+  eta.resize(n + 1);
+  u_inf.resize(3 * (size_t) n + 3);
+  slip.resize(3 * (size_t) n + 3);
+  drag.resize(n + 1);
+
+  if (!numbers_only()) modify->clearstep_compute();
+  visc.evaluate(lmp, igroup, eta.data(), 1);
+  for (int d = 0; d < 3; d++) fluid_velocity[d].evaluate(lmp, igroup, u_inf.data() + d, 3);
+  if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
+
+  if (region) region->prematch();
+  for (int i = 0; i < n; i++) {
+    active[i] = selected(i);
+    drag[i] = active[i] ? 6.0 * SD_PI * eta[i] * atom->radius[i] : 0.0;
+    for (int d = 0; d < 3; d++) slip[3 * (size_t) i + d] = active[i] ? u_inf[3 * (size_t) i + d] - atom->v[i][d] : 0.0;
+  }
+}
+
+void PairStokesDynamics::compute(int eflag, int vflag)
+{
+  using State = FixStokesDynamicsState;
+  ev_init(eflag, vflag);
+  if (neighbor->ago == 0) scene.lists_are_stale();
+  state_of_the_step();
+
+  const int n = atom->nlocal;
+  double **state = fix_state->state;
+  State::Global &global = fix_state->global;
+  const double step = update->ntimestep;
+
+  // v' is due every update_every steps, and at once when the spheres are not those of the last solve: none lacks a v', none has gone.
+  double count[4] = {0.0, 0.0, 0.0, 0.0};    // spheres, newcomers, faults, spheres that somebody moved since the last run
+  const bool may_resume = update->setupflag && step == global.last_step && numbers_only() && visc.number() == global.eta &&
+    fluid_velocity[0].number() == global.u_inf[0] && fluid_velocity[1].number() == global.u_inf[1] &&
+    fluid_velocity[2].number() == global.u_inf[2];
+  for (int i = 0; i < n; i++) {
+    if (faulty(i) != NONE) count[2]++;
+    if (!active[i]) continue;
+    count[0]++;
+    if (state[i][State::SOLVED] == 0.0) count[1]++;
+    if (may_resume && !fix_state->left_as_is(i)) count[3]++;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, count, 4, MPI_DOUBLE, MPI_SUM, world);
+  if (count[2] > 0.0) complain();
+  const bool same_spheres = count[1] == 0.0 && count[0] == global.spheres;
+
+  if (!(may_resume && same_spheres && count[3] == 0.0)) {
+    const bool due = !same_spheres || fmod(step, update_every) == 0.0 || step < global.last_solve ||
+      floor(step / update_every) != floor(global.last_solve / update_every);
+    if (due) {
+      solve();
+      global.last_solve = step;
+      global.spheres = count[0];
+    }
+    for (int i = 0; i < n; i++)
+      for (int d = 0; d < 3; d++)
+        state[i][State::FORCE + d] = active[i] ? drag[i] * (slip[3 * (size_t) i + d] + state[i][State::VPRIME + d]) : 0.0;
+  }
+  global.last_step = step;
+  global.eta = visc.number();
+  for (int d = 0; d < 3; d++) global.u_inf[d] = fluid_velocity[d].number();
+
+  if (add_force)
+    for (int i = 0; i < n; i++)
+      for (int d = 0; d < 3; d++) atom->f[i][d] += state[i][State::FORCE + d];
+
+  // compute pair sums this over the ranks
+  const bool root = comm->me == 0;
+  pvector[0] = root ? global.iterations : 0.0;
+  pvector[1] = root ? global.residual : 0.0;
+  pvector[2] = root ? global.unconverged : 0.0;
+  pvector[3] = 0.0;
+  for (int i = 0; i < n; i++) pvector[3] += dissipation(i);
+}
+
+double PairStokesDynamics::dissipation(int i) const
+{
+  const double *F = drag_force(i), *s = &slip[3 * (size_t) i];
+  return F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
+}
+
+/* v' of every sphere, from the forces that solve the system for the velocities of now. */
+void PairStokesDynamics::solve()
+{
+  const int n = atom->nlocal;
+  solution.resize(3 * (size_t) n + 3);
+  work.resize(SD_SOLVE_WORK(n) + 1);
+  scene.update(active, eta);
+
+  const sd_system system = {n, drag.data(), Scene::apply, &scene, Scene::sum, &scene};
+  sd_solve_report report;
+  auto solver = algorithm == 1 ? sd_solve_substitution : sd_solve_gradients;
+  const sd_status status = solver(&system, slip.data(), tolerance, max_iter, solution.data(), work.data(), &report);
+
+  FixStokesDynamicsState::Global &global = fix_state->global;
+  global.solves++;
+  global.iterations = report.iterations;
+  global.residual = report.residual;
+  if (status != SD_OK) solver_failed(status, report);
+
+  double **state = fix_state->state;
+  for (int i = 0; i < n; i++) {
+    state[i][FixStokesDynamicsState::SOLVED] = active[i] ? 1.0 : 0.0;
+    for (int d = 0; d < 3; d++)
+      state[i][FixStokesDynamicsState::VPRIME + d] =
+        active[i] ? solution[3 * (size_t) i + d] / drag[i] - slip[3 * (size_t) i + d] : 0.0;
+  }
+}
+
+/* Returns for a solve whose answer may still be used; ends the run otherwise. */
+void PairStokesDynamics::solver_failed(sd_status status, const sd_solve_report &report)
+{
+  const std::string where = COMMAND + ": step " + std::to_string(update->ntimestep) + ": algorithm " + std::to_string(algorithm) + ": ";
+  const std::string how_far = "residual " + text(report.residual) + " after iteration " + std::to_string(report.iterations);
+  const std::string cutoff = std::isinf(scene.settings.cutoff) ? "inf" : text(scene.settings.cutoff);
+  switch (status) {
+    case SD_EMAXITER:
+    case SD_ESTAGNATED:
+      fix_state->global.unconverged++;
+      if (!warned_unconverged && comm->me == 0)
+        error->warning(FLERR, std::string(where + sd_status_string(status) + ": " + how_far + ", relative_tolerance " + text(tolerance) +
+                                          (status == SD_EMAXITER ? ", max_iter " + std::to_string(max_iter) : std::string()) +
+                                          "; the run goes on, further ones are counted (compute pair, fix stokes_dynamics)"));
+      warned_unconverged = true;
+      return;
+    case SD_EDIVERGED:
+      fail(lmp, where + "diverged: " + how_far + ", growing by a factor " + text(report.growth) + " each; use algorithm 2");
+    case SD_EINDEFINITE:
+      fail(lmp, where + sd_status_string(status) + " with " +
+                  (scene.settings.tensor == SD_TENSOR_OSEEN ? "tensor oseen: spheres are too close for it, use tensor rpy"
+                     : "cut_off_distance " + cutoff + ", so any answer would be noise: use cut_off_distance inf, or clumps_only yes "
+                       "with a cut-off larger than the clump") + " (" + how_far + ", curvature " + text(report.curvature) + ")");
+    case SD_ESINGULAR:
+      fail(lmp, where + sd_status_string(status) + ": spheres at one point with different velocities (" + how_far + ")");
+    default:
+      fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
+  }
+}
+
+int PairStokesDynamics::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
+{
+  return scene.pack_forward_comm(n, list, buf);
+}
+
+void PairStokesDynamics::unpack_forward_comm(int n, int first, double *buf)
+{
+  scene.unpack_forward_comm(n, first, buf);
+}
+
+// --- restart -------------------------------------------------------------------------------------------------
+// The words of the pair_style command, and the viscosity where fix adapt may have changed it.
+
+static const int RESTART_FORMAT = 1;
+
+void PairStokesDynamics::write_restart(FILE *fp)
+{
+  write_restart_settings(fp);
+}
+
+void PairStokesDynamics::read_restart(FILE *fp)
+{
+  read_restart_settings(fp);
+  allocate();
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) setflag[i][j] = 1;
+}
+
+void PairStokesDynamics::write_restart_settings(FILE *fp)
+{
+  std::string all;
+  for (const auto &word : args) all += word + '\n';
+  const int size = all.size();
+  const double eta_now = visc.number();
+  fwrite(&RESTART_FORMAT, sizeof(int), 1, fp);
+  fwrite(&eta_now, sizeof(double), 1, fp);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(all.data(), 1, size, fp);
+}
+
+void PairStokesDynamics::read_restart_settings(FILE *fp)
+{
+  int format = 0, size = 0;
+  double eta_then = 0.0;
+  const bool root = comm->me == 0;
+  if (root) utils::sfread(FLERR, &format, sizeof(int), 1, fp, nullptr, error);
+  MPI_Bcast(&format, 1, MPI_INT, 0, world);
+  if (format != RESTART_FORMAT)
+    fail(lmp, COMMAND + ": the restart file is of format " + std::to_string(format) + ", this version reads " + std::to_string(RESTART_FORMAT));
+  if (root) {
+    utils::sfread(FLERR, &eta_then, sizeof(double), 1, fp, nullptr, error);
+    utils::sfread(FLERR, &size, sizeof(int), 1, fp, nullptr, error);
+  }
+  MPI_Bcast(&eta_then, 1, MPI_DOUBLE, 0, world);
+  MPI_Bcast(&size, 1, MPI_INT, 0, world);
+  std::string all(size, '\0');
+  if (root && size) utils::sfread(FLERR, &all[0], 1, size, fp, nullptr, error);
+  MPI_Bcast(&all[0], size, MPI_CHAR, 0, world);
+
+  args.clear();
+  for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1) args.push_back(all.substr(from, to - from));
+  parse();
+  if (!visc.is_variable()) *visc.address() = eta_then;
+}

@@ -1,0 +1,83 @@
+/* pair_style stokes_dynamics: Stokes drag with hydrodynamic interactions. See doc/pair_stokes_dynamics.md. */
+#ifndef SD_PAIR_STOKES_DYNAMICS_H
+#define SD_PAIR_STOKES_DYNAMICS_H
+
+#include "pair.h"
+
+#include "field.h"
+#include "fix_stokes_dynamics_state.h"
+#include "scene.h"
+
+#include "sd_solve.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Region;
+}
+
+namespace StokesDyn {
+
+class PairStokesDynamics : public LAMMPS_NS::Pair {
+ public:
+  static constexpr const char *STYLE = "stokes_dynamics";
+
+  PairStokesDynamics(LAMMPS_NS::LAMMPS *);
+  ~PairStokesDynamics() override;
+  void compute(int, int) override;
+  void settings(int, char **) override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  double init_one(int, int) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  void *extract(const char *, int &) override;
+  double memory_usage() override;
+
+  /* For fix stokes_dynamics. After compute() of a step: per atom of this rank, in order of LAMMPS. */
+  bool adds_force() const { return add_force; }
+  const double *drag_force(int i) const { return fix_state->state[i] + FixStokesDynamicsState::FORCE; }
+  const double *perturbation(int i) const { return fix_state->state[i] + FixStokesDynamicsState::VPRIME; }
+  double dissipation(int i) const;                    // -F.(v - u_inf) of one sphere, >= 0 in the sum over all
+  const FixStokesDynamicsState::Global &numbers() const { return fix_state->global; }
+
+ private:
+  // settings
+  std::vector<std::string> args;
+  int update_every;
+  bool add_force;
+  double tolerance;
+  int max_iter, algorithm;
+  Field visc, fluid_velocity[3];
+  std::string region_id, group_id;
+  Scene scene;
+
+  // looked up in init_style
+  LAMMPS_NS::Region *region = nullptr;
+  int igroup = 0, groupbit = 0;
+  double largest_diameter = 0.0;
+  FixStokesDynamicsState *fix_state = nullptr;
+  bool warned_unconverged = false, warned_nobody_applies = false;
+
+  // of this step, per atom of this rank
+  std::vector<char> active;
+  std::vector<double> eta, u_inf, slip, drag, solution, work;
+
+  void parse();
+  void allocate();
+  void state_of_the_step();
+  bool selected(int i) const;
+  int faulty(int i) const;
+  void complain();
+  bool numbers_only() const;
+  void solve();
+  void solver_failed(sd_status status, const sd_solve_report &report);
+};
+
+}    // namespace StokesDyn
+#endif

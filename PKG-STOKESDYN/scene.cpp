@@ -1,0 +1,332 @@
+#include "scene.h"
+
+#include "keywords.h"
+#include "lammps_compat.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "neighbor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+Scene::Scene(LAMMPS *lmp, Pair *pair, const std::string &command) :
+    Pointers(lmp), pair(pair), command(command), candidates(), pairs()
+{
+}
+
+Scene::~Scene()
+{
+  sd_neighbors_free(&candidates);
+  sd_neighbors_free(&pairs);
+}
+
+bool Scene::all_pairs() const
+{
+  return std::isinf(settings.cutoff) && !settings.clumps_only;
+}
+
+const double *Scene::positions() const
+{
+  static const double none[3] = {0.0, 0.0, 0.0};
+  return atom->nlocal + atom->nghost > 0 ? atom->x[0] : none;
+}
+
+void Scene::out_of_memory()
+{
+  error->one(FLERR, std::string(command + ": out of memory for the list of pairs"));
+  abort();    // error->one does not return
+}
+
+void Scene::update(const std::vector<char> &active, const std::vector<double> &eta)
+{
+  const int nlocal = atom->nlocal;
+  const int n = all_pairs() ? nlocal : nlocal + atom->nghost;
+  a.assign(n, 0.0);
+  w.assign(n, 0.0);
+  for (int i = 0; i < nlocal; i++)
+    if (active[i]) {
+      a[i] = atom->radius[i];
+      w[i] = 1.0 / sqrt(eta[i]);
+    }
+  if (all_pairs()) {
+    gather();
+    return;
+  }
+
+  packing = SPHERES;
+  Compat::forward_comm(comm, pair);
+  if (stale) find_pairs();
+
+  filtered = std::isfinite(settings.cutoff) || std::find(a.begin(), a.end(), 0.0) != a.end();
+  if (filtered) {
+    if (sd_neighbors_reserve(&pairs, nlocal, candidates.first[nlocal]) != SD_OK) out_of_memory();
+    const sd_spheres spheres = {positions(), a.data(), w.data()};
+    sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
+    pairs.pairs.n = nlocal;
+  }
+}
+
+/* Once per re-neighbouring. Between two of them an atom moves by half the skin at most, so the skin is added to the cut-off. */
+void Scene::find_pairs()
+{
+  const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
+  sd_status status;
+  if (settings.clumps_only) {
+    tag.resize(n);
+    molecule.resize(n);
+    order.resize(n + 1);
+    for (int i = 0; i < nlocal; i++) molecule[i] = atom->molecule[i];
+    for (int i = 0; i < n; i++) tag[i] = atom->tag[i];
+    packing = MOLECULES;    // not every atom style sends molecule IDs to ghosts
+    Compat::forward_comm(comm, pair);
+    status = sd_neighbors_clump(&candidates, positions(), tag.data(), molecule.data(), nlocal, n, settings.cutoff + neighbor->skin,
+                                order.data());
+  } else
+    status = sd_neighbors_cutoff(&candidates, positions(), nlocal, n, settings.cutoff + neighbor->skin);
+  if (status != SD_OK) out_of_memory();
+  if (settings.clumps_only && std::isinf(settings.cutoff)) check_clumps();
+  stale = false;
+}
+
+/* Without a cut-off every sphere must see all of its clump. Each rank counts its own members of a molecule, the rank
+ * (molecule modulo ranks) adds them up, and every rank asks back. */
+void Scene::check_clumps()
+{
+  const int nlocal = atom->nlocal, nprocs = comm->nprocs;
+  std::map<int64_t, int64_t> total;
+  for (int i = 0; i < nlocal; i++)
+    if (molecule[i] != 0) total[molecule[i]]++;
+
+  if (nprocs > 1) {
+    std::vector<std::vector<int64_t>> outbox(nprocs);
+    for (const auto &entry : total) {
+      auto &box = outbox[std::abs(entry.first) % nprocs];
+      box.push_back(entry.first);
+      box.push_back(entry.second);
+    }
+    std::vector<int> sent(nprocs), received(nprocs), sent_at(nprocs), received_at(nprocs);
+    std::vector<int64_t> out, in;
+    for (int p = 0; p < nprocs; p++) {
+      sent[p] = outbox[p].size();
+      sent_at[p] = out.size();
+      out.insert(out.end(), outbox[p].begin(), outbox[p].end());
+    }
+    MPI_Alltoall(sent.data(), 1, MPI_INT, received.data(), 1, MPI_INT, world);
+    int n_in = 0;
+    for (int p = 0; p < nprocs; p++) {
+      received_at[p] = n_in;
+      n_in += received[p];
+    }
+    in.resize(n_in);
+    MPI_Alltoallv(out.data(), sent.data(), sent_at.data(), MPI_LMP_BIGINT, in.data(), received.data(), received_at.data(), MPI_LMP_BIGINT,
+                  world);
+    std::map<int64_t, int64_t> sums;
+    for (int k = 0; k < n_in; k += 2) sums[in[k]] += in[k + 1];
+    for (int k = 0; k < n_in; k += 2) in[k + 1] = sums[in[k]];
+    MPI_Alltoallv(in.data(), received.data(), received_at.data(), MPI_LMP_BIGINT, out.data(), sent.data(), sent_at.data(), MPI_LMP_BIGINT,
+                  world);
+    for (size_t k = 0; k < out.size(); k += 2) total[out[k]] = out[k + 1];
+  }
+
+  // Seen from one of its spheres, no clump may span more than half of a periodic box: the closest image would be ambiguous.
+  int64_t wide = 0;
+  std::vector<int64_t> incomplete;
+  for (int i = 0; i < nlocal; i++) {
+    if (molecule[i] == 0 || a[i] == 0.0) continue;
+    const long first = candidates.first[i], last = candidates.first[i + 1];
+    if (last - first + 1 != total[molecule[i]]) incomplete.push_back(molecule[i]);
+    double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.0, 0.0, 0.0};
+    for (long k = first; k < last; k++)
+      for (int d = 0; d < 3; d++) {
+        const double delta = atom->x[candidates.neighbor[k]][d] - atom->x[i][d];
+        lo[d] = fmin(lo[d], delta);
+        hi[d] = fmax(hi[d], delta);
+      }
+    for (int d = 0; d < 3; d++)
+      if (domain->periodicity[d] && hi[d] - lo[d] > 0.5 * domain->prd[d] * (1.0 + 1e-9)) wide = std::max(wide, molecule[i]);
+  }
+  int64_t mine[2] = {(int64_t) incomplete.size(), wide}, any[2];
+  MPI_Allreduce(mine, any, 2, MPI_LMP_BIGINT, MPI_MAX, world);
+  if (any[0]) complain_about_ghosts(incomplete);
+  if (any[1])
+    fail(lmp, command + ": the clump of molecule " + std::to_string(any[1]) +
+                " is wider than half of the periodic box, so which image of a sphere it sees is ambiguous;"
+                " use a larger box or a cut_off_distance below half of it");
+}
+
+void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
+{
+  // All spheres of those clumps to all ranks: the run ends here, so the price does not matter.
+  auto everywhere = [this](std::vector<double> &v) {
+    int mine = v.size(), n = 0;
+    std::vector<int> counts(comm->nprocs), at(comm->nprocs);
+    MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+    for (int p = 0; p < comm->nprocs; p++) {
+      at[p] = n;
+      n += counts[p];
+    }
+    std::vector<double> all(n);
+    MPI_Allgatherv(v.data(), mine, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, world);
+    v.swap(all);
+  };
+  std::vector<double> ids(incomplete.begin(), incomplete.end()), spheres;
+  everywhere(ids);
+  std::sort(ids.begin(), ids.end());
+  for (int i = 0; i < atom->nlocal; i++)
+    if (std::binary_search(ids.begin(), ids.end(), (double) molecule[i]))
+      spheres.insert(spheres.end(), {(double) molecule[i], atom->x[i][0], atom->x[i][1], atom->x[i][2]});
+  everywhere(spheres);
+
+  std::map<int64_t, std::vector<const double *>> clumps;
+  for (size_t k = 0; k < spheres.size(); k += 4) clumps[(int64_t) spheres[k]].push_back(&spheres[k + 1]);
+  double widest = 0.0;
+  int64_t which = 0;
+  for (const auto &clump : clumps)
+    for (const double *p : clump.second)
+      for (const double *q : clump.second) {
+        double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+        Compat::minimum_image(domain, d);
+        const double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        if (r > widest) {
+          widest = r;
+          which = clump.first;
+        }
+      }
+  // Rounded up to three digits, so that the number can be typed.
+  const double wanted = widest + neighbor->skin;
+  const double unit = pow(10.0, floor(log10(wanted)) - 2.0);
+  fail(lmp, command + ": the ghost cut-off " + text(comm->get_comm_cutoff()) + " does not reach across the clump of molecule " +
+              std::to_string(which) + ", " + text(widest) + " from centre to centre; use: comm_modify cutoff " +
+              text(ceil(wanted / unit) * unit));
+}
+
+/* The active spheres of all ranks; their order depends on the ranks, hence sums differ in the last digit only. */
+void Scene::gather()
+{
+  const int nlocal = atom->nlocal, nprocs = comm->nprocs;
+  own.clear();
+  std::vector<double> mine;
+  for (int i = 0; i < nlocal; i++)
+    if (a[i] > 0.0) {
+      own.push_back(i);
+      mine.insert(mine.end(), {atom->x[i][0], atom->x[i][1], atom->x[i][2], a[i], w[i]});
+    }
+  const int n = own.size();
+  std::vector<int> counts(nprocs), counts5(nprocs), displs5(nprocs);
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  counts3.resize(nprocs);
+  displs3.resize(nprocs);
+  n_all = 0;
+  for (int p = 0; p < nprocs; p++) {
+    if (p == comm->me) begin = n_all;
+    counts3[p] = 3 * counts[p];
+    displs3[p] = 3 * n_all;
+    counts5[p] = 5 * counts[p];
+    displs5[p] = 5 * n_all;
+    n_all += counts[p];
+  }
+  std::vector<double> all(5 * (size_t) n_all);
+  MPI_Allgatherv(mine.data(), 5 * n, MPI_DOUBLE, all.data(), counts5.data(), displs5.data(), MPI_DOUBLE, world);
+  all_x.resize(3 * (size_t) n_all);
+  all_a.resize(n_all);
+  all_w.resize(n_all);
+  all_force.resize(3 * (size_t) n_all);
+  all_u.resize(3 * (size_t) n);
+  force.resize(3 * (size_t) n);
+  for (int j = 0; j < n_all; j++) {
+    std::copy(&all[5 * (size_t) j], &all[5 * (size_t) j] + 3, &all_x[3 * (size_t) j]);
+    all_a[j] = all[5 * (size_t) j + 3];
+    all_w[j] = all[5 * (size_t) j + 4];
+  }
+}
+
+void Scene::apply(void *ctx, const double *F, double *u)
+{
+  Scene *scene = static_cast<Scene *>(ctx);
+  if (scene->all_pairs())
+    scene->apply_all(F, u);
+  else
+    scene->apply_list(F, u);
+}
+
+void Scene::apply_list(const double *F, double *u)
+{
+  force.resize(3 * a.size() + 3);
+  std::copy(F, F + 3 * (size_t) atom->nlocal, force.begin());
+  packing = FORCES;
+  Compat::forward_comm(comm, pair);
+  const sd_spheres spheres = {positions(), a.data(), w.data()};
+  sd_product_list(settings.tensor, &spheres, filtered ? &pairs.pairs : &candidates.pairs, force.data(), u);
+}
+
+void Scene::apply_all(const double *F, double *u)
+{
+  const int n = own.size();
+  for (int k = 0; k < n; k++) std::copy(F + 3 * (size_t) own[k], F + 3 * (size_t) own[k] + 3, &force[3 * (size_t) k]);
+  MPI_Allgatherv(force.data(), 3 * n, MPI_DOUBLE, all_force.data(), counts3.data(), displs3.data(), MPI_DOUBLE, world);
+  const sd_spheres spheres = {all_x.data(), all_a.data(), all_w.data()};
+  sd_product_all(settings.tensor, &spheres, n_all, begin, n, all_force.data(), all_u.data());
+  std::fill(u, u + 3 * (size_t) atom->nlocal, 0.0);
+  for (int k = 0; k < n; k++) std::copy(&all_u[3 * (size_t) k], &all_u[3 * (size_t) k] + 3, u + 3 * (size_t) own[k]);
+}
+
+void Scene::sum(void *ctx, double *values, int count)
+{
+  MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, static_cast<Scene *>(ctx)->world);
+}
+
+int Scene::pack_forward_comm(int n, int *list, double *buf)
+{
+  int m = 0;
+  for (int k = 0; k < n; k++) {
+    const int i = list[k];
+    switch (packing) {
+      case SPHERES:
+        buf[m++] = a[i];
+        buf[m++] = w[i];
+        break;
+      case MOLECULES:
+        buf[m++] = ubuf(molecule[i]).d;
+        break;
+      case FORCES:
+        for (int d = 0; d < 3; d++) buf[m++] = force[3 * (size_t) i + d];
+        break;
+    }
+  }
+  return m;
+}
+
+void Scene::unpack_forward_comm(int n, int first, double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; i++) {
+    switch (packing) {
+      case SPHERES:
+        a[i] = buf[m++];
+        w[i] = buf[m++];
+        break;
+      case MOLECULES:
+        molecule[i] = ubuf(buf[m++]).i;
+        break;
+      case FORCES:
+        for (int d = 0; d < 3; d++) force[3 * (size_t) i + d] = buf[m++];
+        break;
+    }
+  }
+}
+
+double Scene::memory_usage() const
+{
+  return sizeof(int) * ((double) candidates.capacity + pairs.capacity) +
+    sizeof(double) * ((double) a.capacity() + w.capacity() + force.capacity() + all_x.capacity() + all_force.capacity());
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,83 @@
+/* From LAMMPS atoms to the core's arrays and back: which spheres take part, who sees whom, on which rank. The only room that
+ * knows ghosts.
+ *
+ * Vectors of the core have 3 numbers for each atom that this rank owns, in the order of LAMMPS. An atom that does not take part has
+ * radius 0 there, and the core leaves it out. */
+#ifndef SD_SCENE_H
+#define SD_SCENE_H
+
+#include "pointers.h"
+
+#include "sd_neighbor.h"
+#include "sd_product.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Pair;
+}
+
+namespace StokesDyn {
+
+class Scene : protected LAMMPS_NS::Pointers {
+ public:
+  struct Settings {
+    sd_tensor tensor = SD_TENSOR_RPY;
+    double cutoff = 0.0;                              // INFINITY: no cut-off
+    bool clumps_only = false;
+  } settings;
+
+  Scene(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair, const std::string &command);
+  ~Scene();
+  Scene(const Scene &) = delete;
+  Scene &operator=(const Scene &) = delete;
+
+  bool all_pairs() const;                             // every sphere sees every other: no list, no ghosts
+
+  /* The spheres of this step: active[i] and eta[i] of this rank's atoms. Finds the pairs again if LAMMPS has re-neighboured.
+   * Errors: a clump that the ghosts do not cover, or wider than half the periodic box. */
+  void update(const std::vector<char> &active, const std::vector<double> &eta);
+  void lists_are_stale() { stale = true; }
+
+  /* u = Omega F, in the core's signature: ctx is a Scene. */
+  static void apply(void *ctx, const double *F, double *u);
+  /* Sum over all ranks, likewise. */
+  static void sum(void *ctx, double *values, int count);
+
+  int pack_forward_comm(int n, int *list, double *buf);
+  void unpack_forward_comm(int n, int first, double *buf);
+  double memory_usage() const;
+
+ private:
+  LAMMPS_NS::Pair *pair;
+  std::string command;
+
+  bool stale = true;
+  bool filtered = false;                              // does pairs differ from candidates?
+  std::vector<double> a, w, force;                    // of owned and ghost atoms
+  std::vector<int64_t> tag, molecule;
+  std::vector<int> order;
+  sd_neighbors candidates, pairs;
+
+  // all pairs: the active spheres of all ranks, in order of rank
+  std::vector<int> own;                               // local index of this rank's
+  std::vector<int> counts3, displs3;
+  std::vector<double> all_x, all_a, all_w, all_force, all_u;
+  int n_all = 0, begin = 0;
+
+  enum { SPHERES, MOLECULES, FORCES } packing = SPHERES;
+
+  const double *positions() const;
+  void find_pairs();
+  void check_clumps();
+  void gather();
+  void apply_list(const double *F, double *u);
+  void apply_all(const double *F, double *u);
+  [[noreturn]] void complain_about_ghosts(const std::vector<int64_t> &incomplete);
+  [[noreturn]] void out_of_memory();
+};
+
+}    // namespace StokesDyn
+#endif
