@@ -29,7 +29,8 @@ void Field::init(LAMMPS *lmp, const std::string &what)
   const int i = variable->find(const_cast<char *>(name.c_str()));
   if (i < 0) fail(lmp, what + ": variable '" + name + "' does not exist");
   atom_style = variable->atomstyle(i);
-  if (!atom_style && !variable->equalstyle(i)) fail(lmp, what + ": variable '" + name + "' is neither equal nor atom style");
+  if (!atom_style && !variable->equalstyle(i))
+    fail(lmp, what + ": variable '" + name + "' is neither equal nor atom style");
 }
 
 void Field::evaluate(LAMMPS *lmp, int igroup, double *out, int stride)

@@ -11,11 +11,14 @@ class Field {
   Field() = default;
   explicit Field(double number) : value(number) {}
 
-  static Field parse(Keywords &in);                  // the next word of a keyword
+  static Field parse(Keywords &in);    // the next word of a keyword
 
   bool is_variable() const { return !name.empty(); }
   bool is_atom_style() const { return atom_style; }
-  double number() const { return value; }            // of a plain number, or the last value of an equal-style variable
+  double number() const
+  {
+    return value;
+  }    // of a plain number, or the last value of an equal-style variable
   double *address() { return &value; }
 
   /* Find the variable; what: "Pair style x: keyword visc", for the error if it is missing or of another style. */

@@ -13,7 +13,8 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), total()
+FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), total()
 {
   Keywords in(lmp, "Fix " + std::string(STYLE), words(narg, arg), 3);
   while (in.next()) {
@@ -51,21 +52,31 @@ int FixStokesDynamics::setmask()
 
 PairStokesDynamics *FixStokesDynamics::find_pair()
 {
-  return force->pair ? static_cast<PairStokesDynamics *>(force->pair_match(PairStokesDynamics::STYLE, 1)) : nullptr;
+  return force->pair
+      ? static_cast<PairStokesDynamics *>(force->pair_match(PairStokesDynamics::STYLE, 1))
+      : nullptr;
 }
 
 void FixStokesDynamics::init()
 {
   pair = find_pair();
-  if (!pair) fail(lmp, "Fix stokes_dynamics: there is no pair_style stokes_dynamics whose force it could apply or report");
+  if (!pair)
+    fail(lmp,
+         "Fix stokes_dynamics: there is no pair_style stokes_dynamics whose force it could apply "
+         "or report");
   if (apply == YES && pair->adds_force())
-    fail(lmp, "Fix stokes_dynamics: keyword apply: 'yes' together with add_force yes of pair_style stokes_dynamics would count the force twice");
+    fail(lmp,
+         "Fix stokes_dynamics: keyword apply: 'yes' together with add_force yes of pair_style "
+         "stokes_dynamics would count the force twice");
   if (!applies(pair->adds_force())) return;
   for (int i = 0; i < modify->nfix; i++) {
     Fix *other = modify->fix[i];
-    if (other != this && strcmp(other->style, STYLE) == 0 && static_cast<FixStokesDynamics *>(other)->applies(pair->adds_force()))
-      fail(lmp, "Fix stokes_dynamics: keyword apply: the fixes " + std::string(id) + " and " + other->id +
-                  " both apply the force, which would count twice; give one of them apply no");
+    if (other != this && strcmp(other->style, STYLE) == 0 &&
+        static_cast<FixStokesDynamics *>(other)->applies(pair->adds_force()))
+      fail(lmp,
+           "Fix stokes_dynamics: keyword apply: the fixes " + std::string(id) + " and " +
+               other->id +
+               " both apply the force, which would count twice; give one of them apply no");
   }
 }
 

@@ -31,9 +31,9 @@ class FixStokesDynamics : public LAMMPS_NS::Fix {
 
  private:
   enum { NO, YES, UNSAID } apply = UNSAID;
-  enum { NCOLUMNS = 9 };                              // Fx Fy Fz v'x v'y v'z Tx Ty Tz
+  enum { NCOLUMNS = 9 };    // Fx Fy Fz v'x v'y v'z Tx Ty Tz
   PairStokesDynamics *pair = nullptr;
-  double total[4];                                    // F and dissipation of the group, this rank
+  double total[4];    // F and dissipation of the group, this rank
   PairStokesDynamics *find_pair();
 };
 

@@ -11,7 +11,8 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg)
 {
   restart_peratom = 1;
   restart_global = 1;

@@ -33,19 +33,19 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
   double memory_usage() override;
 
   enum { FORCE = 0, VPRIME = 3, SOLVED = 6, LEFT_X = 7, LEFT_V = 10, NCOLUMNS = 13 };
-  double **state = nullptr;                           // [atom][NCOLUMNS]
+  double **state = nullptr;    // [atom][NCOLUMNS]
 
   /* The same on all ranks, in one block for the restart file. A step of -1: never. */
   struct Global {
-    double last_step = -1, last_solve = -1;           // time step of the forces, of v'
-    double spheres = 0;                               // that took part then
-    double eta = 0, u_inf[3] = {0, 0, 0};             // of the last step, if numbers
+    double last_step = -1, last_solve = -1;    // time step of the forces, of v'
+    double spheres = 0;                        // that took part then
+    double eta = 0, u_inf[3] = {0, 0, 0};      // of the last step, if numbers
     double solves = 0, unconverged = 0;
-    double iterations = 0, residual = 0;              // of the last solve
+    double iterations = 0, residual = 0;    // of the last solve
   } global;
 
-  void forget();                                      // new settings: nothing of the past stands
-  bool left_as_is(int i) const;                       // is atom i where, and as fast as, the last run left it?
+  void forget();                   // new settings: nothing of the past stands
+  bool left_as_is(int i) const;    // is atom i where, and as fast as, the last run left it?
 
  private:
   void record(int i);

@@ -39,8 +39,10 @@ bool is_number(const std::string &word, double &value)
   return true;
 }
 
-Keywords::Keywords(LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args, size_t begin) :
-    lmp(lmp), command(command), args(args), at(begin)
+Keywords::Keywords(LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args,
+                   size_t begin) :
+    lmp(lmp),
+    command(command), args(args), at(begin)
 {
 }
 

@@ -25,23 +25,25 @@ std::string text(double value);
  *   }  */
 class Keywords {
  public:
-  Keywords(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args, size_t begin = 0);
+  Keywords(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args,
+           size_t begin = 0);
 
-  bool next();                                       // to the next keyword; false at the end
+  bool next();    // to the next keyword; false at the end
   bool is(const std::string &name) const { return name == key; }
-  bool more() const { return at < args.size(); }     // is there another word?
+  bool more() const { return at < args.size(); }    // is there another word?
   const std::string &peek() const { return args[at]; }
 
-  std::string word();                                // the values of the present keyword, one call each
-  double number();                                   // finite
+  std::string word();    // the values of the present keyword, one call each
+  double number();       // finite
   double positive();
   double not_negative();
-  LAMMPS_NS::bigint integer(LAMMPS_NS::bigint lowest, LAMMPS_NS::bigint highest = std::numeric_limits<int>::max());
+  LAMMPS_NS::bigint integer(LAMMPS_NS::bigint lowest,
+                            LAMMPS_NS::bigint highest = std::numeric_limits<int>::max());
   bool yes_no();
   size_t choice(std::initializer_list<const char *> options);    // index of the option given
 
-  [[noreturn]] void unknown() const;                 // the present keyword does not exist
-  [[noreturn]] void refuse(const std::string &why) const;        // "<command>: keyword <key>: <why>"
+  [[noreturn]] void unknown() const;                         // the present keyword does not exist
+  [[noreturn]] void refuse(const std::string &why) const;    // "<command>: keyword <key>: <why>"
 
  private:
   LAMMPS_NS::LAMMPS *lmp;

@@ -33,9 +33,10 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), scene(lmp, this
   manybody_flag = 1;
   one_coeff = 1;
   restartinfo = 1;
-  no_virial_fdotr_compute = 1;    // drag acts between sphere and fluid: its x.F depends on the origin
+  no_virial_fdotr_compute =
+      1;    // drag acts between sphere and fluid: its x.F depends on the origin
   comm_forward = 3;
-  nextra = 4;                     // compute pair: iterations, residual, unconverged solves, dissipation
+  nextra = 4;    // compute pair: iterations, residual, unconverged solves, dissipation
   pvector = new double[nextra];
   for (int k = 0; k < nextra; k++) pvector[k] = 0.0;
 }
@@ -89,7 +90,8 @@ void PairStokesDynamics::parse()
       scene.settings.clumps_only = in.yes_no();
     else if (in.is("visc")) {
       visc = Field::parse(in);
-      if (!visc.is_variable() && !(visc.number() > 0.0)) in.refuse("'" + text(visc.number()) + "' must be > 0");
+      if (!visc.is_variable() && !(visc.number() > 0.0))
+        in.refuse("'" + text(visc.number()) + "' must be > 0");
       has_visc = true;
     } else if (in.is("region"))
       region_id = in.word();
@@ -107,14 +109,18 @@ void PairStokesDynamics::parse()
       for (auto &u : fluid_velocity) u = Field::parse(in);
     else if (in.is("tensor"))
       scene.settings.tensor = in.choice({"rpy", "oseen"}) == 0 ? SD_TENSOR_RPY : SD_TENSOR_OSEEN;
-    else if (in.is("rotation") || in.is("rigid_clumps") || in.is("shell") || in.is("taper") || in.is("precondition") || in.is("warm_start"))
+    else if (in.is("rotation") || in.is("rigid_clumps") || in.is("shell") || in.is("taper") ||
+             in.is("precondition") || in.is("warm_start"))
       in.refuse("not available in this version");
     else
       in.unknown();
   }
   if (!has_visc) fail(lmp, COMMAND + ": keyword visc is required: the dynamic viscosity");
   if (!has_cutoff) {
-    if (!scene.settings.clumps_only) fail(lmp, COMMAND + ": keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
+    if (!scene.settings.clumps_only)
+      fail(lmp,
+           COMMAND +
+               ": keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
     scene.settings.cutoff = INFINITY;
   }
 }
@@ -122,7 +128,10 @@ void PairStokesDynamics::parse()
 void PairStokesDynamics::coeff(int narg, char **arg)
 {
   if (narg != 2 || strcmp(arg[0], "*") != 0 || strcmp(arg[1], "*") != 0)
-    fail(lmp, COMMAND + ": the only form of pair_coeff is: pair_coeff * * (use the keywords group and region to select spheres)");
+    fail(lmp,
+         COMMAND +
+             ": the only form of pair_coeff is: pair_coeff * * (use the keywords group and region "
+             "to select spheres)");
   if (!allocated) allocate();
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++) setflag[i][j] = 1;
@@ -141,16 +150,27 @@ void PairStokesDynamics::allocate()
 void PairStokesDynamics::init_style()
 {
   if (update->whichflag == 2)
-    fail(lmp, COMMAND + " cannot be minimised: a drag depends on velocities and has no energy; use 'pair_style none' meanwhile");
-  if (force->pair_match(STYLE, 1) != this) fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
-  if (!atom->radius_flag) fail(lmp, COMMAND + " requires an atom style with radius, such as sphere");
+    fail(lmp,
+         COMMAND +
+             " cannot be minimised: a drag depends on velocities and has no energy; use "
+             "'pair_style none' meanwhile");
+  if (force->pair_match(STYLE, 1) != this)
+    fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
+  if (!atom->radius_flag)
+    fail(lmp, COMMAND + " requires an atom style with radius, such as sphere");
   if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
   if (scene.settings.clumps_only && !atom->molecule_flag)
-    fail(lmp, COMMAND + ": keyword clumps_only: yes requires molecule IDs (atom_style hybrid sphere bond, or fix property/atom mol)");
+    fail(lmp,
+         COMMAND +
+             ": keyword clumps_only: yes requires molecule IDs (atom_style hybrid sphere bond, or "
+             "fix property/atom mol)");
   if (scene.all_pairs())
     for (int d = 0; d < domain->dimension; d++)
       if (domain->periodicity[d])
-        fail(lmp, COMMAND + ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or clumps_only yes");
+        fail(lmp,
+             COMMAND +
+                 ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or "
+                 "clumps_only yes");
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, 2.0 * atom->radius[i]);
@@ -179,7 +199,10 @@ void PairStokesDynamics::init_style()
   if (!applied && !warned_nobody_applies) {
     warned_nobody_applies = true;
     if (comm->me == 0)
-      error->warning(FLERR, std::string(COMMAND + ": nothing applies the force: add_force is no and no fix stokes_dynamics applies it"));
+      error->warning(FLERR,
+                     std::string(COMMAND +
+                                 ": nothing applies the force: add_force is no and no fix "
+                                 "stokes_dynamics applies it"));
   }
   scene.lists_are_stale();
   warned_unconverged = false;
@@ -202,8 +225,10 @@ void *PairStokesDynamics::extract(const char *name, int &dim)
 
 double PairStokesDynamics::memory_usage()
 {
-  return scene.memory_usage() + sizeof(double) * (double) (eta.capacity() + u_inf.capacity() + slip.capacity() + drag.capacity() +
-                                                           solution.capacity() + work.capacity());
+  return scene.memory_usage() +
+      sizeof(double) *
+      (double) (eta.capacity() + u_inf.capacity() + slip.capacity() + drag.capacity() +
+                solution.capacity() + work.capacity());
 }
 
 // --- a step ------------------------------------------------------------------------------------------------
@@ -252,14 +277,16 @@ void PairStokesDynamics::complain()
             break;
         }
   MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
-  const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ", atom " + std::to_string(first / 8) + ": ";
+  const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ", atom " +
+      std::to_string(first / 8) + ": ";
   switch (first % 8) {
     case POSITION:
       fail(lmp, who + "its position is not a finite number");
     case VELOCITY:
       fail(lmp, who + "its velocity is not a finite number");
     case RADIUS:
-      fail(lmp, who + "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)");
+      fail(lmp,
+           who + "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)");
     case VISCOSITY:
       fail(lmp, who + "keyword visc: its viscosity " + text(sum) + " must be > 0");
     default:
@@ -269,7 +296,8 @@ void PairStokesDynamics::complain()
 
 bool PairStokesDynamics::numbers_only() const
 {
-  return !visc.is_variable() && !fluid_velocity[0].is_variable() && !fluid_velocity[1].is_variable() && !fluid_velocity[2].is_variable();
+  return !visc.is_variable() && !fluid_velocity[0].is_variable() &&
+      !fluid_velocity[1].is_variable() && !fluid_velocity[2].is_variable();
 }
 
 /* Who takes part, viscosity, fluid velocity, slip. */
@@ -291,7 +319,8 @@ void PairStokesDynamics::state_of_the_step()
   for (int i = 0; i < n; i++) {
     active[i] = selected(i);
     drag[i] = active[i] ? 6.0 * SD_PI * eta[i] * atom->radius[i] : 0.0;
-    for (int d = 0; d < 3; d++) slip[3 * (size_t) i + d] = active[i] ? u_inf[3 * (size_t) i + d] - atom->v[i][d] : 0.0;
+    for (int d = 0; d < 3; d++)
+      slip[3 * (size_t) i + d] = active[i] ? u_inf[3 * (size_t) i + d] - atom->v[i][d] : 0.0;
   }
 }
 
@@ -308,10 +337,13 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   const double step = update->ntimestep;
 
   // v' is due every update_every steps, and at once when the spheres are not those of the last solve: none lacks a v', none has gone.
-  double count[4] = {0.0, 0.0, 0.0, 0.0};    // spheres, newcomers, faults, spheres that somebody moved since the last run
-  const bool may_resume = update->setupflag && step == global.last_step && numbers_only() && visc.number() == global.eta &&
-    fluid_velocity[0].number() == global.u_inf[0] && fluid_velocity[1].number() == global.u_inf[1] &&
-    fluid_velocity[2].number() == global.u_inf[2];
+  double count[4] = {
+      0.0, 0.0, 0.0,
+      0.0};    // spheres, newcomers, faults, spheres that somebody moved since the last run
+  const bool may_resume = update->setupflag && step == global.last_step && numbers_only() &&
+      visc.number() == global.eta && fluid_velocity[0].number() == global.u_inf[0] &&
+      fluid_velocity[1].number() == global.u_inf[1] &&
+      fluid_velocity[2].number() == global.u_inf[2];
   for (int i = 0; i < n; i++) {
     if (faulty(i) != NONE) count[2]++;
     if (!active[i]) continue;
@@ -325,7 +357,7 @@ void PairStokesDynamics::compute(int eflag, int vflag)
 
   if (!(may_resume && same_spheres && count[3] == 0.0)) {
     const bool due = !same_spheres || fmod(step, update_every) == 0.0 || step < global.last_solve ||
-      floor(step / update_every) != floor(global.last_solve / update_every);
+        floor(step / update_every) != floor(global.last_solve / update_every);
     if (due) {
       solve();
       global.last_solve = step;
@@ -333,7 +365,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     }
     for (int i = 0; i < n; i++)
       for (int d = 0; d < 3; d++)
-        state[i][State::FORCE + d] = active[i] ? drag[i] * (slip[3 * (size_t) i + d] + state[i][State::VPRIME + d]) : 0.0;
+        state[i][State::FORCE + d] =
+            active[i] ? drag[i] * (slip[3 * (size_t) i + d] + state[i][State::VPRIME + d]) : 0.0;
   }
   global.last_step = step;
   global.eta = visc.number();
@@ -369,7 +402,8 @@ void PairStokesDynamics::solve()
   const sd_system system = {n, drag.data(), Scene::apply, &scene, Scene::sum, &scene};
   sd_solve_report report;
   auto solver = algorithm == 1 ? sd_solve_substitution : sd_solve_gradients;
-  const sd_status status = solver(&system, slip.data(), tolerance, max_iter, solution.data(), work.data(), &report);
+  const sd_status status =
+      solver(&system, slip.data(), tolerance, max_iter, solution.data(), work.data(), &report);
 
   FixStokesDynamicsState::Global &global = fix_state->global;
   global.solves++;
@@ -382,41 +416,58 @@ void PairStokesDynamics::solve()
     state[i][FixStokesDynamicsState::SOLVED] = active[i] ? 1.0 : 0.0;
     for (int d = 0; d < 3; d++)
       state[i][FixStokesDynamicsState::VPRIME + d] =
-        active[i] ? solution[3 * (size_t) i + d] / drag[i] - slip[3 * (size_t) i + d] : 0.0;
+          active[i] ? solution[3 * (size_t) i + d] / drag[i] - slip[3 * (size_t) i + d] : 0.0;
   }
 }
 
 /* Returns for a solve whose answer may still be used; ends the run otherwise. */
 void PairStokesDynamics::solver_failed(sd_status status, const sd_solve_report &report)
 {
-  const std::string where = COMMAND + ": step " + std::to_string(update->ntimestep) + ": algorithm " + std::to_string(algorithm) + ": ";
-  const std::string how_far = "residual " + text(report.residual) + " after iteration " + std::to_string(report.iterations);
-  const std::string cutoff = std::isinf(scene.settings.cutoff) ? "inf" : text(scene.settings.cutoff);
+  const std::string where = COMMAND + ": step " + std::to_string(update->ntimestep) +
+      ": algorithm " + std::to_string(algorithm) + ": ";
+  const std::string how_far =
+      "residual " + text(report.residual) + " after iteration " + std::to_string(report.iterations);
+  const std::string cutoff = std::isinf(scene.settings.cutoff) ? "inf"
+                                                               : text(scene.settings.cutoff);
   switch (status) {
     case SD_EMAXITER:
     case SD_ESTAGNATED:
       fix_state->global.unconverged++;
       if (!warned_unconverged && comm->me == 0)
-        error->warning(FLERR, std::string(where + sd_status_string(status) + ": " + how_far + ", relative_tolerance " + text(tolerance) +
-                                          (status == SD_EMAXITER ? ", max_iter " + std::to_string(max_iter) : std::string()) +
-                                          "; the run goes on, further ones are counted (compute pair, fix stokes_dynamics)"));
+        error->warning(
+            FLERR,
+            std::string(
+                where + sd_status_string(status) + ": " + how_far + ", relative_tolerance " +
+                text(tolerance) +
+                (status == SD_EMAXITER ? ", max_iter " + std::to_string(max_iter) : std::string()) +
+                "; the run goes on, further ones are counted (compute pair, fix stokes_dynamics)"));
       warned_unconverged = true;
       return;
     case SD_EDIVERGED:
-      fail(lmp, where + "diverged: " + how_far + ", growing by a factor " + text(report.growth) + " each; use algorithm 2");
+      fail(lmp,
+           where + "diverged: " + how_far + ", growing by a factor " + text(report.growth) +
+               " each; use algorithm 2");
     case SD_EINDEFINITE:
-      fail(lmp, where + sd_status_string(status) + " with " +
-                  (scene.settings.tensor == SD_TENSOR_OSEEN ? "tensor oseen: spheres are too close for it, use tensor rpy"
-                     : "cut_off_distance " + cutoff + ", so any answer would be noise: use cut_off_distance inf, or clumps_only yes "
-                       "with a cut-off larger than the clump") + " (" + how_far + ", curvature " + text(report.curvature) + ")");
+      fail(lmp,
+           where + sd_status_string(status) + " with " +
+               (scene.settings.tensor == SD_TENSOR_OSEEN
+                    ? "tensor oseen: spheres are too close for it, use tensor rpy"
+                    : "cut_off_distance " + cutoff +
+                        ", so any answer would be noise: use cut_off_distance inf, or clumps_only "
+                        "yes "
+                        "with a cut-off larger than the clump") +
+               " (" + how_far + ", curvature " + text(report.curvature) + ")");
     case SD_ESINGULAR:
-      fail(lmp, where + sd_status_string(status) + ": spheres at one point with different velocities (" + how_far + ")");
+      fail(lmp,
+           where + sd_status_string(status) + ": spheres at one point with different velocities (" +
+               how_far + ")");
     default:
       fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
   }
 }
 
-int PairStokesDynamics::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
+int PairStokesDynamics::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/,
+                                          int * /*pbc*/)
 {
   return scene.pack_forward_comm(n, list, buf);
 }
@@ -464,7 +515,9 @@ void PairStokesDynamics::read_restart_settings(FILE *fp)
   if (root) utils::sfread(FLERR, &format, sizeof(int), 1, fp, nullptr, error);
   MPI_Bcast(&format, 1, MPI_INT, 0, world);
   if (format != RESTART_FORMAT)
-    fail(lmp, COMMAND + ": the restart file is of format " + std::to_string(format) + ", this version reads " + std::to_string(RESTART_FORMAT));
+    fail(lmp,
+         COMMAND + ": the restart file is of format " + std::to_string(format) +
+             ", this version reads " + std::to_string(RESTART_FORMAT));
   if (root) {
     utils::sfread(FLERR, &eta_then, sizeof(double), 1, fp, nullptr, error);
     utils::sfread(FLERR, &size, sizeof(int), 1, fp, nullptr, error);
@@ -476,7 +529,8 @@ void PairStokesDynamics::read_restart_settings(FILE *fp)
   MPI_Bcast(&all[0], size, MPI_CHAR, 0, world);
 
   args.clear();
-  for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1) args.push_back(all.substr(from, to - from));
+  for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1)
+    args.push_back(all.substr(from, to - from));
   parse();
   if (!visc.is_variable()) *visc.address() = eta_then;
 }

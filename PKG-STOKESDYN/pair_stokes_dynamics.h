@@ -41,9 +41,15 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
 
   /* For fix stokes_dynamics. After compute() of a step: per atom of this rank, in order of LAMMPS. */
   bool adds_force() const { return add_force; }
-  const double *drag_force(int i) const { return fix_state->state[i] + FixStokesDynamicsState::FORCE; }
-  const double *perturbation(int i) const { return fix_state->state[i] + FixStokesDynamicsState::VPRIME; }
-  double dissipation(int i) const;                    // -F.(v - u_inf) of one sphere, >= 0 in the sum over all
+  const double *drag_force(int i) const
+  {
+    return fix_state->state[i] + FixStokesDynamicsState::FORCE;
+  }
+  const double *perturbation(int i) const
+  {
+    return fix_state->state[i] + FixStokesDynamicsState::VPRIME;
+  }
+  double dissipation(int i) const;    // -F.(v - u_inf) of one sphere, >= 0 in the sum over all
   const FixStokesDynamicsState::Global &numbers() const { return fix_state->global; }
 
  private:

@@ -87,10 +87,11 @@ void Scene::find_pairs()
     for (int i = 0; i < n; i++) tag[i] = atom->tag[i];
     packing = MOLECULES;    // not every atom style sends molecule IDs to ghosts
     Compat::forward_comm(comm, pair);
-    status = sd_neighbors_clump(&candidates, positions(), tag.data(), molecule.data(), nlocal, n, settings.cutoff + neighbor->skin,
-                                order.data());
+    status = sd_neighbors_clump(&candidates, positions(), tag.data(), molecule.data(), nlocal, n,
+                                settings.cutoff + neighbor->skin, order.data());
   } else
-    status = sd_neighbors_cutoff(&candidates, positions(), nlocal, n, settings.cutoff + neighbor->skin);
+    status =
+        sd_neighbors_cutoff(&candidates, positions(), nlocal, n, settings.cutoff + neighbor->skin);
   if (status != SD_OK) out_of_memory();
   if (settings.clumps_only && std::isinf(settings.cutoff)) check_clumps();
   stale = false;
@@ -126,13 +127,13 @@ void Scene::check_clumps()
       n_in += received[p];
     }
     in.resize(n_in);
-    MPI_Alltoallv(out.data(), sent.data(), sent_at.data(), MPI_LMP_BIGINT, in.data(), received.data(), received_at.data(), MPI_LMP_BIGINT,
-                  world);
+    MPI_Alltoallv(out.data(), sent.data(), sent_at.data(), MPI_LMP_BIGINT, in.data(),
+                  received.data(), received_at.data(), MPI_LMP_BIGINT, world);
     std::map<int64_t, int64_t> sums;
     for (int k = 0; k < n_in; k += 2) sums[in[k]] += in[k + 1];
     for (int k = 0; k < n_in; k += 2) in[k + 1] = sums[in[k]];
-    MPI_Alltoallv(in.data(), received.data(), received_at.data(), MPI_LMP_BIGINT, out.data(), sent.data(), sent_at.data(), MPI_LMP_BIGINT,
-                  world);
+    MPI_Alltoallv(in.data(), received.data(), received_at.data(), MPI_LMP_BIGINT, out.data(),
+                  sent.data(), sent_at.data(), MPI_LMP_BIGINT, world);
     for (size_t k = 0; k < out.size(); k += 2) total[out[k]] = out[k + 1];
   }
 
@@ -151,15 +152,18 @@ void Scene::check_clumps()
         hi[d] = fmax(hi[d], delta);
       }
     for (int d = 0; d < 3; d++)
-      if (domain->periodicity[d] && hi[d] - lo[d] > 0.5 * domain->prd[d] * (1.0 + 1e-9)) wide = std::max(wide, molecule[i]);
+      if (domain->periodicity[d] && hi[d] - lo[d] > 0.5 * domain->prd[d] * (1.0 + 1e-9))
+        wide = std::max(wide, molecule[i]);
   }
   int64_t mine[2] = {(int64_t) incomplete.size(), wide}, any[2];
   MPI_Allreduce(mine, any, 2, MPI_LMP_BIGINT, MPI_MAX, world);
   if (any[0]) complain_about_ghosts(incomplete);
   if (any[1])
-    fail(lmp, command + ": the clump of molecule " + std::to_string(any[1]) +
-                " is wider than half of the periodic box, so which image of a sphere it sees is ambiguous;"
-                " use a larger box or a cut_off_distance below half of it");
+    fail(lmp,
+         command + ": the clump of molecule " + std::to_string(any[1]) +
+             " is wider than half of the periodic box, so which image of a sphere it sees is "
+             "ambiguous;"
+             " use a larger box or a cut_off_distance below half of it");
 }
 
 void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
@@ -174,7 +178,8 @@ void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
       n += counts[p];
     }
     std::vector<double> all(n);
-    MPI_Allgatherv(v.data(), mine, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, world);
+    MPI_Allgatherv(v.data(), mine, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE,
+                   world);
     v.swap(all);
   };
   std::vector<double> ids(incomplete.begin(), incomplete.end()), spheres;
@@ -182,11 +187,13 @@ void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
   std::sort(ids.begin(), ids.end());
   for (int i = 0; i < atom->nlocal; i++)
     if (std::binary_search(ids.begin(), ids.end(), (double) molecule[i]))
-      spheres.insert(spheres.end(), {(double) molecule[i], atom->x[i][0], atom->x[i][1], atom->x[i][2]});
+      spheres.insert(spheres.end(),
+                     {(double) molecule[i], atom->x[i][0], atom->x[i][1], atom->x[i][2]});
   everywhere(spheres);
 
   std::map<int64_t, std::vector<const double *>> clumps;
-  for (size_t k = 0; k < spheres.size(); k += 4) clumps[(int64_t) spheres[k]].push_back(&spheres[k + 1]);
+  for (size_t k = 0; k < spheres.size(); k += 4)
+    clumps[(int64_t) spheres[k]].push_back(&spheres[k + 1]);
   double widest = 0.0;
   int64_t which = 0;
   for (const auto &clump : clumps)
@@ -203,9 +210,11 @@ void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
   // Rounded up to three digits, so that the number can be typed.
   const double wanted = widest + neighbor->skin;
   const double unit = pow(10.0, floor(log10(wanted)) - 2.0);
-  fail(lmp, command + ": the ghost cut-off " + text(comm->get_comm_cutoff()) + " does not reach across the clump of molecule " +
-              std::to_string(which) + ", " + text(widest) + " from centre to centre; use: comm_modify cutoff " +
-              text(ceil(wanted / unit) * unit));
+  fail(lmp,
+       command + ": the ghost cut-off " + text(comm->get_comm_cutoff()) +
+           " does not reach across the clump of molecule " + std::to_string(which) + ", " +
+           text(widest) + " from centre to centre; use: comm_modify cutoff " +
+           text(ceil(wanted / unit) * unit));
 }
 
 /* The active spheres of all ranks; their order depends on the ranks, hence sums differ in the last digit only. */
@@ -234,7 +243,8 @@ void Scene::gather()
     n_all += counts[p];
   }
   std::vector<double> all(5 * (size_t) n_all);
-  MPI_Allgatherv(mine.data(), 5 * n, MPI_DOUBLE, all.data(), counts5.data(), displs5.data(), MPI_DOUBLE, world);
+  MPI_Allgatherv(mine.data(), 5 * n, MPI_DOUBLE, all.data(), counts5.data(), displs5.data(),
+                 MPI_DOUBLE, world);
   all_x.resize(3 * (size_t) n_all);
   all_a.resize(n_all);
   all_w.resize(n_all);
@@ -264,18 +274,22 @@ void Scene::apply_list(const double *F, double *u)
   packing = FORCES;
   Compat::forward_comm(comm, pair);
   const sd_spheres spheres = {positions(), a.data(), w.data()};
-  sd_product_list(settings.tensor, &spheres, filtered ? &pairs.pairs : &candidates.pairs, force.data(), u);
+  sd_product_list(settings.tensor, &spheres, filtered ? &pairs.pairs : &candidates.pairs,
+                  force.data(), u);
 }
 
 void Scene::apply_all(const double *F, double *u)
 {
   const int n = own.size();
-  for (int k = 0; k < n; k++) std::copy(F + 3 * (size_t) own[k], F + 3 * (size_t) own[k] + 3, &force[3 * (size_t) k]);
-  MPI_Allgatherv(force.data(), 3 * n, MPI_DOUBLE, all_force.data(), counts3.data(), displs3.data(), MPI_DOUBLE, world);
+  for (int k = 0; k < n; k++)
+    std::copy(F + 3 * (size_t) own[k], F + 3 * (size_t) own[k] + 3, &force[3 * (size_t) k]);
+  MPI_Allgatherv(force.data(), 3 * n, MPI_DOUBLE, all_force.data(), counts3.data(), displs3.data(),
+                 MPI_DOUBLE, world);
   const sd_spheres spheres = {all_x.data(), all_a.data(), all_w.data()};
   sd_product_all(settings.tensor, &spheres, n_all, begin, n, all_force.data(), all_u.data());
   std::fill(u, u + 3 * (size_t) atom->nlocal, 0.0);
-  for (int k = 0; k < n; k++) std::copy(&all_u[3 * (size_t) k], &all_u[3 * (size_t) k] + 3, u + 3 * (size_t) own[k]);
+  for (int k = 0; k < n; k++)
+    std::copy(&all_u[3 * (size_t) k], &all_u[3 * (size_t) k] + 3, u + 3 * (size_t) own[k]);
 }
 
 void Scene::sum(void *ctx, double *values, int count)
@@ -326,7 +340,9 @@ void Scene::unpack_forward_comm(int n, int first, double *buf)
 double Scene::memory_usage() const
 {
   return sizeof(int) * ((double) candidates.capacity + pairs.capacity) +
-    sizeof(double) * ((double) a.capacity() + w.capacity() + force.capacity() + all_x.capacity() + all_force.capacity());
+      sizeof(double) *
+      ((double) a.capacity() + w.capacity() + force.capacity() + all_x.capacity() +
+       all_force.capacity());
 }
 
 }    // namespace StokesDyn

@@ -25,7 +25,7 @@ class Scene : protected LAMMPS_NS::Pointers {
  public:
   struct Settings {
     sd_tensor tensor = SD_TENSOR_RPY;
-    double cutoff = 0.0;                              // INFINITY: no cut-off
+    double cutoff = 0.0;    // INFINITY: no cut-off
     bool clumps_only = false;
   } settings;
 
@@ -34,7 +34,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   Scene(const Scene &) = delete;
   Scene &operator=(const Scene &) = delete;
 
-  bool all_pairs() const;                             // every sphere sees every other: no list, no ghosts
+  bool all_pairs() const;    // every sphere sees every other: no list, no ghosts
 
   /* The spheres of this step: active[i] and eta[i] of this rank's atoms. Finds the pairs again if LAMMPS has re-neighboured.
    * Errors: a clump that the ghosts do not cover, or wider than half the periodic box. */
@@ -55,14 +55,14 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::string command;
 
   bool stale = true;
-  bool filtered = false;                              // does pairs differ from candidates?
-  std::vector<double> a, w, force;                    // of owned and ghost atoms
+  bool filtered = false;              // does pairs differ from candidates?
+  std::vector<double> a, w, force;    // of owned and ghost atoms
   std::vector<int64_t> tag, molecule;
   std::vector<int> order;
   sd_neighbors candidates, pairs;
 
   // all pairs: the active spheres of all ranks, in order of rank
-  std::vector<int> own;                               // local index of this rank's
+  std::vector<int> own;    // local index of this rank's
   std::vector<int> counts3, displs3;
   std::vector<double> all_x, all_a, all_w, all_force, all_u;
   int n_all = 0, begin = 0;

@@ -32,33 +32,41 @@ static std::string mismatch(void *lmp)
 {
   const int version = lammps_version(lmp);
   if (version != SD_LAMMPS_NUM)
-    return "it was built for LAMMPS " SD_LAMMPS_VERSION " (" + std::to_string(SD_LAMMPS_NUM) + "), this is LAMMPS " + std::to_string(version);
+    return "it was built for LAMMPS " SD_LAMMPS_VERSION " (" + std::to_string(SD_LAMMPS_NUM) +
+        "), this is LAMMPS " + std::to_string(version);
   const struct {
     const char *name;
     int ours;
-  } sizes[] = {{"bigint", sizeof(bigint)}, {"tagint", sizeof(tagint)}, {"imageint", sizeof(imageint)}};
+  } sizes[] = {
+      {"bigint", sizeof(bigint)}, {"tagint", sizeof(tagint)}, {"imageint", sizeof(imageint)}};
   for (const auto &size : sizes) {
     const int theirs = lammps_extract_setting(lmp, size.name);
     if (theirs != size.ours)
-      return "its " + std::string(size.name) + " has " + std::to_string(size.ours) + " bytes, that of this LAMMPS " + std::to_string(theirs) +
-        " (build it with -D LAMMPS_SIZES=smallbig or bigbig, as LAMMPS was)";
+      return "its " + std::string(size.name) + " has " + std::to_string(size.ours) +
+          " bytes, that of this LAMMPS " + std::to_string(theirs) +
+          " (build it with -D LAMMPS_SIZES=smallbig or bigbig, as LAMMPS was)";
   }
   if ((lammps_config_has_mpi_support() != 0) != (SD_LAMMPS_MPI != 0))
-    return SD_LAMMPS_MPI ? "it was built with MPI, this LAMMPS without" : "it was built without MPI, this LAMMPS with";
+    return SD_LAMMPS_MPI ? "it was built with MPI, this LAMMPS without"
+                         : "it was built without MPI, this LAMMPS with";
 #if defined(LAMMPS_EXCEPTIONS)
-  if (!lammps_config_has_exceptions()) return "it was built with exceptions, this LAMMPS without (build it with -D LAMMPS_EXCEPTIONS=OFF)";
+  if (!lammps_config_has_exceptions())
+    return "it was built with exceptions, this LAMMPS without (build it with -D "
+           "LAMMPS_EXCEPTIONS=OFF)";
 #endif
   return "";
 }
 
-extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
+extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle,
+                                                                         void *regfunc)
 {
   const std::string why = mismatch(lmp);
   if (!why.empty()) {
     int me = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &me);
     if (me == 0) {
-      printf("ERROR: stokesdynplugin.so is not loaded: %s. Build the plugin for this LAMMPS: cmake -S cmake -B build -D LAMMPS_SOURCE_DIR=DIR\n",
+      printf("ERROR: stokesdynplugin.so is not loaded: %s. Build the plugin for this LAMMPS: cmake "
+             "-S cmake -B build -D LAMMPS_SOURCE_DIR=DIR\n",
              why.c_str());
       fflush(stdout);
     }

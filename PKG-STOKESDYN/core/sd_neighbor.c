@@ -1,4 +1,4 @@
-#define _GNU_SOURCE                       /* qsort_r */
+#define _GNU_SOURCE /* qsort_r */
 #include "sd_neighbor.h"
 
 #include <math.h>
@@ -71,7 +71,7 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
     return SD_ENOMEMORY;
   }
   for (long c = 0; c < n_cells; c++) head[c] = -1;
-  for (int j = n_all - 1; j >= 0; j--) {                         /* backwards, so that each chain runs in order of index */
+  for (int j = n_all - 1; j >= 0; j--) { /* backwards, so that each chain runs in order of index */
     long c[3];
     for (int d = 0; d < 3; d++) c[d] = (long) floor((x[3 * (long) j + d] - lo[d]) / side);
     const long cell = (c[2] * cells[1] + c[1]) * cells[0] + c[0];
@@ -95,7 +95,9 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
         for (long cx = from[0]; cx <= to[0]; cx++)
           for (int j = head[(cz * cells[1] + cy) * cells[0] + cx]; j >= 0; j = next[j]) {
             if (j == i || distance_squared(xi, x + 3 * (long) j) > cutsq) continue;
-            if (count == list->capacity && (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK) goto done;
+            if (count == list->capacity &&
+                (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK)
+              goto done;
             list->neighbor[count++] = j;
           }
   }
@@ -119,8 +121,8 @@ static int by_molecule_tag_index(const void *pa, const void *pb, void *ctx)
   return (a > b) - (a < b);
 }
 
-sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag, const int64_t *molecule, int n, int n_all,
-                             double cutoff, int *order)
+sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
+                             const int64_t *molecule, int n, int n_all, double cutoff, int *order)
 {
   sd_status status = sd_neighbors_reserve(list, n, 0);
   if (status != SD_OK) return status;
@@ -137,7 +139,7 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
     for (int k = b; k < e; k++)
       if (order[k] < n) {
         begin[order[k]] = b;
-        end[order[k]] = molecule[order[b]] == 0 ? b : e;          /* molecule 0: a lone sphere */
+        end[order[k]] = molecule[order[b]] == 0 ? b : e; /* molecule 0: a lone sphere */
       }
   }
 
@@ -157,7 +159,8 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
         }
       }
       if (tag[closest] == tag[i] || rsq > cutsq) continue;
-      if (count == list->capacity && (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK) goto done;
+      if (count == list->capacity && (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK)
+        goto done;
       list->neighbor[count++] = closest;
     }
   }

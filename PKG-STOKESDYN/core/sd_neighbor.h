@@ -19,8 +19,8 @@ typedef struct {
   sd_pairs pairs;
   long *first;
   int *neighbor;
-  long capacity;                          /* of neighbor */
-  int rows;                               /* capacity of first, less one */
+  long capacity; /* of neighbor */
+  int rows;      /* capacity of first, less one */
 } sd_neighbors;
 
 void sd_neighbors_free(sd_neighbors *list);
@@ -36,8 +36,8 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
  * (ghosts of one sphere share its tag; the first in order of index wins a tie), and closer than cutoff (INFINITY: the whole clump).
  *   x [3 n_all], tag [n_all], molecule [n_all]
  *   order [n_all]   scratch;  on return sorted by molecule, tag, index */
-sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag, const int64_t *molecule, int n, int n_all,
-                             double cutoff, int *order);
+sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
+                             const int64_t *molecule, int n, int n_all, double cutoff, int *order);
 
 #ifdef __cplusplus
 }

@@ -1,8 +1,8 @@
 #include "sd_product.h"
 
 /* u += 1/(6 pi) w_i w_j [ f F + g rhat (rhat.F) ]; the factor w_i/(6 pi) is applied once per target. */
-static inline void add_pair(sd_tensor kind, const double *xi, double ai, const double *xj, double aj, double wj,
-                            const double *F, double u[3])
+static inline void add_pair(sd_tensor kind, const double *xi, double ai, const double *xj,
+                            double aj, double wj, const double *F, double u[3])
 {
   const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
   const double R = sqrt(dx * dx + dy * dy + dz * dz);
@@ -28,19 +28,22 @@ static inline void store(double w, const double sum[3], double *u)
   u[2] = scale * sum[2];
 }
 
-void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F, double *u)
+void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F,
+                     double *u)
 {
   for (int i = 0; i < pairs->n; i++) {
     double sum[3] = {0.0, 0.0, 0.0};
     for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++) {
       const int j = pairs->neighbor[k];
-      add_pair(kind, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j], F + 3 * (long) j, sum);
+      add_pair(kind, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
+               F + 3 * (long) j, sum);
     }
     store(s->w[i], sum, u + 3 * (long) i);
   }
 }
 
-void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n, const double *F, double *u)
+void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n,
+                    const double *F, double *u)
 {
   for (int t = 0; t < n; t++) {
     const int i = begin + t;
@@ -48,12 +51,14 @@ void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, i
     if (s->a[i] > 0.0)
       for (int j = 0; j < n_all; j++)
         if (j != i && s->a[j] > 0.0)
-          add_pair(kind, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j], F + 3 * (long) j, sum);
+          add_pair(kind, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
+                   F + 3 * (long) j, sum);
     store(s->w[i], sum, u + 3 * (long) t);
   }
 }
 
-void sd_pairs_within(const sd_pairs *candidates, const sd_spheres *s, double cutoff, long *first, int *neighbor)
+void sd_pairs_within(const sd_pairs *candidates, const sd_spheres *s, double cutoff, long *first,
+                     int *neighbor)
 {
   const double cutsq = cutoff * cutoff;
   long count = 0;

@@ -29,15 +29,18 @@ typedef struct {
 } sd_pairs;
 
 /* F [3 * all spheres], ghosts included -> u [3n] */
-void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F, double *u);
+void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F,
+                     double *u);
 
 /* All pairs: targets begin ... begin + n - 1 of n_all spheres, sources all of them. F [3 n_all] -> u [3n]. */
-void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n, const double *F, double *u);
+void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n,
+                    const double *F, double *u);
 
 /* Keep the pairs that interact now: centre distance up to cutoff (INFINITY: all), both radii > 0.
  *   candidates, s    in
  *   first [n+1], neighbor [candidates->first[n]]   out, caller's */
-void sd_pairs_within(const sd_pairs *candidates, const sd_spheres *s, double cutoff, long *first, int *neighbor);
+void sd_pairs_within(const sd_pairs *candidates, const sd_spheres *s, double cutoff, long *first,
+                     int *neighbor);
 
 #ifdef __cplusplus
 }

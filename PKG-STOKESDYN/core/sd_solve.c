@@ -14,7 +14,8 @@ static void sum(const sd_system *A, double *values, int count)
 }
 
 /* out = D (slip - M F), given Omega F in out: D slip - F - D Omega F. Sums of squares: all plain, natural over D. */
-static void scaled_residual(const sd_system *A, const double *slip, const double *F, double *out, double *plain, double *natural)
+static void scaled_residual(const sd_system *A, const double *slip, const double *F, double *out,
+                            double *plain, double *natural)
 {
   double sq = 0.0, nat = 0.0;
   for (int i = 0; i < A->n; i++) {
@@ -50,8 +51,8 @@ static double free_draining(const sd_system *A, const double *slip, double *F)
   return sq;
 }
 
-sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance, int max_iter, double *F, double *work,
-                                sd_solve_report *report)
+sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
+                                int max_iter, double *F, double *work, sd_solve_report *report)
 {
   double *res = work, last = INFINITY;
   *report = (sd_solve_report){0};
@@ -68,9 +69,11 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
     report->growth = k > 0 && last > 0.0 ? sqrt(natural / last) : 0.0;
     if (!isfinite(plain)) return SD_ENOTFINITE;
     if (report->residual <= tolerance) return SD_OK;
-    if (report->growth > 1.0) return report->residual < rounding_level ? SD_ESTAGNATED : SD_EDIVERGED;
+    if (report->growth > 1.0)
+      return report->residual < rounding_level ? SD_ESTAGNATED : SD_EDIVERGED;
     if (k == max_iter) return SD_EMAXITER;
-    for (int j = 0; j < 3 * A->n; j++) F[j] += res[j];          /* F^(k+1) - F^k is the scaled residual itself */
+    for (int j = 0; j < 3 * A->n; j++)
+      F[j] += res[j]; /* F^(k+1) - F^k is the scaled residual itself */
     last = natural;
   }
 }
@@ -98,24 +101,28 @@ static void apply_matrix(const sd_system *A, const double *p, double *q, double 
   *pDp = v[1];
 }
 
-sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter, double *F, double *work,
-                             sd_solve_report *report)
+sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,
+                             double *F, double *work, sd_solve_report *report)
 {
+  /* x, z: iterate and scaled residual D (s - M x) of conjugate gradients; F, y: the same after smoothing. */
   const int n3 = 3 * A->n;
-  double *z = work, *p = z + n3, *q = p + n3;                    /* z = D r, the preconditioned residual */
+  const size_t bytes = sizeof(double) * (size_t) n3;
+  double *x = work, *z = x + n3, *y = z + n3, *p = y + n3, *q = p + n3;
   double plain, natural, verified = INFINITY;
   *report = (sd_solve_report){.curvature = 1.0};
-  const double rhs = free_draining(A, slip, z);
+  const double rhs = free_draining(A, slip, y);
   if (!isfinite(rhs)) return SD_ENOTFINITE;
-  memset(F, 0, sizeof(double) * (size_t) n3);
+  memset(F, 0, bytes);
   if (rhs == 0.0) return SD_OK;
-  memset(q, 0, sizeof(double) * (size_t) n3);
-  scaled_residual(A, slip, F, q, &plain, &natural);              /* F = 0: only the norms are new */
+  memset(y, 0, bytes); /* Omega F for F = 0 */
+  scaled_residual(A, slip, F, y, &plain, &natural);
 
   for (;;) {
-    /* r.z = |D r|^2 over D: the natural norm of the scaled residual */
-    memcpy(p, z, sizeof(double) * (size_t) n3);
-    for (report->residual = sqrt(plain / rhs); report->residual > tolerance && report->iterations < max_iter;) {
+    memcpy(x, F, bytes);
+    memcpy(z, y, bytes);
+    memcpy(p, y, bytes);
+    for (report->residual = sqrt(plain / rhs);
+         report->residual > tolerance && natural > 0.0 && report->iterations < max_iter;) {
       double pMp, pDp;
       apply_matrix(A, p, q, &pMp, &pDp);
       if (!isfinite(pMp)) return SD_ENOTFINITE;
@@ -125,28 +132,36 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
       report->iterations++;
 
       const double alpha = natural / pMp, last = natural;
-      double v[2] = {0.0, 0.0};
+      double v[3] = {0.0, 0.0, 0.0}; /* z.D^-1 z,  z.z,  y.z */
       for (int i = 0; i < A->n; i++) {
         const double D = A->drag[i];
         if (D == 0.0) continue;
-        double s = 0.0;
+        double zz = 0.0;
         for (int k = 3 * i; k < 3 * i + 3; k++) {
-          F[k] += alpha * p[k];
+          x[k] += alpha * p[k];
           z[k] -= alpha * D * q[k];
-          s += z[k] * z[k];
+          zz += z[k] * z[k];
+          v[2] += y[k] * z[k];
         }
-        v[0] += s;
-        v[1] += s / D;
+        v[0] += zz / D;
+        v[1] += zz;
       }
-      sum(A, v, 2);
-      plain = v[0];
-      natural = v[1];
-      report->residual = sqrt(plain / rhs);
-      const double beta = natural / last;
-      for (int k = 0; k < n3; k++) p[k] = z[k] + beta * p[k];
+      sum(A, v, 3);
+      natural = v[0];
+      const double beta = natural / last, zz = v[1], yz = v[2];
+      const double ee = plain - 2.0 * yz + zz; /* |y - z|^2 */
+      const double theta = ee > 0.0 ? (plain - yz) / ee : 1.0;
+      plain = ee > 0.0 ? (plain * zz - yz * yz) / ee
+                       : zz; /* |y + theta (z - y)|^2, without loss when z << y */
+      for (int k = 0; k < n3; k++) {
+        p[k] = z[k] + beta * p[k];
+        y[k] += theta * (z[k] - y[k]);
+        F[k] += theta * (x[k] - F[k]);
+      }
+      report->residual = sqrt(fmax(plain, 0.0) / rhs);
     }
-    A->apply(A->apply_ctx, F, z);
-    scaled_residual(A, slip, F, z, &plain, &natural);
+    A->apply(A->apply_ctx, F, y);
+    scaled_residual(A, slip, F, y, &plain, &natural);
     report->residual = sqrt(plain / rhs);
     if (!isfinite(plain)) return SD_ENOTFINITE;
     if (report->residual <= tolerance) return SD_OK;

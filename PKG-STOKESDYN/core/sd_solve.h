@@ -23,23 +23,23 @@ typedef void sd_apply(void *ctx, const double *F, double *u);
 typedef void sd_sum(void *ctx, double *values, int count);
 
 typedef struct {
-  int n;                                  /* spheres of this rank */
-  const double *drag;                     /* [n] 6 pi eta a, 0 for a sphere that takes no part */
+  int n;              /* spheres of this rank */
+  const double *drag; /* [n] 6 pi eta a, 0 for a sphere that takes no part */
   sd_apply *apply;
   void *apply_ctx;
-  sd_sum *sum;                            /* NULL: one rank */
+  sd_sum *sum; /* NULL: one rank */
   void *sum_ctx;
 } sd_system;
 
 typedef struct {
   int iterations;
-  double residual;                        /* of the F returned, computed from its definition */
-  double growth;                          /* substitution: last factor of the residual from one iteration to the next */
-  double curvature;                       /* gradients: smallest p.Mp / p.D^-1 p met */
+  double residual;  /* of the F returned, computed from its definition */
+  double growth;    /* substitution: last factor of the residual from one iteration to the next */
+  double curvature; /* gradients: smallest p.Mp / p.D^-1 p met */
 } sd_solve_report;
 
 /* Doubles of scratch that either solver needs for n spheres. */
-#define SD_SOLVE_WORK(n) (12 * (long) (n))
+#define SD_SOLVE_WORK(n) (15 * (long) (n))
 
 /* Algorithm 1, successive substitution (Joung, Phan-Thien & Fan 2001): F^0 = D s, F^k = D (s - Omega F^(k-1)).
  *   slip [3n] in, F [3n] out, work [SD_SOLVE_WORK(n)]
@@ -47,17 +47,20 @@ typedef struct {
  * touching spheres in a row. The scaled matrix is symmetric, so the factor by which the residual changes in the norm of D^-1
  * never falls from one iteration to the next: once it is above 1 the iteration can never converge.
  * SD_OK; SD_EMAXITER after max_iter substitutions; SD_EDIVERGED; SD_ESTAGNATED; SD_ENOTFINITE. */
-sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance, int max_iter, double *F, double *work,
-                                sd_solve_report *report);
+sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
+                                int max_iter, double *F, double *work, sd_solve_report *report);
 
 /* Algorithm 2, conjugate gradients with the diagonal D as preconditioner, from F = 0.
+ * Conjugate gradients minimise the energy norm of the error and their residual goes up and down; the F returned is their iterates
+ * after minimal residual smoothing, y += theta (z - y) with theta such that |y| is smallest (Schoenauer & Weiss; Zhou & Walker 1994),
+ * whose residual only falls and reaches the tolerance some iterations earlier.
  * The residual is recomputed from its definition before the solver says SD_OK, and the iteration goes on from there if rounding
  * has led it astray.
  * SD_OK; SD_EMAXITER; SD_ESTAGNATED; SD_ENOTFINITE;
  * SD_EINDEFINITE: a direction of negative curvature p.Mp < 0, as a cut-off makes them: any answer would be noise;
  * SD_ESINGULAR: p.Mp = 0 within rounding: spheres at one point with different velocities. */
-sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter, double *F, double *work,
-                             sd_solve_report *report);
+sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,
+                             double *F, double *work, sd_solve_report *report);
 
 #ifdef __cplusplus
 }

@@ -4,7 +4,7 @@ const char *sd_status_string(sd_status status)
 {
   switch (status) {
 #define SD_STATUS_TEXT(code, text) \
-  case code: \
+  case code:                       \
     return text;
     SD_STATUS_LIST(SD_STATUS_TEXT)
 #undef SD_STATUS_TEXT

@@ -6,14 +6,14 @@
 extern "C" {
 #endif
 
-#define SD_STATUS_LIST(_) \
-  _(SD_OK, "converged") \
-  _(SD_EMAXITER, "iterations used up") \
+#define SD_STATUS_LIST(_)                                                              \
+  _(SD_OK, "converged")                                                                \
+  _(SD_EMAXITER, "iterations used up")                                                 \
   _(SD_ESTAGNATED, "stopped at the accuracy of double precision, above the tolerance") \
-  _(SD_EDIVERGED, "diverged") \
-  _(SD_EINDEFINITE, "the mobility matrix is not positive definite") \
-  _(SD_ESINGULAR, "the mobility matrix is singular") \
-  _(SD_ENOTFINITE, "met a value that is not a finite number") \
+  _(SD_EDIVERGED, "diverged")                                                          \
+  _(SD_EINDEFINITE, "the mobility matrix is not positive definite")                    \
+  _(SD_ESINGULAR, "the mobility matrix is singular")                                   \
+  _(SD_ENOTFINITE, "met a value that is not a finite number")                          \
   _(SD_ENOMEMORY, "out of memory")
 
 typedef enum {

@@ -1,0 +1,79 @@
+#include "scene.h"
+
+#include <string.h>
+
+/* Every pair within the cut-off once, against the double loop: a cube, a needle, a sheet, all at one point; ghosts are sources only. */
+static void cells_find_what_the_double_loop_finds(void **state)
+{
+  (void) state;
+  enum { N = 300, TARGETS = 220 };
+  static int seen[TARGETS][N];
+  const double sides[][3] = {
+      {10, 10, 10}, {4000, 0.1, 0.1}, {50, 50, 0}, {0, 0, 0}, {1e-5, 1e-5, 1e-5}};
+  for (size_t k = 0; k < sizeof(sides) / sizeof(sides[0]); k++)
+    for (double cutoff = 0.5; cutoff < 40.0; cutoff *= 4.0) {
+      uint64_t seed = k + 1;
+      double x[3 * N];
+      for (int i = 0; i < 3 * N; i++) x[i] = uniform(&seed, -0.5, 0.5) * sides[k][i % 3];
+      sd_neighbors list = {0};
+      assert_int_equal(sd_neighbors_cutoff(&list, x, TARGETS, N, cutoff), SD_OK);
+      memset(seen, 0, sizeof(seen));
+      for (int i = 0; i < TARGETS; i++)
+        for (long m = list.first[i]; m < list.first[i + 1]; m++) seen[i][list.neighbor[m]]++;
+      for (int i = 0; i < TARGETS; i++)
+        for (int j = 0; j < N; j++) {
+          const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1],
+                       dz = x[3 * i + 2] - x[3 * j + 2];
+          assert_int_equal(seen[i][j], i != j && dx * dx + dy * dy + dz * dz <= cutoff * cutoff);
+        }
+      sd_neighbors_free(&list);
+    }
+}
+
+static void no_spheres_no_pairs(void **state)
+{
+  (void) state;
+  const double x[3] = {0, 0, 0};
+  int order[1];
+  sd_neighbors list = {0};
+  assert_int_equal(sd_neighbors_cutoff(&list, x, 0, 0, 1.0), SD_OK);
+  assert_int_equal(list.first[0], 0);
+  assert_int_equal(sd_neighbors_clump(&list, x, NULL, NULL, 0, 0, INFINITY, order), SD_OK);
+  assert_int_equal(list.first[0], 0);
+  sd_neighbors_free(&list);
+}
+
+/* Three molecules, one of them 0; sphere 12 has two images, of which each target takes the closer. */
+static void clump_members_once_as_the_closest_image(void **state)
+{
+  (void) state;
+  const double x[] = {0,        0, 0, /**/ 1,  0, 0, /**/ 9,  0, 0, /**/ 5,  0, 0,
+                      /**/ 5.5, 0, 0, /**/ -1, 0, 0, /**/ 19, 0, 0, /**/ 10, 0, 0};
+  const int64_t tag[] = {10, 11, 12, 20, 21, 12, 12, 10}, molecule[] = {7, 7, 7, 0, 0, 7, 7, 7};
+  const int n = 3 + 2, n_all = 8;
+  int order[8];
+  sd_neighbors list = {0};
+  assert_int_equal(sd_neighbors_clump(&list, x, tag, molecule, n, n_all, INFINITY, order), SD_OK);
+  const int rows[5][2] = {{1, 5}, {0, 5}, {7, 1}, {-1, -1}, {-1, -1}};
+  for (int i = 0; i < 5; i++) {
+    assert_int_equal(list.first[i + 1] - list.first[i], rows[i][0] < 0 ? 0 : 2);
+    for (int k = 0; rows[i][0] >= 0 && k < 2; k++)
+      assert_int_equal(list.neighbor[list.first[i] + k], rows[i][k]);
+  }
+  /* with a cut-off only the partners within it */
+  assert_int_equal(sd_neighbors_clump(&list, x, tag, molecule, n, n_all, 1.5, order), SD_OK);
+  assert_int_equal(list.first[1], 2);
+  assert_int_equal(list.first[2] - list.first[1], 1);
+  assert_int_equal(list.first[3] - list.first[2], 1);
+  sd_neighbors_free(&list);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(cells_find_what_the_double_loop_finds),
+      cmocka_unit_test(no_spheres_no_pairs),
+      cmocka_unit_test(clump_members_once_as_the_closest_image),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
