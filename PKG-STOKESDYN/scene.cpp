@@ -228,7 +228,7 @@ void Scene::gather()
       own.push_back(i);
       mine.insert(mine.end(), {atom->x[i][0], atom->x[i][1], atom->x[i][2], a[i], w[i]});
     }
-  const int n = own.size();
+  int n = own.size();
   std::vector<int> counts(nprocs), counts5(nprocs), displs5(nprocs);
   MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   counts3.resize(nprocs);

@@ -80,15 +80,22 @@ version=$(apt-cache "${apt_options[@]}" showsrc --only-source lammps 2> /dev/nul
 root=$cache/lammps-${version//[^0-9A-Za-z.+]/_}-$system-$hash
 mkdir -p "$root"
 if [ ! -d "$root/src" ]; then
-  say "downloading lammps $version"
+  say "downloading and unpacking lammps $version"
   rm -rf "$root/download"; mkdir "$root/download"
+  # A mirror may lack the description (.dsc) of a package whose tarball it has. apt has checked the tarball then, so it is
+  # taken as it is, without the distribution's patches (which concern its own packaging).
   (cd "$root/download" &&
-   apt-get "${apt_options[@]}" -q source --only-source --download-only "lammps=$version" > get.log 2>&1) ||
-    { tail -n 20 "$root/download/get.log" >&2; fail "the source package lammps $version could not be downloaded"; }
-  say "unpacking"
-  (cd "$root/download" && dpkg-source --no-check -x ./*.dsc tree > unpack.log 2>&1) ||
-    { tail -n 20 "$root/download/unpack.log" >&2; fail "the source package lammps $version could not be unpacked"; }
-  mv "$root/download/tree" "$root/src"
+   apt-get "${apt_options[@]}" -q source --only-source --download-only "lammps=$version" > get.log 2>&1) || true
+  mkdir "$root/download/tree"
+  if compgen -G "$root/download/*.dsc" > /dev/null; then
+    rmdir "$root/download/tree"
+    (cd "$root/download" && dpkg-source --no-check -x ./*.dsc tree > unpack.log 2>&1)
+  else
+    tar -xf "$root"/download/lammps_*.orig.tar.* -C "$root/download/tree" 2> "$root/download/unpack.log"
+  fi || { tail -n 20 "$root"/download/*.log >&2; fail "the source package lammps $version could not be downloaded or unpacked"; }
+  top=$(find "$root/download/tree" -maxdepth 3 -path '*/src/lammps.h' | head -n 1)
+  [ -n "$top" ] || { tail -n 20 "$root"/download/*.log >&2; fail "the source package lammps $version holds no src/lammps.h"; }
+  mv "${top%/src/lammps.h}" "$root/src"
   rm -rf "$root/download"
 fi
 
