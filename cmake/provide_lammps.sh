@@ -11,6 +11,7 @@
 # ${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn/<key>, where the key names version, system and build options. An interrupted
 # run is taken up where it stopped; two runs at once wait for each other.
 set -euo pipefail
+export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither
 
 packages="PLUGIN RIGID MOLECULE GRANULAR COLLOID SPH"
 options=(
@@ -23,8 +24,7 @@ for p in $packages; do options+=(-D "PKG_$p=ON"); done
 
 fail() { printf 'provide_lammps: %s\n' "$*" >&2; exit 1; }
 
-home=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}
-cache=${XDG_CACHE_HOME:-$home/.cache}/stokesdyn
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn
 . /etc/os-release
 system="$ID${VERSION_ID:-}-$(uname -m)"
 hash=$(printf '%s\n' "${options[@]}" | sha256sum | cut -c1-8)

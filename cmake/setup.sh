@@ -3,6 +3,7 @@
 #   setup.sh [test]      test: also what unittest/run.sh needs
 # Leaves build/stokesdynplugin.so and build/env.sh.
 set -euo pipefail
+export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 packages="build-essential cmake ninja-build dpkg-dev libopenmpi-dev openmpi-bin libpng-dev python3 python3-numpy python3-matplotlib"
