@@ -7,6 +7,7 @@
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
+#include "update.h"
 
 #include <cstring>
 
@@ -87,6 +88,8 @@ void FixStokesDynamics::setup(int vflag)
 
 void FixStokesDynamics::post_force(int /*vflag*/)
 {
+  if (!pair->computed_in(update->ntimestep))
+    fail(lmp, "Fix stokes_dynamics: the pair style was not computed in this step (pair_modify compute no?)");
   const bool add = applies(pair->adds_force());
   for (double &t : total) t = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {

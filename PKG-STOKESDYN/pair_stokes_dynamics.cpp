@@ -43,7 +43,7 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), scene(lmp, this
 
 PairStokesDynamics::~PairStokesDynamics()
 {
-  if (fix_state && modify->nfix && Compat::fix(modify, STATE_ID)) modify->delete_fix(STATE_ID);
+  if (find_state()) modify->delete_fix(STATE_ID);
   delete[] pvector;
   if (allocated) {
     memory->destroy(setflag);
@@ -57,7 +57,12 @@ void PairStokesDynamics::settings(int narg, char **arg)
 {
   args = words(narg, arg);
   parse();
-  if (fix_state) fix_state->forget();
+  if (find_state()) find_state()->forget();
+}
+
+FixStokesDynamicsState *PairStokesDynamics::find_state() const
+{
+  return static_cast<FixStokesDynamicsState *>(Compat::fix(modify, STATE_ID));
 }
 
 void PairStokesDynamics::parse()
@@ -154,6 +159,8 @@ void PairStokesDynamics::init_style()
          COMMAND +
              " cannot be minimised: a drag depends on velocities and has no energy; use "
              "'pair_style none' meanwhile");
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    fail(lmp, COMMAND + " does not support run_style respa");
   if (force->pair_match(STYLE, 1) != this)
     fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
   if (!atom->radius_flag)
@@ -186,11 +193,9 @@ void PairStokesDynamics::init_style()
   for (auto &u : fluid_velocity) u.init(lmp, COMMAND + ": keyword fluid_velocity");
 
   // Here and not in the constructor: in read_restart, what the restart file holds for this fix is not known yet when the pair style is made.
-  fix_state = static_cast<FixStokesDynamicsState *>(Compat::fix(modify, STATE_ID));
-  if (!fix_state) {
+  if (!find_state())
     modify->add_fix(std::string(STATE_ID) + " all " + FixStokesDynamicsState::STYLE);
-    fix_state = static_cast<FixStokesDynamicsState *>(Compat::fix(modify, STATE_ID));
-  }
+  fix_state = find_state();
 
   bool applied = add_force;
   for (int i = 0; i < modify->nfix; i++)

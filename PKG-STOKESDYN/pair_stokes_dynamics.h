@@ -50,6 +50,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
     return fix_state->state[i] + FixStokesDynamicsState::VPRIME;
   }
   double dissipation(int i) const;    // -F.(v - u_inf) of one sphere, >= 0 in the sum over all
+  bool computed_in(double step) const { return fix_state && fix_state->global.last_step == step; }
   const FixStokesDynamicsState::Global &numbers() const { return fix_state->global; }
 
  private:
@@ -74,6 +75,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   std::vector<char> active;
   std::vector<double> eta, u_inf, slip, drag, solution, work;
 
+  FixStokesDynamicsState *find_state() const;    // nullptr before the first run
   void parse();
   void allocate();
   void state_of_the_step();
