@@ -1,0 +1,397 @@
+#!/usr/bin/env python3
+"""Falls the twelve clumps and straight chains with in.sedimentation and compares their settling velocities.
+
+    run.py [OUT]        writes tables and pictures into OUT (default: build/examples/sedimentation)
+    run.py --update     also refreshes the pictures, the logs and the table of README.md in this folder
+
+Every velocity is compared with two values:
+  model   the Rotne-Prager system of the spheres as they stand at the end of the run, solved here densely by numpy: what
+          pair_style stokes_dynamics must give
+  exact   Stokes flow around the clump (no slip on its surface), data/clusters_exact.csv and data/chains_exact.csv: what the
+          model approximates
+Exits with 1 and says which when a figure is missed.
+"""
+import concurrent.futures
+import csv
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOP = HERE.parents[1]
+
+# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
+os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+# As in in.sedimentation; lengths below are in radii, velocities in those of a lone sphere.
+A, RHO, RHOF, ETA, G = 50e-6, 2500.0, 970.0, 0.97, 9.81
+U0 = 2 * (RHO - RHOF) * G * A**2 / (9 * ETA)
+
+VELOCITY_LIMIT = 1e-6               # relative, against the model
+CLUMP_BAND = (-11.0, 0.0)           # per cent, drag against exact: the model is a lower bound of the drag
+CHAIN_BAND = (-5.0, 0.0)
+
+
+def read_csv(name):
+    lines = [line for line in (HERE / "data" / name).read_text().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+GEOMETRY = {}
+for row in read_csv("cluster_geometry.csv"):
+    GEOMETRY.setdefault(row["name"], []).append([float(row[k]) for k in "xyz"])
+GEOMETRY = {name: np.array(x) for name, x in GEOMETRY.items()}
+CLUMP_EXACT = {row["name"]: np.array([[float(row[f"R{i}{j}"]) for j in range(1, 7)] for i in range(1, 7)]) / (6 * np.pi)
+               for row in read_csv("clusters_exact.csv")}
+CHAIN_EXACT = {int(row["N"]): (float(row["Fpar"]), float(row["Fperp"])) for row in read_csv("chains_exact.csv")}
+DRIFT_MODEL = {(int(row["N"]), float(row["angle_deg"])): float(row["drift_deg_model"]) for row in read_csv("drift.csv")}
+
+
+# --- the two values to compare with -------------------------------------------------------------------------------
+
+
+def rigid_velocities(x):
+    """[3N x 6] matrix: velocities of points x from (U, W) of the rigid body."""
+    K = np.zeros((3 * len(x), 6))
+    for i, r in enumerate(x):
+        K[3 * i:3 * i + 3, :3] = np.eye(3)
+        K[3 * i:3 * i + 3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
+    return K
+
+
+def rotne_prager(x):
+    """[3N x 3N] mobility of unit spheres that do not overlap, in units of 1/(6 pi eta a) (Rotne & Prager 1969)."""
+    n = len(x)
+    M = np.eye(3 * n)
+    for i in range(n):
+        for j in range(n):
+            if i != j:
+                r = x[i] - x[j]
+                s = np.linalg.norm(r)
+                e = np.outer(r, r) / s**2
+                M[3 * i:3 * i + 3, 3 * j:3 * j + 3] = 3 / (4 * s) * (np.eye(3) + e) + (np.eye(3) - 3 * e) / (2 * s**3)
+    return M
+
+
+def model_resistance(x):
+    """[6 x 6] resistance of the clump about the origin in the model: spheres that take no torque."""
+    K = rigid_velocities(x)
+    return K.T @ np.linalg.solve(rotne_prager(x), K)
+
+
+def settle(R, weight):
+    """U, W of a body of resistance R under a force and no torque. A straight chain of torque-free spheres has no resistance
+    to spin about its axis, hence the pseudo-inverse: no spin there."""
+    V = np.linalg.pinv(R, rcond=1e-10) @ np.concatenate([weight, np.zeros(3)])
+    return V[:3], V[3:]
+
+
+def exact_velocities(case, turn):
+    """Exact U, W of the clump turned by the matrix turn."""
+    weight = np.array([0.0, 0.0, -case.n])
+    if case.clump == "chain":
+        axis = turn[:, 2]
+        par, perp = CHAIN_EXACT[case.n]
+        along = axis * (axis @ weight)
+        return along / par + (weight - along) / perp, np.zeros(3)
+    U, W = settle(CLUMP_EXACT[case.clump], turn.T @ weight)
+    return turn @ U, turn @ W
+
+
+def drift_angle(U):
+    return np.degrees(np.arctan2(np.hypot(U[0], U[1]), -U[2]))
+
+
+def chain_drift(par, perp, angle):
+    """Drift angle of a body with these drags along and across its axis, degrees."""
+    s, c = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    return np.degrees(np.arctan2((1 / par - 1 / perp) * s * c, c * c / par + s * s / perp))
+
+
+def steepest(par, perp):
+    """Angle of the axis at which the drift is largest, degrees."""
+    return np.degrees(np.arctan(np.sqrt(perp / par)))
+
+
+# --- one run --------------------------------------------------------------------------------------------------------
+
+
+def rotation_between(x, y):
+    """Rotation matrix that turns the points x into the points y, both about their centroids (Kabsch 1976)."""
+    u, _, vt = np.linalg.svd((y - y.mean(0)).T @ (x - x.mean(0)))
+    return u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
+
+
+class Case:
+    """A run of in.sedimentation and what came of it."""
+
+    def __init__(self, clump, angle, n=None, ranks=1, radius=A, steps=400, picture=False):
+        self.clump, self.angle, self.ranks, self.radius, self.steps, self.picture = clump, angle, ranks, radius, steps, picture
+        self.shape = GEOMETRY[clump] if clump != "chain" else np.array([[0, 0, 2.0 * i - n + 1] for i in range(n)])
+        self.n = len(self.shape)
+        self.label = f"chain of {n}" if clump == "chain" else clump
+        self.title = self.label + (f", {ranks} ranks" if ranks > 1 else "") + ("" if radius == A else ", 1 mm beads")
+        self.tag = f"{clump}{n or ''}_{angle:.4g}_{ranks}" + ("" if radius == A else "_long")
+
+    def run(self, out):
+        self.image, state, log = out / f"{self.tag}.png", out / f"{self.tag}.state", out / f"{self.tag}.log"
+        # stdbuf: an error message must leave LAMMPS before it aborts.
+        command = ["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", self.clump,
+                   "-var", "angle", f"{self.angle:.17g}", "-var", "n", str(self.n if self.clump == "chain" else 10),
+                   "-var", "steps", str(self.steps), "-var", "a", f"{self.radius:.17g}", "-var", "state", str(state)]
+        if self.ranks > 1:
+            command = ["mpirun", "-np", str(self.ranks)] + command
+        if self.picture:
+            command += ["-var", "image", str(self.image)]
+        # Several runs at once would trip over each other in Open MPI's folder of temporary files.
+        with tempfile.TemporaryDirectory(prefix="sd") as scratch:
+            done = subprocess.run(command, cwd=HERE, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode != 0:
+            lines = done.stdout.splitlines()
+            raise RuntimeError("\n".join(["this run failed: " + " ".join(command)] +
+                                         ([line for line in lines if line.startswith("ERROR")] or lines[-20:])))
+        spheres = np.loadtxt(state, skiprows=9, ndmin=2)
+        if spheres.shape != (self.n, 10) or not np.isfinite(spheres).all():
+            raise RuntimeError(f"{state} does not hold {self.n} spheres with finite numbers")
+        self.evaluate(spheres)
+        return self
+
+    def evaluate(self, spheres):
+        unit = U0 * (self.radius / A)**2
+        x, v = spheres[:, 4:7] / self.radius, spheres[:, 7:10] / unit
+        self.fallen = -x[:, 2].mean()
+        x = x - x.mean(0)                                        # equal masses
+        V = np.linalg.lstsq(rigid_velocities(x), v.ravel(), rcond=1e-10)[0]
+        self.U, self.W = V[:3], V[3:]
+        self.turn = rotation_between(self.shape, x)
+        weight = np.array([0.0, 0.0, -self.n])
+        self.U_model, self.W_model = settle(model_resistance(x), weight)
+        self.U_exact, self.W_exact = exact_velocities(self, self.turn)
+        self.model_error = np.linalg.norm(self.U - self.U_model) / np.linalg.norm(self.U_model)
+        self.drag, self.drag_model, self.drag_exact = (self.n / -U[2] for U in (self.U, self.U_model, self.U_exact))
+        self.drag_error = 100 * (self.drag / self.drag_exact - 1)
+        self.drift, self.drift_exact = drift_angle(self.U), drift_angle(self.U_exact)
+        self.spin_error = np.linalg.norm(self.W - self.W_model)   # in U0/a
+        axis = self.turn[:, 2]
+        self.tilt = np.degrees(np.arctan2(np.hypot(axis[0], axis[1]), axis[2]))
+
+
+def cases():
+    doublet, ten = [model_drags(n) for n in (2, 10)]
+    list_ = [Case(name, angle, picture=angle == 45) for name in GEOMETRY for angle in (0, 45, 90)]
+    list_ += [Case("chain", angle, n) for n in (2, 3, 5, 10, 20, 50) for angle in (0, 45, 90)]
+    list_ += [Case("doublet", angle) for angle in (15, 30, steepest(*doublet), 60, 75)]
+    list_ += [Case("chain", angle, 10) for angle in (15, 30, steepest(*ten), 60, 75)]
+    # Beads of 1 mm fall several radii within some thousand steps; the velocity cannot tell whether the axis turns slowly.
+    list_ += [Case("doublet", 45, radius=10 * A, steps=20000), Case("chain", 45, 10, radius=10 * A, steps=8000)]
+    list_ += [Case("helix4_chiral", 0, ranks=2), Case("chain", 45, 50, ranks=2)]
+    return list_
+
+
+def model_drags(n):
+    """Drag of a chain along and across its axis in the model, in units of a lone sphere's."""
+    R = model_resistance(np.array([[0, 0, 2.0 * i - n + 1] for i in range(n)]))
+    return R[2, 2], R[0, 0]
+
+
+# --- tables, pictures -----------------------------------------------------------------------------------------------
+
+HEAD = ["clump", "N", "angle", "velocity", "model", "error %", "exact", "error %", "drag", "exact", "error %",
+        "drift", "exact"]
+
+
+def row(c):
+    speed = [-U[2] * U0 * (c.radius / A)**2 * 1e6 for U in (c.U, c.U_model, c.U_exact)]
+    rounding = "< 1e-11" if c.model_error < 1e-13 else f"{100 * c.model_error:.1e}"
+    return [c.title, str(c.n), f"{c.angle:.4g}", f"{speed[0]:.3f}", f"{speed[1]:.3f}", rounding, f"{speed[2]:.3f}",
+            f"{100 * (speed[0] / speed[2] - 1):+.2f}", f"{c.drag:.4f}", f"{c.drag_exact:.4f}", f"{c.drag_error:+.2f}",
+            f"{c.drift:.4f}", f"{c.drift_exact:.4f}"]
+
+
+def table(rows):
+    rows = [HEAD] + rows
+    width = [max(len(r[k]) for r in rows) for k in range(len(HEAD))]
+    text = ["| " + " | ".join([r[0].ljust(width[0])] + [c.rjust(w) for c, w in zip(r[1:], width[1:])]) + " |" for r in rows]
+    text.insert(1, "|" + "|".join("-" * (w + 2) if k == 0 else "-" * (w + 1) + ":" for k, w in enumerate(width)) + "|")
+    return "\n".join(text) + "\n"
+
+
+def draw(done, path):
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5), gridspec_kw={"width_ratios": [1.25, 1]}, constrained_layout=True)
+
+    # Drag against exact
+    groups = list(GEOMETRY) + [f"chain of {n}" for n in (5, 10, 20, 50)]
+    left.axhspan(*CLUMP_BAND, color="0.93", zorder=0)
+    left.axhline(0, color="black", lw=1)
+    left.text(len(groups) - 0.5, -0.15, "exact Stokes flow", ha="right", va="top", fontsize=9)
+    left.text(len(groups) - 0.5, -10.9, "band that the run must keep to", ha="right", va="bottom", fontsize=9, color="0.4")
+    for angle, marker, colour in ((0, "o", "C0"), (45, "s", "C1"), (90, "^", "C2")):
+        points = [(groups.index(c.label), c.drag_error) for c in done
+                  if c.label in groups and c.angle == angle and c.title == c.label]
+        shift = (angle - 45) / 45 * 0.17
+        left.plot([k + shift for k, _ in points], [e for _, e in points], marker, color=colour, ms=6, label=f"{angle}°")
+    left.set_xticks(range(len(groups)), [g.replace("_", " ") for g in groups], rotation=50, ha="right", rotation_mode="anchor")
+    left.set_xlim(-0.6, len(groups) - 0.4)
+    left.set_ylim(-11.6, 0.6)
+    left.set_ylabel("drag of the falling clump against exact, %")
+    left.legend(title="axis to gravity", loc="lower left", bbox_to_anchor=(0.0, 0.02), fontsize=9)
+    left.set_title("Drag at terminal velocity")
+
+    # Drift
+    angles = np.linspace(0, 90, 181)
+    for n, clump, colour in ((10, "chain", "C3"), (2, "doublet", "C0")):
+        name = f"{'doublet' if n == 2 else 'chain of 10'}"
+        right.plot(angles, chain_drift(*model_drags(n), angles), color=colour, lw=1.5, label=f"{name}: model, closed form")
+        right.plot(angles, chain_drift(*CHAIN_EXACT[n], angles), "--", color=colour, lw=1.2, label=f"{name}: exact")
+        points = [(c.angle, c.drift) for c in done if c.clump == clump and c.n == n and c.title == c.label]
+        right.plot(*zip(*points), "o", color=colour, ms=6, mec="black", mew=0.5, label=f"{name}: runs")
+    right.set_xlabel("angle of the axis to gravity, degrees")
+    right.set_ylabel("drift angle of the path, degrees")
+    right.set_xlim(0, 90)
+    right.set_ylim(0, 11.5)
+    right.set_xticks(range(0, 91, 15))
+    right.legend(fontsize=8.5, loc="upper left", ncol=2, columnspacing=1.2, handlelength=1.8)
+    right.set_title("Tilted chains drift sideways")
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def contact_sheet(done, path):
+    shown = [c for c in done if c.picture]
+    figure, axes = plt.subplots(2, 6, figsize=(12, 4.7), constrained_layout=True)
+    for c, ax in zip(shown, axes.flat):
+        ax.imshow(plt.imread(c.image))
+        ax.set_axis_off()
+        ax.set_title(f"{c.label.replace('_', ' ')}\ndrag {c.drag:.3f}, exact {c.drag_exact:.3f}", fontsize=9.5)
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 0.7), "viridis")
+    bar = figure.colorbar(scale, ax=axes, shrink=0.85, pad=0.01, extend="both")
+    bar.set_label("drag of a sphere / drag of a lone sphere\nat the same velocity", fontsize=9.5)
+    figure.savefig(path, dpi=80, pil_kwargs={"optimize": True})
+    plt.close(figure)
+
+
+# --- what must hold -------------------------------------------------------------------------------------------------
+
+
+def check(done):
+    """[(fact, holds)]"""
+    facts = []
+
+    def find(clump, angle, n=None, ranks=1, radius=A):
+        return next(c for c in done if (c.clump, c.ranks, c.radius) == (clump, ranks, radius) and abs(c.angle - angle) < 1e-9
+                    and n in (None, c.n))
+
+    worst = max(done, key=lambda c: c.model_error)
+    facts.append((f"velocity against the model: worst {worst.model_error:.1e} ({worst.label} at {worst.angle:.4g} degrees), "
+                  f"limit {VELOCITY_LIMIT:g}", worst.model_error <= VELOCITY_LIMIT))
+    worst = max(done, key=lambda c: c.spin_error)
+    facts.append((f"spin against the model: worst {worst.spin_error:.1e} U0/a ({worst.label} at {worst.angle:.4g} degrees), "
+                  "limit 1e-6", worst.spin_error <= 1e-6))
+    helix, exact = (np.linalg.norm(W) for W in (find("helix4_chiral", 0).W, find("helix4_chiral", 0).W_exact))
+    others = max(np.linalg.norm(c.W) for c in done if c.clump != "helix4_chiral")
+    same_sense = find("helix4_chiral", 0).W @ find("helix4_chiral", 0).W_exact > 0
+    facts.append((f"the chiral clump spins, {helix:.4f} U0/a (exact {exact:.4f}, same sense), no other does, {others:.0e} U0/a",
+                  helix > 0.01 and same_sense and others < 1e-8))
+    for kind, (low, high) in (("clumps", CLUMP_BAND), ("chains", CHAIN_BAND)):
+        errors = [c.drag_error for c in done if (c.clump == "chain") == (kind == "chains")]
+        facts.append((f"drag of the {kind} against exact: {min(errors):+.2f} % to {max(errors):+.2f} %, "
+                      f"band {low:g} to {high:g} %", low <= min(errors) and max(errors) <= high))
+    table_errors = [abs(c.drift - DRIFT_MODEL[c.n, c.angle]) for c in done if c.clump in ("chain", "doublet")
+                    and (c.n, c.angle) in DRIFT_MODEL]
+    facts.append((f"drift angle against {len(table_errors)} values of drift.csv: worst {max(table_errors):.1e} degrees, "
+                  "limit 1e-5", max(table_errors) <= 1e-5))
+    tilted = find("doublet", 45)
+    facts.append((f"doublet at 45 degrees drifts by {tilted.drift:.4f} degrees, 3.5035 expected",
+                  abs(tilted.drift - 3.50353) <= 1e-4))
+    angle = steepest(*model_drags(2))
+    steep = find("doublet", angle)
+    facts.append((f"largest drift of the doublet: {steep.drift:.4f} degrees, at {angle:.2f} degrees; 3.5101 expected within 0.01",
+                  abs(steep.drift - 3.5101) <= 0.01 and all(c.drift <= steep.drift for c in done if c.clump == "doublet")))
+    for c in done:
+        if c.radius != A:
+            facts.append((f"{c.title}: fell {c.fallen:.1f} radii and turned by {abs(c.tilt - c.angle):.1e} degrees, limit 1e-6",
+                          abs(c.tilt - c.angle) <= 1e-6 and c.fallen > 2))
+        if c.ranks == 2:
+            one = find(c.clump, c.angle, c.n)
+            change = np.linalg.norm(c.U - one.U) / np.linalg.norm(one.U)
+            facts.append((f"{c.title} against 1: velocity changes by {change:.1e}, limit 1e-10", change <= 1e-10))
+    return facts
+
+
+def update_folder(out, done):
+    for name in ("sedimentation.png", "clumps.png"):
+        shutil.copy(out / name, HERE / name)
+    for ranks in (1, 2):
+        log = (out / f"helix4_chiral_0_{ranks}.log").read_text().replace(str(out) + "/", "").replace(str(TOP) + "/", "")
+        (HERE / f"log.sedimentation.{ranks}").write_text(log)
+    twice = ("chain of 2", "chain of 3")                          # these are doublet and trimer_line
+    rows = [row(c) for c in done if c.angle == 45 and c.title == c.label and c.label not in twice]
+    readme = HERE / "README.md"
+    text = readme.read_text()
+    begin, end = "<!-- table of run.py -->\n", "<!-- end of table -->"
+    head, rest = text.split(begin)
+    readme.write_text(head + begin + table(rows) + end + rest.split(end)[1])
+
+
+def main():
+    arguments = sys.argv[1:]
+    update = "--update" in arguments
+    arguments = [a for a in arguments if a != "--update"]
+    out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "sedimentation").resolve()
+    if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
+        sys.exit(__doc__)
+    for program in ("lmp", "mpirun"):
+        if not shutil.which(program):
+            sys.exit(f"{program} is not on the PATH; run examples/run.sh, or cmake/setup.sh and '. build/env.sh' first")
+    out.mkdir(parents=True, exist_ok=True)
+    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
+    if os.geteuid() == 0:
+        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
+
+    start = time.time()
+    todo = cases()
+    done = []
+    widths = (24, 3, 6, 9, 9, 8, 9, 8, 8, 8, 8, 8, 8)
+    show = lambda cells: " ".join(c.ljust(w) if k == 0 else c.rjust(w) for k, (c, w) in enumerate(zip(cells, widths)))
+    print(f"{'':8}" + show(HEAD), flush=True)
+    with concurrent.futures.ThreadPoolExecutor(max_workers=2 * min(4, os.cpu_count() or 1)) as pool:
+        try:
+            for k, case in enumerate(pool.map(lambda c: c.run(out), todo)):
+                done.append(case)
+                print(f"[{k + 1:2d}/{len(todo)}] " + show(row(case)), flush=True)
+        except RuntimeError as failure:
+            pool.shutdown(cancel_futures=True)
+            sys.exit(f"sedimentation: {failure}")
+
+    units = "velocities (downwards) in micrometres per second, drags in units of a lone sphere's, angles in degrees"
+    (out / "table.md").write_text(units.capitalize() + ".\n\n" + table([row(c) for c in done]))
+    draw(done, out / "sedimentation.png")
+    contact_sheet(done, out / "clumps.png")
+    if update:
+        update_folder(out, done)
+
+    print()
+    facts = check(done)
+    for fact, holds in facts:
+        print("  " + ("ok      " if holds else "MISSED  ") + fact)
+    missed = sum(not holds for _, holds in facts)
+    print(f"\n{len(done)} runs in {time.time() - start:.0f} s: {missed} of {len(facts)} figures missed" if missed else
+          f"\n{len(done)} runs in {time.time() - start:.0f} s, all figures hold")
+    print(f"table: {out / 'table.md'}\npictures: {out / 'sedimentation.png'}, {out / 'clumps.png'}")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
