@@ -401,10 +401,10 @@ void PairStokesDynamics::solve()
 {
   const int n = atom->nlocal;
   solution.resize(3 * (size_t) n + 3);
-  work.resize(SD_SOLVE_WORK(n) + 1);
+  work.resize(SD_SOLVE_WORK(n, 3) + 1);
   scene.update(active, eta);
 
-  const sd_system system = {n, drag.data(), Scene::apply, &scene, Scene::sum, &scene};
+  const sd_system system = {n, drag.data(), nullptr, Scene::apply, &scene, Scene::sum, &scene};
   sd_solve_report report;
   auto solver = algorithm == 1 ? sd_solve_substitution : sd_solve_gradients;
   const sd_status status =

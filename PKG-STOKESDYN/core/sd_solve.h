@@ -1,10 +1,14 @@
 /* Solvers of the resistance problem: the force on every sphere from its slip velocity.
  *
- *   M F = s,   M = D^-1 + Omega,   D = diag(6 pi eta_i a_i),   s = u_inf - v        (D = 0: the sphere takes no part, F = 0)
+ *   M F = s,   M = D^-1 + Omega,   D = diag(6 pi eta_i a_i),   s = u_inf - v
  *
- * Both stop by the same number, the residual of this system with each row scaled by its own 6 pi eta a:
+ * With rotation the unknowns of a sphere are force and torque (F T), the right-hand side is slip velocity and slip angular velocity,
+ * and D has 8 pi eta a^3 in the rows of the torque. D = 0: the sphere takes no part, F = 0.
  *
- *   residual = |D (s - M F)| / |D s|         (Euclidean norms over all spheres of all ranks; forces, so radii 1:100 count alike)
+ * Both solvers stop by the same number, the residual of this system with the rows of each sphere scaled by its own 6 pi eta a
+ * (torques by 8 pi eta a^3 and the length sqrt(4/3) a, which makes them forces):
+ *
+ *   residual = |D (s - M F)| / |D s|     (Euclidean norms over all spheres of all ranks; radii 1:100 count alike)
  *
  * The core knows no ranks: the caller's two functions do. No allocation; nothing is printed; the same operations in the same
  * order for the same input. */
@@ -17,7 +21,7 @@
 extern "C" {
 #endif
 
-/* u = Omega F, the pair part of M: F [3n], u [3n] of this rank's spheres. Refreshes whatever ghosts it needs. */
+/* u = Omega F, the pair part of M: F, u [width n] of this rank's spheres. Refreshes whatever ghosts it needs. */
 typedef void sd_apply(void *ctx, const double *F, double *u);
 /* Sum over all ranks, in place. */
 typedef void sd_sum(void *ctx, double *values, int count);
@@ -25,6 +29,8 @@ typedef void sd_sum(void *ctx, double *values, int count);
 typedef struct {
   int n;              /* spheres of this rank */
   const double *drag; /* [n] 6 pi eta a, 0 for a sphere that takes no part */
+  const double *
+      spin; /* [n] 8 pi eta a^3; NULL: no rotation. Unknowns of a sphere (width): 3, with rotation 6 */
   sd_apply *apply;
   void *apply_ctx;
   sd_sum *sum; /* NULL: one rank */
@@ -39,10 +45,10 @@ typedef struct {
 } sd_solve_report;
 
 /* Doubles of scratch that either solver needs for n spheres. */
-#define SD_SOLVE_WORK(n) (15 * (long) (n))
+#define SD_SOLVE_WORK(n, width) (5 * (long) (n) * (width))
 
 /* Algorithm 1, successive substitution (Joung, Phan-Thien & Fan 2001): F^0 = D s, F^k = D (s - Omega F^(k-1)).
- *   slip [3n] in, F [3n] out, work [SD_SOLVE_WORK(n)]
+ *   slip [width n] in, F [width n] out, work [SD_SOLVE_WORK(n, width)]
  * Converges if and only if the largest eigenvalue of the mobility matrix scaled to unit diagonal is below 2: not for three
  * touching spheres in a row. The scaled matrix is symmetric, so the factor by which the residual changes in the norm of D^-1
  * never falls from one iteration to the next: once it is above 1 the iteration can never converge.

@@ -79,9 +79,9 @@ typedef sd_status solver(const sd_system *, const double *, double, int, double 
 static inline double *scene_solve(scene *s, solver *solve, const double *slip, double tolerance,
                                   int max_iter, sd_status *status, sd_solve_report *report)
 {
-  const sd_system A = {s->n, s->drag, scene_apply, s, NULL, NULL};
+  const sd_system A = {s->n, s->drag, NULL, scene_apply, s, NULL, NULL};
   double *F = malloc(sizeof(double) * 3 * (size_t) s->n),
-         *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n));
+         *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 3));
   *status = solve(&A, slip, tolerance, max_iter, F, work, report);
   free(work);
   return F;
