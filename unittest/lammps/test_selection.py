@@ -1,0 +1,129 @@
+"""Keywords region and group: who takes part."""
+import numpy as np
+import pytest
+
+import model
+from system import Spheres, chain, dump_lines, input_lines, largest_difference, lmp, read_dump
+
+ETA, A = 1.3, 0.7
+STOKES = 6 * np.pi * ETA * A
+U = 0.4
+EXACT = f"visc {ETA} algorithm 2 relative_tolerance 1e-12"
+# Total drag of k touching spheres in a row that move along it, in 6 pi eta a U: dense solves, 11 digits.
+ROW = {1: 1.0, 2: 1.2307692308, 3: 1.4864864865, 4: 1.7096660808, 5: 1.9217095465}
+MODES = {"all": "cut_off_distance inf", "list": "cut_off_distance 20", "clump": "clumps_only yes"}
+
+
+def row_of_five():
+    return chain(5, 2 * A, a=A, v=(0, 0, U))
+
+
+def lower(k):
+    """A region with the lowest k spheres of the row."""
+    return f"region part block INF INF INF INF INF {2 * A * (k - 0.5)}"
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("k", ROW)
+def test_spheres_outside_the_region_neither_feel_nor_act(simulation, mode, k):
+    sim = simulation(row_of_five(), f"{MODES[mode]} {EXACT} region part", comm="comm_modify cutoff 12", before_pair=lower(k)).run()
+    assert np.abs(sim.fix_rows()[k:]).max(initial=0.0) == 0.0
+    assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[k], rel=1e-9)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("k", ROW)
+def test_spheres_outside_the_group_neither_feel_nor_act(simulation, mode, k):
+    sim = simulation(row_of_five(), f"{MODES[mode]} {EXACT} group part", comm="comm_modify cutoff 12",
+                     before_pair=f"group part id 1:{k}").run()
+    assert np.abs(sim.fix_rows()[k:]).max(initial=0.0) == 0.0
+    assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[k], rel=1e-9)
+
+
+def test_region_and_group_together_select_what_is_in_both(simulation):
+    sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT} region part group odd", before_pair=lower(4) + "\ngroup odd id 1 3 5").run()
+    spheres = row_of_five()
+    assert np.abs(sim.drag[[1, 3, 4]]).max() == 0.0
+    assert largest_difference(sim.drag[[0, 2]], model.forces(Spheres(spheres.x[[0, 2]], A, (0, 0, U)), ETA)) < 1e-11
+
+
+def test_spheres_outside_may_have_any_radius(simulation):
+    sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT} group part", before_pair="group part id 1:3\nset atom 5 diameter 0").run()
+    assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[3], rel=1e-9)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("algorithm", [1, 2])
+def test_nobody_selected_is_no_error(simulation, mode, algorithm):
+    sim = simulation(row_of_five(), f"{MODES[mode]} visc {ETA} algorithm {algorithm} group nobody", comm="comm_modify cutoff 12",
+                     before_pair="group nobody id 77").run(2)
+    assert np.abs(sim.fix_rows()).max() == 0.0 and sim.iterations == 0
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_nobody_selected_on_two_ranks_is_no_error(tmp_path, mode):
+    lines = input_lines(row_of_five(), f"{MODES[mode]} {EXACT} group nobody", tmp_path / "data", comm="comm_modify cutoff 12",
+                        before_pair="group nobody id 77")
+    lmp(tmp_path, lines + dump_lines(tmp_path / "dump") + ["run 1"], ranks=2)
+    assert np.abs(read_dump(tmp_path / "dump")[-1][1][:, 6:]).max() == 0.0
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_rank_without_spheres(tmp_path, mode):
+    """All spheres in one corner of the box, on one of two ranks."""
+    spheres = row_of_five()
+    lines = input_lines(spheres, f"{MODES[mode]} {EXACT}", tmp_path / "data", comm="comm_modify cutoff 12",
+                        box=[(-2, 10), (-2, 10), (-2, 40)])
+    lmp(tmp_path, lines + dump_lines(tmp_path / "dump") + ["run 1"], ranks=2)
+    assert largest_difference(read_dump(tmp_path / "dump")[0][1][:, 6:], model.forces(spheres, ETA)) < 1e-10
+
+
+def selected_forces(x, v, inside):
+    F = np.zeros_like(x)
+    F[inside] = model.forces(Spheres(x[inside], A, v[inside]), ETA)
+    return F
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("update_every", [1, 10])
+def test_spheres_enter_and_leave_the_region_during_a_run(simulation, mode, update_every):
+    """Free flight through a slab. Whoever comes or goes is in the very next force, whatever update_every."""
+    x = [(0, 0, 0), (1.6, 0, 1.4), (3.2, 0, 2.6), (0, 1.8, 0.4), (1.8, 1.8, 3.1)]
+    spheres = Spheres(x, A, (0, 0, U), molecule=1)
+    sim = simulation(spheres, f"{MODES[mode]} {EXACT} region slab update_every {update_every}", comm="comm_modify cutoff 12",
+                     box=[(-9, 9), (-9, 9), (-9, 15)], before_pair="region slab block INF INF INF INF 1.0 3.0\nneigh_modify every 1 delay 0",
+                     dt=0.05)
+    sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"])
+    sim.commands(dump_lines(sim.folder / "dump")).run(120).close()
+    seen = set()
+    for step, rows in read_dump(sim.folder / "dump"):
+        now, F = rows[:, 0:3], rows[:, 6:9]
+        inside = (now[:, 2] >= 1.0) & (now[:, 2] <= 3.0)
+        seen.add(tuple(inside))
+        # Uniform motion: the drag depends on who is there only, and v' of the last solve is that of now.
+        if inside.any():
+            assert largest_difference(F, selected_forces(now, rows[:, 3:6], inside)) < 1e-10, step
+        else:
+            assert np.abs(F).max() == 0.0, step
+    assert len(seen) >= 5
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_region_that_moves(simulation, mode):
+    spheres = row_of_five()
+    spheres.v[:] = (0, 0, U)
+    sim = simulation(spheres, f"{MODES[mode]} {EXACT} region slab", comm="comm_modify cutoff 12", dt=0.1,
+                     before_pair="variable up equal 0.1*step\nregion slab block INF INF INF INF -0.5 2.5 move NULL NULL v_up")
+    # Nothing integrates: the spheres stay, the region rises.
+    counts = set()
+    for step in range(60):
+        sim.run(1 if step else 0)
+        z = spheres.x[:, 2] - 0.1 * step
+        inside = (z >= -0.5) & (z <= 2.5)
+        if np.abs(np.concatenate([z + 0.5, z - 2.5])).min() < 1e-6:
+            continue                                     # on the border, where rounding decides
+        counts.add(inside.sum())
+        assert np.array_equal(np.abs(sim.drag).max(axis=1) > 0, inside)
+        if inside.any():
+            assert largest_difference(sim.drag, selected_forces(spheres.x, spheres.v, inside)) < 1e-10
+    assert counts == {1, 2, 3}
