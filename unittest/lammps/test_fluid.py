@@ -60,8 +60,8 @@ def test_fluid_velocity_from_per_atom_properties_that_a_cfd_code_writes(simulati
                                  "compute cfd all property/atom d_ux d_uy d_uz d_eta\nvariable ux atom c_cfd[1]\n"
                                  "variable uy atom c_cfd[2]\nvariable uz atom c_cfd[3]\nvariable eta atom c_cfd[4]")
     rng = np.random.default_rng(1)
-    order = sim.ids() - 1                                # nothing integrates, so the order of atoms stays
     for step in range(3):
+        order = sim.ids() - 1
         u, eta = rng.normal(size=(spheres.n, 3)), rng.uniform(1, 2, spheres.n)
         for d, name in enumerate(("d_ux", "d_uy", "d_uz")):
             sim.lmp.numpy.extract_atom(name, 2)[:sim.n] = u[order, d]
