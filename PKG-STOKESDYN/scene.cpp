@@ -97,6 +97,27 @@ void Scene::find_pairs()
   stale = false;
 }
 
+namespace {
+  /* How far a clump reaches in x, y, z, seen from one of its spheres. */
+  struct Span {
+    double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.0, 0.0, 0.0};
+    void add(const double *delta)
+    {
+      for (int d = 0; d < 3; d++) {
+        lo[d] = fmin(lo[d], delta[d]);
+        hi[d] = fmax(hi[d], delta[d]);
+      }
+    }
+    bool wide(const Domain *domain) const
+    {
+      for (int d = 0; d < 3; d++)
+        if (domain->periodicity[d] && hi[d] - lo[d] > 0.5 * domain->prd[d] * (1.0 + 1e-9))
+          return true;
+      return false;
+    }
+  };
+}    // namespace
+
 /* Without a cut-off every sphere must see all of its clump. Each rank counts its own members of a molecule, the rank
  * (molecule modulo ranks) adds them up, and every rank asks back. */
 void Scene::check_clumps()
@@ -137,36 +158,27 @@ void Scene::check_clumps()
     for (size_t k = 0; k < out.size(); k += 2) total[out[k]] = out[k + 1];
   }
 
-  // Seen from one of its spheres, no clump may span more than half of a periodic box: the closest image would be ambiguous.
-  int64_t wide = 0;
-  std::vector<int64_t> incomplete;
+  // A partner that is missing, or known only as an image more than half of a periodic box away.
+  std::vector<int64_t> suspect;
   for (int i = 0; i < nlocal; i++) {
     if (molecule[i] == 0 || a[i] == 0.0) continue;
     const long first = candidates.first[i], last = candidates.first[i + 1];
-    if (last - first + 1 != total[molecule[i]]) incomplete.push_back(molecule[i]);
-    double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.0, 0.0, 0.0};
-    for (long k = first; k < last; k++)
-      for (int d = 0; d < 3; d++) {
-        const double delta = atom->x[candidates.neighbor[k]][d] - atom->x[i][d];
-        lo[d] = fmin(lo[d], delta);
-        hi[d] = fmax(hi[d], delta);
-      }
-    for (int d = 0; d < 3; d++)
-      if (domain->periodicity[d] && hi[d] - lo[d] > 0.5 * domain->prd[d] * (1.0 + 1e-9))
-        wide = std::max(wide, molecule[i]);
+    const bool complete = last - first + 1 == total[molecule[i]];
+    Span span;
+    for (long k = first; k < last; k++) {
+      const double *xj = atom->x[candidates.neighbor[k]], *xi = atom->x[i];
+      const double delta[3] = {xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
+      span.add(delta);
+    }
+    if (!complete || span.wide(domain)) suspect.push_back(molecule[i]);
   }
-  int64_t mine[2] = {(int64_t) incomplete.size(), wide}, any[2];
-  MPI_Allreduce(mine, any, 2, MPI_LMP_BIGINT, MPI_MAX, world);
-  if (any[0]) complain_about_ghosts(incomplete);
-  if (any[1])
-    fail(lmp,
-         command + ": the clump of molecule " + std::to_string(any[1]) +
-             " is wider than half of the periodic box, so which image of a sphere it sees is "
-             "ambiguous;"
-             " use a larger box or a cut_off_distance below half of it");
+  int mine = suspect.size(), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any) complain_about_clumps(suspect);
 }
 
-void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
+/* Either the ghosts do not reach across a clump, or the clump is so wide that the closest image of a sphere is ambiguous. */
+void Scene::complain_about_clumps(const std::vector<int64_t> &suspect)
 {
   // All spheres of those clumps to all ranks: the run ends here, so the price does not matter.
   auto everywhere = [this](std::vector<double> &v) {
@@ -182,7 +194,7 @@ void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
                    world);
     v.swap(all);
   };
-  std::vector<double> ids(incomplete.begin(), incomplete.end()), spheres;
+  std::vector<double> ids(suspect.begin(), suspect.end()), spheres;
   everywhere(ids);
   std::sort(ids.begin(), ids.end());
   for (int i = 0; i < atom->nlocal; i++)
@@ -197,16 +209,25 @@ void Scene::complain_about_ghosts(const std::vector<int64_t> &incomplete)
   double widest = 0.0;
   int64_t which = 0;
   for (const auto &clump : clumps)
-    for (const double *p : clump.second)
+    for (const double *p : clump.second) {
+      Span span;
       for (const double *q : clump.second) {
-        double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+        double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
         Compat::minimum_image(domain, d);
+        span.add(d);
         const double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         if (r > widest) {
           widest = r;
           which = clump.first;
         }
       }
+      if (span.wide(domain))
+        fail(lmp,
+             command + ": the clump of molecule " + std::to_string(clump.first) +
+                 " is wider than half of the periodic box, so which image of a sphere it sees is "
+                 "ambiguous;"
+                 " use a larger box or a cut_off_distance below half of it");
+    }
   // Rounded up to three digits, so that the number can be typed.
   const double wanted = widest + neighbor->skin;
   const double unit = pow(10.0, floor(log10(wanted)) - 2.0);

@@ -75,7 +75,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void gather();
   void apply_list(const double *F, double *u);
   void apply_all(const double *F, double *u);
-  [[noreturn]] void complain_about_ghosts(const std::vector<int64_t> &incomplete);
+  [[noreturn]] void complain_about_clumps(const std::vector<int64_t> &suspect);
   [[noreturn]] void out_of_memory();
 };
 
