@@ -89,7 +89,9 @@ void FixStokesDynamics::setup(int vflag)
 void FixStokesDynamics::post_force(int /*vflag*/)
 {
   if (!pair->computed_in(update->ntimestep))
-    fail(lmp, "Fix stokes_dynamics: the pair style was not computed in this step (pair_modify compute no?)");
+    fail(lmp,
+         "Fix stokes_dynamics: the pair style was not computed in this step (pair_modify compute "
+         "no?)");
   const bool add = applies(pair->adds_force());
   for (double &t : total) t = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -100,6 +102,12 @@ void FixStokesDynamics::post_force(int /*vflag*/)
     }
     memcpy(row, pair->drag_force(i), 3 * sizeof(double));
     memcpy(row + 3, pair->perturbation(i), 3 * sizeof(double));
+    if (const double *torque = pair->drag_torque(i)) {
+      memcpy(row + 6, torque, 3 * sizeof(double));
+      if (add)
+        for (int d = 0; d < 3; d++) atom->torque[i][d] += torque[d];
+    } else
+      memset(row + 6, 0, 3 * sizeof(double));
     for (int d = 0; d < 3; d++) {
       total[d] += row[d];
       if (add) atom->f[i][d] += row[d];

@@ -14,6 +14,7 @@ using namespace StokesDyn;
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg)
 {
+  columns = narg > 3 && strcmp(arg[3], "rotation") == 0 ? WITH_ROTATION : TRANSLATION_ONLY;
   restart_peratom = 1;
   restart_global = 1;
   create_attribute = 1;
@@ -43,6 +44,7 @@ void FixStokesDynamicsState::record(int i)
 {
   domain->unmap(atom->x[i], atom->image[i], state[i] + LEFT_X);
   memcpy(state[i] + LEFT_V, atom->v[i], 3 * sizeof(double));
+  if (columns == WITH_ROTATION) memcpy(state[i] + LEFT_OMEGA, atom->omega[i], 3 * sizeof(double));
 }
 
 void FixStokesDynamicsState::post_run()
@@ -50,52 +52,60 @@ void FixStokesDynamicsState::post_run()
   for (int i = 0; i < atom->nlocal; i++) record(i);
 }
 
+/* Within rounding: rigid bodies set the velocities of their atoms anew. */
+static bool same_vector(const double *now, const double *then)
+{
+  double difference = 0.0, size = 0.0;
+  for (int k = 0; k < 3; k++) {
+    difference = fmax(difference, fabs(now[k] - then[k]));
+    size = fmax(size, fabs(now[k]));
+  }
+  return difference <= 1e-12 * size;
+}
+
 bool FixStokesDynamicsState::left_as_is(int i) const
 {
-  double x[3], dx = 0.0, dv = 0.0, v = 0.0;
+  double x[3];
   domain->unmap(atom->x[i], atom->image[i], x);
-  for (int k = 0; k < 3; k++) {
-    dx = fmax(dx, fabs(x[k] - state[i][LEFT_X + k]));
-    dv = fmax(dv, fabs(atom->v[i][k] - state[i][LEFT_V + k]));
-    v = fmax(v, fabs(atom->v[i][k]));
-  }
-  // Wrapping into the box and rigid bodies, which set velocities anew, leave rounding.
-  return state[i][SOLVED] != 0.0 && dx <= 1e-9 * atom->radius[i] && dv <= 1e-12 * v;
+  for (int k = 0; k < 3; k++)    // wrapping into the box leaves rounding
+    if (!(fabs(x[k] - state[i][LEFT_X + k]) <= 1e-9 * atom->radius[i])) return false;
+  return state[i][SOLVED] != 0.0 && same_vector(atom->v[i], state[i] + LEFT_V) &&
+      (columns == TRANSLATION_ONLY || same_vector(atom->omega[i], state[i] + LEFT_OMEGA));
 }
 
 void FixStokesDynamicsState::grow_arrays(int nmax)
 {
-  memory->grow(state, nmax, NCOLUMNS, "stokes_dynamics:state");
+  memory->grow(state, nmax, columns, "stokes_dynamics:state");
 }
 
 void FixStokesDynamicsState::copy_arrays(int i, int j, int /*delflag*/)
 {
-  memcpy(state[j], state[i], NCOLUMNS * sizeof(double));
+  memcpy(state[j], state[i], columns * sizeof(double));
 }
 
 void FixStokesDynamicsState::set_arrays(int i)
 {
-  memset(state[i], 0, NCOLUMNS * sizeof(double));
+  memset(state[i], 0, columns * sizeof(double));
 }
 
 int FixStokesDynamicsState::pack_exchange(int i, double *buf)
 {
-  memcpy(buf, state[i], NCOLUMNS * sizeof(double));
-  return NCOLUMNS;
+  memcpy(buf, state[i], columns * sizeof(double));
+  return columns;
 }
 
 int FixStokesDynamicsState::unpack_exchange(int nlocal, double *buf)
 {
-  memcpy(state[nlocal], buf, NCOLUMNS * sizeof(double));
-  return NCOLUMNS;
+  memcpy(state[nlocal], buf, columns * sizeof(double));
+  return columns;
 }
 
 int FixStokesDynamicsState::pack_restart(int i, double *buf)
 {
   record(i);
-  buf[0] = NCOLUMNS + 1;
-  memcpy(buf + 1, state[i], NCOLUMNS * sizeof(double));
-  return NCOLUMNS + 1;
+  buf[0] = columns + 1;
+  memcpy(buf + 1, state[i], columns * sizeof(double));
+  return columns + 1;
 }
 
 void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
@@ -103,7 +113,11 @@ void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
   double *extra = atom->extra[nlocal];
   int m = 0;
   for (int i = 0; i < nth; i++) m += static_cast<int>(extra[m]);
-  memcpy(state[nlocal], extra + m + 1, NCOLUMNS * sizeof(double));
+  // Another number of columns: the pair style has been given with or without rotation since. Nothing of the past stands then.
+  if (static_cast<int>(extra[m]) == columns + 1)
+    memcpy(state[nlocal], extra + m + 1, columns * sizeof(double));
+  else
+    set_arrays(nlocal);
 }
 
 void FixStokesDynamicsState::write_restart(FILE *fp)
@@ -121,5 +135,5 @@ void FixStokesDynamicsState::restart(char *buf)
 
 double FixStokesDynamicsState::memory_usage()
 {
-  return (double) atom->nmax * NCOLUMNS * sizeof(double);
+  return (double) atom->nmax * columns * sizeof(double);
 }

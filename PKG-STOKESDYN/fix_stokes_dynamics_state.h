@@ -26,20 +26,23 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
   int unpack_exchange(int, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override { return NCOLUMNS + 1; }
-  int maxsize_restart() override { return NCOLUMNS + 1; }
+  int size_restart(int) override { return columns + 1; }
+  int maxsize_restart() override { return columns + 1; }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double memory_usage() override;
 
-  enum { FORCE = 0, VPRIME = 3, SOLVED = 6, LEFT_X = 7, LEFT_V = 10, NCOLUMNS = 13 };
-  double **state = nullptr;    // [atom][NCOLUMNS]
+  enum { FORCE = 0, VPRIME = 3, SOLVED = 6, LEFT_X = 7, LEFT_V = 10, TRANSLATION_ONLY = 13 };
+  enum { TORQUE = 13, WPRIME = 16, LEFT_OMEGA = 19, WITH_ROTATION = 22 };
+  double **state = nullptr;    // [atom][columns]
+  int columns;
 
   /* The same on all ranks, in one block for the restart file. A step of -1: never. */
   struct Global {
     double last_step = -1, last_solve = -1;    // time step of the forces, of v'
     double spheres = 0;                        // that took part then
-    double eta = 0, u_inf[3] = {0, 0, 0};      // of the last step, if numbers
+    double eta = 0, u_inf[3] = {0, 0, 0},
+           vorticity[3] = {0, 0, 0};    // of the last step, if numbers
     double solves = 0, unconverged = 0;
     double iterations = 0, residual = 0;    // of the last solve
   } global;

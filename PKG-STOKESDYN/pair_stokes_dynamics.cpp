@@ -34,9 +34,9 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), scene(lmp, this
   one_coeff = 1;
   restartinfo = 1;
   no_virial_fdotr_compute =
-      1;    // drag acts between sphere and fluid: its x.F depends on the origin
-  comm_forward = 3;
-  nextra = 4;    // compute pair: iterations, residual, unconverged solves, dissipation
+      1;               // drag acts between sphere and fluid: its x.F depends on the origin
+  comm_forward = 6;    // force and torque
+  nextra = 4;          // compute pair: iterations, residual, unconverged solves, dissipation
   pvector = new double[nextra];
   for (int k = 0; k < nextra; k++) pvector[k] = 0.0;
 }
@@ -74,6 +74,8 @@ void PairStokesDynamics::parse()
   algorithm = 1;
   visc = Field();
   for (auto &u : fluid_velocity) u = Field(0.0);
+  for (auto &w : fluid_vorticity) w = Field(0.0);
+  has_vorticity = false;
   region_id.clear();
   group_id = "all";
   scene.settings = Scene::Settings();
@@ -112,10 +114,15 @@ void PairStokesDynamics::parse()
       algorithm = 1 + in.choice({"1", "2"});
     else if (in.is("fluid_velocity"))
       for (auto &u : fluid_velocity) u = Field::parse(in);
+    else if (in.is("fluid_vorticity")) {
+      for (auto &w : fluid_vorticity) w = Field::parse(in);
+      has_vorticity = true;
+    } else if (in.is("rotation"))
+      scene.settings.rotation = in.yes_no();
     else if (in.is("tensor"))
       scene.settings.tensor = in.choice({"rpy", "oseen"}) == 0 ? SD_TENSOR_RPY : SD_TENSOR_OSEEN;
-    else if (in.is("rotation") || in.is("rigid_clumps") || in.is("shell") || in.is("taper") ||
-             in.is("precondition") || in.is("warm_start"))
+    else if (in.is("rigid_clumps") || in.is("shell") || in.is("taper") || in.is("precondition") ||
+             in.is("warm_start"))
       in.refuse("not available in this version");
     else
       in.unknown();
@@ -128,6 +135,13 @@ void PairStokesDynamics::parse()
                ": keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
     scene.settings.cutoff = INFINITY;
   }
+  if (scene.settings.rotation && scene.settings.tensor == SD_TENSOR_OSEEN)
+    fail(lmp,
+         COMMAND +
+             ": keyword rotation: yes is not available with tensor oseen, whose point forces do "
+             "not rotate");
+  if (has_vorticity && !scene.settings.rotation)
+    fail(lmp, COMMAND + ": keyword fluid_vorticity has no effect without rotation yes");
 }
 
 void PairStokesDynamics::coeff(int narg, char **arg)
@@ -166,6 +180,11 @@ void PairStokesDynamics::init_style()
   if (!atom->radius_flag)
     fail(lmp, COMMAND + " requires an atom style with radius, such as sphere");
   if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
+  if (scene.settings.rotation && (!atom->omega_flag || !atom->torque_flag))
+    fail(lmp,
+         COMMAND +
+             ": keyword rotation: yes requires an atom style with angular velocity and torque, "
+             "such as sphere");
   if (scene.settings.clumps_only && !atom->molecule_flag)
     fail(lmp,
          COMMAND +
@@ -191,10 +210,15 @@ void PairStokesDynamics::init_style()
   groupbit = group->bitmask[igroup];
   visc.init(lmp, COMMAND + ": keyword visc");
   for (auto &u : fluid_velocity) u.init(lmp, COMMAND + ": keyword fluid_velocity");
+  for (auto &w : fluid_vorticity) w.init(lmp, COMMAND + ": keyword fluid_vorticity");
 
   // Here and not in the constructor: in read_restart, what the restart file holds for this fix is not known yet when the pair style is made.
+  const bool rotation = scene.settings.rotation;
+  if (find_state() && (find_state()->columns == FixStokesDynamicsState::WITH_ROTATION) != rotation)
+    modify->delete_fix(STATE_ID);
   if (!find_state())
-    modify->add_fix(std::string(STATE_ID) + " all " + FixStokesDynamicsState::STYLE);
+    modify->add_fix(std::string(STATE_ID) + " all " + FixStokesDynamicsState::STYLE +
+                    (rotation ? " rotation" : ""));
   fix_state = find_state();
 
   bool applied = add_force;
@@ -244,7 +268,7 @@ bool PairStokesDynamics::selected(int i) const
   return (atom->mask[i] & groupbit) && (!region || region->match(x[0], x[1], x[2]));
 }
 
-enum Fault { NONE, POSITION, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY };
+enum Fault { NONE, POSITION, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY, FLUID_VORTICITY };
 
 static bool finite(const double *v)
 {
@@ -255,10 +279,11 @@ int PairStokesDynamics::faulty(int i) const
 {
   if (!finite(atom->x[i])) return POSITION;
   if (!active[i]) return NONE;
-  if (!finite(atom->v[i])) return VELOCITY;
+  if (!finite(atom->v[i]) || (scene.settings.rotation && !finite(atom->omega[i]))) return VELOCITY;
   if (!(atom->radius[i] > 0.0) || !std::isfinite(atom->radius[i])) return RADIUS;
   if (!(eta[i] > 0.0) || !std::isfinite(eta[i])) return VISCOSITY;
   if (!finite(&u_inf[3 * (size_t) i])) return FLUID_VELOCITY;
+  if (scene.settings.rotation && !finite(&w_inf[3 * (size_t) i])) return FLUID_VORTICITY;
   return NONE;
 }
 
@@ -294,6 +319,10 @@ void PairStokesDynamics::complain()
            who + "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)");
     case VISCOSITY:
       fail(lmp, who + "keyword visc: its viscosity " + text(sum) + " must be > 0");
+    case FLUID_VORTICITY:
+      fail(lmp,
+           who +
+               "keyword fluid_vorticity: the vorticity of the fluid there is not a finite number");
     default:
       fail(lmp, who + "keyword fluid_velocity: the fluid velocity there is not a finite number");
   }
@@ -301,31 +330,64 @@ void PairStokesDynamics::complain()
 
 bool PairStokesDynamics::numbers_only() const
 {
-  return !visc.is_variable() && !fluid_velocity[0].is_variable() &&
-      !fluid_velocity[1].is_variable() && !fluid_velocity[2].is_variable();
+  if (visc.is_variable()) return false;
+  for (int d = 0; d < 3; d++)
+    if (fluid_velocity[d].is_variable() || fluid_vorticity[d].is_variable()) return false;
+  return true;
+}
+
+/* Half the vorticity: as given, or from the formulas of the fluid velocity. */
+void PairStokesDynamics::fluid_angular_velocity()
+{
+  const int n = atom->nlocal;
+  w_inf.assign(3 * (size_t) n + 3, 0.0);
+  if (has_vorticity) {
+    for (int d = 0; d < 3; d++) fluid_vorticity[d].evaluate(lmp, igroup, w_inf.data() + d, 3);
+    for (auto &w : w_inf) w *= 0.5;
+    return;
+  }
+  if (!fluid_velocity[0].is_atom_style() && !fluid_velocity[1].is_atom_style() &&
+      !fluid_velocity[2].is_atom_style())
+    return;
+  gradient.resize(9 * (size_t) n + 9);
+  velocity_gradient(lmp, fluid_velocity, igroup, gradient.data());
+  for (int i = 0; i < n; i++) {
+    const double *G = &gradient[9 * (size_t) i];
+    w_inf[3 * (size_t) i] = 0.5 * (G[7] - G[5]);
+    w_inf[3 * (size_t) i + 1] = 0.5 * (G[2] - G[6]);
+    w_inf[3 * (size_t) i + 2] = 0.5 * (G[3] - G[1]);
+  }
 }
 
 /* Who takes part, viscosity, fluid velocity, slip. */
 void PairStokesDynamics::state_of_the_step()
 {
   const int n = atom->nlocal;
+  const size_t m = width();
   active.resize(n);
   eta.resize(n + 1);
   u_inf.resize(3 * (size_t) n + 3);
-  slip.resize(3 * (size_t) n + 3);
+  slip.resize(m * n + m);
   drag.resize(n + 1);
+  if (scene.settings.rotation) spin.resize(n + 1);
 
   if (!numbers_only()) modify->clearstep_compute();
   visc.evaluate(lmp, igroup, eta.data(), 1);
   for (int d = 0; d < 3; d++) fluid_velocity[d].evaluate(lmp, igroup, u_inf.data() + d, 3);
+  if (scene.settings.rotation) fluid_angular_velocity();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 
   if (region) region->prematch();
   for (int i = 0; i < n; i++) {
+    const double a = atom->radius[i];
+    double *s = &slip[m * i];
     active[i] = selected(i);
-    drag[i] = active[i] ? 6.0 * SD_PI * eta[i] * atom->radius[i] : 0.0;
+    drag[i] = active[i] ? 6.0 * SD_PI * eta[i] * a : 0.0;
+    for (int d = 0; d < 3; d++) s[d] = active[i] ? u_inf[3 * (size_t) i + d] - atom->v[i][d] : 0.0;
+    if (!scene.settings.rotation) continue;
+    spin[i] = active[i] ? 8.0 * SD_PI * eta[i] * a * a * a : 0.0;
     for (int d = 0; d < 3; d++)
-      slip[3 * (size_t) i + d] = active[i] ? u_inf[3 * (size_t) i + d] - atom->v[i][d] : 0.0;
+      s[3 + d] = active[i] ? w_inf[3 * (size_t) i + d] - atom->omega[i][d] : 0.0;
   }
 }
 
@@ -337,6 +399,7 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   state_of_the_step();
 
   const int n = atom->nlocal;
+  const bool rotation = scene.settings.rotation;
   double **state = fix_state->state;
   State::Global &global = fix_state->global;
   const double step = update->ntimestep;
@@ -345,10 +408,11 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   double count[4] = {
       0.0, 0.0, 0.0,
       0.0};    // spheres, newcomers, faults, spheres that somebody moved since the last run
-  const bool may_resume = update->setupflag && step == global.last_step && numbers_only() &&
-      visc.number() == global.eta && fluid_velocity[0].number() == global.u_inf[0] &&
-      fluid_velocity[1].number() == global.u_inf[1] &&
-      fluid_velocity[2].number() == global.u_inf[2];
+  bool may_resume = update->setupflag && step == global.last_step && numbers_only() &&
+      visc.number() == global.eta;
+  for (int d = 0; d < 3; d++)
+    may_resume = may_resume && fluid_velocity[d].number() == global.u_inf[d] &&
+        fluid_vorticity[d].number() == global.vorticity[d];
   for (int i = 0; i < n; i++) {
     if (faulty(i) != NONE) count[2]++;
     if (!active[i]) continue;
@@ -368,18 +432,30 @@ void PairStokesDynamics::compute(int eflag, int vflag)
       global.last_solve = step;
       global.spheres = count[0];
     }
-    for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++)
-        state[i][State::FORCE + d] =
-            active[i] ? drag[i] * (slip[3 * (size_t) i + d] + state[i][State::VPRIME + d]) : 0.0;
+    for (int i = 0; i < n; i++) {
+      const double *si = &slip[width() * (size_t) i];
+      for (int d = 0; d < 3; d++) {
+        state[i][State::FORCE + d] = active[i] ? drag[i] * (si[d] + state[i][State::VPRIME + d])
+                                               : 0.0;
+        if (rotation)
+          state[i][State::TORQUE + d] =
+              active[i] ? spin[i] * (si[3 + d] + state[i][State::WPRIME + d]) : 0.0;
+      }
+    }
   }
   global.last_step = step;
   global.eta = visc.number();
-  for (int d = 0; d < 3; d++) global.u_inf[d] = fluid_velocity[d].number();
+  for (int d = 0; d < 3; d++) {
+    global.u_inf[d] = fluid_velocity[d].number();
+    global.vorticity[d] = fluid_vorticity[d].number();
+  }
 
   if (add_force)
     for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++) atom->f[i][d] += state[i][State::FORCE + d];
+      for (int d = 0; d < 3; d++) {
+        atom->f[i][d] += state[i][State::FORCE + d];
+        if (rotation) atom->torque[i][d] += state[i][State::TORQUE + d];
+      }
 
   // compute pair sums this over the ranks
   const bool root = comm->me == 0;
@@ -392,19 +468,24 @@ void PairStokesDynamics::compute(int eflag, int vflag)
 
 double PairStokesDynamics::dissipation(int i) const
 {
-  const double *F = drag_force(i), *s = &slip[3 * (size_t) i];
-  return F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
+  const double *F = drag_force(i), *T = drag_torque(i), *s = &slip[width() * (size_t) i];
+  double power = F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
+  if (T) power += T[0] * s[3] + T[1] * s[4] + T[2] * s[5];
+  return power;
 }
 
 /* v' of every sphere, from the forces that solve the system for the velocities of now. */
 void PairStokesDynamics::solve()
 {
   const int n = atom->nlocal;
-  solution.resize(3 * (size_t) n + 3);
-  work.resize(SD_SOLVE_WORK(n, 3) + 1);
+  const size_t m = width();
+  const bool rotation = scene.settings.rotation;
+  solution.resize(m * n + m);
+  work.resize(SD_SOLVE_WORK(n, width()) + 1);
   scene.update(active, eta);
 
-  const sd_system system = {n, drag.data(), nullptr, Scene::apply, &scene, Scene::sum, &scene};
+  const sd_system system = {
+      n, drag.data(), rotation ? spin.data() : nullptr, Scene::apply, &scene, Scene::sum, &scene};
   sd_solve_report report;
   auto solver = algorithm == 1 ? sd_solve_substitution : sd_solve_gradients;
   const sd_status status =
@@ -416,12 +497,15 @@ void PairStokesDynamics::solve()
   global.residual = report.residual;
   if (status != SD_OK) solver_failed(status, report);
 
+  using State = FixStokesDynamicsState;
   double **state = fix_state->state;
   for (int i = 0; i < n; i++) {
-    state[i][FixStokesDynamicsState::SOLVED] = active[i] ? 1.0 : 0.0;
-    for (int d = 0; d < 3; d++)
-      state[i][FixStokesDynamicsState::VPRIME + d] =
-          active[i] ? solution[3 * (size_t) i + d] / drag[i] - slip[3 * (size_t) i + d] : 0.0;
+    const double *F = &solution[m * i], *si = &slip[m * i];
+    state[i][State::SOLVED] = active[i] ? 1.0 : 0.0;
+    for (int d = 0; d < 3; d++) {
+      state[i][State::VPRIME + d] = active[i] ? F[d] / drag[i] - si[d] : 0.0;
+      if (rotation) state[i][State::WPRIME + d] = active[i] ? F[3 + d] / spin[i] - si[3 + d] : 0.0;
+    }
   }
 }
 

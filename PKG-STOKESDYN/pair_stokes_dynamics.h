@@ -45,6 +45,10 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   {
     return fix_state->state[i] + FixStokesDynamicsState::FORCE;
   }
+  const double *drag_torque(int i) const    // nullptr without rotation
+  {
+    return scene.settings.rotation ? fix_state->state[i] + FixStokesDynamicsState::TORQUE : nullptr;
+  }
   const double *perturbation(int i) const
   {
     return fix_state->state[i] + FixStokesDynamicsState::VPRIME;
@@ -60,7 +64,8 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   bool add_force;
   double tolerance;
   int max_iter, algorithm;
-  Field visc, fluid_velocity[3];
+  Field visc, fluid_velocity[3], fluid_vorticity[3];
+  bool has_vorticity;
   std::string region_id, group_id;
   Scene scene;
 
@@ -73,12 +78,14 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
 
   // of this step, per atom of this rank
   std::vector<char> active;
-  std::vector<double> eta, u_inf, slip, drag, solution, work;
+  std::vector<double> eta, u_inf, w_inf, gradient, slip, drag, spin, solution, work;
 
   FixStokesDynamicsState *find_state() const;    // nullptr before the first run
   void parse();
   void allocate();
   void state_of_the_step();
+  int width() const { return scene.settings.rotation ? 6 : 3; }    // unknowns of a sphere
+  void fluid_angular_velocity();
   bool selected(int i) const;
   int faulty(int i) const;
   void complain();

@@ -3,6 +3,8 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 
+#include "sd_grand.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -250,18 +252,18 @@ void Scene::gather()
       mine.insert(mine.end(), {atom->x[i][0], atom->x[i][1], atom->x[i][2], a[i], w[i]});
     }
   int n = own.size();
-  std::vector<int> counts(nprocs), counts5(nprocs), displs5(nprocs);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  counts3.resize(nprocs);
-  displs3.resize(nprocs);
+  std::vector<int> spheres(nprocs), counts5(nprocs), displs5(nprocs);
+  MPI_Allgather(&n, 1, MPI_INT, spheres.data(), 1, MPI_INT, world);
+  counts.resize(nprocs);
+  displs.resize(nprocs);
   n_all = 0;
   for (int p = 0; p < nprocs; p++) {
     if (p == comm->me) begin = n_all;
-    counts3[p] = 3 * counts[p];
-    displs3[p] = 3 * n_all;
-    counts5[p] = 5 * counts[p];
+    counts[p] = width() * spheres[p];
+    displs[p] = width() * n_all;
+    counts5[p] = 5 * spheres[p];
     displs5[p] = 5 * n_all;
-    n_all += counts[p];
+    n_all += spheres[p];
   }
   std::vector<double> all(5 * (size_t) n_all);
   MPI_Allgatherv(mine.data(), 5 * n, MPI_DOUBLE, all.data(), counts5.data(), displs5.data(),
@@ -269,9 +271,9 @@ void Scene::gather()
   all_x.resize(3 * (size_t) n_all);
   all_a.resize(n_all);
   all_w.resize(n_all);
-  all_force.resize(3 * (size_t) n_all);
-  all_u.resize(3 * (size_t) n);
-  force.resize(3 * (size_t) n);
+  all_force.resize(width() * (size_t) n_all);
+  all_u.resize(width() * (size_t) n);
+  force.resize(width() * (size_t) n);
   for (int j = 0; j < n_all; j++) {
     std::copy(&all[5 * (size_t) j], &all[5 * (size_t) j] + 3, &all_x[3 * (size_t) j]);
     all_a[j] = all[5 * (size_t) j + 3];
@@ -290,27 +292,33 @@ void Scene::apply(void *ctx, const double *F, double *u)
 
 void Scene::apply_list(const double *F, double *u)
 {
-  force.resize(3 * a.size() + 3);
-  std::copy(F, F + 3 * (size_t) atom->nlocal, force.begin());
+  const size_t m = width();
+  force.resize(m * a.size() + m);
+  std::copy(F, F + m * atom->nlocal, force.begin());
   packing = FORCES;
   Compat::forward_comm(comm, pair);
   const sd_spheres spheres = {positions(), a.data(), w.data()};
-  sd_product_list(settings.tensor, &spheres, filtered ? &pairs.pairs : &candidates.pairs,
-                  force.data(), u);
+  const sd_pairs *list = filtered ? &pairs.pairs : &candidates.pairs;
+  if (settings.rotation)
+    sd_product_grand_list(&spheres, list, force.data(), u);
+  else
+    sd_product_list(settings.tensor, &spheres, list, force.data(), u);
 }
 
 void Scene::apply_all(const double *F, double *u)
 {
+  const size_t m = width();
   const int n = own.size();
-  for (int k = 0; k < n; k++)
-    std::copy(F + 3 * (size_t) own[k], F + 3 * (size_t) own[k] + 3, &force[3 * (size_t) k]);
-  MPI_Allgatherv(force.data(), 3 * n, MPI_DOUBLE, all_force.data(), counts3.data(), displs3.data(),
+  for (int k = 0; k < n; k++) std::copy(F + m * own[k], F + m * own[k] + m, &force[m * k]);
+  MPI_Allgatherv(force.data(), m * n, MPI_DOUBLE, all_force.data(), counts.data(), displs.data(),
                  MPI_DOUBLE, world);
   const sd_spheres spheres = {all_x.data(), all_a.data(), all_w.data()};
-  sd_product_all(settings.tensor, &spheres, n_all, begin, n, all_force.data(), all_u.data());
-  std::fill(u, u + 3 * (size_t) atom->nlocal, 0.0);
-  for (int k = 0; k < n; k++)
-    std::copy(&all_u[3 * (size_t) k], &all_u[3 * (size_t) k] + 3, u + 3 * (size_t) own[k]);
+  if (settings.rotation)
+    sd_product_grand_all(&spheres, n_all, begin, n, all_force.data(), all_u.data());
+  else
+    sd_product_all(settings.tensor, &spheres, n_all, begin, n, all_force.data(), all_u.data());
+  std::fill(u, u + m * atom->nlocal, 0.0);
+  for (int k = 0; k < n; k++) std::copy(&all_u[m * k], &all_u[m * k] + m, u + m * own[k]);
 }
 
 void Scene::sum(void *ctx, double *values, int count)
@@ -332,7 +340,7 @@ int Scene::pack_forward_comm(int n, int *list, double *buf)
         buf[m++] = ubuf(molecule[i]).d;
         break;
       case FORCES:
-        for (int d = 0; d < 3; d++) buf[m++] = force[3 * (size_t) i + d];
+        for (int d = 0; d < width(); d++) buf[m++] = force[width() * (size_t) i + d];
         break;
     }
   }
@@ -352,7 +360,7 @@ void Scene::unpack_forward_comm(int n, int first, double *buf)
         molecule[i] = ubuf(buf[m++]).i;
         break;
       case FORCES:
-        for (int d = 0; d < 3; d++) force[3 * (size_t) i + d] = buf[m++];
+        for (int d = 0; d < width(); d++) force[width() * (size_t) i + d] = buf[m++];
         break;
     }
   }

@@ -1,7 +1,7 @@
 /* From LAMMPS atoms to the core's arrays and back: which spheres take part, who sees whom, on which rank. The only room that
  * knows ghosts.
  *
- * Vectors of the core have 3 numbers for each atom that this rank owns, in the order of LAMMPS. An atom that does not take part has
+ * Vectors of the core have 3 numbers (6 with rotation) for each atom that this rank owns, in the order of LAMMPS. An atom that does not take part has
  * radius 0 there, and the core leaves it out. */
 #ifndef SD_SCENE_H
 #define SD_SCENE_H
@@ -27,6 +27,7 @@ class Scene : protected LAMMPS_NS::Pointers {
     sd_tensor tensor = SD_TENSOR_RPY;
     double cutoff = 0.0;    // INFINITY: no cut-off
     bool clumps_only = false;
+    bool rotation = false;    // vectors have force and torque, 6 numbers an atom
   } settings;
 
   Scene(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair, const std::string &command);
@@ -62,13 +63,14 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_neighbors candidates, pairs;
 
   // all pairs: the active spheres of all ranks, in order of rank
-  std::vector<int> own;    // local index of this rank's
-  std::vector<int> counts3, displs3;
+  std::vector<int> own;               // local index of this rank's
+  std::vector<int> counts, displs;    // of the numbers that a product gathers
   std::vector<double> all_x, all_a, all_w, all_force, all_u;
   int n_all = 0, begin = 0;
 
   enum { SPHERES, MOLECULES, FORCES } packing = SPHERES;
 
+  int width() const { return settings.rotation ? 6 : 3; }
   const double *positions() const;
   void find_pairs();
   void check_clumps();

@@ -1,0 +1,119 @@
+#include "scene.h"
+
+#include "sd_grand.h"
+
+enum { N = 30 };
+
+static scene random_scene(uint64_t seed, double side)
+{
+  scene s = scene_create(N);
+  for (int i = 0; i < N; i++)
+    scene_set(&s, i, uniform(&seed, 0, side), uniform(&seed, 0, side), uniform(&seed, 0, side),
+              uniform(&seed, 0.2, 1.6), uniform(&seed, 0.5, 3.0));
+  s.a[7] = s.w[7] = s.drag[7] = 0.0; /* takes no part */
+  return s;
+}
+
+static void products_are_sums_of_grand_blocks(void **state)
+{
+  (void) state;
+  scene s = random_scene(4, 5.0);
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  uint64_t seed = 2;
+  double F[6 * N], expected[6 * N] = {0}, all[6 * N], part[6 * 10], list[6 * N], scale = 0.0;
+  for (int i = 0; i < 6 * N; i++) F[i] = uniform(&seed, -1, 1);
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++) {
+      double r[3], M[36];
+      if (j == i || i == 7 || j == 7) continue;
+      for (int d = 0; d < 3; d++) r[d] = s.x[3 * i + d] - s.x[3 * j + d];
+      sd_tensor_grand(r, s.a[i], s.a[j], 1.0 / (s.w[i] * s.w[j]), M);
+      for (int p = 0; p < 6; p++)
+        for (int q = 0; q < 6; q++) expected[6 * i + p] += M[6 * p + q] * F[6 * j + q];
+    }
+  for (int i = 0; i < 6 * N; i++) scale = fmax(scale, fabs(expected[i]));
+  sd_product_grand_all(&spheres, N, 0, N, F, all);
+  sd_product_grand_all(&spheres, N, 17, 10, F, part);
+  sd_neighbors wide = {0}, close = {0};
+  assert_int_equal(sd_neighbors_cutoff(&wide, s.x, N, N, 100.0), SD_OK);
+  assert_int_equal(sd_neighbors_reserve(&close, N, wide.first[N]), SD_OK);
+  sd_pairs_within(&wide.pairs, &spheres, INFINITY, close.first, close.neighbor);
+  close.pairs.n = N;
+  sd_product_grand_list(&spheres, &close.pairs, F, list);
+  for (int i = 0; i < 6 * N; i++) {
+    CHECK_NEAR(all[i], expected[i], 1e-14 * scale);
+    CHECK_NEAR(list[i], expected[i], 1e-14 * scale);
+  }
+  for (int i = 0; i < 60; i++) CHECK_NEAR(part[i], all[6 * 17 + i], 0.0);
+  sd_neighbors_free(&wide);
+  sd_neighbors_free(&close);
+  scene_free(&s);
+}
+
+static void apply_grand(void *ctx, const double *F, double *u)
+{
+  scene *s = ctx;
+  const sd_spheres spheres = {s->x, s->a, s->w};
+  sd_product_grand_all(&spheres, s->n, 0, s->n, F, u);
+}
+
+/* Reciprocity and dissipation of forces and torques together, radii 1:30, two viscosities. */
+static void resistance_is_symmetric_and_dissipates(void **state)
+{
+  (void) state;
+  uint64_t seed = 5;
+  scene s = scene_create(N);
+  double spin[N], slip[2][6 * N], F[2][6 * N], cross[2] = {0, 0}, power = 0.0;
+  double *work = malloc(sizeof(double) * SD_SOLVE_WORK(N, 6));
+  for (int i = 0; i < N; i++) {
+    const double a = exp(uniform(&seed, log(0.05), log(1.5))), eta = i % 2 ? 1.3 : 4.1;
+    scene_set(&s, i, uniform(&seed, 0, 5), uniform(&seed, 0, 5), uniform(&seed, 0, 5), a, eta);
+    spin[i] = 8 * SD_PI * eta * a * a * a;
+  }
+  const sd_system A = {.n = N, .drag = s.drag, .spin = spin, .apply = apply_grand, .apply_ctx = &s};
+  for (int k = 0; k < 2; k++) {
+    sd_solve_report report;
+    for (int i = 0; i < 6 * N; i++) slip[k][i] = uniform(&seed, -1, 1);
+    assert_int_equal(sd_solve_gradients(&A, slip[k], 1e-12, 2000, F[k], work, &report), SD_OK);
+  }
+  for (int i = 0; i < 6 * N; i++) {
+    cross[0] += F[0][i] * slip[1][i];
+    cross[1] += F[1][i] * slip[0][i];
+    power += F[0][i] * slip[0][i];
+  }
+  CHECK_NEAR(cross[0], cross[1], 1e-8 * power);
+  assert_true(power > 0.0);
+  free(work);
+  scene_free(&s);
+}
+
+/* A lone sphere that moves and spins: 6 pi eta a U and 8 pi eta a^3 W, by both algorithms. */
+static void lone_sphere(void **state)
+{
+  (void) state;
+  scene s = scene_lattice(1, 1, 1, 2.0, 0.7, 1.3);
+  const double spin[1] = {8 * SD_PI * 1.3 * 0.343}, slip[6] = {1, -2, 3, -4, 5, 0.6};
+  const sd_system A = {.n = 1, .drag = s.drag, .spin = spin, .apply = apply_grand, .apply_ctx = &s};
+  double F[6], work[SD_SOLVE_WORK(1, 6)];
+  sd_solve_report report;
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(
+        (k ? sd_solve_gradients : sd_solve_substitution)(&A, slip, 1e-13, 5, F, work, &report),
+        SD_OK);
+    for (int d = 0; d < 3; d++) {
+      CHECK_NEAR(F[d] / (s.drag[0] * slip[d]), 1.0, 1e-14);
+      CHECK_NEAR(F[3 + d] / (spin[0] * slip[3 + d]), 1.0, 1e-14);
+    }
+  }
+  scene_free(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(products_are_sums_of_grand_blocks),
+      cmocka_unit_test(resistance_is_symmetric_and_dissipates),
+      cmocka_unit_test(lone_sphere),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
