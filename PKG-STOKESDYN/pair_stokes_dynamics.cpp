@@ -484,8 +484,13 @@ void PairStokesDynamics::solve()
   work.resize(SD_SOLVE_WORK(n, width()) + 1);
   scene.update(active, eta);
 
-  const sd_system system = {
-      n, drag.data(), rotation ? spin.data() : nullptr, Scene::apply, &scene, Scene::sum, &scene};
+  sd_system system = {};
+  system.n = n;
+  system.drag = drag.data();
+  system.spin = rotation ? spin.data() : nullptr;
+  system.apply = Scene::apply;
+  system.sum = Scene::sum;
+  system.apply_ctx = system.sum_ctx = &scene;
   sd_solve_report report;
   auto solver = algorithm == 1 ? sd_solve_substitution : sd_solve_gradients;
   const sd_status status =
