@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+"""Lets the cloud fall with and without hydrodynamic interactions between the clumps, compares the speeds and draws them.
+
+    run.py [OUT]        results, images and pictures go to OUT (default: build/examples/settling_cloud)
+    run.py --update     also refreshes the logs and the pictures in this folder
+
+Exits with 1 and says which when a figure is missed.
+"""
+import io
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOP = HERE.parents[1]
+
+# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
+os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
+
+DEBIAN = "/usr/bin/python3"
+try:
+    import matplotlib
+    import numpy as np
+    from PIL import Image
+except ImportError:         # Debian's python has them, another one on the PATH need not
+    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
+        raise
+    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+# As in in.settling_cloud. Lengths are in radii of a sphere, speeds in those of a lone sphere, forces in its weight.
+MASS, INTERVAL = 0.01, 0.5
+TITLE = {"all": "all spheres interact", "clump": "spheres of a clump interact", "none": "no sphere sees another"}
+SHOWN = (0.0, 0.8, 1.4, 2.0, 2.4, 3.2)          # times of the montage
+FRAME = 0.1                                     # time between two images
+
+
+# --- what to compare with -----------------------------------------------------------------------------------------
+
+
+def lone_clump():
+    """Settling speed of a tetrahedron of touching spheres in the model, by a dense solve."""
+    x = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(2.0)
+    M = np.eye(12)
+    for i in range(4):
+        for j in range(4):
+            if i != j:
+                r = x[i] - x[j]
+                s = np.linalg.norm(r)
+                e = np.outer(r, r) / s**2
+                M[3 * i:3 * i + 3, 3 * j:3 * j + 3] = 3 / (4 * s) * (np.eye(3) + e) + (np.eye(3) - 3 * e) / (2 * s**3)
+    drag = np.linalg.solve(M, np.tile([0.0, 0.0, 1.0], 4)).reshape(4, 3).sum(axis=0)[2]
+    return 4.0 / drag
+
+
+def point_forces(centre):
+    """Mean settling speed when each clump is a point force of weight 4: its own speed, and Oseen's tensor of all others.
+
+        U = U_1 + 4 < sum_(j != i) 3/4 (1/r + z^2/r^3) >
+    """
+    r = centre[:, None] - centre[None]
+    s = np.linalg.norm(r, axis=2)
+    np.fill_diagonal(s, np.inf)
+    return lone_clump() + 4.0 * 0.75 * (1.0 / s + r[:, :, 2]**2 / s**3).sum() / len(centre)
+
+
+def formula(n, R):
+    """The same for n points spread evenly in a sphere of radius R, where < 1/r > = 6/(5R) over pairs, and z^2/r^2 = 1/3.
+
+        U = U_1 (1 + 6/5 n a_h/R),   a_h = 4/U_1 the hydrodynamic radius of a clump
+    """
+    return lone_clump() + 4.0 * 1.2 * n / R
+
+
+# --- runs ---------------------------------------------------------------------------------------------------------
+
+
+def lammps(out, ranks, log, variables, show=True):
+    (out / "out").mkdir(parents=True, exist_ok=True)
+    for name in ("in.settling_cloud", "tetrahedron.mol"):
+        shutil.copy(HERE / name, out)
+    command = ["mpirun", "-np", str(ranks), "lmp", "-in", "in.settling_cloud", "-log", log]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
+    start = time.time()
+    print(f"[{log}, {ranks} rank{'s' if ranks > 1 else ''}] ", end="", flush=True)
+    run = subprocess.Popen(command, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    lines = []
+    for line in run.stdout:
+        lines.append(line)
+        if len(line.split()) == 8 and line.split()[0].isdigit():        # a line of thermo output
+            print(".", end="", flush=True)
+    print(f" {time.time() - start:.0f} s", flush=True)
+    if run.wait() != 0:
+        sys.exit("".join(lines[-20:]) + f"settling_cloud: {' '.join(command)} failed in {out}")
+
+
+def curve(out, name):
+    """Columns: time, speed, height of the centre, radius, dent of the floor."""
+    return np.loadtxt(out / "out" / f"{name}.curve")[:, 1:]
+
+
+def frames(out, name):
+    """Step; id, molecule, x, y, z, vz of every sphere."""
+    for block in (out / "out" / f"{name}.spheres").read_text().split("ITEM: TIMESTEP\n")[1:]:
+        lines = block.split("\n")
+        yield int(lines[0]), np.array([line.split() for line in lines[8:8 + int(lines[2])]], dtype=float)
+
+
+def centres(spheres):
+    order = np.argsort(spheres[:, 1], kind="stable")
+    return spheres[order, 2:5].reshape(-1, 4, 3).mean(axis=1)
+
+
+def overlap(spheres):
+    """The largest of two spheres of different clumps, in radii."""
+    x, molecule = spheres[:, 2:5], spheres[:, 1]
+    s = np.linalg.norm(x[:, None] - x[None], axis=2)
+    s[molecule[:, None] == molecule[None]] = np.inf
+    return 2.0 - s.min()
+
+
+# --- pictures -----------------------------------------------------------------------------------------------------
+
+
+def save(fig, path):
+    whole = io.BytesIO()
+    fig.savefig(whole)
+    plt.close(fig)
+    Image.open(whole).convert("RGB").quantize(colors=64).save(path, optimize=True)      # a third of the size
+
+
+def montage(out, path):
+    rows = ("all", "clump")
+    fig, axes = plt.subplots(len(rows), len(SHOWN), figsize=(11.0, 6.4), dpi=100, layout="constrained")
+    last = plt.imread(sorted((out / "out").glob("all.*.png"))[-1])[:, :, :3]
+    floor = np.flatnonzero(last.min(axis=(1, 2)) < 0.9).max() + 1       # the row of pixels that the spheres rest on
+    for row, name in zip(axes, rows):
+        images = sorted((out / "out").glob(f"{name}.*.png"))
+        for ax, t in zip(row, SHOWN):
+            ax.imshow(plt.imread(images[round(t / FRAME)])[:floor])
+            ax.set(xticks=[], yticks=[])
+            ax.spines[["top", "left", "right"]].set_visible(False)
+            ax.spines["bottom"].set_linewidth(2.5)          # the floor
+            if name == rows[0]:
+                ax.set_title(f"time {t:.1f}")
+        row[0].set_ylabel(TITLE[name])
+    save(fig, path)
+
+
+def plot_speeds(curves, sums, path):
+    fig, (left, right) = plt.subplots(1, 2, figsize=(11.0, 4.0), dpi=90, layout="constrained")
+    for k, (name, c) in enumerate(curves.items()):
+        left.plot(c[:, 0], c[:, 1], color=f"C{k}", label=TITLE[name])
+        right.plot(c[:, 0], c[:, 2], color=f"C{k}", label=TITLE[name])
+    t, exact, R = sums
+    falling = t < 2.2
+    left.plot(t[falling], exact[falling], "k--", lw=1, label="point forces, at the clumps' places")
+    left.plot(t[falling], formula(200, R[falling]), "k:", lw=1.2, label="point forces, uniform sphere")
+    left.set(xlabel="time", ylabel="settling speed of the cloud / that of a sphere", ylim=(0, 75))
+    left.legend(loc="upper right", fontsize="small", ncols=2)
+    right.set(xlabel="time", ylabel="height of its centre / radius of a sphere", ylim=(0, 105))
+    right.legend(fontsize="small")
+    save(fig, path)
+
+
+def main():
+    arguments = sys.argv[1:]
+    update = "--update" in arguments
+    arguments = [a for a in arguments if a != "--update"]
+    if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
+        sys.exit(__doc__)
+    out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "settling_cloud").resolve()
+    for program in ("lmp", "mpirun"):
+        if not shutil.which(program):
+            sys.exit(f"{program} is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
+    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
+    if os.geteuid() == 0:
+        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
+    shutil.rmtree(out / "out", ignore_errors=True)
+
+    short = {}
+    for ranks in (1, 2):
+        lammps(out, ranks, f"log.settling_cloud.{ranks}", dict(time=0.05, frame=0.05, images="no"))
+        short[ranks] = list(frames(out, "all"))[-1][1]
+    for name in TITLE:
+        lammps(out, 2, f"log.{name}", dict(interactions=name, images="no" if name == "none" else "yes"))
+
+    curves = {name: curve(out, name) for name in TITLE}
+    step, now = np.loadtxt(out / "out" / "all.curve")[-1, :2]
+    whole = list(frames(out, "all"))
+    t = np.array([n for n, _ in whole]) * now / step
+    exact = np.array([point_forces(centres(s)) for _, s in whole])
+    R = np.interp(t, curves["all"][:, 0], curves["all"][:, 3])
+    montage(out, out / "settling_cloud.png")
+    plot_speeds(curves, (t, exact, R), out / "speed.png")
+
+    # The cloud is still speeding up when it meets the floor, so its drag is a little less than its weight. Between two solves
+    # v' is as old as INTERVAL/2 relaxation times on average, which adds so much to the mass.
+    c = curves["all"]
+    k = np.argmax(c[:, 1])
+    rate = np.polyfit(c[k - 8:k - 1, 0], c[k - 8:k - 1, 1], 1)[0]
+    now, speed, _, radius, _ = c[k - 8:k - 1].mean(axis=0)
+    steady = speed / (1.0 - MASS * (1.0 + 0.5 * INTERVAL) * rate)
+    predicted = np.interp(now, t, exact)
+    deepest = max(overlap(s) for _, s in whole)
+    print(f"\n  settling speed in that of a lone sphere, at time {now:.2f}    measured    expected")
+    for what, value, expected in ((TITLE["none"], curves["none"][-1, 1], "1"),
+                                  (TITLE["clump"], curves["clump"][-1, 1], f"{lone_clump():.6f} (one clump, model)"),
+                                  (TITLE["all"], speed, ""),
+                                  (f"  its acceleration of {rate:.2f} taken out", steady,
+                                   f"{predicted:.2f} (point forces where the clumps are)"),
+                                  ("", np.nan, f"{formula(200, radius):.2f} (point forces, uniform, R = {radius:.2f})")):
+        print(f"    {what:50}" + (f"{value:11.6f}" if np.isfinite(value) else 11 * " ") + f"    {expected}")
+    print(f"  largest overlap in radii: of two spheres, in the images, {deepest:.1e}; of sphere and floor {c[:, 4].max():.1e}\n")
+    facts = (
+        ("spheres alone fall with speed 1 within 1e-5", abs(curves["none"][-1, 1] - 1.0) < 1e-5),
+        ("clumps fall with the speed of one clump within 1e-5", abs(curves["clump"][-1, 1] / lone_clump() - 1.0) < 1e-5),
+        (f"the cloud falls with 0.93 to 1.02 of the speed of the point forces: {steady / predicted:.3f}",
+         0.93 < steady / predicted < 1.02),
+        ("no overlap is above 2 % of a radius", max(deepest, c[:, 4].max()) < 0.02),
+        (f"1 and 2 ranks place the spheres within 1e-10 of a radius: {np.abs(short[1] - short[2])[:, 2:5].max():.0e}",
+         np.abs(short[1] - short[2])[:, 2:5].max() < 1e-10),
+    )
+    for fact, holds in facts:
+        print("  " + ("ok      " if holds else "MISSED  ") + fact)
+    print(f"pictures: {out / 'settling_cloud.png'}, {out / 'speed.png'}; images: {out / 'out'}")
+    if update:
+        for name in ("settling_cloud.png", "speed.png", "log.settling_cloud.1", "log.settling_cloud.2"):
+            shutil.copy(out / name, HERE)
+    return 0 if all(holds for _, holds in facts) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
