@@ -1,0 +1,206 @@
+"""A run that is broken and continued, in the same input or from a restart file, is the unbroken run: to 1e-10 of the scene's size."""
+import numpy as np
+import pytest
+
+import model
+from system import LammpsError, Spheres, chain, dump_lines, input_lines, largest_difference, lmp, read_dump
+
+ETA, A = 1.3, 0.7
+BOX = [(-20.0, 20.0)] * 3
+LIMIT = 1e-10
+COLUMNS = "x y z vx vy vz f_drag[1] f_drag[2] f_drag[3] f_drag[4] f_drag[5] f_drag[6]"
+
+MODES = {"all": "cut_off_distance inf", "list": "cut_off_distance 15", "clump": "clumps_only yes"}
+SOLVERS = {"exact": "algorithm 2 relative_tolerance 1e-12", "loose": "algorithm 2 relative_tolerance 1e-2"}
+
+
+def scene(kind):
+    """free: seven spheres of two molecules that integrate freely. rigid: two clumps."""
+    rng = np.random.default_rng(6)
+    x = np.vstack([chain(4, 1.5, axis=0).x, chain(3, 1.3, axis=1).x + (0.5, 2.5, 2.0)])
+    if kind == "free":
+        return Spheres(x, rng.uniform(0.5, 0.9, 7), 0.3 * rng.normal(size=(7, 3)), [1] * 4 + [2] * 3)
+    v = np.zeros((7, 3))
+    for part, w in ((slice(0, 4), (0.3, 0.2, 0.5)), (slice(4, 7), (-0.2, 0.4, 0.1))):
+        v[part] = np.cross(w, x[part] - x[part].mean(axis=0)) + (0.1, 0.2, -0.3)
+    return Spheres(x, A, v, [1] * 4 + [2] * 3)
+
+
+INTEGRATORS = {"free": "fix move all nve/sphere", "rigid": "fix move all rigid/small molecule"}
+
+
+def style(mode, n, solver, add_force="no"):
+    return f"{MODES[mode]} visc {ETA} update_every {n} {SOLVERS[solver]} add_force {add_force}"
+
+
+def rest(kind):
+    """What a restart file does not hold. Rigid bodies come last: at the start of a run they see the forces of the fixes before them."""
+    return ["fix drag all stokes_dynamics", "fix pull all gravity 1.5 vector 0.3 0 -1", INTEGRATORS[kind], "thermo_style custom step"]
+
+
+def begin(kind, words, data, newton="on"):
+    return input_lines(scene(kind), words, data, boundary="f f f", box=BOX, fix=False, dt=0.01, comm="comm_modify cutoff 16",
+                       before_pair="neigh_modify every 1 delay 0", newton=newton) + rest(kind)
+
+
+def proceed(kind, restart, newton="on"):
+    return [f"newton {newton}", "plugin load stokesdynplugin.so", f"read_restart {restart}", "comm_modify cutoff 16",
+            "neigh_modify every 1 delay 0", "timestep 0.01"] + rest(kind)
+
+
+def last(sim):
+    return np.hstack([sim.x, sim.v, sim.fix_rows()[:, :6]])
+
+
+@pytest.fixture(scope="module")
+def unbroken(tmp_path_factory):
+    """State after 100 steps in one run, for each kind of scene and style."""
+    known = {}
+
+    def get(kind, words):
+        if (kind, words) not in known:
+            folder = tmp_path_factory.mktemp("unbroken")
+            lines = begin(kind, words, folder / "data") + dump_lines(folder / "dump", every=100, columns=COLUMNS) + ["run 100"]
+            lmp(folder, lines)
+            known[kind, words] = read_dump(folder / "dump")[-1][1]
+        return known[kind, words]
+
+    return get
+
+
+CASES = [(kind, mode, n, solver, stop) for kind in INTEGRATORS for mode in MODES for n in (1, 7) for solver in SOLVERS for stop in (50, 49)
+         if (n, stop) != (1, 49)]
+
+
+def label(case):
+    return "-".join(map(str, case))
+
+
+@pytest.mark.parametrize("case", CASES, ids=label)
+def test_two_runs_are_one(simulation, unbroken, tmp_path, case):
+    kind, mode, n, solver, stop = case
+    words = style(mode, n, solver)
+    sim = simulation().commands(begin(kind, words, tmp_path / "data")).run(stop).run(100 - stop)
+    assert np.abs(last(sim) - unbroken(kind, words)).max() < LIMIT
+
+
+@pytest.mark.parametrize("case", CASES, ids=label)
+def test_restart_file_in_a_new_instance_continues(simulation, unbroken, tmp_path, case):
+    kind, mode, n, solver, stop = case
+    words = style(mode, n, solver)
+    simulation().commands(begin(kind, words, tmp_path / "data")).run(stop).command(f"write_restart {tmp_path}/mid")
+    sim = simulation().commands(proceed(kind, tmp_path / "mid")).run(100 - stop)     # no pair_style line
+    assert np.abs(last(sim) - unbroken(kind, words)).max() < LIMIT
+
+
+@pytest.mark.parametrize("kind", INTEGRATORS)
+@pytest.mark.parametrize("n", [1, 7])
+def test_restart_file_written_within_a_run_continues(simulation, unbroken, tmp_path, kind, n):
+    words = style("all", n, "loose")
+    simulation().commands(begin(kind, words, tmp_path / "data")).commands(f"restart 50 {tmp_path}/mid").run(100)
+    sim = simulation().commands(proceed(kind, tmp_path / "mid.50")).run(50)
+    assert np.abs(last(sim) - unbroken(kind, words)).max() < LIMIT
+
+
+def test_force_inside_the_pair_style_continues(simulation, tmp_path):
+    lines = begin("free", style("all", 7, "exact", "yes"), tmp_path / "data")
+    whole = last(simulation().commands(lines).run(100))
+    simulation().commands(lines).run(50).command(f"write_restart {tmp_path}/mid")
+    assert np.abs(last(simulation().commands(proceed("free", tmp_path / "mid")).run(50)) - whole).max() < LIMIT
+
+
+@pytest.mark.parametrize("kind", INTEGRATORS)
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("write,read", [(2, 1), (1, 2)])
+def test_restart_on_another_number_of_ranks_continues(unbroken, tmp_path, kind, mode, write, read):
+    words = style(mode, 7, "exact")
+    lmp(tmp_path, begin(kind, words, tmp_path / "data") + ["run 50", f"write_restart {tmp_path}/mid"], ranks=write)
+    lmp(tmp_path, proceed(kind, tmp_path / "mid") + dump_lines(tmp_path / "dump", every=100, columns=COLUMNS) + ["run 50"], ranks=read)
+    assert np.abs(read_dump(tmp_path / "dump")[-1][1] - unbroken(kind, words)).max() < LIMIT
+
+
+def test_restart_within_hybrid_overlay_continues(simulation, tmp_path):
+    """Contacts without damping or friction: those follow the velocity, and LAMMPS does not continue them exactly. LAMMPS wants the
+    pair_coeff lines of a hybrid style again."""
+    gran = "gran/hooke 500 NULL 0 NULL 0 0"
+    coefficients = ["pair_coeff * * gran/hooke", "pair_coeff * * stokes_dynamics"]
+    lines = input_lines(scene("free"), [f"pair_style hybrid/overlay {gran} stokes_dynamics {style('all', 7, 'exact')}"] + coefficients, tmp_path / "data", box=BOX, newton="off", fix=False, dt=0.01,
+                        comm="comm_modify vel yes") + rest("free")
+    whole = last(simulation().commands(lines).run(100))
+    simulation().commands(lines).run(50).command(f"write_restart {tmp_path}/mid")
+    again = ["newton off", "plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "comm_modify vel yes", "timestep 0.01"]
+    again += coefficients + rest("free")
+    assert np.abs(last(simulation().commands(again).run(50)) - whole).max() < LIMIT
+
+
+def test_restart_keeps_every_keyword(simulation, tmp_path):
+    words = f"cut_off_distance 9.5 visc {ETA} update_every 3 region part group some relative_tolerance 1e-9 max_iter 77 algorithm 2 " \
+            "fluid_velocity 0.1 v_u 0.3 tensor oseen"
+    extra = ["region part block INF INF INF INF INF 1.5", "variable u equal 0.01*step"]
+    spheres = Spheres(chain(5, 3.0).x, A, (0.1, 0.2, 0.3))
+    options = dict(boundary="f f f", box=BOX, fix=False)
+    sim = simulation(spheres, words, before_pair="\n".join(extra + ["group some id 1 2 3"]), **options)
+    sim.commands("fix drag all stokes_dynamics").run(5).command(f"write_restart {tmp_path}/mid")
+    expected, vector = sim.drag, sim.fix_vector()
+    sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid"] + extra + ["fix drag all stokes_dynamics"]).run()
+    assert largest_difference(sim.drag, expected) < 1e-9
+    assert sim.fix_vector()[3] == vector[3]
+
+
+def test_restart_keeps_the_viscosity_that_fix_adapt_has_set(simulation, tmp_path):
+    sim = simulation().commands(begin("free", style("all", 1, "exact"), tmp_path / "data"))
+    sim.commands(["variable eta equal 1.3+0.02*step", "fix vary all adapt 1 pair stokes_dynamics visc * * v_eta"]).run(20)
+    sim.command(f"write_restart {tmp_path}/mid")
+    before = sim.x, sim.v
+    sim = simulation().commands(proceed("free", tmp_path / "mid"))
+    sim.command("velocity all set 0.1 0.2 -0.3")
+    sim.run()
+    spheres = Spheres(before[0], scene("free").a, (0.1, 0.2, -0.3))
+    assert largest_difference(sim.drag, model.forces(spheres, 1.3 + 0.02 * 20)) < 1e-9
+
+
+def test_counts_of_solves_go_on_after_a_restart(simulation, tmp_path):
+    sim = simulation().commands(begin("free", style("all", 7, "exact"), tmp_path / "data")).run(50)
+    solves = sim.solves
+    sim.command(f"write_restart {tmp_path}/mid")
+    sim = simulation().commands(proceed("free", tmp_path / "mid")).run()
+    assert sim.solves == solves == 8                      # steps 0, 7, ... 49
+
+
+@pytest.mark.parametrize("n", [1, 7])
+def test_same_pair_style_line_after_the_restart_continues(simulation, unbroken, tmp_path, n):
+    """Many input scripts give the pair_style line whether they restart or not."""
+    words = style("all", n, "exact")
+    simulation().commands(begin("free", words, tmp_path / "data")).run(50).command(f"write_restart {tmp_path}/mid")
+    lines = proceed("free", tmp_path / "mid")
+    sim = simulation().commands(lines + [f"pair_style stokes_dynamics {words}", "pair_coeff * *"]).run(50)
+    assert np.abs(last(sim) - unbroken("free", words)).max() < LIMIT
+
+
+@pytest.mark.parametrize("changed", ["cut_off_distance inf visc 2.6 algorithm 2", "clumps_only yes visc 1.3 algorithm 2",
+                                     "cut_off_distance 0.8 visc 1.3 algorithm 2", "cut_off_distance inf visc 1.3 algorithm 2 group some"])
+def test_other_pair_style_line_after_the_restart_is_in_the_first_force(simulation, tmp_path, changed):
+    simulation().commands(begin("free", style("all", 7, "exact"), tmp_path / "data")).commands("group some id 1 2 3").run(50).command(
+        f"write_restart {tmp_path}/mid")
+    new = [f"pair_style stokes_dynamics {changed} relative_tolerance 1e-12", "pair_coeff * *"]
+    sim = simulation().commands(proceed("free", tmp_path / "mid") + new).run()
+    first = sim.drag
+    sim.commands(new).run()                               # in the same instance new settings forget everything
+    assert largest_difference(first, sim.drag) < 1e-9
+
+
+def test_restart_without_the_plugin_is_refused_by_lammps(simulation, tmp_path):
+    simulation().commands(begin("free", style("all", 1, "exact"), tmp_path / "data")).run(1).command(f"write_restart {tmp_path}/mid")
+    with pytest.raises(LammpsError, match="stokes_dynamics"):
+        simulation().command(f"read_restart {tmp_path}/mid")
+
+
+def test_write_data_and_read_data(simulation, tmp_path):
+    sim = simulation().commands(begin("free", style("all", 1, "exact"), tmp_path / "data")).run(20)
+    sim.commands(f"mass 1 1.0\nwrite_data {tmp_path}/out.data")      # atom_style hybrid writes masses of types, too
+    sim.commands("velocity all set 0.1 0.2 -0.3").run()
+    expected = sim.drag
+    lines = begin("free", style("all", 1, "exact"), tmp_path / "data")
+    lines = [f"read_data {tmp_path}/out.data" if l.startswith("read_data") else l for l in lines]
+    sim = simulation().commands(lines).commands("velocity all set 0.1 0.2 -0.3").run()
+    assert largest_difference(sim.drag, expected) < 1e-9
