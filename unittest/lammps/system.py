@@ -4,6 +4,7 @@ A Simulation is a LAMMPS instance with the spheres and pair_style stokes_dynamic
 mpirun, where the answer comes back as a dump sorted by atom ID."""
 import ctypes
 import os
+import re
 import subprocess
 
 import numpy as np
@@ -217,7 +218,9 @@ def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
         out.write("\n".join(lines.splitlines() if isinstance(lines, str) else lines) + "\n")
     words = ["lmp", "-in", script, "-log", log, "-nocite"]
     if ranks > 1:
-        words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + words
+        # The ranks leave one after the other, and mpirun kills the rest when the first has failed: rank 0 perhaps before its log is
+        # on disk. So the shell in between always succeeds and tells the exit code.
+        words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), "sh", "-c", '"$@" || echo "exit code $?"', "sh"] + words
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=str(folder), env=environment(),
                                start_new_session=True)
     try:
@@ -226,10 +229,11 @@ def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
         os.killpg(process.pid, 9)
         process.communicate()
         raise AssertionError(f"lmp on {ranks} ranks did not end within {timeout} s")
+    code = process.returncode or int((re.findall("exit code ([0-9]+)", text) or [0])[0])
     if succeed:
-        assert process.returncode == 0 and "ERROR" not in text, text[-3000:]
+        assert code == 0 and "ERROR" not in text, text[-3000:]
     with open(log) as f:
-        return Finished(process.returncode, text, f.read())
+        return Finished(code, text, f.read())
 
 
 def dump_lines(path, every=1, columns="x y z vx vy vz f_drag[1] f_drag[2] f_drag[3]", name="out"):

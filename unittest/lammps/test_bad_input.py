@@ -1,0 +1,263 @@
+"""Bad input: each case has its own error, which names the command, the keyword and the value."""
+import re
+
+import numpy as np
+import pytest
+
+import model
+from system import LammpsError, Spheres, input_lines, largest_difference, lmp
+
+ETA, A = 1.3, 0.7
+BOX = [(-9.0, 9.0)] * 3
+PAIR = "Pair style stokes_dynamics"
+FIX = "Fix stokes_dynamics"
+
+
+def three():
+    return Spheres([(-1.5, 0, 0), (0.4, 0.2, 0), (1.9, 0.3, 0.2)], A, [(0.3, 0, 0.1), (0, -0.2, 0.4), (0.1, 0.1, -0.5)], molecule=1)
+
+
+# keywords and values of the pair_style command -> words of the error, all of which must be there
+AT_THE_COMMAND = [
+    ("cut_off_distance inf", ["keyword visc is required"]),
+    ("", ["keyword visc is required"]),
+    ("visc 1.3", ["keyword cut_off_distance is required", "inf", "unless clumps_only yes"]),
+    ("visc 1.3 clumps_only no", ["keyword cut_off_distance is required"]),
+    ("cut_off_distance inf visc -1.5", ["keyword visc: '-1.5' must be > 0"]),
+    ("cut_off_distance inf visc 0", ["keyword visc: '0' must be > 0"]),
+    ("cut_off_distance inf visc nan", ["keyword visc: 'nan' is not a finite number"]),
+    ("cut_off_distance inf visc inf", ["keyword visc: 'inf' is not a finite number"]),
+    ("cut_off_distance inf visc water", ["keyword visc: 'water' is not a number"]),
+    ("cut_off_distance inf visc 1.3x", ["keyword visc: '1.3x' is not a number"]),
+    ("cut_off_distance inf visc v_", ["keyword visc", "'v_'"]),
+    ("cut_off_distance -2 visc 1.3", ["keyword cut_off_distance: '-2' must be > 0"]),
+    ("cut_off_distance 0 visc 1.3", ["keyword cut_off_distance: '0' must be > 0"]),
+    ("cut_off_distance nan visc 1.3", ["keyword cut_off_distance: 'nan' is not a finite number"]),
+    ("cut_off_distance far visc 1.3", ["keyword cut_off_distance: 'far' is not a number"]),
+    ("cut_off_distance -inf visc 1.3", ["keyword cut_off_distance: '-inf' is not a finite number"]),
+    ("cut_off_distance inf visc 1.3 relative_tolerance 0", ["keyword relative_tolerance: '0' must be > 0"]),
+    ("cut_off_distance inf visc 1.3 relative_tolerance -1e-3", ["keyword relative_tolerance: '-1e-3' must be > 0"]),
+    ("cut_off_distance inf visc 1.3 relative_tolerance nan", ["keyword relative_tolerance: 'nan' is not a finite number"]),
+    ("cut_off_distance inf visc 1.3 update_every 0", ["keyword update_every: '0' must be >= 1"]),
+    ("cut_off_distance inf visc 1.3 update_every -3", ["keyword update_every: '-3' must be >= 1"]),
+    ("cut_off_distance inf visc 1.3 update_every 2.5", ["keyword update_every: '2.5' is not an integer"]),
+    ("cut_off_distance inf visc 1.3 update_every 99999999999", ["keyword update_every: '99999999999' must be <="]),
+    ("cut_off_distance inf visc 1.3 max_iter 0", ["keyword max_iter: '0' must be >= 1"]),
+    ("cut_off_distance inf visc 1.3 max_iter -1", ["keyword max_iter: '-1' must be >= 1"]),
+    ("cut_off_distance inf visc 1.3 max_iter many", ["keyword max_iter: 'many' is not an integer"]),
+    ("cut_off_distance inf visc 1.3 algorithm 3", ["keyword algorithm: '3' is none of: 1, 2"]),
+    ("cut_off_distance inf visc 1.3 algorithm 0", ["keyword algorithm: '0' is none of: 1, 2"]),
+    ("cut_off_distance inf visc 1.3 tensor stokeslet", ["keyword tensor: 'stokeslet' is none of: rpy, oseen"]),
+    ("cut_off_distance inf visc 1.3 clumps_only maybe", ["keyword clumps_only: 'maybe' is none of: no, yes"]),
+    ("cut_off_distance inf visc 1.3 add_force on", ["keyword add_force: 'on' is none of: no, yes"]),
+    ("cut_off_distance inf visc 1.3 viscosity 2", ["unknown keyword 'viscosity'"]),
+    ("cut_off_distance inf visc 1.3 2.0", ["unknown keyword '2.0'"]),
+    ("cut_off_distance inf visc 1.3 fluid_velocity 1 2", ["keyword fluid_velocity: value missing"]),
+    ("cut_off_distance inf visc 1.3 fluid_velocity 1 nan 3", ["keyword fluid_velocity: 'nan' is not a finite number"]),
+    ("cut_off_distance inf visc 1.3 fluid_velocity 1 up 3", ["keyword fluid_velocity: 'up' is not a number"]),
+]
+AT_THE_COMMAND += [(f"clumps_only yes visc 1.3 {keyword}", [f"keyword {keyword}: value missing"])
+                   for keyword in ("cut_off_distance", "update_every", "clumps_only", "visc", "region", "group", "add_force", "relative_tolerance",
+                                   "max_iter", "algorithm", "fluid_velocity", "tensor")]
+
+
+@pytest.mark.parametrize("words,expected", AT_THE_COMMAND, ids=[words or "nothing" for words, _ in AT_THE_COMMAND])
+def test_pair_style_command(simulation, words, expected):
+    with pytest.raises(LammpsError) as error:
+        simulation(three(), words, box=BOX)
+    for text in [PAIR] + expected:
+        assert text in str(error.value)
+
+
+@pytest.mark.parametrize("keyword,value", [("rigid_clumps", "yes"), ("shell", "12"), ("taper", "wendland"), ("precondition", "clump"),
+                                           ("warm_start", "yes")])
+def test_keywords_that_this_version_lacks_are_refused_and_not_ignored(simulation, keyword, value):
+    with pytest.raises(LammpsError, match=f"{PAIR}: keyword {keyword}: not available in this version"):
+        simulation(three(), f"cut_off_distance inf visc 1.3 {keyword} {value}", box=BOX)
+
+
+# seen when a run starts: (words, input lines before, words of the error)
+AT_THE_RUN = [
+    ("region nowhere", "", ["keyword region: region 'nowhere' does not exist"]),
+    ("group nobody", "", ["keyword group: group 'nobody' does not exist"]),
+    ("visc v_none", "", ["keyword visc: variable 'none' does not exist"]),
+    ("visc v_words", "variable words string abc", ["keyword visc: variable 'words' is neither equal nor atom style"]),
+    ("visc v_numbers", "variable numbers index 1 2 3", ["keyword visc: variable 'numbers' is neither equal nor atom style"]),
+    ("fluid_velocity 0 v_none 0", "", ["keyword fluid_velocity: variable 'none' does not exist"]),
+    ("fluid_velocity 0 0 v_words", "variable words string abc", ["keyword fluid_velocity: variable 'words' is neither equal nor atom style"]),
+    ("visc v_eta", "variable eta equal -2.5", ["step 0, atom 1", "keyword visc", "-2.5"]),
+    ("visc v_eta", "variable eta atom 1.3-2*(id==2)", ["step 0, atom 2", "keyword visc", "-0.7"]),
+    ("visc v_eta", "variable eta atom 0*id", ["step 0, atom 1", "keyword visc", "must be > 0"]),
+    ("visc v_eta", "variable eta equal 0*exp(999)", ["step 0, atom 1", "keyword visc"]),
+    ("fluid_velocity 0 v_u 0", "variable u equal 0*exp(999)", ["step 0, atom 1", "keyword fluid_velocity", "not a finite number"]),
+    ("fluid_velocity 0 v_u 0", "variable u atom exp(999*(id==3))", ["step 0, atom 3", "keyword fluid_velocity", "not a finite number"]),
+    ("", "set atom 2 diameter 0", ["step 0, atom 2", "radius 0 must be > 0"]),
+]
+
+
+@pytest.mark.parametrize("words,before,expected", AT_THE_RUN, ids=[f"{w or 'radius'}: {b}" for w, b, _ in AT_THE_RUN])
+def test_start_of_a_run(simulation, words, before, expected):
+    sim = simulation(three(), f"cut_off_distance inf visc 1.3 algorithm 2 {words}", box=BOX, before_pair=before)
+    with pytest.raises(LammpsError) as error:
+        sim.run()
+    for text in [PAIR] + expected:
+        assert text in str(error.value)
+
+
+@pytest.mark.parametrize("radius,seen", [(-0.4, "-0.4"), (float("nan"), "nan")])
+def test_radius_that_is_no_positive_number(simulation, radius, seen):
+    sim = simulation(three(), "cut_off_distance inf visc 1.3 algorithm 2", box=BOX)
+    sim.set("radius", 3, radius)
+    with pytest.raises(LammpsError) as error:
+        sim.run()
+    for text in (PAIR, "atom 3", f"radius {seen} must be > 0"):
+        assert text in str(error.value)
+
+
+@pytest.mark.parametrize("mode", ["cut_off_distance inf", "cut_off_distance 5", "clumps_only yes"])
+def test_infinite_radius(tmp_path, mode):
+    """In a process of its own: it is the range of the ghosts, too, and LAMMPS does not survive an infinite one."""
+    lines = input_lines(three(), f"{mode} visc 1.3 algorithm 2", tmp_path / "data", box=BOX,
+                        before_pair="variable r atom exp(999)\ngroup one id 3\nset group one diameter v_r")
+    ended = lmp(tmp_path, lines + ["run 0"], succeed=False)
+    assert ended.code != 0
+    assert PAIR in ended.log and "atom 3" in ended.log and "radius inf must be > 0" in ended.log
+
+
+def test_atom_style_without_radius(simulation):
+    sim = simulation().commands(["atom_style molecular", "boundary f f f", "plugin load stokesdynplugin.so", "region b block -9 9 -9 9 -9 9",
+                                 "create_box 1 b", "create_atoms 1 single 0 0 0", "mass 1 1.0",
+                                 "pair_style stokes_dynamics cut_off_distance inf visc 1.3", "pair_coeff * *"])
+    with pytest.raises(LammpsError, match=f"{PAIR} requires an atom style with radius"):
+        sim.run()
+
+
+def test_clumps_only_without_molecule_ids(simulation):
+    sim = simulation().commands(["atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region b block -9 9 -9 9 -9 9",
+                                 "create_box 1 b", "create_atoms 1 single 0 0 0",
+                                 "pair_style stokes_dynamics clumps_only yes visc 1.3", "pair_coeff * *"])
+    with pytest.raises(LammpsError, match=f"{PAIR}: keyword clumps_only: yes requires molecule IDs"):
+        sim.run()
+
+
+def test_spheres_without_ids(simulation):
+    sim = simulation().commands(["atom_style sphere", "atom_modify id no", "boundary f f f", "plugin load stokesdynplugin.so",
+                                 "region b block -9 9 -9 9 -9 9", "create_box 1 b", "create_atoms 1 single 0 0 0",
+                                 "pair_style stokes_dynamics cut_off_distance inf visc 1.3", "pair_coeff * *"])
+    with pytest.raises(LammpsError, match=f"{PAIR} requires atom IDs"):
+        sim.run()
+
+
+@pytest.mark.parametrize("line,text", [("pair_coeff 1 1", "Incorrect args for pair coefficients"),          # LAMMPS's own check
+                                       ("pair_coeff * * 1.0", f"{PAIR}: the only form of pair_coeff is: pair_coeff")])
+def test_pair_coeff_has_one_form(simulation, line, text):
+    sim = simulation(three(), ["pair_style stokes_dynamics cut_off_distance inf visc 1.3"], box=BOX, fix=False)
+    with pytest.raises(LammpsError, match=text):
+        sim.command(line)
+
+
+def test_pair_coeff_is_needed(simulation):
+    sim = simulation(three(), ["pair_style stokes_dynamics cut_off_distance inf visc 1.3"], box=BOX, fix=False)
+    with pytest.raises(LammpsError):
+        sim.run()
+
+
+def test_twice_in_a_hybrid_style(simulation):
+    words = "stokes_dynamics cut_off_distance inf visc 1.3"
+    sim = simulation(three(), [f"pair_style hybrid/overlay {words} {words}", "pair_coeff * * stokes_dynamics 1", "pair_coeff * * stokes_dynamics 2"],
+                     box=BOX, fix=False)
+    with pytest.raises(LammpsError, match="may appear only once in a hybrid pair style"):
+        sim.run()
+
+
+# --- the fix -----------------------------------------------------------------------------------------------------------
+
+AT_THE_FIX = [("apply", ["keyword apply: value missing"]), ("apply maybe", ["keyword apply: 'maybe' is none of: no, yes"]),
+              ("report yes", ["unknown keyword 'report'"])]
+
+
+@pytest.mark.parametrize("words,expected", AT_THE_FIX, ids=[w for w, _ in AT_THE_FIX])
+def test_fix_command(simulation, words, expected):
+    sim = simulation(three(), "cut_off_distance inf visc 1.3", box=BOX, fix=False)
+    with pytest.raises(LammpsError) as error:
+        sim.command(f"fix drag all stokes_dynamics {words}")
+    for text in [FIX] + expected:
+        assert text in str(error.value)
+
+
+def test_force_added_by_pair_style_and_fix(simulation):
+    sim = simulation(three(), "cut_off_distance inf visc 1.3 add_force yes", box=BOX, fix=False).commands("fix drag all stokes_dynamics apply yes")
+    with pytest.raises(LammpsError) as error:
+        sim.run()
+    for text in (FIX, "keyword apply: 'yes'", "add_force yes", "twice"):
+        assert text in str(error.value)
+
+
+@pytest.mark.parametrize("one,other", [("", ""), ("apply yes", ""), ("apply yes", "apply yes")])
+def test_two_fixes_that_apply(simulation, one, other):
+    sim = simulation(three(), "cut_off_distance inf visc 1.3", box=BOX, fix=False)
+    sim.commands([f"fix first all stokes_dynamics {one}", f"fix second all stokes_dynamics {other}"])
+    with pytest.raises(LammpsError) as error:
+        sim.run()
+    for text in (FIX, "first", "second", "twice"):
+        assert text in str(error.value)
+
+
+def test_two_fixes_of_which_one_applies_are_no_error(simulation):
+    sim = simulation(three(), "cut_off_distance inf visc 1.3 algorithm 2 relative_tolerance 1e-12", box=BOX)
+    sim.commands("fix second all stokes_dynamics apply no").run()
+    assert largest_difference(sim.f, model.forces(three(), 1.3)) < 1e-10
+
+
+# --- numbers that go bad during a run ------------------------------------------------------------------------------------
+
+MODES = {"all": "cut_off_distance inf", "list": "cut_off_distance 5", "clump": "clumps_only yes"}
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("what,text", [("v", "its velocity is not a finite number"), ("x", "its position is not a finite number")])
+@pytest.mark.parametrize("value", [float("nan"), float("inf")], ids=["nan", "inf"])
+def test_position_or_velocity_gone_bad_between_runs(simulation, mode, what, text, value):
+    sim = simulation(three(), f"{MODES[mode]} visc 1.3 algorithm 2", box=BOX, comm="comm_modify cutoff 6", dt=1e-3).run(2)
+    sim.set(what, 2, [0.1, value, 0.2])
+    with pytest.raises(LammpsError) as error:
+        sim.run(1)
+    # LAMMPS may find a bad position first, when it sorts atoms into the box
+    assert text in str(error.value) and "atom 2" in str(error.value) or (what == "x" and "Non-numeric" in str(error.value))
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_velocity_that_becomes_nan_within_a_run_stops_it_on_all_ranks(tmp_path, mode, ranks):
+    lines = input_lines(three(), f"{MODES[mode]} visc 1.3 algorithm 2", tmp_path / "data", box=BOX, comm="comm_modify cutoff 6", dt=1e-3)
+    lines += ["fix move all nve/sphere", "variable bad atom 0*exp(999*(id==2)*(step>5))", "fix kick all addforce v_bad 0 0", "run 20"]
+    ended = lmp(tmp_path, lines, ranks=ranks, timeout=30, succeed=False)
+    assert ended.code != 0
+    # velocity and, through it, position of the same step
+    assert re.search(f"{PAIR}: step [67], atom 2: its (position|velocity) is not a finite number", ended.log)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_fluid_velocity_that_becomes_nan_on_one_rank_stops_all(tmp_path, mode):
+    lines = input_lines(three(), f"{MODES[mode]} visc 1.3 algorithm 2 fluid_velocity v_u 0 0", tmp_path / "data", box=BOX,
+                        comm="comm_modify cutoff 6", before_pair="variable u atom 0*exp(999*(id==3)*(step>=5))", dt=1e-3)
+    ended = lmp(tmp_path, lines + ["fix move all nve/sphere", "run 20"], ranks=2, timeout=30, succeed=False)
+    assert ended.code != 0
+    assert "step 5, atom 3: keyword fluid_velocity: the fluid velocity there is not a finite number" in ended.log
+
+
+@pytest.mark.parametrize("words,text", [("cut_off_distance inf visc 1.3", "diverged"),
+                                        ("cut_off_distance 1.6 visc 1.3 algorithm 2", "not positive definite")])
+def test_failed_solve_stops_all_ranks(tmp_path, words, text):
+    x = np.zeros((10, 3))
+    x[:, 2] = 1.4 * np.arange(10) - 6
+    lines = input_lines(Spheres(x, A, (0, 0, 0.3)), words, tmp_path / "data", box=BOX)
+    ended = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=30, succeed=False)
+    assert ended.code != 0 and f"{PAIR}: step 0: algorithm" in ended.log and text in ended.log
+
+
+@pytest.mark.parametrize("words", ["cut_off_distance inf visc -1", "cut_off_distance inf visc 1.3 algorithm 3", "visc 1.3"])
+def test_bad_command_stops_all_ranks(tmp_path, words):
+    lines = input_lines(three(), words, tmp_path / "data", box=BOX)
+    ended = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=30, succeed=False)
+    assert ended.code != 0 and f"ERROR: {PAIR}: keyword" in ended.log

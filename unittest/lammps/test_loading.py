@@ -1,0 +1,50 @@
+"""The shared object itself: what it exports, and which LAMMPS it enters."""
+import glob
+import os
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from system import lmp
+
+BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
+
+
+def test_only_the_entry_point_is_exported():
+    listing = subprocess.run(["nm", "-D", "--defined-only", os.path.join(BUILD, "stokesdynplugin.so")], stdout=subprocess.PIPE, check=True)
+    assert [line.split()[-1] for line in listing.stdout.decode().splitlines()] == ["lammpsplugin_init"]
+
+
+def test_plugin_is_found_by_name_and_registers_its_styles(tmp_path):
+    text = lmp(tmp_path, ["plugin load stokesdynplugin.so", "plugin list"]).text
+    for style in ("pair style plugin stokes_dynamics", "fix style plugin stokes_dynamics"):
+        assert style in text
+
+
+def test_loading_twice_is_harmless(tmp_path):
+    text = lmp(tmp_path, ["plugin load stokesdynplugin.so", "plugin load stokesdynplugin.so", "plugin list"]).text
+    assert len(re.findall(r"pair style plugin stokes_dynamics\n", text)) == 1
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(tmp_path, ranks):
+    ended = lmp(tmp_path, ["plugin load wrongversionplugin.so", "plugin list"], ranks=ranks, succeed=False)
+    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, this is LAMMPS \d{8}", ended.text)) == 1
+    assert "LAMMPS_SOURCE_DIR" in ended.text             # the way out
+    assert "style plugin" not in ended.text
+
+
+def test_another_lammps_is_refused_and_the_right_plugin_still_loads(tmp_path):
+    text = lmp(tmp_path, ["plugin load wrongversionplugin.so", "plugin load stokesdynplugin.so", "plugin list"], succeed=False).text
+    assert "pair style plugin stokes_dynamics" in text
+
+
+def test_core_knows_neither_lammps_nor_mpi():
+    """Undefined symbols of the core's archive are those of the C library."""
+    archive = glob.glob(os.path.join(BUILD, "libstokesdyn_core.a"))
+    assert archive and shutil.which("nm")
+    listing = subprocess.run(["nm", "-u"] + archive, stdout=subprocess.PIPE, check=True).stdout.decode()
+    names = {line.split()[-1] for line in listing.splitlines() if " U " in line}
+    assert not [n for n in names if re.match(r"(P?MPI_|ompi_|_Z|lammps|printf|fprintf|puts|exit$|abort$)", n)]
