@@ -40,8 +40,32 @@ void FixStokesDynamicsState::forget()
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
 }
 
+void FixStokesDynamicsState::settings_are(uint64_t hash)
+{
+  if (hash != global.settings) forget();
+  global.settings = hash;
+}
+
+void FixStokesDynamicsState::present_box(double *box) const
+{
+  const double tilt[3] = {domain->yz, domain->xz, domain->xy};
+  for (int d = 0; d < 3; d++) {
+    box[d] = domain->periodicity[d] ? domain->prd[d] : 0.0;
+    box[3 + d] = domain->triclinic ? tilt[d] : 0.0;
+  }
+}
+
+bool FixStokesDynamicsState::box_left_as_is() const
+{
+  double box[6];
+  present_box(box);
+  return memcmp(box, global.box, sizeof(box)) == 0;
+}
+
 void FixStokesDynamicsState::record(int i)
 {
+  state[i][LEFT_RADIUS] = atom->radius[i];
+  state[i][LEFT_MOLECULE] = atom->molecule ? atom->molecule[i] : 0;
   domain->unmap(atom->x[i], atom->image[i], state[i] + LEFT_X);
   memcpy(state[i] + LEFT_V, atom->v[i], 3 * sizeof(double));
   if (columns == WITH_ROTATION) memcpy(state[i] + LEFT_OMEGA, atom->omega[i], 3 * sizeof(double));
@@ -50,6 +74,7 @@ void FixStokesDynamicsState::record(int i)
 void FixStokesDynamicsState::post_run()
 {
   for (int i = 0; i < atom->nlocal; i++) record(i);
+  present_box(global.box);
 }
 
 /* Within rounding: rigid bodies set the velocities of their atoms anew. */
@@ -63,13 +88,19 @@ static bool same_vector(const double *now, const double *then)
   return difference <= 1e-12 * size;
 }
 
-bool FixStokesDynamicsState::left_as_is(int i) const
+bool FixStokesDynamicsState::placed_as_left(int i) const
 {
   double x[3];
   domain->unmap(atom->x[i], atom->image[i], x);
   for (int k = 0; k < 3; k++)    // wrapping into the box leaves rounding
     if (!(fabs(x[k] - state[i][LEFT_X + k]) <= 1e-9 * atom->radius[i])) return false;
-  return state[i][SOLVED] != 0.0 && same_vector(atom->v[i], state[i] + LEFT_V) &&
+  return atom->radius[i] == state[i][LEFT_RADIUS] &&
+      (!atom->molecule || atom->molecule[i] == state[i][LEFT_MOLECULE]);
+}
+
+bool FixStokesDynamicsState::moving_as_left(int i) const
+{
+  return same_vector(atom->v[i], state[i] + LEFT_V) &&
       (columns == TRANSLATION_ONLY || same_vector(atom->omega[i], state[i] + LEFT_OMEGA));
 }
 
@@ -122,6 +153,7 @@ void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
 
 void FixStokesDynamicsState::write_restart(FILE *fp)
 {
+  present_box(global.box);
   if (comm->me != 0) return;
   int size = sizeof(Global);
   fwrite(&size, sizeof(int), 1, fp);
@@ -130,7 +162,9 @@ void FixStokesDynamicsState::write_restart(FILE *fp)
 
 void FixStokesDynamicsState::restart(char *buf)
 {
-  memcpy(&global, buf, sizeof(Global));
+  uint64_t size;
+  memcpy(&size, buf, sizeof(size));
+  if (size == sizeof(Global)) memcpy(&global, buf, sizeof(Global));
 }
 
 double FixStokesDynamicsState::memory_usage()

@@ -57,7 +57,6 @@ void PairStokesDynamics::settings(int narg, char **arg)
 {
   args = words(narg, arg);
   parse();
-  if (find_state()) find_state()->forget();
 }
 
 FixStokesDynamicsState *PairStokesDynamics::find_state() const
@@ -166,6 +165,16 @@ void PairStokesDynamics::allocate()
     for (int j = i; j <= n; j++) setflag[i][j] = 0;
 }
 
+/* FNV-1a over all words */
+static uint64_t hash(const std::vector<std::string> &words)
+{
+  uint64_t h = 14695981039346656037u;
+  for (const auto &word : words)
+    for (size_t k = 0; k <= word.size(); k++)
+      h = (h ^ (unsigned char) word.c_str()[k]) * 1099511628211u;
+  return h;
+}
+
 void PairStokesDynamics::init_style()
 {
   if (update->whichflag == 2)
@@ -199,7 +208,8 @@ void PairStokesDynamics::init_style()
                  "clumps_only yes");
 
   double largest = 0.0;
-  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, 2.0 * atom->radius[i]);
+  for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
+    if (std::isfinite(atom->radius[i])) largest = std::max(largest, 2.0 * atom->radius[i]);
   MPI_Allreduce(&largest, &largest_diameter, 1, MPI_DOUBLE, MPI_MAX, world);
 
   region = nullptr;
@@ -220,6 +230,7 @@ void PairStokesDynamics::init_style()
     modify->add_fix(std::string(STATE_ID) + " all " + FixStokesDynamicsState::STYLE +
                     (rotation ? " rotation" : ""));
   fix_state = find_state();
+  fix_state->settings_are(hash(args));
 
   bool applied = add_force;
   for (int i = 0; i < modify->nfix; i++)
@@ -277,9 +288,11 @@ static bool finite(const double *v)
 
 int PairStokesDynamics::faulty(int i) const
 {
+  // Velocity first: it spoils the position in the same step.
+  if (active[i] && (!finite(atom->v[i]) || (scene.settings.rotation && !finite(atom->omega[i]))))
+    return VELOCITY;
   if (!finite(atom->x[i])) return POSITION;
   if (!active[i]) return NONE;
-  if (!finite(atom->v[i]) || (scene.settings.rotation && !finite(atom->omega[i]))) return VELOCITY;
   if (!(atom->radius[i] > 0.0) || !std::isfinite(atom->radius[i])) return RADIUS;
   if (!(eta[i] > 0.0) || !std::isfinite(eta[i])) return VISCOSITY;
   if (!finite(&u_inf[3 * (size_t) i])) return FLUID_VELOCITY;
@@ -404,28 +417,34 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   State::Global &global = fix_state->global;
   const double step = update->ntimestep;
 
-  // v' is due every update_every steps, and at once when the spheres are not those of the last solve: none lacks a v', none has gone.
-  double count[4] = {
-      0.0, 0.0, 0.0,
-      0.0};    // spheres, newcomers, faults, spheres that somebody moved since the last run
-  bool may_resume = update->setupflag && step == global.last_step && numbers_only() &&
-      visc.number() == global.eta;
+  // A run that begins where and as the last one ended goes on with the force of that step.
+  const bool continued = update->setupflag && step == global.last_step;
+  bool same_numbers = numbers_only() && visc.number() == global.eta;
   for (int d = 0; d < 3; d++)
-    may_resume = may_resume && fluid_velocity[d].number() == global.u_inf[d] &&
+    same_numbers = same_numbers && fluid_velocity[d].number() == global.u_inf[d] &&
         fluid_vorticity[d].number() == global.vorticity[d];
+
+  double count[4] = {0.0, 0.0, 0.0,
+                     0.0};    // spheres, newcomers, faults, changed since the last run
+  if (continued && !fix_state->box_left_as_is()) count[3]++;
   for (int i = 0; i < n; i++) {
     if (faulty(i) != NONE) count[2]++;
     if (!active[i]) continue;
     count[0]++;
     if (state[i][State::SOLVED] == 0.0) count[1]++;
-    if (may_resume && !fix_state->left_as_is(i)) count[3]++;
+    if (continued && !fix_state->placed_as_left(i)) count[3]++;
+    if (continued && !fix_state->moving_as_left(i)) count[4]++;
   }
-  MPI_Allreduce(MPI_IN_PLACE, count, 4, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, count, 5, MPI_DOUBLE, MPI_SUM, world);
   if (count[2] > 0.0) complain();
   const bool same_spheres = count[1] == 0.0 && count[0] == global.spheres;
+  const bool displaced = count[3] > 0.0, pushed = count[4] > 0.0;
 
-  if (!(may_resume && same_spheres && count[3] == 0.0)) {
-    const bool due = !same_spheres || fmod(step, update_every) == 0.0 || step < global.last_solve ||
+  if (!(continued && same_numbers && same_spheres && !displaced && !pushed)) {
+    // v' is due every update_every steps, and at once when the spheres are not those of the last solve: none lacks a v', none has
+    // gone, and nobody has displaced or changed them between two runs.
+    const bool due = !same_spheres || displaced || fmod(step, update_every) == 0.0 ||
+        step < global.last_solve ||
         floor(step / update_every) != floor(global.last_solve / update_every);
     if (due) {
       solve();

@@ -19,6 +19,8 @@ foreach(file ${test_sources})
   add_test(NAME ${name} COMMAND ${name})
 endforeach()
 
-# A plugin that believes to be built for another LAMMPS, to see the guard refuse it.
+# A plugin that believes to be built for another LAMMPS, to see the guard refuse it. In a folder of its own, since newer LAMMPS
+# loads every plugin in LAMMPS_PLUGIN_PATH.
 add_plugin(wrongversionplugin)
+set_target_properties(wrongversionplugin PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/wrong)
 target_compile_definitions(wrongversionplugin PRIVATE SD_LAMMPS_NUM=19990101)
