@@ -424,8 +424,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     same_numbers = same_numbers && fluid_velocity[d].number() == global.u_inf[d] &&
         fluid_vorticity[d].number() == global.vorticity[d];
 
-  double count[4] = {0.0, 0.0, 0.0,
-                     0.0};    // spheres, newcomers, faults, changed since the last run
+  // spheres, newcomers, faults; since the last run: displaced, pushed
+  double count[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
   if (continued && !fix_state->box_left_as_is()) count[3]++;
   for (int i = 0; i < n; i++) {
     if (faulty(i) != NONE) count[2]++;
