@@ -7,7 +7,8 @@
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top" || exit 1
-export HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)} PATH=${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin}
+export PATH=${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin}
+export HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}
 export OMP_NUM_THREADS=1
 if [ "$(id -u)" = 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
 
@@ -43,10 +44,15 @@ core_tests build
 say "3/5 tests of the core with sanitizers (address, undefined)"
 lammps=$(sed -n 's/^LAMMPS_SOURCE_DIR:[A-Z]*=//p' build/CMakeCache.txt)
 log=build/sanitize.log
-{ cmake -S cmake -B build/sanitize -G Ninja -D LAMMPS_SOURCE_DIR="$lammps" -D STOKESDYN_TESTS=ON -D CMAKE_BUILD_TYPE=RelWithDebInfo \
-    -D STOKESDYN_SANITIZE=address,undefined &&
+{ cmake -S cmake -B build/sanitize -G Ninja -D LAMMPS_SOURCE_DIR="$lammps" -D STOKESDYN_TESTS=ON \
+    -D CMAKE_BUILD_TYPE=RelWithDebInfo -D STOKESDYN_SANITIZE=address,undefined &&
   cmake --build build/sanitize -j "$(nproc)" --target $(basename -s .c unittest/core/test_*.c); } > $log 2>&1
-if [ $? = 0 ]; then core_tests build/sanitize; else tail -n 30 $log; broken "sanitizers: the tests could not be built; whole log: $log"; fi
+if [ $? = 0 ]; then
+  core_tests build/sanitize
+else
+  tail -n 30 $log
+  broken "sanitizers: the tests could not be built; whole log: $log"
+fi
 
 say "4/5 tests through LAMMPS"
 # numpy and pytest are Debian's, so its python comes first.

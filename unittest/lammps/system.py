@@ -218,9 +218,10 @@ def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
         out.write("\n".join(lines.splitlines() if isinstance(lines, str) else lines) + "\n")
     words = ["lmp", "-in", script, "-log", log, "-nocite"]
     if ranks > 1:
-        # The ranks leave one after the other, and mpirun kills the rest when the first has failed: rank 0 perhaps before its log is
-        # on disk. So the shell in between always succeeds and tells the exit code.
-        words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), "sh", "-c", '"$@" || echo "exit code $?"', "sh"] + words
+        # The ranks leave one after the other, and mpirun kills the rest when the first has failed: rank 0 perhaps before its
+        # log is on disk. So the shell in between always succeeds and tells the exit code.
+        words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), "sh", "-c", '"$@" || echo "exit code $?"',
+                 "sh"] + words
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=str(folder), env=environment(),
                                start_new_session=True)
     try:

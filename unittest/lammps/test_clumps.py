@@ -28,7 +28,8 @@ PLACES = {"face_x": (6, 0, 0), "face_y": (0, 5, 0), "face_z": (0, 0, -7), "edge"
 @pytest.mark.parametrize("mode", ["clumps_only yes", "clumps_only yes cut_off_distance 4.5", "cut_off_distance 4.5"])
 @pytest.mark.parametrize("place", PLACES)
 def test_clump_across_a_periodic_border_is_the_clump_in_the_middle(simulation, tilt, mode, place):
-    sim = simulation(tetrahedron(PLACES[place]), f"{mode} {EXACT}", boundary="p p p", box=BOX, tilt=tilt, comm="comm_modify cutoff 5").run()
+    sim = simulation(tetrahedron(PLACES[place]), f"{mode} {EXACT}", boundary="p p p", box=BOX, tilt=tilt,
+                     comm="comm_modify cutoff 5").run()
     assert np.ptp(sim.x, axis=0).max() > 5              # it does lie on several sides
     assert largest_difference(sim.drag, model.forces(tetrahedron(), ETA)) < 1e-10
 
@@ -38,7 +39,8 @@ def test_clump_across_a_periodic_border_is_the_clump_in_the_middle(simulation, t
 def test_clump_across_borders_of_ranks_and_box(tmp_path, newton, tilt):
     lines = []
     for place in PLACES:
-        lines += input_lines(tetrahedron(PLACES[place]), f"clumps_only yes {EXACT}", tmp_path / f"{place}.data", boundary="p p p", box=BOX,
+        lines += input_lines(tetrahedron(PLACES[place]), f"clumps_only yes {EXACT}", tmp_path / f"{place}.data",
+                             boundary="p p p", box=BOX,
                              tilt=tilt, comm="comm_modify cutoff 5", newton=newton)
         lines += dump_lines(tmp_path / f"{place}.dump", columns=FORCES) + ["run 0", "clear"]
     lmp(tmp_path, lines, ranks=2)
@@ -47,7 +49,8 @@ def test_clump_across_borders_of_ranks_and_box(tmp_path, newton, tilt):
 
 
 def test_triclinic_clump_on_four_ranks(tmp_path):
-    lines = input_lines(tetrahedron(PLACES["corner"]), f"clumps_only yes {EXACT}", tmp_path / "data", boundary="p p p", box=BOX, tilt=TILT,
+    lines = input_lines(tetrahedron(PLACES["corner"]), f"clumps_only yes {EXACT}", tmp_path / "data", boundary="p p p", box=BOX,
+                        tilt=TILT,
                         comm="comm_modify cutoff 5")
     lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=4)
     assert largest_difference(read_dump(tmp_path / "dump")[0][1], model.forces(tetrahedron(), ETA)) < 1e-10
@@ -101,7 +104,8 @@ def test_ghosts_that_do_not_reach_across_the_box_border_are_an_error_with_the_cu
 def test_ghosts_that_do_not_reach_to_the_next_rank_are_an_error_with_the_cut_off_to_set(tmp_path):
     box = [(-10.0, 10.0), (-3.0, 3.0), (-3.0, 3.0)]
     spheres = long_chain(-4.0)
-    failed = lmp(tmp_path, input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", box=box) + ["run 0"], ranks=2, succeed=False)
+    failed = lmp(tmp_path, input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", box=box) + ["run 0"], ranks=2,
+                 succeed=False)
     assert failed.code != 0
     cutoff = cutoff_to_set(failed.log)
     lines = input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", box=box, comm=f"comm_modify cutoff {cutoff}")
@@ -113,7 +117,8 @@ def test_cut_off_that_the_error_asks_for_reaches_while_the_clump_turns(simulatio
     """A rigid chain tumbles through the borders of a periodic box; its width and the skin are the ghost cut-off."""
     spheres = chain(4, 2 * A, axis=0, a=A)
     spheres.v = np.cross((0.4, 0.8, 0.6), spheres.x - spheres.x.mean(axis=0)) + (2.0, 1.0, 3.0)
-    sim = simulation(spheres, "clumps_only yes visc 0.01 algorithm 2 relative_tolerance 1e-12", comm=f"comm_modify cutoff {3 * 2 * A + 0.3}",
+    sim = simulation(spheres, "clumps_only yes visc 0.01 algorithm 2 relative_tolerance 1e-12",
+                     comm=f"comm_modify cutoff {3 * 2 * A + 0.3}",
                      boundary="p p p", box=[(-5.0, 5.0)] * 3, dt=0.01)
     sim.commands("thermo_style custom step\nfix move all rigid/small molecule").run(1500)
     sim.commands("unfix move\nvelocity all set 0.1 -0.2 0.3").run()
@@ -133,7 +138,8 @@ def test_clump_wider_than_half_the_periodic_box_is_an_error(simulation):
 
 def test_clump_wider_than_half_the_periodic_box_on_two_ranks_is_an_error(tmp_path):
     spheres = Spheres(chain(5, 2 * A, axis=0).x, A, (0, 0, 0.1), molecule=9)
-    lines = input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", boundary="p p p", box=[(-5.0, 5.0), (-9.0, 9.0), (-9.0, 9.0)],
+    lines = input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", boundary="p p p",
+                        box=[(-5.0, 5.0), (-9.0, 9.0), (-9.0, 9.0)],
                         comm="comm_modify cutoff 9")
     failed = lmp(tmp_path, lines + ["run 0"], ranks=2, succeed=False)
     assert failed.code != 0 and "molecule 9 is wider than half of the periodic box" in failed.log
@@ -156,7 +162,8 @@ def test_cut_off_inf_in_a_periodic_box_is_an_error(simulation, boundary):
 def test_cut_off_wider_than_the_periodic_box_sees_images(simulation):
     """A lone sphere sees its six nearest images: two along the motion, four across."""
     L, v = 8.0, 0.3
-    sim = simulation(Spheres([(0, 0, 0)], A, (0, 0, v)), f"cut_off_distance {1.1 * L} {EXACT}", boundary="p p p", box=[(-L / 2, L / 2)] * 3).run()
+    sim = simulation(Spheres([(0, 0, 0)], A, (0, 0, v)), f"cut_off_distance {1.1 * L} {EXACT}", boundary="p p p",
+                     box=[(-L / 2, L / 2)] * 3).run()
     f, g = 0.75 / L * (1 + 2 * A**2 / (3 * L**2)), 0.75 / L * (1 - 2 * A**2 / L**2)
     assert sim.drag[0, 2] == pytest.approx(-STOKES * v / (1 + A * (2 * (f + g) + 4 * f)), rel=1e-12)
     assert np.abs(sim.drag[0, :2]).max() < 1e-14 * STOKES
@@ -166,11 +173,14 @@ def test_cut_off_wider_than_the_periodic_box_sees_images(simulation):
 def test_skin_and_reneighbouring_leave_the_trajectory_alone(simulation, mode):
     """Two clumps fly apart from overlap; the list is made anew in every step, or once for all of them."""
     trajectories = []
-    for neighbour in ("neighbor 0.0 bin\nneigh_modify every 1 delay 0 check no", "neighbor 2.0 bin\nneigh_modify every 1 delay 0 check yes",
+    for neighbour in ("neighbor 0.0 bin\nneigh_modify every 1 delay 0 check no",
+                      "neighbor 2.0 bin\nneigh_modify every 1 delay 0 check yes",
                       "neighbor 0.5 bin\nneigh_modify every 1 delay 0 check yes"):
-        spheres = Spheres(np.vstack([tetrahedron().x, tetrahedron((3.2, 0.5, 0.3)).x]), A, [(0.5, 0.1, 0)] * 4 + [(-0.9, 0, 0.2)] * 4,
+        spheres = Spheres(np.vstack([tetrahedron().x, tetrahedron((3.2, 0.5, 0.3)).x]), A,
+                          [(0.5, 0.1, 0)] * 4 + [(-0.9, 0, 0.2)] * 4,
                           molecule=[1] * 4 + [2] * 4)
-        sim = simulation(spheres, f"{mode} {EXACT}", boundary="p p p", box=BOX, before_pair=neighbour, comm="comm_modify cutoff 6", dt=0.01)
+        sim = simulation(spheres, f"{mode} {EXACT}", boundary="p p p", box=BOX, before_pair=neighbour,
+                         comm="comm_modify cutoff 6", dt=0.01)
         sim.command("fix move all nve/sphere")
         sim.run(150)
         trajectories.append(np.hstack([sim.x, sim.v]))

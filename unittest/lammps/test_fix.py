@@ -148,7 +148,8 @@ def test_drag_has_neither_energy_nor_virial(simulation):
 def test_compute_pair_reports_iterations_residual_unconverged_and_dissipation(simulation):
     spheres = five()
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-14 max_iter 3")
-    sim.commands("compute p all pair stokes_dynamics\nthermo_style custom step c_p c_p[1]\nfix move all nve/sphere\ntimestep 1e-4").run(2)
+    sim.commands("compute p all pair stokes_dynamics\nthermo_style custom step c_p c_p[1]")
+    sim.commands("fix move all nve/sphere\ntimestep 1e-4").run(2)
     vector = sim.compute_vector("p", 4)
     assert list(vector[[0, 2]]) == [3, 3]
     assert vector[1] == sim.residual > 1e-14
@@ -158,7 +159,7 @@ def test_compute_pair_reports_iterations_residual_unconverged_and_dissipation(si
 def test_reports_do_not_depend_on_ranks(tmp_path):
     lines = input_lines(five(), f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-3", tmp_path / "data")
     lines += ["compute p all pair stokes_dynamics",
-              "thermo_style custom step c_p[1] c_p[2] c_p[3] c_p[4] f_drag f_drag[1] f_drag[2] f_drag[3] f_drag[4] f_drag[5] f_drag[6] f_drag[7]",
+              "thermo_style custom step c_p[1] c_p[2] c_p[3] c_p[4] f_drag " + " ".join(f"f_drag[{k}]" for k in range(1, 8)),
               'thermo_modify format float "%.15g" norm no', "run 0"]
     rows = []
     for ranks in (1, 2):
@@ -169,8 +170,10 @@ def test_reports_do_not_depend_on_ranks(tmp_path):
 
 def test_values_reach_variables_dumps_and_averages(simulation):
     spheres = five()
-    sim = simulation(spheres, EXACT).commands(["compute total all reduce sum f_drag[1] f_drag[2] f_drag[3]", "variable power equal f_drag",
-                                               "fix mean all ave/time 1 2 2 f_drag f_drag[4]", "fix each all ave/atom 1 2 2 f_drag[1]",
+    sim = simulation(spheres, EXACT).commands(["compute total all reduce sum f_drag[1] f_drag[2] f_drag[3]",
+                                               "variable power equal f_drag",
+                                               "fix mean all ave/time 1 2 2 f_drag f_drag[4]",
+                                               "fix each all ave/atom 1 2 2 f_drag[1]",
                                                "thermo_style custom step c_total[1] v_power"]).run(2)
     assert sim.compute_vector("total", 3) == pytest.approx(sim.drag.sum(axis=0), rel=1e-12)
     assert sim.lmp.extract_variable("power") == sim.fix_scalar()

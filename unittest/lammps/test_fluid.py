@@ -39,7 +39,8 @@ def test_fluid_velocity_as_numbers(simulation, mode):
 
 def test_shear_flow_as_atom_style_variable(simulation):
     spheres = cloud()
-    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} fluid_velocity v_shear 0 0.2 {EXACT}", before_pair="variable shear atom 0.6*z-0.1").run()
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} fluid_velocity v_shear 0 0.2 {EXACT}",
+                     before_pair="variable shear atom 0.6*z-0.1").run()
     u = np.stack([0.6 * spheres.x[:, 2] - 0.1, np.zeros(spheres.n), np.full(spheres.n, 0.2)], axis=1)
     assert largest_difference(sim.drag, model.forces(spheres, ETA, u)) < 1e-10
 
@@ -73,7 +74,8 @@ def test_fluid_velocity_from_per_atom_properties_that_a_cfd_code_writes(simulati
 def test_variable_may_use_a_compute(simulation):
     spheres = cloud()
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA} fluid_velocity v_u 0 0 {EXACT}",
-                     before_pair="compute here all property/atom z\ncompute mean all reduce ave c_here\nvariable u atom c_here-c_mean").run(2)
+                     before_pair="compute here all property/atom z\ncompute mean all reduce ave c_here\n"
+                                 "variable u atom c_here-c_mean").run(2)
     u = np.zeros((spheres.n, 3))
     u[:, 0] = spheres.x[:, 2] - spheres.x[:, 2].mean()
     assert largest_difference(sim.drag, model.forces(spheres, ETA, u)) < 1e-10
@@ -84,7 +86,8 @@ def test_number_given_as_variables_is_that_number(simulation):
     style = f"cut_off_distance inf visc {{}} fluid_velocity {{}} {U[1]} {U[2]} {EXACT}"
     plain = simulation(spheres, style.format(ETA, U[0])).run().drag
     for kind in ("equal", "atom"):
-        sim = simulation(spheres, style.format("v_eta", "v_u"), before_pair=f"variable eta {kind} {ETA}\nvariable u {kind} {U[0]}").run()
+        sim = simulation(spheres, style.format("v_eta", "v_u"),
+                         before_pair=f"variable eta {kind} {ETA}\nvariable u {kind} {U[0]}").run()
         assert largest_difference(sim.drag, plain) < 1e-13
 
 
@@ -113,14 +116,16 @@ def test_local_viscosity_leaves_the_resistance_symmetric(simulation):
     F = []
     for field in v:
         spheres.v = field
-        F.append(simulation(spheres, f"cut_off_distance inf visc v_eta {EXACT}", before_pair="variable eta atom 1.5+0.3*x").run().drag)
+        F.append(simulation(spheres, f"cut_off_distance inf visc v_eta {EXACT}",
+                            before_pair="variable eta atom 1.5+0.3*x").run().drag)
     assert (F[0] * v[1]).sum() == pytest.approx((F[1] * v[0]).sum(), abs=1e-9 * np.linalg.norm(F[0]) * np.linalg.norm(v[1]))
 
 
 def test_variables_are_evaluated_for_the_group_only(simulation):
     """Outside the group the viscosity may be anything."""
     spheres = cloud()
-    sim = simulation(spheres, f"cut_off_distance inf visc v_eta group some {EXACT}", before_pair="group some id 1:9\nvariable eta atom 1.2*(id<=9)").run()
+    sim = simulation(spheres, f"cut_off_distance inf visc v_eta group some {EXACT}",
+                     before_pair="group some id 1:9\nvariable eta atom 1.2*(id<=9)").run()
     part = Spheres(spheres.x[:9], spheres.a[:9], spheres.v[:9])
     assert largest_difference(sim.drag[:9], model.forces(part, 1.2)) < 1e-10
     assert np.abs(sim.drag[9:]).max() == 0.0

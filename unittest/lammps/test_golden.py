@@ -56,14 +56,16 @@ def test_every_sphere_sees_every_other(simulation, name):
 @pytest.mark.parametrize("name", CASES)
 def test_finite_cut_off_larger_than_the_scene_is_no_cut_off(simulation, name):
     spheres = spheres_of(name)
-    sim = simulation(spheres, f"cut_off_distance {float(reach(spheres))!r} visc {eta_of(name)!r} {EXACT}", before_pair=si(name)).run()
+    sim = simulation(spheres, f"cut_off_distance {float(reach(spheres))!r} visc {eta_of(name)!r} {EXACT}",
+                     before_pair=si(name)).run()
     assert largest_difference(sim.drag, answer(name, "all")) < TOLERANCE
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_clumps_only_without_cut_off(simulation, name):
     spheres = spheres_of(name)
-    sim = simulation(spheres, f"clumps_only yes visc {eta_of(name)!r} {EXACT}", comm=f"comm_modify cutoff {float(reach(spheres))!r}",
+    sim = simulation(spheres, f"clumps_only yes visc {eta_of(name)!r} {EXACT}",
+                     comm=f"comm_modify cutoff {float(reach(spheres))!r}",
                      before_pair=si(name)).run()
     assert largest_difference(sim.drag, answer(name, "clump")) < TOLERANCE
 

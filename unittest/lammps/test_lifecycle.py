@@ -82,14 +82,16 @@ def test_group_changed_between_runs_is_in_the_next_force(simulation):
     sim.commands("group some clear\ngroup some id 1 2 4").run()
     part = [0, 1, 3]
     spheres = five()
-    assert largest_difference(sim.drag[part], model.forces(Spheres(spheres.x[part], spheres.a[part], spheres.v[part]), ETA)) < 1e-10
+    assert largest_difference(sim.drag[part], model.forces(Spheres(spheres.x[part], spheres.a[part], spheres.v[part]),
+                                                           ETA)) < 1e-10
     assert np.abs(sim.drag[[2, 4]]).max() == 0.0
 
 
 def test_box_that_becomes_larger_between_runs_is_in_the_next_force(simulation):
     """Images move away although no sphere does."""
     L = 6.0
-    sim = simulation(Spheres([(0.1, 0.2, 0.3)], A, (0, 0, 0.3)), f"cut_off_distance 6.5 {EXACT}", boundary="p p p", box=[(-L / 2, L / 2)] * 3).run()
+    sim = simulation(Spheres([(0.1, 0.2, 0.3)], A, (0, 0, 0.3)), f"cut_off_distance 6.5 {EXACT}", boundary="p p p",
+                     box=[(-L / 2, L / 2)] * 3).run()
     with_images = sim.drag
     sim.commands("change_box all x final -9 9 y final -9 9 z final -9 9").run()
     assert largest_difference(sim.drag, [(0, 0, -6 * np.pi * ETA * A * 0.3)]) < 1e-12
@@ -99,7 +101,8 @@ def test_box_that_becomes_larger_between_runs_is_in_the_next_force(simulation):
 @pytest.mark.parametrize("mode", MODES)
 def test_new_settings_between_runs_are_in_the_next_force(simulation, mode):
     sim = simulation(five(), f"clumps_only yes {EXACT} update_every 10", box=BOX, comm="comm_modify cutoff 9").run(3)
-    sim.commands([f"pair_style stokes_dynamics {MODES[mode]} visc 2.6 algorithm 2 relative_tolerance 1e-12 update_every 10", "pair_coeff * *"]).run()
+    sim.commands([f"pair_style stokes_dynamics {MODES[mode]} visc 2.6 algorithm 2 relative_tolerance 1e-12 update_every 10",
+                  "pair_coeff * *"]).run()
     assert largest_difference(sim.drag, expected_now(sim, 2.6)) < 1e-10
 
 
@@ -173,12 +176,14 @@ def test_rerun_of_a_dump_gives_the_forces_of_its_frames(simulation, mode, n):
         assert step == step_again and largest_difference(again[:, 0:6], before[:, 0:6]) < 1e-12
         if n == 1:
             # positions and velocities of the end of the step, which the dump holds
-            assert largest_difference(again[:, 6:9], model.forces(Spheres(before[:, 0:3], radii, before[:, 3:6]), ETA)) < 1e-9, step
+            assert largest_difference(again[:, 6:9], model.forces(Spheres(before[:, 0:3], radii, before[:, 3:6]),
+                                                                  ETA)) < 1e-9, step
         assert np.isfinite(again).all()
 
 
 def test_rerun_in_a_new_instance_gives_the_forces_of_its_frames(simulation):
-    first = simulation(five(), f"cut_off_distance inf {EXACT} update_every 4", box=BOX, dt=0.02).commands("fix move all nve/sphere")
+    first = simulation(five(), f"cut_off_distance inf {EXACT} update_every 4", box=BOX,
+                       dt=0.02).commands("fix move all nve/sphere")
     first.commands(dump_lines(first.folder / "dump", every=3)).run(12)
     radii = first.atom("radius").ravel()
     sim = simulation(five(), f"cut_off_distance inf {EXACT}", box=BOX)
@@ -241,8 +246,10 @@ def test_one_step_with_500_spheres_on_two_ranks_is_that_of_one(tmp_path):
                       molecule=1 + np.arange(512) // 8)
     ends = []
     for ranks in (1, 2):
-        lines = input_lines(spheres, "clumps_only yes visc 1.3 algorithm 2 relative_tolerance 1e-12", tmp_path / "data", boundary="p p p",
-                            box=[(-1.0, 16.6 * 2.4)] * 3, comm="comm_modify cutoff 19", dt=0.02, before_pair="atom_modify sort 5 0\nneigh_modify every 1 delay 0")
+        lines = input_lines(spheres, "clumps_only yes visc 1.3 algorithm 2 relative_tolerance 1e-12", tmp_path / "data",
+                            boundary="p p p",
+                            box=[(-1.0, 16.6 * 2.4)] * 3, comm="comm_modify cutoff 19", dt=0.02,
+                            before_pair="atom_modify sort 5 0\nneigh_modify every 1 delay 0")
         lines += ["fix move all nve/sphere"] + dump_lines(tmp_path / f"dump{ranks}", every=30) + ["run 30"]
         lmp(tmp_path, lines, ranks=ranks)
         ends.append(read_dump(tmp_path / f"dump{ranks}")[-1][1])

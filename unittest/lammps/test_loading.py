@@ -10,10 +10,12 @@ import pytest
 from system import lmp
 
 BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
+WRONG = os.path.join(BUILD, "wrong", "wrongversionplugin.so")       # believes to be built for a LAMMPS of 1999
 
 
 def test_only_the_entry_point_is_exported():
-    listing = subprocess.run(["nm", "-D", "--defined-only", os.path.join(BUILD, "stokesdynplugin.so")], stdout=subprocess.PIPE, check=True)
+    listing = subprocess.run(["nm", "-D", "--defined-only", os.path.join(BUILD, "stokesdynplugin.so")], stdout=subprocess.PIPE,
+                             check=True)
     assert [line.split()[-1] for line in listing.stdout.decode().splitlines()] == ["lammpsplugin_init"]
 
 
@@ -30,14 +32,16 @@ def test_loading_twice_is_harmless(tmp_path):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(tmp_path, ranks):
-    ended = lmp(tmp_path, ["plugin load wrongversionplugin.so", "plugin list"], ranks=ranks, succeed=False)
-    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, this is LAMMPS \d{8}", ended.text)) == 1
+    ended = lmp(tmp_path, [f"plugin load {WRONG}", "plugin list"], ranks=ranks, succeed=False)
+    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, this is LAMMPS \d{8}",
+                          ended.text)) == 1
     assert "LAMMPS_SOURCE_DIR" in ended.text             # the way out
     assert "style plugin" not in ended.text
 
 
 def test_another_lammps_is_refused_and_the_right_plugin_still_loads(tmp_path):
-    text = lmp(tmp_path, ["plugin load wrongversionplugin.so", "plugin load stokesdynplugin.so", "plugin list"], succeed=False).text
+    text = lmp(tmp_path, [f"plugin load {WRONG}", "plugin load stokesdynplugin.so", "plugin list"],
+               succeed=False).text
     assert "pair style plugin stokes_dynamics" in text
 
 

@@ -28,15 +28,18 @@ def test_force_inside_the_pair_style_and_by_the_fix_give_the_same_trajectory(sim
 
 def test_lone_sphere_slows_down_as_stokes_says(simulation):
     tau, dt = MASS / STOKES, 1e-3
-    sim = simulation(Spheres([(0, 0, 0)], A, (0, 0, 0.5)), f"cut_off_distance inf {EXACT} add_force yes", dt=dt, fix=False, box=[(-9.0, 9.0)] * 3)
+    sim = simulation(Spheres([(0, 0, 0)], A, (0, 0, 0.5)), f"cut_off_distance inf {EXACT} add_force yes", dt=dt, fix=False,
+                     box=[(-9.0, 9.0)] * 3)
     sim.commands("fix move all nve/sphere").run(100)
     # LAMMPS's velocity Verlet with a force of the half-step velocity: v/2 dt and 1/(1 + ...) differ from exp in second order
     assert sim.v[0, 2] == pytest.approx(0.5 * np.exp(-100 * dt / tau), rel=2 * dt / tau)
 
 
 def terminal_velocity(simulation, spheres, integrate, gravity, style="clumps_only yes", steps=1500, dt=0.02):
-    sim = simulation(spheres, f"{style} {EXACT}", dt=dt, comm="comm_modify cutoff 60", box=[(-30.0, 30.0), (-30.0, 30.0), (-60.0, 20.0)])
-    sim.commands(["thermo_style custom step", "neigh_modify exclude molecule/intra all", f"fix pull all gravity {gravity} vector 0 0 -1",
+    sim = simulation(spheres, f"{style} {EXACT}", dt=dt, comm="comm_modify cutoff 60",
+                     box=[(-30.0, 30.0), (-30.0, 30.0), (-60.0, 20.0)])
+    sim.commands(["thermo_style custom step", "neigh_modify exclude molecule/intra all",
+                  f"fix pull all gravity {gravity} vector 0 0 -1",
                   f"fix move all {integrate}"]).run(steps)
     return sim
 
@@ -71,7 +74,8 @@ def test_two_rigid_clumps_with_clumps_only_fall_as_if_alone(simulation):
 
 def test_update_every_does_not_change_the_terminal_velocity(simulation):
     g = 2.0
-    sim = terminal_velocity(simulation, chain(3, 2 * A, a=A), "rigid/small molecule", g, f"clumps_only yes update_every 10", steps=4000, dt=0.005)
+    sim = terminal_velocity(simulation, chain(3, 2 * A, a=A), "rigid/small molecule", g, f"clumps_only yes update_every 10",
+                            steps=4000, dt=0.005)
     assert sim.v[:, 2] == pytest.approx(-3 * MASS * g / (STOKES * ALONG[3]), rel=1e-8)
 
 
@@ -93,8 +97,10 @@ GRAN = "gran/hooke/history 500 NULL 10 NULL 0.5 1"
 @pytest.mark.parametrize("order", ["contact first", "drag first"])
 @pytest.mark.parametrize("add_force", ["yes", "no"])
 def test_under_hybrid_overlay_contact_and_drag_add_up(simulation, order, add_force):
-    contact = simulation(contact_scene(), [f"pair_style {GRAN}", "pair_coeff * *"], newton="off", before_pair="comm_modify vel yes", fix=False).run().f
-    drag = simulation(contact_scene(), f"cut_off_distance inf {EXACT}", fix=False).commands("fix drag all stokes_dynamics").run().drag
+    contact = simulation(contact_scene(), [f"pair_style {GRAN}", "pair_coeff * *"], newton="off",
+                         before_pair="comm_modify vel yes", fix=False).run().f
+    drag = simulation(contact_scene(), f"cut_off_distance inf {EXACT}",
+                      fix=False).commands("fix drag all stokes_dynamics").run().drag
     assert np.abs(contact).max() > 1.0
     styles = [GRAN, f"stokes_dynamics cut_off_distance inf {EXACT} add_force {add_force}"]
     names = ["gran/hooke/history", "stokes_dynamics"]
@@ -111,9 +117,11 @@ def test_under_hybrid_overlay_contacts_of_rigid_clumps_do_not_hide_their_drag(si
     g = 2.0
     lines = [f"pair_style hybrid/overlay {GRAN} stokes_dynamics clumps_only yes {EXACT}", "pair_coeff * * gran/hooke/history",
              "pair_coeff * * stokes_dynamics"]
-    sim = simulation(chain(3, 2 * A, a=A), lines, newton="off", before_pair="comm_modify vel yes cutoff 9\nneigh_modify exclude molecule/intra all",
+    sim = simulation(chain(3, 2 * A, a=A), lines, newton="off",
+                     before_pair="comm_modify vel yes cutoff 9\nneigh_modify exclude molecule/intra all",
                      dt=0.02, box=[(-9.0, 9.0), (-9.0, 9.0), (-40.0, 20.0)])
-    sim.commands(["thermo_style custom step", "fix move all rigid/small molecule", f"fix pull all gravity {g} vector 0 0 -1"]).run(1500)
+    sim.commands(["thermo_style custom step", "fix move all rigid/small molecule",
+                  f"fix pull all gravity {g} vector 0 0 -1"]).run(1500)
     assert sim.v[:, 2] == pytest.approx(-3 * MASS * g / (STOKES * ALONG[3]), rel=1e-8)
 
 
@@ -140,7 +148,8 @@ def test_fix_adapt_may_set_the_viscosity_back(simulation):
 
 
 def test_fix_adapt_under_hybrid_overlay(simulation):
-    lines = [f"pair_style hybrid/overlay {GRAN} stokes_dynamics cut_off_distance inf {EXACT}", "pair_coeff * * gran/hooke/history",
+    lines = [f"pair_style hybrid/overlay {GRAN} stokes_dynamics cut_off_distance inf {EXACT}",
+             "pair_coeff * * gran/hooke/history",
              "pair_coeff * * stokes_dynamics"]
     sim = simulation(contact_scene(), lines, newton="off", before_pair="comm_modify vel yes")
     first = sim.run().drag

@@ -1,4 +1,4 @@
-"""A run that is broken and continued, in the same input or from a restart file, is the unbroken run: to 1e-10 of the scene's size."""
+"""A run that is broken and continued, in the same input or from a restart file, is the unbroken run: to 1e-10."""
 import numpy as np
 import pytest
 
@@ -34,8 +34,9 @@ def style(mode, n, solver, add_force="no"):
 
 
 def rest(kind):
-    """What a restart file does not hold. Rigid bodies come last: at the start of a run they see the forces of the fixes before them."""
-    return ["fix drag all stokes_dynamics", "fix pull all gravity 1.5 vector 0.3 0 -1", INTEGRATORS[kind], "thermo_style custom step"]
+    """What a restart file does not hold. Rigid bodies come last: when a run starts they see the forces of the fixes before."""
+    return ["fix drag all stokes_dynamics", "fix pull all gravity 1.5 vector 0.3 0 -1", INTEGRATORS[kind],
+            "thermo_style custom step"]
 
 
 def begin(kind, words, data, newton="on"):
@@ -68,7 +69,8 @@ def unbroken(tmp_path_factory):
     return get
 
 
-CASES = [(kind, mode, n, solver, stop) for kind in INTEGRATORS for mode in MODES for n in (1, 7) for solver in SOLVERS for stop in (50, 49)
+CASES = [(kind, mode, n, solver, stop)
+         for kind in INTEGRATORS for mode in MODES for n in (1, 7) for solver in SOLVERS for stop in (50, 49)
          if (n, stop) != (1, 49)]
 
 
@@ -115,34 +117,38 @@ def test_force_inside_the_pair_style_continues(simulation, tmp_path):
 def test_restart_on_another_number_of_ranks_continues(unbroken, tmp_path, kind, mode, write, read):
     words = style(mode, 7, "exact")
     lmp(tmp_path, begin(kind, words, tmp_path / "data") + ["run 50", f"write_restart {tmp_path}/mid"], ranks=write)
-    lmp(tmp_path, proceed(kind, tmp_path / "mid") + dump_lines(tmp_path / "dump", every=100, columns=COLUMNS) + ["run 50"], ranks=read)
+    lmp(tmp_path, proceed(kind, tmp_path / "mid") + dump_lines(tmp_path / "dump", every=100, columns=COLUMNS) + ["run 50"],
+        ranks=read)
     assert np.abs(read_dump(tmp_path / "dump")[-1][1] - unbroken(kind, words)).max() < LIMIT
 
 
 def test_restart_within_hybrid_overlay_continues(simulation, tmp_path):
-    """Contacts without damping or friction: those follow the velocity, and LAMMPS does not continue them exactly. LAMMPS wants the
-    pair_coeff lines of a hybrid style again."""
+    """Contacts without damping or friction: those follow the velocity, and LAMMPS does not continue them exactly. LAMMPS
+    wants the pair_coeff lines of a hybrid style again."""
     gran = "gran/hooke 500 NULL 0 NULL 0 0"
     coefficients = ["pair_coeff * * gran/hooke", "pair_coeff * * stokes_dynamics"]
-    lines = input_lines(scene("free"), [f"pair_style hybrid/overlay {gran} stokes_dynamics {style('all', 7, 'exact')}"] + coefficients, tmp_path / "data", box=BOX, newton="off", fix=False, dt=0.01,
+    hybrid = [f"pair_style hybrid/overlay {gran} stokes_dynamics {style('all', 7, 'exact')}"] + coefficients
+    lines = input_lines(scene("free"), hybrid, tmp_path / "data", box=BOX, newton="off", fix=False, dt=0.01,
                         comm="comm_modify vel yes") + rest("free")
     whole = last(simulation().commands(lines).run(100))
     simulation().commands(lines).run(50).command(f"write_restart {tmp_path}/mid")
-    again = ["newton off", "plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "comm_modify vel yes", "timestep 0.01"]
+    again = ["newton off", "plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "comm_modify vel yes",
+             "timestep 0.01"]
     again += coefficients + rest("free")
     assert np.abs(last(simulation().commands(again).run(50)) - whole).max() < LIMIT
 
 
 def test_restart_keeps_every_keyword(simulation, tmp_path):
-    words = f"cut_off_distance 9.5 visc {ETA} update_every 3 region part group some relative_tolerance 1e-9 max_iter 77 algorithm 2 " \
-            "fluid_velocity 0.1 v_u 0.3 tensor oseen"
+    words = f"cut_off_distance 9.5 visc {ETA} update_every 3 region part group some relative_tolerance 1e-9 max_iter 77 " \
+            "algorithm 2 fluid_velocity 0.1 v_u 0.3 tensor oseen"
     extra = ["region part block INF INF INF INF INF 1.5", "variable u equal 0.01*step"]
     spheres = Spheres(chain(5, 3.0).x, A, (0.1, 0.2, 0.3))
     options = dict(boundary="f f f", box=BOX, fix=False)
     sim = simulation(spheres, words, before_pair="\n".join(extra + ["group some id 1 2 3"]), **options)
     sim.commands("fix drag all stokes_dynamics").run(5).command(f"write_restart {tmp_path}/mid")
     expected, vector = sim.drag, sim.fix_vector()
-    sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid"] + extra + ["fix drag all stokes_dynamics"]).run()
+    sim = simulation().commands(["plugin load stokesdynplugin.so",
+                                 f"read_restart {tmp_path}/mid"] + extra + ["fix drag all stokes_dynamics"]).run()
     assert largest_difference(sim.drag, expected) < 1e-9
     assert sim.fix_vector()[3] == vector[3]
 
@@ -178,9 +184,11 @@ def test_same_pair_style_line_after_the_restart_continues(simulation, unbroken, 
 
 
 @pytest.mark.parametrize("changed", ["cut_off_distance inf visc 2.6 algorithm 2", "clumps_only yes visc 1.3 algorithm 2",
-                                     "cut_off_distance 0.8 visc 1.3 algorithm 2", "cut_off_distance inf visc 1.3 algorithm 2 group some"])
+                                     "cut_off_distance 0.8 visc 1.3 algorithm 2",
+                                     "cut_off_distance inf visc 1.3 algorithm 2 group some"])
 def test_other_pair_style_line_after_the_restart_is_in_the_first_force(simulation, tmp_path, changed):
-    simulation().commands(begin("free", style("all", 7, "exact"), tmp_path / "data")).commands("group some id 1 2 3").run(50).command(
+    simulation().commands(begin("free", style("all", 7, "exact"),
+                                tmp_path / "data")).commands("group some id 1 2 3").run(50).command(
         f"write_restart {tmp_path}/mid")
     new = [f"pair_style stokes_dynamics {changed} relative_tolerance 1e-12", "pair_coeff * *"]
     sim = simulation().commands(proceed("free", tmp_path / "mid") + new).run()
@@ -190,7 +198,8 @@ def test_other_pair_style_line_after_the_restart_is_in_the_first_force(simulatio
 
 
 def test_restart_without_the_plugin_is_refused_by_lammps(simulation, tmp_path):
-    simulation().commands(begin("free", style("all", 1, "exact"), tmp_path / "data")).run(1).command(f"write_restart {tmp_path}/mid")
+    simulation().commands(begin("free", style("all", 1, "exact"),
+                                tmp_path / "data")).run(1).command(f"write_restart {tmp_path}/mid")
     with pytest.raises(LammpsError, match="stokes_dynamics"):
         simulation().command(f"read_restart {tmp_path}/mid")
 

@@ -26,7 +26,8 @@ def lower(k):
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("k", ROW)
 def test_spheres_outside_the_region_neither_feel_nor_act(simulation, mode, k):
-    sim = simulation(row_of_five(), f"{MODES[mode]} {EXACT} region part", comm="comm_modify cutoff 12", before_pair=lower(k)).run()
+    sim = simulation(row_of_five(), f"{MODES[mode]} {EXACT} region part", comm="comm_modify cutoff 12",
+                     before_pair=lower(k)).run()
     assert np.abs(sim.fix_rows()[k:]).max(initial=0.0) == 0.0
     assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[k], rel=1e-9)
 
@@ -41,14 +42,16 @@ def test_spheres_outside_the_group_neither_feel_nor_act(simulation, mode, k):
 
 
 def test_region_and_group_together_select_what_is_in_both(simulation):
-    sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT} region part group odd", before_pair=lower(4) + "\ngroup odd id 1 3 5").run()
+    sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT} region part group odd",
+                     before_pair=lower(4) + "\ngroup odd id 1 3 5").run()
     spheres = row_of_five()
     assert np.abs(sim.drag[[1, 3, 4]]).max() == 0.0
     assert largest_difference(sim.drag[[0, 2]], model.forces(Spheres(spheres.x[[0, 2]], A, (0, 0, U)), ETA)) < 1e-11
 
 
 def test_spheres_outside_may_have_any_radius(simulation):
-    sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT} group part", before_pair="group part id 1:3\nset atom 5 diameter 0").run()
+    sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT} group part",
+                     before_pair="group part id 1:3\nset atom 5 diameter 0").run()
     assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[3], rel=1e-9)
 
 
@@ -91,7 +94,8 @@ def test_spheres_enter_and_leave_the_region_during_a_run(simulation, mode, updat
     x = [(0, 0, 0), (1.6, 0, 1.4), (3.2, 0, 2.6), (0, 1.8, 0.4), (1.8, 1.8, 3.1)]
     spheres = Spheres(x, A, (0, 0, U), molecule=1)
     sim = simulation(spheres, f"{MODES[mode]} {EXACT} region slab update_every {update_every}", comm="comm_modify cutoff 12",
-                     box=[(-9, 9), (-9, 9), (-9, 15)], before_pair="region slab block INF INF INF INF 1.0 3.0\nneigh_modify every 1 delay 0",
+                     box=[(-9, 9), (-9, 9), (-9, 15)],
+                     before_pair="region slab block INF INF INF INF 1.0 3.0\nneigh_modify every 1 delay 0",
                      dt=0.05)
     sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"])
     sim.commands(dump_lines(sim.folder / "dump")).run(120).close()

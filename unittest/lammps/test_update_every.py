@@ -7,6 +7,7 @@ from system import Spheres, dump_lines, largest_difference, read_dump
 
 ETA, A, DT = 1.3, 0.7, 0.01
 STOKES = 6 * np.pi * ETA * A
+EXACT = "algorithm 2 relative_tolerance 1e-12"
 COLUMNS = "x y z vx vy vz f_drag[1] f_drag[2] f_drag[3] f_drag[4] f_drag[5] f_drag[6]"
 
 
@@ -15,7 +16,7 @@ def three():
 
 
 def falling(simulation, first_step=0, n=10, reach="inf", more=""):
-    sim = simulation(three(), f"cut_off_distance {reach} visc {ETA} update_every {n} algorithm 2 relative_tolerance 1e-12 {more}", dt=DT)
+    sim = simulation(three(), f"cut_off_distance {reach} visc {ETA} update_every {n} {EXACT} {more}", dt=DT)
     return sim.commands([f"reset_timestep {first_step}", "fix pull all gravity 3.0 vector 0.2 0 -1", "fix move all nve/sphere",
                          "neigh_modify every 1 delay 0"] + dump_lines(sim.folder / "dump", columns=COLUMNS))
 
@@ -52,7 +53,8 @@ def test_between_solves_the_force_follows_the_velocity_with_the_stored_perturbat
             assert largest_difference(now[:, 6:9], fresh) < 1e-10
 
 
-@pytest.mark.parametrize("first_step,steps,due", [(0, 29, {10, 20}), (0, 30, {10, 20, 30}), (7, 20, {10, 20}), (10, 5, set()), (13, 7, {20})])
+@pytest.mark.parametrize("first_step,steps,due", [(0, 29, {10, 20}), (0, 30, {10, 20, 30}), (7, 20, {10, 20}), (10, 5, set()),
+                                                  (13, 7, {20})])
 def test_solves_fall_on_multiples_of_n(simulation, first_step, steps, due):
     frames, solves = rows(falling(simulation, first_step), steps)
     changed = {step for (_, a), (step, b) in zip(frames, frames[1:]) if not np.array_equal(a[:, 9:12], b[:, 9:12])}
@@ -61,7 +63,7 @@ def test_solves_fall_on_multiples_of_n(simulation, first_step, steps, due):
 
 
 def test_between_solves_the_force_follows_the_fluid(simulation):
-    sim = simulation(three(), f"cut_off_distance inf visc {ETA} update_every 10 algorithm 2 relative_tolerance 1e-12 fluid_velocity v_u 0 0",
+    sim = simulation(three(), f"cut_off_distance inf visc {ETA} update_every 10 {EXACT} fluid_velocity v_u 0 0",
                      before_pair="variable u equal 0.2*step")
     sim.commands(dump_lines(sim.folder / "dump", columns=COLUMNS))          # nothing integrates
     frames, _ = rows(sim, 9)
@@ -74,10 +76,13 @@ def test_between_solves_the_force_follows_the_fluid(simulation):
 def test_perturbation_follows_its_sphere_to_another_rank(tmp_path):
     """Spheres cross the border of two ranks and are sorted between solves."""
     from system import input_lines, lmp
-    spheres = Spheres([(-1.2, 0, 0), (-2.6, 0.4, 0.2), (1.3, 0.1, 0), (2.7, 0, 0)], A, [(2, 0, 0.1), (2, 0.1, 0), (-0.4, 0, 0.3), (1, 0, 0)])
+    spheres = Spheres([(-1.2, 0, 0), (-2.6, 0.4, 0.2), (1.3, 0.1, 0), (2.7, 0, 0)], A,
+                      [(2, 0, 0.1), (2, 0.1, 0), (-0.4, 0, 0.3), (1, 0, 0)])
     for ranks in (1, 2):
-        lines = input_lines(spheres, f"cut_off_distance 9 visc {ETA} update_every 50 algorithm 2 relative_tolerance 1e-12", tmp_path / "data",
-                            box=[(-9, 9), (-2, 2), (-2, 2)], before_pair="neigh_modify every 1 delay 0 check no\natom_modify sort 3 1.0", dt=DT)
+        lines = input_lines(spheres, f"cut_off_distance 9 visc {ETA} update_every 50 algorithm 2 relative_tolerance 1e-12",
+                            tmp_path / "data",
+                            box=[(-9, 9), (-2, 2), (-2, 2)],
+                            before_pair="neigh_modify every 1 delay 0 check no\natom_modify sort 3 1.0", dt=DT)
         lines += ["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"]
         lines += dump_lines(tmp_path / f"dump{ranks}", every=10, columns=COLUMNS) + ["run 140"]
         lmp(tmp_path, lines, ranks=ranks)

@@ -35,18 +35,22 @@ def script(folder):
 
     lines = scene("clump", f"clumps_only yes {COMMON} add_force yes", boundary="p p p", box=box, comm="comm_modify cutoff 4",
                   before_pair="neigh_modify exclude molecule/intra all every 1 delay 0 check no")
-    lines += ["compute p all pair stokes_dynamics", "thermo_style custom step c_p[1] c_p[2]", "variable w atom z<0", "group half variable w",
-              "fix move all rigid/small molecule", "timestep 0.01", "run 3", f"write_restart {folder}/mid.restart", "run 2", "clear"]
+    lines += ["compute p all pair stokes_dynamics", "thermo_style custom step c_p[1] c_p[2]", "variable w atom z<0",
+              "group half variable w",
+              "fix move all rigid/small molecule", "timestep 0.01", "run 3", f"write_restart {folder}/mid.restart", "run 2",
+              "clear"]
     lines += ["plugin load stokesdynplugin.so", f"read_restart {folder}/mid.restart", "thermo_style custom step",
               "fix move all rigid/small molecule", "run 2", "clear"]
     # every sphere with those in reach, half of them ghosts; spheres come and go
     lines += scene("list", f"cut_off_distance 2.5 {COMMON} region r", boundary="p p p", box=box,
                    before_pair="neigh_modify every 1 delay 0 check no\nregion r block -4 INF INF INF INF INF")
     lines += MOVE + dump_lines(os.path.join(folder, "list.dump")) + [
-        "run 3", "create_atoms 1 single 1.1 1.2 1.3", "set type 1 diameter 1.2", "run 1", "group gone id 3 7 11", "delete_atoms group gone", "run 2",
+        "run 3", "create_atoms 1 single 1.1 1.2 1.3", "set type 1 diameter 1.2", "run 1", "group gone id 3 7 11",
+        "delete_atoms group gone", "run 2",
         "clear"]
     lines += scene("all", f"cut_off_distance inf {COMMON}", before_pair="variable s atom 1+0.1*x\nvariable u equal 0.1*step")
-    lines += ["pair_style stokes_dynamics cut_off_distance inf visc v_s fluid_velocity v_u 0 0 update_every 2 algorithm 2", "pair_coeff * *"]
+    lines += ["pair_style stokes_dynamics cut_off_distance inf visc v_s fluid_velocity v_u 0 0 update_every 2 algorithm 2",
+              "pair_coeff * *"]
     return lines + MOVE + ["run 3"]
 
 
@@ -73,7 +77,8 @@ def main(folder):
         path = os.path.join(scratch, "in.valgrind")
         with open(path, "w") as out:
             out.write("\n".join(script(scratch)) + "\n")
-        ran = subprocess.run(["valgrind", "--tool=memcheck", "--keep-debuginfo=yes", "--leak-check=full", "--show-leak-kinds=definite",
+        ran = subprocess.run(["valgrind", "--tool=memcheck", "--keep-debuginfo=yes", "--leak-check=full",
+                              "--show-leak-kinds=definite",
                               "--errors-for-leak-kinds=definite", "--error-limit=no", "--num-callers=40", "--xml=yes",
                               f"--xml-file={report}", "lmp", "-in", path, "-log", "none", "-nocite"],
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment())
