@@ -26,7 +26,8 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Pair style stokes_dynamics";
 static const char *STATE_ID = "STOKES_DYNAMICS_STATE";
 
-PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), scene(lmp, this, COMMAND)
+PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) :
+    Pair(lmp), scene(lmp, this, COMMAND), rigid(lmp, scene, COMMAND)
 {
   single_enable = 0;
   respa_enable = 0;
@@ -34,9 +35,9 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), scene(lmp, this
   one_coeff = 1;
   restartinfo = 1;
   no_virial_fdotr_compute =
-      1;               // drag acts between sphere and fluid: its x.F depends on the origin
-  comm_forward = 6;    // force and torque
-  nextra = 4;          // compute pair: iterations, residual, unconverged solves, dissipation
+      1;                // drag acts between sphere and fluid: its x.F depends on the origin
+  comm_forward = 19;    // most: what rigid clumps know of an atom (RigidClumps::gather)
+  nextra = 4;           // compute pair: iterations, residual, unconverged solves, dissipation
   pvector = new double[nextra];
   for (int k = 0; k < nextra; k++) pvector[k] = 0.0;
 }
@@ -79,6 +80,9 @@ void PairStokesDynamics::parse()
   group_id = "all";
   scene.settings = Scene::Settings();
   scene.lists_are_stale();
+  rigid.settings = RigidClumps::Settings();
+  rigid.forget();
+  bool has_shell = false;
 
   bool has_visc = false, has_cutoff = false;
   Keywords in(lmp, COMMAND, args);
@@ -120,8 +124,16 @@ void PairStokesDynamics::parse()
       scene.settings.rotation = in.yes_no();
     else if (in.is("tensor"))
       scene.settings.tensor = in.choice({"rpy", "oseen"}) == 0 ? SD_TENSOR_RPY : SD_TENSOR_OSEEN;
-    else if (in.is("rigid_clumps") || in.is("shell") || in.is("taper") || in.is("precondition") ||
-             in.is("warm_start"))
+    else if (in.is("rigid_clumps")) {
+      const size_t choice = in.choice({"no", "yes", "auto"});
+      rigid.settings.on = choice > 0;
+      rigid.settings.auto_resolve = choice == 2;
+    } else if (in.is("shell")) {
+      rigid.settings.shell = in.integer(1);
+      if (rigid.settings.shell > 1 && rigid.settings.shell < 12)
+        in.refuse("'" + std::to_string(rigid.settings.shell) + "' must be 1 or >= 12");
+      has_shell = true;
+    } else if (in.is("taper") || in.is("precondition") || in.is("warm_start"))
       in.refuse("not available in this version");
     else
       in.unknown();
@@ -134,13 +146,27 @@ void PairStokesDynamics::parse()
                ": keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
     scene.settings.cutoff = INFINITY;
   }
+  if (rigid.settings.on && !scene.settings.clumps_only)
+    fail(lmp, COMMAND + ": keyword rigid_clumps requires clumps_only yes");
+  if (rigid.settings.on && std::isfinite(scene.settings.cutoff))
+    fail(lmp,
+         COMMAND +
+             ": keyword rigid_clumps: no cut_off_distance may be given, the whole of a clump is "
+             "solved");
+  if (has_shell && !rigid.settings.on)
+    fail(lmp, COMMAND + ": keyword shell requires rigid_clumps yes");
+  if (rigid.settings.on && scene.settings.tensor == SD_TENSOR_OSEEN)
+    fail(lmp, COMMAND + ": keyword rigid_clumps is not available with tensor oseen");
+  // Points on a surface take torques, whether rotation is asked for or not.
+  if (rigid.settings.shell > 1) scene.settings.rotation = true;
+  rigid.settings.rotation = scene.settings.rotation;
   if (scene.settings.rotation && scene.settings.tensor == SD_TENSOR_OSEEN)
     fail(lmp,
          COMMAND +
              ": keyword rotation: yes is not available with tensor oseen, whose point forces do "
              "not rotate");
   if (has_vorticity && !scene.settings.rotation)
-    fail(lmp, COMMAND + ": keyword fluid_vorticity has no effect without rotation yes");
+    fail(lmp, COMMAND + ": keyword fluid_vorticity has no effect without rotation yes or a shell");
 }
 
 void PairStokesDynamics::coeff(int narg, char **arg)
@@ -245,6 +271,7 @@ void PairStokesDynamics::init_style()
                                  "stokes_dynamics applies it"));
   }
   scene.lists_are_stale();
+  rigid.new_run();
   warned_unconverged = false;
 }
 
@@ -349,27 +376,31 @@ bool PairStokesDynamics::numbers_only() const
   return true;
 }
 
-/* Half the vorticity: as given, or from the formulas of the fluid velocity. */
-void PairStokesDynamics::fluid_angular_velocity()
+/* Gradient of the fluid velocity from its formulas, its rotation replaced by fluid_vorticity where that is given; and half the
+ * vorticity. */
+void PairStokesDynamics::fluid_gradient()
 {
   const int n = atom->nlocal;
+  const bool formulas = fluid_velocity[0].is_atom_style() || fluid_velocity[1].is_atom_style() ||
+      fluid_velocity[2].is_atom_style();
+  fluid_varies = formulas || has_vorticity;
   w_inf.assign(3 * (size_t) n + 3, 0.0);
-  if (has_vorticity) {
+  if (!fluid_varies) return;
+  gradient.assign(9 * (size_t) n + 9, 0.0);
+  if (formulas) velocity_gradient(lmp, fluid_velocity, igroup, gradient.data());
+  if (has_vorticity)
     for (int d = 0; d < 3; d++) fluid_vorticity[d].evaluate(lmp, igroup, w_inf.data() + d, 3);
-    for (auto &w : w_inf) w *= 0.5;
-    return;
-  }
-  if (!fluid_velocity[0].is_atom_style() && !fluid_velocity[1].is_atom_style() &&
-      !fluid_velocity[2].is_atom_style())
-    return;
-  gradient.resize(9 * (size_t) n + 9);
-  velocity_gradient(lmp, fluid_velocity, igroup, gradient.data());
-  for (int i = 0; i < n; i++) {
-    const double *G = &gradient[9 * (size_t) i];
-    w_inf[3 * (size_t) i] = 0.5 * (G[7] - G[5]);
-    w_inf[3 * (size_t) i + 1] = 0.5 * (G[2] - G[6]);
-    w_inf[3 * (size_t) i + 2] = 0.5 * (G[3] - G[1]);
-  }
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;    // w_d = (d u_f / d x_e - d u_e / d x_f) / 2
+      double *G = &gradient[9 * (size_t) i], *w = &w_inf[3 * (size_t) i + d];
+      if (has_vorticity) {
+        const double strain = 0.5 * (G[3 * f + e] + G[3 * e + f]);
+        G[3 * f + e] = strain + 0.5 * *w;
+        G[3 * e + f] = strain - 0.5 * *w;
+      }
+      *w = 0.5 * (G[3 * f + e] - G[3 * e + f]);
+    }
 }
 
 /* Who takes part, viscosity, fluid velocity, slip. */
@@ -387,7 +418,7 @@ void PairStokesDynamics::state_of_the_step()
   if (!numbers_only()) modify->clearstep_compute();
   visc.evaluate(lmp, igroup, eta.data(), 1);
   for (int d = 0; d < 3; d++) fluid_velocity[d].evaluate(lmp, igroup, u_inf.data() + d, 3);
-  if (scene.settings.rotation) fluid_angular_velocity();
+  if (scene.settings.rotation || rigid.settings.on) fluid_gradient();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 
   if (region) region->prematch();
@@ -446,12 +477,17 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     const bool due = !same_spheres || displaced || fmod(step, update_every) == 0.0 ||
         step < global.last_solve ||
         floor(step / update_every) != floor(global.last_solve / update_every);
+    if (rigid.settings.on)
+      rigid_forces();
+    else
+      solving = active;
     if (due) {
-      solve();
+      if (!rigid.settings.on || rigid.any_loose()) solve();
       global.last_solve = step;
       global.spheres = count[0];
     }
     for (int i = 0; i < n; i++) {
+      if (rigid.settings.on && !solving[i] && active[i]) continue;
       const double *si = &slip[width() * (size_t) i];
       for (int d = 0; d < 3; d++) {
         state[i][State::FORCE + d] = active[i] ? drag[i] * (si[d] + state[i][State::VPRIME + d])
@@ -493,6 +529,42 @@ double PairStokesDynamics::dissipation(int i) const
   return power;
 }
 
+/* Forces of rigid clumps, and the v' that they stand for. Spheres of other clumps, and lone ones, are the solver's. */
+void PairStokesDynamics::rigid_forces()
+{
+  using State = FixStokesDynamicsState;
+  const int n = atom->nlocal;
+  const bool rotation = scene.settings.rotation;
+  const RigidClumps::Motion motion = {active, eta, u_inf, fluid_varies ? &gradient : nullptr};
+  rigid_result.assign(6 * (size_t) n + 6, 0.0);
+  rigid.forces(motion, rigid_result, solving);
+  for (int i = 0; i < n; i++) {
+    solving[i] = solving[i] && active[i];
+    if (solving[i] || !active[i]) continue;
+    double *state = fix_state->state[i];
+    const double *F = &rigid_result[6 * (size_t) i], *s = &slip[width() * (size_t) i];
+    for (int d = 0; d < 3; d++) {
+      state[State::FORCE + d] = F[d];
+      state[State::VPRIME + d] = F[d] / drag[i] - s[d];
+      if (!rotation) continue;
+      state[State::TORQUE + d] = F[3 + d];
+      state[State::WPRIME + d] = F[3 + d] / spin[i] - s[3 + d];
+    }
+    state[State::SOLVED] = 1.0;
+  }
+  if (!rigid.any_loose())    // lone spheres: nobody disturbs the fluid there
+    for (int i = 0; i < n; i++)
+      if (solving[i]) {
+        double *state = fix_state->state[i];
+        for (int d = 0; d < 3; d++) state[State::VPRIME + d] = 0.0;
+        if (rotation)
+          for (int d = 0; d < 3; d++) state[State::WPRIME + d] = 0.0;
+        state[State::SOLVED] = 1.0;
+      }
+  for (int i = 0; i < n; i++)
+    if (!active[i]) fix_state->state[i][State::SOLVED] = 0.0;
+}
+
 /* v' of every sphere, from the forces that solve the system for the velocities of now. */
 void PairStokesDynamics::solve()
 {
@@ -501,11 +573,13 @@ void PairStokesDynamics::solve()
   const bool rotation = scene.settings.rotation;
   solution.resize(m * n + m);
   work.resize(SD_SOLVE_WORK(n, width()) + 1);
-  scene.update(active, eta);
+  scene.update(solving, eta);
+  solver_drag.resize(n + 1);
+  for (int i = 0; i < n; i++) solver_drag[i] = solving[i] ? drag[i] : 0.0;
 
   sd_system system = {};
   system.n = n;
-  system.drag = drag.data();
+  system.drag = solver_drag.data();
   system.spin = rotation ? spin.data() : nullptr;
   system.apply = Scene::apply;
   system.sum = Scene::sum;
@@ -525,6 +599,7 @@ void PairStokesDynamics::solve()
   double **state = fix_state->state;
   for (int i = 0; i < n; i++) {
     const double *F = &solution[m * i], *si = &slip[m * i];
+    if (active[i] && !solving[i]) continue;    // of a rigid clump
     state[i][State::SOLVED] = active[i] ? 1.0 : 0.0;
     for (int d = 0; d < 3; d++) {
       state[i][State::VPRIME + d] = active[i] ? F[d] / drag[i] - si[d] : 0.0;

@@ -6,6 +6,7 @@
 
 #include "field.h"
 #include "fix_stokes_dynamics_state.h"
+#include "rigid_clumps.h"
 #include "scene.h"
 
 #include "sd_solve.h"
@@ -68,6 +69,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   bool has_vorticity;
   std::string region_id, group_id;
   Scene scene;
+  RigidClumps rigid;
 
   // looked up in init_style
   LAMMPS_NS::Region *region = nullptr;
@@ -77,15 +79,18 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   bool warned_unconverged = false, warned_nobody_applies = false;
 
   // of this step, per atom of this rank
-  std::vector<char> active;
-  std::vector<double> eta, u_inf, w_inf, gradient, slip, drag, spin, solution, work;
+  std::vector<char> active, solving;    // takes part; is the solver's
+  bool fluid_varies = false;            // is there a gradient of the fluid velocity?
+  std::vector<double> eta, u_inf, w_inf, gradient, slip, drag, spin, solver_drag, solution, work,
+      rigid_result;
 
   FixStokesDynamicsState *find_state() const;    // nullptr before the first run
   void parse();
   void allocate();
   void state_of_the_step();
   int width() const { return scene.settings.rotation ? 6 : 3; }    // unknowns of a sphere
-  void fluid_angular_velocity();
+  void fluid_gradient();
+  void rigid_forces();
   bool selected(int i) const;
   int faulty(int i) const;
   void complain();

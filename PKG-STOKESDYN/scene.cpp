@@ -14,13 +14,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
 Scene::Scene(LAMMPS *lmp, Pair *pair, const std::string &command) :
-    Pointers(lmp), pair(pair), command(command), candidates(), pairs()
+    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows()
 {
 }
 
@@ -28,6 +29,7 @@ Scene::~Scene()
 {
   sd_neighbors_free(&candidates);
   sd_neighbors_free(&pairs);
+  sd_neighbors_free(&rows);
 }
 
 bool Scene::all_pairs() const
@@ -76,27 +78,85 @@ void Scene::update(const std::vector<char> &active, const std::vector<double> &e
   }
 }
 
+/* Tags and molecule IDs of owned and ghost atoms. */
+void Scene::find_molecules()
+{
+  const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
+  tag.resize(n);
+  molecule.resize(n);
+  order.resize(n + 1);
+  for (int i = 0; i < nlocal; i++) molecule[i] = atom->molecule[i];
+  for (int i = 0; i < n; i++) tag[i] = atom->tag[i];
+  packing = MOLECULES;    // not every atom style sends molecule IDs to ghosts
+  Compat::forward_comm(comm, pair);
+}
+
 /* Once per re-neighbouring. Between two of them an atom moves by half the skin at most, so the skin is added to the cut-off. */
 void Scene::find_pairs()
 {
   const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
+  const double reach = settings.cutoff + neighbor->skin;
   sd_status status;
   if (settings.clumps_only) {
-    tag.resize(n);
-    molecule.resize(n);
-    order.resize(n + 1);
-    for (int i = 0; i < nlocal; i++) molecule[i] = atom->molecule[i];
-    for (int i = 0; i < n; i++) tag[i] = atom->tag[i];
-    packing = MOLECULES;    // not every atom style sends molecule IDs to ghosts
-    Compat::forward_comm(comm, pair);
+    find_molecules();
     status = sd_neighbors_clump(&candidates, positions(), tag.data(), molecule.data(), nlocal, n,
-                                settings.cutoff + neighbor->skin, order.data());
+                                reach, 0, order.data());
   } else
-    status =
-        sd_neighbors_cutoff(&candidates, positions(), nlocal, n, settings.cutoff + neighbor->skin);
+    status = sd_neighbors_cutoff(&candidates, positions(), nlocal, n, reach);
   if (status != SD_OK) out_of_memory();
-  if (settings.clumps_only && std::isinf(settings.cutoff)) check_clumps();
+  if (settings.clumps_only && std::isinf(settings.cutoff)) check_clumps(candidates, false);
   stale = false;
+}
+
+bool Scene::update_clumps()
+{
+  if (!clumps_stale) return false;
+  const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
+  find_molecules();
+  if (sd_neighbors_clump(&rows, positions(), tag.data(), molecule.data(), nlocal, n, INFINITY, 1,
+                         order.data()) != SD_OK)
+    out_of_memory();
+  check_clumps(rows, true);
+
+  clumps.clear();
+  member.clear();
+  owned.clear();
+  member_tag.clear();
+  std::vector<int> spheres;
+  for (int b = 0, e; b < n; b = e) {
+    for (e = b + 1; e < n && molecule[order[e]] == molecule[order[b]]; e++) {}
+    int first =
+        b;    // in order of tag and index: the owned one of lowest tag comes before its ghosts
+    while (first < e && order[first] >= nlocal) first++;
+    if (molecule[order[b]] == 0 || first == e) continue;
+
+    const int i = order[first];
+    spheres.assign(1, i);
+    spheres.insert(spheres.end(), rows.neighbor + rows.first[i], rows.neighbor + rows.first[i + 1]);
+    std::sort(spheres.begin(), spheres.end(), [this](int p, int q) {
+      return tag[p] < tag[q];
+    });
+    const int begin = member.size();
+    int k = b;    // walks through the block beside the spheres, which have the same order of tags
+    for (int j : spheres) {
+      while (tag[order[k]] != tag[j]) k++;
+      member.push_back(j);
+      member_tag.push_back(tag[j]);
+      owned.push_back(order[k] < nlocal ? order[k] : -1);
+    }
+    clumps.push_back({molecule[i], begin, (int) member.size()});
+  }
+  clumps_stale = false;
+  return true;
+}
+
+void Scene::refresh(std::vector<double> &v, int width)
+{
+  v.resize((size_t) width * (atom->nlocal + atom->nghost) + 1);
+  values = v.data();
+  values_width = width;
+  packing = VALUES;
+  Compat::forward_comm(comm, pair);
 }
 
 namespace {
@@ -122,7 +182,7 @@ namespace {
 
 /* Without a cut-off every sphere must see all of its clump. Each rank counts its own members of a molecule, the rank
  * (molecule modulo ranks) adds them up, and every rank asks back. */
-void Scene::check_clumps()
+void Scene::check_clumps(const sd_neighbors &list, bool one_row)
 {
   const int nlocal = atom->nlocal, nprocs = comm->nprocs;
   std::map<int64_t, int64_t> total;
@@ -162,13 +222,17 @@ void Scene::check_clumps()
 
   // A partner that is missing, or known only as an image more than half of a periodic box away.
   std::vector<int64_t> suspect;
+  std::set<int64_t> with_row;    // the row of one sphere covers the others of its clump
+  for (int i = 0; i < nlocal; i++)
+    if (list.first[i] < list.first[i + 1]) with_row.insert(molecule[i]);
   for (int i = 0; i < nlocal; i++) {
-    if (molecule[i] == 0 || a[i] == 0.0) continue;
-    const long first = candidates.first[i], last = candidates.first[i + 1];
+    const long first = list.first[i], last = list.first[i + 1];
+    if (molecule[i] == 0 || (one_row ? first == last && with_row.count(molecule[i]) : a[i] == 0.0))
+      continue;
     const bool complete = last - first + 1 == total[molecule[i]];
     Span span;
     for (long k = first; k < last; k++) {
-      const double *xj = atom->x[candidates.neighbor[k]], *xi = atom->x[i];
+      const double *xj = atom->x[list.neighbor[k]], *xi = atom->x[i];
       const double delta[3] = {xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
       span.add(delta);
     }
@@ -342,6 +406,9 @@ int Scene::pack_forward_comm(int n, int *list, double *buf)
       case FORCES:
         for (int d = 0; d < width(); d++) buf[m++] = force[width() * (size_t) i + d];
         break;
+      case VALUES:
+        for (int d = 0; d < values_width; d++) buf[m++] = values[values_width * (size_t) i + d];
+        break;
     }
   }
   return m;
@@ -361,6 +428,9 @@ void Scene::unpack_forward_comm(int n, int first, double *buf)
         break;
       case FORCES:
         for (int d = 0; d < width(); d++) force[width() * (size_t) i + d] = buf[m++];
+        break;
+      case VALUES:
+        for (int d = 0; d < values_width; d++) values[values_width * (size_t) i + d] = buf[m++];
         break;
     }
   }

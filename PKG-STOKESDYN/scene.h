@@ -40,7 +40,23 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* The spheres of this step: active[i] and eta[i] of this rank's atoms. Finds the pairs again if LAMMPS has re-neighboured.
    * Errors: a clump that the ghosts do not cover, or wider than half the periodic box. */
   void update(const std::vector<char> &active, const std::vector<double> &eta);
-  void lists_are_stale() { stale = true; }
+
+  /* The clumps of which this rank owns an atom, each once; lone spheres (molecule 0) are none. */
+  struct Clump {
+    int64_t molecule;
+    int begin, end;    // its spheres: member[begin] ... member[end-1], in order of tag
+  };
+  std::vector<Clump> clumps;
+  std::vector<int> member;    // owned or ghost atom: the images closest to the first owned one
+  std::vector<int> owned;     // the same sphere as an atom of this rank, -1: another rank has it
+  std::vector<int64_t> member_tag;
+  /* Finds them if LAMMPS has re-neighboured; did it? Errors as of update(). */
+  bool update_clumps();
+
+  /* Copies rows of width numbers from the atoms of this rank to their ghosts: values has owned atoms in, owned and ghosts out. */
+  void refresh(std::vector<double> &values, int width);
+
+  void lists_are_stale() { stale = clumps_stale = true; }
 
   /* u = Omega F, in the core's signature: ctx is a Scene. */
   static void apply(void *ctx, const double *F, double *u);
@@ -55,12 +71,12 @@ class Scene : protected LAMMPS_NS::Pointers {
   LAMMPS_NS::Pair *pair;
   std::string command;
 
-  bool stale = true;
+  bool stale = true, clumps_stale = true;
   bool filtered = false;              // does pairs differ from candidates?
   std::vector<double> a, w, force;    // of owned and ghost atoms
   std::vector<int64_t> tag, molecule;
   std::vector<int> order;
-  sd_neighbors candidates, pairs;
+  sd_neighbors candidates, pairs, rows;    // rows: one for each clump
 
   // all pairs: the active spheres of all ranks, in order of rank
   std::vector<int> own;               // local index of this rank's
@@ -68,12 +84,15 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<double> all_x, all_a, all_w, all_force, all_u;
   int n_all = 0, begin = 0;
 
-  enum { SPHERES, MOLECULES, FORCES } packing = SPHERES;
+  enum { SPHERES, MOLECULES, FORCES, VALUES } packing = SPHERES;
+  double *values = nullptr;    // of refresh()
+  int values_width = 0;
 
   int width() const { return settings.rotation ? 6 : 3; }
   const double *positions() const;
   void find_pairs();
-  void check_clumps();
+  void find_molecules();
+  void check_clumps(const sd_neighbors &list, bool one_row);
   void gather();
   void apply_list(const double *F, double *u);
   void apply_all(const double *F, double *u);

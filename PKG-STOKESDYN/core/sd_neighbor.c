@@ -122,7 +122,7 @@ static int by_molecule_tag_index(const void *pa, const void *pb, void *ctx)
 }
 
 sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
-                             const int64_t *molecule, int n, int n_all, double cutoff, int *order)
+                             const int64_t *molecule, int n, int n_all, double cutoff, int one_row, int *order)
 {
   sd_status status = sd_neighbors_reserve(list, n, 0);
   if (status != SD_OK) return status;
@@ -135,11 +135,13 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
   int *begin = malloc(sizeof(int) * 2 * ((size_t) n + 1)), *end = begin + n;
   if (!begin) return SD_ENOMEMORY;
   for (int b = 0, e; b < n_all; b = e) {
+    int rows = molecule[order[b]] != 0; /* molecule 0: a lone sphere */
     for (e = b + 1; e < n_all && molecule[order[e]] == molecule[order[b]]; e++) {}
     for (int k = b; k < e; k++)
       if (order[k] < n) {
         begin[order[k]] = b;
-        end[order[k]] = molecule[order[b]] == 0 ? b : e; /* molecule 0: a lone sphere */
+        end[order[k]] = rows ? e : b;
+        if (one_row) rows = 0;
       }
   }
 

@@ -1,0 +1,291 @@
+"""rigid_clumps yes: resistances computed once per shape, forces from pose and slip motion."""
+import numpy as np
+import pytest
+
+from model import forces, read_table, same_clump
+from system import Spheres, dump_lines, input_lines, lmp, read_dump
+from test_rotation import CLUSTERS, resistance, tabulated, torques
+
+WIDE = "comm_modify cutoff 40"
+SOLVED = "algorithm 2 relative_tolerance 1e-12 max_iter 1000"
+TRANSLATION, ROTATION = {12: 0.6e-2, 42: 0.35e-2}, {12: 1.5e-2, 42: 0.4e-2}
+
+
+def rotation_matrix(rng):
+    q = rng.normal(size=4)
+    w, x, y, z = q / np.linalg.norm(q)
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def many(name, count, seed=1, spacing=15.0, a=1.0):
+    """count copies of a cluster on a row, each turned, its spheres in another order, in rigid motion; returns motion too."""
+    rng = np.random.default_rng(seed)
+    shape = CLUSTERS[name]
+    x, v, w, molecule, turn, orders = [], [], [], [], [], []
+    for k in range(count):
+        R, order = rotation_matrix(rng), rng.permutation(len(shape))
+        centre, U, W = np.array([spacing * k, 0.3, -0.2]), rng.normal(size=3), rng.normal(size=3)
+        y = shape[order] @ R.T
+        x.append(a * y + centre)
+        v.append(U + np.cross(W, a * (y - y.mean(axis=0))))
+        w.append(np.broadcast_to(W, y.shape))
+        molecule += [10 * k + 3] * len(shape)
+    return Spheres(np.vstack(x), a, np.vstack(v), molecule), np.vstack(w)
+
+
+def forces_and_torques(sim, omega):
+    sim.raw("omega")[:] = omega[sim.ids() - 1]
+    sim.run(0)
+    return sim.drag, torques(sim)
+
+
+@pytest.mark.parametrize("name", CLUSTERS)
+def test_one_point_without_rotation_is_the_ordinary_solve(simulation, name):
+    spheres, omega = many(name, 3)
+    sim = simulation(spheres, f"clumps_only yes visc 1.3 {SOLVED}", comm=WIDE)
+    expected, _ = forces_and_torques(sim, omega)
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1.3", comm=WIDE)
+    F, T = forces_and_torques(sim, omega)
+    assert np.abs(F - expected).max() < 1e-10 * np.abs(expected).max()
+    assert np.abs(T).max() == 0.0
+
+
+@pytest.mark.parametrize("name", CLUSTERS)
+def test_one_point_with_rotation_is_the_ordinary_solve(simulation, name):
+    spheres, omega = many(name, 3)
+    sim = simulation(spheres, f"clumps_only yes visc 1.3 rotation yes {SOLVED}", comm=WIDE)
+    expected = np.hstack(forces_and_torques(sim, omega))
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes rotation yes visc 1.3", comm=WIDE)
+    answer = np.hstack(forces_and_torques(sim, omega))
+    for c in (slice(0, 3), slice(3, 6)):
+        assert np.abs(answer[:, c] - expected[:, c]).max() < 1e-9 * np.abs(expected[:, c]).max()
+    # v' and w' stand for those forces
+    rows, v = sim.fix_rows(), sim.v
+    assert np.abs(rows[:, 0:3] - 6 * np.pi * 1.3 * (rows[:, 3:6] - v)).max() < 1e-12 * np.abs(rows[:, 0:3]).max()
+
+
+def exact_kind(name):
+    return next(r["kind"] for r in read_table("clusters_full.csv") if r["name"] == name and r["kind"].startswith("exact"))
+
+
+@pytest.mark.parametrize("shell", [12, 42])
+@pytest.mark.parametrize("name", CLUSTERS)
+def test_shells_come_close_to_the_exact_drag(simulation, name, shell):
+    x = CLUSTERS[name]
+    R = resistance(simulation(Spheres(x, molecule=1), f"clumps_only yes rigid_clumps yes shell {shell} visc 1", comm=WIDE), x)
+    exact = tabulated(name, exact_kind(name))
+    assert np.abs(R - R.T).max() < 1e-9 * np.abs(R).max()
+    for block, limit in ((slice(0, 3), TRANSLATION[shell]), (slice(3, 6), ROTATION[shell])):
+        ours, theirs = np.linalg.eigvalsh(R[block, block]), np.linalg.eigvalsh(exact[block, block])
+        assert np.abs(ours / theirs - 1).max() < limit
+
+
+def test_lone_spheres_and_single_sphere_clumps_have_stokes_drag_and_torque(simulation):
+    a, eta = 0.7, 1.3
+    v, w = np.array([[0.3, -1.0, 0.4], [0.7, 0.1, -0.2]]), np.array([[0.2, 0.5, -0.4], [1.0, -0.3, 0.6]])
+    sim = simulation(Spheres([[0, 0, 0], [1.1, 0.3, 0]], a, v, [0, 4]), f"clumps_only yes rigid_clumps yes shell 42 visc {eta}")
+    F, T = forces_and_torques(sim, w)
+    assert np.abs(F + 6 * np.pi * eta * a * v).max() < 1e-10 * np.abs(F).max()
+    assert np.abs(T + 8 * np.pi * eta * a**3 * w).max() < 1e-10 * np.abs(T).max()
+
+
+def test_equal_clumps_share_one_shape_and_mirror_images_do_not(tmp_path):
+    spheres, _ = many("helix4_chiral", 5)
+    mirror = Spheres(spheres.x * [1, 1, -1] + [0, 0, 30], 1.0, spheres.v, np.array(spheres.molecule) + 1000)
+    both = Spheres(np.vstack((spheres.x, mirror.x)), 1.0, np.vstack((spheres.v, mirror.v)),
+                   np.concatenate((spheres.molecule, mirror.molecule)))
+    for n, system in ((1, spheres), (2, both)):
+        text = lmp(tmp_path, input_lines(system, "clumps_only yes rigid_clumps yes shell 12 visc 1", tmp_path / "data", comm=WIDE)
+                   + ["run 0", "run 0"], ranks=2).log
+        assert text.count("Rigid clumps, shape") == n
+        assert "hydrodynamic radius" in text
+
+
+def test_mirror_image_flips_the_coupling(simulation):
+    """Coupling of force and rotation, about the centroid: C' = -P C P for the image in the mirror P."""
+    x, P = CLUSTERS["helix4_chiral"], np.diag([1.0, 1.0, -1.0])
+    couplings = []
+    for y in (x, x @ P):
+        R = resistance(simulation(Spheres(y, molecule=1), "clumps_only yes rigid_clumps yes shell 42 visc 1", comm=WIDE), y)
+        couplings.append(R[:3, 3:])
+    assert np.abs(couplings[0]).max() > 0.5
+    assert np.abs(couplings[1] + P @ couplings[0] @ P).max() < 1e-9 * np.abs(couplings[0]).max()
+
+
+# Any linear flow: G of u = G x, as formulas or stored per atom.
+G = np.array([[0.2, 0.3, -0.2], [0.1, -0.5, 0.5], [-0.4, 0.25, 0.3]])
+FORMULAS = "\n".join("variable g{} atom {}*x+{}*y+{}*z".format(n, *row) for n, row in zip("xyz", G))
+STORED = ("fix u all property/atom d_ux d_uy d_uz\n" + "\n".join(f"set group all d_u{n} v_g{n}" for n in "xyz")
+          + "\ncompute u all property/atom d_ux d_uy d_uz\n" + "\n".join(f"variable s{n} atom c_u[{k + 1}]" for k, n in enumerate("xyz")))
+
+
+@pytest.mark.parametrize("name", ["doublet", "trimer_line", "square", "tetrahedron", "helix4_chiral"])
+def test_linear_flow_is_exact(simulation, name):
+    """With one point a sphere: the same as the ordinary solve in the same flow, clumps in rigid motion."""
+    spheres, omega = many(name, 2)
+    flow = "fluid_velocity v_gx v_gy v_gz"
+    sim = simulation(spheres, f"clumps_only yes visc 1.3 {SOLVED} {flow}", before_pair=FORMULAS, comm=WIDE)
+    expected, _ = forces_and_torques(sim, omega)
+    sim = simulation(spheres, f"clumps_only yes rigid_clumps yes visc 1.3 {flow}", before_pair=FORMULAS, comm=WIDE)
+    F, _ = forces_and_torques(sim, omega)
+    assert np.abs(F - expected).max() < 1e-10 * np.abs(expected).max()
+
+
+def test_flow_stored_per_atom_is_the_flow_of_the_formulas_where_the_clump_spans_space(simulation):
+    spheres, omega = many("tetrahedron", 2)
+    answers = []
+    for prefix, lines in (("g", FORMULAS), ("s", FORMULAS + "\n" + STORED)):
+        sim = simulation(spheres, f"clumps_only yes rigid_clumps yes shell 12 visc 1.3 fluid_velocity v_{prefix}x v_{prefix}y v_{prefix}z",
+                         before_pair=lines, comm=WIDE)
+        answers.append(np.hstack(forces_and_torques(sim, omega)))
+    assert np.abs(answers[0] - answers[1]).max() < 1e-9 * np.abs(answers[0]).max()
+
+
+def test_chain_along_the_flow_of_a_shear_feels_the_vorticity(simulation):
+    """u_x = g z, chain of 3 along x: its centres see no velocity at all, but it must turn. Against the ordinary solve with torques."""
+    g = 0.9
+    spheres = Spheres(CLUSTERS["trimer_line"][:, [2, 1, 0]], 1.0, molecule=1)
+    expected = resistance(simulation(spheres, f"clumps_only yes visc 1 rotation yes {SOLVED} fluid_velocity v_ux 0 0",
+                                     before_pair=f"variable ux atom {g}*z", comm=WIDE), spheres.x)
+    answers = []
+    for words in (f"rotation yes {SOLVED}", "rigid_clumps yes rotation yes"):
+        sim = simulation(spheres, f"clumps_only yes visc 1 {words} fluid_velocity v_ux 0 0", before_pair=f"variable ux atom {g}*z",
+                         comm=WIDE)
+        sim.run(0)
+        F, T = sim.drag, torques(sim)
+        answers.append((T + np.cross(spheres.x, F)).sum(axis=0))
+    assert answers[0][1] > 1.0
+    assert np.abs(answers[1] - answers[0]).max() < 1e-9 * answers[0][1]
+    assert expected.shape == (6, 6)
+
+
+@pytest.mark.parametrize("words", ["rotation no", "rotation yes", "shell 12"])
+def test_ranks_periodic_borders_and_order_leave_the_motion_alone(tmp_path, words):
+    """Clumps that move under fix rigid/small in a periodic box, across its borders, 1 against 2 and 4 ranks, list and tiled."""
+    spheres, _ = many("tetrapod5", 6, spacing=9.0)
+    box = [(-9.0, 45.0), (-9.0, 9.0), (-9.0, 9.0)]
+    last = {}
+    for ranks, comm in ((1, ""), (2, ""), (4, "comm_style tiled\nbalance 1.0 rcb")):
+        lines = input_lines(spheres, f"clumps_only yes rigid_clumps yes {words} visc 1.3", tmp_path / "data", boundary="p p p", box=box,
+                            comm="comm_modify cutoff 6\n" + comm, dt=0.01)
+        lines += ["thermo_style custom step", "fix down all addforce 3.0 1.0 -2.0", "fix rigid all rigid/small molecule"]
+        lines += dump_lines(tmp_path / "dump", every=200, columns="xu yu zu vx vy vz f_drag[1] f_drag[2] f_drag[3]") + ["run 200"]
+        lmp(tmp_path, lines, ranks=ranks)
+        last[ranks] = read_dump(tmp_path / "dump")[-1][1]
+    assert np.abs(last[1][:, 0:3] - spheres.x).max() > 0.5
+    for ranks in (2, 4):
+        for c in (slice(0, 3), slice(3, 6), slice(6, 9)):
+            assert np.abs(last[ranks][:, c] - last[1][:, c]).max() < 1e-10 * np.abs(last[1][:, c]).max()
+
+
+def test_restart_goes_on_as_the_unbroken_run(tmp_path):
+    spheres, _ = many("helix4_chiral", 3)
+    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 12 visc 1.3", tmp_path / "data", comm=WIDE, dt=0.01)
+    moves = ["thermo_style custom step", "fix down all addforce 3.0 1.0 -2.0", "fix rigid all rigid/small molecule"]
+    columns = "xu yu zu vx vy vz f_drag[1] f_drag[7] f_drag[8]"
+    lmp(tmp_path, lines + moves + [f"restart 50 {tmp_path}/restart"] + dump_lines(tmp_path / "whole", every=100, columns=columns)
+        + ["run 100"])
+    lmp(tmp_path, ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/restart.50", WIDE, "fix drag all stokes_dynamics"] + moves
+        + dump_lines(tmp_path / "rest", every=100, columns=columns) + ["run 50"])
+    whole, rest = read_dump(tmp_path / "whole")[-1][1], read_dump(tmp_path / "rest")[-1][1]
+    assert np.abs(whole - rest).max() < 1e-10 * np.abs(whole).max()
+
+
+def test_force_and_torque_sums_dissipate(simulation):
+    spheres, omega = many("fcc13", 2)
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes shell 12 visc 1.3", comm=WIDE)
+    F, T = forces_and_torques(sim, omega)
+    power = -(F * spheres.v).sum() - (T * omega).sum()
+    assert power > 0.0
+    assert sim.fix_scalar() == pytest.approx(power, rel=1e-12)
+
+
+# --- what is not rigid
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_clump_that_bends_is_an_error_that_names_the_molecule(tmp_path, ranks):
+    spheres, _ = many("square", 3)
+    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1.3", tmp_path / "data", comm=WIDE, dt=1e-3)
+    ended = lmp(tmp_path, lines + ["fix nve all nve/sphere", "velocity all create 1.0 4711", "run 200"], ranks=ranks, succeed=False)
+    assert "keyword rigid_clumps: the clump of molecule" in ended.text
+    assert "is not rigid" in ended.text
+
+
+def test_auto_solves_bent_clumps_anew(simulation):
+    """Loose spheres with drag: every clump soon loses its shape. The force is the model's for the velocities of the half step."""
+    spheres, omega = many("square", 3)
+    sim = simulation(spheres, f"clumps_only yes visc 1.3 rigid_clumps auto {SOLVED}", comm=WIDE, dt=1e-3)
+    sim.command("fix nve all nve/sphere")
+    sim.run(300)
+    rows = sim.fix_rows()
+    half_step = rows[:, 3:6] - rows[:, 0:3] / (6 * np.pi * 1.3)
+    now = Spheres(sim.x, 1.0, half_step, spheres.molecule)
+    F = forces(now, 1.3, sees=same_clump(now))
+    assert sim.solves > 100
+    assert np.abs(rows[:, 0:3] - F).max() < 1e-9 * np.abs(F).max()
+
+
+LOSE = """group gone id 3
+fix nve all nve/limit 1e-9
+region r sphere {} {} {} 0.1
+fix lose gone evaporate 1 1 r 4711"""
+
+
+def test_lost_atom_is_an_error(simulation):
+    spheres, _ = many("square", 2)
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1.3", comm=WIDE)
+    sim.commands(LOSE.format(*spheres.x[2]))
+    with pytest.raises(Exception, match="molecule 3 has gained or lost atoms"):
+        sim.run(5)
+
+
+def test_auto_goes_on_after_a_lost_atom(simulation):
+    spheres, _ = many("square", 2)
+    sim = simulation(spheres, f"clumps_only yes rigid_clumps auto visc 1.3 {SOLVED}", comm=WIDE)
+    sim.commands(LOSE.format(*spheres.x[2])).run(5)
+    assert sim.n == 7 and sim.solves > 0
+    assert np.all(np.isfinite(sim.drag))
+
+
+@pytest.mark.parametrize("how", ["group half", "region r"])
+def test_split_clump_is_an_error(simulation, how):
+    spheres, _ = many("square", 2)
+    x = spheres.x[0]
+    with pytest.raises(Exception, match="the clump of molecule 3 is split by the keyword group or region"):
+        simulation(spheres, f"clumps_only yes rigid_clumps yes visc 1.3 {how}", comm=WIDE,
+                   before_pair="group half id 1:2 5:8\nregion r sphere {} {} {} 1.0".format(*x)).run(0)
+
+
+@pytest.mark.parametrize("words, message", [
+    ("cut_off_distance inf rigid_clumps yes", "keyword rigid_clumps requires clumps_only yes"),
+    ("clumps_only yes cut_off_distance 5 rigid_clumps yes", "keyword rigid_clumps: no cut_off_distance may be given"),
+    ("clumps_only yes rigid_clumps maybe", "keyword rigid_clumps: 'maybe' is none of: no, yes, auto"),
+    ("clumps_only yes rigid_clumps yes shell 7", "keyword shell: '7' must be 1 or >= 12"),
+    ("clumps_only yes rigid_clumps yes shell -1", "keyword shell: '-1' must be >= 1"),
+    ("clumps_only yes shell 12", "keyword shell requires rigid_clumps yes"),
+    ("clumps_only yes rigid_clumps yes tensor oseen", "keyword rigid_clumps is not available with tensor oseen"),
+])
+def test_bad_input(simulation, words, message):
+    with pytest.raises(Exception, match=message):
+        simulation(Spheres([[0, 0, 0]]), f"{words} visc 1")
+
+
+def test_spheres_at_one_point_are_an_error(simulation):
+    with pytest.raises(Exception, match="two of its spheres of equal radius are at one point"):
+        simulation(Spheres([[0, 0, 0], [0, 0, 0], [1, 0, 0]], molecule=1), "clumps_only yes rigid_clumps yes visc 1").run(0)
+
+
+def test_a_resistance_too_large_for_memory_is_an_error_before_anything_is_allocated(simulation):
+    with pytest.raises(Exception, match="needs .* GB, more than 4; use a smaller shell"):
+        simulation(Spheres(CLUSTERS["fcc13"], molecule=1), "clumps_only yes rigid_clumps yes shell 100000000 visc 1", comm=WIDE).run(0)
+
+
+def test_ghosts_too_short_for_a_clump_are_an_error(tmp_path):
+    spheres = Spheres(np.column_stack((2.0 * np.arange(10), np.zeros(10), np.zeros(10))), molecule=1)
+    ended = lmp(tmp_path, input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1", tmp_path / "data") + ["run 0"], ranks=2,
+                succeed=False)
+    assert "use: comm_modify cutoff 18.3" in ended.text
+
+
