@@ -1,0 +1,115 @@
+#include "sd_linear.h"
+
+#include <math.h>
+#include <string.h>
+
+void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t);
+void dpotrs_(const char *uplo, const int *n, const int *nrhs, const double *a, const int *lda,
+             double *b, const int *ldb, int *info, size_t);
+
+/* OpenBLAS may start as many threads as there are cores, on every MPI rank. Absent in other libraries. */
+#if defined(__GNUC__) && !defined(__APPLE__)
+__attribute__((weak)) void openblas_set_num_threads(int);
+__attribute__((weak)) int openblas_get_num_threads(void);
+static int one_thread(void)
+{
+  if (!openblas_set_num_threads || !openblas_get_num_threads) return 0;
+  const int before = openblas_get_num_threads();
+  if (before > 1) openblas_set_num_threads(1);
+  return before;
+}
+static void threads_as_before(int before)
+{
+  if (before > 1) openblas_set_num_threads(before);
+}
+#else
+static int one_thread(void)
+{
+  return 0;
+}
+static void threads_as_before(int before)
+{
+  (void) before;
+}
+#endif
+
+sd_status sd_cholesky_solve(int n, double *A, int count, double *B)
+{
+  /* row-major upper is column-major lower */
+  const int before = one_thread();
+  int info = 0;
+  dpotrf_("L", &n, A, &n, &info, 1);
+  if (info == 0) dpotrs_("L", &n, &count, A, &n, B, &n, &info, 1);
+  threads_as_before(before);
+  return info == 0 ? SD_OK : SD_ESINGULAR;
+}
+
+void sd_eigen(int n, const double *A, double *w, double *V)
+{
+  double a[36];
+  memcpy(a, A, sizeof(double) * (size_t) (n * n));
+  for (int i = 0; i < n * n; i++) V[i] = i % (n + 1) == 0;
+  for (int sweep = 0; sweep < 50; sweep++) {
+    double off = 0.0, all = 0.0;
+    for (int p = 0; p < n; p++)
+      for (int q = 0; q < n; q++) {
+        all += a[n * p + q] * a[n * p + q];
+        if (p != q) off += a[n * p + q] * a[n * p + q];
+      }
+    if (!(off > 1e-36 * all)) break;
+    for (int p = 0; p < n; p++)
+      for (int q = p + 1; q < n; q++) {
+        const double h = a[n * p + q];
+        if (h == 0.0) continue;
+        const double theta = 0.5 * (a[n * q + q] - a[n * p + p]) / h;
+        const double t = (theta < 0.0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(1.0 + theta * theta));
+        const double c = 1.0 / sqrt(1.0 + t * t), s = t * c;
+        for (int k = 0; k < n; k++) { /* columns p and q */
+          const double x = a[n * k + p], y = a[n * k + q];
+          a[n * k + p] = c * x - s * y;
+          a[n * k + q] = s * x + c * y;
+          const double v = V[n * k + p], u = V[n * k + q];
+          V[n * k + p] = c * v - s * u;
+          V[n * k + q] = s * v + c * u;
+        }
+        for (int k = 0; k < n; k++) { /* rows p and q */
+          const double x = a[n * p + k], y = a[n * q + k];
+          a[n * p + k] = c * x - s * y;
+          a[n * q + k] = s * x + c * y;
+        }
+      }
+  }
+  for (int i = 0; i < n; i++) w[i] = a[n * i + i];
+  for (int i = 0; i < n; i++) {
+    int m = i;
+    for (int j = i + 1; j < n; j++)
+      if (w[j] > w[m]) m = j;
+    if (m == i) continue;
+    const double x = w[i];
+    w[i] = w[m];
+    w[m] = x;
+    for (int k = 0; k < n; k++) {
+      const double v = V[n * k + i];
+      V[n * k + i] = V[n * k + m];
+      V[n * k + m] = v;
+    }
+  }
+}
+
+void sd_pseudo_inverse6(const double R[36], double inverse[36])
+{
+  const double tt = R[0] + R[7] + R[14], rr = R[21] + R[28] + R[35];
+  const double length = tt > 0.0 && rr > 0.0 ? sqrt(rr / tt) : 1.0;
+  double A[36], w[6], V[36];
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++)
+      A[6 * p + q] = R[6 * p + q] / ((p < 3 ? 1.0 : length) * (q < 3 ? 1.0 : length));
+  sd_eigen(6, A, w, V);
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) {
+      double s = 0.0;
+      for (int k = 0; k < 6; k++)
+        if (w[k] > 1e-9 * w[0]) s += V[6 * p + k] * V[6 * q + k] / w[k];
+      inverse[6 * p + q] = s / ((p < 3 ? 1.0 : length) * (q < 3 ? 1.0 : length));
+    }
+}

@@ -1,0 +1,56 @@
+/* Small and dense linear algebra: eigenvalues of small symmetric matrices, Cholesky (LAPACK), rotations. Row-major throughout. */
+#ifndef SD_LINEAR_H
+#define SD_LINEAR_H
+
+#include "sd_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Eigenvalues w [n], largest first, and eigenvectors, the columns of V [n n], of the symmetric A [n n]; n <= 6. Jacobi's
+ * rotations. */
+void sd_eigen(int n, const double *A, double *w, double *V);
+
+/* Pseudo-inverse of the symmetric positive semidefinite 6x6 resistance or mobility about some point: eigenvalues below 1e-9 of
+ * the
+ * largest count as zero. Rotations are first made comparable to translations by the length that the matrix itself has,
+ * (tr RR / tr TT)^(1/2). */
+void sd_pseudo_inverse6(const double R[36], double inverse[36]);
+
+/* Solve A X = B by Cholesky: A [n n] symmetric positive definite, one triangle is enough (elements A[n i + j], j >= i;
+ * destroyed),
+ * B [count][n], one right-hand side after the other, X in its place. One thread.
+ * SD_OK, or SD_ESINGULAR when a pivot is not positive. */
+sd_status sd_cholesky_solve(int n, double *A, int count, double *B);
+
+/* y = A x; y = A^T x; C = A B. 3x3, no aliasing. */
+static inline void sd_multiply3(const double A[9], const double x[3], double y[3])
+{
+  for (int p = 0; p < 3; p++) y[p] = A[3 * p] * x[0] + A[3 * p + 1] * x[1] + A[3 * p + 2] * x[2];
+}
+static inline void sd_multiply3t(const double A[9], const double x[3], double y[3])
+{
+  for (int p = 0; p < 3; p++) y[p] = A[p] * x[0] + A[3 + p] * x[1] + A[6 + p] * x[2];
+}
+static inline void sd_product3(const double A[9], const double B[9], double C[9])
+{
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      C[3 * p + q] = A[3 * p] * B[q] + A[3 * p + 1] * B[3 + q] + A[3 * p + 2] * B[6 + q];
+}
+static inline void sd_cross(const double a[3], const double b[3], double c[3])
+{
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+static inline double sd_dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
