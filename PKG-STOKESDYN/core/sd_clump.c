@@ -52,9 +52,9 @@ static void surface_free(surface *s)
 }
 
 /* A point is hidden when it lies deeper inside the shell of another sphere than this, in radii of that shell's points. Along
- * the seam
- * of two spheres both keep what would leave a gap as wide as their spacing; deeper, points of nearly coincident spheres double.
- * 0.4 makes the drag of pairs and rows at any overlap (0.1 to 1.9 radii apart) as accurate as that of touching spheres. */
+ * the seam of two spheres both keep what would leave a gap as wide as their spacing; deeper, points of nearly coincident
+ * spheres double. 0.4 makes the drag of pairs and rows at any overlap (0.1 to 1.9 radii apart) as accurate as that of touching
+ * spheres. */
 static const double seam = 0.4;
 
 /* Is p inside one of the spheres but its own, whose radii are given? */
@@ -69,8 +69,7 @@ static int hidden(const sd_shape *s, const double *radius, int own, const double
 }
 
 /* Which part of its surface every sphere shows: by a fine shell of directions. A hair inside, so that spheres that only touch,
- * and
- * points of a symmetric shape that lie on two spheres, are not decided by rounding. */
+ * and points of a symmetric shape that lie on two spheres, are not decided by rounding. */
 static sd_status exposed_fractions(const sd_shape *s, sd_shells *cache, double *fraction)
 {
   enum { FINE = 642 };
@@ -95,8 +94,7 @@ static sd_status exposed_fractions(const sd_shape *s, sd_shells *cache, double *
 enum { FEWEST = 12, MOST = 642 };
 
 /* Points of the whole shell of every sphere: even density, n exposed points for every sphere that shows. Without fractions
- * (NULL):
- * as if nothing were hidden. */
+ * (NULL): as if nothing were hidden. */
 static void share_points(const sd_shape *s, int n, const double *fraction, int *count)
 {
   const double most = n > MOST ? n : MOST;
@@ -115,8 +113,7 @@ static void share_points(const sd_shape *s, int n, const double *fraction, int *
 }
 
 /* Points are not quite as even as a sphere, and where they happen to lie at a contact or along a seam is chance. With few
- * points the
- * result is the mean over this many orientations of all shells together. */
+ * points the result is the mean over this many orientations of all shells together. */
 static int orientations(int n)
 {
   return n == 1 ? 1 : 1 + 95 / n;
@@ -490,9 +487,8 @@ void sd_resistance_shift(const double R[36], const double d[3], double out[36])
 }
 
 /* Where the coupling block is symmetric. M: 3x3 blocks translation (tt) and coupling (cc: rotation rows, translation columns)
- * about
- * the present point. Moving it by d changes cc by sign [d] tt; the antisymmetric parts cancel if (tr tt - tt) d = sign vec cc,
- * vec_i = e_ijk cc_jk. Degenerate directions (no translation) stay where they are. */
+ * about the present point. Moving it by d changes cc by sign [d] tt; the antisymmetric parts cancel if (tr tt - tt) d = sign
+ * vec cc, vec_i = e_ijk cc_jk. Degenerate directions (no translation) stay where they are. */
 static void symmetric_coupling(const double tt[9], const double cc[9], double sign, double d[3])
 {
   const double trace = tt[0] + tt[4] + tt[8], v[3] = {cc[5] - cc[7], cc[6] - cc[2], cc[1] - cc[3]};

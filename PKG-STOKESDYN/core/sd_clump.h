@@ -81,8 +81,7 @@ sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *options,
 
 /* Solve. The shape must live as long as the clump does not need it: it is not kept. The owner frees.
  * SD_OK; SD_ENOMEMORY (see need); SD_ESINGULAR: spheres at one point with equal radii (within 1e-6 of the size), or so close to
- * it
- * that double precision does not tell them apart; the iterative solver's codes. need may be NULL. */
+ * it that double precision does not tell them apart; the iterative solver's codes. need may be NULL. */
 sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *options, sd_shells *cache,
                           sd_clump *clump, sd_clump_need *need);
 void sd_clump_free(sd_clump *clump);

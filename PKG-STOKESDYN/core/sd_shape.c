@@ -130,8 +130,8 @@ static void invariants(int n, const double *x, const double *a, double v[6])
 }
 
 /* Directed pairs that may span the frame, by preference; ties remain when the shape is symmetric. Each entry of the key is a
- * length:
- * distance of i from the centroid (largest), its radius, distance of j from the line of i (largest), its radius, distance i-j. */
+ * length: distance of i from the centroid (largest), its radius, distance of j from the line of i (largest), its radius,
+ * distance i-j. */
 enum { KEYS = 5 };
 static void pair_key(const double *x, const double *a, int i, int j, double key[KEYS])
 {

@@ -1,9 +1,7 @@
-/* The shape of a rigid clump of spheres: what it is up to rotation, translation and the order of its spheres; its symmetry; and
- * the
- * pose of a clump of this shape, from where its spheres are now.
+/* The shape of a rigid clump of spheres: what it is up to rotation, translation and the order of its spheres; its symmetry;
+ * and the pose of a clump of this shape, from where its spheres are now.
  *
- * Lengths "within tolerance" are within 1e-6 of the size, the largest distance of a sphere's surface from the centroid of
- * centres. */
+ * Lengths "within tolerance" are within 1e-6 of the size, the largest distance of a sphere's surface from the centroid. */
 #ifndef SD_SHAPE_H
 #define SD_SHAPE_H
 
@@ -22,7 +20,7 @@ typedef struct {
   double size;     /* largest |x| + a */
   int rank;        /* 0: all centres in one point, 1: on a line, 2: otherwise */
   double frame[9]; /* columns: three unit vectors fixed by the shape alone, right- or left-handed */
-  int symmetries; /* rotations and reflections that map the shape onto itself (rank 1: eight azimuths stand for all); 1 at least */
+  int symmetries; /* rotations and reflections that map it onto itself, at least 1 (rank 1: eight azimuths stand for all) */
   double *g;      /* [9 symmetries] their matrices, x_perm[k] = g x_k */
   int *perm;      /* [n symmetries] */
   /* private */
