@@ -68,24 +68,34 @@ static int hidden(const sd_shape *s, const double *radius, int own, const double
   return 0;
 }
 
-/* Which part of its surface every sphere shows: by a fine shell of directions. A hair inside, so that spheres that only touch,
- * and points of a symmetric shape that lie on two spheres, are not decided by rounding. */
+/* Which part of its surface every sphere shows: all of it, or by a fine shell of directions. A hair inside, so that spheres that
+ * only touch, and points of a symmetric shape that lie on two spheres, are not decided by rounding. */
 static sd_status exposed_fractions(const sd_shape *s, sd_shells *cache, double *fraction)
 {
   enum { FINE = 642 };
-  const sd_shell *fine;
+  const sd_shell *fine = NULL;
+  sd_status status = SD_OK;
   double *radius = malloc(sizeof(double) * (size_t) s->n);
-  const sd_status status = radius ? sd_shells_get(cache, FINE, &fine) : SD_ENOMEMORY;
-  for (int i = 0; i < s->n && radius; i++) radius[i] = 0.99983 * s->a[i];
+  if (!radius) return SD_ENOMEMORY;
+  for (int i = 0; i < s->n; i++) radius[i] = 0.99983 * s->a[i];
   for (int i = 0; i < s->n && status == SD_OK; i++) {
-    int count = 0;
-    for (int m = 0; m < fine->n; m++) {
+    int overlaps = 0, count = 0;
+    for (int j = 0; j < s->n && !overlaps; j++) {
+      const double *x = s->x + 3 * i, *y = s->x + 3 * j,
+                   d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      const double reach = s->a[i] + radius[j];
+      overlaps = j != i && sd_dot(d, d) < reach * reach;
+    }
+    fraction[i] = 1.0;
+    if (!overlaps) continue;
+    status = sd_shells_get(cache, FINE, &fine);
+    for (int m = 0; m < FINE && status == SD_OK; m++) {
       double e[3], p[3];
       sd_multiply3(s->frame, fine->p + 3 * m, e);
       for (int d = 0; d < 3; d++) p[d] = s->x[3 * i + d] + s->a[i] * e[d];
       count += !hidden(s, radius, i, p);
     }
-    fraction[i] = (double) count / fine->n;
+    fraction[i] = (double) count / FINE;
   }
   free(radius);
   return status;
@@ -97,7 +107,7 @@ enum { FEWEST = 12, MOST = 642 };
  * (NULL): as if nothing were hidden. */
 static void share_points(const sd_shape *s, int n, const double *fraction, int *count)
 {
-  const double most = n > MOST ? n : MOST;
+  const double most = fmax(MOST, 4.0 * n);
   double area = 0.0;
   int visible = 0;
   for (int i = 0; i < s->n; i++) {
@@ -272,14 +282,14 @@ typedef struct {
   const surface *s;
   const double *ones;
   const sd_clump_options *o;
-  int solve, products;
+  int solve, solves, products;
 } operator;
 
 static void apply(void *ctx, const double *F, double *u)
 {
   operator* op = ctx;
   const int n = op->s->n;
-  if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->products++);
+  if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->solves, op->products++);
   if (width(op->o) == 3) {
     const sd_spheres spheres = {op->s->x, op->s->a, op->ones};
     sd_product_all(SD_TENSOR_RPY, &spheres, n, 0, n, F, u);
@@ -300,8 +310,8 @@ static void apply(void *ctx, const double *F, double *u)
   }
 }
 
-static sd_status solve_iterative(const surface *s, const sd_clump_options *o, double *B,
-                                 int *iterations)
+static sd_status solve_iterative(const surface *s, const sd_clump_options *o, int k, int times,
+                                 double *B, int *iterations)
 {
   const int m = width(o), n = s->n;
   const size_t N = (size_t) m * n;
@@ -313,13 +323,13 @@ static sd_status solve_iterative(const surface *s, const sd_clump_options *o, do
     spin[i] = 8.0 * SD_PI * s->a[i] * s->a[i] * s->a[i];
     ones[i] = 1.0;
   }
-  operator op = {s, ones, o, 0, 0};
+  operator op = {.s = s, .ones = ones, .o = o, .solves = COLUMNS * times};
   const sd_system A = {
       .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
   sd_status status = SD_OK;
   for (int c = 0; c < COLUMNS && status == SD_OK; c++) {
     sd_solve_report report;
-    op.solve = c;
+    op.solve = COLUMNS * k + c;
     op.products = 0;
     status =
         sd_solve_gradients(&A, B + N * (size_t) c, o->tolerance, o->max_iter, F, work, &report);
@@ -551,9 +561,10 @@ static int coincident(const sd_shape *s)
   return 0;
 }
 
-/* Table for the forces on the points of one surface */
+/* Table for the forces on the points of one surface, number k of so many */
 static sd_status solve_surface(const sd_shape *shape, const surface *s, const sd_clump_options *o,
-                               const sd_clump_need *need, sd_clump *clump, double *table)
+                               const sd_clump_need *need, sd_clump *clump, double *table, int k,
+                               int times)
 {
   const int m = width(o);
   double *B = malloc(sizeof(double) * COLUMNS * m * (size_t) s->n);
@@ -565,8 +576,9 @@ static sd_status solve_surface(const sd_shape *shape, const surface *s, const sd
       memcpy(b, u, sizeof(u));
       if (m == 6) memcpy(b + 3, w, sizeof(w));
     }
-  const sd_status status = need->dense <= o->memory ? solve_dense(s, m, B)
-                                                    : solve_iterative(s, o, B, &clump->iterations);
+  const sd_status status = need->dense <= o->memory
+      ? solve_dense(s, m, B)
+      : solve_iterative(s, o, k, times, B, &clump->iterations);
   if (status == SD_OK) gather(shape, s, m, B, table);
   free(B);
   return status;
@@ -589,7 +601,7 @@ static sd_status solve_shells(const sd_shape *shape, const sd_clump_options *o, 
     surface s;
     status = surface_of_shells(shape, count, k, cache, &s);
     if (status == SD_OK) status = check_need(s.n, o, need);
-    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, one);
+    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, one, k, times);
     if (k == 0) clump->points = s.n;
     for (size_t i = 0; i < size && status == SD_OK; i++) clump->table[i] += one[i] / times;
     surface_free(&s);
@@ -619,7 +631,7 @@ sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *o, sd_s
   } else if (o->shell == 1) {
     surface s;
     status = surface_of_centres(shape, &s);
-    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, clump->table);
+    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, clump->table, 0, 1);
     surface_free(&s);
   } else
     status = solve_shells(shape, o, cache, clump, need);

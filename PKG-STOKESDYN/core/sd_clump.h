@@ -11,7 +11,7 @@
  *   shell n >= 12          point forces on the surface of every sphere, see sd_shell.h. Points inside another sphere of the
  *                          clump are no surface and left out. The surface is covered evenly, with n points for every sphere that
  *                          shows: spheres of a fused clump get more than n of which n are left; with unequal radii a sphere's
- *                          shell has a number in proportion to a^2, at least 12 and at most max(n, 642). With few points: mean
+ *                          shell has a number in proportion to a^2, at least 12 and at most max(4n, 642). With few points: mean
  *                          of several orientations of the shells.
  * With shells the lone sphere is exact (6 pi eta a, 8 pi eta a^3, no response to strain), and the result has the symmetry of the
  * shape: it is averaged over the shape's own symmetries, and the shells are oriented by the shape's frame, so that neither the
@@ -67,8 +67,9 @@ typedef struct {
       memory; /* bytes that a solve may use; dense if it fits, else iterative, else SD_ENOMEMORY before anything is allocated */
   double tolerance; /* of iterative solves */
   int max_iter;
-  /* before every product of an iterative solve: number of the solve, 0-11, and products so far; NULL: none */
-  void (*progress)(void *ctx, int solve, int products);
+  /* before every product of an iterative solve: which solve, of how many (twelve for each orientation), products so far;
+   * NULL: none */
+  void (*progress)(void *ctx, int solve, int solves, int products);
   void *progress_ctx;
 } sd_clump_options;
 #define SD_CLUMP_OPTIONS                                           \

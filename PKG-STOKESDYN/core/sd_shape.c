@@ -184,7 +184,7 @@ static sd_status add_symmetry(sd_shape *s, const double E[9], int *capacity, con
 static sd_status find_frame(sd_shape *s, int *perm, char *used)
 {
   const double tolerance = coarse * s->size;
-  double best[KEYS], print[PRINTS];
+  double best[KEYS] = {0.0}, print[PRINTS] = {0.0};
   int found = 0, capacity = 0;
   sd_status status = SD_OK;
   /* First sphere: largest distance from the centroid, then radius; then the best pair. */
@@ -334,7 +334,7 @@ void sd_shape_free(sd_shape *s)
   *s = (sd_shape){0};
 }
 
-double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3])
+void sd_shape_rotation(const sd_shape *s, const double *x, double R[9], double c[3])
 {
   const int n = s->n;
   double u[3] = {0.0, 0.0, 0.0}, v[3] = {0.0, 0.0, 0.0}, w[3], sum[3] = {0.0, 0.0, 0.0};
@@ -373,6 +373,13 @@ double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3
     for (int p = 0; p < 3; p++)
       for (int q = 0; q < 3; q++) R[3 * p + q] = u[p] * e[q] + v[p] * e[3 + q] + w[p] * e[6 + q];
   }
+}
+
+double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3])
+{
+  const int n = s->n;
+  const double x0 = x[0], y0 = x[1], z0 = x[2];
+  sd_shape_rotation(s, x, R, c);
   double worst = 0.0;
   const double cx = c[0] - x0, cy = c[1] - y0, cz = c[2] - z0;
   for (int k = 0; k < n; k++) {

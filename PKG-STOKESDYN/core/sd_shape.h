@@ -51,6 +51,9 @@ int sd_shape_match(const sd_shape *shape, int n, const double *x, const double *
  * deviation says so. */
 double sd_shape_pose(const sd_shape *shape, const double *x, double R[9], double c[3]);
 
+/* The same without the deviation, at half the price. */
+void sd_shape_rotation(const sd_shape *shape, const double *x, double R[9], double c[3]);
+
 #ifdef __cplusplus
 }
 #endif

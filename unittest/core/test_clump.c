@@ -310,7 +310,9 @@ static void unequal_dumbbells_are_near_exact(void **state)
         worse(&worst, clump.R[0] / (6.0 * SD_PI), table_number(&t, 5) + table_number(&t, 6));
       sd_clump_free(&clump);
     }
-    report(rung, "unequal dumbbells", worst, 0.0);
+    printf("             shell %3d, unequal dumbbells  worst translation %+.3f %%\n",
+           ladder[rung].n, 100 * worst);
+    CHECK_NEAR(worst, 0.0, ladder[rung].translation);
   }
 }
 
@@ -616,10 +618,10 @@ static void equal_spheres_at_one_point_are_refused(void **state)
 }
 
 static int products;
-static void count_products(void *ctx, int solve_number, int product)
+static void count_products(void *ctx, int number, int solves, int product)
 {
   assert_ptr_equal(ctx, &products);
-  assert_true(solve_number >= 0 && solve_number < 12 && product >= 0);
+  assert_true(number >= 0 && number < solves && solves % 12 == 0 && product >= 0);
   products++;
 }
 
