@@ -19,6 +19,7 @@ compare() {
 }
 # entry ROW COLUMN of the matrix with this title, from standard input
 entry() { awk -v m="$1" -v r="$2" -v c="$3" '$1 == m { at = NR } at && NR == at + r { print $c }'; }
+in_stokes() { awk '{ printf "%.6f", $1 / 18.849555921538759 }'; }
 
 echo "Row of four spheres, shell 1 with rotation, against PyGRPY"
 out=$("$program" "$here/row4.txt" shell 1)
@@ -32,9 +33,8 @@ for n in 12 42 162; do
   case $n in 12) drag=0.006 period=0.01 ;; 42) drag=0.0035 period=0.005 ;; 162) drag=0.0015 period=0.0025 ;; esac
   echo "Touching pair, shell $n, against exact values"
   out=$(printf '0 0 0 1\n0 0 2 1\n' | "$program" - shell $n)
-  six_pi=18.849555921538759
-  compare "drag along / 6 pi eta a"  "$(entry resistance 3 3 <<< "$out" | awk -v p=$six_pi '{ printf "%.6f", $1 / p }')" 1.290283 $drag
-  compare "drag across / 6 pi eta a" "$(entry resistance 1 1 <<< "$out" | awk -v p=$six_pi '{ printf "%.6f", $1 / p }')" 1.449322 $drag
-  compare "Jeffery period times shear rate" "$(sed -n 's/.*Jeffery period \([^ ]*\).*/\1/p' <<< "$out")"                 15.621755 $period
+  compare "drag along / 6 pi eta a"  "$(entry resistance 3 3 <<< "$out" | in_stokes)" 1.290283 $drag
+  compare "drag across / 6 pi eta a" "$(entry resistance 1 1 <<< "$out" | in_stokes)" 1.449322 $drag
+  compare "Jeffery period x shear rate" "$(sed -n 's/.*Jeffery period \([^ ]*\).*/\1/p' <<< "$out")" 15.621755 $period
 done
 exit $bad
