@@ -25,3 +25,8 @@ endforeach()
 add_plugin(wrongversionplugin)
 set_target_properties(wrongversionplugin PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/wrong)
 target_compile_definitions(wrongversionplugin PRIVATE SD_LAMMPS_NUM=19990101)
+
+# The example that needs no LAMMPS checks its own numbers. Not under sanitizers: those runs build the core tests alone.
+if(NOT STOKESDYN_SANITIZE)
+  add_test(NAME clump_resistance COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/../examples/clump_resistance/check.sh $<TARGET_FILE:clump_resistance>)
+endif()

@@ -51,9 +51,10 @@ static void surface_free(surface *s)
   free(s->sphere);
 }
 
-/* A point is hidden when it lies deeper inside the shell of another sphere than this, in radii of that shell's points. Along the seam
- * of two spheres both keep what would leave a gap as wide as their spacing; deeper, points of nearly coincident spheres double.
- * 0.4 makes the drag of pairs and rows at any overlap (0.1 to 1.9 radii apart) as accurate as that of touching spheres. */
+/* A point is hidden when it lies deeper inside the shell of another sphere than this, in radii of that shell's points. Along
+ * the seam of two spheres both keep what would leave a gap as wide as their spacing; deeper, points of nearly coincident
+ * spheres double. 0.4 makes the drag of pairs and rows at any overlap (0.1 to 1.9 radii apart) as accurate as that of touching
+ * spheres. */
 static const double seam = 0.4;
 
 /* Is p inside one of the spheres but its own, whose radii are given? */
@@ -67,24 +68,34 @@ static int hidden(const sd_shape *s, const double *radius, int own, const double
   return 0;
 }
 
-/* Which part of its surface every sphere shows: by a fine shell of directions. A hair inside, so that spheres that only touch, and
- * points of a symmetric shape that lie on two spheres, are not decided by rounding. */
+/* Which part of its surface every sphere shows: all of it, or by a fine shell of directions. A hair inside, so that spheres that
+ * only touch, and points of a symmetric shape that lie on two spheres, are not decided by rounding. */
 static sd_status exposed_fractions(const sd_shape *s, sd_shells *cache, double *fraction)
 {
   enum { FINE = 642 };
-  const sd_shell *fine;
+  const sd_shell *fine = NULL;
+  sd_status status = SD_OK;
   double *radius = malloc(sizeof(double) * (size_t) s->n);
-  const sd_status status = radius ? sd_shells_get(cache, FINE, &fine) : SD_ENOMEMORY;
-  for (int i = 0; i < s->n && radius; i++) radius[i] = 0.99983 * s->a[i];
+  if (!radius) return SD_ENOMEMORY;
+  for (int i = 0; i < s->n; i++) radius[i] = 0.99983 * s->a[i];
   for (int i = 0; i < s->n && status == SD_OK; i++) {
-    int count = 0;
-    for (int m = 0; m < fine->n; m++) {
+    int overlaps = 0, count = 0;
+    for (int j = 0; j < s->n && !overlaps; j++) {
+      const double *x = s->x + 3 * i, *y = s->x + 3 * j,
+                   d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      const double reach = s->a[i] + radius[j];
+      overlaps = j != i && sd_dot(d, d) < reach * reach;
+    }
+    fraction[i] = 1.0;
+    if (!overlaps) continue;
+    status = sd_shells_get(cache, FINE, &fine);
+    for (int m = 0; m < FINE && status == SD_OK; m++) {
       double e[3], p[3];
       sd_multiply3(s->frame, fine->p + 3 * m, e);
       for (int d = 0; d < 3; d++) p[d] = s->x[3 * i + d] + s->a[i] * e[d];
       count += !hidden(s, radius, i, p);
     }
-    fraction[i] = (double) count / fine->n;
+    fraction[i] = (double) count / FINE;
   }
   free(radius);
   return status;
@@ -92,11 +103,11 @@ static sd_status exposed_fractions(const sd_shape *s, sd_shells *cache, double *
 
 enum { FEWEST = 12, MOST = 642 };
 
-/* Points of the whole shell of every sphere: even density, n exposed points for every sphere that shows. Without fractions (NULL):
- * as if nothing were hidden. */
+/* Points of the whole shell of every sphere: even density, n exposed points for every sphere that shows. Without fractions
+ * (NULL): as if nothing were hidden. */
 static void share_points(const sd_shape *s, int n, const double *fraction, int *count)
 {
-  const double most = n > MOST ? n : MOST;
+  const double most = fmax(MOST, 4.0 * n);
   double area = 0.0;
   int visible = 0;
   for (int i = 0; i < s->n; i++) {
@@ -111,8 +122,8 @@ static void share_points(const sd_shape *s, int n, const double *fraction, int *
   }
 }
 
-/* Points are not quite as even as a sphere, and where they happen to lie at a contact or along a seam is chance. With few points the
- * result is the mean over this many orientations of all shells together. */
+/* Points are not quite as even as a sphere, and where they happen to lie at a contact or along a seam is chance. With few
+ * points the result is the mean over this many orientations of all shells together. */
 static int orientations(int n)
 {
   return n == 1 ? 1 : 1 + 95 / n;
@@ -122,7 +133,8 @@ static int orientations(int n)
  * three-dimensional additive sequence). */
 static void orientation(int k, double Q[9])
 {
-  const double t = fmod(k * 0.8191725133961645, 1.0), u = 2.0 * SD_PI * fmod(k * 0.6710436067037893, 1.0),
+  const double t = fmod(k * 0.8191725133961645, 1.0),
+               u = 2.0 * SD_PI * fmod(k * 0.6710436067037893, 1.0),
                v = 2.0 * SD_PI * fmod(k * 0.5497004779019703, 1.0);
   const double w = k ? sqrt(1.0 - t) * sin(u) : 1.0, x = k ? sqrt(1.0 - t) * cos(u) : 0.0;
   const double y = sqrt(t) * sin(v), z = sqrt(t) * cos(v);
@@ -152,7 +164,8 @@ static sd_status surface_of_centres(const sd_shape *s, surface *out)
 }
 
 /* Exposed points for count [n] points a sphere (sizes of shells) and orientation number k */
-static sd_status surface_of_shells(const sd_shape *s, const int *count, int k, sd_shells *cache, surface *out)
+static sd_status surface_of_shells(const sd_shape *s, const int *count, int k, sd_shells *cache,
+                                   surface *out)
 {
   size_t total = 0;
   double Q[9], G[9];
@@ -250,13 +263,15 @@ static sd_status solve_dense(const surface *s, int m, double *B)
   if (!A) return SD_ENOMEMORY;
   for (int i = 0; i < s->n; i++)
     for (int j = i; j < s->n; j++) {
-      const double *x = s->x + 3 * (size_t) i, *y = s->x + 3 * (size_t) j, r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      const double *x = s->x + 3 * (size_t) i, *y = s->x + 3 * (size_t) j,
+                   r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       double M[36];
       if (m == 6)
         sd_tensor_grand(r, s->a[i], s->a[j], 1.0, M);
       else
         sd_tensor_uf(SD_TENSOR_RPY, r, s->a[i], s->a[j], 1.0, M);
-      for (int p = 0; p < m; p++) memcpy(A + (m * (size_t) i + p) * N + m * (size_t) j, M + m * p, sizeof(double) * m);
+      for (int p = 0; p < m; p++)
+        memcpy(A + (m * (size_t) i + p) * N + m * (size_t) j, M + m * p, sizeof(double) * m);
     }
   const sd_status status = sd_cholesky_solve((int) N, A, COLUMNS, B);
   free(A);
@@ -267,14 +282,14 @@ typedef struct {
   const surface *s;
   const double *ones;
   const sd_clump_options *o;
-  int solve, products;
+  int solve, solves, products;
 } operator;
 
 static void apply(void *ctx, const double *F, double *u)
 {
-  operator*op = ctx;
+  operator* op = ctx;
   const int n = op->s->n;
-  if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->products++);
+  if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->solves, op->products++);
   if (width(op->o) == 3) {
     const sd_spheres spheres = {op->s->x, op->s->a, op->ones};
     sd_product_all(SD_TENSOR_RPY, &spheres, n, 0, n, F, u);
@@ -284,7 +299,8 @@ static void apply(void *ctx, const double *F, double *u)
     double sum[6] = {0.0};
     for (int j = 0; j < n; j++) {
       if (j == i) continue;
-      const double *x = op->s->x + 3 * i, *y = op->s->x + 3 * j, r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      const double *x = op->s->x + 3 * i, *y = op->s->x + 3 * j,
+                   r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       double M[36];
       sd_tensor_grand(r, op->s->a[i], op->s->a[j], 1.0, M);
       for (int p = 0; p < 6; p++)
@@ -294,7 +310,8 @@ static void apply(void *ctx, const double *F, double *u)
   }
 }
 
-static sd_status solve_iterative(const surface *s, const sd_clump_options *o, double *B, int *iterations)
+static sd_status solve_iterative(const surface *s, const sd_clump_options *o, int k, int times,
+                                 double *B, int *iterations)
 {
   const int m = width(o), n = s->n;
   const size_t N = (size_t) m * n;
@@ -306,14 +323,16 @@ static sd_status solve_iterative(const surface *s, const sd_clump_options *o, do
     spin[i] = 8.0 * SD_PI * s->a[i] * s->a[i] * s->a[i];
     ones[i] = 1.0;
   }
-  operator op = {s, ones, o, 0, 0};
-  const sd_system A = {.n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
+  operator op = {.s = s, .ones = ones, .o = o, .solves = COLUMNS * times};
+  const sd_system A = {
+      .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
   sd_status status = SD_OK;
   for (int c = 0; c < COLUMNS && status == SD_OK; c++) {
     sd_solve_report report;
-    op.solve = c;
+    op.solve = COLUMNS * k + c;
     op.products = 0;
-    status = sd_solve_gradients(&A, B + N * (size_t) c, o->tolerance, o->max_iter, F, work, &report);
+    status =
+        sd_solve_gradients(&A, B + N * (size_t) c, o->tolerance, o->max_iter, F, work, &report);
     if (report.iterations > *iterations) *iterations = report.iterations;
     memcpy(B + N * (size_t) c, F, sizeof(double) * N);
   }
@@ -412,7 +431,8 @@ static void gather(const sd_shape *shape, const surface *s, int m, const double 
   memset(table, 0, sizeof(double) * 6 * COLUMNS * (size_t) shape->n);
   for (int c = 0; c < COLUMNS; c++)
     for (int i = 0; i < s->n; i++) {
-      const double *f = B + N * c + (size_t) m * i, *x = shape->x + 3 * s->sphere[i], *y = s->x + 3 * i;
+      const double *f = B + N * c + (size_t) m * i, *x = shape->x + 3 * s->sphere[i],
+                   *y = s->x + 3 * i;
       const double arm[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
       double *t = table + 6 * (COLUMNS * (size_t) s->sphere[i] + c), torque[3];
       sd_cross(arm, f, torque);
@@ -452,7 +472,8 @@ static void add_up(const sd_shape *s, const double *table, double sum[6][COLUMNS
 
 void sd_resistance_shift(const double R[36], const double d[3], double out[36])
 {
-  /* About P = c + d: velocity of c is U_P + d x W, i.e. (U, W)_c = S^T (U, W)_P; torque about P is T_c - d x F: out = S R S^T with
+  /* About P = c + d: velocity of c is U_P + d x W, i.e. (U, W)_c = S^T (U, W)_P; torque about P is T_c - d x F: out = S R S^T
+   * with
    * S = [1 0; -[d] 1]. */
   double S[36], SR[36];
   for (int i = 0; i < 36; i++) S[i] = i % 7 == 0;
@@ -475,9 +496,9 @@ void sd_resistance_shift(const double R[36], const double d[3], double out[36])
     }
 }
 
-/* Where the coupling block is symmetric. M: 3x3 blocks translation (tt) and coupling (cc: rotation rows, translation columns) about
- * the present point. Moving it by d changes cc by sign [d] tt; the antisymmetric parts cancel if (tr tt - tt) d = sign vec cc,
- * vec_i = e_ijk cc_jk. Degenerate directions (no translation) stay where they are. */
+/* Where the coupling block is symmetric. M: 3x3 blocks translation (tt) and coupling (cc: rotation rows, translation columns)
+ * about the present point. Moving it by d changes cc by sign [d] tt; the antisymmetric parts cancel if (tr tt - tt) d = sign
+ * vec cc, vec_i = e_ijk cc_jk. Degenerate directions (no translation) stay where they are. */
 static void symmetric_coupling(const double tt[9], const double cc[9], double sign, double d[3])
 {
   const double trace = tt[0] + tt[4] + tt[8], v[3] = {cc[5] - cc[7], cc[6] - cc[2], cc[1] - cc[3]};
@@ -533,16 +554,17 @@ static int coincident(const sd_shape *s)
   for (int i = 0; i < s->n; i++)
     for (int j = i + 1; j < s->n; j++) {
       const double *x = s->x + 3 * i, *y = s->x + 3 * j;
-      if (fabs(s->a[i] - s->a[j]) <= tolerance && fabs(x[0] - y[0]) <= tolerance && fabs(x[1] - y[1]) <= tolerance &&
-          fabs(x[2] - y[2]) <= tolerance)
+      if (fabs(s->a[i] - s->a[j]) <= tolerance && fabs(x[0] - y[0]) <= tolerance &&
+          fabs(x[1] - y[1]) <= tolerance && fabs(x[2] - y[2]) <= tolerance)
         return 1;
     }
   return 0;
 }
 
-/* Table for the forces on the points of one surface */
-static sd_status solve_surface(const sd_shape *shape, const surface *s, const sd_clump_options *o, const sd_clump_need *need,
-                               sd_clump *clump, double *table)
+/* Table for the forces on the points of one surface, number k of so many */
+static sd_status solve_surface(const sd_shape *shape, const surface *s, const sd_clump_options *o,
+                               const sd_clump_need *need, sd_clump *clump, double *table, int k,
+                               int times)
 {
   const int m = width(o);
   double *B = malloc(sizeof(double) * COLUMNS * m * (size_t) s->n);
@@ -554,27 +576,32 @@ static sd_status solve_surface(const sd_shape *shape, const surface *s, const sd
       memcpy(b, u, sizeof(u));
       if (m == 6) memcpy(b + 3, w, sizeof(w));
     }
-  const sd_status status = need->dense <= o->memory ? solve_dense(s, m, B) : solve_iterative(s, o, B, &clump->iterations);
+  const sd_status status = need->dense <= o->memory
+      ? solve_dense(s, m, B)
+      : solve_iterative(s, o, k, times, B, &clump->iterations);
   if (status == SD_OK) gather(shape, s, m, B, table);
   free(B);
   return status;
 }
 
 /* The mean table of all orientations of the shells, with the symmetry of the shape */
-static sd_status solve_shells(const sd_shape *shape, const sd_clump_options *o, sd_shells *cache, sd_clump *clump, sd_clump_need *need)
+static sd_status solve_shells(const sd_shape *shape, const sd_clump_options *o, sd_shells *cache,
+                              sd_clump *clump, sd_clump_need *need)
 {
   const int n = sd_shell_size(o->shell), times = orientations(n);
   const size_t size = 6 * COLUMNS * (size_t) shape->n;
-  double *fraction = malloc(sizeof(double) * (size_t) shape->n), *one = malloc(sizeof(double) * size);
+  double *fraction = malloc(sizeof(double) * (size_t) shape->n),
+         *one = malloc(sizeof(double) * size);
   int *count = malloc(sizeof(int) * (size_t) shape->n);
-  sd_status status = fraction && one && count ? exposed_fractions(shape, cache, fraction) : SD_ENOMEMORY;
+  sd_status status = fraction && one && count ? exposed_fractions(shape, cache, fraction)
+                                              : SD_ENOMEMORY;
   if (status == SD_OK) share_points(shape, n, fraction, count);
   memset(clump->table, 0, sizeof(double) * size);
   for (int k = 0; k < times && status == SD_OK; k++) {
     surface s;
     status = surface_of_shells(shape, count, k, cache, &s);
     if (status == SD_OK) status = check_need(s.n, o, need);
-    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, one);
+    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, one, k, times);
     if (k == 0) clump->points = s.n;
     for (size_t i = 0; i < size && status == SD_OK; i++) clump->table[i] += one[i] / times;
     surface_free(&s);
@@ -586,7 +613,8 @@ static sd_status solve_shells(const sd_shape *shape, const sd_clump_options *o, 
   return status;
 }
 
-sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *o, sd_shells *cache, sd_clump *clump, sd_clump_need *need)
+sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *o, sd_shells *cache,
+                          sd_clump *clump, sd_clump_need *need)
 {
   sd_clump_need own;
   if (!need) need = &own;
@@ -603,7 +631,7 @@ sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *o, sd_s
   } else if (o->shell == 1) {
     surface s;
     status = surface_of_centres(shape, &s);
-    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, clump->table);
+    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, clump->table, 0, 1);
     surface_free(&s);
   } else
     status = solve_shells(shape, o, cache, clump, need);
@@ -622,8 +650,8 @@ void sd_clump_free(sd_clump *clump)
 }
 
 /* F_k = R table_k in, for the first columns */
-static inline void evaluate(const sd_clump *clump, const double R[9], const double *in, int columns, double *restrict F,
-                            double *restrict T)
+static inline void evaluate(const sd_clump *clump, const double R[9], const double *in, int columns,
+                            double *restrict F, double *restrict T)
 {
   for (int k = 0; k < clump->n; k++) {
     const double *restrict t = clump->table + 6 * COLUMNS * (size_t) k;
@@ -635,8 +663,8 @@ static inline void evaluate(const sd_clump *clump, const double R[9], const doub
   }
 }
 
-void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta, const double s0[3], const double W[3], double *F,
-                           double *T)
+void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta, const double s0[3],
+                           const double W[3], double *F, double *T)
 {
   double in[RIGID];
   sd_multiply3t(R, s0, in);
@@ -645,8 +673,8 @@ void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta,
   evaluate(clump, R, in, RIGID, F, T);
 }
 
-void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3], const double A[9], double *F,
-                     double *T)
+void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
+                     const double A[9], double *F, double *T)
 {
   const double W[3] = {0.5 * (A[7] - A[5]), 0.5 * (A[2] - A[6]), 0.5 * (A[3] - A[1])};
   double in[COLUMNS], Rt[9], E[9];

@@ -4,8 +4,8 @@
 #include <string.h>
 
 void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t);
-void dpotrs_(const char *uplo, const int *n, const int *nrhs, const double *a, const int *lda, double *b, const int *ldb, int *info,
-             size_t);
+void dpotrs_(const char *uplo, const int *n, const int *nrhs, const double *a, const int *lda,
+             double *b, const int *ldb, int *info, size_t);
 
 /* OpenBLAS may start as many threads as there are cores, on every MPI rank. Absent in other libraries. */
 #if defined(__GNUC__) && !defined(__APPLE__)
@@ -102,7 +102,8 @@ void sd_pseudo_inverse6(const double R[36], double inverse[36])
   const double length = tt > 0.0 && rr > 0.0 ? sqrt(rr / tt) : 1.0;
   double A[36], w[6], V[36];
   for (int p = 0; p < 6; p++)
-    for (int q = 0; q < 6; q++) A[6 * p + q] = R[6 * p + q] / ((p < 3 ? 1.0 : length) * (q < 3 ? 1.0 : length));
+    for (int q = 0; q < 6; q++)
+      A[6 * p + q] = R[6 * p + q] / ((p < 3 ? 1.0 : length) * (q < 3 ? 1.0 : length));
   sd_eigen(6, A, w, V);
   for (int p = 0; p < 6; p++)
     for (int q = 0; q < 6; q++) {

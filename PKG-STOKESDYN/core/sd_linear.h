@@ -8,16 +8,17 @@
 extern "C" {
 #endif
 
-/* Eigenvalues w [n], largest first, and eigenvectors, the columns of V [n n], of the symmetric A [n n]; n <= 6. Jacobi's rotations. */
+/* Eigenvalues w [n], largest first, and eigenvectors, the columns of V [n n], of the symmetric A [n n]; n <= 6. Jacobi's
+ * rotations. */
 void sd_eigen(int n, const double *A, double *w, double *V);
 
-/* Pseudo-inverse of the symmetric positive semidefinite 6x6 resistance or mobility about some point: eigenvalues below 1e-9 of the
- * largest count as zero. Rotations are first made comparable to translations by the length that the matrix itself has,
+/* Pseudo-inverse of the symmetric positive semidefinite 6x6 resistance or mobility about some point: eigenvalues below 1e-9 of
+ * the largest count as zero. Rotations are first made comparable to translations by the length that the matrix itself has,
  * (tr RR / tr TT)^(1/2). */
 void sd_pseudo_inverse6(const double R[36], double inverse[36]);
 
-/* Solve A X = B by Cholesky: A [n n] symmetric positive definite, one triangle is enough (elements A[n i + j], j >= i; destroyed),
- * B [count][n], one right-hand side after the other, X in its place. One thread.
+/* Solve A X = B by Cholesky: A [n n] symmetric positive definite, one triangle is enough (elements A[n i + j], j >= i;
+ * destroyed), B [count][n], one right-hand side after the other, X in its place. One thread.
  * SD_OK, or SD_ESINGULAR when a pivot is not positive. */
 sd_status sd_cholesky_solve(int n, double *A, int count, double *B);
 

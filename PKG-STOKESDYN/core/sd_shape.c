@@ -16,7 +16,8 @@ static void centre(int n, const double *x, double c[3], double *out)
 {
   for (int d = 0; d < 3; d++) {
     double s = 0.0;
-    for (int k = 0; k < n; k++) s += x[3 * k + d] - x[d]; /* from the first: far from the origin no digits are lost */
+    for (int k = 0; k < n; k++)
+      s += x[3 * k + d] - x[d]; /* from the first: far from the origin no digits are lost */
     c[d] = x[d] + s / n;
   }
   for (int k = 0; k < n; k++)
@@ -69,20 +70,24 @@ enum { PRINTS = 4 };
  * general direction of the frame. Lengths in units of the size. */
 static void fingerprint(const sd_shape *s, const double E[9], double print[PRINTS])
 {
-  static const double wave[PRINTS][4] = {
-      {2.31, 1.17, 0.83, 0.4}, {-0.97, 2.73, 1.61, 1.3}, {1.43, -2.05, 2.57, 2.1}, {3.07, 0.71, -3.41, 0.9}};
+  static const double wave[PRINTS][4] = {{2.31, 1.17, 0.83, 0.4},
+                                         {-0.97, 2.73, 1.61, 1.3},
+                                         {1.43, -2.05, 2.57, 2.1},
+                                         {3.07, 0.71, -3.41, 0.9}};
   const double inv = 1.0 / s->size;
   for (int m = 0; m < PRINTS; m++) {
     double k[3];
     sd_multiply3(E, wave[m], k);
     print[m] = 0.0;
-    for (int i = 0; i < s->n; i++) print[m] += (1.0 + s->a[i] * inv) * cos(sd_dot(k, s->x + 3 * i) * inv + wave[m][3]);
+    for (int i = 0; i < s->n; i++)
+      print[m] += (1.0 + s->a[i] * inv) * cos(sd_dot(k, s->x + 3 * i) * inv + wave[m][3]);
     print[m] /= s->n;
   }
 }
 
 /* Map the spheres of the shape by Q onto the centres y [3n], b [n]: perm and 1, or 0. tolerance: a length. used [n]: scratch. */
-static int map_onto(const sd_shape *s, const double Q[9], const double *y, const double *b, double tolerance, int *perm, char *used)
+static int map_onto(const sd_shape *s, const double Q[9], const double *y, const double *b,
+                    double tolerance, int *perm, char *used)
 {
   memset(used, 0, (size_t) s->n);
   for (int k = 0; k < s->n; k++) {
@@ -94,7 +99,9 @@ static int map_onto(const sd_shape *s, const double Q[9], const double *y, const
       const int j = (k + m) % s->n;
       if (used[j] || fabs(b[j] - s->a[k]) > tolerance) continue;
       const double *p = y + 3 * j;
-      if (fabs(p[0] - t[0]) <= tolerance && fabs(p[1] - t[1]) <= tolerance && fabs(p[2] - t[2]) <= tolerance) found = j;
+      if (fabs(p[0] - t[0]) <= tolerance && fabs(p[1] - t[1]) <= tolerance &&
+          fabs(p[2] - t[2]) <= tolerance)
+        found = j;
     }
     if (found < 0) return 0;
     used[found] = 1;
@@ -122,8 +129,9 @@ static void invariants(int n, const double *x, const double *a, double v[6])
   v[5] = sqrt(sqrt(v[5] / n));
 }
 
-/* Directed pairs that may span the frame, by preference; ties remain when the shape is symmetric. Each entry of the key is a length:
- * distance of i from the centroid (largest), its radius, distance of j from the line of i (largest), its radius, distance i-j. */
+/* Directed pairs that may span the frame, by preference; ties remain when the shape is symmetric. Each entry of the key is a
+ * length: distance of i from the centroid (largest), its radius, distance of j from the line of i (largest), its radius,
+ * distance i-j. */
 enum { KEYS = 5 };
 static void pair_key(const double *x, const double *a, int i, int j, double key[KEYS])
 {
@@ -176,18 +184,20 @@ static sd_status add_symmetry(sd_shape *s, const double E[9], int *capacity, con
 static sd_status find_frame(sd_shape *s, int *perm, char *used)
 {
   const double tolerance = coarse * s->size;
-  double best[KEYS], print[PRINTS];
+  double best[KEYS] = {0.0}, print[PRINTS] = {0.0};
   int found = 0, capacity = 0;
   sd_status status = SD_OK;
   /* First sphere: largest distance from the centroid, then radius; then the best pair. */
   double far = 0.0;
   for (int i = 0; i < s->n; i++) far = fmax(far, sqrt(sd_dot(s->x + 3 * i, s->x + 3 * i)));
   for (int pass = 0; pass < 3; pass++) {
-    /* pass 0: the best key. 1: among pairs with this key, the frame with the best fingerprint. 2: all frames that look the same. */
+    /* pass 0: the best key. 1: among pairs with this key, the frame with the best fingerprint. 2: all frames that look the
+     * same. */
     if (pass == 1) found = 0;
     for (int i = 0; i < s->n; i++) {
       const double r = sqrt(sd_dot(s->x + 3 * i, s->x + 3 * i));
-      if (r < far - tolerance || (pass && compare((double[2]){r, s->a[i]}, best, 2, tolerance))) continue;
+      if (r < far - tolerance || (pass && compare((double[2]){r, s->a[i]}, best, 2, tolerance)))
+        continue;
       for (int j = 0; j < s->n; j++) {
         double key[KEYS];
         if (j == i) continue;
@@ -214,7 +224,8 @@ static sd_status find_frame(sd_shape *s, int *perm, char *used)
             double g[9];
             for (int u = 0; u < 3; u++)
               for (int v = 0; v < 3; v++)
-                g[3 * u + v] = E[3 * u] * s->frame[3 * v] + E[3 * u + 1] * s->frame[3 * v + 1] + E[3 * u + 2] * s->frame[3 * v + 2];
+                g[3 * u + v] = E[3 * u] * s->frame[3 * v] + E[3 * u + 1] * s->frame[3 * v + 1] +
+                    E[3 * u + 2] * s->frame[3 * v + 2];
             if (!map_onto(s, g, s->x, s->a, tolerance, perm, used)) continue;
             status = add_symmetry(s, E, &capacity, perm);
             if (status != SD_OK) return status;
@@ -251,7 +262,8 @@ static sd_status find_line(sd_shape *s, int *perm, char *used)
           if (s->symmetries == 0) memcpy(s->frame, E, sizeof(E));
           for (int u = 0; u < 3; u++)
             for (int v = 0; v < 3; v++)
-              g[3 * u + v] = E[3 * u] * s->frame[3 * v] + E[3 * u + 1] * s->frame[3 * v + 1] + E[3 * u + 2] * s->frame[3 * v + 2];
+              g[3 * u + v] = E[3 * u] * s->frame[3 * v] + E[3 * u + 1] * s->frame[3 * v + 1] +
+                  E[3 * u + 2] * s->frame[3 * v + 2];
           if (!map_onto(s, g, s->x, s->a, tolerance, perm, used)) continue;
           const sd_status status = add_symmetry(s, E, &capacity, perm);
           if (status != SD_OK) return status;
@@ -264,7 +276,8 @@ sd_status sd_shape_create(int n, const double *x, const double *a, sd_shape *s)
 {
   *s = (sd_shape){.n = n};
   for (int k = 0; k < n; k++)
-    if (!isfinite(x[3 * k]) || !isfinite(x[3 * k + 1]) || !isfinite(x[3 * k + 2]) || !(a[k] > 0.0) || !isfinite(a[k]))
+    if (!isfinite(x[3 * k]) || !isfinite(x[3 * k + 1]) || !isfinite(x[3 * k + 2]) ||
+        !(a[k] > 0.0) || !isfinite(a[k]))
       return SD_ENOTFINITE;
   s->x = malloc(sizeof(double) * 3 * (size_t) n);
   s->a = malloc(sizeof(double) * (size_t) n);
@@ -285,13 +298,15 @@ sd_status sd_shape_create(int n, const double *x, const double *a, sd_shape *s)
     for (int m = 0; m < 2; m++) {
       double furthest = 0.0;
       for (int d = 0; d < 3; d++) s->axes[3 * m + d] = V[3 * d + m];
-      for (int k = 0; k < n; k++) furthest = fmax(furthest, fabs(sd_dot(s->axes + 3 * m, s->x + 3 * k)));
+      for (int k = 0; k < n; k++)
+        furthest = fmax(furthest, fabs(sd_dot(s->axes + 3 * m, s->x + 3 * k)));
       if (furthest > SD_SHAPE_TOLERANCE * s->size) s->rank = m + 1;
     }
     if (s->rank < 2) across(s->axes, 0.0, s->axes + 3);
     sd_cross(s->axes, s->axes + 3, s->axes + 6);
     for (int k = 0; k < n; k++)
-      for (int m = 0; m < 2; m++) s->arm[2 * k + m] = m < s->rank ? sd_dot(s->axes + 3 * m, s->x + 3 * k) / w[m] : 0.0;
+      for (int m = 0; m < 2; m++)
+        s->arm[2 * k + m] = m < s->rank ? sd_dot(s->axes + 3 * m, s->x + 3 * k) / w[m] : 0.0;
     if (s->rank == 2)
       status = find_frame(s, perm, used);
     else if (s->rank == 1)
@@ -319,7 +334,7 @@ void sd_shape_free(sd_shape *s)
   *s = (sd_shape){0};
 }
 
-double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3])
+void sd_shape_rotation(const sd_shape *s, const double *x, double R[9], double c[3])
 {
   const int n = s->n;
   double u[3] = {0.0, 0.0, 0.0}, v[3] = {0.0, 0.0, 0.0}, w[3], sum[3] = {0.0, 0.0, 0.0};
@@ -358,6 +373,13 @@ double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3
     for (int p = 0; p < 3; p++)
       for (int q = 0; q < 3; q++) R[3 * p + q] = u[p] * e[q] + v[p] * e[3 + q] + w[p] * e[6 + q];
   }
+}
+
+double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3])
+{
+  const int n = s->n;
+  const double x0 = x[0], y0 = x[1], z0 = x[2];
+  sd_shape_rotation(s, x, R, c);
   double worst = 0.0;
   const double cx = c[0] - x0, cy = c[1] - y0, cz = c[2] - z0;
   for (int k = 0; k < n; k++) {
@@ -366,13 +388,15 @@ double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3
     const double dy = x[3 * k + 1] - y0 - cy - (R[3] * X[0] + R[4] * X[1] + R[5] * X[2]);
     const double dz = x[3 * k + 2] - z0 - cz - (R[6] * X[0] + R[7] * X[1] + R[8] * X[2]);
     const double sq = dx * dx + dy * dy + dz * dz;
-    if (!(sq <= worst)) worst = sq; /* also takes a NaN, and keeps it: no later comparison is true */
+    if (!(sq <= worst))
+      worst = sq; /* also takes a NaN, and keeps it: no later comparison is true */
     if (isnan(worst)) return INFINITY;
   }
   return sqrt(worst);
 }
 
-int sd_shape_match(const sd_shape *s, int n, const double *x, const double *a, int *perm, double *scratch)
+int sd_shape_match(const sd_shape *s, int n, const double *x, const double *a, int *perm,
+                   double *scratch)
 {
   if (n != s->n) return 0;
   const double tolerance = SD_SHAPE_TOLERANCE * s->size;
@@ -423,7 +447,9 @@ int sd_shape_match(const sd_shape *s, int n, const double *x, const double *a, i
       } else
         for (int d = 0; d < 9; d++) B[d] = E[d] = d % 4 == 0;
       for (int p = 0; p < 3; p++)
-        for (int q = 0; q < 3; q++) Q[3 * p + q] = B[3 * p] * E[3 * q] + B[3 * p + 1] * E[3 * q + 1] + B[3 * p + 2] * E[3 * q + 2];
+        for (int q = 0; q < 3; q++)
+          Q[3 * p + q] =
+              B[3 * p] * E[3 * q] + B[3 * p + 1] * E[3 * q + 1] + B[3 * p + 2] * E[3 * q + 2];
       if (!map_onto(s, Q, y, a, near, perm, used)) continue;
       for (int k = 0; k < n; k++) memcpy(ordered + 3 * k, y + 3 * perm[k], 3 * sizeof(double));
       if (sd_shape_pose(s, ordered, R, c) <= tolerance) return 1;

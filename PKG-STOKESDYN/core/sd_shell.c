@@ -131,7 +131,8 @@ static double relax(orbits *o, double *all, double (*force)[3], double (*last)[3
     for (int i = 0; i < m; i++) {
       for (int d = 0; d < 3; d++) {
         o->p[i][d] = last[i][d] + step * force[i][d];
-        if (i >= o->planar || d > 0) o->p[i][d] = fabs(o->p[i][d]); /* an image in the first octant */
+        if (i >= o->planar || d > 0)
+          o->p[i][d] = fabs(o->p[i][d]); /* an image in the first octant */
       }
       normalize(o->p[i]);
       /* Points on a mirror plane or axis by accident would be fewer than their orbit. */
@@ -166,7 +167,8 @@ static void first_guess(orbits *o, int start)
     o->p[j][2] = sin(phi);
   }
   for (; i < m; k++) {
-    const double s = fmod(0.7548776662466927 * k, 1.0), phi = 0.5 * SD_PI * fmod(0.5698402909980532 * k, 1.0);
+    const double s = fmod(0.7548776662466927 * k, 1.0),
+                 phi = 0.5 * SD_PI * fmod(0.5698402909980532 * k, 1.0);
     const double rho = sqrt(1.0 - s * s), p[3] = {rho * cos(phi), rho * sin(phi), s};
     if (p[0] < p[1] || p[0] < p[2]) continue;
     memcpy(o->p[i++], p, sizeof(p));
@@ -177,17 +179,19 @@ static sd_status even_points(int n, double *out)
 {
   orbits o = {.six = n % 12 == 2 || n % 12 == 6, .eight = n % 12 == 2 || n % 12 == 8};
   const int rest = (n - 6 * o.six - 8 * o.eight) / 12; /* = planar + 2 general */
-  const int likely = (int) (0.43 * sqrt(n) + 0.5);     /* a great circle in even points carries about 4 times as many */
+  const int likely = (int) (0.43 * sqrt(n) +
+                            0.5); /* a great circle in even points carries about 4 times as many */
   double best = INFINITY;
   double *scratch = malloc(sizeof(double) * (size_t) (3 * n + 9 * rest + 9));
   if (!scratch) return SD_ENOMEMORY;
-  double *all = scratch, (*force)[3] = (double (*)[3])(scratch + 3 * (size_t) n), (*last)[3] = force + rest + 1;
+  double *all = scratch, (*force)[3] = (double(*)[3])(scratch + 3 * (size_t) n),
+         (*last)[3] = force + rest + 1;
   o.p = last + rest + 1;
   for (int planar = rest % 2; planar <= rest; planar += 2) {
     if (abs(planar - likely) > 2) continue;
     o.planar = planar;
     o.general = (rest - planar) / 2;
-    for (int start = 0; start < 3; start++) {
+    for (int start = 0; start < 10; start++) {
       first_guess(&o, start);
       double energy = relax(&o, all, force, last);
       /* Energy of the whole set: the fixed orbits' own share, from their side. */
@@ -196,7 +200,8 @@ static sd_status even_points(int n, double *out)
       for (int i = 0; i < m; i++)
         for (int j = 0; j < n; j++)
           if (i != j) {
-            const double r[3] = {all[3 * i] - all[3 * j], all[3 * i + 1] - all[3 * j + 1], all[3 * i + 2] - all[3 * j + 2]};
+            const double r[3] = {all[3 * i] - all[3 * j], all[3 * i + 1] - all[3 * j + 1],
+                                 all[3 * i + 2] - all[3 * j + 2]};
             fixed += 1.0 / sqrt(sd_dot(r, r));
           }
       energy += fixed;
@@ -218,7 +223,8 @@ static sd_status even_points(int n, double *out)
  * sign changes s carries chi(s) s F, with chi = s_x for translation along x, s_x s_y for rotation about z. Components that change
  * sign under a mirror plane on which the point itself lies are zero.
  * octant [3m]: points with x, y, z >= 0; A [9 m m], b [3m]: scratch. */
-static sd_status shell_resistance(const double *octant, int m, double kappa, int rotation, double *A, double *b, double *resistance)
+static sd_status shell_resistance(const double *octant, int m, double kappa, int rotation,
+                                  double *A, double *b, double *resistance)
 {
   const int n = 3 * m;
   for (int i = 0; i < m; i++) {
@@ -252,14 +258,17 @@ static sd_status shell_resistance(const double *octant, int m, double kappa, int
         sd_rpy_radial(R, kappa, kappa, &f, &g);
         for (int c = 0; c < 3; c++)
           for (int e = 0; e < 3; e++)
-            block[3 * c + e] += chi * sign[e] * (g * (r[c] * inv) * (r[e] * inv) + (c == e ? f : 0.0));
+            block[3 * c + e] +=
+                chi * sign[e] * (g * (r[c] * inv) * (r[e] * inv) + (c == e ? f : 0.0));
       }
       for (int c = 0; c < 3; c++)
-        for (int e = 0; e < 3; e++) A[(size_t) (3 * i + c) * n + 3 * j + e] = size * block[3 * c + e] / (6.0 * SD_PI);
+        for (int e = 0; e < 3; e++)
+          A[(size_t) (3 * i + c) * n + 3 * j + e] = size * block[3 * c + e] / (6.0 * SD_PI);
     }
     for (int c = 0; c < 3; c++) {
       if (!zero[c]) continue;
-      const int k = 3 * i + c; /* rows from k on are upper triangle only: later ones do not touch column k */
+      const int k =
+          3 * i + c; /* rows from k on are upper triangle only: later ones do not touch column k */
       for (int l = 0; l < n; l++) A[(size_t) k * n + l] = A[(size_t) l * n + k] = 0.0;
       A[(size_t) k * n + k] = 1.0;
     }
@@ -274,7 +283,8 @@ static sd_status shell_resistance(const double *octant, int m, double kappa, int
 }
 
 /* T^3/Q - 27 pi^2, relative; T itself comes out too */
-static sd_status mismatch(const double *octant, int m, double kappa, double *A, double *b, double *T, double *g)
+static sd_status mismatch(const double *octant, int m, double kappa, double *A, double *b,
+                          double *T, double *g)
 {
   double Q;
   sd_status status = shell_resistance(octant, m, kappa, 0, A, b, T);
@@ -336,7 +346,8 @@ static sd_status calibrate(sd_shell *shell)
 sd_status sd_shell_create(int n_wanted, sd_shell *shell)
 {
   const int n = sd_shell_size(n_wanted);
-  *shell = (sd_shell){.n = n, .radius = 0.0, .point = 1.0, .p = calloc(3 * (size_t) n, sizeof(double))};
+  *shell =
+      (sd_shell){.n = n, .radius = 0.0, .point = 1.0, .p = calloc(3 * (size_t) n, sizeof(double))};
   if (!shell->p) return SD_ENOMEMORY;
   if (n == 1) return SD_OK;
   sd_status status = icosahedral(n, shell->p) ? SD_OK : even_points(n, shell->p);

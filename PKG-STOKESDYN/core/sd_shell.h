@@ -7,8 +7,8 @@
  * radius = 6 pi/T.
  *
  * All point sets have the symmetry T_h of a cube with stripes (the pyritohedron), which makes both resistances isotropic:
- * n = 12, 42, 162, 642, ... are the icosahedron and its subdivisions; other n have the smallest Coulomb energy found with orbits of
- * 6, 8, 12 and 24 points. These orbits add up to n = 0, 2, 6 or 8 (mod 12); any other n is rounded up. */
+ * n = 12, 42, 162, 642, ... are the icosahedron and its subdivisions; other n have the smallest Coulomb energy found with
+ * orbits of 6, 8, 12 and 24 points. These orbits add up to n = 0, 2, 6 or 8 (mod 12); any other n is rounded up. */
 #ifndef SD_SHELL_H
 #define SD_SHELL_H
 

@@ -50,17 +50,17 @@ static inline void sd_rpy_radial(double R, double ai, double aj, double *f, doub
   *f = (b - 0.25 * t * (1.0 - q)) / (A * b) - *g / 3.0;
 }
 
-/* Angular velocity from torque: f' and g' of the Rotne-Prager-Yamakawa model, any two radii, any distance. A, b, d, t, q as above,
- * u = A + b - R:
+/* Angular velocity from torque: f' and g' of the Rotne-Prager-Yamakawa model, any two radii, any distance. A, b, d, t, q
+ * as above, u = A + b - R:
  *   R > A + b        f' = -1/(2 R^3),   g' = 3/(2 R^3)
  *   d < R <= A + b   g' = 3 t^2 (1+q)^2 [6Ab - t(R+d)] / (64 R A^3 b^3)
  *                    3f' + g' = 3 u^2 [4q(b+t) + (1-q)(4b+t)] / (16 A^3 b^3)
  *   R <= d           f' = 1/A^3, g' = 0
  * The published overlap form is, over 64 R^3 A^3 b^3,
  *   f' = 5R^6 - 27R^4 (A^2+b^2) + 32R^3 (A^3+b^3) - 9R^2 (A^2-b^2)^2 - d^4 (A^2+4Ab+b^2),  g' = 3 (d^2-R^2)^2 (A^2+4Ab+b^2-R^2).
- * Its trace 3f' + g' is 9/(4 pi A^3 b^3) times the volume of the lens that the spheres share, u^2 (R^2 + 2R(A+b) - 3d^2) pi/(12R).
- * With R = d + t and A = d + b this lens and g' have only terms of the size of b and of one sign (6Ab against at most 4Ab).
- * Source: Wajnryb, Mizerski, Zuk & Szymczak 2013; Zuk, Wajnryb, Mizerski & Szymczak 2014. */
+ * Its trace 3f' + g' is 9/(4 pi A^3 b^3) times the volume of the lens that the spheres share, u^2 (R^2 + 2R(A+b) - 3d^2)
+ * pi/(12R). With R = d + t and A = d + b this lens and g' have only terms of the size of b and of one sign (6Ab against at
+ * most 4Ab). Source: Wajnryb, Mizerski, Zuk & Szymczak 2013; Zuk, Wajnryb, Mizerski & Szymczak 2014. */
 static inline void sd_rpy_radial_wt(double R, double ai, double aj, double *f, double *g)
 {
   const double A = ai > aj ? ai : aj, b = ai > aj ? aj : ai, d = A - b;
@@ -85,8 +85,8 @@ static inline void sd_rpy_radial_wt(double R, double ai, double aj, double *f, d
  *   overlap, ai >= aj    c = (1+q)^2 [4bd + t(8b-3t)] / (16 A^3 b)
  *   overlap, ai < aj     c = (1-q)^2 [4d(3b-t) + t(8b-3t)] / (16 A b^3)
  *   j inside i           c = R/A^3        i inside j: c = 0
- * The overlap lines are the published (ai-aj+R)^2 [aj^2 + 2aj(ai+R) - 3(ai-R)^2] / (16 ai^3 aj R^2) with R = d + t and A = d + b, so
- * that every term is positive (t <= 2b). Sources as above. */
+ * The overlap lines are the published (ai-aj+R)^2 [aj^2 + 2aj(ai+R) - 3(ai-R)^2] / (16 ai^3 aj R^2) with R = d + t and A = d +
+ * b, so that every term is positive (t <= 2b). Sources as above. */
 static inline double sd_rpy_radial_wf(double R, double ai, double aj)
 {
   const double A = ai > aj ? ai : aj, b = ai > aj ? aj : ai, d = A - b;

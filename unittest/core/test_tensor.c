@@ -33,7 +33,8 @@ static void overlap_branch_is_the_published_form(void **state)
   }
 }
 
-/* f and g at both joints: the far form meets the overlap form at contact, the overlap form meets 1/A where one sphere is just inside. */
+/* f and g at both joints: the far form meets the overlap form at contact, the overlap form meets 1/A where one sphere is just
+ * inside. */
 static void branches_join_with_their_values(void **state)
 {
   (void) state;
@@ -94,7 +95,8 @@ static void near_coincidence_keeps_its_digits(void **state)
   }
 }
 
-/* Far apart: (1 + a_i^2/6 lap)(1 + a_j^2/6 lap) on the Stokeslet, hence divergence free. The '+' of the manual page of the original
+/* Far apart: (1 + a_i^2/6 lap)(1 + a_j^2/6 lap) on the Stokeslet, hence divergence free. The '+' of the manual page of the
+ * original
  * is not: there div = -2 e.r/r^5. Central differences, error O(h^2). */
 static void tensor_is_divergence_free(void **state)
 {
@@ -209,7 +211,8 @@ static void rotation_branches_join_with_their_values(void **state)
   }
 }
 
-/* Both spheres at nearly one point turn as one: f' -> 1/a^3 (1 - 27R/(32a)), g' -> 9R/(32 a^4), c -> R/(2 a^3), with every digit. */
+/* Both spheres at nearly one point turn as one: f' -> 1/a^3 (1 - 27R/(32a)), g' -> 9R/(32 a^4), c -> R/(2 a^3), with every
+ * digit. */
 static void rotation_keeps_its_digits_near_coincidence(void **state)
 {
   (void) state;

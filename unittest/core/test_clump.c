@@ -1,0 +1,693 @@
+#include "table.h"
+
+#include "sd_clump.h"
+#include "sd_linear.h"
+#include "sd_product.h"
+#include "sd_solve.h"
+#include "sd_tensor.h"
+
+static const char *clusters[] = {"doublet",     "trimer_line", "triangle",  "square",
+                                 "tetrahedron", "star4",       "tetrapod5", "octahedron",
+                                 "hexagon7",    "cube8",       "fcc13",     "helix4_chiral"};
+enum { N_CLUSTERS = 12, MOST = 64 };
+
+static sd_shells shells; /* one cache for all tests */
+
+static int free_shells(void **state)
+{
+  (void) state;
+  sd_shells_free(&shells);
+  return 0;
+}
+
+static sd_clump solve(int n, const double *x, const double *a, int shell, int rotation)
+{
+  sd_shape shape;
+  sd_clump clump;
+  sd_clump_options o = SD_CLUMP_OPTIONS;
+  o.shell = shell;
+  o.rotation = rotation;
+  assert_int_equal(sd_shape_create(n, x, a, &shape), SD_OK);
+  const sd_status status = sd_clump_create(&shape, &o, &shells, &clump, NULL);
+  if (status != SD_OK) fail_msg("shell %d, %d spheres: %s", shell, n, sd_status_string(status));
+  sd_shape_free(&shape);
+  return clump;
+}
+
+static sd_clump solve_cluster(const char *name, int shell, int rotation)
+{
+  double x[3 * MOST], a[MOST];
+  const int n = table_cluster(name, x, a);
+  return solve(n, x, a, shell, rotation);
+}
+
+/* n spheres along z, spacing s */
+static sd_clump solve_row(int n, double s, int shell, int rotation)
+{
+  double x[3 * MOST] = {0}, a[MOST];
+  for (int k = 0; k < n; k++) {
+    x[3 * k + 2] = s * k;
+    a[k] = 1.0;
+  }
+  return solve(n, x, a, shell, rotation);
+}
+
+/* Eigenvalues of a diagonal block, smallest first, over unit */
+static void eigenvalues(const double R[36], int block, double unit, double w[3])
+{
+  double A[9], V[9], v[3];
+  for (int p = 0; p < 9; p++) A[p] = R[6 * (3 * block + p / 3) + 3 * block + p % 3] / unit;
+  sd_eigen(3, A, v, V);
+  for (int p = 0; p < 3; p++) w[p] = v[2 - p];
+}
+
+/* --- shell 1: the model's own values --------------------------------------------------------------------------- */
+
+typedef struct {
+  const double *x, *a;
+  double ones[MOST];
+  int n;
+} pairs;
+
+static void apply(void *ctx, const double *F, double *u)
+{
+  const pairs *p = ctx;
+  const sd_spheres s = {p->x, p->a, p->ones};
+  sd_product_all(SD_TENSOR_RPY, &s, p->n, 0, p->n, F, u);
+}
+
+/* Without rotation and with shell 1 each force is that of the ordinary solve, in rigid motion and strain. */
+static void shell_one_is_the_ordinary_solve(void **state)
+{
+  (void) state;
+  static const double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double eta = 1.7, s0[3] = {0.3, -0.7, 1.1},
+               A[9] = {0.2, 0.5, -0.3, 0.7, -0.4, 0.1, 0.9, -0.8, 0.15};
+  uint64_t seed = 31;
+  pairs p = {.n = 20};
+  double x[3 * MOST], a[MOST], slip[3 * MOST], F[3 * MOST], G[3 * MOST], T[3 * MOST], drag[MOST],
+      work[SD_SOLVE_WORK(MOST, 3)], c[3] = {0};
+  for (int k = 0; k < p.n; k++) {
+    a[k] = uniform(&seed, 0.5, 1.2);
+    drag[k] = 6.0 * SD_PI * eta * a[k];
+    p.ones[k] = 1.0 / sqrt(eta);
+    for (int d = 0; d < 3; d++) c[d] += (x[3 * k + d] = uniform(&seed, -2.0, 2.0)) / p.n;
+  }
+  p.x = x;
+  p.a = a;
+  for (int k = 0; k < p.n; k++)
+    for (int d = 0; d < 3; d++) {
+      slip[3 * k + d] = s0[d];
+      for (int q = 0; q < 3; q++) slip[3 * k + d] += A[3 * d + q] * (x[3 * k + q] - c[q]);
+    }
+  const sd_system S = {.n = p.n, .drag = drag, .apply = apply, .apply_ctx = &p};
+  sd_solve_report report;
+  assert_int_equal(sd_solve_gradients(&S, slip, 1e-12, 1000, F, work, &report), SD_OK);
+  sd_clump clump = solve(p.n, x, a, 1, 0);
+  sd_clump_forces(&clump, R, eta, s0, A, G, T);
+  double largest = 0.0;
+  for (int k = 0; k < 3 * p.n; k++) largest = fmax(largest, fabs(F[k]));
+  for (int k = 0; k < 3 * p.n; k++) {
+    CHECK_NEAR(G[k], F[k],
+               1e-9 * largest); /* tolerance of the iterative solve times its condition */
+    CHECK_NEAR(T[k], 0.0, 0.0);
+  }
+  sd_clump_free(&clump);
+}
+
+/* All 36 entries with and without rotation: columns of the table from kind on. */
+static void models_have_the_published_matrices(void **state)
+{
+  (void) state;
+  int rows = 0;
+  table t = table_open("clusters_full.csv");
+  while (table_next(&t)) {
+    const int rotation = !strcmp(t.column[2], "rpy_tt_rt_rr");
+    if (!rotation && strcmp(t.column[2], "joung_rpy_tt")) continue;
+    sd_clump clump = solve_cluster(t.column[0], 1, rotation);
+    double largest = 0.0;
+    for (int k = 0; k < 36; k++) largest = fmax(largest, fabs(clump.R[k]));
+    for (int k = 0; k < 36; k++) CHECK_NEAR(clump.R[k], table_number(&t, 3 + k), 1e-8 * largest);
+    sd_clump_free(&clump);
+    rows++;
+  }
+  assert_int_equal(rows, 2 * N_CLUSTERS);
+}
+
+/* Eigenvalues of clusters.csv and rows of fused.csv, to their last digit */
+static void models_have_the_published_eigenvalues(void **state)
+{
+  (void) state;
+  for (int rotation = 0; rotation < 2; rotation++) {
+    table t = table_open("clusters.csv");
+    while (table_next(&t)) {
+      sd_clump clump = solve_cluster(t.column[0], 1, rotation);
+      for (int block = 0; block < 2; block++) {
+        double w[3];
+        eigenvalues(clump.R, block, block ? 8.0 * SD_PI : 6.0 * SD_PI, w);
+        for (int k = 0; k < 3; k++)
+          CHECK_NEAR(w[k], table_number(&t, (rotation ? 17 : 11) + 3 * block + k),
+                     fmax(0.51e-8, 1e-8 * w[2]));
+      }
+      sd_clump_free(&clump);
+    }
+    t = table_open("fused.csv");
+    while (table_next(&t)) {
+      sd_clump clump = solve_row((int) table_number(&t, 0), table_number(&t, 1), 1, rotation);
+      const int first = rotation ? 11 : 8;
+      CHECK_NEAR(clump.R[14] / (6.0 * SD_PI), table_number(&t, first), 1e-8);
+      CHECK_NEAR(clump.R[0] / (6.0 * SD_PI), table_number(&t, first + 1), 1e-8);
+      CHECK_NEAR(clump.R[21] / (8.0 * SD_PI), table_number(&t, first + 2),
+                 1e-8 * fmax(1.0, table_number(&t, first + 2)));
+      sd_clump_free(&clump);
+    }
+  }
+}
+
+/* Four unit spheres in a row at s = 1: values of the test-suite of PyGRPY (R. Waszkiewicz, github.com/RadostW/PyGRPY, tests). */
+static void row_of_four_has_the_values_of_pygrpy(void **state)
+{
+  (void) state;
+  sd_clump clump = solve_row(4, 1.0, 1, 1);
+  CHECK_NEAR(clump.mobility[0], 0.03225999460266797, 1e-15);
+  CHECK_NEAR(clump.mobility[14], 0.03876335168633891, 1e-15);
+  CHECK_NEAR(clump.mobility[21], 0.006590020934028927, 1e-15);
+  CHECK_NEAR(clump.mobility[35], 0.017665748920274064, 1e-15);
+  CHECK_NEAR(clump.radius, 1.5409546371938094, 1e-13);
+  sd_clump_free(&clump);
+}
+
+/* --- shells: the exact values ------------------------------------------------------------------------------------- */
+
+static const struct {
+  int n;
+  double translation, rotation;
+} ladder[] = {{12, 0.6e-2, 1.5e-2}, {42, 0.35e-2, 0.4e-2}, {162, 0.15e-2, 0.2e-2}};
+
+static void worse(double *worst, double value, double exact)
+{
+  const double error = value / exact - 1.0;
+  if (fabs(error) > fabs(*worst)) *worst = error;
+}
+
+static void report(int rung, const char *what, double translation, double rotation)
+{
+  printf("             shell %3d, %-18s worst translation %+.3f %%, rotation %+.3f %%\n",
+         ladder[rung].n, what, 100 * translation, 100 * rotation);
+  CHECK_NEAR(translation, 0.0, ladder[rung].translation);
+  CHECK_NEAR(rotation, 0.0, ladder[rung].rotation);
+}
+
+static void clusters_are_near_exact(void **state)
+{
+  (void) state;
+  for (int rung = 0; rung < 3; rung++) {
+    double worst[2] = {0.0, 0.0};
+    table t = table_open("clusters.csv");
+    while (table_next(&t)) {
+      sd_clump clump = solve_cluster(t.column[0], ladder[rung].n, 0);
+      for (int block = 0; block < 2; block++) {
+        double w[3];
+        eigenvalues(clump.R, block, block ? 8.0 * SD_PI : 6.0 * SD_PI, w);
+        for (int k = 0; k < 3; k++) worse(worst + block, w[k], table_number(&t, 2 + 3 * block + k));
+      }
+      worse(worst, clump.radius, table_number(&t, 8));
+      sd_clump_free(&clump);
+    }
+    report(rung, "open clusters", worst[0], worst[1]);
+  }
+}
+
+/* The coupling of the chiral cluster, and every other entry, beside the exact matrix: 0.6, 0.3, 0.15 % of the largest entry */
+static void whole_matrices_are_near_exact(void **state)
+{
+  (void) state;
+  static const double limit[3] = {0.6e-2, 0.3e-2, 0.15e-2};
+  for (int rung = 0; rung < 2; rung++) {
+    table t = table_open("clusters_full.csv");
+    while (table_next(&t)) {
+      if (strncmp(t.column[2], "exact", 5)) continue;
+      sd_clump clump = solve_cluster(t.column[0], ladder[rung].n, 0);
+      double largest = 0.0;
+      for (int k = 0; k < 36; k++) largest = fmax(largest, fabs(clump.R[k]));
+      for (int k = 0; k < 36; k++)
+        CHECK_NEAR(clump.R[k] / largest, table_number(&t, 3 + k) / largest, limit[rung]);
+      sd_clump_free(&clump);
+    }
+  }
+}
+
+static void fused_rows_are_near_exact(void **state)
+{
+  (void) state;
+  for (int rung = 0; rung < 3; rung++) {
+    double worst[2] = {0.0, 0.0};
+    table t = table_open("fused.csv");
+    while (table_next(&t)) {
+      sd_clump clump = solve_row((int) table_number(&t, 0), table_number(&t, 1), ladder[rung].n, 0);
+      worse(worst, clump.R[14] / (6.0 * SD_PI), table_number(&t, 2));
+      worse(worst, clump.R[0] / (6.0 * SD_PI), table_number(&t, 3));
+      worse(worst + 1, clump.R[21] / (8.0 * SD_PI), table_number(&t, 4));
+      sd_clump_free(&clump);
+    }
+    report(rung, "fused rows", worst[0], worst[1]);
+  }
+}
+
+/* Drag, and the period of Jeffery's orbit, 2 pi/rate (re + 1/re): re = sqrt((1+B)/(1-B)), B = torque from strain over torque from
+ * rotation. Chain along z in a shear u_y = rate z. */
+static void chains_are_near_exact_and_tumble_in_time(void **state)
+{
+  (void) state;
+  static const double limit[3] = {1e-2, 0.5e-2, 0.25e-2};
+  for (int rung = 0; rung < 3; rung++) {
+    double worst[2] = {0.0, 0.0}, period = 0.0;
+    table t = table_open("chains_exact.csv");
+    while (table_next(&t)) {
+      const int n = (int) table_number(&t, 0);
+      if (n > (rung == 2 ? 5 : 10)) continue;
+      sd_clump clump = solve_row(n, 2.0, ladder[rung].n, 0);
+      worse(worst, clump.R[14] / (6.0 * SD_PI), table_number(&t, 2));
+      worse(worst, clump.R[0] / (6.0 * SD_PI), table_number(&t, 3));
+      worse(worst + 1, clump.R[21] / (8.0 * SD_PI), table_number(&t, 7));
+      const double B = fabs(clump.strain[6 * 3 + 3] / clump.R[21]), re = sqrt((1 + B) / (1 - B));
+      worse(&period, 2 * SD_PI * (re + 1 / re), table_number(&t, 10));
+      sd_clump_free(&clump);
+    }
+    report(rung, "chains", worst[0], worst[1]);
+    printf("             shell %3d, chains: worst period %+.3f %%\n", ladder[rung].n, 100 * period);
+    CHECK_NEAR(period, 0.0, limit[rung]);
+  }
+}
+
+/* Total drag of rigid pairs, gap 0.01 to 10 mean radii, radii 1:2 to 1:100; and touching (a2/a1, along, across, in 6 pi eta a1 U:
+ * multipole collocation, computed independently of this project). */
+static void unequal_dumbbells_are_near_exact(void **state)
+{
+  (void) state;
+  static const double touching[5][3] = {{1.5, 1.6627786, 1.8390590},
+                                        {2, 2.0972489, 2.2658285},
+                                        {3, 3.0405340, 3.1765256},
+                                        {5, 5.0106730, 5.0943358},
+                                        {10, 10.0012436, 10.0338406}};
+  for (int rung = 0; rung < 3; rung++) {
+    double worst = 0.0, x[6] = {0}, a[2] = {1.0, 0.0};
+    for (int k = 0; k < 5; k++) {
+      a[1] = touching[k][0];
+      x[5] = 1.0 + a[1];
+      sd_clump clump = solve(2, x, a, ladder[rung].n, 0);
+      worse(&worst, clump.R[14] / (6.0 * SD_PI), touching[k][1]);
+      worse(&worst, clump.R[0] / (6.0 * SD_PI), touching[k][2]);
+      sd_clump_free(&clump);
+    }
+    table t = table_open("two_spheres_unequal.csv");
+    while (table_next(&t)) {
+      a[1] = table_number(&t, 0);
+      x[5] = table_number(&t, 2);
+      sd_clump clump = solve(2, x, a, ladder[rung].n, 0);
+      worse(&worst, clump.R[14] / (6.0 * SD_PI), table_number(&t, 3) + a[1] * table_number(&t, 4));
+      if (*t.column[5])
+        worse(&worst, clump.R[0] / (6.0 * SD_PI), table_number(&t, 5) + table_number(&t, 6));
+      sd_clump_free(&clump);
+    }
+    printf("             shell %3d, unequal dumbbells  worst translation %+.3f %%\n",
+           ladder[rung].n, 100 * worst);
+    CHECK_NEAR(worst, 0.0, ladder[rung].translation);
+  }
+}
+
+static void lone_sphere_is_exact(void **state)
+{
+  (void) state;
+  const double x[3] = {3, 4, 5}, a = 0.7;
+  const int sizes[] = {1, 12, 17, 42, 100, 162};
+  for (int m = 0; m < 6; m++) {
+    sd_clump clump = solve(1, x, &a, sizes[m], 1);
+    for (int p = 0; p < 36; p++) {
+      const double exact = p % 7 ? 0.0 : p < 21 ? 6.0 * SD_PI * a : 8.0 * SD_PI * a * a * a;
+      CHECK_NEAR(clump.R[p], exact, 1e-10);
+      CHECK_NEAR(clump.strain[p], 0.0, 1e-10);
+    }
+    CHECK_NEAR(clump.radius, a, 1e-10);
+    sd_clump_free(&clump);
+  }
+}
+
+/* --- what every resistance obeys ------------------------------------------------------------------------------------- */
+
+/* Random clump of touching or overlapping spheres of different radii */
+static int random_clump(uint64_t *seed, int n, double *x, double *a)
+{
+  for (int k = 0; k < n; k++) {
+    a[k] = uniform(seed, 0.5, 1.5);
+    double e[3], norm = 0.0;
+    const int j = (int) uniform(seed, 0.0, k);
+    for (int d = 0; d < 3; d++) {
+      e[d] = uniform(seed, -1.0, 1.0);
+      norm += e[d] * e[d];
+    }
+    for (int d = 0; d < 3; d++)
+      x[3 * k + d] =
+          k == 0 ? 0.0 : x[3 * j + d] + uniform(seed, 0.7, 1.0) * (a[k] + a[j]) * e[d] / sqrt(norm);
+  }
+  return n;
+}
+
+static void resistance_is_symmetric_and_dissipates(void **state)
+{
+  (void) state;
+  uint64_t seed = 41;
+  for (int trial = 0; trial < 20; trial++) {
+    double x[3 * MOST], a[MOST];
+    const int n = random_clump(&seed, 2 + trial % 5, x, a),
+              shell = trial % 3 == 0 ? 1
+        : trial % 3 == 1             ? 12
+                                     : 42;
+    sd_clump clump = solve(n, x, a, shell, 1);
+    double sum[36] = {0.0}, R[36], c[3] = {0.0};
+    for (int k = 0; k < n; k++)
+      for (int d = 0; d < 3; d++) c[d] += x[3 * k + d] / n;
+    for (int k = 0; k < n;
+         k++) /* from the table itself, so that symmetry is a fact and not made by averaging */
+      for (int q = 0; q < 6; q++) {
+        const double *t = clump.table + 6 * (12 * k + q),
+                     arm[3] = {x[3 * k] - c[0], x[3 * k + 1] - c[1], x[3 * k + 2] - c[2]};
+        double torque[3];
+        sd_cross(arm, t, torque);
+        for (int p = 0; p < 3; p++) {
+          sum[6 * p + q] += t[p];
+          sum[6 * (p + 3) + q] += t[p + 3] + torque[p];
+        }
+      }
+    for (int p = 0; p < 6; p++)
+      for (int q = 0; q < 6; q++) {
+        CHECK_NEAR(sum[6 * p + q], sum[6 * q + p], 1e-10 * clump.R[0]);
+        CHECK_NEAR(sum[6 * p + q], clump.R[6 * p + q], 1e-10 * clump.R[0]);
+      }
+    memcpy(R, clump.R, sizeof(R));
+    assert_true(positive_definite(R, 6, 0.0));
+    sd_clump_free(&clump);
+  }
+}
+
+/* Force and torque on the spheres in the lab, for a pose, a viscosity and a linear slip, add up to R (s0, W) + strain E. */
+static void forces_add_up_to_the_matrix(void **state)
+{
+  (void) state;
+  uint64_t seed = 43;
+  const double eta = 0.3;
+  double x[3 * MOST], a[MOST], F[3 * MOST], T[3 * MOST], F2[3 * MOST], T2[3 * MOST];
+  const int n = random_clump(&seed, 6, x, a);
+  sd_clump clump = solve(n, x, a, 42, 0);
+  double c[3] = {0.0};
+  for (int k = 0; k < n; k++)
+    for (int d = 0; d < 3; d++) c[d] += x[3 * k + d] / n;
+  for (int trial = 0; trial < 20; trial++) {
+    double Q[9], s0[3], A[9], E[9], in[12], total[6] = {0.0};
+    random_rotation(&seed, Q);
+    for (int d = 0; d < 3; d++) s0[d] = uniform(&seed, -1.0, 1.0);
+    for (int d = 0; d < 9; d++) A[d] = uniform(&seed, -1.0, 1.0);
+    sd_clump_forces(&clump, Q, eta, s0, A, F, T);
+    for (int k = 0; k < n; k++) {
+      double arm[3], lab[3], torque[3];
+      for (int d = 0; d < 3; d++) arm[d] = x[3 * k + d] - c[d];
+      sd_multiply3(Q, arm, lab);
+      sd_cross(lab, F + 3 * k, torque);
+      for (int d = 0; d < 3; d++) {
+        total[d] += F[3 * k + d];
+        total[d + 3] += T[3 * k + d] + torque[d];
+      }
+    }
+    /* slip in the frame of the shape */
+    const double W[3] = {0.5 * (A[7] - A[5]), 0.5 * (A[2] - A[6]), 0.5 * (A[3] - A[1])};
+    sd_multiply3t(Q, s0, in);
+    sd_multiply3t(Q, W, in + 3);
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++) {
+        E[3 * p + q] = 0.0;
+        for (int u = 0; u < 3; u++)
+          for (int v = 0; v < 3; v++)
+            E[3 * p + q] += Q[3 * u + p] * 0.5 * (A[3 * u + v] + A[3 * v + u]) * Q[3 * v + q];
+      }
+    const double e[6] = {E[0], E[4], E[8], E[5], E[2], E[1]};
+    memcpy(in + 6, e, sizeof(e));
+    double own[6], lab[6];
+    for (int p = 0; p < 6; p++) {
+      own[p] = 0.0;
+      for (int q = 0; q < 6; q++)
+        own[p] += eta * (clump.R[6 * p + q] * in[q] + clump.strain[6 * p + q] * in[q + 6]);
+    }
+    sd_multiply3(Q, own, lab);
+    sd_multiply3(Q, own + 3, lab + 3);
+    for (int p = 0; p < 6; p++) CHECK_NEAR(total[p], lab[p], 1e-11 * clump.R[0]);
+
+    /* slip of a rigid motion alone: the short way gives the same */
+    const double spin[9] = {0, -W[2], W[1], W[2], 0, -W[0], -W[1], W[0], 0};
+    sd_clump_forces(&clump, Q, eta, s0, spin, F, T);
+    sd_clump_forces_rigid(&clump, Q, eta, s0, W, F2, T2);
+    for (int k = 0; k < 3 * n; k++) {
+      CHECK_NEAR(F2[k], F[k], 1e-12 * clump.R[0]);
+      CHECK_NEAR(T2[k], T[k], 1e-12 * clump.R[0]);
+    }
+  }
+  sd_clump_free(&clump);
+}
+
+/* 6x6 in other axes; for the mirror z -> -z, torques and angular velocities change sign. */
+static void turned(const double R[36], const double Q[9], double hand, double out[36])
+{
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) {
+      double s = 0.0;
+      for (int u = 0; u < 3; u++)
+        for (int v = 0; v < 3; v++)
+          s += Q[3 * (p % 3) + u] * R[6 * (p / 3 * 3 + u) + q / 3 * 3 + v] * Q[3 * (q % 3) + v];
+      out[6 * p + q] = (p < 3) == (q < 3) ? s : hand * s;
+    }
+}
+
+/* The same clump turned, moved, reflected and its spheres in another order has the same resistance, turned and reflected: for all
+ * clusters and for random clumps, whatever the shell. */
+static void answer_does_not_depend_on_orientation_or_order(void **state)
+{
+  (void) state;
+  uint64_t seed = 47;
+  for (int m = 0; m < N_CLUSTERS + 8; m++)
+    for (int trial = 0; trial < 4; trial++) {
+      double x[3 * MOST], a[MOST], y[3 * MOST], b[MOST], Q[9], expected[36];
+      int order[MOST];
+      const int n = m < N_CLUSTERS ? table_cluster(clusters[m], x, a)
+                                   : random_clump(&seed, 3 + m % 3, x, a);
+      const double hand = trial % 2 ? -1.0 : 1.0;
+      sd_clump one = solve(n, x, a, m == 10 ? 12 : trial < 2 ? 12 : 42, 0);
+      random_rotation(&seed, Q);
+      random_order(&seed, n, order);
+      for (int p = 0; p < 3; p++) Q[3 * p + 2] *= hand;
+      for (int k = 0; k < n; k++) {
+        b[k] = a[order[k]];
+        sd_multiply3(Q, x + 3 * order[k], y + 3 * k);
+        for (int d = 0; d < 3; d++) y[3 * k + d] += 7.0 - d;
+      }
+      sd_clump other = solve(n, y, b, m == 10 ? 12 : trial < 2 ? 12 : 42, 0);
+      turned(one.R, Q, hand, expected);
+      for (int p = 0; p < 36; p++) CHECK_NEAR(other.R[p], expected[p], 1e-9 * one.R[21]);
+      for (int k = 0; k < n; k++) { /* sphere by sphere: force from translation */
+        const double *t = other.table + 72 * k, *u = one.table + 72 * order[k];
+        for (int p = 0; p < 3; p++)
+          for (int q = 0; q < 3; q++) {
+            double s = 0.0;
+            for (int v = 0; v < 3; v++)
+              for (int w = 0; w < 3; w++) s += Q[3 * p + v] * u[6 * w + v] * Q[3 * q + w];
+            CHECK_NEAR(t[6 * q + p], s, 1e-9 * one.R[0]);
+          }
+      }
+      sd_clump_free(&one);
+      sd_clump_free(&other);
+    }
+}
+
+/* A sheet or an axis of symmetry leaves no coupling; the chiral cluster has some, and its mirror image the opposite. */
+static void mirror_image_flips_the_coupling(void **state)
+{
+  (void) state;
+  double x[3 * MOST], a[MOST];
+  const int n = table_cluster("helix4_chiral", x, a);
+  sd_clump one = solve(n, x, a, 42, 0);
+  for (int k = 0; k < n; k++) x[3 * k] = -x[3 * k];
+  sd_clump other = solve(n, x, a, 42, 0);
+  const double trace = one.R_centre[18] + one.R_centre[25] + one.R_centre[32];
+  const double opposite = other.R_centre[18] + other.R_centre[25] + other.R_centre[32];
+  assert_true(fabs(trace) > 0.01);
+  CHECK_NEAR(opposite, -trace, 1e-10);
+  sd_clump_free(&one);
+  sd_clump_free(&other);
+  sd_clump tetrapod = solve_cluster("tetrapod5", 42, 0);
+  for (int p = 3; p < 6; p++)
+    for (int q = 0; q < 3; q++) CHECK_NEAR(tetrapod.R[6 * p + q], 0.0, 1e-8);
+  sd_clump_free(&tetrapod);
+}
+
+static void coupling_is_symmetric_about_the_centre(void **state)
+{
+  (void) state;
+  uint64_t seed = 53;
+  for (int trial = 0; trial < 12; trial++) {
+    double x[3 * MOST], a[MOST], one[36];
+    const int n = random_clump(&seed, 3 + trial % 3, x, a);
+    sd_clump clump = solve(n, x, a, trial % 2 ? 1 : 12, trial % 4 == 1);
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++)
+        CHECK_NEAR(clump.R_centre[6 * (p + 3) + q], clump.R_centre[6 * (q + 3) + p],
+                   1e-10 * clump.R[0]);
+    for (int p = 0; p < 6; p++)
+      for (int q = 0; q < 6; q++) {
+        one[6 * p + q] = 0.0;
+        for (int k = 0; k < 6; k++)
+          one[6 * p + q] += clump.R_centre[6 * p + k] * clump.mobility[6 * k + q];
+        if (n > 2) CHECK_NEAR(one[6 * p + q], p == q, 1e-9);
+      }
+    sd_clump_free(&clump);
+  }
+}
+
+/* A big sphere that touches a small one has its centre near its own. */
+static void centre_lies_where_the_drag_is(void **state)
+{
+  (void) state;
+  const double x[6] = {0, 0, 0, 0, 0, 1.1}, a[2] = {1.0, 0.1};
+  sd_clump clump = solve(2, x, a, 42, 0);
+  CHECK_NEAR(clump.centre[0], 0.0, 1e-10);
+  CHECK_NEAR(clump.centre[2], -0.55, 0.01); /* from the centroid of the centres */
+  sd_clump_free(&clump);
+}
+
+/* --- degenerate and bad input ---------------------------------------------------------------------------------------- */
+
+/* Point forces in a row have no resistance to spin; that must not upset anything else. */
+static void row_without_torques_has_no_spin_resistance(void **state)
+{
+  (void) state;
+  sd_clump clump = solve_row(3, 2.0, 1, 0);
+  CHECK_NEAR(clump.R[35], 0.0, 1e-12);
+  CHECK_NEAR(clump.mobility[35], 0.0, 1e-12);
+  CHECK_NEAR(clump.mobility[14] * clump.R[14], 1.0, 1e-12);
+  CHECK_NEAR(clump.radius, 3.0 / (1 / 1.4864864865 + 2 / 1.7788461538), 1e-9);
+  sd_clump_free(&clump);
+  sd_clump one = solve(1, (double[3]){1, 2, 3}, (double[1]){0.8}, 1, 0);
+  CHECK_NEAR(one.R[0], 6.0 * SD_PI * 0.8, 1e-13);
+  CHECK_NEAR(one.radius, 0.8, 1e-13);
+  sd_clump_free(&one);
+}
+
+/* A sphere inside another carries nothing in rigid motion, and the clump is its host. */
+static void hidden_sphere_carries_nothing(void **state)
+{
+  (void) state;
+  const double x[6] = {0, 0, 0, 0.2, 0.1, 0.3}, a[2] = {1.0, 0.4};
+  for (int m = 0; m < 3; m++) {
+    const int shell = m == 0 ? 1 : m == 1 ? 12 : 162;
+    sd_clump clump = solve(2, x, a, shell, 1);
+    double w[3];
+    for (int k = 0; k < 36; k++)
+      if (k % 6 < 3) CHECK_NEAR(clump.table[72 + k], 0.0, 1e-12);
+    eigenvalues(clump.R, 0, 6.0 * SD_PI, w);
+    for (int k = 0; k < 3; k++) CHECK_NEAR(w[k], 1.0, 1e-10);
+    sd_clump_free(&clump);
+  }
+}
+
+static void equal_spheres_at_one_point_are_refused(void **state)
+{
+  (void) state;
+  double x[9] = {0, 0, 0, 0, 0, 2, 0, 0, 2}, a[3] = {1, 1, 1};
+  sd_shape shape;
+  sd_clump clump;
+  sd_clump_options o = SD_CLUMP_OPTIONS;
+  for (int shell = 1; shell < 20; shell += 11) {
+    o.shell = shell;
+    x[8] = 2.0 + 1e-7;
+    assert_int_equal(sd_shape_create(3, x, a, &shape), SD_OK);
+    assert_int_equal(sd_clump_create(&shape, &o, &shells, &clump, NULL), SD_ESINGULAR);
+    sd_shape_free(&shape);
+    x[8] = 2.01; /* close is no problem */
+    assert_int_equal(sd_shape_create(3, x, a, &shape), SD_OK);
+    assert_int_equal(sd_clump_create(&shape, &o, &shells, &clump, NULL), SD_OK);
+    sd_shape_free(&shape);
+    sd_clump_free(&clump);
+  }
+}
+
+static int products;
+static void count_products(void *ctx, int number, int solves, int product)
+{
+  assert_ptr_equal(ctx, &products);
+  assert_true(number >= 0 && number < solves && solves % 12 == 0 && product >= 0);
+  products++;
+}
+
+/* Too large for a dense matrix: gradients give the same answer; too large for anything: refused, with the bytes it would take. */
+static void memory_decides_the_solver(void **state)
+{
+  (void) state;
+  double x[3 * MOST], a[MOST];
+  const int n = table_cluster("helix4_chiral", x, a);
+  for (int rotation = 0; rotation < 2; rotation++) {
+    sd_shape shape;
+    sd_clump dense, iterative;
+    sd_clump_need need;
+    sd_clump_options o = SD_CLUMP_OPTIONS;
+    o.shell = rotation ? 1 : 42;
+    o.rotation = rotation;
+    assert_int_equal(sd_shape_create(n, x, a, &shape), SD_OK);
+    assert_int_equal(sd_clump_create(&shape, &o, &shells, &dense, &need), SD_OK);
+    assert_int_equal(dense.iterations, 0);
+    assert_int_equal(need.points, rotation ? n : 42 * n);
+
+    o.memory = 0.9 * need.dense;
+    o.tolerance = 1e-9;
+    o.progress = count_products;
+    o.progress_ctx = &products;
+    if (need.iterative < o.memory) {
+      products = 0;
+      assert_int_equal(sd_clump_create(&shape, &o, &shells, &iterative, &need), SD_OK);
+      assert_true(iterative.iterations > 1 && products > 12);
+      for (int k = 0; k < 36; k++) CHECK_NEAR(iterative.R[k], dense.R[k], 1e-6 * dense.R[21]);
+      sd_clump_free(&iterative);
+    } else
+      assert_true(rotation);
+
+    o.memory = 0.5 * fmin(need.iterative, need.dense);
+    assert_int_equal(sd_clump_create(&shape, &o, &shells, &iterative, &need), SD_ENOMEMORY);
+    assert_null(iterative.table);
+    assert_true(need.dense > o.memory && need.iterative > o.memory);
+    sd_clump_free(&dense);
+    sd_shape_free(&shape);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(shell_one_is_the_ordinary_solve),
+      cmocka_unit_test(models_have_the_published_matrices),
+      cmocka_unit_test(models_have_the_published_eigenvalues),
+      cmocka_unit_test(row_of_four_has_the_values_of_pygrpy),
+      cmocka_unit_test(clusters_are_near_exact),
+      cmocka_unit_test(whole_matrices_are_near_exact),
+      cmocka_unit_test(fused_rows_are_near_exact),
+      cmocka_unit_test(chains_are_near_exact_and_tumble_in_time),
+      cmocka_unit_test(unequal_dumbbells_are_near_exact),
+      cmocka_unit_test(lone_sphere_is_exact),
+      cmocka_unit_test(resistance_is_symmetric_and_dissipates),
+      cmocka_unit_test(forces_add_up_to_the_matrix),
+      cmocka_unit_test(answer_does_not_depend_on_orientation_or_order),
+      cmocka_unit_test(mirror_image_flips_the_coupling),
+      cmocka_unit_test(coupling_is_symmetric_about_the_centre),
+      cmocka_unit_test(centre_lies_where_the_drag_is),
+      cmocka_unit_test(row_without_torques_has_no_spin_resistance),
+      cmocka_unit_test(hidden_sphere_carries_nothing),
+      cmocka_unit_test(equal_spheres_at_one_point_are_refused),
+      cmocka_unit_test(memory_decides_the_solver),
+  };
+  return cmocka_run_group_tests(tests, NULL, free_shells);
+}
