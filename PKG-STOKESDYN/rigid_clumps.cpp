@@ -231,7 +231,7 @@ namespace {
     std::string what;
   };
 
-  void show_progress(void *ctx, int solve, int products)
+  void show_progress(void *ctx, int solve, int solves, int products)
   {
     Progress *p = static_cast<Progress *>(ctx);
     const double now = MPI_Wtime();
