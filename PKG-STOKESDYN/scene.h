@@ -59,6 +59,8 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   void lists_are_stale() { stale = clumps_stale = true; }
 
+  const double *radii() const { return a.data(); }    // of this rank's spheres, 0: takes no part
+  sd_spheres local() const { return {positions(), a.data(), w.data()}; }
   sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }
 
   /* All pairs: the spheres of all ranks that take part, in order of tag, the same on every rank. */
