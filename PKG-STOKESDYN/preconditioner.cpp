@@ -13,6 +13,7 @@ namespace StokesDyn {
 
 static const double RHO =
     3.0;    // reach of the sparse factor: 42 blocks a sphere in a compact cloud
+static const double RIGID = 1e-9;       // of its size: rounding; a clump that has bent more gets a new block
 static const double BENT = 0.02;    // of its size: a clump that has changed more gets a new block
 static const long PAYS_AFTER =
     200;    // iterations: a factor costs about as much as so many products
@@ -89,37 +90,31 @@ void Preconditioner::attach(sd_system &system)
     n = atom->nlocal;
     a = scene.radii();
   }
-  if (n == 0) return;
   bool clumps = false;
+  first.assign(1, 0);
+  member.clear();
   if (kind != SPARSE && atom->molecule) {
-    if (cloud)
-      clumps = group_by_molecule(scene.cloud_molecules(), a);
-    else {
-      molecule.assign(atom->molecule, atom->molecule + n);
-      clumps = group_by_molecule(molecule, a);
-    }
+    if (!cloud) molecule.assign(atom->molecule, atom->molecule + n);
+    clumps = group_by_molecule(cloud ? scene.cloud_molecules() : molecule, a);
   }
-  // On one rank alone the choice could differ from the others' in list mode; that is harmless, P need only be symmetric.
+  small = member.size() <= (first.size() - 1) * (size_t) SMALL_CLUMP;
   Kind want = kind;
-  if (kind == AUTO) want = clumps ? CLUMP : cloud && wanted_sparse ? SPARSE : NONE;
-  if (want == CLUMP && first.size() < 2) want = NONE;
+  if (kind == AUTO)
+    want = clumps && (cloud || small) ? CLUMP : cloud && wanted_sparse ? SPARSE : NONE;
+  // All ranks go the same way: the solver's sums and, of a cloud, the applications are collective.
+  int mine = want, any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  want = (Kind) any;
   if (want == NONE) return;
 
   if (cloud) cloud_diagonal();
-  bool ready;
+  int ready;
   if (want == SPARSE)
     ready = !worn || make_sparse();
-  else {
-    const bool small = !cloud && member.size() <= (first.size() - 1) * SMALL_CLUMP;
-    ready = !worn && !small && turn_blocks(cloud ? scene.cloud().x : atom->x[0]);
-    if (!ready) ready = make_blocks();
-  }
-  if (cloud) {    // applied by all ranks together, or by none
-    int mine = ready, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, world);
-    ready = all;
-  }
-  if (!ready) return;    // a preconditioner that cannot be made is done without
+  else
+    ready = (!worn && turn_blocks()) || make_blocks();
+  MPI_Allreduce(MPI_IN_PLACE, &ready, 1, MPI_INT, MPI_MIN, world);
+  if (!ready) return;    // one that cannot be made is done without
   worn = false;
   present = want;
   if (cloud) {
@@ -174,21 +169,25 @@ bool Preconditioner::make_blocks()
   return true;
 }
 
-/* Clumps that have moved as rigid bodies keep their blocks; false if one has not. */
-bool Preconditioner::turn_blocks(const double *x)
+/* Clumps of a cloud that have moved as rigid bodies keep their blocks; false if one has not. */
+bool Preconditioner::turn_blocks()
 {
   if (!scene.all_pairs() || blocks.blocks != (int) first.size() - 1 ||
       shapes.size() + 1 != first.size())
     return false;
+  const sd_law law = scene.law();
+  const sd_spheres s = scene.cloud();
   std::vector<double> clump;
   for (size_t k = 0; k < shapes.size(); k++) {
     clump.clear();
     for (long m = first[k]; m < first[k + 1]; m++)
-      clump.insert(clump.end(), x + 3 * (long) member[m], x + 3 * (long) member[m] + 3);
+      clump.insert(clump.end(), s.x + 3 * (long) member[m], s.x + 3 * (long) member[m] + 3);
     double R[9], c[3];
-    if (!(sd_shape_pose(&shapes[k], clump.data(), R, c) <= BENT * shapes[k].size)) return false;
+    if (!(sd_shape_pose(&shapes[k], clump.data(), R, c) <= (small ? RIGID : BENT) * shapes[k].size))
+      return false;
     sd_blocks_turn(&blocks, k, R);
   }
+  sd_blocks_couple(&blocks, &law, &s, RHO);    // for where the clumps are now
   return true;
 }
 

@@ -40,7 +40,8 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   bool wanted_sparse = false;    // auto: enough iterations have been spent to pay for a factor
   long iterations_spent = 0, solves = 0;
   int first_iterations = -1;    // of the first solve after a set-up
-  bool worn = true;             // make it anew
+  bool worn = true;     // make it anew
+  bool small = true;    // are the clumps small?
 
   sd_sparse sparse;
   sd_blocks blocks;
@@ -54,7 +55,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   void cloud_diagonal();
   bool make_sparse();
   bool make_blocks();
-  bool turn_blocks(const double *x);
+  bool turn_blocks();
   void free_shapes();
   static void apply(void *ctx, const double *r, double *z);
 };
