@@ -29,11 +29,11 @@ FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
   peratom_freq = 1;
   scalar_flag = 1;
   vector_flag = 1;
-  size_vector = 7;
+  size_vector = 9;
   global_freq = 1;
   extscalar = 1;
   extvector = -1;
-  extlist = new int[size_vector]{1, 1, 1, 0, 0, 0, 0};
+  extlist = new int[size_vector]{1, 1, 1, 0, 0, 0, 0, 0, 0};
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
@@ -124,7 +124,7 @@ double FixStokesDynamics::compute_scalar()
   return all;
 }
 
-/* Total force x y z; iterations and residual of the last solve, solves, unconverged solves. */
+/* Total force x y z; iterations and residual of the last solve, solves, unconverged solves; smallest eigenvalue met, time step limit. */
 double FixStokesDynamics::compute_vector(int k)
 {
   if (k < 3) {
@@ -134,7 +134,8 @@ double FixStokesDynamics::compute_vector(int k)
   }
   if (!pair) return 0.0;
   const auto &g = pair->numbers();
-  const double values[] = {g.iterations, g.residual, g.solves, g.unconverged};
+  const double values[] = {g.iterations,  g.residual,   g.solves,
+                           g.unconverged, g.lambda_min, g.dt_limit};
   return values[k - 3];
 }
 

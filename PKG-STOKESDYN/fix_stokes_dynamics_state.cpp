@@ -14,7 +14,11 @@ using namespace StokesDyn;
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg)
 {
-  columns = narg > 3 && strcmp(arg[3], "rotation") == 0 ? WITH_ROTATION : TRANSLATION_ONLY;
+  const bool has_rotation = narg > 3 && strcmp(arg[3], "rotation") == 0;
+  const bool has_history = strcmp(arg[narg - 1], "history") == 0;
+  rotation = has_rotation;
+  history = has_rotation ? WITH_ROTATION : TRANSLATION_ONLY;
+  columns = history + (has_history ? (has_rotation ? 12 : 6) : 0);
   restart_peratom = 1;
   restart_global = 1;
   create_attribute = 1;
@@ -68,7 +72,7 @@ void FixStokesDynamicsState::record(int i)
   state[i][LEFT_MOLECULE] = atom->molecule ? atom->molecule[i] : 0;
   domain->unmap(atom->x[i], atom->image[i], state[i] + LEFT_X);
   memcpy(state[i] + LEFT_V, atom->v[i], 3 * sizeof(double));
-  if (columns == WITH_ROTATION) memcpy(state[i] + LEFT_OMEGA, atom->omega[i], 3 * sizeof(double));
+  if (rotation) memcpy(state[i] + LEFT_OMEGA, atom->omega[i], 3 * sizeof(double));
 }
 
 void FixStokesDynamicsState::post_run()
@@ -101,7 +105,7 @@ bool FixStokesDynamicsState::placed_as_left(int i) const
 bool FixStokesDynamicsState::moving_as_left(int i) const
 {
   return same_vector(atom->v[i], state[i] + LEFT_V) &&
-      (columns == TRANSLATION_ONLY || same_vector(atom->omega[i], state[i] + LEFT_OMEGA));
+      (!rotation || same_vector(atom->omega[i], state[i] + LEFT_OMEGA));
 }
 
 void FixStokesDynamicsState::grow_arrays(int nmax)

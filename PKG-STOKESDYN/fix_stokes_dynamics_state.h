@@ -39,6 +39,8 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
   enum { TORQUE = 15, WPRIME = 18, LEFT_OMEGA = 21, WITH_ROTATION = 24 };
   double **state = nullptr;    // [atom][columns]
   int columns;
+  int history;    // first of the columns for the last two solutions; == columns: none are kept
+  bool rotation;
 
   /* The same on all ranks, in one block for the restart file. A step of -1: never. */
   struct Global {
@@ -48,6 +50,10 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
     double eta = 0, u_inf[3] = {0, 0, 0},
            vorticity[3] = {0, 0, 0};    // of the last step, if numbers
     double solves = 0, unconverged = 0;
+    double solutions = 0;    // kept in the history: 0, 1, 2
+    double lambda_min =
+        0;    // smallest eigenvalue met, of the mobility scaled to unit diagonal; 0: unknown
+    double dt_limit = 0;                    // of explicit time steps of free spheres; 0: unknown
     double iterations = 0, residual = 0;    // of the last solve
     double box[6] = {0, 0, 0, 0, 0, 0};     // periodic lengths and tilts as the last run left them
     uint64_t settings = 0;                  // hash of the words of the pair_style command

@@ -27,7 +27,7 @@ static const std::string COMMAND = "Pair style stokes_dynamics";
 static const char *STATE_ID = "STOKES_DYNAMICS_STATE";
 
 PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) :
-    Pair(lmp), scene(lmp, this, COMMAND), rigid(lmp, scene, COMMAND)
+    Pair(lmp), scene(lmp, this, COMMAND), rigid(lmp, scene, COMMAND), preconditioner(lmp, scene)
 {
   single_enable = 0;
   respa_enable = 0;
@@ -81,6 +81,9 @@ void PairStokesDynamics::parse()
   scene.settings = Scene::Settings();
   scene.lists_are_stale();
   rigid.settings = RigidClumps::Settings();
+  preconditioner.forget();
+  preconditioner.kind = Preconditioner::AUTO;
+  warm_start = true;
   rigid.forget();
   bool has_shell = false;
 
@@ -133,8 +136,12 @@ void PairStokesDynamics::parse()
       if (rigid.settings.shell > 1 && rigid.settings.shell < 12)
         in.refuse("'" + std::to_string(rigid.settings.shell) + "' must be 1 or >= 12");
       has_shell = true;
-    } else if (in.is("taper") || in.is("precondition") || in.is("warm_start"))
-      in.refuse("not available in this version");
+    } else if (in.is("taper"))
+      scene.settings.taper = (sd_taper) in.choice({"none", "wendland", "spherical"});
+    else if (in.is("precondition"))
+      preconditioner.kind = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse"});
+    else if (in.is("warm_start"))
+      warm_start = in.yes_no();
     else
       in.unknown();
   }
@@ -146,6 +153,14 @@ void PairStokesDynamics::parse()
                ": keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
     scene.settings.cutoff = INFINITY;
   }
+  if (scene.settings.taper != SD_TAPER_NONE && std::isinf(scene.settings.cutoff))
+    fail(lmp, COMMAND + ": keyword taper requires a cut_off_distance, its range");
+  if (preconditioner.kind == Preconditioner::SPARSE && !scene.all_pairs())
+    fail(lmp,
+         COMMAND +
+             ": keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
+  if (preconditioner.kind > Preconditioner::NONE && algorithm == 1)
+    fail(lmp, COMMAND + ": keyword precondition requires algorithm 2");
   if (rigid.settings.on && !scene.settings.clumps_only)
     fail(lmp, COMMAND + ": keyword rigid_clumps requires clumps_only yes");
   if (rigid.settings.on && std::isfinite(scene.settings.cutoff))
@@ -220,6 +235,8 @@ void PairStokesDynamics::init_style()
          COMMAND +
              ": keyword rotation: yes requires an atom style with angular velocity and torque, "
              "such as sphere");
+  if (preconditioner.kind == Preconditioner::CLUMP && !atom->molecule_flag)
+    fail(lmp, COMMAND + ": keyword precondition: 'clump' requires molecule IDs");
   if (scene.settings.clumps_only && !atom->molecule_flag)
     fail(lmp,
          COMMAND +
@@ -249,12 +266,14 @@ void PairStokesDynamics::init_style()
   for (auto &w : fluid_vorticity) w.init(lmp, COMMAND + ": keyword fluid_vorticity");
 
   // Here and not in the constructor: in read_restart, what the restart file holds for this fix is not known yet when the pair style is made.
-  const bool rotation = scene.settings.rotation;
-  if (find_state() && (find_state()->columns == FixStokesDynamicsState::WITH_ROTATION) != rotation)
+  const bool rotation = scene.settings.rotation, history = algorithm == 2 && warm_start;
+  if (find_state() &&
+      (find_state()->rotation != rotation ||
+       (find_state()->history < find_state()->columns) != history))
     modify->delete_fix(STATE_ID);
   if (!find_state())
     modify->add_fix(std::string(STATE_ID) + " all " + FixStokesDynamicsState::STYLE +
-                    (rotation ? " rotation" : ""));
+                    (rotation ? " rotation" : "") + (history ? " history" : ""));
   fix_state = find_state();
   fix_state->settings_are(hash(args));
 
@@ -584,10 +603,21 @@ void PairStokesDynamics::solve()
   system.apply = Scene::apply;
   system.sum = Scene::sum;
   system.apply_ctx = system.sum_ctx = &scene;
-  sd_solve_report report;
-  auto solver = algorithm == 1 ? sd_solve_substitution : sd_solve_gradients;
-  const sd_status status =
-      solver(&system, slip.data(), tolerance, max_iter, solution.data(), work.data(), &report);
+  sd_solve_report report = {};
+  sd_status status;
+  if (algorithm == 1)
+    status = sd_solve_substitution(&system, slip.data(), tolerance, max_iter, solution.data(),
+                                   work.data(), &report);
+  else {
+    system.warm = warm_start && fix_state->global.solutions > 0;
+    if (system.warm) guess();
+    preconditioner.attach(system);
+    status = sd_solve_gradients(&system, slip.data(), tolerance, max_iter, solution.data(),
+                                work.data(), &report);
+    preconditioner.learn(report);
+    if (warm_start) remember();
+    time_step_guard(report);
+  }
 
   FixStokesDynamicsState::Global &global = fix_state->global;
   global.solves++;
@@ -605,6 +635,72 @@ void PairStokesDynamics::solve()
       state[i][State::VPRIME + d] = active[i] ? F[d] / drag[i] - si[d] : 0.0;
       if (rotation) state[i][State::WPRIME + d] = active[i] ? F[3 + d] / spin[i] - si[3 + d] : 0.0;
     }
+  }
+}
+
+/* The last solution, or the line through the last two. */
+void PairStokesDynamics::guess()
+{
+  const size_t m = width();
+  const bool line = fix_state->global.solutions > 1;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *last = fix_state->state[i] + fix_state->history, *before = last + m;
+    for (size_t d = 0; d < m; d++)
+      solution[m * i + d] = !solving[i] ? 0.0 : line ? 2.0 * last[d] - before[d] : last[d];
+  }
+}
+
+void PairStokesDynamics::remember()
+{
+  const size_t m = width();
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *last = fix_state->state[i] + fix_state->history, *before = last + m;
+    for (size_t d = 0; d < m; d++) {
+      before[d] = last[d];
+      last[d] = solution[m * i + d];
+    }
+  }
+  fix_state->global.solutions = std::min(2.0, fix_state->global.solutions + 1.0);
+}
+
+/* Explicit steps of free spheres are stable for dt < 2 m lambda_min / (6 pi eta a), with the smallest eigenvalue of the mobility scaled
+ * to unit diagonal. Conjugate gradients give an estimate of it from above at no cost; the smallest seen is kept. */
+void PairStokesDynamics::time_step_guard(const sd_solve_report &report)
+{
+  FixStokesDynamicsState::Global &global = fix_state->global;
+  if (report.iterations == 0) return;
+  double lambda = report.curvature;
+  if (!preconditioner.attached() && report.ritz_smallest > 0.0)
+    lambda = std::min(lambda, report.ritz_smallest);
+  if (!(lambda > 0.0) ||
+      (global.lambda_min > 0.0 && lambda >= global.lambda_min && global.dt_limit > 0.0))
+    return;
+  global.lambda_min = lambda;
+
+  // Spheres in the rigid bodies of LAMMPS are not free: their bodies are heavier than that.
+  std::vector<char> in_body(atom->nlocal, 0);
+  for (int f = 0; f < modify->nfix; f++)
+    if (utils::strmatch(modify->fix[f]->style, "^rigid")) {
+      int dim;
+      if (const int *body = (const int *) modify->fix[f]->extract("body", dim))
+        for (int i = 0; i < atom->nlocal; i++) in_body[i] = in_body[i] || body[i] >= 0;
+    }
+  double shortest = INFINITY, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (solving[i] && !in_body[i])
+      shortest =
+          std::min(shortest, (atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]) / drag[i]);
+  MPI_Allreduce(&shortest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
+  global.dt_limit = std::isfinite(all) ? 2.0 * lambda * all : 0.0;
+  if (global.dt_limit > 0.0 && update->dt > global.dt_limit && !warned_time_step) {
+    warned_time_step = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     std::string(COMMAND + ": the time step " + text(update->dt) + " is above " +
+                                 text(global.dt_limit) +
+                                 ", the limit 2 m lambda/(6 pi eta a) of explicit steps of free "
+                                 "spheres under this drag (smallest m/(6 pi eta a) " +
+                                 text(all) + ", lambda " + text(lambda) + ")"));
   }
 }
 
@@ -641,8 +737,7 @@ void PairStokesDynamics::solver_failed(sd_status status, const sd_solve_report &
                (scene.settings.tensor == SD_TENSOR_OSEEN
                     ? "tensor oseen: spheres are too close for it, use tensor rpy"
                     : "cut_off_distance " + cutoff +
-                        ", so any answer would be noise: use cut_off_distance inf, or clumps_only "
-                        "yes "
+                        ", so any answer would be noise: use cut_off_distance inf, or a taper, or clumps_only yes "
                         "with a cut-off larger than the clump") +
                " (" + how_far + ", curvature " + text(report.curvature) + ")");
     case SD_ESINGULAR:

@@ -6,6 +6,7 @@
 
 #include "field.h"
 #include "fix_stokes_dynamics_state.h"
+#include "preconditioner.h"
 #include "rigid_clumps.h"
 #include "scene.h"
 
@@ -70,13 +71,15 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   std::string region_id, group_id;
   Scene scene;
   RigidClumps rigid;
+  Preconditioner preconditioner;
+  bool warm_start;
 
   // looked up in init_style
   LAMMPS_NS::Region *region = nullptr;
   int igroup = 0, groupbit = 0;
   double largest_diameter = 0.0;
   FixStokesDynamicsState *fix_state = nullptr;
-  bool warned_unconverged = false, warned_nobody_applies = false;
+  bool warned_unconverged = false, warned_nobody_applies = false, warned_time_step = false;
 
   // of this step, per atom of this rank
   std::vector<char> active, solving;    // takes part; is the solver's
@@ -96,6 +99,9 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   void complain();
   bool numbers_only() const;
   void solve();
+  void guess();
+  void remember();
+  void time_step_guard(const sd_solve_report &report);
   void solver_failed(sd_status status, const sd_solve_report &report);
 };
 

@@ -21,7 +21,7 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 Scene::Scene(LAMMPS *lmp, Pair *pair, const std::string &command) :
-    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows()
+    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows(), packed()
 {
 }
 
@@ -30,6 +30,7 @@ Scene::~Scene()
   sd_neighbors_free(&candidates);
   sd_neighbors_free(&pairs);
   sd_neighbors_free(&rows);
+  sd_packed_free(&packed);
 }
 
 bool Scene::all_pairs() const
@@ -75,6 +76,11 @@ void Scene::update(const std::vector<char> &active, const std::vector<double> &e
     const sd_spheres spheres = {positions(), a.data(), w.data()};
     sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
     pairs.pairs.n = nlocal;
+  }
+  if (!settings.rotation) {
+    const sd_spheres spheres = {positions(), a.data(), w.data()};
+    const sd_law how = law();
+    if (sd_packed_list(&packed, SD_ISA_BEST, &how, &spheres, n) != SD_OK) out_of_memory();
   }
 }
 
@@ -304,45 +310,106 @@ void Scene::complain_about_clumps(const std::vector<int64_t> &suspect)
            text(ceil(wanted / unit) * unit));
 }
 
-/* The active spheres of all ranks; their order depends on the ranks, hence sums differ in the last digit only. */
 void Scene::gather()
 {
+  enum { COLUMNS = 7 };    // x y z, a, w, tag, molecule
   const int nlocal = atom->nlocal, nprocs = comm->nprocs;
   own.clear();
-  std::vector<double> mine;
+  std::vector<double> rows_of_mine;
   for (int i = 0; i < nlocal; i++)
     if (a[i] > 0.0) {
       own.push_back(i);
-      mine.insert(mine.end(), {atom->x[i][0], atom->x[i][1], atom->x[i][2], a[i], w[i]});
+      rows_of_mine.insert(rows_of_mine.end(),
+                          {atom->x[i][0], atom->x[i][1], atom->x[i][2], a[i], w[i],
+                           ubuf(atom->tag[i]).d, ubuf(atom->molecule ? atom->molecule[i] : 0).d});
     }
   int n = own.size();
-  std::vector<int> spheres(nprocs), counts5(nprocs), displs5(nprocs);
-  MPI_Allgather(&n, 1, MPI_INT, spheres.data(), 1, MPI_INT, world);
+  std::vector<int> counts_rows(nprocs), displs_rows(nprocs);
+  spheres_of_rank.resize(nprocs);
+  MPI_Allgather(&n, 1, MPI_INT, spheres_of_rank.data(), 1, MPI_INT, world);
   counts.resize(nprocs);
   displs.resize(nprocs);
   n_all = 0;
   for (int p = 0; p < nprocs; p++) {
     if (p == comm->me) begin = n_all;
-    counts[p] = width() * spheres[p];
+    counts[p] = width() * spheres_of_rank[p];
     displs[p] = width() * n_all;
-    counts5[p] = 5 * spheres[p];
-    displs5[p] = 5 * n_all;
-    n_all += spheres[p];
+    counts_rows[p] = COLUMNS * spheres_of_rank[p];
+    displs_rows[p] = COLUMNS * n_all;
+    n_all += spheres_of_rank[p];
   }
-  std::vector<double> all(5 * (size_t) n_all);
-  MPI_Allgatherv(mine.data(), 5 * n, MPI_DOUBLE, all.data(), counts5.data(), displs5.data(),
-                 MPI_DOUBLE, world);
+  std::vector<double> all(COLUMNS * (size_t) n_all + 1);
+  MPI_Allgatherv(rows_of_mine.data(), COLUMNS * n, MPI_DOUBLE, all.data(), counts_rows.data(),
+                 displs_rows.data(), MPI_DOUBLE, world);
+
+  std::vector<int> by_tag(n_all);
+  for (int j = 0; j < n_all; j++) by_tag[j] = j;
+  auto tag_of = [&all](int j) {
+    return (int64_t) ubuf(all[COLUMNS * (size_t) j + 5]).i;
+  };
+  std::sort(by_tag.begin(), by_tag.end(), [&](int p, int q) {
+    return tag_of(p) < tag_of(q);
+  });
+
+  cloud_is_new = (int) all_tag.size() != n_all;
   all_x.resize(3 * (size_t) n_all);
   all_a.resize(n_all);
   all_w.resize(n_all);
-  all_force.resize(width() * (size_t) n_all);
-  all_u.resize(width() * (size_t) n);
-  force.resize(width() * (size_t) n);
-  for (int j = 0; j < n_all; j++) {
-    std::copy(&all[5 * (size_t) j], &all[5 * (size_t) j] + 3, &all_x[3 * (size_t) j]);
-    all_a[j] = all[5 * (size_t) j + 3];
-    all_w[j] = all[5 * (size_t) j + 4];
+  all_tag.resize(n_all);
+  all_molecule.resize(n_all);
+  place.resize(n_all);
+  for (int k = 0; k < n_all; k++) {
+    const double *row = &all[COLUMNS * (size_t) by_tag[k]];
+    place[by_tag[k]] = k;
+    std::copy(row, row + 3, &all_x[3 * (size_t) k]);
+    const int64_t its_tag = ubuf(row[5]).i, its_molecule = ubuf(row[6]).i;
+    cloud_is_new = cloud_is_new || all_tag[k] != its_tag || all_a[k] != row[3] ||
+        all_molecule[k] != its_molecule;
+    all_a[k] = row[3];
+    all_w[k] = row[4];
+    all_tag[k] = its_tag;
+    all_molecule[k] = its_molecule;
   }
+  const sd_spheres spheres = cloud();
+  const sd_law how = law();
+  if (!settings.rotation && sd_packed_all(&packed, SD_ISA_BEST, &how, &spheres, n_all) != SD_OK)
+    out_of_memory();
+}
+
+void Scene::to_cloud(const double *own_rows, std::vector<double> &cloud_rows)
+{
+  const size_t m = width();
+  const int n = own.size();
+  mine.resize(m * n + 1);
+  in_order_of_rank.resize(m * n_all + 1);
+  cloud_rows.resize(m * n_all + 1);
+  for (int k = 0; k < n; k++)
+    std::copy(own_rows + m * own[k], own_rows + m * own[k] + m, &mine[m * k]);
+  const double *from = mine.data();
+  if (comm->nprocs > 1) {
+    MPI_Allgatherv(mine.data(), m * n, MPI_DOUBLE, in_order_of_rank.data(), counts.data(),
+                   displs.data(), MPI_DOUBLE, world);
+    from = in_order_of_rank.data();
+  }
+  for (int j = 0; j < n_all; j++)
+    std::copy(from + m * j, from + m * j + m, &cloud_rows[m * place[j]]);
+}
+
+void Scene::from_cloud(const std::vector<double> &cloud_rows, double *own_rows)
+{
+  const size_t m = width();
+  const int n = own.size();
+  mine.resize(m * n + 1);
+  in_order_of_rank.resize(m * n_all + 1);
+  for (int j = 0; j < n_all; j++)
+    std::copy(&cloud_rows[m * place[j]], &cloud_rows[m * place[j]] + m, &in_order_of_rank[m * j]);
+  if (comm->nprocs > 1)
+    MPI_Reduce_scatter(in_order_of_rank.data(), mine.data(), counts.data(), MPI_DOUBLE, MPI_SUM,
+                       world);
+  else
+    mine = in_order_of_rank;
+  std::fill(own_rows, own_rows + m * atom->nlocal, 0.0);
+  for (int k = 0; k < n; k++) std::copy(&mine[m * k], &mine[m * k] + m, own_rows + m * own[k]);
 }
 
 void Scene::apply(void *ctx, const double *F, double *u)
@@ -361,28 +428,30 @@ void Scene::apply_list(const double *F, double *u)
   std::copy(F, F + m * atom->nlocal, force.begin());
   packing = FORCES;
   Compat::forward_comm(comm, pair);
-  const sd_spheres spheres = {positions(), a.data(), w.data()};
   const sd_pairs *list = filtered ? &pairs.pairs : &candidates.pairs;
-  if (settings.rotation)
-    sd_product_grand_list(&spheres, list, force.data(), u);
-  else
-    sd_product_list(settings.tensor, &spheres, list, force.data(), u);
+  if (settings.rotation) {
+    const sd_spheres spheres = {positions(), a.data(), w.data()};
+    const sd_law how = law();
+    sd_product_grand_list(&how, &spheres, list, force.data(), u);
+  } else
+    sd_packed_pairs(&packed, list, force.data(), u);
 }
 
+/* Every rank computes an equal share of the pairs, wherever the spheres are. */
 void Scene::apply_all(const double *F, double *u)
 {
-  const size_t m = width();
-  const int n = own.size();
-  for (int k = 0; k < n; k++) std::copy(F + m * own[k], F + m * own[k] + m, &force[m * k]);
-  MPI_Allgatherv(force.data(), m * n, MPI_DOUBLE, all_force.data(), counts.data(), displs.data(),
-                 MPI_DOUBLE, world);
-  const sd_spheres spheres = {all_x.data(), all_a.data(), all_w.data()};
-  if (settings.rotation)
-    sd_product_grand_all(&spheres, n_all, begin, n, all_force.data(), all_u.data());
-  else
-    sd_product_all(settings.tensor, &spheres, n_all, begin, n, all_force.data(), all_u.data());
-  std::fill(u, u + m * atom->nlocal, 0.0);
-  for (int k = 0; k < n; k++) std::copy(&all_u[m * k], &all_u[m * k] + m, u + m * own[k]);
+  to_cloud(F, all_force);
+  all_u.assign(width() * (size_t) n_all + 1, 0.0);
+  if (settings.rotation) {
+    const sd_spheres spheres = cloud();
+    const sd_law how = law();
+    const int from = (int64_t) n_all * comm->me / comm->nprocs,
+              to = (int64_t) n_all * (comm->me + 1) / comm->nprocs;
+    sd_product_grand_all(&how, &spheres, n_all, from, to - from, all_force.data(),
+                         &all_u[6 * (size_t) from]);
+  } else
+    sd_packed_share(&packed, comm->me, comm->nprocs, all_force.data(), all_u.data());
+  from_cloud(all_u, u);
 }
 
 void Scene::sum(void *ctx, double *values, int count)

@@ -25,6 +25,7 @@ class Scene : protected LAMMPS_NS::Pointers {
  public:
   struct Settings {
     sd_tensor tensor = SD_TENSOR_RPY;
+    sd_taper taper = SD_TAPER_NONE;
     double cutoff = 0.0;    // INFINITY: no cut-off
     bool clumps_only = false;
     bool rotation = false;    // vectors have force and torque, 6 numbers an atom
@@ -58,6 +59,19 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   void lists_are_stale() { stale = clumps_stale = true; }
 
+  const double *radii() const { return a.data(); }    // of this rank's spheres, 0: takes no part
+  sd_spheres local() const { return {positions(), a.data(), w.data()}; }
+  sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }
+
+  /* All pairs: the spheres of all ranks that take part, in order of tag, the same on every rank. */
+  int cloud_size() const { return n_all; }
+  sd_spheres cloud() const { return {all_x.data(), all_a.data(), all_w.data()}; }
+  const std::vector<int64_t> &cloud_molecules() const { return all_molecule; }
+  bool cloud_changed() const { return cloud_is_new; }    // other spheres than at the last update?
+  /* From rows of this rank's atoms to rows of the cloud, and, summed over the ranks, back. */
+  void to_cloud(const double *own_rows, std::vector<double> &cloud_rows);
+  void from_cloud(const std::vector<double> &cloud_rows, double *own_rows);
+
   /* u = Omega F, in the core's signature: ctx is a Scene. */
   static void apply(void *ctx, const double *F, double *u);
   /* Sum over all ranks, likewise. */
@@ -78,11 +92,16 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<int> order;
   sd_neighbors candidates, pairs, rows;    // rows: one for each clump
 
-  // all pairs: the active spheres of all ranks, in order of rank
-  std::vector<int> own;               // local index of this rank's
-  std::vector<int> counts, displs;    // of the numbers that a product gathers
-  std::vector<double> all_x, all_a, all_w, all_force, all_u;
+  // all pairs: the active spheres of all ranks in order of tag, so that nothing depends on the decomposition
+  std::vector<int> own;      // local index of this rank's
+  std::vector<int> place;    // [n_all] place of each sphere, the ranks' spheres one after the other
+  std::vector<int> spheres_of_rank;    // [nprocs]
+  std::vector<int> counts, displs;     // of the numbers that a product gathers
+  std::vector<double> all_x, all_a, all_w, all_force, all_u, mine, in_order_of_rank;
+  std::vector<int64_t> all_tag, all_molecule;
   int n_all = 0, begin = 0;
+  bool cloud_is_new = true;
+  sd_packed packed;
 
   enum { SPHERES, MOLECULES, FORCES, VALUES } packing = SPHERES;
   double *values = nullptr;    // of refresh()

@@ -3,7 +3,7 @@
  *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j),    M_ij the 6x6 block of sd_tensor_grand
  *
  * Vectors have 6 numbers a sphere. Otherwise as sd_product.h: diagonal left to the solver, viscosity of a pair sqrt(eta_i eta_j),
- * radius 0: takes no part. */
+ * radius 0: takes no part. The taper of the law multiplies whole blocks; its tensor is always RPY here. */
 #ifndef SD_GRAND_H
 #define SD_GRAND_H
 
@@ -14,11 +14,12 @@ extern "C" {
 #endif
 
 /* F [6 * all spheres], ghosts included -> u [6n] */
-void sd_product_grand_list(const sd_spheres *s, const sd_pairs *pairs, const double *F, double *u);
+void sd_product_grand_list(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
+                           const double *F, double *u);
 
 /* Targets begin ... begin + n - 1 of n_all spheres, sources all of them. F [6 n_all] -> u [6n]. */
-void sd_product_grand_all(const sd_spheres *s, int n_all, int begin, int n, const double *F,
-                          double *u);
+void sd_product_grand_all(const sd_law *law, const sd_spheres *s, int n_all, int begin, int n,
+                          const double *F, double *u);
 
 #ifdef __cplusplus
 }

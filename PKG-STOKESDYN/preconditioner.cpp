@@ -1,0 +1,220 @@
+#include "preconditioner.h"
+
+#include "atom.h"
+#include "comm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+static const double RHO =
+    3.0;    // reach of the sparse factor: 42 blocks a sphere in a compact cloud
+static const double RIGID = 1e-9;       // of its size: rounding; a clump that has bent more gets a new block
+static const double BENT = 0.02;    // of its size: a clump that has changed more gets a new block
+static const long PAYS_AFTER =
+    200;    // iterations: a factor costs about as much as so many products
+static const int SMALL_CLUMP = 64;    // spheres: cheaper to factor anew than to keep
+
+void Preconditioner::free_shapes()
+{
+  for (auto &s : shapes) sd_shape_free(&s);
+  shapes.clear();
+}
+
+void Preconditioner::forget()
+{
+  sd_sparse_free(&sparse);
+  sd_blocks_free(&blocks);
+  sparse = sd_sparse();
+  blocks = sd_blocks();
+  free_shapes();
+  present = NONE;
+  wanted_sparse = false;
+  iterations_spent = solves = 0;
+  first_iterations = -1;
+  worn = true;
+}
+
+/* Members of each molecule with two spheres or more; true if they are at least half of the spheres. */
+bool Preconditioner::group_by_molecule(const std::vector<int64_t> &molecule, const double *a)
+{
+  std::map<int64_t, std::vector<int>> clumps;
+  int spheres = 0, inside = 0;
+  for (int i = 0; i < n; i++)
+    if (a[i] > 0.0) {
+      spheres++;
+      if (molecule[i] != 0) clumps[molecule[i]].push_back(i);
+    }
+  first.assign(1, 0);
+  member.clear();
+  for (const auto &clump : clumps) {
+    if (clump.second.size() < 2) continue;
+    member.insert(member.end(), clump.second.begin(), clump.second.end());
+    first.push_back(member.size());
+    inside += clump.second.size();
+  }
+  return 2 * inside >= spheres && inside > 0;
+}
+
+/* 6 pi eta a and 8 pi eta a^3 of the cloud */
+void Preconditioner::cloud_diagonal()
+{
+  const sd_spheres s = scene.cloud();
+  cloud_drag.resize(n);
+  cloud_spin.resize(n);
+  for (int i = 0; i < n; i++) {
+    const double eta = 1.0 / (s.w[i] * s.w[i]);
+    cloud_drag[i] = 6.0 * SD_PI * eta * s.a[i];
+    cloud_spin[i] = 8.0 * SD_PI * eta * s.a[i] * s.a[i] * s.a[i];
+  }
+}
+
+void Preconditioner::attach(sd_system &system)
+{
+  present = NONE;
+  width = system.spin ? 6 : 3;
+  const bool cloud = scene.all_pairs();
+  if (kind == NONE) return;
+
+  std::vector<int64_t> molecule;
+  const double *a;
+  if (cloud) {
+    if (scene.cloud_changed()) worn = true;
+    n = scene.cloud_size();
+    a = scene.cloud().a;
+  } else {
+    n = atom->nlocal;
+    a = scene.radii();
+  }
+  bool clumps = false;
+  first.assign(1, 0);
+  member.clear();
+  if (kind != SPARSE && atom->molecule) {
+    if (!cloud) molecule.assign(atom->molecule, atom->molecule + n);
+    clumps = group_by_molecule(cloud ? scene.cloud_molecules() : molecule, a);
+  }
+  small = member.size() <= (first.size() - 1) * (size_t) SMALL_CLUMP;
+  Kind want = kind;
+  if (kind == AUTO)
+    want = clumps && (cloud || small) ? CLUMP : cloud && wanted_sparse ? SPARSE : NONE;
+  // All ranks go the same way: the solver's sums and, of a cloud, the applications are collective.
+  int mine = want, any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  want = (Kind) any;
+  if (want == NONE) return;
+
+  if (cloud) cloud_diagonal();
+  int ready;
+  if (want == SPARSE)
+    ready = !worn || make_sparse();
+  else
+    ready = (!worn && turn_blocks()) || make_blocks();
+  MPI_Allreduce(MPI_IN_PLACE, &ready, 1, MPI_INT, MPI_MIN, world);
+  if (!ready) return;    // one that cannot be made is done without
+  worn = false;
+  present = want;
+  if (cloud) {
+    sparse.width = blocks.width = width;
+    sparse.drag = blocks.drag = cloud_drag.data();
+    sparse.spin = blocks.spin = system.spin ? cloud_spin.data() : nullptr;
+    system.precondition = apply;
+    system.precondition_ctx = this;
+  } else {
+    blocks.width = width;
+    blocks.drag = system.drag;
+    blocks.spin = system.spin;
+    system.precondition = sd_blocks_apply;
+    system.precondition_ctx = &blocks;
+  }
+}
+
+bool Preconditioner::make_sparse()
+{
+  const sd_law law = scene.law();
+  const sd_spheres s = scene.cloud();
+  sd_sparse_free(&sparse);
+  sparse = sd_sparse();
+  first_iterations = -1;
+  return sd_sparse_create(&sparse, &law, &s, n, RHO, comm->me, comm->nprocs) == SD_OK;
+}
+
+bool Preconditioner::make_blocks()
+{
+  const sd_law law = scene.law();
+  const bool cloud = scene.all_pairs();
+  const sd_spheres s = cloud ? scene.cloud() : scene.local();
+  sd_blocks_free(&blocks);
+  blocks = sd_blocks();
+  free_shapes();
+  first_iterations = -1;
+  const int count = first.size() - 1;
+  if (sd_blocks_create(&blocks, &law, &s, n, count, first.data(), member.data()) != SD_OK)
+    return false;
+  if (!cloud) return true;
+  for (int k = 0; k < count; k++) {
+    std::vector<double> x, a;
+    for (long m = first[k]; m < first[k + 1]; m++) {
+      x.insert(x.end(), s.x + 3 * (long) member[m], s.x + 3 * (long) member[m] + 3);
+      a.push_back(s.a[member[m]]);
+    }
+    sd_shape shape;
+    if (sd_shape_create(a.size(), x.data(), a.data(), &shape) != SD_OK) return false;
+    shapes.push_back(shape);
+  }
+  sd_blocks_couple(&blocks, &law, &s, RHO);    // uncoupled blocks are a preconditioner as well
+  return true;
+}
+
+/* Clumps of a cloud that have moved as rigid bodies keep their blocks; false if one has not. */
+bool Preconditioner::turn_blocks()
+{
+  if (!scene.all_pairs() || blocks.blocks != (int) first.size() - 1 ||
+      shapes.size() + 1 != first.size())
+    return false;
+  const sd_law law = scene.law();
+  const sd_spheres s = scene.cloud();
+  std::vector<double> clump;
+  for (size_t k = 0; k < shapes.size(); k++) {
+    clump.clear();
+    for (long m = first[k]; m < first[k + 1]; m++)
+      clump.insert(clump.end(), s.x + 3 * (long) member[m], s.x + 3 * (long) member[m] + 3);
+    double R[9], c[3];
+    if (!(sd_shape_pose(&shapes[k], clump.data(), R, c) <= (small ? RIGID : BENT) * shapes[k].size))
+      return false;
+    sd_blocks_turn(&blocks, k, R);
+  }
+  sd_blocks_couple(&blocks, &law, &s, RHO);    // for where the clumps are now
+  return true;
+}
+
+void Preconditioner::apply(void *ctx, const double *r, double *z)
+{
+  Preconditioner *p = static_cast<Preconditioner *>(ctx);
+  p->scene.to_cloud(r, p->in);
+  p->out.assign((size_t) p->width * p->n + 1, 0.0);
+  if (p->present == SPARSE)
+    sd_sparse_apply(&p->sparse, p->in.data(), p->out.data());
+  else if (p->comm->me ==
+           0)    // all blocks on the first rank; the sum over the ranks sends them round
+    sd_blocks_apply(&p->blocks, p->in.data(), p->out.data());
+  p->scene.from_cloud(p->out, z);
+}
+
+void Preconditioner::learn(const sd_solve_report &report)
+{
+  solves++;
+  iterations_spent += report.iterations;
+  // A few products a solve, as with a warm start, will never pay for a factor.
+  if (kind == AUTO && present == NONE && scene.all_pairs() && iterations_spent > PAYS_AFTER &&
+      iterations_spent > 6 * solves && scene.cloud_size() >= 100 && !wanted_sparse)
+    wanted_sparse = worn = true;
+  if (present == NONE) return;
+  if (first_iterations < 0) first_iterations = report.iterations;
+  if (report.iterations > first_iterations + first_iterations / 2 + 3) worn = true;
+}
+
+}    // namespace StokesDyn
