@@ -1,16 +1,31 @@
 #include "sd_product.h"
 
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sd_product_internal.h"
+
+double sd_taper_factor(const sd_law *law, double R)
+{
+  if (law->taper == SD_TAPER_NONE) return 1.0;
+  const double q = R / law->range, s = q < 1.0 ? 1.0 - q : 0.0;
+  if (law->taper == SD_TAPER_WENDLAND) return s * s * s * s * (1.0 + 4.0 * q);
+  return s * s * (1.0 + 0.5 * q);
+}
+
 /* u += 1/(6 pi) w_i w_j [ f F + g rhat (rhat.F) ]; the factor w_i/(6 pi) is applied once per target. */
-static inline void add_pair(sd_tensor kind, const double *xi, double ai, const double *xj,
+static inline void add_pair(const sd_law *law, const double *xi, double ai, const double *xj,
                             double aj, double wj, const double *F, double u[3])
 {
   const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
   const double R = sqrt(dx * dx + dy * dy + dz * dz);
   double f, g;
-  if (kind == SD_TENSOR_RPY)
+  if (law->tensor == SD_TENSOR_RPY)
     sd_rpy_radial(R, ai, aj, &f, &g);
   else
     sd_oseen_radial(R, &f, &g);
+  if (law->taper != SD_TAPER_NONE) wj *= sd_taper_factor(law, R);
   const double inv = R > 0.0 ? 1.0 / R : 0.0;
   const double ex = dx * inv, ey = dy * inv, ez = dz * inv;
   const double c = wj * g * (ex * F[0] + ey * F[1] + ez * F[2]);
@@ -20,30 +35,31 @@ static inline void add_pair(sd_tensor kind, const double *xi, double ai, const d
   u[2] += f * F[2] + c * ez;
 }
 
-static inline void store(double w, const double sum[3], double *u)
+static inline void store(double scale, double u0, double u1, double u2, double *u)
 {
-  const double scale = w / (6.0 * SD_PI);
-  u[0] = scale * sum[0];
-  u[1] = scale * sum[1];
-  u[2] = scale * sum[2];
+  u[0] = scale * u0;
+  u[1] = scale * u1;
+  u[2] = scale * u2;
 }
 
-void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F,
-                     double *u)
+void sd_product_list_law(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
+                         const double *F, double *u)
 {
   for (int i = 0; i < pairs->n; i++) {
     double sum[3] = {0.0, 0.0, 0.0};
-    for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++) {
-      const int j = pairs->neighbor[k];
-      add_pair(kind, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
-               F + 3 * (long) j, sum);
-    }
-    store(s->w[i], sum, u + 3 * (long) i);
+    if (s->a[i] > 0.0)
+      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++) {
+        const int j = pairs->neighbor[k];
+        if (s->a[j] > 0.0)
+          add_pair(law, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
+                   F + 3 * (long) j, sum);
+      }
+    store(s->w[i] / (6.0 * SD_PI), sum[0], sum[1], sum[2], u + 3 * (long) i);
   }
 }
 
-void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n,
-                    const double *F, double *u)
+void sd_product_all_law(const sd_law *law, const sd_spheres *s, int n_all, int begin, int n,
+                        const double *F, double *u)
 {
   for (int t = 0; t < n; t++) {
     const int i = begin + t;
@@ -51,9 +67,251 @@ void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, i
     if (s->a[i] > 0.0)
       for (int j = 0; j < n_all; j++)
         if (j != i && s->a[j] > 0.0)
-          add_pair(kind, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
+          add_pair(law, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
                    F + 3 * (long) j, sum);
-    store(s->w[i], sum, u + 3 * (long) t);
+    store(s->w[i] / (6.0 * SD_PI), sum[0], sum[1], sum[2], u + 3 * (long) t);
+  }
+}
+
+void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F,
+                     double *u)
+{
+  const sd_law law = {kind, SD_TAPER_NONE, 0.0};
+  sd_product_list_law(&law, s, pairs, F, u);
+}
+
+void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n,
+                    const double *F, double *u)
+{
+  const sd_law law = {kind, SD_TAPER_NONE, 0.0};
+  sd_product_all_law(&law, s, n_all, begin, n, F, u);
+}
+
+/* --- the fast product --------------------------------------------------------------------------------------------- */
+
+static const struct sd_kernels *kernels_of(sd_isa isa)
+{
+#if defined(SD_HAS_X86_KERNELS)
+  if (isa == SD_ISA_BASELINE) return &sd_kernels_baseline;
+  if (isa == SD_ISA_AVX2) return &sd_kernels_avx2;
+  if (isa == SD_ISA_AVX512) return &sd_kernels_avx512;
+#elif defined(SD_HAS_PORTABLE_KERNELS)
+  if (isa == SD_ISA_BASELINE) return &sd_kernels_baseline;
+#endif
+  (void) isa;
+  return NULL;
+}
+
+int sd_isa_supported(sd_isa isa)
+{
+  if (isa == SD_ISA_BEST || isa == SD_ISA_PLAIN) return 1;
+  if (!kernels_of(isa)) return 0;
+#if defined(SD_HAS_X86_KERNELS)
+  if (isa == SD_ISA_AVX512)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+  if (isa == SD_ISA_AVX2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#endif
+  return 1;
+}
+
+sd_isa sd_isa_best(void)
+{
+  static const sd_isa order[] = {SD_ISA_AVX512, SD_ISA_AVX2, SD_ISA_BASELINE};
+  for (int k = 0; k < 3; k++)
+    if (sd_isa_supported(order[k])) return order[k];
+  return SD_ISA_PLAIN;
+}
+
+const char *sd_isa_name(sd_isa isa)
+{
+  static const char *const names[] = {"best", "plain C", "baseline", "AVX2", "AVX-512"};
+  return names[isa];
+}
+
+void sd_packed_free(sd_packed *p)
+{
+  free(p->memory);
+  memset(p, 0, sizeof(*p));
+}
+
+/* Room for doubles on a cache line's border. */
+static double *reserve(sd_packed *p, long doubles)
+{
+  if (doubles > p->capacity || !p->memory) {
+    free(p->memory);
+    p->memory = malloc(sizeof(double) * (size_t) doubles + 64);
+    p->capacity = p->memory ? doubles : 0;
+    if (!p->memory) return NULL;
+  }
+  return (double *) (((uintptr_t) p->memory + 63) & ~(uintptr_t) 63);
+}
+
+/* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2, because the first guess of a root may be
+ * in single precision. Spheres so small or so far away that their squares leave its range: the plain product. */
+static int fits(sd_packed *p)
+{
+  const double *x = p->spheres.x, *a = p->spheres.a;
+  double largest = 0.0, smallest = INFINITY, far = 0.0;
+  int sound = 1;
+  p->active = 0;
+  for (int i = 0; i < p->n; i++) {
+    if (!(a[i] > 0.0)) continue;
+    p->active++;
+    largest = fmax(largest, a[i]);
+    smallest = fmin(smallest, a[i]);
+    for (int d = 0; d < 3; d++) {
+      const double c = fabs(x[3 * (long) i + d]);
+      sound = sound && c < INFINITY;
+      far = fmax(far, c);
+    }
+  }
+  if (p->active == 0 || !sound || !(largest < INFINITY)) return 0;
+  const int exponent = -ilogb(largest);
+  if (abs(exponent) > 1000) return 0;
+  p->scale = ldexp(1.0, exponent);
+  return far * p->scale < 1e15 && smallest * p->scale > 1e-14;
+}
+
+static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n)
+{
+  if (isa == SD_ISA_BEST) isa = sd_isa_best();
+  p->kernels = kernels_of(isa);
+  p->spheres = *s;
+  p->law = *law;
+  p->n = n;
+  if (p->kernels && !fits(p)) p->kernels = NULL;
+  if (p->kernels) p->law.range *= p->scale;
+}
+
+/* Columns and rows that stand for nothing: no force, and far from everything. */
+static const double nowhere = 1e16;
+
+sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n)
+{
+  begin_packing(p, isa, law, s, n);
+  p->by_list = 0;
+  if (!p->kernels) return SD_OK;
+  const int lanes = p->kernels->lanes;
+  p->padded = (p->active + lanes - 1) / lanes * lanes;
+  const long column = (p->padded + 7) / 8 * 8; /* whole cache lines */
+  double *m = reserve(p, 11 * column);
+  if (!m) return SD_ENOMEMORY;
+  double **columns[] = {&p->x,    &p->y,    &p->z,    &p->a,    &p->f[0],
+                        &p->f[1], &p->f[2], &p->u[0], &p->u[1], &p->u[2]};
+  for (int k = 0; k < 10; k++) *columns[k] = m + k * column;
+  p->index = (int *) (m + 10 * column);
+  int k = 0;
+  for (int i = 0; i < n; i++) {
+    if (!(s->a[i] > 0.0)) continue;
+    p->index[k] = i;
+    p->x[k] = s->x[3 * (long) i] * p->scale;
+    p->y[k] = s->x[3 * (long) i + 1] * p->scale;
+    p->z[k] = s->x[3 * (long) i + 2] * p->scale;
+    p->a[k] = s->a[i] * p->scale;
+    k++;
+  }
+  for (; k < p->padded; k++) {
+    p->index[k] = n;
+    p->x[k] = p->y[k] = p->z[k] = nowhere;
+    p->a[k] = p->f[0][k] = p->f[1][k] = p->f[2][k] = 0.0;
+  }
+  return SD_OK;
+}
+
+sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n)
+{
+  begin_packing(p, isa, law, s, n);
+  p->by_list = 1;
+  if (!p->kernels) return SD_OK;
+  const long rows = n + 1;
+  double *m = reserve(p, 11 * rows);
+  if (!m) return SD_ENOMEMORY;
+  p->row = m;
+  for (int d = 0; d < 3; d++) p->u[d] = m + (8 + d) * rows;
+  for (long i = 0; i < n; i++) {
+    double *row = p->row + 8 * i;
+    const int takes_part = s->a[i] > 0.0;
+    for (int d = 0; d < 3; d++) row[d] = takes_part ? s->x[3 * i + d] * p->scale : nowhere;
+    row[3] = takes_part ? s->a[i] * p->scale : 0.0;
+  }
+  const double last[8] = {nowhere, nowhere, nowhere};
+  memcpy(p->row + 8 * (long) n, last, sizeof(last));
+  return SD_OK;
+}
+
+/* The kernels' sums are times 4/3 and in scaled lengths. */
+static double unit(const sd_packed *p, int i)
+{
+  return 0.75 * p->scale * p->spheres.w[i] / (6.0 * SD_PI);
+}
+
+static void load_columns(sd_packed *p, const double *F)
+{
+  for (int k = 0; k < p->active; k++) {
+    const long i = p->index[k];
+    const double w = p->spheres.w[i];
+    for (int d = 0; d < 3; d++) p->f[d][k] = w * F[3 * i + d];
+  }
+  for (int d = 0; d < 3; d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
+}
+
+static void unload_columns(const sd_packed *p, int k0, int k1, int begin, int count, double *u)
+{
+  memset(u, 0, 3 * sizeof(double) * (size_t) count);
+  for (int k = k0; k < k1; k++) {
+    const int i = p->index[k];
+    store(unit(p, i), p->u[0][k], p->u[1][k], p->u[2][k], u + 3 * (long) (i - begin));
+  }
+}
+
+void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u)
+{
+  if (!p->kernels) {
+    sd_product_all_law(&p->law, &p->spheres, p->n, begin, count, F, u);
+    return;
+  }
+  int k0 = 0, k1 = p->active;
+  while (k0 < k1 && p->index[k0] < begin) k0++;
+  while (k1 > k0 && p->index[k1 - 1] >= begin + count) k1--;
+  load_columns(p, F);
+  if (k1 - k0 == p->active)
+    p->kernels->symmetric(p, 0, 1);
+  else
+    p->kernels->targets(p, k0, k1);
+  unload_columns(p, k0, k1, begin, count, u);
+}
+
+void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double *u)
+{
+  if (!p->kernels) {
+    const int begin = (int) ((long) p->n * part / parts),
+              end = (int) ((long) p->n * (part + 1) / parts);
+    memset(u, 0, 3 * sizeof(double) * (size_t) p->n);
+    sd_product_all_law(&p->law, &p->spheres, p->n, begin, end - begin, F, u + 3 * (long) begin);
+    return;
+  }
+  load_columns(p, F);
+  p->kernels->symmetric(p, part, parts);
+  unload_columns(p, 0, p->active, 0, p->n, u);
+}
+
+void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, double *u)
+{
+  if (!p->kernels) {
+    sd_product_list_law(&p->law, &p->spheres, pairs, F, u);
+    return;
+  }
+  for (long i = 0; i < p->n; i++) {
+    double *row = p->row + 8 * i;
+    const double w = row[3] > 0.0 ? p->spheres.w[i] : 0.0;
+    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * F[3 * i + d] : 0.0;
+  }
+  p->kernels->list(p, pairs);
+  for (int i = 0; i < pairs->n; i++) {
+    if (p->row[8 * (long) i + 3] > 0.0)
+      store(unit(p, i), p->u[0][i], p->u[1][i], p->u[2][i], u + 3 * (long) i);
+    else
+      store(0.0, 0.0, 0.0, 0.0, u + 3 * (long) i);
   }
 }
 

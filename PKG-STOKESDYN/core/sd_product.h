@@ -6,11 +6,28 @@
 #ifndef SD_PRODUCT_H
 #define SD_PRODUCT_H
 
+#include "sd_status.h"
 #include "sd_tensor.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Taper: a factor t(q), q = R/range, on every pair's block, 0 for q >= 1.
+ *   wendland   (1-q)^4 (1+4q)          spherical   1 - 3q/2 + q^3/2
+ * Both are positive definite functions of space and 1 at R = 0, so the tapered matrix stays positive definite (Schur's product
+ * theorem), which a plain cut-off does not. It is another model: the far field is screened. */
+typedef enum { SD_TAPER_NONE, SD_TAPER_WENDLAND, SD_TAPER_SPHERICAL } sd_taper;
+
+/* How two spheres interact. range: of the taper, > 0; not read without taper. */
+typedef struct {
+  sd_tensor tensor;
+  sd_taper taper;
+  double range;
+} sd_law;
+
+/* t(R/range); 1 without taper */
+double sd_taper_factor(const sd_law *law, double R);
 
 /* Spheres that a product reads.
  *   x [3n]  centres        length
@@ -28,13 +45,69 @@ typedef struct {
   const int *neighbor;
 } sd_pairs;
 
-/* F [3 * all spheres], ghosts included -> u [3n] */
+/* The product in plain C, pair by pair: no memory of its own. What the packed product below is compared with.
+ * F [3 * all spheres], ghosts included -> u [3n] */
 void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F,
                      double *u);
 
 /* All pairs: targets begin ... begin + n - 1 of n_all spheres, sources all of them. F [3 n_all] -> u [3n]. */
 void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n,
                     const double *F, double *u);
+
+/* The same with any law. */
+void sd_product_list_law(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
+                         const double *F, double *u);
+void sd_product_all_law(const sd_law *law, const sd_spheres *s, int n_all, int begin, int n,
+                        const double *F, double *u);
+
+/* --- the fast product -------------------------------------------------------------------------------------------------------
+ * Vector kernels on a copy of the spheres in the order that the kernel reads, made once per solve. Each instruction set has its
+ * own build of one source (sd_product_kernel.h); the best that the processor has is taken at run time. Relative error of a pair's
+ * block: 1e-15, like the plain product. The order of summation is fixed: same input, same instruction set, same bits. */
+typedef enum { SD_ISA_BEST, SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512 } sd_isa;
+
+/* Does this build hold kernels for it, and does the processor run them? SD_ISA_PLAIN: always. */
+int sd_isa_supported(sd_isa isa);
+/* The one that SD_ISA_BEST stands for here. */
+sd_isa sd_isa_best(void);
+const char *sd_isa_name(sd_isa isa);
+
+struct sd_kernels;
+
+/* Zero-initialise; sd_packed_free in the end. Members are the kernels' own. */
+typedef struct {
+  const struct sd_kernels *kernels; /* NULL: plain */
+  sd_spheres spheres;               /* as given; they must outlive the products */
+  sd_law law;
+  int n;        /* spheres */
+  int active;   /* those with a > 0, gathered to the front of the arrays below */
+  int padded;   /* rounded up to whole vectors */
+  int by_list;  /* packed for lists (rows) or for all pairs (columns) */
+  double scale; /* lengths below are times this power of two, so that radii are about 1 */
+  int *index;   /* [padded] sphere of each column */
+  double *x, *y, *z, *a, *f[3], *u[3]; /* [padded]; f = w F, u = sums */
+  double *row; /* [8 (n+1)] x y z a, then w F; the last takes the place of missing neighbours */
+  void *memory;
+  long capacity;
+} sd_packed;
+
+void sd_packed_free(sd_packed *p);
+
+/* Copy n spheres for products of all pairs, or for products by list (ghosts included). Memory grows and is kept.
+ * SD_OK or SD_ENOMEMORY. */
+sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
+sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
+
+/* Packed for all pairs: F [3n] -> u [3 count], targets begin ... begin + count - 1, sources all. With all targets each pair is computed
+ * once for both its spheres, which is about 1.4 times faster. */
+void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u);
+
+/* A share of the same: part `part` of `parts`, whose sum over all parts is the product. F [3n] -> u [3n].
+ * Each pair belongs to one part; shares take equal time wherever the spheres are. */
+void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double *u);
+
+/* Packed for lists: F [3n] -> u [3 pairs->n]. */
+void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, double *u);
 
 /* Keep the pairs that interact now: centre distance up to cutoff (INFINITY: all), both radii > 0.
  *   candidates, s    in

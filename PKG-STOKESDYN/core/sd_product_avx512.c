@@ -1,0 +1,58 @@
+/* AVX-512: eight doubles; the only set with a reciprocal square root in double precision, to 14 bits. */
+#include "sd_product_internal.h"
+
+#ifdef SD_HAS_X86_KERNELS
+#include <immintrin.h>
+
+#define SD_KERNELS sd_kernels_avx512
+#define LANES 8
+typedef __m512d vec;
+typedef __mmask8 mask;
+#define LOAD(p) _mm512_load_pd(p)
+#define STORE(p, v) _mm512_store_pd(p, v)
+#define SET1(v) _mm512_set1_pd(v)
+#define LE(a, b) _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ)
+#define EQ(a, b) _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ)
+#define ANY(m) ((m) != 0)
+#define SELECT(m, a, b) _mm512_mask_blend_pd(m, b, a)
+#define MAX(a, b) _mm512_max_pd(a, b)
+#define SQRT(v) _mm512_sqrt_pd(v)
+#define RSQRT(v) reciprocal_root(v)
+#define ROWS(row, j, x, y, z, a, f0, f1, f2) \
+  columns(row, j, &(x), &(y), &(z), &(a), &(f0), &(f1), &(f2))
+
+/* 1/sqrt(v): with the error e = 1 - v y^2 of the first guess, |e| < 2^-13, y (1-e)^(-1/2) by its series up to e^3. */
+static inline __attribute__((always_inline)) vec reciprocal_root(vec v)
+{
+  const vec y = _mm512_rsqrt14_pd(v), e = SET1(1.0) - v * (y * y);
+  return y + y * e * (SET1(0.5) + e * (SET1(0.375) + e * SET1(0.3125)));
+}
+
+/* Transpose eight rows of eight: gathers would take twice the time. */
+static inline __attribute__((always_inline)) void
+columns(const double *row, const int *j, vec *x, vec *y, vec *z, vec *a, vec *f0, vec *f1, vec *f2)
+{
+#define ROW(k) _mm512_load_pd(row + 8 * (long) j[k])
+  const vec r0 = ROW(0), r1 = ROW(1), r2 = ROW(2), r3 = ROW(3);
+  const vec r4 = ROW(4), r5 = ROW(5), r6 = ROW(6), r7 = ROW(7);
+#undef ROW
+  const vec a0 = _mm512_unpacklo_pd(r0, r1), a1 = _mm512_unpackhi_pd(r0, r1);
+  const vec a2 = _mm512_unpacklo_pd(r2, r3), a3 = _mm512_unpackhi_pd(r2, r3);
+  const vec a4 = _mm512_unpacklo_pd(r4, r5), a5 = _mm512_unpackhi_pd(r4, r5);
+  const vec a6 = _mm512_unpacklo_pd(r6, r7), a7 = _mm512_unpackhi_pd(r6, r7);
+  /* pairs of lanes now hold columns (0 2 4 6) in a0 a2 a4 a6 and (1 3 5 7) in the others */
+  const vec b0 = _mm512_shuffle_f64x2(a0, a2, 0x88), b1 = _mm512_shuffle_f64x2(a0, a2, 0xdd);
+  const vec b2 = _mm512_shuffle_f64x2(a4, a6, 0x88), b3 = _mm512_shuffle_f64x2(a4, a6, 0xdd);
+  const vec c0 = _mm512_shuffle_f64x2(a1, a3, 0x88), c1 = _mm512_shuffle_f64x2(a1, a3, 0xdd);
+  const vec c2 = _mm512_shuffle_f64x2(a5, a7, 0x88), c3 = _mm512_shuffle_f64x2(a5, a7, 0xdd);
+  *x = _mm512_shuffle_f64x2(b0, b2, 0x88);
+  *f0 = _mm512_shuffle_f64x2(b0, b2, 0xdd);
+  *z = _mm512_shuffle_f64x2(b1, b3, 0x88);
+  *f2 = _mm512_shuffle_f64x2(b1, b3, 0xdd);
+  *y = _mm512_shuffle_f64x2(c0, c2, 0x88);
+  *f1 = _mm512_shuffle_f64x2(c0, c2, 0xdd);
+  *a = _mm512_shuffle_f64x2(c1, c3, 0x88);
+}
+
+#include "sd_product_kernel.h"
+#endif

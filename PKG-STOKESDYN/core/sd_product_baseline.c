@@ -1,0 +1,57 @@
+/* What every processor has: SSE2 on x86-64 (two doubles), the compiler's own choice elsewhere. */
+#include "sd_product_internal.h"
+
+#if defined(SD_HAS_X86_KERNELS) || defined(SD_HAS_PORTABLE_KERNELS)
+#define SD_KERNELS sd_kernels_baseline
+#define LANES 2
+#define SQRT(v) roots(v)
+#define RSQRT(v) (SET1(1.0) / roots(v))
+
+#ifdef SD_HAS_X86_KERNELS
+#include <emmintrin.h>
+typedef __m128d vec;
+typedef __m128d mask;
+#define LOAD(p) _mm_load_pd(p)
+#define STORE(p, v) _mm_store_pd(p, v)
+#define SET1(v) _mm_set1_pd(v)
+#define LE(a, b) _mm_cmple_pd(a, b)
+#define EQ(a, b) _mm_cmpeq_pd(a, b)
+#define ANY(m) (_mm_movemask_pd(m) != 0)
+#define SELECT(m, a, b) _mm_or_pd(_mm_and_pd(m, a), _mm_andnot_pd(m, b))
+#define MAX(a, b) _mm_max_pd(a, b)
+static inline __attribute__((always_inline)) vec roots(vec v)
+{
+  return _mm_sqrt_pd(v);
+}
+#else
+#include <math.h>
+typedef double vec __attribute__((vector_size(16)));
+typedef int64_t mask __attribute__((vector_size(16)));
+#define LOAD(p) (*(const vec *) (p))
+#define STORE(p, v) (*(vec *) (p) = (v))
+#define SET1(v) ((vec){(v), (v)})
+#define LE(a, b) ((a) <= (b))
+#define EQ(a, b) ((a) == (b))
+#define ANY(m) (((m)[0] | (m)[1]) != 0)
+#define SELECT(m, a, b) ((vec) (((m) & (mask) (a)) | (~(m) & (mask) (b))))
+#define MAX(a, b) SELECT((a) > (b), a, b)
+static inline __attribute__((always_inline)) vec roots(vec v)
+{
+  return (vec){sqrt(v[0]), sqrt(v[1])};
+}
+#endif
+
+#define COLUMN(row, j, k) ((vec){(row)[8 * (long) (j)[0] + (k)], (row)[8 * (long) (j)[1] + (k)]})
+#define ROWS(row, j, x, y, z, a, f0, f1, f2) \
+  do {                                       \
+    x = COLUMN(row, j, 0);                   \
+    y = COLUMN(row, j, 1);                   \
+    z = COLUMN(row, j, 2);                   \
+    a = COLUMN(row, j, 3);                   \
+    f0 = COLUMN(row, j, 4);                  \
+    f1 = COLUMN(row, j, 5);                  \
+    f2 = COLUMN(row, j, 6);                  \
+  } while (0)
+
+#include "sd_product_kernel.h"
+#endif

@@ -1,0 +1,25 @@
+/* Between sd_product.c and the kernels of each instruction set. */
+#ifndef SD_PRODUCT_INTERNAL_H
+#define SD_PRODUCT_INTERNAL_H
+
+#include "sd_product.h"
+
+struct sd_kernels {
+  int lanes; /* doubles of a vector: padding of the columns */
+  void (*symmetric)(const sd_packed *p, int part, int parts); /* columns: u += */
+  void (*targets)(const sd_packed *p, int i0, int i1);        /* columns: u += */
+  void (*list)(const sd_packed *p, const sd_pairs *pairs);    /* rows: u = */
+};
+
+/* The kernels are written with the vector types of GCC and clang. Each file is empty unless the compiler was told to use its set. */
+#if defined(__GNUC__) && !defined(SD_NO_KERNELS)
+#if defined(__x86_64__)
+#define SD_HAS_X86_KERNELS
+extern const struct sd_kernels sd_kernels_baseline, sd_kernels_avx2, sd_kernels_avx512;
+#else
+#define SD_HAS_PORTABLE_KERNELS
+extern const struct sd_kernels sd_kernels_baseline;
+#endif
+#endif
+
+#endif
