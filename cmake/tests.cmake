@@ -15,7 +15,7 @@ foreach(file ${test_sources})
     target_compile_options(${name} PRIVATE -fsanitize=${STOKESDYN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${name} PRIVATE -fsanitize=${STOKESDYN_SANITIZE})
   endif()
-  target_link_libraries(${name} PRIVATE ${cmocka_library} m)
+  target_link_libraries(${name} PRIVATE ${cmocka_library} LAPACK::LAPACK m)
   add_test(NAME ${name} COMMAND ${name})
 endforeach()
 

@@ -97,97 +97,254 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
   }
 }
 
-/* q = M p; returns p.Mp and p.D^-1 p */
-static void apply_matrix(const sd_system *A, const double *p, double *q, double *pMp, double *pDp)
+/* Coefficients of the iteration, for the Ritz values. Beyond KEPT the extreme ones hardly change. */
+enum { KEPT = 128 };
+typedef struct {
+  int count;
+  double alpha[KEPT], beta[KEPT]; /* beta[k]: from direction k to k + 1 */
+} coefficients;
+
+/* How many eigenvalues of the Lanczos matrix are below value (Sturm): pivots of T - value that are negative. Its diagonal is
+ * 1/alpha_k + beta_(k-1)/alpha_(k-1), beside it sqrt(beta_k)/alpha_k. */
+static int below(const coefficients *c, double value)
+{
+  int count = 0;
+  double pivot = 1.0;
+  for (int k = 0; k < c->count; k++) {
+    double d = 1.0 / c->alpha[k] - value;
+    if (k > 0) {
+      const double last = 1.0 / c->alpha[k - 1], b = c->beta[k - 1];
+      d += b * last - b * last * last / pivot;
+    }
+    if (d == 0.0) d = -1e-300;
+    count += d < 0.0;
+    pivot = d;
+  }
+  return count;
+}
+
+/* Smallest value with more than `under` eigenvalues below it, to six digits. All are > 0 and below the largest Gershgorin disc. */
+static double bisect(const coefficients *c, int under, double highest)
+{
+  double low = 0.0, high = highest;
+  while (high - low > 1e-6 * high && high > 1e-14 * highest) {
+    const double middle = 0.5 * (low + high);
+    if (below(c, middle) > under)
+      high = middle;
+    else
+      low = middle;
+  }
+  return high;
+}
+
+static void ritz_values(const coefficients *c, sd_solve_report *report)
+{
+  double highest = 0.0;
+  if (c->count == 0) return;
+  for (int k = 0; k < c->count; k++) {
+    double disc = 1.0 / c->alpha[k];
+    if (k > 0) disc += (c->beta[k - 1] + sqrt(c->beta[k - 1])) / c->alpha[k - 1];
+    if (k + 1 < c->count) disc += sqrt(c->beta[k]) / c->alpha[k];
+    highest = fmax(highest, disc);
+  }
+  if (!isfinite(highest)) return;
+  report->ritz_smallest = bisect(c, 0, highest * (1.0 + 1e-12));
+  report->ritz_largest = bisect(c, c->count - 1, highest * (1.0 + 1e-12));
+}
+
+/* q += D^-1 p: the diagonal of M. Rows of spheres that take no part become 0. */
+static void add_own(const sd_system *A, const double *p, double *q)
 {
   const int m = width(A);
-  double v[2] = {0.0, 0.0};
-  A->apply(A->apply_ctx, p, q);
-  for (int i = 0; i < A->n; i++) {
-    const double *pi = p + (long) m * i;
-    double *qi = q + (long) m * i;
+  for (int i = 0; i < A->n; i++)
     for (int k = 0; k < m; k++) {
-      if (A->drag[i] == 0.0) {
-        qi[k] = 0.0;
-        continue;
-      }
-      const double own = pi[k] / scale(A, i, k);
-      qi[k] += own;
-      v[0] += pi[k] * qi[k];
-      v[1] += pi[k] * own;
+      const long j = (long) m * i + k;
+      q[j] = A->drag[i] == 0.0 ? 0.0 : q[j] + p[j] / scale(A, i, k);
+    }
+}
+
+/* out = P D^-1 z for a scaled residual (force) z */
+static void precondition_force(const sd_system *A, const double *z, double *velocity, double *out)
+{
+  const int m = width(A);
+  for (int i = 0; i < A->n; i++)
+    for (int k = 0; k < m; k++) {
+      const long j = (long) m * i + k;
+      velocity[j] = A->drag[i] == 0.0 ? 0.0 : z[j] / scale(A, i, k);
+    }
+  A->precondition(A->precondition_ctx, velocity, out);
+}
+
+/* Inner products of an iteration, r = D^-1 z the residual, t = D q. */
+enum { RU, RP, PQ, PP, QV, QU, ZZ, ZT, TT, YZ, YT, YY, PRODUCTS };
+
+/* natural: r.u r.p p.Mp p.D^-1p q.v q.u; in forces: z.z z.t t.t y.z y.t y.y */
+static void inner_products(const sd_system *A, const double *z, const double *u, const double *p,
+                           const double *q, const double *v, const double *y, double *s)
+{
+  const int m = width(A);
+  for (int k = 0; k < PRODUCTS; k++) s[k] = 0.0;
+  for (int i = 0; i < A->n; i++) {
+    if (A->drag[i] == 0.0) continue;
+    for (int k = 0; k < m; k++) {
+      const long j = (long) m * i + k;
+      const double D = scale(A, i, k), inverse = 1.0 / D, force = A->drag[i] * inverse;
+      const double r = z[j] * inverse, t = D * q[j];
+      s[RU] += r * u[j];
+      s[RP] += r * p[j];
+      s[PQ] += p[j] * q[j];
+      s[PP] += p[j] * p[j] * inverse;
+      s[QV] += q[j] * v[j];
+      s[QU] += q[j] * u[j];
+      s[ZZ] += force * z[j] * z[j];
+      s[ZT] += force * z[j] * t;
+      s[TT] += force * t * t;
+      s[YZ] += force * y[j] * z[j];
+      s[YT] += force * y[j] * t;
+      s[YY] += force * y[j] * y[j];
     }
   }
-  sum(A, v, 2);
-  *pMp = v[0];
-  *pDp = v[1];
+  sum(A, s, PRODUCTS);
 }
+
+/* r.u, z.z, y.z themselves */
+static void residual_products(const sd_system *A, const double *z, const double *u, const double *y,
+                              double s[3])
+{
+  const int m = width(A);
+  s[0] = s[1] = s[2] = 0.0;
+  for (int i = 0; i < A->n; i++) {
+    if (A->drag[i] == 0.0) continue;
+    for (int k = 0; k < m; k++) {
+      const long j = (long) m * i + k;
+      const double inverse = 1.0 / scale(A, i, k), force = A->drag[i] * inverse;
+      s[0] += z[j] * inverse * u[j];
+      s[1] += force * z[j] * z[j];
+      s[2] += force * y[j] * z[j];
+    }
+  }
+  sum(A, s, 3);
+}
+
+/* Digits that may cancel before a product is computed itself. */
+static const double cancelled = 1e-10;
 
 sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,
                              double *F, double *work, sd_solve_report *report)
 {
-  /* x, z: iterate and scaled residual D (s - M x) of conjugate gradients; F, y: the same after smoothing. */
+  /* x, z: iterate and scaled residual D (s - M x) of conjugate gradients; F, y: the same after smoothing. u = P D^-1 z, v = P q;
+   * without preconditioner u is z and v is D q, and neither is stored. */
   const int m = width(A);
   const long size = (long) m * A->n;
   const size_t bytes = sizeof(double) * (size_t) size;
   double *x = work, *z = x + size, *y = z + size, *p = y + size, *q = p + size;
+  double *u = A->precondition ? q + size : z, *v = q + 2 * size;
   double plain, natural, verified = INFINITY;
+  coefficients lanczos = {.count = 0};
+  int first_run = 1;
+  sd_status status = SD_OK;
   *report = (sd_solve_report){.curvature = 1.0};
   const double rhs = free_draining(A, slip, y);
   if (!isfinite(rhs)) return SD_ENOTFINITE;
-  memset(F, 0, bytes);
+  if (rhs == 0.0 || !A->warm) memset(F, 0, bytes);
   if (rhs == 0.0) return SD_OK;
-  memset(y, 0, bytes); /* Omega F for F = 0 */
-  scaled_residual(A, slip, F, y, &plain, &natural);
+  if (A->warm) {
+    A->apply(A->apply_ctx, F, y);
+    report->products++;
+    scaled_residual(A, slip, F, y, &plain, &natural);
+    report->residual = sqrt(plain / rhs);
+    if (report->residual <= tolerance) return SD_OK;
+    if (!(plain < rhs)) memset(F, 0, bytes);
+  }
+  if (!A->warm || !(plain < rhs)) {
+    memset(y, 0, bytes); /* Omega F for F = 0 */
+    scaled_residual(A, slip, F, y, &plain, &natural);
+  }
 
   for (;;) {
     memcpy(x, F, bytes);
     memcpy(z, y, bytes);
-    memcpy(p, y, bytes);
+    memset(p, 0, bytes);
+    if (A->precondition) precondition_force(A, z, q, u);
+    double beta = 0.0, remains = natural;
     report->residual = sqrt(plain / rhs);
-    while (report->residual > tolerance && natural > 0.0 && report->iterations < max_iter) {
-      double pMp, pDp;
-      apply_matrix(A, p, q, &pMp, &pDp);
-      if (!isfinite(pMp)) return SD_ENOTFINITE;
-      report->curvature = fmin(report->curvature, pMp / pDp);
-      if (fabs(pMp) <= singular_below * pDp) return SD_ESINGULAR;
-      if (pMp < 0.0) return SD_EINDEFINITE;
+    while (report->residual > tolerance && remains > 0.0 && report->iterations < max_iter) {
+      double s[PRODUCTS];
+      for (long j = 0; j < size; j++) p[j] = u[j] + beta * p[j];
+      A->apply(A->apply_ctx, p, q);
+      report->products++;
+      add_own(A, p, q);
+      if (A->precondition)
+        A->precondition(A->precondition_ctx, q, v);
+      else
+        for (int i = 0; i < A->n; i++)
+          for (int k = 0; k < m; k++) v[(long) m * i + k] = scale(A, i, k) * q[(long) m * i + k];
+      inner_products(A, z, u, p, q, v, y, s);
+      if (!isfinite(s[PQ]) || !isfinite(s[QV])) {
+        status = SD_ENOTFINITE;
+        break;
+      }
+      report->curvature = fmin(report->curvature, s[PQ] / s[PP]);
+      if (fabs(s[PQ]) <= singular_below * s[PP] || s[PQ] < 0.0) {
+        status = s[PQ] < -singular_below * s[PP] ? SD_EINDEFINITE : SD_ESINGULAR;
+        break;
+      }
       report->iterations++;
 
-      const double alpha = natural / pMp, last = natural;
-      double v[3] = {0.0, 0.0, 0.0}; /* z.D^-1 z; in forces: z.z, y.z */
+      const double alpha = s[RP] / s[PQ];
       for (int i = 0; i < A->n; i++) {
         if (A->drag[i] == 0.0) continue;
-        double *zi = z + (long) m * i;
         for (int k = 0; k < m; k++) {
-          x[(long) m * i + k] += alpha * p[(long) m * i + k];
-          zi[k] -= alpha * scale(A, i, k) * q[(long) m * i + k];
+          const long j = (long) m * i + k;
+          x[j] += alpha * p[j];
+          z[j] -= alpha * scale(A, i, k) * q[j];
+          if (A->precondition) u[j] -= alpha * v[j];
         }
-        const double nat = natural_product(A, i, zi, zi);
-        v[0] += nat;
-        v[1] += A->drag[i] * nat;
-        v[2] += A->drag[i] * natural_product(A, i, y + (long) m * i, zi);
       }
-      sum(A, v, 3);
-      natural = v[0];
-      const double beta = natural / last, zz = v[1], yz = v[2];
-      const double ee = plain - 2.0 * yz + zz; /* |y - z|^2 */
-      const double theta = ee > 0.0 ? (plain - yz) / ee : 1.0;
+      double next = s[RU] - 2.0 * alpha * s[QU] + alpha * alpha * s[QV];
+      double zz = s[ZZ] - 2.0 * alpha * s[ZT] + alpha * alpha * s[TT];
+      double yz = s[YZ] - alpha * s[YT];
+      if (next < cancelled * s[RU] || zz < cancelled * s[ZZ]) {
+        double itself[3];
+        residual_products(A, z, u, y, itself);
+        next = itself[0];
+        zz = itself[1];
+        yz = itself[2];
+      }
+      beta = fmax(next, 0.0) / s[RU];
+      remains = next;
+      if (first_run && lanczos.count < KEPT) {
+        lanczos.alpha[lanczos.count] = alpha;
+        lanczos.beta[lanczos.count++] = beta;
+      }
+
+      const double ee = s[YY] - 2.0 * yz + zz; /* |y - z|^2 */
+      const double theta = ee > 0.0 ? (s[YY] - yz) / ee : 1.0;
       /* |y + theta (z - y)|^2, without loss when z << y */
-      plain = ee > 0.0 ? (plain * zz - yz * yz) / ee : zz;
-      for (long k = 0; k < size; k++) {
-        p[k] = z[k] + beta * p[k];
-        y[k] += theta * (z[k] - y[k]);
-        F[k] += theta * (x[k] - F[k]);
+      plain = ee > 0.0 ? (s[YY] * zz - yz * yz) / ee : zz;
+      for (long j = 0; j < size; j++) {
+        y[j] += theta * (z[j] - y[j]);
+        F[j] += theta * (x[j] - F[j]);
       }
       report->residual = sqrt(fmax(plain, 0.0) / rhs);
     }
+    first_run = 0;
+    if (status != SD_OK) break;
     A->apply(A->apply_ctx, F, y);
+    report->products++;
     scaled_residual(A, slip, F, y, &plain, &natural);
     report->residual = sqrt(plain / rhs);
-    if (!isfinite(plain)) return SD_ENOTFINITE;
-    if (report->residual <= tolerance) return SD_OK;
-    if (report->iterations >= max_iter) return SD_EMAXITER;
-    if (report->residual > 0.5 * verified) return SD_ESTAGNATED;
+    if (!isfinite(plain))
+      status = SD_ENOTFINITE;
+    else if (report->residual <= tolerance)
+      break;
+    else if (report->iterations >= max_iter)
+      status = SD_EMAXITER;
+    else if (report->residual > 0.5 * verified)
+      status = SD_ESTAGNATED;
+    if (status != SD_OK) break;
     verified = report->residual;
   }
+  ritz_values(&lanczos, report);
+  return status;
 }

@@ -25,6 +25,9 @@ extern "C" {
 typedef void sd_apply(void *ctx, const double *F, double *u);
 /* Sum over all ranks, in place. */
 typedef void sd_sum(void *ctx, double *values, int count);
+/* z = P r, P an approximation of the inverse of M: symmetric, positive definite, the same in all calls of one solve. r [width n] are
+ * velocities, z forces; 0 for spheres that take no part (sd_precondition.h has two). */
+typedef void sd_precondition(void *ctx, const double *r, double *z);
 
 typedef struct {
   int n;              /* spheres of this rank */
@@ -35,17 +38,25 @@ typedef struct {
   void *apply_ctx;
   sd_sum *sum; /* NULL: one rank */
   void *sum_ctx;
+  sd_precondition *precondition; /* gradients; NULL: D, the diagonal */
+  void *precondition_ctx;
+  int warm; /* gradients: F holds a guess when the solver is called */
 } sd_system;
 
 typedef struct {
   int iterations;
-  double residual;  /* of the F returned, computed from its definition */
-  double growth;    /* substitution: last factor of the residual from one iteration to the next */
-  double curvature; /* gradients: smallest p.Mp / p.D^-1 p met */
+  double residual; /* of the F returned, computed from its definition */
+  double growth;   /* substitution: last factor of the residual from one iteration to the next */
+  double
+      curvature; /* gradients: smallest p.Mp / p.D^-1 p met, never below the smallest eigenvalue of D M */
+  /* gradients: smallest and largest Ritz value, estimates from inside of the extreme eigenvalues of P M; without preconditioner
+   * these are the eigenvalues of the mobility scaled to unit diagonal. They get good as the solver converges. 0: no iteration made */
+  double ritz_smallest, ritz_largest;
+  int products; /* of the matrix, checks included */
 } sd_solve_report;
 
 /* Doubles of scratch that either solver needs for n spheres. */
-#define SD_SOLVE_WORK(n, width) (5 * (long) (n) * (width))
+#define SD_SOLVE_WORK(n, width) (7 * (long) (n) * (width))
 
 /* Algorithm 1, successive substitution (Joung, Phan-Thien & Fan 2001): F^0 = D s, F^k = D (s - Omega F^(k-1)).
  *   slip [width n] in, F [width n] out, work [SD_SOLVE_WORK(n, width)]
@@ -56,12 +67,18 @@ typedef struct {
 sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
                                 int max_iter, double *F, double *work, sd_solve_report *report);
 
-/* Algorithm 2, conjugate gradients with the diagonal D as preconditioner, from F = 0.
+/* Algorithm 2, preconditioned conjugate gradients.
  * Conjugate gradients minimise the energy norm of the error and their residual goes up and down; the F returned is their iterates
  * after minimal residual smoothing, y += theta (z - y) with theta such that |y| is smallest (Schoenauer & Weiss; Zhou & Walker 1994),
- * whose residual only falls and reaches the tolerance some iterations earlier.
- * The residual is recomputed from its definition before the solver says SD_OK, and the iteration goes on from there if rounding
- * has led it astray.
+ * whose residual only falls and reaches the tolerance some iterations earlier. The residual is the one above with any preconditioner.
+ *
+ * One call of sum an iteration: all inner products are taken at once, after the product with M, and those of the next residual follow
+ * from them, z' = z - alpha D M p being linear. Each is computed afresh in the next iteration, so rounding does not build up;
+ * where more than ten digits would cancel they are computed at once, in one more call.
+ *
+ * The residual is computed from its definition before the solver says SD_OK, and the iteration goes on from there if rounding
+ * has led it astray. Warm: one product gives the residual of the guess, and when that is below the tolerance F is left as it is.
+ * A guess that is worse than F = 0 is dropped.
  * SD_OK; SD_EMAXITER; SD_ESTAGNATED; SD_ENOTFINITE;
  * SD_EINDEFINITE: a direction of negative curvature p.Mp < 0, as a cut-off makes them: any answer would be noise;
  * SD_ESINGULAR: p.Mp = 0 within rounding: spheres at one point with different velocities. */

@@ -79,7 +79,7 @@ typedef sd_status solver(const sd_system *, const double *, double, int, double 
 static inline double *scene_solve(scene *s, solver *solve, const double *slip, double tolerance,
                                   int max_iter, sd_status *status, sd_solve_report *report)
 {
-  const sd_system A = {s->n, s->drag, NULL, scene_apply, s, NULL, NULL};
+  const sd_system A = {.n = s->n, .drag = s->drag, .apply = scene_apply, .apply_ctx = s};
   double *F = malloc(sizeof(double) * 3 * (size_t) s->n),
          *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 3));
   *status = solve(&A, slip, tolerance, max_iter, F, work, report);
