@@ -15,6 +15,10 @@ typedef struct {
   double cutoff; /* INFINITY: all pairs; else by list */
   sd_neighbors list;
   int products;
+  int fast; /* all pairs by the packed product; set it when the spheres stand where they are */
+  sd_packed packed;
+  sd_precondition *precondition; /* for scene_solve */
+  void *precondition_ctx;
 } scene;
 
 static inline scene scene_create(int n)
@@ -34,6 +38,7 @@ static inline void scene_free(scene *s)
   free(s->w);
   free(s->drag);
   sd_neighbors_free(&s->list);
+  sd_packed_free(&s->packed);
 }
 
 static inline void scene_set(scene *s, int i, double x, double y, double z, double a, double eta)
@@ -63,7 +68,12 @@ static inline void scene_apply(void *ctx, const double *F, double *u)
   scene *s = ctx;
   const sd_spheres spheres = {s->x, s->a, s->w};
   s->products++;
-  if (isinf(s->cutoff))
+  if (s->fast) {
+    const sd_law law = {s->kind, SD_TAPER_NONE, 0.0};
+    if (!s->packed.n)
+      assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, s->n), SD_OK);
+    sd_packed_product(&s->packed, 0, s->n, F, u);
+  } else if (isinf(s->cutoff))
     sd_product_all(s->kind, &spheres, s->n, 0, s->n, F, u);
   else {
     if (!s->list.first)
@@ -79,7 +89,12 @@ typedef sd_status solver(const sd_system *, const double *, double, int, double 
 static inline double *scene_solve(scene *s, solver *solve, const double *slip, double tolerance,
                                   int max_iter, sd_status *status, sd_solve_report *report)
 {
-  const sd_system A = {.n = s->n, .drag = s->drag, .apply = scene_apply, .apply_ctx = s};
+  const sd_system A = {.n = s->n,
+                       .drag = s->drag,
+                       .apply = scene_apply,
+                       .apply_ctx = s,
+                       .precondition = s->precondition,
+                       .precondition_ctx = s->precondition_ctx};
   double *F = malloc(sizeof(double) * 3 * (size_t) s->n),
          *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 3));
   *status = solve(&A, slip, tolerance, max_iter, F, work, report);

@@ -1,0 +1,96 @@
+/* Scenes of many spheres, the same on every machine: dense packings and clouds of flocs. */
+#ifndef CLOUDS_H
+#define CLOUDS_H
+
+#include "scene.h"
+
+/* A random direction times length */
+static inline void random_vector(uint64_t *seed, double length, double v[3])
+{
+  double sq;
+  do {
+    sq = 0.0;
+    for (int d = 0; d < 3; d++) {
+      v[d] = uniform(seed, -1, 1);
+      sq += v[d] * v[d];
+    }
+  } while (sq > 1.0 || sq < 1e-4);
+  for (int d = 0; d < 3; d++) v[d] *= length / sqrt(sq);
+}
+
+/* Spheres of radii smallest ... largest (uniform) at volume fraction phi in a cube, pushed apart until no two overlap by more than
+ * a millionth: random sequential addition would end at 0.38. */
+static inline scene cloud_dense(int n, double phi, double smallest, double largest, double eta,
+                                uint64_t seed)
+{
+  scene s = scene_create(n);
+  double volume = 0.0;
+  for (int i = 0; i < n; i++) {
+    s.a[i] = uniform(&seed, smallest, largest);
+    volume += 4.0 / 3.0 * SD_PI * pow(s.a[i], 3);
+  }
+  const double side = cbrt(volume / phi);
+  for (int i = 0; i < n; i++)
+    scene_set(&s, i, uniform(&seed, 0, side), uniform(&seed, 0, side), uniform(&seed, 0, side),
+              s.a[i], eta);
+  sd_neighbors list = {0};
+  double *move = malloc(3 * sizeof(double) * (size_t) n), worst = 1.0;
+  for (int sweep = 0; sweep < 5000 && worst > 1e-6; sweep++) {
+    worst = 0.0;
+    if (sd_neighbors_cutoff(&list, s.x, n, n, 2.0 * largest) != SD_OK) abort();
+    for (int i = 0; i < n; i++) {
+      double *m = move + 3 * i;
+      m[0] = m[1] = m[2] = 0.0;
+      for (long k = list.pairs.first[i]; k < list.pairs.first[i + 1]; k++) {
+        const int j = list.pairs.neighbor[k];
+        double r[3], R = 0.0;
+        for (int d = 0; d < 3; d++) {
+          r[d] = s.x[3 * i + d] - s.x[3 * j + d];
+          R += r[d] * r[d];
+        }
+        R = sqrt(R);
+        const double overlap = s.a[i] + s.a[j] - R;
+        if (overlap <= 0.0 || R == 0.0) continue;
+        worst = fmax(worst, overlap);
+        for (int d = 0; d < 3; d++) m[d] += 0.5 * (overlap + 1e-3 * largest) * r[d] / R;
+      }
+    }
+    for (int i = 0; i < 3 * n; i++) s.x[i] = fmin(fmax(s.x[i] + 0.7 * move[i], 0.0), side);
+  }
+  free(move);
+  sd_neighbors_free(&list);
+  return s;
+}
+
+/* Flocs of m spheres, radii 1 ... spread (uniform in the logarithm), each sphere stuck to one before it at 0.6 to 0.95 of the sum of
+ * their radii; flocs at random places of a cube. apart: spheres of different flocs do not overlap.
+ * Spheres m k ... m (k+1) - 1 are floc k. */
+static inline scene cloud_flocs(int flocs, int m, double spread, double side, int apart, double eta,
+                                uint64_t seed)
+{
+  scene s = scene_create(flocs * m);
+  for (int k = 0; k < flocs; k++) {
+    int overlap = 0;
+    for (int i = m * k; i < m * (k + 1); i++) {
+      const double a = spread > 1.0 ? exp(uniform(&seed, 0.0, log(spread))) : 1.0;
+      double c[3];
+      if (i == m * k)
+        for (int d = 0; d < 3; d++) c[d] = uniform(&seed, 0, side);
+      else {
+        const int to = m * k + (int) uniform(&seed, 0, i - m * k);
+        random_vector(&seed, uniform(&seed, 0.6, 0.95) * (a + s.a[to]), c);
+        for (int d = 0; d < 3; d++) c[d] += s.x[3 * to + d];
+      }
+      scene_set(&s, i, c[0], c[1], c[2], a, eta);
+      for (int j = 0; j < m * k && apart && !overlap; j++) {
+        double sq = 0.0;
+        for (int d = 0; d < 3; d++) sq += pow(c[d] - s.x[3 * j + d], 2);
+        overlap = sq < pow(a + s.a[j], 2);
+      }
+    }
+    if (overlap) k--; /* another shape at another place */
+  }
+  return s;
+}
+
+#endif

@@ -1,0 +1,427 @@
+#include "clouds.h"
+
+#include "sd_precondition.h"
+
+#include <string.h>
+
+static const double A = 0.7, ETA = 1.3, U = 0.9;
+static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+
+/* Blocks of m consecutive spheres */
+static sd_status blocks_of(sd_blocks *b, const scene *s, int m)
+{
+  const int blocks = s->n / m;
+  long *first = malloc(sizeof(long) * (size_t) (blocks + 1));
+  int *member = malloc(sizeof(int) * (size_t) s->n);
+  for (int k = 0; k <= blocks; k++) first[k] = (long) m * k;
+  for (int i = 0; i < s->n; i++) member[i] = i;
+  const sd_spheres spheres = {s->x, s->a, s->w};
+  const sd_status status = sd_blocks_create(b, &RPY, &spheres, s->n, blocks, first, member);
+  b->width = 3;
+  b->drag = s->drag;
+  free(first);
+  free(member);
+  return status;
+}
+
+static sd_status sparse_of(sd_sparse *f, const scene *s, double rho)
+{
+  const sd_spheres spheres = {s->x, s->a, s->w};
+  const sd_status status = sd_sparse_create(f, &RPY, &spheres, s->n, rho, 0, 1);
+  f->width = 3;
+  f->drag = s->drag;
+  return status;
+}
+
+/* Iterations for uniform velocity to the tolerance; checks that it converges. Total force along x in *total. */
+static int iterations(scene *s, sd_precondition *P, void *ctx, double tolerance, double *total)
+{
+  double *slip = scene_uniform_slip(s, U, 0, 0);
+  sd_status status;
+  sd_solve_report report;
+  s->precondition = P;
+  s->precondition_ctx = ctx;
+  double *F = scene_solve(s, sd_solve_gradients, slip, tolerance, 1000, &status, &report);
+  assert_int_equal(status, SD_OK);
+  assert_true(report.residual <= tolerance);
+  if (total) {
+    *total = 0.0;
+    for (int i = 0; i < s->n; i++) *total += F[3 * i];
+  }
+  free(F);
+  free(slip);
+  return report.iterations;
+}
+
+static void at_most(int count, int limit, const char *what)
+{
+  if (count > limit) fail_msg("%s: %d iterations, at most %d", what, count, limit);
+}
+
+/* By brute force: each sphere is the one farthest from all before it, the smaller index first. */
+static void spheres_come_farthest_first(void **state)
+{
+  (void) state;
+  enum { N = 300 };
+  for (int kind = 0; kind < 3; kind++) {
+    uint64_t seed = 4;
+    scene s = scene_create(N);
+    for (int i = 0; i < N;
+         i++) /* random; lattice with many ties; a far group and many at one point */
+      if (kind == 0)
+        scene_set(&s, i, uniform(&seed, 0, 9), uniform(&seed, 0, 9), uniform(&seed, 0, 9), A, ETA);
+      else if (kind == 1)
+        scene_set(&s, i, i % 7, i / 7 % 7, i / 49, A, ETA);
+      else
+        scene_set(&s, i, i % 3 ? 1e-3 * i : 5e6, i % 5 ? 0 : 1e3 * i, 0, A, ETA);
+    for (int i = 5; i < N; i += 50) s.a[i] = 0.0;
+    int order[N], taken[N] = {0};
+    double distance[N], best[N];
+    const sd_spheres spheres = {s.x, s.a, s.w};
+    const int count = sd_farthest_first(&spheres, N, order, distance);
+    assert_int_equal(count, N - 6);
+    for (int i = 0; i < N; i++) best[i] = s.a[i] > 0.0 ? INFINITY : -1.0;
+    for (int k = 0; k < count; k++) {
+      int far = -1;
+      for (int i = 0; i < N; i++)
+        if (!taken[i] && best[i] >= 0.0 && (far < 0 || best[i] > best[far])) far = i;
+      assert_int_equal(order[k], far);
+      assert_true(k == 0 ? isinf(distance[0]) : fabs(distance[k] - sqrt(best[far])) <= 1e-12);
+      taken[far] = 1;
+      for (int i = 0; i < N; i++) {
+        double sq = 0.0;
+        for (int d = 0; d < 3; d++) sq += pow(s.x[3 * i + d] - s.x[3 * far + d], 2);
+        if (s.a[i] > 0.0) best[i] = fmin(best[i], sq);
+      }
+    }
+    scene_free(&s);
+  }
+}
+
+/* Everything seen, the factor is exact, but for its storage in single precision; a block of the whole scene as well. */
+static void whole_inverse_converges_at_once(void **state)
+{
+  (void) state;
+  scene s = cloud_flocs(1, 40, 3.0, 1.0, 0, ETA, 2);
+  sd_sparse f = {0};
+  sd_blocks b = {0};
+  assert_int_equal(sparse_of(&f, &s, 1e6), SD_OK);
+  assert_int_equal(f.first[f.columns], 40 * 41 / 2);
+  assert_int_equal(blocks_of(&b, &s, 40), SD_OK);
+  double plain, with;
+  assert_true(iterations(&s, NULL, NULL, 1e-9, &plain) > 30);
+  at_most(iterations(&s, sd_sparse_apply, &f, 1e-9, &with), 3, "sparse");
+  CHECK_NEAR(with / plain, 1.0, 1e-8);
+  at_most(iterations(&s, sd_blocks_apply, &b, 1e-9, &with), 1, "blocks");
+  CHECK_NEAR(with / plain, 1.0, 1e-8);
+  sd_sparse_free(&f);
+  sd_blocks_free(&b);
+  scene_free(&s);
+}
+
+/* P is symmetric and positive definite; its parts add up to the whole. Some spheres take no part. */
+static void sparse_factor_is_symmetric_and_splits(void **state)
+{
+  (void) state;
+  enum { N = 200 };
+  scene s = cloud_dense(N, 0.4, 0.7, 1.3, ETA, 8);
+  for (int i = 3; i < N; i += 20) s.a[i] = s.w[i] = s.drag[i] = 0.0;
+  uint64_t seed = 3;
+  double r[2][3 * N], z[2][3 * N], cross[2] = {0, 0}, power = 0.0;
+  sd_sparse f = {0};
+  assert_int_equal(sparse_of(&f, &s, 3.0), SD_OK);
+  for (int k = 0; k < 2; k++) {
+    for (int i = 0; i < 3 * N; i++) r[k][i] = uniform(&seed, -1, 1);
+    sd_sparse_apply(&f, r[k], z[k]);
+  }
+  for (int i = 0; i < 3 * N; i++) {
+    cross[0] += r[0][i] * z[1][i];
+    cross[1] += r[1][i] * z[0][i];
+    power += r[0][i] * z[0][i];
+    if (s.a[i / 3] == 0.0) CHECK_NEAR(z[0][i], 0.0, 0.0);
+  }
+  assert_true(power > 0.0);
+  CHECK_NEAR(cross[0], cross[1], 1e-12 * power);
+
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  double sum[3 * N] = {0}, part[3 * N];
+  for (int k = 0; k < 3; k++) {
+    sd_sparse g = {0};
+    assert_int_equal(sd_sparse_create(&g, &RPY, &spheres, N, 3.0, k, 3), SD_OK);
+    g.width = 3;
+    g.drag = s.drag;
+    sd_sparse_apply(&g, r[0], part);
+    for (int i = 0; i < 3 * N; i++) sum[i] += part[i];
+    sd_sparse_free(&g);
+  }
+  for (int i = 0; i < 3 * N; i++) CHECK_NEAR(sum[i], z[0][i], 1e-12 * power);
+  sd_sparse_free(&f);
+  scene_free(&s);
+}
+
+/* Coupled blocks are symmetric and positive definite: lone spheres in blocks of one, some spheres in no block, some take no part,
+ * viscosity that varies, clumps turned since the set-up. */
+static void coupled_blocks_are_symmetric(void **state)
+{
+  (void) state;
+  enum { N = 60, BLOCKS = 13 };
+  scene s = cloud_flocs(12, 5, 3.0, 12.0, 0, ETA, 7);
+  uint64_t seed = 13;
+  for (int i = 0; i < N; i++) {
+    const double eta = uniform(&seed, 0.5, 3.0);
+    s.w[i] = 1.0 / sqrt(eta);
+    s.drag[i] = 6 * SD_PI * eta * s.a[i];
+  }
+  s.a[7] = s.w[7] = s.drag[7] = s.a[50] = s.w[50] = s.drag[50] =
+      0.0; /* 50: a block without spheres */
+  long first[BLOCKS + 1];
+  int member[N];
+  for (int i = 0; i < N; i++) member[i] = i;
+  for (int k = 0; k <= BLOCKS; k++) first[k] = k <= 10 ? 5 * k : 50 + k - 10;
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  sd_blocks b = {0};
+  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, N, BLOCKS, first, member), SD_OK);
+  b.width = 3;
+  b.drag = s.drag;
+  const double turn[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
+  sd_blocks_turn(&b, 2, turn);
+  assert_int_equal(sd_blocks_couple(&b, &RPY, &spheres, 2.0), SD_OK);
+  double *P = malloc(sizeof(double) * 9 * N * N), r[3 * N] = {0}, z[3 * N];
+  double scale = 0.0;
+  for (int k = 0; k < 3 * N; k++) {
+    r[k] = 1.0;
+    sd_blocks_apply(&b, r, z);
+    r[k] = 0.0;
+    for (int i = 0; i < 3 * N; i++) {
+      P[3 * N * i + k] = z[i];
+      scale = fmax(scale, fabs(z[i]));
+    }
+  }
+  for (int i = 0; i < 3 * N; i++)
+    for (int k = 0; k < i; k++) CHECK_NEAR(P[3 * N * i + k], P[3 * N * k + i], 1e-12 * scale);
+  for (int i = 0; i < 3 * N; i++)
+    if (s.a[i / 3] == 0.0) {
+      CHECK_NEAR(P[3 * N * i + i], 0.0, 0.0);
+      P[3 * N * i + i] = scale;
+    }
+  assert_true(positive_definite(P, 3 * N, 0.0));
+  free(P);
+  sd_blocks_free(&b);
+  scene_free(&s);
+}
+
+/* With rotation the torques keep their diagonal. */
+static void torques_keep_the_diagonal(void **state)
+{
+  (void) state;
+  enum { N = 20 };
+  scene s = cloud_flocs(2, N / 2, 2.0, 30.0, 1, ETA, 5);
+  double spin[N], r3[3 * N], z3[3 * N], r6[6 * N], z6[6 * N];
+  uint64_t seed = 6;
+  for (int i = 0; i < N; i++) {
+    spin[i] = 8 * SD_PI * ETA * pow(s.a[i], 3);
+    for (int d = 0; d < 3; d++) {
+      r3[3 * i + d] = r6[6 * i + d] = uniform(&seed, -1, 1);
+      r6[6 * i + 3 + d] = uniform(&seed, -1, 1);
+    }
+  }
+  sd_sparse f = {0};
+  sd_blocks b = {0};
+  assert_int_equal(sparse_of(&f, &s, 3.0), SD_OK);
+  assert_int_equal(blocks_of(&b, &s, N / 2), SD_OK);
+  for (int k = 0; k < 2; k++) {
+    sd_precondition *apply = k ? sd_blocks_apply : sd_sparse_apply;
+    void *ctx = k ? (void *) &b : (void *) &f;
+    f.width = b.width = 3;
+    apply(ctx, r3, z3);
+    f.width = b.width = 6;
+    f.spin = b.spin = spin;
+    apply(ctx, r6, z6);
+    for (int i = 0; i < N; i++)
+      for (int d = 0; d < 3; d++) {
+        CHECK_NEAR(z6[6 * i + d], z3[3 * i + d], 0.0);
+        CHECK_NEAR(z6[6 * i + 3 + d], spin[i] * r6[6 * i + 3 + d], 0.0);
+      }
+  }
+  sd_sparse_free(&f);
+  sd_blocks_free(&b);
+  scene_free(&s);
+}
+
+/* Touching lattice of 1000 spheres: 42 iterations by the diagonal; total drag of the model from a dense factorisation. */
+static void iterations_of_the_lattice(void **state)
+{
+  (void) state;
+  scene s = scene_lattice(10, 10, 10, 2.0, A, ETA);
+  s.fast = 1;
+  sd_sparse f = {0};
+  assert_int_equal(sparse_of(&f, &s, 3.0), SD_OK);
+  double total;
+  at_most(iterations(&s, NULL, NULL, 1e-6, &total), 43, "diagonal");
+  CHECK_NEAR(total / (6 * SD_PI * ETA * A * U), 12.852858, 2e-6);
+  at_most(iterations(&s, sd_sparse_apply, &f, 1e-6, &total), 18, "sparse");
+  CHECK_NEAR(total / (6 * SD_PI * ETA * A * U), 12.852858, 2e-6);
+  sd_sparse_free(&f);
+  scene_free(&s);
+}
+
+/* Turn the spheres from begin on about the origin by a random rotation, which goes to R [9] (Rodrigues). */
+static void turn_spheres(scene *s, int begin, int end, uint64_t *seed, double R[9])
+{
+  double e[3];
+  random_vector(seed, 1.0, e);
+  const double angle = uniform(seed, 0.5, 3), c = cos(angle), sn = sin(angle);
+  const double cross[9] = {0, -e[2], e[1], e[2], 0, -e[0], -e[1], e[0], 0};
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      R[3 * p + q] = (p == q ? c : 0.0) + (1 - c) * e[p] * e[q] + sn * cross[3 * p + q];
+  for (int i = begin; i < end; i++) {
+    double *x = s->x + 3 * i;
+    const double r[3] = {x[0], x[1], x[2]};
+    for (int d = 0; d < 3; d++) x[d] = R[3 * d] * r[0] + R[3 * d + 1] * r[1] + R[3 * d + 2] * r[2];
+  }
+  sd_packed_free(&s->packed);
+}
+
+/* 50 flocs of 20 overlapping spheres at volume fraction 0.1, and the same after all of them turned, with the blocks of before. */
+static void iterations_of_flocs(void **state)
+{
+  (void) state;
+  enum { FLOCS = 50, M = 20 };
+  scene s = cloud_flocs(FLOCS, M, 1.0, 34.7, 1, ETA, 1);
+  s.fast = 1;
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  sd_blocks b = {0};
+  assert_int_equal(blocks_of(&b, &s, M), SD_OK);
+  assert_true(iterations(&s, NULL, NULL, 1e-6, NULL) > 60);
+  at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 25, "blocks");
+  assert_int_equal(sd_blocks_couple(&b, &RPY, &spheres, 3.0), SD_OK);
+  at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 15, "coupled blocks");
+
+  uint64_t seed = 9;
+  double R[9];
+  turn_spheres(&s, 0, s.n, &seed, R);
+  for (int k = 0; k < FLOCS; k++) sd_blocks_turn(&b, k, R);
+  assert_int_equal(sd_blocks_couple(&b, &RPY, &spheres, 3.0), SD_OK);
+  at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 15, "turned blocks, coupled again");
+  sd_blocks_free(&b);
+  scene_free(&s);
+}
+
+/* The block of a rigid clump stays its exact inverse while it turns and moves. */
+static void blocks_turn_with_their_clump(void **state)
+{
+  (void) state;
+  enum { M = 25 };
+  scene s = cloud_flocs(1, M, 2.0, 5.0, 0, ETA, 3);
+  sd_blocks b = {0};
+  uint64_t seed = 10;
+  double R[9];
+  assert_int_equal(blocks_of(&b, &s, M), SD_OK);
+  turn_spheres(&s, 0, M, &seed, R);
+  at_most(-iterations(&s, sd_blocks_apply, &b, 1e-9, NULL), -5, "not turned: no inverse");
+  sd_blocks_turn(&b, 0, R);
+  at_most(iterations(&s, sd_blocks_apply, &b, 1e-9, NULL), 1, "turned");
+  sd_blocks_free(&b);
+  scene_free(&s);
+}
+
+/* Dense random packing, and with the same factor after every sphere moved by 0.2 of the mean radius. */
+static void iterations_of_a_dense_cloud(void **state)
+{
+  (void) state;
+  scene s = cloud_dense(1000, 0.45, 0.7, 1.3, ETA, 1);
+  s.fast = 1;
+  sd_sparse f = {0};
+  assert_int_equal(sparse_of(&f, &s, 3.0), SD_OK);
+  assert_true(iterations(&s, NULL, NULL, 1e-6, NULL) > 60);
+  at_most(iterations(&s, sd_sparse_apply, &f, 1e-6, NULL), 20, "sparse");
+  uint64_t seed = 2;
+  for (int i = 0; i < s.n; i++) {
+    double v[3];
+    random_vector(&seed, 0.2, v);
+    for (int d = 0; d < 3; d++) s.x[3 * i + d] += v[d];
+  }
+  sd_packed_free(&s.packed);
+  at_most(iterations(&s, sd_sparse_apply, &f, 1e-6, NULL), 24, "sparse, moved");
+  sd_sparse_free(&f);
+  scene_free(&s);
+}
+
+/* Spheres at one point: both preconditioners are made and lead to the drag of one sphere. */
+static void coincident_spheres_do_not_stop_the_set_up(void **state)
+{
+  (void) state;
+  for (int k = 0; k < 2; k++) {
+    scene s = scene_lattice(2, 2, 3, k ? 2.0 : 0.0, A, ETA);
+    if (k) memcpy(s.x + 15, s.x + 9, 3 * sizeof(double));
+    sd_sparse f = {0};
+    sd_blocks b = {0};
+    double total[3];
+    assert_int_equal(sparse_of(&f, &s, 3.0), SD_OK);
+    assert_int_equal(blocks_of(&b, &s, s.n), SD_OK);
+    iterations(&s, NULL, NULL, 1e-9, &total[0]);
+    iterations(&s, sd_sparse_apply, &f, 1e-9, &total[1]);
+    iterations(&s, sd_blocks_apply, &b, 1e-9, &total[2]);
+    if (k == 0) CHECK_NEAR(total[0] / (6 * SD_PI * ETA * A * U), 1.0, 1e-9);
+    CHECK_NEAR(total[1] / total[0], 1.0, 1e-8);
+    CHECK_NEAR(total[2] / total[0], 1.0, 1e-8);
+    sd_sparse_free(&f);
+    sd_blocks_free(&b);
+    scene_free(&s);
+  }
+}
+
+static void positions_that_are_no_numbers_are_refused(void **state)
+{
+  (void) state;
+  scene s = scene_lattice(2, 2, 3, 2.0, A, ETA);
+  sd_sparse f = {0};
+  sd_blocks b = {0};
+  s.x[20] = NAN;
+  assert_int_equal(sparse_of(&f, &s, 3.0), SD_ENOTFINITE);
+  assert_int_equal(blocks_of(&b, &s, s.n), SD_ENOTFINITE);
+  assert_null(f.first);
+  assert_null(b.first);
+  scene_free(&s);
+}
+
+/* Negative curvature is seen through a preconditioner too. */
+static void cut_off_is_refused_with_preconditioner(void **state)
+{
+  (void) state;
+  scene s = scene_lattice(5, 5, 5, 2.0, A, ETA);
+  s.cutoff = 6.1 * A;
+  sd_sparse f = {0};
+  assert_int_equal(sparse_of(&f, &s, 2.0), SD_OK);
+  double *slip = scene_uniform_slip(&s, U, 0, 0);
+  sd_status status;
+  sd_solve_report report;
+  s.precondition = sd_sparse_apply;
+  s.precondition_ctx = &f;
+  free(scene_solve(&s, sd_solve_gradients, slip, 1e-6, 500, &status, &report));
+  assert_int_equal(status, SD_EINDEFINITE);
+  assert_true(report.curvature < 0.0);
+  free(slip);
+  sd_sparse_free(&f);
+  scene_free(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(spheres_come_farthest_first),
+      cmocka_unit_test(whole_inverse_converges_at_once),
+      cmocka_unit_test(sparse_factor_is_symmetric_and_splits),
+      cmocka_unit_test(coupled_blocks_are_symmetric),
+      cmocka_unit_test(torques_keep_the_diagonal),
+      cmocka_unit_test(iterations_of_the_lattice),
+      cmocka_unit_test(iterations_of_flocs),
+      cmocka_unit_test(blocks_turn_with_their_clump),
+      cmocka_unit_test(iterations_of_a_dense_cloud),
+      cmocka_unit_test(coincident_spheres_do_not_stop_the_set_up),
+      cmocka_unit_test(positions_that_are_no_numbers_are_refused),
+      cmocka_unit_test(cut_off_is_refused_with_preconditioner),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
