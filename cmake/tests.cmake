@@ -25,6 +25,14 @@ foreach(file ${test_sources})
   add_test(NAME ${name} COMMAND ${name})
 endforeach()
 
+# Timings: cmake --build build --target bench_core. The rival loop in it gets all that this processor has.
+include(CheckCCompilerFlag)
+check_c_compiler_flag(-march=native STOKESDYN_MARCH_NATIVE)
+add_executable(bench_core EXCLUDE_FROM_ALL ${tests}/../bench/bench_core.c)
+target_include_directories(bench_core PRIVATE ${tests} ${cmocka_include})
+target_compile_options(bench_core PRIVATE -Wall -Wextra -O3 $<$<BOOL:${STOKESDYN_MARCH_NATIVE}>:-march=native>)
+target_link_libraries(bench_core PRIVATE ${tested} ${cmocka_library})
+
 # A plugin that believes to be built for another LAMMPS, to see the guard refuse it. In a folder of its own, since newer LAMMPS
 # loads every plugin in LAMMPS_PLUGIN_PATH.
 add_plugin(wrongversionplugin)
