@@ -283,7 +283,8 @@ static sd_status find_rows(sd_sparse *f, const sd_spheres *s, const int *order,
   *largest = 0;
   for (int k = 0; k < count; k++) {
     const int i = order[k];
-    const double reach = k > 0 ? rho * distance[k] : 0.0, reach_sq = reach * reach;
+    /* a little wider, so that rounding does not split the equal distances of a lattice */
+    const double reach = k > 0 ? (1.0 + 1e-6) * rho * distance[k] : 0.0, reach_sq = reach * reach;
     if (k > 0 && 2.0 * reach < c.side) {
       const double side = cell_side(reach, extent);
       if (side < c.side) {

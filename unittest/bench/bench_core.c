@@ -33,61 +33,58 @@ static double median(double *t)
   return t[RUNS / 2];
 }
 
-/* --- the rival: what one would write first. Array of structs, one root and one division for a pair that does not overlap. ------- */
+/* --- the rival: what one would write first. One root and one division for a pair that does not overlap. ---------------------- */
 
-typedef struct {
-  double x, y, z, a, fx, fy, fz;
-} sphere;
-
-static inline void rival_pair(const sphere *p, const sphere *q, double u[3])
+static inline void rival_pair(const double *x, const double *a, const double *F, int i, int j,
+                              double u[3])
 {
-  const double dx = p->x - q->x, dy = p->y - q->y, dz = p->z - q->z;
+  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1],
+               dz = x[3 * i + 2] - x[3 * j + 2];
   const double r2 = dx * dx + dy * dy + dz * dz, R = sqrt(r2);
   double f, h;
-  if (R > p->a + q->a) {
-    const double y = 1.0 / R, m = (p->a * p->a + q->a * q->a) * y * y;
+  if (R > a[i] + a[j]) {
+    const double y = 1.0 / R, y2 = y * y, m = (a[i] * a[i] + a[j] * a[j]) * y2;
     f = 0.75 * y * (1.0 + m / 3.0);
-    h = 0.75 * y * (1.0 - m) * y * y;
+    h = 0.75 * y * (1.0 - m) * y2;
   } else {
     double g;
-    sd_rpy_radial(R, p->a, q->a, &f, &g);
+    sd_rpy_radial(R, a[i], a[j], &f, &g);
     h = R > 0.0 ? g / r2 : 0.0;
   }
-  const double c = h * (dx * q->fx + dy * q->fy + dz * q->fz);
-  u[0] += f * q->fx + c * dx;
-  u[1] += f * q->fy + c * dy;
-  u[2] += f * q->fz + c * dz;
+  const double c = h * (dx * F[3 * j] + dy * F[3 * j + 1] + dz * F[3 * j + 2]);
+  u[0] += f * F[3 * j] + c * dx;
+  u[1] += f * F[3 * j + 1] + c * dy;
+  u[2] += f * F[3 * j + 2] + c * dz;
 }
 
-static __attribute__((noinline)) void rival_all(const sphere *s, int n, double *u)
+static __attribute__((noinline)) void rival_all(const double *x, const double *a, const double *F,
+                                                int n, double *u)
 {
   for (int i = 0; i < n; i++) {
     double sum[3] = {0.0, 0.0, 0.0};
     for (int j = 0; j < n; j++)
-      if (j != i) rival_pair(s + i, s + j, sum);
+      if (j != i) rival_pair(x, a, F, i, j, sum);
     for (int d = 0; d < 3; d++) u[3 * i + d] = sum[d] / (6.0 * SD_PI);
   }
 }
 
-static __attribute__((noinline)) void rival_list(const sphere *s, const sd_pairs *pairs, double *u)
+static __attribute__((noinline)) void rival_list(const double *x, const double *a, const double *F,
+                                                 const sd_pairs *pairs, double *u)
 {
   for (int i = 0; i < pairs->n; i++) {
     double sum[3] = {0.0, 0.0, 0.0};
     for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
-      rival_pair(s + i, s + pairs->neighbor[k], sum);
+      rival_pair(x, a, F, i, pairs->neighbor[k], sum);
     for (int d = 0; d < 3; d++) u[3 * i + d] = sum[d] / (6.0 * SD_PI);
   }
 }
 
 /* Forces of the rival are times w of their own sphere, as the packed product does inside. */
-static sphere *rival_spheres(const scene *s, const double *F)
+static double *rival_forces(const scene *s, const double *F)
 {
-  sphere *p = malloc(sizeof(sphere) * (size_t) s->n);
-  for (int i = 0; i < s->n; i++) {
-    const double *x = s->x + 3 * i, *f = F + 3 * i, w = s->w[i];
-    p[i] = (sphere){x[0], x[1], x[2], s->a[i], w * f[0], w * f[1], w * f[2]};
-  }
-  return p;
+  double *f = malloc(3 * sizeof(double) * (size_t) s->n);
+  for (int i = 0; i < 3 * s->n; i++) f[i] = s->w[i / 3] * F[i];
+  return f;
 }
 
 static double difference(const scene *s, const double *u, const double *rival)
@@ -125,7 +122,7 @@ static void bench_product(int n)
   double *F = malloc(bytes), *u = malloc(bytes), *expected = malloc(bytes), t[2][RUNS];
   uint64_t seed = 2;
   for (int i = 0; i < 3 * n; i++) F[i] = uniform(&seed, -1, 1);
-  sphere *rival = rival_spheres(&s, F);
+  double *rival = rival_forces(&s, F);
   const double pairs = (double) n * n;
   const int repeat = 1 + (int) (1e8 / pairs), part = n / 2;
   printf("\nProduct, all pairs, %d polydisperse spheres, phi 0.2\n", n);
@@ -138,7 +135,7 @@ static void bench_product(int n)
       const int targets = one_sided ? part : n;
       for (int k = 0; k < RUNS; k++) {
         double begin = cpu();
-        rival_all(rival, n, expected);
+        rival_all(s.x, s.a, rival, n, expected);
         t[0][k] = cpu() - begin;
         begin = cpu();
         for (int r = 0; r < repeat; r++) sd_packed_product(&p, 0, targets, F, u);
@@ -176,7 +173,7 @@ static void bench_list(int n, double neighbors)
     F[i] = uniform(&seed, -1, 1);
     side = fmax(side, s.x[i]);
   }
-  sphere *rival = rival_spheres(&s, F);
+  double *rival = rival_forces(&s, F);
   sd_neighbors list = {0};
   double cutoff = side * cbrt(neighbors / (4.0 / 3.0 * SD_PI * n));
   for (int k = 0; k < 6; k++) { /* fewer neighbours at the border: widen the cut-off */
@@ -193,7 +190,7 @@ static void bench_list(int n, double neighbors)
     if (sd_packed_list(&p, isa, &RPY, &spheres, n) != SD_OK) abort();
     for (int k = 0; k < RUNS; k++) {
       double begin = cpu();
-      for (int r = 0; r < repeat; r++) rival_list(rival, &list.pairs, expected);
+      for (int r = 0; r < repeat; r++) rival_list(s.x, s.a, rival, &list.pairs, expected);
       t[0][k] = (cpu() - begin) / repeat;
       begin = cpu();
       for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, F, u);
