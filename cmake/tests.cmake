@@ -4,21 +4,35 @@ find_library(cmocka_library cmocka REQUIRED)
 enable_testing()
 
 set(tests ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/core)
+set(tested stokesdyn_core)
+if(STOKESDYN_SANITIZE)
+  # The core's own sources once more, so that sanitizers see them too.
+  set(sanitize -fsanitize=${STOKESDYN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_library(sanitized_core STATIC EXCLUDE_FROM_ALL ${core_sources})
+  target_include_directories(sanitized_core PUBLIC ${source}/core)
+  target_compile_options(sanitized_core PUBLIC ${sanitize})
+  target_link_options(sanitized_core PUBLIC ${sanitize})
+  target_link_libraries(sanitized_core PUBLIC LAPACK::LAPACK m)
+  set(tested sanitized_core)
+endif()
 file(GLOB test_sources CONFIGURE_DEPENDS ${tests}/test_*.c)
 foreach(file ${test_sources})
   get_filename_component(name ${file} NAME_WE)
-  # The core's own sources once more, so that sanitizers see them too.
-  add_executable(${name} ${file} ${core_sources})
-  target_include_directories(${name} PRIVATE ${source}/core ${cmocka_include})
+  add_executable(${name} ${file})
+  target_include_directories(${name} PRIVATE ${cmocka_include})
   target_compile_definitions(${name} PRIVATE TEST_DATA="${CMAKE_CURRENT_SOURCE_DIR}/../unittest/data/")
   target_compile_options(${name} PRIVATE -Wall -Wextra -g)
-  if(STOKESDYN_SANITIZE)
-    target_compile_options(${name} PRIVATE -fsanitize=${STOKESDYN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-    target_link_options(${name} PRIVATE -fsanitize=${STOKESDYN_SANITIZE})
-  endif()
-  target_link_libraries(${name} PRIVATE ${cmocka_library} LAPACK::LAPACK m)
+  target_link_libraries(${name} PRIVATE ${tested} ${cmocka_library})
   add_test(NAME ${name} COMMAND ${name})
 endforeach()
+
+# Timings: cmake --build build --target bench_core. The rival loop in it gets all that this processor has.
+include(CheckCCompilerFlag)
+check_c_compiler_flag(-march=native STOKESDYN_MARCH_NATIVE)
+add_executable(bench_core EXCLUDE_FROM_ALL ${tests}/../bench/bench_core.c)
+target_include_directories(bench_core PRIVATE ${tests} ${cmocka_include})
+target_compile_options(bench_core PRIVATE -Wall -Wextra -O3 $<$<BOOL:${STOKESDYN_MARCH_NATIVE}>:-march=native>)
+target_link_libraries(bench_core PRIVATE ${tested} ${cmocka_library})
 
 # A plugin that believes to be built for another LAMMPS, to see the guard refuse it. In a folder of its own, since newer LAMMPS
 # loads every plugin in LAMMPS_PLUGIN_PATH.

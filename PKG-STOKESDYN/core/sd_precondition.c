@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_product_internal.h"
+
 /* LAPACK: Cholesky factor, and inverse from it, of the lower triangle (column-major). */
 void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info);
 void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info);
@@ -281,7 +283,8 @@ static sd_status find_rows(sd_sparse *f, const sd_spheres *s, const int *order,
   *largest = 0;
   for (int k = 0; k < count; k++) {
     const int i = order[k];
-    const double reach = k > 0 ? rho * distance[k] : 0.0, reach_sq = reach * reach;
+    /* a little wider, so that rounding does not split the equal distances of a lattice */
+    const double reach = k > 0 ? (1.0 + 1e-6) * rho * distance[k] : 0.0, reach_sq = reach * reach;
     if (k > 0 && 2.0 * reach < c.side) {
       const double side = cell_side(reach, extent);
       if (side < c.side) {
@@ -347,8 +350,8 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
       }
   if (order && distance) count = sd_farthest_first(s, n, order, distance);
   if (count < 0 || find_rows(f, s, order, distance, count, rho, &largest) != SD_OK) goto end;
-  f->value = malloc(sizeof(float) * (size_t) (9 * f->first[f->columns] + 1));
-  f->scratch = malloc(sizeof(double) * (size_t) (6 * (long) n + 1));
+  f->value = malloc(sizeof(float) * (size_t) (12 * f->first[f->columns] + 1));
+  f->scratch = malloc(sizeof(double) * (size_t) (8 * (long) n + 1));
   member = malloc(sizeof(int) * (size_t) (largest + 1));
   A = malloc(sizeof(double) * (size_t) (9 * (long) largest * largest + 1));
   X = malloc(sizeof(double) * (size_t) (9 * (long) largest + 1));
@@ -362,9 +365,13 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
     status = factor(law, s, member, m, A);
     if (status != SD_OK) break;
     last_columns(A, 3 * m, X);
-    float *value = f->value + 9 * f->first[k];
+    float *value = f->value + 12 * f->first[k];
     for (int l = 0; l < m; l++)
-      for (int p = 0; p < 9; p++) value[9 * l + p] = (float) X[9 * (m - 1 - l) + p];
+      for (int q = 0; q < 3; q++) {
+        for (int p = 0; p < 3; p++)
+          value[12 * l + 4 * q + p] = (float) X[9 * (m - 1 - l) + 3 * p + q];
+        value[12 * l + 4 * q + 3] = 0.0f;
+      }
   }
 end:
   free(order);
@@ -376,36 +383,43 @@ end:
   return status;
 }
 
+/* What the kernels do, where there are none. */
+static void plain_sparse(int columns, const long *first, const int *row, const float *value,
+                         const double *in, double *out)
+{
+  for (int k = 0; k < columns; k++) {
+    double t[3] = {0.0, 0.0, 0.0};
+    for (long l = first[k]; l < first[k + 1]; l++) {
+      const double *v = in + 4 * (long) row[l];
+      for (int q = 0; q < 3; q++) {
+        const float *B = value + 12 * l + 4 * q;
+        t[q] += B[0] * v[0] + B[1] * v[1] + B[2] * v[2];
+      }
+    }
+    for (long l = first[k]; l < first[k + 1]; l++) {
+      double *v = out + 4 * (long) row[l];
+      const float *B = value + 12 * l;
+      for (int p = 0; p < 3; p++) v[p] += B[p] * t[0] + B[4 + p] * t[1] + B[8 + p] * t[2];
+    }
+  }
+}
+
 void sd_sparse_apply(void *ctx, const double *r, double *z)
 {
   const sd_sparse *f = ctx;
+  const struct sd_kernels *kernels = sd_kernels_of(sd_isa_best());
   const long w = f->width;
-  double *in = f->scratch, *out = in + 3 * (long) f->n;
+  double *in = f->scratch, *out = in + 4 * (long) f->n;
   for (int i = 0; i < f->n; i++) {
     const double root = sqrt(f->drag[i]);
-    for (int d = 0; d < 3; d++) {
-      in[3 * (long) i + d] = root * r[w * i + d];
-      out[3 * (long) i + d] = 0.0;
-    }
+    for (int d = 0; d < 3; d++) in[4 * (long) i + d] = root * r[w * i + d];
+    in[4 * (long) i + 3] = 0.0;
   }
-  for (int k = 0; k < f->columns; k++) {
-    const long begin = f->first[k], end = f->first[k + 1];
-    double t[3] = {0.0, 0.0, 0.0};
-    for (long l = begin; l < end; l++) { /* t = L^T r */
-      const float *B = f->value + 9 * l;
-      const double *v = in + 3 * (long) f->row[l];
-      for (int q = 0; q < 3; q++) t[q] += B[q] * v[0] + B[3 + q] * v[1] + B[6 + q] * v[2];
-    }
-    for (long l = begin; l < end; l++) { /* z += L t */
-      const float *B = f->value + 9 * l;
-      double *v = out + 3 * (long) f->row[l];
-      for (int p = 0; p < 3; p++)
-        v[p] += B[3 * p] * t[0] + B[3 * p + 1] * t[1] + B[3 * p + 2] * t[2];
-    }
-  }
+  memset(out, 0, 4 * sizeof(double) * (size_t) f->n);
+  (kernels ? kernels->sparse : plain_sparse)(f->columns, f->first, f->row, f->value, in, out);
   for (int i = 0; i < f->n; i++) {
     const double root = sqrt(f->drag[i]);
-    for (int d = 0; d < 3; d++) z[w * i + d] = root * out[3 * (long) i + d];
+    for (int d = 0; d < 3; d++) z[w * i + d] = root * out[4 * (long) i + d];
   }
   if (f->part == 0)
     torques(f->width, f->drag, f->spin, f->n, r, z);

@@ -30,7 +30,7 @@ typedef struct {
   int *row;    /* spheres; the first of each column is its own */
   float *
       value; /* [9] each: L L^T is exactly symmetric with rounded L too, and half the bytes are read */
-  double *scratch; /* [6n] */
+  double *scratch; /* [8n] */
 } sd_sparse;
 
 void sd_sparse_free(sd_sparse *f);

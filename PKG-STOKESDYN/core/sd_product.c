@@ -89,7 +89,7 @@ void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, i
 
 /* --- the fast product --------------------------------------------------------------------------------------------- */
 
-static const struct sd_kernels *kernels_of(sd_isa isa)
+const struct sd_kernels *sd_kernels_of(sd_isa isa)
 {
 #if defined(SD_HAS_X86_KERNELS)
   if (isa == SD_ISA_BASELINE) return &sd_kernels_baseline;
@@ -105,7 +105,7 @@ static const struct sd_kernels *kernels_of(sd_isa isa)
 int sd_isa_supported(sd_isa isa)
 {
   if (isa == SD_ISA_BEST || isa == SD_ISA_PLAIN) return 1;
-  if (!kernels_of(isa)) return 0;
+  if (!sd_kernels_of(isa)) return 0;
 #if defined(SD_HAS_X86_KERNELS)
   if (isa == SD_ISA_AVX512)
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
@@ -175,7 +175,7 @@ static int fits(sd_packed *p)
 static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n)
 {
   if (isa == SD_ISA_BEST) isa = sd_isa_best();
-  p->kernels = kernels_of(isa);
+  p->kernels = sd_kernels_of(isa);
   p->spheres = *s;
   p->law = *law;
   p->n = n;

@@ -28,7 +28,7 @@ static inline __attribute__((always_inline)) vec reciprocal_root(vec v)
   return y + y * e * (SET1(0.5) + e * (SET1(0.375) + e * SET1(0.3125)));
 }
 
-/* Transpose eight rows of eight: gathers would take twice the time. */
+/* Transpose eight rows of eight: eight loads and 22 shuffles, where seven gathers would be 56 loads. */
 static inline __attribute__((always_inline)) void
 columns(const double *row, const int *j, vec *x, vec *y, vec *z, vec *a, vec *f0, vec *f1, vec *f2)
 {

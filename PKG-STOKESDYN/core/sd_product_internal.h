@@ -9,7 +9,13 @@ struct sd_kernels {
   void (*symmetric)(const sd_packed *p, int part, int parts); /* columns: u += */
   void (*targets)(const sd_packed *p, int i0, int i1);        /* columns: u += */
   void (*list)(const sd_packed *p, const sd_pairs *pairs);    /* rows: u = */
+  /* out += L L^T in (sd_precondition.h): vectors of 4 doubles a sphere, blocks of 3 x 4 floats */
+  void (*sparse)(int columns, const long *first, const int *row, const float *value,
+                 const double *in, double *out);
 };
+
+/* NULL: this build has none for it. isa is not SD_ISA_BEST. */
+const struct sd_kernels *sd_kernels_of(sd_isa isa);
 
 /* The kernels are written with the vector types of GCC and clang. Each file is empty unless the compiler was told to use its set. */
 #if defined(__GNUC__) && !defined(SD_NO_KERNELS)

@@ -271,4 +271,39 @@ static void run_list(const sd_packed *p, const sd_pairs *pairs)
 #undef CALL
 }
 
-const struct sd_kernels SD_KERNELS = {LANES, run_symmetric, run_targets, run_list};
+/* The sparse factor: the fourth lane is padding. */
+typedef double quad __attribute__((vector_size(32)));
+typedef float quad_float __attribute__((vector_size(16)));
+
+INLINE quad block_column(const float *value)
+{
+  quad_float v;
+  __builtin_memcpy(&v, value, sizeof(v));
+  return __builtin_convertvector(v, quad);
+}
+
+static void run_sparse(int columns, const long *first, const int *row, const float *value,
+                       const double *in, double *out)
+{
+  for (int k = 0; k < columns; k++) {
+    quad s0 = {0.0, 0.0, 0.0, 0.0}, s1 = s0, s2 = s0;
+    for (long l = first[k]; l < first[k + 1]; l++) { /* t = L^T in */
+      quad v;
+      __builtin_memcpy(&v, in + 4 * (long) row[l], sizeof(v));
+      s0 += block_column(value + 12 * l) * v;
+      s1 += block_column(value + 12 * l + 4) * v;
+      s2 += block_column(value + 12 * l + 8) * v;
+    }
+    const double t0 = s0[0] + s0[1] + s0[2], t1 = s1[0] + s1[1] + s1[2], t2 = s2[0] + s2[1] + s2[2];
+    for (long l = first[k]; l < first[k + 1]; l++) { /* out += L t */
+      double *o = out + 4 * (long) row[l];
+      quad v;
+      __builtin_memcpy(&v, o, sizeof(v));
+      v += block_column(value + 12 * l) * t0 + block_column(value + 12 * l + 4) * t1 +
+          block_column(value + 12 * l + 8) * t2;
+      __builtin_memcpy(o, &v, sizeof(v));
+    }
+  }
+}
+
+const struct sd_kernels SD_KERNELS = {LANES, run_symmetric, run_targets, run_list, run_sparse};

@@ -1,0 +1,453 @@
+/* Timings of the core, each as a ratio to a rival run in the same program, with the error of the answer beside it.
+ *   bench_core [quick]      README.md has the command, what the rows mean and figures
+ * Times are process CPU time on one core, medians of five; rival and core take turns, so that both meet the same load. */
+#include "clouds.h"
+
+#include "sd_precondition.h"
+
+#include <string.h>
+#include <time.h>
+
+void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info);
+void dpotrs_(const char *uplo, const int *n, const int *nrhs, const double *A, const int *lda,
+             double *b, const int *ldb, int *info);
+
+static const double ETA = 1.3, U = 0.9;
+static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+enum { RUNS = 5 };
+
+static double cpu(void)
+{
+  return (double) clock() / CLOCKS_PER_SEC;
+}
+
+static int by_value(const void *a, const void *b)
+{
+  const double x = *(const double *) a, y = *(const double *) b;
+  return (x > y) - (x < y);
+}
+
+static double median(double *t)
+{
+  qsort(t, RUNS, sizeof(double), by_value);
+  return t[RUNS / 2];
+}
+
+/* --- the rival: what one would write first. One root and one division for a pair that does not overlap. ---------------------- */
+
+static inline void rival_pair(const double *x, const double *a, const double *F, int i, int j,
+                              double u[3])
+{
+  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1],
+               dz = x[3 * i + 2] - x[3 * j + 2];
+  const double r2 = dx * dx + dy * dy + dz * dz, R = sqrt(r2);
+  double f, h;
+  if (R > a[i] + a[j]) {
+    const double y = 1.0 / R, y2 = y * y, m = (a[i] * a[i] + a[j] * a[j]) * y2;
+    f = 0.75 * y * (1.0 + m / 3.0);
+    h = 0.75 * y * (1.0 - m) * y2;
+  } else {
+    double g;
+    sd_rpy_radial(R, a[i], a[j], &f, &g);
+    h = R > 0.0 ? g / r2 : 0.0;
+  }
+  const double c = h * (dx * F[3 * j] + dy * F[3 * j + 1] + dz * F[3 * j + 2]);
+  u[0] += f * F[3 * j] + c * dx;
+  u[1] += f * F[3 * j + 1] + c * dy;
+  u[2] += f * F[3 * j + 2] + c * dz;
+}
+
+static __attribute__((noinline)) void rival_all(const double *x, const double *a, const double *F,
+                                                int n, double *u)
+{
+  for (int i = 0; i < n; i++) {
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int j = 0; j < n; j++)
+      if (j != i) rival_pair(x, a, F, i, j, sum);
+    for (int d = 0; d < 3; d++) u[3 * i + d] = sum[d] / (6.0 * SD_PI);
+  }
+}
+
+static __attribute__((noinline)) void rival_list(const double *x, const double *a, const double *F,
+                                                 const sd_pairs *pairs, double *u)
+{
+  for (int i = 0; i < pairs->n; i++) {
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
+      rival_pair(x, a, F, i, pairs->neighbor[k], sum);
+    for (int d = 0; d < 3; d++) u[3 * i + d] = sum[d] / (6.0 * SD_PI);
+  }
+}
+
+/* Forces of the rival are times w of their own sphere, as the packed product does inside. */
+static double *rival_forces(const scene *s, const double *F)
+{
+  double *f = malloc(3 * sizeof(double) * (size_t) s->n);
+  for (int i = 0; i < 3 * s->n; i++) f[i] = s->w[i / 3] * F[i];
+  return f;
+}
+
+static double difference(const scene *s, const double *u, const double *rival)
+{
+  double off = 0.0, norm = 0.0;
+  for (int i = 0; i < 3 * s->n; i++) {
+    const double v = s->w[i / 3] * rival[i];
+    off += (u[i] - v) * (u[i] - v);
+    norm += v * v;
+  }
+  return sqrt(off / norm);
+}
+
+/* n spheres of radii 0.5 ... 1.5 at random at volume fraction 0.2: some overlap */
+static scene polydisperse(int n, uint64_t seed)
+{
+  scene s = scene_create(n);
+  double volume = 0.0;
+  for (int i = 0; i < n; i++) {
+    s.a[i] = uniform(&seed, 0.5, 1.5);
+    volume += 4.0 / 3.0 * SD_PI * pow(s.a[i], 3);
+  }
+  const double side = cbrt(volume / 0.2);
+  for (int i = 0; i < n; i++)
+    scene_set(&s, i, uniform(&seed, 0, side), uniform(&seed, 0, side), uniform(&seed, 0, side),
+              s.a[i], ETA);
+  return s;
+}
+
+static void bench_product(int n)
+{
+  scene s = polydisperse(n, 1);
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  const size_t bytes = 3 * sizeof(double) * (size_t) n;
+  double *F = malloc(bytes), *u = malloc(bytes), *expected = malloc(bytes), t[2][RUNS];
+  uint64_t seed = 2;
+  for (int i = 0; i < 3 * n; i++) F[i] = uniform(&seed, -1, 1);
+  double *rival = rival_forces(&s, F);
+  const double pairs = (double) n * n;
+  const int repeat = 1 + (int) (1e8 / pairs), part = n / 2;
+  printf("\nProduct, all pairs, %d polydisperse spheres, phi 0.2\n", n);
+  printf("  %-34s %10s %8s %10s\n", "", "G pairs/s", "ratio", "error");
+  for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
+    if (!sd_isa_supported(isa)) continue;
+    sd_packed p = {0};
+    if (sd_packed_all(&p, isa, &RPY, &spheres, n) != SD_OK) abort();
+    for (int one_sided = 0; one_sided < 2; one_sided++) {
+      const int targets = one_sided ? part : n;
+      for (int k = 0; k < RUNS; k++) {
+        double begin = cpu();
+        rival_all(s.x, s.a, rival, n, expected);
+        t[0][k] = cpu() - begin;
+        begin = cpu();
+        for (int r = 0; r < repeat; r++) sd_packed_product(&p, 0, targets, F, u);
+        t[1][k] = (cpu() - begin) / repeat;
+      }
+      if (one_sided)
+        memcpy(u + 3 * part, expected + 3 * part, bytes - 3 * sizeof(double) * (size_t) part);
+      if (one_sided)
+        for (int i = 3 * part; i < 3 * n; i++) u[i] *= s.w[i / 3];
+      char name[64];
+      snprintf(name, sizeof(name), "%s, %s", sd_isa_name(isa),
+               one_sided ? "half the targets" : "all targets");
+      const double mine = median(t[1]) / targets * n, its = median(t[0]);
+      printf("  %-34s %10.3f %8.2f %10.1e\n", name, 1e-9 * pairs / mine, its / mine,
+             difference(&s, u, expected));
+    }
+    sd_packed_free(&p);
+  }
+  printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(t[0]));
+  free(rival);
+  free(F);
+  free(u);
+  free(expected);
+  scene_free(&s);
+}
+
+static void bench_list(int n, double neighbors)
+{
+  scene s = polydisperse(n, 1);
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  const size_t bytes = 3 * sizeof(double) * (size_t) n;
+  double *F = malloc(bytes), *u = malloc(bytes), *expected = malloc(bytes), t[2][RUNS], side = 0.0;
+  uint64_t seed = 2;
+  for (int i = 0; i < 3 * n; i++) {
+    F[i] = uniform(&seed, -1, 1);
+    side = fmax(side, s.x[i]);
+  }
+  double *rival = rival_forces(&s, F);
+  sd_neighbors list = {0};
+  double cutoff = side * cbrt(neighbors / (4.0 / 3.0 * SD_PI * n));
+  for (int k = 0; k < 6; k++) { /* fewer neighbours at the border: widen the cut-off */
+    if (sd_neighbors_cutoff(&list, s.x, n, n, cutoff) != SD_OK) abort();
+    cutoff *= cbrt(neighbors / ((double) list.pairs.first[n] / n));
+  }
+  const double pairs = (double) list.pairs.first[n];
+  const int repeat = 1 + (int) (2e7 / pairs);
+  printf("\nProduct by list, %d polydisperse spheres, %.1f neighbours\n", n, pairs / n);
+  printf("  %-34s %10s %8s %10s\n", "", "G pairs/s", "ratio", "error");
+  for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
+    if (!sd_isa_supported(isa)) continue;
+    sd_packed p = {0};
+    if (sd_packed_list(&p, isa, &RPY, &spheres, n) != SD_OK) abort();
+    for (int k = 0; k < RUNS; k++) {
+      double begin = cpu();
+      for (int r = 0; r < repeat; r++) rival_list(s.x, s.a, rival, &list.pairs, expected);
+      t[0][k] = (cpu() - begin) / repeat;
+      begin = cpu();
+      for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, F, u);
+      t[1][k] = (cpu() - begin) / repeat;
+    }
+    const double mine = median(t[1]), its = median(t[0]);
+    printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
+           difference(&s, u, expected));
+    sd_packed_free(&p);
+  }
+  printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(t[0]));
+  sd_neighbors_free(&list);
+  free(rival);
+  free(F);
+  free(u);
+  free(expected);
+  scene_free(&s);
+}
+
+/* --- solves -------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+  double seconds, drag;
+  int iterations;
+  double residual;
+} solved;
+
+/* One solve for uniform velocity along x. Time includes packing the spheres. */
+static solved solve_once(scene *s, double tolerance, double *F, double *work, const double *slip)
+{
+  const sd_system A = {.n = s->n,
+                       .drag = s->drag,
+                       .apply = scene_apply,
+                       .apply_ctx = s,
+                       .precondition = s->precondition,
+                       .precondition_ctx = s->precondition_ctx};
+  sd_solve_report report;
+  solved r = {0};
+  s->fast = 1;
+  const double begin = cpu();
+  sd_packed_free(&s->packed);
+  const sd_status status = sd_solve_gradients(&A, slip, tolerance, 2000, F, work, &report);
+  r.seconds = cpu() - begin;
+  if (status != SD_OK) printf("  %s\n", sd_status_string(status));
+  for (int i = 0; i < s->n; i++) r.drag += F[3 * i];
+  r.iterations = report.iterations;
+  r.residual = report.residual;
+  return r;
+}
+
+static solved solve_median(scene *s, sd_precondition *P, void *ctx, double tolerance)
+{
+  double *slip = scene_uniform_slip(s, U, 0, 0), t[RUNS];
+  double *F = malloc(3 * sizeof(double) * (size_t) s->n),
+         *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 3));
+  solved r = {0};
+  s->precondition = P;
+  s->precondition_ctx = ctx;
+  for (int k = 0; k < RUNS; k++) {
+    r = solve_once(s, tolerance, F, work, slip);
+    t[k] = r.seconds;
+  }
+  r.seconds = median(t);
+  free(slip);
+  free(F);
+  free(work);
+  return r;
+}
+
+static void sparse_factor(const scene *s, double rho, sd_sparse *f, double *seconds)
+{
+  const sd_spheres spheres = {s->x, s->a, s->w};
+  const double begin = cpu();
+  if (sd_sparse_create(f, &RPY, &spheres, s->n, rho, 0, 1) != SD_OK) abort();
+  *seconds = cpu() - begin;
+  f->width = 3;
+  f->drag = s->drag;
+}
+
+/* The same matrix, dense: LAPACK's Cholesky factorisation and one solve */
+static double dense(const scene *s, double *drag)
+{
+  const int n = s->n, size = 3 * n, one = 1;
+  double *M = malloc(sizeof(double) * (size_t) size * (size_t) size), t[RUNS];
+  double *b = malloc(sizeof(double) * (size_t) size);
+  for (int k = 0; k < RUNS; k++) {
+    for (int j = 0; j < n; j++)
+      for (int i = 0; i < n; i++) {
+        double r[3], block[9];
+        for (int d = 0; d < 3; d++) r[d] = s->x[3 * i + d] - s->x[3 * j + d];
+        sd_tensor_uf(SD_TENSOR_RPY, r, s->a[i], s->a[j], 1.0 / (s->w[i] * s->w[j]), block);
+        for (int p = 0; p < 3; p++)
+          for (int q = 0; q < 3; q++)
+            M[3 * i + p + (size_t) size * (size_t) (3 * j + q)] = i == j ? (p == q) / s->drag[i]
+                                                                         : block[3 * p + q];
+      }
+    for (int i = 0; i < size; i++) b[i] = i % 3 == 0 ? U : 0.0;
+    int info;
+    const double begin = cpu();
+    dpotrf_("L", &size, M, &size, &info);
+    dpotrs_("L", &size, &one, M, &size, b, &size, &info);
+    t[k] = cpu() - begin;
+  }
+  *drag = 0.0;
+  for (int i = 0; i < size; i += 3) *drag += b[i];
+  free(M);
+  free(b);
+  return median(t);
+}
+
+static void print_solve(const char *name, solved r, double rival, double drag, double set_up)
+{
+  printf("  %-34s %6d %10.4f %10.4f %8.3f %10.1e %10.1e\n", name, r.iterations, r.seconds, set_up,
+         rival > 0.0 ? r.seconds / rival : 0.0, r.residual, r.drag / drag - 1.0);
+}
+
+static void head(void)
+{
+  printf("  %-34s %6s %10s %10s %8s %10s %10s\n", "", "its", "solve s", "set-up s", "of dense",
+         "residual", "drag error");
+}
+
+static void bench_lattice(int side)
+{
+  const double a = 0.7, unit = 6 * SD_PI * ETA * a * U;
+  scene s = scene_lattice(side, side, side, 2.0, a, ETA);
+  double drag;
+  const double rival = dense(&s, &drag);
+  printf("\nResistance, %d^3 touching spheres, uniform velocity, from zero\n", side);
+  printf("  LAPACK dense Cholesky: %.4f s; total drag %.6f\n", rival, drag / unit);
+  head();
+  const double tolerance[] = {1e-3, 1e-6, 1e-9};
+  for (int k = 0; k < 3; k++) {
+    char name[64];
+    snprintf(name, sizeof(name), "diagonal, %.0e", tolerance[k]);
+    print_solve(name, solve_median(&s, NULL, NULL, tolerance[k]), rival, drag, 0.0);
+  }
+  for (double rho = 2.0; rho <= 4.0; rho += 1.0) {
+    sd_sparse f = {0};
+    double set_up;
+    sparse_factor(&s, rho, &f, &set_up);
+    for (int k = 0; k < 3; k++) {
+      char name[64];
+      snprintf(name, sizeof(name), "sparse, rho %.0f, %.0e", rho, tolerance[k]);
+      print_solve(name, solve_median(&s, sd_sparse_apply, &f, tolerance[k]), rival, drag, set_up);
+    }
+    sd_sparse_free(&f);
+  }
+  scene_free(&s);
+}
+
+static void bench_flocs(void)
+{
+  enum { FLOCS = 50, M = 20 };
+  scene s = cloud_flocs(FLOCS, M, 1.0, 34.7, 1, ETA, 1);
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  long first[FLOCS + 1];
+  int member[FLOCS * M];
+  for (int k = 0; k <= FLOCS; k++) first[k] = M * k;
+  for (int i = 0; i < FLOCS * M; i++) member[i] = i;
+  double drag, set_up;
+  const double rival = dense(&s, &drag);
+  printf("\nResistance, 50 flocs of 20 overlapping spheres, phi 0.1, 1e-6; dense Cholesky %.4f s\n",
+         rival);
+  head();
+  print_solve("diagonal", solve_median(&s, NULL, NULL, 1e-6), rival, drag, 0.0);
+  sd_blocks b = {0};
+  double begin = cpu();
+  if (sd_blocks_create(&b, &RPY, &spheres, s.n, FLOCS, first, member) != SD_OK) abort();
+  set_up = cpu() - begin;
+  b.width = 3;
+  b.drag = s.drag;
+  print_solve("clump blocks", solve_median(&s, sd_blocks_apply, &b, 1e-6), rival, drag, set_up);
+  begin = cpu();
+  if (sd_blocks_couple(&b, &RPY, &spheres, 3.0) != SD_OK) abort();
+  set_up += cpu() - begin;
+  print_solve("clump blocks, coupled", solve_median(&s, sd_blocks_apply, &b, 1e-6), rival, drag,
+              set_up);
+  sd_sparse f = {0};
+  sparse_factor(&s, 3.0, &f, &set_up);
+  print_solve("sparse, rho 3", solve_median(&s, sd_sparse_apply, &f, 1e-6), rival, drag, set_up);
+  sd_sparse_free(&f);
+  sd_blocks_free(&b);
+  scene_free(&s);
+}
+
+static void bench_dense_cloud(void)
+{
+  scene s = cloud_dense(1000, 0.45, 0.7, 1.3, ETA, 1);
+  double drag, set_up;
+  double rival = dense(&s, &drag);
+  printf("\nResistance, 1000 spheres, phi 0.45, radii 0.7 ... 1.3, 1e-6; dense Cholesky %.4f s\n",
+         rival);
+  head();
+  print_solve("diagonal", solve_median(&s, NULL, NULL, 1e-6), rival, drag, 0.0);
+  sd_sparse f = {0};
+  sparse_factor(&s, 3.0, &f, &set_up);
+  print_solve("sparse, rho 3", solve_median(&s, sd_sparse_apply, &f, 1e-6), rival, drag, set_up);
+  const double moves[] = {0.05, 0.2, 0.5};
+  double *home = malloc(3 * sizeof(double) * (size_t) s.n);
+  memcpy(home, s.x, 3 * sizeof(double) * (size_t) s.n);
+  for (int k = 0; k < 3; k++) {
+    uint64_t seed = 2;
+    for (int i = 0; i < s.n; i++) {
+      double v[3];
+      random_vector(&seed, moves[k], v);
+      for (int d = 0; d < 3; d++) s.x[3 * i + d] = home[3 * i + d] + v[d];
+    }
+    char name[64];
+    snprintf(name, sizeof(name), "the same after moves of %.2f a", moves[k]);
+    rival = dense(&s, &drag);
+    print_solve(name, solve_median(&s, sd_sparse_apply, &f, 1e-6), rival, drag, set_up);
+  }
+  free(home);
+  sd_sparse_free(&f);
+  scene_free(&s);
+}
+
+/* Too large for the dense rival: drag from an independent code. */
+static void bench_large_lattice(void)
+{
+  const double a = 0.7, unit = 6 * SD_PI * ETA * a * U, known = 29.013577;
+  scene s = scene_lattice(22, 22, 22, 2.0, a, ETA);
+  double *slip = scene_uniform_slip(&s, U, 0, 0), set_up = 0.0;
+  double *F = malloc(3 * sizeof(double) * (size_t) s.n),
+         *work = malloc(sizeof(double) * SD_SOLVE_WORK(s.n, 3));
+  sd_sparse f = {0};
+  printf("\nResistance, 22^3 touching spheres, uniform velocity, 1e-6, one run\n");
+  head();
+  for (int k = 0; k < 2; k++) {
+    if (k) {
+      sparse_factor(&s, 3.0, &f, &set_up);
+      s.precondition = sd_sparse_apply;
+      s.precondition_ctx = &f;
+    }
+    const solved r = solve_once(&s, 1e-6, F, work, slip);
+    print_solve(k ? "sparse, rho 3" : "diagonal", r, 0.0, known * unit, set_up);
+    printf("  total drag %.6f; %.4f s an iteration\n", r.drag / unit, r.seconds / r.iterations);
+  }
+  sd_sparse_free(&f);
+  free(slip);
+  free(F);
+  free(work);
+  scene_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+  const int quick = argc > 1 && strcmp(argv[1], "quick") == 0;
+  setvbuf(stdout, NULL, _IOLBF, 0);
+  printf("Best instruction set: %s\n", sd_isa_name(sd_isa_best()));
+  bench_product(1000);
+  if (!quick) bench_product(10000);
+  bench_list(10000, 88.0);
+  bench_lattice(quick ? 5 : 10);
+  bench_flocs();
+  bench_dense_cloud();
+  if (!quick) bench_large_lattice();
+  return 0;
+}
