@@ -1,0 +1,154 @@
+"""What the SPH tests share: reference tables, an independent evaluation of the equations in numpy, and small scenes in LAMMPS."""
+import csv
+import os
+
+import numpy as np
+
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "sph")
+
+# The random scene of the tables: two types.
+MASS = [0.001, 0.0013]
+H = [0.012, 0.0135]
+C = [20.0, 25.0]
+ALPHA = [0.05, 0.08]
+BETA = [0.3, 0.5]
+DELTAP = [0.010, 0.011]
+ETA, EPSILON = 1.44e-6, 0.2
+B, RHO0, GAMMA = 60000.0, 1000.0, 7.0
+
+
+def table(name):
+    """Columns of a reference table as arrays, sorted by id."""
+    with open(os.path.join(DATA, name)) as f:
+        rows = [r for r in csv.DictReader(line for line in f if not line.startswith("#"))]
+    rows.sort(key=lambda r: int(r["id"]))
+    return {k: np.array([float(r[k]) for r in rows]) for k in rows[0]}
+
+
+def vectors(t, names):
+    return np.stack([t[n] for n in names.split()], axis=1)
+
+
+# --- independent evaluation: all pairs, straight from the equations ------------------------------------------------
+
+NORM = {("cubicspline", 3): 1 / (4 * np.pi), ("cubicspline", 2): 5 / (14 * np.pi),
+        ("wendland", 3): 21 / (16 * np.pi), ("wendland", 2): 7 / (4 * np.pi)}
+
+
+def kernel(name, dim, r, h):
+    """W and dW/dr."""
+    q = r / h
+    n = NORM[name, dim]
+    if name == "cubicspline":
+        K = np.where(q < 2, (2 - q) ** 3, 0) - np.where(q < 1, 4 * (1 - q) ** 3, 0)
+        dK = np.where(q < 2, -3 * (2 - q) ** 2, 0) + np.where(q < 1, 12 * (1 - q) ** 2, 0)
+    else:
+        K = np.where(q < 2, (1 - q / 2) ** 4 * (2 * q + 1), 0)
+        dK = np.where(q < 2, -5 * q * (1 - q / 2) ** 3, 0)
+    return n / h**dim * K, n / h ** (dim + 1) * dK
+
+
+def evaluate(name, dim, x, v, rho, P, m, h, artvisc=None, tenscorr=None, mu=0.0, box=None):
+    """Forces, density rates and sums of all particles. h: per particle; artvisc: (alpha, beta, c per particle, eta);
+    tenscorr: (epsilon, dp per particle); box: periodic lengths. Returns F, drho, sum m W (with self), sum m/rho W."""
+    d = x[:, None, :] - x[None, :, :]
+    if box is not None:
+        d -= box * np.rint(d / box)
+    r = np.sqrt((d**2).sum(-1))
+    hm = (h[:, None] + h[None, :]) / 2
+    W, dW = kernel(name, dim, r, hm)
+    sums = (m[None, :] * W).sum(1), (m[None, :] / rho[None, :] * W).sum(1)
+    np.fill_diagonal(r, 1.0)
+    np.fill_diagonal(dW, 0.0)
+    u = v[:, None, :] - v[None, :, :]
+    vd = (u * d).sum(-1)
+    A = P / rho**2
+    bracket = A[:, None] + A[None, :]
+    both = bracket.copy()
+    if artvisc:
+        alpha, beta, c, eta = artvisc
+        mean = lambda a: (a[:, None] + a[None, :]) / 2
+        s = hm * vd / (r**2 + eta)
+        bracket += np.where(vd < 0, (-mean(alpha) * mean(c) * s + mean(beta) * s**2) / mean(rho), 0.0)
+    if tenscorr:
+        eps, dp = tenscorr
+        dpm = (dp[:, None] + dp[None, :]) / 2
+        f = W / kernel(name, dim, dpm, hm)[0]
+        neg = np.where(P < 0, eps * np.abs(A), 0.0)
+        R = np.where((P[:, None] > 0) & (P[None, :] > 0), 0.01 * both, neg[:, None] + neg[None, :])
+        bracket += R * f**4
+    mm = m[:, None] * m[None, :]
+    F = -((mm * bracket * dW / r)[:, :, None] * d).sum(1)
+    F += ((mm * 2 * mu / (rho[:, None] * rho[None, :]) * dW / r)[:, :, None] * u).sum(1)
+    drho = (m[None, :] * dW / r * vd).sum(1)
+    return F, drho, sums[0], sums[1]
+
+
+def tait(rho):
+    return B * ((rho / RHO0) ** GAMMA - 1)
+
+
+# --- scenes in LAMMPS ---------------------------------------------------------------------------------------------------
+
+
+def start(args=()):
+    from lammps import lammps
+
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"] + list(args))
+    lmp.command("plugin load stokesdynplugin.so")
+    return lmp
+
+
+def run(lmp, text):
+    lmp.commands_list([line.strip() for line in text.strip().splitlines() if line.strip() and not line.strip().startswith("#")])
+
+
+def by_id(lmp, name, columns=1):
+    """A per-atom quantity of the owned atoms, sorted by id (one rank)."""
+    n = lmp.extract_global("nlocal")
+    a = np.array(lmp.numpy.extract_atom(name, nelem=n, dim=columns) if columns > 1 else lmp.numpy.extract_atom(name, nelem=n))[:n]
+    order = np.argsort(np.array(lmp.numpy.extract_atom("id", nelem=n))[:n])
+    return a[order].copy()
+
+
+def fix_by_id(lmp, fix):
+    n = lmp.extract_global("nlocal")
+    a = np.array(lmp.numpy.extract_fix(fix, 1, 1))[:n]
+    order = np.argsort(np.array(lmp.numpy.extract_atom("id", nelem=n))[:n])
+    return a[order].copy()
+
+
+def pair_commands(kernel_name, artvisc, tenscorr, extra=""):
+    style = "pair_style sph/artVisc/tensCorr %s %.17g" % (kernel_name, H[0])
+    if artvisc:
+        style += " artVisc %.17g %.17g %.17g" % (ALPHA[0], BETA[0], ETA)
+    if tenscorr:
+        style += " tensCorr %.17g %.17g" % (EPSILON, DELTAP[0])
+    lines = [style + " " + extra]
+    for t in (0, 1):
+        line = "pair_coeff %d %d h %.17g c %.17g" % (t + 1, t + 1, H[t], C[t])
+        if artvisc:
+            line += " alpha %.17g beta %.17g" % (ALPHA[t], BETA[t])
+        if tenscorr:
+            line += " deltap %.17g" % DELTAP[t]
+        lines.append(line)
+    return "\n".join(lines)
+
+
+def random_scene(newton="on", before="", density="continuity"):
+    return """
+    units si
+    newton %s
+    atom_style sph
+    atom_modify map array
+    %s
+    boundary f f f
+    read_data %s
+    mass 1 %.17g
+    mass 2 %.17g
+    neighbor 0.003 bin
+    neigh_modify delay 0 every 1
+    """ % (newton, before, os.path.join(DATA, "rand3d.lammps.data"), MASS[0], MASS[1]) + """
+    fix eos all sph/pressure Tait %.17g %.17g %.17g
+    fix density all sph/density/%s
+    """ % (B, RHO0, GAMMA, density)
