@@ -152,3 +152,56 @@ def random_scene(newton="on", before="", density="continuity"):
     fix eos all sph/pressure Tait %.17g %.17g %.17g
     fix density all sph/density/%s
     """ % (B, RHO0, GAMMA, density)
+
+
+def mpirun(ranks, script, directory, name="in.test"):
+    """Runs an input script with lmp on some ranks; returns the folder's dump file final.dump as arrays by id, if it was written."""
+    import shutil
+    import subprocess
+
+    path = os.path.join(str(directory), name)
+    with open(path, "w") as f:
+        f.write("plugin load stokesdynplugin.so\n" + "\n".join(line.strip() for line in script.strip().splitlines()) + "\n")
+    env = dict(os.environ)
+    if os.getuid() == 0:
+        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    mpi = shutil.which("mpirun.openmpi") or "mpirun"
+    command = [mpi, "--oversubscribe", "-np", str(ranks), "lmp", "-in", path, "-log", "none", "-nocite"]
+    done = subprocess.run(command, cwd=str(directory), env=env, capture_output=True, text=True, timeout=300)
+    return done
+
+
+def read_dump(path):
+    """Last snapshot of a dump custom file: dictionary of columns sorted by id."""
+    with open(path) as f:
+        lines = f.read().splitlines()
+    begin = max(i for i, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+    names = lines[begin].split()[2:]
+    rows = np.array([[float(w) for w in line.split()] for line in lines[begin + 1:] if line and not line.startswith("ITEM")])
+    rows = rows[np.argsort(rows[:, names.index("id")])]
+    return {name: rows[:, k] for k, name in enumerate(names)}
+
+
+def write_data(path, x, v, rho, types, lo, hi, ntypes=None):
+    """LAMMPS data file for atom_style sph."""
+    with open(path, "w") as f:
+        f.write("# SPH particles\n\n%d atoms\n%d atom types\n\n" % (len(x), ntypes or max(types)))
+        for k, axis in enumerate("xyz"):
+            f.write("%.17g %.17g %slo %shi\n" % (lo[k], hi[k], axis, axis))
+        f.write("\nAtoms\n\n")
+        for i in range(len(x)):
+            f.write("%d %d %.17g 0 1 %.17g %.17g %.17g\n" % (i + 1, types[i], rho[i], *x[i]))
+        f.write("\nVelocities\n\n")
+        for i in range(len(x)):
+            f.write("%d %.17g %.17g %.17g\n" % (i + 1, *v[i]))
+
+
+def jittered_lattice(dim, n, dx, jitter, seed=1):
+    """n^dim particles of a square or cubic lattice, moved by up to jitter; z = 0 in two dimensions."""
+    random = np.random.default_rng(seed)
+    axes = [(np.arange(n) + 0.5) * dx] * dim
+    x = np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=1)
+    x += random.uniform(-jitter, jitter, x.shape)
+    if dim == 2:
+        x = np.hstack([x, np.zeros((len(x), 1))])
+    return x
