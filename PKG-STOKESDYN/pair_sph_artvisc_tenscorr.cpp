@@ -243,7 +243,7 @@ void *PairSph::extract(const char *name, int &dim)
   if (strcmp(name, "epsilon") == 0) return &model.epsilon;
   dim = 2;
   for (int k = 0; k < NPARAMETERS; k++)
-    if (strcmp(name, PARAMETER[k]) == 0) return table[k];
+    if (strcmp(name, PARAMETER[k]) == 0) return given[k];    // fix adapt then has init_one called
   return nullptr;
 }
 
