@@ -317,10 +317,8 @@ void PairSph::prepare()
   bool alike = !atom->rmass;
   for (int i = 1; i <= ntypes; i++)
     for (int j = 1; j <= ntypes; j++) {
-      const int lo = std::min(i, j), hi = std::max(i, j);    // fix adapt writes this half of the tables only
-      if (!(table[H][lo][hi] > 0.0)) continue;               // two types of another style
-      const sd_sph_parameters given_values = {table[H][lo][hi], table[C][lo][hi], table[ALPHA][lo][hi], table[BETA][lo][hi],
-                                              table[DELTAP][lo][hi]};
+      if (!(table[H][i][j] > 0.0)) continue;    // two types of another style
+      const sd_sph_parameters given_values = {table[H][i][j], table[C][i][j], table[ALPHA][i][j], table[BETA][i][j], table[DELTAP][i][j]};
       sd_sph_coefficients &c = coefficients[(size_t) (i - 1) * ntypes + j - 1];
       c = sd_sph_coefficients_of(model.kernel, model.dimension, &given_values, mu);
       if (!model.artvisc) c.a1 = c.b1 = 0.0;
@@ -422,8 +420,7 @@ void PairSph::diffuse()
   forward(gradient.data(), 3);
   std::vector<double> c_h((size_t) ntypes * ntypes);
   for (int i = 1; i <= ntypes; i++)
-    for (int j = 1; j <= ntypes; j++)
-      c_h[(size_t) (i - 1) * ntypes + j - 1] = table[C][std::min(i, j)][std::max(i, j)] * table[H][std::min(i, j)][std::max(i, j)];
+    for (int j = 1; j <= ntypes; j++) c_h[(size_t) (i - 1) * ntypes + j - 1] = table[C][i][j] * table[H][i][j];
   if (model.nclasses == 1)
     for (int i = 1; i <= ntypes; i++)
       if (used(i)) c_h[0] = table[C][i][i] * table[H][i][i];

@@ -2,10 +2,12 @@
 
 #include "library.h"
 
+#include "fix_check_timestep_sph.h"
 #include "fix_nve_sph.h"
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
 #include "fix_wall_adami_sph.h"
+#include "fix_wall_sph.h"
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include <cstdio>
@@ -54,6 +56,9 @@ void StokesDyn::enroll_sph_styles(void *lmp, lammpsplugin_t plugin, lammpsplugin
     {FixNveSph::STYLE, "SPH: time integration", make_fix<FixNveSph>},
     {FixNveSphStationary::STYLE, "SPH: density of particles at rest", make_fix<FixNveSphStationary>},
     {FixWallAdamiSph::STYLE, "SPH: walls of particles", make_fix<FixWallAdamiSph>},
+    {FixWallSph::STYLE, "SPH: repulsive planes and cylinder", make_fix<FixWallSph>},
+    {FixWallRegionSph::STYLE, "SPH: repulsive surface of a region", make_fix<FixWallRegionSph>},
+    {FixCheckTimestepSph::STYLE, "SPH: checks the time step", make_fix<FixCheckTimestepSph>},
   };
   plugin.style = "fix";
   for (const auto &fix : fixes) {

@@ -100,7 +100,17 @@ def start(args=()):
 
 
 def run(lmp, text):
-    lmp.commands_list([line.strip() for line in text.strip().splitlines() if line.strip() and not line.strip().startswith("#")])
+    """Commands, one a line. The python module of 2021 cuts messages of errors off after 100 characters, so this asks for them itself."""
+    import ctypes
+
+    for line in (part.strip() for part in text.strip().splitlines()):
+        if not line or line.startswith("#"):
+            continue
+        lmp.lib.lammps_command(lmp.lmp, line.encode())
+        if lmp.lib.lammps_has_error(lmp.lmp):
+            message = ctypes.create_string_buffer(2000)
+            lmp.lib.lammps_get_last_error_message(lmp.lmp, message, len(message))
+            raise RuntimeError(" ".join(message.value.decode().split()))
 
 
 def by_id(lmp, name, columns=1):
