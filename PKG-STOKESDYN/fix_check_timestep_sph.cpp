@@ -70,9 +70,12 @@ void FixCheckTimestepSph::end_of_step()
     if (!(atom->mask[i] & groupbit)) continue;
     const int type = atom->type[i];
     if (!pair->has_sound_speed(type))
-      Sph::fail_one(lmp, command + ": type " + std::to_string(type) + " has no speed of sound: pair_coeff " + std::to_string(type) + " " +
-                           std::to_string(type) + " c VALUE");
-    const double here = sd_sph_step_limit(pair->smoothing_length(type), pair->sound_speed(type), largest[i], pair->viscosity(), atom->rho[i]);
+      Sph::fail_one(lmp,
+                    command + ": type " + std::to_string(type) +
+                        " has no speed of sound: pair_coeff " + std::to_string(type) + " " +
+                        std::to_string(type) + " c VALUE");
+    const double here = sd_sph_step_limit(pair->smoothing_length(type), pair->sound_speed(type),
+                                          largest[i], pair->viscosity(), atom->rho[i]);
     if (here < mine || (here == mine && atom->tag[i] < who)) {
       mine = here;
       who = atom->tag[i];
@@ -88,8 +91,9 @@ void FixCheckTimestepSph::end_of_step()
   worst = (double) first;
   ratio = update->dt / limit;
   if (ratio <= fraction) return;
-  const std::string message = command + ": step " + std::to_string(update->ntimestep) + ": the time step " + text(update->dt) + " is " +
-    text(ratio) + " of the limit " + text(limit) + " of atom " + std::to_string(first) + ", more than " + text(fraction);
+  const std::string message = command + ": step " + std::to_string(update->ntimestep) +
+      ": the time step " + text(update->dt) + " is " + text(ratio) + " of the limit " +
+      text(limit) + " of atom " + std::to_string(first) + ", more than " + text(fraction);
   if (stop) fail(lmp, message);
   if (comm->me == 0) error->warning(FLERR, message);
 }

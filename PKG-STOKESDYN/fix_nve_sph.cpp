@@ -31,7 +31,8 @@ int FixNveSph::setmask()
 void FixNveSph::init()
 {
   Sph::require_pair(lmp, "Fix " + std::string(STYLE));
-  if (strncmp(update->integrate_style, "respa", 5) == 0) fail(lmp, "Fix " + std::string(STYLE) + " cannot be used with run_style respa");
+  if (strncmp(update->integrate_style, "respa", 5) == 0)
+    fail(lmp, "Fix " + std::string(STYLE) + " cannot be used with run_style respa");
   reset_dt();
 }
 
@@ -41,7 +42,8 @@ void FixNveSph::reset_dt()
   dtf = 0.5 * update->dt * force->ftm2v;
 }
 
-/* Leapfrog: the velocity of the half step moves position and, in the pair style, density. vest is the velocity at the end of the step,
+/* Leapfrog: the velocity of the half step moves position and, in the pair style, density. vest is the
+ * velocity at the end of the step,
  * which friction needs before the force is known. */
 void FixNveSph::initial_integrate(int /*vflag*/)
 {

@@ -22,7 +22,8 @@ class FixNveSph : public LAMMPS_NS::Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  /* At set-up: nobody has changed a velocity since this fix did, so vest still is the estimate the unbroken run would use. Collective. */
+  /* At set-up: nobody has changed a velocity since this fix did, so vest still is the estimate the unbroken
+   * run would use. Collective. */
   bool resumes() const;
 
  private:

@@ -6,7 +6,8 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
   Sph::require_atom_style(lmp, command);
@@ -27,7 +28,8 @@ void FixSphDensityContinuity::init()
   Sph::require_pair(lmp, "Fix " + std::string(STYLE));
 }
 
-FixSphDensitySummation::FixSphDensitySummation(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixSphDensitySummation::FixSphDensitySummation(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
   Sph::require_atom_style(lmp, command);
@@ -44,8 +46,10 @@ FixSphDensityCorr::FixSphDensityCorr(LAMMPS *lmp, int narg, char **arg) : Fix(lm
   const std::string command = "Fix " + std::string(STYLE);
   Sph::require_atom_style(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
-  if (!in.next() || !in.is("shepard")) fail(lmp, command + ": the form is: sph/density/corr shepard every N");
-  if (!in.next() || !in.is("every")) fail(lmp, command + ": keyword every is missing: shepard every N");
+  if (!in.next() || !in.is("shepard"))
+    fail(lmp, command + ": the form is: sph/density/corr shepard every N");
+  if (!in.next() || !in.is("every"))
+    fail(lmp, command + ": keyword every is missing: shepard every N");
   every = in.integer(1);
   if (in.next()) in.unknown();
 }

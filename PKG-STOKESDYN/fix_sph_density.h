@@ -1,4 +1,5 @@
-/* fix sph/density/continuity, sph/density/summation, sph/density/corr: where the density comes from. The sums themselves run inside the pair
+/* fix sph/density/continuity, sph/density/summation, sph/density/corr: where the density comes from. The
+ * sums themselves run inside the pair
  * style. See doc/fix_sph_density.md. */
 #ifndef SD_FIX_SPH_DENSITY_H
 #define SD_FIX_SPH_DENSITY_H
@@ -13,7 +14,7 @@ class FixSphDensityContinuity : public LAMMPS_NS::Fix {
   FixSphDensityContinuity(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }
   void init() override;
-  double delta = 0.0;               // density diffusion
+  double delta = 0.0;    // density diffusion
 };
 
 class FixSphDensitySummation : public LAMMPS_NS::Fix {

@@ -11,7 +11,8 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   const std::string command = "Fix " + std::string(STYLE);
   Sph::require_atom_style(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
-  if (!in.next()) fail(lmp, command + ": the equation of state is missing: absolut, relativ or Tait");
+  if (!in.next())
+    fail(lmp, command + ": the equation of state is missing: absolut, relativ or Tait");
   if (in.is("absolut")) {
     state.kind = SD_SPH_ABSOLUT;
     state.B = in.positive();

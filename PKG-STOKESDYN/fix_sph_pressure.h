@@ -16,7 +16,6 @@ class FixSphPressure : public LAMMPS_NS::Fix {
   void init() override;
 
   sd_sph_state state = {};
-
 };
 
 }    // namespace StokesDyn

@@ -15,7 +15,8 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixRepulsiveWall::FixRepulsiveWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), command("Fix " + std::string(arg[2]))
+FixRepulsiveWall::FixRepulsiveWall(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), command("Fix " + std::string(arg[2]))
 {
   dynamic_group_allow = 1;
   vector_flag = 1;
@@ -45,8 +46,10 @@ void FixRepulsiveWall::push(int i, const double normal[3], double size)
 void FixRepulsiveWall::outside(int i)
 {
   const double *x = atom->x[i];
-  Sph::fail_one(lmp, command + ": step " + std::to_string(update->ntimestep) + ": atom " + std::to_string(atom->tag[i]) + " at " +
-                       text(x[0]) + " " + text(x[1]) + " " + text(x[2]) + " is on or behind the wall");
+  Sph::fail_one(lmp,
+                command + ": step " + std::to_string(update->ntimestep) + ": atom " +
+                    std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
+                    text(x[2]) + " is on or behind the wall");
 }
 
 double FixRepulsiveWall::compute_vector(int k)
@@ -56,7 +59,8 @@ double FixRepulsiveWall::compute_vector(int k)
   return all;
 }
 
-// --- planes and the cylinder -----------------------------------------------------------------------------------
+// --- planes and the cylinder
+// -----------------------------------------------------------------------------------
 
 FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp, narg, arg)
 {
@@ -74,7 +78,8 @@ FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp
         in.word();
     }
     if (!has[0] && !has[1]) in.refuse("both walls are NULL");
-    if (has[0] && has[1] && !(at[0] < at[1])) in.refuse("lo " + text(at[0]) + " must be smaller than hi " + text(at[1]));
+    if (has[0] && has[1] && !(at[0] < at[1]))
+      in.refuse("lo " + text(at[0]) + " must be smaller than hi " + text(at[1]));
   } else
     in.unknown();
   r0 = in.positive();
@@ -109,13 +114,16 @@ void FixWallSph::post_force(int /*vflag*/)
   }
 }
 
-// --- any region ------------------------------------------------------------------------------------------------
+// --- any region
+// ------------------------------------------------------------------------------------------------
 
-FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp, narg, arg)
+FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
+    FixRepulsiveWall(lmp, narg, arg)
 {
   if (narg < 4) fail(lmp, command + ": the region is missing");
   region_id = arg[3];
-  if (!Compat::region(domain, region_id)) fail(lmp, command + ": region '" + region_id + "' does not exist");
+  if (!Compat::region(domain, region_id))
+    fail(lmp, command + ": region '" + region_id + "' does not exist");
   Keywords in(lmp, command, words(narg, arg), 3);
   in.next();
   r0 = in.positive();
@@ -147,7 +155,8 @@ void FixWallRegionSph::post_force(int /*vflag*/)
       if (!(r > 0.0)) outside(i);
       const double normal[3] = {contact.delx / r, contact.dely / r, contact.delz / r};
       const double m = Sph::mass(lmp, i), rho = atom->rho[i];
-      const double mirror = -m * m * 2.0 * pair->pressure(i) / (rho * rho) * pair->dW_dr(atom->type[i], r);
+      const double mirror =
+          -m * m * 2.0 * pair->pressure(i) / (rho * rho) * pair->dW_dr(atom->type[i], r);
       push(i, normal, sd_sph_repulsion(D, r0, r) + mirror);
     }
   }

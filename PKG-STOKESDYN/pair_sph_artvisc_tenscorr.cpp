@@ -37,8 +37,8 @@ PairSph::PairSph(LAMMPS *lmp) : Pair(lmp)
   single_enable = 0;
   respa_enable = 0;
   restartinfo = 1;
-  comm_forward = 4;       // density and velocity of wall particles
-  comm_reverse = 9;       // sums for the gradient of the density
+  comm_forward = 4;    // density and velocity of wall particles
+  comm_reverse = 9;    // sums for the gradient of the density
 }
 
 PairSph::~PairSph()
@@ -73,7 +73,9 @@ void PairSph::parse()
   else if (in.is("wendland") || in.is("wendland2d"))
     model.kernel = SD_SPH_WENDLAND;
   else
-    fail(lmp, COMMAND + ": unknown kernel '" + args[0] + "': it must be one of cubicspline, wendland, cubicspline2d, wendland2d");
+    fail(lmp,
+         COMMAND + ": unknown kernel '" + args[0] +
+             "': it must be one of cubicspline, wendland, cubicspline2d, wendland2d");
   if (in.is("cubicspline2d") || in.is("wendland2d")) model.dimension = 2;
   defaults[H] = in.positive();
 
@@ -141,7 +143,10 @@ void PairSph::coeff(int narg, char **arg)
         if (!std::isnan(values[k])) given[k][i][j] = values[k];
       count++;
     }
-  if (count == 0) fail(lmp, command + ": no pair of types '" + arg[0] + " " + arg[1] + "' (the first must not be larger than the second)");
+  if (count == 0)
+    fail(lmp,
+         command + ": no pair of types '" + arg[0] + " " + arg[1] +
+             "' (the first must not be larger than the second)");
 }
 
 double PairSph::mixed(int k, int i, int j) const
@@ -153,23 +158,33 @@ double PairSph::mixed(int k, int i, int j) const
 void PairSph::init_style()
 {
   Sph::require_atom_style(lmp, COMMAND);
-  if (update->whichflag == 2) fail(lmp, COMMAND + " cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
-  if (force->pair_match(STYLE, 1) != this) fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
+  if (update->whichflag == 2)
+    fail(lmp, COMMAND + " cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
+  if (force->pair_match(STYLE, 1) != this)
+    fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
   if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
 
   pressures = Sph::fixes<FixSphPressure>(lmp);
-  if (pressures.empty()) fail(lmp, COMMAND + ": no fix sph/pressure: it sets the pressure that belongs to a density");
+  if (pressures.empty())
+    fail(lmp, COMMAND + ": no fix sph/pressure: it sets the pressure that belongs to a density");
   const auto continuities = Sph::fixes<FixSphDensityContinuity>(lmp);
   const auto summations = Sph::fixes<FixSphDensitySummation>(lmp);
   const auto filters = Sph::fixes<FixSphDensityCorr>(lmp);
   const auto walls = Sph::fixes<FixWallAdamiSph>(lmp);
   if (continuities.empty() && summations.empty())
-    fail(lmp, COMMAND + ": no fix sph/density/continuity or sph/density/summation: one of them sets the density");
+    fail(lmp,
+         COMMAND +
+             ": no fix sph/density/continuity or sph/density/summation: one of them sets the "
+             "density");
   if (continuities.size() + summations.size() > 1)
-    fail(lmp, COMMAND + ": " + std::to_string(continuities.size() + summations.size()) +
-                " fixes sph/density/continuity and sph/density/summation: only one can set the density");
+    fail(lmp,
+         COMMAND + ": " + std::to_string(continuities.size() + summations.size()) +
+             " fixes sph/density/continuity and sph/density/summation: only one can set the "
+             "density");
   if (filters.size() > 1) fail(lmp, COMMAND + ": more than one fix sph/density/corr");
-  if (walls.size() > 1) fail(lmp, COMMAND + ": more than one fix wall/adami/sph; put all wall particles into one group");
+  if (walls.size() > 1)
+    fail(lmp,
+         COMMAND + ": more than one fix wall/adami/sph; put all wall particles into one group");
   continuity = continuities.empty() ? nullptr : continuities[0];
   summation = summations.empty() ? nullptr : summations[0];
   filter = filters.empty() ? nullptr : filters[0];
@@ -180,11 +195,16 @@ void PairSph::init_style()
   const auto theirs = Sph::fixes(lmp, "sph"), their_stationary = Sph::fixes(lmp, "sph/stationary");
   const bool ours = !integrators.empty() || !stationary.empty();
   if (ours && !(theirs.empty() && their_stationary.empty()))
-    fail(lmp, COMMAND + ": fix nve/sph and fix " + (theirs.empty() ? "sph/stationary" : "sph") +
-                " cannot be mixed: they advance the density at different times; use nve/sph and nve/sph/stationary");
+    fail(lmp,
+         COMMAND + ": fix nve/sph and fix " + (theirs.empty() ? "sph/stationary" : "sph") +
+             " cannot be mixed: they advance the density at different times; use nve/sph and "
+             "nve/sph/stationary");
   leapfrog = continuity && ours;
-  if (continuity && !ours && theirs.empty() && their_stationary.empty() && update->whichflag == 1 && update->nsteps > 0)
-    fail(lmp, "Fix " + std::string(FixSphDensityContinuity::STYLE) + ": nothing advances the density; use fix nve/sph");
+  if (continuity && !ours && theirs.empty() && their_stationary.empty() && update->whichflag == 1 &&
+      update->nsteps > 0)
+    fail(lmp,
+         "Fix " + std::string(FixSphDensityContinuity::STYLE) +
+             ": nothing advances the density; use fix nve/sph");
   leapfrog_bits = 0;
   own_vest_bits = Sph::groups(theirs);
   for (const auto *fix : integrators) {
@@ -203,30 +223,46 @@ void PairSph::init_style()
       if (n > 1) twice = std::max(twice, (bigint) atom->tag[i]);
     }
     MPI_Allreduce(&twice, &all, 1, MPI_LMP_BIGINT, MPI_MAX, world);
-    if (all > 0) fail(lmp, COMMAND + ": atom " + std::to_string(all) + " is in the groups of two fixes sph/pressure");
+    if (all > 0)
+      fail(lmp,
+           COMMAND + ": atom " + std::to_string(all) +
+               " is in the groups of two fixes sph/pressure");
   }
 
   needs_velocity = model.artvisc || model.viscous || continuity;
-  if (needs_velocity) comm->ghost_velocity = 1;    // as comm_modify vel yes: each pair must see the same velocities on both sides
-  if (neighbor->skin <= 0.0) fail(lmp, COMMAND + ": command neighbor: a skin of 0 is too small; a tenth of h is usual");
+  if (needs_velocity)
+    comm->ghost_velocity =
+        1;    // as comm_modify vel yes: each pair must see the same velocities on both sides
+  if (neighbor->skin <= 0.0)
+    fail(lmp, COMMAND + ": command neighbor: a skin of 0 is too small; a tenth of h is usual");
   if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1 && comm->me == 0)
-    error->warning(FLERR, std::string(COMMAND + ": with neigh_modify check no nobody sees when the neighbour list is outdated"));
+    error->warning(
+        FLERR,
+        std::string(
+            COMMAND +
+            ": with neigh_modify check no nobody sees when the neighbour list is outdated"));
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me);
 }
 
 double PairSph::init_one(int i, int j)
 {
-  const std::string who = COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) + ": ";
+  const std::string who =
+      COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) + ": ";
   for (int k = 0; k < NPARAMETERS; k++) table[k][i][j] = table[k][j][i] = mixed(k, i, j);
   const double support = 2.0 * table[H][i][j];
-  if (model.artvisc && std::isnan(table[C][i][j])) fail(lmp, who + "keyword artVisc needs the speed of sound: pair_coeff " +
-                                                               std::to_string(i) + " " + std::to_string(i) + " c VALUE");
+  if (model.artvisc && std::isnan(table[C][i][j]))
+    fail(lmp,
+         who + "keyword artVisc needs the speed of sound: pair_coeff " + std::to_string(i) + " " +
+             std::to_string(i) + " c VALUE");
   if (continuity && continuity->delta > 0.0 && std::isnan(table[C][i][j]))
-    fail(lmp, who + "delta of fix sph/density/continuity needs the speed of sound: pair_coeff " + std::to_string(i) + " " +
-                std::to_string(i) + " c VALUE");
+    fail(lmp,
+         who + "delta of fix sph/density/continuity needs the speed of sound: pair_coeff " +
+             std::to_string(i) + " " + std::to_string(i) + " c VALUE");
   if (model.tenscorr && !(table[DELTAP][i][j] < support))
-    fail(lmp, who + "deltap " + text(table[DELTAP][i][j]) + " must be smaller than the support 2 h = " + text(support));
+    fail(lmp,
+         who + "deltap " + text(table[DELTAP][i][j]) +
+             " must be smaller than the support 2 h = " + text(support));
   return support;
 }
 
@@ -249,9 +285,11 @@ void *PairSph::extract(const char *name, int &dim)
 
 double PairSph::memory_usage()
 {
-  const auto doubles = x4.capacity() + v4.capacity() + f4.capacity() + P.capacity() + A.capacity() + masses.capacity() + rate.capacity() +
-    sums.capacity() + each.capacity() + gradient.capacity() + near.capacity();
-  return sizeof(double) * (double) doubles + sizeof(int) * (double) (classes.capacity() + pool.capacity() + near_count.capacity());
+  const auto doubles = x4.capacity() + v4.capacity() + f4.capacity() + P.capacity() + A.capacity() +
+      masses.capacity() + rate.capacity() + sums.capacity() + each.capacity() +
+      gradient.capacity() + near.capacity();
+  return sizeof(double) * (double) doubles +
+      sizeof(int) * (double) (classes.capacity() + pool.capacity() + near_count.capacity());
 }
 
 bool PairSph::used(int itype) const
@@ -282,7 +320,8 @@ void PairSph::compute(int eflag, int vflag)
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
-/* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build and goes on. */
+/* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build and goes
+ * on. */
 void PairSph::check_list()
 {
   if (update->setupflag) {
@@ -292,8 +331,11 @@ void PairSph::check_list()
   if (neighbor->ago != 0 || neighbor->ndanger == dangerous_builds) return;
   dangerous_builds = neighbor->ndanger;
   if (std::max(neighbor->every, neighbor->delay) <= 1) return;
-  fail(lmp, COMMAND + ": step " + std::to_string(update->ntimestep) + ": particles moved more than half the neighbour skin " +
-              text(neighbor->skin) + " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, or a larger skin");
+  fail(lmp,
+       COMMAND + ": step " + std::to_string(update->ntimestep) +
+           ": particles moved more than half the neighbour skin " + text(neighbor->skin) +
+           " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, or a "
+           "larger skin");
 }
 
 /* Model, list and particles for the core. */
@@ -318,18 +360,22 @@ void PairSph::prepare()
   for (int i = 1; i <= ntypes; i++)
     for (int j = 1; j <= ntypes; j++) {
       if (!(table[H][i][j] > 0.0)) continue;    // two types of another style
-      const sd_sph_parameters given_values = {table[H][i][j], table[C][i][j], table[ALPHA][i][j], table[BETA][i][j], table[DELTAP][i][j]};
+      const sd_sph_parameters given_values = {table[H][i][j], table[C][i][j], table[ALPHA][i][j],
+                                              table[BETA][i][j], table[DELTAP][i][j]};
       sd_sph_coefficients &c = coefficients[(size_t) (i - 1) * ntypes + j - 1];
       c = sd_sph_coefficients_of(model.kernel, model.dimension, &given_values, mu);
       if (!model.artvisc) c.a1 = c.b1 = 0.0;
       if (!model.tenscorr) c.tens = 0.0;
       if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
-        fail(lmp, COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) + ": h has grown beyond the neighbour list");
+        fail(lmp,
+             COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) +
+                 ": h has grown beyond the neighbour list");
       if (!first) {
         first = &c;
         first_mass = atom->rmass ? 0.0 : atom->mass[i];
       } else
-        alike = alike && memcmp(first, &c, sizeof(c)) == 0 && atom->mass[i] == first_mass && atom->mass[j] == first_mass;
+        alike = alike && memcmp(first, &c, sizeof(c)) == 0 && atom->mass[i] == first_mass &&
+            atom->mass[j] == first_mass;
     }
   if (alike && first) {
     coefficients[0] = *first;
@@ -346,7 +392,8 @@ void PairSph::prepare()
     masses[n] = 0.0;
     classes[n] = 0;
     for (auto &c : coefficients)
-      if (c.inv_h == 0.0) c.inv_h = 1.0;    // pairs of types that never meet: the filler row may still look them up
+      if (c.inv_h == 0.0)
+        c.inv_h = 1.0;    // pairs of types that never meet: the filler row may still look them up
     particles.m = masses.data();
     particles.cls = classes.data();
   }
@@ -356,7 +403,8 @@ void PairSph::prepare()
   pairs = raw;
 }
 
-/* vest is the velocity at the time of the force. The integrators set it before the force; who has none of them moves with v. At the start
+/* vest is the velocity at the time of the force. The integrators set it before the force; who has none of
+ * them moves with v. At the start
  * of a run it is v, unless the run goes on where the last one ended. */
 void PairSph::estimate_velocities()
 {
@@ -370,8 +418,10 @@ void PairSph::estimate_velocities()
     if (!(atom->mask[i] & bits)) memcpy(atom->vest[i], atom->v[i], 3 * sizeof(double));
 }
 
-/* Leapfrog: the rate of density of the half step, from positions and velocities at its middle, moves the density by a whole step. At the
- * start of a run the rate is that of the moment, and nothing moves. Leaves the near pairs in the list for the force. */
+/* Leapfrog: the rate of density of the half step, from positions and velocities at its middle, moves the
+ * density by a whole step. At the
+ * start of a run the rate is that of the moment, and nothing moves. Leaves the near pairs in the list for
+ * the force. */
 void PairSph::density_step()
 {
   const int n = particles.n, nlocal = atom->nlocal;
@@ -395,12 +445,14 @@ void PairSph::density_step()
   }
   rate.assign(n + 1, 0.0);
   // The distance of two particles changes by less than dt times the largest speed in half a step.
-  sd_sph_rates(&model, &raw, &particles, dt * sqrt(fastest) * (1.0 + 1e-9), rate.data(), pool.data(), near.data(), near_count.data());
+  sd_sph_rates(&model, &raw, &particles, dt * sqrt(fastest) * (1.0 + 1e-9), rate.data(),
+               pool.data(), near.data(), near_count.data());
   pairs = {raw.n, ~0, raw.first, near_count.data(), near.data()};
   if (continuity->delta > 0.0) diffuse();
   if (force->newton_pair) reverse(rate.data(), 1);
 
-  for (int i = 0; i < nlocal; i++) atom->drho[i] = atom->mask[i] & continuity->groupbit ? rate[i] : 0.0;
+  for (int i = 0; i < nlocal; i++)
+    atom->drho[i] = atom->mask[i] & continuity->groupbit ? rate[i] : 0.0;
   if (dt == 0.0) return;
   const int bits = leapfrog_bits;
   for (int i = 0; i < nlocal; i++)
@@ -416,15 +468,18 @@ void PairSph::diffuse()
   sd_sph_gradient_sums(&model, &pairs, &particles, atom->rho, sums.data());
   if (force->newton_pair) reverse(sums.data(), 9);
   gradient.resize(3 * (size_t) (n + 1));
-  for (int i = 0; i < nlocal; i++) sd_sph_gradient(model.dimension, &sums[9 * (size_t) i], &gradient[3 * (size_t) i]);
+  for (int i = 0; i < nlocal; i++)
+    sd_sph_gradient(model.dimension, &sums[9 * (size_t) i], &gradient[3 * (size_t) i]);
   forward(gradient.data(), 3);
   std::vector<double> c_h((size_t) ntypes * ntypes);
   for (int i = 1; i <= ntypes; i++)
-    for (int j = 1; j <= ntypes; j++) c_h[(size_t) (i - 1) * ntypes + j - 1] = table[C][i][j] * table[H][i][j];
+    for (int j = 1; j <= ntypes; j++)
+      c_h[(size_t) (i - 1) * ntypes + j - 1] = table[C][i][j] * table[H][i][j];
   if (model.nclasses == 1)
     for (int i = 1; i <= ntypes; i++)
       if (used(i)) c_h[0] = table[C][i][i] * table[H][i][i];
-  sd_sph_diffusion(&model, &pairs, &particles, atom->rho, gradient.data(), c_h.data(), continuity->delta, rate.data());
+  sd_sph_diffusion(&model, &pairs, &particles, atom->rho, gradient.data(), c_h.data(),
+                   continuity->delta, rate.data());
 }
 
 void PairSph::sum_densities()
@@ -435,7 +490,8 @@ void PairSph::sum_densities()
   sd_sph_sums(&model, &pairs, &particles, nullptr, sums.data());
   if (force->newton_pair) reverse(sums.data(), 2);
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & summation->groupbit) atom->rho[i] = sums[2 * (size_t) i] + sd_sph_self(&model, &particles, i);
+    if (atom->mask[i] & summation->groupbit)
+      atom->rho[i] = sums[2 * (size_t) i] + sd_sph_self(&model, &particles, i);
   forward(atom->rho, 1);
 }
 
@@ -454,7 +510,8 @@ void PairSph::filter_densities()
   forward(atom->rho, 1);
 }
 
-/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a pair see the same. */
+/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a pair see
+ * the same. */
 void PairSph::pressures_of_all()
 {
   const int n = particles.n;
@@ -462,16 +519,22 @@ void PairSph::pressures_of_all()
   for (int i = 0; i < n; i++) {
     if (rho[i] > 0.0 && std::isfinite(rho[i]) && (atom->mask[i] & pressure_bits)) continue;
     if (!used(atom->type[i])) continue;
-    const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ": atom " + std::to_string(atom->tag[i]);
-    if (!(atom->mask[i] & pressure_bits)) Sph::fail_one(lmp, who + " is in the group of no fix sph/pressure");
-    Sph::fail_one(lmp, who + " has the density " + text(rho[i]) + "; it must be a number > 0" +
-                         (update->setupflag ? " (set it with: set ... sph/rho)" : " (a smaller time step?)"));
+    const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ": atom " +
+        std::to_string(atom->tag[i]);
+    if (!(atom->mask[i] & pressure_bits))
+      Sph::fail_one(lmp, who + " is in the group of no fix sph/pressure");
+    Sph::fail_one(
+        lmp,
+        who + " has the density " + text(rho[i]) + "; it must be a number > 0" +
+            (update->setupflag ? " (set it with: set ... sph/rho)" : " (a smaller time step?)"));
   }
-  for (auto *fix : pressures) sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
+  for (auto *fix : pressures)
+    sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
   for (int i = 0; i < n; i++) A[i] = P[i] / (rho[i] * rho[i]);
 }
 
-/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the one that has this pressure, so ghosts get
+/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the one that
+ * has this pressure, so ghosts get
  * it like any other density. */
 void PairSph::wall_particles()
 {
@@ -481,7 +544,8 @@ void PairSph::wall_particles()
   std::vector<int> is_wall(n + 1, 0);
   for (int i = 0; i < n; i++) is_wall[i] = (atom->mask[i] & bit) != 0;
   sums.assign(5 * (size_t) (n + 1), 0.0);
-  sd_sph_wall_sums(&model, &pairs, &particles, is_wall.data(), P.data(), wall->body_force, sums.data());
+  sd_sph_wall_sums(&model, &pairs, &particles, is_wall.data(), P.data(), wall->body_force,
+                   sums.data());
   if (force->newton_pair) reverse(sums.data(), 5);
 
   std::vector<double> state(4 * (size_t) (n + 1));
@@ -495,7 +559,8 @@ void PairSph::wall_particles()
       if (atom->mask[i] & fix->groupbit) eos = fix;
     const double *s = &sums[5 * (size_t) i];
     const bool alone = s[0] == 0.0;
-    if (!alone || eos->state.kind != SD_SPH_ABSOLUT) now[0] = sd_sph_density_of(&eos->state, alone ? eos->state.P0 : s[1] / s[0]);
+    if (!alone || eos->state.kind != SD_SPH_ABSOLUT)
+      now[0] = sd_sph_density_of(&eos->state, alone ? eos->state.P0 : s[1] / s[0]);
     for (int d = 0; d < 3; d++) {
       const double fluid = alone ? atom->v[i][d] : s[2 + d] / s[0];
       now[1 + d] = wall->slip ? fluid : 2.0 * atom->v[i][d] - fluid;
@@ -516,14 +581,16 @@ void PairSph::forces(bool rates)
   const int receivers = force->newton_pair ? n : atom->nlocal;
   const bool pairwise = evflag && (vflag_atom || (vflag_either && !vflag_fdotr));
   sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, A.data(), x4.data());
-  if (model.artvisc || model.viscous || rates) sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  if (model.artvisc || model.viscous || rates)
+    sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
   std::fill(f4.begin(), f4.end(), 0.0);
   if (pairwise) {
     size_t entries = 0;
     for (int k = 0; k < pairs.n; k++) entries += pairs.count[pairs.first[k]];
     each.resize(3 * entries + 1);
   }
-  const double nearest = sd_sph_forces(&model, &pairs, &particles, rates, f4.data(), pairwise ? each.data() : nullptr);
+  const double nearest =
+      sd_sph_forces(&model, &pairs, &particles, rates, f4.data(), pairwise ? each.data() : nullptr);
   if (nearest == 0.0) coincident();
 
   for (int i = 0; i < receivers; i++)
@@ -542,7 +609,8 @@ void PairSph::tally()
     for (int m = 0; m < pairs.count[i]; m++, F += 3) {
       const int j = pairs.neighbor[i][m] & pairs.mask;
       const double *xi = atom->x[i], *xj = atom->x[j];
-      ev_tally_xyz(i, j, atom->nlocal, force->newton_pair, 0.0, 0.0, F[0], F[1], F[2], xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]);
+      ev_tally_xyz(i, j, atom->nlocal, force->newton_pair, 0.0, 0.0, F[0], F[1], F[2],
+                   xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]);
     }
   }
 }
@@ -555,14 +623,19 @@ void PairSph::coincident()
       const int j = pairs.neighbor[i][m] & pairs.mask;
       const double *xi = atom->x[i], *xj = atom->x[j];
       if (xi[0] == xj[0] && xi[1] == xj[1] && xi[2] == xj[2])
-        Sph::fail_one(lmp, COMMAND + ": step " + std::to_string(update->ntimestep) + ": atoms " + std::to_string(atom->tag[i]) + " and " +
-                             std::to_string(atom->tag[j]) + " are at one place");
+        Sph::fail_one(lmp,
+                      COMMAND + ": step " + std::to_string(update->ntimestep) + ": atoms " +
+                          std::to_string(atom->tag[i]) + " and " + std::to_string(atom->tag[j]) +
+                          " are at one place");
     }
   }
-  Sph::fail_one(lmp, COMMAND + ": step " + std::to_string(update->ntimestep) + ": two atoms are at one place");
+  Sph::fail_one(lmp,
+                COMMAND + ": step " + std::to_string(update->ntimestep) +
+                    ": two atoms are at one place");
 }
 
-// --- for other fixes -------------------------------------------------------------------------------------------
+// --- for other fixes
+// -------------------------------------------------------------------------------------------
 
 void PairSph::largest_approach(std::vector<double> &largest)
 {
@@ -579,7 +652,8 @@ double PairSph::dW_dr(int itype, double r) const
   return r * sd_sph_dW_over_r(model.kernel, model.dimension, r, table[H][itype][itype]);
 }
 
-// --- communication ----------------------------------------------------------------------------------------------
+// --- communication
+// ----------------------------------------------------------------------------------------------
 
 void PairSph::forward(double *array, int columns)
 {
@@ -646,7 +720,8 @@ void PairSph::read_restart(FILE *fp)
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++) {
       double row[1 + NPARAMETERS];
-      if (comm->me == 0) utils::sfread(FLERR, row, sizeof(double), 1 + NPARAMETERS, fp, nullptr, error);
+      if (comm->me == 0)
+        utils::sfread(FLERR, row, sizeof(double), 1 + NPARAMETERS, fp, nullptr, error);
       MPI_Bcast(row, 1 + NPARAMETERS, MPI_DOUBLE, 0, world);
       setflag[i][j] = (int) row[0];
       for (int k = 0; k < NPARAMETERS; k++) given[k][i][j] = row[1 + k];
@@ -669,11 +744,14 @@ void PairSph::read_restart_settings(FILE *fp)
   if (comm->me == 0) utils::sfread(FLERR, head, sizeof(int), 2, fp, nullptr, error);
   MPI_Bcast(head, 2, MPI_INT, 0, world);
   if (head[0] != RESTART_FORMAT)
-    fail(lmp, COMMAND + ": the restart file is of format " + std::to_string(head[0]) + ", this version reads " + std::to_string(RESTART_FORMAT));
+    fail(lmp,
+         COMMAND + ": the restart file is of format " + std::to_string(head[0]) +
+             ", this version reads " + std::to_string(RESTART_FORMAT));
   std::string all(head[1], '\0');
   if (comm->me == 0 && head[1]) utils::sfread(FLERR, &all[0], 1, head[1], fp, nullptr, error);
   MPI_Bcast(&all[0], head[1], MPI_CHAR, 0, world);
   args.clear();
-  for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1) args.push_back(all.substr(from, to - from));
+  for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1)
+    args.push_back(all.substr(from, to - from));
   parse();
 }

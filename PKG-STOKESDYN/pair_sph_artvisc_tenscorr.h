@@ -1,5 +1,7 @@
-/* pair_style sph/artVisc/tensCorr: weakly compressible SPH. The pair style runs the whole step of SPH, in its one possible order (density,
- * walls, pressure, force), whatever the order of the fixes in the input: these hold the settings of each part. See
+/* pair_style sph/artVisc/tensCorr: weakly compressible SPH. The pair style runs the whole step of SPH, in
+ * its one possible order (density,
+ * walls, pressure, force), whatever the order of the fixes in the input: these hold the settings of each
+ * part. See
  * doc/pair_sph_artvisc_tenscorr.md. */
 #ifndef SD_PAIR_SPH_ARTVISC_TENSCORR_H
 #define SD_PAIR_SPH_ARTVISC_TENSCORR_H
@@ -49,18 +51,21 @@ class PairSph : public LAMMPS_NS::Pair {
   double viscosity() const { return mu; }
   bool has_sound_speed(int itype) const;
   const sd_sph_model &kernel() const { return model; }
-  void largest_approach(std::vector<double> &largest);      // of each owned particle: |h v.d / (r^2 + eta)|; not inside compute
-  double dW_dr(int itype, double r) const;                  // W' for two particles of this type
+  void largest_approach(
+      std::vector<double>
+          &largest);    // of each owned particle: |h v.d / (r^2 + eta)|; not inside compute
+  double dW_dr(int itype, double r) const;    // W' for two particles of this type
 
  private:
   enum Parameter { H, C, ALPHA, BETA, DELTAP, NPARAMETERS };
   static const char *const PARAMETER[NPARAMETERS];
 
   // settings
-  std::vector<std::string> args;                 // of pair_style, for restart files
+  std::vector<std::string> args;    // of pair_style, for restart files
   double mu = 0.0;
   double defaults[NPARAMETERS];
-  double **given[NPARAMETERS] = {}, **table[NPARAMETERS] = {};    // by pair_coeff (NaN: not given); in use
+  double **given[NPARAMETERS] = {},
+         **table[NPARAMETERS] = {};    // by pair_coeff (NaN: not given); in use
   sd_sph_model model = {};
   void parse();
   void allocate();
@@ -78,7 +83,7 @@ class PairSph : public LAMMPS_NS::Pair {
   LAMMPS_NS::bigint dangerous_builds = 0;
 
   // a step
-  sd_sph_list pairs = {}, raw = {};              // near ones, if a pass of the step has picked them; LAMMPS's
+  sd_sph_list pairs = {}, raw = {};    // near ones, if a pass of the step has picked them; LAMMPS's
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   std::vector<double> x4, v4, f4, P, A, masses, rate, sums, each, gradient;

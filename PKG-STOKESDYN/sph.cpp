@@ -19,12 +19,17 @@ namespace Sph {
   void require_atom_style(LAMMPS *lmp, const std::string &command)
   {
     if (!lmp->atom->rho_flag || !lmp->atom->vest_flag)
-      fail(lmp, command + ": the atom style has no density; use atom_style sph, which needs a LAMMPS with the SPH package");
+      fail(lmp,
+           command +
+               ": the atom style has no density; use atom_style sph, which needs a LAMMPS with the "
+               "SPH package");
   }
 
   PairSph *require_pair(LAMMPS *lmp, const std::string &command)
   {
-    auto *pair = lmp->force->pair ? static_cast<PairSph *>(lmp->force->pair_match(PairSph::STYLE, 1)) : nullptr;
+    auto *pair = lmp->force->pair
+        ? static_cast<PairSph *>(lmp->force->pair_match(PairSph::STYLE, 1))
+        : nullptr;
     if (!pair) fail(lmp, command + ": there is no pair_style " + PairSph::STYLE);
     return pair;
   }

@@ -33,7 +33,8 @@ void StokesDyn::enroll_sph_styles(void *lmp, lammpsplugin_t plugin, lammpsplugin
     int me = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &me);
     if (me == 0) {
-      printf("stokesdynplugin.so: this LAMMPS has no atom_style sph, so the SPH styles are not loaded; they need a LAMMPS with the "
+      printf("stokesdynplugin.so: this LAMMPS has no atom_style sph, so the SPH styles are not "
+             "loaded; they need a LAMMPS with the "
              "SPH package\n");
       fflush(stdout);
     }
@@ -49,16 +50,19 @@ void StokesDyn::enroll_sph_styles(void *lmp, lammpsplugin_t plugin, lammpsplugin
     const char *name, *info;
     void *(*creator)(LAMMPS *, int, char **);
   } fixes[] = {
-    {FixSphPressure::STYLE, "SPH: equation of state", make_fix<FixSphPressure>},
-    {FixSphDensityContinuity::STYLE, "SPH: density from continuity", make_fix<FixSphDensityContinuity>},
-    {FixSphDensitySummation::STYLE, "SPH: density from summation", make_fix<FixSphDensitySummation>},
-    {FixSphDensityCorr::STYLE, "SPH: Shepard filter of the density", make_fix<FixSphDensityCorr>},
-    {FixNveSph::STYLE, "SPH: time integration", make_fix<FixNveSph>},
-    {FixNveSphStationary::STYLE, "SPH: density of particles at rest", make_fix<FixNveSphStationary>},
-    {FixWallAdamiSph::STYLE, "SPH: walls of particles", make_fix<FixWallAdamiSph>},
-    {FixWallSph::STYLE, "SPH: repulsive planes and cylinder", make_fix<FixWallSph>},
-    {FixWallRegionSph::STYLE, "SPH: repulsive surface of a region", make_fix<FixWallRegionSph>},
-    {FixCheckTimestepSph::STYLE, "SPH: checks the time step", make_fix<FixCheckTimestepSph>},
+      {FixSphPressure::STYLE, "SPH: equation of state", make_fix<FixSphPressure>},
+      {FixSphDensityContinuity::STYLE, "SPH: density from continuity",
+       make_fix<FixSphDensityContinuity>},
+      {FixSphDensitySummation::STYLE, "SPH: density from summation",
+       make_fix<FixSphDensitySummation>},
+      {FixSphDensityCorr::STYLE, "SPH: Shepard filter of the density", make_fix<FixSphDensityCorr>},
+      {FixNveSph::STYLE, "SPH: time integration", make_fix<FixNveSph>},
+      {FixNveSphStationary::STYLE, "SPH: density of particles at rest",
+       make_fix<FixNveSphStationary>},
+      {FixWallAdamiSph::STYLE, "SPH: walls of particles", make_fix<FixWallAdamiSph>},
+      {FixWallSph::STYLE, "SPH: repulsive planes and cylinder", make_fix<FixWallSph>},
+      {FixWallRegionSph::STYLE, "SPH: repulsive surface of a region", make_fix<FixWallRegionSph>},
+      {FixCheckTimestepSph::STYLE, "SPH: checks the time step", make_fix<FixCheckTimestepSph>},
   };
   plugin.style = "fix";
   for (const auto &fix : fixes) {

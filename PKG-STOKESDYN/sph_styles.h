@@ -1,4 +1,5 @@
-/* Registers the SPH styles, if this LAMMPS has the atom style they work on: a plugin cannot supply one. Says so if not. */
+/* Registers the SPH styles, if this LAMMPS has the atom style they work on: a plugin cannot supply one. Says
+ * so if not. */
 #ifndef SD_SPH_STYLES_H
 #define SD_SPH_STYLES_H
 

@@ -2,7 +2,8 @@
 
 #include "sd_sph_visit.h"
 
-void sd_sph_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, const double *rho, double *sums)
+void sd_sph_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                 const double *rho, double *sums)
 {
   sd_sph_visitor v;
   SD_SPH_VISIT(model, list, p, v)
@@ -20,20 +21,25 @@ void sd_sph_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sp
 
 double sd_sph_self(const sd_sph_model *model, const sd_sph_particles *p, int i)
 {
-  return sd_sph_mass(model, p, i) * model->pair[sd_sph_class_pair(model, p, i, i)].weight * sd_sph_K(model->kernel, 0.0);
+  return sd_sph_mass(model, p, i) * model->pair[sd_sph_class_pair(model, p, i, i)].weight *
+      sd_sph_K(model->kernel, 0.0);
 }
 
-void sd_sph_gradient_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, const double *rho, double *sums)
+void sd_sph_gradient_sums(const sd_sph_model *model, const sd_sph_list *list,
+                          const sd_sph_particles *p, const double *rho, double *sums)
 {
   sd_sph_visitor v;
   SD_SPH_VISIT(model, list, p, v)
   {
-    /* grad_i W = g d, d_ji = -d: both sums are even in d, so they differ between i and j by the volumes only. */
+    /* grad_i W = g d, d_ji = -d: both sums are even in d, so they differ between i and j by the volumes
+     * only. */
     const double g = v.k->grad * sd_sph_G(model->kernel, v.q);
     const double *d = v.d, jump = (rho[v.j] - rho[v.i]) * g;
-    const double even[9] = {-g * d[0] * d[0], -g * d[1] * d[1], -g * d[2] * d[2], -g * d[0] * d[1], -g * d[0] * d[2],
-                            -g * d[1] * d[2], jump * d[0],      jump * d[1],      jump * d[2]};
-    const double Vi = sd_sph_mass(model, p, v.i) / rho[v.i], Vj = sd_sph_mass(model, p, v.j) / rho[v.j];
+    const double even[9] = {-g * d[0] * d[0], -g * d[1] * d[1], -g * d[2] * d[2],
+                            -g * d[0] * d[1], -g * d[0] * d[2], -g * d[1] * d[2],
+                            jump * d[0],      jump * d[1],      jump * d[2]};
+    const double Vi = sd_sph_mass(model, p, v.i) / rho[v.i],
+                 Vj = sd_sph_mass(model, p, v.j) / rho[v.j];
     for (int c = 0; c < 9; c++) {
       sums[9 * (size_t) v.i + c] += Vj * even[c];
       sums[9 * (size_t) v.j + c] += Vi * even[c];
@@ -59,8 +65,9 @@ void sd_sph_gradient(int dimension, const double s[9], double g[3])
   g[2] = (cxz * bx + cyz * by + czz * bz) / det;
 }
 
-void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, const double *rho,
-                      const double *gradient, const double *c_h, double delta, double *rate)
+void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      const double *rho, const double *gradient, const double *c_h, double delta,
+                      double *rate)
 {
   sd_sph_visitor v;
   SD_SPH_VISIT(model, list, p, v)
@@ -70,7 +77,8 @@ void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const 
     double along = 0.0;
     for (int c = 0; c < 3; c++) along += (gi[c] + gj[c]) * v.d[c];
     /* psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d), odd under exchange of i and j */
-    const double flux = -delta * c_h[sd_sph_class_pair(model, p, v.i, v.j)] * g * (2.0 * (rho[v.j] - rho[v.i]) + along);
+    const double flux = -delta * c_h[sd_sph_class_pair(model, p, v.i, v.j)] * g *
+        (2.0 * (rho[v.j] - rho[v.i]) + along);
     rate[v.i] += sd_sph_mass(model, p, v.j) / rho[v.j] * flux;
     rate[v.j] -= sd_sph_mass(model, p, v.i) / rho[v.i] * flux;
   }

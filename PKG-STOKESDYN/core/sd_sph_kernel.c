@@ -22,7 +22,8 @@ double sd_sph_K(sd_sph_kernel kernel, double q)
 double sd_sph_G(sd_sph_kernel kernel, double q)
 {
   if (q >= 2.0) return 0.0;
-  if (kernel == SD_SPH_CUBICSPLINE) return q < 1.0 ? 9.0 * q - 12.0 : -3.0 * (2.0 - q) * (2.0 - q) / q;
+  if (kernel == SD_SPH_CUBICSPLINE)
+    return q < 1.0 ? 9.0 * q - 12.0 : -3.0 * (2.0 - q) * (2.0 - q) / q;
   const double t = 1.0 - 0.5 * q;
   return -5.0 * t * t * t;
 }

@@ -1,5 +1,7 @@
-/* The loops of sd_sph_pair.h, compiled once for each instruction set by the two files that include this one and define LOOPS. Four pairs
- * are a vector; what a scene does not ask for is a constant 0 in its copy of the loop, so the compiler drops it. */
+/* The loops of sd_sph_pair.h, compiled once for each instruction set by the two files that include this one
+ * and define LOOPS. Four pairs
+ * are a vector; what a scene does not ask for is a constant 0 in its copy of the loop, so the compiler drops
+ * it. */
 #include "sd_sph_pair.h"
 
 #include <math.h>
@@ -89,16 +91,19 @@ INLINE v4 G(sd_sph_kernel kernel, v4 q)
 }
 
 /* Coefficient NAME of the pairs of i with j[0..3]. */
-#define COEFFICIENT(NAME) \
-  (many ? (v4){row[p->cls[j[0]]].NAME, row[p->cls[j[1]]].NAME, row[p->cls[j[2]]].NAME, row[p->cls[j[3]]].NAME} : all(row->NAME))
+#define COEFFICIENT(NAME)                                                              \
+  (many ? (v4){row[p->cls[j[0]]].NAME, row[p->cls[j[1]]].NAME, row[p->cls[j[2]]].NAME, \
+               row[p->cls[j[3]]].NAME}                                                 \
+        : all(row->NAME))
 
 INLINE void next_four(const int *neighbor, int at, int count, int mask, int filler, int j[4])
 {
   for (int k = 0; k < 4; k++) j[k] = at + k < count ? neighbor[at + k] & mask : filler;
 }
 
-INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, double *f4, double *each,
-                     sd_sph_kernel kernel, int many, int artvisc, int tenscorr, int viscous, int rates)
+INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     double *f4, double *each, sd_sph_kernel kernel, int many, int artvisc,
+                     int tenscorr, int viscous, int rates)
 {
   const v4 zero = all(0.0), two = all(2.0);
   v4 nearest = all(HUGE_VAL);
@@ -109,7 +114,8 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
     const v4 xi = load(p->x4 + 4 * (size_t) i);
     const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]), A = all(xi[3]);
     const v4 vi = moving ? load(p->v4 + 4 * (size_t) i) : zero;
-    const sd_sph_coefficients *row = model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0);
+    const sd_sph_coefficients *row =
+        model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0);
     const v4 mi = all(many ? p->m[i] : p->mass);
     v4 sum[4] = {zero, zero, zero, zero};
 
@@ -140,7 +146,8 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
         vd = u[0] * dx + u[1] * dy + u[2] * dz;
       }
       if (artvisc) {
-        const v4 lengths = r2 + model->eta, densities = vi[3] + u[3], inverse = 1.0 / (lengths * densities);
+        const v4 lengths = r2 + model->eta, densities = vi[3] + u[3],
+                 inverse = 1.0 / (lengths * densities);
         const v4 s = smaller(vd, zero) * densities * inverse;
         bracket += s * (COEFFICIENT(b1) * s - COEFFICIENT(a1)) * (lengths * inverse);
       }
@@ -173,8 +180,9 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
   return fmin(fmin(nearest[0], nearest[1]), fmin(nearest[2], nearest[3]));
 }
 
-INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, double margin, double *rate,
-                  int *pool, int **near, int *near_count, sd_sph_kernel kernel, int many)
+INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  double margin, double *rate, int *pool, int **near, int *near_count,
+                  sd_sph_kernel kernel, int many)
 {
   const v4 zero = all(0.0), two = all(2.0);
   for (int ii = 0; ii < list->n; ii++) {
@@ -182,7 +190,8 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
     const int *neighbor = list->neighbor[i];
     const v4 xi = load(p->x4 + 4 * (size_t) i), vi = load(p->v4 + 4 * (size_t) i);
     const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]);
-    const sd_sph_coefficients *row = model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0);
+    const sd_sph_coefficients *row =
+        model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0);
     const double mi = many ? p->m[i] : p->mass;
     v4 sum = zero;
     int *last = pool;
@@ -197,7 +206,7 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
       const v4 inv_h = COEFFICIENT(inv_h);
       const v4 distance = root(dx * dx + dy * dy + dz * dz) * inv_h;
       const v4 w = COEFFICIENT(grad) * G(kernel, smaller(distance, two)) *
-        (dx * (vi[0] - u[0]) + dy * (vi[1] - u[1]) + dz * (vi[2] - u[2]));
+          (dx * (vi[0] - u[0]) + dy * (vi[1] - u[1]) + dz * (vi[2] - u[2]));
       sum += many ? w * (v4){p->m[j[0]], p->m[j[1]], p->m[j[2]], p->m[j[3]]} : w * mi;
       for (int k = 0; k < 4; k++) rate[j[k]] += mi * w[k];
       if (pool) {
@@ -218,8 +227,9 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 }
 
 /* One function for each combination; the switch picks it once a step. */
-#define COMBINATION(kernel, many, artvisc, tenscorr, viscous, with_rates) \
-  case ((kernel) << 5) + ((many) << 4) + ((artvisc) << 3) + ((tenscorr) << 2) + ((viscous) << 1) + (with_rates): \
+#define COMBINATION(kernel, many, artvisc, tenscorr, viscous, with_rates)                          \
+  case ((kernel) << 5) + ((many) << 4) + ((artvisc) << 3) + ((tenscorr) << 2) + ((viscous) << 1) + \
+      (with_rates):                                                                                \
     return forces(model, list, p, f4, each, kernel, many, artvisc, tenscorr, viscous, with_rates);
 #define TWICE(next, ...) next(__VA_ARGS__, 0) next(__VA_ARGS__, 1)
 #define BY_VISCOUS(...) TWICE(COMBINATION, __VA_ARGS__, 0) TWICE(COMBINATION, __VA_ARGS__, 1)
@@ -227,19 +237,19 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 #define BY_ARTVISC(...) BY_TENSCORR(__VA_ARGS__, 0) BY_TENSCORR(__VA_ARGS__, 1)
 #define BY_MANY(kernel) BY_ARTVISC(kernel, 0) BY_ARTVISC(kernel, 1)
 
-static double all_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, int with_rates, double *f4,
-                         double *each)
+static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
+                         const sd_sph_particles *p, int with_rates, double *f4, double *each)
 {
-  switch ((model->kernel << 5) + ((model->nclasses > 1) << 4) + (!!model->artvisc << 3) + (!!model->tenscorr << 2) +
-          (!!model->viscous << 1) + !!with_rates) {
+  switch ((model->kernel << 5) + ((model->nclasses > 1) << 4) + (!!model->artvisc << 3) +
+          (!!model->tenscorr << 2) + (!!model->viscous << 1) + !!with_rates) {
     BY_MANY(SD_SPH_CUBICSPLINE)
     BY_MANY(SD_SPH_WENDLAND)
   }
   return 0.0;
 }
 
-static void all_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, double margin, double *rate,
-                      int *pool, int **near, int *count)
+static void all_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      double margin, double *rate, int *pool, int **near, int *count)
 {
   switch ((model->kernel << 1) + (model->nclasses > 1)) {
     case SD_SPH_CUBICSPLINE << 1:

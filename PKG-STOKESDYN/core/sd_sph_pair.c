@@ -1,8 +1,10 @@
 #include "sd_sph_pair.h"
 
-sd_sph_coefficients sd_sph_coefficients_of(sd_sph_kernel kernel, int dimension, const sd_sph_parameters *p, double mu)
+sd_sph_coefficients sd_sph_coefficients_of(sd_sph_kernel kernel, int dimension,
+                                           const sd_sph_parameters *p, double mu)
 {
-  const double h = p->h, volume = dimension == 3 ? h * h * h : h * h, N = sd_sph_norm(kernel, dimension);
+  const double h = p->h, volume = dimension == 3 ? h * h * h : h * h,
+               N = sd_sph_norm(kernel, dimension);
   const double K = sd_sph_K(kernel, p->deltap / h);
   return (sd_sph_coefficients){.inv_h = 1.0 / h,
                                .grad = N / (volume * h * h),
@@ -17,11 +19,13 @@ sd_sph_coefficients sd_sph_coefficients_of(sd_sph_kernel kernel, int dimension, 
 /* Far enough that every kernel is 0, near enough that the square of the distance is finite. */
 static const double FAR = 1e100;
 
-void sd_sph_pack_x(int n, const double *x, const double *v, double shift, const double *A, double *x4)
+void sd_sph_pack_x(int n, const double *x, const double *v, double shift, const double *A,
+                   double *x4)
 {
   if (shift != 0.0)
     for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++) x4[4 * (size_t) i + d] = x[3 * (size_t) i + d] + shift * v[3 * (size_t) i + d];
+      for (int d = 0; d < 3; d++)
+        x4[4 * (size_t) i + d] = x[3 * (size_t) i + d] + shift * v[3 * (size_t) i + d];
   else
     for (int i = 0; i < n; i++)
       for (int d = 0; d < 3; d++) x4[4 * (size_t) i + d] = x[3 * (size_t) i + d];
@@ -48,13 +52,14 @@ static const sd_sph_loops *loops(void)
   return &sd_sph_loops_any;
 }
 
-double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, int rates, double *f4, double *each)
+double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     int rates, double *f4, double *each)
 {
   return loops()->forces(model, list, p, rates, f4, each);
 }
 
-void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, double margin, double *rate,
-                  int *pool, int **near, int *count)
+void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  double margin, double *rate, int *pool, int **near, int *count)
 {
   loops()->rates(model, list, p, margin, rate, pool, near, count);
 }

@@ -43,7 +43,8 @@ double sd_sph_density_of(const sd_sph_state *s, double P)
   return rho > 0.0 ? rho : 0.0;
 }
 
-void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit, double *P)
+void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
+                      double *P)
 {
   const sd_sph_state s = *state;
   for (int i = 0; i < n; i++)

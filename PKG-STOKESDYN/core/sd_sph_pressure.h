@@ -24,7 +24,8 @@ double sd_sph_pressure(const sd_sph_state *state, double rho);
 double sd_sph_density_of(const sd_sph_state *state, double P);
 
 /* P [n] of the particles i with mask[i] & bit; the others keep theirs. */
-void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit, double *P);
+void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
+                      double *P);
 
 #ifdef __cplusplus
 }

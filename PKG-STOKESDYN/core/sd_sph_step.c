@@ -2,7 +2,8 @@
 
 #include "sd_sph_visit.h"
 
-void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, double *largest)
+void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     double *largest)
 {
   sd_sph_visitor v;
   SD_SPH_VISIT(model, list, p, v)

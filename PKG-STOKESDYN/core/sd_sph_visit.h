@@ -13,18 +13,20 @@ static inline double sd_sph_mass(const sd_sph_model *model, const sd_sph_particl
   return model->nclasses > 1 ? p->m[i] : p->mass;
 }
 
-static inline size_t sd_sph_class_pair(const sd_sph_model *model, const sd_sph_particles *p, int i, int j)
+static inline size_t sd_sph_class_pair(const sd_sph_model *model, const sd_sph_particles *p, int i,
+                                       int j)
 {
   return model->nclasses > 1 ? (size_t) p->cls[i] * model->nclasses + p->cls[j] : 0;
 }
 
 typedef struct {
   int i, j;
-  double d[3], r2, q;                       /* x_i - x_j, its square, r / h */
+  double d[3], r2, q; /* x_i - x_j, its square, r / h */
   const sd_sph_coefficients *k;
 } sd_sph_visitor;
 
-static inline int sd_sph_visit(const sd_sph_model *model, const sd_sph_particles *p, int i, int j, sd_sph_visitor *v)
+static inline int sd_sph_visit(const sd_sph_model *model, const sd_sph_particles *p, int i, int j,
+                               sd_sph_visitor *v)
 {
   v->i = i;
   v->j = j;
@@ -39,8 +41,8 @@ static inline int sd_sph_visit(const sd_sph_model *model, const sd_sph_particles
   return 1;
 }
 
-#define SD_SPH_VISIT(model, list, p, v) \
-  for (int ii_ = 0; ii_ < (list)->n; ii_++) \
+#define SD_SPH_VISIT(model, list, p, v)                                        \
+  for (int ii_ = 0; ii_ < (list)->n; ii_++)                                    \
     for (int i_ = (list)->first[ii_], jj_ = 0; jj_ < (list)->count[i_]; jj_++) \
       if (sd_sph_visit(model, p, i_, (list)->neighbor[i_][jj_] & (list)->mask, &(v)))
 

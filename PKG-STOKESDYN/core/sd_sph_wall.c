@@ -9,8 +9,8 @@ double sd_sph_repulsion(double D, double r0, double r)
   return D * (s2 * s2 - s2);
 }
 
-void sd_sph_wall_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, const int *is_wall,
-                      const double *pressure, const double b[3], double *sums)
+void sd_sph_wall_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      const int *is_wall, const double *pressure, const double b[3], double *sums)
 {
   sd_sph_visitor v;
   SD_SPH_VISIT(model, list, p, v)

@@ -16,7 +16,8 @@ static double random_number(void)
   return uniform(&seed, 0.0, 1.0);
 }
 
-/* Two classes of particles in a box of a few h, velocities and both signs of pressure, all pairs in a half list. */
+/* Two classes of particles in a box of a few h, velocities and both signs of pressure, all pairs in a half
+ * list. */
 typedef struct {
   double x[3 * N], v[3 * N], rho[N + 1], P[N], A[N], m[N + 1];
   double x4[4 * (N + 1)], v4[4 * (N + 1)];
@@ -28,13 +29,15 @@ typedef struct {
   sd_sph_model model;
 } scene;
 
-static void build(scene *s, sd_sph_kernel kernel, int dimension, int classes, int artvisc, int tenscorr, int viscous)
+static void build(scene *s, sd_sph_kernel kernel, int dimension, int classes, int artvisc,
+                  int tenscorr, int viscous)
 {
   memset(s, 0, sizeof(*s));
   const sd_sph_parameters one = {0.3, 20.0, 0.07, 0.4, 0.25}, two = {0.36, 25.0, 0.05, 0.3, 0.27};
   const sd_sph_parameters mean = {0.33, 22.5, 0.06, 0.35, 0.26}, table[4] = {one, mean, mean, two};
   const double mu = 0.7;
-  s->model = (sd_sph_model){kernel, dimension, artvisc, tenscorr, viscous, 1.3e-3, 0.21, classes, s->pair};
+  s->model =
+      (sd_sph_model){kernel, dimension, artvisc, tenscorr, viscous, 1.3e-3, 0.21, classes, s->pair};
   for (int k = 0; k < 4; k++) {
     s->types[k] = table[k];
     s->pair[k] = sd_sph_coefficients_of(kernel, dimension, &table[k], mu);
@@ -52,7 +55,8 @@ static void build(scene *s, sd_sph_kernel kernel, int dimension, int classes, in
     s->A[i] = s->P[i] / (s->rho[i] * s->rho[i]);
     s->first[i] = i;
     s->neighbor[i] = next;
-    for (int j = i + 1; j < N; j++) *next++ = j | 1 << 30;    // marked as LAMMPS marks neighbours; the mask removes it
+    for (int j = i + 1; j < N; j++)
+      *next++ = j | 1 << 30;    // marked as LAMMPS marks neighbours; the mask removes it
     s->count[i] = N - 1 - i;
   }
   s->rho[N] = 1.0;
@@ -77,7 +81,8 @@ static void by_the_book(const scene *s, int i, int j, double F[3], double *rate)
   const double g = sd_sph_dW_over_r(s->model.kernel, s->model.dimension, r, t->h);
   double bracket = s->P[i] / (s->rho[i] * s->rho[i]) + s->P[j] / (s->rho[j] * s->rho[j]);
   if (s->model.tenscorr) {
-    const double f = sd_sph_W(s->model.kernel, s->model.dimension, r, t->h) / sd_sph_W(s->model.kernel, s->model.dimension, t->deltap, t->h);
+    const double f = sd_sph_W(s->model.kernel, s->model.dimension, r, t->h) /
+        sd_sph_W(s->model.kernel, s->model.dimension, t->deltap, t->h);
     double R = 0.0;
     if (s->P[i] > 0.0 && s->P[j] > 0.0)
       R = 0.01 * bracket;
@@ -124,15 +129,18 @@ static void every_combination(const sd_sph_loops *loops)
 {
   for (int bits = 0; bits < 128; bits++) {
     scene s;
-    build(&s, bits & 1 ? SD_SPH_WENDLAND : SD_SPH_CUBICSPLINE, bits & 2 ? 3 : 2, bits & 4 ? 2 : 1, !!(bits & 8), !!(bits & 16), !!(bits & 32));
+    build(&s, bits & 1 ? SD_SPH_WENDLAND : SD_SPH_CUBICSPLINE, bits & 2 ? 3 : 2, bits & 4 ? 2 : 1,
+          !!(bits & 8), !!(bits & 16), !!(bits & 32));
     double f4[4 * (N + 1)] = {0}, each[3 * ALL];
-    const double nearest = loops->forces(&s.model, &s.list, &s.p, !!(bits & 64), f4, bits & 64 ? each : NULL);
+    const double nearest =
+        loops->forces(&s.model, &s.list, &s.p, !!(bits & 64), f4, bits & 64 ? each : NULL);
     assert_true(nearest > 0.0);
     compare(&s, f4, !!(bits & 64));
     if (bits & 64) {
       double f[3], w;
       by_the_book(&s, 0, 1, f, &w);
-      for (int c = 0; c < 3; c++) CHECK_NEAR(each[c], f[c], 1e-12 * (fabs(f[0]) + fabs(f[1]) + fabs(f[2])));
+      for (int c = 0; c < 3; c++)
+        CHECK_NEAR(each[c], f[c], 1e-12 * (fabs(f[0]) + fabs(f[1]) + fabs(f[2])));
     }
 
     double rate[N + 1] = {0};
@@ -163,7 +171,8 @@ static void loops_for_avx2(void **state)
 {
   (void) state;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) every_combination(&sd_sph_loops_avx2);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    every_combination(&sd_sph_loops_avx2);
 #endif
 }
 
@@ -172,7 +181,10 @@ static double R_of(double Pi, double Pj)
 {
   scene s;
   build(&s, SD_SPH_WENDLAND, 3, 1, 0, 0, 0);
-  const double r = 0.2, f4_weight = pow(sd_sph_W(SD_SPH_WENDLAND, 3, r, 0.3) / sd_sph_W(SD_SPH_WENDLAND, 3, 0.25, 0.3), 4);
+  const double r = 0.2,
+               f4_weight = pow(sd_sph_W(SD_SPH_WENDLAND, 3, r, 0.3) /
+                                   sd_sph_W(SD_SPH_WENDLAND, 3, 0.25, 0.3),
+                               4);
   const double x[6] = {0, 0, 0, r, 0, 0}, A[2] = {Pi / (900.0 * 900.0), Pj / (1100.0 * 1100.0)};
   const int first[1] = {0}, count[1] = {1};
   int only[1] = {1}, *neighbor[1] = {only};
@@ -220,17 +232,20 @@ static void sums_over_neighbours(void **state)
     for (int j = 0; j < N; j++) {
       if (j == i) continue;
       const double dx = s.x[3 * i] - s.x[3 * j], dy = s.x[3 * i + 1] - s.x[3 * j + 1];
-      const double W = sd_sph_W(SD_SPH_WENDLAND, 2, sqrt(dx * dx + dy * dy), s.types[2 * s.cls[i] + s.cls[j]].h);
+      const double W =
+          sd_sph_W(SD_SPH_WENDLAND, 2, sqrt(dx * dx + dy * dy), s.types[2 * s.cls[i] + s.cls[j]].h);
       mW += s.m[j] * W;
       VW += s.m[j] / s.rho[j] * W;
     }
     CHECK_NEAR(sums[2 * i], mW, 1e-13 * mW);
     CHECK_NEAR(sums[2 * i + 1], VW, 1e-13 * VW);
-    CHECK_NEAR(sd_sph_self(&s.model, &s.p, i), s.m[i] * sd_sph_W(SD_SPH_WENDLAND, 2, 0.0, s.types[3 * s.cls[i]].h), 1e-12);
+    CHECK_NEAR(sd_sph_self(&s.model, &s.p, i),
+               s.m[i] * sd_sph_W(SD_SPH_WENDLAND, 2, 0.0, s.types[3 * s.cls[i]].h), 1e-12);
   }
 }
 
-/* The corrected gradient of a linear density is exact, so psi vanishes and a linear density does not diffuse, even at random places. */
+/* The corrected gradient of a linear density is exact, so psi vanishes and a linear density does not
+ * diffuse, even at random places. */
 static void linear_density_does_not_diffuse(void **state)
 {
   (void) state;
@@ -241,13 +256,15 @@ static void linear_density_does_not_diffuse(void **state)
       s.types[k].h *= 3.0;    // everybody sees everybody
       s.pair[k] = sd_sph_coefficients_of(SD_SPH_WENDLAND, dimension, &s.types[k], 0.0);
     }
-    for (int i = 0; i < N; i++) s.m[i] *= 10000.0 / N;    // as if the box filled the support: L near 1
+    for (int i = 0; i < N; i++)
+      s.m[i] *= 10000.0 / N;    // as if the box filled the support: L near 1
     const double slope[3] = {30.0, -70.0, dimension == 3 ? 50.0 : 0.0};
     for (int i = 0; i < N; i++) {
       s.rho[i] = 1000.0;
       for (int d = 0; d < 3; d++) s.rho[i] += slope[d] * s.x[3 * i + d];
     }
-    double sums[9 * (N + 1)] = {0}, gradient[3 * (N + 1)] = {0}, rate[N + 1] = {0}, curved[N + 1] = {0}, total = 0.0, largest = 0.0;
+    double sums[9 * (N + 1)] = {0}, gradient[3 * (N + 1)] = {0}, rate[N + 1] = {0},
+                         curved[N + 1] = {0}, total = 0.0, largest = 0.0;
     const double c_h[4] = {1.0, 2.0, 2.0, 3.0};
     sd_sph_gradient_sums(&s.model, &s.list, &s.p, s.rho, sums);
     for (int i = 0; i < N; i++) {
