@@ -9,7 +9,7 @@ if(STOKESDYN_SANITIZE)
   set(sanitize -fsanitize=${STOKESDYN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   set(tested_core sanitized_core)
   add_library(sanitized_core STATIC EXCLUDE_FROM_ALL ${core_sources})
-  target_compile_options(sanitized_core PRIVATE ${sanitize} -g)
+  target_compile_options(sanitized_core PRIVATE ${sanitize} -g -O1)
 endif()
 
 set(tests ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/core)
