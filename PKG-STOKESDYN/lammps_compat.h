@@ -7,6 +7,8 @@
 #include "domain.h"
 #include "fix.h"
 #include "modify.h"
+#include "neigh_request.h"
+#include "neighbor.h"
 #include "pair.h"
 #include "region.h"
 
@@ -21,6 +23,25 @@ namespace Compat {
     comm->forward_comm(pair);
 #else
     comm->forward_comm_pair(pair);
+#endif
+  }
+
+  inline void reverse_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Pair *pair)
+  {
+#if SD_HAVE_COMM_THIS
+    comm->reverse_comm(pair);
+#else
+    comm->reverse_comm_pair(pair);
+#endif
+  }
+
+  /* the usual half list, each pair once, as newton says; instance: the instance_me of the pair style */
+  inline void request_half_list(LAMMPS_NS::Neighbor *neighbor, LAMMPS_NS::Pair *pair, int instance)
+  {
+#if SD_HAVE_ADD_REQUEST
+    neighbor->add_request(pair);
+#else
+    neighbor->request(pair, instance);
 #endif
   }
 

@@ -8,6 +8,7 @@
 #include "fix_stokes_dynamics.h"
 #include "fix_stokes_dynamics_state.h"
 #include "pair_stokes_dynamics.h"
+#include "sph_styles.h"
 
 #include <cstdio>
 #include <string>
@@ -95,4 +96,6 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
   plugin.info = "Stokes drag with hydrodynamic interactions: memory of the pair style";
   plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<FixStokesDynamicsState>;
   enroll(&plugin, lmp);
+
+  enroll_sph_styles(lmp, plugin, enroll);
 }

@@ -1,0 +1,46 @@
+#include "sd_sph_kernel.h"
+
+static const double PI = 3.14159265358979323846;
+
+double sd_sph_norm(sd_sph_kernel kernel, int dimension)
+{
+  if (kernel == SD_SPH_CUBICSPLINE) return dimension == 3 ? 1.0 / (4.0 * PI) : 5.0 / (14.0 * PI);
+  return dimension == 3 ? 21.0 / (16.0 * PI) : 7.0 / (4.0 * PI);
+}
+
+double sd_sph_K(sd_sph_kernel kernel, double q)
+{
+  if (q >= 2.0) return 0.0;
+  if (kernel == SD_SPH_CUBICSPLINE) {
+    const double outer = 2.0 - q, inner = q < 1.0 ? 1.0 - q : 0.0;
+    return outer * outer * outer - 4.0 * inner * inner * inner;
+  }
+  const double t = 1.0 - 0.5 * q;
+  return t * t * t * t * (2.0 * q + 1.0);
+}
+
+double sd_sph_G(sd_sph_kernel kernel, double q)
+{
+  if (q >= 2.0) return 0.0;
+  if (kernel == SD_SPH_CUBICSPLINE)
+    return q < 1.0 ? 9.0 * q - 12.0 : -3.0 * (2.0 - q) * (2.0 - q) / q;
+  const double t = 1.0 - 0.5 * q;
+  return -5.0 * t * t * t;
+}
+
+static double power(double h, int n)
+{
+  double p = 1.0;
+  while (n-- > 0) p *= h;
+  return p;
+}
+
+double sd_sph_W(sd_sph_kernel kernel, int dimension, double r, double h)
+{
+  return sd_sph_norm(kernel, dimension) / power(h, dimension) * sd_sph_K(kernel, r / h);
+}
+
+double sd_sph_dW_over_r(sd_sph_kernel kernel, int dimension, double r, double h)
+{
+  return sd_sph_norm(kernel, dimension) / power(h, dimension + 2) * sd_sph_G(kernel, r / h);
+}

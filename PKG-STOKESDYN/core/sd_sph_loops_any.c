@@ -1,0 +1,3 @@
+/* For any processor the compiler can make code for. */
+#define LOOPS sd_sph_loops_any
+#include "sd_sph_loops.h"

@@ -1,0 +1,52 @@
+#include "sd_sph_pressure.h"
+
+#include <math.h>
+
+/* x^gamma; the exponent of water, 7, and other small integers by multiplication. */
+static double power(double x, double gamma)
+{
+  const int n = (int) gamma;
+  if (n != gamma || n < 1 || n > 16) return pow(x, gamma);
+  double p = 1.0, square = x;
+  for (int k = n; k; k >>= 1, square *= square)
+    if (k & 1) p *= square;
+  return p;
+}
+
+double sd_sph_pressure(const sd_sph_state *s, double rho)
+{
+  switch (s->kind) {
+    case SD_SPH_ABSOLUT:
+      return s->B * s->B * rho;
+    case SD_SPH_RELATIV:
+      return s->B * (rho - s->rho0) + s->P0;
+    default:
+      return s->B * (power(rho / s->rho0, s->gamma) - 1.0) + s->P0;
+  }
+}
+
+double sd_sph_density_of(const sd_sph_state *s, double P)
+{
+  double rho;
+  switch (s->kind) {
+    case SD_SPH_ABSOLUT:
+      rho = P / (s->B * s->B);
+      break;
+    case SD_SPH_RELATIV:
+      rho = s->rho0 + (P - s->P0) / s->B;
+      break;
+    default: {
+      const double base = 1.0 + (P - s->P0) / s->B;
+      rho = base > 0.0 ? s->rho0 * pow(base, 1.0 / s->gamma) : 0.0;
+    }
+  }
+  return rho > 0.0 ? rho : 0.0;
+}
+
+void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
+                      double *P)
+{
+  const sd_sph_state s = *state;
+  for (int i = 0; i < n; i++)
+    if (mask[i] & bit) P[i] = sd_sph_pressure(&s, rho[i]);
+}

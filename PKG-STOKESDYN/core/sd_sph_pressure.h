@@ -1,0 +1,33 @@
+/* Equations of state P(rho) of weakly compressible SPH and their inverses.
+ *   absolut   P = B^2 rho
+ *   relativ   P = B (rho - rho0) + P0
+ *   Tait      P = B ((rho / rho0)^gamma - 1) + P0
+ * B: velocity (absolut), velocity^2 (relativ), pressure (Tait: c^2 rho0 / gamma for a speed of sound c). */
+#ifndef SD_SPH_PRESSURE_H
+#define SD_SPH_PRESSURE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum { SD_SPH_ABSOLUT, SD_SPH_RELATIV, SD_SPH_TAIT } sd_sph_state_kind;
+
+typedef struct {
+  sd_sph_state_kind kind;
+  double B, rho0, gamma, P0;
+} sd_sph_state;
+
+/* P of a density > 0. */
+double sd_sph_pressure(const sd_sph_state *state, double rho);
+
+/* The density that has the pressure P. 0 if there is none: P < P0 - B for Tait, P <= 0 for absolut. */
+double sd_sph_density_of(const sd_sph_state *state, double P);
+
+/* P [n] of the particles i with mask[i] & bit; the others keep theirs. */
+void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
+                      double *P);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

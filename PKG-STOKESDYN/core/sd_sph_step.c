@@ -1,0 +1,24 @@
+#include "sd_sph_step.h"
+
+#include "sd_sph_visit.h"
+
+void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     double *largest)
+{
+  sd_sph_visitor v;
+  SD_SPH_VISIT(model, list, p, v)
+  {
+    const double *vi = p->v4 + 4 * (size_t) v.i, *vj = p->v4 + 4 * (size_t) v.j;
+    double vd = 0.0;
+    for (int c = 0; c < 3; c++) vd += (vi[c] - vj[c]) * v.d[c];
+    const double s = fabs(vd) / (v.k->inv_h * (v.r2 + model->eta));
+    if (s > largest[v.i]) largest[v.i] = s;
+    if (s > largest[v.j]) largest[v.j] = s;
+  }
+}
+
+double sd_sph_step_limit(double h, double c, double approach, double mu, double rho)
+{
+  const double courant = h / (c + approach);
+  return mu > 0.0 ? fmin(courant, h * h * rho / (8.0 * mu)) : courant;
+}

@@ -1,0 +1,99 @@
+#include "fix_check_timestep_sph.h"
+
+#include "keywords.h"
+#include "pair_sph_artvisc_tenscorr.h"
+#include "sd_sph_step.h"
+#include "sph.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+FixCheckTimestepSph::FixCheckTimestepSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  Sph::require_atom_style(lmp, command);
+  if (narg < 5) fail(lmp, command + ": the form is: check/timestep/sph N fraction [warn|stop]");
+  std::vector<std::string> args = words(narg, arg);
+  args.insert(args.begin() + 3, "N");
+  args.insert(args.begin() + 5, "fraction");
+  Keywords in(lmp, command, args, 3);
+  in.next();
+  nevery = in.integer(1);
+  in.next();
+  fraction = in.positive();
+  if (in.next()) {
+    if (in.is("stop"))
+      stop = true;
+    else if (!in.is("warn"))
+      in.unknown();
+  }
+  if (in.next()) in.unknown();
+  scalar_flag = 1;
+  vector_flag = 1;
+  size_vector = 2;
+  global_freq = nevery;
+  extscalar = 0;
+  extvector = 0;
+}
+
+int FixCheckTimestepSph::setmask()
+{
+  return FixConst::END_OF_STEP;
+}
+
+void FixCheckTimestepSph::init()
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  pair = Sph::require_pair(lmp, command);
+}
+
+void FixCheckTimestepSph::setup(int /*vflag*/)
+{
+  end_of_step();
+}
+
+void FixCheckTimestepSph::end_of_step()
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  pair->largest_approach(largest);
+  double mine = HUGE_VAL;
+  tagint who = MAXTAGINT, first;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const int type = atom->type[i];
+    if (!pair->has_sound_speed(type))
+      Sph::fail_one(lmp,
+                    command + ": type " + std::to_string(type) +
+                        " has no speed of sound: pair_coeff " + std::to_string(type) + " " +
+                        std::to_string(type) + " c VALUE");
+    const double here = sd_sph_step_limit(pair->smoothing_length(type), pair->sound_speed(type),
+                                          largest[i], pair->viscosity(), atom->rho[i]);
+    if (here < mine || (here == mine && atom->tag[i] < who)) {
+      mine = here;
+      who = atom->tag[i];
+    }
+  }
+  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (mine != limit) who = MAXTAGINT;
+  MPI_Allreduce(&who, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (!std::isfinite(limit)) {    // nobody in the group
+    limit = worst = ratio = 0.0;
+    return;
+  }
+  worst = (double) first;
+  ratio = update->dt / limit;
+  if (ratio <= fraction) return;
+  const std::string message = command + ": step " + std::to_string(update->ntimestep) +
+      ": the time step " + text(update->dt) + " is " + text(ratio) + " of the limit " +
+      text(limit) + " of atom " + std::to_string(first) + ", more than " + text(fraction);
+  if (stop) fail(lmp, message);
+  if (comm->me == 0) error->warning(FLERR, message);
+}

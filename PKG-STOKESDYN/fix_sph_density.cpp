@@ -1,0 +1,60 @@
+#include "fix_sph_density.h"
+
+#include "keywords.h"
+#include "sph.h"
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg)
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  Sph::require_atom_style(lmp, command);
+  Keywords in(lmp, command, words(narg, arg), 3);
+  while (in.next()) {
+    if (in.is("delta"))
+      delta = in.not_negative();
+    else
+      in.unknown();
+  }
+  peratom_flag = 1;
+  size_peratom_cols = 0;
+  peratom_freq = 1;
+}
+
+void FixSphDensityContinuity::init()
+{
+  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
+}
+
+FixSphDensitySummation::FixSphDensitySummation(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg)
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  Sph::require_atom_style(lmp, command);
+  if (narg > 3) fail(lmp, command + ": unknown keyword '" + arg[3] + "'");
+}
+
+void FixSphDensitySummation::init()
+{
+  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
+}
+
+FixSphDensityCorr::FixSphDensityCorr(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  Sph::require_atom_style(lmp, command);
+  Keywords in(lmp, command, words(narg, arg), 3);
+  if (!in.next() || !in.is("shepard"))
+    fail(lmp, command + ": the form is: sph/density/corr shepard every N");
+  if (!in.next() || !in.is("every"))
+    fail(lmp, command + ": keyword every is missing: shepard every N");
+  every = in.integer(1);
+  if (in.next()) in.unknown();
+}
+
+void FixSphDensityCorr::init()
+{
+  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
+}

@@ -1,0 +1,36 @@
+#include "fix_sph_pressure.h"
+
+#include "keywords.h"
+#include "sph.h"
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  Sph::require_atom_style(lmp, command);
+  Keywords in(lmp, command, words(narg, arg), 3);
+  if (!in.next())
+    fail(lmp, command + ": the equation of state is missing: absolut, relativ or Tait");
+  if (in.is("absolut")) {
+    state.kind = SD_SPH_ABSOLUT;
+    state.B = in.positive();
+  } else if (in.is("relativ") || in.is("Tait")) {
+    state.kind = in.is("Tait") ? SD_SPH_TAIT : SD_SPH_RELATIV;
+    state.B = in.positive();
+    state.rho0 = in.positive();
+    if (state.kind == SD_SPH_TAIT) state.gamma = in.positive();
+    if (in.more()) state.P0 = in.number();
+  } else
+    in.unknown();
+  if (in.next()) in.unknown();
+  peratom_flag = 1;
+  size_peratom_cols = 0;
+  peratom_freq = 1;
+}
+
+void FixSphPressure::init()
+{
+  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
+}

@@ -1,0 +1,22 @@
+/* fix sph/pressure: the equation of state. See doc/fix_sph_pressure.md. */
+#ifndef SD_FIX_SPH_PRESSURE_H
+#define SD_FIX_SPH_PRESSURE_H
+
+#include "fix.h"
+#include "sd_sph_pressure.h"
+
+namespace StokesDyn {
+
+class FixSphPressure : public LAMMPS_NS::Fix {
+ public:
+  static constexpr const char *STYLE = "sph/pressure";
+
+  FixSphPressure(LAMMPS_NS::LAMMPS *, int, char **);
+  int setmask() override { return 0; }
+  void init() override;
+
+  sd_sph_state state = {};
+};
+
+}    // namespace StokesDyn
+#endif

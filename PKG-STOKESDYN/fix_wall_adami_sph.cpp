@@ -1,0 +1,60 @@
+#include "fix_wall_adami_sph.h"
+
+#include "keywords.h"
+#include "sph.h"
+
+#include "atom.h"
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  const std::string command = "Fix " + std::string(STYLE);
+  Sph::require_atom_style(lmp, command);
+  Keywords in(lmp, command, words(narg, arg), 3);
+  while (in.next()) {
+    if (in.is("gravity"))
+      for (double &g : body_force) g = in.number();
+    else if (in.is("slip"))
+      slip = in.yes_no();
+    else
+      in.unknown();
+  }
+  dynamic_group_allow = 1;
+  vector_flag = 1;
+  size_vector = 3;
+  global_freq = 1;
+  extvector = 1;
+}
+
+int FixWallAdamiSph::setmask()
+{
+  return FixConst::POST_FORCE;
+}
+
+void FixWallAdamiSph::init()
+{
+  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
+}
+
+void FixWallAdamiSph::setup(int vflag)
+{
+  post_force(vflag);
+}
+
+/* The force of the fluid on the wall. */
+void FixWallAdamiSph::post_force(int /*vflag*/)
+{
+  for (double &t : total) t = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit)
+      for (int d = 0; d < 3; d++) total[d] += atom->f[i][d];
+}
+
+double FixWallAdamiSph::compute_vector(int k)
+{
+  double all;
+  MPI_Allreduce(&total[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}

@@ -1,0 +1,29 @@
+/* fix wall/adami/sph: fixed particles that carry the pressure of the fluid before them, with or without
+ * slip. See doc/fix_wall_adami_sph.md. */
+#ifndef SD_FIX_WALL_ADAMI_SPH_H
+#define SD_FIX_WALL_ADAMI_SPH_H
+
+#include "fix.h"
+
+namespace StokesDyn {
+
+class FixWallAdamiSph : public LAMMPS_NS::Fix {
+ public:
+  static constexpr const char *STYLE = "wall/adami/sph";
+
+  FixWallAdamiSph(LAMMPS_NS::LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void post_force(int) override;
+  double compute_vector(int) override;
+
+  double body_force[3] = {0.0, 0.0, 0.0};    // per mass
+  bool slip = false;
+
+ private:
+  double total[3] = {0.0, 0.0, 0.0};
+};
+
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,163 @@
+#include "fix_wall_sph.h"
+
+#include "keywords.h"
+#include "lammps_compat.h"
+#include "pair_sph_artvisc_tenscorr.h"
+#include "sd_sph_wall.h"
+#include "sph.h"
+
+#include "atom.h"
+#include "region.h"
+#include "update.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+FixRepulsiveWall::FixRepulsiveWall(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), command("Fix " + std::string(arg[2]))
+{
+  dynamic_group_allow = 1;
+  vector_flag = 1;
+  size_vector = 3;
+  global_freq = 1;
+  extvector = 1;
+}
+
+int FixRepulsiveWall::setmask()
+{
+  return FixConst::POST_FORCE;
+}
+
+void FixRepulsiveWall::setup(int vflag)
+{
+  post_force(vflag);
+}
+
+void FixRepulsiveWall::push(int i, const double normal[3], double size)
+{
+  for (int d = 0; d < 3; d++) {
+    atom->f[i][d] += size * normal[d];
+    on_wall[d] -= size * normal[d];
+  }
+}
+
+void FixRepulsiveWall::outside(int i)
+{
+  const double *x = atom->x[i];
+  Sph::fail_one(lmp,
+                command + ": step " + std::to_string(update->ntimestep) + ": atom " +
+                    std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
+                    text(x[2]) + " is on or behind the wall");
+}
+
+double FixRepulsiveWall::compute_vector(int k)
+{
+  double all;
+  MPI_Allreduce(&on_wall[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+// --- planes and the cylinder
+// -----------------------------------------------------------------------------------
+
+FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp, narg, arg)
+{
+  Keywords in(lmp, command, words(narg, arg), 3);
+  if (!in.next()) fail(lmp, command + ": the wall is missing: xplane, yplane, zplane or zcylinder");
+  if (in.is("zcylinder"))
+    radius = in.positive();
+  else if (in.is("xplane") || in.is("yplane") || in.is("zplane")) {
+    axis = in.is("xplane") ? 0 : in.is("yplane") ? 1 : 2;
+    for (int side = 0; side < 2; side++) {
+      has[side] = !(in.more() && in.peek() == "NULL");
+      if (has[side])
+        at[side] = in.number();
+      else
+        in.word();
+    }
+    if (!has[0] && !has[1]) in.refuse("both walls are NULL");
+    if (has[0] && has[1] && !(at[0] < at[1]))
+      in.refuse("lo " + text(at[0]) + " must be smaller than hi " + text(at[1]));
+  } else
+    in.unknown();
+  r0 = in.positive();
+  D = in.not_negative();
+  if (in.next()) in.unknown();
+}
+
+void FixWallSph::post_force(int /*vflag*/)
+{
+  for (double &f : on_wall) f = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *x = atom->x[i];
+    if (axis < 0) {
+      const double rho = sqrt(x[0] * x[0] + x[1] * x[1]), r = radius - rho;
+      if (r >= r0) continue;
+      if (!(r > 0.0)) outside(i);
+      if (rho == 0.0) continue;    // on the axis the wall pushes from all sides
+      const double inward[3] = {-x[0] / rho, -x[1] / rho, 0.0};
+      push(i, inward, sd_sph_repulsion(D, r0, r));
+      continue;
+    }
+    for (int side = 0; side < 2; side++) {
+      if (!has[side]) continue;
+      const double sign = side ? -1.0 : 1.0, r = sign * (x[axis] - at[side]);
+      if (r >= r0) continue;
+      if (!(r > 0.0)) outside(i);
+      double inward[3] = {0.0, 0.0, 0.0};
+      inward[axis] = sign;
+      push(i, inward, sd_sph_repulsion(D, r0, r));
+    }
+  }
+}
+
+// --- any region
+// ------------------------------------------------------------------------------------------------
+
+FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
+    FixRepulsiveWall(lmp, narg, arg)
+{
+  if (narg < 4) fail(lmp, command + ": the region is missing");
+  region_id = arg[3];
+  if (!Compat::region(domain, region_id))
+    fail(lmp, command + ": region '" + region_id + "' does not exist");
+  Keywords in(lmp, command, words(narg, arg), 3);
+  in.next();
+  r0 = in.positive();
+  D = in.not_negative();
+  if (in.next()) in.unknown();
+}
+
+void FixWallRegionSph::init()
+{
+  pair = Sph::require_pair(lmp, command);
+  region = Compat::region(domain, region_id);
+  if (!region) fail(lmp, command + ": region '" + region_id + "' does not exist");
+}
+
+/* Repulsion, and the pressure of a mirror particle at the wall. */
+void FixWallRegionSph::post_force(int /*vflag*/)
+{
+  for (double &f : on_wall) f = 0.0;
+  region->prematch();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *x = atom->x[i];
+    if (!region->match(x[0], x[1], x[2])) outside(i);
+    const int n = region->surface(x[0], x[1], x[2], r0);
+    for (int k = 0; k < n; k++) {
+      const auto &contact = region->contact[k];
+      const double r = contact.r;
+      if (!(r < r0)) continue;
+      if (!(r > 0.0)) outside(i);
+      const double normal[3] = {contact.delx / r, contact.dely / r, contact.delz / r};
+      const double m = Sph::mass(lmp, i), rho = atom->rho[i];
+      const double mirror =
+          -m * m * 2.0 * pair->pressure(i) / (rho * rho) * pair->dW_dr(atom->type[i], r);
+      push(i, normal, sd_sph_repulsion(D, r0, r) + mirror);
+    }
+  }
+}

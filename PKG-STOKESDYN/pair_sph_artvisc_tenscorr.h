@@ -1,0 +1,115 @@
+/* pair_style sph/artVisc/tensCorr: weakly compressible SPH. The pair style runs the whole step of SPH, in
+ * its one possible order (density,
+ * walls, pressure, force), whatever the order of the fixes in the input: these hold the settings of each
+ * part. See
+ * doc/pair_sph_artvisc_tenscorr.md. */
+#ifndef SD_PAIR_SPH_ARTVISC_TENSCORR_H
+#define SD_PAIR_SPH_ARTVISC_TENSCORR_H
+
+#include "pair.h"
+#include "sd_sph_pair.h"
+#include "sph.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+class FixNveSph;
+class FixSphDensityContinuity;
+class FixSphDensityCorr;
+class FixSphDensitySummation;
+class FixSphPressure;
+class FixWallAdamiSph;
+
+class PairSph : public LAMMPS_NS::Pair {
+ public:
+  static constexpr const char *STYLE = "sph/artVisc/tensCorr";
+
+  PairSph(LAMMPS_NS::LAMMPS *);
+  ~PairSph() override;
+  void settings(int, char **) override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  double init_one(int, int) override;
+  void compute(int, int) override;
+  void *extract(const char *, int &) override;
+  double memory_usage() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+
+  /* For the SPH fixes. Pressures are those of the latest force. */
+  double pressure(int i) const { return P[i]; }
+  double smoothing_length(int itype) const { return table[H][itype][itype]; }
+  double sound_speed(int itype) const { return table[C][itype][itype]; }
+  double viscosity() const { return mu; }
+  bool has_sound_speed(int itype) const;
+  const sd_sph_model &kernel() const { return model; }
+  void largest_approach(
+      std::vector<double>
+          &largest);    // of each owned particle: |h v.d / (r^2 + eta)|; not inside compute
+  double dW_dr(int itype, double r) const;    // W' for two particles of this type
+
+ private:
+  enum Parameter { H, C, ALPHA, BETA, DELTAP, NPARAMETERS };
+  static const char *const PARAMETER[NPARAMETERS];
+
+  // settings
+  std::vector<std::string> args;    // of pair_style, for restart files
+  double mu = 0.0;
+  double defaults[NPARAMETERS];
+  double **given[NPARAMETERS] = {},
+         **table[NPARAMETERS] = {};    // by pair_coeff (NaN: not given); in use
+  sd_sph_model model = {};
+  void parse();
+  void allocate();
+  double mixed(int parameter, int i, int j) const;
+
+  // the fixes that take part; set in init_style
+  std::vector<FixSphPressure *> pressures;
+  std::vector<FixNveSph *> integrators;
+  FixSphDensityContinuity *continuity = nullptr;
+  FixSphDensitySummation *summation = nullptr;
+  FixSphDensityCorr *filter = nullptr;
+  FixWallAdamiSph *wall = nullptr;
+  int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
+  bool leapfrog = false, all_own_vest = false, needs_velocity = false;
+  LAMMPS_NS::bigint dangerous_builds = 0;
+
+  // a step
+  sd_sph_list pairs = {}, raw = {};    // near ones, if a pass of the step has picked them; LAMMPS's
+  sd_sph_particles particles = {};
+  std::vector<sd_sph_coefficients> coefficients;
+  std::vector<double> x4, v4, f4, P, A, masses, rate, sums, each, gradient;
+  std::vector<int> classes, pool, near_count;
+  std::vector<int *> near;
+  bool used(int itype) const;
+  void prepare();
+  void estimate_velocities();
+  void density_step();
+  void diffuse();
+  void sum_densities();
+  void filter_densities();
+  void wall_particles();
+  void pressures_of_all();
+  void forces(bool rates);
+  void check_list();
+  [[noreturn]] void coincident();
+  void tally();
+
+  // communication of one array at a time: columns of rows stride apart
+  double *comm_array = nullptr;
+  int comm_columns = 0;
+  bool comm_maximum = false;
+  void forward(double *array, int columns);
+  void reverse(double *array, int columns, bool maximum = false);
+};
+
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,65 @@
+#include "sph.h"
+
+#include "keywords.h"
+#include "pair_sph_artvisc_tenscorr.h"
+
+#include "atom.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+
+#include <cstdlib>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+namespace Sph {
+
+  void require_atom_style(LAMMPS *lmp, const std::string &command)
+  {
+    if (!lmp->atom->rho_flag || !lmp->atom->vest_flag)
+      fail(lmp,
+           command +
+               ": the atom style has no density; use atom_style sph, which needs a LAMMPS with the "
+               "SPH package");
+  }
+
+  PairSph *require_pair(LAMMPS *lmp, const std::string &command)
+  {
+    auto *pair = lmp->force->pair
+        ? static_cast<PairSph *>(lmp->force->pair_match(PairSph::STYLE, 1))
+        : nullptr;
+    if (!pair) fail(lmp, command + ": there is no pair_style " + PairSph::STYLE);
+    return pair;
+  }
+
+  std::vector<Fix *> fixes(LAMMPS *lmp, const char *style)
+  {
+    std::vector<Fix *> found;
+    for (int i = 0; i < lmp->modify->nfix; i++)
+      if (strcmp(lmp->modify->fix[i]->style, style) == 0) found.push_back(lmp->modify->fix[i]);
+    return found;
+  }
+
+  int groups(const std::vector<Fix *> &fixes)
+  {
+    int bits = 0;
+    for (const auto *fix : fixes) bits |= fix->groupbit;
+    return bits;
+  }
+
+  void fail_one(LAMMPS *lmp, const std::string &message)
+  {
+    lmp->error->one(FLERR, message);
+    abort();    // error->one does not return
+  }
+
+  double mass(LAMMPS *lmp, int i)
+  {
+    const Atom *atom = lmp->atom;
+    return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  }
+
+}    // namespace Sph
+}    // namespace StokesDyn

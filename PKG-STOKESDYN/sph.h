@@ -1,0 +1,43 @@
+/* What the SPH styles share: the names by which they find each other, and checks of the scene. */
+#ifndef SD_SPH_H
+#define SD_SPH_H
+
+#include "fix.h"
+#include "lammps.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+class PairSph;
+
+namespace Sph {
+
+  /* Fails unless the atom style has the density and the velocity that SPH works with. */
+  void require_atom_style(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+
+  /* The pair style of the scene; fails without one. */
+  PairSph *require_pair(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+
+  /* All fixes of this style, in the order of the input. */
+  std::vector<LAMMPS_NS::Fix *> fixes(LAMMPS_NS::LAMMPS *lmp, const char *style);
+
+  template <class Style> std::vector<Style *> fixes(LAMMPS_NS::LAMMPS *lmp)
+  {
+    std::vector<Style *> found;
+    for (auto *fix : fixes(lmp, Style::STYLE)) found.push_back(static_cast<Style *>(fix));
+    return found;
+  }
+
+  /* Union of their group bits. */
+  int groups(const std::vector<LAMMPS_NS::Fix *> &fixes);
+
+  /* For errors that one rank alone has found. */
+  [[noreturn]] void fail_one(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
+
+  double mass(LAMMPS_NS::LAMMPS *lmp, int i);
+
+}    // namespace Sph
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""Runs dam_break; table and picture: the front against experiments. After: . build/env.sh"""
+import os
+import sys
+
+import numpy as np
+
+folder = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(folder))
+import sph_runs as S  # noqa: E402
+
+plt = S.pyplot()
+out, t = S.lmp(folder, "dam_break", 1)
+figure = plt.figure(figsize=(10, 5.2))
+grid = figure.add_gridspec(3, 2, width_ratios=(1.1, 1))
+front = figure.add_subplot(grid[:, 0])
+with open(os.path.join(folder, "..", "..", "unittest", "data", "sph", "dam_experiment.csv")) as f:
+    rows = [line.split(",") for line in f.read().split() if not line.startswith(("#", "source"))]
+table = "| experiment | T | Z | run | difference |\n|---|---|---|---|---|\n"
+for source, mark in (("koshizuka_oka_1996", "s"), ("martin_moyce_1952_a2.25in", "^")):
+    T, Z = np.array([[float(r[1]), float(r[2])] for r in rows if r[0] == source]).T
+    front.plot(T, Z, mark, color="k", mfc="none", label=source.replace("_", " "))
+    for a, b in zip(T, Z):
+        if 0 < a <= 3:
+            here = np.interp(a, t["v_T"], t["v_Z"])
+            table += "| %s | %.3f | %.3f | %.3f | %+.1f %% |\n" % (source.replace("_", " "), a, b, here, 100 * (here / b - 1))
+front.plot(t["v_T"], t["v_Z"], "-", label="run")
+front.set(xlabel=r"$T = t\sqrt{2g/L}$", ylabel=r"front $Z = x/L$", xlim=(0, 3.2))
+front.legend()
+shots = S.dump(os.path.join(out, "dam_break.dump"))
+for k in (1, 2, 3):
+    axis, shot = figure.add_subplot(grid[k - 1, 1]), shots[k]
+    wall = shot["type"] == 2
+    axis.scatter(shot["x"][wall], shot["y"][wall], s=2, color="0.7")
+    colours = axis.scatter(shot["x"][~wall], shot["y"][~wall], s=3, c=shot["f_eos"][~wall] / 1000, cmap="viridis", vmin=0, vmax=2.5)
+    axis.set(aspect="equal", xlim=(-0.03, 0.62), ylim=(-0.03, 0.31), xticks=[], yticks=[])
+    axis.text(0.35, 0.25, "T = %.1f" % k)
+    axis.grid(False)
+figure.colorbar(colours, ax=figure.axes[1:], label="pressure (kPa)", shrink=0.8)
+figure.savefig(os.path.join(out, "dam_break.png"), bbox_inches="tight")
+S.keep(folder, out, "dam_break.png", table)

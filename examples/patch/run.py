@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+"""Runs patch with and without tensCorr; table and picture: do particles clump? After: . build/env.sh"""
+import os
+import sys
+
+import numpy as np
+
+folder = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(folder))
+import sph_runs as S  # noqa: E402
+
+plt = S.pyplot()
+figure, axes = plt.subplots(1, 2, figsize=(10, 4.6))
+table = "| tensCorr | distance of the nearest neighbour over dx: smallest | 5 % are below | median |\n|---|---|---|---|\n"
+for epsilon, axis in ((0, axes[0]), (0.2, axes[1])):
+    out, t = S.lmp(folder, "patch", "epsilon%s" % epsilon, epsilon=epsilon)
+    shot = S.dump(os.path.join(out, "patch.%s.dump" % epsilon))[-1]
+    x = np.stack([shot["x"], shot["y"]], axis=1)
+    r = np.sqrt(((x[:, None] - x[None]) ** 2).sum(-1))
+    np.fill_diagonal(r, 9)
+    q = r.min(1) * 40
+    table += "| %s | %.2f | %.2f | %.2f |\n" % ("epsilon 0.2" if epsilon else "without", q.min(), np.quantile(q, 0.05), np.median(q))
+    colours = axis.scatter(x[:, 0], x[:, 1], c=shot["f_eos"], s=8, cmap="coolwarm", vmin=-0.3, vmax=0.3)
+    axis.set(aspect="equal", title="with tensCorr 0.2" if epsilon else "without tensCorr")
+    axis.grid(False)
+figure.colorbar(colours, ax=axes, label="pressure")
+figure.savefig(os.path.join(out, "patch.png"), bbox_inches="tight")
+S.keep(folder, out, "patch.png", table)

@@ -1,0 +1,91 @@
+"""What the scripts of the SPH examples share: running an input, reading its thermo output, profiles and dumps."""
+import os
+import subprocess
+import sys
+
+import numpy as np
+
+
+def lmp(folder, name, tag, **variables):
+    """Runs folder/in.name with lmp from the PATH (. build/env.sh) in build/examples/<name>; returns the thermo table: columns by name."""
+    top = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    out = os.path.join(top, "build", "examples", name)
+    os.makedirs(out, exist_ok=True)
+    log = "log.%s.%s" % (name, tag)
+    command = ["lmp", "-in", os.path.join(folder, "in." + name), "-log", log, "-screen", "none", "-nocite"]
+    for key, value in variables.items():
+        command += ["-var", key, str(value)]
+    print("[%s] %s" % (name, " ".join("%s=%s" % item for item in variables.items())), flush=True)
+    if subprocess.run(command, cwd=out).returncode:
+        sys.exit("the run failed; see %s" % os.path.join(out, log))
+    return out, thermo(os.path.join(out, log))
+
+
+def thermo(path):
+    names, rows = [], []
+    with open(path) as f:
+        for line in f:
+            words = line.split()
+            if words[:1] == ["Step"]:
+                names, rows = words, []
+            elif names and len(words) == len(names):
+                try:
+                    rows.append([float(w) for w in words])
+                except ValueError:
+                    pass
+    table = np.array(rows)
+    return {name: table[:, k] for k, name in enumerate(names)}
+
+
+def profiles(path):
+    """Blocks of a fix ave/chunk file: list of (step, rows) without empty layers. Columns: layer, coordinate, count, values."""
+    blocks = []
+    with open(path) as f:
+        for line in f:
+            words = line.split()
+            if line.startswith("#"):
+                continue
+            if len(words) == 3:
+                blocks.append((int(words[0]), []))
+            else:
+                blocks[-1][1].append([float(w) for w in words])
+    return [(step, np.array([r for r in rows if r[2] > 0])) for step, rows in blocks]
+
+
+def dump(path):
+    """Snapshots of a dump custom file: list of dictionaries of columns."""
+    with open(path) as f:
+        lines = f.read().splitlines()
+    begins = [i for i, line in enumerate(lines) if line.startswith("ITEM: ATOMS")]
+    shots = []
+    for i in begins:
+        names, rows = lines[i].split()[2:], []
+        for line in lines[i + 1:]:
+            if line.startswith("ITEM"):
+                break
+            rows.append([float(w) for w in line.split()])
+        table = np.array(rows)
+        shots.append({name: table[:, k] for k, name in enumerate(names)})
+    return shots
+
+
+def pyplot():
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    pyplot.rcParams.update({"figure.dpi": 110, "font.size": 10, "axes.grid": True, "grid.alpha": 0.3})
+    return pyplot
+
+
+def keep(folder, out, picture, table):
+    """Writes table.md beside the picture; with --update both go to the example's own folder too."""
+    with open(os.path.join(out, "table.md"), "w") as f:
+        f.write(table)
+    print(table)
+    if "--update" in sys.argv:
+        import shutil
+
+        for name in (picture, "table.md"):
+            shutil.copy(os.path.join(out, name), folder)

@@ -1,0 +1,31 @@
+#!/usr/bin/env python3
+"""Runs still_water with both kernels; table and picture: pressure over depth, kinetic energy over time. After: . build/env.sh"""
+import os
+import sys
+
+import numpy as np
+
+folder = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(folder))
+import sph_runs as S  # noqa: E402
+
+plt = S.pyplot()
+figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
+table = "| kernel, h / dx | slope of the pressure over mean rho g | kinetic energy, first quarter | last quarter | load on the floor over weight |\n|---|---|---|---|---|\n"
+for kernel, ratio, colour in (("wendland", 2.0, "C0"), ("wendland", 1.5, "C2"), ("cubicspline", 1.2, "C1")):
+    out, t = S.lmp(folder, "still_water", "%s.%s" % (kernel, ratio), kernel=kernel, ratio=ratio)
+    layer = S.profiles(os.path.join(out, "profile.%s.%s.txt" % (kernel, ratio)))[-1][1]
+    y, p, rho = layer[:, 1], layer[:, 3], layer[:, 4]
+    inside = (y > 0.05) & (y < 0.95)
+    slope = -np.polyfit(y[inside], p[inside], 1)[0] / (9.81 * rho[inside].mean())
+    e, n = t["c_kinetic"], len(t["Step"]) // 4
+    table += "| %s, %s | %.4f | %.1e J | %.1e J | %.3f |\n" % (kernel, ratio, slope, e[1:n + 1].mean(), e[-n:].mean(), -t["v_load"][-n:].mean())
+    left.plot(p / 1000, y, "o", ms=3.5, color=colour, label="%s, h = %s dx: %+.2f %%" % (kernel, ratio, 100 * (slope - 1)))
+    right.semilogy(t["Time"][1:], e[1:], color=colour)
+left.plot([0, 9.81], [1, 0], "k-", lw=1, label="hydrostatic")
+left.set(xlabel="pressure (kPa)", ylabel="height (m)")
+left.legend(fontsize=8)
+right.set(xlabel="time (s)", ylabel="kinetic energy of 500 kg (J)")
+figure.tight_layout()
+figure.savefig(os.path.join(out, "still_water.png"))
+S.keep(folder, out, "still_water.png", table)

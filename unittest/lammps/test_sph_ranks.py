@@ -1,0 +1,93 @@
+"""The same forces, densities and trajectories on any number of ranks, newton on or off; momentum is kept."""
+import numpy as np
+import pytest
+
+from sph_tools import jittered_lattice, mpirun, read_dump, write_data
+
+SCENE = """
+    units si
+    newton {newton}
+    atom_style sph
+    boundary p p p
+    dimension {dim}
+    read_data scene.data
+    mass 1 {m1}
+    mass 2 {m2}
+    neighbor 0.002 bin
+    neigh_modify delay 0 every 1
+    timestep 5e-5
+    pair_style sph/artVisc/tensCorr {kernel}
+    pair_coeff 1 1 h 0.012 c 20
+    pair_coeff 2 2 h 0.013 c 25
+    fix eos all sph/pressure Tait 60000 1000 7
+    {fixes}
+    dump d all custom {every} dump.{steps} id x y z vx vy vz fx fy fz f_eos
+    dump_modify d format float %.17g
+    run {steps}
+"""
+
+THREE = dict(dim=3, n=8, m1=0.001, m2=0.0013)
+TWO = dict(dim=2, n=12, m1=0.1, m2=0.13)
+CASES = {
+    "leapfrog": dict(THREE, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 tensCorr 0.2 0.01 viscosity 0.01",
+                     fixes="fix rho all sph/density/continuity\nfix move all nve/sph"),
+    "delta and filter": dict(TWO, kernel="cubicspline 0.012 artVisc 0.1 0.2 1.44e-6 tensCorr 0.2 0.01",
+                             fixes="fix rho all sph/density/continuity delta 0.1\nfix filter all sph/density/corr shepard every 7\n"
+                                   "fix move all nve/sph"),
+    "summation": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6", fixes="fix rho all sph/density/summation\nfix move all nve/sph"),
+    "fix sph": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6", fixes="fix rho all sph/density/continuity\nfix move all sph"),
+}
+COLUMNS = "x y z vx vy vz fx fy fz f_eos".split()
+
+
+def box(case):
+    L = 0.01 * CASES[case]["n"]
+    return np.array([L, L, L if CASES[case]["dim"] == 3 else 1.0])
+
+
+def scene(case, directory):
+    L, dim = box(case), CASES[case]["dim"]
+    x = jittered_lattice(dim, CASES[case]["n"], 0.01, 0.002) % L
+    k = 2 * np.pi / L
+    v = np.stack([0.7 * np.sin(k[1] * x[:, 1]), 0.6 * np.sin(k[0] * x[:, 0]), 0.3 * np.sin(k[2] * x[:, 2])], axis=1)
+    rho = 1000 + 30 * np.sin(k[0] * x[:, 0] + k[1] * x[:, 1])
+    types = 1 + (x[:, 0] < L[0] / 2)
+    lo = np.zeros(3) if dim == 3 else np.array([0, 0, -0.5])
+    write_data(directory / "scene.data", x, v, rho, types, lo, lo + L)
+    return x, v, types
+
+
+def one(case, steps, ranks, newton, directory):
+    directory.mkdir(exist_ok=True)
+    scene(case, directory)
+    done = mpirun(ranks, SCENE.format(newton=newton, steps=steps, every=max(steps, 1), **CASES[case]), directory)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return read_dump(directory / ("dump.%d" % steps))
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("steps", [0, 1, 100])
+def test_layout_does_not_matter(case, steps, tmp_path):
+    first = one(case, steps, 1, "on", tmp_path / "1on")
+    for ranks, newton in ((1, "off"), (2, "on"), (2, "off"), (4, "on"), (4, "off")):
+        other = one(case, steps, ranks, newton, tmp_path / ("%d%s" % (ranks, newton)))
+        for name in COLUMNS:
+            group = [c for c in COLUMNS if c[0] == name[0]]
+            scale = max(np.abs(first[c]).max() for c in group)
+            difference = np.abs(first[name] - other[name])
+            if name in "xyz":
+                L = box(case)["xyz".index(name)]
+                difference = np.minimum(difference, np.abs(difference - L))
+            assert difference.max() <= 1e-12 * scale, (ranks, newton, name)
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_momentum_is_kept(case, ranks, tmp_path):
+    """Against the largest impulse that a particle gets in the 100 steps."""
+    directory = tmp_path / "run"
+    end = one(case, 100, ranks, "on", directory)
+    x, v, types = scene(case, directory)
+    m = np.where(types == 1, CASES[case]["m1"], CASES[case]["m2"])
+    impulse = m[:, None] * (np.stack([end["vx"], end["vy"], end["vz"]], axis=1) - v)
+    assert np.abs(impulse.sum(0)).max() <= 1e-12 * np.abs(impulse).max()

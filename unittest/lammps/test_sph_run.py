@@ -1,0 +1,219 @@
+"""SPH in motion: sound waves, restart, walls, time step limits."""
+import numpy as np
+import pytest
+
+import sph_tools as T
+from sph_tools import by_id, evaluate, mpirun, pair_commands, random_scene, run, start, tait
+from sph_wave import wave
+
+
+def off(value, expected):
+    return np.abs(value - expected).max() / np.abs(expected).max()
+
+
+# --- time stepping -----------------------------------------------------------------------------------------------
+
+
+def test_sound_wave_does_not_grow(tmp_path):
+    """Leapfrog keeps the energy in a band of order (w dt)^2, here 1e-3, however long it runs; so the second half is no wider than the first."""
+    _, energy, _ = wave(str(tmp_path / "wave.data"), "nve/sph", 0.2, 20000, 40)
+    band = np.abs(energy / energy[0] - 1)
+    assert band.max() < 1.5e-3
+    assert band[20:].max() < 1.2 * band[:21].max()
+
+
+def test_sound_wave_with_fix_sph_of_lammps_grows(tmp_path):
+    """The scheme of fix sph is unstable without viscosity: what the leapfrog is for."""
+    _, energy, _ = wave(str(tmp_path / "wave.data"), "sph", 0.2, 1000, 2)
+    assert energy[-1] > 1.02 * energy[0]
+
+
+MOVING = random_scene() + "timestep 2e-5\n"
+FIXES = """
+fix eos all sph/pressure Tait 60000 1000 7
+fix density all sph/density/continuity delta 0.05
+fix filter all sph/density/corr shepard every 30
+fix move all nve/sph
+"""
+
+
+def scene(extra=""):
+    return MOVING.replace("fix eos", "#").replace("fix density", "#") + pair_commands("wendland", 1, 1, "viscosity 0.2") + FIXES + extra
+
+
+def state(lmp):
+    return by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "rho"), by_id(lmp, "f", 3)
+
+
+def trajectory(*parts):
+    lmp = start()
+    try:
+        for part in parts:
+            run(lmp, part)
+        return state(lmp)
+    finally:
+        lmp.close()
+
+
+@pytest.fixture(scope="module")
+def unbroken():
+    return trajectory(scene("run 100"))
+
+
+def same(a, b, limit=1e-12):
+    for name, one, other in zip("x v rho f".split(), a, b):
+        assert off(one, other) <= limit, name
+
+
+def test_run_in_pieces_is_one_run(unbroken):
+    same(trajectory(scene("run 37\nrun 0\nrun 63")), unbroken)
+
+
+@pytest.mark.parametrize("how", ["run 50\nwrite_restart {0}", "restart 50 {0}\nrun 60\nshell mv {0}.50 {0}"])
+def test_restart_without_pair_style(how, unbroken, tmp_path):
+    """The pair style and its coefficients come back from the file; the fixes are given again, as LAMMPS wants it."""
+    path = str(tmp_path / "restart")
+    trajectory(scene(how.format(path)))
+    again = "atom_modify map array\nread_restart %s\nneighbor 0.003 bin\nneigh_modify delay 0 every 1\ntimestep 2e-5\n" % path
+    same(trajectory(again + FIXES + "run 50"), unbroken)
+
+
+def test_restart_without_fixes_is_an_error(tmp_path):
+    path = str(tmp_path / "restart")
+    trajectory(scene("run 5\nwrite_restart " + path))
+    with pytest.raises(RuntimeError, match="no fix sph/pressure"):
+        trajectory("read_restart %s\nrun 5" % path)
+
+
+def test_new_velocities_are_seen_at_once():
+    """A velocity that changed between two runs replaces the estimate that the last run left."""
+    lmp = start()
+    try:
+        run(lmp, scene("run 10\nset atom 7 vx 2.5\nrun 0"))
+        types = by_id(lmp, "type") - 1
+        each = lambda values: np.array(values)[types]
+        rho = by_id(lmp, "rho")
+        F = evaluate("wendland", 3, by_id(lmp, "x", 3), by_id(lmp, "v", 3), rho, tait(rho), each(T.MASS), each(T.H),
+                     (each(T.ALPHA), each(T.BETA), each(T.C), T.ETA), (T.EPSILON, each(T.DELTAP)), 0.2)[0]
+        assert off(by_id(lmp, "f", 3), F) <= 1e-12
+    finally:
+        lmp.close()
+
+
+def test_particles_at_rest_change_density_only():
+    lmp = start()
+    try:
+        run(lmp, random_scene() + pair_commands("wendland", 0, 0) +
+            "\ngroup one type 1\ngroup two type 2\nvelocity two set 0 0 0\nfix a one nve/sph\nfix b two nve/sph/stationary\ntimestep 1e-5\nrun 0")
+        x, rho, types = by_id(lmp, "x", 3), by_id(lmp, "rho"), by_id(lmp, "type")
+        run(lmp, "run 10")
+        still = types == 2
+        assert np.abs(by_id(lmp, "x", 3) - x)[still].max() == 0.0
+        assert np.abs(by_id(lmp, "rho") - rho)[still].min() > 0.0
+        assert np.abs(by_id(lmp, "x", 3) - x)[~still].min() > 0.0
+    finally:
+        lmp.close()
+
+
+# --- walls ----------------------------------------------------------------------------------------------------------------
+
+
+def one_particle(x, wall):
+    """Force on one lone particle at x, and on the wall."""
+    lmp = start()
+    try:
+        run(lmp, """
+        units si
+        atom_style sph
+        boundary f f f
+        region box block -2 2 -2 2 -2 2 units box
+        create_box 1 box
+        create_atoms 1 single %.17g %.17g %.17g units box
+        mass 1 0.013
+        set group all sph/rho 1010
+        neighbor 0.1 bin
+        pair_style sph/artVisc/tensCorr cubicspline 0.12
+        pair_coeff * *
+        comm_modify cutoff 1
+        fix eos all sph/pressure Tait 60000 1000 7
+        fix density all sph/density/continuity
+        fix move all nve/sph
+        %s
+        run 0
+        """ % (*x, wall))
+        return by_id(lmp, "f", 3)[0], np.array([lmp.extract_fix("w", 0, 1, k) for k in range(3)])
+    finally:
+        lmp.close()
+
+
+def repulsion(D, r0, r):
+    return D * ((r0 / r) ** 4 - (r0 / r) ** 2)
+
+
+@pytest.mark.parametrize("wall, x, expected", [
+    ("xplane -1 1 0.3 5", (-0.8, 0, 0), (repulsion(5, 0.3, 0.2), 0, 0)),
+    ("xplane -1 1 0.3 5", (0.9, 0, 0), (-repulsion(5, 0.3, 0.1), 0, 0)),
+    ("xplane -1 1 0.3 5", (0.6, 0, 0), (0, 0, 0)),
+    ("yplane NULL 1 0.3 5", (0, 0.9, 0), (0, -repulsion(5, 0.3, 0.1), 0)),
+    ("zplane -1 NULL 0.3 5", (0, 0, -0.9), (0, 0, repulsion(5, 0.3, 0.1))),
+    ("zcylinder 1 0.3 5", (0.6 * 0.9, 0.8 * 0.9, 0.4), (-0.6 * repulsion(5, 0.3, 0.1), -0.8 * repulsion(5, 0.3, 0.1), 0)),
+    ("zcylinder 1 0.3 5", (0, 0, 0.4), (0, 0, 0)),
+])
+def test_wall_forces(wall, x, expected):
+    force, on_wall = one_particle(x, "fix w all wall/sph " + wall)
+    assert np.abs(force - expected).max() <= 1e-12 * 500
+    assert np.abs(force + on_wall).max() <= 1e-12
+
+
+def test_region_wall_adds_a_mirror_particle():
+    """In a corner of a block both walls push."""
+    r0, D, m, rho, h = 0.3, 5.0, 0.013, 1010.0, 0.12
+    expected = [0.0, 0.0, 0.0]
+    for axis, r in ((0, 0.2), (1, 0.1)):
+        dW = T.kernel("cubicspline", 3, np.array(r), h)[1]
+        expected[axis] = repulsion(D, r0, r) + m * m * 2 * tait(rho) / rho**2 * abs(dW)
+    force, _ = one_particle((-0.8, -0.9, 0), "region r block -1 1 -1 1 -1 1 units box\nfix w all wall/region/sph r 0.3 5")
+    assert np.abs(force - expected).max() <= 1e-12 * np.abs(expected).max()
+
+
+# --- time step limits ---------------------------------------------------------------------------------------------------
+
+
+def check(lmp):
+    return lmp.extract_fix("c", 0, 1, 0), lmp.extract_fix("c", 0, 1, 1), lmp.extract_fix("c", 0, 0)
+
+
+@pytest.mark.parametrize("mu", [0.0, 500.0])
+def test_step_limit_is_that_of_the_worst_particle(mu):
+    lmp = start()
+    try:
+        run(lmp, random_scene() + pair_commands("wendland", 1, 0, "viscosity %g" % mu if mu else "") +
+            "\nfix move all nve/sph\ntimestep 1e-9\nfix c all check/timestep/sph 1 0.5\nrun 0")
+        x, v, rho, types = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "rho"), by_id(lmp, "type") - 1
+        h, c = np.array(T.H)[types], np.array(T.C)[types]
+        d, u = x[:, None] - x[None], v[:, None] - v[None]
+        r2, vd, hm = (d**2).sum(-1), (d * u).sum(-1), (h[:, None] + h[None]) / 2
+        approach = np.where(r2 < 4 * hm**2, np.abs(hm * vd / (r2 + T.ETA)), 0).max(1)
+        limit = h / (c + approach)
+        if mu:
+            limit = np.minimum(limit, h**2 * rho / (8 * mu))
+        smallest, worst, ratio = check(lmp)
+        assert abs(smallest / limit.min() - 1) < 1e-12
+        assert worst == 1 + np.argmin(limit)
+        assert abs(ratio * limit.min() / 1e-9 - 1) < 1e-12
+    finally:
+        lmp.close()
+
+
+def test_step_limit_on_any_number_of_ranks(tmp_path):
+    lines = set()
+    for ranks in (1, 2, 4):
+        for newton in ("on", "off"):
+            done = mpirun(ranks, random_scene(newton) + pair_commands("wendland", 1, 0) +
+                          "\nfix move all nve/sph\ntimestep 1e-4\nfix c all check/timestep/sph 10 0.1 warn\nthermo 10\n"
+                          "thermo_style custom step f_c f_c[1] f_c[2]\nrun 20", tmp_path)
+            assert done.returncode == 0, done.stdout
+            warnings = [line.split("(")[0] for line in done.stdout.splitlines() if "more than 0.1" in line]
+            assert len(warnings) == 3
+            lines.add("\n".join(warnings))
+    assert len(lines) == 1
