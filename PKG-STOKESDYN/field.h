@@ -25,6 +25,7 @@ class Field {
   void init(LAMMPS_NS::LAMMPS *lmp, const std::string &what);
   /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms outside the group. */
   void evaluate(LAMMPS_NS::LAMMPS *lmp, int igroup, double *out, int stride);
+  double evaluate(LAMMPS_NS::LAMMPS *lmp);            // of a number or an equal-style variable
 
  private:
   double value = 0.0;

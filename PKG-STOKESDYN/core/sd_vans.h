@@ -98,6 +98,20 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, cons
  *   profile [5][N]: phi, vx, vy, vz, drag per grain */
 void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums, double *profile);
 
+/* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value. What belongs to the part of a sphere outside
+ * the mesh goes to the lowest or the highest slice, so that the sum over slices grows by the sum over spheres. V [N] scratch. */
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take, const double *value,
+                    double *out, double *V);
+
+/* The integral of a density per volume of grains over each sphere: out [n] = sum over slices of V_k density_k, times weight (or 1). */
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight, const unsigned char *take,
+                    const double *density, double *out, double *V);
+
+/* Share of sphere i's volume that counts when n spheres that overlap are one body: its part of the union, cut off from the others
+ * by their radical planes, over its volume. The sum over the spheres is the volume of the union: exact while no three spheres
+ * overlap in one place, to 1e-6 of the sphere otherwise. x [n][3], a [n]. */
+double sd_vans_union_share(int n, const double *x, const double *a, int i);
+
 /* ---- closures -------------------------------------------------------------------------------------------------------------- */
 
 typedef enum {

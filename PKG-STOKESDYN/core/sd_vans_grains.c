@@ -221,3 +221,50 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
     for (int k = SD_VANS_VX; k < SD_VANS_NSUM; k++) profile[(long) k * N + n] = V != 0.0 ? sum[k] / V : 0.0;
   }
 }
+
+static int slices_of(const sd_vans_mesh *mesh, int point, double z, double a, int *first, double *V)
+{
+  if (!point) return sd_vans_slices(mesh, SD_VANS_CONSISTENT, z, a, first, V, mesh->ncell);
+  const int p = sd_vans_slice_of(mesh, z);
+  if (p < 0 || p >= mesh->ncell) return 0;
+  *first = p;
+  V[0] = 4.0 / 3.0 * PI * a * a * a;
+  return 1;
+}
+
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take, const double *value,
+                    double *out, double *V)
+{
+  const int N = mesh->ncell;
+  for (int i = 0; i < n; i++) {
+    if (take && !take[i]) continue;
+    const double z = x[3 * (long) i + 2], ai = a[i], height = z - mesh->z_ref, all = 4.0 / 3.0 * PI * ai * ai * ai;
+    int first = 0;
+    const int count = slices_of(mesh, point, z, ai, &first, V);
+    double inside = 0.0;
+    for (int k = 0; k < count; k++) inside += V[k];
+    const double below = point ? (height < 0.0 ? all : 0.0) : sd_vans_slice_volume(ai, -ai, -height);
+    double rest = value[i];
+    for (int k = 0; k < count; k++) {
+      const double part = value[i] * (V[k] / all);
+      out[first + k] += part;
+      rest -= part;
+    }
+    const double part = inside + below >= all * (1.0 - 1e-12) ? rest : value[i] * (below / all);
+    out[0] += part;
+    out[N - 1] += rest - part;
+  }
+}
+
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight, const unsigned char *take,
+                    const double *density, double *out, double *V)
+{
+  for (int i = 0; i < n; i++) {
+    out[i] = 0.0;
+    if (take && !take[i]) continue;
+    int first = 0;
+    const int count = slices_of(mesh, point, x[3 * (long) i + 2], a[i], &first, V);
+    for (int k = 0; k < count; k++) out[i] += V[k] * density[first + k];
+    if (weight) out[i] *= weight[i];
+  }
+}
