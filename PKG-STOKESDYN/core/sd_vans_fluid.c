@@ -1,4 +1,5 @@
 #include "sd_vans.h"
+#include "sd_vans_wall.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -45,86 +46,6 @@ int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
   return n;
 }
 
-/* ---- side walls ------------------------------------------------------------------------------------------------------------ */
-
-double sd_vans_wall_friction(sd_vans_rules rules, double Re, int *rounds)
-{
-  double f = 1.0 / (0.32 * 0.32);
-  for (int k = 1; k <= 100; k++) {
-    const double root = 2.0 * (rules == SD_VANS_YADE ? log(Re * sqrt(f)) : log10(Re * sqrt(f))) + 0.32, next = 1.0 / (root * root);
-    const double change = fabs(next - f) / f;
-    f = next;
-    if (rounds) *rounds = k;
-    if (change < 1e-2) return f;
-  }
-  return 0.0;
-}
-
-/* The same from a table. The substitution costs five logarithms in every slice and step; f is a smooth function of Re but for steps where
- * the number of rounds changes. So: every binade of Re in SEGMENTS equal parts, in each a polynomial through DEGREE + 1 Chebyshev
- * points, kept if it gives f to 1e-11 and the number of rounds is one and the same; else the substitution itself. */
-enum { SEGMENTS = 32, DEGREE = 5, LOWEST = -34, HIGHEST = 40, NTABLE = (HIGHEST - LOWEST) * SEGMENTS };
-
-typedef struct {
-  double coefficient[DEGREE + 1];                /* of t in [-1, 1] */
-  double middle, scale;                          /* t = (Re - middle) scale; scale 0: no polynomial here */
-} wall_segment;
-
-static double evaluate(const wall_segment *s, double Re)
-{
-  const double t = (Re - s->middle) * s->scale;
-  double value = s->coefficient[DEGREE];
-  for (int k = DEGREE - 1; k >= 0; k--) value = value * t + s->coefficient[k];
-  return value;
-}
-
-static void fit(sd_vans_rules rules, double lo, double hi, wall_segment *s)
-{
-  double t[DEGREE + 1], divided[DEGREE + 1];
-  int rounds, rounds_low, rounds_high;
-  sd_vans_wall_friction(rules, lo, &rounds_low);
-  sd_vans_wall_friction(rules, hi, &rounds_high);
-  int smooth = rounds_low == rounds_high;
-  s->middle = 0.5 * (lo + hi);
-  s->scale = 2.0 / (hi - lo);
-  for (int k = 0; k <= DEGREE; k++) {
-    t[k] = cos(PI * (k + 0.5) / (DEGREE + 1));
-    divided[k] = sd_vans_wall_friction(rules, s->middle + t[k] / s->scale, &rounds);
-    smooth = smooth && rounds == rounds_low;
-  }
-  /* Newton's divided differences, then to powers of t. */
-  for (int order = 1; order <= DEGREE; order++)
-    for (int k = DEGREE; k >= order; k--) divided[k] = (divided[k] - divided[k - 1]) / (t[k] - t[k - order]);
-  for (int k = 0; k <= DEGREE; k++) s->coefficient[k] = 0.0;
-  for (int k = DEGREE; k >= 0; k--) {
-    for (int m = DEGREE; m > 0; m--) s->coefficient[m] = s->coefficient[m - 1] - t[k] * s->coefficient[m];
-    s->coefficient[0] = divided[k] - t[k] * s->coefficient[0];
-  }
-  for (int k = 0; k <= 2 * DEGREE && smooth; k++) {
-    const double Re = lo + (hi - lo) * k / (2.0 * DEGREE), f = sd_vans_wall_friction(rules, Re, 0);
-    smooth = fabs(evaluate(s, Re) - f) <= 1e-11 * f;
-  }
-  if (!smooth) s->scale = 0.0;
-}
-
-static void build_wall_table(sd_vans_rules rules, wall_segment *table)
-{
-  for (int k = 0; k < NTABLE; k++) {
-    const double binade = ldexp(1.0, LOWEST + k / SEGMENTS);
-    fit(rules, binade * (1.0 + (double) (k % SEGMENTS) / SEGMENTS), binade * (1.0 + (double) (k % SEGMENTS + 1) / SEGMENTS), &table[k]);
-  }
-}
-
-/* Exponent and leading bits of the mantissa are the place in the table. */
-static inline double wall_friction(const wall_segment *table, sd_vans_rules rules, double Re)
-{
-  uint64_t bits;
-  memcpy(&bits, &Re, sizeof bits);
-  const int64_t k = (int64_t) (bits >> 47) - (int64_t) (1023 + LOWEST) * SEGMENTS;
-  if (k < 0 || k >= NTABLE || table[k].scale == 0.0) return sd_vans_wall_friction(rules, Re, 0);
-  return evaluate(&table[k], Re);
-}
-
 /* ---- momentum -------------------------------------------------------------------------------------------------------------- */
 
 /* Per node j: A_j viscous conductance nu/h, T_j = eN nut/h. Per slice j the row
@@ -137,7 +58,7 @@ struct sd_vans_solver {
   double *wall_cd, *wall_cr;                     /* cd and cr with the side walls of the step */
   double *sum;                                   /* over steps: U' */
   double *memory;
-  wall_segment *table[2];                        /* of either rules, made when first needed */
+  sd_vans_wall_segment *table[2];                       /* of either rules, made when first needed */
 };
 
 sd_vans_solver *sd_vans_solver_create(int ncell)
@@ -280,13 +201,13 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
 
   const double *cd = s->cd, *cr = s->cr;
   const double wall_factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0, Re_factor = fluid->width / nu0;
-  const wall_segment *table = 0;
+  const sd_vans_wall_segment *table = 0;
   if (wall_factor != 0.0) {
-    wall_segment **slot = &s->table[fluid->rules];
+    sd_vans_wall_segment **slot = &s->table[fluid->rules];
     if (!*slot) {
-      *slot = malloc(NTABLE * sizeof **slot);
+      *slot = malloc(SD_VANS_WALL_TABLE * sizeof **slot);
       if (!*slot) return SD_ENOMEMORY;
-      build_wall_table(fluid->rules, *slot);
+      sd_vans_wall_table(fluid->rules, *slot);
     }
     table = *slot;
     cd = s->wall_cd;
@@ -307,7 +228,7 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
     if (table) {
       double old_half = 0.0;
       for (int j = 0; j < M; j++) {
-        const double speed = fabs(U[j + 1]), f = wall_friction(table, fluid->rules, fmax(1e-10, speed * Re_factor));
+        const double speed = fabs(U[j + 1]), f = sd_vans_wall_lookup(table, fluid->rules, fmax(1e-10, speed * Re_factor));
         const double K = s->ce[j] * wall_factor * f * (yade ? speed * speed : speed), old = K * (yade ? 1.0 : U[j + 1]);
         s->wall[j] = K;
         s->wall_cd[j] = s->cd[j] + K;

@@ -108,3 +108,47 @@ def dump_rows(path):
     start = max(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     rows = np.array([[float(word) for word in line.split()] for line in lines[start + 1:] if line.strip()])
     return rows[np.argsort(rows[:, 0])]
+
+
+BED = """
+plugin load stokesdynplugin.so
+units si
+atom_style sphere
+boundary p p f
+newton on
+comm_modify vel yes
+atom_modify map array
+{processors}
+region box block 0 0.03 0 0.03 0 0.08
+create_box 2 box
+{lattice}
+pair_style gran/hooke/history 20000 NULL 0 NULL 0.4 {damp}
+pair_coeff * *
+neighbor 0.0012 bin
+timestep 1e-5
+fix gravity all gravity 9.81 vector 0.05 0 -0.99875
+group bed type 1
+group mobile type 2
+fix vans {group} hydro/vans {every} {vans}
+fix move mobile nve/sphere
+"""
+
+
+def bed_script(vans, every=20, group="mobile", layers=4, damp=0, processors="", seed=5):
+    """Fixed spheres on the bottom and layers of loose ones of two sizes above it, given a push; the stream as the keywords say."""
+    rng = np.random.default_rng(seed)
+    lines, atom = [], 0
+    d = 0.006
+    for layer in range(layers + 1):
+        for i in range(4):
+            for j in range(4):
+                atom += 1
+                x, y = (0.00375 + 0.0075 * i) % 0.03, (0.00375 + 0.0075 * j) % 0.03
+                z = 0.0031 + 0.0066 * layer
+                if layer:
+                    x, y, z = np.array([x, y, z]) + rng.uniform(-0.0006, 0.0006, 3)
+                diameter = d if layer == 0 or rng.random() < 0.5 else 0.8 * d
+                v = rng.uniform(-0.1, 0.1, 3) + [0.1 * layer, 0, 0] if layer else np.zeros(3)
+                lines.append("create_atoms %d single %.17g %.17g %.17g units box" % (1 if layer == 0 else 2, x, y, z))
+                lines.append("set atom %d diameter %.17g density 2500 vx %.17g vy %.17g vz %.17g" % (atom, diameter, *v))
+    return BED.format(vans=vans, every=every, group=group, lattice="\n".join(lines), damp=damp, processors=processors)
