@@ -24,3 +24,7 @@ endforeach()
 add_plugin(wrongversionplugin)
 set_target_properties(wrongversionplugin PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/wrong)
 target_compile_definitions(wrongversionplugin PRIVATE SD_LAMMPS_NUM=19990101)
+
+# Timings of fix hydro/vans; not a test.
+add_executable(bench_vans ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/bench/bench_vans.c)
+target_link_libraries(bench_vans PRIVATE stokesdyn_core)

@@ -55,7 +55,7 @@ struct sd_vans_solver {
   double *cl, *cu, *cd, *ce, *cr;                /* constant in a solve */
   double *mix, *gap;                             /* node: l^2/h, eN/h */
   double *nut, *T, *wall, *c, *g;                /* of a step */
-  double *wall_cd, *wall_cr;                     /* cd and cr with the side walls of the step */
+  double *wall_scale, *wall_cd, *wall_cr;        /* e dz/width coef/8; cd and cr with the side walls of the step */
   double *sum;                                   /* over steps: U' */
   double *memory;
   sd_vans_wall_segment *table[2];                       /* of either rules, made when first needed */
@@ -65,7 +65,7 @@ sd_vans_solver *sd_vans_solver_create(int ncell)
 {
   sd_vans_solver *s = malloc(sizeof *s);
   const size_t n = (size_t) ncell + 1;
-  double *m = calloc(15 * n, sizeof(double));
+  double *m = calloc(16 * n, sizeof(double));
   if (!s || !m) {
     free(s);
     free(m);
@@ -74,7 +74,7 @@ sd_vans_solver *sd_vans_solver_create(int ncell)
   s->ncell = ncell;
   s->memory = m;
   s->table[0] = s->table[1] = 0;
-  double **arrays[] = {&s->cl, &s->cu, &s->cd, &s->ce, &s->cr, &s->mix, &s->gap, &s->nut, &s->T, &s->wall, &s->c, &s->g, &s->wall_cd, &s->wall_cr, &s->sum};
+  double **arrays[] = {&s->cl, &s->cu, &s->cd, &s->ce, &s->cr, &s->mix, &s->gap, &s->nut, &s->T, &s->wall, &s->c, &s->g, &s->wall_scale, &s->wall_cd, &s->wall_cr, &s->sum};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -170,6 +170,20 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
   for (; t < M; t++) x[t] = up = g[t] + c[t] * up;
 }
 
+/* Side walls: half of the friction on U', half on U. Inlined for either rules. */
+static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segment *table, sd_vans_rules rules, double Re_factor, const double *U)
+{
+  const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
+  double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
+  for (int j = 0; j < M; j++) {
+    const double u = U[j + 1], speed = fabs(u), f = sd_vans_wall_lookup(table, rules, speed * Re_factor);
+    const double K = scale[j] * f * (rules == SD_VANS_YADE ? speed * speed : speed);
+    wall[j] = K;
+    wall_cd[j] = cd[j] + K;
+    wall_cr[j] = cr[j] - (rules == SD_VANS_YADE ? K : K * u);
+  }
+}
+
 sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, int64_t nsteps, double dt, const double *phi,
                         const double *vx, const double *b, const double *length, const double *source, double *U, double *nut, double *stress,
                         double *moved, double *shear, sd_vans_impulse *impulse)
@@ -210,6 +224,7 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
       sd_vans_wall_table(fluid->rules, *slot);
     }
     table = *slot;
+    for (int j = 0; j < M; j++) s->wall_scale[j] = s->ce[j] * wall_factor;
     cd = s->wall_cd;
     cr = s->wall_cr;
   }
@@ -224,18 +239,11 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
     const double T_top = s->T[M], T_low = s->T[0];
     if (fluid->driven) s->cr[M - 1] = cr_top + (cu_top + T_top) * fluid->u_top;
     else s->T[M] = 0.0;
-    /* Half of the friction on U', half on U. */
     if (table) {
-      double old_half = 0.0;
-      for (int j = 0; j < M; j++) {
-        const double speed = fabs(U[j + 1]), f = sd_vans_wall_lookup(table, fluid->rules, fmax(1e-10, speed * Re_factor));
-        const double K = s->ce[j] * wall_factor * f * (yade ? speed * speed : speed), old = K * (yade ? 1.0 : U[j + 1]);
-        s->wall[j] = K;
-        s->wall_cd[j] = s->cd[j] + K;
-        s->wall_cr[j] = s->cr[j] - old;
-        old_half += old;
-      }
-      wall_sum += old_half;
+      if (yade) wall_rows(s, M, table, SD_VANS_YADE, Re_factor, U);
+      else wall_rows(s, M, table, SD_VANS_CONSISTENT, Re_factor, U);
+      if (moved)
+        for (int j = 0; j < M; j++) wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
     }
 
     solve_rows(s, M, cd, cr, U);

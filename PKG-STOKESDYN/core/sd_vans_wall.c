@@ -7,6 +7,7 @@ static const double PI = 3.14159265358979323846;
 double sd_vans_wall_friction(sd_vans_rules rules, double Re, int *rounds)
 {
   double f = 1.0 / (0.32 * 0.32);
+  if (!(Re > 1e-10)) Re = 1e-10;
   for (int k = 1; k <= 100; k++) {
     const double root = 2.0 * (rules == SD_VANS_YADE ? log(Re * sqrt(f)) : log10(Re * sqrt(f))) + 0.32, next = 1.0 / (root * root);
     const double change = fabs(next - f) / f;

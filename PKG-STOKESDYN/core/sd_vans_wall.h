@@ -31,13 +31,13 @@ static inline double sd_vans_wall_polynomial(const sd_vans_wall_segment *s, doub
   return (c[0] + c[1] * t) + t2 * ((c[2] + c[3] * t) + t2 * (c[4] + c[5] * t));
 }
 
-/* Exponent and leading bits of the mantissa are the place in the table. */
+/* Exponent and leading bits of the mantissa are the place in the table. Re >= 0. */
 static inline double sd_vans_wall_lookup(const sd_vans_wall_segment *table, sd_vans_rules rules, double Re)
 {
   uint64_t bits;
   memcpy(&bits, &Re, sizeof bits);
-  const int64_t k = (int64_t) (bits >> (52 - SD_VANS_WALL_BITS)) - ((int64_t) (1023 + SD_VANS_WALL_LOWEST) << SD_VANS_WALL_BITS);
-  if (k < 0 || k >= SD_VANS_WALL_TABLE || table[k].scale == 0.0) return sd_vans_wall_friction(rules, Re, 0);
+  const uint64_t k = (bits >> (52 - SD_VANS_WALL_BITS)) - ((uint64_t) (1023 + SD_VANS_WALL_LOWEST) << SD_VANS_WALL_BITS);    /* huge if Re is below the table */
+  if (k >= SD_VANS_WALL_TABLE || table[k].scale == 0.0) return sd_vans_wall_friction(rules, Re, 0);
   return sd_vans_wall_polynomial(&table[k], Re);
 }
 
