@@ -1,8 +1,7 @@
 """fix hydro/vans in runs: momentum, ranks, restart, fluctuations."""
 import numpy as np
 import pytest
-from vans_helper import Scene, bed_script, dump_rows, run_lmp, write_columns
-from lammps import lammps
+from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
 
 N, MESH = 201, "mesh 201 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
 
@@ -12,19 +11,12 @@ def profile(tmp_path):
     return write_columns(tmp_path / "u.txt", np.concatenate([[0], 0.6 * np.arange(1, N + 1) / N]))
 
 
-def scene(script):
-    s = Scene.__new__(Scene)
-    s.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    s.do(*[line for line in script.split("\n") if line.strip()])
-    return s
-
-
 @pytest.mark.parametrize("keywords", ["", "sidewall 0.03 1", "surface speed 0.7 viscosity einstein", "turbulence none pressure_gradient -300 viscosity power",
                                       "fluctuation correlated 7 0.01 renewal 0.0004", "lift 0.2", "mesh 16 0.004 0 profile zero grains point"])
 def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
     """Mobile grains + water + what is on its way = start + what came from outside - what the fixed bed took, by drag and by contacts. Velocity Verlet
     gives the force of the first and the last step half a time step each. 1e-10 of all that was moved."""
-    s = scene(bed_script(f"{MESH} profile file {profile} {keywords}"))
+    s = Scene.of(bed_script(f"{MESH} profile file {profile} {keywords}"))
     s.do("unfix gravity")
 
     def of_type(name, k, wanted):

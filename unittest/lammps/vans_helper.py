@@ -4,6 +4,7 @@ import os
 import subprocess
 
 import numpy as np
+import pytest
 from lammps import LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_VECTOR, lammps
 
 TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "vans")
@@ -42,11 +43,32 @@ def write_columns(path, *columns):
     return str(path)
 
 
+OPEN = []
+
+
+@pytest.fixture(autouse=True)
+def close_scenes():
+    """A LAMMPS that a failed test leaves behind would keep the plugin from the next."""
+    yield
+    while OPEN:
+        OPEN.pop().close()
+
+
 class Scene:
     """A LAMMPS with the plugin, a box, and spheres where they are asked for."""
 
+    @classmethod
+    def of(cls, script):
+        """The scene of a whole script."""
+        scene = cls.__new__(cls)
+        scene.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+        OPEN.append(scene.lmp)
+        scene.do(*[line for line in script.split("\n") if line.strip()])
+        return scene
+
     def __init__(self, box=(0, 0.02, 0, 0.02, -0.02, 0.15), boundary="p p f", comm=None, extra=(), style="sphere", grid=None):
         self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
+        OPEN.append(self.lmp)
         self.do("plugin load stokesdynplugin.so", "units si", "atom_style " + style, "boundary " + boundary, "newton on", "atom_modify map array",
                 "comm_modify vel yes", *(["processors " + grid] if grid else []), "region box block " + " ".join(str(b) for b in box), "create_box 1 box",
                 "pair_style zero 0.01", "pair_coeff * *", "neighbor 0.001 bin", "timestep 1e-5", "mass 1 1" if style == "atomic" else "thermo 1000000", *extra)
@@ -79,6 +101,7 @@ class Scene:
         return np.array(values[:n])[order]
 
     def close(self):
+        OPEN.remove(self.lmp)
         self.lmp.close()
 
 
