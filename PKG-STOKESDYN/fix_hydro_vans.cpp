@@ -40,7 +40,7 @@ FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   set.parse(lmp, args, 4);
   if (has_grains() && !atom->radius_flag) fail(lmp, COMMAND + ": an atom style with radius is needed (sphere), unless couple fluid");
 
-  if (set.conserve) drag_column = columns, columns += 3;
+  if (set.conserve) drag_column = columns, columns += MOMENTUM_COLUMNS;
   if (set.overlap_once) weight_column = columns, columns += 1;
   if (set.fluctuation != VansSettings::NO_FLUCTUATION) eddy_column = columns, columns += 2;
 
@@ -389,56 +389,67 @@ void FixHydroVans::average()
   stream->take_averages(area(), all, class_sums);
 }
 
-/* What the grains got from the water since the last coupling, per slice: those of the group as booked step by step; the others, which a fixed bed
- * is made of, as the law has it now. */
-std::vector<double> FixHydroVans::impulses(double T)
+/* What the grains got from the water since the last coupling: those of the group as booked step by step; the others, which a fixed bed is made
+ * of, as the law has it now. */
+VansStream::Given FixHydroVans::impulses(double T)
 {
   const size_t N = stream->ncell();
   const int n = atom->nlocal;
-  std::vector<double> mine(N + 1, 0.0), all(N + 1), value(n + 1);
-  for (int i = 0; i < n; i++) {
-    value[i] = memo[i][drag_column + IMPULSE];
-    memo[i][drag_column + IMPULSE] = 0.0;
-  }
+  std::vector<double> mine(N + 2, 0.0), all(N + 2), value(n + 1);
   work.resize(N + 1);
   if (n > 0) {
     take.assign(n, 0);
-    for (int i = 0; i < n; i++) take[i] = (atom->mask[i] & groupbit) && atom->radius[i] > 0.0;
-    sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), mine.data(), work.data());
+    for (int i = 0; i < n; i++) {
+      double *row = memo[i] + drag_column;
+      take[i] = (atom->mask[i] & groupbit) && atom->radius[i] > 0.0;
+      // The force of the last coupling's step acted for another half step.
+      value[i] = row[IMPULSE] - ((T - 0.5 * update->dt) * row[SHEAR] + 0.5 * update->dt * row[PAST]);
+      if (take[i]) mine[N] += row[IMPULSE];
+      row[IMPULSE] = 0.0;
+    }
+    sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), stream->share().data(), mine.data(), work.data());
     select(average_bit, true);
     if (std::find(take.begin(), take.end(), 1) != take.end()) {
       sd_vans_forces(&stream->mesh, &stream->law, stream->U.data(), stream->hindrance.data(), n, atom->x[0], atom->v[0], atom->radius, fluctuations(),
                      take.data(), F.data(), drag_x.data());
       for (int i = 0; i < n; i++) {
-        value[i] = T * (drag_x[i] + memo[i][drag_column + SHEAR]);
-        if (take[i]) mine[N] += value[i];
+        value[i] = T * drag_x[i];
+        if (take[i]) mine[N + 1] += value[i] + T * memo[i][drag_column + SHEAR];
       }
-      sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), mine.data(), work.data());
+      sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), stream->share().data(), mine.data(), work.data());
     }
   }
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  VansStream::Given given;
+  given.all = all[N] + all[N + 1];
+  given.others = all[N + 1];
+  given.drag.assign(all.begin(), all.begin() + N);
+  return given;
 }
 
 void FixHydroVans::couple()
 {
   const double T = set.period > 0.0 ? set.period : elapsed;
   if (!(T > 0.0)) return;
-  std::vector<double> given;
+  VansStream::Given given;
   if (set.conserve && elapsed > 0.0) {
     given = impulses(elapsed);
-    for (double &value : given) value *= T / elapsed;      // if the water is given another time than the grains
-    stream->ledger.others += given.back();
-    given.pop_back();
+    const double ratio = T / elapsed;                 // if the water is given another time than the grains
+    for (double &value : given.drag) value *= ratio;
+    given.all *= ratio;
+    given.others *= ratio;
   }
   stream->solve(area(), T, given);
-  if (given.empty()) return;
+  if (given.drag.empty()) return;
   const int n = atom->nlocal;
   if (n == 0) return;
   select(average_bit | groupbit);
   std::vector<double> shear(n);
   sd_vans_gather(&stream->mesh, set.point, n, atom->x[0], atom->radius, weights(), take.data(), stream->shear_density.data(), shear.data(), work.data());
-  for (int i = 0; i < n; i++) memo[i][drag_column + SHEAR] = shear[i];
+  for (int i = 0; i < n; i++) {
+    memo[i][drag_column + PAST] = memo[i][drag_column + SHEAR];
+    memo[i][drag_column + SHEAR] = shear[i];
+  }
 }
 
 /* Velocity fluctuations: new ones when their time is over. The random numbers depend on seed, atom ID and the number of the renewal. */

@@ -45,8 +45,13 @@ class VansStream {
 
   /* New averages from sums over all grains. */
   void take_averages(double area, const std::vector<double> &sums, const std::vector<double> &class_sums);
-  /* Solve over T. given: impulse that the grains got from the water since the last solve, per slice; empty: momentum is not accounted for. */
-  void solve(double area, double T, const std::vector<double> &given);
+  /* What the grains got from the water since the last solve. */
+  struct Given {
+    std::vector<double> drag;                         // [N] the drag's part, spread by share(); empty: momentum is not accounted for
+    double all = 0.0, others = 0.0;                   // all of it; what spheres outside the group got of it
+  };
+  const std::vector<double> &share() const { return taken; }
+  void solve(double area, double T, const Given &given);
 
   double momentum(double area) const;                 // of the water, along x
   double transport() const;                           // sum of phi vx dz
@@ -60,7 +65,8 @@ class VansStream {
  private:
   LAMMPS_NS::LAMMPS *lmp;
   sd_vans_solver *solver;
-  std::vector<double> gross;                          // [N] what the last solve took from the water for the grains, per area
+  std::vector<double> gross;                          // [N] what the drag of the last solve took from the water, per area
+  std::vector<double> taken;                          // [N] its size per volume of grains
   bool have_gross = false;
   std::deque<std::vector<double>> phi_history;        // ni_capart: the last profiles
   std::vector<double> scratch;
