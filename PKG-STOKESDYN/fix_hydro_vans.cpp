@@ -390,8 +390,8 @@ void FixHydroVans::average()
 }
 
 /* What the grains got from the water since the last coupling: those of the group as booked step by step; the others, which a fixed bed is made
- * of, as the law has it now. */
-VansStream::Given FixHydroVans::impulses(double T)
+ * of, as the law has it now. ratio: time of the water over time T of the grains. */
+VansStream::Given FixHydroVans::impulses(double T, double ratio)
 {
   const size_t N = stream->ncell();
   const int n = atom->nlocal;
@@ -403,27 +403,28 @@ VansStream::Given FixHydroVans::impulses(double T)
       double *row = memo[i] + drag_column;
       take[i] = (atom->mask[i] & groupbit) && atom->radius[i] > 0.0;
       // The force of the last coupling's step acted for another half step.
-      value[i] = row[IMPULSE] - ((T - 0.5 * update->dt) * row[SHEAR] + 0.5 * update->dt * row[PAST]);
+      const double drag = row[IMPULSE] - ((T - 0.5 * update->dt) * row[SHEAR] + 0.5 * update->dt * row[PAST]);
+      value[i] = row[FORESEEN] - ratio * drag;
       if (take[i]) mine[N] += row[IMPULSE];
       row[IMPULSE] = 0.0;
     }
-    sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), stream->share().data(), mine.data(), work.data());
+    sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), mine.data(), work.data());
     select(average_bit, true);
     if (std::find(take.begin(), take.end(), 1) != take.end()) {
       sd_vans_forces(&stream->mesh, &stream->law, stream->U.data(), stream->hindrance.data(), n, atom->x[0], atom->v[0], atom->radius, fluctuations(),
                      take.data(), F.data(), drag_x.data());
       for (int i = 0; i < n; i++) {
-        value[i] = T * drag_x[i];
-        if (take[i]) mine[N + 1] += value[i] + T * memo[i][drag_column + SHEAR];
+        value[i] = memo[i][drag_column + FORESEEN] - ratio * T * drag_x[i];
+        if (take[i]) mine[N + 1] += T * (drag_x[i] + memo[i][drag_column + SHEAR]);
       }
-      sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), stream->share().data(), mine.data(), work.data());
+      sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), mine.data(), work.data());
     }
   }
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
   VansStream::Given given;
-  given.all = all[N] + all[N + 1];
-  given.others = all[N + 1];
-  given.drag.assign(all.begin(), all.begin() + N);
+  given.all = ratio * (all[N] + all[N + 1]);
+  given.others = ratio * all[N + 1];
+  given.back.assign(all.begin(), all.begin() + N);
   return given;
 }
 
@@ -432,23 +433,19 @@ void FixHydroVans::couple()
   const double T = set.period > 0.0 ? set.period : elapsed;
   if (!(T > 0.0)) return;
   VansStream::Given given;
-  if (set.conserve && elapsed > 0.0) {
-    given = impulses(elapsed);
-    const double ratio = T / elapsed;                 // if the water is given another time than the grains
-    for (double &value : given.drag) value *= ratio;
-    given.all *= ratio;
-    given.others *= ratio;
-  }
+  if (set.conserve && elapsed > 0.0) given = impulses(elapsed, T / elapsed);
   stream->solve(area(), T, given);
-  if (given.drag.empty()) return;
+  if (given.back.empty()) return;
   const int n = atom->nlocal;
   if (n == 0) return;
   select(average_bit | groupbit);
-  std::vector<double> shear(n);
+  std::vector<double> shear(n), foreseen(n);
   sd_vans_gather(&stream->mesh, set.point, n, atom->x[0], atom->radius, weights(), take.data(), stream->shear_density.data(), shear.data(), work.data());
+  sd_vans_gather(&stream->mesh, set.point, n, atom->x[0], atom->radius, weights(), take.data(), stream->foreseen_density.data(), foreseen.data(), work.data());
   for (int i = 0; i < n; i++) {
     memo[i][drag_column + PAST] = memo[i][drag_column + SHEAR];
     memo[i][drag_column + SHEAR] = shear[i];
+    memo[i][drag_column + FORESEEN] = foreseen[i];
   }
 }
 

@@ -23,7 +23,7 @@ VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) : set(settings
     std::copy(set.given[1].begin(), set.given[1].end(), vx());
     std::copy(set.given[2].begin(), set.given[2].end(), drag());
   }
-  for (auto *array : {&hindrance, &b, &length, &nut, &stress, &shear_density, &gross, &taken}) array->assign(N, 0.0);
+  for (auto *array : {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density}) array->assign(N, 0.0);
   scratch.resize(4 * (size_t) N + 4);
   solver = sd_vans_solver_create(N);
   if (!solver) fail(lmp, std::string(VansSettings::COMMAND) + ": out of memory for " + std::to_string(N) + " slices");
@@ -103,10 +103,10 @@ void VansStream::take_averages(double area, const std::vector<double> &sums, con
 }
 
 /* Momentum. The solve takes `moved` from the water for the grains. Its viscous part is handed to them as a force until the next solve. Its drag is what
- * the exchange coefficient foresees; when the next solve comes the grains have felt their true drag, and the difference goes back to the water as a
- * source. So the water gives no more and no less than the grains get, one coupling later, and the drag stays implicit; the ledger holds
- * what is on its way. A grain's true drag is booked to its slices in proportion to what the solve took from them: in proportion to
- * volume alone it would be taken also from slices that have no momentum left, since a grain sees the water at its centre only. */
+ * the exchange coefficient foresees. When the next solve comes each grain has felt its true drag, and the difference goes back to the water as a
+ * source in the slices of that grain. So the water gives no more and no less than the grains get, one coupling later, and the drag stays
+ * implicit; the ledger holds what is on its way. Grain by grain and not slice by slice: a grain sees the water at its centre only, and
+ * a thin slice could not bear its part of that drag if it had no momentum left. */
 void VansStream::solve(double area, double T, const Given &given)
 {
   const int N = ncell(), M = N - 1;
@@ -121,17 +121,17 @@ void VansStream::solve(double area, double T, const Given &given)
 
   std::vector<double> source, moved, shear;
   sd_vans_impulse impulse = {0, 0, 0, 0};
-  const bool account = !given.drag.empty();
+  const bool account = !given.back.empty();
   double returned = 0.0;
   if (account) {
     moved.resize(N);
     shear.resize(N);
     ledger.transit -= given.all;
     ledger.others += given.others;
-    if (have_gross) {
+    if (foreseen) {
       source.assign(N, 0.0);
       // Above the surface there is no water: the slice below it pays.
-      for (int n = 0; n < N; n++) source[std::min(n, M - 1)] += gross[n] - given.drag[n] / area;
+      for (int n = 0; n < N; n++) source[std::min(n, M - 1)] += given.back[n] / area;
       for (int n = 0; n < M; n++) {
         returned += source[n];
         source[n] /= fluid.rho * height(n) * T;
@@ -148,18 +148,16 @@ void VansStream::solve(double area, double T, const Given &given)
 
   for (int n = 0; n < N; n++) {
     ledger.transit += area * moved[n];
-    shear_density[n] = n < M && phi()[n] > 0.0 ? shear[n] / (T * phi()[n] * height(n)) : 0.0;
+    const double solid = n < M ? phi()[n] * height(n) : 0.0;
+    shear_density[n] = solid > 0.0 ? shear[n] / (T * solid) : 0.0;
+    foreseen_density[n] = solid > 0.0 ? (moved[n] - shear[n]) / solid : 0.0;
   }
   ledger.transit -= area * returned;
   ledger.driving += area * impulse.driving;
   ledger.bottom += area * impulse.bottom;
   ledger.walls += area * impulse.walls;
   ledger.surface += area * impulse.surface;
-  for (int n = 0; n < N; n++) {
-    gross[n] = moved[n] - shear[n];
-    taken[n] = phi()[n] > 0.0 ? std::fabs(gross[n]) / (phi()[n] * height(n)) : 0.0;
-  }
-  have_gross = true;
+  foreseen = true;
 }
 
 double VansStream::momentum(double area) const
@@ -201,9 +199,9 @@ double VansStream::depth_over_velocity(double bed) const
 /* ncell, flags, ledger, then the arrays in the order of arrays(). */
 std::vector<double> VansStream::pack() const
 {
-  std::vector<double> out = {(double) ncell(), (double) averaged, (double) have_gross, (double) phi_history.size(), (double) class_radii.size(),
+  std::vector<double> out = {(double) ncell(), (double) averaged, (double) foreseen, (double) phi_history.size(), (double) class_radii.size(),
                              fluid.radius, ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface, ledger.others};
-  for (const auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &gross, &taken, &class_radii, &class_grain})
+  for (const auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &class_radii, &class_grain})
     out.insert(out.end(), array->begin(), array->end());
   for (const auto &profile : phi_history) out.insert(out.end(), profile.begin(), profile.end());
   return out;
@@ -217,7 +215,7 @@ void VansStream::unpack(const std::vector<double> &in)
     fail(lmp, std::string(VansSettings::COMMAND) + ": keyword mesh: the restart file has " + std::to_string(in.empty() ? 0 : (int) in[0]) + " slices, this fix has " +
            std::to_string(N));
   averaged = in[1] != 0.0;
-  have_gross = in[2] != 0.0;
+  foreseen = in[2] != 0.0;
   const size_t history = (size_t) in[3], nclass = (size_t) in[4];
   if (set.radius == 0.0) fluid.radius = in[5];
   ledger.transit = in[6];
@@ -227,7 +225,7 @@ void VansStream::unpack(const std::vector<double> &in)
   ledger.surface = in[10];
   ledger.others = in[11];
   std::vector<double> radii(nclass), classes(5 * N * nclass);
-  for (auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &gross, &taken, &radii, &classes})
+  for (auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &radii, &classes})
     for (double &value : *array) value = in.at(at++);
   set_classes(radii);
   class_grain = classes;

@@ -26,6 +26,7 @@ class VansStream {
   std::vector<double> class_radii;
   std::vector<double> hindrance, b, length, nut, stress;    // [N]
   std::vector<double> shear_density;                  // [N] force of the viscous stress per volume of grains
+  std::vector<double> foreseen_density;               // [N] impulse of the drag per volume of grains that the last solve took from the water
   bool averaged = false;                              // are there averages?
 
   /* Numbers that grow: momentum along x, from the first step on. */
@@ -45,12 +46,11 @@ class VansStream {
 
   /* New averages from sums over all grains. */
   void take_averages(double area, const std::vector<double> &sums, const std::vector<double> &class_sums);
-  /* What the grains got from the water since the last solve. */
+  /* Since the last solve, impulses along x. */
   struct Given {
-    std::vector<double> drag;                         // [N] the drag's part, spread by share(); empty: momentum is not accounted for
-    double all = 0.0, others = 0.0;                   // all of it; what spheres outside the group got of it
+    std::vector<double> back;                         // [N] what the drag foreseen then was more than the true one; empty: momentum is not accounted for
+    double all = 0.0, others = 0.0;                   // what the grains got from the water; spheres outside the group of it
   };
-  const std::vector<double> &share() const { return taken; }
   void solve(double area, double T, const Given &given);
 
   double momentum(double area) const;                 // of the water, along x
@@ -65,9 +65,7 @@ class VansStream {
  private:
   LAMMPS_NS::LAMMPS *lmp;
   sd_vans_solver *solver;
-  std::vector<double> gross;                          // [N] what the drag of the last solve took from the water, per area
-  std::vector<double> taken;                          // [N] its size per volume of grains
-  bool have_gross = false;
+  bool foreseen = false;                              // has a solve foreseen the drag?
   std::deque<std::vector<double>> phi_history;        // ni_capart: the last profiles
   std::vector<double> scratch;
   std::vector<double> class_columns(int k) const;     // column k of every class, [nclass][N]

@@ -98,11 +98,10 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, cons
  *   profile [5][N]: phi, vx, vy, vz, drag per grain */
 void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums, double *profile);
 
-/* Spreads one value of each sphere over the slices, out [N] += value, in proportion to V_k density_k (density [N] >= 0, or NULL: by volume alone). A
- * sphere that reaches no slice with a density: by volume; what then belongs to a part outside the mesh goes to the lowest or the highest slice.
- * The sum over slices grows by the sum over spheres. V [N] scratch. */
+/* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value. What belongs to the part of a sphere outside
+ * the mesh goes to the lowest or the highest slice, so that the sum over slices grows by the sum over spheres. V [N] scratch. */
 void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take, const double *value,
-                    const double *density, double *out, double *V);
+                    double *out, double *V);
 
 /* The integral of a density per volume of grains over each sphere: out [n] = sum over slices of V_k density_k, times weight (or 1). */
 void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight, const unsigned char *take,

@@ -233,7 +233,7 @@ static int slices_of(const sd_vans_mesh *mesh, int point, double z, double a, in
 }
 
 void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take, const double *value,
-                    const double *density, double *out, double *V)
+                    double *out, double *V)
 {
   const int N = mesh->ncell;
   for (int i = 0; i < n; i++) {
@@ -241,13 +241,7 @@ void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x,
     const double z = x[3 * (long) i + 2], ai = a[i], height = z - mesh->z_ref, all = 4.0 / 3.0 * PI * ai * ai * ai;
     int first = 0;
     const int count = slices_of(mesh, point, z, ai, &first, V);
-    double inside = 0.0, rest = value[i], weight = 0.0;
-    if (density)
-      for (int k = 0; k < count; k++) weight += V[k] * density[first + k];
-    if (weight > 0.0) {
-      for (int k = 0; k < count; k++) out[first + k] += value[i] * (V[k] * density[first + k] / weight);
-      continue;
-    }
+    double inside = 0.0, rest = value[i];
     for (int k = 0; k < count; k++) inside += V[k];
     const double below = point ? (height < 0.0 ? all : 0.0) : sd_vans_slice_volume(ai, -ai, -height);
     for (int k = 0; k < count; k++) {
