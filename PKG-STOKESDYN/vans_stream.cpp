@@ -23,7 +23,7 @@ VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) : set(settings
     std::copy(set.given[1].begin(), set.given[1].end(), vx());
     std::copy(set.given[2].begin(), set.given[2].end(), drag());
   }
-  for (auto *array : {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density}) array->assign(N, 0.0);
+  for (auto *array : {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding}) array->assign(N, 0.0);
   scratch.resize(4 * (size_t) N + 4);
   solver = sd_vans_solver_create(N);
   if (!solver) fail(lmp, std::string(VansSettings::COMMAND) + ": out of memory for " + std::to_string(N) + " slices");
@@ -106,7 +106,10 @@ void VansStream::take_averages(double area, const std::vector<double> &sums, con
  * the exchange coefficient foresees. When the next solve comes each grain has felt its true drag, and the difference goes back to the water as a
  * source in the slices of that grain. So the water gives no more and no less than the grains get, one coupling later, and the drag stays
  * implicit; the ledger holds what is on its way. Grain by grain and not slice by slice: a grain sees the water at its centre only, and
- * a thin slice could not bear its part of that drag if it had no momentum left. */
+ * a thin slice could not bear its part of that drag if it had no momentum left. And a tenth of what is outstanding at a time: the differences of
+ * single couplings are mostly noise, which would shake the water of a dense bed. */
+static constexpr double RETURNED = 0.1;
+
 void VansStream::solve(double area, double T, const Given &given)
 {
   const int N = ncell(), M = N - 1;
@@ -131,10 +134,12 @@ void VansStream::solve(double area, double T, const Given &given)
     if (foreseen) {
       source.assign(N, 0.0);
       // Above the surface there is no water: the slice below it pays.
-      for (int n = 0; n < N; n++) source[std::min(n, M - 1)] += given.back[n] / area;
+      for (int n = 0; n < N; n++) outstanding[std::min(n, M - 1)] += given.back[n] / area;
       for (int n = 0; n < M; n++) {
-        returned += source[n];
-        source[n] /= fluid.rho * height(n) * T;
+        const double share = RETURNED * outstanding[n];
+        outstanding[n] -= share;
+        returned += share;
+        source[n] = share / (fluid.rho * height(n) * T);
       }
     }
   }
@@ -201,7 +206,7 @@ std::vector<double> VansStream::pack() const
 {
   std::vector<double> out = {(double) ncell(), (double) averaged, (double) foreseen, (double) phi_history.size(), (double) class_radii.size(),
                              fluid.radius, ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface, ledger.others};
-  for (const auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &class_radii, &class_grain})
+  for (const auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &class_radii, &class_grain})
     out.insert(out.end(), array->begin(), array->end());
   for (const auto &profile : phi_history) out.insert(out.end(), profile.begin(), profile.end());
   return out;
@@ -225,7 +230,7 @@ void VansStream::unpack(const std::vector<double> &in)
   ledger.surface = in[10];
   ledger.others = in[11];
   std::vector<double> radii(nclass), classes(5 * N * nclass);
-  for (auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &radii, &classes})
+  for (auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &radii, &classes})
     for (double &value : *array) value = in.at(at++);
   set_classes(radii);
   class_grain = classes;

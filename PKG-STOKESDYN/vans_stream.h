@@ -65,6 +65,7 @@ class VansStream {
  private:
   LAMMPS_NS::LAMMPS *lmp;
   sd_vans_solver *solver;
+  std::vector<double> outstanding;                    // [N] momentum per area that is to go back to the water
   bool foreseen = false;                              // has a solve foreseen the drag?
   std::deque<std::vector<double>> phi_history;        // ni_capart: the last profiles
   std::vector<double> scratch;
