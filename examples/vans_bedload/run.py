@@ -64,7 +64,7 @@ def main():
             z = profile[:, 1] / D
             axes[1].plot(profile[:, 3], z, color=f"C{k}")
             axes[2].plot(profile[:-1, 2], z[:-1], color=f"C{k}", label=f"water, {slope}")
-            solid = profile[:, 3] > 1e-3
+            solid = profile[:, 3] > 1e-2
             axes[2].plot(profile[solid, 4], z[solid], "--", color=f"C{k}", label=f"grains, {slope}")
             axes[3].plot(profile[:-1, 10], z[:-1] - 0.5 * (z[1] - z[0]), color=f"C{k}")
     axes[0].set(xlabel="t [s]", ylabel="q*", title="Transport rate (dashed: Yade's mean)")
