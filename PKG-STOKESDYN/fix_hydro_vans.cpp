@@ -592,6 +592,7 @@ void FixHydroVans::record(int i)
 {
   domain->unmap(atom->x[i], atom->image[i], memo[i] + LEFT_X);
   memcpy(memo[i] + LEFT_V, atom->v[i], 3 * sizeof(double));
+  memo[i][LEFT_A] = atom->radius ? atom->radius[i] : 0.0;
 }
 
 /* Is atom i where, and as fast as, the last run left it? Wrapping into the box and rigid bodies leave rounding. */
@@ -604,7 +605,7 @@ bool FixHydroVans::left_as_is(int i) const
     dv = std::fmax(dv, std::fabs(atom->v[i][k] - memo[i][LEFT_V + k]));
     v = std::fmax(v, std::fabs(atom->v[i][k]));
   }
-  return memo[i][SOLVED] != 0.0 && dx <= 1e-9 * atom->radius[i] && dv <= 1e-12 * v;
+  return memo[i][SOLVED] != 0.0 && memo[i][LEFT_A] == atom->radius[i] && dx <= 1e-9 * atom->radius[i] && dv <= 1e-12 * v;
 }
 
 void FixHydroVans::grow_arrays(int nmax)

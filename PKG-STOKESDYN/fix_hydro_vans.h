@@ -52,7 +52,7 @@ class FixHydroVans : public LAMMPS_NS::Fix {
   int average_bit = 1;
 
   /* Per atom. array_atom: force and velocity fluctuation. memo: what must follow the atom besides; a column that no keyword asks for is not there. */
-  enum { OUTPUTS = 6, SOLVED = 0, LEFT_X = 1, LEFT_V = 4, ALWAYS = 7 };
+  enum { OUTPUTS = 6, SOLVED = 0, LEFT_X = 1, LEFT_V = 4, LEFT_A = 7, ALWAYS = 8 };
   int columns = ALWAYS, drag_column = -1, weight_column = -1, eddy_column = -1;
   enum { DRAG = 0, IMPULSE = 1, SHEAR = 2, PAST = 3, FORESEEN = 4, MOMENTUM_COLUMNS = 5 };    // from drag_column on; PAST: SHEAR before the last coupling
   enum { LIFE = 0, COUNT = 1 };                       // from eddy_column on: fluctuation
