@@ -26,8 +26,24 @@ enum { Z, VELOCITY, PHI, GRAIN_X, GRAIN_Y, GRAIN_Z, DRAG_PER_GRAIN, EXCHANGE, ED
 
 /* Entries of the global vector. */
 enum {
-  FORCE_X, FORCE_Y, FORCE_Z, TRANSPORT, FRICTION_VELOCITY, LARGEST_STRESS, OUTSIDE, SHIELDS, TOTAL_DRAG, BED,
-  MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, VECTOR_SIZE
+  FORCE_X,
+  FORCE_Y,
+  FORCE_Z,
+  TRANSPORT,
+  FRICTION_VELOCITY,
+  LARGEST_STRESS,
+  OUTSIDE,
+  SHIELDS,
+  TOTAL_DRAG,
+  BED,
+  MOMENTUM,
+  TRANSIT,
+  DRIVING,
+  BOTTOM,
+  WALLS,
+  SURFACE,
+  OTHERS,
+  VECTOR_SIZE
 };
 
 FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
@@ -35,10 +51,13 @@ FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   const auto args = words(narg, arg);
   double every;
   if (narg < 4 || !is_number(args[3], every) || every != std::floor(every) || every < 1 || every > 1e9)
-    fail(lmp, COMMAND + ": the number of steps N after the style must be an integer >= 1" + (narg < 4 ? "" : ", not '" + args[3] + "'"));
+    fail(lmp,
+         COMMAND + ": the number of steps N after the style must be an integer >= 1" +
+             (narg < 4 ? "" : ", not '" + args[3] + "'"));
   nevery = (int) every;
   set.parse(lmp, args, 4);
-  if (has_grains() && !atom->radius_flag) fail(lmp, COMMAND + ": an atom style with radius is needed (sphere), unless couple fluid");
+  if (has_grains() && !atom->radius_flag)
+    fail(lmp, COMMAND + ": an atom style with radius is needed (sphere), unless couple fluid");
 
   if (set.conserve) drag_column = columns, columns += MOMENTUM_COLUMNS;
   if (set.overlap_once) weight_column = columns, columns += 1;
@@ -95,12 +114,14 @@ void FixHydroVans::find_classes()
     return;
   }
   const int found = group->find(set.average.c_str()), bit = found < 0 ? 1 : group->bitmask[found];
-  std::map<double, double> first;                     // radius: lowest ID
+  std::map<double, double> first;    // radius: lowest ID
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & bit) || !(atom->radius[i] > 0.0)) continue;
     const auto at = first.find(atom->radius[i]);
-    if (at == first.end()) first[atom->radius[i]] = (double) atom->tag[i];
-    else at->second = std::min(at->second, (double) atom->tag[i]);
+    if (at == first.end())
+      first[atom->radius[i]] = (double) atom->tag[i];
+    else
+      at->second = std::min(at->second, (double) atom->tag[i]);
     if (first.size() > MAX_CLASSES) break;
   }
   std::vector<double> mine(2 * (MAX_CLASSES + 1), 0.0), all(mine.size() * comm->nprocs);
@@ -114,13 +135,17 @@ void FixHydroVans::find_classes()
   for (k = 0; k < all.size(); k += 2)
     if (all[k] > 0.0) {
       const auto at = first.find(all[k]);
-      if (at == first.end()) first[all[k]] = all[k + 1];
-      else at->second = std::min(at->second, all[k + 1]);
+      if (at == first.end())
+        first[all[k]] = all[k + 1];
+      else
+        at->second = std::min(at->second, all[k + 1]);
     }
   if (first.size() > MAX_CLASSES) {
     if (set.classes)
-      fail(lmp, COMMAND + ": keyword classes: the grains have more than " + std::to_string(MAX_CLASSES) + " different radii; a class is one radius exactly");
-    first.clear();                                    // pores: one class of the mean radius
+      fail(lmp,
+           COMMAND + ": keyword classes: the grains have more than " + std::to_string(MAX_CLASSES) +
+               " different radii; a class is one radius exactly");
+    first.clear();    // pores: one class of the mean radius
   }
   std::vector<std::pair<double, double>> order;
   for (const auto &entry : first) order.emplace_back(entry.second, entry.first);
@@ -135,7 +160,8 @@ void FixHydroVans::init()
 {
   if (update->whichflag == 2) fail(lmp, COMMAND + ": the force depends on velocities: it is no force for a minimisation");
   if (utils::strmatch(update->integrate_style, "^respa")) fail(lmp, COMMAND + ": run_style respa is not supported");
-  if (has_grains() && !atom->radius_flag) fail(lmp, COMMAND + ": an atom style with radius is needed (sphere), unless couple fluid");
+  if (has_grains() && !atom->radius_flag)
+    fail(lmp, COMMAND + ": an atom style with radius is needed (sphere), unless couple fluid");
   region = nullptr;
   if (!set.region.empty()) {
     region = Compat::region(domain, set.region);
@@ -152,19 +178,28 @@ void FixHydroVans::init()
   find_classes();
 
   if (set.couple == VansSettings::FLUID && set.radius == 0.0 &&
-      std::any_of(stream->drag(), stream->drag() + stream->ncell(), [](double f) { return f != 0.0; }) && !set.classes)
+      std::any_of(stream->drag(), stream->drag() + stream->ncell(),
+                  [](double f) {
+                    return f != 0.0;
+                  }) &&
+      !set.classes)
     fail(lmp, COMMAND + ": keyword radius: couple fluid with a drag needs the radius of the grains");
   if ((set.couple == VansSettings::TWO || set.couple == VansSettings::FLUID) && comm->me == 0) {
     const double T = set.period > 0.0 ? set.period : nevery * update->dt, wanted = set.period > 0.0 ? set.dt : 0.1 * T;
     double dt = wanted;
     const auto steps = sd_vans_steps(set.rules, T, &dt);
     if (std::fabs(dt - wanted) > 1e-9 * wanted)
-      utils::logmesg(lmp, COMMAND + ": the step " + text(wanted) + " of keyword solve is no fraction of " + text(T) + ": " + std::to_string(steps) + " steps of " +
-                            text(dt) + " are used\n");
+      utils::logmesg(lmp,
+                     COMMAND + ": the step " + text(wanted) + " of keyword solve is no fraction of " + text(T) + ": " +
+                         std::to_string(steps) + " steps of " + text(dt) + " are used\n");
     else if (std::fabs(steps * dt - T) > 1e-9 * T)
-      utils::logmesg(lmp, COMMAND + ": rules yade: " + std::to_string(steps) + " steps of " + text(dt) + " are used for the period " + text(T) + "\n");
+      utils::logmesg(lmp,
+                     COMMAND + ": rules yade: " + std::to_string(steps) + " steps of " + text(dt) +
+                         " are used for the period " + text(T) + "\n");
     if (set.couple == VansSettings::TWO && std::fabs(T / (nevery * update->dt) - 1.0) > 1e-9)
-      utils::logmesg(lmp, COMMAND + ": the water moves on by " + text(T) + " while the grains move on by " + text(nevery * update->dt) + "\n");
+      utils::logmesg(lmp,
+                     COMMAND + ": the water moves on by " + text(T) + " while the grains move on by " +
+                         text(nevery * update->dt) + "\n");
   }
 }
 
@@ -209,7 +244,8 @@ void FixHydroVans::count_overlaps()
   for (int i = 0; i < atom->nlocal; i++) {
     memo[i][weight_column] = 1.0;
     if (atom->molecule[i] > 0 && (atom->mask[i] & average_bit) && atom->radius[i] > 0.0)
-      mine.push_back({(double) atom->molecule[i], (double) atom->tag[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}, atom->radius[i]});
+      mine.push_back(
+          {(double) atom->molecule[i], (double) atom->tag[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}, atom->radius[i]});
   }
   const int doubles = sizeof(Member) / sizeof(double);
   int count = (int) mine.size() * doubles;
@@ -218,8 +254,10 @@ void FixHydroVans::count_overlaps()
   for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + counts[p - 1];
   std::vector<Member> all((starts.back() + counts.back()) / doubles);
   MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, world);
-  std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) { return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag; });
-  std::map<double, double> share;                     // by atom ID
+  std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) {
+    return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
+  });
+  std::map<double, double> share;    // by atom ID
   std::vector<double> x, a;
   for (size_t begin = 0, end; begin < all.size(); begin = end) {
     for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}
@@ -252,8 +290,10 @@ void FixHydroVans::setup(int vflag)
       // A bed up to the surface, or a mesh that misses most of the grains, is a mistake in the mesh and not a state of the run.
       const int top = stream->ncell() - 2;
       if (stream->phi()[top] > 0.5 * set.phi_max)
-        fail(lmp, COMMAND + ": keyword mesh: the bed reaches the surface of the water: phi = " + text(stream->phi()[top]) + " in the slice below z = " +
-               text(set.z_ref + stream->mesh.edge[top + 1]) + "; the mesh must hold bed and flow depth");
+        fail(lmp,
+             COMMAND + ": keyword mesh: the bed reaches the surface of the water: phi = " + text(stream->phi()[top]) +
+                 " in the slice below z = " + text(set.z_ref + stream->mesh.edge[top + 1]) +
+                 "; the mesh must hold bed and flow depth");
       select(average_bit);
       double volume[2] = {0, 0}, all[2];
       for (int i = 0; i < atom->nlocal; i++) {
@@ -265,8 +305,10 @@ void FixHydroVans::setup(int vflag)
       }
       MPI_Allreduce(volume, all, 2, MPI_DOUBLE, MPI_SUM, world);
       if (all[1] > 0.5 * all[0])
-        fail(lmp, COMMAND + ": keyword mesh: from z = " + text(set.z_ref) + " to " + text(set.z_ref + stream->mesh.edge[stream->ncell()]) + " it misses " +
-               text(100 * all[1] / all[0]) + " % of the grains");
+        fail(lmp,
+             COMMAND + ": keyword mesh: from z = " + text(set.z_ref) + " to " +
+                 text(set.z_ref + stream->mesh.edge[stream->ncell()]) + " it misses " + text(100 * all[1] / all[0]) +
+                 " % of the grains");
     }
   }
   if (eddy_column >= 0 && renewals == 0.0) renew_fluctuations(0.0, true);
@@ -275,8 +317,9 @@ void FixHydroVans::setup(int vflag)
 
 void FixHydroVans::post_force(int /*vflag*/)
 {
-  const bool stepping = update->ntimestep != last_step && last_step >= 0 && update->whichflag == 1 && update->ntimestep > update->firststep;
-  const bool repeat = update->ntimestep == last_step;      // a run that begins where another ended: the force of that step stands
+  const bool stepping =
+      update->ntimestep != last_step && last_step >= 0 && update->whichflag == 1 && update->ntimestep > update->firststep;
+  const bool repeat = update->ntimestep == last_step;    // a run that begins where another ended: the force of that step stands
   if (stepping) elapsed += update->dt;
   last_step = update->ntimestep;
   summed_step = -1;
@@ -288,8 +331,8 @@ void FixHydroVans::post_force(int /*vflag*/)
   drag_x.resize(n + 1);
   select(groupbit);
   if (n > 0)
-    local[4] = sd_vans_forces(&stream->mesh, &stream->law, stream->U.data(), stream->hindrance.data(), n, atom->x[0], atom->v[0], atom->radius, fluctuations(),
-                              take.data(), F.data(), drag_x.data());
+    local[4] = sd_vans_forces(&stream->mesh, &stream->law, stream->U.data(), stream->hindrance.data(), n, atom->x[0],
+                              atom->v[0], atom->radius, fluctuations(), take.data(), F.data(), drag_x.data());
   double **f = atom->f;
   double check = 0.0;
   for (int i = 0; i < n; i++) {
@@ -326,7 +369,9 @@ void FixHydroVans::post_force(int /*vflag*/)
     for (int i = 0; i < n; i++)
       for (int d = 0; d < 3; d++)
         if (take[i] && !std::isfinite(array_atom[i][d]))
-          error->one(FLERR, COMMAND + ": the force on atom " + std::to_string(atom->tag[i]) + " is not finite: its position, velocity or radius is not");
+          error->one(FLERR,
+                     COMMAND + ": the force on atom " + std::to_string(atom->tag[i]) +
+                         " is not finite: its position, velocity or radius is not");
 }
 
 void FixHydroVans::end_of_step()
@@ -348,8 +393,9 @@ void FixHydroVans::end_of_step()
     if (global[4] > 0.0) {
       told_outside = true;
       if (comm->me == 0)
-        error->warning(FLERR, COMMAND + ": " + std::to_string((bigint) global[4]) + " grains are outside the mesh; they " +
-                                (set.rules == SD_VANS_YADE ? "feel nothing" : "feel the velocity of its end"));
+        error->warning(FLERR,
+                       COMMAND + ": " + std::to_string((bigint) global[4]) + " grains are outside the mesh; they " +
+                           (set.rules == SD_VANS_YADE ? "feel nothing" : "feel the velocity of its end"));
     }
   }
 }
@@ -365,10 +411,13 @@ void FixHydroVans::average()
   const sd_vans_averaging how = {set.point, (int) nclass, stream->class_radii.data()};
   const int n = atom->nlocal;
   if (n > 0) {
-    const int odd = sd_vans_average(&stream->mesh, &stream->law, &how, stream->U.data(), stream->hindrance.data(), n, atom->x[0], atom->v[0], atom->radius,
-                                    fluctuations(), weights(), take.data(), sums.data(), nclass ? sums.data() + N * SD_VANS_NSUM : nullptr, work.data());
+    const int odd = sd_vans_average(&stream->mesh, &stream->law, &how, stream->U.data(), stream->hindrance.data(), n,
+                                    atom->x[0], atom->v[0], atom->radius, fluctuations(), weights(), take.data(), sums.data(),
+                                    nclass ? sums.data() + N * SD_VANS_NSUM : nullptr, work.data());
     if (odd >= 0)
-      error->one(FLERR, COMMAND + ": atom " + std::to_string(atom->tag[odd]) + " has radius " + text(atom->radius[odd]) + ", which is no size class; name all of them with class_radii");
+      error->one(FLERR,
+                 COMMAND + ": atom " + std::to_string(atom->tag[odd]) + " has radius " + text(atom->radius[odd]) +
+                     ", which is no size class; name all of them with class_radii");
   }
   for (int i = 0; i < n; i++)
     if (take[i]) {
@@ -389,7 +438,8 @@ void FixHydroVans::average()
   stream->take_averages(area(), all, class_sums);
 }
 
-/* What the grains got from the water since the last coupling: those of the group as booked step by step; the others, which a fixed bed is made
+/* What the grains got from the water since the last coupling: those of the group as booked step by step; the others, which
+ * a fixed bed is made
  * of, as the law has it now. ratio: time of the water over time T of the grains. */
 VansStream::Given FixHydroVans::impulses(double T, double ratio)
 {
@@ -411,13 +461,14 @@ VansStream::Given FixHydroVans::impulses(double T, double ratio)
     sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), mine.data(), work.data());
     select(average_bit, true);
     if (std::find(take.begin(), take.end(), 1) != take.end()) {
-      sd_vans_forces(&stream->mesh, &stream->law, stream->U.data(), stream->hindrance.data(), n, atom->x[0], atom->v[0], atom->radius, fluctuations(),
-                     take.data(), F.data(), drag_x.data());
+      sd_vans_forces(&stream->mesh, &stream->law, stream->U.data(), stream->hindrance.data(), n, atom->x[0], atom->v[0],
+                     atom->radius, fluctuations(), take.data(), F.data(), drag_x.data());
       for (int i = 0; i < n; i++) {
         value[i] = memo[i][drag_column + FORESEEN] - ratio * T * drag_x[i];
         if (take[i]) mine[N + 1] += T * (drag_x[i] + memo[i][drag_column + SHEAR]);
       }
-      sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), mine.data(), work.data());
+      sd_vans_spread(&stream->mesh, set.point, n, atom->x[0], atom->radius, take.data(), value.data(), mine.data(),
+                     work.data());
     }
   }
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
@@ -440,8 +491,10 @@ void FixHydroVans::couple()
   if (n == 0) return;
   select(average_bit | groupbit);
   std::vector<double> shear(n), foreseen(n);
-  sd_vans_gather(&stream->mesh, set.point, n, atom->x[0], atom->radius, weights(), take.data(), stream->shear_density.data(), shear.data(), work.data());
-  sd_vans_gather(&stream->mesh, set.point, n, atom->x[0], atom->radius, weights(), take.data(), stream->foreseen_density.data(), foreseen.data(), work.data());
+  sd_vans_gather(&stream->mesh, set.point, n, atom->x[0], atom->radius, weights(), take.data(), stream->shear_density.data(),
+                 shear.data(), work.data());
+  sd_vans_gather(&stream->mesh, set.point, n, atom->x[0], atom->radius, weights(), take.data(), stream->foreseen_density.data(),
+                 foreseen.data(), work.data());
   for (int i = 0; i < n; i++) {
     memo[i][drag_column + PAST] = memo[i][drag_column + SHEAR];
     memo[i][drag_column + SHEAR] = shear[i];
@@ -449,7 +502,8 @@ void FixHydroVans::couple()
   }
 }
 
-/* Velocity fluctuations: new ones when their time is over. The random numbers depend on seed, atom ID and the number of the renewal. */
+/* Velocity fluctuations: new ones when their time is over. The random numbers depend on seed, atom ID and the number of
+ * the renewal. */
 void FixHydroVans::renew_fluctuations(double time, bool first)
 {
   const bool depth = set.fluctuation == VansSettings::DEPTH;
@@ -504,25 +558,42 @@ double FixHydroVans::compute_vector(int k)
   switch (k) {
     case FORCE_X:
     case FORCE_Y:
-    case FORCE_Z: sum_up(); return global[k - FORCE_X];
-    case TOTAL_DRAG: sum_up(); return global[3];
-    case OUTSIDE: sum_up(); return global[4];
-    case TRANSPORT: return stream->transport();
-    case FRICTION_VELOCITY: return std::sqrt(std::max(stream->largest_stress(), 0.0) / set.rho);
-    case LARGEST_STRESS: return stream->largest_stress();
+    case FORCE_Z:
+      sum_up();
+      return global[k - FORCE_X];
+    case TOTAL_DRAG:
+      sum_up();
+      return global[3];
+    case OUTSIDE:
+      sum_up();
+      return global[4];
+    case TRANSPORT:
+      return stream->transport();
+    case FRICTION_VELOCITY:
+      return std::sqrt(std::max(stream->largest_stress(), 0.0) / set.rho);
+    case LARGEST_STRESS:
+      return stream->largest_stress();
     case SHIELDS: {
       const double size = std::sqrt(set.g[0] * set.g[0] + set.g[1] * set.g[1] + set.g[2] * set.g[2]);
       const double scale = (mean_density - set.rho) * size * 2.0 * mean_radius;
       return scale > 0.0 ? stream->largest_stress() / scale : 0.0;
     }
-    case BED: return stream->bed_elevation();
-    case MOMENTUM: return stream->momentum(A);
-    case TRANSIT: return stream->ledger.transit;
-    case DRIVING: return stream->ledger.driving;
-    case BOTTOM: return stream->ledger.bottom;
-    case WALLS: return stream->ledger.walls;
-    case SURFACE: return stream->ledger.surface;
-    case OTHERS: return stream->ledger.others;
+    case BED:
+      return stream->bed_elevation();
+    case MOMENTUM:
+      return stream->momentum(A);
+    case TRANSIT:
+      return stream->ledger.transit;
+    case DRIVING:
+      return stream->ledger.driving;
+    case BOTTOM:
+      return stream->ledger.bottom;
+    case WALLS:
+      return stream->ledger.walls;
+    case SURFACE:
+      return stream->ledger.surface;
+    case OTHERS:
+      return stream->ledger.others;
   }
   return 0.0;
 }
@@ -531,16 +602,22 @@ double FixHydroVans::compute_array(int n, int k)
 {
   const int N = stream->ncell();
   switch (k) {
-    case Z: return set.z_ref + 0.5 * (stream->mesh.edge[n] + stream->mesh.edge[n + 1]);
-    case VELOCITY: return stream->U[n + 1];
+    case Z:
+      return set.z_ref + 0.5 * (stream->mesh.edge[n] + stream->mesh.edge[n + 1]);
+    case VELOCITY:
+      return stream->U[n + 1];
     case PHI:
     case GRAIN_X:
     case GRAIN_Y:
     case GRAIN_Z:
-    case DRAG_PER_GRAIN: return stream->grain[(size_t) (k - PHI) * N + n];
-    case EXCHANGE: return stream->b[n];
-    case EDDY_VISCOSITY: return stream->nut[n];
-    case STRESS: return stream->stress[n];
+    case DRAG_PER_GRAIN:
+      return stream->grain[(size_t) (k - PHI) * N + n];
+    case EXCHANGE:
+      return stream->b[n];
+    case EDDY_VISCOSITY:
+      return stream->nut[n];
+    case STRESS:
+      return stream->stress[n];
   }
   k -= ARRAY_COLUMNS;
   return k >= 0 && (size_t) k < 5 * stream->class_radii.size() ? stream->class_grain[(size_t) k * N + n] : 0.0;
@@ -557,14 +634,15 @@ int FixHydroVans::modify_param(int narg, char **arg)
     stream->U = read_profile(lmp, what, arg[2], stream->ncell());
     narg = 3;
   } else if (strcmp(arg[1], "values") == 0) {
-    if (narg != needed + 2) fail(lmp, what + ": " + std::to_string(narg - 2) + " values, ncell + 1 = " + std::to_string(needed) + " are needed");
+    if (narg != needed + 2)
+      fail(lmp, what + ": " + std::to_string(narg - 2) + " values, ncell + 1 = " + std::to_string(needed) + " are needed");
     Keywords in(lmp, "fix_modify " + std::string(id), words(narg, arg), 1);
     in.next();
     for (double &value : stream->U) value = in.number();
   } else
     fail(lmp, what + ": '" + arg[1] + "' is none of: file, values");
   stream->profile_changed();
-  last_step = -1;                                     // the forces of the last step do not stand any more
+  last_step = -1;    // the forces of the last step do not stand any more
   return narg;
 }
 
@@ -583,7 +661,8 @@ void *FixHydroVans::extract(const char *name, int &dim)
 
 double FixHydroVans::memory_usage()
 {
-  return (double) atom->nmax * (OUTPUTS + columns) * sizeof(double) + (double) (40 + 5 * stream->class_radii.size()) * stream->ncell() * sizeof(double);
+  return (double) atom->nmax * (OUTPUTS + columns) * sizeof(double) +
+      (double) (40 + 5 * stream->class_radii.size()) * stream->ncell() * sizeof(double);
 }
 
 /* ---- what follows the atoms ------------------------------------------------------------------------------------------------ */
@@ -654,8 +733,10 @@ void FixHydroVans::unpack_restart(int nlocal, int nth)
   double *extra = atom->extra[nlocal];
   int m = 0;
   for (int i = 0; i < nth; i++) m += static_cast<int>(extra[m]);
-  if (static_cast<int>(extra[m]) == OUTPUTS + columns + 1) unpack_exchange(nlocal, extra + m + 1);
-  else set_arrays(nlocal);                            // other keywords than those of the restart file: nothing of the past fits
+  if (static_cast<int>(extra[m]) == OUTPUTS + columns + 1)
+    unpack_exchange(nlocal, extra + m + 1);
+  else
+    set_arrays(nlocal);    // other keywords than those of the restart file: nothing of the past fits
 }
 
 void FixHydroVans::write_restart(FILE *fp)

@@ -51,23 +51,31 @@ class FixHydroVans : public LAMMPS_NS::Fix {
   LAMMPS_NS::Region *region = nullptr;
   int average_bit = 1;
 
-  /* Per atom. array_atom: force and velocity fluctuation. memo: what must follow the atom besides; a column that no keyword asks for is not there. */
+  /* Per atom. array_atom: force and velocity fluctuation. memo: what must follow the atom besides; a column that no
+   * keyword asks for is not there. */
   enum { OUTPUTS = 6, SOLVED = 0, LEFT_X = 1, LEFT_V = 4, LEFT_A = 7, ALWAYS = 8 };
   int columns = ALWAYS, drag_column = -1, weight_column = -1, eddy_column = -1;
-  enum { DRAG = 0, IMPULSE = 1, SHEAR = 2, PAST = 3, FORESEEN = 4, MOMENTUM_COLUMNS = 5 };    // from drag_column on; PAST: SHEAR before the last coupling
-  enum { LIFE = 0, COUNT = 1 };                       // from eddy_column on: fluctuation
+  enum {
+    DRAG = 0,
+    IMPULSE = 1,
+    SHEAR = 2,
+    PAST = 3,
+    FORESEEN = 4,
+    MOMENTUM_COLUMNS = 5
+  };                               // from drag_column on; PAST: SHEAR before the last coupling
+  enum { LIFE = 0, COUNT = 1 };    // from eddy_column on: fluctuation
   double **memo = nullptr;
 
   /* The same on all ranks and in the restart file. */
-  LAMMPS_NS::bigint last_step = -1;                   // of the forces in array_atom
-  double elapsed = 0.0;                               // since the last coupling
-  double eddy_age = 0.0, eddy_period = 0.0;           // random walk of all grains at once
+  LAMMPS_NS::bigint last_step = -1;            // of the forces in array_atom
+  double elapsed = 0.0;                        // since the last coupling
+  double eddy_age = 0.0, eddy_period = 0.0;    // random walk of all grains at once
   double renewals = 0.0;
   double mean_radius = 0.0, mean_density = 0.0;
-  LAMMPS_NS::bigint weights_of = -1;                  // number of atoms when the overlaps were counted
+  LAMMPS_NS::bigint weights_of = -1;    // number of atoms when the overlaps were counted
 
   /* Of the last step. */
-  double local[5] = {0, 0, 0, 0, 0}, global[5];       // force x y z, drag along x, spheres outside; of this rank, of all
+  double local[5] = {0, 0, 0, 0, 0}, global[5];    // force x y z, drag along x, spheres outside; of this rank, of all
   LAMMPS_NS::bigint summed_step = -1;
   bool told_outside = false;
 

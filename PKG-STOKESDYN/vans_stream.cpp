@@ -10,10 +10,17 @@ VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) : set(settings
 {
   const int N = set.ncell();
   mesh = {N, set.z_ref, set.dz, set.edge.data()};
-  law = {set.rho, set.eta, set.hindrance, {set.g[0], set.g[1], set.g[2]}, set.rest, set.lift, set.convective.empty() ? nullptr : set.convective.data(),
+  law = {set.rho,
+         set.eta,
+         set.hindrance,
+         {set.g[0], set.g[1], set.g[2]},
+         set.rest,
+         set.lift,
+         set.convective.empty() ? nullptr : set.convective.data(),
          set.rules};
-  fluid = {set.rho, set.eta, set.g[0], set.dpdx.number(), set.turbulence, set.kappa, set.phi_max, set.phi_bed, set.sublayer, set.viscosity, set.driven,
-           set.u_top.number(), set.width, set.wall_coef, set.radius, 0, nullptr, set.rules};
+  fluid = {set.rho,      set.eta,       set.g[0],   set.dpdx.number(),  set.turbulence, set.kappa,     set.phi_max, set.phi_bed,
+           set.sublayer, set.viscosity, set.driven, set.u_top.number(), set.width,      set.wall_coef, set.radius,  0,
+           nullptr,      set.rules};
   U = set.profile;
   U.resize(N + 1, 0.0);
   if (set.profile.empty() && set.driven && !set.u_top.is_variable()) U[N] = set.u_top.number();
@@ -23,7 +30,8 @@ VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) : set(settings
     std::copy(set.given[1].begin(), set.given[1].end(), vx());
     std::copy(set.given[2].begin(), set.given[2].end(), drag());
   }
-  for (auto *array : {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding}) array->assign(N, 0.0);
+  for (auto *array : {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
+    array->assign(N, 0.0);
   scratch.resize(4 * (size_t) N + 4);
   solver = sd_vans_solver_create(N);
   if (!solver) fail(lmp, std::string(VansSettings::COMMAND) + ": out of memory for " + std::to_string(N) + " slices");
@@ -71,7 +79,8 @@ void VansStream::mixing_length()
   // `given` without the columns of the classes: one class.
   const bool have = !class_radii.empty() && (averaged || set.given.size() > 3);
   const std::vector<double> class_phi = have ? class_columns(0) : std::vector<double>();
-  sd_vans_mixing_length(&mesh, &fluid, U.data(), phi(), have ? class_phi.data() : nullptr, mean.data(), length.data(), scratch.data());
+  sd_vans_mixing_length(&mesh, &fluid, U.data(), phi(), have ? class_phi.data() : nullptr, mean.data(), length.data(),
+                        scratch.data());
 }
 
 void VansStream::profile_changed()
@@ -91,22 +100,33 @@ void VansStream::take_averages(double area, const std::vector<double> &sums, con
   for (size_t n = 0; n < N; n++)
     if (!(phi()[n] < 1.0)) {
       if (!std::isfinite(phi()[n]))
-        fail(lmp, std::string(VansSettings::COMMAND) + ": the average in slice " + std::to_string(n + 1) + " is not finite: a grain has no finite position or velocity");
-      fail(lmp, std::string(VansSettings::COMMAND) + ": phi = " + text(phi()[n]) + " in slice " + std::to_string(n + 1) + " (z = " + text(mesh.z_ref + mesh.edge[n]) +
-             " to " + text(mesh.z_ref + mesh.edge[n + 1]) + "): more grains than fit. Is the area " + text(area) + " right, or do members of clumps overlap (overlap once)?");
+        fail(lmp,
+             std::string(VansSettings::COMMAND) + ": the average in slice " + std::to_string(n + 1) +
+                 " is not finite: a grain has no finite position or velocity");
+      fail(lmp,
+           std::string(VansSettings::COMMAND) + ": phi = " + text(phi()[n]) + " in slice " + std::to_string(n + 1) +
+               " (z = " + text(mesh.z_ref + mesh.edge[n]) + " to " + text(mesh.z_ref + mesh.edge[n + 1]) +
+               "): more grains than fit. Is the area " + text(area) +
+               " right, or do members of clumps overlap (overlap once)?");
     }
-  if (set.conserve && averaged) ledger.surface += area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
+  if (set.conserve && averaged)
+    ledger.surface += area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();
   averaged = true;
   sd_vans_hindrance(ncell(), phi(), law.exponent, hindrance.data());
 }
 
-/* Momentum. The solve takes `moved` from the water for the grains. Its viscous part is handed to them as a force until the next solve. Its drag is what
- * the exchange coefficient foresees. When the next solve comes each grain has felt its true drag, and the difference goes back to the water as a
- * source in the slices of that grain. So the water gives no more and no less than the grains get, one coupling later, and the drag stays
- * implicit; the ledger holds what is on its way. Grain by grain and not slice by slice: a grain sees the water at its centre only, and
- * a thin slice could not bear its part of that drag if it had no momentum left. And a tenth of what is outstanding at a time: the differences of
+/* Momentum. The solve takes `moved` from the water for the grains. Its viscous part is handed to them as a force until the
+ * next solve. Its drag is what
+ * the exchange coefficient foresees. When the next solve comes each grain has felt its true drag, and the difference goes
+ * back to the water as a
+ * source in the slices of that grain. So the water gives no more and no less than the grains get, one coupling later, and
+ * the drag stays
+ * implicit; the ledger holds what is on its way. Grain by grain and not slice by slice: a grain sees the water at its
+ * centre only, and
+ * a thin slice could not bear its part of that drag if it had no momentum left. And a tenth of what is outstanding at a
+ * time: the differences of
  * single couplings are mostly noise, which would shake the water of a dense bed. */
 static constexpr double RETURNED = 0.1;
 
@@ -144,11 +164,13 @@ void VansStream::solve(double area, double T, const Given &given)
     }
   }
 
-  const sd_status status = sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi(), vx(), b.data(), length.data(), source.empty() ? nullptr : source.data(),
-                                         U.data(), nut.data(), stress.data(), account ? moved.data() : nullptr, account ? shear.data() : nullptr, &impulse);
+  const sd_status status = sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi(), vx(), b.data(), length.data(),
+                                         source.empty() ? nullptr : source.data(), U.data(), nut.data(), stress.data(),
+                                         account ? moved.data() : nullptr, account ? shear.data() : nullptr, &impulse);
   if (status != SD_OK)
-    fail(lmp, std::string(VansSettings::COMMAND) + ": the solve of the stream over " + text(T) + " in " + std::to_string(steps) + " steps: " +
-           sd_status_string(status) + ". Take a shorter time between couplings");
+    fail(lmp,
+         std::string(VansSettings::COMMAND) + ": the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
+             " steps: " + sd_status_string(status) + ". Take a shorter time between couplings");
   if (!account) return;
 
   for (int n = 0; n < N; n++) {
@@ -204,9 +226,20 @@ double VansStream::depth_over_velocity(double bed) const
 /* ncell, flags, ledger, then the arrays in the order of arrays(). */
 std::vector<double> VansStream::pack() const
 {
-  std::vector<double> out = {(double) ncell(), (double) averaged, (double) foreseen, (double) phi_history.size(), (double) class_radii.size(),
-                             fluid.radius, ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface, ledger.others};
-  for (const auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &class_radii, &class_grain})
+  std::vector<double> out = {(double) ncell(),
+                             (double) averaged,
+                             (double) foreseen,
+                             (double) phi_history.size(),
+                             (double) class_radii.size(),
+                             fluid.radius,
+                             ledger.transit,
+                             ledger.driving,
+                             ledger.bottom,
+                             ledger.walls,
+                             ledger.surface,
+                             ledger.others};
+  for (const auto *array :
+       {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &class_radii, &class_grain})
     out.insert(out.end(), array->begin(), array->end());
   for (const auto &profile : phi_history) out.insert(out.end(), profile.begin(), profile.end());
   return out;
@@ -217,8 +250,9 @@ void VansStream::unpack(const std::vector<double> &in)
   const size_t N = ncell();
   size_t at = 12;
   if (in.size() < at || (size_t) in[0] != N)
-    fail(lmp, std::string(VansSettings::COMMAND) + ": keyword mesh: the restart file has " + std::to_string(in.empty() ? 0 : (int) in[0]) + " slices, this fix has " +
-           std::to_string(N));
+    fail(lmp,
+         std::string(VansSettings::COMMAND) + ": keyword mesh: the restart file has " +
+             std::to_string(in.empty() ? 0 : (int) in[0]) + " slices, this fix has " + std::to_string(N));
   averaged = in[1] != 0.0;
   foreseen = in[2] != 0.0;
   const size_t history = (size_t) in[3], nclass = (size_t) in[4];
@@ -230,7 +264,8 @@ void VansStream::unpack(const std::vector<double> &in)
   ledger.surface = in[10];
   ledger.others = in[11];
   std::vector<double> radii(nclass), classes(5 * N * nclass);
-  for (auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &radii, &classes})
+  for (auto *array :
+       {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &radii, &classes})
     for (double &value : *array) value = in.at(at++);
   set_classes(radii);
   class_grain = classes;

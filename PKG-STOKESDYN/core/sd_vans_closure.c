@@ -9,21 +9,24 @@ static double height_of(const sd_vans_mesh *mesh, int n)
   return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
 }
 
-/* Volume and surface of all grains in slice n over the volume of the slice, but for a factor common to both: phi_c / V_c each grain. */
-static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi, int n, double *VA,
-                               double *SA)
+/* Volume and surface of all grains in slice n over the volume of the slice, but for a factor common to both: phi_c / V_c
+ * each grain. */
+static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi,
+                               int n, double *VA, double *SA)
 {
   const int classes = class_phi ? fluid->nclass : 0;
   *VA = *SA = 0.0;
   for (int c = 0; c < (classes ? classes : 1); c++) {
-    const double a = classes ? fluid->class_radius[c] : fluid->radius, share = classes ? class_phi[(long) c * mesh->ncell + n] : phi[n];
+    const double a = classes ? fluid->class_radius[c] : fluid->radius,
+                 share = classes ? class_phi[(long) c * mesh->ncell + n] : phi[n];
     *VA += share * 4.0 / 3.0 * PI * a * a * a;
     *SA += share * 4.0 * PI * a * a;
   }
 }
 
 /* Pore length of every slice and, for D not NULL, the mean diameter 6 VA/SA. */
-static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi, double *pore, double *D)
+static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi,
+                        double *pore, double *D)
 {
   for (int n = 0; n < mesh->ncell; n++) {
     double VA, SA;
@@ -36,7 +39,7 @@ static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
 
 static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, double *length)
 {
-  int packed = mesh->ncell - 1;                  /* the highest slice that reaches phi_max; -1: none */
+  int packed = mesh->ncell - 1; /* the highest slice that reaches phi_max; -1: none */
   while (packed >= 0 && phi[packed] < fluid->phi_max) packed--;
   length[0] = 0.0;
   for (int j = 1; j < mesh->ncell; j++) {
@@ -71,8 +74,8 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
   }
 }
 
-void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U, const double *phi, const double *class_phi,
-                           const double *phi_bed_profile, double *length, double *scratch)
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U, const double *phi,
+                           const double *class_phi, const double *phi_bed_profile, double *length, double *scratch)
 {
   const int N = mesh->ncell;
   const double *z = mesh->edge, H = z[N - 1], kappa = fluid->kappa;
@@ -88,7 +91,9 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
       for (int j = 0; j < N - 1; j++) length[j] = kappa * z[j] * sqrt(1.0 - z[j] / H);
       length[N - 1] = 0.0;
       break;
-    case SD_VANS_LI_SAWAMOTO: li_sawamoto(mesh, fluid, phi, length); break;
+    case SD_VANS_LI_SAWAMOTO:
+      li_sawamoto(mesh, fluid, phi, length);
+      break;
     case SD_VANS_PIPE:
       li_sawamoto(mesh, fluid, phi, length);
       for (int j = 0; j < N; j++) length[j] = fmin(length[j], kappa * (H - z[j]));
@@ -104,7 +109,9 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
         length[j] = value;
       }
       break;
-    case SD_VANS_ROUSSEAU: rousseau(mesh, fluid, U, phi, length); break;
+    case SD_VANS_ROUSSEAU:
+      rousseau(mesh, fluid, U, phi, length);
+      break;
     case SD_VANS_NI_CAPART: {
       pore_length(mesh, fluid, phi, class_phi, pore, D);
       const double bed = sd_vans_bed(mesh, phi_bed_profile, fluid->phi_bed);

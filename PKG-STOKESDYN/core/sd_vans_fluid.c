@@ -12,13 +12,13 @@ static double height_of(const sd_vans_mesh *mesh, int n)
   return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
 }
 
-void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt, const double *U, const double *phi, const double *vx,
-                      const double *drag, const double *class_phi, const double *class_drag, double *b)
+void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt, const double *U, const double *phi,
+                      const double *vx, const double *drag, const double *class_phi, const double *class_drag, double *b)
 {
   const int N = mesh->ncell, yade = fluid->rules == SD_VANS_YADE;
   const double cap = 0.1 / dt;
   for (int n = 0; n < N; n++) {
-    double density = 0.0;                        /* n<f>, force per volume of mixture */
+    double density = 0.0; /* n<f>, force per volume of mixture */
     if (class_phi)
       for (int c = 0; c < fluid->nclass; c++) {
         const double a = fluid->class_radius[c];
@@ -52,13 +52,13 @@ int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
  *   -(cl + T_j) x_(j-1) + (cd + T_j + T_(j+1)) x_j - (cu + T_(j+1)) x_(j+1) = ce U_j + cr,   x_j = U'_(j+1)      (times dz)  */
 struct sd_vans_solver {
   int ncell;
-  double *cl, *cu, *cd, *ce, *cr;                /* constant in a solve */
-  double *mix, *gap;                             /* node: l^2/h, eN/h */
-  double *nut, *T, *wall, *c, *g;                /* of a step */
-  double *wall_scale, *wall_cd, *wall_cr;        /* e dz/width coef/8; cd and cr with the side walls of the step */
-  double *sum;                                   /* over steps: U' */
+  double *cl, *cu, *cd, *ce, *cr;         /* constant in a solve */
+  double *mix, *gap;                      /* node: l^2/h, eN/h */
+  double *nut, *T, *wall, *c, *g;         /* of a step */
+  double *wall_scale, *wall_cd, *wall_cr; /* e dz/width coef/8; cd and cr with the side walls of the step */
+  double *sum;                            /* over steps: U' */
   double *memory;
-  sd_vans_wall_segment *table[2];                       /* of either rules, made when first needed */
+  sd_vans_wall_segment *table[2]; /* of either rules, made when first needed */
 };
 
 sd_vans_solver *sd_vans_solver_create(int ncell)
@@ -74,7 +74,8 @@ sd_vans_solver *sd_vans_solver_create(int ncell)
   s->ncell = ncell;
   s->memory = m;
   s->table[0] = s->table[1] = 0;
-  double **arrays[] = {&s->cl, &s->cu, &s->cd, &s->ce, &s->cr, &s->mix, &s->gap, &s->nut, &s->T, &s->wall, &s->c, &s->g, &s->wall_scale, &s->wall_cd, &s->wall_cr, &s->sum};
+  double **arrays[] = {&s->cl, &s->cu,   &s->cd, &s->ce, &s->cr,         &s->mix,     &s->gap,     &s->nut,
+                       &s->T,  &s->wall, &s->c,  &s->g,  &s->wall_scale, &s->wall_cd, &s->wall_cr, &s->sum};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -128,7 +129,8 @@ static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
 }
 
 /* Viscous flux through node j without its conductance: e_j x_j - e_(j-1) x_(j-1) + J_j, x from U (or a sum of U over steps). */
-static double viscous_jump(int M, const double *phi, const double *vx, const double *U, int driven, double u_top, double steps, int j)
+static double viscous_jump(int M, const double *phi, const double *vx, const double *U, int driven, double u_top, double steps,
+                           int j)
 {
   const double below = j == 0 ? 0.0 : (1.0 - phi[j - 1]) * U[j - 1];
   const double x = j < M ? U[j] : driven ? u_top * steps : U[M - 1];
@@ -153,7 +155,7 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
     c[i] = c_low = Ui * wi;
     c[t] = c_top = Lt * wt;
   }
-  if (M - 1 - k >= half) {                       /* M odd: one more row from the top */
+  if (M - 1 - k >= half) { /* M odd: one more row from the top */
     const int t = M - 1 - k;
     const double Lt = cl[t] + T[t], Ut = cu[t] + T[t + 1], wt = 1.0 / (cd[t] + T[t] + T[t + 1] - Ut * c_top);
     g[t] = g_top = (ce[t] * x[t] + cr[t] + Ut * g_top) * wt;
@@ -171,7 +173,8 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
 }
 
 /* Side walls: half of the friction on U', half on U. Inlined for either rules. */
-static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segment *table, sd_vans_rules rules, double Re_factor, const double *U)
+static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segment *table, sd_vans_rules rules, double Re_factor,
+                             const double *U)
 {
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
   double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
@@ -184,9 +187,9 @@ static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segmen
   }
 }
 
-sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, int64_t nsteps, double dt, const double *phi,
-                        const double *vx, const double *b, const double *length, const double *source, double *U, double *nut, double *stress,
-                        double *moved, double *shear, sd_vans_impulse *impulse)
+sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, int64_t nsteps, double dt,
+                        const double *phi, const double *vx, const double *b, const double *length, const double *source,
+                        double *U, double *nut, double *stress, double *moved, double *shear, sd_vans_impulse *impulse)
 {
   const int N = mesh->ncell, M = N - 1, yade = fluid->rules == SD_VANS_YADE;
   const double nu0 = fluid->eta / fluid->rho, drive = (yade ? fabs(fluid->gx) : fluid->gx) - fluid->dpdx / fluid->rho;
@@ -207,14 +210,15 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
     s->cr[j] = e * (above * J_above - A * J) + dz * (b[j] * vx[j] + e * drive + (source ? source[j] : 0.0));
     A = above;
   }
-  s->cl[0] = 0.0;                                /* U = 0 on the bottom */
+  s->cl[0] = 0.0; /* U = 0 on the bottom */
   /* The surface is eliminated from the last row: its eddy viscosity T_M stays in the row only if the surface is driven. */
   const double cu_top = s->cu[M - 1], cd_top = s->cd[M - 1], cr_top = s->cr[M - 1];
   s->cu[M - 1] = 0.0;
   if (!fluid->driven) s->cd[M - 1] = cd_top - cu_top;
 
   const double *cd = s->cd, *cr = s->cr;
-  const double wall_factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0, Re_factor = fluid->width / nu0;
+  const double wall_factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0,
+               Re_factor = fluid->width / nu0;
   const sd_vans_wall_segment *table = 0;
   if (wall_factor != 0.0) {
     sd_vans_wall_segment **slot = &s->table[fluid->rules];
@@ -237,11 +241,15 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
       s->T[j] = s->gap[j] * s->nut[j];
     }
     const double T_top = s->T[M], T_low = s->T[0];
-    if (fluid->driven) s->cr[M - 1] = cr_top + (cu_top + T_top) * fluid->u_top;
-    else s->T[M] = 0.0;
+    if (fluid->driven)
+      s->cr[M - 1] = cr_top + (cu_top + T_top) * fluid->u_top;
+    else
+      s->T[M] = 0.0;
     if (table) {
-      if (yade) wall_rows(s, M, table, SD_VANS_YADE, Re_factor, U);
-      else wall_rows(s, M, table, SD_VANS_CONSISTENT, Re_factor, U);
+      if (yade)
+        wall_rows(s, M, table, SD_VANS_YADE, Re_factor, U);
+      else
+        wall_rows(s, M, table, SD_VANS_CONSISTENT, Re_factor, U);
       if (moved)
         for (int j = 0; j < M; j++) wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
     }
@@ -266,13 +274,14 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
   }
   if (moved) {
     const double steps = (double) nsteps, rho_dt = fluid->rho * dt;
-    double flux = viscosity_at_node(mesh, fluid, phi, 0) / gap_of(mesh, 0) * viscous_jump(M, phi, vx, s->sum, fluid->driven, fluid->u_top, steps, 0);
+    double flux = viscosity_at_node(mesh, fluid, phi, 0) / gap_of(mesh, 0) *
+        viscous_jump(M, phi, vx, s->sum, fluid->driven, fluid->u_top, steps, 0);
     impulse->driving = 0.0;
     impulse->bottom = -rho_dt * (flux + T_bottom);
     impulse->walls = -rho_dt * wall_sum;
     for (int j = 0; j < M; j++) {
       const double above = viscosity_at_node(mesh, fluid, phi, j + 1) / gap_of(mesh, j + 1) *
-        viscous_jump(M, phi, vx, s->sum, fluid->driven, fluid->u_top, steps, j + 1);
+          viscous_jump(M, phi, vx, s->sum, fluid->driven, fluid->u_top, steps, j + 1);
       shear[j] = rho_dt * phi[j] * (above - flux);
       moved[j] = rho_dt * height_of(mesh, j) * b[j] * (s->sum[j] - vx[j] * steps) + shear[j];
       impulse->driving += rho_dt * steps * height_of(mesh, j) * (1.0 - phi[j]) * drive;
@@ -284,8 +293,8 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
   return isfinite(check) ? SD_OK : SD_ENOTFINITE;
 }
 
-void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *length, const double *U, double *nut,
-                    double *stress)
+void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *length,
+                    const double *U, double *nut, double *stress)
 {
   for (int j = 0; j < mesh->ncell; j++) {
     const double jump = U[j + 1] - U[j];
@@ -302,7 +311,8 @@ double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi,
 }
 
 /* In the coordinate "volume of water below" the old and the new slices are two cuts of one column, in which U stays. */
-double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old, const double *phi_new, double *U, double *scratch)
+double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old, const double *phi_new, double *U,
+                        double *scratch)
 {
   const int M = mesh->ncell - 1;
   double *below = scratch, *old = scratch + M + 1;
@@ -323,7 +333,7 @@ double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_
     }
     const double rest = hi - at, u = source < M ? old[source] : surface;
     momentum += u * rest;
-    if (source == M) through += u * rest;        /* water from above the surface */
+    if (source == M) through += u * rest; /* water from above the surface */
     if (content > 0.0) U[n + 1] = momentum / content;
     lo = hi;
   }

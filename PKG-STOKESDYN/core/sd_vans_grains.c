@@ -14,11 +14,13 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
     return s >= N ? N : (int) s;
   }
   if (height >= mesh->edge[N]) return N;
-  int lo = 0, hi = N;                            /* edge[lo] <= height < edge[hi] */
+  int lo = 0, hi = N; /* edge[lo] <= height < edge[hi] */
   while (hi - lo > 1) {
     const int mid = (lo + hi) / 2;
-    if (mesh->edge[mid] <= height) lo = mid;
-    else hi = mid;
+    if (mesh->edge[mid] <= height)
+      lo = mid;
+    else
+      hi = mid;
   }
   return lo;
 }
@@ -35,7 +37,8 @@ double sd_vans_slice_volume(double a, double lo, double hi)
   return primitive(a * a, s1) - primitive(a * a, s0);
 }
 
-/* Yade gives slice n the limits of slice 2p-n, p that of the centre, and cuts the sphere's lower end only off the lower limit and its
+/* Yade gives slice n the limits of slice 2p-n, p that of the centre, and cuts the sphere's lower end only off the lower
+ * limit and its
  * upper end only off the upper one. */
 static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first, double *V, int max)
 {
@@ -62,7 +65,7 @@ int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, doub
   const double height = z - mesh->z_ref, a2 = a * a;
   int n = sd_vans_slice_of(mesh, z - a);
   if (n >= N || !(height + a > 0.0)) return 0;
-  double below;                                  /* primitive at the lower end of the slice */
+  double below; /* primitive at the lower end of the slice */
   if (n < 0) {
     n = 0;
     below = primitive(a2, fmax(-height, -a));
@@ -72,7 +75,8 @@ int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, doub
   int count = 0;
   while (n < N && count < max) {
     const double top = mesh->edge[n + 1] - height;
-    const double value = primitive(a2, top < a ? top : a), here = value > below ? value : below;    /* rounding must not make V < 0 */
+    const double value = primitive(a2, top < a ? top : a),
+                 here = value > below ? value : below; /* rounding must not make V < 0 */
     V[count++] = here - below;
     below = here;
     if (top >= a) break;
@@ -115,8 +119,9 @@ static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
   return 0.5 * law->rho * PI * a * a * law->lift * (over * over - under * under);
 }
 
-int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U, const double *hindrance, int n, const double *x,
-                   const double *v, const double *a, const double *fluctuation, const unsigned char *take, double *F, double *drag_x)
+int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U, const double *hindrance, int n,
+                   const double *x, const double *v, const double *a, const double *fluctuation, const unsigned char *take,
+                   double *F, double *drag_x)
 {
   const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
   int outside = 0;
@@ -159,9 +164,10 @@ static inline void add(double *sum, double V, const double *v, double drag)
   sum[SD_VANS_DRAG] += V * drag;
 }
 
-int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const sd_vans_averaging *how, const double *U, const double *hindrance,
-                    int n, const double *x, const double *v, const double *a, const double *fluctuation, const double *weight,
-                    const unsigned char *take, double *sums, double *class_sums, double *V)
+int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const sd_vans_averaging *how, const double *U,
+                    const double *hindrance, int n, const double *x, const double *v, const double *a,
+                    const double *fluctuation, const double *weight, const unsigned char *take, double *sums,
+                    double *class_sums, double *V)
 {
   const int N = mesh->ncell;
   for (int i = 0; i < n; i++) {
@@ -232,8 +238,8 @@ static int slices_of(const sd_vans_mesh *mesh, int point, double z, double a, in
   return 1;
 }
 
-void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take, const double *value,
-                    double *out, double *V)
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take,
+                    const double *value, double *out, double *V)
 {
   const int N = mesh->ncell;
   for (int i = 0; i < n; i++) {
@@ -255,8 +261,8 @@ void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x,
   }
 }
 
-void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight, const unsigned char *take,
-                    const double *density, double *out, double *V)
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight,
+                    const unsigned char *take, const double *density, double *out, double *V)
 {
   for (int i = 0; i < n; i++) {
     out[i] = 0.0;

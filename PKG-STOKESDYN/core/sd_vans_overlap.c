@@ -7,7 +7,7 @@ static const double PI = 3.14159265358979323846;
 enum { MAX_CUTS = 64 };
 
 typedef struct {
-  double n[3], h;       /* the sphere keeps r.n <= h, r from its centre */
+  double n[3], h; /* the sphere keeps r.n <= h, r from its centre */
 } cut;
 
 static double dot(const double *a, const double *b)
@@ -15,7 +15,8 @@ static double dot(const double *a, const double *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Area of a disc of radius r within half-planes m.u <= c: half the sum of r^2 times the angle of the arcs left and of the signed heights
+/* Area of a disc of radius r within half-planes m.u <= c: half the sum of r^2 times the angle of the arcs left and of the
+ * signed heights
  * times the lengths of the chords left. */
 static double disc_area(double r, int count, double (*m)[2], const double *c)
 {
@@ -44,12 +45,14 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
       const double along = -m[j][0] * ey + m[j][1] * ex, rest = c[j] - height * (m[j][0] * ex + m[j][1] * ey);
       if (fabs(along) < 1e-14) {
         if (rest < 0.0 || (rest == 0.0 && j < k)) t1 = t0;
-      } else if (along > 0.0) t1 = fmin(t1, rest / along);
-      else t0 = fmax(t0, rest / along);
+      } else if (along > 0.0)
+        t1 = fmin(t1, rest / along);
+      else
+        t0 = fmax(t0, rest / along);
     }
     if (t1 > t0) chords += height * (t1 - t0);
   }
-  for (int i = 1; i < arcs; i++)    /* sort by the beginning */
+  for (int i = 1; i < arcs; i++) /* sort by the beginning */
     for (int k = i; k > 0 && from[k] < from[k - 1]; k--) {
       const double f = from[k], t = to[k];
       from[k] = from[k - 1], to[k] = to[k - 1];
@@ -87,7 +90,7 @@ static double integrate(double a, int count, const cut *cuts)
         m[k - 1][1] = dot(cuts[k].n, up);
         c[k - 1] = cuts[k].h - dot(cuts[k].n, axis) * z;
       }
-      volume += 0.5 * width * gauss[q % 4] * disc_area(r, count - 1, m, c) * r;    /* dz = a cos t dt = r dt */
+      volume += 0.5 * width * gauss[q % 4] * disc_area(r, count - 1, m, c) * r; /* dz = a cos t dt = r dt */
     }
   return volume;
 }
@@ -103,7 +106,7 @@ double sd_vans_union_share(int n, const double *x, const double *a, int i)
     for (int d = 0; d < 3; d++) r[d] = x[3 * j + d] - x[3 * i + d];
     const double distance = sqrt(dot(r, r));
     if (distance >= ai + a[j]) continue;
-    if (distance <= 1e-12 * ai) {                /* concentric: the larger counts, of equal ones the first */
+    if (distance <= 1e-12 * ai) { /* concentric: the larger counts, of equal ones the first */
       if (a[j] > ai || (a[j] == ai && j < i)) return 0.0;
       continue;
     }

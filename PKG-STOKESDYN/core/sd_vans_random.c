@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-/* Finaliser of SplitMix64 (Steele, Lea & Flood 2014): a bijection of 64 bits in which every input bit reaches every output bit. */
+/* Finaliser of SplitMix64 (Steele, Lea & Flood 2014): a bijection of 64 bits in which every input bit reaches every output
+ * bit. */
 static uint64_t mix(uint64_t x)
 {
   x = (x ^ (x >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -10,7 +11,7 @@ static uint64_t mix(uint64_t x)
   return x ^ (x >> 31);
 }
 
-static double uniform(uint64_t key, uint64_t k)    /* in (0, 1) */
+static double uniform(uint64_t key, uint64_t k) /* in (0, 1) */
 {
   return ((double) (mix(key + (k + 1) * UINT64_C(0x9e3779b97f4a7c15)) >> 11) + 0.5) * 0x1p-53;
 }

@@ -9,7 +9,8 @@ double sd_vans_wall_friction(sd_vans_rules rules, double Re, int *rounds)
   double f = 1.0 / (0.32 * 0.32);
   if (!(Re > 1e-10)) Re = 1e-10;
   for (int k = 1; k <= 100; k++) {
-    const double root = 2.0 * (rules == SD_VANS_YADE ? log(Re * sqrt(f)) : log10(Re * sqrt(f))) + 0.32, next = 1.0 / (root * root);
+    const double root = 2.0 * (rules == SD_VANS_YADE ? log(Re * sqrt(f)) : log10(Re * sqrt(f))) + 0.32,
+                 next = 1.0 / (root * root);
     const double change = fabs(next - f) / f;
     f = next;
     if (rounds) *rounds = k;
@@ -54,7 +55,9 @@ void sd_vans_wall_table(sd_vans_rules rules, sd_vans_wall_segment *table)
   for (int k = 0; k < SD_VANS_WALL_TABLE; k++) {
     const int exponent = SD_VANS_WALL_LOWEST + k / SEGMENTS;
     const double binade = ldexp(1.0, exponent);
-    fit(rules, binade * (1.0 + (double) (k % SEGMENTS) / SEGMENTS), binade * (1.0 + (double) (k % SEGMENTS + 1) / SEGMENTS), &table[k]);
-    if (exponent >= -5 && exponent < 5) table[k].scale = 0.0;    /* the substitution wanders there: steps closer than the points that look for them */
+    fit(rules, binade * (1.0 + (double) (k % SEGMENTS) / SEGMENTS), binade * (1.0 + (double) (k % SEGMENTS + 1) / SEGMENTS),
+        &table[k]);
+    if (exponent >= -5 && exponent < 5)
+      table[k].scale = 0.0; /* the substitution wanders there: steps closer than the points that look for them */
   }
 }

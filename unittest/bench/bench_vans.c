@@ -1,6 +1,7 @@
-/* Cost of the stream of fix hydro/vans on one core: fluid step per slice, averages and forces per grain. Processor time, median of 9 runs.
+/* Cost of the stream of fix hydro/vans on one core: fluid step per slice, averages and forces per grain. Processor time,
+ * median of 9 runs.
  *   build/bench_vans */
-#define _POSIX_C_SOURCE 199309L    /* clock_gettime */
+#define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,8 +38,8 @@ static double *array(int n)
 
 static double fluid(int N, sd_vans_turbulence turbulence, double width, int account)
 {
-  double *edge = array(N + 1), *phi = array(N), *vx = array(N), *b = array(N), *length = array(N), *U = array(N + 1), *nut = array(N), *stress = array(N),
-         *scratch = array(4 * N), *moved = array(N), *shear = array(N), times[RUNS];
+  double *edge = array(N + 1), *phi = array(N), *vx = array(N), *b = array(N), *length = array(N), *U = array(N + 1),
+         *nut = array(N), *stress = array(N), *scratch = array(4 * N), *moved = array(N), *shear = array(N), times[RUNS];
   const double H = 0.06, dz = H / (N - 1), dt = 1e-4;
   for (int n = 0; n <= N; n++) edge[n] = n * dz;
   for (int n = 0; n < N; n++) {
@@ -49,14 +50,24 @@ static double fluid(int N, sd_vans_turbulence turbulence, double width, int acco
     U[n + 1] = 0.02 + fmax(z - 0.03, 0.0) * 20;
   }
   const sd_vans_mesh mesh = {N, 0.0, dz, edge};
-  const sd_vans_fluid f = {.rho = 1000, .eta = 1e-3, .gx = 0.98, .turbulence = turbulence, .kappa = 0.41, .phi_max = 0.61, .width = width, .wall_coef = 1, .radius = 0.003};
+  const sd_vans_fluid f = {.rho = 1000,
+                           .eta = 1e-3,
+                           .gx = 0.98,
+                           .turbulence = turbulence,
+                           .kappa = 0.41,
+                           .phi_max = 0.61,
+                           .width = width,
+                           .wall_coef = 1,
+                           .radius = 0.003};
   sd_vans_mixing_length(&mesh, &f, U, phi, NULL, phi, length, scratch);
   sd_vans_solver *solver = sd_vans_solver_create(N);
   sd_vans_impulse in;
   const int steps = 2000000 / N;
   for (int r = -1; r < RUNS; r++) {
     const double t = seconds();
-    if (sd_vans_solve(solver, &mesh, &f, steps, dt, phi, vx, b, length, NULL, U, nut, stress, account ? moved : NULL, account ? shear : NULL, &in) != SD_OK) abort();
+    if (sd_vans_solve(solver, &mesh, &f, steps, dt, phi, vx, b, length, NULL, U, nut, stress, account ? moved : NULL,
+                      account ? shear : NULL, &in) != SD_OK)
+      abort();
     if (r >= 0) times[r] = (seconds() - t) / steps / N * 1e9;
   }
   sd_vans_solver_free(solver);
@@ -69,8 +80,9 @@ static void grains(double ratio, int n, double *average, double *force)
 {
   const int N = 900;
   const double a = 0.003, dz = a / ratio;
-  double *edge = array(N + 1), *phi = array(N), *U = array(N + 1), *hindrance = array(N), *V = array(N), *sums = array(N * SD_VANS_NSUM), *x = array(3 * n),
-         *v = array(3 * n), *radius = array(n), *F = array(3 * n), *drag = array(n), averages[RUNS], forces[RUNS];
+  double *edge = array(N + 1), *phi = array(N), *U = array(N + 1), *hindrance = array(N), *V = array(N),
+         *sums = array(N * SD_VANS_NSUM), *x = array(3 * n), *v = array(3 * n), *radius = array(n), *F = array(3 * n),
+         *drag = array(n), averages[RUNS], forces[RUNS];
   for (int k = 0; k <= N; k++) edge[k] = k * dz, U[k] = 0.001 * k;
   for (int k = 0; k < N; k++) phi[k] = 0.5;
   unsigned seed = 12345;
@@ -109,7 +121,8 @@ int main(void)
   for (int k = 0; k < 3; k++) {
     const double plain = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 0), booked = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 1);
     const double walls = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0065, 0);
-    printf("  %4d slices                               %6.2f          %6.2f            %6.2f (%.2f)\n", sizes[k], plain, booked, walls, walls / plain);
+    printf("  %4d slices                               %6.2f          %6.2f            %6.2f (%.2f)\n", sizes[k], plain, booked,
+           walls, walls / plain);
   }
   printf("grains, ns per grain (900 slices)          averages         forces\n");
   static const double ratios[] = {3.0, 15.0};

@@ -45,10 +45,13 @@ static void column_free(column *c)
 static void solve(column *c, const sd_vans_fluid *fluid, int64_t steps, double dt)
 {
   sd_vans_mixing_length(&c->mesh, fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
-  assert_int_equal(sd_vans_solve(c->solver, &c->mesh, fluid, steps, dt, c->phi, c->vx, c->b, c->length, NULL, c->U, c->nut, c->stress, NULL, NULL, NULL), SD_OK);
+  assert_int_equal(sd_vans_solve(c->solver, &c->mesh, fluid, steps, dt, c->phi, c->vx, c->b, c->length, NULL, c->U, c->nut,
+                                 c->stress, NULL, NULL, NULL),
+                   SD_OK);
 }
 
-/* Steady discrete solution on equal slices: u = -dpdx/(2 eta) (z (H-z) + dz^2/4) in the middles; against it 1e-10, against the parabola second order. */
+/* Steady discrete solution on equal slices: u = -dpdx/(2 eta) (z (H-z) + dz^2/4) in the middles; against it 1e-10, against
+ * the parabola second order. */
 static void poiseuille(void **state)
 {
   (void) state;
@@ -56,7 +59,14 @@ static void poiseuille(void **state)
   double previous = 0.0;
   for (int N = 26; N <= 401; N = (N - 1) * 4 + 1) {
     column *c = column_create(N, H, 0.0);
-    const sd_vans_fluid fluid = {.rho = 1100, .eta = eta, .dpdx = dpdx, .turbulence = SD_VANS_LAMINAR, .kappa = 0.41, .phi_max = 0.6, .driven = 1, .u_top = 0.0};
+    const sd_vans_fluid fluid = {.rho = 1100,
+                                 .eta = eta,
+                                 .dpdx = dpdx,
+                                 .turbulence = SD_VANS_LAMINAR,
+                                 .kappa = 0.41,
+                                 .phi_max = 0.6,
+                                 .driven = 1,
+                                 .u_top = 0.0};
     solve(c, &fluid, 1000, 1e4);
     const double dz = c->mesh.dz, u_max = -dpdx / (8 * eta) * H * H;
     double discrete = 0.0, parabola = 0.0;
@@ -80,7 +90,14 @@ static void poiseuille_on_an_uneven_mesh(void **state)
   double previous = 0.0;
   for (int N = 41; N <= 321; N = (N - 1) * 2 + 1) {
     column *c = column_create(N, H, 0.75);
-    const sd_vans_fluid fluid = {.rho = 1100, .eta = eta, .dpdx = dpdx, .turbulence = SD_VANS_LAMINAR, .kappa = 0.41, .phi_max = 0.6, .driven = 1, .u_top = 0.0};
+    const sd_vans_fluid fluid = {.rho = 1100,
+                                 .eta = eta,
+                                 .dpdx = dpdx,
+                                 .turbulence = SD_VANS_LAMINAR,
+                                 .kappa = 0.41,
+                                 .phi_max = 0.6,
+                                 .driven = 1,
+                                 .u_top = 0.0};
     solve(c, &fluid, 1000, 1e4);
     double worst = 0.0;
     for (int j = 0; j < N - 1; j++) {
@@ -126,12 +143,13 @@ static void turbulent_layer_converges(void **state)
   const double nu = 1.3e-6, H = 0.05, u_star = 900 * nu / H, kappa = 0.41;
   double error[4];
   for (int level = 0; level < 4; level++) {
-    const int in_sublayer = 4 << level;                  /* dz+ = 11.3 / (4.5, 8.5, 16.5, 32.5) */
+    const int in_sublayer = 4 << level; /* dz+ = 11.3 / (4.5, 8.5, 16.5, 32.5) */
     const double dz = 11.3 * nu / u_star / (in_sublayer + 0.5);
     const int N = (int) floor(H / dz) + 1;
     const double H_mesh = (N - 1) * dz, g = u_star * u_star / H_mesh;
     column *c = column_create(N, H_mesh, 0.0);
-    const sd_vans_fluid fluid = {.rho = 1000, .eta = nu * 1000, .gx = g, .turbulence = SD_VANS_KZ, .kappa = kappa, .phi_max = 0.6, .sublayer = 1};
+    const sd_vans_fluid fluid = {
+        .rho = 1000, .eta = nu * 1000, .gx = g, .turbulence = SD_VANS_KZ, .kappa = kappa, .phi_max = 0.6, .sublayer = 1};
     solve(c, &fluid, 2500, 0.5);
     error[level] = 0.0;
     for (int j = 0; j < N - 1; j++)
@@ -160,7 +178,8 @@ static void wall_friction_follows_its_law(void **state)
   assert_true(worst < 0.01);
   /* Graf & Altinakar's law at Re 1e2..1e5 */
   const double law[4] = {0.0927, 0.0411, 0.0225, 0.0140};
-  for (int k = 0; k < 4; k++) assert_true(fabs(sd_vans_wall_friction(SD_VANS_CONSISTENT, pow(10.0, k + 2), NULL) / law[k] - 1.0) < 0.01);
+  for (int k = 0; k < 4; k++)
+    assert_true(fabs(sd_vans_wall_friction(SD_VANS_CONSISTENT, pow(10.0, k + 2), NULL) / law[k] - 1.0) < 0.01);
 }
 
 /* Far from the bottom, without grains and turbulence, slope and side walls balance: g = 2/width f/8 U^2. */
@@ -169,14 +188,22 @@ static void side_walls_balance_the_slope(void **state)
   (void) state;
   const double width = 0.02, g = 0.3, nu = 1e-6;
   column *c = column_create(41, 0.4, 0.0);
-  const sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .gx = g, .turbulence = SD_VANS_LAMINAR, .kappa = 0.41, .phi_max = 0.6, .width = width, .wall_coef = 1.2};
+  const sd_vans_fluid fluid = {.rho = 1000,
+                               .eta = 1e-3,
+                               .gx = g,
+                               .turbulence = SD_VANS_LAMINAR,
+                               .kappa = 0.41,
+                               .phi_max = 0.6,
+                               .width = width,
+                               .wall_coef = 1.2};
   solve(c, &fluid, 4000, 0.01);
   const double U = c->U[40], f = sd_vans_wall_friction(SD_VANS_CONSISTENT, U * width / nu, NULL);
   assert_true(fabs(2.0 / width * 1.2 * f / 8.0 * U * U / g - 1.0) < 1e-6);
   column_free(c);
 }
 
-/* The tabulated friction is what the substitution gives, Re from 1e-12 to 1e13, to 1e-10; and it is a table, not the substitution, where flows are. */
+/* The tabulated friction is what the substitution gives, Re from 1e-12 to 1e13, to 1e-10; and it is a table, not the
+ * substitution, where flows are. */
 static void tabulated_friction_is_the_substitution(void **state)
 {
   (void) state;
@@ -188,13 +215,15 @@ static void tabulated_friction_is_the_substitution(void **state)
       assert_true(fabs(sd_vans_wall_lookup(table, (sd_vans_rules) rules, Re) - f) <= 1e-10 * f);
     }
     int smooth = 0, all = 0;
-    for (double Re = 100.0; Re < 1e7; Re *= 1.01, all++) smooth += sd_vans_wall_lookup(table, (sd_vans_rules) rules, Re) != sd_vans_wall_friction((sd_vans_rules) rules, Re, NULL);
+    for (double Re = 100.0; Re < 1e7; Re *= 1.01, all++)
+      smooth += sd_vans_wall_lookup(table, (sd_vans_rules) rules, Re) != sd_vans_wall_friction((sd_vans_rules) rules, Re, NULL);
     assert_true(smooth > 0.8 * all);
   }
   free(table);
 }
 
-/* What the water gains is what came from outside, less what it gave to the grains, plus the source; for every closure, viscosity and surface. */
+/* What the water gains is what came from outside, less what it gave to the grains, plus the source; for every closure,
+ * viscosity and surface. */
 static void momentum_is_balanced(void **state)
 {
   (void) state;
@@ -202,9 +231,21 @@ static void momentum_is_balanced(void **state)
     for (int variant = 0; variant < 6; variant++) {
       const int N = 48 + variant;
       column *c = column_create(N, 0.03, variant == 3 ? 0.6 : 0.0);
-      const sd_vans_fluid fluid = {.rho = 1030, .eta = variant == 1 ? 0.2 : 2e-3, .gx = 0.4, .dpdx = 35, .turbulence = (sd_vans_turbulence) turbulence, .kappa = 0.4,
-                                   .phi_max = 0.61, .phi_bed = 0.08, .sublayer = variant == 5, .viscosity = (sd_vans_viscosity) (variant % 3), .driven = variant % 2,
-                                   .u_top = 0.8, .width = variant >= 2 ? 0.01 : 0.0, .wall_coef = 1.1, .radius = 0.003,
+      const sd_vans_fluid fluid = {.rho = 1030,
+                                   .eta = variant == 1 ? 0.2 : 2e-3,
+                                   .gx = 0.4,
+                                   .dpdx = 35,
+                                   .turbulence = (sd_vans_turbulence) turbulence,
+                                   .kappa = 0.4,
+                                   .phi_max = 0.61,
+                                   .phi_bed = 0.08,
+                                   .sublayer = variant == 5,
+                                   .viscosity = (sd_vans_viscosity) (variant % 3),
+                                   .driven = variant % 2,
+                                   .u_top = 0.8,
+                                   .width = variant >= 2 ? 0.01 : 0.0,
+                                   .wall_coef = 1.1,
+                                   .radius = 0.003,
                                    .rules = variant == 4 ? SD_VANS_YADE : SD_VANS_CONSISTENT};
       double source[64];
       for (int n = 0; n < N; n++) {
@@ -218,8 +259,8 @@ static void momentum_is_balanced(void **state)
       const double before = sd_vans_momentum(&c->mesh, fluid.rho, c->phi, c->U), dt = 3e-4;
       const int steps = 37;
       sd_vans_impulse in;
-      assert_int_equal(sd_vans_solve(c->solver, &c->mesh, &fluid, steps, dt, c->phi, c->vx, c->b, c->length, source, c->U, c->nut, c->stress, c->moved,
-                                     c->shear, &in),
+      assert_int_equal(sd_vans_solve(c->solver, &c->mesh, &fluid, steps, dt, c->phi, c->vx, c->b, c->length, source, c->U,
+                                     c->nut, c->stress, c->moved, c->shear, &in),
                        SD_OK);
       double gain = in.driving + in.bottom + in.walls + in.surface;
       double size = fabs(in.driving) + fabs(in.bottom) + fabs(in.walls) + fabs(in.surface);
@@ -264,7 +305,7 @@ static void mixing_lengths(void **state)
   column *c = column_create(N, 0.5, 0.0);
   sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .kappa = 0.4, .phi_max = 0.6, .phi_bed = 0.1, .radius = 0.003};
   const double dz = 0.01, H = 0.5;
-#define LENGTH(which) \
+#define LENGTH(which)       \
   fluid.turbulence = which; \
   sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch)
   LENGTH(SD_VANS_KZ);
@@ -285,12 +326,14 @@ static void mixing_lengths(void **state)
   LENGTH(SD_VANS_LI_SAWAMOTO);
   assert_true(fabs(c->length[20] - 0.4 * dz * (0.6 - 0.62) / 0.6) < 1e-15);
   fluid.rules = SD_VANS_CONSISTENT;
-  LENGTH(SD_VANS_NI_CAPART);                             /* the bed is the lower edge of the highest slice above phi_bed */
+  LENGTH(SD_VANS_NI_CAPART); /* the bed is the lower edge of the highest slice above phi_bed */
   const double pore = (1 - 0.62) / 0.62 * 0.003 / 3;
   for (int j = 0; j < N; j++)
-    assert_true(fabs(c->length[j] - fmax(j < 20 ? fmin(pore / 2, 0.2 * 0.006) : 0.0, 0.4 * (j - 19) * dz)) < 1e-12 || (j >= 20 && c->length[j] >= 0.4 * (j - 19) * dz));
+    assert_true(fabs(c->length[j] - fmax(j < 20 ? fmin(pore / 2, 0.2 * 0.006) : 0.0, 0.4 * (j - 19) * dz)) < 1e-12 ||
+                (j >= 20 && c->length[j] >= 0.4 * (j - 19) * dz));
   LENGTH(SD_VANS_ROUSSEAU);
-  for (int j = 1; j < N; j++) assert_true(fabs(c->length[j] - 0.5 * 0.4 / 0.6 * 0.001) < 1e-15);    /* water at rest: van Driest's factor is 0 */
+  for (int j = 1; j < N; j++)
+    assert_true(fabs(c->length[j] - 0.5 * 0.4 / 0.6 * 0.001) < 1e-15); /* water at rest: van Driest's factor is 0 */
   LENGTH(SD_VANS_PORE);
   assert_true(c->length[0] == 0.0 && c->length[10] <= 0.4 * dz * 1.0000001);
 #undef LENGTH
@@ -318,7 +361,8 @@ static void number_of_steps(void **state)
   static const struct {
     double T, dt;
     int yade, right;
-  } cases[] = {{1e-2, 1e-5, 1001, 1000}, {1e-2, 1e-4, 101, 100}, {1, 1e-5, 100001, 100000}, {1, 0.1, 11, 10}, {1, 1e-3, 1000, 1000}, {1e-2, 1e-3, 10, 10}, {1e3, 0.2, 5000, 5000}};
+  } cases[] = {{1e-2, 1e-5, 1001, 1000}, {1e-2, 1e-4, 101, 100}, {1, 1e-5, 100001, 100000}, {1, 0.1, 11, 10},
+               {1, 1e-3, 1000, 1000},    {1e-2, 1e-3, 10, 10},   {1e3, 0.2, 5000, 5000}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     double dt = cases[k].dt;
     assert_int_equal(sd_vans_steps(SD_VANS_YADE, cases[k].T, &dt), cases[k].yade);
@@ -329,23 +373,27 @@ static void number_of_steps(void **state)
   assert_true(dt == 0.25);
 }
 
-/* The signed coefficient survives grains that are faster than the water; Yade's is cut to 0 there. Both are limited to 1/(10 dt). */
+/* The signed coefficient survives grains that are faster than the water; Yade's is cut to 0 there. Both are limited to
+ * 1/(10 dt). */
 static void exchange_coefficient(void **state)
 {
   (void) state;
-  const double edge[4] = {0, 1, 2, 3}, U[4] = {0, 0.5, 0.5, 0.5}, phi[3] = {0.3, 0.3, 0.3}, vx[3] = {0.2, 0.9, 0.5}, drag[3] = {2e-5, -3e-5, 1e-5};
+  const double edge[4] = {0, 1, 2, 3}, U[4] = {0, 0.5, 0.5, 0.5}, phi[3] = {0.3, 0.3, 0.3}, vx[3] = {0.2, 0.9, 0.5},
+               drag[3] = {2e-5, -3e-5, 1e-5};
   const sd_vans_mesh mesh = {3, 0, 1, edge};
   sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .radius = 0.003};
   const double n = 0.3 / (4.0 / 3.0 * PI * 27e-9);
   double b[3];
   sd_vans_exchange(&mesh, &fluid, 1e-2, U, phi, vx, drag, NULL, NULL, b);
-  assert_true(fabs(b[0] / (n * 2e-5 / 0.3 / 1000) - 1) < 1e-14 && fabs(b[1] / (n * 3e-5 / 0.4 / 1000) - 1) < 1e-14 && b[2] == 10.0);
+  assert_true(fabs(b[0] / (n * 2e-5 / 0.3 / 1000) - 1) < 1e-14 && fabs(b[1] / (n * 3e-5 / 0.4 / 1000) - 1) < 1e-14 &&
+              b[2] == 10.0);
   fluid.rules = SD_VANS_YADE;
   sd_vans_exchange(&mesh, &fluid, 1e-2, U, phi, vx, drag, NULL, NULL, b);
   assert_true(b[0] == 0.0 && b[1] == 0.0 && b[2] == 10.0);
 }
 
-/* Two equal spheres at distance h share a lens of volume pi (4a+h)(2a-h)^2/12; three in a chain; a sphere inside another; three that meet. */
+/* Two equal spheres at distance h share a lens of volume pi (4a+h)(2a-h)^2/12; three in a chain; a sphere inside another;
+ * three that meet. */
 static void overlaps_count_once(void **state)
 {
   (void) state;
@@ -381,19 +429,19 @@ static void overlaps_count_once(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(poiseuille),
-    cmocka_unit_test(poiseuille_on_an_uneven_mesh),
-    cmocka_unit_test(turbulent_layer_converges),
-    cmocka_unit_test(wall_friction_follows_its_law),
-    cmocka_unit_test(side_walls_balance_the_slope),
-    cmocka_unit_test(tabulated_friction_is_the_substitution),
-    cmocka_unit_test(momentum_is_balanced),
-    cmocka_unit_test(displaced_water_keeps_its_momentum),
-    cmocka_unit_test(mixing_lengths),
-    cmocka_unit_test(effective_viscosities),
-    cmocka_unit_test(number_of_steps),
-    cmocka_unit_test(exchange_coefficient),
-    cmocka_unit_test(overlaps_count_once),
+      cmocka_unit_test(poiseuille),
+      cmocka_unit_test(poiseuille_on_an_uneven_mesh),
+      cmocka_unit_test(turbulent_layer_converges),
+      cmocka_unit_test(wall_friction_follows_its_law),
+      cmocka_unit_test(side_walls_balance_the_slope),
+      cmocka_unit_test(tabulated_friction_is_the_substitution),
+      cmocka_unit_test(momentum_is_balanced),
+      cmocka_unit_test(displaced_water_keeps_its_momentum),
+      cmocka_unit_test(mixing_lengths),
+      cmocka_unit_test(effective_viscosities),
+      cmocka_unit_test(number_of_steps),
+      cmocka_unit_test(exchange_coefficient),
+      cmocka_unit_test(overlaps_count_once),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

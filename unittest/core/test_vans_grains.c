@@ -10,7 +10,8 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* The slices share their cuts, so that only rounding is left: each is one subtraction, 1e-16 of the volume, and there are up to 2000. */
+/* The slices share their cuts, so that only rounding is left: each is one subtraction, 1e-16 of the volume, and there are
+ * up to 2000. */
 static void slices_sum_to_the_sphere(void **state)
 {
   (void) state;
@@ -22,7 +23,7 @@ static void slices_sum_to_the_sphere(void **state)
   const sd_vans_mesh mesh = {N, z_ref, dz, edge};
   for (size_t r = 0; r < sizeof ratios / sizeof *ratios; r++)
     for (int k = 0; k <= 40; k++) {
-      const double a = ratios[r] * dz, z = z_ref + (1040 + k / 20.0) * dz;    /* also on the borders and in the middles */
+      const double a = ratios[r] * dz, z = z_ref + (1040 + k / 20.0) * dz; /* also on the borders and in the middles */
       int first;
       const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first, V, N);
       double sum = 0.0;
@@ -73,7 +74,8 @@ static void slices_end_at_the_mesh(void **state)
   assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 8.8, a, &first, V, N), 0);
 }
 
-/* Yade's slice n holds what belongs to slice 2p - n: seen where the sphere is large enough for its other defect, the one-sided cut, to vanish. */
+/* Yade's slice n holds what belongs to slice 2p - n: seen where the sphere is large enough for its other defect, the
+ * one-sided cut, to vanish. */
 static void yade_mirrors_the_slices(void **state)
 {
   (void) state;
@@ -81,12 +83,11 @@ static void yade_mirrors_the_slices(void **state)
   double edge[N + 1], right[N], mirrored[N];
   for (int n = 0; n <= N; n++) edge[n] = n * 0.25;
   const sd_vans_mesh mesh = {N, 0.0, 0.25, edge};
-  const double z = 20.3 * 0.25, a = 12.3 * 0.25;    /* centre in slice 20; whole slices 9..31 */
+  const double z = 20.3 * 0.25, a = 12.3 * 0.25; /* centre in slice 20; whole slices 9..31 */
   int first_right, first_mirrored;
   const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first_right, right, N);
   sd_vans_slices(&mesh, SD_VANS_YADE, z, a, &first_mirrored, mirrored, N);
-  for (int n = 10; n <= 30; n++)
-    assert_true(fabs(mirrored[n - first_mirrored] - right[2 * 20 - n - first_right]) < 1e-13);
+  for (int n = 10; n <= 30; n++) assert_true(fabs(mirrored[n - first_mirrored] - right[2 * 20 - n - first_right]) < 1e-13);
   assert_true(count > 20);
 }
 
@@ -134,7 +135,8 @@ static void hindrance_has_its_exponent(void **state)
   assert_true(fabs(log(h[1]) / log(1 - 0.3) + 3.1) < 1e-13 && fabs(log(h[2]) / log(1 - 0.6) + 3.1) < 1e-13);
 }
 
-/* 1/2 rho pi a^2 C_l [(U_top - v)^2 - (U_bottom - v)^2], top and bottom floor(a/dz) slices from the centre's; also with edges from a list. */
+/* 1/2 rho pi a^2 C_l [(U_top - v)^2 - (U_bottom - v)^2], top and bottom floor(a/dz) slices from the centre's; also with
+ * edges from a list. */
 static void lift_sees_both_ends_of_the_grain(void **state)
 {
   (void) state;
@@ -171,7 +173,8 @@ static void grains_outside_feel_the_end_values(void **state)
   (void) state;
   double edge[4] = {0, 1, 2, 3};
   const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
-  const double U[4] = {0, 0.5, 0.8, 0.9}, hindrance[3] = {3, 2, 1.5}, x[6] = {0, 0, 7, 0, 0, -2}, v[6] = {0.1, 0, 0, 0.1, 0, 0}, a[2] = {0.2, 0.2};
+  const double U[4] = {0, 0.5, 0.8, 0.9}, hindrance[3] = {3, 2, 1.5}, x[6] = {0, 0, 7, 0, 0, -2}, v[6] = {0.1, 0, 0, 0.1, 0, 0},
+               a[2] = {0.2, 0.2};
   sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .g = {0, 0, -2}};
   double F[6], expected[3];
   assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 2, x, v, a, NULL, NULL, F, NULL), 2);
@@ -184,7 +187,8 @@ static void grains_outside_feel_the_end_values(void **state)
   for (int k = 0; k < 6; k++) assert_true(F[k] == 0.0);
 }
 
-/* Moments over u_star^2 of the correlated walk: xx 2, yy 1, zz 1, xz -1; uncorrelated 1, 1, 1, 0. The error of a mean of n = 4e5 is about 1/sqrt(n). */
+/* Moments over u_star^2 of the correlated walk: xx 2, yy 1, zz 1, xz -1; uncorrelated 1, 1, 1, 0. The error of a mean of n
+ * = 4e5 is about 1/sqrt(n). */
 static void fluctuations_have_their_moments(void **state)
 {
   (void) state;
@@ -196,7 +200,8 @@ static void fluctuations_have_their_moments(void **state)
       sd_vans_normal3(4711, i, 3, normal);
       sd_vans_fluctuation(normal, 0.3, correlated, u);
       for (int d = 0; d < 3; d++) u[d] /= 0.3;
-      xx += u[0] * u[0] / n, yy += u[1] * u[1] / n, zz += u[2] * u[2] / n, xz += u[0] * u[2] / n, xy += u[0] * u[1] / n, x += u[0] / n;
+      xx += u[0] * u[0] / n, yy += u[1] * u[1] / n, zz += u[2] * u[2] / n, xz += u[0] * u[2] / n, xy += u[0] * u[1] / n,
+          x += u[0] / n;
     }
     const double tolerance = 5 / sqrt(n) * 2;
     assert_true(fabs(xx - (correlated ? 2 : 1)) < 2 * tolerance && fabs(yy - 1) < tolerance && fabs(zz - 1) < tolerance);
@@ -230,19 +235,19 @@ static void eddies_live_as_long_as_the_length_over_the_velocity(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(slices_sum_to_the_sphere),
-    cmocka_unit_test(slices_of_uneven_mesh_sum_to_the_sphere),
-    cmocka_unit_test(slices_end_at_the_mesh),
-    cmocka_unit_test(yade_mirrors_the_slices),
-    cmocka_unit_test(point_grains_stay_in_one_slice),
-    cmocka_unit_test(drag_balances_weight_at_terminal_velocity),
-    cmocka_unit_test(hindrance_has_its_exponent),
-    cmocka_unit_test(lift_sees_both_ends_of_the_grain),
-    cmocka_unit_test(convective_force_is_taken_off),
-    cmocka_unit_test(grains_outside_feel_the_end_values),
-    cmocka_unit_test(fluctuations_have_their_moments),
-    cmocka_unit_test(fluctuations_depend_on_their_keys_alone),
-    cmocka_unit_test(eddies_live_as_long_as_the_length_over_the_velocity),
+      cmocka_unit_test(slices_sum_to_the_sphere),
+      cmocka_unit_test(slices_of_uneven_mesh_sum_to_the_sphere),
+      cmocka_unit_test(slices_end_at_the_mesh),
+      cmocka_unit_test(yade_mirrors_the_slices),
+      cmocka_unit_test(point_grains_stay_in_one_slice),
+      cmocka_unit_test(drag_balances_weight_at_terminal_velocity),
+      cmocka_unit_test(hindrance_has_its_exponent),
+      cmocka_unit_test(lift_sees_both_ends_of_the_grain),
+      cmocka_unit_test(convective_force_is_taken_off),
+      cmocka_unit_test(grains_outside_feel_the_end_values),
+      cmocka_unit_test(fluctuations_have_their_moments),
+      cmocka_unit_test(fluctuations_depend_on_their_keys_alone),
+      cmocka_unit_test(eddies_live_as_long_as_the_length_over_the_velocity),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Forces, averages and fluid solves against the reference tables, under both rules. Tolerances: the tables have 17 digits; forces and averages
+/* Forces, averages and fluid solves against the reference tables, under both rules. Tolerances: the tables have 17 digits;
+ * forces and averages
  * are sums of a few tens of terms (1e-12 of the largest entry), a fluid solve is a hundred tridiagonal solves (1e-9). */
 #include <math.h>
 #include <setjmp.h>
@@ -32,8 +33,11 @@ static void check_forces(const char *name, sd_vans_rules rules)
   snprintf(profiles, sizeof profiles, "%s_profiles", name);
   vans_table *t = vans_read(name), *p = vans_read(profiles);
   const sd_vans_mesh mesh = mesh_of(t, vans_key(t, "zRef", 0));
-  sd_vans_force_law law = {.rho = vans_key(t, "densFluid", 0), .eta = vans_key(t, "viscoDyn", 0), .exponent = vans_key(t, "expoRZ", 0),
-                           .rest = vans_key(t, "steadyFlow", 0) == 0.0, .rules = rules};
+  sd_vans_force_law law = {.rho = vans_key(t, "densFluid", 0),
+                           .eta = vans_key(t, "viscoDyn", 0),
+                           .exponent = vans_key(t, "expoRZ", 0),
+                           .rest = vans_key(t, "steadyFlow", 0) == 0.0,
+                           .rules = rules};
   for (int d = 0; d < 3; d++) law.g[d] = vans_key(t, "gravity", d);
   enum { n = 60 };
   double x[3 * n], v[3 * n], u[3 * n], F[3 * n], reference[3 * n], hindrance[N_MAX];
@@ -42,7 +46,8 @@ static void check_forces(const char *name, sd_vans_rules rules)
   vectors(t, "ufx", "ufy", "ufz", n, u);
   vectors(t, "fx", "fy", "fz", n, reference);
   sd_vans_hindrance(mesh.ncell, vans_column(p, "phi"), law.exponent, hindrance);
-  const int outside = sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, n, x, v, vans_column(t, "radius"), u, NULL, F, NULL);
+  const int outside =
+      sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, n, x, v, vans_column(t, "radius"), u, NULL, F, NULL);
   assert_int_equal(outside, 8);
   /* Yade forgets the grains outside the mesh, which is what the table has; the consistent rule moves and lifts them. */
   if (rules == SD_VANS_CONSISTENT)
@@ -82,7 +87,10 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
   const sd_vans_mesh mesh = mesh_of(t, vans_key(t, "zRef", 0));
   const int N = mesh.ncell;
   const double radii[2] = {vans_key(t, "radiusParts", 0), vans_key(t, "radiusParts", 1)};
-  const sd_vans_force_law law = {.rho = vans_key(t, "densFluid", 0), .eta = vans_key(t, "viscoDyn", 0), .exponent = vans_key(t, "expoRZ", 0), .rules = rules};
+  const sd_vans_force_law law = {.rho = vans_key(t, "densFluid", 0),
+                                 .eta = vans_key(t, "viscoDyn", 0),
+                                 .exponent = vans_key(t, "expoRZ", 0),
+                                 .rules = rules};
   const sd_vans_averaging how = {0, classes, radii};
   enum { n = 60 };
   double x[3 * n], v[3 * n], u[3 * n], hindrance[N_MAX], V[N_MAX], profile[5 * N_MAX];
@@ -94,16 +102,18 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
   for (int call = 1; call <= 2; call++) {
     double sums[N_MAX * SD_VANS_NSUM] = {0}, class_sums[2 * N_MAX * SD_VANS_NSUM] = {0};
     sd_vans_hindrance(N, phi, law.exponent, hindrance);
-    assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance, n, x, v, vans_column(t, "radius"), u, NULL, NULL, sums,
-                                     classes ? class_sums : NULL, V),
+    assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance, n, x, v, vans_column(t, "radius"),
+                                     u, NULL, NULL, sums, classes ? class_sums : NULL, V),
                      -1);
     for (int c = -1; c < classes; c++) {
       sd_vans_profiles(&mesh, vans_key(t, "vCell", 0) / mesh.dz, c < 0 ? sums : class_sums + c * N * SD_VANS_NSUM, profile);
       static const char *const names[] = {"phi", "vx", "vy", "vz", "drag"};
       for (int k = 0; k < 5; k++) {
         char column[32];
-        if (c < 0) snprintf(column, sizeof column, "%s_%d", names[k], call);
-        else snprintf(column, sizeof column, "%s_c%d_%d", names[k], c, call);
+        if (c < 0)
+          snprintf(column, sizeof column, "%s_%d", names[k], call);
+        else
+          snprintf(column, sizeof column, "%s_c%d_%d", names[k], c, call);
         assert_true(vans_difference(profile + k * N, vans_column(r, column), N) < 1e-12);
       }
       if (c < 0) memcpy(phi, profile, N * sizeof(double));
@@ -141,7 +151,8 @@ static void check_fluid(const char *name, sd_vans_rules rules)
                                .eta = vans_key(t, "viscoDyn", 0),
                                .gx = vans_key(t, "gravity", 0),
                                .dpdx = vans_key(t, "dpdx", 0),
-                               .turbulence = vans_key(t, "iturbu", 0) == 0.0 ? SD_VANS_LAMINAR : SD_VANS_KZ + (int) vans_key(t, "ilm", 0),
+                               .turbulence = vans_key(t, "iturbu", 0) == 0.0 ? SD_VANS_LAMINAR
+                                                                             : SD_VANS_KZ + (int) vans_key(t, "ilm", 0),
                                .kappa = vans_key(t, "kappa", 0),
                                .phi_max = vans_key(t, "phiMax", 0),
                                .phi_bed = vans_key(t, "phiBed", 0),
@@ -166,7 +177,8 @@ static void check_fluid(const char *name, sd_vans_rules rules)
   sd_vans_exchange(&mesh, &fluid, dt, U, phi, vx, vans_column(t, "drag"), NULL, NULL, b);
   sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? class_phi : NULL, phi, length, scratch);
   sd_vans_solver *solver = sd_vans_solver_create(N);
-  assert_int_equal(sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi, vx, b, length, NULL, U, nut, stress, NULL, NULL, NULL), SD_OK);
+  assert_int_equal(sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi, vx, b, length, NULL, U, nut, stress, NULL, NULL, NULL),
+                   SD_OK);
   sd_vans_solver_free(solver);
   assert_true(vans_difference(U, vans_column(r, "u_out"), N + 1) < 1e-9);
   assert_true(vans_difference(b, vans_column(r, "taufsi"), N) < 1e-9);
@@ -179,7 +191,8 @@ static void check_fluid(const char *name, sd_vans_rules rules)
 static void fluid_solves(void **state)
 {
   (void) state;
-  static const char *const names[] = {"fluid_lam_dpdx", "fluid_lam_visc0", "fluid_turb_lm1", "fluid_turb_lm2", "fluid_turb_lm2_wall", "fluid_turb_lm5"};
+  static const char *const names[] = {"fluid_lam_dpdx", "fluid_lam_visc0",     "fluid_turb_lm1",
+                                      "fluid_turb_lm2", "fluid_turb_lm2_wall", "fluid_turb_lm5"};
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     check_fluid(names[k], SD_VANS_YADE);
     check_fluid(names[k], SD_VANS_CONSISTENT);
@@ -189,8 +202,8 @@ static void fluid_solves(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(forces_steady),        cmocka_unit_test(forces_at_rest), cmocka_unit_test(averages_of_one_class),
-    cmocka_unit_test(averages_of_two_classes), cmocka_unit_test(fluid_solves),
+      cmocka_unit_test(forces_steady),           cmocka_unit_test(forces_at_rest), cmocka_unit_test(averages_of_one_class),
+      cmocka_unit_test(averages_of_two_classes), cmocka_unit_test(fluid_solves),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Tables of unittest/data/vans: "# key = value" lines, one line of column names, then numbers; a column may end before the others. */
+/* Tables of unittest/data/vans: "# key = value" lines, one line of column names, then numbers; a column may end before the
+ * others. */
 #ifndef VANS_TABLE_H
 #define VANS_TABLE_H
 
@@ -37,8 +38,10 @@ static vans_table *vans_read(const char *case_name)
     for (char *p = line;; c++) {
       char *end = strchr(p, ',');
       if (end) *end = '\0';
-      if (header) snprintf(t->name[c], sizeof t->name[c], "%.31s", p);
-      else if (*p) t->data[c][t->rows[c]++] = strtod(p, NULL);
+      if (header)
+        snprintf(t->name[c], sizeof t->name[c], "%.31s", p);
+      else if (*p)
+        t->data[c][t->rows[c]++] = strtod(p, NULL);
       if (!end) break;
       p = end + 1;
     }
@@ -86,7 +89,8 @@ static double vans_difference(const double *a, const double *reference, int n)
 {
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < n; i++) {
-    const double d = a[i] > reference[i] ? a[i] - reference[i] : reference[i] - a[i], s = reference[i] > 0 ? reference[i] : -reference[i];
+    const double d = a[i] > reference[i] ? a[i] - reference[i] : reference[i] - a[i],
+                 s = reference[i] > 0 ? reference[i] : -reference[i];
     if (!(d <= worst)) worst = d;
     if (s > largest) largest = s;
   }
