@@ -5,6 +5,7 @@
 #include "library.h"
 #include "version.h"
 
+#include "fix_hydro_vans.h"
 #include "fix_stokes_dynamics.h"
 #include "fix_stokes_dynamics_state.h"
 #include "pair_stokes_dynamics.h"
@@ -95,6 +96,11 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
   plugin.name = FixStokesDynamicsState::STYLE;
   plugin.info = "Stokes drag with hydrodynamic interactions: memory of the pair style";
   plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<FixStokesDynamicsState>;
+  enroll(&plugin, lmp);
+
+  plugin.name = FixHydroVans::STYLE;
+  plugin.info = "One-dimensional turbulent stream over a granular bed: fix hydro/vans";
+  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<FixHydroVans>;
   enroll(&plugin, lmp);
 
   enroll_sph_styles(lmp, plugin, enroll);

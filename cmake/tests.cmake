@@ -44,3 +44,7 @@ target_compile_definitions(wrongversionplugin PRIVATE SD_LAMMPS_NUM=19990101)
 if(NOT STOKESDYN_SANITIZE)
   add_test(NAME clump_resistance COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/../examples/clump_resistance/check.sh $<TARGET_FILE:clump_resistance>)
 endif()
+
+# Timings of fix hydro/vans; not a test.
+add_executable(bench_vans EXCLUDE_FROM_ALL ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/bench/bench_vans.c)
+target_link_libraries(bench_vans PRIVATE stokesdyn_core)

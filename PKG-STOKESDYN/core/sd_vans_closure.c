@@ -1,0 +1,131 @@
+#include "sd_vans.h"
+
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+static double height_of(const sd_vans_mesh *mesh, int n)
+{
+  return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
+}
+
+/* Volume and surface of all grains in slice n over the volume of the slice, but for a factor common to both: phi_c / V_c
+ * each grain. */
+static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi,
+                               int n, double *VA, double *SA)
+{
+  const int classes = class_phi ? fluid->nclass : 0;
+  *VA = *SA = 0.0;
+  for (int c = 0; c < (classes ? classes : 1); c++) {
+    const double a = classes ? fluid->class_radius[c] : fluid->radius,
+                 share = classes ? class_phi[(long) c * mesh->ncell + n] : phi[n];
+    *VA += share * 4.0 / 3.0 * PI * a * a * a;
+    *SA += share * 4.0 * PI * a * a;
+  }
+}
+
+/* Pore length of every slice and, for D not NULL, the mean diameter 6 VA/SA. */
+static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi,
+                        double *pore, double *D)
+{
+  for (int n = 0; n < mesh->ncell; n++) {
+    double VA, SA;
+    volume_and_surface(mesh, fluid, phi, class_phi, n, &VA, &SA);
+    pore[n] = (1.0 - phi[n]) / fmax(phi[n], 1e-3);
+    if (SA > 0.0) pore[n] *= VA / SA;
+    if (D) D[n] = SA > 0.0 ? 6.0 * VA / SA : 0.0;
+  }
+}
+
+static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, double *length)
+{
+  int packed = mesh->ncell - 1; /* the highest slice that reaches phi_max; -1: none */
+  while (packed >= 0 && phi[packed] < fluid->phi_max) packed--;
+  length[0] = 0.0;
+  for (int j = 1; j < mesh->ncell; j++) {
+    double p = j - 1 < packed ? fluid->phi_max : phi[j - 1];
+    if (fluid->rules != SD_VANS_YADE) p = fmin(p, fluid->phi_max);
+    length[j] = length[j - 1] + fluid->kappa * height_of(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
+  }
+}
+
+double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed)
+{
+  int n = mesh->ncell - 1;
+  while (n > 0 && !(phi[n] > phi_bed)) n--;
+  return mesh->edge[n];
+}
+
+static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U, const double *phi, double *length)
+{
+  const double nu = fluid->eta / fluid->rho;
+  double V = 0.0, S = 0.0;
+  for (int c = 0; c < (fluid->nclass ? fluid->nclass : 1); c++) {
+    const double a = fluid->nclass ? fluid->class_radius[c] : fluid->radius;
+    V += 4.0 / 3.0 * PI * a * a * a;
+    S += 4.0 * PI * a * a;
+  }
+  const double pore = (1.0 - fluid->phi_max) / fluid->phi_max * V / S;
+  double zv = 0.0;
+  length[0] = 0.0;
+  for (int j = 1; j < mesh->ncell; j++) {
+    zv += height_of(mesh, j - 1) * sqrt((fluid->phi_max - fmin(phi[j - 1], fluid->phi_max)) / fluid->phi_max);
+    length[j] = fluid->kappa * zv * (1.0 - exp(-sqrt(fabs(zv * U[j]) / nu) / 26.0)) + 0.5 * pore;
+  }
+}
+
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U, const double *phi,
+                           const double *class_phi, const double *phi_bed_profile, double *length, double *scratch)
+{
+  const int N = mesh->ncell;
+  const double *z = mesh->edge, H = z[N - 1], kappa = fluid->kappa;
+  double *pore = scratch, *D = scratch + N;
+  switch (fluid->turbulence) {
+    case SD_VANS_LAMINAR:
+      for (int j = 0; j < N; j++) length[j] = 0.0;
+      break;
+    case SD_VANS_KZ:
+      for (int j = 0; j < N; j++) length[j] = kappa * z[j];
+      break;
+    case SD_VANS_PARABOLIC:
+      for (int j = 0; j < N - 1; j++) length[j] = kappa * z[j] * sqrt(1.0 - z[j] / H);
+      length[N - 1] = 0.0;
+      break;
+    case SD_VANS_LI_SAWAMOTO:
+      li_sawamoto(mesh, fluid, phi, length);
+      break;
+    case SD_VANS_PIPE:
+      li_sawamoto(mesh, fluid, phi, length);
+      for (int j = 0; j < N; j++) length[j] = fmin(length[j], kappa * (H - z[j]));
+      break;
+    case SD_VANS_PORE:
+      pore_length(mesh, fluid, phi, class_phi, pore, 0);
+      for (int j = 0; j < N; j++) {
+        double limit = 0.5 * pore[j], value = 0.0;
+        for (int m = j - 1; m > 0 && limit > value; m--) {
+          limit = 0.5 * pore[m];
+          value = kappa * (z[j] - z[m]);
+        }
+        length[j] = value;
+      }
+      break;
+    case SD_VANS_ROUSSEAU:
+      rousseau(mesh, fluid, U, phi, length);
+      break;
+    case SD_VANS_NI_CAPART: {
+      pore_length(mesh, fluid, phi, class_phi, pore, D);
+      const double bed = sd_vans_bed(mesh, phi_bed_profile, fluid->phi_bed);
+      for (int j = 0; j < N; j++) length[j] = fmax(fmin(0.5 * pore[j], 0.2 * D[j]), kappa * (z[j] - bed));
+      break;
+    }
+  }
+}
+
+double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom)
+{
+  const double nu = fluid->eta / fluid->rho;
+  if (fluid->viscosity == SD_VANS_CONSTANT) return nu;
+  /* Yade leaves the bottom node to Einstein's law. */
+  if (fluid->viscosity == SD_VANS_EINSTEIN || (bottom && fluid->rules == SD_VANS_YADE)) return nu * (1.0 + 2.5 * phi);
+  return nu * pow(1.0 - phi, -2.8);
+}

@@ -1,0 +1,275 @@
+#include "sd_vans.h"
+
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
+{
+  const int N = mesh->ncell;
+  const double height = z - mesh->z_ref;
+  if (!(height >= 0.0)) return -1;
+  if (mesh->dz > 0.0) {
+    const double s = height / mesh->dz;
+    return s >= N ? N : (int) s;
+  }
+  if (height >= mesh->edge[N]) return N;
+  int lo = 0, hi = N; /* edge[lo] <= height < edge[hi] */
+  while (hi - lo > 1) {
+    const int mid = (lo + hi) / 2;
+    if (mesh->edge[mid] <= height)
+      lo = mid;
+    else
+      hi = mid;
+  }
+  return lo;
+}
+
+/* Volume between the equator and the height s, |s| <= a. */
+static inline double primitive(double a2, double s)
+{
+  return PI * s * (a2 - s * s / 3.0);
+}
+
+double sd_vans_slice_volume(double a, double lo, double hi)
+{
+  const double s0 = fmin(fmax(lo, -a), a), s1 = fmin(fmax(hi, -a), a);
+  return primitive(a * a, s1) - primitive(a * a, s0);
+}
+
+/* Yade gives slice n the limits of slice 2p-n, p that of the centre, and cuts the sphere's lower end only off the lower
+ * limit and its
+ * upper end only off the upper one. */
+static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first, double *V, int max)
+{
+  const double height = z - mesh->z_ref, dz = mesh->dz;
+  const double centre = floor(height / dz), offset = height - centre * dz;
+  const double lowest = fmax(floor((height - a) / dz), 0.0), highest = fmin(floor((height + a) / dz), mesh->ncell - 1.0);
+  if (!(lowest <= highest)) return 0;
+  *first = (int) lowest;
+  const int count = (int) (highest - lowest) + 1;
+  for (int k = 0; k < count && k < max; k++) {
+    const double above = lowest + k - centre;
+    double s0 = (above - 1.0) * dz + offset, s1 = above * dz + offset;
+    if (s0 < -a) s0 = -a;
+    if (s1 > a) s1 = a;
+    V[k] = PI * (a * a * (s1 - s0) - (s1 * s1 * s1 - s0 * s0 * s0) / 3.0);
+  }
+  return count < max ? count : max;
+}
+
+int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first, double *V, int max)
+{
+  if (rules == SD_VANS_YADE) return slices_yade(mesh, z, a, first, V, max);
+  const int N = mesh->ncell;
+  const double height = z - mesh->z_ref, a2 = a * a;
+  int n = sd_vans_slice_of(mesh, z - a);
+  if (n >= N || !(height + a > 0.0)) return 0;
+  double below; /* primitive at the lower end of the slice */
+  if (n < 0) {
+    n = 0;
+    below = primitive(a2, fmax(-height, -a));
+  } else
+    below = primitive(a2, -a);
+  *first = n;
+  int count = 0;
+  while (n < N && count < max) {
+    const double top = mesh->edge[n + 1] - height;
+    const double value = primitive(a2, top < a ? top : a),
+                 here = value > below ? value : below; /* rounding must not make V < 0 */
+    V[count++] = here - below;
+    below = here;
+    if (top >= a) break;
+    n++;
+  }
+  return count;
+}
+
+void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance)
+{
+  for (int n = 0; n < ncell; n++) hindrance[n] = phi[n] == 0.0 ? 1.0 : pow(1.0 - phi[n], -exponent);
+}
+
+static inline double drag_factor(double rho, double eta, double a, double hindrance, const double w[3])
+{
+  const double speed = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+  return 0.5 * PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
+}
+
+void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3], double F[3])
+{
+  const double factor = drag_factor(rho, eta, a, hindrance, w);
+  for (int d = 0; d < 3; d++) F[d] = factor * w[d];
+}
+
+static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U, int p, double a, double vx)
+{
+  int upper, lower;
+  if (mesh->dz > 0.0) {
+    const double k = floor(a / mesh->dz);
+    if (k > mesh->ncell) return 0.0;
+    upper = p + (int) k;
+    lower = p - (int) k;
+  } else {
+    upper = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p] + a);
+    lower = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p + 1] - a);
+  }
+  if (upper >= mesh->ncell || lower <= 0) return 0.0;
+  const double over = U[upper + 1] - vx, under = U[lower + 1] - vx;
+  return 0.5 * law->rho * PI * a * a * law->lift * (over * over - under * under);
+}
+
+int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U, const double *hindrance, int n,
+                   const double *x, const double *v, const double *a, const double *fluctuation, const unsigned char *take,
+                   double *F, double *drag_x)
+{
+  const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
+  int outside = 0;
+  for (int i = 0; i < n; i++) {
+    double *Fi = F + 3 * (long) i;
+    Fi[0] = Fi[1] = Fi[2] = 0.0;
+    if (drag_x) drag_x[i] = 0.0;
+    if (take && !take[i]) continue;
+    const int p = sd_vans_slice_of(mesh, x[3 * (long) i + 2]), inside = p >= 0 && p < mesh->ncell;
+    if (!inside) outside++;
+    if (!inside && law->rules == SD_VANS_YADE) continue;
+    const int seen = p < 0 ? 0 : p < mesh->ncell ? p : mesh->ncell - 1;
+    const double *vi = v + 3 * (long) i, ai = a[i], u = p < 0 ? U[0] : U[seen + 1];
+    double w[3] = {u - vi[0], -vi[1], -vi[2]};
+    if (fluctuation)
+      for (int d = 0; d < 3; d++) w[d] += fluctuation[3 * (long) i + d];
+    const double factor = drag_factor(law->rho, law->eta, ai, hindrance[seen], w);
+    const double displaced = 4.0 / 3.0 * PI * ai * ai * ai * law->rho;
+    for (int d = 0; d < 3; d++) Fi[d] = factor * w[d] - displaced * g[d];
+    if (drag_x) drag_x[i] = factor * w[0];
+    if (inside && law->lift != 0.0) Fi[2] += lift_force(mesh, law, U, p, ai, vi[0]);
+    if (inside && law->convective) Fi[0] -= law->convective[p];
+  }
+  return outside;
+}
+
+static int class_of(const sd_vans_averaging *how, double a)
+{
+  for (int c = 0; c < how->nclass; c++)
+    if (how->class_radius[c] == a) return c;
+  return -1;
+}
+
+static inline void add(double *sum, double V, const double *v, double drag)
+{
+  sum[SD_VANS_V] += V;
+  sum[SD_VANS_VX] += V * v[0];
+  sum[SD_VANS_VY] += V * v[1];
+  sum[SD_VANS_VZ] += V * v[2];
+  sum[SD_VANS_DRAG] += V * drag;
+}
+
+int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const sd_vans_averaging *how, const double *U,
+                    const double *hindrance, int n, const double *x, const double *v, const double *a,
+                    const double *fluctuation, const double *weight, const unsigned char *take, double *sums,
+                    double *class_sums, double *V)
+{
+  const int N = mesh->ncell;
+  for (int i = 0; i < n; i++) {
+    if (take && !take[i]) continue;
+    const double z = x[3 * (long) i + 2], *vi = v + 3 * (long) i, ai = a[i];
+    const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;
+
+    double drag = 0.0;
+    if (inside) {
+      double w[3] = {U[p + 1] - vi[0], -vi[1], -vi[2]};
+      if (fluctuation)
+        for (int d = 0; d < 3; d++) w[d] += fluctuation[3 * (long) i + d];
+      drag = drag_factor(law->rho, law->eta, ai, hindrance[p], w) * w[0];
+    }
+
+    int first = 0, count = 0;
+    if (!how->point)
+      count = sd_vans_slices(mesh, law->rules, z, ai, &first, V, N);
+    else if (inside) {
+      first = p;
+      count = 1;
+      V[0] = 4.0 / 3.0 * PI * ai * ai * ai;
+    }
+    if (weight)
+      for (int k = 0; k < count; k++) V[k] *= weight[i];
+
+    double *sum = sums + (long) first * SD_VANS_NSUM;
+    for (int k = 0; k < count; k++) add(sum + k * SD_VANS_NSUM, V[k], vi, drag);
+    if (!class_sums) continue;
+
+    const int c = class_of(how, ai);
+    if (c < 0) return i;
+    double *class_sum = class_sums + (long) c * N * SD_VANS_NSUM;
+    if (law->rules != SD_VANS_YADE)
+      for (int k = 0; k < count; k++) add(class_sum + (long) (first + k) * SD_VANS_NSUM, V[k], vi, drag);
+    else
+      for (int k = 0; k < count; k++) {
+        double *here = class_sum + (long) (first + k) * SD_VANS_NSUM, *centre = class_sum + (long) p * SD_VANS_NSUM;
+        here[SD_VANS_V] += V[k];
+        here[SD_VANS_DRAG] += V[k] * drag;
+        if (!inside) continue;
+        centre[SD_VANS_VX] += V[k] * vi[0];
+        centre[SD_VANS_VY] += V[k] * vi[1];
+        centre[SD_VANS_VZ] += V[k] * vi[2];
+      }
+  }
+  return -1;
+}
+
+void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums, double *profile)
+{
+  const int N = mesh->ncell;
+  for (int n = 0; n < N; n++) {
+    const double *sum = sums + (long) n * SD_VANS_NSUM, V = sum[SD_VANS_V];
+    const double height = mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
+    profile[n] = V / (area * height);
+    for (int k = SD_VANS_VX; k < SD_VANS_NSUM; k++) profile[(long) k * N + n] = V != 0.0 ? sum[k] / V : 0.0;
+  }
+}
+
+static int slices_of(const sd_vans_mesh *mesh, int point, double z, double a, int *first, double *V)
+{
+  if (!point) return sd_vans_slices(mesh, SD_VANS_CONSISTENT, z, a, first, V, mesh->ncell);
+  const int p = sd_vans_slice_of(mesh, z);
+  if (p < 0 || p >= mesh->ncell) return 0;
+  *first = p;
+  V[0] = 4.0 / 3.0 * PI * a * a * a;
+  return 1;
+}
+
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take,
+                    const double *value, double *out, double *V)
+{
+  const int N = mesh->ncell;
+  for (int i = 0; i < n; i++) {
+    if (take && !take[i]) continue;
+    const double z = x[3 * (long) i + 2], ai = a[i], height = z - mesh->z_ref, all = 4.0 / 3.0 * PI * ai * ai * ai;
+    int first = 0;
+    const int count = slices_of(mesh, point, z, ai, &first, V);
+    double inside = 0.0, rest = value[i];
+    for (int k = 0; k < count; k++) inside += V[k];
+    const double below = point ? (height < 0.0 ? all : 0.0) : sd_vans_slice_volume(ai, -ai, -height);
+    for (int k = 0; k < count; k++) {
+      const double part = value[i] * (V[k] / all);
+      out[first + k] += part;
+      rest -= part;
+    }
+    const double part = inside + below >= all * (1.0 - 1e-12) ? rest : value[i] * (below / all);
+    out[0] += part;
+    out[N - 1] += rest - part;
+  }
+}
+
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight,
+                    const unsigned char *take, const double *density, double *out, double *V)
+{
+  for (int i = 0; i < n; i++) {
+    out[i] = 0.0;
+    if (take && !take[i]) continue;
+    int first = 0;
+    const int count = slices_of(mesh, point, x[3 * (long) i + 2], a[i], &first, V);
+    for (int k = 0; k < count; k++) out[i] += V[k] * density[first + k];
+    if (weight) out[i] *= weight[i];
+  }
+}

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Falls at three concentrations, speeds beside the closed form, drag.png.     run.py [--ranks N]"""
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+
+DEBIAN = "/usr/bin/python3"
+try:
+    import matplotlib
+    import numpy as np
+except ImportError:         # Debian's python has them, another one on the PATH need not
+    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
+        raise
+    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt    # noqa: E402
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def closed_form(d, phi):
+    """(0.44 w + 24.4 nu/d) w (1 - phi)^-3.1 = 4/3 (s - 1) g d"""
+    B, C = 24.4e-6 / d, 4 / 3 * 1.5 * 9.81 * d * (1 - phi) ** 3.1
+    return (-B + np.sqrt(B * B + 4 * 0.44 * C)) / 0.88
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--ranks", type=int, default=1)
+    ranks = parser.parse_args().ranks
+    env = dict(os.environ)
+    if os.getuid() == 0:
+        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2))
+    fine = np.logspace(-4, -2, 200)
+    speed = {}
+    with tempfile.TemporaryDirectory() as directory:
+        for phi in ("0.0", "0.2", "0.4"):
+            log = os.path.join(HERE, f"log.vans_drag.{ranks}") if phi == "0.2" else "none"
+            subprocess.run(["mpirun", "--oversubscribe", "-np", str(ranks), "lmp", "-in", os.path.join(HERE, "in.vans_drag"), "-log", log, "-screen", "none", "-var", "phi", phi],
+                           cwd=directory, env=env, check=True)
+            rows = np.loadtxt(os.path.join(directory, f"speeds.{phi}"), skiprows=9)
+            rows = rows[np.argsort(rows[:, 0])]
+            d, w = rows[:, 1], -rows[:, 2]
+            speed[phi] = w
+            error = np.abs(w / closed_form(d, float(phi)) - 1)
+            print(f"phi {phi}: terminal velocity {w.min():.5f} to {w.max():.5f} m/s, largest error against the closed form {error.max():.1e}")
+            left.loglog(d * 1e3, w, "o", ms=5, label=f"phi = {phi}")
+            left.loglog(fine * 1e3, closed_form(fine, float(phi)), "k-", lw=1)
+    # the exponent from the drags at the speeds reached
+    B = 24.4e-6 / d
+    free = (0.44 * speed["0.0"] + B) * speed["0.0"]
+    for phi in ("0.2", "0.4"):
+        exponent = np.log((0.44 * speed[phi] + B) * speed[phi] / free) / np.log(1 - float(phi))
+        print(f"phi {phi}: exponent of hindrance from the runs {exponent.min():.6f} to {exponent.max():.6f}")
+    v = fine * closed_form(fine, 0) / 1e-6
+    right.loglog(v, 0.44 + 24.4 / v, "k-", lw=1, label="0.44 + 24.4/Re")
+    Re = speed["0.0"] * d / 1e-6
+    right.loglog(Re, 4 / 3 * 1.5 * 9.81 * d / speed["0.0"] ** 2, "o", ms=5, label="from the runs, phi = 0")
+    left.set(xlabel="grain diameter [mm]", ylabel="terminal velocity [m/s]", title="Glass in water at rest (lines: closed form)")
+    right.set(xlabel="Re", ylabel="drag coefficient", title="Drag coefficient")
+    for axes in (left, right):
+        axes.legend(frameon=False)
+        axes.grid(alpha=0.3, which="both", lw=0.4)
+    figure.tight_layout()
+    figure.savefig(os.path.join(HERE, "drag.png"), dpi=110)
+
+
+main()

@@ -1,0 +1,137 @@
+/* Cost of the stream of fix hydro/vans on one core: fluid step per slice, averages and forces per grain. Processor time,
+ * median of 9 runs.
+ *   build/bench_vans */
+#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "sd_vans.h"
+
+enum { RUNS = 9 };
+
+static double seconds(void)
+{
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return t.tv_sec + 1e-9 * t.tv_nsec;
+}
+
+static int ascending(const void *a, const void *b)
+{
+  const double d = *(const double *) a - *(const double *) b;
+  return (d > 0) - (d < 0);
+}
+
+static double median(double *values)
+{
+  qsort(values, RUNS, sizeof(double), ascending);
+  return values[RUNS / 2];
+}
+
+static double *array(int n)
+{
+  return calloc(n, sizeof(double));
+}
+
+static double fluid(int N, sd_vans_turbulence turbulence, double width, int account)
+{
+  double *edge = array(N + 1), *phi = array(N), *vx = array(N), *b = array(N), *length = array(N), *U = array(N + 1),
+         *nut = array(N), *stress = array(N), *scratch = array(4 * N), *moved = array(N), *shear = array(N), times[RUNS];
+  const double H = 0.06, dz = H / (N - 1), dt = 1e-4;
+  for (int n = 0; n <= N; n++) edge[n] = n * dz;
+  for (int n = 0; n < N; n++) {
+    const double z = (n + 0.5) * dz;
+    phi[n] = 0.6 / (1.0 + exp((z - 0.03) / 0.002));
+    vx[n] = fmax(z - 0.03, 0.0) * 10;
+    b[n] = 10 * phi[n];
+    U[n + 1] = 0.02 + fmax(z - 0.03, 0.0) * 20;
+  }
+  const sd_vans_mesh mesh = {N, 0.0, dz, edge};
+  const sd_vans_fluid f = {.rho = 1000,
+                           .eta = 1e-3,
+                           .gx = 0.98,
+                           .turbulence = turbulence,
+                           .kappa = 0.41,
+                           .phi_max = 0.61,
+                           .width = width,
+                           .wall_coef = 1,
+                           .radius = 0.003};
+  sd_vans_mixing_length(&mesh, &f, U, phi, NULL, phi, length, scratch);
+  sd_vans_solver *solver = sd_vans_solver_create(N);
+  sd_vans_impulse in;
+  const int steps = 2000000 / N;
+  for (int r = -1; r < RUNS; r++) {
+    const double t = seconds();
+    if (sd_vans_solve(solver, &mesh, &f, steps, dt, phi, vx, b, length, NULL, U, nut, stress, account ? moved : NULL,
+                      account ? shear : NULL, &in) != SD_OK)
+      abort();
+    if (r >= 0) times[r] = (seconds() - t) / steps / N * 1e9;
+  }
+  sd_vans_solver_free(solver);
+  double *all[] = {edge, phi, vx, b, length, U, nut, stress, scratch, moved, shear};
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
+  return median(times);
+}
+
+static void grains(double ratio, int n, double *average, double *force)
+{
+  const int N = 900;
+  const double a = 0.003, dz = a / ratio;
+  double *edge = array(N + 1), *phi = array(N), *U = array(N + 1), *hindrance = array(N), *V = array(N),
+         *sums = array(N * SD_VANS_NSUM), *x = array(3 * n), *v = array(3 * n), *radius = array(n), *F = array(3 * n),
+         *drag = array(n), averages[RUNS], forces[RUNS];
+  for (int k = 0; k <= N; k++) edge[k] = k * dz, U[k] = 0.001 * k;
+  for (int k = 0; k < N; k++) phi[k] = 0.5;
+  unsigned seed = 12345;
+  for (int i = 0; i < 3 * n; i++) {
+    seed = seed * 1664525u + 1013904223u;
+    x[i] = i % 3 == 2 ? a + (edge[N] - 2 * a) * (seed / 4294967296.0) : 0.0;
+    v[i] = 0.3 * (seed / 4294967296.0);
+  }
+  for (int i = 0; i < n; i++) radius[i] = a;
+  const sd_vans_mesh mesh = {N, 0.0, dz, edge};
+  const sd_vans_force_law law = {.rho = 1000, .eta = 1e-3, .exponent = 3.1, .g = {0.5, 0, -9.8}};
+  const sd_vans_averaging how = {0, 0, NULL};
+  const int repeat = 400000 / n;
+  for (int r = -1; r < RUNS; r++) {
+    double t = seconds();
+    for (int k = 0; k < repeat; k++) {
+      sd_vans_hindrance(N, phi, 3.1, hindrance);
+      memset(sums, 0, N * SD_VANS_NSUM * sizeof(double));
+      sd_vans_average(&mesh, &law, &how, U, hindrance, n, x, v, radius, NULL, NULL, NULL, sums, NULL, V);
+    }
+    if (r >= 0) averages[r] = (seconds() - t) / repeat / n * 1e9;
+    t = seconds();
+    for (int k = 0; k < repeat; k++) sd_vans_forces(&mesh, &law, U, hindrance, n, x, v, radius, NULL, NULL, F, drag);
+    if (r >= 0) forces[r] = (seconds() - t) / repeat / n * 1e9;
+  }
+  *average = median(averages);
+  *force = median(forces);
+  double *all[] = {edge, phi, U, hindrance, V, sums, x, v, radius, F, drag};
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
+}
+
+int main(void)
+{
+  printf("fluid step, ns per slice and step        clear of walls   momentum booked   side walls (ratio)\n");
+  static const int sizes[] = {100, 300, 900};
+  for (int k = 0; k < 3; k++) {
+    const double plain = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 0), booked = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 1);
+    const double walls = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0065, 0);
+    printf("  %4d slices                               %6.2f          %6.2f            %6.2f (%.2f)\n", sizes[k], plain, booked,
+           walls, walls / plain);
+  }
+  printf("grains, ns per grain (900 slices)          averages         forces\n");
+  static const double ratios[] = {3.0, 15.0};
+  static const int counts[] = {1265, 50000};
+  for (int k = 0; k < 2; k++)
+    for (int m = 0; m < 2; m++) {
+      double average, force;
+      grains(ratios[k], counts[m], &average, &force);
+      printf("  a/dz = %4.1f, %6d grains                 %6.1f          %6.1f\n", ratios[k], counts[m], average, force);
+    }
+  return 0;
+}

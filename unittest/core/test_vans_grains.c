@@ -1,0 +1,253 @@
+/* Slices of spheres, averages, and the force on one grain against closed forms. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "sd_vans.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* The slices share their cuts, so that only rounding is left: each is one subtraction, 1e-16 of the volume, and there are
+ * up to 2000. */
+static void slices_sum_to_the_sphere(void **state)
+{
+  (void) state;
+  enum { N = 2100 };
+  static double edge[N + 1], V[N];
+  static const double ratios[] = {0.01, 0.3, 0.75, 1.0, 1.3, 2.0, 2.3, 3.5, 15.0, 333.3, 1000.0};
+  const double dz = 0.0017, z_ref = -0.3;
+  for (int n = 0; n <= N; n++) edge[n] = n * dz;
+  const sd_vans_mesh mesh = {N, z_ref, dz, edge};
+  for (size_t r = 0; r < sizeof ratios / sizeof *ratios; r++)
+    for (int k = 0; k <= 40; k++) {
+      const double a = ratios[r] * dz, z = z_ref + (1040 + k / 20.0) * dz; /* also on the borders and in the middles */
+      int first;
+      const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first, V, N);
+      double sum = 0.0;
+      for (int i = 0; i < count; i++) {
+        assert_true(V[i] >= 0.0);
+        sum += V[i];
+      }
+      const double sphere = 4.0 / 3.0 * PI * a * a * a;
+      assert_true(fabs(sum - sphere) <= 1e-13 * sphere);
+    }
+}
+
+static void slices_of_uneven_mesh_sum_to_the_sphere(void **state)
+{
+  (void) state;
+  enum { N = 60 };
+  double edge[N + 1], V[N];
+  for (int n = 0; n <= N; n++) edge[n] = 0.001 * n * (1.0 + 0.02 * n);
+  const sd_vans_mesh mesh = {N, 0.02, 0.0, edge};
+  for (int k = 0; k < 200; k++) {
+    const double a = 0.0031, z = 0.02 + a + k * 0.0006;
+    int first;
+    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first, V, N);
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) sum += V[i];
+    assert_true(fabs(sum - 4.0 / 3.0 * PI * a * a * a) <= 1e-13 * 4.2 * a * a * a);
+    assert_int_equal(sd_vans_slice_of(&mesh, 0.02 + 0.5 * (edge[first] + edge[first + 1])), first);
+  }
+}
+
+/* Half a sphere below the bottom, half in the mesh; wholly outside: nothing. */
+static void slices_end_at_the_mesh(void **state)
+{
+  (void) state;
+  enum { N = 10 };
+  double edge[N + 1], V[N];
+  for (int n = 0; n <= N; n++) edge[n] = n * 0.3;
+  const sd_vans_mesh mesh = {N, 5.0, 0.3, edge};
+  const double a = 0.7, ends[2] = {5.0, 5.0 + edge[N]};
+  int first;
+  for (int k = 0; k < 2; k++) {
+    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, ends[k], a, &first, V, N);
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) sum += V[i];
+    assert_true(fabs(sum - 2.0 / 3.0 * PI * a * a * a) <= 1e-13);
+  }
+  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 4.2, a, &first, V, N), 0);
+  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 8.8, a, &first, V, N), 0);
+}
+
+/* Yade's slice n holds what belongs to slice 2p - n: seen where the sphere is large enough for its other defect, the
+ * one-sided cut, to vanish. */
+static void yade_mirrors_the_slices(void **state)
+{
+  (void) state;
+  enum { N = 41 };
+  double edge[N + 1], right[N], mirrored[N];
+  for (int n = 0; n <= N; n++) edge[n] = n * 0.25;
+  const sd_vans_mesh mesh = {N, 0.0, 0.25, edge};
+  const double z = 20.3 * 0.25, a = 12.3 * 0.25; /* centre in slice 20; whole slices 9..31 */
+  int first_right, first_mirrored;
+  const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first_right, right, N);
+  sd_vans_slices(&mesh, SD_VANS_YADE, z, a, &first_mirrored, mirrored, N);
+  for (int n = 10; n <= 30; n++) assert_true(fabs(mirrored[n - first_mirrored] - right[2 * 20 - n - first_right]) < 1e-13);
+  assert_true(count > 20);
+}
+
+static void point_grains_stay_in_one_slice(void **state)
+{
+  (void) state;
+  enum { N = 8 };
+  double edge[N + 1], V[N], sums[N * SD_VANS_NSUM] = {0}, U[N + 1] = {0}, hindrance[N], profile[5 * N];
+  for (int n = 0; n <= N; n++) edge[n] = n * 0.5;
+  for (int n = 0; n < N; n++) hindrance[n] = 1.0;
+  const sd_vans_mesh mesh = {N, 0.0, 0.5, edge};
+  const sd_vans_force_law law = {.rho = 1.2, .eta = 0.3, .exponent = 3.1};
+  const sd_vans_averaging how = {1, 0, NULL};
+  const double x[6] = {0, 0, 1.7, 0, 0, 9.0}, v[6] = {0.3, -0.2, 0.5, 1, 1, 1}, a[2] = {0.9, 0.9};
+  assert_int_equal(sd_vans_average(&mesh, &law, &how, U, hindrance, 2, x, v, a, NULL, NULL, NULL, sums, NULL, V), -1);
+  sd_vans_profiles(&mesh, 11.0, sums, profile);
+  for (int n = 0; n < N; n++) assert_true(fabs(profile[n] - (n == 3 ? 4.0 / 3.0 * PI * 0.729 / 5.5 : 0.0)) < 1e-15);
+  assert_true(fabs(profile[N + 3] - 0.3) < 1e-15 && fabs(profile[3 * N + 3] - 0.5) < 1e-15);
+}
+
+/* Balance of drag, weight and buoyancy: (0.44 w + 24.4 nu/d) w = 4/3 (s-1) g d, a quadratic equation. */
+static void drag_balances_weight_at_terminal_velocity(void **state)
+{
+  (void) state;
+  const double rho = 1030.0, eta = 1.7e-3, rho_s = 2570.0, g = 9.7, a = 0.0011, d = 2 * a, nu = eta / rho;
+  const double B = 24.4 * nu / d, C = 4.0 / 3.0 * (rho_s / rho - 1.0) * g * d;
+  const double w = (-B + sqrt(B * B + 4 * 0.44 * C)) / (2 * 0.44);
+  double edge[3] = {0, 1, 2};
+  const sd_vans_mesh mesh = {2, 0.0, 1.0, edge};
+  const sd_vans_force_law law = {.rho = rho, .eta = eta, .exponent = 3.1, .g = {0, 0, -g}};
+  const double U[3] = {0, 0, 0}, hindrance[2] = {1, 1}, x[3] = {0, 0, 0.5}, v[3] = {0, 0, -w};
+  double F[3];
+  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 1, x, v, &a, NULL, NULL, F, NULL), 0);
+  const double weight = 4.0 / 3.0 * PI * a * a * a * rho_s * g;
+  assert_true(fabs(F[2] - weight) < 1e-13 * weight);
+}
+
+static void hindrance_has_its_exponent(void **state)
+{
+  (void) state;
+  const double phi[3] = {0.0, 0.3, 0.6};
+  double h[3];
+  sd_vans_hindrance(3, phi, 3.1, h);
+  assert_true(h[0] == 1.0);
+  assert_true(fabs(log(h[1]) / log(1 - 0.3) + 3.1) < 1e-13 && fabs(log(h[2]) / log(1 - 0.6) + 3.1) < 1e-13);
+}
+
+/* 1/2 rho pi a^2 C_l [(U_top - v)^2 - (U_bottom - v)^2], top and bottom floor(a/dz) slices from the centre's; also with
+ * edges from a list. */
+static void lift_sees_both_ends_of_the_grain(void **state)
+{
+  (void) state;
+  enum { N = 12 };
+  double edge[N + 1], U[N + 1], hindrance[N];
+  for (int n = 0; n <= N; n++) edge[n] = n * 0.2, U[n] = 0.7 * n + 0.05 * n * n;
+  for (int n = 0; n < N; n++) hindrance[n] = 1.0;
+  const double x[3] = {0, 0, 1.09}, v[3] = {0.4, 0, 0}, a = 0.53;
+  const sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .lift = 0.27};
+  for (int even = 0; even < 2; even++) {
+    const sd_vans_mesh mesh = {N, 0.0, even ? 0.2 : 0.0, edge};
+    double F[3];
+    sd_vans_forces(&mesh, &law, U, hindrance, 1, x, v, &a, NULL, NULL, F, NULL);
+    const double over = U[5 + 1 + 2] - 0.4, under = U[5 + 1 - 2] - 0.4;
+    assert_true(fabs(F[2] - 0.5 * 1.3 * PI * a * a * 0.27 * (over * over - under * under)) < 1e-13);
+  }
+}
+
+static void convective_force_is_taken_off(void **state)
+{
+  (void) state;
+  double edge[3] = {0, 1, 2};
+  const sd_vans_mesh mesh = {2, 0.0, 1.0, edge};
+  const double convective[2] = {0.3, 0.7}, U[3] = {0}, hindrance[2] = {1, 1}, x[3] = {0, 0, 1.5}, v[3] = {0}, a = 0.2;
+  const sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .convective = convective};
+  double F[3];
+  sd_vans_forces(&mesh, &law, U, hindrance, 1, x, v, &a, NULL, NULL, F, NULL);
+  assert_true(F[0] == -0.7);
+}
+
+/* Above the mesh: the velocity of the surface and the phi of the last slice; below: water at rest and the phi of the first. */
+static void grains_outside_feel_the_end_values(void **state)
+{
+  (void) state;
+  double edge[4] = {0, 1, 2, 3};
+  const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
+  const double U[4] = {0, 0.5, 0.8, 0.9}, hindrance[3] = {3, 2, 1.5}, x[6] = {0, 0, 7, 0, 0, -2}, v[6] = {0.1, 0, 0, 0.1, 0, 0},
+               a[2] = {0.2, 0.2};
+  sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .g = {0, 0, -2}};
+  double F[6], expected[3];
+  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 2, x, v, a, NULL, NULL, F, NULL), 2);
+  sd_vans_drag(1.3, 0.1, 0.2, 1.5, (double[3]){0.8, 0, 0}, expected);
+  assert_true(fabs(F[0] - expected[0]) < 1e-15 && fabs(F[2] - 4.0 / 3.0 * PI * 0.008 * 2.6) < 1e-15);
+  sd_vans_drag(1.3, 0.1, 0.2, 3.0, (double[3]){-0.1, 0, 0}, expected);
+  assert_true(fabs(F[3] - expected[0]) < 1e-15);
+  law.rules = SD_VANS_YADE;
+  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 2, x, v, a, NULL, NULL, F, NULL), 2);
+  for (int k = 0; k < 6; k++) assert_true(F[k] == 0.0);
+}
+
+/* Moments over u_star^2 of the correlated walk: xx 2, yy 1, zz 1, xz -1; uncorrelated 1, 1, 1, 0. The error of a mean of n
+ * = 4e5 is about 1/sqrt(n). */
+static void fluctuations_have_their_moments(void **state)
+{
+  (void) state;
+  enum { n = 400000 };
+  for (int correlated = 0; correlated < 2; correlated++) {
+    double xx = 0, yy = 0, zz = 0, xz = 0, xy = 0, x = 0;
+    for (int i = 0; i < n; i++) {
+      double normal[3], u[3];
+      sd_vans_normal3(4711, i, 3, normal);
+      sd_vans_fluctuation(normal, 0.3, correlated, u);
+      for (int d = 0; d < 3; d++) u[d] /= 0.3;
+      xx += u[0] * u[0] / n, yy += u[1] * u[1] / n, zz += u[2] * u[2] / n, xz += u[0] * u[2] / n, xy += u[0] * u[1] / n,
+          x += u[0] / n;
+    }
+    const double tolerance = 5 / sqrt(n) * 2;
+    assert_true(fabs(xx - (correlated ? 2 : 1)) < 2 * tolerance && fabs(yy - 1) < tolerance && fabs(zz - 1) < tolerance);
+    assert_true(fabs(xz + correlated) < tolerance && fabs(xy) < tolerance && fabs(x) < tolerance);
+  }
+}
+
+/* Same keys, same numbers; a change of any key changes all. */
+static void fluctuations_depend_on_their_keys_alone(void **state)
+{
+  (void) state;
+  double a[3], b[3];
+  sd_vans_normal3(1, 2, 3, a);
+  sd_vans_normal3(1, 2, 3, b);
+  assert_memory_equal(a, b, sizeof a);
+  static const uint64_t keys[3][3] = {{2, 2, 3}, {1, 3, 3}, {1, 2, 4}};
+  for (int k = 0; k < 3; k++) {
+    sd_vans_normal3(keys[k][0], keys[k][1], keys[k][2], b);
+    for (int d = 0; d < 3; d++) assert_true(a[d] != b[d]);
+  }
+}
+
+static void eddies_live_as_long_as_the_length_over_the_velocity(void **state)
+{
+  (void) state;
+  assert_true(fabs(sd_vans_eddy_life(0.2, 1e-6, 0.05, 1e-3) - 0.33 * 0.41 * 0.2 / 0.05) < 1e-15);
+  assert_true(fabs(sd_vans_eddy_life(-1.0, 1e-6, 0.05, 1e-3) - 0.33 * 0.41 * 11.6e-6 / 0.0025) < 1e-15);
+  assert_true(sd_vans_eddy_life(1e9, 1e-6, 0.05, 1e-3) == 10.0 && sd_vans_eddy_life(1.0, 1e-6, 0.0, 1e-3) == 10e-3);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(slices_sum_to_the_sphere),
+      cmocka_unit_test(slices_of_uneven_mesh_sum_to_the_sphere),
+      cmocka_unit_test(slices_end_at_the_mesh),
+      cmocka_unit_test(yade_mirrors_the_slices),
+      cmocka_unit_test(point_grains_stay_in_one_slice),
+      cmocka_unit_test(drag_balances_weight_at_terminal_velocity),
+      cmocka_unit_test(hindrance_has_its_exponent),
+      cmocka_unit_test(lift_sees_both_ends_of_the_grain),
+      cmocka_unit_test(convective_force_is_taken_off),
+      cmocka_unit_test(grains_outside_feel_the_end_values),
+      cmocka_unit_test(fluctuations_have_their_moments),
+      cmocka_unit_test(fluctuations_depend_on_their_keys_alone),
+      cmocka_unit_test(eddies_live_as_long_as_the_length_over_the_velocity),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,91 @@
+"""fix hydro/vans in runs: momentum, ranks, restart, fluctuations."""
+import numpy as np
+import pytest
+from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+
+N, MESH = 201, "mesh 201 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
+
+
+@pytest.fixture
+def profile(tmp_path):
+    return write_columns(tmp_path / "u.txt", np.concatenate([[0], 0.6 * np.arange(1, N + 1) / N]))
+
+
+@pytest.mark.parametrize("keywords", ["", "sidewall 0.03 1", "surface speed 0.7 viscosity einstein", "turbulence none pressure_gradient -300 viscosity power",
+                                      "fluctuation correlated 7 0.01 renewal 0.0004", "lift 0.2", "mesh 16 0.004 0 profile zero grains point"])
+def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
+    """Mobile grains + water + what is on its way = start + what came from outside - what the fixed bed took, by drag and by contacts. Velocity Verlet
+    gives the force of the first and the last step half a time step each. 1e-10 of all that was moved."""
+    s = Scene.of(bed_script(f"{MESH} profile file {profile} {keywords}"))
+    s.do("unfix gravity")
+
+    def of_type(name, k, wanted):
+        return s.atoms(name)[s.atoms("type") == wanted, k]
+
+    def account():
+        grains = (s.atoms("rmass")[s.atoms("type") == 2] * of_type("v", 0, 2)).sum()
+        outside = sum(s.number(k, "vans") for k in ("driving", "bottom", "walls", "surface"))
+        moved = sum(abs(s.number(k, "vans")) for k in ("driving", "bottom", "walls", "surface", "momentum"))
+        return grains + s.number("momentum", "vans") + s.number("transit", "vans") + s.number("others", "vans") - outside, moved
+
+    s.do("run 0")
+    start, _ = account()
+    contact, before = 0.0, of_type("f", 0, 1).sum()
+    for _ in range(400):
+        s.do("run 1 pre no post no")
+        now = of_type("f", 0, 1).sum()
+        contact += 1e-5 * 0.5 * (before + now)
+        before = now
+    end, moved = account()
+    assert moved > 1e-4
+    assert abs(end + contact - start) < 1e-10 * moved
+    # on its way: no more than the grains take in a few couplings (20 steps)
+    assert abs(s.number("transit", "vans")) < 5 * 20 * 1e-5 * np.abs(s.atoms("f_vans")[:, 0]).sum()
+    s.close()
+
+
+MOVING = "fluctuation {kind} 4711 0.008 renewal 0.001"
+
+
+@pytest.mark.parametrize("kind", ["correlated", "depth"])
+def test_ranks_agree(tmp_path, profile, kind):
+    """Positions, velocities, forces and profiles on 2 and 4 ranks as on one, to 1e-10; fluctuations on."""
+    result = {}
+    for ranks, grid in ((1, "1 1 1"), (2, "2 1 1"), (4, "2 1 2")):
+        script = bed_script(f"{MESH} profile file {profile} sidewall 0.03 1 classes yes " + MOVING.format(kind=kind), damp=0, processors="processors " + grid)
+        script += f"""
+fix out all ave/time 100 1 100 f_vans[*] mode vector file profile.{ranks}
+thermo_style custom step f_vans[1] f_vans[4] f_vans[6] f_vans[8]
+run 400
+write_dump all custom dump.{ranks} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] f_vans[6] modify format float %.17g
+"""
+        done = run_lmp(tmp_path, script, ranks, name=f"in.{ranks}")
+        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+        result[ranks] = dump_rows(tmp_path / f"dump.{ranks}"), np.loadtxt([x for x in open(tmp_path / f"profile.{ranks}") if len(x.split()) > 2])
+    atoms, profiles = result[1]
+    assert np.abs(atoms[:, 10:13]).max() > 0.005    # there are fluctuations
+    for ranks in (2, 4):
+        assert np.array_equal(result[ranks][0][:, 0], atoms[:, 0])
+        scale = np.abs(atoms).max(axis=0) + 1e-300
+        assert (np.abs(result[ranks][0] - atoms).max(axis=0) / scale).max() < 1e-10
+        scale = np.abs(profiles).max(axis=0) + 1e-300
+        assert (np.abs(result[ranks][1] - profiles).max(axis=0) / scale).max() < 1e-5    # ave/time prints 6 digits
+
+
+@pytest.mark.parametrize("kind", ["correlated", "depth"])
+def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
+    """Broken at a step that is no coupling step. Contacts without damping: LAMMPS's own contact forces at the first step of a run are those of the
+    velocity at full step, others those at half step, so that damped contacts are not the same after any restart."""
+    script = bed_script(f"{MESH} profile file {profile} " + MOVING.format(kind=kind), damp=0)
+    output = "write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] f_vans[6] modify format float %.17g\n"
+    done = run_lmp(tmp_path, script + "run 150\nwrite_restart half\nrun 250\n" + output.format("split"), name="in.split")
+    assert done.returncode == 0, done.stdout[-2000:]
+    done = run_lmp(tmp_path, script + "run 400\n" + output.format("whole"), name="in.whole")
+    assert done.returncode == 0, done.stdout[-2000:]
+    again = script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):] + "run 250\n" + output.format("again")
+    done = run_lmp(tmp_path, again, 2, name="in.again")
+    assert done.returncode == 0, done.stdout[-2000:]
+    whole = dump_rows(tmp_path / "dump.whole")
+    for name in ("split", "again"):
+        other = dump_rows(tmp_path / f"dump.{name}")
+        assert (np.abs(other - whole).max(axis=0) / (np.abs(whole).max(axis=0) + 1e-300)).max() < 1e-10, name

@@ -1,0 +1,177 @@
+"""fix hydro/vans: bad input, each with its own message."""
+import numpy as np
+import pytest
+from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+
+GOOD = {"mesh": "20 0.001 0", "fluid": "1000 0.001", "gravity": "0.5 0 -9.8"}
+
+
+def line(every="1", **changes):
+    keywords = {**GOOD, **changes}
+    return f"fix h all hydro/vans {every} " + " ".join(f"{key} {value}" for key, value in keywords.items() if value is not None)
+
+
+BAD = [
+    (dict(every="0"), "number of steps N .* not '0'"),
+    (dict(every="2.5"), "not '2.5'"),
+    (dict(mesh=None), "keyword mesh .* is required"),
+    (dict(fluid=None), "keyword fluid .* is required"),
+    (dict(gravity=None), "keyword gravity .* is required; its x component is the slope"),
+    (dict(gravity="0 0 -9.8"), "nothing drives the stream"),
+    (dict(mesh="20 0 0"), "keyword mesh: '0' must be > 0"),
+    (dict(mesh="20 -0.001 0"), "keyword mesh: '-0.001' must be > 0"),
+    (dict(mesh="1 0.001 0"), "keyword mesh: '1' must be >= 2"),
+    (dict(mesh="20 0.001"), "keyword mesh: 'fluid' is not a number"),
+    (dict(mesh="20 nan 0"), "keyword mesh: 'nan' is not a finite number"),
+    (dict(fluid="0 0.001"), "keyword fluid: '0' must be > 0"),
+    (dict(fluid="1000 -1"), "keyword fluid: '-1' must be > 0"),
+    (dict(area="0"), "keyword area: '0' must be > 0"),
+    (dict(couple="both"), "keyword couple: 'both' is none of: none, one, two, fluid"),
+    (dict(turbulence="k-eps"), "keyword turbulence: 'k-eps' is none of"),
+    (dict(viscosity="krieger"), "keyword viscosity: 'krieger' is none of"),
+    (dict(phi_max="1.2"), "keyword phi_max: '1.2' is a volume fraction"),
+    (dict(solve="1e-3 1e-2"), "keyword solve: the step 0.01 is longer than the period 0.001"),
+    (dict(solve="0 1e-2"), "keyword solve: '0' must be > 0"),
+    (dict(sidewall="0 1"), "keyword sidewall: '0' must be > 0"),
+    (dict(radius="-1"), "keyword radius: '-1' must be > 0"),
+    (dict(fluctuation="correlated 0 0.1"), "keyword fluctuation: '0' must be >= 1"),
+    (dict(fluctuation="correlated 5"), "keyword fluctuation: value missing"),
+    (dict(profile="file nowhere"), "keyword profile: cannot read file 'nowhere'"),
+    (dict(region="nowhere"), "keyword region: region 'nowhere' does not exist"),
+    (dict(average="nobody"), "keyword average: group 'nobody' does not exist"),
+    (dict(pressure_gradient="v_none"), "keyword pressure_gradient: variable 'none' does not exist"),
+    (dict(overlap="once"), "keyword overlap: molecule IDs are needed"),
+    (dict(hindrance="inf"), "keyword hindrance: 'inf' is not a finite number"),
+    (dict(slope="0.1"), "unknown keyword 'slope'"),
+]
+
+
+@pytest.mark.parametrize("changes, message", BAD)
+def test_bad_keyword(changes, message):
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055]], [[0, 0, 0]], 0.001)
+    with pytest.raises(Exception, match=message):
+        s.do(line(**changes), "run 0")
+
+
+@pytest.mark.parametrize("rows, message", [
+    (["1"] * 20, "has 20 values, ncell \\+ 1 = 21 are needed"),
+    (["1"] * 22, "has 22 values, ncell \\+ 1 = 21 are needed"),
+    (["1"] * 20 + ["nan"], "line 21: 'nan' is not a finite number"),
+    (["1"] * 20 + ["fast"], "line 21: 'fast' is not a finite number"),
+])
+def test_bad_profile_file(tmp_path, monkeypatch, rows, message):
+    monkeypatch.chdir(tmp_path)    # short names: the python module cuts messages off
+    (tmp_path / "u").write_text("\n".join(rows))
+    with pytest.raises(Exception, match=message):
+        Scene().do(line(profile="file u"))
+
+
+@pytest.mark.parametrize("rows, message", [
+    (["0.1 0 0"] * 19, "has 19 rows, ncell = 20 are needed"),
+    (["0.1 0 0"] * 19 + ["0.1 0"], "row 20 has 2 values"),
+    (["0.1 0 0"] * 19 + ["1.1 0 0"], "phi = 1.1 in slice 20"),
+    (["0.1 0 0"] * 19 + ["0.1 0 inf"], "line 20: 'inf' is not a finite number"),
+])
+def test_bad_given_file(tmp_path, monkeypatch, rows, message):
+    monkeypatch.chdir(tmp_path)    # short names: the python module cuts messages off
+    (tmp_path / "given").write_text("\n".join(rows))
+    with pytest.raises(Exception, match=message):
+        Scene().do(line(couple="fluid", given="file given"))
+
+
+@pytest.mark.parametrize("edges, message", [("0 0.1", "has 2 edges, at least 3 are needed"), ("0 0.1 0.1 0.2", "edge 3 \\(0.1\\) is not above the one before")])
+def test_bad_mesh_file(tmp_path, monkeypatch, edges, message):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "edges").write_text(edges)
+    with pytest.raises(Exception, match=message):
+        Scene().do(line(mesh="file edges"))
+
+
+def test_rules_yade_has_equal_slices(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "edges").write_text("0 0.1 0.3 0.4")
+    with pytest.raises(Exception, match="rules yade knows slices of one height only"):
+        Scene().do(line(mesh="file edges", rules="yade"))
+
+
+def test_phi_above_one():
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055]], [[0, 0, 0]], 0.003)
+    with pytest.raises(Exception, match=r"phi = [0-9.]+ in slice \d+ \(z = .* more grains than fit"):
+        s.do(line(area="1e-5"), "run 0")
+
+
+def test_bed_up_to_the_surface():
+    s = Scene(box=(0, 0.0062, 0, 0.0062, -0.02, 0.15))
+    s.spheres([[0.003, 0.003, 0.0065 + 0.006 * k] for k in range(3)], np.zeros((3, 3)), 0.003)
+    with pytest.raises(Exception, match="keyword mesh: the bed reaches the surface of the water: phi = "):
+        s.do(line(), "run 0")
+
+
+def test_mesh_that_misses_the_grains():
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055], [0.01, 0.01, 0.0855], [0.01, 0.01, 0.0955]], np.zeros((3, 3)), 0.001)
+    with pytest.raises(Exception, match="it misses 66.6667 % of the grains"):
+        s.do(line(), "run 0")
+
+
+def test_atom_style_without_radius():
+    with pytest.raises(Exception, match="an atom style with radius is needed"):
+        Scene(style="atomic").do(line())
+
+
+def test_minimisation_and_respa_are_refused():
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055]], [[0, 0, 0]], 0.001)
+    s.do(line())
+    with pytest.raises(Exception, match="no force for a minimisation"):
+        s.do("minimize 0 0 1 1")
+    s.close()
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055]], [[0, 0, 0]], 0.001)
+    s.do(line(), "run_style respa 2 2 pair 1")
+    with pytest.raises(Exception, match="run_style respa is not supported"):
+        s.do("run 0")
+
+
+def test_nan_in_a_run():
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055], [0.005, 0.01, 0.0055]], np.zeros((2, 3)), 0.001)
+    s.do(line(couple="none"), "set atom 2 vx 1e200")
+    with pytest.raises(Exception, match="the force on atom 2 is not finite"):
+        s.do("run 0")
+
+
+def test_step_that_is_no_fraction_is_told(tmp_path):
+    vans = "mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61 solve 2e-4 3e-5"
+    done = run_lmp(tmp_path, bed_script(vans) + "run 20\n")
+    assert done.returncode == 0
+    assert "the step 3e-05 of keyword solve is no fraction of 0.0002: 7 steps of 2.85714e-05 are used" in done.stdout
+    done = run_lmp(tmp_path, bed_script(vans.replace("3e-5", "2e-5") + " rules yade") + "run 20\n")
+    assert "rules yade: " in done.stdout or done.returncode == 0
+
+
+def test_grains_outside_are_counted_and_told(tmp_path):
+    vans = "mesh 60 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61 couple one"
+    done = run_lmp(tmp_path, bed_script(vans) + "thermo_style custom step f_vans[7]\nrun 20\n")
+    assert done.returncode == 0
+    assert "grains are outside the mesh" in done.stdout + done.stderr
+
+
+def test_new_radius_that_is_no_class():
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055], [0.005, 0.01, 0.0055]], np.zeros((2, 3)), [0.001, 0.0012])
+    s.do(line(couple="one", classes="yes", class_radii="1 0.001"))
+    with pytest.raises(Exception, match="atom 2 has radius 0.0012, which is no size class"):
+        s.do("run 0")
+
+
+def test_restart_with_another_mesh(tmp_path):
+    vans = "mesh {} 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
+    done = run_lmp(tmp_path, bed_script(vans.format(200)) + "run 20\nwrite_restart half\n")
+    assert done.returncode == 0
+    script = bed_script(vans.format(210))
+    again = script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):]
+    done = run_lmp(tmp_path, again)
+    assert done.returncode != 0 and "the restart file has 200 slices, this fix has 210" in done.stdout
