@@ -123,7 +123,7 @@ static int below(const coefficients *c, double value)
   return count;
 }
 
-/* Smallest value with more than `under` eigenvalues below it, to six digits. All lie between 0 and the end of the largest disc. */
+/* Smallest value with more than `under` eigenvalues below it, to six digits. All lie between 0 and `highest`. */
 static double bisect(const coefficients *c, int under, double highest)
 {
   double low = 0.0, high = highest;
