@@ -144,7 +144,8 @@ static double squared(const double *x, int i, int j)
           if (cell_of(c, (x)[3 * (long) j]) == cx_ && cell_of(c, (x)[3 * (long) j + 1]) == cy_ && \
               cell_of(c, (x)[3 * (long) j + 2]) == cz_)
 
-/* Heap of spheres, the one with the largest key on top; equal keys: the smaller index. Keys only fall, and are put right when met. */
+/* Heap of spheres, the one with the largest key on top; equal keys: the smaller index. Keys only fall, and are put right when
+ * met. */
 typedef struct {
   int count;
   int *sphere;

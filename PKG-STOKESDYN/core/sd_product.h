@@ -98,8 +98,8 @@ void sd_packed_free(sd_packed *p);
 sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
 
-/* Packed for all pairs: F [3n] -> u [3 count], targets begin ... begin + count - 1, sources all. With all targets each pair is computed
- * once for both its spheres, which is about 1.4 times faster. */
+/* Packed for all pairs: F [3n] -> u [3 count], targets begin ... begin + count - 1, sources all. With all targets each pair is
+ * computed once for both its spheres, which is about 1.4 times faster. */
 void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u);
 
 /* A share of the same: part `part` of `parts`, whose sum over all parts is the product. F [3n] -> u [3n].

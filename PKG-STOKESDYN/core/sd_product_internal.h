@@ -17,7 +17,8 @@ struct sd_kernels {
 /* NULL: this build has none for it. isa is not SD_ISA_BEST. */
 const struct sd_kernels *sd_kernels_of(sd_isa isa);
 
-/* The kernels are written with the vector types of GCC and clang. Each file is empty unless the compiler was told to use its set. */
+/* The kernels are written with the vector types of GCC and clang; the files of AVX2 and AVX-512 need the compiler's options for
+ * them (CMakeLists.txt). */
 #if defined(__GNUC__) && !defined(SD_NO_KERNELS)
 #if defined(__x86_64__)
 #define SD_HAS_X86_KERNELS

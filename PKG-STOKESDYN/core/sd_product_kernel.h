@@ -164,8 +164,8 @@ INLINE void tile(int T, int both, sd_tensor tensor, sd_taper kind, const sd_pack
 /* Sources are taken in chunks that stay in the first-level cache while all targets pass. */
 enum { CHUNK = 256 };
 
-/* Groups of LANES columns: does the pair of a group with any later one belong to this part? In turn, there and back, so that the sums
- * of (groups - I) over a part's groups are equal. */
+/* Groups of LANES columns: does the pair of a group with any later one belong to this part? In turn, there and back, so that
+ * the sums of (groups - I) over a part's groups are equal. */
 INLINE int mine(int group, int part, int parts)
 {
   const int turn = group % (2 * parts);

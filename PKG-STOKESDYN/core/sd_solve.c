@@ -18,7 +18,7 @@ static int width(const sd_system *A)
   return A->spin ? 6 : 3;
 }
 
-/* v.D^-1 w of sphere i: of scaled residuals, which are forces and torques. Times D of its force: their product in forces alone. */
+/* v.D^-1 w of sphere i: of scaled residuals, which are forces and torques. Times D of its force: in forces alone. */
 static double natural_product(const sd_system *A, int i, const double *v, const double *w)
 {
   double s = (v[0] * w[0] + v[1] * w[1] + v[2] * w[2]) / A->drag[i];
@@ -123,7 +123,7 @@ static int below(const coefficients *c, double value)
   return count;
 }
 
-/* Smallest value with more than `under` eigenvalues below it, to six digits. All are > 0 and below the largest Gershgorin disc. */
+/* Smallest value with more than `under` eigenvalues below it, to six digits. All lie between 0 and `highest`. */
 static double bisect(const coefficients *c, int under, double highest)
 {
   double low = 0.0, high = highest;

@@ -2,8 +2,8 @@
  *
  *   M F = s,   M = D^-1 + Omega,   D = diag(6 pi eta_i a_i),   s = u_inf - v
  *
- * With rotation the unknowns of a sphere are force and torque (F T), the right-hand side is slip velocity and slip angular velocity,
- * and D has 8 pi eta a^3 in the rows of the torque. D = 0: the sphere takes no part, F = 0.
+ * With rotation the unknowns of a sphere are force and torque (F T), the right-hand side is slip velocity and slip angular
+ * velocity, and D has 8 pi eta a^3 in the rows of the torque. D = 0: the sphere takes no part, F = 0.
  *
  * Both solvers stop by the same number, the residual of this system with the rows of each sphere scaled by its own 6 pi eta a
  * (torques by 8 pi eta a^3 and the length sqrt(4/3) a, which makes them forces):
@@ -25,8 +25,8 @@ extern "C" {
 typedef void sd_apply(void *ctx, const double *F, double *u);
 /* Sum over all ranks, in place. */
 typedef void sd_sum(void *ctx, double *values, int count);
-/* z = P r, P an approximation of the inverse of M: symmetric, positive definite, the same in all calls of one solve. r [width n] are
- * velocities, z forces; 0 for spheres that take no part (sd_precondition.h has two). */
+/* z = P r, P an approximation of the inverse of M: symmetric, positive definite, the same in all calls of one solve. r [width n]
+ * are velocities, z forces; 0 for spheres that take no part (sd_precondition.h has two). */
 typedef void sd_precondition(void *ctx, const double *r, double *z);
 
 typedef struct {
@@ -50,7 +50,8 @@ typedef struct {
   double
       curvature; /* gradients: smallest p.Mp / p.D^-1 p met, never below the smallest eigenvalue of D M */
   /* gradients: smallest and largest Ritz value, estimates from inside of the extreme eigenvalues of P M; without preconditioner
-   * these are the eigenvalues of the mobility scaled to unit diagonal. They get good as the solver converges. 0: no iteration made */
+   * these are the eigenvalues of the mobility scaled to unit diagonal. They get good as the solver converges. 0: no iteration
+   * made */
   double ritz_smallest, ritz_largest;
   int products; /* of the matrix, checks included */
 } sd_solve_report;
@@ -69,12 +70,13 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
 
 /* Algorithm 2, preconditioned conjugate gradients.
  * Conjugate gradients minimise the energy norm of the error and their residual goes up and down; the F returned is their iterates
- * after minimal residual smoothing, y += theta (z - y) with theta such that |y| is smallest (Schoenauer & Weiss; Zhou & Walker 1994),
- * whose residual only falls and reaches the tolerance some iterations earlier. The residual is the one above with any preconditioner.
+ * after minimal residual smoothing, y += theta (z - y) with theta such that |y| is smallest (Schoenauer & Weiss; Zhou & Walker
+ * 1994), whose residual only falls and reaches the tolerance some iterations earlier. The residual is the one above with any
+ * preconditioner.
  *
- * One call of sum an iteration: all inner products are taken at once, after the product with M, and those of the next residual follow
- * from them, z' = z - alpha D M p being linear. Each is computed afresh in the next iteration, so rounding does not build up;
- * where more than ten digits would cancel they are computed at once, in one more call.
+ * One call of sum an iteration: all inner products are taken at once, after the product with M, and those of the next residual
+ * follow from them, z' = z - alpha D M p being linear. Each is computed afresh in the next iteration, so rounding does not
+ * build up; where more than ten digits would cancel they are computed at once, in one more call.
  *
  * The residual is computed from its definition before the solver says SD_OK, and the iteration goes on from there if rounding
  * has led it astray. Warm: one product gives the residual of the guess, and when that is below the tolerance F is left as it is.
