@@ -158,6 +158,7 @@ void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
 void FixStokesDynamicsState::write_restart(FILE *fp)
 {
   present_box(global.box);
+  restart_written = true;
   if (comm->me != 0) return;
   int size = sizeof(Global);
   fwrite(&size, sizeof(int), 1, fp);

@@ -51,6 +51,8 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
            vorticity[3] = {0, 0, 0};    // of the last step, if numbers
     double solves = 0, unconverged = 0;
     double solutions = 0;    // kept in the history: 0, 1, 2
+    double spent[3] = {0, 0,
+                       0};    // of the preconditioner: iterations, solves, is a factor wanted?
     double lambda_min =
         0;    // smallest eigenvalue met, of the mobility scaled to unit diagonal; 0: unknown
     double dt_limit = 0;                    // of explicit time steps of free spheres; 0: unknown
@@ -59,6 +61,7 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
     uint64_t settings = 0;                  // hash of the words of the pair_style command
   } global;
 
+  bool restart_written = false;        // since the last solve
   void settings_are(uint64_t hash);    // if they are new: nothing of the past stands
   bool box_left_as_is() const;
   bool placed_as_left(int i) const;    // atom i: place, radius, molecule

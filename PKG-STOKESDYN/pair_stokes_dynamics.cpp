@@ -276,6 +276,7 @@ void PairStokesDynamics::init_style()
                     (rotation ? " rotation" : "") + (history ? " history" : ""));
   fix_state = find_state();
   fix_state->settings_are(hash(args));
+  preconditioner.restore(fix_state->global.spent);
 
   bool applied = add_force;
   for (int i = 0; i < modify->nfix; i++)
@@ -341,8 +342,7 @@ int PairStokesDynamics::faulty(int i) const
   double sum = x[0] + x[1] + x[2] + atom->radius[i];
   if (active[i]) {
     sum += v[0] + v[1] + v[2] + viscosity(i) + u[0] + u[1] + u[2];
-    if (scene.settings.rotation)
-      sum += atom->omega[i][0] + atom->omega[i][1] + atom->omega[i][2];
+    if (scene.settings.rotation) sum += atom->omega[i][0] + atom->omega[i][1] + atom->omega[i][2];
     if (fluid_varies)
       sum += w_inf[3 * (size_t) i] + w_inf[3 * (size_t) i + 1] + w_inf[3 * (size_t) i + 2];
   }
@@ -598,12 +598,9 @@ void PairStokesDynamics::rigid_forces()
   using State = FixStokesDynamicsState;
   const int n = atom->nlocal;
   const bool rotation = scene.settings.rotation;
-  const RigidClumps::Motion motion = {active,
-                                      visc.is_atom_style() ? eta.data() : nullptr,
-                                      visc.number(),
-                                      u_varies ? u_inf.data() : nullptr,
-                                      u_uniform,
-                                      fluid_varies ? gradient.data() : nullptr};
+  const RigidClumps::Motion motion = {active,        visc.is_atom_style() ? eta.data() : nullptr,
+                                      visc.number(), u_varies ? u_inf.data() : nullptr,
+                                      u_uniform,     fluid_varies ? gradient.data() : nullptr};
   // While it is still in the cache; unless the clump may yet turn out, on another rank, to be the solver's.
   const bool add_now = add_force && !rigid.settings.auto_resolve;
   auto take = [this, rotation, add_now](int i, const double *F, const double *T) {
@@ -669,10 +666,13 @@ void PairStokesDynamics::solve()
   else {
     system.warm = warm_start && fix_state->global.solutions > 0;
     if (system.warm) guess();
+    if (fix_state->restart_written) preconditioner.make_anew();
+    fix_state->restart_written = false;
     preconditioner.attach(system);
     status = sd_solve_gradients(&system, slip.data(), tolerance, max_iter, solution.data(),
                                 work.data(), &report);
     preconditioner.learn(report);
+    preconditioner.save(fix_state->global.spent);
     if (warm_start) remember();
     time_step_guard(report);
   }
@@ -795,7 +795,8 @@ void PairStokesDynamics::solver_failed(sd_status status, const sd_solve_report &
                (scene.settings.tensor == SD_TENSOR_OSEEN
                     ? "tensor oseen: spheres are too close for it, use tensor rpy"
                     : "cut_off_distance " + cutoff +
-                        ", so any answer would be noise: use cut_off_distance inf, or a taper, or clumps_only yes "
+                        ", so any answer would be noise: use cut_off_distance inf, or a taper, or "
+                        "clumps_only yes "
                         "with a cut-off larger than the clump") +
                " (" + how_far + ", curvature " + text(report.curvature) + ")");
     case SD_ESINGULAR:

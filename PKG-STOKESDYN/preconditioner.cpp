@@ -13,7 +13,8 @@ namespace StokesDyn {
 
 static const double RHO =
     3.0;    // reach of the sparse factor: 42 blocks a sphere in a compact cloud
-static const double RIGID = 1e-9;       // of its size: rounding; a clump that has bent more gets a new block
+static const double RIGID =
+    1e-9;    // of its size: rounding; a clump that has bent more gets a new block
 static const double BENT = 0.02;    // of its size: a clump that has changed more gets a new block
 static const long PAYS_AFTER =
     200;    // iterations: a factor costs about as much as so many products
@@ -37,6 +38,20 @@ void Preconditioner::forget()
   iterations_spent = solves = 0;
   first_iterations = -1;
   worn = true;
+}
+
+void Preconditioner::save(double spent[3]) const
+{
+  spent[0] = iterations_spent;
+  spent[1] = solves;
+  spent[2] = wanted_sparse;
+}
+
+void Preconditioner::restore(const double spent[3])
+{
+  iterations_spent = spent[0];
+  solves = spent[1];
+  wanted_sparse = spent[2] != 0.0;
 }
 
 /* Members of each molecule with two spheres or more; true if they are at least half of the spheres. */

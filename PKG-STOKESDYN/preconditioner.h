@@ -28,6 +28,11 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   Preconditioner &operator=(const Preconditioner &) = delete;
 
   void forget();
+  /* What is kept between solves is not in restart files. The run that writes one makes it anew in its next solve, as the run that
+   * reads it must, so both go on alike; and these counts go along. */
+  void make_anew() { worn = true; }
+  void save(double spent[3]) const;
+  void restore(const double spent[3]);
   /* Before a solve, after Scene::update(): makes or turns what is wanted and puts it into the system. */
   void attach(sd_system &system);
   /* After it: was it worth it, is it still good? */
@@ -40,8 +45,8 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   bool wanted_sparse = false;    // auto: enough iterations have been spent to pay for a factor
   long iterations_spent = 0, solves = 0;
   int first_iterations = -1;    // of the first solve after a set-up
-  bool worn = true;     // make it anew
-  bool small = true;    // are the clumps small?
+  bool worn = true;             // make it anew
+  bool small = true;            // are the clumps small?
 
   sd_sparse sparse;
   sd_blocks blocks;
