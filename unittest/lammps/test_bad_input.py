@@ -71,14 +71,6 @@ def test_pair_style_command(simulation, words, expected):
         assert text in str(error.value)
 
 
-@pytest.mark.parametrize("keyword,value", [("taper", "wendland"),
-                                           ("precondition", "clump"),
-                                           ("warm_start", "yes")])
-def test_keywords_that_this_version_lacks_are_refused_and_not_ignored(simulation, keyword, value):
-    with pytest.raises(LammpsError, match=f"{PAIR}: keyword {keyword}: not available in this version"):
-        simulation(three(), f"cut_off_distance inf visc 1.3 {keyword} {value}", box=BOX)
-
-
 # seen when a run starts: (words, input lines before, words of the error)
 AT_THE_RUN = [
     ("region nowhere", "", ["keyword region: region 'nowhere' does not exist"]),
