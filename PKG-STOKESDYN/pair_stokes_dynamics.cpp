@@ -160,7 +160,10 @@ void PairStokesDynamics::parse()
          COMMAND +
              ": keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
   if (preconditioner.kind > Preconditioner::NONE && algorithm == 1)
-    fail(lmp, COMMAND + ": keyword precondition requires algorithm 2");
+    fail(lmp,
+         COMMAND + ": keyword precondition: '" +
+             (preconditioner.kind == Preconditioner::CLUMP ? "clump" : "sparse") +
+             "' requires algorithm 2");
   if (rigid.settings.on && !scene.settings.clumps_only)
     fail(lmp, COMMAND + ": keyword rigid_clumps requires clumps_only yes");
   if (rigid.settings.on && std::isfinite(scene.settings.cutoff))

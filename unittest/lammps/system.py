@@ -176,7 +176,7 @@ class Simulation:
         return self.lmp.extract_fix(fix, 0, 0)
 
     def fix_vector(self, fix="drag"):
-        return np.array([self.lmp.extract_fix(fix, 0, 1, nrow=k) for k in range(7)])
+        return np.array([self.lmp.extract_fix(fix, 0, 1, nrow=k) for k in range(9)])
 
     @property
     def iterations(self):

@@ -1,0 +1,314 @@
+"""Preconditioners, warm start, taper and the time-step guard: they change how an answer is reached and how it is watched. The
+first two never change the answer; a taper is another model, and its answer is that of the tapered matrix."""
+import re
+
+import numpy as np
+import pytest
+
+import model
+from system import LammpsError, Spheres, chain, dump_lines, input_lines, largest_difference, lmp, read_dump
+
+ETA, A = 1.3, 0.7
+STOKES = 6 * np.pi * ETA * A
+EXACT = "algorithm 2 relative_tolerance 1e-12 max_iter 2000"
+PAIR = "Pair style stokes_dynamics"
+ALONG = (0.0, 0.0, 0.4)
+
+
+def flocs(count, m, side, seed=1, spread=1.0):
+    """Each sphere stuck to one before it at 0.6 to 0.95 of the sum of their radii; flocs at random places of a cube, none
+    overlapping another. As cloud_flocs of the core's tests."""
+    rng = np.random.default_rng(seed)
+    x, a, molecule = np.zeros((0, 3)), np.zeros(0), []
+    while len(molecule) < count * m:
+        its_a = A * np.exp(rng.uniform(0, np.log(spread), m)) if spread > 1 else np.full(m, A)
+        its_x = np.zeros((m, 3))
+        its_x[0] = rng.uniform(0, side, 3)
+        for i in range(1, m):
+            to, e = rng.integers(i), rng.normal(size=3)
+            its_x[i] = its_x[to] + rng.uniform(0.6, 0.95) * (its_a[i] + its_a[to]) * e / np.linalg.norm(e)
+        if len(x) and (np.linalg.norm(its_x[:, None] - x[None], axis=2) < its_a[:, None] + a[None]).any():
+            continue
+        x, a = np.vstack([x, its_x]), np.append(a, its_a)
+        molecule += [len(molecule) // m + 1] * m
+    return Spheres(x, a, rng.normal(size=(len(x), 3)), molecule)
+
+
+def lattice(n, v=ALONG):
+    grid = np.array([(i, j, k) for i in range(n) for j in range(n) for k in range(n)], float)
+    return Spheres(2 * A * grid, A, v)
+
+
+def loose_lattice(n, v=0.0, seed=2):
+    """A dense cloud without contacts: volume fraction 0.43."""
+    rng = np.random.default_rng(seed)
+    spheres = lattice(n)
+    spheres.x = 1.07 * spheres.x + rng.uniform(-0.06, 0.06, spheres.x.shape) * A
+    spheres.v = v * rng.normal(size=spheres.x.shape)
+    return spheres
+
+
+# --- the answer does not depend on how it is found -------------------------------------------------------------------
+
+MODES = {"all": "cut_off_distance inf", "clumps": "clumps_only yes", "taper": "cut_off_distance 12 taper wendland"}
+WAYS = [("all", "clump", "yes", 1), ("all", "sparse", "yes", 1), ("all", "auto", "no", 1), ("all", "none", "yes", 1),
+        ("all", "clump", "yes", 2), ("all", "sparse", "no", 2), ("all", "none", "no", 2),
+        ("clumps", "clump", "yes", 1), ("clumps", "auto", "no", 1), ("clumps", "clump", "yes", 2), ("clumps", "none", "yes", 2),
+        ("taper", "clump", "yes", 1), ("taper", "auto", "yes", 2)]
+STEPS = 6
+
+
+def moving(tmp_path, mode, precondition, warm, ranks, rotation="no", molecules=True):
+    """Forces at the last of a few steps of free flocs, whose spheres move against each other: the clumps bend."""
+    spheres = flocs(12, 10, 15.0, spread=2.0)
+    spheres.v *= 0.3
+    words = f"{MODES[mode]} visc {ETA} {EXACT} rotation {rotation} precondition {precondition} warm_start {warm}"
+    if not molecules:
+        spheres.molecule[:] = 0
+    box = [(-20.0, 40.0)] * 3
+    lines = input_lines(spheres, words, tmp_path / "data", box=box, comm="comm_modify cutoff 25", dt=0.005)
+    lines += ["fix move all nve/sphere"] + dump_lines(tmp_path / "dump", every=STEPS) + [f"run {STEPS}"]
+    lmp(tmp_path, lines, ranks=ranks)
+    return read_dump(tmp_path / "dump")[-1][1][:, 6:9]
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    known = {}
+
+    def get(mode, rotation="no"):
+        if (mode, rotation) not in known:
+            known[mode, rotation] = moving(tmp_path_factory.mktemp("reference"), mode, "none", "no", 1, rotation)
+        return known[mode, rotation]
+
+    return get
+
+
+@pytest.mark.parametrize("mode,precondition,warm,ranks", WAYS)
+def test_answer_does_not_depend_on_preconditioner_and_warm_start(tmp_path, reference, mode, precondition, warm, ranks):
+    assert largest_difference(moving(tmp_path, mode, precondition, warm, ranks), reference(mode)) < 1e-9
+
+
+@pytest.mark.parametrize("mode,precondition,ranks", [("all", "clump", 1), ("all", "sparse", 2), ("clumps", "clump", 2)])
+def test_nor_does_it_with_rotation(tmp_path, reference, mode, precondition, ranks):
+    assert largest_difference(moving(tmp_path, mode, precondition, "yes", ranks, "yes"), reference(mode, "yes")) < 1e-9
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_nor_when_auto_turns_to_the_sparse_factor(tmp_path, reference, ranks):
+    """120 spheres without clumps and far more iterations than a factor costs."""
+    assert largest_difference(moving(tmp_path, "all", "auto", "no", ranks, molecules=False), reference("all")) < 1e-9
+
+
+# --- iterations ------------------------------------------------------------------------------------------------------
+
+def test_touching_lattice_of_1000_with_the_sparse_factor(simulation):
+    """Drag of the model: dense factorisation. Without the factor 42 iterations."""
+    style = f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-6"
+    sim = simulation(lattice(10), f"{style} precondition sparse").run()
+    assert 1 <= sim.iterations <= 18 and sim.residual <= 1e-6
+    assert -sim.drag[:, 2].sum() / (STOKES * ALONG[2]) == pytest.approx(12.852858, abs=2e-6)
+
+
+@pytest.mark.parametrize("precondition", ["clump", "auto"])
+def test_flocs_with_the_blocks_of_their_clumps(simulation, precondition):
+    spheres = flocs(50, 20, 34.7 * A)
+    spheres.v[:] = ALONG
+    style = f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-6"
+    sim = simulation(spheres, f"{style} precondition {precondition}").run()
+    assert 1 <= sim.iterations <= 15 and sim.residual <= 1e-6
+
+
+def test_auto_turns_to_the_sparse_factor_when_that_pays(simulation):
+    """Velocities without relation to those before, so a warm start is of no use."""
+    sim = simulation(lattice(6), f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-9")
+    rng, iterations = np.random.default_rng(4), []
+    for _ in range(9):
+        sim.raw("v")[:] = rng.normal(size=(sim.n, 3))
+        iterations.append(sim.run().iterations)
+    assert iterations[0] > 30 and iterations[-1] < 0.6 * iterations[0]
+
+
+# --- warm start ------------------------------------------------------------------------------------------------------
+
+def test_warm_start_takes_two_iterations_a_step_and_keeps_the_tolerance(simulation, tmp_path):
+    spheres = loose_lattice(6, v=0.3)
+    spheres.v += (0.0, 0.0, -1.0)
+    words = f"cut_off_distance inf visc {ETA} algorithm 2 warm_start"
+    taken = {}
+    for warm in ("no", "yes"):
+        log = tmp_path / f"log.{warm}"
+        sim = simulation(spheres, f"{words} {warm}", log=log, box=[(-40.0, 60.0)] * 3, density=20.0, dt=1e-3)
+        sim.commands(["fix move all nve/sphere", "fix pull all gravity 1 vector 0 0 -1",
+                      "variable its equal f_drag[4]", "variable left equal f_drag[5]",
+                      "thermo_style custom step v_its v_left", "thermo 1", "run 200"])
+        sim.close()
+        rows = [line.split() for line in log.read_text().splitlines()]
+        rows = np.array([[float(w) for w in r] for r in rows if len(r) == 3 and r[0].isdigit()])
+        assert len(rows) == 201
+        assert rows[:, 2].max() <= 1e-3
+        taken[warm] = rows[1:, 1].mean()
+    assert taken["yes"] <= 2.0 < taken["no"]
+
+
+@pytest.mark.parametrize("precondition,molecules,tolerance", [("none", 0, 1e-2), ("clump", 1, 1e-2), ("sparse", 0, 1e-12)])
+def test_warm_start_survives_a_restart(simulation, tmp_path, precondition, molecules, tolerance):
+    """At a loose tolerance the answer shows where the solver began. A sparse factor is kept from step to step and is not in the
+    restart file: with it the two runs agree to the tolerance of the solves."""
+    words = f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance {tolerance} precondition {precondition}"
+    spheres = flocs(4, 6, 8.0)
+    spheres.molecule *= molecules
+    rest = ["fix drag all stokes_dynamics", "fix pull all gravity 1.5 vector 0.3 0 -1", "fix move all nve/sphere"]
+    begin = input_lines(spheres, words, tmp_path / "data", box=[(-30.0, 40.0)] * 3, fix=False, dt=0.002) + rest
+    sim = simulation().commands(begin).run(40)
+    sim.command(f"write_restart {tmp_path}/mid")
+    sim.run(40)
+    expected = np.hstack([sim.x, sim.v, sim.drag])
+    sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.002"] + rest)
+    sim.run(40)
+    assert np.abs(np.hstack([sim.x, sim.v, sim.drag]) - expected).max() < 1e-10
+
+
+# --- taper -----------------------------------------------------------------------------------------------------------
+
+TAPER = {"wendland": lambda q: np.where(q < 1, (1 - q)**4 * (1 + 4 * q), 0.0),
+         "spherical": lambda q: np.where(q < 1, 1 - 1.5 * q + 0.5 * q**3, 0.0)}
+
+
+def factors(x, taper, range_):
+    t = TAPER[taper](np.linalg.norm(x[:, None] - x[None], axis=2) / range_)
+    np.fill_diagonal(t, 1.0)
+    return t
+
+
+@pytest.mark.parametrize("taper", TAPER)
+@pytest.mark.parametrize("mode,R", [("", 4.0), ("", 9.0), ("clumps_only yes", 6.0)])
+def test_tapered_forces_against_a_dense_solve(simulation, taper, mode, R):
+    spheres = flocs(6, 8, 8.0, spread=2.0)
+    M = model.mobility(spheres.x, spheres.a, ETA, sees=model.same_clump(spheres) if mode else None)
+    M *= np.kron(factors(spheres.x, taper, R), np.ones((3, 3)))
+    expected = np.linalg.solve(M, -spheres.v.ravel()).reshape(-1, 3)
+    sim = simulation(spheres, f"cut_off_distance {R} {mode} taper {taper} visc {ETA} {EXACT}", comm="comm_modify cutoff 12").run()
+    assert largest_difference(sim.drag, expected) < 1e-9
+
+
+@pytest.mark.parametrize("taper", TAPER)
+def test_tapered_forces_and_torques_against_a_dense_solve(simulation, taper):
+    """Spheres that do not overlap, where the blocks of rotation are short: UT T = WF T = (T x r) / (8 pi eta R^3),
+    WT = (3 rr - I) / (16 pi eta R^3)."""
+    spheres, R = loose_lattice(3, v=1.0), 5.0
+    spheres.a *= np.random.default_rng(7).uniform(0.6, 1.0, spheres.n)
+    w = np.random.default_rng(8).normal(size=(spheres.n, 3))
+    n, x, a = spheres.n, spheres.x, spheres.a
+    M = np.zeros((n, 2, 3, n, 2, 3))
+    M[:, 0, :, :, 0, :] = model.mobility(x, a, ETA).reshape(n, 3, n, 3)
+    for i in range(n):
+        M[i, 1, :, i, 1, :] = np.eye(3) / (8 * np.pi * ETA * a[i]**3)
+        for j in range(n):
+            if i == j:
+                continue
+            r = x[i] - x[j]
+            s = np.linalg.norm(r)
+            M[i, 1, :, j, 1, :] = (3 * np.outer(r, r) / s**2 - np.eye(3)) / (16 * np.pi * ETA * s**3)
+            M[i, 0, :, j, 1, :] = M[i, 1, :, j, 0, :] = np.cross(np.eye(3), r).T / (8 * np.pi * ETA * s**3)
+    M = M.reshape(6 * n, 6 * n) * np.kron(factors(x, taper, R), np.ones((6, 6)))
+    expected = np.linalg.solve(M, -np.hstack([spheres.v, w]).ravel()).reshape(n, 6)
+    sim = simulation(spheres, f"cut_off_distance {R} taper {taper} rotation yes visc {ETA} {EXACT}")
+    sim.raw("omega")[:] = w[sim.ids() - 1]
+    sim.run()
+    rows = sim.fix_rows()
+    assert largest_difference(rows[:, 0:3], expected[:, :3]) < 1e-9
+    assert largest_difference(rows[:, 6:9], expected[:, 3:]) < 1e-9
+
+
+@pytest.mark.parametrize("taper", TAPER)
+def test_taper_solves_where_the_plain_cut_off_is_refused(simulation, taper):
+    spheres, R = chain(10, 2 * A, a=A, v=ALONG, molecule=0), 2.5 * A
+    words = f"cut_off_distance {R} visc {ETA} {EXACT}"
+    with pytest.raises(LammpsError, match="not positive definite.*taper"):
+        simulation(spheres, words).run()
+    sim = simulation(spheres, f"{words} taper {taper}").run()
+    assert sim.residual <= 1e-12 and sim.fix_scalar() > 0.0
+    M = model.mobility(spheres.x, spheres.a, ETA) * np.kron(factors(spheres.x, taper, R), np.ones((3, 3)))
+    assert largest_difference(sim.drag, np.linalg.solve(M, -spheres.v.ravel()).reshape(-1, 3)) < 1e-9
+
+
+# --- time-step guard -------------------------------------------------------------------------------------------------
+
+def test_limit_of_a_lone_sphere_is_its_relaxation_time_twice(simulation):
+    sim = simulation(Spheres([(0, 0, 0)], A, ALONG), f"cut_off_distance inf visc {ETA} {EXACT}").run()
+    if sim.iterations:
+        mass = sim.raw("rmass").ravel()[0]
+        assert sim.fix_vector()[7] == pytest.approx(1.0) and sim.fix_vector()[8] == pytest.approx(2 * mass / STOKES)
+
+
+def test_limit_is_that_of_the_smallest_eigenvalue(simulation):
+    spheres = loose_lattice(4, v=1.0)
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} {EXACT} precondition none").run()
+    smallest = np.linalg.eigvalsh(STOKES * model.mobility(spheres.x, spheres.a, ETA))[0]
+    mass = 1.7 * 4 / 3 * np.pi * A**3
+    assert sim.fix_vector()[7] == pytest.approx(smallest, rel=1e-3)
+    assert sim.fix_vector()[8] == pytest.approx(2 * mass * sim.fix_vector()[7] / STOKES, rel=1e-12)
+
+
+@pytest.mark.parametrize("precondition", ["none", "sparse"])
+def test_dense_free_cloud_is_stable_below_the_printed_limit_and_not_above(simulation, tmp_path, precondition):
+    """No force but drag: the kinetic energy can only fall. Slow spheres, so that a run that blows up stays in its box."""
+    spheres = loose_lattice(5, v=1e-7)
+    words = f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-6 precondition {precondition}"
+    energy, warnings, limit = {}, {}, 1e-3
+    for factor in (0.0, 0.5, 2.0):
+        log = tmp_path / f"log.{factor}"
+        sim = simulation(spheres, words, log=log, dt=1e-9 if factor == 0.0 else factor * limit)
+        sim.commands(["fix move all nve/sphere", "compute energy all ke", "thermo_style custom step c_energy",
+                      "thermo_modify format float %.15g", "thermo 1"]).run(15 if factor else 0)
+        if factor == 0.0:
+            limit = sim.fix_vector()[8]
+        sim.close()
+        text = log.read_text()
+        energy[factor] = np.array([float(e) for e in re.findall(r"^ +\d+ +([-+.0-9e]+) *$", text, re.M)])
+        warnings[factor] = [line for line in text.splitlines() if "WARNING" in line and "time step" in line]
+    assert limit > 0.0
+    assert len(energy[0.5]) == len(energy[2.0]) == 16
+    assert (np.diff(energy[0.5]) < 0.0).all()
+    assert energy[2.0][-1] > 1e6 * energy[2.0][0]
+    assert warnings[0.5] == [] and len(warnings[2.0]) == 1
+    for word in (PAIR, "time step", "above", "2 m lambda/(6 pi eta a)", "lambda"):
+        assert word in warnings[2.0][0]
+
+
+# --- bad input -------------------------------------------------------------------------------------------------------
+
+REFUSED = [
+    ("cut_off_distance inf taper wendland", ["keyword taper requires a cut_off_distance"]),
+    ("clumps_only yes taper spherical", ["keyword taper requires a cut_off_distance"]),
+    ("cut_off_distance 5 taper gauss", ["keyword taper: 'gauss' is none of: none, wendland, spherical"]),
+    ("cut_off_distance 5 taper", ["keyword taper: value missing"]),
+    ("clumps_only yes algorithm 2 precondition sparse", ["keyword precondition: 'sparse' requires cut_off_distance inf"]),
+    ("cut_off_distance 5 algorithm 2 precondition sparse", ["keyword precondition: 'sparse' requires cut_off_distance inf"]),
+    ("cut_off_distance inf precondition clump", ["keyword precondition: 'clump' requires algorithm 2"]),
+    ("cut_off_distance inf precondition sparse algorithm 1", ["keyword precondition: 'sparse' requires algorithm 2"]),
+    ("cut_off_distance inf algorithm 2 precondition ilu", ["keyword precondition: 'ilu' is none of: auto, none, clump, sparse"]),
+    ("cut_off_distance inf algorithm 2 precondition", ["keyword precondition: value missing"]),
+    ("cut_off_distance inf algorithm 2 warm_start maybe", ["keyword warm_start: 'maybe' is none of: no, yes"]),
+    ("cut_off_distance inf algorithm 2 warm_start", ["keyword warm_start: value missing"]),
+]
+
+
+@pytest.mark.parametrize("words,expected", REFUSED, ids=[words for words, _ in REFUSED])
+def test_refused(simulation, words, expected):
+    spheres = Spheres([(-1.5, 0, 0), (0.4, 0.2, 0), (1.9, 0.3, 0.2)], A, ALONG, molecule=1)
+    with pytest.raises(LammpsError) as error:
+        simulation(spheres, f"visc {ETA} {words}")
+    for text in [PAIR] + expected:
+        assert text in str(error.value)
+
+
+def test_blocks_of_clumps_without_molecule_ids_are_refused(simulation):
+    sim = simulation().commands(["units lj", "atom_style sphere", "boundary f f f", "atom_modify map array",
+                                 "plugin load stokesdynplugin.so", "region box block -9 9 -9 9 -9 9", "create_box 1 box",
+                                 "create_atoms 1 single 0 0 0", "create_atoms 1 single 3 0 0", "set type 1 diameter 1.4",
+                                 f"pair_style stokes_dynamics cut_off_distance inf visc {ETA} algorithm 2 precondition clump",
+                                 "pair_coeff * *", "fix drag all stokes_dynamics"])
+    with pytest.raises(LammpsError, match=f"{PAIR}: keyword precondition: 'clump' requires molecule IDs"):
+        sim.run()
