@@ -45,7 +45,8 @@ void Field::evaluate(LAMMPS *lmp, int igroup, double *out, int stride)
     }
     value = variable->compute_equal(i);
   }
-  for (int i = 0; i < nlocal; i++) out[(long) stride * i] = value;
+  if (out)
+    for (int i = 0; i < nlocal; i++) out[(long) stride * i] = value;
 }
 
 namespace {

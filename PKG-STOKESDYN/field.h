@@ -23,7 +23,8 @@ class Field {
 
   /* Find the variable; what: "Pair style x: keyword visc", for the error if it is missing or of another style. */
   void init(LAMMPS_NS::LAMMPS *lmp, const std::string &what);
-  /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms outside the group. */
+  /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms outside the group. nullptr, if not of
+   * atom style: only number() is brought up to date. */
   void evaluate(LAMMPS_NS::LAMMPS *lmp, int igroup, double *out, int stride);
 
  private:

@@ -294,8 +294,10 @@ double PairStokesDynamics::memory_usage()
 {
   return scene.memory_usage() +
       sizeof(double) *
-      (double) (eta.capacity() + u_inf.capacity() + slip.capacity() + drag.capacity() +
-                solution.capacity() + work.capacity());
+      (double) (eta.capacity() + u_inf.capacity() + w_inf.capacity() + gradient.capacity() +
+                slip.capacity() + drag.capacity() + spin.capacity() + solution.capacity() +
+                work.capacity()) +
+      rigid.memory_usage();
 }
 
 // --- a step ------------------------------------------------------------------------------------------------
@@ -315,15 +317,28 @@ static bool finite(const double *v)
 
 int PairStokesDynamics::faulty(int i) const
 {
+  // 0 times a number is 0 unless it is infinite or not a number: nearly always this one test is enough.
+  const double *x = atom->x[i], *v = atom->v[i], *u = fluid_at(i);
+  double sum = x[0] + x[1] + x[2] + atom->radius[i];
+  if (active[i]) {
+    sum += v[0] + v[1] + v[2] + viscosity(i) + u[0] + u[1] + u[2];
+    if (scene.settings.rotation)
+      sum += atom->omega[i][0] + atom->omega[i][1] + atom->omega[i][2];
+    if (fluid_varies)
+      sum += w_inf[3 * (size_t) i] + w_inf[3 * (size_t) i + 1] + w_inf[3 * (size_t) i + 2];
+  }
+  if (0.0 * sum == 0.0 && (!active[i] || (atom->radius[i] > 0.0 && viscosity(i) > 0.0)))
+    return NONE;
+
   // Velocity first: it spoils the position in the same step.
   if (active[i] && (!finite(atom->v[i]) || (scene.settings.rotation && !finite(atom->omega[i]))))
     return VELOCITY;
   if (!finite(atom->x[i])) return POSITION;
   if (!active[i]) return NONE;
   if (!(atom->radius[i] > 0.0) || !std::isfinite(atom->radius[i])) return RADIUS;
-  if (!(eta[i] > 0.0) || !std::isfinite(eta[i])) return VISCOSITY;
-  if (!finite(&u_inf[3 * (size_t) i])) return FLUID_VELOCITY;
-  if (scene.settings.rotation && !finite(&w_inf[3 * (size_t) i])) return FLUID_VORTICITY;
+  if (!(viscosity(i) > 0.0) || !std::isfinite(viscosity(i))) return VISCOSITY;
+  if (!finite(fluid_at(i))) return FLUID_VELOCITY;
+  if (fluid_varies && !finite(&w_inf[3 * (size_t) i])) return FLUID_VORTICITY;
   return NONE;
 }
 
@@ -343,7 +358,7 @@ void PairStokesDynamics::complain()
             value = atom->radius[i];
             break;
           case VISCOSITY:
-            value = eta[i];
+            value = viscosity(i);
             break;
         }
   MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
@@ -381,13 +396,11 @@ bool PairStokesDynamics::numbers_only() const
 void PairStokesDynamics::fluid_gradient()
 {
   const int n = atom->nlocal;
-  const bool formulas = fluid_velocity[0].is_atom_style() || fluid_velocity[1].is_atom_style() ||
-      fluid_velocity[2].is_atom_style();
-  fluid_varies = formulas || has_vorticity;
-  w_inf.assign(3 * (size_t) n + 3, 0.0);
+  fluid_varies = u_varies || has_vorticity;
   if (!fluid_varies) return;
+  w_inf.assign(3 * (size_t) n + 3, 0.0);
   gradient.assign(9 * (size_t) n + 9, 0.0);
-  if (formulas) velocity_gradient(lmp, fluid_velocity, igroup, gradient.data());
+  if (u_varies) velocity_gradient(lmp, fluid_velocity, igroup, gradient.data());
   if (has_vorticity)
     for (int d = 0; d < 3; d++) fluid_vorticity[d].evaluate(lmp, igroup, w_inf.data() + d, 3);
   for (int i = 0; i < n; i++)
@@ -403,36 +416,49 @@ void PairStokesDynamics::fluid_gradient()
     }
 }
 
-/* Who takes part, viscosity, fluid velocity, slip. */
+double PairStokesDynamics::drag_of(int i) const
+{
+  return 6.0 * SD_PI * viscosity(i) * atom->radius[i];
+}
+
+double PairStokesDynamics::spin_of(int i) const
+{
+  const double a = atom->radius[i];
+  return 8.0 * SD_PI * viscosity(i) * a * a * a;
+}
+
+/* Fluid less sphere: velocity, and with rotation angular velocity. */
+void PairStokesDynamics::slip_of(int i, double *s) const
+{
+  const double *u = fluid_at(i), *v = atom->v[i];
+  for (int d = 0; d < 3; d++) s[d] = u[d] - v[d];
+  if (!scene.settings.rotation) return;
+  const double *w = atom->omega[i];
+  for (int d = 0; d < 3; d++) s[3 + d] = (fluid_varies ? w_inf[3 * (size_t) i + d] : 0.0) - w[d];
+}
+
+/* Who takes part, viscosity, fluid velocity. */
 void PairStokesDynamics::state_of_the_step()
 {
   const int n = atom->nlocal;
-  const size_t m = width();
   active.resize(n);
-  eta.resize(n + 1);
-  u_inf.resize(3 * (size_t) n + 3);
-  slip.resize(m * n + m);
-  drag.resize(n + 1);
-  if (scene.settings.rotation) spin.resize(n + 1);
+  u_varies = false;
+  for (const auto &u : fluid_velocity) u_varies = u_varies || u.is_atom_style();
 
   if (!numbers_only()) modify->clearstep_compute();
-  visc.evaluate(lmp, igroup, eta.data(), 1);
-  for (int d = 0; d < 3; d++) fluid_velocity[d].evaluate(lmp, igroup, u_inf.data() + d, 3);
+  if (visc.is_atom_style()) eta.resize(n + 1);
+  visc.evaluate(lmp, igroup, visc.is_atom_style() ? eta.data() : nullptr, 1);
+  if (u_varies) u_inf.resize(3 * (size_t) n + 3);
+  for (int d = 0; d < 3; d++) {
+    fluid_velocity[d].evaluate(lmp, igroup, u_varies ? u_inf.data() + d : nullptr, 3);
+    u_uniform[d] = fluid_velocity[d].number();
+  }
+  fluid_varies = false;
   if (scene.settings.rotation || rigid.settings.on) fluid_gradient();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 
   if (region) region->prematch();
-  for (int i = 0; i < n; i++) {
-    const double a = atom->radius[i];
-    double *s = &slip[m * i];
-    active[i] = selected(i);
-    drag[i] = active[i] ? 6.0 * SD_PI * eta[i] * a : 0.0;
-    for (int d = 0; d < 3; d++) s[d] = active[i] ? u_inf[3 * (size_t) i + d] - atom->v[i][d] : 0.0;
-    if (!scene.settings.rotation) continue;
-    spin[i] = active[i] ? 8.0 * SD_PI * eta[i] * a * a * a : 0.0;
-    for (int d = 0; d < 3; d++)
-      s[3 + d] = active[i] ? w_inf[3 * (size_t) i + d] - atom->omega[i][d] : 0.0;
-  }
+  for (int i = 0; i < n; i++) active[i] = selected(i);
 }
 
 void PairStokesDynamics::compute(int eflag, int vflag)
@@ -471,7 +497,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   const bool same_spheres = count[1] == 0.0 && count[0] == global.spheres;
   const bool displaced = count[3] > 0.0, pushed = count[4] > 0.0;
 
-  if (!(continued && same_numbers && same_spheres && !displaced && !pushed)) {
+  const bool stands = continued && same_numbers && same_spheres && !displaced && !pushed;
+  if (!stands) {
     // v' is due every update_every steps, and at once when the spheres are not those of the last solve: none lacks a v', none has
     // gone, and nobody has displaced or changed them between two runs.
     const bool due = !same_spheres || displaced || fmod(step, update_every) == 0.0 ||
@@ -488,13 +515,18 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     }
     for (int i = 0; i < n; i++) {
       if (rigid.settings.on && !solving[i] && active[i]) continue;
-      const double *si = &slip[width() * (size_t) i];
+      if (!active[i]) {
+        for (int d = 0; d < 3; d++) state[i][State::FORCE + d] = 0.0;
+        for (int d = 0; d < 3 && rotation; d++) state[i][State::TORQUE + d] = 0.0;
+        continue;
+      }
+      double s[6];
+      slip_of(i, s);
+      const double k = drag_of(i), k_spin = rotation ? spin_of(i) : 0.0;
       for (int d = 0; d < 3; d++) {
-        state[i][State::FORCE + d] = active[i] ? drag[i] * (si[d] + state[i][State::VPRIME + d])
-                                               : 0.0;
+        state[i][State::FORCE + d] = k * (s[d] + state[i][State::VPRIME + d]);
         if (rotation)
-          state[i][State::TORQUE + d] =
-              active[i] ? spin[i] * (si[3 + d] + state[i][State::WPRIME + d]) : 0.0;
+          state[i][State::TORQUE + d] = k_spin * (s[3 + d] + state[i][State::WPRIME + d]);
       }
     }
   }
@@ -505,12 +537,11 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     global.vorticity[d] = fluid_vorticity[d].number();
   }
 
+  // rigid_forces() adds its own
+  const bool added = rigid.settings.on && !rigid.settings.auto_resolve;
   if (add_force)
     for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++) {
-        atom->f[i][d] += state[i][State::FORCE + d];
-        if (rotation) atom->torque[i][d] += state[i][State::TORQUE + d];
-      }
+      if (stands || !added || solving[i]) add(i);
 
   // compute pair sums this over the ranks
   const bool root = comm->me == 0;
@@ -518,15 +549,28 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   pvector[1] = root ? global.residual : 0.0;
   pvector[2] = root ? global.unconverged : 0.0;
   pvector[3] = 0.0;
-  for (int i = 0; i < n; i++) pvector[3] += dissipation(i);
+  if (eflag_global)    // else nobody asks in this step
+    for (int i = 0; i < n; i++) pvector[3] += dissipation(i);
 }
 
 double PairStokesDynamics::dissipation(int i) const
 {
-  const double *F = drag_force(i), *T = drag_torque(i), *s = &slip[width() * (size_t) i];
+  if (!active[i]) return 0.0;
+  const double *F = drag_force(i), *T = drag_torque(i);
+  double s[6];
+  slip_of(i, s);
   double power = F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
   if (T) power += T[0] * s[3] + T[1] * s[4] + T[2] * s[5];
   return power;
+}
+
+void PairStokesDynamics::add(int i)
+{
+  using State = FixStokesDynamicsState;
+  const double *state = fix_state->state[i];
+  for (int d = 0; d < 3; d++) atom->f[i][d] += state[State::FORCE + d];
+  if (!scene.settings.rotation) return;
+  for (int d = 0; d < 3; d++) atom->torque[i][d] += state[State::TORQUE + d];
 }
 
 /* Forces of rigid clumps, and the v' that they stand for. Spheres of other clumps, and lone ones, are the solver's. */
@@ -535,34 +579,39 @@ void PairStokesDynamics::rigid_forces()
   using State = FixStokesDynamicsState;
   const int n = atom->nlocal;
   const bool rotation = scene.settings.rotation;
-  const RigidClumps::Motion motion = {active, eta, u_inf, fluid_varies ? &gradient : nullptr};
-  rigid_result.assign(6 * (size_t) n + 6, 0.0);
-  rigid.forces(motion, rigid_result, solving);
-  for (int i = 0; i < n; i++) {
-    solving[i] = solving[i] && active[i];
-    if (solving[i] || !active[i]) continue;
-    double *state = fix_state->state[i];
-    const double *F = &rigid_result[6 * (size_t) i], *s = &slip[width() * (size_t) i];
+  const RigidClumps::Motion motion = {active,
+                                      visc.is_atom_style() ? eta.data() : nullptr,
+                                      visc.number(),
+                                      u_varies ? u_inf.data() : nullptr,
+                                      u_uniform,
+                                      fluid_varies ? gradient.data() : nullptr};
+  // While it is still in the cache; unless the clump may yet turn out, on another rank, to be the solver's.
+  const bool add_now = add_force && !rigid.settings.auto_resolve;
+  auto take = [this, rotation, add_now](int i, const double *F, const double *T) {
+    double *state = fix_state->state[i], s[6];
+    slip_of(i, s);
+    const double k = 1.0 / drag_of(i), k_spin = rotation ? 1.0 / spin_of(i) : 0.0;
     for (int d = 0; d < 3; d++) {
       state[State::FORCE + d] = F[d];
-      state[State::VPRIME + d] = F[d] / drag[i] - s[d];
+      state[State::VPRIME + d] = F[d] * k - s[d];
       if (!rotation) continue;
-      state[State::TORQUE + d] = F[3 + d];
-      state[State::WPRIME + d] = F[3 + d] / spin[i] - s[3 + d];
+      state[State::TORQUE + d] = T[d];
+      state[State::WPRIME + d] = T[d] * k_spin - s[3 + d];
     }
     state[State::SOLVED] = 1.0;
+    if (add_now) add(i);
+  };
+  rigid.forces(motion, take, solving);
+  const bool lone_only = !rigid.any_loose();    // then nobody disturbs the fluid there
+  for (int i = 0; i < n; i++) {
+    solving[i] = solving[i] && active[i];
+    if (active[i] && !(solving[i] && lone_only)) continue;
+    double *state = fix_state->state[i];
+    state[State::SOLVED] = active[i] ? 1.0 : 0.0;
+    if (!active[i]) continue;
+    for (int d = 0; d < 3; d++) state[State::VPRIME + d] = 0.0;
+    for (int d = 0; d < 3 && rotation; d++) state[State::WPRIME + d] = 0.0;
   }
-  if (!rigid.any_loose())    // lone spheres: nobody disturbs the fluid there
-    for (int i = 0; i < n; i++)
-      if (solving[i]) {
-        double *state = fix_state->state[i];
-        for (int d = 0; d < 3; d++) state[State::VPRIME + d] = 0.0;
-        if (rotation)
-          for (int d = 0; d < 3; d++) state[State::WPRIME + d] = 0.0;
-        state[State::SOLVED] = 1.0;
-      }
-  for (int i = 0; i < n; i++)
-    if (!active[i]) fix_state->state[i][State::SOLVED] = 0.0;
 }
 
 /* v' of every sphere, from the forces that solve the system for the velocities of now. */
@@ -573,13 +622,22 @@ void PairStokesDynamics::solve()
   const bool rotation = scene.settings.rotation;
   solution.resize(m * n + m);
   work.resize(SD_SOLVE_WORK(n, width()) + 1);
+  eta.resize(n + 1);
+  if (!visc.is_atom_style()) std::fill(eta.begin(), eta.end(), visc.number());
   scene.update(solving, eta);
-  solver_drag.resize(n + 1);
-  for (int i = 0; i < n; i++) solver_drag[i] = solving[i] ? drag[i] : 0.0;
+  slip.assign(m * n + m, 0.0);
+  drag.assign(n + 1, 0.0);
+  if (rotation) spin.assign(n + 1, 0.0);
+  for (int i = 0; i < n; i++) {
+    if (!active[i]) continue;
+    slip_of(i, &slip[m * i]);
+    if (solving[i]) drag[i] = drag_of(i);
+    if (rotation) spin[i] = spin_of(i);
+  }
 
   sd_system system = {};
   system.n = n;
-  system.drag = solver_drag.data();
+  system.drag = drag.data();
   system.spin = rotation ? spin.data() : nullptr;
   system.apply = Scene::apply;
   system.sum = Scene::sum;

@@ -80,9 +80,18 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
 
   // of this step, per atom of this rank
   std::vector<char> active, solving;    // takes part; is the solver's
+  bool u_varies = false;                // is the fluid velocity stored per atom?
   bool fluid_varies = false;            // is there a gradient of the fluid velocity?
-  std::vector<double> eta, u_inf, w_inf, gradient, slip, drag, spin, solver_drag, solution, work,
-      rigid_result;
+  // What is the same everywhere is not stored per atom: each pass over this memory costs as much as the arithmetic.
+  std::vector<double> eta, u_inf, w_inf, gradient;
+  double u_uniform[3] = {0.0, 0.0, 0.0};
+  std::vector<double> slip, drag, spin, solution, work;    // of a solve
+
+  double viscosity(int i) const { return visc.is_atom_style() ? eta[i] : visc.number(); }
+  const double *fluid_at(int i) const { return u_varies ? &u_inf[3 * (size_t) i] : u_uniform; }
+  double drag_of(int i) const;
+  double spin_of(int i) const;
+  void slip_of(int i, double *s) const;    // [width()]
 
   FixStokesDynamicsState *find_state() const;    // nullptr before the first run
   void parse();
@@ -91,6 +100,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   int width() const { return scene.settings.rotation ? 6 : 3; }    // unknowns of a sphere
   void fluid_gradient();
   void rigid_forces();
+  void add(int i);
   bool selected(int i) const;
   int faulty(int i) const;
   void complain();

@@ -51,7 +51,7 @@ void RigidClumps::new_run()
 double RigidClumps::memory_usage() const
 {
   double bytes =
-      sizeof(double) * ((double) values.capacity() + x.capacity() + F.capacity() + T.capacity());
+      sizeof(double) * ((double) ghosts.capacity() + radius.capacity() + x.capacity() + F.capacity() + T.capacity());
   for (const auto &s : shapes) bytes += 72.0 * sizeof(double) * s.shape.n;
   return bytes;
 }
@@ -346,28 +346,24 @@ void RigidClumps::match(const std::vector<size_t> &unknown)
 
 // --- every step ----------------------------------------------------------------------------------------------------
 
-/* To owned atoms and ghosts: eta (0: takes no part), v, angular velocity, fluid velocity and its gradient, as far as needed. */
+/* To ghosts: eta (0: takes no part), v, angular velocity, fluid velocity and its gradient, as far as needed. */
 void RigidClumps::gather(const Motion &m)
 {
-  const int n = atom->nlocal;
   column = {0, 1, 4, 4, 4, 4};
   if (settings.rotation) column.u = column.gradient = column.end = 7;
   if (m.gradient) {
     column.gradient = column.u + 3;
     column.end = column.gradient + 9;
   }
-  values.resize((size_t) column.end * n + 1);
-  for (int i = 0; i < n; i++) {
-    double *row = &values[(size_t) column.end * i];
-    row[0] = m.active[i] ? m.eta[i] : 0.0;
+  scene.refresh_ghosts(ghosts, column.end, [&](int i, double *row) {
+    row[0] = m.active[i] ? (m.eta ? m.eta[i] : m.eta_uniform) : 0.0;
     memcpy(row + column.v, atom->v[i], 3 * sizeof(double));
     if (settings.rotation) memcpy(row + column.omega, atom->omega[i], 3 * sizeof(double));
     if (m.gradient) {
-      memcpy(row + column.u, &m.u_inf[3 * (size_t) i], 3 * sizeof(double));
-      memcpy(row + column.gradient, &(*m.gradient)[9 * (size_t) i], 9 * sizeof(double));
+      memcpy(row + column.u, m.u_inf ? m.u_inf + 3 * (size_t) i : m.u_uniform, 3 * sizeof(double));
+      memcpy(row + column.gradient, m.gradient + 9 * (size_t) i, 9 * sizeof(double));
     }
-  }
-  scene.refresh(values, column.end);
+  });
 }
 
 /* Slip of a clump in pose R, c: s0 at the centroid and the gradient A (row-major) of the slip field. Spheres in the shape's order. */
@@ -375,26 +371,30 @@ void RigidClumps::slip(const Shape &s, const double R[9], const double c[3], con
                        double s0[3], double W[3], double A[9]) const
 {
   const int n = s.shape.n;
+  const double share = 1.0 / n;
+  const bool spins = settings.rotation && s.shape.rank < 2;    // the centres do not tell all of it
   double U[3] = {0.0}, L[3] = {0.0}, spin[3] = {0.0}, u[3] = {0.0}, G[9] = {0.0};
   for (int k = 0; k < n; k++) {
-    const double *row = rows[k], *v = row + column.v;
+    const Sphere &sphere = spheres[k];
+    const double *v = sphere.v;
     const double r[3] = {x[3 * k] - c[0], x[3 * k + 1] - c[1], x[3 * k + 2] - c[2]};
     double rv[3];
     sd_cross(r, v, rv);
     for (int d = 0; d < 3; d++) {
-      U[d] += v[d] / n;
+      U[d] += v[d] * share;
       L[d] += rv[d];
-      if (settings.rotation) spin[d] += row[column.omega + d] / n;
-      if (m.gradient) u[d] += row[column.u + d] / n;
     }
-    if (m.gradient)
-      for (int d = 0; d < 9; d++) G[d] += row[column.gradient + d] / n;
+    if (spins)
+      for (int d = 0; d < 3; d++) spin[d] += sphere.omega[d] * share;
+    if (!m.gradient) continue;
+    for (int d = 0; d < 3; d++) u[d] += sphere.u[d] * share;
+    for (int d = 0; d < 9; d++) G[d] += sphere.gradient[d] * share;
   }
   // Angular velocity from the velocities of the centres; about an axis that all of them sit on, from the spheres' own.
   double body[3], turned[3];
   sd_multiply3t(R, L, body);
   sd_multiply3(s.spin_inverse, body, turned);
-  if (settings.rotation && s.shape.rank < 2) {
+  if (spins) {
     sd_multiply3t(R, spin, body);
     const double about = sd_dot(body, s.axis);
     for (int d = 0; d < 3; d++)
@@ -404,7 +404,7 @@ void RigidClumps::slip(const Shape &s, const double R[9], const double c[3], con
   sd_multiply3(R, turned, w);
   if (!m.gradient) {
     for (int d = 0; d < 3; d++) {
-      s0[d] = m.u_inf[d] - U[d];
+      s0[d] = m.u_uniform[d] - U[d];
       W[d] = -w[d];
     }
     return;
@@ -413,12 +413,12 @@ void RigidClumps::slip(const Shape &s, const double R[9], const double c[3], con
   // stored per atom.
   double B[9] = {0.0}, RB[9], fit[9], Rt[9], residual[9];
   for (int k = 0; k < n; k++) {
-    const double *row = rows[k];
+    const Sphere &sphere = spheres[k];
     const double r[3] = {x[3 * k] - c[0], x[3 * k + 1] - c[1], x[3 * k + 2] - c[2]};
     double e[3];
     sd_multiply3(G, r, e);
     for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++) B[3 * p + q] += (row[column.u + p] - u[p] - e[p]) * r[q];
+      for (int q = 0; q < 3; q++) B[3 * p + q] += (sphere.u[p] - u[p] - e[p]) * r[q];
   }
   // B (sum r r)^-1 = B R (sum X X)^-1 R^T
   sd_product3(B, R, RB);
@@ -431,71 +431,77 @@ void RigidClumps::slip(const Shape &s, const double R[9], const double c[3], con
   for (int d = 0; d < 3; d++) s0[d] = u[d] - U[d];
 }
 
-void RigidClumps::forces(const Motion &m, std::vector<double> &result, std::vector<char> &loose)
+enum { SPLIT = 1, BENT = 2 };
+
+void RigidClumps::begin_step(const Motion &m, std::vector<char> &loose)
 {
   if (scene.update_clumps()) recognise();
   gather(m);
   const int nlocal = atom->nlocal;
-  loose.assign(nlocal, 0);
+  loose.resize(nlocal);
   for (int i = 0; i < nlocal; i++) loose[i] = atom->molecule[i] == 0;
+  worst = 0;
+  bent.clear();
+}
 
-  enum { SPLIT = 1, BENT = 2 };
-  int64_t worst = 0;    // 4 molecule + fault
-  std::vector<double> bent;
-  for (size_t number = 0; number < scene.clumps.size(); number++) {
-    const auto &clump = scene.clumps[number];
-    const Known &of = *of_clump[number];
-    const int n = clump.end - clump.begin;
-    int taking_part = 0;
-    double eta = 0.0;
-    for (int k = clump.begin; k < clump.end; k++) {
-      const double e = values[(size_t) column.end * scene.member[k]];
-      taking_part += e > 0.0;
-      eta += e / n;
-    }
-    if (of.shape < 0) {
-      for (int k = clump.begin; k < clump.end; k++)
-        if (scene.owned[k] >= 0) loose[scene.owned[k]] = 1;
-      continue;
-    }
-    if (taking_part == 0) continue;
-    if (taking_part < n) {
-      worst = std::max(worst, 4 * clump.molecule + SPLIT);
-      continue;
-    }
-    const Shape &s = shapes[of.shape];
-    if (x.size() < 3 * (size_t) n) {
-      x.resize(3 * (size_t) n);
-      F.resize(3 * (size_t) n);
-      T.resize(3 * (size_t) n);
-      rows.resize(n);
-    }
-    for (int k = 0; k < n; k++) {
-      const int j = scene.member[clump.begin + of.perm[k]];
-      memcpy(&x[3 * (size_t) k], atom->x[j], 3 * sizeof(double));
-      rows[k] = &values[(size_t) column.end * j];
-    }
-    double R[9], c[3], s0[3], W[3], A[9];
-    const double deviation = sd_shape_pose(&s.shape, x.data(), R, c);
-    if (!(deviation <= RIGID_TO * s.shape.size)) {
-      worst = std::max(worst, 4 * clump.molecule + BENT);
-      bent.push_back(clump.molecule);
-      continue;
-    }
-    slip(s, R, c, m, s0, W, A);
-    double *torque = settings.rotation ? T.data() : nullptr;
-    if (m.gradient)
-      sd_clump_forces(&s.clump, R, eta, s0, A, F.data(), torque);
-    else
-      sd_clump_forces_rigid(&s.clump, R, eta, s0, W, F.data(), torque);
-    for (int k = 0; k < n; k++) {
-      const int i = scene.owned[clump.begin + of.perm[k]];
-      if (i < 0) continue;
-      memcpy(&result[6 * (size_t) i], &F[3 * (size_t) k], 3 * sizeof(double));
-      if (torque) memcpy(&result[6 * (size_t) i + 3], &T[3 * (size_t) k], 3 * sizeof(double));
+bool RigidClumps::evaluate(size_t number, const Motion &m, std::vector<char> &loose)
+{
+  const auto &clump = scene.clumps[number];
+  const Known &of = *of_clump[number];
+  const int n = clump.end - clump.begin, nlocal = atom->nlocal;
+  if (of.shape < 0) {
+    for (int k = clump.begin; k < clump.end; k++)
+      if (scene.owned[k] >= 0) loose[scene.owned[k]] = 1;
+    return false;
+  }
+  if (x.size() < 3 * (size_t) n) {
+    x.resize(3 * (size_t) n);
+    F.resize(3 * (size_t) n);
+    T.resize(3 * (size_t) n);
+    spheres.resize(n);
+  }
+  int taking_part = 0;
+  double eta = 0.0;
+  for (int k = 0; k < n; k++) {
+    const int j = scene.member[clump.begin + of.perm[k]];
+    memcpy(&x[3 * (size_t) k], atom->x[j], 3 * sizeof(double));
+    if (j < nlocal) {
+      taking_part += m.active[j];
+      eta += m.eta ? m.eta[j] : m.eta_uniform;
+      spheres[k] = {atom->v[j], settings.rotation ? atom->omega[j] : nullptr,
+                    m.u_inf ? m.u_inf + 3 * (size_t) j : m.u_uniform,
+                    m.gradient ? m.gradient + 9 * (size_t) j : nullptr};
+    } else {
+      const double *row = &ghosts[(size_t) column.end * (j - nlocal)];
+      taking_part += row[0] > 0.0;
+      eta += row[0];
+      spheres[k] = {row + column.v, row + column.omega, row + column.u, row + column.gradient};
     }
   }
+  if (taking_part == 0) return false;
+  if (taking_part < n) {
+    worst = std::max(worst, 4 * clump.molecule + SPLIT);
+    return false;
+  }
+  const Shape &s = shapes[of.shape];
+  double R[9], c[3], s0[3], W[3], A[9];
+  const double deviation = sd_shape_pose(&s.shape, x.data(), R, c);
+  if (!(deviation <= RIGID_TO * s.shape.size)) {
+    worst = std::max(worst, 4 * clump.molecule + BENT);
+    bent.push_back(clump.molecule);
+    return false;
+  }
+  slip(s, R, c, m, s0, W, A);
+  double *torque = settings.rotation ? T.data() : nullptr;
+  if (m.gradient)
+    sd_clump_forces(&s.clump, R, eta / n, s0, A, F.data(), torque);
+  else
+    sd_clump_forces_rigid(&s.clump, R, eta / n, s0, W, F.data(), torque);
+  return true;
+}
 
+void RigidClumps::end_step(std::vector<char> &loose)
+{
   int64_t any;
   MPI_Allreduce(&worst, &any, 1, MPI_LMP_BIGINT, MPI_MAX, world);
   if (any % 4 == SPLIT)

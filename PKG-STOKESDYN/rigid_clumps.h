@@ -36,14 +36,31 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   /* What a step knows of the atoms of this rank. */
   struct Motion {
     const std::vector<char> &active;
-    const std::vector<double> &eta, &u_inf;    // [n], [3n]
-    const std::vector<double> *gradient;       // [9n] of the fluid velocity; nullptr: it is uniform
+    const double *eta;          // [n], or nullptr:
+    double eta_uniform;         // the same everywhere
+    const double *u_inf;        // [3n], or nullptr:
+    const double *u_uniform;    // [3]
+    const double *gradient;     // [9n] of the fluid velocity; nullptr: it is uniform
   };
 
-  /* Forces [3] and torques [3] of the owned spheres of rigid clumps into result [6 i]; loose[i] = 1: atom i belongs to a clump that is
-   * not rigid (auto) and is left to the solver. Lone spheres (molecule 0): left to the solver likewise.
-   * Errors: a clump whose spheres are not all selected; one that is not rigid (yes). */
-  void forces(const Motion &motion, std::vector<double> &result, std::vector<char> &loose);
+  /* Calls take(i, F, T) for every owned sphere i of a rigid clump that takes part: force [3], torque [3] (nullptr without rotation).
+   * loose[i] = 1: atom i belongs to a clump that is not rigid (auto) and is left to the solver. Lone spheres (molecule 0): left to
+   * the solver likewise. Errors: a clump whose spheres are not all selected; one that is not rigid (yes). */
+  template <class Take>
+  void forces(const Motion &motion, const Take &take, std::vector<char> &loose)
+  {
+    begin_step(motion, loose);
+    for (size_t number = 0; number < scene.clumps.size(); number++) {
+      if (!evaluate(number, motion, loose)) continue;
+      const int begin = scene.clumps[number].begin, n = scene.clumps[number].end - begin;
+      const int *perm = of_clump[number]->perm.data();
+      for (int k = 0; k < n; k++) {
+        const int i = scene.owned[begin + perm[k]];
+        if (i >= 0) take(i, &F[3 * (size_t) k], settings.rotation ? &T[3 * (size_t) k] : nullptr);
+      }
+    }
+    end_step(loose);
+  }
 
   bool any_loose() const { return !loose_molecules.empty(); }    // on any rank
   double memory_usage() const;
@@ -81,9 +98,16 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   struct {
     int eta, v, omega, u, gradient, end;
   } column = {};
-  std::vector<double> values, radius;    // per atom, ghosts included
-  std::vector<double> x, F, T;           // of one clump
-  std::vector<const double *> rows;
+  std::vector<double> radius;    // per atom, ghosts included
+  std::vector<double> ghosts;    // what a step knows of ghosts, in columns
+  int64_t worst = 0;             // of this step: 4 molecule + fault
+  std::vector<double> bent;
+
+  struct Sphere {
+    const double *v, *omega, *u, *gradient;
+  };
+  std::vector<Sphere> spheres;    // of one clump, in order of its shape
+  std::vector<double> x, F, T;
 
   void recognise();
   void geometry(const Scene::Clump &clump, std::vector<double> &centres,
@@ -94,6 +118,9 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void announce(size_t number, double seconds);
   void match(const std::vector<size_t> &unknown);
   void gather(const Motion &motion);
+  void begin_step(const Motion &motion, std::vector<char> &loose);
+  bool evaluate(size_t number, const Motion &motion, std::vector<char> &loose);    // F and T of a clump, if it has any
+  void end_step(std::vector<char> &loose);
   void slip(const Shape &s, const double R[9], const double c[3], const Motion &m, double s0[3],
             double W[3], double A[9]) const;
 };

@@ -159,6 +159,17 @@ void Scene::refresh(std::vector<double> &v, int width)
   Compat::forward_comm(comm, pair);
 }
 
+void Scene::refresh_ghosts(std::vector<double> &ghosts, int width,
+                           const std::function<void(int, double *)> &row)
+{
+  ghosts.resize((size_t) width * atom->nghost + 1);
+  values = ghosts.data();
+  values_width = width;
+  row_of = &row;
+  packing = ROWS;
+  Compat::forward_comm(comm, pair);
+}
+
 namespace {
   /* How far a clump reaches in x, y, z, seen from one of its spheres. */
   struct Span {
@@ -409,6 +420,13 @@ int Scene::pack_forward_comm(int n, int *list, double *buf)
       case VALUES:
         for (int d = 0; d < values_width; d++) buf[m++] = values[values_width * (size_t) i + d];
         break;
+      case ROWS:    // ghosts pass on what they have from a neighbour
+        if (i < atom->nlocal)
+          (*row_of)(i, buf + m);
+        else
+          std::copy_n(values + values_width * (size_t) (i - atom->nlocal), values_width, buf + m);
+        m += values_width;
+        break;
     }
   }
   return m;
@@ -431,6 +449,10 @@ void Scene::unpack_forward_comm(int n, int first, double *buf)
         break;
       case VALUES:
         for (int d = 0; d < values_width; d++) values[values_width * (size_t) i + d] = buf[m++];
+        break;
+      case ROWS:
+        std::copy_n(buf + m, values_width, values + values_width * (size_t) (i - atom->nlocal));
+        m += values_width;
         break;
     }
   }

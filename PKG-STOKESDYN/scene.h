@@ -12,6 +12,7 @@
 #include "sd_product.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,9 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   /* Copies rows of width numbers from the atoms of this rank to their ghosts: values has owned atoms in, owned and ghosts out. */
   void refresh(std::vector<double> &values, int width);
+  /* The same, but only what goes to a ghost is written at all: row(i, out) writes that of the owned atom i. ghosts: rows of the
+   * ghosts, in order of LAMMPS. */
+  void refresh_ghosts(std::vector<double> &ghosts, int width, const std::function<void(int, double *)> &row);
 
   void lists_are_stale() { stale = clumps_stale = true; }
 
@@ -84,9 +88,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<double> all_x, all_a, all_w, all_force, all_u;
   int n_all = 0, begin = 0;
 
-  enum { SPHERES, MOLECULES, FORCES, VALUES } packing = SPHERES;
+  enum { SPHERES, MOLECULES, FORCES, VALUES, ROWS } packing = SPHERES;
   double *values = nullptr;    // of refresh()
   int values_width = 0;
+  const std::function<void(int, double *)> *row_of = nullptr;    // of refresh_ghosts()
 
   int width() const { return settings.rotation ? 6 : 3; }
   const double *positions() const;

@@ -71,7 +71,7 @@ def test_pair_style_command(simulation, words, expected):
         assert text in str(error.value)
 
 
-@pytest.mark.parametrize("keyword,value", [("rigid_clumps", "yes"), ("shell", "12"), ("taper", "wendland"),
+@pytest.mark.parametrize("keyword,value", [("taper", "wendland"),
                                            ("precondition", "clump"),
                                            ("warm_start", "yes")])
 def test_keywords_that_this_version_lacks_are_refused_and_not_ignored(simulation, keyword, value):
