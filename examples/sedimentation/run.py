@@ -9,6 +9,8 @@ Every velocity is compared with two values:
           pair_style stokes_dynamics must give
   exact   Stokes flow around the clump (no slip on its surface), data/clusters_exact.csv and data/chains_exact.csv: what the
           model approximates
+The ladder then repeats the twelve clumps with better models (torques, shells of 12, 42 and 162 points a sphere) and compares
+with exact, and with what the clump's own 6x6 resistance says.
 Exits with 1 and says which when a figure is missed.
 """
 import concurrent.futures
@@ -27,8 +29,14 @@ TOP = HERE.parents[1]
 # matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
 os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
 
-import matplotlib
-import numpy as np
+DEBIAN = "/usr/bin/python3"
+try:
+    import matplotlib
+    import numpy as np
+except ImportError:         # Debian's python has them, another one on the PATH need not
+    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
+        raise
+    os.execv(DEBIAN, [DEBIAN] + sys.argv)
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -40,6 +48,20 @@ U0 = 2 * (RHO - RHOF) * G * A**2 / (9 * ETA)
 VELOCITY_LIMIT = 1e-6               # relative, against the model
 CLUMP_BAND = (-11.0, 0.0)           # per cent, drag against exact: the model is a lower bound of the drag
 CHAIN_BAND = (-5.0, 0.0)
+SHELL_LIMIT = {12: 0.6, 42: 0.35, 162: 0.15}        # per cent, velocity against exact
+OWN_LIMIT = 1e-6                    # relative, velocity against the clump's own 6x6 resistance
+
+SOLVED = "algorithm 2 relative_tolerance 1e-10"
+# Steps of the ladder: what it is called, and the words of the pair style
+LADDER = {"1": SOLVED, "torque": "rotation yes " + SOLVED, "12": "rigid_clumps yes shell 12", "42": "rigid_clumps yes shell 42",
+          "162": "rigid_clumps yes shell 162"}
+# How its time is measured: the drag alone of each sphere, then both ways to come to the same answer
+TIMED = {"Stokes drag of each sphere": "clumps_only no cut_off_distance 9e-5",
+         "1, solved every step": "algorithm 2 relative_tolerance 1e-4", "1, rigid_clumps": "rigid_clumps yes",
+         "torque, solved every step": "rotation yes algorithm 2 relative_tolerance 1e-4",
+         "torque, rigid_clumps": "rotation yes rigid_clumps yes", "shell 12, rigid_clumps": LADDER["12"],
+         "shell 42, rigid_clumps": LADDER["42"], "shell 162, rigid_clumps": LADDER["162"]}
+TIMED_CLUMP, COPIES, TIMED_STEPS = "cube8", 6, 300
 
 
 def read_csv(name):
@@ -132,35 +154,41 @@ def rotation_between(x, y):
     return u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
 
 
+def execute(command):
+    # Several runs at once would trip over each other in Open MPI's folder of temporary files.
+    with tempfile.TemporaryDirectory(prefix="sd") as scratch:
+        done = subprocess.run(command, cwd=HERE, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        lines = done.stdout.splitlines()
+        raise RuntimeError("\n".join(["this run failed: " + " ".join(command)] +
+                                     ([line for line in lines if line.startswith("ERROR")] or lines[-20:])))
+
+
 class Case:
     """A run of in.sedimentation and what came of it."""
 
-    def __init__(self, clump, angle, n=None, ranks=1, radius=A, steps=400, picture=False):
+    def __init__(self, clump, angle, n=None, ranks=1, radius=A, steps=400, picture=False, level="1"):
+        self.level = level
         self.clump, self.angle, self.ranks, self.radius, self.steps, self.picture = clump, angle, ranks, radius, steps, picture
         self.shape = GEOMETRY[clump] if clump != "chain" else np.array([[0, 0, 2.0 * i - n + 1] for i in range(n)])
         self.n = len(self.shape)
         self.label = f"chain of {n}" if clump == "chain" else clump
         self.title = self.label + (f", {ranks} ranks" if ranks > 1 else "") + ("" if radius == A else ", 1 mm beads")
-        self.tag = f"{clump}{n or ''}_{angle:.4g}_{ranks}" + ("" if radius == A else "_long")
+        self.tag = f"{clump}{n or ''}_{angle:.4g}_{ranks}" + ("" if radius == A else "_long") + ("" if level == "1" else f"_{level}")
 
     def run(self, out):
         self.image, state, log = out / f"{self.tag}.png", out / f"{self.tag}.state", out / f"{self.tag}.log"
         # stdbuf: an error message must leave LAMMPS before it aborts.
         command = ["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", self.clump,
                    "-var", "angle", f"{self.angle:.17g}", "-var", "n", str(self.n if self.clump == "chain" else 10),
-                   "-var", "steps", str(self.steps), "-var", "a", f"{self.radius:.17g}", "-var", "state", str(state)]
+                   "-var", "steps", str(self.steps), "-var", "a", f"{self.radius:.17g}", "-var", "state", str(state),
+                   "-var", "model", LADDER[self.level]]
         if self.ranks > 1:
             command = ["mpirun", "-np", str(self.ranks)] + command
         if self.picture:
             command += ["-var", "image", str(self.image)]
-        # Several runs at once would trip over each other in Open MPI's folder of temporary files.
-        with tempfile.TemporaryDirectory(prefix="sd") as scratch:
-            done = subprocess.run(command, cwd=HERE, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        if done.returncode != 0:
-            lines = done.stdout.splitlines()
-            raise RuntimeError("\n".join(["this run failed: " + " ".join(command)] +
-                                         ([line for line in lines if line.startswith("ERROR")] or lines[-20:])))
+        execute(command)
         spheres = np.loadtxt(state, skiprows=9, ndmin=2)
         if spheres.shape != (self.n, 10) or not np.isfinite(spheres).all():
             raise RuntimeError(f"{state} does not hold {self.n} spheres with finite numbers")
@@ -181,6 +209,7 @@ class Case:
         self.model_error = np.linalg.norm(self.U - self.U_model) / np.linalg.norm(self.U_model)
         self.drag, self.drag_model, self.drag_exact = (self.n / -U[2] for U in (self.U, self.U_model, self.U_exact))
         self.drag_error = 100 * (self.drag / self.drag_exact - 1)
+        self.exact_error = 100 * np.linalg.norm(self.U - self.U_exact) / np.linalg.norm(self.U_exact)
         self.drift, self.drift_exact = drift_angle(self.U), drift_angle(self.U_exact)
         self.spin_error = np.linalg.norm(self.W - self.W_model)   # in U0/a
         axis = self.turn[:, 2]
@@ -197,6 +226,43 @@ def cases():
     list_ += [Case("doublet", 45, radius=10 * A, steps=20000), Case("chain", 45, 10, radius=10 * A, steps=8000)]
     list_ += [Case("helix4_chiral", 0, ranks=2), Case("chain", 45, 50, ranks=2)]
     return list_
+
+
+def ladder_cases():
+    return [Case(name, 45, level=level) for level in list(LADDER)[1:] for name in GEOMETRY] + [Case("helix4_chiral", 0, level="42")]
+
+
+def own_resistance(out, name):
+    """[6 x 6] resistance of a clump with shell 42 about its centroid, as the plugin gives it in six rigid motions."""
+    motion = out / f"{name}_42.motion"
+    execute(["stdbuf", "-oL", "lmp", "-in", "in.six_motions", "-log", "none", "-var", "clump", f"clumps/{name}.mol",
+             "-var", "model", LADDER["42"], "-var", "out", str(motion)])
+    R = np.zeros((6, 6))
+    for mode in range(6):
+        rows = np.loadtxt(f"{motion}.{mode + 1}", skiprows=9, ndmin=2)
+        x, F, T = rows[:, 1:4], rows[:, 4:7], rows[:, 7:10]
+        R[:3, mode], R[3:, mode] = -F.sum(0), -(T + np.cross(x - x.mean(0), F)).sum(0)
+    return R / (6 * np.pi)
+
+
+def own_errors(case, R):
+    """Velocity (relative) and angular velocity (in U0/a) of a run against those that follow from the resistance R of its clump."""
+    U, W = settle(R, case.turn.T @ np.array([0.0, 0.0, -case.n]))
+    return np.linalg.norm(case.turn.T @ case.U - U) / np.linalg.norm(U), np.linalg.norm(case.turn.T @ case.W - W)
+
+
+def measure(out, words):
+    """Processor time of the pair style a sphere and step, in nanoseconds, the least of three runs; time of the solve of the shape, s."""
+    log, best = out / "timing.log", np.inf
+    for _ in range(3):
+        execute(["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", TIMED_CLUMP, "-var", "angle",
+                 "45", "-var", "copies", str(COPIES), "-var", "steps", str(TIMED_STEPS), "-var", "model", words])
+        text = log.read_text()
+        section = next(line for line in text.splitlines() if line.startswith("Pair ")).split("|")
+        seconds = float(section[2]) * float(section[5]) / 100
+        best = min(best, seconds / (TIMED_STEPS * COPIES**3 * len(GEOMETRY[TIMED_CLUMP])) * 1e9)
+    solved = [float(line.split("solved in ")[1].split()[0]) for line in text.splitlines() if "solved in" in line]
+    return best, (solved or [0.0])[0]
 
 
 def model_drags(n):
@@ -220,11 +286,94 @@ def row(c):
 
 
 def table(rows):
-    rows = [HEAD] + rows
-    width = [max(len(r[k]) for r in rows) for k in range(len(HEAD))]
+    width = [max(len(r[k]) for r in rows) for k in range(len(rows[0]))]
     text = ["| " + " | ".join([r[0].ljust(width[0])] + [c.rjust(w) for c, w in zip(r[1:], width[1:])]) + " |" for r in rows]
     text.insert(1, "|" + "|".join("-" * (w + 2) if k == 0 else "-" * (w + 1) + ":" for k, w in enumerate(width)) + "|")
     return "\n".join(text) + "\n"
+
+
+def errors_of(level, done, ladder):
+    runs = [c for c in done + ladder if c.level == level and c.clump != "chain" and c.angle == 45 and c.ranks == 1 and c.radius == A]
+    return [abs(c.drag_error) for c in runs], [c.exact_error for c in runs]
+
+
+def ladder_table(times, done, ladder):
+    """Rows of text"""
+    plain = next(iter(times.values()))[0]
+    rows = [["model of a sphere", "drag: worst %", "mean %", "velocity: worst %", "ns a sphere and step", "times Stokes drag",
+             "solved once in"]]
+    for name, (time_, solved) in times.items():
+        level = name.split(",")[0].replace("shell ", "")
+        if level in LADDER:
+            drag, velocity = errors_of(level, done, ladder)
+            cells = [f"{max(drag):.2f}", f"{np.mean(drag):.2f}", f"{max(velocity):.2f}"]
+        else:
+            worst = [100 * (c.n / c.drag_exact - 1) for c in done if c.clump != "chain" and c.angle == 45 and c.title == c.label]
+            cells = [f"{max(worst):.0f}", f"{np.mean(worst):.0f}", ""]
+        rows.append([name] + cells + [f"{time_:.0f}", f"{time_ / plain:.2f}", f"{solved:.2g} s" if solved else ""])
+    return rows
+
+
+def draw_ladder(times, done, ladder, path):
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), gridspec_kw={"width_ratios": [1.25, 1]}, constrained_layout=True)
+    names = list(GEOMETRY)
+    styles = {"1": ("o", "C3", "one point a sphere"), "torque": ("s", "C1", "point with torque"), "12": ("^", "C0", "shell 12"),
+              "42": ("D", "C2", "shell 42"), "162": ("v", "C4", "shell 162")}
+    for level, (marker, colour, label) in styles.items():
+        errors, _ = errors_of(level, done, ladder)
+        left.semilogy(range(len(names)), np.maximum(errors, 1e-3), marker, color=colour, ms=6, label=label)
+    left.set_xticks(range(len(names)), [n.replace("_", " ") for n in names], rotation=50, ha="right", rotation_mode="anchor")
+    left.set_ylabel("error of the drag against exact, %")
+    left.set_ylim(5e-3, 40)
+    left.grid(axis="y", alpha=0.3)
+    left.legend(fontsize=9, ncol=5, loc="upper center", columnspacing=0.7, handletextpad=0.0, borderpad=0.3)
+    left.set_title("Twelve clumps falling at 45 degrees")
+    for name, (time_, _) in times.items():
+        level = name.split(",")[0].replace("shell ", "")
+        if level not in LADDER:
+            right.axvline(time_, color="0.5", lw=1, ls="--")
+            right.text(time_ * 0.93, 0.045, "Stokes drag of each sphere", rotation=90, va="bottom", ha="right", fontsize=9, color="0.4")
+            continue
+        errors, _ = errors_of(level, done, ladder)
+        marker, colour, label = styles[level]
+        rigid = "rigid_clumps" in name
+        right.loglog(time_, max(errors), marker, color=colour, ms=9, mfc=colour if rigid else "white", mew=1.5)
+        right.loglog([time_, time_], [np.mean(errors), max(errors)], "-", color=colour, lw=1)
+        right.annotate(label if rigid else "solved every step", (time_, max(errors)), xytext=(9, 4 if rigid else -12),
+                       textcoords="offset points", fontsize=9)
+    right.set_xlim(10, 2e4)
+    right.set_ylim(0.03, 30)
+    right.set_xlabel("time of the pair style, ns a sphere and step")
+    right.set_ylabel("error of the drag: worst (mark) to mean, %")
+    right.grid(alpha=0.3)
+    right.set_title("Error against cost; filled: rigid_clumps yes")
+    figure.savefig(path, dpi=100)
+    plt.close(figure)
+
+
+def check_ladder(done, ladder, own, times):
+    """[(fact, holds)]"""
+    facts = []
+    for level, limit in SHELL_LIMIT.items():
+        runs = [c for c in ladder if c.level == str(level) and c.angle == 45]
+        worst = max(runs, key=lambda c: c.exact_error)
+        facts.append((f"shell {level}, {len(runs)} clumps: velocity against exact: worst {worst.exact_error:.3f} % ({worst.label}), "
+                      f"limit {limit:g} %", len(runs) == len(GEOMETRY) and worst.exact_error <= limit))
+    errors = {c.label: own_errors(c, own[c.clump]) for c in ladder if c.level == "42" and c.angle == 45}
+    for k, what in enumerate(("velocity", "spin")):
+        name = max(errors, key=lambda label: errors[label][k])
+        facts.append((f"shell 42: {what} against the clump's own 6x6 resistance: worst {errors[name][k]:.1e} ({name}), limit {OWN_LIMIT:g}",
+                      errors[name][k] <= OWN_LIMIT))
+    chiral = next(c for c in ladder if c.clump == "helix4_chiral" and c.angle == 0)
+    point = next(c for c in done if c.clump == "helix4_chiral" and c.angle == 0)
+    spin, exact = np.linalg.norm(chiral.W), np.linalg.norm(chiral.W_exact)
+    error = np.linalg.norm(chiral.W - chiral.W_exact) / exact
+    facts.append((f"shell 42: the chiral clump spins at {spin:.5f} U0/a, exact {exact:.5f}, {100 * error:.2f} % apart (one point a sphere: "
+                  f"{np.linalg.norm(point.W):.5f}), limit 2 %", error <= 0.02))
+    few, many = times["shell 12, rigid_clumps"][0], times["shell 162, rigid_clumps"][0]
+    facts.append((f"shell 162 costs {many / few:.2f} times what shell 12 costs a step, limit 1.25", many / few <= 1.25))
+    return facts
 
 
 def draw(done, path):
@@ -330,8 +479,8 @@ def check(done):
     return facts
 
 
-def update_folder(out, done):
-    for name in ("sedimentation.png", "clumps.png"):
+def update_folder(out, done, ladder_rows):
+    for name in ("sedimentation.png", "clumps.png", "ladder.png"):
         shutil.copy(out / name, HERE / name)
     for ranks in (1, 2):
         log = (out / f"helix4_chiral_0_{ranks}.log").read_text().replace(str(out) + "/", "").replace(str(TOP) + "/", "")
@@ -340,9 +489,11 @@ def update_folder(out, done):
     rows = [row(c) for c in done if c.angle == 45 and c.title == c.label and c.label not in twice]
     readme = HERE / "README.md"
     text = readme.read_text()
-    begin, end = "<!-- table of run.py -->\n", "<!-- end of table -->"
-    head, rest = text.split(begin)
-    readme.write_text(head + begin + table(rows) + end + rest.split(end)[1])
+    for name, lines in (("table", table([HEAD] + rows)), ("ladder", table(ladder_rows))):
+        begin, end = f"<!-- {name} of run.py -->\n", f"<!-- end of {name} -->"
+        head, rest = text.split(begin)
+        text = head + begin + lines + end + rest.split(end)[1]
+    readme.write_text(text)
 
 
 def main():
@@ -366,30 +517,46 @@ def main():
     widths = (24, 3, 6, 9, 9, 8, 9, 8, 8, 8, 8, 8, 8)
     show = lambda cells: " ".join(c.ljust(w) if k == 0 else c.rjust(w) for k, (c, w) in enumerate(zip(cells, widths)))
     print(f"{'':8}" + show(HEAD), flush=True)
+    ladder, own, times = [], {}, {}
     with concurrent.futures.ThreadPoolExecutor(max_workers=2 * min(4, os.cpu_count() or 1)) as pool:
         try:
             for k, case in enumerate(pool.map(lambda c: c.run(out), todo)):
                 done.append(case)
                 print(f"[{k + 1:2d}/{len(todo)}] " + show(row(case)), flush=True)
+            print("\nthe ladder: the twelve clumps with torques and shells ", end="", flush=True)
+            for case in pool.map(lambda c: c.run(out), ladder_cases()):
+                ladder.append(case)
+                print(".", end="", flush=True)
+            for name, R in zip(GEOMETRY, pool.map(lambda name: own_resistance(out, name), GEOMETRY)):
+                own[name] = R
+                print(".", end="", flush=True)
+            for name, words in TIMED.items():                     # one at a time
+                times[name] = measure(out, words)
+                print(".", end="", flush=True)
         except RuntimeError as failure:
             pool.shutdown(cancel_futures=True)
             sys.exit(f"sedimentation: {failure}")
+    ladder_rows = ladder_table(times, done, ladder)
+    print("\n" + table(ladder_rows))
 
     units = "velocities (downwards) in micrometres per second, drags in units of a lone sphere's, angles in degrees"
-    (out / "table.md").write_text(units.capitalize() + ".\n\n" + table([row(c) for c in done]))
+    (out / "table.md").write_text(units.capitalize() + ".\n\n" + table([HEAD] + [row(c) for c in done]))
     draw(done, out / "sedimentation.png")
     contact_sheet(done, out / "clumps.png")
+    draw_ladder(times, done, ladder, out / "ladder.png")
+    (out / "ladder.md").write_text(table(ladder_rows))
     if update:
-        update_folder(out, done)
+        update_folder(out, done, ladder_rows)
 
     print()
-    facts = check(done)
+    facts = check(done) + check_ladder(done, ladder, own, times)
     for fact, holds in facts:
         print("  " + ("ok      " if holds else "MISSED  ") + fact)
     missed = sum(not holds for _, holds in facts)
-    print(f"\n{len(done)} runs in {time.time() - start:.0f} s: {missed} of {len(facts)} figures missed" if missed else
-          f"\n{len(done)} runs in {time.time() - start:.0f} s, all figures hold")
-    print(f"table: {out / 'table.md'}\npictures: {out / 'sedimentation.png'}, {out / 'clumps.png'}")
+    runs = f"{len(done) + len(ladder) + len(own) + 3 * len(times)} runs in {time.time() - start:.0f} s"
+    print(f"\n{runs}: {missed} of {len(facts)} figures missed" if missed else f"\n{runs}, all figures hold")
+    print(f"tables: {out / 'table.md'}, {out / 'ladder.md'}\npictures: "
+          + ", ".join(str(out / name) for name in ("sedimentation.png", "clumps.png", "ladder.png")))
     return 1 if missed else 0
 
 

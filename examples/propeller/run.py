@@ -1,0 +1,289 @@
+#!/usr/bin/env python3
+"""Lets a chiral clump and its mirror image fall with in.propeller and compares how they spin with exact values.
+
+    run.py [OUT]        results and the picture go to OUT (default: build/examples/propeller)
+    run.py --update     also refreshes the picture and the logs in this folder
+
+Two values to compare with, at the orientation that the clump has at each time:
+  own     velocity and angular velocity that follow from the clump's own 6x6 resistance, which the plugin gives in six rigid
+          motions (../sedimentation/in.six_motions)
+  exact   the same from exact Stokes flow, ../sedimentation/data/clusters_exact.csv
+Exits with 1 and says which when a figure is missed.
+"""
+import csv
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOP = HERE.parents[1]
+SEDIMENTATION = HERE.parent / "sedimentation"
+
+# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
+os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
+
+DEBIAN = "/usr/bin/python3"
+try:
+    import matplotlib
+    import numpy as np
+except ImportError:         # Debian's python has them, another one on the PATH need not
+    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
+        raise
+    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+WEIGHT = np.array([0.0, 0.0, -4 * 6 * np.pi])       # four spheres; viscosity, radius and their settling velocity are 1
+MIRROR = np.diag([-1.0, 1.0, 1.0])
+OWN_LIMIT = {"velocity": 1e-6, "spin": 1e-6}        # relative, at the end of the fall
+EXACT_LIMIT = 0.03                                 # of the spin at the end of the fall
+
+
+def shape():
+    rows = csv.DictReader(line for line in (SEDIMENTATION / "data" / "cluster_geometry.csv").read_text().splitlines()
+                          if not line.startswith("#"))
+    x = np.array([[float(r[k]) for k in "xyz"] for r in rows if r["name"] == "helix4_chiral"])
+    return x - x.mean(axis=0)
+
+
+def exact_resistance():
+    rows = csv.DictReader(line for line in (SEDIMENTATION / "data" / "clusters_exact.csv").read_text().splitlines()
+                          if not line.startswith("#"))
+    return next(np.array([[float(r[f"R{i}{j}"]) for j in range(1, 7)] for i in range(1, 7)]) for r in rows
+                if r["name"] == "helix4_chiral")
+
+
+def mirrored(R):
+    """Resistance of the mirror image: forces are vectors, torques pseudovectors."""
+    S = np.block([[MIRROR, np.zeros((3, 3))], [np.zeros((3, 3)), -MIRROR]])
+    return S @ R @ S
+
+
+def settle(R, turn):
+    """U (of the centroid) and W of a clump of resistance R, turned by the matrix turn, under its weight."""
+    V = np.linalg.solve(R, np.concatenate((turn.T @ WEIGHT, np.zeros(3))))
+    return turn @ V[:3], turn @ V[3:]
+
+
+def rigid_velocities(x):
+    K = np.zeros((3 * len(x), 6))
+    for i, r in enumerate(x):
+        K[3 * i:3 * i + 3, :3] = np.eye(3)
+        K[3 * i:3 * i + 3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
+    return K
+
+
+def rotation_between(x, y):
+    """Rotation matrix that turns the points x into the points y, both about their centroids (Kabsch 1976)."""
+    u, _, vt = np.linalg.svd((y - y.mean(0)).T @ (x - x.mean(0)))
+    return u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
+
+
+def spin_curve(R, turn, t):
+    """Angle turned about the vertical at times t for a clump of resistance R: orientation and angle by Runge and Kutta's method."""
+    def rate(Q):
+        W = settle(R, Q)[1]
+        return np.array([[0, -W[2], W[1]], [W[2], 0, -W[0]], [-W[1], W[0], 0]]) @ Q, W[2]
+    angle, steps = [0.0], 20
+    for h in np.diff(t) / steps:
+        total = angle[-1]
+        for _ in range(steps):
+            k1, a1 = rate(turn)
+            k2, a2 = rate(turn + h / 2 * k1)
+            k3, a3 = rate(turn + h / 2 * k2)
+            k4, a4 = rate(turn + h * k3)
+            turn = turn + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+            total += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+        u, _, vt = np.linalg.svd(turn)
+        turn = u @ vt
+        angle.append(total)
+    return np.array(angle)
+
+
+def lammps(command, cwd, ranks=1):
+    command = ["mpirun", "-np", str(ranks)] * (ranks > 1) + ["stdbuf", "-oL", "lmp"] + command
+    with tempfile.TemporaryDirectory(prefix="sd") as scratch:
+        done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\npropeller: {' '.join(command)} failed")
+
+
+def frames(path):
+    """[(step, rows)] of a dump sorted by atom ID."""
+    for block in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
+        lines = block.split("\n")
+        n = int(lines[2])
+        yield int(lines[0]), np.array([line.split() for line in lines[8:8 + n]], dtype=float)
+
+
+def own_resistance(out, name, shell):
+    lammps(["-in", "in.six_motions", "-log", "none", "-var", "clump", str(HERE / f"{name}.mol"), "-var", "model",
+            f"rigid_clumps yes shell {shell}", "-var", "out", str(out / f"{name}_{shell}")], SEDIMENTATION)
+    R = np.zeros((6, 6))
+    for mode in range(6):
+        (_, rows), = frames(out / f"{name}_{shell}.{mode + 1}")
+        x, F, T = rows[:, 1:4], rows[:, 4:7], rows[:, 7:10]
+        R[:3, mode], R[3:, mode] = -F.sum(0), -(T + np.cross(x - x.mean(0), F)).sum(0)
+    return R
+
+
+class Fall:
+    """Motion of one of the two clumps in a run."""
+
+    def __init__(self, rows, molecule, x0, R_own, R_exact):
+        self.R_own, self.R_exact = R_own, R_exact
+        self.x, self.turn, U, W, own, exact = [], [], [], [], [], []
+        for spheres in rows:
+            mine = spheres[spheres[:, 1] == molecule]
+            x, v = mine[:, 2:5], mine[:, 5:8]
+            V = np.linalg.lstsq(rigid_velocities(x - x.mean(0)), v.ravel(), rcond=None)[0]
+            turn = rotation_between(x0, x)
+            self.x.append(x)
+            self.turn.append(turn)
+            U.append(V[:3])
+            W.append(V[3:])
+            own.append(settle(R_own, turn))
+            exact.append(settle(R_exact, turn))
+        self.x, self.U, self.W = np.array(self.x), np.array(U), np.array(W)
+        self.own, self.exact = np.array(own), np.array(exact)       # [frame][U or W]
+        # Azimuth of the way that the clump has turned about the vertical
+        step = [np.arctan2(*(b @ a.T)[[1, 0], 0]) for a, b in zip(self.turn[:-1], self.turn[1:])]
+        self.angle = np.concatenate(([0.0], np.cumsum(step)))
+
+
+def run(out, shell, ranks=1):
+    motion = out / f"{shell}_{ranks}.motion"
+    lammps(["-in", "in.propeller", "-log", str(out / f"{shell}_{ranks}.log"), "-var", "shell", str(shell),
+            "-var", "motion", str(motion)], HERE, ranks)
+    steps, rows = zip(*frames(motion))
+    dt = 0.5 * 2 * 0.05 / 9                                         # as in in.propeller
+    x0, R = shape(), exact_resistance()
+    clump = Fall(rows, 1, x0, own_resistance(out, "helix4_chiral", shell), R)
+    image = Fall(rows, 2, x0 @ MIRROR, own_resistance(out, "helix4_mirror", shell), mirrored(R))
+    return dt * np.array(steps), clump, image
+
+
+def balls(axis, x, colours):
+    """Spheres of unit radius seen from the side (along y), those in front painted last, each with a light from above."""
+    for k in np.argsort(-x[:, 1]):
+        centre = np.array([x[k, 0], x[k, 2]])
+        for s in np.linspace(0, 1, 24):
+            light = matplotlib.colors.to_rgb(colours[k]) if s == 0 else None
+            base = np.array(matplotlib.colors.to_rgb(colours[k]))
+            axis.add_patch(plt.Circle(centre + s * np.array([-0.3, 0.35]), 1 - s, lw=0,
+                                      color=tuple(base * (0.55 + 0.45 * s) + (1 - base) * 0.5 * s**3)))
+    axis.set_aspect("equal")
+    axis.axis("off")
+
+
+def draw(t, clump, image, path):
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    figure = plt.figure(figsize=(12, 6.6), layout="constrained")
+    grid = figure.add_gridspec(3, 9, height_ratios=[1.1, 1.1, 3])
+    # one turn of the steady spin, in eighths
+    rate = abs(clump.W[-1][2])
+    start = len(t) // 3
+    colours = ("#d95f02", "#7570b3", "#1b9e77", "#e6ab02")
+    for k in range(9):
+        frame = int(np.argmin(np.abs(t - t[start] - k / 8 * 2 * np.pi / rate)))
+        for row, fall in enumerate((clump, image)):
+            axis = figure.add_subplot(grid[row, k])
+            x = fall.x[frame]
+            balls(axis, x - x.mean(axis=0), colours)
+            axis.set_xlim(-2.9, 2.9)
+            axis.set_ylim(-2.5, 2.5)
+            if row == 0:
+                axis.set_title(f"{k}/8 turn", fontsize=9)
+            if k == 0:
+                axis.text(-2.9, 0, ("clump", "mirror image")[row], rotation=90, ha="right", va="center", fontsize=10)
+    axis = figure.add_subplot(grid[2, :])
+    for fall, colour, name in ((clump, "C1", "clump"), (image, "C0", "mirror image")):
+        down = -(fall.x.mean(axis=1)[:, 2] - fall.x.mean(axis=1)[0, 2])
+        exact = spin_curve(fall.R_exact, fall.turn[0], t)
+        axis.plot(down, exact / (2 * np.pi), "-", color=colour, lw=1.4, label=f"{name}: exact Stokes flow")
+        pick = slice(0, None, 10)
+        axis.plot(down[pick], fall.angle[pick] / (2 * np.pi), "o", color=colour, ms=5, mec="black", mew=0.4,
+                  label=f"{name}: run")
+    axis.axhline(0, color="0.6", lw=0.8)
+    axis.set_xlabel("depth, in radii of a sphere")
+    axis.set_ylabel("turns about the vertical")
+    axis.legend(fontsize=9, loc="upper left", ncol=2)
+    axis.grid(alpha=0.3)
+    axis.set_title("A chiral clump spins as it falls, its mirror image the other way (seen from the side)")
+    figure.savefig(path, dpi=90, pil_kwargs={"optimize": True})
+    plt.close(figure)
+
+
+def difference(a, b):
+    return np.linalg.norm(a - b) / np.linalg.norm(b)
+
+
+def main():
+    arguments = sys.argv[1:]
+    update = "--update" in arguments
+    arguments = [a for a in arguments if a != "--update"]
+    out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "propeller").resolve()
+    if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
+        sys.exit(__doc__)
+    if not shutil.which("lmp"):
+        sys.exit("lmp is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
+    out.mkdir(parents=True, exist_ok=True)
+    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
+    if os.geteuid() == 0:
+        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
+
+    began = time.time()
+    facts, one = [], None
+    for shell, ranks in ((12, 1), (42, 1), (162, 1), (42, 2)):
+        t, clump, image = run(out, shell, ranks)
+        if ranks == 2:
+            change = np.abs(clump.x - one[1].x).max()
+            facts.append((f"2 ranks against 1: spheres move by {change:.1e} radii, limit 1e-8", change <= 1e-8))
+            continue
+        W, own, exact = clump.W[-1], clump.own[-1], clump.exact[-1]
+        late = slice(len(t) // 10, None)
+        final = spin_curve(clump.R_exact, clump.turn[0], t)
+        rate = (final[-1] - final[-2]) / (t[-1] - t[-2])            # once its own orientation is steady
+        print(f"  shell {shell}: spin {W[2]:+.6f}, own {own[1][2]:+.6f}, exact there {exact[1][2]:+.6f}, exact motion "
+              f"{rate:+.6f}; image {image.W[-1][2]:+.6f}; velocity {-clump.U[-1][2]:.6f}, exact {-exact[0][2]:.6f}; "
+              f"turns {clump.angle[-1] / (2 * np.pi):+.4f}, exact {final[-1] / (2 * np.pi):+.4f}", flush=True)
+        for name, measured, kind in (("velocity", clump.U[-1], 0), ("spin", W, 1)):
+            error = difference(measured, own[kind])
+            facts.append((f"shell {shell}: {name} against the clump's own 6x6: {error:.1e}, limit {OWN_LIMIT[name]:g}",
+                          error <= OWN_LIMIT[name]))
+        error = max(difference(clump.W[k], clump.own[k][1]) for k in range(len(t))[late])
+        facts.append((f"shell {shell}: spin against it all the way but the first tenth: {error:.1e}, limit 1e-3", error <= 1e-3))
+        error = difference(W, exact[1])
+        facts.append((f"shell {shell}: spin against exact: {100 * error:.2f} %, limit {100 * EXACT_LIMIT:g} %",
+                      error <= EXACT_LIMIT))
+        error = difference(clump.U[-1], exact[0])
+        facts.append((f"shell {shell}: velocity against exact: {100 * error:.2f} %, limit 0.6 %", error <= 0.006))
+        opposite = np.abs(clump.W @ -MIRROR - image.W).max() / np.abs(clump.W).max()
+        facts.append((f"shell {shell}: the image spins the other way, {opposite:.1e} apart from its mirror image, limit 1e-6",
+                      opposite <= 1e-6 and clump.W[-1][2] * image.W[-1][2] < 0))
+        if shell == 42:
+            one = t, clump, image
+            draw(t, clump, image, out / "propeller.png")
+    if update:
+        shutil.copy(out / "propeller.png", HERE)
+        for ranks in (1, 2):
+            log = (out / f"42_{ranks}.log").read_text().replace(str(out) + "/", "").replace(str(TOP) + "/", "")
+            (HERE / f"log.propeller.{ranks}").write_text(log)
+    print()
+    for fact, holds in facts:
+        print("  " + ("ok      " if holds else "MISSED  ") + fact)
+    missed = sum(not holds for _, holds in facts)
+    print(f"\n4 runs in {time.time() - began:.0f} s, " + (f"{missed} of {len(facts)} figures missed" if missed else
+                                                         "all figures hold"))
+    print(f"picture: {out / 'propeller.png'}")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

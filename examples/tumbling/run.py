@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""Lets straight chains tumble in a shear flow with in.tumbling and compares the periods with Jeffery's and exact values.
+
+    run.py [OUT]        curves and the picture go to OUT (default: build/examples/tumbling)
+    run.py --update     also refreshes the picture and the logs in this folder
+
+Exits with 1 and says which when a figure is missed.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOP = HERE.parents[1]
+
+# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
+os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
+
+DEBIAN = "/usr/bin/python3"
+try:
+    import matplotlib
+    import numpy as np
+except ImportError:         # Debian's python has them, another one on the PATH need not
+    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
+        raise
+    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+# Effective aspect ratios of chains of touching spheres in exact Stokes flow (Lamb's multipole solution, computed independently of
+# the plugin's code, 1e-8); the period is 2 pi (re + 1/re)/shear rate (Jeffery 1922; Bretherton 1962).
+EXACT = {2: 1.981649, 5: 4.491020, 10: 8.289892}
+PERIOD_LIMIT = 0.005                # relative
+CURVE_LIMIT = 0.2                   # degrees, against the closed form with the measured period
+
+
+def period_of(re):
+    return 2 * np.pi * (re + 1 / re)
+
+
+def aspect_ratio(period):
+    """re > 1 of a period, shear rate 1."""
+    h = period / (4 * np.pi)
+    return h + np.sqrt(h * h - 1)
+
+
+def jeffery(re, t, phi0):
+    """Angle of the axis from the gradient direction z towards the flow direction x, projected on their plane, at times t."""
+    tau = np.arctan2(np.sin(phi0) / re, np.cos(phi0)) + t * re / (re * re + 1)
+    return phi0 + np.unwrap(np.arctan2(re * np.sin(tau), np.cos(tau))) - np.arctan2(re * np.sin(tau[0]), np.cos(tau[0]))
+
+
+def tilt_of_orbit(re, phi, constant):
+    """Angle of the axis to the vorticity direction y on the orbit of this constant, degrees."""
+    return np.degrees(np.arctan(constant * re / np.sqrt((re * np.cos(phi))**2 + np.sin(phi)**2)))
+
+
+class Case:
+    def __init__(self, n, tilt=0, shell=42, ranks=1, images=False):
+        self.n, self.tilt, self.shell, self.ranks, self.images = n, tilt, shell, ranks, images
+        self.tag = f"chain{n}_{tilt}_{shell}_{ranks}"
+        self.label = ("doublet" if n == 2 else f"chain of {n}") + (f", axis tilted by {tilt} degrees" if tilt else "")
+        self.label += f", shell {shell}" if shell != 42 else ""
+        self.label += f", {ranks} ranks" if ranks > 1 else ""
+
+    def run(self, out):
+        curve, log = out / f"{self.tag}.curve", out / f"{self.tag}.log"
+        command = ["stdbuf", "-oL", "lmp", "-in", "in.tumbling", "-log", str(log), "-var", "n", str(self.n), "-var", "tilt",
+                   str(self.tilt), "-var", "shell", str(self.shell), "-var", "curve", str(curve)]
+        if self.images:
+            command += ["-var", "image", str(out / self.tag)]
+        if self.ranks > 1:
+            command = ["mpirun", "-np", str(self.ranks)] + command
+        with tempfile.TemporaryDirectory(prefix="sd") as scratch:
+            done = subprocess.run(command, cwd=HERE, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode != 0:
+            sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\ntumbling: {' '.join(command)} failed")
+        self.t, x, y, z = np.loadtxt(curve).T
+        self.axis = np.stack((x, y, z), axis=1) / np.sqrt(x * x + y * y + z * z)[:, None]
+        self.phi = np.unwrap(np.arctan2(x, z))
+        self.theta = np.degrees(np.arccos(self.axis[:, 1]))
+        # From a quarter of a right angle on, when the start from rest is forgotten, until the axis is there again.
+        start, end = (np.interp(angle, self.phi, self.t) for angle in (np.pi / 8, np.pi / 8 + 2 * np.pi))
+        self.period = end - start
+        self.re = aspect_ratio(self.period)
+        self.error = self.period / period_of(EXACT[self.n]) - 1
+        # The closed form, with the aspect ratio of this period, through the point where the measurement starts
+        late = self.t >= start
+        closed = jeffery(self.re, np.concatenate(([0.0], self.t[late] - start)), np.pi / 8)[1:]
+        self.deviation = np.degrees(np.abs(closed - self.phi[late]).max())
+        if self.tilt:
+            constant = np.tan(np.radians(self.theta[0])) / self.re * np.sqrt((self.re * np.cos(self.phi[0]))**2
+                                                                           + np.sin(self.phi[0])**2)
+            self.theta_closed = tilt_of_orbit(self.re, self.phi, constant)
+            self.drift = np.abs(self.theta - self.theta_closed).max()
+        return self
+
+
+def draw(done, out, path):
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    chains = [c for c in done if c.tilt == 0 and c.ranks == 1 and c.shell == 42]
+    figure = plt.figure(figsize=(12, 6.6), layout="constrained")
+    grid = figure.add_gridspec(2, 9, height_ratios=[3, 1])
+    axis = figure.add_subplot(grid[0, :])
+    for c, colour in zip(chains, ("C0", "C1", "C2")):
+        half = period_of(EXACT[c.n]) / 2
+        t = np.linspace(0, c.t[-1], 2000)
+        axis.plot(t / half, np.degrees(jeffery(EXACT[c.n], t, 0.0)), "-", color=colour, lw=1.3,
+                  label=f"{c.label}: Jeffery, exact aspect ratio {EXACT[c.n]:.4f}")
+        pick = np.searchsorted(c.t, np.linspace(0, 1.25 * 2 * half, 61)[:-1])
+        axis.plot(c.t[pick] / half, np.degrees(c.phi[pick]), "o", color=colour, ms=4.5, mec="black", mew=0.4,
+                  label=f"{c.label}: run, period {c.period:.4f}, exact {period_of(EXACT[c.n]):.4f}")
+    axis.set_xlabel("time / exact half period")
+    axis.set_ylabel("angle of the axis from the gradient direction, degrees")
+    axis.set_yticks(range(0, 541, 90))
+    axis.set_xlim(0, 2.5)
+    axis.set_ylim(0, 470)
+    axis.grid(alpha=0.3)
+    axis.legend(fontsize=9, loc="upper left")
+    axis.set_title("Straight chains of touching spheres in simple shear: long near the flow direction, quick across it")
+    images = sorted(out.glob("chain5_0_42_1.*.png"))[:9]
+    for k, image in enumerate(images):
+        cell = figure.add_subplot(grid[1, k])
+        cell.imshow(plt.imread(image))
+        cell.set_xticks([])
+        cell.set_yticks([])
+        for side in cell.spines.values():
+            side.set_visible(False)
+        cell.set_title(f"{k}/16 period", fontsize=9)
+    figure.savefig(path, dpi=90, pil_kwargs={"optimize": True})
+    plt.close(figure)
+
+
+def check(done):
+    """[(fact, holds)]"""
+    facts = []
+    one = {(c.n, c.tilt, c.shell): c for c in done if c.ranks == 1}
+    for c in done:
+        if c.shell == 42:
+            exact = period_of(EXACT[c.n])
+            facts.append((f"{c.label}: period {c.period:.4f}, exact {exact:.4f}, {100 * c.error:+.3f} %, limit 0.5 %",
+                          abs(c.error) <= PERIOD_LIMIT))
+            facts.append((f"{c.label}: angle against Jeffery's closed form for the aspect ratio {c.re:.4f}: "
+                          f"{c.deviation:.3f} degrees at most, limit {CURVE_LIMIT:g}", c.deviation <= CURVE_LIMIT))
+        if c.tilt:
+            facts.append((f"{c.label}: stays on its orbit within {c.drift:.3f} degrees, limit {CURVE_LIMIT:g}",
+                          c.drift <= CURVE_LIMIT))
+        if c.ranks == 2:
+            change = np.abs(c.axis - one[c.n, c.tilt, c.shell].axis).max()
+            facts.append((f"{c.label} against 1: axis changes by {change:.1e}, limit 1e-8", change <= 1e-8))
+    coarse, torque = one[5, 0, 12], one[5, 0, 1]
+    facts.append((f"chain of 5, shell 12: period {coarse.period:.4f}, {100 * coarse.error:+.2f} %, limit 1.5 %",
+                  abs(coarse.error) <= 0.015))
+    facts.append((f"chain of 5, a point with torque a sphere: period {torque.period:.4f}, {100 * torque.error:+.2f} %, "
+                  "expected 28.7687 within 0.1 %", abs(torque.period / 28.76868 - 1) <= 1e-3))
+    return facts
+
+
+def main():
+    arguments = sys.argv[1:]
+    update = "--update" in arguments
+    arguments = [a for a in arguments if a != "--update"]
+    out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "tumbling").resolve()
+    if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
+        sys.exit(__doc__)
+    if not shutil.which("lmp"):
+        sys.exit("lmp is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
+    out.mkdir(parents=True, exist_ok=True)
+    for image in out.glob("chain*.png"):
+        image.unlink()
+    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
+    if os.geteuid() == 0:
+        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
+
+    start = time.time()
+    done = []
+    for case in (Case(2), Case(5, images=True), Case(10), Case(5, tilt=45), Case(5, ranks=2), Case(5, shell=12), Case(5, shell=1)):
+        done.append(case.run(out))
+        print(f"  {case.label}: period {case.period:.5f}, exact {period_of(EXACT[case.n]):.5f}, {100 * case.error:+.3f} %; "
+              f"effective aspect ratio {case.re:.5f}", flush=True)
+    draw(done, out, out / "tumbling.png")
+    if update:
+        shutil.copy(out / "tumbling.png", HERE)
+        for ranks in (1, 2):
+            log = (out / f"chain5_0_42_{ranks}.log").read_text().replace(str(out) + "/", "").replace(str(TOP) + "/", "")
+            (HERE / f"log.tumbling.{ranks}").write_text(log)
+    print()
+    facts = check(done)
+    for fact, holds in facts:
+        print("  " + ("ok      " if holds else "MISSED  ") + fact)
+    missed = sum(not holds for _, holds in facts)
+    print(f"\n{len(done)} runs in {time.time() - start:.0f} s, " + (f"{missed} of {len(facts)} figures missed" if missed else
+                                                                   "all figures hold"))
+    print(f"picture: {out / 'tumbling.png'}")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
