@@ -305,15 +305,18 @@ void RigidClumps::announce(size_t number, double seconds)
       std::to_string(c.points) + " points, hydrodynamic radius " + text(c.radius) + ", solved in " +
       text(seconds) + " s" +
       (c.iterations ? ", " + std::to_string(c.iterations) + " iterations" : "") + "\n";
-  out += "  centre of hydrodynamic stress, from the centroid of centres: " + text(c.centre[0]) +
-      " " + text(c.centre[1]) + " " + text(c.centre[2]) +
+  out += "  centre of hydrodynamic stress, from the centroid of centres:";
+  for (double d : c.centre) out += " " + text(fabs(d) < 1e-12 * s.shape.size ? 0.0 : d);
+  out +=
       "\n  resistance about it over viscosity, force and torque from velocity and angular "
       "velocity:\n";
   for (int p = 0; p < 6; p++) {
     out += "   ";
     for (int q = 0; q < 6; q++) {
+      const double r = c.R_centre[6 * p + q];
+      const double rounding = 1e-12 * sqrt(c.R_centre[7 * p] * c.R_centre[7 * q]);
       char number_text[24];
-      snprintf(number_text, sizeof(number_text), " %13.6g", c.R_centre[6 * p + q]);
+      snprintf(number_text, sizeof(number_text), " %13.6g", fabs(r) <= rounding ? 0.0 : r);
       out += number_text;
     }
     out += "\n";

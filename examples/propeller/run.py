@@ -85,7 +85,7 @@ def rotation_between(x, y):
 
 
 def spin_curve(R, turn, t):
-    """Angle turned about the vertical at times t for a clump of resistance R: orientation and angle by Runge and Kutta's method."""
+    """Angle turned about the vertical at times t for a clump of resistance R, by Runge and Kutta's method."""
     def rate(Q):
         W = settle(R, Q)[1]
         return np.array([[0, -W[2], W[1]], [W[2], 0, -W[0]], [-W[1], W[0], 0]]) @ Q, W[2]

@@ -180,7 +180,8 @@ def main():
 
     start = time.time()
     done = []
-    for case in (Case(2), Case(5, images=True), Case(10), Case(5, tilt=45), Case(5, ranks=2), Case(5, shell=12), Case(5, shell=1)):
+    for case in (Case(2), Case(5, images=True), Case(10), Case(5, tilt=45), Case(5, ranks=2), Case(5, shell=12),
+                 Case(5, shell=1)):
         done.append(case.run(out))
         print(f"  {case.label}: period {case.period:.5f}, exact {period_of(EXACT[case.n]):.5f}, {100 * case.error:+.3f} %; "
               f"effective aspect ratio {case.re:.5f}", flush=True)
