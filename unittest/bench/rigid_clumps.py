@@ -4,8 +4,8 @@
     rigid_clumps.py [--clumps N] [--steps N] [--repeat N] [--memory]
 
 N clumps of ten spheres (10 000) fall at their settling velocity, each turned in its own way, as rigid bodies on one core
-(in.rigid_clumps). For each model the median of `repeat` runs (5), the models in turn, so that a disturbance of the machine meets all
-of them. Times are LAMMPS's own (timer full: wall time times share of the processor): Pair, the section of the pair style, and
+(in.rigid_clumps). For each model the median of `repeat` runs (5), the models in turn, so that a disturbance of the machine meets
+all of them. Times are LAMMPS's own (timer full: wall time times share of the processor): Pair, the section of the pair style, and
 Modify, which is mostly fix rigid/small.
 The rivals are
   Stokes drag, this style   cut_off_distance below the distance of neighbours: no interactions; with and without torques
