@@ -175,7 +175,8 @@ class Case:
         self.n = len(self.shape)
         self.label = f"chain of {n}" if clump == "chain" else clump
         self.title = self.label + (f", {ranks} ranks" if ranks > 1 else "") + ("" if radius == A else ", 1 mm beads")
-        self.tag = f"{clump}{n or ''}_{angle:.4g}_{ranks}" + ("" if radius == A else "_long") + ("" if level == "1" else f"_{level}")
+        self.tag = f"{clump}{n or ''}_{angle:.4g}_{ranks}" + ("" if radius == A else "_long")
+        self.tag += "" if level == "1" else f"_{level}"
 
     def run(self, out):
         self.image, state, log = out / f"{self.tag}.png", out / f"{self.tag}.state", out / f"{self.tag}.log"
@@ -229,7 +230,8 @@ def cases():
 
 
 def ladder_cases():
-    return [Case(name, 45, level=level) for level in list(LADDER)[1:] for name in GEOMETRY] + [Case("helix4_chiral", 0, level="42")]
+    list_ = [Case(name, 45, level=level) for level in list(LADDER)[1:] for name in GEOMETRY]
+    return list_ + [Case("helix4_chiral", 0, level="42")]
 
 
 def own_resistance(out, name):
@@ -246,17 +248,17 @@ def own_resistance(out, name):
 
 
 def own_errors(case, R):
-    """Velocity (relative) and angular velocity (in U0/a) of a run against those that follow from the resistance R of its clump."""
+    """Velocity (relative) and angular velocity (in U0/a) of a run against what follows from the resistance R of its clump."""
     U, W = settle(R, case.turn.T @ np.array([0.0, 0.0, -case.n]))
     return np.linalg.norm(case.turn.T @ case.U - U) / np.linalg.norm(U), np.linalg.norm(case.turn.T @ case.W - W)
 
 
 def measure(out, words):
-    """Processor time of the pair style a sphere and step, in nanoseconds, the least of three runs; time of the solve of the shape, s."""
+    """Processor time of the pair style a sphere and step, ns, the least of three runs; time of the solve of the shape, s."""
     log, best = out / "timing.log", np.inf
     for _ in range(3):
-        execute(["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", TIMED_CLUMP, "-var", "angle",
-                 "45", "-var", "copies", str(COPIES), "-var", "steps", str(TIMED_STEPS), "-var", "model", words])
+        execute(["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", TIMED_CLUMP,
+                 "-var", "angle", "45", "-var", "copies", str(COPIES), "-var", "steps", str(TIMED_STEPS), "-var", "model", words])
         text = log.read_text()
         section = next(line for line in text.splitlines() if line.startswith("Pair ")).split("|")
         seconds = float(section[2]) * float(section[5]) / 100
@@ -293,7 +295,7 @@ def table(rows):
 
 
 def errors_of(level, done, ladder):
-    runs = [c for c in done + ladder if c.level == level and c.clump != "chain" and c.angle == 45 and c.ranks == 1 and c.radius == A]
+    runs = [c for c in done + ladder if (c.level, c.angle, c.ranks, c.radius) == (level, 45, 1, A) and c.clump != "chain"]
     return [abs(c.drag_error) for c in runs], [c.exact_error for c in runs]
 
 
@@ -316,7 +318,8 @@ def ladder_table(times, done, ladder):
 
 def draw_ladder(times, done, ladder, path):
     plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), gridspec_kw={"width_ratios": [1.25, 1]}, constrained_layout=True)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), gridspec_kw={"width_ratios": [1.25, 1]},
+                                         constrained_layout=True)
     names = list(GEOMETRY)
     styles = {"1": ("o", "C3", "one point a sphere"), "torque": ("s", "C1", "point with torque"), "12": ("^", "C0", "shell 12"),
               "42": ("D", "C2", "shell 42"), "162": ("v", "C4", "shell 162")}
@@ -333,7 +336,8 @@ def draw_ladder(times, done, ladder, path):
         level = name.split(",")[0].replace("shell ", "")
         if level not in LADDER:
             right.axvline(time_, color="0.5", lw=1, ls="--")
-            right.text(time_ * 0.93, 0.045, "Stokes drag of each sphere", rotation=90, va="bottom", ha="right", fontsize=9, color="0.4")
+            right.text(time_ * 0.93, 0.045, "Stokes drag of each sphere", rotation=90, va="bottom", ha="right",
+                       fontsize=9, color="0.4")
             continue
         errors, _ = errors_of(level, done, ladder)
         marker, colour, label = styles[level]
@@ -358,19 +362,20 @@ def check_ladder(done, ladder, own, times):
     for level, limit in SHELL_LIMIT.items():
         runs = [c for c in ladder if c.level == str(level) and c.angle == 45]
         worst = max(runs, key=lambda c: c.exact_error)
-        facts.append((f"shell {level}, {len(runs)} clumps: velocity against exact: worst {worst.exact_error:.3f} % ({worst.label}), "
-                      f"limit {limit:g} %", len(runs) == len(GEOMETRY) and worst.exact_error <= limit))
+        facts.append((f"shell {level}, {len(runs)} clumps: velocity against exact: worst {worst.exact_error:.3f} % "
+                      f"({worst.label}), limit {limit:g} %", len(runs) == len(GEOMETRY) and worst.exact_error <= limit))
     errors = {c.label: own_errors(c, own[c.clump]) for c in ladder if c.level == "42" and c.angle == 45}
     for k, what in enumerate(("velocity", "spin")):
         name = max(errors, key=lambda label: errors[label][k])
-        facts.append((f"shell 42: {what} against the clump's own 6x6 resistance: worst {errors[name][k]:.1e} ({name}), limit {OWN_LIMIT:g}",
+        facts.append((f"shell 42: {what} against the clump's own 6x6 resistance: worst {errors[name][k]:.1e} ({name}), "
+                      f"limit {OWN_LIMIT:g}",
                       errors[name][k] <= OWN_LIMIT))
     chiral = next(c for c in ladder if c.clump == "helix4_chiral" and c.angle == 0)
     point = next(c for c in done if c.clump == "helix4_chiral" and c.angle == 0)
     spin, exact = np.linalg.norm(chiral.W), np.linalg.norm(chiral.W_exact)
     error = np.linalg.norm(chiral.W - chiral.W_exact) / exact
-    facts.append((f"shell 42: the chiral clump spins at {spin:.5f} U0/a, exact {exact:.5f}, {100 * error:.2f} % apart (one point a sphere: "
-                  f"{np.linalg.norm(point.W):.5f}), limit 2 %", error <= 0.02))
+    facts.append((f"shell 42: the chiral clump spins at {spin:.5f} U0/a, exact {exact:.5f}, {100 * error:.2f} % apart "
+                  f"(one point a sphere: {np.linalg.norm(point.W):.5f}), limit 2 %", error <= 0.02))
     few, many = times["shell 12, rigid_clumps"][0], times["shell 162, rigid_clumps"][0]
     facts.append((f"shell 162 costs {many / few:.2f} times what shell 12 costs a step, limit 1.25", many / few <= 1.25))
     return facts

@@ -3,9 +3,10 @@
 
     rigid_clumps.py [--clumps N] [--steps N] [--repeat N] [--memory]
 
-N clumps of ten spheres (10 000) fall at their settling velocity, each turned in its own way, as rigid bodies on one core (in.rigid_clumps). For
-each model the median of `repeat` runs (5), the models in turn, so that a disturbance of the machine meets all of them. Times are
-LAMMPS's own (timer full: wall time times share of the processor): Pair, the section of the pair style, and Modify, which is mostly fix rigid/small.
+N clumps of ten spheres (10 000) fall at their settling velocity, each turned in its own way, as rigid bodies on one core
+(in.rigid_clumps). For each model the median of `repeat` runs (5), the models in turn, so that a disturbance of the machine meets
+all of them. Times are LAMMPS's own (timer full: wall time times share of the processor): Pair, the section of the pair style, and
+Modify, which is mostly fix rigid/small.
 The rivals are
   Stokes drag, this style   cut_off_distance below the distance of neighbours: no interactions; with and without torques
   Stokes drag, fix viscous  the cheapest drag there is: f = -k v, equal spheres
@@ -42,7 +43,8 @@ ERROR = {"shell 1": 9.26, "shell 1, rotation yes": 3.05, "shell 12": 0.43, "shel
 def run(words, n, steps, folder):
     """Log of a run of 10 n^3 clumps."""
     log = pathlib.Path(folder) / "log"
-    command = ["stdbuf", "-oL", "lmp", "-in", "in.rigid_clumps", "-log", str(log), "-var", "n", str(n), "-var", "steps", str(steps)]
+    command = ["stdbuf", "-oL", "lmp", "-in", "in.rigid_clumps", "-log", str(log), "-var", "n", str(n),
+               "-var", "steps", str(steps)]
     command += ["-var", "viscous", "yes"] if words == "none" else ["-var", "model", words]
     done = subprocess.run(command, cwd=HERE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0:
@@ -83,11 +85,13 @@ def main():
     medians = {name: [statistics.median(t[k] for t in all_) for k in (0, 1)] for name, all_ in times.items()}
     pair, both = medians[REFERENCE][0], sum(medians[REFERENCE])
     print(f"{spheres // 10} clumps of 10 spheres, ns a sphere and step, median of {options.repeat}:\n")
-    print("| | Pair | Modify | both | Pair, times Stokes drag | both, times Stokes drag | both, times fix viscous | error of the drag, % |")
+    print("| | Pair | Modify | both | Pair, times Stokes drag | both, times Stokes drag | both, times fix viscous |"
+          " error of the drag, % |")
     print("|---|---:|---:|---:|---:|---:|---:|---:|")
     bare = sum(medians["Stokes drag, fix viscous"])
     for name, (p, m) in medians.items():
-        print(f"| {name} | {p:.0f} | {m:.0f} | {p + m:.0f} | {p / pair:.2f} | {(p + m) / both:.2f} | {(p + m) / bare:.2f} | {ERROR.get(name, '')} |")
+        print(f"| {name} | {p:.0f} | {m:.0f} | {p + m:.0f} | {p / pair:.2f} | {(p + m) / both:.2f} | {(p + m) / bare:.2f} |"
+              f" {ERROR.get(name, '')} |")
     return 0
 
 
