@@ -24,6 +24,7 @@ namespace StokesDyn {
 class PairStokesDynamics : public LAMMPS_NS::Pair {
  public:
   static constexpr const char *STYLE = "stokes_dynamics";
+  static constexpr const char *COMMAND_NAME = "Pair style stokes_dynamics";
 
   PairStokesDynamics(LAMMPS_NS::LAMMPS *);
   ~PairStokesDynamics() override;

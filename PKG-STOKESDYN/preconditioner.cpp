@@ -123,28 +123,45 @@ void Preconditioner::attach(sd_system &system)
   if (want == NONE) return;
 
   if (cloud) cloud_diagonal();
-  int ready;
-  if (want == SPARSE)
-    ready = !worn || make_sparse();
-  else
-    ready = (!worn && turn_blocks()) || make_blocks();
-  MPI_Allreduce(MPI_IN_PLACE, &ready, 1, MPI_INT, MPI_MIN, world);
-  if (!ready) return;    // one that cannot be made is done without
-  worn = false;
-  present = want;
-  if (cloud) {
-    sparse.width = blocks.width = width;
-    sparse.drag = blocks.drag = cloud_drag.data();
-    sparse.spin = blocks.spin = system.spin ? cloud_spin.data() : nullptr;
-    system.precondition = apply;
-    system.precondition_ctx = this;
-  } else {
-    blocks.width = width;
-    blocks.drag = system.drag;
-    blocks.spin = system.spin;
-    system.precondition = sd_blocks_apply;
-    system.precondition_ctx = &blocks;
+  drag = cloud ? cloud_drag.data() : system.drag;
+  spin = !system.spin ? nullptr : cloud ? cloud_spin.data() : system.spin;
+  if (want == SPARSE) {
+    int ready = !worn || make_sparse();
+    MPI_Allreduce(MPI_IN_PLACE, &ready, 1, MPI_INT, MPI_MIN, world);
+    if (!ready) return;    // one that cannot be made is done without
+    worn = false;
+    sparse.width = width;
+    sparse.drag = drag;
+    sparse.spin = spin;
   }
+  pending = want == CLUMP;
+  present = want;
+  system.precondition = cloud ? apply : apply_own;
+  system.precondition_ctx = this;
+}
+
+/* Blocks are made or turned at their first use: a warm start often needs none at all. Blocks that cannot be made are done without. */
+void Preconditioner::apply_blocks(const double *r, double *z)
+{
+  if (pending) {
+    pending = false;
+    usable = (!worn && turn_blocks()) || make_blocks();
+    worn = !usable;
+    blocks.width = width;
+    blocks.drag = drag;
+    blocks.spin = spin;
+  }
+  if (usable)
+    sd_blocks_apply(&blocks, r, z);
+  else
+    for (long i = 0; i < n; i++)
+      for (int d = 0; d < width; d++)
+        z[width * i + d] = drag[i] == 0.0 ? 0.0 : (d < 3 ? drag[i] : spin[i]) * r[width * i + d];
+}
+
+void Preconditioner::apply_own(void *ctx, const double *r, double *z)
+{
+  static_cast<Preconditioner *>(ctx)->apply_blocks(r, z);
 }
 
 bool Preconditioner::make_sparse()
@@ -215,7 +232,7 @@ void Preconditioner::apply(void *ctx, const double *r, double *z)
     sd_sparse_apply(&p->sparse, p->in.data(), p->out.data());
   else if (p->comm->me ==
            0)    // all blocks on the first rank; the sum over the ranks sends them round
-    sd_blocks_apply(&p->blocks, p->in.data(), p->out.data());
+    p->apply_blocks(p->in.data(), p->out.data());
   p->scene.from_cloud(p->out, z);
 }
 
@@ -227,7 +244,7 @@ void Preconditioner::learn(const sd_solve_report &report)
   if (kind == AUTO && present == NONE && scene.all_pairs() && iterations_spent > PAYS_AFTER &&
       iterations_spent > 6 * solves && scene.cloud_size() >= 100 && !wanted_sparse)
     wanted_sparse = worn = true;
-  if (present == NONE) return;
+  if (present == NONE || report.iterations == 0) return;
   if (first_iterations < 0) first_iterations = report.iterations;
   if (report.iterations > first_iterations + first_iterations / 2 + 3) worn = true;
 }

@@ -47,6 +47,9 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   int first_iterations = -1;    // of the first solve after a set-up
   bool worn = true;             // make it anew
   bool small = true;            // are the clumps small?
+  bool pending = false;         // blocks: to be made or turned at their first use in this solve
+  bool usable = false;          // blocks: could they be made?
+  const double *drag = nullptr, *spin = nullptr;    // of what apply() sees
 
   sd_sparse sparse;
   sd_blocks blocks;
@@ -62,7 +65,9 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   bool make_blocks();
   bool turn_blocks();
   void free_shapes();
+  void apply_blocks(const double *r, double *z);
   static void apply(void *ctx, const double *r, double *z);
+  static void apply_own(void *ctx, const double *r, double *z);
 };
 
 }    // namespace StokesDyn
