@@ -198,8 +198,9 @@ class Simulation:
 # --- lmp as a program of its own ---------------------------------------------------------------------------------
 
 def environment():
-    """Ours, less what an MPI library may have put there, and leave for root to use mpirun."""
-    env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_"))}
+    """Ours, less what an MPI library may have put there, and leave for root to use mpirun. No LAMMPS_PLUGIN_PATH: newer LAMMPS
+    would load the plugin by itself, and the tests want to see it loaded by command."""
+    env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_", "LAMMPS_PLUGIN"))}
     if os.getuid() == 0:
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     env["OMP_NUM_THREADS"] = "1"
