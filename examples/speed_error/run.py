@@ -1,0 +1,334 @@
+#!/usr/bin/env python3
+"""Time per step against error, for many settings of pair_style stokes_dynamics.
+
+    run.py [--data FILE] [--quick] [--error 1e-2] [--out FOLDER] [--screening] [--update]
+
+Scenes are built in, or one is read from a data file of atom_style hybrid sphere bond. Every setting follows the same path of
+the spheres (their velocities are given, the force is not applied), so all forces can be compared at the same step. Prints a
+table for each scene, draws the Pareto fronts (speed_error.png in FOLDER, default build/examples/speed_error) and names the
+cheapest setting below the wanted error.
+    --quick       smaller scenes, fewer settings: a minute
+    --screening   only the table of what a taper leaves of the drag
+    --update      log and picture go to this folder as well
+"""
+import argparse
+import os
+import pathlib
+import shutil
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOP = HERE.parents[1]
+
+# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
+os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+DEBIAN = "/usr/bin/python3"
+try:
+    import matplotlib
+    import numpy as np
+except ImportError:         # Debian's python has them, another one on the PATH need not
+    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
+        raise
+    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+try:
+    from lammps import lammps
+except ImportError:
+    sys.exit("run.py: the python module of LAMMPS is not there: cmake/setup.sh, then . build/env.sh")
+
+VISC = 1.0
+MOVE = 0.01             # of a radius and step, at the mean speed
+STEPS = 20              # timed; forces are compared at the last but one, when an old v' is oldest
+FLOOR = 1e-9            # of the picture
+FAMILY = {"tolerance": "C0", "precondition": "C2", "warm_start no": "C8", "update_every": "C1", "algorithm 1": "C5",
+          "cut-off": "C3", "taper": "C4", "clumps_only": "C6", "rigid_clumps": "C9", "rotation": "C7", "shell": "k"}
+
+
+# --- scenes: positions, radii, velocities, molecules; lengths in radii ---------------------------------------------
+
+
+def lattice(n=10):
+    grid = np.array([(i, j, k) for i in range(n) for j in range(n) for k in range(n)], float)
+    return 2.0 * grid, np.ones(n**3), np.zeros(n**3, int)
+
+
+def flocs(count=50, m=20, side=34.7, seed=1):
+    """Each sphere stuck to one before it; spheres of two flocs do not overlap."""
+    rng = np.random.default_rng(seed)
+    x = np.zeros((0, 3))
+    while len(x) < count * m:
+        new = np.zeros((m, 3))
+        new[0] = rng.uniform(0, side, 3)
+        for i in range(1, m):
+            e = rng.normal(size=3)
+            new[i] = new[rng.integers(i)] + rng.uniform(1.2, 1.9) * e / np.linalg.norm(e)
+        if not len(x) or np.linalg.norm(new[:, None] - x[None], axis=2).min() > 2.0:
+            x = np.vstack([x, new])
+    return x, np.ones(len(x)), 1 + np.arange(len(x)) // m
+
+
+def dilute(n, phi=0.02, seed=1):
+    """Radii 0.5 to 2, evenly in the logarithm; no overlaps."""
+    rng = np.random.default_rng(seed)
+    a = np.exp(rng.uniform(np.log(0.5), np.log(2.0), n))
+    side = (4 / 3 * np.pi * (a**3).sum() / phi)**(1 / 3)
+    x = np.zeros((n, 3))
+    for i in range(n):
+        while True:
+            x[i] = rng.uniform(0, side, 3)
+            if i == 0 or (np.linalg.norm(x[:i] - x[i], axis=1) > a[:i] + a[i]).all():
+                break
+    return x, a, np.zeros(n, int)
+
+
+def scenes(quick):
+    """name: (spheres, one velocity for each clump?, words of the exact model, steps)"""
+    n = 7 if quick else 10
+    yield f"{n}^3 touching spheres", lattice(n), False, "cut_off_distance inf", STEPS
+    k = 20 if quick else 50
+    yield f"{k} flocs of 20", flocs(k, 20, 34.7 * (k / 50)**(1 / 3)), False, "cut_off_distance inf", STEPS
+    m = 400 if quick else 1000
+    yield f"dilute cloud of {m}", dilute(m), False, "cut_off_distance inf", STEPS
+    yield f"{k} rigid clumps of 20", flocs(k, 20, 34.7 * (k / 50)**(1 / 3), seed=2), True, "clumps_only yes", STEPS
+    if not quick:
+        yield "cloud of 10 000", dilute(10000, 0.05), False, "cut_off_distance inf", 5
+
+
+def settings(exact, has_clumps, rigid, n, quick):
+    """(family, words, is it a finer model, which no error of this one judges?) of a scene"""
+    two = f"{exact} algorithm 2 relative_tolerance"
+    for tolerance in ("1e-1", "1e-2", "1e-3") + (() if quick else ("1e-4",)) + ("1e-6",):
+        yield "tolerance", f"{two} {tolerance}", False
+    for how in ("none", "clump") if has_clumps else ("none", "sparse"):
+        if exact.startswith("cut_off") or how != "sparse":
+            for tolerance in ("1e-3", "1e-6"):
+                yield "precondition", f"{two} {tolerance} precondition {how}", False
+    yield "warm_start no", f"{two} 1e-3 warm_start no", False
+    for every in (5, 20):
+        yield "update_every", f"{two} 1e-3 update_every {every}", False
+    yield "algorithm 1", f"{exact} relative_tolerance 1e-3", False
+    if rigid:
+        yield "rigid_clumps", "clumps_only yes rigid_clumps yes", False
+        yield "shell", "clumps_only yes rigid_clumps yes shell 12", True
+    else:
+        yield "cut-off", "cut_off_distance 1e-6", False
+        yield "cut-off", "cut_off_distance 8 algorithm 2 relative_tolerance 1e-3", False
+        for taper in ("wendland", "spherical"):
+            for R in (10, 40) if quick else (10, 20, 40):
+                yield "taper", f"cut_off_distance {R} taper {taper} algorithm 2 relative_tolerance 1e-3", False
+        if has_clumps:
+            yield "clumps_only", "clumps_only yes algorithm 2 relative_tolerance 1e-3", False
+    if n <= 1000:
+        yield "rotation", f"{two} 1e-3 rotation yes", True
+
+
+# --- one run --------------------------------------------------------------------------------------------------------
+
+
+def write_data(path, x, a, v, molecule):
+    lo, hi = x.min(axis=0) - 10.0 * a.max(), x.max(axis=0) + 10.0 * a.max()
+    with open(path, "w") as out:
+        out.write(f"spheres\n\n{len(x)} atoms\n0 bonds\n1 atom types\n1 bond types\n\n")
+        for d, c in enumerate("xyz"):
+            out.write(f"{float(lo[d])!r} {float(hi[d])!r} {c}lo {c}hi\n")
+        out.write("\nAtoms\n\n")
+        for i, (r, radius, m) in enumerate(zip(x.tolist(), a.tolist(), molecule.tolist())):
+            out.write(f"{i + 1} 1 {r[0]!r} {r[1]!r} {r[2]!r} {2 * radius!r} 1.0 {m}\n")
+        out.write("\nVelocities\n\n")
+        for i, u in enumerate(v.tolist()):
+            out.write(f"{i + 1} {u[0]!r} {u[1]!r} {u[2]!r} 0 0 0\n")
+
+
+class Answer:
+    """Forces, total drag and dissipation at the last but one step, CPU time per step; refused: the error of LAMMPS instead."""
+
+    def __init__(self, data, words, steps, timed=True):
+        lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+        self.refused = None
+        try:
+            for line in ["units lj", "atom_style hybrid sphere bond", "boundary f f f", "atom_modify map array",
+                         "comm_modify mode single", "plugin load stokesdynplugin.so", f"read_data {data}"]:
+                lmp.command(line)
+            if lmp.get_natoms() == 0:
+                sys.exit(f"run.py: no atoms in {data}")
+            n = lmp.extract_global("nlocal")
+            a, v = lmp.numpy.extract_atom("radius")[:n].ravel(), lmp.numpy.extract_atom("v")[:n]
+            if not np.abs(v).any():
+                v[:, 2] = -1.0
+            dt = MOVE * a.mean() / np.linalg.norm(v, axis=1).mean()
+            for line in [f"pair_style stokes_dynamics visc {VISC} max_iter 1000 {words}", "pair_coeff * *",
+                         "fix drag all stokes_dynamics apply no", "fix move all nve", f"timestep {float(dt)!r}",
+                         "thermo 1000000"]:
+                lmp.command(line)
+            began = time.process_time()
+            lmp.command("run 0 post no")
+            self.set_up = time.process_time() - began
+            began = time.process_time()
+            lmp.command(f"run {steps - 1} pre no post no")
+            spent = time.process_time() - began
+            order = np.argsort(lmp.numpy.extract_atom("id")[:n].ravel())
+            self.F = np.array(lmp.numpy.extract_fix("drag", 1, 2))[:n][order, 0:3].copy()
+            v = lmp.numpy.extract_atom("v")[:n]
+            mean = v.mean(axis=0)
+            self.drag = -self.F.sum(axis=0) @ mean / np.linalg.norm(mean) if mean.any() else 0.0
+            self.dissipation = lmp.extract_fix("drag", 0, 0)
+            self.iterations = lmp.extract_fix("drag", 0, 1, nrow=3)
+            if timed:
+                began = time.process_time()
+                lmp.command("run 1 pre no post no")
+                self.time = (spent + time.process_time() - began) / steps
+        except Exception as e:
+            text = " ".join(str(e).split())
+            self.refused = "diverges" if "diverged" in text else "indefinite" if "positive definit" in text else text
+        lmp.close()
+
+    def errors(self, reference):
+        force = np.linalg.norm(self.F - reference.F) / np.linalg.norm(reference.F)
+        drag = abs(reference.drag / self.drag - 1.0) if self.drag else 0.0       # of the velocity that a given weight brings
+        return force, drag, abs(self.dissipation / reference.dissipation - 1.0)
+
+
+class Report:
+    """Prints, and keeps the text for the log."""
+
+    def __init__(self):
+        self.lines = []
+
+    def __call__(self, line=""):
+        print(line, flush=True)
+        self.lines.append(line)
+
+
+def front(points):
+    """Those of (error, time, ...) that no other beats in both, by falling error."""
+    best, kept = np.inf, []
+    for p in sorted(points, key=lambda p: (p[0], p[1])):
+        if p[1] < best:
+            best = p[1]
+            kept.append(p)
+    return kept
+
+
+def measure(say, name, data, exact, steps, options, wanted):
+    # Solved at the beginning and at the step where forces are compared.
+    reference = Answer(data, f"{exact} algorithm 2 relative_tolerance 1e-10 update_every {steps - 1}", steps, timed=False)
+    if reference.refused:
+        sys.exit(f"run.py: {name}: no reference: {reference.refused}")
+    say(f"\n{name}: {len(reference.F)} spheres; reference: {exact}, relative_tolerance 1e-10")
+    say(f"  {'ms/step':>8} {'force':>8} {'settling':>8} {'dissip.':>8} {'its':>4}   setting")
+    points = []
+    for family, words, other in options:
+        answer = Answer(data, words, steps)
+        if answer.refused:
+            say(f"  {'-':>8} {answer.refused:<35}   {words}")
+            continue
+        errors = answer.errors(reference)
+        say("  {:8.3f} {:8.1e} {:8.1e} {:8.1e} {:4.0f}   {}".format(1e3 * answer.time, *errors, answer.iterations,
+                                                                   words + (" *" if other else "")))
+        points.append((max(errors), 1e3 * answer.time, words, family, other))
+    good = [p for p in points if p[0] <= wanted and not p[4]]
+    if good:
+        best = min(good, key=lambda p: p[1])
+        say(f"  cheapest with all errors <= {wanted:g}: {best[1]:.3f} ms a step, error {best[0]:.1e}\n    {best[2]}")
+    else:
+        say(f"  no setting has all errors <= {wanted:g}")
+    return points
+
+
+def draw(path, results, wanted):
+    columns = min(3, len(results) + 1)      # the last panel is the legend
+    rows = -(-(len(results) + 1) // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(5.2 * columns, 4.4 * rows), squeeze=False, constrained_layout=True)
+    seen = {}
+    for axis, (name, points) in zip(axes.flat, results):
+        for error, ms, _, family, other in points:
+            seen[family] = axis.scatter(max(error, FLOOR), ms, color=FAMILY[family], marker="x" if other else "o", s=36, zorder=3)
+        line = front([(max(p[0], FLOOR), p[1]) for p in points if not p[4]])
+        x, y = zip(*line)
+        axis.step(x, y, where="post", color="0.5", zorder=1)
+        axis.axvline(wanted, color="0.7", linestyle=":", zorder=0)
+        axis.set(xscale="log", yscale="log", title=name, xlabel="largest of the three errors")
+        axis.grid(alpha=0.3)
+    for axis in axes[:, 0]:
+        axis.set_ylabel("CPU time, ms a step")
+    for axis in axes.flat[len(results):]:
+        axis.axis("off")
+    handles = [(seen[f], f) for f in FAMILY if f in seen]
+    axes.flat[len(results)].legend(*zip(*handles), loc="center", title="o the model    x a finer model")
+    figure.savefig(path, dpi=90)
+
+
+# --- what a taper screens -------------------------------------------------------------------------------------------
+
+
+def screening(say, folder):
+    x, a, molecule = lattice(6)
+    v = np.tile([0.0, 0.0, -1.0], (len(x), 1))
+    data = folder / "lattice.data"
+    write_data(data, x, a, v, molecule)
+
+    def drag(words):
+        answer = Answer(data, f"{words} algorithm 2 relative_tolerance 1e-9", 2, timed=False)
+        return answer.drag / (6 * np.pi * VISC)
+
+    exact = drag("cut_off_distance inf")
+    say(f"\nTotal drag of 6^3 touching spheres over that of one: {exact:.6f}")
+    say(f"  {'range, radii':>12} {'wendland':>10} {'times':>7} {'spherical':>10} {'times':>7}")
+    for R in (10, 20, 40, 80):
+        w, s = (drag(f"cut_off_distance {R} taper {t}") for t in ("wendland", "spherical"))
+        say(f"  {R:12d} {w:10.4f} {w / exact:7.3f} {s:10.4f} {s / exact:7.3f}")
+
+
+def main():
+    options = argparse.ArgumentParser(description="Time per step against error, for many settings of stokes_dynamics.")
+    options.add_argument("--data", help="data file of atom_style hybrid sphere bond, units lj; all at rest: they fall")
+    options.add_argument("--clumps", action="store_true", help="with --data: the clumps are rigid and do not see each other")
+    options.add_argument("--quick", action="store_true")
+    options.add_argument("--error", type=float, default=1e-2)
+    options.add_argument("--out", default=TOP / "build" / "examples" / "speed_error")
+    options.add_argument("--screening", action="store_true")
+    options.add_argument("--update", action="store_true")
+    given = options.parse_args()
+    if not given.error > 0.0:
+        sys.exit(f"run.py: --error {given.error} must be > 0")
+    folder = pathlib.Path(given.out).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    say, results = Report(), []
+    if given.screening:
+        screening(say, folder)
+        return
+    if given.data:
+        data = pathlib.Path(given.data).resolve()
+        if not data.is_file():
+            sys.exit(f"run.py: --data {given.data}: there is no such file")
+        exact = "clumps_only yes" if given.clumps else "cut_off_distance inf"
+        results.append((data.name, measure(say, data.name, data, exact, STEPS,
+                                           settings(exact, given.clumps, given.clumps, 1000, given.quick), given.error)))
+    else:
+        for name, (x, a, molecule), rigid, exact, steps in scenes(given.quick):
+            rng = np.random.default_rng(7)
+            own = rng.normal(size=(len(x) + 1, 3))     # of each sphere, or of each clump
+            v = np.array([0.0, 0.0, -1.0]) + 0.2 * (own[molecule] if rigid else own[:len(x)])
+            data = folder / "scene.data"
+            write_data(data, x, a, v, molecule)
+            kinds = list(settings(exact, molecule.any(), rigid, len(x), given.quick))
+            if len(x) > 2000:       # seconds a step: only what may be worth it
+                kinds = [k for k in kinds if k[0] == "cut-off" or not any(w in k[1] for w in
+                         (" 1e-6", "warm_start no", " 40 ", "update_every 20"))]
+            results.append((name, measure(say, name, data, exact, steps, kinds, given.error)))
+        screening(say, folder)
+    draw(folder / "speed_error.png", results, given.error)
+    (folder / "log").write_text("\n".join(say.lines) + "\n")
+    say(f"\npicture: {folder / 'speed_error.png'}")
+    if given.update:
+        shutil.copy(folder / "speed_error.png", HERE)
+        shutil.copy(folder / "log", HERE / "log.speed_error")
+
+
+if __name__ == "__main__":
+    main()
