@@ -3,8 +3,6 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 
-#include "sd_grand.h"
-
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -70,18 +68,16 @@ void Scene::update(const std::vector<char> &active, const std::vector<double> &e
   Compat::forward_comm(comm, pair);
   if (stale) find_pairs();
 
+  const sd_spheres spheres = {positions(), a.data(), w.data()};
   filtered = std::isfinite(settings.cutoff) || std::find(a.begin(), a.end(), 0.0) != a.end();
   if (filtered) {
     if (sd_neighbors_reserve(&pairs, nlocal, candidates.first[nlocal]) != SD_OK) out_of_memory();
-    const sd_spheres spheres = {positions(), a.data(), w.data()};
     sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
     pairs.pairs.n = nlocal;
   }
-  if (!settings.rotation) {
-    const sd_spheres spheres = {positions(), a.data(), w.data()};
-    const sd_law how = law();
-    if (sd_packed_list(&packed, SD_ISA_BEST, &how, &spheres, n) != SD_OK) out_of_memory();
-  }
+  const sd_law how = law();
+  packed.rotation = settings.rotation;
+  if (sd_packed_list(&packed, SD_ISA_BEST, &how, &spheres, n) != SD_OK) out_of_memory();
 }
 
 /* Tags and molecule IDs of owned and ghost atoms. */
@@ -383,8 +379,8 @@ void Scene::gather()
   }
   const sd_spheres spheres = cloud();
   const sd_law how = law();
-  if (!settings.rotation && sd_packed_all(&packed, SD_ISA_BEST, &how, &spheres, n_all) != SD_OK)
-    out_of_memory();
+  packed.rotation = settings.rotation;
+  if (sd_packed_all(&packed, SD_ISA_BEST, &how, &spheres, n_all) != SD_OK) out_of_memory();
 }
 
 void Scene::to_cloud(const double *own_rows, std::vector<double> &cloud_rows)
@@ -440,12 +436,7 @@ void Scene::apply_list(const double *F, double *u)
   packing = FORCES;
   Compat::forward_comm(comm, pair);
   const sd_pairs *list = filtered ? &pairs.pairs : &candidates.pairs;
-  if (settings.rotation) {
-    const sd_spheres spheres = {positions(), a.data(), w.data()};
-    const sd_law how = law();
-    sd_product_grand_list(&how, &spheres, list, force.data(), u);
-  } else
-    sd_packed_pairs(&packed, list, force.data(), u);
+  sd_packed_pairs(&packed, list, force.data(), u);
 }
 
 /* Every rank computes an equal share of the pairs, wherever the spheres are. */
@@ -453,15 +444,7 @@ void Scene::apply_all(const double *F, double *u)
 {
   to_cloud(F, all_force);
   all_u.assign(width() * (size_t) n_all + 1, 0.0);
-  if (settings.rotation) {
-    const sd_spheres spheres = cloud();
-    const sd_law how = law();
-    const int from = (int64_t) n_all * comm->me / comm->nprocs,
-              to = (int64_t) n_all * (comm->me + 1) / comm->nprocs;
-    sd_product_grand_all(&how, &spheres, n_all, from, to - from, all_force.data(),
-                         &all_u[6 * (size_t) from]);
-  } else
-    sd_packed_share(&packed, comm->me, comm->nprocs, all_force.data(), all_u.data());
+  sd_packed_share(&packed, comm->me, comm->nprocs, all_force.data(), all_u.data());
   from_cloud(all_u, u);
 }
 

@@ -36,10 +36,13 @@ void sd_product_grand_list(const sd_law *law, const sd_spheres *s, const sd_pair
 {
   for (int i = 0; i < pairs->n; i++) {
     double sum[6] = {0.0};
-    for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++) {
-      const long j = pairs->neighbor[k];
-      add_pair(law, s->x + 3 * (long) i, s->a[i], s->x + 3 * j, s->a[j], s->w[j], F + 6 * j, sum);
-    }
+    if (s->a[i] > 0.0)
+      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++) {
+        const long j = pairs->neighbor[k];
+        if (s->a[j] > 0.0)
+          add_pair(law, s->x + 3 * (long) i, s->a[i], s->x + 3 * j, s->a[j], s->w[j], F + 6 * j,
+                   sum);
+      }
     store(s->w[i], sum, u + 6 * (long) i);
   }
 }

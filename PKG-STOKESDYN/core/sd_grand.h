@@ -3,7 +3,8 @@
  *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j),    M_ij the 6x6 block of sd_tensor_grand
  *
  * Vectors have 6 numbers a sphere. Otherwise as sd_product.h: diagonal left to the solver, viscosity of a pair sqrt(eta_i eta_j),
- * radius 0: takes no part. The taper of the law multiplies whole blocks; its tensor is always RPY here. */
+ * radius 0: takes no part. The taper of the law multiplies whole blocks; its tensor is always RPY here.
+ * These are in plain C, pair by pair; the fast product is sd_packed with rotation set (sd_product.h). */
 #ifndef SD_GRAND_H
 #define SD_GRAND_H
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_grand.h"
 #include "sd_product_internal.h"
 
 double sd_taper_factor(const sd_law *law, double R)
@@ -128,6 +129,11 @@ const char *sd_isa_name(sd_isa isa)
   return names[isa];
 }
 
+static int width(const sd_packed *p)
+{
+  return p->rotation ? 6 : 3;
+}
+
 void sd_packed_free(sd_packed *p)
 {
   free(p->memory);
@@ -194,12 +200,13 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
   const int lanes = p->kernels->lanes;
   p->padded = (p->active + lanes - 1) / lanes * lanes;
   const long column = (p->padded + 7) / 8 * 8; /* whole cache lines */
-  double *m = reserve(p, 11 * column);
+  double *m = reserve(p, (5 + 2 * width(p)) * column), *next = m;
   if (!m) return SD_ENOMEMORY;
-  double **columns[] = {&p->x,    &p->y,    &p->z,    &p->a,    &p->f[0],
-                        &p->f[1], &p->f[2], &p->u[0], &p->u[1], &p->u[2]};
-  for (int k = 0; k < 10; k++) *columns[k] = m + k * column;
-  p->index = (int *) (m + 10 * column);
+  double **columns[] = {&p->x, &p->y, &p->z, &p->a};
+  for (int k = 0; k < 4; k++, next += column) *columns[k] = next;
+  for (int k = 0; k < width(p); k++, next += column) p->f[k] = next;
+  for (int k = 0; k < width(p); k++, next += column) p->u[k] = next;
+  p->index = (int *) next;
   int k = 0;
   for (int i = 0; i < n; i++) {
     if (!(s->a[i] > 0.0)) continue;
@@ -213,7 +220,8 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
   for (; k < p->padded; k++) {
     p->index[k] = n;
     p->x[k] = p->y[k] = p->z[k] = nowhere;
-    p->a[k] = p->f[0][k] = p->f[1][k] = p->f[2][k] = 0.0;
+    p->a[k] = 0.0;
+    for (int d = 0; d < width(p); d++) p->f[d][k] = 0.0;
   }
   return SD_OK;
 }
@@ -224,10 +232,15 @@ sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_s
   p->by_list = 1;
   if (!p->kernels) return SD_OK;
   const long rows = n + 1;
-  double *m = reserve(p, 11 * rows);
+  double *m = reserve(p, (p->rotation ? 18 : 11) * rows), *next = m + 8 * rows;
   if (!m) return SD_ENOMEMORY;
   p->row = m;
-  for (int d = 0; d < 3; d++) p->u[d] = m + (8 + d) * rows;
+  if (p->rotation) {
+    p->torque_row = next;
+    next += 4 * rows;
+    memset(p->torque_row, 0, 4 * sizeof(double) * (size_t) rows);
+  }
+  for (int d = 0; d < width(p); d++, next += rows) p->u[d] = next;
   for (long i = 0; i < n; i++) {
     double *row = p->row + 8 * i;
     const int takes_part = s->a[i] > 0.0;
@@ -239,10 +252,12 @@ sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_s
   return SD_OK;
 }
 
-/* The kernels' sums are times 4/3 and in scaled lengths. */
-static double unit(const sd_packed *p, int i)
+/* The kernels' sums are times 8 pi and in scaled lengths; torques go in times the scale. */
+static void take_sums(const sd_packed *p, int i, int k, double *u)
 {
-  return 0.75 * p->scale * p->spheres.w[i] / (6.0 * SD_PI);
+  const double unit = p->scale * p->spheres.w[i] / (8.0 * SD_PI);
+  store(unit, p->u[0][k], p->u[1][k], p->u[2][k], u);
+  if (p->rotation) store(unit * p->scale, p->u[3][k], p->u[4][k], p->u[5][k], u + 3);
 }
 
 static void load_columns(sd_packed *p, const double *F)
@@ -250,24 +265,32 @@ static void load_columns(sd_packed *p, const double *F)
   for (int k = 0; k < p->active; k++) {
     const long i = p->index[k];
     const double w = p->spheres.w[i];
-    for (int d = 0; d < 3; d++) p->f[d][k] = w * F[3 * i + d];
+    if (!p->rotation)
+      for (int d = 0; d < 3; d++) p->f[d][k] = w * F[3 * i + d];
+    else
+      for (int d = 0; d < 3; d++) {
+        p->f[d][k] = w * F[6 * i + d];
+        p->f[3 + d][k] = w * p->scale * F[6 * i + 3 + d];
+      }
   }
-  for (int d = 0; d < 3; d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
+  for (int d = 0; d < width(p); d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
 }
 
 static void unload_columns(const sd_packed *p, int k0, int k1, int begin, int count, double *u)
 {
-  memset(u, 0, 3 * sizeof(double) * (size_t) count);
+  const long m = width(p);
+  memset(u, 0, sizeof(double) * (size_t) (m * count));
   for (int k = k0; k < k1; k++) {
     const int i = p->index[k];
-    store(unit(p, i), p->u[0][k], p->u[1][k], p->u[2][k], u + 3 * (long) (i - begin));
+    take_sums(p, i, k, u + m * (i - begin));
   }
 }
 
 void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u)
 {
   if (!p->kernels) {
-    sd_product_all_law(&p->law, &p->spheres, p->n, begin, count, F, u);
+    (p->rotation ? sd_product_grand_all : sd_product_all_law)(&p->law, &p->spheres, p->n, begin,
+                                                              count, F, u);
     return;
   }
   int k0 = 0, k1 = p->active;
@@ -275,9 +298,9 @@ void sd_packed_product(sd_packed *p, int begin, int count, const double *F, doub
   while (k1 > k0 && p->index[k1 - 1] >= begin + count) k1--;
   load_columns(p, F);
   if (k1 - k0 == p->active)
-    p->kernels->symmetric(p, 0, 1);
+    (p->rotation ? p->kernels->grand_symmetric : p->kernels->symmetric)(p, 0, 1);
   else
-    p->kernels->targets(p, k0, k1);
+    (p->rotation ? p->kernels->grand_targets : p->kernels->targets)(p, k0, k1);
   unload_columns(p, k0, k1, begin, count, u);
 }
 
@@ -286,32 +309,38 @@ void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double 
   if (!p->kernels) {
     const int begin = (int) ((long) p->n * part / parts),
               end = (int) ((long) p->n * (part + 1) / parts);
-    memset(u, 0, 3 * sizeof(double) * (size_t) p->n);
-    sd_product_all_law(&p->law, &p->spheres, p->n, begin, end - begin, F, u + 3 * (long) begin);
+    const long m = width(p);
+    memset(u, 0, sizeof(double) * (size_t) (m * p->n));
+    (p->rotation ? sd_product_grand_all : sd_product_all_law)(&p->law, &p->spheres, p->n, begin,
+                                                              end - begin, F, u + m * begin);
     return;
   }
   load_columns(p, F);
-  p->kernels->symmetric(p, part, parts);
+  (p->rotation ? p->kernels->grand_symmetric : p->kernels->symmetric)(p, part, parts);
   unload_columns(p, 0, p->active, 0, p->n, u);
 }
 
 void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, double *u)
 {
   if (!p->kernels) {
-    sd_product_list_law(&p->law, &p->spheres, pairs, F, u);
+    (p->rotation ? sd_product_grand_list : sd_product_list_law)(&p->law, &p->spheres, pairs, F, u);
     return;
   }
+  const long m = width(p);
   for (long i = 0; i < p->n; i++) {
     double *row = p->row + 8 * i;
     const double w = row[3] > 0.0 ? p->spheres.w[i] : 0.0;
-    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * F[3 * i + d] : 0.0;
+    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * F[m * i + d] : 0.0;
+    if (p->rotation)
+      for (int d = 0; d < 3; d++)
+        p->torque_row[4 * i + d] = w > 0.0 ? w * p->scale * F[6 * i + 3 + d] : 0.0;
   }
-  p->kernels->list(p, pairs);
+  (p->rotation ? p->kernels->grand_list : p->kernels->list)(p, pairs);
   for (int i = 0; i < pairs->n; i++) {
     if (p->row[8 * (long) i + 3] > 0.0)
-      store(unit(p, i), p->u[0][i], p->u[1][i], p->u[2][i], u + 3 * (long) i);
+      take_sums(p, i, i, u + m * i);
     else
-      store(0.0, 0.0, 0.0, 0.0, u + 3 * (long) i);
+      memset(u + m * i, 0, sizeof(double) * (size_t) m);
   }
 }
 

@@ -74,8 +74,9 @@ const char *sd_isa_name(sd_isa isa);
 
 struct sd_kernels;
 
-/* Zero-initialise; sd_packed_free in the end. Members are the kernels' own. */
+/* Zero-initialise; sd_packed_free in the end. Members but the first are the kernels' own. */
 typedef struct {
+  int rotation; /* the caller's, before packing: torques too (sd_grand.h), vectors have 6 numbers a sphere instead of 3 */
   const struct sd_kernels *kernels; /* NULL: plain */
   sd_spheres spheres;               /* as given; they must outlive the products */
   sd_law law;
@@ -85,8 +86,9 @@ typedef struct {
   int by_list;  /* packed for lists (rows) or for all pairs (columns) */
   double scale; /* lengths below are times this power of two, so that radii are about 1 */
   int *index;   /* [padded] sphere of each column */
-  double *x, *y, *z, *a, *f[3], *u[3]; /* [padded]; f = w F, u = sums */
+  double *x, *y, *z, *a, *f[6], *u[6]; /* [padded]; f = w F, u = sums; then those of the torques */
   double *row; /* [8 (n+1)] x y z a, then w F; the last takes the place of missing neighbours */
+  double *torque_row; /* [4 (n+1)] w T */
   void *memory;
   long capacity;
 } sd_packed;
@@ -98,7 +100,7 @@ void sd_packed_free(sd_packed *p);
 sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
 
-/* Packed for all pairs: F [3n] -> u [3 count], targets begin ... begin + count - 1, sources all. With all targets each pair is
+/* Packed for all pairs: F [3n] -> u [3 count] (with torques 6 each, here and below), targets begin ... begin + count - 1, sources all. With all targets each pair is
  * computed once for both its spheres, which is about 1.4 times faster. */
 void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u);
 

@@ -20,6 +20,7 @@ typedef __mmask8 mask;
 #define RSQRT(v) reciprocal_root(v)
 #define ROWS(row, j, x, y, z, a, f0, f1, f2) \
   columns(row, j, &(x), &(y), &(z), &(a), &(f0), &(f1), &(f2))
+#define TORQUES(row, j, t0, t1, t2) torque_columns(row, j, &(t0), &(t1), &(t2))
 
 /* 1/sqrt(v): with the error e = 1 - v y^2 of the first guess, |e| < 2^-13, y (1-e)^(-1/2) by its series up to e^3. */
 static inline __attribute__((always_inline)) vec reciprocal_root(vec v)
@@ -52,6 +53,24 @@ columns(const double *row, const int *j, vec *x, vec *y, vec *z, vec *a, vec *f0
   *y = _mm512_shuffle_f64x2(c0, c2, 0x88);
   *f1 = _mm512_shuffle_f64x2(c0, c2, 0xdd);
   *a = _mm512_shuffle_f64x2(c1, c3, 0x88);
+}
+
+/* Four rows in each half of four vectors, then pairs of columns, then the columns. */
+static inline __attribute__((always_inline)) void torque_columns(const double *row, const int *j,
+                                                                 vec *t0, vec *t1, vec *t2)
+{
+#define ROW(k) _mm256_load_pd(row + 4 * (long) j[k])
+#define ROWS_OF(k) _mm512_insertf64x4(_mm512_castpd256_pd512(ROW(k)), ROW(k + 4), 1)
+  const vec r0 = ROWS_OF(0), r1 = ROWS_OF(1), r2 = ROWS_OF(2), r3 = ROWS_OF(3);
+#undef ROWS_OF
+#undef ROW
+  const vec even01 = _mm512_unpacklo_pd(r0, r1), even23 = _mm512_unpacklo_pd(r2, r3);
+  const vec odd01 = _mm512_unpackhi_pd(r0, r1), odd23 = _mm512_unpackhi_pd(r2, r3);
+  const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
+                high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  *t0 = _mm512_permutex2var_pd(even01, low, even23);
+  *t1 = _mm512_permutex2var_pd(odd01, low, odd23);
+  *t2 = _mm512_permutex2var_pd(even01, high, even23);
 }
 
 #include "sd_product_kernel.h"

@@ -41,16 +41,23 @@ static inline __attribute__((always_inline)) vec roots(vec v)
 }
 #endif
 
-#define COLUMN(row, j, k) ((vec){(row)[8 * (long) (j)[0] + (k)], (row)[8 * (long) (j)[1] + (k)]})
+#define COLUMN(row, width, j, k) \
+  ((vec){(row)[(width) * (long) (j)[0] + (k)], (row)[(width) * (long) (j)[1] + (k)]})
 #define ROWS(row, j, x, y, z, a, f0, f1, f2) \
   do {                                       \
-    x = COLUMN(row, j, 0);                   \
-    y = COLUMN(row, j, 1);                   \
-    z = COLUMN(row, j, 2);                   \
-    a = COLUMN(row, j, 3);                   \
-    f0 = COLUMN(row, j, 4);                  \
-    f1 = COLUMN(row, j, 5);                  \
-    f2 = COLUMN(row, j, 6);                  \
+    x = COLUMN(row, 8, j, 0);                \
+    y = COLUMN(row, 8, j, 1);                \
+    z = COLUMN(row, 8, j, 2);                \
+    a = COLUMN(row, 8, j, 3);                \
+    f0 = COLUMN(row, 8, j, 4);               \
+    f1 = COLUMN(row, 8, j, 5);               \
+    f2 = COLUMN(row, 8, j, 6);               \
+  } while (0)
+#define TORQUES(row, j, t0, t1, t2) \
+  do {                              \
+    t0 = COLUMN(row, 4, j, 0);      \
+    t1 = COLUMN(row, 4, j, 1);      \
+    t2 = COLUMN(row, 4, j, 2);      \
   } while (0)
 
 #include "sd_product_kernel.h"

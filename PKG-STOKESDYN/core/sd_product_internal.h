@@ -6,9 +6,12 @@
 
 struct sd_kernels {
   int lanes; /* doubles of a vector: padding of the columns */
-  void (*symmetric)(const sd_packed *p, int part, int parts); /* columns: u += */
-  void (*targets)(const sd_packed *p, int i0, int i1);        /* columns: u += */
-  void (*list)(const sd_packed *p, const sd_pairs *pairs);    /* rows: u = */
+  void (*symmetric)(const sd_packed *p, int part, int parts);       /* columns: u += */
+  void (*targets)(const sd_packed *p, int i0, int i1);              /* columns: u += */
+  void (*list)(const sd_packed *p, const sd_pairs *pairs);          /* rows: u = */
+  void (*grand_symmetric)(const sd_packed *p, int part, int parts); /* the same with torques */
+  void (*grand_targets)(const sd_packed *p, int i0, int i1);
+  void (*grand_list)(const sd_packed *p, const sd_pairs *pairs);
   /* out += L L^T in (sd_precondition.h): vectors of 4 doubles a sphere, blocks of 3 x 4 floats */
   void (*sparse)(int columns, const long *first, const int *row, const float *value,
                  const double *in, double *out);

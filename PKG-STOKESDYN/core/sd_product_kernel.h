@@ -4,6 +4,7 @@
  *   vec, mask       types; vec is a vector type of GCC and clang, so + - * / work on it
  *   LOAD STORE SET1 LE EQ ANY SELECT MAX SQRT RSQRT   (SELECT(m, a, b): a where m)
  *   ROWS(row, j, x, y, z, a, f0, f1, f2)   columns of the LANES rows j[0] ... of eight doubles
+ *   TORQUES(row, j, t0, t1, t2)            the same of four doubles
  *
  * With y = 1/R, m = (a_i^2 + a_j^2) y^2, and everything times 4/3 (undone at the end, with w_i/(6 pi)):
  *   far       u_i += (y + y m/3) F_j + (y - y m) y^2 r (r.F_j)
@@ -30,17 +31,11 @@ static __attribute__((noinline)) void overlap(vec r2, vec ai, vec aj, vec *f, ve
   *h = SET1(4.0 / 3.0) * SELECT(coincide, zero, SELECT(inside, zero, hh));
 }
 
-INLINE void taper(sd_taper kind, vec q, vec *f, vec *h)
+INLINE vec taper_factor(sd_taper kind, vec q)
 {
-  if (kind == SD_TAPER_NONE) return;
   const vec one = SET1(1.0), s = MAX(one - q, SET1(0.0));
-  vec t;
-  if (kind == SD_TAPER_WENDLAND)
-    t = (s * s) * (s * s) * (one + SET1(4.0) * q);
-  else
-    t = s * s * (one + SET1(0.5) * q); /* 1 - 3q/2 + q^3/2 */
-  *f *= t;
-  *h *= t;
+  if (kind == SD_TAPER_WENDLAND) return (s * s) * (s * s) * (one + SET1(4.0) * q);
+  return s * s * (one + SET1(0.5) * q); /* 1 - 3q/2 + q^3/2 */
 }
 
 /* The block of a pair: what every kernel shares. squares = a_i^2 + a_j^2; inverse = 1/range. */
@@ -74,7 +69,11 @@ INLINE void block(sd_tensor tensor, sd_taper kind, vec inverse, vec r2, vec ai, 
     *h = SELECT(over, ho, *h);
     if (kind != SD_TAPER_NONE) q = SELECT(over, SQRT(r2) * inverse, q);
   }
-  taper(kind, q, f, h);
+  if (kind != SD_TAPER_NONE) {
+    const vec t = taper_factor(kind, q);
+    *f *= t;
+    *h *= t;
+  }
 }
 
 INLINE vec inverse_range(sd_taper kind, const sd_packed *p)
@@ -197,6 +196,15 @@ INLINE void targets(sd_tensor tensor, sd_taper kind, const sd_packed *p, int i0,
   }
 }
 
+/* The next LANES neighbours from k on; what is missing before end is the row that stands for nothing. */
+INLINE const int *neighbors(const sd_pairs *pairs, long k, long end, int nothing, int *rest)
+{
+  const int *j = pairs->neighbor + k;
+  if (end - k >= LANES) return j;
+  for (int l = 0; l < LANES; l++) rest[l] = k + l < end ? j[l] : nothing;
+  return rest;
+}
+
 INLINE void list(sd_tensor tensor, sd_taper kind, const sd_packed *p, const sd_pairs *pairs)
 {
   const vec inverse = inverse_range(kind, p);
@@ -208,11 +216,7 @@ INLINE void list(sd_tensor tensor, sd_taper kind, const sd_packed *p, const sd_p
     const long end = pairs->first[i + 1];
     for (long k = pairs->first[i]; k < end; k += LANES) {
       int rest[LANES];
-      const int *j = pairs->neighbor + k;
-      if (end - k < LANES) {
-        for (int l = 0; l < LANES; l++) rest[l] = k + l < end ? j[l] : p->n;
-        j = rest;
-      }
+      const int *j = neighbors(pairs, k, end, p->n, rest);
       vec xj, yj, zj, aj, F0, F1, F2, f, h;
       ROWS(p->row, j, xj, yj, zj, aj, F0, F1, F2);
       const vec dx = x - xj, dy = y - yj, dz = z - zj, r2 = dx * dx + dy * dy + dz * dz;
@@ -271,6 +275,8 @@ static void run_list(const sd_packed *p, const sd_pairs *pairs)
 #undef CALL
 }
 
+#include "sd_grand_kernel.h"
+
 /* The sparse factor: the fourth lane is padding. */
 typedef double quad __attribute__((vector_size(32)));
 typedef float quad_float __attribute__((vector_size(16)));
@@ -306,4 +312,6 @@ static void run_sparse(int columns, const long *first, const int *row, const flo
   }
 }
 
-const struct sd_kernels SD_KERNELS = {LANES, run_symmetric, run_targets, run_list, run_sparse};
+const struct sd_kernels SD_KERNELS = {LANES,          run_symmetric,       run_targets,
+                                      run_list,       run_grand_symmetric, run_grand_targets,
+                                      run_grand_list, run_sparse};

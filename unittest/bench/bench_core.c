@@ -57,41 +57,94 @@ static inline void rival_pair(const double *x, const double *a, const double *F,
   u[2] += f * F[3 * j + 2] + c * dz;
 }
 
-static __attribute__((noinline)) void rival_all(const double *x, const double *a, const double *F,
-                                                int n, double *u)
+/* The same with torques, times 8 pi instead of 6 pi. */
+static inline void rival_grand_pair(const double *x, const double *a, const double *F, int i, int j,
+                                    double u[6])
+{
+  const double *G = F + 6 * j, *T = G + 3;
+  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1],
+               dz = x[3 * i + 2] - x[3 * j + 2];
+  const double r2 = dx * dx + dy * dy + dz * dz, R = sqrt(r2);
+  double f, h, k, e, cij, cji;
+  if (R > a[i] + a[j]) {
+    const double y = 1.0 / R, y2 = y * y, m = (a[i] * a[i] + a[j] * a[j]) * y2;
+    f = y * (1.0 + m / 3.0);
+    h = y * (1.0 - m) * y2;
+    cij = cji = y * y2;
+    k = -0.5 * cij;
+    e = 1.5 * cij * y2;
+  } else {
+    const double y = R > 0.0 ? 1.0 / R : 0.0;
+    double g, ge;
+    sd_rpy_radial(R, a[i], a[j], &f, &g);
+    sd_rpy_radial_wt(R, a[i], a[j], &k, &ge);
+    f *= 4.0 / 3.0;
+    h = 4.0 / 3.0 * g * y * y;
+    e = ge * y * y;
+    cij = sd_rpy_radial_wf(R, a[i], a[j]) * y;
+    cji = sd_rpy_radial_wf(R, a[j], a[i]) * y;
+  }
+  const double c = h * (dx * G[0] + dy * G[1] + dz * G[2]),
+               d = e * (dx * T[0] + dy * T[1] + dz * T[2]);
+  u[0] += f * G[0] + c * dx + cji * (T[1] * dz - T[2] * dy);
+  u[1] += f * G[1] + c * dy + cji * (T[2] * dx - T[0] * dz);
+  u[2] += f * G[2] + c * dz + cji * (T[0] * dy - T[1] * dx);
+  u[3] += k * T[0] + d * dx + cij * (G[1] * dz - G[2] * dy);
+  u[4] += k * T[1] + d * dy + cij * (G[2] * dx - G[0] * dz);
+  u[5] += k * T[2] + d * dz + cij * (G[0] * dy - G[1] * dx);
+}
+
+static __attribute__((noinline)) void rival_all(int m, const double *x, const double *a,
+                                                const double *F, int n, double *u)
 {
   for (int i = 0; i < n; i++) {
-    double sum[3] = {0.0, 0.0, 0.0};
-    for (int j = 0; j < n; j++)
-      if (j != i) rival_pair(x, a, F, i, j, sum);
-    for (int d = 0; d < 3; d++) u[3 * i + d] = sum[d] / (6.0 * SD_PI);
+    double sum[6] = {0.0};
+    if (m == 3)
+      for (int j = 0; j < n; j++) {
+        if (j != i) rival_pair(x, a, F, i, j, sum);
+      }
+    else
+      for (int j = 0; j < n; j++)
+        if (j != i) rival_grand_pair(x, a, F, i, j, sum);
+    for (int d = 0; d < m; d++) u[m * i + d] = sum[d] / ((m == 3 ? 6.0 : 8.0) * SD_PI);
   }
 }
 
-static __attribute__((noinline)) void rival_list(const double *x, const double *a, const double *F,
-                                                 const sd_pairs *pairs, double *u)
+static __attribute__((noinline)) void rival_list(int m, const double *x, const double *a,
+                                                 const double *F, const sd_pairs *pairs, double *u)
 {
   for (int i = 0; i < pairs->n; i++) {
-    double sum[3] = {0.0, 0.0, 0.0};
-    for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
-      rival_pair(x, a, F, i, pairs->neighbor[k], sum);
-    for (int d = 0; d < 3; d++) u[3 * i + d] = sum[d] / (6.0 * SD_PI);
+    double sum[6] = {0.0};
+    if (m == 3)
+      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
+        rival_pair(x, a, F, i, pairs->neighbor[k], sum);
+    else
+      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
+        rival_grand_pair(x, a, F, i, pairs->neighbor[k], sum);
+    for (int d = 0; d < m; d++) u[m * i + d] = sum[d] / ((m == 3 ? 6.0 : 8.0) * SD_PI);
   }
 }
 
-/* Forces of the rival are times w of their own sphere, as the packed product does inside. */
-static double *rival_forces(const scene *s, const double *F)
+/* Random forces, and those of the rival: times w of their own sphere, as the packed product does inside. */
+static double *random_forces(const scene *s, int m, double **rival)
 {
-  double *f = malloc(3 * sizeof(double) * (size_t) s->n);
-  for (int i = 0; i < 3 * s->n; i++) f[i] = s->w[i / 3] * F[i];
-  return f;
+  double *F = malloc((size_t) m * sizeof(double) * (size_t) s->n),
+         *f = malloc((size_t) m * sizeof(double) * (size_t) s->n);
+  uint64_t seed = 2;
+  for (int i = 0; i < m * s->n; i++) {
+    F[i] = uniform(&seed, -1, 1);
+    f[i] = s->w[i / m] * F[i];
+  }
+  *rival = f;
+  return F;
 }
 
-static double difference(const scene *s, const double *u, const double *rival)
+/* Of the m numbers of each of the first n spheres */
+static double difference(const scene *s, int m, int n, const double *u, const double *rival)
 {
   double off = 0.0, norm = 0.0;
-  for (int i = 0; i < 3 * s->n; i++) {
-    const double v = s->w[i / 3] * rival[i];
+  for (int i = 0; i < m * n; i++) {
+    const double v = s->w[i / m] * rival[i];
     off += (u[i] - v) * (u[i] - v);
     norm += v * v;
   }
@@ -114,43 +167,44 @@ static scene polydisperse(int n, uint64_t seed)
   return s;
 }
 
-static void bench_product(int n)
+static void head_of_products(void)
+{
+  printf("  %-34s %10s %8s %10s\n", "", "G pairs/s", "ratio", "error");
+}
+
+/* m: 3 numbers a sphere, with torques 6 */
+static void bench_product(int n, int m)
 {
   scene s = polydisperse(n, 1);
   const sd_spheres spheres = {s.x, s.a, s.w};
-  const size_t bytes = 3 * sizeof(double) * (size_t) n;
-  double *F = malloc(bytes), *u = malloc(bytes), *expected = malloc(bytes), t[2][RUNS];
-  uint64_t seed = 2;
-  for (int i = 0; i < 3 * n; i++) F[i] = uniform(&seed, -1, 1);
-  double *rival = rival_forces(&s, F);
+  const size_t bytes = (size_t) m * sizeof(double) * (size_t) n;
+  double *u = malloc(bytes), *expected = malloc(bytes), *rival, t[2][RUNS];
+  double *F = random_forces(&s, m, &rival);
   const double pairs = (double) n * n;
-  const int repeat = 1 + (int) (1e8 / pairs), part = n / 2;
-  printf("\nProduct, all pairs, %d polydisperse spheres, phi 0.2\n", n);
-  printf("  %-34s %10s %8s %10s\n", "", "G pairs/s", "ratio", "error");
+  const int repeat = 1 + (int) (1e8 / pairs);
+  printf("\nProduct, all pairs, %d polydisperse spheres, phi 0.2%s\n", n,
+         m == 6 ? ", with torques" : "");
+  head_of_products();
   for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
     if (!sd_isa_supported(isa)) continue;
-    sd_packed p = {0};
+    sd_packed p = {.rotation = m == 6};
     if (sd_packed_all(&p, isa, &RPY, &spheres, n) != SD_OK) abort();
     for (int one_sided = 0; one_sided < 2; one_sided++) {
-      const int targets = one_sided ? part : n;
+      const int targets = one_sided ? n / 2 : n;
       for (int k = 0; k < RUNS; k++) {
         double begin = cpu();
-        rival_all(s.x, s.a, rival, n, expected);
+        rival_all(m, s.x, s.a, rival, n, expected);
         t[0][k] = cpu() - begin;
         begin = cpu();
         for (int r = 0; r < repeat; r++) sd_packed_product(&p, 0, targets, F, u);
         t[1][k] = (cpu() - begin) / repeat;
       }
-      if (one_sided)
-        memcpy(u + 3 * part, expected + 3 * part, bytes - 3 * sizeof(double) * (size_t) part);
-      if (one_sided)
-        for (int i = 3 * part; i < 3 * n; i++) u[i] *= s.w[i / 3];
       char name[64];
       snprintf(name, sizeof(name), "%s, %s", sd_isa_name(isa),
                one_sided ? "half the targets" : "all targets");
       const double mine = median(t[1]) / targets * n, its = median(t[0]);
       printf("  %-34s %10.3f %8.2f %10.1e\n", name, 1e-9 * pairs / mine, its / mine,
-             difference(&s, u, expected));
+             difference(&s, m, targets, u, expected));
     }
     sd_packed_free(&p);
   }
@@ -162,18 +216,14 @@ static void bench_product(int n)
   scene_free(&s);
 }
 
-static void bench_list(int n, double neighbors)
+static void bench_list(int n, double neighbors, int m)
 {
   scene s = polydisperse(n, 1);
   const sd_spheres spheres = {s.x, s.a, s.w};
-  const size_t bytes = 3 * sizeof(double) * (size_t) n;
-  double *F = malloc(bytes), *u = malloc(bytes), *expected = malloc(bytes), t[2][RUNS], side = 0.0;
-  uint64_t seed = 2;
-  for (int i = 0; i < 3 * n; i++) {
-    F[i] = uniform(&seed, -1, 1);
-    side = fmax(side, s.x[i]);
-  }
-  double *rival = rival_forces(&s, F);
+  const size_t bytes = (size_t) m * sizeof(double) * (size_t) n;
+  double *u = malloc(bytes), *expected = malloc(bytes), *rival, t[2][RUNS], side = 0.0;
+  double *F = random_forces(&s, m, &rival);
+  for (int i = 0; i < 3 * n; i++) side = fmax(side, s.x[i]);
   sd_neighbors list = {0};
   double cutoff = side * cbrt(neighbors / (4.0 / 3.0 * SD_PI * n));
   for (int k = 0; k < 6; k++) { /* fewer neighbours at the border: widen the cut-off */
@@ -182,15 +232,16 @@ static void bench_list(int n, double neighbors)
   }
   const double pairs = (double) list.pairs.first[n];
   const int repeat = 1 + (int) (2e7 / pairs);
-  printf("\nProduct by list, %d polydisperse spheres, %.1f neighbours\n", n, pairs / n);
-  printf("  %-34s %10s %8s %10s\n", "", "G pairs/s", "ratio", "error");
+  printf("\nProduct by list, %d polydisperse spheres, %.1f neighbours%s\n", n, pairs / n,
+         m == 6 ? ", with torques" : "");
+  head_of_products();
   for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
     if (!sd_isa_supported(isa)) continue;
-    sd_packed p = {0};
+    sd_packed p = {.rotation = m == 6};
     if (sd_packed_list(&p, isa, &RPY, &spheres, n) != SD_OK) abort();
     for (int k = 0; k < RUNS; k++) {
       double begin = cpu();
-      for (int r = 0; r < repeat; r++) rival_list(s.x, s.a, rival, &list.pairs, expected);
+      for (int r = 0; r < repeat; r++) rival_list(m, s.x, s.a, rival, &list.pairs, expected);
       t[0][k] = (cpu() - begin) / repeat;
       begin = cpu();
       for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, F, u);
@@ -198,7 +249,7 @@ static void bench_list(int n, double neighbors)
     }
     const double mine = median(t[1]), its = median(t[0]);
     printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
-           difference(&s, u, expected));
+           difference(&s, m, n, u, expected));
     sd_packed_free(&p);
   }
   printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(t[0]));
@@ -442,9 +493,11 @@ int main(int argc, char **argv)
   const int quick = argc > 1 && strcmp(argv[1], "quick") == 0;
   setvbuf(stdout, NULL, _IOLBF, 0);
   printf("Best instruction set: %s\n", sd_isa_name(sd_isa_best()));
-  bench_product(1000);
-  if (!quick) bench_product(10000);
-  bench_list(10000, 88.0);
+  for (int m = 3; m <= 6; m += 3) {
+    bench_product(1000, m);
+    if (!quick) bench_product(10000, m);
+    bench_list(10000, 88.0, m);
+  }
   bench_lattice(quick ? 5 : 10);
   bench_flocs();
   bench_dense_cloud();

@@ -1,46 +1,55 @@
 /* The packed product against the plain one, for every instruction set that this machine runs. */
 #include "scene.h"
 
+#include "sd_grand.h"
+
 #include <string.h>
 
 static const sd_isa isas[] = {SD_ISA_BEST, SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2,
                               SD_ISA_AVX512};
 static const double TOLERANCE = 1e-14; /* of the sum of the absolute contributions to a target */
 
-/* Sum of what could reach target i, an upper bound of |u_i| term by term. */
-static double reach(const scene *s, int i, const double *F)
+static double size_of(const double v[3])
 {
-  double sum = 0.0;
-  for (int j = 0; j < s->n; j++) {
-    if (j == i || s->a[j] == 0.0) continue;
-    double r = 0.0, f = 0.0;
-    for (int d = 0; d < 3; d++) {
-      r += pow(s->x[3 * i + d] - s->x[3 * j + d], 2);
-      f += F[3 * j + d] * F[3 * j + d];
-    }
-    const double nearest = fmax(sqrt(r), fmax(s->a[i], s->a[j]));
-    sum += s->w[i] * s->w[j] * sqrt(f) * 2.0 / (6.0 * SD_PI * nearest);
-  }
-  return sum;
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static void compare(const scene *s, const double *F, const double *u, const double *expected,
+/* Sum of what could reach target i, an upper bound of |U_i| (bound [0]) and |W_i| (bound [1]) term by term. */
+static void reach(const scene *s, int m, int i, const double *F, double bound[2])
+{
+  bound[0] = bound[1] = 0.0;
+  for (int j = 0; j < s->n && s->a[i] > 0.0; j++) {
+    if (j == i || s->a[j] == 0.0) continue;
+    double r[3];
+    for (int d = 0; d < 3; d++) r[d] = s->x[3 * i + d] - s->x[3 * j + d];
+    const double near = fmax(size_of(r), fmax(s->a[i], s->a[j]));
+    const double c = s->w[i] * s->w[j] / (4.0 * SD_PI * near), force = size_of(F + m * j),
+                 torque = m == 6 ? size_of(F + m * j + 3) : 0.0;
+    bound[0] += c * (force + torque / near);
+    bound[1] += c / near * (force + torque / near);
+  }
+}
+
+static void compare(const scene *s, int m, const double *F, const double *u, const double *expected,
                     int begin, int count, const char *what)
 {
   for (int i = 0; i < count; i++) {
-    const double scale = s->a[begin + i] > 0.0 ? reach(s, begin + i, F) : 0.0;
-    for (int d = 0; d < 3; d++) {
-      const double off = fabs(u[3 * i + d] - expected[3 * i + d]);
-      if (!(off <= TOLERANCE * scale))
-        fail_msg("%s, sphere %d: off by %.2g of %.2g", what, begin + i, off, scale);
+    double bound[2];
+    reach(s, m, begin + i, F, bound);
+    for (int d = 0; d < m; d++) {
+      const double off = fabs(u[m * i + d] - expected[m * i + d]);
+      if (!(off <= TOLERANCE * bound[d / 3]))
+        fail_msg("%s, sphere %d, component %d: off by %.2g of %.2g", what, begin + i, d, off,
+                 bound[d / 3]);
     }
   }
 }
 
-/* All laws, all instruction sets: all targets, a range of targets, shares, and a list of all pairs. */
-static void check_scene(const scene *s, double range)
+/* All laws, all instruction sets: all targets, a range of targets, shares, and a list of all pairs. m: 3, with torques 6 numbers a
+ * sphere. */
+static void check_width(const scene *s, double range, int m)
 {
-  const size_t size = 3 * (size_t) s->n;
+  const size_t size = (size_t) m * (size_t) s->n;
   double *F = malloc(size * sizeof(double)), *u = malloc(size * sizeof(double)),
          *sum = malloc(size * sizeof(double)), *expected = malloc(size * sizeof(double));
   long *first = malloc(((size_t) s->n + 1) * sizeof(long));
@@ -55,37 +64,42 @@ static void check_scene(const scene *s, double range)
   const sd_pairs list = {s->n, first, neighbor};
   const sd_spheres spheres = {s->x, s->a, s->w};
   uint64_t seed = 77;
-  for (size_t i = 0; i < size; i++) F[i] = uniform(&seed, -1, 1);
+  double largest = 0.0;
+  for (int i = 0; i < s->n; i++) largest = fmax(largest, s->a[i]);
+  for (size_t i = 0; i < size; i++)
+    F[i] = uniform(&seed, -1, 1) * (i % m < 3 ? 1.0 : largest); /* torques in the scene's units */
 
   for (int taper = SD_TAPER_NONE; taper <= SD_TAPER_SPHERICAL; taper++) {
     const sd_law law = {s->kind, taper, range};
-    sd_product_all_law(&law, &spheres, s->n, 0, s->n, F, expected);
-    sd_product_list_law(&law, &spheres, &list, F, u);
-    compare(s, F, u, expected, 0, s->n, "plain list");
+    (m == 6 ? sd_product_grand_all : sd_product_all_law)(&law, &spheres, s->n, 0, s->n, F,
+                                                         expected);
+    (m == 6 ? sd_product_grand_list : sd_product_list_law)(&law, &spheres, &list, F, u);
+    compare(s, m, F, u, expected, 0, s->n, "plain list");
     for (size_t k = 0; k < sizeof(isas) / sizeof(isas[0]); k++) {
       char what[80];
       if (!sd_isa_supported(isas[k])) continue;
-      snprintf(what, sizeof(what), "%s, tensor %d, taper %d", sd_isa_name(isas[k]), s->kind, taper);
-      sd_packed p = {0};
+      snprintf(what, sizeof(what), "%s, width %d, tensor %d, taper %d", sd_isa_name(isas[k]), m,
+               s->kind, taper);
+      sd_packed p = {.rotation = m == 6};
       assert_int_equal(sd_packed_all(&p, isas[k], &law, &spheres, s->n), SD_OK);
       for (int again = 0; again < 2; again++) { /* a second product finds nothing of the first */
         sd_packed_product(&p, 0, s->n, F, u);
-        compare(s, F, u, expected, 0, s->n, what);
+        compare(s, m, F, u, expected, 0, s->n, what);
       }
       const int begin = s->n / 3, count = s->n - begin - s->n / 5;
       sd_packed_product(&p, begin, count, F, u);
-      compare(s, F, u, expected + 3 * begin, begin, count, what);
+      compare(s, m, F, u, expected + m * begin, begin, count, what);
       for (int parts = 1; parts <= 3; parts++) {
         memset(sum, 0, size * sizeof(double));
         for (int part = 0; part < parts; part++) {
           sd_packed_share(&p, part, parts, F, u);
           for (size_t i = 0; i < size; i++) sum[i] += u[i];
         }
-        compare(s, F, sum, expected, 0, s->n, what);
+        compare(s, m, F, sum, expected, 0, s->n, what);
       }
       assert_int_equal(sd_packed_list(&p, isas[k], &law, &spheres, s->n), SD_OK);
       sd_packed_pairs(&p, &list, F, u);
-      compare(s, F, u, expected, 0, s->n, what);
+      compare(s, m, F, u, expected, 0, s->n, what);
       sd_packed_free(&p);
     }
   }
@@ -95,6 +109,12 @@ static void check_scene(const scene *s, double range)
   free(sum);
   free(u);
   free(F);
+}
+
+static void check_scene(const scene *s, double range)
+{
+  check_width(s, range, 3);
+  if (s->kind == SD_TENSOR_RPY) check_width(s, range, 6);
 }
 
 /* n spheres in a cube; radii spread over the ratio, two viscosities and more */
@@ -189,7 +209,8 @@ static void any_unit_of_length(void **state)
       s.a[i] *= units[k];
       for (int d = 0; d < 3; d++) s.x[3 * i + d] *= units[k];
     }
-    check_scene(&s, 5.0 * units[k]);
+    check_width(&s, 5.0 * units[k], 3);
+    if (fabs(log10(units[k])) < 100.0) check_width(&s, 5.0 * units[k], 6); /* 1/a^3 is a number */
     scene_free(&s);
   }
   scene s = cloud(30, 12.0, 0.3, 1.2, 9);
