@@ -1,5 +1,5 @@
 /* Timings of the core, each as a ratio to a rival run in the same program, with the error of the answer beside it.
- *   bench_core [quick]      README.md has the command, what the rows mean and figures
+ *   bench_core [quick|kernel]      README.md has the command, what the rows mean and figures
  * Times are process CPU time on one core, medians of five; rival and core take turns, so that both meet the same load. */
 #include "clouds.h"
 
@@ -213,6 +213,26 @@ static void bench_product(int n, int m)
   free(F);
   free(u);
   free(expected);
+  scene_free(&s);
+}
+
+/* The bare kernel alone, for unittest/bench/product_in_lammps.py: directed pairs per second. */
+static void bench_kernel(int n, int m)
+{
+  scene s = polydisperse(n, 1);
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  double *rival, *F = random_forces(&s, m, &rival), t[RUNS];
+  sd_packed p = {.rotation = m == 6};
+  if (sd_packed_all(&p, SD_ISA_BEST, &RPY, &spheres, n) != SD_OK) abort();
+  for (int k = 0; k < RUNS; k++) {
+    const double begin = cpu();
+    sd_packed_product(&p, 0, n, F, rival);
+    t[k] = cpu() - begin;
+  }
+  printf("%d %.6g\n", m, (double) n * n / median(t));
+  sd_packed_free(&p);
+  free(rival);
+  free(F);
   scene_free(&s);
 }
 
@@ -492,6 +512,10 @@ int main(int argc, char **argv)
 {
   const int quick = argc > 1 && strcmp(argv[1], "quick") == 0;
   setvbuf(stdout, NULL, _IOLBF, 0);
+  if (argc > 1 && strcmp(argv[1], "kernel") == 0) {
+    for (int m = 3; m <= 6; m += 3) bench_kernel(10000, m);
+    return 0;
+  }
   printf("Best instruction set: %s\n", sd_isa_name(sd_isa_best()));
   for (int m = 3; m <= 6; m += 3) {
     bench_product(1000, m);

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Rate of the all-pairs product inside a LAMMPS run, on 1 and 2 ranks: 10 000 polydisperse spheres, max_iter 1.
+"""Rate of the all-pairs product inside a LAMMPS run, on 1 and 2 ranks, against the bare kernel of the core: 10 000 polydisperse
+spheres, forces alone and with torques (rotation yes), max_iter 1.
 
-    . build/env.sh; unittest/bench/product_in_lammps.py [REPEATS]
+    cmake --build build --target bench_core; . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/product_in_lammps.py [REPEATS]
 
 The pair time of the log holds all that a step of the pair style does. A solve of one iteration from zero has two products, that
-of the iteration and that of the residual checked at its end; of two iterations three. The difference of the two is one product
-and the vector work of one iteration. The best of the repeats is printed, as the least disturbed;
-processor time is pair time by the CPU use of the log."""
+of the iteration and that of the residual checked at its end. Kernel, 1 rank and 2 ranks take turns; medians of the repeats."""
 import os
 import re
 import subprocess
@@ -22,10 +21,17 @@ except ImportError:
     os.execv(DEBIAN, [DEBIAN] + sys.argv)
 
 N, STEPS = 10000, 5
+BENCH_CORE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "bench_core")
 
 
-def pair_time(folder, ranks, iterations):
-    """Seconds a step: of the clock, of the processor"""
+def kernel():
+    """Pairs per second of the bare kernel: of forces, with torques"""
+    words = subprocess.run([BENCH_CORE, "kernel"], check=True, capture_output=True, text=True).stdout.split()
+    return {"no": float(words[1]), "yes": float(words[3])}
+
+
+def pair_time(folder, ranks, rotation):
+    """Seconds a step"""
     rng = np.random.default_rng(1)
     a = rng.uniform(0.5, 1.5, N)
     side = (4 / 3 * np.pi * (a**3).sum() / 0.2)**(1 / 3)
@@ -43,8 +49,8 @@ boundary f f f
 comm_modify mode single
 plugin load stokesdynplugin.so
 read_data {data}
-pair_style stokes_dynamics cut_off_distance inf visc 1 algorithm 2 max_iter {iterations} relative_tolerance 1e-15 &
-           warm_start no precondition none
+pair_style stokes_dynamics cut_off_distance inf visc 1 algorithm 2 max_iter 1 relative_tolerance 1e-15 &
+           warm_start no precondition none rotation {rotation}
 pair_coeff * *
 fix drag all stokes_dynamics apply no
 run {STEPS}
@@ -58,25 +64,23 @@ run {STEPS}
     subprocess.run(words, check=True, env=env, stdout=subprocess.DEVNULL)
     with open(log) as lines:
         text = lines.read()
-    wall = float(re.search(r"^Pair +\| +\S+ +\| +(\S+)", text, re.M).group(1)) / STEPS
-    return wall, wall * float(re.search(r"([0-9.]+)% CPU use", text).group(1)) / 100.0
+    return float(re.search(r"^Pair +\| +\S+ +\| +(\S+)", text, re.M).group(1)) / STEPS
 
 
 def main():
     repeats = int(sys.argv[1]) if len(sys.argv) > 1 else 5
-    best = {}
+    cases = [(rotation, ranks) for rotation in ("no", "yes") for ranks in (0, 1, 2)]    # 0: the kernel
+    rate = {case: [] for case in cases}
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(repeats):
-            for ranks in (1, 2):
-                for iterations in (1, 2):
-                    key = ranks, iterations
-                    best[key] = np.minimum(best.get(key, np.inf), pair_time(folder, ranks, iterations))
-    for k, clock in enumerate(("wall clock", "processor time of a rank")):
-        for ranks in (1, 2):
-            one, two = best[ranks, 1][k], best[ranks, 2][k]
-            print(f"{clock}, {ranks} rank(s): pair time {one:.4f} s a step, 2 products: {2e-9 * N * N / one:.3f} G pairs/s; "
-                  f"one more product: {1e-9 * N * N / (two - one):.3f} G pairs/s")
-        print(f"2 ranks against 1: {best[1, 1][k] / best[2, 1][k]:.2f}")
+            bare = kernel()
+            for rotation, ranks in cases:
+                rate[rotation, ranks].append(2 * N * N / pair_time(folder, ranks, rotation) if ranks else bare[rotation])
+    print(f"{'':34s} {'G pairs/s':>10s} {'of kernel':>10s} {'of 1 rank':>10s}")
+    for rotation, ranks in cases:
+        name = ("forces and torques" if rotation == "yes" else "forces") + (f", {ranks} rank(s)" if ranks else ", bare kernel")
+        now, bare, one = (np.median(rate[rotation, r]) for r in (ranks, 0, 1))
+        print(f"{name:34s} {1e-9 * now:10.3f} {now / bare:10.2f} " + (f"{now / one:10.2f}" if ranks else ""))
 
 
 if __name__ == "__main__":
