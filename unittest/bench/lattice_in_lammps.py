@@ -34,7 +34,7 @@ create_box 1 box
 region grid block {-0.1 * A} {end - A} {-0.1 * A} {end - A} {-0.1 * A} {end - A} units box
 create_atoms 1 region grid
 set group all diameter {2 * A!r} density 1
-velocity all set {U!r} 0 0
+velocity all set {U!r} 0 0 units box
 timestep 1e-12
 pair_style stokes_dynamics cut_off_distance inf visc {ETA!r} algorithm 2 relative_tolerance 1e-6 max_iter 1000 &
            warm_start no precondition {precondition}
