@@ -72,7 +72,10 @@ typedef struct {
   void (*progress)(void *ctx, int solve, int solves, int products);
   void *progress_ctx;
 } sd_clump_options;
-#define SD_CLUMP_OPTIONS {1, 0, 2e9, 1e-8, 2000, NULL, NULL} /* shell, rotation, memory, tolerance, max_iter */
+#define SD_CLUMP_OPTIONS              \
+  {                                   \
+    1, 0, 2e9, 1e-8, 2000, NULL, NULL \
+  } /* shell, rotation, memory, tolerance, max_iter */
 
 sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *options,
                          sd_clump_need *need);

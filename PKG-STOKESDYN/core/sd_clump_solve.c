@@ -1,0 +1,162 @@
+#include "sd_clump_internal.h"
+
+#include "sd_linear.h"
+#include "sd_precondition.h"
+#include "sd_product.h"
+#include "sd_solve.h"
+#include "sd_tensor.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the sparse factor, which then has up to BLOCKS blocks a point: surfaces have fewer than clouds. */
+static const double REACH = 3.0, BLOCKS = 50.0;
+
+static double dense_bytes(double unknowns)
+{
+  return sizeof(double) * (unknowns * unknowns + SD_CLUMP_COLUMNS * unknowns);
+}
+
+static double iterative_bytes(double unknowns)
+{
+  return (sizeof(double) * (SD_CLUMP_COLUMNS + 14) + 18.0 * BLOCKS) * unknowns;
+}
+
+int sd_clump_width(const sd_clump_options *o)
+{
+  return o->shell == 1 && o->rotation ? 6 : 3;
+}
+
+sd_status sd_clump_check_need(double points, const sd_clump_options *o, sd_clump_need *need)
+{
+  need->points = (long) points;
+  need->dense = dense_bytes(points * sd_clump_width(o));
+  need->iterative = iterative_bytes(points * sd_clump_width(o));
+  return fmin(need->iterative, need->dense) <= o->memory ? SD_OK : SD_ENOMEMORY;
+}
+
+sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *o, sd_clump_need *need)
+{
+  const int n = sd_shell_size(o->shell);
+  double points = shape->n;
+  if (n > 1) {
+    int *count = malloc(sizeof(int) * (size_t) shape->n);
+    if (!count) return SD_ENOMEMORY;
+    sd_surface_share(shape, n, NULL, count);
+    points = 0.0;
+    for (int i = 0; i < shape->n; i++) points += count[i];
+    free(count);
+  }
+  return sd_clump_check_need(points, o, need);
+}
+
+/* Slip of the unit column at y: velocity s, angular velocity w */
+static void unit_slip(int column, const double y[3], double s[3], double w[3])
+{
+  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
+  for (int d = 0; d < 3; d++) s[d] = w[d] = 0.0;
+  if (column < 3)
+    s[column] = 1.0;
+  else if (column < 6) {
+    w[column - 3] = 1.0;
+    sd_cross(w, y, s);
+  } else {
+    const int p = row[column - 6], q = col[column - 6];
+    s[p] = y[q];
+    s[q] = y[p];
+  }
+}
+
+static sd_status solve_dense(const sd_surface *s, int m, double *B)
+{
+  const size_t N = (size_t) m * s->n;
+  double *A = malloc(sizeof(double) * N * N);
+  if (!A) return SD_ENOMEMORY;
+  for (int i = 0; i < s->n; i++)
+    for (int j = i; j < s->n; j++) {
+      const double *x = s->x + 3 * (size_t) i, *y = s->x + 3 * (size_t) j,
+                   r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      double M[36];
+      if (m == 6)
+        sd_tensor_grand(r, s->a[i], s->a[j], 1.0, M);
+      else
+        sd_tensor_uf(SD_TENSOR_RPY, r, s->a[i], s->a[j], 1.0, M);
+      for (int p = 0; p < m; p++)
+        memcpy(A + (m * (size_t) i + p) * N + m * (size_t) j, M + m * p, sizeof(double) * m);
+    }
+  const sd_status status = sd_cholesky_solve((int) N, A, SD_CLUMP_COLUMNS, B);
+  free(A);
+  return status;
+}
+
+typedef struct {
+  const sd_clump_options *o;
+  sd_packed packed;
+  int n, solve, solves, products;
+} operator;
+
+static void apply(void *ctx, const double *F, double *u)
+{
+  operator* op = ctx;
+  if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->solves, op->products++);
+  sd_packed_product(&op->packed, 0, op->n, F, u);
+}
+
+/* Twelve right-hand sides pay for a sparse factor; where it cannot be made, the diagonal serves. */
+static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o, int k, int times,
+                                 double *B, int *iterations)
+{
+  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const int m = sd_clump_width(o), n = s->n;
+  const size_t N = (size_t) m * n;
+  double *F = malloc(sizeof(double) * (N + (size_t) SD_SOLVE_WORK(n, m) + 3 * (size_t) n));
+  if (!F) return SD_ENOMEMORY;
+  double *work = F + N, *drag = work + SD_SOLVE_WORK(n, m), *spin = drag + n, *ones = spin + n;
+  for (int i = 0; i < n; i++) {
+    drag[i] = 6.0 * SD_PI * s->a[i];
+    spin[i] = 8.0 * SD_PI * s->a[i] * s->a[i] * s->a[i];
+    ones[i] = 1.0;
+  }
+  const sd_spheres spheres = {s->x, s->a, ones};
+  operator op = {
+      .o = o, .packed = {.rotation = m == 6}, .n = n, .solves = SD_CLUMP_COLUMNS * times};
+  sd_system A = {
+      .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
+  sd_sparse factor;
+  if (sd_sparse_create(&factor, &law, &spheres, n, REACH, 0, 1) == SD_OK) {
+    factor.width = m;
+    factor.drag = drag;
+    factor.spin = A.spin;
+    A.precondition = sd_sparse_apply;
+    A.precondition_ctx = &factor;
+  }
+  sd_status status = sd_packed_all(&op.packed, SD_ISA_BEST, &law, &spheres, n);
+  for (int c = 0; c < SD_CLUMP_COLUMNS && status == SD_OK; c++) {
+    sd_solve_report report;
+    op.solve = SD_CLUMP_COLUMNS * k + c;
+    op.products = 0;
+    status =
+        sd_solve_gradients(&A, B + N * (size_t) c, o->tolerance, o->max_iter, F, work, &report);
+    if (report.iterations > *iterations) *iterations = report.iterations;
+    memcpy(B + N * (size_t) c, F, sizeof(double) * N);
+  }
+  sd_sparse_free(&factor);
+  sd_packed_free(&op.packed);
+  free(F);
+  return status;
+}
+
+sd_status sd_clump_solve(const sd_surface *s, const sd_clump_options *o, const sd_clump_need *need,
+                         int k, int times, double *B, int *iterations)
+{
+  const int m = sd_clump_width(o);
+  for (int c = 0; c < SD_CLUMP_COLUMNS; c++)
+    for (int i = 0; i < s->n; i++) {
+      double u[3], w[3], *b = B + (size_t) m * ((size_t) s->n * c + i);
+      unit_slip(c, s->x + 3 * (size_t) i, u, w);
+      memcpy(b, u, sizeof(u));
+      if (m == 6) memcpy(b + 3, w, sizeof(w));
+    }
+  return need->dense <= o->memory ? solve_dense(s, m, B)
+                                  : solve_iterative(s, o, k, times, B, iterations);
+}
