@@ -100,7 +100,9 @@ void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradient)
 
 double Field::evaluate(LAMMPS *lmp)
 {
-  if (is_variable()) value = lmp->input->variable->compute_equal(lmp->input->variable->find(const_cast<char *>(name.c_str())));
+  if (is_variable())
+    value = lmp->input->variable->compute_equal(
+        lmp->input->variable->find(const_cast<char *>(name.c_str())));
   return value;
 }
 

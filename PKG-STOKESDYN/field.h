@@ -26,7 +26,7 @@ class Field {
   /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms outside the group. nullptr, if not of
    * atom style: only number() is brought up to date. */
   void evaluate(LAMMPS_NS::LAMMPS *lmp, int igroup, double *out, int stride);
-  double evaluate(LAMMPS_NS::LAMMPS *lmp);            // of a number or an equal-style variable
+  double evaluate(LAMMPS_NS::LAMMPS *lmp);    // of a number or an equal-style variable
 
  private:
   double value = 0.0;

@@ -75,7 +75,8 @@ class FixHydroVans : public LAMMPS_NS::Fix {
   LAMMPS_NS::bigint weights_of = -1;    // number of atoms when the overlaps were counted
 
   /* Of the last step. */
-  double local[5] = {0, 0, 0, 0, 0}, global[5];    // force x y z, drag along x, spheres outside; of this rank, of all
+  double local[5] = {0, 0, 0, 0, 0},
+         global[5];    // force x y z, drag along x, spheres outside; of this rank, of all
   LAMMPS_NS::bigint summed_step = -1;
   bool told_outside = false;
 

@@ -109,6 +109,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   std::vector<Sphere> spheres;    // of one clump, in order of its shape
   std::vector<double> x, F, T;
 
+  static constexpr double RIGID_TO = 1e-4;    // of its size: more is not the same shape any more
+
+  /* The numbers of all ranks, one rank after the other. */
+  static std::vector<double> from_all_ranks(const std::vector<double> &mine, MPI_Comm world);
   void recognise();
   void geometry(const Scene::Clump &clump, std::vector<double> &centres,
                 std::vector<double> &radii) const;
@@ -119,7 +123,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void match(const std::vector<size_t> &unknown);
   void gather(const Motion &motion);
   void begin_step(const Motion &motion, std::vector<char> &loose);
-  bool evaluate(size_t number, const Motion &motion, std::vector<char> &loose);    // F and T of a clump, if it has any
+  bool evaluate(size_t number, const Motion &motion,
+                std::vector<char> &loose);    // F and T of a clump, if it has any
   void end_step(std::vector<char> &loose);
   void slip(const Shape &s, const double R[9], const double c[3], const Motion &m, double s0[3],
             double W[3], double A[9]) const;

@@ -59,7 +59,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   void refresh(std::vector<double> &values, int width);
   /* The same, but only what goes to a ghost is written at all: row(i, out) writes that of the owned atom i. ghosts: rows of the
    * ghosts, in order of LAMMPS. */
-  void refresh_ghosts(std::vector<double> &ghosts, int width, const std::function<void(int, double *)> &row);
+  void refresh_ghosts(std::vector<double> &ghosts, int width,
+                      const std::function<void(int, double *)> &row);
 
   void lists_are_stale() { stale = clumps_stale = true; }
 

@@ -12,7 +12,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what, const std::string &file)
+std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what,
+                                           const std::string &file)
 {
   std::string text;
   int size = -1;
@@ -49,7 +50,8 @@ std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what,
       double value;
       if (!is_number(word, value) || !std::isfinite(value))
         fail(lmp,
-             what + ": file '" + file + "', line " + std::to_string(line_number) + ": '" + word + "' is not a finite number");
+             what + ": file '" + file + "', line " + std::to_string(line_number) + ": '" + word +
+                 "' is not a finite number");
       row.push_back(value);
       if (q == std::string::npos) break;
       p = q;
@@ -59,19 +61,21 @@ std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what,
   return rows;
 }
 
-static std::vector<double> read_list(LAMMPS *lmp, const std::string &what, const std::string &file, size_t expected,
-                                     const std::string &count)
+static std::vector<double> read_list(LAMMPS *lmp, const std::string &what, const std::string &file,
+                                     size_t expected, const std::string &count)
 {
   std::vector<double> list;
-  for (const auto &row : read_rows(lmp, what, file)) list.insert(list.end(), row.begin(), row.end());
+  for (const auto &row : read_rows(lmp, what, file))
+    list.insert(list.end(), row.begin(), row.end());
   if (expected && list.size() != expected)
     fail(lmp,
-         what + ": file '" + file + "' has " + std::to_string(list.size()) + " values, " + count + " = " +
-             std::to_string(expected) + " are needed");
+         what + ": file '" + file + "' has " + std::to_string(list.size()) + " values, " + count +
+             " = " + std::to_string(expected) + " are needed");
   return list;
 }
 
-std::vector<double> read_profile(LAMMPS *lmp, const std::string &what, const std::string &file, int ncell)
+std::vector<double> read_profile(LAMMPS *lmp, const std::string &what, const std::string &file,
+                                 int ncell)
 {
   return read_list(lmp, what, file, ncell + 1, "ncell + 1");
 }
@@ -135,7 +139,8 @@ void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size
     } else if (in.is("solve")) {
       period = in.positive();
       dt = in.positive();
-      if (dt > period * (1.0 + 1e-9)) in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
+      if (dt > period * (1.0 + 1e-9))
+        in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
     } else if (in.is("stream"))
       rest = in.choice({"steady", "rest"}) == 1;
     else if (in.is("hindrance"))
@@ -146,8 +151,8 @@ void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size
       else
         lift = in.number();
     } else if (in.is("turbulence"))
-      turbulence =
-          (sd_vans_turbulence) in.choice({"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
+      turbulence = (sd_vans_turbulence) in.choice(
+          {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
     else if (in.is("kappa"))
       kappa = in.positive();
     else if (in.is("phi_max") || in.is("phi_bed")) {
@@ -182,7 +187,8 @@ void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size
     } else if (in.is("grains"))
       point = in.choice({"extended", "point"}) == 1;
     else if (in.is("fluctuation")) {
-      fluctuation = (decltype(fluctuation)) in.choice({"none", "correlated", "uncorrelated", "depth"});
+      fluctuation =
+          (decltype(fluctuation)) in.choice({"none", "correlated", "uncorrelated", "depth"});
       if (fluctuation != NO_FLUCTUATION) {
         seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
         find_bed = in.more() && in.peek() == "auto";
@@ -209,9 +215,11 @@ void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size
 
   if (!have_mesh) fail(lmp, command + ": keyword mesh (ncell dz zref, or file NAME) is required");
   if (!have_fluid) fail(lmp, command + ": keyword fluid (density and viscosity) is required");
-  if (!have_gravity) fail(lmp, command + ": keyword gravity (gx gy gz) is required; its x component is the slope");
+  if (!have_gravity)
+    fail(lmp, command + ": keyword gravity (gx gy gz) is required; its x component is the slope");
   if (rules == SD_VANS_YADE) {
-    if (!mesh_file.empty()) fail(lmp, keyword("mesh") + ": rules yade knows slices of one height only");
+    if (!mesh_file.empty())
+      fail(lmp, keyword("mesh") + ": rules yade knows slices of one height only");
     conserve = false;
   }
   if (couple != TWO) conserve = false;
@@ -220,21 +228,23 @@ void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size
     edge = read_list(lmp, keyword("mesh"), mesh_file, 0, "");
     if (edge.size() < 3)
       fail(lmp,
-           keyword("mesh") + ": file '" + mesh_file + "' has " + std::to_string(edge.size()) + " edges, at least 3 are needed");
+           keyword("mesh") + ": file '" + mesh_file + "' has " + std::to_string(edge.size()) +
+               " edges, at least 3 are needed");
     z_ref = edge[0];
     for (size_t k = 0; k < edge.size(); k++) {
       edge[k] -= z_ref;
       if (k > 0 && !(edge[k] > edge[k - 1]))
         fail(lmp,
-             keyword("mesh") + ": file '" + mesh_file + "': edge " + std::to_string(k + 1) + " (" + text(edge[k] + z_ref) +
-                 ") is not above the one before");
+             keyword("mesh") + ": file '" + mesh_file + "': edge " + std::to_string(k + 1) + " (" +
+                 text(edge[k] + z_ref) + ") is not above the one before");
     }
   } else
     for (bigint k = 0; k <= equal_cells; k++) edge.push_back(k * dz);
   const size_t N = ncell();
 
   if (!profile_file.empty()) profile = read_profile(lmp, keyword("profile"), profile_file, ncell());
-  if (!convective_file.empty()) convective = read_list(lmp, keyword("convective"), convective_file, N, "ncell");
+  if (!convective_file.empty())
+    convective = read_list(lmp, keyword("convective"), convective_file, N, "ncell");
   if (!given_file.empty()) {
     const auto rows = read_rows(lmp, keyword("given"), given_file);
     const size_t columns = 3 + 2 * class_radii.size();
@@ -246,23 +256,25 @@ void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size
     for (size_t n = 0; n < N; n++) {
       if (rows[n].size() != columns && rows[n].size() != 3)
         fail(lmp,
-             keyword("given") + ": file '" + given_file + "', row " + std::to_string(n + 1) + " has " +
-                 std::to_string(rows[n].size()) + " values; phi, velocity and drag" +
-                 (columns > 3 ? ", then phi and drag of each of class_radii," : "") + " are needed");
+             keyword("given") + ": file '" + given_file + "', row " + std::to_string(n + 1) +
+                 " has " + std::to_string(rows[n].size()) + " values; phi, velocity and drag" +
+                 (columns > 3 ? ", then phi and drag of each of class_radii," : "") +
+                 " are needed");
       if (rows[n].size() < given.size()) given.resize(3);
       for (size_t c = 0; c < given.size(); c++) given[c][n] = rows[n][c];
       if (!(rows[n][0] >= 0.0 && rows[n][0] < 1.0))
         fail(lmp,
-             keyword("given") + ": file '" + given_file + "': phi = " + text(rows[n][0]) + " in slice " +
-                 std::to_string(n + 1) + ", it must be in [0, 1)");
+             keyword("given") + ": file '" + given_file + "': phi = " + text(rows[n][0]) +
+                 " in slice " + std::to_string(n + 1) + ", it must be in [0, 1)");
     }
   }
   if (couple == FLUID && given.empty()) given.assign(3, std::vector<double>(N, 0.0));
-  if ((couple == TWO || couple == FLUID) && !rest && g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 && !driven &&
-      profile.empty())
+  if ((couple == TWO || couple == FLUID) && !rest && g[0] == 0.0 && !dpdx.is_variable() &&
+      dpdx.number() == 0.0 && !driven && profile.empty())
     fail(lmp,
          command +
-             ": nothing drives the stream: give gravity an x component (the slope), pressure_gradient, surface speed or a "
+             ": nothing drives the stream: give gravity an x component (the slope), "
+             "pressure_gradient, surface speed or a "
              "profile, or stream rest");
 }
 

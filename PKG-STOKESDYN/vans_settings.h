@@ -21,10 +21,11 @@ struct VansSettings {
   double rho = 0.0, eta = 0.0, g[3] = {0, 0, 0};
   double area = 0.0;    // 0: the box
   enum { NONE, ONE, TWO, FLUID } couple = TWO;
-  std::vector<double> profile;               // [N+1]; empty: zero
-  std::vector<std::vector<double>> given;    // columns phi, vx, drag, then phi and drag of each class; empty: averaged
-  std::vector<double> convective;            // [N] or empty
-  double period = 0.0, dt = 0.0;             // of the solve; 0: N steps, a tenth of it
+  std::vector<double> profile;    // [N+1]; empty: zero
+  std::vector<std::vector<double>>
+      given;    // columns phi, vx, drag, then phi and drag of each class; empty: averaged
+  std::vector<double> convective;    // [N] or empty
+  double period = 0.0, dt = 0.0;     // of the solve; 0: N steps, a tenth of it
   bool rest = false;
   double hindrance = 3.1, lift = 0.0;
   sd_vans_turbulence turbulence = SD_VANS_LI_SAWAMOTO;
@@ -51,17 +52,20 @@ struct VansSettings {
 
   bool wants_pores() const
   {
-    return turbulence == SD_VANS_PORE || turbulence == SD_VANS_ROUSSEAU || turbulence == SD_VANS_NI_CAPART;
+    return turbulence == SD_VANS_PORE || turbulence == SD_VANS_ROUSSEAU ||
+        turbulence == SD_VANS_NI_CAPART;
   }
 };
 
 /* All numbers of a file, row by row, the same on every rank. '#' begins a comment, commas count as blanks. Ends the run
  * with what, file and line
  * if the file cannot be read or a word is no finite number. */
-std::vector<std::vector<double>> read_rows(LAMMPS_NS::LAMMPS *lmp, const std::string &what, const std::string &file);
+std::vector<std::vector<double>> read_rows(LAMMPS_NS::LAMMPS *lmp, const std::string &what,
+                                           const std::string &file);
 
 /* ncell + 1 numbers: the velocities of the water. */
-std::vector<double> read_profile(LAMMPS_NS::LAMMPS *lmp, const std::string &what, const std::string &file, int ncell);
+std::vector<double> read_profile(LAMMPS_NS::LAMMPS *lmp, const std::string &what,
+                                 const std::string &file, int ncell);
 
 }    // namespace StokesDyn
 #endif

@@ -18,9 +18,11 @@ VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) : set(settings
          set.lift,
          set.convective.empty() ? nullptr : set.convective.data(),
          set.rules};
-  fluid = {set.rho,      set.eta,       set.g[0],   set.dpdx.number(),  set.turbulence, set.kappa,     set.phi_max, set.phi_bed,
-           set.sublayer, set.viscosity, set.driven, set.u_top.number(), set.width,      set.wall_coef, set.radius,  0,
-           nullptr,      set.rules};
+  fluid = {set.rho,        set.eta,       set.g[0],    set.dpdx.number(),
+           set.turbulence, set.kappa,     set.phi_max, set.phi_bed,
+           set.sublayer,   set.viscosity, set.driven,  set.u_top.number(),
+           set.width,      set.wall_coef, set.radius,  0,
+           nullptr,        set.rules};
   U = set.profile;
   U.resize(N + 1, 0.0);
   if (set.profile.empty() && set.driven && !set.u_top.is_variable()) U[N] = set.u_top.number();
@@ -30,11 +32,15 @@ VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) : set(settings
     std::copy(set.given[1].begin(), set.given[1].end(), vx());
     std::copy(set.given[2].begin(), set.given[2].end(), drag());
   }
-  for (auto *array : {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
+  for (auto *array :
+       {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
     array->assign(N, 0.0);
   scratch.resize(4 * (size_t) N + 4);
   solver = sd_vans_solver_create(N);
-  if (!solver) fail(lmp, std::string(VansSettings::COMMAND) + ": out of memory for " + std::to_string(N) + " slices");
+  if (!solver)
+    fail(lmp,
+         std::string(VansSettings::COMMAND) + ": out of memory for " + std::to_string(N) +
+             " slices");
   set_classes(set.class_radii);
   profile_changed();
 }
@@ -51,8 +57,10 @@ void VansStream::set_classes(const std::vector<double> &radii)
   class_radii = radii;
   class_grain.assign(5 * N * radii.size(), 0.0);
   for (size_t c = 0; 4 + 2 * c < set.given.size() && c < radii.size(); c++) {
-    std::copy(set.given[3 + 2 * c].begin(), set.given[3 + 2 * c].end(), class_grain.begin() + 5 * N * c);
-    std::copy(set.given[4 + 2 * c].begin(), set.given[4 + 2 * c].end(), class_grain.begin() + 5 * N * c + 4 * N);
+    std::copy(set.given[3 + 2 * c].begin(), set.given[3 + 2 * c].end(),
+              class_grain.begin() + 5 * N * c);
+    std::copy(set.given[4 + 2 * c].begin(), set.given[4 + 2 * c].end(),
+              class_grain.begin() + 5 * N * c + 4 * N);
   }
   fluid.nclass = (int) class_radii.size();
   fluid.class_radius = class_radii.data();
@@ -63,7 +71,8 @@ std::vector<double> VansStream::class_columns(int k) const
   const size_t N = ncell();
   std::vector<double> columns;
   for (size_t c = 0; c < class_radii.size(); c++)
-    columns.insert(columns.end(), class_grain.begin() + (5 * c + k) * N, class_grain.begin() + (5 * c + k + 1) * N);
+    columns.insert(columns.end(), class_grain.begin() + (5 * c + k) * N,
+                   class_grain.begin() + (5 * c + k + 1) * N);
   return columns;
 }
 
@@ -79,8 +88,8 @@ void VansStream::mixing_length()
   // `given` without the columns of the classes: one class.
   const bool have = !class_radii.empty() && (averaged || set.given.size() > 3);
   const std::vector<double> class_phi = have ? class_columns(0) : std::vector<double>();
-  sd_vans_mixing_length(&mesh, &fluid, U.data(), phi(), have ? class_phi.data() : nullptr, mean.data(), length.data(),
-                        scratch.data());
+  sd_vans_mixing_length(&mesh, &fluid, U.data(), phi(), have ? class_phi.data() : nullptr,
+                        mean.data(), length.data(), scratch.data());
 }
 
 void VansStream::profile_changed()
@@ -90,27 +99,31 @@ void VansStream::profile_changed()
   sd_vans_stress(&mesh, &fluid, phi(), length.data(), U.data(), nut.data(), stress.data());
 }
 
-void VansStream::take_averages(double area, const std::vector<double> &sums, const std::vector<double> &class_sums)
+void VansStream::take_averages(double area, const std::vector<double> &sums,
+                               const std::vector<double> &class_sums)
 {
   const size_t N = ncell();
   const std::vector<double> before(phi(), phi() + N);
   sd_vans_profiles(&mesh, area, sums.data(), grain.data());
   for (size_t c = 0; c < class_radii.size(); c++)
-    sd_vans_profiles(&mesh, area, class_sums.data() + c * N * SD_VANS_NSUM, class_grain.data() + 5 * c * N);
+    sd_vans_profiles(&mesh, area, class_sums.data() + c * N * SD_VANS_NSUM,
+                     class_grain.data() + 5 * c * N);
   for (size_t n = 0; n < N; n++)
     if (!(phi()[n] < 1.0)) {
       if (!std::isfinite(phi()[n]))
         fail(lmp,
-             std::string(VansSettings::COMMAND) + ": the average in slice " + std::to_string(n + 1) +
+             std::string(VansSettings::COMMAND) + ": the average in slice " +
+                 std::to_string(n + 1) +
                  " is not finite: a grain has no finite position or velocity");
       fail(lmp,
-           std::string(VansSettings::COMMAND) + ": phi = " + text(phi()[n]) + " in slice " + std::to_string(n + 1) +
-               " (z = " + text(mesh.z_ref + mesh.edge[n]) + " to " + text(mesh.z_ref + mesh.edge[n + 1]) +
-               "): more grains than fit. Is the area " + text(area) +
-               " right, or do members of clumps overlap (overlap once)?");
+           std::string(VansSettings::COMMAND) + ": phi = " + text(phi()[n]) + " in slice " +
+               std::to_string(n + 1) + " (z = " + text(mesh.z_ref + mesh.edge[n]) + " to " +
+               text(mesh.z_ref + mesh.edge[n + 1]) + "): more grains than fit. Is the area " +
+               text(area) + " right, or do members of clumps overlap (overlap once)?");
     }
   if (set.conserve && averaged)
-    ledger.surface += area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
+    ledger.surface +=
+        area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();
   averaged = true;
@@ -135,10 +148,13 @@ void VansStream::solve(double area, double T, const Given &given)
   const int N = ncell(), M = N - 1;
   double dt = set.period > 0.0 ? set.dt : 0.1 * T;
   const int64_t steps = sd_vans_steps(set.rules, T, &dt);
-  const bool exchange_classes = set.classes && !class_radii.empty() && (averaged || set.given.size() > 3);
+  const bool exchange_classes =
+      set.classes && !class_radii.empty() && (averaged || set.given.size() > 3);
   const std::vector<double> class_phi = exchange_classes ? class_columns(0) : std::vector<double>();
-  const std::vector<double> class_drag = exchange_classes ? class_columns(4) : std::vector<double>();
-  sd_vans_exchange(&mesh, &fluid, dt, U.data(), phi(), vx(), drag(), exchange_classes ? class_phi.data() : nullptr,
+  const std::vector<double> class_drag = exchange_classes ? class_columns(4)
+                                                          : std::vector<double>();
+  sd_vans_exchange(&mesh, &fluid, dt, U.data(), phi(), vx(), drag(),
+                   exchange_classes ? class_phi.data() : nullptr,
                    exchange_classes ? class_drag.data() : nullptr, b.data());
   mixing_length();
 
@@ -164,13 +180,15 @@ void VansStream::solve(double area, double T, const Given &given)
     }
   }
 
-  const sd_status status = sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi(), vx(), b.data(), length.data(),
-                                         source.empty() ? nullptr : source.data(), U.data(), nut.data(), stress.data(),
-                                         account ? moved.data() : nullptr, account ? shear.data() : nullptr, &impulse);
+  const sd_status status =
+      sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi(), vx(), b.data(), length.data(),
+                    source.empty() ? nullptr : source.data(), U.data(), nut.data(), stress.data(),
+                    account ? moved.data() : nullptr, account ? shear.data() : nullptr, &impulse);
   if (status != SD_OK)
     fail(lmp,
-         std::string(VansSettings::COMMAND) + ": the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
-             " steps: " + sd_status_string(status) + ". Take a shorter time between couplings");
+         std::string(VansSettings::COMMAND) + ": the solve of the stream over " + text(T) + " in " +
+             std::to_string(steps) + " steps: " + sd_status_string(status) +
+             ". Take a shorter time between couplings");
   if (!account) return;
 
   for (int n = 0; n < N; n++) {
@@ -208,7 +226,8 @@ double VansStream::bed_elevation() const
 {
   if (!set.find_bed) return set.bed;
   for (int n = ncell() - 2; n > 0; n--)
-    if (grain[n] > 0.5 && grain[n] >= grain[n + 1] && grain[n] >= grain[n - 1]) return 0.5 * (mesh.edge[n] + mesh.edge[n + 1]);
+    if (grain[n] > 0.5 && grain[n] >= grain[n + 1] && grain[n] >= grain[n - 1])
+      return 0.5 * (mesh.edge[n] + mesh.edge[n + 1]);
   return 0.0;
 }
 
@@ -238,8 +257,8 @@ std::vector<double> VansStream::pack() const
                              ledger.walls,
                              ledger.surface,
                              ledger.others};
-  for (const auto *array :
-       {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &class_radii, &class_grain})
+  for (const auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density,
+                            &foreseen_density, &outstanding, &class_radii, &class_grain})
     out.insert(out.end(), array->begin(), array->end());
   for (const auto &profile : phi_history) out.insert(out.end(), profile.begin(), profile.end());
   return out;
@@ -252,7 +271,8 @@ void VansStream::unpack(const std::vector<double> &in)
   if (in.size() < at || (size_t) in[0] != N)
     fail(lmp,
          std::string(VansSettings::COMMAND) + ": keyword mesh: the restart file has " +
-             std::to_string(in.empty() ? 0 : (int) in[0]) + " slices, this fix has " + std::to_string(N));
+             std::to_string(in.empty() ? 0 : (int) in[0]) + " slices, this fix has " +
+             std::to_string(N));
   averaged = in[1] != 0.0;
   foreseen = in[2] != 0.0;
   const size_t history = (size_t) in[3], nclass = (size_t) in[4];
@@ -264,8 +284,8 @@ void VansStream::unpack(const std::vector<double> &in)
   ledger.surface = in[10];
   ledger.others = in[11];
   std::vector<double> radii(nclass), classes(5 * N * nclass);
-  for (auto *array :
-       {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding, &radii, &classes})
+  for (auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density,
+                      &outstanding, &radii, &classes})
     for (double &value : *array) value = in.at(at++);
   set_classes(radii);
   class_grain = classes;

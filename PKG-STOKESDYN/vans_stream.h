@@ -26,16 +26,16 @@ class VansStream {
   std::vector<double> class_grain;    // [nclass][5][N]
   std::vector<double> class_radii;
   std::vector<double> hindrance, b, length, nut, stress;    // [N]
-  std::vector<double> shear_density;                        // [N] force of the viscous stress per volume of grains
+  std::vector<double> shear_density;    // [N] force of the viscous stress per volume of grains
   std::vector<double>
-      foreseen_density;     // [N] impulse of the drag per volume of grains that the last solve took from the water
+      foreseen_density;    // [N] impulse of the drag per volume of grains that the last solve took from the water
   bool averaged = false;    // are there averages?
 
   /* Numbers that grow: momentum along x, from the first step on. */
   struct Ledger {
-    double transit = 0;                                        // the water has given it, the grains have not got it yet
+    double transit = 0;    // the water has given it, the grains have not got it yet
     double driving = 0, bottom = 0, walls = 0, surface = 0;    // the water got it from outside
-    double others = 0;                                         // spheres that are averaged but not in the group got it
+    double others = 0;    // spheres that are averaged but not in the group got it
   } ledger;
 
   int ncell() const { return mesh.ncell; }
@@ -44,22 +44,26 @@ class VansStream {
   double *drag() { return grain.data() + 4 * (size_t) mesh.ncell; }
   double height(int n) const { return mesh.edge[n + 1] - mesh.edge[n]; }
   void set_classes(const std::vector<double> &radii);
-  void profile_changed();    // U or phi set from outside: hindrance, eddy viscosity and stress follow
+  void
+  profile_changed();    // U or phi set from outside: hindrance, eddy viscosity and stress follow
 
   /* New averages from sums over all grains. */
-  void take_averages(double area, const std::vector<double> &sums, const std::vector<double> &class_sums);
+  void take_averages(double area, const std::vector<double> &sums,
+                     const std::vector<double> &class_sums);
   /* Since the last solve, impulses along x. */
   struct Given {
     std::vector<double>
         back;    // [N] what the drag foreseen then was more than the true one; empty: momentum is not accounted for
-    double all = 0.0, others = 0.0;    // what the grains got from the water; spheres outside the group of it
+    double all = 0.0,
+           others = 0.0;    // what the grains got from the water; spheres outside the group of it
   };
   void solve(double area, double T, const Given &given);
 
   double momentum(double area) const;    // of the water, along x
   double transport() const;              // sum of phi vx dz
   double largest_stress() const;
-  double bed_elevation() const;    // of the first maximum of phi above 0.5 from the top, or as the user says
+  double bed_elevation()
+      const;    // of the first maximum of phi above 0.5 from the top, or as the user says
   double depth_over_velocity(double bed) const;
 
   std::vector<double> pack() const;    // for the restart file
@@ -68,8 +72,8 @@ class VansStream {
  private:
   LAMMPS_NS::LAMMPS *lmp;
   sd_vans_solver *solver;
-  std::vector<double> outstanding;                // [N] momentum per area that is to go back to the water
-  bool foreseen = false;                          // has a solve foreseen the drag?
+  std::vector<double> outstanding;    // [N] momentum per area that is to go back to the water
+  bool foreseen = false;              // has a solve foreseen the drag?
   std::deque<std::vector<double>> phi_history;    // ni_capart: the last profiles
   std::vector<double> scratch;
   std::vector<double> class_columns(int k) const;    // column k of every class, [nclass][N]

@@ -122,7 +122,8 @@ static int by_molecule_tag_index(const void *pa, const void *pb, void *ctx)
 }
 
 sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
-                             const int64_t *molecule, int n, int n_all, double cutoff, int one_row, int *order)
+                             const int64_t *molecule, int n, int n_all, double cutoff, int one_row,
+                             int *order)
 {
   sd_status status = sd_neighbors_reserve(list, n, 0);
   if (status != SD_OK) return status;

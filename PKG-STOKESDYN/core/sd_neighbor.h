@@ -37,8 +37,9 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
  *   x [3 n_all], tag [n_all], molecule [n_all]
  *   one_row       only the target of lowest tag of each molecule gets its row: the clumps themselves, one row each
  *   order [n_all]   scratch;  on return sorted by molecule, tag, index */
-sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag, const int64_t *molecule, int n, int n_all,
-                             double cutoff, int one_row, int *order);
+sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
+                             const int64_t *molecule, int n, int n_all, double cutoff, int one_row,
+                             int *order);
 
 #ifdef __cplusplus
 }

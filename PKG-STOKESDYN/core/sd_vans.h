@@ -55,15 +55,17 @@ double sd_vans_slice_volume(double a, double lo, double hi);
  * Returns how many; 0 if it reaches none; never more than max (a caller gives N). What lies outside the mesh is not in V.
  * Yade's rule mirrors the slices at that of the centre and cuts each only on its far side: for a/dz < 5 the volume is not
  * conserved. */
-int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first, double *V, int max);
+int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
+                   double *V, int max);
 
 typedef struct {
-  double rho, eta;          /* density and dynamic viscosity of the fluid, > 0 */
-  double exponent;          /* of hindrance, n: drag * (1 - phi)^-n; 3.1 */
-  double g[3];              /* gravity */
-  int rest;                 /* 0: steady stream, no buoyancy along x; 1: fluid at rest */
-  double lift;              /* C_l; 0: none */
-  const double *convective; /* [N] a force along x, taken off every grain of the slice; NULL: none */
+  double rho, eta; /* density and dynamic viscosity of the fluid, > 0 */
+  double exponent; /* of hindrance, n: drag * (1 - phi)^-n; 3.1 */
+  double g[3];     /* gravity */
+  int rest;        /* 0: steady stream, no buoyancy along x; 1: fluid at rest */
+  double lift;     /* C_l; 0: none */
+  const double
+      *convective; /* [N] a force along x, taken off every grain of the slice; NULL: none */
   sd_vans_rules rules;
 } sd_vans_force_law;
 
@@ -72,7 +74,8 @@ void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hi
 
 /* Drag on one sphere: 1/2 rho pi a^2 (0.44 |w| + 24.4 eta/(rho 2a)) hindrance * w, w [3] velocity of the water past the
  * sphere. */
-void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3], double F[3]);
+void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
+                  double F[3]);
 
 /* Force of the stream on n spheres.
  *   x, v [n][3]; a [n]; fluctuation [n][3] or NULL: u', added to the velocity of the water; take [n] or NULL: 0 leaves a
@@ -81,9 +84,10 @@ void sd_vans_drag(double rho, double eta, double a, double hindrance, const doub
  *   Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom) values: above U[N] and
  *   the phi of the
  *   last slice, below U[0] = 0 and the phi of the first. Yade's rule: no force at all. */
-int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U, const double *hindrance, int n,
-                   const double *x, const double *v, const double *a, const double *fluctuation, const unsigned char *take,
-                   double *F, double *drag_x);
+int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                   const double *hindrance, int n, const double *x, const double *v,
+                   const double *a, const double *fluctuation, const unsigned char *take, double *F,
+                   double *drag_x);
 
 /* Sums over grains for the slice averages: sums [N][SD_VANS_NSUM] volume, volume * (vx, vy, vz, drag along x). */
 enum { SD_VANS_V, SD_VANS_VX, SD_VANS_VY, SD_VANS_VZ, SD_VANS_DRAG, SD_VANS_NSUM };
@@ -101,9 +105,10 @@ typedef struct {
  *   sums  [N][NSUM], class_sums [nclass][N][NSUM] or NULL;  V [N] scratch
  * Returns -1, or the index of the first sphere that belongs to no class.
  * Yade's rule: mirrored slices; the velocities of a class all in the slice of the centre. */
-int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const sd_vans_averaging *how, const double *U,
-                    const double *hindrance, int n, const double *x, const double *v, const double *a,
-                    const double *fluctuation, const double *weight, const unsigned char *take, double *sums,
+int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
+                    const sd_vans_averaging *how, const double *U, const double *hindrance, int n,
+                    const double *x, const double *v, const double *a, const double *fluctuation,
+                    const double *weight, const unsigned char *take, double *sums,
                     double *class_sums, double *V);
 
 /* The profiles from the sums: phi = V / (area * height of the slice), the others divided by V, 0 where there is no grain.
@@ -113,13 +118,14 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
 /* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value. What belongs to the
  * part of a sphere outside
  * the mesh goes to the lowest or the highest slice, so that the sum over slices grows by the sum over spheres. V [N] scratch. */
-void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take,
-                    const double *value, double *out, double *V);
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
+                    const unsigned char *take, const double *value, double *out, double *V);
 
 /* The integral of a density per volume of grains over each sphere: out [n] = sum over slices of V_k density_k, times
  * weight (or 1). */
-void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight,
-                    const unsigned char *take, const double *density, double *out, double *V);
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
+                    const double *weight, const unsigned char *take, const double *density,
+                    double *out, double *V);
 
 /* Share of sphere i's volume that counts when n spheres that overlap are one body: its part of the union, cut off from the others
  * by their radical planes, over its volume. The sum over the spheres is the volume of the union: exact while no three spheres
@@ -151,7 +157,7 @@ typedef struct {
   double u_top;
   double width, wall_coef; /* side walls: distance and a factor on the friction; width 0: none */
   double radius;           /* of the grains, in the exchange term */
-  int nclass;              /* size classes of the exchange term and of the pore length; 0: one class of that radius */
+  int nclass; /* size classes of the exchange term and of the pore length; 0: one class of that radius */
   const double *class_radius;
   sd_vans_rules rules;
 } sd_vans_fluid;
@@ -169,8 +175,9 @@ typedef struct {
  * ni_capart  max(min(pore/2, 0.2 D), kappa (z - z_bed))
  * pipe       min(li_sawamoto, kappa (H - z))
  * Yade's rule: the slice that exceeds phi_max takes some length away (li_sawamoto, pipe). */
-void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U, const double *phi,
-                           const double *class_phi, const double *phi_bed_profile, double *length, double *scratch);
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                           const double *phi, const double *class_phi,
+                           const double *phi_bed_profile, double *length, double *scratch);
 
 /* Height of the top of the bed: lower edge of the highest slice with phi above phi_bed; 0 if there is none. */
 double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed);
@@ -190,8 +197,9 @@ double sd_vans_wall_friction(sd_vans_rules rules, double Re, int *rounds);
  *   slip = U - v kept away from 0 by 1e-5; n<f> = phi / (4/3 pi a^3) drag, or the sum of that over classes
  *   class_phi, class_drag [nclass][N] or NULL;  b [N] out
  * Yade's rule: |slip|, and nothing in the lowest slice. */
-void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt, const double *U, const double *phi,
-                      const double *vx, const double *drag, const double *class_phi, const double *class_drag, double *b);
+void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
+                      const double *U, const double *phi, const double *vx, const double *drag,
+                      const double *class_phi, const double *class_drag, double *b);
 
 /* Time steps in a solve of length T with steps of about dt. Consistent: the least number of equal steps no longer than dt
  * (to 1e-9), and dt is
@@ -221,13 +229,15 @@ void sd_vans_solver_free(sd_vans_solver *solver);
  *     + source, to rounding.
  * SD_OK or SD_ENOTFINITE.
  * wall = e 2/width coef f/8 (1/2 |U| U' + 1/2 |U| U), Re = |U| width/nu. Yade's rule: (1/2 U^2 U' + 1/2 U^2), and |g| for g. */
-sd_status sd_vans_solve(sd_vans_solver *solver, const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, int64_t nsteps, double dt,
-                        const double *phi, const double *vx, const double *b, const double *length, const double *source,
-                        double *U, double *nut, double *stress, double *moved, double *shear, sd_vans_impulse *impulse);
+sd_status sd_vans_solve(sd_vans_solver *solver, const sd_vans_mesh *mesh,
+                        const sd_vans_fluid *fluid, int64_t nsteps, double dt, const double *phi,
+                        const double *vx, const double *b, const double *length,
+                        const double *source, double *U, double *nut, double *stress, double *moved,
+                        double *shear, sd_vans_impulse *impulse);
 
 /* Eddy viscosity and stress of a velocity profile, without a step. */
-void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *length,
-                    const double *U, double *nut, double *stress);
+void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                    const double *length, const double *U, double *nut, double *stress);
 
 /* Momentum of the water per area of the bed, rho sum (1 - phi) U dz. */
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U);
@@ -237,8 +247,8 @@ double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi,
  * Changes U [N+1] (not U[0], U[N]) so that the momentum is conserved but for what passes the surface; returns that, per
  * area, gained by the water.
  * scratch [2 (N+1)] */
-double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old, const double *phi_new, double *U,
-                        double *scratch);
+double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
+                        const double *phi_new, double *U, double *scratch);
 
 /* ---- velocity fluctuations
  * --------------------------------------------------------------------------------------------------- */

@@ -11,8 +11,9 @@ static double height_of(const sd_vans_mesh *mesh, int n)
 
 /* Volume and surface of all grains in slice n over the volume of the slice, but for a factor common to both: phi_c / V_c
  * each grain. */
-static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi,
-                               int n, double *VA, double *SA)
+static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                               const double *phi, const double *class_phi, int n, double *VA,
+                               double *SA)
 {
   const int classes = class_phi ? fluid->nclass : 0;
   *VA = *SA = 0.0;
@@ -25,8 +26,8 @@ static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fl
 }
 
 /* Pore length of every slice and, for D not NULL, the mean diameter 6 VA/SA. */
-static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *class_phi,
-                        double *pore, double *D)
+static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                        const double *class_phi, double *pore, double *D)
 {
   for (int n = 0; n < mesh->ncell; n++) {
     double VA, SA;
@@ -37,7 +38,8 @@ static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
   }
 }
 
-static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, double *length)
+static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                        double *length)
 {
   int packed = mesh->ncell - 1; /* the highest slice that reaches phi_max; -1: none */
   while (packed >= 0 && phi[packed] < fluid->phi_max) packed--;
@@ -45,7 +47,8 @@ static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
   for (int j = 1; j < mesh->ncell; j++) {
     double p = j - 1 < packed ? fluid->phi_max : phi[j - 1];
     if (fluid->rules != SD_VANS_YADE) p = fmin(p, fluid->phi_max);
-    length[j] = length[j - 1] + fluid->kappa * height_of(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
+    length[j] = length[j - 1] +
+        fluid->kappa * height_of(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
   }
 }
 
@@ -56,7 +59,8 @@ double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed)
   return mesh->edge[n];
 }
 
-static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U, const double *phi, double *length)
+static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                     const double *phi, double *length)
 {
   const double nu = fluid->eta / fluid->rho;
   double V = 0.0, S = 0.0;
@@ -69,13 +73,15 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
   double zv = 0.0;
   length[0] = 0.0;
   for (int j = 1; j < mesh->ncell; j++) {
-    zv += height_of(mesh, j - 1) * sqrt((fluid->phi_max - fmin(phi[j - 1], fluid->phi_max)) / fluid->phi_max);
+    zv += height_of(mesh, j - 1) *
+        sqrt((fluid->phi_max - fmin(phi[j - 1], fluid->phi_max)) / fluid->phi_max);
     length[j] = fluid->kappa * zv * (1.0 - exp(-sqrt(fabs(zv * U[j]) / nu) / 26.0)) + 0.5 * pore;
   }
 }
 
-void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U, const double *phi,
-                           const double *class_phi, const double *phi_bed_profile, double *length, double *scratch)
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                           const double *phi, const double *class_phi,
+                           const double *phi_bed_profile, double *length, double *scratch)
 {
   const int N = mesh->ncell;
   const double *z = mesh->edge, H = z[N - 1], kappa = fluid->kappa;
@@ -115,7 +121,8 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
     case SD_VANS_NI_CAPART: {
       pore_length(mesh, fluid, phi, class_phi, pore, D);
       const double bed = sd_vans_bed(mesh, phi_bed_profile, fluid->phi_bed);
-      for (int j = 0; j < N; j++) length[j] = fmax(fmin(0.5 * pore[j], 0.2 * D[j]), kappa * (z[j] - bed));
+      for (int j = 0; j < N; j++)
+        length[j] = fmax(fmin(0.5 * pore[j], 0.2 * D[j]), kappa * (z[j] - bed));
       break;
     }
   }
@@ -126,6 +133,7 @@ double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int b
   const double nu = fluid->eta / fluid->rho;
   if (fluid->viscosity == SD_VANS_CONSTANT) return nu;
   /* Yade leaves the bottom node to Einstein's law. */
-  if (fluid->viscosity == SD_VANS_EINSTEIN || (bottom && fluid->rules == SD_VANS_YADE)) return nu * (1.0 + 2.5 * phi);
+  if (fluid->viscosity == SD_VANS_EINSTEIN || (bottom && fluid->rules == SD_VANS_YADE))
+    return nu * (1.0 + 2.5 * phi);
   return nu * pow(1.0 - phi, -2.8);
 }

@@ -12,8 +12,9 @@ static double height_of(const sd_vans_mesh *mesh, int n)
   return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
 }
 
-void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt, const double *U, const double *phi,
-                      const double *vx, const double *drag, const double *class_phi, const double *class_drag, double *b)
+void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
+                      const double *U, const double *phi, const double *vx, const double *drag,
+                      const double *class_phi, const double *class_drag, double *b)
 {
   const int N = mesh->ncell, yade = fluid->rules == SD_VANS_YADE;
   const double cap = 0.1 / dt;
@@ -22,7 +23,8 @@ void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, doub
     if (class_phi)
       for (int c = 0; c < fluid->nclass; c++) {
         const double a = fluid->class_radius[c];
-        density += class_phi[(long) c * N + n] / (4.0 / 3.0 * PI * a * a * a) * class_drag[(long) c * N + n];
+        density += class_phi[(long) c * N + n] / (4.0 / 3.0 * PI * a * a * a) *
+            class_drag[(long) c * N + n];
       }
     else
       density = phi[n] / (4.0 / 3.0 * PI * fluid->radius * fluid->radius * fluid->radius) * drag[n];
@@ -52,11 +54,12 @@ int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
  *   -(cl + T_j) x_(j-1) + (cd + T_j + T_(j+1)) x_j - (cu + T_(j+1)) x_(j+1) = ce U_j + cr,   x_j = U'_(j+1)      (times dz)  */
 struct sd_vans_solver {
   int ncell;
-  double *cl, *cu, *cd, *ce, *cr;         /* constant in a solve */
-  double *mix, *gap;                      /* node: l^2/h, eN/h */
-  double *nut, *T, *wall, *c, *g;         /* of a step */
-  double *wall_scale, *wall_cd, *wall_cr; /* e dz/width coef/8; cd and cr with the side walls of the step */
-  double *sum;                            /* over steps: U' */
+  double *cl, *cu, *cd, *ce, *cr; /* constant in a solve */
+  double *mix, *gap;              /* node: l^2/h, eN/h */
+  double *nut, *T, *wall, *c, *g; /* of a step */
+  double *wall_scale, *wall_cd,
+      *wall_cr; /* e dz/width coef/8; cd and cr with the side walls of the step */
+  double *sum;  /* over steps: U' */
   double *memory;
   sd_vans_wall_segment *table[2]; /* of either rules, made when first needed */
 };
@@ -74,8 +77,9 @@ sd_vans_solver *sd_vans_solver_create(int ncell)
   s->ncell = ncell;
   s->memory = m;
   s->table[0] = s->table[1] = 0;
-  double **arrays[] = {&s->cl, &s->cu,   &s->cd, &s->ce, &s->cr,         &s->mix,     &s->gap,     &s->nut,
-                       &s->T,  &s->wall, &s->c,  &s->g,  &s->wall_scale, &s->wall_cd, &s->wall_cr, &s->sum};
+  double **arrays[] = {&s->cl,         &s->cu,      &s->cd,      &s->ce,   &s->cr, &s->mix,
+                       &s->gap,        &s->nut,     &s->T,       &s->wall, &s->c,  &s->g,
+                       &s->wall_scale, &s->wall_cd, &s->wall_cr, &s->sum};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -111,26 +115,29 @@ static double porosity_at_node(const sd_vans_mesh *mesh, const double *phi, int 
   return 1.0 - (j == 0 ? phi[0] : j == M ? phi[M - 1] : at_node(mesh, phi, j));
 }
 
-static double viscosity_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, int j)
+static double viscosity_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                                const double *phi, int j)
 {
   return sd_vans_effective_viscosity(fluid, j == 0 ? phi[0] : at_node(mesh, phi, j), j == 0);
 }
 
 /* Weight of |dU| in the eddy viscosity at node j. */
-static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *length, int j)
+static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                             const double *length, int j)
 {
   if (fluid->turbulence == SD_VANS_LAMINAR) return 0.0;
   if (fluid->sublayer) {
     const double nu = fluid->eta / fluid->rho, H = mesh->edge[mesh->ncell - 1];
-    const double drive = fluid->rules == SD_VANS_YADE ? fluid->gx : fluid->gx - fluid->dpdx / fluid->rho;
+    const double drive = fluid->rules == SD_VANS_YADE ? fluid->gx
+                                                      : fluid->gx - fluid->dpdx / fluid->rho;
     if (mesh->edge[j] * sqrt(fabs(drive) * H) / nu < 11.3) return 0.0;
   }
   return length[j] * length[j] / gap_of(mesh, j);
 }
 
 /* Viscous flux through node j without its conductance: e_j x_j - e_(j-1) x_(j-1) + J_j, x from U (or a sum of U over steps). */
-static double viscous_jump(int M, const double *phi, const double *vx, const double *U, int driven, double u_top, double steps,
-                           int j)
+static double viscous_jump(int M, const double *phi, const double *vx, const double *U, int driven,
+                           double u_top, double steps, int j)
 {
   const double below = j == 0 ? 0.0 : (1.0 - phi[j - 1]) * U[j - 1];
   const double x = j < M ? U[j] : driven ? u_top * steps : U[M - 1];
@@ -149,7 +156,8 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
   for (; k < half; k++) {
     const int i = k, t = M - 1 - k;
     const double Li = cl[i] + T[i], Ui = cu[i] + T[i + 1], Lt = cl[t] + T[t], Ut = cu[t] + T[t + 1];
-    const double wi = 1.0 / (cd[i] + T[i] + T[i + 1] - Li * c_low), wt = 1.0 / (cd[t] + T[t] + T[t + 1] - Ut * c_top);
+    const double wi = 1.0 / (cd[i] + T[i] + T[i + 1] - Li * c_low),
+                 wt = 1.0 / (cd[t] + T[t] + T[t + 1] - Ut * c_top);
     g[i] = g_low = (ce[i] * x[i] + cr[i] + Li * g_low) * wi;
     g[t] = g_top = (ce[t] * x[t] + cr[t] + Ut * g_top) * wt;
     c[i] = c_low = Ui * wi;
@@ -157,7 +165,8 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
   }
   if (M - 1 - k >= half) { /* M odd: one more row from the top */
     const int t = M - 1 - k;
-    const double Lt = cl[t] + T[t], Ut = cu[t] + T[t + 1], wt = 1.0 / (cd[t] + T[t] + T[t + 1] - Ut * c_top);
+    const double Lt = cl[t] + T[t], Ut = cu[t] + T[t + 1],
+                 wt = 1.0 / (cd[t] + T[t] + T[t + 1] - Ut * c_top);
     g[t] = g_top = (ce[t] * x[t] + cr[t] + Ut * g_top) * wt;
     c[t] = c_top = Lt * wt;
   }
@@ -173,13 +182,14 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
 }
 
 /* Side walls: half of the friction on U', half on U. Inlined for either rules. */
-static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segment *table, sd_vans_rules rules, double Re_factor,
-                             const double *U)
+static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segment *table,
+                             sd_vans_rules rules, double Re_factor, const double *U)
 {
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
   double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
   for (int j = 0; j < M; j++) {
-    const double u = U[j + 1], speed = fabs(u), f = sd_vans_wall_lookup(table, rules, speed * Re_factor);
+    const double u = U[j + 1], speed = fabs(u),
+                 f = sd_vans_wall_lookup(table, rules, speed * Re_factor);
     const double K = scale[j] * f * (rules == SD_VANS_YADE ? speed * speed : speed);
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
@@ -187,12 +197,15 @@ static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segmen
   }
 }
 
-sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, int64_t nsteps, double dt,
-                        const double *phi, const double *vx, const double *b, const double *length, const double *source,
-                        double *U, double *nut, double *stress, double *moved, double *shear, sd_vans_impulse *impulse)
+sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                        int64_t nsteps, double dt, const double *phi, const double *vx,
+                        const double *b, const double *length, const double *source, double *U,
+                        double *nut, double *stress, double *moved, double *shear,
+                        sd_vans_impulse *impulse)
 {
   const int N = mesh->ncell, M = N - 1, yade = fluid->rules == SD_VANS_YADE;
-  const double nu0 = fluid->eta / fluid->rho, drive = (yade ? fabs(fluid->gx) : fluid->gx) - fluid->dpdx / fluid->rho;
+  const double nu0 = fluid->eta / fluid->rho,
+               drive = (yade ? fabs(fluid->gx) : fluid->gx) - fluid->dpdx / fluid->rho;
 
   for (int j = 0; j < N; j++) {
     s->mix[j] = mixing_at_node(mesh, fluid, length, j);
@@ -200,14 +213,18 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
   }
   double A = viscosity_at_node(mesh, fluid, phi, 0) / gap_of(mesh, 0);
   for (int j = 0; j < M; j++) {
-    const double above = viscosity_at_node(mesh, fluid, phi, j + 1) / gap_of(mesh, j + 1), dz = height_of(mesh, j);
-    const double e = 1.0 - phi[j], e_above = 1.0 - phi[j + 1], e_below = j > 0 ? 1.0 - phi[j - 1] : e;
-    const double J = j > 0 ? phi[j] * vx[j] - phi[j - 1] * vx[j - 1] : 0.0, J_above = phi[j + 1] * vx[j + 1] - phi[j] * vx[j];
+    const double above = viscosity_at_node(mesh, fluid, phi, j + 1) / gap_of(mesh, j + 1),
+                 dz = height_of(mesh, j);
+    const double e = 1.0 - phi[j], e_above = 1.0 - phi[j + 1],
+                 e_below = j > 0 ? 1.0 - phi[j - 1] : e;
+    const double J = j > 0 ? phi[j] * vx[j] - phi[j - 1] * vx[j - 1] : 0.0,
+                 J_above = phi[j + 1] * vx[j + 1] - phi[j] * vx[j];
     s->cl[j] = e * A * e_below;
     s->cu[j] = e * above * e_above;
     s->ce[j] = e * dz / dt;
     s->cd[j] = s->ce[j] + e * e * (A + above) + dz * b[j];
-    s->cr[j] = e * (above * J_above - A * J) + dz * (b[j] * vx[j] + e * drive + (source ? source[j] : 0.0));
+    s->cr[j] = e * (above * J_above - A * J) +
+        dz * (b[j] * vx[j] + e * drive + (source ? source[j] : 0.0));
     A = above;
   }
   s->cl[0] = 0.0; /* U = 0 on the bottom */
@@ -293,8 +310,8 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
   return isfinite(check) ? SD_OK : SD_ENOTFINITE;
 }
 
-void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi, const double *length,
-                    const double *U, double *nut, double *stress)
+void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                    const double *length, const double *U, double *nut, double *stress)
 {
   for (int j = 0; j < mesh->ncell; j++) {
     const double jump = U[j + 1] - U[j];
@@ -311,8 +328,8 @@ double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi,
 }
 
 /* In the coordinate "volume of water below" the old and the new slices are two cuts of one column, in which U stays. */
-double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old, const double *phi_new, double *U,
-                        double *scratch)
+double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
+                        const double *phi_new, double *U, double *scratch)
 {
   const int M = mesh->ncell - 1;
   double *below = scratch, *old = scratch + M + 1;

@@ -44,7 +44,8 @@ static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first,
 {
   const double height = z - mesh->z_ref, dz = mesh->dz;
   const double centre = floor(height / dz), offset = height - centre * dz;
-  const double lowest = fmax(floor((height - a) / dz), 0.0), highest = fmin(floor((height + a) / dz), mesh->ncell - 1.0);
+  const double lowest = fmax(floor((height - a) / dz), 0.0),
+               highest = fmin(floor((height + a) / dz), mesh->ncell - 1.0);
   if (!(lowest <= highest)) return 0;
   *first = (int) lowest;
   const int count = (int) (highest - lowest) + 1;
@@ -58,7 +59,8 @@ static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first,
   return count < max ? count : max;
 }
 
-int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first, double *V, int max)
+int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
+                   double *V, int max)
 {
   if (rules == SD_VANS_YADE) return slices_yade(mesh, z, a, first, V, max);
   const int N = mesh->ncell;
@@ -90,19 +92,22 @@ void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hi
   for (int n = 0; n < ncell; n++) hindrance[n] = phi[n] == 0.0 ? 1.0 : pow(1.0 - phi[n], -exponent);
 }
 
-static inline double drag_factor(double rho, double eta, double a, double hindrance, const double w[3])
+static inline double drag_factor(double rho, double eta, double a, double hindrance,
+                                 const double w[3])
 {
   const double speed = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
   return 0.5 * PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
 }
 
-void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3], double F[3])
+void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
+                  double F[3])
 {
   const double factor = drag_factor(rho, eta, a, hindrance, w);
   for (int d = 0; d < 3; d++) F[d] = factor * w[d];
 }
 
-static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U, int p, double a, double vx)
+static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                         int p, double a, double vx)
 {
   int upper, lower;
   if (mesh->dz > 0.0) {
@@ -119,9 +124,10 @@ static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
   return 0.5 * law->rho * PI * a * a * law->lift * (over * over - under * under);
 }
 
-int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U, const double *hindrance, int n,
-                   const double *x, const double *v, const double *a, const double *fluctuation, const unsigned char *take,
-                   double *F, double *drag_x)
+int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                   const double *hindrance, int n, const double *x, const double *v,
+                   const double *a, const double *fluctuation, const unsigned char *take, double *F,
+                   double *drag_x)
 {
   const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
   int outside = 0;
@@ -164,9 +170,10 @@ static inline void add(double *sum, double V, const double *v, double drag)
   sum[SD_VANS_DRAG] += V * drag;
 }
 
-int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const sd_vans_averaging *how, const double *U,
-                    const double *hindrance, int n, const double *x, const double *v, const double *a,
-                    const double *fluctuation, const double *weight, const unsigned char *take, double *sums,
+int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
+                    const sd_vans_averaging *how, const double *U, const double *hindrance, int n,
+                    const double *x, const double *v, const double *a, const double *fluctuation,
+                    const double *weight, const unsigned char *take, double *sums,
                     double *class_sums, double *V)
 {
   const int N = mesh->ncell;
@@ -202,10 +209,12 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law, cons
     if (c < 0) return i;
     double *class_sum = class_sums + (long) c * N * SD_VANS_NSUM;
     if (law->rules != SD_VANS_YADE)
-      for (int k = 0; k < count; k++) add(class_sum + (long) (first + k) * SD_VANS_NSUM, V[k], vi, drag);
+      for (int k = 0; k < count; k++)
+        add(class_sum + (long) (first + k) * SD_VANS_NSUM, V[k], vi, drag);
     else
       for (int k = 0; k < count; k++) {
-        double *here = class_sum + (long) (first + k) * SD_VANS_NSUM, *centre = class_sum + (long) p * SD_VANS_NSUM;
+        double *here = class_sum + (long) (first + k) * SD_VANS_NSUM,
+               *centre = class_sum + (long) p * SD_VANS_NSUM;
         here[SD_VANS_V] += V[k];
         here[SD_VANS_DRAG] += V[k] * drag;
         if (!inside) continue;
@@ -224,7 +233,8 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
     const double *sum = sums + (long) n * SD_VANS_NSUM, V = sum[SD_VANS_V];
     const double height = mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
     profile[n] = V / (area * height);
-    for (int k = SD_VANS_VX; k < SD_VANS_NSUM; k++) profile[(long) k * N + n] = V != 0.0 ? sum[k] / V : 0.0;
+    for (int k = SD_VANS_VX; k < SD_VANS_NSUM; k++)
+      profile[(long) k * N + n] = V != 0.0 ? sum[k] / V : 0.0;
   }
 }
 
@@ -238,18 +248,20 @@ static int slices_of(const sd_vans_mesh *mesh, int point, double z, double a, in
   return 1;
 }
 
-void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const unsigned char *take,
-                    const double *value, double *out, double *V)
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
+                    const unsigned char *take, const double *value, double *out, double *V)
 {
   const int N = mesh->ncell;
   for (int i = 0; i < n; i++) {
     if (take && !take[i]) continue;
-    const double z = x[3 * (long) i + 2], ai = a[i], height = z - mesh->z_ref, all = 4.0 / 3.0 * PI * ai * ai * ai;
+    const double z = x[3 * (long) i + 2], ai = a[i], height = z - mesh->z_ref,
+                 all = 4.0 / 3.0 * PI * ai * ai * ai;
     int first = 0;
     const int count = slices_of(mesh, point, z, ai, &first, V);
     double inside = 0.0, rest = value[i];
     for (int k = 0; k < count; k++) inside += V[k];
-    const double below = point ? (height < 0.0 ? all : 0.0) : sd_vans_slice_volume(ai, -ai, -height);
+    const double below = point ? (height < 0.0 ? all : 0.0)
+                               : sd_vans_slice_volume(ai, -ai, -height);
     for (int k = 0; k < count; k++) {
       const double part = value[i] * (V[k] / all);
       out[first + k] += part;
@@ -261,8 +273,9 @@ void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x,
   }
 }
 
-void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a, const double *weight,
-                    const unsigned char *take, const double *density, double *out, double *V)
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
+                    const double *weight, const unsigned char *take, const double *density,
+                    double *out, double *V)
 {
   for (int i = 0; i < n; i++) {
     out[i] = 0.0;

@@ -42,7 +42,8 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
     double t0 = -sqrt(r * r - height * height), t1 = -t0;
     for (int j = 0; j < count; j++) {
       if (j == k) continue;
-      const double along = -m[j][0] * ey + m[j][1] * ex, rest = c[j] - height * (m[j][0] * ex + m[j][1] * ey);
+      const double along = -m[j][0] * ey + m[j][1] * ex,
+                   rest = c[j] - height * (m[j][0] * ex + m[j][1] * ey);
       if (fabs(along) < 1e-14) {
         if (rest < 0.0 || (rest == 0.0 && j < k)) t1 = t0;
       } else if (along > 0.0)
@@ -69,28 +70,33 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
 /* Slabs across the first cut's normal; z = a sin(t) takes the root off both ends. */
 static double integrate(double a, int count, const cut *cuts)
 {
-  static const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-  static const double gauss[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+  static const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                 0.9602898564975363};
+  static const double gauss[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                  0.1012285362903763};
   double axis[3], side[3], up[3], volume = 0.0;
   for (int d = 0; d < 3; d++) axis[d] = cuts[0].n[d];
   const double helper[3] = {fabs(axis[0]) < 0.6 ? 1.0 : 0.0, fabs(axis[0]) < 0.6 ? 0.0 : 1.0, 0.0};
   for (int d = 0; d < 3; d++) side[d] = helper[d] - dot(helper, axis) * axis[d];
   const double size = sqrt(dot(side, side));
   for (int d = 0; d < 3; d++) side[d] /= size;
-  for (int d = 0; d < 3; d++) up[d] = axis[(d + 1) % 3] * side[(d + 2) % 3] - axis[(d + 2) % 3] * side[(d + 1) % 3];
+  for (int d = 0; d < 3; d++)
+    up[d] = axis[(d + 1) % 3] * side[(d + 2) % 3] - axis[(d + 2) % 3] * side[(d + 1) % 3];
   const double end = asin(fmax(-1.0, fmin(1.0, cuts[0].h / a)));
   enum { PANELS = 200 };
   const double width = (end + PI / 2) / PANELS;
   for (int p = 0; p < PANELS; p++)
     for (int q = 0; q < 8; q++) {
-      const double t = -PI / 2 + (p + 0.5 + 0.5 * (q < 4 ? node[q] : -node[q - 4])) * width, z = a * sin(t), r = a * cos(t);
+      const double t = -PI / 2 + (p + 0.5 + 0.5 * (q < 4 ? node[q] : -node[q - 4])) * width,
+                   z = a * sin(t), r = a * cos(t);
       double m[MAX_CUTS][2], c[MAX_CUTS];
       for (int k = 1; k < count; k++) {
         m[k - 1][0] = dot(cuts[k].n, side);
         m[k - 1][1] = dot(cuts[k].n, up);
         c[k - 1] = cuts[k].h - dot(cuts[k].n, axis) * z;
       }
-      volume += 0.5 * width * gauss[q % 4] * disc_area(r, count - 1, m, c) * r; /* dz = a cos t dt = r dt */
+      volume += 0.5 * width * gauss[q % 4] * disc_area(r, count - 1, m, c) *
+          r; /* dz = a cos t dt = r dt */
     }
   return volume;
 }
@@ -125,6 +131,7 @@ double sd_vans_union_share(int n, const double *x, const double *a, int i)
     }
   if (!apart) return integrate(ai, count, cuts) / all;
   double volume = all;
-  for (int k = 0; k < count; k++) volume -= PI * (ai - cuts[k].h) * (ai - cuts[k].h) * (2.0 * ai + cuts[k].h) / 3.0;
+  for (int k = 0; k < count; k++)
+    volume -= PI * (ai - cuts[k].h) * (ai - cuts[k].h) * (2.0 * ai + cuts[k].h) / 3.0;
   return volume / all;
 }

@@ -18,10 +18,12 @@ static double uniform(uint64_t key, uint64_t k) /* in (0, 1) */
 
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3])
 {
-  const uint64_t key = mix(mix(mix(seed + UINT64_C(0x9e3779b97f4a7c15)) ^ id) + count * UINT64_C(0xd1342543de82ef95));
+  const uint64_t key = mix(mix(mix(seed + UINT64_C(0x9e3779b97f4a7c15)) ^ id) +
+                           count * UINT64_C(0xd1342543de82ef95));
   /* Box & Muller: two pairs, of which one number is not used. */
   const double r1 = sqrt(-2.0 * log(uniform(key, 0))), r2 = sqrt(-2.0 * log(uniform(key, 2)));
-  const double t1 = 2.0 * 3.14159265358979323846 * uniform(key, 1), t2 = 2.0 * 3.14159265358979323846 * uniform(key, 3);
+  const double t1 = 2.0 * 3.14159265358979323846 * uniform(key, 1),
+               t2 = 2.0 * 3.14159265358979323846 * uniform(key, 3);
   out[0] = r1 * cos(t1);
   out[1] = r1 * sin(t1);
   out[2] = r2 * cos(t2);

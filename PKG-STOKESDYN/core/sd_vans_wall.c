@@ -9,7 +9,8 @@ double sd_vans_wall_friction(sd_vans_rules rules, double Re, int *rounds)
   double f = 1.0 / (0.32 * 0.32);
   if (!(Re > 1e-10)) Re = 1e-10;
   for (int k = 1; k <= 100; k++) {
-    const double root = 2.0 * (rules == SD_VANS_YADE ? log(Re * sqrt(f)) : log10(Re * sqrt(f))) + 0.32,
+    const double root =
+                     2.0 * (rules == SD_VANS_YADE ? log(Re * sqrt(f)) : log10(Re * sqrt(f))) + 0.32,
                  next = 1.0 / (root * root);
     const double change = fabs(next - f) / f;
     f = next;
@@ -37,10 +38,12 @@ static void fit(sd_vans_rules rules, double lo, double hi, sd_vans_wall_segment 
   }
   /* Newton's divided differences, then to powers of t. */
   for (int order = 1; order <= DEGREE; order++)
-    for (int k = DEGREE; k >= order; k--) divided[k] = (divided[k] - divided[k - 1]) / (t[k] - t[k - order]);
+    for (int k = DEGREE; k >= order; k--)
+      divided[k] = (divided[k] - divided[k - 1]) / (t[k] - t[k - order]);
   for (int k = 0; k <= DEGREE; k++) s->coefficient[k] = 0.0;
   for (int k = DEGREE; k >= 0; k--) {
-    for (int m = DEGREE; m > 0; m--) s->coefficient[m] = s->coefficient[m - 1] - t[k] * s->coefficient[m];
+    for (int m = DEGREE; m > 0; m--)
+      s->coefficient[m] = s->coefficient[m - 1] - t[k] * s->coefficient[m];
     s->coefficient[0] = divided[k] - t[k] * s->coefficient[0];
   }
   for (int k = 0; k <= 2 * DEGREE && smooth; k++) {
@@ -55,9 +58,10 @@ void sd_vans_wall_table(sd_vans_rules rules, sd_vans_wall_segment *table)
   for (int k = 0; k < SD_VANS_WALL_TABLE; k++) {
     const int exponent = SD_VANS_WALL_LOWEST + k / SEGMENTS;
     const double binade = ldexp(1.0, exponent);
-    fit(rules, binade * (1.0 + (double) (k % SEGMENTS) / SEGMENTS), binade * (1.0 + (double) (k % SEGMENTS + 1) / SEGMENTS),
-        &table[k]);
+    fit(rules, binade * (1.0 + (double) (k % SEGMENTS) / SEGMENTS),
+        binade * (1.0 + (double) (k % SEGMENTS + 1) / SEGMENTS), &table[k]);
     if (exponent >= -5 && exponent < 5)
-      table[k].scale = 0.0; /* the substitution wanders there: steps closer than the points that look for them */
+      table[k].scale =
+          0.0; /* the substitution wanders there: steps closer than the points that look for them */
   }
 }

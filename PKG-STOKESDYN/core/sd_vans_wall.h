@@ -34,12 +34,14 @@ static inline double sd_vans_wall_polynomial(const sd_vans_wall_segment *s, doub
 }
 
 /* Exponent and leading bits of the mantissa are the place in the table. Re >= 0. */
-static inline double sd_vans_wall_lookup(const sd_vans_wall_segment *table, sd_vans_rules rules, double Re)
+static inline double sd_vans_wall_lookup(const sd_vans_wall_segment *table, sd_vans_rules rules,
+                                         double Re)
 {
   uint64_t bits;
   memcpy(&bits, &Re, sizeof bits);
   const uint64_t k = (bits >> (52 - SD_VANS_WALL_BITS)) -
-      ((uint64_t) (1023 + SD_VANS_WALL_LOWEST) << SD_VANS_WALL_BITS); /* huge if Re is below the table */
+      ((uint64_t) (1023 + SD_VANS_WALL_LOWEST)
+       << SD_VANS_WALL_BITS); /* huge if Re is below the table */
   if (k >= SD_VANS_WALL_TABLE || table[k].scale == 0.0) return sd_vans_wall_friction(rules, Re, 0);
   return sd_vans_wall_polynomial(&table[k], Re);
 }

@@ -38,8 +38,9 @@ static double *array(int n)
 
 static double fluid(int N, sd_vans_turbulence turbulence, double width, int account)
 {
-  double *edge = array(N + 1), *phi = array(N), *vx = array(N), *b = array(N), *length = array(N), *U = array(N + 1),
-         *nut = array(N), *stress = array(N), *scratch = array(4 * N), *moved = array(N), *shear = array(N), times[RUNS];
+  double *edge = array(N + 1), *phi = array(N), *vx = array(N), *b = array(N), *length = array(N),
+         *U = array(N + 1), *nut = array(N), *stress = array(N), *scratch = array(4 * N),
+         *moved = array(N), *shear = array(N), times[RUNS];
   const double H = 0.06, dz = H / (N - 1), dt = 1e-4;
   for (int n = 0; n <= N; n++) edge[n] = n * dz;
   for (int n = 0; n < N; n++) {
@@ -65,8 +66,8 @@ static double fluid(int N, sd_vans_turbulence turbulence, double width, int acco
   const int steps = 2000000 / N;
   for (int r = -1; r < RUNS; r++) {
     const double t = seconds();
-    if (sd_vans_solve(solver, &mesh, &f, steps, dt, phi, vx, b, length, NULL, U, nut, stress, account ? moved : NULL,
-                      account ? shear : NULL, &in) != SD_OK)
+    if (sd_vans_solve(solver, &mesh, &f, steps, dt, phi, vx, b, length, NULL, U, nut, stress,
+                      account ? moved : NULL, account ? shear : NULL, &in) != SD_OK)
       abort();
     if (r >= 0) times[r] = (seconds() - t) / steps / N * 1e9;
   }
@@ -80,9 +81,9 @@ static void grains(double ratio, int n, double *average, double *force)
 {
   const int N = 900;
   const double a = 0.003, dz = a / ratio;
-  double *edge = array(N + 1), *phi = array(N), *U = array(N + 1), *hindrance = array(N), *V = array(N),
-         *sums = array(N * SD_VANS_NSUM), *x = array(3 * n), *v = array(3 * n), *radius = array(n), *F = array(3 * n),
-         *drag = array(n), averages[RUNS], forces[RUNS];
+  double *edge = array(N + 1), *phi = array(N), *U = array(N + 1), *hindrance = array(N),
+         *V = array(N), *sums = array(N * SD_VANS_NSUM), *x = array(3 * n), *v = array(3 * n),
+         *radius = array(n), *F = array(3 * n), *drag = array(n), averages[RUNS], forces[RUNS];
   for (int k = 0; k <= N; k++) edge[k] = k * dz, U[k] = 0.001 * k;
   for (int k = 0; k < N; k++) phi[k] = 0.5;
   unsigned seed = 12345;
@@ -101,11 +102,13 @@ static void grains(double ratio, int n, double *average, double *force)
     for (int k = 0; k < repeat; k++) {
       sd_vans_hindrance(N, phi, 3.1, hindrance);
       memset(sums, 0, N * SD_VANS_NSUM * sizeof(double));
-      sd_vans_average(&mesh, &law, &how, U, hindrance, n, x, v, radius, NULL, NULL, NULL, sums, NULL, V);
+      sd_vans_average(&mesh, &law, &how, U, hindrance, n, x, v, radius, NULL, NULL, NULL, sums,
+                      NULL, V);
     }
     if (r >= 0) averages[r] = (seconds() - t) / repeat / n * 1e9;
     t = seconds();
-    for (int k = 0; k < repeat; k++) sd_vans_forces(&mesh, &law, U, hindrance, n, x, v, radius, NULL, NULL, F, drag);
+    for (int k = 0; k < repeat; k++)
+      sd_vans_forces(&mesh, &law, U, hindrance, n, x, v, radius, NULL, NULL, F, drag);
     if (r >= 0) forces[r] = (seconds() - t) / repeat / n * 1e9;
   }
   *average = median(averages);
@@ -116,13 +119,16 @@ static void grains(double ratio, int n, double *average, double *force)
 
 int main(void)
 {
-  printf("fluid step, ns per slice and step        clear of walls   momentum booked   side walls (ratio)\n");
+  printf("fluid step, ns per slice and step        clear of walls   momentum booked   side walls "
+         "(ratio)\n");
   static const int sizes[] = {100, 300, 900};
   for (int k = 0; k < 3; k++) {
-    const double plain = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 0), booked = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 1);
+    const double plain = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 0),
+                 booked = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 1);
     const double walls = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0065, 0);
-    printf("  %4d slices                               %6.2f          %6.2f            %6.2f (%.2f)\n", sizes[k], plain, booked,
-           walls, walls / plain);
+    printf(
+        "  %4d slices                               %6.2f          %6.2f            %6.2f (%.2f)\n",
+        sizes[k], plain, booked, walls, walls / plain);
   }
   printf("grains, ns per grain (900 slices)          averages         forces\n");
   static const double ratios[] = {3.0, 15.0};
@@ -131,7 +137,8 @@ int main(void)
     for (int m = 0; m < 2; m++) {
       double average, force;
       grains(ratios[k], counts[m], &average, &force);
-      printf("  a/dz = %4.1f, %6d grains                 %6.1f          %6.1f\n", ratios[k], counts[m], average, force);
+      printf("  a/dz = %4.1f, %6d grains                 %6.1f          %6.1f\n", ratios[k],
+             counts[m], average, force);
     }
   return 0;
 }

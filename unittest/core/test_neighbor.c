@@ -53,7 +53,8 @@ static void clump_members_once_as_the_closest_image(void **state)
   const int n = 3 + 2, n_all = 8;
   int order[8];
   sd_neighbors list = {0};
-  assert_int_equal(sd_neighbors_clump(&list, x, tag, molecule, n, n_all, INFINITY, 0, order), SD_OK);
+  assert_int_equal(sd_neighbors_clump(&list, x, tag, molecule, n, n_all, INFINITY, 0, order),
+                   SD_OK);
   const int rows[5][2] = {{1, 5}, {0, 5}, {7, 1}, {-1, -1}, {-1, -1}};
   for (int i = 0; i < 5; i++) {
     assert_int_equal(list.first[i + 1] - list.first[i], rows[i][0] < 0 ? 0 : 2);

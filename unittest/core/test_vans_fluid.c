@@ -1,4 +1,5 @@
 /* The fluid alone: closed forms, orders of convergence, closures, balance of momentum. */
+#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -6,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "sd_vans.h"
 #include "sd_vans_wall.h"
@@ -22,8 +22,10 @@ typedef struct {
 static column *column_create(int N, double H, double stretch)
 {
   column *c = calloc(1, sizeof *c);
-  double **arrays[] = {&c->edge, &c->phi, &c->vx, &c->b, &c->length, &c->U, &c->nut, &c->stress, &c->moved, &c->shear};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = calloc(N + 1, sizeof(double));
+  double **arrays[] = {&c->edge, &c->phi, &c->vx,     &c->b,     &c->length,
+                       &c->U,    &c->nut, &c->stress, &c->moved, &c->shear};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+    *arrays[k] = calloc(N + 1, sizeof(double));
   c->scratch = calloc(4 * N + 4, sizeof(double));
   for (int j = 0; j <= N; j++) {
     const double s = (double) j / (N - 1);
@@ -36,7 +38,8 @@ static column *column_create(int N, double H, double stretch)
 
 static void column_free(column *c)
 {
-  double *arrays[] = {c->edge, c->phi, c->vx, c->b, c->length, c->U, c->nut, c->stress, c->scratch, c->moved, c->shear};
+  double *arrays[] = {c->edge, c->phi,    c->vx,      c->b,     c->length, c->U,
+                      c->nut,  c->stress, c->scratch, c->moved, c->shear};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) free(arrays[k]);
   sd_vans_solver_free(c->solver);
   free(c);
@@ -45,8 +48,8 @@ static void column_free(column *c)
 static void solve(column *c, const sd_vans_fluid *fluid, int64_t steps, double dt)
 {
   sd_vans_mixing_length(&c->mesh, fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
-  assert_int_equal(sd_vans_solve(c->solver, &c->mesh, fluid, steps, dt, c->phi, c->vx, c->b, c->length, NULL, c->U, c->nut,
-                                 c->stress, NULL, NULL, NULL),
+  assert_int_equal(sd_vans_solve(c->solver, &c->mesh, fluid, steps, dt, c->phi, c->vx, c->b,
+                                 c->length, NULL, c->U, c->nut, c->stress, NULL, NULL, NULL),
                    SD_OK);
 }
 
@@ -148,16 +151,24 @@ static void turbulent_layer_converges(void **state)
     const int N = (int) floor(H / dz) + 1;
     const double H_mesh = (N - 1) * dz, g = u_star * u_star / H_mesh;
     column *c = column_create(N, H_mesh, 0.0);
-    const sd_vans_fluid fluid = {
-        .rho = 1000, .eta = nu * 1000, .gx = g, .turbulence = SD_VANS_KZ, .kappa = kappa, .phi_max = 0.6, .sublayer = 1};
+    const sd_vans_fluid fluid = {.rho = 1000,
+                                 .eta = nu * 1000,
+                                 .gx = g,
+                                 .turbulence = SD_VANS_KZ,
+                                 .kappa = kappa,
+                                 .phi_max = 0.6,
+                                 .sublayer = 1};
     solve(c, &fluid, 2500, 0.5);
     error[level] = 0.0;
     for (int j = 0; j < N - 1; j++)
-      error[level] = fmax(error[level], fabs(c->U[j + 1] - layer_velocity((j + 0.5) * dz, nu, u_star, H_mesh, kappa)) / u_star);
+      error[level] = fmax(
+          error[level],
+          fabs(c->U[j + 1] - layer_velocity((j + 0.5) * dz, nu, u_star, H_mesh, kappa)) / u_star);
     printf("    dz+ = %.3f: largest error %.3e u_star\n", dz * u_star / nu, error[level]);
     column_free(c);
   }
-  for (int level = 1; level < 4; level++) assert_true(log(error[level - 1] / error[level]) / log(2.0) > 1.0);
+  for (int level = 1; level < 4; level++)
+    assert_true(log(error[level - 1] / error[level]) / log(2.0) > 1.0);
   assert_true(error[3] < 0.02);
 }
 
@@ -179,7 +190,8 @@ static void wall_friction_follows_its_law(void **state)
   /* Graf & Altinakar's law at Re 1e2..1e5 */
   const double law[4] = {0.0927, 0.0411, 0.0225, 0.0140};
   for (int k = 0; k < 4; k++)
-    assert_true(fabs(sd_vans_wall_friction(SD_VANS_CONSISTENT, pow(10.0, k + 2), NULL) / law[k] - 1.0) < 0.01);
+    assert_true(fabs(sd_vans_wall_friction(SD_VANS_CONSISTENT, pow(10.0, k + 2), NULL) / law[k] -
+                     1.0) < 0.01);
 }
 
 /* Far from the bottom, without grains and turbulence, slope and side walls balance: g = 2/width f/8 U^2. */
@@ -216,7 +228,8 @@ static void tabulated_friction_is_the_substitution(void **state)
     }
     int smooth = 0, all = 0;
     for (double Re = 100.0; Re < 1e7; Re *= 1.01, all++)
-      smooth += sd_vans_wall_lookup(table, (sd_vans_rules) rules, Re) != sd_vans_wall_friction((sd_vans_rules) rules, Re, NULL);
+      smooth += sd_vans_wall_lookup(table, (sd_vans_rules) rules, Re) !=
+          sd_vans_wall_friction((sd_vans_rules) rules, Re, NULL);
     assert_true(smooth > 0.8 * all);
   }
   free(table);
@@ -259,12 +272,14 @@ static void momentum_is_balanced(void **state)
       const double before = sd_vans_momentum(&c->mesh, fluid.rho, c->phi, c->U), dt = 3e-4;
       const int steps = 37;
       sd_vans_impulse in;
-      assert_int_equal(sd_vans_solve(c->solver, &c->mesh, &fluid, steps, dt, c->phi, c->vx, c->b, c->length, source, c->U,
-                                     c->nut, c->stress, c->moved, c->shear, &in),
+      assert_int_equal(sd_vans_solve(c->solver, &c->mesh, &fluid, steps, dt, c->phi, c->vx, c->b,
+                                     c->length, source, c->U, c->nut, c->stress, c->moved, c->shear,
+                                     &in),
                        SD_OK);
       double gain = in.driving + in.bottom + in.walls + in.surface;
       double size = fabs(in.driving) + fabs(in.bottom) + fabs(in.walls) + fabs(in.surface);
-      for (int n = 0; n < N - 1; n++) gain += -c->moved[n] + fluid.rho * source[n] * (c->edge[n + 1] - c->edge[n]) * steps * dt;
+      for (int n = 0; n < N - 1; n++)
+        gain += -c->moved[n] + fluid.rho * source[n] * (c->edge[n + 1] - c->edge[n]) * steps * dt;
       const double after = sd_vans_momentum(&c->mesh, fluid.rho, c->phi, c->U);
       assert_true(fabs(after - before - gain) < 1e-11 * (size + fabs(before)));
       column_free(c);
@@ -286,7 +301,8 @@ static void displaced_water_keeps_its_momentum(void **state)
   for (int n = 1; n <= 61; n++) low = fmin(low, c->U[n]), high = fmax(high, c->U[n]);
   const double before = sd_vans_momentum(&c->mesh, 1000, old, c->U);
   const double through = sd_vans_displace(&c->mesh, 1000, old, c->phi, c->U, scratch);
-  assert_true(fabs(sd_vans_momentum(&c->mesh, 1000, c->phi, c->U) - before - through) < 1e-13 * before);
+  assert_true(fabs(sd_vans_momentum(&c->mesh, 1000, c->phi, c->U) - before - through) <
+              1e-13 * before);
   assert_true(through != 0.0);
   for (int n = 1; n <= 60; n++) assert_true(c->U[n] >= low - 1e-14 && c->U[n] <= high + 1e-14);
   /* nothing moved: nothing changes */
@@ -303,7 +319,8 @@ static void mixing_lengths(void **state)
   (void) state;
   enum { N = 51 };
   column *c = column_create(N, 0.5, 0.0);
-  sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .kappa = 0.4, .phi_max = 0.6, .phi_bed = 0.1, .radius = 0.003};
+  sd_vans_fluid fluid = {
+      .rho = 1000, .eta = 1e-3, .kappa = 0.4, .phi_max = 0.6, .phi_bed = 0.1, .radius = 0.003};
   const double dz = 0.01, H = 0.5;
 #define LENGTH(which)       \
   fluid.turbulence = which; \
@@ -311,13 +328,15 @@ static void mixing_lengths(void **state)
   LENGTH(SD_VANS_KZ);
   for (int j = 0; j < N; j++) assert_true(fabs(c->length[j] - 0.4 * j * dz) < 1e-15);
   LENGTH(SD_VANS_PARABOLIC);
-  for (int j = 0; j < N; j++) assert_true(fabs(c->length[j] - 0.4 * j * dz * sqrt(fmax(1.0 - j * dz / H, 0.0))) < 1e-9);
+  for (int j = 0; j < N; j++)
+    assert_true(fabs(c->length[j] - 0.4 * j * dz * sqrt(fmax(1.0 - j * dz / H, 0.0))) < 1e-9);
   assert_true(c->length[N - 1] == 0.0);
   /* clear water: Li & Sawamoto is kappa z, pipe the distance to the nearer of bottom and surface */
   LENGTH(SD_VANS_LI_SAWAMOTO);
   for (int j = 0; j < N; j++) assert_true(fabs(c->length[j] - 0.4 * j * dz) < 1e-14);
   LENGTH(SD_VANS_PIPE);
-  for (int j = 0; j < N; j++) assert_true(fabs(c->length[j] - 0.4 * fmin(j * dz, H - j * dz)) < 1e-14);
+  for (int j = 0; j < N; j++)
+    assert_true(fabs(c->length[j] - 0.4 * fmin(j * dz, H - j * dz)) < 1e-14);
   /* a bed of 20 slices above phi_max: no length in it, kappa (z - bed) above; Yade's loses a little in the highest of them */
   for (int n = 0; n < 20; n++) c->phi[n] = 0.62;
   LENGTH(SD_VANS_LI_SAWAMOTO);
@@ -329,11 +348,14 @@ static void mixing_lengths(void **state)
   LENGTH(SD_VANS_NI_CAPART); /* the bed is the lower edge of the highest slice above phi_bed */
   const double pore = (1 - 0.62) / 0.62 * 0.003 / 3;
   for (int j = 0; j < N; j++)
-    assert_true(fabs(c->length[j] - fmax(j < 20 ? fmin(pore / 2, 0.2 * 0.006) : 0.0, 0.4 * (j - 19) * dz)) < 1e-12 ||
-                (j >= 20 && c->length[j] >= 0.4 * (j - 19) * dz));
+    assert_true(
+        fabs(c->length[j] - fmax(j < 20 ? fmin(pore / 2, 0.2 * 0.006) : 0.0, 0.4 * (j - 19) * dz)) <
+            1e-12 ||
+        (j >= 20 && c->length[j] >= 0.4 * (j - 19) * dz));
   LENGTH(SD_VANS_ROUSSEAU);
   for (int j = 1; j < N; j++)
-    assert_true(fabs(c->length[j] - 0.5 * 0.4 / 0.6 * 0.001) < 1e-15); /* water at rest: van Driest's factor is 0 */
+    assert_true(fabs(c->length[j] - 0.5 * 0.4 / 0.6 * 0.001) <
+                1e-15); /* water at rest: van Driest's factor is 0 */
   LENGTH(SD_VANS_PORE);
   assert_true(c->length[0] == 0.0 && c->length[10] <= 0.4 * dz * 1.0000001);
 #undef LENGTH
@@ -361,8 +383,9 @@ static void number_of_steps(void **state)
   static const struct {
     double T, dt;
     int yade, right;
-  } cases[] = {{1e-2, 1e-5, 1001, 1000}, {1e-2, 1e-4, 101, 100}, {1, 1e-5, 100001, 100000}, {1, 0.1, 11, 10},
-               {1, 1e-3, 1000, 1000},    {1e-2, 1e-3, 10, 10},   {1e3, 0.2, 5000, 5000}};
+  } cases[] = {{1e-2, 1e-5, 1001, 1000}, {1e-2, 1e-4, 101, 100}, {1, 1e-5, 100001, 100000},
+               {1, 0.1, 11, 10},         {1, 1e-3, 1000, 1000},  {1e-2, 1e-3, 10, 10},
+               {1e3, 0.2, 5000, 5000}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     double dt = cases[k].dt;
     assert_int_equal(sd_vans_steps(SD_VANS_YADE, cases[k].T, &dt), cases[k].yade);
@@ -378,15 +401,15 @@ static void number_of_steps(void **state)
 static void exchange_coefficient(void **state)
 {
   (void) state;
-  const double edge[4] = {0, 1, 2, 3}, U[4] = {0, 0.5, 0.5, 0.5}, phi[3] = {0.3, 0.3, 0.3}, vx[3] = {0.2, 0.9, 0.5},
-               drag[3] = {2e-5, -3e-5, 1e-5};
+  const double edge[4] = {0, 1, 2, 3}, U[4] = {0, 0.5, 0.5, 0.5}, phi[3] = {0.3, 0.3, 0.3},
+               vx[3] = {0.2, 0.9, 0.5}, drag[3] = {2e-5, -3e-5, 1e-5};
   const sd_vans_mesh mesh = {3, 0, 1, edge};
   sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .radius = 0.003};
   const double n = 0.3 / (4.0 / 3.0 * PI * 27e-9);
   double b[3];
   sd_vans_exchange(&mesh, &fluid, 1e-2, U, phi, vx, drag, NULL, NULL, b);
-  assert_true(fabs(b[0] / (n * 2e-5 / 0.3 / 1000) - 1) < 1e-14 && fabs(b[1] / (n * 3e-5 / 0.4 / 1000) - 1) < 1e-14 &&
-              b[2] == 10.0);
+  assert_true(fabs(b[0] / (n * 2e-5 / 0.3 / 1000) - 1) < 1e-14 &&
+              fabs(b[1] / (n * 3e-5 / 0.4 / 1000) - 1) < 1e-14 && b[2] == 10.0);
   fluid.rules = SD_VANS_YADE;
   sd_vans_exchange(&mesh, &fluid, 1e-2, U, phi, vx, drag, NULL, NULL, b);
   assert_true(b[0] == 0.0 && b[1] == 0.0 && b[2] == 10.0);
@@ -397,13 +420,16 @@ static void exchange_coefficient(void **state)
 static void overlaps_count_once(void **state)
 {
   (void) state;
-  const double a = 0.4, h = 0.5, all = 4.0 / 3.0 * PI * a * a * a, lens = PI * (4 * a + h) * (2 * a - h) * (2 * a - h) / 12;
+  const double a = 0.4, h = 0.5, all = 4.0 / 3.0 * PI * a * a * a,
+               lens = PI * (4 * a + h) * (2 * a - h) * (2 * a - h) / 12;
   const double chain[9] = {0, 0, 0, h, 0, 0, 2 * h, 0, 0}, radii[3] = {a, a, a};
   assert_true(fabs(sd_vans_union_share(2, chain, radii, 0) - (1 - lens / 2 / all)) < 1e-14);
   assert_true(fabs(sd_vans_union_share(3, chain, radii, 1) - (1 - lens / all)) < 1e-14);
   const double within[6] = {0, 0, 0, 0.1, 0, 0}, unequal[2] = {0.4, 0.2}, same[6] = {0};
-  assert_true(sd_vans_union_share(2, within, unequal, 0) == 1.0 && sd_vans_union_share(2, within, unequal, 1) == 0.0);
-  assert_true(sd_vans_union_share(2, same, radii, 0) == 1.0 && sd_vans_union_share(2, same, radii, 1) == 0.0);
+  assert_true(sd_vans_union_share(2, within, unequal, 0) == 1.0 &&
+              sd_vans_union_share(2, within, unequal, 1) == 0.0);
+  assert_true(sd_vans_union_share(2, same, radii, 0) == 1.0 &&
+              sd_vans_union_share(2, same, radii, 1) == 0.0);
   /* triangle with a common core, by counting points of a fine lattice: 1e-3 */
   const double side = 0.45, triangle[9] = {0, 0, 0, side, 0, 0, side / 2, side * sqrt(3) / 2, 0};
   double sum = 0.0;
@@ -414,7 +440,8 @@ static void overlaps_count_once(void **state)
   for (int i = 0; i < LATTICE; i++)
     for (int j = 0; j < LATTICE; j++)
       for (int k = 0; k < LATTICE; k++) {
-        const double p[3] = {-0.45 + (i + 0.5) * step, -0.45 + (j + 0.5) * step, -0.7 + (k + 0.5) * step};
+        const double p[3] = {-0.45 + (i + 0.5) * step, -0.45 + (j + 0.5) * step,
+                             -0.7 + (k + 0.5) * step};
         for (int s = 0; s < 3; s++) {
           const double x = p[0] - triangle[3 * s], y = p[1] - triangle[3 * s + 1], z = p[2];
           if (x * x + y * y + z * z < a * a) {

@@ -1,10 +1,10 @@
 /* Slices of spheres, averages, and the force on one grain against closed forms. */
+#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "sd_vans.h"
 
@@ -23,7 +23,8 @@ static void slices_sum_to_the_sphere(void **state)
   const sd_vans_mesh mesh = {N, z_ref, dz, edge};
   for (size_t r = 0; r < sizeof ratios / sizeof *ratios; r++)
     for (int k = 0; k <= 40; k++) {
-      const double a = ratios[r] * dz, z = z_ref + (1040 + k / 20.0) * dz; /* also on the borders and in the middles */
+      const double a = ratios[r] * dz,
+                   z = z_ref + (1040 + k / 20.0) * dz; /* also on the borders and in the middles */
       int first;
       const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first, V, N);
       double sum = 0.0;
@@ -87,7 +88,8 @@ static void yade_mirrors_the_slices(void **state)
   int first_right, first_mirrored;
   const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first_right, right, N);
   sd_vans_slices(&mesh, SD_VANS_YADE, z, a, &first_mirrored, mirrored, N);
-  for (int n = 10; n <= 30; n++) assert_true(fabs(mirrored[n - first_mirrored] - right[2 * 20 - n - first_right]) < 1e-13);
+  for (int n = 10; n <= 30; n++)
+    assert_true(fabs(mirrored[n - first_mirrored] - right[2 * 20 - n - first_right]) < 1e-13);
   assert_true(count > 20);
 }
 
@@ -95,16 +97,20 @@ static void point_grains_stay_in_one_slice(void **state)
 {
   (void) state;
   enum { N = 8 };
-  double edge[N + 1], V[N], sums[N * SD_VANS_NSUM] = {0}, U[N + 1] = {0}, hindrance[N], profile[5 * N];
+  double edge[N + 1], V[N], sums[N * SD_VANS_NSUM] = {0}, U[N + 1] = {0}, hindrance[N],
+                                     profile[5 * N];
   for (int n = 0; n <= N; n++) edge[n] = n * 0.5;
   for (int n = 0; n < N; n++) hindrance[n] = 1.0;
   const sd_vans_mesh mesh = {N, 0.0, 0.5, edge};
   const sd_vans_force_law law = {.rho = 1.2, .eta = 0.3, .exponent = 3.1};
   const sd_vans_averaging how = {1, 0, NULL};
   const double x[6] = {0, 0, 1.7, 0, 0, 9.0}, v[6] = {0.3, -0.2, 0.5, 1, 1, 1}, a[2] = {0.9, 0.9};
-  assert_int_equal(sd_vans_average(&mesh, &law, &how, U, hindrance, 2, x, v, a, NULL, NULL, NULL, sums, NULL, V), -1);
+  assert_int_equal(
+      sd_vans_average(&mesh, &law, &how, U, hindrance, 2, x, v, a, NULL, NULL, NULL, sums, NULL, V),
+      -1);
   sd_vans_profiles(&mesh, 11.0, sums, profile);
-  for (int n = 0; n < N; n++) assert_true(fabs(profile[n] - (n == 3 ? 4.0 / 3.0 * PI * 0.729 / 5.5 : 0.0)) < 1e-15);
+  for (int n = 0; n < N; n++)
+    assert_true(fabs(profile[n] - (n == 3 ? 4.0 / 3.0 * PI * 0.729 / 5.5 : 0.0)) < 1e-15);
   assert_true(fabs(profile[N + 3] - 0.3) < 1e-15 && fabs(profile[3 * N + 3] - 0.5) < 1e-15);
 }
 
@@ -112,7 +118,8 @@ static void point_grains_stay_in_one_slice(void **state)
 static void drag_balances_weight_at_terminal_velocity(void **state)
 {
   (void) state;
-  const double rho = 1030.0, eta = 1.7e-3, rho_s = 2570.0, g = 9.7, a = 0.0011, d = 2 * a, nu = eta / rho;
+  const double rho = 1030.0, eta = 1.7e-3, rho_s = 2570.0, g = 9.7, a = 0.0011, d = 2 * a,
+               nu = eta / rho;
   const double B = 24.4 * nu / d, C = 4.0 / 3.0 * (rho_s / rho - 1.0) * g * d;
   const double w = (-B + sqrt(B * B + 4 * 0.44 * C)) / (2 * 0.44);
   double edge[3] = {0, 1, 2};
@@ -132,7 +139,8 @@ static void hindrance_has_its_exponent(void **state)
   double h[3];
   sd_vans_hindrance(3, phi, 3.1, h);
   assert_true(h[0] == 1.0);
-  assert_true(fabs(log(h[1]) / log(1 - 0.3) + 3.1) < 1e-13 && fabs(log(h[2]) / log(1 - 0.6) + 3.1) < 1e-13);
+  assert_true(fabs(log(h[1]) / log(1 - 0.3) + 3.1) < 1e-13 &&
+              fabs(log(h[2]) / log(1 - 0.6) + 3.1) < 1e-13);
 }
 
 /* 1/2 rho pi a^2 C_l [(U_top - v)^2 - (U_bottom - v)^2], top and bottom floor(a/dz) slices from the centre's; also with
@@ -160,7 +168,8 @@ static void convective_force_is_taken_off(void **state)
   (void) state;
   double edge[3] = {0, 1, 2};
   const sd_vans_mesh mesh = {2, 0.0, 1.0, edge};
-  const double convective[2] = {0.3, 0.7}, U[3] = {0}, hindrance[2] = {1, 1}, x[3] = {0, 0, 1.5}, v[3] = {0}, a = 0.2;
+  const double convective[2] = {0.3, 0.7}, U[3] = {0}, hindrance[2] = {1, 1}, x[3] = {0, 0, 1.5},
+               v[3] = {0}, a = 0.2;
   const sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .convective = convective};
   double F[3];
   sd_vans_forces(&mesh, &law, U, hindrance, 1, x, v, &a, NULL, NULL, F, NULL);
@@ -173,13 +182,14 @@ static void grains_outside_feel_the_end_values(void **state)
   (void) state;
   double edge[4] = {0, 1, 2, 3};
   const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
-  const double U[4] = {0, 0.5, 0.8, 0.9}, hindrance[3] = {3, 2, 1.5}, x[6] = {0, 0, 7, 0, 0, -2}, v[6] = {0.1, 0, 0, 0.1, 0, 0},
-               a[2] = {0.2, 0.2};
+  const double U[4] = {0, 0.5, 0.8, 0.9}, hindrance[3] = {3, 2, 1.5}, x[6] = {0, 0, 7, 0, 0, -2},
+               v[6] = {0.1, 0, 0, 0.1, 0, 0}, a[2] = {0.2, 0.2};
   sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .g = {0, 0, -2}};
   double F[6], expected[3];
   assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 2, x, v, a, NULL, NULL, F, NULL), 2);
   sd_vans_drag(1.3, 0.1, 0.2, 1.5, (double[3]){0.8, 0, 0}, expected);
-  assert_true(fabs(F[0] - expected[0]) < 1e-15 && fabs(F[2] - 4.0 / 3.0 * PI * 0.008 * 2.6) < 1e-15);
+  assert_true(fabs(F[0] - expected[0]) < 1e-15 &&
+              fabs(F[2] - 4.0 / 3.0 * PI * 0.008 * 2.6) < 1e-15);
   sd_vans_drag(1.3, 0.1, 0.2, 3.0, (double[3]){-0.1, 0, 0}, expected);
   assert_true(fabs(F[3] - expected[0]) < 1e-15);
   law.rules = SD_VANS_YADE;
@@ -200,11 +210,12 @@ static void fluctuations_have_their_moments(void **state)
       sd_vans_normal3(4711, i, 3, normal);
       sd_vans_fluctuation(normal, 0.3, correlated, u);
       for (int d = 0; d < 3; d++) u[d] /= 0.3;
-      xx += u[0] * u[0] / n, yy += u[1] * u[1] / n, zz += u[2] * u[2] / n, xz += u[0] * u[2] / n, xy += u[0] * u[1] / n,
-          x += u[0] / n;
+      xx += u[0] * u[0] / n, yy += u[1] * u[1] / n, zz += u[2] * u[2] / n, xz += u[0] * u[2] / n,
+          xy += u[0] * u[1] / n, x += u[0] / n;
     }
     const double tolerance = 5 / sqrt(n) * 2;
-    assert_true(fabs(xx - (correlated ? 2 : 1)) < 2 * tolerance && fabs(yy - 1) < tolerance && fabs(zz - 1) < tolerance);
+    assert_true(fabs(xx - (correlated ? 2 : 1)) < 2 * tolerance && fabs(yy - 1) < tolerance &&
+                fabs(zz - 1) < tolerance);
     assert_true(fabs(xz + correlated) < tolerance && fabs(xy) < tolerance && fabs(x) < tolerance);
   }
 }
@@ -228,8 +239,10 @@ static void eddies_live_as_long_as_the_length_over_the_velocity(void **state)
 {
   (void) state;
   assert_true(fabs(sd_vans_eddy_life(0.2, 1e-6, 0.05, 1e-3) - 0.33 * 0.41 * 0.2 / 0.05) < 1e-15);
-  assert_true(fabs(sd_vans_eddy_life(-1.0, 1e-6, 0.05, 1e-3) - 0.33 * 0.41 * 11.6e-6 / 0.0025) < 1e-15);
-  assert_true(sd_vans_eddy_life(1e9, 1e-6, 0.05, 1e-3) == 10.0 && sd_vans_eddy_life(1.0, 1e-6, 0.0, 1e-3) == 10e-3);
+  assert_true(fabs(sd_vans_eddy_life(-1.0, 1e-6, 0.05, 1e-3) - 0.33 * 0.41 * 11.6e-6 / 0.0025) <
+              1e-15);
+  assert_true(sd_vans_eddy_life(1e9, 1e-6, 0.05, 1e-3) == 10.0 &&
+              sd_vans_eddy_life(1.0, 1e-6, 0.0, 1e-3) == 10e-3);
 }
 
 int main(void)

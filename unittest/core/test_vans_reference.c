@@ -1,11 +1,11 @@
 /* Forces, averages and fluid solves against the reference tables, under both rules. Tolerances: the tables have 17 digits;
  * forces and averages
  * are sums of a few tens of terms (1e-12 of the largest entry), a fluid solve is a hundred tridiagonal solves (1e-9). */
+#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <cmocka.h>
 
 #include "sd_vans.h"
 #include "vans_table.h"
@@ -46,8 +46,8 @@ static void check_forces(const char *name, sd_vans_rules rules)
   vectors(t, "ufx", "ufy", "ufz", n, u);
   vectors(t, "fx", "fy", "fz", n, reference);
   sd_vans_hindrance(mesh.ncell, vans_column(p, "phi"), law.exponent, hindrance);
-  const int outside =
-      sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, n, x, v, vans_column(t, "radius"), u, NULL, F, NULL);
+  const int outside = sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, n, x, v,
+                                     vans_column(t, "radius"), u, NULL, F, NULL);
   assert_int_equal(outside, 8);
   /* Yade forgets the grains outside the mesh, which is what the table has; the consistent rule moves and lifts them. */
   if (rules == SD_VANS_CONSISTENT)
@@ -102,11 +102,13 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
   for (int call = 1; call <= 2; call++) {
     double sums[N_MAX * SD_VANS_NSUM] = {0}, class_sums[2 * N_MAX * SD_VANS_NSUM] = {0};
     sd_vans_hindrance(N, phi, law.exponent, hindrance);
-    assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance, n, x, v, vans_column(t, "radius"),
-                                     u, NULL, NULL, sums, classes ? class_sums : NULL, V),
+    assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance, n, x,
+                                     v, vans_column(t, "radius"), u, NULL, NULL, sums,
+                                     classes ? class_sums : NULL, V),
                      -1);
     for (int c = -1; c < classes; c++) {
-      sd_vans_profiles(&mesh, vans_key(t, "vCell", 0) / mesh.dz, c < 0 ? sums : class_sums + c * N * SD_VANS_NSUM, profile);
+      sd_vans_profiles(&mesh, vans_key(t, "vCell", 0) / mesh.dz,
+                       c < 0 ? sums : class_sums + c * N * SD_VANS_NSUM, profile);
       static const char *const names[] = {"phi", "vx", "vy", "vz", "drag"};
       for (int k = 0; k < 5; k++) {
         char column[32];
@@ -147,27 +149,30 @@ static void check_fluid(const char *name, sd_vans_rules rules)
   const sd_vans_mesh mesh = mesh_of(t, 0.0);
   const int N = mesh.ncell;
   const double radii[2] = {vans_key(t, "radiusParts", 0), vans_key(t, "radiusParts", 1)};
-  const sd_vans_fluid fluid = {.rho = vans_key(t, "densFluid", 0),
-                               .eta = vans_key(t, "viscoDyn", 0),
-                               .gx = vans_key(t, "gravity", 0),
-                               .dpdx = vans_key(t, "dpdx", 0),
-                               .turbulence = vans_key(t, "iturbu", 0) == 0.0 ? SD_VANS_LAMINAR
-                                                                             : SD_VANS_KZ + (int) vans_key(t, "ilm", 0),
-                               .kappa = vans_key(t, "kappa", 0),
-                               .phi_max = vans_key(t, "phiMax", 0),
-                               .phi_bed = vans_key(t, "phiBed", 0),
-                               .sublayer = (int) vans_key(t, "viscousSubLayer", 0),
-                               .viscosity = (sd_vans_viscosity) vans_key(t, "irheolf", 0),
-                               .driven = vans_key(t, "iusl", 0) == 0.0,
-                               .u_top = vans_key(t, "uTop", 0),
-                               .width = vans_key(t, "fluidWallFriction", 0) != 0.0 ? vans_key(t, "channelWidth", 0) : 0.0,
-                               .wall_coef = vans_key(t, "fluidFrictionCoef", 0),
-                               .radius = vans_key(t, "radiusPart", 0),
-                               .nclass = vans_find(t, "phi_c0") ? 2 : 0,
-                               .class_radius = radii,
-                               .rules = rules};
-  double class_phi[2 * N_MAX], b[N_MAX], length[N_MAX], scratch[4 * N_MAX], U[N_MAX + 1], nut[N_MAX], stress[N_MAX];
-  for (int c = 0; c < fluid.nclass; c++) memcpy(class_phi + c * N, vans_column(t, c ? "phi_c1" : "phi_c0"), N * sizeof(double));
+  const sd_vans_fluid fluid = {
+      .rho = vans_key(t, "densFluid", 0),
+      .eta = vans_key(t, "viscoDyn", 0),
+      .gx = vans_key(t, "gravity", 0),
+      .dpdx = vans_key(t, "dpdx", 0),
+      .turbulence = vans_key(t, "iturbu", 0) == 0.0 ? SD_VANS_LAMINAR
+                                                    : SD_VANS_KZ + (int) vans_key(t, "ilm", 0),
+      .kappa = vans_key(t, "kappa", 0),
+      .phi_max = vans_key(t, "phiMax", 0),
+      .phi_bed = vans_key(t, "phiBed", 0),
+      .sublayer = (int) vans_key(t, "viscousSubLayer", 0),
+      .viscosity = (sd_vans_viscosity) vans_key(t, "irheolf", 0),
+      .driven = vans_key(t, "iusl", 0) == 0.0,
+      .u_top = vans_key(t, "uTop", 0),
+      .width = vans_key(t, "fluidWallFriction", 0) != 0.0 ? vans_key(t, "channelWidth", 0) : 0.0,
+      .wall_coef = vans_key(t, "fluidFrictionCoef", 0),
+      .radius = vans_key(t, "radiusPart", 0),
+      .nclass = vans_find(t, "phi_c0") ? 2 : 0,
+      .class_radius = radii,
+      .rules = rules};
+  double class_phi[2 * N_MAX], b[N_MAX], length[N_MAX], scratch[4 * N_MAX], U[N_MAX + 1],
+      nut[N_MAX], stress[N_MAX];
+  for (int c = 0; c < fluid.nclass; c++)
+    memcpy(class_phi + c * N, vans_column(t, c ? "phi_c1" : "phi_c0"), N * sizeof(double));
   const double *phi = vans_column(t, "phi"), *vx = vans_column(t, "vx");
   memcpy(U, vans_column(t, "u_in"), (N + 1) * sizeof(double));
 
@@ -175,9 +180,11 @@ static void check_fluid(const char *name, sd_vans_rules rules)
   const int64_t steps = sd_vans_steps(rules, vans_key(t, "t_end", 0), &dt);
   assert_int_equal(steps, rules == SD_VANS_YADE ? 101 : 100);
   sd_vans_exchange(&mesh, &fluid, dt, U, phi, vx, vans_column(t, "drag"), NULL, NULL, b);
-  sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? class_phi : NULL, phi, length, scratch);
+  sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? class_phi : NULL, phi, length,
+                        scratch);
   sd_vans_solver *solver = sd_vans_solver_create(N);
-  assert_int_equal(sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi, vx, b, length, NULL, U, nut, stress, NULL, NULL, NULL),
+  assert_int_equal(sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi, vx, b, length, NULL, U, nut,
+                                 stress, NULL, NULL, NULL),
                    SD_OK);
   sd_vans_solver_free(solver);
   assert_true(vans_difference(U, vans_column(r, "u_out"), N + 1) < 1e-9);
@@ -202,8 +209,9 @@ static void fluid_solves(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(forces_steady),           cmocka_unit_test(forces_at_rest), cmocka_unit_test(averages_of_one_class),
-      cmocka_unit_test(averages_of_two_classes), cmocka_unit_test(fluid_solves),
+      cmocka_unit_test(forces_steady),         cmocka_unit_test(forces_at_rest),
+      cmocka_unit_test(averages_of_one_class), cmocka_unit_test(averages_of_two_classes),
+      cmocka_unit_test(fluid_solves),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

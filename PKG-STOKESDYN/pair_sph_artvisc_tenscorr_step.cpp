@@ -1,0 +1,422 @@
+#include "pair_sph_artvisc_tenscorr.h"
+
+#include "fix_nve_sph.h"
+#include "fix_sph_density.h"
+#include "fix_sph_pressure.h"
+#include "fix_wall_adami_sph.h"
+#include "keywords.h"
+#include "lammps_compat.h"
+#include "sd_sph_density.h"
+#include "sd_sph_step.h"
+#include "sd_sph_wall.h"
+
+#include "atom.h"
+#include "force.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+static const std::string COMMAND = "Pair style " + std::string(PairSph::STYLE);
+
+void PairSph::compute(int eflag, int vflag)
+{
+  ev_init(eflag, vflag);
+  check_list();
+  prepare();
+  if (needs_velocity) estimate_velocities();
+
+  if (leapfrog) density_step();
+  if (summation) sum_densities();
+  if (filter && !update->setupflag && update->ntimestep % filter->every == 0) filter_densities();
+  pressures_of_all();
+  if (wall) wall_particles();
+  forces(continuity && !leapfrog);
+
+  for (auto *fix : pressures) fix->vector_atom = P.data();
+  if (continuity) continuity->vector_atom = atom->drho;
+  if (vflag_fdotr) virial_fdotr_compute();
+}
+
+/* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build and goes
+ * on. */
+void PairSph::check_list()
+{
+  if (update->setupflag) {
+    dangerous_builds = neighbor->ndanger;
+    return;
+  }
+  if (neighbor->ago != 0 || neighbor->ndanger == dangerous_builds) return;
+  dangerous_builds = neighbor->ndanger;
+  if (std::max(neighbor->every, neighbor->delay) <= 1) return;
+  fail(lmp,
+       COMMAND + ": step " + std::to_string(update->ntimestep) +
+           ": particles moved more than half the neighbour skin " + text(neighbor->skin) +
+           " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, or a "
+           "larger skin");
+}
+
+/* Model, list and particles for the core. */
+void PairSph::prepare()
+{
+  const int n = atom->nlocal + atom->nghost, ntypes = atom->ntypes;
+  particles = sd_sph_particles();
+  particles.n = n;
+  x4.resize(4 * (size_t) (n + 1));
+  v4.resize(4 * (size_t) (n + 1));
+  f4.resize(4 * (size_t) (n + 1));
+  P.resize(n + 1);
+  A.resize(n + 1);
+  particles.x4 = x4.data();
+  particles.v4 = v4.data();
+
+  // Types with the same coefficients and mass are one class to the core, which is faster.
+  coefficients.assign((size_t) ntypes * ntypes, sd_sph_coefficients());
+  const sd_sph_coefficients *first = nullptr;
+  double first_mass = 0.0;
+  bool alike = !atom->rmass;
+  for (int i = 1; i <= ntypes; i++)
+    for (int j = 1; j <= ntypes; j++) {
+      if (!(table[H][i][j] > 0.0)) continue;    // two types of another style
+      const sd_sph_parameters given_values = {table[H][i][j], table[C][i][j], table[ALPHA][i][j],
+                                              table[BETA][i][j], table[DELTAP][i][j]};
+      sd_sph_coefficients &c = coefficients[(size_t) (i - 1) * ntypes + j - 1];
+      c = sd_sph_coefficients_of(model.kernel, model.dimension, &given_values, mu);
+      if (!model.artvisc) c.a1 = c.b1 = 0.0;
+      if (!model.tenscorr) c.tens = 0.0;
+      if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
+        fail(lmp,
+             COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) +
+                 ": h has grown beyond the neighbour list");
+      if (!first) {
+        first = &c;
+        first_mass = atom->rmass ? 0.0 : atom->mass[i];
+      } else
+        alike = alike && memcmp(first, &c, sizeof(c)) == 0 && atom->mass[i] == first_mass &&
+            atom->mass[j] == first_mass;
+    }
+  if (alike && first) {
+    coefficients[0] = *first;
+    model.nclasses = 1;
+    particles.mass = first_mass;
+  } else {
+    model.nclasses = ntypes;
+    masses.resize(n + 1);
+    classes.resize(n + 1);
+    for (int i = 0; i < n; i++) {
+      masses[i] = Sph::mass(lmp, i);
+      classes[i] = atom->type[i] - 1;
+    }
+    masses[n] = 0.0;
+    classes[n] = 0;
+    for (auto &c : coefficients)
+      if (c.inv_h == 0.0)
+        c.inv_h = 1.0;    // pairs of types that never meet: the filler row may still look them up
+    particles.m = masses.data();
+    particles.cls = classes.data();
+  }
+  model.pair = coefficients.data();
+
+  raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
+  pairs = raw;
+}
+
+/* vest is the velocity at the time of the force. The integrators set it before the force; who has none of
+ * them moves with v. At the start
+ * of a run it is v, unless the run goes on where the last one ended. */
+void PairSph::estimate_velocities()
+{
+  bool start = false;
+  if (update->setupflag) {
+    start = integrators.empty();
+    for (const auto *fix : integrators) start = !fix->resumes() || start;
+  }
+  const int n = particles.n, bits = start ? 0 : own_vest_bits;
+  for (int i = 0; i < n; i++)
+    if (!(atom->mask[i] & bits)) memcpy(atom->vest[i], atom->v[i], 3 * sizeof(double));
+}
+
+/* Leapfrog: the rate of density of the half step, from positions and velocities at its middle, moves the
+ * density by a whole step. At the
+ * start of a run the rate is that of the moment, and nothing moves. Leaves the near pairs in the list for
+ * the force. */
+void PairSph::density_step()
+{
+  const int n = particles.n, nlocal = atom->nlocal;
+  const double dt = update->setupflag ? 0.0 : update->dt;
+  double fastest = 0.0;
+  if (dt > 0.0)
+    for (int i = 0; i < n; i++) {
+      const double *v = atom->v[i];
+      fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    }
+  const double *x = n ? atom->x[0] : nullptr, *v = n ? atom->v[0] : nullptr;
+  sd_sph_pack_x(n, x, v, -0.5 * dt, nullptr, x4.data());
+  sd_sph_pack_v(n, v, atom->rho, v4.data());
+
+  size_t entries = 3;
+  for (int k = 0; k < raw.n; k++) entries += raw.count[raw.first[k]];
+  if (pool.size() < entries) pool.resize(entries + entries / 8);
+  if ((int) near.size() < nlocal) {
+    near.resize(atom->nmax);
+    near_count.resize(atom->nmax);
+  }
+  rate.assign(n + 1, 0.0);
+  // The distance of two particles changes by less than dt times the largest speed in half a step.
+  sd_sph_rates(&model, &raw, &particles, dt * sqrt(fastest) * (1.0 + 1e-9), rate.data(),
+               pool.data(), near.data(), near_count.data());
+  pairs = {raw.n, ~0, raw.first, near_count.data(), near.data()};
+  if (continuity->delta > 0.0) diffuse();
+  if (force->newton_pair) reverse(rate.data(), 1);
+
+  for (int i = 0; i < nlocal; i++)
+    atom->drho[i] = atom->mask[i] & continuity->groupbit ? rate[i] : 0.0;
+  if (dt == 0.0) return;
+  const int bits = leapfrog_bits;
+  for (int i = 0; i < nlocal; i++)
+    if (atom->mask[i] & bits) atom->rho[i] += dt * atom->drho[i];
+  forward(atom->rho, 1);
+}
+
+/* Adds the diffusion of density to the rates. */
+void PairSph::diffuse()
+{
+  const int n = particles.n, nlocal = atom->nlocal, ntypes = atom->ntypes;
+  sums.assign(9 * (size_t) (n + 1), 0.0);
+  sd_sph_gradient_sums(&model, &pairs, &particles, atom->rho, sums.data());
+  if (force->newton_pair) reverse(sums.data(), 9);
+  gradient.resize(3 * (size_t) (n + 1));
+  for (int i = 0; i < nlocal; i++)
+    sd_sph_gradient(model.dimension, &sums[9 * (size_t) i], &gradient[3 * (size_t) i]);
+  forward(gradient.data(), 3);
+  std::vector<double> c_h((size_t) ntypes * ntypes);
+  for (int i = 1; i <= ntypes; i++)
+    for (int j = 1; j <= ntypes; j++)
+      c_h[(size_t) (i - 1) * ntypes + j - 1] = table[C][i][j] * table[H][i][j];
+  if (model.nclasses == 1)
+    for (int i = 1; i <= ntypes; i++)
+      if (used(i)) c_h[0] = table[C][i][i] * table[H][i][i];
+  sd_sph_diffusion(&model, &pairs, &particles, atom->rho, gradient.data(), c_h.data(),
+                   continuity->delta, rate.data());
+}
+
+void PairSph::sum_densities()
+{
+  const int n = particles.n;
+  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
+  sums.assign(2 * (size_t) (n + 1), 0.0);
+  sd_sph_sums(&model, &pairs, &particles, nullptr, sums.data());
+  if (force->newton_pair) reverse(sums.data(), 2);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & summation->groupbit)
+      atom->rho[i] = sums[2 * (size_t) i] + sd_sph_self(&model, &particles, i);
+  forward(atom->rho, 1);
+}
+
+void PairSph::filter_densities()
+{
+  const int n = particles.n;
+  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
+  sums.assign(2 * (size_t) (n + 1), 0.0);
+  sd_sph_sums(&model, &pairs, &particles, atom->rho, sums.data());
+  if (force->newton_pair) reverse(sums.data(), 2);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & filter->groupbit)) continue;
+    const double self = sd_sph_self(&model, &particles, i), *s = &sums[2 * (size_t) i];
+    atom->rho[i] = (s[0] + self) / (s[1] + self / atom->rho[i]);
+  }
+  forward(atom->rho, 1);
+}
+
+/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a pair see
+ * the same. */
+void PairSph::pressures_of_all()
+{
+  const int n = particles.n;
+  const double *rho = atom->rho;
+  for (int i = 0; i < n; i++) {
+    if (rho[i] > 0.0 && std::isfinite(rho[i]) && (atom->mask[i] & pressure_bits)) continue;
+    if (!used(atom->type[i])) continue;
+    const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ": atom " +
+        std::to_string(atom->tag[i]);
+    if (!(atom->mask[i] & pressure_bits))
+      Sph::fail_one(lmp, who + " is in the group of no fix sph/pressure");
+    Sph::fail_one(
+        lmp,
+        who + " has the density " + text(rho[i]) + "; it must be a number > 0" +
+            (update->setupflag ? " (set it with: set ... sph/rho)" : " (a smaller time step?)"));
+  }
+  for (auto *fix : pressures)
+    sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
+  for (int i = 0; i < n; i++) A[i] = P[i] / (rho[i] * rho[i]);
+}
+
+/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the one that
+ * has this pressure, so ghosts get
+ * it like any other density. */
+void PairSph::wall_particles()
+{
+  const int n = particles.n, nlocal = atom->nlocal, bit = wall->groupbit;
+  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
+  sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  std::vector<int> is_wall(n + 1, 0);
+  for (int i = 0; i < n; i++) is_wall[i] = (atom->mask[i] & bit) != 0;
+  sums.assign(5 * (size_t) (n + 1), 0.0);
+  sd_sph_wall_sums(&model, &pairs, &particles, is_wall.data(), P.data(), wall->body_force,
+                   sums.data());
+  if (force->newton_pair) reverse(sums.data(), 5);
+
+  std::vector<double> state(4 * (size_t) (n + 1));
+  for (int i = 0; i < nlocal; i++) {
+    double *now = &state[4 * (size_t) i];
+    now[0] = atom->rho[i];
+    memcpy(now + 1, atom->vest[i], 3 * sizeof(double));
+    if (!is_wall[i]) continue;
+    const FixSphPressure *eos = nullptr;
+    for (const auto *fix : pressures)
+      if (atom->mask[i] & fix->groupbit) eos = fix;
+    const double *s = &sums[5 * (size_t) i];
+    const bool alone = s[0] == 0.0;
+    if (!alone || eos->state.kind != SD_SPH_ABSOLUT)
+      now[0] = sd_sph_density_of(&eos->state, alone ? eos->state.P0 : s[1] / s[0]);
+    for (int d = 0; d < 3; d++) {
+      const double fluid = alone ? atom->v[i][d] : s[2 + d] / s[0];
+      now[1 + d] = wall->slip ? fluid : 2.0 * atom->v[i][d] - fluid;
+    }
+  }
+  forward(state.data(), 4);
+  for (int i = 0; i < n; i++) {
+    if (!is_wall[i]) continue;
+    atom->rho[i] = state[4 * (size_t) i];
+    memcpy(atom->vest[i], &state[4 * (size_t) i + 1], 3 * sizeof(double));
+  }
+  pressures_of_all();
+}
+
+void PairSph::forces(bool rates)
+{
+  const int n = particles.n;
+  const int receivers = force->newton_pair ? n : atom->nlocal;
+  const bool pairwise = evflag && (vflag_atom || (vflag_either && !vflag_fdotr));
+  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, A.data(), x4.data());
+  if (model.artvisc || model.viscous || rates)
+    sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  std::fill(f4.begin(), f4.end(), 0.0);
+  if (pairwise) {
+    size_t entries = 0;
+    for (int k = 0; k < pairs.n; k++) entries += pairs.count[pairs.first[k]];
+    each.resize(3 * entries + 1);
+  }
+  const double nearest =
+      sd_sph_forces(&model, &pairs, &particles, rates, f4.data(), pairwise ? each.data() : nullptr);
+  if (nearest == 0.0) coincident();
+
+  for (int i = 0; i < receivers; i++)
+    for (int d = 0; d < 3; d++) atom->f[i][d] += f4[4 * (size_t) i + d];
+  if (rates)
+    for (int i = 0; i < receivers; i++)
+      if (atom->mask[i] & continuity->groupbit) atom->drho[i] += f4[4 * (size_t) i + 3];
+  if (pairwise) tally();
+}
+
+void PairSph::tally()
+{
+  const double *F = each.data();
+  for (int k = 0; k < pairs.n; k++) {
+    const int i = pairs.first[k];
+    for (int m = 0; m < pairs.count[i]; m++, F += 3) {
+      const int j = pairs.neighbor[i][m] & pairs.mask;
+      const double *xi = atom->x[i], *xj = atom->x[j];
+      ev_tally_xyz(i, j, atom->nlocal, force->newton_pair, 0.0, 0.0, F[0], F[1], F[2],
+                   xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]);
+    }
+  }
+}
+
+void PairSph::coincident()
+{
+  for (int k = 0; k < pairs.n; k++) {
+    const int i = pairs.first[k];
+    for (int m = 0; m < pairs.count[i]; m++) {
+      const int j = pairs.neighbor[i][m] & pairs.mask;
+      const double *xi = atom->x[i], *xj = atom->x[j];
+      if (xi[0] == xj[0] && xi[1] == xj[1] && xi[2] == xj[2])
+        Sph::fail_one(lmp,
+                      COMMAND + ": step " + std::to_string(update->ntimestep) + ": atoms " +
+                          std::to_string(atom->tag[i]) + " and " + std::to_string(atom->tag[j]) +
+                          " are at one place");
+    }
+  }
+  Sph::fail_one(lmp,
+                COMMAND + ": step " + std::to_string(update->ntimestep) +
+                    ": two atoms are at one place");
+}
+
+// --- for other fixes
+// -------------------------------------------------------------------------------------------
+
+void PairSph::largest_approach(std::vector<double> &largest)
+{
+  prepare();
+  sd_sph_pack_x(particles.n, particles.n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
+  sd_sph_pack_v(particles.n, particles.n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  largest.assign(particles.n + 1, 0.0);
+  sd_sph_approach(&model, &pairs, &particles, largest.data());
+  if (force->newton_pair) reverse(largest.data(), 1, true);
+}
+
+double PairSph::dW_dr(int itype, double r) const
+{
+  return r * sd_sph_dW_over_r(model.kernel, model.dimension, r, table[H][itype][itype]);
+}
+
+// --- communication
+// ----------------------------------------------------------------------------------------------
+
+void PairSph::forward(double *array, int columns)
+{
+  comm_array = array;
+  comm_columns = columns;
+  Compat::forward_comm(comm, this);
+}
+
+void PairSph::reverse(double *array, int columns, bool maximum)
+{
+  comm_array = array;
+  comm_columns = columns;
+  comm_maximum = maximum;
+  Compat::reverse_comm(comm, this);
+}
+
+int PairSph::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
+{
+  for (int k = 0; k < n; k++)
+    for (int c = 0; c < comm_columns; c++) *buf++ = comm_array[(size_t) list[k] * comm_columns + c];
+  return n * comm_columns;
+}
+
+void PairSph::unpack_forward_comm(int n, int first, double *buf)
+{
+  memcpy(comm_array + (size_t) first * comm_columns, buf, sizeof(double) * n * comm_columns);
+}
+
+int PairSph::pack_reverse_comm(int n, int first, double *buf)
+{
+  memcpy(buf, comm_array + (size_t) first * comm_columns, sizeof(double) * n * comm_columns);
+  return n * comm_columns;
+}
+
+void PairSph::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  for (int k = 0; k < n; k++)
+    for (int c = 0; c < comm_columns; c++, buf++) {
+      double &mine = comm_array[(size_t) list[k] * comm_columns + c];
+      mine = comm_maximum ? std::max(mine, *buf) : mine + *buf;
+    }
+}
