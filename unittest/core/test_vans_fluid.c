@@ -1,5 +1,4 @@
 /* The fluid alone: closed forms, orders of convergence, closures, balance of momentum. */
-#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <cmocka.h> /* after the headers that it needs */
 
 #include "sd_vans.h"
 #include "sd_vans_wall.h"

@@ -1,10 +1,11 @@
 /* Slices of spheres, averages, and the force on one grain against closed forms. */
-#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <string.h>
+
+#include <cmocka.h> /* after the headers that it needs */
 
 #include "sd_vans.h"
 
