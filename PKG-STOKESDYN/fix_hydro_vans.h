@@ -51,6 +51,43 @@ class FixHydroVans : public LAMMPS_NS::Fix {
   LAMMPS_NS::Region *region = nullptr;
   int average_bit = 1;
 
+  /* Columns of the global array, before those of the classes. */
+  enum {
+    Z,
+    VELOCITY,
+    PHI,
+    GRAIN_X,
+    GRAIN_Y,
+    GRAIN_Z,
+    DRAG_PER_GRAIN,
+    EXCHANGE,
+    EDDY_VISCOSITY,
+    STRESS,
+    ARRAY_COLUMNS
+  };
+
+  /* Entries of the global vector. */
+  enum {
+    FORCE_X,
+    FORCE_Y,
+    FORCE_Z,
+    TRANSPORT,
+    FRICTION_VELOCITY,
+    LARGEST_STRESS,
+    OUTSIDE,
+    SHIELDS,
+    TOTAL_DRAG,
+    BED,
+    MOMENTUM,
+    TRANSIT,
+    DRIVING,
+    BOTTOM,
+    WALLS,
+    SURFACE,
+    OTHERS,
+    VECTOR_SIZE
+  };
+
   /* Per atom. array_atom: force and velocity fluctuation. memo: what must follow the atom besides; a column that no
    * keyword asks for is not there. */
   enum { OUTPUTS = 6, SOLVED = 0, LEFT_X = 1, LEFT_V = 4, LEFT_A = 7, ALWAYS = 8 };

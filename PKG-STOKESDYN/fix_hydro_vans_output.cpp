@@ -14,43 +14,6 @@ using namespace StokesDyn;
 
 static const std::string COMMAND = VansSettings::COMMAND;
 
-/* Columns of the global array, before those of the classes. */
-enum {
-  Z,
-  VELOCITY,
-  PHI,
-  GRAIN_X,
-  GRAIN_Y,
-  GRAIN_Z,
-  DRAG_PER_GRAIN,
-  EXCHANGE,
-  EDDY_VISCOSITY,
-  STRESS,
-  ARRAY_COLUMNS
-};
-
-/* Entries of the global vector. */
-enum {
-  FORCE_X,
-  FORCE_Y,
-  FORCE_Z,
-  TRANSPORT,
-  FRICTION_VELOCITY,
-  LARGEST_STRESS,
-  OUTSIDE,
-  SHIELDS,
-  TOTAL_DRAG,
-  BED,
-  MOMENTUM,
-  TRANSIT,
-  DRIVING,
-  BOTTOM,
-  WALLS,
-  SURFACE,
-  OTHERS,
-  VECTOR_SIZE
-};
-
 /* ---- output -------------------------------------------------------------------------------------------------------------- */
 
 void FixHydroVans::sum_up()
