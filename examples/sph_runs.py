@@ -3,13 +3,12 @@ import os
 import subprocess
 import sys
 
-import numpy as np
+from runs import np, plt, TOP
 
 
 def lmp(folder, name, tag, **variables):
     """Runs folder/in.name with lmp from the PATH (. build/env.sh) in build/examples/<name>; returns the thermo table: columns by name."""
-    top = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    out = os.path.join(top, "build", "examples", name)
+    out = os.path.join(TOP, "build", "examples", name)
     os.makedirs(out, exist_ok=True)
     log = "log.%s.%s" % (name, tag)
     command = ["lmp", "-in", os.path.join(folder, "in." + name), "-log", log, "-screen", "none", "-nocite"]
@@ -70,13 +69,8 @@ def dump(path):
 
 
 def pyplot():
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    pyplot.rcParams.update({"figure.dpi": 110, "font.size": 10, "axes.grid": True, "grid.alpha": 0.3})
-    return pyplot
+    plt.rcParams.update({"figure.dpi": 110, "font.size": 10, "axes.grid": True, "grid.alpha": 0.3})
+    return plt
 
 
 def keep(folder, out, picture, table):

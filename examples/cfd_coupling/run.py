@@ -6,7 +6,6 @@
 
 Exits with 1 and says which when a figure is missed.
 """
-import os
 import pathlib
 import shutil
 import subprocess
@@ -14,19 +13,9 @@ import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOP = HERE.parents[1]
-
-# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
-os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
-
-DEBIAN = "/usr/bin/python3"
-try:
-    import numpy as np
-    from plot import draw
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+sys.path.insert(0, str(HERE.parent))
+from runs import np, need, TOP  # noqa: E402
+from plot import draw  # noqa: E402
 
 RUNS = (("prescribed", "callback", 1), ("prescribed", "callback", 2),
         ("two-way", "callback", 1), ("two-way", "callback", 2), ("two-way", "loop", 1))
@@ -59,11 +48,7 @@ def main():
     if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
         sys.exit(__doc__)
     out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "cfd_coupling").resolve()
-    if not shutil.which("mpirun"):
-        sys.exit("mpirun is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
-    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
-    if os.geteuid() == 0:
-        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
+    need("mpirun")
 
     tracks = {}
     for scene, driver, ranks in RUNS:

@@ -20,23 +20,10 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOP = HERE.parents[1]
 SEDIMENTATION = HERE.parent / "sedimentation"
 
-# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
-os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
-
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+sys.path.insert(0, str(HERE.parent))
+from runs import np, plt, need, verdict, TOP  # noqa: E402
 
 WEIGHT = np.array([0.0, 0.0, -4 * 6 * np.pi])       # four spheres; viscosity, radius and their settling velocity are 1
 MIRROR = np.diag([-1.0, 1.0, 1.0])
@@ -174,8 +161,7 @@ def balls(axis, x, colours):
     for k in np.argsort(-x[:, 1]):
         centre = np.array([x[k, 0], x[k, 2]])
         for s in np.linspace(0, 1, 24):
-            light = matplotlib.colors.to_rgb(colours[k]) if s == 0 else None
-            base = np.array(matplotlib.colors.to_rgb(colours[k]))
+            base = np.array(plt.matplotlib.colors.to_rgb(colours[k]))
             axis.add_patch(plt.Circle(centre + s * np.array([-0.3, 0.35]), 1 - s, lw=0,
                                       color=tuple(base * (0.55 + 0.45 * s) + (1 - base) * 0.5 * s**3)))
     axis.set_aspect("equal")
@@ -231,12 +217,8 @@ def main():
     out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "propeller").resolve()
     if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
         sys.exit(__doc__)
-    if not shutil.which("lmp"):
-        sys.exit("lmp is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
+    need("lmp")
     out.mkdir(parents=True, exist_ok=True)
-    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
-    if os.geteuid() == 0:
-        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
 
     began = time.time()
     facts, one = [], None
@@ -276,9 +258,7 @@ def main():
             log = (out / f"42_{ranks}.log").read_text().replace(str(out) + "/", "").replace(str(TOP) + "/", "")
             (HERE / f"log.propeller.{ranks}").write_text(log)
     print()
-    for fact, holds in facts:
-        print("  " + ("ok      " if holds else "MISSED  ") + fact)
-    missed = sum(not holds for _, holds in facts)
+    missed = verdict(facts)
     print(f"\n4 runs in {time.time() - began:.0f} s, " + (f"{missed} of {len(facts)} figures missed" if missed else
                                                          "all figures hold"))
     print(f"picture: {out / 'propeller.png'}")

@@ -24,22 +24,8 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOP = HERE.parents[1]
-
-# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
-os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
-
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+sys.path.insert(0, str(HERE.parent))
+from runs import np, plt, need, verdict, TOP  # noqa: E402
 
 # As in in.sedimentation; lengths below are in radii, velocities in those of a lone sphere.
 A, RHO, RHOF, ETA, G = 50e-6, 2500.0, 970.0, 0.97, 9.81
@@ -429,7 +415,7 @@ def contact_sheet(done, path):
         ax.imshow(plt.imread(c.image))
         ax.set_axis_off()
         ax.set_title(f"{c.label.replace('_', ' ')}\ndrag {c.drag:.3f}, exact {c.drag_exact:.3f}", fontsize=9.5)
-    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 0.7), "viridis")
+    scale = plt.matplotlib.cm.ScalarMappable(plt.matplotlib.colors.Normalize(0, 0.7), "viridis")
     bar = figure.colorbar(scale, ax=axes, shrink=0.85, pad=0.01, extend="both")
     bar.set_label("drag of a sphere / drag of a lone sphere\nat the same velocity", fontsize=9.5)
     figure.savefig(path, dpi=80, pil_kwargs={"optimize": True})
@@ -508,13 +494,8 @@ def main():
     out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "sedimentation").resolve()
     if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
         sys.exit(__doc__)
-    for program in ("lmp", "mpirun"):
-        if not shutil.which(program):
-            sys.exit(f"{program} is not on the PATH; run examples/run.sh, or cmake/setup.sh and '. build/env.sh' first")
+    need("lmp", "mpirun")
     out.mkdir(parents=True, exist_ok=True)
-    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
-    if os.geteuid() == 0:
-        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
 
     start = time.time()
     todo = cases()
@@ -555,9 +536,7 @@ def main():
 
     print()
     facts = check(done) + check_ladder(done, ladder, own, times)
-    for fact, holds in facts:
-        print("  " + ("ok      " if holds else "MISSED  ") + fact)
-    missed = sum(not holds for _, holds in facts)
+    missed = verdict(facts)
     runs = f"{len(done) + len(ladder) + len(own) + 3 * len(times)} runs in {time.time() - start:.0f} s"
     print(f"\n{runs}: {missed} of {len(facts)} figures missed" if missed else f"\n{runs}, all figures hold")
     print(f"tables: {out / 'table.md'}, {out / 'ladder.md'}\npictures: "

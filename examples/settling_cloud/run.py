@@ -7,7 +7,6 @@
 Exits with 1 and says which when a figure is missed.
 """
 import io
-import os
 import pathlib
 import shutil
 import subprocess
@@ -15,23 +14,9 @@ import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOP = HERE.parents[1]
-
-# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
-os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
-
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-    from PIL import Image
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+sys.path.insert(0, str(HERE.parent))
+from runs import np, plt, need, verdict, TOP  # noqa: E402
+from PIL import Image  # noqa: E402
 
 # As in in.settling_cloud. Lengths are in radii of a sphere, speeds in those of a lone sphere, forces in its weight.
 MASS, INTERVAL = 0.01, 0.5
@@ -176,12 +161,7 @@ def main():
     if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
         sys.exit(__doc__)
     out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "settling_cloud").resolve()
-    for program in ("lmp", "mpirun"):
-        if not shutil.which(program):
-            sys.exit(f"{program} is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
-    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
-    if os.geteuid() == 0:
-        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
+    need("lmp", "mpirun")
     shutil.rmtree(out / "out", ignore_errors=True)
 
     short = {}
@@ -227,13 +207,12 @@ def main():
         (f"1 and 2 ranks place the spheres within 1e-10 of a radius: {np.abs(short[1] - short[2])[:, 2:5].max():.0e}",
          np.abs(short[1] - short[2])[:, 2:5].max() < 1e-10),
     )
-    for fact, holds in facts:
-        print("  " + ("ok      " if holds else "MISSED  ") + fact)
+    missed = verdict(facts)
     print(f"pictures: {out / 'settling_cloud.png'}, {out / 'speed.png'}; images: {out / 'out'}")
     if update:
         for name in ("settling_cloud.png", "speed.png", "log.settling_cloud.1", "log.settling_cloud.2"):
             shutil.copy(out / name, HERE)
-    return 0 if all(holds for _, holds in facts) else 1
+    return 1 if missed else 0
 
 
 if __name__ == "__main__":

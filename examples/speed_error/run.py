@@ -22,22 +22,9 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOP = HERE.parents[1]
-
-# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
-os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
+sys.path.insert(0, str(HERE.parent))
 os.environ.setdefault("OMP_NUM_THREADS", "1")
-
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+from runs import np, plt, TOP  # noqa: E402
 
 try:
     from lammps import lammps
@@ -233,12 +220,9 @@ def solve(scene, words, steps, ranks=1):
     if ranks == 1:
         return Answer([run(scene, words, steps)])
     with tempfile.TemporaryDirectory() as folder:
-        environment = dict(os.environ)
-        if os.getuid() == 0:
-            environment |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-        command = ["mpirun", "--oversubscribe", "-np", str(ranks), sys.executable, __file__,
+        command = ["mpirun", "-np", str(ranks), sys.executable, __file__,
                    "--rank-of", folder, words, str(steps), *scene.words()]
-        ended = subprocess.run(command, env=environment, capture_output=True, text=True)
+        ended = subprocess.run(command, capture_output=True, text=True)
         if ended.returncode:
             sys.exit(f"run.py: {' '.join(command)}:\n{ended.stdout}{ended.stderr}")
         parts = [np.load(path, allow_pickle=True) for path in sorted(pathlib.Path(folder).glob("*.npz"))]

@@ -3,11 +3,10 @@
 import os
 import sys
 
-import numpy as np
-
 folder = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(folder))
 import sph_runs as S  # noqa: E402
+from runs import np  # noqa: E402
 
 plt = S.pyplot()
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))

@@ -15,22 +15,8 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOP = HERE.parents[1]
-
-# matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
-os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
-
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+sys.path.insert(0, str(HERE.parent))
+from runs import np, plt, need, verdict, TOP  # noqa: E402
 
 # Effective aspect ratios of chains of touching spheres in exact Stokes flow (Lamb's multipole solution, computed independently of
 # the plugin's code, 1e-8); the period is 2 pi (re + 1/re)/shear rate (Jeffery 1922; Bretherton 1962).
@@ -169,14 +155,10 @@ def main():
     out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "tumbling").resolve()
     if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
         sys.exit(__doc__)
-    if not shutil.which("lmp"):
-        sys.exit("lmp is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
+    need("lmp")
     out.mkdir(parents=True, exist_ok=True)
     for image in out.glob("chain*.png"):
         image.unlink()
-    os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"         # two ranks on one core as well
-    if os.geteuid() == 0:
-        os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
 
     start = time.time()
     done = []
@@ -193,9 +175,7 @@ def main():
             (HERE / f"log.tumbling.{ranks}").write_text(log)
     print()
     facts = check(done)
-    for fact, holds in facts:
-        print("  " + ("ok      " if holds else "MISSED  ") + fact)
-    missed = sum(not holds for _, holds in facts)
+    missed = verdict(facts)
     print(f"\n{len(done)} runs in {time.time() - start:.0f} s, " + (f"{missed} of {len(facts)} figures missed" if missed else
                                                                    "all figures hold"))
     print(f"picture: {out / 'tumbling.png'}")

@@ -8,18 +8,10 @@ import subprocess
 import sys
 import tempfile
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt    # noqa: E402
-
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from runs import np, plt  # noqa: E402
+
 D = 0.006
 SCALE = np.sqrt(1.5 * 9.81 * D ** 3)
 # slope, depth over d, beginning of the mean, what Yade gave for a bed made the same way (mean and its error, from blocks of 1 s)
@@ -39,18 +31,15 @@ def main():
     parser.add_argument("--seconds", type=float, default=16)
     parser.add_argument("--reuse")
     options = parser.parse_args()
-    env = dict(os.environ)
-    if os.getuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     figure, axes = plt.subplots(1, 4, figsize=(15, 4.3))
     with tempfile.TemporaryDirectory() as temporary:
         directory = options.reuse or temporary
         for k, (name, (slope, depth, begin, *yade)) in enumerate(CASES.items()):
             if not options.reuse:
                 print(f"slope {slope}: {options.seconds:g} s of bedload", flush=True)
-                subprocess.run(["mpirun", "--oversubscribe", "-np", str(options.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_bedload"), "-screen", "none",
+                subprocess.run(["mpirun", "-np", str(options.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_bedload"), "-screen", "none",
                                 "-log", os.path.join(HERE, f"log.vans_bedload.{name}.{options.ranks}"), "-var", "slope", str(slope), "-var", "depth", str(depth),
-                                "-var", "seconds", str(options.seconds), "-var", "name", name], cwd=directory, env=env, check=True)
+                                "-var", "seconds", str(options.seconds), "-var", "name", name], cwd=directory, check=True)
             series = np.loadtxt(os.path.join(directory, f"series.{name}"))
             t = series[:, 0] * 4e-5
             begin = min(begin, t[-1] / 2)

@@ -6,29 +6,18 @@ import subprocess
 import sys
 import tempfile
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt    # noqa: E402
-
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from runs import np, plt  # noqa: E402
+
 NU, KAPPA, H, G = 1e-6, 0.41, 0.1, 0.49029565
 U_STAR = np.sqrt(G * H)
 
 
 def run(case, cells, directory, ranks):
-    env = dict(os.environ)
-    if os.getuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     log = os.path.join(HERE, f"log.vans_fluid.{case}.{ranks}") if cells in (101, 5001) else "none"
-    subprocess.run(["mpirun", "--oversubscribe", "-np", str(ranks), "lmp", "-in", os.path.join(HERE, "in.vans_fluid"), "-log", log, "-screen", "none",
-                    "-var", "case", case, "-var", "cells", str(cells)], cwd=directory, env=env, check=True)
+    subprocess.run(["mpirun", "-np", str(ranks), "lmp", "-in", os.path.join(HERE, "in.vans_fluid"), "-log", log, "-screen", "none",
+                    "-var", "case", case, "-var", "cells", str(cells)], cwd=directory, check=True)
     rows = [line.split() for line in open(os.path.join(directory, f"profile.{case}.{cells}")) if not line.startswith("#")]
     rows = [row for row in rows if len(row) == 4]
     values = np.array(rows[-cells:], dtype=float)

@@ -8,18 +8,10 @@ import subprocess
 import sys
 import tempfile
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt    # noqa: E402
-
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from runs import np, plt  # noqa: E402
+
 D = 0.006
 SCALE = np.sqrt(1.5 * 9.81 * D ** 3)
 # name: depth [m], layers of beads, measured transport rate [m2/s], from phi and velocity profiles of Frey (2014)
@@ -35,9 +27,6 @@ def main():
     parser.add_argument("--length", type=int, default=60)
     parser.add_argument("--reuse")
     options = parser.parse_args()
-    env = dict(os.environ)
-    if os.getuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     figure, axes = plt.subplots(1, 4, figsize=(15, 4.3))
     with tempfile.TemporaryDirectory() as temporary:
         directory = options.reuse or temporary
@@ -47,10 +36,10 @@ def main():
                 name = f"{run}.{choice}"
                 if not options.reuse:
                     log = f"log.vans_frey.{run}.{options.ranks}" if choice == "yade" else "log.vans_frey.quarter"
-                    subprocess.run(["mpirun", "--oversubscribe", "-np", str(options.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_frey"), "-screen", "none",
+                    subprocess.run(["mpirun", "-np", str(options.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_frey"), "-screen", "none",
                                     "-log", os.path.join(HERE, log), "-var", "depth", str(depth), "-var", "layers", str(layers), "-var", "name", name, "-var", "wall", wall,
                                     "-var", "rules", rules, "-var", "seconds", str(options.seconds), "-var", "length", str(options.length)],
-                                   cwd=directory, env=env, check=True)
+                                   cwd=directory, check=True)
                 series = np.loadtxt(os.path.join(directory, f"series.{name}"))
                 t = series[:, 0] * 4e-5
                 late = t >= t[-1] / 2
