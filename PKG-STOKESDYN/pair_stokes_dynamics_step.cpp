@@ -234,8 +234,9 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     for (int i = 0; i < n; i++) {
       if (rigid.settings.on && !solving[i] && active[i]) continue;
       if (!active[i]) {
-        for (int d = 0; d < 3; d++) state[i][State::FORCE + d] = 0.0;
-        for (int d = 0; d < 3 && rotation; d++) state[i][State::TORQUE + d] = 0.0;
+        for (int d = 0; d < 3; d++) state[i][State::FORCE + d] = state[i][State::VPRIME + d] = 0.0;
+        for (int d = 0; d < 3 && rotation; d++)
+          state[i][State::TORQUE + d] = state[i][State::WPRIME + d] = 0.0;
         continue;
       }
       double s[6];

@@ -112,6 +112,18 @@ def test_spheres_enter_and_leave_the_region_during_a_run(simulation, mode, updat
     assert len(seen) >= 5
 
 
+def test_rigid_clump_that_leaves_the_region_keeps_nothing(simulation):
+    spheres = row_of_five()
+    spheres.molecule[:] = (1, 1, 1, 3, 3)
+    sim = simulation(spheres, f"clumps_only yes rigid_clumps yes rotation yes {EXACT} region slab", comm="comm_modify cutoff 12",
+                     before_pair="variable gone equal -100*(step>1)\n"
+                                 "region slab block INF INF INF INF INF 20 move NULL NULL v_gone")
+    sim.run(1)
+    assert np.abs(sim.fix_rows()[:, [2, 5]]).min() > 0.0    # F z, v' z
+    sim.run(1)
+    assert np.abs(sim.fix_rows()).max() == 0.0
+
+
 @pytest.mark.parametrize("mode", MODES)
 def test_region_that_moves(simulation, mode):
     spheres = row_of_five()
