@@ -91,6 +91,36 @@ namespace {
       return false;
     }
   };
+
+  /* The shortest of a separation's images. In a skew box that need not be LAMMPS's minimum image: an image no longer than d is at most
+   * |d| |row k of the inverse of the box| cells away from it along edge k. */
+  void closest_image(Domain *domain, double *d)
+  {
+    Compat::minimum_image(domain, d);
+    if (!domain->triclinic) return;
+    const double *h = domain->h, *inv = domain->h_inv;    // xx yy zz yz xz xy of an upper triangle
+    const double at[3] = {inv[0] * d[0] + inv[5] * d[1] + inv[4] * d[2],
+                          inv[1] * d[1] + inv[3] * d[2], inv[2] * d[2]};
+    const double row[3] = {sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4]),
+                           sqrt(inv[1] * inv[1] + inv[3] * inv[3]), fabs(inv[2])};
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    int lo[3], hi[3];
+    for (int k = 0; k < 3; k++) {
+      lo[k] = domain->periodicity[k] ? (int) floor(at[k] - length * row[k]) : 0;
+      hi[k] = domain->periodicity[k] ? (int) ceil(at[k] + length * row[k]) : 0;
+    }
+    double best = length * length * (1.0 - 1e-12), shift[3] = {0.0, 0.0, 0.0};
+    for (int i = lo[0]; i <= hi[0]; i++)
+      for (int j = lo[1]; j <= hi[1]; j++)
+        for (int k = lo[2]; k <= hi[2]; k++) {
+          const double s[3] = {h[0] * i + h[5] * j + h[4] * k, h[1] * j + h[3] * k, h[2] * k};
+          const double x = d[0] - s[0], y = d[1] - s[1], z = d[2] - s[2];
+          if (x * x + y * y + z * z >= best) continue;
+          best = x * x + y * y + z * z;
+          std::copy(s, s + 3, shift);
+        }
+    for (int k = 0; k < 3; k++) d[k] -= shift[k];
+  }
 }    // namespace
 
 /* Without a cut-off every sphere must see all of its clump. Each rank counts its own members of a molecule, the rank
@@ -192,7 +222,7 @@ void Scene::complain_about_clumps(const std::vector<int64_t> &suspect)
       Span span;
       for (const double *q : clump.second) {
         double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-        Compat::minimum_image(domain, d);
+        closest_image(domain, d);
         span.add(d);
         const double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         if (r > widest) {

@@ -145,6 +145,26 @@ def test_clump_wider_than_half_the_periodic_box_on_two_ranks_is_an_error(tmp_pat
     assert failed.code != 0 and "molecule 9 is wider than half of the periodic box" in failed.log
 
 
+# In this box the image of the second sphere across the border in y is closer, and more than half of the box away.
+SKEW = dict(boundary="p p p", box=[(-5.0, 5.0)] * 3, tilt=(4.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("cutoff", [2, 6, 9])
+def test_clump_whose_closest_images_are_not_those_of_lammps_is_an_error(simulation, cutoff):
+    spheres = Spheres([(0, 0, 0), (4.9, 4.0, 0.1)], A, (0, 0, 0.1), molecule=9)
+    sim = simulation(spheres, f"clumps_only yes {EXACT}", comm=f"comm_modify cutoff {cutoff}", **SKEW)
+    with pytest.raises(LammpsError, match="molecule 9 is wider than half of the periodic box"):
+        sim.run()
+
+
+def test_clump_in_a_skew_box_sees_the_closest_image(simulation):
+    """(1.8, -8) as stored; by one cell along the skew edge and one back along x it is (-4.2, 2)."""
+    spheres = Spheres([(-0.4, 4.6, 0), (1.4, -3.4, 0.1)], A, (0, 0.2, 0.1), molecule=9)
+    open_box = Spheres([(0, 0, 0), (-4.2, 2.0, 0.1)], A, (0, 0.2, 0.1), molecule=9)
+    sim = simulation(spheres, f"clumps_only yes {EXACT}", comm="comm_modify cutoff 7", **SKEW).run()
+    assert largest_difference(sim.drag, model.forces(open_box, ETA)) < 1e-10
+
+
 def test_wide_clump_in_an_open_direction_is_no_error(simulation):
     spheres = Spheres(chain(5, 2 * A, axis=0).x, A, (0, 0, 0.1), molecule=9)
     sim = simulation(spheres, f"clumps_only yes {EXACT}", boundary="f p p", box=[(-5.0, 7.0), (-9.0, 9.0), (-9.0, 9.0)],
