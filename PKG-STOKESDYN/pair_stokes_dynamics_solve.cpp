@@ -233,6 +233,12 @@ void PairStokesDynamics::solver_failed(sd_status status, const sd_solve_report &
            where + sd_status_string(status) + ": spheres at one point with different velocities (" +
                how_far + ")");
     default:
-      fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
+      // Two spheres at one point: every other number has been checked before the solve.
+      fail(lmp,
+           where + sd_status_string(status) +
+               (scene.settings.tensor == SD_TENSOR_OSEEN
+                    ? " with tensor oseen: it is infinite for spheres at one point, use tensor rpy"
+                    : "") +
+               " (" + how_far + ")");
   }
 }

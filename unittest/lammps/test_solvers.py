@@ -154,6 +154,14 @@ def test_oseen_at_close_range_is_an_error_that_names_it(simulation):
         sim.run()
 
 
+@pytest.mark.parametrize("algorithm", [1, 2])
+def test_oseen_at_one_point_is_an_error_that_names_it(simulation, algorithm):
+    spheres = Spheres([(0, 0, 0), (0, 0, 3 * A), (0, 0, 3 * A)], A, ALONG)
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} tensor oseen algorithm {algorithm}")
+    with pytest.raises(LammpsError, match="tensor oseen: it is infinite for spheres at one point, use tensor rpy"):
+        sim.run()
+
+
 # --- coincident and hidden spheres ---------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("mode", ["cut_off_distance inf", "cut_off_distance 8", "clumps_only yes"])
