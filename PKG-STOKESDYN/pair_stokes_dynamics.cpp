@@ -252,6 +252,7 @@ void PairStokesDynamics::init_style()
              COMMAND +
                  ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or "
                  "clumps_only yes");
+  if (std::isfinite(scene.settings.cutoff)) refuse_vast_cutoff();
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
@@ -296,6 +297,32 @@ void PairStokesDynamics::init_style()
   scene.lists_are_stale();
   rigid.new_run();
   warned_unconverged = false;
+}
+
+/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts of them. */
+void PairStokesDynamics::refuse_vast_cutoff()
+{
+  const double cut = scene.settings.cutoff + neighbor->skin;
+  double atoms = atom->natoms, most = 0.0, boxes = 0.0;
+  for (int d = 0; d < domain->dimension; d++) {
+    double row = 1.0 / domain->prd[d];    // one over the distance of opposite faces
+    if (domain->triclinic && d < 2) {
+      const double *inv = domain->h_inv;
+      row = d == 0 ? sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4])
+                   : sqrt(inv[1] * inv[1] + inv[3] * inv[3]);
+    }
+    boxes = std::max(boxes, cut * row);
+    most = std::max(most, cut * row * comm->procgrid[d]);
+    if (domain->periodicity[d]) atoms *= 2.0 * cut * row + 1.0;
+  }
+  if (std::max(most, atoms) < MAXSMALLINT) return;
+  bool open = true;
+  for (int d = 0; d < domain->dimension; d++) open = open && !domain->periodicity[d];
+  fail(lmp,
+       COMMAND + ": keyword cut_off_distance: '" + text(scene.settings.cutoff) + "' is " +
+           text(boxes) +
+           " times the box, which is more than LAMMPS can make ghost atoms for; use " +
+           (open || scene.settings.clumps_only ? "inf" : "a shorter one"));
 }
 
 double PairStokesDynamics::init_one(int i, int j)

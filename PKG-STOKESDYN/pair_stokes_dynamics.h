@@ -109,6 +109,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   int faulty(int i) const;
   void complain();
   bool numbers_only() const;
+  void refuse_vast_cutoff();
   void solve();
   void guess();
   void remember();

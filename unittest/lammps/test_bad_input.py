@@ -102,6 +102,23 @@ def test_start_of_a_run(simulation, words, before, expected):
         assert text in str(error.value)
 
 
+VAST = [("cut_off_distance 1e12", "f f f", "'1e+12' is 5.55556e+10 times the box", "use inf"),
+        ("cut_off_distance 1e300", "f f f", "'1e+300' is", "use inf"),
+        ("cut_off_distance 1e4", "p p p", "'10000' is 555.572 times the box", "use a shorter one"),
+        ("clumps_only yes cut_off_distance 1e4", "p p p", "'10000' is 555.572 times the box", "use inf")]
+
+
+@pytest.mark.parametrize("words,boundary,value,remedy", VAST, ids=[f"{w} {b}" for w, b, _, _ in VAST])
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_cut_off_of_very_many_boxes(tmp_path, words, boundary, value, remedy, ranks):
+    """LAMMPS itself would copy ghosts for ever, or wait for messages that nobody sends."""
+    lines = input_lines(three(), f"{words} visc 1.3 algorithm 2", tmp_path / "data", box=BOX, boundary=boundary)
+    ended = lmp(tmp_path, lines + ["run 0"], ranks=ranks, succeed=False)
+    assert ended.code != 0
+    for text in (PAIR, "keyword cut_off_distance: " + value, remedy):
+        assert text in ended.log
+
+
 @pytest.mark.parametrize("radius,seen", [(-0.4, "-0.4"), (float("nan"), "nan")])
 def test_radius_that_is_no_positive_number(simulation, radius, seen):
     sim = simulation(three(), "cut_off_distance inf visc 1.3 algorithm 2", box=BOX)
