@@ -25,6 +25,7 @@ static inline __attribute__((always_inline)) vec roots(vec v)
 }
 #else
 #include <math.h>
+#include <stdint.h>
 typedef double vec __attribute__((vector_size(16)));
 typedef int64_t mask __attribute__((vector_size(16)));
 #define LOAD(p) (*(const vec *) (p))

@@ -21,9 +21,9 @@ struct sd_kernels {
 const struct sd_kernels *sd_kernels_of(sd_isa isa);
 
 /* The kernels are written with the vector types of GCC and clang; the files of AVX2 and AVX-512 need the compiler's options for
- * them (CMakeLists.txt). */
+ * them (CMakeLists.txt). SD_PORTABLE_KERNELS: on x86-64 too what other processors get; SD_NO_KERNELS: plain C, any compiler. */
 #if defined(__GNUC__) && !defined(SD_NO_KERNELS)
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(SD_PORTABLE_KERNELS)
 #define SD_HAS_X86_KERNELS
 extern const struct sd_kernels sd_kernels_baseline, sd_kernels_avx2, sd_kernels_avx512;
 #else
