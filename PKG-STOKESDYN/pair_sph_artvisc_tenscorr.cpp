@@ -245,6 +245,20 @@ double PairSph::init_one(int i, int j)
   const std::string who =
       COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) + ": ";
   for (int k = 0; k < NPARAMETERS; k++) table[k][i][j] = table[k][j][i] = mixed(k, i, j);
+  // pair_coeff has seen to this; fix adapt has not
+  for (int k = 0; k < NPARAMETERS; k++) {
+    const double value = table[k][i][j];
+    if (!(k == ALPHA || k == BETA ? value < 0.0 : value <= 0.0)) continue;
+    fail(lmp,
+         who + "keyword " + PARAMETER[k] + ": '" + text(value) + "' must be " +
+             (k == ALPHA || k == BETA ? ">= 0" : "> 0"));
+  }
+  if (model.artvisc && !(model.eta >= 0.0))
+    fail(lmp, COMMAND + ": keyword artVisc: eta '" + text(model.eta) + "' must be >= 0");
+  if (model.tenscorr && !(model.epsilon >= 0.0))
+    fail(lmp, COMMAND + ": keyword tensCorr: epsilon '" + text(model.epsilon) + "' must be >= 0");
+  if (model.viscous && !(mu > 0.0))
+    fail(lmp, COMMAND + ": keyword viscosity: '" + text(mu) + "' must be > 0");
   const double support = 2.0 * table[H][i][j];
   if (model.artvisc && std::isnan(table[C][i][j]))
     fail(lmp,
