@@ -12,6 +12,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+static const double MOST_STEPS = 1e9;    // of one solve of the stream
+
 std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what,
                                            const std::string &file)
 {
@@ -141,6 +143,9 @@ void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size
       dt = in.positive();
       if (dt > period * (1.0 + 1e-9))
         in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
+      if (!(period / dt <= MOST_STEPS))
+        in.refuse("the step " + text(dt) + " is too short for the period " + text(period) +
+                  ": more than " + text(MOST_STEPS) + " steps");
     } else if (in.is("stream"))
       rest = in.choice({"steady", "rest"}) == 1;
     else if (in.is("hindrance"))
