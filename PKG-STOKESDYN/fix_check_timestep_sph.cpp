@@ -70,10 +70,9 @@ void FixCheckTimestepSph::end_of_step()
     if (!(atom->mask[i] & groupbit)) continue;
     const int type = atom->type[i];
     if (!pair->has_sound_speed(type))
-      Sph::fail_one(lmp,
-                    command + ": type " + std::to_string(type) +
-                        " has no speed of sound: pair_coeff " + std::to_string(type) + " " +
-                        std::to_string(type) + " c VALUE");
+      fail_one(lmp,
+               command + ": type " + std::to_string(type) + " has no speed of sound: pair_coeff " +
+                   std::to_string(type) + " " + std::to_string(type) + " c VALUE");
     const double here = sd_sph_step_limit(pair->smoothing_length(type), pair->sound_speed(type),
                                           largest[i], pair->viscosity(), atom->rho[i]);
     if (here < mine || (here == mine && atom->tag[i] < who)) {

@@ -109,9 +109,9 @@ void FixHydroVans::post_force(int /*vflag*/)
     for (int i = 0; i < n; i++)
       for (int d = 0; d < 3; d++)
         if (take[i] && !std::isfinite(array_atom[i][d]))
-          error->one(FLERR,
-                     COMMAND + ": the force on atom " + std::to_string(atom->tag[i]) +
-                         " is not finite: its position, velocity or radius is not");
+          fail_one(lmp,
+                   COMMAND + ": the force on atom " + std::to_string(atom->tag[i]) +
+                       " is not finite: its position, velocity or radius is not");
 }
 
 void FixHydroVans::end_of_step()
@@ -159,10 +159,10 @@ void FixHydroVans::average()
         atom->x[0], atom->v[0], atom->radius, fluctuations(), weights(), take.data(), sums.data(),
         nclass ? sums.data() + N * SD_VANS_NSUM : nullptr, work.data());
     if (odd >= 0)
-      error->one(FLERR,
-                 COMMAND + ": atom " + std::to_string(atom->tag[odd]) + " has radius " +
-                     text(atom->radius[odd]) +
-                     ", which is no size class; name all of them with class_radii");
+      fail_one(lmp,
+               COMMAND + ": atom " + std::to_string(atom->tag[odd]) + " has radius " +
+                   text(atom->radius[odd]) +
+                   ", which is no size class; name all of them with class_radii");
   }
   for (int i = 0; i < n; i++)
     if (take[i]) {

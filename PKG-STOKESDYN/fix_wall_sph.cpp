@@ -46,10 +46,10 @@ void FixRepulsiveWall::push(int i, const double normal[3], double size)
 void FixRepulsiveWall::outside(int i)
 {
   const double *x = atom->x[i];
-  Sph::fail_one(lmp,
-                command + ": step " + std::to_string(update->ntimestep) + ": atom " +
-                    std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
-                    text(x[2]) + " is on or behind the wall");
+  fail_one(lmp,
+           command + ": step " + std::to_string(update->ntimestep) + ": atom " +
+               std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
+               text(x[2]) + " is on or behind the wall");
 }
 
 double FixRepulsiveWall::compute_vector(int k)

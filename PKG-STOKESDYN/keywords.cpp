@@ -17,6 +17,19 @@ void fail(LAMMPS *lmp, const std::string &message)
   abort();    // error->all does not return
 }
 
+void fail_one(LAMMPS *lmp, const std::string &message)
+{
+  // LAMMPS ends by MPI_Abort, which drops what the buffers hold: the message, where the output is a file or a pipe.
+  try {
+    lmp->error->one(FLERR, message);
+  } catch (...) {
+    if (lmp->screen) fflush(lmp->screen);
+    if (lmp->logfile) fflush(lmp->logfile);
+    throw;
+  }
+  abort();    // error->one does not return
+}
+
 std::string text(double value)
 {
   char buffer[40];

@@ -14,6 +14,10 @@ namespace StokesDyn {
 
 /* Ends the run on all ranks with "<message>"; never returns. For errors that every rank knows. */
 [[noreturn]] void fail(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
+
+/* The same where only this rank knows. */
+[[noreturn]] void fail_one(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
+
 /* A number as a user would write it: 6 digits. */
 std::string text(double value);
 

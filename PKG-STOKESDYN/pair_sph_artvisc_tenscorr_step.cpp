@@ -246,8 +246,8 @@ void PairSph::pressures_of_all()
     const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ": atom " +
         std::to_string(atom->tag[i]);
     if (!(atom->mask[i] & pressure_bits))
-      Sph::fail_one(lmp, who + " is in the group of no fix sph/pressure");
-    Sph::fail_one(
+      fail_one(lmp, who + " is in the group of no fix sph/pressure");
+    fail_one(
         lmp,
         who + " has the density " + text(rho[i]) + "; it must be a number > 0" +
             (update->setupflag ? " (set it with: set ... sph/rho)" : " (a smaller time step?)"));
@@ -347,15 +347,15 @@ void PairSph::coincident()
       const int j = pairs.neighbor[i][m] & pairs.mask;
       const double *xi = atom->x[i], *xj = atom->x[j];
       if (xi[0] == xj[0] && xi[1] == xj[1] && xi[2] == xj[2])
-        Sph::fail_one(lmp,
-                      COMMAND + ": step " + std::to_string(update->ntimestep) + ": atoms " +
-                          std::to_string(atom->tag[i]) + " and " + std::to_string(atom->tag[j]) +
-                          " are at one place");
+        fail_one(lmp,
+                 COMMAND + ": step " + std::to_string(update->ntimestep) + ": atoms " +
+                     std::to_string(atom->tag[i]) + " and " + std::to_string(atom->tag[j]) +
+                     " are at one place");
     }
   }
-  Sph::fail_one(lmp,
-                COMMAND + ": step " + std::to_string(update->ntimestep) +
-                    ": two atoms are at one place");
+  fail_one(lmp,
+           COMMAND + ": step " + std::to_string(update->ntimestep) +
+               ": two atoms are at one place");
 }
 
 // --- for other fixes

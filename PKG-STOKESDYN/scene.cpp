@@ -1,10 +1,10 @@
 #include "scene.h"
 
+#include "keywords.h"
 #include "lammps_compat.h"
 
 #include "atom.h"
 #include "comm.h"
-#include "error.h"
 #include "neighbor.h"
 
 #include <algorithm>
@@ -40,8 +40,7 @@ const double *Scene::positions() const
 
 void Scene::out_of_memory()
 {
-  error->one(FLERR, std::string(command + ": out of memory for the list of pairs"));
-  abort();    // error->one does not return
+  fail_one(lmp, command + ": out of memory for the list of pairs");
 }
 
 void Scene::update(const std::vector<char> &active, const std::vector<double> &eta)

@@ -4,7 +4,6 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "atom.h"
-#include "error.h"
 #include "force.h"
 #include "modify.h"
 
@@ -47,12 +46,6 @@ namespace Sph {
     int bits = 0;
     for (const auto *fix : fixes) bits |= fix->groupbit;
     return bits;
-  }
-
-  void fail_one(LAMMPS *lmp, const std::string &message)
-  {
-    lmp->error->one(FLERR, message);
-    abort();    // error->one does not return
   }
 
   double mass(LAMMPS *lmp, int i)

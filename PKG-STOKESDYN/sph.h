@@ -33,9 +33,6 @@ namespace Sph {
   /* Union of their group bits. */
   int groups(const std::vector<LAMMPS_NS::Fix *> &fixes);
 
-  /* For errors that one rank alone has found. */
-  [[noreturn]] void fail_one(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
-
   double mass(LAMMPS_NS::LAMMPS *lmp, int i);
 
 }    // namespace Sph

@@ -6,6 +6,7 @@ import pytest
 
 import sph_tools as T
 from sph_tools import random_scene, run, start
+from system import environment
 
 PAIR = "pair_style sph/artVisc/tensCorr wendland 0.012\npair_coeff * *\n"
 MOVE = "fix move all nve/sph\n"
@@ -112,6 +113,37 @@ AT_RUN = {
 def test_scenes(case):
     lines, expected = AT_RUN[case]
     assert expected in message(random_scene() + lines + "\nrun 1")
+
+
+ADAPT = {"h": ("0.012-0.01*step", "'-0.008' must be > 0"), "c": ("20-10*step", "'0' must be > 0"),
+         "alpha": ("0.1-0.1*step", "'-0.1' must be >= 0"), "beta": ("-0.5", "'-0.5' must be >= 0"),
+         "deltap": ("0.01-0.01*step", "'0' must be > 0"), "viscosity": ("-1", "keyword viscosity: '-1' must be > 0"),
+         "eta": ("-2", "keyword artVisc: eta '-2' must be >= 0"), "epsilon": ("-3", "keyword tensCorr: epsilon '-3' must be >= 0")}
+
+
+@pytest.mark.parametrize("name", ADAPT)
+def test_fix_adapt_may_set_no_value_that_the_commands_refuse(name):
+    formula, expected = ADAPT[name]
+    style = STYLE + "wendland 0.012 artVisc 0.1 0.1 1e-6 viscosity 1e-3" + (" tensCorr 0.2 0.01" if name != "h" else "")
+    text = message(random_scene() + style + f"\npair_coeff * * c 20\n{MOVE}variable v equal {formula}\n"
+                   f"fix adapt all adapt 1 pair sph/artVisc/tensCorr {name} * * v_v\nrun 3")
+    assert "Pair style sph/artVisc/tensCorr" in text and expected in text
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_message_of_one_rank_reaches_a_file(tmp_path, ranks):
+    """LAMMPS aborts all ranks then, and drops what its output buffers hold."""
+    script = tmp_path / "in.test"
+    script.write_text("plugin load stokesdynplugin.so\n" + random_scene() + PAIR + MOVE + "set atom 7 sph/rho 0\nrun 1\n")
+    command = ["lmp", "-in", str(script), "-log", "log.test", "-nocite"]
+    if ranks > 1:
+        command = ["mpirun", "--oversubscribe", "-np", str(ranks)] + command
+    with open(tmp_path / "out", "w") as out:
+        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=tmp_path, env=environment(), timeout=60).returncode
+    assert code != 0
+    assert "atom 7 has the density 0; it must be a number > 0" in (tmp_path / "out").read_text()
+    if ranks == 1:
+        assert "atom 7 has the density 0; it must be a number > 0" in (tmp_path / "log.test").read_text()
 
 
 def test_atom_style_without_density():
