@@ -109,9 +109,10 @@ void FixHydroVans::post_force(int /*vflag*/)
     for (int i = 0; i < n; i++)
       for (int d = 0; d < 3; d++)
         if (take[i] && !std::isfinite(array_atom[i][d]))
-          fail_one(lmp,
-                   COMMAND + ": the force on atom " + std::to_string(atom->tag[i]) +
-                       " is not finite: its position, velocity or radius is not");
+          fail_one(
+              lmp,
+              COMMAND + ": the force on atom " + std::to_string(atom->tag[i]) +
+                  " is not finite: its position, velocity or radius is not, or the stream there");
 }
 
 void FixHydroVans::end_of_step()
@@ -121,6 +122,15 @@ void FixHydroVans::end_of_step()
     stream->fluid.dpdx = set.dpdx.evaluate(lmp);
     stream->fluid.u_top = set.u_top.evaluate(lmp);
     modify->addstep_compute(update->ntimestep + nevery);
+    const std::string where = ": step " + std::to_string(update->ntimestep) + ": keyword ";
+    if (!std::isfinite(stream->fluid.dpdx))
+      fail(lmp,
+           COMMAND + where + "pressure_gradient: " + text(stream->fluid.dpdx) +
+               " is not a finite number");
+    if (!std::isfinite(stream->fluid.u_top))
+      fail(lmp,
+           COMMAND + where + "surface: speed " + text(stream->fluid.u_top) +
+               " is not a finite number");
   }
   const double T = elapsed;
   if (set.couple == VansSettings::TWO || set.couple == VansSettings::ONE) average();

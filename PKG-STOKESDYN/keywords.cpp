@@ -2,6 +2,7 @@
 
 #include "error.h"
 
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -99,10 +100,13 @@ bigint Keywords::integer(bigint lowest, bigint highest)
 {
   const std::string w = word();
   char *end;
+  errno = 0;
   const long long value = strtoll(w.c_str(), &end, 10);
   if (w.empty() || *end != '\0') refuse("'" + w + "' is not an integer");
-  if (value < lowest) refuse("'" + w + "' must be >= " + std::to_string(lowest));
-  if (value > highest) refuse("'" + w + "' must be <= " + std::to_string(highest));
+  const bool clipped = errno == ERANGE;    // then value is the lowest or the highest there is
+  if (value < lowest || (clipped && value < 0))
+    refuse("'" + w + "' must be >= " + std::to_string(lowest));
+  if (value > highest || clipped) refuse("'" + w + "' must be <= " + std::to_string(highest));
   return value;
 }
 
