@@ -92,8 +92,8 @@ namespace {
     }
   };
 
-  /* The shortest of a separation's images. In a skew box that need not be LAMMPS's minimum image: an image no longer than d is at most
-   * |d| |row k of the inverse of the box| cells away from it along edge k. */
+  /* The shortest of a separation's images. In a skew box that need not be LAMMPS's minimum image: an image no longer than d is at
+   * most |d| |row k of the inverse of the box| cells away from it along edge k. */
   void closest_image(Domain *domain, double *d)
   {
     Compat::minimum_image(domain, d);

@@ -118,7 +118,8 @@ def test_scenes(case):
 ADAPT = {"h": ("0.012-0.01*step", "'-0.008' must be > 0"), "c": ("20-10*step", "'0' must be > 0"),
          "alpha": ("0.1-0.1*step", "'-0.1' must be >= 0"), "beta": ("-0.5", "'-0.5' must be >= 0"),
          "deltap": ("0.01-0.01*step", "'0' must be > 0"), "viscosity": ("-1", "keyword viscosity: '-1' must be > 0"),
-         "eta": ("-2", "keyword artVisc: eta '-2' must be >= 0"), "epsilon": ("-3", "keyword tensCorr: epsilon '-3' must be >= 0")}
+         "eta": ("-2", "keyword artVisc: eta '-2' must be >= 0"),
+         "epsilon": ("-3", "keyword tensCorr: epsilon '-3' must be >= 0")}
 
 
 @pytest.mark.parametrize("name", ADAPT)
@@ -139,7 +140,8 @@ def test_message_of_one_rank_reaches_a_file(tmp_path, ranks):
     if ranks > 1:
         command = ["mpirun", "--oversubscribe", "-np", str(ranks)] + command
     with open(tmp_path / "out", "w") as out:
-        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=tmp_path, env=environment(), timeout=60).returncode
+        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=tmp_path, env=environment(),
+                              timeout=60).returncode
     assert code != 0
     assert "atom 7 has the density 0; it must be a number > 0" in (tmp_path / "out").read_text()
     if ranks == 1:

@@ -38,7 +38,8 @@ BAD = [
     (dict(sidewall="0 1"), "keyword sidewall: '0' must be > 0"),
     (dict(radius="-1"), "keyword radius: '-1' must be > 0"),
     (dict(fluctuation="correlated 0 0.1"), "keyword fluctuation: '0' must be >= 1"),
-    (dict(fluctuation="depth 99999999999999999999 0"), "keyword fluctuation: '99999999999999999999' must be <= 9223372036854775807"),
+    (dict(fluctuation="depth 99999999999999999999 0"),
+     "keyword fluctuation: '99999999999999999999' must be <= 9223372036854775807"),
     (dict(fluctuation="depth -99999999999999999999 0"), "keyword fluctuation: '-99999999999999999999' must be >= 1"),
     (dict(fluctuation="correlated 5"), "keyword fluctuation: value missing"),
     (dict(profile="file nowhere"), "keyword profile: cannot read file 'nowhere'"),
@@ -148,8 +149,10 @@ def test_nan_in_a_run():
         s.do("run 0")
 
 
-@pytest.mark.parametrize("keyword, message", [("pressure_gradient v_p", "step 1: keyword pressure_gradient: -?nan is not a finite number"),
-                                              ("surface speed v_p", "step 1: keyword surface: speed -?nan is not a finite number")])
+@pytest.mark.parametrize("keyword, message", [
+    ("pressure_gradient v_p", "step 1: keyword pressure_gradient: -?nan is not a finite number"),
+    ("surface speed v_p", "step 1: keyword surface: speed -?nan is not a finite number"),
+])
 def test_variable_that_is_no_number(keyword, message):
     s = Scene()
     key, value = keyword.split(" ", 1)
