@@ -12,6 +12,14 @@ import numpy as np
 DENSITY = 1.7
 PLUGIN = "stokesdynplugin.so"
 
+# What the runs of a test said, for the table of hard cases (conftest.py): (kind, value), kind one of iterations, residual, error
+# (of the forces) and says.
+notes = []
+
+
+def note(kind, value):
+    notes.append((kind, value))
+
 
 class Spheres:
     """n spheres: x [n,3], radius a, velocity v and molecule ID (each one value or one a sphere), bonds as pairs of atom IDs."""
@@ -121,10 +129,16 @@ class Simulation:
         if lib.lammps_has_error(handle):
             text = ctypes.create_string_buffer(4000)
             lib.lammps_get_last_error_message(handle, text, len(text))
-            raise LammpsError(" ".join(text.value.decode().split()))
+            message = " ".join(text.value.decode().split())
+            note("says", message)
+            raise LammpsError(message)
 
     def run(self, steps=0, options=""):
         self.command(f"run {steps} {options}")
+        if self.lmp.has_id("fix", "drag"):
+            values = self.fix_vector()
+            note("iterations", int(values[3]))
+            note("residual", values[4])
         return self
 
     # --- atoms
@@ -235,7 +249,11 @@ def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
     if succeed:
         assert code == 0 and "ERROR" not in text, text[-3000:]
     with open(log) as f:
-        return Finished(code, text, f.read())
+        finished = Finished(code, text, f.read())
+    for line in finished.log.splitlines():
+        if re.match("(ERROR|WARNING).*: Pair style", line):
+            note("says", line)
+    return finished
 
 
 def dump_lines(path, every=1, columns="x y z vx vy vz f_drag[1] f_drag[2] f_drag[3]", name="out"):
