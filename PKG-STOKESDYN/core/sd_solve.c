@@ -7,6 +7,8 @@
 static const double singular_below = 1e-13;
 /* Residuals of this size are rounding, whatever the tolerance. */
 static const double rounding_level = 1e-13;
+/* Slip along a singular direction, relative to all slip: below this it is rounding, and nobody has asked for it. */
+static const double asked_for = 1e-9;
 
 static void sum(const sd_system *A, double *values, int count)
 {
@@ -54,28 +56,33 @@ static void scaled_residual(const sd_system *A, const double *slip, const double
   *natural = v[1];
 }
 
-/* F = D slip, the drag of spheres that do not see each other; returns |D slip|^2. */
-static double free_draining(const sd_system *A, const double *slip, double *F)
+/* F = D slip, the drag of spheres that do not see each other. Squares of D slip: plain in forces, natural over D. */
+static void free_draining(const sd_system *A, const double *slip, double *F, double *plain,
+                          double *natural)
 {
   const int m = width(A);
-  double sq = 0.0;
+  double v[2] = {0.0, 0.0};
   for (int i = 0; i < A->n; i++) {
     double *f = F + (long) m * i;
     for (int k = 0; k < m; k++)
       f[k] = A->drag[i] == 0.0 ? 0.0 : scale(A, i, k) * slip[(long) m * i + k];
-    if (A->drag[i] != 0.0) sq += A->drag[i] * natural_product(A, i, f, f);
+    if (A->drag[i] == 0.0) continue;
+    const double nat = natural_product(A, i, f, f);
+    v[0] += A->drag[i] * nat;
+    v[1] += nat;
   }
-  sum(A, &sq, 1);
-  return sq;
+  sum(A, v, 2);
+  *plain = v[0];
+  *natural = v[1];
 }
 
 sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
                                 int max_iter, double *F, double *work, sd_solve_report *report)
 {
-  double *res = work, last = INFINITY;
+  double *res = work, last = INFINITY, rhs, all_slip;
   const long size = (long) width(A) * A->n;
   *report = (sd_solve_report){0};
-  const double rhs = free_draining(A, slip, F);
+  free_draining(A, slip, F, &rhs, &all_slip);
   if (!isfinite(rhs)) return SD_ENOTFINITE;
   if (rhs == 0.0) return SD_OK;
 
@@ -239,12 +246,14 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
   const size_t bytes = sizeof(double) * (size_t) size;
   double *x = work, *z = x + size, *y = z + size, *p = y + size, *q = p + size;
   double *u = A->precondition ? q + size : z, *v = q + 2 * size;
-  double plain, natural, verified = INFINITY;
+  double plain, natural, rhs, all_slip, verified = INFINITY;
   coefficients lanczos = {.count = 0};
-  int first_run = 1;
+  int first_run = 1, singular = 0;
+  sd_system unpreconditioned = *A;
+  unpreconditioned.precondition = NULL;
   sd_status status = SD_OK;
   *report = (sd_solve_report){.curvature = 1.0};
-  const double rhs = free_draining(A, slip, y);
+  free_draining(A, slip, y, &rhs, &all_slip);
   if (!isfinite(rhs)) return SD_ENOTFINITE;
   if (rhs == 0.0 || !A->warm) memset(F, 0, bytes);
   if (rhs == 0.0) return SD_OK;
@@ -285,8 +294,14 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
         break;
       }
       report->curvature = fmin(report->curvature, s[PQ] / s[PP]);
-      if (fabs(s[PQ]) <= singular_below * s[PP] || s[PQ] < 0.0) {
-        status = s[PQ] < -singular_below * s[PP] ? SD_EINDEFINITE : SD_ESINGULAR;
+      if (s[PQ] <= singular_below * s[PP]) {
+        /* No force along p moves anything. Slip along p has no answer; if there is none, p is rounding that the inverse of a nearly
+         * singular matrix, the preconditioner, has blown up. */
+        singular = 1;
+        if (s[PQ] < -singular_below * s[PP])
+          status = SD_EINDEFINITE;
+        else if (s[RP] * s[RP] > asked_for * asked_for * s[PP] * all_slip)
+          status = SD_ESINGULAR;
         break;
       }
       report->iterations++;
@@ -340,7 +355,11 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
       break;
     else if (report->iterations >= max_iter)
       status = SD_EMAXITER;
-    else if (report->residual > 0.5 * verified)
+    else if (singular && A->precondition) {
+      A = &unpreconditioned;
+      u = z;
+      singular = 0;
+    } else if (singular || report->residual > 0.5 * verified)
       status = SD_ESTAGNATED;
     if (status != SD_OK) break;
     verified = report->residual;

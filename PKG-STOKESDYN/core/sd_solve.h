@@ -81,9 +81,13 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
  * The residual is computed from its definition before the solver says SD_OK, and the iteration goes on from there if rounding
  * has led it astray. Warm: one product gives the residual of the guess, and when that is below the tolerance F is left as it is.
  * A guess that is worse than F = 0 is dropped.
+ *
+ * Where M is singular (equal spheres at one point) and the slip allows an answer, this is one of many: only the total of such
+ * spheres means anything. A preconditioner blows up rounding along those directions; when only that is left the solver goes on
+ * without it.
  * SD_OK; SD_EMAXITER; SD_ESTAGNATED; SD_ENOTFINITE;
  * SD_EINDEFINITE: a direction of negative curvature p.Mp < 0, as a cut-off makes them: any answer would be noise;
- * SD_ESINGULAR: p.Mp = 0 within rounding: spheres at one point with different velocities. */
+ * SD_ESINGULAR: p.Mp = 0 within rounding, and the slip along p is not: equal spheres at one point with different velocities. */
 sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,
                              double *F, double *work, sd_solve_report *report);
 

@@ -121,6 +121,49 @@ static void all_spheres_at_one_point(void **state)
   }
 }
 
+/* Ten equal spheres at each of four points in a cloud. M is singular, and so nearly are its preconditioners: they blow up the rounding
+ * along directions that no velocity asks for. The answer must come all the same; and velocities that differ must not pass. */
+static void coincident_spheres_with_preconditioners(void **state)
+{
+  (void) state;
+  scene s = cloud_flocs(1, 40, 2.0, 1.0, 0, ETA, 9);
+  for (int i = 0; i < 40; i++)
+    scene_set(&s, i, s.x[3 * (i % 4)], s.x[3 * (i % 4) + 1], s.x[3 * (i % 4) + 2], s.a[i % 4], ETA);
+  s.fast = 1;
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  const long first[2] = {0, 40};
+  int member[40];
+  for (int i = 0; i < 40; i++) member[i] = i;
+  sd_blocks b = {0};
+  sd_sparse f = {0};
+  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, 40, 1, first, member), SD_OK);
+  assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 40, 3.0, 0, 1), SD_OK);
+  b.width = f.width = 3;
+  b.drag = f.drag = s.drag;
+  double *slip = scene_uniform_slip(&s, U, 0.4 * U, 0), total[3][12] = {{0.0}};
+  for (int i = 0; i < 40; i++) slip[3 * i + 2] = 0.1 * U * (i % 4);
+  for (int k = 0; k < 3; k++) {
+    s.precondition = k == 0 ? NULL : k == 1 ? sd_blocks_apply : sd_sparse_apply;
+    s.precondition_ctx = k == 1 ? (void *) &b : (void *) &f;
+    sd_status status;
+    sd_solve_report report;
+    double *F = scene_solve(&s, sd_solve_gradients, slip, 1e-10, 200, &status, &report);
+    assert_int_equal(status, SD_OK);
+    for (int j = 0; j < 120; j++) total[k][3 * (j / 3 % 4) + j % 3] += F[j];
+    free(F);
+    for (int j = 0; j < 12; j++) CHECK_NEAR(total[k][j], total[0][j], 1e-8 * 6 * SD_PI * ETA * U);
+
+    slip[0] += 1e-6 * U;
+    free(scene_solve(&s, sd_solve_gradients, slip, 1e-12, 200, &status, &report));
+    assert_int_equal(status, SD_ESINGULAR);
+    slip[0] -= 1e-6 * U;
+  }
+  free(slip);
+  sd_blocks_free(&b);
+  sd_sparse_free(&f);
+  scene_free(&s);
+}
+
 /* One sphere that takes part among 10^5 that do not. */
 static void one_sphere_among_many(void **state)
 {
@@ -286,6 +329,7 @@ int main(void)
       cmocka_unit_test(ten_thousand_random_clumps),
       cmocka_unit_test(forces_are_continuous_along_a_path),
       cmocka_unit_test(all_spheres_at_one_point),
+      cmocka_unit_test(coincident_spheres_with_preconditioners),
       cmocka_unit_test(one_sphere_among_many),
       cmocka_unit_test(preconditioner_of_another_time),
       cmocka_unit_test(warm_starts),
