@@ -296,7 +296,7 @@ void PairStokesDynamics::init_style()
   }
   scene.lists_are_stale();
   rigid.new_run();
-  warned_unconverged = false;
+  warned_unconverged = looked_at_clumps = false;
 }
 
 /* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts of them. */

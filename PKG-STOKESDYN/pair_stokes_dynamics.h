@@ -81,6 +81,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   double largest_diameter = 0.0;
   FixStokesDynamicsState *fix_state = nullptr;
   bool warned_unconverged = false, warned_nobody_applies = false, warned_time_step = false;
+  bool looked_at_clumps = false;
 
   // of this step, per atom of this rank
   std::vector<char> active, solving;    // takes part; is the solver's
@@ -111,6 +112,8 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   bool numbers_only() const;
   void refuse_vast_cutoff();
   void solve();
+  void refuse_close_oseen();
+  void warn_of_short_cutoff();
   void guess();
   void remember();
   void time_step_guard(const sd_solve_report &report);

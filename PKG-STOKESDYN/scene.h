@@ -64,6 +64,8 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   void lists_are_stale() { stale = clumps_stale = true; }
 
+  /* Who sees whom since the last update(), without all_pairs(). */
+  const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
   const double *radii() const { return a.data(); }    // of this rank's spheres, 0: takes no part
   sd_spheres local() const { return {positions(), a.data(), w.data()}; }
   sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }

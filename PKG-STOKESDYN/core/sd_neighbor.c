@@ -172,3 +172,25 @@ done:
   free(begin);
   return status;
 }
+
+static double oseen_entry(const sd_law *law, const sd_spheres *s, int i, int j)
+{
+  const double product = s->a[i] * s->a[j];
+  const double R = sqrt(distance_squared(s->x + 3 * (long) i, s->x + 3 * (long) j));
+  return product > 0.0 ? sd_taper_factor(law, R) * 1.5 * sqrt(product) / R : 0.0;
+}
+
+double sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs, int n_all,
+                         int begin, int n)
+{
+  double largest = 0.0;
+  if (pairs) {
+    for (int i = 0; i < pairs->n; i++)
+      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
+        largest = fmax(largest, oseen_entry(law, s, i, pairs->neighbor[k]));
+  } else
+    for (int i = begin; i < begin + n; i++)
+      for (int j = 0; j < n_all; j++)
+        if (j != i) largest = fmax(largest, oseen_entry(law, s, i, j));
+  return largest;
+}

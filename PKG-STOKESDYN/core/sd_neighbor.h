@@ -41,6 +41,13 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
                              const int64_t *molecule, int n, int n_all, double cutoff, int one_row,
                              int *order);
 
+/* Tensor oseen knows no size of the spheres: the largest entry that any pair has along its axis in the matrix scaled to unit
+ * diagonal, t 3 sqrt(ai aj)/(2R) with the taper t. From 1 on the matrix is not positive definite, whoever else is there.
+ *   pairs   within a cut-off; NULL: all pairs of the n_all spheres, rows begin ... begin + n - 1
+ * 0 without pairs, INFINITY for spheres at one point. Radius 0: takes no part. */
+double sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs, int n_all,
+                         int begin, int n);
+
 #ifdef __cplusplus
 }
 #endif

@@ -75,12 +75,35 @@ static void clump_members_once_as_the_closest_image(void **state)
   sd_neighbors_free(&list);
 }
 
+/* 3 sqrt(ai aj)/(2R) of the closest pair, of all pairs, of a share of the rows and by list; a taper takes its part; radius 0: nobody. */
+static void oseen_coupling_of_the_closest_pair(void **state)
+{
+  (void) state;
+  const double x[] = {0, 0, 0, /**/ 0, 3, 4, /**/ 12, 3, 4, /**/ 0.1, 0, 0}, w[] = {1, 2, 3, 4};
+  double a[] = {0.7, 2.8, 0.3, 0.0};
+  const sd_spheres s = {x, a, w};
+  sd_law law = {SD_TENSOR_OSEEN, SD_TAPER_NONE, 0.0};
+  CHECK_NEAR(sd_oseen_coupling(&law, &s, NULL, 4, 0, 4), 1.5 * 1.4 / 5.0, 1e-15);
+  CHECK_NEAR(sd_oseen_coupling(&law, &s, NULL, 4, 2, 2), 1.5 * sqrt(0.84) / 12.0, 1e-15);
+  sd_neighbors list = {0};
+  assert_int_equal(sd_neighbors_cutoff(&list, x, 4, 4, 6.0), SD_OK);
+  CHECK_NEAR(sd_oseen_coupling(&law, &s, &list.pairs, 4, 0, 0), 1.5 * 1.4 / 5.0, 1e-15);
+  law.taper = SD_TAPER_SPHERICAL;
+  law.range = 10.0;
+  CHECK_NEAR(sd_oseen_coupling(&law, &s, &list.pairs, 4, 0, 0), (1 - 0.75 + 0.0625) * 0.42, 1e-15);
+  a[3] = 0.2;
+  law.taper = SD_TAPER_NONE;
+  CHECK_NEAR(sd_oseen_coupling(&law, &s, NULL, 4, 0, 1), 1.5 * sqrt(0.14) / 0.1, 1e-14);
+  sd_neighbors_free(&list);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cells_find_what_the_double_loop_finds),
       cmocka_unit_test(no_spheres_no_pairs),
       cmocka_unit_test(clump_members_once_as_the_closest_image),
+      cmocka_unit_test(oseen_coupling_of_the_closest_pair),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
