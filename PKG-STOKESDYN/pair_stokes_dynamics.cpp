@@ -294,6 +294,7 @@ void PairStokesDynamics::init_style()
                                  ": nothing applies the force: add_force is no and no fix "
                                  "stokes_dynamics applies it"));
   }
+  limit_sorting_bins();
   scene.lists_are_stale();
   rigid.new_run();
   warned_unconverged = looked_at_clumps = false;
@@ -325,12 +326,28 @@ void PairStokesDynamics::refuse_vast_cutoff()
            (open || scene.settings.clumps_only ? "inf" : "a shorter one"));
 }
 
+/* LAMMPS sorts its atoms into bins of half the cut-off, which is small here without a cut_off_distance. In an open box that is
+ * mostly empty the bins would take most of the memory, or be too many: then wider ones, about one for each atom. */
+void PairStokesDynamics::limit_sorting_bins()
+{
+  const double wide = (range() + neighbor->skin) / 2.0;
+  const double volume = domain->xprd * domain->yprd * domain->zprd;
+  if (atom->sortfreq > 0 && atom->userbinsize == 0.0 && atom->natoms > 0 &&
+      volume > wide * wide * wide * std::max(1e6, 10.0 * atom->natoms))
+    atom->userbinsize = cbrt(volume / atom->natoms);
+}
+
+/* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is given to LAMMPS all the same,
+ * since it warns of lost atoms and stops sorting them when there is none. */
+double PairStokesDynamics::range() const
+{
+  return std::isfinite(scene.settings.cutoff) ? scene.settings.cutoff : largest_diameter;
+}
+
 double PairStokesDynamics::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) fail(lmp, COMMAND + ": pair_coeff * * is missing");
-  // Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is returned all the same, since
-  // LAMMPS warns of lost atoms and stops sorting them when there is none.
-  return std::isfinite(scene.settings.cutoff) ? scene.settings.cutoff : largest_diameter;
+  return range();
 }
 
 void *PairStokesDynamics::extract(const char *name, int &dim)

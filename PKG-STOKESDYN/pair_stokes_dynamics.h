@@ -101,6 +101,8 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   FixStokesDynamicsState *find_state() const;    // nullptr before the first run
   void parse();
   void allocate();
+  double range() const;    // what LAMMPS is told
+  void limit_sorting_bins();
   void state_of_the_step();
   int width() const { return scene.settings.rotation ? 6 : 3; }    // unknowns of a sphere
   void fluid_gradient();
