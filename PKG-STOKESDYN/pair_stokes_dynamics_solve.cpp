@@ -137,15 +137,19 @@ void PairStokesDynamics::refuse_close_oseen()
 {
   const sd_law law = scene.law();
   double mine, largest;
+  sd_status status;
   if (scene.all_pairs()) {
     const sd_spheres spheres = scene.cloud();
     const int64_t n = scene.cloud_size();
     const int from = n * comm->me / comm->nprocs, to = n * (comm->me + 1) / comm->nprocs;
-    mine = sd_oseen_coupling(&law, &spheres, nullptr, n, from, to - from);
+    status = sd_oseen_coupling(&law, &spheres, nullptr, n, from, to - from, &mine);
   } else {
     const sd_spheres spheres = scene.local();
-    mine = sd_oseen_coupling(&law, &spheres, &scene.list(), 0, 0, 0);
+    const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
+    status = sd_oseen_coupling(&law, &spheres, pairs, atom->nlocal + atom->nghost, 0, atom->nlocal,
+                               &mine);
   }
+  if (status != SD_OK) error->one(FLERR, COMMAND + ": " + sd_status_string(status));
   MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
   if (largest >= 1.0 - 1e-12)
     fail(lmp,

@@ -230,8 +230,7 @@ void Scene::apply_list(const double *F, double *u)
   std::copy(F, F + m * atom->nlocal, force.begin());
   packing = FORCES;
   Compat::forward_comm(comm, pair);
-  const sd_pairs *list = filtered ? &pairs.pairs : &candidates.pairs;
-  sd_packed_pairs(&packed, list, force.data(), u);
+  sd_packed_pairs(&packed, &list(), force.data(), u);
 }
 
 /* Every rank computes an equal share of the pairs, wherever the spheres are. */

@@ -38,6 +38,75 @@ static double distance_squared(const double *a, const double *b)
 }
 
 /* Cells as chains: head[cell] is its first sphere, next[j] the one after j, -1 the end. */
+typedef struct {
+  double lo[3], side;
+  long n[3];
+  int *head, *next;
+} cells;
+
+static long cell_along(const cells *c, const double *x, int d)
+{
+  return (long) ((x[d] - c->lo[d]) / c->side);
+}
+
+static void cells_free(cells *c)
+{
+  free(c->head);
+  free(c->next);
+}
+
+/* n_all > 0 spheres. Never many more cells than spheres: a thin cloud gets wider ones than side. */
+static sd_status cells_create(cells *c, const double *x, int n_all, double side)
+{
+  double hi[3];
+  for (int d = 0; d < 3; d++) c->lo[d] = hi[d] = x[d];
+  for (int j = 1; j < n_all; j++)
+    for (int d = 0; d < 3; d++) {
+      c->lo[d] = fmin(c->lo[d], x[3 * (long) j + d]);
+      hi[d] = fmax(hi[d], x[3 * (long) j + d]);
+    }
+  for (c->side = side;; c->side *= 1.5) {
+    double total = 1.0;
+    for (int d = 0; d < 3; d++) total *= floor((hi[d] - c->lo[d]) / c->side) + 1.0;
+    if (total <= 4.0 * n_all + 64.0) break;
+  }
+  for (int d = 0; d < 3; d++) c->n[d] = cell_along(c, hi, d) + 1;
+
+  const long count = c->n[0] * c->n[1] * c->n[2];
+  c->head = malloc(sizeof(int) * (size_t) count);
+  c->next = malloc(sizeof(int) * (size_t) n_all);
+  if (!c->head || !c->next) {
+    cells_free(c);
+    return SD_ENOMEMORY;
+  }
+  for (long k = 0; k < count; k++) c->head[k] = -1;
+  for (int j = n_all - 1; j >= 0; j--) { /* backwards, so that each chain runs in order of index */
+    const double *xj = x + 3 * (long) j;
+    const long k =
+        (cell_along(c, xj, 2) * c->n[1] + cell_along(c, xj, 1)) * c->n[0] + cell_along(c, xj, 0);
+    c->next[j] = c->head[k];
+    c->head[k] = j;
+  }
+  return SD_OK;
+}
+
+/* The first spheres of the cell of x and of those around it, 27 at most; returns how many cells. */
+static int cells_around(const cells *c, const double *x, int first[27])
+{
+  long from[3], to[3];
+  int count = 0;
+  for (int d = 0; d < 3; d++) {
+    const long k = cell_along(c, x, d);
+    from[d] = k > 0 ? k - 1 : 0;
+    to[d] = k + 1 < c->n[d] ? k + 1 : c->n[d] - 1;
+  }
+  for (long z = from[2]; z <= to[2]; z++)
+    for (long y = from[1]; y <= to[1]; y++)
+      for (long k = from[0]; k <= to[0]; k++)
+        first[count++] = c->head[(z * c->n[1] + y) * c->n[0] + k];
+  return count;
+}
+
 sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff)
 {
   sd_status status = sd_neighbors_reserve(list, n, 0);
@@ -45,66 +114,28 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
   list->pairs.n = n;
   list->first[0] = 0;
   if (n_all == 0) return SD_OK;
-
-  double lo[3], hi[3];
-  for (int d = 0; d < 3; d++) lo[d] = hi[d] = x[d];
-  for (int j = 1; j < n_all; j++)
-    for (int d = 0; d < 3; d++) {
-      lo[d] = fmin(lo[d], x[3 * (long) j + d]);
-      hi[d] = fmax(hi[d], x[3 * (long) j + d]);
-    }
-  /* Never many more cells than spheres: a thin cloud gets wider cells. */
-  double side = cutoff;
-  long cells[3];
-  for (;; side *= 1.5) {
-    double total = 1.0;
-    for (int d = 0; d < 3; d++) total *= floor((hi[d] - lo[d]) / side) + 1.0;
-    if (total <= 4.0 * n_all + 64.0) break;
-  }
-  for (int d = 0; d < 3; d++) cells[d] = (long) floor((hi[d] - lo[d]) / side) + 1;
-
-  const long n_cells = cells[0] * cells[1] * cells[2];
-  int *head = malloc(sizeof(int) * (size_t) n_cells), *next = malloc(sizeof(int) * (size_t) n_all);
-  if (!head || !next) {
-    free(head);
-    free(next);
-    return SD_ENOMEMORY;
-  }
-  for (long c = 0; c < n_cells; c++) head[c] = -1;
-  for (int j = n_all - 1; j >= 0; j--) { /* backwards, so that each chain runs in order of index */
-    long c[3];
-    for (int d = 0; d < 3; d++) c[d] = (long) floor((x[3 * (long) j + d] - lo[d]) / side);
-    const long cell = (c[2] * cells[1] + c[1]) * cells[0] + c[0];
-    next[j] = head[cell];
-    head[cell] = j;
-  }
+  cells c;
+  status = cells_create(&c, x, n_all, cutoff);
+  if (status != SD_OK) return status;
 
   const double cutsq = cutoff * cutoff;
   long count = 0;
-  for (int i = 0; i < n && status == SD_OK; i++) {
+  for (int i = 0; i < n; i++) {
     const double *xi = x + 3 * (long) i;
-    long from[3], to[3];
+    int first[27];
+    const int around = cells_around(&c, xi, first);
     list->first[i] = count;
-    for (int d = 0; d < 3; d++) {
-      const long c = (long) floor((xi[d] - lo[d]) / side);
-      from[d] = c > 0 ? c - 1 : 0;
-      to[d] = c + 1 < cells[d] ? c + 1 : cells[d] - 1;
-    }
-    for (long cz = from[2]; cz <= to[2]; cz++)
-      for (long cy = from[1]; cy <= to[1]; cy++)
-        for (long cx = from[0]; cx <= to[0]; cx++)
-          for (int j = head[(cz * cells[1] + cy) * cells[0] + cx]; j >= 0; j = next[j]) {
-            if (j == i || distance_squared(xi, x + 3 * (long) j) > cutsq) continue;
-            if (count == list->capacity &&
-                (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK)
-              goto done;
-            list->neighbor[count++] = j;
-          }
+    for (int k = 0; k < around; k++)
+      for (int j = first[k]; j >= 0; j = c.next[j]) {
+        if (j == i || distance_squared(xi, x + 3 * (long) j) > cutsq) continue;
+        if (count == list->capacity && (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK)
+          goto done;
+        list->neighbor[count++] = j;
+      }
   }
 done:
   list->first[n] = count;
-  free(head);
-  free(next);
+  cells_free(&c);
   return status;
 }
 
@@ -173,24 +204,39 @@ done:
   return status;
 }
 
-static double oseen_entry(const sd_law *law, const sd_spheres *s, int i, int j)
+/* The square of a pair's entry, if it is larger than that of the pairs before. A taper is at most 1: most pairs end at the comparison. */
+static double larger_oseen_entry(double largest, const sd_law *law, const sd_spheres *s, int i,
+                                 int j)
 {
-  const double product = s->a[i] * s->a[j];
-  const double R = sqrt(distance_squared(s->x + 3 * (long) i, s->x + 3 * (long) j));
-  return product > 0.0 ? sd_taper_factor(law, R) * 1.5 * sqrt(product) / R : 0.0;
+  const double untapered = 2.25 * s->a[i] * s->a[j];
+  const double R_squared = distance_squared(s->x + 3 * (long) i, s->x + 3 * (long) j);
+  if (!(untapered > largest * R_squared)) return largest;
+  const double R = sqrt(R_squared), t = sd_taper_factor(law, R);
+  return R <= law->range ? fmax(largest, t * t * untapered / R_squared) : largest;
 }
 
-double sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs, int n_all,
-                         int begin, int n)
+sd_status sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
+                            int n_all, int begin, int n, double *coupling)
 {
-  double largest = 0.0;
-  if (pairs) {
-    for (int i = 0; i < pairs->n; i++)
-      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
-        largest = fmax(largest, oseen_entry(law, s, i, pairs->neighbor[k]));
-  } else
-    for (int i = begin; i < begin + n; i++)
-      for (int j = 0; j < n_all; j++)
-        if (j != i) largest = fmax(largest, oseen_entry(law, s, i, j));
-  return largest;
+  double largest = 0.0, a = 0.0;
+  *coupling = 0.0;
+  for (int i = begin; i < begin + n && pairs; i++)
+    for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
+      largest = larger_oseen_entry(largest, law, s, i, pairs->neighbor[k]);
+  for (int j = 0; j < n_all && !pairs; j++) a = fmax(a, s->a[j]);
+  if (a > 0.0) {
+    cells c;
+    const sd_status status = cells_create(&c, s->x, n_all, 1.6 * a);
+    if (status != SD_OK) return status;
+    for (int i = begin; i < begin + n; i++) {
+      int first[27];
+      const int around = cells_around(&c, s->x + 3 * (long) i, first);
+      for (int k = 0; k < around; k++)
+        for (int j = first[k]; j >= 0; j = c.next[j])
+          if (j != i) largest = larger_oseen_entry(largest, law, s, i, j);
+    }
+    cells_free(&c);
+  }
+  *coupling = sqrt(largest);
+  return SD_OK;
 }

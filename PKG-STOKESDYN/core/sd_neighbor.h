@@ -43,10 +43,13 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
 
 /* Tensor oseen knows no size of the spheres: the largest entry that any pair has along its axis in the matrix scaled to unit
  * diagonal, t 3 sqrt(ai aj)/(2R) with the taper t. From 1 on the matrix is not positive definite, whoever else is there.
- *   pairs   within a cut-off; NULL: all pairs of the n_all spheres, rows begin ... begin + n - 1
- * 0 without pairs, INFINITY for spheres at one point. Radius 0: takes no part. */
-double sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs, int n_all,
-                         int begin, int n);
+ * Targets begin ... begin + n - 1, sources 0 ... n_all - 1 up to law->range (INFINITY: no cut-off) away.
+ *   pairs      who sees whom; NULL: everybody. That goes by cells of 1.6 times the largest radius, in O(n_all) unless the radii
+ *              are very different, and pairs farther apart than that may be left out.
+ *   coupling   out; 0 without pairs, INFINITY for spheres at one point. Radius 0: takes no part.
+ * SD_OK or SD_ENOMEMORY. */
+sd_status sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
+                            int n_all, int begin, int n, double *coupling);
 
 #ifdef __cplusplus
 }

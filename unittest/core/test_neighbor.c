@@ -80,21 +80,69 @@ static void oseen_coupling_of_the_closest_pair(void **state)
 {
   (void) state;
   const double x[] = {0, 0, 0, /**/ 0, 3, 4, /**/ 12, 3, 4, /**/ 0.1, 0, 0}, w[] = {1, 2, 3, 4};
-  double a[] = {0.7, 2.8, 0.3, 0.0};
+  double a[] = {0.7, 2.8, 0.3, 0.0}, q;
   const sd_spheres s = {x, a, w};
-  sd_law law = {SD_TENSOR_OSEEN, SD_TAPER_NONE, 0.0};
-  CHECK_NEAR(sd_oseen_coupling(&law, &s, NULL, 4, 0, 4), 1.5 * 1.4 / 5.0, 1e-15);
-  CHECK_NEAR(sd_oseen_coupling(&law, &s, NULL, 4, 2, 2), 1.5 * sqrt(0.84) / 12.0, 1e-15);
+  sd_law law = {SD_TENSOR_OSEEN, SD_TAPER_NONE, INFINITY};
+  assert_int_equal(sd_oseen_coupling(&law, &s, NULL, 0, 0, 0, &q), SD_OK);
+  assert_true(q == 0.0);
+  sd_oseen_coupling(&law, &s, NULL, 4, 0, 4, &q);
+  CHECK_NEAR(q, 1.5 * 1.4 / 5.0, 1e-15);
+  law.range = 4.9;
+  sd_oseen_coupling(&law, &s, NULL, 4, 0, 4, &q);
+  assert_true(q < 0.3);
   sd_neighbors list = {0};
+  law.range = 6.0;
   assert_int_equal(sd_neighbors_cutoff(&list, x, 4, 4, 6.0), SD_OK);
-  CHECK_NEAR(sd_oseen_coupling(&law, &s, &list.pairs, 4, 0, 0), 1.5 * 1.4 / 5.0, 1e-15);
+  sd_oseen_coupling(&law, &s, &list.pairs, 4, 0, 4, &q);
+  CHECK_NEAR(q, 1.5 * 1.4 / 5.0, 1e-15);
   law.taper = SD_TAPER_SPHERICAL;
   law.range = 10.0;
-  CHECK_NEAR(sd_oseen_coupling(&law, &s, &list.pairs, 4, 0, 0), (1 - 0.75 + 0.0625) * 0.42, 1e-15);
+  sd_oseen_coupling(&law, &s, &list.pairs, 4, 0, 4, &q);
+  CHECK_NEAR(q, (1 - 0.75 + 0.0625) * 0.42, 1e-15);
   a[3] = 0.2;
   law.taper = SD_TAPER_NONE;
-  CHECK_NEAR(sd_oseen_coupling(&law, &s, NULL, 4, 0, 1), 1.5 * sqrt(0.14) / 0.1, 1e-14);
+  law.range = INFINITY;
+  double shares[2];
+  for (int k = 0; k < 2; k++) sd_oseen_coupling(&law, &s, NULL, 4, 2 * k, 2, &shares[k]);
+  CHECK_NEAR(fmax(shares[0], shares[1]), 1.5 * sqrt(0.14) / 0.1, 1e-14);
   sd_neighbors_free(&list);
+}
+
+/* Whatever is close enough to make the matrix indefinite is found, as by the double loop: radii 1:100, all rows in three shares. */
+static void oseen_coupling_finds_every_close_pair(void **state)
+{
+  (void) state;
+  enum { N = 200 };
+  const sd_law law = {SD_TENSOR_OSEEN, SD_TAPER_NONE, INFINITY};
+  double x[3 * N], a[N], w[N];
+  int close = 0;
+  for (int scene = 0; scene < 100; scene++) {
+    uint64_t seed = scene + 1;
+    double expected = 0.0, found = 0.0;
+    for (int i = 0; i < N; i++) {
+      a[i] = pow(100.0, uniform(&seed, -0.5, 0.5));
+      w[i] = 1.0;
+      for (int d = 0; d < 3; d++) x[3 * i + d] = uniform(&seed, -100.0, 100.0);
+      for (int j = 0; j < i; j++)
+        expected = fmax(expected,
+                        1.5 * sqrt(a[i] * a[j]) /
+                            sqrt(pow(x[3 * i] - x[3 * j], 2) + pow(x[3 * i + 1] - x[3 * j + 1], 2) +
+                                 pow(x[3 * i + 2] - x[3 * j + 2], 2)));
+    }
+    const sd_spheres s = {x, a, w};
+    for (int k = 0; k < 3; k++) {
+      double q;
+      assert_int_equal(sd_oseen_coupling(&law, &s, NULL, N, 67 * k, k < 2 ? 67 : N - 134, &q),
+                       SD_OK);
+      found = fmax(found, q);
+    }
+    close += expected >= 1.0;
+    if (expected >= 1.0)
+      CHECK_NEAR(found, expected, 1e-13 * expected);
+    else
+      assert_true(found <= expected * (1 + 1e-13));
+  }
+  assert_in_range(close, 10, 90);
 }
 
 int main(void)
@@ -104,6 +152,7 @@ int main(void)
       cmocka_unit_test(no_spheres_no_pairs),
       cmocka_unit_test(clump_members_once_as_the_closest_image),
       cmocka_unit_test(oseen_coupling_of_the_closest_pair),
+      cmocka_unit_test(oseen_coupling_finds_every_close_pair),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
