@@ -8,7 +8,7 @@ import pytest
 
 import model
 from system import LammpsError, Spheres, chain, dump_lines, input_lines, largest_difference, lmp, note, read_dump
-from ways import A, ETA, EXACT, STOKES, WAYS, Way
+from ways import A, COLUMNS, ETA, EXACT, STOKES, WAYS, Way
 
 PAIR = "Pair style stokes_dynamics"
 U = np.array((0.3, -0.2, 0.4))
@@ -269,6 +269,89 @@ def test_one_sphere_among_100000(simulation, words):
     F, v = sim.drag, sim.v
     assert np.abs(F[77776] + STOKES * v[77776]).max() < 1e-14 * STOKES * np.abs(v[77776]).max()
     assert np.abs(np.delete(F, 77776, axis=0)).max() == 0.0
+
+
+# --- spheres that move -------------------------------------------------------------------------------------------------
+
+def frames_of(sim, steps):
+    """[step, sphere, COLUMNS] of a run; nothing but what the commands before have set in motion moves."""
+    sim.commands(dump_lines(sim.folder / "dump", columns=COLUMNS)).run(steps)
+    assert sim.fix_vector()[6] == 0
+    sim.command("undump out")
+    return np.array([rows for _, rows in read_dump(sim.folder / "dump")])
+
+
+def passing_by(simulation, way, x, dt):
+    """A sphere of radius A at (x, 0.1, 0) that goes along -x through a larger one at the origin, past a third."""
+    spheres = Spheres([(0, 0, 0), (x, 0.1, 0), (1.0, 2.0, -2.0)], [1.9, A, 1.1], [U, (-1, 0, 0), (0.1, 0.3, -0.2)], molecule=1)
+    sim = simulation(spheres, way.style(spheres), dt=dt, box=[(-20.0, 20.0)] * 3)
+    return spheres, sim.commands("group moving id 2\nfix move moving move linear -1 0 0")
+
+
+def largest_step(F):
+    """Largest change of a force (or torque) from one frame to the next."""
+    return np.abs(np.diff(F, axis=0)).max()
+
+
+@pytest.mark.hard_case("path through contact, overlap and the inside, out again: forces right and continuous")
+@all_ways
+def test_path_through_another_sphere(simulation, way):
+    """One run of 400 steps; a slope of 4 Stokes drags a length is more than the model has anywhere."""
+    spheres, sim = passing_by(simulation, way, 4.0, 0.02)
+    frames = frames_of(sim, 400)
+    assert frames[-1, 1, 0] == pytest.approx(-4.0)
+    F = way.answer_of_frames(frames)
+    assert way.error(F, way.forces_on_the_way(spheres, frames), spheres) < 1e-9
+    assert 1e-4 * STOKES < largest_step(F[..., :3]) < 0.02 * 4 * STOKES
+
+
+@pytest.mark.hard_case("approach to 1e-12 of contact, and of the inside, and across")
+@pytest.mark.parametrize("R", [1.9 + A, 1.9 - A], ids=["contact", "inside"])
+@all_ways
+def test_steps_of_1e_minus_12_across_contact(simulation, way, R):
+    """Where the formula changes, forces change as little as the place; the solves differ by the tolerance."""
+    spheres, sim = passing_by(simulation, way, np.sqrt(R**2 - 0.1**2) + 5e-12, 1e-12)
+    frames = frames_of(sim, 10)
+    distance = np.linalg.norm(frames[:, 1, :3] - frames[:, 0, :3], axis=1)
+    assert distance[0] > R + 1e-12 and distance[-1] < R - 1e-12 and np.abs(distance - R).min() < 1e-12
+    F = way.answer_of_frames(frames)
+    assert way.error(F, way.forces_on_the_way(spheres, frames), spheres) < 1e-9
+    assert largest_step(F[..., :3]) < 1e-10 * STOKES
+
+
+@pytest.mark.hard_case("clump that flies apart in a run")
+@all_ways
+def test_clump_that_flies_apart(simulation, way):
+    """20 overlapping spheres move away from their middle, each its own way, to twice its size."""
+    spheres = cloud()
+    spheres.v = spheres.x - spheres.x.mean(axis=0)
+    sim = simulation(spheres, way.style(spheres), dt=0.01, box=[(-20.0, 20.0)] * 3)
+    sim.commands("unfix drag\nfix drag all stokes_dynamics apply no\nfix move all nve/sphere")
+    frames = frames_of(sim, 100)
+    assert np.ptp(frames[-1, :, 0]) == pytest.approx(2.0 * np.ptp(spheres.x[:, 0]))
+    assert way.error(way.answer_of_frames(frames), way.forces_on_the_way(spheres, frames), spheres) < 1e-9
+
+
+@pytest.mark.hard_case("clump that loses sphere after sphere in a run, until all are lone")
+@pytest.mark.parametrize("way", [WAYS["clump"], WAYS["clumps_only"], WAYS["rotation clumps_only"],
+                                 Way("clumps_only yes rigid_clumps auto", clumps=True)],
+                         ids=["clump", "clumps_only", "rotation clumps_only", "rigid_clumps auto"])
+def test_clump_that_loses_its_spheres(simulation, way):
+    """Every second step one of them gets molecule ID 0. The blocks of the preconditioner, too, go by molecules."""
+    spheres = cloud(8)
+    if "rigid" in way.words:
+        spheres.v = U + np.cross((0.2, -0.3, 0.1), spheres.x)
+    sim = simulation(spheres, way.style(spheres))
+    sim.commands(["variable k equal step/2"] + dump_lines(sim.folder / "dump", columns="mol " + COLUMNS))
+    sim.run(16, 'every 2 "set atom $k mol 0"')
+    frames = read_dump(sim.folder / "dump")
+    assert [int((rows[:, 0] == 1).sum()) for _, rows in frames] == [8, 8, 8, 7, 7, 6, 6, 5, 5, 4, 4, 3, 3, 2, 2, 1, 1]
+    for _, rows in frames:
+        now = Spheres(spheres.x, spheres.a, spheres.v, rows[:, 0].astype(int))
+        assert way.error(way.answer_of_frames(rows[:, 1:]), way.forces(now), now) < 1e-9
+    lone = -6 * np.pi * ETA * spheres.a[:, None] * spheres.v
+    if way.clumps:
+        assert largest_difference(sim.drag, lone) < 1e-9
 
 
 # --- places and units ---------------------------------------------------------------------------------------------------

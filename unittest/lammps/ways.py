@@ -7,6 +7,7 @@ from system import note
 ETA, A = 1.3, 0.7
 STOKES = 6 * np.pi * ETA * A
 EXACT = "algorithm 2 relative_tolerance 1e-12 max_iter 5000"
+COLUMNS = "x y z vx vy vz f_drag[1] f_drag[2] f_drag[3] f_drag[7] f_drag[8] f_drag[9]"
 
 
 class Way:
@@ -18,8 +19,11 @@ class Way:
     def style(self, spheres, ending=EXACT, eta=ETA):
         return f"{self.words.format(reach=repr(reach(spheres)))} visc {eta!r} {ending}"
 
-    def matrix(self, spheres, eta=ETA):
-        return model.mobility(spheres.x, spheres.a, eta, sees=model.same_clump(spheres) if self.clumps else None,
+    def matrix(self, spheres, eta=ETA, x=None):
+        """x: where the spheres are by now; the reach stays. Leading axes are frames."""
+        x = spheres.x if x is None else x
+        return model.mobility(x, np.broadcast_to(spheres.a, x.shape[:-1]), eta,
+                              sees=model.same_clump(spheres) if self.clumps else None,
                               taper=(self.taper, reach(spheres)) if self.taper else None, rotation=self.rotation)
 
     def slip(self, v, omega):
@@ -34,11 +38,22 @@ class Way:
         rows = sim.fix_rows()
         return np.hstack([rows[:, 0:3], rows[:, 6:9]]) if self.rotation else rows[:, 0:3]
 
+    def forces_on_the_way(self, spheres, frames):
+        """[k,n,3] or [k,n,6]; frames [k,n,6+] with places and velocities, which may have come from spheres by any way"""
+        x, v = frames[..., 0:3], frames[..., 3:6]
+        slip = -np.concatenate([v, np.zeros_like(v)], axis=-1) if self.rotation else -v
+        F = np.linalg.solve(self.matrix(spheres, x=x), slip.reshape(len(frames), -1, 1))
+        return F.reshape(slip.shape)
+
+    def answer_of_frames(self, frames):
+        """Of rows with the columns COLUMNS"""
+        return frames[..., 6:12] if self.rotation else frames[..., 6:9]
+
     def error(self, answer, expected, spheres):
         """Largest difference, of a force or of a torque over the radius, in units of the largest force. Goes into the table."""
         difference = answer - expected
-        difference[:, 3:] /= spheres.a[:, None]
-        value = np.abs(difference).max() / np.linalg.norm(expected[:, :3], axis=1).max()
+        difference[..., 3:] /= spheres.a[:, None]
+        value = np.abs(difference).max() / np.linalg.norm(expected[..., :3], axis=-1).max()
         note("error", value)
         return value
 
