@@ -149,7 +149,7 @@ void PairStokesDynamics::refuse_close_oseen()
     status = sd_oseen_coupling(&law, &spheres, pairs, atom->nlocal + atom->nghost, 0, atom->nlocal,
                                &mine);
   }
-  if (status != SD_OK) error->one(FLERR, COMMAND + ": " + sd_status_string(status));
+  if (status != SD_OK) fail_one(lmp, COMMAND + ": " + sd_status_string(status));
   MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
   if (largest >= 1.0 - 1e-12)
     fail(lmp,
@@ -319,12 +319,6 @@ void PairStokesDynamics::solver_failed(sd_status status, const sd_solve_report &
                     : ": equal spheres at one point with different velocities (") +
                how_far + ")");
     default:
-      // Two spheres at one point: every other number has been checked before the solve.
-      fail(lmp,
-           where + sd_status_string(status) +
-               (scene.settings.tensor == SD_TENSOR_OSEEN
-                    ? " with tensor oseen: it is infinite for spheres at one point, use tensor rpy"
-                    : "") +
-               " (" + how_far + ")");
+      fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
   }
 }

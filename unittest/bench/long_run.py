@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A long run in miniature: eight free spheres sink as a cloud, a million steps. What may creep in, printed window by window.
+"""A long run in miniature: a ring of eight spheres on springs sinks and tumbles in a shear flow that swings to and fro, a million
+steps. What may creep in, window by window:
 
     . build/env.sh; unittest/bench/long_run.py [--steps 1000000] [--windows 10]
 
@@ -8,8 +9,8 @@ residual    largest of all steps; relative_tolerance is 1e-6
 momentum    sum of m v at the end of a window less that at its start, less all impulses of drag and weight in between, in units
             of the impulse of the weight: LAMMPS's velocity Verlet conserves it but for rounding
 drift       forces at the end of the window against a dense solve of where the spheres are and how fast they go, in units of the
-            largest: the warm start must not lead astray
-The cloud and its velocity are printed, too: who moves, and how."""
+            largest: the warm start must not lead astray. The tolerance times the condition of the matrix, some hundred here, bounds it
+Size and velocity of the ring tell that it stays together and goes on moving."""
 import argparse
 import os
 import sys
@@ -21,7 +22,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import model  # noqa: E402
 from system import DENSITY, Simulation, Spheres  # noqa: E402
 
-ETA, G, DT, TOLERANCE = 1.3, 2.0, 0.02, 1e-6
+ETA, G, SHEAR, DT, TOLERANCE = 1.3, 2.0, 0.5, 0.02, 1e-6
 A = np.array([0.7, 0.7, 0.7, 0.7, 0.8, 0.8, 0.6, 0.6])
 MASS = 4 / 3 * np.pi * A**3 * DENSITY
 WEIGHT = MASS.sum() * G
@@ -33,18 +34,21 @@ def resident():
         return int(f.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def cloud():
-    """Corners of a cube, out of place by up to a fifth of a radius."""
-    corners = np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)], float)
-    return Spheres(2.5 * corners + np.random.default_rng(1).uniform(-0.15, 0.15, (8, 3)), A, (0, 0, -0.5))
+def ring():
+    """Out of round by up to a fifth of a radius; each sphere is bonded to the next, and to the next but two."""
+    angle = 2 * np.pi * np.arange(8) / 8
+    x = 2.2 * np.stack([np.cos(angle), 0.3 * np.sin(2 * angle), np.sin(angle)], axis=1)
+    spheres = Spheres(x + np.random.default_rng(1).uniform(-0.15, 0.15, (8, 3)), A, (0, 0, -0.5))
+    spheres.bonds = [(i + 1, (i + k) % 8 + 1) for i in range(8) for k in (1, 3)]
+    return spheres
 
 
 def windows(sim, steps, count):
     """One dictionary a window."""
     length = steps // count
-    sim.commands([f"fix pull all gravity {G} vector 0 0 -1", "fix move all nve/sphere", "thermo_style custom step",
+    sim.commands(["bond_style harmonic", "bond_coeff 1 10.0 2.0", f"fix pull all gravity {G} vector 0 0 -1", "fix move all nve/sphere", "thermo_style custom step",
                   f"fix sums all ave/time 1 {length} {length} f_drag[1] f_drag[2] f_drag[3]",
-                  f"fix spread all ave/histo 1 {length} {length} 0.0 1.0 1 f_drag[5]", "thermo 1000000000"]).run()
+                  f"fix spread all ave/histo 1 {length} {length} 0.0 1.0 1 f_drag[5] kind global", "thermo 1000000000"]).run()
     for k in range(count):
         start, first = MASS @ sim.v, sim.fix_vector()[:3]
         sim.command(f"run {length} pre {'no' if k else 'yes'} post no")
@@ -54,16 +58,22 @@ def windows(sim, steps, count):
         impulse = length * DT * (mean - (0, 0, WEIGHT))
         v, x = sim.v, sim.x
         half_step = v - 0.5 * DT * (sim.f / MASS[:, None])     # which velocity Verlet shows to forces
-        exact = model.forces(Spheres(x, A, half_step), ETA)
+        exact = model.forces(Spheres(x, A, half_step), ETA, flow(x, (k + 1) * length))
         yield {"step": (k + 1) * length, "memory": resident(), "residual": sim.lmp.extract_fix("spread", 0, 1, nrow=3),
                "momentum": np.abs(MASS @ v - start - impulse).max() / (WEIGHT * length * DT),
                "drift": np.abs(sim.drag - exact).max() / np.linalg.norm(exact, axis=1).max(),
                "size": np.linalg.norm(np.ptp(x, axis=0)), "velocity": v[:, 2].mean(), "unconverged": sim.fix_vector()[6]}
 
 
+def flow(x, step):
+    """In units of length and time; the same in the words of LAMMPS is in start()."""
+    return np.outer(SHEAR * np.cos(1e-3 * step) * (x[:, 2] - MASS @ x[:, 2] / MASS.sum()), (1.0, 0.0, 0.0))
+
+
 def start(folder):
-    return Simulation(folder, cloud(), f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance {TOLERANCE}", dt=DT,
-                      boundary="s s s", before_pair="neighbor 1.0 bin")
+    return Simulation(folder, ring(), f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance {TOLERANCE} "
+                      "fluid_velocity v_shear 0 0", dt=DT, boundary="s s s",
+                      before_pair=f"neighbor 1.0 bin\nvariable shear atom {SHEAR}*cos(1e-3*step)*(z-xcm(all,z))")
 
 
 def main():
@@ -73,11 +83,11 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         sim = start(folder)
-        print("    steps  memory MB  largest residual  momentum     drift  size of the cloud  velocity  unconverged")
+        print("    steps  memory MB  largest residual  momentum     drift  size of the ring  velocity  unconverged")
         for w in windows(sim, options.steps, options.windows):
             if w["step"] == options.steps // options.windows:
                 memory = w["memory"]
-            print("{step:9d}  {grown:9.2f}  {residual:16.2e}  {momentum:8.1e}  {drift:8.1e}  {size:17.2f}  {velocity:8.4f}  "
+            print("{step:9d}  {grown:9.2f}  {residual:16.6e}  {momentum:8.1e}  {drift:8.1e}  {size:16.2f}  {velocity:8.4f}  "
                   "{unconverged:11.0f}".format(grown=w["memory"] - memory, **w), flush=True)
         sim.close()
 

@@ -89,11 +89,10 @@ AT_THE_RUN = [
      ["step 0, atom 1", "keyword fluid_velocity", "not a finite number"]),
     ("fluid_velocity 0 v_u 0", "variable u atom exp(999*(id==3))",
      ["step 0, atom 3", "keyword fluid_velocity", "not a finite number"]),
-    ("", "set atom 2 diameter 0", ["step 0, atom 2", "radius 0 must be > 0"]),
 ]
 
 
-@pytest.mark.parametrize("words,before,expected", AT_THE_RUN, ids=[f"{w or 'radius'}: {b}" for w, b, _ in AT_THE_RUN])
+@pytest.mark.parametrize("words,before,expected", AT_THE_RUN, ids=[f"{w}: {b}" for w, b, _ in AT_THE_RUN])
 def test_start_of_a_run(simulation, words, before, expected):
     sim = simulation(three(), f"cut_off_distance inf visc 1.3 algorithm 2 {words}", box=BOX, before_pair=before)
     with pytest.raises(LammpsError) as error:
@@ -119,7 +118,8 @@ def test_cut_off_of_very_many_boxes(tmp_path, words, boundary, value, remedy, ra
         assert text in ended.log
 
 
-@pytest.mark.parametrize("radius,seen", [(-0.4, "-0.4"), (float("nan"), "nan")])
+@pytest.mark.hard_case("radius zero, negative, NaN, infinite")
+@pytest.mark.parametrize("radius,seen", [(0.0, "0"), (-0.4, "-0.4"), (float("nan"), "nan")])
 def test_radius_that_is_no_positive_number(simulation, radius, seen):
     sim = simulation(three(), "cut_off_distance inf visc 1.3 algorithm 2", box=BOX)
     sim.set("radius", 3, radius)
@@ -129,6 +129,7 @@ def test_radius_that_is_no_positive_number(simulation, radius, seen):
         assert text in str(error.value)
 
 
+@pytest.mark.hard_case("radius zero, negative, NaN, infinite")
 @pytest.mark.parametrize("mode", ["cut_off_distance inf", "cut_off_distance 5", "clumps_only yes"])
 def test_infinite_radius(tmp_path, mode):
     """In a process of its own: it is the range of the ghosts, too, and LAMMPS does not survive an infinite one."""
@@ -233,6 +234,7 @@ def test_two_fixes_of_which_one_applies_are_no_error(simulation):
 MODES = {"all": "cut_off_distance inf", "list": "cut_off_distance 5", "clump": "clumps_only yes"}
 
 
+@pytest.mark.hard_case("NaN or infinite position or velocity")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("what,text", [("v", "its velocity is not a finite number"),
                                        ("x", "its position is not a finite number")])
@@ -246,6 +248,7 @@ def test_position_or_velocity_gone_bad_between_runs(simulation, mode, what, text
     assert text in str(error.value) and "atom 2" in str(error.value) or (what == "x" and "Non-numeric" in str(error.value))
 
 
+@pytest.mark.hard_case("NaN or infinite position or velocity")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_velocity_that_becomes_nan_within_a_run_stops_it_on_all_ranks(tmp_path, mode, ranks):

@@ -24,6 +24,7 @@ def tetrahedron(centre=(0, 0, 0)):
 PLACES = {"face_x": (6, 0, 0), "face_y": (0, 5, 0), "face_z": (0, 0, -7), "edge": (6, 5, 0.3), "corner": (-6, 5, 7)}
 
 
+@pytest.mark.hard_case("clump across borders of ranks and a periodic box")
 @pytest.mark.parametrize("tilt", [None, TILT], ids=["orthogonal", "triclinic"])
 @pytest.mark.parametrize("mode", ["clumps_only yes", "clumps_only yes cut_off_distance 4.5", "cut_off_distance 4.5"])
 @pytest.mark.parametrize("place", PLACES)
@@ -34,6 +35,7 @@ def test_clump_across_a_periodic_border_is_the_clump_in_the_middle(simulation, t
     assert largest_difference(sim.drag, model.forces(tetrahedron(), ETA)) < 1e-10
 
 
+@pytest.mark.hard_case("clump across borders of ranks and a periodic box")
 @pytest.mark.parametrize("newton", ["on", "off"])
 @pytest.mark.parametrize("tilt", [None, TILT], ids=["orthogonal", "triclinic"])
 def test_clump_across_borders_of_ranks_and_box(tmp_path, newton, tilt):
@@ -101,6 +103,7 @@ def test_ghosts_that_do_not_reach_across_the_box_border_are_an_error_with_the_cu
     assert largest_difference(sim.drag, model.forces(long_chain(0.0), ETA)) < 1e-10
 
 
+@pytest.mark.hard_case("ghosts that do not reach across a clump")
 def test_ghosts_that_do_not_reach_to_the_next_rank_are_an_error_with_the_cut_off_to_set(tmp_path):
     box = [(-10.0, 10.0), (-3.0, 3.0), (-3.0, 3.0)]
     spheres = long_chain(-4.0)

@@ -46,6 +46,7 @@ def si(name):
     return "neighbor 0.3e-6 bin" if name.startswith("SI") else ""
 
 
+@pytest.mark.hard_case("golden.csv, SI units among them")
 @pytest.mark.parametrize("name", CASES)
 def test_every_sphere_sees_every_other(simulation, name):
     spheres = spheres_of(name)
@@ -61,6 +62,7 @@ def test_finite_cut_off_larger_than_the_scene_is_no_cut_off(simulation, name):
     assert largest_difference(sim.drag, answer(name, "all")) < TOLERANCE
 
 
+@pytest.mark.hard_case("golden.csv, SI units among them")
 @pytest.mark.parametrize("name", CASES)
 def test_clumps_only_without_cut_off(simulation, name):
     spheres = spheres_of(name)

@@ -60,6 +60,7 @@ def one_rank(tmp_path_factory):
             for name, mode in itertools.product(CASES, MODES)}
 
 
+@pytest.mark.hard_case("ranks, newton, decomposition, exclusions: golden.csv")
 @pytest.mark.parametrize("mode", MODES)
 def test_ranks_leave_the_forces_alone(forces, one_rank, mode):
     for name in CASES:

@@ -129,6 +129,7 @@ def frames(path):
     return [(step, rows[:, 0].astype(int), rows[:, 1:]) for step, rows in read_dump(path)]
 
 
+@pytest.mark.hard_case("spheres that evaporate in a run")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("n", [1, 10])
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -222,6 +222,7 @@ def test_tapered_forces_and_torques_against_a_dense_solve(simulation, taper):
     assert largest_difference(rows[:, 6:9], expected[:, 3:]) < 1e-9
 
 
+@pytest.mark.hard_case("cut-off that makes the matrix indefinite, with a taper")
 @pytest.mark.parametrize("taper", TAPER)
 def test_taper_solves_where_the_plain_cut_off_is_refused(simulation, taper):
     spheres, R = chain(10, 2 * A, a=A, v=ALONG, molecule=0), 2.5 * A
@@ -252,6 +253,7 @@ def test_limit_is_that_of_the_smallest_eigenvalue(simulation):
     assert sim.fix_vector()[8] == pytest.approx(2 * mass * sim.fix_vector()[7] / STOKES, rel=1e-12)
 
 
+@pytest.mark.hard_case("time step above the limit")
 @pytest.mark.parametrize("precondition", ["none", "sparse"])
 def test_dense_free_cloud_is_stable_below_the_printed_limit_and_not_above(simulation, tmp_path, precondition):
     """No force but drag: the kinetic energy can only fall. Slow spheres, so that a run that blows up stays in its box."""

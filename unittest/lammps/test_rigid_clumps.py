@@ -204,6 +204,7 @@ def test_force_and_torque_sums_dissipate(simulation):
 
 # --- what is not rigid
 
+@pytest.mark.hard_case("rigid clump that bends")
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_clump_that_bends_is_an_error_that_names_the_molecule(tmp_path, ranks):
     spheres, _ = many("square", 3)
@@ -213,6 +214,7 @@ def test_clump_that_bends_is_an_error_that_names_the_molecule(tmp_path, ranks):
     assert "is not rigid" in ended.text
 
 
+@pytest.mark.hard_case("rigid_clumps auto: clump that bends")
 def test_auto_solves_bent_clumps_anew(simulation):
     """Loose spheres with drag: every clump soon loses its shape. The force is the model's for the velocities of the half step."""
     spheres, omega = many("square", 3)
@@ -233,6 +235,7 @@ region r sphere {} {} {} 0.1
 fix lose gone evaporate 1 1 r 4711"""
 
 
+@pytest.mark.hard_case("rigid clump that loses an atom")
 def test_lost_atom_is_an_error(simulation):
     spheres, _ = many("square", 2)
     sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1.3", comm=WIDE)
@@ -241,6 +244,7 @@ def test_lost_atom_is_an_error(simulation):
         sim.run(5)
 
 
+@pytest.mark.hard_case("rigid_clumps auto: clump that loses an atom")
 def test_auto_goes_on_after_a_lost_atom(simulation):
     spheres, _ = many("square", 2)
     sim = simulation(spheres, f"clumps_only yes rigid_clumps auto visc 1.3 {SOLVED}", comm=WIDE)
@@ -272,6 +276,7 @@ def test_bad_input(simulation, words, message):
         simulation(Spheres([[0, 0, 0]]), f"{words} visc 1")
 
 
+@pytest.mark.hard_case("rigid clump with equal spheres at one point")
 def test_spheres_at_one_point_are_an_error(simulation):
     with pytest.raises(Exception, match="two of its spheres of equal radius are at one point"):
         simulation(Spheres([[0, 0, 0], [0, 0, 0], [1, 0, 0]], molecule=1), "clumps_only yes rigid_clumps yes visc 1").run(0)

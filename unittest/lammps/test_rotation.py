@@ -71,6 +71,7 @@ def test_fused_chains(simulation, s, n):
     assert R[3, 3] / (8 * np.pi) == pytest.approx(float(row["Rrot_rpy6"]), rel=2e-8)
 
 
+@pytest.mark.hard_case("spin of a lone sphere, rotation yes")
 def test_lone_sphere_spins_against_its_torque(simulation):
     a, eta, w = 0.7, 1.3, np.array([0.3, -0.8, 1.1])
     sim = simulation(Spheres([[0.1, 0.2, 0.3]], a), f"cut_off_distance inf visc {eta} rotation yes")

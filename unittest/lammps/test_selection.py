@@ -23,6 +23,7 @@ def lower(k):
     return f"region part block INF INF INF INF INF {2 * A * (k - 0.5)}"
 
 
+@pytest.mark.hard_case("region border through a clump, 1 and 2 ranks")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("k", ROW)
 def test_spheres_outside_the_region_neither_feel_nor_act(simulation, mode, k):
@@ -30,6 +31,22 @@ def test_spheres_outside_the_region_neither_feel_nor_act(simulation, mode, k):
                      before_pair=lower(k)).run()
     assert np.abs(sim.fix_rows()[k:]).max(initial=0.0) == 0.0
     assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[k], rel=1e-9)
+
+
+@pytest.mark.hard_case("region border through a clump, 1 and 2 ranks")
+@pytest.mark.parametrize("mode", MODES)
+def test_region_border_through_a_clump_on_two_ranks(tmp_path, mode):
+    """The third sphere is the last inside. The ranks meet between the second and the third, or the third and the fourth."""
+    for shift in (0.0, 1.0):
+        folder = tmp_path / str(shift)
+        folder.mkdir()
+        middle = 2 * A * (1.5 + shift)
+        lines = input_lines(row_of_five(), f"{MODES[mode]} {EXACT} region part", folder / "data", comm="comm_modify cutoff 12",
+                            before_pair=lower(3), box=[(-2, 2), (-2, 2), (middle - 9, middle + 9)])
+        lmp(folder, lines + dump_lines(folder / "dump") + ["run 1"], ranks=2)
+        F = read_dump(folder / "dump")[0][1][:, 6:]
+        assert np.abs(F[3:]).max() == 0.0
+        assert -F[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[3], rel=1e-9)
 
 
 @pytest.mark.parametrize("mode", MODES)

@@ -28,6 +28,7 @@ def rows(sim, steps):
     return read_dump(sim.folder / "dump"), solves
 
 
+@pytest.mark.hard_case("update_every from rest: the first step is solved")
 @pytest.mark.parametrize("first_step", [0, 7, 10, 13])
 @pytest.mark.parametrize("reach", ["inf", "10"])
 def test_first_step_is_solved_and_not_free_draining(simulation, first_step, reach):
