@@ -5,6 +5,8 @@
 
 /* Rayleigh quotients of the unit-diagonal matrix below this are rounding (its entries are at most 1). */
 static const double singular_below = 1e-13;
+/* Substitution whose residual falls by less than this, relative, never gets there: the ratio of two residuals can only grow. */
+static const double hardly_falls = 1e-9;
 /* Residuals of this size are rounding, whatever the tolerance. */
 static const double rounding_level = 1e-13;
 /* Slip along a singular direction, relative to all slip: below this it is rounding, and nobody has asked for it. */
@@ -95,7 +97,7 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
     report->growth = k > 0 && last > 0.0 ? sqrt(natural / last) : 0.0;
     if (!isfinite(plain)) return SD_ENOTFINITE;
     if (report->residual <= tolerance) return SD_OK;
-    if (report->growth > 1.0)
+    if (report->growth > 1.0 - hardly_falls)
       return report->residual < rounding_level ? SD_ESTAGNATED : SD_EDIVERGED;
     if (k == max_iter) return SD_EMAXITER;
     for (long j = 0; j < size; j++)

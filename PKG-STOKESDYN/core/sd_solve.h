@@ -63,7 +63,7 @@ typedef struct {
  *   slip [width n] in, F [width n] out, work [SD_SOLVE_WORK(n, width)]
  * Converges if and only if the largest eigenvalue of the mobility matrix scaled to unit diagonal is below 2: not for three
  * touching spheres in a row. The scaled matrix is symmetric, so the factor by which the residual changes in the norm of D^-1
- * never falls from one iteration to the next: once it is above 1 the iteration can never converge.
+ * never falls from one iteration to the next: once it is 1, within 1e-9, the iteration can never converge.
  * SD_OK; SD_EMAXITER after max_iter substitutions; SD_EDIVERGED; SD_ESTAGNATED; SD_ENOTFINITE. */
 sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
                                 int max_iter, double *F, double *work, sd_solve_report *report);

@@ -109,6 +109,17 @@ def test_equal_spheres_at_one_point_with_different_velocities_are_refused(simula
         simulation(spheres, way.style(spheres)).run()
 
 
+@pytest.mark.hard_case("algorithm 1: equal spheres at one point")
+@pytest.mark.parametrize("v", [U, [U, -0.3 * U]], ids=["same velocity", "different velocities"])
+@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes", "cut_off_distance inf rotation yes"])
+def test_substitution_at_one_point_is_refused(simulation, words, v):
+    """Its residual swings between two values for ever, and rounding says whether it falls."""
+    for gap in (0.0, 1e-12, 1e-9):
+        sim = simulation(Spheres([(0, 0, 0), (0, 0, gap * A)], A, v, molecule=1), f"{words} visc {ETA}")
+        with pytest.raises(LammpsError, match="algorithm 1: diverged.*use algorithm 2"):
+            sim.run()
+
+
 # --- radii of very different size ---------------------------------------------------------------------------------------
 
 @pytest.mark.hard_case("radii 1:100, touching")
