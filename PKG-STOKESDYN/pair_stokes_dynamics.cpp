@@ -337,8 +337,8 @@ void PairStokesDynamics::limit_sorting_bins()
     atom->userbinsize = cbrt(volume / atom->natoms);
 }
 
-/* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is given to LAMMPS all the same,
- * since it warns of lost atoms and stops sorting them when there is none. */
+/* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is given to LAMMPS all the
+ * same, since it warns of lost atoms and stops sorting them when there is none. */
 double PairStokesDynamics::range() const
 {
   return std::isfinite(scene.settings.cutoff) ? scene.settings.cutoff : largest_diameter;

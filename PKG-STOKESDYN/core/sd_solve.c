@@ -297,8 +297,8 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
       }
       report->curvature = fmin(report->curvature, s[PQ] / s[PP]);
       if (s[PQ] <= singular_below * s[PP]) {
-        /* No force along p moves anything. Slip along p has no answer; if there is none, p is rounding that the inverse of a nearly
-         * singular matrix, the preconditioner, has blown up. */
+        /* No force along p moves anything. Slip along p has no answer; if there is none, p is rounding that the inverse of a
+         * nearly singular matrix, the preconditioner, has blown up. */
         singular = 1;
         if (s[PQ] < -singular_below * s[PP])
           status = SD_EINDEFINITE;

@@ -9,7 +9,7 @@ residual    largest of all steps; relative_tolerance is 1e-6
 momentum    sum of m v at the end of a window less that at its start, less all impulses of drag and weight in between, in units
             of the impulse of the weight: LAMMPS's velocity Verlet conserves it but for rounding
 drift       forces at the end of the window against a dense solve of where the spheres are and how fast they go, in units of the
-            largest: the warm start must not lead astray. The tolerance times the condition of the matrix, some hundred here, bounds it
+            largest: the warm start must not lead astray. The tolerance times the condition of the matrix bounds it, some hundred
 Size and velocity of the ring tell that it stays together and goes on moving."""
 import argparse
 import os
@@ -46,7 +46,8 @@ def ring():
 def windows(sim, steps, count):
     """One dictionary a window."""
     length = steps // count
-    sim.commands(["bond_style harmonic", "bond_coeff 1 10.0 2.0", f"fix pull all gravity {G} vector 0 0 -1", "fix move all nve/sphere", "thermo_style custom step",
+    sim.commands(["bond_style harmonic", "bond_coeff 1 10.0 2.0",
+                  f"fix pull all gravity {G} vector 0 0 -1", "fix move all nve/sphere", "thermo_style custom step",
                   f"fix sums all ave/time 1 {length} {length} f_drag[1] f_drag[2] f_drag[3]",
                   f"fix spread all ave/histo 1 {length} {length} 0.0 1.0 1 f_drag[5] kind global", "thermo 1000000000"]).run()
     for k in range(count):

@@ -75,7 +75,8 @@ static void clump_members_once_as_the_closest_image(void **state)
   sd_neighbors_free(&list);
 }
 
-/* 3 sqrt(ai aj)/(2R) of the closest pair, of all pairs, of a share of the rows and by list; a taper takes its part; radius 0: nobody. */
+/* 3 sqrt(ai aj)/(2R) of the closest pair, of all pairs, of a share of the rows and by list; a taper takes its part; radius 0:
+ * nobody. */
 static void oseen_coupling_of_the_closest_pair(void **state)
 {
   (void) state;
