@@ -204,8 +204,8 @@ done:
   return status;
 }
 
-/* The square of a pair's entry, if it is larger than that of the pairs before. A taper is at most 1, so that most pairs end at the
- * comparison. */
+/* The square of a pair's entry, if it is larger than that of the pairs before. A taper is at most 1, so that most pairs end
+ * at the comparison. */
 static double larger_oseen_entry(double largest, const sd_law *law, const sd_spheres *s, int i,
                                  int j)
 {

@@ -109,7 +109,7 @@ static void oseen_coupling_of_the_closest_pair(void **state)
   sd_neighbors_free(&list);
 }
 
-/* Whatever is close enough to make the matrix indefinite is found, as by the double loop: radii 1:100, all rows in three shares. */
+/* Whatever is close enough to make the matrix indefinite is found, as by the double loop: radii 1:100, rows in three shares. */
 static void oseen_coupling_finds_every_close_pair(void **state)
 {
   (void) state;

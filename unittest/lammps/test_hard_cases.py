@@ -111,7 +111,8 @@ def test_equal_spheres_at_one_point_with_different_velocities_are_refused(simula
 
 @pytest.mark.hard_case("algorithm 1: equal spheres at one point")
 @pytest.mark.parametrize("v", [U, [U, -0.3 * U]], ids=["same velocity", "different velocities"])
-@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes", "cut_off_distance inf rotation yes"])
+@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes",
+                                   "cut_off_distance inf rotation yes"])
 def test_substitution_at_one_point_is_refused(simulation, words, v):
     """Its residual swings between two values for ever, and rounding says whether it falls."""
     for gap in (0.0, 1e-12, 1e-9):
@@ -146,8 +147,8 @@ def test_giant_sphere_with_tiny_ones(simulation, way):
 
 
 def random_clumps(count, ratio, seed=1):
-    """Clumps of 2 to 12 spheres, radii log-uniform in 1:ratio, each sphere crossing or within one before it; all in one box, so that
-    clumps overlap each other, too. One group for each size: molecule [m], x [m,n,3], a [m,n], v [m,n,3]."""
+    """Clumps of 2 to 12 spheres, radii log-uniform in 1:ratio, each sphere crossing or within one before it; all in one box, so
+    that clumps overlap each other, too. One group for each size: molecule [m], x [m,n,3], a [m,n], v [m,n,3]."""
     rng = np.random.default_rng(seed)
     size, groups = rng.integers(2, 13, count), []
     for n in range(2, 13):
@@ -437,7 +438,8 @@ def test_spin_of_a_straight_chain_about_its_axis(simulation):
 
 
 @pytest.mark.hard_case("tensor oseen at R = 1.5 a")
-@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes", "cut_off_distance inf algorithm 1"])
+@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes",
+                                   "cut_off_distance inf algorithm 1"])
 @pytest.mark.parametrize("v", [(0, 0, 0.4), [(0, 0, 0.4), (0, 0, -0.4)]], ids=["same velocity", "approaching"])
 def test_oseen_where_its_matrix_is_singular(simulation, words, v):
     """For one velocity there would be an answer, the same that lies beyond a matrix without one."""
@@ -460,7 +462,8 @@ def test_cut_off_within_a_clump_is_warned_of(simulation, tmp_path, R, too_large)
                      log=tmp_path / "log").run(2)
     assert -sim.drag[:, 2].sum() / (STOKES * U[2]) / 2.8644863357 - 1 == pytest.approx(too_large, abs=1e-4)
     sim.close()
-    warnings = [line for line in (tmp_path / "log").read_text().splitlines() if "is shorter than the clump of molecule 1:" in line]
+    log = (tmp_path / "log").read_text().splitlines()
+    warnings = [line for line in log if "is shorter than the clump of molecule 1:" in line]
     assert len(warnings) == (1 if too_large else 0)
     for line in warnings:
         note("says", line)
@@ -471,8 +474,8 @@ def test_cut_off_within_a_clump_is_warned_of_on_two_ranks(tmp_path):
     spheres = chain(10, 2 * A, a=A, v=U)
     spheres.x[:, 2] += 1.0
     for last, missing in ((10, 28), (6, 6), (3, 0)):
-        lines = input_lines(spheres, f"clumps_only yes cut_off_distance {4.5 * A} visc {ETA} group some {EXACT}", tmp_path / "data",
-                            boundary="p p p", box=[(-20, 20), (-20, 20), (-15, 5)], before_pair=f"group some id 1:{last}")
+        lines = input_lines(spheres, f"clumps_only yes cut_off_distance {4.5 * A} visc {ETA} group some {EXACT}",
+                            tmp_path / "data", boundary="p p p", box=[(-20, 20), (-20, 20), (-15, 5)], before_pair=f"group some id 1:{last}")
         log = lmp(tmp_path, lines + ["run 0"], ranks=2).log
         assert ("is shorter than the clump" in log) == (missing > 0)
         assert not missing or f"molecule 1: {missing} of its {last * (last - 1) // 2} pairs" in log

@@ -11,7 +11,7 @@ COLUMNS = "x y z vx vy vz f_drag[1] f_drag[2] f_drag[3] f_drag[7] f_drag[8] f_dr
 
 
 class Way:
-    """Keywords of the pair style. {reach} in them is larger than the scene: no cut-off, but lists of pairs, or a taper's range."""
+    """Keywords of the pair style. {reach} in them is larger than the scene: no cut-off, but lists of pairs, or a taper."""
 
     def __init__(self, words, rotation=False, taper=None, clumps=False):
         self.words, self.rotation, self.taper, self.clumps = words, rotation, taper, clumps
@@ -58,7 +58,7 @@ class Way:
         return value
 
     def residual(self, answer, spheres, omega=0.0, eta=ETA):
-        """By the definition on the page: each row scaled by its 6 pi eta a, or 8 pi eta a^3 made a force by the length sqrt(4/3) a"""
+        """By the definition on the page: each row scaled by its 6 pi eta a, or 8 pi eta a^3 made a force by sqrt(4/3) a"""
         scale = np.repeat(6 * np.pi * eta * spheres.a[:, None], 3, axis=1)
         if self.rotation:
             scale = np.hstack([scale, scale * spheres.a[:, None] * (8 / 6) / np.sqrt(4 / 3)])
