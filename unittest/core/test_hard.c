@@ -122,7 +122,7 @@ static void all_spheres_at_one_point(void **state)
 }
 
 /* Ten equal spheres at each of four points in a cloud. M is singular, and so nearly are its preconditioners: they blow up the
- * rounding along directions that no velocity asks for. The answer must come all the same; velocities that differ must not pass. */
+ * rounding along directions that no velocity asks for. The answer must come all the same; different velocities must not pass. */
 static void coincident_spheres_with_preconditioners(void **state)
 {
   (void) state;

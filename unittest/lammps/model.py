@@ -1,7 +1,8 @@
 """The model by dense linear algebra, written from the published formulas and sharing nothing with the plugin.
 
 (I/(6 pi eta_i a_i) + Omega) F = u_inf - v, with Omega_ij of the viscosity sqrt(eta_i eta_j). With rotation the unknowns are
-forces and torques. The formulas: Zuk, Wajnryb, Mizerski & Szymczak 2014; far apart as Wajnryb, Mizerski, Zuk & Szymczak 2013. Leading
+forces and torques. The formulas: Zuk, Wajnryb, Mizerski & Szymczak 2014; far apart as Wajnryb, Mizerski, Zuk & Szymczak
+2013. Leading
 axes of x [..., n, 3] and a [..., n] are scenes of n spheres each."""
 import csv
 import os

@@ -475,7 +475,8 @@ def test_cut_off_within_a_clump_is_warned_of_on_two_ranks(tmp_path):
     spheres.x[:, 2] += 1.0
     for last, missing in ((10, 28), (6, 6), (3, 0)):
         lines = input_lines(spheres, f"clumps_only yes cut_off_distance {4.5 * A} visc {ETA} group some {EXACT}",
-                            tmp_path / "data", boundary="p p p", box=[(-20, 20), (-20, 20), (-15, 5)], before_pair=f"group some id 1:{last}")
+                            tmp_path / "data", boundary="p p p", box=[(-20, 20), (-20, 20), (-15, 5)],
+                            before_pair=f"group some id 1:{last}")
         log = lmp(tmp_path, lines + ["run 0"], ranks=2).log
         assert ("is shorter than the clump" in log) == (missing > 0)
         assert not missing or f"molecule 1: {missing} of its {last * (last - 1) // 2} pairs" in log
