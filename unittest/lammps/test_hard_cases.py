@@ -287,6 +287,20 @@ def test_one_sphere_among_100000(simulation, words):
     assert np.abs(np.delete(F, 77776, axis=0)).max() == 0.0
 
 
+@pytest.mark.hard_case("tolerance below rounding")
+@all_ways
+def test_tolerance_that_rounding_does_not_allow(simulation, tmp_path, way):
+    """The residual that conjugate gradients carry along falls for ever; the one reported is that of the answer."""
+    spheres = cloud()
+    sim = simulation(spheres, way.style(spheres, "algorithm 2 relative_tolerance 1e-18 max_iter 5000"), log=tmp_path / "log").run()
+    assert 1e-17 < sim.residual < 1e-14 and sim.iterations < 500 and sim.fix_vector()[6] == 1
+    assert way.error(way.answer(sim), way.forces(spheres), spheres) < 1e-12
+    sim.close()
+    warnings = [line for line in (tmp_path / "log").read_text().splitlines() if "algorithm 2: " in line]
+    assert len(warnings) == 1 and "stopped at the accuracy of double precision" in warnings[0]
+    note("says", warnings[0])
+
+
 # --- spheres that move -------------------------------------------------------------------------------------------------
 
 def frames_of(sim, steps):
