@@ -71,16 +71,17 @@ def test_substitution_across_a_chain_converges_up_to_four(simulation, n, converg
 
 
 @pytest.mark.hard_case("more iterations needed than max_iter")
-def test_running_out_of_iterations_warns_and_is_counted(simulation, tmp_path):
+@pytest.mark.parametrize("words,iterations", [("max_iter 5", 5), ("algorithm 2 warm_start no max_iter 1", 1)])
+def test_running_out_of_iterations_warns_and_is_counted(simulation, tmp_path, words, iterations):
     log = tmp_path / "log"
-    sim = simulation(touching_chain(4, ACROSS), f"cut_off_distance inf visc {ETA} max_iter 5 relative_tolerance 1e-10", log=log)
+    sim = simulation(touching_chain(4, ACROSS), f"cut_off_distance inf visc {ETA} relative_tolerance 1e-10 {words}", log=log)
     sim.commands("fix move all nve/sphere\ntimestep 1e-3").run(3)
     assert sim.fix_vector()[6] == sim.solves == 4
-    assert sim.residual > 1e-10
+    assert sim.residual > 1e-10 and sim.iterations == iterations
     sim.close()
     warnings = [line for line in log.read_text().splitlines() if line.startswith("WARNING") and "iterations used up" in line]
     assert len(warnings) == 1
-    for word in ("residual", "iteration 5", "max_iter 5", "relative_tolerance"):
+    for word in ("residual", f"iteration {iterations}", f"max_iter {iterations}", "relative_tolerance"):
         assert word in warnings[0]
 
 
