@@ -4,7 +4,7 @@ steps. What may creep in, window by window:
 
     . build/env.sh; unittest/bench/long_run.py [--steps 1000000] [--windows 10]
 
-memory      megabytes of the process, above those after the first window
+memory      megabytes allocated and not freed, above those after the first window
 residual    largest of all steps; relative_tolerance is 1e-6
 momentum    sum of m v at the end of a window less that at its start, less all impulses of drag and weight in between, in units
             of the impulse of the weight: LAMMPS's velocity Verlet conserves it but for rounding
@@ -12,6 +12,7 @@ drift       forces at the end of the window against a dense solve of where the s
             largest: the warm start must not lead astray. The tolerance times the condition of the matrix bounds it, some hundred
 Size and velocity of the ring tell that it stays together and goes on moving."""
 import argparse
+import ctypes
 import os
 import sys
 import tempfile
@@ -28,10 +29,18 @@ MASS = 4 / 3 * np.pi * A**3 * DENSITY
 WEIGHT = MASS.sum() * G
 
 
-def resident():
-    """Megabytes"""
-    with open("/proc/self/statm") as f:
-        return int(f.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+class Mallinfo2(ctypes.Structure):
+    """Of glibc, in bytes"""
+    _fields_ = [(name, ctypes.c_size_t) for name in ("arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks",
+                                                     "uordblks", "fordblks", "keepcost")]
+
+
+def in_use():
+    """Megabytes that are allocated and not freed. What the process has from the system tells less: it has room to spare."""
+    mallinfo2 = ctypes.CDLL(None).mallinfo2
+    mallinfo2.restype = Mallinfo2
+    info = mallinfo2()
+    return (info.uordblks + info.hblkhd) / 1e6
 
 
 def ring():
@@ -60,7 +69,7 @@ def windows(sim, steps, count):
         v, x = sim.v, sim.x
         half_step = v - 0.5 * DT * (sim.f / MASS[:, None])     # which velocity Verlet shows to forces
         exact = model.forces(Spheres(x, A, half_step), ETA, flow(x, (k + 1) * length))
-        yield {"step": (k + 1) * length, "memory": resident(), "residual": sim.lmp.extract_fix("spread", 0, 1, nrow=3),
+        yield {"step": (k + 1) * length, "memory": in_use(), "residual": sim.lmp.extract_fix("spread", 0, 1, nrow=3),
                "momentum": np.abs(MASS @ v - start - impulse).max() / (WEIGHT * length * DT),
                "drift": np.abs(sim.drag - exact).max() / np.linalg.norm(exact, axis=1).max(),
                "size": np.linalg.norm(np.ptp(x, axis=0)), "velocity": v[:, 2].mean(), "unconverged": sim.fix_vector()[6]}
@@ -88,7 +97,7 @@ def main():
         for w in windows(sim, options.steps, options.windows):
             if w["step"] == options.steps // options.windows:
                 memory = w["memory"]
-            print("{step:9d}  {grown:9.2f}  {residual:16.6e}  {momentum:8.1e}  {drift:8.1e}  {size:16.2f}  {velocity:8.4f}  "
+            print("{step:9d}  {grown:9.4f}  {residual:16.6e}  {momentum:8.1e}  {drift:8.1e}  {size:16.2f}  {velocity:8.4f}  "
                   "{unconverged:11.0f}".format(grown=w["memory"] - memory, **w), flush=True)
         sim.close()
 

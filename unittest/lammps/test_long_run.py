@@ -25,4 +25,4 @@ def test_nothing_creeps_in(tmp_path):
         assert 0.1 * long_run.TOLERANCE < w["residual"] <= long_run.TOLERANCE
         assert w["momentum"] < 1e-13
         assert w["drift"] < 1e-4                    # the tolerance times the condition of the matrix, some hundred
-    assert windows[-1]["memory"] - windows[0]["memory"] < 0.4       # a leak of 25 bytes a step
+    assert windows[-1]["memory"] - windows[0]["memory"] < 0.1       # a leak of 6 bytes a step

@@ -71,7 +71,7 @@ def test_substitution_across_a_chain_converges_up_to_four(simulation, n, converg
 
 
 @pytest.mark.hard_case("more iterations needed than max_iter")
-@pytest.mark.parametrize("words,iterations", [("max_iter 5", 5), ("algorithm 2 warm_start no max_iter 1", 1)])
+@pytest.mark.parametrize("words,iterations", [("max_iter 5", 5), ("algorithm 2 precondition none warm_start no max_iter 1", 1)])
 def test_running_out_of_iterations_warns_and_is_counted(simulation, tmp_path, words, iterations):
     log = tmp_path / "log"
     sim = simulation(touching_chain(4, ACROSS), f"cut_off_distance inf visc {ETA} relative_tolerance 1e-10 {words}", log=log)
