@@ -106,7 +106,7 @@ static void whole_inverse_converges_at_once(void **state)
   sd_sparse f = {0};
   sd_blocks b = {0};
   assert_int_equal(sparse_of(&f, &s, 1e6), SD_OK);
-  assert_int_equal(f.first[f.columns], 40 * 41 / 2);
+  assert_int_equal(f.rows.first[f.rows.columns], 40 * 41 / 2);
   assert_int_equal(blocks_of(&b, &s, 40), SD_OK);
   double plain, with;
   assert_true(iterations(&s, NULL, NULL, 1e-9, &plain) > 30);
@@ -383,7 +383,7 @@ static void positions_that_are_no_numbers_are_refused(void **state)
   s.x[20] = NAN;
   assert_int_equal(sparse_of(&f, &s, 3.0), SD_ENOTFINITE);
   assert_int_equal(blocks_of(&b, &s, s.n), SD_ENOTFINITE);
-  assert_null(f.first);
+  assert_null(f.rows.first);
   assert_null(b.first);
   scene_free(&s);
 }
