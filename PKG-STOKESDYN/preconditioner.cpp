@@ -130,7 +130,6 @@ void Preconditioner::attach(sd_system &system)
     MPI_Allreduce(MPI_IN_PLACE, &ready, 1, MPI_INT, MPI_MIN, world);
     if (!ready) return;    // one that cannot be made is done without
     worn = false;
-    sparse.width = width;
     sparse.drag = drag;
     sparse.spin = spin;
   }
@@ -147,7 +146,6 @@ void Preconditioner::apply_blocks(const double *r, double *z)
     pending = false;
     usable = (!worn && turn_blocks()) || make_blocks();
     worn = !usable;
-    blocks.width = width;
     blocks.drag = drag;
     blocks.spin = spin;
   }
@@ -171,7 +169,7 @@ bool Preconditioner::make_sparse()
   sd_sparse_free(&sparse);
   sparse = sd_sparse();
   first_iterations = -1;
-  return sd_sparse_create(&sparse, &law, &s, n, RHO, comm->me, comm->nprocs) == SD_OK;
+  return sd_sparse_create(&sparse, &law, &s, n, width, RHO, comm->me, comm->nprocs) == SD_OK;
 }
 
 bool Preconditioner::make_blocks()
@@ -184,7 +182,7 @@ bool Preconditioner::make_blocks()
   free_shapes();
   first_iterations = -1;
   const int count = first.size() - 1;
-  if (sd_blocks_create(&blocks, &law, &s, n, count, first.data(), member.data()) != SD_OK)
+  if (sd_blocks_create(&blocks, &law, &s, n, width, count, first.data(), member.data()) != SD_OK)
     return false;
   if (!cloud) return true;
   for (int k = 0; k < count; k++) {

@@ -17,9 +17,11 @@ static double dense_bytes(double unknowns)
   return sizeof(double) * (unknowns * unknowns + SD_CLUMP_COLUMNS * unknowns);
 }
 
-static double iterative_bytes(double unknowns)
+/* A block of the factor and its row number: 52 bytes for 3 unknowns, 148 for 6 */
+static double iterative_bytes(double unknowns, int width)
 {
-  return (sizeof(double) * (SD_CLUMP_COLUMNS + 14) + 18.0 * BLOCKS) * unknowns;
+  const double block = width == 3 ? 18.0 : 25.0;
+  return (sizeof(double) * (SD_CLUMP_COLUMNS + 14) + block * BLOCKS) * unknowns;
 }
 
 int sd_clump_width(const sd_clump_options *o)
@@ -31,7 +33,7 @@ sd_status sd_clump_check_need(double points, const sd_clump_options *o, sd_clump
 {
   need->points = (long) points;
   need->dense = dense_bytes(points * sd_clump_width(o));
-  need->iterative = iterative_bytes(points * sd_clump_width(o));
+  need->iterative = iterative_bytes(points * sd_clump_width(o), sd_clump_width(o));
   return fmin(need->iterative, need->dense) <= o->memory ? SD_OK : SD_ENOMEMORY;
 }
 
@@ -123,8 +125,7 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
   sd_system A = {
       .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
   sd_sparse factor;
-  if (sd_sparse_create(&factor, &law, &spheres, n, REACH, 0, 1) == SD_OK) {
-    factor.width = m;
+  if (sd_sparse_create(&factor, &law, &spheres, n, m, REACH, 0, 1) == SD_OK) {
     factor.drag = drag;
     factor.spin = A.spin;
     A.precondition = sd_sparse_apply;

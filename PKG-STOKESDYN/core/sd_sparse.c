@@ -6,6 +6,13 @@
 #include "sd_product_internal.h"
 #include "sd_unit.h"
 
+/* A block by columns of floats. Width 3: each column has a fourth number, 0, as the kernel of sd_product_internal.h wants it;
+ * width 6: the kernel below reads the next two numbers with each column, which do no harm. */
+static int block_floats(int width)
+{
+  return width == 3 ? 12 : 36;
+}
+
 void sd_sparse_free(sd_sparse *f)
 {
   sd_rows_free(&f->rows);
@@ -14,114 +21,189 @@ void sd_sparse_free(sd_sparse *f)
   memset(f, 0, sizeof(*f));
 }
 
-/* Last three columns X of R^-T, R the lower Cholesky factor (size x size, column-major): R^T X = E from the bottom up. */
-static void last_columns(const double *R, int size, double *X)
+/* Last columns X [size][width] of R^-T, R the lower Cholesky factor (size x size, column-major): R^T X = E from the bottom up. */
+static inline void last_columns(const double *R, int size, int width, double *X)
 {
   for (int k = size - 1; k >= 0; k--) {
     const double *column = R + (long) size * k;
-    double v[3] = {0.0, 0.0, 0.0};
-    if (k >= size - 3) v[k - (size - 3)] = 1.0;
+    double v[6] = {0.0};
+    if (k >= size - width) v[k - (size - width)] = 1.0;
     for (int p = k + 1; p < size; p++)
-      for (int q = 0; q < 3; q++) v[q] -= column[p] * X[3 * p + q];
-    for (int q = 0; q < 3; q++) X[3 * k + q] = v[q] / column[k];
+      for (int q = 0; q < width; q++) v[q] -= column[p] * X[width * p + q];
+    for (int q = 0; q < width; q++) X[width * k + q] = v[q] / column[k];
   }
 }
 
-sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, double rho,
-                           int part, int parts)
+/* The column of blocks of m spheres, its own last in X and first in value. */
+static void store(const double *X, int m, int width, float *value)
 {
-  memset(f, 0, sizeof(*f));
-  f->n = n;
-  f->part = part;
-  f->parts = parts;
-  int count = -1;
-  sd_status status = SD_ENOMEMORY;
-  int *order = malloc(sizeof(int) * (size_t) (n + 1)), *member = NULL;
-  double *distance = malloc(sizeof(double) * (size_t) (n + 1)), *A = NULL, *X = NULL;
-  for (int i = 0; i < n; i++)
-    for (int d = 0; d < 3; d++)
-      if (s->a[i] > 0.0 && !isfinite(s->x[3 * (long) i + d])) {
-        status = SD_ENOTFINITE;
-        goto end;
-      }
-  if (order && distance) count = sd_farthest_first(s, n, order, distance);
-  if (count < 0 || sd_rows_find(&f->rows, s, n, order, distance, count, rho, part, parts) != SD_OK)
-    goto end;
-  f->value = malloc(sizeof(float) * (size_t) (12 * f->rows.first[f->rows.columns] + 1));
-  f->scratch = malloc(sizeof(double) * (size_t) (8 * (long) n + 1));
-  member = malloc(sizeof(int) * (size_t) (f->rows.largest + 1));
-  A = malloc(sizeof(double) * (size_t) (9 * (long) f->rows.largest * f->rows.largest + 1));
-  X = malloc(sizeof(double) * (size_t) (9 * (long) f->rows.largest + 1));
-  if (!f->value || !f->scratch || !member || !A || !X) goto end;
+  const int size = block_floats(width), lda = width == 3 ? 4 : 6;
+  memset(value, 0, sizeof(float) * (size_t) (size * m));
+  for (int l = 0; l < m; l++)
+    for (int q = 0; q < width; q++)
+      for (int p = 0; p < width; p++)
+        value[size * l + lda * q + p] = (float) X[width * (width * (m - 1 - l) + p) + q];
+}
 
-  status = SD_OK;
-  for (int k = 0; k < f->rows.columns && status == SD_OK; k++) {
-    const int *row = f->rows.row + f->rows.first[k];
-    const int m = (int) (f->rows.first[k + 1] - f->rows.first[k]);
+static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
+{
+  const sd_rows *rows = &f->rows;
+  const size_t blocks = (size_t) rows->first[rows->columns], most = (size_t) rows->largest;
+  const size_t w = (size_t) f->width;
+  f->value = malloc(sizeof(float) * (block_floats(f->width) * blocks + 2));
+  f->scratch = malloc(sizeof(double) * (16 * (size_t) f->n + 1));
+  int *member = malloc(sizeof(int) * (most + 1));
+  double *A = malloc(sizeof(double) * (w * w * most * most + 1)),
+         *X = malloc(sizeof(double) * (w * w * most + 1));
+  sd_status status = f->value && f->scratch && member && A && X ? SD_OK : SD_ENOMEMORY;
+  if (f->value) memset(f->value + block_floats(f->width) * blocks, 0, 2 * sizeof(float));
+  for (int k = 0; k < rows->columns && status == SD_OK; k++) {
+    const int *row = rows->row + rows->first[k];
+    const int m = (int) (rows->first[k + 1] - rows->first[k]);
     for (int l = 0; l < m; l++) member[l] = row[m - 1 - l]; /* its own last */
-    status = sd_unit_cholesky(law, s, member, m, A);
+    status = sd_unit_cholesky(law, s, member, m, f->width, A);
     if (status != SD_OK) break;
-    last_columns(A, 3 * m, X);
-    float *value = f->value + 12 * f->rows.first[k];
-    for (int l = 0; l < m; l++)
-      for (int q = 0; q < 3; q++) {
-        for (int p = 0; p < 3; p++)
-          value[12 * l + 4 * q + p] = (float) X[9 * (m - 1 - l) + 3 * p + q];
-        value[12 * l + 4 * q + 3] = 0.0f;
-      }
+    if (f->width == 3)
+      last_columns(A, 3 * m, 3, X);
+    else
+      last_columns(A, 6 * m, 6, X);
+    store(X, m, f->width, f->value + block_floats(f->width) * rows->first[k]);
   }
-end:
-  free(order);
-  free(distance);
   free(member);
   free(A);
   free(X);
+  return status;
+}
+
+sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
+                           double rho, int part, int parts)
+{
+  memset(f, 0, sizeof(*f));
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++)
+      if (s->a[i] > 0.0 && !isfinite(s->x[3 * (long) i + d])) return SD_ENOTFINITE;
+  f->n = n;
+  f->width = width;
+  f->part = part;
+  f->parts = parts;
+  int *order = malloc(sizeof(int) * (size_t) (n + 1));
+  double *distance = malloc(sizeof(double) * (size_t) (n + 1));
+  const int count = order && distance ? sd_farthest_first(s, n, order, distance) : -1;
+  sd_status status = count < 0
+      ? SD_ENOMEMORY
+      : sd_rows_find(&f->rows, s, n, order, distance, count, rho, part, parts);
+  free(order);
+  free(distance);
+  if (status == SD_OK) status = fill(f, law, s);
   if (status != SD_OK) sd_sparse_free(f);
   return status;
 }
 
-/* What the kernels do, where there are none. */
-static void plain_sparse(int columns, const long *first, const int *row, const float *value,
-                         const double *in, double *out)
+/* What the kernels do, where there are none: out += L L^T in; w numbers of a sphere stand every `step`. */
+static inline void plain_sparse(int w, int step, int columns, const long *first, const int *row,
+                                const float *value, const double *in, double *out)
+{
+  const int size = block_floats(w), lda = w == 3 ? 4 : 6;
+  for (int k = 0; k < columns; k++) {
+    double t[6] = {0.0};
+    for (long l = first[k]; l < first[k + 1]; l++)
+      for (int q = 0; q < w; q++)
+        for (int p = 0; p < w; p++)
+          t[q] += value[size * l + lda * q + p] * in[step * (long) row[l] + p];
+    for (long l = first[k]; l < first[k + 1]; l++)
+      for (int q = 0; q < w; q++)
+        for (int p = 0; p < w; p++)
+          out[step * (long) row[l] + p] += value[size * l + lda * q + p] * t[q];
+  }
+}
+
+static void plain_three(int columns, const long *first, const int *row, const float *value,
+                        const double *in, double *out)
+{
+  plain_sparse(3, 4, columns, first, row, value, in, out);
+}
+
+static void plain_six(int columns, const long *first, const int *row, const float *value,
+                      const double *in, double *out)
+{
+  plain_sparse(6, 8, columns, first, row, value, in, out);
+}
+
+typedef void kernel(int columns, const long *first, const int *row, const float *value,
+                    const double *in, double *out);
+
+#if defined(SD_HAS_X86_KERNELS)
+typedef double quad __attribute__((vector_size(32)));
+typedef float quad_float __attribute__((vector_size(16)));
+
+/* Two vectors of four lanes for the six numbers of a sphere; in the last two lanes of the second one there are zeros in `in`
+ * and something without meaning in `out`. */
+__attribute__((target("avx2,fma"))) static void six_avx2(int columns, const long *first,
+                                                         const int *row, const float *value,
+                                                         const double *in, double *out)
 {
   for (int k = 0; k < columns; k++) {
-    double t[3] = {0.0, 0.0, 0.0};
-    for (long l = first[k]; l < first[k + 1]; l++) {
-      const double *v = in + 4 * (long) row[l];
-      for (int q = 0; q < 3; q++) {
-        const float *B = value + 12 * l + 4 * q;
-        t[q] += B[0] * v[0] + B[1] * v[1] + B[2] * v[2];
+    quad s[6] = {{0.0}}, t[6];
+    for (long l = first[k]; l < first[k + 1]; l++) { /* t = L^T in */
+      quad v, w;
+      __builtin_memcpy(&v, in + 8 * (long) row[l], sizeof(v));
+      __builtin_memcpy(&w, in + 8 * (long) row[l] + 4, sizeof(w));
+#pragma GCC unroll 6
+      for (int q = 0; q < 6; q++) {
+        quad_float b, c;
+        __builtin_memcpy(&b, value + 36 * l + 6 * q, sizeof(b));
+        __builtin_memcpy(&c, value + 36 * l + 6 * q + 4, sizeof(c));
+        s[q] += __builtin_convertvector(b, quad) * v + __builtin_convertvector(c, quad) * w;
       }
     }
-    for (long l = first[k]; l < first[k + 1]; l++) {
-      double *v = out + 4 * (long) row[l];
-      const float *B = value + 12 * l;
-      for (int p = 0; p < 3; p++) v[p] += B[p] * t[0] + B[4 + p] * t[1] + B[8 + p] * t[2];
+    for (int q = 0; q < 6; q++) {
+      const double sum = s[q][0] + s[q][1] + s[q][2] + s[q][3];
+      t[q] = (quad){sum, sum, sum, sum};
+    }
+    for (long l = first[k]; l < first[k + 1]; l++) { /* out += L t */
+      double *o = out + 8 * (long) row[l];
+      quad v, w;
+      __builtin_memcpy(&v, o, sizeof(v));
+      __builtin_memcpy(&w, o + 4, sizeof(w));
+#pragma GCC unroll 6
+      for (int q = 0; q < 6; q++) {
+        quad_float b, c;
+        __builtin_memcpy(&b, value + 36 * l + 6 * q, sizeof(b));
+        __builtin_memcpy(&c, value + 36 * l + 6 * q + 4, sizeof(c));
+        v += __builtin_convertvector(b, quad) * t[q];
+        w += __builtin_convertvector(c, quad) * t[q];
+      }
+      __builtin_memcpy(o, &v, sizeof(v));
+      __builtin_memcpy(o + 4, &w, sizeof(w));
     }
   }
+}
+#endif
+
+static kernel *kernel_of(int width)
+{
+  const struct sd_kernels *kernels = sd_kernels_of(sd_isa_best());
+  if (width == 3) return kernels ? kernels->sparse : plain_three;
+#if defined(SD_HAS_X86_KERNELS)
+  if (sd_isa_supported(SD_ISA_AVX2)) return six_avx2;
+#endif
+  return plain_six;
 }
 
 void sd_sparse_apply(void *ctx, const double *r, double *z)
 {
   const sd_sparse *f = ctx;
-  const struct sd_kernels *kernels = sd_kernels_of(sd_isa_best());
-  const long w = f->width;
-  double *in = f->scratch, *out = in + 4 * (long) f->n;
-  for (int i = 0; i < f->n; i++) {
-    const double root = sqrt(f->drag[i]);
-    for (int d = 0; d < 3; d++) in[4 * (long) i + d] = root * r[w * i + d];
-    in[4 * (long) i + 3] = 0.0;
+  const long w = f->width, step = w == 3 ? 4 : 8;
+  double *in = f->scratch, *out = in + step * f->n;
+  for (long i = 0; i < f->n; i++) {
+    const double root = sqrt(f->drag[i]), root_spin = w == 6 ? sqrt(f->spin[i]) : 0.0;
+    for (int d = 0; d < step; d++)
+      in[step * i + d] = d >= w ? 0.0 : (d < 3 ? root : root_spin) * r[w * i + d];
   }
-  memset(out, 0, 4 * sizeof(double) * (size_t) f->n);
-  (kernels ? kernels->sparse : plain_sparse)(f->rows.columns, f->rows.first, f->rows.row, f->value,
-                                             in, out);
-  for (int i = 0; i < f->n; i++) {
-    const double root = sqrt(f->drag[i]);
-    for (int d = 0; d < 3; d++) z[w * i + d] = root * out[4 * (long) i + d];
+  memset(out, 0, sizeof(double) * (size_t) (step * f->n));
+  kernel_of(f->width)(f->rows.columns, f->rows.first, f->rows.row, f->value, in, out);
+  for (long i = 0; i < f->n; i++) {
+    const double root = sqrt(f->drag[i]), root_spin = w == 6 ? sqrt(f->spin[i]) : 0.0;
+    for (int d = 0; d < w; d++) z[w * i + d] = (d < 3 ? root : root_spin) * out[step * i + d];
   }
-  if (f->part == 0)
-    sd_torques(f->width, f->drag, f->spin, f->n, r, z);
-  else if (w == 6)
-    for (int i = 0; i < f->n; i++)
-      for (int d = 3; d < 6; d++) z[6 * (long) i + d] = 0.0;
 }

@@ -1,10 +1,11 @@
 /* Sparse inverse Cholesky factor, a preconditioner (sd_precondition.h).
  * C^-1 = L L^T nearly, with L from local solves (Schaefer, Katzfuss & Owhadi, SIAM J. Sci. Comput. 43, A2019 (2021)):
  * the spheres are put in order, each the one farthest from all before it, at the distance l_i; sphere i sees those before it
- * that are nearer than rho l_i, and its column of L is the last one of the inverse Cholesky factor of their C. Among all
+ * that are nearer than rho l_i, and its columns of L are the last ones of the inverse Cholesky factor of their C. Among all
  * matrices L of this sparsity it is the one nearest to C^-1 in the Kullback-Leibler sense. L L^T is positive definite whatever
  * the rounding. rho 2, 3, 4: about 14, 42, 93 blocks a sphere in a compact cloud. It stays good while spheres move less than a
- * radius or so. Parts: columns i with i % parts == part are made and applied; the sum of z over the parts is P r.
+ * radius or so. Parts: spheres i in this order with i % parts == part have their columns made and applied; the sum of z over
+ * the parts is P r.
  * Zero-initialise. */
 #ifndef SD_SPARSE_H
 #define SD_SPARSE_H
@@ -16,24 +17,24 @@ extern "C" {
 #endif
 
 typedef struct {
-  int width;          /* 3, with rotation 6: the caller's */
-  const double *drag; /* [n] the caller's */
-  const double *spin; /* [n] or NULL */
-  int n;
+  const double *drag; /* [n] as in sd_system, the caller's */
+  const double *spin; /* [n], for width 6 */
+  int n, width;
   int part, parts;
-  sd_rows rows; /* columns of this part; the first row of each is its own sphere */
+  sd_rows rows; /* of this part; the first of each column of blocks is its own sphere */
   float *
-      value; /* [9] each: L L^T is exactly symmetric with rounded L too, and half the bytes are read */
-  double *scratch; /* [8n] */
+      value; /* blocks: L L^T is exactly symmetric with rounded L too, and half the bytes are read */
+  double *scratch;
 } sd_sparse;
 
 void sd_sparse_free(sd_sparse *f);
 
-/* SD_OK; SD_ENOMEMORY; SD_EINDEFINITE: a hard cut-off in the law's place; SD_ENOTFINITE. On failure f is empty. */
-sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, double rho,
-                           int part, int parts);
+/* width: 3, or with rotation 6 (sd_unit.h). SD_OK; SD_ENOMEMORY; SD_EINDEFINITE: a hard cut-off in the law's place;
+ * SD_ENOTFINITE. On failure f is empty. */
+sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
+                           double rho, int part, int parts);
 
-/* z = P r (this part's share), in the signature of sd_precondition: ctx is an sd_sparse with width, drag and spin set. */
+/* z = P r (this part's share), in the signature of sd_precondition: ctx is an sd_sparse with drag and spin set. */
 void sd_sparse_apply(void *ctx, const double *r, double *z);
 
 #ifdef __cplusplus

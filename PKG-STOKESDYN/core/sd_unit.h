@@ -1,18 +1,15 @@
-/* The mobility matrix of a few spheres scaled to unit diagonal, C = D^1/2 M D^1/2 with D = 6 pi eta a: its blocks depend on
- * positions, radii and the law only. Preconditioners are made of its parts. */
+/* The mobility matrix of a few spheres scaled to unit diagonal, C = D^1/2 M D^1/2, D = 6 pi eta a in the rows of forces and
+ * 8 pi eta a^3 in those of torques: its blocks depend on positions, radii and the law only. Preconditioners are made of its
+ * parts. width: 3 (forces), or 6 (forces and torques, sd_tensor_grand; not with SD_TENSOR_OSEEN). */
 #ifndef SD_UNIT_H
 #define SD_UNIT_H
 
 #include "sd_product.h"
 #include "sd_status.h"
 
-/* Cholesky factor of C of the spheres member[0 ... m-1], in the lower triangle of A [(3m)^2], column-major. Singular within
+/* Cholesky factor of C of the spheres member[0 ... m-1], in the lower triangle of A [(width m)^2], column-major. Singular within
  * rounding (spheres at one point): that of C with a small diagonal added. SD_OK; SD_EINDEFINITE; SD_ENOTFINITE. */
 sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *member, int m,
-                           double *A);
-
-/* Torques keep the diagonal: their rows of z = D r. Nothing to do for width 3. */
-void sd_torques(int width, const double *drag, const double *spin, int n, const double *r,
-                double *z);
+                           int width, double *A);
 
 #endif

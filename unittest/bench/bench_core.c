@@ -335,9 +335,8 @@ static void sparse_factor(const scene *s, double rho, sd_sparse *f, double *seco
 {
   const sd_spheres spheres = {s->x, s->a, s->w};
   const double begin = cpu();
-  if (sd_sparse_create(f, &RPY, &spheres, s->n, rho, 0, 1) != SD_OK) abort();
+  if (sd_sparse_create(f, &RPY, &spheres, s->n, 3, rho, 0, 1) != SD_OK) abort();
   *seconds = cpu() - begin;
-  f->width = 3;
   f->drag = s->drag;
 }
 
@@ -430,9 +429,8 @@ static void bench_flocs(void)
   print_solve("diagonal", solve_median(&s, NULL, NULL, 1e-6), rival, drag, 0.0);
   sd_blocks b = {0};
   double begin = cpu();
-  if (sd_blocks_create(&b, &RPY, &spheres, s.n, FLOCS, first, member) != SD_OK) abort();
+  if (sd_blocks_create(&b, &RPY, &spheres, s.n, 3, FLOCS, first, member) != SD_OK) abort();
   set_up = cpu() - begin;
-  b.width = 3;
   b.drag = s.drag;
   print_solve("clump blocks", solve_median(&s, sd_blocks_apply, &b, 1e-6), rival, drag, set_up);
   begin = cpu();

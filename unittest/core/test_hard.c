@@ -32,8 +32,7 @@ static void ten_thousand_random_clumps(void **state)
     for (int i = 0; i < n; i++) member[i] = i;
     const sd_spheres spheres = {s.x, s.a, s.w};
     sd_blocks b = {0};
-    assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, n, 1, first, member), SD_OK);
-    b.width = 3;
+    assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, n, 3, 1, first, member), SD_OK);
     b.drag = s.drag;
     s.precondition = sd_blocks_apply;
     s.precondition_ctx = &b;
@@ -199,9 +198,8 @@ static void preconditioner_of_another_time(void **state)
   for (int i = 0; i < 30; i++) member[i] = i;
   sd_blocks b = {0};
   sd_sparse f = {0};
-  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, 30, 1, first, member), SD_OK);
-  assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 30, 3.0, 0, 1), SD_OK);
-  b.width = f.width = 3;
+  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, 30, 3, 1, first, member), SD_OK);
+  assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 30, 3, 3.0, 0, 1), SD_OK);
   b.drag = f.drag = s.drag;
   double *slip = scene_uniform_slip(&s, U, 0, 0);
   for (double swell = 1.0; swell < 60.0; swell *= 3.0) {
