@@ -21,28 +21,55 @@ void sd_sparse_free(sd_sparse *f)
   memset(f, 0, sizeof(*f));
 }
 
-/* Last columns X [size][width] of R^-T, R the lower Cholesky factor (size x size, column-major): R^T X = E from the bottom up. */
-static inline void last_columns(const double *R, int size, int width, double *X)
+/* Sums of products, each lane apart: the same order on every processor. */
+enum { LANES = 8 };
+static inline float dot(const float *x, const float *y, int n)
+{
+  float lane[LANES] = {0.0f}, sum = 0.0f;
+  int p = 0;
+  for (; p + LANES <= n; p += LANES)
+    for (int l = 0; l < LANES; l++) lane[l] += x[p + l] * y[p + l];
+  for (; p < n; p++) sum += x[p] * y[p];
+  for (int l = 0; l < LANES; l++) sum += lane[l];
+  return sum;
+}
+
+/* Last columns X, [width] times [size], of R^-T, R the lower Cholesky factor (column-major): R^T X = E from the bottom up. */
+static void last_columns(const float *R, int size, int width, float *X)
 {
   for (int k = size - 1; k >= 0; k--) {
-    const double *column = R + (long) size * k;
-    double v[6] = {0.0};
-    if (k >= size - width) v[k - (size - width)] = 1.0;
-    for (int p = k + 1; p < size; p++)
-      for (int q = 0; q < width; q++) v[q] -= column[p] * X[width * p + q];
-    for (int q = 0; q < width; q++) X[width * k + q] = v[q] / column[k];
+    const float *column = R + (long) size * k;
+    for (int q = 0; q < width; q++) {
+      float *x = X + (long) size * q;
+      const float unit = k - (size - width) == q ? 1.0f : 0.0f;
+      x[k] = (unit - dot(column + k + 1, x + k + 1, size - 1 - k)) / column[k];
+    }
   }
 }
 
 /* The column of blocks of m spheres, its own last in X and first in value. */
-static void store(const double *X, int m, int width, float *value)
+static void store(const float *X, int m, int width, float *value)
 {
   const int size = block_floats(width), lda = width == 3 ? 4 : 6;
   memset(value, 0, sizeof(float) * (size_t) (size * m));
   for (int l = 0; l < m; l++)
     for (int q = 0; q < width; q++)
       for (int p = 0; p < width; p++)
-        value[size * l + lda * q + p] = (float) X[width * (width * (m - 1 - l) + p) + q];
+        value[size * l + lda * q + p] = X[width * (m * (long) q + m - 1 - l) + p];
+}
+
+/* R of m spheres, in single precision where that will do. most: of any column, for memory that is seldom needed. */
+static sd_status local_factor(const sd_law *law, const sd_spheres *s, const int *member, int m,
+                              int width, int most, float *A, double **in_double)
+{
+  const sd_status status = sd_unit_cholesky_single(law, s, member, m, width, A);
+  if (status != SD_ESINGULAR) return status;
+  const size_t largest = (size_t) width * (size_t) most, size = (size_t) width * (size_t) m;
+  if (!*in_double) *in_double = malloc(sizeof(double) * largest * largest);
+  if (!*in_double) return SD_ENOMEMORY;
+  const sd_status second = sd_unit_cholesky(law, s, member, m, width, *in_double);
+  for (size_t p = 0; p < size * size && second == SD_OK; p++) A[p] = (float) (*in_double)[p];
+  return second;
 }
 
 static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
@@ -53,25 +80,24 @@ static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
   f->value = malloc(sizeof(float) * (block_floats(f->width) * blocks + 2));
   f->scratch = malloc(sizeof(double) * (16 * (size_t) f->n + 1));
   int *member = malloc(sizeof(int) * (most + 1));
-  double *A = malloc(sizeof(double) * (w * w * most * most + 1)),
-         *X = malloc(sizeof(double) * (w * w * most + 1));
+  float *A = malloc(sizeof(float) * (w * w * most * most + 1)),
+        *X = malloc(sizeof(float) * (w * w * most + 1));
+  double *in_double = NULL;
   sd_status status = f->value && f->scratch && member && A && X ? SD_OK : SD_ENOMEMORY;
   if (f->value) memset(f->value + block_floats(f->width) * blocks, 0, 2 * sizeof(float));
   for (int k = 0; k < rows->columns && status == SD_OK; k++) {
     const int *row = rows->row + rows->first[k];
     const int m = (int) (rows->first[k + 1] - rows->first[k]);
     for (int l = 0; l < m; l++) member[l] = row[m - 1 - l]; /* its own last */
-    status = sd_unit_cholesky(law, s, member, m, f->width, A);
+    status = local_factor(law, s, member, m, f->width, rows->largest, A, &in_double);
     if (status != SD_OK) break;
-    if (f->width == 3)
-      last_columns(A, 3 * m, 3, X);
-    else
-      last_columns(A, 6 * m, 6, X);
+    last_columns(A, f->width * m, f->width, X);
     store(X, m, f->width, f->value + block_floats(f->width) * rows->first[k]);
   }
   free(member);
   free(A);
   free(X);
+  free(in_double);
   return status;
 }
 

@@ -2,64 +2,75 @@
 
 /* LAPACK: Cholesky factor of the lower triangle (column-major). */
 void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info);
+void spotrf_(const char *uplo, const int *n, float *A, const int *lda, int *info);
 
-/* A += c [f I + g h h^T] of three rows and columns */
-static void put_isotropic(double c, double f, double g, const double h[3], double *A, long lda)
+/* B [6 x 6], column-major: c [f I + g h h^T] in three rows and columns from B on */
+static inline void put_isotropic(double c, double f, double g, const double h[3], double *B)
 {
   for (int q = 0; q < 3; q++)
-    for (int p = 0; p < 3; p++) A[p + lda * q] = c * (g * h[p] * h[q] + (p == q ? f : 0.0));
+    for (int p = 0; p < 3; p++) B[p + 6 * q] = c * (g * h[p] * h[q] + (p == q ? f : 0.0));
 }
 
 /* The matrix of v -> c v x h */
-static void put_cross(double c, const double h[3], double *A, long lda)
+static inline void put_cross(double c, const double h[3], double *B)
 {
   for (int q = 0; q < 3; q++) {
     const int e = (q + 1) % 3, f = (q + 2) % 3;
-    A[q + lda * q] = 0.0;
-    A[e + lda * q] = -c * h[f];
-    A[f + lda * q] = c * h[e];
+    B[q + 6 * q] = 0.0;
+    B[e + 6 * q] = -c * h[f];
+    B[f + 6 * q] = c * h[e];
   }
 }
 
-/* Block of C into A (column-major, leading dimension lda). The pair tensors of sd_tensor.h, for the roots of the diagonal:
+/* Block of C into B [6 x 6], column-major, of which width 3 uses a corner. The pair tensors of sd_tensor.h, times the roots of the
+ * diagonal:
  *   U F   1/(6 pi) times 6 pi sqrt(a_i a_j)            U T   1/(8 pi) times sqrt(6 a_i 8 a_j^3) pi = sqrt(3)/2 sqrt(a_i a_j^3)
  *   W T   1/(8 pi) times 8 pi sqrt(a_i^3 a_j^3)        W F   sqrt(3)/2 sqrt(a_i^3 a_j) */
-static void unit_block(const sd_law *law, const sd_spheres *s, int i, int j, int width, double *A,
-                       long lda)
+static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int j, int width,
+                              double B[36])
 {
   const double *xi = s->x + 3 * (long) i, *xj = s->x + 3 * (long) j, ai = s->a[i], aj = s->a[j];
   const double r[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
   const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), inv = R > 0.0 ? 1.0 / R : 0.0;
   const double h[3] = {r[0] * inv, r[1] * inv, r[2] * inv};
   double f, g;
-  if (law->tensor == SD_TENSOR_RPY)
-    sd_rpy_radial(R, ai, aj, &f, &g);
-  else
+  if (law->tensor == SD_TENSOR_OSEEN)
     sd_oseen_radial(R, &f, &g);
-  const double c = sqrt(ai * aj) * sd_taper_factor(law, R);
-  put_isotropic(c, f, g, h, A, lda);
+  else if (R > ai + aj) { /* most pairs: sd_rpy_radial with one division */
+    const double m = (ai * ai + aj * aj) * (inv * inv);
+    f = 0.75 * inv * (1.0 + m * (1.0 / 3.0));
+    g = 0.75 * inv * (1.0 - m);
+  } else
+    sd_rpy_radial(R, ai, aj, &f, &g);
+  double c = sqrt(ai * aj);
+  if (law->taper != SD_TAPER_NONE) c *= sd_taper_factor(law, R);
+  put_isotropic(c, f, g, h, B);
   if (width == 3) return;
   const double half_root_3 = 0.86602540378443864676;
   sd_rpy_radial_wt(R, ai, aj, &f, &g);
-  put_isotropic(c * ai * aj, f, g, h, A + 3 + 3 * lda, lda);
-  put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, A + 3 * lda, lda);
-  put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, A + 3, lda);
+  put_isotropic(c * ai * aj, f, g, h, B + 3 + 6 * 3);
+  put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, B + 6 * 3);
+  put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
 }
 
-/* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal. */
-static void fill(const sd_law *law, const sd_spheres *s, const int *member, int m, int width,
-                 double extra, double *A)
+/* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of A, A_single. */
+static inline void fill(const sd_law *law, const sd_spheres *s, const int *member, int m, int width,
+                        double extra, double *A, float *A_single)
 {
   const long lda = width * (long) m;
+  double unity[36] = {0.0}, B[36];
+  for (int p = 0; p < width; p++) unity[7 * p] = 1.0 + extra;
   for (int j = 0; j < m; j++)
     for (int i = j; i < m; i++) {
-      double *block = A + width * i + lda * (width * j);
-      if (i != j) {
-        unit_block(law, s, member[i], member[j], width, block, lda);
-        continue;
-      }
+      const double *block = i == j ? unity : B;
+      const long at = width * i + lda * (width * j);
+      if (i != j) unit_block(law, s, member[i], member[j], width, B);
       for (int q = 0; q < width; q++)
-        for (int p = 0; p < width; p++) block[p + lda * q] = p == q ? 1.0 + extra : 0.0;
+        for (int p = 0; p < width; p++)
+          if (A)
+            A[at + p + lda * q] = block[p + 6 * q];
+          else
+            A_single[at + p + lda * q] = (float) block[p + 6 * q];
     }
 }
 
@@ -70,7 +81,10 @@ sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *me
   const int size = width * m;
   for (int k = 0; k < 4; k++) {
     int info;
-    fill(law, s, member, m, width, extra[k], A);
+    if (width == 3)
+      fill(law, s, member, m, 3, extra[k], A, 0);
+    else
+      fill(law, s, member, m, 6, extra[k], A, 0);
     dpotrf_("L", &size, A, &size, &info);
     if (info == 0) {
       /* A NaN need not stop dpotrf; it always reaches the last pivot. */
@@ -80,4 +94,22 @@ sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *me
     if (!(A[(info - 1) * ((long) size + 1)] < INFINITY)) return SD_ENOTFINITE;
   }
   return SD_EINDEFINITE;
+}
+
+sd_status sd_unit_cholesky_single(const sd_law *law, const sd_spheres *s, const int *member, int m,
+                                  int width, float *A)
+{
+  /* Pivots below this have lost most of their digits. */
+  const float lost = 0.003f;
+  const int size = width * m;
+  int info;
+  if (width == 3)
+    fill(law, s, member, m, 3, 0.0, 0, A);
+  else
+    fill(law, s, member, m, 6, 0.0, 0, A);
+  spotrf_("L", &size, A, &size, &info);
+  if (info != 0) return SD_ESINGULAR;
+  for (long p = 0; p < size; p++)
+    if (!(A[p * ((long) size + 1)] > lost)) return SD_ESINGULAR;
+  return A[(long) size * size - 1] < INFINITY ? SD_OK : SD_ENOTFINITE;
 }
