@@ -55,7 +55,8 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
                        0};    // of the preconditioner: iterations, solves, is a factor wanted?
     double lambda_min =
         0;    // smallest eigenvalue met, of the mobility scaled to unit diagonal; 0: unknown
-    double dt_limit = 0;                    // of explicit time steps of free spheres; 0: unknown
+    double guard_due = 0;    // count of solves when lambda_min is to be computed again
+    double dt_limit = 0;     // of explicit time steps of free spheres; 0: unknown
     double iterations = 0, residual = 0;    // of the last solve
     double box[6] = {0, 0, 0, 0, 0, 0};     // periodic lengths and tilts as the last run left them
     uint64_t settings = 0;                  // hash of the words of the pair_style command

@@ -118,7 +118,9 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   void warn_of_short_cutoff();
   void guess();
   void remember();
-  void time_step_guard(const sd_solve_report &report);
+  double relaxation_time();
+  double smallest_eigenvalue(const sd_system &system);
+  void time_step_guard(const sd_system &system, const sd_solve_report &report);
   void solver_failed(sd_status status, const sd_solve_report &report);
 };
 
