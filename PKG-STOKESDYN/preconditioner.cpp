@@ -2,6 +2,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +177,15 @@ bool Preconditioner::make_blocks()
 {
   const sd_law law = scene.law();
   const bool cloud = scene.all_pairs();
-  const sd_spheres s = cloud ? scene.cloud() : scene.local();
+  sd_spheres s = cloud ? scene.cloud() : scene.local();
+  if (!cloud) {    // a clump may lie across a periodic boundary: its images that are next to one another
+    whole.resize(3 * (size_t) n + 3);
+    for (size_t k = 0; k + 1 < first.size(); k++)
+      for (long m = first[k]; m < first[k + 1]; m++)
+        domain->closest_image(s.x + 3 * (long) member[first[k]], s.x + 3 * (long) member[m],
+                              &whole[3 * (size_t) member[m]]);
+    s.x = whole.data();
+  }
   sd_blocks_free(&blocks);
   blocks = sd_blocks();
   free_shapes();

@@ -54,7 +54,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   sd_sparse sparse;
   sd_blocks blocks;
   std::vector<sd_shape> shapes;    // of the blocks at set-up
-  std::vector<double> cloud_drag, cloud_spin, in, out;
+  std::vector<double> cloud_drag, cloud_spin, in, out, whole;
   std::vector<long> first;
   std::vector<int> member;
   int n = 0, width = 3;

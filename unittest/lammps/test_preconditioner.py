@@ -100,6 +100,42 @@ def test_nor_when_auto_turns_to_the_sparse_factor(tmp_path, reference, ranks):
     assert largest_difference(moving(tmp_path, "all", "auto", "no", ranks, molecules=False), reference("all")) < 1e-9
 
 
+LISTS = {"clumps": "clumps_only yes", "taper": "cut_off_distance 6 taper wendland"}
+
+
+def forces_by_list(tmp_path, spheres, words, ranks, precondition, boundary="f f f", box=None):
+    """Forces after one solve, and the iterations it took."""
+    lines = input_lines(spheres, f"{words} visc {ETA} {EXACT} precondition {precondition}", tmp_path / "data", boundary=boundary,
+                        box=box, comm="comm_modify cutoff 9")
+    lines += ["thermo_style custom step f_drag[4]"] + dump_lines(tmp_path / "dump") + ["run 0"]
+    log = lmp(tmp_path, lines, ranks=ranks).log
+    its = re.findall(r"^ +0 +([0-9]+) *$", log, re.M)
+    return read_dump(tmp_path / "dump")[-1][1][:, 6:9], int(its[-1])
+
+
+@pytest.mark.parametrize("mode", LISTS)
+def test_blocks_of_clumps_that_ranks_share(tmp_path, mode):
+    """Every rank has the blocks of its own parts of the clumps."""
+    spheres = flocs(30, 10, 16.0, spread=1.5)
+    expected, plain = forces_by_list(tmp_path, spheres, LISTS[mode], 1, "none")
+    for ranks in (1, 2, 4):
+        drag, its = forces_by_list(tmp_path, spheres, LISTS[mode], ranks, "clump")
+        assert largest_difference(drag, expected) < 1e-10
+        assert its < 0.8 * plain
+
+
+@pytest.mark.parametrize("mode", LISTS)
+def test_blocks_of_clumps_across_a_periodic_boundary(tmp_path, mode):
+    spheres, box = flocs(20, 10, 16.0), [(0.0, 24.0)] * 3
+    expected, its = forces_by_list(tmp_path, spheres, LISTS[mode], 1, "clump", "p p p", [(-8.0, 24.0)] * 3)
+    expected, plain = forces_by_list(tmp_path, spheres, LISTS[mode], 1, "none", "p p p", box)
+    for shift, ranks in ((0.0, 1), (9.0, 1), (9.0, 2)):
+        spheres.x = np.mod(spheres.x + shift, 24.0)
+        drag, across = forces_by_list(tmp_path, spheres, LISTS[mode], ranks, "clump", "p p p", box)
+        assert largest_difference(drag, expected) < 1e-10
+        assert across <= (its + 2 if ranks == 1 else plain)
+
+
 # --- iterations ------------------------------------------------------------------------------------------------------
 
 def test_touching_lattice_of_1000_with_the_sparse_factor(simulation):
