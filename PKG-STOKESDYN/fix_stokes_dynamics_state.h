@@ -8,6 +8,8 @@
 
 #include "fix.h"
 
+#include "preconditioner.h"
+
 #include <cstdint>
 
 namespace StokesDyn {
@@ -51,8 +53,7 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
            vorticity[3] = {0, 0, 0};    // of the last step, if numbers
     double solves = 0, unconverged = 0;
     double solutions = 0;    // kept in the history: 0, 1, 2
-    double spent[3] = {0, 0,
-                       0};    // of the preconditioner: iterations, solves, is a factor wanted?
+    Preconditioner::Numbers preconditioner;
     double lambda_min =
         0;    // smallest eigenvalue met, of the mobility scaled to unit diagonal; 0: unknown
     double guard_due = 0;    // count of solves when lambda_min is to be computed again

@@ -280,7 +280,7 @@ void PairStokesDynamics::init_style()
                     (rotation ? " rotation" : "") + (history ? " history" : ""));
   fix_state = find_state();
   fix_state->settings_are(hash(args));
-  preconditioner.restore(fix_state->global.spent);
+  preconditioner.numbers = fix_state->global.preconditioner;
 
   bool applied = add_force;
   for (int i = 0; i < modify->nfix; i++)

@@ -111,11 +111,12 @@ void PairStokesDynamics::solve()
     if (system.warm) guess();
     if (fix_state->restart_written) preconditioner.make_anew();
     fix_state->restart_written = false;
+    preconditioner.tolerance = tolerance;
     preconditioner.attach(system);
     status = sd_solve_gradients(&system, slip.data(), tolerance, max_iter, solution.data(),
                                 work.data(), &report);
     preconditioner.learn(report);
-    preconditioner.save(fix_state->global.spent);
+    fix_state->global.preconditioner = preconditioner.numbers;
     if (warm_start) remember();
     time_step_guard(system, report);
   }

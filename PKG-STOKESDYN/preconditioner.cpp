@@ -17,8 +17,8 @@ static const double RHO =
 static const double RIGID =
     1e-9;    // of its size: rounding; a clump that has bent more gets a new block
 static const double BENT = 0.02;    // of its size: a clump that has changed more gets a new block
-static const long PAYS_AFTER =
-    200;    // iterations: a factor costs about as much as so many products
+static const double WORTH_COUNTING =
+    10.0;                             // iterations saved: then what a factor would cost is counted
 static const int SMALL_CLUMP = 64;    // spheres: cheaper to factor anew than to keep
 
 void Preconditioner::free_shapes()
@@ -35,24 +35,9 @@ void Preconditioner::forget()
   blocks = sd_blocks();
   free_shapes();
   present = NONE;
-  wanted_sparse = false;
-  iterations_spent = solves = 0;
+  numbers = Numbers();
   first_iterations = -1;
   worn = true;
-}
-
-void Preconditioner::save(double spent[3]) const
-{
-  spent[0] = iterations_spent;
-  spent[1] = solves;
-  spent[2] = wanted_sparse;
-}
-
-void Preconditioner::restore(const double spent[3])
-{
-  iterations_spent = spent[0];
-  solves = spent[1];
-  wanted_sparse = spent[2] != 0.0;
 }
 
 /* Members of each molecule with two spheres or more; true if they are at least half of the spheres. */
@@ -89,6 +74,40 @@ void Preconditioner::cloud_diagonal()
   }
 }
 
+/* auto, all pairs: blocks where there are clumps, else the sparse factor; or nothing, if that costs less (sd_choice.h). Every rank
+ * sees the whole cloud and chooses alike. */
+Preconditioner::Kind Preconditioner::choose(bool clumps)
+{
+  const Kind candidate = clumps ? CLUMP : SPARSE;
+  if (candidate == CLUMP)
+    costs = sd_costs_blocks(n, width, first.size() - 1, first.data(), !small);
+  else {
+    costs = sd_costs_sparse(n, width, &numbers.size);
+    if (numbers.spheres != n && numbers.choice.gain > WORTH_COUNTING * costs.without) {
+      const sd_spheres s = scene.cloud();
+      sd_sparse_size part;
+      sd_sparse_count(&s, n, RHO, comm->me, comm->nprocs, &part);
+      add_up(part);
+      costs = sd_costs_sparse(n, width, &numbers.size);
+    }
+    if (numbers.spheres != n && !numbers.choice.with) costs.set_up = INFINITY;    // not yet known
+  }
+  if (!numbers.choice.begun || numbers.candidate != candidate) {
+    numbers.candidate = candidate;
+    sd_choice_begin(&numbers.choice, &costs, tolerance);
+  }
+  return numbers.choice.with ? candidate : NONE;
+}
+
+/* What the parts of a factor add up to */
+void Preconditioner::add_up(sd_sparse_size &part)
+{
+  double sums[3] = {part.blocks, part.squares, part.cubes};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
+  numbers.size = {sums[0], sums[1], sums[2]};
+  numbers.spheres = n;
+}
+
 void Preconditioner::attach(sd_system &system)
 {
   present = NONE;
@@ -115,8 +134,7 @@ void Preconditioner::attach(sd_system &system)
   }
   small = member.size() <= (first.size() - 1) * (size_t) SMALL_CLUMP;
   Kind want = kind;
-  if (kind == AUTO)
-    want = clumps && (cloud || small) ? CLUMP : cloud && wanted_sparse ? SPARSE : NONE;
+  if (kind == AUTO) want = cloud ? choose(clumps) : clumps && small ? CLUMP : NONE;
   // All ranks go the same way: the solver's sums and, of a cloud, the applications are collective.
   int mine = want, any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
@@ -169,8 +187,15 @@ bool Preconditioner::make_sparse()
   const sd_spheres s = scene.cloud();
   sd_sparse_free(&sparse);
   sparse = sd_sparse();
-  first_iterations = -1;
-  return sd_sparse_create(&sparse, &law, &s, n, width, RHO, comm->me, comm->nprocs) == SD_OK;
+  numbers.wear = {};
+  const bool another = numbers.spheres > 0.0 && numbers.spheres != n;    // spheres came or went
+  const bool made =
+      sd_sparse_create(&sparse, &law, &s, n, width, RHO, comm->me, comm->nprocs) == SD_OK;
+  sd_sparse_size part = made ? sd_sparse_sized(&sparse) : sd_sparse_size();
+  add_up(part);
+  costs = sd_costs_sparse(n, width, &numbers.size);
+  if (another) numbers.choice.gain += costs.set_up;
+  return made;
 }
 
 bool Preconditioner::make_blocks()
@@ -245,15 +270,19 @@ void Preconditioner::apply(void *ctx, const double *r, double *z)
 
 void Preconditioner::learn(const sd_solve_report &report)
 {
-  solves++;
-  iterations_spent += report.iterations;
-  // A few products a solve, as with a warm start, will never pay for a factor.
-  if (kind == AUTO && present == NONE && scene.all_pairs() && iterations_spent > PAYS_AFTER &&
-      iterations_spent > 6 * solves && scene.cloud_size() >= 100 && !wanted_sparse)
-    wanted_sparse = worn = true;
-  if (present == NONE || report.iterations == 0) return;
-  if (first_iterations < 0) first_iterations = report.iterations;
-  if (report.iterations > first_iterations + first_iterations / 2 + 3) worn = true;
+  bool made = false;    // is there to be another factor?
+  if (present == SPARSE) {
+    costs = sd_costs_sparse(n, width, &numbers.size);
+    made = sd_wear_learn(&numbers.wear, &costs, report.iterations);
+    worn = worn || made;
+  }
+  if (present == CLUMP && report.iterations > 0) {
+    if (first_iterations < 0) first_iterations = report.iterations;
+    if (report.iterations > first_iterations + first_iterations / 2 + 3) worn = true;
+  }
+  if (kind != AUTO || !scene.all_pairs()) return;
+  sd_choice_learn(&numbers.choice, &costs, report.iterations, made);
+  if (numbers.choice.solves == 0.0) worn = true;    // it goes the other way now
 }
 
 }    // namespace StokesDyn

@@ -6,6 +6,7 @@
 #include "pointers.h"
 #include "scene.h"
 
+#include "sd_choice.h"
 #include "sd_precondition.h"
 #include "sd_shape.h"
 #include "sd_solve.h"
@@ -18,6 +19,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
  public:
   enum Kind { AUTO, NONE, CLUMP, SPARSE };
   Kind kind = AUTO;
+  double tolerance = 1e-3;    // of the solves
 
   Preconditioner(LAMMPS_NS::LAMMPS *lmp, Scene &scene) :
       Pointers(lmp), scene(scene), sparse(), blocks()
@@ -29,10 +31,15 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
 
   void forget();
   /* What is kept between solves is not in restart files. The run that writes one makes it anew in its next solve, as the run that
-   * reads it must, so both go on alike; and these counts go along. */
+   * reads it must, so both go on alike; and these numbers go along. */
+  struct Numbers {
+    sd_choice choice = {};       // auto: with or without
+    double candidate = 0;        // auto: the kind that this is about
+    sd_wear wear = {};           // of the sparse factor
+    sd_sparse_size size = {};    // of the sparse factor, when it was last counted
+    double spheres = 0;          // that the cloud had then; 0: not counted
+  } numbers;
   void make_anew() { worn = true; }
-  void save(double spent[3]) const;
-  void restore(const double spent[3]);
   /* Before a solve, after Scene::update(): makes or turns what is wanted and puts it into the system. */
   void attach(sd_system &system);
   /* After it: was it worth it, is it still good? */
@@ -41,10 +48,9 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
 
  private:
   Scene &scene;
-  Kind present = NONE;           // in this solve
-  bool wanted_sparse = false;    // auto: enough iterations have been spent to pay for a factor
-  long iterations_spent = 0, solves = 0;
-  int first_iterations = -1;    // of the first solve after a set-up
+  Kind present = NONE;          // in this solve
+  sd_costs costs = {};          // of the kind in question
+  int first_iterations = -1;    // blocks: of the first solve after a set-up
   bool worn = true;             // make it anew
   bool small = true;            // are the clumps small?
   bool pending = false;         // blocks: to be made or turned at their first use in this solve
@@ -61,6 +67,8 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
 
   bool group_by_molecule(const std::vector<int64_t> &molecule, const double *a);
   void cloud_diagonal();
+  Kind choose(bool clumps);
+  void add_up(sd_sparse_size &part);
   bool make_sparse();
   bool make_blocks();
   bool turn_blocks();

@@ -165,6 +165,59 @@ def test_auto_turns_to_the_sparse_factor_when_that_pays(simulation):
     assert iterations[0] > 30 and iterations[-1] < 0.6 * iterations[0]
 
 
+def turned(x, rng):
+    """About their mean, by a random rotation (QR of random numbers)."""
+    Q, R = np.linalg.qr(rng.normal(size=(3, 3)))
+    Q *= np.sign(np.diag(R))
+    if np.linalg.det(Q) < 0:
+        Q[:, 0] *= -1
+    return x.mean(axis=0) + (x - x.mean(axis=0)) @ Q.T
+
+
+def test_flocs_that_turn_each_their_own_way_keep_their_blocks(simulation):
+    spheres, rng = flocs(50, 20, 45.0 * A), np.random.default_rng(6)
+    spheres.v[:] = ALONG
+    words = f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-6 warm_start no precondition clump"
+    sim = simulation(spheres, words, box=[(-60.0, 120.0)] * 3).run()
+    assert sim.iterations <= 15
+    for k in range(50):
+        spheres.x[20 * k:20 * k + 20] = turned(spheres.x[20 * k:20 * k + 20], rng)
+    sim.raw("x")[:] = spheres.x[sim.ids() - 1]
+    sim.run()
+    iterations, residual, drag = sim.iterations, sim.residual, sim.drag
+    anew = simulation(spheres, words, box=[(-60.0, 120.0)] * 3).run()
+    assert iterations <= min(16, anew.iterations + 1) and residual <= 1e-6
+    assert largest_difference(drag, anew.drag) < 1e-5
+
+
+def iterations_of_a_fall(simulation, tmp_path, words, steps=60):
+    spheres, log = loose_lattice(6, v=0.3), tmp_path / "log"
+    spheres.v += (0.0, 0.0, -1.0)
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 {words}", log=log, box=[(-40.0, 60.0)] * 3,
+                     density=20.0, dt=1e-3)
+    sim.commands(["fix move all nve/sphere", "fix pull all gravity 1 vector 0 0 -1", "thermo_style custom step f_drag[4]",
+                  "thermo 1"]).run(steps)
+    sim.close()
+    return np.array([int(i) for i in re.findall(r"^ +\d+ +(\d+) *$", log.read_text(), re.M)])[1:]
+
+
+@pytest.mark.parametrize("rotation", ["no", "yes"])
+def test_auto_turns_to_the_factor_with_a_warm_start_too(simulation, tmp_path, rotation):
+    """Some ten iterations a step: each saves a part of the factor, and it is made when that adds up."""
+    none = iterations_of_a_fall(simulation, tmp_path, f"relative_tolerance 1e-6 rotation {rotation} precondition none")
+    auto = iterations_of_a_fall(simulation, tmp_path, f"relative_tolerance 1e-6 rotation {rotation}")
+    assert none[-20:].mean() > 5
+    assert (auto[:5] == none[:5]).all()
+    assert auto[-20:].mean() < 0.4 * none[-20:].mean()
+
+
+def test_auto_stays_without_where_the_warm_start_leaves_nothing_to_do(simulation, tmp_path):
+    none = iterations_of_a_fall(simulation, tmp_path, "relative_tolerance 1e-1 precondition none", steps=200)
+    auto = iterations_of_a_fall(simulation, tmp_path, "relative_tolerance 1e-1", steps=200)
+    assert none.mean() < 0.5
+    assert (auto == none).all()
+
+
 # --- warm start ------------------------------------------------------------------------------------------------------
 
 def test_warm_start_takes_two_iterations_a_step_and_keeps_the_tolerance(simulation, tmp_path):
@@ -188,7 +241,7 @@ def test_warm_start_takes_two_iterations_a_step_and_keeps_the_tolerance(simulati
 
 
 @pytest.mark.parametrize("precondition,molecules,tolerance", [("none", 0, 1e-2), ("clump", 1, 1e-2), ("sparse", 0, 1e-2),
-                                                             ("auto", 0, 1e-6)])
+                                                             ("auto", 0, 1e-6), ("auto", 0, 1e-3), ("auto", 1, 1e-3)])
 def test_warm_start_survives_a_restart(simulation, tmp_path, precondition, molecules, tolerance):
     """At a loose tolerance the answer shows where the solver began and what preconditioned it. The factor is not in the restart
     file: both runs make it anew."""
