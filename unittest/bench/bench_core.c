@@ -1,5 +1,5 @@
 /* Timings of the core, each as a ratio to a rival run in the same program, with the error of the answer beside it.
- *   bench_core [quick|kernel]      README.md has the command, what the rows mean and figures
+ *   bench_core [quick|kernel|solve]      README.md has the command, what the rows mean and figures
  * Times are process CPU time on one core, medians of five; rival and core take turns, so that both meet the same load. */
 #include "clouds.h"
 
@@ -478,6 +478,95 @@ static void bench_dense_cloud(void)
   scene_free(&s);
 }
 
+/* --- with torques: random velocities and spins, 1e-6 --- */
+
+typedef struct {
+  sd_packed packed;
+  int n;
+} rotating;
+
+static void apply_rotating(void *ctx, const double *F, double *u)
+{
+  rotating *g = ctx;
+  sd_packed_product(&g->packed, 0, g->n, F, u);
+}
+
+static double *spins(const scene *s)
+{
+  double *spin = malloc(sizeof(double) * (size_t) s->n);
+  for (int i = 0; i < s->n; i++) spin[i] = 4.0 / 3.0 * s->drag[i] * s->a[i] * s->a[i];
+  return spin;
+}
+
+static void solve_rotating(const char *name, const scene *s, const double *spin, sd_precondition *P,
+                           void *ctx, double set_up)
+{
+  const sd_spheres spheres = {s->x, s->a, s->w};
+  rotating g = {.packed = {.rotation = 1}, .n = s->n};
+  double *slip = malloc(6 * sizeof(double) * (size_t) s->n), t[RUNS];
+  double *F = malloc(6 * sizeof(double) * (size_t) s->n),
+         *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 6));
+  uint64_t seed = 5;
+  for (int i = 0; i < 6 * s->n; i++)
+    slip[i] = uniform(&seed, -1, 1) / (i % 6 < 3 ? 1.0 : s->a[i / 6]);
+  const sd_system A = {.n = s->n,
+                       .drag = s->drag,
+                       .spin = spin,
+                       .apply = apply_rotating,
+                       .apply_ctx = &g,
+                       .precondition = P,
+                       .precondition_ctx = ctx};
+  sd_solve_report report;
+  for (int k = 0; k < RUNS; k++) {
+    const double begin = cpu();
+    if (sd_packed_all(&g.packed, SD_ISA_BEST, &RPY, &spheres, s->n) != SD_OK) abort();
+    if (sd_solve_gradients(&A, slip, 1e-6, 1000, F, work, &report) != SD_OK) abort();
+    t[k] = cpu() - begin;
+  }
+  printf("  %-34s %6d %10.4f %10.4f %8s %10.1e\n", name, report.iterations, median(t), set_up, "",
+         report.residual);
+  sd_packed_free(&g.packed);
+  free(slip);
+  free(F);
+  free(work);
+}
+
+/* m: spheres of each clump, 0: none */
+static void bench_rotating(const char *name, scene s, int m)
+{
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  double *spin = spins(&s);
+  printf("\nResistance with torques, %s, random velocities and spins, 1e-6\n", name);
+  head();
+  solve_rotating("diagonal", &s, spin, NULL, NULL, 0.0);
+  sd_sparse f = {0};
+  double begin = cpu();
+  if (sd_sparse_create(&f, &RPY, &spheres, s.n, 6, 3.0, 0, 1) != SD_OK) abort();
+  const double set_up = cpu() - begin;
+  f.drag = s.drag;
+  f.spin = spin;
+  solve_rotating("sparse, rho 3", &s, spin, sd_sparse_apply, &f, set_up);
+  sd_sparse_free(&f);
+  if (m) {
+    long *first = malloc(sizeof(long) * (size_t) (s.n / m + 1));
+    int *member = malloc(sizeof(int) * (size_t) s.n);
+    for (int k = 0; k <= s.n / m; k++) first[k] = (long) m * k;
+    for (int i = 0; i < s.n; i++) member[i] = i;
+    sd_blocks b = {0};
+    begin = cpu();
+    if (sd_blocks_create(&b, &RPY, &spheres, s.n, 6, s.n / m, first, member) != SD_OK) abort();
+    if (sd_blocks_couple(&b, &RPY, &spheres, 3.0) != SD_OK) abort();
+    b.drag = s.drag;
+    b.spin = spin;
+    solve_rotating("clump blocks, coupled", &s, spin, sd_blocks_apply, &b, cpu() - begin);
+    sd_blocks_free(&b);
+    free(first);
+    free(member);
+  }
+  free(spin);
+  scene_free(&s);
+}
+
 /* Too large for the dense rival: drag from an independent code. */
 static void bench_large_lattice(void)
 {
@@ -514,8 +603,9 @@ int main(int argc, char **argv)
     for (int m = 3; m <= 6; m += 3) bench_kernel(10000, m);
     return 0;
   }
+  const int solve = argc > 1 && strcmp(argv[1], "solve") == 0;
   printf("Best instruction set: %s\n", sd_isa_name(sd_isa_best()));
-  for (int m = 3; m <= 6; m += 3) {
+  for (int m = 3; m <= 6 && !solve; m += 3) {
     bench_product(1000, m);
     if (!quick) bench_product(10000, m);
     bench_list(10000, 88.0, m);
@@ -523,6 +613,9 @@ int main(int argc, char **argv)
   bench_lattice(quick ? 5 : 10);
   bench_flocs();
   bench_dense_cloud();
-  if (!quick) bench_large_lattice();
+  bench_rotating("10^3 touching spheres", scene_lattice(10, 10, 10, 2.0, 0.7, ETA), 0);
+  bench_rotating("phi 0.45", cloud_dense(1000, 0.45, 0.7, 1.3, ETA, 1), 0);
+  bench_rotating("50 flocs of 20", cloud_flocs(50, 20, 1.0, 34.7, 1, ETA, 1), 20);
+  if (!quick && !solve) bench_large_lattice();
   return 0;
 }
