@@ -1,6 +1,6 @@
 /* One block per clump, a preconditioner (sd_precondition.h).
- * B: the inverse of C of each clump alone. Memory and time of an application: (width m)^2 numbers for a clump of m spheres; set-up
- * m^3. A clump that moves as a rigid body keeps its block: only its turn changes.
+ * B: the inverse of C of each clump alone. Memory and time of an application: (width m)^2 numbers for a clump of m spheres;
+ * set-up m^3. A clump that moves as a rigid body keeps its block: only its turn changes.
  *
  * Coupled blocks add what the clumps do to one another as wholes. With W the rigid translations of the clumps and S = W^T B W
  * their friction, the clumps' velocities as lone bodies, S^-1 W^T B r, go through the sparse factor Q of a cloud with one
