@@ -135,9 +135,8 @@ static void coincident_spheres_with_preconditioners(void **state)
   for (int i = 0; i < 40; i++) member[i] = i;
   sd_blocks b = {0};
   sd_sparse f = {0};
-  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, 40, 1, first, member), SD_OK);
-  assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 40, 3.0, 0, 1), SD_OK);
-  b.width = f.width = 3;
+  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, 40, 3, 1, first, member), SD_OK);
+  assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 40, 3, 3.0, 0, 1), SD_OK);
   b.drag = f.drag = s.drag;
   double *slip = scene_uniform_slip(&s, U, 0.4 * U, 0), total[3][12] = {{0.0}};
   for (int i = 0; i < 40; i++) slip[3 * i + 2] = 0.1 * U * (i % 4);

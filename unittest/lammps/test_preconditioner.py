@@ -282,31 +282,13 @@ def test_tapered_forces_against_a_dense_solve(simulation, taper, mode, R):
     assert largest_difference(sim.drag, expected) < 1e-9
 
 
-def mobility_with_torques(spheres):
-    """Of spheres that do not overlap, where the blocks of rotation are short: UT T = WF T = (T x r) / (8 pi eta R^3),
-    WT = (3 rr - I) / (16 pi eta R^3). Rows of a sphere: velocity, angular velocity."""
-    n, x, a = spheres.n, spheres.x, spheres.a
-    M = np.zeros((n, 2, 3, n, 2, 3))
-    M[:, 0, :, :, 0, :] = model.mobility(x, a, ETA).reshape(n, 3, n, 3)
-    for i in range(n):
-        M[i, 1, :, i, 1, :] = np.eye(3) / (8 * np.pi * ETA * a[i]**3)
-        for j in range(n):
-            if i == j:
-                continue
-            r = x[i] - x[j]
-            s = np.linalg.norm(r)
-            M[i, 1, :, j, 1, :] = (3 * np.outer(r, r) / s**2 - np.eye(3)) / (16 * np.pi * ETA * s**3)
-            M[i, 0, :, j, 1, :] = M[i, 1, :, j, 0, :] = np.cross(np.eye(3), r).T / (8 * np.pi * ETA * s**3)
-    return M.reshape(6 * n, 6 * n)
-
-
 @pytest.mark.parametrize("taper", TAPER)
 def test_tapered_forces_and_torques_against_a_dense_solve(simulation, taper):
     spheres, R = loose_lattice(3, v=1.0), 5.0
     spheres.a *= np.random.default_rng(7).uniform(0.6, 1.0, spheres.n)
     w = np.random.default_rng(8).normal(size=(spheres.n, 3))
     n = spheres.n
-    M = mobility_with_torques(spheres) * np.kron(factors(spheres.x, taper, R), np.ones((6, 6)))
+    M = model.mobility(spheres.x, spheres.a, ETA, rotation=True) * np.kron(factors(spheres.x, taper, R), np.ones((6, 6)))
     expected = np.linalg.solve(M, -np.hstack([spheres.v, w]).ravel()).reshape(n, 6)
     sim = simulation(spheres, f"cut_off_distance {R} taper {taper} rotation yes visc {ETA} {EXACT}")
     sim.raw("omega")[:] = w[sim.ids() - 1]
@@ -349,7 +331,7 @@ def test_limit_is_that_of_the_smallest_eigenvalue(simulation):
 
 def smallest_eigenvalue(spheres, rotation):
     """Of the mobility scaled to unit diagonal."""
-    M = mobility_with_torques(spheres) if rotation else model.mobility(spheres.x, spheres.a, ETA)
+    M = model.mobility(spheres.x, spheres.a, ETA, rotation=rotation)
     root = np.sqrt(np.diag(M))
     return np.linalg.eigvalsh(M / np.outer(root, root))[0]
 
