@@ -222,7 +222,8 @@ def solve(scene, words, steps, ranks=1):
     with tempfile.TemporaryDirectory() as folder:
         command = ["mpirun", "-np", str(ranks), sys.executable, __file__,
                    "--rank-of", folder, words, str(steps), *scene.words()]
-        ended = subprocess.run(command, capture_output=True, text=True)
+        # The copy that python made of its environment at the start: without what MPI has put there for this process since.
+        ended = subprocess.run(command, env=dict(os.environ), capture_output=True, text=True)
         if ended.returncode:
             sys.exit(f"run.py: {' '.join(command)}:\n{ended.stdout}{ended.stderr}")
         parts = [np.load(path, allow_pickle=True) for path in sorted(pathlib.Path(folder).glob("*.npz"))]

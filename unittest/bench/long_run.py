@@ -13,15 +13,11 @@ drift       forces at the end of the window against a dense solve of where the s
 Size and velocity of the ring tell that it stays together and goes on moving."""
 import argparse
 import ctypes
-import os
-import sys
 import tempfile
 
-import numpy as np
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "lammps"))
-import model  # noqa: E402
-from system import DENSITY, Simulation, Spheres  # noqa: E402
+from from_tests import np
+import model
+from system import DENSITY, Simulation, Spheres
 
 ETA, G, SHEAR, DT, TOLERANCE = 1.3, 2.0, 0.5, 0.02, 1e-6
 A = np.array([0.7, 0.7, 0.7, 0.7, 0.8, 0.8, 0.6, 0.6])

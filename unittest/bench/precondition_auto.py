@@ -10,19 +10,11 @@ import argparse
 import os
 import re
 import subprocess
-import sys
 import tempfile
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-try:
-    import numpy as np
-    sys.path.insert(0, os.path.join(HERE, "..", "lammps"))
-    from system import Spheres, environment, input_lines
-    from test_preconditioner import A, flocs, lattice, loose_lattice
-except ImportError:
-    if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/bin/python3"):
-        os.execv("/usr/bin/python3", ["/usr/bin/python3"] + sys.argv)
-    raise
+from from_tests import np
+from system import Spheres, environment, input_lines
+from test_preconditioner import A, flocs, lattice, loose_lattice
 
 
 def dilute(n=1000, phi=0.02):

@@ -12,13 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import numpy as np
-except ImportError:
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+from from_tests import np
 
 N, STEPS = 10000, 5
 BENCH_CORE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "bench_core")

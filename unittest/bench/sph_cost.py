@@ -18,10 +18,8 @@ import subprocess
 import sys
 import tempfile
 
-import numpy as np
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "lammps"))
-import sph_tools as T  # noqa: E402
+from from_tests import np
+import sph_tools as T
 
 SCENE = """
 units si

@@ -2,16 +2,13 @@
 """A standing sound wave at c dt/h = 0.2 without viscosity: energy over 10^5 steps with fix nve/sph, and over 2000 with LAMMPS's fix sph.
 
     . build/env.sh
-    /usr/bin/python3 unittest/bench/sph_sound_wave.py
+    unittest/bench/sph_sound_wave.py
 """
 import os
-import sys
 import tempfile
 
-import numpy as np
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "lammps"))
-from sph_wave import wave  # noqa: E402
+from from_tests import np
+from sph_wave import wave
 
 with tempfile.TemporaryDirectory() as folder:
     path = os.path.join(folder, "wave.data")
