@@ -17,7 +17,8 @@ FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg
   const bool has_rotation = narg > 3 && strcmp(arg[3], "rotation") == 0;
   const bool has_history = strcmp(arg[narg - 1], "history") == 0;
   rotation = has_rotation;
-  history = has_rotation ? WITH_ROTATION : TRANSLATION_ONLY;
+  history = TRANSLATION_ONLY;
+  if (has_rotation) history = WITH_ROTATION;
   columns = history + (has_history ? (has_rotation ? 12 : 6) : 0);
   restart_peratom = 1;
   restart_global = 1;

@@ -112,6 +112,7 @@ void PairStokesDynamics::solve()
     if (fix_state->restart_written) preconditioner.make_anew();
     fix_state->restart_written = false;
     preconditioner.tolerance = tolerance;
+    preconditioner.warm_start = warm_start;
     preconditioner.attach(system);
     status = sd_solve_gradients(&system, slip.data(), tolerance, max_iter, solution.data(),
                                 work.data(), &report);

@@ -18,7 +18,9 @@ static const double RIGID =
     1e-9;    // of its size: rounding; a clump that has bent more gets a new block
 static const double BENT = 0.02;    // of its size: a clump that has changed more gets a new block
 static const double WORTH_COUNTING =
-    10.0;                             // iterations saved: then what a factor would cost is counted
+    10.0;    // iterations saved: then what a factor would cost is counted
+static const double PATIENCE =
+    4.0;    // of blocks by list: a change must have been worth as many; the first warm starts are poor
 static const int SMALL_CLUMP = 64;    // spheres: cheaper to factor anew than to keep
 
 void Preconditioner::free_shapes()
@@ -61,16 +63,43 @@ bool Preconditioner::group_by_molecule(const std::vector<int64_t> &molecule, con
   return 2 * inside >= spheres && inside > 0;
 }
 
-/* 6 pi eta a and 8 pi eta a^3 of the cloud */
-void Preconditioner::cloud_diagonal()
+/* The same where every sphere sees all of its clump, in images that are next to one another. A clump that this rank has at two borders
+ * of a periodic box comes twice, as it is seen from either; no atom is in two blocks. */
+bool Preconditioner::group_by_list()
 {
-  const sd_spheres s = scene.cloud();
-  cloud_drag.resize(n);
-  cloud_spin.resize(n);
+  const sd_pairs &list = scene.list();
+  const double *a = scene.radii();
+  const int nlocal = atom->nlocal;
+  std::vector<char> done(nlocal, 0);
+  int spheres = 0, inside = 0;
+  first.assign(1, 0);
+  member.clear();
+  for (int i = 0; i < nlocal; i++) {
+    if (a[i] > 0.0) spheres++;
+    if (done[i] || list.first[i] == list.first[i + 1]) continue;
+    member.push_back(i);
+    inside++;
+    for (long k = list.first[i]; k < list.first[i + 1]; k++) {
+      const int j = list.neighbor[k];
+      member.push_back(j);
+      if (j >= nlocal) continue;
+      done[j] = 1;
+      inside++;
+    }
+    first.push_back(member.size());
+  }
+  return 2 * inside >= spheres && inside > 0;
+}
+
+/* 6 pi eta a and 8 pi eta a^3 */
+void Preconditioner::diagonal(const sd_spheres &s)
+{
+  all_drag.resize(n);
+  all_spin.resize(n);
   for (int i = 0; i < n; i++) {
-    const double eta = 1.0 / (s.w[i] * s.w[i]);
-    cloud_drag[i] = 6.0 * SD_PI * eta * s.a[i];
-    cloud_spin[i] = 8.0 * SD_PI * eta * s.a[i] * s.a[i] * s.a[i];
+    const double eta_a = s.a[i] > 0.0 ? s.a[i] / (s.w[i] * s.w[i]) : 0.0;
+    all_drag[i] = 6.0 * SD_PI * eta_a;
+    all_spin[i] = 8.0 * SD_PI * eta_a * s.a[i] * s.a[i];
   }
 }
 
@@ -99,6 +128,42 @@ Preconditioner::Kind Preconditioner::choose(bool clumps)
   return numbers.choice.with ? candidate : NONE;
 }
 
+/* auto, lists. A solve from zero, and those to come without warm start, have the iterations that the tolerance lets expect; warm starts
+ * begin without blocks, since they often leave next to nothing to do. */
+Preconditioner::Kind Preconditioner::choose_by_list()
+{
+  const int nlocal = atom->nlocal;
+  const size_t count = first.size() - 1;
+  std::vector<double> share(count + 1);
+  for (size_t k = 0; k < count; k++) {
+    const long size = first[k + 1] - first[k];
+    share[k] = std::count_if(&member[first[k]], &member[first[k]] + size,
+                             [nlocal](int i) {
+                               return i < nlocal;
+                             }) /
+        (double) size;
+  }
+  costs = sd_costs_by_list(nlocal, scene.list().first[nlocal], width, count, first.data(),
+                           share.data(), whole);
+  double sums[3] = {costs.without, costs.with, costs.every};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
+  costs.without = sums[0];
+  costs.with = sums[1];
+  costs.every = sums[2];
+  if (costs.every == 0.0) return NONE;
+  if (warm_start && !warm) {
+    sd_choice once;
+    sd_choice_begin(&once, &costs, tolerance);
+    return once.with ? CLUMP : NONE;
+  }
+  if (!numbers.choice.begun || numbers.candidate != CLUMP) {
+    numbers.candidate = CLUMP;
+    sd_choice_begin(&numbers.choice, &costs, warm ? 1.0 : tolerance);
+  }
+  costs.set_up = PATIENCE * costs.every;
+  return numbers.choice.with ? CLUMP : NONE;
+}
+
 /* What the parts of a factor add up to */
 void Preconditioner::add_up(sd_sparse_size &part)
 {
@@ -112,7 +177,9 @@ void Preconditioner::attach(sd_system &system)
 {
   present = NONE;
   width = system.spin ? 6 : 3;
+  warm = system.warm;
   const bool cloud = scene.all_pairs();
+  whole = scene.settings.clumps_only && std::isinf(scene.settings.cutoff);
   if (kind == NONE) return;
 
   std::vector<int64_t> molecule;
@@ -122,28 +189,30 @@ void Preconditioner::attach(sd_system &system)
     n = scene.cloud_size();
     a = scene.cloud().a;
   } else {
-    n = atom->nlocal;
+    n = atom->nlocal + (whole ? atom->nghost : 0);
     a = scene.radii();
   }
   bool clumps = false;
   first.assign(1, 0);
   member.clear();
-  if (kind != SPARSE && atom->molecule) {
+  if (kind != SPARSE && whole)
+    clumps = group_by_list();
+  else if (kind != SPARSE && atom->molecule) {
     if (!cloud) molecule.assign(atom->molecule, atom->molecule + n);
     clumps = group_by_molecule(cloud ? scene.cloud_molecules() : molecule, a);
   }
   small = member.size() <= (first.size() - 1) * (size_t) SMALL_CLUMP;
   Kind want = kind;
-  if (kind == AUTO) want = cloud ? choose(clumps) : clumps && small ? CLUMP : NONE;
+  if (kind == AUTO) want = cloud ? choose(clumps) : choose_by_list();
   // All ranks go the same way: the solver's sums and, of a cloud, the applications are collective.
   int mine = want, any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   want = (Kind) any;
   if (want == NONE) return;
 
-  if (cloud) cloud_diagonal();
-  drag = cloud ? cloud_drag.data() : system.drag;
-  spin = !system.spin ? nullptr : cloud ? cloud_spin.data() : system.spin;
+  if (cloud || whole) diagonal(cloud ? scene.cloud() : scene.local());
+  drag = cloud || whole ? all_drag.data() : system.drag;
+  spin = !system.spin ? nullptr : cloud || whole ? all_spin.data() : system.spin;
   if (want == SPARSE) {
     int ready = !worn || make_sparse();
     MPI_Allreduce(MPI_IN_PLACE, &ready, 1, MPI_INT, MPI_MIN, world);
@@ -154,7 +223,7 @@ void Preconditioner::attach(sd_system &system)
   }
   pending = want == CLUMP;
   present = want;
-  system.precondition = cloud ? apply : apply_own;
+  system.precondition = cloud ? apply : whole ? apply_whole : apply_own;
   system.precondition_ctx = this;
 }
 
@@ -164,6 +233,11 @@ void Preconditioner::apply_blocks(const double *r, double *z)
   if (pending) {
     pending = false;
     usable = (!worn && turn_blocks()) || make_blocks();
+    if (whole) {    // ranks that share a clump must treat it alike
+      int all = usable;
+      MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, world);
+      usable = all;
+    }
     worn = !usable;
     blocks.drag = drag;
     blocks.spin = spin;
@@ -179,6 +253,17 @@ void Preconditioner::apply_blocks(const double *r, double *z)
 void Preconditioner::apply_own(void *ctx, const double *r, double *z)
 {
   static_cast<Preconditioner *>(ctx)->apply_blocks(r, z);
+}
+
+void Preconditioner::apply_whole(void *ctx, const double *r, double *z)
+{
+  Preconditioner *p = static_cast<Preconditioner *>(ctx);
+  const size_t own = p->width * (size_t) p->atom->nlocal;
+  p->in.assign(r, r + own);
+  p->scene.refresh(p->in, p->width);
+  p->out.resize(p->width * (size_t) p->n + 1);
+  p->apply_blocks(p->in.data(), p->out.data());
+  std::copy_n(p->out.begin(), own, z);
 }
 
 bool Preconditioner::make_sparse()
@@ -203,13 +288,14 @@ bool Preconditioner::make_blocks()
   const sd_law law = scene.law();
   const bool cloud = scene.all_pairs();
   sd_spheres s = cloud ? scene.cloud() : scene.local();
-  if (!cloud) {    // a clump may lie across a periodic boundary: its images that are next to one another
-    whole.resize(3 * (size_t) n + 3);
+  if (!cloud &&
+      !whole) {    // a clump may lie across a periodic boundary: images that are next to one another
+    near.resize(3 * (size_t) n + 3);
     for (size_t k = 0; k + 1 < first.size(); k++)
       for (long m = first[k]; m < first[k + 1]; m++)
         domain->closest_image(s.x + 3 * (long) member[first[k]], s.x + 3 * (long) member[m],
-                              &whole[3 * (size_t) member[m]]);
-    s.x = whole.data();
+                              &near[3 * (size_t) member[m]]);
+    s.x = near.data();
   }
   sd_blocks_free(&blocks);
   blocks = sd_blocks();
@@ -280,7 +366,9 @@ void Preconditioner::learn(const sd_solve_report &report)
     if (first_iterations < 0) first_iterations = report.iterations;
     if (report.iterations > first_iterations + first_iterations / 2 + 3) worn = true;
   }
-  if (kind != AUTO || !scene.all_pairs()) return;
+  if (kind != AUTO || costs.without == 0.0) return;
+  // Blocks by list pay in a single solve, and that from zero says nothing of the warm ones to come.
+  if (!scene.all_pairs() && warm_start && !warm) return;
   sd_choice_learn(&numbers.choice, &costs, report.iterations, made);
   if (numbers.choice.solves == 0.0) worn = true;    // it goes the other way now
 }

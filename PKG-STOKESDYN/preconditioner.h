@@ -1,5 +1,6 @@
-/* Which preconditioner a scene gets, and when it is made anew. All pairs: of the whole cloud, on every rank; lists: of the clumps that
- * this rank owns whole or in part. A preconditioner changes the number of iterations, never the answer. */
+/* Which preconditioner a scene gets, and when it is made anew. All pairs: of the whole cloud, on every rank; clumps_only without a
+ * cut-off: of all clumps that this rank has a sphere of; other lists: of the parts of clumps that this rank owns. A preconditioner
+ * changes the number of iterations, never the answer. */
 #ifndef SD_PRECONDITIONER_H
 #define SD_PRECONDITIONER_H
 
@@ -20,6 +21,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   enum Kind { AUTO, NONE, CLUMP, SPARSE };
   Kind kind = AUTO;
   double tolerance = 1e-3;    // of the solves
+  bool warm_start = true;     // of the solves
 
   Preconditioner(LAMMPS_NS::LAMMPS *lmp, Scene &scene) :
       Pointers(lmp), scene(scene), sparse(), blocks()
@@ -53,21 +55,26 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   int first_iterations = -1;    // blocks: of the first solve after a set-up
   bool worn = true;             // make it anew
   bool small = true;            // are the clumps small?
+  bool warm = false;            // does this solve start from the last ones?
   bool pending = false;         // blocks: to be made or turned at their first use in this solve
   bool usable = false;          // blocks: could they be made?
+  bool whole =
+      false;    // blocks by list: with the ghosts, which are all of a clump that others own
   const double *drag = nullptr, *spin = nullptr;    // of what apply() sees
 
   sd_sparse sparse;
   sd_blocks blocks;
   std::vector<sd_shape> shapes;    // of the blocks at set-up
-  std::vector<double> cloud_drag, cloud_spin, in, out, whole;
+  std::vector<double> all_drag, all_spin, in, out, near;
   std::vector<long> first;
   std::vector<int> member;
   int n = 0, width = 3;
 
   bool group_by_molecule(const std::vector<int64_t> &molecule, const double *a);
-  void cloud_diagonal();
+  bool group_by_list();
+  void diagonal(const sd_spheres &s);
   Kind choose(bool clumps);
+  Kind choose_by_list();
   void add_up(sd_sparse_size &part);
   bool make_sparse();
   bool make_blocks();
@@ -76,6 +83,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   void apply_blocks(const double *r, double *z);
   static void apply(void *ctx, const double *r, double *z);
   static void apply_own(void *ctx, const double *r, double *z);
+  static void apply_whole(void *ctx, const double *r, double *z);
 };
 
 }    // namespace StokesDyn

@@ -40,6 +40,11 @@ sd_costs sd_costs_sparse(int n, int width, const sd_sparse_size *size);
 /* Coupled blocks of the clumps first[k] ... first[k+1] - 1. kept: blocks outlive a solve. */
 sd_costs sd_costs_blocks(int n, int width, int blocks, const long *first, int kept);
 
+/* Blocks by list, not coupled and made anew in every solve that iterates: this rank's part of the costs, to be summed. pairs: of this
+ * rank's n spheres. first: of the blocks that it has; share: how much of each it counts, one over all ranks. whole: are clumps whole? */
+sd_costs sd_costs_by_list(int n, double pairs, int width, int blocks, const long *first,
+                          const double *share, int whole);
+
 /* Numbers only, the caller's to save: the same numbers go on alike. */
 typedef struct {
   double begun;      /* 0: not yet */

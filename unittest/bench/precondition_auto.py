@@ -55,6 +55,8 @@ SCENES = {
     "50 flocs x 20, cold, 1e-6": (lambda: flocs(50, 20, 34.7 * A), "cold", 1e-6, "no", 30, "clump"),
     "50 flocs x 20, cold, 1e-6, rotation": (lambda: flocs(50, 20, 34.7 * A), "cold", 1e-6, "yes", 20, "clump"),
     "50 flocs x 20, free, warm, 1e-3": (lambda: floating(50, 20, 34.7 * A), "warm", 1e-3, "no", 60, "clump"),
+    "100 flocs x 20, clumps_only, cold, 1e-6": (lambda: flocs(100, 20, 45.0 * A), "cold", 1e-6, "no", 60, "clump"),
+    "100 flocs x 20, clumps_only, warm, 1e-3": (lambda: floating(100, 20, 45.0 * A), "warm", 1e-3, "no", 200, "clump"),
     "50 spheres, cold, 1e-6": (lambda: first_of(loose_lattice(4, 1.0), 50), "cold", 1e-6, "no", 2000, "sparse"),
     "50 spheres, warm, 1e-3": (lambda: first_of(falling(loose_lattice(4)), 50), "warm", 1e-3, "no", 2000, "sparse"),
     "8 spheres, cold, 1e-6": (lambda: loose_lattice(2, 1.0), "cold", 1e-6, "no", 5000, "sparse"),
@@ -62,11 +64,12 @@ SCENES = {
 }
 
 
-def run(folder, spheres, start, tolerance, rotation, steps, precondition):
+def run(folder, spheres, start, tolerance, rotation, steps, precondition, sees):
     """Of each half: pair seconds a step; of the second: iterations of its last step"""
-    words = (f"cut_off_distance inf visc 1.3 algorithm 2 relative_tolerance {tolerance} max_iter 1000 rotation {rotation} "
+    words = (f"{sees} visc 1.3 algorithm 2 relative_tolerance {tolerance} max_iter 1000 rotation {rotation} "
              f"warm_start {'yes' if start == 'warm' else 'no'} precondition {precondition}")
-    lines = input_lines(spheres, words, os.path.join(folder, "data"), box=[(-60.0, 120.0)] * 3, density=20.0, dt=1e-3)
+    lines = input_lines(spheres, words, os.path.join(folder, "data"), box=[(-60.0, 120.0)] * 3, density=20.0, dt=1e-3,
+                        comm="comm_modify cutoff 40")
     if start == "warm":
         lines += ["fix move all nve/sphere", "fix pull all gravity 1 vector 0 0 -1"]
     else:
@@ -100,7 +103,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             for _ in range(args.repeat):
                 for way in ("none", rival, "auto"):
-                    whole, latest, its = run(folder, spheres, start, tolerance, rotation, steps, way)
+                    sees = "clumps_only yes" if "clumps_only" in name else "cut_off_distance inf"
+                    whole, latest, its = run(folder, spheres, start, tolerance, rotation, steps, way, sees)
                     before = best.get(way, (np.inf, np.inf, its))
                     best[way] = (min(whole, before[0]), min(latest, before[1]), its)
         n, r, a = (best[way] for way in ("none", rival, "auto"))
