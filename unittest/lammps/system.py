@@ -84,7 +84,7 @@ def input_lines(spheres, style, data, boundary="f f f", box=None, tilt=None, new
     if fix:
         lines.append("fix drag all stokes_dynamics")
     if dt:
-        lines.append(f"timestep {dt!r}")
+        lines.append(f"timestep {float(dt)!r}")
     return lines
 
 

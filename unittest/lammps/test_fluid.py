@@ -75,7 +75,7 @@ def test_variable_may_use_a_compute(simulation):
     spheres = cloud()
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA} fluid_velocity v_u 0 0 {EXACT}",
                      before_pair="compute here all property/atom z\ncompute mean all reduce ave c_here\n"
-                                 "variable u atom c_here-c_mean").run(2)
+                                 "variable mean equal c_mean\nvariable u atom c_here-v_mean").run(2)
     u = np.zeros((spheres.n, 3))
     u[:, 0] = spheres.x[:, 2] - spheres.x[:, 2].mean()
     assert largest_difference(sim.drag, model.forces(spheres, ETA, u)) < 1e-10

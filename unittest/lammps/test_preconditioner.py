@@ -400,7 +400,7 @@ def test_dense_free_cloud_is_stable_below_the_printed_limit_and_not_above(simula
         log = tmp_path / f"log.{factor}"
         sim = simulation(spheres, words, log=log, dt=1e-9 if factor == 0.0 else factor * limit)
         sim.commands(["fix move all nve/sphere", "compute energy all ke", "thermo_style custom step c_energy",
-                      "thermo_modify format float %.15g", "thermo 1"]).run(15 if factor else 0)
+                      "thermo_modify format float %.15g lost ignore", "thermo 1"]).run(15 if factor else 0)
         if factor == 0.0:
             limit = sim.fix_vector()[8]
         sim.close()
@@ -410,7 +410,7 @@ def test_dense_free_cloud_is_stable_below_the_printed_limit_and_not_above(simula
     assert limit > 0.0
     assert len(energy[0.5]) == len(energy[2.0]) == 16
     assert (np.diff(energy[0.5]) < 0.0).all()
-    assert energy[2.0][-1] > 1e6 * energy[2.0][0]
+    assert energy[2.0].max() > 1e6 * energy[2.0][0]
     assert warnings[0.5] == [] and len(warnings[2.0]) == 1
     for word in (PAIR, "time step", "above", "2 m lambda/(6 pi eta a)", "lambda"):
         assert word in warnings[2.0][0]

@@ -200,8 +200,8 @@ def test_other_pair_style_line_after_the_restart_is_in_the_first_force(simulatio
 def test_restart_without_the_plugin_is_refused_by_lammps(simulation, tmp_path):
     simulation().commands(begin("free", style("all", 1, "exact"),
                                 tmp_path / "data")).run(1).command(f"write_restart {tmp_path}/mid")
-    with pytest.raises(LammpsError, match="stokes_dynamics"):
-        simulation().command(f"read_restart {tmp_path}/mid")
+    ended = lmp(tmp_path, f"read_restart {tmp_path}/mid", succeed=False)      # newer LAMMPS may load it by itself in this process
+    assert ended.code != 0 and "stokes_dynamics" in ended.text
 
 
 def test_write_data_and_read_data(simulation, tmp_path):

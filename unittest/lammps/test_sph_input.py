@@ -44,7 +44,7 @@ ONE_LINE = {
     "coeff c": (PAIR + "pair_coeff 1 1 c -3", "keyword c: '-3' must be > 0"),
     "coeff alpha": (PAIR + "pair_coeff 1 1 alpha 3", "keyword alpha: the pair_style has no artVisc"),
     "coeff deltap": (PAIR + "pair_coeff 1 1 deltap 0.01", "keyword deltap: the pair_style has no tensCorr"),
-    "coeff order": (PAIR + "pair_coeff 2 1 c 3", "no pair of types '2 1'"),
+    "coeff order": (PAIR + "pair_coeff 2 1*1 c 3", "no pair of types '2 1*1'"),
     "state missing": ("fix 1 all sph/pressure", "equation of state is missing"),
     "state": ("fix 1 all sph/pressure tait 1 2 3", "unknown keyword 'tait'"),
     "state B": ("fix 1 all sph/pressure absolut 0", "keyword absolut: '0' must be > 0"),
