@@ -15,7 +15,7 @@ namespace StokesDyn {
 static const double RHO =
     3.0;    // reach of the sparse factor: 42 blocks a sphere in a compact cloud
 static const double RIGID =
-    1e-9;    // of its size: rounding; a clump that has bent more gets a new block
+    1e-9;    // of its size: rounding. A small clump that has bent more gets a new block, so that a restarted run has the same
 static const double BENT = 0.02;    // of its size: a clump that has changed more gets a new block
 static const double WORTH_COUNTING =
     10.0;    // iterations saved: then what a factor would cost is counted
@@ -233,7 +233,7 @@ void Preconditioner::apply_blocks(const double *r, double *z)
   if (pending) {
     pending = false;
     usable = (!worn && turn_blocks()) || make_blocks();
-    if (whole) {    // ranks that share a clump must treat it alike
+    if (whole || scene.all_pairs()) {    // ranks that share a clump must treat it alike
       int all = usable;
       MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, world);
       usable = all;
@@ -242,12 +242,14 @@ void Preconditioner::apply_blocks(const double *r, double *z)
     blocks.drag = drag;
     blocks.spin = spin;
   }
+  const bool other_rank = scene.all_pairs() && comm->me > 0;    // the first one does it all
   if (usable)
     sd_blocks_apply(&blocks, r, z);
   else
     for (long i = 0; i < n; i++)
       for (int d = 0; d < width; d++)
-        z[width * i + d] = drag[i] == 0.0 ? 0.0 : (d < 3 ? drag[i] : spin[i]) * r[width * i + d];
+        z[width * i + d] =
+            drag[i] == 0.0 || other_rank ? 0.0 : (d < 3 ? drag[i] : spin[i]) * r[width * i + d];
 }
 
 void Preconditioner::apply_own(void *ctx, const double *r, double *z)
@@ -302,9 +304,16 @@ bool Preconditioner::make_blocks()
   free_shapes();
   first_iterations = -1;
   const int count = first.size() - 1;
-  if (sd_blocks_create(&blocks, &law, &s, n, width, count, first.data(), member.data()) != SD_OK)
-    return false;
-  if (!cloud) return true;
+  if (!cloud)
+    return sd_blocks_create(&blocks, &law, &s, n, width, count, first.data(), member.data()) ==
+        SD_OK;
+  int made = sd_blocks_create_part(&blocks, &law, &s, n, width, count, first.data(), member.data(),
+                                   comm->me, comm->nprocs) == SD_OK;
+  MPI_Allreduce(MPI_IN_PLACE, &made, 1, MPI_INT, MPI_MIN, world);
+  if (!made) return false;
+  MPI_Allreduce(MPI_IN_PLACE, blocks.rigid, 3 * width * (int) blocks.first[count], MPI_DOUBLE,
+                MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, blocks.mobility, 9 * count, MPI_DOUBLE, MPI_SUM, world);
   for (int k = 0; k < count; k++) {
     std::vector<double> x, a;
     for (long m = first[k]; m < first[k + 1]; m++) {
@@ -345,11 +354,10 @@ void Preconditioner::apply(void *ctx, const double *r, double *z)
 {
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
   p->scene.to_cloud(r, p->in);
-  p->out.assign((size_t) p->width * p->n + 1, 0.0);
+  p->out.resize((size_t) p->width * p->n + 1);
   if (p->present == SPARSE)
     sd_sparse_apply(&p->sparse, p->in.data(), p->out.data());
-  else if (p->comm->me ==
-           0)    // all blocks on the first rank; the sum over the ranks sends them round
+  else
     p->apply_blocks(p->in.data(), p->out.data());
   p->scene.from_cloud(p->out, z);
 }

@@ -8,6 +8,8 @@
 /* LAPACK: inverse from the Cholesky factor in the lower triangle (column-major). */
 void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info);
 
+static const double UNITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
 static void uncouple(sd_blocks *b)
 {
   free(b->friction);
@@ -62,7 +64,7 @@ static sd_status allocate(sd_blocks *b, const sd_spheres *s, int n, int width, i
   }
   b->first[blocks] = count;
   b->inverse = malloc(sizeof(double) * (size_t) (b->start[blocks] + 1));
-  b->rigid = malloc(sizeof(double) * (size_t) (3 * width * count + 1));
+  b->rigid = calloc((size_t) (3 * width * count + 1), sizeof(double));
   b->scratch = malloc(sizeof(double) * (size_t) (2 * width * largest + 9 * (long) blocks + 1));
   return b->inverse && b->rigid && b->scratch ? SD_OK : SD_ENOMEMORY;
 }
@@ -109,10 +111,9 @@ static void rigid_translations(sd_blocks *b, int k, double S[9])
 
 sd_status sd_blocks_renew(sd_blocks *b, const sd_law *law, const sd_spheres *s, int k)
 {
-  static const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const int m = (int) (b->first[k + 1] - b->first[k]), size = b->width * m;
   double *A = b->inverse + b->start[k], S[9];
-  sd_blocks_turn(b, k, unity);
+  sd_blocks_turn(b, k, UNITY);
   if (m == 0) return SD_OK;
   const sd_status status = sd_unit_cholesky(law, s, b->member + b->first[k], m, b->width, A);
   if (status != SD_OK) return status;
@@ -126,14 +127,25 @@ sd_status sd_blocks_renew(sd_blocks *b, const sd_law *law, const sd_spheres *s, 
   return SD_OK;
 }
 
-sd_status sd_blocks_create(sd_blocks *b, const sd_law *law, const sd_spheres *s, int n, int width,
-                           int blocks, const long *first, const int *member)
+sd_status sd_blocks_create_part(sd_blocks *b, const sd_law *law, const sd_spheres *s, int n,
+                                int width, int blocks, const long *first, const int *member,
+                                int part, int parts)
 {
   memset(b, 0, sizeof(*b));
   sd_status status = allocate(b, s, n, width, blocks, first, member);
-  for (int k = 0; k < blocks && status == SD_OK; k++) status = sd_blocks_renew(b, law, s, k);
+  b->part = part;
+  b->parts = parts;
+  for (int k = part; k < blocks && status == SD_OK; k += parts)
+    status = sd_blocks_renew(b, law, s, k);
+  for (int k = 0; k < blocks && status == SD_OK; k++) sd_blocks_turn(b, k, UNITY);
   if (status != SD_OK) sd_blocks_free(b);
   return status;
+}
+
+sd_status sd_blocks_create(sd_blocks *b, const sd_law *law, const sd_spheres *s, int n, int width,
+                           int blocks, const long *first, const int *member)
+{
+  return sd_blocks_create_part(b, law, s, n, width, blocks, first, member, 0, 1);
 }
 
 void sd_blocks_turn(sd_blocks *b, int block, const double *R)

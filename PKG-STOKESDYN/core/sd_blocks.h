@@ -10,7 +10,8 @@
  * first two terms are a projection of B, so P is positive definite with any positive definite Q, also with one of clumps that
  * stood elsewhere or had other blocks.
  *
- * Parts: the sum of z over all parts is P r. Set-up is not shared: every part makes all blocks.
+ * Parts: the sum of z over all parts is P r. A part makes its own blocks; what couples them, rigid and mobility, is the sum of those
+ * of all parts.
  * Zero-initialise; sd_blocks_free in the end. */
 #ifndef SD_BLOCKS_H
 #define SD_BLOCKS_H
@@ -48,6 +49,12 @@ void sd_blocks_free(sd_blocks *b);
  * small diagonal. SD_OK; SD_ENOMEMORY; SD_EINDEFINITE; SD_ENOTFINITE. On failure b is empty. */
 sd_status sd_blocks_create(sd_blocks *b, const sd_law *law, const sd_spheres *s, int n, int width,
                            int blocks, const long *first, const int *member);
+
+/* The same, but only the blocks k with k % parts == part. Before they are coupled the caller sums rigid [3 width first[blocks]] and
+ * mobility [9 blocks] over all parts. */
+sd_status sd_blocks_create_part(sd_blocks *b, const sd_law *law, const sd_spheres *s, int n,
+                                int width, int blocks, const long *first, const int *member,
+                                int part, int parts);
 
 /* Block k anew, of its spheres as they stand now. On failure b is of no use but to sd_blocks_free. */
 sd_status sd_blocks_renew(sd_blocks *b, const sd_law *law, const sd_spheres *s, int k);

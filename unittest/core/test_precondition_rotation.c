@@ -49,7 +49,7 @@ static void sparse_of(sd_sparse *f, const rotating *g, double rho, int part, int
 }
 
 /* Blocks of m consecutive spheres; the rest are in none. */
-static void blocks_of(sd_blocks *b, const rotating *g, int m)
+static void blocks_part(sd_blocks *b, const rotating *g, int m, int part, int parts)
 {
   const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
   long first[100];
@@ -57,10 +57,30 @@ static void blocks_of(sd_blocks *b, const rotating *g, int m)
   assert_true(g->s->n <= 2000 && g->s->n / m < 100);
   for (int k = 0; k <= g->s->n / m; k++) first[k] = (long) m * k;
   for (int i = 0; i < g->s->n; i++) member[i] = i;
-  assert_int_equal(sd_blocks_create(b, &g->law, &spheres, g->s->n, 6, g->s->n / m, first, member),
+  assert_int_equal(sd_blocks_create_part(b, &g->law, &spheres, g->s->n, 6, g->s->n / m, first,
+                                         member, part, parts),
                    SD_OK);
   b->drag = g->s->drag;
   b->spin = g->spin;
+}
+
+static void blocks_of(sd_blocks *b, const rotating *g, int m)
+{
+  blocks_part(b, g, m, 0, 1);
+}
+
+/* What the caller of sd_blocks_create_part does with the parts */
+static void sum_over(sd_blocks *b, int parts)
+{
+  const long rigid = 18 * b[0].first[b[0].blocks], mobility = 9 * (long) b[0].blocks;
+  for (int k = 1; k < parts; k++) {
+    for (long i = 0; i < rigid; i++) b[0].rigid[i] += b[k].rigid[i];
+    for (long i = 0; i < mobility; i++) b[0].mobility[i] += b[k].mobility[i];
+  }
+  for (int k = 1; k < parts; k++) {
+    memcpy(b[k].rigid, b[0].rigid, sizeof(double) * (size_t) rigid);
+    memcpy(b[k].mobility, b[0].mobility, sizeof(double) * (size_t) mobility);
+  }
 }
 
 static void couple(sd_blocks *b, const rotating *g)
@@ -176,13 +196,14 @@ static void both_are_symmetric_positive_definite_and_split(void **state)
   const double turn[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
   for (int k = 0; k <= PARTS; k++) {
     sparse_of(&f[k], &g, 2.0, k ? k - 1 : 0, k ? PARTS : 1);
-    blocks_of(&b[k], &g, M);
-    b[k].part = k ? k - 1 : 0;
-    b[k].parts = k ? PARTS : 1;
-    couple(&b[k], &g);
-    sd_blocks_turn(&b[k], 2, turn); /* after coupling: far and near need not agree */
+    blocks_part(&b[k], &g, M, k ? k - 1 : 0, k ? PARTS : 1);
     fs[k] = &f[k];
     bs[k] = &b[k];
+  }
+  sum_over(b + 1, PARTS);
+  for (int k = 0; k <= PARTS; k++) {
+    couple(&b[k], &g);
+    sd_blocks_turn(&b[k], 2, turn); /* after coupling: far and near need not agree */
   }
   for (int kind = 0; kind < 2; kind++) {
     sd_precondition *P = kind ? sd_blocks_apply : sd_sparse_apply;
