@@ -65,30 +65,23 @@ bool Preconditioner::group_by_molecule(const std::vector<int64_t> &molecule, con
 
 /* The same where every sphere sees all of its clump, in images that are next to one another. A clump that this rank has at two borders
  * of a periodic box comes twice, as it is seen from either; no atom is in two blocks. */
-bool Preconditioner::group_by_list()
+void Preconditioner::group_by_list()
 {
   const sd_pairs &list = scene.list();
-  const double *a = scene.radii();
   const int nlocal = atom->nlocal;
   std::vector<char> done(nlocal, 0);
-  int spheres = 0, inside = 0;
   first.assign(1, 0);
   member.clear();
   for (int i = 0; i < nlocal; i++) {
-    if (a[i] > 0.0) spheres++;
     if (done[i] || list.first[i] == list.first[i + 1]) continue;
     member.push_back(i);
-    inside++;
     for (long k = list.first[i]; k < list.first[i + 1]; k++) {
       const int j = list.neighbor[k];
       member.push_back(j);
-      if (j >= nlocal) continue;
-      done[j] = 1;
-      inside++;
+      if (j < nlocal) done[j] = 1;
     }
     first.push_back(member.size());
   }
-  return 2 * inside >= spheres && inside > 0;
 }
 
 /* 6 pi eta a and 8 pi eta a^3 */
@@ -196,18 +189,15 @@ void Preconditioner::attach(sd_system &system)
   first.assign(1, 0);
   member.clear();
   if (kind != SPARSE && whole)
-    clumps = group_by_list();
+    group_by_list();
   else if (kind != SPARSE && atom->molecule) {
     if (!cloud) molecule.assign(atom->molecule, atom->molecule + n);
     clumps = group_by_molecule(cloud ? scene.cloud_molecules() : molecule, a);
   }
   small = member.size() <= (first.size() - 1) * (size_t) SMALL_CLUMP;
+  // The same on all ranks: the solver's sums and most applications are collective.
   Kind want = kind;
   if (kind == AUTO) want = cloud ? choose(clumps) : choose_by_list();
-  // All ranks go the same way: the solver's sums and, of a cloud, the applications are collective.
-  int mine = want, any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  want = (Kind) any;
   if (want == NONE) return;
 
   if (cloud || whole) diagonal(cloud ? scene.cloud() : scene.local());

@@ -71,7 +71,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   int n = 0, width = 3;
 
   bool group_by_molecule(const std::vector<int64_t> &molecule, const double *a);
-  bool group_by_list();
+  void group_by_list();
   void diagonal(const sd_spheres &s);
   Kind choose(bool clumps);
   Kind choose_by_list();

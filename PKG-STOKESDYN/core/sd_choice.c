@@ -1,7 +1,6 @@
 #include "sd_choice.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Solves of which means are taken, and after which a ratio counts as measured. */
 static const double TRIAL = 8.0;
@@ -29,17 +28,10 @@ sd_status sd_sparse_count(const sd_spheres *s, int n, double rho, int part, int 
                           sd_sparse_size *size)
 {
   *size = (sd_sparse_size){0.0, 0.0, 0.0};
-  int *order = malloc(sizeof(int) * (size_t) (n + 1));
-  double *distance = malloc(sizeof(double) * (size_t) (n + 1));
   sd_rows rows = {0};
-  const int count = order && distance ? sd_farthest_first(s, n, order, distance) : -1;
-  const sd_status status = count < 0
-      ? SD_ENOMEMORY
-      : sd_rows_find(&rows, s, n, order, distance, count, rho, part, parts);
+  const sd_status status = sd_rows_find(&rows, s, n, rho, part, parts);
   if (status == SD_OK) *size = size_of(&rows);
   sd_rows_free(&rows);
-  free(order);
-  free(distance);
   return status;
 }
 

@@ -187,8 +187,8 @@ end:
   return count;
 }
 
-sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, const int *order,
-                       const double *distance, int count, double rho, int part, int parts)
+static sd_status find_rows(sd_rows *rows, const sd_spheres *s, int n, const int *order,
+                           const double *distance, int count, double rho, int part, int parts)
 {
   const double *x = s->x;
   double extent;
@@ -236,6 +236,18 @@ sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, const int *ord
 end:
   cells_free(&c);
   free(list);
+  return status;
+}
+
+sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, double rho, int part, int parts)
+{
+  int *order = malloc(sizeof(int) * (size_t) (n + 1));
+  double *distance = malloc(sizeof(double) * (size_t) (n + 1));
+  const int count = order && distance ? sd_farthest_first(s, n, order, distance) : -1;
+  const sd_status status =
+      count < 0 ? SD_ENOMEMORY : find_rows(rows, s, n, order, distance, count, rho, part, parts);
+  free(order);
+  free(distance);
   return status;
 }
 

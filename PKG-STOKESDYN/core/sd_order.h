@@ -21,9 +21,8 @@ typedef struct {
   int largest; /* most rows of a column */
 } sd_rows;
 
-/* count: of spheres in order. Zero-initialise; sd_rows_free in the end, also after a failure. SD_OK; SD_ENOMEMORY. */
-sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, const int *order,
-                       const double *distance, int count, double rho, int part, int parts);
+/* In the order of sd_farthest_first. Zero-initialise; sd_rows_free in the end, also after a failure. SD_OK; SD_ENOMEMORY. */
+sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, double rho, int part, int parts);
 void sd_rows_free(sd_rows *rows);
 
 #ifdef __cplusplus

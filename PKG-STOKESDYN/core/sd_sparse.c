@@ -112,14 +112,7 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
   f->width = width;
   f->part = part;
   f->parts = parts;
-  int *order = malloc(sizeof(int) * (size_t) (n + 1));
-  double *distance = malloc(sizeof(double) * (size_t) (n + 1));
-  const int count = order && distance ? sd_farthest_first(s, n, order, distance) : -1;
-  sd_status status = count < 0
-      ? SD_ENOMEMORY
-      : sd_rows_find(&f->rows, s, n, order, distance, count, rho, part, parts);
-  free(order);
-  free(distance);
+  sd_status status = sd_rows_find(&f->rows, s, n, rho, part, parts);
   if (status == SD_OK) status = fill(f, law, s);
   if (status != SD_OK) sd_sparse_free(f);
   return status;
