@@ -20,7 +20,7 @@ static vans_table *vans_read(const char *case_name)
 {
   char path[1024], line[8192];
   const char *slash = strrchr(__FILE__, '/');
-  snprintf(path, sizeof path, "%.*s/../data/vans/%s.csv", (int) (slash - __FILE__), __FILE__,
+  snprintf(path, sizeof path, "%.*s/../../data/vans/%s.csv", (int) (slash - __FILE__), __FILE__,
            case_name);
   FILE *file = fopen(path, "r");
   if (!file) {

@@ -1,5 +1,5 @@
 /* fix hydro/vans: a one-dimensional turbulent stream over a granular bed. See doc/fix_hydro_vans.md.
- * The arithmetic is in core/sd_vans*; the stream with its profiles in vans_stream; here: atoms, ranks, time. */
+ * The arithmetic is in core/vans; the stream with its profiles in vans_stream; here: atoms, ranks, time. */
 #ifndef SD_FIX_HYDRO_VANS_H
 #define SD_FIX_HYDRO_VANS_H
 
