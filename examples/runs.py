@@ -1,4 +1,5 @@
-"""What the scripts of the examples share: a python with numpy and matplotlib, MPI, programs that must be there, the verdict."""
+"""What the scripts of the examples share: a python with numpy and matplotlib, MPI, programs that must be there, where results go."""
+import argparse
 import os
 import pathlib
 import shutil
@@ -29,6 +30,22 @@ def need(*programs):
     for program in programs:
         if shutil.which(program) is None:
             sys.exit(f"{program} is not on the PATH; run cmake/setup.sh and '. build/env.sh' first")
+
+
+def options(script, text, **more):
+    """What every run.py takes: --out DIR, where all that it makes goes (a folder of build/examples unless told), made if need be;
+    --update, which also refreshes what is kept beside run.py. more: names of further options, with their defaults."""
+    name = pathlib.Path(script).resolve().parent.name
+    parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=TOP / "build" / "examples" / name)
+    parser.add_argument("--update", action="store_true")
+    for key, default in more.items():
+        how = dict(action="store_true") if default is False else dict(type=type(default), default=default)
+        parser.add_argument("--" + key, **how)
+    given = parser.parse_args()
+    given.out = given.out.resolve()
+    given.out.mkdir(parents=True, exist_ok=True)
+    return given
 
 
 def verdict(facts):
