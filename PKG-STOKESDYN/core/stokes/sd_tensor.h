@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-#define SD_PI 3.14159265358979323846
+#include "sd_constants.h"
 
 typedef enum { SD_TENSOR_RPY, SD_TENSOR_OSEEN } sd_tensor;
 

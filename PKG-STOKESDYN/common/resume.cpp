@@ -1,0 +1,45 @@
+#include "resume.h"
+
+#include "atom.h"
+#include "domain.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace StokesDyn {
+
+void Resume::record(int i, double *row) const
+{
+  domain->unmap(atom->x[i], atom->image[i], row + X);
+  memcpy(row + V, atom->v[i], 3 * sizeof(double));
+  row[RADIUS] = atom->radius ? atom->radius[i] : 0.0;
+  row[MOLECULE] = atom->molecule ? atom->molecule[i] : 0;
+  if (spins) memcpy(row + OMEGA, atom->omega[i], 3 * sizeof(double));
+}
+
+bool Resume::placed(int i, const double *row) const
+{
+  const double radius = atom->radius ? atom->radius[i] : 0.0;
+  double x[3];
+  domain->unmap(atom->x[i], atom->image[i], x);
+  for (int k = 0; k < 3; k++)
+    if (!(std::fabs(x[k] - row[X + k]) <= 1e-9 * radius)) return false;
+  return radius == row[RADIUS] && (!atom->molecule || atom->molecule[i] == row[MOLECULE]);
+}
+
+static bool same_vector(const double *now, const double *then)
+{
+  double difference = 0.0, size = 0.0;
+  for (int k = 0; k < 3; k++) {
+    difference = std::fmax(difference, std::fabs(now[k] - then[k]));
+    size = std::fmax(size, std::fabs(now[k]));
+  }
+  return difference <= 1e-12 * size;
+}
+
+bool Resume::moving(int i, const double *row) const
+{
+  return same_vector(atom->v[i], row + V) && (!spins || same_vector(atom->omega[i], row + OMEGA));
+}
+
+}    // namespace StokesDyn
