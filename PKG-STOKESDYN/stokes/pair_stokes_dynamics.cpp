@@ -27,7 +27,8 @@ static const std::string COMMAND = PairStokesDynamics::COMMAND_NAME;
 static const char *STATE_ID = "STOKES_DYNAMICS_STATE";
 
 PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) :
-    Pair(lmp), scene(lmp, this, COMMAND), rigid(lmp, scene, COMMAND), preconditioner(lmp, scene)
+    Pair(lmp), scene(lmp, this, COMMAND), rigid(lmp, scene, COMMAND), preconditioner(lmp, scene),
+    sorting_bins(lmp)
 {
   single_enable = 0;
   respa_enable = 0;
@@ -252,7 +253,7 @@ void PairStokesDynamics::init_style()
              COMMAND +
                  ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or "
                  "clumps_only yes");
-  if (std::isfinite(scene.settings.cutoff)) refuse_vast_cutoff();
+  if (std::isfinite(scene.settings.cutoff)) refuse_vast_cutoff(lmp, COMMAND, scene.settings);
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
@@ -294,47 +295,10 @@ void PairStokesDynamics::init_style()
                                  ": nothing applies the force: add_force is no and no fix "
                                  "stokes_dynamics applies it"));
   }
-  limit_sorting_bins();
+  sorting_bins.limit(range());
   scene.lists_are_stale();
   rigid.new_run();
   warned_unconverged = looked_at_clumps = false;
-}
-
-/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts of them. */
-void PairStokesDynamics::refuse_vast_cutoff()
-{
-  const double cut = scene.settings.cutoff + neighbor->skin;
-  double atoms = atom->natoms, most = 0.0, boxes = 0.0;
-  for (int d = 0; d < domain->dimension; d++) {
-    double row = 1.0 / domain->prd[d];    // one over the distance of opposite faces
-    if (domain->triclinic && d < 2) {
-      const double *inv = domain->h_inv;
-      row = d == 0 ? sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4])
-                   : sqrt(inv[1] * inv[1] + inv[3] * inv[3]);
-    }
-    boxes = std::max(boxes, cut * row);
-    most = std::max(most, cut * row * comm->procgrid[d]);
-    if (domain->periodicity[d]) atoms *= 2.0 * cut * row + 1.0;
-  }
-  if (std::max(most, atoms) < MAXSMALLINT) return;
-  bool open = true;
-  for (int d = 0; d < domain->dimension; d++) open = open && !domain->periodicity[d];
-  fail(lmp,
-       COMMAND + ": keyword cut_off_distance: '" + text(scene.settings.cutoff) + "' is " +
-           text(boxes) +
-           " times the box, which is more than LAMMPS can make ghost atoms for; use " +
-           (open || scene.settings.clumps_only ? "inf" : "a shorter one"));
-}
-
-/* LAMMPS sorts its atoms into bins of half the cut-off, which is small here without a cut_off_distance. In an open box that is
- * mostly empty the bins would take most of the memory, or be too many: then wider ones, about one for each atom. */
-void PairStokesDynamics::limit_sorting_bins()
-{
-  const double wide = (range() + neighbor->skin) / 2.0;
-  const double volume = domain->xprd * domain->yprd * domain->zprd;
-  if (atom->sortfreq > 0 && atom->userbinsize == 0.0 && atom->natoms > 0 &&
-      volume > wide * wide * wide * std::max(1e6, 10.0 * atom->natoms))
-    atom->userbinsize = cbrt(volume / atom->natoms);
 }
 
 /* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is given to LAMMPS all the

@@ -4,6 +4,7 @@
 
 #include "pair.h"
 
+#include "checks.h"
 #include "field.h"
 #include "fix_stokes_dynamics_state.h"
 #include "preconditioner.h"
@@ -73,6 +74,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   Scene scene;
   RigidClumps rigid;
   Preconditioner preconditioner;
+  SortingBins sorting_bins;
   bool warm_start;
 
   // looked up in init_style
@@ -102,7 +104,6 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   void parse();
   void allocate();
   double range() const;    // what LAMMPS is told
-  void limit_sorting_bins();
   void state_of_the_step();
   int width() const { return scene.settings.rotation ? 6 : 3; }    // unknowns of a sphere
   void fluid_gradient();
@@ -112,10 +113,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   int faulty(int i) const;
   void complain();
   bool numbers_only() const;
-  void refuse_vast_cutoff();
   void solve();
-  void refuse_close_oseen();
-  void warn_of_short_cutoff();
   void guess();
   void remember();
   double relaxation_time();

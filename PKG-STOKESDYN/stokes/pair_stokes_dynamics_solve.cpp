@@ -18,8 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
-#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -80,10 +78,12 @@ void PairStokesDynamics::solve()
   eta.resize(n + 1);
   if (!visc.is_atom_style()) std::fill(eta.begin(), eta.end(), visc.number());
   scene.update(solving, eta);
-  if (scene.settings.tensor == SD_TENSOR_OSEEN) refuse_close_oseen();
+  if (scene.settings.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
   if (scene.settings.clumps_only && std::isfinite(scene.settings.cutoff) &&
-      scene.settings.taper == SD_TAPER_NONE && !looked_at_clumps)
-    warn_of_short_cutoff();
+      scene.settings.taper == SD_TAPER_NONE && !looked_at_clumps) {
+    looked_at_clumps = true;
+    warn_of_short_cutoff(lmp, COMMAND, scene, solving);
+  }
   slip.assign(m * n + m, 0.0);
   drag.assign(n + 1, 0.0);
   if (rotation) spin.assign(n + 1, 0.0);
@@ -138,82 +138,6 @@ void PairStokesDynamics::solve()
       state[i][State::VPRIME + d] = active[i] ? F[d] / drag[i] - si[d] : 0.0;
       if (rotation) state[i][State::WPRIME + d] = active[i] ? F[3 + d] / spin[i] - si[3 + d] : 0.0;
     }
-  }
-}
-
-/* Some velocities would have an answer all the same, and none of them means anything. */
-void PairStokesDynamics::refuse_close_oseen()
-{
-  const sd_law law = scene.law();
-  double mine, largest;
-  sd_status status;
-  if (scene.all_pairs()) {
-    const sd_spheres spheres = scene.cloud();
-    const int64_t n = scene.cloud_size();
-    const int from = n * comm->me / comm->nprocs, to = n * (comm->me + 1) / comm->nprocs;
-    status = sd_oseen_coupling(&law, &spheres, nullptr, n, from, to - from, &mine);
-  } else {
-    const sd_spheres spheres = scene.local();
-    const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
-    status = sd_oseen_coupling(&law, &spheres, pairs, atom->nlocal + atom->nghost, 0, atom->nlocal,
-                               &mine);
-  }
-  if (status != SD_OK) fail_one(lmp, COMMAND + ": " + sd_status_string(status));
-  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
-  if (largest >= 1.0 - 1e-12)
-    fail(lmp,
-         COMMAND + ": step " + std::to_string(update->ntimestep) +
-             ": the mobility matrix is not positive definite with tensor oseen: two spheres are "
-             "too close for it, 1.5 "
-             "sqrt(a_i a_j)/R" +
-             (law.taper == SD_TAPER_NONE ? "" : " times the taper") + " is " + text(largest) +
-             " and must be below 1; use tensor rpy");
-}
-
-/* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10 % for a chain of ten touching
- * spheres that see each other up to 10.5 a. Told once per run, of the clump with the lowest molecule ID. */
-void PairStokesDynamics::warn_of_short_cutoff()
-{
-  looked_at_clumps = true;
-  std::map<int64_t, std::pair<int64_t, int64_t>>
-      clumps;    // spheres, how many each of them sees, all added up
-  const sd_pairs &list = scene.list();
-  for (int i = 0; i < atom->nlocal; i++)
-    if (solving[i] && atom->molecule[i] != 0) {
-      auto &clump = clumps[atom->molecule[i]];
-      clump.first++;
-      clump.second += list.first[i + 1] - list.first[i];
-    }
-  std::vector<int64_t> mine, all;
-  for (const auto &clump : clumps)
-    mine.insert(mine.end(), {clump.first, clump.second.first, clump.second.second});
-  int size = mine.size(), total = 0;
-  std::vector<int> sizes(comm->nprocs), at(comm->nprocs);
-  MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, world);
-  for (int p = 0; p < comm->nprocs; p++) {
-    at[p] = total;
-    total += sizes[p];
-  }
-  all.resize(total + 1);
-  MPI_Gatherv(mine.data(), size, MPI_INT64_T, all.data(), sizes.data(), at.data(), MPI_INT64_T, 0,
-              world);
-  if (comm->me != 0) return;
-  clumps.clear();
-  for (int k = 0; k < total; k += 3) {
-    clumps[all[k]].first += all[k + 1];
-    clumps[all[k]].second += all[k + 2];
-  }
-  for (const auto &clump : clumps) {
-    const int64_t n = clump.second.first, left_out = n * (n - 1) - clump.second.second;
-    if (left_out == 0) continue;
-    error->warning(
-        FLERR,
-        std::string(COMMAND + ": cut_off_distance " + text(scene.settings.cutoff) +
-                    " is shorter than the clump of molecule " + std::to_string(clump.first) + ": " +
-                    std::to_string(left_out / 2) + " of its " + std::to_string(n * (n - 1) / 2) +
-                    " pairs do not see each other, so its drag is too large; clumps_only yes needs "
-                    "no cut_off_distance"));
-    return;
   }
 }
 

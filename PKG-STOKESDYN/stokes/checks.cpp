@@ -1,0 +1,141 @@
+#include "checks.h"
+
+#include "keywords.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include "sd_neighbor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+void refuse_vast_cutoff(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
+{
+  const Domain *domain = lmp->domain;
+  const double cut = settings.cutoff + lmp->neighbor->skin;
+  double atoms = lmp->atom->natoms, most = 0.0, boxes = 0.0;
+  for (int d = 0; d < domain->dimension; d++) {
+    double row = 1.0 / domain->prd[d];    // one over the distance of opposite faces
+    if (domain->triclinic && d < 2) {
+      const double *inv = domain->h_inv;
+      row = d == 0 ? sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4])
+                   : sqrt(inv[1] * inv[1] + inv[3] * inv[3]);
+    }
+    boxes = std::max(boxes, cut * row);
+    most = std::max(most, cut * row * lmp->comm->procgrid[d]);
+    if (domain->periodicity[d]) atoms *= 2.0 * cut * row + 1.0;
+  }
+  if (std::max(most, atoms) < MAXSMALLINT) return;
+  bool open = true;
+  for (int d = 0; d < domain->dimension; d++) open = open && !domain->periodicity[d];
+  fail(lmp,
+       command + ": keyword cut_off_distance: '" + text(settings.cutoff) + "' is " +
+           text(boxes) +
+           " times the box, which is more than LAMMPS can make ghost atoms for; use " +
+           (open || settings.clumps_only ? "inf" : "a shorter one"));
+}
+
+void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)
+{
+  const Atom *atom = lmp->atom;
+  const Comm *comm = lmp->comm;
+  const sd_law law = scene.law();
+  double mine, largest;
+  sd_status status;
+  if (scene.all_pairs()) {
+    const sd_spheres spheres = scene.cloud();
+    const int64_t n = scene.cloud_size();
+    const int from = n * comm->me / comm->nprocs, to = n * (comm->me + 1) / comm->nprocs;
+    status = sd_oseen_coupling(&law, &spheres, nullptr, n, from, to - from, &mine);
+  } else {
+    const sd_spheres spheres = scene.local();
+    const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
+    status = sd_oseen_coupling(&law, &spheres, pairs, atom->nlocal + atom->nghost, 0, atom->nlocal,
+                               &mine);
+  }
+  if (status != SD_OK) fail_one(lmp, command + ": " + sd_status_string(status));
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
+  if (largest >= 1.0 - 1e-12)
+    fail(lmp,
+         command + ": step " + std::to_string(lmp->update->ntimestep) +
+             ": the mobility matrix is not positive definite with tensor oseen: two spheres are "
+             "too close for it, 1.5 "
+             "sqrt(a_i a_j)/R" +
+             (law.taper == SD_TAPER_NONE ? "" : " times the taper") + " is " + text(largest) +
+             " and must be below 1; use tensor rpy");
+}
+
+void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &scene,
+                          const std::vector<char> &solving)
+{
+  const Atom *atom = lmp->atom;
+  const Comm *comm = lmp->comm;
+  std::map<int64_t, std::pair<int64_t, int64_t>>
+      clumps;    // spheres, how many each of them sees, all added up
+  const sd_pairs &list = scene.list();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (solving[i] && atom->molecule[i] != 0) {
+      auto &clump = clumps[atom->molecule[i]];
+      clump.first++;
+      clump.second += list.first[i + 1] - list.first[i];
+    }
+  std::vector<int64_t> mine, all;
+  for (const auto &clump : clumps)
+    mine.insert(mine.end(), {clump.first, clump.second.first, clump.second.second});
+  int size = mine.size(), total = 0;
+  std::vector<int> sizes(comm->nprocs), at(comm->nprocs);
+  MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, lmp->world);
+  for (int p = 0; p < comm->nprocs; p++) {
+    at[p] = total;
+    total += sizes[p];
+  }
+  all.resize(total + 1);
+  MPI_Gatherv(mine.data(), size, MPI_INT64_T, all.data(), sizes.data(), at.data(), MPI_INT64_T, 0,
+              lmp->world);
+  if (comm->me != 0) return;
+  clumps.clear();
+  for (int k = 0; k < total; k += 3) {
+    clumps[all[k]].first += all[k + 1];
+    clumps[all[k]].second += all[k + 2];
+  }
+  for (const auto &clump : clumps) {
+    const int64_t n = clump.second.first, left_out = n * (n - 1) - clump.second.second;
+    if (left_out == 0) continue;
+    lmp->error->warning(
+        FLERR,
+        std::string(command + ": cut_off_distance " + text(scene.settings.cutoff) +
+                    " is shorter than the clump of molecule " + std::to_string(clump.first) + ": " +
+                    std::to_string(left_out / 2) + " of its " + std::to_string(n * (n - 1) / 2) +
+                    " pairs do not see each other, so its drag is too large; clumps_only yes needs "
+                    "no cut_off_distance"));
+    return;
+  }
+}
+
+void SortingBins::limit(double range)
+{
+  const double wide = (range + neighbor->skin) / 2.0;
+  const double volume = domain->xprd * domain->yprd * domain->zprd;
+  if (atom->sortfreq > 0 && atom->userbinsize == 0.0 && atom->natoms > 0 &&
+      volume > wide * wide * wide * std::max(1e6, 10.0 * atom->natoms))
+    atom->userbinsize = ours = cbrt(volume / atom->natoms);
+}
+
+/* Whoever has set another since then keeps it. */
+SortingBins::~SortingBins()
+{
+  if (ours > 0.0 && atom->userbinsize == ours) atom->userbinsize = 0.0;
+}
+
+}    // namespace StokesDyn
