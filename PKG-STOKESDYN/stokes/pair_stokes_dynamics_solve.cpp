@@ -299,6 +299,9 @@ void PairStokesDynamics::solver_failed(sd_status status, const sd_solve_report &
                     ? " with tensor oseen: spheres are too close for it, use tensor rpy ("
                     : ": equal spheres at one point with different velocities (") +
                how_far + ")");
+    case SD_ENOMEMORY:
+    case SD_ECALLBACK:
+      fail_one(lmp, where + sd_status_string(status) + " (" + how_far + ")");
     default:
       fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
   }

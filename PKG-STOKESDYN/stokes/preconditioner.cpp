@@ -1,5 +1,7 @@
 #include "preconditioner.h"
 
+#include "callback.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -218,7 +220,7 @@ void Preconditioner::attach(sd_system &system)
 }
 
 /* Blocks are made or turned at their first use: a warm start often needs none at all. Blocks that cannot be made are done without. */
-void Preconditioner::apply_blocks(const double *r, double *z)
+sd_status Preconditioner::apply_blocks(const double *r, double *z)
 {
   if (pending) {
     pending = false;
@@ -233,29 +235,33 @@ void Preconditioner::apply_blocks(const double *r, double *z)
     blocks.spin = spin;
   }
   const bool other_rank = scene.all_pairs() && comm->me > 0;    // the first one does it all
-  if (usable)
-    sd_blocks_apply(&blocks, r, z);
-  else
-    for (long i = 0; i < n; i++)
-      for (int d = 0; d < width; d++)
-        z[width * i + d] =
-            drag[i] == 0.0 || other_rank ? 0.0 : (d < 3 ? drag[i] : spin[i]) * r[width * i + d];
+  if (usable) return sd_blocks_apply(&blocks, r, z);
+  for (long i = 0; i < n; i++)
+    for (int d = 0; d < width; d++)
+      z[width * i + d] =
+          drag[i] == 0.0 || other_rank ? 0.0 : (d < 3 ? drag[i] : spin[i]) * r[width * i + d];
+  return SD_OK;
 }
 
-void Preconditioner::apply_own(void *ctx, const double *r, double *z)
+sd_status Preconditioner::apply_own(void *ctx, const double *r, double *z)
 {
-  static_cast<Preconditioner *>(ctx)->apply_blocks(r, z);
+  return callback([=] {
+    return static_cast<Preconditioner *>(ctx)->apply_blocks(r, z);
+  });
 }
 
-void Preconditioner::apply_whole(void *ctx, const double *r, double *z)
+sd_status Preconditioner::apply_whole(void *ctx, const double *r, double *z)
 {
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
-  const size_t own = p->width * (size_t) p->atom->nlocal;
-  p->in.assign(r, r + own);
-  p->scene.refresh(p->in, p->width);
-  p->out.resize(p->width * (size_t) p->n + 1);
-  p->apply_blocks(p->in.data(), p->out.data());
-  std::copy_n(p->out.begin(), own, z);
+  return callback([=] {
+    const size_t own = p->width * (size_t) p->atom->nlocal;
+    p->in.assign(r, r + own);
+    p->scene.refresh(p->in, p->width);
+    p->out.resize(p->width * (size_t) p->n + 1);
+    const sd_status status = p->apply_blocks(p->in.data(), p->out.data());
+    std::copy_n(p->out.begin(), own, z);
+    return status;
+  });
 }
 
 bool Preconditioner::make_sparse()
@@ -340,16 +346,18 @@ bool Preconditioner::turn_blocks()
   return true;
 }
 
-void Preconditioner::apply(void *ctx, const double *r, double *z)
+sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
 {
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
-  p->scene.to_cloud(r, p->in);
-  p->out.resize((size_t) p->width * p->n + 1);
-  if (p->present == SPARSE)
-    sd_sparse_apply(&p->sparse, p->in.data(), p->out.data());
-  else
-    p->apply_blocks(p->in.data(), p->out.data());
-  p->scene.from_cloud(p->out, z);
+  return callback([=] {
+    p->scene.to_cloud(r, p->in);
+    p->out.resize((size_t) p->width * p->n + 1);
+    const sd_status status = p->present == SPARSE
+        ? sd_sparse_apply(&p->sparse, p->in.data(), p->out.data())
+        : p->apply_blocks(p->in.data(), p->out.data());
+    p->scene.from_cloud(p->out, z);
+    return status;
+  });
 }
 
 void Preconditioner::learn(const sd_solve_report &report)

@@ -80,10 +80,10 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   bool make_blocks();
   bool turn_blocks();
   void free_shapes();
-  void apply_blocks(const double *r, double *z);
-  static void apply(void *ctx, const double *r, double *z);
-  static void apply_own(void *ctx, const double *r, double *z);
-  static void apply_whole(void *ctx, const double *r, double *z);
+  sd_status apply_blocks(const double *r, double *z);
+  static sd_status apply(void *ctx, const double *r, double *z);
+  static sd_status apply_own(void *ctx, const double *r, double *z);
+  static sd_status apply_whole(void *ctx, const double *r, double *z);
 };
 
 }    // namespace StokesDyn

@@ -1,5 +1,6 @@
 #include "scene.h"
 
+#include "callback.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 
@@ -214,13 +215,16 @@ void Scene::from_cloud(const std::vector<double> &cloud_rows, double *own_rows)
   for (int k = 0; k < n; k++) std::copy(&mine[m * k], &mine[m * k] + m, own_rows + m * own[k]);
 }
 
-void Scene::apply(void *ctx, const double *F, double *u)
+sd_status Scene::apply(void *ctx, const double *F, double *u)
 {
   Scene *scene = static_cast<Scene *>(ctx);
-  if (scene->all_pairs())
-    scene->apply_all(F, u);
-  else
-    scene->apply_list(F, u);
+  return callback([=] {
+    if (scene->all_pairs())
+      scene->apply_all(F, u);
+    else
+      scene->apply_list(F, u);
+    return SD_OK;
+  });
 }
 
 void Scene::apply_list(const double *F, double *u)
@@ -242,9 +246,10 @@ void Scene::apply_all(const double *F, double *u)
   from_cloud(all_u, u);
 }
 
-void Scene::sum(void *ctx, double *values, int count)
+sd_status Scene::sum(void *ctx, double *values, int count)
 {
   MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, static_cast<Scene *>(ctx)->world);
+  return SD_OK;
 }
 
 int Scene::pack_forward_comm(int n, int *list, double *buf)

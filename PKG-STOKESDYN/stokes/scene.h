@@ -80,9 +80,9 @@ class Scene : protected LAMMPS_NS::Pointers {
   void from_cloud(const std::vector<double> &cloud_rows, double *own_rows);
 
   /* u = Omega F, in the core's signature: ctx is a Scene. */
-  static void apply(void *ctx, const double *F, double *u);
+  static sd_status apply(void *ctx, const double *F, double *u);
   /* Sum over all ranks, likewise. */
-  static void sum(void *ctx, double *values, int count);
+  static sd_status sum(void *ctx, double *values, int count);
 
   int pack_forward_comm(int n, int *list, double *buf);
   void unpack_forward_comm(int n, int first, double *buf);

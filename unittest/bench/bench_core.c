@@ -485,10 +485,11 @@ typedef struct {
   int n;
 } rotating;
 
-static void apply_rotating(void *ctx, const double *F, double *u)
+static sd_status apply_rotating(void *ctx, const double *F, double *u)
 {
   rotating *g = ctx;
   sd_packed_product(&g->packed, 0, g->n, F, u);
+  return SD_OK;
 }
 
 static double *spins(const scene *s)

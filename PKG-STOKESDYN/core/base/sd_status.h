@@ -14,7 +14,8 @@ extern "C" {
   _(SD_EINDEFINITE, "the mobility matrix is not positive definite")                    \
   _(SD_ESINGULAR, "the mobility matrix is singular")                                   \
   _(SD_ENOTFINITE, "met a value that is not a finite number")                          \
-  _(SD_ENOMEMORY, "out of memory")
+  _(SD_ENOMEMORY, "out of memory")                                                     \
+  _(SD_ECALLBACK, "a function that the caller gave has failed")
 
 typedef enum {
 #define SD_STATUS_CODE(code, text) code,

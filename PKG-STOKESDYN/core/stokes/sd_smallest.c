@@ -16,36 +16,39 @@ static double diagonal(const sd_system *A, long sphere, int p)
   return p < 3 ? A->drag[sphere] : A->spin[sphere];
 }
 
-static void apply(const sd_system *A, int width, const double *x, double *Mx)
+static sd_status apply(const sd_system *A, int width, const double *x, double *Mx)
 {
-  A->apply(A->apply_ctx, x, Mx);
+  const sd_status status = A->apply(A->apply_ctx, x, Mx);
+  if (status != SD_OK) return status;
   for (long i = 0; i < A->n; i++)
     for (int p = 0; p < width; p++) {
       const long j = width * i + p;
       Mx[j] = A->drag[i] == 0.0 ? 0.0 : Mx[j] + x[j] / diagonal(A, i, p);
     }
+  return SD_OK;
 }
 
-/* w = P r, r = M v - lambda D^-1 v, at lambda = v.Mv; returns r.D r of this rank. */
-static double direction(const sd_system *A, int width, double lambda, const span *s, double *r)
+/* w = P r, r = M v - lambda D^-1 v, at lambda = v.Mv; own: r.D r of this rank. */
+static sd_status direction(const sd_system *A, int width, double lambda, const span *s, double *r,
+                           double *own)
 {
   const double *v = s->x[V], *Mv = s->Mx[V];
-  double *w = s->x[W], square = 0.0;
+  double *w = s->x[W];
+  *own = 0.0;
   for (long i = 0; i < A->n; i++)
     for (int p = 0; p < width; p++) {
       const long j = width * i + p;
       const double D = diagonal(A, i, p);
       r[j] = A->drag[i] == 0.0 ? 0.0 : Mv[j] - lambda * v[j] / D;
-      square += D * r[j] * r[j];
+      *own += D * r[j] * r[j];
       if (!A->precondition) w[j] = D * r[j];
     }
-  if (A->precondition) A->precondition(A->precondition_ctx, r, w);
-  return square;
+  return A->precondition ? A->precondition(A->precondition_ctx, r, w) : SD_OK;
 }
 
 /* x.Mx and x.D^-1 x of the span, each [SPAN SPAN], and own[0], summed over the ranks. */
-static void gram(const sd_system *A, int width, int count, const span *s, double *own, double *M,
-                 double *B)
+static sd_status gram(const sd_system *A, int width, int count, const span *s, double *own,
+                      double *M, double *B)
 {
   double t[2 * SPAN * SPAN + 1] = {0.0};
   for (long i = 0; i < A->n; i++) {
@@ -61,7 +64,7 @@ static void gram(const sd_system *A, int width, int count, const span *s, double
     }
   }
   t[2 * SPAN * SPAN] = *own;
-  if (A->sum) A->sum(A->sum_ctx, t, 2 * SPAN * SPAN + 1);
+  const sd_status status = A->sum ? A->sum(A->sum_ctx, t, 2 * SPAN * SPAN + 1) : SD_OK;
   *own = t[2 * SPAN * SPAN];
   for (int k = 0; k < SPAN; k++)
     for (int l = 0; l < SPAN; l++) {
@@ -69,6 +72,7 @@ static void gram(const sd_system *A, int width, int count, const span *s, double
       M[SPAN * k + l] = t[at];
       B[SPAN * k + l] = t[SPAN * SPAN + at];
     }
+  return status;
 }
 
 /* Coefficients c of the vector with c.Bc = 1 and the smallest c.Mc, which is returned. Vectors that hardly leave the span of those
@@ -132,10 +136,11 @@ sd_status sd_smallest_eigenvalue(const sd_system *A, double accuracy, int max_pr
   int count = 1;
   for (long j = 0; j < size; j++)
     if (A->drag[j / width] == 0.0) v[j] = 0.0;
-  apply(A, width, v, s.Mx[V]);
-  gram(A, width, 1, &s, &own, M, B);
-  *products = 1;
+  *products = 0;
   *lambda = 1.0;
+  sd_status status = apply(A, width, v, s.Mx[V]);
+  if (status != SD_OK || (status = gram(A, width, 1, &s, &own, M, B)) != SD_OK) return status;
+  *products = 1;
   for (;;) {
     if (!isfinite(M[0]) || !isfinite(B[0])) return SD_ENOTFINITE;
     if (!(B[0] > 0.0)) return SD_OK; /* nobody takes part */
@@ -144,11 +149,11 @@ sd_status sd_smallest_eigenvalue(const sd_system *A, double accuracy, int max_pr
     step(size, count, c, s.Mx);
     if (*lambda <= 0.0) return SD_OK;
     if (*products >= max_products) return SD_EMAXITER;
-    own = direction(A, width, *lambda, &s, r);
-    apply(A, width, s.x[W], s.Mx[W]);
+    if ((status = direction(A, width, *lambda, &s, r, &own)) != SD_OK) return status;
+    if ((status = apply(A, width, s.x[W], s.Mx[W])) != SD_OK) return status;
     ++*products;
     count = *products > 2 ? SPAN : 2;
-    gram(A, width, count, &s, &own, M, B);
+    if ((status = gram(A, width, count, &s, &own, M, B)) != SD_OK) return status;
     if (sqrt(own) <= accuracy * *lambda) return SD_OK;
   }
 }

@@ -15,7 +15,8 @@ extern "C" {
  *   accuracy      stops when an eigenvalue lies within lambda (1 +- accuracy); lambda itself is nearer
  *   work          [SD_SOLVE_WORK(n, width)]
  *   lambda        out, never below the smallest eigenvalue but for rounding; negative: M is not positive definite
- * One call of sum a product. SD_OK; SD_EMAXITER: max_products were not enough, lambda is the best so far; SD_ENOTFINITE. */
+ * One call of sum a product. SD_OK; SD_EMAXITER: max_products were not enough, lambda is the best so far; SD_ENOTFINITE;
+ * that of a function of the caller which has failed. */
 sd_status sd_smallest_eigenvalue(const sd_system *A, double accuracy, int max_products, double *v,
                                  double *work, double *lambda, int *products);
 

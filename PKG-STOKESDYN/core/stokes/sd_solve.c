@@ -12,9 +12,9 @@ static const double rounding_level = 1e-13;
 /* Slip along a singular direction, relative to all slip: below this it is rounding, and nobody has asked for it. */
 static const double asked_for = 1e-9;
 
-static void sum(const sd_system *A, double *values, int count)
+static sd_status sum(const sd_system *A, double *values, int count)
 {
-  if (A->sum) A->sum(A->sum_ctx, values, count);
+  return A->sum ? A->sum(A->sum_ctx, values, count) : SD_OK;
 }
 
 static int width(const sd_system *A)
@@ -37,8 +37,8 @@ static double scale(const sd_system *A, int i, int k)
 }
 
 /* out = D (slip - M F), given Omega F in out: D slip - F - D Omega F. Squares: plain in forces, natural over D. */
-static void scaled_residual(const sd_system *A, const double *slip, const double *F, double *out,
-                            double *plain, double *natural)
+static sd_status scaled_residual(const sd_system *A, const double *slip, const double *F,
+                                 double *out, double *plain, double *natural)
 {
   const int m = width(A);
   double v[2] = {0.0, 0.0};
@@ -53,14 +53,15 @@ static void scaled_residual(const sd_system *A, const double *slip, const double
     v[0] += A->drag[i] * nat;
     v[1] += nat;
   }
-  sum(A, v, 2);
+  const sd_status status = sum(A, v, 2);
   *plain = v[0];
   *natural = v[1];
+  return status;
 }
 
 /* F = D slip, the drag of spheres that do not see each other. Squares of D slip: plain in forces, natural over D. */
-static void free_draining(const sd_system *A, const double *slip, double *F, double *plain,
-                          double *natural)
+static sd_status free_draining(const sd_system *A, const double *slip, double *F, double *plain,
+                               double *natural)
 {
   const int m = width(A);
   double v[2] = {0.0, 0.0};
@@ -73,9 +74,10 @@ static void free_draining(const sd_system *A, const double *slip, double *F, dou
     v[0] += A->drag[i] * nat;
     v[1] += nat;
   }
-  sum(A, v, 2);
+  const sd_status status = sum(A, v, 2);
   *plain = v[0];
   *natural = v[1];
+  return status;
 }
 
 sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
@@ -84,14 +86,15 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
   double *res = work, last = INFINITY, rhs, all_slip;
   const long size = (long) width(A) * A->n;
   *report = (sd_solve_report){0};
-  free_draining(A, slip, F, &rhs, &all_slip);
+  sd_status status = free_draining(A, slip, F, &rhs, &all_slip);
+  if (status != SD_OK) return status;
   if (!isfinite(rhs)) return SD_ENOTFINITE;
   if (rhs == 0.0) return SD_OK;
 
   for (int k = 0;; k++) {
     double plain, natural;
-    A->apply(A->apply_ctx, F, res);
-    scaled_residual(A, slip, F, res, &plain, &natural);
+    if ((status = A->apply(A->apply_ctx, F, res)) != SD_OK) return status;
+    if ((status = scaled_residual(A, slip, F, res, &plain, &natural)) != SD_OK) return status;
     report->iterations = k;
     report->residual = sqrt(plain / rhs);
     report->growth = k > 0 && last > 0.0 ? sqrt(natural / last) : 0.0;
@@ -173,7 +176,8 @@ static void add_own(const sd_system *A, const double *p, double *q)
 }
 
 /* out = P D^-1 z for a scaled residual (force) z */
-static void precondition_force(const sd_system *A, const double *z, double *velocity, double *out)
+static sd_status precondition_force(const sd_system *A, const double *z, double *velocity,
+                                    double *out)
 {
   const int m = width(A);
   for (int i = 0; i < A->n; i++)
@@ -181,15 +185,16 @@ static void precondition_force(const sd_system *A, const double *z, double *velo
       const long j = (long) m * i + k;
       velocity[j] = A->drag[i] == 0.0 ? 0.0 : z[j] / scale(A, i, k);
     }
-  A->precondition(A->precondition_ctx, velocity, out);
+  return A->precondition(A->precondition_ctx, velocity, out);
 }
 
 /* Inner products of an iteration, r = D^-1 z the residual, t = D q. */
 enum { RU, RP, PQ, PP, QV, QU, ZZ, ZT, TT, YZ, YT, YY, PRODUCTS };
 
 /* natural: r.u r.p p.Mp p.D^-1p q.v q.u; in forces: z.z z.t t.t y.z y.t y.y */
-static void inner_products(const sd_system *A, const double *z, const double *u, const double *p,
-                           const double *q, const double *v, const double *y, double *s)
+static sd_status inner_products(const sd_system *A, const double *z, const double *u,
+                                const double *p, const double *q, const double *v, const double *y,
+                                double *s)
 {
   const int m = width(A);
   for (int k = 0; k < PRODUCTS; k++) s[k] = 0.0;
@@ -213,12 +218,12 @@ static void inner_products(const sd_system *A, const double *z, const double *u,
       s[YY] += force * y[j] * y[j];
     }
   }
-  sum(A, s, PRODUCTS);
+  return sum(A, s, PRODUCTS);
 }
 
 /* r.u, z.z, y.z themselves */
-static void residual_products(const sd_system *A, const double *z, const double *u, const double *y,
-                              double s[3])
+static sd_status residual_products(const sd_system *A, const double *z, const double *u,
+                                   const double *y, double s[3])
 {
   const int m = width(A);
   s[0] = s[1] = s[2] = 0.0;
@@ -232,7 +237,7 @@ static void residual_products(const sd_system *A, const double *z, const double 
       s[2] += force * y[j] * z[j];
     }
   }
-  sum(A, s, 3);
+  return sum(A, s, 3);
 }
 
 /* Digits that may cancel before a product is computed itself. */
@@ -253,44 +258,45 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
   int first_run = 1, singular = 0;
   sd_system unpreconditioned = *A;
   unpreconditioned.precondition = NULL;
-  sd_status status = SD_OK;
   *report = (sd_solve_report){.curvature = 1.0};
-  free_draining(A, slip, y, &rhs, &all_slip);
+  if (!A->warm) memset(F, 0, bytes);
+  sd_status status = free_draining(A, slip, y, &rhs, &all_slip);
+  if (status != SD_OK) return status;
   if (!isfinite(rhs)) return SD_ENOTFINITE;
-  if (rhs == 0.0 || !A->warm) memset(F, 0, bytes);
+  if (rhs == 0.0) memset(F, 0, bytes);
   if (rhs == 0.0) return SD_OK;
   if (A->warm) {
-    A->apply(A->apply_ctx, F, y);
+    if ((status = A->apply(A->apply_ctx, F, y)) != SD_OK) return status;
     report->products++;
-    scaled_residual(A, slip, F, y, &plain, &natural);
+    if ((status = scaled_residual(A, slip, F, y, &plain, &natural)) != SD_OK) return status;
     report->residual = sqrt(plain / rhs);
     if (report->residual <= tolerance) return SD_OK;
     if (!(plain < rhs)) memset(F, 0, bytes);
   }
   if (!A->warm || !(plain < rhs)) {
     memset(y, 0, bytes); /* Omega F for F = 0 */
-    scaled_residual(A, slip, F, y, &plain, &natural);
+    if ((status = scaled_residual(A, slip, F, y, &plain, &natural)) != SD_OK) return status;
   }
 
   for (;;) {
     memcpy(x, F, bytes);
     memcpy(z, y, bytes);
     memset(p, 0, bytes);
-    if (A->precondition) precondition_force(A, z, q, u);
+    if (A->precondition && (status = precondition_force(A, z, q, u)) != SD_OK) break;
     double beta = 0.0, remains = natural;
     report->residual = sqrt(plain / rhs);
     while (report->residual > tolerance && remains > 0.0 && report->iterations < max_iter) {
       double s[PRODUCTS];
       for (long j = 0; j < size; j++) p[j] = u[j] + beta * p[j];
-      A->apply(A->apply_ctx, p, q);
+      if ((status = A->apply(A->apply_ctx, p, q)) != SD_OK) break;
       report->products++;
       add_own(A, p, q);
       if (A->precondition)
-        A->precondition(A->precondition_ctx, q, v);
+        status = A->precondition(A->precondition_ctx, q, v);
       else
         for (int i = 0; i < A->n; i++)
           for (int k = 0; k < m; k++) v[(long) m * i + k] = scale(A, i, k) * q[(long) m * i + k];
-      inner_products(A, z, u, p, q, v, y, s);
+      if (status != SD_OK || (status = inner_products(A, z, u, p, q, v, y, s)) != SD_OK) break;
       if (!isfinite(s[PQ]) || !isfinite(s[QV])) {
         status = SD_ENOTFINITE;
         break;
@@ -323,7 +329,7 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
       double yz = s[YZ] - alpha * s[YT];
       if (next < cancelled * s[RU] || zz < cancelled * s[ZZ]) {
         double itself[3];
-        residual_products(A, z, u, y, itself);
+        if ((status = residual_products(A, z, u, y, itself)) != SD_OK) break;
         next = itself[0];
         zz = itself[1];
         yz = itself[2];
@@ -347,9 +353,9 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
     }
     first_run = 0;
     if (status != SD_OK) break;
-    A->apply(A->apply_ctx, F, y);
+    if ((status = A->apply(A->apply_ctx, F, y)) != SD_OK) break;
     report->products++;
-    scaled_residual(A, slip, F, y, &plain, &natural);
+    if ((status = scaled_residual(A, slip, F, y, &plain, &natural)) != SD_OK) break;
     report->residual = sqrt(plain / rhs);
     if (!isfinite(plain))
       status = SD_ENOTFINITE;

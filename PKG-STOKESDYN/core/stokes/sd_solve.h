@@ -21,13 +21,16 @@
 extern "C" {
 #endif
 
+/* The caller's functions return SD_OK or why they failed, and never throw: a solver that gets another status returns it at once
+ * and calls no other of them. One that fails on a single rank leaves the others waiting: its caller has to end them. */
+
 /* u = Omega F, the pair part of M: F, u [width n] of this rank's spheres. Refreshes whatever ghosts it needs. */
-typedef void sd_apply(void *ctx, const double *F, double *u);
+typedef sd_status sd_apply(void *ctx, const double *F, double *u);
 /* Sum over all ranks, in place. */
-typedef void sd_sum(void *ctx, double *values, int count);
+typedef sd_status sd_sum(void *ctx, double *values, int count);
 /* z = P r, P an approximation of the inverse of M: symmetric, positive definite, the same in all calls of one solve. r [width n]
  * are velocities, z forces; 0 for spheres that take no part (sd_precondition.h has two). */
-typedef void sd_precondition(void *ctx, const double *r, double *z);
+typedef sd_status sd_precondition(void *ctx, const double *r, double *z);
 
 typedef struct {
   int n;              /* spheres of this rank */
@@ -64,7 +67,8 @@ typedef struct {
  * Converges if and only if the largest eigenvalue of the mobility matrix scaled to unit diagonal is below 2: not for three
  * touching spheres in a row. The scaled matrix is symmetric, so the factor by which the residual changes in the norm of D^-1
  * never falls from one iteration to the next: once it is 1, within 1e-9, the iteration can never converge.
- * SD_OK; SD_EMAXITER after max_iter substitutions; SD_EDIVERGED; SD_ESTAGNATED; SD_ENOTFINITE. */
+ * SD_OK; SD_EMAXITER after max_iter substitutions; SD_EDIVERGED; SD_ESTAGNATED; SD_ENOTFINITE; that of a function of the
+ * caller which has failed: F is then the best that the solver had, report->residual that of it. */
 sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
                                 int max_iter, double *F, double *work, sd_solve_report *report);
 
@@ -85,7 +89,7 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
  * Where M is singular (equal spheres at one point) and the slip allows an answer, this is one of many: only the total of such
  * spheres means anything. A preconditioner blows up rounding along those directions; when only that is left the solver goes on
  * without it.
- * SD_OK; SD_EMAXITER; SD_ESTAGNATED; SD_ENOTFINITE;
+ * SD_OK; SD_EMAXITER; SD_ESTAGNATED; SD_ENOTFINITE; that of a function of the caller which has failed, as above;
  * SD_EINDEFINITE: a direction of negative curvature p.Mp < 0, as a cut-off makes them: any answer would be noise;
  * SD_ESINGULAR: p.Mp = 0 within rounding, and the slip along p is not: equal spheres at one point with different velocities. */
 sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,

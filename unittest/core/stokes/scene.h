@@ -63,7 +63,7 @@ static inline scene scene_lattice(int nx, int ny, int nz, double spacing, double
   return s;
 }
 
-static inline void scene_apply(void *ctx, const double *F, double *u)
+static inline sd_status scene_apply(void *ctx, const double *F, double *u)
 {
   scene *s = ctx;
   const sd_spheres spheres = {s->x, s->a, s->w};
@@ -80,6 +80,7 @@ static inline void scene_apply(void *ctx, const double *F, double *u)
       assert_int_equal(sd_neighbors_cutoff(&s->list, s->x, s->n, s->n, s->cutoff), SD_OK);
     sd_product_list(s->kind, &spheres, &s->list.pairs, F, u);
   }
+  return SD_OK;
 }
 
 typedef sd_status solver(const sd_system *, const double *, double, int, double *, double *,

@@ -34,13 +34,14 @@ static void problem_free(problem *p)
   scene_free(&p->s);
 }
 
-static void apply(void *ctx, const double *F, double *u)
+static sd_status apply(void *ctx, const double *F, double *u)
 {
   problem *p = ctx;
   const sd_spheres spheres = {p->s.x, p->s.a, p->s.w};
   if (!p->packed.n)
     assert_int_equal(sd_packed_all(&p->packed, SD_ISA_BEST, &RPY, &spheres, p->s.n), SD_OK);
   sd_packed_product(&p->packed, 0, p->s.n, F, u);
+  return SD_OK;
 }
 
 static double root(const problem *p, int row)

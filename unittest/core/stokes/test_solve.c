@@ -287,6 +287,81 @@ static void residual_only_falls(void **state)
   scene_free(&s);
 }
 
+/* A function of the caller that fails at its k-th call ends the solve there: with its status, without another call of any of them,
+ * and with forces that are finite. As many calls as the solve makes are tried, then it converges. */
+typedef struct {
+  scene *s;
+  int calls, fails_at, after;
+} failing;
+
+static sd_status counted(failing *f)
+{
+  f->calls++;
+  if (f->calls > f->fails_at) f->after++;
+  return f->calls == f->fails_at ? SD_ECALLBACK : SD_OK;
+}
+
+static sd_status apply_or_fail(void *ctx, const double *F, double *u)
+{
+  failing *f = ctx;
+  const sd_status status = counted(f);
+  return status == SD_OK ? scene_apply(f->s, F, u) : status;
+}
+
+static sd_status sum_or_fail(void *ctx, double *values, int count)
+{
+  (void) values;
+  (void) count;
+  return counted(ctx);
+}
+
+static sd_status precondition_or_fail(void *ctx, const double *r, double *z)
+{
+  failing *f = ctx;
+  for (int j = 0; j < 3 * f->s->n; j++) z[j] = f->s->drag[j / 3] * r[j];
+  return counted(f);
+}
+
+static void failed_callback_ends_the_solve(void **state)
+{
+  (void) state;
+  const struct {
+    solver *solve;
+    double spacing;
+    sd_precondition *precondition;
+    int warm;
+  } ways[] = {{sd_solve_substitution, 30.0, NULL, 0},
+              {sd_solve_gradients, 2.0, NULL, 0},
+              {sd_solve_gradients, 2.0, precondition_or_fail, 0},
+              {sd_solve_gradients, 2.0, precondition_or_fail, 1}};
+  for (int k = 0; k < 4; k++) {
+    int calls = 0;
+    for (sd_status status = SD_ECALLBACK; status != SD_OK; calls++) {
+      scene s = scene_lattice(2, 3, 2, ways[k].spacing, A, ETA);
+      double *slip = scene_uniform_slip(&s, 0, U, 0.3 * U), F[36], work[SD_SOLVE_WORK(12, 3)];
+      failing f = {.s = &s, .fails_at = calls + 1};
+      const sd_system system = {.n = s.n,
+                                .drag = s.drag,
+                                .apply = apply_or_fail,
+                                .apply_ctx = &f,
+                                .sum = sum_or_fail,
+                                .sum_ctx = &f,
+                                .precondition = ways[k].precondition,
+                                .precondition_ctx = &f,
+                                .warm = ways[k].warm};
+      sd_solve_report report;
+      for (int j = 0; j < 36; j++) F[j] = ways[k].warm ? 0.9 * s.drag[j / 3] * slip[j] : NAN;
+      status = ways[k].solve(&system, slip, 1e-6, 100, F, work, &report);
+      assert_int_equal(status, f.calls < f.fails_at ? SD_OK : SD_ECALLBACK);
+      assert_int_equal(f.after, 0);
+      for (int j = 0; j < 36; j++) assert_true(isfinite(F[j]));
+      free(slip);
+      scene_free(&s);
+    }
+    assert_true(calls > 8);
+  }
+}
+
 /* Drag 0: the sphere takes no part; the others do not notice it. */
 static void sphere_without_drag_takes_no_part(void **state)
 {
@@ -358,6 +433,7 @@ int main(void)
       cmocka_unit_test(impossible_tolerance_stagnates),
       cmocka_unit_test(out_of_iterations_says_how_far_it_came),
       cmocka_unit_test(residual_only_falls),
+      cmocka_unit_test(failed_callback_ends_the_solve),
       cmocka_unit_test(sphere_without_drag_takes_no_part),
       cmocka_unit_test(resistance_is_symmetric_and_dissipates),
   };

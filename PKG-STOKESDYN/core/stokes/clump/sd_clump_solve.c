@@ -97,11 +97,12 @@ typedef struct {
   int n, solve, solves, products;
 } operator;
 
-static void apply(void *ctx, const double *F, double *u)
+static sd_status apply(void *ctx, const double *F, double *u)
 {
   operator* op = ctx;
   if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->solves, op->products++);
   sd_packed_product(&op->packed, 0, op->n, F, u);
+  return SD_OK;
 }
 
 /* Twelve right-hand sides pay for a sparse factor; where it cannot be made, the diagonal serves. */

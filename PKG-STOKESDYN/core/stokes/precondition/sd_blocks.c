@@ -205,7 +205,7 @@ static void turned_back(const double *R, const double *v, int width, double *out
 }
 
 /* z += (B W S^-1 Q S^-1 W^T B - B W S^-1 W^T B) r, the last term of this part's blocks */
-static void couple(const sd_blocks *b, const double *r, double *z)
+static sd_status couple(const sd_blocks *b, const double *r, double *z)
 {
   const int w = b->width;
   double *own = b->scratch, *velocity = own + 3 * (long) b->blocks,
@@ -222,7 +222,7 @@ static void couple(const sd_blocks *b, const double *r, double *z)
     turned(b->mobility + 9 * (long) k, force, 3, own + 3 * (long) k);
     turned(R, own + 3 * (long) k, 3, velocity + 3 * (long) k);
   }
-  sd_sparse_apply((void *) &b->far, velocity, coupled);
+  const sd_status status = sd_sparse_apply((void *) &b->far, velocity, coupled);
   for (int k = 0; k < b->blocks; k++) {
     const double *R = b->turn + 9 * (long) k;
     double c[3], e[3];
@@ -238,6 +238,7 @@ static void couple(const sd_blocks *b, const double *r, double *z)
       for (int p = 0; p < w; p++) z[w * (long) b->member[l] + p] += v[p];
     }
   }
+  return status;
 }
 
 /* z = B r in the rows of block k */
@@ -262,7 +263,7 @@ static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
   }
 }
 
-void sd_blocks_apply(void *ctx, const double *r, double *z)
+sd_status sd_blocks_apply(void *ctx, const double *r, double *z)
 {
   const sd_blocks *b = ctx;
   const long w = b->width;
@@ -273,5 +274,5 @@ void sd_blocks_apply(void *ctx, const double *r, double *z)
         for (int d = 0; d < w; d++)
           z[w * i + d] = b->drag[i] == 0.0 ? 0.0 : (d < 3 ? b->drag[i] : b->spin[i]) * r[w * i + d];
   for (int k = b->part; k < b->blocks; k += b->parts) apply_block(b, k, r, z);
-  if (b->friction) couple(b, r, z);
+  return b->friction ? couple(b, r, z) : SD_OK;
 }

@@ -67,7 +67,7 @@ sd_status sd_blocks_couple(sd_blocks *b, const sd_law *law, const sd_spheres *s,
 void sd_blocks_turn(sd_blocks *b, int block, const double *R);
 
 /* z = P r (this part's share) in the signature of sd_precondition: ctx is an sd_blocks with drag and spin set. */
-void sd_blocks_apply(void *ctx, const double *r, double *z);
+sd_status sd_blocks_apply(void *ctx, const double *r, double *z);
 
 #ifdef __cplusplus
 }

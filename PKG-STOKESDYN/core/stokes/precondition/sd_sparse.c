@@ -209,7 +209,7 @@ static kernel *kernel_of(int width)
   return plain_six;
 }
 
-void sd_sparse_apply(void *ctx, const double *r, double *z)
+sd_status sd_sparse_apply(void *ctx, const double *r, double *z)
 {
   const sd_sparse *f = ctx;
   const long w = f->width, step = w == 3 ? 4 : 8;
@@ -225,4 +225,5 @@ void sd_sparse_apply(void *ctx, const double *r, double *z)
     const double root = sqrt(f->drag[i]), root_spin = w == 6 ? sqrt(f->spin[i]) : 0.0;
     for (int d = 0; d < w; d++) z[w * i + d] = (d < 3 ? root : root_spin) * out[step * i + d];
   }
+  return SD_OK;
 }

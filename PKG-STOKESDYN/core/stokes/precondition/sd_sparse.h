@@ -35,7 +35,7 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
                            double rho, int part, int parts);
 
 /* z = P r (this part's share), in the signature of sd_precondition: ctx is an sd_sparse with drag and spin set. */
-void sd_sparse_apply(void *ctx, const double *r, double *z);
+sd_status sd_sparse_apply(void *ctx, const double *r, double *z);
 
 #ifdef __cplusplus
 }

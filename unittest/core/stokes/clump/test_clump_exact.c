@@ -12,11 +12,12 @@ typedef struct {
   int n;
 } pairs;
 
-static void apply(void *ctx, const double *F, double *u)
+static sd_status apply(void *ctx, const double *F, double *u)
 {
   const pairs *p = ctx;
   const sd_spheres s = {p->x, p->a, p->ones};
   sd_product_all(SD_TENSOR_RPY, &s, p->n, 0, p->n, F, u);
+  return SD_OK;
 }
 
 /* Without rotation and with shell 1 each force is that of the ordinary solve, in rigid motion and strain. */

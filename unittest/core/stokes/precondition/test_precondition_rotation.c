@@ -25,11 +25,12 @@ static rotating rotating_create(scene *s, sd_law law)
   return g;
 }
 
-static void apply_pairs(void *ctx, const double *F, double *u)
+static sd_status apply_pairs(void *ctx, const double *F, double *u)
 {
   const rotating *g = ctx;
   const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
   sd_product_grand_all(&g->law, &spheres, g->s->n, 0, g->s->n, F, u);
+  return SD_OK;
 }
 
 static void apply_whole(const rotating *g, const double *F, double *u)

@@ -52,11 +52,12 @@ static void products_are_sums_of_grand_blocks(void **state)
   scene_free(&s);
 }
 
-static void apply_grand(void *ctx, const double *F, double *u)
+static sd_status apply_grand(void *ctx, const double *F, double *u)
 {
   scene *s = ctx;
   const sd_spheres spheres = {s->x, s->a, s->w};
   sd_product_grand_all(&law, &spheres, s->n, 0, s->n, F, u);
+  return SD_OK;
 }
 
 /* Reciprocity and dissipation of forces and torques together, radii 1:30, two viscosities. */
