@@ -2,6 +2,8 @@
 
 #include "error.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -45,7 +47,9 @@ std::vector<std::string> words(int narg, char **arg)
 
 bool is_number(const std::string &word, double &value)
 {
-  if (word.empty() || std::isspace((unsigned char) word[0])) return false;
+  // strtod skips space and reads hexadecimal numbers
+  if (word.empty() || isspace((unsigned char) word[0])) return false;
+  if (word.find_first_of("xX") != std::string::npos) return false;
   char *end;
   const double v = strtod(word.c_str(), &end);
   if (*end != '\0') return false;
@@ -60,10 +64,45 @@ Keywords::Keywords(LAMMPS *lmp, const std::string &command, const std::vector<st
 {
 }
 
+Keywords &Keywords::positional(const std::string &name)
+{
+  key = name;
+  return *this;
+}
+
+void Keywords::parse(std::initializer_list<Keyword> table)
+{
+  while (next()) {
+    const auto entry = std::find_if(table.begin(), table.end(),
+                                    [&](const Keyword &keyword) { return is(keyword.name); });
+    if (entry == table.end()) unknown();
+    entry->read();
+  }
+}
+
+bool Keywords::given(const std::string &name) const
+{
+  return std::find(seen.begin(), seen.end(), name) != seen.end();
+}
+
+void Keywords::require(bool condition, const std::string &rule) const
+{
+  if (!condition) fail(lmp, command + ": " + rule);
+}
+
 bool Keywords::next()
 {
-  if (at >= args.size()) return false;
+  if (!more()) return false;
   key = args[at++];
+  if (given(key)) refuse("given twice");
+  seen.push_back(key);
+  return true;
+}
+
+bool Keywords::take(const std::string &option)
+{
+  if (!more() || peek() != option) return false;
+  at++;
   return true;
 }
 
@@ -101,8 +140,9 @@ bigint Keywords::integer(bigint lowest, bigint highest)
   const std::string w = word();
   char *end;
   errno = 0;
-  const long long value = strtoll(w.c_str(), &end, 10);
-  if (w.empty() || *end != '\0') refuse("'" + w + "' is not an integer");
+  const long long value = strtoll(w.c_str(), &end, 10);    // which skips space
+  if (w.empty() || isspace((unsigned char) w[0]) || *end != '\0')
+    refuse("'" + w + "' is not an integer");
   const bool clipped = errno == ERANGE;    // then value is the lowest or the highest there is
   if (value < lowest || (clipped && value < 0))
     refuse("'" + w + "' must be >= " + std::to_string(lowest));

@@ -5,6 +5,7 @@
 #include "lammps.h"
 #include "lmptype.h"
 
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <string>
@@ -21,45 +22,70 @@ namespace StokesDyn {
 /* A number as a user would write it: 6 digits. */
 std::string text(double value);
 
-/* Walks through "keyword value ..." pairs:
- *   Keywords in(lmp, "Pair style stokes_dynamics", args);
- *   while (in.next()) {
- *     if (in.is("visc")) eta = in.positive();
- *     else in.unknown();
- *   }  */
+/* A keyword of a command, and what reads the values that follow it. */
+struct Keyword {
+  const char *name;
+  std::function<void()> read;
+};
+
+/* The words of a command: first those in fixed places, then "keyword value ..." in any order.
+ *   Keywords in(lmp, "Fix example", words(narg, arg), 3);
+ *   nevery = in.positional("N").integer(1);
+ *   in.parse({
+ *       {"visc", [&] { eta = in.positive(); }},
+ *       {"gravity", [&] { for (double &component : g) component = in.number(); }},
+ *   });
+ *   in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
+ * A keyword that is not in the table, or that is there twice, is an error. */
 class Keywords {
  public:
   Keywords(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args,
            size_t begin = 0);
 
-  bool next();    // to the next keyword; false at the end
-  bool is(const std::string &name) const { return name == key; }
-  bool more() const { return at < args.size(); }    // is there another word?
-  const std::string &peek() const { return args[at]; }
+  /* The next words are the value of an argument without keyword; name: for errors. */
+  Keywords &positional(const std::string &name);
+  /* All that is left. An empty table: nothing may be left. */
+  void parse(std::initializer_list<Keyword> table);
+  bool given(const std::string &name) const;
+  /* Unless the condition holds, an error: "<command>: <rule>". */
+  void require(bool condition, const std::string &rule) const;
 
-  std::string word();    // the values of the present keyword, one call each
-  double number();       // finite
+  /* The same by hand: to the next keyword (false at the end), and which it is. */
+  bool next();
+  bool is(const std::string &name) const { return name == key; }
+
+  /* The values of the present keyword, one call each. */
+  std::string word();
+  double number();    // finite
   double positive();
   double not_negative();
   LAMMPS_NS::bigint integer(LAMMPS_NS::bigint lowest,
                             LAMMPS_NS::bigint highest = std::numeric_limits<int>::max());
   bool yes_no();
-  size_t choice(std::initializer_list<const char *> options);    // index of the option given
+  /* index of the option given */
+  size_t choice(std::initializer_list<const char *> options);
+  /* Takes the next word if it is this one: for "off", "inf" and the like in place of a number. */
+  bool take(const std::string &option);
+  bool more() const { return at < args.size(); }
+  const std::string &peek() const { return args[at]; }
 
-  [[noreturn]] void unknown() const;                         // the present keyword does not exist
-  [[noreturn]] void refuse(const std::string &why) const;    // "<command>: keyword <key>: <why>"
+  /* "<command>: unknown keyword <key>" */
+  [[noreturn]] void unknown() const;
+  /* "<command>: keyword <key>: <why>" */
+  [[noreturn]] void refuse(const std::string &why) const;
 
  private:
   LAMMPS_NS::LAMMPS *lmp;
   std::string command, key;
-  std::vector<std::string> args;
+  std::vector<std::string> args, seen;
   size_t at;
 };
 
 /* Words of a LAMMPS command as strings. */
 std::vector<std::string> words(int narg, char **arg);
 
-/* Does this word read as a number, all of it? Then value is set. "inf" and "nan" count as numbers. */
+/* Does this word read as a number, all of it? Then value is set. Decimal only, as in LAMMPS's own commands; "inf" and "nan" count
+ * as numbers. */
 bool is_number(const std::string &word, double &value);
 
 }    // namespace StokesDyn

@@ -57,7 +57,15 @@ AT_THE_COMMAND = [
     ("cut_off_distance inf visc 1.3 fluid_velocity 1 nan 3", ["keyword fluid_velocity: 'nan' is not a finite number"]),
     ("cut_off_distance inf visc 1.3 fluid_velocity 1 up 3", ["keyword fluid_velocity: 'up' is not a number"]),
 ]
-AT_THE_COMMAND += [(f"clumps_only yes visc 1.3 {keyword}", [f"keyword {keyword}: value missing"])
+AT_THE_COMMAND += [(f"cut_off_distance inf visc {number}", [f"keyword visc: '{number}' is not a number"])
+                   for number in ("0x10", "-0X1p-3", "1.5f", "1_000", "+", "--1")]
+AT_THE_COMMAND += [("cut_off_distance 0x10 visc 1.3", ["keyword cut_off_distance: '0x10' is not a number"]),
+                   ("cut_off_distance inf visc 1.3 max_iter 0x10", ["keyword max_iter: '0x10' is not an integer"]),
+                   ("cut_off_distance inf visc 1.3 max_iter ++1", ["keyword max_iter: '++1' is not an integer"]),
+                   ("cut_off_distance inf visc 1e999", ["keyword visc: '1e999' is not a finite number"]),
+                   ("cut_off_distance inf visc 1.3 visc 1.3", ["keyword visc: given twice"]),
+                   ("clumps_only yes visc 1.3 region nowhere clumps_only yes", ["keyword clumps_only: given twice"])]
+AT_THE_COMMAND += [(keyword, [f"keyword {keyword}: value missing"])
                    for keyword in ("cut_off_distance", "update_every", "clumps_only", "visc", "region", "group", "add_force",
                                    "relative_tolerance",
                                    "max_iter", "algorithm", "fluid_velocity", "tensor")]
@@ -69,6 +77,17 @@ def test_pair_style_command(simulation, words, expected):
         simulation(three(), words, box=BOX)
     for text in [PAIR] + expected:
         assert text in str(error.value)
+
+
+@pytest.mark.parametrize("number", ["+1.3", "1.3e+0", ".13e1", "130E-02"])
+def test_numbers_as_lammps_reads_them(simulation, number):
+    sim = simulation(three(), f"cut_off_distance inf visc {number} max_iter +100 algorithm 2", box=BOX).run()
+    assert largest_difference(sim.f, model.forces(three(), 1.3)) < 1e-2
+
+
+def test_error_names_the_file_as_it_is_called_within_the_project(simulation):
+    with pytest.raises(LammpsError, match=r" \(PKG-STOKESDYN/common/keywords\.cpp:[0-9]+\)"):
+        simulation(three(), "cut_off_distance inf visc -1", box=BOX)
 
 
 # seen when a run starts: (words, input lines before, words of the error)
@@ -94,7 +113,8 @@ AT_THE_RUN = [
 
 @pytest.mark.parametrize("words,before,expected", AT_THE_RUN, ids=[f"{w}: {b}" for w, b, _ in AT_THE_RUN])
 def test_start_of_a_run(simulation, words, before, expected):
-    sim = simulation(three(), f"cut_off_distance inf visc 1.3 algorithm 2 {words}", box=BOX, before_pair=before)
+    visc = "" if words.startswith("visc") else "visc 1.3"
+    sim = simulation(three(), f"cut_off_distance inf {visc} algorithm 2 {words}", box=BOX, before_pair=before)
     with pytest.raises(LammpsError) as error:
         sim.run()
     for text in [PAIR] + expected:

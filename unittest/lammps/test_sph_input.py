@@ -53,6 +53,7 @@ ONE_LINE = {
     "state P0": ("fix 1 all sph/pressure Tait 10 1000 7 x", "keyword Tait: 'x' is not a number"),
     "state more": ("fix 1 all sph/pressure Tait 10 1000 7 0 5", "unknown keyword '5'"),
     "delta": ("fix 1 all sph/density/continuity delta -1", "keyword delta: '-1' must be >= 0"),
+    "delta twice": ("fix 1 all sph/density/continuity delta 0.1 delta 0.1", "keyword delta: given twice"),
     "continuity": ("fix 1 all sph/density/continuity diffuse", "unknown keyword 'diffuse'"),
     "summation": ("fix 1 all sph/density/summation 3", "unknown keyword '3'"),
     "corr": ("fix 1 all sph/density/corr mls every 3", "shepard every N"),

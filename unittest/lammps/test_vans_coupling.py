@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
 
-N, MESH = 201, "mesh 201 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
+N, WATER = 201, "fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
+MESH = f"mesh {N} 0.0003 0 {WATER}"
 
 
 @pytest.fixture
@@ -16,7 +17,8 @@ def profile(tmp_path):
 def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
     """Mobile grains + water + what is on its way = start + what came from outside - what the fixed bed took, by drag and by contacts. Velocity Verlet
     gives the force of the first and the last step half a time step each. 1e-10 of all that was moved."""
-    s = Scene.of(bed_script(f"{MESH} profile file {profile} {keywords}"))
+    mesh = f"{WATER} " if keywords.startswith("mesh") else f"{MESH} profile file {profile} "
+    s = Scene.of(bed_script(mesh + keywords))
     s.do("unfix gravity")
 
     def of_type(name, k, wanted):
