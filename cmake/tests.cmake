@@ -27,7 +27,7 @@ function(core_test name model file)
   add_test(NAME ${name} COMMAND ${name})
 endfunction()
 
-foreach(model ${models})
+foreach(model base ${models})
   file(GLOB_RECURSE test_sources CONFIGURE_DEPENDS ${tests}/${model}/test_*.c)
   foreach(file ${test_sources})
     get_filename_component(name ${file} NAME_WE)

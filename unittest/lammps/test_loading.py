@@ -52,3 +52,11 @@ def test_core_knows_neither_lammps_nor_mpi():
     listing = subprocess.run(["nm", "-u"] + archives, stdout=subprocess.PIPE, check=True).stdout.decode()
     names = {line.split()[-1] for line in listing.splitlines() if " U " in line}
     assert not [n for n in names if re.match(r"(P?MPI_|ompi_|_Z|lammps|printf|fprintf|puts|exit$|abort$)", n)]
+
+
+def test_lapack_is_called_from_one_file():
+    """The one that holds it to a thread."""
+    archives = glob.glob(os.path.join(BUILD, "libstokesdyn_*.a"))
+    listing = subprocess.run(["nm", "-uA"] + archives, stdout=subprocess.PIPE, check=True).stdout.decode()
+    callers = {line.split(":")[1] for line in listing.splitlines() if re.search(r" [sdcz]\w+_$", line)}
+    assert callers == {"sd_linear.c.o"}

@@ -3,11 +3,16 @@
 #include <math.h>
 #include <string.h>
 
-void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t);
-void dpotrs_(const char *uplo, const int *n, const int *nrhs, const double *a, const int *lda,
-             double *b, const int *ldb, int *info, size_t);
+/* LAPACK, Fortran: all by reference, column-major, the lengths of character arguments in the end. */
+void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
+void spotrf_(const char *uplo, const int *n, float *A, const int *lda, int *info, size_t);
+void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
+void dpotrs_(const char *uplo, const int *n, const int *count, const double *A, const int *lda,
+             double *B, const int *ldb, int *info, size_t);
 
-/* OpenBLAS may start as many threads as there are cores, on every MPI rank. Absent in other libraries. */
+/* OpenBLAS may start as many threads as there are cores, on every MPI rank: n ranks, n times the
+ * cores. It is held to one from here on until threads_as_before(). Its functions are looked up
+ * weakly, as other libraries do not have them. */
 #if defined(__GNUC__) && !defined(__APPLE__)
 __attribute__((weak)) void openblas_set_num_threads(int);
 __attribute__((weak)) int openblas_get_num_threads(void);
@@ -33,13 +38,48 @@ static void threads_as_before(int before)
 }
 #endif
 
+/* info of a factor: the pivot, counted from 1, that is not positive. A NaN is neither, and need not
+ * stop LAPACK; it stays in its pivot. */
+sd_status sd_cholesky(int n, double *A)
+{
+  const int before = one_thread();
+  int info;
+  dpotrf_("L", &n, A, &n, &info, 1);
+  threads_as_before(before);
+  for (long p = 0; p < (info ? info : n); p++)
+    if (!(fabs(A[p * (n + 1)]) < INFINITY)) return SD_ENOTFINITE;
+  return info == 0 ? SD_OK : SD_ESINGULAR;
+}
+
+sd_status sd_cholesky_single(int n, float *A)
+{
+  const int before = one_thread();
+  int info;
+  spotrf_("L", &n, A, &n, &info, 1);
+  threads_as_before(before);
+  for (long p = 0; p < (info ? info : n); p++)
+    if (!(fabsf(A[p * (n + 1)]) < INFINITY)) return SD_ENOTFINITE;
+  return info == 0 ? SD_OK : SD_ESINGULAR;
+}
+
+sd_status sd_cholesky_inverse(int n, double *A)
+{
+  const int before = one_thread();
+  int info;
+  dpotri_("L", &n, A, &n, &info, 1);
+  threads_as_before(before);
+  for (long q = 0; q < n; q++)
+    for (long p = 0; p < q; p++) A[p + n * q] = A[q + n * p];
+  return info == 0 ? SD_OK : SD_ESINGULAR;
+}
+
 sd_status sd_cholesky_solve(int n, double *A, int count, double *B)
 {
-  /* row-major upper is column-major lower */
+  const sd_status status = sd_cholesky(n, A);
+  if (status != SD_OK) return status;
   const int before = one_thread();
-  int info = 0;
-  dpotrf_("L", &n, A, &n, &info, 1);
-  if (info == 0) dpotrs_("L", &n, &count, A, &n, B, &n, &info, 1);
+  int info;
+  dpotrs_("L", &n, &count, A, &n, B, &n, &info, 1);
   threads_as_before(before);
   return info == 0 ? SD_OK : SD_ESINGULAR;
 }

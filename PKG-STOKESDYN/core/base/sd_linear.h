@@ -1,4 +1,5 @@
-/* Small and dense linear algebra: eigenvalues of small symmetric matrices, Cholesky (LAPACK), rotations. Row-major throughout. */
+/* Small and dense linear algebra: eigenvalues of small symmetric matrices, Cholesky (LAPACK),
+ * rotations. */
 #ifndef SD_LINEAR_H
 #define SD_LINEAR_H
 
@@ -8,21 +9,30 @@
 extern "C" {
 #endif
 
-/* Eigenvalues w [n], largest first, and eigenvectors, the columns of V [n n], of the symmetric A [n n]; n <= 6. Jacobi's
- * rotations. */
+/* Eigenvalues w [n], largest first, and eigenvectors, the columns of V [n n] row-major, of the
+ * symmetric A [n n]; n <= 6. Jacobi's rotations. */
 void sd_eigen(int n, const double *A, double *w, double *V);
 
-/* Pseudo-inverse of the symmetric positive semidefinite 6x6 resistance or mobility about some point: eigenvalues below 1e-9 of
- * the largest count as zero. Rotations are first made comparable to translations by the length that the matrix itself has,
- * (tr RR / tr TT)^(1/2). */
+/* Pseudo-inverse of the symmetric positive semidefinite 6x6 resistance or mobility about some point:
+ * eigenvalues below 1e-9 of the largest count as zero. Rotations are first made comparable to
+ * translations by the length that the matrix itself has, (tr RR / tr TT)^(1/2). */
 void sd_pseudo_inverse6(const double R[36], double inverse[36]);
 
-/* Solve A X = B by Cholesky: A [n n] symmetric positive definite, one triangle is enough (elements A[n i + j], j >= i;
- * destroyed), B [count][n], one right-hand side after the other, X in its place. One thread.
- * SD_OK, or SD_ESINGULAR when a pivot is not positive. */
+/* Lower Cholesky factor of the symmetric positive definite A [n n], in its place. One triangle is
+ * enough: elements A[p + n q], p >= q, that is the lower one by columns or the upper one by rows.
+ * The only functions that call LAPACK: one thread whatever the library is set to.
+ * SD_OK; SD_ESINGULAR when a pivot is not positive; SD_ENOTFINITE. */
+sd_status sd_cholesky(int n, double *A);
+sd_status sd_cholesky_single(int n, float *A);
+
+/* A^-1 [n n], both triangles, from the factor of A in its place. SD_OK; SD_ESINGULAR. */
+sd_status sd_cholesky_inverse(int n, double *A);
+
+/* Solve A X = B: A as of sd_cholesky, destroyed; B [count][n], one right-hand side after the other,
+ * X in its place. Status of sd_cholesky. */
 sd_status sd_cholesky_solve(int n, double *A, int count, double *B);
 
-/* y = A x; y = A^T x; C = A B. 3x3, no aliasing. */
+/* y = A x; y = A^T x; C = A B. 3x3 row-major, no aliasing. */
 static inline void sd_multiply3(const double A[9], const double x[3], double y[3])
 {
   for (int p = 0; p < 3; p++) y[p] = A[3 * p] * x[0] + A[3 * p + 1] * x[1] + A[3 * p + 2] * x[2];

@@ -3,10 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_linear.h"
 #include "sd_unit.h"
-
-/* LAPACK: inverse from the Cholesky factor in the lower triangle (column-major). */
-void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info);
 
 static const double UNITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -117,11 +115,7 @@ sd_status sd_blocks_renew(sd_blocks *b, const sd_law *law, const sd_spheres *s, 
   if (m == 0) return SD_OK;
   const sd_status status = sd_unit_cholesky(law, s, b->member + b->first[k], m, b->width, A);
   if (status != SD_OK) return status;
-  int info;
-  dpotri_("L", &size, A, &size, &info);
-  if (info != 0) return SD_EINDEFINITE;
-  for (long q = 0; q < size; q++) /* the other triangle */
-    for (long p = 0; p < q; p++) A[p + size * q] = A[q + size * p];
+  if (sd_cholesky_inverse(size, A) != SD_OK) return SD_EINDEFINITE;
   rigid_translations(b, k, S);
   inverse3(S, b->mobility + 9 * (long) k);
   return SD_OK;

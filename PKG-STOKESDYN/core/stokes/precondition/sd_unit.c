@@ -1,8 +1,6 @@
 #include "sd_unit.h"
 
-/* LAPACK: Cholesky factor of the lower triangle (column-major). */
-void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info);
-void spotrf_(const char *uplo, const int *n, float *A, const int *lda, int *info);
+#include "sd_linear.h"
 
 /* B [6 x 6], column-major: c [f I + g h h^T] in three rows and columns from B on */
 static inline void put_isotropic(double c, double f, double g, const double h[3], double *B)
@@ -78,20 +76,13 @@ sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *me
                            int width, double *A)
 {
   static const double extra[] = {0.0, 1e-12, 1e-9, 1e-6};
-  const int size = width * m;
   for (int k = 0; k < 4; k++) {
-    int info;
     if (width == 3)
       fill(law, s, member, m, 3, extra[k], A, 0);
     else
       fill(law, s, member, m, 6, extra[k], A, 0);
-    dpotrf_("L", &size, A, &size, &info);
-    if (info == 0) {
-      /* A NaN need not stop dpotrf; it always reaches the last pivot. */
-      const double last = A[(long) size * size - 1];
-      return last > 0.0 && last < INFINITY ? SD_OK : SD_ENOTFINITE;
-    }
-    if (!(A[(info - 1) * ((long) size + 1)] < INFINITY)) return SD_ENOTFINITE;
+    const sd_status status = sd_cholesky(width * m, A);
+    if (status != SD_ESINGULAR) return status;
   }
   return SD_EINDEFINITE;
 }
@@ -101,15 +92,13 @@ sd_status sd_unit_cholesky_single(const sd_law *law, const sd_spheres *s, const 
 {
   /* Pivots below this have lost most of their digits. */
   const float lost = 0.003f;
-  const int size = width * m;
-  int info;
+  const long size = width * (long) m;
   if (width == 3)
     fill(law, s, member, m, 3, 0.0, 0, A);
   else
     fill(law, s, member, m, 6, 0.0, 0, A);
-  spotrf_("L", &size, A, &size, &info);
-  if (info != 0) return SD_ESINGULAR;
-  for (long p = 0; p < size; p++)
-    if (!(A[p * ((long) size + 1)] > lost)) return SD_ESINGULAR;
-  return A[(long) size * size - 1] < INFINITY ? SD_OK : SD_ENOTFINITE;
+  const sd_status status = sd_cholesky_single((int) size, A);
+  for (long p = 0; p < size && status == SD_OK; p++)
+    if (!(A[p * (size + 1)] > lost)) return SD_ESINGULAR;
+  return status;
 }
