@@ -66,7 +66,8 @@ target_compile_definitions(wrongversionplugin PRIVATE SD_LAMMPS_NUM=19990101)
 
 # The example that needs no LAMMPS checks its own numbers. Not under sanitizers: those runs build the core tests alone.
 if(NOT STOKESDYN_SANITIZE)
-  add_test(NAME clump_resistance COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/../examples/clump_resistance/check.sh $<TARGET_FILE:clump_resistance>)
+  add_test(NAME clump_resistance COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/../examples/clump_resistance/run.py --program
+    $<TARGET_FILE:clump_resistance>)
 endif()
 
 # Timings of fix hydro/vans; not a test.

@@ -1,15 +1,24 @@
 #!/usr/bin/env bash
-# Command 1 of the README: set-up (packages, LAMMPS, plugin), then examples/sedimentation. From any folder, with nothing set
-# beforehand.
-#   run.sh              tables and pictures go to build/examples/sedimentation
+# Command 1 of the README: set-up (packages, LAMMPS, plugin), then examples. From any folder, with nothing set beforehand.
+#   run.sh              examples/sedimentation; tables and pictures go to build/examples/sedimentation
 #   run.sh --update     also refreshes those that are kept in examples/sedimentation
+#   run.sh all          every example, one after the other, and a table of their figures at the end; exits with 1 when one is missed
+#   run.sh NAME ...     these examples, with the same table
 set -euo pipefail
 export PATH=${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin      # sbin: dpkg looks for its tools there
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+here=$top/examples
 
+usage() { echo "usage: examples/run.sh [--update | all | NAME ...]" >&2; exit 2; }
+names=()
 case "${1:-}" in
-  "" | --update) ;;
-  *) echo "usage: examples/run.sh [--update]" >&2; exit 2 ;;
+  "" | --update) [ $# -le 1 ] || usage ;;
+  all)
+    [ $# = 1 ] || usage
+    for script in "$here"/*/run.py; do names+=("$(basename "$(dirname "$script")")"); done ;;
+  *)
+    for name; do [ -f "$here/$name/run.py" ] || { echo "run.sh: there is no example $name" >&2; usage; }; done
+    names=("$@") ;;
 esac
 
 "$top/cmake/setup.sh"
@@ -18,5 +27,23 @@ esac
 # Debian's python has the numpy and matplotlib that the set-up installed; another one on the PATH need not.
 python=/usr/bin/python3
 "$python" -c "import numpy, matplotlib" 2> /dev/null || python=python3
-echo "[sedimentation] rigid clumps fall in a viscous fluid"
-exec "$python" "$top/examples/sedimentation/run.py" "$@"
+if [ ${#names[@]} = 0 ]; then
+  echo "[sedimentation] rigid clumps fall in a viscous fluid"
+  exec "$python" "$here/sedimentation/run.py" "$@"
+fi
+
+# Each run.py ends with lines "ok" and "MISSED" (checks.py) and exits with 1 when a figure is missed, with 1 as well when it fails.
+mkdir -p "$top/build/examples"
+table="" bad=0
+for name in "${names[@]}"; do
+  log=$top/build/examples/$name.log began=$SECONDS status=0
+  echo "[$name]"
+  "$python" "$here/$name/run.py" 2>&1 < /dev/null | tee "$log" || status=1
+  ok=$(grep -c "^ok  " "$log" || true) missed=$(grep -c "^MISSED  " "$log" || true) remark=""
+  if [ "$missed" = 0 ] && [ $status != 0 ]; then remark="FAILED, see $log"; fi
+  if [ $((ok + missed)) = 0 ]; then remark="FAILED: no figure was looked at, see $log"; fi
+  [ $status = 0 ] && [ $((ok + missed)) != 0 ] || bad=1
+  table+=$(printf '%-18s %5d %7d %8d  %s' "$name" "$ok" "$missed" $((SECONDS - began)) "$remark")$'\n'
+done
+printf '\n%-18s %5s %7s %8s\n%s' example ok missed seconds "$table"
+exit $bad

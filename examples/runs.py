@@ -46,10 +46,3 @@ def options(script, text, **more):
     given.out = given.out.resolve()
     given.out.mkdir(parents=True, exist_ok=True)
     return given
-
-
-def verdict(facts):
-    """Prints (text, does it hold?) line by line; how many do not."""
-    for fact, holds in facts:
-        print("  " + ("ok      " if holds else "MISSED  ") + fact)
-    return sum(not holds for _, holds in facts)

@@ -267,7 +267,7 @@ def main():
     if root:
         os.makedirs(out, exist_ok=True)
         np.savez(os.path.join(out, args.scene + ".npz"), curve=np.array(curve), tracks=np.array(coupling.tracks),
-                 u=coupling.snapshot)
+                 u=coupling.snapshot, imbalance=coupling.imbalance, drift=drift / largest)
     lmp.close()
     lmp.finalize()
     return 0 if balanced else 1

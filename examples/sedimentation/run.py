@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Falls the twelve clumps and straight chains with in.sedimentation and compares their settling velocities.
 
-    run.py [OUT]        writes tables and pictures into OUT (default: build/examples/sedimentation)
+    run.py --out DIR    writes tables and pictures into DIR (default: build/examples/sedimentation)
     run.py --update     also refreshes the pictures, the logs and the table of README.md in this folder
 
 Every velocity is compared with two values:
@@ -11,7 +11,7 @@ Every velocity is compared with two values:
           model approximates
 The ladder then repeats the twelve clumps with better models (torques, shells of 12, 42 and 162 points a sphere) and compares
 with exact, and with what the clump's own 6x6 resistance says.
-Exits with 1 and says which when a figure is missed.
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
 import concurrent.futures
 import csv
@@ -25,7 +25,8 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from runs import np, plt, need, verdict, TOP  # noqa: E402
+from checks import Checks  # noqa: E402
+from runs import np, plt, need, options, TOP  # noqa: E402
 
 # As in in.sedimentation; lengths below are in radii, velocities in those of a lone sphere.
 A, RHO, RHOF, ETA, G = 50e-6, 2500.0, 970.0, 0.97, 9.81
@@ -36,6 +37,8 @@ CLUMP_BAND = (-11.0, 0.0)           # per cent, drag against exact: the model is
 CHAIN_BAND = (-5.0, 0.0)
 SHELL_LIMIT = {12: 0.6, 42: 0.35, 162: 0.15}        # per cent, velocity against exact
 OWN_LIMIT = 1e-6                    # relative, velocity against the clump's own 6x6 resistance
+# The ladder of the README: error of the drag against exact of the twelve clumps, worst and mean, per cent
+LADDER_ERRORS = {"1": (9.26, 6.07), "torque": (3.05, 2.43), "12": (0.43, 0.33), "42": (0.17, 0.11), "162": (0.06, 0.04)}
 
 SOLVED = "algorithm 2 relative_tolerance 1e-10"
 # Steps of the ladder: what it is called, and the words of the pair style
@@ -342,29 +345,26 @@ def draw_ladder(times, done, ladder, path):
     plt.close(figure)
 
 
-def check_ladder(done, ladder, own, times):
-    """[(fact, holds)]"""
-    facts = []
+def check_ladder(c, done, ladder, own, times):
     for level, limit in SHELL_LIMIT.items():
-        runs = [c for c in ladder if c.level == str(level) and c.angle == 45]
-        worst = max(runs, key=lambda c: c.exact_error)
-        facts.append((f"shell {level}, {len(runs)} clumps: velocity against exact: worst {worst.exact_error:.3f} % "
-                      f"({worst.label}), limit {limit:g} %", len(runs) == len(GEOMETRY) and worst.exact_error <= limit))
-    errors = {c.label: own_errors(c, own[c.clump]) for c in ladder if c.level == "42" and c.angle == 45}
+        runs = [run for run in ladder if run.level == str(level) and run.angle == 45]
+        worst = max(runs, key=lambda run: run.exact_error)
+        c.below(f"shell {level}, {len(runs)} clumps: velocity against exact, worst ({worst.label}), %", worst.exact_error, limit)
+    for level, (worst, mean) in LADDER_ERRORS.items():
+        errors, _ = errors_of(level, done, ladder)
+        c.holds(f"model {level}: every clump was run", len(errors) == len(GEOMETRY))
+        c.near(f"model {level}: error of the drag, worst, %", max(errors), worst, 0.006)
+        c.near(f"model {level}: error of the drag, mean, %", np.mean(errors), mean, 0.006)
+    errors = {run.label: own_errors(run, own[run.clump]) for run in ladder if run.level == "42" and run.angle == 45}
     for k, what in enumerate(("velocity", "spin")):
         name = max(errors, key=lambda label: errors[label][k])
-        facts.append((f"shell 42: {what} against the clump's own 6x6 resistance: worst {errors[name][k]:.1e} ({name}), "
-                      f"limit {OWN_LIMIT:g}",
-                      errors[name][k] <= OWN_LIMIT))
-    chiral = next(c for c in ladder if c.clump == "helix4_chiral" and c.angle == 0)
-    point = next(c for c in done if c.clump == "helix4_chiral" and c.angle == 0)
-    spin, exact = np.linalg.norm(chiral.W), np.linalg.norm(chiral.W_exact)
-    error = np.linalg.norm(chiral.W - chiral.W_exact) / exact
-    facts.append((f"shell 42: the chiral clump spins at {spin:.5f} U0/a, exact {exact:.5f}, {100 * error:.2f} % apart "
-                  f"(one point a sphere: {np.linalg.norm(point.W):.5f}), limit 2 %", error <= 0.02))
+        c.below(f"shell 42: {what} against the clump's own 6x6 resistance, worst ({name})", errors[name][k], OWN_LIMIT)
+    chiral = next(run for run in ladder if run.clump == "helix4_chiral" and run.angle == 0)
+    c.below("shell 42: spin of the chiral clump against exact",
+            np.linalg.norm(chiral.W - chiral.W_exact) / np.linalg.norm(chiral.W_exact), 0.02)
+    c.near("shell 42: its spin, U0/a", np.linalg.norm(chiral.W), 0.03226, 1e-5)
     few, many = times["shell 12, rigid_clumps"][0], times["shell 162, rigid_clumps"][0]
-    facts.append((f"shell 162 costs {many / few:.2f} times what shell 12 costs a step, limit 1.25", many / few <= 1.25))
-    return facts
+    c.below("time of a step with shell 162 over that with shell 12", many / few, 1.25)
 
 
 def draw(done, path):
@@ -425,49 +425,44 @@ def contact_sheet(done, path):
 # --- what must hold -------------------------------------------------------------------------------------------------
 
 
-def check(done):
-    """[(fact, holds)]"""
-    facts = []
-
+def check(c, done):
     def find(clump, angle, n=None, ranks=1, radius=A):
-        return next(c for c in done if (c.clump, c.ranks, c.radius) == (clump, ranks, radius) and abs(c.angle - angle) < 1e-9
-                    and n in (None, c.n))
+        return next(run for run in done if (run.clump, run.ranks, run.radius) == (clump, ranks, radius)
+                    and abs(run.angle - angle) < 1e-9 and n in (None, run.n))
 
-    worst = max(done, key=lambda c: c.model_error)
-    facts.append((f"velocity against the model: worst {worst.model_error:.1e} ({worst.label} at {worst.angle:.4g} degrees), "
-                  f"limit {VELOCITY_LIMIT:g}", worst.model_error <= VELOCITY_LIMIT))
-    worst = max(done, key=lambda c: c.spin_error)
-    facts.append((f"spin against the model: worst {worst.spin_error:.1e} U0/a ({worst.label} at {worst.angle:.4g} degrees), "
-                  "limit 1e-6", worst.spin_error <= 1e-6))
-    helix, exact = (np.linalg.norm(W) for W in (find("helix4_chiral", 0).W, find("helix4_chiral", 0).W_exact))
-    others = max(np.linalg.norm(c.W) for c in done if c.clump != "helix4_chiral")
-    same_sense = find("helix4_chiral", 0).W @ find("helix4_chiral", 0).W_exact > 0
-    facts.append((f"the chiral clump spins, {helix:.4f} U0/a (exact {exact:.4f}, same sense), no other does, {others:.0e} U0/a",
-                  helix > 0.01 and same_sense and others < 1e-8))
-    for kind, (low, high) in (("clumps", CLUMP_BAND), ("chains", CHAIN_BAND)):
-        errors = [c.drag_error for c in done if (c.clump == "chain") == (kind == "chains")]
-        facts.append((f"drag of the {kind} against exact: {min(errors):+.2f} % to {max(errors):+.2f} %, "
-                      f"band {low:g} to {high:g} %", low <= min(errors) and max(errors) <= high))
-    table_errors = [abs(c.drift - DRIFT_MODEL[c.n, c.angle]) for c in done if c.clump in ("chain", "doublet")
-                    and (c.n, c.angle) in DRIFT_MODEL]
-    facts.append((f"drift angle against {len(table_errors)} values of drift.csv: worst {max(table_errors):.1e} degrees, "
-                  "limit 1e-5", max(table_errors) <= 1e-5))
-    tilted = find("doublet", 45)
-    facts.append((f"doublet at 45 degrees drifts by {tilted.drift:.4f} degrees, 3.5035 expected",
-                  abs(tilted.drift - 3.50353) <= 1e-4))
+    def place(run):
+        return f"{run.label} at {run.angle:.4g} degrees"
+
+    worst = max(done, key=lambda run: run.model_error)
+    c.below(f"velocity against the model, worst ({place(worst)})", worst.model_error, VELOCITY_LIMIT)
+    worst = max(done, key=lambda run: run.spin_error)
+    c.below(f"spin against the model, worst ({place(worst)}), U0/a", worst.spin_error, 1e-6)
+    helix = find("helix4_chiral", 0)
+    c.near("spin of the chiral clump, U0/a", np.linalg.norm(helix.W), 0.05795, 1e-5)
+    c.holds("its sense is that of exact flow", helix.W @ helix.W_exact > 0)
+    c.near("its drift, degrees", helix.drift, 2.65, 0.01)
+    c.below("spin of all others, U0/a", max(np.linalg.norm(run.W) for run in done if run.clump != "helix4_chiral"), 1e-8)
+    for kind, band, (least, most) in (("clumps", CLUMP_BAND, (-9.26, -2.94)), ("chains", CHAIN_BAND, (-4.61, -1.75))):
+        errors = [run.drag_error for run in done if (run.clump == "chain") == (kind == "chains")]
+        c.within(f"drag of the {kind} against exact, lowest, %", min(errors), *band)
+        c.within(f"drag of the {kind} against exact, highest, %", max(errors), *band)
+        c.near(f"drag of the {kind} against exact, lowest as in the README, %", min(errors), least, 0.006)
+        c.near(f"drag of the {kind} against exact, highest as in the README, %", max(errors), most, 0.006)
+    drifts = [abs(run.drift - DRIFT_MODEL[run.n, run.angle]) for run in done if run.clump in ("chain", "doublet")
+              and (run.n, run.angle) in DRIFT_MODEL]
+    c.below(f"drift angle against {len(drifts)} values of drift.csv, worst, degrees", max(drifts), 1e-5)
+    c.near("drift of the doublet at 45 degrees", find("doublet", 45).drift, 3.50353, 1e-4)
     angle = steepest(*model_drags(2))
     steep = find("doublet", angle)
-    facts.append((f"largest drift of the doublet: {steep.drift:.4f} degrees, at {angle:.2f} degrees; 3.5101 expected within 0.01",
-                  abs(steep.drift - 3.5101) <= 0.01 and all(c.drift <= steep.drift for c in done if c.clump == "doublet")))
-    for c in done:
-        if c.radius != A:
-            facts.append((f"{c.title}: fell {c.fallen:.1f} radii and turned by {abs(c.tilt - c.angle):.1e} degrees, limit 1e-6",
-                          abs(c.tilt - c.angle) <= 1e-6 and c.fallen > 2))
-        if c.ranks == 2:
-            one = find(c.clump, c.angle, c.n)
-            change = np.linalg.norm(c.U - one.U) / np.linalg.norm(one.U)
-            facts.append((f"{c.title} against 1: velocity changes by {change:.1e}, limit 1e-10", change <= 1e-10))
-    return facts
+    c.near(f"drift of the doublet at {angle:.2f} degrees", steep.drift, 3.5101, 0.01)
+    c.holds("no doublet drifts more", all(run.drift <= steep.drift for run in done if run.clump == "doublet"))
+    for run in done:
+        if run.radius != A:
+            c.below(f"{run.title}: turns while it falls, degrees", abs(run.tilt - run.angle), 1e-6)
+            c.within(f"{run.title}: radii fallen", run.fallen, 2, 100)
+        if run.ranks == 2:
+            one = find(run.clump, run.angle, run.n)
+            c.below(f"{run.title} against 1: velocity", np.linalg.norm(run.U - one.U) / np.linalg.norm(one.U), 1e-10)
 
 
 def update_folder(out, done, ladder_rows):
@@ -488,14 +483,9 @@ def update_folder(out, done, ladder_rows):
 
 
 def main():
-    arguments = sys.argv[1:]
-    update = "--update" in arguments
-    arguments = [a for a in arguments if a != "--update"]
-    out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "sedimentation").resolve()
-    if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
-        sys.exit(__doc__)
+    given = options(__file__, __doc__)
+    out = given.out
     need("lmp", "mpirun")
-    out.mkdir(parents=True, exist_ok=True)
 
     start = time.time()
     todo = cases()
@@ -531,17 +521,16 @@ def main():
     contact_sheet(done, out / "clumps.png")
     draw_ladder(times, done, ladder, out / "ladder.png")
     (out / "ladder.md").write_text(table(ladder_rows))
-    if update:
+    if given.update:
         update_folder(out, done, ladder_rows)
 
-    print()
-    facts = check(done) + check_ladder(done, ladder, own, times)
-    missed = verdict(facts)
-    runs = f"{len(done) + len(ladder) + len(own) + 3 * len(times)} runs in {time.time() - start:.0f} s"
-    print(f"\n{runs}: {missed} of {len(facts)} figures missed" if missed else f"\n{runs}, all figures hold")
-    print(f"tables: {out / 'table.md'}, {out / 'ladder.md'}\npictures: "
-          + ", ".join(str(out / name) for name in ("sedimentation.png", "clumps.png", "ladder.png")))
-    return 1 if missed else 0
+    print(f"\n{len(done) + len(ladder) + len(own) + 3 * len(times)} runs in {time.time() - start:.0f} s\n"
+          f"tables: {out / 'table.md'}, {out / 'ladder.md'}\npictures: "
+          + ", ".join(str(out / name) for name in ("sedimentation.png", "clumps.png", "ladder.png")) + "\n")
+    c = Checks()
+    check(c, done)
+    check_ladder(c, done, ladder, own, times)
+    return c.finish()
 
 
 if __name__ == "__main__":

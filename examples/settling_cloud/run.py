@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Lets the cloud fall with and without hydrodynamic interactions between the clumps, compares the speeds and draws them.
 
-    run.py [OUT]        results, images and pictures go to OUT (default: build/examples/settling_cloud)
+    run.py --out DIR    results, images and pictures go to DIR (default: build/examples/settling_cloud)
     run.py --update     also refreshes the logs and the pictures in this folder
 
-Exits with 1 and says which when a figure is missed.
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
 import io
 import pathlib
@@ -15,7 +15,8 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from runs import np, plt, need, verdict, TOP  # noqa: E402
+from checks import Checks  # noqa: E402
+from runs import np, plt, need, options  # noqa: E402
 from PIL import Image  # noqa: E402
 
 # As in in.settling_cloud. Lengths are in radii of a sphere, speeds in those of a lone sphere, forces in its weight.
@@ -155,12 +156,8 @@ def plot_speeds(curves, sums, path):
 
 
 def main():
-    arguments = sys.argv[1:]
-    update = "--update" in arguments
-    arguments = [a for a in arguments if a != "--update"]
-    if len(arguments) > 1 or any(a.startswith("-") for a in arguments):
-        sys.exit(__doc__)
-    out = pathlib.Path(arguments[0] if arguments else TOP / "build" / "examples" / "settling_cloud").resolve()
+    given = options(__file__, __doc__)
+    out = given.out
     need("lmp", "mpirun")
     shutil.rmtree(out / "out", ignore_errors=True)
 
@@ -182,37 +179,40 @@ def main():
 
     # The cloud is still speeding up when it meets the floor, so its drag is a little less than its weight. Between two solves
     # v' is as old as INTERVAL/2 relaxation times on average, which adds so much to the mass.
-    c = curves["all"]
-    k = np.argmax(c[:, 1])
-    rate = np.polyfit(c[k - 8:k - 1, 0], c[k - 8:k - 1, 1], 1)[0]
-    now, speed, _, radius, _ = c[k - 8:k - 1].mean(axis=0)
+    cloud = curves["all"]
+    k = np.argmax(cloud[:, 1])
+    rate = np.polyfit(cloud[k - 8:k - 1, 0], cloud[k - 8:k - 1, 1], 1)[0]
+    now, speed, _, radius, _ = cloud[k - 8:k - 1].mean(axis=0)
     steady = speed / (1.0 - MASS * (1.0 + 0.5 * INTERVAL) * rate)
     predicted = np.interp(now, t, exact)
-    deepest = max(overlap(s) for _, s in whole)
+    one = lone_clump()
     print(f"\n  settling speed in that of a lone sphere, at time {now:.2f}    measured    expected")
     for what, value, expected in ((TITLE["none"], curves["none"][-1, 1], "1"),
-                                  (TITLE["clump"], curves["clump"][-1, 1], f"{lone_clump():.6f} (one clump, model)"),
+                                  (TITLE["clump"], curves["clump"][-1, 1], f"{one:.6f} (one clump, model)"),
                                   (TITLE["all"], speed, ""),
                                   (f"  its acceleration of {rate:.2f} taken out", steady,
                                    f"{predicted:.2f} (point forces where the clumps are)"),
                                   ("", np.nan, f"{formula(200, radius):.2f} (point forces, uniform, R = {radius:.2f})")):
         print(f"    {what:50}" + (f"{value:11.6f}" if np.isfinite(value) else 11 * " ") + f"    {expected}")
-    print(f"  largest overlap in radii: of two spheres, in the images, {deepest:.1e}; of sphere and floor {c[:, 4].max():.1e}\n")
-    facts = (
-        ("spheres alone fall with speed 1 within 1e-5", abs(curves["none"][-1, 1] - 1.0) < 1e-5),
-        ("clumps fall with the speed of one clump within 1e-5", abs(curves["clump"][-1, 1] / lone_clump() - 1.0) < 1e-5),
-        (f"the cloud falls with 0.93 to 1.02 of the speed of the point forces: {steady / predicted:.3f}",
-         0.93 < steady / predicted < 1.02),
-        ("no overlap is above 2 % of a radius", max(deepest, c[:, 4].max()) < 0.02),
-        (f"1 and 2 ranks place the spheres within 1e-10 of a radius: {np.abs(short[1] - short[2])[:, 2:5].max():.0e}",
-         np.abs(short[1] - short[2])[:, 2:5].max() < 1e-10),
-    )
-    missed = verdict(facts)
-    print(f"pictures: {out / 'settling_cloud.png'}, {out / 'speed.png'}; images: {out / 'out'}")
-    if update:
+    print(f"pictures: {out / 'settling_cloud.png'}, {out / 'speed.png'}; images: {out / 'out'}\n")
+
+    c = Checks()
+    c.near("speed of spheres that see nobody", curves["none"][-1, 1], 1.0, 1e-5)
+    c.near("speed of clumps that see nobody", curves["clump"][-1, 1], one, 1e-5 * one)
+    c.near("speed of the cloud", speed, 46.05, 0.5)
+    c.near("its acceleration", rate, 2.19, 0.3)
+    c.near("its speed without that", steady, 47.35, 0.5)
+    c.near("the speed of point forces in the places of the clumps", predicted, 48.49, 0.1)
+    c.near("the speed of point forces spread evenly", formula(200, radius), 49.32, 0.1)
+    c.within("speed of the cloud over that of the point forces", steady / predicted, 0.93, 1.02)
+    c.near("how often faster than one clump", speed / one, 18.7, 0.2)
+    c.below("largest overlap of two spheres, in radii", max(overlap(s) for _, s in whole), 0.006)
+    c.below("largest dent of the floor, in radii", cloud[:, 4].max(), 0.02)
+    c.below("2 ranks against 1, in radii", np.abs(short[1] - short[2])[:, 2:5].max(), 1e-10)
+    if given.update:
         for name in ("settling_cloud.png", "speed.png", "log.settling_cloud.1", "log.settling_cloud.2"):
             shutil.copy(out / name, HERE)
-    return 1 if missed else 0
+    return c.finish()
 
 
 if __name__ == "__main__":

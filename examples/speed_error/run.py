@@ -11,6 +11,8 @@ cheapest setting below the wanted error, and runs that one on more ranks.
     --ranks       of the last run, as many as there are cores up to 4; 1: none
     --screening   only the table of what a taper leaves of the drag
     --update      log and picture go to this folder as well
+
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed; with --data there is none.
 """
 import argparse
 import os
@@ -24,6 +26,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 os.environ.setdefault("OMP_NUM_THREADS", "1")
+from checks import Checks  # noqa: E402
 from runs import np, plt, TOP  # noqa: E402
 
 try:
@@ -39,6 +42,8 @@ FAMILY = {"tolerance": "C0", "precondition": "C2", "warm_start no": "C8", "updat
           "cut-off": "C3", "taper": "C4", "clumps_only": "C6", "rigid_clumps": "C9", "rotation": "C7", "shell": "k",
           "tensor oseen": "gold", "ranks": "m"}
 MARKER = {"ranks": "^"}
+# Total drag of 6^3 touching spheres over that of one, by the range of a taper: wendland, spherical
+SCREENED = {10: (35.1852, 29.1094), 20: (16.2945, 14.6554), 40: (10.0487, 10.1139), 80: (8.1693, 8.6028)}
 
 
 # --- scenes: positions, radii, velocities, molecules; lengths in radii ---------------------------------------------
@@ -265,12 +270,13 @@ def measure(say, name, data, exact, steps, options, wanted, ranks):
         sys.exit(f"run.py: {name}: no reference: {reference.refused}")
     say(f"\n{name}: {scene.n} spheres; reference: {exact}, relative_tolerance 1e-10")
     say(f"  {'ms/step':>8} {'force':>8} {'settling':>8} {'dissip.':>8} {'its':>4}   setting")
-    points = []
+    points, refused = [], {}
 
     def row(family, words, other, on=1):
         answer = solve(scene, words, steps, on)
         if answer.refused:
             say(f"  {'-':>8} {answer.refused:<35}   {words}")
+            refused[words] = answer.refused
             return
         errors = answer.errors(reference)
         say("  {:8.3f} {:8.1e} {:8.1e} {:8.1e} {:4.0f}   {}".format(
@@ -287,7 +293,7 @@ def measure(say, name, data, exact, steps, options, wanted, ranks):
             row("ranks", best[2], True, ranks)
     else:
         say(f"  no setting has all errors <= {wanted:g}")
-    return points
+    return points, refused
 
 
 def draw(path, results, wanted):
@@ -295,7 +301,7 @@ def draw(path, results, wanted):
     rows = -(-(len(results) + 1) // columns)
     figure, axes = plt.subplots(rows, columns, figsize=(5.2 * columns, 4.4 * rows), squeeze=False, constrained_layout=True)
     seen = {}
-    for axis, (name, points) in zip(axes.flat, results):
+    for axis, (name, points, _) in zip(axes.flat, results):
         for error, ms, _, family, other in points:
             seen[family] = axis.scatter(max(error, FLOOR), ms, color=FAMILY[family], s=36, zorder=3,
                                         marker=MARKER.get(family, "x" if other else "o"))
@@ -328,12 +334,57 @@ def screening(say, folder):
     def drag(words):
         return solve(scene, f"{words} algorithm 2 relative_tolerance 1e-9", 2).drag / (6 * np.pi * VISC)
 
-    exact = drag("cut_off_distance inf")
+    screened = {"exact": drag("cut_off_distance inf")}
+    exact = screened["exact"]
     say(f"\nTotal drag of 6^3 touching spheres over that of one: {exact:.6f}")
     say(f"  {'range, radii':>12} {'wendland':>10} {'times':>7} {'spherical':>10} {'times':>7}")
     for R in (10, 20, 40, 80):
-        w, s = (drag(f"cut_off_distance {R} taper {t}") for t in ("wendland", "spherical"))
+        w, s = screened[R] = [drag(f"cut_off_distance {R} taper {t}") for t in ("wendland", "spherical")]
         say(f"  {R:12d} {w:10.4f} {w / exact:7.3f} {s:10.4f} {s / exact:7.3f}")
+    return screened
+
+
+# --- what must hold -------------------------------------------------------------------------------------------------
+
+
+def check_screening(c, screened):
+    c.near("drag of 6^3 touching spheres over that of one", screened["exact"], 7.482203, 1e-6)
+    for R, values in SCREENED.items():
+        for taper, value, wanted in zip(("wendland", "spherical"), screened[R], values):
+            c.near(f"the same, {taper} {R}", value, wanted, 1e-4)
+
+
+def check_scene(c, name, points, refused, wanted):
+    """What the README says of all scenes. The reference is solved to 1e-10, so that an error below 1e-8 says little."""
+    def words(point):
+        return point[2].split()
+
+    for point in points:
+        error, _, setting, family, _ = point
+        if family in ("tolerance", "precondition", "warm_start no"):
+            tolerance = float(words(point)[words(point).index("relative_tolerance") + 1])
+            alone, plain = "rigid" in name, "none" in words(point)      # 20 and 6 times, 150 and 29 have been seen
+            times = (300 if plain else 40) if alone else 40 if plain else 8
+            c.below(f"{name}: error over tolerance, {setting}", error / max(tolerance, 1e-8), times)
+        elif family in ("cut-off", "taper") or "clumps_only" in words(point) and "rigid" not in name:
+            c.within(f"{name}: error, {setting}", error, wanted, 10.0)
+        elif family == "rigid_clumps":
+            c.below(f"{name}: error, {setting}", error, 1e-9)
+        elif family == "tensor oseen":
+            c.within(f"{name}: error, {setting}", error, 0.05, 0.5)
+    c.holds(f"{name}: algorithm 1 diverges",
+            any("algorithm 2" not in key and text == "diverges" for key, text in refused.items()))
+    touching = "dilute" not in name and "cloud" not in name
+    for what, must in (("tensor oseen", touching), ("cut_off_distance 8 ", "touching" in name or "flocs" in name)):
+        if must:
+            c.holds(f"{name}: {what.strip()} is not definite",
+                    any(what in key and text == "not definite" for key, text in refused.items()))
+    c.holds(f"{name}: a setting has all errors below {wanted:g}", any(p[0] <= wanted and not p[4] for p in points))
+    times = {p[2]: p[1] for p in points}
+    warm = next((key for key in times if "relative_tolerance 1e-3 warm_start no" in key), None)
+    if warm:
+        c.below(f"{name}: time of a step over that without warm start",
+                times[warm.replace(" warm_start no", "")] / times[warm], 0.8)
 
 
 def main():
@@ -357,16 +408,17 @@ def main():
     folder = pathlib.Path(given.out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     say, results = Report(), []
+    c = Checks()
     if given.screening:
-        screening(say, folder)
-        return
+        check_screening(c, screening(say, folder))
+        sys.exit(c.finish())
     if given.data:
         data = pathlib.Path(given.data).resolve()
         if not data.is_file():
             sys.exit(f"run.py: --data {given.data}: there is no such file")
         exact = "clumps_only yes" if given.clumps else "cut_off_distance inf"
         kinds = settings(exact, given.clumps, given.clumps, 1000, given.quick)
-        results.append((data.name, measure(say, data.name, data, exact, STEPS, kinds, given.error, given.ranks)))
+        results.append((data.name, *measure(say, data.name, data, exact, STEPS, kinds, given.error, given.ranks)))
     else:
         for name, (x, a, molecule), rigid, exact, steps in scenes(given.quick):
             rng = np.random.default_rng(7)
@@ -378,14 +430,20 @@ def main():
             if len(x) > 2000:       # seconds a step: only what may be worth it
                 kinds = [k for k in kinds if k[0] == "cut-off" or not any(w in k[1] for w in
                          (" 1e-6", "warm_start no", " 40 ", "update_every 20"))]
-            results.append((name, measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))
-        screening(say, folder)
+            results.append((name, *measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))
+        screened = screening(say, folder)
     draw(folder / "speed_error.png", results, given.error)
     (folder / "log").write_text("\n".join(say.lines) + "\n")
     say(f"\npicture: {folder / 'speed_error.png'}")
     if given.update:
         shutil.copy(folder / "speed_error.png", HERE)
         shutil.copy(folder / "log", HERE / "log.speed_error")
+    if not given.data:
+        print()
+        for name, points, refused in results:
+            check_scene(c, name, points, refused, given.error)
+        check_screening(c, screened)
+        sys.exit(c.finish())
 
 
 if __name__ == "__main__":
