@@ -1,20 +1,23 @@
-/* Registers the styles with LAMMPS, after making sure that it is the LAMMPS this file was compiled for: class layouts differ in every
- * release, and a plugin of another release loads without complaint and then reads wrong members. Only LAMMPS's C functions are
- * used for that, since they do not depend on any layout. */
+/* All styles of the plugin, as LAMMPS registers them. Built into stokesdynstyles.so, which stokesdynloader.c opens when it has made
+ * sure that this is the LAMMPS that the styles were compiled for. */
 #include "lammpsplugin.h"
 #include "library.h"
 #include "version.h"
 
+#include "fix_check_timestep_sph.h"
 #include "fix_hydro_vans.h"
+#include "fix_nve_sph.h"
+#include "fix_sph_density.h"
+#include "fix_sph_pressure.h"
 #include "fix_stokes_dynamics.h"
 #include "fix_stokes_dynamics_state.h"
+#include "fix_wall_adami_sph.h"
+#include "fix_wall_sph.h"
+#include "pair_sph_artvisc_tenscorr.h"
 #include "pair_stokes_dynamics.h"
-#include "sph_styles.h"
 
 #include <cstdio>
-#include <string>
-
-#include <mpi.h>
+#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -29,79 +32,68 @@ template <class Style> static void *make_fix(LAMMPS *lmp, int narg, char **arg)
   return static_cast<Fix *>(new Style(lmp, narg, arg));
 }
 
-/* Empty if the host fits, else what differs. */
-static std::string mismatch(void *lmp)
+static lammpsplugin_t entry(const char *kind, const char *name, const char *info)
 {
-  const int version = lammps_version(lmp);
-  if (version != SD_LAMMPS_NUM)
-    return "it was built for LAMMPS " SD_LAMMPS_VERSION " (" + std::to_string(SD_LAMMPS_NUM) +
-        "), this is LAMMPS " + std::to_string(version);
-  const struct {
-    const char *name;
-    int ours;
-  } sizes[] = {
-      {"bigint", sizeof(bigint)}, {"tagint", sizeof(tagint)}, {"imageint", sizeof(imageint)}};
-  for (const auto &size : sizes) {
-    const int theirs = lammps_extract_setting(lmp, size.name);
-    if (theirs != size.ours)
-      return "its " + std::string(size.name) + " has " + std::to_string(size.ours) +
-          " bytes, that of this LAMMPS " + std::to_string(theirs) +
-          " (build it with -D LAMMPS_SIZES=smallbig or bigbig, as LAMMPS was)";
-  }
-  if ((lammps_config_has_mpi_support() != 0) != (SD_LAMMPS_MPI != 0))
-    return SD_LAMMPS_MPI ? "it was built with MPI, this LAMMPS without"
-                         : "it was built without MPI, this LAMMPS with";
-#if defined(LAMMPS_EXCEPTIONS)
-  if (!lammps_config_has_exceptions())
-    return "it was built with exceptions, this LAMMPS without (build it with -D "
-           "LAMMPS_EXCEPTIONS=OFF)";
-#endif
-  return "";
+  lammpsplugin_t plugin = {};
+  plugin.version = LAMMPS_VERSION;
+  plugin.author = "the PKG-STOKESDYN developers";
+  plugin.style = kind;
+  plugin.name = name;
+  plugin.info = info;
+  return plugin;
+}
+
+template <class Style> static lammpsplugin_t pair(const char *info)
+{
+  lammpsplugin_t plugin = entry("pair", Style::STYLE, info);
+  plugin.creator.v1 = (lammpsplugin_factory1 *) &make_pair<Style>;
+  return plugin;
+}
+
+template <class Style> static lammpsplugin_t fix(const char *info)
+{
+  lammpsplugin_t plugin = entry("fix", Style::STYLE, info);
+  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<Style>;
+  return plugin;
+}
+
+static std::vector<lammpsplugin_t> styles()
+{
+  return {pair<PairStokesDynamics>("Stokes drag with hydrodynamic interactions: pair_style stokes_dynamics"),
+          fix<FixStokesDynamics>("Stokes drag with hydrodynamic interactions: fix stokes_dynamics"),
+          fix<FixStokesDynamicsState>("Stokes drag with hydrodynamic interactions: memory of the pair style"),
+          fix<FixHydroVans>("One-dimensional turbulent stream over a granular bed: fix hydro/vans")};
+}
+
+static std::vector<lammpsplugin_t> sph_styles()
+{
+  return {pair<PairSph>("weakly compressible SPH: pair_style sph/artVisc/tensCorr"),
+          fix<FixSphPressure>("SPH: equation of state"),
+          fix<FixSphDensityContinuity>("SPH: density from continuity"),
+          fix<FixSphDensitySummation>("SPH: density from summation"),
+          fix<FixSphDensityCorr>("SPH: Shepard filter of the density"),
+          fix<FixNveSph>("SPH: time integration"),
+          fix<FixNveSphStationary>("SPH: density of particles at rest"),
+          fix<FixWallAdamiSph>("SPH: walls of particles"),
+          fix<FixWallSph>("SPH: repulsive planes and cylinder"),
+          fix<FixWallRegionSph>("SPH: repulsive surface of a region"),
+          fix<FixCheckTimestepSph>("SPH: checks the time step")};
 }
 
 extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle,
                                                                          void *regfunc)
 {
-  const std::string why = mismatch(lmp);
-  if (!why.empty()) {
-    int me = 0;
-    MPI_Comm_rank(MPI_COMM_WORLD, &me);
-    if (me == 0) {
-      printf("ERROR: stokesdynplugin.so is not loaded: %s. Build the plugin for this LAMMPS: cmake "
-             "-S cmake -B build -D LAMMPS_SOURCE_DIR=DIR\n",
-             why.c_str());
-      fflush(stdout);
-    }
-    return;
+  std::vector<lammpsplugin_t> all = styles();
+  if (lammps_has_style(lmp, "atom", "sph")) {
+    const auto sph = sph_styles();
+    all.insert(all.end(), sph.begin(), sph.end());
+  } else if (lammps_extract_setting(lmp, "universe_rank") == 0) {
+    printf("stokesdynplugin.so: this LAMMPS has no atom_style sph, so the SPH styles are not "
+           "loaded; they need a LAMMPS with the SPH package\n");
+    fflush(stdout);
   }
-
-  lammpsplugin_t plugin = {};
-  plugin.version = LAMMPS_VERSION;
-  plugin.author = "the PKG-STOKESDYN developers";
-  plugin.handle = handle;
-  auto enroll = (lammpsplugin_regfunc) regfunc;
-
-  plugin.style = "pair";
-  plugin.name = PairStokesDynamics::STYLE;
-  plugin.info = "Stokes drag with hydrodynamic interactions: pair_style stokes_dynamics";
-  plugin.creator.v1 = (lammpsplugin_factory1 *) &make_pair<PairStokesDynamics>;
-  enroll(&plugin, lmp);
-
-  plugin.style = "fix";
-  plugin.name = FixStokesDynamics::STYLE;
-  plugin.info = "Stokes drag with hydrodynamic interactions: fix stokes_dynamics";
-  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<FixStokesDynamics>;
-  enroll(&plugin, lmp);
-
-  plugin.name = FixStokesDynamicsState::STYLE;
-  plugin.info = "Stokes drag with hydrodynamic interactions: memory of the pair style";
-  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<FixStokesDynamicsState>;
-  enroll(&plugin, lmp);
-
-  plugin.name = FixHydroVans::STYLE;
-  plugin.info = "One-dimensional turbulent stream over a granular bed: fix hydro/vans";
-  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<FixHydroVans>;
-  enroll(&plugin, lmp);
-
-  enroll_sph_styles(lmp, plugin, enroll);
+  for (lammpsplugin_t &plugin : all) {
+    plugin.handle = handle;
+    ((lammpsplugin_regfunc) regfunc)(&plugin, lmp);
+  }
 }

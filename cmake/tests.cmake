@@ -58,11 +58,12 @@ target_include_directories(bench_core PRIVATE ${tests} ${tests}/stokes ${cmocka_
 target_compile_options(bench_core PRIVATE -Wall -Wextra -O3 $<$<BOOL:${STOKESDYN_MARCH_NATIVE}>:-march=native>)
 target_link_libraries(bench_core PRIVATE ${tested}_stokes ${cmocka_library})
 
-# A plugin that believes to be built for another LAMMPS, to see the guard refuse it. In a folder of its own, since newer LAMMPS
-# loads every plugin in LAMMPS_PLUGIN_PATH.
-add_plugin(wrongversionplugin)
-set_target_properties(wrongversionplugin PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/wrong)
-target_compile_definitions(wrongversionplugin PRIVATE SD_LAMMPS_NUM=19990101)
+# A plugin that believes to be built for another LAMMPS, and styles whose symbols this LAMMPS has not, to see the guard refuse them.
+# In a folder of its own, since newer LAMMPS loads every plugin in LAMMPS_PLUGIN_PATH.
+add_loader(wrongversionplugin 19990101)
+add_plugin_file(wrongstyles ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/lammps/wrong_styles.c)
+set_target_properties(wrongstyles PROPERTIES OUTPUT_NAME stokesdynstyles)
+set_target_properties(wrongversionplugin wrongstyles PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/wrong)
 
 # The example that needs no LAMMPS checks its own numbers. Not under sanitizers: those runs build the core tests alone.
 if(NOT STOKESDYN_SANITIZE)

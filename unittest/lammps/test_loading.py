@@ -10,12 +10,14 @@ import pytest
 from system import lmp
 
 BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
+PLUGIN, STYLES = os.path.join(BUILD, "stokesdynplugin.so"), os.path.join(BUILD, "stokesdynstyles.so")
 WRONG = os.path.join(BUILD, "wrong", "wrongversionplugin.so")       # believes to be built for a LAMMPS of 1999
+WRONG_STYLES = os.path.join(BUILD, "wrong", "stokesdynstyles.so")   # with a symbol that no LAMMPS has
 
 
-def test_only_the_entry_point_is_exported():
-    listing = subprocess.run(["nm", "-D", "--defined-only", os.path.join(BUILD, "stokesdynplugin.so")], stdout=subprocess.PIPE,
-                             check=True)
+@pytest.mark.parametrize("file", [PLUGIN, STYLES])
+def test_only_the_entry_point_is_exported(file):
+    listing = subprocess.run(["nm", "-D", "--defined-only", file], stdout=subprocess.PIPE, check=True)
     assert [line.split()[-1] for line in listing.stdout.decode().splitlines()] == ["lammpsplugin_init"]
 
 
@@ -36,7 +38,36 @@ def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(
     assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, this is LAMMPS \d{8}",
                           ended.text)) == 1
     assert "LAMMPS_SOURCE_DIR" in ended.text             # the way out
+    assert "undefined symbol" not in ended.text          # the styles beside it were not opened
     assert "style plugin" not in ended.text
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("styles,reason", [(WRONG_STYLES, "undefined symbol: function_of_another_lammps"),
+                                           (None, "No such file")])
+def test_styles_that_cannot_be_opened_are_the_plugins_own_message(tmp_path, styles, reason, ranks):
+    shutil.copy(PLUGIN, tmp_path)
+    if styles:
+        shutil.copy(styles, tmp_path)
+    text = lmp(tmp_path, [f"plugin load {tmp_path}/stokesdynplugin.so", "print 'the run goes on'", "plugin list"],
+               ranks=ranks, succeed=False).text
+    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: its styles \(stokesdynstyles.so, beside it\) cannot be opened: "
+                          f".*{reason}.*LAMMPS_SOURCE_DIR", text)) == 1
+    assert "Open of file" not in text and "style plugin" not in text and "the run goes on" in text
+
+
+def test_plugin_is_found_through_a_link(tmp_path):
+    os.symlink(PLUGIN, tmp_path / "mine.so")
+    assert "pair style plugin stokes_dynamics" in lmp(tmp_path, [f"plugin load {tmp_path}/mine.so", "plugin list"]).text
+
+
+def test_plugin_that_is_cleared_in_use_may_be_loaded_again(tmp_path):
+    use = ["pair_style stokes_dynamics clumps_only no cut_off_distance inf visc 1.3", "pair_coeff * *", "fix drag all stokes_dynamics",
+           "run 1"]
+    text = lmp(tmp_path, ["atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region b block -9 9 -9 9 -9 9",
+                          "create_box 1 b", "create_atoms 1 single 0 0 0", "velocity all set 0.1 0 0"] + use +
+               ["plugin clear", "plugin list", "plugin load stokesdynplugin.so"] + use).text
+    assert text.count("Loop time") == 2
 
 
 def test_another_lammps_is_refused_and_the_right_plugin_still_loads(tmp_path):
