@@ -6,6 +6,7 @@
 #include "fix_wall_adami_sph.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "restart_words.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -311,8 +312,6 @@ bool PairSph::used(int itype) const
 // --- restart -------------------------------------------------------------------------------------------------
 // The words of the pair_style command and the values of pair_coeff.
 
-static const int RESTART_FORMAT = 1;
-
 void PairSph::write_restart(FILE *fp)
 {
   write_restart_settings(fp);
@@ -341,28 +340,11 @@ void PairSph::read_restart(FILE *fp)
 
 void PairSph::write_restart_settings(FILE *fp)
 {
-  std::string all;
-  for (const auto &word : args) all += word + '\n';
-  const int size = all.size();
-  fwrite(&RESTART_FORMAT, sizeof(int), 1, fp);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(all.data(), 1, size, fp);
+  write_words(fp, args);
 }
 
 void PairSph::read_restart_settings(FILE *fp)
 {
-  int head[2] = {0, 0};
-  if (comm->me == 0) utils::sfread(FLERR, head, sizeof(int), 2, fp, nullptr, error);
-  MPI_Bcast(head, 2, MPI_INT, 0, world);
-  if (head[0] != RESTART_FORMAT)
-    fail(lmp,
-         COMMAND + ": the restart file is of format " + std::to_string(head[0]) +
-             ", this version reads " + std::to_string(RESTART_FORMAT));
-  std::string all(head[1], '\0');
-  if (comm->me == 0 && head[1]) utils::sfread(FLERR, &all[0], 1, head[1], fp, nullptr, error);
-  MPI_Bcast(&all[0], head[1], MPI_CHAR, 0, world);
-  args.clear();
-  for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1)
-    args.push_back(all.substr(from, to - from));
+  args = read_words(lmp, fp, COMMAND);
   parse();
 }
