@@ -167,16 +167,14 @@ void VansStream::solve(double area, double T, const Given &given)
     shear.resize(N);
     ledger.transit -= given.all;
     ledger.others += given.others;
-    if (foreseen) {
-      source.assign(N, 0.0);
-      // Above the surface there is no water: the slice below it pays.
-      for (int n = 0; n < N; n++) outstanding[std::min(n, M - 1)] += given.back[n] / area;
-      for (int n = 0; n < M; n++) {
-        const double share = RETURNED * outstanding[n];
-        outstanding[n] -= share;
-        returned += share;
-        source[n] = share / (fluid.rho * height(n) * T);
-      }
+    source.assign(N, 0.0);
+    // Above the surface there is no water: the slice below it pays.
+    for (int n = 0; n < N; n++) outstanding[std::min(n, M - 1)] += given.back[n] / area;
+    for (int n = 0; n < M; n++) {
+      const double share = RETURNED * outstanding[n];
+      outstanding[n] -= share;
+      returned += share;
+      source[n] = share / (fluid.rho * height(n) * T);
     }
   }
 
@@ -202,7 +200,6 @@ void VansStream::solve(double area, double T, const Given &given)
   ledger.bottom += area * impulse.bottom;
   ledger.walls += area * impulse.walls;
   ledger.surface += area * impulse.surface;
-  foreseen = true;
 }
 
 double VansStream::momentum(double area) const
@@ -247,7 +244,7 @@ std::vector<double> VansStream::pack() const
 {
   std::vector<double> out = {(double) ncell(),
                              (double) averaged,
-                             (double) foreseen,
+                             0.0,
                              (double) phi_history.size(),
                              (double) class_radii.size(),
                              fluid.radius,
@@ -274,7 +271,6 @@ void VansStream::unpack(const std::vector<double> &in)
              std::to_string(in.empty() ? 0 : (int) in[0]) + " slices, this fix has " +
              std::to_string(N));
   averaged = in[1] != 0.0;
-  foreseen = in[2] != 0.0;
   const size_t history = (size_t) in[3], nclass = (size_t) in[4];
   if (set.radius == 0.0) fluid.radius = in[5];
   ledger.transit = in[6];

@@ -73,7 +73,6 @@ class VansStream {
   LAMMPS_NS::LAMMPS *lmp;
   sd_vans_solver *solver;
   std::vector<double> outstanding;    // [N] momentum per area that is to go back to the water
-  bool foreseen = false;              // has a solve foreseen the drag?
   std::deque<std::vector<double>> phi_history;    // ni_capart: the last profiles
   std::vector<double> scratch;
   std::vector<double> class_columns(int k) const;    // column k of every class, [nclass][N]

@@ -91,3 +91,26 @@ def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
     for name in ("split", "again"):
         other = dump_rows(tmp_path / f"dump.{name}")
         assert (np.abs(other - whole).max(axis=0) / (np.abs(whole).max(axis=0) + 1e-300)).max() < 1e-10, name
+
+
+def cloud(n, box, z, diameter, seed=2):
+    """Grains at random places that do not touch each other (pair_style zero)."""
+    x = np.random.default_rng(seed).uniform([0, 0, z[0]], [box[0], box[1], z[1]], (n, 3))
+    return [f"create_atoms 1 single {a:.17g} {b:.17g} {c:.17g} units box" for a, b, c in x] + [f"set group all diameter {diameter} density 2500"]
+
+
+def test_nothing_stays_on_its_way_when_the_motion_ends(tmp_path):
+    """Grains at rest in viscous water that moves: it takes them along, and the bottom stops both within e^-20. The water has given what the grains
+    got, and has it back: vector 12 is 0, and what the bottom took is all that there was."""
+    u = write_columns(tmp_path / "u", np.concatenate([[0], 0.1 * np.ones(21)]))
+    s = Scene(box=(0, 0.006, 0, 0.006, -0.02, 0.02))
+    s.do(*cloud(60, (0.006, 0.006), (0.001, 0.0045), 0.001))
+    s.do("timestep 2e-4", f"fix h all hydro/vans 5 mesh 21 0.00025 0 fluid 1000 0.1 gravity 0 0 -1e-9 turbulence none profile file {u}", "fix m all nve/sphere", "run 0")
+    start = s.number("momentum")
+    s.do("run 100")
+    assert (s.atoms("rmass") * s.atoms("v")[:, 0]).sum() > 0.05 * start
+    s.do("run 15000")
+    assert abs(s.number("momentum")) < 1e-8 * start
+    assert abs(s.number("transit")) < 1e-8 * start
+    assert abs((s.number("bottom") + s.number("surface")) / start + 1) < 1e-8
+    s.close()

