@@ -1,5 +1,6 @@
-#define _GNU_SOURCE /* qsort_r */
 #include "sd_neighbor.h"
+
+#include "sd_cells.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,119 +38,62 @@ static double distance_squared(const double *a, const double *b)
   return x * x + y * y + z * z;
 }
 
-/* Cells as chains: head[cell] is its first sphere, next[j] the one after j, -1 the end. */
-typedef struct {
-  double lo[3], side;
-  long n[3];
-  int *head, *next;
-} cells;
-
-static long cell_along(const cells *c, const double *x, int d)
+/* One more source in the row that is being written */
+static inline sd_status append(sd_neighbors *list, int rows, long *count, int j)
 {
-  return (long) ((x[d] - c->lo[d]) / c->side);
-}
-
-static void cells_free(cells *c)
-{
-  free(c->head);
-  free(c->next);
-}
-
-/* n_all > 0 spheres. Never many more cells than spheres: a thin cloud gets wider ones than side. */
-static sd_status cells_create(cells *c, const double *x, int n_all, double side)
-{
-  double hi[3];
-  for (int d = 0; d < 3; d++) c->lo[d] = hi[d] = x[d];
-  for (int j = 1; j < n_all; j++)
-    for (int d = 0; d < 3; d++) {
-      c->lo[d] = fmin(c->lo[d], x[3 * (long) j + d]);
-      hi[d] = fmax(hi[d], x[3 * (long) j + d]);
-    }
-  for (c->side = side;; c->side *= 1.5) {
-    double total = 1.0;
-    for (int d = 0; d < 3; d++) total *= floor((hi[d] - c->lo[d]) / c->side) + 1.0;
-    if (total <= 4.0 * n_all + 64.0) break;
+  if (*count == list->capacity) {
+    const sd_status status = sd_neighbors_reserve(list, rows, *count + 1);
+    if (status != SD_OK) return status;
   }
-  for (int d = 0; d < 3; d++) c->n[d] = cell_along(c, hi, d) + 1;
-
-  const long count = c->n[0] * c->n[1] * c->n[2];
-  c->head = malloc(sizeof(int) * (size_t) count);
-  c->next = malloc(sizeof(int) * (size_t) n_all);
-  if (!c->head || !c->next) {
-    cells_free(c);
-    return SD_ENOMEMORY;
-  }
-  for (long k = 0; k < count; k++) c->head[k] = -1;
-  for (int j = n_all - 1; j >= 0; j--) { /* backwards, so that each chain runs in order of index */
-    const double *xj = x + 3 * (long) j;
-    const long k =
-        (cell_along(c, xj, 2) * c->n[1] + cell_along(c, xj, 1)) * c->n[0] + cell_along(c, xj, 0);
-    c->next[j] = c->head[k];
-    c->head[k] = j;
-  }
+  list->neighbor[(*count)++] = j;
   return SD_OK;
-}
-
-/* The first spheres of the cell of x and of those around it, 27 at most; returns how many cells. */
-static int cells_around(const cells *c, const double *x, int first[27])
-{
-  long from[3], to[3];
-  int count = 0;
-  for (int d = 0; d < 3; d++) {
-    const long k = cell_along(c, x, d);
-    from[d] = k > 0 ? k - 1 : 0;
-    to[d] = k + 1 < c->n[d] ? k + 1 : c->n[d] - 1;
-  }
-  for (long z = from[2]; z <= to[2]; z++)
-    for (long y = from[1]; y <= to[1]; y++)
-      for (long k = from[0]; k <= to[0]; k++)
-        first[count++] = c->head[(z * c->n[1] + y) * c->n[0] + k];
-  return count;
 }
 
 sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff)
 {
+  sd_cells c = {0};
   sd_status status = sd_neighbors_reserve(list, n, 0);
+  if (status == SD_OK) status = sd_cells_fill(&c, x, n_all, cutoff);
   if (status != SD_OK) return status;
   list->pairs.n = n;
-  list->first[0] = 0;
-  if (n_all == 0) return SD_OK;
-  cells c;
-  status = cells_create(&c, x, n_all, cutoff);
-  if (status != SD_OK) return status;
 
   const double cutsq = cutoff * cutoff;
   long count = 0;
-  for (int i = 0; i < n; i++) {
+  for (int i = 0; i < n && status == SD_OK; i++) {
     const double *xi = x + 3 * (long) i;
-    int first[27];
-    const int around = cells_around(&c, xi, first);
     list->first[i] = count;
-    for (int k = 0; k < around; k++)
-      for (int j = first[k]; j >= 0; j = c.next[j]) {
-        if (j == i || distance_squared(xi, x + 3 * (long) j) > cutsq) continue;
-        if (count == list->capacity && (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK)
-          goto done;
-        list->neighbor[count++] = j;
-      }
+    for (sd_cells_walk w = sd_cells_near(&c, xi, cutoff); sd_cells_step(&c, &w);)
+      for (int j = w.first; j >= 0 && status == SD_OK; j = c.next[j])
+        if (j != i && distance_squared(xi, x + 3 * (long) j) <= cutsq)
+          status = append(list, n, &count, j);
   }
-done:
   list->first[n] = count;
-  cells_free(&c);
+  sd_cells_free(&c);
   return status;
 }
 
 typedef struct {
-  const int64_t *tag, *molecule;
-} clump_keys;
+  int64_t molecule, tag;
+  int index;
+} clump_key;
 
-static int by_molecule_tag_index(const void *pa, const void *pb, void *ctx)
+static int by_molecule_tag_index(const void *pa, const void *pb)
 {
-  const clump_keys *key = ctx;
-  const int a = *(const int *) pa, b = *(const int *) pb;
-  if (key->molecule[a] != key->molecule[b]) return key->molecule[a] < key->molecule[b] ? -1 : 1;
-  if (key->tag[a] != key->tag[b]) return key->tag[a] < key->tag[b] ? -1 : 1;
-  return (a > b) - (a < b);
+  const clump_key *a = pa, *b = pb;
+  if (a->molecule != b->molecule) return a->molecule < b->molecule ? -1 : 1;
+  if (a->tag != b->tag) return a->tag < b->tag ? -1 : 1;
+  return (a->index > b->index) - (a->index < b->index);
+}
+
+static sd_status sort_by_clump(const int64_t *tag, const int64_t *molecule, int n, int *order)
+{
+  clump_key *key = malloc(sizeof(clump_key) * ((size_t) n + 1));
+  if (!key) return SD_ENOMEMORY;
+  for (int j = 0; j < n; j++) key[j] = (clump_key){molecule[j], tag[j], j};
+  qsort(key, (size_t) n, sizeof(clump_key), by_molecule_tag_index);
+  for (int j = 0; j < n; j++) order[j] = key[j].index;
+  free(key);
+  return SD_OK;
 }
 
 sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
@@ -157,11 +101,9 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
                              int *order)
 {
   sd_status status = sd_neighbors_reserve(list, n, 0);
+  if (status == SD_OK) status = sort_by_clump(tag, molecule, n_all, order);
   if (status != SD_OK) return status;
   list->pairs.n = n;
-  for (int j = 0; j < n_all; j++) order[j] = j;
-  clump_keys keys = {tag, molecule};
-  qsort_r(order, (size_t) n_all, sizeof(int), by_molecule_tag_index, &keys);
 
   /* begin[i], end[i]: the block of the sorted spheres that has the molecule of target i */
   int *begin = malloc(sizeof(int) * 2 * ((size_t) n + 1)), *end = begin + n;
@@ -179,10 +121,10 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
 
   const double cutsq = cutoff * cutoff;
   long count = 0;
-  for (int i = 0; i < n; i++) {
+  for (int i = 0; i < n && status == SD_OK; i++) {
     const double *xi = x + 3 * (long) i;
     list->first[i] = count;
-    for (int k = begin[i], e; k < end[i]; k = e) {
+    for (int k = begin[i], e; k < end[i] && status == SD_OK; k = e) {
       int closest = order[k];
       double rsq = distance_squared(xi, x + 3 * (long) closest);
       for (e = k + 1; e < end[i] && tag[order[e]] == tag[closest]; e++) {
@@ -193,12 +135,9 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
         }
       }
       if (tag[closest] == tag[i] || rsq > cutsq) continue;
-      if (count == list->capacity && (status = sd_neighbors_reserve(list, n, count + 1)) != SD_OK)
-        goto done;
-      list->neighbor[count++] = closest;
+      status = append(list, n, &count, closest);
     }
   }
-done:
   list->first[n] = count;
   free(begin);
   return status;
@@ -226,17 +165,16 @@ sd_status sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pai
       largest = larger_oseen_entry(largest, law, s, i, pairs->neighbor[k]);
   for (int j = 0; j < n_all && !pairs; j++) a = fmax(a, s->a[j]);
   if (a > 0.0) {
-    cells c;
-    const sd_status status = cells_create(&c, s->x, n_all, 1.6 * a);
+    sd_cells c = {0};
+    const sd_status status = sd_cells_fill(&c, s->x, n_all, 1.6 * a);
     if (status != SD_OK) return status;
     for (int i = begin; i < begin + n; i++) {
-      int first[27];
-      const int around = cells_around(&c, s->x + 3 * (long) i, first);
-      for (int k = 0; k < around; k++)
-        for (int j = first[k]; j >= 0; j = c.next[j])
+      sd_cells_walk w = sd_cells_near(&c, s->x + 3 * (long) i, 1.6 * a);
+      while (sd_cells_step(&c, &w))
+        for (int j = w.first; j >= 0; j = c.next[j])
           if (j != i) largest = larger_oseen_entry(largest, law, s, i, j);
     }
-    cells_free(&c);
+    sd_cells_free(&c);
   }
   *coupling = sqrt(largest);
   return SD_OK;

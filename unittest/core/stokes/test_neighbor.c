@@ -1,5 +1,7 @@
 #include "scene.h"
 
+#include "sd_cells.h"
+
 #include <string.h>
 
 /* Every pair within the cut-off once, against the double loop: a cube, a needle, a sheet, all at one point; ghosts are sources only. */
@@ -28,6 +30,35 @@ static void cells_find_what_the_double_loop_finds(void **state)
         }
       sd_neighbors_free(&list);
     }
+}
+
+/* Points come one by one, and a ball of any radius finds all that it holds, each once: also where cells are 2e7 sides away from
+ * the corner that they are counted from, and where their numbers are negative. */
+static void cells_give_all_of_a_ball(void **state)
+{
+  (void) state;
+  enum { N = 400 };
+  uint64_t seed = 8;
+  double x[3 * N];
+  for (int i = 0; i < 3 * N; i++) x[i] = uniform(&seed, -3, 3) + (i < 600 ? 0.0 : 1e7);
+  sd_cells c = {0};
+  assert_int_equal(sd_cells_create(&c, N), SD_OK);
+  for (double radius = 0.2; radius < 4.0; radius *= 2.3) {
+    sd_cells_clear(&c, (double[3]){0.3, -0.1, 0.2}, 0.43);
+    for (int n = 0; n < N; n++) {
+      int seen[N] = {0};
+      for (sd_cells_walk w = sd_cells_near(&c, x + 3 * n, radius); sd_cells_step(&c, &w);)
+        for (int j = w.first; j >= 0; j = c.next[j]) seen[j]++;
+      for (int j = 0; j < N; j++) {
+        const double d[3] = {x[3 * n] - x[3 * j], x[3 * n + 1] - x[3 * j + 1],
+                             x[3 * n + 2] - x[3 * j + 2]};
+        const int inside = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= radius * radius;
+        assert_in_range(seen[j], j < n && inside, j < n);
+      }
+      sd_cells_add(&c, x, n);
+    }
+  }
+  sd_cells_free(&c);
 }
 
 static void no_spheres_no_pairs(void **state)
@@ -150,6 +181,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cells_find_what_the_double_loop_finds),
+      cmocka_unit_test(cells_give_all_of_a_ball),
       cmocka_unit_test(no_spheres_no_pairs),
       cmocka_unit_test(clump_members_once_as_the_closest_image),
       cmocka_unit_test(oseen_coupling_of_the_closest_pair),
