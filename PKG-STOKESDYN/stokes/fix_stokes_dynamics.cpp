@@ -1,31 +1,27 @@
 #include "fix_stokes_dynamics.h"
 
+#include "hydrodynamics.h"
 #include "keywords.h"
-#include "pair_stokes_dynamics.h"
 
 #include "atom.h"
-#include "force.h"
-#include "memory.h"
 #include "modify.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
+static const std::string COMMAND = "Fix stokes_dynamics";
+
 FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), total()
+    Fix(lmp, narg, arg), rows(9), total()
 {
-  Keywords in(lmp, "Fix " + std::string(STYLE), words(narg, arg), 3);
-  while (in.next()) {
-    if (in.is("apply"))
-      apply = in.yes_no() ? YES : NO;
-    else
-      in.unknown();
-  }
+  Keywords in(lmp, COMMAND, words(narg, arg), 3);
+  in.parse({{"apply", [&] { apply = in.yes_no() ? YES : NO; }}});
   peratom_flag = 1;
-  size_peratom_cols = NCOLUMNS;
+  size_peratom_cols = rows.columns();
   peratom_freq = 1;
   scalar_flag = 1;
   vector_flag = 1;
@@ -34,15 +30,14 @@ FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
   extscalar = 1;
   extvector = -1;
   extlist = new int[size_vector]{1, 1, 1, 0, 0, 0, 0, 0, 0};
+  create_attribute = 1;
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
 }
 
 FixStokesDynamics::~FixStokesDynamics()
 {
   atom->delete_callback(id, Atom::GROW);
-  memory->destroy(array_atom);
   delete[] extlist;
 }
 
@@ -51,32 +46,45 @@ int FixStokesDynamics::setmask()
   return FixConst::POST_FORCE;
 }
 
-PairStokesDynamics *FixStokesDynamics::find_pair()
+/* Looked up whenever it is needed: the pair style may be another one by now. */
+Hydrodynamics &FixStokesDynamics::hydrodynamics() const
 {
-  return force->pair
-      ? static_cast<PairStokesDynamics *>(force->pair_match(PairStokesDynamics::STYLE, 1))
-      : nullptr;
+  Hydrodynamics *hydro = Hydrodynamics::of(lmp);
+  if (!hydro)
+    fail(lmp,
+         COMMAND + ": there is no pair_style stokes_dynamics whose force it could apply or report");
+  return *hydro;
+}
+
+void *FixStokesDynamics::extract(const char *name, int &dim)
+{
+  dim = 0;
+  if (strcmp(name, "applies") != 0) return nullptr;
+  find_whether_it_applies(hydrodynamics());
+  return &applies;
+}
+
+void FixStokesDynamics::find_whether_it_applies(const Hydrodynamics &hydro)
+{
+  applies = apply == YES || (apply == UNSAID && !hydro.settings.add_force);
 }
 
 void FixStokesDynamics::init()
 {
-  pair = find_pair();
-  if (!pair)
+  const Hydrodynamics &hydro = hydrodynamics();
+  find_whether_it_applies(hydro);
+  if (apply == YES && hydro.settings.add_force)
     fail(lmp,
-         "Fix stokes_dynamics: there is no pair_style stokes_dynamics whose force it could apply "
-         "or report");
-  if (apply == YES && pair->adds_force())
-    fail(lmp,
-         "Fix stokes_dynamics: keyword apply: 'yes' together with add_force yes of pair_style "
-         "stokes_dynamics would count the force twice");
-  if (!applies(pair->adds_force())) return;
+         COMMAND +
+             ": keyword apply: 'yes' together with add_force yes of pair_style stokes_dynamics "
+             "would count the force twice");
+  if (!applies) return;
   for (int i = 0; i < modify->nfix; i++) {
     Fix *other = modify->fix[i];
-    if (other != this && strcmp(other->style, STYLE) == 0 &&
-        static_cast<FixStokesDynamics *>(other)->applies(pair->adds_force()))
+    int dim;
+    if (other != this && strcmp(other->style, STYLE) == 0 && *(bool *) other->extract("applies", dim))
       fail(lmp,
-           "Fix stokes_dynamics: keyword apply: the fixes " + std::string(id) + " and " +
-               other->id +
+           COMMAND + ": keyword apply: the fixes " + std::string(id) + " and " + other->id +
                " both apply the force, which would count twice; give one of them apply no");
   }
 }
@@ -88,31 +96,27 @@ void FixStokesDynamics::setup(int vflag)
 
 void FixStokesDynamics::post_force(int /*vflag*/)
 {
-  if (!pair->computed_in(update->ntimestep))
+  const Hydrodynamics &hydro = hydrodynamics();
+  if (!hydro.computed_in(update->ntimestep))
     fail(lmp,
-         "Fix stokes_dynamics: the pair style was not computed in this step (pair_modify compute "
-         "no?)");
-  const bool add = applies(pair->adds_force());
+         COMMAND + ": the pair style was not computed in this step (pair_modify compute no?)");
   for (double &t : total) t = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
-    double *row = array_atom[i];
-    if (!(atom->mask[i] & groupbit)) {
-      memset(row, 0, NCOLUMNS * sizeof(double));
+    if (!(atom->mask[i] & groupbit) || !hydro.ambient.active()[i]) {
+      rows.zero(i);
       continue;
     }
-    memcpy(row, pair->drag_force(i), 3 * sizeof(double));
-    memcpy(row + 3, pair->perturbation(i), 3 * sizeof(double));
-    if (const double *torque = pair->drag_torque(i)) {
-      memcpy(row + 6, torque, 3 * sizeof(double));
-      if (add)
-        for (int d = 0; d < 3; d++) atom->torque[i][d] += torque[d];
-    } else
-      memset(row + 6, 0, 3 * sizeof(double));
+    double *row = rows.row(i);
+    const double *F = hydro.force(i), *torque = hydro.torque(i);
+    std::copy_n(F, 3, row);
+    std::copy_n(hydro.perturbation(i), 3, row + 3);
+    if (torque) std::copy_n(torque, 3, row + 6);
     for (int d = 0; d < 3; d++) {
-      total[d] += row[d];
-      if (add) atom->f[i][d] += row[d];
+      total[d] += F[d];
+      if (applies) atom->f[i][d] += F[d];
+      if (applies && torque) atom->torque[i][d] += torque[d];
     }
-    total[3] += pair->dissipation(i);
+    total[3] += hydro.dissipation(i);
   }
 }
 
@@ -124,7 +128,8 @@ double FixStokesDynamics::compute_scalar()
   return all;
 }
 
-/* Total force x y z; iterations and residual of the last solve, solves, unconverged solves; smallest eigenvalue met, time step limit. */
+/* Total force x y z; iterations and residual of the last solve, solves, unconverged solves; smallest eigenvalue met, time step
+ * limit. */
 double FixStokesDynamics::compute_vector(int k)
 {
   if (k < 3) {
@@ -132,29 +137,32 @@ double FixStokesDynamics::compute_vector(int k)
     MPI_Allreduce(&total[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
     return all;
   }
-  if (!pair) return 0.0;
-  const auto &g = pair->numbers();
-  const double values[] = {g.iterations,  g.residual,   g.solves,
-                           g.unconverged, g.lambda_min, g.dt_limit};
+  hydrodynamics();    // an error if there is none
+  const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
+  if (!memory) return 0.0;
+  const auto &g = memory->global;
+  const double values[] = {g.iterations,  g.residual,         g.solves,
+                           g.unconverged, g.guard.lambda_min, g.guard.limit};
   return values[k - 3];
 }
 
 void FixStokesDynamics::grow_arrays(int nmax)
 {
-  memory->grow(array_atom, nmax, NCOLUMNS, "stokes_dynamics:array_atom");
+  rows.grow(nmax);
+  array_atom = rows.array();
 }
 
 void FixStokesDynamics::copy_arrays(int i, int j, int /*delflag*/)
 {
-  memcpy(array_atom[j], array_atom[i], NCOLUMNS * sizeof(double));
+  rows.copy(i, j);
 }
 
 void FixStokesDynamics::set_arrays(int i)
 {
-  memset(array_atom[i], 0, NCOLUMNS * sizeof(double));
+  rows.zero(i);
 }
 
 double FixStokesDynamics::memory_usage()
 {
-  return (double) atom->nmax * NCOLUMNS * sizeof(double);
+  return rows.bytes();
 }

@@ -5,9 +5,11 @@
 
 #include "fix.h"
 
+#include "atom_rows.h"
+
 namespace StokesDyn {
 
-class PairStokesDynamics;
+class Hydrodynamics;
 
 class FixStokesDynamics : public LAMMPS_NS::Fix {
  public:
@@ -21,20 +23,23 @@ class FixStokesDynamics : public LAMMPS_NS::Fix {
   void post_force(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
+  /* "applies": does this fix add the force? A bool, as things stand now. */
+  void *extract(const char *, int &) override;
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
   double memory_usage() override;
 
-  /* Does this fix add the force, given whether the pair style does? */
-  bool applies(bool pair_adds) const { return apply == YES || (apply == UNSAID && !pair_adds); }
-
  private:
   enum { NO, YES, UNSAID } apply = UNSAID;
-  enum { NCOLUMNS = 9 };    // Fx Fy Fz v'x v'y v'z Tx Ty Tz
-  PairStokesDynamics *pair = nullptr;
-  double total[4];    // F and dissipation of the group, this rank
-  PairStokesDynamics *find_pair();
+  bool applies = false;
+  /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
+  AtomArray rows;
+  /* F and dissipation of the group, this rank */
+  double total[4];
+
+  Hydrodynamics &hydrodynamics() const;
+  void find_whether_it_applies(const Hydrodynamics &);
 };
 
 }    // namespace StokesDyn

@@ -1,39 +1,70 @@
 #include "fix_stokes_dynamics_state.h"
 
+#include "keywords.h"
+#include "lammps_compat.h"
+#include "named_state.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
-#include "memory.h"
+#include "modify.h"
 
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg)
+static bool says(int narg, char **arg, const char *word)
 {
-  const bool has_rotation = narg > 3 && strcmp(arg[3], "rotation") == 0;
-  const bool has_history = strcmp(arg[narg - 1], "history") == 0;
-  rotation = has_rotation;
-  history = TRANSLATION_ONLY;
-  if (has_rotation) history = WITH_ROTATION;
-  columns = history + (has_history ? (has_rotation ? 12 : 6) : 0);
+  for (int k = 3; k < narg; k++)
+    if (strcmp(arg[k], word) == 0) return true;
+  return false;
+}
+
+FixStokesDynamicsState *FixStokesDynamicsState::find(LAMMPS *lmp)
+{
+  Fix *fix = Compat::fix(lmp->modify, ID);
+  if (fix && strcmp(fix->style, STYLE) != 0)
+    fail(lmp,
+         "Pair style stokes_dynamics: the fix ID " + std::string(ID) +
+             " is taken by a fix of style " + fix->style +
+             ", and the pair style needs it for itself; give that fix another ID");
+  return static_cast<FixStokesDynamicsState *>(fix);
+}
+
+FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history)
+{
+  FixStokesDynamicsState *fix = find(lmp);
+  if (fix && fix->rotation == rotation && fix->history == history) return fix;
+  if (fix) lmp->modify->delete_fix(ID);
+  lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (rotation ? " rotation" : "") +
+                       (history ? " history" : ""));
+  return find(lmp);
+}
+
+static int columns_of(bool rotation, bool history)
+{
+  using State = FixStokesDynamicsState;
+  if (rotation) return State::WITH_ROTATION + (history ? 6 : 0);
+  return State::WITHOUT_ROTATION + (history ? 3 : 0);
+}
+
+FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), rotation(says(narg, arg, "rotation")), history(says(narg, arg, "history")),
+    rows(columns_of(rotation, history)), resume(lmp, rotation), left(resume.columns())
+{
   restart_peratom = 1;
   restart_global = 1;
   create_attribute = 1;
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
 }
 
 FixStokesDynamicsState::~FixStokesDynamicsState()
 {
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
-  memory->destroy(state);
 }
 
 void FixStokesDynamicsState::forget()
@@ -42,13 +73,25 @@ void FixStokesDynamicsState::forget()
   global = Global();
   global.solves = old.solves;
   global.unconverged = old.unconverged;
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  rows.clear();
+  left.clear();
 }
 
-void FixStokesDynamicsState::settings_are(uint64_t hash)
+/* FNV-1a over all words */
+static uint64_t hash(const std::vector<std::string> &words)
 {
-  if (hash != global.settings) forget();
-  global.settings = hash;
+  uint64_t h = 14695981039346656037u;
+  for (const auto &word : words)
+    for (size_t k = 0; k <= word.size(); k++)
+      h = (h ^ (unsigned char) word.c_str()[k]) * 1099511628211u;
+  return h;
+}
+
+void FixStokesDynamicsState::settings_are(const std::vector<std::string> &words)
+{
+  const uint64_t now = hash(words);
+  if (now != global.settings) forget();
+  global.settings = now;
 }
 
 void FixStokesDynamicsState::present_box(double *box) const
@@ -69,11 +112,10 @@ bool FixStokesDynamicsState::box_left_as_is() const
 
 void FixStokesDynamicsState::record(int i)
 {
-  state[i][LEFT_RADIUS] = atom->radius[i];
-  state[i][LEFT_MOLECULE] = atom->molecule ? atom->molecule[i] : 0;
-  domain->unmap(atom->x[i], atom->image[i], state[i] + LEFT_X);
-  memcpy(state[i] + LEFT_V, atom->v[i], 3 * sizeof(double));
-  if (rotation) memcpy(state[i] + LEFT_OMEGA, atom->omega[i], 3 * sizeof(double));
+  if (rows.has(i))
+    resume.record(i, left.give(i));
+  else
+    left.take(i);
 }
 
 void FixStokesDynamicsState::post_run()
@@ -82,66 +124,45 @@ void FixStokesDynamicsState::post_run()
   present_box(global.box);
 }
 
-/* Within rounding: rigid bodies set the velocities of their atoms anew. */
-static bool same_vector(const double *now, const double *then)
-{
-  double difference = 0.0, size = 0.0;
-  for (int k = 0; k < 3; k++) {
-    difference = fmax(difference, fabs(now[k] - then[k]));
-    size = fmax(size, fabs(now[k]));
-  }
-  return difference <= 1e-12 * size;
-}
-
-bool FixStokesDynamicsState::placed_as_left(int i) const
-{
-  double x[3];
-  domain->unmap(atom->x[i], atom->image[i], x);
-  for (int k = 0; k < 3; k++)    // wrapping into the box leaves rounding
-    if (!(fabs(x[k] - state[i][LEFT_X + k]) <= 1e-9 * atom->radius[i])) return false;
-  return atom->radius[i] == state[i][LEFT_RADIUS] &&
-      (!atom->molecule || atom->molecule[i] == state[i][LEFT_MOLECULE]);
-}
-
-bool FixStokesDynamicsState::moving_as_left(int i) const
-{
-  return same_vector(atom->v[i], state[i] + LEFT_V) &&
-      (!rotation || same_vector(atom->omega[i], state[i] + LEFT_OMEGA));
-}
+// --- LAMMPS's callbacks --------------------------------------------------------------------------------------
 
 void FixStokesDynamicsState::grow_arrays(int nmax)
 {
-  memory->grow(state, nmax, columns, "stokes_dynamics:state");
+  rows.grow(nmax);
+  left.grow(nmax);
 }
 
 void FixStokesDynamicsState::copy_arrays(int i, int j, int /*delflag*/)
 {
-  memcpy(state[j], state[i], columns * sizeof(double));
+  rows.copy(i, j);
+  left.copy(i, j);
 }
 
 void FixStokesDynamicsState::set_arrays(int i)
 {
-  memset(state[i], 0, columns * sizeof(double));
+  rows.take(i);
+  left.take(i);
 }
 
 int FixStokesDynamicsState::pack_exchange(int i, double *buf)
 {
-  memcpy(buf, state[i], columns * sizeof(double));
-  return columns;
+  const int m = rows.pack(i, buf);
+  return m + left.pack(i, buf + m);
 }
 
 int FixStokesDynamicsState::unpack_exchange(int nlocal, double *buf)
 {
-  memcpy(state[nlocal], buf, columns * sizeof(double));
-  return columns;
+  const int m = rows.unpack(nlocal, buf);
+  return m + left.unpack(nlocal, buf + m);
 }
 
+/* All rows have the length of the longest, so that the file tells whether it is of this kind. */
 int FixStokesDynamicsState::pack_restart(int i, double *buf)
 {
   record(i);
-  buf[0] = columns + 1;
-  memcpy(buf + 1, state[i], columns * sizeof(double));
-  return columns + 1;
+  buf[0] = maxsize_restart();
+  pack_exchange(i, buf + 1);
+  return maxsize_restart();
 }
 
 void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
@@ -149,9 +170,9 @@ void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
   double *extra = atom->extra[nlocal];
   int m = 0;
   for (int i = 0; i < nth; i++) m += static_cast<int>(extra[m]);
-  // Another number of columns: the pair style has been given with or without rotation since. Nothing of the past stands then.
-  if (static_cast<int>(extra[m]) == columns + 1)
-    memcpy(state[nlocal], extra + m + 1, columns * sizeof(double));
+  // Of another length: the pair style has been given with or without rotation since. Nothing of the past stands then.
+  if (global.last_step >= 0 && static_cast<int>(extra[m]) == maxsize_restart())
+    unpack_exchange(nlocal, extra + m + 1);
   else
     set_arrays(nlocal);
 }
@@ -161,19 +182,47 @@ void FixStokesDynamicsState::write_restart(FILE *fp)
   present_box(global.box);
   restart_written = true;
   if (comm->me != 0) return;
-  int size = sizeof(Global);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&global, sizeof(Global), 1, fp);
+  NamedState out(STYLE);
+  out.put("last_step", global.last_step);
+  out.put("last_solve", global.last_solve);
+  out.put("spheres", global.spheres);
+  out.put("numbers", std::vector<double>(global.numbers, global.numbers + 7));
+  out.put("solves", global.solves);
+  out.put("unconverged", global.unconverged);
+  out.put("iterations", global.iterations);
+  out.put("residual", global.residual);
+  out.put("solutions", global.solutions);
+  out.put("box", std::vector<double>(global.box, global.box + 6));
+  out.put("preconditioner", global.preconditioner);
+  out.put("lambda_min", global.guard.lambda_min);
+  out.put("guard_due", global.guard.due);
+  out.put("dt_limit", global.guard.limit);
+  out.put("loose", global.loose);
+  out.put_bits("settings", global.settings);
+  out.write(fp);
 }
 
 void FixStokesDynamicsState::restart(char *buf)
 {
-  uint64_t size;
-  memcpy(&size, buf, sizeof(size));
-  if (size == sizeof(Global)) memcpy(&global, buf, sizeof(Global));
+  NamedState in(STYLE);
+  if (!in.read(lmp, buf)) return;
+  global.last_step = in.get("last_step", -1.0);
+  global.last_solve = in.get("last_solve", -1.0);
+  global.spheres = in.get("spheres", 0.0);
+  in.get("numbers", global.numbers, 7);
+  global.solves = in.get("solves", 0.0);
+  global.unconverged = in.get("unconverged", 0.0);
+  global.iterations = in.get("iterations", 0.0);
+  global.residual = in.get("residual", 0.0);
+  global.solutions = in.get("solutions", 0.0);
+  in.get("box", global.box, 6);
+  global.preconditioner = in.get("preconditioner");
+  global.guard = {in.get("lambda_min", 0.0), in.get("guard_due", 0.0), in.get("dt_limit", 0.0)};
+  global.loose = in.get("loose");
+  global.settings = in.get_bits("settings", 0);
 }
 
 double FixStokesDynamicsState::memory_usage()
 {
-  return (double) atom->nmax * columns * sizeof(double);
+  return rows.bytes() + left.bytes();
 }

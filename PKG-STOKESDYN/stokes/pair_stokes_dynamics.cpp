@@ -1,6 +1,5 @@
 #include "pair_stokes_dynamics.h"
 
-#include "fix_stokes_dynamics.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 
@@ -9,10 +8,8 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
 #include "memory.h"
 #include "modify.h"
-#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 
@@ -23,20 +20,17 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = PairStokesDynamics::COMMAND_NAME;
-static const char *STATE_ID = "STOKES_DYNAMICS_STATE";
+static const std::string COMMAND = StokesSettings::COMMAND;
+using State = FixStokesDynamicsState;
 
-PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) :
-    Pair(lmp), scene(lmp, this, COMMAND), rigid(lmp, scene, COMMAND), preconditioner(lmp, scene),
-    sorting_bins(lmp)
+PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp, this), sorting_bins(lmp)
 {
   single_enable = 0;
   respa_enable = 0;
   manybody_flag = 1;
   one_coeff = 1;
   restartinfo = 1;
-  no_virial_fdotr_compute =
-      1;                // drag acts between sphere and fluid: its x.F depends on the origin
+  no_virial_fdotr_compute = 1;    // drag is between sphere and fluid: its x.F depends on the origin
   comm_forward = 19;    // most: what rigid clumps know of an atom (RigidClumps::gather)
   nextra = 4;           // compute pair: iterations, residual, unconverged solves, dissipation
   pvector = new double[nextra];
@@ -45,7 +39,8 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) :
 
 PairStokesDynamics::~PairStokesDynamics()
 {
-  if (find_state()) modify->delete_fix(STATE_ID);
+  Fix *memory_fix = Compat::fix(modify, State::ID);
+  if (memory_fix && strcmp(memory_fix->style, State::STYLE) == 0) modify->delete_fix(State::ID);
   delete[] pvector;
   if (allocated) {
     memory->destroy(setflag);
@@ -53,139 +48,88 @@ PairStokesDynamics::~PairStokesDynamics()
   }
 }
 
-// --- settings ----------------------------------------------------------------------------------------------
+// --- a step ------------------------------------------------------------------------------------------------------
+
+void PairStokesDynamics::compute(int eflag, int vflag)
+{
+  ev_init(eflag, vflag);
+  hydro.begin();
+  const Verdict verdict = judge();
+  if (verdict != STANDS) {
+    hydro.clumps();
+    if (verdict == SOLVE) hydro.solve();
+    hydro.drag();
+  }
+  if (hydro.settings.add_force) add();
+  report();
+}
+
+/* v' is due every update_every steps, and at once when the spheres are not those of the last solve: none lacks a v', none has
+ * gone, and nobody has displaced them between two runs. */
+PairStokesDynamics::Verdict PairStokesDynamics::judge()
+{
+  const State *memory = hydro.memory;
+  State::Global &global = hydro.memory->global;
+  const double step = update->ntimestep, period = hydro.settings.update_every;
+  const bool continued = update->setupflag && step == global.last_step;
+
+  enum { SPHERES, NEWCOMERS, DISPLACED, PUSHED, COUNTS };
+  double count[COUNTS] = {(double) hydro.ambient.who().size(), 0.0, 0.0, 0.0};
+  for (int i : hydro.ambient.who()) {
+    if (!memory->rows.has(i)) count[NEWCOMERS]++;
+    if (continued && !memory->placed_as_left(i)) count[DISPLACED]++;
+    if (continued && !memory->moving_as_left(i)) count[PUSHED]++;
+  }
+  if (continued && !memory->box_left_as_is()) count[DISPLACED]++;
+  MPI_Allreduce(MPI_IN_PLACE, count, COUNTS, MPI_DOUBLE, MPI_SUM, world);
+
+  double numbers[7];
+  hydro.ambient.numbers(numbers);
+  const bool same_spheres = count[NEWCOMERS] == 0.0 && count[SPHERES] == global.spheres;
+  const bool same_fluid = hydro.ambient.numbers_only() &&
+      std::equal(numbers, numbers + 7, global.numbers);
+  std::copy(numbers, numbers + 7, global.numbers);
+  global.last_step = step;
+  if (continued && same_fluid && same_spheres && count[DISPLACED] + count[PUSHED] == 0.0)
+    return STANDS;
+  if (same_spheres && count[DISPLACED] == 0.0 && std::fmod(step, period) != 0.0 &&
+      step >= global.last_solve &&
+      std::floor(step / period) == std::floor(global.last_solve / period))
+    return OLD_PERTURBATION;
+  global.last_solve = step;
+  global.spheres = count[SPHERES];
+  return SOLVE;
+}
+
+/* The one place where the force is added, but for fix stokes_dynamics, which is another's. */
+void PairStokesDynamics::add()
+{
+  for (int i : hydro.ambient.who()) {
+    const double *F = hydro.force(i), *T = hydro.torque(i);
+    for (int d = 0; d < 3; d++) atom->f[i][d] += F[d];
+    for (int d = 0; d < 3 && T; d++) atom->torque[i][d] += T[d];
+  }
+}
+
+/* For compute pair, which sums over the ranks. */
+void PairStokesDynamics::report()
+{
+  const State::Global &global = hydro.memory->global;
+  const bool root = comm->me == 0;
+  pvector[0] = root ? global.iterations : 0.0;
+  pvector[1] = root ? global.residual : 0.0;
+  pvector[2] = root ? global.unconverged : 0.0;
+  pvector[3] = 0.0;
+  if (eflag_global)    // else nobody asks in this step
+    for (int i : hydro.ambient.who()) pvector[3] += hydro.dissipation(i);
+}
+
+// --- settings ----------------------------------------------------------------------------------------------------
 
 void PairStokesDynamics::settings(int narg, char **arg)
 {
   args = words(narg, arg);
-  parse();
-}
-
-FixStokesDynamicsState *PairStokesDynamics::find_state() const
-{
-  return static_cast<FixStokesDynamicsState *>(Compat::fix(modify, STATE_ID));
-}
-
-void PairStokesDynamics::parse()
-{
-  update_every = 1;
-  add_force = false;
-  tolerance = 1e-3;
-  max_iter = 100;
-  algorithm = 1;
-  visc = Field();
-  for (auto &u : fluid_velocity) u = Field(0.0);
-  for (auto &w : fluid_vorticity) w = Field(0.0);
-  has_vorticity = false;
-  region_id.clear();
-  group_id = "all";
-  scene.settings = Scene::Settings();
-  scene.lists_are_stale();
-  rigid.settings = RigidClumps::Settings();
-  preconditioner.forget();
-  preconditioner.kind = Preconditioner::AUTO;
-  warm_start = true;
-  rigid.forget();
-  bool has_shell = false;
-
-  bool has_visc = false, has_cutoff = false;
-  Keywords in(lmp, COMMAND, args);
-  while (in.next()) {
-    if (in.is("cut_off_distance")) {
-      if (in.more() && in.peek() == "inf") {
-        in.word();
-        scene.settings.cutoff = INFINITY;
-      } else
-        scene.settings.cutoff = in.positive();
-      has_cutoff = true;
-    } else if (in.is("update_every"))
-      update_every = in.integer(1);
-    else if (in.is("clumps_only"))
-      scene.settings.clumps_only = in.yes_no();
-    else if (in.is("visc")) {
-      visc = Field::parse(in);
-      if (!visc.is_variable() && !(visc.number() > 0.0))
-        in.refuse("'" + text(visc.number()) + "' must be > 0");
-      has_visc = true;
-    } else if (in.is("region"))
-      region_id = in.word();
-    else if (in.is("group"))
-      group_id = in.word();
-    else if (in.is("add_force"))
-      add_force = in.yes_no();
-    else if (in.is("relative_tolerance"))
-      tolerance = in.positive();
-    else if (in.is("max_iter"))
-      max_iter = in.integer(1);
-    else if (in.is("algorithm"))
-      algorithm = 1 + in.choice({"1", "2"});
-    else if (in.is("fluid_velocity"))
-      for (auto &u : fluid_velocity) u = Field::parse(in);
-    else if (in.is("fluid_vorticity")) {
-      for (auto &w : fluid_vorticity) w = Field::parse(in);
-      has_vorticity = true;
-    } else if (in.is("rotation"))
-      scene.settings.rotation = in.yes_no();
-    else if (in.is("tensor"))
-      scene.settings.tensor = in.choice({"rpy", "oseen"}) == 0 ? SD_TENSOR_RPY : SD_TENSOR_OSEEN;
-    else if (in.is("rigid_clumps")) {
-      const size_t choice = in.choice({"no", "yes", "auto"});
-      rigid.settings.on = choice > 0;
-      rigid.settings.auto_resolve = choice == 2;
-    } else if (in.is("shell")) {
-      rigid.settings.shell = in.integer(1);
-      if (rigid.settings.shell > 1 && rigid.settings.shell < 12)
-        in.refuse("'" + std::to_string(rigid.settings.shell) + "' must be 1 or >= 12");
-      has_shell = true;
-    } else if (in.is("taper"))
-      scene.settings.taper = (sd_taper) in.choice({"none", "wendland", "spherical"});
-    else if (in.is("precondition"))
-      preconditioner.kind = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse"});
-    else if (in.is("warm_start"))
-      warm_start = in.yes_no();
-    else
-      in.unknown();
-  }
-  if (!has_visc) fail(lmp, COMMAND + ": keyword visc is required: the dynamic viscosity");
-  if (!has_cutoff) {
-    if (!scene.settings.clumps_only)
-      fail(lmp,
-           COMMAND +
-               ": keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
-    scene.settings.cutoff = INFINITY;
-  }
-  if (scene.settings.taper != SD_TAPER_NONE && std::isinf(scene.settings.cutoff))
-    fail(lmp, COMMAND + ": keyword taper requires a cut_off_distance, its range");
-  if (preconditioner.kind == Preconditioner::SPARSE && !scene.all_pairs())
-    fail(lmp,
-         COMMAND +
-             ": keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
-  if (preconditioner.kind > Preconditioner::NONE && algorithm == 1)
-    fail(lmp,
-         COMMAND + ": keyword precondition: '" +
-             (preconditioner.kind == Preconditioner::CLUMP ? "clump" : "sparse") +
-             "' requires algorithm 2");
-  if (rigid.settings.on && !scene.settings.clumps_only)
-    fail(lmp, COMMAND + ": keyword rigid_clumps requires clumps_only yes");
-  if (rigid.settings.on && std::isfinite(scene.settings.cutoff))
-    fail(lmp,
-         COMMAND +
-             ": keyword rigid_clumps: no cut_off_distance may be given, the whole of a clump is "
-             "solved");
-  if (has_shell && !rigid.settings.on)
-    fail(lmp, COMMAND + ": keyword shell requires rigid_clumps yes");
-  if (rigid.settings.on && scene.settings.tensor == SD_TENSOR_OSEEN)
-    fail(lmp, COMMAND + ": keyword rigid_clumps is not available with tensor oseen");
-  // Points on a surface take torques, whether rotation is asked for or not.
-  if (rigid.settings.shell > 1) scene.settings.rotation = true;
-  rigid.settings.rotation = scene.settings.rotation;
-  if (scene.settings.rotation && scene.settings.tensor == SD_TENSOR_OSEEN)
-    fail(lmp,
-         COMMAND +
-             ": keyword rotation: yes is not available with tensor oseen, whose point forces do "
-             "not rotate");
-  if (has_vorticity && !scene.settings.rotation)
-    fail(lmp, COMMAND + ": keyword fluid_vorticity has no effect without rotation yes or a shell");
+  hydro.set(args);
 }
 
 void PairStokesDynamics::coeff(int narg, char **arg)
@@ -210,16 +154,6 @@ void PairStokesDynamics::allocate()
     for (int j = i; j <= n; j++) setflag[i][j] = 0;
 }
 
-/* FNV-1a over all words */
-static uint64_t hash(const std::vector<std::string> &words)
-{
-  uint64_t h = 14695981039346656037u;
-  for (const auto &word : words)
-    for (size_t k = 0; k <= word.size(); k++)
-      h = (h ^ (unsigned char) word.c_str()[k]) * 1099511628211u;
-  return h;
-}
-
 void PairStokesDynamics::init_style()
 {
   if (update->whichflag == 2)
@@ -231,81 +165,73 @@ void PairStokesDynamics::init_style()
     fail(lmp, COMMAND + " does not support run_style respa");
   if (force->pair_match(STYLE, 1) != this)
     fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
-  if (!atom->radius_flag)
-    fail(lmp, COMMAND + " requires an atom style with radius, such as sphere");
-  if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
-  if (scene.settings.rotation && (!atom->omega_flag || !atom->torque_flag))
-    fail(lmp,
-         COMMAND +
-             ": keyword rotation: yes requires an atom style with angular velocity and torque, "
-             "such as sphere");
-  if (preconditioner.kind == Preconditioner::CLUMP && !atom->molecule_flag)
-    fail(lmp, COMMAND + ": keyword precondition: 'clump' requires molecule IDs");
-  if (scene.settings.clumps_only && !atom->molecule_flag)
-    fail(lmp,
-         COMMAND +
-             ": keyword clumps_only: yes requires molecule IDs (atom_style hybrid sphere bond, or "
-             "fix property/atom mol)");
-  if (scene.all_pairs())
+  require_atoms();
+  const Scene::Settings &scene = hydro.settings.scene;
+  if (std::isinf(scene.cutoff) && !scene.clumps_only)
     for (int d = 0; d < domain->dimension; d++)
       if (domain->periodicity[d])
         fail(lmp,
              COMMAND +
                  ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or "
                  "clumps_only yes");
-  if (std::isfinite(scene.settings.cutoff)) refuse_vast_cutoff(lmp, COMMAND, scene.settings);
+  if (std::isfinite(scene.cutoff)) refuse_vast_cutoff(lmp, COMMAND, scene);
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
     if (std::isfinite(atom->radius[i])) largest = std::max(largest, 2.0 * atom->radius[i]);
   MPI_Allreduce(&largest, &largest_diameter, 1, MPI_DOUBLE, MPI_MAX, world);
 
-  region = nullptr;
-  if (!region_id.empty() && !(region = Compat::region(domain, region_id)))
-    fail(lmp, COMMAND + ": keyword region: region '" + region_id + "' does not exist");
-  igroup = group->find(group_id);
-  if (igroup < 0) fail(lmp, COMMAND + ": keyword group: group '" + group_id + "' does not exist");
-  groupbit = group->bitmask[igroup];
-  visc.init(lmp, COMMAND + ": keyword visc");
-  for (auto &u : fluid_velocity) u.init(lmp, COMMAND + ": keyword fluid_velocity");
-  for (auto &w : fluid_vorticity) w.init(lmp, COMMAND + ": keyword fluid_vorticity");
-
-  // Here and not in the constructor: in read_restart, what the restart file holds for this fix is not known yet when the pair style is made.
-  const bool rotation = scene.settings.rotation, history = algorithm == 2 && warm_start;
-  if (find_state() &&
-      (find_state()->rotation != rotation ||
-       (find_state()->history < find_state()->columns) != history))
-    modify->delete_fix(STATE_ID);
-  if (!find_state())
-    modify->add_fix(std::string(STATE_ID) + " all " + FixStokesDynamicsState::STYLE +
-                    (rotation ? " rotation" : "") + (history ? " history" : ""));
-  fix_state = find_state();
-  fix_state->settings_are(hash(args));
-  preconditioner.numbers = fix_state->global.preconditioner;
-
-  bool applied = add_force;
-  for (int i = 0; i < modify->nfix; i++)
-    if (strcmp(modify->fix[i]->style, FixStokesDynamics::STYLE) == 0)
-      applied = applied || static_cast<FixStokesDynamics *>(modify->fix[i])->applies(add_force);
-  if (!applied && !warned_nobody_applies) {
-    warned_nobody_applies = true;
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     std::string(COMMAND +
-                                 ": nothing applies the force: add_force is no and no fix "
-                                 "stokes_dynamics applies it"));
-  }
+  hydro.init();
+  // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
+  State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
+  warn_if_nobody_applies();
   sorting_bins.limit(range());
-  scene.lists_are_stale();
-  rigid.new_run();
-  warned_unconverged = looked_at_clumps = false;
+}
+
+void PairStokesDynamics::require_atoms()
+{
+  const StokesSettings &settings = hydro.settings;
+  if (!atom->radius_flag)
+    fail(lmp, COMMAND + " requires an atom style with radius, such as sphere");
+  if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
+  if (settings.scene.rotation && (!atom->omega_flag || !atom->torque_flag))
+    fail(lmp,
+         COMMAND +
+             ": keyword rotation: yes requires an atom style with angular velocity and torque, "
+             "such as sphere");
+  if (settings.precondition == Preconditioner::CLUMP && !atom->molecule_flag)
+    fail(lmp, COMMAND + ": keyword precondition: 'clump' requires molecule IDs");
+  if (settings.scene.clumps_only && !atom->molecule_flag)
+    fail(lmp,
+         COMMAND +
+             ": keyword clumps_only: yes requires molecule IDs (atom_style hybrid sphere bond, or "
+             "fix property/atom mol)");
+}
+
+void PairStokesDynamics::warn_if_nobody_applies()
+{
+  bool applied = hydro.settings.add_force;
+  for (int i = 0; i < modify->nfix; i++)
+    if (strcmp(modify->fix[i]->style, "stokes_dynamics") == 0) {
+      int dim;
+      const bool *applies = (const bool *) modify->fix[i]->extract("applies", dim);
+      applied = applied || (applies && *applies);
+    }
+  if (applied || warned_nobody_applies) return;
+  warned_nobody_applies = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   COMMAND +
+                       ": nothing applies the force: add_force is no and no fix stokes_dynamics "
+                       "applies it");
 }
 
 /* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is given to LAMMPS all the
  * same, since it warns of lost atoms and stops sorting them when there is none. */
 double PairStokesDynamics::range() const
 {
-  return std::isfinite(scene.settings.cutoff) ? scene.settings.cutoff : largest_diameter;
+  const double cutoff = hydro.settings.scene.cutoff;
+  return std::isfinite(cutoff) ? cutoff : largest_diameter;
 }
 
 double PairStokesDynamics::init_one(int i, int j)
@@ -317,18 +243,26 @@ double PairStokesDynamics::init_one(int i, int j)
 void *PairStokesDynamics::extract(const char *name, int &dim)
 {
   dim = 0;
+  Field &visc = hydro.ambient.settings.visc;
   if (strcmp(name, "visc") == 0 && !visc.is_variable()) return visc.address();
+  if (strcmp(name, "hydrodynamics") == 0) return &hydro;
   return nullptr;
 }
 
 double PairStokesDynamics::memory_usage()
 {
-  return scene.memory_usage() +
-      sizeof(double) *
-      (double) (eta.capacity() + u_inf.capacity() + w_inf.capacity() + gradient.capacity() +
-                slip.capacity() + drag.capacity() + spin.capacity() + solution.capacity() +
-                work.capacity()) +
-      rigid.memory_usage();
+  return hydro.memory_usage();
+}
+
+int PairStokesDynamics::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/,
+                                          int * /*pbc*/)
+{
+  return hydro.scene.pack_forward_comm(n, list, buf);
+}
+
+void PairStokesDynamics::unpack_forward_comm(int n, int first, double *buf)
+{
+  hydro.scene.unpack_forward_comm(n, first, buf);
 }
 
 // --- restart -------------------------------------------------------------------------------------------------
@@ -354,7 +288,7 @@ void PairStokesDynamics::write_restart_settings(FILE *fp)
   std::string all;
   for (const auto &word : args) all += word + '\n';
   const int size = all.size();
-  const double eta_now = visc.number();
+  const double eta_now = hydro.ambient.settings.visc.number();
   fwrite(&RESTART_FORMAT, sizeof(int), 1, fp);
   fwrite(&eta_now, sizeof(double), 1, fp);
   fwrite(&size, sizeof(int), 1, fp);
@@ -385,6 +319,7 @@ void PairStokesDynamics::read_restart_settings(FILE *fp)
   args.clear();
   for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1)
     args.push_back(all.substr(from, to - from));
-  parse();
+  hydro.set(args);
+  Field &visc = hydro.ambient.settings.visc;
   if (!visc.is_variable()) *visc.address() = eta_then;
 }

@@ -12,6 +12,7 @@
 #include "sd_shape.h"
 #include "sd_solve.h"
 
+#include <cstring>
 #include <vector>
 
 namespace StokesDyn {
@@ -41,6 +42,15 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
     sd_sparse_size size = {};    // of the sparse factor, when it was last counted
     double spheres = 0;          // that the cloud had then; 0: not counted
   } numbers;
+  std::vector<double> pack() const
+  {
+    const double *first = reinterpret_cast<const double *>(&numbers);
+    return std::vector<double>(first, first + sizeof(numbers) / sizeof(double));
+  }
+  void unpack(const std::vector<double> &v)
+  {
+    if (v.size() == sizeof(numbers) / sizeof(double)) memcpy((void *) &numbers, v.data(), sizeof(numbers));
+  }
   void make_anew() { worn = true; }
   /* Before a solve, after Scene::update(): makes or turns what is wanted and puts it into the system. */
   void attach(sd_system &system);

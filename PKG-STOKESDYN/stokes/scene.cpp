@@ -93,6 +93,14 @@ void Scene::find_pairs()
   stale = false;
 }
 
+bool Scene::anybody_sees() const
+{
+  if (all_pairs()) return n_all > 1;
+  int mine = list().first[atom->nlocal] > 0, any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any;
+}
+
 void Scene::refresh(std::vector<double> &v, int width)
 {
   v.resize((size_t) width * (atom->nlocal + atom->nghost) + 1);

@@ -66,6 +66,8 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   /* Who sees whom since the last update(), without all_pairs(). */
   const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
+  /* Since the last update(), on any rank: does one sphere see another? */
+  bool anybody_sees() const;
   const double *radii() const { return a.data(); }    // of this rank's spheres, 0: takes no part
   sd_spheres local() const { return {positions(), a.data(), w.data()}; }
   sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }

@@ -1,0 +1,26 @@
+#include "sd_flow.h"
+
+void sd_flow_rotation(const double G[9], double w[3])
+{
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    w[d] = 0.5 * (G[3 * f + e] - G[3 * e + f]);
+  }
+}
+
+void sd_flow_set_vorticity(const double vorticity[3], double G[9])
+{
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    const double strain = 0.5 * (G[3 * f + e] + G[3 * e + f]);
+    G[3 * f + e] = strain + 0.5 * vorticity[d];
+    G[3 * e + f] = strain - 0.5 * vorticity[d];
+  }
+}
+
+void sd_flow_difference(int n, const double *ahead, const double *behind, const double *a,
+                        int stride, double *out)
+{
+  for (int i = 0; i < n; i++)
+    out[(long) stride * i] = a[i] > 0.0 ? (ahead[i] - behind[i]) / (2.0 * a[i]) : 0.0;
+}

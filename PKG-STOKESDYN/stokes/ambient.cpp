@@ -1,0 +1,222 @@
+#include "ambient.h"
+
+#include "keywords.h"
+#include "lammps_compat.h"
+
+#include "sd_constants.h"
+#include "sd_flow.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "force.h"
+#include "group.h"
+#include "modify.h"
+#include "region.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+void Ambient::init()
+{
+  region = nullptr;
+  if (!settings.region.empty() && !(region = Compat::region(domain, settings.region)))
+    fail(lmp, command + ": keyword region: region '" + settings.region + "' does not exist");
+  igroup = group->find(settings.group);
+  if (igroup < 0)
+    fail(lmp, command + ": keyword group: group '" + settings.group + "' does not exist");
+  groupbit = group->bitmask[igroup];
+  settings.visc.init(lmp, command + ": keyword visc");
+  for (auto &field : settings.velocity) field.init(lmp, command + ": keyword fluid_velocity");
+  for (auto &field : settings.vorticity) field.init(lmp, command + ": keyword fluid_vorticity");
+}
+
+bool Ambient::numbers_only() const
+{
+  bool plain = !settings.visc.is_variable();
+  for (int d = 0; d < 3; d++)
+    plain = plain && !settings.velocity[d].is_variable() && !settings.vorticity[d].is_variable();
+  return plain;
+}
+
+void Ambient::numbers(double *seven) const
+{
+  seven[0] = settings.visc.number();
+  for (int d = 0; d < 3; d++) {
+    seven[1 + d] = settings.velocity[d].number();
+    seven[4 + d] = settings.vorticity[d].number();
+  }
+}
+
+double Ambient::drag(int i) const
+{
+  return 6.0 * SD_PI * viscosity(i) * atom->radius[i];
+}
+
+double Ambient::spin(int i) const
+{
+  const double a = atom->radius[i];
+  return 8.0 * SD_PI * viscosity(i) * a * a * a;
+}
+
+void Ambient::slip(int i, double *s) const
+{
+  const double *fluid = velocity(i), *v = atom->v[i];
+  for (int d = 0; d < 3; d++) s[d] = fluid[d] - v[d];
+  if (!spins) return;
+  const double *omega = atom->omega[i];
+  for (int d = 0; d < 3; d++) s[3 + d] = (w.empty() ? 0.0 : w[3 * (size_t) i + d]) - omega[d];
+}
+
+void Ambient::read(bool with_spins, bool with_gradients)
+{
+  spins = with_spins;
+  read_fluid(with_gradients);
+  select();
+  const bigint none = MAXBIGINT;
+  bigint mine = none, first;
+  for (int i : those)
+    if (const int f = fault(i)) mine = std::min(mine, (bigint) atom->tag[i] * 16 + f);
+  MPI_Allreduce(&mine, &first, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  if (first != none) complain(first);
+}
+
+void Ambient::read_fluid(bool with_gradients)
+{
+  const int n = atom->nlocal;
+  bool u_varies = false;
+  for (const auto &field : settings.velocity) u_varies = u_varies || field.is_atom_style();
+  if (!numbers_only()) modify->clearstep_compute();
+
+  eta.resize(settings.visc.is_atom_style() ? n + 1 : 0);
+  settings.visc.evaluate(lmp, igroup, eta.empty() ? nullptr : eta.data(), 1);
+  for (double &value : eta) value *= force->vxmu2f;
+  eta_uniform = settings.visc.number() * force->vxmu2f;
+
+  u.resize(u_varies ? 3 * (size_t) n + 3 : 0);
+  for (int d = 0; d < 3; d++) {
+    settings.velocity[d].evaluate(lmp, igroup, u.empty() ? nullptr : u.data() + d, 3);
+    u_uniform[d] = settings.velocity[d].number();
+  }
+  w.clear();
+  gradient.clear();
+  if (with_gradients && (u_varies || settings.has_vorticity)) read_gradient();
+  if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
+}
+
+/* From the formulas of the fluid velocity, its rotation replaced by fluid_vorticity where that is given. */
+void Ambient::read_gradient()
+{
+  const int n = atom->nlocal;
+  gradient.assign(9 * (size_t) n + 9, 0.0);
+  w.assign(3 * (size_t) n + 3, 0.0);
+  if (!u.empty()) velocity_gradient(lmp, settings.velocity, igroup, gradient.data());
+  if (settings.has_vorticity) {
+    for (int d = 0; d < 3; d++) settings.vorticity[d].evaluate(lmp, igroup, w.data() + d, 3);
+    for (int i = 0; i < n; i++) sd_flow_set_vorticity(&w[3 * (size_t) i], &gradient[9 * (size_t) i]);
+  }
+  for (int i = 0; i < n; i++) sd_flow_rotation(&gradient[9 * (size_t) i], &w[3 * (size_t) i]);
+}
+
+void Ambient::select()
+{
+  const int n = atom->nlocal;
+  if (region) region->prematch();
+  takes_part.assign(n, 0);
+  those.clear();
+  for (int i = 0; i < n; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *x = atom->x[i];
+    // A position that is no number is in no region: it takes part, so that the fault is seen.
+    if (region && std::isfinite(x[0] + x[1] + x[2]) && !region->match(x[0], x[1], x[2])) continue;
+    takes_part[i] = 1;
+    those.push_back(i);
+  }
+}
+
+enum Fault { NONE, POSITION, FAR_OUT, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY, FLUID_VORTICITY };
+
+static bool finite(const double *v)
+{
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+/* More than one length of a periodic box outside of it: LAMMPS wraps an atom by one length, and between two wrappings it moves
+ * by half the skin in any run that means something. */
+bool Ambient::far_out(int i) const
+{
+  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;
+  const double *hi = domain->triclinic ? domain->boxhi_bound : domain->boxhi;
+  for (int d = 0; d < 3; d++)
+    if (domain->periodicity[d] && !(atom->x[i][d] >= lo[d] - domain->prd[d] &&
+                                    atom->x[i][d] <= hi[d] + domain->prd[d]))
+      return true;
+  return false;
+}
+
+int Ambient::fault(int i) const
+{
+  // 0 times a number is 0 unless it is infinite or not a number: nearly always this one test is enough.
+  const double *x = atom->x[i], *v = atom->v[i], *fluid = velocity(i), a = atom->radius[i];
+  double sum = x[0] + x[1] + x[2] + a + v[0] + v[1] + v[2] + viscosity(i) + fluid[0] + fluid[1] +
+      fluid[2];
+  if (spins) sum += atom->omega[i][0] + atom->omega[i][1] + atom->omega[i][2];
+  const double *rotation = w.empty() ? nullptr : &w[3 * (size_t) i];
+  if (rotation) sum += rotation[0] + rotation[1] + rotation[2];
+  if (0.0 * sum == 0.0 && a > 0.0 && viscosity(i) > 0.0) return far_out(i) ? FAR_OUT : NONE;
+
+  // Velocity first: it spoils the position in the same step.
+  if (!finite(v) || (spins && !finite(atom->omega[i]))) return VELOCITY;
+  if (!finite(x)) return POSITION;
+  if (!(a > 0.0) || !std::isfinite(a)) return RADIUS;
+  if (!(viscosity(i) > 0.0) || !std::isfinite(viscosity(i))) return VISCOSITY;
+  if (!finite(fluid)) return FLUID_VELOCITY;
+  return rotation && !finite(rotation) ? FLUID_VORTICITY : NONE;
+}
+
+/* One rank has found a faulty atom; all ranks end the run with the name of the first. */
+void Ambient::complain(long long first) const
+{
+  double value = 0.0, sum;
+  for (int i : those)
+    if (atom->tag[i] == first / 16 && fault(i) == first % 16)
+      value = first % 16 == RADIUS ? atom->radius[i] : viscosity(i) / force->vxmu2f;
+  MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
+  const std::string who = command + ": step " + std::to_string(update->ntimestep) + ", atom " +
+      std::to_string(first / 16) + ": ";
+  switch (first % 16) {
+    case POSITION:
+      fail(lmp, who + "its position is not a finite number");
+    case FAR_OUT:
+      fail(lmp,
+           who + "its position is more than a box length outside of the periodic box: the run has "
+                 "blown up; is the time step too long, or a number in other units?");
+    case VELOCITY:
+      fail(lmp, who + "its velocity is not a finite number");
+    case RADIUS:
+      fail(lmp,
+           who + "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)");
+    case VISCOSITY:
+      fail(lmp, who + "keyword visc: its viscosity " + text(sum) + " must be > 0");
+    case FLUID_VORTICITY:
+      fail(lmp,
+           who +
+               "keyword fluid_vorticity: the vorticity of the fluid there is not a finite number");
+    default:
+      fail(lmp, who + "keyword fluid_velocity: the fluid velocity there is not a finite number");
+  }
+}
+
+double Ambient::memory_usage() const
+{
+  return takes_part.capacity() + sizeof(int) * (double) those.capacity() +
+      sizeof(double) *
+      ((double) eta.capacity() + u.capacity() + w.capacity() + gradient.capacity());
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,83 @@
+/* The fluid as it would be without the spheres, and who feels it: read once a step, const afterwards.
+ *
+ * Indices are those of LAMMPS's owned atoms. What is the same everywhere is not stored per atom: each pass over this memory
+ * costs as much as the arithmetic. Viscosities are in the units in which viscosity * length * velocity is a force, so that
+ * 6 pi eta a v needs no factor: LAMMPS's own are force->vxmu2f of them (units real, metal, electron). */
+#ifndef SD_AMBIENT_H
+#define SD_AMBIENT_H
+
+#include "field.h"
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Region;
+}
+
+namespace StokesDyn {
+
+class Ambient : protected LAMMPS_NS::Pointers {
+ public:
+  struct Settings {
+    Field visc, velocity[3], vorticity[3];
+    bool has_vorticity = false;
+    /* empty: the whole box */
+    std::string region;
+    std::string group = "all";
+  } settings;
+
+  Ambient(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command) {}
+
+  /* Looks up variables, group and region. Errors: one that does not exist. */
+  void init();
+  /* The state of this step. spins: angular velocities count; gradients: the gradient of the fluid velocity is wanted.
+   * Errors, on all ranks: a number that is none, or an atom far outside of a periodic box, with atom and step. */
+  void read(bool spins, bool gradients);
+
+  const std::vector<char> &active() const { return takes_part; }
+  /* The atoms of this rank that take part, in their order. */
+  const std::vector<int> &who() const { return those; }
+
+  double viscosity(int i) const { return eta.empty() ? eta_uniform : eta[i]; }
+  const double *velocity(int i) const { return u.empty() ? u_uniform : &u[3 * (size_t) i]; }
+  double drag(int i) const;    // 6 pi eta a
+  double spin(int i) const;    // 8 pi eta a^3
+  /* Fluid less sphere: velocity [3], with spins angular velocity [3]. */
+  void slip(int i, double *s) const;
+
+  /* For all atoms at once: nullptr where it is the same everywhere. */
+  const double *viscosities() const { return eta.empty() ? nullptr : eta.data(); }
+  const double *velocities() const { return u.empty() ? nullptr : u.data(); }
+  const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
+  double uniform_viscosity() const { return eta_uniform; }
+  const double *uniform_velocity() const { return u_uniform; }
+
+  /* Is all of it plain numbers? Then these seven say it: viscosity, velocity, vorticity. */
+  bool numbers_only() const;
+  void numbers(double *seven) const;
+  double memory_usage() const;
+
+ private:
+  std::string command;
+  LAMMPS_NS::Region *region = nullptr;
+  int igroup = 0, groupbit = 0;
+  bool spins = false;
+
+  std::vector<char> takes_part;
+  std::vector<int> those;
+  double eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
+  /* per atom, or empty. w: half the vorticity */
+  std::vector<double> eta, u, w, gradient;
+
+  void select();
+  void read_fluid(bool gradients);
+  void read_gradient();
+  bool far_out(int i) const;
+  int fault(int i) const;
+  [[noreturn]] void complain(long long first) const;
+};
+
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,302 @@
+#include "hydrodynamics.h"
+
+#include "checks.h"
+#include "keywords.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "neighbor.h"
+#include "pair.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+using State = FixStokesDynamicsState;
+static const std::string COMMAND = StokesSettings::COMMAND;
+
+Hydrodynamics::Hydrodynamics(LAMMPS *lmp, Pair *pair) :
+    Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, pair, COMMAND), rigid(lmp, scene, COMMAND),
+    preconditioner(lmp, scene), guard(lmp, COMMAND)
+{
+}
+
+Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
+{
+  Pair *pair = lmp->force->pair ? lmp->force->pair_match("stokes_dynamics", 1) : nullptr;
+  int dim;
+  return pair ? static_cast<Hydrodynamics *>(pair->extract("hydrodynamics", dim)) : nullptr;
+}
+
+void Hydrodynamics::set(const std::vector<std::string> &words)
+{
+  settings = StokesSettings(lmp, words);
+  ambient.settings = settings.ambient;
+  scene.settings = settings.scene;
+  rigid.settings = settings.rigid;
+  scene.lists_are_stale();
+  rigid.forget();
+  preconditioner.forget();
+  preconditioner.kind = settings.precondition;
+}
+
+void Hydrodynamics::init()
+{
+  ambient.init();
+  scene.lists_are_stale();
+  rigid.new_run();
+  warned_unconverged = looked_at_clumps = false;
+}
+
+void Hydrodynamics::begin()
+{
+  memory = State::find(lmp);
+  if (!memory)
+    fail(lmp,
+         COMMAND + ": its internal fix " + State::ID +
+             " has been deleted; a run without 'pre no' makes it anew");
+  if (neighbor->ago == 0) scene.lists_are_stale();
+  ambient.read(rotation(), rotation() || settings.rigid.on);
+  AtomRows &rows = memory->rows;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!ambient.active()[i]) rows.take(i);
+}
+
+/* Forces of rigid clumps, and the v' that they stand for. Spheres of other clumps, and lone ones, are left to the solver. */
+void Hydrodynamics::clumps()
+{
+  if (!settings.rigid.on) {
+    solving = ambient.active();
+    return;
+  }
+  const RigidClumps::Motion motion = {
+      ambient.active(),     ambient.viscosities(),       ambient.uniform_viscosity(),
+      ambient.velocities(), ambient.uniform_velocity(), ambient.gradients()};
+  auto take = [this](int i, const double *F, const double *T) {
+    double *row = memory->rows.give(i), s[6];
+    ambient.slip(i, s);
+    const double k = 1.0 / ambient.drag(i), k_spin = T ? 1.0 / ambient.spin(i) : 0.0;
+    for (int d = 0; d < 3; d++) {
+      row[State::FORCE + d] = F[d];
+      row[State::VPRIME + d] = F[d] * k - s[d];
+      if (!T) continue;
+      row[State::TORQUE + d] = T[d];
+      row[State::WPRIME + d] = T[d] * k_spin - s[3 + d];
+    }
+  };
+  rigid.forces(motion, take, solving);
+  for (int i : ambient.who()) {
+    if (!solving[i] || rigid.any_loose()) continue;
+    double *row = memory->rows.give(i);    // lone spheres: nobody disturbs the fluid there
+    std::fill_n(row + State::VPRIME, 3, 0.0);
+    if (rotation()) std::fill_n(row + State::WPRIME, 3, 0.0);
+  }
+  for (int i = 0; i < atom->nlocal; i++) solving[i] = solving[i] && ambient.active()[i];
+}
+
+/* F = 6 pi eta a (u_inf + v' - v), and likewise the torque, of all spheres but those of rigid clumps. */
+void Hydrodynamics::drag()
+{
+  const bool rotates = rotation();
+  for (int i : ambient.who()) {
+    if (!solving[i]) continue;
+    double *row = memory->rows.give(i), s[6];
+    ambient.slip(i, s);
+    const double k = ambient.drag(i);
+    for (int d = 0; d < 3; d++) row[State::FORCE + d] = k * (s[d] + row[State::VPRIME + d]);
+    if (!rotates) continue;
+    const double k_spin = ambient.spin(i);
+    for (int d = 0; d < 3; d++)
+      row[State::TORQUE + d] = k_spin * (s[3 + d] + row[State::WPRIME + d]);
+  }
+}
+
+/* v' of every sphere that is the solver's, from the forces that solve the system for the velocities of now. */
+void Hydrodynamics::solve()
+{
+  if (settings.rigid.on && !rigid.any_loose()) return;
+  sd_system system = gather();
+  if (settings.scene.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
+  if (settings.scene.clumps_only && std::isfinite(settings.scene.cutoff) &&
+      settings.scene.taper == SD_TAPER_NONE && !looked_at_clumps) {
+    looked_at_clumps = true;
+    warn_of_short_cutoff(lmp, COMMAND, scene, solving);
+  }
+  sd_solve_report report = {};
+  report.curvature = 1.0;
+  const bool alone = !scene.anybody_sees();
+  const sd_status status = alone ? SD_OK : run(system, report);
+  if (settings.algorithm == StokesSettings::GRADIENTS && !alone) {
+    guard.state = memory->global.guard;
+    guard.look(system, report, solving, preconditioner.attached(), memory->global.solves);
+    memory->global.guard = guard.state;
+  }
+  memory->global.solves++;
+  memory->global.iterations = report.iterations;
+  memory->global.residual = report.residual;
+  if (status != SD_OK) failed(status, report);
+  keep(alone);
+}
+
+/* The linear system of this step: rows of all owned atoms, drag 0 for those that are not the solver's. */
+sd_system Hydrodynamics::gather()
+{
+  const int n = atom->nlocal;
+  const size_t m = width();
+  solution.resize(m * n + m);
+  work.resize(SD_SOLVE_WORK(n, width()) + 1);
+  slip.assign(m * n + m, 0.0);
+  resistance.assign(n + 1, 0.0);
+  spin.assign(rotation() ? n + 1 : 0, 0.0);
+  eta.resize(n + 1);
+  for (int i : ambient.who()) {
+    ambient.slip(i, &slip[m * i]);
+    eta[i] = ambient.viscosity(i);
+    if (solving[i]) resistance[i] = ambient.drag(i);
+    if (rotation()) spin[i] = ambient.spin(i);
+  }
+  scene.update(solving, eta);
+
+  sd_system system = {};
+  system.n = n;
+  system.drag = resistance.data();
+  system.spin = rotation() ? spin.data() : nullptr;
+  system.apply = Scene::apply;
+  system.sum = Scene::sum;
+  system.apply_ctx = system.sum_ctx = &scene;
+  return system;
+}
+
+sd_status Hydrodynamics::run(sd_system &system, sd_solve_report &report)
+{
+  if (settings.algorithm == StokesSettings::SUBSTITUTION)
+    return sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
+                                 solution.data(), work.data(), &report);
+  State::Global &global = memory->global;
+  system.warm = memory->history && global.solutions > 0;
+  if (system.warm) guess();
+  if (memory->restart_written) preconditioner.make_anew();
+  memory->restart_written = false;
+  preconditioner.tolerance = settings.tolerance;
+  preconditioner.warm_start = settings.warm_start;
+  preconditioner.unpack(global.preconditioner);
+  preconditioner.attach(system);
+  const sd_status status =
+      sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
+                         solution.data(), work.data(), &report);
+  preconditioner.learn(report);
+  global.preconditioner = preconditioner.pack();
+  return status;
+}
+
+/* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v' and not from F, the guess has
+ * the slip of now: it is exact for spheres that nobody disturbs, at any tolerance. */
+void Hydrodynamics::guess()
+{
+  const size_t m = width();
+  const bool line = memory->global.solutions > 1;
+  for (int i : ambient.who()) {
+    double *F = &solution[m * i];
+    std::fill_n(F, m, 0.0);
+    if (!solving[i]) continue;
+    const double *row = memory->rows[i], *before = row + memory->before();
+    for (size_t d = 0; d < m; d++) {
+      const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      const double v = line ? 2.0 * last - before[d] : last;
+      F[d] = (d < 3 ? resistance[i] : spin[i]) * (slip[m * i + d] + v);
+    }
+  }
+}
+
+/* v' = D^-1 F - s of the solution, and what the next guess is made of. */
+void Hydrodynamics::keep(bool everyone_alone)
+{
+  const size_t m = width();
+  State::Global &global = memory->global;
+  for (int i : ambient.who()) {
+    if (!solving[i]) continue;
+    double *row = memory->rows.give(i), *before = row + memory->before();
+    for (size_t d = 0; d < m; d++) {
+      double &v = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      if (memory->history) before[d] = v;
+      v = everyone_alone ? 0.0
+                         : solution[m * i + d] / (d < 3 ? resistance[i] : spin[i]) - slip[m * i + d];
+    }
+  }
+  global.solutions = std::min(2.0, global.solutions + 1.0);
+}
+
+/* Returns for a solve whose answer may still be used; ends the run otherwise. */
+void Hydrodynamics::failed(sd_status status, const sd_solve_report &report)
+{
+  const bool oseen = settings.scene.tensor == SD_TENSOR_OSEEN;
+  const std::string where = COMMAND + ": step " + std::to_string(update->ntimestep) +
+      ": algorithm " + std::to_string(settings.algorithm) + ": ";
+  const std::string how_far =
+      "residual " + text(report.residual) + " after iteration " + std::to_string(report.iterations);
+  const std::string cutoff =
+      std::isinf(settings.scene.cutoff) ? "inf" : text(settings.scene.cutoff);
+  switch (status) {
+    case SD_EMAXITER:
+    case SD_ESTAGNATED:
+      memory->global.unconverged++;
+      if (!warned_unconverged && comm->me == 0)
+        error->warning(
+            FLERR,
+            std::string(
+                where + sd_status_string(status) + ": " + how_far + ", relative_tolerance " +
+                text(settings.tolerance) +
+                (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter)
+                                       : std::string()) +
+                "; the run goes on, further ones are counted (compute pair, fix stokes_dynamics)"));
+      warned_unconverged = true;
+      return;
+    case SD_EDIVERGED:
+      fail(lmp,
+           where + "diverged: " + how_far + ", growing by a factor " + text(report.growth) +
+               " each; use algorithm 2");
+    case SD_EINDEFINITE:
+      fail(lmp,
+           where + sd_status_string(status) + " with " +
+               (oseen ? "tensor oseen: spheres are too close for it, use tensor rpy"
+                      : "cut_off_distance " + cutoff +
+                        ", so any answer would be noise: use cut_off_distance inf, or a taper, or "
+                        "clumps_only yes with a cut-off larger than the clump") +
+               " (" + how_far + ", curvature " + text(report.curvature) + ")");
+    case SD_ESINGULAR:
+      fail(lmp,
+           where + sd_status_string(status) +
+               (oseen ? " with tensor oseen: spheres are too close for it, use tensor rpy ("
+                      : ": equal spheres at one point with different velocities (") +
+               how_far + ")");
+    default:
+      fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
+  }
+}
+
+double Hydrodynamics::dissipation(int i) const
+{
+  if (!ambient.active()[i]) return 0.0;
+  const double *F = force(i), *T = torque(i);
+  double s[6];
+  ambient.slip(i, s);
+  double power = F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
+  if (T) power += T[0] * s[3] + T[1] * s[4] + T[2] * s[5];
+  return power;
+}
+
+double Hydrodynamics::memory_usage() const
+{
+  const size_t numbers = eta.capacity() + slip.capacity() + resistance.capacity() +
+      spin.capacity() + solution.capacity() + work.capacity();
+  return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
+      sizeof(double) * (double) numbers;
+}
+
+}    // namespace StokesDyn

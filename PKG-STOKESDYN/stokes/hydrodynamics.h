@@ -1,0 +1,84 @@
+/* Forces of the spheres from their velocities, under the settings of pair_style stokes_dynamics. The pair style and the fixes
+ * that go with it stand above this and share the one object, which belongs to the pair style; fixes reach it by
+ * Hydrodynamics::of().
+ *
+ * A step:   begin()                        the fluid, who takes part
+ *           clumps(), solve(), drag()      forces, of rigid clumps and of all others
+ * Between solves v' stands, and drag() alone gives the force for the velocity of now. Forces and v' are rows of the memory. */
+#ifndef SD_HYDRODYNAMICS_H
+#define SD_HYDRODYNAMICS_H
+
+#include "ambient.h"
+#include "fix_stokes_dynamics_state.h"
+#include "preconditioner.h"
+#include "rigid_clumps.h"
+#include "scene.h"
+#include "settings.h"
+#include "time_step_guard.h"
+
+#include "sd_solve.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+class Hydrodynamics : protected LAMMPS_NS::Pointers {
+ public:
+  StokesSettings settings;
+  Ambient ambient;
+  Scene scene;
+  /* of this LAMMPS as it is now; nullptr before the first run */
+  FixStokesDynamicsState *memory = nullptr;
+
+  Hydrodynamics(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair);
+  /* That of the pair style; nullptr: there is no pair style stokes_dynamics. */
+  static Hydrodynamics *of(LAMMPS_NS::LAMMPS *lmp);
+
+  void set(const std::vector<std::string> &words);
+  void init();
+  /* Reads the fluid and finds the memory. Errors: Ambient::read; a memory that has been deleted. */
+  void begin();
+
+  void clumps();
+  void solve();
+  void drag();
+
+  bool rotation() const { return settings.scene.rotation; }
+  /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
+  bool computed_in(double step) const { return memory && memory->global.last_step == step; }
+  const double *force(int i) const { return memory->rows[i] + FixStokesDynamicsState::FORCE; }
+  const double *perturbation(int i) const
+  {
+    return memory->rows[i] + FixStokesDynamicsState::VPRIME;
+  }
+  /* nullptr without rotation */
+  const double *torque(int i) const
+  {
+    return rotation() ? memory->rows[i] + FixStokesDynamicsState::TORQUE : nullptr;
+  }
+  /* -F.(v - u_inf) of one sphere, >= 0 in the sum over all */
+  double dissipation(int i) const;
+  double memory_usage() const;
+
+ private:
+  RigidClumps rigid;
+  Preconditioner preconditioner;
+  TimeStepGuard guard;
+  bool warned_unconverged = false, looked_at_clumps = false;
+
+  /* [owned atoms] 1: the solver's; 0: takes no part, or is of a rigid clump */
+  std::vector<char> solving;
+  /* of a solve */
+  std::vector<double> eta, slip, resistance, spin, solution, work;
+
+  int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
+  sd_system gather();
+  sd_status run(sd_system &system, sd_solve_report &report);
+  void guess();
+  void keep(bool everyone_alone);
+  void failed(sd_status status, const sd_solve_report &report);
+};
+
+}    // namespace StokesDyn
+#endif

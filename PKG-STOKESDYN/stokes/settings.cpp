@@ -1,0 +1,104 @@
+#include "settings.h"
+
+#include "keywords.h"
+
+#include "comm.h"
+#include "error.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &words)
+{
+  Keywords in(lmp, COMMAND, words);
+  parse(in);
+  if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
+  check(in);
+  // Points on a surface take torques, whether rotation is asked for or not.
+  if (rigid.shell > 1) scene.rotation = true;
+  rigid.rotation = scene.rotation;
+  in.require(!scene.rotation || scene.tensor != SD_TENSOR_OSEEN,
+             "keyword rotation: yes is not available with tensor oseen, whose point forces do not "
+             "rotate");
+  in.require(!in.given("fluid_vorticity") || scene.rotation,
+             "keyword fluid_vorticity has no effect without rotation yes or a shell");
+  if (tolerance > 0.1 && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        std::string(COMMAND) + ": keyword relative_tolerance: '" + text(tolerance) +
+                            "' allows forces that are off by more than a tenth");
+}
+
+void StokesSettings::parse(Keywords &in)
+{
+  in.parse({
+      {"cut_off_distance", [&] { scene.cutoff = in.take("inf") ? INFINITY : in.positive(); }},
+      {"update_every", [&] { update_every = in.integer(1); }},
+      {"clumps_only", [&] { scene.clumps_only = in.yes_no(); }},
+      {"visc", [&] {
+         ambient.visc = Field::parse(in);
+         if (!ambient.visc.is_variable() && !(ambient.visc.number() > 0.0))
+           in.refuse("'" + text(ambient.visc.number()) + "' must be > 0");
+       }},
+      {"region", [&] { ambient.region = in.word(); }},
+      {"group", [&] { ambient.group = in.word(); }},
+      {"add_force", [&] { add_force = in.yes_no(); }},
+      {"relative_tolerance", [&] {
+         tolerance = in.positive();
+         if (tolerance >= 1.0)
+           in.refuse("'" + text(tolerance) + "' must be < 1: no force at all satisfies 1");
+       }},
+      {"max_iter", [&] { max_iter = in.integer(1); }},
+      {"algorithm", [&] { algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS; }},
+      {"fluid_velocity", [&] { for (Field &u : ambient.velocity) u = Field::parse(in); }},
+      {"fluid_vorticity", [&] {
+         for (Field &w : ambient.vorticity) w = Field::parse(in);
+         ambient.has_vorticity = true;
+       }},
+      {"rotation", [&] { scene.rotation = in.yes_no(); }},
+      {"tensor", [&] { scene.tensor = (sd_tensor) in.choice({"rpy", "oseen"}); }},
+      {"rigid_clumps", [&] {
+         const size_t choice = in.choice({"no", "yes", "auto"});
+         rigid.on = choice > 0;
+         rigid.auto_resolve = choice == 2;
+       }},
+      {"shell", [&] {
+         rigid.shell = in.integer(1);
+         if (rigid.shell > 1 && rigid.shell < 12)
+           in.refuse("'" + std::to_string(rigid.shell) + "' must be 1 or >= 12");
+       }},
+      {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
+      {"precondition", [&] {
+         precondition = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse"});
+       }},
+      {"warm_start", [&] { warm_start = in.yes_no(); }},
+  });
+}
+
+/* Which keywords go together. */
+void StokesSettings::check(const Keywords &in) const
+{
+  const bool all_pairs = std::isinf(scene.cutoff) && !scene.clumps_only;
+  in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
+  in.require(in.given("cut_off_distance") || scene.clumps_only,
+             "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
+  in.require(scene.taper == SD_TAPER_NONE || std::isfinite(scene.cutoff),
+             "keyword taper requires a cut_off_distance, its range");
+  in.require(precondition != Preconditioner::SPARSE || all_pairs,
+             "keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
+  in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
+             "keyword precondition: 'sparse' requires algorithm 2");
+  in.require(precondition != Preconditioner::CLUMP || algorithm == GRADIENTS,
+             "keyword precondition: 'clump' requires algorithm 2");
+  in.require(!rigid.on || scene.clumps_only, "keyword rigid_clumps requires clumps_only yes");
+  in.require(!rigid.on || std::isinf(scene.cutoff),
+             "keyword rigid_clumps: no cut_off_distance may be given, the whole of a clump is "
+             "solved");
+  in.require(!in.given("shell") || rigid.on, "keyword shell requires rigid_clumps yes");
+  in.require(!rigid.on || scene.tensor != SD_TENSOR_OSEEN,
+             "keyword rigid_clumps is not available with tensor oseen");
+}
+
+}    // namespace StokesDyn

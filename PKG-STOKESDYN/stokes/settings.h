@@ -1,0 +1,42 @@
+/* What the command pair_style stokes_dynamics says. */
+#ifndef SD_STOKES_SETTINGS_H
+#define SD_STOKES_SETTINGS_H
+
+#include "ambient.h"
+#include "preconditioner.h"
+#include "rigid_clumps.h"
+#include "scene.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+struct StokesSettings {
+  static constexpr const char *COMMAND = "Pair style stokes_dynamics";
+
+  StokesSettings() = default;
+  StokesSettings(LAMMPS_NS::LAMMPS *lmp, const std::vector<std::string> &words);
+
+  int update_every = 1;
+  bool add_force = false;
+  double tolerance = 1e-3;
+  int max_iter = 100;
+  enum { SUBSTITUTION = 1, GRADIENTS = 2 };
+  int algorithm = SUBSTITUTION;
+  bool warm_start = true;
+  Preconditioner::Kind precondition = Preconditioner::AUTO;
+  Ambient::Settings ambient;
+  Scene::Settings scene;
+  RigidClumps::Settings rigid;
+
+  /* Are solutions kept, from which the next solve begins? */
+  bool history() const { return algorithm == GRADIENTS && warm_start; }
+
+ private:
+  void parse(class Keywords &in);
+  void check(const class Keywords &in) const;
+};
+
+}    // namespace StokesDyn
+#endif
