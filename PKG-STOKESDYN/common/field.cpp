@@ -49,55 +49,6 @@ void Field::evaluate(LAMMPS *lmp, int igroup, double *out, int stride)
     for (int i = 0; i < nlocal; i++) out[(long) stride * i] = value;
 }
 
-namespace {
-  /* Holds the atoms' positions shifted, and puts them back whatever happens. */
-  class Shift {
-   public:
-    Shift(Atom *atom, int axis, double radii) :
-        atom(atom), axis(axis), n(atom->nlocal), x(atom->nlocal)
-    {
-      for (int i = 0; i < n; i++) {
-        x[i] = atom->x[i][axis];
-        atom->x[i][axis] += radii * atom->radius[i];
-      }
-    }
-    ~Shift()
-    {
-      for (int i = 0; i < n; i++) atom->x[i][axis] = x[i];
-    }
-
-   private:
-    Atom *atom;
-    int axis, n;
-    std::vector<double> x;
-  };
-}    // namespace
-
-void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradient)
-{
-  const int n = lmp->atom->nlocal;
-  std::vector<double> ahead(n + 1), behind(n + 1);
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) {
-      if (!u[p].is_atom_style()) {
-        for (int i = 0; i < n; i++) gradient[9 * (long) i + 3 * p + q] = 0.0;
-        continue;
-      }
-      {
-        Shift shift(lmp->atom, q, 1.0);
-        u[p].evaluate(lmp, igroup, ahead.data(), 1);
-      }
-      {
-        Shift shift(lmp->atom, q, -1.0);
-        u[p].evaluate(lmp, igroup, behind.data(), 1);
-      }
-      for (int i = 0; i < n; i++)
-        gradient[9 * (long) i + 3 * p + q] = lmp->atom->radius[i] > 0.0
-            ? (ahead[i] - behind[i]) / (2.0 * lmp->atom->radius[i])
-            : 0.0;
-    }
-}
-
 double Field::evaluate(LAMMPS *lmp)
 {
   if (is_variable())

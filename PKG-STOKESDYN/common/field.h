@@ -34,10 +34,5 @@ class Field {
   bool atom_style = false;
 };
 
-/* Gradient of a velocity field at the atoms of this rank: gradient[9 i + 3 p + q] = d u_p / d x_q, by central differences over
- * one radius to either side: exact for a linear field, to order a^2 for others. For a field given by variables that are formulas
- * in x, y, z; values stored per atom do not follow, and their gradient comes out as 0. */
-void velocity_gradient(LAMMPS_NS::LAMMPS *lmp, Field u[3], int igroup, double *gradient);
-
 }    // namespace StokesDyn
 #endif

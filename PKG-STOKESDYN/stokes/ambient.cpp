@@ -109,6 +109,48 @@ void Ambient::read_fluid(bool with_gradients)
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 }
 
+namespace {
+  /* Holds the atoms' positions shifted, and puts them back whatever happens. */
+  class Shift {
+   public:
+    Shift(Atom *atom, int axis, double radii) :
+        atom(atom), axis(axis), n(atom->nlocal), x(atom->nlocal)
+    {
+      for (int i = 0; i < n; i++) {
+        x[i] = atom->x[i][axis];
+        atom->x[i][axis] += radii * atom->radius[i];
+      }
+    }
+    ~Shift()
+    {
+      for (int i = 0; i < n; i++) atom->x[i][axis] = x[i];
+    }
+
+   private:
+    Atom *atom;
+    int axis, n;
+    std::vector<double> x;
+  };
+}    // namespace
+
+/* gradient[9 i + 3 p + q] = d u_p / d x_q, by central differences over one radius to either side. For a field given by variables
+ * that are formulas in x, y, z; values stored per atom do not follow, and their gradient comes out as 0. */
+static void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradient)
+{
+  const int n = lmp->atom->nlocal;
+  std::vector<double> ahead(n + 1), behind(n + 1);
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++) {
+      if (!u[p].is_atom_style()) continue;
+      for (const double side : {1.0, -1.0}) {
+        Shift shift(lmp->atom, q, side);
+        u[p].evaluate(lmp, igroup, (side > 0.0 ? ahead : behind).data(), 1);
+      }
+      sd_flow_difference(n, ahead.data(), behind.data(), lmp->atom->radius, 9,
+                         gradient + 3 * p + q);
+    }
+}
+
 /* From the formulas of the fluid velocity, its rotation replaced by fluid_vorticity where that is given. */
 void Ambient::read_gradient()
 {

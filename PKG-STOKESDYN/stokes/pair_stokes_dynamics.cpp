@@ -2,6 +2,7 @@
 
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "restart_words.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -268,8 +269,6 @@ void PairStokesDynamics::unpack_forward_comm(int n, int first, double *buf)
 // --- restart -------------------------------------------------------------------------------------------------
 // The words of the pair_style command, and the viscosity where fix adapt may have changed it.
 
-static const int RESTART_FORMAT = 1;
-
 void PairStokesDynamics::write_restart(FILE *fp)
 {
   write_restart_settings(fp);
@@ -285,40 +284,17 @@ void PairStokesDynamics::read_restart(FILE *fp)
 
 void PairStokesDynamics::write_restart_settings(FILE *fp)
 {
-  std::string all;
-  for (const auto &word : args) all += word + '\n';
-  const int size = all.size();
+  write_words(fp, args);
   const double eta_now = hydro.ambient.settings.visc.number();
-  fwrite(&RESTART_FORMAT, sizeof(int), 1, fp);
   fwrite(&eta_now, sizeof(double), 1, fp);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(all.data(), 1, size, fp);
 }
 
 void PairStokesDynamics::read_restart_settings(FILE *fp)
 {
-  int format = 0, size = 0;
+  args = read_words(lmp, fp, COMMAND);
   double eta_then = 0.0;
-  const bool root = comm->me == 0;
-  if (root) utils::sfread(FLERR, &format, sizeof(int), 1, fp, nullptr, error);
-  MPI_Bcast(&format, 1, MPI_INT, 0, world);
-  if (format != RESTART_FORMAT)
-    fail(lmp,
-         COMMAND + ": the restart file is of format " + std::to_string(format) +
-             ", this version reads " + std::to_string(RESTART_FORMAT));
-  if (root) {
-    utils::sfread(FLERR, &eta_then, sizeof(double), 1, fp, nullptr, error);
-    utils::sfread(FLERR, &size, sizeof(int), 1, fp, nullptr, error);
-  }
+  if (comm->me == 0) utils::sfread(FLERR, &eta_then, sizeof(double), 1, fp, nullptr, error);
   MPI_Bcast(&eta_then, 1, MPI_DOUBLE, 0, world);
-  MPI_Bcast(&size, 1, MPI_INT, 0, world);
-  std::string all(size, '\0');
-  if (root && size) utils::sfread(FLERR, &all[0], 1, size, fp, nullptr, error);
-  MPI_Bcast(&all[0], size, MPI_CHAR, 0, world);
-
-  args.clear();
-  for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1)
-    args.push_back(all.substr(from, to - from));
   hydro.set(args);
   Field &visc = hydro.ambient.settings.visc;
   if (!visc.is_variable()) *visc.address() = eta_then;
