@@ -90,6 +90,7 @@ void PairSph::prepare()
       c = sd_sph_coefficients_of(model.kernel, model.dimension, &given_values, mu);
       if (!model.artvisc) c.a1 = c.b1 = 0.0;
       if (!model.tenscorr) c.tens = 0.0;
+      if (!(continuity && continuity->delta > 0.0)) c.ch = 0.0;
       if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
         fail(lmp,
              COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) +
@@ -187,7 +188,7 @@ void PairSph::density_step()
 /* Adds the diffusion of density to the rates. */
 void PairSph::diffuse()
 {
-  const int n = particles.n, nlocal = atom->nlocal, ntypes = atom->ntypes;
+  const int n = particles.n, nlocal = atom->nlocal;
   sums.assign(9 * (size_t) (n + 1), 0.0);
   sd_sph_gradient_sums(&model, &pairs, &particles, atom->rho, sums.data());
   if (force->newton_pair) reverse(sums.data(), 9);
@@ -195,15 +196,8 @@ void PairSph::diffuse()
   for (int i = 0; i < nlocal; i++)
     sd_sph_gradient(model.dimension, &sums[9 * (size_t) i], &gradient[3 * (size_t) i]);
   forward(gradient.data(), 3);
-  std::vector<double> c_h((size_t) ntypes * ntypes);
-  for (int i = 1; i <= ntypes; i++)
-    for (int j = 1; j <= ntypes; j++)
-      c_h[(size_t) (i - 1) * ntypes + j - 1] = table[C][i][j] * table[H][i][j];
-  if (model.nclasses == 1)
-    for (int i = 1; i <= ntypes; i++)
-      if (used(i)) c_h[0] = table[C][i][i] * table[H][i][i];
-  sd_sph_diffusion(&model, &pairs, &particles, atom->rho, gradient.data(), c_h.data(),
-                   continuity->delta, rate.data());
+  sd_sph_diffusion(&model, &pairs, &particles, atom->rho, gradient.data(), continuity->delta,
+                   rate.data());
 }
 
 void PairSph::sum_densities()

@@ -84,6 +84,23 @@ def evaluate(name, dim, x, v, rho, P, m, h, artvisc=None, tenscorr=None, mu=0.0,
     return F, drho, sums[0], sums[1]
 
 
+def diffusion(name, dim, x, rho, m, h, c, delta):
+    """The rate of density that delta adds, straight from the equations of fix sph/density/continuity. h, c: per particle."""
+    d = x[:, None, :] - x[None, :, :]
+    r = np.sqrt((d**2).sum(-1))
+    hm, cm = (h[:, None] + h[None, :]) / 2, (c[:, None] + c[None, :]) / 2
+    np.fill_diagonal(r, 1.0)
+    g = kernel(name, dim, r, hm)[1] / r
+    np.fill_diagonal(g, 0.0)
+    V = (m / rho)[None, :]
+    jump = rho[None, :] - rho[:, None]
+    L = np.einsum("ij,ijk,ijl->ikl", -V * g, d[..., :dim], d[..., :dim])
+    gradient = np.linalg.solve(L, np.einsum("ij,ijk->ik", V * jump * g, d[..., :dim])[..., None])[..., 0]
+    gradient[np.linalg.det(L) <= 1e-3] = 0.0
+    along = ((gradient[:, None] + gradient[None, :]) * d[..., :dim]).sum(-1)
+    return delta * (V * hm * cm * -g * (2 * jump + along)).sum(1)
+
+
 def tait(rho):
     return B * ((rho / RHO0) ** GAMMA - 1)
 

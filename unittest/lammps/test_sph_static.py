@@ -100,6 +100,28 @@ def test_two_dimensions_follow_the_box(lmp, name):
     assert off(by_id(L, "drho"), drho) <= 1e-12
 
 
+@pytest.mark.parametrize("artvisc", [0, 1])
+@pytest.mark.parametrize("newton", ["on", "off"])
+def test_diffusion_with_types_that_differ_only_in_the_speed_of_sound(lmp, artvisc, newton):
+    """Without artVisc no other term asks for c, and the types must not be taken for one."""
+    L = lmp()
+    run(L, random_scene(newton) + """
+    mass * 0.001
+    pair_style sph/artVisc/tensCorr wendland 0.0125 %s
+    pair_coeff 1 1 c 2
+    pair_coeff 2 2 c 20
+    unfix density
+    fix density all sph/density/continuity delta 0.1
+    fix move all nve/sph
+    run 0
+    """ % ("artVisc 0.05 0.1 1e-6" if artvisc else ""))
+    types, rho, x = by_id(L, "type"), by_id(L, "rho"), by_id(L, "x", 3)
+    one = np.ones(len(rho))
+    drho = evaluate("wendland", 3, x, by_id(L, "v", 3), rho, tait(rho), 0.001 * one, 0.0125 * one)[1]
+    drho += T.diffusion("wendland", 3, x, rho, 0.001 * one, 0.0125 * one, np.where(types == 1, 2.0, 20.0), 0.1)
+    assert off(fix_by_id(L, "density"), drho) <= 1e-12
+
+
 def test_density_rate_against_tables(lmp):
     """The peer's density after a step of 1e-3 from the positions of its step 1, where velocities are those of the start."""
     first, second = table("d_rand3d_cubicspline_m1_step1.csv"), table("d_rand3d_cubicspline_m1_step2.csv")

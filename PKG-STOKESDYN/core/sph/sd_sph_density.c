@@ -66,8 +66,7 @@ void sd_sph_gradient(int dimension, const double s[9], double g[3])
 }
 
 void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                      const double *rho, const double *gradient, const double *c_h, double delta,
-                      double *rate)
+                      const double *rho, const double *gradient, double delta, double *rate)
 {
   sd_sph_visitor v;
   SD_SPH_VISIT(model, list, p, v)
@@ -77,8 +76,7 @@ void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const 
     double along = 0.0;
     for (int c = 0; c < 3; c++) along += (gi[c] + gj[c]) * v.d[c];
     /* psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d), odd under exchange of i and j */
-    const double flux = -delta * c_h[sd_sph_class_pair(model, p, v.i, v.j)] * g *
-        (2.0 * (rho[v.j] - rho[v.i]) + along);
+    const double flux = -delta * v.k->ch * g * (2.0 * (rho[v.j] - rho[v.i]) + along);
     rate[v.i] += sd_sph_mass(model, p, v.j) / rho[v.j] * flux;
     rate[v.j] -= sd_sph_mass(model, p, v.i) / rho[v.i] * flux;
   }

@@ -25,14 +25,12 @@ double sd_sph_self(const sd_sph_model *model, const sd_sph_particles *p, int i);
  * 2. sd_sph_gradient solves for one particle; g = 0 where L is nearly singular (too few neighbours, all in a
  * plane), which
  *    leaves the diffusion of Molteni & Colagrossi 2009 there.
- * 3. sd_sph_diffusion adds delta times the rate; gradient [3 (n+1)], c_h: speed of sound times h for each
- * pair of classes. */
+ * 3. sd_sph_diffusion adds delta times the rate; gradient [3 (n+1)]. */
 void sd_sph_gradient_sums(const sd_sph_model *model, const sd_sph_list *list,
                           const sd_sph_particles *p, const double *rho, double *sums);
 void sd_sph_gradient(int dimension, const double sums[9], double g[3]);
 void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                      const double *rho, const double *gradient, const double *c_h, double delta,
-                      double *rate);
+                      const double *rho, const double *gradient, double delta, double *rate);
 
 #ifdef __cplusplus
 }

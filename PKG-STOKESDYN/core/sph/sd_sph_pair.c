@@ -13,7 +13,8 @@ sd_sph_coefficients sd_sph_coefficients_of(sd_sph_kernel kernel, int dimension,
                                .b1 = 2.0 * p->beta * h * h,
                                .tens = K > 0.0 ? 1.0 / K : 0.0,
                                .visc = 2.0 * mu,
-                               .support = 2.0 * h};
+                               .support = 2.0 * h,
+                               .ch = p->c > 0.0 ? p->c * h : 0.0};
 }
 
 /* Far enough that every kernel is 0, near enough that the square of the distance is finite. */

@@ -41,6 +41,7 @@ typedef struct {
   double tens;    /* 1 / K(dp / h)                              */
   double visc;    /* 2 mu                                       */
   double support; /* 2 h                                        */
+  double ch;      /* c h, 0 without c                           */
 } sd_sph_coefficients;
 
 typedef struct {

@@ -265,17 +265,16 @@ static void linear_density_does_not_diffuse(void **state)
     }
     double sums[9 * (N + 1)] = {0}, gradient[3 * (N + 1)] = {0}, rate[N + 1] = {0},
                          curved[N + 1] = {0}, total = 0.0, largest = 0.0;
-    const double c_h[4] = {1.0, 2.0, 2.0, 3.0};
     sd_sph_gradient_sums(&s.model, &s.list, &s.p, s.rho, sums);
     for (int i = 0; i < N; i++) {
       sd_sph_gradient(dimension, &sums[9 * i], &gradient[3 * i]);
       for (int d = 0; d < 3; d++) CHECK_NEAR(gradient[3 * i + d], slope[d], 1e-9);
     }
-    sd_sph_diffusion(&s.model, &s.list, &s.p, s.rho, gradient, c_h, 0.1, rate);
+    sd_sph_diffusion(&s.model, &s.list, &s.p, s.rho, gradient, 0.1, rate);
     for (int i = 0; i < N; i++) CHECK_NEAR(rate[i], 0.0, 1e-9);
     /* A density with a bump spreads, and the volume integral of the rate is 0. */
     s.rho[4] += 20.0;
-    sd_sph_diffusion(&s.model, &s.list, &s.p, s.rho, gradient, c_h, 0.1, curved);
+    sd_sph_diffusion(&s.model, &s.list, &s.p, s.rho, gradient, 0.1, curved);
     assert_true(curved[4] < 0.0);
     for (int i = 0; i < N; i++) {
       total += s.m[i] / s.rho[i] * curved[i];
