@@ -19,7 +19,7 @@ using namespace StokesDyn;
 FixCheckTimestepSph::FixCheckTimestepSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_atom_style(lmp, command);
+  Sph::require_scene(lmp, command);
   if (narg < 5) fail(lmp, command + ": the form is: check/timestep/sph N fraction [warn|stop]");
   std::vector<std::string> args = words(narg, arg);
   args.insert(args.begin() + 3, "N");

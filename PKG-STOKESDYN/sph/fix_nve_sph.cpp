@@ -17,7 +17,7 @@ FixNveSph::FixNveSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
   if (narg > 3) fail(lmp, command + ": unknown keyword '" + arg[3] + "'");
-  Sph::require_atom_style(lmp, command);
+  Sph::require_scene(lmp, command);
   time_integrate = 1;
   dynamic_group_allow = 1;
   restart_global = 1;
@@ -119,7 +119,7 @@ FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) : Fi
 {
   const std::string command = "Fix " + std::string(STYLE);
   if (narg > 3) fail(lmp, command + ": unknown keyword '" + arg[3] + "'");
-  Sph::require_atom_style(lmp, command);
+  Sph::require_scene(lmp, command);
   time_integrate = 1;
   dynamic_group_allow = 1;
 }

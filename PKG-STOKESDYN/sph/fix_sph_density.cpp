@@ -7,32 +7,22 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg)
+    FixSphOutput(lmp, narg, arg)
 {
-  const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_atom_style(lmp, command);
-  Keywords in(lmp, command, words(narg, arg), 3);
+  Keywords in(lmp, "Fix " + std::string(STYLE), words(narg, arg), 3);
   while (in.next()) {
     if (in.is("delta"))
       delta = in.not_negative();
     else
       in.unknown();
   }
-  peratom_flag = 1;
-  size_peratom_cols = 0;
-  peratom_freq = 1;
-}
-
-void FixSphDensityContinuity::init()
-{
-  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
 }
 
 FixSphDensitySummation::FixSphDensitySummation(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_atom_style(lmp, command);
+  Sph::require_scene(lmp, command);
   if (narg > 3) fail(lmp, command + ": unknown keyword '" + arg[3] + "'");
 }
 
@@ -44,7 +34,7 @@ void FixSphDensitySummation::init()
 FixSphDensityCorr::FixSphDensityCorr(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_atom_style(lmp, command);
+  Sph::require_scene(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
   if (!in.next() || !in.is("shepard"))
     fail(lmp, command + ": the form is: sph/density/corr shepard every N");

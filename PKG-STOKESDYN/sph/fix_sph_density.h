@@ -4,16 +4,14 @@
 #ifndef SD_FIX_SPH_DENSITY_H
 #define SD_FIX_SPH_DENSITY_H
 
-#include "fix.h"
+#include "fix_sph_output.h"
 
 namespace StokesDyn {
 
-class FixSphDensityContinuity : public LAMMPS_NS::Fix {
+class FixSphDensityContinuity : public FixSphOutput {
  public:
   static constexpr const char *STYLE = "sph/density/continuity";
   FixSphDensityContinuity(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override { return 0; }
-  void init() override;
   double delta = 0.0;    // density diffusion
 };
 

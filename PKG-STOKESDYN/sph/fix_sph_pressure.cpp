@@ -1,15 +1,14 @@
 #include "fix_sph_pressure.h"
 
 #include "keywords.h"
-#include "sph.h"
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
+    FixSphOutput(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_atom_style(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
   if (!in.next())
     fail(lmp, command + ": the equation of state is missing: absolut, relativ or Tait");
@@ -25,12 +24,4 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   } else
     in.unknown();
   if (in.next()) in.unknown();
-  peratom_flag = 1;
-  size_peratom_cols = 0;
-  peratom_freq = 1;
-}
-
-void FixSphPressure::init()
-{
-  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
 }

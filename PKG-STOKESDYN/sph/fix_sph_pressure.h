@@ -2,18 +2,16 @@
 #ifndef SD_FIX_SPH_PRESSURE_H
 #define SD_FIX_SPH_PRESSURE_H
 
-#include "fix.h"
+#include "fix_sph_output.h"
 #include "sd_sph_pressure.h"
 
 namespace StokesDyn {
 
-class FixSphPressure : public LAMMPS_NS::Fix {
+class FixSphPressure : public FixSphOutput {
  public:
   static constexpr const char *STYLE = "sph/pressure";
 
   FixSphPressure(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override { return 0; }
-  void init() override;
 
   sd_sph_state state = {};
 };

@@ -11,7 +11,7 @@ using namespace StokesDyn;
 FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_atom_style(lmp, command);
+  Sph::require_scene(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
   while (in.next()) {
     if (in.is("gravity"))

@@ -153,7 +153,7 @@ double PairSph::mixed(int k, int i, int j) const
 
 void PairSph::init_style()
 {
-  Sph::require_atom_style(lmp, COMMAND);
+  Sph::require_scene(lmp, COMMAND);
   if (update->whichflag == 2)
     fail(lmp, COMMAND + " cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
   if (force->pair_match(STYLE, 1) != this)

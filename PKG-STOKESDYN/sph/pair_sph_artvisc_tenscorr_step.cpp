@@ -39,8 +39,8 @@ void PairSph::compute(int eflag, int vflag)
   if (wall) wall_particles();
   forces(continuity && !leapfrog);
 
-  for (auto *fix : pressures) fix->vector_atom = P.data();
-  if (continuity) continuity->vector_atom = atom->drho;
+  for (auto *fix : pressures) fix->output(P.data());
+  if (continuity) continuity->output(atom->drho);
   if (vflag_fdotr) virial_fdotr_compute();
 }
 

@@ -6,8 +6,8 @@
 #include "atom.h"
 #include "force.h"
 #include "modify.h"
+#include "update.h"
 
-#include <cstdlib>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -15,13 +15,18 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 namespace Sph {
 
-  void require_atom_style(LAMMPS *lmp, const std::string &command)
+  void require_scene(LAMMPS *lmp, const std::string &command)
   {
     if (!lmp->atom->rho_flag || !lmp->atom->vest_flag)
       fail(lmp,
            command +
                ": the atom style has no density; use atom_style sph, which needs a LAMMPS with the "
                "SPH package");
+    if (lmp->force->ftm2v != 1.0)
+      fail(lmp,
+           command + ": units " + lmp->update->unit_style +
+               ": force is not mass x acceleration there, and pressure and density have units of "
+               "their own; use units lj, si, cgs, micro or nano");
   }
 
   PairSph *require_pair(LAMMPS *lmp, const std::string &command)

@@ -14,8 +14,9 @@ class PairSph;
 
 namespace Sph {
 
-  /* Fails unless the atom style has the density and the velocity that SPH works with. */
-  void require_atom_style(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  /* Fails unless the atom style has the density and the velocity that SPH works with, and force is mass times
+   * acceleration in the units of the scene, pressure mass / (length time^2) and density mass / length^3. */
+  void require_scene(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
 
   /* The pair style of the scene; fails without one. */
   PairSph *require_pair(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
