@@ -1,11 +1,14 @@
 #include "fix_nve_sph.h"
 
 #include "keywords.h"
+#include "named_state.h"
+#include "ranks.h"
 #include "sph.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "force.h"
+#include "modify.h"
 #include "update.h"
 
 #include <cstring>
@@ -25,7 +28,8 @@ FixNveSph::FixNveSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 
 int FixNveSph::setmask()
 {
-  return FixConst::INITIAL_INTEGRATE | FixConst::FINAL_INTEGRATE | FixConst::POST_RUN;
+  return FixConst::PRE_EXCHANGE | FixConst::INITIAL_INTEGRATE | FixConst::PRE_FORCE |
+      FixConst::FINAL_INTEGRATE | FixConst::POST_RUN;
 }
 
 void FixNveSph::init()
@@ -42,9 +46,22 @@ void FixNveSph::reset_dt()
   dtf = 0.5 * update->dt * force->ftm2v;
 }
 
-/* Leapfrog: the velocity of the half step moves position and, in the pair style, density. vest is the
- * velocity at the end of the step,
- * which friction needs before the force is known. */
+/* The estimate that the last run left, if nobody has changed a velocity since: that of the unbroken run. Otherwise v. */
+void FixNveSph::setup_pre_exchange()
+{
+  const End now = end_now();
+  const bool resumes = end.step == now.step && end.velocities == now.velocities;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    for (int d = 0; d < 3; d++)
+      atom->vest[i][d] = resumes ? atom->vest[i][d] - atom->v[i][d] : 0.0;
+  }
+  relative = true;
+}
+
+/* Leapfrog: the velocity of the half step moves position and, in the pair style, density. Friction needs the velocity at the
+ * end of the step before the force is known, vest = v + dt/2 F/m with the last force. Until the force it is only the second
+ * term: fix deform with remap v has LAMMPS shift v, and only v, of what crosses a face that glides, and of ghosts beyond it. */
 void FixNveSph::initial_integrate(int /*vflag*/)
 {
   double **x = atom->x, **v = atom->v, **f = atom->f, **vest = atom->vest;
@@ -52,10 +69,21 @@ void FixNveSph::initial_integrate(int /*vflag*/)
     if (!(atom->mask[i] & groupbit)) continue;
     const double kick = dtf / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) {
-      v[i][d] += kick * f[i][d];
-      vest[i][d] = v[i][d] + kick * f[i][d];
+      vest[i][d] = kick * f[i][d];
+      v[i][d] += vest[i][d];
       x[i][d] += dtv * v[i][d];
     }
+  }
+  relative = true;
+}
+
+void FixNveSph::pre_force(int /*vflag*/)
+{
+  if (!relative) return;    // run pre no: the estimates of the last step stand
+  relative = false;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    for (int d = 0; d < 3; d++) atom->vest[i][d] += atom->v[i][d];
   }
 }
 
@@ -71,11 +99,12 @@ void FixNveSph::final_integrate()
 
 void FixNveSph::post_run()
 {
-  left = state_now();
+  end = end_now();
 }
 
-/* The sum of a hash of each velocity: the same for any order and any number of ranks. */
-FixNveSph::State FixNveSph::state_now() const
+/* Rows of common/resume.h would cost 64 bytes an atom and a pass over them; velocities alone decide here, and a sum of hashes
+ * has no order, so 16 bytes in all will do on any number of ranks. */
+FixNveSph::End FixNveSph::end_now() const
 {
   uint64_t mine = 0, sum = 0;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -89,30 +118,24 @@ FixNveSph::State FixNveSph::state_now() const
     }
     mine += hash;
   }
-  MPI_Allreduce(&mine, &sum, 1, MPI_UINT64_T, MPI_SUM, world);
-  return {1.0, (double) update->ntimestep, sum};
-}
-
-bool FixNveSph::resumes() const
-{
-  const State now = state_now();
-  return left.step == now.step && left.velocities == now.velocities;
+  for (const uint64_t part : from_all<uint64_t>(world, {mine})) sum += part;
+  return {(double) update->ntimestep, sum};
 }
 
 void FixNveSph::write_restart(FILE *fp)
 {
   // In mid-run, or after a run, the state is one that a run can go on from; before any run it is not.
-  const State state = update->whichflag == 1 ? state_now() : left;
-  if (comm->me != 0) return;
-  const int size = sizeof(State);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&state, sizeof(State), 1, fp);
+  const End now = update->whichflag == 1 ? end_now() : end;
+  NamedState state(STYLE);
+  state.put("step", now.step);
+  state.put_bits("velocities", now.velocities);
+  if (comm->me == 0) state.write(fp);
 }
 
 void FixNveSph::restart(char *buf)
 {
-  memcpy(&left, buf, sizeof(State));
-  if (left.format != 1.0) left = {1.0, -1.0, 0};
+  NamedState state(STYLE);
+  if (state.read(lmp, buf)) end = {state.get("step", -1.0), state.get_bits("velocities", 0)};
 }
 
 FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)

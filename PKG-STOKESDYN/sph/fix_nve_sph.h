@@ -15,24 +15,27 @@ class FixNveSph : public LAMMPS_NS::Fix {
   FixNveSph(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override;
+  void setup_pre_force(int vflag) override { pre_force(vflag); }
   void initial_integrate(int) override;
+  void pre_force(int) override;
   void final_integrate() override;
   void post_run() override;
   void reset_dt() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  /* At set-up: nobody has changed a velocity since this fix did, so vest still is the estimate the unbroken
-   * run would use. Collective. */
-  bool resumes() const;
-
  private:
-  struct State {
-    double format, step;
-    uint64_t velocities;
-  } left = {1.0, -1.0, 0};
   double dtv = 0.0, dtf = 0.0;
-  State state_now() const;
+  /* of the atoms and their ghosts: vest is the difference to v, not yet the estimate itself */
+  bool relative = false;
+
+  /* How the last run ended: the step, and the sum of a hash of all velocities of the group. */
+  struct End {
+    double step;
+    uint64_t velocities;
+  } end = {-1.0, 0};
+  End end_now() const;
 };
 
 class FixNveSphStationary : public LAMMPS_NS::Fix {

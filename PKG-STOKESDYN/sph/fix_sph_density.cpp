@@ -16,6 +16,7 @@ FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **a
     else
       in.unknown();
   }
+  begin();
 }
 
 FixSphDensitySummation::FixSphDensitySummation(LAMMPS *lmp, int narg, char **arg) :

@@ -18,13 +18,18 @@ FixSphOutput::FixSphOutput(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   peratom_freq = 1;
   create_attribute = 1;
   maxexchange = 1;
-  FixSphOutput::grow_arrays(atom->nmax);
+}
+
+void FixSphOutput::begin()
+{
+  grow_arrays(atom->nmax);
   std::fill_n(vector_atom, atom->nlocal, 0.0);
   atom->add_callback(Atom::GROW);
 }
 
 FixSphOutput::~FixSphOutput()
 {
+  if (!vector_atom) return;    // the words of the command were refused
   atom->delete_callback(id, Atom::GROW);
   memory->destroy(vector_atom);
 }

@@ -22,6 +22,10 @@ class FixSphOutput : public LAMMPS_NS::Fix {
 
   /* One number for each atom of this rank. */
   void output(const double *values);
+
+ protected:
+  /* For the end of the constructor. LAMMPS cannot take back a callback of a fix that failed before. */
+  void begin();
 };
 
 }    // namespace StokesDyn

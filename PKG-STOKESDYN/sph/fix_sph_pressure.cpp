@@ -24,4 +24,5 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
   } else
     in.unknown();
   if (in.next()) in.unknown();
+  begin();
 }

@@ -7,6 +7,9 @@
 #include "sph.h"
 
 #include "atom.h"
+#include "domain.h"
+#include "force.h"
+#include "pair.h"
 #include "region.h"
 #include "update.h"
 
@@ -85,6 +88,23 @@ FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp
   r0 = in.positive();
   D = in.not_negative();
   if (in.next()) in.unknown();
+}
+
+/* Particles must not walk round a wall, or see each other behind it. */
+void FixWallSph::init()
+{
+  const std::string kind = axis < 0 ? "zcylinder" : std::string(1, "xyz"[axis]) + "plane";
+  if (axis >= 0 && domain->periodicity[axis])
+    fail(lmp, command + ": keyword " + kind + ": the box is periodic in this direction; see: boundary");
+  if (axis >= 0) return;
+  const double apart = force->pair ? 0.5 * force->pair->cutforce : 0.0;
+  for (int d = 0; d < 2; d++)
+    if (domain->periodicity[d] &&
+        (-radius - apart < domain->boxlo[d] || radius + apart > domain->boxhi[d]))
+      fail(lmp,
+           command + ": keyword " + kind + ": radius " + text(radius) +
+               " reaches through the periodic boundary in " + std::string(1, "xyz"[d]) +
+               ": it must stay half a support, " + text(apart) + ", away from it");
 }
 
 void FixWallSph::post_force(int /*vflag*/)

@@ -35,6 +35,7 @@ class FixWallSph : public FixRepulsiveWall {
  public:
   static constexpr const char *STYLE = "wall/sph";
   FixWallSph(LAMMPS_NS::LAMMPS *, int, char **);
+  void init() override;
   void post_force(int) override;
 
  private:

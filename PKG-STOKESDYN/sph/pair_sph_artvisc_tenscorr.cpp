@@ -156,6 +156,8 @@ void PairSph::init_style()
   Sph::require_scene(lmp, COMMAND);
   if (update->whichflag == 2)
     fail(lmp, COMMAND + " cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
+  if (strncmp(update->integrate_style, "respa", 5) == 0)
+    fail(lmp, COMMAND + " cannot be used with run_style respa");
   if (force->pair_match(STYLE, 1) != this)
     fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
   if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
@@ -210,20 +212,20 @@ void PairSph::init_style()
   leapfrog_bits |= Sph::groups(stationary);
 
   pressure_bits = 0;
-  for (const auto *fix : pressures) pressure_bits |= fix->groupbit;
-  if (pressures.size() > 1) {
-    bigint twice = 0, all;
-    for (int i = 0; i < atom->nlocal; i++) {
-      int n = 0;
-      for (const auto *fix : pressures) n += (atom->mask[i] & fix->groupbit) != 0;
-      if (n > 1) twice = std::max(twice, (bigint) atom->tag[i]);
-    }
-    MPI_Allreduce(&twice, &all, 1, MPI_LMP_BIGINT, MPI_MAX, world);
-    if (all > 0)
+  for (const auto *fix : pressures) {
+    if (const bigint both = in_both(pressure_bits, fix->groupbit))
       fail(lmp,
-           COMMAND + ": atom " + std::to_string(all) +
+           COMMAND + ": atom " + std::to_string(both) +
                " is in the groups of two fixes sph/pressure");
+    pressure_bits |= fix->groupbit;
   }
+  if (wall)
+    for (const auto *fix : Sph::integrators(lmp))
+      if (const bigint both = in_both(wall->groupbit, fix->groupbit))
+        fail(lmp,
+             "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " + std::to_string(both) +
+                 " of its group is also integrated by fix " + fix->id +
+                 ", so the wall would flow; give that fix the group of the fluid");
 
   needs_velocity = model.artvisc || model.viscous || continuity;
   if (needs_velocity)
@@ -239,6 +241,26 @@ void PairSph::init_style()
             ": with neigh_modify check no nobody sees when the neighbour list is outdated"));
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me);
+}
+
+/* The largest ID of the atoms in both of these sets of groups, 0: there are none. */
+bigint PairSph::in_both(int bits, int more_bits)
+{
+  bigint mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & bits) && (atom->mask[i] & more_bits))
+      mine = std::max(mine, (bigint) atom->tag[i]);
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_MAX, world);
+  return all;
+}
+
+/* Here and not in init_style, since the domain learns of fix deform after that. */
+void PairSph::setup()
+{
+  if (needs_velocity && domain->deform_vremap && !Sph::fixes(lmp, "sph").empty())
+    fail(lmp,
+         COMMAND + ": fix deform with remap v: fix sph extrapolates velocities before they are "
+                   "shifted at the faces that glide; use fix nve/sph");
 }
 
 double PairSph::init_one(int i, int j)

@@ -31,6 +31,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void settings(int, char **) override;
   void coeff(int, char **) override;
   void init_style() override;
+  void setup() override;
   double init_one(int, int) override;
   void compute(int, int) override;
   void *extract(const char *, int &) override;
@@ -90,6 +91,7 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<int> classes, pool, near_count;
   std::vector<int *> near;
   bool used(int itype) const;
+  LAMMPS_NS::bigint in_both(int bits, int more_bits);
   void prepare();
   void estimate_velocities();
   void density_step();

@@ -128,17 +128,11 @@ void PairSph::prepare()
   pairs = raw;
 }
 
-/* vest is the velocity at the time of the force. The integrators set it before the force; who has none of
- * them moves with v. At the start
- * of a run it is v, unless the run goes on where the last one ended. */
+/* vest is the velocity at the time of the force. The integrators set it before the force; who has none of them moves with v.
+ * That of LAMMPS's fix sph is v at the start of a run, and its ghosts have not heard of that yet. */
 void PairSph::estimate_velocities()
 {
-  bool start = false;
-  if (update->setupflag) {
-    start = integrators.empty();
-    for (const auto *fix : integrators) start = !fix->resumes() || start;
-  }
-  const int n = particles.n, bits = start ? 0 : own_vest_bits;
+  const int n = particles.n, bits = update->setupflag && integrators.empty() ? 0 : own_vest_bits;
   for (int i = 0; i < n; i++)
     if (!(atom->mask[i] & bits)) memcpy(atom->vest[i], atom->v[i], 3 * sizeof(double));
 }
@@ -251,9 +245,8 @@ void PairSph::pressures_of_all()
   for (int i = 0; i < n; i++) A[i] = P[i] / (rho[i] * rho[i]);
 }
 
-/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the one that
- * has this pressure, so ghosts get
- * it like any other density. */
+/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the one that has this pressure,
+ * so ghosts get it like any other density. The velocity travels as the difference to v, which ghosts have. */
 void PairSph::wall_particles()
 {
   const int n = particles.n, nlocal = atom->nlocal, bit = wall->groupbit;
@@ -270,7 +263,6 @@ void PairSph::wall_particles()
   for (int i = 0; i < nlocal; i++) {
     double *now = &state[4 * (size_t) i];
     now[0] = atom->rho[i];
-    memcpy(now + 1, atom->vest[i], 3 * sizeof(double));
     if (!is_wall[i]) continue;
     const FixSphPressure *eos = nullptr;
     for (const auto *fix : pressures)
@@ -279,16 +271,25 @@ void PairSph::wall_particles()
     const bool alone = s[0] == 0.0;
     if (!alone || eos->state.kind != SD_SPH_ABSOLUT)
       now[0] = sd_sph_density_of(&eos->state, alone ? eos->state.P0 : s[1] / s[0]);
+    if (now[0] == 0.0)
+      fail_one(lmp,
+               "Fix " + std::string(FixWallAdamiSph::STYLE) + ": step " +
+                   std::to_string(update->ntimestep) + ": atom " + std::to_string(atom->tag[i]) +
+                   ": the pressure " + text(s[1] / s[0]) +
+                   " that the fluid asks for is not above " +
+                   text(sd_sph_least_pressure(&eos->state)) + ", the least of fix " + eos->id +
+                   ": a larger B or P0 makes room for it, if gravity is right");
     for (int d = 0; d < 3; d++) {
       const double fluid = alone ? atom->v[i][d] : s[2 + d] / s[0];
-      now[1 + d] = wall->slip ? fluid : 2.0 * atom->v[i][d] - fluid;
+      now[1 + d] = wall->slip ? fluid - atom->v[i][d] : atom->v[i][d] - fluid;
     }
   }
   forward(state.data(), 4);
   for (int i = 0; i < n; i++) {
     if (!is_wall[i]) continue;
     atom->rho[i] = state[4 * (size_t) i];
-    memcpy(atom->vest[i], &state[4 * (size_t) i + 1], 3 * sizeof(double));
+    for (int d = 0; d < 3; d++)
+      atom->vest[i][d] = atom->v[i][d] + state[4 * (size_t) i + 1 + d];
   }
   pressures_of_all();
 }

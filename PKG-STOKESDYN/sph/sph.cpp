@@ -46,6 +46,18 @@ namespace Sph {
     return found;
   }
 
+  std::vector<Fix *> integrators(LAMMPS *lmp)
+  {
+    std::vector<Fix *> found;
+    for (int i = 0; i < lmp->modify->nfix; i++) {
+      Fix *fix = lmp->modify->fix[i];
+      if (fix->time_integrate && strcmp(fix->style, "move") != 0 && !strstr(fix->style, "rigid") &&
+          !strstr(fix->style, "stationary"))
+        found.push_back(fix);
+    }
+    return found;
+  }
+
   int groups(const std::vector<Fix *> &fixes)
   {
     int bits = 0;

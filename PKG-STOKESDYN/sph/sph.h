@@ -31,6 +31,9 @@ namespace Sph {
     return found;
   }
 
+  /* Those that move particles by forces: all that integrate in time but fix move and rigid bodies. */
+  std::vector<LAMMPS_NS::Fix *> integrators(LAMMPS_NS::LAMMPS *lmp);
+
   /* Union of their group bits. */
   int groups(const std::vector<LAMMPS_NS::Fix *> &fixes);
 

@@ -106,6 +106,15 @@ AT_RUN = {
     "behind a plane": (PAIR + MOVE + "fix w all wall/sph xplane 0.01 NULL 0.001 1", "is on or behind the wall"),
     "outside a region": (PAIR + MOVE + "region r block 0.01 1 -1 1 -1 1 units box\nfix w all wall/region/sph r 0.001 1", "is on or behind the wall"),
     "respa": (PAIR + MOVE + "run_style respa 2 2 pair 1", "respa"),
+    "respa with fix sph": (PAIR + "fix move all sph\nrun_style respa 2 2 pair 1", "run_style respa"),
+    "wall group moves": (PAIR + MOVE + "group w type 2\nfix w w wall/adami/sph",
+                         "Fix wall/adami/sph: atom 58 of its group is also integrated by fix move"),
+    "wall group moves with fix sph": (PAIR + "fix move all sph\ngroup w type 2\nfix w w wall/adami/sph", "is also integrated by fix move"),
+    "no such pressure": (PAIR + "group one type 1\ngroup two type 2\nfix move one nve/sph\nfix w two wall/adami/sph gravity 0 -1e7 0",
+                         "that the fluid asks for is not above -60000, the least of fix eos"),
+    "no such pressure of absolut": (PAIR + "unfix eos\nfix eos all sph/pressure absolut 3\ngroup one type 1\ngroup two type 2\n"
+                                    "fix move one nve/sph\nfix w two wall/adami/sph gravity 0 -1e7 0",
+                                    "that the fluid asks for is not above 0, the least of fix eos"),
     "stop": (PAIR.replace("* *", "* * c 20") + MOVE + "timestep 0.1\nfix c all check/timestep/sph 1 0.3 stop", "more than 0.3"),
 }
 
@@ -114,6 +123,26 @@ AT_RUN = {
 def test_scenes(case):
     lines, expected = AT_RUN[case]
     assert expected in message(random_scene() + lines + "\nrun 1")
+
+
+@pytest.mark.parametrize("wall, bad, good", [
+    ("xplane -1 NULL 0.001 1", "p f f", "f p p"), ("yplane NULL 1 0.001 1", "f p f", "p f p"), ("zplane -1 1 0.001 1", "p p p", "p p f"),
+    # The box of the scene goes from -0.06 to 0.105: a cylinder around 0 leaves it through the periodic faces.
+    ("zcylinder 1 0.001 1", "p f f", "f f p"), ("zcylinder 1 0.001 1", "f p f", "f f f")])
+def test_walls_of_a_periodic_box(wall, bad, good):
+    """Particles would go round, or see each other through the wall."""
+    scene = random_scene() + PAIR + MOVE + "fix w all wall/sph " + wall + "\nrun 0"
+    assert "Fix wall/sph: keyword " + wall.split()[0] in message(scene.replace("boundary f f f", "boundary " + bad))
+    assert message(scene.replace("boundary f f f", "boundary " + good)) == "no error"
+
+
+def test_cylinder_inside_a_periodic_box():
+    """Nobody gets out of a cylinder that is a support away from its images."""
+    box = "units si\natom_style sph\nregion b block -1 1 -1 1 -1 1\ncreate_box 1 b\ncreate_atoms 1 single 0.1 0.2 0\nmass 1 1\n" \
+        "set group all sph/rho 1000\nneighbor 0.01 bin\npair_style sph/artVisc/tensCorr wendland 0.1\npair_coeff * *\n" \
+        "fix e all sph/pressure absolut 3\nfix d all sph/density/continuity\nfix m all nve/sph\nfix w all wall/sph zcylinder %s 0.1 1\nrun 0"
+    assert message(box % "0.89") == "no error"
+    assert "keyword zcylinder" in message(box % "0.91")
 
 
 ADAPT = {"h": ("0.012-0.01*step", "'-0.008' must be > 0"), "c": ("20-10*step", "'0' must be > 0"),

@@ -85,6 +85,19 @@ def test_restart_without_fixes_is_an_error(tmp_path):
         trajectory("read_restart %s\nrun 5" % path)
 
 
+def test_restart_file_of_another_version_is_said_once_and_not_read(tmp_path):
+    """The run then starts from the velocities as they are, like any first run."""
+    path = tmp_path / "restart"
+    trajectory(scene("run 50\nwrite_restart %s" % path))
+    mine = path.read_bytes()
+    assert mine.count(b"stokesdyn 1 nve/sph") == 1
+    path.write_bytes(mine.replace(b"stokesdyn 1 nve/sph", b"stokesdyn 7 nve/sph"))
+    done = mpirun(2, "read_restart %s\nneighbor 0.003 bin\nneigh_modify delay 0 every 1\ntimestep 2e-5\n" % path + FIXES + "run 5", tmp_path)
+    assert done.returncode == 0, done.stdout
+    warnings = [line for line in done.stdout.splitlines() if "WARNING" in line and "nve/sph" in line]
+    assert len(warnings) == 1, done.stdout
+
+
 def test_new_velocities_are_seen_at_once():
     """A velocity that changed between two runs replaces the estimate that the last run left."""
     lmp = start()

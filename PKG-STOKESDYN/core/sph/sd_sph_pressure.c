@@ -43,6 +43,11 @@ double sd_sph_density_of(const sd_sph_state *s, double P)
   return rho > 0.0 ? rho : 0.0;
 }
 
+double sd_sph_least_pressure(const sd_sph_state *s)
+{
+  return sd_sph_pressure(s, 0.0);
+}
+
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
                       double *P)
 {

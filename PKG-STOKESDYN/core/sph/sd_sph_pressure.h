@@ -20,8 +20,11 @@ typedef struct {
 /* P of a density > 0. */
 double sd_sph_pressure(const sd_sph_state *state, double rho);
 
-/* The density that has the pressure P. 0 if there is none: P < P0 - B for Tait, P <= 0 for absolut. */
+/* The density > 0 that has the pressure P; 0 if there is none. */
 double sd_sph_density_of(const sd_sph_state *state, double P);
+
+/* The pressure of no density at all: those of all densities are above it. */
+double sd_sph_least_pressure(const sd_sph_state *state);
 
 /* P [n] of the particles i with mask[i] & bit; the others keep theirs. */
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
