@@ -1,0 +1,61 @@
+"""The examples that take seconds: every figure of their READMEs holds, and a run leaves what is kept in the repository alone.
+examples/run.sh all runs the rest of them too."""
+import hashlib
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+
+from system import environment
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
+QUICK = ["cfd_coupling", "clump_resistance", "tumbling"]
+
+
+def kept(folder):
+    """Of every file below the folder its content, in short."""
+    return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_every_figure_of_an_example_holds(name, tmp_path):
+    before = kept(EXAMPLES / name)
+    env = dict(environment(), PYTHONDONTWRITEBYTECODE="1", MPLCONFIGDIR=str(tmp_path / "matplotlib"))
+    run = subprocess.run([sys.executable, str(EXAMPLES / name / "run.py"), "--out", str(tmp_path / "out")], env=env, cwd=tmp_path,
+                         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600)
+    assert run.returncode == 0, run.stdout[-3000:]
+    assert not re.search("^MISSED", run.stdout, re.M), run.stdout[-3000:]
+    assert len(re.findall("^ok  ", run.stdout, re.M)) >= 5, run.stdout[-3000:]
+    assert kept(EXAMPLES / name) == before
+
+
+# --- checks.py --------------------------------------------------------------------------------------------------------------
+
+@pytest.fixture
+def checks(monkeypatch):
+    monkeypatch.syspath_prepend(str(EXAMPLES))
+    import checks
+    return checks.Checks()
+
+
+@pytest.mark.parametrize("value", [2.0, 1.0 + 1e-3, float("nan"), float("inf")])
+def test_a_figure_that_is_off_is_missed(checks, capsys, value):
+    assert not checks.near("period", value, 1.0, 1e-4)
+    assert checks.near("frequency", 1.00001, 1.0, 1e-4)
+    assert checks.finish() == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("MISSED  period: ") and lines[1].startswith("ok      frequency: ")
+
+
+def test_limits_belong_to_what_is_allowed(checks):
+    assert checks.below("overlap", 0.02, 0.02) and checks.within("speed", 0.93, 0.93, 1.02) and checks.holds("it stands", True)
+    assert checks.finish() == 0
+    assert not checks.below("overlap", 0.0201, 0.02) and not checks.within("speed", 1.03, 0.93, 1.02)
+    assert not checks.holds("it stands", False)
+    assert checks.finish() == 1
+
+
+def test_a_script_that_looks_at_nothing_fails(checks):
+    assert checks.finish() == 1
