@@ -4,8 +4,6 @@
 #include "input.h"
 #include "variable.h"
 
-#include <cmath>
-
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
@@ -21,40 +19,37 @@ Field Field::parse(Keywords &in)
   return field;
 }
 
+int Field::index(LAMMPS *lmp) const
+{
+  return lmp->input->variable->find(const_cast<char *>(name.c_str()));    // char * in older versions
+}
+
 void Field::init(LAMMPS *lmp, const std::string &what)
 {
   if (!is_variable()) return;
   Variable *variable = lmp->input->variable;
-  // find() takes char * in older versions
-  const int i = variable->find(const_cast<char *>(name.c_str()));
+  const int i = index(lmp);
   if (i < 0) fail(lmp, what + ": variable '" + name + "' does not exist");
   atom_style = variable->atomstyle(i);
   if (!atom_style && !variable->equalstyle(i))
     fail(lmp, what + ": variable '" + name + "' is neither equal nor atom style");
 }
 
-void Field::evaluate(LAMMPS *lmp, int igroup, double *out, int stride)
-{
-  const int nlocal = lmp->atom->nlocal;
-  if (is_variable()) {
-    Variable *variable = lmp->input->variable;
-    const int i = variable->find(const_cast<char *>(name.c_str()));
-    if (atom_style) {
-      variable->compute_atom(i, igroup, out, stride, 0);
-      return;
-    }
-    value = variable->compute_equal(i);
-  }
-  if (out)
-    for (int i = 0; i < nlocal; i++) out[(long) stride * i] = value;
-}
-
 double Field::evaluate(LAMMPS *lmp)
 {
-  if (is_variable())
-    value = lmp->input->variable->compute_equal(
-        lmp->input->variable->find(const_cast<char *>(name.c_str())));
+  if (is_variable()) value = lmp->input->variable->compute_equal(index(lmp));
   return value;
+}
+
+void Field::evaluate(LAMMPS *lmp, int igroup, double *out, int stride)
+{
+  if (is_atom_style()) {
+    lmp->input->variable->compute_atom(index(lmp), igroup, out, stride, 0);
+    return;
+  }
+  evaluate(lmp);
+  if (out)
+    for (int i = 0; i < lmp->atom->nlocal; i++) out[(long) stride * i] = value;
 }
 
 }    // namespace StokesDyn
