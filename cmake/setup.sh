@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Set-up for both commands of the README: Debian packages, LAMMPS, the plugin. Quick when all is there already.
 #   setup.sh [test]      test: also what unittest/run.sh needs
-# Leaves build/stokesdynplugin.so and build/env.sh.
+# Leaves build/stokesdynplugin.so, with build/stokesdynstyles.so that belongs to it, and build/env.sh.
 set -euo pipefail
 export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither
 top=$(cd "$(dirname "$0")/.." && pwd)
