@@ -1,5 +1,7 @@
 #include "sd_order.h"
 
+#include "sd_hash.h"
+
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +20,7 @@ static int64_t cell_of(const cells *c, double x)
 
 static int bucket(const cells *c, int64_t i, int64_t j, int64_t k)
 {
-  const uint64_t h = (uint64_t) i * 0x9e3779b97f4a7c15u ^ (uint64_t) j * 0xc2b2ae3d27d4eb4fu ^
+  const uint64_t h = (uint64_t) i * SD_HASH_STEP ^ (uint64_t) j * 0xc2b2ae3d27d4eb4fu ^
       (uint64_t) k * 0x165667b19e3779f9u;
   return (int) ((h ^ (h >> 29)) & (uint64_t) (c->buckets - 1));
 }
