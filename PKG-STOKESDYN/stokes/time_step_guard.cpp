@@ -72,7 +72,7 @@ double TimeStepGuard::smallest_eigenvalue(const sd_system &system) const
     }
   double lambda = 0.0;
   int products;
-  const sd_status status = sd_smallest_eigenvalue(&system, GUARD_ACCURACY, GUARD_PRODUCTS, v.data(),
+  const sd_status status = sd_smallest_eigenvalue(&system, nullptr, GUARD_ACCURACY, GUARD_PRODUCTS, v.data(),
                                                   work.data(), &lambda, &products);
   return status == SD_ENOTFINITE ? 0.0 : lambda;
 }

@@ -1,61 +1,57 @@
 #include "sd_smallest.h"
 
 #include "sd_linear.h"
+#include "sd_system.h"
 
 #include <math.h>
 #include <string.h>
 
-/* The vectors of the span and M times each. */
+/* The vectors of the span, the present v, P times its residual and the last step, and M times
+ * each: M v of a combination is the combination of M v, so a step costs one product, that of the
+ * new w. */
 enum { V, W, P, SPAN };
 typedef struct {
   double *x[SPAN], *Mx[SPAN];
 } span;
 
-static double diagonal(const sd_system *A, long sphere, int p)
+/* W^-1 in row k of sphere i, which is row j */
+static double inverse_weight(const sd_system *A, const double *weight, long i, int k, long j)
 {
-  return p < 3 ? A->drag[sphere] : A->spin[sphere];
+  return 1.0 / (weight ? weight[j] : sd_system_diagonal(A, i, k));
 }
 
-static sd_status apply(const sd_system *A, int width, const double *x, double *Mx)
+/* w = P r, r = M v - mu W^-1 v, at mu = v.Mv; own: r.W r of this rank. Since v.W^-1 v = 1, some
+ * eigenvalue lies within sqrt(r.W r) of mu: the residual theorem for the symmetric W^1/2 M W^1/2.
+ * */
+static sd_status direction(const sd_system *A, const double *weight, double mu, const span *s,
+                           double *r, double *own)
 {
-  const sd_status status = A->apply(A->apply_ctx, x, Mx);
-  if (status != SD_OK) return status;
-  for (long i = 0; i < A->n; i++)
-    for (int p = 0; p < width; p++) {
-      const long j = width * i + p;
-      Mx[j] = A->drag[i] == 0.0 ? 0.0 : Mx[j] + x[j] / diagonal(A, i, p);
-    }
-  return SD_OK;
-}
-
-/* w = P r, r = M v - lambda D^-1 v, at lambda = v.Mv; own: r.D r of this rank. */
-static sd_status direction(const sd_system *A, int width, double lambda, const span *s, double *r,
-                           double *own)
-{
+  const int m = sd_system_width(A);
   const double *v = s->x[V], *Mv = s->Mx[V];
-  double *w = s->x[W];
   *own = 0.0;
   for (long i = 0; i < A->n; i++)
-    for (int p = 0; p < width; p++) {
-      const long j = width * i + p;
-      const double D = diagonal(A, i, p);
-      r[j] = A->drag[i] == 0.0 ? 0.0 : Mv[j] - lambda * v[j] / D;
-      *own += D * r[j] * r[j];
-      if (!A->precondition) w[j] = D * r[j];
+    for (int k = 0; k < m; k++) {
+      const long j = m * i + k;
+      r[j] = 0.0;
+      if (A->drag[i] == 0.0) continue;
+      const double inverse = inverse_weight(A, weight, i, k, j);
+      r[j] = Mv[j] - mu * v[j] * inverse;
+      *own += r[j] * r[j] / inverse;
     }
-  return A->precondition ? A->precondition(A->precondition_ctx, r, w) : SD_OK;
+  return sd_system_precondition(A, r, s->x[W]);
 }
 
-/* x.Mx and x.D^-1 x of the span, each [SPAN SPAN], and own[0], summed over the ranks. */
-static sd_status gram(const sd_system *A, int width, int count, const span *s, double *own,
-                      double *M, double *B)
+/* x.Mx and x.W^-1 x of the span, each [SPAN SPAN], and own[0], summed over the ranks. */
+static sd_status gram(const sd_system *A, const double *weight, int count, const span *s,
+                      double *own, double *M, double *B)
 {
+  const int m = sd_system_width(A);
   double t[2 * SPAN * SPAN + 1] = {0.0};
   for (long i = 0; i < A->n; i++) {
     if (A->drag[i] == 0.0) continue;
-    for (int p = 0; p < width; p++) {
-      const long j = width * i + p;
-      const double inverse = 1.0 / diagonal(A, i, p);
+    for (int p = 0; p < m; p++) {
+      const long j = m * i + p;
+      const double inverse = inverse_weight(A, weight, i, p, j);
       for (int k = 0; k < count; k++)
         for (int l = 0; l <= k; l++) {
           t[SPAN * k + l] += s->x[k][j] * s->Mx[l][j];
@@ -64,7 +60,7 @@ static sd_status gram(const sd_system *A, int width, int count, const span *s, d
     }
   }
   t[2 * SPAN * SPAN] = *own;
-  const sd_status status = A->sum ? A->sum(A->sum_ctx, t, 2 * SPAN * SPAN + 1) : SD_OK;
+  const sd_status status = sd_system_sum(A, t, 2 * SPAN * SPAN + 1);
   *own = t[2 * SPAN * SPAN];
   for (int k = 0; k < SPAN; k++)
     for (int l = 0; l < SPAN; l++) {
@@ -75,8 +71,11 @@ static sd_status gram(const sd_system *A, int width, int count, const span *s, d
   return status;
 }
 
-/* Coefficients c of the vector with c.Bc = 1 and the smallest c.Mc, which is returned. Vectors that hardly leave the span of those
- * before them are left out: T has the others' B-orthonormal combinations, row by row. */
+/* Coefficients c of the vector with c.Bc = 1 and the smallest c.Mc, which is returned: Rayleigh
+ * and Ritz's method in the span. Vectors that hardly leave the span of those before them are left
+ * out: T has the others' B-orthonormal combinations, row by row, by Gram and Schmidt twice, which
+ * is enough (Parlett, The Symmetric Eigenvalue Problem, 6.9). With G = T M T^T that is an ordinary
+ * problem. */
 static double smallest_of_span(int count, const double *M, const double *B, double *c)
 {
   double T[SPAN * SPAN] = {0.0}, G[SPAN * SPAN], w[SPAN], E[SPAN * SPAN];
@@ -126,34 +125,36 @@ static void step(long size, int count, const double *c, double *const *x)
   }
 }
 
-sd_status sd_smallest_eigenvalue(const sd_system *A, double accuracy, int max_products, double *v,
-                                 double *work, double *lambda, int *products)
+sd_status sd_smallest_eigenvalue(const sd_system *A, const double *weight, double accuracy,
+                                 int max_products, double *v, double *work, double *mu,
+                                 int *products)
 {
-  const int width = A->spin ? 6 : 3;
+  const int width = sd_system_width(A);
   const long size = (long) width * A->n;
   double *r = work + 5 * size, M[SPAN * SPAN], B[SPAN * SPAN], c[SPAN], own = 0.0;
   const span s = {{v, work, work + size}, {work + 2 * size, work + 3 * size, work + 4 * size}};
   int count = 1;
+  *products = 0;
+  *mu = 1.0;
   for (long j = 0; j < size; j++)
     if (A->drag[j / width] == 0.0) v[j] = 0.0;
-  *products = 0;
-  *lambda = 1.0;
-  sd_status status = apply(A, width, v, s.Mx[V]);
-  if (status != SD_OK || (status = gram(A, width, 1, &s, &own, M, B)) != SD_OK) return status;
+  sd_status status = sd_system_apply(A, v, s.Mx[V]);
+  if (status != SD_OK || (status = gram(A, weight, 1, &s, &own, M, B)) != SD_OK) return status;
   *products = 1;
   for (;;) {
     if (!isfinite(M[0]) || !isfinite(B[0])) return SD_ENOTFINITE;
     if (!(B[0] > 0.0)) return SD_OK; /* nobody takes part */
-    *lambda = smallest_of_span(count, M, B, c);
+    *mu = smallest_of_span(count, M, B, c);
     step(size, count, c, s.x);
     step(size, count, c, s.Mx);
-    if (*lambda <= 0.0) return SD_OK;
+    if (*mu <= 0.0) return SD_OK;
     if (*products >= max_products) return SD_EMAXITER;
-    if ((status = direction(A, width, *lambda, &s, r, &own)) != SD_OK) return status;
-    if ((status = apply(A, width, s.x[W], s.Mx[W])) != SD_OK) return status;
+    if ((status = direction(A, weight, *mu, &s, r, &own)) != SD_OK) return status;
+    if ((status = sd_system_apply(A, s.x[W], s.Mx[W])) != SD_OK) return status;
     ++*products;
+    /* There is no last step before the second. */
     count = *products > 2 ? SPAN : 2;
-    if ((status = gram(A, width, count, &s, &own, M, B)) != SD_OK) return status;
-    if (sqrt(own) <= accuracy * *lambda) return SD_OK;
+    if ((status = gram(A, weight, count, &s, &own, M, B)) != SD_OK) return status;
+    if (sqrt(own) <= accuracy * *mu) return SD_OK;
   }
 }

@@ -1,4 +1,4 @@
-/* Smallest eigenvalue of the mobility scaled to unit diagonal, against LAPACK's of the dense matrix. */
+/* Smallest eigenvalue of the mobility, scaled to unit diagonal or by inertia, against LAPACK's of the dense matrix. */
 #include "clouds.h"
 
 #include "sd_precondition.h"
@@ -16,6 +16,7 @@ typedef struct {
   scene s;
   int width;
   double *spin;
+  double *weight; /* NULL: scaled to unit diagonal */
   sd_packed packed;
 } problem;
 
@@ -44,9 +45,14 @@ static sd_status apply(void *ctx, const double *F, double *u)
   return SD_OK;
 }
 
+static double drag_of(const problem *p, int row)
+{
+  return row % p->width < 3 ? p->s.drag[row / p->width] : p->spin[row / p->width];
+}
+
 static double root(const problem *p, int row)
 {
-  return sqrt(row % p->width < 3 ? p->s.drag[row / p->width] : p->spin[row / p->width]);
+  return sqrt(p->weight ? p->weight[row] : drag_of(p, row));
 }
 
 static double dense(problem *p)
@@ -60,8 +66,9 @@ static double dense(problem *p)
     apply(p, F, u);
     F[k] = 0.0;
     for (int i = 0; i < size; i++)
-      C[(size_t) size * (size_t) k + (size_t) i] = i == k ? 1.0 : u[i] * root(p, i);
-    if (p->s.a[k / p->width] == 0.0) C[(size_t) (size + 1) * (size_t) k] = 10.0;
+      C[(size_t) size * (size_t) k + (size_t) i] =
+          i == k ? root(p, i) * root(p, i) / drag_of(p, i) : u[i] * root(p, i);
+    if (p->s.a[k / p->width] == 0.0) C[(size_t) (size + 1) * (size_t) k] = 1e3;
   }
   int info;
   dsyev_("N", "L", &size, C, &size, w, work, &many, &info);
@@ -93,7 +100,8 @@ static void check(problem *p, sd_precondition *P, void *ctx, double lowest, doub
   uint64_t seed = 5;
   int products;
   for (int k = 0; k < size; k++) v[k] = uniform(&seed, -1, 1) * root(p, k);
-  assert_int_equal(sd_smallest_eigenvalue(&A, 0.2, 300, v, work, &lambda, &products), SD_OK);
+  assert_int_equal(sd_smallest_eigenvalue(&A, p->weight, 0.2, 300, v, work, &lambda, &products),
+                   SD_OK);
   if (products > most_products) fail_msg("%d products, at most %d", products, most_products);
   if (!(lambda > (1.0 - 1e-9) * lowest && lambda < (1.0 + off) * lowest))
     fail_msg("lambda %g, dense %g", lambda, lowest);
@@ -103,12 +111,11 @@ static void check(problem *p, sd_precondition *P, void *ctx, double lowest, doub
       CHECK_NEAR(v[k], 0.0, 0.0);
       continue;
     }
-    const double own = v[k] / (root(p, k) * root(p, k));
-    power += v[k] * (u[k] + own);
-    norm += v[k] * own;
+    power += v[k] * (u[k] + v[k] / drag_of(p, k));
+    norm += v[k] * v[k] / (root(p, k) * root(p, k));
   }
   CHECK_NEAR(norm, 1.0, 1e-9);
-  CHECK_NEAR(power, lambda, 1e-9);
+  CHECK_NEAR(power / lambda, 1.0, 1e-9);
   free(v);
   free(u);
   free(work);
@@ -149,6 +156,61 @@ static void agrees_with_the_dense_matrix(void **state)
     }
 }
 
+/* W = m in rows of forces, 2/5 m a^2 in those of torques: a sphere alone has m/(6 pi eta a) = 2/9 rho a^2 / eta, and 3/10 of that for
+ * its spin, which is less. Radii 1:2, so times 1:4; and ten spheres of the cloud a hundred times as heavy, as if held. */
+static void agrees_with_the_dense_matrix_weighed_by_inertia(void **state)
+{
+  (void) state;
+  const double rho = 1.7;
+  for (int width = 3; width <= 6; width += 3)
+    for (int kind = 0; kind < 3; kind++) {
+      problem p = problem_create(kind == 0 ? cloud_dense(120, 0.45, 0.7, 1.4, ETA, 1)
+                                     : kind == 1 ? cloud_flocs(6, 20, 2.0, 20.0, 1, ETA, 1)
+                                                 : scene_lattice(1, 1, 1, 2.0, 0.7, ETA),
+                                 width);
+      p.weight = malloc(sizeof(double) * (size_t) (width * p.s.n));
+      for (int k = 0; k < width * p.s.n; k++) {
+        const double a = p.s.a[k / width], m = rho * 4.0 / 3.0 * SD_PI * a * a * a;
+        p.weight[k] = (kind == 0 && k / width < 10 ? 100.0 : 1.0) * (k % width < 3 ? m : 0.4 * m * a * a);
+      }
+      const sd_spheres spheres = {p.s.x, p.s.a, p.s.w};
+      const double lowest = dense(&p), alone = 2.0 / 9.0 * rho * 0.7 * 0.7 / ETA;
+      if (kind == 2) CHECK_NEAR(lowest / (width == 6 ? 0.3 * alone : alone), 1.0, 1e-12);
+      check(&p, NULL, NULL, lowest, 0.15, 200);
+      sd_sparse f = {0};
+      assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, p.s.n, width, 3.0, 0, 1), SD_OK);
+      f.drag = p.s.drag;
+      f.spin = p.spin;
+      check(&p, sd_sparse_apply, &f, lowest, 0.15, 30);
+      sd_sparse_free(&f);
+      free(p.weight);
+      problem_free(&p);
+    }
+}
+
+static sd_status fail_at_third(void *ctx, const double *F, double *u)
+{
+  int *calls = ctx;
+  (void) F;
+  for (int k = 0; k < 12; k++) u[k] = 0.0;
+  return ++*calls == 3 ? SD_ECALLBACK : SD_OK;
+}
+
+static void failed_callback_is_handed_up(void **state)
+{
+  (void) state;
+  int calls = 0, products;
+  const double drag[4] = {1.3, 0.7, 2.1, 0.4};
+  double v[12], work[SD_SOLVE_WORK(4, 3)], lambda;
+  const sd_system A = {.n = 4, .drag = drag, .apply = fail_at_third, .apply_ctx = &calls};
+  for (int k = 0; k < 12; k++) v[k] = 1.0 + k % 5;
+  double weight[12];
+  for (int k = 0; k < 12; k++) weight[k] = 0.3 + k;
+  assert_int_equal(sd_smallest_eigenvalue(&A, weight, 1e-9, 300, v, work, &lambda, &products),
+                   SD_ECALLBACK);
+  assert_int_equal(calls, 3);
+}
+
 static void lone_sphere_has_one(void **state)
 {
   (void) state;
@@ -168,10 +230,10 @@ static void cut_off_shows_by_its_sign(void **state)
   uint64_t seed = 5;
   int products;
   for (int k = 0; k < 3 * 64; k++) v[k] = uniform(&seed, -1, 1);
-  assert_int_equal(sd_smallest_eigenvalue(&A, 0.2, 300, v, work, &lambda, &products), SD_OK);
+  assert_int_equal(sd_smallest_eigenvalue(&A, NULL, 0.2, 300, v, work, &lambda, &products), SD_OK);
   assert_true(lambda < 0.0);
   v[0] = NAN;
-  assert_int_equal(sd_smallest_eigenvalue(&A, 0.2, 300, v, work, &lambda, &products),
+  assert_int_equal(sd_smallest_eigenvalue(&A, NULL, 0.2, 300, v, work, &lambda, &products),
                    SD_ENOTFINITE);
   scene_free(&s);
 }
@@ -180,6 +242,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(agrees_with_the_dense_matrix),
+      cmocka_unit_test(agrees_with_the_dense_matrix_weighed_by_inertia),
+      cmocka_unit_test(failed_callback_is_handed_up),
       cmocka_unit_test(lone_sphere_has_one),
       cmocka_unit_test(cut_off_shows_by_its_sign),
   };
