@@ -134,7 +134,7 @@ void Hydrodynamics::solve()
   const sd_status status = alone ? SD_OK : run(system, report);
   if (settings.algorithm == StokesSettings::GRADIENTS && !alone) {
     guard.state = memory->global.guard;
-    guard.look(system, report, solving, preconditioner.attached(), memory->global.solves);
+    guard.look(system, report, nullptr, preconditioner.attached(), memory->global.solves);
     memory->global.guard = guard.state;
   }
   memory->global.solves++;
@@ -275,6 +275,9 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report)
                (oseen ? " with tensor oseen: spheres are too close for it, use tensor rpy ("
                       : ": equal spheres at one point with different velocities (") +
                how_far + ")");
+    case SD_ENOMEMORY:
+    case SD_ECALLBACK:    // of this rank, while the others wait for it
+      fail_one(lmp, where + sd_status_string(status) + " (" + how_far + ")");
     default:
       fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
   }

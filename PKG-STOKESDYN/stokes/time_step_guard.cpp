@@ -11,108 +11,123 @@
 #include "update.h"
 #include "utils.h"
 
+#include "sd_hash.h"
 #include "sd_smallest.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-// Of the time-step guard: its eigenvalue is off by a few per cent and costs tens of products, so it is computed only where the limit
-// is nearer than any of the free estimates was off (30 times), and again after so many solves.
-static const double GUARD_ACCURACY = 0.2, GUARD_NEAR = 40.0, GUARD_PERIOD = 2000.0;
-static const int GUARD_PRODUCTS = 200;
+// The eigenvalue, good to a few per cent, costs tens of products. So it is computed only where the
+// limit may be as near as the free estimates were ever off (30 times), and again after so many
+// solves.
+static const double ACCURACY = 0.2, NEAR = 40.0, PERIOD = 2000.0;
+static const int PRODUCTS = 200;
+// Spheres in the rigid bodies of LAMMPS are not free. Their bodies weigh as much as many of them:
+// nearly held, they take part in the motion of the others without a limit of their own.
+static const double HELD = 100.0;
 
-/* Shortest relaxation time of a sphere that moves by itself, m/(6 pi eta a); that of its spin, 2/5 m a^2/(8 pi eta a^3), is shorter.
- * INFINITY: there is none. */
-double TimeStepGuard::relaxation_time(const sd_system &A, const std::vector<char> &solving) const
+TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms)
 {
-  // Spheres in the rigid bodies of LAMMPS are not free: their bodies are heavier than that.
-  std::vector<char> in_body(atom->nlocal, 0);
+  std::vector<char> held(atom->nlocal + 1, 0);
   for (int f = 0; f < modify->nfix; f++)
     if (utils::strmatch(modify->fix[f]->style, "^rigid")) {
       int dim;
       if (const int *body = (const int *) modify->fix[f]->extract("body", dim))
-        for (int i = 0; i < atom->nlocal; i++) in_body[i] = in_body[i] || body[i] >= 0;
+        for (int i = 0; i < atom->nlocal; i++) held[i] = held[i] || body[i] >= 0;
     }
-  double shortest = INFINITY, all;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!solving[i] || in_body[i]) continue;
+  const size_t m = A.spin ? 6 : 3;
+  double most[3] = {-INFINITY, -INFINITY, 0.0};    // -shortest, -of_velocity, longest
+  weight.assign(m * A.n + 1, 1.0);
+  for (int k = 0; k < A.n; k++) {
+    if (A.drag[k] == 0.0) continue;
+    const int i = atoms ? atoms[k] : k;
     const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-    shortest = std::min(shortest, mass / (force->ftm2v * A.drag[i]));
-    if (A.spin)
-      shortest = std::min(shortest, 0.4 * mass * atom->radius[i] * atom->radius[i] / (force->ftm2v * A.spin[i]));
-  }
-  MPI_Allreduce(&shortest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
-  return all;
-}
-
-/* -1/2 ... 1/2, without likeness to its neighbours' (splitmix64) */
-static double scattered(uint64_t k)
-{
-  k *= 0x9e3779b97f4a7c15u;
-  k = (k ^ (k >> 30)) * 0xbf58476d1ce4e5b9u;
-  k = (k ^ (k >> 27)) * 0x94d049bb133111ebu;
-  return ((k ^ (k >> 31)) >> 11) * 0x1p-53 - 0.5;
-}
-
-/* Smallest eigenvalue of the mobility scaled to unit diagonal, by a few products. It starts from numbers that depend on the sphere
- * alone, so that the ranks do not matter. */
-double TimeStepGuard::smallest_eigenvalue(const sd_system &system) const
-{
-  const int n = atom->nlocal, m = system.spin ? 6 : 3;
-  std::vector<double> v(m * (size_t) n + 1), work(SD_SOLVE_WORK(n, m) + 1);
-  for (int i = 0; i < n; i++)
-    for (int d = 0; d < m; d++) {
-      v[m * (size_t) i + d] =
-          scattered(8 * (uint64_t) atom->tag[i] + d) * std::sqrt(d < 3 ? system.drag[i] : system.spin[i]);
+    for (size_t d = 0; d < m; d++) {
+      // Force over acceleration in the units of this LAMMPS
+      double &w = weight[m * k + d];
+      w = mass / force->ftm2v;
+      if (d >= 3) w *= 0.4 * atom->radius[i] * atom->radius[i];
+      if (held[i]) w *= HELD;
+      const double time = w / (d < 3 ? A.drag[k] : A.spin[k]);
+      if (!held[i]) most[0] = std::max(most[0], -time);
+      if (!held[i] && d < 3) most[1] = std::max(most[1], -time);
+      most[2] = std::max(most[2], time);
     }
-  double lambda = 0.0;
-  int products;
-  const sd_status status = sd_smallest_eigenvalue(&system, nullptr, GUARD_ACCURACY, GUARD_PRODUCTS, v.data(),
-                                                  work.data(), &lambda, &products);
-  return status == SD_ENOTFINITE ? 0.0 : lambda;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, world);
+  for (double &w : weight) w /= -most[0];
+  return {-most[0], -most[1], most[2]};
 }
 
-/* Explicit steps of free spheres are stable for dt < 2 m lambda_min / (6 pi eta a), with the smallest eigenvalue of the mobility scaled
- * to unit diagonal. Conjugate gradients give an estimate of it from above at no cost; it may be many times too large, as a smooth
- * right-hand side or a preconditioner hides the smallest eigenvalue from them. Where the time step comes near that limit, it is
- * computed, now and then. The smallest seen is kept. */
-void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
-                         const std::vector<char> &solving, bool preconditioned, double solves)
+/* mu in units of the shortest time; INFINITY: it could not be had. It starts from numbers that
+ * depend on the sphere alone, so that the ranks do not matter. */
+double TimeStepGuard::compute(const sd_system &A, const int *atoms)
+{
+  const size_t m = A.spin ? 6 : 3;
+  std::vector<double> v(m * A.n + 1), work(SD_SOLVE_WORK(A.n, m) + 1);
+  for (int k = 0; k < A.n; k++) {
+    const uint64_t tag = atom->tag[atoms ? atoms[k] : k];
+    for (size_t d = 0; d < m; d++)
+      v[m * k + d] = (sd_hash_unit(sd_hash_mix((8 * tag + d) * SD_HASH_STEP)) - 0.5) *
+          std::sqrt(weight[m * k + d]);
+  }
+  double mu = 0.0;
+  int products;
+  const sd_status status = sd_smallest_eigenvalue(&A, weight.data(), ACCURACY, PRODUCTS, v.data(),
+                                                  work.data(), &mu, &products);
+  if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
+    fail_one(lmp, command + ": limit of the time step: " + sd_status_string(status));
+  return status != SD_ENOTFINITE && mu > 0.0 ? mu : INFINITY;
+}
+
+void TimeStepGuard::warn(double of_velocity)
+{
+  if (warned || !(state.limit > 0.0 && update->dt > state.limit)) return;
+  warned = true;
+  if (comm->me != 0) return;
+  error->warning(FLERR,
+                 std::string(command + ": the time step " + text(update->dt) + " is above " +
+                             text(state.limit) +
+                             ", the limit 2 m lambda/(6 pi eta a) of explicit steps of free "
+                             "spheres under this drag (smallest m/(6 pi eta a) " +
+                             text(of_velocity) + ", lambda " + text(state.lambda_min) + ")"));
+}
+
+/* Two bounds of mu from above cost nothing: the shortest time of a sphere alone, and that by the
+ * Rayleigh quotients lambda = p.Mp / p.D^-1 p of conjugate gradients (Ritz values are such too,
+ * but only without preconditioner), p.Mp / p.W^-1 p being at most lambda times the longest time.
+ * Both may be many times too large, as a smooth right-hand side, a loose tolerance or a
+ * preconditioner hides the smallest eigenvalue. So they are the limit only where it is far; where
+ * it may be near it is computed. */
+void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report, const int *atoms,
+                         bool preconditioned, double solves)
 {
   if (report.iterations == 0) return;
   double lambda = report.curvature;
   if (!preconditioned && report.ritz_smallest > 0.0)
     lambda = std::min(lambda, report.ritz_smallest);
-  const bool lower = lambda > 0.0 && (state.lambda_min == 0.0 || lambda < state.lambda_min);
-  if (!lower && state.lambda_min == 0.0) return;
-  if (lower) state.lambda_min = lambda;
+  if (!(lambda > 0.0)) return;
   const bool due = solves >= state.due;
-  if (!lower && !due && state.limit > 0.0) return;
+  if (!due && state.limit > 0.0 && lambda >= state.lambda_min) return;
 
-  const double shortest = relaxation_time(system, solving);
-  const bool free = std::isfinite(shortest);
-  if (free && due && GUARD_NEAR * update->dt > 2.0 * state.lambda_min * shortest) {
-    lambda = smallest_eigenvalue(system);
-    if (lambda > 0.0) state.lambda_min = std::min(state.lambda_min, lambda);
-    state.due = solves + GUARD_PERIOD;
+  const Times tau = weigh(system, atoms);
+  if (std::isinf(tau.shortest)) {
+    state.limit = 0.0;
+    return;
   }
-  state.limit = free ? 2.0 * state.lambda_min * shortest : 0.0;
-  if (state.limit > 0.0 && update->dt > state.limit && !warned) {
-    warned = true;
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     std::string(command + ": the time step " + text(update->dt) + " is above " +
-                                 text(state.limit) +
-                                 ", the limit 2 m lambda/(6 pi eta a) of explicit steps of free "
-                                 "spheres under this drag (smallest m/(6 pi eta a)" +
-                                 (system.spin ? ", of spins m/(20 pi eta a), " : " ") +
-                                 text(shortest) + ", lambda " + text(state.lambda_min) + ")"));
+  double mu = std::min(tau.shortest, lambda * tau.longest);
+  const bool near = NEAR * update->dt > 2.0 * lambda * tau.shortest;
+  if (due && near) {
+    mu = std::min(mu, tau.shortest * compute(system, atoms));
+    state.due = solves + PERIOD;
   }
+  if ((due && near) || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
+  state.lambda_min = 0.5 * state.limit / tau.of_velocity;
+  warn(tau.of_velocity);
 }
 
 }    // namespace StokesDyn

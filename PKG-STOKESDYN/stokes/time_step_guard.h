@@ -1,4 +1,19 @@
-/* Explicit steps of free spheres under this drag are stable up to a limit; this warns above it. */
+/* Watches the time step: explicit steps of free spheres under this drag are stable up to a limit.
+ *
+ * Spheres that are let go obey W dU/dt = -R U, with the inertia W (mass, and 2/5 m a^2 for spin)
+ * and the resistance R = M^-1. Velocity Verlet computes the drag from the velocity at half step,
+ * so that
+ *
+ *   U(t + dt/2) = (1 - dt W^-1 R) U(t - dt/2):   stable for dt < 2 mu,   M F = mu W^-1 F
+ *
+ * with the smallest eigenvalue mu, which is no larger than any m/(6 pi eta a), nor, with rotation,
+ * than three tenths of it, the time in which a sphere alone loses its spin. It is told as the
+ * factor lambda in
+ *
+ *   limit = 2 mu = 2 lambda m/(6 pi eta a),   the smallest m/(6 pi eta a) of all free spheres
+ *
+ * For equal spheres without rotation that is the smallest eigenvalue of the mobility scaled to unit
+ * diagonal. */
 #ifndef SD_TIME_STEP_GUARD_H
 #define SD_TIME_STEP_GUARD_H
 
@@ -18,21 +33,37 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   {
   }
 
+  /* Kept from run to run, the same on all ranks. */
   struct State {
-    double lambda_min = 0;    // smallest eigenvalue met, of the mobility scaled to unit diagonal; 0: unknown
-    double due = 0;           // count of solves when it is to be computed again
-    double limit = 0;         // of explicit time steps of free spheres; 0: unknown
+    /* lambda of the limit; 0: unknown */
+    double lambda_min = 0;
+    /* count of solves when the limit is to be computed again */
+    double due = 0;
+    /* 2 mu where the time step is near it, else an upper bound of that; 0: unknown, or nobody is
+     * free */
+    double limit = 0;
   } state;
 
-  /* After a solve, which was number `solves`; solving: as in Hydrodynamics. */
-  void look(const sd_system &system, const sd_solve_report &report, const std::vector<char> &solving,
+  /* After solve number `solves`, of conjugate gradients: looks at the time step, and warns once if
+   * it is too long. atoms[k]: the atom of this rank that is row k of the system; nullptr: atom k.
+   * */
+  void look(const sd_system &system, const sd_solve_report &report, const int *atoms,
             bool preconditioned, double solves);
 
  private:
   std::string command;
   bool warned = false;
-  double relaxation_time(const sd_system &A, const std::vector<char> &solving) const;
-  double smallest_eigenvalue(const sd_system &system) const;
+  /* [width n] inertia of each row over the shortest relaxation time, which makes it a drag */
+  std::vector<double> weight;
+
+  /* W D^-1, the times in which spheres alone lose their velocity or spin: the shortest and the
+   * shortest of velocities of those that are free (INFINITY: nobody is), and the longest of all */
+  struct Times {
+    double shortest, of_velocity, longest;
+  };
+  Times weigh(const sd_system &system, const int *atoms);
+  double compute(const sd_system &system, const int *atoms);
+  void warn(double of_velocity);
 };
 
 }    // namespace StokesDyn
