@@ -213,3 +213,48 @@ def test_write_data_and_read_data(simulation, tmp_path):
     lines = [f"read_data {tmp_path}/out.data" if l.startswith("read_data") else l for l in lines]
     sim = simulation().commands(lines).commands("velocity all set 0.1 0.2 -0.3").run()
     assert largest_difference(sim.drag, expected) < 1e-9
+
+
+# --- files of another version ----------------------------------------------------------------------------------------------
+
+def changed_restart(tmp_path, old, new):
+    """A restart file after 50 steps, and the forces of that step; then the bytes `old` in it are replaced."""
+    words = style("all", 1, "exact")
+    lines = begin("free", words, tmp_path / "data") + dump_lines(tmp_path / "dump", every=50, columns=COLUMNS)
+    lmp(tmp_path, lines + ["run 50", f"write_restart {tmp_path}/restart"])
+    content = (tmp_path / "restart").read_bytes()
+    assert content.count(old) == 1 and len(old) == len(new)
+    (tmp_path / "restart").write_bytes(content.replace(old, new))
+    return read_dump(tmp_path / "dump")[-1][1]
+
+
+def test_memory_of_another_version_is_warned_of_once_and_the_run_begins_afresh(tmp_path):
+    then = changed_restart(tmp_path, b"stokesdyn 1 STOKES_DYNAMICS/STATE", b"stokesdyn 7 STOKES_DYNAMICS/STATE")
+    lines = proceed("free", tmp_path / "restart") + ["fix none all ave/time 1 1 1 f_drag[6]"]
+    ended = lmp(tmp_path, lines + dump_lines(tmp_path / "again", columns=COLUMNS) + ["run 0"])
+    said = " ".join(ended.log.split())
+    assert said.count("the restart file was written by another version of the plugin") == 1
+    now = read_dump(tmp_path / "again")[-1][1]
+    assert np.array_equal(now[:, :6], then[:, :6])
+    # velocity Verlet's half step is not known any more: the forces are those of the whole velocities
+    expected = model.forces(Spheres(now[:, :3], scene("free").a, now[:, 3:6]), ETA)
+    assert largest_difference(now[:, 6:9], expected) < 1e-10
+
+
+def test_words_of_another_version_are_an_error_with_a_way_out(tmp_path):
+    words = b"\n".join(style("all", 1, "exact").encode().split())
+    lines = begin("free", style("all", 1, "exact"), tmp_path / "data")
+    lmp(tmp_path, lines + ["run 1", f"write_restart {tmp_path}/restart"])
+    content = bytearray((tmp_path / "restart").read_bytes())
+    at = content.index(words) - 8        # the number of the format, and the length
+    content[at] += 1
+    (tmp_path / "restart").write_bytes(bytes(content))
+    ended = lmp(tmp_path, proceed("free", tmp_path / "restart"), succeed=False)
+    assert "written by another version of the plugin" in " ".join(ended.text.split()) and "write_data" in ended.text
+
+
+def test_a_number_that_the_memory_does_not_know_is_left_alone(tmp_path):
+    """A file of a later version, which knows one more, is read by name."""
+    then = changed_restart(tmp_path, b"\nunconverged 1 ", b"\nunconvergeX 1 ")
+    lmp(tmp_path, proceed("free", tmp_path / "restart") + dump_lines(tmp_path / "again", columns=COLUMNS) + ["run 0"])
+    assert np.array_equal(read_dump(tmp_path / "again")[-1][1], then)
