@@ -1,6 +1,7 @@
 #include "checks.h"
 
 #include "keywords.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 using namespace LAMMPS_NS;
 
@@ -79,38 +79,30 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
 void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &scene,
                           const std::vector<char> &solving)
 {
+  struct Sight {
+    tagint molecule;
+    // of the clump, and how many others each of them sees, all added up
+    bigint spheres, seen;
+  };
   const Atom *atom = lmp->atom;
-  const Comm *comm = lmp->comm;
-  std::map<int64_t, std::pair<int64_t, int64_t>>
-      clumps;    // spheres, how many each of them sees, all added up
+  std::map<tagint, Sight> clumps;
+  const auto add = [&](const Sight &part) {
+    Sight &clump = clumps.insert({part.molecule, {part.molecule, 0, 0}}).first->second;
+    clump.spheres += part.spheres;
+    clump.seen += part.seen;
+  };
   const sd_pairs &list = scene.list();
   for (int i = 0; i < atom->nlocal; i++)
-    if (solving[i] && atom->molecule[i] != 0) {
-      auto &clump = clumps[atom->molecule[i]];
-      clump.first++;
-      clump.second += list.first[i + 1] - list.first[i];
-    }
-  std::vector<int64_t> mine, all;
-  for (const auto &clump : clumps)
-    mine.insert(mine.end(), {clump.first, clump.second.first, clump.second.second});
-  int size = mine.size(), total = 0;
-  std::vector<int> sizes(comm->nprocs), at(comm->nprocs);
-  MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, lmp->world);
-  for (int p = 0; p < comm->nprocs; p++) {
-    at[p] = total;
-    total += sizes[p];
-  }
-  all.resize(total + 1);
-  MPI_Gatherv(mine.data(), size, MPI_INT64_T, all.data(), sizes.data(), at.data(), MPI_INT64_T, 0,
-              lmp->world);
-  if (comm->me != 0) return;
+    if (solving[i] && atom->molecule[i] != 0)
+      add({atom->molecule[i], 1, (bigint) (list.first[i + 1] - list.first[i])});
+  std::vector<Sight> mine;
+  for (const auto &clump : clumps) mine.push_back(clump.second);
   clumps.clear();
-  for (int k = 0; k < total; k += 3) {
-    clumps[all[k]].first += all[k + 1];
-    clumps[all[k]].second += all[k + 2];
-  }
+  for (const Sight &part : from_all(lmp->world, mine)) add(part);
+
+  if (lmp->comm->me != 0) return;
   for (const auto &clump : clumps) {
-    const int64_t n = clump.second.first, left_out = n * (n - 1) - clump.second.second;
+    const bigint n = clump.second.spheres, left_out = n * (n - 1) - clump.second.seen;
     if (left_out == 0) continue;
     lmp->error->warning(
         FLERR,

@@ -91,3 +91,17 @@ def test_lapack_is_called_from_one_file():
     listing = subprocess.run(["nm", "-uA"] + archives, stdout=subprocess.PIPE, check=True).stdout.decode()
     callers = {line.split(":")[1] for line in listing.splitlines() if re.search(r" [sdcz]\w+_$", line)}
     assert callers == {"sd_linear.c.o"}
+
+
+def test_styles_ask_of_mpi_only_what_a_lammps_without_mpi_has():
+    """LAMMPS brings an mpi.h of its own for one rank, which lacks much, such as the types of fixed width."""
+    with open(os.path.join(BUILD, "CMakeCache.txt")) as file:
+        lammps_source = re.search("^LAMMPS_SOURCE_DIR:[A-Z]*=(.*)$", file.read(), re.M).group(1)
+    folder = os.path.join(lammps_source, "src") if os.path.exists(os.path.join(lammps_source, "src", "lammps.h")) else lammps_source
+
+    def names(*files):
+        return {name for file in files for name in re.findall(r"\bMPI_\w+", open(file).read())}
+
+    has = names(os.path.join(folder, "STUBS", "mpi.h"), os.path.join(folder, "lmptype.h"))
+    styles = glob.glob(os.path.join(os.path.dirname(__file__), "../../PKG-STOKESDYN/**/*.[ch]*"), recursive=True)
+    assert len(styles) > 50 and not names(*styles) - has
