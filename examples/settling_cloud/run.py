@@ -166,7 +166,9 @@ def main():
         lammps(out, ranks, f"log.settling_cloud.{ranks}", dict(time=0.05, frame=0.05, images="no"))
         short[ranks] = list(frames(out, "all"))[-1][1]
     for name in TITLE:
-        lammps(out, 2, f"log.{name}", dict(interactions=name, images="no" if name == "none" else "yes"))
+        # Clumps alone are compared to five digits, and their blocks make every solve exact in one iteration.
+        lammps(out, 2, f"log.{name}", dict(interactions=name, images="no" if name == "none" else "yes",
+                                           tolerance="1e-6" if name == "clump" else "1e-3"))
 
     curves = {name: curve(out, name) for name in TITLE}
     step, now = np.loadtxt(out / "out" / "all.curve")[-1, :2]

@@ -24,15 +24,16 @@ STEPS = 60
 def settle(interactions, tolerance="1e-3"):
     """Iterations a solve, speed at the end."""
     with tempfile.TemporaryDirectory() as folder:
-        script = (EXAMPLE / "in.settling_cloud").read_text().replace("relative_tolerance 1e-3", f"relative_tolerance {tolerance}")
+        script = (EXAMPLE / "in.settling_cloud").read_text()
         head, last = script.rsplit("run             ", 1)
         count = "fix its all ave/time 1 ${steps} ${steps} c_drag[1] file its\n"
         with open(os.path.join(folder, "in"), "w") as out:
             out.write(head + count + "run             " + last)
         (pathlib.Path(folder) / "out").mkdir()
         subprocess.run(["cp", str(EXAMPLE / "tetrahedron.mol"), folder], check=True)
-        subprocess.run(["lmp", "-in", "in", "-log", "none", "-screen", "none", "-var", "interactions", interactions, "-var",
-                        "images", "no", "-var", "time", "0.3"], cwd=folder, env=dict(environment()), check=True)
+        variables = {"interactions": interactions, "images": "no", "time": "0.3", "tolerance": tolerance}
+        words = [w for name, value in variables.items() for w in ("-var", name, value)]
+        subprocess.run(["lmp", "-in", "in", "-log", "none", "-screen", "none", *words], cwd=folder, env=environment(), check=True)
         its = np.loadtxt(os.path.join(folder, "its"), ndmin=2)[-1, 1]
         return its, np.loadtxt(os.path.join(folder, "out", f"{interactions}.curve"))[-1, 2]
 
