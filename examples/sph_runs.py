@@ -1,9 +1,15 @@
-"""What the scripts of the SPH examples share: running an input, reading its thermo output, profiles and dumps."""
+"""What the scripts of the SPH examples share: running an input, reading its thermo output, profiles and dumps.
+
+Each ends with a line "ok" or "MISSED" for every figure of its README, and the exit status. With --quick only those of the
+shortest runs."""
 import os
 import subprocess
 import sys
 
+from checks import Checks  # noqa: F401
 from runs import np, plt, TOP
+
+QUICK = "--quick" in sys.argv
 
 
 def lmp(folder, name, tag, **variables):

@@ -8,13 +8,14 @@ sys.path.insert(0, os.path.dirname(folder))
 import sph_runs as S  # noqa: E402
 from runs import np  # noqa: E402
 
-plt = S.pyplot()
+plt, c = S.pyplot(), S.Checks()
 out, t = S.lmp(folder, "dam_break", 1)
 figure = plt.figure(figsize=(10, 5.2))
 grid = figure.add_gridspec(3, 2, width_ratios=(1.1, 1))
 front = figure.add_subplot(grid[:, 0])
 with open(os.path.join(folder, "..", "..", "unittest", "data", "sph", "dam_experiment.csv")) as f:
     rows = [line.split(",") for line in f.read().split() if not line.startswith(("#", "source"))]
+worst = {}
 table = "| experiment | T | Z | run | difference |\n|---|---|---|---|---|\n"
 for source, mark in (("koshizuka_oka_1996", "s"), ("martin_moyce_1952_a2.25in", "^")):
     T, Z = np.array([[float(r[1]), float(r[2])] for r in rows if r[0] == source]).T
@@ -22,7 +23,10 @@ for source, mark in (("koshizuka_oka_1996", "s"), ("martin_moyce_1952_a2.25in", 
     for a, b in zip(T, Z):
         if 0 < a <= 3:
             here = np.interp(a, t["v_T"], t["v_Z"])
+            worst[source] = max(worst.get(source, 0), abs(here / b - 1))
             table += "| %s | %.3f | %.3f | %.3f | %+.1f %% |\n" % (source.replace("_", " "), a, b, here, 100 * (here / b - 1))
+for source, limit in (("koshizuka_oka_1996", 4.3), ("martin_moyce_1952_a2.25in", 5.0)):
+    c.below(source.replace("_", " ") + ": largest difference of the front in %", 100 * worst[source], limit)
 front.plot(t["v_T"], t["v_Z"], "-", label="run")
 front.set(xlabel=r"$T = t\sqrt{2g/L}$", ylabel=r"front $Z = x/L$", xlim=(0, 3.2))
 front.legend()
@@ -38,3 +42,4 @@ for k in (1, 2, 3):
 figure.colorbar(colours, ax=figure.axes[1:], label="pressure (kPa)", shrink=0.8)
 figure.savefig(os.path.join(out, "dam_break.png"), bbox_inches="tight")
 S.keep(folder, out, "dam_break.png", table)
+sys.exit(c.finish())

@@ -8,10 +8,13 @@ sys.path.insert(0, os.path.dirname(folder))
 import sph_runs as S  # noqa: E402
 from runs import np  # noqa: E402
 
-plt = S.pyplot()
+plt, c = S.pyplot(), S.Checks()
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
 table = "| kernel, h / dx | slope of the pressure over mean rho g | kinetic energy, first quarter | last quarter | load on the floor over weight |\n|---|---|---|---|---|\n"
-for kernel, ratio, colour in (("wendland", 2.0, "C0"), ("wendland", 1.5, "C2"), ("cubicspline", 1.2, "C1")):
+RUNS = (("wendland", 2.0, "C0"), ("wendland", 1.5, "C2"), ("cubicspline", 1.2, "C1"))
+# Slope, kinetic energies of the first and last quarter in J, load over weight.
+WANTED = {2.0: (0.9923, 3.4e-4, 2.0e-4, 1.004), 1.5: (1.0023, 7.8e-3, 4.0e-3, 1.001), 1.2: (0.9979, 1.3e-3, 8.4e-4, 1.001)}
+for kernel, ratio, colour in RUNS[1:2] if S.QUICK else RUNS:
     out, t = S.lmp(folder, "still_water", "%s.%s" % (kernel, ratio), kernel=kernel, ratio=ratio)
     layer = S.profiles(os.path.join(out, "profile.%s.%s.txt" % (kernel, ratio)))[-1][1]
     y, p, rho = layer[:, 1], layer[:, 3], layer[:, 4]
@@ -19,6 +22,11 @@ for kernel, ratio, colour in (("wendland", 2.0, "C0"), ("wendland", 1.5, "C2"), 
     slope = -np.polyfit(y[inside], p[inside], 1)[0] / (9.81 * rho[inside].mean())
     e, n = t["c_kinetic"], len(t["Step"]) // 4
     table += "| %s, %s | %.4f | %.1e J | %.1e J | %.3f |\n" % (kernel, ratio, slope, e[1:n + 1].mean(), e[-n:].mean(), -t["v_load"][-n:].mean())
+    who, (wanted, before, after, load) = "%s, h = %s dx: " % (kernel, ratio), WANTED[ratio]
+    c.near(who + "slope of the pressure", slope, wanted, 0.002)
+    c.near(who + "kinetic energy, first quarter, J", e[1:n + 1].mean(), before, 0.1 * before)
+    c.near(who + "kinetic energy, last quarter, J", e[-n:].mean(), after, 0.2 * after)
+    c.near(who + "load on the floor over weight", -t["v_load"][-n:].mean(), load, 0.005)
     left.plot(p / 1000, y, "o", ms=3.5, color=colour, label="%s, h = %s dx: %+.2f %%" % (kernel, ratio, 100 * (slope - 1)))
     right.semilogy(t["Time"][1:], e[1:], color=colour)
 left.plot([0, 9.81], [1, 0], "k-", lw=1, label="hydrostatic")
@@ -28,3 +36,4 @@ right.set(xlabel="time (s)", ylabel="kinetic energy of 500 kg (J)")
 figure.tight_layout()
 figure.savefig(os.path.join(out, "still_water.png"))
 S.keep(folder, out, "still_water.png", table)
+sys.exit(c.finish())
