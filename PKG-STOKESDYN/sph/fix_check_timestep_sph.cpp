@@ -21,21 +21,12 @@ FixCheckTimestepSph::FixCheckTimestepSph(LAMMPS *lmp, int narg, char **arg) : Fi
   const std::string command = "Fix " + std::string(STYLE);
   Sph::require_scene(lmp, command);
   if (narg < 5) fail(lmp, command + ": the form is: check/timestep/sph N fraction [warn|stop]");
-  std::vector<std::string> args = words(narg, arg);
-  args.insert(args.begin() + 3, "N");
-  args.insert(args.begin() + 5, "fraction");
-  Keywords in(lmp, command, args, 3);
-  in.next();
-  nevery = in.integer(1);
-  in.next();
-  fraction = in.positive();
-  if (in.next()) {
-    if (in.is("stop"))
-      stop = true;
-    else if (!in.is("warn"))
-      in.unknown();
-  }
-  if (in.next()) in.unknown();
+  Keywords in(lmp, command, words(narg, arg), 3);
+  nevery = in.positional("N").integer(1);
+  fraction = in.positional("fraction").positive();
+  stop = in.take("stop");
+  if (!stop) in.take("warn");
+  in.parse({});
   scalar_flag = 1;
   vector_flag = 1;
   size_vector = 2;
@@ -51,8 +42,7 @@ int FixCheckTimestepSph::setmask()
 
 void FixCheckTimestepSph::init()
 {
-  const std::string command = "Fix " + std::string(STYLE);
-  pair = Sph::require_pair(lmp, command);
+  pair = Sph::require_pair(lmp, "Fix " + std::string(STYLE));
 }
 
 void FixCheckTimestepSph::setup(int /*vflag*/)

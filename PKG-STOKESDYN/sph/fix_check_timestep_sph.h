@@ -25,8 +25,8 @@ class FixCheckTimestepSph : public LAMMPS_NS::Fix {
  private:
   double fraction = 0.0;
   bool stop = false;
-  double limit = 0.0, worst = 0.0,
-         ratio = 0.0;    // smallest limit, number of its particle, time step over limit
+  // smallest limit, number of its particle, time step over limit
+  double limit = 0.0, worst = 0.0, ratio = 0.0;
   PairSph *pair = nullptr;
   std::vector<double> largest;
 };

@@ -10,12 +10,7 @@ FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **a
     FixSphOutput(lmp, narg, arg)
 {
   Keywords in(lmp, "Fix " + std::string(STYLE), words(narg, arg), 3);
-  while (in.next()) {
-    if (in.is("delta"))
-      delta = in.not_negative();
-    else
-      in.unknown();
-  }
+  in.parse({{"delta", [&] { delta = in.not_negative(); }}});
   begin();
 }
 
@@ -42,7 +37,7 @@ FixSphDensityCorr::FixSphDensityCorr(LAMMPS *lmp, int narg, char **arg) : Fix(lm
   if (!in.next() || !in.is("every"))
     fail(lmp, command + ": keyword every is missing: shepard every N");
   every = in.integer(1);
-  if (in.next()) in.unknown();
+  in.parse({});
 }
 
 void FixSphDensityCorr::init()

@@ -1,6 +1,5 @@
-/* fix sph/density/continuity, sph/density/summation, sph/density/corr: where the density comes from. The
- * sums themselves run inside the pair
- * style. See doc/fix_sph_density.md. */
+/* fix sph/density/continuity, sph/density/summation, sph/density/corr: where the density comes
+ * from. The sums themselves run inside the pair style. See doc/fix_sph_density.md. */
 #ifndef SD_FIX_SPH_DENSITY_H
 #define SD_FIX_SPH_DENSITY_H
 
@@ -12,7 +11,8 @@ class FixSphDensityContinuity : public FixSphOutput {
  public:
   static constexpr const char *STYLE = "sph/density/continuity";
   FixSphDensityContinuity(LAMMPS_NS::LAMMPS *, int, char **);
-  double delta = 0.0;    // density diffusion
+  // density diffusion
+  double delta = 0.0;
 };
 
 class FixSphDensitySummation : public LAMMPS_NS::Fix {

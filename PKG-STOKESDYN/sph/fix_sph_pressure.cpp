@@ -23,6 +23,6 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
     if (in.more()) state.P0 = in.number();
   } else
     in.unknown();
-  if (in.next()) in.unknown();
+  in.parse({});
   begin();
 }

@@ -13,14 +13,10 @@ FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   const std::string command = "Fix " + std::string(STYLE);
   Sph::require_scene(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
-  while (in.next()) {
-    if (in.is("gravity"))
-      for (double &g : body_force) g = in.number();
-    else if (in.is("slip"))
-      slip = in.yes_no();
-    else
-      in.unknown();
-  }
+  in.parse({
+      {"gravity", [&] { for (double &g : body_force) g = in.number(); }},
+      {"slip", [&] { slip = in.yes_no(); }},
+  });
   dynamic_group_allow = 1;
   vector_flag = 1;
   size_vector = 3;

@@ -1,5 +1,5 @@
-/* fix wall/adami/sph: fixed particles that carry the pressure of the fluid before them, with or without
- * slip. See doc/fix_wall_adami_sph.md. */
+/* fix wall/adami/sph: fixed particles that carry the pressure of the fluid before them, with or
+ * without slip. See doc/fix_wall_adami_sph.md. */
 #ifndef SD_FIX_WALL_ADAMI_SPH_H
 #define SD_FIX_WALL_ADAMI_SPH_H
 
@@ -18,7 +18,8 @@ class FixWallAdamiSph : public LAMMPS_NS::Fix {
   void post_force(int) override;
   double compute_vector(int) override;
 
-  double body_force[3] = {0.0, 0.0, 0.0};    // per mass
+  // per mass
+  double body_force[3] = {0.0, 0.0, 0.0};
   bool slip = false;
 
  private:

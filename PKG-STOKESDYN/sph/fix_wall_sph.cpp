@@ -62,8 +62,7 @@ double FixRepulsiveWall::compute_vector(int k)
   return all;
 }
 
-// --- planes and the cylinder
-// -----------------------------------------------------------------------------------
+// --- planes and the cylinder --------------------------------------------------------------------
 
 FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp, narg, arg)
 {
@@ -74,11 +73,8 @@ FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp
   else if (in.is("xplane") || in.is("yplane") || in.is("zplane")) {
     axis = in.is("xplane") ? 0 : in.is("yplane") ? 1 : 2;
     for (int side = 0; side < 2; side++) {
-      has[side] = !(in.more() && in.peek() == "NULL");
-      if (has[side])
-        at[side] = in.number();
-      else
-        in.word();
+      has[side] = !in.take("NULL");
+      if (has[side]) at[side] = in.number();
     }
     if (!has[0] && !has[1]) in.refuse("both walls are NULL");
     if (has[0] && has[1] && !(at[0] < at[1]))
@@ -87,7 +83,7 @@ FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp
     in.unknown();
   r0 = in.positive();
   D = in.not_negative();
-  if (in.next()) in.unknown();
+  in.parse({});
 }
 
 /* Particles must not walk round a wall, or see each other behind it. */
@@ -134,8 +130,7 @@ void FixWallSph::post_force(int /*vflag*/)
   }
 }
 
-// --- any region
-// ------------------------------------------------------------------------------------------------
+// --- any region ---------------------------------------------------------------------------------
 
 FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
     FixRepulsiveWall(lmp, narg, arg)
@@ -148,7 +143,7 @@ FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
   in.next();
   r0 = in.positive();
   D = in.not_negative();
-  if (in.next()) in.unknown();
+  in.parse({});
 }
 
 void FixWallRegionSph::init()
@@ -174,9 +169,8 @@ void FixWallRegionSph::post_force(int /*vflag*/)
       if (!(r < r0)) continue;
       if (!(r > 0.0)) outside(i);
       const double normal[3] = {contact.delx / r, contact.dely / r, contact.delz / r};
-      const double m = Sph::mass(lmp, i), rho = atom->rho[i];
-      const double mirror =
-          -m * m * 2.0 * pair->pressure(i) / (rho * rho) * pair->dW_dr(atom->type[i], r);
+      const double mirror = sd_sph_mirror(Sph::mass(lmp, i), pair->pressure(i), atom->rho[i],
+                                          pair->dW_dr(atom->type[i], r));
       push(i, normal, sd_sph_repulsion(D, r0, r) + mirror);
     }
   }

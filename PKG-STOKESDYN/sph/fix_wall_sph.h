@@ -26,8 +26,8 @@ class FixRepulsiveWall : public LAMMPS_NS::Fix {
   std::string command;
   double r0 = 0.0, D = 0.0;
   double on_wall[3] = {0.0, 0.0, 0.0};
-  void push(int i, const double normal[3],
-            double size);    // adds a force to particle i, and its reaction to the wall
+  /* Adds a force to particle i, and its reaction to the wall. */
+  void push(int i, const double normal[3], double size);
   [[noreturn]] void outside(int i);
 };
 
@@ -39,7 +39,8 @@ class FixWallSph : public FixRepulsiveWall {
   void post_force(int) override;
 
  private:
-  int axis = -1;    // of the planes; -1: cylinder around z
+  // of the planes; -1: cylinder around z
+  int axis = -1;
   bool has[2] = {false, false};
   double at[2] = {0.0, 0.0}, radius = 0.0;
 };

@@ -39,6 +39,7 @@ PairSph::PairSph(LAMMPS *lmp) : Pair(lmp)
 
 PairSph::~PairSph()
 {
+  if (asked_for_velocities) comm->ghost_velocity = 0;    // as it was
   if (!allocated) return;
   memory->destroy(setflag);
   memory->destroy(cutsq);
@@ -48,7 +49,7 @@ PairSph::~PairSph()
   }
 }
 
-// --- settings ----------------------------------------------------------------------------------------------
+// --- settings -----------------------------------------------------------------------------------
 
 void PairSph::settings(int narg, char **arg)
 {
@@ -161,56 +162,75 @@ void PairSph::init_style()
   if (force->pair_match(STYLE, 1) != this)
     fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
   if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
+  find_fixes();
+  find_integrators();
+  check_groups();
 
+  needs_velocity = model.artvisc || model.viscous || continuity;
+  // As comm_modify vel yes: each pair must see the same velocities on both sides.
+  if (needs_velocity && !comm->ghost_velocity) comm->ghost_velocity = asked_for_velocities = 1;
+  if (neighbor->skin <= 0.0)
+    fail(lmp, COMMAND + ": command neighbor: a skin of 0 is too small; a tenth of h is usual");
+  if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1 && comm->me == 0)
+    error->warning(FLERR,
+                   COMMAND + ": with neigh_modify check no nobody sees when the neighbour list is "
+                             "outdated");
+  dangerous_builds = neighbor->ndanger;
+  Compat::request_half_list(neighbor, this, instance_me);
+}
+
+template <class Style> Style *PairSph::only(const char *otherwise)
+{
+  const auto found = Sph::fixes<Style>(lmp);
+  if (found.size() > 1)
+    fail(lmp, COMMAND + ": more than one fix " + Style::STYLE + otherwise);
+  return found.empty() ? nullptr : found[0];
+}
+
+void PairSph::find_fixes()
+{
   pressures = Sph::fixes<FixSphPressure>(lmp);
   if (pressures.empty())
     fail(lmp, COMMAND + ": no fix sph/pressure: it sets the pressure that belongs to a density");
-  const auto continuities = Sph::fixes<FixSphDensityContinuity>(lmp);
-  const auto summations = Sph::fixes<FixSphDensitySummation>(lmp);
-  const auto filters = Sph::fixes<FixSphDensityCorr>(lmp);
-  const auto walls = Sph::fixes<FixWallAdamiSph>(lmp);
-  if (continuities.empty() && summations.empty())
+  continuity = only<FixSphDensityContinuity>(": only one can set the density");
+  summation = only<FixSphDensitySummation>(": only one can set the density");
+  if (!continuity && !summation)
     fail(lmp,
-         COMMAND +
-             ": no fix sph/density/continuity or sph/density/summation: one of them sets the "
-             "density");
-  if (continuities.size() + summations.size() > 1)
+         COMMAND + ": no fix sph/density/continuity or sph/density/summation: one of them sets "
+                   "the density");
+  if (continuity && summation)
     fail(lmp,
-         COMMAND + ": " + std::to_string(continuities.size() + summations.size()) +
-             " fixes sph/density/continuity and sph/density/summation: only one can set the "
-             "density");
-  if (filters.size() > 1) fail(lmp, COMMAND + ": more than one fix sph/density/corr");
-  if (walls.size() > 1)
-    fail(lmp,
-         COMMAND + ": more than one fix wall/adami/sph; put all wall particles into one group");
-  continuity = continuities.empty() ? nullptr : continuities[0];
-  summation = summations.empty() ? nullptr : summations[0];
-  filter = filters.empty() ? nullptr : filters[0];
-  wall = walls.empty() ? nullptr : walls[0];
-  integrators = Sph::fixes<FixNveSph>(lmp);
+         COMMAND + ": fix sph/density/continuity and fix sph/density/summation: only one can set "
+                   "the density");
+  filter = only<FixSphDensityCorr>("");
+  wall = only<FixWallAdamiSph>("; put all wall particles into one group");
+}
 
+/* Who advances the density, and who sets vest. */
+void PairSph::find_integrators()
+{
+  integrators = Sph::fixes<FixNveSph>(lmp);
+  const auto moving = Sph::fixes(lmp, FixNveSph::STYLE);
   const auto stationary = Sph::fixes(lmp, FixNveSphStationary::STYLE);
   const auto theirs = Sph::fixes(lmp, "sph"), their_stationary = Sph::fixes(lmp, "sph/stationary");
-  const bool ours = !integrators.empty() || !stationary.empty();
-  if (ours && !(theirs.empty() && their_stationary.empty()))
+  const bool ours = !moving.empty() || !stationary.empty(),
+             others = !theirs.empty() || !their_stationary.empty();
+  if (ours && others)
     fail(lmp,
          COMMAND + ": fix nve/sph and fix " + (theirs.empty() ? "sph/stationary" : "sph") +
              " cannot be mixed: they advance the density at different times; use nve/sph and "
              "nve/sph/stationary");
-  leapfrog = continuity && ours;
-  if (continuity && !ours && theirs.empty() && their_stationary.empty() && update->whichflag == 1 &&
-      update->nsteps > 0)
+  if (continuity && !ours && !others && update->whichflag == 1 && update->nsteps > 0)
     fail(lmp,
          "Fix " + std::string(FixSphDensityContinuity::STYLE) +
              ": nothing advances the density; use fix nve/sph");
-  leapfrog_bits = 0;
-  own_vest_bits = Sph::groups(theirs);
-  for (const auto *fix : integrators) {
-    leapfrog_bits |= fix->groupbit;
-    own_vest_bits |= fix->groupbit;
-  }
-  leapfrog_bits |= Sph::groups(stationary);
+  leapfrog = continuity && ours;
+  leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
+  own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
+}
 
+void PairSph::check_groups()
+{
   pressure_bits = 0;
   for (const auto *fix : pressures) {
     if (const bigint both = in_both(pressure_bits, fix->groupbit))
@@ -219,28 +239,13 @@ void PairSph::init_style()
                " is in the groups of two fixes sph/pressure");
     pressure_bits |= fix->groupbit;
   }
-  if (wall)
-    for (const auto *fix : Sph::integrators(lmp))
-      if (const bigint both = in_both(wall->groupbit, fix->groupbit))
-        fail(lmp,
-             "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " + std::to_string(both) +
-                 " of its group is also integrated by fix " + fix->id +
-                 ", so the wall would flow; give that fix the group of the fluid");
-
-  needs_velocity = model.artvisc || model.viscous || continuity;
-  if (needs_velocity)
-    comm->ghost_velocity =
-        1;    // as comm_modify vel yes: each pair must see the same velocities on both sides
-  if (neighbor->skin <= 0.0)
-    fail(lmp, COMMAND + ": command neighbor: a skin of 0 is too small; a tenth of h is usual");
-  if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1 && comm->me == 0)
-    error->warning(
-        FLERR,
-        std::string(
-            COMMAND +
-            ": with neigh_modify check no nobody sees when the neighbour list is outdated"));
-  dangerous_builds = neighbor->ndanger;
-  Compat::request_half_list(neighbor, this, instance_me);
+  if (!wall) return;
+  for (const auto *fix : Sph::integrators(lmp))
+    if (const bigint both = in_both(wall->groupbit, fix->groupbit))
+      fail(lmp,
+           "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " + std::to_string(both) +
+               " of its group is also integrated by fix " + fix->id +
+               ", so the wall would flow; give that fix the group of the fluid");
 }
 
 /* The largest ID of the atoms in both of these sets of groups, 0: there are none. */
@@ -317,9 +322,8 @@ void *PairSph::extract(const char *name, int &dim)
 
 double PairSph::memory_usage()
 {
-  const auto doubles = x4.capacity() + v4.capacity() + f4.capacity() + P.capacity() + A.capacity() +
-      masses.capacity() + rate.capacity() + sums.capacity() + each.capacity() +
-      gradient.capacity() + near.capacity();
+  const auto doubles = x4.capacity() + v4.capacity() + f4.capacity() + P.capacity() + masses.capacity() + rate.capacity() + sums.capacity() + each.capacity() +
+      gradient.capacity() + wall_rows.capacity() + near.capacity();
   return sizeof(double) * (double) doubles +
       sizeof(int) * (double) (classes.capacity() + pool.capacity() + near_count.capacity());
 }
@@ -331,7 +335,7 @@ bool PairSph::used(int itype) const
   return false;
 }
 
-// --- restart -------------------------------------------------------------------------------------------------
+// --- restart ------------------------------------------------------------------------------------
 // The words of the pair_style command and the values of pair_coeff.
 
 void PairSph::write_restart(FILE *fp)

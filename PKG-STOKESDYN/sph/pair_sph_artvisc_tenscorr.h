@@ -1,8 +1,6 @@
-/* pair_style sph/artVisc/tensCorr: weakly compressible SPH. The pair style runs the whole step of SPH, in
- * its one possible order (density,
- * walls, pressure, force), whatever the order of the fixes in the input: these hold the settings of each
- * part. See
- * doc/pair_sph_artvisc_tenscorr.md. */
+/* pair_style sph/artVisc/tensCorr: weakly compressible SPH. The pair style runs the whole step of
+ * SPH, in its one possible order (density, walls, pressure, force), whatever the order of the fixes
+ * in the input: these hold the settings of each part. See doc/pair_sph_artvisc_tenscorr.md. */
 #ifndef SD_PAIR_SPH_ARTVISC_TENSCORR_H
 #define SD_PAIR_SPH_ARTVISC_TENSCORR_H
 
@@ -51,11 +49,10 @@ class PairSph : public LAMMPS_NS::Pair {
   double sound_speed(int itype) const { return table[C][itype][itype]; }
   double viscosity() const { return mu; }
   bool has_sound_speed(int itype) const;
-  const sd_sph_model &kernel() const { return model; }
-  void largest_approach(
-      std::vector<double>
-          &largest);    // of each owned particle: |h v.d / (r^2 + eta)|; not inside compute
-  double dW_dr(int itype, double r) const;    // W' for two particles of this type
+  /* Of each owned particle: |h v.d / (r^2 + eta)|. Not inside compute. */
+  void largest_approach(std::vector<double> &largest);
+  /* W' for two particles of this type. */
+  double dW_dr(int itype, double r) const;
 
  private:
   enum Parameter { H, C, ALPHA, BETA, DELTAP, NPARAMETERS };
@@ -65,11 +62,15 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<std::string> args;    // of pair_style, for restart files
   double mu = 0.0;
   double defaults[NPARAMETERS];
-  double **given[NPARAMETERS] = {},
-         **table[NPARAMETERS] = {};    // by pair_coeff (NaN: not given); in use
+  // by pair_coeff (NaN: not given), and in use
+  double **given[NPARAMETERS] = {}, **table[NPARAMETERS] = {};
   sd_sph_model model = {};
   void parse();
   void allocate();
+  template <class Style> Style *only(const char *otherwise);
+  void find_fixes();
+  void find_integrators();
+  void check_groups();
   double mixed(int parameter, int i, int j) const;
 
   // the fixes that take part; set in init_style
@@ -82,22 +83,25 @@ class PairSph : public LAMMPS_NS::Pair {
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
   bool leapfrog = false, all_own_vest = false, needs_velocity = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
+  // comm_modify vel was no
+  bool asked_for_velocities = false;
 
   // a step
   sd_sph_list pairs = {}, raw = {};    // near ones, if a pass of the step has picked them; LAMMPS's
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
-  std::vector<double> x4, v4, f4, P, A, masses, rate, sums, each, gradient;
+  std::vector<double> x4, v4, f4, P, masses, rate, sums, each, gradient, wall_rows;
   std::vector<int> classes, pool, near_count;
   std::vector<int *> near;
   bool used(int itype) const;
   LAMMPS_NS::bigint in_both(int bits, int more_bits);
+  std::string at_step() const;
   void prepare();
+  bool types_are_alike();
   void estimate_velocities();
   void density_step();
   void diffuse();
-  void sum_densities();
-  void filter_densities();
+  void sum_densities(int bit, bool shepard);
   void wall_particles();
   void pressures_of_all();
   void forces(bool rates);

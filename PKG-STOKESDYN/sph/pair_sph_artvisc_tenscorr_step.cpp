@@ -25,6 +25,16 @@ using namespace StokesDyn;
 
 static const std::string COMMAND = "Pair style " + std::string(PairSph::STYLE);
 
+static double *rows(double **array)
+{
+  return array ? array[0] : nullptr;
+}
+
+std::string PairSph::at_step() const
+{
+  return COMMAND + ": step " + std::to_string(update->ntimestep) + ": ";
+}
+
 void PairSph::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
@@ -33,8 +43,10 @@ void PairSph::compute(int eflag, int vflag)
   if (needs_velocity) estimate_velocities();
 
   if (leapfrog) density_step();
-  if (summation) sum_densities();
-  if (filter && !update->setupflag && update->ntimestep % filter->every == 0) filter_densities();
+  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, 0.0, x4.data());
+  if (summation) sum_densities(summation->groupbit, false);
+  if (filter && !update->setupflag && update->ntimestep % filter->every == 0)
+    sum_densities(filter->groupbit, true);
   pressures_of_all();
   if (wall) wall_particles();
   forces(continuity && !leapfrog);
@@ -44,8 +56,7 @@ void PairSph::compute(int eflag, int vflag)
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
-/* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build and goes
- * on. */
+/* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build and goes on. */
 void PairSph::check_list()
 {
   if (update->setupflag) {
@@ -56,8 +67,7 @@ void PairSph::check_list()
   dangerous_builds = neighbor->ndanger;
   if (std::max(neighbor->every, neighbor->delay) <= 1) return;
   fail(lmp,
-       COMMAND + ": step " + std::to_string(update->ntimestep) +
-           ": particles moved more than half the neighbour skin " + text(neighbor->skin) +
+       at_step() + "particles moved more than half the neighbour skin " + text(neighbor->skin) +
            " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, or a "
            "larger skin");
 }
@@ -68,18 +78,40 @@ void PairSph::prepare()
   const int n = atom->nlocal + atom->nghost, ntypes = atom->ntypes;
   particles = sd_sph_particles();
   particles.n = n;
-  x4.resize(4 * (size_t) (n + 1));
-  v4.resize(4 * (size_t) (n + 1));
-  f4.resize(4 * (size_t) (n + 1));
+  for (auto *array : {&x4, &v4, &f4}) array->resize(4 * (size_t) (n + 1));
   P.resize(n + 1);
-  A.resize(n + 1);
   particles.x4 = x4.data();
   particles.v4 = v4.data();
+  if (types_are_alike()) {
+    model.nclasses = 1;
+  } else {
+    model.nclasses = ntypes;
+    masses.resize(n + 1);
+    classes.resize(n + 1);
+    for (int i = 0; i < n; i++) {
+      masses[i] = Sph::mass(lmp, i);
+      classes[i] = atom->type[i] - 1;
+    }
+    masses[n] = 0.0;
+    classes[n] = 0;
+    // Pairs of types that never meet: the filler row may still look them up.
+    for (auto &c : coefficients)
+      if (c.inv_h == 0.0) c.inv_h = 1.0;
+    particles.m = masses.data();
+    particles.cls = classes.data();
+  }
+  model.pair = coefficients.data();
+  raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
+  pairs = raw;
+}
 
-  // Types with the same coefficients and mass are one class to the core, which is faster.
+/* Coefficients of all pairs of types. Are they and the masses the same? Then there is one class for the core, which is faster:
+ * coefficients[0] and particles.mass. What no term of this scene asks for is 0, so that it sets no types apart. */
+bool PairSph::types_are_alike()
+{
+  const int ntypes = atom->ntypes;
   coefficients.assign((size_t) ntypes * ntypes, sd_sph_coefficients());
   const sd_sph_coefficients *first = nullptr;
-  double first_mass = 0.0;
   bool alike = !atom->rmass;
   for (int i = 1; i <= ntypes; i++)
     for (int j = 1; j <= ntypes; j++) {
@@ -97,35 +129,13 @@ void PairSph::prepare()
                  ": h has grown beyond the neighbour list");
       if (!first) {
         first = &c;
-        first_mass = atom->rmass ? 0.0 : atom->mass[i];
-      } else
-        alike = alike && memcmp(first, &c, sizeof(c)) == 0 && atom->mass[i] == first_mass &&
-            atom->mass[j] == first_mass;
+        particles.mass = atom->rmass ? 0.0 : atom->mass[i];
+      }
+      alike = alike && memcmp(first, &c, sizeof(c)) == 0 && atom->mass[i] == particles.mass &&
+          atom->mass[j] == particles.mass;
     }
-  if (alike && first) {
-    coefficients[0] = *first;
-    model.nclasses = 1;
-    particles.mass = first_mass;
-  } else {
-    model.nclasses = ntypes;
-    masses.resize(n + 1);
-    classes.resize(n + 1);
-    for (int i = 0; i < n; i++) {
-      masses[i] = Sph::mass(lmp, i);
-      classes[i] = atom->type[i] - 1;
-    }
-    masses[n] = 0.0;
-    classes[n] = 0;
-    for (auto &c : coefficients)
-      if (c.inv_h == 0.0)
-        c.inv_h = 1.0;    // pairs of types that never meet: the filler row may still look them up
-    particles.m = masses.data();
-    particles.cls = classes.data();
-  }
-  model.pair = coefficients.data();
-
-  raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
-  pairs = raw;
+  if (alike && first) coefficients[0] = *first;
+  return alike && first;
 }
 
 /* vest is the velocity at the time of the force. The integrators set it before the force; who has none of them moves with v.
@@ -137,22 +147,17 @@ void PairSph::estimate_velocities()
     if (!(atom->mask[i] & bits)) memcpy(atom->vest[i], atom->v[i], 3 * sizeof(double));
 }
 
-/* Leapfrog: the rate of density of the half step, from positions and velocities at its middle, moves the
- * density by a whole step. At the
- * start of a run the rate is that of the moment, and nothing moves. Leaves the near pairs in the list for
- * the force. */
+/* Leapfrog: the rate of density of the half step, from positions and velocities at its middle, moves the density by a whole
+ * step. At the start of a run the rate is that of the moment, and nothing moves. Leaves the near pairs in the list for the
+ * force. */
 void PairSph::density_step()
 {
   const int n = particles.n, nlocal = atom->nlocal;
   const double dt = update->setupflag ? 0.0 : update->dt;
-  double fastest = 0.0;
-  if (dt > 0.0)
-    for (int i = 0; i < n; i++) {
-      const double *v = atom->v[i];
-      fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    }
-  const double *x = n ? atom->x[0] : nullptr, *v = n ? atom->v[0] : nullptr;
-  sd_sph_pack_x(n, x, v, -0.5 * dt, nullptr, x4.data());
+  const double *v = rows(atom->v);
+  // The distance of two particles changes by less than dt times the largest speed in half a step.
+  const double margin = dt > 0.0 ? dt * sd_sph_fastest(n, v) * (1.0 + 1e-9) : 0.0;
+  sd_sph_pack_x(n, rows(atom->x), v, -0.5 * dt, x4.data());
   sd_sph_pack_v(n, v, atom->rho, v4.data());
 
   size_t entries = 3;
@@ -163,67 +168,47 @@ void PairSph::density_step()
     near_count.resize(atom->nmax);
   }
   rate.assign(n + 1, 0.0);
-  // The distance of two particles changes by less than dt times the largest speed in half a step.
-  sd_sph_rates(&model, &raw, &particles, dt * sqrt(fastest) * (1.0 + 1e-9), rate.data(),
-               pool.data(), near.data(), near_count.data());
+  sd_sph_rates(&model, &raw, &particles, margin, rate.data(), pool.data(), near.data(),
+               near_count.data());
   pairs = {raw.n, ~0, raw.first, near_count.data(), near.data()};
   if (continuity->delta > 0.0) diffuse();
-  if (force->newton_pair) reverse(rate.data(), 1);
+  reverse(rate.data(), 1);
 
   for (int i = 0; i < nlocal; i++)
     atom->drho[i] = atom->mask[i] & continuity->groupbit ? rate[i] : 0.0;
   if (dt == 0.0) return;
-  const int bits = leapfrog_bits;
   for (int i = 0; i < nlocal; i++)
-    if (atom->mask[i] & bits) atom->rho[i] += dt * atom->drho[i];
+    if (atom->mask[i] & leapfrog_bits) atom->rho[i] += dt * atom->drho[i];
   forward(atom->rho, 1);
 }
 
 /* Adds the diffusion of density to the rates. */
 void PairSph::diffuse()
 {
-  const int n = particles.n, nlocal = atom->nlocal;
+  const int n = particles.n;
   sums.assign(9 * (size_t) (n + 1), 0.0);
   sd_sph_gradient_sums(&model, &pairs, &particles, atom->rho, sums.data());
-  if (force->newton_pair) reverse(sums.data(), 9);
+  reverse(sums.data(), 9);
   gradient.resize(3 * (size_t) (n + 1));
-  for (int i = 0; i < nlocal; i++)
+  for (int i = 0; i < atom->nlocal; i++)
     sd_sph_gradient(model.dimension, &sums[9 * (size_t) i], &gradient[3 * (size_t) i]);
   forward(gradient.data(), 3);
   sd_sph_diffusion(&model, &pairs, &particles, atom->rho, gradient.data(), continuity->delta,
                    rate.data());
 }
 
-void PairSph::sum_densities()
+/* Densities of a group from the sums over neighbours, or filtered by them. */
+void PairSph::sum_densities(int bit, bool shepard)
 {
-  const int n = particles.n;
-  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
-  sums.assign(2 * (size_t) (n + 1), 0.0);
-  sd_sph_sums(&model, &pairs, &particles, nullptr, sums.data());
-  if (force->newton_pair) reverse(sums.data(), 2);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & summation->groupbit)
-      atom->rho[i] = sums[2 * (size_t) i] + sd_sph_self(&model, &particles, i);
+  sums.assign(2 * (size_t) (particles.n + 1), 0.0);
+  sd_sph_sums(&model, &pairs, &particles, shepard ? atom->rho : nullptr, sums.data());
+  reverse(sums.data(), 2);
+  (shepard ? sd_sph_shepard : sd_sph_summation)(&model, &particles, sums.data(), atom->nlocal,
+                                                atom->mask, bit, atom->rho);
   forward(atom->rho, 1);
 }
 
-void PairSph::filter_densities()
-{
-  const int n = particles.n;
-  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
-  sums.assign(2 * (size_t) (n + 1), 0.0);
-  sd_sph_sums(&model, &pairs, &particles, atom->rho, sums.data());
-  if (force->newton_pair) reverse(sums.data(), 2);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & filter->groupbit)) continue;
-    const double self = sd_sph_self(&model, &particles, i), *s = &sums[2 * (size_t) i];
-    atom->rho[i] = (s[0] + self) / (s[1] + self / atom->rho[i]);
-  }
-  forward(atom->rho, 1);
-}
-
-/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a pair see
- * the same. */
+/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a pair see the same. */
 void PairSph::pressures_of_all()
 {
   const int n = particles.n;
@@ -231,77 +216,64 @@ void PairSph::pressures_of_all()
   for (int i = 0; i < n; i++) {
     if (rho[i] > 0.0 && std::isfinite(rho[i]) && (atom->mask[i] & pressure_bits)) continue;
     if (!used(atom->type[i])) continue;
-    const std::string who = COMMAND + ": step " + std::to_string(update->ntimestep) + ": atom " +
-        std::to_string(atom->tag[i]);
+    const std::string who = at_step() + "atom " + std::to_string(atom->tag[i]);
     if (!(atom->mask[i] & pressure_bits))
       fail_one(lmp, who + " is in the group of no fix sph/pressure");
-    fail_one(
-        lmp,
-        who + " has the density " + text(rho[i]) + "; it must be a number > 0" +
-            (update->setupflag ? " (set it with: set ... sph/rho)" : " (a smaller time step?)"));
+    fail_one(lmp,
+             who + " has the density " + text(rho[i]) + "; it must be a number > 0" +
+                 (update->setupflag ? " (set it with: set ... sph/rho)"
+                                    : " (a smaller time step?)"));
   }
   for (auto *fix : pressures)
-    sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
-  for (int i = 0; i < n; i++) A[i] = P[i] / (rho[i] * rho[i]);
+    sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data(), x4.data());
 }
 
 /* Wall particles take pressure and velocity from the fluid before them. Their density becomes the one that has this pressure,
  * so ghosts get it like any other density. The velocity travels as the difference to v, which ghosts have. */
 void PairSph::wall_particles()
 {
-  const int n = particles.n, nlocal = atom->nlocal, bit = wall->groupbit;
-  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
-  sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
-  std::vector<int> is_wall(n + 1, 0);
-  for (int i = 0; i < n; i++) is_wall[i] = (atom->mask[i] & bit) != 0;
+  const int n = particles.n, bit = wall->groupbit;
+  sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
   sums.assign(5 * (size_t) (n + 1), 0.0);
-  sd_sph_wall_sums(&model, &pairs, &particles, is_wall.data(), P.data(), wall->body_force,
+  sd_sph_wall_sums(&model, &pairs, &particles, atom->mask, bit, P.data(), wall->body_force,
                    sums.data());
-  if (force->newton_pair) reverse(sums.data(), 5);
+  reverse(sums.data(), 5);
 
-  std::vector<double> state(4 * (size_t) (n + 1));
-  for (int i = 0; i < nlocal; i++) {
-    double *now = &state[4 * (size_t) i];
-    now[0] = atom->rho[i];
-    if (!is_wall[i]) continue;
+  wall_rows.resize(4 * (size_t) (n + 1));
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & bit)) continue;
     const FixSphPressure *eos = nullptr;
     for (const auto *fix : pressures)
       if (atom->mask[i] & fix->groupbit) eos = fix;
     const double *s = &sums[5 * (size_t) i];
-    const bool alone = s[0] == 0.0;
-    if (!alone || eos->state.kind != SD_SPH_ABSOLUT)
-      now[0] = sd_sph_density_of(&eos->state, alone ? eos->state.P0 : s[1] / s[0]);
-    if (now[0] == 0.0)
+    double *row = &wall_rows[4 * (size_t) i];
+    row[0] = atom->rho[i];
+    sd_sph_wall_particle(&eos->state, s, atom->v[i], wall->slip, row);
+    if (row[0] == 0.0)
       fail_one(lmp,
                "Fix " + std::string(FixWallAdamiSph::STYLE) + ": step " +
                    std::to_string(update->ntimestep) + ": atom " + std::to_string(atom->tag[i]) +
-                   ": the pressure " + text(s[1] / s[0]) +
+                   ": the pressure " + text(s[0] == 0.0 ? eos->state.P0 : s[1] / s[0]) +
                    " that the fluid asks for is not above " +
                    text(sd_sph_least_pressure(&eos->state)) + ", the least of fix " + eos->id +
                    ": a larger B or P0 makes room for it, if gravity is right");
-    for (int d = 0; d < 3; d++) {
-      const double fluid = alone ? atom->v[i][d] : s[2 + d] / s[0];
-      now[1 + d] = wall->slip ? fluid - atom->v[i][d] : atom->v[i][d] - fluid;
-    }
   }
-  forward(state.data(), 4);
+  forward(wall_rows.data(), 4);
   for (int i = 0; i < n; i++) {
-    if (!is_wall[i]) continue;
-    atom->rho[i] = state[4 * (size_t) i];
-    for (int d = 0; d < 3; d++)
-      atom->vest[i][d] = atom->v[i][d] + state[4 * (size_t) i + 1 + d];
+    if (!(atom->mask[i] & bit)) continue;
+    const double *row = &wall_rows[4 * (size_t) i];
+    atom->rho[i] = row[0];
+    for (int d = 0; d < 3; d++) atom->vest[i][d] = atom->v[i][d] + row[1 + d];
   }
   pressures_of_all();
 }
 
 void PairSph::forces(bool rates)
 {
-  const int n = particles.n;
-  const int receivers = force->newton_pair ? n : atom->nlocal;
+  const int n = particles.n, receivers = force->newton_pair ? n : atom->nlocal;
   const bool pairwise = evflag && (vflag_atom || (vflag_either && !vflag_fdotr));
-  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, 0.0, A.data(), x4.data());
   if (model.artvisc || model.viscous || rates)
-    sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+    sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
   std::fill(f4.begin(), f4.end(), 0.0);
   if (pairwise) {
     size_t entries = 0;
@@ -340,30 +312,25 @@ void PairSph::coincident()
     const int i = pairs.first[k];
     for (int m = 0; m < pairs.count[i]; m++) {
       const int j = pairs.neighbor[i][m] & pairs.mask;
-      const double *xi = atom->x[i], *xj = atom->x[j];
-      if (xi[0] == xj[0] && xi[1] == xj[1] && xi[2] == xj[2])
+      if (memcmp(atom->x[i], atom->x[j], 3 * sizeof(double)) == 0)
         fail_one(lmp,
-                 COMMAND + ": step " + std::to_string(update->ntimestep) + ": atoms " +
-                     std::to_string(atom->tag[i]) + " and " + std::to_string(atom->tag[j]) +
-                     " are at one place");
+                 at_step() + "atoms " + std::to_string(atom->tag[i]) + " and " +
+                     std::to_string(atom->tag[j]) + " are at one place");
     }
   }
-  fail_one(lmp,
-           COMMAND + ": step " + std::to_string(update->ntimestep) +
-               ": two atoms are at one place");
+  fail_one(lmp, at_step() + "two atoms are at one place");
 }
 
-// --- for other fixes
-// -------------------------------------------------------------------------------------------
+// --- for other fixes ----------------------------------------------------------------------------
 
 void PairSph::largest_approach(std::vector<double> &largest)
 {
   prepare();
-  sd_sph_pack_x(particles.n, particles.n ? atom->x[0] : nullptr, nullptr, 0.0, nullptr, x4.data());
-  sd_sph_pack_v(particles.n, particles.n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, 0.0, x4.data());
+  sd_sph_pack_v(particles.n, rows(atom->vest), atom->rho, v4.data());
   largest.assign(particles.n + 1, 0.0);
   sd_sph_approach(&model, &pairs, &particles, largest.data());
-  if (force->newton_pair) reverse(largest.data(), 1, true);
+  reverse(largest.data(), 1, true);
 }
 
 double PairSph::dW_dr(int itype, double r) const
@@ -371,8 +338,7 @@ double PairSph::dW_dr(int itype, double r) const
   return r * sd_sph_dW_over_r(model.kernel, model.dimension, r, table[H][itype][itype]);
 }
 
-// --- communication
-// ----------------------------------------------------------------------------------------------
+// --- communication ------------------------------------------------------------------------------
 
 void PairSph::forward(double *array, int columns)
 {
@@ -383,6 +349,7 @@ void PairSph::forward(double *array, int columns)
 
 void PairSph::reverse(double *array, int columns, bool maximum)
 {
+  if (!force->newton_pair) return;    // ghosts got nothing
   comm_array = array;
   comm_columns = columns;
   comm_maximum = maximum;

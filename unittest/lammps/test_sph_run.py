@@ -128,6 +128,14 @@ def test_particles_at_rest_change_density_only():
         lmp.close()
 
 
+def test_communication_is_handed_back(tmp_path):
+    """Ghost velocities are asked for as long as the pair style is there, and kept where the user asked for them."""
+    for user in ("no", "yes"):
+        done = mpirun(1, scene("comm_modify vel %s\nrun 0\ninfo communication\npair_style none\ninfo communication" % user), tmp_path)
+        said = [line.split()[-1] for line in done.stdout.splitlines() if "elocities for ghost" in line]
+        assert said == ["yes", user], done.stdout
+
+
 # --- walls ----------------------------------------------------------------------------------------------------------------
 
 

@@ -19,10 +19,28 @@ void sd_sph_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sp
   }
 }
 
-double sd_sph_self(const sd_sph_model *model, const sd_sph_particles *p, int i)
+/* What a particle adds to its own sum: m W(0, h). */
+static double self(const sd_sph_model *model, const sd_sph_particles *p, int i)
 {
   return sd_sph_mass(model, p, i) * model->pair[sd_sph_class_pair(model, p, i, i)].weight *
       sd_sph_K(model->kernel, 0.0);
+}
+
+void sd_sph_summation(const sd_sph_model *model, const sd_sph_particles *p, const double *sums,
+                      int n, const int *mask, int bit, double *rho)
+{
+  for (int i = 0; i < n; i++)
+    if (mask[i] & bit) rho[i] = sums[2 * (size_t) i] + self(model, p, i);
+}
+
+void sd_sph_shepard(const sd_sph_model *model, const sd_sph_particles *p, const double *sums, int n,
+                    const int *mask, int bit, double *rho)
+{
+  for (int i = 0; i < n; i++) {
+    if (!(mask[i] & bit)) continue;
+    const double own = self(model, p, i), *s = sums + 2 * (size_t) i;
+    rho[i] = (s[0] + own) / (s[1] + own / rho[i]);
+  }
 }
 
 void sd_sph_gradient_sums(const sd_sph_model *model, const sd_sph_list *list,
@@ -55,7 +73,9 @@ void sd_sph_gradient(int dimension, const double s[9], double g[3])
   const double cxx = yy * zz - yz * yz, cxy = xz * yz - xy * zz, cxz = xy * yz - xz * yy;
   const double cyy = xx * zz - xz * xz, cyz = xy * xz - xx * yz, czz = xx * yy - xy * xy;
   const double det = xx * cxx + xy * cxy + xz * cxz;
-  /* L is the unit matrix where the support is full. */
+  /* L is the unit matrix where the support is full, about half of it at a plane surface, and a
+   * quarter in two directions along an edge: det > 1/64. Below 1e-3, a tenth in each of three
+   * directions, neighbours are so few that the inverse would raise their noise tenfold. */
   if (!(det > 1e-3)) {
     g[0] = g[1] = g[2] = 0.0;
     return;

@@ -1,11 +1,11 @@
 #include "sd_sph_kernel.h"
 
-static const double PI = 3.14159265358979323846;
+#include "sd_constants.h"
 
 double sd_sph_norm(sd_sph_kernel kernel, int dimension)
 {
-  if (kernel == SD_SPH_CUBICSPLINE) return dimension == 3 ? 1.0 / (4.0 * PI) : 5.0 / (14.0 * PI);
-  return dimension == 3 ? 21.0 / (16.0 * PI) : 7.0 / (4.0 * PI);
+  if (kernel == SD_SPH_CUBICSPLINE) return dimension == 3 ? 1.0 / (4.0 * SD_PI) : 5.0 / (14.0 * SD_PI);
+  return dimension == 3 ? 21.0 / (16.0 * SD_PI) : 7.0 / (4.0 * SD_PI);
 }
 
 double sd_sph_K(sd_sph_kernel kernel, double q)

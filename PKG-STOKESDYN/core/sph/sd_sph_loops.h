@@ -1,7 +1,6 @@
-/* The loops of sd_sph_pair.h, compiled once for each instruction set by the two files that include this one
- * and define LOOPS. Four pairs
- * are a vector; what a scene does not ask for is a constant 0 in its copy of the loop, so the compiler drops
- * it. */
+/* The loops of sd_sph_pair.h, compiled once for each instruction set by the two files that include
+ * this one and define LOOPS. Four pairs are a vector; what a scene does not ask for is a constant 0
+ * in its copy of the loop, so the compiler drops it. */
 #include "sd_sph_pair.h"
 
 #include <math.h>
@@ -101,13 +100,33 @@ INLINE void next_four(const int *neighbor, int at, int count, int mask, int fill
   for (int k = 0; k < 4; k++) j[k] = at + k < count ? neighbor[at + k] & mask : filler;
 }
 
+/* What a scene asks for: constants of one copy of the loop. many: classes. */
+typedef struct {
+  sd_sph_kernel kernel;
+  int many, artvisc, tenscorr, viscous, rates;
+} terms;
+
+/* R f^4 of tensCorr. */
+INLINE v4 tension(double epsilon, v4 A, v4 B, v4 f)
+{
+  const v4 zero = all(0.0), f2 = f * f, attraction = -epsilon * (smaller(A, zero) + smaller(B, zero));
+  return where((A > zero) & (B > zero), 0.01 * (A + B), attraction) * (f2 * f2);
+}
+
+/* Pi of artVisc, with one division for s and 2 / (rho_a + rho_b): a1 = 2 alpha c h, b1 = 2 beta h^2. */
+INLINE v4 friction(v4 vd, v4 lengths, v4 densities, v4 a1, v4 b1)
+{
+  const v4 inverse = 1.0 / (lengths * densities);
+  const v4 s = smaller(vd, all(0.0)) * densities * inverse;
+  return s * (b1 * s - a1) * (lengths * inverse);
+}
+
 INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                     double *f4, double *each, sd_sph_kernel kernel, int many, int artvisc,
-                     int tenscorr, int viscous, int rates)
+                     double *f4, double *each, terms has)
 {
   const v4 zero = all(0.0), two = all(2.0);
   v4 nearest = all(HUGE_VAL);
-  const int moving = artvisc || viscous || rates;
+  const int many = has.many, moving = has.artvisc || has.viscous || has.rates;
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
     const int *neighbor = list->neighbor[i];
@@ -129,36 +148,29 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
       nearest = smaller(r2, nearest);
       const v4 inv_h = COEFFICIENT(inv_h);
       const v4 q = smaller(root(r2) * inv_h, two);
-      const v4 g = COEFFICIENT(grad) * G(kernel, q);
+      const v4 g = COEFFICIENT(grad) * G(has.kernel, q);
       const v4 mj = many ? (v4){p->m[j[0]], p->m[j[1]], p->m[j[2]], p->m[j[3]]} : mi;
       v4 bracket = A + b[3];
 
-      if (tenscorr) {
-        const v4 f = COEFFICIENT(tens) * K(kernel, q), f2 = f * f;
-        const v4 attraction = -model->epsilon * (smaller(A, zero) + smaller(b[3], zero));
-        const v4 R = where((A > zero) & (b[3] > zero), 0.01 * bracket, attraction);
-        bracket += R * (f2 * f2);
-      }
+      if (has.tenscorr)
+        bracket += tension(model->epsilon, A, b[3], COEFFICIENT(tens) * K(has.kernel, q));
       v4 u[4], vd = zero;
       if (moving) {
         gather(p->v4, j, u);
         for (int c = 0; c < 3; c++) u[c] = vi[c] - u[c];
         vd = u[0] * dx + u[1] * dy + u[2] * dz;
       }
-      if (artvisc) {
-        const v4 lengths = r2 + model->eta, densities = vi[3] + u[3],
-                 inverse = 1.0 / (lengths * densities);
-        const v4 s = smaller(vd, zero) * densities * inverse;
-        bracket += s * (COEFFICIENT(b1) * s - COEFFICIENT(a1)) * (lengths * inverse);
-      }
+      if (has.artvisc)
+        bracket += friction(vd, r2 + model->eta, vi[3] + u[3], COEFFICIENT(a1),
+                            COEFFICIENT(b1));
       const v4 fd = -mi * mj * bracket * g;
       v4 F[4] = {fd * dx, fd * dy, fd * dz, zero};
-      if (viscous) {
+      if (has.viscous) {
         const v4 fv = mi * mj * COEFFICIENT(visc) * g / (vi[3] * u[3]);
         for (int c = 0; c < 3; c++) F[c] += fv * u[c];
       }
       for (int c = 0; c < 3; c++) sum[c] += F[c];
-      if (rates) {
+      if (has.rates) {
         const v4 w = g * vd;
         sum[3] += mj * w;
         F[3] = -mi * w;
@@ -230,7 +242,8 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 #define COMBINATION(kernel, many, artvisc, tenscorr, viscous, with_rates)                          \
   case ((kernel) << 5) + ((many) << 4) + ((artvisc) << 3) + ((tenscorr) << 2) + ((viscous) << 1) + \
       (with_rates):                                                                                \
-    return forces(model, list, p, f4, each, kernel, many, artvisc, tenscorr, viscous, with_rates);
+    return forces(model, list, p, f4, each,                                                        \
+                  (terms){kernel, many, artvisc, tenscorr, viscous, with_rates});
 #define TWICE(next, ...) next(__VA_ARGS__, 0) next(__VA_ARGS__, 1)
 #define BY_VISCOUS(...) TWICE(COMBINATION, __VA_ARGS__, 0) TWICE(COMBINATION, __VA_ARGS__, 1)
 #define BY_TENSCORR(...) BY_VISCOUS(__VA_ARGS__, 0) BY_VISCOUS(__VA_ARGS__, 1)

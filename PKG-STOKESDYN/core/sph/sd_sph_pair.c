@@ -20,8 +20,7 @@ sd_sph_coefficients sd_sph_coefficients_of(sd_sph_kernel kernel, int dimension,
 /* Far enough that every kernel is 0, near enough that the square of the distance is finite. */
 static const double FAR = 1e100;
 
-void sd_sph_pack_x(int n, const double *x, const double *v, double shift, const double *A,
-                   double *x4)
+void sd_sph_pack_x(int n, const double *x, const double *v, double shift, double *x4)
 {
   if (shift != 0.0)
     for (int i = 0; i < n; i++)
@@ -30,7 +29,6 @@ void sd_sph_pack_x(int n, const double *x, const double *v, double shift, const 
   else
     for (int i = 0; i < n; i++)
       for (int d = 0; d < 3; d++) x4[4 * (size_t) i + d] = x[3 * (size_t) i + d];
-  for (int i = 0; i < n; i++) x4[4 * (size_t) i + 3] = A ? A[i] : 0.0;
   for (int d = 0; d < 3; d++) x4[4 * (size_t) n + d] = FAR;
   x4[4 * (size_t) n + 3] = 0.0;
 }

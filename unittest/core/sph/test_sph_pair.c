@@ -62,7 +62,8 @@ static void build(scene *s, sd_sph_kernel kernel, int dimension, int classes, in
   s->rho[N] = 1.0;
   s->list = (sd_sph_list){N, (1 << 30) - 1, s->first, s->count, s->neighbor};
   s->p = (sd_sph_particles){N, s->x4, s->v4, s->m, s->cls, 0.9};
-  sd_sph_pack_x(N, s->x, NULL, 0.0, s->A, s->x4);
+  sd_sph_pack_x(N, s->x, NULL, 0.0, s->x4);
+  for (int i = 0; i < N; i++) s->x4[4 * i + 3] = s->A[i];
   sd_sph_pack_v(N, s->v, s->rho, s->v4);
 }
 
@@ -190,7 +191,8 @@ static double R_of(double Pi, double Pj)
   int only[1] = {1}, *neighbor[1] = {only};
   s.list = (sd_sph_list){1, ~0, first, count, neighbor};
   s.p.n = 2;
-  sd_sph_pack_x(2, x, NULL, 0.0, A, s.x4);
+  sd_sph_pack_x(2, x, NULL, 0.0, s.x4);
+  for (int i = 0; i < 2; i++) s.x4[4 * i + 3] = A[i];
   double without[12] = {0}, with[12] = {0};
   sd_sph_forces(&s.model, &s.list, &s.p, 0, without, NULL);
   s.model.tenscorr = 1;
@@ -239,8 +241,16 @@ static void sums_over_neighbours(void **state)
     }
     CHECK_NEAR(sums[2 * i], mW, 1e-13 * mW);
     CHECK_NEAR(sums[2 * i + 1], VW, 1e-13 * VW);
-    CHECK_NEAR(sd_sph_self(&s.model, &s.p, i),
-               s.m[i] * sd_sph_W(SD_SPH_WENDLAND, 2, 0.0, s.types[3 * s.cls[i]].h), 1e-12);
+    /* With the particle itself: the density by summation, and filtered, for every other particle. */
+    const double own = s.m[i] * sd_sph_W(SD_SPH_WENDLAND, 2, 0.0, s.types[3 * s.cls[i]].h);
+    double summed[N], filtered[N];
+    memcpy(summed, s.rho, sizeof(summed));
+    memcpy(filtered, s.rho, sizeof(filtered));
+    sd_sph_summation(&s.model, &s.p, sums, N, s.cls, 1, summed);
+    sd_sph_shepard(&s.model, &s.p, sums, N, s.cls, 1, filtered);
+    CHECK_NEAR(summed[i], s.cls[i] ? mW + own : s.rho[i], 1e-12 * summed[i]);
+    CHECK_NEAR(filtered[i], s.cls[i] ? (mW + own) / (VW + own / s.rho[i]) : s.rho[i],
+               1e-12 * filtered[i]);
   }
 }
 
@@ -299,7 +309,7 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
   }
   sd_sph_pack_v(N, s.v, s.rho, s.v4);
   double sums[5 * (N + 1)] = {0};
-  sd_sph_wall_sums(&s.model, &s.list, &s.p, is_wall, s.P, g, sums);
+  sd_sph_wall_sums(&s.model, &s.list, &s.p, is_wall, 1, s.P, g, sums);
   int tried = 0;
   for (int i = 0; i < N; i++) {
     if (!is_wall[i] || sums[5 * i] < 0.01) continue;
@@ -307,6 +317,32 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
     tried++;
   }
   assert_true(tried > 2);
+}
+
+/* Friction sees the mirror image of the fluid's velocity without slip, that of the fluid with it;
+ * the density is the one that has the pressure of the fluid. */
+static void wall_particle_continues_the_fluid(void **state)
+{
+  (void) state;
+  const sd_sph_state tait = {SD_SPH_TAIT, 5e4, 990.0, 7.0, 30.0};
+  const double sums[5] = {0.8, 0.8 * 2.4e3, 0.8 * 0.3, 0.8 * -0.7, 0.0}, v[3] = {0.1, 0.2, -0.3};
+  double row[4] = {1.0}, glides[4] = {1.0};
+  sd_sph_wall_particle(&tait, sums, v, 0, row);
+  sd_sph_wall_particle(&tait, sums, v, 1, glides);
+  CHECK_NEAR(sd_sph_pressure(&tait, row[0]), 2.4e3, 1e-8);
+  for (int d = 0; d < 3; d++) {
+    const double fluid = sums[2 + d] / sums[0];
+    CHECK_NEAR(v[d] + glides[1 + d], fluid, 1e-15);
+    CHECK_NEAR(v[d] + row[1 + d], 2 * v[d] - fluid, 1e-15);
+  }
+  const double none[5] = {0.0};
+  sd_sph_wall_particle(&tait, none, v, 0, row);
+  CHECK_NEAR(row[0], 990.0, 1e-9);
+  assert_true(row[1] == 0.0 && row[2] == 0.0 && row[3] == 0.0);
+  const double torn[5] = {0.8, 0.8 * -5e4, 0.0, 0.0, 0.0};
+  sd_sph_wall_particle(&tait, torn, v, 0, row);
+  assert_true(row[0] == 0.0);
+  CHECK_NEAR(sd_sph_least_pressure(&tait), 30.0 - 5e4, 1e-9);
 }
 
 int main(void)
@@ -317,6 +353,7 @@ int main(void)
                                      cmocka_unit_test(one_place_is_reported),
                                      cmocka_unit_test(sums_over_neighbours),
                                      cmocka_unit_test(linear_density_does_not_diffuse),
-                                     cmocka_unit_test(wall_continues_the_hydrostatic_pressure)};
+                                     cmocka_unit_test(wall_continues_the_hydrostatic_pressure),
+                                     cmocka_unit_test(wall_particle_continues_the_fluid)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
