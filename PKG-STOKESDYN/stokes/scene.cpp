@@ -254,6 +254,7 @@ void Scene::apply_all(const double *F, double *u)
   from_cloud(all_u, u);
 }
 
+/* MPI requires that all ranks receive identical results of an allreduce (MPI 3.1, 5.9.6), as the core does of its sums. */
 sd_status Scene::sum(void *ctx, double *values, int count)
 {
   MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, static_cast<Scene *>(ctx)->world);

@@ -3,16 +3,31 @@
 static const double A = 0.7, ETA = 1.3, U = 0.9;
 #define UNIT (6.0 * SD_PI * ETA * A * U)
 
+/* What came of a solve */
+typedef struct {
+  sd_status status;
+  sd_solve_report report;
+  double drag; /* of total_drag */
+} outcome;
+
 /* Total force along axis d for uniform motion along it, in 6 pi eta a U. */
-static double total_drag(scene *s, int d, solver *solve, double tolerance, int max_iter,
-                         sd_status *status, sd_solve_report *report)
+static outcome total_drag(scene *s, int d, solver *solve, double tolerance, int max_iter)
 {
+  outcome o = {.drag = 0.0};
   double *slip = scene_uniform_slip(s, d == 0 ? U : 0, d == 1 ? U : 0, d == 2 ? U : 0);
-  double *F = scene_solve(s, solve, slip, tolerance, max_iter, status, report), sum = 0.0;
-  for (int i = 0; i < s->n; i++) sum += F[3 * i + d];
+  double *F = scene_solve(s, solve, slip, tolerance, max_iter, &o.status, &o.report);
+  for (int i = 0; i < s->n; i++) o.drag += F[3 * i + d] / UNIT;
   free(slip);
   free(F);
-  return sum / UNIT;
+  return o;
+}
+
+/* The same of a scene that is made for it and nothing else. */
+static outcome drag_of(scene s, int d, solver *solve, double tolerance, int max_iter)
+{
+  const outcome o = total_drag(&s, d, solve, tolerance, max_iter);
+  scene_free(&s);
+  return o;
 }
 
 /* Joung's iteration on the touching pair along its axis is a geometric series: F^k = (1 - (-5/8)^(k+1))/1.625. */
@@ -20,45 +35,34 @@ static void substitution_follows_the_geometric_series(void **state)
 {
   (void) state;
   for (int k = 1; k <= 20; k++) {
-    scene s = scene_lattice(1, 1, 2, 2.0, A, ETA);
-    sd_status status;
-    sd_solve_report report;
-    const double drag = total_drag(&s, 2, sd_solve_substitution, 1e-30, k, &status, &report);
-    CHECK_NEAR(drag / 2.0, (1.0 - pow(-0.625, k + 1)) / 1.625, 1e-14);
-    assert_int_equal(status, SD_EMAXITER);
-    assert_int_equal(report.iterations, k);
+    const outcome o =
+        drag_of(scene_lattice(1, 1, 2, 2.0, A, ETA), 2, sd_solve_substitution, 1e-30, k);
+    CHECK_NEAR(o.drag / 2.0, (1.0 - pow(-0.625, k + 1)) / 1.625, 1e-14);
+    assert_int_equal(o.status, SD_EMAXITER);
+    assert_int_equal(o.report.iterations, k);
     /* residual of F^k: |F^(k+1) - F^k| / |D s| */
-    CHECK_NEAR(report.residual, pow(0.625, k + 1), 1e-13);
-    CHECK_NEAR(report.growth, 0.625, 1e-9);
-    scene_free(&s);
+    CHECK_NEAR(o.report.residual, pow(0.625, k + 1), 1e-13);
+    CHECK_NEAR(o.report.growth, 0.625, 1e-9);
   }
 }
 
 static void substitution_stops_by_its_residual(void **state)
 {
   (void) state;
-  scene s = scene_lattice(1, 1, 2, 2.0, A, ETA);
-  sd_status status;
-  sd_solve_report report;
-  total_drag(&s, 2, sd_solve_substitution, 1e-6, 100, &status, &report);
-  assert_int_equal(status, SD_OK);
+  const outcome o = drag_of(scene_lattice(1, 1, 2, 2.0, A, ETA), 2, sd_solve_substitution, 1e-6, 100);
+  assert_int_equal(o.status, SD_OK);
   /* 0.625^(k+1) <= 1e-6 first at k = 29 */
-  assert_int_equal(report.iterations, 29);
-  scene_free(&s);
+  assert_int_equal(o.report.iterations, 29);
 }
 
 /* Spectral radius 1.0817 (hydrodynamic literature has none for this; dense eigenvalues give 2.081651 - 1). */
 static void substitution_diverges_for_three_in_a_row(void **state)
 {
   (void) state;
-  scene s = scene_lattice(1, 1, 3, 2.0, A, ETA);
-  sd_status status;
-  sd_solve_report report;
-  total_drag(&s, 2, sd_solve_substitution, 1e-6, 100, &status, &report);
-  assert_int_equal(status, SD_EDIVERGED);
-  assert_true(report.growth > 1.0 && report.growth < 1.0817);
-  assert_true(report.iterations < 30);
-  scene_free(&s);
+  const outcome o = drag_of(scene_lattice(1, 1, 3, 2.0, A, ETA), 2, sd_solve_substitution, 1e-6, 100);
+  assert_int_equal(o.status, SD_EDIVERGED);
+  assert_true(o.report.growth > 1.0 && o.report.growth < 1.0817);
+  assert_true(o.report.iterations < 30);
 }
 
 /* Total drag of chains and cubes; reference: dense LU of the same model. And iterations to 1e-6. */
@@ -76,17 +80,14 @@ static void gradients_give_the_model_drag(void **state)
                {3, 3, 1, 3.487916, 9},         {8, 8, 2, 0.0, 35}};
   for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
     scene s = scene_lattice(cases[k].nx, cases[k].nx, cases[k].nz, 2.0, A, ETA);
-    sd_status status;
-    sd_solve_report report;
-    total_drag(&s, cases[k].axis, sd_solve_gradients, 1e-6, 100, &status, &report);
-    assert_int_equal(status, SD_OK);
-    if (report.iterations > cases[k].at_most)
-      fail_msg("case %zu: %d iterations, at most %d", k, report.iterations, cases[k].at_most);
+    outcome o = total_drag(&s, cases[k].axis, sd_solve_gradients, 1e-6, 100);
+    assert_int_equal(o.status, SD_OK);
+    if (o.report.iterations > cases[k].at_most)
+      fail_msg("case %zu: %d iterations, at most %d", k, o.report.iterations, cases[k].at_most);
     if (cases[k].drag > 0.0) {
-      const double drag =
-          total_drag(&s, cases[k].axis, sd_solve_gradients, 1e-12, 300, &status, &report);
-      assert_int_equal(status, SD_OK);
-      CHECK_NEAR(drag / cases[k].drag, 1.0,
+      o = total_drag(&s, cases[k].axis, sd_solve_gradients, 1e-12, 300);
+      assert_int_equal(o.status, SD_OK);
+      CHECK_NEAR(o.drag / cases[k].drag, 1.0,
                  cases[k].nx > 1 ? 2e-7 : 1e-10); /* digits of the reference */
     }
     scene_free(&s);
@@ -150,11 +151,7 @@ static void gradients_refuse_a_cloud_with_a_cut_off(void **state)
   (void) state;
   scene s = scene_lattice(5, 5, 5, 2.0, A, ETA);
   s.cutoff = 6.1 * A;
-  sd_status status;
-  sd_solve_report report;
-  total_drag(&s, 0, sd_solve_gradients, 1e-6, 200, &status, &report);
-  assert_int_equal(status, SD_EINDEFINITE);
-  scene_free(&s);
+  assert_int_equal(drag_of(s, 0, sd_solve_gradients, 1e-6, 200).status, SD_EINDEFINITE);
 }
 
 /* Two equal spheres at one point: one velocity gives the drag of one sphere, two velocities have no answer. */
@@ -164,8 +161,9 @@ static void coincident_spheres(void **state)
   scene s = scene_lattice(1, 1, 2, 0.0, A, ETA);
   sd_status status;
   sd_solve_report report;
-  CHECK_NEAR(total_drag(&s, 0, sd_solve_gradients, 1e-12, 100, &status, &report), 1.0, 1e-12);
-  assert_int_equal(status, SD_OK);
+  const outcome o = total_drag(&s, 0, sd_solve_gradients, 1e-12, 100);
+  CHECK_NEAR(o.drag, 1.0, 1e-12);
+  assert_int_equal(o.status, SD_OK);
   double slip[6] = {U, 0, 0, -U, 0, 0};
   free(scene_solve(&s, sd_solve_gradients, slip, 1e-6, 100, &status, &report));
   assert_int_equal(status, SD_ESINGULAR);
@@ -177,13 +175,9 @@ static void nearly_coincident_spheres_carry_the_drag_of_one(void **state)
 {
   (void) state;
   for (double r = 0.1; r > 1e-9; r *= 0.1) {
-    scene s = scene_lattice(1, 1, 2, r, A, ETA);
-    sd_status status;
-    sd_solve_report report;
-    const double drag = total_drag(&s, 0, sd_solve_gradients, 1e-10, 100, &status, &report);
-    assert_int_equal(status, SD_OK);
-    assert_true(drag >= 1.0 - 1e-9 && drag <= 1.0 + r);
-    scene_free(&s);
+    const outcome o = drag_of(scene_lattice(1, 1, 2, r, A, ETA), 0, sd_solve_gradients, 1e-10, 100);
+    assert_int_equal(o.status, SD_OK);
+    assert_true(o.drag >= 1.0 - 1e-9 && o.drag <= 1.0 + r);
   }
 }
 
@@ -249,26 +243,19 @@ static void not_a_number_is_reported(void **state)
 static void impossible_tolerance_stagnates(void **state)
 {
   (void) state;
-  scene s = scene_lattice(1, 1, 30, 0.2, A, ETA);
-  sd_status status;
-  sd_solve_report report;
-  total_drag(&s, 0, sd_solve_gradients, 1e-25, 100000, &status, &report);
-  assert_int_equal(status, SD_ESTAGNATED);
-  assert_true(report.residual < 1e-11 && report.iterations < 1000);
-  scene_free(&s);
+  const outcome o =
+      drag_of(scene_lattice(1, 1, 30, 0.2, A, ETA), 0, sd_solve_gradients, 1e-25, 100000);
+  assert_int_equal(o.status, SD_ESTAGNATED);
+  assert_true(o.report.residual < 1e-11 && o.report.iterations < 1000);
 }
 
 static void out_of_iterations_says_how_far_it_came(void **state)
 {
   (void) state;
-  scene s = scene_lattice(5, 5, 5, 2.0, A, ETA);
-  sd_status status;
-  sd_solve_report report;
-  total_drag(&s, 0, sd_solve_gradients, 1e-10, 5, &status, &report);
-  assert_int_equal(status, SD_EMAXITER);
-  assert_int_equal(report.iterations, 5);
-  assert_true(report.residual > 1e-10 && report.residual < 1.0);
-  scene_free(&s);
+  const outcome o = drag_of(scene_lattice(5, 5, 5, 2.0, A, ETA), 0, sd_solve_gradients, 1e-10, 5);
+  assert_int_equal(o.status, SD_EMAXITER);
+  assert_int_equal(o.report.iterations, 5);
+  assert_true(o.report.residual > 1e-10 && o.report.residual < 1.0);
 }
 
 /* Smoothing: more iterations never give a larger residual. Plain conjugate gradients would fail this at iteration 10 of 8^3 spheres. */
@@ -278,11 +265,9 @@ static void residual_only_falls(void **state)
   scene s = scene_lattice(8, 8, 8, 2.0, A, ETA);
   double last = 1.0;
   for (int k = 1; k <= 20; k++) {
-    sd_status status;
-    sd_solve_report report;
-    total_drag(&s, 0, sd_solve_gradients, 1e-12, k, &status, &report);
-    assert_true(report.residual < last);
-    last = report.residual;
+    const double residual = total_drag(&s, 0, sd_solve_gradients, 1e-12, k).report.residual;
+    assert_true(residual < last);
+    last = residual;
   }
   scene_free(&s);
 }
@@ -362,6 +347,36 @@ static void failed_callback_ends_the_solve(void **state)
   }
 }
 
+/* The smallest residual on the line through the first two of conjugate gradients, z0 = D s and z1 = z0 - alpha D M z0. Those of equal
+ * spheres are orthogonal, so 1/|y|^2 = 1/|z0|^2 + 1/|z1|^2. */
+static void smoothing_finds_the_smallest_residual(void **state)
+{
+  (void) state;
+  enum { N = 3 * 64 };
+  scene s = scene_lattice(4, 4, 4, 2.0, A, ETA);
+  const double D = s.drag[0];
+  double slip[N], F[N], q[N], power = 0.0, norm = 0.0, z0 = 0.0, z1 = 0.0;
+  uint64_t seed = 8;
+  for (int j = 0; j < N; j++) {
+    slip[j] = uniform(&seed, -U, U);
+    F[j] = D * slip[j];
+  }
+  scene_apply(&s, F, q);
+  for (int j = 0; j < N; j++) {
+    q[j] += F[j] / D;
+    power += slip[j] * F[j];
+    norm += F[j] * q[j];
+  }
+  for (int j = 0; j < N; j++) {
+    z0 += F[j] * F[j];
+    z1 += pow(F[j] - power / norm * D * q[j], 2);
+  }
+  outcome o;
+  free(scene_solve(&s, sd_solve_gradients, slip, 1e-12, 1, &o.status, &o.report));
+  CHECK_NEAR(o.report.residual, sqrt(1.0 / (1.0 + z0 / z1)), 1e-12);
+  scene_free(&s);
+}
+
 /* Drag 0: the sphere takes no part; the others do not notice it. */
 static void sphere_without_drag_takes_no_part(void **state)
 {
@@ -433,6 +448,7 @@ int main(void)
       cmocka_unit_test(impossible_tolerance_stagnates),
       cmocka_unit_test(out_of_iterations_says_how_far_it_came),
       cmocka_unit_test(residual_only_falls),
+      cmocka_unit_test(smoothing_finds_the_smallest_residual),
       cmocka_unit_test(failed_callback_ends_the_solve),
       cmocka_unit_test(sphere_without_drag_takes_no_part),
       cmocka_unit_test(resistance_is_symmetric_and_dissipates),
