@@ -53,7 +53,7 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
   const sd_law law = scene.law();
   double mine, largest;
   sd_status status;
-  if (scene.all_pairs()) {
+  if (scene.view() == SD_VIEW_ALL) {
     const sd_spheres spheres = scene.cloud();
     const int64_t n = scene.cloud_size();
     const int from = n * comm->me / comm->nprocs, to = n * (comm->me + 1) / comm->nprocs;

@@ -167,9 +167,10 @@ sd_system Hydrodynamics::gather()
   system.n = n;
   system.drag = resistance.data();
   system.spin = rotation() ? spin.data() : nullptr;
-  system.apply = Scene::apply;
+  system.apply = sd_mobility_apply;
+  system.apply_ctx = scene.mobility();
   system.sum = Scene::sum;
-  system.apply_ctx = system.sum_ctx = &scene;
+  system.sum_ctx = &scene;
   return system;
 }
 

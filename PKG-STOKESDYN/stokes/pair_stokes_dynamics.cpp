@@ -168,7 +168,7 @@ void PairStokesDynamics::init_style()
     fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
   require_atoms();
   const Scene::Settings &scene = hydro.settings.scene;
-  if (std::isinf(scene.cutoff) && !scene.clumps_only)
+  if (scene.engine().view == SD_VIEW_ALL)
     for (int d = 0; d < domain->dimension; d++)
       if (domain->periodicity[d])
         fail(lmp,

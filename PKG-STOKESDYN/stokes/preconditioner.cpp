@@ -173,7 +173,7 @@ void Preconditioner::attach(sd_system &system)
   present = NONE;
   width = system.spin ? 6 : 3;
   warm = system.warm;
-  const bool cloud = scene.all_pairs();
+  const bool cloud = scene.view() == SD_VIEW_ALL;
   whole = scene.settings.clumps_only && std::isinf(scene.settings.cutoff);
   if (kind == NONE) return;
 
@@ -225,7 +225,7 @@ sd_status Preconditioner::apply_blocks(const double *r, double *z)
   if (pending) {
     pending = false;
     usable = (!worn && turn_blocks()) || make_blocks();
-    if (whole || scene.all_pairs()) {    // ranks that share a clump must treat it alike
+    if (whole || scene.view() == SD_VIEW_ALL) {    // ranks that share a clump must treat it alike
       int all = usable;
       MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, world);
       usable = all;
@@ -234,7 +234,7 @@ sd_status Preconditioner::apply_blocks(const double *r, double *z)
     blocks.drag = drag;
     blocks.spin = spin;
   }
-  const bool other_rank = scene.all_pairs() && comm->me > 0;    // the first one does it all
+  const bool other_rank = scene.view() == SD_VIEW_ALL && comm->me > 0;    // the first one does it all
   if (usable) return sd_blocks_apply(&blocks, r, z);
   for (long i = 0; i < n; i++)
     for (int d = 0; d < width; d++)
@@ -284,7 +284,7 @@ bool Preconditioner::make_sparse()
 bool Preconditioner::make_blocks()
 {
   const sd_law law = scene.law();
-  const bool cloud = scene.all_pairs();
+  const bool cloud = scene.view() == SD_VIEW_ALL;
   sd_spheres s = cloud ? scene.cloud() : scene.local();
   if (!cloud &&
       !whole) {    // a clump may lie across a periodic boundary: images that are next to one another
@@ -327,7 +327,7 @@ bool Preconditioner::make_blocks()
 /* Clumps of a cloud that have moved as rigid bodies keep their blocks; false if one has not. */
 bool Preconditioner::turn_blocks()
 {
-  if (!scene.all_pairs() || blocks.blocks != (int) first.size() - 1 ||
+  if (scene.view() != SD_VIEW_ALL || blocks.blocks != (int) first.size() - 1 ||
       shapes.size() + 1 != first.size())
     return false;
   const sd_law law = scene.law();
@@ -350,12 +350,13 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
 {
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
   return callback([=] {
-    p->scene.to_cloud(r, p->in);
+    p->in.resize((size_t) p->width * p->n + 1);
     p->out.resize((size_t) p->width * p->n + 1);
+    p->scene.to_cloud(r, p->in.data(), p->width);
     const sd_status status = p->present == SPARSE
         ? sd_sparse_apply(&p->sparse, p->in.data(), p->out.data())
         : p->apply_blocks(p->in.data(), p->out.data());
-    p->scene.from_cloud(p->out, z);
+    p->scene.from_cloud(p->out.data(), z, p->width);
     return status;
   });
 }
@@ -374,7 +375,7 @@ void Preconditioner::learn(const sd_solve_report &report)
   }
   if (kind != AUTO || costs.without == 0.0) return;
   // Blocks by list pay in a single solve, and that from zero says nothing of the warm ones to come.
-  if (!scene.all_pairs() && warm_start && !warm) return;
+  if (scene.view() != SD_VIEW_ALL && warm_start && !warm) return;
   sd_choice_learn(&numbers.choice, &costs, report.iterations, made);
   if (numbers.choice.solves == 0.0) worn = true;    // it goes the other way now
 }

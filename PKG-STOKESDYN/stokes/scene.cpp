@@ -16,7 +16,7 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 Scene::Scene(LAMMPS *lmp, Pair *pair, const std::string &command) :
-    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows(), packed()
+    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows(), omega()
 {
 }
 
@@ -25,12 +25,13 @@ Scene::~Scene()
   sd_neighbors_free(&candidates);
   sd_neighbors_free(&pairs);
   sd_neighbors_free(&rows);
-  sd_packed_free(&packed);
+  sd_mobility_free(&omega);
 }
 
-bool Scene::all_pairs() const
+const sd_mobility_engine &Scene::Settings::engine() const
 {
-  return std::isinf(settings.cutoff) && !settings.clumps_only;
+  return std::isinf(cutoff) && !clumps_only ? sd_mobility_all_pairs
+                                                              : sd_mobility_list;
 }
 
 const double *Scene::positions() const
@@ -47,7 +48,8 @@ void Scene::out_of_memory()
 void Scene::update(const std::vector<char> &active, const std::vector<double> &eta)
 {
   const int nlocal = atom->nlocal;
-  const int n = all_pairs() ? nlocal : nlocal + atom->nghost;
+  const bool cloud = view() == SD_VIEW_ALL;
+  const int n = cloud ? nlocal : nlocal + atom->nghost;
   a.assign(n, 0.0);
   w.assign(n, 0.0);
   for (int i = 0; i < nlocal; i++)
@@ -55,8 +57,9 @@ void Scene::update(const std::vector<char> &active, const std::vector<double> &e
       a[i] = atom->radius[i];
       w[i] = 1.0 / sqrt(eta[i]);
     }
-  if (all_pairs()) {
+  if (cloud) {
     gather();
+    place(n_all);
     return;
   }
 
@@ -71,9 +74,42 @@ void Scene::update(const std::vector<char> &active, const std::vector<double> &e
     sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
     pairs.pairs.n = nlocal;
   }
-  const sd_law how = law();
-  packed.rotation = settings.rotation;
-  if (sd_packed_list(&packed, SD_ISA_BEST, &how, &spheres, n) != SD_OK) out_of_memory();
+  place(n);
+}
+
+/* The spheres where they stand, and what their engine may ask. */
+void Scene::place(int n_all_or_ghosts)
+{
+  const bool cloud = view() == SD_VIEW_ALL;
+  sd_mobility_scene scene = {};
+  scene.how = {law(), width()};
+  scene.n = atom->nlocal;
+  scene.n_all = n_all_or_ghosts;
+  scene.spheres = cloud ? this->cloud() : local();
+  scene.pairs = cloud ? nullptr : &list();
+  scene.world.ctx = this;
+  scene.world.me = comm->me;
+  scene.world.ranks = comm->nprocs;
+  scene.world.sum = sum;
+  scene.world.refresh = [](void *ctx, const double *rows, double *ghosts, int width) {
+    return callback([=] {
+      static_cast<Scene *>(ctx)->refresh_ghosts(rows, ghosts, width);
+      return SD_OK;
+    });
+  };
+  scene.world.spread = [](void *ctx, const double *rows, double *all, int width) {
+    return callback([=] {
+      static_cast<Scene *>(ctx)->to_cloud(rows, all, width);
+      return SD_OK;
+    });
+  };
+  scene.world.collect = [](void *ctx, const double *all, double *rows, int width) {
+    return callback([=] {
+      static_cast<Scene *>(ctx)->from_cloud(all, rows, width);
+      return SD_OK;
+    });
+  };
+  if (sd_mobility_place(&omega, &settings.engine(), &scene) != SD_OK) out_of_memory();
 }
 
 /* Once per re-neighbouring. Between two of them an atom moves by half the skin at most, so the skin is added to the cut-off. */
@@ -95,7 +131,7 @@ void Scene::find_pairs()
 
 bool Scene::anybody_sees() const
 {
-  if (all_pairs()) return n_all > 1;
+  if (view() == SD_VIEW_ALL) return n_all > 1;
   int mine = list().first[atom->nlocal] > 0, any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
@@ -114,7 +150,19 @@ void Scene::refresh_ghosts(std::vector<double> &ghosts, int width,
                            const std::function<void(int, double *)> &row)
 {
   ghosts.resize((size_t) width * atom->nghost + 1);
-  values = ghosts.data();
+  send_rows(ghosts.data(), width, row);
+}
+
+void Scene::refresh_ghosts(const double *rows, double *ghosts, int width)
+{
+  send_rows(ghosts, width, [=](int i, double *out) {
+    std::copy_n(rows + width * (size_t) i, width, out);
+  });
+}
+
+void Scene::send_rows(double *ghosts, int width, const std::function<void(int, double *)> &row)
+{
+  values = ghosts;
   values_width = width;
   row_of = &row;
   packing = ROWS;
@@ -138,13 +186,8 @@ void Scene::gather()
   std::vector<int> counts_rows(nprocs), displs_rows(nprocs);
   spheres_of_rank.resize(nprocs);
   MPI_Allgather(&n, 1, MPI_INT, spheres_of_rank.data(), 1, MPI_INT, world);
-  counts.resize(nprocs);
-  displs.resize(nprocs);
   n_all = 0;
   for (int p = 0; p < nprocs; p++) {
-    if (p == comm->me) begin = n_all;
-    counts[p] = width() * spheres_of_rank[p];
-    displs[p] = width() * n_all;
     counts_rows[p] = COLUMNS * spheres_of_rank[p];
     displs_rows[p] = COLUMNS * n_all;
     n_all += spheres_of_rank[p];
@@ -168,10 +211,10 @@ void Scene::gather()
   all_w.resize(n_all);
   all_tag.resize(n_all);
   all_molecule.resize(n_all);
-  place.resize(n_all);
+  place_of.resize(n_all);
   for (int k = 0; k < n_all; k++) {
     const double *row = &all[COLUMNS * (size_t) by_tag[k]];
-    place[by_tag[k]] = k;
+    place_of[by_tag[k]] = k;
     std::copy(row, row + 3, &all_x[3 * (size_t) k]);
     const int64_t its_tag = ubuf(row[5]).i, its_molecule = ubuf(row[6]).i;
     cloud_is_new = cloud_is_new || all_tag[k] != its_tag || all_a[k] != row[3] ||
@@ -181,77 +224,53 @@ void Scene::gather()
     all_tag[k] = its_tag;
     all_molecule[k] = its_molecule;
   }
-  const sd_spheres spheres = cloud();
-  const sd_law how = law();
-  packed.rotation = settings.rotation;
-  if (sd_packed_all(&packed, SD_ISA_BEST, &how, &spheres, n_all) != SD_OK) out_of_memory();
 }
 
-void Scene::to_cloud(const double *own_rows, std::vector<double> &cloud_rows)
+/* Numbers that each rank has, and where they begin when they stand one rank after the other */
+void Scene::shares(int width, std::vector<int> &counts, std::vector<int> &displs) const
 {
-  const size_t m = width();
-  const int n = own.size();
+  int n = 0;
+  for (int k : spheres_of_rank) {
+    counts.push_back(width * k);
+    displs.push_back(width * n);
+    n += k;
+  }
+}
+
+void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width)
+{
+  const size_t m = width, n = own.size();
   mine.resize(m * n + 1);
-  in_order_of_rank.resize(m * n_all + 1);
-  cloud_rows.resize(m * n_all + 1);
-  for (int k = 0; k < n; k++)
-    std::copy(own_rows + m * own[k], own_rows + m * own[k] + m, &mine[m * k]);
+  for (size_t k = 0; k < n; k++) std::copy_n(own_rows + m * own[k], m, &mine[m * k]);
   const double *from = mine.data();
   if (comm->nprocs > 1) {
+    std::vector<int> counts, displs;
+    shares(width, counts, displs);
+    in_order_of_rank.resize(m * n_all + 1);
     MPI_Allgatherv(mine.data(), m * n, MPI_DOUBLE, in_order_of_rank.data(), counts.data(),
                    displs.data(), MPI_DOUBLE, world);
     from = in_order_of_rank.data();
   }
-  for (int j = 0; j < n_all; j++)
-    std::copy(from + m * j, from + m * j + m, &cloud_rows[m * place[j]]);
+  for (int j = 0; j < n_all; j++) std::copy_n(from + m * j, m, cloud_rows + m * place_of[j]);
 }
 
-void Scene::from_cloud(const std::vector<double> &cloud_rows, double *own_rows)
+void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width)
 {
-  const size_t m = width();
-  const int n = own.size();
+  const size_t m = width, n = own.size();
   mine.resize(m * n + 1);
   in_order_of_rank.resize(m * n_all + 1);
   for (int j = 0; j < n_all; j++)
-    std::copy(&cloud_rows[m * place[j]], &cloud_rows[m * place[j]] + m, &in_order_of_rank[m * j]);
-  if (comm->nprocs > 1)
+    std::copy_n(cloud_rows + m * place_of[j], m, &in_order_of_rank[m * j]);
+  const double *from = in_order_of_rank.data();
+  if (comm->nprocs > 1) {
+    std::vector<int> counts, displs;
+    shares(width, counts, displs);
     MPI_Reduce_scatter(in_order_of_rank.data(), mine.data(), counts.data(), MPI_DOUBLE, MPI_SUM,
                        world);
-  else
-    mine = in_order_of_rank;
-  std::fill(own_rows, own_rows + m * atom->nlocal, 0.0);
-  for (int k = 0; k < n; k++) std::copy(&mine[m * k], &mine[m * k] + m, own_rows + m * own[k]);
-}
-
-sd_status Scene::apply(void *ctx, const double *F, double *u)
-{
-  Scene *scene = static_cast<Scene *>(ctx);
-  return callback([=] {
-    if (scene->all_pairs())
-      scene->apply_all(F, u);
-    else
-      scene->apply_list(F, u);
-    return SD_OK;
-  });
-}
-
-void Scene::apply_list(const double *F, double *u)
-{
-  const size_t m = width();
-  force.resize(m * a.size() + m);
-  std::copy(F, F + m * atom->nlocal, force.begin());
-  packing = FORCES;
-  Compat::forward_comm(comm, pair);
-  sd_packed_pairs(&packed, &list(), force.data(), u);
-}
-
-/* Every rank computes an equal share of the pairs, wherever the spheres are. */
-void Scene::apply_all(const double *F, double *u)
-{
-  to_cloud(F, all_force);
-  all_u.assign(width() * (size_t) n_all + 1, 0.0);
-  sd_packed_share(&packed, comm->me, comm->nprocs, all_force.data(), all_u.data());
-  from_cloud(all_u, u);
+    from = mine.data();
+  }
+  std::fill_n(own_rows, m * atom->nlocal, 0.0);
+  for (size_t k = 0; k < n; k++) std::copy_n(from + m * k, m, own_rows + m * own[k]);
 }
 
 /* MPI requires that all ranks receive identical results of an allreduce (MPI 3.1, 5.9.6), as the core does of its sums. */
@@ -273,9 +292,6 @@ int Scene::pack_forward_comm(int n, int *list, double *buf)
         break;
       case MOLECULES:
         buf[m++] = ubuf(molecule[i]).d;
-        break;
-      case FORCES:
-        for (int d = 0; d < width(); d++) buf[m++] = force[width() * (size_t) i + d];
         break;
       case VALUES:
         for (int d = 0; d < values_width; d++) buf[m++] = values[values_width * (size_t) i + d];
@@ -304,9 +320,6 @@ void Scene::unpack_forward_comm(int n, int first, double *buf)
       case MOLECULES:
         molecule[i] = ubuf(buf[m++]).i;
         break;
-      case FORCES:
-        for (int d = 0; d < width(); d++) force[width() * (size_t) i + d] = buf[m++];
-        break;
       case VALUES:
         for (int d = 0; d < values_width; d++) values[values_width * (size_t) i + d] = buf[m++];
         break;
@@ -322,8 +335,7 @@ double Scene::memory_usage() const
 {
   return sizeof(int) * ((double) candidates.capacity + pairs.capacity) +
       sizeof(double) *
-      ((double) a.capacity() + w.capacity() + force.capacity() + all_x.capacity() +
-       all_force.capacity());
+      ((double) a.capacity() + w.capacity() + 5.0 * n_all);
 }
 
 }    // namespace StokesDyn

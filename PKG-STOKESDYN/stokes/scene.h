@@ -8,8 +8,8 @@
 
 #include "pointers.h"
 
+#include "sd_mobility.h"
 #include "sd_neighbor.h"
-#include "sd_product.h"
 
 #include <cstdint>
 #include <functional>
@@ -30,6 +30,7 @@ class Scene : protected LAMMPS_NS::Pointers {
     double cutoff = 0.0;    // INFINITY: no cut-off
     bool clumps_only = false;
     bool rotation = false;    // vectors have force and torque, 6 numbers an atom
+    const sd_mobility_engine &engine() const;    // what sums u = Omega F
   } settings;
 
   Scene(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair, const std::string &command);
@@ -37,7 +38,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   Scene(const Scene &) = delete;
   Scene &operator=(const Scene &) = delete;
 
-  bool all_pairs() const;    // every sphere sees every other: no list, no ghosts
+  /* Which spheres of which ranks the engine sees. */
+  sd_view view() const { return settings.engine().view; }
 
   /* The spheres of this step: active[i] and eta[i] of this rank's atoms. Finds the pairs again if LAMMPS has re-neighboured.
    * Errors: a clump that the ghosts do not cover, or wider than half the periodic box. */
@@ -61,10 +63,11 @@ class Scene : protected LAMMPS_NS::Pointers {
    * ghosts, in order of LAMMPS. */
   void refresh_ghosts(std::vector<double> &ghosts, int width,
                       const std::function<void(int, double *)> &row);
+  void refresh_ghosts(const double *rows, double *ghosts, int width);
 
   void lists_are_stale() { stale = clumps_stale = true; }
 
-  /* Who sees whom since the last update(), without all_pairs(). */
+  /* View LIST: who sees whom since the last update(). */
   const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
   /* Since the last update(), on any rank: does one sphere see another? */
   bool anybody_sees() const;
@@ -72,18 +75,18 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_spheres local() const { return {positions(), a.data(), w.data()}; }
   sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }
 
-  /* All pairs: the spheres of all ranks that take part, in order of tag, the same on every rank. */
+  /* View ALL: the spheres of all ranks that take part, in order of tag, the same on every rank. */
   int cloud_size() const { return n_all; }
   sd_spheres cloud() const { return {all_x.data(), all_a.data(), all_w.data()}; }
   const std::vector<int64_t> &cloud_molecules() const { return all_molecule; }
   bool cloud_changed() const { return cloud_is_new; }    // other spheres than at the last update?
-  /* From rows of this rank's atoms to rows of the cloud, and, summed over the ranks, back. */
-  void to_cloud(const double *own_rows, std::vector<double> &cloud_rows);
-  void from_cloud(const std::vector<double> &cloud_rows, double *own_rows);
+  /* From rows of this rank's atoms to rows of the cloud, and, summed over the ranks, back; likewise for other users. */
+  void to_cloud(const double *own_rows, double *cloud_rows, int width);
+  void from_cloud(const double *cloud_rows, double *own_rows, int width);
 
-  /* u = Omega F, in the core's signature: ctx is a Scene. */
-  static sd_status apply(void *ctx, const double *F, double *u);
-  /* Sum over all ranks, likewise. */
+  /* u = Omega F since the last update(): context of sd_mobility_apply. */
+  sd_mobility *mobility() { return &omega; }
+  /* Sum over all ranks, in the core's signature: ctx is a Scene. */
   static sd_status sum(void *ctx, double *values, int count);
 
   int pack_forward_comm(int n, int *list, double *buf);
@@ -96,23 +99,22 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   bool stale = true, clumps_stale = true;
   bool filtered = false;              // does pairs differ from candidates?
-  std::vector<double> a, w, force;    // of owned and ghost atoms
+  std::vector<double> a, w;    // of owned and ghost atoms
   std::vector<int64_t> tag, molecule;
   std::vector<int> order;
   sd_neighbors candidates, pairs, rows;    // rows: one for each clump
 
   // all pairs: the active spheres of all ranks in order of tag, so that nothing depends on the decomposition
   std::vector<int> own;      // local index of this rank's
-  std::vector<int> place;    // [n_all] place of each sphere, the ranks' spheres one after the other
+  std::vector<int> place_of;    // [n_all] place of each sphere, the ranks' spheres one after the other
   std::vector<int> spheres_of_rank;    // [nprocs]
-  std::vector<int> counts, displs;     // of the numbers that a product gathers
-  std::vector<double> all_x, all_a, all_w, all_force, all_u, mine, in_order_of_rank;
+  std::vector<double> all_x, all_a, all_w, mine, in_order_of_rank;
   std::vector<int64_t> all_tag, all_molecule;
-  int n_all = 0, begin = 0;
+  int n_all = 0;
   bool cloud_is_new = true;
-  sd_packed packed;
+  sd_mobility omega;
 
-  enum { SPHERES, MOLECULES, FORCES, VALUES, ROWS } packing = SPHERES;
+  enum { SPHERES, MOLECULES, VALUES, ROWS } packing = SPHERES;
   double *values = nullptr;    // of refresh()
   int values_width = 0;
   const std::function<void(int, double *)> *row_of = nullptr;    // of refresh_ghosts()
@@ -123,8 +125,9 @@ class Scene : protected LAMMPS_NS::Pointers {
   void find_molecules();
   void check_clumps(const sd_neighbors &list, bool one_row);
   void gather();
-  void apply_list(const double *F, double *u);
-  void apply_all(const double *F, double *u);
+  void send_rows(double *ghosts, int width, const std::function<void(int, double *)> &row);
+  void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;
+  void place(int n_all);
   [[noreturn]] void complain_about_clumps(const std::vector<int64_t> &suspect);
   [[noreturn]] void out_of_memory();
 };

@@ -80,7 +80,7 @@ void StokesSettings::parse(Keywords &in)
 /* Which keywords go together. */
 void StokesSettings::check(const Keywords &in) const
 {
-  const bool all_pairs = std::isinf(scene.cutoff) && !scene.clumps_only;
+  const bool all_pairs = scene.engine().view == SD_VIEW_ALL;
   in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
   in.require(in.given("cut_off_distance") || scene.clumps_only,
              "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");

@@ -187,8 +187,8 @@ static void bench_product(int n, int m)
   head_of_products();
   for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
     if (!sd_isa_supported(isa)) continue;
-    sd_packed p = {.rotation = m == 6};
-    if (sd_packed_all(&p, isa, &RPY, &spheres, n) != SD_OK) abort();
+    sd_packed p = {0};
+    if (sd_packed_all(&p, isa, &RPY, &spheres, n, m) != SD_OK) abort();
     for (int one_sided = 0; one_sided < 2; one_sided++) {
       const int targets = one_sided ? n / 2 : n;
       for (int k = 0; k < RUNS; k++) {
@@ -222,8 +222,8 @@ static void bench_kernel(int n, int m)
   scene s = polydisperse(n, 1);
   const sd_spheres spheres = {s.x, s.a, s.w};
   double *rival, *F = random_forces(&s, m, &rival), t[RUNS];
-  sd_packed p = {.rotation = m == 6};
-  if (sd_packed_all(&p, SD_ISA_BEST, &RPY, &spheres, n) != SD_OK) abort();
+  sd_packed p = {0};
+  if (sd_packed_all(&p, SD_ISA_BEST, &RPY, &spheres, n, m) != SD_OK) abort();
   for (int k = 0; k < RUNS; k++) {
     const double begin = cpu();
     sd_packed_product(&p, 0, n, F, rival);
@@ -257,14 +257,14 @@ static void bench_list(int n, double neighbors, int m)
   head_of_products();
   for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
     if (!sd_isa_supported(isa)) continue;
-    sd_packed p = {.rotation = m == 6};
-    if (sd_packed_list(&p, isa, &RPY, &spheres, n) != SD_OK) abort();
+    sd_packed p = {0};
+    if (sd_packed_list(&p, isa, &RPY, &spheres, n, m) != SD_OK) abort();
     for (int k = 0; k < RUNS; k++) {
       double begin = cpu();
       for (int r = 0; r < repeat; r++) rival_list(m, s.x, s.a, rival, &list.pairs, expected);
       t[0][k] = (cpu() - begin) / repeat;
       begin = cpu();
-      for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, F, u);
+      for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, F, NULL, u);
       t[1][k] = (cpu() - begin) / repeat;
     }
     const double mine = median(t[1]), its = median(t[0]);
@@ -503,7 +503,7 @@ static void solve_rotating(const char *name, const scene *s, const double *spin,
                            void *ctx, double set_up)
 {
   const sd_spheres spheres = {s->x, s->a, s->w};
-  rotating g = {.packed = {.rotation = 1}, .n = s->n};
+  rotating g = {.n = s->n};
   double *slip = malloc(6 * sizeof(double) * (size_t) s->n), t[RUNS];
   double *F = malloc(6 * sizeof(double) * (size_t) s->n),
          *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 6));
@@ -520,7 +520,7 @@ static void solve_rotating(const char *name, const scene *s, const double *spin,
   sd_solve_report report;
   for (int k = 0; k < RUNS; k++) {
     const double begin = cpu();
-    if (sd_packed_all(&g.packed, SD_ISA_BEST, &RPY, &spheres, s->n) != SD_OK) abort();
+    if (sd_packed_all(&g.packed, SD_ISA_BEST, &RPY, &spheres, s->n, 6) != SD_OK) abort();
     if (sd_solve_gradients(&A, slip, 1e-6, 1000, F, work, &report) != SD_OK) abort();
     t[k] = cpu() - begin;
   }

@@ -4,6 +4,8 @@
 
 #include "check.h"
 
+#include "plain.h"
+
 #include "sd_neighbor.h"
 #include "sd_product.h"
 #include "sd_solve.h"
@@ -68,17 +70,17 @@ static inline sd_status scene_apply(void *ctx, const double *F, double *u)
   scene *s = ctx;
   const sd_spheres spheres = {s->x, s->a, s->w};
   s->products++;
+  const sd_law law = {s->kind, SD_TAPER_NONE, 0.0};
   if (s->fast) {
-    const sd_law law = {s->kind, SD_TAPER_NONE, 0.0};
     if (!s->packed.n)
-      assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, s->n), SD_OK);
+      assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, s->n, 3), SD_OK);
     sd_packed_product(&s->packed, 0, s->n, F, u);
   } else if (isinf(s->cutoff))
-    sd_product_all(s->kind, &spheres, s->n, 0, s->n, F, u);
+    plain_all(&law, &spheres, s->n, 3, 0, s->n, F, u);
   else {
     if (!s->list.first)
       assert_int_equal(sd_neighbors_cutoff(&s->list, s->x, s->n, s->n, s->cutoff), SD_OK);
-    sd_product_list(s->kind, &spheres, &s->list.pairs, F, u);
+    plain_list(&law, &spheres, s->n, 3, &s->list.pairs, F, u);
   }
   return SD_OK;
 }

@@ -22,7 +22,7 @@ typedef struct {
 
 static problem problem_create(scene s, int width)
 {
-  problem p = {.s = s, .width = width, .packed = {.rotation = width == 6}};
+  problem p = {.s = s, .width = width};
   p.spin = malloc(sizeof(double) * (size_t) s.n);
   for (int i = 0; i < s.n; i++) p.spin[i] = 4.0 / 3.0 * s.drag[i] * s.a[i] * s.a[i];
   return p;
@@ -40,7 +40,8 @@ static sd_status apply(void *ctx, const double *F, double *u)
   problem *p = ctx;
   const sd_spheres spheres = {p->s.x, p->s.a, p->s.w};
   if (!p->packed.n)
-    assert_int_equal(sd_packed_all(&p->packed, SD_ISA_BEST, &RPY, &spheres, p->s.n), SD_OK);
+    assert_int_equal(sd_packed_all(&p->packed, SD_ISA_BEST, &RPY, &spheres, p->s.n, p->width),
+                     SD_OK);
   sd_packed_product(&p->packed, 0, p->s.n, F, u);
   return SD_OK;
 }

@@ -121,8 +121,7 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
     ones[i] = 1.0;
   }
   const sd_spheres spheres = {s->x, s->a, ones};
-  operator op = {
-      .o = o, .packed = {.rotation = m == 6}, .n = n, .solves = SD_CLUMP_COLUMNS * times};
+  operator op = {.o = o, .n = n, .solves = SD_CLUMP_COLUMNS * times};
   sd_system A = {
       .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
   sd_sparse factor;
@@ -132,7 +131,7 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
     A.precondition = sd_sparse_apply;
     A.precondition_ctx = &factor;
   }
-  sd_status status = sd_packed_all(&op.packed, SD_ISA_BEST, &law, &spheres, n);
+  sd_status status = sd_packed_all(&op.packed, SD_ISA_BEST, &law, &spheres, n, m);
   for (int c = 0; c < SD_CLUMP_COLUMNS && status == SD_OK; c++) {
     sd_solve_report report;
     op.solve = SD_CLUMP_COLUMNS * k + c;

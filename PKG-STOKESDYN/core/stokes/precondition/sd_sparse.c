@@ -202,7 +202,7 @@ __attribute__((target("avx2,fma"))) static void six_avx2(int columns, const long
 static kernel *kernel_of(int width)
 {
   const struct sd_kernels *kernels = sd_kernels_of(sd_isa_best());
-  if (width == 3) return kernels ? kernels->sparse : plain_three;
+  if (width == 3) return kernels->sparse ? kernels->sparse : plain_three;
 #if defined(SD_HAS_X86_KERNELS)
   if (sd_isa_supported(SD_ISA_AVX2)) return six_avx2;
 #endif

@@ -1,4 +1,4 @@
-/* Kernels of the fast product of forces and torques (sd_grand.h); included by sd_product_kernel.h, whose vectors they use.
+/* Kernels of the fast product of forces and torques (width 6 in sd_product.h); included by sd_product_kernel.h, whose vectors they use.
  *
  * With y = 1/R and everything times 8 pi (undone at the end), for pairs that do not overlap:
  *   U_i += (y + y m/3) F + (y - y m) y^2 r (r.F) + y^3 T x r

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_grand.h"
 #include "sd_product_internal.h"
 
 double sd_taper_factor(const sd_law *law, double R)
@@ -15,83 +14,9 @@ double sd_taper_factor(const sd_law *law, double R)
   return s * s * (1.0 + 0.5 * q);
 }
 
-/* u += 1/(6 pi) w_i w_j [ f F + g rhat (rhat.F) ]; the factor w_i/(6 pi) is applied once per target. */
-static inline void add_pair(const sd_law *law, const double *xi, double ai, const double *xj,
-                            double aj, double wj, const double *F, double u[3])
-{
-  const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
-  const double R = sqrt(dx * dx + dy * dy + dz * dz);
-  double f, g;
-  if (law->tensor == SD_TENSOR_RPY)
-    sd_rpy_radial(R, ai, aj, &f, &g);
-  else
-    sd_oseen_radial(R, &f, &g);
-  if (law->taper != SD_TAPER_NONE) wj *= sd_taper_factor(law, R);
-  const double inv = R > 0.0 ? 1.0 / R : 0.0;
-  const double ex = dx * inv, ey = dy * inv, ez = dz * inv;
-  const double c = wj * g * (ex * F[0] + ey * F[1] + ez * F[2]);
-  f *= wj;
-  u[0] += f * F[0] + c * ex;
-  u[1] += f * F[1] + c * ey;
-  u[2] += f * F[2] + c * ez;
-}
-
-static inline void store(double scale, double u0, double u1, double u2, double *u)
-{
-  u[0] = scale * u0;
-  u[1] = scale * u1;
-  u[2] = scale * u2;
-}
-
-void sd_product_list_law(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
-                         const double *F, double *u)
-{
-  for (int i = 0; i < pairs->n; i++) {
-    double sum[3] = {0.0, 0.0, 0.0};
-    if (s->a[i] > 0.0)
-      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++) {
-        const int j = pairs->neighbor[k];
-        if (s->a[j] > 0.0)
-          add_pair(law, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
-                   F + 3 * (long) j, sum);
-      }
-    store(s->w[i] / (6.0 * SD_PI), sum[0], sum[1], sum[2], u + 3 * (long) i);
-  }
-}
-
-void sd_product_all_law(const sd_law *law, const sd_spheres *s, int n_all, int begin, int n,
-                        const double *F, double *u)
-{
-  for (int t = 0; t < n; t++) {
-    const int i = begin + t;
-    double sum[3] = {0.0, 0.0, 0.0};
-    if (s->a[i] > 0.0)
-      for (int j = 0; j < n_all; j++)
-        if (j != i && s->a[j] > 0.0)
-          add_pair(law, s->x + 3 * (long) i, s->a[i], s->x + 3 * (long) j, s->a[j], s->w[j],
-                   F + 3 * (long) j, sum);
-    store(s->w[i] / (6.0 * SD_PI), sum[0], sum[1], sum[2], u + 3 * (long) t);
-  }
-}
-
-void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F,
-                     double *u)
-{
-  const sd_law law = {kind, SD_TAPER_NONE, 0.0};
-  sd_product_list_law(&law, s, pairs, F, u);
-}
-
-void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n,
-                    const double *F, double *u)
-{
-  const sd_law law = {kind, SD_TAPER_NONE, 0.0};
-  sd_product_all_law(&law, s, n_all, begin, n, F, u);
-}
-
-/* --- the fast product --------------------------------------------------------------------------------------------- */
-
 const struct sd_kernels *sd_kernels_of(sd_isa isa)
 {
+  if (isa == SD_ISA_PLAIN) return &sd_kernels_plain;
 #if defined(SD_HAS_X86_KERNELS)
   if (isa == SD_ISA_BASELINE) return &sd_kernels_baseline;
   if (isa == SD_ISA_AVX2) return &sd_kernels_avx2;
@@ -99,13 +24,12 @@ const struct sd_kernels *sd_kernels_of(sd_isa isa)
 #elif defined(SD_HAS_PORTABLE_KERNELS)
   if (isa == SD_ISA_BASELINE) return &sd_kernels_baseline;
 #endif
-  (void) isa;
   return NULL;
 }
 
 int sd_isa_supported(sd_isa isa)
 {
-  if (isa == SD_ISA_BEST || isa == SD_ISA_PLAIN) return 1;
+  if (isa == SD_ISA_BEST) return 1;
   if (!sd_kernels_of(isa)) return 0;
 #if defined(SD_HAS_X86_KERNELS)
   if (isa == SD_ISA_AVX512)
@@ -129,11 +53,6 @@ const char *sd_isa_name(sd_isa isa)
   return names[isa];
 }
 
-static int width(const sd_packed *p)
-{
-  return p->rotation ? 6 : 3;
-}
-
 void sd_packed_free(sd_packed *p)
 {
   free(p->memory);
@@ -153,16 +72,14 @@ static double *reserve(sd_packed *p, long doubles)
 }
 
 /* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2, because the first guess of a root
- * may be in single precision. Spheres so small or so far away that their squares leave its range: the plain product. */
+ * may be in single precision. Spheres so small or so far away that their squares leave its range: plain C, not scaled. */
 static int fits(sd_packed *p)
 {
   const double *x = p->spheres.x, *a = p->spheres.a;
   double largest = 0.0, smallest = INFINITY, far = 0.0;
   int sound = 1;
-  p->active = 0;
   for (int i = 0; i < p->n; i++) {
     if (!(a[i] > 0.0)) continue;
-    p->active++;
     largest = fmax(largest, a[i]);
     smallest = fmin(smallest, a[i]);
     for (int d = 0; d < 3; d++) {
@@ -171,41 +88,49 @@ static int fits(sd_packed *p)
       far = fmax(far, c);
     }
   }
-  if (p->active == 0 || !sound || !(largest < INFINITY)) return 0;
+  if (!sound || !(largest > 0.0) || !(largest < INFINITY)) return 0;
   const int exponent = -ilogb(largest);
   if (abs(exponent) > 1000) return 0;
   p->scale = ldexp(1.0, exponent);
   return far * p->scale < 1e15 && smallest * p->scale > 1e-14;
 }
 
-static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n)
+/* Which kernel, in which unit of length */
+static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                          int width)
 {
   if (isa == SD_ISA_BEST) isa = sd_isa_best();
-  p->kernels = sd_kernels_of(isa);
   p->spheres = *s;
   p->law = *law;
   p->n = n;
-  if (p->kernels && !fits(p)) p->kernels = NULL;
-  if (p->kernels) p->law.range *= p->scale;
+  p->width = width;
+  if (isa == SD_ISA_PLAIN || !fits(p)) {
+    isa = SD_ISA_PLAIN;
+    p->scale = 1.0;
+  }
+  const struct sd_kernels *kernels = sd_kernels_of(isa);
+  p->kernel = width == 6 ? &kernels->torques : &kernels->forces;
+  p->law.range *= p->scale;
+  p->active = 0;
+  for (int i = 0; i < n; i++) p->active += s->a[i] > 0.0;
 }
 
 /* Columns and rows that stand for nothing: no force, and far from everything. */
 static const double nowhere = 1e16;
 
-sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n)
+sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                        int width)
 {
-  begin_packing(p, isa, law, s, n);
-  p->by_list = 0;
-  if (!p->kernels) return SD_OK;
-  const int lanes = p->kernels->lanes;
+  begin_packing(p, isa, law, s, n, width);
+  const int lanes = p->kernel->lanes;
   p->padded = (p->active + lanes - 1) / lanes * lanes;
   const long column = (p->padded + 7) / 8 * 8; /* whole cache lines */
-  double *m = reserve(p, (5 + 2 * width(p)) * column), *next = m;
-  if (!m) return SD_ENOMEMORY;
+  double *next = reserve(p, (5 + 2 * width) * column);
+  if (!next) return SD_ENOMEMORY;
   double **columns[] = {&p->x, &p->y, &p->z, &p->a};
   for (int k = 0; k < 4; k++, next += column) *columns[k] = next;
-  for (int k = 0; k < width(p); k++, next += column) p->f[k] = next;
-  for (int k = 0; k < width(p); k++, next += column) p->u[k] = next;
+  for (int k = 0; k < width; k++, next += column) p->f[k] = next;
+  for (int k = 0; k < width; k++, next += column) p->u[k] = next;
   p->index = (int *) next;
   int k = 0;
   for (int i = 0; i < n; i++) {
@@ -221,26 +146,25 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
     p->index[k] = n;
     p->x[k] = p->y[k] = p->z[k] = nowhere;
     p->a[k] = 0.0;
-    for (int d = 0; d < width(p); d++) p->f[d][k] = 0.0;
+    for (int d = 0; d < width; d++) p->f[d][k] = 0.0;
   }
   return SD_OK;
 }
 
-sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n)
+sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                         int width)
 {
-  begin_packing(p, isa, law, s, n);
-  p->by_list = 1;
-  if (!p->kernels) return SD_OK;
+  begin_packing(p, isa, law, s, n, width);
   const long rows = n + 1;
-  double *m = reserve(p, (p->rotation ? 18 : 11) * rows), *next = m + 8 * rows;
+  double *m = reserve(p, (width == 6 ? 18 : 11) * rows), *next = m + 8 * rows;
   if (!m) return SD_ENOMEMORY;
   p->row = m;
-  if (p->rotation) {
+  if (width == 6) {
     p->torque_row = next;
     next += 4 * rows;
     memset(p->torque_row, 0, 4 * sizeof(double) * (size_t) rows);
   }
-  for (int d = 0; d < width(p); d++, next += rows) p->u[d] = next;
+  for (int d = 0; d < width; d++, next += rows) p->u[d] = next;
   for (long i = 0; i < n; i++) {
     double *row = p->row + 8 * i;
     const int takes_part = s->a[i] > 0.0;
@@ -255,87 +179,70 @@ sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_s
 /* The kernels' sums are times 8 pi and in scaled lengths; torques go in times the scale. */
 static void take_sums(const sd_packed *p, int i, int k, double *u)
 {
-  const double unit = p->scale * p->spheres.w[i] / (8.0 * SD_PI);
-  store(unit, p->u[0][k], p->u[1][k], p->u[2][k], u);
-  if (p->rotation) store(unit * p->scale, p->u[3][k], p->u[4][k], p->u[5][k], u + 3);
+  const double unit = p->scale * p->spheres.w[i] / (8.0 * SD_PI), turn = unit * p->scale;
+  for (int d = 0; d < 3; d++) u[d] = unit * p->u[d][k];
+  for (int d = 3; d < p->width; d++) u[d] = turn * p->u[d][k];
 }
 
 static void load_columns(sd_packed *p, const double *F)
 {
+  const long m = p->width;
   for (int k = 0; k < p->active; k++) {
     const long i = p->index[k];
     const double w = p->spheres.w[i];
-    if (!p->rotation)
-      for (int d = 0; d < 3; d++) p->f[d][k] = w * F[3 * i + d];
-    else
-      for (int d = 0; d < 3; d++) {
-        p->f[d][k] = w * F[6 * i + d];
-        p->f[3 + d][k] = w * p->scale * F[6 * i + 3 + d];
-      }
+    for (int d = 0; d < 3; d++) p->f[d][k] = w * F[m * i + d];
+    for (int d = 3; d < m; d++) p->f[d][k] = w * p->scale * F[m * i + d];
   }
-  for (int d = 0; d < width(p); d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
+  for (int d = 0; d < m; d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
 }
 
 static void unload_columns(const sd_packed *p, int k0, int k1, int begin, int count, double *u)
 {
-  const long m = width(p);
+  const long m = p->width;
   memset(u, 0, sizeof(double) * (size_t) (m * count));
-  for (int k = k0; k < k1; k++) {
-    const int i = p->index[k];
-    take_sums(p, i, k, u + m * (i - begin));
-  }
+  for (int k = k0; k < k1; k++) take_sums(p, p->index[k], k, u + m * (p->index[k] - begin));
 }
 
 void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u)
 {
-  if (!p->kernels) {
-    (p->rotation ? sd_product_grand_all : sd_product_all_law)(&p->law, &p->spheres, p->n, begin,
-                                                              count, F, u);
-    return;
-  }
   int k0 = 0, k1 = p->active;
   while (k0 < k1 && p->index[k0] < begin) k0++;
   while (k1 > k0 && p->index[k1 - 1] >= begin + count) k1--;
   load_columns(p, F);
   if (k1 - k0 == p->active)
-    (p->rotation ? p->kernels->grand_symmetric : p->kernels->symmetric)(p, 0, 1);
+    p->kernel->symmetric(p, 0, 1);
   else
-    (p->rotation ? p->kernels->grand_targets : p->kernels->targets)(p, k0, k1);
+    p->kernel->targets(p, k0, k1);
   unload_columns(p, k0, k1, begin, count, u);
 }
 
 void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double *u)
 {
-  if (!p->kernels) {
-    const int begin = (int) ((long) p->n * part / parts),
-              end = (int) ((long) p->n * (part + 1) / parts);
-    const long m = width(p);
-    memset(u, 0, sizeof(double) * (size_t) (m * p->n));
-    (p->rotation ? sd_product_grand_all : sd_product_all_law)(&p->law, &p->spheres, p->n, begin,
-                                                              end - begin, F, u + m * begin);
-    return;
-  }
   load_columns(p, F);
-  (p->rotation ? p->kernels->grand_symmetric : p->kernels->symmetric)(p, part, parts);
+  p->kernel->symmetric(p, part, parts);
   unload_columns(p, 0, p->active, 0, p->n, u);
 }
 
-void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, double *u)
+/* Spheres begin ... end - 1; F of the first of them on */
+static void load_rows(sd_packed *p, long begin, long end, const double *F)
 {
-  if (!p->kernels) {
-    (p->rotation ? sd_product_grand_list : sd_product_list_law)(&p->law, &p->spheres, pairs, F, u);
-    return;
-  }
-  const long m = width(p);
-  for (long i = 0; i < p->n; i++) {
+  const long m = p->width;
+  for (long i = begin; i < end; i++, F += m) {
     double *row = p->row + 8 * i;
     const double w = row[3] > 0.0 ? p->spheres.w[i] : 0.0;
-    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * F[m * i + d] : 0.0;
-    if (p->rotation)
-      for (int d = 0; d < 3; d++)
-        p->torque_row[4 * i + d] = w > 0.0 ? w * p->scale * F[6 * i + 3 + d] : 0.0;
+    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * F[d] : 0.0;
+    for (int d = 3; d < m; d++)
+      p->torque_row[4 * i + d - 3] = w > 0.0 ? w * p->scale * F[d] : 0.0;
   }
-  (p->rotation ? p->kernels->grand_list : p->kernels->list)(p, pairs);
+}
+
+void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, const double *ghosts,
+                     double *u)
+{
+  const long m = p->width;
+  load_rows(p, 0, pairs->n, F);
+  if (ghosts) load_rows(p, pairs->n, p->n, ghosts);
+  p->kernel->list(p, pairs);
   for (int i = 0; i < pairs->n; i++) {
     if (p->row[8 * (long) i + 3] > 0.0)
       take_sums(p, i, i, u + m * i);

@@ -45,25 +45,15 @@ typedef struct {
   const int *neighbor;
 } sd_pairs;
 
-/* The product in plain C, pair by pair: no memory of its own. What the packed product below is compared with.
- * F [3 * all spheres], ghosts included -> u [3n] */
-void sd_product_list(sd_tensor kind, const sd_spheres *s, const sd_pairs *pairs, const double *F,
-                     double *u);
-
-/* All pairs: targets begin ... begin + n - 1 of n_all spheres, sources all of them. F [3 n_all] -> u [3n]. */
-void sd_product_all(sd_tensor kind, const sd_spheres *s, int n_all, int begin, int n,
-                    const double *F, double *u);
-
-/* The same with any law. */
-void sd_product_list_law(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
-                         const double *F, double *u);
-void sd_product_all_law(const sd_law *law, const sd_spheres *s, int n_all, int begin, int n,
-                        const double *F, double *u);
-
-/* --- the fast product -------------------------------------------------------------------------------------------------------
- * Vector kernels on a copy of the spheres in the order that the kernel reads, made once per solve. Each instruction set has its
- * own build of one source (sd_product_kernel.h); the best that the processor has is taken at run time. Relative error of a pair's
- * block: 1e-15, like the plain product. The order of summation is fixed: same input, same instruction set, same bits. */
+/* --- the product ----------------------------------------------------------------------------------------------------------
+ * Kernels on a copy of the spheres in the order that they read, made once per solve. Each instruction set has its own build of one
+ * source (sd_product_kernel.h); the best that the processor has is taken at run time. SD_ISA_PLAIN is plain C, pair by pair by the
+ * formulas of sd_tensor.h: for other compilers, for lengths beyond the range of the vector kernels, and to compare those with.
+ * Relative error of a pair's block: 1e-15. The order of summation is fixed: same input, same instruction set, same bits.
+ *
+ * Vectors have `width` numbers a sphere: 3, force and velocity; or 6, force and torque, velocity and angular velocity:
+ *
+ *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j),    M_ij the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the law */
 typedef enum { SD_ISA_BEST, SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512 } sd_isa;
 
 /* Does this build hold kernels for it, and does the processor run them? SD_ISA_PLAIN: always. */
@@ -72,23 +62,26 @@ int sd_isa_supported(sd_isa isa);
 sd_isa sd_isa_best(void);
 const char *sd_isa_name(sd_isa isa);
 
-struct sd_kernels;
+struct sd_kernel;
 
-/* Zero-initialise; sd_packed_free in the end. Members but the first are the kernels' own. */
+/* Zero-initialise; sd_packed_free in the end. Members are the kernels' own. */
 typedef struct {
-  int rotation; /* the caller's, before packing: torques too (sd_grand.h), vectors have 6 numbers a sphere instead of 3 */
-  const struct sd_kernels *kernels; /* NULL: plain */
-  sd_spheres spheres;               /* as given; they must outlive the products */
+  int width;
+  const struct sd_kernel *kernel;
+  /* as given; they must outlive the products */
+  sd_spheres spheres;
   sd_law law;
-  int n;        /* spheres */
-  int active;   /* those with a > 0, gathered to the front of the arrays below */
-  int padded;   /* rounded up to whole vectors */
-  int by_list;  /* packed for lists (rows) or for all pairs (columns) */
-  double scale; /* lengths below are times this power of two, so that radii are about 1 */
-  int *index;   /* [padded] sphere of each column */
-  double *x, *y, *z, *a, *f[6], *u[6]; /* [padded]; f = w F, u = sums; then those of the torques */
-  double *row; /* [8 (n+1)] x y z a, then w F; the last takes the place of missing neighbours */
-  double *torque_row; /* [4 (n+1)] w T */
+  int n;
+  /* spheres with a > 0, gathered to the front of the columns; rounded up to whole vectors */
+  int active, padded;
+  /* lengths below are times this power of two, so that radii are about 1 */
+  double scale;
+  /* [padded] sphere of each column */
+  int *index;
+  /* columns [padded]; f = w F, u = sums; then those of the torques */
+  double *x, *y, *z, *a, *f[6], *u[6];
+  /* rows [8 (n+1)] x y z a, then w F; the last takes the place of missing neighbours. [4 (n+1)] w T */
+  double *row, *torque_row;
   void *memory;
   long capacity;
 } sd_packed;
@@ -97,19 +90,23 @@ void sd_packed_free(sd_packed *p);
 
 /* Copy n spheres for products of all pairs, or for products by list (ghosts included). Memory grows and is kept.
  * SD_OK or SD_ENOMEMORY. */
-sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
-sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n);
+sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                        int width);
+sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                         int width);
 
-/* Packed for all pairs: F [3n] -> u [3 count] (with torques 6 each, here and below), targets begin ... begin + count - 1, sources all. With all targets each pair is
- * computed once for both its spheres, which is about 1.4 times faster. */
+/* Packed for all pairs: F [width n] -> u [width count], targets begin ... begin + count - 1, sources all. With all targets each
+ * pair is computed once for both its spheres, which is about 1.4 times faster. */
 void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u);
 
-/* A share of the same: part `part` of `parts`, whose sum over all parts is the product. F [3n] -> u [3n].
+/* A share of the same: part `part` of `parts`, whose sum over all parts is the product. F [width n] -> u [width n].
  * Each pair belongs to one part; shares take equal time wherever the spheres are. */
 void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double *u);
 
-/* Packed for lists: F [3n] -> u [3 pairs->n]. */
-void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, double *u);
+/* Packed for lists: F [width pairs->n] of the targets and ghosts [width (n - pairs->n)] of the spheres after them, NULL if there
+ * are none -> u [width pairs->n]. */
+void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, const double *ghosts,
+                     double *u);
 
 /* Keep the pairs that interact now: centre distance up to cutoff (INFINITY: all), both radii > 0.
  *   candidates, s    in

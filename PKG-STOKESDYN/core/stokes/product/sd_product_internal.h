@@ -4,21 +4,25 @@
 
 #include "sd_product.h"
 
-struct sd_kernels {
+/* One kind of product. Sums are times 8 pi and without w of the target; lengths are scaled.
+ *   symmetric   columns, u += the part's share of all pairs; targets   columns i0 ... i1 - 1, u +=; list   rows, u = */
+struct sd_kernel {
   int lanes; /* doubles of a vector: padding of the columns */
-  void (*symmetric)(const sd_packed *p, int part, int parts);       /* columns: u += */
-  void (*targets)(const sd_packed *p, int i0, int i1);              /* columns: u += */
-  void (*list)(const sd_packed *p, const sd_pairs *pairs);          /* rows: u = */
-  void (*grand_symmetric)(const sd_packed *p, int part, int parts); /* the same with torques */
-  void (*grand_targets)(const sd_packed *p, int i0, int i1);
-  void (*grand_list)(const sd_packed *p, const sd_pairs *pairs);
-  /* out += L L^T in (sd_precondition.h): vectors of 4 doubles a sphere, blocks of 3 x 4 floats */
+  void (*symmetric)(const sd_packed *p, int part, int parts);
+  void (*targets)(const sd_packed *p, int i0, int i1);
+  void (*list)(const sd_packed *p, const sd_pairs *pairs);
+};
+
+struct sd_kernels {
+  struct sd_kernel forces, torques;
+  /* out += L L^T in (sd_sparse.h): vectors of 4 doubles a sphere, blocks of 3 x 4 floats. NULL: plain C has none */
   void (*sparse)(int columns, const long *first, const int *row, const float *value,
                  const double *in, double *out);
 };
 
 /* NULL: this build has none for it. isa is not SD_ISA_BEST. */
 const struct sd_kernels *sd_kernels_of(sd_isa isa);
+extern const struct sd_kernels sd_kernels_plain;
 
 /* The kernels are written with the vector types of GCC and clang; the files of AVX2 and AVX-512 need the compiler's options for
  * them (CMakeLists.txt). SD_PORTABLE_KERNELS: on x86-64 too what other processors get; SD_NO_KERNELS: plain C, any compiler. */

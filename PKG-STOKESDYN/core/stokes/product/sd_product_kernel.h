@@ -312,6 +312,7 @@ static void run_sparse(int columns, const long *first, const int *row, const flo
   }
 }
 
-const struct sd_kernels SD_KERNELS = {LANES,          run_symmetric,       run_targets,
-                                      run_list,       run_grand_symmetric, run_grand_targets,
-                                      run_grand_list, run_sparse};
+const struct sd_kernels SD_KERNELS = {
+    {LANES, run_symmetric, run_targets, run_list},
+    {LANES, run_grand_symmetric, run_grand_targets, run_grand_list},
+    run_sparse};

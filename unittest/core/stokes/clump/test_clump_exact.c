@@ -1,5 +1,6 @@
 /* Resistance of rigid clumps: published values of the model (shell 1), exact values (shells). */
 #include "clumps.h"
+#include "plain.h"
 
 #include "sd_product.h"
 #include "sd_solve.h"
@@ -16,7 +17,7 @@ static sd_status apply(void *ctx, const double *F, double *u)
 {
   const pairs *p = ctx;
   const sd_spheres s = {p->x, p->a, p->ones};
-  sd_product_all(SD_TENSOR_RPY, &s, p->n, 0, p->n, F, u);
+  plain_all(&(sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, &s, p->n, 3, 0, p->n, F, u);
   return SD_OK;
 }
 

@@ -2,7 +2,6 @@
 #include "clouds.h"
 
 #include "sd_clump.h"
-#include "sd_grand.h"
 #include "sd_precondition.h"
 
 #include <string.h>
@@ -29,7 +28,7 @@ static sd_status apply_pairs(void *ctx, const double *F, double *u)
 {
   const rotating *g = ctx;
   const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
-  sd_product_grand_all(&g->law, &spheres, g->s->n, 0, g->s->n, F, u);
+  plain_all(&g->law, &spheres, g->s->n, 6, 0, g->s->n, F, u);
   return SD_OK;
 }
 

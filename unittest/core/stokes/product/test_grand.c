@@ -1,7 +1,5 @@
 #include "scene.h"
 
-#include "sd_grand.h"
-
 enum { N = 30 };
 
 static const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
@@ -34,14 +32,14 @@ static void products_are_sums_of_grand_blocks(void **state)
         for (int q = 0; q < 6; q++) expected[6 * i + p] += M[6 * p + q] * F[6 * j + q];
     }
   for (int i = 0; i < 6 * N; i++) scale = fmax(scale, fabs(expected[i]));
-  sd_product_grand_all(&law, &spheres, N, 0, N, F, all);
-  sd_product_grand_all(&law, &spheres, N, 17, 10, F, part);
+  plain_all(&law, &spheres, N, 6, 0, N, F, all);
+  plain_all(&law, &spheres, N, 6, 17, 10, F, part);
   sd_neighbors wide = {0}, close = {0};
   assert_int_equal(sd_neighbors_cutoff(&wide, s.x, N, N, 100.0), SD_OK);
   assert_int_equal(sd_neighbors_reserve(&close, N, wide.first[N]), SD_OK);
   sd_pairs_within(&wide.pairs, &spheres, INFINITY, close.first, close.neighbor);
   close.pairs.n = N;
-  sd_product_grand_list(&law, &spheres, &close.pairs, F, list);
+  plain_list(&law, &spheres, N, 6, &close.pairs, F, list);
   for (int i = 0; i < 6 * N; i++) {
     CHECK_NEAR(all[i], expected[i], 1e-14 * scale);
     CHECK_NEAR(list[i], expected[i], 1e-14 * scale);
@@ -56,7 +54,7 @@ static sd_status apply_grand(void *ctx, const double *F, double *u)
 {
   scene *s = ctx;
   const sd_spheres spheres = {s->x, s->a, s->w};
-  sd_product_grand_all(&law, &spheres, s->n, 0, s->n, F, u);
+  plain_all(&law, &spheres, s->n, 6, 0, s->n, F, u);
   return SD_OK;
 }
 

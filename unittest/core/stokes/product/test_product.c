@@ -34,7 +34,7 @@ static void products_are_sums_of_blocks(void **state)
 
     scene_apply(&s, F, all);
     const sd_spheres spheres = {s.x, s.a, s.w};
-    sd_product_all(kind, &spheres, N, 17, 10, F, part);
+    plain_all(&(sd_law){kind, SD_TAPER_NONE, 0.0}, &spheres, N, 3, 17, 10, F, part);
     s.cutoff = 100.0;
     scene_apply(&s, F, list);
     for (int i = 0; i < 3 * N; i++) {

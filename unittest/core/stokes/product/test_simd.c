@@ -1,8 +1,6 @@
 /* The packed product against the plain one, for every instruction set that this machine runs. */
 #include "scene.h"
 
-#include "sd_grand.h"
-
 #include <string.h>
 
 static const sd_isa isas[] = {SD_ISA_BEST, SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2,
@@ -71,17 +69,16 @@ static void check_width(const scene *s, double range, int m)
 
   for (int taper = SD_TAPER_NONE; taper <= SD_TAPER_SPHERICAL; taper++) {
     const sd_law law = {s->kind, taper, range};
-    (m == 6 ? sd_product_grand_all : sd_product_all_law)(&law, &spheres, s->n, 0, s->n, F,
-                                                         expected);
-    (m == 6 ? sd_product_grand_list : sd_product_list_law)(&law, &spheres, &list, F, u);
+    plain_all(&law, &spheres, s->n, m, 0, s->n, F, expected);
+    plain_list(&law, &spheres, s->n, m, &list, F, u);
     compare(s, m, F, u, expected, 0, s->n, "plain list");
     for (size_t k = 0; k < sizeof(isas) / sizeof(isas[0]); k++) {
       char what[80];
       if (!sd_isa_supported(isas[k])) continue;
       snprintf(what, sizeof(what), "%s, width %d, tensor %d, taper %d", sd_isa_name(isas[k]), m,
                s->kind, taper);
-      sd_packed p = {.rotation = m == 6};
-      assert_int_equal(sd_packed_all(&p, isas[k], &law, &spheres, s->n), SD_OK);
+      sd_packed p = {0};
+      assert_int_equal(sd_packed_all(&p, isas[k], &law, &spheres, s->n, m), SD_OK);
       for (int again = 0; again < 2; again++) { /* a second product finds nothing of the first */
         sd_packed_product(&p, 0, s->n, F, u);
         compare(s, m, F, u, expected, 0, s->n, what);
@@ -97,8 +94,8 @@ static void check_width(const scene *s, double range, int m)
         }
         compare(s, m, F, sum, expected, 0, s->n, what);
       }
-      assert_int_equal(sd_packed_list(&p, isas[k], &law, &spheres, s->n), SD_OK);
-      sd_packed_pairs(&p, &list, F, u);
+      assert_int_equal(sd_packed_list(&p, isas[k], &law, &spheres, s->n, m), SD_OK);
+      sd_packed_pairs(&p, &list, F, NULL, u);
       compare(s, m, F, u, expected, 0, s->n, what);
       sd_packed_free(&p);
     }
@@ -236,7 +233,7 @@ static void not_a_number_comes_through(void **state)
       else
         s.x[17] = NAN;
       sd_packed p = {0};
-      assert_int_equal(sd_packed_all(&p, isas[k], &law, &spheres, s.n), SD_OK);
+      assert_int_equal(sd_packed_all(&p, isas[k], &law, &spheres, s.n, 3), SD_OK);
       sd_packed_product(&p, 0, s.n, F, u);
       assert_true(isnan(u[0]) && isnan(u[89]));
       sd_packed_free(&p);
@@ -258,7 +255,7 @@ static void the_product_is_symmetric(void **state)
     G[i] = uniform(&seed, 0, 1);
   }
   sd_packed p = {0};
-  assert_int_equal(sd_packed_all(&p, SD_ISA_BEST, &law, &spheres, s.n), SD_OK);
+  assert_int_equal(sd_packed_all(&p, SD_ISA_BEST, &law, &spheres, s.n, 3), SD_OK);
   sd_packed_product(&p, 0, s.n, F, uF);
   sd_packed_product(&p, 0, s.n, G, uG);
   for (int i = 0; i < 768; i++) {
@@ -301,10 +298,10 @@ static void taper_keeps_the_matrix_positive_definite(void **state)
     sd_neighbors list = {0};
     assert_int_equal(sd_neighbors_cutoff(&list, s.x, N, N, law.range ? law.range : 1.0), SD_OK);
     sd_packed p = {0};
-    assert_int_equal(sd_packed_list(&p, SD_ISA_BEST, &law, &spheres, N), SD_OK);
+    assert_int_equal(sd_packed_list(&p, SD_ISA_BEST, &law, &spheres, N, 3), SD_OK);
     for (int k = 0; k < 3 * N; k++) {
       F[k] = 1.0;
-      sd_packed_pairs(&p, &list.pairs, F, u);
+      sd_packed_pairs(&p, &list.pairs, F, NULL, u);
       F[k] = 0.0;
       for (int i = 0; i < 3 * N; i++) M[3 * N * i + k] = s.drag[0] * u[i] + (i == k ? 1.0 : 0.0);
     }

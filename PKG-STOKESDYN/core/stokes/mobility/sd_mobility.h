@@ -1,0 +1,106 @@
+/* u = Omega F for spheres where they stand: the pair part of the mobility, whatever sums it.
+ *
+ * An engine is a table of functions. A new one is a file in this folder that defines the table, and a line in sd_mobility.c.
+ * Whoever uses an engine knows it by this header alone: solvers, preconditioners, bodies. The caller never asks which engine it
+ * has; it asks the table what the engine needs.
+ *
+ * The core knows no ranks. This rank has n spheres, whose rows go in as F and come out as u; what an engine must know of others it
+ * asks of its caller, through sd_world. */
+#ifndef SD_MOBILITY_H
+#define SD_MOBILITY_H
+
+#include <stddef.h>
+
+#include "sd_product.h"
+#include "sd_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What an engine may ask of its caller. Rows have `width` numbers; each function returns SD_OK or why it failed, and all ranks
+ * call it together. NULL: one rank, in open space, where the answer is what was asked with. A grid adds the exchange of its boxes
+ * here. */
+typedef struct {
+  void *ctx;
+  /* this rank among `ranks`; 0 of 0 is read as 0 of 1 */
+  int me, ranks;
+  /* view LIST: rows [width n] of this rank's spheres -> ghosts [width (n_all - n)], the rows of their ghosts */
+  sd_status (*refresh)(void *ctx, const double *rows, double *ghosts, int width);
+  /* numbers summed over the ranks, in place */
+  sd_status (*sum)(void *ctx, double *values, int count);
+  /* view ALL: rows [width n] of this rank -> all [width n_all], and back, summed over the ranks */
+  sd_status (*spread)(void *ctx, const double *rows, double *all, int width);
+  sd_status (*collect)(void *ctx, const double *all, double *rows, int width);
+} sd_world;
+
+/* Which spheres an engine sees:
+ *   LIST   this rank's n, then the ghosts around them; pairs within the engine's reach, one row for each of the n
+ *   ALL    those of all ranks in one order, the same on every rank; no ghosts, no pairs */
+typedef enum { SD_VIEW_LIST, SD_VIEW_ALL } sd_view;
+
+/* How the spheres interact: what is known before they are placed. law.range is the cut-off, and the taper's range; INFINITY:
+ * every sphere sees all that it is given. width 3 or 6 as in sd_product.h. */
+typedef struct {
+  sd_law law;
+  int width;
+} sd_mobility_how;
+
+/* The spheres of one solve. All that it points to outlives the solve. */
+typedef struct {
+  sd_mobility_how how;
+  int n, n_all;
+  sd_spheres spheres;
+  const sd_pairs *pairs;
+  sd_world world;
+} sd_mobility_scene;
+
+typedef struct {
+  /* as error messages call it */
+  const char *name;
+  /* bytes of its own struct, zero before the first place */
+  size_t state;
+  sd_view view;
+  /* how far pairs and ghosts must reach, centre to centre; 0: no ghosts; INFINITY: as far as the pairs that the caller chose */
+  double (*ghosts)(const sd_mobility_how *how);
+  /* the spheres have moved: once before the products of a solve. SD_OK, SD_ENOMEMORY or what a function of sd_world said */
+  sd_status (*place)(void *state, const sd_mobility_scene *scene);
+  /* F [width n] -> u [width n]. A sphere without radius gets 0 and its F is not read. SD_OK or as place */
+  sd_status (*apply)(void *state, const double *F, double *u);
+  /* diagonal of Omega [width n], what a sphere does to itself beyond 1/(6 pi eta a): through its periodic images. NULL: nothing */
+  void (*self)(const void *state, double *diagonal);
+  void (*free)(void *state);
+} sd_mobility_engine;
+
+/* Every sphere of all ranks with every other: cost n_all^2 / ranks, nothing depends on how the spheres are dealt to the ranks. */
+extern const sd_mobility_engine sd_mobility_all_pairs;
+/* The pairs that the caller lists: within a cut-off, or of one clump. */
+extern const sd_mobility_engine sd_mobility_list;
+
+/* [sd_mobility_count] all of them */
+extern const sd_mobility_engine *const sd_mobility_engines[];
+extern const int sd_mobility_count;
+
+/* An engine with its state. Zero-initialise; sd_mobility_free in the end. */
+typedef struct {
+  const sd_mobility_engine *engine;
+  void *state;
+  int width, n;
+} sd_mobility;
+
+/* The same engine as before keeps its memory. SD_OK or SD_ENOMEMORY, or as place. */
+sd_status sd_mobility_place(sd_mobility *m, const sd_mobility_engine *engine,
+                            const sd_mobility_scene *scene);
+
+/* In the solver's signature sd_apply: ctx is an sd_mobility. */
+sd_status sd_mobility_apply(void *ctx, const double *F, double *u);
+
+/* diagonal [width n]: engine->self, or 0 */
+void sd_mobility_self(const sd_mobility *m, double *diagonal);
+
+void sd_mobility_free(sd_mobility *m);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,133 @@
+/* The product in plain C, pair by pair by the functions of sd_tensor.h: the same table as the vector kernels have, with vectors of
+ * one lane. Sums are times 8 pi: translation needs 4/3 for its 6 pi, rotation has 8 pi of itself. */
+#include <stddef.h>
+
+#include "sd_product_internal.h"
+
+typedef struct {
+  double x[3], a;
+} sphere;
+
+typedef void pair_sum(const sd_law *law, const sphere *i, const sphere *j, const double *F,
+                      double *u);
+
+/* u [3] += f F + g rhat (rhat.F) */
+static void add_force(const sd_law *law, const sphere *i, const sphere *j, const double *F,
+                      double *u)
+{
+  const double dx = i->x[0] - j->x[0], dy = i->x[1] - j->x[1], dz = i->x[2] - j->x[2];
+  const double R = sqrt(dx * dx + dy * dy + dz * dz), inv = R > 0.0 ? 1.0 / R : 0.0;
+  const double hx = dx * inv, hy = dy * inv, hz = dz * inv;
+  const double unit = 4.0 / 3.0 * sd_taper_factor(law, R);
+  double f, g;
+  if (law->tensor == SD_TENSOR_RPY)
+    sd_rpy_radial(R, i->a, j->a, &f, &g);
+  else
+    sd_oseen_radial(R, &f, &g);
+  f *= unit;
+  const double along = unit * g * (hx * F[0] + hy * F[1] + hz * F[2]);
+  u[0] += f * F[0] + along * hx;
+  u[1] += f * F[1] + along * hy;
+  u[2] += f * F[2] + along * hz;
+}
+
+/* u [6] += the block of sd_tensor_grand times (F T) [6]. The sphere i turns under the force on j by cij F x rhat, and moves under
+ * the torque on j by cji T x rhat (reciprocity). */
+static void add_force_and_torque(const sd_law *law, const sphere *i, const sphere *j,
+                                 const double *F, double *u)
+{
+  const double dx = i->x[0] - j->x[0], dy = i->x[1] - j->x[1], dz = i->x[2] - j->x[2];
+  const double R = sqrt(dx * dx + dy * dy + dz * dz), inv = R > 0.0 ? 1.0 / R : 0.0;
+  const double hx = dx * inv, hy = dy * inv, hz = dz * inv, t = sd_taper_factor(law, R);
+  const double *T = F + 3, unit = 4.0 / 3.0 * t;
+  double f, g, fw, gw;
+  sd_rpy_radial(R, i->a, j->a, &f, &g);
+  sd_rpy_radial_wt(R, i->a, j->a, &fw, &gw);
+  f *= unit;
+  fw *= t;
+  const double cij = t * sd_rpy_radial_wf(R, i->a, j->a), cji = t * sd_rpy_radial_wf(R, j->a, i->a);
+  const double along = unit * g * (hx * F[0] + hy * F[1] + hz * F[2]);
+  const double twist = t * gw * (hx * T[0] + hy * T[1] + hz * T[2]);
+  u[0] += f * F[0] + along * hx + cji * (T[1] * hz - T[2] * hy);
+  u[1] += f * F[1] + along * hy + cji * (T[2] * hx - T[0] * hz);
+  u[2] += f * F[2] + along * hz + cji * (T[0] * hy - T[1] * hx);
+  u[3] += fw * T[0] + twist * hx + cij * (F[1] * hz - F[2] * hy);
+  u[4] += fw * T[1] + twist * hy + cij * (F[2] * hx - F[0] * hz);
+  u[5] += fw * T[2] + twist * hz + cij * (F[0] * hy - F[1] * hx);
+}
+
+/* Targets are columns: those without radius have none. */
+static void targets(const sd_packed *p, int i0, int i1, int width, pair_sum *add)
+{
+  for (int i = i0; i < i1; i++) {
+    const sphere target = {{p->x[i], p->y[i], p->z[i]}, p->a[i]};
+    double sum[6] = {0.0}, F[6];
+    for (int j = 0; j < p->active; j++) {
+      if (j == i) continue;
+      const sphere source = {{p->x[j], p->y[j], p->z[j]}, p->a[j]};
+      for (int d = 0; d < width; d++) F[d] = p->f[d][j];
+      add(&p->law, &target, &source, F, sum);
+    }
+    for (int d = 0; d < width; d++) p->u[d][i] += sum[d];
+  }
+}
+
+static void list(const sd_packed *p, const sd_pairs *pairs, int width, pair_sum *add)
+{
+  for (int i = 0; i < pairs->n; i++) {
+    const double *own = p->row + 8 * (long) i;
+    const sphere target = {{own[0], own[1], own[2]}, own[3]};
+    double sum[6] = {0.0}, F[6] = {0.0};
+    for (long k = pairs->first[i]; k < pairs->first[i + 1] && target.a > 0.0; k++) {
+      const long j = pairs->neighbor[k];
+      const double *other = p->row + 8 * j;
+      if (!(other[3] > 0.0)) continue;
+      const sphere source = {{other[0], other[1], other[2]}, other[3]};
+      for (int d = 0; d < 3; d++) F[d] = other[4 + d];
+      for (int d = 3; d < width; d++) F[d] = p->torque_row[4 * j + d - 3];
+      add(&p->law, &target, &source, F, sum);
+    }
+    for (int d = 0; d < width; d++) p->u[d][i] = sum[d];
+  }
+}
+
+/* A share is a range of targets: a pair is computed twice, once for each of its spheres. */
+static int share(const sd_packed *p, int part, int parts)
+{
+  return (int) ((long) p->active * part / parts);
+}
+
+static void forces_symmetric(const sd_packed *p, int part, int parts)
+{
+  targets(p, share(p, part, parts), share(p, part + 1, parts), 3, add_force);
+}
+
+static void forces_targets(const sd_packed *p, int i0, int i1)
+{
+  targets(p, i0, i1, 3, add_force);
+}
+
+static void forces_list(const sd_packed *p, const sd_pairs *pairs)
+{
+  list(p, pairs, 3, add_force);
+}
+
+static void torques_symmetric(const sd_packed *p, int part, int parts)
+{
+  targets(p, share(p, part, parts), share(p, part + 1, parts), 6, add_force_and_torque);
+}
+
+static void torques_targets(const sd_packed *p, int i0, int i1)
+{
+  targets(p, i0, i1, 6, add_force_and_torque);
+}
+
+static void torques_list(const sd_packed *p, const sd_pairs *pairs)
+{
+  list(p, pairs, 6, add_force_and_torque);
+}
+
+const struct sd_kernels sd_kernels_plain = {
+    {1, forces_symmetric, forces_targets, forces_list},
+    {1, torques_symmetric, torques_targets, torques_list},
+    NULL};

@@ -1,0 +1,29 @@
+/* The product in plain C without an object to keep, for comparison. */
+#ifndef PLAIN_H
+#define PLAIN_H
+
+#include "check.h"
+
+#include "sd_product.h"
+
+/* Targets begin ... begin + count - 1 of n spheres, sources all of them: F [width n] -> u [width count] */
+static inline void plain_all(const sd_law *law, const sd_spheres *s, int n, int width, int begin,
+                             int count, const double *F, double *u)
+{
+  sd_packed p = {0};
+  assert_int_equal(sd_packed_all(&p, SD_ISA_PLAIN, law, s, n, width), SD_OK);
+  sd_packed_product(&p, begin, count, F, u);
+  sd_packed_free(&p);
+}
+
+/* F [width n], those of ghosts behind those of the targets -> u [width pairs->n] */
+static inline void plain_list(const sd_law *law, const sd_spheres *s, int n, int width,
+                              const sd_pairs *pairs, const double *F, double *u)
+{
+  sd_packed p = {0};
+  assert_int_equal(sd_packed_list(&p, SD_ISA_PLAIN, law, s, n, width), SD_OK);
+  sd_packed_pairs(&p, pairs, F, F + (long) width * pairs->n, u);
+  sd_packed_free(&p);
+}
+
+#endif
