@@ -215,19 +215,22 @@ void Hydrodynamics::guess()
   }
 }
 
-/* v' = D^-1 F - s of the solution, and what the next guess is made of. */
+/* v' = D^-1 F - s of the solution, and what the next guess is made of. Lone spheres have none: not what the tolerance of a solve
+ * from zero has left of theirs either. */
 void Hydrodynamics::keep(bool everyone_alone)
 {
   const size_t m = width();
   State::Global &global = memory->global;
   for (int i : ambient.who()) {
     if (!solving[i]) continue;
+    const bool alone =
+        everyone_alone || (settings.scene.clumps_only && atom->molecule[i] == 0);
     double *row = memory->rows.give(i), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       double &v = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
       if (memory->history) before[d] = v;
-      v = everyone_alone ? 0.0
-                         : solution[m * i + d] / (d < 3 ? resistance[i] : spin[i]) - slip[m * i + d];
+      v = alone ? 0.0
+                : solution[m * i + d] / (d < 3 ? resistance[i] : spin[i]) - slip[m * i + d];
     }
   }
   global.solutions = std::min(2.0, global.solutions + 1.0);

@@ -1,0 +1,81 @@
+"""The guess from which algorithm 2 starts. Spheres that see nobody need no solve: whatever the tolerance, the guess already is
+their Stokes drag, since their v' is 0 and F = 6 pi eta a (u_inf + v' - v)."""
+import numpy as np
+import pytest
+
+from system import Spheres, chain
+
+ETA = 0.37
+EXACT = 1e-13           # of the largest force: rounding
+
+LONE = np.array([[0.0, 0.0, 0.0], [9.0, 1.0, 0.0], [0.0, -8.0, 3.0], [5.0, 7.0, -6.0], [-7.0, 5.0, 8.0]])
+RADII = np.array([0.5, 0.8, 1.1, 1.3, 0.7])
+
+
+def speeding_up(n, steps, seed=4):
+    """Velocities and spins [steps][n,6] that change from step to step: along a line, to which a guess may extrapolate, and by a
+    little beyond it, which must not be lost although the tolerance would bear it."""
+    rng = np.random.default_rng(seed)
+    start, rate, wave = rng.normal(size=(3, n, 6))
+    return [start + 0.02 * k * rate + 3e-4 * np.sin(1.7 * k) * wave for k in range(steps)]
+
+
+def drags(simulation, spheres, style, motion, rotation):
+    """Force and torque [n,6] of each step; the spheres stay where they are, their velocities are given."""
+    sim = simulation(spheres, style)
+    found = []
+    for k, now in enumerate(motion):
+        order = np.argsort(sim.ids())       # LAMMPS may sort the atoms as a run begins
+        sim.raw("v")[order] = now[:, :3]
+        sim.raw("omega")[order] = now[:, 3:]
+        sim.run(1 if k else 0, "pre no post no" if k else "post no")
+        rows = sim.fix_rows()
+        found.append(np.hstack([rows[:, 0:3], rows[:, 6:9]]))
+    return found
+
+
+def stokes(a, now, rotation):
+    F = -6 * np.pi * ETA * a[:, None] * now[:, :3]
+    T = -8 * np.pi * ETA * a[:, None] ** 3 * now[:, 3:] * (rotation == "yes")
+    return np.hstack([F, T])
+
+
+def worst(found, exact):
+    """Largest difference in units of the largest force, and of the largest torque."""
+    scale = np.repeat([max(np.abs(exact[:, :3]).max(), 1e-300), max(np.abs(exact[:, 3:]).max(), 1.0)], 3)
+    return (np.abs(found - exact) / scale).max()
+
+
+@pytest.mark.parametrize("rotation", ["no", "yes"])
+@pytest.mark.parametrize("tolerance", ["1e-3", "5e-2"])
+@pytest.mark.parametrize("seen", ["cut_off_distance 1e-6", "clumps_only yes", "clumps_only yes precondition clump"])
+@pytest.mark.parametrize("every", [1, 3])
+def test_spheres_that_see_nobody_have_stokes_drag_in_every_step(simulation, seen, tolerance, rotation, every):
+    spheres = Spheres(LONE, RADII)
+    motion = speeding_up(len(LONE), 8)
+    style = f"visc {ETA} {seen} algorithm 2 relative_tolerance {tolerance} rotation {rotation} update_every {every}"
+    for now, found in zip(motion, drags(simulation, spheres, style, motion, rotation)):
+        assert worst(found, stokes(RADII, now, rotation)) < EXACT
+
+
+@pytest.mark.parametrize("rotation", ["no", "yes"])
+@pytest.mark.parametrize("precondition", ["none", "clump"])
+def test_a_lone_sphere_beside_clumps_has_stokes_drag_in_every_step(simulation, precondition, rotation):
+    """What it takes to solve the clumps leaves alone what is solved already."""
+    clump = chain(6, 1.7, molecule=1)
+    far = LONE + (30.0, 0.0, 0.0)
+    spheres = Spheres(np.vstack([clump.x, far]), np.concatenate([clump.a, RADII]), molecule=[1] * 6 + [0] * len(far))
+    motion = speeding_up(spheres.n, 8)
+    style = f"visc {ETA} clumps_only yes algorithm 2 relative_tolerance 1e-3 rotation {rotation} precondition {precondition}"
+    for now, found in zip(motion, drags(simulation, spheres, style, motion, rotation)):
+        assert worst(found[6:], stokes(RADII, now[6:], rotation)) < EXACT
+
+
+def test_a_guess_that_is_exact_needs_no_iteration(simulation):
+    motion = speeding_up(len(LONE), 4)
+    sim = simulation(Spheres(LONE, RADII), f"visc {ETA} clumps_only yes algorithm 2 relative_tolerance 1e-8")
+    for k, now in enumerate(motion):
+        order = np.argsort(sim.ids())
+        sim.raw("v")[order] = now[:, :3]
+        sim.run(1 if k else 0, "pre no post no" if k else "post no")
+        assert k == 0 or sim.iterations == 0
