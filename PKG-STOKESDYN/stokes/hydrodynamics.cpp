@@ -50,7 +50,6 @@ void Hydrodynamics::init()
 {
   ambient.init();
   scene.lists_are_stale();
-  rigid.new_run();
   warned_unconverged = looked_at_clumps = false;
 }
 
@@ -66,6 +65,14 @@ void Hydrodynamics::begin()
   AtomRows &rows = memory->rows;
   for (int i = 0; i < atom->nlocal; i++)
     if (!ambient.active()[i]) rows.take(i);
+}
+
+void Hydrodynamics::new_run(bool as_left)
+{
+  if (as_left)
+    rigid.set_loose(memory->global.loose);
+  else
+    rigid.new_run();
 }
 
 /* Forces of rigid clumps, and the v' that they stand for. Spheres of other clumps, and lone ones, are left to the solver. */
@@ -91,6 +98,7 @@ void Hydrodynamics::clumps()
     }
   };
   rigid.forces(motion, take, solving);
+  memory->global.loose = rigid.loose();
   for (int i : ambient.who()) {
     if (!solving[i] || rigid.any_loose()) continue;
     double *row = memory->rows.give(i);    // lone spheres: nobody disturbs the fluid there

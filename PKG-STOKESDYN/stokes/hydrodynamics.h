@@ -39,6 +39,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void init();
   /* Reads the fluid and finds the memory. Errors: Ambient::read; a memory that has been deleted. */
   void begin();
+  /* In the first step of a run: do the spheres stand as the last run left them? */
+  void new_run(bool as_left);
 
   void clumps();
   void solve();

@@ -90,6 +90,7 @@ PairStokesDynamics::Verdict PairStokesDynamics::judge()
   const bool same_fluid = hydro.ambient.numbers_only() &&
       std::equal(numbers, numbers + 7, global.numbers);
   std::copy(numbers, numbers + 7, global.numbers);
+  if (update->setupflag) hydro.new_run(continued && same_spheres && count[DISPLACED] == 0.0);
   global.last_step = step;
   if (continued && same_fluid && same_spheres && count[DISPLACED] + count[PUSHED] == 0.0)
     return STANDS;

@@ -1,8 +1,8 @@
+/* The shapes of rigid clumps: who has which, which are new, their resistances. The steps: rigid_clumps_step.cpp. */
 #include "rigid_clumps.h"
 
 #include "keywords.h"
-
-#include "sd_linear.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <utility>
 
 using namespace LAMMPS_NS;
 
@@ -25,201 +27,315 @@ RigidClumps::RigidClumps(LAMMPS *lmp, Scene &scene, const std::string &command) 
 
 RigidClumps::~RigidClumps()
 {
-  forget();
+  sd_shells_free(&shells);
+}
+
+RigidClumps::Shape::~Shape()
+{
+  sd_shape_free(&shape);
+  sd_clump_free(&clump);
 }
 
 void RigidClumps::forget()
 {
-  for (auto &s : shapes) {
-    sd_shape_free(&s.shape);
-    sd_clump_free(&s.clump);
-  }
-  shapes.clear();
-  sd_shells_free(&shells);
   new_run();
+  bodies.clear();
+  by_size.clear();
+  shapes.clear();
+  solved = 0;
+  sd_shells_free(&shells);
 }
 
 void RigidClumps::new_run()
 {
   known.clear();
-  of_clump.clear();
   loose_molecules.clear();
+  recognised = false;
+}
+
+std::vector<double> RigidClumps::loose() const
+{
+  std::vector<double> ids;    // in halves, which a double holds exactly
+  for (int64_t id : loose_molecules) {
+    ids.push_back((double) (id >> 32));
+    ids.push_back((double) (id & 0xffffffff));
+  }
+  return ids;
+}
+
+void RigidClumps::set_loose(const std::vector<double> &ids)
+{
+  loose_molecules.clear();
+  for (size_t k = 0; k + 1 < ids.size(); k += 2)
+    loose_molecules.insert((int64_t) ids[k] * 4294967296 + (int64_t) ids[k + 1]);
+  recognised = false;
 }
 
 double RigidClumps::memory_usage() const
 {
-  double bytes = sizeof(double) *
-      ((double) ghosts.capacity() + radius.capacity() + x.capacity() + F.capacity() + T.capacity());
-  for (const auto &s : shapes) bytes += 72.0 * sizeof(double) * s.shape.n;
+  double bytes = sizeof(double) * ((double) ghosts.capacity() + radius.capacity()) +
+      sizeof(int) * ((double) member.capacity() + owned.capacity());
+  for (const auto &s : shapes) bytes += 72.0 * sizeof(double) * s.second->shape.n;
   return bytes;
 }
 
-// --- shapes ----------------------------------------------------------------------------------------------------
+// --- which clump has which shape ---------------------------------------------------------------------
 
-std::vector<double> RigidClumps::from_all_ranks(const std::vector<double> &mine, MPI_Comm world)
+/* Positions [3n] and radii [n] of a clump's spheres in order of ID. */
+void RigidClumps::geometry(const Scene::Clump &clump, std::vector<double> &x,
+                           std::vector<double> &a) const
 {
-  int nprocs, n = 0, size = mine.size();
-  MPI_Comm_size(world, &nprocs);
-  std::vector<int> counts(nprocs), at(nprocs);
-  MPI_Allgather(&size, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int p = 0; p < nprocs; p++) {
-    at[p] = n;
-    n += counts[p];
-  }
-  std::vector<double> all(n + 1);
-  MPI_Allgatherv(const_cast<double *>(mine.data()), size, MPI_DOUBLE, all.data(), counts.data(),
-                 at.data(), MPI_DOUBLE, world);
-  all.resize(n);
-  return all;
-}
-
-/* Positions [3n] and radii [n] of a clump's spheres in order of tag. */
-void RigidClumps::geometry(const Scene::Clump &clump, std::vector<double> &centres,
-                           std::vector<double> &radii) const
-{
-  centres.clear();
-  radii.clear();
+  x.clear();
+  a.clear();
   for (int k = clump.begin; k < clump.end; k++) {
     const double *xk = atom->x[scene.member[k]];
-    centres.insert(centres.end(), xk, xk + 3);
-    radii.push_back(radius[scene.member[k]]);
+    x.insert(x.end(), xk, xk + 3);
+    a.push_back(radius[scene.member[k]]);
+  }
+}
+
+static bool matches(const sd_shape &shape, const std::vector<double> &x, const std::vector<double> &a,
+                    std::vector<int> &perm)
+{
+  const int n = a.size();
+  std::vector<double> scratch(6 * a.size());
+  perm.resize(n);
+  return sd_shape_match(&shape, n, x.data(), a.data(), perm.data(), scratch.data());
+}
+
+/* The first of the shapes that spheres have, nullptr if there is none. */
+const RigidClumps::Shape *RigidClumps::find(const BySize &among, const std::vector<double> &x,
+                                            const std::vector<double> &a, std::vector<int> &perm)
+{
+  const double size = sd_shape_size(a.size(), x.data(), a.data());
+  const double near = 2.01 * SD_SHAPE_TOLERANCE * size;
+  const Shape *first = nullptr;
+  for (auto s = among.lower_bound(size - near); s != among.end() && s->first <= size + near; ++s) {
+    std::vector<int> order;
+    if ((first && first->number < s->second->number) || !matches(s->second->shape, x, a, order))
+      continue;
+    first = s->second;
+    perm.swap(order);
+  }
+  return first;
+}
+
+/* A clump is known as long as its atoms are the same. */
+static uint64_t hash_of(const int64_t *tags, int n)
+{
+  uint64_t h = 14695981039346656037u;    // FNV-1a, by words
+  for (int k = 0; k < n; k++) h = (h ^ (uint64_t) tags[k]) * 1099511628211u;
+  return h;
+}
+
+void RigidClumps::not_rigid(int64_t molecule) const
+{
+  fail(lmp,
+       command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(molecule) +
+           " is not rigid: its shape has changed by more than " + text(SD_SHAPE_TOLERANCE) +
+           " of its size (rigid_clumps auto solves such clumps anew)");
+}
+
+/* From now on the solver has them. The same on all ranks. */
+void RigidClumps::loosen(const std::vector<int64_t> &molecules)
+{
+  for (int64_t molecule : molecules) {
+    loose_molecules.insert(molecule);
+    known.erase(molecule);
   }
 }
 
 /* After a re-neighbouring: which shape has each clump of this rank? */
 void RigidClumps::recognise()
 {
+  // Left of a solve that ended in an error, perhaps not on all ranks.
+  for (auto s = by_size.begin(); s != by_size.end();)
+    s = s->second->number > solved ? by_size.erase(s) : std::next(s);
+  shapes.erase(shapes.upper_bound(solved), shapes.end());
+
   std::vector<size_t> unknown;
-  int64_t other_spheres = 0;
+  std::vector<int64_t> changed;
   for (size_t c = 0; c < scene.clumps.size(); c++) {
     const auto &clump = scene.clumps[c];
-    const int64_t *tags = &scene.member_tag[clump.begin];
+    if (loose_molecules.count(clump.molecule)) continue;
     const auto found = known.find(clump.molecule);
     if (found == known.end())
       unknown.push_back(c);
-    else if (found->second.tag.size() != (size_t) (clump.end - clump.begin) ||
-             !std::equal(found->second.tag.begin(), found->second.tag.end(), tags))
-      other_spheres = std::max(other_spheres, clump.molecule);
+    else if (found->second.atoms != atoms_of(clump))
+      changed.push_back(clump.molecule);
   }
-  int64_t mine[2] = {(int64_t) unknown.size(), other_spheres}, any[2];
-  MPI_Allreduce(mine, any, 2, MPI_LMP_BIGINT, MPI_MAX, world);
-  if (any[1] && !settings.auto_resolve)
-    fail(lmp,
-         command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(any[1]) +
-             " has gained or lost atoms, so it is not rigid (rigid_clumps auto solves such clumps "
-             "anew)");
-  if (any[1]) {
-    std::vector<double> changed;
-    if (other_spheres) changed.push_back(other_spheres);
-    for (double molecule : from_all_ranks(changed, world)) {
-      loose_molecules.insert((int64_t) molecule);
-      known.erase((int64_t) molecule);
-    }
-    recognise();    // one molecule a rank and round: this hardly ever happens
-    return;
-  }
-  if (any[0]) {
-    radius.assign(atom->radius, atom->radius + atom->nlocal);
-    scene.refresh(radius, 1);
-    add_shapes(unknown);
-    match(unknown);
-  }
-  of_clump.clear();
-  for (const auto &clump : scene.clumps) of_clump.push_back(&known[clump.molecule]);
-}
-
-/* The shapes that are new in the whole scene, in order of the molecule that shows them first. */
-void RigidClumps::add_shapes(const std::vector<size_t> &unknown)
-{
-  std::vector<double> centres, radii, mine;
-  std::vector<int> perm;
-  std::vector<double> scratch;
-  std::vector<sd_shape> seen;    // by this rank, in this call
-  std::vector<size_t> sorted(unknown);
-  std::sort(sorted.begin(), sorted.end(), [this](size_t p, size_t q) {
-    return scene.clumps[p].molecule < scene.clumps[q].molecule;
-  });
-
-  auto matches = [&](const sd_shape &shape, int n, const double *c, const double *r) {
-    perm.resize(n);
-    scratch.resize(6 * (size_t) n);
-    return shape.n == n && sd_shape_match(&shape, n, c, r, perm.data(), scratch.data());
-  };
-  for (size_t c : sorted) {
-    const auto &clump = scene.clumps[c];
-    if (loose_molecules.count(clump.molecule)) continue;
-    geometry(clump, centres, radii);
-    const int n = radii.size();
-    bool is_known = false;
-    for (const auto &s : shapes)
-      is_known = is_known || matches(s.shape, n, centres.data(), radii.data());
-    for (const auto &s : seen) is_known = is_known || matches(s, n, centres.data(), radii.data());
-    if (is_known) continue;
-    sd_shape shape;
-    if (sd_shape_create(n, centres.data(), radii.data(), &shape) != SD_OK)
-      continue;    // add_shape complains
-    seen.push_back(shape);
-    mine.push_back(clump.molecule);
-    mine.push_back(n);
-    mine.insert(mine.end(), centres.begin(), centres.end());
-    mine.insert(mine.end(), radii.begin(), radii.end());
-  }
-  for (auto &s : seen) sd_shape_free(&s);
-
-  const std::vector<double> all = from_all_ranks(mine, world);
-  std::map<int64_t, const double *> candidates;
-  for (size_t k = 0; k < all.size(); k += 2 + 4 * (size_t) all[k + 1])
-    candidates[(int64_t) all[k]] = &all[k];
-  const size_t before = shapes.size();
-  for (const auto &candidate : candidates) {
-    const int n = candidate.second[1];
-    const double *c = candidate.second + 2, *r = c + 3 * (size_t) n;
-    bool is_known = false;
-    for (const auto &s : shapes) is_known = is_known || matches(s.shape, n, c, r);
-    if (is_known) continue;
-    Shape shape = {};
-    shape.molecule = candidate.first;
-    const sd_status status = sd_shape_create(n, c, r, &shape.shape);
-    if (status != SD_OK)
+  int64_t count[3] = {(int64_t) unknown.size(), (int64_t) changed.size(), (int64_t) known.size()};
+  MPI_Allreduce(MPI_IN_PLACE, count, 3, MPI_LMP_BIGINT, MPI_MAX, world);
+  if (count[1]) {
+    changed = from_all(world, changed);
+    if (!settings.auto_resolve)
       fail(lmp,
            command + ": keyword rigid_clumps: the clump of molecule " +
-               std::to_string(candidate.first) + ": " + sd_status_string(status));
-    prepare(shape);
-    shapes.push_back(shape);
+               std::to_string(*std::min_element(changed.begin(), changed.end())) +
+               " has gained or lost atoms, so it is not rigid (rigid_clumps auto solves such "
+               "clumps anew)");
+    loosen(changed);
   }
-  solve(before);
+  if (count[0]) {
+    const size_t before = shapes.size();
+    radius.assign(atom->radius, atom->radius + atom->nlocal);
+    scene.refresh(radius, 1);
+    if (count[2]) take_over(unknown);
+    find_shapes(unknown);
+    if (shapes.size() > before || !count[2]) drop_unused();
+  }
+  arrange();
 }
 
-/* Pseudo-inverse of a symmetric 3x3 matrix that is as large as size. */
-static void pseudo_inverse3(const double A[9], double size, double inverse[9])
+uint64_t RigidClumps::atoms_of(const Scene::Clump &clump) const
 {
-  double w[3], V[9];
-  sd_eigen(3, A, w, V);
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) {
-      inverse[3 * p + q] = 0.0;
-      for (int k = 0; k < 3; k++)
-        if (w[k] > 1e-10 * size) inverse[3 * p + q] += V[3 * p + k] * V[3 * q + k] / w[k];
+  return hash_of(&scene.member_tag[clump.begin], clump.end - clump.begin);
+}
+
+/* Clumps that come from other ranks bring their shape along; taken off the unknown ones. */
+void RigidClumps::take_over(std::vector<size_t> &unknown)
+{
+  struct Has {
+    int64_t molecule;
+    uint64_t atoms;
+    int shape;
+  };
+  std::vector<int64_t> wanted, bent;
+  for (size_t c : unknown) wanted.push_back(scene.clumps[c].molecule);
+  std::vector<Has> have;
+  for (int64_t molecule : from_all(world, wanted)) {
+    const auto found = known.find(molecule);
+    if (found != known.end()) have.push_back({molecule, found->second.atoms, found->second.shape->number});
+  }
+  std::map<int64_t, Has> elsewhere;
+  for (const Has &has : from_all(world, have)) elsewhere[has.molecule] = has;
+
+  std::vector<size_t> still_unknown;
+  std::vector<double> x, a;
+  for (size_t c : unknown) {
+    const auto &clump = scene.clumps[c];
+    const auto has = elsewhere.find(clump.molecule);
+    if (has == elsewhere.end()) {
+      still_unknown.push_back(c);
+      continue;
     }
+    Known &k = known[clump.molecule];
+    k.shape = shapes.at(has->second.shape).get();
+    k.atoms = atoms_of(clump);
+    geometry(clump, x, a);
+    if (k.atoms != has->second.atoms || !matches(k.shape->shape, x, a, k.perm))
+      bent.push_back(clump.molecule);
+  }
+  unknown.swap(still_unknown);
+  bent = from_all(world, bent);
+  if (bent.empty()) return;
+  if (!settings.auto_resolve) not_rigid(*std::min_element(bent.begin(), bent.end()));
+  loosen(bent);
 }
 
-/* What the least-squares fits of a motion need. */
-void RigidClumps::prepare(Shape &s)
+/* Shapes for clumps that have been nowhere yet; new ones where none of the present shapes fits. Going through all clumps of the
+ * scene in order of molecule ID, one that has none of the shapes before it shows a new one: so the shapes do not depend on where
+ * the clumps are. Each rank goes through its own, on the assumption that there are no others. Of all that they find, the ones up
+ * to the first that proves to be another rank's shape are right; then the rest is looked at again. */
+void RigidClumps::find_shapes(std::vector<size_t> unknown)
 {
-  double xx[9] = {0.0}, inertia[9], w[3], V[9];
-  for (int k = 0; k < s.shape.n; k++)
-    for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++) xx[3 * p + q] += s.shape.x[3 * k + p] * s.shape.x[3 * k + q];
-  const double trace = xx[0] + xx[4] + xx[8];
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) inertia[3 * p + q] = (p == q ? trace : 0.0) - xx[3 * p + q];
-  // Centres on a line or a plane span no volume: what they cannot tell is left out of the fit.
-  const double size = s.shape.rank == 0 ? INFINITY : trace;
-  pseudo_inverse3(xx, size, s.gradient_inverse);
-  pseudo_inverse3(inertia, size, s.spin_inverse);
-  sd_eigen(3, xx, w, V);
-  for (int p = 0; p < 3; p++) s.axis[p] = V[3 * p];
+  std::sort(unknown.begin(), unknown.end(), [this](size_t p, size_t q) {
+    return scene.clumps[p].molecule < scene.clumps[q].molecule;
+  });
+  std::vector<double> x, a;
+  while (true) {
+    std::vector<size_t> without;
+    std::vector<double> candidates;
+    std::vector<std::unique_ptr<Shape>> mine;
+    BySize mine_by_size;
+    for (size_t c : unknown) {
+      const auto &clump = scene.clumps[c];
+      std::vector<int> perm;
+      geometry(clump, x, a);
+      if (const Shape *shape = find(by_size, x, a, perm)) {
+        known[clump.molecule] = {shape, atoms_of(clump), perm};
+        continue;
+      }
+      without.push_back(c);
+      if (find(mine_by_size, x, a, perm)) continue;
+      mine.emplace_back(new Shape(0, clump.molecule));
+      if (sd_shape_create(a.size(), x.data(), a.data(), &mine.back()->shape) == SD_OK)
+        mine_by_size.insert({mine.back()->shape.size, mine.back().get()});
+      candidates.push_back(ubuf(clump.molecule).d);
+      candidates.push_back(a.size());
+      candidates.insert(candidates.end(), x.begin(), x.end());
+      candidates.insert(candidates.end(), a.begin(), a.end());
+    }
+    candidates = from_all(world, candidates);
+    if (candidates.empty()) break;
+    accept(candidates);
+    unknown.swap(without);
+  }
+  solve();
 }
+
+/* The same on all ranks. */
+void RigidClumps::accept(const std::vector<double> &candidates)
+{
+  std::map<int64_t, const double *> in_order;
+  for (size_t k = 0; k < candidates.size(); k += 2 + 4 * (size_t) candidates[k + 1])
+    in_order.insert({(int64_t) ubuf(candidates[k]).i, &candidates[k]});
+  for (const auto &candidate : in_order) {
+    const double *centres = candidate.second + 2, *end = centres + 3 * (size_t) centres[-1];
+    const std::vector<double> x(centres, end), a(end, end + (size_t) centres[-1]);
+    std::vector<int> perm;
+    if (find(by_size, x, a, perm)) return;
+    const int number = std::max(solved, shapes.empty() ? 0 : shapes.rbegin()->first) + 1;
+    std::unique_ptr<Shape> shape(new Shape(number, candidate.first));
+    const sd_status status = sd_shape_create(a.size(), x.data(), a.data(), &shape->shape);
+    if (status != SD_OK) cannot_be_solved(*shape, status, 0.0);
+    by_size.insert({shape->shape.size, shape.get()});
+    shapes[number] = std::move(shape);
+  }
+}
+
+/* Shapes that no clump has any more, on any rank. */
+void RigidClumps::drop_unused()
+{
+  std::set<int> used;
+  for (const auto &k : known) used.insert(k.second.shape->number);
+  const std::vector<int> all = from_all(world, std::vector<int>(used.begin(), used.end()));
+  used.insert(all.begin(), all.end());
+  for (auto s = by_size.begin(); s != by_size.end();)
+    s = used.count(s->second->number) ? std::next(s) : by_size.erase(s);
+  for (auto s = shapes.begin(); s != shapes.end();)
+    s = used.count(s->first) ? std::next(s) : shapes.erase(s);
+}
+
+/* The clumps as the steps want them; forgets those that have left this rank. */
+void RigidClumps::arrange()
+{
+  std::map<int64_t, Known> here;
+  bodies.clear();
+  not_ours.clear();
+  member.resize(scene.member.size());
+  owned.resize(scene.member.size());
+  int end = 0;
+  for (const auto &clump : scene.clumps) {
+    const auto found = known.find(clump.molecule);
+    if (found == known.end()) {
+      for (int k = clump.begin; k < clump.end; k++)
+        if (scene.owned[k] >= 0) not_ours.push_back(scene.owned[k]);
+      continue;
+    }
+    const Known &k = here[clump.molecule] = std::move(found->second);
+    bodies.push_back({k.shape, clump.molecule, end, (int) k.perm.size()});
+    for (int p : k.perm) {
+      member[end] = scene.member[clump.begin + p];
+      owned[end++] = scene.owned[clump.begin + p];
+    }
+  }
+  known.swap(here);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->molecule[i] == 0) not_ours.push_back(i);
+}
+
+// --- resistances ---------------------------------------------------------------------------------------------
 
 namespace {
   struct Progress {
@@ -234,70 +350,78 @@ namespace {
     const double now = MPI_Wtime();
     if (!p->screen || now - p->last < 5.0) return;
     p->last = now;
-    fprintf(p->screen, "  %s: solve %d of 12, iteration %d\n", p->what.c_str(), solve + 1,
+    fprintf(p->screen, "  %s: solve %d of %d, iteration %d\n", p->what.c_str(), solve + 1, solves,
             products);
     fflush(p->screen);
   }
 }    // namespace
 
-/* Resistances of the shapes from number `first` on, shared out among the ranks. */
-void RigidClumps::solve(size_t first)
+void RigidClumps::cannot_be_solved(const Shape &s, sd_status status, double need) const
 {
-  for (size_t k = first; k < shapes.size(); k++) {
-    Shape &s = shapes[k];
-    const int root = (k - first) % comm->nprocs;
-    const std::string name =
-        "shape " + std::to_string(k + 1) + ", the clump of molecule " + std::to_string(s.molecule);
-    Solved result = {root, 0.0, 0.0, 0.0};
-    if (comm->me == root) {
-      Progress progress = {screen, MPI_Wtime(), name};
-      sd_clump_options options = SD_CLUMP_OPTIONS;
-      options.shell = settings.shell;
-      options.rotation = settings.rotation;
-      options.memory = SOLVE_MEMORY;
-      options.progress = show_progress;
-      options.progress_ctx = &progress;
-      sd_clump_need need = {};
-      const double start = MPI_Wtime();
-      result.status = sd_clump_create(&s.shape, &options, &shells, &s.clump, &need);
-      result.need = std::min(need.dense, need.iterative);
-      result.seconds = MPI_Wtime() - start;
-    }
-    solved.push_back(result);
-  }
-  // Only now the ranks wait for each other.
-  for (size_t k = first; k < shapes.size(); k++) {
-    Shape &s = shapes[k];
-    Solved &r = solved[k - first];
-    MPI_Bcast(&r.status, 3, MPI_DOUBLE, r.root, world);
-    const sd_status status = (sd_status) (int) r.status;
-    const std::string who = command + ": keyword rigid_clumps: the clump of molecule " +
-        std::to_string(s.molecule) + ", " + std::to_string(s.shape.n) + " spheres, shell " +
-        std::to_string(settings.shell) + ": ";
-    if (status == SD_ENOMEMORY)
-      fail(lmp,
-           who + "its resistance needs " + text(r.need / 1e9) + " GB, more than " +
-               text(SOLVE_MEMORY / 1e9) + "; use a smaller shell");
-    if (status == SD_ESINGULAR)
-      fail(lmp, who + "two of its spheres of equal radius are at one point");
-    if (status != SD_OK) fail(lmp, who + sd_status_string(status));
-
-    double *table = s.clump.table;
-    MPI_Bcast(&s.clump, sizeof(s.clump), MPI_BYTE, r.root, world);
-    const int size = 72 * s.shape.n;
-    s.clump.table = comm->me == r.root ? table : (double *) malloc(sizeof(double) * size);
-    MPI_Bcast(s.clump.table, size, MPI_DOUBLE, r.root, world);
-    announce(k, r.seconds);
-  }
-  solved.clear();
+  const std::string who = command + ": keyword rigid_clumps: the clump of molecule " +
+      std::to_string(s.molecule) + ", " + std::to_string(s.shape.n) + " spheres, shell " +
+      std::to_string(settings.shell) + ": ";
+  if (status == SD_ENOMEMORY)
+    fail(lmp,
+         who + "its resistance needs " + text(need / 1e9) + " GB, more than " +
+             text(SOLVE_MEMORY / 1e9) + "; use a smaller shell");
+  if (status == SD_ESINGULAR)
+    fail(lmp, who + "two of its spheres of equal radius are at one point");
+  fail(lmp, who + sd_status_string(status));
 }
 
-void RigidClumps::announce(size_t number, double seconds)
+/* Resistances of the new shapes, shared out among the ranks. */
+void RigidClumps::solve()
+{
+  struct Solved {
+    sd_status status;
+    double need, seconds;
+  };
+  std::map<int, Solved> results;
+  int turn = 0;
+  const auto first = shapes.upper_bound(solved);
+  for (auto at = first; at != shapes.end(); ++at, turn++) {
+    if (turn % comm->nprocs != comm->me) continue;
+    Shape &s = *at->second;
+    Progress progress = {screen, MPI_Wtime(),
+                         "shape " + std::to_string(s.number) + ", the clump of molecule " +
+                             std::to_string(s.molecule)};
+    sd_clump_options options = SD_CLUMP_OPTIONS;
+    options.shell = settings.shell;
+    options.rotation = settings.rotation;
+    options.memory = SOLVE_MEMORY;
+    options.progress = show_progress;
+    options.progress_ctx = &progress;
+    sd_clump_need need = {};
+    const double start = MPI_Wtime();
+    const sd_status status = sd_clump_create(&s.shape, &options, &shells, &s.clump, &need);
+    results[s.number] = {status, std::min(need.dense, need.iterative), MPI_Wtime() - start};
+  }
+  // Only now the ranks wait for each other.
+  turn = 0;
+  for (auto at = first; at != shapes.end(); ++at, turn++) {
+    Shape &s = *at->second;
+    const int root = turn % comm->nprocs;
+    Solved r = results[s.number];
+    MPI_Bcast(&r, sizeof(r), MPI_BYTE, root, world);
+    if (r.status != SD_OK) cannot_be_solved(s, r.status, r.need);
+    sd_clump clump = s.clump;
+    MPI_Bcast(&clump, sizeof(clump), MPI_BYTE, root, world);
+    const int size = 72 * s.shape.n;
+    clump.table = comm->me == root ? s.clump.table : (double *) malloc(sizeof(double) * size);
+    if (!clump.table) fail_one(lmp, command + ": keyword rigid_clumps: out of memory");
+    s.clump = clump;
+    MPI_Bcast(s.clump.table, size, MPI_DOUBLE, root, world);
+    announce(s, r.seconds);
+  }
+  if (!shapes.empty()) solved = std::max(solved, shapes.rbegin()->first);
+}
+
+void RigidClumps::announce(const Shape &s, double seconds) const
 {
   if (comm->me != 0) return;
-  const Shape &s = shapes[number];
   const sd_clump &c = s.clump;
-  std::string out = "Rigid clumps, shape " + std::to_string(number + 1) + " (molecule " +
+  std::string out = "Rigid clumps, shape " + std::to_string(s.number) + " (molecule " +
       std::to_string(s.molecule) + "): " + std::to_string(s.shape.n) + " spheres, " +
       std::to_string(c.points) + " points, hydrodynamic radius " + text(c.radius) + ", solved in " +
       text(seconds) + " s" +
@@ -318,29 +442,6 @@ void RigidClumps::announce(size_t number, double seconds)
     out += "\n";
   }
   utils::logmesg(lmp, out);
-}
-
-/* Every unknown clump of this rank gets its shape: there is one for each of them now. */
-void RigidClumps::match(const std::vector<size_t> &unknown)
-{
-  std::vector<double> centres, radii, scratch;
-  for (size_t c : unknown) {
-    const auto &clump = scene.clumps[c];
-    Known &k = known[clump.molecule];
-    k.tag.assign(&scene.member_tag[clump.begin],
-                 &scene.member_tag[clump.begin] + (clump.end - clump.begin));
-    k.shape = -1;
-    if (loose_molecules.count(clump.molecule)) continue;
-    geometry(clump, centres, radii);
-    const int n = radii.size();
-    k.perm.resize(n);
-    scratch.resize(6 * (size_t) n);
-    for (size_t s = 0; s < shapes.size() && k.shape < 0; s++)
-      if (shapes[s].shape.n == n &&
-          sd_shape_match(&shapes[s].shape, n, centres.data(), radii.data(), k.perm.data(),
-                         scratch.data()))
-        k.shape = s;
-  }
 }
 
 }    // namespace StokesDyn

@@ -1,16 +1,22 @@
-/* Rigid clumps: the shapes of a scene, each with its resistance, and the forces of every step from pose and slip motion.
+/* Rigid clumps: the shapes of a scene, each with its resistance, and the forces of every step from pose and
+ * motion.
  *
- * Shapes are numbered alike on all ranks, the first of a kind being the one of lowest molecule ID; each is solved on one rank and sent
- * to all. A clump that crosses ranks is evaluated by every rank that owns one of its spheres, from the same numbers. */
+ * A clump keeps the shape that it was given when it was first seen, whatever rank it moves to, until a run
+ * begins anew or it is not rigid any more (auto: it is loose then, the solver's, until a run begins anew).
+ * Shapes are numbered alike on all ranks; in order of molecule ID, a clump that has none of the shapes before it
+ * is the first of a new one. Each is solved on one rank and sent to all. A clump that crosses ranks is evaluated
+ * by every rank that owns one of its spheres, from the same numbers. */
 #ifndef SD_RIGID_CLUMPS_H
 #define SD_RIGID_CLUMPS_H
 
 #include "pointers.h"
 #include "scene.h"
 
-#include "sd_clump.h"
+#include "sd_clump_motion.h"
 
+#include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,9 +26,11 @@ namespace StokesDyn {
 class RigidClumps : protected LAMMPS_NS::Pointers {
  public:
   struct Settings {
-    bool on = false, auto_resolve = false;    // rigid_clumps yes | auto
+    /* rigid_clumps yes | auto */
+    bool on = false, auto_resolve = false;
     int shell = 1;
-    bool rotation = false;    // torques and angular velocities: rotation yes, or shells
+    /* torques and angular velocities: rotation yes, or shells */
+    bool rotation = false;
   } settings;
 
   RigidClumps(LAMMPS_NS::LAMMPS *lmp, Scene &scene, const std::string &command);
@@ -30,39 +38,47 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   RigidClumps(const RigidClumps &) = delete;
   RigidClumps &operator=(const RigidClumps &) = delete;
 
-  void forget();     // other settings: no shape stands
-  void new_run();    // clumps may have changed: look at each again; shapes stay
+  /* Other settings: no shape stands. */
+  void forget();
+  /* A run begins otherwise than the last one ended: every clump is looked at again, nobody is loose. */
+  void new_run();
+
+  /* Molecule IDs of the clumps that are loose, two numbers each, for restart files; the same on all ranks. */
+  std::vector<double> loose() const;
+  void set_loose(const std::vector<double> &ids);
+  bool any_loose() const { return !loose_molecules.empty(); }
 
   /* What a step knows of the atoms of this rank. */
   struct Motion {
     const std::vector<char> &active;
-    const double *eta;          // [n], or nullptr:
-    double eta_uniform;         // the same everywhere
-    const double *u_inf;        // [3n], or nullptr:
-    const double *u_uniform;    // [3]
-    const double *gradient;     // [9n] of the fluid velocity; nullptr: it is uniform
+    /* [n]; nullptr: it is the same everywhere, namely */
+    const double *eta;
+    double eta_uniform;
+    /* [3n]; nullptr: it is the same everywhere, namely */
+    const double *u_inf;
+    const double *u_uniform;
+    /* [9n] of the fluid velocity; nullptr: it is uniform */
+    const double *gradient;
   };
 
-  /* Calls take(i, F, T) for every owned sphere i of a rigid clump that takes part: force [3], torque [3] (nullptr without rotation).
-   * loose[i] = 1: atom i belongs to a clump that is not rigid (auto) and is left to the solver. Lone spheres (molecule 0): left to
-   * the solver likewise. Errors: a clump whose spheres are not all selected; one that is not rigid (yes). */
+  /* Calls take(i, F, T) for every owned sphere i of a rigid clump that takes part: force [3], torque [3]
+   * (nullptr without rotation). loose[i] = 1: atom i belongs to a loose clump, or to none (molecule 0), and is
+   * the solver's. Errors: a clump whose spheres are not all selected; one that is not rigid (yes). */
   template <class Take>
   void forces(const Motion &motion, const Take &take, std::vector<char> &loose)
   {
+    Step step;
     begin_step(motion, loose);
-    for (size_t number = 0; number < scene.clumps.size(); number++) {
-      if (!evaluate(number, motion, loose)) continue;
-      const int begin = scene.clumps[number].begin, n = scene.clumps[number].end - begin;
-      const int *perm = of_clump[number]->perm.data();
-      for (int k = 0; k < n; k++) {
-        const int i = scene.owned[begin + perm[k]];
-        if (i >= 0) take(i, &F[3 * (size_t) k], settings.rotation ? &T[3 * (size_t) k] : nullptr);
+    for (size_t k = 0; k < bodies.size(); k++) {
+      if (!evaluate(bodies[k], motion, step)) continue;
+      for (int s = 0; s < bodies[k].n; s++) {
+        const int i = owned[bodies[k].begin + s];
+        if (i >= 0) take(i, &step.F[3 * s], settings.rotation ? &step.T[3 * s] : nullptr);
       }
     }
-    end_step(loose);
+    end_step(step, loose);
   }
 
-  bool any_loose() const { return !loose_molecules.empty(); }    // on any rank
   double memory_usage() const;
 
  private:
@@ -70,64 +86,73 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   std::string command;
 
   struct Shape {
-    sd_shape shape;
-    sd_clump clump;
-    double spin_inverse[9];    // of sum (x^2 I - x x), in the frame of the shape: pseudo-inverse
-    double gradient_inverse[9];    // of sum x x
-    double axis[3];                // of centres on a line
-    int64_t molecule;              // of the first of its kind
+    int number;
+    int64_t molecule;    // of the first of its kind
+    sd_shape shape = {};
+    sd_clump clump = {};
+    Shape(int number, int64_t molecule) : number(number), molecule(molecule) {}
+    ~Shape();
+    Shape(const Shape &) = delete;
   };
-  std::vector<Shape> shapes;
+  using BySize = std::multimap<double, const Shape *>;
+  std::map<int, std::unique_ptr<Shape>> shapes;          // by number
+  BySize by_size;
+  int solved = 0;    // shapes up to this number have been
   sd_shells shells;
 
   struct Known {
-    int shape;                   // -1: loose
-    std::vector<int64_t> tag;    // in order
-    std::vector<int> perm;       // sphere k of the shape is sphere perm[k] in order of tag
+    const Shape *shape = nullptr;
+    uint64_t atoms = 0;       // hash of the IDs
+    std::vector<int> perm;    // sphere k of the shape is sphere perm[k] in order of ID
   };
   std::map<int64_t, Known> known;    // by molecule ID: clumps that this rank owns a part of
-  std::vector<const Known *> of_clump;
   std::set<int64_t> loose_molecules;
+  bool recognised = false;
 
-  struct Solved {
-    int root;
-    double status, need, seconds;
+  /* The clumps since the last re-neighbouring, their spheres in the order of the shapes */
+  struct Body {
+    const Shape *shape;
+    int64_t molecule;
+    int begin, n;
   };
-  std::vector<Solved> solved;
+  std::vector<Body> bodies;
+  std::vector<int> member, owned;    // as in the scene
+  std::vector<int> not_ours;         // atoms of loose clumps, and of none
+
+  /* What a step gathers of a clump, finds for it, and finds wrong with clumps */
+  static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();
+  struct Step {
+    std::vector<double> x, v, omega, u, gradient, F, T;
+    int64_t split = NOBODY;    // molecule ID, the lowest
+    std::vector<int64_t> bent;
+  };
 
   struct {
     int eta, v, omega, u, gradient, end;
   } column = {};
   std::vector<double> radius;    // per atom, ghosts included
   std::vector<double> ghosts;    // what a step knows of ghosts, in columns
-  int64_t worst = 0;             // of this step: 4 molecule + fault
-  std::vector<double> bent;
 
-  struct Sphere {
-    const double *v, *omega, *u, *gradient;
-  };
-  std::vector<Sphere> spheres;    // of one clump, in order of its shape
-  std::vector<double> x, F, T;
-
-  static constexpr double RIGID_TO = 1e-4;    // of its size: more is not the same shape any more
-
-  /* The numbers of all ranks, one rank after the other. */
-  static std::vector<double> from_all_ranks(const std::vector<double> &mine, MPI_Comm world);
   void recognise();
-  void geometry(const Scene::Clump &clump, std::vector<double> &centres,
-                std::vector<double> &radii) const;
-  void add_shapes(const std::vector<size_t> &unknown);
-  void prepare(Shape &shape);
-  void solve(size_t first);
-  void announce(size_t number, double seconds);
-  void match(const std::vector<size_t> &unknown);
+  uint64_t atoms_of(const Scene::Clump &clump) const;
+  void geometry(const Scene::Clump &clump, std::vector<double> &x, std::vector<double> &a) const;
+  static const Shape *find(const BySize &among, const std::vector<double> &x,
+                           const std::vector<double> &a, std::vector<int> &perm);
+  void take_over(std::vector<size_t> &unknown);
+  void find_shapes(std::vector<size_t> unknown);
+  void accept(const std::vector<double> &candidates);
+  void solve();
+  [[noreturn]] void cannot_be_solved(const Shape &s, sd_status status, double need) const;
+  void announce(const Shape &s, double seconds) const;
+  void drop_unused();
+  void arrange();
   void gather(const Motion &motion);
   void begin_step(const Motion &motion, std::vector<char> &loose);
-  bool evaluate(size_t number, const Motion &motion,
-                std::vector<char> &loose);    // F and T of a clump, if it has any
-  void end_step(std::vector<char> &loose);
-  void slip(const Shape &s, const double R[9], const double c[3], const Motion &m, double s0[3],
-            double W[3], double A[9]) const;
+  int collect(const Body &body, const Motion &motion, Step &step, double &eta) const;
+  bool evaluate(const Body &body, const Motion &motion, Step &step) const;
+  void end_step(const Step &step, std::vector<char> &loose);
+  void loosen(const std::vector<int64_t> &molecules);
+  [[noreturn]] void not_rigid(int64_t molecule) const;
 };
 
 }    // namespace StokesDyn

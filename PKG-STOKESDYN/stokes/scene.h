@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -128,7 +129,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void send_rows(double *ghosts, int width, const std::function<void(int, double *)> &row);
   void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;
   void place(int n_all);
-  [[noreturn]] void complain_about_clumps(const std::vector<int64_t> &suspect);
+  [[noreturn]] void complain_about_clumps(const std::set<int64_t> &suspect);
   [[noreturn]] void out_of_memory();
 };
 

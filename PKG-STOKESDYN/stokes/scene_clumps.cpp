@@ -2,6 +2,9 @@
 
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "ranks.h"
+
+#include "sd_lattice.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -9,9 +12,11 @@
 #include "neighbor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 using namespace LAMMPS_NS;
 
@@ -47,8 +52,7 @@ bool Scene::update_clumps()
   std::vector<int> spheres;
   for (int b = 0, e; b < n; b = e) {
     for (e = b + 1; e < n && molecule[order[e]] == molecule[order[b]]; e++) {}
-    int first =
-        b;    // in order of tag and index: the owned one of lowest tag comes before its ghosts
+    int first = b;    // by tag and index: the owned one of lowest tag comes before its ghosts
     while (first < e && order[first] >= nlocal) first++;
     if (molecule[order[b]] == 0 || first == e) continue;
 
@@ -92,75 +96,35 @@ namespace {
     }
   };
 
-  /* The shortest of a separation's images. In a skew box that need not be LAMMPS's minimum image: an image no longer than d is at
-   * most |d| |row k of the inverse of the box| cells away from it along edge k. */
-  void closest_image(Domain *domain, double *d)
+  std::array<double, 6> edges_of(const Domain *domain)
   {
-    Compat::minimum_image(domain, d);
-    if (!domain->triclinic) return;
-    const double *h = domain->h, *inv = domain->h_inv;    // xx yy zz yz xz xy of an upper triangle
-    const double at[3] = {inv[0] * d[0] + inv[5] * d[1] + inv[4] * d[2],
-                          inv[1] * d[1] + inv[3] * d[2], inv[2] * d[2]};
-    const double row[3] = {sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4]),
-                           sqrt(inv[1] * inv[1] + inv[3] * inv[3]), fabs(inv[2])};
-    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    int lo[3], hi[3];
-    for (int k = 0; k < 3; k++) {
-      lo[k] = domain->periodicity[k] ? (int) floor(at[k] - length * row[k]) : 0;
-      hi[k] = domain->periodicity[k] ? (int) ceil(at[k] + length * row[k]) : 0;
-    }
-    double best = length * length * (1.0 - 1e-12), shift[3] = {0.0, 0.0, 0.0};
-    for (int i = lo[0]; i <= hi[0]; i++)
-      for (int j = lo[1]; j <= hi[1]; j++)
-        for (int k = lo[2]; k <= hi[2]; k++) {
-          const double s[3] = {h[0] * i + h[5] * j + h[4] * k, h[1] * j + h[3] * k, h[2] * k};
-          const double x = d[0] - s[0], y = d[1] - s[1], z = d[2] - s[2];
-          if (x * x + y * y + z * z >= best) continue;
-          best = x * x + y * y + z * z;
-          std::copy(s, s + 3, shift);
-        }
-    for (int k = 0; k < 3; k++) d[k] -= shift[k];
+    if (!domain->triclinic) return {domain->xprd, domain->yprd, domain->zprd, 0.0, 0.0, 0.0};
+    const double *h = domain->h;
+    return {h[0], h[1], h[2], h[3], h[4], h[5]};
   }
 }    // namespace
 
-/* Without a cut-off every sphere must see all of its clump. Each rank counts its own members of a molecule, the rank
- * (molecule modulo ranks) adds them up, and every rank asks back. */
+/* Without a cut-off every sphere must see all of its clump: how many spheres has it, on all ranks together? */
 void Scene::check_clumps(const sd_neighbors &list, bool one_row)
 {
+  struct Part {
+    int64_t molecule, spheres;
+  };
   const int nlocal = atom->nlocal, nprocs = comm->nprocs;
-  std::map<int64_t, int64_t> total;
+  std::unordered_map<int64_t, int64_t> total;
   for (int i = 0; i < nlocal; i++)
     if (molecule[i] != 0) total[molecule[i]]++;
-
   if (nprocs > 1) {
-    std::vector<std::vector<int64_t>> outbox(nprocs);
-    for (const auto &entry : total) {
-      auto &box = outbox[std::abs(entry.first) % nprocs];
-      box.push_back(entry.first);
-      box.push_back(entry.second);
-    }
-    std::vector<int> sent(nprocs), received(nprocs), sent_at(nprocs), received_at(nprocs);
-    std::vector<int64_t> out, in;
-    for (int p = 0; p < nprocs; p++) {
-      sent[p] = outbox[p].size();
-      sent_at[p] = out.size();
-      out.insert(out.end(), outbox[p].begin(), outbox[p].end());
-    }
-    MPI_Alltoall(sent.data(), 1, MPI_INT, received.data(), 1, MPI_INT, world);
-    int n_in = 0;
-    for (int p = 0; p < nprocs; p++) {
-      received_at[p] = n_in;
-      n_in += received[p];
-    }
-    in.resize(n_in);
-    MPI_Alltoallv(out.data(), sent.data(), sent_at.data(), MPI_LMP_BIGINT, in.data(),
-                  received.data(), received_at.data(), MPI_LMP_BIGINT, world);
-    std::map<int64_t, int64_t> sums;
-    for (int k = 0; k < n_in; k += 2) sums[in[k]] += in[k + 1];
-    for (int k = 0; k < n_in; k += 2) in[k + 1] = sums[in[k]];
-    MPI_Alltoallv(in.data(), received.data(), received_at.data(), MPI_LMP_BIGINT, out.data(),
-                  sent.data(), sent_at.data(), MPI_LMP_BIGINT, world);
-    for (size_t k = 0; k < out.size(); k += 2) total[out[k]] = out[k + 1];
+    std::vector<Part> parts;
+    for (const auto &entry : total) parts.push_back({entry.first, entry.second});
+    ask_homes(
+        world, parts, [nprocs](const Part &p) { return (int) ((uint64_t) p.molecule % nprocs); },
+        [](std::vector<Part> &all) {
+          std::unordered_map<int64_t, int64_t> sums;
+          for (const Part &p : all) sums[p.molecule] += p.spheres;
+          for (Part &p : all) p.spheres = sums[p.molecule];
+        });
+    for (const Part &p : parts) total[p.molecule] = p.spheres;
   }
 
   // A partner that is missing, or known only as an image more than half of a periodic box away.
@@ -181,48 +145,34 @@ void Scene::check_clumps(const sd_neighbors &list, bool one_row)
     }
     if (!complete || span.wide(domain)) suspect.push_back(molecule[i]);
   }
-  int mine = suspect.size(), any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any) complain_about_clumps(suspect);
+  suspect = from_all(world, suspect);
+  if (!suspect.empty()) complain_about_clumps(std::set<int64_t>(suspect.begin(), suspect.end()));
 }
 
 /* Either the ghosts do not reach across a clump, or the clump is so wide that the closest image of a sphere is ambiguous. */
-void Scene::complain_about_clumps(const std::vector<int64_t> &suspect)
+void Scene::complain_about_clumps(const std::set<int64_t> &suspect)
 {
   // All spheres of those clumps to all ranks: the run ends here, so the price does not matter.
-  auto everywhere = [this](std::vector<double> &v) {
-    int mine = v.size(), n = 0;
-    std::vector<int> counts(comm->nprocs), at(comm->nprocs);
-    MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-    for (int p = 0; p < comm->nprocs; p++) {
-      at[p] = n;
-      n += counts[p];
-    }
-    std::vector<double> all(n);
-    MPI_Allgatherv(v.data(), mine, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE,
-                   world);
-    v.swap(all);
+  struct Sphere {
+    int64_t molecule;
+    double x[3];
   };
-  std::vector<double> ids(suspect.begin(), suspect.end()), spheres;
-  everywhere(ids);
-  std::sort(ids.begin(), ids.end());
-  for (int i = 0; i < atom->nlocal; i++)
-    if (std::binary_search(ids.begin(), ids.end(), (double) molecule[i]))
-      spheres.insert(spheres.end(),
-                     {(double) molecule[i], atom->x[i][0], atom->x[i][1], atom->x[i][2]});
-  everywhere(spheres);
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *x = atom->x[i];
+    if (suspect.count(molecule[i])) spheres.push_back({molecule[i], {x[0], x[1], x[2]}});
+  }
+  std::map<int64_t, std::vector<Sphere>> members;
+  for (const Sphere &s : from_all(world, spheres)) members[s.molecule].push_back(s);
 
-  std::map<int64_t, std::vector<const double *>> clumps;
-  for (size_t k = 0; k < spheres.size(); k += 4)
-    clumps[(int64_t) spheres[k]].push_back(&spheres[k + 1]);
   double widest = 0.0;
-  int64_t which = 0;
-  for (const auto &clump : clumps)
-    for (const double *p : clump.second) {
+  int64_t which = *suspect.begin();
+  for (const auto &clump : members)
+    for (const Sphere &p : clump.second) {
       Span span;
-      for (const double *q : clump.second) {
-        double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-        closest_image(domain, d);
+      for (const Sphere &q : clump.second) {
+        double d[3] = {q.x[0] - p.x[0], q.x[1] - p.x[1], q.x[2] - p.x[2]};
+        sd_closest_image(edges_of(domain).data(), domain->periodicity, d);
         span.add(d);
         const double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         if (r > widest) {

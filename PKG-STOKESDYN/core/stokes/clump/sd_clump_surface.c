@@ -57,8 +57,10 @@ static int hidden(const sd_shape *s, const double *radius, int own, const double
   return 0;
 }
 
-/* A hair inside, so that spheres that
- * only touch, and points of a symmetric shape that lie on two spheres, are not decided by rounding. */
+/* A hair inside, so that spheres that only touch, within the tolerance of shapes, hide nothing of each other, and points of a
+ * symmetric shape that lie on two spheres are not decided by rounding. */
+static const double hair = 1.7 * SD_SHAPE_TOLERANCE;
+
 sd_status sd_surface_exposed(const sd_shape *s, sd_shells *cache, double *fraction)
 {
   enum { FINE = 642 };
@@ -66,7 +68,7 @@ sd_status sd_surface_exposed(const sd_shape *s, sd_shells *cache, double *fracti
   sd_status status = SD_OK;
   double *radius = malloc(sizeof(double) * (size_t) s->n);
   if (!radius) return SD_ENOMEMORY;
-  for (int i = 0; i < s->n; i++) radius[i] = 0.99983 * s->a[i];
+  for (int i = 0; i < s->n; i++) radius[i] = (1.0 - hair) * s->a[i];
   for (int i = 0; i < s->n && status == SD_OK; i++) {
     int overlaps = 0, count = 0;
     for (int j = 0; j < s->n && !overlaps; j++) {
@@ -111,7 +113,8 @@ void sd_surface_share(const sd_shape *s, int n, const double *fraction, int *cou
 
 int sd_surface_orientations(int n)
 {
-  return n == 1 ? 1 : 1 + 95 / n;
+  /* so many that each sphere has 96 points or more in all: eight icosahedra, one shell from 96 points on */
+  return n == 1 ? 1 : 1 + (96 - 1) / n;
 }
 
 /* Orientation number k: the first is the frame itself, the others spread evenly over all rotations (unit quaternions from a

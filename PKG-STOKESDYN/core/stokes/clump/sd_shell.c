@@ -6,10 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The largest int that is 6 (mod 12) */
+enum { LARGEST = 2147483646 };
+
 int sd_shell_size(int n)
 {
   if (n <= 1) return 1;
   if (n < 12) return 12;
+  if (n > LARGEST) return LARGEST;
   while (n % 12 != 0 && n % 12 != 2 && n % 12 != 6 && n % 12 != 8) n++;
   return n;
 }
@@ -179,8 +183,10 @@ static sd_status even_points(int n, double *out)
 {
   orbits o = {.six = n % 12 == 2 || n % 12 == 6, .eight = n % 12 == 2 || n % 12 == 8};
   const int rest = (n - 6 * o.six - 8 * o.eight) / 12; /* = planar + 2 general */
-  const int likely = (int) (0.43 * sqrt(n) +
-                            0.5); /* a great circle in even points carries about 4 times as many */
+  /* Points of orbits on the three mirror planes: four of an orbit lie on each great circle. A circle in n even points
+   * carries sqrt(pi n) of them if they stand in squares, sqrt(sqrt(3)/2 pi n) in triangles: a quarter is 0.44 or
+   * 0.41 sqrt(n) orbits. Two more and two fewer are tried as well. */
+  const int likely = (int) (0.43 * sqrt(n) + 0.5);
   double best = INFINITY;
   double *scratch = malloc(sizeof(double) * (size_t) (3 * n + 9 * rest + 9));
   if (!scratch) return SD_ENOMEMORY;

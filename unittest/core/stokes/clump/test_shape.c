@@ -185,9 +185,9 @@ static void radii_and_spacing_tell_shapes_apart(void **state)
   b[2] = a[0];
   assert_false(sd_shape_match(&s, 3, y, b, perm, scratch));
   memcpy(y, x, sizeof(y));
-  y[5] += 0.3e-6 * size; /* within and beyond the tolerance */
+  y[5] += 0.3 * SD_SHAPE_TOLERANCE * size; /* within and beyond the tolerance */
   assert_true(sd_shape_match(&s, 3, y, a, perm, scratch));
-  y[5] += 3e-6 * size;
+  y[5] += 3.0 * SD_SHAPE_TOLERANCE * size;
   assert_false(sd_shape_match(&s, 3, y, a, perm, scratch));
   assert_false(sd_shape_match(&s, 2, y, a, perm, scratch));
   sd_shape_free(&s);
@@ -210,10 +210,62 @@ static void degenerate_clumps_are_shapes_too(void **state)
   sd_shape_free(&s);
   assert_int_equal(sd_shape_create(4, x, (double[4]){1, 1, -1, 1}, &s), SD_ENOTFINITE);
   assert_int_equal(sd_shape_create(4, (double[12]){[5] = NAN}, a, &s), SD_ENOTFINITE);
-  const double bent[9] = {0, 0, 0, 2, 0, 0, 4, 3e-4, 0};
+  const double bent[9] = {0, 0, 0, 2, 0, 0, 4, 3e-3, 0};
   assert_int_equal(sd_shape_create(3, bent, a, &s), SD_OK);
   assert_int_equal(s.rank, 2);
   CHECK_NEAR(sd_shape_pose(&s, bent, R, c), 0.0, 1e-14);
+  sd_shape_free(&s);
+}
+
+/* Coordinates as a data file with six digits has them, far from the origin: every cluster keeps its symmetry, is one shape in any
+ * orientation and order, and the shape of the exact cluster is that of the rounded one. */
+static void six_digits_are_one_shape(void **state)
+{
+  (void) state;
+  uint64_t seed = 29;
+  double x[3 * MOST], a[MOST], y[3 * MOST], z[3 * MOST], b[MOST], scratch[6 * MOST];
+  int perm[MOST], order[MOST];
+  for (int m = 0; m < N_CLUSTERS; m++) {
+    const int n = table_cluster(clusters[m], x, a);
+    sd_shape exact, rounded;
+    assert_int_equal(sd_shape_create(n, x, a, &exact), SD_OK);
+    for (int trial = 0; trial < 20; trial++) {
+      double Q[9];
+      const double shift[3] = {31.0, -48.0, 17.1};
+      random_rotation(&seed, Q);
+      random_order(&seed, n, order);
+      move(n, x, Q, shift, y);
+      for (int k = 0; k < n; k++) {
+        for (int d = 0; d < 3; d++) {
+          char text[24];
+          snprintf(text, sizeof(text), "%.6g", y[3 * order[k] + d]);
+          z[3 * k + d] = atof(text);
+        }
+        b[k] = a[order[k]];
+      }
+      if (!sd_shape_match(&exact, n, z, b, perm, scratch)) fail_msg("%s: rounded", clusters[m]);
+      assert_int_equal(sd_shape_create(n, z, b, &rounded), SD_OK);
+      assert_int_equal(rounded.rank, exact.rank);
+      assert_int_equal(rounded.symmetries, orders[m]);
+      assert_true(fabs(sd_shape_size(n, z, b) - exact.size) <= 2.0 * SD_SHAPE_TOLERANCE * exact.size);
+      if (!sd_shape_match(&rounded, n, x, a, perm, scratch)) fail_msg("%s: exact", clusters[m]);
+      sd_shape_free(&rounded);
+    }
+    sd_shape_free(&exact);
+  }
+}
+
+/* What is nearly a line or a point is one, and a shape of itself whatever its azimuth. */
+static void nearly_a_line_is_a_line(void **state)
+{
+  (void) state;
+  const double a[3] = {0.5, 0.7, 0.9}, x[9] = {0, 0, 0, 2, 1e-4, 0, 4, 0, 1e-4};
+  double R[9], c[3];
+  sd_shape s;
+  assert_int_equal(sd_shape_create(3, x, a, &s), SD_OK);
+  assert_int_equal(s.rank, 1);
+  assert_int_equal(s.symmetries, 16);
+  assert_true(sd_shape_pose(&s, x, R, c) <= SD_SHAPE_TOLERANCE * s.size);
   sd_shape_free(&s);
 }
 
@@ -260,6 +312,8 @@ int main(void)
       cmocka_unit_test(mirror_image_of_a_chiral_clump_is_another_shape),
       cmocka_unit_test(radii_and_spacing_tell_shapes_apart),
       cmocka_unit_test(degenerate_clumps_are_shapes_too),
+      cmocka_unit_test(six_digits_are_one_shape),
+      cmocka_unit_test(nearly_a_line_is_a_line),
       cmocka_unit_test(random_clumps_match_themselves),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

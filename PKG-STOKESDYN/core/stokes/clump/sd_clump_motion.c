@@ -1,0 +1,101 @@
+#include "sd_clump_motion.h"
+
+#include "sd_linear.h"
+
+#include <string.h>
+
+/* sum_m e_m (e_m.b) / d_m over the main axes e of the shape, turned by R: the solution of a symmetric
+ * system that is diagonal there. An axis with d = 0 is left out, as a pseudo-inverse does. */
+static void divide(const sd_shape *s, const double R[9], const double d[3], const double b[3],
+                   double out[3])
+{
+  double body[3], x[3] = {0.0, 0.0, 0.0};
+  sd_multiply3t(R, b, body);
+  for (int m = 0; m < 3; m++) {
+    if (!(d[m] > 0.0)) continue;
+    const double *e = s->axes + 3 * m, part = sd_dot(e, body) / d[m];
+    for (int p = 0; p < 3; p++) x[p] += part * e[p];
+  }
+  sd_multiply3(R, x, out);
+}
+
+void sd_clump_velocity(const sd_shape *s, const sd_clump_motion *m, const double R[9],
+                       const double c[3], double U[3], double W[3])
+{
+  /* v_k = U + W x r_k with the least sum of squares: U is the mean, since the r_k add up to 0, and
+   *   sum (r.r I - r r) W = sum r x v.
+   * Along main axis e_m the matrix is the sum of the squares along the other two. */
+  const double share = 1.0 / s->n, *q = s->squares;
+  const double across[3] = {q[1] + q[2], q[2] + q[0], q[0] + q[1]};
+  double sum[3] = {0.0, 0.0, 0.0}, L[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < s->n; k++) {
+    const double *x = m->x + 3 * k, *v = m->v + 3 * k;
+    const double r[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
+    L[0] += r[1] * v[2] - r[2] * v[1];
+    L[1] += r[2] * v[0] - r[0] * v[2];
+    L[2] += r[0] * v[1] - r[1] * v[0];
+    for (int d = 0; d < 3; d++) sum[d] += v[d];
+  }
+  for (int d = 0; d < 3; d++) U[d] = share * sum[d];
+  divide(s, R, across, L, W);
+  if (!m->omega || s->rank == 2) return;
+
+  /* On a line with direction e the spheres' own spins tell what is along it, in a point all. */
+  double spin[3] = {0.0, 0.0, 0.0}, e[3];
+  for (int k = 0; k < s->n; k++)
+    for (int d = 0; d < 3; d++) spin[d] += share * m->omega[3 * k + d];
+  sd_multiply3(R, s->axes, e);
+  const double about = sd_dot(spin, e);
+  for (int d = 0; d < 3; d++) W[d] = s->rank == 0 ? spin[d] : W[d] + about * e[d];
+}
+
+void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9],
+                   const double c[3], double u[3], double G[9])
+{
+  const double share = 1.0 / s->n;
+  memset(G, 0, sizeof(double) * 9);
+  memcpy(u, m->u_uniform, sizeof(double) * 3);
+  if (!m->u) return;
+  for (int d = 0; d < 3; d++) u[d] = 0.0;
+  for (int k = 0; k < s->n; k++) {
+    for (int d = 0; d < 3; d++) u[d] += share * m->u[3 * k + d];
+    for (int d = 0; d < 9; d++) G[d] += share * m->gradient[9 * k + d];
+  }
+  /* The rest, u_k - u - G r_k = D r_k with the least sum of squares: D sum r r = sum (u_k - u - G r_k) r,
+   * row by row. */
+  double B[9] = {0.0};
+  for (int k = 0; k < s->n; k++) {
+    const double *x = m->x + 3 * k, *uk = m->u + 3 * k;
+    const double r[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
+    double Gr[3];
+    sd_multiply3(G, r, Gr);
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++) B[3 * p + q] += (uk[p] - u[p] - Gr[p]) * r[q];
+  }
+  for (int p = 0; p < 3; p++) {
+    double D[3];
+    divide(s, R, s->squares, B + 3 * p, D);
+    for (int q = 0; q < 3; q++) G[3 * p + q] += D[q];
+  }
+}
+
+void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
+                   const double pose[12], double eta, double *F, double *T)
+{
+  const double *R = pose, *c = pose + 9;
+  double U[3], w[3], u[3], G[9], slip[3], W[3];
+  sd_clump_velocity(s, m, R, c, U, w);
+  if (!m->u) {
+    for (int d = 0; d < 3; d++) {
+      slip[d] = m->u_uniform[d] - U[d];
+      W[d] = -w[d];
+    }
+    sd_clump_forces_rigid(clump, R, eta, slip, W, F, T);
+    return;
+  }
+  sd_clump_flow(s, m, R, c, u, G);
+  const double spin[9] = {0.0, -w[2], w[1], w[2], 0.0, -w[0], -w[1], w[0], 0.0};
+  for (int d = 0; d < 3; d++) slip[d] = u[d] - U[d];
+  for (int d = 0; d < 9; d++) G[d] -= spin[d];
+  sd_clump_forces(clump, R, eta, slip, G, F, T);
+}

@@ -1,0 +1,70 @@
+/* Images of a periodic box. */
+#include "check.h"
+
+#include "sd_lattice.h"
+
+#include <string.h>
+
+static const int all[3] = {1, 1, 1};
+
+static double square(const double d[3])
+{
+  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+}
+
+/* Against all images up to four cells away, in boxes tilted by up to the whole of their edges, open in some directions */
+static void image_is_the_closest(void **state)
+{
+  (void) state;
+  uint64_t seed = 83;
+  for (int trial = 0; trial < 300; trial++) {
+    double h[6], d[3], image[3], best = INFINITY;
+    int periodic[3];
+    for (int k = 0; k < 3; k++) h[k] = uniform(&seed, 3.0, 6.0);
+    periodic[2] = periodic[1] = periodic[0] = 1;
+    if (trial % 3 == 1) periodic[trial / 3 % 3] = 0;
+    h[3] = trial % 2 && periodic[1] && periodic[2] ? uniform(&seed, -1.0, 1.0) * h[1] : 0.0;
+    h[4] = trial % 2 && periodic[0] && periodic[2] ? uniform(&seed, -1.0, 1.0) * h[0] : 0.0;
+    h[5] = trial % 2 && periodic[0] && periodic[1] ? uniform(&seed, -1.0, 1.0) * h[0] : 0.0;
+    for (int k = 0; k < 3; k++) d[k] = uniform(&seed, -5.0, 5.0);
+    memcpy(image, d, sizeof(image));
+    sd_closest_image(h, periodic, image);
+    for (int i = -6 * periodic[0]; i <= 6 * periodic[0]; i++)
+      for (int j = -4 * periodic[1]; j <= 4 * periodic[1]; j++)
+        for (int k = -4 * periodic[2]; k <= 4 * periodic[2]; k++)
+          best = fmin(best, square((double[3]){d[0] - i * h[0] - j * h[5] - k * h[4],
+                                               d[1] - j * h[1] - k * h[3], d[2] - k * h[2]}));
+    CHECK_NEAR(square(image), best, 1e-10);
+  }
+}
+
+/* 2^60 boxes away every digit that tells where is still there; beyond, whatever comes out is in the box, and comes at once. */
+static void far_away_is_no_loop(void **state)
+{
+  (void) state;
+  const double h[6] = {4.0, 8.0, 16.0, 0.0, 0.0, 0.0}, skew[6] = {4.0, 8.0, 16.0, 3.0, -1.0, 1.5};
+  double d[3] = {0x1p62 + 0x1p12, -0x1p60, 3.0};
+  sd_closest_image(h, all, d);
+  CHECK_NEAR(d[0], 0.0, 0.0);
+  CHECK_NEAR(d[1], 0.0, 0.0);
+  CHECK_NEAR(d[2], 3.0, 0.0);
+  for (double far = 1e15; far < 1e308; far *= 1e10) {
+    double e[3] = {far, -0.7 * far, 0.3 * far};
+    sd_closest_image(skew, all, e);
+    assert_true(square(e) < 400.0);
+  }
+  double nowhere[3] = {INFINITY, NAN, -INFINITY};
+  sd_closest_image(skew, all, nowhere);
+  double open[3] = {1e300, 1.0, 9.0};
+  sd_closest_image(h, (int[3]){0, 1, 1}, open);
+  assert_true(open[0] == 1e300 && open[2] == -7.0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(image_is_the_closest),
+      cmocka_unit_test(far_away_is_no_loop),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
