@@ -148,6 +148,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void arrange();
   void gather(const Motion &motion);
   void begin_step(const Motion &motion, std::vector<char> &loose);
+  bool asks_for_spins(const Body &body) const;
   int collect(const Body &body, const Motion &motion, Step &step, double &eta) const;
   bool evaluate(const Body &body, const Motion &motion, Step &step) const;
   void end_step(const Step &step, std::vector<char> &loose);

@@ -43,18 +43,20 @@ void RigidClumps::begin_step(const Motion &m, std::vector<char> &loose)
   for (int i : not_ours) loose[i] = 1;
 }
 
+/* The angular velocities of spheres that are not on a line say nothing that their velocities do not: that memory is left alone. */
+bool RigidClumps::asks_for_spins(const Body &body) const
+{
+  return settings.rotation && body.shape->shape.rank < 2;
+}
+
 /* What the spheres of a clump do, in the order of its shape; returns how many take part and adds up their viscosities. */
 int RigidClumps::collect(const Body &body, const Motion &m, Step &step, double &eta) const
 {
   const size_t n = body.n;
   const int nlocal = atom->nlocal;
-  step.x.resize(3 * n);
-  step.v.resize(3 * n);
-  step.F.resize(3 * n);
-  step.T.resize(3 * n);
-  if (settings.rotation) step.omega.resize(3 * n);
-  if (m.gradient) {
-    step.u.resize(3 * n);
+  const bool spins = asks_for_spins(body);
+  if (step.x.size() < 3 * n) {
+    for (auto *v : {&step.x, &step.v, &step.omega, &step.u, &step.F, &step.T}) v->resize(3 * n);
     step.gradient.resize(9 * n);
   }
   int taking_part = 0;
@@ -67,7 +69,7 @@ int RigidClumps::collect(const Body &body, const Motion &m, Step &step, double &
     eta += eta_k;
     memcpy(&step.x[3 * k], atom->x[j], 3 * sizeof(double));
     memcpy(&step.v[3 * k], ghost ? row + column.v : atom->v[j], 3 * sizeof(double));
-    if (settings.rotation)
+    if (spins)
       memcpy(&step.omega[3 * k], ghost ? row + column.omega : atom->omega[j], 3 * sizeof(double));
     if (!m.gradient) continue;
     const double *u = ghost ? row + column.u : m.u_inf ? m.u_inf + 3 * (size_t) j : m.u_uniform;
@@ -97,7 +99,7 @@ bool RigidClumps::evaluate(const Body &body, const Motion &m, Step &step) const
   sd_clump_motion motion = {};
   motion.x = step.x.data();
   motion.v = step.v.data();
-  motion.omega = settings.rotation ? step.omega.data() : nullptr;
+  motion.omega = asks_for_spins(body) ? step.omega.data() : nullptr;
   memcpy(motion.u_uniform, m.u_uniform, sizeof(motion.u_uniform));
   motion.u = m.gradient ? step.u.data() : nullptr;
   motion.gradient = m.gradient ? step.gradient.data() : nullptr;
