@@ -3,7 +3,6 @@
 #include "keywords.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "sd_sph_step.h"
-#include "sph.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -16,10 +15,9 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixCheckTimestepSph::FixCheckTimestepSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixCheckTimestepSph::FixCheckTimestepSph(LAMMPS *lmp, int narg, char **arg) :
+    SphFix(lmp, narg, arg)
 {
-  const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_scene(lmp, command);
   if (narg < 5) fail(lmp, command + ": the form is: check/timestep/sph N fraction [warn|stop]");
   Keywords in(lmp, command, words(narg, arg), 3);
   nevery = in.positional("N").integer(1);
@@ -40,11 +38,6 @@ int FixCheckTimestepSph::setmask()
   return FixConst::END_OF_STEP;
 }
 
-void FixCheckTimestepSph::init()
-{
-  pair = Sph::require_pair(lmp, "Fix " + std::string(STYLE));
-}
-
 void FixCheckTimestepSph::setup(int /*vflag*/)
 {
   end_of_step();
@@ -52,7 +45,6 @@ void FixCheckTimestepSph::setup(int /*vflag*/)
 
 void FixCheckTimestepSph::end_of_step()
 {
-  const std::string command = "Fix " + std::string(STYLE);
   pair->largest_approach(largest);
   double mine = HUGE_VAL;
   tagint who = MAXTAGINT, first;

@@ -2,21 +2,18 @@
 #ifndef SD_FIX_CHECK_TIMESTEP_SPH_H
 #define SD_FIX_CHECK_TIMESTEP_SPH_H
 
-#include "fix.h"
+#include "sph_fix.h"
 
 #include <vector>
 
 namespace StokesDyn {
 
-class PairSph;
-
-class FixCheckTimestepSph : public LAMMPS_NS::Fix {
+class FixCheckTimestepSph : public SphFix {
  public:
   static constexpr const char *STYLE = "check/timestep/sph";
 
   FixCheckTimestepSph(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;
-  void init() override;
   void setup(int) override;
   void end_of_step() override;
   double compute_scalar() override { return ratio; }
@@ -27,7 +24,6 @@ class FixCheckTimestepSph : public LAMMPS_NS::Fix {
   bool stop = false;
   // smallest limit, number of its particle, time step over limit
   double limit = 0.0, worst = 0.0, ratio = 0.0;
-  PairSph *pair = nullptr;
   std::vector<double> largest;
 };
 

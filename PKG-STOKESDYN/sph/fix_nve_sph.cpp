@@ -8,7 +8,6 @@
 #include "atom.h"
 #include "comm.h"
 #include "force.h"
-#include "modify.h"
 #include "update.h"
 
 #include <cstring>
@@ -16,11 +15,9 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixNveSph::FixNveSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixNveSph::FixNveSph(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
 {
-  const std::string command = "Fix " + std::string(STYLE);
-  if (narg > 3) fail(lmp, command + ": unknown keyword '" + arg[3] + "'");
-  Sph::require_scene(lmp, command);
+  Keywords(lmp, command, words(narg, arg), 3).parse({});
   time_integrate = 1;
   dynamic_group_allow = 1;
   restart_global = 1;
@@ -34,9 +31,7 @@ int FixNveSph::setmask()
 
 void FixNveSph::init()
 {
-  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
-  if (strncmp(update->integrate_style, "respa", 5) == 0)
-    fail(lmp, "Fix " + std::string(STYLE) + " cannot be used with run_style respa");
+  SphFix::init();
   reset_dt();
 }
 
@@ -46,7 +41,8 @@ void FixNveSph::reset_dt()
   dtf = 0.5 * update->dt * force->ftm2v;
 }
 
-/* The estimate that the last run left, if nobody has changed a velocity since: that of the unbroken run. Otherwise v. */
+/* The estimate that the last run left, if nobody has changed a velocity since: that of the unbroken
+ * run. Otherwise v. */
 void FixNveSph::setup_pre_exchange()
 {
   const End now = end_now();
@@ -59,9 +55,10 @@ void FixNveSph::setup_pre_exchange()
   relative = true;
 }
 
-/* Leapfrog: the velocity of the half step moves position and, in the pair style, density. Friction needs the velocity at the
- * end of the step before the force is known, vest = v + dt/2 F/m with the last force. Until the force it is only the second
- * term: fix deform with remap v has LAMMPS shift v, and only v, of what crosses a face that glides, and of ghosts beyond it. */
+/* Leapfrog: the velocity of the half step moves position and, in the pair style, density. Friction
+ * needs the velocity at the end of the step before the force is known, vest = v + dt/2 F/m with the
+ * last force. Until the force it is only the second term: fix deform with remap v has LAMMPS shift
+ * v, and only v, of what crosses a face that glides, and of ghosts beyond it. */
 void FixNveSph::initial_integrate(int /*vflag*/)
 {
   double **x = atom->x, **v = atom->v, **f = atom->f, **vest = atom->vest;
@@ -102,8 +99,8 @@ void FixNveSph::post_run()
   end = end_now();
 }
 
-/* Rows of common/resume.h would cost 64 bytes an atom and a pass over them; velocities alone decide here, and a sum of hashes
- * has no order, so 16 bytes in all will do on any number of ranks. */
+/* Rows of common/resume.h would cost 64 bytes an atom and a pass over them; velocities alone decide
+ * here, and a sum of hashes has no order, so 16 bytes in all will do on any number of ranks. */
 FixNveSph::End FixNveSph::end_now() const
 {
   uint64_t mine = 0, sum = 0;
@@ -124,7 +121,7 @@ FixNveSph::End FixNveSph::end_now() const
 
 void FixNveSph::write_restart(FILE *fp)
 {
-  // In mid-run, or after a run, the state is one that a run can go on from; before any run it is not.
+  // In mid-run, or after a run, there is a state that a run can go on from; before any there is none.
   const End now = update->whichflag == 1 ? end_now() : end;
   NamedState state(STYLE);
   state.put("step", now.step);
@@ -138,16 +135,10 @@ void FixNveSph::restart(char *buf)
   if (state.read(lmp, buf)) end = {state.get("step", -1.0), state.get_bits("velocities", 0)};
 }
 
-FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) :
+    SphFix(lmp, narg, arg)
 {
-  const std::string command = "Fix " + std::string(STYLE);
-  if (narg > 3) fail(lmp, command + ": unknown keyword '" + arg[3] + "'");
-  Sph::require_scene(lmp, command);
+  Keywords(lmp, command, words(narg, arg), 3).parse({});
   time_integrate = 1;
   dynamic_group_allow = 1;
-}
-
-void FixNveSphStationary::init()
-{
-  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
 }

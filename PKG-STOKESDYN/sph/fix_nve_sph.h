@@ -1,14 +1,15 @@
-/* fix nve/sph and fix nve/sph/stationary: time integration of SPH particles. See doc/fix_nve_sph.md. */
+/* fix nve/sph and fix nve/sph/stationary: time integration of SPH particles. See
+ * doc/fix_nve_sph.md. */
 #ifndef SD_FIX_NVE_SPH_H
 #define SD_FIX_NVE_SPH_H
 
-#include "fix.h"
+#include "sph_fix.h"
 
 #include <cstdint>
 
 namespace StokesDyn {
 
-class FixNveSph : public LAMMPS_NS::Fix {
+class FixNveSph : public SphFix {
  public:
   static constexpr const char *STYLE = "nve/sph";
 
@@ -38,13 +39,11 @@ class FixNveSph : public LAMMPS_NS::Fix {
   End end_now() const;
 };
 
-class FixNveSphStationary : public LAMMPS_NS::Fix {
+class FixNveSphStationary : public SphFix {
  public:
   static constexpr const char *STYLE = "nve/sph/stationary";
 
   FixNveSphStationary(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override { return 0; }
-  void init() override;
 };
 
 }    // namespace StokesDyn

@@ -3,11 +3,11 @@
 #ifndef SD_FIX_SPH_DENSITY_H
 #define SD_FIX_SPH_DENSITY_H
 
-#include "fix_sph_output.h"
+#include "sph_fix.h"
 
 namespace StokesDyn {
 
-class FixSphDensityContinuity : public FixSphOutput {
+class FixSphDensityContinuity : public SphOutputFix {
  public:
   static constexpr const char *STYLE = "sph/density/continuity";
   FixSphDensityContinuity(LAMMPS_NS::LAMMPS *, int, char **);
@@ -15,20 +15,16 @@ class FixSphDensityContinuity : public FixSphOutput {
   double delta = 0.0;
 };
 
-class FixSphDensitySummation : public LAMMPS_NS::Fix {
+class FixSphDensitySummation : public SphFix {
  public:
   static constexpr const char *STYLE = "sph/density/summation";
   FixSphDensitySummation(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override { return 0; }
-  void init() override;
 };
 
-class FixSphDensityCorr : public LAMMPS_NS::Fix {
+class FixSphDensityCorr : public SphFix {
  public:
   static constexpr const char *STYLE = "sph/density/corr";
   FixSphDensityCorr(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override { return 0; }
-  void init() override;
   LAMMPS_NS::bigint every = 1;
 };
 

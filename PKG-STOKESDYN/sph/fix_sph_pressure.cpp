@@ -6,9 +6,8 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
-    FixSphOutput(lmp, narg, arg)
+    SphOutputFix(lmp, narg, arg)
 {
-  const std::string command = "Fix " + std::string(STYLE);
   Keywords in(lmp, command, words(narg, arg), 3);
   if (!in.next())
     fail(lmp, command + ": the equation of state is missing: absolut, relativ or Tait");

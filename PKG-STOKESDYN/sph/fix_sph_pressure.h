@@ -2,12 +2,12 @@
 #ifndef SD_FIX_SPH_PRESSURE_H
 #define SD_FIX_SPH_PRESSURE_H
 
-#include "fix_sph_output.h"
+#include "sph_fix.h"
 #include "sd_sph_pressure.h"
 
 namespace StokesDyn {
 
-class FixSphPressure : public FixSphOutput {
+class FixSphPressure : public SphOutputFix {
  public:
   static constexpr const char *STYLE = "sph/pressure";
 

@@ -1,17 +1,14 @@
 #include "fix_wall_adami_sph.h"
 
 #include "keywords.h"
-#include "sph.h"
 
 #include "atom.h"
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
 {
-  const std::string command = "Fix " + std::string(STYLE);
-  Sph::require_scene(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
   in.parse({
       {"gravity", [&] { for (double &g : body_force) g = in.number(); }},
@@ -27,11 +24,6 @@ FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
 int FixWallAdamiSph::setmask()
 {
   return FixConst::POST_FORCE;
-}
-
-void FixWallAdamiSph::init()
-{
-  Sph::require_pair(lmp, "Fix " + std::string(STYLE));
 }
 
 void FixWallAdamiSph::setup(int vflag)

@@ -3,17 +3,16 @@
 #ifndef SD_FIX_WALL_ADAMI_SPH_H
 #define SD_FIX_WALL_ADAMI_SPH_H
 
-#include "fix.h"
+#include "sph_fix.h"
 
 namespace StokesDyn {
 
-class FixWallAdamiSph : public LAMMPS_NS::Fix {
+class FixWallAdamiSph : public SphFix {
  public:
   static constexpr const char *STYLE = "wall/adami/sph";
 
   FixWallAdamiSph(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;
-  void init() override;
   void setup(int) override;
   void post_force(int) override;
   double compute_vector(int) override;

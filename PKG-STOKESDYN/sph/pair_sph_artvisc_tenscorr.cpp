@@ -322,10 +322,11 @@ void *PairSph::extract(const char *name, int &dim)
 
 double PairSph::memory_usage()
 {
-  const auto doubles = x4.capacity() + v4.capacity() + f4.capacity() + P.capacity() + masses.capacity() + rate.capacity() + sums.capacity() + each.capacity() +
-      gradient.capacity() + wall_rows.capacity() + near.capacity();
-  return sizeof(double) * (double) doubles +
-      sizeof(int) * (double) (classes.capacity() + pool.capacity() + near_count.capacity());
+  double bytes = near.capacity() * sizeof(int *);
+  for (const auto *v : {&x4, &v4, &f4, &P, &masses, &rate, &sums, &each, &gradient, &wall_rows})
+    bytes += v->capacity() * sizeof(double);
+  for (const auto *v : {&classes, &pool, &near_count}) bytes += v->capacity() * sizeof(int);
+  return bytes;
 }
 
 bool PairSph::used(int itype) const

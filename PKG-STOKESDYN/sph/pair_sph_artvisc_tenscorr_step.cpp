@@ -56,7 +56,8 @@ void PairSph::compute(int eflag, int vflag)
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
-/* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build and goes on. */
+/* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build
+ * and goes on. */
 void PairSph::check_list()
 {
   if (update->setupflag) {
@@ -105,8 +106,9 @@ void PairSph::prepare()
   pairs = raw;
 }
 
-/* Coefficients of all pairs of types. Are they and the masses the same? Then there is one class for the core, which is faster:
- * coefficients[0] and particles.mass. What no term of this scene asks for is 0, so that it sets no types apart. */
+/* Coefficients of all pairs of types. Are they and the masses the same? Then there is one class for
+ * the core, which is faster: coefficients[0] and particles.mass. What no term of this scene asks
+ * for is 0, so that it sets no types apart. */
 bool PairSph::types_are_alike()
 {
   const int ntypes = atom->ntypes;
@@ -138,8 +140,9 @@ bool PairSph::types_are_alike()
   return alike && first;
 }
 
-/* vest is the velocity at the time of the force. The integrators set it before the force; who has none of them moves with v.
- * That of LAMMPS's fix sph is v at the start of a run, and its ghosts have not heard of that yet. */
+/* vest is the velocity at the time of the force. The integrators set it before the force; who has
+ * none of them moves with v. That of LAMMPS's fix sph is v at the start of a run, and its ghosts
+ * have not heard of that yet. */
 void PairSph::estimate_velocities()
 {
   const int n = particles.n, bits = update->setupflag && integrators.empty() ? 0 : own_vest_bits;
@@ -147,9 +150,9 @@ void PairSph::estimate_velocities()
     if (!(atom->mask[i] & bits)) memcpy(atom->vest[i], atom->v[i], 3 * sizeof(double));
 }
 
-/* Leapfrog: the rate of density of the half step, from positions and velocities at its middle, moves the density by a whole
- * step. At the start of a run the rate is that of the moment, and nothing moves. Leaves the near pairs in the list for the
- * force. */
+/* Leapfrog: the rate of density of the half step, from positions and velocities at its middle,
+ * moves the density by a whole step. At the start of a run the rate is that of the moment, and
+ * nothing moves. Leaves the near pairs in the list for the force. */
 void PairSph::density_step()
 {
   const int n = particles.n, nlocal = atom->nlocal;
@@ -208,7 +211,8 @@ void PairSph::sum_densities(int bit, bool shepard)
   forward(atom->rho, 1);
 }
 
-/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a pair see the same. */
+/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a
+ * pair see the same. */
 void PairSph::pressures_of_all()
 {
   const int n = particles.n;
@@ -228,8 +232,9 @@ void PairSph::pressures_of_all()
     sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data(), x4.data());
 }
 
-/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the one that has this pressure,
- * so ghosts get it like any other density. The velocity travels as the difference to v, which ghosts have. */
+/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the
+ * one that has this pressure, so ghosts get it like any other density. The velocity travels as the
+ * difference to v, which ghosts have. */
 void PairSph::wall_particles()
 {
   const int n = particles.n, bit = wall->groupbit;

@@ -14,8 +14,9 @@ class PairSph;
 
 namespace Sph {
 
-  /* Fails unless the atom style has the density and the velocity that SPH works with, and force is mass times
-   * acceleration in the units of the scene, pressure mass / (length time^2) and density mass / length^3. */
+  /* Fails unless the atom style has the density and the velocity that SPH works with, and force is
+   * mass times acceleration in the units of the scene, pressure mass / (length time^2) and density
+   * mass / length^3. */
   void require_scene(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
 
   /* The pair style of the scene; fails without one. */
@@ -31,7 +32,8 @@ namespace Sph {
     return found;
   }
 
-  /* Those that move particles by forces: all that integrate in time but fix move and rigid bodies. */
+  /* Those that move particles by forces: all that integrate in time but fix move and rigid bodies.
+   * */
   std::vector<LAMMPS_NS::Fix *> integrators(LAMMPS_NS::LAMMPS *lmp);
 
   /* Union of their group bits. */

@@ -49,8 +49,8 @@ void sd_sph_gradient_sums(const sd_sph_model *model, const sd_sph_list *list,
   sd_sph_visitor v;
   SD_SPH_VISIT(model, list, p, v)
   {
-    /* grad_i W = g d, d_ji = -d: both sums are even in d, so they differ between i and j by the volumes
-     * only. */
+    /* grad_i W = g d, d_ji = -d: both sums are even in d, so they differ between i and j by the
+     * volumes only. */
     const double g = v.k->grad * sd_sph_G(model->kernel, v.q);
     const double *d = v.d, jump = (rho[v.j] - rho[v.i]) * g;
     const double even[9] = {-g * d[0] * d[0], -g * d[1] * d[1], -g * d[2] * d[2],
@@ -95,7 +95,8 @@ void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const 
     const double *gi = gradient + 3 * (size_t) v.i, *gj = gradient + 3 * (size_t) v.j;
     double along = 0.0;
     for (int c = 0; c < 3; c++) along += (gi[c] + gj[c]) * v.d[c];
-    /* psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d), odd under exchange of i and j */
+    /* psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d), odd under exchange of
+     * i and j */
     const double flux = -delta * v.k->ch * g * (2.0 * (rho[v.j] - rho[v.i]) + along);
     rate[v.i] += sd_sph_mass(model, p, v.j) / rho[v.j] * flux;
     rate[v.j] -= sd_sph_mass(model, p, v.i) / rho[v.i] * flux;

@@ -27,7 +27,8 @@ void sd_sph_shepard(const sd_sph_model *model, const sd_sph_particles *p, const 
  * where grad rho is the first-order consistent gradient
  *   L^-1 sum_b V_b (rho_b - rho_a) grad_a W,   L = sum_b V_b d_ba (grad_a W)^T.
  *
- * 1. sd_sph_gradient_sums adds to sums [9 (n+1)]: L (xx yy zz xy xz yz), the sum on the right (x y z).
+ * 1. sd_sph_gradient_sums adds to sums [9 (n+1)]: L (xx yy zz xy xz yz) and the right side
+ *    (x y z).
  * 2. sd_sph_gradient solves for one particle; g = 0 where L is nearly singular (too few neighbours,
  *    all in a plane), which leaves the diffusion of Molteni & Colagrossi 2009 there.
  * 3. sd_sph_diffusion adds delta times the rate; gradient [3 (n+1)]. */

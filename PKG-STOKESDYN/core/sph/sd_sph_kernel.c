@@ -4,7 +4,8 @@
 
 double sd_sph_norm(sd_sph_kernel kernel, int dimension)
 {
-  if (kernel == SD_SPH_CUBICSPLINE) return dimension == 3 ? 1.0 / (4.0 * SD_PI) : 5.0 / (14.0 * SD_PI);
+  if (kernel == SD_SPH_CUBICSPLINE)
+    return dimension == 3 ? 1.0 / (4.0 * SD_PI) : 5.0 / (14.0 * SD_PI);
   return dimension == 3 ? 21.0 / (16.0 * SD_PI) : 7.0 / (4.0 * SD_PI);
 }
 

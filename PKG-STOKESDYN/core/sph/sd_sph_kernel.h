@@ -8,7 +8,8 @@
  *                 (2-q)^3              q > 1   -3 (2-q)^2 / q
  *   Wendland C2   (1-q/2)^4 (2 q + 1)          -5 (1-q/2)^3        21 / (16 pi)   7 / (4 pi)
  *
- * Source: Monaghan & Lattanzio 1985 (cubic spline), Wendland 1995. N makes the integral over the support 1. */
+ * N makes the integral over the support 1. Source: Monaghan & Lattanzio 1985 (cubic spline),
+ * Wendland 1995. */
 #ifndef SD_SPH_KERNEL_H
 #define SD_SPH_KERNEL_H
 

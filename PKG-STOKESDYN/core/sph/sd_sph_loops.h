@@ -109,11 +109,13 @@ typedef struct {
 /* R f^4 of tensCorr. */
 INLINE v4 tension(double epsilon, v4 A, v4 B, v4 f)
 {
-  const v4 zero = all(0.0), f2 = f * f, attraction = -epsilon * (smaller(A, zero) + smaller(B, zero));
+  const v4 zero = all(0.0), f2 = f * f;
+  const v4 attraction = -epsilon * (smaller(A, zero) + smaller(B, zero));
   return where((A > zero) & (B > zero), 0.01 * (A + B), attraction) * (f2 * f2);
 }
 
-/* Pi of artVisc, with one division for s and 2 / (rho_a + rho_b): a1 = 2 alpha c h, b1 = 2 beta h^2. */
+/* Pi of artVisc, with one division for s and 2 / (rho_a + rho_b): a1 = 2 alpha c h, b1 = 2 beta
+ * h^2. */
 INLINE v4 friction(v4 vd, v4 lengths, v4 densities, v4 a1, v4 b1)
 {
   const v4 inverse = 1.0 / (lengths * densities);

@@ -2,7 +2,8 @@
  *   absolut   P = B^2 rho
  *   relativ   P = B (rho - rho0) + P0
  *   Tait      P = B ((rho / rho0)^gamma - 1) + P0
- * B: velocity (absolut), velocity^2 (relativ), pressure (Tait: c^2 rho0 / gamma for a speed of sound c). */
+ * B: velocity (absolut), velocity^2 (relativ), pressure (Tait: c^2 rho0 / gamma for a speed of
+ * sound c). */
 #ifndef SD_SPH_PRESSURE_H
 #define SD_SPH_PRESSURE_H
 

@@ -20,7 +20,10 @@ void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const s
 double sd_sph_fastest(int n, const double *v)
 {
   double square = 0.0;
-  for (int i = 0; i < n; i++, v += 3) square = fmax(square, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  for (int i = 0; i < n; i++, v += 3) {
+    const double here = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    if (here > square) square = here;
+  }
   return sqrt(square);
 }
 

@@ -1,4 +1,4 @@
-#include "fix_sph_output.h"
+#include "sph_fix.h"
 
 #include "sph.h"
 
@@ -10,9 +10,19 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixSphOutput::FixSphOutput(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), command("Fix " + std::string(style))
 {
-  Sph::require_scene(lmp, "Fix " + std::string(style));
+  Sph::require_scene(lmp, command);
+}
+
+void SphFix::init()
+{
+  pair = Sph::require_pair(lmp, command);
+}
+
+SphOutputFix::SphOutputFix(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
+{
   peratom_flag = 1;
   size_peratom_cols = 0;
   peratom_freq = 1;
@@ -20,48 +30,43 @@ FixSphOutput::FixSphOutput(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   maxexchange = 1;
 }
 
-void FixSphOutput::begin()
+void SphOutputFix::begin()
 {
   grow_arrays(atom->nmax);
   std::fill_n(vector_atom, atom->nlocal, 0.0);
   atom->add_callback(Atom::GROW);
 }
 
-FixSphOutput::~FixSphOutput()
+SphOutputFix::~SphOutputFix()
 {
   if (!vector_atom) return;    // the words of the command were refused
   atom->delete_callback(id, Atom::GROW);
   memory->destroy(vector_atom);
 }
 
-void FixSphOutput::init()
-{
-  Sph::require_pair(lmp, "Fix " + std::string(style));
-}
-
-double FixSphOutput::memory_usage()
+double SphOutputFix::memory_usage()
 {
   return sizeof(double) * (double) atom->nmax;
 }
 
-void FixSphOutput::grow_arrays(int nmax)
+void SphOutputFix::grow_arrays(int nmax)
 {
   memory->grow(vector_atom, nmax, "sph:output");
 }
 
-int FixSphOutput::pack_exchange(int i, double *buf)
+int SphOutputFix::pack_exchange(int i, double *buf)
 {
   buf[0] = vector_atom[i];
   return 1;
 }
 
-int FixSphOutput::unpack_exchange(int i, double *buf)
+int SphOutputFix::unpack_exchange(int i, double *buf)
 {
   vector_atom[i] = buf[0];
   return 1;
 }
 
-void FixSphOutput::output(const double *values)
+void SphOutputFix::output(const double *values)
 {
   std::copy_n(values, atom->nlocal, vector_atom);
 }
