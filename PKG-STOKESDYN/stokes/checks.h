@@ -10,9 +10,10 @@
 
 namespace StokesDyn {
 
-/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts of them. */
-void refuse_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
-                        const Scene::Settings &settings);
+/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts of them: refused. One of
+ * more than ten periodic boxes, perhaps a mistake in units, takes minutes and is warned of. */
+void check_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
+                       const Scene::Settings &settings);
 
 /* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10 % for a chain of ten
  * touching spheres that see each other up to 10.5 a. Tells of the clump with the lowest molecule ID. */

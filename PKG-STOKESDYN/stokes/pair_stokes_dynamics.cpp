@@ -176,7 +176,7 @@ void PairStokesDynamics::init_style()
              COMMAND +
                  ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or "
                  "clumps_only yes");
-  if (std::isfinite(scene.cutoff)) refuse_vast_cutoff(lmp, COMMAND, scene);
+  if (std::isfinite(scene.cutoff)) check_vast_cutoff(lmp, COMMAND, scene);
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite

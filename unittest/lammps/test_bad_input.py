@@ -138,6 +138,16 @@ def test_cut_off_of_very_many_boxes(tmp_path, words, boundary, value, remedy, ra
         assert text in ended.log
 
 
+@pytest.mark.parametrize("boundary,words,warned", [("p p p", "cut_off_distance 250 taper wendland", True),
+                                                   ("p p p", "cut_off_distance 30 taper wendland", False),
+                                                   ("f f f", "cut_off_distance 250 taper wendland", False)])
+def test_cut_off_of_many_periodic_boxes_is_warned_of(tmp_path, boundary, words, warned):
+    """Perhaps a mistake in units. A longer one takes LAMMPS minutes, which looks like a hang."""
+    lines = input_lines(three(), f"{words} visc 1.3 algorithm 2", tmp_path / "data", box=BOX, boundary=boundary)
+    log = lmp(tmp_path, lines + ["run 0"]).log
+    assert ("keyword cut_off_distance: '250' is 13.9" in log and "times the periodic box" in log) == warned
+
+
 @pytest.mark.hard_case("radius zero, negative, NaN, infinite")
 @pytest.mark.parametrize("radius,seen", [(0.0, "0"), (-0.4, "-0.4"), (float("nan"), "nan")])
 def test_radius_that_is_no_positive_number(simulation, radius, seen):
