@@ -171,8 +171,8 @@ void PairSph::density_step()
     near_count.resize(atom->nmax);
   }
   rate.assign(n + 1, 0.0);
-  sd_sph_rates(&model, &raw, &particles, margin, rate.data(), pool.data(), near.data(),
-               near_count.data());
+  const sd_sph_near found = {margin, pool.data(), near.data(), near_count.data()};
+  sd_sph_rates(&model, &raw, &particles, rate.data(), &found);
   pairs = {raw.n, ~0, raw.first, near_count.data(), near.data()};
   if (continuity->delta > 0.0) diffuse();
   reverse(rate.data(), 1);

@@ -195,10 +195,11 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
 }
 
 INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  double margin, double *rate, int *pool, int **near, int *near_count,
-                  sd_sph_kernel kernel, int many)
+                  double *rate, const sd_sph_near *near, sd_sph_kernel kernel, int many)
 {
   const v4 zero = all(0.0), two = all(2.0);
+  const double margin = near ? near->margin : 0.0;
+  int *pool = near ? near->pool : NULL;
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
     const int *neighbor = list->neighbor[i];
@@ -233,8 +234,8 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
     }
     rate[i] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
     if (pool) {
-      near[i] = pool;
-      near_count[i] = (int) (last - pool);
+      near->neighbor[i] = pool;
+      near->count[i] = (int) (last - pool);
       pool = last;
     }
   }
@@ -264,20 +265,20 @@ static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
 }
 
 static void all_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                      double margin, double *rate, int *pool, int **near, int *count)
+                      double *rate, const sd_sph_near *near)
 {
   switch ((model->kernel << 1) + (model->nclasses > 1)) {
     case SD_SPH_CUBICSPLINE << 1:
-      rates(model, list, p, margin, rate, pool, near, count, SD_SPH_CUBICSPLINE, 0);
+      rates(model, list, p, rate, near, SD_SPH_CUBICSPLINE, 0);
       break;
     case (SD_SPH_CUBICSPLINE << 1) + 1:
-      rates(model, list, p, margin, rate, pool, near, count, SD_SPH_CUBICSPLINE, 1);
+      rates(model, list, p, rate, near, SD_SPH_CUBICSPLINE, 1);
       break;
     case SD_SPH_WENDLAND << 1:
-      rates(model, list, p, margin, rate, pool, near, count, SD_SPH_WENDLAND, 0);
+      rates(model, list, p, rate, near, SD_SPH_WENDLAND, 0);
       break;
     case (SD_SPH_WENDLAND << 1) + 1:
-      rates(model, list, p, margin, rate, pool, near, count, SD_SPH_WENDLAND, 1);
+      rates(model, list, p, rate, near, SD_SPH_WENDLAND, 1);
       break;
   }
 }

@@ -58,7 +58,7 @@ double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const s
 }
 
 void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  double margin, double *rate, int *pool, int **near, int *count)
+                  double *rate, const sd_sph_near *near)
 {
-  loops()->rates(model, list, p, margin, rate, pool, near, count);
+  loops()->rates(model, list, p, rate, near);
 }

@@ -95,18 +95,23 @@ void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4);
 double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      int rates, double *f4, double *each);
 
-/* Adds drho to rate [n+1] and, with pool not null, writes the pairs closer than 2 h + margin into
- * it: near[i] and count[i] become the neighbours of i. The pool must hold every pair of the list
- * and three more entries. */
+/* Room for the pairs closer than 2 h + margin: neighbor[i] and count[i], in the pool, which must
+ * hold every pair of the list and three more entries. */
+typedef struct {
+  double margin;
+  int *pool, **neighbor, *count;
+} sd_sph_near;
+
+/* Adds drho to rate [n+1] and, with near not null, finds the near pairs. */
 void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  double margin, double *rate, int *pool, int **near, int *count);
+                  double *rate, const sd_sph_near *near);
 
 /* The loops as compiled for one instruction set: sd_sph_loops.h. */
 typedef struct {
   double (*forces)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int,
                    double *, double *);
-  void (*rates)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double,
-                double *, int *, int **, int *);
+  void (*rates)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *,
+                const sd_sph_near *);
 } sd_sph_loops;
 extern const sd_sph_loops sd_sph_loops_any, sd_sph_loops_avx2;
 

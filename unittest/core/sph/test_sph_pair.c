@@ -146,7 +146,8 @@ static void every_combination(const sd_sph_loops *loops)
 
     double rate[N + 1] = {0};
     int pool[ALL + 3], count[N], *near[N];
-    loops->rates(&s.model, &s.list, &s.p, 0.0, rate, pool, near, count);
+    const sd_sph_near found = {0.0, pool, near, count};
+    loops->rates(&s.model, &s.list, &s.p, rate, &found);
     double both[4 * (N + 1)] = {0};
     loops->forces(&s.model, &s.list, &s.p, 1, both, NULL);
     for (int i = 0; i < N; i++) CHECK_NEAR(rate[i], both[4 * i + 3], 1e-12 * (1.0 + fabs(rate[i])));
