@@ -1,10 +1,13 @@
-/* fix hydro/vans: a one-dimensional turbulent stream over a granular bed. See doc/fix_hydro_vans.md.
- * The arithmetic is in core/vans; the stream with its profiles in vans_stream; here: atoms, ranks, time. */
+/* fix hydro/vans: a one-dimensional turbulent stream over a granular bed. See
+ * doc/fix_hydro_vans.md.
+ * The arithmetic is in core/vans; the stream with its profiles in vans_stream; here: atoms, ranks,
+ * time. */
 #ifndef SD_FIX_HYDRO_VANS_H
 #define SD_FIX_HYDRO_VANS_H
 
 #include "fix.h"
 
+#include "resume.h"
 #include "vans_stream.h"
 
 #include <memory>
@@ -88,47 +91,48 @@ class FixHydroVans : public LAMMPS_NS::Fix {
     VECTOR_SIZE
   };
 
-  /* Per atom. array_atom: force and velocity fluctuation. memo: what must follow the atom besides; a column that no
-   * keyword asks for is not there. */
-  enum { OUTPUTS = 6, SOLVED = 0, LEFT_X = 1, LEFT_V = 4, LEFT_A = 7, ALWAYS = 8 };
-  int columns = ALWAYS, drag_column = -1, weight_column = -1, eddy_column = -1;
-  enum {
-    DRAG = 0,
-    IMPULSE = 1,
-    SHEAR = 2,
-    PAST = 3,
-    FORESEEN = 4,
-    MOMENTUM_COLUMNS = 5
-  };                               // from drag_column on; PAST: SHEAR before the last coupling
-  enum { LIFE = 0, COUNT = 1 };    // from eddy_column on: fluctuation
+  /* Per atom. array_atom: force and velocity fluctuation. memo: what must follow the atom besides;
+   * a column that no keyword asks for is not there. */
+  enum { OUTPUTS = 6, SOLVED = 0, LEFT = 1 };
+  /* from eddy_column on: life left, count of fluctuations */
+  enum { LIFE, COUNT, EDDY_COLUMNS };
+  int columns, account_column = -1, weight_column = -1, eddy_column = -1;
   double **memo = nullptr;
+  Resume resume;
+  sd_vans_account *account(int i) { return (sd_vans_account *) (memo[i] + account_column); }
+  static constexpr int ACCOUNT_COLUMNS = sizeof(sd_vans_account) / sizeof(double);
 
-  /* The same on all ranks and in the restart file. */
-  LAMMPS_NS::bigint last_step = -1;            // of the forces in array_atom
-  double elapsed = 0.0;                        // since the last coupling
-  double eddy_age = 0.0, eddy_period = 0.0;    // random walk of all grains at once
-  double renewals = 0.0;
+  /* The same on all ranks and in the restart file; last_step: of the forces in array_atom; elapsed:
+   * since the last coupling; eddies: the random walk of all grains at once. */
+  LAMMPS_NS::bigint last_step = -1;
+  double elapsed = 0.0;
+  double eddy_age = 0.0, eddy_period = 0.0, renewals = 0.0;
   double mean_radius = 0.0, mean_density = 0.0;
-  LAMMPS_NS::bigint weights_of = -1;    // number of atoms when the overlaps were counted
 
-  /* Of the last step. */
-  double local[5] = {0, 0, 0, 0, 0},
-         global[5];    // force x y z, drag along x, spheres outside; of this rank, of all
+  /* Of the last step, of this rank and of all: force x y z, drag along x, spheres outside. */
+  double local[5] = {0, 0, 0, 0, 0}, global[5];
   LAMMPS_NS::bigint summed_step = -1;
-  bool told_outside = false;
+  bool told_outside = false, told_work = false;
 
+  /* of the members of clumps when their overlaps were counted; 0: never */
+  uint64_t members_counted = 0;
   std::vector<unsigned char> take;
   std::vector<double> F, drag_x, u, weight, work;
 
   bool has_grains() const { return set.couple != VansSettings::FLUID; }
   double area() const;
   void select(int bit, bool not_in_group = false);
-  const double *fluctuations();
-  const double *weights();
-  bool left_as_is(int i) const;
-  void record(int i);
+  sd_vans_grains grains();
+  int forces(const sd_vans_grains &grains);
+  void check_box() const;
+  void check_others() const;
+  void tell_steps();
   void find_classes();
+  uint64_t members() const;
   void count_overlaps();
+  void check_mesh();
+  void read_variables();
+  void no_force();
   void average();
   void couple();
   VansStream::Given impulses(double T, double ratio);

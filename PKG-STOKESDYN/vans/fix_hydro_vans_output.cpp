@@ -2,6 +2,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "error.h"
 #include "memory.h"
 #include "update.h"
 
@@ -14,7 +15,7 @@ using namespace StokesDyn;
 
 static const std::string COMMAND = VansSettings::COMMAND;
 
-/* ---- output -------------------------------------------------------------------------------------------------------------- */
+/* ---- output --------------------------------------------------------------------------------- */
 
 void FixHydroVans::sum_up()
 {
@@ -25,76 +26,51 @@ void FixHydroVans::sum_up()
 
 double FixHydroVans::compute_vector(int k)
 {
-  const double A = area();
+  const auto &ledger = stream->ledger;
+  const auto of_grains = [this](int i) {
+    sum_up();
+    return global[i];
+  };
   switch (k) {
     case FORCE_X:
     case FORCE_Y:
-    case FORCE_Z:
-      sum_up();
-      return global[k - FORCE_X];
-    case TOTAL_DRAG:
-      sum_up();
-      return global[3];
-    case OUTSIDE:
-      sum_up();
-      return global[4];
-    case TRANSPORT:
-      return stream->transport();
+    case FORCE_Z: return of_grains(k - FORCE_X);
+    case TOTAL_DRAG: return of_grains(3);
+    case OUTSIDE: return of_grains(4);
+    case TRANSPORT: return stream->transport();
     case FRICTION_VELOCITY:
       return std::sqrt(std::max(stream->largest_stress(), 0.0) / set.rho);
-    case LARGEST_STRESS:
-      return stream->largest_stress();
+    case LARGEST_STRESS: return stream->largest_stress();
     case SHIELDS: {
-      const double size =
-          std::sqrt(set.g[0] * set.g[0] + set.g[1] * set.g[1] + set.g[2] * set.g[2]);
-      const double scale = (mean_density - set.rho) * size * 2.0 * mean_radius;
+      const double g = std::sqrt(set.g[0] * set.g[0] + set.g[1] * set.g[1] + set.g[2] * set.g[2]),
+                   scale = (mean_density - set.rho) * g * 2.0 * mean_radius;
       return scale > 0.0 ? stream->largest_stress() / scale : 0.0;
     }
-    case BED:
-      return stream->bed_elevation();
-    case MOMENTUM:
-      return stream->momentum(A);
-    case TRANSIT:
-      return stream->ledger.transit;
-    case DRIVING:
-      return stream->ledger.driving;
-    case BOTTOM:
-      return stream->ledger.bottom;
-    case WALLS:
-      return stream->ledger.walls;
-    case SURFACE:
-      return stream->ledger.surface;
-    case OTHERS:
-      return stream->ledger.others;
+    case BED: return stream->bed_elevation();
+    case MOMENTUM: return stream->momentum(area());
+    case TRANSIT: return ledger.transit;
+    case DRIVING: return ledger.driving;
+    case BOTTOM: return ledger.bottom;
+    case WALLS: return ledger.walls;
+    case SURFACE: return ledger.surface;
+    case OTHERS: return ledger.others;
   }
   return 0.0;
 }
 
 double FixHydroVans::compute_array(int n, int k)
 {
-  const int N = stream->ncell();
+  const size_t N = stream->ncell();
   switch (k) {
-    case Z:
-      return set.z_ref + 0.5 * (stream->mesh.edge[n] + stream->mesh.edge[n + 1]);
-    case VELOCITY:
-      return stream->U[n + 1];
-    case PHI:
-    case GRAIN_X:
-    case GRAIN_Y:
-    case GRAIN_Z:
-    case DRAG_PER_GRAIN:
-      return stream->grain[(size_t) (k - PHI) * N + n];
-    case EXCHANGE:
-      return stream->b[n];
-    case EDDY_VISCOSITY:
-      return stream->nut[n];
-    case STRESS:
-      return stream->stress[n];
+    case Z: return set.z_ref + 0.5 * (stream->mesh.edge[n] + stream->mesh.edge[n + 1]);
+    case VELOCITY: return stream->U[n + 1];
+    case EXCHANGE: return stream->b[n];
+    case EDDY_VISCOSITY: return stream->nut[n];
+    case STRESS: return stream->stress[n];
   }
-  k -= ARRAY_COLUMNS;
-  return k >= 0 && (size_t) k < 5 * stream->class_radii.size()
-      ? stream->class_grain[(size_t) k * N + n]
-      : 0.0;
+  if (k < ARRAY_COLUMNS) return stream->grain[(k - PHI) * N + n];
+  const size_t at = (size_t) (k - ARRAY_COLUMNS) * N + n;
+  return at < stream->class_grain.size() ? stream->class_grain[at] : 0.0;
 }
 
 /* fix_modify ID profile file NAME | profile values U_0 ... U_N */
@@ -122,7 +98,8 @@ int FixHydroVans::modify_param(int narg, char **arg)
   return narg;
 }
 
-/* "velocity" [ncell+1], "phi", "stress" [ncell]; scalars "density", "viscosity", "ncell" is the number of rows of the array. */
+/* "velocity" [ncell+1], "phi", "stress" [ncell]; scalars "density", "viscosity", "ncell" is the
+ * number of rows of the array. */
 void *FixHydroVans::extract(const char *name, int &dim)
 {
   dim = 1;
@@ -138,10 +115,10 @@ void *FixHydroVans::extract(const char *name, int &dim)
 double FixHydroVans::memory_usage()
 {
   return (double) atom->nmax * (OUTPUTS + columns) * sizeof(double) +
-      (double) (40 + 5 * stream->class_radii.size()) * stream->ncell() * sizeof(double);
+      (double) (40 + SD_VANS_ROWS * stream->class_radii.size()) * stream->ncell() * sizeof(double);
 }
 
-/* ---- what follows the atoms ------------------------------------------------------------------------------------------------ */
+/* ---- what follows the atoms ------------------------------------------------------------------ */
 
 void FixHydroVans::grow_arrays(int nmax)
 {
@@ -178,7 +155,7 @@ int FixHydroVans::unpack_exchange(int nlocal, double *buf)
 
 int FixHydroVans::pack_restart(int i, double *buf)
 {
-  record(i);
+  resume.record(i, memo[i] + LEFT);
   buf[0] = OUTPUTS + columns + 1;
   pack_exchange(i, buf + 1);
   return OUTPUTS + columns + 1;
@@ -192,36 +169,49 @@ void FixHydroVans::unpack_restart(int nlocal, int nth)
   if (static_cast<int>(extra[m]) == OUTPUTS + columns + 1)
     unpack_exchange(nlocal, extra + m + 1);
   else
-    set_arrays(
-        nlocal);    // other keywords than those of the restart file: nothing of the past fits
+    set_arrays(nlocal);    // other columns: restart() has said so
+}
+
+/* What the columns of memo are. */
+static std::vector<double> layout(const VansSettings &set)
+{
+  return {(double) set.conserve, (double) set.overlap_once,
+          (double) (set.fluctuation != VansSettings::NO_FLUCTUATION)};
 }
 
 void FixHydroVans::write_restart(FILE *fp)
 {
   if (comm->me != 0) return;
-  std::vector<double> out = {(double) last_step, elapsed,     eddy_age,    eddy_period,
-                             renewals,           mean_radius, mean_density};
-  const auto profiles = stream->pack();
-  out.insert(out.end(), profiles.begin(), profiles.end());
-  const int size = (int) ((out.size() + 1) * sizeof(double));
-  const double count = (double) out.size();
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&count, sizeof(double), 1, fp);
-  fwrite(out.data(), sizeof(double), out.size(), fp);
+  NamedState state(STYLE);
+  state.put("columns", layout(set));
+  state.put("last_step", (double) last_step);
+  state.put("elapsed", elapsed);
+  state.put("eddies", {eddy_age, eddy_period, renewals});
+  state.put("mean", {mean_radius, mean_density});
+  stream->save(state);
+  state.write(fp);
 }
 
 void FixHydroVans::restart(char *buf)
 {
-  double count;
-  memcpy(&count, buf, sizeof(double));
-  std::vector<double> in((size_t) count);
-  memcpy(in.data(), buf + sizeof(double), in.size() * sizeof(double));
-  last_step = (bigint) in[0];
-  elapsed = in[1];
-  eddy_age = in[2];
-  eddy_period = in[3];
-  renewals = in[4];
-  mean_radius = in[5];
-  mean_density = in[6];
-  stream->unpack(std::vector<double>(in.begin() + 7, in.end()));
+  NamedState state(STYLE);
+  if (!state.read(lmp, buf)) return;
+  stream->load(state);
+  last_step = (bigint) state.get("last_step", -1.0);
+  elapsed = state.get("elapsed", 0.0);
+  double eddies[3], mean[2];
+  if (state.get("eddies", eddies, 3)) {
+    eddy_age = eddies[0];
+    eddy_period = eddies[1];
+    renewals = eddies[2];
+  }
+  if (state.get("mean", mean, 2)) {
+    mean_radius = mean[0];
+    mean_density = mean[1];
+  }
+  if (state.get("columns") != layout(set) && comm->me == 0)
+    error->warning(FLERR,
+                   COMMAND + ": the restart file was written with other keywords (conserve, "
+                             "overlap or fluctuation): what each grain carried is not taken, "
+                             "momentum on its way and fluctuations begin anew");
 }

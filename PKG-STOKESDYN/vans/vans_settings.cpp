@@ -2,6 +2,7 @@
 
 #include "comm.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -12,7 +13,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-static const double MOST_STEPS = 1e9;    // of one solve of the stream
+/* Steps times slices of one solve: at 5 ns each that is most of a minute in every coupling. */
+static const double MOST_WORK = 1e10;
 
 std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what,
                                            const std::string &file)
@@ -63,12 +65,24 @@ std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what,
   return rows;
 }
 
+static std::string keyword(const char *name)
+{
+  return std::string(VansSettings::COMMAND) + ": keyword " + name;
+}
+
+/* One number a row, or all of them in one row: a table of several columns is something else. */
 static std::vector<double> read_list(LAMMPS *lmp, const std::string &what, const std::string &file,
                                      size_t expected, const std::string &count)
 {
+  const auto rows = read_rows(lmp, what, file);
   std::vector<double> list;
-  for (const auto &row : read_rows(lmp, what, file))
-    list.insert(list.end(), row.begin(), row.end());
+  for (size_t k = 0; k < rows.size(); k++) {
+    if (rows.size() > 1 && rows[k].size() > 1)
+      fail(lmp,
+           what + ": file '" + file + "': row " + std::to_string(k + 1) + " has " +
+               std::to_string(rows[k].size()) + " values, one a row is needed");
+    list.insert(list.end(), rows[k].begin(), rows[k].end());
+  }
   if (expected && list.size() != expected)
     fail(lmp,
          what + ": file '" + file + "' has " + std::to_string(list.size()) + " values, " + count +
@@ -88,199 +102,200 @@ static std::string file_name(Keywords &in)
   return in.word();
 }
 
-void VansSettings::parse(LAMMPS *lmp, const std::vector<std::string> &args, size_t begin)
+/* A file, or the word that stands for none. */
+static std::string file_or(Keywords &in, const char *none)
 {
-  const std::string command = COMMAND;
-  const auto keyword = [&](const char *name) {
-    return command + ": keyword " + name;
-  };
-  std::string mesh_file, profile_file, given_file, convective_file;
-  bool have_mesh = false, have_fluid = false, have_gravity = false;
-  bigint equal_cells = 0;
+  return in.take(none) ? std::string() : file_name(in);
+}
 
-  Keywords in(lmp, command, args, begin);
-  while (in.next()) {
-    if (in.is("mesh")) {
-      have_mesh = true;
-      if (in.more() && in.peek() == "file")
-        mesh_file = file_name(in);
-      else {
-        equal_cells = in.integer(2, 10000000);
-        dz = in.positive();
-        z_ref = in.number();
-      }
-    } else if (in.is("fluid")) {
-      rho = in.positive();
-      eta = in.positive();
-      have_fluid = true;
-    } else if (in.is("gravity")) {
-      for (double &component : g) component = in.number();
-      have_gravity = true;
-    } else if (in.is("area"))
-      area = in.positive();
-    else if (in.is("couple"))
-      couple = (decltype(couple)) in.choice({"none", "one", "two", "fluid"});
-    else if (in.is("profile")) {
-      profile_file.clear();
-      if (in.more() && in.peek() == "zero")
-        in.word();
-      else
-        profile_file = file_name(in);
-    } else if (in.is("given")) {
-      given_file.clear();
-      if (in.more() && in.peek() == "averaged")
-        in.word();
-      else
-        given_file = file_name(in);
-    } else if (in.is("convective")) {
-      convective_file.clear();
-      if (in.more() && in.peek() == "off")
-        in.word();
-      else
-        convective_file = file_name(in);
-    } else if (in.is("solve")) {
-      period = in.positive();
-      dt = in.positive();
-      if (dt > period * (1.0 + 1e-9))
-        in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
-      if (!(period / dt <= MOST_STEPS))
-        in.refuse("the step " + text(dt) + " is too short for the period " + text(period) +
-                  ": more than " + text(MOST_STEPS) + " steps");
-    } else if (in.is("stream"))
-      rest = in.choice({"steady", "rest"}) == 1;
-    else if (in.is("hindrance"))
-      hindrance = in.number();
-    else if (in.is("lift")) {
-      if (in.more() && in.peek() == "off")
-        in.word(), lift = 0.0;
-      else
-        lift = in.number();
-    } else if (in.is("turbulence"))
-      turbulence = (sd_vans_turbulence) in.choice(
-          {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
-    else if (in.is("kappa"))
-      kappa = in.positive();
-    else if (in.is("phi_max") || in.is("phi_bed")) {
-      const double value = in.positive();
-      if (value > 1.0) in.refuse("'" + text(value) + "' is a volume fraction and must be <= 1");
-      (in.is("phi_max") ? phi_max : phi_bed) = value;
-    } else if (in.is("bed_average"))
-      bed_average = (int) in.integer(1, 1000000);
-    else if (in.is("sublayer"))
-      sublayer = in.yes_no();
-    else if (in.is("viscosity"))
-      viscosity = (sd_vans_viscosity) in.choice({"constant", "einstein", "power"});
-    else if (in.is("surface")) {
-      driven = in.choice({"free", "speed"}) == 1;
-      if (driven) u_top = Field::parse(in);
-    } else if (in.is("pressure_gradient"))
-      dpdx = Field::parse(in);
-    else if (in.is("sidewall")) {
-      if (in.more() && in.peek() == "off")
-        in.word(), width = 0.0;
-      else {
-        width = in.positive();
-        wall_coef = in.not_negative();
-      }
-    } else if (in.is("radius"))
-      radius = in.positive();
-    else if (in.is("classes"))
-      classes = in.yes_no();
-    else if (in.is("class_radii")) {
-      class_radii.resize(in.integer(1, 32));
-      for (double &a : class_radii) a = in.positive();
-    } else if (in.is("grains"))
-      point = in.choice({"extended", "point"}) == 1;
-    else if (in.is("fluctuation")) {
-      fluctuation =
-          (decltype(fluctuation)) in.choice({"none", "correlated", "uncorrelated", "depth"});
-      if (fluctuation != NO_FLUCTUATION) {
-        seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
-        find_bed = in.more() && in.peek() == "auto";
-        if (find_bed)
-          in.word();
-        else
-          bed = in.number();
-      }
-    } else if (in.is("renewal"))
-      renewal = in.positive();
-    else if (in.is("rules"))
-      rules = in.choice({"consistent", "yade"}) == 1 ? SD_VANS_YADE : SD_VANS_CONSISTENT;
-    else if (in.is("conserve"))
-      conserve = in.yes_no();
-    else if (in.is("overlap"))
-      overlap_once = in.choice({"twice", "once"}) == 1;
-    else if (in.is("region"))
-      region = in.word();
-    else if (in.is("average"))
-      average = in.word();
-    else
-      in.unknown();
-  }
+static double fraction(Keywords &in)
+{
+  const double value = in.positive();
+  if (value > 1.0) in.refuse("'" + text(value) + "' is a volume fraction and must be <= 1");
+  return value;
+}
 
-  if (!have_mesh) fail(lmp, command + ": keyword mesh (ncell dz zref, or file NAME) is required");
-  if (!have_fluid) fail(lmp, command + ": keyword fluid (density and viscosity) is required");
-  if (!have_gravity)
-    fail(lmp, command + ": keyword gravity (gx gy gz) is required; its x component is the slope");
-  if (rules == SD_VANS_YADE) {
-    if (!mesh_file.empty())
-      fail(lmp, keyword("mesh") + ": rules yade knows slices of one height only");
-    conserve = false;
-  }
-  if (couple != TWO) conserve = false;
-
-  if (!mesh_file.empty()) {
-    edge = read_list(lmp, keyword("mesh"), mesh_file, 0, "");
-    if (edge.size() < 3)
-      fail(lmp,
-           keyword("mesh") + ": file '" + mesh_file + "' has " + std::to_string(edge.size()) +
-               " edges, at least 3 are needed");
-    z_ref = edge[0];
-    for (size_t k = 0; k < edge.size(); k++) {
-      edge[k] -= z_ref;
-      if (k > 0 && !(edge[k] > edge[k - 1]))
-        fail(lmp,
-             keyword("mesh") + ": file '" + mesh_file + "': edge " + std::to_string(k + 1) + " (" +
-                 text(edge[k] + z_ref) + ") is not above the one before");
+void VansSettings::read(Keywords &in)
+{
+  const auto mesh = [&] {
+    if (in.more() && in.peek() == "file") {
+      mesh_file = file_name(in);
+      return;
     }
-  } else
-    for (bigint k = 0; k <= equal_cells; k++) edge.push_back(k * dz);
-  const size_t N = ncell();
+    edge.resize(in.integer(2, 10000000) + 1);
+    dz = in.positive();
+    z_ref = in.number();
+    for (size_t k = 0; k < edge.size(); k++) edge[k] = (double) k * dz;
+  };
+  const auto solve = [&] {
+    period = in.positive();
+    dt = in.positive();
+    if (dt > period * (1.0 + 1e-9))
+      in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
+  };
+  const auto class_list = [&] {
+    class_radii.resize(in.integer(1, 32));
+    for (size_t c = 0; c < class_radii.size(); c++) {
+      class_radii[c] = in.positive();
+      if (std::count(class_radii.begin(), class_radii.begin() + c, class_radii[c]))
+        in.refuse("'" + text(class_radii[c]) + "' twice");
+    }
+  };
+  const auto eddies = [&] {
+    fluctuation =
+        (decltype(fluctuation)) in.choice({"none", "correlated", "uncorrelated", "depth"});
+    if (fluctuation == NO_FLUCTUATION) return;
+    seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
+    find_bed = in.take("auto");
+    if (!find_bed) bed = in.number();
+  };
+  const auto side_walls = [&] {
+    if (in.take("off")) return;
+    width = in.positive();
+    wall_coef = in.not_negative();
+  };
+  const auto fluid = [&] {
+    rho = in.positive();
+    eta = in.positive();
+  };
+  const auto gravity = [&] {
+    for (double &component : g) component = in.number();
+  };
+  const auto surface = [&] {
+    driven = in.choice({"free", "speed"}) == 1;
+    if (driven) u_top = Field::parse(in);
+  };
+  const auto closure = [&] {
+    turbulence = (sd_vans_turbulence) in.choice(
+        {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
+  };
+  const auto coupling = [&] {
+    couple = (decltype(couple)) in.choice({"none", "one", "two", "fluid"});
+  };
+  const auto rule = [&] {
+    rules = in.choice({"consistent", "yade"}) == 1 ? SD_VANS_YADE : SD_VANS_CONSISTENT;
+  };
+  in.parse({
+      {"mesh", mesh},
+      {"fluid", fluid},
+      {"gravity", gravity},
+      {"area", [&] { area = in.positive(); }},
+      {"couple", coupling},
+      {"profile", [&] { profile_file = file_or(in, "zero"); }},
+      {"given", [&] { given_file = file_or(in, "averaged"); }},
+      {"convective", [&] { convective_file = file_or(in, "off"); }},
+      {"solve", solve},
+      {"stream", [&] { rest = in.choice({"steady", "rest"}) == 1; }},
+      {"hindrance", [&] { hindrance = in.number(); }},
+      {"lift", [&] { lift = in.take("off") ? 0.0 : in.number(); }},
+      {"turbulence", closure},
+      {"kappa", [&] { kappa = in.positive(); }},
+      {"phi_max", [&] { phi_max = fraction(in); }},
+      {"phi_bed", [&] { phi_bed = fraction(in); }},
+      {"bed_average", [&] { bed_average = (int) in.integer(1, 1000000); }},
+      {"sublayer", [&] { sublayer = in.yes_no(); }},
+      {"viscosity",
+       [&] { viscosity = (sd_vans_viscosity) in.choice({"constant", "einstein", "power"}); }},
+      {"surface", surface},
+      {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
+      {"sidewall", side_walls},
+      {"radius", [&] { radius = in.positive(); }},
+      {"classes", [&] { classes = in.yes_no(); }},
+      {"class_radii", class_list},
+      {"grains", [&] { point = in.choice({"extended", "point"}) == 1; }},
+      {"fluctuation", eddies},
+      {"renewal", [&] { renewal = in.positive(); }},
+      {"rules", rule},
+      {"conserve", [&] { conserve = in.yes_no(); }},
+      {"overlap", [&] { overlap_once = in.choice({"twice", "once"}) == 1; }},
+      {"region", [&] { region = in.word(); }},
+      {"average", [&] { average = in.word(); }},
+  });
+}
 
+/* Rules between keywords. */
+void VansSettings::check(const Keywords &in) const
+{
+  const bool eddies = fluctuation != NO_FLUCTUATION;
+  in.require(in.given("mesh"), "keyword mesh (ncell dz zref, or file NAME) is required");
+  in.require(in.given("fluid"), "keyword fluid (density and viscosity) is required");
+  in.require(in.given("gravity"),
+             "keyword gravity (gx gy gz) is required; its x component is the slope");
+  in.require(rules != SD_VANS_YADE || mesh_file.empty(),
+             "keyword mesh: rules yade knows slices of one height only");
+  in.require(!in.given("renewal") || eddies, "keyword renewal: there are no fluctuations");
+  in.require(!eddies || couple != FLUID, "keyword fluctuation: couple fluid has no grains");
+  const bool stands = g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 && !driven &&
+      profile_file.empty();
+  in.require(!solves() || rest || !stands,
+             "nothing drives the stream: give gravity an x component (the slope), "
+             "pressure_gradient, surface speed or a profile, or stream rest");
+}
+
+void VansSettings::read_mesh()
+{
+  if (mesh_file.empty()) return;
+  const std::string what = keyword("mesh") + ": file '" + mesh_file + "'";
+  edge = read_list(lmp, keyword("mesh"), mesh_file, 0, "");
+  if (edge.size() < 3)
+    fail(lmp, what + " has " + std::to_string(edge.size()) + " edges, at least 3 are needed");
+  z_ref = edge[0];
+  for (size_t k = 0; k < edge.size(); k++) {
+    edge[k] -= z_ref;
+    if (k > 0 && !(edge[k] > edge[k - 1]))
+      fail(lmp,
+           what + ": edge " + std::to_string(k + 1) + " (" + text(edge[k] + z_ref) +
+               ") is not above the one before");
+  }
+}
+
+void VansSettings::read_given()
+{
+  const size_t N = ncell();
+  if (given_file.empty()) {
+    if (couple == FLUID) given.assign(3, std::vector<double>(N, 0.0));
+    return;
+  }
+  const std::string what = keyword("given") + ": file '" + given_file + "'";
+  const auto rows = read_rows(lmp, keyword("given"), given_file);
+  const size_t columns = 3 + 2 * class_radii.size();
+  if (rows.size() != N)
+    fail(lmp,
+         what + " has " + std::to_string(rows.size()) + " rows, ncell = " + std::to_string(N) +
+             " are needed");
+  given.assign(columns, std::vector<double>(N));
+  for (size_t n = 0; n < N; n++) {
+    if (rows[n].size() != columns && rows[n].size() != 3)
+      fail(lmp,
+           what + ", row " + std::to_string(n + 1) + " has " + std::to_string(rows[n].size()) +
+               " values; phi, velocity and drag" +
+               (columns > 3 ? ", then phi and drag of each of class_radii," : "") + " are needed");
+    if (rows[n].size() < given.size()) given.resize(3);
+    for (size_t c = 0; c < given.size(); c++) given[c][n] = rows[n][c];
+    if (!(rows[n][0] >= 0.0 && rows[n][0] < 1.0))
+      fail(lmp,
+           what + ": phi = " + text(rows[n][0]) + " in slice " + std::to_string(n + 1) +
+               ", it must be in [0, 1)");
+  }
+}
+
+void VansSettings::parse(LAMMPS *lammps, const std::vector<std::string> &args, size_t begin)
+{
+  lmp = lammps;
+  Keywords in(lmp, COMMAND, args, begin);
+  read(in);
+  check(in);
+  if (rules == SD_VANS_YADE || couple != TWO) conserve = false;
+  read_mesh();
+  read_given();
   if (!profile_file.empty()) profile = read_profile(lmp, keyword("profile"), profile_file, ncell());
   if (!convective_file.empty())
-    convective = read_list(lmp, keyword("convective"), convective_file, N, "ncell");
-  if (!given_file.empty()) {
-    const auto rows = read_rows(lmp, keyword("given"), given_file);
-    const size_t columns = 3 + 2 * class_radii.size();
-    if (rows.size() != N)
-      fail(lmp,
-           keyword("given") + ": file '" + given_file + "' has " + std::to_string(rows.size()) +
-               " rows, ncell = " + std::to_string(N) + " are needed");
-    given.assign(columns, std::vector<double>(N));
-    for (size_t n = 0; n < N; n++) {
-      if (rows[n].size() != columns && rows[n].size() != 3)
-        fail(lmp,
-             keyword("given") + ": file '" + given_file + "', row " + std::to_string(n + 1) +
-                 " has " + std::to_string(rows[n].size()) + " values; phi, velocity and drag" +
-                 (columns > 3 ? ", then phi and drag of each of class_radii," : "") +
-                 " are needed");
-      if (rows[n].size() < given.size()) given.resize(3);
-      for (size_t c = 0; c < given.size(); c++) given[c][n] = rows[n][c];
-      if (!(rows[n][0] >= 0.0 && rows[n][0] < 1.0))
-        fail(lmp,
-             keyword("given") + ": file '" + given_file + "': phi = " + text(rows[n][0]) +
-                 " in slice " + std::to_string(n + 1) + ", it must be in [0, 1)");
-    }
-  }
-  if (couple == FLUID && given.empty()) given.assign(3, std::vector<double>(N, 0.0));
-  if ((couple == TWO || couple == FLUID) && !rest && g[0] == 0.0 && !dpdx.is_variable() &&
-      dpdx.number() == 0.0 && !driven && profile.empty())
+    convective = read_list(lmp, keyword("convective"), convective_file, ncell(), "ncell");
+  if (period > 0.0 && !(period / dt * ncell() <= MOST_WORK))
     fail(lmp,
-         command +
-             ": nothing drives the stream: give gravity an x component (the slope), "
-             "pressure_gradient, surface speed or a "
-             "profile, or stream rest");
+         keyword("solve") + ": the step " + text(dt) + " is too short for the period " +
+             text(period) + ": " + text(period / dt) + " steps of " + std::to_string(ncell()) +
+             " slices in every coupling, most of a minute");
 }
 
 }    // namespace StokesDyn

@@ -16,16 +16,22 @@ struct VansSettings {
   void parse(LAMMPS_NS::LAMMPS *lmp, const std::vector<std::string> &args, size_t begin);
   int ncell() const { return (int) edge.size() - 1; }
 
-  double z_ref = 0.0, dz = 0.0;    // dz = 0: slices of any height
-  std::vector<double> edge;        // above z_ref
+  /* dz = 0: slices of any height */
+  double z_ref = 0.0, dz = 0.0;
+  /* above z_ref */
+  std::vector<double> edge;
   double rho = 0.0, eta = 0.0, g[3] = {0, 0, 0};
-  double area = 0.0;    // 0: the box
+  /* 0: the box */
+  double area = 0.0;
   enum { NONE, ONE, TWO, FLUID } couple = TWO;
-  std::vector<double> profile;    // [N+1]; empty: zero
-  std::vector<std::vector<double>>
-      given;    // columns phi, vx, drag, then phi and drag of each class; empty: averaged
-  std::vector<double> convective;    // [N] or empty
-  double period = 0.0, dt = 0.0;     // of the solve; 0: N steps, a tenth of it
+  /* [N+1]; empty: zero */
+  std::vector<double> profile;
+  /* columns phi, vx, drag, then phi and drag of each class; empty: averaged */
+  std::vector<std::vector<double>> given;
+  /* [N] or empty */
+  std::vector<double> convective;
+  /* of the solve; 0: N steps, a tenth of it */
+  double period = 0.0, dt = 0.0;
   bool rest = false;
   double hindrance = 3.1, lift = 0.0;
   sd_vans_turbulence turbulence = SD_VANS_LI_SAWAMOTO;
@@ -35,31 +41,46 @@ struct VansSettings {
   bool driven = false;
   Field u_top, dpdx;
   double width = 0.0, wall_coef = 1.0;
-  double radius = 0.0;    // 0: mean of the grains
+  /* 0: mean of the grains */
+  double radius = 0.0;
   bool classes = false;
-  std::vector<double> class_radii;    // empty: those of the grains
+  /* empty: those of the grains */
+  std::vector<double> class_radii;
   bool point = false;
   enum { NO_FLUCTUATION, CORRELATED, UNCORRELATED, DEPTH } fluctuation = NO_FLUCTUATION;
   uint64_t seed = 0;
   double bed = 0.0;
   bool find_bed = false;
-  double renewal = 0.0;    // 0: depth over mean velocity above the bed
+  /* 0: depth over mean velocity above the bed */
+  double renewal = 0.0;
   sd_vans_rules rules = SD_VANS_CONSISTENT;
-  int bed_average = 1;    // phi profiles in the mean that marks the bed (ni_capart)
+  /* phi profiles in the mean that marks the bed (ni_capart) */
+  int bed_average = 1;
   bool conserve = true;
   bool overlap_once = false;
   std::string region, average = "all";
 
+  bool solves() const { return couple == TWO || couple == FLUID; }
+  bool averages() const { return couple == ONE || couple == TWO; }
   bool wants_pores() const
   {
     return turbulence == SD_VANS_PORE || turbulence == SD_VANS_ROUSSEAU ||
         turbulence == SD_VANS_NI_CAPART;
   }
+
+ private:
+  LAMMPS_NS::LAMMPS *lmp = nullptr;
+  std::string mesh_file, profile_file, given_file, convective_file;
+  void read(Keywords &in);
+  void check(const Keywords &in) const;
+  void read_mesh();
+  void read_given();
 };
 
-/* All numbers of a file, row by row, the same on every rank. '#' begins a comment, commas count as blanks. Ends the run
- * with what, file and line
- * if the file cannot be read or a word is no finite number. */
+/* All numbers of a file, row by row, the same on every rank. '#' begins a comment, commas count as
+ * blanks.
+ * Ends the run with what, file and line if the file cannot be read or a word is no finite number.
+ * */
 std::vector<std::vector<double>> read_rows(LAMMPS_NS::LAMMPS *lmp, const std::string &what,
                                            const std::string &file);
 

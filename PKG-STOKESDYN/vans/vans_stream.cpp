@@ -1,46 +1,70 @@
 #include "vans_stream.h"
 
+#include "comm.h"
+#include "error.h"
+
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) : set(settings), lmp(lmp)
+static const std::string COMMAND = VansSettings::COMMAND;
+
+static sd_vans_force_law law_of(const VansSettings &set)
+{
+  sd_vans_force_law law = {};
+  law.rho = set.rho;
+  law.eta = set.eta;
+  law.exponent = set.hindrance;
+  std::copy(set.g, set.g + 3, law.g);
+  law.rest = set.rest;
+  law.lift = set.lift;
+  law.convective = set.convective.empty() ? nullptr : set.convective.data();
+  law.rules = set.rules;
+  return law;
+}
+
+static sd_vans_fluid fluid_of(const VansSettings &set)
+{
+  sd_vans_fluid fluid = {};
+  fluid.rho = set.rho;
+  fluid.eta = set.eta;
+  fluid.gx = set.g[0];
+  fluid.dpdx = set.dpdx.number();
+  fluid.turbulence = set.turbulence;
+  fluid.kappa = set.kappa;
+  fluid.phi_max = set.phi_max;
+  fluid.phi_bed = set.phi_bed;
+  fluid.sublayer = set.sublayer;
+  fluid.viscosity = set.viscosity;
+  fluid.driven = set.driven;
+  fluid.u_top = set.u_top.number();
+  fluid.width = set.width;
+  fluid.wall_coef = set.wall_coef;
+  fluid.radius = set.radius;
+  fluid.rules = set.rules;
+  return fluid;
+}
+
+VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) :
+    set(settings), mesh{set.ncell(), set.z_ref, set.dz, set.edge.data()}, law(law_of(set)),
+    fluid(fluid_of(set)), U(set.profile), lmp(lmp), solver(sd_vans_solver_create(&mesh))
 {
   const int N = set.ncell();
-  mesh = {N, set.z_ref, set.dz, set.edge.data()};
-  law = {set.rho,
-         set.eta,
-         set.hindrance,
-         {set.g[0], set.g[1], set.g[2]},
-         set.rest,
-         set.lift,
-         set.convective.empty() ? nullptr : set.convective.data(),
-         set.rules};
-  fluid = {set.rho,        set.eta,       set.g[0],    set.dpdx.number(),
-           set.turbulence, set.kappa,     set.phi_max, set.phi_bed,
-           set.sublayer,   set.viscosity, set.driven,  set.u_top.number(),
-           set.width,      set.wall_coef, set.radius,  0,
-           nullptr,        set.rules};
-  U = set.profile;
+  if (!solver) fail(lmp, COMMAND + ": out of memory for " + std::to_string(N) + " slices");
   U.resize(N + 1, 0.0);
   if (set.profile.empty() && set.driven && !set.u_top.is_variable()) U[N] = set.u_top.number();
-  grain.assign(5 * (size_t) N, 0.0);
+  grain.assign(SD_VANS_ROWS * (size_t) N, 0.0);
   if (!set.given.empty()) {
     std::copy(set.given[0].begin(), set.given[0].end(), phi());
-    std::copy(set.given[1].begin(), set.given[1].end(), vx());
-    std::copy(set.given[2].begin(), set.given[2].end(), drag());
+    std::copy(set.given[1].begin(), set.given[1].end(), row(SD_VANS_VX));
+    std::copy(set.given[2].begin(), set.given[2].end(), row(SD_VANS_DRAG));
   }
   for (auto *array :
        {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
     array->assign(N, 0.0);
-  scratch.resize(4 * (size_t) N + 4);
-  solver = sd_vans_solver_create(N);
-  if (!solver)
-    fail(lmp,
-         std::string(VansSettings::COMMAND) + ": out of memory for " + std::to_string(N) +
-             " slices");
+  scratch.resize(2 * (size_t) N + 2);
   set_classes(set.class_radii);
   profile_changed();
 }
@@ -53,27 +77,23 @@ VansStream::~VansStream()
 void VansStream::set_classes(const std::vector<double> &radii)
 {
   if (radii == class_radii && !class_grain.empty()) return;
-  const size_t N = ncell();
+  const size_t N = ncell(), profile = SD_VANS_ROWS * N;
   class_radii = radii;
-  class_grain.assign(5 * N * radii.size(), 0.0);
+  class_grain.assign(profile * radii.size(), 0.0);
   for (size_t c = 0; 4 + 2 * c < set.given.size() && c < radii.size(); c++) {
-    std::copy(set.given[3 + 2 * c].begin(), set.given[3 + 2 * c].end(),
-              class_grain.begin() + 5 * N * c);
-    std::copy(set.given[4 + 2 * c].begin(), set.given[4 + 2 * c].end(),
-              class_grain.begin() + 5 * N * c + 4 * N);
+    const auto &class_phi = set.given[3 + 2 * c], &drag = set.given[4 + 2 * c];
+    const auto at = class_grain.begin() + profile * c;
+    std::copy(class_phi.begin(), class_phi.end(), at);
+    std::copy(drag.begin(), drag.end(), at + SD_VANS_DRAG * N);
   }
   fluid.nclass = (int) class_radii.size();
   fluid.class_radius = class_radii.data();
 }
 
-std::vector<double> VansStream::class_columns(int k) const
+/* `given` without the columns of the classes: one class. */
+const double *VansStream::classes() const
 {
-  const size_t N = ncell();
-  std::vector<double> columns;
-  for (size_t c = 0; c < class_radii.size(); c++)
-    columns.insert(columns.end(), class_grain.begin() + (5 * c + k) * N,
-                   class_grain.begin() + (5 * c + k + 1) * N);
-  return columns;
+  return !class_radii.empty() && (averaged || set.given.size() > 3) ? class_grain.data() : nullptr;
 }
 
 void VansStream::mixing_length()
@@ -85,42 +105,41 @@ void VansStream::mixing_length()
     for (const auto &profile : phi_history)
       for (int n = 0; n < N; n++) mean[n] += profile[n] / (double) phi_history.size();
   }
-  // `given` without the columns of the classes: one class.
-  const bool have = !class_radii.empty() && (averaged || set.given.size() > 3);
-  const std::vector<double> class_phi = have ? class_columns(0) : std::vector<double>();
-  sd_vans_mixing_length(&mesh, &fluid, U.data(), phi(), have ? class_phi.data() : nullptr,
-                        mean.data(), length.data(), scratch.data());
+  sd_vans_mixing_length(&mesh, &fluid, U.data(), phi(), classes(), mean.data(), length.data(),
+                        scratch.data());
 }
 
 void VansStream::profile_changed()
 {
   sd_vans_hindrance(ncell(), phi(), law.exponent, hindrance.data());
   mixing_length();
-  sd_vans_stress(&mesh, &fluid, phi(), length.data(), U.data(), nut.data(), stress.data());
+  const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
+  sd_vans_stress(&mesh, &fluid, phi(), length.data(), &flow);
 }
 
-void VansStream::take_averages(double area, const std::vector<double> &sums,
-                               const std::vector<double> &class_sums)
+void VansStream::no_average(int n, double area)
 {
-  const size_t N = ncell();
+  const std::string slice = "slice " + std::to_string(n + 1);
+  if (!std::isfinite(phi()[n]))
+    fail(lmp,
+         COMMAND + ": the average in " + slice +
+             " is not finite: a grain has no finite position or velocity");
+  fail(lmp,
+       COMMAND + ": phi = " + text(phi()[n]) + " in " + slice + " (z = " +
+           text(mesh.z_ref + mesh.edge[n]) + " to " + text(mesh.z_ref + mesh.edge[n + 1]) +
+           "): more grains than fit. Is the area " + text(area) +
+           " right, or do members of clumps overlap (overlap once)?");
+}
+
+void VansStream::take_averages(double area, const double *sums)
+{
+  const size_t N = ncell(), profile = SD_VANS_ROWS * N;
   const std::vector<double> before(phi(), phi() + N);
-  sd_vans_profiles(&mesh, area, sums.data(), grain.data());
+  sd_vans_profiles(&mesh, area, sums, grain.data());
   for (size_t c = 0; c < class_radii.size(); c++)
-    sd_vans_profiles(&mesh, area, class_sums.data() + c * N * SD_VANS_NSUM,
-                     class_grain.data() + 5 * c * N);
+    sd_vans_profiles(&mesh, area, sums + (1 + c) * profile, class_grain.data() + c * profile);
   for (size_t n = 0; n < N; n++)
-    if (!(phi()[n] < 1.0)) {
-      if (!std::isfinite(phi()[n]))
-        fail(lmp,
-             std::string(VansSettings::COMMAND) + ": the average in slice " +
-                 std::to_string(n + 1) +
-                 " is not finite: a grain has no finite position or velocity");
-      fail(lmp,
-           std::string(VansSettings::COMMAND) + ": phi = " + text(phi()[n]) + " in slice " +
-               std::to_string(n + 1) + " (z = " + text(mesh.z_ref + mesh.edge[n]) + " to " +
-               text(mesh.z_ref + mesh.edge[n + 1]) + "): more grains than fit. Is the area " +
-               text(area) + " right, or do members of clumps overlap (overlap once)?");
-    }
+    if (!(phi()[n] < 1.0)) no_average((int) n, area);
   if (set.conserve && averaged)
     ledger.surface +=
         area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
@@ -130,76 +149,73 @@ void VansStream::take_averages(double area, const std::vector<double> &sums,
   sd_vans_hindrance(ncell(), phi(), law.exponent, hindrance.data());
 }
 
-/* Momentum. The solve takes `moved` from the water for the grains. Its viscous part is handed to them as a force until the
- * next solve. Its drag is what
- * the exchange coefficient foresees. When the next solve comes each grain has felt its true drag, and the difference goes
- * back to the water as a
- * source in the slices of that grain. So the water gives no more and no less than the grains get, one coupling later, and
- * the drag stays
- * implicit; the ledger holds what is on its way. Grain by grain and not slice by slice: a grain sees the water at its
- * centre only, and
- * a thin slice could not bear its part of that drag if it had no momentum left. And a tenth of what is outstanding at a
- * time: the differences of
- * single couplings are mostly noise, which would shake the water of a dense bed. */
-static constexpr double RETURNED = 0.1;
+/* Once each: couplings that are longer than the drag allows, and drag that the limits of b keep
+ * from the
+ * water; with conserve yes the books bring that back. */
+void VansStream::tell_limits(double T, double dt, const double cut[2])
+{
+  if (lmp->comm->me != 0) return;
+  int slice = 0;
+  const double rate = sd_vans_drag_rate(&mesh, &law, fluid.radius, U.data(), hindrance.data(),
+                                        grain.data(), &slice);
+  if (set.couple == VansSettings::TWO && !told_far && rate * T > 3.0) {
+    told_far = true;
+    lmp->error->warning(
+        FLERR,
+        COMMAND + ": the couplings are too far apart: drag changes the water at z = " +
+            text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) +
+            ", b T = " + text(rate * T) + " for the time T = " + text(T) +
+            " of a coupling; above 3 drag and stream drive each other up. Take a T of at most " +
+            text(3.0 / rate));
+  }
+  const double drive = std::fabs(fluid.rho * fluid.gx - fluid.dpdx) * mesh.edge[ncell() - 1];
+  if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * drive) {
+    told_cut = true;
+    const char *other = set.rules == SD_VANS_YADE ? "rules consistent" : "conserve yes";
+    lmp->error->warning(
+        FLERR,
+        COMMAND + ": " + text(100.0 * cut[0] / cut[1]) +
+            " % of the drag does not reach the water: b is cut off at 1/(10 dt) = " +
+            text(0.1 / dt) + ", drag asks for up to " + text(rate) +
+            ". Take a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " + other);
+  }
+}
 
 void VansStream::solve(double area, double T, const Given &given)
 {
-  const int N = ncell(), M = N - 1;
-  double dt = set.period > 0.0 ? set.dt : 0.1 * T;
+  const int N = ncell();
+  double dt = set.period > 0.0 ? set.dt : 0.1 * T, cut[2], returned = 0.0;
   const int64_t steps = sd_vans_steps(set.rules, T, &dt);
-  const bool exchange_classes =
-      set.classes && !class_radii.empty() && (averaged || set.given.size() > 3);
-  const std::vector<double> class_phi = exchange_classes ? class_columns(0) : std::vector<double>();
-  const std::vector<double> class_drag = exchange_classes ? class_columns(4)
-                                                          : std::vector<double>();
-  sd_vans_exchange(&mesh, &fluid, dt, U.data(), phi(), vx(), drag(),
-                   exchange_classes ? class_phi.data() : nullptr,
-                   exchange_classes ? class_drag.data() : nullptr, b.data());
+  sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), set.classes ? classes() : nullptr,
+                   b.data(), cut);
+  tell_limits(T, dt, cut);
   mixing_length();
 
-  std::vector<double> source, moved, shear;
-  sd_vans_impulse impulse = {0, 0, 0, 0};
   const bool account = !given.back.empty();
-  double returned = 0.0;
-  if (account) {
-    moved.resize(N);
-    shear.resize(N);
-    ledger.transit -= given.all;
-    ledger.others += given.others;
-    source.assign(N, 0.0);
-    // Above the surface there is no water: the slice below it pays.
-    for (int n = 0; n < N; n++) outstanding[std::min(n, M - 1)] += given.back[n] / area;
-    for (int n = 0; n < M; n++) {
-      const double share = RETURNED * outstanding[n];
-      outstanding[n] -= share;
-      returned += share;
-      source[n] = share / (fluid.rho * height(n) * T);
-    }
-  }
-
+  std::vector<double> source(account ? N : 0), moved(source), shear(source);
+  if (account)
+    returned = sd_vans_give_back(&mesh, fluid.rho * area, T, given.back.data(), outstanding.data(),
+                                 source.data());
+  const sd_vans_column column = {phi(), row(SD_VANS_VX), b.data(), length.data(),
+                                 account ? source.data() : nullptr};
+  const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
+  sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0};
   const sd_status status =
-      sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi(), vx(), b.data(), length.data(),
-                    source.empty() ? nullptr : source.data(), U.data(), nut.data(), stress.data(),
-                    account ? moved.data() : nullptr, account ? shear.data() : nullptr, &impulse);
+      sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, account ? &books : nullptr);
   if (status != SD_OK)
     fail(lmp,
-         std::string(VansSettings::COMMAND) + ": the solve of the stream over " + text(T) + " in " +
-             std::to_string(steps) + " steps: " + sd_status_string(status) +
-             ". Take a shorter time between couplings");
+         COMMAND + ": the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
+             " steps: " + sd_status_string(status) + ". Take a shorter time between couplings");
   if (!account) return;
 
-  for (int n = 0; n < N; n++) {
-    ledger.transit += area * moved[n];
-    const double solid = n < M ? phi()[n] * height(n) : 0.0;
-    shear_density[n] = solid > 0.0 ? shear[n] / (T * solid) : 0.0;
-    foreseen_density[n] = solid > 0.0 ? (moved[n] - shear[n]) / solid : 0.0;
-  }
-  ledger.transit -= area * returned;
-  ledger.driving += area * impulse.driving;
-  ledger.bottom += area * impulse.bottom;
-  ledger.walls += area * impulse.walls;
-  ledger.surface += area * impulse.surface;
+  sd_vans_hand_over(&mesh, phi(), T, &books, shear_density.data(), foreseen_density.data());
+  for (int n = 0; n < N; n++) ledger.transit += area * moved[n];
+  ledger.transit -= given.all + returned;
+  ledger.others += given.others;
+  ledger.driving += area * books.driving;
+  ledger.bottom += area * books.bottom;
+  ledger.walls += area * books.walls;
+  ledger.surface += area * books.surface;
 }
 
 double VansStream::momentum(double area) const
@@ -239,56 +255,78 @@ double VansStream::depth_over_velocity(double bed) const
   return flux > 0.0 ? depth * depth / flux : 0.0;
 }
 
-/* ncell, flags, ledger, then the arrays in the order of arrays(). */
-std::vector<double> VansStream::pack() const
+/* Where next to nothing moves an eddy would live for ever. Thirty times H/u_star are about two
+ * hundred
+ * lives of one as high as the stream; u_star from what drives the stream, or from its largest
+ * stress. */
+double VansStream::longest_eddy(double second) const
 {
-  std::vector<double> out = {(double) ncell(),
-                             (double) averaged,
-                             0.0,
-                             (double) phi_history.size(),
-                             (double) class_radii.size(),
-                             fluid.radius,
-                             ledger.transit,
-                             ledger.driving,
-                             ledger.bottom,
-                             ledger.walls,
-                             ledger.surface,
-                             ledger.others};
-  for (const auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density,
-                            &foreseen_density, &outstanding, &class_radii, &class_grain})
-    out.insert(out.end(), array->begin(), array->end());
-  for (const auto &profile : phi_history) out.insert(out.end(), profile.begin(), profile.end());
-  return out;
+  if (set.rules == SD_VANS_YADE) return 10.0 * second;
+  const double H = mesh.edge[ncell() - 1], drive = std::fabs(fluid.gx - fluid.dpdx / fluid.rho) * H,
+               u_star = std::sqrt(std::max(drive, largest_stress() / fluid.rho));
+  return u_star > 0.0 ? 30.0 * H / u_star : HUGE_VAL;
 }
 
-void VansStream::unpack(const std::vector<double> &in)
+/* ---- restart -------------------------------------------------------------------------------- */
+
+void VansStream::save(NamedState &state) const
+{
+  state.put("z_ref", mesh.z_ref);
+  state.put("edge", set.edge);
+  state.put("averaged", averaged);
+  state.put("radius", fluid.radius);
+  state.put("ledger", {ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface,
+                       ledger.others});
+  state.put("U", U);
+  state.put("grain", grain);
+  state.put("b", b);
+  state.put("length", length);
+  state.put("nut", nut);
+  state.put("stress", stress);
+  state.put("shear", shear_density);
+  state.put("foreseen", foreseen_density);
+  state.put("outstanding", outstanding);
+  state.put("class_radii", class_radii);
+  state.put("class_grain", class_grain);
+  std::vector<double> history;
+  for (const auto &profile : phi_history)
+    history.insert(history.end(), profile.begin(), profile.end());
+  state.put("phi_history", history);
+}
+
+void VansStream::load(const NamedState &state)
 {
   const size_t N = ncell();
-  size_t at = 12;
-  if (in.size() < at || (size_t) in[0] != N)
+  const auto edge = state.get("edge");
+  if (edge.size() != N + 1)
     fail(lmp,
-         std::string(VansSettings::COMMAND) + ": keyword mesh: the restart file has " +
-             std::to_string(in.empty() ? 0 : (int) in[0]) + " slices, this fix has " +
-             std::to_string(N));
-  averaged = in[1] != 0.0;
-  const size_t history = (size_t) in[3], nclass = (size_t) in[4];
-  if (set.radius == 0.0) fluid.radius = in[5];
-  ledger.transit = in[6];
-  ledger.driving = in[7];
-  ledger.bottom = in[8];
-  ledger.walls = in[9];
-  ledger.surface = in[10];
-  ledger.others = in[11];
-  std::vector<double> radii(nclass), classes(5 * N * nclass);
-  for (auto *array : {&U, &grain, &b, &length, &nut, &stress, &shear_density, &foreseen_density,
-                      &outstanding, &radii, &classes})
-    for (double &value : *array) value = in.at(at++);
-  set_classes(radii);
-  class_grain = classes;
+         COMMAND + ": keyword mesh: the restart file has " + std::to_string((int) edge.size() - 1) +
+             " slices, this fix has " + std::to_string(N));
+  const double H = mesh.edge[N];
+  double shift = std::fabs(state.get("z_ref", 0.0) - mesh.z_ref);
+  for (size_t n = 0; n <= N; n++) shift = std::max(shift, std::fabs(edge[n] - mesh.edge[n]));
+  if (!(shift <= 1e-9 * H))
+    fail(lmp,
+         COMMAND + ": keyword mesh: the restart file has another mesh: edges up to " + text(shift) +
+             " away from those of this fix");
+  averaged = state.get("averaged", 0.0) != 0.0;
+  if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
+  double sums[6];
+  if (state.get("ledger", sums, 6)) ledger = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
+  state.get("U", U.data(), N + 1);
+  state.get("grain", grain.data(), grain.size());
+  state.get("b", b.data(), N);
+  state.get("length", length.data(), N);
+  state.get("nut", nut.data(), N);
+  state.get("stress", stress.data(), N);
+  state.get("shear", shear_density.data(), N);
+  state.get("foreseen", foreseen_density.data(), N);
+  state.get("outstanding", outstanding.data(), N);
+  set_classes(state.get("class_radii"));
+  state.get("class_grain", class_grain.data(), class_grain.size());
+  const auto history = state.get("phi_history");
   phi_history.clear();
-  for (size_t k = 0; k < history; k++) {
-    phi_history.emplace_back(in.begin() + at, in.begin() + at + N);
-    at += N;
-  }
+  for (size_t at = 0; at + N <= history.size(); at += N)
+    phi_history.emplace_back(history.begin() + at, history.begin() + at + N);
   sd_vans_hindrance(ncell(), phi(), law.exponent, hindrance.data());
 }

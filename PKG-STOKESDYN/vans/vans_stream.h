@@ -1,8 +1,10 @@
-/* The stream of fix hydro/vans: its profiles and what moves them on, the same on every rank. Knows no atoms: the fix
- * brings sums over all of them. */
+/* The stream of fix hydro/vans: its profiles and what moves them on, the same on every rank. Knows
+ * no
+ * atoms: the fix brings sums over all of them. */
 #ifndef SD_VANS_STREAM_H
 #define SD_VANS_STREAM_H
 
+#include "named_state.h"
 #include "vans_settings.h"
 
 #include <deque>
@@ -21,62 +23,77 @@ class VansStream {
   sd_vans_mesh mesh;
   sd_vans_force_law law;
   sd_vans_fluid fluid;
-  std::vector<double> U;              // [N+1]
-  std::vector<double> grain;          // [5][N]: phi, vx, vy, vz, drag
-  std::vector<double> class_grain;    // [nclass][5][N]
+  /* [N+1] */
+  std::vector<double> U;
+  /* profile of all grains, and one after the other those of the classes */
+  std::vector<double> grain, class_grain;
   std::vector<double> class_radii;
-  std::vector<double> hindrance, b, length, nut, stress;    // [N]
-  std::vector<double> shear_density;    // [N] force of the viscous stress per volume of grains
-  std::vector<double>
-      foreseen_density;    // [N] impulse of the drag per volume of grains that the last solve took from the water
-  bool averaged = false;    // are there averages?
+  /* [N] */
+  std::vector<double> hindrance, b, length, nut, stress;
+  /* [N] per volume of grains: force of the viscous stress, impulse of the drag that the last solve
+   * foresaw */
+  std::vector<double> shear_density, foreseen_density;
+  /* are there averages? */
+  bool averaged = false;
 
   /* Numbers that grow: momentum along x, from the first step on. */
   struct Ledger {
-    double transit = 0;    // the water has given it, the grains have not got it yet
-    double driving = 0, bottom = 0, walls = 0, surface = 0;    // the water got it from outside
-    double others = 0;    // spheres that are averaged but not in the group got it
+    /* the water has given it, the grains have not got it yet */
+    double transit = 0;
+    /* the water got it from outside */
+    double driving = 0, bottom = 0, walls = 0, surface = 0;
+    /* spheres that are averaged but not in the group got it */
+    double others = 0;
   } ledger;
 
   int ncell() const { return mesh.ncell; }
   double *phi() { return grain.data(); }
-  double *vx() { return grain.data() + mesh.ncell; }
-  double *drag() { return grain.data() + 4 * (size_t) mesh.ncell; }
-  double height(int n) const { return mesh.edge[n + 1] - mesh.edge[n]; }
+  double *row(int k) { return grain.data() + (size_t) k * mesh.ncell; }
+  double height(int n) const { return sd_vans_height(&mesh, n); }
   void set_classes(const std::vector<double> &radii);
-  void
-  profile_changed();    // U or phi set from outside: hindrance, eddy viscosity and stress follow
+  /* U or phi set from outside: hindrance, eddy viscosity and stress follow. */
+  void profile_changed();
 
-  /* New averages from sums over all grains. */
-  void take_averages(double area, const std::vector<double> &sums,
-                     const std::vector<double> &class_sums);
+  /* New averages from sums over all grains, then of each class. */
+  void take_averages(double area, const double *sums);
   /* Since the last solve, impulses along x. */
   struct Given {
-    std::vector<double>
-        back;    // [N] what the drag foreseen then was more than the true one; empty: momentum is not accounted for
-    double all = 0.0,
-           others = 0.0;    // what the grains got from the water; spheres outside the group of it
+    /* [N] what the drag foreseen then was more than the true one; empty: momentum is not accounted
+     * for */
+    std::vector<double> back;
+    /* what the grains got from the water; spheres outside the group of it */
+    double all = 0.0, others = 0.0;
   };
   void solve(double area, double T, const Given &given);
 
-  double momentum(double area) const;    // of the water, along x
-  double transport() const;              // sum of phi vx dz
+  /* of the water, along x */
+  double momentum(double area) const;
+  /* sum of phi vx dz */
+  double transport() const;
   double largest_stress() const;
-  double bed_elevation()
-      const;    // of the first maximum of phi above 0.5 from the top, or as the user says
+  /* of the first maximum of phi above 0.5 from the top, or as the user says */
+  double bed_elevation() const;
   double depth_over_velocity(double bed) const;
+  /* the longest life of an eddy, in seconds of Yade's rule */
+  double longest_eddy(double second) const;
 
-  std::vector<double> pack() const;    // for the restart file
-  void unpack(const std::vector<double> &values);
+  void save(NamedState &state) const;
+  void load(const NamedState &state);
 
  private:
   LAMMPS_NS::LAMMPS *lmp;
   sd_vans_solver *solver;
-  std::vector<double> outstanding;    // [N] momentum per area that is to go back to the water
-  std::deque<std::vector<double>> phi_history;    // ni_capart: the last profiles
+  /* [N] momentum that is to go back to the water */
+  std::vector<double> outstanding;
+  /* ni_capart: the last profiles of phi */
+  std::deque<std::vector<double>> phi_history;
   std::vector<double> scratch;
-  std::vector<double> class_columns(int k) const;    // column k of every class, [nclass][N]
+  bool told_far = false, told_cut = false;
+
+  const double *classes() const;
   void mixing_length();
+  void tell_limits(double T, double dt, const double cut[2]);
+  [[noreturn]] void no_average(int n, double area);
 };
 
 }    // namespace StokesDyn

@@ -36,7 +36,7 @@ static double *array(int n)
   return calloc(n, sizeof(double));
 }
 
-static double fluid(int N, sd_vans_turbulence turbulence, double width, int account)
+static double fluid(int N, sd_vans_rules rules, double width, int account)
 {
   double *edge = array(N + 1), *phi = array(N), *vx = array(N), *b = array(N), *length = array(N),
          *U = array(N + 1), *nut = array(N), *stress = array(N), *scratch = array(4 * N),
@@ -54,20 +54,22 @@ static double fluid(int N, sd_vans_turbulence turbulence, double width, int acco
   const sd_vans_fluid f = {.rho = 1000,
                            .eta = 1e-3,
                            .gx = 0.98,
-                           .turbulence = turbulence,
+                           .turbulence = SD_VANS_LI_SAWAMOTO,
                            .kappa = 0.41,
                            .phi_max = 0.61,
                            .width = width,
                            .wall_coef = 1,
-                           .radius = 0.003};
+                           .radius = 0.003,
+                           .rules = rules};
   sd_vans_mixing_length(&mesh, &f, U, phi, NULL, phi, length, scratch);
-  sd_vans_solver *solver = sd_vans_solver_create(N);
-  sd_vans_impulse in;
+  sd_vans_solver *solver = sd_vans_solver_create(&mesh);
+  const sd_vans_column column = {phi, vx, b, length, NULL};
+  const sd_vans_flow flow = {U, nut, stress};
+  sd_vans_books books = {moved, shear, 0, 0, 0, 0};
   const int steps = 2000000 / N;
   for (int r = -1; r < RUNS; r++) {
     const double t = seconds();
-    if (sd_vans_solve(solver, &mesh, &f, steps, dt, phi, vx, b, length, NULL, U, nut, stress,
-                      account ? moved : NULL, account ? shear : NULL, &in) != SD_OK)
+    if (sd_vans_solve(solver, &f, &column, steps, dt, &flow, account ? &books : NULL) != SD_OK)
       abort();
     if (r >= 0) times[r] = (seconds() - t) / steps / N * 1e9;
   }
@@ -82,7 +84,7 @@ static void grains(double ratio, int n, double *average, double *force)
   const int N = 900;
   const double a = 0.003, dz = a / ratio;
   double *edge = array(N + 1), *phi = array(N), *U = array(N + 1), *hindrance = array(N),
-         *V = array(N), *sums = array(N * SD_VANS_NSUM), *x = array(3 * n), *v = array(3 * n),
+         *V = array(N), *sums = array(N * SD_VANS_ROWS), *x = array(3 * n), *v = array(3 * n),
          *radius = array(n), *F = array(3 * n), *drag = array(n), averages[RUNS], forces[RUNS];
   for (int k = 0; k <= N; k++) edge[k] = k * dz, U[k] = 0.001 * k;
   for (int k = 0; k < N; k++) phi[k] = 0.5;
@@ -96,19 +98,19 @@ static void grains(double ratio, int n, double *average, double *force)
   const sd_vans_mesh mesh = {N, 0.0, dz, edge};
   const sd_vans_force_law law = {.rho = 1000, .eta = 1e-3, .exponent = 3.1, .g = {0.5, 0, -9.8}};
   const sd_vans_averaging how = {0, 0, NULL};
+  const sd_vans_grains grains = {n, x, v, radius, NULL, NULL, NULL};
   const int repeat = 400000 / n;
   for (int r = -1; r < RUNS; r++) {
     double t = seconds();
     for (int k = 0; k < repeat; k++) {
       sd_vans_hindrance(N, phi, 3.1, hindrance);
-      memset(sums, 0, N * SD_VANS_NSUM * sizeof(double));
-      sd_vans_average(&mesh, &law, &how, U, hindrance, n, x, v, radius, NULL, NULL, NULL, sums,
-                      NULL, V);
+      memset(sums, 0, N * SD_VANS_ROWS * sizeof(double));
+      sd_vans_average(&mesh, &law, &how, U, hindrance, &grains, sums, V);
     }
     if (r >= 0) averages[r] = (seconds() - t) / repeat / n * 1e9;
     t = seconds();
     for (int k = 0; k < repeat; k++)
-      sd_vans_forces(&mesh, &law, U, hindrance, n, x, v, radius, NULL, NULL, F, drag);
+      sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, drag);
     if (r >= 0) forces[r] = (seconds() - t) / repeat / n * 1e9;
   }
   *average = median(averages);
@@ -120,15 +122,17 @@ static void grains(double ratio, int n, double *average, double *force)
 int main(void)
 {
   printf("fluid step, ns per slice and step        clear of walls   momentum booked   side walls "
-         "(ratio)\n");
+         "(ratio)   with rules yade\n");
   static const int sizes[] = {100, 300, 900};
   for (int k = 0; k < 3; k++) {
-    const double plain = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 0),
-                 booked = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0, 1);
-    const double walls = fluid(sizes[k], SD_VANS_LI_SAWAMOTO, 0.0065, 0);
-    printf(
-        "  %4d slices                               %6.2f          %6.2f            %6.2f (%.2f)\n",
-        sizes[k], plain, booked, walls, walls / plain);
+    const int N = sizes[k];
+    const double plain = fluid(N, SD_VANS_CONSISTENT, 0.0, 0),
+                 booked = fluid(N, SD_VANS_CONSISTENT, 0.0, 1),
+                 walls = fluid(N, SD_VANS_CONSISTENT, 0.0065, 0),
+                 yade = fluid(N, SD_VANS_YADE, 0.0065, 0);
+    printf("  %4d slices                               %6.2f          %6.2f            %6.2f (%.2f) "
+           "         %6.2f\n",
+           N, plain, booked, walls, walls / plain, yade);
   }
   printf("grains, ns per grain (900 slices)          averages         forces\n");
   static const double ratios[] = {3.0, 15.0};

@@ -114,3 +114,90 @@ def test_nothing_stays_on_its_way_when_the_motion_ends(tmp_path):
     assert abs(s.number("transit")) < 1e-8 * start
     assert abs((s.number("bottom") + s.number("surface")) / start + 1) < 1e-8
     s.close()
+
+
+COUPLED = """units si
+plugin load stokesdynplugin.so
+atom_style sphere
+boundary p p f
+comm_modify vel yes
+region b block 0 {w} 0 {w} {low} {high} units box
+create_box 1 b
+{grains}
+pair_style zero {d}
+pair_coeff * *
+neighbor {d} bin
+neigh_modify one 10000 page 100000
+timestep {dt}
+fix h all hydro/vans {every} mesh 41 {dz} 0 fluid 1000 0.001 gravity 0.5 0 -9.8 {keywords}
+run 1
+"""
+
+
+def coupled(tmp_path, d, every, keywords=""):
+    """A bed of phi 0.4, 12 diameters deep under 28 of water, for three couplings with time steps of 1e-5. What LAMMPS prints."""
+    w = 6 * d
+    grains = cloud(int(0.4 * 6 * 6 * 12 / (np.pi / 6)), (w, w), (0.5 * d, 12 * d), d)
+    script = COUPLED.format(d=d, w=w, low=-d, high=45 * d, dz=d, dt=1e-5, every=every, grains="\n".join(grains), keywords=keywords + " area %g" % (w * w))
+    done = run_lmp(tmp_path, script.replace("run 1", f"run {3 * every}"))
+    assert done.returncode == 0, done.stdout[-1000:]
+    return done.stdout
+
+
+@pytest.mark.parametrize("d, every, told", [(0.006, 1000, False), (1e-4, 1000, True), (1e-4, 10, False)])
+def test_coupling_time_that_is_too_long_is_told(tmp_path, d, every, told):
+    """b T of grains of 6 mm is 0.2 at couplings of 10 ms, that of grains of 0.1 mm more than 50."""
+    assert ("couplings are too far apart" in coupled(tmp_path, d, every)) == told
+
+
+@pytest.mark.parametrize("keywords, told", [("conserve no", True), ("rules yade", True), ("conserve yes", False), ("conserve no solve 1e-4 1e-7", False)])
+def test_exchange_that_is_cut_off_is_told(tmp_path, keywords, told):
+    """Grains of 0.05 mm every 0.1 ms, with fluid steps of 10 us: b is above 1/(10 dt), and the water too fast unless the books are kept."""
+    assert ("of the drag does not reach the water" in coupled(tmp_path, 5e-5, 10, keywords)) == told
+
+
+def test_fluctuations_by_depth_know_no_unit_of_time(tmp_path):
+    """The same grains in micrometres and microseconds have the same fluctuations after 200 couplings of 1 ms."""
+    seen = []
+    for units, L, T, density in (("si", 1.0, 1.0, 1.0), ("micro", 1e6, 1e6, 1e-3)):
+        s = Scene(box=(0, 0.02 * L, 0, 0.02 * L, -0.02 * L, 0.15 * L), units=units, extra=[f"pair_style zero {0.01 * L}", "pair_coeff * *", f"neighbor {0.001 * L} bin"])
+        s.spheres(L * np.random.default_rng(3).uniform([0, 0, 0.001], [0.02, 0.02, 0.0199], (50, 3)), np.zeros((50, 3)), 1e-4 * L, density=2500 * density)
+        u = write_columns(tmp_path / "u", 0.02 * np.arange(22))
+        s.do(f"timestep {1e-3 * T}", f"fix h all hydro/vans 1 mesh 21 {1e-3 * L} 0 fluid {1000 * density} {0.001 * density * L * L / T} gravity {0.5 * L / T / T} 0 {-9.8 * L / T / T} "
+             f"couple none profile file {u} fluctuation depth 5 0", "run 200")
+        seen.append(s.atoms("f_h")[:, 3:])
+        s.close()
+    assert np.abs(seen[0]).max() > 1e-3
+    assert np.abs(seen[1] - seen[0]).max() < 1e-9 * np.abs(seen[0]).max()
+
+
+def test_shares_of_a_clump_follow_its_members():
+    """overlap once: a member is replaced by another, or grows; the number of atoms stays. Volume of the union by the formula of two spheres."""
+    def union(a, b, h):
+        lens = np.pi * (a + b - h) ** 2 * (h * h + 2 * h * (a + b) - 3 * (a - b) ** 2) / (12 * h)
+        return 4 / 3 * np.pi * (a ** 3 + b ** 3) - lens
+
+    s = Scene(style="hybrid sphere bond")
+    s.spheres([[0.01, 0.01, 0.015], [0.0113, 0.01, 0.015], [0.004, 0.01, 0.015]], np.zeros((3, 3)), 0.001)
+    s.do("set atom 1*2 mol 1", "fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one stream rest overlap once", "run 1")
+
+    def volume():
+        return (s.column("phi", 41) * 0.001 * 4e-4).sum()
+
+    sphere = 4 / 3 * np.pi * 1e-9
+    assert abs(volume() / (sphere + union(0.001, 0.001, 0.0013)) - 1) < 1e-10
+    s.do("group gone id 2", "delete_atoms group gone compress no", "create_atoms 1 single 0.0116 0.01 0.015 units box", "set atom 4 mol 1 diameter 0.002 density 2500", "run 1")
+    assert abs(volume() / (sphere + union(0.001, 0.001, 0.0016)) - 1) < 1e-10
+    s.do("set atom 4 diameter 0.0024", "run 1")
+    assert abs(volume() / (sphere + union(0.001, 0.0012, 0.0016)) - 1) < 1e-10
+
+
+def test_clump_wider_than_half_the_box():
+    """A chain of nine along x in a box that is only twice its radius longer: every pair of neighbours shares one lens."""
+    a, h, n = 0.001, 0.0012, 9
+    s = Scene(box=(0, 0.012, 0, 0.02, -0.02, 0.15), style="hybrid sphere bond")
+    s.spheres([[0.0011 + h * k, 0.01, 0.015] for k in range(n)], np.zeros((n, 3)), a)
+    s.do("set group all mol 1", "fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one stream rest overlap once", "run 0")
+    lens = np.pi * (4 * a + h) * (2 * a - h) ** 2 / 12
+    volume = (s.column("phi", 41) * 0.001 * 0.012 * 0.02).sum()
+    assert abs(volume / (n * 4 / 3 * np.pi * a ** 3 - (n - 1) * lens) - 1) < 1e-10

@@ -37,6 +37,10 @@ BAD = [
     (dict(solve="1e7 1e-9"), "keyword solve: the step 1e-09 is too short for the period 1e\\+07"),
     (dict(solve="1e7 1e-9", rules="yade"), "keyword solve: the step 1e-09 is too short"),
     (dict(solve="1e300 1e-300"), "keyword solve: the step 1e-300 is too short"),
+    (dict(solve="1 1e-9"), "keyword solve: the step 1e-09 is too short for the period 1: 1e\\+09 steps of"),
+    (dict(class_radii="2 0.001 0.001"), "keyword class_radii: '0.001' twice"),
+    (dict(renewal="0.1"), "keyword renewal: there are no fluctuations"),
+    (dict(couple="fluid", fluctuation="correlated 5 0"), "keyword fluctuation: couple fluid has no grains"),
     (dict(sidewall="0 1"), "keyword sidewall: '0' must be > 0"),
     (dict(radius="-1"), "keyword radius: '-1' must be > 0"),
     (dict(fluctuation="correlated 0 0.1"), "keyword fluctuation: '0' must be >= 1"),
@@ -65,6 +69,7 @@ def test_bad_keyword(changes, message):
 @pytest.mark.parametrize("rows, message", [
     (["1"] * 20, "has 20 values, ncell \\+ 1 = 21 are needed"),
     (["1"] * 22, "has 22 values, ncell \\+ 1 = 21 are needed"),
+    (["0 1"] * 10 + ["1"], "row 1 has 2 values, one a row is needed"),
     (["1"] * 20 + ["nan"], "line 21: 'nan' is not a finite number"),
     (["1"] * 20 + ["fast"], "line 21: 'fast' is not a finite number"),
 ])
@@ -195,3 +200,77 @@ def test_restart_with_another_mesh(tmp_path):
     again = script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):]
     done = run_lmp(tmp_path, again)
     assert done.returncode != 0 and "the restart file has 200 slices, this fix has 210" in done.stdout
+
+
+WORKING = ["lj", "si", "cgs", "micro", "nano"]
+
+
+@pytest.mark.parametrize("units", WORKING + ["real", "metal", "electron"])
+def test_unit_systems(units):
+    """Where force is mass times acceleration the numbers are the same in all systems; elsewhere the fix says where it works."""
+    s = Scene(units=units, extra=["atom_modify sort 0 0"])
+    s.spheres([[0.01, 0.01, 0.0055]], [[0, 0, 0]], 0.001)
+    command = line(couple="none", stream="rest", gravity="0 0 -9.8")
+    if units not in WORKING:
+        with pytest.raises(Exception, match=f"units {units}: use lj, si, cgs, micro or nano"):
+            s.do(command, "run 0")
+        return
+    s.do(command, "fix_modify h profile values " + " ".join("0.3" for _ in range(21)), "run 0")
+    drag = 0.5 * 1000 * np.pi * 1e-6 * (0.44 * 0.3 + 24.4 * 0.001 / 1000 / 0.002) * 0.3
+    assert np.allclose(s.atoms("f")[0], [drag, 0, 9.8 * 1000 * 4 / 3 * np.pi * 1e-9], rtol=1e-12)
+
+
+def test_two_dimensions_are_refused():
+    s = Scene.of("plugin load stokesdynplugin.so\nunits si\natom_style sphere\ndimension 2\nregion b block 0 1 0 1 -0.1 0.1\ncreate_box 1 b")
+    with pytest.raises(Exception, match="dimension 2: the stream needs three dimensions"):
+        s.do(line(couple="none"))
+
+
+@pytest.mark.parametrize("boundary", ["s p f", "p m f"])
+def test_shrink_wrapped_box_needs_an_area(boundary):
+    s = Scene(boundary=boundary)
+    with pytest.raises(Exception, match=f"keyword area: the box is shrink-wrapped along {'x' if boundary[0] == 's' else 'y'}"):
+        s.do(line())
+    s.do(line(area="4e-4"))
+
+
+def restarted(script):
+    return script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):]
+
+
+@pytest.mark.parametrize("other", ["200 0.00031 0", "200 0.0003 0.0001", "file edges"])
+def test_restart_with_another_mesh_of_the_same_number(tmp_path, other):
+    vans = "mesh {} fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
+    write_columns(tmp_path / "edges", 0.06 * np.linspace(0, 1, 201) ** 1.1)
+    done = run_lmp(tmp_path, bed_script(vans.format("200 0.0003 0")) + "run 20\nwrite_restart half\n")
+    assert done.returncode == 0
+    done = run_lmp(tmp_path, restarted(bed_script(vans.format(other))))
+    assert done.returncode != 0 and "the restart file has another mesh" in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("before, after", [("fluctuation correlated 7 0.01", ""), ("", "fluctuation correlated 7 0.01"), ("conserve no", "")])
+def test_restart_with_other_keywords_says_what_the_grains_lose(tmp_path, before, after):
+    vans = "mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61 "
+    done = run_lmp(tmp_path, bed_script(vans + before) + "run 20\nwrite_restart half\n")
+    assert done.returncode == 0
+    done = run_lmp(tmp_path, restarted(bed_script(vans + after)) + "run 20\n")
+    assert done.returncode == 0, done.stdout[-1000:]
+    assert "the restart file was written with other keywords" in done.stdout
+
+
+def test_two_fixes_on_one_group_are_told(tmp_path):
+    vans = "mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
+    second = f"fix other all hydro/vans 20 {vans} couple none\n"
+    done = run_lmp(tmp_path, bed_script(vans) + second + "run 1\n")
+    assert done.returncode == 0, done.stdout[-1000:]
+    assert "64 atoms are in the groups of fix vans and of fix other" in done.stdout
+    apart = f"fix other bed hydro/vans 20 {vans} couple none\n"
+    assert "are in the groups" not in run_lmp(tmp_path, bed_script(vans) + apart + "run 1\n").stdout
+
+
+def test_a_solve_of_many_seconds_is_told(tmp_path):
+    script = "units si\nplugin load stokesdynplugin.so\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\nmass 1 1\n"
+    done = run_lmp(tmp_path, script + line(couple="fluid", solve="1 1e-7") + "\nrun 0\n")
+    assert "10000000 steps of 20 slices in every coupling" not in done.stdout
+    done = run_lmp(tmp_path, script + line(couple="fluid", solve="1 1e-8") + "\nrun 0\n")
+    assert "1e+08 steps of 20 slices in every coupling" in done.stdout and done.returncode == 0

@@ -1,22 +1,28 @@
-/* A one-dimensional, volume-averaged turbulent stream over a granular bed: slice averages of the grains, the force of the
- * stream on
- * a grain, turbulence closures, and the implicit solve of the momentum of the water. No LAMMPS, no MPI, no files: the caller
- * sums the slice averages over ranks.
+/* A one-dimensional, volume-averaged turbulent stream over a granular bed: slice averages of the
+ * grains, the force of the stream on a grain, turbulence closures, and the implicit solve of the
+ * momentum of the water. No LAMMPS, no MPI, no files: the caller sums the slice averages over
+ * ranks.
  *
- * Mesh. N = ncell slices, edges e_0 = 0 < e_1 < ... < e_N (heights above z_ref). The water fills the M = N-1 lower slices; the
- * last slice lies above the surface at H = e_M. Arrays and their places:
- *   U   [N+1]  velocity of the water: U[0] = 0 on the bottom, U[n+1] in the middle of slice n < M, U[N] on the surface
- *   phi, v, drag, b, ...  [N]  one a slice        nut, stress, length  [N]  at the lower edge (node) of each slice
+ * Mesh. N = ncell slices, edges e_0 = 0 < e_1 < ... < e_N (heights above z_ref). The water fills
+ * the M = N-1 lower slices; the last slice lies above the surface at H = e_M. Arrays and their
+ * places:
+ *   U   [N+1]                  velocity of the water: U[0] = 0 on the bottom, U[n+1] in the middle
+ *                              of slice n < M, U[N] on the surface
+ *   phi, v, drag, b, ...  [N]  one a slice
+ *   nut, stress, length   [N]  at the lower edge (node) of each slice
+ *   profile  [SD_VANS_ROWS][N] averages of the grains: phi, vx, vy, vz, drag
+ *   classes  [nclass] profiles one after the other, one a size class; NULL: all are one class
  * A grain whose centre is in slice p sees U[p+1] and phi[p]; nothing is interpolated.
  *
- * Rules. SD_VANS_CONSISTENT is the physics. SD_VANS_YADE repeats Yade 2023.02a with its defects, for those who must repeat
- * a published
- * run; where the two differ the functions below say so.
+ * Rules. SD_VANS_CONSISTENT is the physics. SD_VANS_YADE repeats Yade 2023.02a with its defects,
+ * for those who must repeat a published run; where the two differ the functions below say so.
  *
- * Sources: Jackson 2000 (equations); Revil-Baudard & Chauchat 2013 (GJI 192) and Maurin, Chauchat, Chareyre & Frey 2015
- * (Phys. Fluids
- * 27, 113302) for this model; Li & Sawamoto 1995; Dallavalle 1948 and Richardson & Zaki 1954 (drag); Graf & Altinakar 1998
- * (side walls). */
+ * Units: any in which force is mass times acceleration. Yade's two limits are in SI: the caller
+ * converts them.
+ *
+ * Sources: Jackson 2000 (equations); Revil-Baudard & Chauchat 2013 (GJI 192) and Maurin, Chauchat,
+ * Chareyre & Frey 2015 (Phys. Fluids 27, 113302) for this model; Li & Sawamoto 1995; Dallavalle
+ * 1948 and Richardson & Zaki 1954 (drag); Graf & Altinakar 1998 (side walls). */
 #ifndef SD_VANS_H
 #define SD_VANS_H
 
@@ -30,109 +36,133 @@ extern "C" {
 
 typedef enum { SD_VANS_CONSISTENT, SD_VANS_YADE } sd_vans_rules;
 
-/* ---- mesh ------------------------------------------------------------------------------------------------------------------ */
+/* ---- mesh ------------------------------------------------------------------------------------ */
 
 typedef struct {
-  int ncell;          /* N >= 2 */
-  double z_ref;       /* height of the bottom */
-  double dz;          /* > 0: all slices alike, e_n = n dz; 0: the edges say */
-  const double *edge; /* [N+1] heights above z_ref, also for equal slices */
+  /* N >= 2 */
+  int ncell;
+  /* height of the bottom */
+  double z_ref;
+  /* > 0: all slices alike, e_n = n dz; 0: the edges say */
+  double dz;
+  /* [N+1] heights above z_ref, also for equal slices */
+  const double *edge;
 } sd_vans_mesh;
 
 /* Slice of the height z: -1 below the mesh, N above it. */
 int sd_vans_slice_of(const sd_vans_mesh *mesh, double z);
 
-/* ---- grains ---------------------------------------------------------------------------------------------------------------- */
+static inline double sd_vans_height(const sd_vans_mesh *mesh, int n)
+{
+  return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
+}
 
-/* Volume of a sphere of radius a between the heights lo <= hi above its centre; any lo, hi. Differences of one primitive, so that
- * the slices of any cut sum to 4/3 pi a^3 up to rounding. */
+/* ---- grains ---------------------------------------------------------------------------------- */
+
+typedef struct {
+  int n;
+  /* [n][3], [n][3], [n] */
+  const double *x, *v, *a;
+  /* [n][3] u', added to the velocity of the water; NULL: none */
+  const double *fluctuation;
+  /* [n] share of each sphere's volume that counts (overlaps); NULL: all of it */
+  const double *weight;
+  /* [n] 0 leaves a sphere out; NULL: all take part */
+  const unsigned char *take;
+} sd_vans_grains;
+
+/* Volume of a sphere of radius a between the heights lo <= hi above its centre; any lo, hi.
+ * Differences of one primitive, so that the slices of any cut sum to 4/3 pi a^3 up to rounding. */
 double sd_vans_slice_volume(double a, double lo, double hi);
 
 /* Volume of a sphere in each slice that it reaches.
  *   z       height of its centre (not above z_ref: as LAMMPS has it)
  *   first   out, lowest slice that it reaches, >= 0
  *   V       out, V[k] is the volume in slice first + k
- * Returns how many; 0 if it reaches none; never more than max (a caller gives N). What lies outside the mesh is not in V.
- * Yade's rule mirrors the slices at that of the centre and cuts each only on its far side: for a/dz < 5 the volume is not
- * conserved. */
+ * Returns how many; 0 if it reaches none; never more than max (a caller gives N). What lies outside
+ * the mesh is not in V. Yade's rule mirrors the slices at that of the centre and cuts each only on
+ * its far side: for a/dz < 5 the volume is not conserved. */
 int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
                    double *V, int max);
 
 typedef struct {
-  double rho, eta; /* density and dynamic viscosity of the fluid, > 0 */
-  double exponent; /* of hindrance, n: drag * (1 - phi)^-n; 3.1 */
-  double g[3];     /* gravity */
-  int rest;        /* 0: steady stream, no buoyancy along x; 1: fluid at rest */
-  double lift;     /* C_l; 0: none */
-  const double
-      *convective; /* [N] a force along x, taken off every grain of the slice; NULL: none */
+  /* density and dynamic viscosity of the fluid, > 0 */
+  double rho, eta;
+  /* of hindrance, n: drag * (1 - phi)^-n; 3.1 */
+  double exponent;
+  /* gravity */
+  double g[3];
+  /* 0: steady stream, no buoyancy along x; 1: fluid at rest */
+  int rest;
+  /* C_l; 0: none */
+  double lift;
+  /* [N] a force along x, taken off every grain of the slice; NULL: none */
+  const double *convective;
   sd_vans_rules rules;
 } sd_vans_force_law;
 
 /* Hindrance of each slice, (1 - phi_n)^-exponent: once per profile instead of once per grain. */
 void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance);
 
-/* Drag on one sphere: 1/2 rho pi a^2 (0.44 |w| + 24.4 eta/(rho 2a)) hindrance * w, w [3] velocity of the water past the
- * sphere. */
+/* Drag on one sphere: 1/2 rho pi a^2 (0.44 |w| + 24.4 eta/(rho 2a)) hindrance * w, w [3] velocity
+ * of the water past the sphere. */
 void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
                   double F[3]);
 
-/* Force of the stream on n spheres.
- *   x, v [n][3]; a [n]; fluctuation [n][3] or NULL: u', added to the velocity of the water; take [n] or NULL: 0 leaves a
- *   sphere out (F = 0)
- *   F [n][3] out: drag, buoyancy, lift, convective;   drag_x [n] out or NULL: the part that the water takes back, drag along x
- *   Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom) values: above U[N] and
- *   the phi of the
- *   last slice, below U[0] = 0 and the phi of the first. Yade's rule: no force at all. */
+/* Force of the stream on the grains that take part, 0 on the others.
+ *   F       [n][3] out: drag, buoyancy, lift, convective
+ *   drag_x  [n] out or NULL: the part that the water takes back, drag along x
+ * Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom)
+ * values: above U[N] and the phi of the last slice, below U[0] = 0 and the phi of the first. Yade's
+ * rule: no force at all. */
 int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                   const double *hindrance, int n, const double *x, const double *v,
-                   const double *a, const double *fluctuation, const unsigned char *take, double *F,
+                   const double *hindrance, const sd_vans_grains *grains, double *F,
                    double *drag_x);
 
-/* Sums over grains for the slice averages: sums [N][SD_VANS_NSUM] volume, volume * (vx, vy, vz, drag along x). */
-enum { SD_VANS_V, SD_VANS_VX, SD_VANS_VY, SD_VANS_VZ, SD_VANS_DRAG, SD_VANS_NSUM };
+/* Rows of a profile; in sums over grains the first is the volume, the others are volume times (vx,
+ * vy, vz, drag along x). */
+enum { SD_VANS_PHI, SD_VANS_VX, SD_VANS_VY, SD_VANS_VZ, SD_VANS_DRAG, SD_VANS_ROWS };
 
 typedef struct {
-  int point;                  /* 1: all the volume of a grain in the slice of its centre */
-  int nclass;                 /* size classes; 0: none */
-  const double *class_radius; /* [nclass]; a grain belongs to the class of exactly its radius */
+  /* 1: all the volume of a grain in the slice of its centre */
+  int point;
+  /* size classes; 0: none */
+  int nclass;
+  /* [nclass]; a grain belongs to the class of exactly its radius */
+  const double *class_radius;
 } sd_vans_averaging;
 
-/* Adds n spheres to the sums; arrays as for sd_vans_forces. weight [n] or NULL: share of each sphere's volume that counts
- * (overlaps).
- * The drag is that of the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre outside
- * the mesh.
- *   sums  [N][NSUM], class_sums [nclass][N][NSUM] or NULL;  V [N] scratch
- * Returns -1, or the index of the first sphere that belongs to no class.
+/* Adds grains to the sums [1 + nclass][N][ROWS]: of all, then of each class. The drag is that of
+ * the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre
+ * outside the mesh. V [N] scratch. Returns -1, or the index of the first sphere that belongs to no
+ * class.
  * Yade's rule: mirrored slices; the velocities of a class all in the slice of the centre. */
 int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
-                    const sd_vans_averaging *how, const double *U, const double *hindrance, int n,
-                    const double *x, const double *v, const double *a, const double *fluctuation,
-                    const double *weight, const unsigned char *take, double *sums,
-                    double *class_sums, double *V);
+                    const sd_vans_averaging *how, const double *U, const double *hindrance,
+                    const sd_vans_grains *grains, double *sums, double *V);
 
-/* The profiles from the sums: phi = V / (area * height of the slice), the others divided by V, 0 where there is no grain.
- *   profile [5][N]: phi, vx, vy, vz, drag per grain */
+/* A profile from its sums [N][ROWS]: phi = V / (area * height of the slice), the others divided by
+ * V, 0 where there is no grain. */
 void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums, double *profile);
 
-/* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value. What belongs to the
- * part of a sphere outside
- * the mesh goes to the lowest or the highest slice, so that the sum over slices grows by the sum over spheres. V [N] scratch. */
-void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
-                    const unsigned char *take, const double *value, double *out, double *V);
+/* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value.
+ * What belongs to the part of a sphere outside the mesh goes to the lowest or the highest slice, so
+ * that the sum over slices grows by the sum over spheres. V [N] scratch. */
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
+                    const double *value, double *out, double *V);
 
-/* The integral of a density per volume of grains over each sphere: out [n] = sum over slices of V_k density_k, times
- * weight (or 1). */
-void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
-                    const double *weight, const unsigned char *take, const double *density,
-                    double *out, double *V);
+/* The integral of a density per volume of grains over each sphere: out [n] = sum over slices of V_k
+ * density_k, times weight (or 1). V [N] scratch. */
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
+                    const double *density, double *out, double *V);
 
-/* Share of sphere i's volume that counts when n spheres that overlap are one body: its part of the union, cut off from the others
- * by their radical planes, over its volume. The sum over the spheres is the volume of the union: exact while no three spheres
- * overlap in one place, to 1e-6 of the sphere otherwise. x [n][3], a [n]. */
+/* Share of sphere i's volume that counts when n spheres that overlap are one body: its part of the
+ * union, cut off from the others by their radical planes, over its volume. The sum over the spheres
+ * is the volume of the union: exact while no three spheres overlap in one place, to 1e-6 of the
+ * sphere otherwise. x [n][3], a [n]. */
 double sd_vans_union_share(int n, const double *x, const double *a, int i);
 
-/* ---- closures -------------------------------------------------------------------------------------------------------------- */
+/* ---- closures -------------------------------------------------------------------------------- */
 
 typedef enum {
   SD_VANS_LAMINAR,
@@ -148,121 +178,204 @@ typedef enum { SD_VANS_CONSTANT, SD_VANS_EINSTEIN, SD_VANS_POWER } sd_vans_visco
 
 typedef struct {
   double rho, eta;
-  double gx, dpdx; /* gravity along x, pressure gradient */
+  /* gravity along x, pressure gradient */
+  double gx, dpdx;
   sd_vans_turbulence turbulence;
   double kappa, phi_max, phi_bed;
-  int sublayer; /* 1: no eddy viscosity where z u_star / nu < 11.3 */
+  /* 1: no eddy viscosity where z u_star / nu < 11.3 */
+  int sublayer;
   sd_vans_viscosity viscosity;
-  int driven; /* 0: free surface; 1: the surface moves at u_top */
+  /* 0: free surface; 1: the surface moves at u_top */
+  int driven;
   double u_top;
-  double width, wall_coef; /* side walls: distance and a factor on the friction; width 0: none */
-  double radius;           /* of the grains, in the exchange term */
-  int nclass; /* size classes of the exchange term and of the pore length; 0: one class of that radius */
+  /* side walls: distance and a factor on the friction; width 0: none */
+  double width, wall_coef;
+  /* of the grains, in the exchange term */
+  double radius;
+  /* size classes of the exchange term and of the pore length; 0: one class of that radius */
+  int nclass;
   const double *class_radius;
+  /* Yade's least slip in the exchange term, 1e-5 m/s; for rules yade only */
+  double least_slip;
   sd_vans_rules rules;
 } sd_vans_fluid;
 
 /* Mixing length at every node, [N].
- *   U [N+1] (Rousseau only); phi [N]; class_phi [nclass][N] or NULL; phi_bed_profile [N]: the (time-averaged) phi that
- *   marks the bed for Ni & Capart
- *   scratch [4 N]
- * kz         kappa z
- * parabolic  kappa z sqrt(1 - z/H)
- * li_sawamoto  l_j = l_(j-1) + kappa dz (phi_max - p)/phi_max, p = phi of slice j-1 but phi_max everywhere below the
- * highest slice that reaches it
- * pore       kappa times the distance down to where it outgrows half the pore length
- * rousseau   van Driest with the height made of pores, plus half the pore length of the packed bed
- * ni_capart  max(min(pore/2, 0.2 D), kappa (z - z_bed))
- * pipe       min(li_sawamoto, kappa (H - z))
+ *   U [N+1] (Rousseau only); phi [N]; phi_bed_profile [N]: the (time-averaged) phi that marks the
+ *   bed for Ni & Capart; scratch [2 N]
+ * kz           kappa z
+ * parabolic    kappa z sqrt(1 - z/H)
+ * li_sawamoto  l_j = l_(j-1) + kappa dz (phi_max - p)/phi_max, p = phi of slice j-1 but phi_max
+ *              everywhere below the highest slice that reaches it
+ * pore         kappa times the distance down to where it outgrows half the pore length
+ * rousseau     van Driest with the height made of pores, plus half the pore length of the packed
+ *              bed
+ * ni_capart    max(min(pore/2, 0.2 D), kappa (z - z_bed))
+ * pipe         min(li_sawamoto, kappa (H - z))
  * Yade's rule: the slice that exceeds phi_max takes some length away (li_sawamoto, pipe). */
 void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                           const double *phi, const double *class_phi,
-                           const double *phi_bed_profile, double *length, double *scratch);
+                           const double *phi, const double *classes, const double *phi_bed_profile,
+                           double *length, double *scratch);
 
-/* Height of the top of the bed: lower edge of the highest slice with phi above phi_bed; 0 if there is none. */
+/* Height of the top of the bed: lower edge of the highest slice with phi above phi_bed; 0 if there
+ * is none. */
 double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed);
 
 /* Effective kinematic viscosity at a node of solid fraction phi. */
 double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom);
 
-/* Friction factor f of a smooth side wall, 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32 (Graf & Altinakar), tau = rho f/8 U^2; Re > 0.
- * By substitution from 0.32^-2 until f changes by less than 1 %, which leaves it within 0.5 % of the law for Re > 100; at
- * most 100 times, then 0.
- * Yade's rule: a natural logarithm in its place. rounds: out, how often; may be NULL. */
-double sd_vans_wall_friction(sd_vans_rules rules, double Re, int *rounds);
+/* Friction factor f of a smooth side wall, 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32 (Graf &
+ * Altinakar), tau = rho f/8 U^2; Re > 0. By Newton's method to rounding; it has one solution for
+ * every Re, meant for turbulent streams.
+ *   root  in: sqrt(f) of a Reynolds number near by, or 0; out: sqrt(f)
+ * Yade's rule: a natural logarithm, by substitution from 0.32^-2 until f changes by less than 1 %,
+ * at most 100 times, then 0: a function with jumps; root is not used. */
+double sd_vans_wall_friction(sd_vans_rules rules, double Re, double *root);
 
-/* ---- exchange and solve ---------------------------------------------------------------------------------------------------- */
+/* ---- exchange and solve ---------------------------------------------------------------------- */
 
-/* Exchange coefficient of every slice, divided by rho (1/s): n<f> / slip / rho, in [0, 1/(10 dt)].
- *   slip = U - v kept away from 0 by 1e-5; n<f> = phi / (4/3 pi a^3) drag, or the sum of that over classes
- *   class_phi, class_drag [nclass][N] or NULL;  b [N] out
- * Yade's rule: |slip|, and nothing in the lowest slice. */
+/* Exchange coefficient of every slice, divided by rho (1/s): b = n<f> / (U - v) / rho, in [0, 1/(10
+ * dt)].
+ *   n<f> = phi / (4/3 pi a^3) drag, or the sum of that over classes;  b [N] out
+ *   cut  out: [0] force per area that the limit keeps from the water, [1] all drag
+ * Yade's rule: the size of the slip, at least least_slip, and nothing in the lowest slice. */
 void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
-                      const double *U, const double *phi, const double *vx, const double *drag,
-                      const double *class_phi, const double *class_drag, double *b);
+                      const double *U, const double *profile, const double *classes, double *b,
+                      double cut[2]);
 
-/* Time steps in a solve of length T with steps of about dt. Consistent: the least number of equal steps no longer than dt
- * (to 1e-9), and dt is
- * made to fit. Yade's rule: dt stays and is added up until the sum reaches T, which rounding often makes one step too many. */
+/* The largest rate at which the law of drag brings the water of a slice to the speed of its grains,
+ * all of radius a, and the slice. 1/rate is the time that couplings must resolve. */
+double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_force_law *law, double a,
+                         const double *U, const double *hindrance, const double *profile,
+                         int *slice);
+
+/* Time steps in a solve of length T with steps of about dt. Consistent: the least number of equal
+ * steps no longer than dt (to 1e-9), and dt is made to fit. Yade's rule: dt stays and is added up
+ * until the sum reaches T, which rounding often makes one step too many. */
 int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt);
 
-/* What the water received from outside during a solve: momentum per area of the bed, along x. */
+/* What stays during a solve; [N] each. */
 typedef struct {
-  double driving; /* gravity and pressure gradient */
-  double bottom, walls, surface;
-} sd_vans_impulse;
+  const double *phi, *vx, *b, *length;
+  /* acceleration per volume of mixture; NULL: none */
+  const double *source;
+} sd_vans_column;
+
+/* The stream: U [N+1]; nut, stress [N] = rho e nut dU/dz. */
+typedef struct {
+  double *U, *nut, *stress;
+} sd_vans_flow;
+
+/* What passed during a solve: momentum along x per area of the bed. */
+typedef struct {
+  /* [N] what each slice of water gave to its grains, by b (U - v) and by the viscous stress on the
+   * volume of the grains */
+  double *moved;
+  /* [N] the latter alone */
+  double *shear;
+  /* what the water received from outside; driving: gravity and pressure gradient */
+  double driving, bottom, walls, surface;
+} sd_vans_books;
 
 typedef struct sd_vans_solver sd_vans_solver;
-sd_vans_solver *sd_vans_solver_create(int ncell); /* NULL: out of memory */
+/* The mesh must outlive the solver. NULL: out of memory. */
+sd_vans_solver *sd_vans_solver_create(const sd_vans_mesh *mesh);
 void sd_vans_solver_free(sd_vans_solver *solver);
 
-/* Solve
- *   e dU/dt = e d/dz nu d/dz (e U + phi v) + d/dz e nut dU/dz - b (U - v) + e (g - dpdx/rho) - wall + source,   e = 1 - phi
- * by nsteps implicit steps of dt (nut and wall friction from the velocity before each step). phi, v, b, length stay.
- *   U [N+1] in and out;  nut, stress [N] out: of the last step, stress = rho e nut dU/dz with the new U
- *   source [N] or NULL: acceleration per volume of mixture
- *   If moved is not NULL, in momentum per area of the bed and over the whole solve:
- *     moved [N] out: what each slice of water gave to its grains, by b (U - v) and by the viscous stress on the volume of
- *     the grains,
- *     shear [N] out: the latter alone,  impulse out: what came from outside. Water gains driving + bottom + walls +
- *     surface - sum of moved
- *     + source, to rounding.
+/* Solve, e = 1 - phi,
+ *   e dU/dt = e d/dz nu d/dz (e U + phi v) + d/dz e nut dU/dz - b (U - v) + e (g - dpdx/rho) - wall
+ *   + source
+ * by nsteps implicit steps of dt (nut and wall friction from the velocity before each step).
+ *   flow   U in and out; nut of the last step, stress with the new U
+ *   books  out or NULL. Water gains driving + bottom + walls + surface - sum of moved + source, to
+ *          rounding.
  * SD_OK or SD_ENOTFINITE.
- * wall = e 2/width coef f/8 (1/2 |U| U' + 1/2 |U| U), Re = |U| width/nu. Yade's rule: (1/2 U^2 U' + 1/2 U^2), and |g| for g. */
-sd_status sd_vans_solve(sd_vans_solver *solver, const sd_vans_mesh *mesh,
-                        const sd_vans_fluid *fluid, int64_t nsteps, double dt, const double *phi,
-                        const double *vx, const double *b, const double *length,
-                        const double *source, double *U, double *nut, double *stress, double *moved,
-                        double *shear, sd_vans_impulse *impulse);
+ * wall = e 2/width coef f/8 (1/2 |U| U' + 1/2 |U| U), Re = |U| width/nu.
+ * Yade's rule: (1/2 U^2 U' + 1/2 U^2), and |g| for g. */
+sd_status sd_vans_solve(sd_vans_solver *solver, const sd_vans_fluid *fluid,
+                        const sd_vans_column *column, int64_t nsteps, double dt,
+                        const sd_vans_flow *flow, sd_vans_books *books);
 
 /* Eddy viscosity and stress of a velocity profile, without a step. */
 void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
-                    const double *length, const double *U, double *nut, double *stress);
+                    const double *length, const sd_vans_flow *flow);
 
 /* Momentum of the water per area of the bed, rho sum (1 - phi) U dz. */
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U);
 
-/* The grains have moved: phi_old became phi_new. They displace water, which keeps its order over the height and takes its
- * momentum along.
- * Changes U [N+1] (not U[0], U[N]) so that the momentum is conserved but for what passes the surface; returns that, per
- * area, gained by the water.
- * scratch [2 (N+1)] */
+/* The grains have moved: phi_old became phi_new. They displace water, which keeps its order over
+ * the height and takes its momentum along. Changes U [N+1] (not U[0], U[N]) so that the momentum is
+ * conserved but for what passes the surface; returns that, per area, gained by the water. scratch
+ * [2 (N+1)] */
 double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
                         const double *phi_new, double *U, double *scratch);
 
-/* ---- velocity fluctuations
- * --------------------------------------------------------------------------------------------------- */
+/* ---- settlement between water and grains ----------------------------------------------------- */
 
-/* Three independent standard normal numbers that depend on nothing but the three keys: the same on any number of ranks. */
+/* A solve takes `moved` from the water for the grains. Its viscous part is handed to them as a
+ * force until the next solve. Its drag is what the exchange coefficient foresees. When the next
+ * solve comes each grain has felt its true drag, and the difference goes back to the water as a
+ * source in the slices of that grain. So the water gives no more and no less than the grains get,
+ * and the drag stays implicit. Grain by grain and not slice by slice: a grain sees the water at its
+ * centre only, and a thin slice could not bear its part of that drag if it had no momentum left.
+ *
+ * The account of a grain, along x. */
+typedef struct {
+  /* drag and viscous force of the last step */
+  double force;
+  /* impulse that it got by them since the last coupling */
+  double impulse;
+  /* viscous force now, and before the last coupling */
+  double shear, past;
+  /* impulse of drag that the last solve took from the water for it */
+  double foreseen;
+} sd_vans_account;
+
+/* A step of velocity Verlet gives half of its force to the time before it, half to the time after.
+ * */
+static inline void sd_vans_account_step(sd_vans_account *account, double force, double dt)
+{
+  account->impulse += 0.5 * dt * (account->force + force);
+}
+
+/* What was foreseen for the grain but not taken by it in the time T since the last coupling, steps
+ * of dt: impulse less that of the viscous force; the force of the coupling's own step acted for
+ * another half step. ratio: time of the water over that of the grains. */
+static inline double sd_vans_account_rest(const sd_vans_account *account, double T, double dt,
+                                          double ratio)
+{
+  const double viscous = (T - 0.5 * dt) * account->shear + 0.5 * dt * account->past;
+  return account->foreseen - ratio * (account->impulse - viscous);
+}
+
+/* A tenth of what is outstanding goes back at a time: the differences of single couplings are
+ * mostly noise, which would shake the water of a dense bed.
+ *   back         [N] momentum that the grains of each slice have left since the last solve; what is
+ *                above the surface goes to the slice below it
+ *   outstanding  [N] in and out, momentum;   source [N] out, for a solve over the time T
+ * Returns the momentum that goes back in this solve. */
+double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, const double *back,
+                         double *outstanding, double *source);
+
+/* What the solve took from the water, per volume of grains: shear [N] as a force, foreseen [N] as
+ * an impulse. */
+void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
+                       const sd_vans_books *books, double *shear, double *foreseen);
+
+/* ---- velocity fluctuations ------------------------------------------------------------------- */
+
+/* Three independent standard normal numbers that depend on nothing but the three keys: the same on
+ * any number of ranks. */
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
 
 /* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):
- * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2;  uncorrelated: (c, b, a) u_star. */
+ * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2;  uncorrelated: (c, b, a) u_star.
+ *                                                                 */
 void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3]);
 
-/* Life of an eddy at the height z above the bed: min(0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, 10 s); where nothing
- * moves, 10 dt. */
-double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double dt);
+/* Life of an eddy at the height z above the bed: 0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, at most
+ * longest; where nothing moves, 10 dt. */
+double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double longest, double dt);
 
 #ifdef __cplusplus
 }

@@ -1,37 +1,31 @@
+#include "sd_constants.h"
 #include "sd_vans.h"
 
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
-
-static double height_of(const sd_vans_mesh *mesh, int n)
-{
-  return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
-}
-
-/* Volume and surface of all grains in slice n over the volume of the slice, but for a factor common to both: phi_c / V_c
- * each grain. */
+/* Volume and surface of all grains in slice n over the volume of the slice, but for a factor common
+ * to both: phi_c / V_c each grain. */
 static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                               const double *phi, const double *class_phi, int n, double *VA,
+                               const double *phi, const double *classes, int n, double *VA,
                                double *SA)
 {
-  const int classes = class_phi ? fluid->nclass : 0;
+  const long profile = (long) SD_VANS_ROWS * mesh->ncell;
   *VA = *SA = 0.0;
-  for (int c = 0; c < (classes ? classes : 1); c++) {
+  for (int c = 0; c < (classes ? fluid->nclass : 1); c++) {
     const double a = classes ? fluid->class_radius[c] : fluid->radius,
-                 share = classes ? class_phi[(long) c * mesh->ncell + n] : phi[n];
-    *VA += share * 4.0 / 3.0 * PI * a * a * a;
-    *SA += share * 4.0 * PI * a * a;
+                 share = classes ? classes[c * profile + n] : phi[n];
+    *VA += share * 4.0 / 3.0 * SD_PI * a * a * a;
+    *SA += share * 4.0 * SD_PI * a * a;
   }
 }
 
 /* Pore length of every slice and, for D not NULL, the mean diameter 6 VA/SA. */
 static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
-                        const double *class_phi, double *pore, double *D)
+                        const double *classes, double *pore, double *D)
 {
   for (int n = 0; n < mesh->ncell; n++) {
     double VA, SA;
-    volume_and_surface(mesh, fluid, phi, class_phi, n, &VA, &SA);
+    volume_and_surface(mesh, fluid, phi, classes, n, &VA, &SA);
     pore[n] = (1.0 - phi[n]) / fmax(phi[n], 1e-3);
     if (SA > 0.0) pore[n] *= VA / SA;
     if (D) D[n] = SA > 0.0 ? 6.0 * VA / SA : 0.0;
@@ -48,7 +42,7 @@ static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
     double p = j - 1 < packed ? fluid->phi_max : phi[j - 1];
     if (fluid->rules != SD_VANS_YADE) p = fmin(p, fluid->phi_max);
     length[j] = length[j - 1] +
-        fluid->kappa * height_of(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
+        fluid->kappa * sd_vans_height(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
   }
 }
 
@@ -66,22 +60,22 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
   double V = 0.0, S = 0.0;
   for (int c = 0; c < (fluid->nclass ? fluid->nclass : 1); c++) {
     const double a = fluid->nclass ? fluid->class_radius[c] : fluid->radius;
-    V += 4.0 / 3.0 * PI * a * a * a;
-    S += 4.0 * PI * a * a;
+    V += 4.0 / 3.0 * SD_PI * a * a * a;
+    S += 4.0 * SD_PI * a * a;
   }
   const double pore = (1.0 - fluid->phi_max) / fluid->phi_max * V / S;
   double zv = 0.0;
   length[0] = 0.0;
   for (int j = 1; j < mesh->ncell; j++) {
-    zv += height_of(mesh, j - 1) *
+    zv += sd_vans_height(mesh, j - 1) *
         sqrt((fluid->phi_max - fmin(phi[j - 1], fluid->phi_max)) / fluid->phi_max);
     length[j] = fluid->kappa * zv * (1.0 - exp(-sqrt(fabs(zv * U[j]) / nu) / 26.0)) + 0.5 * pore;
   }
 }
 
 void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                           const double *phi, const double *class_phi,
-                           const double *phi_bed_profile, double *length, double *scratch)
+                           const double *phi, const double *classes, const double *phi_bed_profile,
+                           double *length, double *scratch)
 {
   const int N = mesh->ncell;
   const double *z = mesh->edge, H = z[N - 1], kappa = fluid->kappa;
@@ -105,7 +99,7 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
       for (int j = 0; j < N; j++) length[j] = fmin(length[j], kappa * (H - z[j]));
       break;
     case SD_VANS_PORE:
-      pore_length(mesh, fluid, phi, class_phi, pore, 0);
+      pore_length(mesh, fluid, phi, classes, pore, 0);
       for (int j = 0; j < N; j++) {
         double limit = 0.5 * pore[j], value = 0.0;
         for (int m = j - 1; m > 0 && limit > value; m--) {
@@ -119,7 +113,7 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
       rousseau(mesh, fluid, U, phi, length);
       break;
     case SD_VANS_NI_CAPART: {
-      pore_length(mesh, fluid, phi, class_phi, pore, D);
+      pore_length(mesh, fluid, phi, classes, pore, D);
       const double bed = sd_vans_bed(mesh, phi_bed_profile, fluid->phi_bed);
       for (int j = 0; j < N; j++)
         length[j] = fmax(fmin(0.5 * pore[j], 0.2 * D[j]), kappa * (z[j] - bed));

@@ -1,38 +1,66 @@
+#include "sd_constants.h"
 #include "sd_vans.h"
-#include "sd_vans_wall.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
-static double height_of(const sd_vans_mesh *mesh, int n)
+static double sphere(double a)
 {
-  return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
+  return 4.0 / 3.0 * SD_PI * a * a * a;
+}
+
+/* n<f> of slice n: force per volume of mixture, phi / V of a grain times the drag on a grain. */
+static double drag_density(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                           const double *profile, const double *classes, int n)
+{
+  const long N = mesh->ncell;
+  if (!classes) return profile[n] / sphere(fluid->radius) * profile[SD_VANS_DRAG * N + n];
+  double sum = 0.0;
+  for (int c = 0; c < fluid->nclass; c++) {
+    const double *of_class = classes + c * SD_VANS_ROWS * N;
+    sum += of_class[n] / sphere(fluid->class_radius[c]) * of_class[SD_VANS_DRAG * N + n];
+  }
+  return sum;
 }
 
 void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
-                      const double *U, const double *phi, const double *vx, const double *drag,
-                      const double *class_phi, const double *class_drag, double *b)
+                      const double *U, const double *profile, const double *classes, double *b,
+                      double cut[2])
 {
   const int N = mesh->ncell, yade = fluid->rules == SD_VANS_YADE;
-  const double cap = 0.1 / dt;
+  const double *vx = profile + (long) SD_VANS_VX * N, cap = 0.1 / dt;
+  cut[0] = cut[1] = 0.0;
   for (int n = 0; n < N; n++) {
-    double density = 0.0; /* n<f>, force per volume of mixture */
-    if (class_phi)
-      for (int c = 0; c < fluid->nclass; c++) {
-        const double a = fluid->class_radius[c];
-        density += class_phi[(long) c * N + n] / (4.0 / 3.0 * PI * a * a * a) *
-            class_drag[(long) c * N + n];
-      }
-    else
-      density = phi[n] / (4.0 / 3.0 * PI * fluid->radius * fluid->radius * fluid->radius) * drag[n];
-    const double slip = U[n + 1] - vx[n], size = fmax(fabs(slip), 1e-5);
-    const double value = density / (yade ? size : copysign(size, slip)) / fluid->rho;
+    const double density = drag_density(mesh, fluid, profile, classes, n), slip = U[n + 1] - vx[n];
+    const double value = density / (yade ? fmax(fabs(slip), fluid->least_slip) : slip) / fluid->rho;
     b[n] = !(value > 0.0) ? 0.0 : value > cap ? cap : value;
+    if (n == N - 1 || !isfinite(density)) continue;
+    cut[1] += fabs(density) * sd_vans_height(mesh, n);
+    if (b[n] > 0.0)
+      cut[0] += (fabs(density) - fluid->rho * b[n] * fabs(slip)) * sd_vans_height(mesh, n);
   }
   if (yade) b[0] = 0.0;
+}
+
+/* n f/w over rho: the drag on one grain of slip w is f = factor w, there are phi/V grains in a
+ * volume. */
+double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_force_law *law, double a,
+                         const double *U, const double *hindrance, const double *profile,
+                         int *slice)
+{
+  double largest = 0.0;
+  for (int n = 0; n < mesh->ncell - 1; n++) {
+    const double w[3] = {U[n + 1] - profile[(long) SD_VANS_VX * mesh->ncell + n], 0.0, 0.0};
+    const double factor =
+        0.5 * SD_PI * a * (0.44 * law->rho * a * fabs(w[0]) + 12.2 * law->eta) * hindrance[n];
+    const double rate = profile[n] / sphere(a) * factor / law->rho;
+    if (rate > largest) {
+      largest = rate;
+      *slice = n;
+    }
+  }
+  return largest;
 }
 
 int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
@@ -48,38 +76,49 @@ int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
   return n;
 }
 
-/* ---- momentum -------------------------------------------------------------------------------------------------------------- */
+/* ---- momentum -------------------------------------------------------------------------------- */
 
-/* Per node j: A_j viscous conductance nu/h, T_j = eN nut/h. Per slice j the row
- *   -(cl + T_j) x_(j-1) + (cd + T_j + T_(j+1)) x_j - (cu + T_(j+1)) x_(j+1) = ce U_j + cr,   x_j = U'_(j+1)      (times dz)  */
+/* Per node j: A_j viscous conductance nu/h, T_j = eN nut/h. Per slice j the row (times dz), x_j =
+ * U'_(j+1),
+ *   -(cl + T_j) x_(j-1) + (cd + T_j + T_(j+1)) x_j - (cu + T_(j+1)) x_(j+1) = ce U_j + cr
+ * with, e = 1 - phi and J_j = phi_j v_j - phi_(j-1) v_(j-1),
+ *   cl = e_j A_j e_(j-1)    cu = e_j A_(j+1) e_(j+1)    ce = e_j dz/dt    cd = ce + e_j^2 (A_j +
+ *                           A_(j+1)) + dz b_j
+ *   cr = e_j (A_(j+1) J_(j+1) - A_j J_j) + dz (b_j v_j + e_j drive + source_j) */
 struct sd_vans_solver {
-  int ncell;
-  double *cl, *cu, *cd, *ce, *cr; /* constant in a solve */
-  double *mix, *gap;              /* node: l^2/h, eN/h */
-  double *nut, *T, *wall, *c, *g; /* of a step */
-  double *wall_scale, *wall_cd,
-      *wall_cr; /* e dz/width coef/8; cd and cr with the side walls of the step */
-  double *sum;  /* over steps: U' */
+  const sd_vans_mesh *mesh;
+  /* constant in a solve */
+  double *cl, *cu, *cd, *ce, *cr;
+  double drive, cu_top, cr_top;
+  /* node: l^2/h, eN/h */
+  double *mix, *gap;
+  /* of a step */
+  double *nut, *T, *c, *g;
+  /* side walls, if any: e dz/width coef/8, friction of the step, sqrt(f), cd and cr with them */
+  int walls;
+  double Re_factor;
+  double *wall_scale, *wall, *wall_root, *wall_cd, *wall_cr;
+  /* over steps: U', and the fluxes through the turbulent bottom and surface and the walls */
+  double *sum;
+  double T_bottom, T_surface, wall_sum;
   double *memory;
-  sd_vans_wall_segment *table[2]; /* of either rules, made when first needed */
 };
 
-sd_vans_solver *sd_vans_solver_create(int ncell)
+sd_vans_solver *sd_vans_solver_create(const sd_vans_mesh *mesh)
 {
   sd_vans_solver *s = malloc(sizeof *s);
-  const size_t n = (size_t) ncell + 1;
-  double *m = calloc(16 * n, sizeof(double));
+  const size_t n = (size_t) mesh->ncell + 1;
+  double *m = calloc(17 * n, sizeof(double));
   if (!s || !m) {
     free(s);
     free(m);
     return 0;
   }
-  s->ncell = ncell;
+  s->mesh = mesh;
   s->memory = m;
-  s->table[0] = s->table[1] = 0;
-  double **arrays[] = {&s->cl,         &s->cu,      &s->cd,      &s->ce,   &s->cr, &s->mix,
-                       &s->gap,        &s->nut,     &s->T,       &s->wall, &s->c,  &s->g,
-                       &s->wall_scale, &s->wall_cd, &s->wall_cr, &s->sum};
+  double **arrays[] = {&s->cl,   &s->cu,      &s->cd,        &s->ce,      &s->cr,  &s->mix,
+                       &s->gap,  &s->nut,     &s->T,         &s->c,       &s->g,   &s->wall_scale,
+                       &s->wall, &s->wall_cd, &s->wall_root, &s->wall_cr, &s->sum};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -88,8 +127,6 @@ void sd_vans_solver_free(sd_vans_solver *solver)
 {
   if (!solver) return;
   free(solver->memory);
-  free(solver->table[0]);
-  free(solver->table[1]);
   free(solver);
 }
 
@@ -97,15 +134,15 @@ void sd_vans_solver_free(sd_vans_solver *solver)
 static double gap_of(const sd_vans_mesh *mesh, int j)
 {
   const int M = mesh->ncell - 1;
-  if (j == 0) return 0.5 * height_of(mesh, 0);
-  if (j == M) return 0.5 * height_of(mesh, M - 1);
-  return 0.5 * (height_of(mesh, j - 1) + height_of(mesh, j));
+  if (j == 0) return 0.5 * sd_vans_height(mesh, 0);
+  if (j == M) return 0.5 * sd_vans_height(mesh, M - 1);
+  return 0.5 * (sd_vans_height(mesh, j - 1) + sd_vans_height(mesh, j));
 }
 
 /* The value at node j of something known in the slices, linear between their middles. */
 static double at_node(const sd_vans_mesh *mesh, const double *value, int j)
 {
-  const double below = height_of(mesh, j - 1), above = height_of(mesh, j);
+  const double below = sd_vans_height(mesh, j - 1), above = sd_vans_height(mesh, j);
   return (value[j - 1] * above + value[j] * below) / (above + below);
 }
 
@@ -135,17 +172,8 @@ static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
   return length[j] * length[j] / gap_of(mesh, j);
 }
 
-/* Viscous flux through node j without its conductance: e_j x_j - e_(j-1) x_(j-1) + J_j, x from U (or a sum of U over steps). */
-static double viscous_jump(int M, const double *phi, const double *vx, const double *U, int driven,
-                           double u_top, double steps, int j)
-{
-  const double below = j == 0 ? 0.0 : (1.0 - phi[j - 1]) * U[j - 1];
-  const double x = j < M ? U[j] : driven ? u_top * steps : U[M - 1];
-  const double J = j == 0 ? 0.0 : phi[j] * vx[j] - phi[j - 1] * vx[j - 1];
-  return (1.0 - phi[j]) * x - below + J * steps;
-}
-
-/* Rows from both ends to the middle, then back: two independent chains of divisions run at once. U[1..M] out. */
+/* Rows from both ends to the middle, then back: two independent chains of divisions run at once.
+ * U[1..M] out. */
 static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double *cr, double *U)
 {
   const double *T = s->T, *cl = s->cl, *cu = s->cu, *ce = s->ce;
@@ -181,15 +209,14 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
   for (; t < M; t++) x[t] = up = g[t] + c[t] * up;
 }
 
-/* Side walls: half of the friction on U', half on U. Inlined for either rules. */
-static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segment *table,
-                             sd_vans_rules rules, double Re_factor, const double *U)
+/* Side walls: half of the friction on U', half on U. */
+static void wall_rows(sd_vans_solver *s, int M, sd_vans_rules rules, const double *U)
 {
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
   double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
   for (int j = 0; j < M; j++) {
     const double u = U[j + 1], speed = fabs(u),
-                 f = sd_vans_wall_lookup(table, rules, speed * Re_factor);
+                 f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->wall_root[j]);
     const double K = scale[j] * f * (rules == SD_VANS_YADE ? speed * speed : speed);
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
@@ -197,24 +224,23 @@ static inline void wall_rows(sd_vans_solver *s, int M, const sd_vans_wall_segmen
   }
 }
 
-sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                        int64_t nsteps, double dt, const double *phi, const double *vx,
-                        const double *b, const double *length, const double *source, double *U,
-                        double *nut, double *stress, double *moved, double *shear,
-                        sd_vans_impulse *impulse)
+/* The rows as far as they stay in a solve. */
+static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans_column *column,
+                    double dt)
 {
-  const int N = mesh->ncell, M = N - 1, yade = fluid->rules == SD_VANS_YADE;
-  const double nu0 = fluid->eta / fluid->rho,
-               drive = (yade ? fabs(fluid->gx) : fluid->gx) - fluid->dpdx / fluid->rho;
-
+  const sd_vans_mesh *mesh = s->mesh;
+  const double *phi = column->phi, *vx = column->vx, *b = column->b;
+  const int N = mesh->ncell, M = N - 1;
+  s->drive = fluid->rules == SD_VANS_YADE ? fabs(fluid->gx) : fluid->gx;
+  s->drive -= fluid->dpdx / fluid->rho;
   for (int j = 0; j < N; j++) {
-    s->mix[j] = mixing_at_node(mesh, fluid, length, j);
+    s->mix[j] = mixing_at_node(mesh, fluid, column->length, j);
     s->gap[j] = porosity_at_node(mesh, phi, j) / gap_of(mesh, j);
   }
   double A = viscosity_at_node(mesh, fluid, phi, 0) / gap_of(mesh, 0);
   for (int j = 0; j < M; j++) {
     const double above = viscosity_at_node(mesh, fluid, phi, j + 1) / gap_of(mesh, j + 1),
-                 dz = height_of(mesh, j);
+                 dz = sd_vans_height(mesh, j);
     const double e = 1.0 - phi[j], e_above = 1.0 - phi[j + 1],
                  e_below = j > 0 ? 1.0 - phi[j - 1] : e;
     const double J = j > 0 ? phi[j] * vx[j] - phi[j - 1] * vx[j - 1] : 0.0,
@@ -224,110 +250,131 @@ sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_mesh *mesh, const sd_va
     s->ce[j] = e * dz / dt;
     s->cd[j] = s->ce[j] + e * e * (A + above) + dz * b[j];
     s->cr[j] = e * (above * J_above - A * J) +
-        dz * (b[j] * vx[j] + e * drive + (source ? source[j] : 0.0));
+        dz * (b[j] * vx[j] + e * s->drive + (column->source ? column->source[j] : 0.0));
     A = above;
   }
   s->cl[0] = 0.0; /* U = 0 on the bottom */
-  /* The surface is eliminated from the last row: its eddy viscosity T_M stays in the row only if the surface is driven. */
-  const double cu_top = s->cu[M - 1], cd_top = s->cd[M - 1], cr_top = s->cr[M - 1];
+  /* The surface is eliminated from the last row: its eddy viscosity T_M stays in the row only if
+   * the
+   * surface is driven. */
+  s->cu_top = s->cu[M - 1];
+  s->cr_top = s->cr[M - 1];
   s->cu[M - 1] = 0.0;
-  if (!fluid->driven) s->cd[M - 1] = cd_top - cu_top;
+  if (!fluid->driven) s->cd[M - 1] -= s->cu_top;
 
-  const double *cd = s->cd, *cr = s->cr;
-  const double wall_factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0,
-               Re_factor = fluid->width / nu0;
-  const sd_vans_wall_segment *table = 0;
-  if (wall_factor != 0.0) {
-    sd_vans_wall_segment **slot = &s->table[fluid->rules];
-    if (!*slot) {
-      *slot = malloc(SD_VANS_WALL_TABLE * sizeof **slot);
-      if (!*slot) return SD_ENOMEMORY;
-      sd_vans_wall_table(fluid->rules, *slot);
-    }
-    table = *slot;
-    for (int j = 0; j < M; j++) s->wall_scale[j] = s->ce[j] * wall_factor;
-    cd = s->wall_cd;
-    cr = s->wall_cr;
-  }
-  double T_bottom = 0.0, T_surface = 0.0, wall_sum = 0.0;
-  if (moved) memset(s->sum, 0, M * sizeof(double));
+  const double factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0;
+  s->walls = factor != 0.0;
+  s->Re_factor = fluid->width * fluid->rho / fluid->eta;
+  for (int j = 0; j < M; j++) s->wall_scale[j] = s->ce[j] * factor;
+  memset(s->sum, 0, M * sizeof(double));
+  s->T_bottom = s->T_surface = s->wall_sum = 0.0;
+}
 
-  for (int64_t step = 0; step < nsteps; step++) {
-    for (int j = 0; j < N; j++) {
-      s->nut[j] = s->mix[j] * fabs(U[j + 1] - U[j]);
-      s->T[j] = s->gap[j] * s->nut[j];
-    }
-    const double T_top = s->T[M], T_low = s->T[0];
-    if (fluid->driven)
-      s->cr[M - 1] = cr_top + (cu_top + T_top) * fluid->u_top;
-    else
-      s->T[M] = 0.0;
-    if (table) {
-      if (yade)
-        wall_rows(s, M, table, SD_VANS_YADE, Re_factor, U);
-      else
-        wall_rows(s, M, table, SD_VANS_CONSISTENT, Re_factor, U);
-      if (moved)
-        for (int j = 0; j < M; j++) wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
-    }
-
-    solve_rows(s, M, cd, cr, U);
-    U[N] = fluid->driven ? fluid->u_top : U[M];
-
-    if (moved) {
-      for (int j = 0; j < M; j++) s->sum[j] += U[j + 1];
-      T_bottom += T_low * U[1];
-      if (fluid->driven) T_surface += T_top * (fluid->u_top - U[M]);
-      if (table)
-        for (int j = 0; j < M; j++) wall_sum += s->wall[j] * U[j + 1];
-    }
-  }
-
-  double check = 0.0;
+/* One step: U becomes U'. With keep the sums for the books go on. */
+static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int keep)
+{
+  const int N = s->mesh->ncell, M = N - 1;
+  const int yade = fluid->rules == SD_VANS_YADE;
   for (int j = 0; j < N; j++) {
-    nut[j] = s->nut[j];
-    stress[j] = fluid->rho * s->gap[j] * s->nut[j] * (U[j + 1] - U[j]);
+    s->nut[j] = s->mix[j] * fabs(U[j + 1] - U[j]);
+    s->T[j] = s->gap[j] * s->nut[j];
+  }
+  const double T_top = s->T[M], T_low = s->T[0];
+  if (fluid->driven)
+    s->cr[M - 1] = s->cr_top + (s->cu_top + T_top) * fluid->u_top;
+  else
+    s->T[M] = 0.0;
+  if (s->walls) {
+    wall_rows(s, M, fluid->rules, U);
+    if (keep)
+      for (int j = 0; j < M; j++) s->wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
+  }
+
+  solve_rows(s, M, s->walls ? s->wall_cd : s->cd, s->walls ? s->wall_cr : s->cr, U);
+  U[N] = fluid->driven ? fluid->u_top : U[M];
+
+  if (!keep) return;
+  for (int j = 0; j < M; j++) s->sum[j] += U[j + 1];
+  s->T_bottom += T_low * U[1];
+  if (fluid->driven) s->T_surface += T_top * (fluid->u_top - U[M]);
+  if (s->walls)
+    for (int j = 0; j < M; j++) s->wall_sum += s->wall[j] * U[j + 1];
+}
+
+/* Viscous flux through node j, summed over the steps: A_j (e_j x_j - e_(j-1) x_(j-1) + J_j), x the
+ * sum of U'. */
+static double viscous_flux(const sd_vans_solver *s, const sd_vans_fluid *fluid,
+                           const sd_vans_column *column, double steps, int j)
+{
+  const double *phi = column->phi, *vx = column->vx, *U = s->sum;
+  const int M = s->mesh->ncell - 1;
+  const double below = j == 0 ? 0.0 : (1.0 - phi[j - 1]) * U[j - 1];
+  const double x = j < M ? U[j] : fluid->driven ? fluid->u_top * steps : U[M - 1];
+  const double J = j == 0 ? 0.0 : phi[j] * vx[j] - phi[j - 1] * vx[j - 1];
+  return viscosity_at_node(s->mesh, fluid, phi, j) / gap_of(s->mesh, j) *
+      ((1.0 - phi[j]) * x - below + J * steps);
+}
+
+static void close_books(const sd_vans_solver *s, const sd_vans_fluid *fluid,
+                        const sd_vans_column *column, double steps, double dt,
+                        sd_vans_books *books)
+{
+  const double *phi = column->phi, rho_dt = fluid->rho * dt;
+  const int M = s->mesh->ncell - 1;
+  double flux = viscous_flux(s, fluid, column, steps, 0);
+  books->driving = 0.0;
+  books->bottom = -rho_dt * (flux + s->T_bottom);
+  books->walls = -rho_dt * s->wall_sum;
+  for (int j = 0; j < M; j++) {
+    const double above = viscous_flux(s, fluid, column, steps, j + 1),
+                 dz = sd_vans_height(s->mesh, j);
+    books->shear[j] = rho_dt * phi[j] * (above - flux);
+    books->moved[j] =
+        rho_dt * dz * column->b[j] * (s->sum[j] - column->vx[j] * steps) + books->shear[j];
+    books->driving += rho_dt * steps * dz * (1.0 - phi[j]) * s->drive;
+    flux = above;
+  }
+  books->moved[M] = books->shear[M] = 0.0;
+  books->surface = rho_dt * (flux + s->T_surface);
+}
+
+sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_fluid *fluid,
+                        const sd_vans_column *column, int64_t nsteps, double dt,
+                        const sd_vans_flow *flow, sd_vans_books *books)
+{
+  double *U = flow->U, check = 0.0;
+  prepare(s, fluid, column, dt);
+  for (int64_t k = 0; k < nsteps; k++) step(s, fluid, U, books != 0);
+  for (int j = 0; j < s->mesh->ncell; j++) {
+    flow->nut[j] = s->nut[j];
+    flow->stress[j] = fluid->rho * s->gap[j] * s->nut[j] * (U[j + 1] - U[j]);
     check += U[j + 1];
   }
-  if (moved) {
-    const double steps = (double) nsteps, rho_dt = fluid->rho * dt;
-    double flux = viscosity_at_node(mesh, fluid, phi, 0) / gap_of(mesh, 0) *
-        viscous_jump(M, phi, vx, s->sum, fluid->driven, fluid->u_top, steps, 0);
-    impulse->driving = 0.0;
-    impulse->bottom = -rho_dt * (flux + T_bottom);
-    impulse->walls = -rho_dt * wall_sum;
-    for (int j = 0; j < M; j++) {
-      const double above = viscosity_at_node(mesh, fluid, phi, j + 1) / gap_of(mesh, j + 1) *
-          viscous_jump(M, phi, vx, s->sum, fluid->driven, fluid->u_top, steps, j + 1);
-      shear[j] = rho_dt * phi[j] * (above - flux);
-      moved[j] = rho_dt * height_of(mesh, j) * b[j] * (s->sum[j] - vx[j] * steps) + shear[j];
-      impulse->driving += rho_dt * steps * height_of(mesh, j) * (1.0 - phi[j]) * drive;
-      flux = above;
-    }
-    moved[M] = shear[M] = 0.0;
-    impulse->surface = rho_dt * (flux + T_surface);
-  }
+  if (books) close_books(s, fluid, column, (double) nsteps, dt, books);
   return isfinite(check) ? SD_OK : SD_ENOTFINITE;
 }
 
 void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
-                    const double *length, const double *U, double *nut, double *stress)
+                    const double *length, const sd_vans_flow *flow)
 {
   for (int j = 0; j < mesh->ncell; j++) {
-    const double jump = U[j + 1] - U[j];
-    nut[j] = mixing_at_node(mesh, fluid, length, j) * fabs(jump);
-    stress[j] = fluid->rho * porosity_at_node(mesh, phi, j) * nut[j] * jump / gap_of(mesh, j);
+    const double jump = flow->U[j + 1] - flow->U[j];
+    flow->nut[j] = mixing_at_node(mesh, fluid, length, j) * fabs(jump);
+    flow->stress[j] =
+        fluid->rho * porosity_at_node(mesh, phi, j) * flow->nut[j] * jump / gap_of(mesh, j);
   }
 }
 
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U)
 {
   double sum = 0.0;
-  for (int n = 0; n < mesh->ncell - 1; n++) sum += (1.0 - phi[n]) * U[n + 1] * height_of(mesh, n);
+  for (int n = 0; n < mesh->ncell - 1; n++)
+    sum += (1.0 - phi[n]) * U[n + 1] * sd_vans_height(mesh, n);
   return rho * sum;
 }
 
-/* In the coordinate "volume of water below" the old and the new slices are two cuts of one column, in which U stays. */
+/* In the coordinate "volume of water below" the old and the new slices are two cuts of one column,
+ * in which U stays. */
 double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
                         const double *phi_new, double *U, double *scratch)
 {
@@ -336,13 +383,13 @@ double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_
   const double surface = U[M + 1];
   below[0] = 0.0;
   for (int n = 0; n < M; n++) {
-    below[n + 1] = below[n] + (1.0 - phi_old[n]) * height_of(mesh, n);
+    below[n + 1] = below[n] + (1.0 - phi_old[n]) * sd_vans_height(mesh, n);
     old[n] = U[n + 1];
   }
   int source = 0;
   double lo = 0.0, through = 0.0;
   for (int n = 0; n < M; n++) {
-    const double content = (1.0 - phi_new[n]) * height_of(mesh, n), hi = lo + content;
+    const double content = (1.0 - phi_new[n]) * sd_vans_height(mesh, n), hi = lo + content;
     double at = lo, momentum = 0.0;
     while (source < M && below[source + 1] < hi) {
       momentum += old[source] * (below[source + 1] - at);

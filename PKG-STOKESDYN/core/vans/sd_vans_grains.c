@@ -1,8 +1,7 @@
+#include "sd_constants.h"
 #include "sd_vans.h"
 
 #include <math.h>
-
-static const double PI = 3.14159265358979323846;
 
 int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
 {
@@ -28,7 +27,7 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
 /* Volume between the equator and the height s, |s| <= a. */
 static inline double primitive(double a2, double s)
 {
-  return PI * s * (a2 - s * s / 3.0);
+  return SD_PI * s * (a2 - s * s / 3.0);
 }
 
 double sd_vans_slice_volume(double a, double lo, double hi)
@@ -37,8 +36,8 @@ double sd_vans_slice_volume(double a, double lo, double hi)
   return primitive(a * a, s1) - primitive(a * a, s0);
 }
 
-/* Yade gives slice n the limits of slice 2p-n, p that of the centre, and cuts the sphere's lower end only off the lower
- * limit and its
+/* Yade gives slice n the limits of slice 2p-n, p that of the centre, and cuts the sphere's lower
+ * end only off the lower limit and its
  * upper end only off the upper one. */
 static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first, double *V, int max)
 {
@@ -54,7 +53,7 @@ static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first,
     double s0 = (above - 1.0) * dz + offset, s1 = above * dz + offset;
     if (s0 < -a) s0 = -a;
     if (s1 > a) s1 = a;
-    V[k] = PI * (a * a * (s1 - s0) - (s1 * s1 * s1 - s0 * s0 * s0) / 3.0);
+    V[k] = SD_PI * (a * a * (s1 - s0) - (s1 * s1 * s1 - s0 * s0 * s0) / 3.0);
   }
   return count < max ? count : max;
 }
@@ -96,7 +95,7 @@ static inline double drag_factor(double rho, double eta, double a, double hindra
                                  const double w[3])
 {
   const double speed = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-  return 0.5 * PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
+  return 0.5 * SD_PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
 }
 
 void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
@@ -121,14 +120,16 @@ static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
   }
   if (upper >= mesh->ncell || lower <= 0) return 0.0;
   const double over = U[upper + 1] - vx, under = U[lower + 1] - vx;
-  return 0.5 * law->rho * PI * a * a * law->lift * (over * over - under * under);
+  return 0.5 * law->rho * SD_PI * a * a * law->lift * (over * over - under * under);
 }
 
 int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                   const double *hindrance, int n, const double *x, const double *v,
-                   const double *a, const double *fluctuation, const unsigned char *take, double *F,
+                   const double *hindrance, const sd_vans_grains *grains, double *F,
                    double *drag_x)
 {
+  const double *x = grains->x, *v = grains->v, *a = grains->a, *fluctuation = grains->fluctuation;
+  const unsigned char *take = grains->take;
+  const int n = grains->n;
   const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
   int outside = 0;
   for (int i = 0; i < n; i++) {
@@ -145,7 +146,7 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
     if (fluctuation)
       for (int d = 0; d < 3; d++) w[d] += fluctuation[3 * (long) i + d];
     const double factor = drag_factor(law->rho, law->eta, ai, hindrance[seen], w);
-    const double displaced = 4.0 / 3.0 * PI * ai * ai * ai * law->rho;
+    const double displaced = 4.0 / 3.0 * SD_PI * ai * ai * ai * law->rho;
     for (int d = 0; d < 3; d++) Fi[d] = factor * w[d] - displaced * g[d];
     if (drag_x) drag_x[i] = factor * w[0];
     if (inside && law->lift != 0.0) Fi[2] += lift_force(mesh, law, U, p, ai, vi[0]);
@@ -163,65 +164,79 @@ static int class_of(const sd_vans_averaging *how, double a)
 
 static inline void add(double *sum, double V, const double *v, double drag)
 {
-  sum[SD_VANS_V] += V;
+  sum[SD_VANS_PHI] += V;
   sum[SD_VANS_VX] += V * v[0];
   sum[SD_VANS_VY] += V * v[1];
   sum[SD_VANS_VZ] += V * v[2];
   sum[SD_VANS_DRAG] += V * drag;
 }
 
+/* Adds one grain in its slices first to first + count - 1. */
+static void add_slices(double *sums, int first, int count, const double *V, const double *v,
+                       double drag)
+{
+  double *sum = sums + (long) first * SD_VANS_ROWS;
+  for (int k = 0; k < count; k++) add(sum + k * SD_VANS_ROWS, V[k], v, drag);
+}
+
+/* Yade: volume and drag where they are, velocities all in the slice p of the centre, if it is in
+ * the mesh. */
+static void add_slices_yade(double *sums, int first, int count, const double *V, const double *v,
+                            double drag, double *centre)
+{
+  for (int k = 0; k < count; k++) {
+    double *here = sums + (long) (first + k) * SD_VANS_ROWS;
+    here[SD_VANS_PHI] += V[k];
+    here[SD_VANS_DRAG] += V[k] * drag;
+    if (!centre) continue;
+    for (int d = 0; d < 3; d++) centre[SD_VANS_VX + d] += V[k] * v[d];
+  }
+}
+
+static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
+                     int *first, double *V)
+{
+  if (!point) return sd_vans_slices(mesh, rules, z, a, first, V, mesh->ncell);
+  const int p = sd_vans_slice_of(mesh, z);
+  if (p < 0 || p >= mesh->ncell) return 0;
+  *first = p;
+  V[0] = 4.0 / 3.0 * SD_PI * a * a * a;
+  return 1;
+}
+
 int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
-                    const sd_vans_averaging *how, const double *U, const double *hindrance, int n,
-                    const double *x, const double *v, const double *a, const double *fluctuation,
-                    const double *weight, const unsigned char *take, double *sums,
-                    double *class_sums, double *V)
+                    const sd_vans_averaging *how, const double *U, const double *hindrance,
+                    const sd_vans_grains *grains, double *sums, double *V)
 {
   const int N = mesh->ncell;
-  for (int i = 0; i < n; i++) {
-    if (take && !take[i]) continue;
-    const double z = x[3 * (long) i + 2], *vi = v + 3 * (long) i, ai = a[i];
+  for (int i = 0; i < grains->n; i++) {
+    if (grains->take && !grains->take[i]) continue;
+    const double z = grains->x[3 * (long) i + 2], *v = grains->v + 3 * (long) i, a = grains->a[i];
     const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;
 
     double drag = 0.0;
     if (inside) {
-      double w[3] = {U[p + 1] - vi[0], -vi[1], -vi[2]};
-      if (fluctuation)
-        for (int d = 0; d < 3; d++) w[d] += fluctuation[3 * (long) i + d];
-      drag = drag_factor(law->rho, law->eta, ai, hindrance[p], w) * w[0];
+      double w[3] = {U[p + 1] - v[0], -v[1], -v[2]};
+      if (grains->fluctuation)
+        for (int d = 0; d < 3; d++) w[d] += grains->fluctuation[3 * (long) i + d];
+      drag = drag_factor(law->rho, law->eta, a, hindrance[p], w) * w[0];
     }
 
-    int first = 0, count = 0;
-    if (!how->point)
-      count = sd_vans_slices(mesh, law->rules, z, ai, &first, V, N);
-    else if (inside) {
-      first = p;
-      count = 1;
-      V[0] = 4.0 / 3.0 * PI * ai * ai * ai;
-    }
-    if (weight)
-      for (int k = 0; k < count; k++) V[k] *= weight[i];
+    int first = 0;
+    const int count = slices_of(mesh, law->rules, how->point, z, a, &first, V);
+    if (grains->weight)
+      for (int k = 0; k < count; k++) V[k] *= grains->weight[i];
+    add_slices(sums, first, count, V, v, drag);
+    if (how->nclass == 0) continue;
 
-    double *sum = sums + (long) first * SD_VANS_NSUM;
-    for (int k = 0; k < count; k++) add(sum + k * SD_VANS_NSUM, V[k], vi, drag);
-    if (!class_sums) continue;
-
-    const int c = class_of(how, ai);
+    const int c = class_of(how, a);
     if (c < 0) return i;
-    double *class_sum = class_sums + (long) c * N * SD_VANS_NSUM;
-    if (law->rules != SD_VANS_YADE)
-      for (int k = 0; k < count; k++)
-        add(class_sum + (long) (first + k) * SD_VANS_NSUM, V[k], vi, drag);
+    double *class_sums = sums + (long) (1 + c) * N * SD_VANS_ROWS;
+    if (law->rules == SD_VANS_YADE)
+      add_slices_yade(class_sums, first, count, V, v, drag,
+                      inside ? class_sums + (long) p * SD_VANS_ROWS : 0);
     else
-      for (int k = 0; k < count; k++) {
-        double *here = class_sum + (long) (first + k) * SD_VANS_NSUM,
-               *centre = class_sum + (long) p * SD_VANS_NSUM;
-        here[SD_VANS_V] += V[k];
-        here[SD_VANS_DRAG] += V[k] * drag;
-        if (!inside) continue;
-        centre[SD_VANS_VX] += V[k] * vi[0];
-        centre[SD_VANS_VY] += V[k] * vi[1];
-        centre[SD_VANS_VZ] += V[k] * vi[2];
-      }
+      add_slices(class_sums, first, count, V, v, drag);
   }
   return -1;
 }
@@ -230,34 +245,23 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
 {
   const int N = mesh->ncell;
   for (int n = 0; n < N; n++) {
-    const double *sum = sums + (long) n * SD_VANS_NSUM, V = sum[SD_VANS_V];
-    const double height = mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
-    profile[n] = V / (area * height);
-    for (int k = SD_VANS_VX; k < SD_VANS_NSUM; k++)
+    const double *sum = sums + (long) n * SD_VANS_ROWS, V = sum[SD_VANS_PHI];
+    profile[n] = V / (area * sd_vans_height(mesh, n));
+    for (int k = SD_VANS_VX; k < SD_VANS_ROWS; k++)
       profile[(long) k * N + n] = V != 0.0 ? sum[k] / V : 0.0;
   }
 }
 
-static int slices_of(const sd_vans_mesh *mesh, int point, double z, double a, int *first, double *V)
-{
-  if (!point) return sd_vans_slices(mesh, SD_VANS_CONSISTENT, z, a, first, V, mesh->ncell);
-  const int p = sd_vans_slice_of(mesh, z);
-  if (p < 0 || p >= mesh->ncell) return 0;
-  *first = p;
-  V[0] = 4.0 / 3.0 * PI * a * a * a;
-  return 1;
-}
-
-void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
-                    const unsigned char *take, const double *value, double *out, double *V)
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
+                    const double *value, double *out, double *V)
 {
   const int N = mesh->ncell;
-  for (int i = 0; i < n; i++) {
-    if (take && !take[i]) continue;
-    const double z = x[3 * (long) i + 2], ai = a[i], height = z - mesh->z_ref,
-                 all = 4.0 / 3.0 * PI * ai * ai * ai;
+  for (int i = 0; i < grains->n; i++) {
+    if (grains->take && !grains->take[i]) continue;
+    const double z = grains->x[3 * (long) i + 2], ai = grains->a[i], height = z - mesh->z_ref,
+                 all = 4.0 / 3.0 * SD_PI * ai * ai * ai;
     int first = 0;
-    const int count = slices_of(mesh, point, z, ai, &first, V);
+    const int count = slices_of(mesh, SD_VANS_CONSISTENT, point, z, ai, &first, V);
     double inside = 0.0, rest = value[i];
     for (int k = 0; k < count; k++) inside += V[k];
     const double below = point ? (height < 0.0 ? all : 0.0)
@@ -273,16 +277,16 @@ void sd_vans_spread(const sd_vans_mesh *mesh, int point, int n, const double *x,
   }
 }
 
-void sd_vans_gather(const sd_vans_mesh *mesh, int point, int n, const double *x, const double *a,
-                    const double *weight, const unsigned char *take, const double *density,
-                    double *out, double *V)
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
+                    const double *density, double *out, double *V)
 {
-  for (int i = 0; i < n; i++) {
+  for (int i = 0; i < grains->n; i++) {
     out[i] = 0.0;
-    if (take && !take[i]) continue;
+    if (grains->take && !grains->take[i]) continue;
     int first = 0;
-    const int count = slices_of(mesh, point, x[3 * (long) i + 2], a[i], &first, V);
+    const int count = slices_of(mesh, SD_VANS_CONSISTENT, point, grains->x[3 * (long) i + 2],
+                                grains->a[i], &first, V);
     for (int k = 0; k < count; k++) out[i] += V[k] * density[first + k];
-    if (weight) out[i] *= weight[i];
+    if (grains->weight) out[i] *= grains->weight[i];
   }
 }

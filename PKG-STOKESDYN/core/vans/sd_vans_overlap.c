@@ -1,8 +1,7 @@
+#include "sd_constants.h"
 #include "sd_vans.h"
 
 #include <math.h>
-
-static const double PI = 3.14159265358979323846;
 
 enum { MAX_CUTS = 64 };
 
@@ -15,8 +14,8 @@ static double dot(const double *a, const double *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Area of a disc of radius r within half-planes m.u <= c: half the sum of r^2 times the angle of the arcs left and of the
- * signed heights
+/* Area of a disc of radius r within half-planes m.u <= c: half the sum of r^2 times the angle of
+ * the arcs left and of the signed heights
  * times the lengths of the chords left. */
 static double disc_area(double r, int count, double (*m)[2], const double *c)
 {
@@ -33,8 +32,8 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
     if (height <= -r) return 0.0;
     const double middle = atan2(m[k][1], m[k][0]), half = acos(height / r);
     double lo = middle - half, hi = middle + half;
-    if (lo < -PI) from[arcs] = lo + 2 * PI, to[arcs++] = PI, lo = -PI;
-    if (hi > PI) from[arcs] = -PI, to[arcs++] = hi - 2 * PI, hi = PI;
+    if (lo < -SD_PI) from[arcs] = lo + 2 * SD_PI, to[arcs++] = SD_PI, lo = -SD_PI;
+    if (hi > SD_PI) from[arcs] = -SD_PI, to[arcs++] = hi - 2 * SD_PI, hi = SD_PI;
     from[arcs] = lo, to[arcs++] = hi;
 
     /* the chord, from -t to t along (-m_y, m_x)/size, within the other half-planes */
@@ -59,12 +58,12 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
       from[k] = from[k - 1], to[k] = to[k - 1];
       from[k - 1] = f, to[k - 1] = t;
     }
-  double covered = 0.0, end = -PI;
+  double covered = 0.0, end = -SD_PI;
   for (int k = 0; k < arcs; k++) {
     const double begin = fmax(from[k], end);
     if (to[k] > begin) covered += to[k] - begin, end = to[k];
   }
-  return 0.5 * (r * r * fmax(2 * PI - covered, 0.0) + chords);
+  return 0.5 * (r * r * fmax(2 * SD_PI - covered, 0.0) + chords);
 }
 
 /* Slabs across the first cut's normal; z = a sin(t) takes the root off both ends. */
@@ -84,10 +83,10 @@ static double integrate(double a, int count, const cut *cuts)
     up[d] = axis[(d + 1) % 3] * side[(d + 2) % 3] - axis[(d + 2) % 3] * side[(d + 1) % 3];
   const double end = asin(fmax(-1.0, fmin(1.0, cuts[0].h / a)));
   enum { PANELS = 200 };
-  const double width = (end + PI / 2) / PANELS;
+  const double width = (end + SD_PI / 2) / PANELS;
   for (int p = 0; p < PANELS; p++)
     for (int q = 0; q < 8; q++) {
-      const double t = -PI / 2 + (p + 0.5 + 0.5 * (q < 4 ? node[q] : -node[q - 4])) * width,
+      const double t = -SD_PI / 2 + (p + 0.5 + 0.5 * (q < 4 ? node[q] : -node[q - 4])) * width,
                    z = a * sin(t), r = a * cos(t);
       double m[MAX_CUTS][2], c[MAX_CUTS];
       for (int k = 1; k < count; k++) {
@@ -103,7 +102,7 @@ static double integrate(double a, int count, const cut *cuts)
 
 double sd_vans_union_share(int n, const double *x, const double *a, int i)
 {
-  const double ai = a[i], all = 4.0 / 3.0 * PI * ai * ai * ai;
+  const double ai = a[i], all = 4.0 / 3.0 * SD_PI * ai * ai * ai;
   cut cuts[MAX_CUTS];
   int count = 0;
   for (int j = 0; j < n; j++) {
@@ -132,6 +131,6 @@ double sd_vans_union_share(int n, const double *x, const double *a, int i)
   if (!apart) return integrate(ai, count, cuts) / all;
   double volume = all;
   for (int k = 0; k < count; k++)
-    volume -= PI * (ai - cuts[k].h) * (ai - cuts[k].h) * (2.0 * ai + cuts[k].h) / 3.0;
+    volume -= SD_PI * (ai - cuts[k].h) * (ai - cuts[k].h) * (2.0 * ai + cuts[k].h) / 3.0;
   return volume / all;
 }

@@ -29,8 +29,8 @@ void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, 
   u[2] = normal[0] * u_star;
 }
 
-double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double dt)
+double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double longest, double dt)
 {
   if (!(u_star > 0.0)) return 10.0 * dt;
-  return fmin(0.33 * 0.41 * fmax(z_above_bed, 11.6 * nu / u_star) / u_star, 10.0);
+  return fmin(0.33 * 0.41 * fmax(z_above_bed, 11.6 * nu / u_star) / u_star, longest);
 }

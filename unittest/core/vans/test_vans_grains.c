@@ -98,7 +98,7 @@ static void point_grains_stay_in_one_slice(void **state)
 {
   (void) state;
   enum { N = 8 };
-  double edge[N + 1], V[N], sums[N * SD_VANS_NSUM] = {0}, U[N + 1] = {0}, hindrance[N],
+  double edge[N + 1], V[N], sums[N * SD_VANS_ROWS] = {0}, U[N + 1] = {0}, hindrance[N],
                                      profile[5 * N];
   for (int n = 0; n <= N; n++) edge[n] = n * 0.5;
   for (int n = 0; n < N; n++) hindrance[n] = 1.0;
@@ -107,7 +107,8 @@ static void point_grains_stay_in_one_slice(void **state)
   const sd_vans_averaging how = {1, 0, NULL};
   const double x[6] = {0, 0, 1.7, 0, 0, 9.0}, v[6] = {0.3, -0.2, 0.5, 1, 1, 1}, a[2] = {0.9, 0.9};
   assert_int_equal(
-      sd_vans_average(&mesh, &law, &how, U, hindrance, 2, x, v, a, NULL, NULL, NULL, sums, NULL, V),
+      sd_vans_average(&mesh, &law, &how, U, hindrance,
+                      &(sd_vans_grains){.n = 2, .x = x, .v = v, .a = a}, sums, V),
       -1);
   sd_vans_profiles(&mesh, 11.0, sums, profile);
   for (int n = 0; n < N; n++)
@@ -128,7 +129,8 @@ static void drag_balances_weight_at_terminal_velocity(void **state)
   const sd_vans_force_law law = {.rho = rho, .eta = eta, .exponent = 3.1, .g = {0, 0, -g}};
   const double U[3] = {0, 0, 0}, hindrance[2] = {1, 1}, x[3] = {0, 0, 0.5}, v[3] = {0, 0, -w};
   double F[3];
-  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 1, x, v, &a, NULL, NULL, F, NULL), 0);
+  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance,
+                 &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL), 0);
   const double weight = 4.0 / 3.0 * PI * a * a * a * rho_s * g;
   assert_true(fabs(F[2] - weight) < 1e-13 * weight);
 }
@@ -158,7 +160,8 @@ static void lift_sees_both_ends_of_the_grain(void **state)
   for (int even = 0; even < 2; even++) {
     const sd_vans_mesh mesh = {N, 0.0, even ? 0.2 : 0.0, edge};
     double F[3];
-    sd_vans_forces(&mesh, &law, U, hindrance, 1, x, v, &a, NULL, NULL, F, NULL);
+    sd_vans_forces(&mesh, &law, U, hindrance,
+                 &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
     const double over = U[5 + 1 + 2] - 0.4, under = U[5 + 1 - 2] - 0.4;
     assert_true(fabs(F[2] - 0.5 * 1.3 * PI * a * a * 0.27 * (over * over - under * under)) < 1e-13);
   }
@@ -173,7 +176,8 @@ static void convective_force_is_taken_off(void **state)
                v[3] = {0}, a = 0.2;
   const sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .convective = convective};
   double F[3];
-  sd_vans_forces(&mesh, &law, U, hindrance, 1, x, v, &a, NULL, NULL, F, NULL);
+  sd_vans_forces(&mesh, &law, U, hindrance,
+                 &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
   assert_true(F[0] == -0.7);
 }
 
@@ -185,16 +189,17 @@ static void grains_outside_feel_the_end_values(void **state)
   const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
   const double U[4] = {0, 0.5, 0.8, 0.9}, hindrance[3] = {3, 2, 1.5}, x[6] = {0, 0, 7, 0, 0, -2},
                v[6] = {0.1, 0, 0, 0.1, 0, 0}, a[2] = {0.2, 0.2};
+  const sd_vans_grains grains = {.n = 2, .x = x, .v = v, .a = a};
   sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .g = {0, 0, -2}};
   double F[6], expected[3];
-  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 2, x, v, a, NULL, NULL, F, NULL), 2);
+  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, NULL), 2);
   sd_vans_drag(1.3, 0.1, 0.2, 1.5, (double[3]){0.8, 0, 0}, expected);
   assert_true(fabs(F[0] - expected[0]) < 1e-15 &&
               fabs(F[2] - 4.0 / 3.0 * PI * 0.008 * 2.6) < 1e-15);
   sd_vans_drag(1.3, 0.1, 0.2, 3.0, (double[3]){-0.1, 0, 0}, expected);
   assert_true(fabs(F[3] - expected[0]) < 1e-15);
   law.rules = SD_VANS_YADE;
-  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, 2, x, v, a, NULL, NULL, F, NULL), 2);
+  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, NULL), 2);
   for (int k = 0; k < 6; k++) assert_true(F[k] == 0.0);
 }
 
@@ -239,11 +244,11 @@ static void fluctuations_depend_on_their_keys_alone(void **state)
 static void eddies_live_as_long_as_the_length_over_the_velocity(void **state)
 {
   (void) state;
-  assert_true(fabs(sd_vans_eddy_life(0.2, 1e-6, 0.05, 1e-3) - 0.33 * 0.41 * 0.2 / 0.05) < 1e-15);
-  assert_true(fabs(sd_vans_eddy_life(-1.0, 1e-6, 0.05, 1e-3) - 0.33 * 0.41 * 11.6e-6 / 0.0025) <
+  assert_true(fabs(sd_vans_eddy_life(0.2, 1e-6, 0.05, 7.0, 1e-3) - 0.33 * 0.41 * 0.2 / 0.05) < 1e-15);
+  assert_true(fabs(sd_vans_eddy_life(-1.0, 1e-6, 0.05, 7.0, 1e-3) - 0.33 * 0.41 * 11.6e-6 / 0.0025) <
               1e-15);
-  assert_true(sd_vans_eddy_life(1e9, 1e-6, 0.05, 1e-3) == 10.0 &&
-              sd_vans_eddy_life(1.0, 1e-6, 0.0, 1e-3) == 10e-3);
+  assert_true(sd_vans_eddy_life(1e9, 1e-6, 0.05, 7.0, 1e-3) == 7.0 &&
+              sd_vans_eddy_life(1.0, 1e-6, 0.0, 7.0, 1e-3) == 10e-3);
 }
 
 int main(void)

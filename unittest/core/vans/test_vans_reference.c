@@ -47,8 +47,9 @@ static void check_forces(const char *name, sd_vans_rules rules)
   vectors(t, "ufx", "ufy", "ufz", n, u);
   vectors(t, "fx", "fy", "fz", n, reference);
   sd_vans_hindrance(mesh.ncell, vans_column(p, "phi"), law.exponent, hindrance);
-  const int outside = sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, n, x, v,
-                                     vans_column(t, "radius"), u, NULL, F, NULL);
+  const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL};
+  const int outside =
+      sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, &grains, F, NULL);
   assert_int_equal(outside, 8);
   /* Yade forgets the grains outside the mesh, which is what the table has; the consistent rule moves and lifts them. */
   if (rules == SD_VANS_CONSISTENT)
@@ -98,18 +99,18 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
   vectors(t, "x", "y", "z", n, x);
   vectors(t, "vx", "vy", "vz", n, v);
   vectors(t, "ufx", "ufy", "ufz", n, u);
+  const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL};
   double phi[N_MAX];
   memcpy(phi, vans_column(p, "phi_in"), N * sizeof(double));
   for (int call = 1; call <= 2; call++) {
-    double sums[N_MAX * SD_VANS_NSUM] = {0}, class_sums[2 * N_MAX * SD_VANS_NSUM] = {0};
+    double sums[3 * N_MAX * SD_VANS_ROWS] = {0};
     sd_vans_hindrance(N, phi, law.exponent, hindrance);
-    assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance, n, x,
-                                     v, vans_column(t, "radius"), u, NULL, NULL, sums,
-                                     classes ? class_sums : NULL, V),
+    assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance,
+                                     &grains, sums, V),
                      -1);
     for (int c = -1; c < classes; c++) {
       sd_vans_profiles(&mesh, vans_key(t, "vCell", 0) / mesh.dz,
-                       c < 0 ? sums : class_sums + c * N * SD_VANS_NSUM, profile);
+                       sums + (1 + c) * N * SD_VANS_ROWS, profile);
       static const char *const names[] = {"phi", "vx", "vy", "vz", "drag"};
       for (int k = 0; k < 5; k++) {
         char column[32];
@@ -169,24 +170,28 @@ static void check_fluid(const char *name, sd_vans_rules rules)
       .radius = vans_key(t, "radiusPart", 0),
       .nclass = vans_find(t, "phi_c0") ? 2 : 0,
       .class_radius = radii,
+      .least_slip = 1e-5,
       .rules = rules};
-  double class_phi[2 * N_MAX], b[N_MAX], length[N_MAX], scratch[4 * N_MAX], U[N_MAX + 1],
-      nut[N_MAX], stress[N_MAX];
+  double classes[2 * SD_VANS_ROWS * N_MAX], b[N_MAX], length[N_MAX], scratch[2 * N_MAX],
+      U[N_MAX + 1], nut[N_MAX], stress[N_MAX], profile[SD_VANS_ROWS * N_MAX], cut[2];
   for (int c = 0; c < fluid.nclass; c++)
-    memcpy(class_phi + c * N, vans_column(t, c ? "phi_c1" : "phi_c0"), N * sizeof(double));
+    memcpy(classes + c * SD_VANS_ROWS * N, vans_column(t, c ? "phi_c1" : "phi_c0"),
+           N * sizeof(double));
   const double *phi = vans_column(t, "phi"), *vx = vans_column(t, "vx");
   memcpy(U, vans_column(t, "u_in"), (N + 1) * sizeof(double));
 
   double dt = vans_key(t, "dt", 0);
   const int64_t steps = sd_vans_steps(rules, vans_key(t, "t_end", 0), &dt);
   assert_int_equal(steps, rules == SD_VANS_YADE ? 101 : 100);
-  sd_vans_exchange(&mesh, &fluid, dt, U, phi, vx, vans_column(t, "drag"), NULL, NULL, b);
-  sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? class_phi : NULL, phi, length,
-                        scratch);
-  sd_vans_solver *solver = sd_vans_solver_create(N);
-  assert_int_equal(sd_vans_solve(solver, &mesh, &fluid, steps, dt, phi, vx, b, length, NULL, U, nut,
-                                 stress, NULL, NULL, NULL),
-                   SD_OK);
+  memcpy(profile, phi, N * sizeof(double));
+  memcpy(profile + SD_VANS_VX * N, vx, N * sizeof(double));
+  memcpy(profile + SD_VANS_DRAG * N, vans_column(t, "drag"), N * sizeof(double));
+  sd_vans_exchange(&mesh, &fluid, dt, U, profile, NULL, b, cut);
+  sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? classes : NULL, phi, length, scratch);
+  sd_vans_solver *solver = sd_vans_solver_create(&mesh);
+  const sd_vans_column column = {phi, vx, b, length, NULL};
+  const sd_vans_flow flow = {U, nut, stress};
+  assert_int_equal(sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, NULL), SD_OK);
   sd_vans_solver_free(solver);
   assert_true(vans_difference(U, vans_column(r, "u_out"), N + 1) < 1e-9);
   assert_true(vans_difference(b, vans_column(r, "taufsi"), N) < 1e-9);

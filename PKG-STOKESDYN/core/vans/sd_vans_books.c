@@ -1,0 +1,31 @@
+#include "sd_vans.h"
+
+/* Share of what is outstanding that goes back in one solve. */
+static const double RETURNED = 0.1;
+
+double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, const double *back,
+                         double *outstanding, double *source)
+{
+  const int N = mesh->ncell, M = N - 1;
+  double returned = 0.0;
+  for (int n = 0; n < N; n++) outstanding[n < M ? n : M - 1] += back[n];
+  for (int n = 0; n < M; n++) {
+    const double share = RETURNED * outstanding[n];
+    outstanding[n] -= share;
+    returned += share;
+    source[n] = share / (rho_area * sd_vans_height(mesh, n) * T);
+  }
+  source[M] = 0.0;
+  return returned;
+}
+
+void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
+                       const sd_vans_books *books, double *shear, double *foreseen)
+{
+  const int M = mesh->ncell - 1;
+  for (int n = 0; n <= M; n++) {
+    const double solid = n < M ? phi[n] * sd_vans_height(mesh, n) : 0.0;
+    shear[n] = solid > 0.0 ? books->shear[n] / (T * solid) : 0.0;
+    foreseen[n] = solid > 0.0 ? (books->moved[n] - books->shear[n]) / solid : 0.0;
+  }
+}

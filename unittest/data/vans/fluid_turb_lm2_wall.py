@@ -1,0 +1,87 @@
+"""An independent model of one solve of the stream with side walls (numpy, dense matrices), for the table fluid_turb_lm2_wall.consistent.csv:
+    python3 fluid_turb_lm2_wall.py > fluid_turb_lm2_wall.consistent.csv
+The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection."""
+import os
+import sys
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def read(path):
+    header, rows = {}, []
+    for line in open(path):
+        line = line.rstrip("\n")
+        if line.startswith("#"):
+            if "=" in line:
+                key, value = line[1:].split("=", 1)
+                header[key.strip()] = [float(word) for word in value.split()]
+        else:
+            rows.append(line.split(","))
+    names, rows = rows[0], rows[1:]
+    return header, {name: np.array([float(row[c]) for row in rows if row[c] != ""]) for c, name in enumerate(names)}
+
+
+def friction(Re):
+    """Bisection in log10 sqrt(f), of which 1/sqrt(f) - 2 log10(Re sqrt(f)) - 0.32 is a falling function."""
+    low, high = np.full_like(Re, -8.0), np.full_like(Re, 12.0)
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        above = 10 ** -middle - 2 * (np.log10(Re) + middle) - 0.32 > 0
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return 10 ** (2 * low)
+
+
+def solve(header, c, friction=friction):
+    key = lambda name: header[name][0]
+    N, dz, rho, nu = int(key("nCell")), key("deltaZ"), key("densFluid"), key("viscoDyn") / key("densFluid")
+    M, kappa, phi_max, phi, v, U = N - 1, key("kappa"), key("phiMax"), c["phi"], c["vx"], c["u_in"].copy()
+    steps = round(key("t_end") / key("dt"))
+    dt, width, coef = key("t_end") / steps, key("channelWidth"), key("fluidFrictionCoef")
+    slip = U[1:] - v
+    with np.errstate(divide="ignore", invalid="ignore"):
+        b = phi / (4 / 3 * np.pi * key("radiusPart") ** 3) * c["drag"] / slip / rho
+    b = np.minimum(np.where(b > 0, b, 0), 0.1 / dt)
+    packed = np.flatnonzero(phi >= phi_max)
+    p = np.minimum(phi, phi_max)
+    if len(packed):
+        p[:packed[-1]] = phi_max
+    l = np.concatenate([[0], np.cumsum(kappa * dz * (phi_max - p) / phi_max)[:-1]])
+    h = np.full(N, dz)
+    h[0] = h[M] = dz / 2
+    e = 1 - phi
+    node = np.concatenate([[phi[0]], 0.5 * (phi[1:] + phi[:-1])])
+    e_node = 1 - node
+    e_node[M] = e[M - 1]
+    assert key("irheolf") == 0 and key("iusl") == 1 and key("ilm") == 2 and key("viscousSubLayer") == 0
+    drive = header["gravity"][0] - key("dpdx") / rho
+    q = phi * v
+    for _ in range(steps):
+        nut = l ** 2 * np.abs(U[1:] - U[:-1]) / h
+        speed = np.abs(U[1:N])
+        wall = e[:M] * 2 / width * coef * friction(np.maximum(speed * width / nu, 1e-10)) / 8 * speed / 2
+        A, r = np.zeros((M, M)), np.zeros(M)
+        for j in range(M):                                     # the row of slice j, unknown U'[j + 1]
+            A[j, j] += e[j] / dt + b[j] + wall[j]
+            r[j] += e[j] * U[j + 1] / dt + b[j] * v[j] + e[j] * drive - wall[j] * U[j + 1]
+            for n, sign in ((j + 1, 1), (j, -1)):              # fluxes through its upper and lower node, into the slice
+                viscous, eddy = e[j] / dz * nu / h[n], e_node[n] * nut[n] / h[n] / dz
+                above, below = n, n - 1                        # slices on both sides of node n
+                up, down = min(above, M - 1), below            # free surface: U above it is that below
+                A[j, up] -= sign * (viscous * e[above] + eddy)
+                if below >= 0:
+                    A[j, down] += sign * (viscous * e[below] + eddy)
+                r[j] += sign * viscous * (q[above] - q[below] if n > 0 else 0)
+        U[1:N] = np.linalg.solve(A, r)
+        U[N] = U[M]
+    stress = rho * e_node * nut * (U[1:] - U[:-1]) / h
+    return U, b, nut, stress
+
+
+if __name__ == "__main__":
+    U, b, nut, stress = solve(*read(os.path.join(HERE, "fluid_turb_lm2_wall.csv")))
+    print("# inputs and parameters: the same case: fluid_turb_lm2_wall")
+    print("u_out,taufsi,nut,stress")
+    for k in range(len(U)):
+        print(",".join("%.17g" % a[k] if k < len(a) else "" for a in (U, b, nut, stress)))
