@@ -3,7 +3,7 @@
  * Times are process CPU time on one core, medians of five; rival and core take turns, so that both meet the same load. */
 #include "clouds.h"
 
-#include "sd_precondition.h"
+#include "in_clumps.h"
 
 #include <string.h>
 #include <time.h>
@@ -337,7 +337,6 @@ static void sparse_factor(const scene *s, double rho, sd_sparse *f, double *seco
   const double begin = cpu();
   if (sd_sparse_create(f, &RPY, &spheres, s->n, 3, rho, 0, 1) != SD_OK) abort();
   *seconds = cpu() - begin;
-  f->drag = s->drag;
 }
 
 /* The same matrix, dense: LAPACK's Cholesky factorisation and one solve */
@@ -417,10 +416,8 @@ static void bench_flocs(void)
   enum { FLOCS = 50, M = 20 };
   scene s = cloud_flocs(FLOCS, M, 1.0, 34.7, 1, ETA, 1);
   const sd_spheres spheres = {s.x, s.a, s.w};
-  long first[FLOCS + 1];
-  int member[FLOCS * M];
-  for (int k = 0; k <= FLOCS; k++) first[k] = M * k;
-  for (int i = 0; i < FLOCS * M; i++) member[i] = i;
+  in_clumps flocs;
+  clumps_of(&flocs, RPY, spheres, s.n, 3, M);
   double drag, set_up;
   const double rival = dense(&s, &drag);
   printf("\nResistance, 50 flocs of 20 overlapping spheres, phi 0.1, 1e-6; dense Cholesky %.4f s\n",
@@ -429,12 +426,12 @@ static void bench_flocs(void)
   print_solve("diagonal", solve_median(&s, NULL, NULL, 1e-6), rival, drag, 0.0);
   sd_blocks b = {0};
   double begin = cpu();
-  if (sd_blocks_create(&b, &RPY, &spheres, s.n, 3, FLOCS, first, member) != SD_OK) abort();
+  if (sd_blocks_make(&b, &flocs.c) != SD_OK) abort();
   set_up = cpu() - begin;
-  b.drag = s.drag;
   print_solve("clump blocks", solve_median(&s, sd_blocks_apply, &b, 1e-6), rival, drag, set_up);
   begin = cpu();
-  if (sd_blocks_couple(&b, &RPY, &spheres, 3.0) != SD_OK) abort();
+  flocs.c.rho = 3.0;
+  if (sd_blocks_couple(&b, &flocs.c) != SD_OK) abort();
   set_up += cpu() - begin;
   print_solve("clump blocks, coupled", solve_median(&s, sd_blocks_apply, &b, 1e-6), rival, drag,
               set_up);
@@ -556,9 +553,9 @@ static void bench_rotating(const char *name, scene s, int m)
     sd_blocks b = {0};
     begin = cpu();
     if (sd_blocks_create(&b, &RPY, &spheres, s.n, 6, s.n / m, first, member) != SD_OK) abort();
-    if (sd_blocks_couple(&b, &RPY, &spheres, 3.0) != SD_OK) abort();
-    b.drag = s.drag;
-    b.spin = spin;
+    flocs.c.rho = 3.0;
+  if (sd_blocks_couple(&b, &flocs.c) != SD_OK) abort();
+      b.spin = spin;
     solve_rotating("clump blocks, coupled", &s, spin, sd_blocks_apply, &b, cpu() - begin);
     sd_blocks_free(&b);
     free(first);

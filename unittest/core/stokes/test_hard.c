@@ -1,7 +1,7 @@
 /* Hard cases for the solver: every one of them has to give the answer or say why not. And warm starts and Ritz values. */
 #include "clouds.h"
 
-#include "sd_precondition.h"
+#include "in_clumps.h"
 
 #include <string.h>
 
@@ -27,13 +27,10 @@ static void ten_thousand_random_clumps(void **state)
     if (status != SD_OK) fail_msg("clump %d: %s", k, sd_status_string(status));
     if (report.iterations > most) most = report.iterations;
 
-    const long first[2] = {0, n};
-    int member[12];
-    for (int i = 0; i < n; i++) member[i] = i;
+    in_clumps one;
     const sd_spheres spheres = {s.x, s.a, s.w};
     sd_blocks b = {0};
-    assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, n, 3, 1, first, member), SD_OK);
-    b.drag = s.drag;
+    assert_int_equal(sd_blocks_make(&b, clumps_of(&one, RPY, spheres, n, 3, n)), SD_OK);
     s.precondition = sd_blocks_apply;
     s.precondition_ctx = &b;
     free(scene_solve(&s, sd_solve_gradients, slip, 1e-6, 20, &status, &report));
@@ -130,14 +127,11 @@ static void coincident_spheres_with_preconditioners(void **state)
     scene_set(&s, i, s.x[3 * (i % 4)], s.x[3 * (i % 4) + 1], s.x[3 * (i % 4) + 2], s.a[i % 4], ETA);
   s.fast = 1;
   const sd_spheres spheres = {s.x, s.a, s.w};
-  const long first[2] = {0, 40};
-  int member[40];
-  for (int i = 0; i < 40; i++) member[i] = i;
+  in_clumps one;
   sd_blocks b = {0};
   sd_sparse f = {0};
-  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, 40, 3, 1, first, member), SD_OK);
+  assert_int_equal(sd_blocks_make(&b, clumps_of(&one, RPY, spheres, 40, 3, 40)), SD_OK);
   assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 40, 3, 3.0, 0, 1), SD_OK);
-  b.drag = f.drag = s.drag;
   double *slip = scene_uniform_slip(&s, U, 0.4 * U, 0), total[3][12] = {{0.0}};
   for (int i = 0; i < 40; i++) slip[3 * i + 2] = 0.1 * U * (i % 4);
   for (int k = 0; k < 3; k++) {
@@ -192,14 +186,11 @@ static void preconditioner_of_another_time(void **state)
   (void) state;
   scene s = cloud_flocs(1, 30, 2.0, 1.0, 0, ETA, 5);
   const sd_spheres spheres = {s.x, s.a, s.w};
-  const long first[2] = {0, 30};
-  int member[30];
-  for (int i = 0; i < 30; i++) member[i] = i;
+  in_clumps one;
   sd_blocks b = {0};
   sd_sparse f = {0};
-  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, 30, 3, 1, first, member), SD_OK);
+  assert_int_equal(sd_blocks_make(&b, clumps_of(&one, RPY, spheres, 30, 3, 30)), SD_OK);
   assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 30, 3, 3.0, 0, 1), SD_OK);
-  b.drag = f.drag = s.drag;
   double *slip = scene_uniform_slip(&s, U, 0, 0);
   for (double swell = 1.0; swell < 60.0; swell *= 3.0) {
     double *F[3];

@@ -1,7 +1,7 @@
 /* Smallest eigenvalue of the mobility, scaled to unit diagonal or by inertia, against LAPACK's of the dense matrix. */
 #include "clouds.h"
 
-#include "sd_precondition.h"
+#include "in_clumps.h"
 #include "sd_smallest.h"
 
 #include <string.h>
@@ -137,19 +137,12 @@ static void agrees_with_the_dense_matrix(void **state)
       check(&p, NULL, NULL, lowest, 0.15, 200);
       sd_sparse f = {0};
       assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, s.n, width, 3.0, 0, 1), SD_OK);
-      f.drag = s.drag;
-      f.spin = p.spin;
       check(&p, sd_sparse_apply, &f, lowest, 0.15, 20);
       sd_sparse_free(&f);
       if (kind == 1) {
-        long first[7];
-        int member[120];
-        for (int k = 0; k <= 6; k++) first[k] = 20 * k;
-        for (int i = 0; i < 120; i++) member[i] = i;
+        in_clumps six;
         sd_blocks b = {0};
-        assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, s.n, width, 6, first, member), SD_OK);
-        b.drag = s.drag;
-        b.spin = p.spin;
+        assert_int_equal(sd_blocks_make(&b, clumps_of(&six, RPY, spheres, s.n, width, 20)), SD_OK);
         check(&p, sd_blocks_apply, &b, lowest, 0.15, 20);
         sd_blocks_free(&b);
       }
@@ -180,8 +173,6 @@ static void agrees_with_the_dense_matrix_weighed_by_inertia(void **state)
       check(&p, NULL, NULL, lowest, 0.15, 200);
       sd_sparse f = {0};
       assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, p.s.n, width, 3.0, 0, 1), SD_OK);
-      f.drag = p.s.drag;
-      f.spin = p.spin;
       check(&p, sd_sparse_apply, &f, lowest, 0.15, 30);
       sd_sparse_free(&f);
       free(p.weight);

@@ -1,9 +1,9 @@
 #include "sd_clump_internal.h"
 
 #include "sd_linear.h"
-#include "sd_precondition.h"
 #include "sd_product.h"
 #include "sd_solve.h"
+#include "sd_sparse.h"
 #include "sd_tensor.h"
 
 #include <stdlib.h>
@@ -126,8 +126,6 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
       .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
   sd_sparse factor;
   if (sd_sparse_create(&factor, &law, &spheres, n, m, REACH, 0, 1) == SD_OK) {
-    factor.drag = drag;
-    factor.spin = A.spin;
     A.precondition = sd_sparse_apply;
     A.precondition_ctx = &factor;
   }

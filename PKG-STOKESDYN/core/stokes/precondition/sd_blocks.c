@@ -8,18 +8,17 @@
 
 static const double UNITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-static void uncouple(sd_blocks *b)
-{
-  free(b->friction);
-  b->friction = NULL;
-  sd_sparse_free(&b->far);
-}
+/* Of its size: a clump that has changed more gets a new block. */
+static const double BENT = 0.02;
 
 void sd_blocks_free(sd_blocks *b)
 {
-  uncouple(b);
+  for (int k = 0; k < b->blocks && b->shape; k++) sd_shape_free(&b->shape[k]);
+  free(b->shape);
+  sd_sparse_free(&b->far);
   free(b->first);
   free(b->member);
+  free(b->lone);
   free(b->start);
   free(b->inverse);
   free(b->turn);
@@ -30,40 +29,51 @@ void sd_blocks_free(sd_blocks *b)
   memset(b, 0, sizeof(*b));
 }
 
-static sd_status allocate(sd_blocks *b, const sd_spheres *s, int n, int width, int blocks,
-                          const long *first, const int *member)
+/* Who is in which block: those that take part. Returns the spheres of the largest one. */
+static long fill_blocks(sd_blocks *b, const sd_precondition_case *c)
 {
-  b->n = n;
-  b->width = width;
-  b->parts = 1;
-  b->blocks = blocks;
-  b->first = malloc(sizeof(long) * (size_t) (blocks + 1));
-  b->start = malloc(sizeof(long) * (size_t) (blocks + 1));
-  b->member = malloc(sizeof(int) * (size_t) (first[blocks] + 1));
-  b->turn = calloc((size_t) blocks + 1, sizeof(double) * 9);
-  b->mobility = calloc((size_t) blocks + 1, sizeof(double) * 9);
-  b->root = calloc(2 * (size_t) n + 1, sizeof(double));
-  if (!b->first || !b->start || !b->member || !b->turn || !b->mobility || !b->root)
-    return SD_ENOMEMORY;
   long count = 0, largest = 0;
+  for (long i = 0; i < b->n; i++) b->lone[i] = c->spheres.a[i] > 0.0;
   b->start[0] = 0;
-  for (int k = 0; k < blocks; k++) {
+  for (int k = 0; k < b->blocks; k++) {
     b->first[k] = count;
-    for (long l = first[k]; l < first[k + 1]; l++) {
-      const int i = member[l];
-      if (!(s->a[i] > 0.0)) continue;
+    for (long l = c->first[k]; l < c->first[k + 1]; l++) {
+      const int i = c->member[l];
+      if (!b->lone[i]) continue;
       b->member[count++] = i;
-      b->root[2 * (long) i] = sqrt(6.0 * SD_PI * s->a[i]) / s->w[i];
-      b->root[2 * (long) i + 1] = sqrt(8.0 * SD_PI * s->a[i]) * s->a[i] / s->w[i];
+      b->lone[i] = 0;
     }
-    const long m = count - b->first[k];
+    const long m = count - b->first[k], size = b->width * m;
     if (m > largest) largest = m;
-    b->start[k + 1] = b->start[k] + width * width * m * m;
+    b->start[k + 1] = b->start[k] + size * size;
   }
-  b->first[blocks] = count;
+  b->first[b->blocks] = count;
+  return largest;
+}
+
+static sd_status allocate(sd_blocks *b, const sd_precondition_case *c)
+{
+  const size_t blocks = (size_t) c->clumps, n = (size_t) c->n;
+  b->n = c->n;
+  b->width = c->width;
+  b->part = c->part;
+  b->parts = c->parts;
+  b->blocks = c->clumps;
+  b->first = malloc(sizeof(long) * (blocks + 1));
+  b->start = malloc(sizeof(long) * (blocks + 1));
+  b->member = malloc(sizeof(int) * ((size_t) c->first[blocks] + 1));
+  b->lone = malloc(n + 1);
+  b->turn = calloc(blocks + 1, sizeof(double) * 9);
+  b->mobility = calloc(blocks + 1, sizeof(double) * 9);
+  b->root = malloc(sizeof(double) * (2 * n + 1));
+  if (c->rho > 0.0) b->shape = calloc(blocks + 1, sizeof(sd_shape));
+  if (!b->first || !b->start || !b->member || !b->lone || !b->turn || !b->mobility || !b->root ||
+      (c->rho > 0.0 && !b->shape))
+    return SD_ENOMEMORY;
+  const long largest = fill_blocks(b, c);
   b->inverse = malloc(sizeof(double) * (size_t) (b->start[blocks] + 1));
-  b->rigid = calloc((size_t) (3 * width * count + 1), sizeof(double));
-  b->scratch = malloc(sizeof(double) * (size_t) (2 * width * largest + 9 * (long) blocks + 1));
+  b->rigid = calloc((size_t) (3 * b->width * b->first[blocks] + 1), sizeof(double));
+  b->scratch = malloc(sizeof(double) * (2 * (size_t) (b->width * largest) + 9 * blocks + 1));
   return b->inverse && b->rigid && b->scratch ? SD_OK : SD_ENOMEMORY;
 }
 
@@ -85,35 +95,38 @@ static void inverse3(const double *S, double *T)
   for (int p = 0; p < 9; p++) T[p] /= det;
 }
 
-/* rigid = B W and its friction S = W^T B W */
+/* rigid = B W and its friction S = W^T B W. A rigid translation is one velocity for all spheres and no
+ * rotation, so column q of B W is the sum of columns q of all spheres of B = D^1/2 C^-1 D^1/2, and S is
+ * the sum of its rows of forces. */
 static void rigid_translations(sd_blocks *b, int k, double S[9])
 {
-  const int *member = b->member + b->first[k], w = b->width;
+  const int *member = b->member + b->first[k], width = b->width;
   const int m = (int) (b->first[k + 1] - b->first[k]);
-  const long size = (long) w * m;
+  const long size = (long) width * m;
   const double *A = b->inverse + b->start[k];
-  double *BW = b->rigid + 3 * w * b->first[k];
+  double *BW = b->rigid + 3 * width * b->first[k];
   memset(BW, 0, sizeof(double) * 3 * (size_t) size);
   for (int j = 0; j < m; j++)
     for (int q = 0; q < 3; q++)
       for (long i = 0; i < size; i++)
-        BW[3 * i + q] += A[i + size * (w * (long) j + q)] * root(b, member[j], q);
+        BW[3 * i + q] += A[i + size * (width * (long) j + q)] * root(b, member[j], q);
   for (int p = 0; p < 9; p++) S[p] = 0.0;
   for (int i = 0; i < m; i++)
-    for (int p = 0; p < w; p++)
+    for (int p = 0; p < width; p++)
       for (int q = 0; q < 3; q++) {
-        BW[3 * (w * (long) i + p) + q] *= root(b, member[i], p);
-        if (p < 3) S[3 * p + q] += BW[3 * (w * (long) i + p) + q];
+        BW[3 * (width * (long) i + p) + q] *= root(b, member[i], p);
+        if (p < 3) S[3 * p + q] += BW[3 * (width * (long) i + p) + q];
       }
 }
 
-sd_status sd_blocks_renew(sd_blocks *b, const sd_law *law, const sd_spheres *s, int k)
+sd_status sd_blocks_renew(sd_blocks *b, const sd_precondition_case *c, int k)
 {
   const int m = (int) (b->first[k + 1] - b->first[k]), size = b->width * m;
   double *A = b->inverse + b->start[k], S[9];
   sd_blocks_turn(b, k, UNITY);
   if (m == 0) return SD_OK;
-  const sd_status status = sd_unit_cholesky(law, s, b->member + b->first[k], m, b->width, A);
+  const sd_status status =
+      sd_unit_cholesky(&c->law, &c->spheres, b->member + b->first[k], m, b->width, A);
   if (status != SD_OK) return status;
   if (sd_cholesky_inverse(size, A) != SD_OK) return SD_EINDEFINITE;
   rigid_translations(b, k, S);
@@ -121,25 +134,87 @@ sd_status sd_blocks_renew(sd_blocks *b, const sd_law *law, const sd_spheres *s, 
   return SD_OK;
 }
 
-sd_status sd_blocks_create_part(sd_blocks *b, const sd_law *law, const sd_spheres *s, int n,
-                                int width, int blocks, const long *first, const int *member,
-                                int part, int parts)
+/* x [3m] of the spheres of block k */
+static int places(const sd_blocks *b, const sd_spheres *s, int k, double *x)
 {
-  memset(b, 0, sizeof(*b));
-  sd_status status = allocate(b, s, n, width, blocks, first, member);
-  b->part = part;
-  b->parts = parts;
-  for (int k = part; k < blocks && status == SD_OK; k += parts)
-    status = sd_blocks_renew(b, law, s, k);
-  for (int k = 0; k < blocks && status == SD_OK; k++) sd_blocks_turn(b, k, UNITY);
+  const int m = (int) (b->first[k + 1] - b->first[k]);
+  for (int l = 0; l < m; l++)
+    memcpy(x + 3 * l, s->x + 3 * (long) b->member[b->first[k] + l], 3 * sizeof(double));
+  return m;
+}
+
+/* The shape that block k has now */
+static sd_status shape(sd_blocks *b, const sd_spheres *s, int k)
+{
+  double *x = b->scratch;
+  const int m = places(b, s, k, x);
+  if (m == 0) return SD_OK;
+  double *a = x + 3 * (long) m;
+  for (int l = 0; l < m; l++) a[l] = s->a[b->member[b->first[k] + l]];
+  sd_shape_free(&b->shape[k]);
+  return sd_shape_create(m, x, a, &b->shape[k]);
+}
+
+/* What couples the blocks is known where they were made: to all parts. */
+static sd_status share(sd_blocks *b, const sd_precondition_case *c)
+{
+  if (b->parts == 1) return SD_OK;
+  for (int k = 0; k < b->blocks; k++) {
+    if (k % b->parts == b->part) continue;
+    const size_t spheres = (size_t) (b->first[k + 1] - b->first[k]);
+    memset(b->rigid + 3 * b->width * b->first[k], 0, sizeof(double) * 3 * b->width * spheres);
+    memset(b->mobility + 9 * (long) k, 0, sizeof(double) * 9);
+  }
+  const int numbers = 3 * b->width * (int) b->first[b->blocks];
+  const sd_status status = c->sum(c->sum_ctx, b->rigid, numbers);
+  return status == SD_OK ? c->sum(c->sum_ctx, b->mobility, 9 * b->blocks) : status;
+}
+
+/* Uncoupled blocks are a preconditioner as well, if they are so in all parts. */
+static sd_status couple_or_not(sd_blocks *b, const sd_precondition_case *c)
+{
+  if (c->rho == 0.0 || b->blocks == 0) return SD_OK;
+  const sd_status coupled = sd_precondition_agree(c, sd_blocks_couple(b, c));
+  if (coupled != SD_OK) sd_sparse_free(&b->far);
+  return SD_OK;
+}
+
+sd_status sd_blocks_make(sd_blocks *b, const sd_precondition_case *c)
+{
+  sd_status status = allocate(b, c);
+  if (status == SD_OK) sd_unit_roots(&c->spheres, c->n, b->root);
+  for (int k = 0; k < b->blocks && status == SD_OK; k++) {
+    sd_blocks_turn(b, k, UNITY);
+    if (b->shape) status = shape(b, &c->spheres, k);
+    if (status == SD_OK && k % b->parts == b->part) status = sd_blocks_renew(b, c, k);
+  }
+  status = sd_precondition_agree(c, status);
+  if (status == SD_OK) status = share(b, c);
+  if (status == SD_OK) status = couple_or_not(b, c);
   if (status != SD_OK) sd_blocks_free(b);
   return status;
 }
 
-sd_status sd_blocks_create(sd_blocks *b, const sd_law *law, const sd_spheres *s, int n, int width,
-                           int blocks, const long *first, const int *member)
+sd_status sd_blocks_move(sd_blocks *b, const sd_precondition_case *c)
 {
-  return sd_blocks_create_part(b, law, s, n, width, blocks, first, member, 0, 1);
+  sd_status status = SD_OK;
+  int bent = 0;
+  for (int k = 0; k < b->blocks && status == SD_OK; k++) {
+    double R[9], centre[3];
+    if (places(b, &c->spheres, k, b->scratch) == 0) continue;
+    const sd_shape *before = &b->shape[k];
+    if (sd_shape_pose(before, b->scratch, R, centre) <= BENT * before->size)
+      sd_blocks_turn(b, k, R);
+    else {
+      bent = 1;
+      sd_blocks_turn(b, k, UNITY);
+      status = shape(b, &c->spheres, k);
+      if (status == SD_OK && k % b->parts == b->part) status = sd_blocks_renew(b, c, k);
+    }
+  }
+  status = sd_precondition_agree(c, status);
+  if (status == SD_OK && bent) status = share(b, c);
+  return status == SD_OK ? couple_or_not(b, c) : status;
 }
 
 void sd_blocks_turn(sd_blocks *b, int block, const double *R)
@@ -147,40 +222,38 @@ void sd_blocks_turn(sd_blocks *b, int block, const double *R)
   memcpy(b->turn + 9 * (long) block, R, 9 * sizeof(double));
 }
 
-sd_status sd_blocks_couple(sd_blocks *b, const sd_law *law, const sd_spheres *s, double rho)
+/* A sphere of radius a and viscosity eta has the friction f = 6 pi eta a. That of clump k: in the
+ * middle of its spheres (weights: their radii), eta = sum(eta_i a_i)/sum(a_i), f = tr S/3. */
+static void as_one_sphere(const sd_blocks *b, const sd_spheres *s, int k, double x[3], double *a,
+                          double *w)
 {
-  const size_t K = (size_t) b->blocks;
-  uncouple(b);
-  double *x = malloc(sizeof(double) * 5 * (K + 1));
-  b->friction = calloc(K + 1, sizeof(double));
-  if (!x || !b->friction) {
-    free(x);
-    return SD_ENOMEMORY;
+  double sum = 0.0, radii = 0.0, S[9];
+  *a = *w = x[0] = x[1] = x[2] = 0.0;
+  for (long l = b->first[k]; l < b->first[k + 1]; l++) {
+    const int i = b->member[l];
+    for (int d = 0; d < 3; d++) x[d] += s->a[i] * s->x[3 * (long) i + d];
+    radii += s->a[i];
+    sum += s->a[i] / (s->w[i] * s->w[i]);
   }
-  double *a = x + 3 * K, *w = a + K;
-  for (size_t k = 0; k < K; k++) {
-    /* In the middle, with the mean friction and the mean viscosity of the clump */
-    double sum = 0.0, radii = 0.0, S[9];
-    a[k] = w[k] = x[3 * k] = x[3 * k + 1] = x[3 * k + 2] = 0.0;
-    for (long l = b->first[k]; l < b->first[k + 1]; l++) {
-      const int i = b->member[l];
-      for (int d = 0; d < 3; d++) x[3 * k + d] += s->a[i] * s->x[3 * (long) i + d];
-      radii += s->a[i];
-      sum += s->a[i] / (s->w[i] * s->w[i]);
-    }
-    if (radii == 0.0) continue;
-    for (int d = 0; d < 3; d++) x[3 * k + d] /= radii;
-    inverse3(b->mobility + 9 * k, S);
-    b->friction[k] = (S[0] + S[4] + S[8]) / 3.0;
-    a[k] = b->friction[k] * radii / (6.0 * SD_PI * sum);
-    w[k] = sqrt(radii / sum);
-  }
+  if (radii == 0.0) return;
+  for (int d = 0; d < 3; d++) x[d] /= radii;
+  inverse3(b->mobility + 9 * (long) k, S);
+  *a = (S[0] + S[4] + S[8]) / 3.0 * radii / (6.0 * SD_PI * sum);
+  *w = sqrt(radii / sum);
+}
+
+sd_status sd_blocks_couple(sd_blocks *b, const sd_precondition_case *c)
+{
+  const size_t blocks = (size_t) b->blocks;
+  sd_sparse_free(&b->far);
+  double *x = malloc(sizeof(double) * 5 * (blocks + 1));
+  if (!x) return SD_ENOMEMORY;
+  double *a = x + 3 * blocks, *w = a + blocks;
+  for (int k = 0; k < b->blocks; k++) as_one_sphere(b, &c->spheres, k, x + 3 * k, a + k, w + k);
   const sd_spheres bodies = {x, a, w};
   const sd_status status =
-      sd_sparse_create(&b->far, law, &bodies, b->blocks, 3, rho, b->part, b->parts);
+      sd_sparse_create(&b->far, &c->law, &bodies, b->blocks, 3, c->rho, b->part, b->parts);
   free(x);
-  if (status != SD_OK) uncouple(b);
-  b->far.drag = b->friction;
   return status;
 }
 
@@ -198,53 +271,53 @@ static void turned_back(const double *R, const double *v, int width, double *out
     for (int d = 0; d < 3; d++) out[d] = R[d] * v[0] + R[3 + d] * v[1] + R[6 + d] * v[2];
 }
 
-/* z += (B W S^-1 Q S^-1 W^T B - B W S^-1 W^T B) r, the last term of this part's blocks */
-static sd_status couple(const sd_blocks *b, const double *r, double *z)
+/* z += (B W S^-1 Q S^-1 W^T B - B W S^-1 W^T B) r, from right to left; the second term is of this
+ * part's blocks. Blocks stand in their axes at set-up, Q in those of now. */
+static void couple(const sd_blocks *b, const double *r, double *z)
 {
-  const int w = b->width;
+  const int width = b->width;
   double *own = b->scratch, *velocity = own + 3 * (long) b->blocks,
          *coupled = velocity + 3 * (long) b->blocks;
-  for (int k = 0; k < b->blocks; k++) {
+  for (int k = 0; k < b->blocks; k++) { /* own = S^-1 W^T B r */
     const double *R = b->turn + 9 * (long) k;
     double force[3] = {0.0, 0.0, 0.0};
     for (long l = b->first[k]; l < b->first[k + 1]; l++) {
       double v[6];
-      turned_back(R, r + w * (long) b->member[l], w, v);
-      for (int p = 0; p < w; p++)
-        for (int q = 0; q < 3; q++) force[q] += b->rigid[3 * (w * l + p) + q] * v[p];
+      turned_back(R, r + width * (long) b->member[l], width, v);
+      for (int p = 0; p < width; p++)
+        for (int q = 0; q < 3; q++) force[q] += b->rigid[3 * (width * l + p) + q] * v[p];
     }
     turned(b->mobility + 9 * (long) k, force, 3, own + 3 * (long) k);
     turned(R, own + 3 * (long) k, 3, velocity + 3 * (long) k);
   }
-  const sd_status status = sd_sparse_apply((void *) &b->far, velocity, coupled);
-  for (int k = 0; k < b->blocks; k++) {
+  sd_sparse_apply((void *) &b->far, velocity, coupled);
+  for (int k = 0; k < b->blocks; k++) { /* z += B W (S^-1 Q own - own) */
     const double *R = b->turn + 9 * (long) k;
-    double c[3], e[3];
-    turned_back(R, coupled + 3 * (long) k, 3, c);
-    turned(b->mobility + 9 * (long) k, c, 3, e);
+    double force[3], e[3];
+    turned_back(R, coupled + 3 * (long) k, 3, force);
+    turned(b->mobility + 9 * (long) k, force, 3, e);
     if (k % b->parts == b->part)
       for (int q = 0; q < 3; q++) e[q] -= own[3 * (long) k + q];
     for (long l = b->first[k]; l < b->first[k + 1]; l++) {
       double f[6] = {0.0}, v[6];
-      for (int p = 0; p < w; p++)
-        for (int q = 0; q < 3; q++) f[p] += b->rigid[3 * (w * l + p) + q] * e[q];
-      turned(R, f, w, v);
-      for (int p = 0; p < w; p++) z[w * (long) b->member[l] + p] += v[p];
+      for (int p = 0; p < width; p++)
+        for (int q = 0; q < 3; q++) f[p] += b->rigid[3 * (width * l + p) + q] * e[q];
+      turned(R, f, width, v);
+      for (int p = 0; p < width; p++) z[width * (long) b->member[l] + p] += v[p];
     }
   }
-  return status;
 }
 
 /* z = B r in the rows of block k */
 static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
 {
-  const int *member = b->member + b->first[k], w = b->width;
-  const int m = (int) (b->first[k + 1] - b->first[k]), size = w * m;
+  const int *member = b->member + b->first[k], width = b->width;
+  const int m = (int) (b->first[k + 1] - b->first[k]), size = width * m;
   const double *A = b->inverse + b->start[k], *R = b->turn + 9 * (long) k;
   double *in = b->scratch, *out = in + size;
   for (int l = 0; l < m; l++) {
-    turned_back(R, r + w * (long) member[l], w, in + w * l);
-    for (int p = 0; p < w; p++) in[w * l + p] *= root(b, member[l], p);
+    turned_back(R, r + width * (long) member[l], width, in + width * l);
+    for (int p = 0; p < width; p++) in[width * l + p] *= root(b, member[l], p);
   }
   memset(out, 0, sizeof(double) * (size_t) size);
   for (int q = 0; q < size; q++) {
@@ -252,21 +325,20 @@ static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
     for (int p = 0; p < size; p++) out[p] += column[p] * v;
   }
   for (int l = 0; l < m; l++) {
-    for (int p = 0; p < w; p++) out[w * l + p] *= root(b, member[l], p);
-    turned(R, out + w * l, w, z + w * (long) member[l]);
+    for (int p = 0; p < width; p++) out[width * l + p] *= root(b, member[l], p);
+    turned(R, out + width * l, width, z + width * (long) member[l]);
   }
 }
 
 sd_status sd_blocks_apply(void *ctx, const double *r, double *z)
 {
   const sd_blocks *b = ctx;
-  const long w = b->width;
-  memset(z, 0, sizeof(double) * (size_t) (w * b->n));
-  if (b->part == 0)
-    for (long i = 0; i < b->n; i++)
-      if (b->root[2 * i] == 0.0)
-        for (int d = 0; d < w; d++)
-          z[w * i + d] = b->drag[i] == 0.0 ? 0.0 : (d < 3 ? b->drag[i] : b->spin[i]) * r[w * i + d];
+  const long width = b->width;
+  memset(z, 0, sizeof(double) * (size_t) (width * b->n));
+  for (int i = 0; i < b->n && b->part == 0; i++)
+    for (int p = 0; p < width && b->lone[i]; p++)
+      z[width * i + p] = root(b, i, p) * root(b, i, p) * r[width * i + p];
   for (int k = b->part; k < b->blocks; k += b->parts) apply_block(b, k, r, z);
-  return b->friction ? couple(b, r, z) : SD_OK;
+  if (b->far.n > 0) couple(b, r, z);
+  return SD_OK;
 }

@@ -2,139 +2,139 @@
 
 #include <math.h>
 
-/* Solves of which means are taken, and after which a ratio counts as measured. */
+/* Solves of which means are taken. */
 static const double TRIAL = 8.0;
-/* Of iterations: a change for less is not worth it. */
-static const double HARDLY = 3.0;
+/* Iterations with over those without, before they are known. */
+static const double GUESS = 0.25;
+/* Scenes that are worth a preconditioner take as many for each digit. */
+static const double PER_DIGIT = 7.0;
+/* Set-ups of blocks by list that a change must have been worth: the first warm starts are poor. */
+static const double PATIENCE = 4.0;
 
-static sd_sparse_size size_of(const sd_rows *rows)
+/* Operations, all in pairs of a product by list. A pair of a cloud serves both of its spheres and reads
+ * no list; vectors cost by spheres, in an iteration and in a preconditioner; a stored block that is
+ * applied costs what a pair costs, as "with = 1 + stored blocks / pairs" says. Blocks of a matrix that
+ * is factored have their tensor evaluated by itself, and an inverse in double precision takes more
+ * than a factor in single. Measured within a factor of 1.5 (bench_core), which is enough: what decides
+ * in the end is iterations. */
+static const double CLOUD_PAIR = 1.0 / 3.0, SPHERE = 40.0, SPHERE_APPLIED = 20.0, FACTORED = 15.0,
+                    INVERTED = 40.0;
+/* Blocks a sphere in the sparse factor of a large compact cloud, rho 3; a small one has half of its
+ * pairs. */
+static const double REACH = 42.0;
+
+static double product(double n, double pairs)
 {
-  sd_sparse_size size = {0.0, 0.0, 0.0};
-  for (int k = 0; k < rows->columns; k++) {
-    const double m = (double) (rows->first[k + 1] - rows->first[k]);
-    size.blocks += m;
-    size.squares += m * m;
-    size.cubes += m * m * m;
+  return pairs + SPHERE * n;
+}
+
+static double column(double n)
+{
+  return 1.0 / (1.0 / REACH + 2.0 / (n + 1.0));
+}
+
+sd_cost sd_cost_sparse(double n, int width)
+{
+  const double one = product(n, CLOUD_PAIR * n * n), m = column(n), heavy = width / 3.0;
+  return (sd_cost){.iteration = 1.0 + (heavy * m + SPHERE_APPLIED) * n / one,
+                   .make = heavy * FACTORED * m * m * n / one};
+}
+
+sd_cost sd_cost_blocks(double n, int width, double clumps, double stored)
+{
+  const double one = product(n, CLOUD_PAIR * n * n), m = column(clumps), heavy = width / 3.0;
+  return (sd_cost){.iteration = 1.0 + (heavy * stored + m * clumps + SPHERE_APPLIED * n) / one,
+                   .make = heavy * INVERTED * stored / one,
+                   .solve = FACTORED * m * m * clumps / one};
+}
+
+sd_cost sd_cost_blocks_by_list(double n, int width, double pairs, double stored)
+{
+  const double one = product(n, pairs), heavy = width / 3.0;
+  return (sd_cost){.iteration = 1.0 + (heavy * stored + SPHERE_APPLIED * n) / one,
+                   .solve = heavy * INVERTED * stored / one};
+}
+
+static double cost_with(const sd_cost *k, double iterations)
+{
+  return iterations > 0.0 ? k->solve + iterations * k->iteration : 0.0;
+}
+
+/* As far as it is not known: one iteration at least */
+static double guess_with(const sd_cost *k, double iterations)
+{
+  return iterations > 0.0 ? cost_with(k, fmax(1.0, GUESS * iterations)) : 0.0;
+}
+
+static double price(const sd_cost *k)
+{
+  return k->make + PATIENCE * k->solve;
+}
+
+int sd_choice_at_once(const sd_cost *k, double tolerance)
+{
+  const double expected = PER_DIGIT * fmax(0.0, -log10(tolerance));
+  return k->make + guess_with(k, expected) < expected;
+}
+
+/* Both ways have been gone, one after the other: the means are those of neighbouring solves. */
+static void measure(sd_choice *c)
+{
+  if (!(c->other > 0.0 && c->mean > 0.0)) return;
+  c->ratio = c->with != SD_WITHOUT ? c->mean / c->other : c->other / c->mean;
+  c->other = 0.0;
+}
+
+/* Begin anew, on this way or the other. */
+static void begin(sd_choice *c, sd_way way)
+{
+  if (c->with != way) {
+    measure(c);
+    c->other = c->mean;
   }
-  return size;
+  c->with = way;
+  c->spent = c->solves = c->mean = 0.0;
 }
 
-sd_sparse_size sd_sparse_sized(const sd_sparse *f)
+/* What a solve without would cost, of one with */
+static double without(const sd_choice *c, double paid)
 {
-  return size_of(&f->rows);
+  if (c->with == SD_WITH_FOR_GOOD) return INFINITY;
+  if (c->other > 0.0) return c->other;
+  return paid / (c->ratio > 0.0 ? c->ratio : GUESS);
 }
 
-sd_status sd_sparse_count(const sd_spheres *s, int n, double rho, int part, int parts,
-                          sd_sparse_size *size)
+/* A life of the preconditioner ends, and `solves` of them have paid for it and for its wear. The next
+ * way: by its costs a solve against those without. */
+static sd_way after_life(const sd_choice *c, const sd_cost *k)
 {
-  *size = (sd_sparse_size){0.0, 0.0, 0.0};
-  sd_rows rows = {0};
-  const sd_status status = sd_rows_find(&rows, s, n, rho, part, parts);
-  if (status == SD_OK) *size = size_of(&rows);
-  sd_rows_free(&rows);
-  return status;
+  const double life = c->mean + (k->make + c->spent) / fmax(1.0, c->solves);
+  return life < without(c, c->mean) ? (sd_way) c->with : SD_WITHOUT;
 }
 
-/* Measured: 0.75 ns a pair, with torques 1.85 ns; the rest of an iteration goes by spheres. */
-static double iteration(double n, int width)
+void sd_choice_lost(sd_choice *c, const sd_cost *k)
 {
-  return width == 3 ? 0.75 * n * n + 90.0 * n : 1.85 * n * n + 150.0 * n;
+  if (c->with != SD_WITHOUT && c->solves > 0.0) begin(c, after_life(c, k));
 }
 
-sd_costs sd_costs_sparse(int n, int width, const sd_sparse_size *z)
+/* Two ways are known by one number each: the ratio of their costs in successive solves, and this one's
+ * latest mean. With: a solve may cost what it did when the preconditioner was new, or what one without
+ * would, if that is less; what it costs more is spent. Without: what it costs more than one with. */
+int sd_choice_learn(sd_choice *c, const sd_cost *k, int iterations)
 {
-  sd_costs k = {.without = iteration(n, width), .ratio = 0.25};
-  if (width == 3) {
-    k.with = k.without + 3.1 * z->blocks + 40.0 * n;
-    k.set_up = 4000.0 * n + 80.0 * z->blocks + 22.0 * z->squares + 0.053 * z->cubes;
-  } else {
-    k.with = k.without + 15.5 * z->blocks + 80.0 * n;
-    k.set_up = 4000.0 * n + 200.0 * z->blocks + 80.0 * z->squares + 0.61 * z->cubes;
-  }
-  return k;
-}
-
-sd_costs sd_costs_blocks(int n, int width, int blocks, const long *first, int kept)
-{
-  sd_costs k = {.without = iteration(n, width), .ratio = 0.15};
-  double make = 0.0;
-  k.with = k.without + (width == 3 ? 80.0 : 120.0) * n;
-  for (int b = 0; b < blocks; b++) {
-    const double size = width * (double) (first[b + 1] - first[b]);
-    make += (9.0 + 0.025 * size) * size * size;
-    k.with += 0.2 * size * size;
-  }
-  k.every = 150.0 * blocks * fmin(blocks, 80.0) + (kept ? 0.0 : make);
-  k.set_up = kept ? make : 0.0;
-  return k;
-}
-
-/* Measured: 2.2 ns a pair, with torques 4.1 ns. */
-sd_costs sd_costs_by_list(int n, double pairs, int width, int blocks, const long *first,
-                          const double *share, int whole)
-{
-  sd_costs k = {.ratio = whole ? 0.05 : 0.4};
-  k.without = width == 3 ? 2.2 * pairs + 90.0 * n : 4.1 * pairs + 150.0 * n;
-  k.with = k.without + (width == 3 ? 80.0 : 120.0) * n;
-  for (int b = 0; b < blocks; b++) {
-    const double size = width * (double) (first[b + 1] - first[b]);
-    k.with += share[b] * 0.2 * size * size;
-    k.every += share[b] * (9.0 + 0.025 * size) * size * size;
-  }
-  return k;
-}
-
-static double cost_without(const sd_costs *k, double iterations)
-{
-  return iterations * k->without;
-}
-
-static double cost_with(const sd_costs *k, double iterations)
-{
-  return iterations > 0.0 ? iterations * k->with + k->every : 0.0;
-}
-
-/* Iterations with, from those without: one at least. */
-static double fewer(double iterations, double ratio)
-{
-  return iterations > 0.0 ? fmax(1.0, ratio * iterations) : 0.0;
-}
-
-void sd_choice_begin(sd_choice *c, const sd_costs *k, double tolerance)
-{
-  /* Scenes that are worth it take 7 iterations a digit or more. */
-  const double expected = 7.0 * fmax(0.0, -log10(tolerance));
-  *c = (sd_choice){.begun = 1.0, .ratio = k->ratio};
-  c->with = k->set_up + cost_with(k, fewer(expected, k->ratio)) < cost_without(k, expected);
-}
-
-void sd_choice_learn(sd_choice *c, const sd_costs *k, int iterations, int made)
-{
+  const int with = c->with != SD_WITHOUT;
+  const double paid = with ? cost_with(k, iterations) : iterations;
   c->solves++;
-  c->iterations += (iterations - c->iterations) / fmin(c->solves, 2.0 * TRIAL);
-  if (c->solves == TRIAL && c->other > 0.0 && c->iterations > 0.0) {
-    const double ratio = c->with ? c->iterations / c->other : c->other / c->iterations;
-    c->ratio = fmin(fmax(ratio, 0.02), 1.0);
-  }
-  if (c->with) {
-    c->gain += cost_with(k, iterations) - cost_without(k, iterations / c->ratio);
-    if (made) c->gain += k->set_up;
-    c->gain = fmax(c->gain, -k->set_up); /* what it has earned pays for the next one */
-  } else
-    c->gain = fmax(
-        0.0, c->gain + cost_without(k, iterations) - cost_with(k, fewer(iterations, c->ratio)));
-  if (c->gain < HARDLY * k->without + (c->with ? 0.5 : 1.0) * k->set_up) return;
-  c->other = c->iterations;
-  c->with = !c->with;
-  c->solves = c->iterations = c->gain = 0.0;
-}
+  if (!with)
+    c->mean += (paid - c->mean) / fmin(c->solves, 2.0 * TRIAL);
+  else if (c->solves <= TRIAL)
+    c->mean += (paid - c->mean) / c->solves;
+  if (c->solves == TRIAL) measure(c);
 
-int sd_wear_learn(sd_wear *w, const sd_costs *k, int iterations)
-{
-  w->solves++;
-  if (w->solves <= TRIAL)
-    w->fresh += (iterations - w->fresh) / w->solves;
-  else
-    w->excess = fmax(0.0, w->excess + iterations - w->fresh);
-  return w->excess * k->with > k->set_up;
+  double better = c->ratio > 0.0 ? c->ratio * paid : guess_with(k, iterations);
+  if (with) better = c->solves > TRIAL ? fmin(c->mean, without(c, paid)) : without(c, paid);
+  c->spent = fmax(0.0, c->spent + paid - better);
+  if (c->spent < price(k)) return 0;
+  begin(c, with ? after_life(c, k) : SD_WITH);
+  return with && c->with != SD_WITHOUT;
 }

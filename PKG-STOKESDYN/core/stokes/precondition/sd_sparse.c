@@ -6,8 +6,9 @@
 #include "sd_product_internal.h"
 #include "sd_unit.h"
 
-/* A block by columns of floats. Width 3: each column has a fourth number, 0, as the kernel of sd_product_internal.h wants it;
- * width 6: the kernel below reads the next two numbers with each column, which do no harm. */
+/* A block by columns of floats. Width 3: each column has a fourth number, 0, as the kernel of
+ * sd_product_internal.h wants it; width 6: the kernel below reads the next two numbers with each
+ * column, which do no harm. */
 static int block_floats(int width)
 {
   return width == 3 ? 12 : 36;
@@ -17,6 +18,7 @@ void sd_sparse_free(sd_sparse *f)
 {
   sd_rows_free(&f->rows);
   free(f->value);
+  free(f->root);
   free(f->scratch);
   memset(f, 0, sizeof(*f));
 }
@@ -34,7 +36,11 @@ static inline float dot(const float *x, const float *y, int n)
   return sum;
 }
 
-/* Last columns X, [width] times [size], of R^-T, R the lower Cholesky factor (column-major): R^T X = E from the bottom up. */
+/* The column of L that belongs to sphere i. Of all columns with rows in the set s of spheres, i last
+ * in it, the nearest one to the inverse is C_ss^-1 e_i / (e_i . C_ss^-1 e_i)^1/2 (Schaefer et al.,
+ * Theorem 2.1; with blocks, e_i are `width` unit vectors). With C_ss = R R^T, R lower, this is
+ * R^-T e_i: as i comes last, R^-1 e_i = e_i / R_ii and R_ii^2 = 1/(e_i . C_ss^-1 e_i).
+ * So X [width][size], these columns, solves R^T X = E from the bottom up, R column-major. */
 static void last_columns(const float *R, int size, int width, float *X)
 {
   for (int k = size - 1; k >= 0; k--) {
@@ -72,27 +78,27 @@ static sd_status local_factor(const sd_law *law, const sd_spheres *s, const int 
   return second;
 }
 
+/* Each column from the C of the spheres that it sees, its own last. */
 static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
 {
   const sd_rows *rows = &f->rows;
   const size_t blocks = (size_t) rows->first[rows->columns], most = (size_t) rows->largest;
-  const size_t w = (size_t) f->width;
-  f->value = malloc(sizeof(float) * (block_floats(f->width) * blocks + 2));
-  f->scratch = malloc(sizeof(double) * (16 * (size_t) f->n + 1));
+  const size_t size = (size_t) f->width * most, floats = (size_t) block_floats(f->width);
+  f->value = malloc(sizeof(float) * (floats * blocks + 2));
   int *member = malloc(sizeof(int) * (most + 1));
-  float *A = malloc(sizeof(float) * (w * w * most * most + 1)),
-        *X = malloc(sizeof(float) * (w * w * most + 1));
+  float *A = malloc(sizeof(float) * (size * size + 1)),
+        *X = malloc(sizeof(float) * ((size_t) f->width * size + 1));
   double *in_double = NULL;
-  sd_status status = f->value && f->scratch && member && A && X ? SD_OK : SD_ENOMEMORY;
-  if (f->value) memset(f->value + block_floats(f->width) * blocks, 0, 2 * sizeof(float));
+  sd_status status = f->value && member && A && X ? SD_OK : SD_ENOMEMORY;
+  if (f->value) memset(f->value + floats * blocks, 0, 2 * sizeof(float));
   for (int k = 0; k < rows->columns && status == SD_OK; k++) {
     const int *row = rows->row + rows->first[k];
     const int m = (int) (rows->first[k + 1] - rows->first[k]);
-    for (int l = 0; l < m; l++) member[l] = row[m - 1 - l]; /* its own last */
+    for (int l = 0; l < m; l++) member[l] = row[m - 1 - l];
     status = local_factor(law, s, member, m, f->width, rows->largest, A, &in_double);
     if (status != SD_OK) break;
     last_columns(A, f->width * m, f->width, X);
-    store(X, m, f->width, f->value + block_floats(f->width) * rows->first[k]);
+    store(X, m, f->width, f->value + floats * (size_t) rows->first[k]);
   }
   free(member);
   free(A);
@@ -112,26 +118,36 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
   f->width = width;
   f->part = part;
   f->parts = parts;
-  sd_status status = sd_rows_find(&f->rows, s, n, rho, part, parts);
+  f->root = malloc(sizeof(double) * (2 * (size_t) n + 1));
+  f->scratch = malloc(sizeof(double) * (16 * (size_t) n + 1));
+  sd_status status = f->root && f->scratch ? SD_OK : SD_ENOMEMORY;
+  if (status == SD_OK) status = sd_rows_find(&f->rows, s, n, rho, part, parts);
   if (status == SD_OK) status = fill(f, law, s);
+  if (status == SD_OK) sd_sparse_scale(f, s);
   if (status != SD_OK) sd_sparse_free(f);
   return status;
 }
 
-/* What the kernels do, where there are none: out += L L^T in; w numbers of a sphere stand every `step`. */
-static inline void plain_sparse(int w, int step, int columns, const long *first, const int *row,
+void sd_sparse_scale(sd_sparse *f, const sd_spheres *s)
+{
+  sd_unit_roots(s, f->n, f->root);
+}
+
+/* What the kernels do, where there are none: out += L (L^T in); the numbers of a sphere stand every
+ * `step`. One column of blocks after the other, each read twice while it is in the cache. */
+static inline void plain_sparse(int width, int step, int columns, const long *first, const int *row,
                                 const float *value, const double *in, double *out)
 {
-  const int size = block_floats(w), lda = w == 3 ? 4 : 6;
+  const int size = block_floats(width), lda = width == 3 ? 4 : 6;
   for (int k = 0; k < columns; k++) {
     double t[6] = {0.0};
     for (long l = first[k]; l < first[k + 1]; l++)
-      for (int q = 0; q < w; q++)
-        for (int p = 0; p < w; p++)
+      for (int q = 0; q < width; q++)
+        for (int p = 0; p < width; p++)
           t[q] += value[size * l + lda * q + p] * in[step * (long) row[l] + p];
     for (long l = first[k]; l < first[k + 1]; l++)
-      for (int q = 0; q < w; q++)
-        for (int p = 0; p < w; p++)
+      for (int q = 0; q < width; q++)
+        for (int p = 0; p < width; p++)
           out[step * (long) row[l] + p] += value[size * l + lda * q + p] * t[q];
   }
 }
@@ -164,15 +180,15 @@ __attribute__((target("avx2,fma"))) static void six_avx2(int columns, const long
   for (int k = 0; k < columns; k++) {
     quad s[6] = {{0.0}}, t[6];
     for (long l = first[k]; l < first[k + 1]; l++) { /* t = L^T in */
-      quad v, w;
-      __builtin_memcpy(&v, in + 8 * (long) row[l], sizeof(v));
-      __builtin_memcpy(&w, in + 8 * (long) row[l] + 4, sizeof(w));
+      quad low, high;
+      __builtin_memcpy(&low, in + 8 * (long) row[l], sizeof(low));
+      __builtin_memcpy(&high, in + 8 * (long) row[l] + 4, sizeof(high));
 #pragma GCC unroll 6
       for (int q = 0; q < 6; q++) {
         quad_float b, c;
         __builtin_memcpy(&b, value + 36 * l + 6 * q, sizeof(b));
         __builtin_memcpy(&c, value + 36 * l + 6 * q + 4, sizeof(c));
-        s[q] += __builtin_convertvector(b, quad) * v + __builtin_convertvector(c, quad) * w;
+        s[q] += __builtin_convertvector(b, quad) * low + __builtin_convertvector(c, quad) * high;
       }
     }
     for (int q = 0; q < 6; q++) {
@@ -181,19 +197,19 @@ __attribute__((target("avx2,fma"))) static void six_avx2(int columns, const long
     }
     for (long l = first[k]; l < first[k + 1]; l++) { /* out += L t */
       double *o = out + 8 * (long) row[l];
-      quad v, w;
-      __builtin_memcpy(&v, o, sizeof(v));
-      __builtin_memcpy(&w, o + 4, sizeof(w));
+      quad low, high;
+      __builtin_memcpy(&low, o, sizeof(low));
+      __builtin_memcpy(&high, o + 4, sizeof(high));
 #pragma GCC unroll 6
       for (int q = 0; q < 6; q++) {
         quad_float b, c;
         __builtin_memcpy(&b, value + 36 * l + 6 * q, sizeof(b));
         __builtin_memcpy(&c, value + 36 * l + 6 * q + 4, sizeof(c));
-        v += __builtin_convertvector(b, quad) * t[q];
-        w += __builtin_convertvector(c, quad) * t[q];
+        low += __builtin_convertvector(b, quad) * t[q];
+        high += __builtin_convertvector(c, quad) * t[q];
       }
-      __builtin_memcpy(o, &v, sizeof(v));
-      __builtin_memcpy(o + 4, &w, sizeof(w));
+      __builtin_memcpy(o, &low, sizeof(low));
+      __builtin_memcpy(o + 4, &high, sizeof(high));
     }
   }
 }
@@ -212,18 +228,15 @@ static kernel *kernel_of(int width)
 sd_status sd_sparse_apply(void *ctx, const double *r, double *z)
 {
   const sd_sparse *f = ctx;
-  const long w = f->width, step = w == 3 ? 4 : 8;
+  const long width = f->width, step = width == 3 ? 4 : 8;
   double *in = f->scratch, *out = in + step * f->n;
-  for (long i = 0; i < f->n; i++) {
-    const double root = sqrt(f->drag[i]), root_spin = w == 6 ? sqrt(f->spin[i]) : 0.0;
+  for (long i = 0; i < f->n; i++)
     for (int d = 0; d < step; d++)
-      in[step * i + d] = d >= w ? 0.0 : (d < 3 ? root : root_spin) * r[w * i + d];
-  }
+      in[step * i + d] = d < width ? f->root[2 * i + (d >= 3)] * r[width * i + d] : 0.0;
   memset(out, 0, sizeof(double) * (size_t) (step * f->n));
   kernel_of(f->width)(f->rows.columns, f->rows.first, f->rows.row, f->value, in, out);
-  for (long i = 0; i < f->n; i++) {
-    const double root = sqrt(f->drag[i]), root_spin = w == 6 ? sqrt(f->spin[i]) : 0.0;
-    for (int d = 0; d < w; d++) z[w * i + d] = (d < 3 ? root : root_spin) * out[step * i + d];
-  }
+  for (long i = 0; i < f->n; i++)
+    for (int d = 0; d < width; d++)
+      z[width * i + d] = f->root[2 * i + (d >= 3)] * out[step * i + d];
   return SD_OK;
 }

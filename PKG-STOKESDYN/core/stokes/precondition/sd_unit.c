@@ -2,6 +2,15 @@
 
 #include "sd_linear.h"
 
+void sd_unit_roots(const sd_spheres *s, int n, double *root)
+{
+  for (long i = 0; i < n; i++) {
+    const double a = s->a[i];
+    root[2 * i] = a > 0.0 ? sqrt(6.0 * SD_PI * a) / s->w[i] : 0.0;
+    root[2 * i + 1] = a > 0.0 ? sqrt(8.0 * SD_PI * a) * a / s->w[i] : 0.0;
+  }
+}
+
 /* B [6 x 6], column-major: c [f I + g h h^T] in three rows and columns from B on */
 static inline void put_isotropic(double c, double f, double g, const double h[3], double *B)
 {

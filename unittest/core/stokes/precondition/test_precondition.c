@@ -1,34 +1,30 @@
 #include "clouds.h"
 
-#include "sd_precondition.h"
+#include "in_clumps.h"
 
 #include <string.h>
 
 static const double A = 0.7, ETA = 1.3, U = 0.9;
 static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
 
-/* Blocks of m consecutive spheres */
 static sd_status blocks_of(sd_blocks *b, const scene *s, int m)
 {
-  const int blocks = s->n / m;
-  long *first = malloc(sizeof(long) * (size_t) (blocks + 1));
-  int *member = malloc(sizeof(int) * (size_t) s->n);
-  for (int k = 0; k <= blocks; k++) first[k] = (long) m * k;
-  for (int i = 0; i < s->n; i++) member[i] = i;
-  const sd_spheres spheres = {s->x, s->a, s->w};
-  const sd_status status = sd_blocks_create(b, &RPY, &spheres, s->n, 3, blocks, first, member);
-  b->drag = s->drag;
-  free(first);
-  free(member);
-  return status;
+  in_clumps k;
+  return sd_blocks_make(b, clumps_of(&k, RPY, (sd_spheres){s->x, s->a, s->w}, s->n, 3, m));
+}
+
+static sd_status couple(sd_blocks *b, const scene *s, int m)
+{
+  in_clumps k;
+  clumps_of(&k, RPY, (sd_spheres){s->x, s->a, s->w}, s->n, 3, m);
+  k.c.rho = 3.0;
+  return sd_blocks_couple(b, &k.c);
 }
 
 static sd_status sparse_of(sd_sparse *f, const scene *s, double rho)
 {
   const sd_spheres spheres = {s->x, s->a, s->w};
-  const sd_status status = sd_sparse_create(f, &RPY, &spheres, s->n, 3, rho, 0, 1);
-  f->drag = s->drag;
-  return status;
+  return sd_sparse_create(f, &RPY, &spheres, s->n, 3, rho, 0, 1);
 }
 
 /* Iterations for uniform velocity to the tolerance; checks that it converges. Total force along x in *total. */
@@ -146,7 +142,6 @@ static void sparse_factor_is_symmetric_and_splits(void **state)
   for (int k = 0; k < 3; k++) {
     sd_sparse g = {0};
     assert_int_equal(sd_sparse_create(&g, &RPY, &spheres, N, 3, 3.0, k, 3), SD_OK);
-    g.drag = s.drag;
     sd_sparse_apply(&g, r[0], part);
     for (int i = 0; i < 3 * N; i++) sum[i] += part[i];
     sd_sparse_free(&g);
@@ -175,13 +170,20 @@ static void coupled_blocks_are_symmetric(void **state)
   int member[N];
   for (int i = 0; i < N; i++) member[i] = i;
   for (int k = 0; k <= BLOCKS; k++) first[k] = k <= 10 ? 5 * k : 50 + k - 10;
-  const sd_spheres spheres = {s.x, s.a, s.w};
+  const sd_precondition_case c = {.law = RPY,
+                                  .spheres = {s.x, s.a, s.w},
+                                  .n = N,
+                                  .width = 3,
+                                  .clumps = BLOCKS,
+                                  .first = first,
+                                  .member = member,
+                                  .rho = 2.0,
+                                  .parts = 1};
   sd_blocks b = {0};
-  assert_int_equal(sd_blocks_create(&b, &RPY, &spheres, N, 3, BLOCKS, first, member), SD_OK);
-  b.drag = s.drag;
+  assert_int_equal(sd_blocks_make(&b, &c), SD_OK);
   const double turn[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
   sd_blocks_turn(&b, 2, turn);
-  assert_int_equal(sd_blocks_couple(&b, &RPY, &spheres, 2.0), SD_OK);
+  assert_int_equal(sd_blocks_couple(&b, &c), SD_OK);
   double *P = malloc(sizeof(double) * 9 * N * N), r[3 * N] = {0}, z[3 * N];
   double scale = 0.0;
   for (int k = 0; k < 3 * N; k++) {
@@ -264,12 +266,11 @@ static void iterations_of_flocs(void **state)
   enum { FLOCS = 50, M = 20 };
   scene s = cloud_flocs(FLOCS, M, 1.0, 34.7, 1, ETA, 1);
   s.fast = 1;
-  const sd_spheres spheres = {s.x, s.a, s.w};
   sd_blocks b = {0};
   assert_int_equal(blocks_of(&b, &s, M), SD_OK);
   assert_true(iterations(&s, NULL, NULL, 1e-6, NULL) > 60);
   at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 25, "blocks");
-  assert_int_equal(sd_blocks_couple(&b, &RPY, &spheres, 3.0), SD_OK);
+  assert_int_equal(couple(&b, &s, M), SD_OK);
   at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 15, "coupled blocks");
 
   uint64_t seed = 9;
@@ -281,7 +282,7 @@ static void iterations_of_flocs(void **state)
     sd_blocks_turn(&b, k, R);
   }
   at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 16, "turned blocks, coupled before");
-  assert_int_equal(sd_blocks_couple(&b, &RPY, &spheres, 3.0), SD_OK);
+  assert_int_equal(couple(&b, &s, M), SD_OK);
   at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 16, "turned blocks, coupled again");
 
   double *slip = scene_uniform_slip(&s, U, 0, 0), *F[2];

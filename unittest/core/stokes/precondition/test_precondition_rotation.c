@@ -2,7 +2,7 @@
 #include "clouds.h"
 
 #include "sd_clump.h"
-#include "sd_precondition.h"
+#include "in_clumps.h"
 
 #include <string.h>
 
@@ -44,49 +44,26 @@ static void sparse_of(sd_sparse *f, const rotating *g, double rho, int part, int
 {
   const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
   assert_int_equal(sd_sparse_create(f, &g->law, &spheres, g->s->n, 6, rho, part, parts), SD_OK);
-  f->drag = g->s->drag;
-  f->spin = g->spin;
 }
 
-/* Blocks of m consecutive spheres; the rest are in none. */
-static void blocks_part(sd_blocks *b, const rotating *g, int m, int part, int parts)
+static const sd_precondition_case *clumps_in(in_clumps *k, const rotating *g, int m)
 {
-  const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
-  long first[100];
-  int member[2000];
-  assert_true(g->s->n <= 2000 && g->s->n / m < 100);
-  for (int k = 0; k <= g->s->n / m; k++) first[k] = (long) m * k;
-  for (int i = 0; i < g->s->n; i++) member[i] = i;
-  assert_int_equal(sd_blocks_create_part(b, &g->law, &spheres, g->s->n, 6, g->s->n / m, first,
-                                         member, part, parts),
-                   SD_OK);
-  b->drag = g->s->drag;
-  b->spin = g->spin;
+  const scene *s = g->s;
+  return clumps_of(k, g->law, (sd_spheres){s->x, s->a, s->w}, s->n, 6, m);
 }
 
 static void blocks_of(sd_blocks *b, const rotating *g, int m)
 {
-  blocks_part(b, g, m, 0, 1);
+  in_clumps k;
+  assert_int_equal(sd_blocks_make(b, clumps_in(&k, g, m)), SD_OK);
 }
 
-/* What the caller of sd_blocks_create_part does with the parts */
-static void sum_over(sd_blocks *b, int parts)
+static void couple(sd_blocks *b, const rotating *g, int m)
 {
-  const long rigid = 18 * b[0].first[b[0].blocks], mobility = 9 * (long) b[0].blocks;
-  for (int k = 1; k < parts; k++) {
-    for (long i = 0; i < rigid; i++) b[0].rigid[i] += b[k].rigid[i];
-    for (long i = 0; i < mobility; i++) b[0].mobility[i] += b[k].mobility[i];
-  }
-  for (int k = 1; k < parts; k++) {
-    memcpy(b[k].rigid, b[0].rigid, sizeof(double) * (size_t) rigid);
-    memcpy(b[k].mobility, b[0].mobility, sizeof(double) * (size_t) mobility);
-  }
-}
-
-static void couple(sd_blocks *b, const rotating *g)
-{
-  const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
-  assert_int_equal(sd_blocks_couple(b, &g->law, &spheres, 3.0), SD_OK);
+  in_clumps k;
+  clumps_in(&k, g, m);
+  k.c.rho = 3.0;
+  assert_int_equal(sd_blocks_couple(b, &k.c), SD_OK);
 }
 
 static void vary_viscosity(scene *s, uint64_t *seed)
@@ -179,6 +156,20 @@ static void check_symmetric_positive(double *M, int size)
   assert_true(positive_definite(M, size, 0.0));
 }
 
+/* Sums over parts of blocks, by the blocks in one part that do not need any: each number is that or 0 in
+ * a part. */
+static sd_status sum_over_parts(void *ctx, double *values, int count)
+{
+  const sd_blocks *all = ctx;
+  if (count == 1) return SD_OK; /* of failures */
+  const int of_mobility = count == 9 * all->blocks;
+  assert_true(of_mobility || count == 18 * all->first[all->blocks]);
+  const double *sum = of_mobility ? all->mobility : all->rigid;
+  for (int i = 0; i < count; i++) assert_true(values[i] == 0.0 || values[i] == sum[i]);
+  memcpy(values, sum, sizeof(double) * (size_t) count);
+  return SD_OK;
+}
+
 static void both_are_symmetric_positive_definite_and_split(void **state)
 {
   (void) state;
@@ -196,13 +187,18 @@ static void both_are_symmetric_positive_definite_and_split(void **state)
   const double turn[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
   for (int k = 0; k <= PARTS; k++) {
     sparse_of(&f[k], &g, 2.0, k ? k - 1 : 0, k ? PARTS : 1);
-    blocks_part(&b[k], &g, M, k ? k - 1 : 0, k ? PARTS : 1);
+    in_clumps clumps;
+    clumps_in(&clumps, &g, M);
+    clumps.c.rho = 3.0;
+    if (k) {
+      clumps.c.part = k - 1;
+      clumps.c.parts = PARTS;
+      clumps.c.sum = sum_over_parts;
+      clumps.c.sum_ctx = &b[0];
+    }
+    assert_int_equal(sd_blocks_make(&b[k], &clumps.c), SD_OK);
     fs[k] = &f[k];
     bs[k] = &b[k];
-  }
-  sum_over(b + 1, PARTS);
-  for (int k = 0; k <= PARTS; k++) {
-    couple(&b[k], &g);
     sd_blocks_turn(&b[k], 2, turn); /* after coupling: far and near need not agree */
   }
   for (int kind = 0; kind < 2; kind++) {
@@ -239,12 +235,92 @@ static void blocks_turn_with_forces_and_torques(void **state)
   assert_true(error_of_inverse(&g, sd_blocks_apply, &b) > 0.1);
   sd_blocks_turn(&b, 0, R);
   assert_true(error_of_inverse(&g, sd_blocks_apply, &b) < 1e-9);
-  const sd_spheres spheres = {s.x, s.a, s.w};
   s.x[3] += 0.1;
   assert_true(error_of_inverse(&g, sd_blocks_apply, &b) > 1e-3);
-  assert_int_equal(sd_blocks_renew(&b, &g.law, &spheres, 0), SD_OK);
+  in_clumps k;
+  assert_int_equal(sd_blocks_renew(&b, clumps_in(&k, &g, M), 0), SD_OK);
   assert_true(error_of_inverse(&g, sd_blocks_apply, &b) < 1e-9);
   sd_blocks_free(&b);
+  free(g.spin);
+  scene_free(&s);
+}
+
+/* Moved: flocs that turned and went their own way, one that bent. As if made where they are now. */
+static void moved_blocks_are_as_new_ones(void **state)
+{
+  (void) state;
+  enum { FLOCS = 6, M = 8, N = FLOCS * M };
+  scene s = cloud_flocs(FLOCS, M, 2.0, 14.0, 0, ETA, 3);
+  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
+  sd_blocks moved = {0}, anew = {0};
+  in_clumps k;
+  clumps_in(&k, &g, M);
+  k.c.rho = 3.0;
+  const sd_precondition_kind *blocks = &sd_precondition_blocks;
+  assert_true(blocks->size == sizeof(sd_blocks));
+  assert_int_equal(blocks->make(&moved, &k.c), SD_OK);
+  const double R[9] = {0.48, -0.8, 0.36, 0.64, 0.6, 0.48, -0.6, 0.0, 0.8};
+  for (int i = 0; i < N; i++) {
+    double *x = s.x + 3 * i, y[3];
+    const int floc = i / M;
+    for (int d = 0; d < 3; d++)
+      y[d] = floc % 2 ? R[3 * d] * x[0] + R[3 * d + 1] * x[1] + R[3 * d + 2] * x[2] : x[d];
+    for (int d = 0; d < 3; d++) x[d] = y[d] + 20.0 * floc;
+  }
+  s.x[3 * (2 * M + 3)] += 0.6;
+  assert_int_equal(blocks->move(&moved, &k.c), SD_OK);
+  assert_int_equal(blocks->make(&anew, &k.c), SD_OK);
+  double r[6 * N], z[6 * N], expected[6 * N], largest = 0.0;
+  uint64_t seed = 5;
+  for (int i = 0; i < 6 * N; i++) r[i] = uniform(&seed, -1, 1);
+  assert_int_equal(blocks->apply(&moved, r, z), SD_OK);
+  assert_int_equal(blocks->apply(&anew, r, expected), SD_OK);
+  for (int i = 0; i < 6 * N; i++) largest = fmax(largest, fabs(expected[i]));
+  for (int i = 0; i < 6 * N; i++) CHECK_NEAR(z[i], expected[i], 1e-9 * largest);
+  blocks->free(&moved);
+  blocks->free(&anew);
+  free(g.spin);
+  scene_free(&s);
+}
+
+/* Another rank whose nth sum of failures counts one */
+typedef struct {
+  int sums, fails_at;
+} other_rank;
+
+static sd_status sum_with_other(void *ctx, double *values, int count)
+{
+  other_rank *other = ctx;
+  if (count == 1 && ++other->sums == other->fails_at) values[0]++;
+  return SD_OK;
+}
+
+/* What fails on one rank fails on all; blocks that cannot be coupled on one are coupled on none. */
+static void ranks_fail_together(void **state)
+{
+  (void) state;
+  scene s = cloud_flocs(4, 5, 2.0, 12.0, 0, ETA, 3);
+  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
+  const sd_precondition_kind *kinds[] = {&sd_precondition_none, &sd_precondition_blocks,
+                                         &sd_precondition_sparse};
+  for (int kind = 0; kind < 3; kind++)
+    for (int fails_at = 0; fails_at < 3; fails_at++) {
+      other_rank other = {0, fails_at};
+      in_clumps k;
+      clumps_in(&k, &g, 5);
+      k.c.rho = 3.0;
+      k.c.sum = sum_with_other;
+      k.c.sum_ctx = &other;
+      union {
+        sd_blocks blocks;
+        sd_sparse sparse;
+      } P;
+      memset(&P, 0, sizeof(P));
+      const sd_status status = kinds[kind]->make(&P, &k.c);
+      assert_int_equal(status, fails_at == 1 ? SD_EINDEFINITE : SD_OK);
+      if (kind == 1 && status == SD_OK) assert_int_equal(P.blocks.far.n, fails_at == 2 ? 0 : 4);
+      kinds[kind]->free(&P);
+    }
   free(g.spin);
   scene_free(&s);
 }
@@ -303,7 +379,7 @@ static void iterations_with_random_spins(void **state)
   between(100, iterations(&g, NULL, NULL), 1000, "flocs, diagonal");
   between(1, iterations(&g, sd_sparse_apply, &f), 20, "flocs, sparse");
   between(1, iterations(&g, sd_blocks_apply, &b), 30, "flocs, blocks");
-  couple(&b, &g);
+  couple(&b, &g, 20);
   between(1, iterations(&g, sd_blocks_apply, &b), 20, "flocs, coupled blocks");
   sd_sparse_free(&f);
   sd_blocks_free(&b);
@@ -349,6 +425,8 @@ int main(void)
       cmocka_unit_test(what_sees_all_is_the_inverse),
       cmocka_unit_test(both_are_symmetric_positive_definite_and_split),
       cmocka_unit_test(blocks_turn_with_forces_and_torques),
+      cmocka_unit_test(moved_blocks_are_as_new_ones),
+      cmocka_unit_test(ranks_fail_together),
       cmocka_unit_test(iterations_with_random_spins),
       cmocka_unit_test(clumps_with_torques_are_solved_in_few_iterations),
   };

@@ -1,0 +1,71 @@
+#include "sd_precondition.h"
+
+#include "sd_blocks.h"
+#include "sd_sparse.h"
+
+sd_status sd_precondition_agree(const sd_precondition_case *c, sd_status mine)
+{
+  if (!c->sum) return mine;
+  double failed = mine != SD_OK;
+  const sd_status summed = c->sum(c->sum_ctx, &failed, 1);
+  if (summed != SD_OK) return summed;
+  return mine == SD_OK && failed > 0.0 ? SD_EINDEFINITE : mine;
+}
+
+/* Without a block every sphere is by itself. */
+static sd_status make_none(void *P, const sd_precondition_case *c)
+{
+  static const long first[1] = {0};
+  sd_precondition_case spheres = *c;
+  spheres.clumps = 0;
+  spheres.first = first;
+  return sd_blocks_make(P, &spheres);
+}
+
+static sd_status move_none(void *P, const sd_precondition_case *c)
+{
+  sd_blocks_free(P);
+  return make_none(P, c);
+}
+
+static sd_status make_blocks(void *P, const sd_precondition_case *c)
+{
+  return sd_blocks_make(P, c);
+}
+
+static sd_status move_blocks(void *P, const sd_precondition_case *c)
+{
+  return sd_blocks_move(P, c);
+}
+
+static void free_blocks(void *P)
+{
+  sd_blocks_free(P);
+}
+
+static sd_status make_sparse(void *P, const sd_precondition_case *c)
+{
+  const sd_status status = sd_sparse_create(P, &c->law, &c->spheres, c->n, c->width, c->rho,
+                                            c->part, c->parts);
+  const sd_status agreed = sd_precondition_agree(c, status);
+  if (agreed != SD_OK) sd_sparse_free(P);
+  return agreed;
+}
+
+static sd_status move_sparse(void *P, const sd_precondition_case *c)
+{
+  sd_sparse_scale(P, &c->spheres);
+  return SD_OK;
+}
+
+static void free_sparse(void *P)
+{
+  sd_sparse_free(P);
+}
+
+const sd_precondition_kind sd_precondition_none = {
+    "none", sizeof(sd_blocks), make_none, move_none, sd_blocks_apply, free_blocks};
+const sd_precondition_kind sd_precondition_blocks = {
+    "clump", sizeof(sd_blocks), make_blocks, move_blocks, sd_blocks_apply, free_blocks};
+const sd_precondition_kind sd_precondition_sparse = {
+    "sparse", sizeof(sd_sparse), make_sparse, move_sparse, sd_sparse_apply, free_sparse};
