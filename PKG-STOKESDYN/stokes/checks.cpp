@@ -58,7 +58,6 @@ void check_vast_cutoff(LAMMPS *lmp, const std::string &command, const Scene::Set
 
 void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)
 {
-  const Atom *atom = lmp->atom;
   const Comm *comm = lmp->comm;
   const sd_law law = scene.law();
   double mine, largest;
@@ -71,7 +70,7 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
   } else {
     const sd_spheres spheres = scene.local();
     const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
-    status = sd_oseen_coupling(&law, &spheres, pairs, atom->nlocal + atom->nghost, 0, atom->nlocal,
+    status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_ghosts(), 0, scene.size(),
                                &mine);
   }
   if (status != SD_OK) fail_one(lmp, command + ": " + sd_status_string(status));
@@ -86,15 +85,13 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
              " and must be below 1; use tensor rpy");
 }
 
-void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &scene,
-                          const std::vector<char> &solving)
+void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &scene)
 {
   struct Sight {
     tagint molecule;
     // of the clump, and how many others each of them sees, all added up
     bigint spheres, seen;
   };
-  const Atom *atom = lmp->atom;
   std::map<tagint, Sight> clumps;
   const auto add = [&](const Sight &part) {
     Sight &clump = clumps.insert({part.molecule, {part.molecule, 0, 0}}).first->second;
@@ -102,9 +99,9 @@ void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &
     clump.seen += part.seen;
   };
   const sd_pairs &list = scene.list();
-  for (int i = 0; i < atom->nlocal; i++)
-    if (solving[i] && atom->molecule[i] != 0)
-      add({atom->molecule[i], 1, (bigint) (list.first[i + 1] - list.first[i])});
+  for (int k = 0; k < scene.size(); k++)
+    if (const tagint molecule = lmp->atom->molecule[scene.who()[k]])
+      add({molecule, 1, (bigint) (list.first[k + 1] - list.first[k])});
   std::vector<Sight> mine;
   for (const auto &clump : clumps) mine.push_back(clump.second);
   clumps.clear();

@@ -17,8 +17,7 @@ void check_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
 
 /* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10 % for a chain of ten
  * touching spheres that see each other up to 10.5 a. Tells of the clump with the lowest molecule ID. */
-void warn_of_short_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const Scene &scene,
-                          const std::vector<char> &solving);
+void warn_of_short_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const Scene &scene);
 
 /* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and none of them means
  * anything. */

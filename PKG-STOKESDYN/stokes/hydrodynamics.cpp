@@ -79,7 +79,7 @@ void Hydrodynamics::new_run(bool as_left)
 void Hydrodynamics::clumps()
 {
   if (!settings.rigid.on) {
-    solving = ambient.active();
+    solvers = ambient.who();
     return;
   }
   const RigidClumps::Motion motion = {
@@ -97,23 +97,25 @@ void Hydrodynamics::clumps()
       row[State::WPRIME + d] = T[d] * k_spin - s[3 + d];
     }
   };
-  rigid.forces(motion, take, solving);
+  std::vector<char> left_over;
+  rigid.forces(motion, take, left_over);
   memory->global.loose = rigid.loose();
-  for (int i : ambient.who()) {
-    if (!solving[i] || rigid.any_loose()) continue;
-    double *row = memory->rows.give(i);    // lone spheres: nobody disturbs the fluid there
+  solvers.clear();
+  for (int i : ambient.who())
+    if (left_over[i]) solvers.push_back(i);
+  if (rigid.any_loose()) return;
+  for (int i : solvers) {    // lone spheres: nobody disturbs the fluid there
+    double *row = memory->rows.give(i);
     std::fill_n(row + State::VPRIME, 3, 0.0);
     if (rotation()) std::fill_n(row + State::WPRIME, 3, 0.0);
   }
-  for (int i = 0; i < atom->nlocal; i++) solving[i] = solving[i] && ambient.active()[i];
 }
 
 /* F = 6 pi eta a (u_inf + v' - v), and likewise the torque, of all spheres but those of rigid clumps. */
 void Hydrodynamics::drag()
 {
   const bool rotates = rotation();
-  for (int i : ambient.who()) {
-    if (!solving[i]) continue;
+  for (int i : solvers) {
     double *row = memory->rows.give(i), s[6];
     ambient.slip(i, s);
     const double k = ambient.drag(i);
@@ -134,7 +136,7 @@ void Hydrodynamics::solve()
   if (settings.scene.clumps_only && std::isfinite(settings.scene.cutoff) &&
       settings.scene.taper == SD_TAPER_NONE && !looked_at_clumps) {
     looked_at_clumps = true;
-    warn_of_short_cutoff(lmp, COMMAND, scene, solving);
+    warn_of_short_cutoff(lmp, COMMAND, scene);
   }
   sd_solve_report report = {};
   report.curvature = 1.0;
@@ -142,34 +144,35 @@ void Hydrodynamics::solve()
   const sd_status status = alone ? SD_OK : run(system, report);
   if (settings.algorithm == StokesSettings::GRADIENTS && !alone) {
     guard.state = memory->global.guard;
-    guard.look(system, report, nullptr, preconditioner.attached(), memory->global.solves);
+    guard.look(system, report, solvers.data(), preconditioner.attached(), memory->global.solves);
     memory->global.guard = guard.state;
   }
   memory->global.solves++;
   memory->global.iterations = report.iterations;
   memory->global.residual = report.residual;
   if (status != SD_OK) failed(status, report);
-  keep(alone);
+  keep();
 }
 
-/* The linear system of this step: rows of all owned atoms, drag 0 for those that are not the solver's. */
+/* The linear system of this step: row k is the sphere solvers[k]. */
 sd_system Hydrodynamics::gather()
 {
-  const int n = atom->nlocal;
+  const int n = solvers.size();
   const size_t m = width();
   solution.resize(m * n + m);
   work.resize(SD_SOLVE_WORK(n, width()) + 1);
-  slip.assign(m * n + m, 0.0);
-  resistance.assign(n + 1, 0.0);
-  spin.assign(rotation() ? n + 1 : 0, 0.0);
+  slip.resize(m * n + m);
+  resistance.resize(n + 1);
+  spin.resize(rotation() ? n + 1 : 0);
   eta.resize(n + 1);
-  for (int i : ambient.who()) {
-    ambient.slip(i, &slip[m * i]);
-    eta[i] = ambient.viscosity(i);
-    if (solving[i]) resistance[i] = ambient.drag(i);
-    if (rotation()) spin[i] = ambient.spin(i);
+  for (int k = 0; k < n; k++) {
+    const int i = solvers[k];
+    ambient.slip(i, &slip[m * k]);
+    eta[k] = ambient.viscosity(i);
+    resistance[k] = ambient.drag(i);
+    if (rotation()) spin[k] = ambient.spin(i);
   }
-  scene.update(solving, eta);
+  scene.update(solvers, eta);
 
   sd_system system = {};
   system.n = n;
@@ -210,35 +213,30 @@ void Hydrodynamics::guess()
 {
   const size_t m = width();
   const bool line = memory->global.solutions > 1;
-  for (int i : ambient.who()) {
-    double *F = &solution[m * i];
-    std::fill_n(F, m, 0.0);
-    if (!solving[i]) continue;
-    const double *row = memory->rows[i], *before = row + memory->before();
+  for (size_t k = 0; k < solvers.size(); k++) {
+    const double *row = memory->rows[solvers[k]], *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
       const double v = line ? 2.0 * last - before[d] : last;
-      F[d] = (d < 3 ? resistance[i] : spin[i]) * (slip[m * i + d] + v);
+      solution[m * k + d] = (d < 3 ? resistance[k] : spin[k]) * (slip[m * k + d] + v);
     }
   }
 }
 
-/* v' = D^-1 F - s of the solution, and what the next guess is made of. Lone spheres have none: not what the tolerance of a solve
- * from zero has left of theirs either. */
-void Hydrodynamics::keep(bool everyone_alone)
+/* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have none: not what the tolerance
+ * of a solve from zero has left of theirs either. */
+void Hydrodynamics::keep()
 {
   const size_t m = width();
   State::Global &global = memory->global;
-  for (int i : ambient.who()) {
-    if (!solving[i]) continue;
-    const bool alone =
-        everyone_alone || (settings.scene.clumps_only && atom->molecule[i] == 0);
-    double *row = memory->rows.give(i), *before = row + memory->before();
+  for (size_t k = 0; k < solvers.size(); k++) {
+    const bool alone = scene.alone(k);
+    double *row = memory->rows.give(solvers[k]), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       double &v = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
       if (memory->history) before[d] = v;
       v = alone ? 0.0
-                : solution[m * i + d] / (d < 3 ? resistance[i] : spin[i]) - slip[m * i + d];
+                : solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
     }
   }
   global.solutions = std::min(2.0, global.solutions + 1.0);

@@ -69,16 +69,16 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   TimeStepGuard guard;
   bool warned_unconverged = false, looked_at_clumps = false;
 
-  /* [owned atoms] 1: the solver's; 0: takes no part, or is of a rigid clump */
-  std::vector<char> solving;
-  /* of a solve */
+  /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps */
+  std::vector<int> solvers;
+  /* of a solve, by rows: row k is the sphere solvers[k] */
   std::vector<double> eta, slip, resistance, spin, solution, work;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   sd_system gather();
   sd_status run(sd_system &system, sd_solve_report &report);
   void guess();
-  void keep(bool everyone_alone);
+  void keep();
   void failed(sd_status status, const sd_solve_report &report);
 };
 

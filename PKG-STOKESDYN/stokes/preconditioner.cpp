@@ -64,7 +64,7 @@ void Preconditioner::look(const sd_system &system)
     seen.part = comm->me;
     seen.parts = comm->nprocs;
   } else {
-    seen.n = atom->nlocal + (extent == WHOLE_CLUMPS ? atom->nghost : 0);
+    seen.n = extent == WHOLE_CLUMPS ? scene.size_with_ghosts() : scene.size();
     seen.spheres = scene.local();
   }
   first.assign(1, 0);
@@ -81,7 +81,8 @@ bool Preconditioner::group_by_molecule()
   for (int i = 0; i < seen.n; i++) {
     if (!(seen.spheres.a[i] > 0.0)) continue;
     spheres++;
-    const int64_t molecule = cloud ? scene.cloud_molecules()[i] : atom->molecule[i];
+    const int64_t molecule =
+        cloud ? scene.cloud_molecules()[i] : (int64_t) atom->molecule[scene.who()[i]];
     if (molecule != 0) clumps[molecule].push_back(i);
   }
   for (const auto &clump : clumps) {
@@ -98,15 +99,15 @@ bool Preconditioner::group_by_molecule()
 void Preconditioner::group_by_list()
 {
   const sd_pairs &list = scene.list();
-  const int nlocal = atom->nlocal;
-  std::vector<char> done(nlocal, 0);
-  for (int i = 0; i < nlocal; i++) {
+  const int n = scene.size();
+  std::vector<char> done(n, 0);
+  for (int i = 0; i < n; i++) {
     if (done[i] || list.first[i] == list.first[i + 1]) continue;
     member.push_back(i);
     for (long k = list.first[i]; k < list.first[i + 1]; k++) {
       const int j = list.neighbor[k];
       member.push_back(j);
-      if (j < nlocal) done[j] = 1;
+      if (j < n) done[j] = 1;
     }
     first.push_back(member.size());
   }
@@ -127,7 +128,7 @@ static double squares(const std::vector<long> &first)
  * looked at. */
 sd_cost Preconditioner::cost_by_list()
 {
-  const double n = atom->nlocal, pairs = scene.list().first[atom->nlocal];
+  const double n = scene.size(), pairs = scene.list().first[scene.size()];
   double sums[3] = {n, pairs, extent == WHOLE_CLUMPS ? pairs + n : squares(first)};
   MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
   if (sums[1] == 0.0 || sums[2] == 0.0) return {};
@@ -225,7 +226,7 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
 {
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
   return callback([=] {
-    const size_t width = p->seen.width, own = width * p->atom->nlocal;
+    const size_t width = p->seen.width, own = width * p->scene.size();
     const bool cloud = p->extent == CLOUD;
     sd_status status = p->place == HERE ? SD_OK : p->put();
     if (status != SD_OK) return status;
@@ -234,7 +235,10 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
       p->scene.to_cloud(r, p->in.data(), width);
     else
       p->in.assign(r, r + own);
-    if (p->extent == WHOLE_CLUMPS) p->scene.refresh(p->in, width);
+    if (p->extent == WHOLE_CLUMPS) {
+      p->in.resize(width * p->seen.n + 1);
+      p->scene.refresh_ghosts(p->in.data(), &p->in[own], width);
+    }
     p->out.resize(width * p->seen.n + 1);
     status = p->made->apply(p->state.data(), p->in.data(), p->out.data());
     if (cloud)

@@ -178,8 +178,10 @@ void RigidClumps::recognise()
   }
   if (count[0]) {
     const size_t before = shapes.size();
+    std::vector<double> of_ghosts;
+    scene.refresh_ghosts(of_ghosts, 1, [this](int i, double *out) { *out = atom->radius[i]; });
     radius.assign(atom->radius, atom->radius + atom->nlocal);
-    scene.refresh(radius, 1);
+    radius.insert(radius.end(), of_ghosts.begin(), of_ghosts.end());
     if (count[2]) take_over(unknown);
     find_shapes(unknown);
     if (shapes.size() > before || !count[2]) drop_unused();

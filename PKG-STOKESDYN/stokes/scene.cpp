@@ -3,6 +3,7 @@
 #include "callback.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -30,8 +31,7 @@ Scene::~Scene()
 
 const sd_mobility_engine &Scene::Settings::engine() const
 {
-  return std::isinf(cutoff) && !clumps_only ? sd_mobility_all_pairs
-                                                              : sd_mobility_list;
+  return std::isinf(cutoff) && !clumps_only ? sd_mobility_all_pairs : sd_mobility_list;
 }
 
 const double *Scene::positions() const
@@ -45,36 +45,70 @@ void Scene::out_of_memory()
   fail_one(lmp, command + ": out of memory for the list of pairs");
 }
 
-void Scene::update(const std::vector<char> &active, const std::vector<double> &eta)
+void Scene::update(const std::vector<int> &who, const std::vector<double> &eta)
 {
-  const int nlocal = atom->nlocal;
-  const bool cloud = view() == SD_VIEW_ALL;
-  const int n = cloud ? nlocal : nlocal + atom->nghost;
-  a.assign(n, 0.0);
-  w.assign(n, 0.0);
-  for (int i = 0; i < nlocal; i++)
-    if (active[i]) {
-      a[i] = atom->radius[i];
-      w[i] = 1.0 / sqrt(eta[i]);
-    }
-  if (cloud) {
-    gather();
+  int changed = stale || who != own;
+  own = who;
+  if (view() == SD_VIEW_ALL) {
+    gather(eta);
     place(n_all);
     return;
   }
-
-  packing = SPHERES;
-  Compat::forward_comm(comm, pair);
-  if (stale) find_pairs();
-
-  const sd_spheres spheres = {positions(), a.data(), w.data()};
-  filtered = std::isfinite(settings.cutoff) || std::find(a.begin(), a.end(), 0.0) != a.end();
-  if (filtered) {
-    if (sd_neighbors_reserve(&pairs, nlocal, candidates.first[nlocal]) != SD_OK) out_of_memory();
-    sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
-    pairs.pairs.n = nlocal;
+  if (changed) {
+    row_of.assign(atom->nlocal, -1);
+    for (size_t k = 0; k < own.size(); k++) row_of[own[k]] = k;
   }
-  place(n);
+  place_rows(eta);
+  if (place_ghosts()) changed = 1;
+  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
+  if (changed) find_pairs();
+
+  filtered = std::isfinite(settings.cutoff);
+  if (filtered) {
+    const sd_spheres spheres = local();
+    if (sd_neighbors_reserve(&pairs, size(), candidates.first[size()]) != SD_OK) out_of_memory();
+    sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
+    pairs.pairs.n = size();
+  }
+  place(size_with_ghosts());
+}
+
+/* Our own spheres. */
+void Scene::place_rows(const std::vector<double> &eta)
+{
+  x.resize(3 * own.size());
+  a.resize(own.size());
+  w.resize(own.size());
+  for (size_t k = 0; k < own.size(); k++) {
+    std::copy_n(atom->x[own[k]], 3, &x[3 * k]);
+    a[k] = atom->radius[own[k]];
+    w[k] = 1.0 / sqrt(eta[k]);
+  }
+}
+
+/* Ghosts of spheres that take part, behind them; are they others than before? */
+bool Scene::place_ghosts()
+{
+  std::vector<double> sent;    // radius, 0: takes no part; and w
+  refresh_ghosts(sent, 2, [this](int i, double *out) {
+    const int k = row_of[i];
+    out[0] = k < 0 ? 0.0 : a[k];
+    out[1] = k < 0 ? 0.0 : w[k];
+  });
+  bool others = (int) row_of_ghost.size() != atom->nghost;
+  row_of_ghost.resize(atom->nghost, -1);
+  for (int g = 0; g < atom->nghost; g++) {
+    const bool takes_part = sent[2 * g] > 0.0;
+    const int row = takes_part ? size_with_ghosts() : -1;
+    others = others || row_of_ghost[g] != row;
+    row_of_ghost[g] = row;
+    if (!takes_part) continue;
+    const double *xg = atom->x[atom->nlocal + g];
+    x.insert(x.end(), xg, xg + 3);
+    a.push_back(sent[2 * g]);
+    w.push_back(sent[2 * g + 1]);
+  }
+  return others;
 }
 
 /* The spheres where they stand, and what their engine may ask. */
@@ -83,7 +117,7 @@ void Scene::place(int n_all_or_ghosts)
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
   scene.how = {law(), width()};
-  scene.n = atom->nlocal;
+  scene.n = size();
   scene.n_all = n_all_or_ghosts;
   scene.spheres = cloud ? this->cloud() : local();
   scene.pairs = cloud ? nullptr : &list();
@@ -115,35 +149,42 @@ void Scene::place(int n_all_or_ghosts)
 /* Once per re-neighbouring. Between two of them an atom moves by half the skin at most, so the skin is added to the cut-off. */
 void Scene::find_pairs()
 {
-  const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
   const double reach = settings.cutoff + neighbor->skin;
+  const int n = size(), n_and_ghosts = size_with_ghosts();
+  std::vector<int64_t> ids, molecules;
   sd_status status;
   if (settings.clumps_only) {
-    find_molecules();
-    status = sd_neighbors_clump(&candidates, positions(), tag.data(), molecule.data(), nlocal, n,
-                                reach, 0, order.data());
+    std::vector<int> scratch(n_and_ghosts + 1);
+    look_up(ids, molecules);
+    status = sd_neighbors_clump(&candidates, x.data(), ids.data(), molecules.data(), n, n_and_ghosts,
+                                reach, 0, scratch.data());
   } else
-    status = sd_neighbors_cutoff(&candidates, positions(), nlocal, n, reach);
+    status = sd_neighbors_cutoff(&candidates, x.data(), n, n_and_ghosts, reach);
   if (status != SD_OK) out_of_memory();
-  if (settings.clumps_only && std::isinf(settings.cutoff)) check_clumps(candidates, false);
+  if (settings.clumps_only && std::isinf(settings.cutoff))
+    check_clumps({n, x.data(), molecules.data()}, candidates, false);
+  int sees = candidates.first[n] > 0, any;
+  MPI_Allreduce(&sees, &any, 1, MPI_INT, MPI_MAX, world);
+  somebody_sees = any;
   stale = false;
 }
 
-bool Scene::anybody_sees() const
+/* Tags and molecule IDs of the spheres, by row. Not every atom style sends molecule IDs to ghosts. */
+void Scene::look_up(std::vector<int64_t> &ids, std::vector<int64_t> &molecules)
 {
-  if (view() == SD_VIEW_ALL) return n_all > 1;
-  int mine = list().first[atom->nlocal] > 0, any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  return any;
-}
-
-void Scene::refresh(std::vector<double> &v, int width)
-{
-  v.resize((size_t) width * (atom->nlocal + atom->nghost) + 1);
-  values = v.data();
-  values_width = width;
-  packing = VALUES;
-  Compat::forward_comm(comm, pair);
+  std::vector<double> sent;
+  refresh_ghosts(sent, 1, [this](int i, double *out) { *out = ubuf(atom->molecule[i]).d; });
+  ids.resize(size_with_ghosts() + 1);
+  molecules.resize(size_with_ghosts() + 1);
+  for (int k = 0; k < size(); k++) {
+    ids[k] = atom->tag[own[k]];
+    molecules[k] = atom->molecule[own[k]];
+  }
+  for (int g = 0; g < atom->nghost; g++)
+    if (const int k = row_of_ghost[g]; k >= 0) {
+      ids[k] = atom->tag[atom->nlocal + g];
+      molecules[k] = ubuf(sent[g]).i;
+    }
 }
 
 void Scene::refresh_ghosts(std::vector<double> &ghosts, int width,
@@ -153,76 +194,69 @@ void Scene::refresh_ghosts(std::vector<double> &ghosts, int width,
   send_rows(ghosts.data(), width, row);
 }
 
-void Scene::refresh_ghosts(const double *rows, double *ghosts, int width)
+void Scene::refresh_ghosts(const double *sphere_rows, double *ghosts, int width)
 {
-  send_rows(ghosts, width, [=](int i, double *out) {
-    std::copy_n(rows + width * (size_t) i, width, out);
-  });
+  const auto row = [=](int i, double *out) {
+    if (row_of[i] >= 0) std::copy_n(sphere_rows + width * (size_t) row_of[i], width, out);
+  };
+  if (size_with_ghosts() - size() == atom->nghost) {    // all of them take part, in this order
+    send_rows(ghosts, width, row);
+    return;
+  }
+  std::vector<double> sent;
+  refresh_ghosts(sent, width, row);
+  for (int g = 0; g < atom->nghost; g++)
+    if (row_of_ghost[g] >= 0)
+      std::copy_n(&sent[width * (size_t) g], width,
+                  ghosts + width * (size_t) (row_of_ghost[g] - size()));
 }
 
 void Scene::send_rows(double *ghosts, int width, const std::function<void(int, double *)> &row)
 {
-  values = ghosts;
-  values_width = width;
-  row_of = &row;
-  packing = ROWS;
+  ghost_rows = ghosts;
+  row_width = width;
+  row_writer = &row;
   Compat::forward_comm(comm, pair);
 }
 
-void Scene::gather()
+/* The cloud: the spheres of all ranks, sorted by tag. */
+void Scene::gather(const std::vector<double> &eta)
 {
-  enum { COLUMNS = 7 };    // x y z, a, w, tag, molecule
-  const int nlocal = atom->nlocal, nprocs = comm->nprocs;
-  own.clear();
-  std::vector<double> rows_of_mine;
-  for (int i = 0; i < nlocal; i++)
-    if (a[i] > 0.0) {
-      own.push_back(i);
-      rows_of_mine.insert(rows_of_mine.end(),
-                          {atom->x[i][0], atom->x[i][1], atom->x[i][2], a[i], w[i],
-                           ubuf(atom->tag[i]).d, ubuf(atom->molecule ? atom->molecule[i] : 0).d});
-    }
-  int n = own.size();
-  std::vector<int> counts_rows(nprocs), displs_rows(nprocs);
-  spheres_of_rank.resize(nprocs);
-  MPI_Allgather(&n, 1, MPI_INT, spheres_of_rank.data(), 1, MPI_INT, world);
-  n_all = 0;
-  for (int p = 0; p < nprocs; p++) {
-    counts_rows[p] = COLUMNS * spheres_of_rank[p];
-    displs_rows[p] = COLUMNS * n_all;
-    n_all += spheres_of_rank[p];
+  struct Sphere {
+    double x[3], a, w;
+    int64_t tag, molecule;
+  };
+  std::vector<Sphere> ours;
+  for (size_t k = 0; k < own.size(); k++) {
+    const int i = own[k];
+    const double *xi = atom->x[i];
+    ours.push_back({{xi[0], xi[1], xi[2]}, atom->radius[i], 1.0 / sqrt(eta[k]), atom->tag[i],
+                    atom->molecule ? atom->molecule[i] : 0});
   }
-  std::vector<double> all(COLUMNS * (size_t) n_all + 1);
-  MPI_Allgatherv(rows_of_mine.data(), COLUMNS * n, MPI_DOUBLE, all.data(), counts_rows.data(),
-                 displs_rows.data(), MPI_DOUBLE, world);
-
+  spheres_of_rank = from_all(world, std::vector<int>(1, size()));
+  const std::vector<Sphere> all = from_all(world, ours);
+  n_all = all.size();
   std::vector<int> by_tag(n_all);
   for (int j = 0; j < n_all; j++) by_tag[j] = j;
-  auto tag_of = [&all](int j) {
-    return (int64_t) ubuf(all[COLUMNS * (size_t) j + 5]).i;
-  };
-  std::sort(by_tag.begin(), by_tag.end(), [&](int p, int q) {
-    return tag_of(p) < tag_of(q);
+  std::sort(by_tag.begin(), by_tag.end(), [&all](int p, int q) {
+    return all[p].tag < all[q].tag;
   });
 
   cloud_is_new = (int) all_tag.size() != n_all;
   all_x.resize(3 * (size_t) n_all);
-  all_a.resize(n_all);
-  all_w.resize(n_all);
-  all_tag.resize(n_all);
-  all_molecule.resize(n_all);
+  for (auto *v : {&all_a, &all_w}) v->resize(n_all);
+  for (auto *v : {&all_tag, &all_molecule}) v->resize(n_all);
   place_of.resize(n_all);
   for (int k = 0; k < n_all; k++) {
-    const double *row = &all[COLUMNS * (size_t) by_tag[k]];
+    const Sphere &s = all[by_tag[k]];
     place_of[by_tag[k]] = k;
-    std::copy(row, row + 3, &all_x[3 * (size_t) k]);
-    const int64_t its_tag = ubuf(row[5]).i, its_molecule = ubuf(row[6]).i;
-    cloud_is_new = cloud_is_new || all_tag[k] != its_tag || all_a[k] != row[3] ||
-        all_molecule[k] != its_molecule;
-    all_a[k] = row[3];
-    all_w[k] = row[4];
-    all_tag[k] = its_tag;
-    all_molecule[k] = its_molecule;
+    std::copy_n(s.x, 3, &all_x[3 * (size_t) k]);
+    cloud_is_new =
+        cloud_is_new || all_tag[k] != s.tag || all_a[k] != s.a || all_molecule[k] != s.molecule;
+    all_a[k] = s.a;
+    all_w[k] = s.w;
+    all_tag[k] = s.tag;
+    all_molecule[k] = s.molecule;
   }
 }
 
@@ -239,16 +273,14 @@ void Scene::shares(int width, std::vector<int> &counts, std::vector<int> &displs
 
 void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width)
 {
-  const size_t m = width, n = own.size();
-  mine.resize(m * n + 1);
-  for (size_t k = 0; k < n; k++) std::copy_n(own_rows + m * own[k], m, &mine[m * k]);
-  const double *from = mine.data();
+  const size_t m = width;
+  const double *from = own_rows;
   if (comm->nprocs > 1) {
     std::vector<int> counts, displs;
     shares(width, counts, displs);
     in_order_of_rank.resize(m * n_all + 1);
-    MPI_Allgatherv(mine.data(), m * n, MPI_DOUBLE, in_order_of_rank.data(), counts.data(),
-                   displs.data(), MPI_DOUBLE, world);
+    MPI_Allgatherv(const_cast<double *>(own_rows), m * own.size(), MPI_DOUBLE,
+                   in_order_of_rank.data(), counts.data(), displs.data(), MPI_DOUBLE, world);
     from = in_order_of_rank.data();
   }
   for (int j = 0; j < n_all; j++) std::copy_n(from + m * j, m, cloud_rows + m * place_of[j]);
@@ -256,24 +288,16 @@ void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width)
 
 void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width)
 {
-  const size_t m = width, n = own.size();
-  mine.resize(m * n + 1);
+  const size_t m = width;
   in_order_of_rank.resize(m * n_all + 1);
-  for (int j = 0; j < n_all; j++)
-    std::copy_n(cloud_rows + m * place_of[j], m, &in_order_of_rank[m * j]);
-  const double *from = in_order_of_rank.data();
-  if (comm->nprocs > 1) {
-    std::vector<int> counts, displs;
-    shares(width, counts, displs);
-    MPI_Reduce_scatter(in_order_of_rank.data(), mine.data(), counts.data(), MPI_DOUBLE, MPI_SUM,
-                       world);
-    from = mine.data();
-  }
-  std::fill_n(own_rows, m * atom->nlocal, 0.0);
-  for (size_t k = 0; k < n; k++) std::copy_n(from + m * k, m, own_rows + m * own[k]);
+  double *to = comm->nprocs > 1 ? in_order_of_rank.data() : own_rows;
+  for (int j = 0; j < n_all; j++) std::copy_n(cloud_rows + m * place_of[j], m, to + m * j);
+  if (comm->nprocs == 1) return;
+  std::vector<int> counts, displs;
+  shares(width, counts, displs);
+  MPI_Reduce_scatter(in_order_of_rank.data(), own_rows, counts.data(), MPI_DOUBLE, MPI_SUM, world);
 }
 
-/* MPI requires that all ranks receive identical results of an allreduce (MPI 3.1, 5.9.6), as the core does of its sums. */
 sd_status Scene::sum(void *ctx, double *values, int count)
 {
   MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, static_cast<Scene *>(ctx)->world);
@@ -282,60 +306,26 @@ sd_status Scene::sum(void *ctx, double *values, int count)
 
 int Scene::pack_forward_comm(int n, int *list, double *buf)
 {
-  int m = 0;
-  for (int k = 0; k < n; k++) {
+  for (int k = 0; k < n; k++, buf += row_width) {
     const int i = list[k];
-    switch (packing) {
-      case SPHERES:
-        buf[m++] = a[i];
-        buf[m++] = w[i];
-        break;
-      case MOLECULES:
-        buf[m++] = ubuf(molecule[i]).d;
-        break;
-      case VALUES:
-        for (int d = 0; d < values_width; d++) buf[m++] = values[values_width * (size_t) i + d];
-        break;
-      case ROWS:    // ghosts pass on what they have from a neighbour
-        if (i < atom->nlocal)
-          (*row_of)(i, buf + m);
-        else
-          std::copy_n(values + values_width * (size_t) (i - atom->nlocal), values_width, buf + m);
-        m += values_width;
-        break;
-    }
+    if (i < atom->nlocal)
+      (*row_writer)(i, buf);
+    else    // ghosts pass on what they have from a neighbour
+      std::copy_n(ghost_rows + row_width * (size_t) (i - atom->nlocal), row_width, buf);
   }
-  return m;
+  return n * row_width;
 }
 
 void Scene::unpack_forward_comm(int n, int first, double *buf)
 {
-  int m = 0;
-  for (int i = first; i < first + n; i++) {
-    switch (packing) {
-      case SPHERES:
-        a[i] = buf[m++];
-        w[i] = buf[m++];
-        break;
-      case MOLECULES:
-        molecule[i] = ubuf(buf[m++]).i;
-        break;
-      case VALUES:
-        for (int d = 0; d < values_width; d++) values[values_width * (size_t) i + d] = buf[m++];
-        break;
-      case ROWS:
-        std::copy_n(buf + m, values_width, values + values_width * (size_t) (i - atom->nlocal));
-        m += values_width;
-        break;
-    }
-  }
+  std::copy_n(buf, (size_t) n * row_width, ghost_rows + row_width * (size_t) (first - atom->nlocal));
 }
 
 double Scene::memory_usage() const
 {
-  return sizeof(int) * ((double) candidates.capacity + pairs.capacity) +
-      sizeof(double) *
-      ((double) a.capacity() + w.capacity() + 5.0 * n_all);
+  return sizeof(int) *
+      ((double) candidates.capacity + pairs.capacity + row_of.capacity() + row_of_ghost.capacity()) +
+      sizeof(double) * (x.capacity() + a.capacity() + w.capacity() + 5.0 * n_all);
 }
 
 }    // namespace StokesDyn

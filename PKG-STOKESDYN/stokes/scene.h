@@ -1,8 +1,7 @@
-/* From LAMMPS atoms to the core's arrays and back: which spheres take part, who sees whom, on which rank. The only room that
- * knows ghosts.
+/* From LAMMPS atoms to the core's arrays and back: who sees whom, on which rank. The only room that knows ghosts.
  *
- * Vectors of the core have 3 numbers (6 with rotation) for each atom that this rank owns, in the order of LAMMPS. An atom that does not take part has
- * radius 0 there, and the core leaves it out. */
+ * Vectors of the core have a row of 3 numbers (6 with rotation) for each sphere of this rank that takes part, in the order of
+ * who(). Atoms that take no part have none, so they cost nothing. */
 #ifndef SD_SCENE_H
 #define SD_SCENE_H
 
@@ -42,9 +41,12 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Which spheres of which ranks the engine sees. */
   sd_view view() const { return settings.engine().view; }
 
-  /* The spheres of this step: active[i] and eta[i] of this rank's atoms. Finds the pairs again if LAMMPS has re-neighboured.
+  /* The spheres of this step: row k is the atom who[k] of this rank, in a fluid of viscosity eta[k]. Finds the pairs again if
+   * LAMMPS has re-neighboured, or if they are others than before on any rank.
    * Errors: a clump that the ghosts do not cover, or wider than half the periodic box. */
-  void update(const std::vector<char> &active, const std::vector<double> &eta);
+  void update(const std::vector<int> &who, const std::vector<double> &eta);
+  const std::vector<int> &who() const { return own; }
+  int size() const { return (int) own.size(); }
 
   /* The clumps of which this rank owns an atom, each once; lone spheres (molecule 0) are none. */
   struct Clump {
@@ -58,22 +60,25 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Finds them if LAMMPS has re-neighboured; did it? Errors as of update(). */
   bool update_clumps();
 
-  /* Copies rows of width numbers from the atoms of this rank to their ghosts: values has owned atoms in, owned and ghosts out. */
-  void refresh(std::vector<double> &values, int width);
-  /* The same, but only what goes to a ghost is written at all: row(i, out) writes that of the owned atom i. ghosts: rows of the
-   * ghosts, in order of LAMMPS. */
+  /* Of all atoms: row(i, out) writes the row of the owned atom i, only where it goes to a ghost. ghosts [width nghost], in
+   * order of LAMMPS. */
   void refresh_ghosts(std::vector<double> &ghosts, int width,
                       const std::function<void(int, double *)> &row);
+  /* Of the spheres: rows [width size()] -> ghosts [width (size_with_ghosts() - size())] */
   void refresh_ghosts(const double *rows, double *ghosts, int width);
 
   void lists_are_stale() { stale = clumps_stale = true; }
 
-  /* View LIST: who sees whom since the last update(). */
+  /* View LIST: who sees whom since the last update(), in rows; ghosts that take part come after this rank's spheres. */
   const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
-  /* Since the last update(), on any rank: does one sphere see another? */
-  bool anybody_sees() const;
-  const double *radii() const { return a.data(); }    // of this rank's spheres, 0: takes no part
-  sd_spheres local() const { return {positions(), a.data(), w.data()}; }
+  int size_with_ghosts() const { return (int) a.size(); }
+  sd_spheres local() const { return {x.data(), a.data(), w.data()}; }
+  /* Since the last update(): does one sphere see another, on any rank? Does that of row k see nobody? */
+  bool anybody_sees() const { return view() == SD_VIEW_ALL ? n_all > 1 : somebody_sees; }
+  bool alone(int k) const
+  {
+    return view() == SD_VIEW_ALL ? n_all == 1 : list().first[k] == list().first[k + 1];
+  }
   sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }
 
   /* View ALL: the spheres of all ranks that take part, in order of tag, the same on every rank. */
@@ -81,7 +86,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_spheres cloud() const { return {all_x.data(), all_a.data(), all_w.data()}; }
   const std::vector<int64_t> &cloud_molecules() const { return all_molecule; }
   bool cloud_changed() const { return cloud_is_new; }    // other spheres than at the last update?
-  /* From rows of this rank's atoms to rows of the cloud, and, summed over the ranks, back; likewise for other users. */
+  /* From rows of this rank's spheres to rows of the cloud, and, summed over the ranks, back. */
   void to_cloud(const double *own_rows, double *cloud_rows, int width);
   void from_cloud(const double *cloud_rows, double *own_rows, int width);
 
@@ -99,37 +104,56 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::string command;
 
   bool stale = true, clumps_stale = true;
-  bool filtered = false;              // does pairs differ from candidates?
-  std::vector<double> a, w;    // of owned and ghost atoms
+  /* does pairs differ from candidates? */
+  bool filtered = false;
+  bool somebody_sees = false;
+  /* atoms of this rank's spheres: those of the last update() */
+  std::vector<int> own;
+  /* view LIST: spheres, those of ghosts after our own */
+  std::vector<double> x, a, w;
+  /* [nghost] row of a ghost, -1: takes no part */
+  std::vector<int> row_of_ghost;
+  /* [nlocal] row of an atom, -1: takes no part */
+  std::vector<int> row_of;
+  sd_neighbors candidates, pairs;
+
+  // of all atoms, for the clumps
   std::vector<int64_t> tag, molecule;
   std::vector<int> order;
-  sd_neighbors candidates, pairs, rows;    // rows: one for each clump
+  sd_neighbors rows;    // one for each clump
 
-  // all pairs: the active spheres of all ranks in order of tag, so that nothing depends on the decomposition
-  std::vector<int> own;      // local index of this rank's
+  // view ALL: the spheres of all ranks in order of tag, so that nothing depends on the decomposition
   std::vector<int> place_of;    // [n_all] place of each sphere, the ranks' spheres one after the other
   std::vector<int> spheres_of_rank;    // [nprocs]
-  std::vector<double> all_x, all_a, all_w, mine, in_order_of_rank;
+  std::vector<double> all_x, all_a, all_w, in_order_of_rank;
   std::vector<int64_t> all_tag, all_molecule;
   int n_all = 0;
   bool cloud_is_new = true;
   sd_mobility omega;
 
-  enum { SPHERES, MOLECULES, VALUES, ROWS } packing = SPHERES;
-  double *values = nullptr;    // of refresh()
-  int values_width = 0;
-  const std::function<void(int, double *)> *row_of = nullptr;    // of refresh_ghosts()
+  // of a communication
+  double *ghost_rows = nullptr;
+  int row_width = 0;
+  const std::function<void(int, double *)> *row_writer = nullptr;
 
   int width() const { return settings.rotation ? 6 : 3; }
   const double *positions() const;
+  void place_rows(const std::vector<double> &eta);
+  bool place_ghosts();
   void find_pairs();
-  void find_molecules();
-  void check_clumps(const sd_neighbors &list, bool one_row);
-  void gather();
+  void look_up(std::vector<int64_t> &ids, std::vector<int64_t> &molecules);
+  /* Spheres among which clumps are checked: those of this rank. */
+  struct Checked {
+    int n;
+    const double *x;
+    const int64_t *molecule;
+  };
+  void check_clumps(const Checked &of, const sd_neighbors &list, bool one_row);
+  void gather(const std::vector<double> &eta);
   void send_rows(double *ghosts, int width, const std::function<void(int, double *)> &row);
   void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;
   void place(int n_all);
-  [[noreturn]] void complain_about_clumps(const std::set<int64_t> &suspect);
+  [[noreturn]] void complain_about_clumps(const Checked &of, const std::set<int64_t> &suspect);
   [[noreturn]] void out_of_memory();
 };
 

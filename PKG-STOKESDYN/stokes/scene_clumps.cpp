@@ -22,28 +22,23 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-/* Tags and molecule IDs of owned and ghost atoms. */
-void Scene::find_molecules()
-{
-  const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
-  tag.resize(n);
-  molecule.resize(n);
-  order.resize(n + 1);
-  for (int i = 0; i < nlocal; i++) molecule[i] = atom->molecule[i];
-  for (int i = 0; i < n; i++) tag[i] = atom->tag[i];
-  packing = MOLECULES;    // not every atom style sends molecule IDs to ghosts
-  Compat::forward_comm(comm, pair);
-}
-
 bool Scene::update_clumps()
 {
   if (!clumps_stale) return false;
   const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
-  find_molecules();
+  std::vector<double> sent;    // not every atom style sends molecule IDs to ghosts
+  refresh_ghosts(sent, 1, [this](int i, double *out) { *out = ubuf(atom->molecule[i]).d; });
+  tag.resize(n);
+  molecule.resize(n);
+  order.resize(n + 1);
+  for (int i = 0; i < n; i++) {
+    tag[i] = atom->tag[i];
+    molecule[i] = i < nlocal ? (int64_t) atom->molecule[i] : ubuf(sent[i - nlocal]).i;
+  }
   if (sd_neighbors_clump(&rows, positions(), tag.data(), molecule.data(), nlocal, n, INFINITY, 1,
                          order.data()) != SD_OK)
     out_of_memory();
-  check_clumps(rows, true);
+  check_clumps({nlocal, positions(), molecule.data()}, rows, true);
 
   clumps.clear();
   member.clear();
@@ -105,14 +100,15 @@ namespace {
 }    // namespace
 
 /* Without a cut-off every sphere must see all of its clump: how many spheres has it, on all ranks together? */
-void Scene::check_clumps(const sd_neighbors &list, bool one_row)
+void Scene::check_clumps(const Checked &of, const sd_neighbors &list, bool one_row)
 {
   struct Part {
     int64_t molecule, spheres;
   };
-  const int nlocal = atom->nlocal, nprocs = comm->nprocs;
+  const int64_t *const molecule = of.molecule;
+  const int nprocs = comm->nprocs;
   std::unordered_map<int64_t, int64_t> total;
-  for (int i = 0; i < nlocal; i++)
+  for (int i = 0; i < of.n; i++)
     if (molecule[i] != 0) total[molecule[i]]++;
   if (nprocs > 1) {
     std::vector<Part> parts;
@@ -130,27 +126,27 @@ void Scene::check_clumps(const sd_neighbors &list, bool one_row)
   // A partner that is missing, or known only as an image more than half of a periodic box away.
   std::vector<int64_t> suspect;
   std::set<int64_t> with_row;    // the row of one sphere covers the others of its clump
-  for (int i = 0; i < nlocal; i++)
+  for (int i = 0; i < of.n; i++)
     if (list.first[i] < list.first[i + 1]) with_row.insert(molecule[i]);
-  for (int i = 0; i < nlocal; i++) {
+  for (int i = 0; i < of.n; i++) {
     const long first = list.first[i], last = list.first[i + 1];
-    if (molecule[i] == 0 || (one_row ? first == last && with_row.count(molecule[i]) : a[i] == 0.0))
+    if (molecule[i] == 0 || (one_row && first == last && with_row.count(molecule[i])))
       continue;
     const bool complete = last - first + 1 == total[molecule[i]];
     Span span;
     for (long k = first; k < last; k++) {
-      const double *xj = atom->x[list.neighbor[k]], *xi = atom->x[i];
+      const double *xj = of.x + 3 * (long) list.neighbor[k], *xi = of.x + 3 * (long) i;
       const double delta[3] = {xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
       span.add(delta);
     }
     if (!complete || span.wide(domain)) suspect.push_back(molecule[i]);
   }
   suspect = from_all(world, suspect);
-  if (!suspect.empty()) complain_about_clumps(std::set<int64_t>(suspect.begin(), suspect.end()));
+  if (!suspect.empty()) complain_about_clumps(of, std::set<int64_t>(suspect.begin(), suspect.end()));
 }
 
 /* Either the ghosts do not reach across a clump, or the clump is so wide that the closest image of a sphere is ambiguous. */
-void Scene::complain_about_clumps(const std::set<int64_t> &suspect)
+void Scene::complain_about_clumps(const Checked &of, const std::set<int64_t> &suspect)
 {
   // All spheres of those clumps to all ranks: the run ends here, so the price does not matter.
   struct Sphere {
@@ -158,9 +154,9 @@ void Scene::complain_about_clumps(const std::set<int64_t> &suspect)
     double x[3];
   };
   std::vector<Sphere> spheres;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *x = atom->x[i];
-    if (suspect.count(molecule[i])) spheres.push_back({molecule[i], {x[0], x[1], x[2]}});
+  for (int i = 0; i < of.n; i++) {
+    const double *xi = of.x + 3 * (long) i;
+    if (suspect.count(of.molecule[i])) spheres.push_back({of.molecule[i], {xi[0], xi[1], xi[2]}});
   }
   std::map<int64_t, std::vector<Sphere>> members;
   for (const Sphere &s : from_all(world, spheres)) members[s.molecule].push_back(s);
