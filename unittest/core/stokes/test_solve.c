@@ -347,33 +347,36 @@ static void failed_callback_ends_the_solve(void **state)
   }
 }
 
-/* The smallest residual on the line through the first two of conjugate gradients, z0 = D s and z1 = z0 - alpha D M z0. Those of equal
- * spheres are orthogonal, so 1/|y|^2 = 1/|z0|^2 + 1/|z1|^2. */
+/* The smallest residual on the line through the first two of conjugate gradients, z0 = D s and z1 = z0 - alpha D M z0:
+ * |y|^2 = (|z0|^2 |z1|^2 - (z0.z1)^2) / |z0 - z1|^2. Radii 1:2, or else z0.z1 would be 0. */
 static void smoothing_finds_the_smallest_residual(void **state)
 {
   (void) state;
   enum { N = 3 * 64 };
   scene s = scene_lattice(4, 4, 4, 2.0, A, ETA);
-  const double D = s.drag[0];
-  double slip[N], F[N], q[N], power = 0.0, norm = 0.0, z0 = 0.0, z1 = 0.0;
   uint64_t seed = 8;
+  for (int i = 0; i < s.n; i++)
+    scene_set(&s, i, s.x[3 * i], s.x[3 * i + 1], s.x[3 * i + 2], uniform(&seed, 0.5, 1.0) * A, ETA);
+  double slip[N], F[N], q[N], power = 0.0, norm = 0.0, z00 = 0.0, z01 = 0.0, z11 = 0.0;
   for (int j = 0; j < N; j++) {
     slip[j] = uniform(&seed, -U, U);
-    F[j] = D * slip[j];
+    F[j] = s.drag[j / 3] * slip[j];
   }
   scene_apply(&s, F, q);
   for (int j = 0; j < N; j++) {
-    q[j] += F[j] / D;
+    q[j] += slip[j];
     power += slip[j] * F[j];
     norm += F[j] * q[j];
   }
   for (int j = 0; j < N; j++) {
-    z0 += F[j] * F[j];
-    z1 += pow(F[j] - power / norm * D * q[j], 2);
+    const double z1 = F[j] - power / norm * s.drag[j / 3] * q[j];
+    z00 += F[j] * F[j];
+    z01 += F[j] * z1;
+    z11 += z1 * z1;
   }
   outcome o;
   free(scene_solve(&s, sd_solve_gradients, slip, 1e-12, 1, &o.status, &o.report));
-  CHECK_NEAR(o.report.residual, sqrt(1.0 / (1.0 + z0 / z1)), 1e-12);
+  CHECK_NEAR(o.report.residual, sqrt((z00 * z11 - z01 * z01) / (z00 - 2 * z01 + z11) / z00), 1e-12);
   scene_free(&s);
 }
 
