@@ -13,19 +13,19 @@ typedef struct {
   double plain, natural;
 } squares;
 
-/* Those of all ranks, from those of this rank's rows v [width n]. */
-static sd_status squares_of(const sd_system *A, const double *v, squares *of)
+/* Adds those of row group i, f [width], of a scaled residual; what is written is squared while it
+ * is at hand, since for spheres that hardly see each other the passes over memory are the work. */
+static inline void add_squares(const sd_system *A, long i, const double *f, squares *of)
 {
-  const int m = sd_system_width(A);
-  double s[2] = {0.0, 0.0};
-  for (long i = 0; i < A->n; i++) {
-    const double *f = v + m * i;
-    if (A->drag[i] == 0.0) continue;
-    double natural = (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) / A->drag[i];
-    if (m == 6) natural += (f[3] * f[3] + f[4] * f[4] + f[5] * f[5]) / A->spin[i];
-    s[0] += A->drag[i] * natural;
-    s[1] += natural;
-  }
+  double natural = (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) / A->drag[i];
+  if (A->spin) natural += (f[3] * f[3] + f[4] * f[4] + f[5] * f[5]) / A->spin[i];
+  of->plain += A->drag[i] * natural;
+  of->natural += natural;
+}
+
+static sd_status sum_squares(const sd_system *A, squares mine, squares *of)
+{
+  double s[2] = {mine.plain, mine.natural};
   const sd_status status = sd_system_sum(A, s, 2);
   *of = (squares){s[0], s[1]};
   return status;
@@ -35,10 +35,13 @@ static sd_status squares_of(const sd_system *A, const double *v, squares *of)
 static sd_status free_draining(const sd_system *A, const double *slip, double *F, squares *of)
 {
   const int m = sd_system_width(A);
-  for (long i = 0; i < A->n; i++)
+  squares mine = {0.0, 0.0};
+  for (long i = 0; i < A->n; i++) {
     for (int k = 0; k < m; k++)
       F[m * i + k] = A->drag[i] == 0.0 ? 0.0 : sd_system_diagonal(A, i, k) * slip[m * i + k];
-  return squares_of(A, F, of);
+    if (A->drag[i] != 0.0) add_squares(A, i, F + m * i, &mine);
+  }
+  return sum_squares(A, mine, of);
 }
 
 /* out = D (slip - M F) = D (slip - Omega F) - F, given Omega F in out, and its squares */
@@ -46,13 +49,16 @@ static sd_status scaled_residual(const sd_system *A, const double *slip, const d
                                  double *out, squares *of)
 {
   const int m = sd_system_width(A);
-  for (long i = 0; i < A->n; i++)
+  squares mine = {0.0, 0.0};
+  for (long i = 0; i < A->n; i++) {
     for (int k = 0; k < m; k++) {
       const long j = m * i + k;
       out[j] = A->drag[i] == 0.0 ? 0.0
                                  : sd_system_diagonal(A, i, k) * (slip[j] - out[j]) - F[j];
     }
-  return squares_of(A, out, of);
+    if (A->drag[i] != 0.0) add_squares(A, i, out + m * i, &mine);
+  }
+  return sum_squares(A, mine, of);
 }
 
 /* --- algorithm 1 --- */
@@ -216,7 +222,9 @@ static void drop_preconditioner(gradients *g)
 static sd_status next_direction(gradients *g)
 {
   const long size = (long) sd_system_width(&g->A) * g->A.n;
-  for (long j = 0; j < size; j++) g->p[j] = g->u[j] + g->beta * g->p[j];
+  const double *u = g->u, beta = g->beta;
+  double *p = g->p;
+  for (long j = 0; j < size; j++) p[j] = u[j] + beta * p[j];
   const sd_status status = sd_system_apply(&g->A, g->p, g->q);
   if (status != SD_OK) return status;
   g->report->products++;
