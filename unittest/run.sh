@@ -65,7 +65,7 @@ if [ -z "$python" ]; then
 else
   report=build/pytest.xml
   rm -f $report
-  $python -m pytest -p no:cacheprovider -q --tb=short --junitxml=$report unittest/lammps
+  $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 --junitxml=$report unittest/lammps
   counts=$($python - $report << 'END'
 import sys, xml.etree.ElementTree as tree
 suite = tree.parse(sys.argv[1]).getroot().find("testsuite")
