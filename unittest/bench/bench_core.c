@@ -541,25 +541,17 @@ static void bench_rotating(const char *name, scene s, int m)
   double begin = cpu();
   if (sd_sparse_create(&f, &RPY, &spheres, s.n, 6, 3.0, 0, 1) != SD_OK) abort();
   const double set_up = cpu() - begin;
-  f.drag = s.drag;
-  f.spin = spin;
   solve_rotating("sparse, rho 3", &s, spin, sd_sparse_apply, &f, set_up);
   sd_sparse_free(&f);
   if (m) {
-    long *first = malloc(sizeof(long) * (size_t) (s.n / m + 1));
-    int *member = malloc(sizeof(int) * (size_t) s.n);
-    for (int k = 0; k <= s.n / m; k++) first[k] = (long) m * k;
-    for (int i = 0; i < s.n; i++) member[i] = i;
+    in_clumps clumps;
+    clumps_of(&clumps, RPY, spheres, s.n, 6, m);
+    clumps.c.rho = 3.0;
     sd_blocks b = {0};
     begin = cpu();
-    if (sd_blocks_create(&b, &RPY, &spheres, s.n, 6, s.n / m, first, member) != SD_OK) abort();
-    flocs.c.rho = 3.0;
-  if (sd_blocks_couple(&b, &flocs.c) != SD_OK) abort();
-      b.spin = spin;
+    if (sd_blocks_make(&b, &clumps.c) != SD_OK) abort();
     solve_rotating("clump blocks, coupled", &s, spin, sd_blocks_apply, &b, cpu() - begin);
     sd_blocks_free(&b);
-    free(first);
-    free(member);
   }
   free(spin);
   scene_free(&s);
