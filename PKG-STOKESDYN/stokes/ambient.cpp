@@ -53,26 +53,6 @@ void Ambient::numbers(double *seven) const
   }
 }
 
-double Ambient::drag(int i) const
-{
-  return 6.0 * SD_PI * viscosity(i) * atom->radius[i];
-}
-
-double Ambient::spin(int i) const
-{
-  const double a = atom->radius[i];
-  return 8.0 * SD_PI * viscosity(i) * a * a * a;
-}
-
-void Ambient::slip(int i, double *s) const
-{
-  const double *fluid = velocity(i), *v = atom->v[i];
-  for (int d = 0; d < 3; d++) s[d] = fluid[d] - v[d];
-  if (!spins) return;
-  const double *omega = atom->omega[i];
-  for (int d = 0; d < 3; d++) s[3 + d] = (w.empty() ? 0.0 : w[3 * (size_t) i + d]) - omega[d];
-}
-
 void Ambient::read(bool with_spins, bool with_gradients)
 {
   spins = with_spins;

@@ -7,7 +7,10 @@
 #define SD_AMBIENT_H
 
 #include "field.h"
+#include "atom.h"
 #include "pointers.h"
+
+#include "sd_constants.h"
 
 #include <string>
 #include <vector>
@@ -42,10 +45,22 @@ class Ambient : protected LAMMPS_NS::Pointers {
 
   double viscosity(int i) const { return eta.empty() ? eta_uniform : eta[i]; }
   const double *velocity(int i) const { return u.empty() ? u_uniform : &u[3 * (size_t) i]; }
-  double drag(int i) const;    // 6 pi eta a
-  double spin(int i) const;    // 8 pi eta a^3
+  /* 6 pi eta a and 8 pi eta a^3 */
+  double drag(int i) const { return 6.0 * SD_PI * viscosity(i) * atom->radius[i]; }
+  double spin(int i) const
+  {
+    const double a = atom->radius[i];
+    return 8.0 * SD_PI * viscosity(i) * a * a * a;
+  }
   /* Fluid less sphere: velocity [3], with spins angular velocity [3]. */
-  void slip(int i, double *s) const;
+  void slip(int i, double *s) const
+  {
+    const double *fluid = velocity(i), *v = atom->v[i];
+    for (int d = 0; d < 3; d++) s[d] = fluid[d] - v[d];
+    if (!spins) return;
+    const double *omega = atom->omega[i];
+    for (int d = 0; d < 3; d++) s[3 + d] = (w.empty() ? 0.0 : w[3 * (size_t) i + d]) - omega[d];
+  }
 
   /* For all atoms at once: nullptr where it is the same everywhere. */
   const double *viscosities() const { return eta.empty() ? nullptr : eta.data(); }

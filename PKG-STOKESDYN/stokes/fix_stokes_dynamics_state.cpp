@@ -185,6 +185,7 @@ void FixStokesDynamicsState::write_restart(FILE *fp)
   NamedState out(STYLE);
   out.put("last_step", global.last_step);
   out.put("last_solve", global.last_solve);
+  out.put("reported", global.reported);
   out.put("spheres", global.spheres);
   out.put("numbers", std::vector<double>(global.numbers, global.numbers + 7));
   out.put("solves", global.solves);
@@ -208,6 +209,7 @@ void FixStokesDynamicsState::restart(char *buf)
   if (!in.read(lmp, buf)) return;
   global.last_step = in.get("last_step", -1.0);
   global.last_solve = in.get("last_solve", -1.0);
+  global.reported = in.get("reported", 0.0);
   global.spheres = in.get("spheres", 0.0);
   in.get("numbers", global.numbers, 7);
   global.solves = in.get("solves", 0.0);

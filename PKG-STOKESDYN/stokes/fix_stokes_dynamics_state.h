@@ -54,6 +54,7 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
   /* The same on all ranks. A step of -1: never. */
   struct Global {
     double last_step = -1, last_solve = -1;    // time step of the forces, of v'
+    double reported = 0;                       // were the rows made for a fix that reports v'?
     double spheres = 0;                        // that took part then
     double numbers[7] = {0};                   // of the fluid in the last step (Ambient::numbers)
     double solves = 0, unconverged = 0;

@@ -85,16 +85,17 @@ void Hydrodynamics::clumps()
   const RigidClumps::Motion motion = {
       ambient.active(),     ambient.viscosities(),       ambient.uniform_viscosity(),
       ambient.velocities(), ambient.uniform_velocity(), ambient.gradients()};
-  auto take = [this](int i, const double *F, const double *T) {
-    double *row = memory->rows.give(i), s[6];
+  const bool wants_perturbation = reported || settings.rigid.auto_resolve;
+  auto take = [this, wants_perturbation](int i, const double *F, const double *T) {
+    double *row = memory->rows.give(i), s[6] = {0.0};
+    std::copy_n(F, 3, row + State::FORCE);
+    if (T) std::copy_n(T, 3, row + State::TORQUE);
+    if (!wants_perturbation) return;
     ambient.slip(i, s);
     const double k = 1.0 / ambient.drag(i), k_spin = T ? 1.0 / ambient.spin(i) : 0.0;
     for (int d = 0; d < 3; d++) {
-      row[State::FORCE + d] = F[d];
       row[State::VPRIME + d] = F[d] * k - s[d];
-      if (!T) continue;
-      row[State::TORQUE + d] = T[d];
-      row[State::WPRIME + d] = T[d] * k_spin - s[3 + d];
+      if (T) row[State::WPRIME + d] = T[d] * k_spin - s[3 + d];
     }
   };
   std::vector<char> left_over;
@@ -116,7 +117,7 @@ void Hydrodynamics::drag()
 {
   const bool rotates = rotation();
   for (int i : solvers) {
-    double *row = memory->rows.give(i), s[6];
+    double *row = memory->rows.give(i), s[6] = {0.0};
     ambient.slip(i, s);
     const double k = ambient.drag(i);
     for (int d = 0; d < 3; d++) row[State::FORCE + d] = k * (s[d] + row[State::VPRIME + d]);
@@ -297,7 +298,7 @@ double Hydrodynamics::dissipation(int i) const
 {
   if (!ambient.active()[i]) return 0.0;
   const double *F = force(i), *T = torque(i);
-  double s[6];
+  double s[6] = {0.0};
   ambient.slip(i, s);
   double power = F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
   if (T) power += T[0] * s[3] + T[1] * s[4] + T[2] * s[5];

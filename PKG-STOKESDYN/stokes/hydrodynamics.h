@@ -28,6 +28,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   StokesSettings settings;
   Ambient ambient;
   Scene scene;
+  /* does a fix report v'? It is not made for rigid clumps unless somebody wants it */
+  bool reported = false;
   /* of this LAMMPS as it is now; nullptr before the first run */
   FixStokesDynamicsState *memory = nullptr;
 

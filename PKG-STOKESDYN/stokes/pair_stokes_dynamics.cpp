@@ -72,7 +72,9 @@ PairStokesDynamics::Verdict PairStokesDynamics::judge()
   const State *memory = hydro.memory;
   State::Global &global = hydro.memory->global;
   const double step = update->ntimestep, period = hydro.settings.update_every;
-  const bool continued = update->setupflag && step == global.last_step;
+  const bool continued = update->setupflag && step == global.last_step &&
+      global.reported >= (double) hydro.reported;
+  global.reported = hydro.reported;
 
   enum { SPHERES, NEWCOMERS, DISPLACED, PUSHED, COUNTS };
   double count[COUNTS] = {(double) hydro.ambient.who().size(), 0.0, 0.0, 0.0};
@@ -186,7 +188,7 @@ void PairStokesDynamics::init_style()
   hydro.init();
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
-  warn_if_nobody_applies();
+  look_for_fixes();
   sorting_bins.limit(range());
 }
 
@@ -210,14 +212,16 @@ void PairStokesDynamics::require_atoms()
              "fix property/atom mol)");
 }
 
-void PairStokesDynamics::warn_if_nobody_applies()
+void PairStokesDynamics::look_for_fixes()
 {
   bool applied = hydro.settings.add_force;
+  hydro.reported = false;
   for (int i = 0; i < modify->nfix; i++)
     if (strcmp(modify->fix[i]->style, "stokes_dynamics") == 0) {
       int dim;
       const bool *applies = (const bool *) modify->fix[i]->extract("applies", dim);
       applied = applied || (applies && *applies);
+      hydro.reported = true;
     }
   if (applied || warned_nobody_applies) return;
   warned_nobody_applies = true;

@@ -52,7 +52,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
 
   void allocate();
   void require_atoms();
-  void warn_if_nobody_applies();
+  void look_for_fixes();
   double range() const;    // what LAMMPS is told
 };
 
