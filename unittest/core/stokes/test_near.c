@@ -1,0 +1,66 @@
+#include "scene.h"
+
+#include "sd_near.h"
+
+enum { N = 500 };
+
+/* Against the double loop: radii 1:1 to 1:300, some take no part, some at one point; targets are a part of the spheres. */
+static void close_pairs_are_those_of_the_double_loop(void **state)
+{
+  (void) state;
+  static int seen[N][N];
+  const double spread[] = {1.0, 3.0, 300.0};
+  for (size_t k = 0; k < sizeof(spread) / sizeof(spread[0]); k++)
+    for (int begin = 0; begin < 300; begin += 170) {
+      uint64_t seed = 5 + k;
+      scene s = scene_create(N);
+      for (int i = 0; i < N; i++)
+        scene_set(&s, i, uniform(&seed, -9, 9), uniform(&seed, -9, 9), uniform(&seed, -9, 9),
+                  i % 17 == 3 ? 0.0 : 0.9 * exp(uniform(&seed, -log(spread[k]), 0.0)), 1.3);
+      for (int d = 0; d < 3; d++) s.x[3 * 200 + d] = s.x[3 * 30 + d];
+      const sd_spheres spheres = {s.x, s.a, s.w};
+      const double reach = 2.0 + 1.7;
+      const int n = begin ? 130 : N;
+      sd_neighbors list = {0};
+      assert_int_equal(sd_near_find(&list, &spheres, begin, n, N, reach), SD_OK);
+      assert_int_equal(list.pairs.n, n);
+      for (int t = 0; t < n; t++) {
+        for (int j = 0; j < N; j++) seen[t][j] = 0;
+        for (long m = list.pairs.first[t]; m < list.pairs.first[t + 1]; m++)
+          seen[t][list.pairs.neighbor[m]]++;
+      }
+      for (int t = 0; t < n; t++)
+        for (int j = 0; j < N; j++) {
+          const int i = begin + t;
+          double sq = 0.0;
+          for (int d = 0; d < 3; d++) sq += pow(s.x[3 * i + d] - s.x[3 * j + d], 2);
+          const int close = i != j && s.a[i] > 0.0 && s.a[j] > 0.0 &&
+              sq <= pow(0.5 * reach * (s.a[i] + s.a[j]), 2);
+          assert_int_equal(seen[t][j], close);
+        }
+      sd_neighbors_free(&list);
+      scene_free(&s);
+    }
+}
+
+static void nobody_is_close_to_nobody(void **state)
+{
+  (void) state;
+  const double x[3] = {1, 2, 3}, a[1] = {0.0}, w[1] = {1.0};
+  const sd_spheres s = {x, a, w};
+  sd_neighbors list = {0};
+  for (int n = 0; n < 2; n++) {
+    assert_int_equal(sd_near_find(&list, &s, 0, n, n, 4.0), SD_OK);
+    assert_int_equal(list.pairs.first[n], 0);
+  }
+  sd_neighbors_free(&list);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(close_pairs_are_those_of_the_double_loop),
+      cmocka_unit_test(nobody_is_close_to_nobody),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
