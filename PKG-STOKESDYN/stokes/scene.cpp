@@ -146,10 +146,11 @@ void Scene::place(int n_all_or_ghosts)
   if (sd_mobility_place(&omega, &settings.engine(), &scene) != SD_OK) out_of_memory();
 }
 
-/* Once per re-neighbouring. Between two of them an atom moves by half the skin at most, so the skin is added to the cut-off. */
+/* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did so last. A list made then
+ * holds with the cut-off and one skin; made later, both spheres of a pair may still move a whole skin from where they are. */
 void Scene::find_pairs()
 {
-  const double reach = settings.cutoff + neighbor->skin;
+  const double reach = settings.cutoff + (neighbor->ago == 0 ? 1.0 : 2.0) * neighbor->skin;
   const int n = size(), n_and_ghosts = size_with_ghosts();
   std::vector<int64_t> ids, molecules;
   sd_status status;

@@ -1,4 +1,6 @@
 """Keywords region and group: who takes part."""
+import re
+
 import numpy as np
 import pytest
 
@@ -127,6 +129,75 @@ def test_spheres_enter_and_leave_the_region_during_a_run(simulation, mode, updat
         else:
             assert np.abs(F).max() == 0.0, step
     assert len(seen) >= 5
+
+
+def per_rank_megabytes(log):
+    return float(re.search(r"Per MPI rank memory allocation .* = [0-9.]+ \| [0-9.]+ \| ([0-9.]+) Mbytes", log).group(1))
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_bystanders_are_not_in_the_list(tmp_path, ranks):
+    """Every 50th of 8000 spheres is in the group: its forces are those without the others, and the list of pairs, 150 of 200
+    neighbours a sphere for all, is not what the run takes memory for."""
+    side = 20
+    x = 2.2 * A * np.stack(np.meshgrid(*3 * [np.arange(side)], indexing="ij"), axis=-1).reshape(-1, 3)
+    rng = np.random.default_rng(4)
+    spheres = Spheres(x + rng.uniform(-0.1, 0.1, x.shape), A, rng.normal(size=x.shape))
+    chosen = np.arange(3, len(x), 50)
+    box = [(-1.0, 2.2 * A * side)] * 3
+    forces, memory = {}, {}
+    for name, those, words in (("all", spheres, ""), ("group", spheres, "group part"),
+                               ("alone", Spheres(spheres.x[chosen], A, spheres.v[chosen]), "")):
+        folder = tmp_path / name
+        folder.mkdir()
+        lines = input_lines(those, f"cut_off_distance 6 taper wendland {EXACT} {words}", folder / "data", box=box,
+                            before_pair="group part id " + " ".join(str(i + 1) for i in chosen) if words else "")
+        log = lmp(folder, lines + dump_lines(folder / "dump") + ["run 0"], ranks=ranks).log
+        forces[name] = read_dump(folder / "dump")[0][1][:, 6:9]
+        memory[name] = per_rank_megabytes(log)
+    assert largest_difference(forces["group"][chosen], forces["alone"]) < 1e-10
+    assert np.abs(np.delete(forces["group"], chosen, axis=0)).max() == 0.0
+    others = memory["all"] - memory["alone"]
+    assert memory["group"] - memory["alone"] < 0.4 * others, memory
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_newcomers_between_two_re_neighbourings(tmp_path, ranks):
+    """Spheres fly into a region under a wide skin; nobody re-neighbours for 40 steps. The forces are those of a list that is
+    made afresh in every step."""
+    rng = np.random.default_rng(6)
+    x = 2.4 * A * np.stack(np.meshgrid(*3 * [np.arange(5)], indexing="ij"), axis=-1).reshape(-1, 3)
+    spheres = Spheres(x, A, rng.uniform(-0.5, 0.5, x.shape))
+    forces = {}
+    for name, neigh, skin in (("lazy", "every 20 delay 40 check no", 3.0), ("eager", "every 1 delay 0 check no", 0.3)):
+        folder = tmp_path / name
+        folder.mkdir()
+        lines = input_lines(spheres, f"cut_off_distance 3.1 taper wendland {EXACT} region slab", folder / "data",
+                            box=[(-4.0, 11.0)] * 3, before_pair=f"region slab block INF INF INF INF 0.2 3.2\nneighbor {skin} bin\n"
+                            f"neigh_modify {neigh}\ncomm_modify cutoff 7", dt=0.02)
+        lines += ["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"]
+        lmp(folder, lines + dump_lines(folder / "dump") + ["run 60"], ranks=ranks)
+        forces[name] = [rows[:, 6:9] for _, rows in read_dump(folder / "dump")]
+    inside = [tuple(np.abs(F).max(axis=1) > 0.0) for F in forces["eager"]]
+    assert len(set(inside)) > 10
+    for step in range(61):
+        assert largest_difference(forces["lazy"][step], forces["eager"][step]) < 1e-9, step
+
+
+def test_list_made_while_two_spheres_are_apart(tmp_path):
+    """Two spheres swing by 0.9 about places 5.8 apart, less than half the skin of 2 each. A third joins in step 10, when they are
+    7.6 apart; in step 25 they come by at 4.53 and see each other, by a cut-off of 5, though LAMMPS has not re-neighboured."""
+    spheres = Spheres([(0, 0, 0), (5.8, 0, 0), (3, 8, -0.3)], A, [(0, 0, 0.3), (0, 0.2, 0), (0, 0, 0)])
+    lines = input_lines(spheres, f"cut_off_distance 5 {EXACT} region above", tmp_path / "data", box=[(-12.0, 18.0)] * 3, dt=0.1,
+                        before_pair="region above block INF INF INF INF -0.01 INF\nneighbor 2 bin\nneigh_modify every 1 delay 0 check yes\ncomm_modify cutoff 9")
+    lines += ["unfix drag", "fix drag all stokes_dynamics apply no", "group one id 1", "group two id 2", "group three id 3",
+              "fix a one move wiggle -0.9 0 0 4", "fix b two move wiggle 0.9 0 0 4", "fix c three move linear 0 0 0.3"]
+    log = lmp(tmp_path, lines + dump_lines(tmp_path / "dump") + ["run 25"]).log
+    rows = read_dump(tmp_path / "dump")[-1][1]
+    assert "Neighbor list builds = 0" in log
+    assert rows[1, 0] - rows[0, 0] == pytest.approx(4.53, abs=0.01)
+    sees = np.array([[0, 1, 0], [1, 0, 0], [0, 0, 0]], bool)
+    assert largest_difference(rows[:, 6:9], model.forces(Spheres(rows[:, 0:3], A, rows[:, 3:6]), ETA, sees=sees)) < 1e-10
 
 
 def test_rigid_clump_that_leaves_the_region_keeps_nothing(simulation):
