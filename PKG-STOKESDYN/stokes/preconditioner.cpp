@@ -152,7 +152,8 @@ bool Preconditioner::choose(bool clumps, bool lost)
   }
   if (cost.iteration == 0.0) return false;
   const Kind that = clumps ? CLUMP : SPARSE;
-  const bool at_once = sd_choice_at_once(&cost, tolerance);
+  const double unknowns = extent == CLOUD ? (double) seen.width * seen.n : INFINITY;
+  const bool at_once = sd_choice_at_once(&cost, tolerance, unknowns);
   if (candidate != that) {
     choice = {};
     candidate = that;

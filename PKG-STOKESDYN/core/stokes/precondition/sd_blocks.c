@@ -8,8 +8,11 @@
 
 static const double UNITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-/* Of its size: a clump that has changed more gets a new block. */
-static const double BENT = 0.02;
+/* Of its size: a clump that has changed more gets a new block. A small one is cheaper to factor than to
+ * keep, and gets one for more than rounding: what is kept is not in restart files, so a run that goes on
+ * from one would differ from the run unbroken. */
+static const double BENT = 0.02, ROUNDING = 1e-9;
+enum { SMALL = 64 };
 
 void sd_blocks_free(sd_blocks *b)
 {
@@ -203,7 +206,8 @@ sd_status sd_blocks_move(sd_blocks *b, const sd_precondition_case *c)
     double R[9], centre[3];
     if (places(b, &c->spheres, k, b->scratch) == 0) continue;
     const sd_shape *before = &b->shape[k];
-    if (sd_shape_pose(before, b->scratch, R, centre) <= BENT * before->size)
+    const double limit = (before->n <= SMALL ? ROUNDING : BENT) * before->size;
+    if (sd_shape_pose(before, b->scratch, R, centre) <= limit)
       sd_blocks_turn(b, k, R);
     else {
       bent = 1;

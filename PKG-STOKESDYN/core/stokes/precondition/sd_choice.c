@@ -15,10 +15,11 @@ static const double PATIENCE = 4.0;
  * no list; vectors cost by spheres, in an iteration and in a preconditioner; a stored block that is
  * applied costs what a pair costs, as "with = 1 + stored blocks / pairs" says. Blocks of a matrix that
  * is factored have their tensor evaluated by itself, and an inverse in double precision takes more
- * than a factor in single. Measured within a factor of 1.5 (bench_core), which is enough: what decides
+ * than a factor in single. Each column of the sparse factor has its neighbours found and its memory
+ * taken, whatever its length: in a cloud of ten spheres that is nearly all. Measured within a factor of 1.5 (bench_core), which is enough: what decides
  * in the end is iterations. */
 static const double CLOUD_PAIR = 1.0 / 3.0, SPHERE = 40.0, SPHERE_APPLIED = 20.0, FACTORED = 15.0,
-                    INVERTED = 40.0;
+                    INVERTED = 40.0, COLUMN = 1800.0;
 /* Blocks a sphere in the sparse factor of a large compact cloud, rho 3; a small one has half of its
  * pairs. */
 static const double REACH = 42.0;
@@ -37,7 +38,7 @@ sd_cost sd_cost_sparse(double n, int width)
 {
   const double one = product(n, CLOUD_PAIR * n * n), m = column(n), heavy = width / 3.0;
   return (sd_cost){.iteration = 1.0 + (heavy * m + SPHERE_APPLIED) * n / one,
-                   .make = heavy * FACTORED * m * m * n / one};
+                   .make = (heavy * FACTORED * m * m + COLUMN) * n / one};
 }
 
 sd_cost sd_cost_blocks(double n, int width, double clumps, double stored)
@@ -71,9 +72,10 @@ static double price(const sd_cost *k)
   return k->make + PATIENCE * k->solve;
 }
 
-int sd_choice_at_once(const sd_cost *k, double tolerance)
+/* Conjugate gradients end after as many iterations as there are unknowns. */
+int sd_choice_at_once(const sd_cost *k, double tolerance, double unknowns)
 {
-  const double expected = PER_DIGIT * fmax(0.0, -log10(tolerance));
+  const double expected = fmin(unknowns, PER_DIGIT * fmax(0.0, -log10(tolerance)));
   return k->make + guess_with(k, expected) < expected;
 }
 

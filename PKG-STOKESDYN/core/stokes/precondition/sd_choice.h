@@ -47,8 +47,8 @@ typedef struct {
   double ratio;
 } sd_choice;
 
-/* Would a solve that begins from zero pay for a set-up of its own? */
-int sd_choice_at_once(const sd_cost *k, double tolerance);
+/* Would a solve of so many unknowns that begins from zero pay for a set-up of its own? */
+int sd_choice_at_once(const sd_cost *k, double tolerance, double unknowns);
 
 /* After a solve. Returns 1 if the preconditioner, which stays, is worn: to be made anew. */
 int sd_choice_learn(sd_choice *c, const sd_cost *k, int iterations);

@@ -90,9 +90,10 @@ static void cheap_ones_are_taken_at_once(void **state)
 {
   (void) state;
   const sd_cost cheap = {.iteration = 1.2, .solve = 5.0}, dear = {.iteration = 1.2, .make = 100.0};
-  assert_true(sd_choice_at_once(&cheap, 1e-6));
-  assert_false(sd_choice_at_once(&cheap, 0.3));
-  assert_false(sd_choice_at_once(&dear, 1e-6));
+  assert_true(sd_choice_at_once(&cheap, 1e-6, INFINITY));
+  assert_false(sd_choice_at_once(&cheap, 0.3, INFINITY));
+  assert_false(sd_choice_at_once(&dear, 1e-6, INFINITY));
+  assert_false(sd_choice_at_once(&cheap, 1e-6, 1.0)); /* one iteration is all that it takes without */
 }
 
 static void solves_that_take_nothing_change_nothing(void **state)
