@@ -225,7 +225,7 @@ double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed);
 double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom);
 
 /* Friction factor f of a smooth side wall, 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32 (Graf &
- * Altinakar), tau = rho f/8 U^2; Re > 0. By Newton's method to rounding; it has one solution for
+ * Altinakar), tau = rho f/8 U^2; Re > 0. By Halley's method to rounding; it has one solution for
  * every Re, meant for turbulent streams.
  *   root  in: sqrt(f) of a Reynolds number near by, or 0; out: sqrt(f)
  * Yade's rule: a natural logarithm, by substitution from 0.32^-2 until f changes by less than 1 %,
