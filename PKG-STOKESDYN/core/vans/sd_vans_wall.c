@@ -24,14 +24,16 @@ static double root_of_law(double Re, double y)
   return y;
 }
 
+/* In the arithmetic of the original, step by step: below Re of about 1 the substitution wanders, and
+ * another rounding there is another answer. */
 static double substitution(double Re)
 {
-  double y = 1.0 / 0.32, f = y * y;
+  double f = 1.0 / (0.32 * 0.32);
   for (int k = 1; k <= 100; k++) {
-    y = 1.0 / fabs(2.0 * log(Re * y) + 0.32);
-    const double change = fabs(y * y - f);
-    if (change < 1e-2 * f) return y * y;
-    f = y * y;
+    const double root = 2.0 * log(Re * sqrt(f)) + 0.32, next = 1.0 / (root * root);
+    const double change = fabs(next - f) / f;
+    f = next;
+    if (change < 1e-2) return f;
   }
   return 0.0;
 }
