@@ -1,21 +1,26 @@
 #!/usr/bin/env python3
-"""Two-way bedload at two slopes: runs, time means with their scatter, bedload.png.     run.py [--ranks N] [--seconds T] [--reuse DIR]
+"""Two-way bedload at two slopes: runs, time means with their scatter, bedload.png.     run.py [--ranks N] [--seconds T] [--out DIR] [--reuse DIR] [--update]
 
-Needs lmp on the PATH (. build/env.sh). Results of an earlier run in DIR are read instead with --reuse."""
-import argparse
+Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. Results of an earlier run in DIR are read instead with --reuse."""
 import os
+import shutil
 import subprocess
 import sys
-import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from runs import np, plt  # noqa: E402
+from checks import Checks  # noqa: E402
+from runs import need, np, options, plt  # noqa: E402
 
 D = 0.006
 SCALE = np.sqrt(1.5 * 9.81 * D ** 3)
 # slope, depth over d, beginning of the mean, what Yade gave for a bed made the same way (mean and its error, from blocks of 1 s)
 CASES = {"a": (0.05, 10, 8, (0.579, 0.007), (0.2578, 0.0010), (1.666, 0.002)), "b": (0.08, 9, 7, (1.563, 0.026), (0.3426, 0.0025), (1.862, 0.003))}
+
+# the README's means, and how far two runs of this length may be apart
+FOUND = {"a": {"q*": 0.571, "Shields number": 0.2583, "surface velocity [m/s]": 1.653},
+         "b": {"q*": 1.561, "Shields number": 0.3406, "surface velocity [m/s]": 1.847}}
+TOLERANCE = {"q*": 0.06, "Shields number": 0.006, "surface velocity [m/s]": 0.015}
 
 
 def blocks(t, values, begin):
@@ -25,37 +30,40 @@ def blocks(t, values, begin):
     return late.mean(), late.std(), np.std(means, ddof=1) / np.sqrt(len(means))
 
 
+def keep(given, *names):
+    """--update: what belongs beside this file."""
+    for name in names if given.update else ():
+        shutil.copy(given.out / name, HERE)
+
+
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--ranks", type=int, default=1)
-    parser.add_argument("--seconds", type=float, default=16)
-    parser.add_argument("--reuse")
-    options = parser.parse_args()
+    given, c = options(__file__, __doc__, ranks=1, seconds=16.0, reuse=""), Checks()
+    need("mpirun", "lmp")
+    directory = given.reuse or given.out
     figure, axes = plt.subplots(1, 4, figsize=(15, 4.3))
-    with tempfile.TemporaryDirectory() as temporary:
-        directory = options.reuse or temporary
-        for k, (name, (slope, depth, begin, *yade)) in enumerate(CASES.items()):
-            if not options.reuse:
-                print(f"slope {slope}: {options.seconds:g} s of bedload", flush=True)
-                subprocess.run(["mpirun", "-np", str(options.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_bedload"), "-screen", "none",
-                                "-log", os.path.join(HERE, f"log.vans_bedload.{name}.{options.ranks}"), "-var", "slope", str(slope), "-var", "depth", str(depth),
-                                "-var", "seconds", str(options.seconds), "-var", "name", name], cwd=directory, check=True)
-            series = np.loadtxt(os.path.join(directory, f"series.{name}"))
-            t = series[:, 0] * 4e-5
-            begin = min(begin, t[-1] / 2)
-            for what, column, factor, peer in (("q*", 1, 1 / SCALE, yade[0]), ("Shields number", 2, 1, yade[1]), ("surface velocity [m/s]", 5, 1, yade[2])):
-                mean, scatter, error = blocks(t, series[:, column] * factor, begin)
-                print(f"  slope {slope}: {what:24s} {mean:.4f} +- {error:.4f} (scatter in time {scatter:.4f});  Yade {peer[0]} +- {peer[1]}")
-            axes[0].plot(t, series[:, 1] / SCALE, lw=0.6, color=f"C{k}", alpha=0.8, label=f"slope {slope}")
-            axes[0].axhline(yade[0][0], color=f"C{k}", ls="--", lw=1)
-            rows = [line.split() for line in open(os.path.join(directory, f"profiles.{name}")) if not line.startswith("#")]
-            profile = np.array([row for row in rows if len(row) == 11][-301:], dtype=float)
-            z = profile[:, 1] / D
-            axes[1].plot(profile[:, 3], z, color=f"C{k}")
-            axes[2].plot(profile[:-1, 2], z[:-1], color=f"C{k}", label=f"water, {slope}")
-            solid = profile[:, 3] > 1e-2
-            axes[2].plot(profile[solid, 4], z[solid], "--", color=f"C{k}", label=f"grains, {slope}")
-            axes[3].plot(profile[:-1, 10], z[:-1] - 0.5 * (z[1] - z[0]), color=f"C{k}")
+    for k, (name, (slope, depth, begin, *yade)) in enumerate(CASES.items()):
+        if not given.reuse:
+            print(f"slope {slope}: {given.seconds:g} s of bedload", flush=True)
+            subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_bedload"), "-screen", "none",
+                            "-log", f"log.vans_bedload.{name}.{given.ranks}", "-var", "slope", str(slope), "-var", "depth", str(depth),
+                            "-var", "seconds", str(given.seconds), "-var", "name", name], cwd=directory, check=True)
+        series = np.loadtxt(os.path.join(directory, f"series.{name}"))
+        t = series[:, 0] * 4e-5
+        begin = min(begin, t[-1] / 2)
+        for what, column, factor, peer in (("q*", 1, 1 / SCALE, yade[0]), ("Shields number", 2, 1, yade[1]), ("surface velocity [m/s]", 5, 1, yade[2])):
+            mean, scatter, error = blocks(t, series[:, column] * factor, begin)
+            print(f"  slope {slope}: {what:24s} {mean:.4f} +- {error:.4f} (scatter in time {scatter:.4f});  Yade {peer[0]} +- {peer[1]}")
+            c.near(f"slope {slope}: {what}", mean, FOUND[name][what], TOLERANCE[what])
+        axes[0].plot(t, series[:, 1] / SCALE, lw=0.6, color=f"C{k}", alpha=0.8, label=f"slope {slope}")
+        axes[0].axhline(yade[0][0], color=f"C{k}", ls="--", lw=1)
+        rows = [line.split() for line in open(os.path.join(directory, f"profiles.{name}")) if not line.startswith("#")]
+        profile = np.array([row for row in rows if len(row) == 11][-301:], dtype=float)
+        z = profile[:, 1] / D
+        axes[1].plot(profile[:, 3], z, color=f"C{k}")
+        axes[2].plot(profile[:-1, 2], z[:-1], color=f"C{k}", label=f"water, {slope}")
+        solid = profile[:, 3] > 1e-2
+        axes[2].plot(profile[solid, 4], z[solid], "--", color=f"C{k}", label=f"grains, {slope}")
+        axes[3].plot(profile[:-1, 10], z[:-1] - 0.5 * (z[1] - z[0]), color=f"C{k}")
     axes[0].set(xlabel="t [s]", ylabel="q*", title="Transport rate (dashed: Yade's mean)")
     axes[1].set(xlabel="phi", ylabel="z/d", title="Volume fraction")
     axes[2].set(xlabel="velocity [m/s]", title="Velocities")
@@ -66,7 +74,9 @@ def main():
         ax.grid(alpha=0.3)
     axes[0].set_ylim(0, 2.6)
     figure.tight_layout()
-    figure.savefig(os.path.join(HERE, "bedload.png"), dpi=100)
+    figure.savefig(given.out / "bedload.png", dpi=100)
+    keep(given, "bedload.png", "series.a", *(f"log.vans_bedload.{name}.{given.ranks}" for name in CASES))
+    return c.finish()
 
 
-main()
+sys.exit(main())

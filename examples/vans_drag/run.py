@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""Falls at three concentrations, speeds beside the closed form, drag.png.     run.py [--ranks N]"""
-import argparse
+"""Falls at three concentrations, speeds beside the closed form, drag.png.     run.py [--ranks N] [--out DIR] [--update]
+
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed."""
 import os
+import shutil
 import subprocess
 import sys
-import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from runs import np, plt  # noqa: E402
-
+from checks import Checks  # noqa: E402
+from runs import need, np, options, plt  # noqa: E402
 
 
 def closed_form(d, phi):
@@ -18,32 +19,38 @@ def closed_form(d, phi):
     return (-B + np.sqrt(B * B + 4 * 0.44 * C)) / 0.88
 
 
+def keep(given, *names):
+    """--update: what belongs beside this file."""
+    for name in names if given.update else ():
+        shutil.copy(given.out / name, HERE)
+
+
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--ranks", type=int, default=1)
-    ranks = parser.parse_args().ranks
+    given, c = options(__file__, __doc__, ranks=1), Checks()
+    need("mpirun", "lmp")
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2))
     fine = np.logspace(-4, -2, 200)
     speed = {}
-    with tempfile.TemporaryDirectory() as directory:
-        for phi in ("0.0", "0.2", "0.4"):
-            log = os.path.join(HERE, f"log.vans_drag.{ranks}") if phi == "0.2" else "none"
-            subprocess.run(["mpirun", "-np", str(ranks), "lmp", "-in", os.path.join(HERE, "in.vans_drag"), "-log", log, "-screen", "none", "-var", "phi", phi],
-                           cwd=directory, check=True)
-            rows = np.loadtxt(os.path.join(directory, f"speeds.{phi}"), skiprows=9)
-            rows = rows[np.argsort(rows[:, 0])]
-            d, w = rows[:, 1], -rows[:, 2]
-            speed[phi] = w
-            error = np.abs(w / closed_form(d, float(phi)) - 1)
-            print(f"phi {phi}: terminal velocity {w.min():.5f} to {w.max():.5f} m/s, largest error against the closed form {error.max():.1e}")
-            left.loglog(d * 1e3, w, "o", ms=5, label=f"phi = {phi}")
-            left.loglog(fine * 1e3, closed_form(fine, float(phi)), "k-", lw=1)
+    for phi in ("0.0", "0.2", "0.4"):
+        log = f"log.vans_drag.{given.ranks}" if phi == "0.2" else "none"
+        subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_drag"), "-log", log, "-screen", "none", "-var", "phi", phi],
+                       cwd=given.out, check=True)
+        rows = np.loadtxt(given.out / f"speeds.{phi}", skiprows=9)
+        rows = rows[np.argsort(rows[:, 0])]
+        d, w = rows[:, 1], -rows[:, 2]
+        speed[phi] = w
+        error = np.abs(w / closed_form(d, float(phi)) - 1)
+        print(f"phi {phi}: terminal velocity {w.min():.5f} to {w.max():.5f} m/s, largest error against the closed form {error.max():.1e}")
+        c.below(f"phi {phi}: largest error of the terminal velocity", error.max(), 1e-11)
+        left.loglog(d * 1e3, w, "o", ms=5, label=f"phi = {phi}")
+        left.loglog(fine * 1e3, closed_form(fine, float(phi)), "k-", lw=1)
     # the exponent from the drags at the speeds reached
     B = 24.4e-6 / d
     free = (0.44 * speed["0.0"] + B) * speed["0.0"]
     for phi in ("0.2", "0.4"):
         exponent = np.log((0.44 * speed[phi] + B) * speed[phi] / free) / np.log(1 - float(phi))
         print(f"phi {phi}: exponent of hindrance from the runs {exponent.min():.6f} to {exponent.max():.6f}")
+        c.near(f"phi {phi}: exponent of hindrance", exponent[np.abs(exponent - 3.1).argmax()], 3.1, 5e-7)
     v = fine * closed_form(fine, 0) / 1e-6
     right.loglog(v, 0.44 + 24.4 / v, "k-", lw=1, label="0.44 + 24.4/Re")
     Re = speed["0.0"] * d / 1e-6
@@ -54,7 +61,9 @@ def main():
         axes.legend(frameon=False)
         axes.grid(alpha=0.3, which="both", lw=0.4)
     figure.tight_layout()
-    figure.savefig(os.path.join(HERE, "drag.png"), dpi=110)
+    figure.savefig(given.out / "drag.png", dpi=110)
+    keep(given, "drag.png", f"log.vans_drag.{given.ranks}")
+    return c.finish()
 
 
-main()
+sys.exit(main())
