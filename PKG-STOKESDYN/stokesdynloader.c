@@ -1,8 +1,9 @@
-/* stokesdynplugin.so, the file that LAMMPS opens. It makes sure that this is the LAMMPS that the styles were compiled for, and opens
- * them only then: stokesdynstyles.so, which lies beside it. Class layouts differ in every release of LAMMPS: styles of another
- * release have undefined symbols, or load without complaint and then read wrong members.
- * So nothing here refers to LAMMPS or MPI. What must be known of LAMMPS is asked of its C functions, which depend on no layout,
- * looked up by name. */
+/* stokesdynplugin.so, the file that LAMMPS opens. It makes sure that this is the LAMMPS that the
+ * styles were compiled for, and opens them only then: stokesdynstyles.so, which lies beside it.
+ * Class layouts differ in every release of LAMMPS: styles of another release have undefined
+ * symbols, or load without complaint and then read wrong members.
+ * So nothing here refers to LAMMPS or MPI. What must be known of LAMMPS is asked of its C
+ * functions, which depend on no layout, looked up by name. */
 #define _GNU_SOURCE    // dladdr, realpath
 #include <dlfcn.h>
 #include <limits.h>
@@ -47,7 +48,8 @@ static int find_host(host *lammps, char *why)
   return 1;
 }
 
-/* Is this LAMMPS of the version and the options that the styles were compiled for? 0 and the reason if not. */
+/* Is this LAMMPS of the version and the options that the styles were compiled for? 0 and the reason
+ * if not. */
 static int fits(const host *lammps, void *lmp, char *why)
 {
   const int version = lammps->version(lmp);
@@ -90,8 +92,8 @@ static int fits(const host *lammps, void *lmp, char *why)
   return 1;
 }
 
-/* The entry of the styles; NULL and the reason if they cannot be opened. They are never closed: a style in use may outlive the
- * 'plugin unload' that closes this file. */
+/* The entry of the styles; NULL and the reason if they cannot be opened. They are never closed: a
+ * style in use may outlive the 'plugin unload' that closes this file. */
 static entry *open_styles(char *why)
 {
   static const char here;    // not the entry: of all plugins in the process, the first one's would be found

@@ -1,5 +1,6 @@
-/* All styles of the plugin, as LAMMPS registers them. Built into stokesdynstyles.so, which stokesdynloader.c opens when it has made
- * sure that this is the LAMMPS that the styles were compiled for. */
+/* All styles of the plugin, as LAMMPS registers them. Built into stokesdynstyles.so, which
+ * stokesdynloader.c opens when it has made sure that this is the LAMMPS that the styles were
+ * compiled for. */
 #include "lammpsplugin.h"
 #include "library.h"
 #include "version.h"

@@ -1,5 +1,6 @@
-/* Rows of numbers for those atoms that have some. Every atom has a pointer, eight bytes; only the few that need one have a
- * row. A fix keeps one of these and hands LAMMPS's callbacks on: atoms migrate, are sorted, created and deleted. */
+/* Rows of numbers for those atoms that have some. Every atom has a pointer, eight bytes; only the
+ * few that need one have a row. A fix keeps one of these and hands LAMMPS's callbacks on: atoms
+ * migrate, are sorted, created and deleted. */
 #ifndef SD_ATOM_ROWS_H
 #define SD_ATOM_ROWS_H
 
@@ -43,8 +44,9 @@ class AtomRows {
   std::vector<double *> spare;
 };
 
-/* An array for LAMMPS, fix->array_atom: one block, since its libraries read it as such, so that every atom has a row. Rows of
- * zeros that nobody writes to are memory that the system has promised and not yet given. */
+/* An array for LAMMPS, fix->array_atom: one block, since its libraries read it as such, so that
+ * every atom has a row. Rows of zeros that nobody writes to are memory that the system has promised
+ * and not yet given. */
 class AtomArray {
  public:
   explicit AtomArray(int columns) : width(columns) {}

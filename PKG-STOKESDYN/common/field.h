@@ -1,4 +1,5 @@
-/* A keyword's value that is a number or a variable "v_name": equal style (one value a step) or atom style (one value an atom). */
+/* A keyword's value that is a number or a variable "v_name": equal style (one value a step) or atom
+ * style (one value an atom). */
 #ifndef SD_FIELD_H
 #define SD_FIELD_H
 
@@ -20,10 +21,11 @@ class Field {
   double number() const { return value; }
   double *address() { return &value; }
 
-  /* Find the variable; what: "Pair style x: keyword visc", for the error if it is missing or of another style. */
+  /* Find the variable; what: "Pair style x: keyword visc", for the error if it is missing or of
+   * another style. */
   void init(LAMMPS_NS::LAMMPS *lmp, const std::string &what);
-  /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms outside the group. nullptr,
-   * if not of atom style: only number() is brought up to date. */
+  /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms
+   * outside the group. nullptr, if not of atom style: only number() is brought up to date. */
   void evaluate(LAMMPS_NS::LAMMPS *lmp, int igroup, double *out, int stride);
   /* Of a number or an equal-style variable. */
   double evaluate(LAMMPS_NS::LAMMPS *lmp);

@@ -1,4 +1,5 @@
-/* One parser for all styles, with one voice for errors: "<command>: keyword <name>: ..." on every rank. */
+/* One parser for all styles, with one voice for errors: "<command>: keyword <name>: ..." on every
+ * rank. */
 #ifndef SD_KEYWORDS_H
 #define SD_KEYWORDS_H
 
@@ -84,8 +85,8 @@ class Keywords {
 /* Words of a LAMMPS command as strings. */
 std::vector<std::string> words(int narg, char **arg);
 
-/* Does this word read as a number, all of it? Then value is set. Decimal only, as in LAMMPS's own commands; "inf" and "nan" count
- * as numbers. */
+/* Does this word read as a number, all of it? Then value is set. Decimal only, as in LAMMPS's own
+ * commands; "inf" and "nan" count as numbers. */
 bool is_number(const std::string &word, double &value);
 
 }    // namespace StokesDyn

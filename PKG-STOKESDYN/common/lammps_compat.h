@@ -1,5 +1,5 @@
-/* Every difference between LAMMPS versions, 29Sep2021 to today, in one place. SD_HAVE_* come from cmake/LammpsFeatures.cmake,
- * which reads them off the headers. */
+/* Every difference between LAMMPS versions, 29Sep2021 to today, in one place. SD_HAVE_* come from
+ * cmake/LammpsFeatures.cmake, which reads them off the headers. */
 #ifndef SD_LAMMPS_COMPAT_H
 #define SD_LAMMPS_COMPAT_H
 
@@ -35,7 +35,8 @@ namespace Compat {
 #endif
   }
 
-  /* the usual half list, each pair once, as newton says; instance: the instance_me of the pair style */
+  /* the usual half list, each pair once, as newton says; instance: the instance_me of the pair
+   * style */
   inline void request_half_list(LAMMPS_NS::Neighbor *neighbor, LAMMPS_NS::Pair *pair, int instance)
   {
 #if SD_HAVE_ADD_REQUEST

@@ -1,8 +1,8 @@
-/* What a fix or pair style keeps in a restart file: numbers by name, so that a file of another version is read by what it
- * says and not by where it stands.
+/* What a fix or pair style keeps in a restart file: numbers by name, so that a file of another
+ * version is read by what it says and not by where it stands.
  *
- * In the file: a text "stokesdyn 1 STYLE\n" and then lines "NAME COUNT VALUE ... VALUE\n", hexadecimal floating point, which
- * loses nothing; closed by a 0. Names have no blanks. */
+ * In the file: a text "stokesdyn 1 STYLE\n" and then lines "NAME COUNT VALUE ... VALUE\n",
+ * hexadecimal floating point, which loses nothing; closed by a 0. Names have no blanks. */
 #ifndef SD_NAMED_STATE_H
 #define SD_NAMED_STATE_H
 
@@ -32,10 +32,12 @@ class NamedState {
   std::vector<double> get(const std::string &name) const;    // empty: not in the file
   uint64_t get_bits(const std::string &name, uint64_t absent) const;
 
-  /* As LAMMPS's Fix::write_restart wants it: the length in bytes, an int, and then the bytes. For the first rank. */
+  /* As LAMMPS's Fix::write_restart wants it: the length in bytes, an int, and then the bytes. For
+   * the first rank. */
   void write(FILE *fp) const;
-  /* What Fix::restart was given. False: written by another version of the plugin or for another style, nothing is taken, and
-   * one warning has been given. The buffer is closed by a 0, or it is none of ours. */
+  /* What Fix::restart was given. False: written by another version of the plugin or for another
+   * style, nothing is taken, and one warning has been given. The buffer is closed by a 0, or it is
+   * none of ours. */
   bool read(LAMMPS_NS::LAMMPS *lmp, const char *buffer);
 
  private:

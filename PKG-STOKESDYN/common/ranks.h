@@ -1,4 +1,5 @@
-/* What ranks tell each other: gathers of a varying number of things, and questions to those who know. */
+/* What ranks tell each other: gathers of a varying number of things, and questions to those who
+ * know. */
 #ifndef SD_RANKS_H
 #define SD_RANKS_H
 
@@ -10,8 +11,9 @@
 
 namespace StokesDyn {
 
-/* What the ranks have, one rank after the other: the same vector on all of them. T travels by its bytes, so that no MPI type
- * is needed (LAMMPS's own MPI for a single rank lacks those of fixed width). At most 2 GB in all. */
+/* What the ranks have, one rank after the other: the same vector on all of them. T travels by its
+ * bytes, so that no MPI type is needed (LAMMPS's own MPI for a single rank lacks those of fixed
+ * width). At most 2 GB in all. */
 template <class T> std::vector<T> from_all(MPI_Comm world, const std::vector<T> &mine)
 {
   static_assert(std::is_trivially_copyable<T>::value, "travels by its bytes");
@@ -29,9 +31,9 @@ template <class T> std::vector<T> from_all(MPI_Comm world, const std::vector<T> 
   return all;
 }
 
-/* Sends every item to the rank that home(item) names, where answer(items), given all that came there, may change them in
- * place; they come back in the order of `mine`. So ranks settle together what none of them knows alone, without a list of all
- * on each. */
+/* Sends every item to the rank that home(item) names, where answer(items), given all that came
+ * there, may change them in place; they come back in the order of `mine`. So ranks settle together
+ * what none of them knows alone, without a list of all on each. */
 template <class T, class Home, class Answer>
 void ask_homes(MPI_Comm world, std::vector<T> &mine, const Home &home, const Answer &answer)
 {

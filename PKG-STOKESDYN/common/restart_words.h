@@ -1,4 +1,5 @@
-/* The words of a pair_style command in a restart file: read_restart parses them again, so a new keyword needs nothing here. */
+/* The words of a pair_style command in a restart file: read_restart parses them again, so a new
+ * keyword needs nothing here. */
 #ifndef SD_RESTART_WORDS_H
 #define SD_RESTART_WORDS_H
 
@@ -13,7 +14,8 @@ namespace StokesDyn {
 /* For the first rank, as Pair::write_restart_settings. */
 void write_words(FILE *fp, const std::vector<std::string> &words);
 
-/* What write_words wrote, on all ranks; an error if it was another version. command: "Pair style ...", for the error. */
+/* What write_words wrote, on all ranks; an error if it was another version. command: "Pair style
+ * ...", for the error. */
 std::vector<std::string> read_words(LAMMPS_NS::LAMMPS *lmp, FILE *fp, const std::string &command);
 
 }    // namespace StokesDyn

@@ -1,8 +1,9 @@
-/* Does a run begin where, and as, the last one ended? Then the forces of that step still stand: velocity Verlet computed them
- * with velocities at half step, which are gone, so they could not be computed again, and a run in two pieces would not be the
- * run in one.
+/* Does a run begin where, and as, the last one ended? Then the forces of that step still stand:
+ * velocity Verlet computed them with velocities at half step, which are gone, so they could not be
+ * computed again, and a run in two pieces would not be the run in one.
  *
- * A fix that must know keeps a row of numbers for each of its atoms, made when a run ends or a restart file is written. */
+ * A fix that must know keeps a row of numbers for each of its atoms, made when a run ends or a
+ * restart file is written. */
 #ifndef SD_RESUME_H
 #define SD_RESUME_H
 
@@ -19,7 +20,8 @@ class Resume : protected LAMMPS_NS::Pointers {
   int columns() const { return spins ? 11 : 8; }
   /* Row of atom i: unwrapped position, velocity, radius, molecule, with spins angular velocity. */
   void record(int i, double *row) const;
-  /* Same place (within rounding: wrapping into the box leaves it), radius and molecule. A row of zeros is no place. */
+  /* Same place (within rounding: wrapping into the box leaves it), radius and molecule. A row of
+   * zeros is no place. */
   bool placed(int i, const double *row) const;
   /* Same velocity and angular velocity (within rounding: rigid bodies set them anew). */
   bool moving(int i, const double *row) const;

@@ -113,8 +113,9 @@ namespace {
   };
 }    // namespace
 
-/* gradient[9 i + 3 p + q] = d u_p / d x_q, by central differences over one radius to either side. For a field given by variables
- * that are formulas in x, y, z; values stored per atom do not follow, and their gradient comes out as 0. */
+/* gradient[9 i + 3 p + q] = d u_p / d x_q, by central differences over one radius to either side.
+ * For a field given by variables that are formulas in x, y, z; values stored per atom do not
+ * follow, and their gradient comes out as 0. */
 static void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradient)
 {
   const int n = lmp->atom->nlocal;
@@ -131,7 +132,8 @@ static void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradi
     }
 }
 
-/* From the formulas of the fluid velocity, its rotation replaced by fluid_vorticity where that is given. */
+/* From the formulas of the fluid velocity, its rotation replaced by fluid_vorticity where that is
+ * given. */
 void Ambient::read_gradient()
 {
   const int n = atom->nlocal;
@@ -168,8 +170,8 @@ static bool finite(const double *v)
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-/* More than one length of a periodic box outside of it: LAMMPS wraps an atom by one length, and between two wrappings it moves
- * by half the skin in any run that means something. */
+/* More than one length of a periodic box outside of it: LAMMPS wraps an atom by one length, and
+ * between two wrappings it moves by half the skin in any run that means something. */
 bool Ambient::far_out(int i) const
 {
   const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;

@@ -1,8 +1,10 @@
-/* The fluid as it would be without the spheres, and who feels it: read once a step, const afterwards.
+/* The fluid as it would be without the spheres, and who feels it: read once a step, const
+ * afterwards.
  *
- * Indices are those of LAMMPS's owned atoms. What is the same everywhere is not stored per atom: each pass over this memory
- * costs as much as the arithmetic. Viscosities are in the units in which viscosity * length * velocity is a force, so that
- * 6 pi eta a v needs no factor: LAMMPS's own are force->vxmu2f of them (units real, metal, electron). */
+ * Indices are those of LAMMPS's owned atoms. What is the same everywhere is not stored per atom:
+ * each pass over this memory costs as much as the arithmetic. Viscosities are in the units in which
+ * viscosity * length * velocity is a force, so that 6 pi eta a v needs no factor: LAMMPS's own are
+ * force->vxmu2f of them (units real, metal, electron). */
 #ifndef SD_AMBIENT_H
 #define SD_AMBIENT_H
 
@@ -35,8 +37,10 @@ class Ambient : protected LAMMPS_NS::Pointers {
 
   /* Looks up variables, group and region. Errors: one that does not exist. */
   void init();
-  /* The state of this step. spins: angular velocities count; gradients: the gradient of the fluid velocity is wanted.
-   * Errors, on all ranks: a number that is none, or an atom far outside of a periodic box, with atom and step. */
+  /* The state of this step. spins: angular velocities count; gradients: the gradient of the fluid
+   * velocity is wanted.
+   * Errors, on all ranks: a number that is none, or an atom far outside of a periodic box, with
+   * atom and step. */
   void read(bool spins, bool gradients);
 
   const std::vector<char> &active() const { return takes_part; }

@@ -8,7 +8,8 @@
 
 namespace StokesDyn {
 
-/* The body of a function that the core calls. An exception ends there, as a status that the core hands back to its caller;
+/* The body of a function that the core calls. An exception ends there, as a status that the core
+ * hands back to its caller;
  * LAMMPS has printed the text of its own by then. */
 template <class Body> sd_status callback(const Body &body) noexcept
 {

@@ -1,5 +1,5 @@
-/* Settings that LAMMPS or the solver would do something foolish with. Free functions, each called with the name of the command
- * that the user is told. */
+/* Settings that LAMMPS or the solver would do something foolish with. Free functions, each called
+ * with the name of the command that the user is told. */
 #ifndef SD_CHECKS_H
 #define SD_CHECKS_H
 
@@ -10,22 +10,25 @@
 
 namespace StokesDyn {
 
-/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts of them: refused. One of
- * more than ten periodic boxes, perhaps a mistake in units, takes minutes and is warned of. */
+/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts
+ * of them: refused. One of more than ten periodic boxes, perhaps a mistake in units, takes minutes
+ * and is warned of. */
 void check_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
                        const Scene::Settings &settings);
 
-/* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10 % for a chain of ten
- * touching spheres that see each other up to 10.5 a. Tells of the clump with the lowest molecule ID. */
+/* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10
+ * % for a chain of ten touching spheres that see each other up to 10.5 a. Tells of the clump with
+ * the lowest molecule ID. */
 void warn_of_short_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const Scene &scene);
 
-/* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and none of them means
- * anything. */
+/* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and
+ * none of them means anything. */
 void refuse_close_oseen(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const Scene &scene);
 
-/* LAMMPS sorts its atoms into bins of half the cut-off, which is small where a style has none. In an open box that is mostly
- * empty the bins would take most of the memory, or be too many: then wider ones, about one for each atom. LAMMPS's own setting
- * comes back with the end of this object. */
+/* LAMMPS sorts its atoms into bins of half the cut-off, which is small where a style has none. In
+ * an open box that is mostly empty the bins would take most of the memory, or be too many: then
+ * wider ones, about one for each atom. LAMMPS's own setting comes back with the end of this
+ * object. */
 class SortingBins : protected LAMMPS_NS::Pointers {
  public:
   explicit SortingBins(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}

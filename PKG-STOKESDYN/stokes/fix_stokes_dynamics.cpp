@@ -128,8 +128,8 @@ double FixStokesDynamics::compute_scalar()
   return all;
 }
 
-/* Total force x y z; iterations and residual of the last solve, solves, unconverged solves; smallest eigenvalue met, time step
- * limit. */
+/* Total force x y z; iterations and residual of the last solve, solves, unconverged solves;
+ * smallest eigenvalue met, time step limit. */
 double FixStokesDynamics::compute_vector(int k)
 {
   if (k < 3) {

@@ -1,4 +1,5 @@
-/* fix stokes_dynamics: adds the force of pair_style stokes_dynamics where the pair style does not, and reports it.
+/* fix stokes_dynamics: adds the force of pair_style stokes_dynamics where the pair style does not,
+ * and reports it.
  * See doc/fix_stokes_dynamics.md. */
 #ifndef SD_FIX_STOKES_DYNAMICS_H
 #define SD_FIX_STOKES_DYNAMICS_H

@@ -1,8 +1,10 @@
-/* Internal fix: the memory of pair_style stokes_dynamics, what must follow its atom through migration, sorting and restart.
+/* Internal fix: the memory of pair_style stokes_dynamics, what must follow its atom through
+ * migration, sorting and restart.
  *
- * Each sphere that takes part has a row with F and v' of the last step and solve, and one with what F depends on as a run or a
- * restart file left it; others have none. When a run begins exactly where the last one ended, the force of that step still
- * stands (common/resume.h), and the run goes on as if it had never been broken. */
+ * Each sphere that takes part has a row with F and v' of the last step and solve, and one with what
+ * F depends on as a run or a restart file left it; others have none. When a run begins exactly
+ * where the last one ended, the force of that step still stands (common/resume.h), and the run goes
+ * on as if it had never been broken. */
 #ifndef SD_FIX_STOKES_DYNAMICS_STATE_H
 #define SD_FIX_STOKES_DYNAMICS_STATE_H
 
@@ -45,7 +47,8 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
   void restart(char *) override;
   double memory_usage() override;
 
-  /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is kept. */
+  /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is kept.
+   * */
   enum { FORCE = 0, VPRIME = 3, WITHOUT_ROTATION = 6, TORQUE = 6, WPRIME = 9, WITH_ROTATION = 12 };
   const bool rotation, history;
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
@@ -53,17 +56,26 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
 
   /* The same on all ranks. A step of -1: never. */
   struct Global {
-    double last_step = -1, last_solve = -1;    // time step of the forces, of v'
-    double reported = 0;                       // were the rows made for a fix that reports v'?
-    double spheres = 0;                        // that took part then
-    double numbers[7] = {0};                   // of the fluid in the last step (Ambient::numbers)
+    /* time step of the forces, and of v' */
+    double last_step = -1, last_solve = -1;
+    /* were the rows made for a fix that reports v'? */
+    double reported = 0;
+    /* that took part then */
+    double spheres = 0;
+    /* of the fluid in the last step (Ambient::numbers) */
+    double numbers[7] = {0};
     double solves = 0, unconverged = 0;
-    double iterations = 0, residual = 0;    // of the last solve
-    double solutions = 0;                   // v' that the rows hold of solves that follow one another: 0, 1, 2
-    double box[6] = {0};                    // periodic lengths and tilts as the last run left them
-    uint64_t settings = 0;                  // hash of the words of the pair_style command
+    /* of the last solve */
+    double iterations = 0, residual = 0;
+    /* v' that the rows hold, of solves that follow one another: 0, 1, 2 */
+    double solutions = 0;
+    /* periodic lengths and tilts as the last run left them */
+    double box[6] = {0};
+    /* hash of the words of the pair_style command */
+    uint64_t settings = 0;
+    /* kept for those who know what they mean */
     TimeStepGuard::State guard;
-    std::vector<double> preconditioner, loose;    // kept for those who know what they mean
+    std::vector<double> preconditioner, loose;
   } global;
 
   bool restart_written = false;    // since the last solve

@@ -75,7 +75,8 @@ void Hydrodynamics::new_run(bool as_left)
     rigid.new_run();
 }
 
-/* Forces of rigid clumps, and the v' that they stand for. Spheres of other clumps, and lone ones, are left to the solver. */
+/* Forces of rigid clumps, and the v' that they stand for. Spheres of other clumps, and lone ones,
+ * are left to the solver. */
 void Hydrodynamics::clumps()
 {
   if (!settings.rigid.on) {
@@ -112,7 +113,8 @@ void Hydrodynamics::clumps()
   }
 }
 
-/* F = 6 pi eta a (u_inf + v' - v), and likewise the torque, of all spheres but those of rigid clumps. */
+/* F = 6 pi eta a (u_inf + v' - v), and likewise the torque, of all spheres but those of rigid
+ * clumps. */
 void Hydrodynamics::drag()
 {
   const bool rotates = rotation();
@@ -128,7 +130,8 @@ void Hydrodynamics::drag()
   }
 }
 
-/* v' of every sphere that is the solver's, from the forces that solve the system for the velocities of now. */
+/* v' of every sphere that is the solver's, from the forces that solve the system for the velocities
+ * of now. */
 void Hydrodynamics::solve()
 {
   if (settings.rigid.on && !rigid.any_loose()) return;
@@ -208,8 +211,9 @@ sd_status Hydrodynamics::run(sd_system &system, sd_solve_report &report)
   return status;
 }
 
-/* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v' and not from F, the guess has
- * the slip of now: it is exact for spheres that nobody disturbs, at any tolerance. */
+/* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
+ * and not from F, the guess has the slip of now: it is exact for spheres that nobody disturbs, at
+ * any tolerance. */
 void Hydrodynamics::guess()
 {
   const size_t m = width();
@@ -224,8 +228,8 @@ void Hydrodynamics::guess()
   }
 }
 
-/* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have none: not what the tolerance
- * of a solve from zero has left of theirs either. */
+/* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have
+ * none: not what the tolerance of a solve from zero has left of theirs either. */
 void Hydrodynamics::keep()
 {
   const size_t m = width();

@@ -1,10 +1,11 @@
-/* Forces of the spheres from their velocities, under the settings of pair_style stokes_dynamics. The pair style and the fixes
- * that go with it stand above this and share the one object, which belongs to the pair style; fixes reach it by
- * Hydrodynamics::of().
+/* Forces of the spheres from their velocities, under the settings of pair_style stokes_dynamics.
+ * The pair style and the fixes that go with it stand above this and share the one object, which
+ * belongs to the pair style; fixes reach it by Hydrodynamics::of().
  *
  * A step:   begin()                        the fluid, who takes part
  *           clumps(), solve(), drag()      forces, of rigid clumps and of all others
- * Between solves v' stands, and drag() alone gives the force for the velocity of now. Forces and v' are rows of the memory. */
+ * Between solves v' stands, and drag() alone gives the force for the velocity of now. Forces and v'
+ * are rows of the memory. */
 #ifndef SD_HYDRODYNAMICS_H
 #define SD_HYDRODYNAMICS_H
 

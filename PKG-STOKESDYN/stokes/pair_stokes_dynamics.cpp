@@ -65,8 +65,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   report();
 }
 
-/* v' is due every update_every steps, and at once when the spheres are not those of the last solve: none lacks a v', none has
- * gone, and nobody has displaced them between two runs. */
+/* v' is due every update_every steps, and at once when the spheres are not those of the last solve:
+ * none lacks a v', none has gone, and nobody has displaced them between two runs. */
 PairStokesDynamics::Verdict PairStokesDynamics::judge()
 {
   const State *memory = hydro.memory;
@@ -232,8 +232,9 @@ void PairStokesDynamics::look_for_fixes()
                        "applies it");
 }
 
-/* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length is given to LAMMPS all the
- * same, since it warns of lost atoms and stops sorting them when there is none. */
+/* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length
+ * is given to LAMMPS all the same, since it warns of lost atoms and stops sorting them when there
+ * is none. */
 double PairStokesDynamics::range() const
 {
   const double cutoff = hydro.settings.scene.cutoff;

@@ -1,4 +1,5 @@
-/* pair_style stokes_dynamics: Stokes drag with hydrodynamic interactions. See doc/pair_stokes_dynamics.md. */
+/* pair_style stokes_dynamics: Stokes drag with hydrodynamic interactions. See
+ * doc/pair_stokes_dynamics.md. */
 #ifndef SD_PAIR_STOKES_DYNAMICS_H
 #define SD_PAIR_STOKES_DYNAMICS_H
 

@@ -71,7 +71,8 @@ void Preconditioner::look(const sd_system &system)
   member.clear();
 }
 
-/* Members of each molecule with two spheres or more; true if they are at least half of the spheres. */
+/* Members of each molecule with two spheres or more; true if they are at least half of the spheres.
+ * */
 bool Preconditioner::group_by_molecule()
 {
   const bool cloud = extent == CLOUD;
@@ -93,9 +94,9 @@ bool Preconditioner::group_by_molecule()
   return 2 * member.size() >= spheres && !member.empty();
 }
 
-/* The same where every sphere sees all of its clump, in images that are next to one another. A clump
- * that this rank has at two borders of a periodic box comes twice, as it is seen from either; no atom is
- * in two blocks. */
+/* The same where every sphere sees all of its clump, in images that are next to one another. A
+ * clump that this rank has at two borders of a periodic box comes twice, as it is seen from either;
+ * no atom is in two blocks. */
 void Preconditioner::group_by_list()
 {
   const sd_pairs &list = scene.list();
@@ -124,8 +125,8 @@ static double squares(const std::vector<long> &first)
   return sum;
 }
 
-/* On all ranks together. A whole clump of m spheres has m (m - 1) pairs, so that its blocks need not be
- * looked at. */
+/* On all ranks together. A whole clump of m spheres has m (m - 1) pairs, so that its blocks need
+ * not be looked at. */
 sd_cost Preconditioner::cost_by_list()
 {
   const double n = scene.size(), pairs = scene.list().first[scene.size()];
@@ -135,9 +136,9 @@ sd_cost Preconditioner::cost_by_list()
   return sd_cost_blocks_by_list(sums[0], seen.width, sums[1], sums[2]);
 }
 
-/* auto: blocks where there are clumps, else the sparse factor; or nothing, if that costs less. The same
- * on all ranks: the solver's sums and most applications are collective. A solve from zero in a run of
- * warm starts is alone of its kind, and decided alone. */
+/* auto: blocks where there are clumps, else the sparse factor; or nothing, if that costs less. The
+ * same on all ranks: the solver's sums and most applications are collective. A solve from zero in a
+ * run of warm starts is alone of its kind, and decided alone. */
 bool Preconditioner::choose(bool clumps, bool lost)
 {
   if (extent != CLOUD)
@@ -195,8 +196,8 @@ sd_status Preconditioner::make(const sd_precondition_kind *which)
   return which->make(state.data(), &seen);
 }
 
-/* Makes or moves it for the spheres of this solve: at its first use, since a warm start often needs none
- * at all. What cannot be made is done without. */
+/* Makes or moves it for the spheres of this solve: at its first use, since a warm start often needs
+ * none at all. What cannot be made is done without. */
 sd_status Preconditioner::put()
 {
   if (extent == OWN_PARTS) {    // a clump may lie across a periodic boundary: images side by side

@@ -1,6 +1,7 @@
-/* Which preconditioner a scene gets, and when it is made anew. All pairs: of the whole cloud, shared by
- * all ranks; clumps_only without a cut-off: of all clumps that this rank has a sphere of; other lists: of
- * the parts of clumps that this rank owns. It changes the number of iterations, never the answer. */
+/* Which preconditioner a scene gets, and when it is made anew. All pairs: of the whole cloud,
+ * shared by all ranks; clumps_only without a cut-off: of all clumps that this rank has a sphere of;
+ * other lists: of the parts of clumps that this rank owns. It changes the number of iterations,
+ * never the answer. */
 #ifndef SD_PRECONDITIONER_H
 #define SD_PRECONDITIONER_H
 
@@ -27,9 +28,9 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   Preconditioner &operator=(const Preconditioner &) = delete;
 
   void forget();
-  /* What is kept between solves is not in restart files. The run that writes one makes it anew in its
-   * next solve, as the run that reads it must, so both go on alike; and the numbers of the choice go
-   * along. */
+  /* What is kept between solves is not in restart files. The run that writes one makes it anew in
+   * its next solve, as the run that reads it must, so both go on alike; and the numbers of the
+   * choice go along. */
   std::vector<double> pack() const;
   void unpack(const std::vector<double> &saved);    // others than pack() gives: as if new
   void make_anew() { place = LOST; }

@@ -1,4 +1,5 @@
-/* The shapes of rigid clumps: who has which, which are new, their resistances. The steps: rigid_clumps_step.cpp. */
+/* The shapes of rigid clumps: who has which, which are new, their resistances. The steps:
+ * rigid_clumps_step.cpp. */
 #include "rigid_clumps.h"
 
 #include "keywords.h"
@@ -235,10 +236,12 @@ void RigidClumps::take_over(std::vector<size_t> &unknown)
   loosen(bent);
 }
 
-/* Shapes for clumps that have been nowhere yet; new ones where none of the present shapes fits. Going through all clumps of the
- * scene in order of molecule ID, one that has none of the shapes before it shows a new one: so the shapes do not depend on where
- * the clumps are. Each rank goes through its own, on the assumption that there are no others. Of all that they find, the ones up
- * to the first that proves to be another rank's shape are right; then the rest is looked at again. */
+/* Shapes for clumps that have been nowhere yet; new ones where none of the present shapes fits.
+ * Going through all clumps of the scene in order of molecule ID, one that has none of the shapes
+ * before it shows a new one: so the shapes do not depend on where the clumps are. Each rank goes
+ * through its own, on the assumption that there are no others. Of all that they find, the ones up
+ * to the first that proves to be another rank's shape are right; then the rest is looked at
+ * again. */
 void RigidClumps::find_shapes(std::vector<size_t> unknown)
 {
   std::sort(unknown.begin(), unknown.end(), [this](size_t p, size_t q) {

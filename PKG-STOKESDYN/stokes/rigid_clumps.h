@@ -1,11 +1,13 @@
-/* Rigid clumps: the shapes of a scene, each with its resistance, and the forces of every step from pose and
- * motion.
+/* Rigid clumps: the shapes of a scene, each with its resistance, and the forces of every step from
+ * pose and motion.
  *
- * A clump keeps the shape that it was given when it was first seen, whatever rank it moves to, until a run
- * begins anew or it is not rigid any more (auto: it is loose then, the solver's, until a run begins anew).
- * Shapes are numbered alike on all ranks; in order of molecule ID, a clump that has none of the shapes before it
- * is the first of a new one. Each is solved on one rank and sent to all. A clump that crosses ranks is evaluated
- * by every rank that owns one of its spheres, from the same numbers. */
+ * A clump keeps the shape that it was given when it was first seen, whatever rank it moves to,
+ * until a run begins anew or it is not rigid any more (auto: it is loose then, the solver's, until
+ * a run begins anew).
+ * Shapes are numbered alike on all ranks; in order of molecule ID, a clump that has none of the
+ * shapes before it is the first of a new one. Each is solved on one rank and sent to all. A clump
+ * that crosses ranks is evaluated by every rank that owns one of its spheres, from the same
+ * numbers. */
 #ifndef SD_RIGID_CLUMPS_H
 #define SD_RIGID_CLUMPS_H
 
@@ -40,10 +42,12 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
 
   /* Other settings: no shape stands. */
   void forget();
-  /* A run begins otherwise than the last one ended: every clump is looked at again, nobody is loose. */
+  /* A run begins otherwise than the last one ended: every clump is looked at again, nobody is
+   * loose. */
   void new_run();
 
-  /* Molecule IDs of the clumps that are loose, two numbers each, for restart files; the same on all ranks. */
+  /* Molecule IDs of the clumps that are loose, two numbers each, for restart files; the same on all
+   * ranks. */
   std::vector<double> loose() const;
   void set_loose(const std::vector<double> &ids);
   bool any_loose() const { return !loose_molecules.empty(); }
@@ -61,9 +65,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     const double *gradient;
   };
 
-  /* Calls take(i, F, T) for every owned sphere i of a rigid clump that takes part: force [3], torque [3]
-   * (nullptr without rotation). loose[i] = 1: atom i belongs to a loose clump, or to none (molecule 0), and is
-   * the solver's. Errors: a clump whose spheres are not all selected; one that is not rigid (yes). */
+  /* Calls take(i, F, T) for every owned sphere i of a rigid clump that takes part: force [3],
+   * torque [3] (nullptr without rotation). loose[i] = 1: atom i belongs to a loose clump, or to
+   * none (molecule 0), and is the solver's. Errors: a clump whose spheres are not all selected; one
+   * that is not rigid (yes). */
   template <class Take>
   void forces(const Motion &motion, const Take &take, std::vector<char> &loose)
   {

@@ -13,7 +13,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-/* To ghosts: eta (0: takes no part), v, angular velocity, fluid velocity and its gradient, as far as needed. */
+/* To ghosts: eta (0: takes no part), v, angular velocity, fluid velocity and its gradient, as far
+ * as needed. */
 void RigidClumps::gather(const Motion &m)
 {
   column = {0, 1, 4, 4, 4, 4};
@@ -43,13 +44,15 @@ void RigidClumps::begin_step(const Motion &m, std::vector<char> &loose)
   for (int i : not_ours) loose[i] = 1;
 }
 
-/* The angular velocities of spheres that are not on a line say nothing that their velocities do not: that memory is left alone. */
+/* The angular velocities of spheres that are not on a line say nothing that their velocities do
+ * not: that memory is left alone. */
 bool RigidClumps::asks_for_spins(const Body &body) const
 {
   return settings.rotation && body.shape->shape.rank < 2;
 }
 
-/* What the spheres of a clump do, in the order of its shape; returns how many take part and adds up their viscosities. */
+/* What the spheres of a clump do, in the order of its shape; returns how many take part and adds up
+ * their viscosities. */
 int RigidClumps::collect(const Body &body, const Motion &m, Step &step, double &eta) const
 {
   const size_t n = body.n;

@@ -146,8 +146,9 @@ void Scene::place(int n_all_or_ghosts)
   if (sd_mobility_place(&omega, &settings.engine(), &scene) != SD_OK) out_of_memory();
 }
 
-/* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did so last. A list made then
- * holds with the cut-off and one skin; made later, both spheres of a pair may still move a whole skin from where they are. */
+/* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did
+ * so last. A list made then holds with the cut-off and one skin; made later, both spheres of a pair
+ * may still move a whole skin from where they are. */
 void Scene::find_pairs()
 {
   const double reach = settings.cutoff + (neighbor->ago == 0 ? 1.0 : 2.0) * neighbor->skin;
@@ -170,7 +171,8 @@ void Scene::find_pairs()
   stale = false;
 }
 
-/* Tags and molecule IDs of the spheres, by row. Not every atom style sends molecule IDs to ghosts. */
+/* Tags and molecule IDs of the spheres, by row. Not every atom style sends molecule IDs to ghosts.
+ * */
 void Scene::look_up(std::vector<int64_t> &ids, std::vector<int64_t> &molecules)
 {
   std::vector<double> sent;

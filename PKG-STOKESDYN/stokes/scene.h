@@ -1,7 +1,8 @@
-/* From LAMMPS atoms to the core's arrays and back: who sees whom, on which rank. The only room that knows ghosts.
+/* From LAMMPS atoms to the core's arrays and back: who sees whom, on which rank. The only room that
+ * knows ghosts.
  *
- * Vectors of the core have a row of 3 numbers (6 with rotation) for each sphere of this rank that takes part, in the order of
- * who(). Atoms that take no part have none, so they cost nothing. */
+ * Vectors of the core have a row of 3 numbers (6 with rotation) for each sphere of this rank that
+ * takes part, in the order of who(). Atoms that take no part have none, so they cost nothing. */
 #ifndef SD_SCENE_H
 #define SD_SCENE_H
 
@@ -41,8 +42,9 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Which spheres of which ranks the engine sees. */
   sd_view view() const { return settings.engine().view; }
 
-  /* The spheres of this step: row k is the atom who[k] of this rank, in a fluid of viscosity eta[k]. Finds the pairs again if
-   * LAMMPS has re-neighboured, or if they are others than before on any rank.
+  /* The spheres of this step: row k is the atom who[k] of this rank, in a fluid of viscosity
+   * eta[k]. Finds the pairs again if LAMMPS has re-neighboured, or if they are others than before
+   * on any rank.
    * Errors: a clump that the ghosts do not cover, or wider than half the periodic box. */
   void update(const std::vector<int> &who, const std::vector<double> &eta);
   const std::vector<int> &who() const { return own; }
@@ -60,8 +62,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Finds them if LAMMPS has re-neighboured; did it? Errors as of update(). */
   bool update_clumps();
 
-  /* Of all atoms: row(i, out) writes the row of the owned atom i, only where it goes to a ghost. ghosts [width nghost], in
-   * order of LAMMPS. */
+  /* Of all atoms: row(i, out) writes the row of the owned atom i, only where it goes to a ghost.
+   * ghosts [width nghost], in order of LAMMPS. */
   void refresh_ghosts(std::vector<double> &ghosts, int width,
                       const std::function<void(int, double *)> &row);
   /* Of the spheres: rows [width size()] -> ghosts [width (size_with_ghosts() - size())] */
@@ -69,11 +71,13 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   void lists_are_stale() { stale = clumps_stale = true; }
 
-  /* View LIST: who sees whom since the last update(), in rows; ghosts that take part come after this rank's spheres. */
+  /* View LIST: who sees whom since the last update(), in rows; ghosts that take part come after
+   * this rank's spheres. */
   const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
   int size_with_ghosts() const { return (int) a.size(); }
   sd_spheres local() const { return {x.data(), a.data(), w.data()}; }
-  /* Since the last update(): does one sphere see another, on any rank? Does that of row k see nobody? */
+  /* Since the last update(): does one sphere see another, on any rank? Does that of row k see
+   * nobody? */
   bool anybody_sees() const { return view() == SD_VIEW_ALL ? n_all > 1 : somebody_sees; }
   bool alone(int k) const
   {

@@ -99,7 +99,8 @@ namespace {
   }
 }    // namespace
 
-/* Without a cut-off every sphere must see all of its clump: how many spheres has it, on all ranks together? */
+/* Without a cut-off every sphere must see all of its clump: how many spheres has it, on all ranks
+ * together? */
 void Scene::check_clumps(const Checked &of, const sd_neighbors &list, bool one_row)
 {
   struct Part {
@@ -145,7 +146,8 @@ void Scene::check_clumps(const Checked &of, const sd_neighbors &list, bool one_r
   if (!suspect.empty()) complain_about_clumps(of, std::set<int64_t>(suspect.begin(), suspect.end()));
 }
 
-/* Either the ghosts do not reach across a clump, or the clump is so wide that the closest image of a sphere is ambiguous. */
+/* Either the ghosts do not reach across a clump, or the clump is so wide that the closest image of
+ * a sphere is ambiguous. */
 void Scene::complain_about_clumps(const Checked &of, const std::set<int64_t> &suspect)
 {
   // All spheres of those clumps to all ranks: the run ends here, so the price does not matter.

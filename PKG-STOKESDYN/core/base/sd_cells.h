@@ -1,5 +1,6 @@
-/* Points in cubic cells of one side, to find those near a place. Space is not bounded: only cells that hold a point exist, in a
- * hash table of their three numbers, so that two dense clouds far apart cost no more than one. */
+/* Points in cubic cells of one side, to find those near a place. Space is not bounded: only cells
+ * that hold a point exist, in a hash table of their three numbers, so that two dense clouds far
+ * apart cost no more than one. */
 #ifndef SD_CELLS_H
 #define SD_CELLS_H
 
@@ -39,7 +40,8 @@ void sd_cells_clear(sd_cells *c, const double *lo, double side);
 /* Point i at x [3 i]. A cell gives its points in the opposite order. */
 void sd_cells_add(sd_cells *c, const double *x, int i);
 
-/* All of x [3n] at once, with cells of this side; then each cell gives its points in order of index. SD_OK or SD_ENOMEMORY. */
+/* All of x [3n] at once, with cells of this side; then each cell gives its points in order of
+ * index. SD_OK or SD_ENOMEMORY. */
 sd_status sd_cells_fill(sd_cells *c, const double *x, int n, double side);
 
 /* A walk over the points of all cells that the cube of half side radius around a place meets:
@@ -47,15 +49,17 @@ sd_status sd_cells_fill(sd_cells *c, const double *x, int n, double side);
  *   for (sd_cells_walk w = sd_cells_near(&c, place, radius); sd_cells_step(&c, &w);)
  *     for (int j = w.first; j >= 0; j = c.next[j]) ...
  *
- * Each point comes once; some are farther away than radius, none that is nearer is missing. Cells go with x fastest. */
+ * Each point comes once; some are farther away than radius, none that is nearer is missing. Cells
+ * go with x fastest. */
 typedef struct {
   int64_t from[3], to[3], at[3];
   int first;
 } sd_cells_walk;
 
-/* The slot of a cell, or the empty one where it would be. Numbers are kept to 21 bits each: cells 2e6 sides apart share their
- * points, which are too far away to be taken for near ones. Four cells along x stand side by side, in one line of the cache; who
- * finds a slot taken goes on by five, an odd number, and so comes to all of them. */
+/* The slot of a cell, or the empty one where it would be. Numbers are kept to 21 bits each: cells
+ * 2e6 sides apart share their points, which are too far away to be taken for near ones. Four cells
+ * along x stand side by side, in one line of the cache; who finds a slot taken goes on by five, an
+ * odd number, and so comes to all of them. */
 static inline sd_cell *sd_cells_slot(const sd_cells *c, int64_t i, int64_t j, int64_t k,
                                      uint64_t *number)
 {

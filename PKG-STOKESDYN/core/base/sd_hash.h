@@ -11,8 +11,8 @@ extern "C" {
 /* 2^64 over the golden ratio: its multiples spread keys that follow one another evenly. */
 #define SD_HASH_STEP UINT64_C(0x9e3779b97f4a7c15)
 
-/* Finaliser of splitmix64 (Stafford's variant 13 of that of MurmurHash3): every bit of x reaches every
- * bit of the result, one to one; 0 stays 0. */
+/* Finaliser of splitmix64 (Stafford's variant 13 of that of MurmurHash3): every bit of x reaches
+ * every bit of the result, one to one; 0 stays 0. */
 static inline uint64_t sd_hash_mix(uint64_t x)
 {
   x = (x ^ (x >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);

@@ -10,8 +10,9 @@ static void shift(const double h[6], int edge, double times, double d[3])
   for (int p = 0; p < 3; p++) d[p] -= times * edges[edge][p];
 }
 
-/* Half an edge at most along each direction: z first, since only its edge has a z, then y, then x. A length
- * beyond 2^53 edges loses 53 bits a pass and no more, so the passes are counted: 1023 / 53 < 20. */
+/* Half an edge at most along each direction: z first, since only its edge has a z, then y, then x.
+ * A length beyond 2^53 edges loses 53 bits a pass and no more, so the passes are counted: 1023 / 53
+ * < 20. */
 static void into_the_box(const double h[6], const int periodic[3], double d[3])
 {
   for (int pass = 0; pass < 20; pass++) {
@@ -29,8 +30,8 @@ void sd_closest_image(const double h[6], const int periodic[3], double d[3])
 {
   into_the_box(h, periodic, d);
   if (h[3] == 0.0 && h[4] == 0.0 && h[5] == 0.0) return;
-  /* A shorter image is no farther than half the diagonal away along z, and for each such z along y; with z
-   * and y given the best along x is the one nearest to 0. */
+  /* A shorter image is no farther than half the diagonal away along z, and for each such z along y;
+   * with z and y given the best along x is the one nearest to 0. */
   double half = 0.0, best = INFINITY, start[3], image[3], shortest[3];
   memcpy(start, d, sizeof(start));
   memcpy(shortest, d, sizeof(shortest));

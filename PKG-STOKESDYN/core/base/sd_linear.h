@@ -13,7 +13,8 @@ extern "C" {
  * symmetric A [n n]; n <= 6. Jacobi's rotations. */
 void sd_eigen(int n, const double *A, double *w, double *V);
 
-/* Pseudo-inverse of the symmetric positive semidefinite 6x6 resistance or mobility about some point:
+/* Pseudo-inverse of the symmetric positive semidefinite 6x6 resistance or mobility about some
+ * point:
  * eigenvalues below 1e-9 of the largest count as zero. Rotations are first made comparable to
  * translations by the length that the matrix itself has, (tr RR / tr TT)^(1/2). */
 void sd_pseudo_inverse6(const double R[36], double inverse[36]);

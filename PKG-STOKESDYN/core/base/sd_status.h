@@ -1,4 +1,5 @@
-/* Status codes of the core, with their texts in one list. The glue puts command, numbers and the way out around them. */
+/* Status codes of the core, with their texts in one list. The glue puts command, numbers and the
+ * way out around them. */
 #ifndef SD_STATUS_H
 #define SD_STATUS_H
 

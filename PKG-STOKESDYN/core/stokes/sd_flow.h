@@ -6,13 +6,15 @@
 extern "C" {
 #endif
 
-/* Angular velocity of a fluid element, half the vorticity: w_d = (d u_f/d x_e - d u_e/d x_f) / 2 for d, e, f in cyclic order. */
+/* Angular velocity of a fluid element, half the vorticity: w_d = (d u_f/d x_e - d u_e/d x_f) / 2
+ * for d, e, f in cyclic order. */
 void sd_flow_rotation(const double G[9], double w[3]);
 
 /* Puts the given vorticity (2 w) in place of that of G; the rate of strain stays. */
 void sd_flow_set_vorticity(const double vorticity[3], double G[9]);
 
-/* Central difference of one component over +-a: exact for a linear field, to order a^2 for others. 0 where a = 0.
+/* Central difference of one component over +-a: exact for a linear field, to order a^2 for others.
+ * 0 where a = 0.
  *   ahead, behind, a  [n]     out  [stride n]: every stride-th number is written */
 void sd_flow_difference(int n, const double *ahead, const double *behind, const double *a,
                         int stride, double *out);

@@ -39,8 +39,9 @@ static sd_status take(search *q, int i, int j)
   return row >= 0 && row < q->n ? append(&q->found, row, j) : SD_OK;
 }
 
-/* Sphere j against those in the cells, which are of its class or of a larger one. In its own class the other sphere finds j when
- * its turn comes; a larger one does not look for smaller ones, so its pair is taken here as well. */
+/* Sphere j against those in the cells, which are of its class or of a larger one. In its own class
+ * the other sphere finds j when its turn comes; a larger one does not look for smaller ones, so its
+ * pair is taken here as well. */
 static sd_status look_from(search *q, const sd_cells *c, int j, int own_class, double largest)
 {
   const double *x = q->s->x, *a = q->s->a, *xj = x + 3 * (long) j;
@@ -71,8 +72,9 @@ static sd_status sort_rows(sd_neighbors *list, const found *f, int n)
   return SD_OK;
 }
 
-/* Spheres whose largest radii are alike, a factor of two at most, go into cells that are as wide as their reach. All that are no
- * larger than those look there, so a ball meets 27 cells at most, and few spheres that are too far away. */
+/* Spheres whose largest radii are alike, a factor of two at most, go into cells that are as wide as
+ * their reach. All that are no larger than those look there, so a ball meets 27 cells at most, and
+ * few spheres that are too far away. */
 sd_status sd_near_find(sd_neighbors *list, const sd_spheres *s, int begin, int n, int n_all,
                        double reach)
 {

@@ -143,8 +143,8 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
   return status;
 }
 
-/* The square of a pair's entry, if it is larger than that of the pairs before. A taper is at most 1, so that most pairs end
- * at the comparison. */
+/* The square of a pair's entry, if it is larger than that of the pairs before. A taper is at most
+ * 1, so that most pairs end at the comparison. */
 static double larger_oseen_entry(double largest, const sd_law *law, const sd_spheres *s, int i,
                                  int j)
 {

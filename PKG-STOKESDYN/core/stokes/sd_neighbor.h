@@ -1,7 +1,8 @@
 /* Neighbour lists of our own: which spheres see which.
  *
- * LAMMPS's lists leave out what contacts do not need (neigh_modify exclude molecule/intra, special_bonds), and those are the
- * very pairs that hydrodynamics needs. So the pairs are found here, from the same owned and ghost atoms, once per re-neighbouring. */
+ * LAMMPS's lists leave out what contacts do not need (neigh_modify exclude molecule/intra,
+ * special_bonds), and those are the very pairs that hydrodynamics needs. So the pairs are found
+ * here, from the same owned and ghost atoms, once per re-neighbouring. */
 #ifndef SD_NEIGHBOR_H
 #define SD_NEIGHBOR_H
 
@@ -28,12 +29,15 @@ void sd_neighbors_free(sd_neighbors *list);
 /* Room for rows targets and count pairs; contents are kept. SD_OK or SD_ENOMEMORY. */
 sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count);
 
-/* All directed pairs closer than cutoff: targets 0 ... n-1, sources 0 ... n_all-1, a target is no source of its own.
- *   x [3 n_all], cutoff finite > 0. By cells of side cutoff: O(n_all + pairs). SD_OK or SD_ENOMEMORY. */
+/* All directed pairs closer than cutoff: targets 0 ... n-1, sources 0 ... n_all-1, a target is no
+ * source of its own.
+ *   x [3 n_all], cutoff finite > 0. By cells of side cutoff: O(n_all + pairs). SD_OK or
+ * SD_ENOMEMORY. */
 sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff);
 
-/* All directed pairs of one clump: equal molecule ID, not 0. Each partner once, as the image closest to the target
- * (ghosts of one sphere share its tag; the first in order of index wins a tie), and closer than cutoff (INFINITY: the whole clump).
+/* All directed pairs of one clump: equal molecule ID, not 0. Each partner once, as the image
+ * closest to the target (ghosts of one sphere share its tag; the first in order of index wins a
+ * tie), and closer than cutoff (INFINITY: the whole clump).
  *   x [3 n_all], tag [n_all], molecule [n_all]
  *   one_row       only the target of lowest tag of each molecule gets its row: the clumps themselves, one row each
  *   order [n_all]   scratch;  on return sorted by molecule, tag, index */
@@ -41,9 +45,11 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
                              const int64_t *molecule, int n, int n_all, double cutoff, int one_row,
                              int *order);
 
-/* Tensor oseen knows no size of the spheres: the largest entry that any pair has along its axis in the matrix scaled to unit
- * diagonal, t 3 sqrt(ai aj)/(2R) with the taper t. From 1 on the matrix is not positive definite, whoever else is there.
- * Targets begin ... begin + n - 1, sources 0 ... n_all - 1 up to law->range (INFINITY: no cut-off) away.
+/* Tensor oseen knows no size of the spheres: the largest entry that any pair has along its axis in
+ * the matrix scaled to unit diagonal, t 3 sqrt(ai aj)/(2R) with the taper t. From 1 on the matrix
+ * is not positive definite, whoever else is there.
+ * Targets begin ... begin + n - 1, sources 0 ... n_all - 1 up to law->range (INFINITY: no cut-off)
+ * away.
  *   pairs      who sees whom; NULL: everybody. That goes by cells of 1.6 times the largest radius, in O(n_all) unless the radii
  *              are very different, and pairs farther apart than that may be left out.
  *   coupling   out; 0 without pairs, INFINITY for spheres at one point. Radius 0: takes no part.

@@ -1,10 +1,12 @@
-/* Pair tensors: velocity U and angular velocity W of sphere i from the force F and the torque T on the fluid at sphere j.
+/* Pair tensors: velocity U and angular velocity W of sphere i from the force F and the torque T on
+ * the fluid at sphere j.
  *
  *   U_i = 1/(6 pi eta) [ f I + g rhat rhat^T ] F_j  +  1/(8 pi eta) c_ji T_j x rhat          r = x_i - x_j,  R = |r|
  *   W_i = 1/(8 pi eta) c_ij F_j x rhat  +  1/(8 pi eta) [ f' I + g' rhat rhat^T ] T_j
  *
- * f, g (1/length), f', g' (1/length^3), c (1/length^2) depend on R and the two radii only. f, g, f', g' are the same when i and j
- * are exchanged, c is not: c_ij stands for the sphere i that turns and the sphere j on which the force acts. */
+ * f, g (1/length), f', g' (1/length^3), c (1/length^2) depend on R and the two radii only. f, g,
+ * f', g' are the same when i and j are exchanged, c is not: c_ij stands for the sphere i that turns
+ * and the sphere j on which the force acts. */
 #ifndef SD_TENSOR_H
 #define SD_TENSOR_H
 
@@ -26,10 +28,14 @@ typedef enum { SD_TENSOR_RPY, SD_TENSOR_OSEEN } sd_tensor;
  *   R > A + b        f = 3/(4R) [1 + (A^2 + b^2)/(3 R^2)],   g = 3/(4R) [1 - (A^2 + b^2)/R^2]
  *   d < R <= A + b   g = 3 t^2 (1+q)^2 / (32 R A b),   f = [b - t(1-q)/4]/(A b) - g/3,   t = R - d, q = d/R
  *   R <= d           f = 1/A, g = 0     (b inside A, or both at one point)
- * The middle line is the published form (16 R^3 (A+b) - (d^2 + 3R^2)^2)/(32 R^3), 3 (d^2 - R^2)^2/(32 R^3), over A b,
- * rearranged so that no term is larger than b: nothing cancels when b << A, nothing underflows when R -> 0.
- * The matrix of all pairs, with 1/a on the diagonal, is positive semidefinite for every configuration. Never fails.
- * Source: Rotne & Prager 1969; Yamakawa 1970; unequal and overlapping spheres: Zuk, Wajnryb, Mizerski & Szymczak 2014. */
+ * The middle line is the published form, over A b,
+ *   f = (16 R^3 (A+b) - (d^2 + 3R^2)^2)/(32 R^3),   g = 3 (d^2 - R^2)^2/(32 R^3)
+ * rearranged so that no term is larger than b: nothing cancels when b << A, nothing underflows when
+ * R -> 0.
+ * The matrix of all pairs, with 1/a on the diagonal, is positive semidefinite for every
+ * configuration. Never fails.
+ * Source: Rotne & Prager 1969; Yamakawa 1970; unequal and overlapping spheres: Zuk, Wajnryb,
+ * Mizerski & Szymczak 2014. */
 static inline void sd_rpy_radial(double R, double ai, double aj, double *f, double *g)
 {
   const double sum = ai + aj;
@@ -50,17 +56,18 @@ static inline void sd_rpy_radial(double R, double ai, double aj, double *f, doub
   *f = (b - 0.25 * t * (1.0 - q)) / (A * b) - *g / 3.0;
 }
 
-/* Angular velocity from torque: f' and g' of the Rotne-Prager-Yamakawa model, any two radii, any distance. A, b, d, t, q
- * as above, u = A + b - R:
+/* Angular velocity from torque: f' and g' of the Rotne-Prager-Yamakawa model, any two radii, any
+ * distance. A, b, d, t, q as above, u = A + b - R:
  *   R > A + b        f' = -1/(2 R^3),   g' = 3/(2 R^3)
  *   d < R <= A + b   g' = 3 t^2 (1+q)^2 [6Ab - t(R+d)] / (64 R A^3 b^3)
  *                    3f' + g' = 3 u^2 [4q(b+t) + (1-q)(4b+t)] / (16 A^3 b^3)
  *   R <= d           f' = 1/A^3, g' = 0
  * The published overlap form is, over 64 R^3 A^3 b^3,
  *   f' = 5R^6 - 27R^4 (A^2+b^2) + 32R^3 (A^3+b^3) - 9R^2 (A^2-b^2)^2 - d^4 (A^2+4Ab+b^2),  g' = 3 (d^2-R^2)^2 (A^2+4Ab+b^2-R^2).
- * Its trace 3f' + g' is 9/(4 pi A^3 b^3) times the volume of the lens that the spheres share, u^2 (R^2 + 2R(A+b) - 3d^2)
- * pi/(12R). With R = d + t and A = d + b this lens and g' have only terms of the size of b and of one sign (6Ab against at
- * most 4Ab). Source: Wajnryb, Mizerski, Zuk & Szymczak 2013; Zuk, Wajnryb, Mizerski & Szymczak 2014. */
+ * Its trace 3f' + g' is 9/(4 pi A^3 b^3) times the volume of the lens that the spheres share, u^2
+ * (R^2 + 2R(A+b) - 3d^2) pi/(12R). With R = d + t and A = d + b this lens and g' have only terms of
+ * the size of b and of one sign (6Ab against at most 4Ab). Source: Wajnryb, Mizerski, Zuk &
+ * Szymczak 2013; Zuk, Wajnryb, Mizerski & Szymczak 2014. */
 static inline void sd_rpy_radial_wt(double R, double ai, double aj, double *f, double *g)
 {
   const double A = ai > aj ? ai : aj, b = ai > aj ? aj : ai, d = A - b;
@@ -80,13 +87,14 @@ static inline void sd_rpy_radial_wt(double R, double ai, double aj, double *f, d
   *f = u * u * (4.0 * q * (b + t) + p * (4.0 * b + t)) / (16.0 * A3b3) - *g / 3.0;
 }
 
-/* Angular velocity of i from the force at j: c_ij of the Rotne-Prager-Yamakawa model. A, b, d, t, q as above.
+/* Angular velocity of i from the force at j: c_ij of the Rotne-Prager-Yamakawa model. A, b, d, t, q
+ * as above.
  *   R > A + b            c = 1/R^2                                                       half the curl of the Stokeslet
  *   overlap, ai >= aj    c = (1+q)^2 [4bd + t(8b-3t)] / (16 A^3 b)
  *   overlap, ai < aj     c = (1-q)^2 [4d(3b-t) + t(8b-3t)] / (16 A b^3)
  *   j inside i           c = R/A^3        i inside j: c = 0
- * The overlap lines are the published (ai-aj+R)^2 [aj^2 + 2aj(ai+R) - 3(ai-R)^2] / (16 ai^3 aj R^2) with R = d + t and A = d +
- * b, so that every term is positive (t <= 2b). Sources as above. */
+ * The overlap lines are the published (ai-aj+R)^2 [aj^2 + 2aj(ai+R) - 3(ai-R)^2] / (16 ai^3 aj R^2)
+ * with R = d + t and A = d + b, so that every term is positive (t <= 2b). Sources as above. */
 static inline double sd_rpy_radial_wf(double R, double ai, double aj)
 {
   const double A = ai > aj ? ai : aj, b = ai > aj ? aj : ai, d = A - b;
@@ -98,18 +106,20 @@ static inline double sd_rpy_radial_wf(double R, double ai, double aj)
   return p * p * (4.0 * d * (3.0 * b - t) + t * (8.0 * b - 3.0 * t)) / (16.0 * A * b * b * b);
 }
 
-/* Oseen's tensor of point forces, for comparison: f = g = 3/(4R), whatever the radii. Not positive definite when spheres
- * are closer than about 1.5 radii, and infinite at R = 0. */
+/* Oseen's tensor of point forces, for comparison: f = g = 3/(4R), whatever the radii. Not positive
+ * definite when spheres are closer than about 1.5 radii, and infinite at R = 0. */
 static inline void sd_oseen_radial(double R, double *f, double *g)
 {
   *f = *g = 0.75 / R;
 }
 
-/* The whole 3x3 block, row-major, velocity/force. r [3] = x_i - x_j; eta > 0 dynamic viscosity. Never fails for RPY. */
+/* The whole 3x3 block, row-major, velocity/force. r [3] = x_i - x_j; eta > 0 dynamic viscosity.
+ * Never fails for RPY. */
 void sd_tensor_uf(sd_tensor kind, const double r[3], double ai, double aj, double eta, double M[9]);
 
-/* The whole 6x6 block of the Rotne-Prager-Yamakawa model, row-major: rows U_i W_i, columns F_j T_j. M(j,i) = M(i,j)^T, and the
- * matrix of all pairs, with r = 0 and ai = aj on the diagonal, is positive semidefinite for every configuration. Never fails. */
+/* The whole 6x6 block of the Rotne-Prager-Yamakawa model, row-major: rows U_i W_i, columns F_j T_j.
+ * M(j,i) = M(i,j)^T, and the matrix of all pairs, with r = 0 and ai = aj on the diagonal, is
+ * positive semidefinite for every configuration. Never fails. */
 void sd_tensor_grand(const double r[3], double ai, double aj, double eta, double M[36]);
 
 #ifdef __cplusplus

@@ -24,8 +24,8 @@ static double root_of_law(double Re, double y)
   return y;
 }
 
-/* In the arithmetic of the original, step by step: below Re of about 1 the substitution wanders, and
- * another rounding there is another answer. */
+/* In the arithmetic of the original, step by step: below Re of about 1 the substitution wanders,
+ * and another rounding there is another answer. */
 static double substitution(double Re)
 {
   double f = 1.0 / (0.32 * 0.32);

@@ -9,7 +9,9 @@
 
 enum { RIGID = 6 };
 
-/* --- the table ---------------------------------------------------------------------------------------------------- */
+/* --- the table
+ * ----------------------------------------------------------------------------------------------------
+ * */
 
 /* Response of one sphere to a slip given in columns */
 static void respond(const double *table, const double in[SD_CLUMP_COLUMNS], double out[6])
@@ -56,8 +58,8 @@ static double determinant(const double g[9])
   return sd_dot(c, g + 6);
 }
 
-/* Average over the symmetries of the shape: turn slip with g, read the forces of the image, turn them back. Torque and angular
- * velocity change sign under reflections. */
+/* Average over the symmetries of the shape: turn slip with g, read the forces of the image, turn
+ * them back. Torque and angular velocity change sign under reflections. */
 static sd_status symmetrize(const sd_shape *s, double *table)
 {
   const size_t size = sizeof(double) * 6 * SD_CLUMP_COLUMNS * (size_t) s->n;
@@ -122,7 +124,8 @@ static void lone_sphere(double a, double *table)
   }
 }
 
-/* --- what follows from the table ----------------------------------------------------------------------------------- */
+/* --- what follows from the table
+ * ----------------------------------------------------------------------------------- */
 
 /* Sums over the clump about its centroid: 6 rows, 12 columns */
 static void add_up(const sd_shape *s, const double *table, double sum[6][SD_CLUMP_COLUMNS])
@@ -142,9 +145,8 @@ static void add_up(const sd_shape *s, const double *table, double sum[6][SD_CLUM
 
 void sd_resistance_shift(const double R[36], const double d[3], double out[36])
 {
-  /* About P = c + d: velocity of c is U_P + d x W, i.e. (U, W)_c = S^T (U, W)_P; torque about P is T_c - d x F: out = S R S^T
-   * with
-   * S = [1 0; -[d] 1]. */
+  /* About P = c + d: velocity of c is U_P + d x W, i.e. (U, W)_c = S^T (U, W)_P; torque about P is
+   * T_c - d x F: out = S R S^T with S = [1 0; -[d] 1]. */
   double S[36], SR[36];
   for (int i = 0; i < 36; i++) S[i] = i % 7 == 0;
   S[6 * 3 + 1] = d[2];
@@ -166,9 +168,10 @@ void sd_resistance_shift(const double R[36], const double d[3], double out[36])
     }
 }
 
-/* Where the coupling block is symmetric. M: 3x3 blocks translation (tt) and coupling (cc: rotation rows, translation columns)
- * about the present point. Moving it by d changes cc by sign [d] tt; the antisymmetric parts cancel if (tr tt - tt) d = sign
- * vec cc, vec_i = e_ijk cc_jk. Degenerate directions (no translation) stay where they are. */
+/* Where the coupling block is symmetric. M: 3x3 blocks translation (tt) and coupling (cc: rotation
+ * rows, translation columns) about the present point. Moving it by d changes cc by sign [d] tt; the
+ * antisymmetric parts cancel if (tr tt - tt) d = sign vec cc, vec_i = e_ijk cc_jk. Degenerate
+ * directions (no translation) stay where they are. */
 static void symmetric_coupling(const double tt[9], const double cc[9], double sign, double d[3])
 {
   const double trace = tt[0] + tt[4] + tt[8], v[3] = {cc[5] - cc[7], cc[6] - cc[2], cc[1] - cc[3]};
@@ -200,8 +203,9 @@ static void derive(const sd_shape *s, sd_clump *clump)
   symmetric_coupling(tt, cc, -1.0, clump->centre); /* cc about c + d: cc - [d] tt */
   sd_resistance_shift(clump->R, clump->centre, clump->R_centre);
   sd_pseudo_inverse6(clump->R_centre, clump->mobility);
-  /* Mobility about another point at d: velocity there is U + W x d, so tt - [d] (rotation rows, translation columns) + ... ; the
-   * trace is least at the centre of mobility. With rr the rotation block: tr = tr tt - v.d + d.(tr rr - rr) d, v = 2 vec. */
+  /* Mobility about another point at d: velocity there is U + W x d, so tt - [d] (rotation rows,
+   * translation columns) + ... ; the trace is least at the centre of mobility. With rr the rotation
+   * block: tr = tr tt - v.d + d.(tr rr - rr) d, v = 2 vec. */
   double rr[9], d[3];
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++) {
@@ -215,7 +219,9 @@ static void derive(const sd_shape *s, sd_clump *clump)
   clump->radius = 3.0 / (6.0 * SD_PI * mu);
 }
 
-/* --- create, forces --------------------------------------------------------------------------------------------------- */
+/* --- create, forces
+ * ---------------------------------------------------------------------------------------------------
+ * */
 
 /* Two equal spheres at one point: the force is split between them in no particular way. */
 static int coincident(const sd_shape *s)

@@ -1,21 +1,25 @@
-/* Hydrodynamic resistance of a rigid clump of spheres, computed once for its shape, and the forces that follow from it.
+/* Hydrodynamic resistance of a rigid clump of spheres, computed once for its shape, and the forces
+ * that follow from it.
  *
  * Forces are those of the fluid on the clump when the fluid slips past it with
  *   s(y) = s0 + A (y - c) = s0 + W x (y - c) + E (y - c),   s = u_inf - v
- * c: centroid of the centres; W: slip of angular velocity (half the vorticity less the clump's angular velocity); E: symmetric.
+ * c: centroid of the centres; W: slip of angular velocity (half the vorticity less the clump's
+ * angular velocity); E: symmetric.
  * Rigid motion and every linear ambient flow are covered exactly. Viscosity is a factor.
  *
  * Models:
- *   shell 1, no rotation   a point force in every centre: (I/(6 pi eta a) + Omega) F = s (Joung et al. 2001)
- *   shell 1, rotation      force and torque in every centre, 6x6 blocks of Rotne, Prager and Yamakawa
- *   shell n >= 12          point forces on the surface of every sphere, see sd_shell.h. Points inside another sphere of the
- *                          clump are no surface and left out. The surface is covered evenly, with n points for every sphere that
- *                          shows: spheres of a fused clump get more than n of which n are left; with unequal radii a sphere's
- *                          shell has a number in proportion to a^2, at least 12 and at most max(4n, 642). With few points: mean
- *                          of several orientations of the shells.
- * With shells the lone sphere is exact (6 pi eta a, 8 pi eta a^3, no response to strain), and the result has the symmetry of the
- * shape: it is averaged over the shape's own symmetries, and the shells are oriented by the shape's frame, so that neither the
- * orientation nor the order in which the spheres came matters. */
+ *   shell 1, no rotation   a point force in every centre, (I/(6 pi eta a) + Omega) F = s (Joung et
+ *                          al. 2001)
+ *   shell 1, rotation      force and torque in every centre, 6x6 Rotne-Prager-Yamakawa blocks
+ *   shell n >= 12          point forces on the surface of every sphere, see sd_shell.h
+ * Points of a shell inside another sphere of the clump are no surface and left out. The surface is
+ * covered evenly, with n points for every sphere that shows: spheres of a fused clump get more than
+ * n, of which n are left; with unequal radii a sphere's shell has a number in proportion to a^2, at
+ * least 12 and at most max(4n, 642). With few points: mean of several orientations of the shells.
+ * With shells the lone sphere is exact (6 pi eta a, 8 pi eta a^3, no response to strain), and the
+ * result has the symmetry of the shape: it is averaged over the shape's own symmetries, and the
+ * shells are oriented by the shape's frame, so that neither the orientation nor the order in which
+ * the spheres came matters. */
 #ifndef SD_CLUMP_H
 #define SD_CLUMP_H
 
@@ -29,30 +33,36 @@ extern "C" {
 #endif
 
 typedef struct {
-  int n;          /* spheres */
-  int points;     /* points of the surface (n for shell 1) */
-  int iterations; /* 0: dense solve, else largest number of iterations of the twelve solves */
-  /* In the frame of the shape, eta = 1. Rows 0-2 force, 3-5 torque about the sphere's own centre. Columns 0-2 s0, 3-5 W,
-   * 6-11 E_xx E_yy E_zz E_yz E_xz E_xy (each off-diagonal stands for itself and its mirror). table[(12 k + column) 6 + row] */
+  /* spheres, and points of the surface (n for shell 1) */
+  int n, points;
+  /* 0: dense solve, else largest number of iterations of the twelve solves */
+  int iterations;
+  /* In the frame of the shape, eta = 1. Rows 0-2 force, 3-5 torque about the sphere's own centre.
+   * Columns 0-2 s0, 3-5 W, 6-11 E_xx E_yy E_zz E_yz E_xz E_xy (each off-diagonal stands for itself
+   * and its mirror). table[(12 k + column) 6 + row] */
   double *table;
-  double R[36];      /* force and torque about the centroid from s0, W. Symmetric. */
-  double strain[36]; /* the same from E: row-major, 6 rows, 6 columns as above */
-  double centre
-      [3]; /* of hydrodynamic stress (reaction), from the centroid: here the coupling block is symmetric */
-  double R_centre[36]; /* resistance about it */
-  double mobility
-      [36]; /* its pseudo-inverse: velocity of the centre and angular velocity from force and torque about it */
-  double
-      radius; /* hydrodynamic: 1/(6 pi eta) over the mean translational mobility at the centre of mobility */
+  /* force and torque about the centroid from s0, W; symmetric */
+  double R[36];
+  /* the same from E: row-major, 6 rows, 6 columns as above */
+  double strain[36];
+  /* of hydrodynamic stress (reaction), from the centroid: there the coupling block is symmetric */
+  double centre[3];
+  /* resistance about it, and its pseudo-inverse: velocity of the centre and angular velocity from
+   * force and torque about it */
+  double R_centre[36], mobility[36];
+  /* hydrodynamic: 1/(6 pi eta) over the mean translational mobility at the centre of mobility */
+  double radius;
 } sd_clump;
 
-/* What a solve would need; nothing is allocated for it. Exposed points are not known yet: an upper bound. */
+/* What a solve would need; nothing is allocated for it. Exposed points are not known yet: an upper
+ * bound. */
 typedef struct {
   long points;
   double dense, iterative; /* bytes */
 } sd_clump_need;
 
-/* A cache of shells by number of points, the caller's: start with {0}, free when no more clumps are to come. */
+/* A cache of shells by number of points, the caller's: start with {0}, free when no more clumps are
+ * to come. */
 typedef struct {
   int count;
   sd_shell *shell;
@@ -61,14 +71,18 @@ sd_status sd_shells_get(sd_shells *cache, int n, const sd_shell **shell);
 void sd_shells_free(sd_shells *cache);
 
 typedef struct {
-  int shell;    /* 1, or the wanted number of points a sphere; see sd_shell_size */
-  int rotation; /* for shell 1: torques and angular velocities of spheres take part */
-  double
-      memory; /* bytes that a solve may use; dense if it fits, else iterative, else SD_ENOMEMORY before anything is allocated */
-  double tolerance; /* of iterative solves */
+  /* 1, or the wanted number of points a sphere; see sd_shell_size */
+  int shell;
+  /* for shell 1: torques and angular velocities of spheres take part */
+  int rotation;
+  /* bytes that a solve may use: dense if it fits, else iterative, else SD_ENOMEMORY before anything
+   * is allocated */
+  double memory;
+  /* of iterative solves */
+  double tolerance;
   int max_iter;
-  /* before every product of an iterative solve: which solve, of how many (twelve for each orientation), products so far;
-   * NULL: none */
+  /* before every product of an iterative solve: which solve, of how many (twelve for each
+   * orientation), products so far; NULL: none */
   void (*progress)(void *ctx, int solve, int solves, int products);
   void *progress_ctx;
 } sd_clump_options;
@@ -80,15 +94,19 @@ typedef struct {
 sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *options,
                          sd_clump_need *need);
 
-/* Solve. The shape must live as long as the clump does not need it: it is not kept. The owner frees.
- * SD_OK; SD_ENOMEMORY (see need); SD_ESINGULAR: spheres at one point with equal radii (within 1e-6 of the size), or so close to
- * it that double precision does not tell them apart; the iterative solver's codes. need may be NULL. */
+/* Solve. The shape must live as long as the clump does not need it: it is not kept. The owner
+ * frees.
+ * SD_OK; SD_ENOMEMORY (see need); SD_ESINGULAR: spheres at one point with equal radii (within 1e-6
+ * of the size), or so close to it that double precision does not tell them apart; the iterative
+ * solver's codes. need may be NULL. */
 sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *options, sd_shells *cache,
                           sd_clump *clump, sd_clump_need *need);
 void sd_clump_free(sd_clump *clump);
 
-/* Forces F [3n] and torques T [3n] (NULL: not wanted) on the spheres, in the shape's order, about their own centres, in the lab.
- *   R [9]   pose: lab = R shape (sd_shape_pose);  eta: viscosity;  s0 [3], W [3], A [9] row-major: slip, in the lab
+/* Forces F [3n] and torques T [3n] (NULL: not wanted) on the spheres, in the shape's order, about
+ * their own centres, in the lab.
+ *   R [9]                    pose: lab = R shape (sd_shape_pose);  eta: viscosity
+ *   s0 [3], W [3], A [9]     slip, in the lab; A row-major
  * The rigid version is for slip without strain. No allocation. */
 void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta, const double s0[3],
                            const double W[3], double *F, double *T);

@@ -4,8 +4,9 @@
 
 #include <string.h>
 
-/* sum_m e_m (e_m.b) / d_m over the main axes e of the shape, turned by R: the solution of a symmetric
- * system that is diagonal there. An axis with d = 0 is left out, as a pseudo-inverse does. */
+/* sum_m e_m (e_m.b) / d_m over the main axes e of the shape, turned by R: the solution of a
+ * symmetric system that is diagonal there. An axis with d = 0 is left out, as a pseudo-inverse
+ * does. */
 static void divide(const sd_shape *s, const double R[9], const double d[3], const double b[3],
                    double out[3])
 {
@@ -61,8 +62,8 @@ void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9
     for (int d = 0; d < 3; d++) u[d] += share * m->u[3 * k + d];
     for (int d = 0; d < 9; d++) G[d] += share * m->gradient[9 * k + d];
   }
-  /* The rest, u_k - u - G r_k = D r_k with the least sum of squares: D sum r r = sum (u_k - u - G r_k) r,
-   * row by row. */
+  /* The rest, u_k - u - G r_k = D r_k with the least sum of squares: D sum r r = sum (u_k - u - G
+   * r_k) r, row by row. */
   double B[9] = {0.0};
   for (int k = 0; k < s->n; k++) {
     const double *x = m->x + 3 * k, *uk = m->u + 3 * k;

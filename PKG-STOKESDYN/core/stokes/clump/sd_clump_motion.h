@@ -1,6 +1,7 @@
 /* How a rigid clump moves and is passed by the fluid, from its spheres; and the drag that follows.
  *
- * Spheres are in the order of the shape. Everything is a least-squares fit that is exact for rigid motion and linear flow. */
+ * Spheres are in the order of the shape. Everything is a least-squares fit that is exact for rigid
+ * motion and linear flow. */
 #ifndef SD_CLUMP_MOTION_H
 #define SD_CLUMP_MOTION_H
 
@@ -14,13 +15,13 @@ extern "C" {
 typedef struct {
   /* [3n] positions, velocities */
   const double *x, *v;
-  /* [3n] angular velocities; NULL: spheres have none. Only spheres on a line are asked for them: their
-   * centres do not tell how the clump spins about it. */
+  /* [3n] angular velocities; NULL: spheres have none. Only spheres on a line are asked for them:
+   * their centres do not tell how the clump spins about it. */
   const double *omega;
   /* the fluid velocity, where it is the same everywhere */
   double u_uniform[3];
-  /* [3n], [9n] fluid velocity and its gradient du_p/dx_q; NULL, both: uniform. What the gradient does not
-   * explain of the velocities is fitted: all of it, where the gradient is 0. */
+  /* [3n], [9n] fluid velocity and its gradient du_p/dx_q; NULL, both: uniform. What the gradient
+   * does not explain of the velocities is fitted: all of it, where the gradient is 0. */
   const double *u, *gradient;
 } sd_clump_motion;
 
@@ -32,8 +33,8 @@ void sd_clump_velocity(const sd_shape *shape, const sd_clump_motion *m, const do
 void sd_clump_flow(const sd_shape *shape, const sd_clump_motion *m, const double R[9],
                    const double c[3], double u[3], double G[9]);
 
-/* Force F [3n] and torque T [3n] (NULL: not wanted) of a fluid of viscosity eta on the spheres of the clump
- * in pose R, c. No allocation. */
+/* Force F [3n] and torque T [3n] (NULL: not wanted) of a fluid of viscosity eta on the spheres of
+ * the clump in pose R, c. No allocation. */
 void sd_clump_drag(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
                    const double pose[12], double eta, double *F, double *T);
 

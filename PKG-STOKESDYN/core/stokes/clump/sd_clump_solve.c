@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the sparse factor, which then has up to BLOCKS blocks a point: surfaces have fewer than clouds. */
+/* Of the sparse factor, which then has up to BLOCKS blocks a point: surfaces have fewer than
+ * clouds. */
 static const double REACH = 3.0, BLOCKS = 50.0;
 
 static double dense_bytes(double unknowns)

@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- shells -------------------------------------------------------------------------------------------------- */
+/* --- shells
+ * --------------------------------------------------------------------------------------------------
+ * */
 
 sd_status sd_shells_get(sd_shells *cache, int n, const sd_shell **shell)
 {
@@ -31,7 +33,8 @@ void sd_shells_free(sd_shells *cache)
   *cache = (sd_shells){0};
 }
 
-/* --- points of the surface ------------------------------------------------------------------------------------- */
+/* --- points of the surface
+ * ------------------------------------------------------------------------------------- */
 
 void sd_surface_free(sd_surface *s)
 {
@@ -40,10 +43,10 @@ void sd_surface_free(sd_surface *s)
   free(s->sphere);
 }
 
-/* A point is hidden when it lies deeper inside the shell of another sphere than this, in radii of that shell's points. Along
- * the seam of two spheres both keep what would leave a gap as wide as their spacing; deeper, points of nearly coincident
- * spheres double. 0.4 makes the drag of pairs and rows at any overlap (0.1 to 1.9 radii apart) as accurate as that of touching
- * spheres. */
+/* A point is hidden when it lies deeper inside the shell of another sphere than this, in radii of
+ * that shell's points. Along the seam of two spheres both keep what would leave a gap as wide as
+ * their spacing; deeper, points of nearly coincident spheres double. 0.4 makes the drag of pairs
+ * and rows at any overlap (0.1 to 1.9 radii apart) as accurate as that of touching spheres. */
 static const double seam = 0.4;
 
 /* Is p inside one of the spheres but its own, whose radii are given? */
@@ -57,8 +60,9 @@ static int hidden(const sd_shape *s, const double *radius, int own, const double
   return 0;
 }
 
-/* A hair inside, so that spheres that only touch, within the tolerance of shapes, hide nothing of each other, and points of a
- * symmetric shape that lie on two spheres are not decided by rounding. */
+/* A hair inside, so that spheres that only touch, within the tolerance of shapes, hide nothing of
+ * each other, and points of a symmetric shape that lie on two spheres are not decided by
+ * rounding. */
 static const double hair = 1.7 * SD_SHAPE_TOLERANCE;
 
 sd_status sd_surface_exposed(const sd_shape *s, sd_shells *cache, double *fraction)
@@ -113,12 +117,13 @@ void sd_surface_share(const sd_shape *s, int n, const double *fraction, int *cou
 
 int sd_surface_orientations(int n)
 {
-  /* so many that each sphere has 96 points or more in all: eight icosahedra, one shell from 96 points on */
+  /* so many that each sphere has 96 points or more in all: eight icosahedra, one shell from 96
+   * points on */
   return n == 1 ? 1 : 1 + (96 - 1) / n;
 }
 
-/* Orientation number k: the first is the frame itself, the others spread evenly over all rotations (unit quaternions from a
- * three-dimensional additive sequence). */
+/* Orientation number k: the first is the frame itself, the others spread evenly over all rotations
+ * (unit quaternions from a three-dimensional additive sequence). */
 static void orientation(int k, double Q[9])
 {
   const double t = fmod(k * 0.8191725133961645, 1.0),

@@ -7,9 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How far apart, in tolerances, are images of one sphere in two clumps of one shape, when a pair of spheres says how the clumps
- * lie? The sphere itself is off by one tolerance, the line through the centroid and the first of the pair by one (no sphere is
- * farther out), the azimuth by two (no sphere is farther from that line than the second of the pair). */
+/* How far apart, in tolerances, are images of one sphere in two clumps of one shape, when a pair of
+ * spheres says how the clumps lie? The sphere itself is off by one tolerance, the line through the
+ * centroid and the first of the pair by one (no sphere is farther out), the azimuth by two (no
+ * sphere is farther from that line than the second of the pair). */
 static const double IMAGE = 5.0;
 
 /* Centroid of x [3n], and x from it */
@@ -42,12 +43,14 @@ double sd_shape_size(int n, const double *x, const double *a)
   return size;
 }
 
-/* --- which rotations map one clump onto another? ----------------------------------------------------------------------
+/* --- which rotations map one clump onto another?
+ * ----------------------------------------------------------------------
  *
- * Two spheres that are not on one line with the centroid span a frame. In each of two clumps of one shape, take the pair whose
- * key (distances and radii, below) is the same: some such pair there is the image of the pair here, and then the frames say how
- * the one clump lies in the other. There are few such pairs unless the clump is symmetric; each is a candidate, tried sphere by
- * sphere. The same candidates, of a clump with itself, are its symmetries. */
+ * Two spheres that are not on one line with the centroid span a frame. In each of two clumps of one
+ * shape, take the pair whose key (distances and radii, below) is the same: some such pair there is
+ * the image of the pair here, and then the frames say how the one clump lies in the other. There
+ * are few such pairs unless the clump is symmetric; each is a candidate, tried sphere by sphere.
+ * The same candidates, of a clump with itself, are its symmetries. */
 
 /* Spheres from their centroid */
 typedef struct {
@@ -88,8 +91,8 @@ static void across(const double e[3], double angle, double f[3])
   for (int d = 0; d < 3; d++) f[d] = cos(angle) * u[d] * size + sin(angle) * h[d];
 }
 
-/* Key of the pair i, j, each a length: of i distance from the centroid and radius (all that there is on a line); of j distance
- * from the line of i, radius, distance from i. */
+/* Key of the pair i, j, each a length: of i distance from the centroid and radius (all that there
+ * is on a line); of j distance from the line of i, radius, distance from i. */
 static int keys(const cluster *c)
 {
   return c->rank == 2 ? SD_SHAPE_KEYS : 2;
@@ -133,8 +136,10 @@ static void best_key(const cluster *c, double near, double best[SD_SHAPE_KEYS])
   }
 }
 
-/* A walk through the frames of all pairs with the key, right- and left-handed ones in turn. Spheres on a line have all azimuths:
- * eight stand for them (nothing here has harmonics above the third). In a point: any two frames. Start with {0}. */
+/* A walk through the frames of all pairs with the key, right- and left-handed ones in turn. Spheres
+ * on a line have all azimuths:
+ * eight stand for them (nothing here has harmonics above the third). In a point: any two frames.
+ * Start with {0}. */
 typedef struct {
   int i, j;
 } walk;
@@ -201,7 +206,9 @@ static int map_onto(const sd_shape *s, const double Q[9], const cluster *c, doub
   return 1;
 }
 
-/* --- the shape ---------------------------------------------------------------------------------------------------------- */
+/* --- the shape
+ * ----------------------------------------------------------------------------------------------------------
+ * */
 
 static sd_status add_symmetry(sd_shape *s, const double g[9], int *capacity, const int *perm)
 {
@@ -220,9 +227,9 @@ static sd_status add_symmetry(sd_shape *s, const double g[9], int *capacity, con
   return SD_OK;
 }
 
-/* Frame and symmetries. Of all candidates the frame is the one in which the clump stands highest, by a height that weighs the
- * three axes differently: frames with the same height look the same, or differ by chance. Any two of them then differ by a
- * symmetry. */
+/* Frame and symmetries. Of all candidates the frame is the one in which the clump stands highest,
+ * by a height that weighs the three axes differently: frames with the same height look the same, or
+ * differ by chance. Any two of them then differ by a symmetry. */
 static sd_status find_frame(sd_shape *s)
 {
   const cluster self = {s->n, s->rank, s->x, s->a};
@@ -250,8 +257,9 @@ static sd_status find_frame(sd_shape *s)
   return status;
 }
 
-/* Main axes, rank and sums of squares along the axes. Spheres within the tolerance of a line (a point) are put there, and a
- * sheet that is flat within the tolerance has no thickness: what little they stand off says nothing of how the clump turns. */
+/* Main axes, rank and sums of squares along the axes. Spheres within the tolerance of a line (a
+ * point) are put there, and a sheet that is flat within the tolerance has no thickness: what little
+ * they stand off says nothing of how the clump turns. */
 static void find_axes(sd_shape *s)
 {
   double S[9] = {0.0}, w[3], V[9];

@@ -1,5 +1,6 @@
-/* The shape of a rigid clump of spheres: what it is up to rotation, translation and the order of its spheres; its
- * symmetry; and the pose of a clump of this shape, from where its spheres are now. */
+/* The shape of a rigid clump of spheres: what it is up to rotation, translation and the order of
+ * its spheres; its symmetry; and the pose of a clump of this shape, from where its spheres are
+ * now. */
 #ifndef SD_SHAPE_H
 #define SD_SHAPE_H
 
@@ -9,10 +10,12 @@
 extern "C" {
 #endif
 
-/* Lengths that differ by less than this part of the size (the largest distance of a sphere's surface from the centroid) are
- * one and the same: for "is this the same shape", "is it still rigid", "is it symmetric", "is it a line", "are two spheres one".
- * The drag of a clump is in error by about this part of itself then. That is below what the finest shells are in error by
- * (0.06 % with 162 points), and above what a data file with six digits does to the coordinates. */
+/* Lengths that differ by less than this part of the size (the largest distance of a sphere's
+ * surface from the centroid) are one and the same: for "is this the same shape", "is it still
+ * rigid", "is it symmetric", "is it a line", "are two spheres one".
+ * The drag of a clump is in error by about this part of itself then. That is below what the finest
+ * shells are in error by (0.06 % with 162 points), and above what a data file with six digits does
+ * to the coordinates. */
 #define SD_SHAPE_TOLERANCE 1e-4
 
 enum { SD_SHAPE_KEYS = 5 };
@@ -20,7 +23,8 @@ enum { SD_SHAPE_KEYS = 5 };
 typedef struct {
   /* spheres */
   int n;
-  /* [3n] centres, from their centroid, in the shape's own frame; on a line or in a point exactly, where that is the rank */
+  /* [3n] centres, from their centroid, in the shape's own frame; on a line or in a point exactly,
+   * where that is the rank */
   double *x;
   /* [n] radii */
   double *a;
@@ -30,31 +34,36 @@ typedef struct {
   int rank;
   /* columns: three unit vectors fixed by the shape alone, right- or left-handed */
   double frame[9];
-  /* rotations and reflections that map it onto itself, at least 1 (rank 1: eight azimuths stand for all) */
+  /* rotations and reflections that map it onto itself, at least 1 (rank 1: eight azimuths stand for
+   * all) */
   int symmetries;
-  /* [9 symmetries] their matrices, x_perm[k] = g x_k within the tolerance, and perm [n symmetries] */
+  /* [9 symmetries] their matrices, x_perm[k] = g x_k within the tolerance, and perm [n symmetries]
+   * */
   double *g;
   int *perm;
-  /* private: what the pair of spheres that spans the frame has in common with no other but its images */
+  /* private: what the pair of spheres that spans the frame has in common with no other but its
+   * images */
   double pair[SD_SHAPE_KEYS];
-  /* private: main axes of the centres, a right-handed frame, one after the other; sum over the spheres of (x.axis)^2, 0 for
-   * axes along which the clump has no extent */
+  /* private: main axes of the centres, a right-handed frame, one after the other; sum over the
+   * spheres of (x.axis)^2, 0 for axes along which the clump has no extent */
   double axes[9], squares[3];
   /* private: [2n] x.axis over its sum of squares: the images of the axes are sum arm x */
   double *arm;
 } sd_shape;
 
 /* Shape of n spheres at x [3n] with radii a [n]; its frame is that of x. The owner frees.
- * SD_OK; SD_ENOMEMORY; SD_ENOTFINITE: a coordinate or radius that is not finite, or a radius <= 0. */
+ * SD_OK; SD_ENOMEMORY; SD_ENOTFINITE: a coordinate or radius that is not finite, or a radius <=
+ * 0. */
 sd_status sd_shape_create(int n, const double *x, const double *a, sd_shape *shape);
 void sd_shape_free(sd_shape *shape);
 
-/* The size that the shape of these spheres has, to look it up by: for spheres of one shape, wherever they are and
- * in any order, it differs by 2 SD_SHAPE_TOLERANCE of itself at most. */
+/* The size that the shape of these spheres has, to look it up by: for spheres of one shape,
+ * wherever they are and in any order, it differs by 2 SD_SHAPE_TOLERANCE of itself at most. */
 double sd_shape_size(int n, const double *x, const double *a);
 
-/* Are the spheres at x [3n], a [n] of this shape? Mirror images are not. Returns 1 and perm [n]: sphere k of the shape is sphere
- * perm[k] there; otherwise 0. The given order is tried first, so that clumps from one template cost no more than their pose.
+/* Are the spheres at x [3n], a [n] of this shape? Mirror images are not. Returns 1 and perm [n]:
+ * sphere k of the shape is sphere perm[k] there; otherwise 0. The given order is tried first, so
+ * that clumps from one template cost no more than their pose.
  *   scratch [6n] */
 int sd_shape_match(const sd_shape *shape, int n, const double *x, const double *a, int *perm,
                    double *scratch);
@@ -64,9 +73,10 @@ int sd_shape_match(const sd_shape *shape, int n, const double *x, const double *
  *           all free: R is then some rotation with the right axis; nothing that the shape stands for
  *           depends on which.
  *   c [3]   out, centroid
- * Returns the largest deviation |x_k - c - R X_k|, a length; INFINITY for positions that are not finite.
- * R follows from the images of the two main axes, not from a fit of all spheres: exact for a rigid clump,
- * and for one that is not the deviation says so. */
+ * Returns the largest deviation |x_k - c - R X_k|, a length; INFINITY for positions that are not
+ * finite.
+ * R follows from the images of the two main axes, not from a fit of all spheres: exact for a rigid
+ * clump, and for one that is not the deviation says so. */
 double sd_shape_pose(const sd_shape *shape, const double *x, double R[9], double c[3]);
 
 #ifdef __cplusplus

@@ -16,8 +16,9 @@ static void any_across(const double e[3], double f[3])
   for (int d = 0; d < 3; d++) f[d] *= inv;
 }
 
-/* The main axes e of the shape and their images: sum over the spheres of arm x is (R e) up to rounding, and for spheres that
- * have moved a little it is near; made orthonormal, R = sum (image of e) e^T. */
+/* The main axes e of the shape and their images: sum over the spheres of arm x is (R e) up to
+ * rounding, and for spheres that have moved a little it is near; made orthonormal, R = sum (image
+ * of e) e^T. */
 static void rotation(const sd_shape *s, const double *x, double R[9], double c[3])
 {
   const int n = s->n;

@@ -18,9 +18,12 @@ int sd_shell_size(int n)
   return n;
 }
 
-/* --- points ------------------------------------------------------------------------------------------------- */
+/* --- points
+ * -------------------------------------------------------------------------------------------------
+ * */
 
-/* Orbit of p under T_h, appended to out [3n]: sign changes and cyclic permutations. Returns the new n. */
+/* Orbit of p under T_h, appended to out [3n]: sign changes and cyclic permutations. Returns the new
+ * n. */
 static int append_orbit(const double p[3], double *out, int n)
 {
   for (int turn = 0; turn < 3; turn++) {
@@ -44,7 +47,8 @@ static void normalize(double p[3])
   for (int d = 0; d < 3; d++) p[d] *= inv;
 }
 
-/* n = 10 * 4^k + 2: the icosahedron, its edges halved k times. Returns 0 if n is no such number or memory is short. */
+/* n = 10 * 4^k + 2: the icosahedron, its edges halved k times. Returns 0 if n is no such number or
+ * memory is short. */
 static int icosahedral(int n, double *out)
 {
   int level = 0, size = 12;
@@ -82,7 +86,8 @@ static int icosahedral(int n, double *out)
   return count == n;
 }
 
-/* Orbits of a point set: fixed ones (6, 8), then m on mirror planes (0, y, z), then k general ones. */
+/* Orbits of a point set: fixed ones (6, 8), then m on mirror planes (0, y, z), then k general ones.
+ * */
 typedef struct {
   int six, eight, planar, general;
   double (*p)[3]; /* [planar + general] representatives */
@@ -98,7 +103,8 @@ static int spread(const orbits *o, double *out)
   return n;
 }
 
-/* Coulomb energy per orbit point of every representative, and the force on it along the sphere (and its mirror plane) */
+/* Coulomb energy per orbit point of every representative, and the force on it along the sphere (and
+ * its mirror plane) */
 static double coulomb(const orbits *o, const double *all, int n, double (*force)[3])
 {
   double energy = 0.0;
@@ -121,7 +127,8 @@ static double coulomb(const orbits *o, const double *all, int n, double (*force)
   return energy;
 }
 
-/* Steepest descent with a step that grows while the energy falls. all [3n], scratch [2][...] of the caller. */
+/* Steepest descent with a step that grows while the energy falls. all [3n], scratch [2][...] of the
+ * caller. */
 static double relax(orbits *o, double *all, double (*force)[3], double (*last)[3])
 {
   const int m = o->planar + o->general;
@@ -159,7 +166,8 @@ static double relax(orbits *o, double *all, double (*force)[3], double (*last)[3
   return energy;
 }
 
-/* First guess: points of a rank-1 lattice in the first octant, those with x the largest (a third of the octant) */
+/* First guess: points of a rank-1 lattice in the first octant, those with x the largest (a third of
+ * the octant) */
 static void first_guess(orbits *o, int start)
 {
   const int m = o->planar + o->general;
@@ -183,9 +191,10 @@ static sd_status even_points(int n, double *out)
 {
   orbits o = {.six = n % 12 == 2 || n % 12 == 6, .eight = n % 12 == 2 || n % 12 == 8};
   const int rest = (n - 6 * o.six - 8 * o.eight) / 12; /* = planar + 2 general */
-  /* Points of orbits on the three mirror planes: four of an orbit lie on each great circle. A circle in n even points
-   * carries sqrt(pi n) of them if they stand in squares, sqrt(sqrt(3)/2 pi n) in triangles: a quarter is 0.44 or
-   * 0.41 sqrt(n) orbits. Two more and two fewer are tried as well. */
+  /* Points of orbits on the three mirror planes: four of an orbit lie on each great circle. A
+   * circle in n even points carries sqrt(pi n) of them if they stand in squares, sqrt(sqrt(3)/2 pi
+   * n) in triangles: a quarter is 0.44 or 0.41 sqrt(n) orbits. Two more and two fewer are tried as
+   * well. */
   const int likely = (int) (0.43 * sqrt(n) + 0.5);
   double best = INFINITY;
   double *scratch = malloc(sizeof(double) * (size_t) (3 * n + 9 * rest + 9));
@@ -221,13 +230,16 @@ static sd_status even_points(int n, double *out)
   return SD_OK;
 }
 
-/* --- calibration --------------------------------------------------------------------------------------------- */
+/* --- calibration
+ * --------------------------------------------------------------------------------------------- */
 
-/* Resistance of a shell of radius 1 with points of radius kappa, eta = 1: translation along x, or rotation about z.
+/* Resistance of a shell of radius 1 with points of radius kappa, eta = 1: translation along x, or
+ * rotation about z.
  *
- * The three mirror planes leave the shell as it is, so forces need solving in one octant only: the image of a point under the
- * sign changes s carries chi(s) s F, with chi = s_x for translation along x, s_x s_y for rotation about z. Components that change
- * sign under a mirror plane on which the point itself lies are zero.
+ * The three mirror planes leave the shell as it is, so forces need solving in one octant only: the
+ * image of a point under the sign changes s carries chi(s) s F, with chi = s_x for translation
+ * along x, s_x s_y for rotation about z. Components that change sign under a mirror plane on which
+ * the point itself lies are zero.
  * octant [3m]: points with x, y, z >= 0; A [9 m m], b [3m]: scratch. */
 static sd_status shell_resistance(const double *octant, int m, double kappa, int rotation,
                                   double *A, double *b, double *resistance)
@@ -316,8 +328,8 @@ static sd_status calibrate(sd_shell *shell)
   }
   double *b = A + 9 * (size_t) m * m, T = 0.0;
 
-  /* The mismatch rises with kappa through its first root near kappa = 1.1/sqrt(n), where the points do not overlap yet. Bracket
-   * it from below, then regula falsi (Illinois). */
+  /* The mismatch rises with kappa through its first root near kappa = 1.1/sqrt(n), where the points
+   * do not overlap yet. Bracket it from below, then regula falsi (Illinois). */
   double lo = 0.5 / sqrt(n), hi = lo, glo, ghi;
   sd_status status = mismatch(octant, m, lo, A, b, &T, &glo);
   ghi = glo;

@@ -1,11 +1,12 @@
 /* u = Omega F for spheres where they stand: the pair part of the mobility, whatever sums it.
  *
- * An engine is a table of functions. A new one is a file in this folder that defines the table, and a line in sd_mobility.c.
- * Whoever uses an engine knows it by this header alone: solvers, preconditioners, bodies. The caller never asks which engine it
- * has; it asks the table what the engine needs.
+ * An engine is a table of functions. A new one is a file in this folder that defines the table, and
+ * a line in sd_mobility.c.
+ * Whoever uses an engine knows it by this header alone: solvers, preconditioners, bodies. The
+ * caller never asks which engine it has; it asks the table what the engine needs.
  *
- * The core knows no ranks. This rank has n spheres, whose rows go in as F and come out as u; what an engine must know of others it
- * asks of its caller, through sd_world. */
+ * The core knows no ranks. This rank has n spheres, whose rows go in as F and come out as u; what
+ * an engine must know of others it asks of its caller, through sd_world. */
 #ifndef SD_MOBILITY_H
 #define SD_MOBILITY_H
 
@@ -18,14 +19,15 @@
 extern "C" {
 #endif
 
-/* What an engine may ask of its caller. Rows have `width` numbers; each function returns SD_OK or why it failed, and all ranks
- * call it together. NULL: one rank, in open space, where the answer is what was asked with. A grid adds the exchange of its boxes
- * here. */
+/* What an engine may ask of its caller. Rows have `width` numbers; each function returns SD_OK or
+ * why it failed, and all ranks call it together. NULL: one rank, in open space, where the answer is
+ * what was asked with. A grid adds the exchange of its boxes here. */
 typedef struct {
   void *ctx;
   /* this rank among `ranks`; 0 of 0 is read as 0 of 1 */
   int me, ranks;
-  /* view LIST: rows [width n] of this rank's spheres -> ghosts [width (n_all - n)], the rows of their ghosts */
+  /* view LIST: rows [width n] of this rank's spheres -> ghosts [width (n_all - n)], the rows of
+   * their ghosts */
   sd_status (*refresh)(void *ctx, const double *rows, double *ghosts, int width);
   /* numbers summed over the ranks, in place */
   sd_status (*sum)(void *ctx, double *values, int count);
@@ -39,7 +41,8 @@ typedef struct {
  *   ALL    those of all ranks in one order, the same on every rank; no ghosts, no pairs */
 typedef enum { SD_VIEW_LIST, SD_VIEW_ALL } sd_view;
 
-/* How the spheres interact: what is known before they are placed. law.range is the cut-off, and the taper's range; INFINITY:
+/* How the spheres interact: what is known before they are placed. law.range is the cut-off, and the
+ * taper's range; INFINITY:
  * every sphere sees all that it is given. width 3 or 6 as in sd_product.h. */
 typedef struct {
   sd_law law;
@@ -61,18 +64,23 @@ typedef struct {
   /* bytes of its own struct, zero before the first place */
   size_t state;
   sd_view view;
-  /* how far pairs and ghosts must reach, centre to centre; 0: no ghosts; INFINITY: as far as the pairs that the caller chose */
+  /* how far pairs and ghosts must reach, centre to centre; 0: no ghosts; INFINITY: as far as the
+   * pairs that the caller chose */
   double (*ghosts)(const sd_mobility_how *how);
-  /* the spheres have moved: once before the products of a solve. SD_OK, SD_ENOMEMORY or what a function of sd_world said */
+  /* the spheres have moved: once before the products of a solve. SD_OK, SD_ENOMEMORY or what a
+   * function of sd_world said */
   sd_status (*place)(void *state, const sd_mobility_scene *scene);
-  /* F [width n] -> u [width n]. A sphere without radius gets 0 and its F is not read. SD_OK or as place */
+  /* F [width n] -> u [width n]. A sphere without radius gets 0 and its F is not read. SD_OK or as
+   * place */
   sd_status (*apply)(void *state, const double *F, double *u);
-  /* diagonal of Omega [width n], what a sphere does to itself beyond 1/(6 pi eta a): through its periodic images. NULL: nothing */
+  /* diagonal of Omega [width n], what a sphere does to itself beyond 1/(6 pi eta a): through its
+   * periodic images. NULL: nothing */
   void (*self)(const void *state, double *diagonal);
   void (*free)(void *state);
 } sd_mobility_engine;
 
-/* Every sphere of all ranks with every other: cost n_all^2 / ranks, nothing depends on how the spheres are dealt to the ranks. */
+/* Every sphere of all ranks with every other: cost n_all^2 / ranks, nothing depends on how the
+ * spheres are dealt to the ranks. */
 extern const sd_mobility_engine sd_mobility_all_pairs;
 /* The pairs that the caller lists: within a cut-off, or of one clump. */
 extern const sd_mobility_engine sd_mobility_list;

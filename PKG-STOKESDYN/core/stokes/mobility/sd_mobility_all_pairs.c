@@ -1,7 +1,8 @@
-/* All pairs. The spheres of all ranks stand in one order on every rank; each rank computes an equal share of the pairs, wherever
- * its own spheres are, and the shares are summed:
+/* All pairs. The spheres of all ranks stand in one order on every rank; each rank computes an equal
+ * share of the pairs, wherever its own spheres are, and the shares are summed:
  *
- *   F of this rank --spread--> F of all --share--> a part of u of all --collect--> u of this rank */
+ *   F of this rank --spread--> F of all --share--> a part of u of all --collect--> u of this
+ * rank */
 #include "sd_mobility.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* Pairs by list. A rank computes the rows of its own spheres; forces of ghosts come from the ranks that own them, before each
- * product. */
+/* Pairs by list. A rank computes the rows of its own spheres; forces of ghosts come from the ranks
+ * that own them, before each product. */
 #include "sd_mobility.h"
 
 #include <stdlib.h>

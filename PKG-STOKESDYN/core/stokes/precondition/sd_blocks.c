@@ -8,9 +8,9 @@
 
 static const double UNITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-/* Of its size: a clump that has changed more gets a new block. A small one is cheaper to factor than to
- * keep, and gets one for more than rounding: what is kept is not in restart files, so a run that goes on
- * from one would differ from the run unbroken. */
+/* Of its size: a clump that has changed more gets a new block. A small one is cheaper to factor
+ * than to keep, and gets one for more than rounding: what is kept is not in restart files, so a run
+ * that goes on from one would differ from the run unbroken. */
 static const double BENT = 0.02, ROUNDING = 1e-9;
 enum { SMALL = 64 };
 
@@ -98,9 +98,9 @@ static void inverse3(const double *S, double *T)
   for (int p = 0; p < 9; p++) T[p] /= det;
 }
 
-/* rigid = B W and its friction S = W^T B W. A rigid translation is one velocity for all spheres and no
- * rotation, so column q of B W is the sum of columns q of all spheres of B = D^1/2 C^-1 D^1/2, and S is
- * the sum of its rows of forces. */
+/* rigid = B W and its friction S = W^T B W. A rigid translation is one velocity for all spheres and
+ * no rotation, so column q of B W is the sum of columns q of all spheres of B = D^1/2 C^-1 D^1/2,
+ * and S is the sum of its rows of forces. */
 static void rigid_translations(sd_blocks *b, int k, double S[9])
 {
   const int *member = b->member + b->first[k], width = b->width;

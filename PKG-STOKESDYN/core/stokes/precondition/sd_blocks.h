@@ -1,19 +1,19 @@
 /* One block per clump, a preconditioner (sd_precondition.h).
  *
- * B: the inverse of C of each clump alone. Memory and time of an application: (width m)^2 numbers for a
- * clump of m spheres; set-up m^3. A clump that moves as a rigid body keeps its block: only its turn
- * changes. Spheres in no block have D.
+ * B: the inverse of C of each clump alone. Memory and time of an application: (width m)^2 numbers
+ * for a clump of m spheres; set-up m^3. A clump that moves as a rigid body keeps its block: only
+ * its turn changes. Spheres in no block have D.
  *
- * Coupled blocks add what the clumps do to one another as wholes. With W the rigid translations of the
- * clumps and S = W^T B W their friction, the clumps' velocities as lone bodies, S^-1 W^T B r, go through
- * the sparse factor Q of a cloud with one sphere of equal friction for each clump:
+ * Coupled blocks add what the clumps do to one another as wholes. With W the rigid translations of
+ * the clumps and S = W^T B W their friction, the clumps' velocities as lone bodies, S^-1 W^T B r,
+ * go through the sparse factor Q of a cloud with one sphere of equal friction for each clump:
  *   P = B - B W S^-1 W^T B + B W S^-1 Q S^-1 W^T B
- * By Woodbury's identity this is the inverse of (blocks + W G W^T), G the pair tensor of those spheres,
- * when Q is exact. The first two terms are a projection of B, so P is positive definite with any
- * positive definite Q, also with one of clumps that stood elsewhere or had other blocks.
+ * By Woodbury's identity this is the inverse of (blocks + W G W^T), G the pair tensor of those
+ * spheres, when Q is exact. The first two terms are a projection of B, so P is positive definite
+ * with any positive definite Q, also with one of clumps that stood elsewhere or had other blocks.
  *
- * Parts: block k is made and applied by part k % parts. What couples them, rigid and mobility, is then
- * known to all.
+ * Parts: block k is made and applied by part k % parts. What couples them, rigid and mobility, is
+ * then known to all.
  * Zero-initialise; sd_blocks_free in the end. */
 #ifndef SD_BLOCKS_H
 #define SD_BLOCKS_H
@@ -53,8 +53,8 @@ typedef struct {
 
 void sd_blocks_free(sd_blocks *b);
 
-/* As of sd_precondition_kind. Spheres at one point make a block singular: it is then made definite by a
- * small diagonal. Blocks that cannot be coupled are left uncoupled, on all ranks. */
+/* As of sd_precondition_kind. Spheres at one point make a block singular: it is then made definite
+ * by a small diagonal. Blocks that cannot be coupled are left uncoupled, on all ranks. */
 sd_status sd_blocks_make(sd_blocks *b, const sd_precondition_case *c);
 
 /* Turns the blocks, renews those of clumps that have bent, couples them where they are now. */
@@ -65,15 +65,16 @@ sd_status sd_blocks_apply(void *ctx, const double *r, double *z);
 
 /* --- what sd_blocks_make and _move are made of ------------------------------------------------ */
 
-/* Block k anew, of its spheres as they stand now. On failure b is of no use but to sd_blocks_free. */
+/* Block k anew, of its spheres as they stand now. On failure b is of no use but to sd_blocks_free.
+ * */
 sd_status sd_blocks_renew(sd_blocks *b, const sd_precondition_case *c, int k);
 
 /* The clump of this block has turned by the rotation matrix R [9], row-major, since its set-up. */
 void sd_blocks_turn(sd_blocks *b, int block, const double *R);
 
-/* Couple the blocks, or couple them again where the clumps stand now, by a factor of reach c->rho. Lone
- * spheres in blocks of one take part. SD_OK; SD_ENOMEMORY; SD_EINDEFINITE; SD_ENOTFINITE. On failure,
- * which may be this part's alone, b is not coupled. */
+/* Couple the blocks, or couple them again where the clumps stand now, by a factor of reach c->rho.
+ * Lone spheres in blocks of one take part. SD_OK; SD_ENOMEMORY; SD_EINDEFINITE; SD_ENOTFINITE. On
+ * failure, which may be this part's alone, b is not coupled. */
 sd_status sd_blocks_couple(sd_blocks *b, const sd_precondition_case *c);
 
 #ifdef __cplusplus

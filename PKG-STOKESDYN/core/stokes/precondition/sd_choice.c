@@ -11,13 +11,13 @@ static const double PER_DIGIT = 7.0;
 /* Set-ups of blocks by list that a change must have been worth: the first warm starts are poor. */
 static const double PATIENCE = 4.0;
 
-/* Operations, all in pairs of a product by list. A pair of a cloud serves both of its spheres and reads
- * no list; vectors cost by spheres, in an iteration and in a preconditioner; a stored block that is
- * applied costs what a pair costs, as "with = 1 + stored blocks / pairs" says. Blocks of a matrix that
- * is factored have their tensor evaluated by itself, and an inverse in double precision takes more
- * than a factor in single. Each column of the sparse factor has its neighbours found and its memory
- * taken, whatever its length: in a cloud of ten spheres that is nearly all. Measured within a factor of 1.5 (bench_core), which is enough: what decides
- * in the end is iterations. */
+/* Operations, all in pairs of a product by list. A pair of a cloud serves both of its spheres and
+ * reads no list; vectors cost by spheres, in an iteration and in a preconditioner; a stored block
+ * that is applied costs what a pair costs, as "with = 1 + stored blocks / pairs" says. Blocks of a
+ * matrix that is factored have their tensor evaluated by itself, and an inverse in double precision
+ * takes more than a factor in single. Each column of the sparse factor has its neighbours found and
+ * its memory taken, whatever its length: in a cloud of ten spheres that is nearly all. Measured
+ * within a factor of 1.5 (bench_core), which is enough: what decides in the end is iterations. */
 static const double CLOUD_PAIR = 1.0 / 3.0, SPHERE = 40.0, SPHERE_APPLIED = 20.0, FACTORED = 15.0,
                     INVERTED = 40.0, COLUMN = 1800.0;
 /* Blocks a sphere in the sparse factor of a large compact cloud, rho 3; a small one has half of its
@@ -106,8 +106,8 @@ static double without(const sd_choice *c, double paid)
   return paid / (c->ratio > 0.0 ? c->ratio : GUESS);
 }
 
-/* A life of the preconditioner ends, and `solves` of them have paid for it and for its wear. The next
- * way: by its costs a solve against those without. */
+/* A life of the preconditioner ends, and `solves` of them have paid for it and for its wear. The
+ * next way: by its costs a solve against those without. */
 static sd_way after_life(const sd_choice *c, const sd_cost *k)
 {
   const double life = c->mean + (k->make + c->spent) / fmax(1.0, c->solves);
@@ -119,9 +119,10 @@ void sd_choice_lost(sd_choice *c, const sd_cost *k)
   if (c->with != SD_WITHOUT && c->solves > 0.0) begin(c, after_life(c, k));
 }
 
-/* Two ways are known by one number each: the ratio of their costs in successive solves, and this one's
- * latest mean. With: a solve may cost what it did when the preconditioner was new, or what one without
- * would, if that is less; what it costs more is spent. Without: what it costs more than one with. */
+/* Two ways are known by one number each: the ratio of their costs in successive solves, and this
+ * one's latest mean. With: a solve may cost what it did when the preconditioner was new, or what
+ * one without would, if that is less; what it costs more is spent. Without: what it costs more than
+ * one with. */
 int sd_choice_learn(sd_choice *c, const sd_cost *k, int iterations)
 {
   const int with = c->with != SD_WITHOUT;

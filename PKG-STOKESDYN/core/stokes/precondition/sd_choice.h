@@ -3,8 +3,8 @@
  * what would have been saved has paid for the change. No clock is read, so that every machine, any
  * number of ranks and a restarted run choose alike.
  *
- * Where solves stay as they are, no run pays more than twice what the better way would have cost from
- * the start, and one set-up; a long one goes the better way. */
+ * Where solves stay as they are, no run pays more than twice what the better way would have cost
+ * from the start, and one set-up; a long one goes the better way. */
 #ifndef SD_CHOICE_H
 #define SD_CHOICE_H
 
@@ -39,7 +39,8 @@ typedef struct {
   double with;
   /* Products beyond those of the better way, as far as it is known, since the last change */
   double spent;
-  /* since the last change, solves and mean cost: of the first ones with, of the last ones without */
+  /* since the last change, solves and mean cost: of the first ones with, of the last ones without
+   * */
   double solves, mean;
   /* that of the other way when it was left, until this one's is known well enough for the ratio */
   double other;
@@ -53,8 +54,8 @@ int sd_choice_at_once(const sd_cost *k, double tolerance, double unknowns);
 /* After a solve. Returns 1 if the preconditioner, which stays, is worn: to be made anew. */
 int sd_choice_learn(sd_choice *c, const sd_cost *k, int iterations);
 
-/* What had been made is lost, as spheres have come or gone: is it worth another set-up? If not, c goes
- * on without. */
+/* What had been made is lost, as spheres have come or gone: is it worth another set-up? If not, c
+ * goes on without. */
 void sd_choice_lost(sd_choice *c, const sd_cost *k);
 
 #ifdef __cplusplus

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells of one side over some of the spheres, chained; a hash of the cell's three numbers picks the chain. */
+/* Cells of one side over some of the spheres, chained; a hash of the cell's three numbers picks the
+ * chain. */
 typedef struct {
   double side;
   int buckets; /* a power of two */
@@ -76,8 +77,8 @@ static double squared(const double *x, int i, int j)
           if (cell_of(c, (x)[3 * (long) j]) == cx_ && cell_of(c, (x)[3 * (long) j + 1]) == cy_ && \
               cell_of(c, (x)[3 * (long) j + 2]) == cz_)
 
-/* Heap of spheres, the one with the largest key on top; equal keys: the smaller index. Keys only fall, and are put right when
- * met. */
+/* Heap of spheres, the one with the largest key on top; equal keys: the smaller index. Keys only
+ * fall, and are put right when met. */
 typedef struct {
   int count;
   int *sphere;

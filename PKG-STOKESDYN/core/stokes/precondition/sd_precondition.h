@@ -22,7 +22,8 @@ typedef struct {
   sd_spheres spheres;
   /* Unknowns of a sphere, width: 3 (force), with rotation 6 (force and torque) */
   int n, width;
-  /* Clump k is of the spheres member[first[k]] ... member[first[k + 1] - 1]; no sphere is in two. */
+  /* Clump k is of the spheres member[first[k]] ... member[first[k + 1] - 1]; no sphere is in two.
+   * */
   int clumps;
   const long *first;
   const int *member;
@@ -36,10 +37,11 @@ typedef struct {
   void *sum_ctx;
 } sd_precondition_case;
 
-/* A kind of preconditioner: functions on a struct of its own, `size` bytes of zeros in the beginning.
+/* A kind of preconditioner: functions on a struct of its own, `size` bytes of zeros in the
+ * beginning.
  * make and move are called on all ranks, and fail on all if they fail on one: SD_ENOMEMORY,
- * SD_EINDEFINITE, SD_ENOTFINITE, that of the sum. What could not be made is empty; what could not be
- * moved, or is to be made again, wants to be freed. */
+ * SD_EINDEFINITE, SD_ENOTFINITE, that of the sum. What could not be made is empty; what could not
+ * be moved, or is to be made again, wants to be freed. */
 typedef struct {
   const char *name;
   size_t size;

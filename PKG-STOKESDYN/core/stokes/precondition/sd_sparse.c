@@ -36,9 +36,9 @@ static inline float dot(const float *x, const float *y, int n)
   return sum;
 }
 
-/* The column of L that belongs to sphere i. Of all columns with rows in the set s of spheres, i last
- * in it, the nearest one to the inverse is C_ss^-1 e_i / (e_i . C_ss^-1 e_i)^1/2 (Schaefer et al.,
- * Theorem 2.1; with blocks, e_i are `width` unit vectors). With C_ss = R R^T, R lower, this is
+/* The column of L that belongs to sphere i. Of all columns with rows in the set s of spheres, i
+ * last in it, the nearest one to the inverse is C_ss^-1 e_i / (e_i . C_ss^-1 e_i)^1/2 (Schaefer et
+ * al., Theorem 2.1; with blocks, e_i are `width` unit vectors). With C_ss = R R^T, R lower, this is
  * R^-T e_i: as i comes last, R^-1 e_i = e_i / R_ii and R_ii^2 = 1/(e_i . C_ss^-1 e_i).
  * So X [width][size], these columns, solves R^T X = E from the bottom up, R column-major. */
 static void last_columns(const float *R, int size, int width, float *X)
@@ -64,7 +64,8 @@ static void store(const float *X, int m, int width, float *value)
         value[size * l + lda * q + p] = X[width * (m * (long) q + m - 1 - l) + p];
 }
 
-/* R of m spheres, in single precision where that will do. most: of any column, for memory that is seldom needed. */
+/* R of m spheres, in single precision where that will do. most: of any column, for memory that is
+ * seldom needed. */
 static sd_status local_factor(const sd_law *law, const sd_spheres *s, const int *member, int m,
                               int width, int most, float *A, double **in_double)
 {
@@ -171,8 +172,8 @@ typedef void kernel(int columns, const long *first, const int *row, const float 
 typedef double quad __attribute__((vector_size(32)));
 typedef float quad_float __attribute__((vector_size(16)));
 
-/* Two vectors of four lanes for the six numbers of a sphere; in the last two lanes of the second one there are zeros in `in`
- * and something without meaning in `out`. */
+/* Two vectors of four lanes for the six numbers of a sphere; in the last two lanes of the second
+ * one there are zeros in `in` and something without meaning in `out`. */
 __attribute__((target("avx2,fma"))) static void six_avx2(int columns, const long *first,
                                                          const int *row, const float *value,
                                                          const double *in, double *out)

@@ -29,8 +29,8 @@ static inline void put_cross(double c, const double h[3], double *B)
   }
 }
 
-/* Block of C into B [6 x 6], column-major, of which width 3 uses a corner. The pair tensors of sd_tensor.h, times the roots of the
- * diagonal:
+/* Block of C into B [6 x 6], column-major, of which width 3 uses a corner. The pair tensors of
+ * sd_tensor.h, times the roots of the diagonal:
  *   U F   1/(6 pi) times 6 pi sqrt(a_i a_j)            U T   1/(8 pi) times sqrt(6 a_i 8 a_j^3) pi = sqrt(3)/2 sqrt(a_i a_j^3)
  *   W T   1/(8 pi) times 8 pi sqrt(a_i^3 a_j^3)        W F   sqrt(3)/2 sqrt(a_i^3 a_j) */
 static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int j, int width,
@@ -60,7 +60,8 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
   put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
 }
 
-/* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of A, A_single. */
+/* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of
+ * A, A_single. */
 static inline void fill(const sd_law *law, const sd_spheres *s, const int *member, int m, int width,
                         double extra, double *A, float *A_single)
 {

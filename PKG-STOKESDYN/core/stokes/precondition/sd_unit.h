@@ -1,7 +1,7 @@
-/* The mobility matrix of a few spheres scaled to unit diagonal, C = D^1/2 M D^1/2, D = 6 pi eta a in
- * the rows of forces and 8 pi eta a^3 in those of torques: its blocks depend on positions, radii and
- * the law only. Preconditioners are made of its parts. width: 3 (forces), or 6 (forces and torques,
- * sd_tensor_grand; not with SD_TENSOR_OSEEN). */
+/* The mobility matrix of a few spheres scaled to unit diagonal, C = D^1/2 M D^1/2, D = 6 pi eta a
+ * in the rows of forces and 8 pi eta a^3 in those of torques: its blocks depend on positions, radii
+ * and the law only. Preconditioners are made of its parts. width: 3 (forces), or 6 (forces and
+ * torques, sd_tensor_grand; not with SD_TENSOR_OSEEN). */
 #ifndef SD_UNIT_H
 #define SD_UNIT_H
 
@@ -19,8 +19,8 @@ sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *me
                            int width, double *A);
 
 /* The same in single precision, which is enough for an approximation of the inverse and takes two
- * thirds of the time. Also SD_ESINGULAR: too near to singular for it, as spheres nearly at one point
- * are. */
+ * thirds of the time. Also SD_ESINGULAR: too near to singular for it, as spheres nearly at one
+ * point are. */
 sd_status sd_unit_cholesky_single(const sd_law *law, const sd_spheres *s, const int *member, int m,
                                   int width, float *A);
 

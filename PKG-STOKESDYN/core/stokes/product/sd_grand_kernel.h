@@ -1,12 +1,13 @@
-/* Kernels of the fast product of forces and torques (width 6 in sd_product.h); included by sd_product_kernel.h, whose vectors they use.
+/* Kernels of the fast product of forces and torques (width 6 in sd_product.h); included by
+ * sd_product_kernel.h, whose vectors they use.
  *
  * With y = 1/R and everything times 8 pi (undone at the end), for pairs that do not overlap:
  *   U_i += (y + y m/3) F + (y - y m) y^2 r (r.F) + y^3 T x r
  *   W_i += y^3 F x r + y^3 [ 3/2 y^2 r (r.T) - T/2 ]
  * The sphere j gets the same from the force and the torque of i with -r for r. */
 
-/* f, h of the force; c of the cross products, for the sphere i that turns under the force on j (cij) and the other way round
- * (cji), over R; k, e of the torque, e over R^2. */
+/* f, h of the force; c of the cross products, for the sphere i that turns under the force on j
+ * (cij) and the other way round (cji), over R; k, e of the torque, e over R^2. */
 typedef struct {
   vec f, h, cij, cji, k, e;
 } grand;
@@ -81,7 +82,8 @@ INLINE void grand_add(const grand *b, vec cu, vec cw, vec dx, vec dy, vec dz, co
   u[5] = (u[5] + b->k * F[5]) + e * dz + cw * (F[0] * dy - F[1] * dx);
 }
 
-/* Target i against the vectors of sources from j0 to j1. both: the sources receive from the target as well. */
+/* Target i against the vectors of sources from j0 to j1. both: the sources receive from the target
+ * as well. */
 INLINE void grand_tile(int both, sd_taper kind, const sd_packed *p, int i, int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;

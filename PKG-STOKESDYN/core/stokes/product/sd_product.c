@@ -71,8 +71,9 @@ static double *reserve(sd_packed *p, long doubles)
   return (double *) (((uintptr_t) p->memory + 63) & ~(uintptr_t) 63);
 }
 
-/* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2, because the first guess of a root
- * may be in single precision. Spheres so small or so far away that their squares leave its range: plain C, not scaled. */
+/* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2,
+ * because the first guess of a root may be in single precision. Spheres so small or so far away
+ * that their squares leave its range: plain C, not scaled. */
 static int fits(sd_packed *p)
 {
   const double *x = p->spheres.x, *a = p->spheres.a;

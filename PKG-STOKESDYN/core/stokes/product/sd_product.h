@@ -1,8 +1,11 @@
-/* Mobility times vector, the pair part only: u_i = sum_{j != i} Omega_ij F_j. The diagonal 1/(6 pi eta_i a_i) is the solver's.
+/* Mobility times vector, the pair part only: u_i = sum_{j != i} Omega_ij F_j. The diagonal 1/(6 pi
+ * eta_i a_i) is the solver's.
  *
- * Local viscosity: Omega_ij is taken with sqrt(eta_i eta_j). Then the matrix is E^-1/2 M_1 E^-1/2 with M_1 the matrix of unit
- * viscosity and E = diag(eta): symmetric and positive definite whenever M_1 is.
- * Blocks are computed afresh in every product; they are never stored (72 bytes a pair would be slower to read). */
+ * Local viscosity: Omega_ij is taken with sqrt(eta_i eta_j). Then the matrix is E^-1/2 M_1 E^-1/2
+ * with M_1 the matrix of unit viscosity and E = diag(eta): symmetric and positive definite whenever
+ * M_1 is.
+ * Blocks are computed afresh in every product; they are never stored (72 bytes a pair would be
+ * slower to read). */
 #ifndef SD_PRODUCT_H
 #define SD_PRODUCT_H
 
@@ -15,8 +18,9 @@ extern "C" {
 
 /* Taper: a factor t(q), q = R/range, on every pair's block, 0 for q >= 1.
  *   wendland   (1-q)^4 (1+4q)          spherical   1 - 3q/2 + q^3/2
- * Both are positive definite functions of space and 1 at R = 0, so the tapered matrix stays positive definite (Schur's product
- * theorem), which a plain cut-off does not. It is another model: the far field is screened. */
+ * Both are positive definite functions of space and 1 at R = 0, so the tapered matrix stays
+ * positive definite (Schur's product theorem), which a plain cut-off does not. It is another model:
+ * the far field is screened. */
 typedef enum { SD_TAPER_NONE, SD_TAPER_WENDLAND, SD_TAPER_SPHERICAL } sd_taper;
 
 /* How two spheres interact. range: of the taper, > 0; not read without taper. */
@@ -37,23 +41,31 @@ typedef struct {
   const double *x, *a, *w;
 } sd_spheres;
 
-/* Pairs as rows: targets 0 ... n-1 are the first n spheres; their sources are neighbor[first[i]] ... neighbor[first[i+1]-1].
- * Every directed pair once. A source may be a ghost (index >= n) and may be the image of any sphere, also of i itself. */
+/* Pairs as rows: targets 0 ... n-1 are the first n spheres; their sources are neighbor[first[i]]
+ * ... neighbor[first[i+1]-1].
+ * Every directed pair once. A source may be a ghost (index >= n) and may be the image of any
+ * sphere, also of i itself. */
 typedef struct {
   int n;
   const long *first;
   const int *neighbor;
 } sd_pairs;
 
-/* --- the product ----------------------------------------------------------------------------------------------------------
- * Kernels on a copy of the spheres in the order that they read, made once per solve. Each instruction set has its own build of one
- * source (sd_product_kernel.h); the best that the processor has is taken at run time. SD_ISA_PLAIN is plain C, pair by pair by the
- * formulas of sd_tensor.h: for other compilers, for lengths beyond the range of the vector kernels, and to compare those with.
- * Relative error of a pair's block: 1e-15. The order of summation is fixed: same input, same instruction set, same bits.
+/* --- the product
+ * ----------------------------------------------------------------------------------------------------------
+ * Kernels on a copy of the spheres in the order that they read, made once per solve. Each
+ * instruction set has its own build of one source (sd_product_kernel.h); the best that the
+ * processor has is taken at run time. SD_ISA_PLAIN is plain C, pair by pair by the formulas of
+ * sd_tensor.h: for other compilers, for lengths beyond the range of the vector kernels, and to
+ * compare those with.
+ * Relative error of a pair's block: 1e-15. The order of summation is fixed: same input, same
+ * instruction set, same bits.
  *
- * Vectors have `width` numbers a sphere: 3, force and velocity; or 6, force and torque, velocity and angular velocity:
+ * Vectors have `width` numbers a sphere: 3, force and velocity; or 6, force and torque, velocity
+ * and angular velocity:
  *
- *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j),    M_ij the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the law */
+ *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j),    M_ij the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the
+ * law */
 typedef enum { SD_ISA_BEST, SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512 } sd_isa;
 
 /* Does this build hold kernels for it, and does the processor run them? SD_ISA_PLAIN: always. */
@@ -80,7 +92,8 @@ typedef struct {
   int *index;
   /* columns [padded]; f = w F, u = sums; then those of the torques */
   double *x, *y, *z, *a, *f[6], *u[6];
-  /* rows [8 (n+1)] x y z a, then w F; the last takes the place of missing neighbours. [4 (n+1)] w T */
+  /* rows [8 (n+1)] x y z a, then w F; the last takes the place of missing neighbours. [4 (n+1)] w T
+   * */
   double *row, *torque_row;
   void *memory;
   long capacity;
@@ -88,23 +101,26 @@ typedef struct {
 
 void sd_packed_free(sd_packed *p);
 
-/* Copy n spheres for products of all pairs, or for products by list (ghosts included). Memory grows and is kept.
+/* Copy n spheres for products of all pairs, or for products by list (ghosts included). Memory grows
+ * and is kept.
  * SD_OK or SD_ENOMEMORY. */
 sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                         int width);
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                          int width);
 
-/* Packed for all pairs: F [width n] -> u [width count], targets begin ... begin + count - 1, sources all. With all targets each
- * pair is computed once for both its spheres, which is about 1.4 times faster. */
+/* Packed for all pairs: F [width n] -> u [width count], targets begin ... begin + count - 1,
+ * sources all. With all targets each pair is computed once for both its spheres, which is about 1.4
+ * times faster. */
 void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u);
 
-/* A share of the same: part `part` of `parts`, whose sum over all parts is the product. F [width n] -> u [width n].
+/* A share of the same: part `part` of `parts`, whose sum over all parts is the product. F [width n]
+ * -> u [width n].
  * Each pair belongs to one part; shares take equal time wherever the spheres are. */
 void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double *u);
 
-/* Packed for lists: F [width pairs->n] of the targets and ghosts [width (n - pairs->n)] of the spheres after them, NULL if there
- * are none -> u [width pairs->n]. */
+/* Packed for lists: F [width pairs->n] of the targets and ghosts [width (n - pairs->n)] of the
+ * spheres after them, NULL if there are none -> u [width pairs->n]. */
 void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, const double *ghosts,
                      double *u);
 

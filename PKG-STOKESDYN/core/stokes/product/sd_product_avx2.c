@@ -30,7 +30,8 @@ typedef __m256d mask;
     columns(row, 4, j, &(t0), &(t1), &(t2), &unused_); \
   } while (0)
 
-/* 1/sqrt(v): first guess in single precision, error e = 1 - v y^2, |e| < 8e-4; y (1-e)^(-1/2) by its series up to e^4. */
+/* 1/sqrt(v): first guess in single precision, error e = 1 - v y^2, |e| < 8e-4; y (1-e)^(-1/2) by
+ * its series up to e^4. */
 static inline __attribute__((always_inline)) vec reciprocal_root(vec v)
 {
   const vec y = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(v))), e = SET1(1.0) - v * (y * y);

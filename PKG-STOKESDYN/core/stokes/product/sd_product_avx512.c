@@ -1,4 +1,5 @@
-/* AVX-512: eight doubles; the only set with a reciprocal square root in double precision, to 14 bits. */
+/* AVX-512: eight doubles; the only set with a reciprocal square root in double precision, to 14
+ * bits. */
 #include "sd_product_internal.h"
 
 #ifdef SD_HAS_X86_KERNELS
@@ -22,14 +23,16 @@ typedef __mmask8 mask;
   columns(row, j, &(x), &(y), &(z), &(a), &(f0), &(f1), &(f2))
 #define TORQUES(row, j, t0, t1, t2) torque_columns(row, j, &(t0), &(t1), &(t2))
 
-/* 1/sqrt(v): with the error e = 1 - v y^2 of the first guess, |e| < 2^-13, y (1-e)^(-1/2) by its series up to e^3. */
+/* 1/sqrt(v): with the error e = 1 - v y^2 of the first guess, |e| < 2^-13, y (1-e)^(-1/2) by its
+ * series up to e^3. */
 static inline __attribute__((always_inline)) vec reciprocal_root(vec v)
 {
   const vec y = _mm512_rsqrt14_pd(v), e = SET1(1.0) - v * (y * y);
   return y + y * e * (SET1(0.5) + e * (SET1(0.375) + e * SET1(0.3125)));
 }
 
-/* Transpose eight rows of eight: eight loads and 22 shuffles, where seven gathers would be 56 loads. */
+/* Transpose eight rows of eight: eight loads and 22 shuffles, where seven gathers would be 56
+ * loads. */
 static inline __attribute__((always_inline)) void
 columns(const double *row, const int *j, vec *x, vec *y, vec *z, vec *a, vec *f0, vec *f1, vec *f2)
 {

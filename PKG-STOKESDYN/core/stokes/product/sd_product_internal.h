@@ -5,7 +5,8 @@
 #include "sd_product.h"
 
 /* One kind of product. Sums are times 8 pi and without w of the target; lengths are scaled.
- *   symmetric   columns, u += the part's share of all pairs; targets   columns i0 ... i1 - 1, u +=; list   rows, u = */
+ *   symmetric   columns, u += the part's share of all pairs; targets   columns i0 ... i1 - 1, u +=; list   rows, u
+ * = */
 struct sd_kernel {
   int lanes; /* doubles of a vector: padding of the columns */
   void (*symmetric)(const sd_packed *p, int part, int parts);
@@ -15,7 +16,8 @@ struct sd_kernel {
 
 struct sd_kernels {
   struct sd_kernel forces, torques;
-  /* out += L L^T in (sd_sparse.h): vectors of 4 doubles a sphere, blocks of 3 x 4 floats. NULL: plain C has none */
+  /* out += L L^T in (sd_sparse.h): vectors of 4 doubles a sphere, blocks of 3 x 4 floats. NULL:
+   * plain C has none */
   void (*sparse)(int columns, const long *first, const int *row, const float *value,
                  const double *in, double *out);
 };
@@ -24,8 +26,9 @@ struct sd_kernels {
 const struct sd_kernels *sd_kernels_of(sd_isa isa);
 extern const struct sd_kernels sd_kernels_plain;
 
-/* The kernels are written with the vector types of GCC and clang; the files of AVX2 and AVX-512 need the compiler's options for
- * them (CMakeLists.txt). SD_PORTABLE_KERNELS: on x86-64 too what other processors get; SD_NO_KERNELS: plain C, any compiler. */
+/* The kernels are written with the vector types of GCC and clang; the files of AVX2 and AVX-512
+ * need the compiler's options for them (CMakeLists.txt). SD_PORTABLE_KERNELS: on x86-64 too what
+ * other processors get; SD_NO_KERNELS: plain C, any compiler. */
 #if defined(__GNUC__) && !defined(SD_NO_KERNELS)
 #if defined(__x86_64__) && !defined(SD_PORTABLE_KERNELS)
 #define SD_HAS_X86_KERNELS

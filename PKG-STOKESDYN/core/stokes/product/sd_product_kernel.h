@@ -1,4 +1,5 @@
-/* Kernels of the fast product, one source for every instruction set. A file that includes this one first defines
+/* Kernels of the fast product, one source for every instruction set. A file that includes this one
+ * first defines
  *   SD_KERNELS      name of the table that it makes
  *   LANES           doubles of a vector
  *   vec, mask       types; vec is a vector type of GCC and clang, so + - * / work on it
@@ -6,10 +7,12 @@
  *   ROWS(row, j, x, y, z, a, f0, f1, f2)   columns of the LANES rows j[0] ... of eight doubles
  *   TORQUES(row, j, t0, t1, t2)            the same of four doubles
  *
- * With y = 1/R, m = (a_i^2 + a_j^2) y^2, and everything times 4/3 (undone at the end, with w_i/(6 pi)):
+ * With y = 1/R, m = (a_i^2 + a_j^2) y^2, and everything times 4/3 (undone at the end, with w_i/(6
+ * pi)):
  *   far       u_i += (y + y m/3) F_j + (y - y m) y^2 r (r.F_j)
  *   overlap   the other branches of sd_rpy_radial, in a branch taken only when a lane of the vector overlaps
- * The block of a pair is the same for both of its spheres: the symmetric kernel computes it once. */
+ * The block of a pair is the same for both of its spheres: the symmetric kernel computes it
+ * once. */
 #include "sd_product_internal.h"
 
 #define INLINE static inline __attribute__((always_inline))
@@ -99,7 +102,8 @@ static __attribute__((noinline)) void leave_out_self(int lane, vec *f, vec *h)
   *h = SELECT(self, SET1(0.0), *h);
 }
 
-/* T targets i ... i + T - 1 against the vectors of sources from j0 to j1. both: the sources receive from the targets as well. */
+/* T targets i ... i + T - 1 against the vectors of sources from j0 to j1. both: the sources receive
+ * from the targets as well. */
 INLINE void tile(int T, int both, sd_tensor tensor, sd_taper kind, const sd_packed *p, int i,
                  int j0, int j1)
 {
@@ -163,8 +167,8 @@ INLINE void tile(int T, int both, sd_tensor tensor, sd_taper kind, const sd_pack
 /* Sources are taken in chunks that stay in the first-level cache while all targets pass. */
 enum { CHUNK = 256 };
 
-/* Groups of LANES columns: does the pair of a group with any later one belong to this part? In turn, there and back, so that
- * the sums of (groups - I) over a part's groups are equal. */
+/* Groups of LANES columns: does the pair of a group with any later one belong to this part? In
+ * turn, there and back, so that the sums of (groups - I) over a part's groups are equal. */
 INLINE int mine(int group, int part, int parts)
 {
   const int turn = group % (2 * parts);
@@ -196,7 +200,8 @@ INLINE void targets(sd_tensor tensor, sd_taper kind, const sd_packed *p, int i0,
   }
 }
 
-/* The next LANES neighbours from k on; what is missing before end is the row that stands for nothing. */
+/* The next LANES neighbours from k on; what is missing before end is the row that stands for
+ * nothing. */
 INLINE const int *neighbors(const sd_pairs *pairs, long k, long end, int nothing, int *rest)
 {
   const int *j = pairs->neighbor + k;

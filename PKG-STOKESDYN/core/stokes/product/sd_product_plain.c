@@ -1,5 +1,6 @@
-/* The product in plain C, pair by pair by the functions of sd_tensor.h: the same table as the vector kernels have, with vectors of
- * one lane. Sums are times 8 pi: translation needs 4/3 for its 6 pi, rotation has 8 pi of itself. */
+/* The product in plain C, pair by pair by the functions of sd_tensor.h: the same table as the
+ * vector kernels have, with vectors of one lane. Sums are times 8 pi: translation needs 4/3 for its
+ * 6 pi, rotation has 8 pi of itself. */
 #include <stddef.h>
 
 #include "sd_product_internal.h"
@@ -31,8 +32,8 @@ static void add_force(const sd_law *law, const sphere *i, const sphere *j, const
   u[2] += f * F[2] + along * hz;
 }
 
-/* u [6] += the block of sd_tensor_grand times (F T) [6]. The sphere i turns under the force on j by cij F x rhat, and moves under
- * the torque on j by cji T x rhat (reciprocity). */
+/* u [6] += the block of sd_tensor_grand times (F T) [6]. The sphere i turns under the force on j by
+ * cij F x rhat, and moves under the torque on j by cji T x rhat (reciprocity). */
 static void add_force_and_torque(const sd_law *law, const sphere *i, const sphere *j,
                                  const double *F, double *u)
 {
