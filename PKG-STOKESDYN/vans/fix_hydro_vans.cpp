@@ -29,9 +29,10 @@ FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), resume(lmp, false)
 {
   const auto args = words(narg, arg);
-  double every;
-  if (narg < 4 || !is_number(args[3], every) || every != std::floor(every) || every < 1 ||
-      every > 1e9)
+  const bool digits =
+      narg > 3 && args[3].find_first_not_of("0123456789") == std::string::npos;
+  const double every = digits ? atof(arg[3]) : 0.0;
+  if (every < 1 || every > 1e9)
     fail(lmp,
          COMMAND + ": the number of steps N after the style must be an integer >= 1" +
              (narg < 4 ? "" : ", not '" + args[3] + "'"));

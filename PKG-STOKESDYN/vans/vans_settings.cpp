@@ -115,45 +115,55 @@ static double fraction(Keywords &in)
   return value;
 }
 
+void VansSettings::take_mesh(Keywords &in)
+{
+  if (in.more() && in.peek() == "file") {
+    mesh_file = file_name(in);
+    return;
+  }
+  edge.resize(in.integer(2, 10000000) + 1);
+  dz = in.positive();
+  z_ref = in.number();
+  for (size_t k = 0; k < edge.size(); k++) edge[k] = (double) k * dz;
+}
+
+void VansSettings::take_solve(Keywords &in)
+{
+  period = in.positive();
+  dt = in.positive();
+  if (dt > period * (1.0 + 1e-9))
+    in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
+}
+
+void VansSettings::take_class_radii(Keywords &in)
+{
+  class_radii.resize(in.integer(1, 32));
+  for (size_t c = 0; c < class_radii.size(); c++) {
+    class_radii[c] = in.positive();
+    if (std::count(class_radii.begin(), class_radii.begin() + c, class_radii[c]))
+      in.refuse("'" + text(class_radii[c]) + "' twice");
+  }
+}
+
+void VansSettings::take_fluctuation(Keywords &in)
+{
+  fluctuation =
+      (decltype(fluctuation)) in.choice({"none", "correlated", "uncorrelated", "depth"});
+  if (fluctuation == NO_FLUCTUATION) return;
+  seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
+  find_bed = in.take("auto");
+  if (!find_bed) bed = in.number();
+}
+
+void VansSettings::take_sidewall(Keywords &in)
+{
+  if (in.take("off")) return;
+  width = in.positive();
+  wall_coef = in.not_negative();
+}
+
 void VansSettings::read(Keywords &in)
 {
-  const auto mesh = [&] {
-    if (in.more() && in.peek() == "file") {
-      mesh_file = file_name(in);
-      return;
-    }
-    edge.resize(in.integer(2, 10000000) + 1);
-    dz = in.positive();
-    z_ref = in.number();
-    for (size_t k = 0; k < edge.size(); k++) edge[k] = (double) k * dz;
-  };
-  const auto solve = [&] {
-    period = in.positive();
-    dt = in.positive();
-    if (dt > period * (1.0 + 1e-9))
-      in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
-  };
-  const auto class_list = [&] {
-    class_radii.resize(in.integer(1, 32));
-    for (size_t c = 0; c < class_radii.size(); c++) {
-      class_radii[c] = in.positive();
-      if (std::count(class_radii.begin(), class_radii.begin() + c, class_radii[c]))
-        in.refuse("'" + text(class_radii[c]) + "' twice");
-    }
-  };
-  const auto eddies = [&] {
-    fluctuation =
-        (decltype(fluctuation)) in.choice({"none", "correlated", "uncorrelated", "depth"});
-    if (fluctuation == NO_FLUCTUATION) return;
-    seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
-    find_bed = in.take("auto");
-    if (!find_bed) bed = in.number();
-  };
-  const auto side_walls = [&] {
-    if (in.take("off")) return;
-    width = in.positive();
-    wall_coef = in.not_negative();
-  };
   const auto fluid = [&] {
     rho = in.positive();
     eta = in.positive();
@@ -176,7 +186,7 @@ void VansSettings::read(Keywords &in)
     rules = in.choice({"consistent", "yade"}) == 1 ? SD_VANS_YADE : SD_VANS_CONSISTENT;
   };
   in.parse({
-      {"mesh", mesh},
+      {"mesh", [&] { take_mesh(in); }},
       {"fluid", fluid},
       {"gravity", gravity},
       {"area", [&] { area = in.positive(); }},
@@ -184,7 +194,7 @@ void VansSettings::read(Keywords &in)
       {"profile", [&] { profile_file = file_or(in, "zero"); }},
       {"given", [&] { given_file = file_or(in, "averaged"); }},
       {"convective", [&] { convective_file = file_or(in, "off"); }},
-      {"solve", solve},
+      {"solve", [&] { take_solve(in); }},
       {"stream", [&] { rest = in.choice({"steady", "rest"}) == 1; }},
       {"hindrance", [&] { hindrance = in.number(); }},
       {"lift", [&] { lift = in.take("off") ? 0.0 : in.number(); }},
@@ -198,12 +208,12 @@ void VansSettings::read(Keywords &in)
        [&] { viscosity = (sd_vans_viscosity) in.choice({"constant", "einstein", "power"}); }},
       {"surface", surface},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
-      {"sidewall", side_walls},
+      {"sidewall", [&] { take_sidewall(in); }},
       {"radius", [&] { radius = in.positive(); }},
       {"classes", [&] { classes = in.yes_no(); }},
-      {"class_radii", class_list},
+      {"class_radii", [&] { take_class_radii(in); }},
       {"grains", [&] { point = in.choice({"extended", "point"}) == 1; }},
-      {"fluctuation", eddies},
+      {"fluctuation", [&] { take_fluctuation(in); }},
       {"renewal", [&] { renewal = in.positive(); }},
       {"rules", rule},
       {"conserve", [&] { conserve = in.yes_no(); }},

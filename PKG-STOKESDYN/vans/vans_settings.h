@@ -72,6 +72,11 @@ struct VansSettings {
   LAMMPS_NS::LAMMPS *lmp = nullptr;
   std::string mesh_file, profile_file, given_file, convective_file;
   void read(Keywords &in);
+  void take_mesh(Keywords &in);
+  void take_solve(Keywords &in);
+  void take_class_radii(Keywords &in);
+  void take_fluctuation(Keywords &in);
+  void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void read_mesh();
   void read_given();
