@@ -126,9 +126,11 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<int> order;
   sd_neighbors rows;    // one for each clump
 
-  // view ALL: the spheres of all ranks in order of tag, so that nothing depends on the decomposition
-  std::vector<int> place_of;    // [n_all] place of each sphere, the ranks' spheres one after the other
-  std::vector<int> spheres_of_rank;    // [nprocs]
+  // view ALL: the spheres of all ranks in order of tag: nothing depends on the decomposition
+  /* [n_all] place of each sphere, the ranks' spheres one after the other */
+  std::vector<int> place_of;
+  /* [nprocs] */
+  std::vector<int> spheres_of_rank;
   std::vector<double> all_x, all_a, all_w, in_order_of_rank;
   std::vector<int64_t> all_tag, all_molecule;
   int n_all = 0;

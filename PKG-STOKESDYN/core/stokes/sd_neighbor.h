@@ -39,7 +39,8 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
  * closest to the target (ghosts of one sphere share its tag; the first in order of index wins a
  * tie), and closer than cutoff (INFINITY: the whole clump).
  *   x [3 n_all], tag [n_all], molecule [n_all]
- *   one_row       only the target of lowest tag of each molecule gets its row: the clumps themselves, one row each
+ *   one_row         only the target of lowest tag of each molecule gets its row: the clumps
+ *                   themselves, one row each
  *   order [n_all]   scratch;  on return sorted by molecule, tag, index */
 sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
                              const int64_t *molecule, int n, int n_all, double cutoff, int one_row,
@@ -50,8 +51,9 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
  * is not positive definite, whoever else is there.
  * Targets begin ... begin + n - 1, sources 0 ... n_all - 1 up to law->range (INFINITY: no cut-off)
  * away.
- *   pairs      who sees whom; NULL: everybody. That goes by cells of 1.6 times the largest radius, in O(n_all) unless the radii
- *              are very different, and pairs farther apart than that may be left out.
+ *   pairs      who sees whom; NULL: everybody. That goes by cells of 1.6 times the largest radius,
+ *              in O(n_all) unless the radii are very different, and pairs farther apart than that
+ *              may be left out.
  *   coupling   out; 0 without pairs, INFINITY for spheres at one point. Radius 0: takes no part.
  * SD_OK or SD_ENOMEMORY. */
 sd_status sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,

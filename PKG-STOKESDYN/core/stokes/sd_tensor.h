@@ -1,7 +1,7 @@
 /* Pair tensors: velocity U and angular velocity W of sphere i from the force F and the torque T on
- * the fluid at sphere j.
+ * the fluid at sphere j, r = x_i - x_j, R = |r|, rhat = r/R.
  *
- *   U_i = 1/(6 pi eta) [ f I + g rhat rhat^T ] F_j  +  1/(8 pi eta) c_ji T_j x rhat          r = x_i - x_j,  R = |r|
+ *   U_i = 1/(6 pi eta) [ f I + g rhat rhat^T ] F_j  +  1/(8 pi eta) c_ji T_j x rhat
  *   W_i = 1/(8 pi eta) c_ij F_j x rhat  +  1/(8 pi eta) [ f' I + g' rhat rhat^T ] T_j
  *
  * f, g (1/length), f', g' (1/length^3), c (1/length^2) depend on R and the two radii only. f, g,
@@ -26,7 +26,8 @@ typedef enum { SD_TENSOR_RPY, SD_TENSOR_OSEEN } sd_tensor;
  *   f, g      out                      1/length
  * With A the larger radius, b the smaller, d = A - b:
  *   R > A + b        f = 3/(4R) [1 + (A^2 + b^2)/(3 R^2)],   g = 3/(4R) [1 - (A^2 + b^2)/R^2]
- *   d < R <= A + b   g = 3 t^2 (1+q)^2 / (32 R A b),   f = [b - t(1-q)/4]/(A b) - g/3,   t = R - d, q = d/R
+ *   d < R <= A + b   g = 3 t^2 (1+q)^2 / (32 R A b),   f = [b - t(1-q)/4]/(A b) - g/3,
+ *                    t = R - d,   q = d/R
  *   R <= d           f = 1/A, g = 0     (b inside A, or both at one point)
  * The middle line is the published form, over A b,
  *   f = (16 R^3 (A+b) - (d^2 + 3R^2)^2)/(32 R^3),   g = 3 (d^2 - R^2)^2/(32 R^3)
@@ -63,7 +64,8 @@ static inline void sd_rpy_radial(double R, double ai, double aj, double *f, doub
  *                    3f' + g' = 3 u^2 [4q(b+t) + (1-q)(4b+t)] / (16 A^3 b^3)
  *   R <= d           f' = 1/A^3, g' = 0
  * The published overlap form is, over 64 R^3 A^3 b^3,
- *   f' = 5R^6 - 27R^4 (A^2+b^2) + 32R^3 (A^3+b^3) - 9R^2 (A^2-b^2)^2 - d^4 (A^2+4Ab+b^2),  g' = 3 (d^2-R^2)^2 (A^2+4Ab+b^2-R^2).
+ *   f' = 5R^6 - 27R^4 (A^2+b^2) + 32R^3 (A^3+b^3) - 9R^2 (A^2-b^2)^2 - d^4 (A^2+4Ab+b^2)
+ *   g' = 3 (d^2-R^2)^2 (A^2+4Ab+b^2-R^2)
  * Its trace 3f' + g' is 9/(4 pi A^3 b^3) times the volume of the lens that the spheres share, u^2
  * (R^2 + 2R(A+b) - 3d^2) pi/(12R). With R = d + t and A = d + b this lens and g' have only terms of
  * the size of b and of one sign (6Ab against at most 4Ab). Source: Wajnryb, Mizerski, Zuk &
@@ -89,7 +91,7 @@ static inline void sd_rpy_radial_wt(double R, double ai, double aj, double *f, d
 
 /* Angular velocity of i from the force at j: c_ij of the Rotne-Prager-Yamakawa model. A, b, d, t, q
  * as above.
- *   R > A + b            c = 1/R^2                                                       half the curl of the Stokeslet
+ *   R > A + b            c = 1/R^2, half the curl of the Stokeslet
  *   overlap, ai >= aj    c = (1+q)^2 [4bd + t(8b-3t)] / (16 A^3 b)
  *   overlap, ai < aj     c = (1-q)^2 [4d(3b-t) + t(8b-3t)] / (16 A b^3)
  *   j inside i           c = R/A^3        i inside j: c = 0

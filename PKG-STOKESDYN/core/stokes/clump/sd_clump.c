@@ -9,8 +9,7 @@
 
 enum { RIGID = 6 };
 
-/* --- the table
- * ----------------------------------------------------------------------------------------------------
+/* --- the table -----------------------------------------------------------------------------------
  * */
 
 /* Response of one sphere to a slip given in columns */
@@ -124,8 +123,7 @@ static void lone_sphere(double a, double *table)
   }
 }
 
-/* --- what follows from the table
- * ----------------------------------------------------------------------------------- */
+/* --- what follows from the table -------------------------------------------------------------- */
 
 /* Sums over the clump about its centroid: 6 rows, 12 columns */
 static void add_up(const sd_shape *s, const double *table, double sum[6][SD_CLUMP_COLUMNS])
@@ -219,8 +217,7 @@ static void derive(const sd_shape *s, sd_clump *clump)
   clump->radius = 3.0 / (6.0 * SD_PI * mu);
 }
 
-/* --- create, forces
- * ---------------------------------------------------------------------------------------------------
+/* --- create, forces ------------------------------------------------------------------------------
  * */
 
 /* Two equal spheres at one point: the force is split between them in no particular way. */

@@ -6,8 +6,7 @@
 
 enum { SD_CLUMP_COLUMNS = 12 }; /* unit slips: 3 velocities, 3 angular velocities, 6 strains */
 
-/* --- sd_clump_surface.c: the points that carry the unknown forces
- * ------------------------------------------------- */
+/* --- sd_clump_surface.c: the points that carry the unknown forces ----------------------------- */
 
 /* x [3n], a [n] their radii, sphere [n] whose they are. All of these: SD_OK or SD_ENOMEMORY. */
 typedef struct {
@@ -38,8 +37,7 @@ void sd_surface_share(const sd_shape *shape, int n, const double *fraction, int 
  * together. */
 int sd_surface_orientations(int n);
 
-/* --- sd_clump_solve.c: the forces on the points for the unit slips
- * ------------------------------------------------ */
+/* --- sd_clump_solve.c: the forces on the points for the unit slips ---------------------------- */
 
 /* Unknowns a point */
 int sd_clump_width(const sd_clump_options *o);

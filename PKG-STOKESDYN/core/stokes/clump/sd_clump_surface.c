@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- shells
- * --------------------------------------------------------------------------------------------------
+/* --- shells --------------------------------------------------------------------------------------
  * */
 
 sd_status sd_shells_get(sd_shells *cache, int n, const sd_shell **shell)
@@ -33,8 +32,7 @@ void sd_shells_free(sd_shells *cache)
   *cache = (sd_shells){0};
 }
 
-/* --- points of the surface
- * ------------------------------------------------------------------------------------- */
+/* --- points of the surface -------------------------------------------------------------------- */
 
 void sd_surface_free(sd_surface *s)
 {

@@ -43,8 +43,7 @@ double sd_shape_size(int n, const double *x, const double *a)
   return size;
 }
 
-/* --- which rotations map one clump onto another?
- * ----------------------------------------------------------------------
+/* --- which rotations map one clump onto another? -------------------------------------------------
  *
  * Two spheres that are not on one line with the centroid span a frame. In each of two clumps of one
  * shape, take the pair whose key (distances and radii, below) is the same: some such pair there is
@@ -206,8 +205,7 @@ static int map_onto(const sd_shape *s, const double Q[9], const cluster *c, doub
   return 1;
 }
 
-/* --- the shape
- * ----------------------------------------------------------------------------------------------------------
+/* --- the shape -----------------------------------------------------------------------------------
  * */
 
 static sd_status add_symmetry(sd_shape *s, const double g[9], int *capacity, const int *perm)

@@ -18,8 +18,7 @@ int sd_shell_size(int n)
   return n;
 }
 
-/* --- points
- * -------------------------------------------------------------------------------------------------
+/* --- points --------------------------------------------------------------------------------------
  * */
 
 /* Orbit of p under T_h, appended to out [3n]: sign changes and cyclic permutations. Returns the new
@@ -230,8 +229,7 @@ static sd_status even_points(int n, double *out)
   return SD_OK;
 }
 
-/* --- calibration
- * --------------------------------------------------------------------------------------------- */
+/* --- calibration ------------------------------------------------------------------------------ */
 
 /* Resistance of a shell of radius 1 with points of radius kappa, eta = 1: translation along x, or
  * rotation about z.

@@ -37,7 +37,8 @@ typedef struct {
 } sd_world;
 
 /* Which spheres an engine sees:
- *   LIST   this rank's n, then the ghosts around them; pairs within the engine's reach, one row for each of the n
+ *   LIST   this rank's n, then the ghosts around them; pairs within the engine's reach, one row for
+ *          each of the n
  *   ALL    those of all ranks in one order, the same on every rank; no ghosts, no pairs */
 typedef enum { SD_VIEW_LIST, SD_VIEW_ALL } sd_view;
 

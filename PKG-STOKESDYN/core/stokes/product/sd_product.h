@@ -51,8 +51,7 @@ typedef struct {
   const int *neighbor;
 } sd_pairs;
 
-/* --- the product
- * ----------------------------------------------------------------------------------------------------------
+/* --- the product ---------------------------------------------------------------------------------
  * Kernels on a copy of the spheres in the order that they read, made once per solve. Each
  * instruction set has its own build of one source (sd_product_kernel.h); the best that the
  * processor has is taken at run time. SD_ISA_PLAIN is plain C, pair by pair by the formulas of
@@ -64,8 +63,9 @@ typedef struct {
  * Vectors have `width` numbers a sphere: 3, force and velocity; or 6, force and torque, velocity
  * and angular velocity:
  *
- *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j),    M_ij the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the
- * law */
+ *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j)
+ *
+ * M_ij: the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the law. */
 typedef enum { SD_ISA_BEST, SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512 } sd_isa;
 
 /* Does this build hold kernels for it, and does the processor run them? SD_ISA_PLAIN: always. */

@@ -5,8 +5,9 @@
 #include "sd_product.h"
 
 /* One kind of product. Sums are times 8 pi and without w of the target; lengths are scaled.
- *   symmetric   columns, u += the part's share of all pairs; targets   columns i0 ... i1 - 1, u +=; list   rows, u
- * = */
+ *   symmetric   columns, u += the part's share of all pairs
+ *   targets     columns i0 ... i1 - 1, u +=
+ *   list        rows, u = */
 struct sd_kernel {
   int lanes; /* doubles of a vector: padding of the columns */
   void (*symmetric)(const sd_packed *p, int part, int parts);

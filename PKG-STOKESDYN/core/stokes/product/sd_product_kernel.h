@@ -10,7 +10,7 @@
  * With y = 1/R, m = (a_i^2 + a_j^2) y^2, and everything times 4/3 (undone at the end, with w_i/(6
  * pi)):
  *   far       u_i += (y + y m/3) F_j + (y - y m) y^2 r (r.F_j)
- *   overlap   the other branches of sd_rpy_radial, in a branch taken only when a lane of the vector overlaps
+ *   overlap   the other branches of sd_rpy_radial, taken only when a lane of the vector overlaps
  * The block of a pair is the same for both of its spheres: the symmetric kernel computes it
  * once. */
 #include "sd_product_internal.h"
