@@ -278,15 +278,15 @@ int FixHydroVans::forces(const sd_vans_grains &grains)
  * radii. */
 uint64_t FixHydroVans::members() const
 {
-  uint64_t mine = 1, all;
+  uint64_t mine = 1, all = 0;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & average_bit) || atom->molecule[i] <= 0) continue;
+    if (!(atom->mask[i] & average_bit) || atom->molecule[i] == 0) continue;
     uint64_t radius;
     memcpy(&radius, &atom->radius[i], sizeof(radius));
     mine += sd_hash_mix(sd_hash_mix(sd_hash_mix((uint64_t) atom->tag[i] + SD_HASH_STEP) ^
                                     (uint64_t) atom->molecule[i]) ^ radius);
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, world);
+  for (uint64_t part : from_all(world, std::vector<uint64_t>(1, mine))) all += part;
   return all;
 }
 
@@ -306,7 +306,7 @@ void FixHydroVans::count_overlaps()
   for (int i = 0; i < atom->nlocal; i++) {
     memo[i][weight_column] = 1.0;
     const double *x = atom->x[i];
-    if (atom->molecule[i] > 0 && (atom->mask[i] & average_bit) && atom->radius[i] > 0.0)
+    if (atom->molecule[i] != 0 && (atom->mask[i] & average_bit) && atom->radius[i] > 0.0)
       mine.push_back({atom->molecule[i], atom->tag[i], {x[0], x[1], x[2]}, atom->radius[i]});
   }
   auto all = from_all(world, mine);

@@ -171,7 +171,8 @@ def test_fluctuations_by_depth_know_no_unit_of_time(tmp_path):
     assert np.abs(seen[1] - seen[0]).max() < 1e-9 * np.abs(seen[0]).max()
 
 
-def test_shares_of_a_clump_follow_its_members():
+@pytest.mark.parametrize("molecule", [1, -5])
+def test_shares_of_a_clump_follow_its_members(molecule):
     """overlap once: a member is replaced by another, or grows; the number of atoms stays. Volume of the union by the formula of two spheres."""
     def union(a, b, h):
         lens = np.pi * (a + b - h) ** 2 * (h * h + 2 * h * (a + b) - 3 * (a - b) ** 2) / (12 * h)
@@ -179,14 +180,15 @@ def test_shares_of_a_clump_follow_its_members():
 
     s = Scene(style="hybrid sphere bond")
     s.spheres([[0.01, 0.01, 0.015], [0.0113, 0.01, 0.015], [0.004, 0.01, 0.015]], np.zeros((3, 3)), 0.001)
-    s.do("set atom 1*2 mol 1", "fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one stream rest overlap once", "run 1")
+    s.do(f"set atom 1*2 mol {molecule}", "fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one stream rest overlap once",
+         "run 1")
 
     def volume():
         return (s.column("phi", 41) * 0.001 * 4e-4).sum()
 
     sphere = 4 / 3 * np.pi * 1e-9
     assert abs(volume() / (sphere + union(0.001, 0.001, 0.0013)) - 1) < 1e-10
-    s.do("group gone id 2", "delete_atoms group gone compress no", "create_atoms 1 single 0.0116 0.01 0.015 units box", "set atom 4 mol 1 diameter 0.002 density 2500", "run 1")
+    s.do("group gone id 2", "delete_atoms group gone compress no", "create_atoms 1 single 0.0116 0.01 0.015 units box", f"set atom 4 mol {molecule} diameter 0.002 density 2500", "run 1")
     assert abs(volume() / (sphere + union(0.001, 0.001, 0.0016)) - 1) < 1e-10
     s.do("set atom 4 diameter 0.0024", "run 1")
     assert abs(volume() / (sphere + union(0.001, 0.0012, 0.0016)) - 1) < 1e-10
