@@ -54,13 +54,14 @@ void Scene::update(const std::vector<int> &who, const std::vector<double> &eta)
     place(n_all);
     return;
   }
+  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
+  if (!changed && !somebody_sees) return;    // nobody will ask where the spheres are
   if (changed) {
     row_of.assign(atom->nlocal, -1);
     for (size_t k = 0; k < own.size(); k++) row_of[own[k]] = k;
   }
   place_rows(eta);
-  if (place_ghosts()) changed = 1;
-  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
+  place_ghosts();
   if (changed) find_pairs();
 
   filtered = std::isfinite(settings.cutoff);
@@ -86,8 +87,8 @@ void Scene::place_rows(const std::vector<double> &eta)
   }
 }
 
-/* Ghosts of spheres that take part, behind them; are they others than before? */
-bool Scene::place_ghosts()
+/* Ghosts of spheres that take part, behind them. */
+void Scene::place_ghosts()
 {
   std::vector<double> sent;    // radius, 0: takes no part; and w
   refresh_ghosts(sent, 2, [this](int i, double *out) {
@@ -95,20 +96,15 @@ bool Scene::place_ghosts()
     out[0] = k < 0 ? 0.0 : a[k];
     out[1] = k < 0 ? 0.0 : w[k];
   });
-  bool others = (int) row_of_ghost.size() != atom->nghost;
-  row_of_ghost.resize(atom->nghost, -1);
+  row_of_ghost.assign(atom->nghost, -1);
   for (int g = 0; g < atom->nghost; g++) {
-    const bool takes_part = sent[2 * g] > 0.0;
-    const int row = takes_part ? size_with_ghosts() : -1;
-    others = others || row_of_ghost[g] != row;
-    row_of_ghost[g] = row;
-    if (!takes_part) continue;
+    if (!(sent[2 * g] > 0.0)) continue;
+    row_of_ghost[g] = size_with_ghosts();
     const double *xg = atom->x[atom->nlocal + g];
     x.insert(x.end(), xg, xg + 3);
     a.push_back(sent[2 * g]);
     w.push_back(sent[2 * g + 1]);
   }
-  return others;
 }
 
 /* The spheres where they stand, and what their engine may ask. */

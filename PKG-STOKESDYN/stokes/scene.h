@@ -145,7 +145,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   int width() const { return settings.rotation ? 6 : 3; }
   const double *positions() const;
   void place_rows(const std::vector<double> &eta);
-  bool place_ghosts();
+  void place_ghosts();
   void find_pairs();
   void look_up(std::vector<int64_t> &ids, std::vector<int64_t> &molecules);
   /* Spheres among which clumps are checked: those of this rank. */
