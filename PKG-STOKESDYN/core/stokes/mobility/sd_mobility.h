@@ -12,6 +12,7 @@
 
 #include <stddef.h>
 
+#include "sd_ewald.h"
 #include "sd_product.h"
 #include "sd_status.h"
 
@@ -21,33 +22,42 @@ extern "C" {
 
 /* What an engine may ask of its caller. Rows have `width` numbers; each function returns SD_OK or
  * why it failed, and all ranks call it together. NULL: one rank, in open space, where the answer is
- * what was asked with. A grid adds the exchange of its boxes here. */
+ * what was asked with. */
 typedef struct {
   void *ctx;
   /* this rank among `ranks`; 0 of 0 is read as 0 of 1 */
   int me, ranks;
-  /* view LIST: rows [width n] of this rank's spheres -> ghosts [width (n_all - n)], the rows of
-   * their ghosts */
+  /* view LIST, NEAR: rows [width n] of this rank's spheres -> ghosts [width (n_all - n)], the rows
+   * of their ghosts */
   sd_status (*refresh)(void *ctx, const double *rows, double *ghosts, int width);
   /* numbers summed over the ranks, in place */
   sd_status (*sum)(void *ctx, double *values, int count);
   /* view ALL: rows [width n] of this rank -> all [width n_all], and back, summed over the ranks */
   sd_status (*spread)(void *ctx, const double *rows, double *all, int width);
   sd_status (*collect)(void *ctx, const double *all, double *rows, int width);
+  /* numbers from each rank to each: send holds to[0] of them for rank 0, then to[1] for rank 1 ...;
+   * receive gets from[0] of rank 0, then from[1] of rank 1 .... to, from [ranks] agree among the
+   * ranks, and are 0 for the rank itself. */
+  sd_status (*exchange)(void *ctx, const double *send, const int *to, double *receive,
+                        const int *from);
 } sd_world;
 
 /* Which spheres an engine sees:
  *   LIST   this rank's n, then the ghosts around them; pairs within the engine's reach, one row for
  *          each of the n
+ *   NEAR   this rank's n, then the ghosts around them, periodic images of its own among them; the
+ *          engine finds the pairs itself
  *   ALL    those of all ranks in one order, the same on every rank; no ghosts, no pairs */
-typedef enum { SD_VIEW_LIST, SD_VIEW_ALL } sd_view;
+typedef enum { SD_VIEW_LIST, SD_VIEW_NEAR, SD_VIEW_ALL } sd_view;
 
 /* How the spheres interact: what is known before they are placed. law.range is the cut-off, and the
  * taper's range; INFINITY:
- * every sphere sees all that it is given. width 3 or 6 as in sd_product.h. */
+ * every sphere sees all that it is given. width 3 or 6 as in sd_product.h. ewald: of the engine
+ * that splits the sum, which has no other law than RPY without taper. */
 typedef struct {
   sd_law law;
   int width;
+  const sd_ewald *ewald;
 } sd_mobility_how;
 
 /* The spheres of one solve. All that it points to outlives the solve. */
@@ -85,6 +95,10 @@ typedef struct {
 extern const sd_mobility_engine sd_mobility_all_pairs;
 /* The pairs that the caller lists: within a cut-off, or of one clump. */
 extern const sd_mobility_engine sd_mobility_list;
+/* Every sphere with every other and with all periodic images, in a periodic or an open box, by FFT:
+ * cost about n. how.ewald is its splitting, the same on every rank; place() makes its tables anew
+ * when that has changed, and otherwise only reads positions. */
+extern const sd_mobility_engine sd_mobility_ewald;
 
 /* [sd_mobility_count] all of them */
 extern const sd_mobility_engine *const sd_mobility_engines[];

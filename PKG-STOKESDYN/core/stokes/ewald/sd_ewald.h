@@ -1,0 +1,82 @@
+/* How the sum over all spheres and all their periodic images is split: the numbers that the engine
+ * `ewald` (sd_mobility.h) works with, chosen from the tolerance by a rule, without a search and
+ * without a clock, so that they are the same on every rank and after a restart.
+ *
+ *   M_ij = wave part + sum over images [ RPY_ij(r) - D_ij(r) ]
+ *   wave part = 1/V sum_{k != 0} exp(ik.r) H(k)/(eta k^2) (I - kk/k^2) g_i g_j
+ *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = k^2/(4 xi^2),   g_i = 1 - (a_i^2 - a_ref^2) k^2/6
+ *
+ * D is the wave part of one pair in open space, so near pairs keep the Rotne-Prager-Yamakawa tensor
+ * as it is: any radii, any overlap, also of a sphere with its own image. The wave part goes by FFT
+ * on a grid. Torques: (i/2) k x instead of g.
+ *
+ * The periodic sum leaves k = 0 out: velocities are those against zero flux of the mixture.
+ * Source: Hasimoto 1959; Lindbo & Tornberg 2010; the radius a_ref in H is our own. */
+#ifndef SD_EWALD_H
+#define SD_EWALD_H
+
+#include "sd_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The widest window */
+enum { SD_EWALD_MOST_POINTS = 16 };
+
+/* The box with edges (lx 0 0), (xy ly 0), (xz yz lz). Spheres may stand outside of a periodic one;
+ * an open one holds the centres of all and has no tilt: nothing is beyond it but fluid.
+ *   edge [3]   lx ly lz      length, > 0
+ *   tilt [3]   xy xz yz      length */
+typedef struct {
+  int periodic;
+  double origin[3], edge[3], tilt[3];
+} sd_ewald_box;
+
+/* The spheres that take part, of all ranks: how many, sums of a^2 and a^4, the largest a; length.
+ * The rule reads them rounded to six digits, since sums over ranks differ in the last ones. */
+typedef struct {
+  double count, squares, fourths, largest;
+} sd_ewald_sizes;
+
+/* What an engine is made from. Ready after sd_ewald_choose; all lengths as given. */
+typedef struct {
+  sd_ewald_box box;
+  /* no spheres: 0, and the rest is not read */
+  double count;
+  /* splitting, 1/length; its reference radius; where the near part ends, centre to centre */
+  double xi, a_ref, range;
+  /* how far ghosts must reach: range, or two of the largest spheres that overlap */
+  double reach;
+  /* grid points of the box each way; those of an open box are an eighth of the grid, which is
+   * twice as large; no spacing is larger than this one, which an open box has */
+  int grid[3];
+  double spacing;
+  /* the window: so many grid points each way, and its parameter (Kaiser-Bessel) */
+  int points;
+  double beta;
+  /* what was asked for: rms error of U over rms of F/(6 pi eta a) */
+  double tolerance;
+} sd_ewald;
+
+/* The rule, for a box and its spheres.
+ *   width       3, or 6 with torques
+ *   tolerance   1e-13 ... 1e-1; outside of it the nearest of these is taken
+ * SD_OK, SD_ENOTFINITE for a box without volume, numbers that are not finite or a tolerance that
+ * is not > 0, SD_ENOMEMORY for a grid of more than 2^31 points. */
+sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
+                          double tolerance, sd_ewald *out);
+
+/* An open box for spheres with centres within lo [3] ... hi [3] (of all ranks): the present one if
+ * it holds them and no edge is more than 1.5 times what they need, else one with a twentieth of
+ * their extent to spare on each side, so that it lasts while they move. A box with edge[0] = 0 is
+ * none. Returns 1 if the box is a new one. */
+int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, double largest);
+
+/* Volume of the box: length^3 */
+double sd_ewald_volume(const sd_ewald_box *box);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
