@@ -6,13 +6,13 @@
 
 #include "sd_product.h"
 
-/* Targets begin ... begin + count - 1 of n spheres, sources all of them: F [width n] -> u [width count] */
-static inline void plain_all(const sd_law *law, const sd_spheres *s, int n, int width, int begin,
-                             int count, const double *F, double *u)
+/* Every one of n spheres with every other: F [width n] -> u [width n] */
+static inline void plain_all(const sd_law *law, const sd_spheres *s, int n, int width,
+                             const double *F, double *u)
 {
   sd_packed p = {0};
   assert_int_equal(sd_packed_all(&p, SD_ISA_PLAIN, law, s, n, width), SD_OK);
-  sd_packed_product(&p, begin, count, F, u);
+  sd_packed_share(&p, 0, 1, F, u);
   sd_packed_free(&p);
 }
 

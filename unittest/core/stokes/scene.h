@@ -74,9 +74,9 @@ static inline sd_status scene_apply(void *ctx, const double *F, double *u)
   if (s->fast) {
     if (!s->packed.n)
       assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, s->n, 3), SD_OK);
-    sd_packed_product(&s->packed, 0, s->n, F, u);
+    sd_packed_share(&s->packed, 0, 1, F, u);
   } else if (isinf(s->cutoff))
-    plain_all(&law, &spheres, s->n, 3, 0, s->n, F, u);
+    plain_all(&law, &spheres, s->n, 3, F, u);
   else {
     if (!s->list.first)
       assert_int_equal(sd_neighbors_cutoff(&s->list, s->x, s->n, s->n, s->cutoff), SD_OK);

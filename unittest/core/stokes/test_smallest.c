@@ -42,7 +42,7 @@ static sd_status apply(void *ctx, const double *F, double *u)
   if (!p->packed.n)
     assert_int_equal(sd_packed_all(&p->packed, SD_ISA_BEST, &RPY, &spheres, p->s.n, p->width),
                      SD_OK);
-  sd_packed_product(&p->packed, 0, p->s.n, F, u);
+  sd_packed_share(&p->packed, 0, 1, F, u);
   return SD_OK;
 }
 

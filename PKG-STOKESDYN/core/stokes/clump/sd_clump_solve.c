@@ -95,14 +95,14 @@ static sd_status solve_dense(const sd_surface *s, int m, double *B)
 typedef struct {
   const sd_clump_options *o;
   sd_packed packed;
-  int n, solve, solves, products;
+  int solve, solves, products;
 } operator;
 
 static sd_status apply(void *ctx, const double *F, double *u)
 {
   operator* op = ctx;
   if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->solves, op->products++);
-  sd_packed_product(&op->packed, 0, op->n, F, u);
+  sd_packed_share(&op->packed, 0, 1, F, u);
   return SD_OK;
 }
 
@@ -122,7 +122,7 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
     ones[i] = 1.0;
   }
   const sd_spheres spheres = {s->x, s->a, ones};
-  operator op = {.o = o, .n = n, .solves = SD_CLUMP_COLUMNS * times};
+  operator op = {.o = o, .solves = SD_CLUMP_COLUMNS * times};
   sd_system A = {
       .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
   sd_sparse factor;

@@ -140,14 +140,6 @@ INLINE void grand_symmetric(sd_taper kind, const sd_packed *p, int part, int par
   }
 }
 
-INLINE void grand_targets(sd_taper kind, const sd_packed *p, int i0, int i1)
-{
-  for (int c = 0; c < p->padded; c += GRAND_CHUNK) {
-    const int end = c + GRAND_CHUNK < p->padded ? c + GRAND_CHUNK : p->padded;
-    for (int i = i0; i < i1; i++) grand_tile(0, kind, p, i, c, end);
-  }
-}
-
 INLINE void grand_list(sd_taper kind, const sd_packed *p, const sd_pairs *pairs)
 {
   const vec inverse = inverse_range(kind, p);
@@ -174,33 +166,12 @@ INLINE void grand_list(sd_taper kind, const sd_packed *p, const sd_pairs *pairs)
   }
 }
 
-#define TAPERS(call)                            \
-  do {                                          \
-    if (p->law.taper == SD_TAPER_NONE)          \
-      call(SD_TAPER_NONE);                      \
-    else if (p->law.taper == SD_TAPER_WENDLAND) \
-      call(SD_TAPER_WENDLAND);                  \
-    else                                        \
-      call(SD_TAPER_SPHERICAL);                 \
-  } while (0)
-
 static void run_grand_symmetric(const sd_packed *p, int part, int parts)
 {
-#define CALL(taper) grand_symmetric(taper, p, part, parts)
-  TAPERS(CALL);
-#undef CALL
-}
-
-static void run_grand_targets(const sd_packed *p, int i0, int i1)
-{
-#define CALL(taper) grand_targets(taper, p, i0, i1)
-  TAPERS(CALL);
-#undef CALL
+  TAPERS(grand_symmetric, p, part, parts);
 }
 
 static void run_grand_list(const sd_packed *p, const sd_pairs *pairs)
 {
-#define CALL(taper) grand_list(taper, p, pairs)
-  TAPERS(CALL);
-#undef CALL
+  TAPERS(grand_list, p, pairs);
 }

@@ -197,31 +197,12 @@ static void load_columns(sd_packed *p, const double *F)
   for (int d = 0; d < m; d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
 }
 
-static void unload_columns(const sd_packed *p, int k0, int k1, int begin, int count, double *u)
-{
-  const long m = p->width;
-  memset(u, 0, sizeof(double) * (size_t) (m * count));
-  for (int k = k0; k < k1; k++) take_sums(p, p->index[k], k, u + m * (p->index[k] - begin));
-}
-
-void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u)
-{
-  int k0 = 0, k1 = p->active;
-  while (k0 < k1 && p->index[k0] < begin) k0++;
-  while (k1 > k0 && p->index[k1 - 1] >= begin + count) k1--;
-  load_columns(p, F);
-  if (k1 - k0 == p->active)
-    p->kernel->symmetric(p, 0, 1);
-  else
-    p->kernel->targets(p, k0, k1);
-  unload_columns(p, k0, k1, begin, count, u);
-}
-
 void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double *u)
 {
   load_columns(p, F);
   p->kernel->symmetric(p, part, parts);
-  unload_columns(p, 0, p->active, 0, p->n, u);
+  memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) p->n);
+  for (int k = 0; k < p->active; k++) take_sums(p, p->index[k], k, u + (long) p->width * p->index[k]);
 }
 
 /* Spheres begin ... end - 1; F of the first of them on */

@@ -109,14 +109,9 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                          int width);
 
-/* Packed for all pairs: F [width n] -> u [width count], targets begin ... begin + count - 1,
- * sources all. With all targets each pair is computed once for both its spheres, which is about 1.4
- * times faster. */
-void sd_packed_product(sd_packed *p, int begin, int count, const double *F, double *u);
-
-/* A share of the same: part `part` of `parts`, whose sum over all parts is the product. F [width n]
- * -> u [width n].
- * Each pair belongs to one part; shares take equal time wherever the spheres are. */
+/* Packed for all pairs: F [width n] -> u [width n], part `part` of `parts`, whose sum over all parts
+ * is the product. Each pair belongs to one part and is computed once for both its spheres; shares
+ * take equal time wherever the spheres are. */
 void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double *u);
 
 /* Packed for lists: F [width pairs->n] of the targets and ghosts [width (n - pairs->n)] of the

@@ -6,12 +6,10 @@
 
 /* One kind of product. Sums are times 8 pi and without w of the target; lengths are scaled.
  *   symmetric   columns, u += the part's share of all pairs
- *   targets     columns i0 ... i1 - 1, u +=
  *   list        rows, u = */
 struct sd_kernel {
   int lanes; /* doubles of a vector: padding of the columns */
   void (*symmetric)(const sd_packed *p, int part, int parts);
-  void (*targets)(const sd_packed *p, int i0, int i1);
   void (*list)(const sd_packed *p, const sd_pairs *pairs);
 };
 

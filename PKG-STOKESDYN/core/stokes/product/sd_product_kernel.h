@@ -102,9 +102,9 @@ static __attribute__((noinline)) void leave_out_self(int lane, vec *f, vec *h)
   *h = SELECT(self, SET1(0.0), *h);
 }
 
-/* T targets i ... i + T - 1 against the vectors of sources from j0 to j1. both: the sources receive
- * from the targets as well. */
-INLINE void tile(int T, int both, sd_tensor tensor, sd_taper kind, const sd_packed *p, int i,
+/* Two targets, i and i + 1, against the vectors of sources from j0 to j1: what is loaded serves
+ * twice. both: the sources receive from the targets as well. */
+INLINE void tile(int both, sd_tensor tensor, sd_taper kind, const sd_packed *p, int i,
                  int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
@@ -113,7 +113,7 @@ INLINE void tile(int T, int both, sd_tensor tensor, sd_taper kind, const sd_pack
   const vec inverse = inverse_range(kind, p);
   vec x[2], y[2], z[2], a[2], F0[2], F1[2], F2[2], u0[2], u1[2], u2[2];
 #pragma GCC unroll 2
-  for (int t = 0; t < T; t++) {
+  for (int t = 0; t < 2; t++) {
     x[t] = SET1(px[i + t]);
     y[t] = SET1(py[i + t]);
     z[t] = SET1(pz[i + t]);
@@ -133,7 +133,7 @@ INLINE void tile(int T, int both, sd_tensor tensor, sd_taper kind, const sd_pack
       v2 = LOAD(q2 + j);
     }
 #pragma GCC unroll 2
-    for (int t = 0; t < T; t++) {
+    for (int t = 0; t < 2; t++) {
       const vec dx = x[t] - xj, dy = y[t] - yj, dz = z[t] - zj;
       const vec r2 = dx * dx + dy * dy + dz * dz;
       vec f, h;
@@ -157,7 +157,7 @@ INLINE void tile(int T, int both, sd_tensor tensor, sd_taper kind, const sd_pack
     }
   }
 #pragma GCC unroll 2
-  for (int t = 0; t < T; t++) {
+  for (int t = 0; t < 2; t++) {
     q0[i + t] += total(u0[t]);
     q1[i + t] += total(u1[t]);
     q2[i + t] += total(u2[t]);
@@ -175,7 +175,7 @@ INLINE int mine(int group, int part, int parts)
   return turn == part || turn == 2 * parts - 1 - part;
 }
 
-INLINE void symmetric(sd_tensor tensor, sd_taper kind, const sd_packed *p, int part, int parts)
+INLINE void symmetric(sd_taper kind, const sd_packed *p, sd_tensor tensor, int part, int parts)
 {
   for (int c = 0; c < p->padded; c += CHUNK) {
     const int end = c + CHUNK < p->padded ? c + CHUNK : p->padded;
@@ -183,20 +183,10 @@ INLINE void symmetric(sd_tensor tensor, sd_taper kind, const sd_packed *p, int p
       if (!mine(i / LANES, part, parts)) continue;
       const int from = i + LANES > c ? i + LANES : c;
       for (int t = i; t < i + LANES; t += 2) {
-        if (i >= c) tile(2, 0, tensor, kind, p, t, i, i + LANES);
-        if (from < end) tile(2, 1, tensor, kind, p, t, from, end);
+        if (i >= c) tile(0, tensor, kind, p, t, i, i + LANES);
+        if (from < end) tile(1, tensor, kind, p, t, from, end);
       }
     }
-  }
-}
-
-INLINE void targets(sd_tensor tensor, sd_taper kind, const sd_packed *p, int i0, int i1)
-{
-  for (int c = 0; c < p->padded; c += CHUNK) {
-    const int end = c + CHUNK < p->padded ? c + CHUNK : p->padded;
-    int i = i0;
-    for (; i + 1 < i1; i += 2) tile(2, 0, tensor, kind, p, i, c, end);
-    if (i < i1) tile(1, 0, tensor, kind, p, i, c, end);
   }
 }
 
@@ -210,7 +200,7 @@ INLINE const int *neighbors(const sd_pairs *pairs, long k, long end, int nothing
   return rest;
 }
 
-INLINE void list(sd_tensor tensor, sd_taper kind, const sd_packed *p, const sd_pairs *pairs)
+INLINE void list(sd_taper kind, const sd_packed *p, sd_tensor tensor, const sd_pairs *pairs)
 {
   const vec inverse = inverse_range(kind, p);
   for (int i = 0; i < pairs->n; i++) {
@@ -239,45 +229,31 @@ INLINE void list(sd_tensor tensor, sd_taper kind, const sd_packed *p, const sd_p
 }
 
 /* One copy of each kernel for each law, so that the loops hold no branch on it. */
-#define LAWS(call)                                 \
-  do {                                             \
-    const sd_law *law_ = &p->law;                  \
-    if (law_->tensor == SD_TENSOR_RPY) {           \
-      if (law_->taper == SD_TAPER_NONE)            \
-        call(SD_TENSOR_RPY, SD_TAPER_NONE);        \
-      else if (law_->taper == SD_TAPER_WENDLAND)   \
-        call(SD_TENSOR_RPY, SD_TAPER_WENDLAND);    \
-      else                                         \
-        call(SD_TENSOR_RPY, SD_TAPER_SPHERICAL);   \
-    } else {                                       \
-      if (law_->taper == SD_TAPER_NONE)            \
-        call(SD_TENSOR_OSEEN, SD_TAPER_NONE);      \
-      else if (law_->taper == SD_TAPER_WENDLAND)   \
-        call(SD_TENSOR_OSEEN, SD_TAPER_WENDLAND);  \
-      else                                         \
-        call(SD_TENSOR_OSEEN, SD_TAPER_SPHERICAL); \
-    }                                              \
+#define TAPERS(kernel, p, ...)                       \
+  do {                                               \
+    if ((p)->law.taper == SD_TAPER_NONE)             \
+      kernel(SD_TAPER_NONE, p, __VA_ARGS__);         \
+    else if ((p)->law.taper == SD_TAPER_WENDLAND)    \
+      kernel(SD_TAPER_WENDLAND, p, __VA_ARGS__);     \
+    else                                             \
+      kernel(SD_TAPER_SPHERICAL, p, __VA_ARGS__);    \
+  } while (0)
+#define LAWS(kernel, p, ...)                         \
+  do {                                               \
+    if ((p)->law.tensor == SD_TENSOR_RPY)            \
+      TAPERS(kernel, p, SD_TENSOR_RPY, __VA_ARGS__); \
+    else                                             \
+      TAPERS(kernel, p, SD_TENSOR_OSEEN, __VA_ARGS__); \
   } while (0)
 
 static void run_symmetric(const sd_packed *p, int part, int parts)
 {
-#define CALL(tensor, taper) symmetric(tensor, taper, p, part, parts)
-  LAWS(CALL);
-#undef CALL
-}
-
-static void run_targets(const sd_packed *p, int i0, int i1)
-{
-#define CALL(tensor, taper) targets(tensor, taper, p, i0, i1)
-  LAWS(CALL);
-#undef CALL
+  LAWS(symmetric, p, part, parts);
 }
 
 static void run_list(const sd_packed *p, const sd_pairs *pairs)
 {
-#define CALL(tensor, taper) list(tensor, taper, p, pairs)
-  LAWS(CALL);
-#undef CALL
+  LAWS(list, p, pairs);
 }
 
 #include "sd_grand_kernel.h"
@@ -318,6 +294,6 @@ static void run_sparse(int columns, const long *first, const int *row, const flo
 }
 
 const struct sd_kernels SD_KERNELS = {
-    {LANES, run_symmetric, run_targets, run_list},
-    {LANES, run_grand_symmetric, run_grand_targets, run_grand_list},
+    {LANES, run_symmetric, run_list},
+    {LANES, run_grand_symmetric, run_grand_list},
     run_sparse};

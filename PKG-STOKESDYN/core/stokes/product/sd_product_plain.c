@@ -57,10 +57,12 @@ static void add_force_and_torque(const sd_law *law, const sphere *i, const spher
   u[5] += fw * T[2] + twist * hz + cij * (F[0] * hy - F[1] * hx);
 }
 
-/* Targets are columns: those without radius have none. */
-static void targets(const sd_packed *p, int i0, int i1, int width, pair_sum *add)
+/* A share is a range of targets, so a pair is computed twice, once for each of its spheres. Targets
+ * are columns: those without radius have none. */
+static void symmetric(const sd_packed *p, int part, int parts, int width, pair_sum *add)
 {
-  for (int i = i0; i < i1; i++) {
+  const long n = p->active;
+  for (int i = (int) (n * part / parts); i < n * (part + 1) / parts; i++) {
     const sphere target = {{p->x[i], p->y[i], p->z[i]}, p->a[i]};
     double sum[6] = {0.0}, F[6];
     for (int j = 0; j < p->active; j++) {
@@ -92,20 +94,9 @@ static void list(const sd_packed *p, const sd_pairs *pairs, int width, pair_sum 
   }
 }
 
-/* A share is a range of targets: a pair is computed twice, once for each of its spheres. */
-static int share(const sd_packed *p, int part, int parts)
-{
-  return (int) ((long) p->active * part / parts);
-}
-
 static void forces_symmetric(const sd_packed *p, int part, int parts)
 {
-  targets(p, share(p, part, parts), share(p, part + 1, parts), 3, add_force);
-}
-
-static void forces_targets(const sd_packed *p, int i0, int i1)
-{
-  targets(p, i0, i1, 3, add_force);
+  symmetric(p, part, parts, 3, add_force);
 }
 
 static void forces_list(const sd_packed *p, const sd_pairs *pairs)
@@ -115,12 +106,7 @@ static void forces_list(const sd_packed *p, const sd_pairs *pairs)
 
 static void torques_symmetric(const sd_packed *p, int part, int parts)
 {
-  targets(p, share(p, part, parts), share(p, part + 1, parts), 6, add_force_and_torque);
-}
-
-static void torques_targets(const sd_packed *p, int i0, int i1)
-{
-  targets(p, i0, i1, 6, add_force_and_torque);
+  symmetric(p, part, parts, 6, add_force_and_torque);
 }
 
 static void torques_list(const sd_packed *p, const sd_pairs *pairs)
@@ -129,6 +115,6 @@ static void torques_list(const sd_packed *p, const sd_pairs *pairs)
 }
 
 const struct sd_kernels sd_kernels_plain = {
-    {1, forces_symmetric, forces_targets, forces_list},
-    {1, torques_symmetric, torques_targets, torques_list},
+    {1, forces_symmetric, forces_list},
+    {1, torques_symmetric, torques_list},
     NULL};

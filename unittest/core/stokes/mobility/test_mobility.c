@@ -50,7 +50,7 @@ static void engines_agree_with_plain_c(void **state)
     double F[MOST], expected[MOST], u[MOST], diagonal[MOST];
     uint64_t seed = 4;
     for (int i = 0; i < width * N; i++) F[i] = uniform(&seed, -1, 1);
-    plain_all(&where.how.law, &where.spheres, N, width, 0, N, F, expected);
+    plain_all(&where.how.law, &where.spheres, N, width, F, expected);
     sd_mobility m = {0};
     for (int k = 0; k < 2 * sd_mobility_count; k++) { /* one object becomes each engine in turn */
       const sd_mobility_engine *engine = sd_mobility_engines[k % sd_mobility_count];
@@ -117,7 +117,7 @@ static void two_ranks_are_one(void **state)
     uint64_t seed = 6;
     for (int i = 0; i < width * N; i++) F[i] = uniform(&seed, -1, 1);
     const sd_mobility_scene one = whole(&s, width, NULL);
-    plain_all(&one.how.law, &one.spheres, N, width, 0, N, F, expected);
+    plain_all(&one.how.law, &one.spheres, N, width, F, expected);
     ranks r = {.width = width, .F = F};
     for (r.rank = 0; r.rank < 2; r.rank++) {
       double x[3 * N], a[N], w[N], mine[MOST / 2], answer[MOST / 2];

@@ -28,7 +28,7 @@ static sd_status apply_pairs(void *ctx, const double *F, double *u)
 {
   const rotating *g = ctx;
   const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
-  plain_all(&g->law, &spheres, g->s->n, 6, 0, g->s->n, F, u);
+  plain_all(&g->law, &spheres, g->s->n, 6, F, u);
   return SD_OK;
 }
 
