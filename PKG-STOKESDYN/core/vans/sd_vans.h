@@ -224,13 +224,32 @@ double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed);
 /* Effective kinematic viscosity at a node of solid fraction phi. */
 double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom);
 
+/* The friction factor near a Reynolds number: f(Re (1 + s)) = sum f_k s^k for |s| <= reach. Zeros:
+ * nothing is known. */
+enum { SD_VANS_FRICTION_TERMS = 4 };
+typedef struct {
+  /* 1/Re */
+  double inverse;
+  double reach;
+  double f[SD_VANS_FRICTION_TERMS];
+} sd_vans_friction;
+
 /* Friction factor f of a smooth side wall, 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32 (Graf &
- * Altinakar), tau = rho f/8 U^2; Re > 0. By Halley's method to rounding; it has one solution for
- * every Re, meant for turbulent streams.
- *   root  in: sqrt(f) of a Reynolds number near by, or 0; out: sqrt(f)
+ * Altinakar), tau = rho f/8 U^2; Re > 0. It has one solution for every Re, meant for turbulent
+ * streams. Here solved by Halley's method to rounding, with the terms of its series.
+ *   near  in: as it was for a Reynolds number near by, or zeros; out: about Re
  * Yade's rule: a natural logarithm, by substitution from 0.32^-2 until f changes by less than 1 %,
- * at most 100 times, then 0: a function with jumps; root is not used. */
-double sd_vans_wall_friction(sd_vans_rules rules, double Re, double *root);
+ * at most 100 times, then 0: a function with jumps, which no series crosses. */
+double sd_vans_wall_friction_anew(sd_vans_rules rules, double Re, sd_vans_friction *near);
+
+/* The same from the series as far as it reaches (an error of 1e-13), otherwise anew:
+ * the streams of two time steps are so near each other that few slices need that. */
+static inline double sd_vans_wall_friction(sd_vans_rules rules, double Re, sd_vans_friction *near)
+{
+  const double s = Re * near->inverse - 1.0, *f = near->f;
+  if (!(s <= near->reach && s >= -near->reach)) return sd_vans_wall_friction_anew(rules, Re, near);
+  return f[0] + s * (f[1] + s * (f[2] + s * f[3]));
+}
 
 /* ---- exchange and solve ---------------------------------------------------------------------- */
 

@@ -94,10 +94,11 @@ struct sd_vans_solver {
   double *mix, *gap;
   /* of a step */
   double *nut, *T, *c, *g;
-  /* side walls, if any: e dz/width coef/8, friction of the step, sqrt(f), cd and cr with them */
+  /* side walls, if any: e dz/width coef/8, friction of the step, cd and cr with them */
   int walls;
   double Re_factor;
-  double *wall_scale, *wall, *wall_root, *wall_cd, *wall_cr;
+  double *wall_scale, *wall, *wall_cd, *wall_cr;
+  sd_vans_friction *friction;
   /* over steps: U', and the fluxes through the turbulent bottom and surface and the walls */
   double *sum;
   double T_bottom, T_surface, wall_sum;
@@ -108,17 +109,20 @@ sd_vans_solver *sd_vans_solver_create(const sd_vans_mesh *mesh)
 {
   sd_vans_solver *s = malloc(sizeof *s);
   const size_t n = (size_t) mesh->ncell + 1;
-  double *m = calloc(17 * n, sizeof(double));
-  if (!s || !m) {
+  double *m = calloc(16 * n, sizeof(double));
+  sd_vans_friction *friction = calloc(n, sizeof *friction);
+  if (!s || !m || !friction) {
     free(s);
     free(m);
+    free(friction);
     return 0;
   }
   s->mesh = mesh;
   s->memory = m;
-  double **arrays[] = {&s->cl,   &s->cu,      &s->cd,        &s->ce,      &s->cr,  &s->mix,
-                       &s->gap,  &s->nut,     &s->T,         &s->c,       &s->g,   &s->wall_scale,
-                       &s->wall, &s->wall_cd, &s->wall_root, &s->wall_cr, &s->sum};
+  s->friction = friction;
+  double **arrays[] = {&s->cl, &s->cu, &s->cd,         &s->ce,   &s->cr,      &s->mix,     &s->gap, &s->nut,
+                       &s->T,  &s->c,  &s->g,          &s->sum,  &s->wall_cd, &s->wall_cr, &s->wall,
+                       &s->wall_scale};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -127,6 +131,7 @@ void sd_vans_solver_free(sd_vans_solver *solver)
 {
   if (!solver) return;
   free(solver->memory);
+  free(solver->friction);
   free(solver);
 }
 
@@ -216,7 +221,7 @@ static void wall_rows(sd_vans_solver *s, int M, sd_vans_rules rules, const doubl
   double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
   for (int j = 0; j < M; j++) {
     const double u = U[j + 1], speed = fabs(u),
-                 f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->wall_root[j]);
+                 f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->friction[j]);
     const double K = scale[j] * f * (rules == SD_VANS_YADE ? speed * speed : speed);
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
