@@ -19,7 +19,7 @@ static double lower_terms(int n, const double *q, const double *r)
 }
 
 /* The series of r^-2 from those of r and q = ln r:  n f_n = -2 sum k q_k f_(n-k). It reaches as far
- * as the next term, about |f_3/f_0|^(4/3) s^4 f_0, is below 1e-14 f_0. */
+ * as the next term is below 1e-14 f_0, about (K s)^4 with K from f_2 = K^2 f_0 or f_3 = K^3 f_0. */
 static void inverse_square(const double *r, const double *q, sd_vans_friction *near)
 {
   double *f = near->f;
@@ -28,7 +28,8 @@ static void inverse_square(const double *r, const double *q, sd_vans_friction *n
     f[n] = 0.0;
     for (int k = 1; k <= n; k++) f[n] -= 2.0 * k / n * q[k] * f[n - k];
   }
-  near->reach = fmin(near->reach, 3e-4 * cbrt(f[0] / fabs(f[3])));
+  const double K = fmax(sqrt(fabs(f[2]) / f[0]), cbrt(fabs(f[3]) / f[0]));
+  near->reach = fmin(near->reach, 3e-4 / K);
 }
 
 /* With y = sqrt(f) and L(y) = A ln(Re y) + 0.32, A = 2/ln 10, the law is G = y L - 1 = 0, with the
