@@ -12,6 +12,7 @@
 #include "force.h"
 #include "group.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "region.h"
 #include "update.h"
 
@@ -31,6 +32,7 @@ void Ambient::init()
   if (igroup < 0)
     fail(lmp, command + ": keyword group: group '" + settings.group + "' does not exist");
   groupbit = group->bitmask[igroup];
+  looked_in = -1;
   settings.visc.init(lmp, command + ": keyword visc");
   for (auto &field : settings.velocity) field.init(lmp, command + ": keyword fluid_velocity");
   for (auto &field : settings.vorticity) field.init(lmp, command + ": keyword fluid_vorticity");
@@ -147,20 +149,39 @@ void Ambient::read_gradient()
   for (int i = 0; i < n; i++) sd_flow_rotation(&gradient[9 * (size_t) i], &w[3 * (size_t) i]);
 }
 
+/* Has the group the atoms that it had, at the places in memory where they were? LAMMPS moves atoms
+ * when it re-neighbours, users change groups between runs (also before one with 'pre no'). */
+bool Ambient::group_stands() const
+{
+  return looked_in == update->firststep && neighbor->ago > 0 && !group->dynamic[igroup] &&
+      takes_part.size() == (size_t) atom->nlocal;
+}
+
+/* A group that stands costs nothing, however many atoms are not in it. Of those in it each may enter
+ * or leave the region in any step. */
 void Ambient::select()
 {
-  const int n = atom->nlocal;
+  const bool stands = group_stands();
+  if (stands && !region) return;
+  if (!stands) {
+    looked_in = update->firststep;
+    members.clear();
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & groupbit) members.push_back(i);
+  }
+  std::vector<int> chosen;
   if (region) region->prematch();
-  takes_part.assign(n, 0);
-  those.clear();
-  for (int i = 0; i < n; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
+  for (int i : members) {
     const double *x = atom->x[i];
     // A position that is no number is in no region: it takes part, so that the fault is seen.
-    if (region && std::isfinite(x[0] + x[1] + x[2]) && !region->match(x[0], x[1], x[2])) continue;
-    takes_part[i] = 1;
-    those.push_back(i);
+    if (!region || !std::isfinite(x[0] + x[1] + x[2]) || region->match(x[0], x[1], x[2]))
+      chosen.push_back(i);
   }
+  if (stands && chosen == those) return;
+  those.swap(chosen);
+  takes_part.assign(atom->nlocal, 0);
+  for (int i : those) takes_part[i] = 1;
+  selections++;
 }
 
 enum Fault { NONE, POSITION, FAR_OUT, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY, FLUID_VORTICITY };
@@ -238,7 +259,8 @@ void Ambient::complain(long long first) const
 
 double Ambient::memory_usage() const
 {
-  return takes_part.capacity() + sizeof(int) * (double) those.capacity() +
+  return takes_part.capacity() +
+      sizeof(int) * ((double) members.capacity() + (double) those.capacity()) +
       sizeof(double) *
       ((double) eta.capacity() + u.capacity() + w.capacity() + gradient.capacity());
 }

@@ -46,6 +46,9 @@ class Ambient : protected LAMMPS_NS::Pointers {
   const std::vector<char> &active() const { return takes_part; }
   /* The atoms of this rank that take part, in their order. */
   const std::vector<int> &who() const { return those; }
+  /* Counts the selections: another number than before, and atoms may have come or gone, or have
+   * other indices. With the same number, nobody need look at those that take no part. */
+  long selection() const { return selections; }
 
   double viscosity(int i) const { return eta.empty() ? eta_uniform : eta[i]; }
   const double *velocity(int i) const { return u.empty() ? u_uniform : &u[3 * (size_t) i]; }
@@ -85,11 +88,16 @@ class Ambient : protected LAMMPS_NS::Pointers {
   bool spins = false;
 
   std::vector<char> takes_part;
-  std::vector<int> those;
+  /* of the group, and those of them that are in the region */
+  std::vector<int> members, those;
+  long selections = 0;
+  /* the run, by its first step, in which the group was last looked at; -1: in none */
+  LAMMPS_NS::bigint looked_in = -1;
   double eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient;
 
+  bool group_stands() const;
   void select();
   void read_fluid(bool gradients);
   void read_gradient();

@@ -101,8 +101,13 @@ void FixStokesDynamics::post_force(int /*vflag*/)
     fail(lmp,
          COMMAND + ": the pair style was not computed in this step (pair_modify compute no?)");
   for (double &t : total) t = 0.0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || !hydro.ambient.active()[i]) {
+  const Ambient &ambient = hydro.ambient;
+  if (selection != ambient.selection())
+    for (int i = 0; i < atom->nlocal; i++)
+      if (!ambient.active()[i]) rows.zero(i);
+  selection = ambient.selection();
+  for (int i : ambient.who()) {
+    if (!(atom->mask[i] & groupbit)) {
       rows.zero(i);
       continue;
     }

@@ -36,6 +36,8 @@ class FixStokesDynamics : public LAMMPS_NS::Fix {
   bool applies = false;
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
   AtomArray rows;
+  /* of the pair style, whose others have zeros (Ambient::selection) */
+  long selection = -1;
   /* F and dissipation of the group, this rank */
   double total[4];
 

@@ -190,6 +190,7 @@ void FixStokesDynamicsState::write_restart(FILE *fp)
   out.put("numbers", std::vector<double>(global.numbers, global.numbers + 7));
   out.put("solves", global.solves);
   out.put("unconverged", global.unconverged);
+  out.put("diverged", global.diverged);
   out.put("iterations", global.iterations);
   out.put("residual", global.residual);
   out.put("solutions", global.solutions);
@@ -214,6 +215,7 @@ void FixStokesDynamicsState::restart(char *buf)
   in.get("numbers", global.numbers, 7);
   global.solves = in.get("solves", 0.0);
   global.unconverged = in.get("unconverged", 0.0);
+  global.diverged = in.get("diverged", 0.0);
   global.iterations = in.get("iterations", 0.0);
   global.residual = in.get("residual", 0.0);
   global.solutions = in.get("solutions", 0.0);

@@ -65,6 +65,8 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
     /* of the fluid in the last step (Ambient::numbers) */
     double numbers[7] = {0};
     double solves = 0, unconverged = 0;
+    /* has algorithm 1, so that 2 goes on? */
+    double diverged = 0;
     /* of the last solve */
     double iterations = 0, residual = 0;
     /* v' that the rows hold, of solves that follow one another: 0, 1, 2 */

@@ -62,9 +62,10 @@ void Hydrodynamics::begin()
              " has been deleted; a run without 'pre no' makes it anew");
   if (neighbor->ago == 0) scene.lists_are_stale();
   ambient.read(rotation(), rotation() || settings.rigid.on);
-  AtomRows &rows = memory->rows;
+  if (selection == ambient.selection()) return;
+  selection = ambient.selection();
   for (int i = 0; i < atom->nlocal; i++)
-    if (!ambient.active()[i]) rows.take(i);
+    if (!ambient.active()[i]) memory->rows.take(i);
 }
 
 void Hydrodynamics::new_run(bool as_left)
@@ -131,31 +132,36 @@ void Hydrodynamics::drag()
 }
 
 /* v' of every sphere that is the solver's, from the forces that solve the system for the velocities
- * of now. */
+ * of now. Where nobody sees anybody there is nothing to solve. */
 void Hydrodynamics::solve()
 {
   if (settings.rigid.on && !rigid.any_loose()) return;
-  sd_system system = gather();
-  if (settings.scene.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
-  if (settings.scene.clumps_only && std::isfinite(settings.scene.cutoff) &&
-      settings.scene.taper == SD_TAPER_NONE && !looked_at_clumps) {
-    looked_at_clumps = true;
-    warn_of_short_cutoff(lmp, COMMAND, scene);
-  }
+  place();
+  State::Global &global = memory->global;
   sd_solve_report report = {};
-  report.curvature = 1.0;
-  const bool alone = !scene.anybody_sees();
-  const sd_status status = alone ? SD_OK : run(system, report);
-  if (settings.algorithm == StokesSettings::GRADIENTS && !alone) {
-    guard.state = memory->global.guard;
-    guard.look(system, report, solvers.data(), preconditioner.attached(), memory->global.solves);
-    memory->global.guard = guard.state;
-  }
-  memory->global.solves++;
-  memory->global.iterations = report.iterations;
-  memory->global.residual = report.residual;
-  if (status != SD_OK) failed(status, report);
+  const sd_status status = scene.anybody_sees() ? run(report) : SD_OK;
+  global.solves++;
+  global.iterations = report.iterations;
+  global.residual = report.residual;
+  if (status == SD_EMAXITER || status == SD_ESTAGNATED)
+    unconverged(status, report);
+  else if (status != SD_OK)
+    failed(status, report);
   keep();
+}
+
+/* The spheres of this solve, and what may be wrong with how they stand. */
+void Hydrodynamics::place()
+{
+  const Scene::Settings &how = settings.scene;
+  eta.resize(solvers.size());
+  for (size_t k = 0; k < solvers.size(); k++) eta[k] = ambient.viscosity(solvers[k]);
+  scene.update(solvers, eta);
+  if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
+  if (looked_at_clumps || !how.clumps_only || std::isinf(how.cutoff) || how.taper != SD_TAPER_NONE)
+    return;
+  looked_at_clumps = true;
+  warn_of_short_cutoff(lmp, COMMAND, scene);
 }
 
 /* The linear system of this step: row k is the sphere solvers[k]. */
@@ -168,16 +174,12 @@ sd_system Hydrodynamics::gather()
   slip.resize(m * n + m);
   resistance.resize(n + 1);
   spin.resize(rotation() ? n + 1 : 0);
-  eta.resize(n + 1);
   for (int k = 0; k < n; k++) {
     const int i = solvers[k];
     ambient.slip(i, &slip[m * k]);
-    eta[k] = ambient.viscosity(i);
     resistance[k] = ambient.drag(i);
     if (rotation()) spin[k] = ambient.spin(i);
   }
-  scene.update(solvers, eta);
-
   sd_system system = {};
   system.n = n;
   system.drag = resistance.data();
@@ -189,18 +191,50 @@ sd_system Hydrodynamics::gather()
   return system;
 }
 
-sd_status Hydrodynamics::run(sd_system &system, sd_solve_report &report)
+std::string Hydrodynamics::where(int algorithm) const
 {
-  if (settings.algorithm == StokesSettings::SUBSTITUTION)
-    return sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
-                                 solution.data(), work.data(), &report);
+  return COMMAND + ": step " + std::to_string(update->ntimestep) + ": algorithm " +
+      std::to_string(algorithm) + ": ";
+}
+
+static std::string how_far(const sd_solve_report &report)
+{
+  return "residual " + text(report.residual) + " after iteration " +
+      std::to_string(report.iterations);
+}
+
+/* Algorithm 1 converges for pairs and small clumps only. Where it cannot, 2 goes on, in this solve
+ * and from now on: a run is not stranded by its default. */
+sd_status Hydrodynamics::run(sd_solve_report &report)
+{
+  sd_system system = gather();
+  if (algorithm() == StokesSettings::SUBSTITUTION) {
+    const sd_status status =
+        sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
+                              solution.data(), work.data(), &report);
+    if (status != SD_EDIVERGED || settings.strict) return status;
+    memory->global.diverged = 1;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     where(StokesSettings::SUBSTITUTION) + "diverged: " + how_far(report) +
+                         "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
+  }
+  const sd_status status = gradients(system, report);
+  guard.state = memory->global.guard;
+  guard.look(system, report, solvers.data(), preconditioner.attached(), memory->global.solves);
+  memory->global.guard = guard.state;
+  return status;
+}
+
+sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
+{
   State::Global &global = memory->global;
   system.warm = memory->history && global.solutions > 0;
   if (system.warm) guess();
   if (memory->restart_written) preconditioner.make_anew();
   memory->restart_written = false;
   preconditioner.tolerance = settings.tolerance;
-  preconditioner.warm_start = settings.warm_start;
+  preconditioner.warm_start = memory->history;
   preconditioner.unpack(global.preconditioner);
   preconditioner.attach(system);
   const sd_status status =
@@ -247,55 +281,42 @@ void Hydrodynamics::keep()
   global.solutions = std::min(2.0, global.solutions + 1.0);
 }
 
-/* Returns for a solve whose answer may still be used; ends the run otherwise. */
-void Hydrodynamics::failed(sd_status status, const sd_solve_report &report)
+/* An answer that may still be used, if not what was asked for. */
+void Hydrodynamics::unconverged(sd_status status, const sd_solve_report &report)
 {
-  const bool oseen = settings.scene.tensor == SD_TENSOR_OSEEN;
-  const std::string where = COMMAND + ": step " + std::to_string(update->ntimestep) +
-      ": algorithm " + std::to_string(settings.algorithm) + ": ";
-  const std::string how_far =
-      "residual " + text(report.residual) + " after iteration " + std::to_string(report.iterations);
-  const std::string cutoff =
-      std::isinf(settings.scene.cutoff) ? "inf" : text(settings.scene.cutoff);
-  switch (status) {
-    case SD_EMAXITER:
-    case SD_ESTAGNATED:
-      memory->global.unconverged++;
-      if (!warned_unconverged && comm->me == 0)
-        error->warning(
-            FLERR,
-            std::string(
-                where + sd_status_string(status) + ": " + how_far + ", relative_tolerance " +
-                text(settings.tolerance) +
-                (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter)
-                                       : std::string()) +
-                "; the run goes on, further ones are counted (compute pair, fix stokes_dynamics)"));
-      warned_unconverged = true;
-      return;
-    case SD_EDIVERGED:
-      fail(lmp,
-           where + "diverged: " + how_far + ", growing by a factor " + text(report.growth) +
-               " each; use algorithm 2");
-    case SD_EINDEFINITE:
-      fail(lmp,
-           where + sd_status_string(status) + " with " +
-               (oseen ? "tensor oseen: spheres are too close for it, use tensor rpy"
-                      : "cut_off_distance " + cutoff +
-                        ", so any answer would be noise: use cut_off_distance inf, or a taper, or "
-                        "clumps_only yes with a cut-off larger than the clump") +
-               " (" + how_far + ", curvature " + text(report.curvature) + ")");
-    case SD_ESINGULAR:
-      fail(lmp,
-           where + sd_status_string(status) +
-               (oseen ? " with tensor oseen: spheres are too close for it, use tensor rpy ("
-                      : ": equal spheres at one point with different velocities (") +
-               how_far + ")");
-    case SD_ENOMEMORY:
-    case SD_ECALLBACK:    // of this rank, while the others wait for it
-      fail_one(lmp, where + sd_status_string(status) + " (" + how_far + ")");
-    default:
-      fail(lmp, where + sd_status_string(status) + " (" + how_far + ")");
-  }
+  memory->global.unconverged++;
+  if (!warned_unconverged && comm->me == 0)
+    error->warning(
+        FLERR,
+        std::string(
+            where(algorithm()) + sd_status_string(status) + ": " + how_far(report) +
+            ", relative_tolerance " + text(settings.tolerance) +
+            (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter) : "") +
+            "; the run goes on, further ones are counted (compute pair, fix stokes_dynamics)"));
+  warned_unconverged = true;
+}
+
+/* Ends the run. */
+void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) const
+{
+  const Scene::Settings &how = settings.scene;
+  std::string why = sd_status_string(status), numbers = how_far(report);
+  if (status == SD_EDIVERGED)
+    why = "diverged, the residual growing by a factor " + text(report.growth) +
+        " each iteration; use algorithm 2";
+  if (status == SD_EINDEFINITE) numbers += ", curvature " + text(report.curvature);
+  if (how.tensor == SD_TENSOR_OSEEN && (status == SD_EINDEFINITE || status == SD_ESINGULAR))
+    why += " with tensor oseen: spheres are too close for it, use tensor rpy";
+  else if (status == SD_ESINGULAR)
+    why += ": equal spheres at one point with different velocities";
+  else if (status == SD_EINDEFINITE)
+    why += " with cut_off_distance " + (std::isinf(how.cutoff) ? "inf" : text(how.cutoff)) +
+        ", so any answer would be noise: use cut_off_distance inf, or a taper, or clumps_only yes "
+        "with a cut-off larger than the clump";
+  const std::string message = where(algorithm()) + why + " (" + numbers + ")";
+  // These are of one rank, while the others wait for it.
+  if (status == SD_ENOMEMORY || status == SD_ECALLBACK) fail_one(lmp, message);
+  fail(lmp, message);
 }
 
 double Hydrodynamics::dissipation(int i) const

@@ -71,6 +71,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Preconditioner preconditioner;
   TimeStepGuard guard;
   bool warned_unconverged = false, looked_at_clumps = false;
+  /* those whose rows are here (Ambient::selection) */
+  long selection = -1;
 
   /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps */
   std::vector<int> solvers;
@@ -78,11 +80,19 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   std::vector<double> eta, slip, resistance, spin, solution, work;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
+  void place();
   sd_system gather();
-  sd_status run(sd_system &system, sd_solve_report &report);
+  sd_status run(sd_solve_report &report);
+  sd_status gradients(sd_system &system, sd_solve_report &report);
   void guess();
   void keep();
-  void failed(sd_status status, const sd_solve_report &report);
+  int algorithm() const    // of the next solve
+  {
+    return memory->global.diverged != 0.0 ? StokesSettings::GRADIENTS : settings.algorithm;
+  }
+  std::string where(int algorithm) const;
+  void unconverged(sd_status status, const sd_solve_report &report);
+  [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
 };
 
 }    // namespace StokesDyn

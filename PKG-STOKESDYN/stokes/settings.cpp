@@ -51,7 +51,10 @@ void StokesSettings::parse(Keywords &in)
            in.refuse("'" + text(tolerance) + "' must be < 1: no force at all satisfies 1");
        }},
       {"max_iter", [&] { max_iter = in.integer(1); }},
-      {"algorithm", [&] { algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS; }},
+      {"algorithm", [&] {
+         algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS;
+         strict = algorithm == SUBSTITUTION && in.take("strict");
+       }},
       {"fluid_velocity", [&] { for (Field &u : ambient.velocity) u = Field::parse(in); }},
       {"fluid_vorticity", [&] {
          for (Field &w : ambient.vorticity) w = Field::parse(in);

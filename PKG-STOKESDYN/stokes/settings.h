@@ -24,6 +24,8 @@ struct StokesSettings {
   int max_iter = 100;
   enum { SUBSTITUTION = 1, GRADIENTS = 2 };
   int algorithm = SUBSTITUTION;
+  /* algorithm 1 stops where it diverges, instead of going on with 2 */
+  bool strict = false;
   bool warm_start = true;
   Preconditioner::Kind precondition = Preconditioner::AUTO;
   Ambient::Settings ambient;

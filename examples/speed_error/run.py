@@ -108,7 +108,7 @@ def settings(exact, has_clumps, rigid, n, quick):
     yield "warm_start no", f"{two} 1e-3 warm_start no", False
     for every in (5, 20):
         yield "update_every", f"{two} 1e-3 update_every {every}", False
-    yield "algorithm 1", f"{exact} relative_tolerance 1e-3", False
+    yield "algorithm 1", f"{exact} algorithm 1 strict relative_tolerance 1e-3", False
     if rigid:
         yield "rigid_clumps", "clumps_only yes rigid_clumps yes", False
         yield "shell", "clumps_only yes rigid_clumps yes shell 12", True

@@ -62,6 +62,7 @@ AT_THE_COMMAND += [(f"cut_off_distance inf visc {number}", [f"keyword visc: '{nu
 AT_THE_COMMAND += [("cut_off_distance 0x10 visc 1.3", ["keyword cut_off_distance: '0x10' is not a number"]),
                    ("cut_off_distance inf visc 1.3 max_iter 0x10", ["keyword max_iter: '0x10' is not an integer"]),
                    ("cut_off_distance inf visc 1.3 max_iter ++1", ["keyword max_iter: '++1' is not an integer"]),
+                   ("cut_off_distance inf visc 1.3 algorithm 2 strict", ["unknown keyword 'strict'"]),
                    ("cut_off_distance inf visc 1e999", ["keyword visc: '1e999' is not a finite number"]),
                    ("cut_off_distance inf visc 1.3 visc 1.3", ["keyword visc: given twice"]),
                    ("clumps_only yes visc 1.3 region nowhere clumps_only yes", ["keyword clumps_only: given twice"])]
@@ -301,7 +302,7 @@ def test_fluid_velocity_that_becomes_nan_on_one_rank_stops_all(tmp_path, mode):
     assert "step 5, atom 3: keyword fluid_velocity: the fluid velocity there is not a finite number" in ended.log
 
 
-@pytest.mark.parametrize("words,text", [("cut_off_distance inf visc 1.3", "diverged"),
+@pytest.mark.parametrize("words,text", [("cut_off_distance inf visc 1.3 algorithm 1 strict", "diverged"),
                                         ("cut_off_distance 1.6 visc 1.3 algorithm 2", "not positive definite")])
 def test_failed_solve_stops_all_ranks(tmp_path, words, text):
     x = np.zeros((10, 3))

@@ -116,9 +116,9 @@ def test_equal_spheres_at_one_point_with_different_velocities_are_refused(simula
 def test_substitution_at_one_point_is_refused(simulation, words, v):
     """Its residual swings between two values for ever, and rounding says whether it falls."""
     for gap in (0.0, 1e-12, 1e-9):
-        sim = simulation(Spheres([(0, 0, 0), (0, 0, gap * A)], A, v, molecule=1), f"{words} visc {ETA}")
+        spheres = Spheres([(0, 0, 0), (0, 0, gap * A)], A, v, molecule=1)
         with pytest.raises(LammpsError, match="algorithm 1: diverged.*use algorithm 2"):
-            sim.run()
+            simulation(spheres, f"{words} visc {ETA} algorithm 1 strict").run()
 
 
 # --- radii of very different size ---------------------------------------------------------------------------------------

@@ -52,17 +52,31 @@ def test_default_tolerance_is_one_in_a_thousand(simulation):
 
 @pytest.mark.hard_case("algorithm 1 where it diverges")
 def test_substitution_on_three_spheres_along_their_axis_stops_and_names_the_way_out(simulation):
-    sim = simulation(touching_chain(3, ALONG), f"cut_off_distance inf visc {ETA}")
+    sim = simulation(touching_chain(3, ALONG), f"cut_off_distance inf visc {ETA} algorithm 1 strict")
     with pytest.raises(LammpsError) as error:
         sim.run()
     for word in ("diverged", "residual", "iteration", "use algorithm 2"):
         assert word in str(error.value)
 
 
+@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes", "cut_off_distance inf rotation yes"])
+def test_where_substitution_diverges_gradients_go_on(simulation, tmp_path, words):
+    """The default never strands a run: one warning, and from then on every force is that of algorithm 2, in this run and the next."""
+    spheres, style = touching_chain(3, ALONG), f"{words} visc {ETA} relative_tolerance 1e-11"
+    reference = simulation(spheres, style + " algorithm 2").run().drag
+    log = tmp_path / "log"
+    sim = simulation(spheres, style, log=log).run(2).run(2)
+    assert largest_difference(sim.drag, reference) < 1e-9
+    assert sim.iterations < 20 and sim.residual <= 1e-11
+    said = " ".join(log.read_text().split())
+    assert said.count("the run goes on with algorithm 2") == 1 and "step 0: algorithm 1: diverged: residual" in said
+
+
 @pytest.mark.parametrize("n,converges", [(4, True), (5, False)])
 def test_substitution_across_a_chain_converges_up_to_four(simulation, n, converges):
     reference = simulation(touching_chain(n, ACROSS), f"cut_off_distance inf visc {ETA} {EXACT}").run().drag
-    sim = simulation(touching_chain(n, ACROSS), f"cut_off_distance inf visc {ETA} max_iter 2000 relative_tolerance 1e-10")
+    sim = simulation(touching_chain(n, ACROSS), f"cut_off_distance inf visc {ETA} max_iter 2000 relative_tolerance 1e-10 "
+                     "algorithm 1 strict")
     if converges:
         assert largest_difference(sim.run().drag, reference) < 1e-8
     else:
