@@ -1,0 +1,104 @@
+/* Velocities of bodies without inertia from the forces on them: free spheres and rigid clumps of
+ * spheres in one cloud, all of which feel each other.
+ *
+ *   M' l - K V = -u,   K^T l = F           l: forces of the spheres on the fluid, V: velocities
+ *   M' = D^-1 + Omega + K dN K^T           of the bodies, u: the undisturbed fluid, F: the loads
+ *
+ * K V: velocities of the spheres, K^T l: forces of the bodies; a free sphere is its own body, K =
+ * 1, and then V = u + M F. dN: sd_body_shape.h. It is the stationary point of l.M' l / 2 + l.u
+ * under the second line, and has one solution, as M' > 0.
+ *
+ * Solved by conjugate gradients inside the constraint. The preconditioner is the same system with
+ * M' replaced by the blocks M_b' of the bodies alone, in which every body is for itself:
+ *
+ *   pre(r, f):  z = M_b'^-1 r,   V = N (f - K^T z),   l = z + M_b'^-1 K V,   N = (K^T M_b'^-1 K)^-1
+ *   start:      (l, V) = pre(-u, F),   r = K V - u - M' l
+ *   repeat:     (z, dV) = pre(r, 0);   stop when sqrt(r.z / e) < tolerance
+ *               p = z + beta p,  q = dV + beta q,  w = M' p - K q,  alpha = r.z / p.w
+ *               l += alpha p,  V += alpha q,  r -= alpha w
+ *   answer:     V + dV
+ *
+ * K^T l = F holds from the start, so K^T p = 0, and of dN only K dN F is ever seen. r.z = z.M_b' z
+ * >= 0 and p.w = p.M p, so that this is conjugate gradients with all that is known of them. r must
+ * be updated with K q in it: without, digits are lost near 1e-7. Free spheres leave after their one
+ * product with the exact answer. e = l.(K V - u) of the start, the power spent; the tolerance is
+ * about an energy norm, and V + dV is a hundred times better than it. */
+#ifndef SD_BODIES_H
+#define SD_BODIES_H
+
+#include "sd_body_shape.h"
+#include "sd_mobility.h"
+#include "sd_solve.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Rows have `width` numbers a sphere, 3 or 6; with clumps 6. Everything is in space axes. */
+typedef struct {
+  /* spheres of this rank, that is rows; those of other ranks that are in clumps with them */
+  int n, ghosts, width;
+  /* [n] 6 pi eta a, 8 pi eta a^3 (NULL for width 3) */
+  const double *drag, *spin;
+  /* [lone] rows of the free spheres */
+  int lone;
+  const int *loner;
+  /* rigid clumps of which this rank has a sphere; a clump is the same, to the bit, on each rank
+   * that knows it */
+  int clumps;
+  /* [clumps + 1] into member: rows of the spheres in the order of the shape, n + g for ghost g */
+  const int *first, *member;
+  /* [clumps] shape, [9 clumps] pose R (space = R shape), [clumps] viscosity */
+  const sd_body_shape *const *shape;
+  const double *pose, *eta;
+  /* Omega, without the diagonal; sum over the ranks (NULL: one rank) */
+  sd_apply *apply;
+  void *apply_ctx;
+  sd_sum *sum;
+  void *sum_ctx;
+  /* rows [width n] -> those of the ghosts [width ghosts]; NULL: there are none on any rank */
+  sd_status (*refresh)(void *ctx, const double *rows, double *ghosts, int width);
+  void *refresh_ctx;
+} sd_bodies;
+
+typedef struct {
+  /* [width n] velocity and angular velocity of the undisturbed fluid at the spheres */
+  const double *u;
+  /* [width n] forces and torques on the spheres, each about its own centre */
+  const double *F;
+  /* does l hold a guess? Any will do: what it lacks of K^T l = F is made up */
+  int warm;
+  /* max_iter: of products */
+  double tolerance;
+  int max_iter;
+} sd_bodies_problem;
+
+typedef struct {
+  /* [width n] forces of the spheres on the fluid, as the last product left them: as a guess they
+   * give the same V again */
+  double *l;
+  /* [width n] velocities of the spheres */
+  double *v;
+  /* [6 clumps] U of the centroid and W of the clumps */
+  double *V;
+} sd_bodies_motion;
+
+typedef struct {
+  /* with M; residual: sqrt(r.z / e) */
+  int products;
+  double residual;
+} sd_bodies_report;
+
+/* Doubles of scratch for n spheres and what else is in A. */
+long sd_bodies_work(const sd_bodies *A);
+
+/* work [sd_bodies_work]. SD_OK; SD_EMAXITER: motion is the best that there is; SD_EINDEFINITE: p.w
+ * <= 0, as a cut-off makes it; SD_ENOTFINITE; that of a function of the caller. */
+sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *problem,
+                               const sd_bodies_motion *motion, double *work,
+                               sd_bodies_report *report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,148 @@
+#include "sd_body_shape.h"
+
+#include "sd_linear.h"
+#include "sd_tensor.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Row (k, p) of K: e_p.(U + W x X) = e_p.U + (X x e_p).W for p < 3, and W_p for the spins. */
+static void rigid_row(const double X[3], int p, double row[6])
+{
+  memset(row, 0, 6 * sizeof(double));
+  row[p] = 1.0;
+  if (p >= 3) return;
+  const double e[3] = {p == 0, p == 1, p == 2};
+  sd_cross(X, e, row + 3);
+}
+
+/* Velocity at X in the unit strain number c: E_xx E_yy E_zz E_yz E_xz E_xy */
+static void strain_at(const double X[3], int c, double v[3])
+{
+  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
+  memset(v, 0, 3 * sizeof(double));
+  v[row[c]] = X[col[c]];
+  v[col[c]] = X[row[c]];
+}
+
+static void own_blocks(const sd_shape *shape, double *M)
+{
+  const size_t N = 6 * (size_t) shape->n;
+  for (int i = 0; i < shape->n; i++)
+    for (int j = 0; j < shape->n; j++) {
+      const double *x = shape->x + 3 * (size_t) i, *y = shape->x + 3 * (size_t) j;
+      const double r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      double block[36];
+      sd_tensor_grand(r, shape->a[i], shape->a[j], 1.0, block);
+      for (int p = 0; p < 6; p++)
+        memcpy(M + (6 * (size_t) i + p) * N + 6 * (size_t) j, block + 6 * p, 6 * sizeof(double));
+    }
+}
+
+/* rigid = inverse K, and its part that works on the body as a whole, R = K^T rigid */
+static void apply_to_rigid(const sd_body_shape *s, const double *inverse, double *rigid,
+                           double R[36])
+{
+  const size_t N = 6 * (size_t) s->m;
+  memset(rigid, 0, sizeof(double) * 6 * N);
+  memset(R, 0, 36 * sizeof(double));
+  for (size_t j = 0; j < N; j++) {
+    double K[6];
+    rigid_row(s->x + 3 * (j / 6), (int) (j % 6), K);
+    for (size_t i = 0; i < N; i++)
+      for (int c = 0; c < 6; c++) rigid[6 * i + c] += inverse[i * N + j] * K[c];
+  }
+  for (size_t i = 0; i < N; i++) {
+    double K[6];
+    rigid_row(s->x + 3 * (i / 6), (int) (i % 6), K);
+    for (int p = 0; p < 6; p++)
+      for (int c = 0; c < 6; c++) R[6 * p + c] += K[p] * rigid[6 * i + c];
+  }
+}
+
+/* out += sign N C: (U, W) of the free body in the unit strains E, C = K^T M_b^-1 E the force that
+ * they make on it when it is held. What is left of them turns and shifts the body: slip has no
+ * force in all when N (F + C) = 0. */
+static void motion_in_strain(const double N[36], const double C[36], double out[36], double sign)
+{
+  for (int p = 0; p < 6; p++)
+    for (int c = 0; c < 6; c++)
+      for (int q = 0; q < 6; q++) out[6 * p + c] += sign * N[6 * p + q] * C[6 * q + c];
+}
+
+/* dN and dE, and K dN K^T added to M. rigid = M_b^-1 K of the spheres without shells: its transpose
+ * gives C of the spheres, column by column, without another solve. */
+static void add_shells(sd_body_shape *s, const sd_clump *shells, const double *rigid,
+                       const double N_spheres[36], double *M)
+{
+  const size_t N = 6 * (size_t) s->m;
+  double N_shell[36], C[36] = {0.0};
+  sd_pseudo_inverse6(shells->R, N_shell);
+  for (int e = 0; e < 36; e++) s->shell[e] = N_shell[e] - N_spheres[e];
+  for (size_t i = 0; i < N; i++) {
+    if (i % 6 >= 3) continue; /* spheres do not turn with a strain */
+    for (int c = 0; c < 6; c++) {
+      double v[3];
+      strain_at(s->x + 3 * (i / 6), c, v);
+      for (int p = 0; p < 6; p++) C[6 * p + c] += rigid[6 * i + p] * v[i % 6];
+    }
+  }
+  motion_in_strain(N_shell, shells->strain, s->carried, 1.0);
+  motion_in_strain(N_spheres, C, s->carried, -1.0);
+  for (size_t i = 0; i < N; i++) {
+    double Ki[6], t[6] = {0.0};
+    rigid_row(s->x + 3 * (i / 6), (int) (i % 6), Ki);
+    for (int p = 0; p < 6; p++)
+      for (int c = 0; c < 6; c++) t[c] += Ki[p] * s->shell[6 * p + c];
+    for (size_t j = 0; j < N; j++) {
+      double Kj[6];
+      rigid_row(s->x + 3 * (j / 6), (int) (j % 6), Kj);
+      for (int c = 0; c < 6; c++) M[i * N + j] += t[c] * Kj[c];
+    }
+  }
+}
+
+static sd_status invert(size_t N, double *A)
+{
+  const sd_status status = sd_cholesky((int) N, A);
+  return status == SD_OK ? sd_cholesky_inverse((int) N, A) : status;
+}
+
+sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *s)
+{
+  const size_t m = (size_t) shape->n, N = 6 * m;
+  double R[36];
+  *s = (sd_body_shape){.m = shape->n};
+  s->x = malloc(sizeof(double) * 3 * m);
+  s->inverse = malloc(sizeof(double) * N * N);
+  s->rigid = malloc(sizeof(double) * 6 * N);
+  sd_status status = s->x && s->inverse && s->rigid ? SD_OK : SD_ENOMEMORY;
+  if (status == SD_OK) {
+    memcpy(s->x, shape->x, sizeof(double) * 3 * m);
+    own_blocks(shape, s->inverse);
+    status = invert(N, s->inverse);
+  }
+  if (status == SD_OK) {
+    apply_to_rigid(s, s->inverse, s->rigid, R);
+    sd_pseudo_inverse6(R, s->mobility);
+  }
+  if (status == SD_OK && shells) {
+    own_blocks(shape, s->inverse);
+    add_shells(s, shells, s->rigid, s->mobility, s->inverse);
+    status = invert(N, s->inverse);
+  }
+  if (status == SD_OK && shells) {
+    apply_to_rigid(s, s->inverse, s->rigid, R);
+    sd_pseudo_inverse6(R, s->mobility);
+  }
+  if (status != SD_OK) sd_body_shape_free(s);
+  return status;
+}
+
+void sd_body_shape_free(sd_body_shape *s)
+{
+  free(s->x);
+  free(s->inverse);
+  free(s->rigid);
+  *s = (sd_body_shape){0};
+}

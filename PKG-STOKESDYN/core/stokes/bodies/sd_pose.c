@@ -1,0 +1,53 @@
+#include "sd_pose.h"
+
+#include "sd_linear.h"
+
+#include <math.h>
+#include <string.h>
+
+void sd_mean_velocity(int n, const double *v, const double *v_old, double c, double *out)
+{
+  for (int k = 0; k < n; k++) out[k] = v[k] + c * (v[k] - v_old[k]);
+}
+
+void sd_rotation(const double w[3], double R[9])
+{
+  const double angle = sqrt(sd_dot(w, w));
+  /* sin(a/2)/a, which is 1/2 - a^2/48 + ... near 0 */
+  const double s = angle > 1e-4 ? sin(0.5 * angle) / angle : 0.5 - angle * angle / 48.0;
+  double q[4] = {cos(0.5 * angle), s * w[0], s * w[1], s * w[2]};
+  const double norm = 1.0 / sqrt(q[0] * q[0] + sd_dot(q + 1, q + 1));
+  for (int k = 0; k < 4; k++) q[k] *= norm;
+  const double a = q[0], x = q[1], y = q[2], z = q[3];
+  R[0] = 1.0 - 2.0 * (y * y + z * z);
+  R[1] = 2.0 * (x * y - a * z);
+  R[2] = 2.0 * (x * z + a * y);
+  R[3] = 2.0 * (x * y + a * z);
+  R[4] = 1.0 - 2.0 * (x * x + z * z);
+  R[5] = 2.0 * (y * z - a * x);
+  R[6] = 2.0 * (x * z - a * y);
+  R[7] = 2.0 * (y * z + a * x);
+  R[8] = 1.0 - 2.0 * (x * x + y * y);
+}
+
+void sd_pose_advance(double pose[12], const double V[6], double dt, int n, const double *X,
+                     double turn[9], double *x)
+{
+  const double w[3] = {dt * V[3], dt * V[4], dt * V[5]};
+  double R[9], *c = pose + 9;
+  sd_rotation(w, turn);
+  sd_product3(turn, pose, R);
+  memcpy(pose, R, sizeof(R));
+  for (int d = 0; d < 3; d++) c[d] += dt * V[d];
+  for (int k = 0; k < n; k++) {
+    sd_multiply3(R, X + 3 * k, x + 3 * k);
+    for (int d = 0; d < 3; d++) x[3 * k + d] += c[d];
+  }
+}
+
+double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax)
+{
+  double dt = fastest > 0.0 ? xmax / fastest : tmax;
+  dt = fmin(dt, 2.0 * last);
+  return fmin(fmax(dt, tmin), tmax);
+}

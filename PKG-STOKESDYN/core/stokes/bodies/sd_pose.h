@@ -1,0 +1,34 @@
+/* Where a step of motion without inertia leads: Adams and Bashforth's of second order, for steps
+ * that change, or Euler's.
+ *
+ *   x' = x + dt V_mean,   V_mean = v + c (v - v_old),   c = dt / (2 dt_old), or 0: Euler
+ *
+ * A rigid body keeps the shape it has: its spheres are put where its pose says, c + R X_k, and R
+ * is turned by the rotation of the vector dt W. Of order 2 (1) in the pose as well. */
+#ifndef SD_POSE_H
+#define SD_POSE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* out [n] = v + c (v - v_old). Aliases are allowed. */
+void sd_mean_velocity(int n, const double *v, const double *v_old, double c, double *out);
+
+/* Rotation matrix R [9], row-major, of the vector w [3]: by |w| about it. Through the unit
+ * quaternion (cos |w|/2, sin(|w|/2) w/|w|), so that R is a rotation to rounding for any w. */
+void sd_rotation(const double w[3], double R[9]);
+
+/* pose [12]: R, then c; moves with (U, W) = V [6] for dt. turn [9]: out, that of space in the step;
+ * x [3n] = c + R X, X [3n] */
+void sd_pose_advance(double pose[12], const double V[6], double dt, int n, const double *X,
+                     double turn[9], double *x);
+
+/* The step in which the fastest sphere goes xmax, not more than twice the last, and from tmin to
+ * tmax. fastest 0: as long as allowed. */
+double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
