@@ -228,10 +228,6 @@ static void products_are_few(void **state)
       for (int t = 0; t < 2; t++) {
         assert_int_equal(flock_move(f, 6, 0, t ? 1e-6 : 1e-3, 100), SD_OK);
         const double error = flock_distance(f->V, V, 6 * f->clumps);
-        if (getenv("SD_SHOW"))
-          printf("%s %d, phi %g, shell %d: %d products to %g, error of V %.1e\n",
-                 rows[e].chain ? "chains" : "tetrahedra", f->clumps, rows[e].phi, shell,
-                 f->report.products, t ? 1e-6 : 1e-3, error);
         assert_in_range(f->report.products, 2, rows[e].most[t] + 1);
         assert_true(error < (t ? 1e-3 : 1.0) * rows[e].error);
       }
@@ -350,9 +346,6 @@ static void far_clumps_are_as_shells_everywhere(void **state)
         with = fmax(with, fabs(f->V[6 * b + d] / V[2] - V[6 * b + d] / V[2]));
         without = fmax(without, fabs(plain->V[6 * b + d] / V[2] - V[6 * b + d] / V[2]));
       }
-    if (getenv("SD_SHOW"))
-      printf("chains %g apart: %.3f %% with dN, %.3f %% as spheres\n", distance[e], 100 * with,
-             100 * without);
     assert_true(with < most[e]);
     assert_true(without > 0.01);
     flock_free(f), flock_free(plain);

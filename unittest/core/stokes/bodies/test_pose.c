@@ -149,9 +149,6 @@ static void spheres_fall_along_the_known_path(void **state)
         errors(f, "three_horizontal", width == 3 ? "TT" : "FT", "40", error[k]);
         flock_free(f);
       }
-      if (getenv("SD_SHOW"))
-        printf("%s: %.1e %.1e %.1e\n", ab2 ? "ab2" : "euler", error[0][0], error[1][0],
-               error[2][0]);
       CHECK_NEAR(log2(error[1][0] / error[2][0]), ab2 ? 2.0 : 1.0, ab2 ? 0.1 : 0.05);
       assert_true(error[2][0] < (ab2 ? 3e-4 : 4e-2));
     }
@@ -174,9 +171,6 @@ static void clumps_fall_along_the_known_path(void **state)
       flock_free(f);
     }
     for (int e = 0; e < 2; e++) {
-      if (getenv("SD_SHOW"))
-        printf("%s: %.1e %.1e %.1e\n", ab2 ? "ab2" : "euler", error[0][e], error[1][e],
-               error[2][e]);
       CHECK_NEAR(log2(error[1][e] / error[2][e]), ab2 ? 2.0 : 1.0, ab2 ? 0.1 : 0.05);
     }
     if (ab2) assert_true(error[2][0] < 2e-4 && error[2][1] < 2e-5);
