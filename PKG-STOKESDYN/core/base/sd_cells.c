@@ -29,6 +29,8 @@ void sd_cells_clear(sd_cells *c, const double *lo, double side)
   for (int k = 0; k < c->slots; k++) c->cell[k] = (sd_cell){0, -1};
 }
 
+/* A chain through `next`: the newest point of a cell is its first, so nothing is moved and nothing
+ * allocated. */
 void sd_cells_add(sd_cells *c, const double *x, int i)
 {
   int64_t k[3];
@@ -40,6 +42,8 @@ void sd_cells_add(sd_cells *c, const double *x, int i)
   cell->first = i;
 }
 
+/* The corner is where no coordinate is smaller, so that cells have small numbers wherever the cloud
+ * is. Points go in from the last on, because a chain gives them in the opposite order. */
 sd_status sd_cells_fill(sd_cells *c, const double *x, int n, double side)
 {
   double lo[3] = {0.0, 0.0, 0.0};

@@ -85,6 +85,10 @@ sd_status sd_cholesky_solve(int n, double *A, int count, double *B)
   return info == 0 ? SD_OK : SD_ESINGULAR;
 }
 
+/* Jacobi: a rotation by phi in the plane of p and q makes a_pq zero when cot(2 phi) = theta = (a_qq
+ * - a_pp)/(2 a_pq); t = tan(phi) is the smaller root of t^2 + 2 theta t - 1 = 0, written so that
+ * nothing cancels. Each rotation takes 2 a_pq^2 off the sum of squares beside the diagonal, and
+ * once that is small a sweep squares it: six or seven sweeps, and 50 are never used up. */
 void sd_eigen(int n, const double *A, double *w, double *V)
 {
   double a[36];
@@ -120,6 +124,7 @@ void sd_eigen(int n, const double *A, double *w, double *V)
         }
       }
   }
+  /* largest first, each with its column of V */
   for (int i = 0; i < n; i++) w[i] = a[n * i + i];
   for (int i = 0; i < n; i++) {
     int m = i;
@@ -137,6 +142,26 @@ void sd_eigen(int n, const double *A, double *w, double *V)
   }
 }
 
+void sd_normalize(double v[3])
+{
+  const double inverse = 1.0 / sqrt(sd_dot(v, v));
+  for (int d = 0; d < 3; d++) v[d] *= inverse;
+}
+
+/* Across e and the axis that is farthest from it, so that nothing cancels in the product */
+void sd_across(const double e[3], double f[3])
+{
+  int least = 0;
+  double axis[3] = {0.0, 0.0, 0.0};
+  for (int d = 1; d < 3; d++)
+    if (fabs(e[d]) < fabs(e[least])) least = d;
+  axis[least] = 1.0;
+  sd_cross(e, axis, f);
+  sd_normalize(f);
+}
+
+/* With L = diag(1, 1, 1, l, l, l) the matrix A = L^-1 R L^-1 has one unit throughout, so that
+ * "small beside the largest" means something; R^+ = L^-1 A^+ L^-1. */
 void sd_pseudo_inverse6(const double R[36], double inverse[36])
 {
   const double tt = R[0] + R[7] + R[14], rr = R[21] + R[28] + R[35];

@@ -58,6 +58,22 @@ static inline double sd_dot(const double a[3], const double b[3])
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+static inline void sd_minus(const double a[3], const double b[3], double c[3])
+{
+  for (int d = 0; d < 3; d++) c[d] = a[d] - b[d];
+}
+static inline double sd_distance_squared(const double a[3], const double b[3])
+{
+  double r[3];
+  sd_minus(a, b, r);
+  return sd_dot(r, r);
+}
+
+/* v / |v|, in its place */
+void sd_normalize(double v[3]);
+
+/* Some unit vector across e, which is not 0 */
+void sd_across(const double e[3], double f[3]);
 
 #ifdef __cplusplus
 }

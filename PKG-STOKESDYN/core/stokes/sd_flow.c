@@ -8,6 +8,8 @@ void sd_flow_rotation(const double G[9], double w[3])
   }
 }
 
+/* G is the rate of strain, which is symmetric, plus an antisymmetric part whose three numbers are
+ * half the vorticity. */
 void sd_flow_set_vorticity(const double vorticity[3], double G[9])
 {
   for (int d = 0; d < 3; d++) {

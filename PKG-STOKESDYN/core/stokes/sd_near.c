@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "sd_cells.h"
+#include "sd_linear.h"
 
 /* Pairs in the order in which they are found: row and source */
 typedef struct {
@@ -33,6 +34,7 @@ typedef struct {
   found found;
 } search;
 
+/* The rows that are asked for are those of the targets begin ... begin + n - 1. */
 static sd_status take(search *q, int i, int j)
 {
   const int row = i - q->begin;
@@ -49,16 +51,17 @@ static sd_status look_from(search *q, const sd_cells *c, int j, int own_class, d
   for (sd_cells_walk w = sd_cells_near(c, xj, 0.5 * q->reach * (a[j] + largest));
        sd_cells_step(c, &w);)
     for (int i = w.first; i >= 0 && status == SD_OK; i = c->next[i]) {
-      const double *xi = x + 3 * (long) i, limit = 0.5 * q->reach * (a[i] + a[j]);
-      const double d[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
-      if (i == j || d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > limit * limit) continue;
+      const double limit = 0.5 * q->reach * (a[i] + a[j]);
+      if (i == j || sd_distance_squared(x + 3 * (long) i, xj) > limit * limit) continue;
       status = take(q, j, i);
       if (!own_class && status == SD_OK) status = take(q, i, j);
     }
   return status;
 }
 
-/* Rows by counting */
+/* Rows by counting. Pairs of row r are first counted in first[r + 2]; summed up, first[r + 1] is
+ * where row r begins, and moves on with every pair that is put there until it is where row r + 1
+ * begins. */
 static sd_status sort_rows(sd_neighbors *list, const found *f, int n)
 {
   const sd_status status = sd_neighbors_reserve(list, n + 1, f->count);

@@ -1,6 +1,7 @@
 #include "sd_neighbor.h"
 
 #include "sd_cells.h"
+#include "sd_linear.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,6 +21,7 @@ sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count)
     list->first = first;
     list->rows = rows;
   }
+  /* a quarter more than is asked for: a list that grows pair by pair is copied a few times only */
   if (count > list->capacity) {
     const long capacity = count + count / 4 + 64;
     int *neighbor = realloc(list->neighbor, sizeof(int) * (size_t) capacity);
@@ -30,12 +32,6 @@ sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count)
   list->pairs.first = list->first;
   list->pairs.neighbor = list->neighbor;
   return SD_OK;
-}
-
-static double distance_squared(const double *a, const double *b)
-{
-  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-  return x * x + y * y + z * z;
 }
 
 /* One more source in the row that is being written */
@@ -49,6 +45,7 @@ static inline sd_status append(sd_neighbors *list, int rows, long *count, int j)
   return SD_OK;
 }
 
+/* Cells as wide as the cut-off: a ball meets 27 of them, and holds 4 pi/3 of their volume. */
 sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff)
 {
   sd_cells c = {0};
@@ -64,7 +61,7 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
     list->first[i] = count;
     for (sd_cells_walk w = sd_cells_near(&c, xi, cutoff); sd_cells_step(&c, &w);)
       for (int j = w.first; j >= 0 && status == SD_OK; j = c.next[j])
-        if (j != i && distance_squared(xi, x + 3 * (long) j) <= cutsq)
+        if (j != i && sd_distance_squared(xi, x + 3 * (long) j) <= cutsq)
           status = append(list, n, &count, j);
   }
   list->first[n] = count;
@@ -77,6 +74,8 @@ typedef struct {
   int index;
 } clump_key;
 
+/* By clump, then the images of one sphere side by side, then by index, so that the order is the
+ * same whatever the sorting does with equal keys. */
 static int by_molecule_tag_index(const void *pa, const void *pb)
 {
   const clump_key *a = pa, *b = pb;
@@ -124,11 +123,12 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
   for (int i = 0; i < n && status == SD_OK; i++) {
     const double *xi = x + 3 * (long) i;
     list->first[i] = count;
+    /* one sphere of the clump after the other: k ... e - 1 are its images */
     for (int k = begin[i], e; k < end[i] && status == SD_OK; k = e) {
       int closest = order[k];
-      double rsq = distance_squared(xi, x + 3 * (long) closest);
+      double rsq = sd_distance_squared(xi, x + 3 * (long) closest);
       for (e = k + 1; e < end[i] && tag[order[e]] == tag[closest]; e++) {
-        const double other = distance_squared(xi, x + 3 * (long) order[e]);
+        const double other = sd_distance_squared(xi, x + 3 * (long) order[e]);
         if (other < rsq) {
           rsq = other;
           closest = order[e];
@@ -149,12 +149,14 @@ static double larger_oseen_entry(double largest, const sd_law *law, const sd_sph
                                  int j)
 {
   const double untapered = 2.25 * s->a[i] * s->a[j];
-  const double R_squared = distance_squared(s->x + 3 * (long) i, s->x + 3 * (long) j);
+  const double R_squared = sd_distance_squared(s->x + 3 * (long) i, s->x + 3 * (long) j);
   if (!(untapered > largest * R_squared)) return largest;
   const double R = sqrt(R_squared), t = sd_taper_factor(law, R);
   return R <= law->range ? fmax(largest, t * t * untapered / R_squared) : largest;
 }
 
+/* All pairs: entries fall as 1/R, so a pair farther apart than 1.6 radii of the largest sphere has
+ * less than 1.5/1.6 and decides nothing; only near ones are looked at. */
 sd_status sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
                             int n_all, int begin, int n, double *coupling)
 {

@@ -71,6 +71,15 @@ static sd_status gram(const sd_system *A, const double *weight, int count, const
   return status;
 }
 
+/* x.B y */
+static double form(const double *B, const double *x, const double *y)
+{
+  double s = 0.0;
+  for (int p = 0; p < SPAN; p++)
+    for (int q = 0; q < SPAN; q++) s += x[p] * B[SPAN * p + q] * y[q];
+  return s;
+}
+
 /* Coefficients c of the vector with c.Bc = 1 and the smallest c.Mc, which is returned: Rayleigh
  * and Ritz's method in the span. Vectors that hardly leave the span of those before them are left
  * out: T has the others' B-orthonormal combinations, row by row, by Gram and Schmidt twice, which
@@ -81,31 +90,23 @@ static double smallest_of_span(int count, const double *M, const double *B, doub
   double T[SPAN * SPAN] = {0.0}, G[SPAN * SPAN], w[SPAN], E[SPAN * SPAN];
   int m = 0;
   for (int k = 0; k < count; k++) {
-    double *t = T + SPAN * m, square = 0.0;
+    double *t = T + SPAN * m;
     const double own = B[SPAN * k + k];
     if (!(own > 0.0)) continue;
     memset(t, 0, SPAN * sizeof(double));
     t[k] = 1.0 / sqrt(own);
     for (int twice = 0; twice < 2; twice++)
       for (int l = 0; l < m; l++) {
-        double share = 0.0;
-        for (int p = 0; p < SPAN; p++)
-          for (int q = 0; q < SPAN; q++) share += T[SPAN * l + p] * B[SPAN * p + q] * t[q];
+        const double share = form(B, T + SPAN * l, t);
         for (int p = 0; p < SPAN; p++) t[p] -= share * T[SPAN * l + p];
       }
-    for (int p = 0; p < SPAN; p++)
-      for (int q = 0; q < SPAN; q++) square += t[p] * B[SPAN * p + q] * t[q];
+    const double square = form(B, t, t);
     if (!(square > 1e-10)) continue;
     for (int p = 0; p < SPAN; p++) t[p] /= sqrt(square);
     m++;
   }
   for (int k = 0; k < m; k++)
-    for (int l = 0; l < m; l++) {
-      double g = 0.0;
-      for (int p = 0; p < SPAN; p++)
-        for (int q = 0; q < SPAN; q++) g += T[SPAN * k + p] * M[SPAN * p + q] * T[SPAN * l + q];
-      G[m * k + l] = g;
-    }
+    for (int l = 0; l < m; l++) G[m * k + l] = form(M, T + SPAN * k, T + SPAN * l);
   sd_eigen(m, G, w, E);
   for (int p = 0; p < SPAN; p++) {
     c[p] = 0.0;
@@ -125,6 +126,8 @@ static void step(long size, int count, const double *c, double *const *x)
   }
 }
 
+/* Each turn: the best combination of the span becomes v, the step to it the new p, P times the
+ * residual the new w; then M w, the one product, and the Gram matrices of the new span. */
 sd_status sd_smallest_eigenvalue(const sd_system *A, const double *weight, double accuracy,
                                  int max_products, double *v, double *work, double *mu,
                                  int *products)

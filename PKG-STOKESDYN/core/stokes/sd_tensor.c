@@ -22,6 +22,8 @@ static double cross(const double h[3], int p, int q)
   return (q == (p + 1) % 3 ? -1.0 : 1.0) * h[3 - p - q];
 }
 
+/* Velocity from torque and spin from force are both cross products with rhat, of opposite sign as
+ * matrices, and rhat changes sign with the pair: hence M(j,i) = M(i,j)^T. */
 void sd_tensor_grand(const double r[3], double ai, double aj, double eta, double M[36])
 {
   const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), inv = R > 0.0 ? 1.0 / R : 0.0;

@@ -41,8 +41,8 @@ static inline void sd_rpy_radial(double R, double ai, double aj, double *f, doub
 {
   const double sum = ai + aj;
   if (R > sum) {
-    const double c = 0.75 / R, m = (ai * ai + aj * aj) / (R * R);
-    *f = c * (1.0 + m / 3.0);
+    const double inv = 1.0 / R, c = 0.75 * inv, m = (ai * ai + aj * aj) * (inv * inv);
+    *f = c * (1.0 + m * (1.0 / 3.0));
     *g = c * (1.0 - m);
     return;
   }

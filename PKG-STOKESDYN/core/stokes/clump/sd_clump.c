@@ -43,11 +43,9 @@ static void from_columns(const double E[6], double A[9])
 /* g A g^T */
 static void turn(const double g[9], const double A[9], double out[9])
 {
-  double gA[9], gt[9];
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) gt[3 * p + q] = g[3 * q + p];
-  sd_product3(g, A, gA);
-  sd_product3(gA, gt, out);
+  double Agt[9];
+  for (int p = 0; p < 3; p++) sd_multiply3(g, A + 3 * p, Agt + 3 * p);
+  sd_product3(g, Agt, out);
 }
 
 static double determinant(const double g[9])
@@ -102,10 +100,9 @@ static void gather(const sd_shape *shape, const sd_surface *s, int m, const doub
   memset(table, 0, sizeof(double) * 6 * SD_CLUMP_COLUMNS * (size_t) shape->n);
   for (int c = 0; c < SD_CLUMP_COLUMNS; c++)
     for (int i = 0; i < s->n; i++) {
-      const double *f = B + N * c + (size_t) m * i, *x = shape->x + 3 * s->sphere[i],
-                   *y = s->x + 3 * i;
-      const double arm[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
-      double *t = table + 6 * (SD_CLUMP_COLUMNS * (size_t) s->sphere[i] + c), torque[3];
+      const double *f = B + N * c + (size_t) m * i;
+      double *t = table + 6 * (SD_CLUMP_COLUMNS * (size_t) s->sphere[i] + c), arm[3], torque[3];
+      sd_minus(s->x + 3 * i, shape->x + 3 * s->sphere[i], arm);
       sd_cross(arm, f, torque);
       for (int d = 0; d < 3; d++) {
         t[d] += f[d];
@@ -114,6 +111,7 @@ static void gather(const sd_shape *shape, const sd_surface *s, int m, const doub
     }
 }
 
+/* Stokes: 6 pi a against translation, 8 pi a^3 against rotation; strain moves no lone sphere. */
 static void lone_sphere(double a, double *table)
 {
   memset(table, 0, sizeof(double) * 6 * SD_CLUMP_COLUMNS);
@@ -144,26 +142,25 @@ static void add_up(const sd_shape *s, const double *table, double sum[6][SD_CLUM
 void sd_resistance_shift(const double R[36], const double d[3], double out[36])
 {
   /* About P = c + d: velocity of c is U_P + d x W, i.e. (U, W)_c = S^T (U, W)_P; torque about P is
-   * T_c - d x F: out = S R S^T with S = [1 0; -[d] 1]. */
-  double S[36], SR[36];
-  for (int i = 0; i < 36; i++) S[i] = i % 7 == 0;
-  S[6 * 3 + 1] = d[2];
-  S[6 * 3 + 2] = -d[1];
-  S[6 * 4 + 0] = -d[2];
-  S[6 * 4 + 2] = d[0];
-  S[6 * 5 + 0] = d[1];
-  S[6 * 5 + 1] = -d[0];
-  for (int p = 0; p < 6; p++)
-    for (int q = 0; q < 6; q++) {
-      SR[6 * p + q] = 0.0;
-      for (int k = 0; k < 6; k++) SR[6 * p + q] += S[6 * p + k] * R[6 * k + q];
+   * T_c - d x F: out = S R S^T with S = [1 0; -[d] 1], on the columns of R and then on its rows. */
+  double SR[36];
+  for (int q = 0; q < 6; q++) {
+    const double F[3] = {R[q], R[6 + q], R[12 + q]};
+    double moment[3];
+    sd_cross(d, F, moment);
+    for (int p = 0; p < 3; p++) {
+      SR[6 * p + q] = F[p];
+      SR[6 * (p + 3) + q] = R[6 * (p + 3) + q] - moment[p];
     }
-  for (int p = 0; p < 6; p++)
-    for (int q = 0; q < 6; q++) {
-      double s = 0.0;
-      for (int k = 0; k < 6; k++) s += SR[6 * p + k] * S[6 * q + k];
-      out[6 * p + q] = s;
+  }
+  for (int p = 0; p < 6; p++) {
+    double moment[3];
+    sd_cross(d, SR + 6 * p, moment);
+    for (int q = 0; q < 3; q++) {
+      out[6 * p + q] = SR[6 * p + q];
+      out[6 * p + q + 3] = SR[6 * p + q + 3] - moment[q];
     }
+  }
 }
 
 /* Where the coupling block is symmetric. M: 3x3 blocks translation (tt) and coupling (cc: rotation
@@ -184,6 +181,8 @@ static void symmetric_coupling(const double tt[9], const double cc[9], double si
   }
 }
 
+/* Resistance about the centroid and about the centre of resistance (where coupling is symmetric),
+ * its inverse, and the radius of the sphere that would diffuse as fast: D = k T tr(mobility)/3. */
 static void derive(const sd_shape *s, sd_clump *clump)
 {
   double sum[6][SD_CLUMP_COLUMNS], tt[9], cc[9];
@@ -225,12 +224,10 @@ static int coincident(const sd_shape *s)
 {
   const double tolerance = SD_SHAPE_TOLERANCE * s->size;
   for (int i = 0; i < s->n; i++)
-    for (int j = i + 1; j < s->n; j++) {
-      const double *x = s->x + 3 * i, *y = s->x + 3 * j;
-      if (fabs(s->a[i] - s->a[j]) <= tolerance && fabs(x[0] - y[0]) <= tolerance &&
-          fabs(x[1] - y[1]) <= tolerance && fabs(x[2] - y[2]) <= tolerance)
+    for (int j = i + 1; j < s->n; j++)
+      if (fabs(s->a[i] - s->a[j]) <= tolerance &&
+          sd_distance_squared(s->x + 3 * i, s->x + 3 * j) <= tolerance * tolerance)
         return 1;
-    }
   return 0;
 }
 
@@ -277,6 +274,8 @@ static sd_status solve_shells(const sd_shape *shape, const sd_clump_options *o, 
   return status;
 }
 
+/* A lone sphere has a closed form, unless it is asked for as a mere point without torques; shell 1
+ * are the centres as they are; everything else is shells of points. */
 sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *o, sd_shells *cache,
                           sd_clump *clump, sd_clump_need *need)
 {
@@ -337,6 +336,8 @@ void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta,
   evaluate(clump, R, in, RIGID, F, T);
 }
 
+/* Slip s0 + A x into the axes of the shape: A is the angular velocity W of its antisymmetric part
+ * and the strain E of the rest. */
 void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
                      const double A[9], double *F, double *T)
 {

@@ -30,12 +30,14 @@ void sd_clump_velocity(const sd_shape *s, const sd_clump_motion *m, const double
   const double across[3] = {q[1] + q[2], q[2] + q[0], q[0] + q[1]};
   double sum[3] = {0.0, 0.0, 0.0}, L[3] = {0.0, 0.0, 0.0};
   for (int k = 0; k < s->n; k++) {
-    const double *x = m->x + 3 * k, *v = m->v + 3 * k;
-    const double r[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
-    L[0] += r[1] * v[2] - r[2] * v[1];
-    L[1] += r[2] * v[0] - r[0] * v[2];
-    L[2] += r[0] * v[1] - r[1] * v[0];
-    for (int d = 0; d < 3; d++) sum[d] += v[d];
+    const double *v = m->v + 3 * k;
+    double r[3], moment[3];
+    sd_minus(m->x + 3 * k, c, r);
+    sd_cross(r, v, moment);
+    for (int d = 0; d < 3; d++) {
+      sum[d] += v[d];
+      L[d] += moment[d];
+    }
   }
   for (int d = 0; d < 3; d++) U[d] = share * sum[d];
   divide(s, R, across, L, W);
@@ -66,9 +68,9 @@ void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9
    * r_k) r, row by row. */
   double B[9] = {0.0};
   for (int k = 0; k < s->n; k++) {
-    const double *x = m->x + 3 * k, *uk = m->u + 3 * k;
-    const double r[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
-    double Gr[3];
+    const double *uk = m->u + 3 * k;
+    double r[3], Gr[3];
+    sd_minus(m->x + 3 * k, c, r);
     sd_multiply3(G, r, Gr);
     for (int p = 0; p < 3; p++)
       for (int q = 0; q < 3; q++) B[3 * p + q] += (uk[p] - u[p] - Gr[p]) * r[q];

@@ -13,6 +13,7 @@
  * clouds. */
 static const double REACH = 3.0, BLOCKS = 50.0;
 
+/* Matrix and right-hand sides */
 static double dense_bytes(double unknowns)
 {
   return sizeof(double) * (unknowns * unknowns + SD_CLUMP_COLUMNS * unknowns);
@@ -38,6 +39,7 @@ sd_status sd_clump_check_need(double points, const sd_clump_options *o, sd_clump
   return fmin(need->iterative, need->dense) <= o->memory ? SD_OK : SD_ENOMEMORY;
 }
 
+/* Before anything is made: nothing is hidden yet, so this is an upper bound. */
 sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *o, sd_clump_need *need)
 {
   const int n = sd_shell_size(o->shell);
@@ -70,6 +72,8 @@ static void unit_slip(int column, const double y[3], double s[3], double w[3])
   }
 }
 
+/* M of all points, upper triangle by rows, and its Cholesky factor for all twelve columns at once.
+ * Viscosity 1: the resistance is proportional to it. */
 static sd_status solve_dense(const sd_surface *s, int m, double *B)
 {
   const size_t N = (size_t) m * s->n;
@@ -77,9 +81,8 @@ static sd_status solve_dense(const sd_surface *s, int m, double *B)
   if (!A) return SD_ENOMEMORY;
   for (int i = 0; i < s->n; i++)
     for (int j = i; j < s->n; j++) {
-      const double *x = s->x + 3 * (size_t) i, *y = s->x + 3 * (size_t) j,
-                   r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
-      double M[36];
+      double r[3], M[36];
+      sd_minus(s->x + 3 * (size_t) i, s->x + 3 * (size_t) j, r);
       if (m == 6)
         sd_tensor_grand(r, s->a[i], s->a[j], 1.0, M);
       else
@@ -92,6 +95,8 @@ static sd_status solve_dense(const sd_surface *s, int m, double *B)
   return status;
 }
 
+/* u = Omega F among the points, with a word to the caller before every product: a large surface
+ * takes minutes. */
 typedef struct {
   const sd_clump_options *o;
   sd_packed packed;
@@ -146,6 +151,8 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
   return status;
 }
 
+/* The dense way wherever it fits: it takes no tolerance, and twelve columns cost hardly more than
+ * one. */
 sd_status sd_clump_solve(const sd_surface *s, const sd_clump_options *o, const sd_clump_need *need,
                          int k, int times, double *B, int *iterations)
 {

@@ -51,9 +51,7 @@ static const double seam = 0.4;
 static int hidden(const sd_shape *s, const double *radius, int own, const double p[3])
 {
   for (int j = 0; j < s->n; j++) {
-    if (j == own) continue;
-    const double *c = s->x + 3 * j, d[3] = {p[0] - c[0], p[1] - c[1], p[2] - c[2]};
-    if (sd_dot(d, d) < radius[j] * radius[j]) return 1;
+    if (j != own && sd_distance_squared(p, s->x + 3 * j) < radius[j] * radius[j]) return 1;
   }
   return 0;
 }
@@ -74,10 +72,8 @@ sd_status sd_surface_exposed(const sd_shape *s, sd_shells *cache, double *fracti
   for (int i = 0; i < s->n && status == SD_OK; i++) {
     int overlaps = 0, count = 0;
     for (int j = 0; j < s->n && !overlaps; j++) {
-      const double *x = s->x + 3 * i, *y = s->x + 3 * j,
-                   d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       const double reach = s->a[i] + radius[j];
-      overlaps = j != i && sd_dot(d, d) < reach * reach;
+      overlaps = j != i && sd_distance_squared(s->x + 3 * i, s->x + 3 * j) < reach * reach;
     }
     fraction[i] = 1.0;
     if (!overlaps) continue;
@@ -96,6 +92,9 @@ sd_status sd_surface_exposed(const sd_shape *s, sd_shells *cache, double *fracti
 
 enum { FEWEST = 12, MOST = 642 };
 
+/* Points in proportion to the area, so that their spacing is the same on all spheres, and in all as
+ * many as n for each sphere that shows. Small spheres beside large ones keep at least the coarsest
+ * shell; of a large one, more than MOST points add nothing. */
 void sd_surface_share(const sd_shape *s, int n, const double *fraction, int *count)
 {
   const double most = fmax(MOST, 4.0 * n);
@@ -153,6 +152,8 @@ sd_status sd_surface_of_centres(const sd_shape *s, sd_surface *out)
   return SD_OK;
 }
 
+/* Twice over the spheres: how deep is hidden and how many points there are at most, then the
+ * points. */
 sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_shells *cache,
                                sd_surface *out)
 {

@@ -60,13 +60,11 @@ typedef struct {
 /* Frame from x, first axis, and y, second axis with it; third by hand (+1, -1). Columns of E. */
 static void pair_frame(const double *x, const double *y, int hand, double E[9])
 {
-  double e[3], f[3], h[3];
-  const double r = length(x);
-  for (int d = 0; d < 3; d++) e[d] = x[d] / r;
+  double e[3] = {x[0], x[1], x[2]}, f[3], h[3];
+  sd_normalize(e);
   const double along = sd_dot(y, e);
   for (int d = 0; d < 3; d++) f[d] = y[d] - along * e[d];
-  const double across = length(f);
-  for (int d = 0; d < 3; d++) f[d] /= across;
+  sd_normalize(f);
   sd_cross(e, f, h);
   for (int d = 0; d < 3; d++) {
     E[3 * d] = e[d];
@@ -75,19 +73,14 @@ static void pair_frame(const double *x, const double *y, int hand, double E[9])
   }
 }
 
-/* Any unit vector across e, turned by the angle */
+/* Unit vector across e, turned by the angle from the one that sd_across gives */
 static void across(const double e[3], double angle, double f[3])
 {
-  int least = 0;
-  double h[3], u[3] = {0.0, 0.0, 0.0};
-  for (int d = 1; d < 3; d++)
-    if (fabs(e[d]) < fabs(e[least])) least = d;
-  u[least] = 1.0;
-  sd_cross(e, u, h);
-  const double inv = 1.0 / length(h), size = 1.0 / length(e);
-  for (int d = 0; d < 3; d++) h[d] *= inv;
+  double h[3], u[3];
+  sd_across(e, h);
   sd_cross(h, e, u);
-  for (int d = 0; d < 3; d++) f[d] = cos(angle) * u[d] * size + sin(angle) * h[d];
+  sd_normalize(u);
+  for (int d = 0; d < 3; d++) f[d] = cos(angle) * u[d] + sin(angle) * h[d];
 }
 
 /* Key of the pair i, j, each a length: of i distance from the centroid and radius (all that there
@@ -98,7 +91,7 @@ static int keys(const cluster *c)
 }
 static void pair_key(const cluster *c, int i, int j, double key[SD_SHAPE_KEYS])
 {
-  const double *x = c->x + 3 * i, *y = c->x + 3 * j, d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+  const double *x = c->x + 3 * i, *y = c->x + 3 * j;
   double off[3];
   key[0] = length(x);
   key[1] = c->a[i];
@@ -106,7 +99,7 @@ static void pair_key(const cluster *c, int i, int j, double key[SD_SHAPE_KEYS])
   sd_cross(x, y, off);
   key[2] = key[0] > 0.0 ? length(off) / key[0] : 0.0;
   key[3] = c->a[j];
-  key[4] = length(d);
+  key[4] = sqrt(sd_distance_squared(x, y));
 }
 
 /* -1, 0, 1: is the key smaller, equal within tolerance, larger? */
@@ -195,8 +188,8 @@ static int map_onto(const sd_shape *s, const double Q[9], const cluster *c, doub
     /* the neighbour in order first: most often the same or the next index */
     for (int m = 0; m < s->n && found < 0; m++) {
       const int j = (k + m) % s->n;
-      const double *p = c->x + 3 * j, d[3] = {p[0] - t[0], p[1] - t[1], p[2] - t[2]};
-      if (sd_dot(d, d) <= near * near && fabs(c->a[j] - s->a[k]) <= near && !holds(perm, k, j))
+      if (sd_distance_squared(c->x + 3 * j, t) <= near * near && fabs(c->a[j] - s->a[k]) <= near &&
+          !holds(perm, k, j))
         found = j;
     }
     if (found < 0) return 0;

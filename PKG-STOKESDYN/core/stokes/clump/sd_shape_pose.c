@@ -4,18 +4,6 @@
 
 #include <math.h>
 
-static void any_across(const double e[3], double f[3])
-{
-  int least = 0;
-  double u[3] = {0.0, 0.0, 0.0};
-  for (int d = 1; d < 3; d++)
-    if (fabs(e[d]) < fabs(e[least])) least = d;
-  u[least] = 1.0;
-  sd_cross(e, u, f);
-  const double inv = 1.0 / sqrt(sd_dot(f, f));
-  for (int d = 0; d < 3; d++) f[d] *= inv;
-}
-
 /* The main axes e of the shape and their images: sum over the spheres of arm x is (R e) up to
  * rounding, and for spheres that have moved a little it is near; made orthonormal, R = sum (image
  * of e) e^T. */
@@ -41,19 +29,17 @@ static void rotation(const sd_shape *s, const double *x, double R[9], double c[3
   if (s->rank == 0 || !(uu > 0.0)) {
     for (int d = 0; d < 9; d++) R[d] = d % 4 == 0;
   } else {
-    const double inv = 1.0 / sqrt(uu);
-    for (int d = 0; d < 3; d++) u[d] *= inv;
+    sd_normalize(u);
     double vv = 0.0;
     if (s->rank == 2) {
       const double along = sd_dot(u, v);
       for (int d = 0; d < 3; d++) v[d] -= along * u[d];
       vv = sd_dot(v, v);
     }
-    if (vv > 0.0) {
-      const double i = 1.0 / sqrt(vv);
-      for (int d = 0; d < 3; d++) v[d] *= i;
-    } else
-      any_across(u, v);
+    if (vv > 0.0)
+      sd_normalize(v);
+    else
+      sd_across(u, v);
     sd_cross(u, v, w);
     const double *e = s->axes;
     for (int p = 0; p < 3; p++)
@@ -61,6 +47,7 @@ static void rotation(const sd_shape *s, const double *x, double R[9], double c[3
   }
 }
 
+/* Everything from the first sphere, which may be far from the origin: only differences matter. */
 double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3])
 {
   const int n = s->n;

@@ -40,12 +40,6 @@ static int append_orbit(const double p[3], double *out, int n)
   return n;
 }
 
-static void normalize(double p[3])
-{
-  const double inv = 1.0 / sqrt(sd_dot(p, p));
-  for (int d = 0; d < 3; d++) p[d] *= inv;
-}
-
 /* n = 10 * 4^k + 2: the icosahedron, its edges halved k times. Returns 0 if n is no such number or
  * memory is short. */
 static int icosahedral(int n, double *out)
@@ -58,27 +52,20 @@ static int icosahedral(int n, double *out)
   if (size != n) return 0;
   const double golden = 0.5 * (1.0 + sqrt(5.0));
   double vertex[3] = {0.0, 1.0, golden};
-  normalize(vertex);
+  sd_normalize(vertex);
   int count = append_orbit(vertex, out, 0);
   for (int l = 0; l < level; l++) {
     /* Edges of a subdivided icosahedron are its pairs closer than 1.4 times its shortest edge. */
     double least = 4.0;
-    for (int j = 1; j < count; j++) {
-      double e[3];
-      for (int d = 0; d < 3; d++) e[d] = out[d] - out[3 * j + d];
-      if (sd_dot(e, e) < least) least = sd_dot(e, e);
-    }
+    for (int j = 1; j < count; j++) least = fmin(least, sd_distance_squared(out, out + 3 * j));
     const int old = count;
     for (int i = 0; i < old; i++)
       for (int j = i + 1; j < old; j++) {
-        double e[3], m[3];
-        for (int d = 0; d < 3; d++) {
-          e[d] = out[3 * i + d] - out[3 * j + d];
-          m[d] = out[3 * i + d] + out[3 * j + d];
-        }
-        if (sd_dot(e, e) > 1.96 * least) continue;
+        double m[3];
+        if (sd_distance_squared(out + 3 * i, out + 3 * j) > 1.96 * least) continue;
         if (count == n) return 0;
-        normalize(m);
+        for (int d = 0; d < 3; d++) m[d] = out[3 * i + d] + out[3 * j + d];
+        sd_normalize(m);
         memcpy(out + 3 * count++, m, sizeof(m));
       }
   }
@@ -111,7 +98,8 @@ static double coulomb(const orbits *o, const double *all, int n, double (*force)
     const double *p = o->p[i];
     double e = 0.0, f[3] = {0.0, 0.0, 0.0};
     for (int j = 0; j < n; j++) {
-      const double r[3] = {p[0] - all[3 * j], p[1] - all[3 * j + 1], p[2] - all[3 * j + 2]};
+      double r[3];
+      sd_minus(p, all + 3 * j, r);
       const double sq = sd_dot(r, r);
       if (sq == 0.0) continue;
       const double inv = 1.0 / sqrt(sq), inv3 = inv / sq;
@@ -144,10 +132,10 @@ static double relax(orbits *o, double *all, double (*force)[3], double (*last)[3
         if (i >= o->planar || d > 0)
           o->p[i][d] = fabs(o->p[i][d]); /* an image in the first octant */
       }
-      normalize(o->p[i]);
+      sd_normalize(o->p[i]);
       /* Points on a mirror plane or axis by accident would be fewer than their orbit. */
       for (int d = i < o->planar ? 1 : 0; d < 3; d++) o->p[i][d] = fmax(o->p[i][d], 1e-6);
-      normalize(o->p[i]);
+      sd_normalize(o->p[i]);
     }
     n = spread(o, all);
     const double now = coulomb(o, all, n, force);
@@ -213,11 +201,7 @@ static sd_status even_points(int n, double *out)
       const int m = 6 * o.six + 8 * o.eight;
       for (int i = 0; i < m; i++)
         for (int j = 0; j < n; j++)
-          if (i != j) {
-            const double r[3] = {all[3 * i] - all[3 * j], all[3 * i + 1] - all[3 * j + 1],
-                                 all[3 * i + 2] - all[3 * j + 2]};
-            fixed += 1.0 / sqrt(sd_dot(r, r));
-          }
+          if (i != j) fixed += 1.0 / sqrt(sd_distance_squared(all + 3 * i, all + 3 * j));
       energy += fixed;
       if (energy < best) {
         best = energy;

@@ -54,6 +54,7 @@ static long fill_blocks(sd_blocks *b, const sd_precondition_case *c)
   return largest;
 }
 
+/* Two steps: what is known from the number of clumps, then what follows from who is in them. */
 static sd_status allocate(sd_blocks *b, const sd_precondition_case *c)
 {
   const size_t blocks = (size_t) c->clumps, n = (size_t) c->n;
@@ -86,7 +87,7 @@ static double root(const sd_blocks *b, int sphere, int p)
   return b->root[2 * (long) sphere + (p >= 3)];
 }
 
-/* Inverse of a symmetric positive definite 3x3 matrix. */
+/* Inverse of a symmetric positive definite 3x3 matrix: its cofactors over its determinant. */
 static void inverse3(const double *S, double *T)
 {
   for (int p = 0; p < 3; p++)
@@ -122,6 +123,7 @@ static void rigid_translations(sd_blocks *b, int k, double S[9])
       }
 }
 
+/* A clump without spheres that take part has nothing to invert. */
 sd_status sd_blocks_renew(sd_blocks *b, const sd_precondition_case *c, int k)
 {
   const int m = (int) (b->first[k + 1] - b->first[k]), size = b->width * m;
@@ -198,6 +200,8 @@ sd_status sd_blocks_make(sd_blocks *b, const sd_precondition_case *c)
   return status;
 }
 
+/* A rigid motion leaves a clump's C as it is but for the axes: B in new axes is R B R^T, and only R
+ * is kept. The tables of clumps that have bent are made anew where they are, and shared. */
 sd_status sd_blocks_move(sd_blocks *b, const sd_precondition_case *c)
 {
   sd_status status = SD_OK;
@@ -264,15 +268,12 @@ sd_status sd_blocks_couple(sd_blocks *b, const sd_precondition_case *c)
 /* out = R v, and R^T v, of each of the vectors of a sphere */
 static void turned(const double *R, const double *v, int width, double *out)
 {
-  for (; width > 0; width -= 3, v += 3, out += 3)
-    for (int d = 0; d < 3; d++)
-      out[d] = R[3 * d] * v[0] + R[3 * d + 1] * v[1] + R[3 * d + 2] * v[2];
+  for (int k = 0; k < width; k += 3) sd_multiply3(R, v + k, out + k);
 }
 
 static void turned_back(const double *R, const double *v, int width, double *out)
 {
-  for (; width > 0; width -= 3, v += 3, out += 3)
-    for (int d = 0; d < 3; d++) out[d] = R[d] * v[0] + R[3 + d] * v[1] + R[6 + d] * v[2];
+  for (int k = 0; k < width; k += 3) sd_multiply3t(R, v + k, out + k);
 }
 
 /* z += (B W S^-1 Q S^-1 W^T B - B W S^-1 W^T B) r, from right to left; the second term is of this
@@ -312,7 +313,8 @@ static void couple(const sd_blocks *b, const double *r, double *z)
   }
 }
 
-/* z = B r in the rows of block k */
+/* z = B r in the rows of block k, B = R D^1/2 C^-1 D^1/2 R^T from right to left: into the axes at
+ * set-up, through the stored inverse column by column, and back. */
 static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
 {
   const int *member = b->member + b->first[k], width = b->width;
@@ -334,6 +336,7 @@ static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
   }
 }
 
+/* Spheres by themselves, which every part knows, are the first part's. */
 sd_status sd_blocks_apply(void *ctx, const double *r, double *z)
 {
   const sd_blocks *b = ctx;

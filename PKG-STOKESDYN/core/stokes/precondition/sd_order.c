@@ -1,20 +1,18 @@
 #include "sd_order.h"
 
 #include "sd_cells.h"
+#include "sd_linear.h"
 
 #include <stdlib.h>
 
-/* R^2 of spheres i and j */
 static double squared(const double *x, int i, int j)
 {
-  const double *p = x + 3 * (long) i, *q = x + 3 * (long) j;
-  const double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  return sd_distance_squared(x + 3 * (long) i, x + 3 * (long) j);
 }
 
 /* The distances at which spheres come only shrink, and the cells follow: whenever the reach has
- * halved they are made as wide as it is now, so that a ball never meets more than a few of them, and
- * they are filled anew once for each scale that the scene has. Returns 1 when they are new and
+ * halved they are made as wide as it is now, so that a ball never meets more than a few of them,
+ * and they are filled anew once for each scale that the scene has. Returns 1 when they are new and
  * empty. `extent`, of the whole scene, bounds them from below: spheres at one point have no
  * distance, and the numbers of cells have to fit into 64 bits. */
 static int shrink(sd_cells *c, const double *corner, double reach, double extent)

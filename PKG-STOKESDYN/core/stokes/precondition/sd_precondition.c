@@ -3,6 +3,7 @@
 #include "sd_blocks.h"
 #include "sd_sparse.h"
 
+/* Ranks that went different ways would wait for each other for ever: one failure is everybody's. */
 sd_status sd_precondition_agree(const sd_precondition_case *c, sd_status mine)
 {
   if (!c->sum) return mine;
@@ -43,6 +44,8 @@ static void free_blocks(void *P)
   sd_blocks_free(P);
 }
 
+/* The factor is of matrix C, which knows no viscosity; where spheres have moved a little it is
+ * still near, and the choice of sd_choice.h says when it is worn. */
 static sd_status make_sparse(void *P, const sd_precondition_case *c)
 {
   const sd_status status = sd_sparse_create(P, &c->law, &c->spheres, c->n, c->width, c->rho,

@@ -216,6 +216,8 @@ __attribute__((target("avx2,fma"))) static void six_avx2(int columns, const long
 }
 #endif
 
+/* Width 3 has a kernel of each instruction set among those of the product; width 6 is worth its own
+ * only where six columns fit into registers. */
 static kernel *kernel_of(int width)
 {
   const struct sd_kernels *kernels = sd_kernels_of(sd_isa_best());
@@ -226,6 +228,7 @@ static kernel *kernel_of(int width)
   return plain_six;
 }
 
+/* z = D^1/2 L L^T D^1/2 r: scaled into vectors that the kernels can load whole, and back. */
 sd_status sd_sparse_apply(void *ctx, const double *r, double *z)
 {
   const sd_sparse *f = ctx;

@@ -36,18 +36,15 @@ static inline void put_cross(double c, const double h[3], double *B)
 static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int j, int width,
                               double B[36])
 {
-  const double *xi = s->x + 3 * (long) i, *xj = s->x + 3 * (long) j, ai = s->a[i], aj = s->a[j];
-  const double r[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
-  const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), inv = R > 0.0 ? 1.0 / R : 0.0;
+  const double ai = s->a[i], aj = s->a[j];
+  double r[3];
+  sd_minus(s->x + 3 * (long) i, s->x + 3 * (long) j, r);
+  const double R = sqrt(sd_dot(r, r)), inv = R > 0.0 ? 1.0 / R : 0.0;
   const double h[3] = {r[0] * inv, r[1] * inv, r[2] * inv};
   double f, g;
   if (law->tensor == SD_TENSOR_OSEEN)
     sd_oseen_radial(R, &f, &g);
-  else if (R > ai + aj) { /* most pairs: sd_rpy_radial with one division */
-    const double m = (ai * ai + aj * aj) * (inv * inv);
-    f = 0.75 * inv * (1.0 + m * (1.0 / 3.0));
-    g = 0.75 * inv * (1.0 - m);
-  } else
+  else
     sd_rpy_radial(R, ai, aj, &f, &g);
   double c = sqrt(ai * aj);
   if (law->taper != SD_TAPER_NONE) c *= sd_taper_factor(law, R);
@@ -82,6 +79,9 @@ static inline void fill(const sd_law *law, const sd_spheres *s, const int *membe
     }
 }
 
+/* The diagonal that is added is first none, then what rounding may have taken off an eigenvalue of
+ * a large block; more than that is a matrix that is not definite by itself. Of width 3 and 6 the
+ * compiler makes a copy each. */
 sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *member, int m,
                            int width, double *A)
 {

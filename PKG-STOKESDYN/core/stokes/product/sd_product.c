@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_linear.h"
 #include "sd_product_internal.h"
 
 double sd_taper_factor(const sd_law *law, double R)
@@ -14,6 +15,7 @@ double sd_taper_factor(const sd_law *law, double R)
   return s * s * (1.0 + 0.5 * q);
 }
 
+/* Which kernels this build holds; sd_isa_supported says what the processor can run of them. */
 const struct sd_kernels *sd_kernels_of(sd_isa isa)
 {
   if (isa == SD_ISA_PLAIN) return &sd_kernels_plain;
@@ -119,6 +121,9 @@ static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_
 /* Columns and rows that stand for nothing: no force, and far from everything. */
 static const double nowhere = 1e16;
 
+/* Columns, one array for each number, as vectors of several sources are read from them. Spheres
+ * that take no part are left out here, which costs those that do nothing; `index` remembers who is
+ * who. */
 sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                         int width)
 {
@@ -152,6 +157,9 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
   return SD_OK;
 }
 
+/* Rows of eight numbers, a line of the cache, as neighbours come in no order: what is read of one
+ * is read at once. Nobody is left out, since the pairs' indices say where a row is; who takes no
+ * part is far away and has no force. */
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                          int width)
 {
@@ -185,6 +193,8 @@ static void take_sums(const sd_packed *p, int i, int k, double *u)
   for (int d = 3; d < p->width; d++) u[d] = turn * p->u[d][k];
 }
 
+/* F of all spheres into the columns, sums to 0. The sphere's own w = 1/sqrt(eta) goes with its
+ * force and its partner's with the sum: together 1/sqrt(eta_i eta_j). */
 static void load_columns(sd_packed *p, const double *F)
 {
   const long m = p->width;
@@ -244,9 +254,8 @@ void sd_pairs_within(const sd_pairs *candidates, const sd_spheres *s, double cut
     const double *xi = s->x + 3 * (long) i;
     for (long k = candidates->first[i]; k < candidates->first[i + 1]; k++) {
       const int j = candidates->neighbor[k];
-      const double *xj = s->x + 3 * (long) j;
-      const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
-      if (s->a[j] > 0.0 && dx * dx + dy * dy + dz * dz <= cutsq) neighbor[count++] = j;
+      if (s->a[j] > 0.0 && sd_distance_squared(xi, s->x + 3 * (long) j) <= cutsq)
+        neighbor[count++] = j;
     }
   }
   first[candidates->n] = count;

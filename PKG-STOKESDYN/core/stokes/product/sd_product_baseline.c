@@ -42,6 +42,7 @@ static inline __attribute__((always_inline)) vec roots(vec v)
 }
 #endif
 
+/* Two rows become columns element by element: there is no shuffle that would be quicker. */
 #define COLUMN(row, width, j, k) \
   ((vec){(row)[(width) * (long) (j)[0] + (k)], (row)[(width) * (long) (j)[1] + (k)]})
 #define ROWS(row, j, x, y, z, a, f0, f1, f2) \

@@ -75,6 +75,7 @@ static void symmetric(const sd_packed *p, int part, int parts, int width, pair_s
   }
 }
 
+/* The pairs as they are listed; a source may be a ghost, or an image of the target itself. */
 static void list(const sd_packed *p, const sd_pairs *pairs, int width, pair_sum *add)
 {
   for (int i = 0; i < pairs->n; i++) {
