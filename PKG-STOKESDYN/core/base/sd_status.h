@@ -16,6 +16,7 @@ extern "C" {
   _(SD_ESINGULAR, "the mobility matrix is singular")                                   \
   _(SD_ENOTFINITE, "met a value that is not a finite number")                          \
   _(SD_ENOMEMORY, "out of memory")                                                     \
+  _(SD_EOUTSIDE, "outside of what is given")                                             \
   _(SD_ECALLBACK, "a function that the caller gave has failed")
 
 typedef enum {

@@ -1,0 +1,196 @@
+#include "sd_flow_grid.h"
+
+#include <math.h>
+
+/* Nodes count as even when none is off its place by more than this part of a cell: the weight of a
+ * node is then off by as much, which is rounding in the coordinates that a file gives. */
+#define EVEN 1e-12
+
+int sd_grid_axis_init(sd_grid_axis *axis, int n, const double *at, sd_outside outside)
+{
+  for (int k = 1; k < n; k++)
+    if (!(at[k] > at[k - 1])) return k;
+
+  const double density = n > 1 ? (n - 1) / (at[n - 1] - at[0]) : 0.0;
+  int even = n > 1;
+  for (int k = 1; k < n && even; k++) even = fabs((at[k] - at[0]) * density - k) <= EVEN;
+  *axis = (sd_grid_axis){n, at, outside, even ? density : 0.0};
+  return 0;
+}
+
+/* Where a coordinate lies on an axis: between node `cell` and the next one. */
+typedef struct {
+  int cell;
+  /* of the next node; what a length is in units of the cell. Both 0 on an axis of one node. */
+  double weight, per_length;
+} place;
+
+/* The last node at or below x, but for the last of all. */
+static int cell_of(const sd_grid_axis *axis, double x)
+{
+  if (axis->density > 0.0) {
+    const int cell = (int) ((x - axis->at[0]) * axis->density);
+    return cell < axis->n - 1 ? cell : axis->n - 2;
+  }
+  int low = 0, high = axis->n - 1;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    if (axis->at[middle] <= x)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static sd_status find_place(const sd_grid_axis *axis, double x, place *p)
+{
+  *p = (place){0, 0.0, 0.0};
+  if (!isfinite(x)) return SD_ENOTFINITE;
+  if (axis->n == 1) return SD_OK;
+
+  const double first = axis->at[0], last = axis->at[axis->n - 1];
+  int held = 0;
+  if (x < first || x > last) {
+    if (axis->outside == SD_OUTSIDE_NONE) return SD_EOUTSIDE;
+    held = axis->outside == SD_OUTSIDE_CLAMP;
+    if (!held) x -= (last - first) * floor((x - first) / (last - first));
+    // Moved by periods, x may miss the interval by its rounding.
+    x = x < first ? first : x > last ? last : x;
+  }
+  p->cell = cell_of(axis, x);
+  if (axis->density > 0.0) {
+    p->per_length = axis->density;
+    p->weight = (x - first) * axis->density - p->cell;
+  } else {
+    p->per_length = 1.0 / (axis->at[p->cell + 1] - axis->at[p->cell]);
+    p->weight = (x - axis->at[p->cell]) * p->per_length;
+  }
+  // Beyond the end the value is held, so its slope is none.
+  if (held) p->per_length = 0.0;
+  return SD_OK;
+}
+
+size_t sd_flow_grid_size(const sd_flow_grid *grid)
+{
+  size_t size = grid->columns;
+  for (int d = 0; d < SD_GRID_AXES; d++) size *= grid->axis[d].n;
+  return size;
+}
+
+size_t sd_flow_grid_fault(const sd_flow_grid *grid)
+{
+  const size_t size = sd_flow_grid_size(grid);
+  for (size_t k = 0; k < size; k++) {
+    const int is_viscosity = k % grid->columns == 3;
+    if (!isfinite(grid->value[k]) || (is_viscosity && !(grid->value[k] > 0.0))) return k;
+  }
+  return size;
+}
+
+double sd_flow_grid_seam(const sd_flow_grid *grid, int axis)
+{
+  const int n = grid->axis[axis].n;
+  if (grid->axis[axis].outside != SD_OUTSIDE_PERIODIC || n == 1) return 0.0;
+
+  // Numbers that are neighbours along the axis stand `stride` apart; `whole` holds the axis once.
+  size_t stride = grid->columns;
+  for (int d = 0; d < axis; d++) stride *= grid->axis[d].n;
+  const size_t size = sd_flow_grid_size(grid), whole = stride * n, last = stride * (n - 1);
+
+  // of the velocity, and of the viscosity
+  double jump[2] = {0.0, 0.0}, scale[2] = {0.0, 0.0};
+  for (size_t begin = 0; begin < size; begin += whole)
+    for (size_t k = begin; k < begin + stride; k++) {
+      const double difference = fabs(grid->value[k + last] - grid->value[k]);
+      const int kind = k % grid->columns == 3;
+      jump[kind] = fmax(jump[kind], difference);
+    }
+  for (size_t k = 0; k < size; k++) {
+    const int kind = k % grid->columns == 3;
+    scale[kind] = fmax(scale[kind], fabs(grid->value[k]));
+  }
+  double largest = 0.0;
+  for (int kind = 0; kind < 2; kind++)
+    if (jump[kind] > 0.0) largest = fmax(largest, jump[kind] / scale[kind]);
+  return largest;
+}
+
+sd_status sd_flow_grid_frame(const sd_flow_grid *grid, double time, sd_flow_frame *frame)
+{
+  const sd_grid_axis *axis = &grid->axis[SD_GRID_TIME];
+  const size_t stride = sd_flow_grid_size(grid) / axis->n;
+  place p;
+  const sd_status status = find_place(axis, time, &p);
+  if (status != SD_OK) return status;
+  // On a frame the other one is not looked at: half the work, and all of it in a steady flow.
+  frame->now = grid->value + stride * p.cell;
+  frame->next = p.weight > 0.0 ? frame->now + stride : NULL;
+  frame->weight = p.weight;
+  return SD_OK;
+}
+
+/* The cell of a place: how far the next node is in each direction, in numbers of value[]; 0 on an
+ * axis of one node. */
+typedef struct {
+  size_t corner, next[3];
+  place at[3];
+} cell;
+
+/* value = the trilinear mean of the eight corners; slope[q] its derivative along axis q.
+ * Done edge by edge: four edges along x, two along y of what these gave, one along z. */
+static void trilinear(const double *v, const cell *c, double *value, double slope[3])
+{
+  const double wx = c->at[0].weight, wy = c->at[1].weight, wz = c->at[2].weight;
+  double face[2], face_x[2], face_y[2];
+  for (int z = 0; z < 2; z++) {
+    const double *low = v + z * c->next[2], *high = low + c->next[1];
+    const double low_x = low[c->next[0]] - low[0], high_x = high[c->next[0]] - high[0];
+    const double low_0 = low[0] + wx * low_x, high_0 = high[0] + wx * high_x;
+    face[z] = low_0 + wy * (high_0 - low_0);
+    face_x[z] = low_x + wy * (high_x - low_x);
+    face_y[z] = high_0 - low_0;
+  }
+  *value = face[0] + wz * (face[1] - face[0]);
+  slope[0] = (face_x[0] + wz * (face_x[1] - face_x[0])) * c->at[0].per_length;
+  slope[1] = (face_y[0] + wz * (face_y[1] - face_y[0])) * c->at[1].per_length;
+  slope[2] = (face[1] - face[0]) * c->at[2].per_length;
+}
+
+static sd_status find_cell(const sd_flow_grid *grid, const double x[3], cell *c)
+{
+  size_t stride = grid->columns;
+  c->corner = 0;
+  for (int d = 0; d < 3; d++) {
+    const sd_status status = find_place(&grid->axis[d], x[d], &c->at[d]);
+    if (status != SD_OK) return status;
+    c->corner += stride * c->at[d].cell;
+    c->next[d] = grid->axis[d].n > 1 ? stride : 0;
+    stride *= grid->axis[d].n;
+  }
+  return SD_OK;
+}
+
+sd_status sd_flow_grid_at(const sd_flow_grid *grid, const sd_flow_frame *frame, const double x[3],
+                          double *value, double *gradient)
+{
+  cell c;
+  const sd_status status = find_cell(grid, x, &c);
+  if (status != SD_OK) {
+    for (int p = 0; p < grid->columns; p++) value[p] = NAN;
+    for (int k = 0; k < 9 && gradient; k++) gradient[k] = NAN;
+    return status;
+  }
+  for (int p = 0; p < grid->columns; p++) {
+    double slope[3];
+    trilinear(frame->now + c.corner + p, &c, &value[p], slope);
+    if (frame->next) {
+      double later, later_slope[3];
+      trilinear(frame->next + c.corner + p, &c, &later, later_slope);
+      value[p] += frame->weight * (later - value[p]);
+      for (int q = 0; q < 3; q++) slope[q] += frame->weight * (later_slope[q] - slope[q]);
+    }
+    for (int q = 0; q < 3 && gradient && p < 3; q++) gradient[3 * p + q] = slope[q];
+  }
+  return SD_OK;
+}
