@@ -232,29 +232,19 @@ void Ambient::complain(long long first) const
     if (atom->tag[i] == first / 16 && fault(i) == first % 16)
       value = first % 16 == RADIUS ? atom->radius[i] : viscosity(i) / force->vxmu2f;
   MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
-  const std::string who = command + ": step " + std::to_string(update->ntimestep) + ", atom " +
-      std::to_string(first / 16) + ": ";
-  switch (first % 16) {
-    case POSITION:
-      fail(lmp, who + "its position is not a finite number");
-    case FAR_OUT:
-      fail(lmp,
-           who + "its position is more than a box length outside of the periodic box: the run has "
-                 "blown up; is the time step too long, or a number in other units?");
-    case VELOCITY:
-      fail(lmp, who + "its velocity is not a finite number");
-    case RADIUS:
-      fail(lmp,
-           who + "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)");
-    case VISCOSITY:
-      fail(lmp, who + "keyword visc: its viscosity " + text(sum) + " must be > 0");
-    case FLUID_VORTICITY:
-      fail(lmp,
-           who +
-               "keyword fluid_vorticity: the vorticity of the fluid there is not a finite number");
-    default:
-      fail(lmp, who + "keyword fluid_velocity: the fluid velocity there is not a finite number");
-  }
+  const int fault = first % 16;
+  const std::string why[] = {
+      "",
+      "its position is not a finite number",
+      "its position is more than a box length outside of the periodic box: the run has blown up; is "
+      "the time step too long, or a number in other units?",
+      "its velocity is not a finite number",
+      "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)",
+      "keyword visc: its viscosity " + text(sum) + " must be > 0",
+      "keyword fluid_velocity: the fluid velocity there is not a finite number",
+      "keyword fluid_vorticity: the vorticity of the fluid there is not a finite number"};
+  fail(lmp, command + ": step " + std::to_string(update->ntimestep) + ", atom " +
+                std::to_string(first / 16) + ": " + why[fault]);
 }
 
 double Ambient::memory_usage() const

@@ -69,11 +69,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
     for (int d = 0; d < 3; d++) s[3 + d] = (w.empty() ? 0.0 : w[3 * (size_t) i + d]) - omega[d];
   }
 
-  /* For all atoms at once: nullptr where it is the same everywhere. */
-  const double *viscosities() const { return eta.empty() ? nullptr : eta.data(); }
-  const double *velocities() const { return u.empty() ? nullptr : u.data(); }
+  /* Of all atoms; nullptr: the velocity is the same everywhere, namely uniform_velocity(). */
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
-  double uniform_viscosity() const { return eta_uniform; }
   const double *uniform_velocity() const { return u_uniform; }
 
   /* Is all of it plain numbers? Then these seven say it: viscosity, velocity, vorticity. */

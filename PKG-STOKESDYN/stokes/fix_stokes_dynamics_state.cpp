@@ -177,28 +177,34 @@ void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
     set_arrays(nlocal);
 }
 
+/* What restart files hold of the numbers, by name. */
+template <class Global, class Visit> static void each_number(Global &g, const Visit &visit)
+{
+  visit("last_step", g.last_step);
+  visit("last_solve", g.last_solve);
+  visit("reported", g.reported);
+  visit("spheres", g.spheres);
+  visit("solves", g.solves);
+  visit("unconverged", g.unconverged);
+  visit("diverged", g.diverged);
+  visit("iterations", g.iterations);
+  visit("residual", g.residual);
+  visit("solutions", g.solutions);
+  visit("lambda_min", g.guard.lambda_min);
+  visit("guard_due", g.guard.due);
+  visit("dt_limit", g.guard.limit);
+}
+
 void FixStokesDynamicsState::write_restart(FILE *fp)
 {
   present_box(global.box);
   restart_written = true;
   if (comm->me != 0) return;
   NamedState out(STYLE);
-  out.put("last_step", global.last_step);
-  out.put("last_solve", global.last_solve);
-  out.put("reported", global.reported);
-  out.put("spheres", global.spheres);
+  each_number(global, [&out](const char *name, double value) { out.put(name, value); });
   out.put("numbers", std::vector<double>(global.numbers, global.numbers + 7));
-  out.put("solves", global.solves);
-  out.put("unconverged", global.unconverged);
-  out.put("diverged", global.diverged);
-  out.put("iterations", global.iterations);
-  out.put("residual", global.residual);
-  out.put("solutions", global.solutions);
   out.put("box", std::vector<double>(global.box, global.box + 6));
   out.put("preconditioner", global.preconditioner);
-  out.put("lambda_min", global.guard.lambda_min);
-  out.put("guard_due", global.guard.due);
-  out.put("dt_limit", global.guard.limit);
   out.put("loose", global.loose);
   out.put_bits("settings", global.settings);
   out.write(fp);
@@ -208,20 +214,10 @@ void FixStokesDynamicsState::restart(char *buf)
 {
   NamedState in(STYLE);
   if (!in.read(lmp, buf)) return;
-  global.last_step = in.get("last_step", -1.0);
-  global.last_solve = in.get("last_solve", -1.0);
-  global.reported = in.get("reported", 0.0);
-  global.spheres = in.get("spheres", 0.0);
+  each_number(global, [&in](const char *name, double &value) { value = in.get(name, value); });
   in.get("numbers", global.numbers, 7);
-  global.solves = in.get("solves", 0.0);
-  global.unconverged = in.get("unconverged", 0.0);
-  global.diverged = in.get("diverged", 0.0);
-  global.iterations = in.get("iterations", 0.0);
-  global.residual = in.get("residual", 0.0);
-  global.solutions = in.get("solutions", 0.0);
   in.get("box", global.box, 6);
   global.preconditioner = in.get("preconditioner");
-  global.guard = {in.get("lambda_min", 0.0), in.get("guard_due", 0.0), in.get("dt_limit", 0.0)};
   global.loose = in.get("loose");
   global.settings = in.get_bits("settings", 0);
 }

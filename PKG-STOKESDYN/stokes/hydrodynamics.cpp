@@ -84,9 +84,6 @@ void Hydrodynamics::clumps()
     solvers = ambient.who();
     return;
   }
-  const RigidClumps::Motion motion = {
-      ambient.active(),     ambient.viscosities(),       ambient.uniform_viscosity(),
-      ambient.velocities(), ambient.uniform_velocity(), ambient.gradients()};
   const bool wants_perturbation = reported || settings.rigid.auto_resolve;
   auto take = [this, wants_perturbation](int i, const double *F, const double *T) {
     double *row = memory->rows.give(i), s[6] = {0.0};
@@ -101,7 +98,7 @@ void Hydrodynamics::clumps()
     }
   };
   std::vector<char> left_over;
-  rigid.forces(motion, take, left_over);
+  rigid.forces(ambient, take, left_over);
   memory->global.loose = rigid.loose();
   solvers.clear();
   for (int i : ambient.who())

@@ -11,6 +11,7 @@
 #ifndef SD_RIGID_CLUMPS_H
 #define SD_RIGID_CLUMPS_H
 
+#include "ambient.h"
 #include "pointers.h"
 #include "scene.h"
 
@@ -52,30 +53,17 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void set_loose(const std::vector<double> &ids);
   bool any_loose() const { return !loose_molecules.empty(); }
 
-  /* What a step knows of the atoms of this rank. */
-  struct Motion {
-    const std::vector<char> &active;
-    /* [n]; nullptr: it is the same everywhere, namely */
-    const double *eta;
-    double eta_uniform;
-    /* [3n]; nullptr: it is the same everywhere, namely */
-    const double *u_inf;
-    const double *u_uniform;
-    /* [9n] of the fluid velocity; nullptr: it is uniform */
-    const double *gradient;
-  };
-
   /* Calls take(i, F, T) for every owned sphere i of a rigid clump that takes part: force [3],
    * torque [3] (nullptr without rotation). loose[i] = 1: atom i belongs to a loose clump, or to
    * none (molecule 0), and is the solver's. Errors: a clump whose spheres are not all selected; one
    * that is not rigid (yes). */
   template <class Take>
-  void forces(const Motion &motion, const Take &take, std::vector<char> &loose)
+  void forces(const Ambient &ambient, const Take &take, std::vector<char> &loose)
   {
     Step step;
-    begin_step(motion, loose);
+    begin_step(ambient, loose);
     for (size_t k = 0; k < bodies.size(); k++) {
-      if (!evaluate(bodies[k], motion, step)) continue;
+      if (!evaluate(bodies[k], ambient, step)) continue;
       for (int s = 0; s < bodies[k].n; s++) {
         const int i = owned[bodies[k].begin + s];
         if (i >= 0) take(i, &step.F[3 * s], settings.rotation ? &step.T[3 * s] : nullptr);
@@ -151,11 +139,11 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void announce(const Shape &s, double seconds) const;
   void drop_unused();
   void arrange();
-  void gather(const Motion &motion);
-  void begin_step(const Motion &motion, std::vector<char> &loose);
+  void gather(const Ambient &ambient);
+  void begin_step(const Ambient &ambient, std::vector<char> &loose);
   bool asks_for_spins(const Body &body) const;
-  int collect(const Body &body, const Motion &motion, Step &step, double &eta) const;
-  bool evaluate(const Body &body, const Motion &motion, Step &step) const;
+  int collect(const Body &body, const Ambient &ambient, Step &step, double &eta) const;
+  bool evaluate(const Body &body, const Ambient &ambient, Step &step) const;
   void end_step(const Step &step, std::vector<char> &loose);
   void loosen(const std::vector<int64_t> &molecules);
   [[noreturn]] void not_rigid(int64_t molecule) const;

@@ -15,31 +15,32 @@ namespace StokesDyn {
 
 /* To ghosts: eta (0: takes no part), v, angular velocity, fluid velocity and its gradient, as far
  * as needed. */
-void RigidClumps::gather(const Motion &m)
+void RigidClumps::gather(const Ambient &ambient)
 {
   column = {0, 1, 4, 4, 4, 4};
   if (settings.rotation) column.u = column.gradient = column.end = 7;
-  if (m.gradient) {
+  const double *gradient = ambient.gradients();
+  if (gradient) {
     column.gradient = column.u + 3;
     column.end = column.gradient + 9;
   }
   scene.refresh_ghosts(ghosts, column.end, [&](int i, double *row) {
-    row[0] = m.active[i] ? (m.eta ? m.eta[i] : m.eta_uniform) : 0.0;
+    row[0] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     memcpy(row + column.v, atom->v[i], 3 * sizeof(double));
     if (settings.rotation) memcpy(row + column.omega, atom->omega[i], 3 * sizeof(double));
-    if (m.gradient) {
-      memcpy(row + column.u, m.u_inf ? m.u_inf + 3 * (size_t) i : m.u_uniform, 3 * sizeof(double));
-      memcpy(row + column.gradient, m.gradient + 9 * (size_t) i, 9 * sizeof(double));
+    if (gradient) {
+      memcpy(row + column.u, ambient.velocity(i), 3 * sizeof(double));
+      memcpy(row + column.gradient, gradient + 9 * (size_t) i, 9 * sizeof(double));
     }
   });
 }
 
-void RigidClumps::begin_step(const Motion &m, std::vector<char> &loose)
+void RigidClumps::begin_step(const Ambient &ambient, std::vector<char> &loose)
 {
   if (scene.update_clumps()) recognised = false;
   if (!recognised) recognise();
   recognised = true;
-  gather(m);
+  gather(ambient);
   loose.assign(atom->nlocal, 0);
   for (int i : not_ours) loose[i] = 1;
 }
@@ -53,11 +54,12 @@ bool RigidClumps::asks_for_spins(const Body &body) const
 
 /* What the spheres of a clump do, in the order of its shape; returns how many take part and adds up
  * their viscosities. */
-int RigidClumps::collect(const Body &body, const Motion &m, Step &step, double &eta) const
+int RigidClumps::collect(const Body &body, const Ambient &ambient, Step &step, double &eta) const
 {
   const size_t n = body.n;
   const int nlocal = atom->nlocal;
   const bool spins = asks_for_spins(body);
+  const double *gradient = ambient.gradients();
   if (step.x.size() < 3 * n) {
     for (auto *v : {&step.x, &step.v, &step.omega, &step.u, &step.F, &step.T}) v->resize(3 * n);
     step.gradient.resize(9 * n);
@@ -67,27 +69,26 @@ int RigidClumps::collect(const Body &body, const Motion &m, Step &step, double &
     const int j = member[body.begin + k];
     const bool ghost = j >= nlocal;
     const double *row = ghost ? &ghosts[(size_t) column.end * (j - nlocal)] : nullptr;
-    const double eta_k = ghost ? row[0] : !m.active[j] ? 0.0 : m.eta ? m.eta[j] : m.eta_uniform;
+    const double eta_k = ghost ? row[0] : ambient.active()[j] ? ambient.viscosity(j) : 0.0;
     taking_part += eta_k > 0.0;
     eta += eta_k;
     memcpy(&step.x[3 * k], atom->x[j], 3 * sizeof(double));
     memcpy(&step.v[3 * k], ghost ? row + column.v : atom->v[j], 3 * sizeof(double));
     if (spins)
       memcpy(&step.omega[3 * k], ghost ? row + column.omega : atom->omega[j], 3 * sizeof(double));
-    if (!m.gradient) continue;
-    const double *u = ghost ? row + column.u : m.u_inf ? m.u_inf + 3 * (size_t) j : m.u_uniform;
-    memcpy(&step.u[3 * k], u, 3 * sizeof(double));
-    memcpy(&step.gradient[9 * k], ghost ? row + column.gradient : m.gradient + 9 * (size_t) j,
+    if (!gradient) continue;
+    memcpy(&step.u[3 * k], ghost ? row + column.u : ambient.velocity(j), 3 * sizeof(double));
+    memcpy(&step.gradient[9 * k], ghost ? row + column.gradient : gradient + 9 * (size_t) j,
            9 * sizeof(double));
   }
   return taking_part;
 }
 
 /* F and T of a clump's spheres in step, if it takes part and is whole and rigid. */
-bool RigidClumps::evaluate(const Body &body, const Motion &m, Step &step) const
+bool RigidClumps::evaluate(const Body &body, const Ambient &ambient, Step &step) const
 {
   double eta = 0.0, pose[12];
-  const int taking_part = collect(body, m, step, eta);
+  const int taking_part = collect(body, ambient, step, eta);
   if (taking_part == 0) return false;
   if (taking_part < body.n) {
     step.split = std::min(step.split, body.molecule);
@@ -103,9 +104,9 @@ bool RigidClumps::evaluate(const Body &body, const Motion &m, Step &step) const
   motion.x = step.x.data();
   motion.v = step.v.data();
   motion.omega = asks_for_spins(body) ? step.omega.data() : nullptr;
-  memcpy(motion.u_uniform, m.u_uniform, sizeof(motion.u_uniform));
-  motion.u = m.gradient ? step.u.data() : nullptr;
-  motion.gradient = m.gradient ? step.gradient.data() : nullptr;
+  memcpy(motion.u_uniform, ambient.uniform_velocity(), sizeof(motion.u_uniform));
+  motion.u = ambient.gradients() ? step.u.data() : nullptr;
+  motion.gradient = ambient.gradients() ? step.gradient.data() : nullptr;
   sd_clump_drag(shape, &body.shape->clump, &motion, pose, eta / body.n, step.F.data(),
                 settings.rotation ? step.T.data() : nullptr);
   return true;
