@@ -10,6 +10,7 @@
 #include "fix_nve_sph.h"
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
+#include "fix_sph_shift.h"
 #include "fix_stokes_dynamics.h"
 #include "fix_stokes_dynamics_state.h"
 #include "fix_wall_adami_sph.h"
@@ -74,6 +75,7 @@ static std::vector<lammpsplugin_t> sph_styles()
           fix<FixSphDensitySummation>("SPH: density from summation"),
           fix<FixSphDensityCorr>("SPH: Shepard filter of the density"),
           fix<FixNveSph>("SPH: time integration"),
+          fix<FixSphShift>("SPH: memory of the pair style"),
           fix<FixNveSphStationary>("SPH: density of particles at rest"),
           fix<FixWallAdamiSph>("SPH: walls of particles"),
           fix<FixWallSph>("SPH: repulsive planes and cylinder"),

@@ -2,6 +2,7 @@
 
 #include "keywords.h"
 #include "named_state.h"
+#include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sph.h"
 
@@ -46,11 +47,11 @@ void FixNveSph::reset_dt()
 void FixNveSph::setup_pre_exchange()
 {
   const End now = end_now();
-  const bool resumes = end.step == now.step && end.velocities == now.velocities;
+  goes_on = end.step == now.step && end.velocities == now.velocities;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     for (int d = 0; d < 3; d++)
-      atom->vest[i][d] = resumes ? atom->vest[i][d] - atom->v[i][d] : 0.0;
+      atom->vest[i][d] = goes_on ? atom->vest[i][d] - atom->v[i][d] : 0.0;
   }
   relative = true;
 }
@@ -58,17 +59,19 @@ void FixNveSph::setup_pre_exchange()
 /* Leapfrog: the velocity of the half step moves position and, in the pair style, density. Friction
  * needs the velocity at the end of the step before the force is known, vest = v + dt/2 F/m with the
  * last force. Until the force it is only the second term: fix deform with remap v has LAMMPS shift
- * v, and only v, of what crosses a face that glides, and of ghosts beyond it. */
+ * v, and only v, of what crosses a face that glides, and of ghosts beyond it. With shift yes
+ * particles move with v + du, du of the middle of the last step. */
 void FixNveSph::initial_integrate(int /*vflag*/)
 {
   double **x = atom->x, **v = atom->v, **f = atom->f, **vest = atom->vest;
+  const double *du = pair->shift();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const double kick = dtf / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) {
       vest[i][d] = kick * f[i][d];
       v[i][d] += vest[i][d];
-      x[i][d] += dtv * v[i][d];
+      x[i][d] += dtv * (du ? v[i][d] + du[3 * (size_t) i + d] : v[i][d]);
     }
   }
   relative = true;

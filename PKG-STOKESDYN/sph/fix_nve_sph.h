@@ -26,8 +26,12 @@ class FixNveSph : public SphFix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
+  /* Has this run gone on from the end of the last one, with nothing changed? */
+  bool resumes() const { return goes_on; }
+
  private:
   double dtv = 0.0, dtf = 0.0;
+  bool goes_on = false;
   /* of the atoms and their ghosts: vest is the difference to v, not yet the estimate itself */
   bool relative = false;
 

@@ -9,7 +9,10 @@ FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **a
     SphOutputFix(lmp, narg, arg)
 {
   Keywords in(lmp, command, words(narg, arg), 3);
-  in.parse({{"delta", [&] { delta = in.not_negative(); }}});
+  in.parse({
+      {"delta", [&] { delta = in.not_negative(); }},
+      {"volume", [&] { volume = in.yes_no(); }},
+  });
   begin();
 }
 

@@ -13,6 +13,8 @@ class FixSphDensityContinuity : public SphOutputFix {
   FixSphDensityContinuity(LAMMPS_NS::LAMMPS *, int, char **);
   // density diffusion
   double delta = 0.0;
+  // fluids of different density
+  bool volume = false;
 };
 
 class FixSphDensitySummation : public SphFix {

@@ -11,7 +11,7 @@ FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp
 {
   Keywords in(lmp, command, words(narg, arg), 3);
   in.parse({
-      {"gravity", [&] { for (double &g : body_force) g = in.number(); }},
+      {"gravity", [&] { for (Field &g : gravity) g = Field::parse(in); }},
       {"slip", [&] { slip = in.yes_no(); }},
   });
   dynamic_group_allow = 1;
@@ -24,6 +24,22 @@ FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp
 int FixWallAdamiSph::setmask()
 {
   return FixConst::POST_FORCE;
+}
+
+void FixWallAdamiSph::init()
+{
+  SphFix::init();
+  for (Field &g : gravity) {
+    g.init(lmp, command + ": keyword gravity");
+    if (g.is_atom_style())
+      fail(lmp, command + ": keyword gravity: the variable must be of equal style: one for all");
+  }
+}
+
+const double *FixWallAdamiSph::body_force()
+{
+  for (int d = 0; d < 3; d++) b[d] = gravity[d].evaluate(lmp);
+  return b;
 }
 
 void FixWallAdamiSph::setup(int vflag)

@@ -3,6 +3,7 @@
 #ifndef SD_FIX_WALL_ADAMI_SPH_H
 #define SD_FIX_WALL_ADAMI_SPH_H
 
+#include "field.h"
 #include "sph_fix.h"
 
 namespace StokesDyn {
@@ -13,16 +14,18 @@ class FixWallAdamiSph : public SphFix {
 
   FixWallAdamiSph(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;
+  void init() override;
   void setup(int) override;
   void post_force(int) override;
   double compute_vector(int) override;
 
-  // per mass
-  double body_force[3] = {0.0, 0.0, 0.0};
+  /* per mass, as the wall sees it; now */
+  const double *body_force();
   bool slip = false;
 
  private:
-  double total[3] = {0.0, 0.0, 0.0};
+  Field gravity[3];
+  double b[3] = {0.0, 0.0, 0.0}, total[3] = {0.0, 0.0, 0.0};
 };
 
 }    // namespace StokesDyn

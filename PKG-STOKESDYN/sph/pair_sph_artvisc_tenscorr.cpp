@@ -3,6 +3,7 @@
 #include "fix_nve_sph.h"
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
+#include "fix_sph_shift.h"
 #include "fix_wall_adami_sph.h"
 #include "keywords.h"
 #include "lammps_compat.h"
@@ -14,6 +15,7 @@
 #include "error.h"
 #include "force.h"
 #include "memory.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -26,20 +28,20 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 static const std::string COMMAND = "Pair style " + std::string(PairSph::STYLE);
-const char *const PairSph::PARAMETER[NPARAMETERS] = {"h", "c", "alpha", "beta", "deltap"};
+const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
+                                                       "beta", "deltap", "mu"};
 
 PairSph::PairSph(LAMMPS *lmp) : Pair(lmp)
 {
   single_enable = 0;
   respa_enable = 0;
   restartinfo = 1;
-  comm_forward = 4;    // density and velocity of wall particles
-  comm_reverse = 9;    // sums for the gradient of the density
 }
 
 PairSph::~PairSph()
 {
   if (asked_for_velocities) comm->ghost_velocity = 0;    // as it was
+  if (modify->nfix) FixSphShift::provide(lmp, false, false);
   if (!allocated) return;
   memory->destroy(setflag);
   memory->destroy(cutsq);
@@ -61,10 +63,11 @@ void PairSph::parse()
 {
   for (double &value : defaults) value = NAN;
   model = sd_sph_model();
-  mu = 0.0;
+  shifts = corrects = false;
   Keywords in(lmp, COMMAND, args);
   if (!in.next()) fail(lmp, COMMAND + ": the kernel is missing: cubicspline or wendland, then h");
-  model.dimension = domain->dimension;
+  const bool flat = in.is("cubicspline2d") || in.is("wendland2d");
+  model.dimension = flat ? 2 : domain->dimension;
   if (in.is("cubicspline") || in.is("cubicspline2d"))
     model.kernel = SD_SPH_CUBICSPLINE;
   else if (in.is("wendland") || in.is("wendland2d"))
@@ -73,25 +76,33 @@ void PairSph::parse()
     fail(lmp,
          COMMAND + ": unknown kernel '" + args[0] +
              "': it must be one of cubicspline, wendland, cubicspline2d, wendland2d");
-  if (in.is("cubicspline2d") || in.is("wendland2d")) model.dimension = 2;
   defaults[H] = in.positive();
-
-  while (in.next()) {
-    if (in.is("artVisc")) {
-      model.artvisc = 1;
-      defaults[ALPHA] = in.not_negative();
-      defaults[BETA] = in.not_negative();
-      model.eta = in.not_negative();
-    } else if (in.is("tensCorr")) {
-      model.tenscorr = 1;
-      model.epsilon = in.not_negative();
-      defaults[DELTAP] = in.positive();
-    } else if (in.is("viscosity")) {
-      model.viscous = 1;
-      mu = in.positive();
-    } else
-      in.unknown();
-  }
+  in.parse({
+      {"artVisc",
+       [&] {
+         model.artvisc = 1;
+         defaults[ALPHA] = in.not_negative();
+         defaults[BETA] = in.not_negative();
+         model.eta = in.not_negative();
+       }},
+      {"tensCorr",
+       [&] {
+         model.tenscorr = 1;
+         model.epsilon = in.not_negative();
+         defaults[DELTAP] = in.positive();
+       }},
+      {"viscosity",
+       [&] {
+         defaults[MU] = in.positive();
+         model.friction = in.take("central") ? SD_SPH_CENTRAL : SD_SPH_LAPLACIAN;
+         if (model.friction == SD_SPH_LAPLACIAN) in.take("laplacian");
+       }},
+      {"shift", [&] { shifts = in.yes_no(); }},
+      {"correction", [&] { corrects = in.yes_no(); }},
+  });
+  in.require(shifts || !corrects || !in.given("shift"),
+             "correction yes switches shift on: shift no does not go with it");
+  shifts = shifts || corrects;
 }
 
 void PairSph::allocate()
@@ -128,7 +139,8 @@ void PairSph::coeff(int narg, char **arg)
     while (k < NPARAMETERS && !in.is(PARAMETER[k])) k++;
     if (k == NPARAMETERS) in.unknown();
     if ((k == ALPHA || k == BETA) && !model.artvisc) in.refuse("the pair_style has no artVisc");
-    if (k == DELTAP && !model.tenscorr) in.refuse("the pair_style has no tensCorr");
+    if (k == DELTAP && !model.tenscorr && !shifts) in.refuse("the pair_style has no tensCorr");
+    if (k == MU && !model.friction) in.refuse("the pair_style has no viscosity");
     values[k] = k == ALPHA || k == BETA ? in.not_negative() : in.positive();
   }
 
@@ -149,7 +161,23 @@ void PairSph::coeff(int narg, char **arg)
 double PairSph::mixed(int k, int i, int j) const
 {
   if (!std::isnan(given[k][i][j])) return given[k][i][j];
-  return i == j ? defaults[k] : 0.5 * (mixed(k, i, i) + mixed(k, j, j));
+  if (i == j) return k == DELTAP && shifts && !model.tenscorr ? spacing(i) : defaults[k];
+  const double a = mixed(k, i, i), b = mixed(k, j, j);
+  // the stress is continuous between two viscosities, as that of two layers in series
+  return k == MU ? 2.0 * a * b / (a + b) : 0.5 * (a + b);
+}
+
+/* The distance of particles that W is compared with for shift. */
+double PairSph::spacing(int itype) const
+{
+  const double rho0 = pressures.size() == 1 ? pressures[0]->state.rho0 : 0.0;
+  if (!(rho0 > 0.0) || atom->rmass)
+    fail(lmp,
+         COMMAND + ": shift needs the initial distance of particles: pair_coeff " +
+             std::to_string(itype) + " " + std::to_string(itype) +
+             " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass a type, it "
+             "is (mass/rho0)^(1/dimension))");
+  return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
 }
 
 void PairSph::init_style()
@@ -164,9 +192,10 @@ void PairSph::init_style()
   if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
   find_fixes();
   find_integrators();
+  choose_scheme();
   check_groups();
 
-  needs_velocity = model.artvisc || model.viscous || continuity;
+  needs_velocity = model.artvisc || model.friction || continuity;
   // As comm_modify vel yes: each pair must see the same velocities on both sides.
   if (needs_velocity && !comm->ghost_velocity) comm->ghost_velocity = asked_for_velocities = 1;
   if (neighbor->skin <= 0.0)
@@ -229,6 +258,46 @@ void PairSph::find_integrators()
   own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
 }
 
+/* What the options make of rate and force, and what does not go with them. */
+void PairSph::choose_scheme()
+{
+  model.delta = continuity && leapfrog ? continuity->delta : 0.0;
+  const bool volume = continuity && continuity->volume;
+  const std::string what = COMMAND + ": " + (corrects ? "correction" : "shift") + " yes ";
+  auto refuse = [&](bool when, const std::string &why) {
+    if (when) fail(lmp, what + why);
+  };
+  if (shifts) {
+    refuse(volume, "does not go with volume yes of fix sph/density/continuity: it blows up where "
+                   "densities jump");
+    refuse(!leapfrog || !Sph::fixes(lmp, "sph").empty(),
+           "needs fix sph/density/continuity and fix nve/sph: particles are moved in the middle of a "
+           "step");
+    refuse(!(model.delta > 0.0), "needs fix sph/density/continuity with delta, usually 0.1");
+    refuse(model.tenscorr, "does not go with tensCorr: it has its own force against pairing");
+    refuse(model.dimension != domain->dimension, "needs the kernel of the box's dimension");
+    refuse(!corrects && model.kernel == SD_SPH_CUBICSPLINE,
+           "needs kernel wendland: the cubic spline lets particles pair");
+    refuse(corrects && (!Sph::fixes(lmp, "wall/sph").empty() ||
+                        !Sph::fixes(lmp, "wall/region/sph").empty()),
+           "does not go with fix wall/sph and wall/region/sph: the support is empty behind them; use "
+           "fix wall/adami/sph or shift yes");
+  }
+  if (volume && (!leapfrog || model.tenscorr))
+    fail(lmp,
+         COMMAND + ": volume yes of fix sph/density/continuity needs fix nve/sph, and does not go "
+                   "with tensCorr");
+  model.scheme = volume ? SD_SPH_VOLUME
+      : corrects        ? SD_SPH_CORRECTION
+      : shifts          ? SD_SPH_SHIFT
+                        : SD_SPH_PLAIN;
+  state = FixSphShift::provide(lmp, shifts, corrects);
+  // the force is not along d, and on two particles not opposite: positions times forces have no sum
+  no_virial_fdotr_compute = corrects;
+  comm_forward = std::max(sd_sph_columns(&model), wall ? 4 : 1);
+  comm_reverse = std::max(sd_sph_sum_columns(sd_sph_level_of(&model)), wall ? 8 : 4);
+}
+
 void PairSph::check_groups()
 {
   pressure_bits = 0;
@@ -266,6 +335,10 @@ void PairSph::setup()
     fail(lmp,
          COMMAND + ": fix deform with remap v: fix sph extrapolates velocities before they are "
                    "shifted at the faces that glide; use fix nve/sph");
+  if (domain->deform_vremap && model.scheme == SD_SPH_SHIFT)
+    fail(lmp,
+         COMMAND + ": fix deform with remap v: the momentum that shift carries is not the same on "
+                   "both sides of a face that glides; use correction yes");
 }
 
 double PairSph::init_one(int i, int j)
@@ -273,30 +346,31 @@ double PairSph::init_one(int i, int j)
   const std::string who =
       COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) + ": ";
   for (int k = 0; k < NPARAMETERS; k++) table[k][i][j] = table[k][j][i] = mixed(k, i, j);
-  // pair_coeff has seen to this; fix adapt has not
+  // the commands have seen to this; fix adapt has not
+  auto require = [&](bool holds, const std::string &what, double value, const char *rule) {
+    if (!holds) fail(lmp, what + "'" + text(value) + "' must be " + rule);
+  };
+  if (model.artvisc) require(model.eta >= 0.0, COMMAND + ": keyword artVisc: eta ", model.eta, ">= 0");
+  if (model.tenscorr)
+    require(model.epsilon >= 0.0, COMMAND + ": keyword tensCorr: epsilon ", model.epsilon, ">= 0");
+  if (model.friction)
+    require(defaults[MU] > 0.0, COMMAND + ": keyword viscosity: ", defaults[MU], "> 0");
   for (int k = 0; k < NPARAMETERS; k++) {
     const double value = table[k][i][j];
-    if (!(k == ALPHA || k == BETA ? value < 0.0 : value <= 0.0)) continue;
-    fail(lmp,
-         who + "keyword " + PARAMETER[k] + ": '" + text(value) + "' must be " +
-             (k == ALPHA || k == BETA ? ">= 0" : "> 0"));
+    const bool may_vanish = k == ALPHA || k == BETA;
+    require(std::isnan(value) || value > 0.0 || (may_vanish && value == 0.0),
+            who + "keyword " + PARAMETER[k] + ": ", value, may_vanish ? ">= 0" : "> 0");
   }
-  if (model.artvisc && !(model.eta >= 0.0))
-    fail(lmp, COMMAND + ": keyword artVisc: eta '" + text(model.eta) + "' must be >= 0");
-  if (model.tenscorr && !(model.epsilon >= 0.0))
-    fail(lmp, COMMAND + ": keyword tensCorr: epsilon '" + text(model.epsilon) + "' must be >= 0");
-  if (model.viscous && !(mu > 0.0))
-    fail(lmp, COMMAND + ": keyword viscosity: '" + text(mu) + "' must be > 0");
   const double support = 2.0 * table[H][i][j];
   if (model.artvisc && std::isnan(table[C][i][j]))
     fail(lmp,
          who + "keyword artVisc needs the speed of sound: pair_coeff " + std::to_string(i) + " " +
              std::to_string(i) + " c VALUE");
-  if (continuity && continuity->delta > 0.0 && std::isnan(table[C][i][j]))
+  if (model.delta > 0.0 && std::isnan(table[C][i][j]))
     fail(lmp,
          who + "delta of fix sph/density/continuity needs the speed of sound: pair_coeff " +
              std::to_string(i) + " " + std::to_string(i) + " c VALUE");
-  if (model.tenscorr && !(table[DELTAP][i][j] < support))
+  if ((model.tenscorr || shifts) && !(table[DELTAP][i][j] < support))
     fail(lmp,
          who + "deltap " + text(table[DELTAP][i][j]) +
              " must be smaller than the support 2 h = " + text(support));
@@ -311,7 +385,7 @@ bool PairSph::has_sound_speed(int itype) const
 void *PairSph::extract(const char *name, int &dim)
 {
   dim = 0;
-  if (strcmp(name, "viscosity") == 0) return &mu;
+  if (strcmp(name, "viscosity") == 0) return &defaults[MU];
   if (strcmp(name, "eta") == 0) return &model.eta;
   if (strcmp(name, "epsilon") == 0) return &model.epsilon;
   dim = 2;
@@ -323,9 +397,10 @@ void *PairSph::extract(const char *name, int &dim)
 double PairSph::memory_usage()
 {
   double bytes = near.capacity() * sizeof(int *);
-  for (const auto *v : {&x4, &v4, &f4, &P, &masses, &rate, &sums, &each, &gradient, &wall_rows})
+  for (const auto *v : {&x4, &v4, &f4, &P, &masses, &rate, &sums, &weights, &each, &order, &kick,
+                        &wall_rows})
     bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&classes, &pool, &near_count}) bytes += v->capacity() * sizeof(int);
+  for (const auto *v : {&classes, &phases, &pool, &near_count}) bytes += v->capacity() * sizeof(int);
   return bytes;
 }
 

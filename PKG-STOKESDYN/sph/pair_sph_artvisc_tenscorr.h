@@ -5,7 +5,7 @@
 #define SD_PAIR_SPH_ARTVISC_TENSCORR_H
 
 #include "pair.h"
-#include "sd_sph_pair.h"
+#include "sd_sph_sums.h"
 #include "sph.h"
 
 #include <string>
@@ -18,6 +18,7 @@ class FixSphDensityContinuity;
 class FixSphDensityCorr;
 class FixSphDensitySummation;
 class FixSphPressure;
+class FixSphShift;
 class FixWallAdamiSph;
 
 class PairSph : public LAMMPS_NS::Pair {
@@ -47,20 +48,22 @@ class PairSph : public LAMMPS_NS::Pair {
   double pressure(int i) const { return P[i]; }
   double smoothing_length(int itype) const { return table[H][itype][itype]; }
   double sound_speed(int itype) const { return table[C][itype][itype]; }
-  double viscosity() const { return mu; }
+  double viscosity(int itype) const { return model.friction ? table[MU][itype][itype] : 0.0; }
   bool has_sound_speed(int itype) const;
   /* Of each owned particle: |h v.d / (r^2 + eta)|. Not inside compute. */
   void largest_approach(std::vector<double> &largest);
   /* W' for two particles of this type. */
   double dW_dr(int itype, double r) const;
+  /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
+  const double *shift() const;
 
  private:
-  enum Parameter { H, C, ALPHA, BETA, DELTAP, NPARAMETERS };
+  enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, NPARAMETERS };
   static const char *const PARAMETER[NPARAMETERS];
 
   // settings
   std::vector<std::string> args;    // of pair_style, for restart files
-  double mu = 0.0;
+  bool shifts = false, corrects = false;
   double defaults[NPARAMETERS];
   // by pair_coeff (NaN: not given), and in use
   double **given[NPARAMETERS] = {}, **table[NPARAMETERS] = {};
@@ -70,7 +73,9 @@ class PairSph : public LAMMPS_NS::Pair {
   template <class Style> Style *only(const char *otherwise);
   void find_fixes();
   void find_integrators();
+  void choose_scheme();
   void check_groups();
+  double spacing(int itype) const;
   double mixed(int parameter, int i, int j) const;
 
   // the fixes that take part; set in init_style
@@ -80,6 +85,7 @@ class PairSph : public LAMMPS_NS::Pair {
   FixSphDensitySummation *summation = nullptr;
   FixSphDensityCorr *filter = nullptr;
   FixWallAdamiSph *wall = nullptr;
+  FixSphShift *state = nullptr;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
   bool leapfrog = false, all_own_vest = false, needs_velocity = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
@@ -90,8 +96,8 @@ class PairSph : public LAMMPS_NS::Pair {
   sd_sph_list pairs = {}, raw = {};    // near ones, if a pass of the step has picked them; LAMMPS's
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
-  std::vector<double> x4, v4, f4, P, masses, rate, sums, each, gradient, wall_rows;
-  std::vector<int> classes, pool, near_count;
+  std::vector<double> x4, v4, f4, P, masses, rate, sums, weights, each, order, kick, wall_rows;
+  std::vector<int> classes, phases, pool, near_count;
   std::vector<int *> near;
   bool used(int itype) const;
   LAMMPS_NS::bigint in_both(int bits, int more_bits);
@@ -100,7 +106,9 @@ class PairSph : public LAMMPS_NS::Pair {
   bool types_are_alike();
   void estimate_velocities();
   void density_step();
-  void diffuse();
+  void close_sums();
+  bool resumes() const;
+  void weigh(int fours, bool walls);
   void sum_densities(int bit, bool shepard);
   void wall_particles();
   void pressures_of_all();
@@ -109,12 +117,11 @@ class PairSph : public LAMMPS_NS::Pair {
   [[noreturn]] void coincident();
   void tally();
 
-  // communication of one array at a time: columns of rows stride apart
+  // communication of one array at a time: rows, sums but for the column of a maximum
   double *comm_array = nullptr;
-  int comm_columns = 0;
-  bool comm_maximum = false;
+  int comm_columns = 0, comm_maximum = -1;
   void forward(double *array, int columns);
-  void reverse(double *array, int columns, bool maximum = false);
+  void reverse(double *array, int columns, int maximum = -1);
 };
 
 }    // namespace StokesDyn

@@ -3,10 +3,12 @@
 #include "fix_nve_sph.h"
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
+#include "fix_sph_shift.h"
 #include "fix_wall_adami_sph.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "sd_sph_density.h"
+#include "sd_sph_order.h"
 #include "sd_sph_step.h"
 #include "sd_sph_wall.h"
 
@@ -43,7 +45,7 @@ void PairSph::compute(int eflag, int vflag)
   if (needs_velocity) estimate_velocities();
 
   if (leapfrog) density_step();
-  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, 0.0, x4.data());
+  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
   if (summation) sum_densities(summation->groupbit, false);
   if (filter && !update->setupflag && update->ntimestep % filter->every == 0)
     sum_densities(filter->groupbit, true);
@@ -104,6 +106,17 @@ void PairSph::prepare()
   model.pair = coefficients.data();
   raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
   pairs = raw;
+  if (!wall && !state && model.scheme != SD_SPH_VOLUME) return;
+  phases.assign(n + 1, 0);
+  for (int i = 0; i < n; i++) {
+    if (model.scheme == SD_SPH_VOLUME)
+      for (size_t k = 0; k < pressures.size(); k++)
+        if (atom->mask[i] & pressures[k]->groupbit) phases[i] = (int) k;
+    const bool still = (wall && (atom->mask[i] & wall->groupbit)) ||
+        (state && !(atom->mask[i] & own_vest_bits));
+    if (still) phases[i] = ~phases[i];
+  }
+  particles.phase = phases.data();
 }
 
 /* Coefficients of all pairs of types. Are they and the masses the same? Then there is one class for
@@ -119,12 +132,9 @@ bool PairSph::types_are_alike()
     for (int j = 1; j <= ntypes; j++) {
       if (!(table[H][i][j] > 0.0)) continue;    // two types of another style
       const sd_sph_parameters given_values = {table[H][i][j], table[C][i][j], table[ALPHA][i][j],
-                                              table[BETA][i][j], table[DELTAP][i][j]};
+                                              table[BETA][i][j], table[DELTAP][i][j], table[MU][i][j]};
       sd_sph_coefficients &c = coefficients[(size_t) (i - 1) * ntypes + j - 1];
-      c = sd_sph_coefficients_of(model.kernel, model.dimension, &given_values, mu);
-      if (!model.artvisc) c.a1 = c.b1 = 0.0;
-      if (!model.tenscorr) c.tens = 0.0;
-      if (!(continuity && continuity->delta > 0.0)) c.ch = 0.0;
+      c = sd_sph_coefficients_of(&model, &given_values);
       if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
         fail(lmp,
              COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) +
@@ -157,10 +167,14 @@ void PairSph::density_step()
 {
   const int n = particles.n, nlocal = atom->nlocal;
   const double dt = update->setupflag ? 0.0 : update->dt;
-  const double *v = rows(atom->v);
+  const double *v = rows(atom->v), *du = shift();
   // The distance of two particles changes by less than dt times the largest speed in half a step.
-  const double margin = dt > 0.0 ? dt * sd_sph_fastest(n, v) * (1.0 + 1e-9) : 0.0;
-  sd_sph_pack_x(n, rows(atom->x), v, -0.5 * dt, x4.data());
+  double margin = 0.0;
+  if (dt > 0.0) {
+    margin = dt * (sd_sph_fastest(n, v) + (du ? sd_sph_fastest(n, du) : 0.0)) * (1.0 + 1e-9);
+    sd_sph_pack_x(n, rows(atom->x), v, du, -0.5 * dt, x4.data());
+  } else
+    sd_sph_pack_x(n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
   sd_sph_pack_v(n, v, atom->rho, v4.data());
 
   size_t entries = 3;
@@ -170,12 +184,15 @@ void PairSph::density_step()
     near.resize(atom->nmax);
     near_count.resize(atom->nmax);
   }
-  rate.assign(n + 1, 0.0);
+  const sd_sph_level level = sd_sph_level_of(&model);
+  const int columns = sd_sph_sum_columns(level);
   const sd_sph_near found = {margin, pool.data(), near.data(), near_count.data()};
-  sd_sph_rates(&model, &raw, &particles, rate.data(), &found);
+  if (level > SD_SPH_RATE) sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());
+  sums.assign(columns * (size_t) (n + 1), 0.0);
+  sd_sph_middle(&model, &raw, &particles, sums.data(), &found);
   pairs = {raw.n, ~0, raw.first, near_count.data(), near.data()};
-  if (continuity->delta > 0.0) diffuse();
-  reverse(rate.data(), 1);
+  reverse(sums.data(), columns, level >= SD_SPH_DISORDER ? SD_SPH_MAXIMUM : -1);
+  close_sums();
 
   for (int i = 0; i < nlocal; i++)
     atom->drho[i] = atom->mask[i] & continuity->groupbit ? rate[i] : 0.0;
@@ -185,33 +202,66 @@ void PairSph::density_step()
   forward(atom->rho, 1);
 }
 
-/* Adds the diffusion of density to the rates. */
-void PairSph::diffuse()
+/* The rates, and with delta what the force and the next step need of the middle. */
+void PairSph::close_sums()
 {
-  const int n = particles.n;
-  sums.assign(9 * (size_t) (n + 1), 0.0);
-  sd_sph_gradient_sums(&model, &pairs, &particles, atom->rho, sums.data());
-  reverse(sums.data(), 9);
-  gradient.resize(3 * (size_t) (n + 1));
-  for (int i = 0; i < atom->nlocal; i++)
-    sd_sph_gradient(model.dimension, &sums[9 * (size_t) i], &gradient[3 * (size_t) i]);
-  forward(gradient.data(), 3);
-  sd_sph_diffusion(&model, &pairs, &particles, atom->rho, gradient.data(), continuity->delta,
-                   rate.data());
+  const int n = particles.n, columns = sd_sph_columns(&model);
+  rate.assign(n + 1, 0.0);
+  order.resize(columns * (size_t) (n + 1));
+  kick.resize(corrects ? 3 * (size_t) atom->nlocal + 1 : 0);
+  const double least = update->setupflag ? 0.6 : 0.5;
+  const sd_sph_closing closing = {atom->nlocal, sums.data(), atom->mask, own_vest_bits,
+                                  least,        rate.data(), order.data(), kick.data()};
+  const int stops = sd_sph_close(&model, &particles, &closing);
+  if (stops >= 0)
+    fail_one(lmp,
+             at_step() + "keyword correction: atom " + std::to_string(atom->tag[stops]) +
+                 " is at a free surface: the smallest eigenvalue of its matrix is below " +
+                 text(least) + "; use shift yes, which is for free surfaces");
+  if (columns == 0) return;
+  if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
+  forward(order.data(), columns);
+  std::fill_n(&order[columns * (size_t) n], columns, 0.0);
+  if (state) state->keep(n, order.data(), kick.data());
+
+  particles.order = order.data();
+  sd_sph_diffusion(&model, &pairs, &particles, rate.data());
+  reverse(rate.data(), 1);
+}
+
+/* Does this run go on where the last one ended? */
+bool PairSph::resumes() const
+{
+  bool all = state->filled();
+  for (const auto *fix : integrators) all = all && fix->resumes();
+  return all;
+}
+
+const double *PairSph::shift() const
+{
+  return state ? state->du() : nullptr;
+}
+
+/* Sums of W times the rows of weights, complete for the particles of this rank. */
+void PairSph::weigh(int fours, bool walls)
+{
+  sums.assign(4 * fours * (size_t) (particles.n + 1), 0.0);
+  sd_sph_weigh(&model, &pairs, &particles, fours, walls, weights.data(), sums.data());
+  reverse(sums.data(), 4 * fours);
 }
 
 /* Densities of a group from the sums over neighbours, or filtered by them. */
 void PairSph::sum_densities(int bit, bool shepard)
 {
-  sums.assign(2 * (size_t) (particles.n + 1), 0.0);
-  sd_sph_sums(&model, &pairs, &particles, shepard ? atom->rho : nullptr, sums.data());
-  reverse(sums.data(), 2);
-  (shepard ? sd_sph_shepard : sd_sph_summation)(&model, &particles, sums.data(), atom->nlocal,
-                                                atom->mask, bit, atom->rho);
+  weights.resize(4 * (size_t) (particles.n + 1));
+  sd_sph_pack_masses(&model, &particles, atom->rho, weights.data());
+  weigh(1, false);
+  const sd_sph_densities how = {atom->nlocal, bit, shepard, atom->mask, sums.data()};
+  sd_sph_sum_densities(&model, &particles, &how, atom->rho);
   forward(atom->rho, 1);
 }
 
-/* P and P / rho^2 of owned and ghost particles from the densities they carry, so both sides of a
+/* P of owned and ghost particles from the densities they carry, so both sides of a
  * pair see the same. */
 void PairSph::pressures_of_all()
 {
@@ -229,7 +279,8 @@ void PairSph::pressures_of_all()
                                     : " (a smaller time step?)"));
   }
   for (auto *fix : pressures)
-    sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data(), x4.data());
+    sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
+  sd_sph_pack_pressures(&model, n, P.data(), rho, x4.data());
 }
 
 /* Wall particles take pressure and velocity from the fluid before them. Their density becomes the
@@ -239,10 +290,10 @@ void PairSph::wall_particles()
 {
   const int n = particles.n, bit = wall->groupbit;
   sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
-  sums.assign(5 * (size_t) (n + 1), 0.0);
-  sd_sph_wall_sums(&model, &pairs, &particles, atom->mask, bit, P.data(), wall->body_force,
-                   sums.data());
-  reverse(sums.data(), 5);
+  weights.resize(8 * (size_t) (n + 1));
+  const double *b = wall->body_force();
+  sd_sph_pack_fluid(&particles, P.data(), b, weights.data());
+  weigh(2, true);
 
   wall_rows.resize(4 * (size_t) (n + 1));
   for (int i = 0; i < atom->nlocal; i++) {
@@ -250,16 +301,15 @@ void PairSph::wall_particles()
     const FixSphPressure *eos = nullptr;
     for (const auto *fix : pressures)
       if (atom->mask[i] & fix->groupbit) eos = fix;
-    const double *s = &sums[5 * (size_t) i];
+    const sd_sph_wall how = {&eos->state, {b[0], b[1], b[2]}, wall->slip};
     double *row = &wall_rows[4 * (size_t) i];
     row[0] = atom->rho[i];
-    sd_sph_wall_particle(&eos->state, s, atom->v[i], wall->slip, row);
+    const double asked = sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->x[i], atom->v[i], row);
     if (row[0] == 0.0)
       fail_one(lmp,
                "Fix " + std::string(FixWallAdamiSph::STYLE) + ": step " +
                    std::to_string(update->ntimestep) + ": atom " + std::to_string(atom->tag[i]) +
-                   ": the pressure " + text(s[0] == 0.0 ? eos->state.P0 : s[1] / s[0]) +
-                   " that the fluid asks for is not above " +
+                   ": the pressure " + text(asked) + " that the fluid asks for is not above " +
                    text(sd_sph_least_pressure(&eos->state)) + ", the least of fix " + eos->id +
                    ": a larger B or P0 makes room for it, if gravity is right");
   }
@@ -277,7 +327,7 @@ void PairSph::forces(bool rates)
 {
   const int n = particles.n, receivers = force->newton_pair ? n : atom->nlocal;
   const bool pairwise = evflag && (vflag_atom || (vflag_either && !vflag_fdotr));
-  if (model.artvisc || model.viscous || rates)
+  if (model.artvisc || model.friction || rates || model.scheme != SD_SPH_PLAIN)
     sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
   std::fill(f4.begin(), f4.end(), 0.0);
   if (pairwise) {
@@ -291,6 +341,9 @@ void PairSph::forces(bool rates)
 
   for (int i = 0; i < receivers; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] += f4[4 * (size_t) i + d];
+  if (corrects)
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < 3; d++) atom->f[i][d] += Sph::mass(lmp, i) * kick[3 * (size_t) i + d];
   if (rates)
     for (int i = 0; i < receivers; i++)
       if (atom->mask[i] & continuity->groupbit) atom->drho[i] += f4[4 * (size_t) i + 3];
@@ -331,11 +384,11 @@ void PairSph::coincident()
 void PairSph::largest_approach(std::vector<double> &largest)
 {
   prepare();
-  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, 0.0, x4.data());
+  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
   sd_sph_pack_v(particles.n, rows(atom->vest), atom->rho, v4.data());
   largest.assign(particles.n + 1, 0.0);
   sd_sph_approach(&model, &pairs, &particles, largest.data());
-  reverse(largest.data(), 1, true);
+  reverse(largest.data(), 1, 0);
 }
 
 double PairSph::dW_dr(int itype, double r) const
@@ -352,7 +405,7 @@ void PairSph::forward(double *array, int columns)
   Compat::forward_comm(comm, this);
 }
 
-void PairSph::reverse(double *array, int columns, bool maximum)
+void PairSph::reverse(double *array, int columns, int maximum)
 {
   if (!force->newton_pair) return;    // ghosts got nothing
   comm_array = array;
@@ -384,6 +437,6 @@ void PairSph::unpack_reverse_comm(int n, int *list, double *buf)
   for (int k = 0; k < n; k++)
     for (int c = 0; c < comm_columns; c++, buf++) {
       double &mine = comm_array[(size_t) list[k] * comm_columns + c];
-      mine = comm_maximum ? std::max(mine, *buf) : mine + *buf;
+      mine = c == comm_maximum ? std::max(mine, *buf) : mine + *buf;
     }
 }

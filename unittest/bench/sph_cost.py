@@ -2,7 +2,7 @@
 """Cost of pair_style sph/artVisc/tensCorr beside LAMMPS's own sph/taitwater with fix sph, and the error of its forces.
 
     . build/env.sh
-    /usr/bin/python3 unittest/bench/sph_cost.py [--repeat 5] [--steps 50] [--ranks]
+    /usr/bin/python3 unittest/bench/sph_cost.py [--repeat 5] [--steps 50] [--ranks] [--only WORDS]
 
 64 000 particles on a cubic lattice of 40^3, displaced by up to 5 %, support 2.4 spacings (57 neighbours, each particle counted), skin 0.2
 spacings, periodic. Every repetition runs the rival and all of ours one after the other, so that a busy machine slows all alike; the
@@ -40,7 +40,7 @@ OURS = SCENE + """
 pair_style sph/artVisc/tensCorr {kernel} 0.012 {terms}
 pair_coeff * * c 20
 fix eos all sph/pressure Tait 57142.857 1000 7
-fix density all sph/density/continuity
+fix density all sph/density/continuity {density}
 fix move all {integrator}
 """
 RIVAL = SCENE + """
@@ -53,7 +53,12 @@ CASES = {"sph/taitwater, fix sph": RIVAL}
 for kernel in ("wendland", "cubicspline"):
     for name, terms in (("plain", ""), ("artVisc + tensCorr", BOTH)):
         for integrator in ("nve/sph", "sph"):
-            CASES["%s, %s, fix %s" % (kernel, name, integrator)] = OURS.format(kernel=kernel, terms=terms, integrator=integrator)
+            CASES["%s, %s, fix %s" % (kernel, name, integrator)] = OURS.format(kernel=kernel, terms=terms, integrator=integrator,
+                                                                              density="")
+for name, terms, density in (("artVisc", "", ""), ("artVisc + delta", "", "delta 0.1"), ("artVisc + delta + shift", "shift yes", "delta 0.1"),
+                             ("artVisc + delta + correction", "correction yes", "delta 0.1")):
+    CASES["wendland, %s, fix nve/sph" % name] = OURS.format(kernel="wendland", terms="artVisc 0.1 0 1.44e-6 " + terms,
+                                                            integrator="nve/sph", density=density)
 
 
 def seconds(script, steps, ranks, folder):
@@ -90,8 +95,11 @@ def main():
     parser.add_argument("--repeat", type=int, default=5)
     parser.add_argument("--steps", type=int, default=50)
     parser.add_argument("--ranks", action="store_true")
+    parser.add_argument("--only", default="", help="only the cases with this in their name, and the rival")
     options = parser.parse_args()
     per = 1e6 / (64000 * options.steps)
+    for name in [n for n in CASES if options.only not in n and not n.startswith("sph")]:
+        del CASES[name]
     with tempfile.TemporaryDirectory() as folder:
         if options.ranks:
             print("| case | 1 rank, us per particle and step | 2 ranks | speed-up (median of %d) |\n|---|---|---|---|" % options.repeat)

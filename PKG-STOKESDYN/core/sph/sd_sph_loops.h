@@ -1,7 +1,7 @@
 /* The loops of sd_sph_pair.h, compiled once for each instruction set by the two files that include
  * this one and define LOOPS. Four pairs are a vector; what a scene does not ask for is a constant 0
  * in its copy of the loop, so the compiler drops it. */
-#include "sd_sph_pair.h"
+#include "sd_sph_sums.h"
 
 #include <math.h>
 #include <string.h>
@@ -62,11 +62,23 @@ INLINE void transpose(v4 r[4])
   r[3] = SHUFFLE(b, d, 2, 3, 6, 7);
 }
 
-/* Column c of rows j[0..3] becomes r[c]. */
+/* Column c of rows j[0..3], `columns` apart, becomes r[c]. */
+INLINE void gather_from(const double *rows, int columns, const int j[4], v4 r[4])
+{
+  for (int k = 0; k < 4; k++) r[k] = load(rows + (size_t) columns * j[k]);
+  transpose(r);
+}
+
 INLINE void gather(const double *rows, const int j[4], v4 r[4])
 {
-  for (int k = 0; k < 4; k++) r[k] = load(rows + 4 * (size_t) j[k]);
-  transpose(r);
+  gather_from(rows, 4, j, r);
+}
+
+/* Adds the sums over the lanes of sum[0..3] to the four numbers of a row. */
+INLINE void add_lanes(double *row, v4 sum[4])
+{
+  transpose(sum);
+  store(row, load(row) + ((sum[0] + sum[1]) + (sum[2] + sum[3])));
 }
 
 INLINE v4 K(sd_sph_kernel kernel, v4 q)
@@ -94,16 +106,21 @@ INLINE v4 G(sd_sph_kernel kernel, v4 q)
   (many ? (v4){row[p->cls[j[0]]].NAME, row[p->cls[j[1]]].NAME, row[p->cls[j[2]]].NAME, \
                row[p->cls[j[3]]].NAME}                                                 \
         : all(row->NAME))
+#define MASSES (many ? (v4){p->m[j[0]], p->m[j[1]], p->m[j[2]], p->m[j[3]]} : mi)
+#define ROW_OF(i) (model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0))
 
 INLINE void next_four(const int *neighbor, int at, int count, int mask, int filler, int j[4])
 {
   for (int k = 0; k < 4; k++) j[k] = at + k < count ? neighbor[at + k] & mask : filler;
 }
 
-/* What a scene asks for: constants of one copy of the loop. many: classes. */
+/* What a scene asks for. In copies of a loop for the plain scheme all are constants; the others
+ * branch on the terms of the force, the same way for every pair. many: classes. */
 typedef struct {
   sd_sph_kernel kernel;
-  int many, artvisc, tenscorr, viscous, rates;
+  int many, artvisc, tenscorr, rates;
+  sd_sph_friction friction;
+  sd_sph_scheme scheme;
 } terms;
 
 /* R f^4 of tensCorr. */
@@ -116,11 +133,44 @@ INLINE v4 tension(double epsilon, v4 A, v4 B, v4 f)
 
 /* Pi of artVisc, with one division for s and 2 / (rho_a + rho_b): a1 = 2 alpha c h, b1 = 2 beta
  * h^2. */
-INLINE v4 friction(v4 vd, v4 lengths, v4 densities, v4 a1, v4 b1)
+INLINE v4 artificial(v4 vd, v4 lengths, v4 densities, v4 a1, v4 b1)
 {
   const v4 inverse = 1.0 / (lengths * densities);
   const v4 s = smaller(vd, all(0.0)) * densities * inverse;
   return s * (b1 * s - a1) * (lengths * inverse);
+}
+
+/* y = B d for B xx yy zz xy | xz yz in two blocks of four. */
+INLINE void turn(const v4 B[8], const v4 d[3], v4 y[3])
+{
+  y[0] = B[0] * d[0] + B[3] * d[1] + B[4] * d[2];
+  y[1] = B[3] * d[0] + B[1] * d[1] + B[5] * d[2];
+  y[2] = B[4] * d[0] + B[5] * d[1] + B[2] * d[2];
+}
+
+/* B d for both of a pair, and d.B d / r^2 with the mean of the two. `order` points to the eight
+ * columns of B in a row of 16. Where one of them is a wall, it has the B of the other. */
+INLINE v4 corrected(const double *order, int i, const int j[4], const v4 d[3], v4 r2, v4 mine[3],
+                    v4 theirs[3])
+{
+  v4 own[8], other[8], y[3];
+  const v4 low = load(order + 16 * (size_t) i), high = load(order + 16 * (size_t) i + 4);
+  gather_from(order, 16, j, other);
+  gather_from(order + 4, 16, j, other + 4);
+  for (int c = 0; c < 4; c++) {
+    own[c] = all(low[c]);
+    own[4 + c] = all(high[c]);
+  }
+  turn(own, d, mine);
+  turn(other, d, y);
+  const m4 wall_j = other[6] > 0.5, wall_i = own[6] > 0.5;
+  v4 product = all(0.0);
+  for (int c = 0; c < 3; c++) {
+    theirs[c] = where(wall_j, mine[c], y[c]);
+    mine[c] = where(wall_i, y[c], mine[c]);
+    product += d[c] * (mine[c] + theirs[c]);
+  }
+  return 0.5 * product / r2;
 }
 
 INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
@@ -128,15 +178,17 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
 {
   const v4 zero = all(0.0), two = all(2.0);
   v4 nearest = all(HUGE_VAL);
-  const int many = has.many, moving = has.artvisc || has.viscous || has.rates;
+  const int many = has.many, plain = has.scheme == SD_SPH_PLAIN;
+  const int moving = has.artvisc || has.friction || has.rates || !plain;
+  const int columns = has.scheme == SD_SPH_CORRECTION ? 16 : 8;
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
     const int *neighbor = list->neighbor[i];
     const v4 xi = load(p->x4 + 4 * (size_t) i);
     const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]), A = all(xi[3]);
     const v4 vi = moving ? load(p->v4 + 4 * (size_t) i) : zero;
-    const sd_sph_coefficients *row =
-        model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0);
+    const v4 dui = has.scheme == SD_SPH_SHIFT ? load(p->order + 8 * (size_t) i + 4) : zero;
+    const sd_sph_coefficients *row = ROW_OF(i);
     const v4 mi = all(many ? p->m[i] : p->mass);
     v4 sum[4] = {zero, zero, zero, zero};
 
@@ -145,59 +197,129 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
       next_four(neighbor, at, count, list->mask, p->n, j);
       v4 b[4];
       gather(p->x4, j, b);
-      const v4 dx = x - b[0], dy = y - b[1], dz = z - b[2];
-      const v4 r2 = dx * dx + dy * dy + dz * dz;
+      const v4 d[3] = {x - b[0], y - b[1], z - b[2]};
+      const v4 r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       nearest = smaller(r2, nearest);
       const v4 inv_h = COEFFICIENT(inv_h);
       const v4 q = smaller(root(r2) * inv_h, two);
-      const v4 g = COEFFICIENT(grad) * G(has.kernel, q);
-      const v4 mj = many ? (v4){p->m[j[0]], p->m[j[1]], p->m[j[2]], p->m[j[3]]} : mi;
-      v4 bracket = A + b[3];
+      const v4 g = COEFFICIENT(grad) * G(has.kernel, q), mm = mi * MASSES;
+      v4 bracket = plain || has.scheme == SD_SPH_SHIFT ? A + b[3] : zero;
+      v4 u[4], theirs[4], vd = zero, inverse = zero, rho = zero, ratio = all(1.0);
+      if (moving) {
+        gather(p->v4, j, theirs);
+        for (int c = 0; c < 3; c++) u[c] = vi[c] - theirs[c];
+        vd = u[0] * d[0] + u[1] * d[1] + u[2] * d[2];
+        rho = theirs[3];
+      }
+      if (!plain || has.friction) inverse = 1.0 / (vi[3] * rho);
 
       if (has.tenscorr)
         bracket += tension(model->epsilon, A, b[3], COEFFICIENT(tens) * K(has.kernel, q));
-      v4 u[4], vd = zero;
-      if (moving) {
-        gather(p->v4, j, u);
-        for (int c = 0; c < 3; c++) u[c] = vi[c] - u[c];
-        vd = u[0] * dx + u[1] * dy + u[2] * dz;
-      }
+      if (has.scheme == SD_SPH_VOLUME)
+        bracket = 2.0 * (rho * A + vi[3] * b[3]) * inverse / (vi[3] + rho);
       if (has.artvisc)
-        bracket += friction(vd, r2 + model->eta, vi[3] + u[3], COEFFICIENT(a1),
-                            COEFFICIENT(b1));
-      const v4 fd = -mi * mj * bracket * g;
-      v4 F[4] = {fd * dx, fd * dy, fd * dz, zero};
-      if (has.viscous) {
-        const v4 fv = mi * mj * COEFFICIENT(visc) * g / (vi[3] * u[3]);
+        bracket += artificial(vd, r2 + model->eta, vi[3] + rho, COEFFICIENT(a1), COEFFICIENT(b1));
+      v4 mine[3], other[3];
+      if (has.scheme == SD_SPH_CORRECTION)
+        ratio = corrected(p->order + 8, i, j, d, r2, mine, other);
+      if (has.friction == SD_SPH_CENTRAL)
+        bracket -= COEFFICIENT(visc) * inverse * ratio * vd / (r2 + 0.001 / (inv_h * inv_h));
+      const v4 fd = -mm * bracket * g;
+      v4 F[4] = {fd * d[0], fd * d[1], fd * d[2], zero};
+      if (has.friction == SD_SPH_LAPLACIAN) {
+        const v4 fv = mm * COEFFICIENT(visc) * g * ratio * inverse;
         for (int c = 0; c < 3; c++) F[c] += fv * u[c];
+      }
+      if (has.scheme == SD_SPH_SHIFT) {
+        v4 du[4];
+        gather_from(p->order + 4, columns, j, du);
+        const v4 carry = mm * inverse * g;
+        const v4 out = carry * vi[3] * (dui[0] * d[0] + dui[1] * d[1] + dui[2] * d[2]);
+        const v4 in = carry * rho * (du[0] * d[0] + du[1] * d[1] + du[2] * d[2]);
+        for (int c = 0; c < 3; c++) F[c] += out * vi[c] + in * theirs[c];
+      }
+      v4 on_j[4] = {F[0], F[1], F[2], zero};    // less the force on j
+      if (has.scheme == SD_SPH_CORRECTION) {
+        const v4 slope = -mm * inverse * (b[3] - A) * g;
+        for (int c = 0; c < 3; c++) {
+          F[c] += slope * mine[c];
+          on_j[c] -= slope * other[c];
+        }
       }
       for (int c = 0; c < 3; c++) sum[c] += F[c];
       if (has.rates) {
         const v4 w = g * vd;
-        sum[3] += mj * w;
-        F[3] = -mi * w;
+        sum[3] += MASSES * w;
+        on_j[3] = -mi * w;
       }
       if (each)
         for (int k = 0; k < 4 && at + k < count; k++)
-          for (int c = 0; c < 3; c++) *each++ = F[c][k];
+          for (int c = 0; c < 3; c++) *each++ = 0.5 * (F[c][k] + on_j[c][k]);
 
-      transpose(F);
+      transpose(on_j);
       for (int k = 0; k < 4; k++) {
         double *fj = f4 + 4 * (size_t) j[k];
-        store(fj, load(fj) - F[k]);
+        store(fj, load(fj) - on_j[k]);
       }
     }
-    transpose(sum);
-    double *fi = f4 + 4 * (size_t) i;
-    store(fi, load(fi) + ((sum[0] + sum[1]) + (sum[2] + sum[3])));
+    add_lanes(f4 + 4 * (size_t) i, sum);
   }
   return fmin(fmin(nearest[0], nearest[1]), fmin(nearest[2], nearest[3]));
 }
 
-INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  double *rate, const sd_sph_near *near, sd_sph_kernel kernel, int many)
+/* Appends those of j[0..3] to the list that are inside; the others are overwritten by the next. */
+INLINE int *keep(int *last, const int j[4], m4 inside)
+{
+  for (int k = 0; k < 4; k++) {
+    *last = j[k];
+    last -= inside[k];
+  }
+  return last;
+}
+
+INLINE m4 phases(const int *phase, const int j[4])
+{
+  return (m4){phase[j[0]], phase[j[1]], phase[j[2]], phase[j[3]]};
+}
+
+INLINE m4 same(long long a)
+{
+  return (m4){a, a, a, a};
+}
+
+/* The terms of sd_sph_sums.h but for the rate. even[c] V_b belongs to a and even[c] V_a to b; s
+ * changes sign between them. t: sum over all pairs of a. */
+typedef struct {
+  v4 d[3], u[3], rho_i, rho_j, g, near, f;    // near: g, but 0 between two fluids
+} pair_of_four;
+
+INLINE void columns_of(const pair_of_four *q, sd_sph_level level, v4 *even)
+{
+  const v4 *d = q->d, zero = all(0.0), jump = (q->rho_j - q->rho_i) * q->near;
+  for (int c = 0; c < 3; c++) {
+    even[1 + c] = jump * d[c];
+    even[4 + c] = -q->near * d[c] * d[c];
+  }
+  even[7] = -q->near * d[0] * d[1];
+  even[8] = -q->near * d[0] * d[2];
+  even[9] = -q->near * d[1] * d[2];
+  even[10] = even[11] = zero;
+  if (level < SD_SPH_DISORDER) return;
+  const v4 f2 = q->f * q->f, push = q->g * (1.0 + 0.2 * (f2 * f2));
+  for (int c = 0; c < 3; c++) even[10 + c] = push * d[c];
+  even[13] = even[14] = even[15] = zero;
+  if (level < SD_SPH_VELOCITY) return;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) even[14 + 3 * a + b] = -q->g * q->u[a] * d[b];
+  even[23] = zero;
+}
+
+INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                   double *sums, const sd_sph_near *near, sd_sph_kernel kernel, int many,
+                   sd_sph_level level, int volume)
 {
   const v4 zero = all(0.0), two = all(2.0);
+  const int columns = level == SD_SPH_RATE ? 1 : 8 + 4 * level + 4 * (level == SD_SPH_VELOCITY);
   const double margin = near ? near->margin : 0.0;
   int *pool = near ? near->pool : NULL;
   for (int ii = 0; ii < list->n; ii++) {
@@ -205,10 +327,12 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
     const int *neighbor = list->neighbor[i];
     const v4 xi = load(p->x4 + 4 * (size_t) i), vi = load(p->v4 + 4 * (size_t) i);
     const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]);
-    const sd_sph_coefficients *row =
-        model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0);
-    const double mi = many ? p->m[i] : p->mass;
-    v4 sum = zero;
+    const sd_sph_coefficients *row = ROW_OF(i);
+    const v4 mi = all(many ? p->m[i] : p->mass);
+    double *mine = sums + (size_t) columns * i;
+    const int phase = p->phase ? p->phase[i] : 0;
+    v4 sum[24], fastest = zero;
+    for (int c = 0; c < columns; c++) sum[c] = zero;
     int *last = pool;
 
     for (int at = 0; at < count; at += 4) {
@@ -217,22 +341,68 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
       v4 b[4], u[4];
       gather(p->x4, j, b);
       gather(p->v4, j, u);
-      const v4 dx = x - b[0], dy = y - b[1], dz = z - b[2];
+      pair_of_four q = {.d = {x - b[0], y - b[1], z - b[2]}, .rho_i = all(vi[3]), .rho_j = u[3]};
+      for (int c = 0; c < 3; c++) q.u[c] = vi[c] - u[c];
       const v4 inv_h = COEFFICIENT(inv_h);
-      const v4 distance = root(dx * dx + dy * dy + dz * dz) * inv_h;
-      const v4 w = COEFFICIENT(grad) * G(kernel, smaller(distance, two)) *
-          (dx * (vi[0] - u[0]) + dy * (vi[1] - u[1]) + dz * (vi[2] - u[2]));
-      sum += many ? w * (v4){p->m[j[0]], p->m[j[1]], p->m[j[2]], p->m[j[3]]} : w * mi;
-      for (int k = 0; k < 4; k++) rate[j[k]] += mi * w[k];
-      if (pool) {
-        const m4 inside = distance < two + margin * inv_h;
+      const v4 r = root(q.d[0] * q.d[0] + q.d[1] * q.d[1] + q.d[2] * q.d[2]), distance = r * inv_h;
+      const v4 reach = smaller(distance, two);
+      q.g = COEFFICIENT(grad) * G(kernel, reach);
+      const v4 vd = q.d[0] * q.u[0] + q.d[1] * q.u[1] + q.d[2] * q.u[2];
+      v4 w = q.g * vd, rate_i = MASSES * w, rate_j = mi * w;
+      if (volume) {
+        w = 2.0 / (vi[3] + u[3]);
+        rate_i *= w * vi[3];
+        rate_j *= w * u[3];
+      }
+      sum[0] += rate_i;
+      if (pool) last = keep(last, j, distance < two + margin * inv_h);
+      if (level == SD_SPH_RATE) {
+        for (int k = 0; k < 4; k++) sums[j[k]] += rate_j[k];
+        continue;
+      }
+
+      q.near = q.g;
+      if (volume) {
+        const m4 other = phases(p->phase, j);
+        q.near = where((other == same(phase)) & (other >= same(0)), q.g, zero);
+      }
+      if (level >= SD_SPH_DISORDER) {
+        q.f = COEFFICIENT(tens) * K(kernel, reach);
+        v4 speed = where(distance < two, larger(vd, -vd) / larger(r, all(1e-300)), zero);
+        const v4 theirs = phase >= 0 ? speed : zero;
+        if (p->phase) speed = where(phases(p->phase, j) >= same(0), speed, zero);
+        fastest = larger(fastest, speed);
         for (int k = 0; k < 4; k++) {
-          *last = j[k];
-          last -= inside[k];
+          double *U = sums + (size_t) columns * j[k] + SD_SPH_MAXIMUM;
+          if (theirs[k] > *U) *U = theirs[k];
+        }
+      }
+      v4 even[24];
+      columns_of(&q, level, even);
+      even[0] = zero;
+      for (int c = 1; c < columns; c++) sum[c] += even[c] * b[3];
+      const v4 V = all(xi[3]), odd = -V;
+      for (int first = 0; first < columns; first += 4) {
+        v4 part[4];
+        for (int c = 0; c < 4; c++) {
+          const int column = first + c;
+          part[c] = column == 0 ? rate_j : even[column] * (column >= 10 && column < 13 ? odd : V);
+        }
+        transpose(part);
+        for (int k = 0; k < 4; k++) {
+          double *row_j = sums + (size_t) columns * j[k] + first;
+          store(row_j, load(row_j) + part[k]);
         }
       }
     }
-    rate[i] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    if (level == SD_SPH_RATE) {
+      *mine += (sum[0][0] + sum[0][1]) + (sum[0][2] + sum[0][3]);
+    } else {
+      for (int first = 0; first < columns; first += 4) add_lanes(mine + first, sum + first);
+      if (level >= SD_SPH_DISORDER)
+        for (int k = 0; k < 4; k++)
+          if (fastest[k] > mine[SD_SPH_MAXIMUM]) mine[SD_SPH_MAXIMUM] = fastest[k];
+    }
     if (pool) {
       near->neighbor[i] = pool;
       near->count[i] = (int) (last - pool);
@@ -241,46 +411,172 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
   }
 }
 
-/* One function for each combination; the switch picks it once a step. */
-#define COMBINATION(kernel, many, artvisc, tenscorr, viscous, with_rates)                          \
-  case ((kernel) << 5) + ((many) << 4) + ((artvisc) << 3) + ((tenscorr) << 2) + ((viscous) << 1) + \
+/* psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d), odd under exchange of i and
+ * j. */
+INLINE void diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      double *rate, sd_sph_kernel kernel, int many)
+{
+  const v4 zero = all(0.0), two = all(2.0);
+  const int columns = sd_sph_columns(model), volume = model->scheme == SD_SPH_VOLUME;
+  for (int ii = 0; ii < list->n; ii++) {
+    const int i = list->first[ii], count = list->count[i];
+    const int *neighbor = list->neighbor[i];
+    const v4 xi = load(p->x4 + 4 * (size_t) i), gi = load(p->order + (size_t) columns * i);
+    const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]);
+    const sd_sph_coefficients *row = ROW_OF(i);
+    const int phase = volume ? p->phase[i] : 0;
+    v4 sum = zero;
+
+    for (int at = 0; at < count; at += 4) {
+      int j[4];
+      next_four(neighbor, at, count, list->mask, p->n, j);
+      v4 b[4], gj[4];
+      gather(p->x4, j, b);
+      gather_from(p->order, columns, j, gj);
+      const v4 dx = x - b[0], dy = y - b[1], dz = z - b[2];
+      const v4 q = smaller(root(dx * dx + dy * dy + dz * dz) * COEFFICIENT(inv_h), two);
+      v4 g = COEFFICIENT(grad) * G(kernel, q);
+      if (volume) {
+        const m4 other = phases(p->phase, j);
+        g = where((other == same(phase)) & (other >= same(0)), g, zero);
+      }
+      const v4 along = (gi[0] + gj[0]) * dx + (gi[1] + gj[1]) * dy + (gi[2] + gj[2]) * dz;
+      const v4 flux = -COEFFICIENT(diffusion) * g * (2.0 * (gj[3] - gi[3]) + along);
+      sum += b[3] * flux;
+      for (int k = 0; k < 4; k++) rate[j[k]] -= xi[3] * flux[k];
+    }
+    rate[i] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  }
+}
+
+INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  const double *q, double *sums, sd_sph_kernel kernel, int many, int fours,
+                  int walls)
+{
+  const v4 zero = all(0.0), two = all(2.0);
+  const int columns = 4 * fours;
+  for (int ii = 0; ii < list->n; ii++) {
+    const int i = list->first[ii], count = list->count[i];
+    const int *neighbor = list->neighbor[i];
+    const v4 xi = load(p->x4 + 4 * (size_t) i);
+    const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]);
+    const sd_sph_coefficients *row = ROW_OF(i);
+    v4 sum[8];
+    for (int c = 0; c < columns; c++) sum[c] = zero;
+
+    for (int at = 0; at < count; at += 4) {
+      int j[4];
+      next_four(neighbor, at, count, list->mask, p->n, j);
+      m4 counts = same(-1);
+      if (walls) {
+        counts = phases(p->phase, j) == same(~p->phase[i]);
+        if (!(counts[0] | counts[1] | counts[2] | counts[3])) continue;
+      }
+      v4 b[4];
+      gather(p->x4, j, b);
+      const v4 dx = x - b[0], dy = y - b[1], dz = z - b[2];
+      const v4 distance = smaller(root(dx * dx + dy * dy + dz * dz) * COEFFICIENT(inv_h), two);
+      v4 W = COEFFICIENT(weight) * K(kernel, distance);
+      if (walls) W = where(counts, W, zero);
+      for (int first = 0; first < columns; first += 4) {
+        const v4 qi = load(q + (size_t) columns * i + first);
+        v4 qj[4];
+        gather_from(q + first, columns, j, qj);
+        for (int c = 0; c < 4; c++) sum[first + c] += W * qj[c];
+        for (int k = 0; k < 4; k++) {
+          double *row_j = sums + (size_t) columns * j[k] + first;
+          store(row_j, load(row_j) + W[k] * qi);
+        }
+      }
+    }
+    for (int first = 0; first < columns; first += 4)
+      add_lanes(sums + (size_t) columns * i + first, sum + first);
+  }
+}
+
+/* One function for each combination; the switch picks it once a step. The schemes beyond the plain
+ * one have no tensCorr and no rates, and look at the model for the terms. */
+#define COMBINATION(kernel, many, artvisc, tenscorr, rubs, with_rates)                            \
+  case ((kernel) << 5) + ((many) << 4) + ((artvisc) << 3) + ((tenscorr) << 2) + ((rubs) << 1) +    \
       (with_rates):                                                                                \
     return forces(model, list, p, f4, each,                                                        \
-                  (terms){kernel, many, artvisc, tenscorr, viscous, with_rates});
+                  (terms){kernel, many, artvisc, tenscorr, with_rates,                             \
+                          rubs ? model->friction : SD_SPH_INVISCID, SD_SPH_PLAIN});
 #define TWICE(next, ...) next(__VA_ARGS__, 0) next(__VA_ARGS__, 1)
-#define BY_VISCOUS(...) TWICE(COMBINATION, __VA_ARGS__, 0) TWICE(COMBINATION, __VA_ARGS__, 1)
-#define BY_TENSCORR(...) BY_VISCOUS(__VA_ARGS__, 0) BY_VISCOUS(__VA_ARGS__, 1)
+#define BY_FRICTION(...) TWICE(COMBINATION, __VA_ARGS__, 0) TWICE(COMBINATION, __VA_ARGS__, 1)
+#define BY_TENSCORR(...) BY_FRICTION(__VA_ARGS__, 0) BY_FRICTION(__VA_ARGS__, 1)
 #define BY_ARTVISC(...) BY_TENSCORR(__VA_ARGS__, 0) BY_TENSCORR(__VA_ARGS__, 1)
 #define BY_MANY(kernel) BY_ARTVISC(kernel, 0) BY_ARTVISC(kernel, 1)
+
+#define SCHEME(law, kernel, many)                                                            \
+  case ((law) << 2) + ((kernel) << 1) + (many):                                           \
+    return forces(model, list, p, f4, each,                                                  \
+                  (terms){kernel, many, model->artvisc, 0, 0, model->friction, law});
+#define BY_KERNEL(next, ...)                                           \
+  TWICE(next, __VA_ARGS__, SD_SPH_CUBICSPLINE) TWICE(next, __VA_ARGS__, SD_SPH_WENDLAND)
 
 static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
                          const sd_sph_particles *p, int with_rates, double *f4, double *each)
 {
-  switch ((model->kernel << 5) + ((model->nclasses > 1) << 4) + (!!model->artvisc << 3) +
-          (!!model->tenscorr << 2) + (!!model->viscous << 1) + !!with_rates) {
+  const int many = model->nclasses > 1;
+  switch ((model->scheme << 2) + (model->kernel << 1) + many) {
+    BY_KERNEL(SCHEME, SD_SPH_SHIFT)
+    BY_KERNEL(SCHEME, SD_SPH_CORRECTION)
+    BY_KERNEL(SCHEME, SD_SPH_VOLUME)
+  }
+  switch ((model->kernel << 5) + (many << 4) + (!!model->artvisc << 3) + (!!model->tenscorr << 2) +
+          (!!model->friction << 1) + !!with_rates) {
     BY_MANY(SD_SPH_CUBICSPLINE)
     BY_MANY(SD_SPH_WENDLAND)
   }
   return 0.0;
 }
 
-static void all_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                      double *rate, const sd_sph_near *near)
+#define LEVEL(level, volume, kernel, many)                                  \
+  case ((level) << 3) + ((volume) << 2) + ((kernel) << 1) + (many):         \
+    middle(model, list, p, sums, near, kernel, many, level, volume);        \
+    break;
+
+static void all_middle(const sd_sph_model *model, const sd_sph_list *list,
+                       const sd_sph_particles *p, double *sums, const sd_sph_near *near)
 {
-  switch ((model->kernel << 1) + (model->nclasses > 1)) {
-    case SD_SPH_CUBICSPLINE << 1:
-      rates(model, list, p, rate, near, SD_SPH_CUBICSPLINE, 0);
-      break;
-    case (SD_SPH_CUBICSPLINE << 1) + 1:
-      rates(model, list, p, rate, near, SD_SPH_CUBICSPLINE, 1);
-      break;
-    case SD_SPH_WENDLAND << 1:
-      rates(model, list, p, rate, near, SD_SPH_WENDLAND, 0);
-      break;
-    case (SD_SPH_WENDLAND << 1) + 1:
-      rates(model, list, p, rate, near, SD_SPH_WENDLAND, 1);
-      break;
+  const int volume = model->scheme == SD_SPH_VOLUME;
+  switch ((sd_sph_level_of(model) << 3) + (volume << 2) + (model->kernel << 1) +
+          (model->nclasses > 1)) {
+    BY_KERNEL(LEVEL, SD_SPH_RATE, 0)
+    BY_KERNEL(LEVEL, SD_SPH_RATE, 1)
+    BY_KERNEL(LEVEL, SD_SPH_GRADIENT, 0)
+    BY_KERNEL(LEVEL, SD_SPH_GRADIENT, 1)
+    BY_KERNEL(LEVEL, SD_SPH_DISORDER, 0)
+    BY_KERNEL(LEVEL, SD_SPH_VELOCITY, 0)
   }
 }
 
-const sd_sph_loops LOOPS = {all_forces, all_rates};
+#define DIFFUSION(ignored, kernel, many)                  \
+  case ((kernel) << 1) + (many):                          \
+    diffusion(model, list, p, rate, kernel, many);        \
+    break;
+
+static void all_diffusion(const sd_sph_model *model, const sd_sph_list *list,
+                          const sd_sph_particles *p, double *rate)
+{
+  switch ((model->kernel << 1) + (model->nclasses > 1)) {
+    BY_KERNEL(DIFFUSION, 0)
+  }
+}
+
+#define WEIGH(fours, walls, kernel, many)                                    \
+  case ((fours) << 3) + ((walls) << 2) + ((kernel) << 1) + (many):           \
+    weigh(model, list, p, q, sums, kernel, many, fours, walls);              \
+    break;
+
+static void all_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      int fours, int walls, const double *q, double *sums)
+{
+  switch ((fours << 3) + (walls << 2) + (model->kernel << 1) + (model->nclasses > 1)) {
+    BY_KERNEL(WEIGH, 1, 0)
+    BY_KERNEL(WEIGH, 2, 1)
+  }
+}
+
+const sd_sph_loops LOOPS = {all_forces, all_middle, all_diffusion, all_weigh};

@@ -1,34 +1,62 @@
-#include "sd_sph_pair.h"
+#include "sd_sph_sums.h"
 
-sd_sph_coefficients sd_sph_coefficients_of(sd_sph_kernel kernel, int dimension,
-                                           const sd_sph_parameters *p, double mu)
+sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_sph_parameters *p)
 {
-  const double h = p->h, volume = dimension == 3 ? h * h * h : h * h,
-               N = sd_sph_norm(kernel, dimension);
-  const double K = sd_sph_K(kernel, p->deltap / h);
-  return (sd_sph_coefficients){.inv_h = 1.0 / h,
-                               .grad = N / (volume * h * h),
-                               .weight = N / volume,
-                               .a1 = 2.0 * p->alpha * p->c * h,
-                               .b1 = 2.0 * p->beta * h * h,
-                               .tens = K > 0.0 ? 1.0 / K : 0.0,
-                               .visc = 2.0 * mu,
-                               .support = 2.0 * h,
-                               .ch = p->c > 0.0 ? p->c * h : 0.0};
+  const int dimension = model->dimension;
+  const double h = p->h, volume = dimension == 3 ? h * h * h : h * h;
+  const double N = sd_sph_norm(model->kernel, dimension);
+  sd_sph_coefficients c = {.inv_h = 1.0 / h,
+                           .grad = N / (volume * h * h),
+                           .weight = N / volume,
+                           .support = 2.0 * h};
+  if (model->artvisc) {
+    c.a1 = 2.0 * p->alpha * p->c * h;
+    c.b1 = 2.0 * p->beta * h * h;
+  }
+  if (model->tenscorr || sd_sph_level_of(model) >= SD_SPH_DISORDER) {
+    const double K = sd_sph_K(model->kernel, p->deltap / h);
+    c.tens = K > 0.0 ? 1.0 / K : 0.0;
+  }
+  /* Averaged over all directions, the part of v along d makes 1 / (D + 2) of the Laplacian. */
+  if (model->friction)
+    c.visc = 2.0 * p->mu * (model->friction == SD_SPH_CENTRAL ? dimension + 2 : 1);
+  if (model->delta > 0.0) c.diffusion = model->delta * p->c * h;
+  return c;
+}
+
+sd_sph_level sd_sph_level_of(const sd_sph_model *model)
+{
+  if (model->scheme == SD_SPH_CORRECTION) return SD_SPH_VELOCITY;
+  if (model->scheme == SD_SPH_SHIFT) return SD_SPH_DISORDER;
+  return model->delta > 0.0 ? SD_SPH_GRADIENT : SD_SPH_RATE;
+}
+
+int sd_sph_sum_columns(sd_sph_level level)
+{
+  static const int columns[] = {1, 12, 16, 24};
+  return columns[level];
+}
+
+int sd_sph_columns(const sd_sph_model *model)
+{
+  static const int columns[] = {0, 4, 8, 16};
+  return columns[sd_sph_level_of(model)];
 }
 
 /* Far enough that every kernel is 0, near enough that the square of the distance is finite. */
 static const double FAR = 1e100;
 
-void sd_sph_pack_x(int n, const double *x, const double *v, double shift, double *x4)
+void sd_sph_pack_x(int n, const double *x, const double *v, const double *du, double shift,
+                   double *x4)
 {
-  if (shift != 0.0)
-    for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++)
-        x4[4 * (size_t) i + d] = x[3 * (size_t) i + d] + shift * v[3 * (size_t) i + d];
-  else
-    for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++) x4[4 * (size_t) i + d] = x[3 * (size_t) i + d];
+  for (int i = 0; i < n; i++) {
+    double *row = x4 + 4 * (size_t) i;
+    for (int d = 0; d < 3; d++) row[d] = x[3 * (size_t) i + d];
+    if (v)
+      for (int d = 0; d < 3; d++) row[d] += shift * v[3 * (size_t) i + d];
+    if (du)
+      for (int d = 0; d < 3; d++) row[d] += shift * du[3 * (size_t) i + d];
+  }
   for (int d = 0; d < 3; d++) x4[4 * (size_t) n + d] = FAR;
   x4[4 * (size_t) n + 3] = 0.0;
 }
@@ -41,6 +69,14 @@ void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4)
   }
   for (int d = 0; d < 3; d++) v4[4 * (size_t) n + d] = 0.0;
   v4[4 * (size_t) n + 3] = 1.0;
+}
+
+void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, const double *rho,
+                           double *x4)
+{
+  const int as_is = model->scheme == SD_SPH_CORRECTION || model->scheme == SD_SPH_VOLUME;
+  for (int i = 0; i < n; i++)
+    x4[4 * (size_t) i + 3] = as_is ? P[i] : P[i] / (rho[i] * rho[i]);
 }
 
 static const sd_sph_loops *loops(void)
@@ -57,8 +93,20 @@ double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const s
   return loops()->forces(model, list, p, rates, f4, each);
 }
 
-void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  double *rate, const sd_sph_near *near)
+void sd_sph_middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                   double *sums, const sd_sph_near *near)
 {
-  loops()->rates(model, list, p, rate, near);
+  loops()->middle(model, list, p, sums, near);
+}
+
+void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      double *rate)
+{
+  loops()->diffusion(model, list, p, rate);
+}
+
+void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  int fours, int walls, const double *q, double *sums)
+{
+  loops()->weigh(model, list, p, fours, walls, q, sums);
 }

@@ -1,17 +1,25 @@
-/* The pair sums of weakly compressible SPH over a half neighbour list: forces and density rates.
+/* The model of weakly compressible SPH, and its pair forces over a half neighbour list.
  *
- * With d = x_a - x_b, v = v_a - v_b, A = P / rho^2, g = W'(r) / r <= 0, and h, alpha, beta, c, dp
- * those of the pair:
- *   force on a   F_a = - m_a m_b [ A_a + A_b + Pi + R f^4 ] g d
- *                      + m_a m_b 2 mu / (rho_a rho_b) g v,            F_b = - F_a
+ * With d = x_a - x_b, v = v_a - v_b, A = P / rho^2, V = m / rho, g = W'(r) / r <= 0, D = 2 or 3, and
+ * h, alpha, beta, c, dp, mu those of the pair:
+ *   force on a   F_a = - m_a m_b [ A_a + A_b + Pi + R f^4 ] g d  + friction,       F_b = - F_a
  *   artVisc      Pi = (- alpha c s + beta s^2) 2 / (rho_a + rho_b), s = h v.d / (r^2 + eta), for
  *                v.d < 0, otherwise 0; eta is a length^2, as given
  *   tensCorr     f = W(r) / W(dp); R = 0.01 (A_a + A_b) if both pressures are > 0, otherwise the
  *                sum of epsilon |A| over the negative ones
- *   viscosity    the last term of F_a: Morris, Fox & Zhu 1997 with r.grad W / r^2 = g, for one
- *                dynamic viscosity mu
+ *   laplacian    m_a m_b 2 mu / (rho_a rho_b) g v: Morris, Fox & Zhu 1997 with r.grad W / r^2 = g
+ *   central      m_a m_b 2 (D+2) mu / (rho_a rho_b) (v.d) / (r^2 + 0.001 h^2) g d: Monaghan 2005.
+ *                Along d, so it keeps angular momentum and leaves solid rotation alone
  *   rate of a    drho_a = sum m_b g v.d   (the same sum for b: v.d does not change sign)
- * Source: Monaghan 1992, 2000.
+ * Source: Monaghan 1992, 2000. What a scheme changes:
+ *   shift        F_a += V_a V_b g [ rho_a v_a (du_a.d) + rho_b v_b (du_b.d) ]: particles that are
+ *                moved with v + du carry their momentum along; still F_b = - F_a
+ *   correction   F_a = - V_a V_b (P_b - P_a) g B_a d, F_b the same with B_b: exact for a linear
+ *                pressure, not antisymmetric. In friction g becomes g (d.B d) / r^2, B the mean of
+ *                the two. A wall has the B of its partner
+ *   volume       F_a = - 2 V_a V_b p g d, p = (rho_b P_a + rho_a P_b) / (rho_a + rho_b): continuous
+ *                where densities jump, Hu & Adams 2006. Rate: sum m_b g v.d 2 rho_a / (rho_a +
+ *                rho_b), its adjoint: sum F.v = - sum V P rate / rho
  *
  * The loops work on four pairs at a time, without a branch: K and G vanish beyond the support, so
  * neighbours outside contribute zeros. Every particle array therefore has one row more than there
@@ -27,12 +35,15 @@
 extern "C" {
 #endif
 
+typedef enum { SD_SPH_PLAIN, SD_SPH_SHIFT, SD_SPH_CORRECTION, SD_SPH_VOLUME } sd_sph_scheme;
+typedef enum { SD_SPH_INVISCID, SD_SPH_LAPLACIAN, SD_SPH_CENTRAL } sd_sph_friction;
+
 /* What the user gives for a pair of types. */
 typedef struct {
-  double h, c, alpha, beta, deltap;
+  double h, c, alpha, beta, deltap, mu;
 } sd_sph_parameters;
 
-/* The same, ready for the loops. */
+/* The same, ready for the loops; 0 where no term of the model asks for it. */
 typedef struct {
   /* 1 / h, N / h^(d+2), N / h^d */
   double inv_h, grad, weight;
@@ -40,28 +51,31 @@ typedef struct {
   double a1, b1;
   /* 1 / K(dp / h) */
   double tens;
-  /* 2 mu */
+  /* 2 mu, of central 2 (D+2) mu */
   double visc;
   /* 2 h */
   double support;
-  /* c h, 0 without c */
-  double ch;
+  /* delta c h */
+  double diffusion;
 } sd_sph_coefficients;
 
 typedef struct {
   sd_sph_kernel kernel;
   int dimension;
+  sd_sph_scheme scheme;
   /* which terms the force has */
-  int artvisc, tenscorr, viscous;
+  int artvisc, tenscorr;
+  sd_sph_friction friction;
   double eta, epsilon;
+  /* density diffusion, sd_sph_sums.h */
+  double delta;
   /* particles of different class have different coefficients or mass */
   int nclasses;
   /* [nclasses * nclasses] */
   const sd_sph_coefficients *pair;
 } sd_sph_model;
 
-sd_sph_coefficients sd_sph_coefficients_of(sd_sph_kernel kernel, int dimension,
-                                           const sd_sph_parameters *p, double mu);
+sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_sph_parameters *p);
 
 /* Each pair once: the neighbours of particle i = first[k], k < n, are
  * neighbor[i][0 .. count[i] - 1] & mask. */
@@ -74,46 +88,41 @@ typedef struct {
 /* Rows 0 .. n - 1 are particles (owned and ghosts), row n is the far-away one. */
 typedef struct {
   int n;
-  /* [4 (n+1)] x y z A, and vx vy vz rho */
-  const double *x4, *v4;
+  /* [4 (n+1)] x y z and: for forces A, with correction and volume P; for sums V */
+  const double *x4;
+  /* [4 (n+1)] vx vy vz rho */
+  const double *v4;
   /* [n+1] mass and class, 0 .. nclasses - 1; read only if nclasses > 1 */
   const double *m;
   const int *cls;
   /* of each particle if nclasses = 1 */
   double mass;
+  /* [n+1] k: of fluid k; ~k: of a wall before fluid k. NULL: all are of fluid 0 */
+  const int *phase;
+  /* [sd_sph_columns (n+1)] made by sd_sph_order.h: grad rho, rho | du, 0 | B xx yy zz xy | B xz yz,
+   * 1 for walls, 0. Only with delta, shift and correction */
+  const double *order;
 } sd_sph_particles;
 
-/* Fills rows 0 .. n: position + shift * velocity (v may be null if shift is 0). The last column is
- * left alone: sd_sph_pressures writes A there. */
-void sd_sph_pack_x(int n, const double *x, const double *v, double shift, double *x4);
+/* Columns of a row of order: 4 with delta, 8 with shift, 16 with correction. */
+int sd_sph_columns(const sd_sph_model *model);
+
+/* Fills rows 0 .. n: position + shift * (velocity + du), with v and du [3 n] or null. The last
+ * column is left alone but for row n. */
+void sd_sph_pack_x(int n, const double *x, const double *v, const double *du, double shift,
+                   double *x4);
 void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4);
+/* The last column of x4 for forces, from P and rho [n]. */
+void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, const double *rho,
+                           double *x4);
 
 /* Adds to f4 [4 (n+1)], rows Fx Fy Fz drho, the last column only with rates (then v4 must be
- * packed). each, if not null: F_a of each pair, 3 numbers, in the order of the list. Returns the
+ * packed, and the scheme is plain). each, if not null: F_a of each pair, 3 numbers, in the order of
+ * the list; with correction half of F_a - F_b, which is what the virial asks for. Returns the
  * square of the shortest distance met: 0 means two particles at one place, and then the forces are
  * not finite. */
 double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      int rates, double *f4, double *each);
-
-/* Room for the pairs closer than 2 h + margin: neighbor[i] and count[i], in the pool, which must
- * hold every pair of the list and three more entries. */
-typedef struct {
-  double margin;
-  int *pool, **neighbor, *count;
-} sd_sph_near;
-
-/* Adds drho to rate [n+1] and, with near not null, finds the near pairs. */
-void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  double *rate, const sd_sph_near *near);
-
-/* The loops as compiled for one instruction set: sd_sph_loops.h. */
-typedef struct {
-  double (*forces)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int,
-                   double *, double *);
-  void (*rates)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *,
-                const sd_sph_near *);
-} sd_sph_loops;
-extern const sd_sph_loops sd_sph_loops_any, sd_sph_loops_avx2;
 
 #ifdef __cplusplus
 }

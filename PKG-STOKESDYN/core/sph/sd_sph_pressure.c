@@ -1,7 +1,6 @@
 #include "sd_sph_pressure.h"
 
 #include <math.h>
-#include <stddef.h>
 
 /* x^gamma; the exponent of water, 7, and other small integers by multiplication. */
 static double power(double x, double gamma)
@@ -50,12 +49,9 @@ double sd_sph_least_pressure(const sd_sph_state *s)
 }
 
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
-                      double *P, double *x4)
+                      double *P)
 {
   const sd_sph_state s = *state;
-  for (int i = 0; i < n; i++) {
-    if (!(mask[i] & bit)) continue;
-    P[i] = sd_sph_pressure(&s, rho[i]);
-    x4[4 * (size_t) i + 3] = P[i] / (rho[i] * rho[i]);
-  }
+  for (int i = 0; i < n; i++)
+    if (mask[i] & bit) P[i] = sd_sph_pressure(&s, rho[i]);
 }

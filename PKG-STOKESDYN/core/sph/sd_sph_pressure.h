@@ -27,10 +27,9 @@ double sd_sph_density_of(const sd_sph_state *state, double P);
 /* The pressure of no density at all: those of all densities are above it. */
 double sd_sph_least_pressure(const sd_sph_state *state);
 
-/* P [n] of the particles i with mask[i] & bit, and P / rho^2 in the last column of x4 [4 n]; the
- * others keep theirs. */
+/* P [n] of the particles i with mask[i] & bit; the others keep theirs. */
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
-                      double *P, double *x4);
+                      double *P);
 
 #ifdef __cplusplus
 }

@@ -2,8 +2,8 @@
 #ifndef SD_SPH_WALL_H
 #define SD_SPH_WALL_H
 
-#include "sd_sph_pair.h"
 #include "sd_sph_pressure.h"
+#include "sd_sph_sums.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -16,20 +16,27 @@ double sd_sph_mirror(double m, double P, double rho, double dW);
  * D ((r0/r)^4 - (r0/r)^2) for 0 < r < r0, 0 beyond. */
 double sd_sph_repulsion(double D, double r0, double r);
 
-/* Adami, Hu & Adams 2012. Sums of a wall particle w over the fluid particles f in its support:
- *   sums [5 (n+1)]   sum W,  sum (P_f + rho_f b . (x_w - x_f)) W,  sum v_f W (3)
- * with b = g - a_w, the body force per mass as the wall sees it. Walls are the particles with
- * mask & bit; neither wall-wall nor fluid-fluid pairs count. */
-void sd_sph_wall_sums(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                      const int *mask, int bit, const double *pressure, const double b[3],
-                      double *sums);
+/* Adami, Hu & Adams 2012: a wall particle w takes pressure and velocity from the fluid particles f
+ * in its support,
+ *   P_w = sum [P_f + rho_f b.(x_w - x_f)] W / sum W,   <v> = sum v_f W / sum W
+ * with b = g - a_w, the body force per mass as the wall sees it. For sd_sph_weigh, walls only, since
+ * the bracket is linear in x_w: q [8 (n+1)] is 1, P - rho b.x, rho, 0, v, 0 of the fluid and 0 of
+ * walls. x4 and v4 of the particles must be packed. */
+void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const double b[3],
+                       double *q);
 
-/* What these sums make of one wall particle that moves with v. row, in: its density. Out: the
+typedef struct {
+  const sd_sph_state *state;
+  double b[3];
+  int slip;
+} sd_sph_wall;
+
+/* What the sums s make of one wall particle at x that moves with v. row, in: its density. Out: the
  * density that has the pressure of the fluid before it (0: none has), and by how much the velocity
  * that friction sees differs from v: to that of the fluid with slip, to its mirror image without.
- * A wall without fluid in reach has P0, or keeps its density (absolut). */
-void sd_sph_wall_particle(const sd_sph_state *state, const double sums[5], const double v[3],
-                          int slip, double row[4]);
+ * A wall without fluid in reach has P0, or keeps its density (absolut). Returns the pressure. */
+double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double x[3],
+                            const double v[3], double row[4]);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,129 @@
+#include "sd_sph_order.h"
+
+#include "sd_sph_visit.h"
+
+#include <string.h>
+
+void sd_sph_pack_volumes(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
+                         double *x4)
+{
+  for (int i = 0; i < p->n; i++) x4[4 * (size_t) i + 3] = sd_sph_mass(model, p, i) / rho[i];
+  x4[4 * (size_t) p->n + 3] = 0.0;
+}
+
+/* Symmetric 3 x 3: xx yy zz xy xz yz. */
+typedef struct {
+  double a[6];
+} symmetric;
+
+/* M of a row of sums. In two dimensions nothing is summed along z: a unit there keeps the inverse
+ * two-dimensional. */
+static symmetric moment(int dimension, const double *sums)
+{
+  symmetric M;
+  memcpy(M.a, sums + 4, sizeof(M.a));
+  if (dimension == 2) {
+    M.a[2] = 1.0;
+    M.a[4] = M.a[5] = 0.0;
+  }
+  return M;
+}
+
+static symmetric cofactors(const symmetric *M)
+{
+  const double *a = M->a;
+  return (symmetric){{a[1] * a[2] - a[5] * a[5], a[0] * a[2] - a[4] * a[4],
+                      a[0] * a[1] - a[3] * a[3], a[4] * a[5] - a[3] * a[2],
+                      a[3] * a[5] - a[4] * a[1], a[3] * a[4] - a[0] * a[5]}};
+}
+
+static double determinant(const symmetric *M, const symmetric *cofactor)
+{
+  return M->a[0] * cofactor->a[0] + M->a[3] * cofactor->a[3] + M->a[4] * cofactor->a[4];
+}
+
+static void times(const symmetric *M, const double x[3], double y[3])
+{
+  const double *a = M->a;
+  y[0] = a[0] * x[0] + a[3] * x[1] + a[4] * x[2];
+  y[1] = a[3] * x[0] + a[1] * x[1] + a[5] * x[2];
+  y[2] = a[4] * x[0] + a[5] * x[1] + a[2] * x[2];
+}
+
+/* Is the smallest eigenvalue above the limit? Exactly where M - limit I is positive definite, that
+ * is where all its leading minors are positive: no eigenvalue is computed. */
+static int above(const symmetric *M, double limit)
+{
+  symmetric S = *M;
+  for (int d = 0; d < 3; d++) S.a[d] -= limit;
+  const symmetric cofactor = cofactors(&S);
+  return S.a[0] > 0.0 && cofactor.a[2] > 0.0 && determinant(&S, &cofactor) > 0.0;
+}
+
+/* Below 0.9 the support is cut by a free surface: it is 1 in the bulk, disordered or not, and about
+ * a half in the first row. */
+static const double SURFACE = 0.9;
+
+static void shift(const double *sums, double support, double du[3])
+{
+  const double *s = sums + 10, U = sums[SD_SPH_MAXIMUM];
+  const double length = 5.0 * support * sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+  const double scale = -U * 5.0 * support / (length > 1.0 ? length : 1.0);
+  for (int d = 0; d < 3; d++) du[d] = scale * s[d];
+}
+
+/* tr(G B), and kick = (G B) du. */
+static double carry(const double *G, const symmetric *B, const double du[3], double kick[3])
+{
+  double Bdu[3], trace = 0.0;
+  times(B, du, Bdu);
+  for (int a = 0; a < 3; a++) {
+    double row[3];
+    times(B, G + 3 * a, row);    // row a of G B, since B is symmetric
+    trace += row[a];
+    kick[a] = G[3 * a] * Bdu[0] + G[3 * a + 1] * Bdu[1] + G[3 * a + 2] * Bdu[2];
+  }
+  return trace;
+}
+
+int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c)
+{
+  const sd_sph_level level = sd_sph_level_of(model);
+  const int from = sd_sph_sum_columns(level), to = sd_sph_columns(model);
+  int stops = -1;
+  for (int i = 0; i < c->n; i++) {
+    const double *sums = c->sums + (size_t) from * i;
+    c->rate[i] = sums[0];
+    if (level == SD_SPH_RATE) continue;
+
+    const symmetric M = moment(model->dimension, sums), cofactor = cofactors(&M);
+    const double det = determinant(&M, &cofactor);
+    symmetric B = {{0.0}};
+    /* M is about half the unit matrix at a plane surface, and a quarter in two directions along an
+     * edge: det > 1/64. Below 1e-3, a tenth in each of three directions, neighbours are so few that
+     * the inverse would raise their noise tenfold. */
+    if (det > 1e-3)
+      for (int k = 0; k < 6; k++) B.a[k] = cofactor.a[k] / det;
+    double *row = c->order + (size_t) to * i;
+    times(&B, sums + 1, row);
+    row[3] = p->v4[4 * (size_t) i + 3];
+    if (level == SD_SPH_GRADIENT) continue;
+
+    double *du = row + 4;
+    const int flows = (c->mask[i] & c->moving) != 0;
+    memset(du, 0, 4 * sizeof(double));
+    if (flows && above(&M, SURFACE))
+      shift(sums, model->pair[sd_sph_class_pair(model, p, i, i)].support, du);
+    if (level == SD_SPH_VELOCITY) {
+      memset(row + 8, 0, 8 * sizeof(double));
+      memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));
+      row[14] = !flows;
+      if (!flows) continue;
+      if (!above(&M, c->least) && stops < 0) stops = i;
+      memcpy(row + 8, B.a, sizeof(B.a));
+      c->rate[i] = -row[3] * carry(sums + 14, &B, du, c->kick + 3 * (size_t) i);
+    }
+    c->rate[i] += du[0] * row[0] + du[1] * row[1] + du[2] * row[2];
+  }
+  return stops;
+}

@@ -1,0 +1,42 @@
+/* What the sums in the middle of a step make of each particle: gradient of the density, rate, shift
+ * and correction. Notation of sd_sph_pair.h and sd_sph_sums.h; B = M^-1. */
+#ifndef SD_SPH_ORDER_H
+#define SD_SPH_ORDER_H
+
+#include "sd_sph_sums.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Fills the last column of x4 with V = m / rho, and that of row n with 0. */
+void sd_sph_pack_volumes(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
+                         double *x4);
+
+typedef struct {
+  /* particles of this rank, the first ones */
+  int n;
+  /* [sd_sph_sum_columns n] */
+  const double *sums;
+  /* Those with mask & moving flow and are shifted; the others are walls. */
+  const int *mask;
+  int moving;
+  /* correction stops where the smallest eigenvalue of M is below */
+  double least;
+  /* out [n], [sd_sph_columns n], and with correction [3 n] the acceleration (G B) du */
+  double *rate, *order, *kick;
+} sd_sph_closing;
+
+/* rate    the sum; with correction - rho tr(G B). With shift and correction + du . grad rho
+ * grad rho = B sum V_b (rho_b - rho_a) g d, exact for a linear density; 0 where M is nearly singular
+ * (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi 2009
+ * there.
+ * du      - U x, x = 10 h s, of length 1 at most: the law of Michel et al. 2022 in a bounded form;
+ *         0 where an eigenvalue of M is below 0.9, at a free surface, and for walls
+ * Returns the first particle where correction stops, -1: there is none. */
+int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

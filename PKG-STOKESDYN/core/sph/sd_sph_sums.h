@@ -1,0 +1,65 @@
+/* Sums over the neighbours, beside the forces of sd_sph_pair.h and with its notation. */
+#ifndef SD_SPH_SUMS_H
+#define SD_SPH_SUMS_H
+
+#include "sd_sph_pair.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How much the pass in the middle of a step sums. Each level has the columns of those before it. */
+typedef enum { SD_SPH_RATE, SD_SPH_GRADIENT, SD_SPH_DISORDER, SD_SPH_VELOCITY } sd_sph_level;
+sd_sph_level sd_sph_level_of(const sd_sph_model *model);
+
+/* Columns of a row of sums: 1, 12, 16, 24; and the one that is no sum but a maximum, -1: none.
+ *   rate       0      sum m_b g v.d, the density rate
+ *   gradient   1-3    sum V_b (rho_b - rho_a) g d
+ *              4-9    M = - sum V_b g d d^T: xx yy zz xy xz yz, the unit matrix in the bulk
+ *   disorder   10-12  s = sum V_b (1 + 0.2 f^4) g d: 0 in order; 0.2 f^4 against pairing, Monaghan
+ *                     2000
+ *              13     U = max |v.d| / r over fluid neighbours
+ *   velocity   14-22  G = - sum V_b (v_a - v_b) g d^T, by rows
+ * Of two fluids (volume), gradient and M are over particles of the same fluid only. */
+int sd_sph_sum_columns(sd_sph_level level);
+enum { SD_SPH_MAXIMUM = 13 };
+
+/* Room for the pairs closer than 2 h + margin: neighbor[i] and count[i], in the pool, which must
+ * hold every pair of the list and three more entries. */
+typedef struct {
+  double margin;
+  int *pool, **neighbor, *count;
+} sd_sph_near;
+
+/* Adds to the rows of sums, and with near not null finds the near pairs. */
+void sd_sph_middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                   double *sums, const sd_sph_near *near);
+
+/* Adds delta-SPH, Antuono et al. 2010, to rate [n+1]: with psi_ab = 2 (rho_b - rho_a) d_ba / r^2 -
+ * (grad rho_a + grad rho_b), d_ba = x_b - x_a,
+ *   delta h c sum_b V_b psi_ab . grad_a W
+ * The corrected gradients come from order; of two fluids, pairs of the same fluid only. */
+void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      double *rate);
+
+/* Adds sum_b W q_b to the rows of sums, both with 4 `fours` columns (1 or 2) and n + 1 rows; row n
+ * of q is 0. walls: only between a fluid and its walls, as phase says. */
+void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  int fours, int walls, const double *q, double *sums);
+
+/* The loops as compiled for one instruction set: sd_sph_loops.h. */
+typedef struct {
+  double (*forces)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int,
+                   double *, double *);
+  void (*middle)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *,
+                 const sd_sph_near *);
+  void (*diffusion)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *);
+  void (*weigh)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int, int,
+                const double *, double *);
+} sd_sph_loops;
+extern const sd_sph_loops sd_sph_loops_any, sd_sph_loops_avx2;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,56 @@
+/* Internal fix: the memory of pair_style sph/artVisc/tensCorr with shift or correction. What the
+ * middle of the last step left, by which the next one moves the particles, follows its atom through
+ * migration, ghosts and restart: a broken run is then the unbroken one. */
+#ifndef SD_FIX_SPH_SHIFT_H
+#define SD_FIX_SPH_SHIFT_H
+
+#include "fix.h"
+
+#include <vector>
+
+namespace StokesDyn {
+
+class FixSphShift : public LAMMPS_NS::Fix {
+ public:
+  static constexpr const char *STYLE = "SPH/SHIFT";
+
+  /* That of this LAMMPS, made anew unless it is of this kind; wanted false: nullptr, and none is
+   * left. */
+  static FixSphShift *provide(LAMMPS_NS::LAMMPS *lmp, bool wanted, bool correction);
+
+  FixSphShift(LAMMPS_NS::LAMMPS *, int, char **);
+  ~FixSphShift() override;
+  int setmask() override { return 0; }
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_border(int, int *, double *) override;
+  int unpack_border(int, int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override { return 1 + maxexchange; }
+  int maxsize_restart() override { return 1 + maxexchange; }
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override { return shifts.capacity() * sizeof(double) * maxexchange / 3; }
+
+  /* [3 n] of particles and ghosts */
+  const double *du() const { return shifts.data(); }
+  /* Has there been a step? */
+  bool filled() const { return has_rows; }
+  /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with correction B and kick
+   * of this rank's. */
+  void keep(int n, const double *order, const double *kick);
+  void put_back(double *order, double *kick) const;
+
+ private:
+  const bool correction;
+  bool has_rows = false;
+  // du; B and kick
+  std::vector<double> shifts, rest;
+};
+
+}    // namespace StokesDyn
+#endif

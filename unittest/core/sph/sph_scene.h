@@ -1,0 +1,91 @@
+/* Random particles for the tests of the pair sums. */
+#ifndef SD_SPH_SCENE_H
+#define SD_SPH_SCENE_H
+
+#include "sd_sph_order.h"
+
+#include "check.h"
+
+#include <string.h>
+
+enum { N = 23, ALL = N * (N - 1) / 2 };
+
+static uint64_t seed = 4711;
+
+static inline double random_number(void)
+{
+  return uniform(&seed, 0.0, 1.0);
+}
+
+/* Two classes of particles in a box of a few h, velocities and both signs of pressure, all pairs in a half
+ * list. */
+typedef struct {
+  double x[3 * N], v[3 * N], rho[N + 1], P[N], A[N], m[N + 1];
+  double x4[4 * (N + 1)], v4[4 * (N + 1)];
+  int cls[N + 1], phase[N + 1], first[N], count[N], flat[ALL + 1], *neighbor[N];
+  sd_sph_list list;
+  sd_sph_particles p;
+  sd_sph_parameters types[4];
+  sd_sph_coefficients pair[4];
+  sd_sph_model model;
+} scene;
+
+static inline void coefficients(scene *s)
+{
+  for (int k = 0; k < 4; k++) s->pair[k] = sd_sph_coefficients_of(&s->model, &s->types[k]);
+}
+
+static inline void build(scene *s, sd_sph_kernel kernel, int dimension, int classes, int artvisc,
+                  int tenscorr, sd_sph_friction friction)
+{
+  memset(s, 0, sizeof(*s));
+  const sd_sph_parameters one = {0.3, 20.0, 0.07, 0.4, 0.25, 0.7},
+                          two = {0.36, 25.0, 0.05, 0.3, 0.27, 0.8},
+                          mean = {0.33, 22.5, 0.06, 0.35, 0.26, 0.75},
+                          table[4] = {one, mean, mean, two};
+  s->model = (sd_sph_model){.kernel = kernel,
+                            .dimension = dimension,
+                            .artvisc = artvisc,
+                            .tenscorr = tenscorr,
+                            .friction = friction,
+                            .eta = 1.3e-3,
+                            .epsilon = 0.21,
+                            .nclasses = classes,
+                            .pair = s->pair};
+  for (int k = 0; k < 4; k++) s->types[k] = table[k];
+  coefficients(s);
+  int *next = s->flat;
+  for (int i = 0; i < N; i++) {
+    for (int d = 0; d < 3; d++) {
+      s->x[3 * i + d] = d < dimension ? random_number() : 0.0;
+      s->v[3 * i + d] = d < dimension ? random_number() - 0.5 : 0.0;
+    }
+    s->cls[i] = classes > 1 ? i % 2 : 0;
+    s->m[i] = s->cls[i] ? 1.3 : 0.9;
+    s->rho[i] = 900.0 + 200.0 * random_number();
+    s->P[i] = 5e4 * (s->rho[i] - 1000.0);
+    s->A[i] = s->P[i] / (s->rho[i] * s->rho[i]);
+    s->first[i] = i;
+    s->neighbor[i] = next;
+    for (int j = i + 1; j < N; j++)
+      *next++ = j | 1 << 30;    // marked as LAMMPS marks neighbours; the mask removes it
+    s->count[i] = N - 1 - i;
+  }
+  s->rho[N] = 1.0;
+  s->list = (sd_sph_list){N, (1 << 30) - 1, s->first, s->count, s->neighbor};
+  s->p = (sd_sph_particles){N, s->x4, s->v4, s->m, s->cls, 0.9, NULL, NULL};
+  sd_sph_pack_x(N, s->x, NULL, NULL, 0.0, s->x4);
+  sd_sph_pack_pressures(&s->model, N, s->P, s->rho, s->x4);
+  sd_sph_pack_v(N, s->v, s->rho, s->v4);
+}
+
+/* Everybody sees everybody, and masses as if the box filled the support: M near the unit matrix. */
+static inline void fill(scene *s)
+{
+  for (int k = 0; k < 4; k++) s->types[k].h *= 3.0;
+  coefficients(s);
+  for (int i = 0; i < N; i++) s->m[i] *= 10000.0 / N;
+  s->p.mass *= 10000.0 / N;
+}
+
+#endif
