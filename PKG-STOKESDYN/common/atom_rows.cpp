@@ -5,6 +5,33 @@
 
 namespace StokesDyn {
 
+/* The numbers move, not the rows, so that sorted atoms have sorted rows. */
+void RowsOfAtoms::copy(int i, int j)
+{
+  if (has(i))
+    std::copy_n((*this)[i], width, give(j));
+  else
+    take(j);
+}
+
+int RowsOfAtoms::pack(int i, double *buffer) const
+{
+  buffer[0] = has(i);
+  if (!has(i)) return 1;
+  std::copy_n((*this)[i], width, buffer + 1);
+  return 1 + width;
+}
+
+int RowsOfAtoms::unpack(int i, const double *buffer)
+{
+  if (buffer[0] == 0.0) {
+    take(i);
+    return 1;
+  }
+  std::copy_n(buffer + 1, width, give(i));
+  return 1 + width;
+}
+
 double *AtomRows::give(int i)
 {
   if (has(i)) return rows[i];
@@ -33,46 +60,19 @@ void AtomRows::clear()
   spare.clear();
 }
 
-/* The numbers move, not the rows, so that sorted atoms have sorted rows. */
-void AtomRows::copy(int i, int j)
-{
-  if (has(i))
-    std::copy_n(rows[i], width, give(j));
-  else
-    take(j);
-}
-
-int AtomRows::pack(int i, double *buffer) const
-{
-  buffer[0] = has(i);
-  if (!has(i)) return 1;
-  std::copy_n(rows[i], width, buffer + 1);
-  return 1 + width;
-}
-
-int AtomRows::unpack(int i, const double *buffer)
-{
-  if (buffer[0] == 0.0) {
-    take(i);
-    return 1;
-  }
-  std::copy_n(buffer + 1, width, give(i));
-  return 1 + width;
-}
-
 double AtomRows::bytes() const
 {
   return sizeof(double *) * ((double) rows.capacity() + spare.capacity()) +
       sizeof(double) * (double) blocks.size() * width * ROWS_OF_A_BLOCK;
 }
 
-double *AtomArray::row(int i)
+double *AtomArray::give(int i)
 {
   written[i] = 1;
   return rows[i];
 }
 
-void AtomArray::zero(int i)
+void AtomArray::take(int i)
 {
   if (written[i]) std::fill_n(rows[i], width, 0.0);
   written[i] = 0;
@@ -88,14 +88,6 @@ void AtomArray::grow(int nmax)
   rows.resize(nmax);
   written.resize(nmax, 0);
   for (size_t i = 0; i < rows.size(); i++) rows[i] = &block[width * i];
-}
-
-void AtomArray::copy(int i, int j)
-{
-  if (written[i])
-    std::copy_n(rows[i], width, row(j));
-  else
-    zero(j);
 }
 
 }    // namespace StokesDyn

@@ -1,6 +1,5 @@
-/* Rows of numbers for those atoms that have some. Every atom has a pointer, eight bytes; only the
- * few that need one have a row. A fix keeps one of these and hands LAMMPS's callbacks on: atoms
- * migrate, are sorted, created and deleted. */
+/* Rows of numbers that follow their atoms, which migrate, are sorted, created and deleted: of a fix
+ * that is a RowsFix (rows_fix.h), or that hands LAMMPS's callbacks on itself. */
 #ifndef SD_ATOM_ROWS_H
 #define SD_ATOM_ROWS_H
 
@@ -10,31 +9,49 @@
 
 namespace StokesDyn {
 
-class AtomRows {
+class RowsOfAtoms {
  public:
-  explicit AtomRows(int columns) : width(columns), nothing(columns, 0.0) {}
+  explicit RowsOfAtoms(int columns) : width(columns) {}
+  virtual ~RowsOfAtoms() = default;
 
   int columns() const { return width; }
-  bool has(int i) const { return rows[i] != nothing.data(); }
+  virtual bool has(int i) const = 0;
   /* To read: zeros for an atom that has none. */
-  const double *operator[](int i) const { return rows[i]; }
-  /* To write: of an atom that has one. */
-  double *row(int i) { return rows[i]; }
+  virtual const double *operator[](int i) const = 0;
   /* To write: made of zeros if the atom has none. */
-  double *give(int i);
-  void take(int i);
-  void clear();
-  /* As grow_arrays, copy_arrays, pack_exchange, unpack_exchange of a fix. */
-  void grow(int nmax) { rows.resize(nmax, nothing.data()); }
+  virtual double *give(int i) = 0;
+  virtual void take(int i) = 0;
+  virtual void grow(int nmax) = 0;
+  virtual double bytes() const = 0;
+
+  /* As copy_arrays, pack_exchange, unpack_exchange of a fix. */
   void copy(int i, int j);
   int pack(int i, double *buffer) const;
   int unpack(int i, const double *buffer);
   int most_packed() const { return width + 1; }
-  double bytes() const;
+
+ protected:
+  const int width;
+};
+
+/* For those atoms that have some. Every atom has a pointer, eight bytes; only the few that need one
+ * have a row. */
+class AtomRows final : public RowsOfAtoms {
+ public:
+  explicit AtomRows(int columns) : RowsOfAtoms(columns), nothing(columns, 0.0) {}
+
+  bool has(int i) const override { return rows[i] != nothing.data(); }
+  const double *operator[](int i) const override { return rows[i]; }
+  /* To write: of an atom that has one. */
+  double *row(int i) { return rows[i]; }
+  double *give(int i) override;
+  void take(int i) override;
+  void clear();
+  void grow(int nmax) override { rows.resize(nmax, nothing.data()); }
+  double bytes() const override;
 
  private:
   enum { ROWS_OF_A_BLOCK = 1024 };
-  int width;
   /* the row of those that have none; its address never changes */
   std::vector<double> nothing;
   /* [nmax] */
@@ -47,24 +64,23 @@ class AtomRows {
 /* An array for LAMMPS, fix->array_atom: one block, since its libraries read it as such, so that
  * every atom has a row. Rows of zeros that nobody writes to are memory that the system has promised
  * and not yet given. */
-class AtomArray {
+class AtomArray final : public RowsOfAtoms {
  public:
-  explicit AtomArray(int columns) : width(columns) {}
+  explicit AtomArray(int columns) : RowsOfAtoms(columns) {}
 
-  int columns() const { return width; }
   /* array[i][column]; it moves when grow() is called */
   double **array() { return rows.data(); }
-  double *row(int i);    // to write
-  void zero(int i);
-  void grow(int nmax);
-  void copy(int i, int j);
-  double bytes() const { return (double) rows.capacity() * (sizeof(double) * width + 9); }
+  bool has(int i) const override { return written[i]; }
+  const double *operator[](int i) const override { return rows[i]; }
+  double *give(int i) override;
+  void take(int i) override;
+  void grow(int nmax) override;
+  double bytes() const override { return (double) rows.capacity() * (sizeof(double) * width + 9); }
 
  private:
   struct Free {
     void operator()(double *p) const { free(p); }
   };
-  int width;
   std::unique_ptr<double[], Free> block;
   std::vector<double *> rows;    // [nmax]
   std::vector<char> written;     // not zeros

@@ -1,5 +1,6 @@
 #include "keywords.h"
 
+#include "comm.h"
 #include "error.h"
 
 #include <algorithm>
@@ -33,6 +34,26 @@ void fail_one(LAMMPS *lmp, const std::string &message)
   abort();    // error->one does not return
 }
 
+void Voice::fail(const std::string &what) const
+{
+  StokesDyn::fail(lmp, command + ": " + what);
+}
+
+void Voice::fail_one(const std::string &what) const
+{
+  StokesDyn::fail_one(lmp, command + ": " + what);
+}
+
+void Voice::warn(const std::string &what) const
+{
+  if (lmp->comm->me == 0) lmp->error->warning(FLERR, command + ": " + what);
+}
+
+void Voice::tell(const std::string &what) const
+{
+  if (lmp->comm->me == 0) utils::logmesg(lmp, command + ": " + what + "\n");
+}
+
 std::string text(double value)
 {
   char buffer[40];
@@ -59,8 +80,7 @@ bool is_number(const std::string &word, double &value)
 
 Keywords::Keywords(LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args,
                    size_t begin) :
-    lmp(lmp),
-    command(command), args(args), at(begin)
+    Voice(lmp, command), args(args), at(begin)
 {
 }
 
@@ -87,7 +107,7 @@ bool Keywords::given(const std::string &name) const
 
 void Keywords::require(bool condition, const std::string &rule) const
 {
-  if (!condition) fail(lmp, command + ": " + rule);
+  if (!condition) fail(rule);
 }
 
 bool Keywords::next()
@@ -169,12 +189,12 @@ size_t Keywords::choice(std::initializer_list<const char *> options)
 
 void Keywords::unknown() const
 {
-  fail(lmp, command + ": unknown keyword '" + key + "'");
+  fail("unknown keyword '" + key + "'");
 }
 
 void Keywords::refuse(const std::string &why) const
 {
-  fail(lmp, command + ": keyword " + key + ": " + why);
+  fail("keyword " + key + ": " + why);
 }
 
 }    // namespace StokesDyn

@@ -23,6 +23,24 @@ namespace StokesDyn {
 /* A number as a user would write it: 6 digits. */
 std::string text(double value);
 
+/* One command's errors and warnings: "<command>: <what>". */
+class Voice {
+ public:
+  Voice(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : lmp(lmp), command(command) {}
+
+  LAMMPS_NS::LAMMPS *const lmp;
+  const std::string command;
+
+  /* as `fail` and `fail_one` */
+  [[noreturn]] void fail(const std::string &what) const;
+  [[noreturn]] void fail_one(const std::string &what) const;
+  /* a warning, or a line of the log; by the first rank, whichever rank asks for it */
+  void warn(const std::string &what) const;
+  void tell(const std::string &what) const;
+  /* the voice of a part of the command: "<command>: <part>: <what>" */
+  Voice of(const std::string &part) const { return Voice(lmp, command + ": " + part); }
+};
+
 /* A keyword of a command, and what reads the values that follow it. */
 struct Keyword {
   const char *name;
@@ -38,7 +56,7 @@ struct Keyword {
  *   });
  *   in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
  * A keyword that is not in the table, or that is there twice, is an error. */
-class Keywords {
+class Keywords : private Voice {
  public:
   Keywords(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args,
            size_t begin = 0);
@@ -63,8 +81,12 @@ class Keywords {
   LAMMPS_NS::bigint integer(LAMMPS_NS::bigint lowest,
                             LAMMPS_NS::bigint highest = std::numeric_limits<int>::max());
   bool yes_no();
-  /* index of the option given */
+  /* index of the option given, or that as an enum */
   size_t choice(std::initializer_list<const char *> options);
+  template <class Enum> Enum option(std::initializer_list<const char *> options)
+  {
+    return (Enum) choice(options);
+  }
   /* Takes the next word if it is this one: for "off", "inf" and the like in place of a number. */
   bool take(const std::string &option);
   bool more() const { return at < args.size(); }
@@ -76,8 +98,7 @@ class Keywords {
   [[noreturn]] void refuse(const std::string &why) const;
 
  private:
-  LAMMPS_NS::LAMMPS *lmp;
-  std::string command, key;
+  std::string key;
   std::vector<std::string> args, seen;
   size_t at;
 };

@@ -104,14 +104,14 @@ void FixStokesDynamics::post_force(int /*vflag*/)
   const Ambient &ambient = hydro.ambient;
   if (selection != ambient.selection())
     for (int i = 0; i < atom->nlocal; i++)
-      if (!ambient.active()[i]) rows.zero(i);
+      if (!ambient.active()[i]) rows.take(i);
   selection = ambient.selection();
   for (int i : ambient.who()) {
     if (!(atom->mask[i] & groupbit)) {
-      rows.zero(i);
+      rows.take(i);
       continue;
     }
-    double *row = rows.row(i);
+    double *row = rows.give(i);
     const double *F = hydro.force(i), *torque = hydro.torque(i);
     std::copy_n(F, 3, row);
     std::copy_n(hydro.perturbation(i), 3, row + 3);
@@ -164,7 +164,7 @@ void FixStokesDynamics::copy_arrays(int i, int j, int /*delflag*/)
 
 void FixStokesDynamics::set_arrays(int i)
 {
-  rows.zero(i);
+  rows.take(i);
 }
 
 double FixStokesDynamics::memory_usage()

@@ -1,13 +1,11 @@
 /* fix hydro/vans: a one-dimensional turbulent stream over a granular bed. See
- * doc/fix_hydro_vans.md.
- * The arithmetic is in core/vans; the stream with its profiles in vans_stream; here: atoms, ranks,
- * time. */
+ * doc/fix_hydro_vans.md. The arithmetic is in core/vans; the stream with its profiles in
+ * vans_stream; here: atoms, ranks, time. */
 #ifndef SD_FIX_HYDRO_VANS_H
 #define SD_FIX_HYDRO_VANS_H
 
-#include "fix.h"
-
 #include "resume.h"
+#include "rows_fix.h"
 #include "vans_stream.h"
 
 #include <memory>
@@ -18,12 +16,11 @@ class Region;
 
 namespace StokesDyn {
 
-class FixHydroVans : public LAMMPS_NS::Fix {
+class FixHydroVans : public RowsFix {
  public:
   static constexpr const char *STYLE = "hydro/vans";
 
   FixHydroVans(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixHydroVans() override;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -35,72 +32,34 @@ class FixHydroVans : public LAMMPS_NS::Fix {
   int modify_param(int, char **) override;
   void *extract(const char *, int &) override;
   double memory_usage() override;
-
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override { return OUTPUTS + columns + 1; }
-  int maxsize_restart() override { return OUTPUTS + columns + 1; }
   void write_restart(FILE *) override;
   void restart(char *) override;
 
  private:
   VansSettings set;
-  std::unique_ptr<VansStream> stream;
+  VansStream stream;
   LAMMPS_NS::Region *region = nullptr;
   int average_bit = 1;
 
   /* Columns of the global array, before those of the classes. */
-  enum {
-    Z,
-    VELOCITY,
-    PHI,
-    GRAIN_X,
-    GRAIN_Y,
-    GRAIN_Z,
-    DRAG_PER_GRAIN,
-    EXCHANGE,
-    EDDY_VISCOSITY,
-    STRESS,
-    ARRAY_COLUMNS
-  };
-
+  enum { Z, VELOCITY, PHI, GRAIN_X, GRAIN_Y, GRAIN_Z, DRAG_PER_GRAIN, EXCHANGE, EDDY_VISCOSITY,
+         STRESS, ARRAY_COLUMNS };
   /* Entries of the global vector. */
-  enum {
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    TRANSPORT,
-    FRICTION_VELOCITY,
-    LARGEST_STRESS,
-    OUTSIDE,
-    SHIELDS,
-    TOTAL_DRAG,
-    BED,
-    MOMENTUM,
-    TRANSIT,
-    DRIVING,
-    BOTTOM,
-    WALLS,
-    SURFACE,
-    OTHERS,
-    VECTOR_SIZE
-  };
+  enum { FORCE_X, FORCE_Y, FORCE_Z, TRANSPORT, FRICTION_VELOCITY, LARGEST_STRESS, OUTSIDE, SHIELDS,
+         TOTAL_DRAG, BED, MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, VECTOR_SIZE };
 
-  /* Per atom. array_atom: force and velocity fluctuation. memo: what must follow the atom besides;
-   * a column that no keyword asks for is not there. */
-  enum { OUTPUTS = 6, SOLVED = 0, LEFT = 1 };
-  /* from eddy_column on: life left, count of fluctuations */
-  enum { LIFE, COUNT, EDDY_COLUMNS };
-  int columns, account_column = -1, weight_column = -1, eddy_column = -1;
-  double **memo = nullptr;
+  /* Per atom: force and velocity fluctuation; memo: what must follow the atom besides, a column
+   * that no keyword asks for is not there. LOST: share of its volume that is another's too. */
+  enum { FORCE = 0, FLUCTUATION = 3, OUTPUTS = 6 };
+  AtomArray out;
   Resume resume;
-  sd_vans_account *account(int i) { return (sd_vans_account *) (memo[i] + account_column); }
-  static constexpr int ACCOUNT_COLUMNS = sizeof(sd_vans_account) / sizeof(double);
+  struct Columns {
+    enum { SOLVED = 0, LEFT = 1 };
+    int account = -1, lost = -1, eddy = -1, all = LEFT;
+    Columns(const VansSettings &set, const Resume &resume);
+  } column;
+  AtomRows memo;
+  sd_vans_account *account(int i) { return (sd_vans_account *) (memo.give(i) + column.account); }
 
   /* The same on all ranks and in the restart file; last_step: of the forces in array_atom; elapsed:
    * since the last coupling; eddies: the random walk of all grains at once. */
@@ -110,7 +69,9 @@ class FixHydroVans : public LAMMPS_NS::Fix {
   double mean_radius = 0.0, mean_density = 0.0;
 
   /* Of the last step, of this rank and of all: force x y z, drag along x, spheres outside. */
-  double local[5] = {0, 0, 0, 0, 0}, global[5];
+  struct Sums {
+    double force[3] = {0, 0, 0}, drag = 0, outside = 0;
+  } local, global;
   LAMMPS_NS::bigint summed_step = -1;
   bool told_outside = false, told_work = false;
 
@@ -119,25 +80,31 @@ class FixHydroVans : public LAMMPS_NS::Fix {
   std::vector<unsigned char> take;
   std::vector<double> F, drag_x, u, weight, work;
 
-  bool has_grains() const { return set.couple != VansSettings::FLUID; }
   double area() const;
+  void check_box() const;
+  void check_others() const;
+  void check_mesh();
+  void tell_steps();
+  void find_classes();
+
   void select(int bit, bool not_in_group = false);
   sd_vans_grains grains();
   int forces(const sd_vans_grains &grains);
-  void check_box() const;
-  void check_others() const;
-  void tell_steps();
-  void find_classes();
-  uint64_t members() const;
-  void count_overlaps();
-  void check_mesh();
+  void push(int i, bool stepping, bool repeat);
+  void check_forces() const;
+  void sum_up();
+  void tell_outside();
+
   void read_variables();
-  void no_force();
   void average();
   void couple();
   VansStream::Given impulses(double T, double ratio);
+  void hand_over();
   void renew_fluctuations(double time, bool first);
-  void sum_up();
+  uint64_t members() const;
+  void count_overlaps();
+
+  void record(int i) override;
 };
 
 }    // namespace StokesDyn

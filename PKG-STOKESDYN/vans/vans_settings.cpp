@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-
-#include <mpi.h>
+#include <sstream>
 
 using namespace LAMMPS_NS;
 
@@ -16,85 +14,98 @@ namespace StokesDyn {
 /* Steps times slices of one solve: at 5 ns each that is most of a minute in every coupling. */
 static const double MOST_WORK = 1e10;
 
-std::vector<std::vector<double>> read_rows(LAMMPS *lmp, const std::string &what,
-                                           const std::string &file)
+/* ---- files ----------------------------------------------------------------------------------- */
+
+/* The text of a file, the same on every rank. */
+static std::string text_of(const Voice &what, const std::string &file)
 {
+  const LAMMPS *lmp = what.lmp;
   std::string text;
   int size = -1;
-  if (lmp->comm->me == 0) {
-    FILE *fp = fopen(file.c_str(), "r");
-    if (fp) {
-      char buffer[4096];
-      size_t n;
-      while ((n = fread(buffer, 1, sizeof(buffer), fp)) > 0) text.append(buffer, n);
-      fclose(fp);
-      size = (int) text.size();
-    }
+  FILE *fp = lmp->comm->me == 0 ? fopen(file.c_str(), "r") : nullptr;
+  if (fp) {
+    char buffer[4096];
+    for (size_t n; (n = fread(buffer, 1, sizeof(buffer), fp)) > 0;) text.append(buffer, n);
+    fclose(fp);
+    size = (int) text.size();
   }
   MPI_Bcast(&size, 1, MPI_INT, 0, lmp->world);
-  if (size < 0) fail(lmp, what + ": cannot read file '" + file + "'");
+  if (size < 0) what.fail("cannot read file '" + file + "'");
   text.resize(size);
   MPI_Bcast(&text[0], size, MPI_CHAR, 0, lmp->world);
+  return text;
+}
 
+/* All numbers of a file, row by row. '#' begins a comment, commas count as blanks. */
+static std::vector<std::vector<double>> read_rows(const Voice &what, const std::string &file)
+{
   std::vector<std::vector<double>> rows;
-  int line_number = 0;
-  for (size_t at = 0; at < text.size();) {
-    size_t end = text.find('\n', at);
-    if (end == std::string::npos) end = text.size();
-    std::string line = text.substr(at, end - at);
-    at = end + 1;
-    line_number++;
+  std::istringstream lines(text_of(what, file));
+  std::string line, word;
+  for (int number = 1; std::getline(lines, line); number++) {
     line = line.substr(0, line.find('#'));
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
     std::vector<double> row;
-    for (size_t p = 0;;) {
-      p = line.find_first_not_of(" \t\r,", p);
-      if (p == std::string::npos) break;
-      const size_t q = line.find_first_of(" \t\r,", p);
-      const std::string word = line.substr(p, q == std::string::npos ? q : q - p);
-      double value;
+    for (double value; words >> word; row.push_back(value))
       if (!is_number(word, value) || !std::isfinite(value))
-        fail(lmp,
-             what + ": file '" + file + "', line " + std::to_string(line_number) + ": '" + word +
-                 "' is not a finite number");
-      row.push_back(value);
-      if (q == std::string::npos) break;
-      p = q;
-    }
+        what.fail("file '" + file + "', line " + std::to_string(number) + ": '" + word +
+                  "' is not a finite number");
     if (!row.empty()) rows.push_back(row);
   }
   return rows;
 }
 
-static std::string keyword(const char *name)
+/* One number a row, or all of them in one row: a table of several columns is something else.
+ * expected 0: any number of them. */
+static std::vector<double> read_list(const Voice &what, const std::string &file, size_t expected,
+                                     const std::string &count)
 {
-  return std::string(VansSettings::COMMAND) + ": keyword " + name;
-}
-
-/* One number a row, or all of them in one row: a table of several columns is something else. */
-static std::vector<double> read_list(LAMMPS *lmp, const std::string &what, const std::string &file,
-                                     size_t expected, const std::string &count)
-{
-  const auto rows = read_rows(lmp, what, file);
+  const auto rows = read_rows(what, file);
   std::vector<double> list;
   for (size_t k = 0; k < rows.size(); k++) {
     if (rows.size() > 1 && rows[k].size() > 1)
-      fail(lmp,
-           what + ": file '" + file + "': row " + std::to_string(k + 1) + " has " +
-               std::to_string(rows[k].size()) + " values, one a row is needed");
+      what.fail("file '" + file + "': row " + std::to_string(k + 1) + " has " +
+                std::to_string(rows[k].size()) + " values, one a row is needed");
     list.insert(list.end(), rows[k].begin(), rows[k].end());
   }
   if (expected && list.size() != expected)
-    fail(lmp,
-         what + ": file '" + file + "' has " + std::to_string(list.size()) + " values, " + count +
-             " = " + std::to_string(expected) + " are needed");
+    what.fail("file '" + file + "' has " + std::to_string(list.size()) + " values, " + count +
+              " = " + std::to_string(expected) + " are needed");
   return list;
 }
 
-std::vector<double> read_profile(LAMMPS *lmp, const std::string &what, const std::string &file,
-                                 int ncell)
+std::vector<double> read_profile(const Voice &what, const std::string &file, int ncell)
 {
-  return read_list(lmp, what, file, ncell + 1, "ncell + 1");
+  return read_list(what, file, ncell + 1, "ncell + 1");
 }
+
+std::vector<std::vector<double>> read_given(const Voice &what, const std::string &file, int ncell,
+                                            size_t nclass)
+{
+  const size_t N = ncell, columns = 3 + 2 * nclass;
+  const auto rows = read_rows(what, file);
+  const std::string name = "file '" + file + "'";
+  if (rows.size() != N)
+    what.fail(name + " has " + std::to_string(rows.size()) + " rows, ncell = " +
+              std::to_string(N) + " are needed");
+  std::vector<std::vector<double>> given(columns, std::vector<double>(N));
+  for (size_t n = 0; n < N; n++) {
+    const std::string row = std::to_string(n + 1);
+    if (rows[n].size() != columns && rows[n].size() != 3)
+      what.fail(name + ", row " + row + " has " + std::to_string(rows[n].size()) +
+                " values; phi, velocity and drag" +
+                (nclass ? ", then phi and drag of each of class_radii," : "") + " are needed");
+    if (rows[n].size() < given.size()) given.resize(3);
+    for (size_t c = 0; c < given.size(); c++) given[c][n] = rows[n][c];
+    if (!(rows[n][0] >= 0.0 && rows[n][0] < 1.0))
+      what.fail(name + ": phi = " + text(rows[n][0]) + " in slice " + row +
+                ", it must be in [0, 1)");
+  }
+  return given;
+}
+
+/* ---- keywords -------------------------------------------------------------------------------- */
 
 static std::string file_name(Keywords &in)
 {
@@ -122,9 +133,9 @@ void VansSettings::take_mesh(Keywords &in)
     return;
   }
   edge.resize(in.integer(2, 10000000) + 1);
-  dz = in.positive();
-  z_ref = in.number();
-  for (size_t k = 0; k < edge.size(); k++) edge[k] = (double) k * dz;
+  mesh.dz = in.positive();
+  mesh.z_ref = in.number();
+  for (size_t k = 0; k < edge.size(); k++) edge[k] = (double) k * mesh.dz;
 }
 
 void VansSettings::take_solve(Keywords &in)
@@ -147,9 +158,8 @@ void VansSettings::take_class_radii(Keywords &in)
 
 void VansSettings::take_fluctuation(Keywords &in)
 {
-  fluctuation =
-      (decltype(fluctuation)) in.choice({"none", "correlated", "uncorrelated", "depth"});
-  if (fluctuation == NO_FLUCTUATION) return;
+  fluctuation = in.option<decltype(fluctuation)>({"none", "correlated", "uncorrelated", "depth"});
+  if (!fluctuates()) return;
   seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
   find_bed = in.take("auto");
   if (!find_bed) bed = in.number();
@@ -158,36 +168,39 @@ void VansSettings::take_fluctuation(Keywords &in)
 void VansSettings::take_sidewall(Keywords &in)
 {
   if (in.take("off")) return;
-  width = in.positive();
-  wall_coef = in.not_negative();
+  fluid.width = in.positive();
+  fluid.wall_coef = in.not_negative();
 }
 
 void VansSettings::read(Keywords &in)
 {
-  const auto fluid = [&] {
-    rho = in.positive();
-    eta = in.positive();
+  const auto water = [&] {
+    fluid.rho = law.rho = in.positive();
+    fluid.eta = law.eta = in.positive();
   };
   const auto gravity = [&] {
-    for (double &component : g) component = in.number();
+    for (double &component : law.g) component = in.number();
   };
   const auto surface = [&] {
-    driven = in.choice({"free", "speed"}) == 1;
-    if (driven) u_top = Field::parse(in);
+    fluid.driven = in.choice({"free", "speed"}) == 1;
+    if (fluid.driven) u_top = Field::parse(in);
   };
   const auto closure = [&] {
-    turbulence = (sd_vans_turbulence) in.choice(
+    fluid.turbulence = in.option<sd_vans_turbulence>(
         {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
   };
-  const auto coupling = [&] {
-    couple = (decltype(couple)) in.choice({"none", "one", "two", "fluid"});
+  const auto viscosity = [&] {
+    fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"});
   };
-  const auto rule = [&] {
-    rules = in.choice({"consistent", "yade"}) == 1 ? SD_VANS_YADE : SD_VANS_CONSISTENT;
+  const auto coupling = [&] {
+    couple = in.option<decltype(couple)>({"none", "one", "two", "fluid"});
+  };
+  const auto rules = [&] {
+    fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"});
   };
   in.parse({
       {"mesh", [&] { take_mesh(in); }},
-      {"fluid", fluid},
+      {"fluid", water},
       {"gravity", gravity},
       {"area", [&] { area = in.positive(); }},
       {"couple", coupling},
@@ -195,17 +208,16 @@ void VansSettings::read(Keywords &in)
       {"given", [&] { given_file = file_or(in, "averaged"); }},
       {"convective", [&] { convective_file = file_or(in, "off"); }},
       {"solve", [&] { take_solve(in); }},
-      {"stream", [&] { rest = in.choice({"steady", "rest"}) == 1; }},
-      {"hindrance", [&] { hindrance = in.number(); }},
-      {"lift", [&] { lift = in.take("off") ? 0.0 : in.number(); }},
+      {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
+      {"hindrance", [&] { law.exponent = in.number(); }},
+      {"lift", [&] { law.lift = in.take("off") ? 0.0 : in.number(); }},
       {"turbulence", closure},
-      {"kappa", [&] { kappa = in.positive(); }},
-      {"phi_max", [&] { phi_max = fraction(in); }},
-      {"phi_bed", [&] { phi_bed = fraction(in); }},
+      {"kappa", [&] { fluid.kappa = in.positive(); }},
+      {"phi_max", [&] { fluid.phi_max = fraction(in); }},
+      {"phi_bed", [&] { fluid.phi_bed = fraction(in); }},
       {"bed_average", [&] { bed_average = (int) in.integer(1, 1000000); }},
-      {"sublayer", [&] { sublayer = in.yes_no(); }},
-      {"viscosity",
-       [&] { viscosity = (sd_vans_viscosity) in.choice({"constant", "einstein", "power"}); }},
+      {"sublayer", [&] { fluid.sublayer = in.yes_no(); }},
+      {"viscosity", viscosity},
       {"surface", surface},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
@@ -215,7 +227,7 @@ void VansSettings::read(Keywords &in)
       {"grains", [&] { point = in.choice({"extended", "point"}) == 1; }},
       {"fluctuation", [&] { take_fluctuation(in); }},
       {"renewal", [&] { renewal = in.positive(); }},
-      {"rules", rule},
+      {"rules", rules},
       {"conserve", [&] { conserve = in.yes_no(); }},
       {"overlap", [&] { overlap_once = in.choice({"twice", "once"}) == 1; }},
       {"region", [&] { region = in.word(); }},
@@ -226,86 +238,69 @@ void VansSettings::read(Keywords &in)
 /* Rules between keywords. */
 void VansSettings::check(const Keywords &in) const
 {
-  const bool eddies = fluctuation != NO_FLUCTUATION;
   in.require(in.given("mesh"), "keyword mesh (ncell dz zref, or file NAME) is required");
   in.require(in.given("fluid"), "keyword fluid (density and viscosity) is required");
   in.require(in.given("gravity"),
              "keyword gravity (gx gy gz) is required; its x component is the slope");
-  in.require(rules != SD_VANS_YADE || mesh_file.empty(),
+  in.require(!yade() || mesh_file.empty(),
              "keyword mesh: rules yade knows slices of one height only");
-  in.require(!in.given("renewal") || eddies, "keyword renewal: there are no fluctuations");
-  in.require(!eddies || couple != FLUID, "keyword fluctuation: couple fluid has no grains");
-  const bool stands = g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 && !driven &&
-      profile_file.empty();
-  in.require(!solves() || rest || !stands,
+  in.require(!in.given("renewal") || fluctuates(), "keyword renewal: there are no fluctuations");
+  in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
+  const bool stands = law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&
+      !fluid.driven && profile_file.empty();
+  in.require(!solves() || law.rest || !stands,
              "nothing drives the stream: give gravity an x component (the slope), "
              "pressure_gradient, surface speed or a profile, or stream rest");
 }
 
 void VansSettings::read_mesh()
 {
-  if (mesh_file.empty()) return;
-  const std::string what = keyword("mesh") + ": file '" + mesh_file + "'";
-  edge = read_list(lmp, keyword("mesh"), mesh_file, 0, "");
+  const Voice what = voice.of("keyword mesh");
+  edge = read_list(what, mesh_file, 0, "");
+  const std::string name = "file '" + mesh_file + "'";
   if (edge.size() < 3)
-    fail(lmp, what + " has " + std::to_string(edge.size()) + " edges, at least 3 are needed");
-  z_ref = edge[0];
+    what.fail(name + " has " + std::to_string(edge.size()) + " edges, at least 3 are needed");
+  mesh.z_ref = edge[0];
   for (size_t k = 0; k < edge.size(); k++) {
-    edge[k] -= z_ref;
+    edge[k] -= mesh.z_ref;
     if (k > 0 && !(edge[k] > edge[k - 1]))
-      fail(lmp,
-           what + ": edge " + std::to_string(k + 1) + " (" + text(edge[k] + z_ref) +
-               ") is not above the one before");
+      what.fail(name + ": edge " + std::to_string(k + 1) + " (" + text(edge[k] + mesh.z_ref) +
+                ") is not above the one before");
   }
 }
 
-void VansSettings::read_given()
+VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
+    voice(lmp, "Fix hydro/vans")
 {
-  const size_t N = ncell();
-  if (given_file.empty()) {
-    if (couple == FLUID) given.assign(3, std::vector<double>(N, 0.0));
-    return;
-  }
-  const std::string what = keyword("given") + ": file '" + given_file + "'";
-  const auto rows = read_rows(lmp, keyword("given"), given_file);
-  const size_t columns = 3 + 2 * class_radii.size();
-  if (rows.size() != N)
-    fail(lmp,
-         what + " has " + std::to_string(rows.size()) + " rows, ncell = " + std::to_string(N) +
-             " are needed");
-  given.assign(columns, std::vector<double>(N));
-  for (size_t n = 0; n < N; n++) {
-    if (rows[n].size() != columns && rows[n].size() != 3)
-      fail(lmp,
-           what + ", row " + std::to_string(n + 1) + " has " + std::to_string(rows[n].size()) +
-               " values; phi, velocity and drag" +
-               (columns > 3 ? ", then phi and drag of each of class_radii," : "") + " are needed");
-    if (rows[n].size() < given.size()) given.resize(3);
-    for (size_t c = 0; c < given.size(); c++) given[c][n] = rows[n][c];
-    if (!(rows[n][0] >= 0.0 && rows[n][0] < 1.0))
-      fail(lmp,
-           what + ": phi = " + text(rows[n][0]) + " in slice " + std::to_string(n + 1) +
-               ", it must be in [0, 1)");
-  }
-}
-
-void VansSettings::parse(LAMMPS *lammps, const std::vector<std::string> &args, size_t begin)
-{
-  lmp = lammps;
-  Keywords in(lmp, COMMAND, args, begin);
+  law.exponent = 3.1;
+  fluid.turbulence = SD_VANS_LI_SAWAMOTO;
+  fluid.kappa = 0.41;
+  fluid.phi_max = 0.64;
+  fluid.phi_bed = 0.08;
+  Keywords in(lmp, voice.command, args, 3);
+  every = (int) in.positional("N").integer(1, 1000000000);
   read(in);
   check(in);
-  if (rules == SD_VANS_YADE || couple != TWO) conserve = false;
-  read_mesh();
-  read_given();
-  if (!profile_file.empty()) profile = read_profile(lmp, keyword("profile"), profile_file, ncell());
+  if (yade() || couple != TWO) conserve = false;
+  if (!mesh_file.empty()) read_mesh();
+  mesh.ncell = (int) edge.size() - 1;
+  mesh.edge = edge.data();
+  const int N = ncell();
+  if (!given_file.empty())
+    given = read_given(voice.of("keyword given"), given_file, N, class_radii.size());
+  else if (!has_grains())
+    given.assign(3, std::vector<double>(N, 0.0));
+  if (!profile_file.empty()) profile = read_profile(voice.of("keyword profile"), profile_file, N);
   if (!convective_file.empty())
-    convective = read_list(lmp, keyword("convective"), convective_file, ncell(), "ncell");
-  if (period > 0.0 && !(period / dt * ncell() <= MOST_WORK))
-    fail(lmp,
-         keyword("solve") + ": the step " + text(dt) + " is too short for the period " +
-             text(period) + ": " + text(period / dt) + " steps of " + std::to_string(ncell()) +
-             " slices in every coupling, most of a minute");
+    convective = read_list(voice.of("keyword convective"), convective_file, N, "ncell");
+  law.convective = convective.empty() ? nullptr : convective.data();
+  fluid.gx = law.g[0];
+  fluid.dpdx = dpdx.number();
+  fluid.u_top = u_top.number();
+  if (period > 0.0 && !(period / dt * N <= MOST_WORK))
+    voice.fail("keyword solve: the step " + text(dt) + " is too short for the period " +
+               text(period) + ": " + text(period / dt) + " steps of " + std::to_string(N) +
+               " slices in every coupling, most of a minute");
 }
 
 }    // namespace StokesDyn

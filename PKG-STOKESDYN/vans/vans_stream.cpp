@@ -1,66 +1,24 @@
 #include "vans_stream.h"
 
-#include "comm.h"
-#include "error.h"
-
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = VansSettings::COMMAND;
-
-static sd_vans_force_law law_of(const VansSettings &set)
+VansStream::VansStream(const VansSettings &settings) :
+    set(settings), mesh(set.mesh), fluid(set.fluid), U(set.profile),
+    solver(sd_vans_solver_create(&mesh))
 {
-  sd_vans_force_law law = {};
-  law.rho = set.rho;
-  law.eta = set.eta;
-  law.exponent = set.hindrance;
-  std::copy(set.g, set.g + 3, law.g);
-  law.rest = set.rest;
-  law.lift = set.lift;
-  law.convective = set.convective.empty() ? nullptr : set.convective.data();
-  law.rules = set.rules;
-  return law;
-}
-
-static sd_vans_fluid fluid_of(const VansSettings &set)
-{
-  sd_vans_fluid fluid = {};
-  fluid.rho = set.rho;
-  fluid.eta = set.eta;
-  fluid.gx = set.g[0];
-  fluid.dpdx = set.dpdx.number();
-  fluid.turbulence = set.turbulence;
-  fluid.kappa = set.kappa;
-  fluid.phi_max = set.phi_max;
-  fluid.phi_bed = set.phi_bed;
-  fluid.sublayer = set.sublayer;
-  fluid.viscosity = set.viscosity;
-  fluid.driven = set.driven;
-  fluid.u_top = set.u_top.number();
-  fluid.width = set.width;
-  fluid.wall_coef = set.wall_coef;
-  fluid.radius = set.radius;
-  fluid.rules = set.rules;
-  return fluid;
-}
-
-VansStream::VansStream(LAMMPS *lmp, const VansSettings &settings) :
-    set(settings), mesh{set.ncell(), set.z_ref, set.dz, set.edge.data()}, law(law_of(set)),
-    fluid(fluid_of(set)), U(set.profile), lmp(lmp), solver(sd_vans_solver_create(&mesh))
-{
-  const int N = set.ncell();
-  if (!solver) fail(lmp, COMMAND + ": out of memory for " + std::to_string(N) + " slices");
+  const int N = ncell();
+  if (!solver) set.voice.fail("out of memory for " + std::to_string(N) + " slices");
   U.resize(N + 1, 0.0);
-  if (set.profile.empty() && set.driven && !set.u_top.is_variable()) U[N] = set.u_top.number();
+  if (set.profile.empty() && fluid.driven && !set.u_top.is_variable()) U[N] = fluid.u_top;
+  fluid.radius = set.radius;
   grain.assign(SD_VANS_ROWS * (size_t) N, 0.0);
-  if (!set.given.empty()) {
-    std::copy(set.given[0].begin(), set.given[0].end(), phi());
-    std::copy(set.given[1].begin(), set.given[1].end(), row(SD_VANS_VX));
-    std::copy(set.given[2].begin(), set.given[2].end(), row(SD_VANS_DRAG));
-  }
+  const int rows[] = {SD_VANS_PHI, SD_VANS_VX, SD_VANS_DRAG};
+  for (size_t c = 0; c < 3 && !set.given.empty(); c++)
+    std::copy(set.given[c].begin(), set.given[c].end(), row(rows[c]));
   for (auto *array :
        {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
     array->assign(N, 0.0);
@@ -111,7 +69,7 @@ void VansStream::mixing_length()
 
 void VansStream::profile_changed()
 {
-  sd_vans_hindrance(ncell(), phi(), law.exponent, hindrance.data());
+  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
   mixing_length();
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_stress(&mesh, &fluid, phi(), length.data(), &flow);
@@ -121,14 +79,12 @@ void VansStream::no_average(int n, double area)
 {
   const std::string slice = "slice " + std::to_string(n + 1);
   if (!std::isfinite(phi()[n]))
-    fail(lmp,
-         COMMAND + ": the average in " + slice +
-             " is not finite: a grain has no finite position or velocity");
-  fail(lmp,
-       COMMAND + ": phi = " + text(phi()[n]) + " in " + slice + " (z = " +
-           text(mesh.z_ref + mesh.edge[n]) + " to " + text(mesh.z_ref + mesh.edge[n + 1]) +
-           "): more grains than fit. Is the area " + text(area) +
-           " right, or do members of clumps overlap (overlap once)?");
+    set.voice.fail("the average in " + slice +
+                   " is not finite: a grain has no finite position or velocity");
+  set.voice.fail("phi = " + text(phi()[n]) + " in " + slice + " (z = " +
+                 text(mesh.z_ref + mesh.edge[n]) + " to " + text(mesh.z_ref + mesh.edge[n + 1]) +
+                 "): more grains than fit. Is the area " + text(area) +
+                 " right, or do members of clumps overlap (overlap once)?");
 }
 
 void VansStream::take_averages(double area, const double *sums)
@@ -146,46 +102,40 @@ void VansStream::take_averages(double area, const double *sums)
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();
   averaged = true;
-  sd_vans_hindrance(ncell(), phi(), law.exponent, hindrance.data());
+  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
 }
 
 /* Once each: couplings that are longer than the drag allows, and drag that the limits of b keep
- * from the
- * water; with conserve yes the books bring that back. */
+ * from the water; with conserve yes the books bring that back. */
 void VansStream::tell_limits(double T, double dt, const double cut[2])
 {
-  if (lmp->comm->me != 0) return;
   int slice = 0;
-  const double rate = sd_vans_drag_rate(&mesh, &law, fluid.radius, U.data(), hindrance.data(),
+  const double rate = sd_vans_drag_rate(&mesh, &set.law, fluid.radius, U.data(), hindrance.data(),
                                         grain.data(), &slice);
   if (set.couple == VansSettings::TWO && !told_far && rate * T > 3.0) {
     told_far = true;
-    lmp->error->warning(
-        FLERR,
-        COMMAND + ": the couplings are too far apart: drag changes the water at z = " +
-            text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) +
-            ", b T = " + text(rate * T) + " for the time T = " + text(T) +
-            " of a coupling; above 3 drag and stream drive each other up. Take a T of at most " +
-            text(3.0 / rate));
+    set.voice.warn("the couplings are too far apart: drag changes the water at z = " +
+                   text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) +
+                   ", b T = " + text(rate * T) + " for the time T = " + text(T) +
+                   " of a coupling; above 3 drag and stream drive each other up. Take a T of at "
+                   "most " + text(3.0 / rate));
   }
   const double drive = std::fabs(fluid.rho * fluid.gx - fluid.dpdx) * mesh.edge[ncell() - 1];
   if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * drive) {
     told_cut = true;
-    const char *other = set.rules == SD_VANS_YADE ? "rules consistent" : "conserve yes";
-    lmp->error->warning(
-        FLERR,
-        COMMAND + ": " + text(100.0 * cut[0] / cut[1]) +
-            " % of the drag does not reach the water: b is cut off at 1/(10 dt) = " +
-            text(0.1 / dt) + ", drag asks for up to " + text(rate) +
-            ". Take a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " + other);
+    set.voice.warn(text(100.0 * cut[0] / cut[1]) +
+                   " % of the drag does not reach the water: b is cut off at 1/(10 dt) = " +
+                   text(0.1 / dt) + ", drag asks for up to " + text(rate) +
+                   ". Take a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " +
+                   (set.yade() ? "rules consistent" : "conserve yes"));
   }
 }
 
-void VansStream::solve(double area, double T, const Given &given)
+void VansStream::solve(double area, double T, double dt, const Given &given)
 {
   const int N = ncell();
-  double dt = set.period > 0.0 ? set.dt : 0.1 * T, cut[2], returned = 0.0;
-  const int64_t steps = sd_vans_steps(set.rules, T, &dt);
+  double cut[2], returned = 0.0;
+  const int64_t steps = sd_vans_steps(fluid.rules, T, &dt);
   sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), set.classes ? classes() : nullptr,
                    b.data(), cut);
   tell_limits(T, dt, cut);
@@ -203,9 +153,9 @@ void VansStream::solve(double area, double T, const Given &given)
   const sd_status status =
       sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, account ? &books : nullptr);
   if (status != SD_OK)
-    fail(lmp,
-         COMMAND + ": the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
-             " steps: " + sd_status_string(status) + ". Take a shorter time between couplings");
+    set.voice.fail("the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
+                   " steps: " + sd_status_string(status) +
+                   ". Take a shorter time between couplings");
   if (!account) return;
 
   sd_vans_hand_over(&mesh, phi(), T, &books, shear_density.data(), foreseen_density.data());
@@ -218,58 +168,30 @@ void VansStream::solve(double area, double T, const Given &given)
   ledger.surface += area * books.surface;
 }
 
-double VansStream::momentum(double area) const
+std::vector<double> VansStream::friction_velocities() const
 {
-  return area * sd_vans_momentum(&mesh, fluid.rho, grain.data(), U.data());
-}
-
-double VansStream::transport() const
-{
-  double q = 0.0;
-  for (int n = 0; n < ncell(); n++) q += grain[n] * grain[ncell() + n] * height(n);
-  return q;
-}
-
-double VansStream::largest_stress() const
-{
-  return *std::max_element(stress.begin(), stress.end());
-}
-
-double VansStream::bed_elevation() const
-{
-  if (!set.find_bed) return set.bed;
-  for (int n = ncell() - 2; n > 0; n--)
-    if (grain[n] > 0.5 && grain[n] >= grain[n + 1] && grain[n] >= grain[n - 1])
-      return 0.5 * (mesh.edge[n] + mesh.edge[n + 1]);
-  return 0.0;
-}
-
-double VansStream::depth_over_velocity(double bed) const
-{
-  double flux = 0.0, depth = 0.0;
-  for (int n = 0; n < ncell() - 1; n++)
-    if (0.5 * (mesh.edge[n] + mesh.edge[n + 1]) > bed) {
-      flux += U[n + 1] * height(n);
-      depth += height(n);
-    }
-  return flux > 0.0 ? depth * depth / flux : 0.0;
-}
-
-/* Where next to nothing moves an eddy would live for ever. Thirty times H/u_star are about two
- * hundred
- * lives of one as high as the stream; u_star from what drives the stream, or from its largest
- * stress. */
-double VansStream::longest_eddy(double second) const
-{
-  if (set.rules == SD_VANS_YADE) return 10.0 * second;
-  const double H = mesh.edge[ncell() - 1], drive = std::fabs(fluid.gx - fluid.dpdx / fluid.rho) * H,
-               u_star = std::sqrt(std::max(drive, largest_stress() / fluid.rho));
-  return u_star > 0.0 ? 30.0 * H / u_star : HUGE_VAL;
+  std::vector<double> u_star(ncell());
+  for (int n = 0; n < ncell(); n++) u_star[n] = std::sqrt(std::max(stress[n], 0.0) / fluid.rho);
+  return u_star;
 }
 
 /* ---- restart -------------------------------------------------------------------------------- */
 
-void VansStream::save(NamedState &state) const
+std::vector<VansStream::Saved> VansStream::saved()
+{
+  return {{"U", &U},
+          {"grain", &grain},
+          {"class_grain", &class_grain},
+          {"b", &b},
+          {"length", &length},
+          {"nut", &nut},
+          {"stress", &stress},
+          {"shear", &shear_density},
+          {"foreseen", &foreseen_density},
+          {"outstanding", &outstanding}};
+}
+
+void VansStream::save(NamedState &state)
 {
   state.put("z_ref", mesh.z_ref);
   state.put("edge", set.edge);
@@ -277,56 +199,42 @@ void VansStream::save(NamedState &state) const
   state.put("radius", fluid.radius);
   state.put("ledger", {ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface,
                        ledger.others});
-  state.put("U", U);
-  state.put("grain", grain);
-  state.put("b", b);
-  state.put("length", length);
-  state.put("nut", nut);
-  state.put("stress", stress);
-  state.put("shear", shear_density);
-  state.put("foreseen", foreseen_density);
-  state.put("outstanding", outstanding);
   state.put("class_radii", class_radii);
-  state.put("class_grain", class_grain);
+  for (const Saved &array : saved()) state.put(array.name, *array.values);
   std::vector<double> history;
   for (const auto &profile : phi_history)
     history.insert(history.end(), profile.begin(), profile.end());
   state.put("phi_history", history);
 }
 
-void VansStream::load(const NamedState &state)
+void VansStream::check_mesh(const NamedState &state) const
 {
   const size_t N = ncell();
   const auto edge = state.get("edge");
+  const Voice what = set.voice.of("keyword mesh");
   if (edge.size() != N + 1)
-    fail(lmp,
-         COMMAND + ": keyword mesh: the restart file has " + std::to_string((int) edge.size() - 1) +
-             " slices, this fix has " + std::to_string(N));
-  const double H = mesh.edge[N];
+    what.fail("the restart file has " + std::to_string((int) edge.size() - 1) +
+              " slices, this fix has " + std::to_string(N));
   double shift = std::fabs(state.get("z_ref", 0.0) - mesh.z_ref);
   for (size_t n = 0; n <= N; n++) shift = std::max(shift, std::fabs(edge[n] - mesh.edge[n]));
-  if (!(shift <= 1e-9 * H))
-    fail(lmp,
-         COMMAND + ": keyword mesh: the restart file has another mesh: edges up to " + text(shift) +
-             " away from those of this fix");
+  if (!(shift <= 1e-9 * mesh.edge[N]))
+    what.fail("the restart file has another mesh: edges up to " + text(shift) +
+              " away from those of this fix");
+}
+
+void VansStream::load(const NamedState &state)
+{
+  check_mesh(state);
   averaged = state.get("averaged", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
   double sums[6];
   if (state.get("ledger", sums, 6)) ledger = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
-  state.get("U", U.data(), N + 1);
-  state.get("grain", grain.data(), grain.size());
-  state.get("b", b.data(), N);
-  state.get("length", length.data(), N);
-  state.get("nut", nut.data(), N);
-  state.get("stress", stress.data(), N);
-  state.get("shear", shear_density.data(), N);
-  state.get("foreseen", foreseen_density.data(), N);
-  state.get("outstanding", outstanding.data(), N);
   set_classes(state.get("class_radii"));
-  state.get("class_grain", class_grain.data(), class_grain.size());
+  for (const Saved &array : saved()) state.get(array.name, array.values->data(), array.values->size());
+  const size_t N = ncell();
   const auto history = state.get("phi_history");
   phi_history.clear();
   for (size_t at = 0; at + N <= history.size(); at += N)
     phi_history.emplace_back(history.begin() + at, history.begin() + at + N);
-  sd_vans_hindrance(ncell(), phi(), law.exponent, hindrance.data());
+  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
 }

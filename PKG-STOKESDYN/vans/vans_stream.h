@@ -1,6 +1,5 @@
 /* The stream of fix hydro/vans: its profiles and what moves them on, the same on every rank. Knows
- * no
- * atoms: the fix brings sums over all of them. */
+ * no atoms: the fix brings sums over all of them. */
 #ifndef SD_VANS_STREAM_H
 #define SD_VANS_STREAM_H
 
@@ -14,14 +13,14 @@ namespace StokesDyn {
 
 class VansStream {
  public:
-  VansStream(LAMMPS_NS::LAMMPS *lmp, const VansSettings &settings);
+  explicit VansStream(const VansSettings &settings);
   ~VansStream();
   VansStream(const VansStream &) = delete;
   VansStream &operator=(const VansStream &) = delete;
 
   const VansSettings &set;
-  sd_vans_mesh mesh;
-  sd_vans_force_law law;
+  const sd_vans_mesh &mesh;
+  /* as the settings have it, and what changes in a run */
   sd_vans_fluid fluid;
   /* [N+1] */
   std::vector<double> U;
@@ -49,7 +48,6 @@ class VansStream {
   int ncell() const { return mesh.ncell; }
   double *phi() { return grain.data(); }
   double *row(int k) { return grain.data() + (size_t) k * mesh.ncell; }
-  double height(int n) const { return sd_vans_height(&mesh, n); }
   void set_classes(const std::vector<double> &radii);
   /* U or phi set from outside: hindrance, eddy viscosity and stress follow. */
   void profile_changed();
@@ -64,24 +62,22 @@ class VansStream {
     /* what the grains got from the water; spheres outside the group of it */
     double all = 0.0, others = 0.0;
   };
-  void solve(double area, double T, const Given &given);
+  /* Over the time T in steps of about dt. */
+  void solve(double area, double T, double dt, const Given &given);
 
-  /* of the water, along x */
-  double momentum(double area) const;
-  /* sum of phi vx dz */
-  double transport() const;
-  double largest_stress() const;
-  /* of the first maximum of phi above 0.5 from the top, or as the user says */
-  double bed_elevation() const;
-  double depth_over_velocity(double bed) const;
-  /* the longest life of an eddy, in seconds of Yade's rule */
-  double longest_eddy(double second) const;
+  /* [N] */
+  std::vector<double> friction_velocities() const;
+  double largest_stress() const { return sd_vans_largest_stress(&mesh, stress.data()); }
+  /* found, or as the user says */
+  double bed_elevation() const
+  {
+    return set.find_bed ? sd_vans_bed_elevation(&mesh, grain.data()) : set.bed;
+  }
 
-  void save(NamedState &state) const;
+  void save(NamedState &state);
   void load(const NamedState &state);
 
  private:
-  LAMMPS_NS::LAMMPS *lmp;
   sd_vans_solver *solver;
   /* [N] momentum that is to go back to the water */
   std::vector<double> outstanding;
@@ -94,6 +90,12 @@ class VansStream {
   void mixing_length();
   void tell_limits(double T, double dt, const double cut[2]);
   [[noreturn]] void no_average(int n, double area);
+  void check_mesh(const NamedState &state) const;
+  struct Saved {
+    const char *name;
+    std::vector<double> *values;
+  };
+  std::vector<Saved> saved();
 };
 
 }    // namespace StokesDyn

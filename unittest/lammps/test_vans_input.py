@@ -12,10 +12,10 @@ def line(every="1", **changes):
 
 
 BAD = [
-    (dict(every="0"), "number of steps N .* not '0'"),
-    (dict(every="2.5"), "not '2.5'"),
-    (dict(every="1e3"), "not '1e3'"),
-    (dict(every="0x10"), "not '0x10'"),
+    (dict(every="0"), "keyword N: '0' must be >= 1"),
+    (dict(every="2.5"), "keyword N: '2.5' is not an integer"),
+    (dict(every="1e3"), "keyword N: '1e3' is not an integer"),
+    (dict(every="0x10"), "keyword N: '0x10' is not an integer"),
     (dict(mesh="20 0.001 0 mesh 30 0.001 0"), "keyword mesh: given twice"),
     (dict(mesh=None), "keyword mesh .* is required"),
     (dict(fluid=None), "keyword fluid .* is required"),

@@ -195,8 +195,9 @@ typedef struct {
   /* size classes of the exchange term and of the pore length; 0: one class of that radius */
   int nclass;
   const double *class_radius;
-  /* Yade's least slip in the exchange term, 1e-5 m/s; for rules yade only */
-  double least_slip;
+  /* Yade's least slip in the exchange term, 1e-5 m/s, and longest life of an eddy, 10 s; for rules
+   * yade only */
+  double least_slip, longest_life;
   sd_vans_rules rules;
 } sd_vans_fluid;
 
@@ -329,6 +330,20 @@ double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi,
 double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
                         const double *phi_new, double *U, double *scratch);
 
+/* ---- what the profiles tell ------------------------------------------------------------------- */
+
+/* Volume of grains that passes a line across the stream, per width and time: sum phi vx dz. */
+double sd_vans_transport(const sd_vans_mesh *mesh, const double *profile);
+
+double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress);
+
+/* Elevation of the bed: middle of the highest slice under water where phi has a maximum above 0.5;
+ * 0 if there is none. */
+double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi);
+
+/* Depth of the water above the bed over its mean velocity there; 0 unless that is positive. */
+double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed);
+
 /* ---- settlement between water and grains ----------------------------------------------------- */
 
 /* A solve takes `moved` from the water for the grains. Its viscous part is handed to them as a
@@ -395,6 +410,34 @@ void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, 
 /* Life of an eddy at the height z above the bed: 0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, at most
  * longest; where nothing moves, 10 dt. */
 double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double longest, double dt);
+
+/* The longest life. Where next to nothing moves an eddy would live for ever: thirty times H/u_star
+ * are about two hundred lives of one as high as the stream, u_star from what drives the stream or
+ * from its largest stress. Yade's rule: fluid->longest_life. */
+double sd_vans_longest_life(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                            const double *stress);
+
+/* The random walk of all grains. */
+typedef struct {
+  uint64_t seed;
+  int correlated;
+  /* height above z_ref below which there is none */
+  double bed;
+  /* [N] friction velocity of each slice */
+  const double *u_star;
+  /* of an eddy; time step of the walk */
+  double longest, dt;
+} sd_vans_walk;
+
+/* What a grain carries: life left of its eddy, and how many it has had. */
+typedef struct {
+  double life, count;
+} sd_vans_eddy;
+
+/* A new eddy for the grain of this ID at the height z (LAMMPS's): u' [3] out, 0 below the bed and
+ * outside the mesh. */
+void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *walk, double z,
+                      uint64_t id, sd_vans_eddy *eddy, double u[3]);
 
 #ifdef __cplusplus
 }

@@ -34,3 +34,26 @@ double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double lo
   if (!(u_star > 0.0)) return 10.0 * dt;
   return fmin(0.33 * 0.41 * fmax(z_above_bed, 11.6 * nu / u_star) / u_star, longest);
 }
+
+double sd_vans_longest_life(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                            const double *stress)
+{
+  if (fluid->rules == SD_VANS_YADE) return fluid->longest_life;
+  const double H = mesh->edge[mesh->ncell - 1];
+  const double drive = fabs(fluid->gx - fluid->dpdx / fluid->rho) * H;
+  const double u_star = sqrt(fmax(drive, sd_vans_largest_stress(mesh, stress) / fluid->rho));
+  return u_star > 0.0 ? 30.0 * H / u_star : HUGE_VAL;
+}
+
+void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *walk, double z,
+                      uint64_t id, sd_vans_eddy *eddy, double u[3])
+{
+  const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < mesh->ncell;
+  const double height = z - mesh->z_ref - walk->bed,
+               u_star = inside && height > 0.0 ? walk->u_star[p] : 0.0;
+  double normal[3];
+  sd_vans_normal3(walk->seed, id, (uint64_t) eddy->count, normal);
+  sd_vans_fluctuation(normal, u_star, walk->correlated, u);
+  eddy->count += 1.0;
+  eddy->life = sd_vans_eddy_life(height, nu, u_star, walk->longest, walk->dt);
+}

@@ -197,7 +197,8 @@ static void wall_friction_follows_its_law(void **state)
   /* from far away: water that comes to rest, or starts */
   sd_vans_friction far = {0};
   sd_vans_wall_friction(SD_VANS_CONSISTENT, 1e6, &far);
-  assert_true(fabs(residual_of_law(0.01, sd_vans_wall_friction(SD_VANS_CONSISTENT, 0.01, &far))) < 1e-12);
+  assert_true(fabs(residual_of_law(0.01, sd_vans_wall_friction(SD_VANS_CONSISTENT, 0.01, &far))) <
+              1e-12);
   /* Graf & Altinakar's law at Re 1e2..1e5, four digits */
   const double law[4] = {0.0927, 0.0411, 0.0225, 0.0140};
   for (int k = 0; k < 4; k++) {
@@ -222,7 +223,8 @@ static void wall_friction_holds_between_two_solutions(void **state)
       steps++;
       solved += near_by.inverse != before;
     }
-  printf("    Re 1e2 to 1e8 and back: largest residual %.1e, solved for %d times in %d\n", largest, solved, steps);
+  printf("    Re 1e2 to 1e8 and back: largest residual %.1e, solved for %d times in %d\n", largest,
+         solved, steps);
   assert_true(largest < 1e-13);
   assert_in_range(solved, steps / 25, steps / 15);
 }
@@ -232,7 +234,8 @@ static double yades_friction(double Re)
 {
   double f = 1.0 / (0.32 * 0.32);
   for (int k = 0; k < 100; k++) {
-    const double root = 2.0 * log(Re * sqrt(f)) + 0.32, next = 1.0 / (root * root), change = fabs(next - f) / f;
+    const double root = 2.0 * log(Re * sqrt(f)) + 0.32, next = 1.0 / (root * root),
+                 change = fabs(next - f) / f;
     f = next;
     if (change < 1e-2) return f;
   }
@@ -244,7 +247,8 @@ static void yades_wall_friction_is_a_substitution(void **state)
 {
   (void) state;
   const double yade[4] = {0.0281, 0.0108, 0.0055, 0.0032};
-  for (int k = 0; k < 4; k++) assert_true(fabs(yades_friction(pow(10.0, k + 2)) / yade[k] - 1.0) < 0.02);
+  for (int k = 0; k < 4; k++)
+    assert_true(fabs(yades_friction(pow(10.0, k + 2)) / yade[k] - 1.0) < 0.02);
   sd_vans_friction near_by = {0};
   int steps = 0, jumps = 0, solved = 0;
   double previous = 0.0;
@@ -408,6 +412,63 @@ static void mixing_lengths(void **state)
   column_free(c);
 }
 
+/* A bed up to 10 slices with its loosest grains on top, water of 0.5 above it. */
+static void profiles_tell_bed_transport_and_times(void **state)
+{
+  (void) state;
+  enum { N = 21 };
+  const double dz = 0.002;
+  double edge[N + 1], profile[SD_VANS_ROWS * N] = {0}, U[N + 1], stress[N] = {0};
+  for (int n = 0; n <= N; n++) edge[n] = n * dz;
+  for (int n = 0; n <= N; n++) U[n] = n > 10 ? 0.5 : 0.01;
+  for (int n = 0; n < 10; n++) profile[n] = n == 9 ? 0.3 : n == 6 ? 0.62 : 0.6;
+  for (int n = 0; n < 10; n++) profile[SD_VANS_VX * N + n] = 0.02 * n;
+  const sd_vans_mesh mesh = {N, 0.1, dz, edge};
+  double q = 0.3 * 0.18 * dz + 0.62 * 0.12 * dz;
+  for (int n = 0; n < 9; n++) q += n == 6 ? 0.0 : 0.6 * 0.02 * n * dz;
+  assert_true(fabs(sd_vans_transport(&mesh, profile) / q - 1.0) < 1e-14);
+  assert_true(sd_vans_bed_elevation(&mesh, profile) == 0.5 * (edge[8] + edge[9]));
+  profile[7] = profile[8] = 0.4; /* the maximum of 0.62 is the highest above 0.5 */
+  assert_true(sd_vans_bed_elevation(&mesh, profile) == 0.5 * (edge[6] + edge[7]));
+  for (int n = 0; n < N; n++) profile[n] *= 0.5;
+  assert_true(sd_vans_bed_elevation(&mesh, profile) == 0.0);
+  /* 10 slices under the surface at edge 20 */
+  assert_true(fabs(sd_vans_depth_over_velocity(&mesh, U, 10 * dz) - 10 * dz / 0.5) < 1e-15);
+  assert_true(sd_vans_depth_over_velocity(&mesh, U, 20 * dz) == 0.0);
+  /* 30 H/u_star, u_star from the slope or from the stress */
+  sd_vans_fluid fluid = {.rho = 1200, .eta = 1e-3, .gx = -0.3, .dpdx = 60, .longest_life = 7.0};
+  const double H = 20 * dz;
+  assert_true(fabs(sd_vans_longest_life(&mesh, &fluid, stress) / (30 * sqrt(H / 0.35)) - 1.0) <
+              1e-14);
+  stress[3] = 40.0;
+  assert_true(fabs(sd_vans_longest_life(&mesh, &fluid, stress) / (30 * H / sqrt(40.0 / 1200)) -
+                   1.0) < 1e-14);
+  fluid.rules = SD_VANS_YADE;
+  assert_true(sd_vans_longest_life(&mesh, &fluid, stress) == 7.0);
+}
+
+/* u' scales with the friction velocity of the grain's slice; none below the bed and above the mesh. */
+static void eddies_follow_their_slice(void **state)
+{
+  (void) state;
+  const double edge[4] = {0, 0.01, 0.02, 0.03}, u_star[3] = {0.05, 0.0, 0.02};
+  const sd_vans_mesh mesh = {3, -1.0, 0.01, edge};
+  const sd_vans_walk walk = {42, 1, 0.004, u_star, 0.9, 0.001};
+  const double z[5] = {0.003, 0.005, 0.015, 0.025, 0.035}, expected[5] = {0, 0.05, 0, 0.02, 0};
+  for (int k = 0; k < 5; k++) {
+    sd_vans_eddy eddy = {-1.0, 6.0};
+    double u[3], normal[3], unit[3];
+    sd_vans_normal3(42, 77, 6, normal);
+    sd_vans_fluctuation(normal, 1.0, 1, unit);
+    sd_vans_new_eddy(&mesh, 1e-6, &walk, z[k] - 1.0, 77, &eddy, u);
+    for (int d = 0; d < 3; d++) assert_true(fabs(u[d] - expected[k] * unit[d]) < 1e-16);
+    assert_true(eddy.count == 7.0);
+    const double life =
+        expected[k] > 0 ? sd_vans_eddy_life(z[k] - 0.004, 1e-6, expected[k], 0.9, 0.001) : 0.01;
+    assert_true(fabs(eddy.life - life) < 1e-12);
+  }
+}
+
 static void effective_viscosities(void **state)
 {
   (void) state;
@@ -449,8 +510,8 @@ static void exchange_coefficient(void **state)
   (void) state;
   enum { N = 4 };
   const double edge[N + 1] = {0, 1, 2, 3, 4}, U[N + 1] = {0, 0.5, 0.5, 0.501, 0.5};
-  const double profile[SD_VANS_ROWS * N] = {0.3, 0.3, 0.3, 0.0, 0.2, 0.9, 0.5, 0.0, [16] = 2e-5,
-                                            -3e-5, 3e-5, 0.0};
+  const double profile[SD_VANS_ROWS * N] = {0.3, 0.3, 0.3,         0.0,   0.2,  0.9,
+                                            0.5, 0.0, [16] = 2e-5, -3e-5, 3e-5, 0.0};
   const sd_vans_mesh mesh = {N, 0, 1, edge};
   sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .radius = 0.003, .least_slip = 1e-5};
   const double n = 0.3 / (4.0 / 3.0 * PI * 27e-9);
@@ -567,6 +628,8 @@ int main(void)
       cmocka_unit_test(displaced_water_keeps_its_momentum),
       cmocka_unit_test(mixing_lengths),
       cmocka_unit_test(effective_viscosities),
+      cmocka_unit_test(profiles_tell_bed_transport_and_times),
+      cmocka_unit_test(eddies_follow_their_slice),
       cmocka_unit_test(number_of_steps),
       cmocka_unit_test(exchange_coefficient),
       cmocka_unit_test(exchange_knows_no_unit),

@@ -1,0 +1,267 @@
+#include "fix_hydro_vans.h"
+
+#include "lammps_compat.h"
+#include "ranks.h"
+#include "sd_constants.h"
+#include "sd_hash.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+/* ---- which atoms ----------------------------------------------------------------------------- */
+
+void FixHydroVans::select(int bit, bool not_in_group)
+{
+  const int n = atom->nlocal;
+  take.resize(n);
+  if (region) region->prematch();
+  for (int i = 0; i < n; i++) {
+    take[i] = (atom->mask[i] & bit) && atom->radius[i] > 0.0 &&
+        !(not_in_group && (atom->mask[i] & groupbit));
+    if (take[i] && region)
+      take[i] = region->match(atom->x[i][0], atom->x[i][1], atom->x[i][2]) != 0;
+  }
+}
+
+/* The atoms of this rank, those that `take` says. */
+sd_vans_grains FixHydroVans::grains()
+{
+  const int n = atom->nlocal;
+  sd_vans_grains all = {n, n ? atom->x[0] : nullptr, n ? atom->v[0] : nullptr, atom->radius,
+                        nullptr, nullptr, take.data()};
+  if (set.fluctuates()) {
+    u.resize(3 * (size_t) n + 3);
+    for (int i = 0; i < n; i++) std::copy_n(out[i] + FLUCTUATION, 3, &u[3 * (size_t) i]);
+    all.fluctuation = u.data();
+  }
+  if (set.overlap_once) {
+    weight.resize(n + 1);
+    for (int i = 0; i < n; i++) weight[i] = 1.0 - memo[i][column.lost];
+    all.weight = weight.data();
+  }
+  return all;
+}
+
+/* Of those atoms into F and drag_x; how many are outside the mesh. */
+int FixHydroVans::forces(const sd_vans_grains &grains)
+{
+  F.resize(3 * (size_t) grains.n + 3);
+  drag_x.resize(grains.n + 1);
+  return sd_vans_forces(&set.mesh, &set.law, stream.U.data(), stream.hindrance.data(), &grains,
+                        F.data(), drag_x.data());
+}
+
+/* Tells one set of members of clumps from another, in any order and on any ranks: IDs, molecules,
+ * radii. */
+uint64_t FixHydroVans::members() const
+{
+  uint64_t mine = 1, all = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & average_bit) || atom->molecule[i] == 0) continue;
+    uint64_t radius;
+    memcpy(&radius, &atom->radius[i], sizeof(radius));
+    const uint64_t tag = sd_hash_mix((uint64_t) atom->tag[i] + SD_HASH_STEP);
+    mine += sd_hash_mix(sd_hash_mix(tag ^ (uint64_t) atom->molecule[i]) ^ radius);
+  }
+  for (uint64_t part : from_all(world, std::vector<uint64_t>(1, mine))) all += part;
+  return all;
+}
+
+/* The share of each member of a clump in the volume of the union. Once for every set of members:
+ * clumps are rigid. Seen from each member the others stand at their nearest image: what overlaps it
+ * is near. */
+void FixHydroVans::count_overlaps()
+{
+  const uint64_t now = members();
+  if (now == members_counted) return;
+  members_counted = now;
+  struct Member {
+    tagint molecule, tag;
+    double x[3], a;
+  };
+  std::vector<Member> mine;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *x = atom->x[i];
+    if (memo.has(i)) memo.row(i)[column.lost] = 0.0;
+    if (atom->molecule[i] != 0 && (atom->mask[i] & average_bit) && atom->radius[i] > 0.0)
+      mine.push_back({atom->molecule[i], atom->tag[i], {x[0], x[1], x[2]}, atom->radius[i]});
+  }
+  auto all = from_all(world, mine);
+  std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) {
+    return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
+  });
+  std::map<tagint, double> share;
+  std::vector<double> x, a;
+  for (size_t begin = 0, end; begin < all.size(); begin = end) {
+    for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}
+    const size_t n = end - begin;
+    x.resize(3 * n);
+    a.resize(n);
+    for (size_t k = 0; k < n; k++) {
+      for (size_t j = 0; j < n; j++) {
+        for (int d = 0; d < 3; d++) x[3 * j + d] = all[begin + j].x[d] - all[begin + k].x[d];
+        Compat::minimum_image(domain, &x[3 * j]);
+        a[j] = all[begin + j].a;
+      }
+      share[all[begin + k].tag] = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
+    }
+  }
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto at = share.find(atom->tag[i]);
+    if (at != share.end()) memo.give(i)[column.lost] = 1.0 - at->second;
+  }
+}
+
+/* ---- averages and solve ---------------------------------------------------------------------- */
+
+/* Sums over grains of all ranks into the stream's averages. */
+void FixHydroVans::average()
+{
+  const size_t N = stream.ncell(), nclass = stream.class_radii.size(),
+               total = N * SD_VANS_ROWS * (1 + nclass);
+  if (set.overlap_once) count_overlaps();
+  select(average_bit);
+  enum { COUNT, RADIUS, VOLUME, MASS, MEANS };
+  std::vector<double> sums(total + MEANS, 0.0), all(total + MEANS);
+  work.resize(N + 1);
+  const sd_vans_averaging how = {set.point, (int) nclass, stream.class_radii.data()};
+  const sd_vans_grains grains = this->grains();
+  const int odd = sd_vans_average(&set.mesh, &set.law, &how, stream.U.data(),
+                                  stream.hindrance.data(), &grains, sums.data(), work.data());
+  if (odd >= 0)
+    set.voice.fail_one("atom " + std::to_string(atom->tag[odd]) + " has radius " +
+                       text(atom->radius[odd]) +
+                       ", which is no size class; name all of them with class_radii");
+  double *mine = &sums[total], *means = &all[total];
+  for (int i = 0; i < grains.n; i++) {
+    if (!take[i]) continue;
+    const double a = atom->radius[i];
+    mine[COUNT] += 1.0;
+    mine[RADIUS] += a;
+    mine[VOLUME] += 4.0 / 3.0 * SD_PI * a * a * a;
+    mine[MASS] += atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  }
+  MPI_Allreduce(sums.data(), all.data(), (int) sums.size(), MPI_DOUBLE, MPI_SUM, world);
+  if (means[COUNT] > 0.0) {
+    mean_radius = means[RADIUS] / means[COUNT];
+    mean_density = means[MASS] / means[VOLUME];
+  }
+  if (set.radius == 0.0) stream.fluid.radius = mean_radius;
+  stream.take_averages(area(), all.data());
+}
+
+/* What the grains got from the water since the last coupling: those of the group as booked step by
+ * step; the others, which a fixed bed is made of, as the law has it now. ratio: time of the water
+ * over time T of the grains. */
+VansStream::Given FixHydroVans::impulses(double T, double ratio)
+{
+  const size_t N = stream.ncell();
+  const int n = atom->nlocal;
+  std::vector<double> mine(N + 2, 0.0), all(N + 2), rest(n + 1, 0.0);
+  work.resize(N + 1);
+  take.assign(n, 0);
+  for (int i = 0; i < n; i++) {
+    if (!memo.has(i)) continue;
+    sd_vans_account *books = account(i);
+    take[i] = (atom->mask[i] & groupbit) && atom->radius[i] > 0.0;
+    rest[i] = sd_vans_account_rest(books, T, update->dt, ratio);
+    if (take[i]) mine[N] += books->impulse;
+    books->impulse = 0.0;
+  }
+  sd_vans_grains some = grains();
+  sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data(), work.data());
+  select(average_bit, true);
+  if (std::find(take.begin(), take.end(), 1) != take.end()) {
+    some = grains();
+    forces(some);
+    for (int i = 0; i < n; i++) {
+      if (!take[i]) continue;
+      rest[i] = account(i)->foreseen - ratio * T * drag_x[i];
+      mine[N + 1] += T * (drag_x[i] + account(i)->shear);
+    }
+    sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data(), work.data());
+  }
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  VansStream::Given given;
+  given.all = ratio * (all[N] + all[N + 1]);
+  given.others = ratio * all[N + 1];
+  given.back.assign(all.begin(), all.begin() + N);
+  return given;
+}
+
+void FixHydroVans::couple()
+{
+  const double T = set.period > 0.0 ? set.period : elapsed;
+  if (!(T > 0.0)) return;
+  VansStream::Given given;
+  if (set.conserve && elapsed > 0.0) given = impulses(elapsed, T / elapsed);
+  stream.solve(area(), T, set.period > 0.0 ? set.dt : 0.1 * T, given);
+  if (!given.back.empty()) hand_over();
+}
+
+/* To each grain what the solve took from the water for it. */
+void FixHydroVans::hand_over()
+{
+  const int n = atom->nlocal;
+  select(average_bit | groupbit);
+  const sd_vans_grains all = grains();
+  std::vector<double> shear(n + 1), foreseen(n + 1);
+  const auto gather = [&](const std::vector<double> &density, std::vector<double> &of_grains) {
+    sd_vans_gather(&set.mesh, set.point, &all, density.data(), of_grains.data(), work.data());
+  };
+  gather(stream.shear_density, shear);
+  gather(stream.foreseen_density, foreseen);
+  for (int i = 0; i < n; i++) {
+    if (!take[i] && !memo.has(i)) continue;
+    sd_vans_account *books = account(i);
+    books->past = books->shear;
+    books->shear = shear[i];
+    books->foreseen = foreseen[i];
+  }
+}
+
+/* Velocity fluctuations: new ones when their time is over. The random numbers depend on seed, atom
+ * ID and the number of the renewal. */
+void FixHydroVans::renew_fluctuations(double time, bool first)
+{
+  const double bed = stream.bed_elevation();
+  bool all = first;
+  if (set.fluctuation != VansSettings::DEPTH) {
+    eddy_age += time;
+    if (!first && eddy_age < eddy_period * (1.0 - 1e-9)) return;
+    all = true;
+    eddy_age = 0.0;
+    eddy_period = set.renewal > 0.0
+        ? set.renewal
+        : sd_vans_depth_over_velocity(&set.mesh, stream.U.data(), bed);
+  }
+  renewals += 1.0;
+  const std::vector<double> u_star = stream.friction_velocities();
+  const sd_vans_walk walk = {
+      set.seed,
+      set.fluctuation != VansSettings::UNCORRELATED,
+      bed,
+      u_star.data(),
+      sd_vans_longest_life(&set.mesh, &stream.fluid, stream.stress.data()),
+      nevery * update->dt};
+  select(groupbit);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!take[i]) {
+      if (out.has(i)) std::fill_n(out.give(i) + FLUCTUATION, 3, 0.0);
+      continue;
+    }
+    sd_vans_eddy *eddy = (sd_vans_eddy *) (memo.give(i) + column.eddy);
+    eddy->life -= time;
+    if (all || !(eddy->life > 1e-9 * time))
+      sd_vans_new_eddy(&set.mesh, set.fluid.eta / set.fluid.rho, &walk, atom->x[i][2],
+                       (uint64_t) atom->tag[i], eddy, out.give(i) + FLUCTUATION);
+  }
+}
