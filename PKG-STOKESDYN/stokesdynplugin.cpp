@@ -1,6 +1,8 @@
 /* All styles of the plugin, as LAMMPS registers them. Built into stokesdynstyles.so, which
  * stokesdynloader.c opens when it has made sure that this is the LAMMPS that the styles were
  * compiled for. */
+#include "comm.h"
+#include "lammps.h"
 #include "lammpsplugin.h"
 #include "library.h"
 #include "version.h"
@@ -86,6 +88,10 @@ static std::vector<lammpsplugin_t> sph_styles()
 extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle,
                                                                          void *regfunc)
 {
+  LAMMPS *host = static_cast<LAMMPS *>(lmp);
+  if (host->comm->me == 0)
+    for (FILE *out : {host->screen, host->logfile})
+      if (out) fprintf(out, "PKG-STOKESDYN " SD_VERSION ", built for LAMMPS %s\n", LAMMPS_VERSION);
   std::vector<lammpsplugin_t> all = styles();
   if (lammps_has_style(lmp, "atom", "sph")) {
     const auto sph = sph_styles();

@@ -11,7 +11,16 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-static const char MAGIC[] = "stokesdyn 1 ";
+static const char MAGIC[] = "stokesdyn 1 ";    // the number is that of the format
+
+/* The version that stands in the head of a state, of whatever format. */
+static std::string version_of(const char *buffer)
+{
+  std::string magic, format, style, version;
+  if (strncmp(buffer, "stokesdyn ", 10) == 0)
+    std::istringstream(std::string(buffer, strcspn(buffer, "\n"))) >> magic >> format >> style >> version;
+  return version.empty() ? "one before 1.0.0" : version;
+}
 
 void NamedState::put_bits(const std::string &name, uint64_t bits)
 {
@@ -46,7 +55,7 @@ uint64_t NamedState::get_bits(const std::string &name, uint64_t absent) const
 
 void NamedState::write(FILE *fp) const
 {
-  std::string out = MAGIC + style + "\n";
+  std::string out = MAGIC + style + " " SD_VERSION "\n";
   char number[40];
   for (const auto &entry : values) {
     out += entry.first + " " + std::to_string(entry.second.size());
@@ -63,16 +72,17 @@ void NamedState::write(FILE *fp) const
 
 bool NamedState::read(LAMMPS *lmp, const char *buffer)
 {
-  const std::string head = MAGIC + style + "\n";
-  if (strncmp(buffer, head.c_str(), head.size()) != 0) {
+  const std::string head = MAGIC + style;
+  if (strncmp(buffer, head.c_str(), head.size()) != 0 || !strchr(" \n", buffer[head.size()])) {
     if (lmp->comm->me == 0)
       lmp->error->warning(FLERR,
                           "Fix " + style +
-                              ": the restart file was written by another version of the plugin: "
-                              "what it holds for this fix is not taken, the fix begins afresh");
+                              ": the restart file was written by another version of the plugin, " +
+                              version_of(buffer) + ", this is " SD_VERSION
+                              ": what it holds for this fix is not taken, the fix begins afresh");
     return false;
   }
-  std::istringstream lines(buffer + head.size());
+  std::istringstream lines(buffer + strcspn(buffer, "\n"));
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string name, number;

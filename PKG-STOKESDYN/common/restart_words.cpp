@@ -9,11 +9,12 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-static const int FORMAT = 2;
+// 2: words alone. 3: the plugin's version before them, whatever else a later format may have.
+static const int FORMAT = 3, WITHOUT_VERSION = 2;
 
 void write_words(FILE *fp, const std::vector<std::string> &words)
 {
-  std::string all;
+  std::string all = SD_VERSION "\n";
   for (const auto &word : words) all += word + '\n';
   const int head[2] = {FORMAT, (int) all.size()};
   fwrite(head, sizeof(int), 2, fp);
@@ -26,10 +27,11 @@ std::vector<std::string> read_words(LAMMPS *lmp, FILE *fp, const std::string &co
   int head[2] = {0, 0};
   if (root) utils::sfread(FLERR, head, sizeof(int), 2, fp, nullptr, lmp->error);
   MPI_Bcast(head, 2, MPI_INT, 0, lmp->world);
-  if (head[0] != FORMAT)
+  if (head[0] < WITHOUT_VERSION || head[1] < 0)
     fail(lmp,
          command + ": the restart file was written by another version of the plugin (format " +
-             std::to_string(head[0]) + ", this one reads " + std::to_string(FORMAT) +
+             std::to_string(head[0]) + ", this is version " SD_VERSION ", which reads " +
+             std::to_string(FORMAT) +
              "); let that version read it and write a data file (write_data)");
   std::string all(head[1], '\0');
   if (root && !all.empty())
@@ -39,6 +41,15 @@ std::vector<std::string> read_words(LAMMPS *lmp, FILE *fp, const std::string &co
   std::vector<std::string> words;
   for (size_t from = 0, to; (to = all.find('\n', from)) != std::string::npos; from = to + 1)
     words.push_back(all.substr(from, to - from));
+  if (head[0] == WITHOUT_VERSION) return words;
+  const std::string version = words.empty() ? "" : words.front();
+  if (head[0] != FORMAT)
+    fail(lmp,
+         command + ": the restart file was written by another version of the plugin, " + version +
+             ", in format " + std::to_string(head[0]) + "; this is version " SD_VERSION ", which reads " +
+             std::to_string(FORMAT) +
+             "; let that version read it and write a data file (write_data)");
+  words.erase(words.begin());
   return words;
 }
 

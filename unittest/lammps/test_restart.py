@@ -1,4 +1,6 @@
 """A run that is broken and continued, in the same input or from a restart file, is the unbroken run: to 1e-10."""
+import pathlib
+
 import numpy as np
 import pytest
 
@@ -235,6 +237,9 @@ def test_write_data_and_read_data(simulation, tmp_path):
 
 # --- files of another version ----------------------------------------------------------------------------------------------
 
+VERSION = (pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN" / "VERSION").read_bytes().strip()
+
+
 def changed_restart(tmp_path, old, new):
     """A restart file after 50 steps, and the forces of that step; then the bytes `old` in it are replaced."""
     words = style("all", 1, "exact")
@@ -247,11 +252,12 @@ def changed_restart(tmp_path, old, new):
 
 
 def test_memory_of_another_version_is_warned_of_once_and_the_run_begins_afresh(tmp_path):
-    then = changed_restart(tmp_path, b"stokesdyn 1 STOKES_DYNAMICS/STATE", b"stokesdyn 7 STOKES_DYNAMICS/STATE")
+    then = changed_restart(tmp_path, b"stokesdyn 1 STOKES_DYNAMICS/STATE " + VERSION, b"stokesdyn 7 STOKES_DYNAMICS/STATE 9" + VERSION[1:])
     lines = proceed("free", tmp_path / "restart") + ["fix none all ave/time 1 1 1 f_drag[6]"]
     ended = lmp(tmp_path, lines + dump_lines(tmp_path / "again", columns=COLUMNS) + ["run 0"])
     said = " ".join(ended.log.split())
-    assert said.count("the restart file was written by another version of the plugin") == 1
+    assert said.count("the restart file was written by another version of the plugin, 9") == 1
+    assert f"this is {VERSION.decode()}: what it holds for this fix is not taken" in said
     now = read_dump(tmp_path / "again")[-1][1]
     assert np.array_equal(now[:, :6], then[:, :6])
     # velocity Verlet's half step is not known any more: the forces are those of the whole velocities
@@ -259,16 +265,42 @@ def test_memory_of_another_version_is_warned_of_once_and_the_run_begins_afresh(t
     assert largest_difference(now[:, 6:9], expected) < 1e-10
 
 
-def test_words_of_another_version_are_an_error_with_a_way_out(tmp_path):
-    words = b"\n".join(style("all", 1, "exact").encode().split())
+def change_format(tmp_path, by):
+    """A restart file's bytes with another number for the format of the pair style's words, and where it stands."""
+    words = VERSION + b"\n" + b"\n".join(style("all", 1, "exact").encode().split())
     lines = begin("free", style("all", 1, "exact"), tmp_path / "data")
     lmp(tmp_path, lines + ["run 1", f"write_restart {tmp_path}/restart"])
     content = bytearray((tmp_path / "restart").read_bytes())
     at = content.index(words) - 8        # the number of the format, and the length
-    content[at] += 1
-    (tmp_path / "restart").write_bytes(bytes(content))
+    content[at] += by
+    return at, content
+
+
+def test_words_of_another_version_are_an_error_with_a_way_out(tmp_path):
+    (tmp_path / "restart").write_bytes(change_format(tmp_path, 1)[1])
     ended = lmp(tmp_path, proceed("free", tmp_path / "restart"), succeed=False)
-    assert "written by another version of the plugin" in " ".join(ended.text.split()) and "write_data" in ended.text
+    said = " ".join(ended.text.split())
+    assert f"written by another version of the plugin, {VERSION.decode()}, in format 4; this is version {VERSION.decode()}" in said
+    assert "write_data" in said
+
+
+def test_files_from_before_the_first_version_are_read(tmp_path):
+    """They had the words alone, in format 2, and states without a version in their head."""
+    at, content = change_format(tmp_path, -1)
+    line = VERSION + b"\n"
+    length = int.from_bytes(content[at + 4:at + 8], "little") - len(line)
+    content = bytes(content[:at + 4]) + length.to_bytes(4, "little") + bytes(content[at + 8 + len(line):])
+    head = b"stokesdyn 1 STOKES_DYNAMICS/STATE"
+    assert content.count(head + b" " + line) == 1
+    size = content.index(head) - 4
+    shorter = int.from_bytes(content[size:size + 4], "little") - len(line)
+    content = content[:size] + shorter.to_bytes(4, "little") + content[size + 4:].replace(head + b" " + line, head + b"\n")
+    (tmp_path / "older").write_bytes(content)
+    for name in ("restart", "older"):
+        dump = dump_lines(tmp_path / f"{name}.dump", columns=COLUMNS)
+        ended = lmp(tmp_path, proceed("free", tmp_path / name) + dump + ["run 1"])
+        assert "another version" not in ended.log
+    assert (tmp_path / "restart.dump").read_text() == (tmp_path / "older.dump").read_text()
 
 
 def test_a_number_that_the_memory_does_not_know_is_left_alone(tmp_path):
