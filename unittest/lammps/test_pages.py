@@ -1,0 +1,165 @@
+"""The pages and the sources say the same: every message, every keyword and every style of the sources is on a page, and a page
+holds no message that no source has. Pages are read as a user searches them: by the first words of what LAMMPS has printed."""
+import pathlib
+import re
+
+import pytest
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN"
+PAGES = {path.name: path.read_text() for path in sorted((PACKAGE / "doc").glob("*.md"))}
+EVERYWHERE = "howto_trouble.md"    # messages that all styles share
+ROOMS = {    # the pages on which the messages of a folder may stand
+    "stokes": ["pair_stokes_dynamics.md", "fix_stokes_dynamics.md", "fix_stokes_dynamics_overdamped.md"],
+    "sph": [name for name in PAGES if "sph" in name],
+    "vans": ["fix_hydro_vans.md"],
+}
+STYLES = [name for name in PAGES if name.startswith(("pair_", "fix_", "compute_"))]
+
+TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
+EITHER = re.compile(r"\?\s*((?:\"[^\"]*\"\s*)+):\s*((?:\"[^\"]*\"\s*)+)")    # condition ? "one" : "other"
+CALL = re.compile(r"\b(?:fail|fail_one|require|refuse|all|one|warning|warn)\s*\(")
+HOLE = "\0"
+
+
+def without_comments(source):
+    return re.sub(r"/\*.*?\*/|(?<![:\"])//[^\n]*", "", source, flags=re.S)
+
+
+def last_argument(source, begin):
+    """Of a call whose parenthesis opens before `begin`: its last argument, and where the call ends."""
+    depth, at, argument = 1, begin, begin
+    while depth:
+        token = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)'|[()\[\]{},]").search(source, at)
+        depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(token.group(), 0)
+        at = token.end()
+        if token.group() == "," and depth == 1:
+            argument = at
+    return source[argument:at - 1], at
+
+
+def joined(code):
+    """The strings of an expression, put together; a hole where something else stands between two of them."""
+    words, at = "", 0
+    for string in TEXT.finditer(code):
+        if code[at:string.start()].strip():
+            words += HOLE
+        words += string.group(1)
+        at = string.end()
+    return words + (HOLE if code[at:].strip() else "")
+
+
+def messages():
+    """(folder, file, message) of all errors and warnings of the glue, the status texts of the core, the loader's reasons."""
+    for path in sorted(PACKAGE.rglob("*.cpp")):
+        source, end = without_comments(path.read_text()), 0
+        for call in CALL.finditer(source):
+            if call.start() < end:
+                continue
+            code, end = last_argument(source, call.end())
+            for way in (r"\1", r"\2"):
+                if TEXT.search(code):
+                    yield path.parent.name, path.name, joined(EITHER.sub(way, code))
+        for table in re.findall(r"\bwhy\[\] = \{(.*?)\};", source, re.S):
+            for code in re.split(r",\s*(?=\")", table):
+                yield path.parent.name, path.name, joined(code)
+    status = without_comments((PACKAGE / "core/base/sd_status.h").read_text())
+    for text in re.findall(r"_\(SD_\w+, \"(.*?)\"\)", status):
+        yield "stokes", "sd_status.h", text
+    for name in ("stokesdynloader.c", "stokesdynplugin.cpp"):
+        source = without_comments((PACKAGE / name).read_text())
+        for call in re.finditer(r"\b(?:printf|snprintf)\s*\(", source):
+            code = source[call.end():last_argument(source, call.end())[1]]
+            yield "common", name, re.sub(r"%\w", HOLE, joined(code[code.index('"'):]))
+
+
+# what a message may begin with before it says anything: the command, the step
+COMMAND = re.compile(r"(?:[\s.:]|ERROR:|Fix(?=\s+\.)|Pair style \S+:|step(?=\s+\.)|stokesdynplugin\.so:)+")
+
+
+# what may be put before a message where it is given: the voice of a keyword
+BEFORE = re.compile(r"^(keyword \w+:|\w+ yes) ")
+
+
+def words(text):
+    """The words of a message or of a row, without what differs from run to run and without punctuation between them."""
+    text = re.sub(r"%\w|\\.|" + HOLE, " ... ", text)
+    text = text[COMMAND.match(" " + text).end() - 1:].replace("...", " ")
+    return [word for word in (word.strip(" :;,.'`()[]=") for word in text.split()) if word]
+
+
+ALL = sorted({(room, file, " ".join(words(message)[:5])) for room, file, message in messages() if re.search("[a-z]{2}", message) and words(message) != ["atom"]})
+
+
+def rows(name):
+    """What a page's tables of messages list: their first columns."""
+    listed, table = [], False
+    for line in PAGES.get(name, "").splitlines():
+        table = line.startswith("|") and (table or line.startswith("| message |"))
+        if table and not re.match(r"\|(---| message \|)", line):
+            listed.append(line[1:].split(" | ")[0].strip())
+    return listed
+
+
+@pytest.mark.parametrize("room, file, begin", ALL)
+def test_the_first_words_of_a_message_are_on_a_page(room, file, begin):
+    where = ROOMS.get(room, []) + [EVERYWHERE]
+    begin = begin.split()
+    listed = [row for name in where for row in rows(name)]
+    listed += [BEFORE.sub("", row) for row in listed]
+    assert any(words(row)[:len(begin)] == begin for row in listed), f"no table of {where} has a row that begins with {begin}"
+
+
+def test_there_are_messages():
+    assert len(ALL) > 150
+    assert ("stokes", "settings.cpp", "keyword visc is required the") in ALL
+    assert ("common", "keywords.cpp", "must be > 0") in ALL
+
+
+@pytest.mark.parametrize("name", STYLES)
+def test_no_page_has_a_message_that_no_source_has(name):
+    sources = HOLE.join(joined(without_comments(path.read_text())) for path in PACKAGE.rglob("*.*") if path.suffix in (".cpp", ".c", ".h"))
+    for row in rows(name):
+        for piece in BEFORE.sub("", row).split("..."):
+            piece = piece.strip(" :;,'()`")
+            assert piece in sources or piece.replace("\\", "") in sources, f"{name}: '{piece}' of row '{row}' is in no source"
+
+
+KEYWORDS = sorted({(path.parent.name, keyword) for path in PACKAGE.rglob("*.cpp")
+                   for keyword in re.findall(r"\{\"(\w+)\",\s*\[", path.read_text())})
+
+
+@pytest.mark.parametrize("room, keyword", KEYWORDS)
+def test_each_keyword_has_a_row_or_a_line_of_syntax(room, keyword):
+    text = "\n".join(PAGES.get(name, "") for name in ROOMS[room])
+    syntax = "\n".join(re.findall(r"## Syntax\n(.*?)\n## ", text, re.S))
+    assert re.search(rf"^\| .*`{keyword}|\[{keyword} ", syntax, re.M), f"keyword {keyword} is in no Syntax of {ROOMS[room]}"
+
+
+def test_there_are_keywords():
+    assert ("stokes", "cut_off_distance") in KEYWORDS and ("vans", "mesh") in KEYWORDS and len(KEYWORDS) >= 50
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_pages_are_narrow(name):
+    wide = [f"{number}: {line}" for number, line in enumerate(PAGES[name].splitlines(), 1) if len(line) > 120]
+    assert not wide, wide
+
+
+@pytest.mark.parametrize("name", STYLES)
+def test_pages_have_the_order_of_a_manual_page(name):
+    order = ["Use this", "Units", "Syntax", "Examples", "Description", "Restart, output, other settings", "Restrictions",
+             "Related commands", "Default", "Messages and what to do"]
+    marks = re.findall(r"^(?:## |> \*\*|\*\*)(" + "|".join(order) + r")\b", PAGES[name], re.M)
+    assert marks == order
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_no_link_leads_nowhere(name):
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", PAGES[name]):
+        if not target.startswith("http"):
+            assert (PACKAGE / "doc" / target).exists(), target
+
+
+def test_the_readme_is_short():
+    readme = (PACKAGE.parent / "README.md").read_text().splitlines()
+    assert len(readme) < 120 and max(len(line) for line in readme) <= 120
