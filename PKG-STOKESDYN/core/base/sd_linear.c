@@ -8,6 +8,12 @@
 void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
 void spotrf_(const char *uplo, const int *n, float *A, const int *lda, int *info, size_t);
 void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
+void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha,
+            const double *A, const int *lda, const double *beta, double *C, const int *ldc, size_t,
+            size_t);
+void dgemm_(const char *transA, const char *transB, const int *m, const int *n, const int *k,
+            const double *alpha, const double *A, const int *lda, const double *B, const int *ldb,
+            const double *beta, double *C, const int *ldc, size_t, size_t);
 void dpotrs_(const char *uplo, const int *n, const int *count, const double *A, const int *lda,
              double *B, const int *ldb, int *info, size_t);
 
@@ -74,15 +80,32 @@ sd_status sd_cholesky_inverse(int n, double *A)
   return info == 0 ? SD_OK : SD_ESINGULAR;
 }
 
-sd_status sd_cholesky_solve(int n, double *A, int count, double *B)
+/* info of dpotrs is about its arguments alone */
+void sd_cholesky_apply(int n, const double *A, int count, double *B)
 {
-  const sd_status status = sd_cholesky(n, A);
-  if (status != SD_OK) return status;
   const int before = one_thread();
   int info;
   dpotrs_("L", &n, &count, A, &n, B, &n, &info, 1);
   threads_as_before(before);
-  return info == 0 ? SD_OK : SD_ESINGULAR;
+}
+
+sd_status sd_cholesky_solve(int n, double *A, int count, double *B)
+{
+  const sd_status status = sd_cholesky(n, A);
+  if (status == SD_OK) sd_cholesky_apply(n, A, count, B);
+  return status;
+}
+
+/* Rows are the columns of a matrix to Fortran: G = A B^T of what it sees. */
+void sd_add_gram(int n, int rows, const double *A, const double *B, double *G)
+{
+  const double one = 1.0;
+  const int before = one_thread();
+  if (A == B)
+    dsyrk_("L", "N", &n, &rows, &one, A, &n, &one, G, &n, 1, 1);
+  else
+    dgemm_("N", "T", &n, &n, &rows, &one, A, &n, B, &n, &one, G, &n, 1, 1);
+  threads_as_before(before);
 }
 
 /* Jacobi: a rotation by phi in the plane of p and q makes a_pq zero when cot(2 phi) = theta = (a_qq

@@ -29,6 +29,13 @@ sd_status sd_cholesky_single(int n, float *A);
 /* A^-1 [n n], both triangles, from the factor of A in its place. SD_OK; SD_ESINGULAR. */
 sd_status sd_cholesky_inverse(int n, double *A);
 
+/* B [count][n] becomes A^-1 B, from the factor of A: one right-hand side after the other. */
+void sd_cholesky_apply(int n, const double *A, int count, double *B);
+
+/* G [n n] += A^T B of A, B [rows][n], row-major, whose product is symmetric: at least the triangle
+ * that sd_cholesky reads. A and B may be one. */
+void sd_add_gram(int n, int rows, const double *A, const double *B, double *G);
+
 /* Solve A X = B: A as of sd_cholesky, destroyed; B [count][n], one right-hand side after the other,
  * X in its place. Status of sd_cholesky. */
 sd_status sd_cholesky_solve(int n, double *A, int count, double *B);

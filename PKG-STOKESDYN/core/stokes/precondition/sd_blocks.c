@@ -336,6 +336,20 @@ static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
   }
 }
 
+void sd_blocks_multiply(const sd_blocks *b, int k, int count, const double *in, double *out)
+{
+  const int *member = b->member + b->first[k], width = b->width;
+  const long size = width * (b->first[k + 1] - b->first[k]);
+  const double *A = b->inverse + b->start[k];
+  memset(out, 0, sizeof(double) * (size_t) (count * size));
+  for (long p = 0; p < size; p++)
+    for (long q = 0; q < size; q++) {
+      const double c = root(b, member[p / width], (int) (p % width)) * A[p + size * q] *
+          root(b, member[q / width], (int) (q % width));
+      for (int l = 0; l < count; l++) out[count * p + l] += c * in[count * q + l];
+    }
+}
+
 /* Spheres by themselves, which every part knows, are the first part's. */
 sd_status sd_blocks_apply(void *ctx, const double *r, double *z)
 {

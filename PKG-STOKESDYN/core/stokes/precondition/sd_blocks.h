@@ -65,6 +65,9 @@ sd_status sd_blocks_apply(void *ctx, const double *r, double *z);
 
 /* --- what sd_blocks_make and _move are made of ------------------------------------------------ */
 
+/* out = B in, in the rows of block k at set-up: [width m][count] numbers each */
+void sd_blocks_multiply(const sd_blocks *b, int k, int count, const double *in, double *out);
+
 /* Block k anew, of its spheres as they stand now. On failure b is of no use but to sd_blocks_free.
  * */
 sd_status sd_blocks_renew(sd_blocks *b, const sd_precondition_case *c, int k);

@@ -2,6 +2,7 @@
 
 #include "sd_blocks.h"
 #include "sd_sparse.h"
+#include "sd_waves.h"
 
 /* Ranks that went different ways would wait for each other for ever: one failure is everybody's. */
 sd_status sd_precondition_agree(const sd_precondition_case *c, sd_status mine)
@@ -66,9 +67,30 @@ static void free_sparse(void *P)
   sd_sparse_free(P);
 }
 
+static sd_status make_waves(void *P, const sd_precondition_case *c)
+{
+  return sd_waves_make(P, c);
+}
+
+/* Factor and waves belong to the places at set-up. New ones for the waves alone would make P
+ * indefinite. */
+static sd_status move_waves(void *P, const sd_precondition_case *c)
+{
+  (void) P;
+  (void) c;
+  return SD_OK;
+}
+
+static void free_waves(void *P)
+{
+  sd_waves_free(P);
+}
+
 const sd_precondition_kind sd_precondition_none = {
     "none", sizeof(sd_blocks), make_none, move_none, sd_blocks_apply, free_blocks};
 const sd_precondition_kind sd_precondition_blocks = {
     "clump", sizeof(sd_blocks), make_blocks, move_blocks, sd_blocks_apply, free_blocks};
 const sd_precondition_kind sd_precondition_sparse = {
     "sparse", sizeof(sd_sparse), make_sparse, move_sparse, sd_sparse_apply, free_sparse};
+const sd_precondition_kind sd_precondition_waves = {
+    "waves", sizeof(sd_waves), make_waves, move_waves, sd_waves_apply, free_waves};

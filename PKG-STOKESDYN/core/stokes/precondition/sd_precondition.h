@@ -6,6 +6,7 @@
 #ifndef SD_PRECONDITION_H
 #define SD_PRECONDITION_H
 
+#include "sd_ewald.h"
 #include "sd_product.h"
 #include "sd_solve.h"
 
@@ -27,6 +28,8 @@ typedef struct {
   int clumps;
   const long *first;
   const int *member;
+  /* The periodic box, of the long waves (sd_waves.h) alone. NULL: open space */
+  const sd_ewald_box *box;
   /* Reach of the sparse factor (sd_sparse.h), and of the one that couples blocks. 0: the blocks are
    * not coupled, and never moved. */
   double rho;
@@ -59,7 +62,11 @@ extern const sd_precondition_kind
     /* the inverse of each clump, and what clumps do to one another as wholes (sd_blocks.h) */
     sd_precondition_blocks,
     /* a sparse factor of the inverse (sd_sparse.h) */
-    sd_precondition_sparse;
+    sd_precondition_sparse,
+    /* periodic boxes: the longest waves, and the inverse of each clump if there are any
+     * (sd_waves.h). It stays good while spheres move less than a radius or so; `move` keeps it as
+     * it is, and wants the same spheres in the same order on every rank */
+    sd_precondition_waves;
 
 /* The status of this rank, or another failure if another rank has failed. */
 sd_status sd_precondition_agree(const sd_precondition_case *c, sd_status mine);
