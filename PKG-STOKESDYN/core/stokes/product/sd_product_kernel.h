@@ -1,95 +1,12 @@
 /* Kernels of the fast product, one source for every instruction set. A file that includes this one
- * first defines
- *   SD_KERNELS      name of the table that it makes
- *   LANES           doubles of a vector
- *   vec, mask       types; vec is a vector type of GCC and clang, so + - * / work on it
- *   LOAD STORE SET1 LE EQ ANY SELECT MAX SQRT RSQRT   (SELECT(m, a, b): a where m)
- *   ROWS(row, j, x, y, z, a, f0, f1, f2)   columns of the LANES rows j[0] ... of eight doubles
- *   TORQUES(row, j, t0, t1, t2)            the same of four doubles
- *
- * With y = 1/R, m = (a_i^2 + a_j^2) y^2, and everything times 4/3 (undone at the end, with w_i/(6
- * pi)):
- *   far       u_i += (y + y m/3) F_j + (y - y m) y^2 r (r.F_j)
- *   overlap   the other branches of sd_rpy_radial, taken only when a lane of the vector overlaps
- * The block of a pair is the same for both of its spheres: the symmetric kernel computes it
- * once. */
-#include "sd_product_internal.h"
-
-#define INLINE static inline __attribute__((always_inline))
-
-/* f and h = g/R^2 of the vector, times 4/3. over: lanes that overlap; R2 = 0 allowed there. */
-static __attribute__((noinline)) void overlap(vec r2, vec ai, vec aj, vec *f, vec *h)
-{
-  const vec zero = SET1(0.0), one = SET1(1.0);
-  const mask swap = LE(ai, aj);
-  const vec A = SELECT(swap, aj, ai), b = SELECT(swap, ai, aj), d = A - b;
-  const vec root = SQRT(r2), R = SELECT(LE(root, zero), one, root);
-  const vec iR = one / R, t = R - d, q = d * iR, s = t * (one + q);
-  const vec iA = one / A, iAb = iA / SELECT(LE(b, zero), one, b);
-  const vec g = SET1(3.0 / 32.0) * s * (s * iR) * iAb;
-  const mask inside = LE(root, d), coincide = LE(root, zero);
-  const vec ff = (b - SET1(0.25) * t * (one - q)) * iAb - SET1(1.0 / 3.0) * g;
-  const vec hh = g * iR * iR;
-  *f = SET1(4.0 / 3.0) * SELECT(coincide, iA, SELECT(inside, iA, ff));
-  *h = SET1(4.0 / 3.0) * SELECT(coincide, zero, SELECT(inside, zero, hh));
-}
-
-INLINE vec taper_factor(sd_taper kind, vec q)
-{
-  const vec one = SET1(1.0), s = MAX(one - q, SET1(0.0));
-  if (kind == SD_TAPER_WENDLAND) return (s * s) * (s * s) * (one + SET1(4.0) * q);
-  return s * s * (one + SET1(0.5) * q); /* 1 - 3q/2 + q^3/2 */
-}
-
-/* The block of a pair: what every kernel shares. squares = a_i^2 + a_j^2; inverse = 1/range. */
-INLINE void block(sd_tensor tensor, sd_taper kind, vec inverse, vec r2, vec ai, vec aj, vec squares,
-                  vec *f, vec *h)
-{
-  const vec y = RSQRT(r2), y2 = y * y;
-  vec q = SET1(0.0), near;
-  if (tensor == SD_TENSOR_RPY) {
-    const vec ym = y * (squares * y2);
-    *f = y + ym * SET1(1.0 / 3.0);
-    *h = (y - ym) * y2;
-    near = squares + (ai + ai) * aj; /* (a_i + a_j)^2 */
-  } else {
-    *f = y;
-    *h = y * y2;
-    near = SET1(1e-30); /* below it the first guess of the root may leave its range */
-  }
-  if (kind != SD_TAPER_NONE) q = r2 * y * inverse;
-  const mask over = LE(r2, near);
-  if (__builtin_expect(ANY(over), 0)) {
-    vec fo, ho;
-    if (tensor == SD_TENSOR_RPY)
-      overlap(r2, ai, aj, &fo, &ho);
-    else {
-      const vec iR = SET1(1.0) / SQRT(r2);
-      fo = iR;
-      ho = iR * iR * iR;
-    }
-    *f = SELECT(over, fo, *f);
-    *h = SELECT(over, ho, *h);
-    if (kind != SD_TAPER_NONE) q = SELECT(over, SQRT(r2) * inverse, q);
-  }
-  if (kind != SD_TAPER_NONE) {
-    const vec t = taper_factor(kind, q);
-    *f *= t;
-    *h *= t;
-  }
-}
+ * has first included its sd_vectors_*.h, and defines SD_KERNELS, the name of the table made here.
+ * The block of a pair (sd_pair_kernel.h) is the same for both of its spheres: the symmetric kernel
+ * computes it once. */
+#include "sd_pair_kernel.h"
 
 INLINE vec inverse_range(sd_taper kind, const sd_packed *p)
 {
   return SET1(kind == SD_TAPER_NONE ? 0.0 : 1.0 / p->law.range);
-}
-
-INLINE double total(vec v)
-{
-  double lane[LANES] __attribute__((aligned(64))), s = 0.0;
-  STORE(lane, v);
-  for (int k = 0; k < LANES; k++) s += lane[k];
-  return s;
 }
 
 /* Lanes of the columns j ... j + LANES - 1 that are column i itself take no part. */
