@@ -22,7 +22,7 @@ extern "C" {
 #endif
 
 /* The widest window */
-enum { SD_EWALD_MOST_POINTS = 16 };
+enum { SD_EWALD_MOST_POINTS = 20 };
 
 /* The box with edges (lx 0 0), (xy ly 0), (xz yz lz). Spheres may stand outside of a periodic one;
  * an open one holds the centres of all and has no tilt: nothing is beyond it but fluid.

@@ -1,0 +1,78 @@
+/* Between the engine and its kernels, of which each instruction set has its own build. */
+#ifndef SD_EWALD_INTERNAL_H
+#define SD_EWALD_INTERNAL_H
+
+#include "sd_product.h"
+#include "sd_product_internal.h"
+#include "sd_radial.h"
+#include "sd_window.h"
+
+/* Near part: n targets, each a row among those of all spheres; lengths scaled as in sd_packed. Sums
+ * times 8 pi and without w of the target, the sphere's own D(0) not among them. */
+typedef struct {
+  int n, width;
+  /* all radii a_ref: b = 0 */
+  int equal;
+  /* [n] row; [n + 1] where its neighbours begin, which are filled up to whole vectors of any set */
+  const int *target;
+  const long *first;
+  const int *neighbor;
+  /* [8 (rows + 1)] x y z a, w F; the last takes the place of missing neighbours. [4 (rows + 1)] w T */
+  const double *row, *torque_row;
+  double *u[6];
+  /* range^2, a_ref^2, and the polynomials of sd_radial.h times 8 pi; degree: one of the kernels' */
+  double range2, ref2;
+  int degree;
+  double coefficient[SD_RADIALS][SD_RADIAL_TERMS];
+} sd_near_part;
+
+/* Degrees that there are kernels for: the polynomial is filled up with zeros. */
+#define SD_NEAR_DEGREES(_) _(9) _(13) _(18) _(24) _(30) _(39)
+
+/* What windows need of a sphere: its first point on the grid and in the brick, v of sd_window.h each
+ * way, b of sd_radial.h */
+typedef struct {
+  int at[3];
+  long base;
+  double v[3], b;
+} sd_spread_place;
+
+/* Spreading and interpolation. A sphere adds to the row along z at its points p, q of x and y
+ *
+ *   sum_t m_t(p, q) V_t,   m = phi_x phi_y,
+ *                              g_xx phi_x'' phi_y + g_yy phi_x phi_y'' + 2 g_xy phi_x' phi_y',
+ *                              phi_x' phi_y,  phi_x phi_y'
+ *
+ * V_t [points of z][3]; one term for equal radii, two for any radii in an orthogonal box, all four
+ * with torques or in a triclinic one. g_de are products of the gradients of grid coordinates. */
+typedef struct {
+  int n, width, terms;
+  const sd_window *window;
+  /* row d: gradient of grid coordinate d, 1/length; its metric xx yy zz xy xz yz */
+  double gradient[3][3], metric[6];
+  const sd_spread_place *place;
+  /* [width n] w F in order of place; or the velocities that come out */
+  double *F;
+  double *brick;
+  long row, layer;
+} sd_spreading;
+
+struct sd_ewald_kernels {
+  int lanes;
+  void (*near_part)(const sd_near_part *p);
+  void (*spread)(const sd_spreading *s);
+  void (*interpolate)(const sd_spreading *s);
+  /* one row along z of the three transforms, u = B (f - k (k.f)/k^2): B [half], k [3] at its
+   * start, dkz */
+  void (*periodic_row)(double *const *f, const double *B, const double *k, double dkz, int half);
+  /* u = K f: K [6][half] xx yy zz xy xz yz, signs of kx and ky */
+  void (*open_row)(double *const *f, const double *K, double sx, double sy, int half);
+};
+
+extern const struct sd_ewald_kernels sd_ewald_plain, sd_ewald_baseline, sd_ewald_avx2,
+    sd_ewald_avx512;
+
+/* The best that build and processor have */
+const struct sd_ewald_kernels *sd_ewald_kernels_of(sd_isa isa);
+
+#endif

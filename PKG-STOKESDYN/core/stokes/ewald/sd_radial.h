@@ -1,0 +1,49 @@
+/* The wave part of one pair in open space, which the near part takes away from the pair's tensor.
+ * With the directions of k averaged, everything follows from eight functions of the distance:
+ *
+ *   I_n = 1/(2 pi^2) int k^2n H (j_0 - j_1/(kr)) dk,   J_n = 1/(2 pi^2) int k^2n H j_2 dk,
+ *   K_n = 1/(4 pi^2) int k^(2n+1) H j_1 dk                                      n = 0, 1, 2
+ *
+ *   U_i = [ (I_0 - (b_i + b_j) I_1 + b_i b_j I_2) 1 + (J_0 - (b_i + b_j) J_1 + b_i b_j J_2) hh ] F_j
+ *         + (K_0 - b_i K_1) T_j x h
+ *   W_i = (K_0 - b_j K_1) F_j x h + [ I_1 1 + J_1 hh ] T_j / 4
+ *
+ * all over eta; h = r/R, b = (a^2 - a_ref^2)/6, j_l spherical Bessel functions. */
+#ifndef SD_RADIAL_H
+#define SD_RADIAL_H
+
+#include "sd_ewald.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* In this order everywhere; J over r^2 and K over r: smooth and even in r, as all of them are here */
+enum { SD_I0, SD_J0, SD_I1, SD_J1, SD_I2, SD_J2, SD_K0, SD_K1, SD_RADIALS };
+
+/* Terms of the longest polynomial that stands for one of them */
+enum { SD_RADIAL_TERMS = 40 };
+
+/* H(k^2), and b of a radius */
+double sd_ewald_screen(const sd_ewald *e, double k2);
+double sd_ewald_b(const sd_ewald *e, double a);
+
+/* value [SD_RADIALS] at distance r >= 0, by quadrature over k: 1e-15 of their values at r = 0. */
+void sd_radial(const sd_ewald *e, double r, double *value);
+
+/* Polynomials on [0, range] in t = 2 (r/range)^2 - 1:
+ *   coefficient [SD_RADIALS][SD_RADIAL_TERMS]   of 1, t, t^2 ...
+ * Returns their degree: the smallest that leaves a tenth of the tolerance, relative to the functions'
+ * values at r = 0. */
+int sd_radial_fit(const sd_ewald *e, double *coefficient);
+
+/* What the near part leaves out beyond its range, summed over all directions and distances:
+ *   tail [3]   C_0, C_1, C_2 of  U_i += 1/V sum_j (C_0 - (b_i + b_j) C_1 + b_i b_j C_2) F_j,
+ *              W_i += 1/V sum_j C_1 T_j / 4                                 times eta
+ * Forces that are equal add it up, so that it would be far larger than the error of random ones. */
+void sd_radial_tail(const sd_ewald *e, double *tail);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,47 @@
+/* What the wave part multiplies the transformed forces with: of a periodic box, or of an open one.
+ *
+ *   periodic   u^ = H/(k^2 V w^2) (1 - kk/k^2) f^,   0 at k = 0 and where k has no partner (Nyquist)
+ *   open       u^ = K f^, K the transform of the pair's wave part in open space at the offsets of the
+ *              grid, on a grid of twice the size (a convolution without neighbours)
+ *
+ * w: transform of the window, once for spreading and once for interpolation; viscosity 1. */
+#ifndef SD_WAVE_H
+#define SD_WAVE_H
+
+#include "sd_ewald.h"
+#include "sd_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct sd_ewald_kernels;
+
+/* Zero-initialise; sd_wave_free in the end. */
+typedef struct {
+  const struct sd_ewald_kernels *kernels;
+  int periodic, size[3], half, y0;
+  /* 2 pi times the reciprocal vectors, rows */
+  double k[3][3];
+  /* periodic: [y1 - y0][size x][half]; open: one octant [half y][half x][6][half] */
+  double *table;
+  /* open: U_i += uniform sum F, which makes up for the kernel's constant beyond its range */
+  double uniform;
+  /* periodic: sums over this rank's k of (1 - k_d^2/k^2) H k^2n/(k^2 V), n = 0, 1, 2: what the wave
+   * part does to a sphere through itself and its images is self[0] - 2 b self[1] + b^2 self[2] */
+  double self[3][3];
+} sd_wave;
+
+/* size: points of the transform; this rank's y planes are y0 ... y1 - 1. SD_OK or SD_ENOMEMORY. */
+sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_kernels *kernels,
+                         const int *size, int y0, int y1);
+
+/* As sd_grid_multiply: ctx is an sd_wave. */
+void sd_wave_multiply(void *ctx, int y, double *const *plane);
+
+void sd_wave_free(sd_wave *w);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

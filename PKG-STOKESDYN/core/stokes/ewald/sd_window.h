@@ -1,0 +1,37 @@
+/* The window that takes forces to the grid and velocities from it (Kaiser-Bessel):
+ *
+ *   phi(s) = I_0(beta sqrt(1 - tau^2))/I_0(beta),   tau = 2 s/P,   |s| <= P/2 grid spacings
+ *
+ * in each direction, P points wide. It is evaluated as a polynomial for each point, and its
+ * derivatives are those of the polynomials. */
+#ifndef SD_WINDOW_H
+#define SD_WINDOW_H
+
+#include "sd_ewald.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* of the longest polynomial; columns: points up to whole vectors */
+enum { SD_WINDOW_TERMS = 24, SD_WINDOW_COLUMNS = (SD_EWALD_MOST_POINTS + 7) / 8 * 8 };
+
+/* coefficient [m][k]: of v^m at point k; v = 2u - 1 in [-1, 1], where the sphere at grid coordinate
+ * s has u = s - P/2 - floor(s - P/2), and its first point is floor(s - P/2) + 1. Points beyond P:
+ * 0. With d/dv of the polynomial, d phi/ds = -2 d/dv: s is the grid's less the sphere's. */
+typedef struct {
+  int points, degree;
+  double coefficient[SD_WINDOW_TERMS][SD_WINDOW_COLUMNS];
+} sd_window;
+
+/* Polynomials as long as the tolerance needs. */
+void sd_window_fit(int points, double beta, double tolerance, sd_window *w);
+
+/* sum over the points of phi exp(-i theta s), theta = k h, as an integral: its transform, in grid
+ * spacings */
+double sd_window_transform(int points, double beta, double theta);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
