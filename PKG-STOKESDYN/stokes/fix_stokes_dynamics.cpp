@@ -16,13 +16,10 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics";
 
 FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), rows(9), total()
+    RowsFix(lmp, narg, arg), rows(9), total()
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({{"apply", [&] { apply = in.yes_no() ? YES : NO; }}});
-  peratom_flag = 1;
-  size_peratom_cols = rows.columns();
-  peratom_freq = 1;
   scalar_flag = 1;
   vector_flag = 1;
   size_vector = 9;
@@ -30,14 +27,11 @@ FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
   extscalar = 1;
   extvector = -1;
   extlist = new int[size_vector]{1, 1, 1, 0, 0, 0, 0, 0, 0};
-  create_attribute = 1;
-  grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
+  keep({&rows}, &rows, false);
 }
 
 FixStokesDynamics::~FixStokesDynamics()
 {
-  atom->delete_callback(id, Atom::GROW);
   delete[] extlist;
 }
 
@@ -149,25 +143,4 @@ double FixStokesDynamics::compute_vector(int k)
   const double values[] = {g.iterations,  g.residual,         g.solves,
                            g.unconverged, g.guard.lambda_min, g.guard.limit};
   return values[k - 3];
-}
-
-void FixStokesDynamics::grow_arrays(int nmax)
-{
-  rows.grow(nmax);
-  array_atom = rows.array();
-}
-
-void FixStokesDynamics::copy_arrays(int i, int j, int /*delflag*/)
-{
-  rows.copy(i, j);
-}
-
-void FixStokesDynamics::set_arrays(int i)
-{
-  rows.take(i);
-}
-
-double FixStokesDynamics::memory_usage()
-{
-  return rows.bytes();
 }

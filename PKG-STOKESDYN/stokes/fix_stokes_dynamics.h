@@ -4,15 +4,13 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_H
 #define SD_FIX_STOKES_DYNAMICS_H
 
-#include "fix.h"
-
-#include "atom_rows.h"
+#include "rows_fix.h"
 
 namespace StokesDyn {
 
 class Hydrodynamics;
 
-class FixStokesDynamics : public LAMMPS_NS::Fix {
+class FixStokesDynamics : public RowsFix {
  public:
   static constexpr const char *STYLE = "stokes_dynamics";
 
@@ -26,10 +24,6 @@ class FixStokesDynamics : public LAMMPS_NS::Fix {
   double compute_vector(int) override;
   /* "applies": does this fix add the force? A bool, as things stand now. */
   void *extract(const char *, int &) override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  double memory_usage() override;
 
  private:
   enum { NO, YES, UNSAID } apply = UNSAID;

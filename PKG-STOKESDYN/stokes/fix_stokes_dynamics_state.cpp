@@ -50,21 +50,11 @@ static int columns_of(bool rotation, bool history)
 }
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), rotation(says(narg, arg, "rotation")), history(says(narg, arg, "history")),
+    RowsFix(lmp, narg, arg), rotation(says(narg, arg, "rotation")), history(says(narg, arg, "history")),
     rows(columns_of(rotation, history)), resume(lmp, rotation), left(resume.columns())
 {
-  restart_peratom = 1;
   restart_global = 1;
-  create_attribute = 1;
-  grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
-}
-
-FixStokesDynamicsState::~FixStokesDynamicsState()
-{
-  atom->delete_callback(id, Atom::GROW);
-  atom->delete_callback(id, Atom::RESTART);
+  keep({&rows, &left}, nullptr, true);
 }
 
 void FixStokesDynamicsState::forget()
@@ -124,58 +114,7 @@ void FixStokesDynamicsState::post_run()
   present_box(global.box);
 }
 
-// --- LAMMPS's callbacks --------------------------------------------------------------------------------------
-
-void FixStokesDynamicsState::grow_arrays(int nmax)
-{
-  rows.grow(nmax);
-  left.grow(nmax);
-}
-
-void FixStokesDynamicsState::copy_arrays(int i, int j, int /*delflag*/)
-{
-  rows.copy(i, j);
-  left.copy(i, j);
-}
-
-void FixStokesDynamicsState::set_arrays(int i)
-{
-  rows.take(i);
-  left.take(i);
-}
-
-int FixStokesDynamicsState::pack_exchange(int i, double *buf)
-{
-  const int m = rows.pack(i, buf);
-  return m + left.pack(i, buf + m);
-}
-
-int FixStokesDynamicsState::unpack_exchange(int nlocal, double *buf)
-{
-  const int m = rows.unpack(nlocal, buf);
-  return m + left.unpack(nlocal, buf + m);
-}
-
-/* All rows have the length of the longest, so that the file tells whether it is of this kind. */
-int FixStokesDynamicsState::pack_restart(int i, double *buf)
-{
-  record(i);
-  buf[0] = maxsize_restart();
-  pack_exchange(i, buf + 1);
-  return maxsize_restart();
-}
-
-void FixStokesDynamicsState::unpack_restart(int nlocal, int nth)
-{
-  double *extra = atom->extra[nlocal];
-  int m = 0;
-  for (int i = 0; i < nth; i++) m += static_cast<int>(extra[m]);
-  // Of another length: the pair style has been given with or without rotation since. Nothing of the past stands then.
-  if (global.last_step >= 0 && static_cast<int>(extra[m]) == maxsize_restart())
-    unpack_exchange(nlocal, extra + m + 1);
-  else
-    set_arrays(nlocal);
-}
+// --- restart ---------------------------------------------------------------------------------
 
 /* What restart files hold of the numbers, by name. */
 template <class Global, class Visit> static void each_number(Global &g, const Visit &visit)
@@ -220,9 +159,4 @@ void FixStokesDynamicsState::restart(char *buf)
   global.preconditioner = in.get("preconditioner");
   global.loose = in.get("loose");
   global.settings = in.get_bits("settings", 0);
-}
-
-double FixStokesDynamicsState::memory_usage()
-{
-  return rows.bytes() + left.bytes();
 }

@@ -8,10 +8,8 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_STATE_H
 #define SD_FIX_STOKES_DYNAMICS_STATE_H
 
-#include "fix.h"
-
-#include "atom_rows.h"
 #include "resume.h"
+#include "rows_fix.h"
 #include "time_step_guard.h"
 
 #include <cstdint>
@@ -19,7 +17,7 @@
 
 namespace StokesDyn {
 
-class FixStokesDynamicsState : public LAMMPS_NS::Fix {
+class FixStokesDynamicsState : public RowsFix {
  public:
   static constexpr const char *STYLE = "STOKES_DYNAMICS/STATE";
   static constexpr const char *ID = "STOKES_DYNAMICS_STATE";
@@ -30,22 +28,11 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
   static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history);
 
   FixStokesDynamicsState(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixStokesDynamicsState() override;
   int setmask() override { return 0; }
   void post_run() override;
 
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override { return maxsize_restart(); }
-  int maxsize_restart() override { return 1 + rows.most_packed() + left.most_packed(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
-  double memory_usage() override;
 
   /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is kept.
    * */
@@ -92,7 +79,9 @@ class FixStokesDynamicsState : public LAMMPS_NS::Fix {
   AtomRows left;
 
   void forget();
-  void record(int i);
+  void record(int i) override;
+  /* Rows of another length: the pair style has been given with or without rotation since. */
+  bool restored() const override { return global.last_step >= 0; }
   void present_box(double *box) const;
 };
 
