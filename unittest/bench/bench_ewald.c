@@ -1,0 +1,129 @@
+/* Time of products by Ewald sums in units of T4, the product of all pairs of 10^4 spheres in the same run, with the error of the
+ * answer beside it.
+ *   bench_ewald [ROW ...]      rows: names of the table below; none: all but those of 10^6 */
+#define _POSIX_C_SOURCE 200809L
+#include "../core/stokes/ewald/periodic.h"
+
+#include <sys/resource.h>
+#include <time.h>
+
+enum { RUNS = 5 };
+
+static double cpu(void)
+{
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return t.tv_sec + 1e-9 * t.tv_nsec;
+}
+
+typedef struct {
+  const char *name;
+  int n, periodic, width;
+  double largest, phi, tolerance;
+} row;
+
+static const row rows[] = {
+    {"periodic", 100000, 1, 3, 1.0, 0.2, 1e-3},  {"periodic-6", 100000, 1, 3, 1.0, 0.2, 1e-6},
+    {"unequal", 100000, 1, 3, 3.0, 0.2, 1e-3},   {"unequal-6", 100000, 1, 3, 3.0, 0.2, 1e-6},
+    {"torques", 100000, 1, 6, 1.0, 0.2, 1e-3},   {"torques-6", 100000, 1, 6, 1.0, 0.2, 1e-6},
+    {"open-3", 100000, 0, 3, 1.0, 0.2, 1e-3},    {"open", 100000, 0, 3, 1.0, 0.2, 3e-7},
+    {"small", 10000, 1, 3, 1.0, 0.2, 1e-3},      {"million", 1000000, 1, 3, 1.0, 0.2, 1e-3},
+};
+enum { ROWS = sizeof(rows) / sizeof(rows[0]) };
+
+/* Median of all pairs of 10^4 */
+static double all_pairs(void)
+{
+  enum { N = 10000 };
+  static double x[3 * N], a[N], w[N], F[3 * N], u[3 * N];
+  uint64_t seed = 4;
+  for (int i = 0; i < 3 * N; i++) x[i] = uniform(&seed, 0, 50), F[i] = uniform(&seed, -1, 1);
+  for (int i = 0; i < N; i++) a[i] = w[i] = 1.0;
+  const sd_mobility_scene s = {.how = {.law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, .width = 3},
+                               .n = N, .n_all = N, .spheres = {x, a, w}};
+  sd_mobility m = {0};
+  if (sd_mobility_place(&m, &sd_mobility_all_pairs, &s) != SD_OK) exit(1);
+  double best = 1e9;
+  for (int k = 0; k < 7; k++) {
+    const double t = cpu();
+    sd_mobility_apply(&m, F, u);
+    best = fmin(best, cpu() - t);
+  }
+  sd_mobility_free(&m);
+  return best;
+}
+
+/* Product at a tolerance; place and apply times, best of RUNS */
+static void product(const row *r, const double *x, const double *a, const double *F, double tolerance, const sd_ewald_box *box,
+                    double *u, double *times, sd_ewald *how)
+{
+  double *w = malloc(sizeof(double) * (size_t) r->n);
+  for (int i = 0; i < r->n; i++) w[i] = 1.0;
+  const sd_ewald_sizes sizes = periodic_sizes(a, r->n);
+  if (sd_ewald_choose(box, &sizes, r->width, tolerance, how) != SD_OK) exit(1);
+  periodic p = {.n = r->n, .width = r->width, .ewald = *how};
+  sd_mobility_scene s = {.how = {.law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, .width = r->width, .ewald = &p.ewald},
+                         .n = r->n, .n_all = r->n, .spheres = {x, a, w}};
+  if (r->periodic) {
+    periodic_images(&p, x, a, w);
+    s.n_all = p.n_all;
+    s.spheres = (sd_spheres){p.x, p.a, p.w};
+    s.world = (sd_world){.ctx = &p, .refresh = periodic_refresh};
+  }
+  times[0] = times[1] = times[2] = 1e9;
+  for (int k = 0; k < RUNS; k++) {
+    double t = cpu();
+    if (sd_mobility_place(&p.omega, &sd_mobility_ewald, &s) != SD_OK) exit(1);
+    if (k == 0) times[2] = cpu() - t;
+    else times[0] = fmin(times[0], cpu() - t);
+    t = cpu();
+    if (sd_mobility_apply(&p.omega, F, u) != SD_OK) exit(1);
+    times[1] = fmin(times[1], cpu() - t);
+  }
+  periodic_free(&p);
+  free(w);
+}
+
+static void measure(const row *r)
+{
+  uint64_t seed = 9;
+  const size_t n = (size_t) r->n;
+  double *x = malloc(24 * n), *a = malloc(8 * n), *F = malloc(8 * n * (size_t) r->width), V = 0.0;
+  double *u = malloc(8 * n * (size_t) r->width), *v = malloc(8 * n * (size_t) r->width);
+  for (size_t i = 0; i < n; i++) {
+    a[i] = r->largest == 1.0 ? 1.0 : exp(uniform(&seed, 0, log(r->largest)));
+    V += 4.0 / 3.0 * SD_PI * pow(a[i], 3);
+  }
+  sd_ewald_box box = {.periodic = r->periodic};
+  for (int d = 0; d < 3; d++) box.edge[d] = cbrt(V / r->phi);
+  for (size_t i = 0; i < 3 * n; i++) x[i] = uniform(&seed, 0, box.edge[0]);
+  for (size_t i = 0; i < n; i++)
+    for (int d = 0; d < r->width; d++) F[r->width * i + d] = uniform(&seed, -1, 1) * pow(a[i], d < 3 ? 1 : 2);
+  double times[3], reference[3], off = 0.0, all = 0.0, T4 = all_pairs();
+  sd_ewald how, tight;
+  product(r, x, a, F, r->tolerance, &box, u, times, &how);
+  T4 = fmin(T4, all_pairs());
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  if (r->n <= 100000) product(r, x, a, F, 0.01 * r->tolerance, &box, v, reference, &tight);
+  for (size_t i = 0; i < n && r->n <= 100000; i++)
+    for (int d = 0; d < 3; d++) {
+      off += pow(u[r->width * i + d] - v[r->width * i + d], 2);
+      all += pow(F[r->width * i + d] / (6 * SD_PI * a[i]), 2);
+    }
+  printf("%-11s N %7d tolerance %.0e error %.1e: %6.2f T4 (%.4f s, T4 %.4f s); places %.4f s, tables %.2f s; range %.1f grid %d P %d; %.0f MB\n",
+         r->name, r->n, r->tolerance, sqrt(off / all), times[1] / T4, times[1], T4, times[0], times[2] - times[0], how.range,
+         how.grid[0], how.points, usage.ru_maxrss / 1024.0);
+  fflush(stdout);
+  free(x), free(a), free(F), free(u), free(v);
+}
+
+int main(int count, char **names)
+{
+  for (int k = 0; k < ROWS; k++) {
+    int wanted = count == 1 && rows[k].n <= 100000;
+    for (int j = 1; j < count; j++) wanted = wanted || !strcmp(names[j], rows[k].name);
+    if (wanted) measure(rows + k);
+  }
+  return 0;
+}

@@ -1,0 +1,96 @@
+/* The engine ewald in open boxes against the sum over all pairs. */
+#include "periodic.h"
+
+#include "plain.h"
+
+enum { N = 150 };
+
+typedef struct {
+  const char *what;
+  double edge[3], largest;
+  int width;
+} cloud;
+
+static const cloud clouds[] = {
+    {"equal", {14, 12, 16}, 1.0, 3},           {"1 : 3", {30, 24, 28}, 3.0, 6},
+    {"1 : 10", {60, 70, 66}, 10.0, 3},         {"1 : 10 with torques", {60, 70, 66}, 10.0, 6},
+    {"box 8 : 1 : 1", {80, 10, 10}, 1.0, 6},   {"flat", {40, 0, 30}, 1.5, 3},
+    {"equal, torques", {14, 12, 16}, 1.0, 6},
+};
+enum { CLOUDS = sizeof(clouds) / sizeof(clouds[0]) };
+
+typedef struct {
+  double x[3 * N], a[N], w[N], F[6 * N];
+  sd_ewald_box box;
+} scene;
+
+static scene make(const cloud *c, uint64_t seed)
+{
+  scene s = {0};
+  double lo[3], hi[3];
+  for (int d = 0; d < 3; d++) lo[d] = INFINITY, hi[d] = -INFINITY;
+  for (int i = 0; i < N; i++) {
+    for (int d = 0; d < 3; d++) {
+      s.x[3 * i + d] = uniform(&seed, 3.0, 3.0 + c->edge[d]);
+      lo[d] = fmin(lo[d], s.x[3 * i + d]);
+      hi[d] = fmax(hi[d], s.x[3 * i + d]);
+    }
+    s.a[i] = c->largest == 1.0 ? 1.0 : exp(uniform(&seed, 0.0, log(c->largest)));
+    s.w[i] = uniform(&seed, 0.6, 1.4);
+    for (int d = 0; d < c->width; d++)
+      s.F[c->width * i + d] = uniform(&seed, -1, 1) * (d < 3 ? s.a[i] : s.a[i] * s.a[i]);
+  }
+  assert_int_equal(sd_ewald_box_around(&s.box, lo, hi, c->largest), 1);
+  assert_int_equal(sd_ewald_box_around(&s.box, lo, hi, c->largest), 0);
+  return s;
+}
+
+/* Over rms of F/(6 pi a), and of T/(8 pi a^3) */
+static double error_of(const scene *s, int width, const double *u, const double *expected)
+{
+  double worst = 0.0;
+  for (int from = 0; from < width; from += 3) {
+    double off = 0.0, scale = 0.0;
+    for (int i = 0; i < N; i++)
+      for (int d = from; d < from + 3; d++) {
+        const double own = from == 0 ? 6.0 * SD_PI * s->a[i] : 8.0 * SD_PI * pow(s->a[i], 3);
+        off += pow(u[width * i + d] - expected[width * i + d], 2);
+        scale += pow(s->w[i] * s->w[i] * s->F[width * i + d] / own, 2);
+      }
+    worst = fmax(worst, sqrt(off / scale));
+  }
+  return worst;
+}
+
+static void open_boxes_agree_with_all_pairs(void **state)
+{
+  (void) state;
+  for (int k = 0; k < CLOUDS; k++) {
+    const cloud *c = clouds + k;
+    const scene s = make(c, 7 + k);
+    const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+    const sd_spheres spheres = {s.x, s.a, s.w};
+    double expected[6 * N], u[6 * N];
+    plain_all(&law, &spheres, N, c->width, s.F, expected);
+    for (int digits = 3; digits <= 9; digits += 3) {
+      const sd_ewald_sizes sizes = periodic_sizes(s.a, N);
+      sd_ewald how;
+      assert_int_equal(sd_ewald_choose(&s.box, &sizes, c->width, pow(10.0, -digits), &how), SD_OK);
+      const sd_mobility_scene scene = {.how = {.width = c->width, .ewald = &how}, .n = N, .n_all = N, .spheres = spheres};
+      sd_mobility m = {0};
+      assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
+      assert_int_equal(sd_mobility_apply(&m, s.F, u), SD_OK);
+      const double error = error_of(&s, c->width, u, expected);
+      assert_true(error < 1.5 * pow(10.0, -digits)); /* a flat cloud has few spheres to average over */
+      sd_mobility_free(&m);
+    }
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(open_boxes_agree_with_all_pairs),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
