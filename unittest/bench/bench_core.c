@@ -1,9 +1,11 @@
 /* Timings of the core, each as a ratio to a rival run in the same program, with the error of the answer beside it.
- *   bench_core [quick|kernel|solve]      README.md has the command, what the rows mean and figures
+ *   bench_core [quick|kernel|solve|waves]      README.md has the command, what the rows mean and figures
  * Times are process CPU time on one core, medians of five; rival and core take turns, so that both meet the same load. */
 #include "clouds.h"
 
 #include "in_clumps.h"
+#include "periodic.h"
+#include "sd_waves.h"
 
 #include <string.h>
 #include <time.h>
@@ -135,7 +137,10 @@ static double *random_forces(const scene *s, int m, double **rival)
     F[i] = uniform(&seed, -1, 1);
     f[i] = s->w[i / m] * F[i];
   }
-  *rival = f;
+  if (rival)
+    *rival = f;
+  else
+    free(f);
   return F;
 }
 
@@ -579,12 +584,104 @@ static void bench_large_lattice(void)
   scene_free(&s);
 }
 
+/* --- long waves of a periodic box ------------------------------------------------------------- */
+
+static const sd_precondition_case CASE = {.law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, .parts = 1};
+
+/* m^3 equal spheres; iterations for random velocities, with a direct sum as product: minutes */
+static void bench_waves(int m, double phi)
+{
+  double side, cost[2] = {0.0, 0.0};
+  scene s = periodic_suspension(m, phi, 1.0, ETA, 20, &side);
+  const double edge[3] = {side, side, side};
+  periodic p = periodic_create(&s, edge, fmin(12.0, 0.99 * side), 1e-7);
+  sd_precondition_case c = CASE;
+  c.spheres = (sd_spheres){s.x, s.a, s.w};
+  c.n = s.n;
+  c.width = 3;
+  c.box = &p.box;
+  sd_waves waves = {0};
+  cost[0] = cpu();
+  if (sd_waves_make(&waves, &c) != SD_OK) abort();
+  cost[0] = cpu() - cost[0];
+  double *slip = random_forces(&s, 3, NULL), *F = malloc(sizeof(double) * 3 * (size_t) s.n),
+         *work = malloc(sizeof(double) * SD_SOLVE_WORK(s.n, 3));
+  printf("\nPeriodic box, %d spheres, phi %.2f, random velocities; set-up of the waves %.4f s\n", s.n,
+         phi, cost[0]);
+  for (int k = 0; k < 4; k++) {
+    const double tolerance = k < 2 ? 1e-3 : 1e-6;
+    const sd_system A = {.n = s.n,
+                         .drag = s.drag,
+                         .apply = periodic_apply,
+                         .apply_ctx = &p,
+                         .precondition = k % 2 ? sd_waves_apply : NULL,
+                         .precondition_ctx = &waves};
+    sd_solve_report report;
+    if (sd_solve_gradients(&A, slip, tolerance, 400, F, work, &report) != SD_OK) abort();
+    printf("  %-10s %.0e %4d iterations, residual %.1e\n", k % 2 ? "waves" : "diagonal", tolerance,
+           report.iterations, report.residual);
+  }
+  free(slip);
+  free(F);
+  free(work);
+  sd_waves_free(&waves);
+  periodic_free(&p);
+  scene_free(&s);
+}
+
+/* What sd_choice counts: nanoseconds a sphere, and as pairs of a product by list in the same run */
+static void bench_cost_of_waves(int n, int width)
+{
+  scene s = polydisperse(n, 1);
+  const double side = cbrt(n * 4.0 / 3.0 * SD_PI * 1.25 / 0.2);
+  const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
+  double *r = random_forces(&s, width, NULL), *z = malloc(sizeof(double) * (size_t) (width * n));
+  double t[3][RUNS];
+  sd_precondition_case c = CASE;
+  c.spheres = (sd_spheres){s.x, s.a, s.w};
+  c.n = n;
+  c.width = width;
+  c.box = &box;
+  sd_neighbors list = {0};
+  sd_packed packed = {0};
+  if (sd_neighbors_cutoff(&list, s.x, n, n, 8.0) != SD_OK) abort();
+  if (sd_packed_list(&packed, SD_ISA_BEST, &RPY, &c.spheres, n, 3) != SD_OK) abort();
+  for (int k = 0; k < RUNS; k++) {
+    sd_waves waves = {0};
+    t[0][k] = cpu();
+    if (sd_waves_make(&waves, &c) != SD_OK) abort();
+    t[0][k] = cpu() - t[0][k];
+    t[1][k] = cpu();
+    sd_waves_apply(&waves, r, z);
+    t[1][k] = cpu() - t[1][k];
+    t[2][k] = cpu();
+    sd_packed_pairs(&packed, &list.pairs, r, NULL, z);
+    t[2][k] = cpu() - t[2][k];
+    sd_waves_free(&waves);
+  }
+  const double pair = median(t[2]) / (double) list.pairs.first[n];
+  printf("  %d spheres, width %d: set-up %.0f ns a sphere, %.0f pairs; application %.0f ns, %.0f "
+         "pairs\n",
+         n, width, 1e9 * median(t[0]) / n, median(t[0]) / n / pair, 1e9 * median(t[1]) / n,
+         median(t[1]) / n / pair);
+  sd_neighbors_free(&list);
+  sd_packed_free(&packed);
+  free(r);
+  free(z);
+  scene_free(&s);
+}
+
 int main(int argc, char **argv)
 {
   const int quick = argc > 1 && strcmp(argv[1], "quick") == 0;
   setvbuf(stdout, NULL, _IOLBF, 0);
   if (argc > 1 && strcmp(argv[1], "kernel") == 0) {
     for (int m = 3; m <= 6; m += 3) bench_kernel(10000, m);
+    return 0;
+  }
+  if (argc > 1 && strcmp(argv[1], "waves") == 0) {
+    for (int width = 3; width <= 6; width += 3) bench_cost_of_waves(20000, width);
+    for (int k = 0; k < 2; k++) bench_waves(argc > 2 ? atoi(argv[2]) : 16, k ? 0.45 : 0.1);
     return 0;
   }
   const int solve = argc > 1 && strcmp(argv[1], "solve") == 0;

@@ -8,6 +8,8 @@
 #ifndef SD_CHOICE_H
 #define SD_CHOICE_H
 
+#include "sd_ewald.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -30,6 +32,11 @@ sd_cost sd_cost_blocks(double n, int width, double clumps, double stored);
 
 /* The same by list, of `pairs` pairs, made anew in every solve and not coupled. */
 sd_cost sd_cost_blocks_by_list(double n, int width, double pairs, double stored);
+
+/* The long waves of a periodic box (sd_waves.h) beside the product that e splits, for its e->count
+ * spheres; stored: sum of m^2 of the clumps whose blocks go with them, or 0. Who cannot keep the
+ * waves from solve to solve moves `make` into `solve`. */
+sd_cost sd_cost_waves(const sd_ewald *e, int width, double stored);
 
 typedef enum { SD_WITHOUT, SD_WITH, SD_WITH_FOR_GOOD } sd_way;
 

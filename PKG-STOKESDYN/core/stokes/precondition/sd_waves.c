@@ -120,7 +120,7 @@ INLINE void powers(const double *unit, int harmonics, double *c, double *s)
  *   s = 1 - q + 3/10 q^2 - ... ~ 1/(1 + q + 7/10 q^2)
  *   p = 1 - 3/5 q + 9/70 q^2 - ... ~ 1/(1 + 3/5 q + 81/350 q^2)
  * which, unlike the series, stay between 0 and 1 for spheres as large as the wave. */
-INLINE void look_at(const sd_waves *p, long i, int width, place *at)
+INLINE void look_at(const sd_waves *p, long i, int width, place *restrict at)
 {
   enum { MOST = 2 * SD_WAVES_MOST + 1 };
   const int h = p->harmonics;
@@ -144,8 +144,8 @@ INLINE void look_at(const sd_waves *p, long i, int width, place *at)
 
 /* y [4][PADDED] += Z_i^T (F T): cosines of e_1 and e_2, then sines. As k x e_1 = k e_2 and k x e_2
  * = -k e_1, the torque gives e_1 the product of T with e_2, and e_2 that with -e_1. */
-INLINE void add_products(const sd_wave_list *l, const place *at, const double *F, int width,
-                         double *y)
+INLINE void add_products(const sd_wave_list *restrict l, const place *restrict at, const double *F,
+                         int width, double *restrict y)
 {
   for (int m = 0; m < SD_WAVES_PADDED; m++) {
     const double ex = l->e[0][0][m], ey = l->e[0][1][m], ez = l->e[0][2][m];

@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include "sd_choice.h"
+#include "sd_constants.h"
 
 #include <string.h>
 
@@ -186,6 +187,35 @@ static void counted_costs_are_those_measured(void **state)
       fail_msg("cost %d: %g, measured %g", i, costs[i].counted, costs[i].measured);
 }
 
+/* Of the waves beside the engine's product, 10^5 equal spheres, phi 0.2 (reference, ewald.md section 9: 0.051 s at 1e-3 and 0.18 s
+ * at 1e-6, where bench_core waves has 0.03 s an application and 0.54 s a set-up): two thirds and a fifth of a product, ten and three
+ * of them. A solve from zero to 1e-3 pays for both; one of ten spheres does not. */
+static void waves_are_cheap_beside_a_product_by_fft(void **state)
+{
+  (void) state;
+  for (int k = 0; k < 2; k++) {
+    const double side = cbrt(1e5 * 4.0 / 3.0 * SD_PI / 0.2);
+    const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
+    const sd_ewald_sizes sizes = {1e5, 1e5, 1e5, 1.0};
+    sd_ewald e;
+    assert_int_equal(sd_ewald_choose(&box, &sizes, 3, k ? 1e-6 : 1e-3, &e), SD_OK);
+    const sd_cost c = sd_cost_waves(&e, 3, 0.0);
+    CHECK_NEAR(c.iteration, k ? 1.2 : 1.65, k ? 0.1 : 0.3);
+    CHECK_NEAR(c.make, k ? 3.0 : 10.0, k ? 1.5 : 5.0);
+    assert_true(sd_cost_waves(&e, 6, 0.0).iteration < c.iteration);
+    assert_true(sd_cost_waves(&e, 3, 1e8).make > c.make);
+    assert_true(sd_choice_at_once(&c, k ? 1e-6 : 1e-3, 3e5));
+  }
+  const sd_ewald_box box = {.periodic = 1, .edge = {9.0, 9.0, 9.0}};
+  const sd_ewald_sizes sizes = {10.0, 10.0, 10.0, 1.0}, none = {0.0, 0.0, 0.0, 0.0};
+  sd_ewald e;
+  assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-3, &e), SD_OK);
+  const sd_cost few = sd_cost_waves(&e, 3, 0.0);
+  assert_false(sd_choice_at_once(&few, 1e-3, 30.0));
+  assert_int_equal(sd_ewald_choose(&box, &none, 3, 1e-3, &e), SD_OK);
+  assert_true(sd_cost_waves(&e, 3, 0.0).make == 0.0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -197,6 +227,7 @@ int main(void)
       cmocka_unit_test(every_set_up_must_be_earned),
       cmocka_unit_test(saved_numbers_go_on_alike),
       cmocka_unit_test(counted_costs_are_those_measured),
+      cmocka_unit_test(waves_are_cheap_beside_a_product_by_fft),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
