@@ -287,31 +287,52 @@ INLINE m4 same(long long a)
   return (m4){a, a, a, a};
 }
 
-/* The terms of sd_sph_sums.h but for the rate. even[c] V_b belongs to a and even[c] V_a to b; s
- * changes sign between them. t: sum over all pairs of a. */
+/* Four pairs of i: d = x_i - x_j, u = v_i - v_j. */
 typedef struct {
-  v4 d[3], u[3], rho_i, rho_j, g, near, f;    // near: g, but 0 between two fluids
+  v4 d[3], u[3], rho_i, rho_j, g, near, f, speed;    // near: g, but 0 between two fluids
 } pair_of_four;
 
-INLINE void columns_of(const pair_of_four *q, sd_sph_level level, v4 *even)
+/* The columns of sd_sph_sums.h without the factor that is different for i and j. */
+INLINE void columns_of(const pair_of_four *q, sd_sph_level level, v4 *column)
 {
   const v4 *d = q->d, zero = all(0.0), jump = (q->rho_j - q->rho_i) * q->near;
   for (int c = 0; c < 3; c++) {
-    even[1 + c] = jump * d[c];
-    even[4 + c] = -q->near * d[c] * d[c];
+    column[1 + c] = jump * d[c];
+    column[4 + c] = -q->near * d[c] * d[c];
   }
-  even[7] = -q->near * d[0] * d[1];
-  even[8] = -q->near * d[0] * d[2];
-  even[9] = -q->near * d[1] * d[2];
-  even[10] = even[11] = zero;
+  column[7] = -q->near * d[0] * d[1];
+  column[8] = -q->near * d[0] * d[2];
+  column[9] = -q->near * d[1] * d[2];
+  column[10] = column[11] = zero;
   if (level < SD_SPH_DISORDER) return;
   const v4 f2 = q->f * q->f, push = q->g * (1.0 + 0.2 * (f2 * f2));
-  for (int c = 0; c < 3; c++) even[10 + c] = push * d[c];
-  even[13] = even[14] = even[15] = zero;
+  for (int c = 0; c < 3; c++) column[10 + c] = push * d[c];
+  column[SD_SPH_MAXIMUM] = q->speed;
+  column[14] = column[15] = zero;
   if (level < SD_SPH_VELOCITY) return;
   for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) even[14 + 3 * a + b] = -q->g * q->u[a] * d[b];
-  even[23] = zero;
+    for (int b = 0; b < 3; b++) column[14 + 3 * a + b] = -q->g * q->u[a] * d[b];
+  column[23] = zero;
+}
+
+/* Four columns of a row take those of one pair. The columns of i and j differ by factors: the other's
+ * mass for the rate, +- the other's volume for the sums (s is odd in d), 0 for walls or 1 for the
+ * speed U, which is not added: the larger stays. */
+INLINE v4 take(v4 row, int first, v4 columns, v4 factor)
+{
+  const v4 sum = row + columns * factor;
+  if (first != (SD_SPH_MAXIMUM & ~3)) return sum;
+  return where((m4){0, -1, 0, 0}, larger(row, columns * factor), sum);
+}
+
+/* The factors of the four columns from `first`; odd: volume for i, - volume for j. */
+INLINE v4 factors(int first, v4 mass, v4 volume, v4 odd, v4 moves)
+{
+  if (first == 0) return where((m4){-1, 0, 0, 0}, mass, volume);
+  if (first == 8) return where((m4){0, 0, -1, -1}, odd, volume);
+  if (first == 12)
+    return where((m4){0, -1, 0, 0}, moves, where((m4){-1, 0, 0, 0}, odd, volume));
+  return volume;
 }
 
 INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
@@ -329,10 +350,11 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
     const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]);
     const sd_sph_coefficients *row = ROW_OF(i);
     const v4 mi = all(many ? p->m[i] : p->mass);
-    double *mine = sums + (size_t) columns * i;
     const int phase = p->phase ? p->phase[i] : 0;
-    v4 sum[24], fastest = zero;
-    for (int c = 0; c < columns; c++) sum[c] = zero;
+    v4 rate = zero, mine[6] = {zero, zero, zero, zero, zero, zero}, factor_j[6];
+    for (int first = 0; first < columns; first += 4)
+      factor_j[first / 4] =
+          factors(first, mi, all(xi[3]), all(-xi[3]), all(phase >= 0 ? 1.0 : 0.0));
     int *last = pool;
 
     for (int at = 0; at < count; at += 4) {
@@ -348,61 +370,53 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
       const v4 reach = smaller(distance, two);
       q.g = COEFFICIENT(grad) * G(kernel, reach);
       const v4 vd = q.d[0] * q.u[0] + q.d[1] * q.u[1] + q.d[2] * q.u[2];
-      v4 w = q.g * vd, rate_i = MASSES * w, rate_j = mi * w;
+      v4 w = q.g * vd, mass_j = MASSES, mass_i = mi;
       if (volume) {
-        w = 2.0 / (vi[3] + u[3]);
-        rate_i *= w * vi[3];
-        rate_j *= w * u[3];
+        w *= 2.0 / (vi[3] + u[3]);
+        mass_j *= vi[3];
+        mass_i *= u[3];
       }
-      sum[0] += rate_i;
       if (pool) last = keep(last, j, distance < two + margin * inv_h);
       if (level == SD_SPH_RATE) {
-        for (int k = 0; k < 4; k++) sums[j[k]] += rate_j[k];
+        rate += w * mass_j;
+        for (int k = 0; k < 4; k++) sums[j[k]] += mass_i[k] * w[k];
         continue;
       }
 
       q.near = q.g;
-      if (volume) {
+      v4 moves = all(1.0);
+      if (p->phase) {
         const m4 other = phases(p->phase, j);
-        q.near = where((other == same(phase)) & (other >= same(0)), q.g, zero);
+        moves = where(other >= same(0), moves, zero);
+        if (volume) q.near = where(other == same(phase), q.g * moves, zero);
       }
       if (level >= SD_SPH_DISORDER) {
         q.f = COEFFICIENT(tens) * K(kernel, reach);
-        v4 speed = where(distance < two, larger(vd, -vd) / larger(r, all(1e-300)), zero);
-        const v4 theirs = phase >= 0 ? speed : zero;
-        if (p->phase) speed = where(phases(p->phase, j) >= same(0), speed, zero);
-        fastest = larger(fastest, speed);
-        for (int k = 0; k < 4; k++) {
-          double *U = sums + (size_t) columns * j[k] + SD_SPH_MAXIMUM;
-          if (theirs[k] > *U) *U = theirs[k];
-        }
+        q.speed = where(distance < two, larger(vd, -vd) / larger(r, all(1e-300)), zero);
       }
-      v4 even[24];
-      columns_of(&q, level, even);
-      even[0] = zero;
-      for (int c = 1; c < columns; c++) sum[c] += even[c] * b[3];
-      const v4 V = all(xi[3]), odd = -V;
+      /* Each pair's columns become a vector, so that the row of i is a few vectors too, and not a
+       * vector for each column. */
+      v4 column[24];
+      column[0] = w;
+      columns_of(&q, level, column);
       for (int first = 0; first < columns; first += 4) {
-        v4 part[4];
-        for (int c = 0; c < 4; c++) {
-          const int column = first + c;
-          part[c] = column == 0 ? rate_j : even[column] * (column >= 10 && column < 13 ? odd : V);
-        }
-        transpose(part);
+        transpose(column + first);
         for (int k = 0; k < 4; k++) {
+          const v4 V = all(b[3][k]);
           double *row_j = sums + (size_t) columns * j[k] + first;
-          store(row_j, load(row_j) + part[k]);
+          v4 of_j = factor_j[first / 4];
+          if (volume && first == 0) of_j = factors(0, all(mass_i[k]), of_j, of_j, of_j);
+          store(row_j, take(load(row_j), first, column[first + k], of_j));
+          mine[first / 4] = take(mine[first / 4], first, column[first + k],
+                                 factors(first, all(mass_j[k]), V, V, all(moves[k])));
         }
       }
     }
-    if (level == SD_SPH_RATE) {
-      *mine += (sum[0][0] + sum[0][1]) + (sum[0][2] + sum[0][3]);
-    } else {
-      for (int first = 0; first < columns; first += 4) add_lanes(mine + first, sum + first);
-      if (level >= SD_SPH_DISORDER)
-        for (int k = 0; k < 4; k++)
-          if (fastest[k] > mine[SD_SPH_MAXIMUM]) mine[SD_SPH_MAXIMUM] = fastest[k];
-    }
+    double *row_i = sums + (size_t) columns * i;
+    if (level == SD_SPH_RATE) *row_i += (rate[0] + rate[1]) + (rate[2] + rate[3]);
+    if (level != SD_SPH_RATE)
+      for (int first = 0; first < columns; first += 4)
+        store(row_i + first, take(load(row_i + first), first, mine[first / 4], all(1.0)));
     if (pool) {
       near->neighbor[i] = pool;
       near->count[i] = (int) (last - pool);
