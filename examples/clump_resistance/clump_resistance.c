@@ -1,4 +1,4 @@
-/* clump_resistance FILE [shell n] [rotation yes|no] [visc eta] [memory bytes]
+/* clump_resistance FILE [shell n] [rotation yes|no] [visc eta] [memory bytes] [digits n]
  *
  * Resistance and mobility of the rigid clump in FILE, from the core of the plugin, without LAMMPS. FILE is a LAMMPS molecule
  * file (sections Coords and Diameters) or a list of spheres, x y z radius a line, separated by blanks or commas; '-' is standard
@@ -142,14 +142,14 @@ static double tidy(double v)
   return fabs(v) < 1e-9 ? 0.0 : v;
 }
 
-static void print_matrix(const char *title, const double M[36], double scale)
+static void print_matrix(const char *title, const double M[36], double scale, int digits)
 {
   double largest = 0.0;
   for (int k = 0; k < 36; k++) largest = fmax(largest, fabs(M[k]));
   printf("%s\n", title);
   for (int p = 0; p < 6; p++) {
     for (int q = 0; q < 6; q++) /* rounding is not shown */
-      printf(" %15.8g", fabs(M[6 * p + q]) < 1e-12 * largest ? 0.0 : scale * M[6 * p + q]);
+      printf(" %*.*g", digits + 7, digits, fabs(M[6 * p + q]) < 1e-12 * largest ? 0.0 : scale * M[6 * p + q]);
     printf("\n");
   }
 }
@@ -264,8 +264,9 @@ static double positive(const char *keyword, const char *value)
 int main(int argc, char **argv)
 {
   static const char *usage =
-      "usage: clump_resistance FILE [shell n] [rotation yes|no] [visc eta] [memory bytes]";
+      "usage: clump_resistance FILE [shell n] [rotation yes|no] [visc eta] [memory bytes] [digits n]";
   double eta = 1.0;
+  int digits = 8;
   sd_clump_options o = SD_CLUMP_OPTIONS;
   o.shell = 42;
   o.rotation = 1;
@@ -288,6 +289,8 @@ int main(int argc, char **argv)
       eta = positive(key, value);
     else if (!strcmp(key, "memory"))
       o.memory = positive(key, value);
+    else if (!strcmp(key, "digits"))
+      digits = (int) fmin(positive(key, value), 17.0);
     else
       stop("unknown keyword", key);
   }
@@ -332,9 +335,9 @@ int main(int argc, char **argv)
   printf("centre         %.10g %.10g %.10g (of hydrodynamic stress: all below is about it)\n",
          centre[0], centre[1], centre[2]);
   print_matrix("resistance     rows force, torque; columns velocity, angular velocity", c.R_centre,
-               eta);
+               eta, digits);
   print_matrix("mobility       rows velocity, angular velocity; columns force, torque", c.mobility,
-               1.0 / eta);
+               1.0 / eta, digits);
   for (int k = 0; k < 9; k++) A[k] = c.mobility[6 * (k / 3) + k % 3];
   sd_eigen(3, A, w, V);
   printf("settling       velocity for a unit force, and beside it the direction\n");

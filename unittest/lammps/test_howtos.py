@@ -20,6 +20,7 @@ HOWTOS = {
     "sph": (["lmp -in in.sph"], {"c_kinetic": 0.5}),
     "stream": (["lmp -in in.stream", "python plot.py"], {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35}),
     "speed": (["lmp -in in.speed"], {}),
+    "python": (["python rod.py"], {}),
 }
 
 
@@ -45,7 +46,7 @@ def follow(name, folder):
 
 @pytest.mark.parametrize("name", HOWTOS)
 def test_a_howto_runs_as_it_stands(name, tmp_path):
-    said = follow(name, tmp_path)
+    said, page = follow(name, tmp_path), (DOC / f"howto_{name}.md").read_text()
     for block in blocks(name):
         if not block.startswith("Step"):
             continue
@@ -56,10 +57,12 @@ def test_a_howto_runs_as_it_stands(name, tmp_path):
             assert found, f"no row {row[0]} below {head}"
             for column, wanted, got in zip(head[1:], row[1:], found.group(1).split()):
                 assert float(got) == pytest.approx(float(wanted), rel=HOWTOS[name][1].get(column, 1e-3)), (column, wanted, got)
-    for picture in re.findall(r"\]\((howto_\w+\.png)\)", (DOC / f"howto_{name}.md").read_text()):
+    for picture in re.findall(r"\]\((howto_\w+\.png)\)", page):
         assert (tmp_path / picture).stat().st_size > 2000, picture
     if name == "cfd":
         assert float(re.search(r"momentum lost (\S+)", said).group(1)) < 1e-12
+    if name == "python":
+        assert said.splitlines() == re.findall(r"^    (\S.*)$", re.sub(r"```\n.*?```", "", page, flags=re.S), re.M)
     if name == "speed":
         errors = [float(error) for error in re.findall(r"^tolerance \S+ iterations \d+ error (\S+)", said, re.M)]
         assert len(errors) == 6 and errors[0] == 0.0 and all(a > b for a, b in zip(errors[1:], errors[2:]))

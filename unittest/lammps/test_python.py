@@ -1,0 +1,121 @@
+"""The Python module stokesdyn: the answers of the C program, and exceptions for bad input. And what cmake --install leaves."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import stokesdyn
+from system import environment
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ["LAMMPS_PLUGIN_PATH"])
+CLUMPS = sorted((TOP / "examples" / "sedimentation" / "clumps").glob("*.mol"))
+
+
+def program(*words):
+    """Both matrices of clump_resistance, in all digits."""
+    done = subprocess.run([BUILD / "clump_resistance", *map(str, words), "digits", "17"], capture_output=True, text=True, check=True)
+    lines = done.stdout.splitlines()
+    at = [k for k, line in enumerate(lines) if line.startswith(("resistance", "mobility"))]
+    return [np.array([line.split() for line in lines[k + 1:k + 7]], float) for k in at]
+
+
+def test_there_are_twelve_clumps():
+    assert len(CLUMPS) == 12
+
+
+@pytest.mark.parametrize("path", CLUMPS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("shell", [1, 42])
+def test_a_clump_has_the_resistance_of_the_c_program(path, shell):
+    clump = stokesdyn.Clump(*stokesdyn.read(path), shell=shell, viscosity=0.97)
+    for mine, theirs in zip((clump.resistance, clump.mobility), program(path, "shell", shell, "visc", 0.97)):
+        assert np.abs(mine - theirs).max() <= 1e-12 * np.abs(theirs).max()
+
+
+def test_a_list_of_spheres_and_a_model_without_rotation():
+    path = TOP / "examples" / "clump_resistance" / "row4.txt"
+    clump = stokesdyn.Clump(*stokesdyn.read(path), shell=1, rotation=False)
+    assert np.allclose(clump.resistance, program(path, "shell", 1, "rotation", "no")[0], rtol=1e-12, atol=1e-12)
+
+
+def test_a_sphere_is_stokes():
+    clump = stokesdyn.Clump([(0.3, -2, 5)], radius=0.7, viscosity=1.3)
+    exact = np.diag([6 * np.pi * 1.3 * 0.7] * 3 + [8 * np.pi * 1.3 * 0.7**3] * 3)
+    assert np.allclose(clump.resistance, exact, rtol=1e-9, atol=1e-9) and np.allclose(clump.centre, (0.3, -2, 5), atol=1e-14)
+    U, W = clump.velocity(force=(0, 0, -2), torque=(1, 0, 0))
+    assert U[2] == pytest.approx(-2 / exact[2, 2]) and W[0] == pytest.approx(1 / exact[3, 3])
+
+
+def test_a_clump_that_does_not_fit_is_solved_iteratively_and_in_less_memory_refused():
+    x = [(2.0 * k, 0.0, 0.0) for k in range(10)]
+    dense = stokesdyn.Clump(x, 1, shell=12)
+    iterative = stokesdyn.Clump(x, 1, shell=12, memory=1e6)
+    assert dense.iterations == 0 < iterative.iterations
+    assert np.allclose(dense.resistance, iterative.resistance, rtol=1e-6, atol=1e-6 * dense.resistance.max())
+
+
+@pytest.mark.parametrize("arguments, said", [
+    (dict(x=[], radius=1), "x must have the shape [n, 3], not [0]"),
+    (dict(x=np.zeros((0, 3)), radius=1), "x must have at least one sphere"),
+    (dict(x=[(0, 0)], radius=1), "x must have the shape [n, 3], not [1, 2]"),
+    (dict(x=[(0, 0, float("nan"))], radius=1), "x must be finite: there is nan"),
+    (dict(x=[(0, 0, "up")], radius=1), "x must be numbers"),
+    (dict(x=[(0, 0, 0)], radius=-1), "radius must be > 0: there is -1.0"),
+    (dict(x=[(0, 0, 0)], radius=[1, 2]), "radius must have the shape [1], not [2]"),
+    (dict(x=[(0, 0, 0)], radius=1, shell=7), "shell must be 1 or a whole number from 12 on, not 7"),
+    (dict(x=[(0, 0, 0)], radius=1, shell=42.5), "shell must be 1 or a whole number from 12 on, not 42.5"),
+    (dict(x=[(0, 0, 0)], radius=1, rotation="no"), "rotation must be True or False, not 'no'"),
+    (dict(x=[(0, 0, 0)], radius=1, viscosity=0), "viscosity must be > 0, not 0"),
+    (dict(x=[(0, 0, 0)] * 2, radius=1), "two spheres of equal radius lie at one point"),
+    (dict(x=[(2.0 * k, 0, 0) for k in range(30)], radius=1, memory=10), "memory 10: the solve needs"),
+])
+def test_bad_input_is_an_exception(arguments, said):
+    with pytest.raises(stokesdyn.Error) as why:
+        stokesdyn.Clump(**arguments)
+    assert said in str(why.value) and isinstance(why.value, ValueError)
+
+
+@pytest.mark.parametrize("text, said", [
+    ("title\n2 atoms\nCoords\n\n1 0 0 0\n2 0 0 2\nDiameters\n\n1 2\n", "Coords and Diameters of all atoms"),
+    ("0 0 0\n", "x y z radius"), ("0 0 0 1\n0 0 up 1\n", "up"), ("", "x y z radius")])
+def test_a_bad_file_is_an_exception(tmp_path, text, said):
+    (tmp_path / "file").write_text(text)
+    with pytest.raises(stokesdyn.Error) as why:
+        stokesdyn.read(tmp_path / "file")
+    assert said in str(why.value)
+    with pytest.raises(stokesdyn.Error, match="No such file"):
+        stokesdyn.read(tmp_path / "nowhere")
+
+
+def test_an_installation_works_wherever_it_is_moved(tmp_path):
+    subprocess.run(["cmake", "--install", BUILD, "--prefix", tmp_path / "there"], check=True, stdout=subprocess.DEVNULL)
+    shutil.move(tmp_path / "there", tmp_path / "moved")
+    moved = tmp_path / "moved"
+    script = f"""
+. {moved}/share/stokesdyn/env.sh
+[ "$LAMMPS_PLUGIN_PATH" = {moved}/lib/stokesdyn ] || exit 3
+echo 'plugin load stokesdynplugin.so
+plugin list' | lmp -log none
+{sys.executable} -c 'import stokesdyn; print(stokesdyn.__file__, stokesdyn._core._name); stokesdyn.Clump([(0, 0, 0)], 1)'
+clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.mol shell 12 | head -n 2
+"""
+    # of this environment only what finds bash, LAMMPS's MPI and numpy
+    env = {name: value for name, value in environment().items() if not name.startswith(("LAMMPS_", "LD_", "PYTHONPATH"))}
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=env, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    version = (TOP / "PKG-STOKESDYN" / "VERSION").read_text().strip()
+    assert f"PKG-STOKESDYN {version}" in done.stdout and "pair style stokes_dynamics" in done.stdout.lower()
+    assert f"{moved}/lib/stokesdyn/python/stokesdyn.py {moved}/lib/libstokesdyn.so" in done.stdout
+    assert "3 spheres, shell 12" in done.stdout
+    pages = moved / "share" / "doc" / "stokesdyn" / "PKG-STOKESDYN" / "doc"
+    assert {path.name for path in pages.glob("*.md")} == {path.name for path in (TOP / "PKG-STOKESDYN" / "doc").glob("*.md")}
+    program = tmp_path / "use.c"    # the headers and the static libraries serve a C program
+    program.write_text('#include "sd_clump.h"\nint main(void) { sd_shape s; double x[3] = {0}, a = 1;\n'
+                       'return sd_shape_create(1, x, &a, &s) != SD_OK || s.n != 1; }\n')
+    libraries = [f"-lstokesdyn_{name}" for name in ("stokes", "base")] + ["-llapack", "-lblas", "-lm"]
+    subprocess.run(["cc", program, "-o", tmp_path / "use", f"-I{moved}/include/stokesdyn", f"-L{moved}/lib", *libraries], check=True)
+    assert subprocess.run([tmp_path / "use"]).returncode == 0
