@@ -23,6 +23,11 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+static bool finite(const double *v)
+{
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
 void Ambient::init()
 {
   region = nullptr;
@@ -46,20 +51,24 @@ bool Ambient::numbers_only() const
   return plain;
 }
 
-void Ambient::numbers(double *seven) const
+void Ambient::numbers(double *nine) const
 {
-  seven[0] = settings.visc.number();
+  nine[0] = settings.visc.number();
   for (int d = 0; d < 3; d++) {
-    seven[1 + d] = settings.velocity[d].number();
-    seven[4 + d] = settings.vorticity[d].number();
+    nine[1 + d] = settings.velocity[d].number();
+    nine[4 + d] = settings.vorticity[d].number();
   }
+  const FlowFile *grid = settings.grid.get();
+  nine[7] = grid ? grid->fingerprint : 0.0;
+  nine[8] = grid && grid->grid.axis[SD_GRID_TIME].n > 1 ? now : 0.0;
 }
 
-void Ambient::read(bool with_spins, bool with_gradients)
+void Ambient::read(bool with_spins, bool with_gradients, double time)
 {
   spins = with_spins;
-  read_fluid(with_gradients);
+  now = time;
   select();
+  read_fluid(with_gradients);
   const bigint none = MAXBIGINT;
   bigint mine = none, first;
   for (int i : those)
@@ -71,11 +80,11 @@ void Ambient::read(bool with_spins, bool with_gradients)
 void Ambient::read_fluid(bool with_gradients)
 {
   const int n = atom->nlocal;
-  bool u_varies = false;
+  bool u_varies = settings.grid != nullptr;
   for (const auto &field : settings.velocity) u_varies = u_varies || field.is_atom_style();
   if (!numbers_only()) modify->clearstep_compute();
 
-  eta.resize(settings.visc.is_atom_style() ? n + 1 : 0);
+  eta.resize(settings.visc.is_atom_style() || settings.grid_has_visc ? n + 1 : 0);
   settings.visc.evaluate(lmp, igroup, eta.empty() ? nullptr : eta.data(), 1);
   for (double &value : eta) value *= force->vxmu2f;
   eta_uniform = settings.visc.number() * force->vxmu2f;
@@ -85,9 +94,11 @@ void Ambient::read_fluid(bool with_gradients)
     settings.velocity[d].evaluate(lmp, igroup, u.empty() ? nullptr : u.data() + d, 3);
     u_uniform[d] = settings.velocity[d].number();
   }
-  w.clear();
-  gradient.clear();
-  if (with_gradients && (u_varies || settings.has_vorticity)) read_gradient();
+  const bool nonuniform = with_gradients && (u_varies || settings.has_vorticity);
+  w.assign(nonuniform ? 3 * (size_t) n + 3 : 0, 0.0);
+  gradient.assign(nonuniform ? 9 * (size_t) n + 9 : 0, 0.0);
+  if (settings.grid) read_grid();
+  if (nonuniform) read_gradient();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 }
 
@@ -139,14 +150,56 @@ static void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradi
 void Ambient::read_gradient()
 {
   const int n = atom->nlocal;
-  gradient.assign(9 * (size_t) n + 9, 0.0);
-  w.assign(3 * (size_t) n + 3, 0.0);
-  if (!u.empty()) velocity_gradient(lmp, settings.velocity, igroup, gradient.data());
+  if (!u.empty() && !settings.grid)
+    velocity_gradient(lmp, settings.velocity, igroup, gradient.data());
   if (settings.has_vorticity) {
     for (int d = 0; d < 3; d++) settings.vorticity[d].evaluate(lmp, igroup, w.data() + d, 3);
     for (int i = 0; i < n; i++) sd_flow_set_vorticity(&w[3 * (size_t) i], &gradient[9 * (size_t) i]);
   }
   for (int i = 0; i < n; i++) sd_flow_rotation(&gradient[9 * (size_t) i], &w[3 * (size_t) i]);
+}
+
+/* An atom and its images are one place, and where LAMMPS keeps it depends on when it last looked. */
+void Ambient::in_the_box(int i, double *x) const
+{
+  std::copy_n(atom->x[i], 3, x);
+  bool inside = !domain->triclinic;
+  for (int d = 0; d < 3 && inside; d++)
+    inside = x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d];
+  // remap() goes box by box, for ever if x is infinite: fault() tells of those
+  if (!inside && finite(x) && !far_out(i)) domain->remap(x);
+}
+
+/* Velocity, viscosity and gradient of those that take part. Where the grid has none they are NaN,
+ * and fault() tells. */
+void Ambient::read_grid()
+{
+  const sd_flow_grid &grid = settings.grid->grid;
+  sd_flow_frame frame;
+  if (sd_flow_grid_frame(&grid, now, &frame) != SD_OK) {
+    const sd_grid_axis &axis = grid.axis[SD_GRID_TIME];
+    fail(lmp,
+         command + ": keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
+             ": the time " + text(now) + " is outside of the series in '" + settings.grid->path +
+             "', which goes from " + text(axis.at[0]) + " to " + text(axis.at[axis.n - 1]) +
+             "; end the line of its axis with clamp or periodic to go on");
+  }
+  // so many at once that memory keeps up, and few enough for the stack
+  constexpr size_t BLOCK = 64;
+  double x[3 * BLOCK], value[4 * BLOCK], G[9 * BLOCK];
+  const bool with_gradients = !gradient.empty();
+  for (size_t begin = 0; begin < those.size(); begin += BLOCK) {
+    const size_t count = std::min(BLOCK, those.size() - begin);
+    for (size_t k = 0; k < count; k++) in_the_box(those[begin + k], x + 3 * k);
+    sd_flow_grid_at(&grid, &frame, (int) count, x, value, with_gradients ? G : nullptr);
+    for (size_t k = 0; k < count; k++) {
+      const size_t i = those[begin + k];
+      const double *row = value + grid.columns * k;
+      std::copy_n(row, 3, &u[3 * i]);
+      if (settings.grid_has_visc) eta[i] = row[3] * force->vxmu2f;
+      if (with_gradients) std::copy_n(G + 9 * k, 9, &gradient[9 * i]);
+    }
+  }
 }
 
 /* Has the group the atoms that it had, at the places in memory where they were? LAMMPS moves atoms
@@ -186,11 +239,6 @@ void Ambient::select()
 
 enum Fault { NONE, POSITION, FAR_OUT, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY, FLUID_VORTICITY };
 
-static bool finite(const double *v)
-{
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
 /* More than one length of a periodic box outside of it: LAMMPS wraps an atom by one length, and
  * between two wrappings it moves by half the skin in any run that means something. */
 bool Ambient::far_out(int i) const
@@ -219,19 +267,38 @@ int Ambient::fault(int i) const
   if (!finite(v) || (spins && !finite(atom->omega[i]))) return VELOCITY;
   if (!finite(x)) return POSITION;
   if (!(a > 0.0) || !std::isfinite(a)) return RADIUS;
-  if (!(viscosity(i) > 0.0) || !std::isfinite(viscosity(i))) return VISCOSITY;
   if (!finite(fluid)) return FLUID_VELOCITY;
+  if (!(viscosity(i) > 0.0) || !std::isfinite(viscosity(i))) return VISCOSITY;
   return rotation && !finite(rotation) ? FLUID_VORTICITY : NONE;
+}
+
+/* What is in a grid file is finite, so it has no velocity only where it ends. */
+std::string Ambient::outside_of_grid(const double *x) const
+{
+  if (!settings.grid) return "the fluid velocity there is not a finite number";
+  static const char *const NAME[] = {"x", "y", "z"};
+  std::string where = "its position " + text(x[0]) + " " + text(x[1]) + " " + text(x[2]) +
+      " is outside of the grid in '" + settings.grid->path + "'";
+  for (int d = 0; d < 3; d++) {
+    const sd_grid_axis &axis = settings.grid->grid.axis[d];
+    const double first = axis.at[0], last = axis.at[axis.n - 1];
+    if (axis.n > 1 && axis.outside == SD_OUTSIDE_NONE && !(x[d] >= first && x[d] <= last))
+      where += std::string(", whose ") + NAME[d] + " goes from " + text(first) + " to " + text(last);
+  }
+  return where + "; end the line of an axis with clamp or periodic to go on";
 }
 
 /* One rank has found a faulty atom; all ranks end the run with the name of the first. */
 void Ambient::complain(long long first) const
 {
-  double value = 0.0, sum;
+  enum { VALUE, PLACE, KNOWN = PLACE + 3 };
+  double mine[KNOWN] = {0.0}, sum[KNOWN];
   for (int i : those)
-    if (atom->tag[i] == first / 16 && fault(i) == first % 16)
-      value = first % 16 == RADIUS ? atom->radius[i] : viscosity(i) / force->vxmu2f;
-  MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
+    if (atom->tag[i] == first / 16 && fault(i) == first % 16) {
+      mine[VALUE] = first % 16 == RADIUS ? atom->radius[i] : viscosity(i) / force->vxmu2f;
+      in_the_box(i, mine + PLACE);
+    }
+  MPI_Allreduce(mine, sum, KNOWN, MPI_DOUBLE, MPI_SUM, world);
   const int fault = first % 16;
   const std::string why[] = {
       "",
@@ -239,9 +306,9 @@ void Ambient::complain(long long first) const
       "its position is more than a box length outside of the periodic box: the run has blown up; is "
       "the time step too long, or a number in other units?",
       "its velocity is not a finite number",
-      "its radius " + text(sum) + " must be > 0 (keyword group selects the spheres)",
-      "keyword visc: its viscosity " + text(sum) + " must be > 0",
-      "keyword fluid_velocity: the fluid velocity there is not a finite number",
+      "its radius " + text(sum[VALUE]) + " must be > 0 (keyword group selects the spheres)",
+      "keyword visc: its viscosity " + text(sum[VALUE]) + " must be > 0",
+      "keyword fluid_velocity: " + outside_of_grid(sum + PLACE),
       "keyword fluid_vorticity: the vorticity of the fluid there is not a finite number"};
   fail(lmp, command + ": step " + std::to_string(update->ntimestep) + ", atom " +
                 std::to_string(first / 16) + ": " + why[fault]);

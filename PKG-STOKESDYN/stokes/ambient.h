@@ -9,11 +9,13 @@
 #define SD_AMBIENT_H
 
 #include "field.h"
+#include "flow_file.h"
 #include "atom.h"
 #include "pointers.h"
 
 #include "sd_constants.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,9 @@ class Ambient : protected LAMMPS_NS::Pointers {
   struct Settings {
     Field visc, velocity[3], vorticity[3];
     bool has_vorticity = false;
+    /* the velocity, or nullptr: that of the fields; the viscosity too? */
+    std::shared_ptr<const FlowFile> grid;
+    bool grid_has_visc = false;
     /* empty: the whole box */
     std::string region;
     std::string group = "all";
@@ -38,10 +43,10 @@ class Ambient : protected LAMMPS_NS::Pointers {
   /* Looks up variables, group and region. Errors: one that does not exist. */
   void init();
   /* The state of this step. spins: angular velocities count; gradients: the gradient of the fluid
-   * velocity is wanted.
-   * Errors, on all ranks: a number that is none, or an atom far outside of a periodic box, with
-   * atom and step. */
-  void read(bool spins, bool gradients);
+   * velocity is wanted; time: of this step, for a series.
+   * Errors, on all ranks: a number that is none, an atom far outside of a periodic box or outside
+   * of the grid, with atom and step; a time outside of the series. */
+  void read(bool spins, bool gradients, double time);
 
   const std::vector<char> &active() const { return takes_part; }
   /* The atoms of this rank that take part, in their order. */
@@ -73,9 +78,11 @@ class Ambient : protected LAMMPS_NS::Pointers {
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
   const double *uniform_velocity() const { return u_uniform; }
 
-  /* Is all of it plain numbers? Then these seven say it: viscosity, velocity, vorticity. */
+  /* Is all of it known without asking variables? Then these numbers say it: viscosity, velocity,
+   * vorticity, which grid, and in a series the time that was read. */
+  enum { NUMBERS = 9 };
   bool numbers_only() const;
-  void numbers(double *seven) const;
+  void numbers(double *nine) const;
   double memory_usage() const;
 
  private:
@@ -90,7 +97,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   long selections = 0;
   /* the run, by its first step, in which the group was last looked at; -1: in none */
   LAMMPS_NS::bigint looked_in = -1;
-  double eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
+  double now = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient;
 
@@ -98,6 +105,9 @@ class Ambient : protected LAMMPS_NS::Pointers {
   void select();
   void read_fluid(bool gradients);
   void read_gradient();
+  void read_grid();
+  void in_the_box(int i, double *x) const;
+  std::string outside_of_grid(const double *x) const;
   bool far_out(int i) const;
   int fault(int i) const;
   [[noreturn]] void complain(long long first) const;

@@ -8,6 +8,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "modify.h"
+#include "update.h"
 
 #include <cstring>
 
@@ -63,6 +64,7 @@ void FixStokesDynamicsState::forget()
   global = Global();
   global.solves = old.solves;
   global.unconverged = old.unconverged;
+  global.time_before = old.time_before;
   rows.clear();
   left.clear();
 }
@@ -82,6 +84,16 @@ void FixStokesDynamicsState::settings_are(const std::vector<std::string> &words)
   const uint64_t now = hash(words);
   if (now != global.settings) forget();
   global.settings = now;
+}
+
+static double lammps_time(const Update *update)
+{
+  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
+double FixStokesDynamicsState::time() const
+{
+  return global.time_before + lammps_time(update);
 }
 
 void FixStokesDynamicsState::present_box(double *box) const
@@ -141,7 +153,8 @@ void FixStokesDynamicsState::write_restart(FILE *fp)
   if (comm->me != 0) return;
   NamedState out(STYLE);
   each_number(global, [&out](const char *name, double value) { out.put(name, value); });
-  out.put("numbers", std::vector<double>(global.numbers, global.numbers + 7));
+  out.put("numbers", std::vector<double>(global.numbers, global.numbers + Ambient::NUMBERS));
+  out.put("time", time());
   out.put("box", std::vector<double>(global.box, global.box + 6));
   out.put("preconditioner", global.preconditioner);
   out.put("loose", global.loose);
@@ -154,7 +167,8 @@ void FixStokesDynamicsState::restart(char *buf)
   NamedState in(STYLE);
   if (!in.read(lmp, buf)) return;
   each_number(global, [&in](const char *name, double &value) { value = in.get(name, value); });
-  in.get("numbers", global.numbers, 7);
+  in.get("numbers", global.numbers, Ambient::NUMBERS);
+  global.time_before = in.get("time", time()) - lammps_time(update);
   in.get("box", global.box, 6);
   global.preconditioner = in.get("preconditioner");
   global.loose = in.get("loose");

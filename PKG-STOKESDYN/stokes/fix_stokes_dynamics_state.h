@@ -8,6 +8,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_STATE_H
 #define SD_FIX_STOKES_DYNAMICS_STATE_H
 
+#include "ambient.h"
 #include "resume.h"
 #include "rows_fix.h"
 #include "time_step_guard.h"
@@ -50,12 +51,14 @@ class FixStokesDynamicsState : public RowsFix {
     /* that took part then */
     double spheres = 0;
     /* of the fluid in the last step (Ambient::numbers) */
-    double numbers[7] = {0};
+    double numbers[Ambient::NUMBERS] = {0};
     double solves = 0, unconverged = 0;
     /* has algorithm 1, so that 2 goes on? */
     double diverged = 0;
     /* of the last solve */
     double iterations = 0, residual = 0;
+    /* time of the runs before the restart file that LAMMPS's own clock does not count */
+    double time_before = 0;
     /* v' that the rows hold, of solves that follow one another: 0, 1, 2 */
     double solutions = 0;
     /* periodic lengths and tilts as the last run left them */
@@ -68,6 +71,8 @@ class FixStokesDynamicsState : public RowsFix {
   } global;
 
   bool restart_written = false;    // since the last solve
+  /* Of this step, since the first run: it goes on after a restart. */
+  double time() const;
   /* If they are new: nothing of the past stands. */
   void settings_are(const std::vector<std::string> &words);
   bool box_left_as_is() const;

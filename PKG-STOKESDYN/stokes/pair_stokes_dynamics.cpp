@@ -86,12 +86,12 @@ PairStokesDynamics::Verdict PairStokesDynamics::judge()
   if (continued && !memory->box_left_as_is()) count[DISPLACED]++;
   MPI_Allreduce(MPI_IN_PLACE, count, COUNTS, MPI_DOUBLE, MPI_SUM, world);
 
-  double numbers[7];
+  double numbers[Ambient::NUMBERS];
   hydro.ambient.numbers(numbers);
   const bool same_spheres = count[NEWCOMERS] == 0.0 && count[SPHERES] == global.spheres;
   const bool same_fluid = hydro.ambient.numbers_only() &&
-      std::equal(numbers, numbers + 7, global.numbers);
-  std::copy(numbers, numbers + 7, global.numbers);
+      std::equal(numbers, numbers + Ambient::NUMBERS, global.numbers);
+  std::copy(numbers, numbers + Ambient::NUMBERS, global.numbers);
   if (update->setupflag) hydro.new_run(continued && same_spheres && count[DISPLACED] == 0.0);
   global.last_step = step;
   if (continued && same_fluid && same_spheres && count[DISPLACED] + count[PUSHED] == 0.0)
@@ -251,7 +251,8 @@ void *PairStokesDynamics::extract(const char *name, int &dim)
 {
   dim = 0;
   Field &visc = hydro.ambient.settings.visc;
-  if (strcmp(name, "visc") == 0 && !visc.is_variable()) return visc.address();
+  const bool is_number = !visc.is_variable() && !hydro.ambient.settings.grid_has_visc;
+  if (strcmp(name, "visc") == 0 && is_number) return visc.address();
   if (strcmp(name, "hydrodynamics") == 0) return &hydro;
   return nullptr;
 }

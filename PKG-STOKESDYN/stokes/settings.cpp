@@ -17,6 +17,13 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   parse(in);
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   check(in);
+  if (!grid_file.empty()) {
+    ambient.grid =
+        FlowFile::read(lmp, grid_file, std::string(COMMAND) + ": keyword fluid_velocity");
+    in.require(!ambient.grid_has_visc || ambient.grid->has_viscosity(),
+               "keyword visc: 'grid': the file '" + grid_file +
+                   "' has no viscosity: its columns would be ux uy uz eta");
+  }
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1) scene.rotation = true;
   rigid.rotation = scene.rotation;
@@ -38,6 +45,7 @@ void StokesSettings::parse(Keywords &in)
       {"update_every", [&] { update_every = in.integer(1); }},
       {"clumps_only", [&] { scene.clumps_only = in.yes_no(); }},
       {"visc", [&] {
+         if ((ambient.grid_has_visc = in.take("grid"))) return;
          ambient.visc = Field::parse(in);
          if (!ambient.visc.is_variable() && !(ambient.visc.number() > 0.0))
            in.refuse("'" + text(ambient.visc.number()) + "' must be > 0");
@@ -55,7 +63,12 @@ void StokesSettings::parse(Keywords &in)
          algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS;
          strict = algorithm == SUBSTITUTION && in.take("strict");
        }},
-      {"fluid_velocity", [&] { for (Field &u : ambient.velocity) u = Field::parse(in); }},
+      {"fluid_velocity", [&] {
+         if (in.take("grid"))
+           grid_file = in.word();
+         else
+           for (Field &u : ambient.velocity) u = Field::parse(in);
+       }},
       {"fluid_vorticity", [&] {
          for (Field &w : ambient.vorticity) w = Field::parse(in);
          ambient.has_vorticity = true;
@@ -85,6 +98,8 @@ void StokesSettings::check(const Keywords &in) const
 {
   const bool all_pairs = scene.engine().view == SD_VIEW_ALL;
   in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
+  in.require(!ambient.grid_has_visc || !grid_file.empty(),
+             "keyword visc: 'grid' requires fluid_velocity grid FILE");
   in.require(in.given("cut_off_distance") || scene.clumps_only,
              "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
   in.require(scene.taper == SD_TAPER_NONE || std::isfinite(scene.cutoff),

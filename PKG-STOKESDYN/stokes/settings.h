@@ -36,6 +36,8 @@ struct StokesSettings {
   bool history() const { return algorithm == GRADIENTS && warm_start; }
 
  private:
+  std::string grid_file;
+
   void parse(class Keywords &in);
   void check(const class Keywords &in) const;
 };

@@ -68,13 +68,13 @@ typedef struct {
 /* SD_EOUTSIDE: the series has no value at this time; SD_ENOTFINITE: the time is no number. */
 sd_status sd_flow_grid_frame(const sd_flow_grid *grid, double time, sd_flow_frame *frame);
 
-/* The flow at a place.
- *   x         [3]
- *   value     [columns]  out
- *   gradient  [9]        out, or NULL; row-major, gradient[3 p + q] = d u_p / d x_q, as in sd_flow.h
- * SD_EOUTSIDE, SD_ENOTFINITE: all that comes out is NaN. */
-sd_status sd_flow_grid_at(const sd_flow_grid *grid, const sd_flow_frame *frame, const double x[3],
-                          double *value, double *gradient);
+/* The flow at n points.
+ *   x         [n][3]
+ *   value     [n][columns]  out
+ *   gradient  [n][9]        out, or NULL; row-major, gradient[3 p + q] = d u_p / d x_q as in sd_flow.h
+ * Of a point outside of the grid, or one that is not finite, all that comes out is NaN. */
+void sd_flow_grid_at(const sd_flow_grid *grid, const sd_flow_frame *frame, int n, const double *x,
+                     double *value, double *gradient);
 
 #ifdef __cplusplus
 }
