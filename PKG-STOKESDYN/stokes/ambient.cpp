@@ -103,28 +103,53 @@ void Ambient::read_fluid(bool with_gradients)
 }
 
 namespace {
-  /* Holds the atoms' positions shifted, and puts them back whatever happens. */
+  /* Holds the atoms' positions shifted, each by a vector times its radius or one that is the same
+   * for all, and puts them back whatever happens. */
   class Shift {
    public:
-    Shift(Atom *atom, int axis, double radii) :
-        atom(atom), axis(axis), n(atom->nlocal), x(atom->nlocal)
+    Shift(Atom *atom, const double *by, bool in_radii) : atom(atom), x(3 * (size_t) atom->nlocal)
     {
-      for (int i = 0; i < n; i++) {
-        x[i] = atom->x[i][axis];
-        atom->x[i][axis] += radii * atom->radius[i];
-      }
+      for (size_t i = 0; i < x.size() / 3; i++)
+        for (int d = 0; d < 3; d++) {
+          x[3 * i + d] = atom->x[i][d];
+          atom->x[i][d] += by[d] * (in_radii ? atom->radius[i] : 1.0);
+        }
     }
     ~Shift()
     {
-      for (int i = 0; i < n; i++) atom->x[i][axis] = x[i];
+      for (size_t i = 0; i < x.size() / 3; i++) std::copy_n(&x[3 * i], 3, atom->x[i]);
     }
 
    private:
     Atom *atom;
-    int axis, n;
     std::vector<double> x;
   };
 }    // namespace
+
+/* By formulas in x, y, z; a velocity stored per atom does not follow. */
+double Ambient::misfit()
+{
+  if (u.empty()) return 0.0;
+  const double *h = domain->h, tilt[3] = {h[5], h[4], h[3]};
+  const double edge[3][3] = {{domain->xprd, 0.0, 0.0},
+                             {tilt[0], domain->yprd, 0.0},
+                             {tilt[1], tilt[2], domain->zprd}};
+  double most[2] = {0.0, 0.0};    // difference, velocity
+  std::vector<double> there(atom->nlocal + 1);
+  modify->clearstep_compute();
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3 && settings.velocity[p].is_atom_style(); q++) {
+      Shift shift(atom, edge[q], false);
+      settings.velocity[p].evaluate(lmp, igroup, there.data(), 1);
+      for (int i : those) {
+        most[0] = std::max(most[0], std::fabs(there[i] - u[3 * (size_t) i + p]));
+        most[1] = std::max(most[1], std::fabs(u[3 * (size_t) i + p]));
+      }
+    }
+  modify->addstep_compute(update->ntimestep + 1);
+  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
+  return most[0] > 0.0 ? most[0] / std::max(most[0], most[1]) : 0.0;
+}
 
 /* gradient[9 i + 3 p + q] = d u_p / d x_q, by central differences over one radius to either side.
  * For a field given by variables that are formulas in x, y, z; values stored per atom do not
@@ -137,7 +162,8 @@ static void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradi
     for (int q = 0; q < 3; q++) {
       if (!u[p].is_atom_style()) continue;
       for (const double side : {1.0, -1.0}) {
-        Shift shift(lmp->atom, q, side);
+        const double by[3] = {q == 0 ? side : 0.0, q == 1 ? side : 0.0, q == 2 ? side : 0.0};
+        Shift shift(lmp->atom, by, true);
         u[p].evaluate(lmp, igroup, (side > 0.0 ? ahead : behind).data(), 1);
       }
       sd_flow_difference(n, ahead.data(), behind.data(), lmp->atom->radius, 9,

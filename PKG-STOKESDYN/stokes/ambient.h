@@ -48,6 +48,10 @@ class Ambient : protected LAMMPS_NS::Pointers {
    * of the grid, with atom and step; a time outside of the series. */
   void read(bool spins, bool gradients, double time);
 
+  /* How much the fluid velocity of this step differs between atoms and their images an edge of the
+   * box away, relative to the largest velocity: 0 fits a periodic box. On all ranks together. */
+  double misfit();
+
   const std::vector<char> &active() const { return takes_part; }
   /* The atoms of this rank that take part, in their order. */
   const std::vector<int> &who() const { return those; }

@@ -56,6 +56,36 @@ void check_vast_cutoff(LAMMPS *lmp, const std::string &command, const Scene::Set
            (open || settings.clumps_only ? "inf" : "a shorter one"));
 }
 
+void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
+{
+  const Domain *domain = lmp->domain;
+  int periodic = 0;
+  for (int d = 0; d < domain->dimension; d++) periodic += domain->periodicity[d] != 0;
+  if (periodic == 0) return;
+  if (periodic < 3)
+    fail(lmp,
+         command +
+             ": keyword cut_off_distance: 'inf' requires a box that is periodic in all three "
+             "directions (boundary p p p) or in none: with others the flow far from a net force is "
+             "not determined. Use boundary p p p with the open directions long enough, or no "
+             "periodic direction, or clumps_only yes");
+  if (settings.tensor == SD_TENSOR_OSEEN)
+    fail(lmp, command + ": keyword tensor: 'oseen' with cut_off_distance inf requires a box that is "
+                        "not periodic");
+  if (settings.far_field == Scene::Settings::DIRECT)
+    fail(lmp, command + ": keywords far_field direct and precondition sparse require a box that is "
+                        "not periodic: the sum over all periodic images is one of Ewald's");
+}
+
+void warn_of_misfit(LAMMPS *lmp, const std::string &command, double misfit)
+{
+  if (misfit < 1e-9 || lmp->domain->deform_flag || lmp->comm->me != 0) return;
+  lmp->error->warning(FLERR,
+                      command + ": keyword fluid_velocity: the formula does not have the period of "
+                                "the box, and spheres near its faces feel the jump; a shear flow "
+                                "needs a triclinic box that fix deform shears with it");
+}
+
 void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)
 {
   const Comm *comm = lmp->comm;

@@ -16,6 +16,14 @@ namespace StokesDyn {
 void check_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
                        const Scene::Settings &settings);
 
+/* Without a cut-off the box is periodic in all directions or in none; what Ewald sums have not got
+ * needs an open one. */
+void check_boundaries(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
+                      const Scene::Settings &settings);
+
+/* A shear flow, say, does not fit a periodic box, unless that is sheared with it. */
+void warn_of_misfit(LAMMPS_NS::LAMMPS *lmp, const std::string &command, double misfit);
+
 /* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10
  * % for a chain of ten touching spheres that see each other up to 10.5 a. Tells of the clump with
  * the lowest molecule ID. */

@@ -158,6 +158,7 @@ void FixStokesDynamicsState::write_restart(FILE *fp)
   out.put("box", std::vector<double>(global.box, global.box + 6));
   out.put("preconditioner", global.preconditioner);
   out.put("loose", global.loose);
+  out.put("open_box", global.open_box);
   out.put_bits("settings", global.settings);
   out.write(fp);
 }
@@ -172,5 +173,6 @@ void FixStokesDynamicsState::restart(char *buf)
   in.get("box", global.box, 6);
   global.preconditioner = in.get("preconditioner");
   global.loose = in.get("loose");
+  global.open_box = in.get("open_box");
   global.settings = in.get_bits("settings", 0);
 }

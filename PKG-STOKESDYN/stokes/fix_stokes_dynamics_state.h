@@ -67,7 +67,7 @@ class FixStokesDynamicsState : public RowsFix {
     uint64_t settings = 0;
     /* kept for those who know what they mean */
     TimeStepGuard::State guard;
-    std::vector<double> preconditioner, loose;
+    std::vector<double> preconditioner, loose, open_box;
   } global;
 
   bool restart_written = false;    // since the last solve

@@ -5,6 +5,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "neighbor.h"
@@ -40,7 +41,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   ambient.settings = settings.ambient;
   scene.settings = settings.scene;
   rigid.settings = settings.rigid;
-  scene.lists_are_stale();
+  scene.init();
   rigid.forget();
   preconditioner.forget();
   preconditioner.kind = settings.precondition;
@@ -49,8 +50,8 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
 void Hydrodynamics::init()
 {
   ambient.init();
-  scene.lists_are_stale();
-  warned_unconverged = looked_at_clumps = false;
+  scene.init();
+  warned_unconverged = looked_at_clumps = looked_at_flow = false;
 }
 
 void Hydrodynamics::begin()
@@ -153,7 +154,12 @@ void Hydrodynamics::place()
   const Scene::Settings &how = settings.scene;
   eta.resize(solvers.size());
   for (size_t k = 0; k < solvers.size(); k++) eta[k] = ambient.viscosity(solvers[k]);
+  scene.set_open_box(memory->global.open_box);
   scene.update(solvers, eta);
+  memory->global.open_box = scene.open_box();
+  if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && !looked_at_flow)
+    warn_of_misfit(lmp, COMMAND, ambient.misfit());
+  looked_at_flow = true;
   if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
   if (looked_at_clumps || !how.clumps_only || std::isinf(how.cutoff) || how.taper != SD_TAPER_NONE)
     return;

@@ -70,7 +70,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   RigidClumps rigid;
   Preconditioner preconditioner;
   TimeStepGuard guard;
-  bool warned_unconverged = false, looked_at_clumps = false;
+  bool warned_unconverged = false, looked_at_clumps = false, looked_at_flow = false;
   /* those whose rows are here (Ambient::selection) */
   long selection = -1;
 

@@ -171,13 +171,7 @@ void PairStokesDynamics::init_style()
     fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
   require_atoms();
   const Scene::Settings &scene = hydro.settings.scene;
-  if (scene.engine().view == SD_VIEW_ALL)
-    for (int d = 0; d < domain->dimension; d++)
-      if (domain->periodicity[d])
-        fail(lmp,
-             COMMAND +
-                 ": keyword cut_off_distance: 'inf' requires a box that is not periodic, or "
-                 "clumps_only yes");
+  if (scene.everybody()) check_boundaries(lmp, COMMAND, scene);
   if (std::isfinite(scene.cutoff)) check_vast_cutoff(lmp, COMMAND, scene);
 
   double largest = 0.0;

@@ -129,7 +129,7 @@ static double squares(const std::vector<long> &first)
  * not be looked at. */
 sd_cost Preconditioner::cost_by_list()
 {
-  const double n = scene.size(), pairs = scene.list().first[scene.size()];
+  const double n = scene.size(), pairs = scene.cost_of_product();
   double sums[3] = {n, pairs, extent == WHOLE_CLUMPS ? pairs + n : squares(first)};
   MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
   if (sums[1] == 0.0 || sums[2] == 0.0) return {};

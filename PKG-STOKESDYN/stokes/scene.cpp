@@ -17,7 +17,8 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 Scene::Scene(LAMMPS *lmp, Pair *pair, const std::string &command) :
-    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows(), omega()
+    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows(), images(lmp->world),
+    omega()
 {
 }
 
@@ -29,9 +30,10 @@ Scene::~Scene()
   sd_mobility_free(&omega);
 }
 
-const sd_mobility_engine &Scene::Settings::engine() const
+void Scene::init()
 {
-  return std::isinf(cutoff) && !clumps_only ? sd_mobility_all_pairs : sd_mobility_list;
+  lists_are_stale();
+  told = false;
 }
 
 const double *Scene::positions() const
@@ -49,11 +51,23 @@ void Scene::update(const std::vector<int> &who, const std::vector<double> &eta)
 {
   int changed = stale || who != own;
   own = who;
-  if (view() == SD_VIEW_ALL) {
-    gather(eta);
-    place(n_all);
+  if (settings.everybody()) {
+    place_rows(eta);
+    engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
+    if (view() == SD_VIEW_NEAR) {
+      somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
+      if (!somebody_sees) return;
+      tell();
+      images.find(ewald.box, ewald.reach, x, a, w);
+      place(size_with_ghosts());
+    } else {
+      gather(eta);
+      somebody_sees = n_all > 1;
+      place(n_all);
+    }
     return;
   }
+  engine = &sd_mobility_list;
   MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
   if (!changed && !somebody_sees) return;    // nobody will ask where the spheres are
   if (changed) {
@@ -112,11 +126,11 @@ void Scene::place(int n_all_or_ghosts)
 {
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
-  scene.how = {law(), width()};
+  scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr};
   scene.n = size();
   scene.n_all = n_all_or_ghosts;
   scene.spheres = cloud ? this->cloud() : local();
-  scene.pairs = cloud ? nullptr : &list();
+  scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
   scene.world.ctx = this;
   scene.world.me = comm->me;
   scene.world.ranks = comm->nprocs;
@@ -139,7 +153,14 @@ void Scene::place(int n_all_or_ghosts)
       return SD_OK;
     });
   };
-  if (sd_mobility_place(&omega, &settings.engine(), &scene) != SD_OK) out_of_memory();
+  scene.world.exchange = [](void *ctx, const double *send, const int *to, double *receive,
+                            const int *from) {
+    return callback([=] {
+      exchange_numbers(static_cast<Scene *>(ctx)->world, send, to, receive, from);
+      return SD_OK;
+    });
+  };
+  if (sd_mobility_place(&omega, engine, &scene) != SD_OK) out_of_memory();
 }
 
 /* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did
@@ -195,6 +216,10 @@ void Scene::refresh_ghosts(std::vector<double> &ghosts, int width,
 
 void Scene::refresh_ghosts(const double *sphere_rows, double *ghosts, int width)
 {
+  if (view() == SD_VIEW_NEAR) {
+    images.refresh(sphere_rows, ghosts, width);
+    return;
+  }
   const auto row = [=](int i, double *out) {
     if (row_of[i] >= 0) std::copy_n(sphere_rows + width * (size_t) row_of[i], width, out);
   };
@@ -324,7 +349,8 @@ double Scene::memory_usage() const
 {
   return sizeof(int) *
       ((double) candidates.capacity + pairs.capacity + row_of.capacity() + row_of_ghost.capacity()) +
-      sizeof(double) * (x.capacity() + a.capacity() + w.capacity() + 5.0 * n_all);
+      sizeof(double) * (x.capacity() + a.capacity() + w.capacity() + 5.0 * n_all) +
+      images.memory_usage();
 }
 
 }    // namespace StokesDyn

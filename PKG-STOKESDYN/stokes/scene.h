@@ -6,11 +6,13 @@
 #ifndef SD_SCENE_H
 #define SD_SCENE_H
 
+#include "images.h"
 #include "pointers.h"
 
 #include "sd_mobility.h"
 #include "sd_neighbor.h"
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <set>
@@ -31,7 +33,12 @@ class Scene : protected LAMMPS_NS::Pointers {
     double cutoff = 0.0;    // INFINITY: no cut-off
     bool clumps_only = false;
     bool rotation = false;    // vectors have force and torque, 6 numbers an atom
-    const sd_mobility_engine &engine() const;    // what sums u = Omega F
+    /* how everybody sees everybody: all pairs, Ewald sums, or what costs less */
+    enum { AUTO, DIRECT, EWALD };
+    int far_field = AUTO;
+    /* error of a product by Ewald sums over the rms of F/(6 pi eta a) */
+    double far_field_tolerance = 0.0;
+    bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
   } settings;
 
   Scene(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair, const std::string &command);
@@ -39,8 +46,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   Scene(const Scene &) = delete;
   Scene &operator=(const Scene &) = delete;
 
-  /* Which spheres of which ranks the engine sees. */
-  sd_view view() const { return settings.engine().view; }
+  /* Other settings, or a new run. */
+  void init();
+  /* Which spheres of which ranks the engine sees, since the last update(). */
+  sd_view view() const { return engine->view; }
 
   /* The spheres of this step: row k is the atom who[k] of this rank, in a fluid of viscosity
    * eta[k]. Finds the pairs again if LAMMPS has re-neighboured, or if they are others than before
@@ -76,13 +85,19 @@ class Scene : protected LAMMPS_NS::Pointers {
   const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
   int size_with_ghosts() const { return (int) a.size(); }
   sd_spheres local() const { return {x.data(), a.data(), w.data()}; }
-  /* Since the last update(): does one sphere see another, on any rank? Does that of row k see
-   * nobody? */
-  bool anybody_sees() const { return view() == SD_VIEW_ALL ? n_all > 1 : somebody_sees; }
+  /* Since the last update(): does one sphere see another, or an image of itself, on any rank? Does
+   * that of row k see nobody? */
+  bool anybody_sees() const { return somebody_sees; }
   bool alone(int k) const
   {
-    return view() == SD_VIEW_ALL ? n_all == 1 : list().first[k] == list().first[k + 1];
+    return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
+  /* What a product costs this rank, in pairs. */
+  double cost_of_product() const;
+  /* The box around an open cloud whose sum is split: six numbers to keep, as the next box depends
+   * on the last one. */
+  std::vector<double> open_box() const;
+  void set_open_box(const std::vector<double> &box);
   sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }
 
   /* View ALL: the spheres of all ranks that take part, in order of tag, the same on every rank. */
@@ -135,6 +150,15 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<int64_t> all_tag, all_molecule;
   int n_all = 0;
   bool cloud_is_new = true;
+
+  // view NEAR: images behind our own spheres, in x, a, w
+  Images images;
+  sd_ewald ewald = {};
+  /* its parameters, as they were last told */
+  std::string said;
+  bool told = false;
+
+  const sd_mobility_engine *engine = &sd_mobility_list;
   sd_mobility omega;
 
   // of a communication
@@ -144,6 +168,10 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   int width() const { return settings.rotation ? 6 : 3; }
   const double *positions() const;
+  bool periodic() const;
+  bool split();
+  sd_ewald_sizes measure(sd_ewald_box &box) const;
+  void tell();
   void place_rows(const std::vector<double> &eta);
   void place_ghosts();
   void find_pairs();

@@ -5,6 +5,7 @@
 #include "comm.h"
 #include "error.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -24,6 +25,11 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
                "keyword visc: 'grid': the file '" + grid_file +
                    "' has no viscosity: its columns would be ux uy uz eta");
   }
+  if (scene.far_field_tolerance == 0.0)
+    scene.far_field_tolerance = std::max(1e-13, 0.1 * tolerance);
+  // What Ewald sums have not got.
+  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE)
+    scene.far_field = Scene::Settings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1) scene.rotation = true;
   rigid.rotation = scene.rotation;
@@ -86,6 +92,13 @@ void StokesSettings::parse(Keywords &in)
            in.refuse("'" + std::to_string(rigid.shell) + "' must be 1 or >= 12");
        }},
       {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
+      {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
+      {"far_field_tolerance", [&] {
+         if (in.take("auto")) return;
+         scene.far_field_tolerance = in.positive();
+         if (!(scene.far_field_tolerance >= 1e-13 && scene.far_field_tolerance <= 0.1))
+           in.refuse("'" + text(scene.far_field_tolerance) + "' must be 1e-13 ... 0.1");
+       }},
       {"precondition", [&] {
          precondition = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse"});
        }},
@@ -96,7 +109,7 @@ void StokesSettings::parse(Keywords &in)
 /* Which keywords go together. */
 void StokesSettings::check(const Keywords &in) const
 {
-  const bool all_pairs = scene.engine().view == SD_VIEW_ALL;
+  const bool all_pairs = scene.everybody(), by_ewald = scene.far_field == Scene::Settings::EWALD;
   in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
   in.require(!ambient.grid_has_visc || !grid_file.empty(),
              "keyword visc: 'grid' requires fluid_velocity grid FILE");
@@ -106,6 +119,16 @@ void StokesSettings::check(const Keywords &in) const
              "keyword taper requires a cut_off_distance, its range");
   in.require(precondition != Preconditioner::SPARSE || all_pairs,
              "keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
+  in.require(precondition != Preconditioner::SPARSE || !by_ewald,
+             "keyword precondition: 'sparse' is not available with far_field ewald");
+  in.require(!in.given("far_field") || all_pairs,
+             "keyword far_field requires cut_off_distance inf and clumps_only no");
+  in.require(!in.given("far_field_tolerance") ||
+                 (all_pairs && scene.far_field != Scene::Settings::DIRECT),
+             "keyword far_field_tolerance requires cut_off_distance inf, clumps_only no, and "
+             "far_field auto or ewald");
+  in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
+             "keyword far_field: 'ewald' is not available with tensor oseen");
   in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
              "keyword precondition: 'sparse' requires algorithm 2");
   in.require(precondition != Preconditioner::CLUMP || algorithm == GRADIENTS,

@@ -1,0 +1,20 @@
+/* What a product by Ewald sums costs, so that small open clouds go without them. Counted, not
+ * timed: every machine, any number of ranks and a restarted run choose alike. */
+#ifndef SD_EWALD_COST_H
+#define SD_EWALD_COST_H
+
+#include "sd_ewald.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* In pairs of the sum over all pairs, which costs count^2 of them: near pairs, window points and
+ * grid points, each weighed as it was measured (reference: one core, AVX-512, a pair 1 ns). All
+ * spheres of equal radii, width 3; with torques both ways of summing cost about 2.5 times as much. */
+double sd_ewald_cost(const sd_ewald *e);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,117 @@
+/* The scene of Ewald sums: the box, how the sum is split, and whether that pays. */
+#include "scene.h"
+
+#include "keywords.h"
+
+#include "sd_ewald_cost.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+bool Scene::periodic() const
+{
+  return domain->xperiodic && domain->yperiodic && domain->zperiodic;
+}
+
+/* The spheres of all ranks, and the box that they are summed in: LAMMPS's if it is periodic, else
+ * one around them. */
+sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
+{
+  double sums[3] = {(double) size(), 0.0, 0.0};
+  double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
+  for (int k = 0; k < size(); k++) {
+    const double a2 = a[k] * a[k];
+    sums[1] += a2;
+    sums[2] += a2 * a2;
+    most[0] = std::max(most[0], a[k]);
+    for (int d = 0; d < 3; d++) {
+      most[1 + d] = std::max(most[1 + d], -x[3 * k + d]);
+      most[4 + d] = std::max(most[4 + d], x[3 * k + d]);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
+  if (periodic()) {
+    box = {};
+    box.periodic = 1;
+    std::copy_n(domain->boxlo, 3, box.origin);
+    std::copy_n(domain->prd, 3, box.edge);
+    const double tilt[3] = {domain->xy, domain->xz, domain->yz};
+    if (domain->triclinic) std::copy_n(tilt, 3, box.tilt);
+  } else if (sums[0] > 0.0) {
+    const double lo[3] = {-most[1], -most[2], -most[3]};
+    if (box.periodic) box = {};
+    sd_ewald_box_around(&box, lo, most + 4, most[0]);
+  }
+  return {sums[0], sums[1], sums[2], most[0]};
+}
+
+/* Is the sum over everybody split, and how? In an open box only if that costs less, or is asked for.
+ * The same on all ranks. */
+bool Scene::split()
+{
+  if (settings.far_field == Settings::DIRECT) return false;
+  sd_ewald_box box = ewald.box;
+  const sd_ewald_sizes sizes = measure(box);
+  const bool must = periodic() || settings.far_field == Settings::EWALD;
+  const double all_pairs = sizes.count * sizes.count;
+  const sd_status status =
+      sd_ewald_choose(&box, &sizes, width(), settings.far_field_tolerance, &ewald);
+  ewald.box = box;
+  ewald.count = sizes.count;
+  if (status != SD_OK && must)
+    fail(lmp, command + ": keyword far_field: no grid for Ewald sums of " + text(sizes.count) +
+                  " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
+                  text(box.edge[2]) + " at far_field_tolerance " +
+                  text(settings.far_field_tolerance) + ": " + sd_status_string(status));
+  return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
+}
+
+/* The parameters, once a run and when they are others than those told last. */
+void Scene::tell()
+{
+  if (told) return;
+  told = true;
+  const sd_ewald &e = ewald;
+  const std::string now = "Far field by Ewald sums of " + text(e.count) + " spheres in " +
+      (e.box.periodic ? "the periodic box" : "an open box around them") + ": grid " +
+      std::to_string(e.grid[0]) + " x " + std::to_string(e.grid[1]) + " x " +
+      std::to_string(e.grid[2]) + ", windows of " + std::to_string(e.points) +
+      " points, splitting parameter " + text(e.xi) + ", near part up to " + text(e.range) +
+      "; tolerance " + text(e.tolerance) + " of the rms of F/(6 pi eta a)\n";
+  if (now != said && comm->me == 0) utils::logmesg(lmp, now);
+  said = now;
+}
+
+double Scene::cost_of_product() const
+{
+  if (view() == SD_VIEW_NEAR) return sd_ewald_cost(&ewald) / comm->nprocs;
+  return view() == SD_VIEW_ALL ? (double) n_all * n_all / comm->nprocs
+                               : (double) list().first[size()];
+}
+
+std::vector<double> Scene::open_box() const
+{
+  const sd_ewald_box &b = ewald.box;
+  if (b.periodic || b.edge[0] == 0.0) return {};
+  return {b.origin[0], b.origin[1], b.origin[2], b.edge[0], b.edge[1], b.edge[2]};
+}
+
+void Scene::set_open_box(const std::vector<double> &box)
+{
+  ewald.box = {};
+  if (box.size() != 6) return;
+  std::copy_n(box.begin(), 3, ewald.box.origin);
+  std::copy_n(box.begin() + 3, 3, ewald.box.edge);
+}
+
+}    // namespace StokesDyn
