@@ -1,0 +1,211 @@
+"""Everybody sees everybody in a periodic box, and in a large open one: far_field.
+
+Scenes of unittest/data/ewald (README there): dense sums over k and over images, made with two splittings."""
+import csv
+import functools
+import pathlib
+
+import numpy as np
+import pytest
+
+from system import LammpsError, Spheres, dump_lines, input_lines, lmp, note, read_dump
+
+DATA = pathlib.Path(__file__).resolve().parents[1] / "data" / "ewald"
+SCENES = ["p01", "p02", "p04", "p05", "p07", "p10", "p12", "p14"]
+ALL = "cut_off_distance inf algorithm 2 max_iter 1000"
+FORCES = "x y z vx vy vz f_drag[1] f_drag[2] f_drag[3] f_drag[7] f_drag[8] f_drag[9]"
+
+
+def table(name):
+    with open(DATA / name) as lines:
+        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+@functools.lru_cache(None)
+def scene(name):
+    """(settings of the scene, columns by name)"""
+    about = next(row for row in table("scenes.csv") if row["scene"] == name)
+    rows = table(f"{name}.csv")
+    return about, {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+
+
+def columns(rows, names):
+    return np.stack([rows[name] for name in names.split()], axis=1)
+
+
+def box_of(about):
+    tilt = tuple(float(about[t]) for t in ("xy", "xz", "yz"))
+    return [(0.0, float(about[length])) for length in ("lx", "ly", "lz")], tilt if any(tilt) else None
+
+
+def inside(x, box, tilt):
+    """The images within the box, as data files want them."""
+    (_, lx), (_, ly), (_, lz) = box
+    xy, xz, yz = tilt or (0.0, 0.0, 0.0)
+    edges = np.array([[lx, 0, 0], [xy, ly, 0], [xz, yz, lz]])
+    f = np.linalg.solve(edges.T, x.T).T
+    return (f - np.floor(f)) @ edges
+
+
+def moving(name, motion):
+    """Lines of the scene with the velocities of the resistance problem R, or with one velocity for all, S; the reference."""
+    about, rows = scene(name)
+    box, tilt = box_of(about)
+    if motion == "R":
+        v, w = columns(rows, "vx vy vz"), columns(rows, "wx wy wz")
+        F, T = columns(rows, "Rx Ry Rz"), columns(rows, "RTx RTy RTz")
+    else:
+        v, w = np.tile((0.48, -0.6, 0.64), (len(rows["a"]), 1)), np.zeros((len(rows["a"]), 3))
+        F, T = columns(rows, "Sx Sy Sz"), columns(rows, "STx STy STz")
+    spheres = Spheres(inside(columns(rows, "x y z"), box, tilt), rows["a"], v)
+    spins = [f"set atom {i + 1} omega " + " ".join(repr(float(c)) for c in w[i]) for i in range(spheres.n)]
+    words = f"{ALL} visc {about['eta']} rotation {about['rotation']}"
+    return spheres, words, dict(boundary="p p p", box=box, tilt=tilt), spins, np.hstack([F, T])
+
+
+def deviation(rows, reference, a):
+    """rms of forces over that of the reference; torques count over the radius."""
+    scale = np.hstack([np.ones((len(a), 3)), np.repeat(1.0 / a[:, None], 3, axis=1)])
+    return np.linalg.norm((rows - reference) * scale) / np.linalg.norm(reference * scale)
+
+
+def solved(simulation, name, motion, tolerance):
+    spheres, words, where, spins, reference = moving(name, motion)
+    sim = simulation(spheres, f"{words} relative_tolerance {0.1 * tolerance} far_field_tolerance {tolerance}", **where)
+    sim.commands(spins).run()
+    error = deviation(sim.fix_rows()[:, [0, 1, 2, 6, 7, 8]], reference, spheres.a)
+    note("error", error)
+    return error
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("motion", ["R", "S"])
+@pytest.mark.parametrize("name", SCENES)
+def test_forces_are_those_of_the_periodic_sum(simulation, name, motion, tolerance):
+    assert solved(simulation, name, motion, tolerance) < 10 * tolerance
+
+
+@pytest.mark.parametrize("name", ["p04", "p07", "p12", "p14"])
+def test_one_two_three_and_four_ranks_are_one(tmp_path, name):
+    spheres, words, where, spins, reference = moving(name, "R")
+    lines = input_lines(spheres, words + " relative_tolerance 1e-12 far_field_tolerance 1e-12", tmp_path / "data", **where)
+    lines = ["box tilt large"] + lines + spins + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"]
+    first = None
+    for ranks in (1, 2, 3, 4):
+        lmp(tmp_path, lines, ranks=ranks)
+        rows = read_dump(tmp_path / "dump")[0][1][:, 6:]
+        first = rows if first is None else first
+        assert deviation(rows, first, spheres.a) < 1e-10
+    assert deviation(first, reference, spheres.a) < 1e-10
+
+
+BASIS = {"SC": [(0, 0, 0)], "BCC": [(0, 0, 0), (0.5, 0.5, 0.5)],
+         "FCC": [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)]}
+
+
+@pytest.mark.parametrize("lattice", BASIS)
+def test_drag_of_cubic_arrays(simulation, lattice):
+    """F = 6 pi eta a K U with the superficial velocity U, here of the fluid past spheres at rest."""
+    a, eta, U = 0.7, 1.3, np.array([0.3, -0.2, 0.5])
+    for row in table("lattice_drag.csv"):
+        phi, K = float(row["phi"]), float(row["K_rpy"])
+        if row["lattice"] != lattice:
+            continue
+        L = (4 / 3 * np.pi * a**3 * len(BASIS[lattice]) / phi)**(1 / 3)
+        spheres = Spheres(L * (np.array(BASIS[lattice]) + 0.123), a)
+        sim = simulation(spheres, f"{ALL} visc {eta} fluid_velocity {U[0]} {U[1]} {U[2]} relative_tolerance 1e-12 "
+                         "far_field_tolerance 1e-12", boundary="p p p", box=[(0.0, L)] * 3).run()
+        assert np.abs(sim.drag / (6 * np.pi * eta * a * U) - K).max() < 1e-9 * K, phi
+
+
+def cloud(n, phi, seed=5, ratio=3.0):
+    rng = np.random.default_rng(seed)
+    a = rng.uniform(1.0, ratio, n)
+    side = (4 / 3 * np.pi * (a**3).sum() / phi)**(1 / 3)
+    return Spheres(rng.uniform(0, side, (n, 3)), a, rng.normal(size=(n, 3)) + (0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize("rotation", ["no", "yes"])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_an_open_cloud_has_the_forces_of_all_pairs(simulation, tolerance, rotation):
+    spheres = cloud(300, 0.2)
+    words = f"{ALL} visc 1.3 rotation {rotation} relative_tolerance {0.1 * tolerance}"
+    direct = simulation(spheres, words + " far_field direct").run().fix_rows()
+    ewald = simulation(spheres, f"{words} far_field ewald far_field_tolerance {tolerance}").run().fix_rows()
+    take = [0, 1, 2, 6, 7, 8]
+    error = deviation(ewald[:, take], direct[:, take], spheres.a)
+    assert 0.0 < error < 10 * tolerance
+
+
+# --- when ------------------------------------------------------------------------------------------------------------
+
+def said(log):
+    return [line for line in log.read_text().splitlines() if line.startswith("Far field by Ewald sums")]
+
+
+@pytest.mark.parametrize("n,split", [(200, False), (6000, True)])
+def test_auto_splits_the_sum_of_large_open_clouds(simulation, tmp_path, n, split):
+    log = tmp_path / "log"
+    simulation(cloud(n, 0.1), "cut_off_distance inf algorithm 2 visc 1 relative_tolerance 1e-1", log=log).run().run().close()
+    assert len(said(log)) == split      # once, though there are two runs
+
+
+def test_parameters_are_told_when_they_are_others(simulation, tmp_path):
+    log = tmp_path / "log"
+    sim = simulation(cloud(60, 0.1), f"{ALL} visc 1", log=log, boundary="p p p", box=[(0.0, 40.0)] * 3).run().run()
+    sim.command("change_box all x final 0 50 y final 0 50 z final 0 50 remap")
+    sim.run().close()
+    lines = said(log)
+    assert len(lines) == 2 and lines[0] != lines[1]
+    assert "60 spheres in the periodic box: grid" in lines[0] and "tolerance 0.0001 of the rms" in lines[0]
+
+
+@pytest.mark.parametrize("boundary", ["p p f", "p f f", "f p s", "m f p"])
+def test_partly_periodic_boxes_are_refused(simulation, boundary):
+    with pytest.raises(LammpsError, match="cut_off_distance: 'inf' requires a box that is periodic in all three.*p p p.*clumps_only"):
+        simulation(cloud(5, 0.01), f"{ALL} visc 1", boundary=boundary, box=[(-1.0, 40.0)] * 3).run()
+
+
+@pytest.mark.parametrize("words,text", [("far_field direct", "far_field direct"), ("precondition sparse", "precondition sparse"),
+                                        ("tensor oseen", "tensor: 'oseen'")])
+def test_what_a_periodic_sum_has_not_got(simulation, words, text):
+    with pytest.raises(LammpsError, match=text + ".*not periodic"):
+        simulation(cloud(5, 0.01), f"{ALL} visc 1 {words}", boundary="p p p", box=[(-1.0, 40.0)] * 3).run()
+
+
+# --- runs ------------------------------------------------------------------------------------------------------------
+
+def final(sim):
+    return np.hstack([sim.x, sim.v, sim.fix_rows()[:, :6]])
+
+
+@pytest.mark.parametrize("boundary", ["p p p", "f f f"])
+@pytest.mark.parametrize("restart", [False, True])
+def test_a_run_in_two_pieces(simulation, tmp_path, boundary, restart):
+    """The open box around the cloud, which lasts while the spheres move, is kept too."""
+    spheres = cloud(40, 0.05, ratio=1.5)
+    lines = input_lines(spheres, "cut_off_distance inf visc 1.3 algorithm 2 far_field ewald far_field_tolerance 1e-2", tmp_path / "data",
+                        boundary=boundary, box=[(-20.0, 45.0)] * 3 if "f" in boundary else [(0.0, 25.0)] * 3, fix=False, dt=0.05)
+    rest = ["fix drag all stokes_dynamics apply no", "fix move all nve"]
+    whole = final(simulation().commands(lines + rest).run(30))
+    sim = simulation().commands(lines + rest).run(17)
+    if restart:
+        sim.command(f"write_restart {tmp_path}/mid")
+        sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.05"] + rest)
+    assert np.abs(final(sim.run(13)) - whole).max() < 1e-10 * np.abs(whole).max()
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+def test_a_box_that_shrinks_and_shears_in_the_run(simulation, tmp_path, ranks):
+    """Forces of a step are those that a new run finds for the box and the spheres as the step before has left them."""
+    words = f"{ALL} visc 1.3 relative_tolerance 1e-10 far_field_tolerance 1e-10"
+    lines = input_lines(cloud(50, 0.1), words, tmp_path / "data", boundary="p p p", box=[(0.0, 30.0)] * 3, tilt=(0.0, 0.0, 0.0), dt=0.01)
+    lines += ["fix squeeze all deform 1 x scale 0.7 z scale 0.9 xy erate 3.2 remap x", *dump_lines(tmp_path / "dump", every=11),
+              f"restart 10 {tmp_path}/last", "run 11"]
+    lmp(tmp_path, lines, ranks=ranks)
+    (_, before), (_, after) = read_dump(tmp_path / "dump")
+    again = ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/last.10", f"pair_style stokes_dynamics {words} warm_start no",
+             "pair_coeff * *", "fix drag all stokes_dynamics apply no"]
+    sim = simulation().commands(again).run()
+    assert np.linalg.norm(sim.drag - after[:, 6:9]) < 1e-8 * np.linalg.norm(sim.drag)
+    assert np.linalg.norm(before[:, 6:9] - after[:, 6:9]) > 0.1 * np.linalg.norm(sim.drag)
