@@ -131,7 +131,7 @@ void FixHydroVans::average()
   select(average_bit);
   enum { COUNT, RADIUS, VOLUME, MASS, MEANS };
   std::vector<double> sums(total + MEANS, 0.0), all(total + MEANS);
-  work.resize(N + 1);
+  work.resize(2 * N);
   const sd_vans_averaging how = {set.point, (int) nclass, stream.class_radii.data()};
   const sd_vans_grains grains = this->grains();
   const int odd = sd_vans_average(&set.mesh, &set.law, &how, stream.U.data(),
@@ -166,7 +166,7 @@ VansStream::Given FixHydroVans::impulses(double T, double ratio)
   const size_t N = stream.ncell();
   const int n = atom->nlocal;
   std::vector<double> mine(N + 2, 0.0), all(N + 2), rest(n + 1, 0.0);
-  work.resize(N + 1);
+  work.resize(N);
   take.assign(n, 0);
   for (int i = 0; i < n; i++) {
     if (!memo.has(i)) continue;

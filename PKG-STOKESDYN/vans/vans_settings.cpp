@@ -225,6 +225,7 @@ void VansSettings::read(Keywords &in)
       {"classes", [&] { classes = in.yes_no(); }},
       {"class_radii", [&] { take_class_radii(in); }},
       {"grains", [&] { point = in.choice({"extended", "point"}) == 1; }},
+      {"felt", [&] { law.felt_by_volume = in.choice({"centre", "volume"}) == 1; }},
       {"fluctuation", [&] { take_fluctuation(in); }},
       {"renewal", [&] { renewal = in.positive(); }},
       {"rules", rules},
@@ -244,6 +245,9 @@ void VansSettings::check(const Keywords &in) const
              "keyword gravity (gx gy gz) is required; its x component is the slope");
   in.require(!yade() || mesh_file.empty(),
              "keyword mesh: rules yade knows slices of one height only");
+  in.require(!law.felt_by_volume || !yade(), "keyword felt: rules yade feel the water at the centre");
+  in.require(!law.felt_by_volume || !point,
+             "keyword felt: with grains point all of a grain is at its centre");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal: there are no fluctuations");
   in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
   const bool stands = law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&

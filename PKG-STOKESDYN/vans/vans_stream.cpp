@@ -110,8 +110,8 @@ void VansStream::take_averages(double area, const double *sums)
 void VansStream::tell_limits(double T, double dt, const double cut[2])
 {
   int slice = 0;
-  const double rate = sd_vans_drag_rate(&mesh, &set.law, fluid.radius, U.data(), hindrance.data(),
-                                        grain.data(), &slice);
+  const double rate = sd_vans_drag_rate(&mesh, &fluid, U.data(), hindrance.data(), grain.data(),
+                                        &slice);
   if (set.couple == VansSettings::TWO && !told_far && rate * T > 3.0) {
     told_far = true;
     set.voice.warn("the couplings are too far apart: drag changes the water at z = " +
@@ -131,23 +131,38 @@ void VansStream::tell_limits(double T, double dt, const double cut[2])
   }
 }
 
+/* b, and what it has too much at the start as a source. */
+void VansStream::exchange(double T, double dt, std::vector<double> &rest)
+{
+  const double *of_classes = set.classes ? classes() : nullptr;
+  double cut[2] = {0.0, 0.0};
+  if (set.law.felt_by_volume) {
+    rest.resize(ncell());
+    sd_vans_exchange_by_law(&mesh, &fluid, U.data(), hindrance.data(), grain.data(), of_classes,
+                            b.data(), rest.data());
+  } else
+    sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, b.data(), cut);
+  tell_limits(T, dt, cut);
+}
+
 void VansStream::solve(double area, double T, double dt, const Given &given)
 {
   const int N = ncell();
-  double cut[2], returned = 0.0;
   const int64_t steps = sd_vans_steps(fluid.rules, T, &dt);
-  sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), set.classes ? classes() : nullptr,
-                   b.data(), cut);
-  tell_limits(T, dt, cut);
+  std::vector<double> rest;
+  exchange(T, dt, rest);
   mixing_length();
 
   const bool account = !given.back.empty();
   std::vector<double> source(account ? N : 0), moved(source), shear(source);
+  double returned = 0.0;
   if (account)
     returned = sd_vans_give_back(&mesh, fluid.rho * area, T, given.back.data(), outstanding.data(),
                                  source.data());
+  source.resize(std::max(source.size(), rest.size()));
+  for (size_t n = 0; n < rest.size(); n++) source[n] += rest[n];
   const sd_vans_column column = {phi(), row(SD_VANS_VX), b.data(), length.data(),
-                                 account ? source.data() : nullptr};
+                                 source.empty() ? nullptr : source.data()};
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0};
   const sd_status status =
@@ -158,6 +173,8 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
                    ". Take a shorter time between couplings");
   if (!account) return;
 
+  for (size_t n = 0; n + 1 < rest.size(); n++)
+    moved[n] -= fluid.rho * sd_vans_height(&mesh, (int) n) * T * rest[n];
   sd_vans_hand_over(&mesh, phi(), T, &books, shear_density.data(), foreseen_density.data());
   for (int n = 0; n < N; n++) ledger.transit += area * moved[n];
   ledger.transit -= given.all + returned;

@@ -88,6 +88,7 @@ class VansStream {
 
   const double *classes() const;
   void mixing_length();
+  void exchange(double T, double dt, std::vector<double> &rest);
   void tell_limits(double T, double dt, const double cut[2]);
   [[noreturn]] void no_average(int n, double area);
   void check_mesh(const NamedState &state) const;

@@ -84,7 +84,7 @@ static void grains(double ratio, int n, double *average, double *force)
   const int N = 900;
   const double a = 0.003, dz = a / ratio;
   double *edge = array(N + 1), *phi = array(N), *U = array(N + 1), *hindrance = array(N),
-         *V = array(N), *sums = array(N * SD_VANS_ROWS), *x = array(3 * n), *v = array(3 * n),
+         *V = array(2 * N), *sums = array(N * SD_VANS_ROWS), *x = array(3 * n), *v = array(3 * n),
          *radius = array(n), *F = array(3 * n), *drag = array(n), averages[RUNS], forces[RUNS];
   for (int k = 0; k <= N; k++) edge[k] = k * dz, U[k] = 0.001 * k;
   for (int k = 0; k < N; k++) phi[k] = 0.5;

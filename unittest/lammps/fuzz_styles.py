@@ -257,7 +257,7 @@ VANS = {
     "surface": [Or(free=[], speed=[EQUAL])], "pressure_gradient": [EQUAL],
     "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")], "classes": [YES_NO],
     "class_radii": [Counted(32, positive("0.003", "0.002"))],
-    "grains": [Choice("extended", "point")], "overlap": [Choice("twice", "once")],
+    "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
     "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED])],
     "renewal": [positive("0.1", "1e-4")], "region": [Name("zone", "part", "nowhere")],
     "average": [Name("all", "g", "nobody")], "conserve": [YES_NO], "rules": [Choice("consistent", "consistent", "yade")],
@@ -283,6 +283,8 @@ def judge_vans(case, words, how):
         case.refuse_if(name not in case.settings, name)
     case.refuse_if(how == "no radius" and s("couple") != "fluid", "radius")
     case.refuse_if(how == "no molecules" and s("overlap") == "once", "overlap")
+    case.refuse_if(s("felt") == "volume" and "yade" == s("rules"), "felt")
+    case.refuse_if(s("felt") == "volume" and s("grains") == "point", "felt")
     if s("mesh", "file") != "file":
         cells, dz, bottom = (float(w) for w in case.settings["mesh"])
         for name in ("profile", "given", "convective"):

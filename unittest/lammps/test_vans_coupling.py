@@ -13,7 +13,8 @@ def profile(tmp_path):
 
 
 @pytest.mark.parametrize("keywords", ["", "sidewall 0.03 1", "surface speed 0.7 viscosity einstein", "turbulence none pressure_gradient -300 viscosity power",
-                                      "fluctuation correlated 7 0.01 renewal 0.0004", "lift 0.2", "mesh 16 0.004 0 profile zero grains point"])
+                                      "fluctuation correlated 7 0.01 renewal 0.0004", "lift 0.2", "felt volume",
+                                      "felt volume classes yes surface speed 0.7 viscosity power", "mesh 16 0.004 0 profile zero grains point"])
 def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
     """Mobile grains + water + what is on its way = start + what came from outside - what the fixed bed took, by drag and by contacts. Velocity Verlet
     gives the force of the first and the last step half a time step each. 1e-10 of all that was moved."""
@@ -46,15 +47,18 @@ def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
     s.close()
 
 
-MOVING = "fluctuation {kind} 4711 0.008 renewal 0.001"
+def moving(kind):
+    """kind: of the fluctuations, and more keywords"""
+    name, _, more = kind.partition(" ")
+    return f"fluctuation {name} 4711 0.008 renewal 0.001 {more}"
 
 
-@pytest.mark.parametrize("kind", ["correlated", "depth"])
+@pytest.mark.parametrize("kind", ["correlated", "depth", "depth felt volume"])
 def test_ranks_agree(tmp_path, profile, kind):
     """Positions, velocities, forces and profiles on 2 and 4 ranks as on one, to 1e-10; fluctuations on."""
     result = {}
     for ranks, grid in ((1, "1 1 1"), (2, "2 1 1"), (4, "2 1 2")):
-        script = bed_script(f"{MESH} profile file {profile} sidewall 0.03 1 classes yes " + MOVING.format(kind=kind), damp=0, processors="processors " + grid)
+        script = bed_script(f"{MESH} profile file {profile} sidewall 0.03 1 classes yes " + moving(kind), damp=0, processors="processors " + grid)
         script += f"""
 fix out all ave/time 100 1 100 f_vans[*] mode vector file profile.{ranks}
 thermo_style custom step f_vans[1] f_vans[4] f_vans[6] f_vans[8]
@@ -74,11 +78,11 @@ write_dump all custom dump.{ranks} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[
         assert (np.abs(result[ranks][1] - profiles).max(axis=0) / scale).max() < 1e-5    # ave/time prints 6 digits
 
 
-@pytest.mark.parametrize("kind", ["correlated", "depth"])
+@pytest.mark.parametrize("kind", ["correlated", "depth", "correlated felt volume"])
 def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
     """Broken at a step that is no coupling step. Contacts without damping: LAMMPS's own contact forces at the first step of a run are those of the
     velocity at full step, others those at half step, so that damped contacts are not the same after any restart."""
-    script = bed_script(f"{MESH} profile file {profile} " + MOVING.format(kind=kind), damp=0)
+    script = bed_script(f"{MESH} profile file {profile} " + moving(kind), damp=0)
     output = "write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] f_vans[6] modify format float %.17g\n"
     done = run_lmp(tmp_path, script + "run 150\nwrite_restart half\nrun 250\n" + output.format("split"), name="in.split")
     assert done.returncode == 0, done.stdout[-2000:]
@@ -154,6 +158,30 @@ def test_coupling_time_that_is_too_long_is_told(tmp_path, d, every, told):
 def test_exchange_that_is_cut_off_is_told(tmp_path, keywords, told):
     """Grains of 0.05 mm every 0.1 ms, with fluid steps of 10 us: b is above 1/(10 dt), and the water too fast unless the books are kept."""
     assert ("of the drag does not reach the water" in coupled(tmp_path, 5e-5, 10, keywords)) == told
+
+
+@pytest.mark.parametrize("conserve", ["yes", "no"])
+def test_water_in_a_bed_of_spheres_that_overlap_is_even(conserve):
+    """160 fixed spheres at even heights, phi 0.66 above phi_max 0.61, so that there is no eddy viscosity: all the water in the bed has the velocity where
+    drag balances the slope, f(U) n = rho (1 - phi) g, and so it stays. (Felt at the centre, waves of half a diameter grow until the run ends.)"""
+    d, phi, width, g = 0.006, 0.66, 0.024, 0.4905
+    height = np.pi / 6 * d / phi * 10
+    s = Scene(box=(0, width, 0, width, -d, 0.18))
+    x = np.random.default_rng(1).uniform(0, width, (160, 3))
+    x[:, 2] = d / 2 + (np.arange(160) + 0.5) / 160 * height
+    s.spheres(x, np.zeros((160, 3)), d / 2)
+    s.do("timestep 1e-2", f"fix h all hydro/vans 1 mesh 151 {0.09 / 150} 0 fluid 1000 0.001 gravity {g} 0 -9.8 solve 0.01 1e-3 phi_max 0.61 felt volume conserve {conserve}",
+         "run 3000")
+    z, U, phi = s.column("z", 151), s.column("u", 151), s.column("phi", 151)
+    inside = (z > 2 * d) & (z < height - 2 * d)
+    grains = phi[inside] / (np.pi / 6 * d ** 3) * 0.5 * np.pi * (d / 2) ** 2 * (1 - phi[inside]) ** -3.1
+    viscous = 24.4 * 1e-6 / d
+    law = (-viscous + np.sqrt(viscous ** 2 + 4 * 0.44 * g * (1 - phi[inside]) / grains)) / (2 * 0.44)
+    assert np.abs(U[inside] / law - 1).max() < 1e-4
+    before = s.column("u", 151)
+    s.do("run 2000")
+    assert np.abs(s.column("u", 151) - before).max() < 1e-6 * before.max()
+    s.close()
 
 
 def test_fluctuations_by_depth_know_no_unit_of_time(tmp_path):

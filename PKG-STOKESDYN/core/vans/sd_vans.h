@@ -98,6 +98,11 @@ typedef struct {
   double lift;
   /* [N] a force along x, taken off every grain of the slice; NULL: none */
   const double *convective;
+  /* 0: a grain feels the water at its centre, and its drag is spread over the slices by volume.
+   * 1: each slice of a grain feels the water there, in proportion to its volume, and gives the drag
+   * back there: the grain feels the mean over its volume (of a drag linear in U, the mean of U), and
+   * what water and grains exchange is symmetric slice by slice. Not with Yade's rule. */
+  int felt_by_volume;
   sd_vans_rules rules;
 } sd_vans_force_law;
 
@@ -134,12 +139,13 @@ typedef struct {
 
 /* Adds grains to the sums [1 + nclass][N][ROWS]: of all, then of each class. The drag is that of
  * the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre
- * outside the mesh. V [N] scratch. Returns -1, or the index of the first sphere that belongs to no
+ * outside the mesh; with felt_by_volume in every slice that of the slip there. scratch [2 N].
+ * Returns -1, or the index of the first sphere that belongs to no
  * class.
  * Yade's rule: mirrored slices; the velocities of a class all in the slice of the centre. */
 int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
                     const sd_vans_averaging *how, const double *U, const double *hindrance,
-                    const sd_vans_grains *grains, double *sums, double *V);
+                    const sd_vans_grains *grains, double *sums, double *scratch);
 
 /* A profile from its sums [N][ROWS]: phi = V / (area * height of the slice), the others divided by
  * V, 0 where there is no grain. */
@@ -264,10 +270,17 @@ void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, doub
                       double cut[2]);
 
 /* The largest rate at which the law of drag brings the water of a slice to the speed of its grains,
- * all of radius a, and the slice. 1/rate is the time that couplings must resolve. */
-double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_force_law *law, double a,
-                         const double *U, const double *hindrance, const double *profile,
-                         int *slice);
+ * all of the fluid's radius, and the slice. 1/rate is the time that couplings must resolve. */
+double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                         const double *hindrance, const double *profile, int *slice);
+
+/* The exchange without a quotient of drag and slip: b is what the law of drag has for the mean slip
+ * in the slice, so that it is never negative nor cut off, and what that is too much at the start of
+ * a solve is added to the water as a source:  b [N] out (1/s);  rest [N] out, b (U - v) - n<f>/rho.
+ * Together they are the drag to rounding, and close to it while U changes. */
+void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                             const double *hindrance, const double *profile, const double *classes,
+                             double *b, double *rest);
 
 /* Time steps in a solve of length T with steps of about dt. Consistent: the least number of equal
  * steps no longer than dt (to 1e-9), and dt is made to fit. Yade's rule: dt stays and is added up

@@ -45,22 +45,43 @@ void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, doub
 
 /* n f/w over rho: the drag on one grain of slip w is f = factor w, there are phi/V grains in a
  * volume. */
-double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_force_law *law, double a,
-                         const double *U, const double *hindrance, const double *profile,
-                         int *slice)
+static double rate_of(const sd_vans_fluid *fluid, double a, double phi, double slip, double hindrance)
 {
+  const double factor =
+      0.5 * SD_PI * a * (0.44 * fluid->rho * a * fabs(slip) + 12.2 * fluid->eta) * hindrance;
+  return phi / sphere(a) * factor / fluid->rho;
+}
+
+double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                         const double *hindrance, const double *profile, int *slice)
+{
+  const double *vx = profile + (long) SD_VANS_VX * mesh->ncell;
   double largest = 0.0;
   for (int n = 0; n < mesh->ncell - 1; n++) {
-    const double w[3] = {U[n + 1] - profile[(long) SD_VANS_VX * mesh->ncell + n], 0.0, 0.0};
-    const double factor =
-        0.5 * SD_PI * a * (0.44 * law->rho * a * fabs(w[0]) + 12.2 * law->eta) * hindrance[n];
-    const double rate = profile[n] / sphere(a) * factor / law->rho;
+    const double rate = rate_of(fluid, fluid->radius, profile[n], U[n + 1] - vx[n], hindrance[n]);
     if (rate > largest) {
       largest = rate;
       *slice = n;
     }
   }
   return largest;
+}
+
+void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                             const double *hindrance, const double *profile, const double *classes,
+                             double *b, double *rest)
+{
+  const long N = mesh->ncell;
+  const double *vx = profile + SD_VANS_VX * N;
+  for (int n = 0; n < N; n++) {
+    const double slip = U[n + 1] - vx[n];
+    b[n] = classes ? 0.0 : rate_of(fluid, fluid->radius, profile[n], slip, hindrance[n]);
+    for (int c = 0; classes && c < fluid->nclass; c++) {
+      const double phi = classes[c * SD_VANS_ROWS * N + n];
+      b[n] += rate_of(fluid, fluid->class_radius[c], phi, slip, hindrance[n]);
+    }
+    rest[n] = b[n] * slip - drag_density(mesh, fluid, profile, classes, n) / fluid->rho;
+  }
 }
 
 int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)

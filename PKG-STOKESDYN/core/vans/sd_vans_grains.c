@@ -105,6 +105,66 @@ void sd_vans_drag(double rho, double eta, double a, double hindrance, const doub
   for (int d = 0; d < 3; d++) F[d] = factor * w[d];
 }
 
+/* Velocity past grain i of water that moves at u, and the drag on the grain over that velocity. */
+static double drag_in(const sd_vans_force_law *law, const sd_vans_grains *grains, int i, double u,
+                      double hindrance, double w[3])
+{
+  const double *v = grains->v + 3 * (long) i;
+  w[0] = u - v[0];
+  w[1] = -v[1];
+  w[2] = -v[2];
+  if (grains->fluctuation)
+    for (int d = 0; d < 3; d++) w[d] += grains->fluctuation[3 * (long) i + d];
+  return drag_factor(law->rho, law->eta, grains->a[i], hindrance, w);
+}
+
+/* Adds share V/whole of the drag of grain i in water of velocity u. */
+static void add_drag(const sd_vans_force_law *law, const sd_vans_grains *grains, int i, double u,
+                     double hindrance, double share, double F[3])
+{
+  double w[3];
+  const double factor = drag_in(law, grains, i, u, hindrance, w);
+  for (int d = 0; d < 3; d++) F[d] += share * factor * w[d];
+}
+
+/* Drag on grain i slice by slice. What lies outside the mesh sees the values of its ends. */
+static void drag_by_volume(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                           const double *hindrance, const sd_vans_grains *grains, int i,
+                           double F[3])
+{
+  const int N = mesh->ncell;
+  const double a = grains->a[i], z = grains->x[3 * (long) i + 2], height = z - mesh->z_ref,
+               whole = 2.0 * primitive(a * a, a);
+  double below = -0.5 * whole; /* primitive at the lower end of the slice */
+  int n = sd_vans_slice_of(mesh, z - a);
+  F[0] = F[1] = F[2] = 0.0;
+  if (n < 0) {
+    const double here = primitive(a * a, fmin(-height, a));
+    add_drag(law, grains, i, U[0], hindrance[0], (here - below) / whole, F);
+    below = here;
+    n = 0;
+  }
+  for (; n < N && mesh->edge[n] - height < a; n++) {
+    const double here = primitive(a * a, fmin(mesh->edge[n + 1] - height, a));
+    add_drag(law, grains, i, U[n + 1], hindrance[n], (here - below) / whole, F);
+    below = here;
+  }
+  add_drag(law, grains, i, U[N], hindrance[N - 1], 0.5 - below / whole, F);
+}
+
+/* Drag on grain i, centre in slice p. */
+static void drag_on(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                    const double *hindrance, const sd_vans_grains *grains, int i, int p,
+                    double F[3])
+{
+  const int seen = p < 0 ? 0 : p < mesh->ncell ? p : mesh->ncell - 1;
+  F[0] = F[1] = F[2] = 0.0;
+  if (law->felt_by_volume)
+    drag_by_volume(mesh, law, U, hindrance, grains, i, F);
+  else
+    add_drag(law, grains, i, p < 0 ? U[0] : U[seen + 1], hindrance[seen], 1.0, F);
+}
+
 static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
                          int p, double a, double vx)
 {
@@ -127,29 +187,24 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
                    const double *hindrance, const sd_vans_grains *grains, double *F,
                    double *drag_x)
 {
-  const double *x = grains->x, *v = grains->v, *a = grains->a, *fluctuation = grains->fluctuation;
   const unsigned char *take = grains->take;
-  const int n = grains->n;
   const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
   int outside = 0;
-  for (int i = 0; i < n; i++) {
+  for (int i = 0; i < grains->n; i++) {
     double *Fi = F + 3 * (long) i;
     Fi[0] = Fi[1] = Fi[2] = 0.0;
     if (drag_x) drag_x[i] = 0.0;
     if (take && !take[i]) continue;
-    const int p = sd_vans_slice_of(mesh, x[3 * (long) i + 2]), inside = p >= 0 && p < mesh->ncell;
+    const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]),
+              inside = p >= 0 && p < mesh->ncell;
     if (!inside) outside++;
     if (!inside && law->rules == SD_VANS_YADE) continue;
-    const int seen = p < 0 ? 0 : p < mesh->ncell ? p : mesh->ncell - 1;
-    const double *vi = v + 3 * (long) i, ai = a[i], u = p < 0 ? U[0] : U[seen + 1];
-    double w[3] = {u - vi[0], -vi[1], -vi[2]};
-    if (fluctuation)
-      for (int d = 0; d < 3; d++) w[d] += fluctuation[3 * (long) i + d];
-    const double factor = drag_factor(law->rho, law->eta, ai, hindrance[seen], w);
-    const double displaced = 4.0 / 3.0 * SD_PI * ai * ai * ai * law->rho;
-    for (int d = 0; d < 3; d++) Fi[d] = factor * w[d] - displaced * g[d];
-    if (drag_x) drag_x[i] = factor * w[0];
-    if (inside && law->lift != 0.0) Fi[2] += lift_force(mesh, law, U, p, ai, vi[0]);
+    const double a = grains->a[i], displaced = 4.0 / 3.0 * SD_PI * a * a * a * law->rho;
+    drag_on(mesh, law, U, hindrance, grains, i, p, Fi);
+    if (drag_x) drag_x[i] = Fi[0];
+    for (int d = 0; d < 3; d++) Fi[d] -= displaced * g[d];
+    if (inside && law->lift != 0.0)
+      Fi[2] += lift_force(mesh, law, U, p, a, grains->v[3 * (long) i]);
     if (inside && law->convective) Fi[0] -= law->convective[p];
   }
   return outside;
@@ -171,23 +226,23 @@ static inline void add(double *sum, double V, const double *v, double drag)
   sum[SD_VANS_DRAG] += V * drag;
 }
 
-/* Adds one grain in its slices first to first + count - 1. */
+/* Adds one grain in its slices first to first + count - 1. drag [count] */
 static void add_slices(double *sums, int first, int count, const double *V, const double *v,
-                       double drag)
+                       const double *drag)
 {
   double *sum = sums + (long) first * SD_VANS_ROWS;
-  for (int k = 0; k < count; k++) add(sum + k * SD_VANS_ROWS, V[k], v, drag);
+  for (int k = 0; k < count; k++) add(sum + k * SD_VANS_ROWS, V[k], v, drag[k]);
 }
 
 /* Yade: volume and drag where they are, velocities all in the slice p of the centre, if it is in
  * the mesh. */
 static void add_slices_yade(double *sums, int first, int count, const double *V, const double *v,
-                            double drag, double *centre)
+                            const double *drag, double *centre)
 {
   for (int k = 0; k < count; k++) {
     double *here = sums + (long) (first + k) * SD_VANS_ROWS;
     here[SD_VANS_PHI] += V[k];
-    here[SD_VANS_DRAG] += V[k] * drag;
+    here[SD_VANS_DRAG] += V[k] * drag[k];
     if (!centre) continue;
     for (int d = 0; d < 3; d++) centre[SD_VANS_VX + d] += V[k] * v[d];
   }
@@ -204,34 +259,44 @@ static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, d
   return 1;
 }
 
+/* Drag along x of grain i, were all of it in the slice: in each that it reaches, or, if it feels the
+ * water at its centre, of that slice p in all of them. */
+static void drag_of_slices(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                           const double *hindrance, const sd_vans_grains *grains, int i,
+                           const int slices[2], double *drag)
+{
+  const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]), inside = p >= 0 && p < mesh->ncell;
+  double w[3], whole = 0.0;
+  if (!law->felt_by_volume && inside)
+    whole = drag_in(law, grains, i, U[p + 1], hindrance[p], w) * w[0];
+  for (int k = 0; k < slices[1]; k++) {
+    const int n = slices[0] + k;
+    drag[k] = law->felt_by_volume ? drag_in(law, grains, i, U[n + 1], hindrance[n], w) * w[0] : whole;
+  }
+}
+
 int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
                     const sd_vans_averaging *how, const double *U, const double *hindrance,
-                    const sd_vans_grains *grains, double *sums, double *V)
+                    const sd_vans_grains *grains, double *sums, double *scratch)
 {
   const int N = mesh->ncell;
+  double *V = scratch, *drag = scratch + N;
   for (int i = 0; i < grains->n; i++) {
     if (grains->take && !grains->take[i]) continue;
     const double z = grains->x[3 * (long) i + 2], *v = grains->v + 3 * (long) i, a = grains->a[i];
-    const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;
-
-    double drag = 0.0;
-    if (inside) {
-      double w[3] = {U[p + 1] - v[0], -v[1], -v[2]};
-      if (grains->fluctuation)
-        for (int d = 0; d < 3; d++) w[d] += grains->fluctuation[3 * (long) i + d];
-      drag = drag_factor(law->rho, law->eta, a, hindrance[p], w) * w[0];
-    }
-
-    int first = 0;
-    const int count = slices_of(mesh, law->rules, how->point, z, a, &first, V);
+    int slices[2] = {0, 0}; /* the first, how many */
+    slices[1] = slices_of(mesh, law->rules, how->point, z, a, &slices[0], V);
+    const int first = slices[0], count = slices[1];
     if (grains->weight)
       for (int k = 0; k < count; k++) V[k] *= grains->weight[i];
+    drag_of_slices(mesh, law, U, hindrance, grains, i, slices, drag);
     add_slices(sums, first, count, V, v, drag);
     if (how->nclass == 0) continue;
 
     const int c = class_of(how, a);
     if (c < 0) return i;
     double *class_sums = sums + (long) (1 + c) * N * SD_VANS_ROWS;
+    const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;
     if (law->rules == SD_VANS_YADE)
       add_slices_yade(class_sums, first, count, V, v, drag,
                       inside ? class_sums + (long) p * SD_VANS_ROWS : 0);

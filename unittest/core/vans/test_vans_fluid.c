@@ -552,14 +552,47 @@ static void rate_of_drag_is_that_of_its_grains(void **state)
   const double edge[N + 1] = {0, 1, 2, 3, 4}, U[N + 1] = {0, 0.02, 0.3, 0.1, 0.1}, a = 0.003;
   const double profile[SD_VANS_ROWS * N] = {0.3, 0.5, 0.0, 0.6, 0.0, 0.1};
   const sd_vans_mesh mesh = {N, 0, 1, edge};
-  const sd_vans_force_law law = {.rho = 1030, .eta = 2e-3, .exponent = 3.1};
+  const sd_vans_fluid fluid = {.rho = 1030, .eta = 2e-3, .radius = a};
   double hindrance[N], F[3], w[3] = {0.2, 0, 0};
   int slice = -1;
-  sd_vans_hindrance(N, profile, law.exponent, hindrance);
-  const double rate = sd_vans_drag_rate(&mesh, &law, a, U, hindrance, profile, &slice);
-  sd_vans_drag(law.rho, law.eta, a, hindrance[1], w, F);
+  sd_vans_hindrance(N, profile, 3.1, hindrance);
+  const double rate = sd_vans_drag_rate(&mesh, &fluid, U, hindrance, profile, &slice);
+  sd_vans_drag(fluid.rho, fluid.eta, a, hindrance[1], w, F);
   assert_int_equal(slice, 1);
-  assert_true(fabs(rate * 0.2 * law.rho * 4.0 / 3.0 * PI * a * a * a / 0.5 / F[0] - 1) < 1e-13);
+  assert_true(fabs(rate * 0.2 * fluid.rho * 4.0 / 3.0 * PI * a * a * a / 0.5 / F[0] - 1) < 1e-13);
+}
+
+/* b from the law, whatever the drag: positive, of one class as of two halves of it, and with the
+ * rest the drag that there is. */
+static void exchange_by_law_takes_the_drag_as_it_is(void **state)
+{
+  (void) state;
+  enum { N = 4 };
+  const double edge[N + 1] = {0, 1, 2, 3, 4}, U[N + 1] = {0, 0.02, 0.3, 0.1, 0.1}, a = 0.003;
+  double profile[SD_VANS_ROWS * N] = {0.3, 0.5, 0.1, 0.0, 0.1, 0.1, 0.1}, classes[2 * SD_VANS_ROWS * N] = {0};
+  const double drag[N] = {3e-5, -2e-5, 1e-5, 0}, radii[2] = {a, a};
+  const sd_vans_mesh mesh = {N, 0, 1, edge};
+  sd_vans_fluid fluid = {.rho = 1030, .eta = 2e-3, .radius = a, .class_radius = radii};
+  double hindrance[N], b[N], rest[N], of_classes[N];
+  sd_vans_hindrance(N, profile, 3.1, hindrance);
+  for (int n = 0; n < N; n++) {
+    profile[SD_VANS_DRAG * N + n] = drag[n];
+    for (int c = 0; c < 2; c++) {
+      classes[c * SD_VANS_ROWS * N + n] = 0.5 * profile[n];
+      classes[(c * SD_VANS_ROWS + SD_VANS_DRAG) * N + n] = drag[n];
+    }
+  }
+  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, profile, NULL, b, rest);
+  for (int n = 0; n < N; n++) {
+    const double slip = U[n + 1] - profile[N + n], w[3] = {slip, 0, 0}, V = 4.0 / 3.0 * PI * a * a * a;
+    double F[3];
+    sd_vans_drag(fluid.rho, fluid.eta, a, hindrance[n], w, F);
+    assert_true(n == 3 ? b[n] == 0.0 : fabs(b[n] * slip - profile[n] / V * F[0] / fluid.rho) < 1e-12 * b[n]);
+    assert_true(fabs(b[n] * slip - rest[n] - profile[n] / V * drag[n] / fluid.rho) < 1e-13);
+  }
+  fluid.nclass = 2;
+  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, profile, classes, of_classes, rest);
+  for (int n = 0; n < N; n++) assert_true(fabs(of_classes[n] - b[n]) <= 1e-14 * b[n]);
 }
 
 /* Nine tenths of what is outstanding stay; none is lost, and the slice above the surface has no water. */
@@ -634,6 +667,7 @@ int main(void)
       cmocka_unit_test(exchange_coefficient),
       cmocka_unit_test(exchange_knows_no_unit),
       cmocka_unit_test(rate_of_drag_is_that_of_its_grains),
+      cmocka_unit_test(exchange_by_law_takes_the_drag_as_it_is),
       cmocka_unit_test(momentum_goes_back_in_tenths),
       cmocka_unit_test(overlaps_count_once),
   };

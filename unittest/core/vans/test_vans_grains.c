@@ -3,6 +3,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h> /* after the headers that it needs */
@@ -98,7 +99,7 @@ static void point_grains_stay_in_one_slice(void **state)
 {
   (void) state;
   enum { N = 8 };
-  double edge[N + 1], V[N], sums[N * SD_VANS_ROWS] = {0}, U[N + 1] = {0}, hindrance[N],
+  double edge[N + 1], V[2 * N], sums[N * SD_VANS_ROWS] = {0}, U[N + 1] = {0}, hindrance[N],
                                      profile[5 * N];
   for (int n = 0; n <= N; n++) edge[n] = n * 0.5;
   for (int n = 0; n < N; n++) hindrance[n] = 1.0;
@@ -226,6 +227,82 @@ static void fluctuations_have_their_moments(void **state)
   }
 }
 
+/* Grain by grain: water moves past it in one slice alone, and what the grain gets is what that slice
+ * gives, in proportion to the volume there; nothing in any other. */
+static void a_slice_gives_what_its_grain_gets(void **state)
+{
+  (void) state;
+  enum { N = 40 };
+  double edge[N + 1], phi[N], hindrance[N], scratch[2 * N], V[N];
+  for (int n = 0; n <= N; n++) edge[n] = 0.001 * n * (1.0 + 0.01 * n);
+  for (int n = 0; n < N; n++) phi[n] = 0.6 / (1.0 + 0.1 * n);
+  const sd_vans_mesh mesh = {N, 0.02, 0.0, edge};
+  const sd_vans_force_law law = {.rho = 1030, .eta = 2e-3, .exponent = 3.1, .felt_by_volume = 1};
+  sd_vans_hindrance(N, phi, law.exponent, hindrance);
+  for (int k = 0; k < 50; k++) {
+    const double a = 0.0031, x[3] = {0, 0, 0.02 + a + 0.0005 * k}, v[3] = {0.3, 0, 0},
+                 whole = 4.0 / 3.0 * PI * a * a * a;
+    const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL};
+    const sd_vans_averaging how = {0, 0, NULL};
+    int first;
+    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, x[2], a, &first, V, N);
+    for (int moves = 0; moves < N; moves++) {
+      double U[N + 1], F[3], drag, sums[N * SD_VANS_ROWS] = {0}, whole_drag[3];
+      for (int n = 0; n <= N; n++) U[n] = v[0];
+      U[moves + 1] += 0.2;
+      sd_vans_forces(&mesh, &law, U, hindrance, &grain, F, &drag);
+      sd_vans_average(&mesh, &law, &how, U, hindrance, &grain, sums, scratch);
+      sd_vans_drag(law.rho, law.eta, a, hindrance[moves], (double[3]){0.2, 0, 0}, whole_drag);
+      const int reached = moves >= first && moves < first + count;
+      const double expected = reached ? V[moves - first] / whole * whole_drag[0] : 0.0;
+      assert_true(fabs(drag - expected) < 1e-15 * whole_drag[0]);
+      for (int n = 0; n < N; n++)
+        assert_true(fabs(sums[n * SD_VANS_ROWS + SD_VANS_DRAG] / whole - (n == moves ? drag : 0.0)) <
+                    1e-15 * whole_drag[0]);
+    }
+  }
+}
+
+/* Stokes' drag in a parabola U = c z^2: the mean over the sphere is c (z^2 + a^2/5). Second order in
+ * dz, where the water at the centre alone jumps with the slices, and to 1 % with dz = d/4. */
+static void drag_by_volume_converges(void **state)
+{
+  (void) state;
+  const double a = 0.003, c = 700.0, H = 0.06;
+  double error[2][5];
+  for (int felt = 0; felt < 2; felt++)
+    for (int level = 0; level < 5; level++) {
+      enum { MOST = 321 };
+      const int N = 20 * (1 << level);
+      double edge[MOST], U[MOST], hindrance[MOST], largest = 0.0;
+      for (int n = 0; n <= N; n++) edge[n] = H * n / N;
+      for (int n = 0; n < N; n++) {
+        const double middle = 0.5 * (edge[n] + edge[n + 1]);
+        U[n + 1] = c * middle * middle;
+        hindrance[n] = 1.0;
+      }
+      U[0] = 0.0;
+      const sd_vans_mesh mesh = {N, 0.0, H / N, edge};
+      const sd_vans_force_law law = {.rho = 1e-9, .eta = 2e-3, .felt_by_volume = felt};
+      for (int k = 0; k < 60; k++) {
+        const double z = 0.02 + 0.003 * k / 60.0, x[3] = {0, 0, z}, v[3] = {0};
+        const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL};
+        double F[3];
+        sd_vans_forces(&mesh, &law, U, hindrance, &grain, F, NULL);
+        const double exact = 0.5 * PI * a * 12.2 * law.eta * c * (z * z + 0.2 * a * a);
+        largest = fmax(largest, fabs(F[0] / exact - 1.0));
+      }
+      error[felt][level] = largest;
+    }
+  for (int level = 1; level < 5; level++) {
+    const double order = log(error[1][level - 1] / error[1][level]) / log(2.0);
+    printf("    dz = d/%d: at the centre %.1e, by volume %.1e, order %.2f\n", 2 << level,
+           error[0][level], error[1][level], order);
+    assert_true(order > 1.5 && error[1][level] < 0.2 * error[0][level]);
+  }
+  assert_true(error[1][1] < 0.01);
+}
+
 /* Same keys, same numbers; a change of any key changes all. */
 static void fluctuations_depend_on_their_keys_alone(void **state)
 {
@@ -264,6 +341,8 @@ int main(void)
       cmocka_unit_test(lift_sees_both_ends_of_the_grain),
       cmocka_unit_test(convective_force_is_taken_off),
       cmocka_unit_test(grains_outside_feel_the_end_values),
+      cmocka_unit_test(a_slice_gives_what_its_grain_gets),
+      cmocka_unit_test(drag_by_volume_converges),
       cmocka_unit_test(fluctuations_have_their_moments),
       cmocka_unit_test(fluctuations_depend_on_their_keys_alone),
       cmocka_unit_test(eddies_live_as_long_as_the_length_over_the_velocity),

@@ -95,7 +95,7 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
                                  .rules = rules};
   const sd_vans_averaging how = {0, classes, radii};
   enum { n = 60 };
-  double x[3 * n], v[3 * n], u[3 * n], hindrance[N_MAX], V[N_MAX], profile[5 * N_MAX];
+  double x[3 * n], v[3 * n], u[3 * n], hindrance[N_MAX], V[2 * N_MAX], profile[5 * N_MAX];
   vectors(t, "x", "y", "z", n, x);
   vectors(t, "vx", "vy", "vz", n, v);
   vectors(t, "ufx", "ufy", "ufz", n, u);
