@@ -14,6 +14,7 @@
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_stokes_dynamics.h"
+#include "fix_stokes_dynamics_overdamped.h"
 #include "fix_stokes_dynamics_state.h"
 #include "fix_wall_adami_sph.h"
 #include "fix_wall_sph.h"
@@ -65,6 +66,8 @@ static std::vector<lammpsplugin_t> styles()
 {
   return {pair<PairStokesDynamics>("Stokes drag with hydrodynamic interactions: pair_style stokes_dynamics"),
           fix<FixStokesDynamics>("Stokes drag with hydrodynamic interactions: fix stokes_dynamics"),
+          fix<FixStokesDynamicsOverdamped>("Stokes dynamics without inertia: fix stokes_dynamics/overdamped"),
+          fix<FixStokesDynamicsLast>("Stokes dynamics without inertia: comes last"),
           fix<FixStokesDynamicsState>("Stokes drag with hydrodynamic interactions: memory of the pair style"),
           fix<FixHydroVans>("One-dimensional turbulent stream over a granular bed: fix hydro/vans")};
 }

@@ -49,6 +49,7 @@ endfunction()
 lammps_has(SD_HAVE_ADD_REQUEST neighbor.h "add_request")                         # since 24Mar2022
 lammps_has(old_comm comm.h "forward_comm_pair")                                  # until 24Mar2022
 lammps_has(SD_HAVE_REGION_PTR domain.h "get_region_by_id")                       # since 14Dec2021
+lammps_has(SD_HAVE_OUTPUT_RESET_DT output.h "reset_dt")                          # since 24Mar2022
 lammps_has(SD_MINIMG_FLERR domain.h "minimum_image\\(const std::string")         # since 12Jun2025
 if(old_comm)
   set(SD_HAVE_COMM_THIS 0)
@@ -74,7 +75,7 @@ add_library(lammps_headers INTERFACE)
 target_include_directories(lammps_headers SYSTEM INTERFACE ${lammps_src})
 target_compile_definitions(lammps_headers INTERFACE
   SD_HAVE_ADD_REQUEST=${SD_HAVE_ADD_REQUEST} SD_HAVE_COMM_THIS=${SD_HAVE_COMM_THIS}
-  SD_HAVE_REGION_PTR=${SD_HAVE_REGION_PTR} SD_MINIMG_FLERR=${SD_MINIMG_FLERR}
+  SD_HAVE_REGION_PTR=${SD_HAVE_REGION_PTR} SD_HAVE_OUTPUT_RESET_DT=${SD_HAVE_OUTPUT_RESET_DT} SD_MINIMG_FLERR=${SD_MINIMG_FLERR}
   SD_LAMMPS_VERSION="${SD_LAMMPS_VERSION}")
 string(TOUPPER ${LAMMPS_SIZES} sizes)
 target_compile_definitions(lammps_headers INTERFACE LAMMPS_${sizes})
@@ -98,4 +99,4 @@ else()
 endif()
 message(STATUS "LAMMPS ${SD_LAMMPS_VERSION} (${SD_LAMMPS_NUM}), ${LAMMPS_SIZES}, MPI ${LAMMPS_MPI}: "
   "add_request ${SD_HAVE_ADD_REQUEST}, forward_comm(this) ${SD_HAVE_COMM_THIS}, get_region_by_id ${SD_HAVE_REGION_PTR}, "
-  "minimum_image(FLERR) ${SD_MINIMG_FLERR}")
+  "output->reset_dt ${SD_HAVE_OUTPUT_RESET_DT}, minimum_image(FLERR) ${SD_MINIMG_FLERR}")

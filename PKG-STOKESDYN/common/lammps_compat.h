@@ -9,6 +9,7 @@
 #include "modify.h"
 #include "neigh_request.h"
 #include "neighbor.h"
+#include "output.h"
 #include "pair.h"
 #include "region.h"
 
@@ -43,6 +44,16 @@ namespace Compat {
     neighbor->add_request(pair);
 #else
     neighbor->request(pair, instance);
+#endif
+  }
+
+  /* output by time wants to know of another time step, where LAMMPS has such */
+  inline void reset_dt(LAMMPS_NS::Output *output)
+  {
+#if SD_HAVE_OUTPUT_RESET_DT
+    output->reset_dt();
+#else
+    (void) output;
 #endif
   }
 

@@ -68,14 +68,19 @@ class Ambient : protected LAMMPS_NS::Pointers {
     const double a = atom->radius[i];
     return 8.0 * SD_PI * viscosity(i) * a * a * a;
   }
-  /* Fluid less sphere: velocity [3], with spins angular velocity [3]. */
+  /* Of the fluid: velocity [3], with spins angular velocity [3]. */
+  void fluid(int i, double *s) const
+  {
+    const double *fluid_velocity = velocity(i);
+    for (int d = 0; d < 3; d++) s[d] = fluid_velocity[d];
+    for (int d = 0; d < 3 && spins; d++) s[3 + d] = w.empty() ? 0.0 : w[3 * (size_t) i + d];
+  }
+  /* The same less that of the sphere. */
   void slip(int i, double *s) const
   {
-    const double *fluid = velocity(i), *v = atom->v[i];
-    for (int d = 0; d < 3; d++) s[d] = fluid[d] - v[d];
-    if (!spins) return;
-    const double *omega = atom->omega[i];
-    for (int d = 0; d < 3; d++) s[3 + d] = (w.empty() ? 0.0 : w[3 * (size_t) i + d]) - omega[d];
+    fluid(i, s);
+    for (int d = 0; d < 3; d++) s[d] -= atom->v[i][d];
+    for (int d = 0; d < 3 && spins; d++) s[3 + d] -= atom->omega[i][d];
   }
 
   /* Of all atoms; nullptr: the velocity is the same everywhere, namely uniform_velocity(). */

@@ -3,6 +3,8 @@
 #include "checks.h"
 #include "keywords.h"
 
+#include "sd_linear.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -24,7 +26,7 @@ static const std::string COMMAND = StokesSettings::COMMAND;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp, Pair *pair) :
     Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, pair, COMMAND), rigid(lmp, scene, COMMAND),
-    preconditioner(lmp, scene), guard(lmp, COMMAND)
+    mobile(lmp, scene, ambient, rigid), preconditioner(lmp, scene), guard(lmp, COMMAND)
 {
 }
 
@@ -196,8 +198,9 @@ sd_system Hydrodynamics::gather()
 
 std::string Hydrodynamics::where(int algorithm) const
 {
-  return COMMAND + ": step " + std::to_string(update->ntimestep) + ": algorithm " +
-      std::to_string(algorithm) + ": ";
+  return COMMAND + ": step " + std::to_string(update->ntimestep) +
+      (overdamped ? ": velocities from forces: "
+                  : ": algorithm " + std::to_string(algorithm) + ": ");
 }
 
 static std::string how_far(const sd_solve_report &report)
@@ -277,8 +280,7 @@ void Hydrodynamics::keep()
     for (size_t d = 0; d < m; d++) {
       double &v = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
       if (memory->history) before[d] = v;
-      v = alone ? 0.0
-                : solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
+      v = alone ? 0.0 : solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
     }
   }
   global.solutions = std::min(2.0, global.solutions + 1.0);
@@ -322,6 +324,73 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
   fail(lmp, message);
 }
 
+/* The rows of all that takes part: the velocities of those that interact, in one loop; of clumps
+ * that only know themselves, one by one. */
+sd_status Hydrodynamics::move(sd_bodies_report &report)
+{
+  const size_t m = width(), n = solvers.size();
+  moving.width = width();
+  moving.l.resize(m * n + m);
+  moving.v.resize(m * n + m);
+  if (settings.rigid.on && settings.scene.clumps_only) {
+    mobile.apart(moving);
+    return SD_OK;
+  }
+  place();
+  for (size_t k = 0; k < n && settings.warm_start; k++) {
+    const double *row = memory->rows[solvers[k]];
+    for (size_t d = 0; d < m; d++)
+      moving.l[m * k + d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
+  }
+  return mobile.together(moving, settings.warm_start, settings.tolerance, settings.max_iter,
+                         report);
+}
+
+void Hydrodynamics::velocities()
+{
+  const size_t m = width();
+  State::Global &global = memory->global;
+  sd_bodies_report report = {};
+  solvers = ambient.who();
+  mobile.find();
+  const sd_status status = move(report);
+  global.solves++;
+  global.iterations = report.products;
+  global.residual = report.residual;
+  // v' is none of this: a solve for forces begins from nothing.
+  global.last_step = update->ntimestep;
+  global.last_solve = -1;
+  global.reported = global.solutions = 0;
+  sd_solve_report as_solver = {};
+  as_solver.iterations = report.products;
+  as_solver.residual = report.residual;
+  if (status == SD_EMAXITER)
+    unconverged(status, as_solver);
+  else if (status != SD_OK)
+    failed(status, as_solver);
+  for (size_t k = 0; k < solvers.size(); k++) {
+    const int i = solvers[k];
+    const double *l = &moving.l[m * k], *v = &moving.v[m * k];
+    double *row = memory->rows.give(i);
+    for (int d = 0; d < 3; d++) {
+      atom->v[i][d] = v[d];
+      row[State::FORCE + d] = -l[d];
+      if (m == 3) continue;
+      atom->omega[i][d] = v[3 + d];
+      row[State::TORQUE + d] = -l[3 + d];
+    }
+  }
+}
+
+void Hydrodynamics::turn(int i, const double R[9])
+{
+  double *row = memory->rows.row(i), turned[3];
+  for (int first : {(int) State::FORCE, (int) State::TORQUE}) {
+    sd_multiply3(R, row + first, turned);
+    std::copy_n(turned, 3, row + first);
+  }
+}
+
 double Hydrodynamics::dissipation(int i) const
 {
   if (!ambient.active()[i]) return 0.0;
@@ -338,7 +407,7 @@ double Hydrodynamics::memory_usage() const
   const size_t numbers = eta.capacity() + slip.capacity() + resistance.capacity() +
       spin.capacity() + solution.capacity() + work.capacity();
   return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
-      sizeof(double) * (double) numbers;
+      mobile.memory_usage() + sizeof(double) * (double) numbers;
 }
 
 }    // namespace StokesDyn

@@ -1,4 +1,5 @@
-/* Forces of the spheres from their velocities, under the settings of pair_style stokes_dynamics.
+/* Forces of the spheres from their velocities, or, without inertia, velocities from forces, under
+ * the settings of pair_style stokes_dynamics.
  * The pair style and the fixes that go with it stand above this and share the one object, which
  * belongs to the pair style; fixes reach it by Hydrodynamics::of().
  *
@@ -16,6 +17,7 @@
 #include "scene.h"
 #include "settings.h"
 #include "time_step_guard.h"
+#include "velocities.h"
 
 #include "sd_solve.h"
 
@@ -31,6 +33,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Scene scene;
   /* does a fix report v'? It is not made for rigid clumps unless somebody wants it */
   bool reported = false;
+  /* does fix stokes_dynamics/overdamped find the velocities? Then the pair style has nothing to do */
+  bool overdamped = false;
   /* of this LAMMPS as it is now; nullptr before the first run */
   FixStokesDynamicsState *memory = nullptr;
 
@@ -48,6 +52,15 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void clumps();
   void solve();
   void drag();
+
+  /* Of all that takes part, from what is in f and torque: into v and omega, and the forces of the
+   * fluid into rows of the memory. A step is begin() and this. */
+  void velocities();
+  /* Those of rigid clumps, and who is free, since then */
+  const Velocities &motion() const { return mobile; }
+  /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
+   * which the next solve begins. */
+  void turn(int i, const double R[9]);
 
   bool rotation() const { return settings.scene.rotation; }
   /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
@@ -68,6 +81,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
  private:
   RigidClumps rigid;
+  Velocities mobile;
+  Velocities::Rows moving = {};
   Preconditioner preconditioner;
   TimeStepGuard guard;
   bool warned_unconverged = false, looked_at_clumps = false, looked_at_flow = false;
@@ -92,6 +107,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   }
   std::string where(int algorithm) const;
   void unconverged(sd_status status, const sd_solve_report &report);
+  sd_status move(sd_bodies_report &report);
   [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
 };
 

@@ -1,5 +1,6 @@
 #include "pair_stokes_dynamics.h"
 
+#include "fix_stokes_dynamics_overdamped.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "restart_words.h"
@@ -54,6 +55,7 @@ PairStokesDynamics::~PairStokesDynamics()
 void PairStokesDynamics::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
+  if (hydro.overdamped) return;
   hydro.begin();
   const Verdict verdict = judge();
   if (verdict != STANDS) {
@@ -183,6 +185,10 @@ void PairStokesDynamics::init_style()
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
   look_for_fixes();
+  if (hydro.settings.rigid.on && !scene.clumps_only && !hydro.overdamped)
+    fail(lmp,
+         COMMAND + ": keyword rigid_clumps: 'yes' with clumps_only no requires fix "
+                   "stokes_dynamics/overdamped");
   sorting_bins.limit(range());
 }
 
@@ -210,6 +216,7 @@ void PairStokesDynamics::look_for_fixes()
 {
   bool applied = hydro.settings.add_force;
   hydro.reported = false;
+  hydro.overdamped = FixStokesDynamicsOverdamped::prepare(lmp);
   for (int i = 0; i < modify->nfix; i++)
     if (strcmp(modify->fix[i]->style, "stokes_dynamics") == 0) {
       int dim;
@@ -217,7 +224,7 @@ void PairStokesDynamics::look_for_fixes()
       applied = applied || (applies && *applies);
       hydro.reported = true;
     }
-  if (applied || warned_nobody_applies) return;
+  if (applied || hydro.overdamped || warned_nobody_applies) return;
   warned_nobody_applies = true;
   if (comm->me == 0)
     error->warning(FLERR,

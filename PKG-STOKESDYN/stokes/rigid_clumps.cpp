@@ -35,6 +35,7 @@ RigidClumps::Shape::~Shape()
 {
   sd_shape_free(&shape);
   sd_clump_free(&clump);
+  sd_body_shape_free(&body);
 }
 
 void RigidClumps::forget()
@@ -420,6 +421,17 @@ void RigidClumps::solve()
     announce(s, r.seconds);
   }
   if (!shapes.empty()) solved = std::max(solved, shapes.rbegin()->first);
+}
+
+const sd_body_shape &RigidClumps::blocks(const Shape &s) const
+{
+  if (s.body.m > 0) return s.body;
+  const sd_status status =
+      sd_body_shape_create(&s.shape, settings.shell > 1 ? &s.clump : nullptr, &s.body);
+  if (status == SD_OK) return s.body;
+  fail_one(lmp,
+           command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(s.molecule) +
+               ", " + std::to_string(s.shape.n) + " spheres: " + sd_status_string(status));
 }
 
 void RigidClumps::announce(const Shape &s, double seconds) const

@@ -15,6 +15,7 @@
 #include "pointers.h"
 #include "scene.h"
 
+#include "sd_body_shape.h"
 #include "sd_clump_motion.h"
 
 #include <limits>
@@ -72,21 +73,43 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     end_step(step, loose);
   }
 
+  struct Shape {
+    int number;
+    int64_t molecule;    // of the first of its kind
+    sd_shape shape = {};
+    sd_clump clump = {};
+    /* made by blocks() */
+    mutable sd_body_shape body = {};
+    Shape(int number, int64_t molecule) : number(number), molecule(molecule) {}
+    ~Shape();
+    Shape(const Shape &) = delete;
+  };
+  /* A clump of which this rank has a sphere; its spheres, in the order of the shape, are begin ...
+   * begin + n - 1 of members() and owns() */
+  struct Body {
+    const Shape *shape;
+    int64_t molecule;
+    int begin, n;
+  };
+  /* All of them, looked at anew if LAMMPS has re-neighboured. Errors as of forces(). */
+  const std::vector<Body> &find();
+  /* As in the scene: images side by side, which may be ghosts; the same sphere as an atom of this
+   * rank, -1: another has it */
+  const std::vector<int> &members() const { return member; }
+  const std::vector<int> &owns() const { return owned; }
+  /* The shape in a cloud with others. Error: memory. */
+  const sd_body_shape &blocks(const Shape &shape) const;
+  /* Errors, which all ranks know: molecule IDs of a clump of which not all spheres are selected, and
+   * of one that is not rigid; NOBODY: there is none */
+  static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();
+  void refuse(int64_t split, int64_t bent) const;
+
   double memory_usage() const;
 
  private:
   Scene &scene;
   std::string command;
 
-  struct Shape {
-    int number;
-    int64_t molecule;    // of the first of its kind
-    sd_shape shape = {};
-    sd_clump clump = {};
-    Shape(int number, int64_t molecule) : number(number), molecule(molecule) {}
-    ~Shape();
-    Shape(const Shape &) = delete;
-  };
   using BySize = std::multimap<double, const Shape *>;
   std::map<int, std::unique_ptr<Shape>> shapes;          // by number
   BySize by_size;
@@ -102,18 +125,12 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   std::set<int64_t> loose_molecules;
   bool recognised = false;
 
-  /* The clumps since the last re-neighbouring, their spheres in the order of the shapes */
-  struct Body {
-    const Shape *shape;
-    int64_t molecule;
-    int begin, n;
-  };
+  /* since the last re-neighbouring */
   std::vector<Body> bodies;
-  std::vector<int> member, owned;    // as in the scene
+  std::vector<int> member, owned;
   std::vector<int> not_ours;         // atoms of loose clumps, and of none
 
   /* What a step gathers of a clump, finds for it, and finds wrong with clumps */
-  static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();
   struct Step {
     std::vector<double> x, v, omega, u, gradient, F, T;
     int64_t split = NOBODY;    // molecule ID, the lowest

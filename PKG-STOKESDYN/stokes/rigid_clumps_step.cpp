@@ -35,11 +35,17 @@ void RigidClumps::gather(const Ambient &ambient)
   });
 }
 
-void RigidClumps::begin_step(const Ambient &ambient, std::vector<char> &loose)
+const std::vector<RigidClumps::Body> &RigidClumps::find()
 {
   if (scene.update_clumps()) recognised = false;
   if (!recognised) recognise();
   recognised = true;
+  return bodies;
+}
+
+void RigidClumps::begin_step(const Ambient &ambient, std::vector<char> &loose)
+{
+  find();
   gather(ambient);
   loose.assign(atom->nlocal, 0);
   for (int i : not_ours) loose[i] = 1;
@@ -112,18 +118,23 @@ bool RigidClumps::evaluate(const Body &body, const Ambient &ambient, Step &step)
   return true;
 }
 
+void RigidClumps::refuse(int64_t split, int64_t bent) const
+{
+  if (split != NOBODY)
+    fail(lmp,
+         command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(split) +
+             " is split by the keyword group or region: all of its spheres must be selected, or "
+             "none");
+  if (bent != NOBODY) not_rigid(bent);
+}
+
 void RigidClumps::end_step(const Step &step, std::vector<char> &loose)
 {
   int64_t first[2] = {step.split, NOBODY};
   for (int64_t molecule : step.bent) first[1] = std::min(first[1], molecule);
   MPI_Allreduce(MPI_IN_PLACE, first, 2, MPI_LMP_BIGINT, MPI_MIN, world);
-  if (first[0] != NOBODY)
-    fail(lmp,
-         command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(first[0]) +
-             " is split by the keyword group or region: all of its spheres must be selected, or "
-             "none");
+  refuse(first[0], settings.auto_resolve ? NOBODY : first[1]);
   if (first[1] == NOBODY) return;
-  if (!settings.auto_resolve) not_rigid(first[1]);
   loosen(from_all(world, step.bent));
   arrange();
   for (int i : not_ours) loose[i] = 1;

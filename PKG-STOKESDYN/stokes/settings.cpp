@@ -133,10 +133,13 @@ void StokesSettings::check(const Keywords &in) const
              "keyword precondition: 'sparse' requires algorithm 2");
   in.require(precondition != Preconditioner::CLUMP || algorithm == GRADIENTS,
              "keyword precondition: 'clump' requires algorithm 2");
-  in.require(!rigid.on || scene.clumps_only, "keyword rigid_clumps requires clumps_only yes");
-  in.require(!rigid.on || std::isinf(scene.cutoff),
-             "keyword rigid_clumps: no cut_off_distance may be given, the whole of a clump is "
-             "solved");
+  in.require(!rigid.auto_resolve || scene.clumps_only,
+             "keyword rigid_clumps: 'auto' requires clumps_only yes");
+  in.require(!rigid.on || !scene.clumps_only || std::isinf(scene.cutoff),
+             "keyword rigid_clumps: no cut_off_distance may be given with clumps_only yes, the whole "
+             "of a clump is solved");
+  in.require(!rigid.on || scene.clumps_only || scene.rotation || rigid.shell > 1,
+             "keyword rigid_clumps: with clumps_only no, rotation yes (or a shell) is required");
   in.require(!in.given("shell") || rigid.on, "keyword shell requires rigid_clumps yes");
   in.require(!rigid.on || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rigid_clumps is not available with tensor oseen");

@@ -493,7 +493,7 @@ def test_split_clump_is_an_error(simulation, how):
 
 
 @pytest.mark.parametrize("words, message", [
-    ("cut_off_distance inf rigid_clumps yes", "keyword rigid_clumps requires clumps_only yes"),
+    ("cut_off_distance inf rigid_clumps yes", "keyword rigid_clumps: with clumps_only no, rotation yes .or a shell. is required"),
     ("clumps_only yes cut_off_distance 5 rigid_clumps yes", "keyword rigid_clumps: no cut_off_distance may be given"),
     ("clumps_only yes rigid_clumps maybe", "keyword rigid_clumps: 'maybe' is none of: no, yes, auto"),
     ("clumps_only yes rigid_clumps yes shell 7", "keyword shell: '7' must be 1 or >= 12"),

@@ -1,5 +1,6 @@
 #include "sd_bodies.h"
 
+#include "sd_clump_motion.h"
 #include "sd_linear.h"
 
 #include <math.h>
@@ -123,6 +124,16 @@ static sd_status onto_clumps(loop *c, const double *rows, double *f)
     to_space(R, sum, f + 6 * (long) b);
   }
   return SD_OK;
+}
+
+void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *u)
+{
+  for (int b = 0; b < A->clumps; b++) {
+    double W[3], E[6], V[6];
+    sd_clump_split_gradient(A->pose + 9 * (long) b, gradient + 9 * (long) b, W, E);
+    multiply6(A->shape[b]->carried, E, V);
+    add_rigid(A, b, V, u);
+  }
 }
 
 /* --- the preconditioner --- */

@@ -43,7 +43,7 @@ typedef struct {
   /* [lone] rows of the free spheres */
   int lone;
   const int *loner;
-  /* rigid clumps of which this rank has a sphere; a clump is the same, to the bit, on each rank
+  /* rigid clumps of which this rank has a sphere; a clump is the same, to rounding, on each rank
    * that knows it */
   int clumps;
   /* [clumps + 1] into member: rows of the spheres in the order of the shape, n + g for ghost g */
@@ -88,6 +88,10 @@ typedef struct {
   int products;
   double residual;
 } sd_bodies_report;
+
+/* Clumps with shells are carried by a strain otherwise than as spheres: adds K dE E to the flow u
+ * [width n] at their spheres. gradient [9 clumps]: of the fluid velocity over each clump. */
+void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *u);
 
 /* Doubles of scratch for n spheres and what else is in A. */
 long sd_bodies_work(const sd_bodies *A);

@@ -102,3 +102,50 @@ void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_moti
   for (int d = 0; d < 9; d++) G[d] -= spin[d];
   sd_clump_forces(clump, R, eta, slip, G, F, T);
 }
+
+void sd_clump_split_gradient(const double R[9], const double G[9], double W[3], double E[6])
+{
+  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
+  double GR[9], S[9];
+  sd_product3(G, R, GR);
+  for (int q = 0; q < 3; q++) {
+    const double column[3] = {GR[q], GR[3 + q], GR[6 + q]};
+    double turned[3];
+    sd_multiply3t(R, column, turned);
+    for (int p = 0; p < 3; p++) S[3 * p + q] = turned[p];
+  }
+  for (int e = 0; e < 6; e++) E[e] = 0.5 * (S[3 * row[e] + col[e]] + S[3 * col[e] + row[e]]);
+  W[0] = 0.5 * (G[7] - G[5]);
+  W[1] = 0.5 * (G[2] - G[6]);
+  W[2] = 0.5 * (G[3] - G[1]);
+}
+
+void sd_clump_free_velocity(const sd_clump *clump, const double R[9], double eta,
+                            const double load[6], const double u[3], const double G[9], double V[6])
+{
+  double E[6], f[6], v[6], shift[3];
+  sd_clump_split_gradient(R, G, V + 3, E);
+  memcpy(V, u, 3 * sizeof(double));
+  sd_multiply3t(R, load, f);
+  sd_multiply3t(R, load + 3, f + 3);
+  for (int p = 0; p < 6; p++) {
+    f[p] /= eta;
+    for (int e = 0; e < 6; e++) f[p] += clump->strain[6 * p + e] * E[e];
+  }
+  /* mobility is about the centre of reaction, load and V are about the centroid */
+  sd_cross(clump->centre, f, shift);
+  for (int d = 0; d < 3; d++) f[3 + d] -= shift[d];
+  for (int p = 0; p < 6; p++) {
+    v[p] = 0.0;
+    for (int q = 0; q < 6; q++) v[p] += clump->mobility[6 * p + q] * f[q];
+  }
+  sd_cross(v + 3, clump->centre, shift);
+  for (int d = 0; d < 3; d++) v[d] -= shift[d];
+  double U[3], W[3];
+  sd_multiply3(R, v, U);
+  sd_multiply3(R, v + 3, W);
+  for (int d = 0; d < 3; d++) {
+    V[d] += U[d];
+    V[3 + d] += W[d];
+  }
+}

@@ -1,0 +1,398 @@
+#include "fix_stokes_dynamics_overdamped.h"
+
+#include "hydrodynamics.h"
+#include "keywords.h"
+#include "lammps_compat.h"
+#include "named_state.h"
+#include "overdamped_checks.h"
+
+#include "sd_gap.h"
+#include "sd_linear.h"
+#include "sd_pose.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+#include "output.h"
+#include "pair.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
+
+FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
+    RowsFix(lmp, narg, arg), adapt(), before(6), output(9)
+{
+  Keywords in(lmp, COMMAND, words(narg, arg), 3);
+  in.parse({
+      {"scheme",
+       [&] {
+         scheme = in.choice({"ab2", "euler"}) == 0 ? AB2 : EULER;
+       }},
+      {"adapt",
+       [&] {
+         adapt.every = in.integer(1);
+         adapt.tmin = in.positive();
+         adapt.tmax = in.positive();
+         adapt.xmax = in.positive();
+         if (adapt.tmin > adapt.tmax)
+           in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" + text(adapt.tmax) +
+                     "'");
+       }},
+  });
+  time_integrate = 1;
+  dynamic_group_allow = 0;
+  nevery = adapt.every ? adapt.every : 1;
+  restart_global = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 9;
+  extscalar = 1;
+  extvector = 0;
+  global_freq = 1;
+  keep({&before, &output}, &output, true);
+}
+
+int FixStokesDynamicsOverdamped::setmask()
+{
+  using namespace FixConst;
+  return INITIAL_INTEGRATE | FINAL_INTEGRATE | (adapt.every ? END_OF_STEP : 0);
+}
+
+/* Looked up whenever it is needed: the pair style may be another one by now. */
+Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
+{
+  Hydrodynamics *hydro = Hydrodynamics::of(lmp);
+  if (!hydro)
+    fail(lmp, COMMAND + ": there is no pair_style stokes_dynamics, which says how spheres move");
+  return *hydro;
+}
+
+void FixStokesDynamicsOverdamped::init()
+{
+  refuse_inertia(lmp, COMMAND, this, hydrodynamics());
+}
+
+// --- a step ------------------------------------------------------------------------------------------------------
+
+/* Does the run begin where, and as, the last one ended? Then the velocities of before still count. */
+bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
+{
+  int moved = last.step != update->ntimestep || !hydro.memory->box_left_as_is();
+  for (int i : hydro.ambient.who())
+    if (!hydro.memory->placed_as_left(i)) moved = 1;
+  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
+  return !moved;
+}
+
+void FixStokesDynamicsLast::setup(int /*vflag*/)
+{
+  for (int i = 0; i < modify->nfix; i++)
+    if (strcmp(modify->fix[i]->style, FixStokesDynamicsOverdamped::STYLE) == 0)
+      static_cast<FixStokesDynamicsOverdamped *>(modify->fix[i])->after_setup();
+}
+
+bool FixStokesDynamicsOverdamped::prepare(LAMMPS *lmp)
+{
+  using Last = FixStokesDynamicsLast;
+  bool there = false;
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    there = there || strcmp(lmp->modify->fix[i]->style, STYLE) == 0;
+  if (Compat::fix(lmp->modify, Last::ID)) lmp->modify->delete_fix(Last::ID);
+  if (there) lmp->modify->add_fix(std::string(Last::ID) + " all " + Last::STYLE);
+  return there;
+}
+
+void FixStokesDynamicsOverdamped::after_setup()
+{
+  Hydrodynamics &hydro = hydrodynamics();
+  hydro.begin();
+  const bool same_run = goes_on(hydro);
+  if (!same_run) before.clear();
+  hydro.new_run(same_run);
+  if (same_run && from_file && adapt.every && last.next_dt > 0.0) update->dt = last.next_dt;
+  from_file = false;
+  displaced = watched = 0.0;
+  doublings = 0;
+  find_velocities(hydro);
+  if (!announced) announce();
+  if (adapt.every && !same_run) end_of_step();
+}
+
+void FixStokesDynamicsOverdamped::announce()
+{
+  const Ambient &ambient = hydrodynamics().ambient;
+  double drag = INFINITY;
+  for (int i : ambient.who()) drag = std::min(drag, ambient.drag(i));
+  MPI_Allreduce(MPI_IN_PLACE, &drag, 1, MPI_DOUBLE, MPI_MIN, world);
+  announce_step_limit(lmp, COMMAND, scheme == EULER, drag);
+  announced = true;
+}
+
+void FixStokesDynamicsOverdamped::final_integrate()
+{
+  Hydrodynamics &hydro = hydrodynamics();
+  hydro.begin();
+  find_velocities(hydro);
+  if (!warned_growth) watch(error_figure());
+}
+
+void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
+{
+  check_selection(hydro);
+  hydro.velocities();
+  last.step = update->ntimestep;
+  report(hydro);
+}
+
+/* Spheres of the group that are not selected have no velocity; those selected that are not in the
+ * group have none that this fix knows. */
+void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) const
+{
+  const std::vector<char> &active = hydro.ambient.active();
+  tagint wrong = MAXTAGINT;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(atom->mask[i] & groupbit) != !active[i]) wrong = std::min(wrong, atom->tag[i]);
+  MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (wrong == MAXTAGINT) return;
+  fail(lmp,
+       COMMAND + ": atom " + std::to_string(wrong) +
+           " is in its group or in the selection of pair_style stokes_dynamics (keywords group and "
+           "region, radius > 0), but not in both: they must be the same");
+}
+
+void FixStokesDynamicsOverdamped::report(const Hydrodynamics &hydro)
+{
+  for (int i : hydro.ambient.who()) {
+    double *row = output.give(i), s[6];
+    hydro.ambient.slip(i, s);
+    for (int d = 0; d < 3; d++) row[d] = -s[d];
+    std::copy_n(hydro.force(i), 3, row + 3);
+    if (const double *torque = hydro.torque(i)) std::copy_n(torque, 3, row + 6);
+  }
+}
+
+/* dt/(2 dt_old), what the change of the velocity counts; 0: Euler, or there is nothing before */
+double FixStokesDynamicsOverdamped::weight(int i) const
+{
+  return scheme == AB2 && before.has(i) && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
+}
+
+void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
+{
+  Hydrodynamics &hydro = hydrodynamics();
+  displaced = 0.0;
+  for (int i : hydro.motion().lone) move_free(i);
+  for (const auto &clump : hydro.motion().clumps) move_clump(hydro, clump);
+  last.dt = update->dt;
+}
+
+void FixStokesDynamicsOverdamped::move_free(int i)
+{
+  const double dt = update->dt, c = weight(i);
+  double *row = before.give(i), *v = atom->v[i], mean[3], square = 0.0;
+  sd_mean_velocity(3, v, row, c, mean);
+  for (int d = 0; d < 3; d++) {
+    atom->x[i][d] += dt * mean[d];
+    square += mean[d] * mean[d];
+    row[d] = v[d];
+  }
+  displaced = std::max(displaced, dt * sqrt(square) / atom->radius[i]);
+}
+
+/* Each rank sets its own spheres. Positions are those of images side by side: an atom moves as its
+ * image does. */
+void FixStokesDynamicsOverdamped::move_clump(Hydrodynamics &hydro, const Velocities::Clump &clump)
+{
+  const RigidClumps::Body &body = *clump.body;
+  const auto &members = hydro.motion().members(), &owns = hydro.motion().owns();
+  const sd_shape &shape = body.shape->shape;
+  int mine = body.begin;
+  while (owns[mine] < 0) mine++;
+  double pose[12], mean[6], turn[9];
+  std::vector<double> x(3 * (size_t) body.n);
+  std::copy_n(clump.pose, 12, pose);
+  sd_mean_velocity(6, clump.V, before[owns[mine]], weight(owns[mine]), mean);
+  sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
+  for (int k = 0; k < body.n; k++) {
+    const int i = owns[body.begin + k], j = members[body.begin + k];
+    if (i < 0) continue;
+    double square = 0.0, step[3];
+    for (int d = 0; d < 3; d++) {
+      step[d] = x[3 * (size_t) k + d] - atom->x[j][d];
+      square += step[d] * step[d];
+    }
+    for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
+    displaced = std::max(displaced, sqrt(square) / atom->radius[i]);
+    std::copy_n(clump.V, 6, before.give(i));
+    hydro.turn(i, turn);
+  }
+}
+
+/* The next step as long as the fastest sphere allows; what must be told of it, as by fix dt/reset.
+ */
+void FixStokesDynamicsOverdamped::end_of_step()
+{
+  const double dt = sd_next_step(update->dt, fastest(), adapt.tmin, adapt.tmax, adapt.xmax);
+  last.next_dt = dt;
+  if (dt == update->dt) return;
+  update->update_time();
+  update->dt = dt;
+  update->dt_default = 0;
+  if (force->pair) force->pair->reset_dt();
+  for (int i = 0; i < modify->nfix; i++) modify->fix[i]->reset_dt();
+  Compat::reset_dt(lmp->output);
+}
+
+/* A step that is too long for contacts shows as velocities that flip, and grow, with every step. */
+void FixStokesDynamicsOverdamped::watch(double figure)
+{
+  doublings = figure > 0.1 && figure > 2.0 * watched ? doublings + 1 : 0;
+  watched = figure;
+  if (doublings < 3) return;
+  warned_growth = true;
+  error->warning(FLERR,
+                 COMMAND + ": step " + std::to_string(update->ntimestep) +
+                     ": velocities change more with every step, now by " + text(figure) +
+                     " radii in a step: use a shorter time step");
+}
+
+// --- output ------------------------------------------------------------------------------------------------------
+
+/* Power that the spheres lose to the fluid */
+double FixStokesDynamicsOverdamped::compute_scalar()
+{
+  const Hydrodynamics &hydro = hydrodynamics();
+  double mine = 0.0, all;
+  if (!hydro.memory) return 0.0;
+  for (int i : hydro.ambient.who()) mine += hydro.dissipation(i);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixStokesDynamicsOverdamped::compute_vector(int k)
+{
+  enum { SPEED, ERROR, DISPLACEMENT, PRODUCTS, RESIDUAL, SOLVES, UNCONVERGED, GAP, STEP };
+  const Hydrodynamics &hydro = hydrodynamics();
+  if (!hydro.memory) return 0.0;
+  const auto &solver = hydro.memory->global;
+  double mine = 0.0, all;
+  switch (k) {
+    case SPEED:
+      return fastest();
+    case ERROR:
+      mine = error_figure();
+      break;
+    case DISPLACEMENT:
+      mine = displaced;
+      break;
+    case PRODUCTS:
+      return solver.iterations;
+    case RESIDUAL:
+      return solver.residual;
+    case SOLVES:
+      return solver.solves;
+    case UNCONVERGED:
+      return solver.unconverged;
+    case GAP:
+      return smallest_gap();
+    case STEP:
+      return update->dt;
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+double FixStokesDynamicsOverdamped::fastest() const
+{
+  double mine = 0.0, all;
+  for (int i : hydrodynamics().ambient.who()) mine = std::max(mine, sd_dot(atom->v[i], atom->v[i]));
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return sqrt(all);
+}
+
+/* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
+double FixStokesDynamicsOverdamped::error_figure() const
+{
+  const Velocities &motion = hydrodynamics().motion();
+  double most = 0.0;
+  auto compare = [&](int i, const double *old) {
+    double change[3];
+    for (int d = 0; d < 3; d++) change[d] = atom->v[i][d] - old[d];
+    most = std::max(most, sqrt(sd_dot(change, change)) / atom->radius[i]);
+  };
+  for (int i : motion.lone)
+    if (before.has(i)) compare(i, before[i]);
+  for (const auto &clump : motion.clumps)
+    for (int k = clump.body->begin; k < clump.body->begin + clump.body->n; k++) {
+      const int i = motion.owns()[k];
+      if (i < 0 || !before.has(i)) continue;
+      const double *V = before[i], *X = clump.body->shape->shape.x + 3 * (k - clump.body->begin);
+      double arm[3], old[3];
+      sd_multiply3(clump.pose, X, arm);
+      sd_cross(V + 3, arm, old);
+      for (int d = 0; d < 3; d++) old[d] += V[d];
+      compare(i, old);
+    }
+  return 0.5 * update->dt * most;
+}
+
+/* Between spheres whose centres are within the ghost cut-off */
+double FixStokesDynamicsOverdamped::smallest_gap() const
+{
+  Hydrodynamics &hydro = hydrodynamics();
+  const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
+  const bool bound = hydro.settings.rigid.on;
+  std::vector<double> sent, x, a;
+  std::vector<int64_t> body;
+  hydro.scene.refresh_ghosts(sent, 2, [&](int i, double *row) {
+    row[0] = hydro.ambient.active()[i] ? atom->radius[i] : 0.0;
+    row[1] = bound ? ubuf(atom->molecule[i]).d : 0.0;
+  });
+  int mine = 0;
+  for (int i = 0; i < n; i++) {
+    const double *ghost = i < nlocal ? nullptr : &sent[2 * (size_t) (i - nlocal)];
+    const double radius = ghost ? ghost[0] : hydro.ambient.active()[i] ? atom->radius[i] : 0.0;
+    if (radius == 0.0) continue;
+    x.insert(x.end(), atom->x[i], atom->x[i] + 3);
+    a.push_back(radius);
+    body.push_back(!bound ? 0 : ghost ? (int64_t) ubuf(ghost[1]).i : (int64_t) atom->molecule[i]);
+    mine += i < nlocal;
+  }
+  double gap = INFINITY, all;
+  const double reach = std::max(comm->get_comm_cutoff(), 1e-300);
+  if (mine > 0 &&
+      sd_smallest_gap(x.data(), a.data(), body.data(), mine, a.size(), reach, &gap) != SD_OK)
+    fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
+  MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
+  return all;
+}
+
+// --- restart -------------------------------------------------------------------------------------------------
+
+void FixStokesDynamicsOverdamped::write_restart(FILE *fp)
+{
+  if (comm->me != 0) return;
+  NamedState out(STYLE);
+  out.put("step", last.step);
+  out.put("dt", last.dt);
+  out.put("next_dt", last.next_dt);
+  out.write(fp);
+}
+
+void FixStokesDynamicsOverdamped::restart(char *buf)
+{
+  NamedState in(STYLE);
+  if (!in.read(lmp, buf)) return;
+  last.step = in.get("step", -1.0);
+  last.dt = in.get("dt", 0.0);
+  last.next_dt = in.get("next_dt", 0.0);
+  from_file = true;
+}

@@ -1,0 +1,160 @@
+#include "overdamped_checks.h"
+
+#include "hydrodynamics.h"
+#include "keywords.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
+#include "pair.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+static bool overlap(LAMMPS *lmp, const Fix *one, const Fix *other)
+{
+  const Atom *atom = lmp->atom;
+  int any = 0;
+  for (int i = 0; i < atom->nlocal && !any; i++)
+    any = (atom->mask[i] & one->groupbit) && (atom->mask[i] & other->groupbit);
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, lmp->world);
+  return any;
+}
+
+/* The pair style of this name, alone or in a hybrid one */
+static Pair *pair_named(LAMMPS *lmp, const char *name)
+{
+  return lmp->force->pair ? lmp->force->pair_match(name, 1, 1) : nullptr;
+}
+
+/* Stiffness and damping of a contact style of package GRANULAR, which tells nobody but a restart
+ * file: k_n k_t gamma_n gamma_t friction */
+struct Contact {
+  const char *style = nullptr;
+  double k = 0.0, damping = 0.0;
+};
+
+static Contact contact_of(LAMMPS *lmp)
+{
+  Contact contact;
+  for (const char *style : {"gran/hooke", "gran/hooke/history", "gran/hertz/history"}) {
+    Pair *pair = pair_named(lmp, style);
+    if (!pair) continue;
+    double settings[5] = {0.0};
+    FILE *file = tmpfile();
+    if (!file) continue;
+    pair->write_restart_settings(file);
+    rewind(file);
+    const bool complete = fread(settings, sizeof(double), 5, file) == 5;
+    fclose(file);
+    if (!complete) continue;
+    contact.style = style;
+    contact.k = settings[0];
+    contact.damping = std::max(settings[2], settings[3]);
+  }
+  return contact;
+}
+
+static void refuse_settings(LAMMPS *lmp, const std::string &command, const StokesSettings &s)
+{
+  const std::string pair = " of pair_style stokes_dynamics ";
+  if (s.add_force)
+    fail(lmp,
+         command + ": keyword add_force" + pair +
+             "must be no: the drag is what the velocities follow from, it is no force to add");
+  if (s.update_every != 1)
+    fail(lmp,
+         command + ": keyword update_every" + pair + "must be 1, not " +
+             std::to_string(s.update_every) + ": velocities follow from the forces of every step");
+  if (s.rigid.auto_resolve)
+    fail(lmp,
+         command + ": keyword rigid_clumps" + pair +
+             "must be yes or no, not auto: this fix keeps clumps rigid");
+  if (s.rigid.on && !s.scene.rotation)
+    fail(lmp,
+         command + ": keyword rigid_clumps" + pair +
+             "requires rotation yes or a shell: points do not tell how a clump on a line spins");
+}
+
+static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self, const Fix *other)
+{
+  const std::string name = "fix " + std::string(other->id) + " of style " + other->style;
+  if (strcmp(other->style, "stokes_dynamics") == 0)
+    fail(lmp,
+         command + ": " + name +
+             " cannot apply or report a force in this run (apply yes or no): use the output of "
+             "this fix");
+  bool drags = false;
+  for (const char *style : {"^viscous", "^langevin", "^brownian", "^rigid"})
+    drags = drags || utils::strmatch(other->style, style);
+  if (!(drags || other->time_integrate) || !overlap(lmp, self, other)) return;
+  fail(lmp,
+       command + ": " + name + (other->time_integrate ? " integrates" : " drags") +
+           " atoms of the same group: this fix does all of that itself");
+}
+
+void refuse_inertia(LAMMPS *lmp, const std::string &command, const Fix *self,
+                    const Hydrodynamics &hydro)
+{
+  if (lmp->update->whichflag == 2)
+    fail(lmp,
+         command + ": minimize cannot be used with it: motion without inertia has no minimiser");
+  if (utils::strmatch(lmp->update->integrate_style, "^respa"))
+    fail(lmp, command + " does not support run_style respa");
+  refuse_settings(lmp, command, hydro.settings);
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    if (lmp->modify->fix[i] != self) refuse_fix(lmp, command, self, lmp->modify->fix[i]);
+  if (lmp->force->pair_match("^lubricate", 0, 1))
+    fail(lmp,
+         command +
+             ": pair_style lubricate* has a drag of its own: pair_style stokes_dynamics "
+             "stands alone");
+  const Contact contact = contact_of(lmp);
+  if (contact.damping > 0.0)
+    fail(lmp,
+         command + ": pair_style " + contact.style + " damps its contacts (gamma " +
+             text(contact.damping) +
+             "), which goes by the velocities of the step before: use gamma_n 0, gamma_t 0 (or "
+             "NULL with gamma_n 0) and dampflag 0");
+}
+
+void announce_step_limit(LAMMPS *lmp, const std::string &command, bool euler, double smallest_drag)
+{
+  Force *force = lmp->force;
+  const double part = euler ? 0.78 : 0.39;
+  const Contact contact = contact_of(lmp);
+  bool walls = false;
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    walls = walls || utils::strmatch(lmp->modify->fix[i]->style, "^wall/gran");
+  const bool granular = force->pair_match("^granular", 0, 1) != nullptr;
+  const bool others = strcmp(force->pair_style, "stokes_dynamics") != 0 || force->bond || walls;
+  if (!others || lmp->comm->me != 0) return;
+  const double limit = part * smallest_drag;
+  utils::logmesg(lmp,
+                 command + ": contacts and bonds of stiffness k allow time steps up to " +
+                     text(part) + " 6 pi eta a / k = " + text(limit) + " / k\n");
+  const bool linear = contact.style && !utils::strmatch(contact.style, "hertz");
+  if (linear && contact.k > 0.0 && lmp->update->dt > limit / contact.k)
+    lmp->error->warning(FLERR,
+                        command + ": time step " + text(lmp->update->dt) + " is above " +
+                            text(limit / contact.k) + ", which pair_style " + contact.style +
+                            " with k " + text(contact.k) + " allows in dense packings");
+  if (granular || walls)
+    lmp->error->warning(FLERR,
+                        command + ": contacts of " +
+                            (granular ? "pair_style granular" : "fix wall/gran") +
+                            " must have no damping (gamma 0): it would go by the velocities of the "
+                            "step before, and this cannot be seen from here");
+}
+
+}    // namespace StokesDyn

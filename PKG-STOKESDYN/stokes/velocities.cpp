@@ -1,0 +1,294 @@
+#include "velocities.h"
+
+#include "callback.h"
+
+#include "sd_clump_motion.h"
+#include "sd_linear.h"
+
+#include "atom.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+Velocities::Velocities(LAMMPS *lmp, Scene &scene, Ambient &ambient, RigidClumps &rigid) :
+    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid)
+{
+}
+
+double Velocities::memory_usage() const
+{
+  double numbers = ghosts.capacity();
+  for (const auto *v : {&F, &u, &drag, &spin, &work, &R, &eta, &V, &gradient})
+    numbers += v->capacity();
+  return sizeof(double) * numbers;
+}
+
+// --- the clumps where they stand -----------------------------------------------------------------
+
+enum { ETA = 0, LOAD = 1, FLOW = 7, GRADIENT = 10, WITH_FLOW = 19 };
+
+/* What clumps must know of spheres on other ranks. */
+void Velocities::gather_ghosts()
+{
+  const double *gradients = ambient.gradients();
+  columns = gradients ? WITH_FLOW : FLOW;
+  scene.refresh_ghosts(ghosts, columns, [&](int i, double *row) {
+    row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+    std::copy_n(atom->f[i], 3, row + LOAD);
+    std::copy_n(atom->torque[i], 3, row + LOAD + 3);
+    if (!gradients) return;
+    std::copy_n(ambient.velocity(i), 3, row + FLOW);
+    std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
+  });
+}
+
+void Velocities::find()
+{
+  clumps.clear();
+  lone = ambient.who();
+  if (!rigid.settings.on) return;
+  const auto &all = rigid.find();
+  int crosses = std::count(rigid.owns().begin(), rigid.owns().end(), -1) > 0;
+  MPI_Allreduce(MPI_IN_PLACE, &crosses, 1, MPI_INT, MPI_MAX, world);
+  across = crosses;
+  if (across) gather_ghosts();
+
+  int64_t split = RigidClumps::NOBODY, bent = RigidClumps::NOBODY;
+  std::vector<char> bound(atom->nlocal, 0);
+  std::vector<double> x;
+  for (const auto &body : all) {
+    const sd_shape &shape = body.shape->shape;
+    Clump clump = {&body, {}, 0.0, {}};
+    int taking_part = 0;
+    x.resize(3 * (size_t) body.n);
+    for (int k = 0; k < body.n; k++) {
+      const int j = rigid.members()[body.begin + k], i = rigid.owns()[body.begin + k];
+      const double eta_k = i < 0 ? ghost(j)[ETA] : ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+      taking_part += eta_k > 0.0;
+      clump.eta += eta_k / body.n;
+      std::copy_n(atom->x[j], 3, &x[3 * (size_t) k]);
+      if (i >= 0) bound[i] = 1;
+    }
+    if (taking_part == 0) continue;
+    if (taking_part < body.n) split = std::min(split, body.molecule);
+    const double deviation = sd_shape_pose(&shape, x.data(), clump.pose, clump.pose + 9);
+    if (!(deviation <= SD_SHAPE_TOLERANCE * shape.size)) bent = std::min(bent, body.molecule);
+    clumps.push_back(clump);
+  }
+  int64_t trouble[2] = {split, bent};
+  MPI_Allreduce(MPI_IN_PLACE, trouble, 2, MPI_LMP_BIGINT, MPI_MIN, world);
+  rigid.refuse(trouble[0], trouble[1]);
+  lone.erase(std::remove_if(lone.begin(), lone.end(),
+                            [&](int i) {
+                              return bound[i];
+                            }),
+             lone.end());
+}
+
+/* Velocity of the fluid at the centroid and its gradient over the clump */
+void Velocities::flow_over(const Clump &clump, double fluid[3], double G[9])
+{
+  const RigidClumps::Body &body = *clump.body;
+  const double *gradients = ambient.gradients();
+  sd_clump_motion motion = {};
+  std::copy_n(ambient.uniform_velocity(), 3, motion.u_uniform);
+  std::vector<double> x, velocity, of_velocity;
+  if (gradients) {
+    for (int k = 0; k < body.n; k++) {
+      const int j = rigid.members()[body.begin + k], i = rigid.owns()[body.begin + k];
+      const double *at = atom->x[j];
+      const double *v = i < 0 ? ghost(j) + FLOW : ambient.velocity(i);
+      const double *g = i < 0 ? ghost(j) + GRADIENT : gradients + 9 * (size_t) i;
+      x.insert(x.end(), at, at + 3);
+      velocity.insert(velocity.end(), v, v + 3);
+      of_velocity.insert(of_velocity.end(), g, g + 9);
+    }
+    motion.x = x.data();
+    motion.u = velocity.data();
+    motion.gradient = of_velocity.data();
+  }
+  sd_clump_flow(&body.shape->shape, &motion, clump.pose, clump.pose + 9, fluid, G);
+}
+
+/* Force and torque about the centroid */
+void Velocities::load_on(const Clump &clump, double load[6]) const
+{
+  const RigidClumps::Body &body = *clump.body;
+  std::fill_n(load, 6, 0.0);
+  for (int k = 0; k < body.n; k++) {
+    const int j = rigid.members()[body.begin + k], i = rigid.owns()[body.begin + k];
+    const double *f = i < 0 ? ghost(j) + LOAD : atom->f[i];
+    const double *torque = i < 0 ? ghost(j) + LOAD + 3 : atom->torque[i];
+    double arm[3], couple[3];
+    sd_multiply3(clump.pose, body.shape->shape.x + 3 * (size_t) k, arm);
+    sd_cross(arm, f, couple);
+    for (int d = 0; d < 3; d++) {
+      load[d] += f[d];
+      load[3 + d] += torque[d] + couple[d];
+    }
+  }
+}
+
+// --- rows ------------------------------------------------------------------------------------------
+
+/* Forces on the spheres, the fluid at them, their drags */
+void Velocities::place(int width)
+{
+  const std::vector<int> &who = ambient.who();
+  const size_t m = width, n = who.size();
+  row_of.assign(atom->nlocal, -1);
+  F.resize(m * n + m);
+  u.resize(m * n + m);
+  drag.resize(n + 1);
+  spin.resize(n + 1);
+  for (size_t k = 0; k < n; k++) {
+    const int i = who[k];
+    row_of[i] = k;
+    std::copy_n(atom->f[i], 3, &F[m * k]);
+    if (width == 6) std::copy_n(atom->torque[i], 3, &F[m * k + 3]);
+    ambient.fluid(i, &u[m * k]);
+    drag[k] = ambient.drag(i);
+    if (width == 6) spin[k] = ambient.spin(i);
+  }
+}
+
+/* The clumps as the core wants them */
+void Velocities::arrange()
+{
+  const int n = ambient.who().size();
+  first.assign(1, 0);
+  member.clear();
+  shape.clear();
+  R.clear();
+  eta.clear();
+  loner.clear();
+  for (const Clump &clump : clumps) {
+    const RigidClumps::Body &body = *clump.body;
+    for (int k = body.begin; k < body.begin + body.n; k++) {
+      const int i = rigid.owns()[k];
+      member.push_back(i < 0 ? n + rigid.members()[k] - atom->nlocal : row_of[i]);
+    }
+    first.push_back(member.size());
+    shape.push_back(&rigid.blocks(*body.shape));
+    R.insert(R.end(), clump.pose, clump.pose + 9);
+    eta.push_back(clump.eta);
+  }
+  for (int i : lone) loner.push_back(row_of[i]);
+  V.resize(6 * clumps.size() + 1);
+}
+
+/* u = 0: nobody sees anybody */
+static sd_status nobody(void *ctx, const double * /*F*/, double *out)
+{
+  const sd_mobility_scene *scene = static_cast<sd_mobility_scene *>(ctx);
+  std::fill_n(out, (size_t) scene->how.width * scene->n, 0.0);
+  return SD_OK;
+}
+
+sd_bodies Velocities::bodies(int width)
+{
+  sd_bodies A = {};
+  A.n = ambient.who().size();
+  A.ghosts = across ? atom->nghost : 0;
+  A.width = width;
+  A.drag = drag.data();
+  A.spin = width == 6 ? spin.data() : nullptr;
+  A.lone = loner.size();
+  A.loner = loner.data();
+  A.clumps = clumps.size();
+  A.first = first.data();
+  A.member = member.data();
+  A.shape = shape.data();
+  A.pose = R.data();
+  A.eta = eta.data();
+  A.sum = Scene::sum;
+  A.sum_ctx = &scene;
+  if (!across) return A;
+  A.refresh = [](void *ctx, const double *rows, double *out, int columns) {
+    return callback([=] {
+      Velocities *self = static_cast<Velocities *>(ctx);
+      std::vector<double> sent;
+      self->scene.refresh_ghosts(sent, columns, [=](int i, double *row) {
+        const int k = self->row_of[i];
+        if (k >= 0) std::copy_n(rows + columns * (size_t) k, columns, row);
+      });
+      std::copy_n(sent.begin(), columns * (size_t) self->atom->nghost, out);
+      return SD_OK;
+    });
+  };
+  A.refresh_ctx = this;
+  return A;
+}
+
+sd_status Velocities::together(Rows &rows, bool warm, double tolerance, int max_iter,
+                               sd_bodies_report &report)
+{
+  place(rows.width);
+  arrange();
+  sd_bodies A = bodies(rows.width);
+  sd_mobility_scene alone = {};
+  alone.how.width = rows.width;
+  alone.n = A.n;
+  const bool sees = scene.anybody_sees();
+  A.apply = sees ? sd_mobility_apply : nobody;
+  A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
+  if (ambient.gradients() && !clumps.empty()) {
+    gradient.resize(9 * clumps.size());
+    double centre[3];
+    for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
+    sd_bodies_carry(&A, gradient.data(), u.data());
+  }
+  work.resize(sd_bodies_work(&A));
+  const sd_bodies_problem problem = {u.data(), F.data(), warm, tolerance, max_iter};
+  const sd_bodies_motion motion = {rows.l.data(), rows.v.data(), V.data()};
+  const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work.data(), &report);
+  for (size_t c = 0; c < clumps.size(); c++) std::copy_n(&V[6 * c], 6, clumps[c].V);
+  return status;
+}
+
+void Velocities::apart(Rows &rows)
+{
+  const size_t m = rows.width;
+  place(rows.width);
+  for (int i : lone)
+    for (size_t d = 0; d < m; d++) {
+      const size_t k = row_of[i], j = m * k + d;
+      rows.l[j] = F[j];
+      rows.v[j] = u[j] + F[j] / (d < 3 ? drag : spin)[k];
+    }
+  std::vector<double> force, torque;
+  for (Clump &clump : clumps) {
+    const RigidClumps::Body &body = *clump.body;
+    const sd_clump *what = &body.shape->clump;
+    double fluid[3], G[9], load[6], s[3];
+    flow_over(clump, fluid, G);
+    load_on(clump, load);
+    sd_clump_free_velocity(what, clump.pose, clump.eta, load, fluid, G, clump.V);
+    const double *W = clump.V + 3;
+    const double turns[9] = {0.0, -W[2], W[1], W[2], 0.0, -W[0], -W[1], W[0], 0.0};
+    for (int d = 0; d < 3; d++) s[d] = fluid[d] - clump.V[d];
+    for (int d = 0; d < 9; d++) G[d] -= turns[d];
+    force.resize(3 * (size_t) body.n);
+    torque.resize(3 * (size_t) body.n);
+    sd_clump_forces(what, clump.pose, clump.eta, s, G, force.data(), torque.data());
+    for (int k = 0; k < body.n; k++) {
+      const int i = rigid.owns()[body.begin + k];
+      if (i < 0) continue;
+      double arm[3], across_arm[3], *v = &rows.v[m * row_of[i]], *l = &rows.l[m * row_of[i]];
+      sd_multiply3(clump.pose, body.shape->shape.x + 3 * (size_t) k, arm);
+      sd_cross(W, arm, across_arm);
+      for (int d = 0; d < 3; d++) {
+        v[d] = clump.V[d] + across_arm[d];
+        v[3 + d] = W[d];
+        l[d] = -force[3 * (size_t) k + d];
+        l[3 + d] = -torque[3 * (size_t) k + d];
+      }
+    }
+  }
+}
+
+}    // namespace StokesDyn
