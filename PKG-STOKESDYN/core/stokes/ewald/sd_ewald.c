@@ -93,6 +93,7 @@ static void split(sd_ewald *e, const sd_ewald_sizes *s, int width, double *y)
   if (e->points < 4) e->points = 4;
   if (e->points > SD_EWALD_MOST_POINTS) e->points = SD_EWALD_MOST_POINTS;
   e->beta = 2.25 * e->points;
+  e->largest = largest;
   e->reach = fmax(e->range, 2.0 * largest);
 }
 

@@ -44,8 +44,9 @@ typedef struct {
   sd_ewald_box box;
   /* no spheres: 0, and the rest is not read */
   double count;
-  /* splitting, 1/length; its reference radius; where the near part ends, centre to centre */
-  double xi, a_ref, range;
+  /* splitting, 1/length; its reference radius; where the near part ends, centre to centre; the
+   * largest sphere */
+  double xi, a_ref, range, largest;
   /* how far ghosts must reach: range, or two of the largest spheres that overlap */
   double reach;
   /* grid points of the box each way; those of an open box are an eighth of the grid, which is

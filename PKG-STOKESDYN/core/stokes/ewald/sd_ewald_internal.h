@@ -27,7 +27,7 @@ typedef struct {
 } sd_near_part;
 
 /* Degrees that there are kernels for: the polynomial is filled up with zeros. */
-#define SD_NEAR_DEGREES(_) _(9) _(13) _(18) _(24) _(30) _(39)
+#define SD_NEAR_DEGREES(_) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
 
 /* What windows need of a sphere: its first point on the grid and in the brick, v of sd_window.h each
  * way, b of sd_radial.h */
@@ -57,8 +57,14 @@ typedef struct {
   long row, layer;
 } sd_spreading;
 
+/* Which of the rows begin ... end - 1 are within a distance of a place? Their numbers to list, which
+ * has room for 8 more than there are; returns how many. centre [3]: coordinates, stride apart. */
+typedef long sd_near_search(const double *centre, long stride, int begin, int end, const double *x,
+                            double distance2, int *list);
+
 struct sd_ewald_kernels {
   int lanes;
+  sd_near_search *search;
   void (*near_part)(const sd_near_part *p);
   void (*spread)(const sd_spreading *s);
   void (*interpolate)(const sd_spreading *s);

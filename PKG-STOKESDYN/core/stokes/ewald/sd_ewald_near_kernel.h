@@ -1,6 +1,32 @@
 /* Kernels of the near part: the block of a pair (sd_pair_kernel.h) less the wave part of the same
  * pair in open space, polynomials in t = 2 r^2/range^2 - 1. Included by sd_ewald_kernel.h. */
 
+/* The lanes beyond the end, of other rows, are cut off; centres have room for them. */
+static long search(const double *centre, long stride, int begin, int end, const double *x,
+                   double distance2, int *list)
+{
+  const double *px = centre, *py = px + stride, *pz = py + stride;
+  const vec x0 = SET1(x[0]), y0 = SET1(x[1]), z0 = SET1(x[2]), most = SET1(distance2);
+  long many = 0;
+  for (int j = begin; j < end; j += LANES) {
+    const vec dx = load_any(px + j) - x0, dy = load_any(py + j) - y0, dz = load_any(pz + j) - z0;
+    unsigned hit = BITS(LE(dx * dx + dy * dy + dz * dz, most));
+    if (end - j < LANES) hit &= (1u << (end - j)) - 1;
+#if LANES == 8
+    const __m256i row = _mm256_add_epi32(_mm256_set1_epi32(j),
+                                         _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    _mm256_storeu_si256((__m256i *) (list + many), _mm256_maskz_compress_epi32((__mmask8) hit, row));
+    many += __builtin_popcount(hit);
+#else
+    for (int l = 0; l < LANES; l++) { /* without a branch: half of them are hits */
+      list[many] = j + l;
+      many += hit >> l & 1;
+    }
+#endif
+  }
+  return many;
+}
+
 /* COUNT polynomials of one degree at once: coefficient [COUNT][stride] */
 INLINE void horner(int count, int degree, const double *coefficient, int stride, vec t, vec *value)
 {

@@ -29,7 +29,7 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
   p->kernels = kernels;
   p->ewald = *e;
   p->width = width;
-  const int least = sd_radial_fit(e, p->coefficient[0]);
+  const int least = sd_radial_fit(e, width, p->coefficient[0]);
   p->degree = SD_RADIAL_TERMS - 1;
 #define OF_DEGREE(d) \
   if ((d) >= least && (d) < p->degree) p->degree = d;
@@ -72,7 +72,7 @@ static int make_room(sd_ewald_pairs *p, int n)
   p->target = malloc(sizeof(int) * many);
   p->first = malloc(sizeof(long) * (many + 1));
   p->row = lines((p->width == 6 ? 18 : 11) * many + 64);
-  p->centre = malloc(sizeof(double) * 3 * many);
+  p->centre = malloc(sizeof(double) * (3 * many + FULL));
   p->room = (int) many;
   if (p->sphere && p->target && p->first && p->row && p->centre) return 1;
   p->room = 0;
@@ -81,7 +81,7 @@ static int make_room(sd_ewald_pairs *p, int n)
 
 /* Cells that the spheres stand in: a box around them, cut into n [3] cells of one side */
 typedef struct {
-  double lo[3], side;
+  double lo[3], side, inverse;
   int n[3];
 } cells;
 
@@ -99,13 +99,14 @@ static cells cells_for(const sd_ewald_pairs *p, const sd_spheres *s, int n_all)
       hi[d] = fmax(hi[d], s->x[3 * (long) i + d]);
     }
   }
-  cells c = {.side = 0.5 * p->ewald.range, .n = {1, 1, 1}};
+  cells c = {.side = 0.5 * p->ewald.range, .inverse = 0.0, .n = {1, 1, 1}};
   if (many == 0) return c;
   for (double wanted = 4.0 * many + 64.0;; c.side *= 1.5) {
     double all = 1.0;
     for (int d = 0; d < 3; d++) all *= floor((hi[d] - lo[d]) / c.side) + 1.0;
     if (all <= wanted) break;
   }
+  c.inverse = 1.0 / c.side;
   for (int d = 0; d < 3; d++) {
     c.lo[d] = lo[d];
     c.n[d] = (int) floor((hi[d] - lo[d]) / c.side) + 1;
@@ -115,7 +116,7 @@ static cells cells_for(const sd_ewald_pairs *p, const sd_spheres *s, int n_all)
 
 static int along(const cells *c, double x, int d)
 {
-  const int k = (int) ((x - c->lo[d]) / c->side);
+  const int k = (int) ((x - c->lo[d]) * c->inverse);
   return k < c->n[d] ? k : c->n[d] - 1;
 }
 
@@ -207,41 +208,26 @@ static int add_wide(sd_ewald_pairs *p, int target, int row)
   return 1;
 }
 
-/* Rows of one column of cells that the ball around x [3] may hold: begin ... end - 1; 0: none. Gaps
- * are from x to the column. */
-static int column(const sd_ewald_pairs *p, const cells *c, const double *x, double reach,
-                  const int *at, int *begin, int *end)
+/* Gap between a place and the cells k of a direction; the last reaches as far as its spheres */
+static double gap_to(const cells *c, double x, int k, int d)
 {
-  double left = reach * reach;
-  for (int d = 0; d < 2; d++) {
-    const double lo = c->lo[d] + at[d] * c->side, hi = lo + c->side;
-    const double gap = x[d] < lo ? lo - x[d] : x[d] > hi && at[d] < c->n[d] - 1 ? x[d] - hi : 0.0;
-    left -= gap * gap;
-  }
-  if (!(left >= 0.0)) return 0;
-  const double span = sqrt(left);
-  const double low = (x[2] - span - c->lo[2]) / c->side, high = (x[2] + span - c->lo[2]) / c->side;
-  if (high < 0.0 || low >= c->n[2]) return 0;
-  const int from = low > 0.0 ? (int) low : 0;
-  const int to = high < c->n[2] - 1 ? (int) high : c->n[2] - 1;
-  const long base = ((long) at[0] * c->n[1] + at[1]) * c->n[2];
-  *begin = p->cell_first[base + from];
-  *end = p->cell_first[base + to + 1];
-  return 1;
+  const double lo = c->lo[d] + k * c->side;
+  if (x < lo) return lo - x;
+  return k < c->n[d] - 1 && x > lo + c->side ? x - lo - c->side : 0.0;
 }
 
-/* Neighbours of target i among the rows begin ... end - 1, after the first `many` of all. */
-static long within(const sd_ewald_pairs *p, int row, int begin, int end, long many)
+/* The rows of one column of cells, along z, within span of z: begin and end */
+static void column(const sd_ewald_pairs *p, const cells *c, long first, double z, double span,
+                   int *range)
 {
-  const double *x = p->centre, *y = x + p->room, *z = y + p->room;
-  const double x0 = x[row], y0 = y[row], z0 = z[row], range2 = p->ewald.range * p->ewald.range;
-  int *list = p->neighbor;
-  for (int j = begin; j < end; j++) {
-    const double dx = x[j] - x0, dy = y[j] - y0, dz = z[j] - z0;
-    list[many] = j;
-    many += (dx * dx + dy * dy + dz * dz <= range2) & (j != row);
-  }
-  return many;
+  const double at = (z - c->lo[2]) * c->inverse, low = at - span * c->inverse;
+  const double high = at + span * c->inverse;
+  const int from = low > 0.0 ? (int) low : 0;
+  const int to = high < c->n[2] - 1 ? (int) high : c->n[2] - 1;
+  range[0] = range[1] = 0;
+  if (from >= c->n[2] || to < 0 || high < 0.0) return;
+  range[0] = p->cell_first[first + from];
+  range[1] = p->cell_first[first + to + 1];
 }
 
 static int wide_pairs(sd_ewald_pairs *p, int target, int begin, int end)
@@ -257,28 +243,49 @@ static int wide_pairs(sd_ewald_pairs *p, int target, int begin, int end)
   return 1;
 }
 
+/* Neighbours of a target, after the first `many` of all; -1: no memory */
+static long neighbors_of(sd_ewald_pairs *p, const cells *c, int target, double reach, long many)
+{
+  const int row = p->target[target], wide = reach > p->ewald.range;
+  const double range2 = p->ewald.range * p->ewald.range;
+  double x[3];
+  int low[2], high[2], own = -1;
+  for (int d = 0; d < 3; d++) x[d] = p->centre[(long) d * p->room + row];
+  for (int d = 0; d < 2; d++) {
+    const int steps = (int) ceil(reach / c->side), k = along(c, x[d], d);
+    low[d] = k > steps ? k - steps : 0;
+    high[d] = k + steps < c->n[d] ? k + steps : c->n[d] - 1;
+  }
+  for (int cx = low[0]; cx <= high[0]; cx++) {
+    const double gap_x = gap_to(c, x[0], cx, 0);
+    for (int cy = low[1]; cy <= high[1]; cy++) {
+      const double gap_y = gap_to(c, x[1], cy, 1), left = reach * reach - gap_x * gap_x - gap_y * gap_y;
+      int range[2];
+      if (left < 0.0) continue;
+      column(p, c, ((long) cx * c->n[1] + cy) * c->n[2], x[2], sqrt(left), range);
+      if (range[0] >= range[1]) continue;
+      if (!room_for_neighbors(p, many + range[1] - range[0] + 2 * FULL)) return -1;
+      many += p->kernels->search(p->centre, p->room, range[0], range[1], x, range2, p->neighbor + many);
+      if (wide && !wide_pairs(p, target, range[0], range[1])) return -1;
+    }
+  }
+  /* the target itself is among them, once */
+  const long first = p->first[target];
+  for (long k = first; own < 0; k++)
+    if (p->neighbor[k] == row) own = (int) (k - first);
+  p->neighbor[first + own] = p->neighbor[--many];
+  while (many % FULL) p->neighbor[many++] = p->rows;
+  return many;
+}
+
 static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, double reach)
 {
   long many = 0;
-  const int wide = reach > p->ewald.range;
   p->wides = 0;
   for (int i = 0; i < p->n; i++) {
-    const int row = p->target[i];
-    const double x[3] = {p->centre[row], p->centre[(long) p->room + row],
-                         p->centre[2 * (long) p->room + row]};
-    const int steps = (int) ceil(reach / c->side), ix = along(c, x[0], 0), iy = along(c, x[1], 1);
-    const int x0 = ix > steps ? ix - steps : 0, y0 = iy > steps ? iy - steps : 0;
     p->first[i] = many;
-    for (int cx = x0; cx <= ix + steps && cx < c->n[0]; cx++)
-      for (int cy = y0; cy <= iy + steps && cy < c->n[1]; cy++) {
-        int begin, end;
-        if (!column(p, c, x, reach, (int[2]){cx, cy}, &begin, &end)) continue;
-        if (!room_for_neighbors(p, many + end - begin + FULL)) return SD_ENOMEMORY;
-        many = within(p, row, begin, end, many);
-        if (wide && !wide_pairs(p, i, begin, end)) return SD_ENOMEMORY;
-      }
-    if (!room_for_neighbors(p, many + FULL)) return SD_ENOMEMORY;
-    while (many % FULL) p->neighbor[many++] = p->rows;
+    many = neighbors_of(p, c, i, reach, many);
+    if (many < 0) return SD_ENOMEMORY;
   }
   p->first[p->n] = many;
   return SD_OK;

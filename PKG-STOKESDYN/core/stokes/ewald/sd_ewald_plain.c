@@ -16,6 +16,7 @@ typedef int mask;
 #define LE(a, b) ((a) <= (b))
 #define EQ(a, b) ((a) == (b))
 #define ANY(m) (m)
+#define BITS(m) ((unsigned) (m))
 #define SELECT(m, a, b) ((m) ? (a) : (b))
 #define MAX(a, b) fmax(a, b)
 #define SQRT(v) sqrt(v)

@@ -81,11 +81,29 @@ static void powers(const double *series, int degree, double *coefficient)
   }
 }
 
-int sd_radial_fit(const sd_ewald *e, double *coefficient)
+/* What the functions are multiplied with in a product: powers of the largest b (of the radius with
+ * torques), and the lengths that J and K have lost. 0: not in it. */
+static void weights(const sd_ewald *e, int width, double *weight)
+{
+  const double R = e->range, b = fmax(fabs(sd_ewald_b(e, e->largest)), e->a_ref * e->a_ref / 6.0);
+  const int equal = e->largest == e->a_ref, turns = width == 6;
+  const double a = turns ? e->largest : 0.0;
+  for (int l = 0; l < 2; l++) {
+    const double length = l == 0 ? 1.0 : R * R;
+    weight[SD_I0 + l] = length;
+    weight[SD_I1 + l] = length * fmax(equal ? 0.0 : 2.0 * b, 0.25 * a * a);
+    weight[SD_I2 + l] = equal ? 0.0 : length * b * b;
+  }
+  weight[SD_K0] = a * R;
+  weight[SD_K1] = equal ? 0.0 : a * R * b;
+}
+
+int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
 {
   enum { NODES = 64 };
-  double sample[NODES][SD_RADIALS], series[SD_RADIALS][NODES], origin[SD_RADIALS];
-  sd_radial(e, 0.0, origin);
+  double sample[NODES][SD_RADIALS], series[SD_RADIALS][NODES], weight[SD_RADIALS], bare[SD_RADIALS];
+  weights(e, width, weight);
+  sd_radial(e, 0.0, bare);
   for (int s = 0; s < NODES; s++)
     sd_radial(e, e->range * sqrt(0.5 * (1.0 + cos(SD_PI * (s + 0.5) / NODES))), sample[s]);
   int degree = 1;
@@ -98,8 +116,8 @@ int sd_radial_fit(const sd_ewald *e, double *coefficient)
     double rest = 0.0;
     int k = NODES - 1;
     for (; k > degree; k--) {
-      rest += fabs(series[f][k]);
-      if (rest > 0.1 * e->tolerance * fabs(origin[f])) break;
+      rest += weight[f] * fabs(series[f][k]);
+      if (rest > 0.1 * e->tolerance * bare[SD_I0]) break;
     }
     if (k > degree) degree = k;
   }

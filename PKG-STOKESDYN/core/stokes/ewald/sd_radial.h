@@ -32,10 +32,11 @@ double sd_ewald_b(const sd_ewald *e, double a);
 void sd_radial(const sd_ewald *e, double r, double *value);
 
 /* Polynomials on [0, range] in t = 2 (r/range)^2 - 1:
+ *   width                                       3, or 6 with torques: which functions count
  *   coefficient [SD_RADIALS][SD_RADIAL_TERMS]   of 1, t, t^2 ...
- * Returns their degree: the smallest that leaves a tenth of the tolerance, relative to the functions'
- * values at r = 0. */
-int sd_radial_fit(const sd_ewald *e, double *coefficient);
+ * Returns their degree: the smallest with which what the functions add to a velocity is right to a
+ * tenth of the tolerance, relative to I_0(0). */
+int sd_radial_fit(const sd_ewald *e, int width, double *coefficient);
 
 /* What the near part leaves out beyond its range, summed over all directions and distances:
  *   tail [3]   C_0, C_1, C_2 of  U_i += 1/V sum_j (C_0 - (b_i + b_j) C_1 + b_i b_j C_2) F_j,

@@ -2,7 +2,8 @@
  * includes it has first included one of sd_vectors_*.h, which define
  *   LANES           doubles of a vector
  *   vec, mask       types; vec is a vector type of GCC and clang, so + - * / work on it
- *   LOAD STORE SET1 LE EQ ANY SELECT MAX SQRT RSQRT   (SELECT(m, a, b): a where m)
+ *   LOAD STORE SET1 LE EQ ANY BITS SELECT MAX SQRT RSQRT   (SELECT(m, a, b): a where m; BITS: lane k
+ *                   in bit k)
  *   ROWS(row, j, x, y, z, a, f0, f1, f2)   columns of the LANES rows j[0] ... of eight doubles
  *   TORQUES(row, j, t0, t1, t2)            the same of four doubles
  *

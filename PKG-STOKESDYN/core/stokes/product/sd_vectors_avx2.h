@@ -13,6 +13,7 @@ typedef __m256d mask;
 #define LE(a, b) _mm256_cmp_pd(a, b, _CMP_LE_OQ)
 #define EQ(a, b) _mm256_cmp_pd(a, b, _CMP_EQ_OQ)
 #define ANY(m) (_mm256_movemask_pd(m) != 0)
+#define BITS(m) ((unsigned) _mm256_movemask_pd(m))
 #define SELECT(m, a, b) _mm256_blendv_pd(b, a, m)
 #define MAX(a, b) _mm256_max_pd(a, b)
 #define SQRT(v) _mm256_sqrt_pd(v)

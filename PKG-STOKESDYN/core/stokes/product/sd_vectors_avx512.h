@@ -14,6 +14,7 @@ typedef __mmask8 mask;
 #define LE(a, b) _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ)
 #define EQ(a, b) _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ)
 #define ANY(m) ((m) != 0)
+#define BITS(m) ((unsigned) (m))
 #define SELECT(m, a, b) _mm512_mask_blend_pd(m, b, a)
 #define MAX(a, b) _mm512_max_pd(a, b)
 #define SQRT(v) _mm512_sqrt_pd(v)
