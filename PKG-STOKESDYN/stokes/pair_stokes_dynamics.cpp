@@ -174,6 +174,8 @@ void PairStokesDynamics::init_style()
   require_atoms();
   const Scene::Settings &scene = hydro.settings.scene;
   if (scene.everybody()) check_boundaries(lmp, COMMAND, scene);
+  if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
+    fail(lmp, COMMAND + ": keyword precondition: 'waves' requires a periodic box");
   if (std::isfinite(scene.cutoff)) check_vast_cutoff(lmp, COMMAND, scene);
 
   double largest = 0.0;

@@ -57,6 +57,8 @@ void Preconditioner::look(const sd_system &system)
   seen.parts = 1;
   seen.sum = Scene::sum;
   seen.sum_ctx = &scene;
+  if (const sd_ewald *e = scene.splitting())
+    if (e->box.periodic) seen.box = &e->box;
   if (extent == CLOUD) {
     seen.n = scene.cloud_size();
     seen.spheres = scene.cloud();
@@ -136,14 +138,34 @@ sd_cost Preconditioner::cost_by_list()
   return sd_cost_blocks_by_list(sums[0], seen.width, sums[1], sums[2]);
 }
 
-/* auto: blocks where there are clumps, else the sparse factor; or nothing, if that costs less. The
- * same on all ranks: the solver's sums and most applications are collective. A solve from zero in a
- * run of warm starts is alone of its kind, and decided alone. */
-bool Preconditioner::choose(bool clumps, bool lost)
+/* The blocks of clumps, if there are any, go with the waves. */
+sd_cost Preconditioner::cost_of_waves()
 {
-  if (extent != CLOUD)
+  double stored = squares(first);
+  MPI_Allreduce(MPI_IN_PLACE, &stored, 1, MPI_DOUBLE, MPI_SUM, world);
+  return sd_cost_waves(scene.splitting(), seen.width, stored);
+}
+
+/* Which one a scene would have. */
+Preconditioner::Kind Preconditioner::suited()
+{
+  const bool grouped = extent != WHOLE_CLUMPS && kind != SPARSE && group_by_molecule();
+  if (kind != AUTO) return kind;
+  if (seen.box) return WAVES;
+  return grouped || extent != CLOUD ? CLUMP : SPARSE;
+}
+
+/* auto: the long waves of a periodic box; in others blocks where there are clumps, else the sparse
+ * factor; or nothing, if that costs less. The same on all ranks: the solver's sums and most
+ * applications are collective. A solve from zero in a run of warm starts is alone of its kind, and
+ * decided alone. */
+bool Preconditioner::choose(Kind that, bool lost)
+{
+  if (that == WAVES)
+    cost = cost_of_waves();
+  else if (extent != CLOUD)
     cost = cost_by_list();
-  else if (clumps)
+  else if (that == CLUMP)
     cost = sd_cost_blocks(seen.n, seen.width, first.size() - 1, squares(first));
   else
     cost = sd_cost_sparse(seen.n, seen.width);
@@ -152,7 +174,6 @@ bool Preconditioner::choose(bool clumps, bool lost)
     return true;
   }
   if (cost.iteration == 0.0) return false;
-  const Kind that = clumps ? CLUMP : SPARSE;
   const double unknowns = extent == CLOUD ? (double) seen.width * seen.n : INFINITY;
   const bool at_once = sd_choice_at_once(&cost, tolerance, unknowns);
   if (candidate != that) {
@@ -171,14 +192,16 @@ void Preconditioner::attach(sd_system &system)
   alone = warm_start && !system.warm;
   if (kind == NONE) return;
   look(system);
-  const bool changed = extent == CLOUD && scene.cloud_changed();
-  const bool kept = place != LOST && made != &sd_precondition_none && extent == CLOUD;
-  bool clumps = extent != CLOUD;
-  if (extent != WHOLE_CLUMPS && kind != SPARSE) clumps = group_by_molecule() || clumps;
-  if (kind != AUTO) clumps = kind == CLUMP;
-  if (!choose(clumps, kept && changed)) return release();
-
-  wanted = clumps ? &sd_precondition_blocks : &sd_precondition_sparse;
+  const Kind that = suited();
+  wanted = that == WAVES ? &sd_precondition_waves
+      : that == CLUMP    ? &sd_precondition_blocks
+                         : &sd_precondition_sparse;
+  const bool changed = lasts() && scene.spheres_changed();
+  const bool kept = place != LOST && made != &sd_precondition_none && lasts();
+  if (!choose(that, kept && changed)) {
+    wanted = nullptr;
+    return release();
+  }
   place = kept && !changed && made == wanted ? ELSEWHERE : LOST;
   if (extent == WHOLE_CLUMPS) group_by_list();
   seen.clumps = first.size() - 1;

@@ -1,7 +1,7 @@
 /* Which preconditioner a scene gets, and when it is made anew. All pairs: of the whole cloud,
  * shared by all ranks; clumps_only without a cut-off: of all clumps that this rank has a sphere of;
- * other lists: of the parts of clumps that this rank owns. It changes the number of iterations,
- * never the answer. */
+ * other lists and Ewald sums: of the parts of clumps that this rank owns, and in a periodic box
+ * with the long waves. It changes the number of iterations, never the answer. */
 #ifndef SD_PRECONDITIONER_H
 #define SD_PRECONDITIONER_H
 
@@ -17,7 +17,7 @@ namespace StokesDyn {
 
 class Preconditioner : protected LAMMPS_NS::Pointers {
  public:
-  enum Kind { AUTO, NONE, CLUMP, SPARSE };
+  enum Kind { AUTO, NONE, CLUMP, SPARSE, WAVES };
   Kind kind = AUTO;
   double tolerance = 1e-3;    // of the solves
   bool warm_start = true;     // of the solves
@@ -64,8 +64,12 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   void look(const sd_system &system);
   bool group_by_molecule();
   void group_by_list();
-  bool choose(bool clumps, bool lost);
+  Kind suited();
+  bool choose(Kind that, bool lost);
+  /* Is what was made kept from solve to solve? */
+  bool lasts() const { return extent == CLOUD || wanted == &sd_precondition_waves; }
   sd_cost cost_by_list();
+  sd_cost cost_of_waves();
   void release();
   sd_status make(const sd_precondition_kind *which);
   sd_status put();

@@ -57,6 +57,7 @@ void Scene::update(const std::vector<int> &who, const std::vector<double> &eta)
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
       if (!somebody_sees) return;
+      compare();
       tell();
       images.find(ewald.box, ewald.reach, x, a, w);
       place(size_with_ghosts());

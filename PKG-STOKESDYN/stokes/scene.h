@@ -92,6 +92,11 @@ class Scene : protected LAMMPS_NS::Pointers {
   {
     return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
+  /* Views ALL and NEAR: other spheres than at the last update, or in another order? The same on all
+   * ranks. */
+  bool spheres_changed() const { return cloud_is_new; }
+  /* View NEAR; else nullptr */
+  const sd_ewald *splitting() const { return view() == SD_VIEW_NEAR ? &ewald : nullptr; }
   /* What a product costs this rank, in pairs. */
   double cost_of_product() const;
   /* The box around an open cloud whose sum is split: six numbers to keep, as the next box depends
@@ -104,7 +109,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   int cloud_size() const { return n_all; }
   sd_spheres cloud() const { return {all_x.data(), all_a.data(), all_w.data()}; }
   const std::vector<int64_t> &cloud_molecules() const { return all_molecule; }
-  bool cloud_changed() const { return cloud_is_new; }    // other spheres than at the last update?
   /* From rows of this rank's spheres to rows of the cloud, and, summed over the ranks, back. */
   void to_cloud(const double *own_rows, double *cloud_rows, int width);
   void from_cloud(const double *cloud_rows, double *own_rows, int width);
@@ -171,6 +175,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool periodic() const;
   bool split();
   sd_ewald_sizes measure(sd_ewald_box &box) const;
+  void compare();
   void tell();
   void place_rows(const std::vector<double> &eta);
   void place_ghosts();

@@ -76,6 +76,22 @@ bool Scene::split()
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
 }
 
+/* Are our spheres those of the last update? */
+void Scene::compare()
+{
+  std::vector<int64_t> tags(size()), molecules(size(), 0);
+  for (int k = 0; k < size(); k++) {
+    tags[k] = atom->tag[own[k]];
+    if (atom->molecule) molecules[k] = atom->molecule[own[k]];
+  }
+  int changed = tags != all_tag || molecules != all_molecule || a != all_a, any;
+  MPI_Allreduce(&changed, &any, 1, MPI_INT, MPI_MAX, world);
+  cloud_is_new = any;
+  all_tag.swap(tags);
+  all_molecule.swap(molecules);
+  all_a = a;
+}
+
 /* The parameters, once a run and when they are others than those told last. */
 void Scene::tell()
 {

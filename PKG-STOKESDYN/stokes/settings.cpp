@@ -100,7 +100,7 @@ void StokesSettings::parse(Keywords &in)
            in.refuse("'" + text(scene.far_field_tolerance) + "' must be 1e-13 ... 0.1");
        }},
       {"precondition", [&] {
-         precondition = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse"});
+         precondition = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse", "waves"});
        }},
       {"warm_start", [&] { warm_start = in.yes_no(); }},
   });
@@ -131,6 +131,9 @@ void StokesSettings::check(const Keywords &in) const
              "keyword far_field: 'ewald' is not available with tensor oseen");
   in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
              "keyword precondition: 'sparse' requires algorithm 2");
+  in.require(precondition != Preconditioner::WAVES || (all_pairs && algorithm == GRADIENTS),
+             "keyword precondition: 'waves' requires cut_off_distance inf, clumps_only no and "
+             "algorithm 2");
   in.require(precondition != Preconditioner::CLUMP || algorithm == GRADIENTS,
              "keyword precondition: 'clump' requires algorithm 2");
   in.require(!rigid.auto_resolve || scene.clumps_only,

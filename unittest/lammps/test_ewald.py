@@ -209,3 +209,65 @@ def test_a_box_that_shrinks_and_shears_in_the_run(simulation, tmp_path, ranks):
     sim = simulation().commands(again).run()
     assert np.linalg.norm(sim.drag - after[:, 6:9]) < 1e-8 * np.linalg.norm(sim.drag)
     assert np.linalg.norm(before[:, 6:9] - after[:, 6:9]) > 0.1 * np.linalg.norm(sim.drag)
+
+
+# --- the long waves as a preconditioner ------------------------------------------------------------------------------
+
+def lattice(m, phi, seed=2):
+    """m^3 equal spheres about the points of a cubic lattice, not overlapping, and the side of their box"""
+    rng = np.random.default_rng(seed)
+    step = (4 / 3 * np.pi / phi)**(1 / 3)
+    points = np.stack(np.meshgrid(*3 * [np.arange(m) + 0.5], indexing="ij"), axis=-1).reshape(-1, 3)
+    x = step * points + rng.uniform(-1, 1, points.shape) * (step - 2) / 2
+    return Spheres(x, 1.0, rng.normal(size=x.shape)), m * step
+
+
+def doublets(m, phi):
+    """Each sphere of the lattice a molecule with its twin, a radius away."""
+    spheres, side = lattice(m, phi / 2)
+    rng = np.random.default_rng(8)
+    arms = rng.normal(size=spheres.x.shape)
+    x = np.vstack([spheres.x, spheres.x + arms / np.linalg.norm(arms, axis=1)[:, None]])
+    molecules = np.tile(np.arange(spheres.n) + 1, 2)
+    return Spheres(x % side, 1.0, np.vstack([spheres.v, -spheres.v]), molecules), side
+
+
+@pytest.mark.parametrize("rotation", ["no", "yes"])
+@pytest.mark.parametrize("scene,gain", [(lattice(8, 0.3), 2.0), (doublets(6, 0.3), 2.2)], ids=["spheres", "clumps"])
+def test_waves_take_off_iterations_and_leave_the_answer(simulation, scene, gain, rotation):
+    spheres, side = scene
+    found = {}
+    for how in ("none", "waves"):
+        sim = simulation(spheres, f"{ALL} visc 1.3 warm_start no relative_tolerance 1e-7 far_field_tolerance 1e-4 rotation {rotation} "
+                         f"precondition {how}", boundary="p p p", box=[(0.0, side)] * 3).run()
+        found[how] = sim.iterations, sim.drag
+    assert found["none"][0] > gain * found["waves"][0]
+    assert np.linalg.norm(found["none"][1] - found["waves"][1]) < 1e-5 * np.linalg.norm(found["none"][1])
+
+
+@pytest.mark.parametrize("rotation", ["no", "yes"])
+def test_waves_on_three_ranks(tmp_path, rotation):
+    spheres, side = doublets(5, 0.3)
+    lines = input_lines(spheres, f"{ALL} visc 1.3 warm_start no relative_tolerance 1e-10 far_field_tolerance 1e-11 precondition waves "
+                        f"rotation {rotation}", tmp_path / "data", boundary="p p p", box=[(0.0, side)] * 3)
+    rows = []
+    for ranks in (1, 3):
+        lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=ranks)
+        rows.append(read_dump(tmp_path / "dump")[0][1][:, 6:])
+    assert deviation(rows[1], rows[0], spheres.a) < 1e-9
+
+
+def test_auto_takes_the_waves_in_a_run(simulation):
+    """Velocities that are others in each step; the waves, once made, are kept while spheres move a little."""
+    spheres, side = lattice(8, 0.3)
+    iterations = {}
+    for how in ("none", "auto"):
+        sim = simulation(spheres, f"{ALL} visc 1.3 relative_tolerance 1e-6 precondition {how}", boundary="p p p", box=[(0.0, side)] * 3,
+                         dt=1e-3)
+        sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve"])
+        rng = np.random.default_rng(3)
+        for k in range(8):
+            sim.raw("v")[:] = rng.normal(size=spheres.x.shape)
+            sim.run(1 if k else 0, "pre no post no" if k else "post no")
+        iterations[how] = sim.iterations
+    assert iterations["auto"] < 0.6 * iterations["none"]
