@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# The manual for the browser: README, pages, howtos, examples and the headers of the core, with search and formulas.
+#   build.sh            leaves build/manual/html/index.html; nothing in it needs the network
+#   build.sh check      also opens every page in a headless chromium: links, pictures, formulas, and whether the search finds each
+#                       keyword and the first words of each message
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+top=$(cd "$here/../.." && pwd)
+out=$top/build/manual
+
+packages="python3-sphinx python3-myst-parser libjs-mathjax"
+[ "${1:-}" = check ] && packages="$packages chromium"
+missing=""
+for p in $packages; do
+  dpkg-query -W -f '${db:Status-Abbrev}' "$p" 2> /dev/null | grep -q '^ii' || missing="$missing $p"
+done
+if [ -n "$missing" ]; then
+  if [ "$(id -u)" != 0 ]; then echo "build.sh: packages are missing. Ask for:  apt-get install$missing" >&2; exit 1; fi
+  echo "[manual] installing Debian packages:$missing"
+  apt-get -q update > /dev/null
+  DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install $missing > /dev/null
+fi
+
+mkdir -p "$out"
+/usr/bin/python3 "$here/manual.py" source "$out/source"
+/usr/bin/python3 -m sphinx -q -W --keep-going -b html "$out/source" "$out/html"
+
+# MathJax, as far as these formulas need it: 3 MB of 54
+from=/usr/share/javascript/mathjax to=$out/html/_static/mathjax
+rm -rf "$to"
+mkdir -p "$to/config" "$to/jax/input" "$to/jax/output" "$to/fonts/HTML-CSS/TeX"
+cp -L "$from/MathJax.js" "$to"
+cp -L "$from/config/TeX-AMS_CHTML.js" "$to/config"
+cp -rL "$from/jax/input/TeX" "$to/jax/input"
+cp -rL "$from/jax/output/CommonHTML" "$to/jax/output"
+cp -rL "$from/jax/element" "$to/jax"
+cp -rL "$from/extensions" "$to"
+cp -rL "$from/fonts/HTML-CSS/TeX/woff" "$to/fonts/HTML-CSS/TeX"
+
+echo "[manual] $out/html/index.html"
+if [ "${1:-}" = check ]; then /usr/bin/python3 "$here/manual.py" check "$out/html"; fi
