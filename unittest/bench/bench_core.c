@@ -3,8 +3,9 @@
  * Times are process CPU time on one core, medians of five; rival and core take turns, so that both meet the same load. */
 #include "clouds.h"
 
+#include "../core/stokes/ewald/periodic.h"
 #include "in_clumps.h"
-#include "periodic.h"
+#include "sd_choice.h"
 #include "sd_waves.h"
 
 #include <string.h>
@@ -586,49 +587,6 @@ static void bench_large_lattice(void)
 
 /* --- long waves of a periodic box ------------------------------------------------------------- */
 
-static const sd_precondition_case CASE = {.law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, .parts = 1};
-
-/* m^3 equal spheres; iterations for random velocities, with a direct sum as product: minutes */
-static void bench_waves(int m, double phi)
-{
-  double side, cost[2] = {0.0, 0.0};
-  scene s = periodic_suspension(m, phi, 1.0, ETA, 20, &side);
-  const double edge[3] = {side, side, side};
-  periodic p = periodic_create(&s, edge, fmin(12.0, 0.99 * side), 1e-7);
-  sd_precondition_case c = CASE;
-  c.spheres = (sd_spheres){s.x, s.a, s.w};
-  c.n = s.n;
-  c.width = 3;
-  c.box = &p.box;
-  sd_waves waves = {0};
-  cost[0] = cpu();
-  if (sd_waves_make(&waves, &c) != SD_OK) abort();
-  cost[0] = cpu() - cost[0];
-  double *slip = random_forces(&s, 3, NULL), *F = malloc(sizeof(double) * 3 * (size_t) s.n),
-         *work = malloc(sizeof(double) * SD_SOLVE_WORK(s.n, 3));
-  printf("\nPeriodic box, %d spheres, phi %.2f, random velocities; set-up of the waves %.4f s\n", s.n,
-         phi, cost[0]);
-  for (int k = 0; k < 4; k++) {
-    const double tolerance = k < 2 ? 1e-3 : 1e-6;
-    const sd_system A = {.n = s.n,
-                         .drag = s.drag,
-                         .apply = periodic_apply,
-                         .apply_ctx = &p,
-                         .precondition = k % 2 ? sd_waves_apply : NULL,
-                         .precondition_ctx = &waves};
-    sd_solve_report report;
-    if (sd_solve_gradients(&A, slip, tolerance, 400, F, work, &report) != SD_OK) abort();
-    printf("  %-10s %.0e %4d iterations, residual %.1e\n", k % 2 ? "waves" : "diagonal", tolerance,
-           report.iterations, report.residual);
-  }
-  free(slip);
-  free(F);
-  free(work);
-  sd_waves_free(&waves);
-  periodic_free(&p);
-  scene_free(&s);
-}
-
 /* What sd_choice counts: nanoseconds a sphere, and as pairs of a product by list in the same run */
 static void bench_cost_of_waves(int n, int width)
 {
@@ -637,11 +595,8 @@ static void bench_cost_of_waves(int n, int width)
   const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
   double *r = random_forces(&s, width, NULL), *z = malloc(sizeof(double) * (size_t) (width * n));
   double t[3][RUNS];
-  sd_precondition_case c = CASE;
-  c.spheres = (sd_spheres){s.x, s.a, s.w};
-  c.n = n;
-  c.width = width;
-  c.box = &box;
+  const sd_precondition_case c = {
+      .law = RPY, .spheres = {s.x, s.a, s.w}, .n = n, .width = width, .box = &box, .parts = 1};
   sd_neighbors list = {0};
   sd_packed packed = {0};
   if (sd_neighbors_cutoff(&list, s.x, n, n, 8.0) != SD_OK) abort();
@@ -671,6 +626,51 @@ static void bench_cost_of_waves(int n, int width)
   scene_free(&s);
 }
 
+/* n spheres, radii 0.5 ... 1.5, phi 0.2, that take random velocities: one solve from zero, products
+ * to a tenth of the tolerance, with what it takes to make the waves */
+static void bench_solve_with_waves(int n, double tolerance)
+{
+  scene s = polydisperse(n, 1);
+  double volume = 0.0;
+  for (int i = 0; i < n; i++) volume += 4.0 / 3.0 * SD_PI * pow(s.a[i], 3);
+  const double side = cbrt(volume / 0.2);
+  const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
+  const sd_ewald how = periodic_choose(&box, s.a, n, 3, 0.1 * tolerance);
+  const sd_precondition_case c = {
+      .law = RPY, .spheres = {s.x, s.a, s.w}, .n = n, .width = 3, .box = &box, .parts = 1};
+  const sd_cost cost = sd_cost_waves(&how, 3, 0.0);
+  double *slip = random_forces(&s, 3, NULL), *F = malloc(sizeof(double) * 3 * (size_t) n),
+         *work = malloc(sizeof(double) * SD_SOLVE_WORK(n, 3)), first = 0.0;
+  periodic p;
+  periodic_place(&p, s.x, s.a, s.w, n, 3, &how);
+  printf("  %d spheres, periodic, %.0e; counted: %.1f products an iteration, %.1f a set-up\n", n,
+         tolerance, cost.iteration, cost.make);
+  for (int k = 0; k < 2; k++) {
+    sd_waves waves = {0};
+    const double begin = cpu();
+    if (k && sd_waves_make(&waves, &c) != SD_OK) abort();
+    const double made = cpu() - begin;
+    const sd_system A = {.n = n,
+                         .drag = s.drag,
+                         .apply = sd_mobility_apply,
+                         .apply_ctx = &p.omega,
+                         .precondition = k ? sd_waves_apply : NULL,
+                         .precondition_ctx = &waves};
+    sd_solve_report report;
+    if (sd_solve_gradients(&A, slip, tolerance, 400, F, work, &report) != SD_OK) abort();
+    const double took = cpu() - begin;
+    if (!k) first = took;
+    printf("    %-10s %3d iterations, %.2f s with the set-up (%.2f s), ratio %.2f, residual %.1e\n",
+           k ? "waves" : "diagonal", report.iterations, took, made, took / first, report.residual);
+    sd_waves_free(&waves);
+  }
+  periodic_free(&p);
+  free(slip);
+  free(F);
+  free(work);
+  scene_free(&s);
+}
+
 int main(int argc, char **argv)
 {
   const int quick = argc > 1 && strcmp(argv[1], "quick") == 0;
@@ -681,7 +681,7 @@ int main(int argc, char **argv)
   }
   if (argc > 1 && strcmp(argv[1], "waves") == 0) {
     for (int width = 3; width <= 6; width += 3) bench_cost_of_waves(20000, width);
-    for (int k = 0; k < 2; k++) bench_waves(argc > 2 ? atoi(argv[2]) : 16, k ? 0.45 : 0.1);
+    bench_solve_with_waves(30000, 1e-3);
     return 0;
   }
   const int solve = argc > 1 && strcmp(argv[1], "solve") == 0;

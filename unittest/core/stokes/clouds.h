@@ -93,4 +93,33 @@ static inline scene cloud_flocs(int flocs, int m, double spread, double side, in
   return s;
 }
 
+/* m^3 equal spheres in a periodic cube, phi up to 0.5: from a simple cubic lattice by random moves of one after the other that keep
+ * them apart. */
+static inline scene cloud_periodic(int m, double phi, double a, double eta, int sweeps, double *side)
+{
+  const double spacing = a * cbrt(4.0 / 3.0 * SD_PI / phi), step = 0.3 * (1.0 - phi) * a;
+  scene s = scene_lattice(m, m, m, spacing / a, a, eta);
+  uint64_t seed = 5;
+  *side = m * spacing;
+  for (int sweep = 0; sweep < sweeps; sweep++)
+    for (int i = 0; i < s.n; i++) {
+      double x[3];
+      int apart = 1;
+      for (int d = 0; d < 3; d++) {
+        x[d] = s.x[3 * i + d] + uniform(&seed, -step, step);
+        x[d] -= *side * floor(x[d] / *side);
+      }
+      for (int j = 0; j < s.n && apart; j++) {
+        double sq = 0.0;
+        for (int d = 0; d < 3; d++) {
+          const double r = fabs(x[d] - s.x[3 * j + d]), image = fmin(r, *side - r);
+          sq += image * image;
+        }
+        apart = j == i || sq >= 4.0 * a * a;
+      }
+      for (int d = 0; d < 3 && apart; d++) s.x[3 * i + d] = x[d];
+    }
+  return s;
+}
+
 #endif
