@@ -32,28 +32,31 @@ static int allocate(sd_grid *g)
     if (g->ranks > 1) g->y_slab[c] = fftw_alloc_complex(turned_numbers(g) + 1);
     ok = ok && g->x_slab[c] && g->plane[c] && (g->ranks == 1 || g->y_slab[c]);
   }
+  const int longer = g->size[0] > g->size[1] ? g->size[0] : g->size[1];
+  g->beside = fftw_alloc_complex((size_t) longer * (size_t) g->half);
   g->counts = calloc(4 * (size_t) g->ranks, sizeof(int));
-  return ok && g->counts;
+  return ok && g->beside && g->counts;
 }
 
 /* One x plane along z, rows that hold something; one along y, all wave numbers of z; one y plane
- * along x. FFTW_ESTIMATE: measured plans differ from run to run, and so do their last bits. */
+ * along x. From one place to another, which FFTW does faster than in one place. FFTW_ESTIMATE:
+ * measured plans differ from run to run, and so do their last bits. */
 static int plan(sd_grid *g)
 {
   const unsigned how = FFTW_ESTIMATE;
-  const int half = g->half;
-  fftw_complex *slab = g->x_slab[0], *plane = g->plane[0];
-  g->z_forth = fftw_plan_many_dft_r2c(1, &g->size[2], g->occupied[1], (double *) slab, NULL, 1,
-                                      2 * half, slab, NULL, 1, half, how);
-  g->z_back = fftw_plan_many_dft_c2r(1, &g->size[2], g->occupied[1], slab, NULL, 1, half,
-                                     (double *) slab, NULL, 1, 2 * half, how);
-  g->y_forth = fftw_plan_many_dft(1, &g->size[1], half, slab, NULL, half, 1, slab, NULL, half, 1,
+  const int half = g->half, rows = g->occupied[1], *size = g->size;
+  fftw_complex *slab = g->x_slab[0], *plane = g->plane[0], *beside = g->beside;
+  g->z_forth = fftw_plan_many_dft_r2c(1, size + 2, rows, (double *) slab, NULL, 1, 2 * half, beside,
+                                      NULL, 1, half, how);
+  g->z_back = fftw_plan_many_dft_c2r(1, size + 2, rows, beside, NULL, 1, half, (double *) slab, NULL,
+                                     1, 2 * half, how);
+  g->y_forth = fftw_plan_many_dft(1, size + 1, half, beside, NULL, half, 1, slab, NULL, half, 1,
                                   FFTW_FORWARD, how);
-  g->y_back = fftw_plan_many_dft(1, &g->size[1], half, slab, NULL, half, 1, slab, NULL, half, 1,
+  g->y_back = fftw_plan_many_dft(1, size + 1, half, slab, NULL, half, 1, beside, NULL, half, 1,
                                  FFTW_BACKWARD, how);
-  g->x_forth = fftw_plan_many_dft(1, &g->size[0], half, plane, NULL, half, 1, plane, NULL, half, 1,
+  g->x_forth = fftw_plan_many_dft(1, size, half, beside, NULL, half, 1, plane, NULL, half, 1,
                                   FFTW_FORWARD, how);
-  g->x_back = fftw_plan_many_dft(1, &g->size[0], half, plane, NULL, half, 1, plane, NULL, half, 1,
+  g->x_back = fftw_plan_many_dft(1, size, half, plane, NULL, half, 1, beside, NULL, half, 1,
                                  FFTW_BACKWARD, how);
   return g->z_forth && g->z_back && g->y_forth && g->y_back && g->x_forth && g->x_back;
 }
@@ -89,6 +92,7 @@ void sd_grid_free(sd_grid *g)
     fftw_free(g->y_slab[c]);
     fftw_free(g->plane[c]);
   }
+  fftw_free(g->beside);
   free(g->brick);
   free(g->out);
   free(g->in);
@@ -230,6 +234,18 @@ static long slab_row(const sd_grid *g, const sd_piece *p, int i, int j)
   return (x * g->size[1] + y) * 2 * g->half + p->to[2];
 }
 
+/* Rows along z, of wave numbers or of points */
+static fftw_complex *x_slab_row(const sd_grid *g, int c, int x, int y)
+{
+  return g->x_slab[c] + ((long) (x - g->x0) * g->size[1] + y) * g->half;
+}
+
+static fftw_complex *y_slab_row(const sd_grid *g, int c, int x, int y)
+{
+  if (g->ranks == 1) return x_slab_row(g, c, x, y);
+  return g->y_slab[c] + ((long) (y - g->y0) * g->occupied[0] + x) * g->half;
+}
+
 static void add_to_slab(const sd_grid *g, long at, const double *row, int n)
 {
   double *restrict f0 = (double *) g->x_slab[0] + at, *restrict f1 = (double *) g->x_slab[1] + at;
@@ -255,7 +271,10 @@ static void take_from_slab(const sd_grid *g, long at, double *restrict row, int 
 static sd_status bricks_to_slabs(sd_grid *g)
 {
   double *next = g->send;
-  for (int c = 0; c < 3; c++) memset(g->x_slab[c], 0, sizeof(fftw_complex) * slab_numbers(g));
+  for (int c = 0; c < 3; c++)
+    for (int x = g->x0; x < g->x1; x++) /* rows beyond the occupied ones are not read */
+      memset(x_slab_row(g, c, x, 0), 0,
+             sizeof(fftw_complex) * (size_t) g->occupied[1] * (size_t) g->half);
   for (int k = 0; k < g->outs; k++) {
     const sd_piece *p = g->out + k;
     for (int i = 0; i < p->n[0]; i++)
@@ -315,19 +334,7 @@ static sd_status slabs_to_bricks(sd_grid *g)
   return SD_OK;
 }
 
-/* Rows along z of rank r's part of the turn: field, y, x in both slabs. forth: of our x slab for
- * rank r's y planes, or from rank r's x planes into our y slab. */
-static fftw_complex *x_slab_row(const sd_grid *g, int c, int x, int y)
-{
-  return g->x_slab[c] + ((long) (x - g->x0) * g->size[1] + y) * g->half;
-}
-
-static fftw_complex *y_slab_row(const sd_grid *g, int c, int x, int y)
-{
-  if (g->ranks == 1) return x_slab_row(g, c, x, y);
-  return g->y_slab[c] + ((long) (y - g->y0) * g->occupied[0] + x) * g->half;
-}
-
+/* The turn: our x slab has rows for all ranks' y planes, our y slab from all ranks' x planes. */
 typedef fftw_complex *slab_row_of(const sd_grid *g, int c, int x, int y);
 
 /* The box x, y of all three fields to the message or from it; returns where the message goes on. */
@@ -382,16 +389,31 @@ static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *c
   for (int c = 0; c < 3; c++) {
     planes[c] = (double *) g->plane[c];
     for (int x = 0; x < g->occupied[0]; x++)
-      memcpy(g->plane[c] + (long) x * g->half, y_slab_row(g, c, x, y), row);
-    memset(g->plane[c] + (long) g->occupied[0] * g->half, 0,
+      memcpy(g->beside + (long) x * g->half, y_slab_row(g, c, x, y), row);
+    memset(g->beside + (long) g->occupied[0] * g->half, 0,
            row * (size_t) (g->size[0] - g->occupied[0]));
-    fftw_execute_dft(g->x_forth, g->plane[c], g->plane[c]);
+    fftw_execute_dft(g->x_forth, g->beside, g->plane[c]);
   }
   multiply(ctx, y, planes);
   for (int c = 0; c < 3; c++) {
-    fftw_execute_dft(g->x_back, g->plane[c], g->plane[c]);
+    fftw_execute_dft(g->x_back, g->plane[c], g->beside);
     for (int x = 0; x < g->occupied[0]; x++)
-      memcpy(y_slab_row(g, c, x, y), g->plane[c] + (long) x * g->half, row);
+      memcpy(y_slab_row(g, c, x, y), g->beside + (long) x * g->half, row);
+  }
+}
+
+/* One x plane along z and y, or back */
+static void along_plane(sd_grid *g, int c, int x, int forth)
+{
+  fftw_complex *slab = x_slab_row(g, c, x, 0);
+  if (forth) {
+    const size_t empty = (size_t) (g->size[1] - g->occupied[1]) * (size_t) g->half;
+    fftw_execute_dft_r2c(g->z_forth, (double *) slab, g->beside);
+    memset(g->beside + (long) g->occupied[1] * g->half, 0, sizeof(fftw_complex) * empty);
+    fftw_execute_dft(g->y_forth, g->beside, slab);
+  } else {
+    fftw_execute_dft(g->y_back, slab, g->beside);
+    fftw_execute_dft_c2r(g->z_back, g->beside, (double *) slab);
   }
 }
 
@@ -399,21 +421,12 @@ sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
 {
   sd_status status = bricks_to_slabs(g);
   if (status != SD_OK) return status;
-  const long plane = (long) g->size[1] * g->half;
   for (int c = 0; c < 3; c++)
-    for (int x = 0; x < g->x1 - g->x0; x++) {
-      fftw_complex *at = g->x_slab[c] + x * plane;
-      fftw_execute_dft_r2c(g->z_forth, (double *) at, at);
-      fftw_execute_dft(g->y_forth, at, at);
-    }
+    for (int x = g->x0; x < g->x1; x++) along_plane(g, c, x, 1);
   if (g->ranks > 1 && (status = turn(g, 1)) != SD_OK) return status;
   for (int y = g->y0; y < g->y1; y++) through_plane(g, y, multiply, ctx);
   if (g->ranks > 1 && (status = turn(g, 0)) != SD_OK) return status;
   for (int c = 0; c < 3; c++)
-    for (int x = 0; x < g->x1 - g->x0; x++) {
-      fftw_complex *at = g->x_slab[c] + x * plane;
-      fftw_execute_dft(g->y_back, at, at);
-      fftw_execute_dft_c2r(g->z_back, at, (double *) at);
-    }
+    for (int x = g->x0; x < g->x1; x++) along_plane(g, c, x, 0);
   return slabs_to_bricks(g);
 }

@@ -35,8 +35,9 @@ typedef struct {
   /* this rank's planes of the two slabs */
   int x0, x1, y0, y1;
   /* [3] x slab [x1 - x0][size y][half], real rows of occupied z in its place; y slab [y1 - y0]
-   * [occupied x][half], of several ranks only; planes [size x][half] at work */
-  fftw_complex *x_slab[3], *y_slab[3], *plane[3];
+   * [occupied x][half], of several ranks only; planes [size x][half] at work, and one [size x or
+   * y][half] beside them */
+  fftw_complex *x_slab[3], *y_slab[3], *plane[3], *beside;
   fftw_plan z_forth, z_back, y_forth, y_back, x_forth, x_back;
   /* brick: first point and number of points; rows along z of 3 numbers a point */
   int lo[3], n[3];
