@@ -10,6 +10,7 @@
 #include "fix_check_timestep_sph.h"
 #include "fix_hydro_vans.h"
 #include "fix_nve_sph.h"
+#include "fix_property_global.h"
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
@@ -80,6 +81,7 @@ static std::vector<lammpsplugin_t> sph_styles()
           fix<FixSphDensitySummation>("SPH: density from summation"),
           fix<FixSphDensityCorr>("SPH: Shepard filter of the density"),
           fix<FixNveSph>("SPH: time integration"),
+          fix<FixPropertyGlobal>("SPH: speed of sound and smoothing length by type"),
           fix<FixSphShift>("SPH: memory of the pair style"),
           fix<FixNveSphStationary>("SPH: density of particles at rest"),
           fix<FixWallAdamiSph>("SPH: walls of particles"),

@@ -4,13 +4,11 @@
 #ifndef SD_FIX_SPH_SHIFT_H
 #define SD_FIX_SPH_SHIFT_H
 
-#include "fix.h"
-
-#include <vector>
+#include "rows_fix.h"
 
 namespace StokesDyn {
 
-class FixSphShift : public LAMMPS_NS::Fix {
+class FixSphShift : public RowsFix {
  public:
   static constexpr const char *STYLE = "SPH/SHIFT";
 
@@ -21,35 +19,28 @@ class FixSphShift : public LAMMPS_NS::Fix {
   FixSphShift(LAMMPS_NS::LAMMPS *, int, char **);
   ~FixSphShift() override;
   int setmask() override { return 0; }
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
   int pack_border(int, int *, double *) override;
   int unpack_border(int, int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override { return 1 + maxexchange; }
-  int maxsize_restart() override { return 1 + maxexchange; }
   void write_restart(FILE *) override;
   void restart(char *) override;
-  double memory_usage() override { return shifts.capacity() * sizeof(double) * maxexchange / 3; }
 
   /* [3 n] of particles and ghosts */
-  const double *du() const { return shifts.data(); }
+  const double *du() { return shifts.array()[0]; }
   /* Has there been a step? */
   bool filled() const { return has_rows; }
   /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with correction B and kick
    * of this rank's. */
-  void keep(int n, const double *order, const double *kick);
+  void keep_rows(int n, const double *order, const double *kick);
   void put_back(double *order, double *kick) const;
+
+ protected:
+  bool restored() const override { return has_rows; }
 
  private:
   const bool correction;
   bool has_rows = false;
   // du; B and kick
-  std::vector<double> shifts, rest;
+  AtomArray shifts, rest;
 };
 
 }    // namespace StokesDyn

@@ -1,6 +1,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
+#include "fix_property_global.h"
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
@@ -161,7 +162,11 @@ void PairSph::coeff(int narg, char **arg)
 double PairSph::mixed(int k, int i, int j) const
 {
   if (!std::isnan(given[k][i][j])) return given[k][i][j];
-  if (i == j) return k == DELTAP && shifts && !model.tenscorr ? spacing(i) : defaults[k];
+  if (i == j) {
+    for (const auto *fix : Sph::fixes<FixPropertyGlobal>(lmp))
+      if (k == (fix->property == "sl" ? H : C)) return fix->of_type[i - 1];
+    return k == DELTAP && shifts && !model.tenscorr ? spacing(i) : defaults[k];
+  }
   const double a = mixed(k, i, i), b = mixed(k, j, j);
   // the stress is continuous between two viscosities, as that of two layers in series
   return k == MU ? 2.0 * a * b / (a + b) : 0.5 * (a + b);

@@ -222,7 +222,7 @@ void PairSph::close_sums()
   if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
   forward(order.data(), columns);
   std::fill_n(&order[columns * (size_t) n], columns, 0.0);
-  if (state) state->keep(n, order.data(), kick.data());
+  if (state) state->keep_rows(n, order.data(), kick.data());
 
   particles.order = order.data();
   sd_sph_diffusion(&model, &pairs, &particles, rate.data());

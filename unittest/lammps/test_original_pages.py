@@ -58,12 +58,22 @@ def test_the_second_example_of_sph_is_refused(tmp_path):
     assert "deltap 0.01 must be smaller than the support 2 h = 0.002" in " ".join(ended.text.split())
 
 
-@pytest.mark.parametrize("line", LIGGGHTS)
-def test_fixes_of_liggghts_are_unknown_and_the_howto_says_what_takes_their_place(tmp_path, line):
-    ended = lmp(tmp_path, sph_scene(SPH[0], [line]), succeed=False)
-    assert "property/global" in ended.text and re.search("[Uu]n(known|recognized) fix style", " ".join(ended.text.split()))
-    examples = pathlib.Path(__file__).resolve().parents[2] / "examples"
-    assert line.split()[4] in (examples / "liggghts" / "README.md").read_text()
+def test_the_fixes_of_the_original_page_run(tmp_path):
+    """c and h by property/global are those of pair_coeff, which wins where both are given."""
+    scene = sph_scene(SPH[0], ["displace_atoms all random 2e-4 2e-4 2e-4 7 units box", "velocity all create 1e15 5", "thermo_style custom step press",
+                               "thermo_modify format float %.15g", "run 0"])
+    scene[scene.index("atom_style sph")] += "\natom_modify map array"
+    given = [line for line in scene if line != "pair_coeff * * c 20"]
+    given[given.index("neighbor 1e-4 bin")] += "\npair_coeff * *"
+
+    def pressure(lines):
+        return re.search(r"^ +0 +(\S+)", lmp(tmp_path, lines).log, re.M).group(1)
+    expected = pressure([line.replace("c 20", "c 20 h 0.0012") for line in scene])
+    at = given.index("fix i all nve/sph")
+    assert pressure(given[:at] + LIGGGHTS + given[at:]) == expected
+    wrong = [line.replace("20", "31") for line in LIGGGHTS]
+    assert pressure(given[:at] + LIGGGHTS[:1] + wrong[1:] + ["pair_coeff * * c 20"] + given[at:]) == expected
+    assert pressure(given[:at] + LIGGGHTS[:1] + wrong[1:] + given[at:]) != expected
 
 
 def test_each_name_of_yades_page_is_in_the_table_of_attributes():

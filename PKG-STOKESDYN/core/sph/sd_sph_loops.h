@@ -431,14 +431,15 @@ INLINE void diffusion(const sd_sph_model *model, const sd_sph_list *list, const 
                       double *rate, sd_sph_kernel kernel, int many)
 {
   const v4 zero = all(0.0), two = all(2.0);
-  const int columns = sd_sph_columns(model), volume = model->scheme == SD_SPH_VOLUME;
+  const int columns = sd_sph_columns(model);
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
     const int *neighbor = list->neighbor[i];
     const v4 xi = load(p->x4 + 4 * (size_t) i), gi = load(p->order + (size_t) columns * i);
     const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]);
     const sd_sph_coefficients *row = ROW_OF(i);
-    const int phase = volume ? p->phase[i] : 0;
+    const int phase = p->phase ? p->phase[i] : 0;
+    if (phase < 0) continue;
     v4 sum = zero;
 
     for (int at = 0; at < count; at += 4) {
@@ -450,10 +451,7 @@ INLINE void diffusion(const sd_sph_model *model, const sd_sph_list *list, const 
       const v4 dx = x - b[0], dy = y - b[1], dz = z - b[2];
       const v4 q = smaller(root(dx * dx + dy * dy + dz * dz) * COEFFICIENT(inv_h), two);
       v4 g = COEFFICIENT(grad) * G(kernel, q);
-      if (volume) {
-        const m4 other = phases(p->phase, j);
-        g = where((other == same(phase)) & (other >= same(0)), g, zero);
-      }
+      if (p->phase) g = where(phases(p->phase, j) == same(phase), g, zero);
       const v4 along = (gi[0] + gj[0]) * dx + (gi[1] + gj[1]) * dy + (gi[2] + gj[2]) * dz;
       const v4 flux = -COEFFICIENT(diffusion) * g * (2.0 * (gj[3] - gi[3]) + along);
       sum += b[3] * flux;
