@@ -63,12 +63,13 @@ static int sound(const sd_ewald_box *b, const sd_ewald_sizes *s, double toleranc
 }
 
 /* Range of the near part that costs least, as measured: 80 spheres within it, more at tight
- * tolerances. It need not reach beyond the first images, nor beyond an open box. */
+ * tolerances. It need not reach the first images, nor beyond an open box. (A range that is just an
+ * edge would by rounding hold one image of a sphere and not the opposite one.) */
 static double natural_range(const sd_ewald_box *box, double count, double digits)
 {
   const double many = fmax(80.0, 30.0 * digits);
   const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * count));
-  if (box->periodic) return fmin(range, narrowest(box));
+  if (box->periodic) return fmin(range, 0.97 * narrowest(box));
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
 

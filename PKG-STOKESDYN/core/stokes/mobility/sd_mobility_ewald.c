@@ -26,7 +26,9 @@ typedef struct {
   sd_wave wave;
   sd_grid grid;
   sd_ewald_pairs pairs;
-  double tail[3];
+  double tail[3], origin[SD_RADIALS];
+  /* summed over the ranks: sd_wave.self */
+  double self[3][3];
   sd_spreading spreading;
   /* [pairs.n] in order of the near part's targets; F and then u [width pairs.n] */
   sd_spread_place *place;
@@ -84,6 +86,7 @@ static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
   sd_window_fit(how->points, how->beta, how->tolerance, &e->window);
   sd_ewald_pairs_create(&e->pairs, how, e->kernels, e->width);
   sd_radial_tail(how, e->tail);
+  sd_radial(how, 0.0, e->origin);
   metric(e);
   int size[3];
   for (int d = 0; d < 3; d++) size[d] = (how->box.periodic ? 1 : 2) * how->grid[d];
@@ -185,10 +188,11 @@ static void place_in_brick(ewald *e)
   s->layer = g->layer;
 }
 
-/* All bricks, by a sum over the ranks, which also carries who has failed: then all fail. */
+/* All bricks, by a sum over the ranks, which also carries what a sphere's images do to it, and who
+ * has failed: then all fail. */
 static sd_status share_bricks(ewald *e, const int *brick, sd_status status)
 {
-  const int ranks = e->grid.ranks, me = e->grid.me, many = 6 * ranks + 2;
+  const int ranks = e->grid.ranks, me = e->grid.me, many = 6 * ranks + 2 + 9;
   double *values = calloc((size_t) many, sizeof(double));
   int *bricks = calloc((size_t) many, sizeof(int));
   if (!values || !bricks) status = SD_ENOMEMORY;
@@ -196,6 +200,7 @@ static sd_status share_bricks(ewald *e, const int *brick, sd_status status)
     for (int k = 0; k < 6; k++) values[6 * me + k] = status == SD_OK ? brick[k] : 0;
     values[6 * ranks] = status == SD_ENOMEMORY;
     values[6 * ranks + 1] = status != SD_OK && status != SD_ENOMEMORY;
+    memcpy(values + 6 * ranks + 2, e->wave.self, sizeof(e->wave.self));
   }
   if (values && e->world.sum) {
     const sd_status said = e->world.sum(e->world.ctx, values, many);
@@ -204,6 +209,7 @@ static sd_status share_bricks(ewald *e, const int *brick, sd_status status)
   if (status == SD_OK && values[6 * ranks + 1] > 0.0) status = SD_ENOTFINITE;
   if (status == SD_OK && values[6 * ranks] > 0.0) status = SD_ENOMEMORY;
   for (int k = 0; k < 6 * ranks && status == SD_OK; k++) bricks[k] = (int) lrint(values[k]);
+  if (status == SD_OK) memcpy(e->self, values + 6 * ranks + 2, sizeof(e->self));
   if (status == SD_OK) status = sd_grid_place(&e->grid, bricks);
   free(values);
   free(bricks);
@@ -307,6 +313,66 @@ static sd_status apply(void *state, const double *F, double *u)
   return SD_OK;
 }
 
+/* Near part of a sphere of radius a and one of its images at r [3]: diagonal [6] += */
+static void add_image(const ewald *e, double a, const double *r, double *diagonal)
+{
+  const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), b = sd_ewald_b(&e->ewald, a);
+  double M[36], D[SD_RADIALS];
+  if (R > fmax(e->ewald.range, 2.0 * a)) return;
+  sd_tensor_grand(r, a, a, 1.0, M);
+  sd_radial(&e->ewald, R, D);
+  for (int d = 0; d < 3; d++) {
+    const double along = r[d] * r[d];
+    diagonal[d] += M[7 * d] - (D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2]) -
+                   along * (D[SD_J0] - 2.0 * b * D[SD_J1] + b * b * D[SD_J2]);
+    diagonal[d + 3] += M[7 * (d + 3)] - 0.25 * (D[SD_I1] + along * D[SD_J1]);
+  }
+}
+
+static void add_images(const ewald *e, double a, double *diagonal)
+{
+  const sd_ewald_box *b = &e->ewald.box;
+  const double reach = fmax(e->ewald.range, 2.0 * a);
+  const int nz = (int) (reach / b->edge[2]);
+  for (int k = -nz; k <= nz; k++) {
+    const int ny = (int) ((reach + fabs(k * b->tilt[2])) / b->edge[1]);
+    for (int j = -ny; j <= ny; j++) {
+      const double offset = j * b->tilt[0] + k * b->tilt[1];
+      const int nx = (int) ((reach + fabs(offset)) / b->edge[0]);
+      for (int i = -nx; i <= nx; i++) {
+        const double r[3] = {i * b->edge[0] + offset, j * b->edge[1] + k * b->tilt[2],
+                             k * b->edge[2]};
+        if (i != 0 || j != 0 || k != 0) add_image(e, a, r, diagonal);
+      }
+    }
+  }
+}
+
+/* Through its images: wave part with its own D(0) taken away, near images, and the mean of what is
+ * beyond. In an open box wave part and D(0) are the same. */
+static void self(const void *state, double *diagonal)
+{
+  const ewald *e = state;
+  const long m = e->width;
+  memset(diagonal, 0, sizeof(double) * (size_t) m * (size_t) e->n);
+  if (!(e->ewald.count > 0.0) || !e->ewald.box.periodic) return;
+  const double V = sd_ewald_volume(&e->ewald.box), *C = e->tail, *D = e->origin;
+  double last = 0.0, own[6] = {0.0};
+  for (int i = 0; i < e->n; i++) {
+    const double a = e->spheres.a[i], w = e->spheres.w[i], b = sd_ewald_b(&e->ewald, a);
+    if (!(a > 0.0)) continue;
+    for (int d = 0; d < 3 && a != last; d++) {
+      own[d] = e->self[0][d] - 2.0 * b * e->self[1][d] + b * b * e->self[2][d] -
+               (D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2]) +
+               (C[0] - 2.0 * b * C[1] + b * b * C[2]) / V;
+      own[d + 3] = 0.25 * (e->self[1][d] - D[SD_I1] + C[1] / V);
+    }
+    if (a != last) add_images(e, a, own);
+    last = a;
+    for (int d = 0; d < m; d++) diagonal[m * i + d] = w * w * own[d];
+  }
+}
+
 static void release(void *state)
 {
   ewald *e = state;
@@ -325,5 +391,6 @@ const sd_mobility_engine sd_mobility_ewald = {
     .ghosts = ghosts,
     .place = place,
     .apply = apply,
+    .self = self,
     .free = release,
 };
