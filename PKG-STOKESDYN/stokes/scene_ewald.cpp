@@ -63,11 +63,12 @@ bool Scene::split()
   sd_ewald_box box = ewald.box;
   const sd_ewald_sizes sizes = measure(box);
   const bool must = periodic() || settings.far_field == Settings::EWALD;
+  ewald.count = sizes.count;
+  if (sizes.count == 0.0) return must;
   const double all_pairs = sizes.count * sizes.count;
   const sd_status status =
       sd_ewald_choose(&box, &sizes, width(), settings.far_field_tolerance, &ewald);
   ewald.box = box;
-  ewald.count = sizes.count;
   if (status != SD_OK && must)
     fail(lmp, command + ": keyword far_field: no grid for Ewald sums of " + text(sizes.count) +
                   " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
