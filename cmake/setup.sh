@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Set-up for both commands of the README: Debian packages, LAMMPS, the plugin. Quick when all is there already.
 #   setup.sh [test]      test: also what unittest/run.sh needs
+# STOKESDYN_PACKAGES: more Debian packages, for an example that needs them.
 # Leaves build/stokesdynplugin.so, with build/stokesdynstyles.so that belongs to it, and build/env.sh.
 set -euo pipefail
 export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither
@@ -8,6 +9,7 @@ top=$(cd "$(dirname "$0")/.." && pwd)
 
 packages="build-essential cmake ninja-build dpkg-dev libopenmpi-dev openmpi-bin libpng-dev libopenblas-serial-dev libfftw3-dev python3 python3-numpy python3-matplotlib"
 [ "${1:-}" = test ] && packages="$packages python3-pytest libcmocka-dev valgrind"
+packages="$packages ${STOKESDYN_PACKAGES:-}"
 
 missing=""
 for p in $packages; do
