@@ -90,6 +90,7 @@ class Keywords : private Voice {
   /* Takes the next word if it is this one: for "off", "inf" and the like in place of a number. */
   bool take(const std::string &option);
   bool more() const { return at < args.size(); }
+  size_t left() const { return args.size() - at; }
   const std::string &peek() const { return args[at]; }
 
   /* "<command>: unknown keyword <key>" */

@@ -128,6 +128,25 @@ static void equal_style(const Voice &voice, Field &field, const std::string &nam
   if (field.is_atom_style()) what.fail("an equal-style variable is needed");
 }
 
+/* What the keywords name must still be there. */
+void FixHydroVans::find_names()
+{
+  region = set.region.empty() ? nullptr : Compat::region(domain, set.region);
+  if (!set.region.empty() && !region)
+    set.voice.fail("keyword region: region '" + set.region + "' does not exist");
+  if (region) region->init();
+  const int average_group = group->find(set.average.c_str());
+  if (average_group < 0)
+    set.voice.fail("keyword average: group '" + set.average + "' does not exist");
+  average_bit = group->bitmask[average_group];
+  equal_style(set.voice, set.dpdx, "pressure_gradient");
+  equal_style(set.voice, set.u_top, "surface");
+  equal_style(set.voice, set.intensity, "intensity");
+  if (set.overlap_once && !atom->molecule)
+    set.voice.fail("keyword overlap: molecule IDs are needed to know the clumps");
+  find_classes();
+}
+
 void FixHydroVans::init()
 {
   if (update->whichflag == 2)
@@ -135,25 +154,19 @@ void FixHydroVans::init()
   if (utils::strmatch(update->integrate_style, "^respa"))
     set.voice.fail("run_style respa is not supported");
   check_box();
-  region = set.region.empty() ? nullptr : Compat::region(domain, set.region);
-  if (!set.region.empty() && !region)
-    set.voice.fail("keyword region: region '" + set.region + "' does not exist");
-  const int average_group = group->find(set.average.c_str());
-  if (average_group < 0)
-    set.voice.fail("keyword average: group '" + set.average + "' does not exist");
-  average_bit = group->bitmask[average_group];
-  equal_style(set.voice, set.dpdx, "pressure_gradient");
-  equal_style(set.voice, set.u_top, "surface");
-  if (set.overlap_once && !atom->molecule)
-    set.voice.fail("keyword overlap: molecule IDs are needed to know the clumps");
-  find_classes();
-
-  const double *drag = stream.row(SD_VANS_DRAG);
-  if (!set.has_grains() && set.radius == 0.0 && !set.classes &&
-      std::any_of(drag, drag + stream.ncell(), [](double f) { return f != 0.0; }))
-    set.voice.fail("keyword radius: couple fluid with a drag needs the radius of the grains");
+  find_names();
+  if (!set.has_grains()) check_radius();
   if (set.solves()) tell_steps();
   check_others();
+}
+
+/* A solve with a drag that is given. */
+void FixHydroVans::check_radius()
+{
+  const double *drag = stream.row(SD_VANS_DRAG);
+  if (stream.fluid.radius == 0.0 && !set.classes &&
+      std::any_of(drag, drag + stream.ncell(), [](double f) { return f != 0.0; }))
+    set.voice.fail("keyword radius: couple fluid with a drag needs the radius of the grains");
 }
 
 /* Atoms that two fixes of this style push. */
@@ -231,7 +244,10 @@ void FixHydroVans::setup(int vflag)
     stream.profile_changed();
     if (set.couple == VansSettings::TWO) check_mesh();
   }
-  if (set.fluctuates() && renewals == 0.0) renew_fluctuations(0.0, true);
+  if (set.fluctuates() && renewals == 0.0) {
+    read_variables();
+    renew_fluctuations(0.0, true);
+  }
   post_force(vflag);
 }
 
@@ -299,29 +315,39 @@ void FixHydroVans::check_forces() const
 
 void FixHydroVans::read_variables()
 {
-  if (!set.dpdx.is_variable() && !set.u_top.is_variable()) return;
+  struct {
+    Field &field;
+    double &value;
+    double least;
+    const char *name;
+  } const all[] = {{set.dpdx, stream.fluid.dpdx, -HUGE_VAL, "pressure_gradient: "},
+                   {set.u_top, stream.fluid.u_top, -HUGE_VAL, "surface: speed "},
+                   {set.intensity, stream.intensity, 0.0, "intensity: "}};
+  if (std::none_of(std::begin(all), std::end(all),
+                   [](const auto &each) { return each.field.is_variable(); }))
+    return;
   modify->clearstep_compute();
-  stream.fluid.dpdx = set.dpdx.evaluate(lmp);
-  stream.fluid.u_top = set.u_top.evaluate(lmp);
+  for (const auto &each : all) {
+    if (!each.field.is_variable()) continue;
+    each.value = each.field.evaluate(lmp);
+    const std::string what = "step " + std::to_string(update->ntimestep) + ": keyword " +
+        each.name + text(each.value);
+    if (!std::isfinite(each.value)) set.voice.fail(what + " is not a finite number");
+    if (each.value < each.least) set.voice.fail(what + " must be >= 0");
+  }
   modify->addstep_compute(update->ntimestep + nevery);
-  const auto check = [&](double value, const char *name) {
-    if (!std::isfinite(value))
-      set.voice.fail("step " + std::to_string(update->ntimestep) + ": keyword " + name +
-                     text(value) + " is not a finite number");
-  };
-  check(stream.fluid.dpdx, "pressure_gradient: ");
-  check(stream.fluid.u_top, "surface: speed ");
 }
 
 void FixHydroVans::end_of_step()
 {
   read_variables();
-  const double T = elapsed;
   if (set.averages()) average();
   if (set.couple == VansSettings::ONE) stream.profile_changed();
-  if (set.solves()) couple();
-  elapsed = 0.0;
-  if (set.fluctuates()) renew_fluctuations(T, false);
+  if (set.solves() && set.period > 0.0)
+    couple(set.period, set.dt);
+  else if (set.solves())
+    couple(elapsed, 0.1 * elapsed);
+  end_interval();
   tell_outside();
 }
 

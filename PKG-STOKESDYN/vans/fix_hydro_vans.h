@@ -29,6 +29,7 @@ class FixHydroVans : public RowsFix {
   void post_run() override;
   double compute_vector(int) override;
   double compute_array(int, int) override;
+  /* fix_modify: profile, given, average, solve */
   int modify_param(int, char **) override;
   void *extract(const char *, int &) override;
   double memory_usage() override;
@@ -82,10 +83,12 @@ class FixHydroVans : public RowsFix {
 
   double area() const;
   void check_box() const;
+  void check_radius();
   void check_others() const;
   void check_mesh();
   void tell_steps();
   void find_classes();
+  void find_names();
 
   void select(int bit, bool not_in_group = false);
   sd_vans_grains grains();
@@ -97,12 +100,16 @@ class FixHydroVans : public RowsFix {
 
   void read_variables();
   void average();
-  void couple();
-  VansStream::Given impulses(double T, double ratio);
+  void couple(double T, double dt);
+  void end_interval();
+  void solve_on_demand(double T, double dt);
+  VansStream::Given impulses(double ratio);
   void hand_over();
   void renew_fluctuations(double time, bool first);
   uint64_t members() const;
   void count_overlaps();
+
+  void modify_profile(Keywords &in, const Voice &what);
 
   void record(int i) override;
 };

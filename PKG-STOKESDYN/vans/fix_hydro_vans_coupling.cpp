@@ -10,6 +10,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -159,9 +160,9 @@ void FixHydroVans::average()
 }
 
 /* What the grains got from the water since the last coupling: those of the group as booked step by
- * step; the others, which a fixed bed is made of, as the law has it now. ratio: time of the water
- * over time T of the grains. */
-VansStream::Given FixHydroVans::impulses(double T, double ratio)
+ * step; the others, which a fixed bed is made of, as the law has it now. ratio: time of the
+ * water over that of the grains. */
+VansStream::Given FixHydroVans::impulses(double ratio)
 {
   const size_t N = stream.ncell();
   const int n = atom->nlocal;
@@ -172,7 +173,7 @@ VansStream::Given FixHydroVans::impulses(double T, double ratio)
     if (!memo.has(i)) continue;
     sd_vans_account *books = account(i);
     take[i] = (atom->mask[i] & groupbit) && atom->radius[i] > 0.0;
-    rest[i] = sd_vans_account_rest(books, T, update->dt, ratio);
+    rest[i] = sd_vans_account_rest(books, elapsed, update->dt, ratio);
     if (take[i]) mine[N] += books->impulse;
     books->impulse = 0.0;
   }
@@ -184,8 +185,8 @@ VansStream::Given FixHydroVans::impulses(double T, double ratio)
     forces(some);
     for (int i = 0; i < n; i++) {
       if (!take[i]) continue;
-      rest[i] = account(i)->foreseen - ratio * T * drag_x[i];
-      mine[N + 1] += T * (drag_x[i] + account(i)->shear);
+      rest[i] = account(i)->foreseen - ratio * elapsed * drag_x[i];
+      mine[N + 1] += elapsed * (drag_x[i] + account(i)->shear);
     }
     sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data(), work.data());
   }
@@ -197,14 +198,36 @@ VansStream::Given FixHydroVans::impulses(double T, double ratio)
   return given;
 }
 
-void FixHydroVans::couple()
+void FixHydroVans::couple(double T, double dt)
 {
-  const double T = set.period > 0.0 ? set.period : elapsed;
   if (!(T > 0.0)) return;
   VansStream::Given given;
-  if (set.conserve && elapsed > 0.0) given = impulses(elapsed, T / elapsed);
-  stream.solve(area(), T, set.period > 0.0 ? set.dt : 0.1 * T, given);
+  if (set.conserve && elapsed > 0.0) given = impulses(T / elapsed);
+  stream.solve(area(), T, dt, given);
   if (!given.back.empty()) hand_over();
+}
+
+/* The next interval begins. */
+void FixHydroVans::end_interval()
+{
+  const double T = elapsed;
+  elapsed = 0.0;
+  if (set.fluctuates()) renew_fluctuations(T, false);
+}
+
+/* What a user asks for is a coupling if it moves the water on as far as one would; otherwise the
+ * water moves on alone. */
+void FixHydroVans::solve_on_demand(double T, double dt)
+{
+  const double due = set.period > 0.0 ? set.period : elapsed;
+  if (set.couple == VansSettings::TWO && elapsed > 0.0 && std::fabs(T - due) <= 1e-9 * due) {
+    couple(T, dt);
+    end_interval();
+    return;
+  }
+  VansStream::Given given;
+  given.held = true;
+  stream.solve(area(), T, dt, given);
 }
 
 /* To each grain what the solve took from the water for it. */

@@ -83,28 +83,53 @@ double FixHydroVans::memory_usage()
 
 /* ---- between runs ---------------------------------------------------------------------------- */
 
-/* fix_modify ID profile file NAME | profile values U_0 ... U_N */
+/* profile file NAME | profile values U_0 ... U_N */
+void FixHydroVans::modify_profile(Keywords &in, const Voice &what)
+{
+  const size_t needed = stream.U.size();
+  if (in.choice({"file", "values"}) == 0) {
+    stream.U = read_profile(what, in.word(), stream.ncell());
+    return;
+  }
+  if (in.left() != needed)
+    what.fail(std::to_string(in.left()) + " values, ncell + 1 = " + std::to_string(needed) +
+              " are needed");
+  for (double &value : stream.U) value = in.number();
+}
+
+/* LAMMPS hands over all words that are left: those of one keyword are taken. After profile and
+ * given the forces of the last step do not stand any more; average and solve do what the end of a
+ * step does. */
 int FixHydroVans::modify_param(int narg, char **arg)
 {
-  if (strcmp(arg[0], "profile") != 0) return 0;
-  const std::string command = "fix_modify " + std::string(id);
-  const Voice what(lmp, command + ": keyword profile");
-  if (narg < 2) what.fail("file NAME or values U_0 ... U_N are needed");
-  const int needed = stream.ncell() + 1;
-  if (strcmp(arg[1], "file") == 0 && narg >= 3) {
-    stream.U = read_profile(what, arg[2], stream.ncell());
-    narg = 3;
-  } else if (strcmp(arg[1], "values") == 0) {
-    if (narg != needed + 2)
-      what.fail(std::to_string(narg - 2) + " values, ncell + 1 = " + std::to_string(needed) +
-                " are needed");
-    Keywords in(lmp, command, words(narg, arg), 2);
-    for (double &value : stream.U) value = in.positional("profile").number();
+  const std::string command = "fix_modify " + std::string(id), key = arg[0];
+  const Voice what(lmp, command + ": keyword " + key);
+  Keywords in(lmp, command, words(narg, arg), 1);
+  in.positional(key);
+  if (key == "profile") {
+    modify_profile(in, what);
+    stream.profile_changed();
+    last_step = -1;
+  } else if (key == "given") {
+    stream.take_given(read_given(what, in.word(), stream.ncell(), set.class_radii.size()));
+    if (!set.has_grains()) check_radius();
+    last_step = -1;
+  } else if (key == "average") {
+    if (!set.averages()) what.fail("couple none and fluid have no averages");
+    find_names();
+    average();
+    stream.profile_changed();
+  } else if (key == "solve") {
+    const double T = in.positive(), dt = in.positive();
+    set.check_solve(what, T, dt);
+    find_names();
+    read_variables();
+    if (set.averages() && !stream.averaged) average();
+    check_radius();
+    solve_on_demand(T, dt);
   } else
-    what.fail(std::string("'") + arg[1] + "' is none of: file, values");
-  stream.profile_changed();
-  last_step = -1;    // the forces of the last step do not stand any more
-  return narg;
+    return 0;
+  return narg - (int) in.left();
 }
 
 /* ---- restart --------------------------------------------------------------------------------- */

@@ -142,8 +142,16 @@ void VansSettings::take_solve(Keywords &in)
 {
   period = in.positive();
   dt = in.positive();
-  if (dt > period * (1.0 + 1e-9))
-    in.refuse("the step " + text(dt) + " is longer than the period " + text(period));
+}
+
+void VansSettings::check_solve(const Voice &what, double T, double step) const
+{
+  if (step > T * (1.0 + 1e-9))
+    what.fail("the step " + text(step) + " is longer than the period " + text(T));
+  if (!(T / step * ncell() <= MOST_WORK))
+    what.fail("the step " + text(step) + " is too short for the period " + text(T) + ": " +
+              text(T / step) + " steps of " + std::to_string(ncell()) +
+              " slices in every coupling, most of a minute");
 }
 
 void VansSettings::take_class_radii(Keywords &in)
@@ -163,6 +171,17 @@ void VansSettings::take_fluctuation(Keywords &in)
   seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
   find_bed = in.take("auto");
   if (!find_bed) bed = in.number();
+}
+
+void VansSettings::take_intensity(Keywords &in)
+{
+  if (in.take("stress")) return;
+  intensity_given = true;
+  if (in.more() && in.peek() == "file")
+    intensity_file = file_name(in);
+  else
+    intensity = Field::parse(in);
+  if (intensity.number() < 0.0) in.refuse("'" + text(intensity.number()) + "' must be >= 0");
 }
 
 void VansSettings::take_sidewall(Keywords &in)
@@ -227,6 +246,7 @@ void VansSettings::read(Keywords &in)
       {"grains", [&] { point = in.choice({"extended", "point"}) == 1; }},
       {"felt", [&] { law.felt_by_volume = in.choice({"centre", "volume"}) == 1; }},
       {"fluctuation", [&] { take_fluctuation(in); }},
+      {"intensity", [&] { take_intensity(in); }},
       {"renewal", [&] { renewal = in.positive(); }},
       {"rules", rules},
       {"conserve", [&] { conserve = in.yes_no(); }},
@@ -249,6 +269,7 @@ void VansSettings::check(const Keywords &in) const
   in.require(!law.felt_by_volume || !point,
              "keyword felt: with grains point all of a grain is at its centre");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal: there are no fluctuations");
+  in.require(!in.given("intensity") || fluctuates(), "keyword intensity: there are no fluctuations");
   in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
   const bool stands = law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&
       !fluid.driven && profile_file.empty();
@@ -273,6 +294,26 @@ void VansSettings::read_mesh()
   }
 }
 
+void VansSettings::read_files()
+{
+  const int N = ncell();
+  if (!given_file.empty())
+    given = read_given(voice.of("keyword given"), given_file, N, class_radii.size());
+  else if (!has_grains())
+    given.assign(3, std::vector<double>(N, 0.0));
+  if (!profile_file.empty()) profile = read_profile(voice.of("keyword profile"), profile_file, N);
+  if (!convective_file.empty())
+    convective = read_list(voice.of("keyword convective"), convective_file, N, "ncell");
+  law.convective = convective.empty() ? nullptr : convective.data();
+  if (intensity_file.empty()) return;
+  const Voice what = voice.of("keyword intensity");
+  intensities = read_list(what, intensity_file, N, "ncell");
+  for (int n = 0; n < N; n++)
+    if (intensities[n] < 0.0)
+      what.fail("file '" + intensity_file + "': '" + text(intensities[n]) + "' in row " +
+                std::to_string(n + 1) + " must be >= 0");
+}
+
 VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
     voice(lmp, "Fix hydro/vans")
 {
@@ -289,22 +330,11 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   if (!mesh_file.empty()) read_mesh();
   mesh.ncell = (int) edge.size() - 1;
   mesh.edge = edge.data();
-  const int N = ncell();
-  if (!given_file.empty())
-    given = read_given(voice.of("keyword given"), given_file, N, class_radii.size());
-  else if (!has_grains())
-    given.assign(3, std::vector<double>(N, 0.0));
-  if (!profile_file.empty()) profile = read_profile(voice.of("keyword profile"), profile_file, N);
-  if (!convective_file.empty())
-    convective = read_list(voice.of("keyword convective"), convective_file, N, "ncell");
-  law.convective = convective.empty() ? nullptr : convective.data();
+  read_files();
   fluid.gx = law.g[0];
   fluid.dpdx = dpdx.number();
   fluid.u_top = u_top.number();
-  if (period > 0.0 && !(period / dt * N <= MOST_WORK))
-    voice.fail("keyword solve: the step " + text(dt) + " is too short for the period " +
-               text(period) + ": " + text(period / dt) + " steps of " + std::to_string(N) +
-               " slices in every coupling, most of a minute");
+  if (period > 0.0) check_solve(voice.of("keyword solve"), period, dt);
 }
 
 }    // namespace StokesDyn

@@ -49,6 +49,11 @@ struct VansSettings {
   bool find_bed = false;
   /* 0: depth over mean velocity above the bed */
   double renewal = 0.0;
+  /* of fluctuations, the friction velocity of the grain's slice: from the stress of the stream, or
+   * given, one number or [N] */
+  bool intensity_given = false;
+  Field intensity;
+  std::vector<double> intensities;
   /* phi profiles in the mean that marks the bed (ni_capart) */
   int bed_average = 1;
   bool conserve = true;
@@ -60,6 +65,8 @@ struct VansSettings {
   bool has_grains() const { return couple != FLUID; }
   bool solves() const { return couple == TWO || couple == FLUID; }
   bool averages() const { return couple == ONE || couple == TWO; }
+  /* Errors, unless a solve over T in steps of dt may be done. what: the keyword that asks for it. */
+  void check_solve(const Voice &what, double T, double step) const;
   bool fluctuates() const { return fluctuation != NO_FLUCTUATION; }
   bool wants_pores() const
   {
@@ -68,15 +75,17 @@ struct VansSettings {
   }
 
  private:
-  std::string mesh_file, profile_file, given_file, convective_file;
+  std::string mesh_file, profile_file, given_file, convective_file, intensity_file;
   void read(Keywords &in);
   void take_mesh(Keywords &in);
   void take_solve(Keywords &in);
   void take_class_radii(Keywords &in);
   void take_fluctuation(Keywords &in);
+  void take_intensity(Keywords &in);
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void read_mesh();
+  void read_files();
 };
 
 /* ncell + 1 numbers of a file: the velocities of the water. */

@@ -15,16 +15,14 @@ VansStream::VansStream(const VansSettings &settings) :
   U.resize(N + 1, 0.0);
   if (set.profile.empty() && fluid.driven && !set.u_top.is_variable()) U[N] = fluid.u_top;
   fluid.radius = set.radius;
+  intensity = set.intensity.number();
   grain.assign(SD_VANS_ROWS * (size_t) N, 0.0);
-  const int rows[] = {SD_VANS_PHI, SD_VANS_VX, SD_VANS_DRAG};
-  for (size_t c = 0; c < 3 && !set.given.empty(); c++)
-    std::copy(set.given[c].begin(), set.given[c].end(), row(rows[c]));
   for (auto *array :
        {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
     array->assign(N, 0.0);
   scratch.resize(2 * (size_t) N + 2);
   set_classes(set.class_radii);
-  profile_changed();
+  take_given(set.given);
 }
 
 VansStream::~VansStream()
@@ -38,20 +36,33 @@ void VansStream::set_classes(const std::vector<double> &radii)
   const size_t N = ncell(), profile = SD_VANS_ROWS * N;
   class_radii = radii;
   class_grain.assign(profile * radii.size(), 0.0);
-  for (size_t c = 0; 4 + 2 * c < set.given.size() && c < radii.size(); c++) {
-    const auto &class_phi = set.given[3 + 2 * c], &drag = set.given[4 + 2 * c];
-    const auto at = class_grain.begin() + profile * c;
-    std::copy(class_phi.begin(), class_phi.end(), at);
-    std::copy(drag.begin(), drag.end(), at + SD_VANS_DRAG * N);
-  }
   fluid.nclass = (int) class_radii.size();
   fluid.class_radius = class_radii.data();
+}
+
+void VansStream::take_given(const std::vector<std::vector<double>> &columns)
+{
+  given = columns;
+  const size_t profile = SD_VANS_ROWS * (size_t) ncell();
+  const auto put = [this](size_t column, double *at) {
+    std::copy(given[column].begin(), given[column].end(), at);
+  };
+  if (!given.empty()) {
+    put(0, phi());
+    put(1, row(SD_VANS_VX));
+    put(2, row(SD_VANS_DRAG));
+  }
+  for (size_t c = 0; 4 + 2 * c < given.size(); c++) {
+    put(3 + 2 * c, &class_grain[profile * c]);
+    put(4 + 2 * c, &class_grain[profile * c + SD_VANS_DRAG * ncell()]);
+  }
+  profile_changed();
 }
 
 /* `given` without the columns of the classes: one class. */
 const double *VansStream::classes() const
 {
-  return !class_radii.empty() && (averaged || set.given.size() > 3) ? class_grain.data() : nullptr;
+  return !class_radii.empty() && (averaged || given.size() > 3) ? class_grain.data() : nullptr;
 }
 
 void VansStream::mixing_length()
@@ -153,10 +164,10 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   exchange(T, dt, rest);
   mixing_length();
 
-  const bool account = !given.back.empty();
+  const bool settle = !given.back.empty(), account = settle || (set.conserve && given.held);
   std::vector<double> source(account ? N : 0), moved(source), shear(source);
   double returned = 0.0;
-  if (account)
+  if (settle)
     returned = sd_vans_give_back(&mesh, fluid.rho * area, T, given.back.data(), outstanding.data(),
                                  source.data());
   source.resize(std::max(source.size(), rest.size()));
@@ -175,8 +186,10 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
 
   for (size_t n = 0; n + 1 < rest.size(); n++)
     moved[n] -= fluid.rho * sd_vans_height(&mesh, (int) n) * T * rest[n];
-  sd_vans_hand_over(&mesh, phi(), T, &books, shear_density.data(), foreseen_density.data());
-  for (int n = 0; n < N; n++) ledger.transit += area * moved[n];
+  double &taken = settle ? ledger.transit : ledger.others;
+  for (int n = 0; n < N; n++) taken += area * moved[n];
+  if (settle)
+    sd_vans_hand_over(&mesh, phi(), T, &books, shear_density.data(), foreseen_density.data());
   ledger.transit -= given.all + returned;
   ledger.others += given.others;
   ledger.driving += area * books.driving;
@@ -187,7 +200,9 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
 
 std::vector<double> VansStream::friction_velocities() const
 {
-  std::vector<double> u_star(ncell());
+  if (!set.intensities.empty()) return set.intensities;
+  std::vector<double> u_star(ncell(), intensity);
+  if (set.intensity_given) return u_star;
   for (int n = 0; n < ncell(); n++) u_star[n] = std::sqrt(std::max(stress[n], 0.0) / fluid.rho);
   return u_star;
 }

@@ -22,6 +22,8 @@ class VansStream {
   const sd_vans_mesh &mesh;
   /* as the settings have it, and what changes in a run */
   sd_vans_fluid fluid;
+  /* of velocity fluctuations, if the user gives one number */
+  double intensity = 0.0;
   /* [N+1] */
   std::vector<double> U;
   /* profile of all grains, and one after the other those of the classes */
@@ -49,6 +51,8 @@ class VansStream {
   double *phi() { return grain.data(); }
   double *row(int k) { return grain.data() + (size_t) k * mesh.ncell; }
   void set_classes(const std::vector<double> &radii);
+  /* Columns as read_given has them, or none. */
+  void take_given(const std::vector<std::vector<double>> &columns);
   /* U or phi set from outside: hindrance, eddy viscosity and stress follow. */
   void profile_changed();
 
@@ -61,11 +65,14 @@ class VansStream {
     std::vector<double> back;
     /* what the grains got from the water; spheres outside the group of it */
     double all = 0.0, others = 0.0;
+    /* the water moves on alone, past grains that are held: what it gives them now counts as given
+     * to others */
+    bool held = false;
   };
   /* Over the time T in steps of about dt. */
   void solve(double area, double T, double dt, const Given &given);
 
-  /* [N] */
+  /* [N], for the fluctuations */
   std::vector<double> friction_velocities() const;
   double largest_stress() const { return sd_vans_largest_stress(&mesh, stress.data()); }
   /* found, or as the user says */
@@ -79,6 +86,7 @@ class VansStream {
 
  private:
   sd_vans_solver *solver;
+  std::vector<std::vector<double>> given;
   /* [N] momentum that is to go back to the water */
   std::vector<double> outstanding;
   /* ni_capart: the last profiles of phi */

@@ -104,7 +104,8 @@ def judge_stokes(case, words, how):
     case.refuse_if(how == "no radius", "radius")
     case.refuse_if("visc" not in case.settings, "visc")
     case.refuse_if(cut is None and not clumps, "cut_off_distance")
-    case.refuse_if(cut == "inf" and not clumps and how == "periodic", "cut_off_distance")
+    if cut == "inf" and not clumps and how == "periodic":
+        case.says(ODD, "far_field", "cut_off_distance")     # an Ewald sum, which does not go with every keyword
     case.refuse_if(clumps and how in ("no molecules", "no radius"), "clumps_only", "molecule", "radius")
     case.refuse_if(s("taper", "none") != "none" and cut in (None, "inf"), "taper")
     case.refuse_if(s("precondition") == "sparse" and cut != "inf", "precondition")
@@ -259,6 +260,7 @@ VANS = {
     "class_radii": [Counted(32, positive("0.003", "0.002"))],
     "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
     "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED])],
+    "intensity": [Or(stress=[], file=[File("convective.txt")], otherwise=[EQUAL])],
     "renewal": [positive("0.1", "1e-4")], "region": [Name("zone", "part", "nowhere")],
     "average": [Name("all", "g", "nobody")], "conserve": [YES_NO], "rules": [Choice("consistent", "consistent", "yade")],
 }
@@ -283,6 +285,8 @@ def judge_vans(case, words, how):
         case.refuse_if(name not in case.settings, name)
     case.refuse_if(how == "no radius" and s("couple") != "fluid", "radius")
     case.refuse_if(how == "no molecules" and s("overlap") == "once", "overlap")
+    for name in ("renewal", "intensity"):
+        case.refuse_if(name in case.settings and s("fluctuation", "none") == "none", name)
     case.refuse_if(s("felt") == "volume" and "yade" == s("rules"), "felt")
     case.refuse_if(s("felt") == "volume" and s("grains") == "point", "felt")
     if s("mesh", "file") != "file":
@@ -331,7 +335,8 @@ def make_vans_modify(case):
     case.lines = GRAINS.format(style="sphere", radii="set group all diameter 0.006 density 2500").split("\n")
     case.lines.append(f"fix s all hydro/vans 1 mesh {CELLS} 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.81 solve 1e-3 1e-4")
     values = ["values"] + [str(0.01 * k) for k in range(CELLS + 1)]
-    words = case.damaged(["profile"] + case.draw.choice([values, ["file", "profile.txt"]]))
+    others = [["average"], ["solve", "1e-3", "1e-4"], ["given", "given.txt"]]
+    words = case.damaged(case.draw.choice([["profile"] + values, ["profile", "file", "profile.txt"]] + others))
     case.tried = len(case.lines)
     case.lines.append("fix_modify s " + " ".join(words))
     numbers = [("profile", Number(lambda v: True, []))] * (CELLS + 1)
