@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* d less so many times the edge along z, y or x */
+/* d less so many times the edge along z, y or x: edges are the rows of a lower triangle, so that
+ * taking off one leaves the components after it alone */
 static void shift(const double h[6], int edge, double times, double d[3])
 {
   const double edges[3][3] = {{h[0], 0.0, 0.0}, {h[5], h[1], 0.0}, {h[4], h[3], h[2]}};

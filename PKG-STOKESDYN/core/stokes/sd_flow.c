@@ -20,6 +20,7 @@ void sd_flow_set_vorticity(const double vorticity[3], double G[9])
   }
 }
 
+/* (u(x + a) - u(x - a))/(2 a): the scale on which a sphere feels a gradient is its own. */
 void sd_flow_difference(int n, const double *ahead, const double *behind, const double *a,
                         int stride, double *out)
 {

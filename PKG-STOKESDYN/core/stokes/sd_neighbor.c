@@ -13,6 +13,8 @@ void sd_neighbors_free(sd_neighbors *list)
   *list = (sd_neighbors){0};
 }
 
+/* Both arrays grow apart, and only when they must: a list is made again at every re-neighbouring,
+ * with about as many pairs as before. */
 sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count)
 {
   if (rows > list->rows || !list->first) {
@@ -104,7 +106,8 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t 
   if (status != SD_OK) return status;
   list->pairs.n = n;
 
-  /* begin[i], end[i]: the block of the sorted spheres that has the molecule of target i */
+  /* From the sorted spheres back to the targets.
+   * begin[i], end[i]: the block of the sorted spheres that has the molecule of target i */
   int *begin = malloc(sizeof(int) * 2 * ((size_t) n + 1)), *end = begin + n;
   if (!begin) return SD_ENOMEMORY;
   for (int b = 0, e; b < n_all; b = e) {

@@ -12,7 +12,7 @@ enum { RIGID = 6 };
 /* --- the table -----------------------------------------------------------------------------------
  * */
 
-/* Response of one sphere to a slip given in columns */
+/* Response of one sphere to a slip given in columns: forces are linear in it */
 static void respond(const double *table, const double in[SD_CLUMP_COLUMNS], double out[6])
 {
   for (int p = 0; p < 6; p++) out[p] = 0.0;
@@ -20,7 +20,7 @@ static void respond(const double *table, const double in[SD_CLUMP_COLUMNS], doub
     for (int p = 0; p < 6; p++) out[p] += table[6 * c + p] * in[c];
 }
 
-/* Columns of the symmetric E, and back */
+/* Columns of the symmetric part of A: xx yy zz yz xz xy; and the matrix of columns */
 static void to_columns(const double A[9], double E[6])
 {
   E[0] = A[0];

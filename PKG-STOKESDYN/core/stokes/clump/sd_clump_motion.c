@@ -82,6 +82,8 @@ void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9
   }
 }
 
+/* Slip of the fluid against the rigid motion: u - U at the centroid, and G less the antisymmetric
+ * matrix of w, whose product with r is w x r. */
 void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
                    const double pose[12], double eta, double *F, double *T)
 {

@@ -55,7 +55,9 @@ sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *o, sd_cl
   return sd_clump_check_need(points, o, need);
 }
 
-/* Slip of the unit column at y: velocity s, angular velocity w */
+/* Slip of the unit column at y: velocity s, angular velocity w. Three translations e_c; three
+ * rotations w = e, s = e x y; six strains, in which s = E y with E_pq = E_qp = 1 (on the diagonal
+ * once). */
 static void unit_slip(int column, const double y[3], double s[3], double w[3])
 {
   static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};

@@ -31,6 +31,7 @@ static double length(const double *x)
   return sqrt(sd_dot(x, x));
 }
 
+/* About the centroid, from the first sphere: far from the origin no digits are lost. */
 double sd_shape_size(int n, const double *x, const double *a)
 {
   double c[3] = {0.0, 0.0, 0.0}, size = 0.0;

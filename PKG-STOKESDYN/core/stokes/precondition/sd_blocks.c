@@ -32,7 +32,8 @@ void sd_blocks_free(sd_blocks *b)
   memset(b, 0, sizeof(*b));
 }
 
-/* Who is in which block: those that take part. Returns the spheres of the largest one. */
+/* Who is in which block: those that take part. Blocks have (width m)^2 numbers, one after the
+ * other. Returns the spheres of the largest one. */
 static long fill_blocks(sd_blocks *b, const sd_precondition_case *c)
 {
   long count = 0, largest = 0;
@@ -225,6 +226,7 @@ sd_status sd_blocks_move(sd_blocks *b, const sd_precondition_case *c)
   return status == SD_OK ? couple_or_not(b, c) : status;
 }
 
+/* From the axes at set-up, not from those of the last turn: rounding does not pile up. */
 void sd_blocks_turn(sd_blocks *b, int block, const double *R)
 {
   memcpy(b->turn + 9 * (long) block, R, 9 * sizeof(double));
@@ -250,6 +252,7 @@ static void as_one_sphere(const sd_blocks *b, const sd_spheres *s, int k, double
   *w = sqrt(radii / sum);
 }
 
+/* Q is the factor of a cloud of bodies, made anew where they are now; blocks stay as they are. */
 sd_status sd_blocks_couple(sd_blocks *b, const sd_precondition_case *c)
 {
   const size_t blocks = (size_t) b->blocks;
@@ -336,6 +339,7 @@ static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
   }
 }
 
+/* B = D^1/2 C^-1 D^1/2, many columns at once: a number of B is made once for all of them. */
 void sd_blocks_multiply(const sd_blocks *b, int k, int count, const double *in, double *out)
 {
   const int *member = b->member + b->first[k], width = b->width;

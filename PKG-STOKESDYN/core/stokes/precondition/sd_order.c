@@ -36,6 +36,7 @@ static int above(const heap *h, int i, int j)
   return h->key[i] > h->key[j] || (h->key[i] == h->key[j] && h->sphere[i] < h->sphere[j]);
 }
 
+/* Down to where both children are below */
 static void sink(heap *h, int i)
 {
   for (;;) {
@@ -91,6 +92,8 @@ static void take_farthest_first(const double *x, heap *h, sd_cells *c, double *s
   }
 }
 
+/* O(n log n): each sphere is looked at by those taken within its present distance, which are few at
+ * each scale, and a heap gives the farthest. The first sphere is the first that takes part. */
 int sd_farthest_first(const sd_spheres *s, int n, int *order, double *distance)
 {
   sd_cells c = {0};
@@ -121,7 +124,8 @@ int sd_farthest_first(const sd_spheres *s, int n, int *order, double *distance)
   return count;
 }
 
-/* Room for so many more rows */
+/* Room for so many rows. The number of rows is not known before they are found: twice as many as
+ * are wanted now, so that what is copied in the end is no more than all of them. */
 static sd_status grow(sd_rows *rows, long *capacity, long wanted)
 {
   if (wanted <= *capacity) return SD_OK;

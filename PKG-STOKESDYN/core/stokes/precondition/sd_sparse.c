@@ -108,6 +108,8 @@ static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
   return status;
 }
 
+/* Everything but the roots depends on places and radii only; sd_sparse_scale puts the viscosities
+ * in. */
 sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
                            double rho, int part, int parts)
 {

@@ -19,6 +19,7 @@ typedef struct {
   double k[3], square;
 } wave;
 
+/* By |k|, then by n, so that every rank and every compiler takes the same of equally long ones */
 static int by_length(const void *pa, const void *pb)
 {
   const wave *a = pa, *b = pb;
@@ -62,6 +63,8 @@ static long waves_within(const sd_ewald_box *b, const double G[9], double radius
   return count;
 }
 
+/* Two directions across k and one |k| make a pair of waves; the rest of the lists stays 0, and
+ * waves without directions neither take nor give anything. */
 int sd_wave_list_of(const sd_ewald_box *box, sd_wave_list *list)
 {
   double G[9];
@@ -323,6 +326,7 @@ static void add_strengths(const sd_waves *p, double *G)
   }
 }
 
+/* Spheres whose rows are in memory at once: those of the largest clump, or the 32 of add_lone */
 static long largest_block(const sd_blocks *b)
 {
   long largest = 32;
@@ -331,6 +335,8 @@ static long largest_block(const sd_blocks *b)
   return largest;
 }
 
+/* G of all ranks on each of them, and its factor there: the sums have the same bits everywhere, so
+ * the factors have too. */
 static sd_status factorize(sd_waves *p, const sd_precondition_case *c)
 {
   const size_t matrix = (size_t) SD_WAVES_COLUMNS * SD_WAVES_COLUMNS;
@@ -379,6 +385,7 @@ static sd_status set_places(sd_waves *p, const sd_precondition_case *c)
   return sound ? SD_OK : SD_ENOTFINITE;
 }
 
+/* Ranks agree before every step that sums, so that none waits for one that has given up. */
 sd_status sd_waves_make(sd_waves *p, const sd_precondition_case *c)
 {
   static const long none[1] = {0};

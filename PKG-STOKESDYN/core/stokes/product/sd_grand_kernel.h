@@ -33,6 +33,7 @@ INLINE void grand_tile(int both, sd_taper kind, const sd_packed *p, int i, int j
       vec v[6];
 #pragma GCC unroll 6
       for (int k = 0; k < 6; k++) v[k] = LOAD(p->u[k] + j);
+      /* seen from the source, r is -r and the two cross products change places */
       grand_add(&b, -b.cij, -b.cji, dx, dy, dz, F, v);
 #pragma GCC unroll 6
       for (int k = 0; k < 6; k++) STORE(p->u[k] + j, v[k]);
@@ -42,6 +43,7 @@ INLINE void grand_tile(int both, sd_taper kind, const sd_packed *p, int i, int j
   for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
 }
 
+/* Sixteen columns of so many spheres are 16 KiB, half of a first-level cache. */
 enum { GRAND_CHUNK = 128 };
 
 INLINE void grand_symmetric(sd_taper kind, const sd_packed *p, int part, int parts)

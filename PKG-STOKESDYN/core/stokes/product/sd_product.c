@@ -7,6 +7,7 @@
 #include "sd_linear.h"
 #include "sd_product_internal.h"
 
+/* In factors of 1 - q, so that no digits are lost where both go to 0 */
 double sd_taper_factor(const sd_law *law, double R)
 {
   if (law->taper == SD_TAPER_NONE) return 1.0;
@@ -41,6 +42,7 @@ int sd_isa_supported(sd_isa isa)
   return 1;
 }
 
+/* From the widest on: each is faster than the next on every processor that has both. */
 sd_isa sd_isa_best(void)
 {
   static const sd_isa order[] = {SD_ISA_AVX512, SD_ISA_AVX2, SD_ISA_BASELINE};
@@ -215,7 +217,8 @@ void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double 
   for (int k = 0; k < p->active; k++) take_sums(p, p->index[k], k, u + (long) p->width * p->index[k]);
 }
 
-/* Spheres begin ... end - 1; F of the first of them on */
+/* Spheres begin ... end - 1; F of the first of them on. One that takes no part has radius 0 in its
+ * row, and its F, which may be anything, is not read. */
 static void load_rows(sd_packed *p, long begin, long end, const double *F)
 {
   const long m = p->width;
@@ -243,6 +246,7 @@ void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, const
   }
 }
 
+/* In one pass, since the result can only be shorter than the candidates' own rows. */
 void sd_pairs_within(const sd_pairs *candidates, const sd_spheres *s, double cutoff, long *first,
                      int *neighbor)
 {
