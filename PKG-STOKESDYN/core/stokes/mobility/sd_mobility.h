@@ -76,7 +76,8 @@ extern const sd_mobility_engine sd_mobility_all_pairs;
 extern const sd_mobility_engine sd_mobility_list;
 /* Every sphere with every other and with all periodic images, in a periodic or an open box, by FFT:
  * cost about n. how.ewald is its splitting, the same on every rank; place() makes its tables anew
- * when that has changed, and otherwise only reads positions. */
+ * when that has changed, and otherwise only reads positions; SD_ENOTFINITE on all ranks if a sphere
+ * is nowhere, or outside of an open box. */
 extern const sd_mobility_engine sd_mobility_ewald;
 
 /* [sd_mobility_count] all of them */

@@ -134,6 +134,13 @@ static void on_grid(const ewald *e, const double *x, double *s)
   }
 }
 
+/* Within an open box, whose tables know no larger distance; but for rounding */
+static int inside(const sd_ewald_box *b, double x, int d)
+{
+  const double spare = 1e-9 * b->edge[d];
+  return x >= b->origin[d] - spare && x <= b->origin[d] + b->edge[d] + spare;
+}
+
 /* Places of the spheres, and the brick [6] that holds their windows. In a periodic box all stand
  * within half a period of the first. 0: one is outside of an open box, or nowhere. */
 static int find_places(ewald *e, int *brick)
@@ -155,7 +162,7 @@ static int find_places(ewald *e, int *brick)
       const double first = floor(s[d] - 0.5 * points);
       at[d] = (int) first + 1;
       e->place[i].v[d] = 2.0 * (s[d] - 0.5 * points - first) - 1.0;
-      if (!e->ewald.box.periodic) sound = sound && at[d] >= 0 && at[d] + points <= period;
+      if (!e->ewald.box.periodic) sound = sound && inside(&e->ewald.box, e->spheres.x[3 * (long) j + d], d);
       if (i == 0 || at[d] < lo[d]) lo[d] = at[d];
       if (i == 0 || at[d] + points > hi[d]) hi[d] = at[d] + points;
     }

@@ -105,7 +105,7 @@ static inline void periodic_images(periodic *p, const double *x, const double *a
               const double margin = p->ewald.reach / width[d];
               near = near && f[d] >= least[d] - margin && f[d] <= most[d] + margin;
             }
-            if (!near) continue;
+            if (!near && pass == 1) continue;
             p->a[p->n_all] = a[i];
             p->w[p->n_all] = w ? w[i] : 1.0;
             p->owner[p->n_all++] = i;
