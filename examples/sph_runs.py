@@ -80,12 +80,12 @@ def pyplot():
 
 
 def keep(folder, out, picture, table):
-    """Writes table.md beside the picture; with --update both go to the example's own folder too."""
+    """Writes table.md beside the picture (None: there is none); with --update both go to the example's own folder too."""
     with open(os.path.join(out, "table.md"), "w") as f:
         f.write(table)
     print(table)
     if "--update" in sys.argv:
         import shutil
 
-        for name in (picture, "table.md"):
+        for name in filter(None, (picture, "table.md")):
             shutil.copy(os.path.join(out, name), folder)

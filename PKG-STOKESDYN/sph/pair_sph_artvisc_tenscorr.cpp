@@ -402,8 +402,8 @@ void *PairSph::extract(const char *name, int &dim)
 double PairSph::memory_usage()
 {
   double bytes = near.capacity() * sizeof(int *);
-  for (const auto *v : {&x4, &v4, &f4, &P, &masses, &rate, &sums, &weights, &each, &order, &kick,
-                        &wall_rows})
+  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order}) bytes += v->capacity() * sizeof(double);
+  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&classes, &phases, &pool, &near_count}) bytes += v->capacity() * sizeof(int);
   return bytes;

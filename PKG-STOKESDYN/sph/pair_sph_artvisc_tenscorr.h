@@ -96,7 +96,8 @@ class PairSph : public LAMMPS_NS::Pair {
   sd_sph_list pairs = {}, raw = {};    // near ones, if a pass of the step has picked them; LAMMPS's
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
-  std::vector<double> x4, v4, f4, P, masses, rate, sums, weights, each, order, kick, wall_rows;
+  Rows x4, v4, f4, sums, weights, order;
+  std::vector<double> P, masses, rate, each, kick, wall_rows;
   std::vector<int> classes, phases, pool, near_count;
   std::vector<int *> near;
   bool used(int itype) const;

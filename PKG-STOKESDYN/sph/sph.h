@@ -5,12 +5,28 @@
 #include "fix.h"
 #include "lammps.h"
 
+#include <new>
 #include <string>
 #include <vector>
 
 namespace StokesDyn {
 
 class PairSph;
+
+/* Rows of four numbers that begin with a cache line: a row across two costs the loops a third. */
+template <class T> struct CacheLines {
+  using value_type = T;
+  CacheLines() = default;
+  template <class U> CacheLines(const CacheLines<U> &) {}
+  T *allocate(size_t n)
+  {
+    return static_cast<T *>(::operator new(n * sizeof(T), std::align_val_t(64)));
+  }
+  void deallocate(T *p, size_t) { ::operator delete(p, std::align_val_t(64)); }
+  template <class U> bool operator==(const CacheLines<U> &) const { return true; }
+  template <class U> bool operator!=(const CacheLines<U> &) const { return false; }
+};
+using Rows = std::vector<double, CacheLines<double>>;
 
 namespace Sph {
 

@@ -277,6 +277,25 @@ INLINE int *keep(int *last, const int j[4], m4 inside)
   return last;
 }
 
+/* The near pairs of i to the end of the pool; returns its new end. Distances alone, so that the sums,
+ * which cost more, come across no neighbour of the skin. */
+INLINE int *pick(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, int i,
+                 int *last, double margin, int many)
+{
+  const v4 xi = load(p->x4 + 4 * (size_t) i);
+  const sd_sph_coefficients *row = ROW_OF(i);
+  for (int at = 0; at < list->count[i]; at += 4) {
+    int j[4];
+    next_four(list->neighbor[i], at, list->count[i], list->mask, p->n, j);
+    v4 b[4];
+    gather(p->x4, j, b);
+    const v4 dx = xi[0] - b[0], dy = xi[1] - b[1], dz = xi[2] - b[2];
+    const v4 reach = COEFFICIENT(support) + margin;
+    last = keep(last, j, dx * dx + dy * dy + dz * dz < reach * reach);
+  }
+  return last;
+}
+
 INLINE m4 phases(const int *phase, const int j[4])
 {
   return (m4){phase[j[0]], phase[j[1]], phase[j[2]], phase[j[3]]};
@@ -344,22 +363,23 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
   const double margin = near ? near->margin : 0.0;
   int *pool = near ? near->pool : NULL;
   for (int ii = 0; ii < list->n; ii++) {
-    const int i = list->first[ii], count = list->count[i];
-    const int *neighbor = list->neighbor[i];
+    const int i = list->first[ii];
     const v4 xi = load(p->x4 + 4 * (size_t) i), vi = load(p->v4 + 4 * (size_t) i);
     const v4 x = all(xi[0]), y = all(xi[1]), z = all(xi[2]);
     const sd_sph_coefficients *row = ROW_OF(i);
     const v4 mi = all(many ? p->m[i] : p->mass);
-    const int phase = p->phase ? p->phase[i] : 0;
+    const int phase = p->phase ? p->phase[i] : 0, picks = pool && level != SD_SPH_RATE;
+    int *last = picks ? pick(model, list, p, i, pool, margin, many) : pool;
+    const int *neighbor = picks ? pool : list->neighbor[i], mask = picks ? ~0 : list->mask;
+    const int count = picks ? (int) (last - pool) : list->count[i];
     v4 rate = zero, mine[6] = {zero, zero, zero, zero, zero, zero}, factor_j[6];
     for (int first = 0; first < columns; first += 4)
       factor_j[first / 4] =
           factors(first, mi, all(xi[3]), all(-xi[3]), all(phase >= 0 ? 1.0 : 0.0));
-    int *last = pool;
 
     for (int at = 0; at < count; at += 4) {
       int j[4];
-      next_four(neighbor, at, count, list->mask, p->n, j);
+      next_four(neighbor, at, count, mask, p->n, j);
       v4 b[4], u[4];
       gather(p->x4, j, b);
       gather(p->v4, j, u);
@@ -376,8 +396,8 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
         mass_j *= vi[3];
         mass_i *= u[3];
       }
-      if (pool) last = keep(last, j, distance < two + margin * inv_h);
       if (level == SD_SPH_RATE) {
+        if (pool) last = keep(last, j, distance < two + margin * inv_h);
         rate += w * mass_j;
         for (int k = 0; k < 4; k++) sums[j[k]] += mass_i[k] * w[k];
         continue;
@@ -399,6 +419,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
       v4 column[24];
       column[0] = w;
       columns_of(&q, level, column);
+#pragma GCC unroll 6
       for (int first = 0; first < columns; first += 4) {
         transpose(column + first);
         for (int k = 0; k < 4; k++) {
