@@ -31,7 +31,7 @@ static const double REACH = 42.0;
  * Of the waves: a sphere in an application, without and with torques, and in the set-up for each
  * row of Z; the factor of G. */
 static const double NEAR_PAIR = 1.3, WINDOW_POINT = 0.63, GRID_POINT = 8.5, WITH_TORQUES = 2.5,
-                    WAVES_APPLIED[2] = {150.0, 200.0}, WAVES_ROW = 800.0, WAVES_FACTOR = 2e5;
+                    WAVES_APPLIED[2] = {80.0, 110.0}, WAVES_ROW = 800.0, WAVES_FACTOR = 2e5;
 
 static double product(double n, double pairs)
 {

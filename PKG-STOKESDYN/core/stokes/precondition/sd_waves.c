@@ -98,125 +98,173 @@ int sd_wave_list_of(const sd_ewald_box *box, sd_wave_list *list)
   return harmonics;
 }
 
-/* --- rows of Z -------------------------------------------------------------------------------- */
-
-/* Of one sphere, for all waves: cosine and sine of k.x; w s, and w p k/2 */
-typedef struct {
-  double cosine[SD_WAVES_PADDED], sine[SD_WAVES_PADDED];
-  double force[SD_WAVES_PADDED], torque[SD_WAVES_PADDED];
-} place;
-
-/* exp(i n t) for |n| <= harmonics, from exp(i t), by one product each */
-INLINE void powers(const double *unit, int harmonics, double *c, double *s)
-{
-  c[harmonics] = 1.0;
-  s[harmonics] = 0.0;
-  for (int n = 1; n <= harmonics; n++) {
-    const double *const lc = c + harmonics + n - 1, *const ls = s + harmonics + n - 1;
-    c[harmonics + n] = c[harmonics - n] = *lc * unit[0] - *ls * unit[1];
-    s[harmonics + n] = *lc * unit[1] + *ls * unit[0];
-    s[harmonics - n] = -s[harmonics + n];
-  }
-}
-
-/* exp(i k.x) = exp(i n_1 t_1) exp(i n_2 t_2) exp(i n_3 t_3), and with q = (k a)^2/6
+/* --- rows of Z --------------------------------------------------------------------------------
+ *
+ * Spheres are taken LANES at a time, and the loops over lanes are what the compiler makes vectors
+ * of. exp(i k.x) = exp(i n_1 t_1) exp(i n_2 t_2) exp(i n_3 t_3), and with q = (k a)^2/6
  *   s = 1 - q + 3/10 q^2 - ... ~ 1/(1 + q + 7/10 q^2)
  *   p = 1 - 3/5 q + 9/70 q^2 - ... ~ 1/(1 + 3/5 q + 81/350 q^2)
  * which, unlike the series, stay between 0 and 1 for spheres as large as the wave. */
-INLINE void look_at(const sd_waves *p, long i, int width, place *restrict at)
+
+enum { LANES = 8, POWERS = 2 * SD_WAVES_MOST + 1 };
+
+/* Some spheres: exp(i n t_d) of each, n from -harmonics on; a^2/6 and 1/sqrt(eta). Lanes to spare
+ * have no eta, and so no part. */
+typedef struct {
+  double cosine[3][POWERS][LANES], sine[3][POWERS][LANES];
+  double square[LANES], w[LANES];
+} group;
+
+/* exp(i n t) by one product each from exp(i t) */
+INLINE void powers(const double *unit, int harmonics, int lane, double (*c)[LANES],
+                   double (*s)[LANES])
 {
-  enum { MOST = 2 * SD_WAVES_MOST + 1 };
-  const int h = p->harmonics;
-  const sd_wave_list *l = &p->list;
-  const double a = p->size[2 * i], w = p->size[2 * i + 1];
-  double c[3][MOST], s[3][MOST];
-  for (int d = 0; d < 3; d++) powers(p->phase + 6 * i + 2 * d, h, c[d], s[d]);
-  for (int m = 0; m < SD_WAVES_PADDED; m++) {
-    const int x = h + l->n[0][m], y = h + l->n[1][m], z = h + l->n[2][m];
-    const double cxy = c[0][x] * c[1][y] - s[0][x] * s[1][y];
-    const double sxy = c[0][x] * s[1][y] + s[0][x] * c[1][y];
-    at->cosine[m] = cxy * c[2][z] - sxy * s[2][z];
-    at->sine[m] = cxy * s[2][z] + sxy * c[2][z];
-  }
-  for (int m = 0; m < SD_WAVES_PADDED; m++) {
-    const double q = l->k[m] * l->k[m] * (a * a / 6.0);
-    at->force[m] = w / (1.0 + q + 0.7 * q * q);
-    if (width == 6) at->torque[m] = 0.5 * w * l->k[m] / (1.0 + 0.6 * q + 81.0 / 350.0 * (q * q));
+  c[harmonics][lane] = 1.0;
+  s[harmonics][lane] = 0.0;
+  for (int n = 1; n <= harmonics; n++) {
+    const double last = c[harmonics + n - 1][lane], other = s[harmonics + n - 1][lane];
+    c[harmonics + n][lane] = c[harmonics - n][lane] = last * unit[0] - other * unit[1];
+    s[harmonics + n][lane] = last * unit[1] + other * unit[0];
+    s[harmonics - n][lane] = -s[harmonics + n][lane];
   }
 }
 
-/* y [4][PADDED] += Z_i^T (F T): cosines of e_1 and e_2, then sines. As k x e_1 = k e_2 and k x e_2
- * = -k e_1, the torque gives e_1 the product of T with e_2, and e_2 that with -e_1. */
-INLINE void add_products(const sd_wave_list *restrict l, const place *restrict at, const double *F,
-                         int width, double *restrict y)
+/* Spheres sphere[0 ... count - 1], count <= LANES */
+INLINE void look_at(const sd_waves *p, const int *sphere, int count, group *g)
 {
-  for (int m = 0; m < SD_WAVES_PADDED; m++) {
-    const double ex = l->e[0][0][m], ey = l->e[0][1][m], ez = l->e[0][2][m];
-    const double gx = l->e[1][0][m], gy = l->e[1][1][m], gz = l->e[1][2][m];
-    const double f1 = at->force[m] * (ex * F[0] + ey * F[1] + ez * F[2]);
-    const double f2 = at->force[m] * (gx * F[0] + gy * F[1] + gz * F[2]);
-    double t1 = 0.0, t2 = 0.0;
-    if (width == 6) {
-      t1 = at->torque[m] * (gx * F[3] + gy * F[4] + gz * F[5]);
-      t2 = -at->torque[m] * (ex * F[3] + ey * F[4] + ez * F[5]);
+  static const double still[2] = {1.0, 0.0};
+  for (int l = 0; l < LANES; l++) {
+    const long i = l < count ? sphere[l] : -1;
+    for (int d = 0; d < 3; d++)
+      powers(i < 0 ? still : p->phase + 6 * i + 2 * d, p->harmonics, l, g->cosine[d], g->sine[d]);
+    g->square[l] = i < 0 ? 0.0 : p->size[2 * i] * p->size[2 * i] / 6.0;
+    g->w[l] = i < 0 ? 0.0 : p->size[2 * i + 1];
+  }
+}
+
+/* One pair of waves at a group: rows of its powers, k^2 */
+typedef struct {
+  const double *cosine[3], *sine[3];
+  double square, k;
+} seen;
+
+INLINE seen see(const sd_waves *p, const group *g, int m)
+{
+  seen v = {.k = p->list.k[m], .square = p->list.k[m] * p->list.k[m]};
+  for (int d = 0; d < 3; d++) {
+    v.cosine[d] = g->cosine[d][p->harmonics + p->list.n[d][m]];
+    v.sine[d] = g->sine[d][p->harmonics + p->list.n[d][m]];
+  }
+  return v;
+}
+
+/* Of one sphere and one pair of waves: cosine and sine of k.x; w s, and w p k/2 */
+typedef struct {
+  double c, s, force, torque;
+} place;
+
+INLINE place place_of(const seen *v, const group *g, int l, int width)
+{
+  const double cxy = v->cosine[0][l] * v->cosine[1][l] - v->sine[0][l] * v->sine[1][l];
+  const double sxy = v->cosine[0][l] * v->sine[1][l] + v->sine[0][l] * v->cosine[1][l];
+  const double q = v->square * g->square[l], w = g->w[l];
+  return (place){.c = cxy * v->cosine[2][l] - sxy * v->sine[2][l],
+                 .s = cxy * v->sine[2][l] + sxy * v->cosine[2][l],
+                 .force = w / (1.0 + q + 0.7 * q * q),
+                 .torque = width == 6 ? 0.5 * w * v->k / (1.0 + 0.6 * q + 81.0 / 350.0 * (q * q))
+                                      : 0.0};
+}
+
+/* F [6][LANES] of some spheres: y[0 ... 3][m] += Z^T F in each lane, cosines of e_1 and e_2, then
+ * sines. As k x e_1 = k e_2 and k x e_2 = -k e_1, the torque gives e_1 the product of T with e_2,
+ * and e_2 that with -e_1. */
+INLINE void add_products(const sd_waves *p, const group *g, const double (*F)[LANES], int width,
+                         double (*restrict y)[SD_WAVES_PADDED][LANES])
+{
+  for (int m = 0; m < SD_WAVES_MOST; m++) {
+    const seen v = see(p, g, m);
+    const double ex = p->list.e[0][0][m], ey = p->list.e[0][1][m], ez = p->list.e[0][2][m];
+    const double gx = p->list.e[1][0][m], gy = p->list.e[1][1][m], gz = p->list.e[1][2][m];
+    double *restrict y1 = y[0][m], *restrict y2 = y[1][m], *restrict y3 = y[2][m],
+                     *restrict y4 = y[3][m];
+    for (int l = 0; l < LANES; l++) {
+      const place a = place_of(&v, g, l, width);
+      const double f1 = a.force * (ex * F[0][l] + ey * F[1][l] + ez * F[2][l]);
+      const double f2 = a.force * (gx * F[0][l] + gy * F[1][l] + gz * F[2][l]);
+      double t1 = 0.0, t2 = 0.0;
+      if (width == 6) {
+        t1 = a.torque * (gx * F[3][l] + gy * F[4][l] + gz * F[5][l]);
+        t2 = -a.torque * (ex * F[3][l] + ey * F[4][l] + ez * F[5][l]);
+      }
+      y1[l] += a.c * f1 - a.s * t1;
+      y2[l] += a.c * f2 - a.s * t2;
+      y3[l] += a.s * f1 + a.c * t1;
+      y4[l] += a.s * f2 + a.c * t2;
     }
-    const double c = at->cosine[m], s = at->sine[m];
-    y[m] += c * f1 - s * t1;
-    y[SD_WAVES_PADDED + m] += c * f2 - s * t2;
-    y[2 * SD_WAVES_PADDED + m] += s * f1 + c * t1;
-    y[3 * SD_WAVES_PADDED + m] += s * f2 + c * t2;
   }
 }
 
-/* Sums in lanes, so that they fill a vector: the same order on every processor. */
-INLINE double dot(const double *a, const double *b)
+/* u [6][LANES] = Z y */
+INLINE void sum_up(const sd_waves *p, const group *g, const double *y, int width,
+                   double (*restrict u)[LANES])
 {
-  double lane[8] = {0.0}, sum = 0.0;
-  for (int m = 0; m < SD_WAVES_PADDED; m += 8)
-    for (int l = 0; l < 8; l++) lane[l] += a[m + l] * b[m + l];
-  for (int l = 0; l < 8; l++) sum += lane[l];
-  return sum;
-}
-
-/* u = Z_i y */
-INLINE void sum_up(const sd_wave_list *l, const place *at, const double *y, int width, double *u)
-{
-  const double *y1 = y, *y2 = y + SD_WAVES_PADDED, *y3 = y2 + SD_WAVES_PADDED,
-               *y4 = y3 + SD_WAVES_PADDED;
-  double one[SD_WAVES_PADDED], two[SD_WAVES_PADDED];
-  for (int m = 0; m < SD_WAVES_PADDED; m++) {
-    one[m] = at->force[m] * (at->cosine[m] * y1[m] + at->sine[m] * y3[m]);
-    two[m] = at->force[m] * (at->cosine[m] * y2[m] + at->sine[m] * y4[m]);
+  memset(u, 0, sizeof(double) * 6 * LANES);
+  for (int m = 0; m < SD_WAVES_MOST; m++) {
+    const seen v = see(p, g, m);
+    const double ex = p->list.e[0][0][m], ey = p->list.e[0][1][m], ez = p->list.e[0][2][m];
+    const double gx = p->list.e[1][0][m], gy = p->list.e[1][1][m], gz = p->list.e[1][2][m];
+    const double y1 = y[m], y2 = y[SD_WAVES_PADDED + m], y3 = y[2 * SD_WAVES_PADDED + m],
+                 y4 = y[3 * SD_WAVES_PADDED + m];
+    for (int l = 0; l < LANES; l++) {
+      const place a = place_of(&v, g, l, width);
+      const double a1 = a.force * (a.c * y1 + a.s * y3), a2 = a.force * (a.c * y2 + a.s * y4);
+      u[0][l] += ex * a1 + gx * a2;
+      u[1][l] += ey * a1 + gy * a2;
+      u[2][l] += ez * a1 + gz * a2;
+      if (width == 6) {
+        const double b1 = a.torque * (a.c * y3 - a.s * y1), b2 = a.torque * (a.c * y4 - a.s * y2);
+        u[3][l] += gx * b1 - ex * b2;
+        u[4][l] += gy * b1 - ey * b2;
+        u[5][l] += gz * b1 - ez * b2;
+      }
+    }
   }
-  for (int d = 0; d < 3; d++) u[d] = dot(l->e[0][d], one) + dot(l->e[1][d], two);
-  if (width == 3) return;
-  for (int m = 0; m < SD_WAVES_PADDED; m++) {
-    one[m] = at->torque[m] * (at->cosine[m] * y3[m] - at->sine[m] * y1[m]);
-    two[m] = at->torque[m] * (at->cosine[m] * y4[m] - at->sine[m] * y2[m]);
-  }
-  for (int d = 0; d < 3; d++) u[3 + d] = dot(l->e[1][d], one) - dot(l->e[0][d], two);
 }
 
 /* y = Z^T F, and F -= Z y, of this rank's spheres: loops that the compiler is to see whole, for
  * either width */
 INLINE void multiply(const sd_waves *p, int width, const double *F, double *y)
 {
-  place at;
-  memset(y, 0, sizeof(double) * SD_WAVES_COLUMNS);
-  for (long i = 0; i < p->n; i++) {
-    look_at(p, i, width, &at);
-    add_products(&p->list, &at, F + width * i, width, y);
+  double lanes[4][SD_WAVES_PADDED][LANES] = {{{0.0}}}, f[6][LANES];
+  int sphere[LANES];
+  group g;
+  for (int i = 0; i < p->n; i += LANES) {
+    const int count = p->n - i < LANES ? p->n - i : LANES;
+    for (int l = 0; l < LANES; l++) {
+      sphere[l] = i + l;
+      for (int d = 0; d < width; d++) f[d][l] = l < count ? F[width * (long) (i + l) + d] : 0.0;
+    }
+    look_at(p, sphere, count, &g);
+    add_products(p, &g, f, width, lanes);
+  }
+  for (int c = 0; c < SD_WAVES_COLUMNS; c++) {
+    y[c] = 0.0;
+    for (int l = 0; l < LANES; l++) y[c] += lanes[c / SD_WAVES_PADDED][c % SD_WAVES_PADDED][l];
   }
 }
 
 INLINE void subtract(const sd_waves *p, int width, const double *y, double *F)
 {
-  place at;
-  double u[6];
-  for (long i = 0; i < p->n; i++) {
-    look_at(p, i, width, &at);
-    sum_up(&p->list, &at, y, width, u);
-    for (int d = 0; d < width; d++) F[width * i + d] -= u[d];
+  double u[6][LANES];
+  int sphere[LANES];
+  group g;
+  for (int i = 0; i < p->n; i += LANES) {
+    const int count = p->n - i < LANES ? p->n - i : LANES;
+    for (int l = 0; l < LANES; l++) sphere[l] = i + l;
+    look_at(p, sphere, count, &g);
+    sum_up(p, &g, y, width, u);
+    for (int l = 0; l < count; l++)
+      for (int d = 0; d < width; d++) F[width * (long) (i + l) + d] -= u[d][l];
   }
 }
 
@@ -268,38 +316,49 @@ static void take_waves_from(const sd_waves *p, const double *y, double *F)
 
 /* --- G ---------------------------------------------------------------------------------------- */
 
-/* Rows of Z of sphere i, [width][columns]: what comes of a unit force or torque each */
-static void rows_of(const sd_waves *p, long i, double *rows)
+/* Spheres whose rows are in memory at once, if there are no larger clumps */
+enum { AT_ONCE = 32 };
+
+/* Rows of Z of some spheres, [width count][columns]: what comes of a unit force or torque each, in
+ * its own lane */
+static void rows_of(const sd_waves *p, const int *sphere, int count, double *rows)
 {
-  place at;
-  look_at(p, i, p->width, &at);
-  memset(rows, 0, sizeof(double) * SD_WAVES_COLUMNS * (size_t) p->width);
-  for (int d = 0; d < p->width; d++) {
-    double unit[6] = {0.0};
-    unit[d] = 1.0;
-    add_products(&p->list, &at, unit, p->width, rows + SD_WAVES_COLUMNS * d);
+  const int width = p->width;
+  for (int begin = 0; begin < count; begin += LANES) {
+    const int some = count - begin < LANES ? count - begin : LANES;
+    group g;
+    look_at(p, sphere + begin, some, &g);
+    for (int d = 0; d < width; d++) {
+      double unit[6][LANES] = {{0.0}}, y[4][SD_WAVES_PADDED][LANES] = {{{0.0}}};
+      for (int l = 0; l < LANES; l++) unit[d][l] = 1.0;
+      if (width == 3)
+        add_products(p, &g, unit, 3, y);
+      else
+        add_products(p, &g, unit, 6, y);
+      for (int l = 0; l < some; l++)
+        for (int c = 0; c < SD_WAVES_COLUMNS; c++)
+          rows[SD_WAVES_COLUMNS * (long) (width * (begin + l) + d) + c] =
+              y[c / SD_WAVES_PADDED][c % SD_WAVES_PADDED][l];
+    }
   }
 }
 
-/* Spheres by themselves: D^1/2 Z by so many of them, and its product with itself. With parts each
+/* Spheres by themselves: D^1/2 Z of so many of them, and its product with itself. With parts each
  * takes its share of them. */
 static void add_lone(const sd_waves *p, int part, int parts, double *rows, double *G)
 {
-  enum { AT_ONCE = 32 };
   const int width = p->width;
-  int count = 0;
+  int sphere[AT_ONCE], count = 0;
   for (long i = part; i < p->n; i += parts) {
-    if (p->near.lone[i]) {
-      double *own = rows + SD_WAVES_COLUMNS * (long) (width * count++);
-      rows_of(p, i, own);
-      for (int d = 0; d < width; d++)
-        for (int m = 0; m < SD_WAVES_COLUMNS; m++)
-          own[SD_WAVES_COLUMNS * d + m] *= p->near.root[2 * i + (d >= 3)];
-    }
-    if (count == AT_ONCE || i + parts >= p->n) {
-      sd_add_gram(SD_WAVES_COLUMNS, width * count, rows, rows, G);
-      count = 0;
-    }
+    if (p->near.lone[i]) sphere[count++] = (int) i;
+    if (count < AT_ONCE && i + parts < p->n) continue;
+    rows_of(p, sphere, count, rows);
+    for (int r = 0; r < width * count; r++)
+      for (int c = 0; c < SD_WAVES_COLUMNS; c++)
+        rows[SD_WAVES_COLUMNS * (long) r + c] *=
+            p->near.root[2 * (long) sphere[r / width] + (r % width >= 3)];
+    sd_add_gram(SD_WAVES_COLUMNS, width * count, rows, rows, G);
+    count = 0;
   }
 }
 
@@ -310,8 +369,7 @@ static void add_clumps(const sd_waves *p, double *rows, double *G)
   for (int k = b->part; k < b->blocks; k += b->parts) {
     const int m = (int) (b->first[k + 1] - b->first[k]), size = p->width * m;
     double *product = rows + SD_WAVES_COLUMNS * (long) size;
-    for (int l = 0; l < m; l++)
-      rows_of(p, b->member[b->first[k] + l], rows + SD_WAVES_COLUMNS * (long) (p->width * l));
+    rows_of(p, b->member + b->first[k], m, rows);
     sd_blocks_multiply(b, k, SD_WAVES_COLUMNS, rows, product);
     sd_add_gram(SD_WAVES_COLUMNS, size, rows, product, G);
   }
@@ -326,10 +384,9 @@ static void add_strengths(const sd_waves *p, double *G)
   }
 }
 
-/* Spheres whose rows are in memory at once: those of the largest clump, or the 32 of add_lone */
 static long largest_block(const sd_blocks *b)
 {
-  long largest = 32;
+  long largest = AT_ONCE;
   for (int k = 0; k < b->blocks; k++)
     if (b->first[k + 1] - b->first[k] > largest) largest = b->first[k + 1] - b->first[k];
   return largest;

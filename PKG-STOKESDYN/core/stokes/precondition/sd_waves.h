@@ -20,8 +20,8 @@
  *   P = 1/alpha [ B - B Z G^-1 Z^T B ],   G = alpha E^-1 + Z^T B Z.
  *
  * The 61 pairs of smallest |k|: in a cubic box all with |n|^2 <= 9, 244 columns. Z is never stored:
- * what is kept of a sphere are three phases, and an application costs 2500 operations a sphere
- * (5000 with torques). Set-up: 2 (4 * 61)^2 operations for each row of Z, and a Cholesky factor.
+ * what is kept of a sphere are three phases, and an application costs 5000 operations a sphere
+ * (7000 with torques). Set-up: 2 (4 * 61)^2 operations for each row of Z, and a Cholesky factor.
  *
  * Only positions, radii, viscosities and the box enter, so any engine goes with it. Source: the sum
  * over k of the Rotne-Prager-Yamakawa tensor, Wajnryb, Mizerski, Zuk & Szymczak 2013; the
