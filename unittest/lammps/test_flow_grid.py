@@ -163,6 +163,15 @@ def test_a_broken_run_goes_on_with_the_series(simulation, tmp_path, stop, way):
     assert np.abs(state(sim.run(60 - stop)) - whole).max() < 1e-10
 
 
+def test_spheres_without_inertia_go_with_the_flow(simulation, shear):
+    """Far apart and with no force on them: their velocity is the fluid's, where they are."""
+    spheres = Spheres([(-6, 0, 0), (6, 0.5, 0), (0, 1, 6.5)], 0.01)
+    sim = simulation(spheres, f"cut_off_distance 1 taper wendland visc {ETA} fluid_velocity grid {shear} {EXACT}",
+                     box=[(-9.0, 9.0)] * 3, fix=False, dt=0.001)
+    sim.commands("fix move all stokes_dynamics/overdamped").run(7)
+    assert largest_difference(sim.v, linear(sim.x)) < 1e-12 and np.abs(sim.x - spheres.x).max() > 1e-3
+
+
 def test_another_file_of_the_same_name_is_another_flow(simulation, tmp_path):
     """Between two runs: the force of the last step does not stand."""
     spheres = Spheres([(1.0, 0.5, -2.0)], A)
