@@ -119,7 +119,7 @@ void FixStokesDynamicsOverdamped::after_setup()
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) update->dt = last.next_dt;
   from_file = false;
-  displaced = watched = 0.0;
+  displaced = changed_before = 0.0;
   doublings = 0;
   find_velocities(hydro);
   if (!announced) announce();
@@ -141,15 +141,25 @@ void FixStokesDynamicsOverdamped::final_integrate()
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
   find_velocities(hydro);
-  if (!warned_growth) watch(error_figure());
 }
 
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
-  hydro.velocities();
+  const bool rotates = hydro.rotation();
+  hydro.velocities([this, &hydro, rotates](int i, const double *v, const double *F) {
+    const double *fluid = hydro.ambient.velocity(i);
+    double *row = output.give(i);
+    for (int d = 0; d < 3; d++) {
+      atom->v[i][d] = v[d];
+      row[d] = v[d] - fluid[d];
+      row[3 + d] = F[d];
+      if (!rotates) continue;
+      atom->omega[i][d] = v[3 + d];
+      row[6 + d] = F[3 + d];
+    }
+  });
   last.step = update->ntimestep;
-  report(hydro);
 }
 
 /* Spheres of the group that are not selected have no velocity; those selected that are not in the
@@ -168,17 +178,6 @@ void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) co
            "region, radius > 0), but not in both: they must be the same");
 }
 
-void FixStokesDynamicsOverdamped::report(const Hydrodynamics &hydro)
-{
-  for (int i : hydro.ambient.who()) {
-    double *row = output.give(i), s[6];
-    hydro.ambient.slip(i, s);
-    for (int d = 0; d < 3; d++) row[d] = -s[d];
-    std::copy_n(hydro.force(i), 3, row + 3);
-    if (const double *torque = hydro.torque(i)) std::copy_n(torque, 3, row + 6);
-  }
-}
-
 /* dt/(2 dt_old), what the change of the velocity counts; 0: Euler, or there is nothing before */
 double FixStokesDynamicsOverdamped::weight(int i) const
 {
@@ -188,23 +187,31 @@ double FixStokesDynamicsOverdamped::weight(int i) const
 void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 {
   Hydrodynamics &hydro = hydrodynamics();
-  displaced = 0.0;
+  displaced = changed = 0.0;
   for (int i : hydro.motion().lone) move_free(i);
   for (const auto &clump : hydro.motion().clumps) move_clump(hydro, clump);
   last.dt = update->dt;
+  if (!warned_growth) watch();
 }
 
 void FixStokesDynamicsOverdamped::move_free(int i)
 {
   const double dt = update->dt, c = weight(i);
-  double *row = before.give(i), *v = atom->v[i], mean[3], square = 0.0;
-  sd_mean_velocity(3, v, row, c, mean);
+  const bool first = !before.has(i);
+  double *old = before.give(i), *v = atom->v[i], mean[3], change[3];
+  sd_mean_velocity(3, v, old, c, mean);
   for (int d = 0; d < 3; d++) {
     atom->x[i][d] += dt * mean[d];
-    square += mean[d] * mean[d];
-    row[d] = v[d];
+    change[d] = first ? 0.0 : v[d] - old[d];
+    old[d] = v[d];
   }
-  displaced = std::max(displaced, dt * sqrt(square) / atom->radius[i]);
+  moves(i, dt * sqrt(sd_dot(mean, mean)), sqrt(sd_dot(change, change)));
+}
+
+void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
+{
+  displaced = std::max(displaced, distance / atom->radius[i]);
+  changed = std::max(changed, 0.5 * update->dt * change / atom->radius[i]);
 }
 
 /* Each rank sets its own spheres. Positions are those of images side by side: an atom moves as its
@@ -216,22 +223,22 @@ void FixStokesDynamicsOverdamped::move_clump(Hydrodynamics &hydro, const Velocit
   const sd_shape &shape = body.shape->shape;
   int mine = body.begin;
   while (owns[mine] < 0) mine++;
-  double pose[12], mean[6], turn[9];
-  std::vector<double> x(3 * (size_t) body.n);
+  const double *old = before[owns[mine]];
+  double pose[12], mean[6], turn[9], change = 0.0;
+  x.resize(3 * (size_t) body.n);
   std::copy_n(clump.pose, 12, pose);
-  sd_mean_velocity(6, clump.V, before[owns[mine]], weight(owns[mine]), mean);
+  sd_mean_velocity(6, clump.V, old, weight(owns[mine]), mean);
+  for (int d = 0; d < 3 && before.has(owns[mine]); d++)
+    change += fabs(clump.V[d] - old[d]) + shape.size * fabs(clump.V[3 + d] - old[3 + d]);
   sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
   for (int k = 0; k < body.n; k++) {
     const int i = owns[body.begin + k], j = members[body.begin + k];
     if (i < 0) continue;
-    double square = 0.0, step[3];
-    for (int d = 0; d < 3; d++) {
-      step[d] = x[3 * (size_t) k + d] - atom->x[j][d];
-      square += step[d] * step[d];
-    }
+    double step[3], *row = before.has(i) ? before.row(i) : before.give(i);
+    for (int d = 0; d < 3; d++) step[d] = x[3 * (size_t) k + d] - atom->x[j][d];
     for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
-    displaced = std::max(displaced, sqrt(square) / atom->radius[i]);
-    std::copy_n(clump.V, 6, before.give(i));
+    for (int d = 0; d < 6; d++) row[d] = clump.V[d];
+    moves(i, sqrt(sd_dot(step, step)), change);
     hydro.turn(i, turn);
   }
 }
@@ -252,15 +259,15 @@ void FixStokesDynamicsOverdamped::end_of_step()
 }
 
 /* A step that is too long for contacts shows as velocities that flip, and grow, with every step. */
-void FixStokesDynamicsOverdamped::watch(double figure)
+void FixStokesDynamicsOverdamped::watch()
 {
-  doublings = figure > 0.1 && figure > 2.0 * watched ? doublings + 1 : 0;
-  watched = figure;
+  doublings = changed > 0.1 && changed > 2.0 * changed_before ? doublings + 1 : 0;
+  changed_before = changed;
   if (doublings < 3) return;
   warned_growth = true;
   error->warning(FLERR,
                  COMMAND + ": step " + std::to_string(update->ntimestep) +
-                     ": velocities change more with every step, now by " + text(figure) +
+                     ": velocities change more with every step, now by " + text(changed) +
                      " radii in a step: use a shorter time step");
 }
 
@@ -270,9 +277,11 @@ void FixStokesDynamicsOverdamped::watch(double figure)
 double FixStokesDynamicsOverdamped::compute_scalar()
 {
   const Hydrodynamics &hydro = hydrodynamics();
-  double mine = 0.0, all;
-  if (!hydro.memory) return 0.0;
-  for (int i : hydro.ambient.who()) mine += hydro.dissipation(i);
+  double mine = 0.0, all, s[6] = {0.0};
+  for (int i : hydro.ambient.who()) {
+    hydro.ambient.slip(i, s);
+    mine += sd_dot(s, output[i] + 3) + sd_dot(s + 3, output[i] + 6);
+  }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }

@@ -55,10 +55,13 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } last;
   bool from_file = false;
 
-  /* of this rank: largest displacement over radius in the last step; what is watched for growth */
-  double displaced = 0.0, watched = 0.0;
+  /* of this rank: largest displacement over radius in the last step, and the largest change of
+   * velocity by it; in the step before */
+  double displaced = 0.0, changed = 0.0, changed_before = 0.0;
   int doublings = 0;
   bool warned_growth = false, announced = false;
+  /* spheres of a clump in the next step */
+  std::vector<double> x;
 
   bool restored() const override { return last.step >= 0; }
   Hydrodynamics &hydrodynamics() const;
@@ -66,11 +69,11 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void announce();
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
-  void report(const Hydrodynamics &);
   double weight(int i) const;
+  void moves(int i, double distance, double change);
   void move_free(int i);
   void move_clump(Hydrodynamics &, const Velocities::Clump &);
-  void watch(double error);
+  void watch();
   double fastest() const;
   double error_figure() const;
   double smallest_gap() const;

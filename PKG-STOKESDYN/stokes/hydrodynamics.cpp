@@ -324,36 +324,39 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
   fail(lmp, message);
 }
 
-/* The rows of all that takes part: the velocities of those that interact, in one loop; of clumps
- * that only know themselves, one by one. */
-sd_status Hydrodynamics::move(sd_bodies_report &report)
+/* In one loop, which begins from the forces of the last step. */
+sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_report &report)
 {
   const size_t m = width(), n = solvers.size();
-  moving.width = width();
-  moving.l.resize(m * n + m);
-  moving.v.resize(m * n + m);
-  if (settings.rigid.on && settings.scene.clumps_only) {
-    mobile.apart(moving);
-    return SD_OK;
-  }
   place();
+  solution.assign(m * n + m, 0.0);
   for (size_t k = 0; k < n && settings.warm_start; k++) {
     const double *row = memory->rows[solvers[k]];
     for (size_t d = 0; d < m; d++)
-      moving.l[m * k + d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
+      solution[m * k + d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
   }
-  return mobile.together(moving, settings.warm_start, settings.tolerance, settings.max_iter,
-                         report);
+  const Velocities::How how = {width(), settings.warm_start, settings.tolerance, settings.max_iter};
+  auto keep_too = [&](int i, const double *v, const double *F) {
+    double *row = memory->rows.give(i);
+    for (size_t d = 0; d < m; d++) row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = F[d];
+    take(i, v, F);
+  };
+  return mobile.together(how, solution, keep_too, report);
 }
 
-void Hydrodynamics::velocities()
+void Hydrodynamics::velocities(const Velocities::Take &take)
 {
-  const size_t m = width();
   State::Global &global = memory->global;
   sd_bodies_report report = {};
+  sd_status status = SD_OK;
   solvers = ambient.who();
   mobile.find();
-  const sd_status status = move(report);
+  if (settings.rigid.on && settings.scene.clumps_only) {
+    mobile.apart(width(), take);
+    for (int i : solvers)
+      memory->rows.give(i);    // those that have one are known to have moved here
+  } else
+    status = move_together(take, report);
   global.solves++;
   global.iterations = report.products;
   global.residual = report.residual;
@@ -368,22 +371,11 @@ void Hydrodynamics::velocities()
     unconverged(status, as_solver);
   else if (status != SD_OK)
     failed(status, as_solver);
-  for (size_t k = 0; k < solvers.size(); k++) {
-    const int i = solvers[k];
-    const double *l = &moving.l[m * k], *v = &moving.v[m * k];
-    double *row = memory->rows.give(i);
-    for (int d = 0; d < 3; d++) {
-      atom->v[i][d] = v[d];
-      row[State::FORCE + d] = -l[d];
-      if (m == 3) continue;
-      atom->omega[i][d] = v[3 + d];
-      row[State::TORQUE + d] = -l[3 + d];
-    }
-  }
 }
 
 void Hydrodynamics::turn(int i, const double R[9])
 {
+  if (settings.scene.clumps_only) return;    // no guess is made there
   double *row = memory->rows.row(i), turned[3];
   for (int first : {(int) State::FORCE, (int) State::TORQUE}) {
     sd_multiply3(R, row + first, turned);

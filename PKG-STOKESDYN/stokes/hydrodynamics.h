@@ -53,9 +53,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void solve();
   void drag();
 
-  /* Of all that takes part, from what is in f and torque: into v and omega, and the forces of the
-   * fluid into rows of the memory. A step is begin() and this. */
-  void velocities();
+  /* Of all that takes part, from what is in f and torque, in any order. A step is begin() and this.
+   * Where all interact, the forces go to rows of the memory too: the next guess. */
+  void velocities(const Velocities::Take &take);
   /* Those of rigid clumps, and who is free, since then */
   const Velocities &motion() const { return mobile; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
@@ -82,7 +82,6 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
  private:
   RigidClumps rigid;
   Velocities mobile;
-  Velocities::Rows moving = {};
   Preconditioner preconditioner;
   TimeStepGuard guard;
   bool warned_unconverged = false, looked_at_clumps = false, looked_at_flow = false;
@@ -107,7 +106,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   }
   std::string where(int algorithm) const;
   void unconverged(sd_status status, const sd_solve_report &report);
-  sd_status move(sd_bodies_report &report);
+  sd_status move_together(const Velocities::Take &take, sd_bodies_report &report);
   [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
 };
 

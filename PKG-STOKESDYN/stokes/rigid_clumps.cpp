@@ -317,6 +317,7 @@ void RigidClumps::drop_unused()
 void RigidClumps::arrange()
 {
   std::map<int64_t, Known> here;
+  arrangements++;
   bodies.clear();
   not_ours.clear();
   member.resize(scene.member.size());

@@ -93,6 +93,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   };
   /* All of them, looked at anew if LAMMPS has re-neighboured. Errors as of forces(). */
   const std::vector<Body> &find();
+  /* another number: they are others, or elsewhere in members() */
+  long arrangement() const { return arrangements; }
   /* As in the scene: images side by side, which may be ghosts; the same sphere as an atom of this
    * rank, -1: another has it */
   const std::vector<int> &members() const { return member; }
@@ -127,6 +129,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
 
   /* since the last re-neighbouring */
   std::vector<Body> bodies;
+  long arrangements = 0;
   std::vector<int> member, owned;
   std::vector<int> not_ours;         // atoms of loose clumps, and of none
 

@@ -22,8 +22,8 @@ Velocities::Velocities(LAMMPS *lmp, Scene &scene, Ambient &ambient, RigidClumps 
 double Velocities::memory_usage() const
 {
   double numbers = ghosts.capacity();
-  for (const auto *v : {&F, &u, &drag, &spin, &work, &R, &eta, &V, &gradient})
-    numbers += v->capacity();
+  for (const auto *array : {&F, &u, &v, &drag, &spin, &work, &R, &eta, &V, &gradient})
+    numbers += array->capacity();
   return sizeof(double) * numbers;
 }
 
@@ -46,19 +46,39 @@ void Velocities::gather_ghosts()
   });
 }
 
+/* Who is in no clump; and is a clump here and elsewhere? */
+void Velocities::part_lone()
+{
+  if (arranged == rigid.arrangement() && selection == ambient.selection()) return;
+  arranged = rigid.arrangement();
+  selection = ambient.selection();
+  std::vector<char> bound(atom->nlocal, 0);
+  int crosses = 0;
+  for (int i : rigid.owns()) {
+    if (i >= 0) bound[i] = 1;
+    crosses = crosses || i < 0;
+  }
+  across = crosses;
+  lone.clear();
+  for (int i : ambient.who())
+    if (!bound[i]) lone.push_back(i);
+}
+
 void Velocities::find()
 {
   clumps.clear();
-  lone = ambient.who();
-  if (!rigid.settings.on) return;
+  if (!rigid.settings.on) {
+    lone = ambient.who();
+    return;
+  }
   const auto &all = rigid.find();
-  int crosses = std::count(rigid.owns().begin(), rigid.owns().end(), -1) > 0;
-  MPI_Allreduce(MPI_IN_PLACE, &crosses, 1, MPI_INT, MPI_MAX, world);
-  across = crosses;
+  part_lone();
+  int anywhere = across;
+  MPI_Allreduce(MPI_IN_PLACE, &anywhere, 1, MPI_INT, MPI_MAX, world);
+  across = anywhere;
   if (across) gather_ghosts();
 
   int64_t split = RigidClumps::NOBODY, bent = RigidClumps::NOBODY;
-  std::vector<char> bound(atom->nlocal, 0);
   std::vector<double> x;
   for (const auto &body : all) {
     const sd_shape &shape = body.shape->shape;
@@ -70,8 +90,7 @@ void Velocities::find()
       const double eta_k = i < 0 ? ghost(j)[ETA] : ambient.active()[i] ? ambient.viscosity(i) : 0.0;
       taking_part += eta_k > 0.0;
       clump.eta += eta_k / body.n;
-      std::copy_n(atom->x[j], 3, &x[3 * (size_t) k]);
-      if (i >= 0) bound[i] = 1;
+      for (int d = 0; d < 3; d++) x[3 * (size_t) k + d] = atom->x[j][d];
     }
     if (taking_part == 0) continue;
     if (taking_part < body.n) split = std::min(split, body.molecule);
@@ -82,11 +101,6 @@ void Velocities::find()
   int64_t trouble[2] = {split, bent};
   MPI_Allreduce(MPI_IN_PLACE, trouble, 2, MPI_LMP_BIGINT, MPI_MIN, world);
   rigid.refuse(trouble[0], trouble[1]);
-  lone.erase(std::remove_if(lone.begin(), lone.end(),
-                            [&](int i) {
-                              return bound[i];
-                            }),
-             lone.end());
 }
 
 /* Velocity of the fluid at the centroid and its gradient over the clump */
@@ -118,13 +132,14 @@ void Velocities::flow_over(const Clump &clump, double fluid[3], double G[9])
 void Velocities::load_on(const Clump &clump, double load[6]) const
 {
   const RigidClumps::Body &body = *clump.body;
+  const int *members = &rigid.members()[body.begin], *owns = &rigid.owns()[body.begin];
+  const double *c = clump.pose + 9;
   std::fill_n(load, 6, 0.0);
   for (int k = 0; k < body.n; k++) {
-    const int j = rigid.members()[body.begin + k], i = rigid.owns()[body.begin + k];
-    const double *f = i < 0 ? ghost(j) + LOAD : atom->f[i];
-    const double *torque = i < 0 ? ghost(j) + LOAD + 3 : atom->torque[i];
-    double arm[3], couple[3];
-    sd_multiply3(clump.pose, body.shape->shape.x + 3 * (size_t) k, arm);
+    const double *f = owns[k] < 0 ? ghost(members[k]) + LOAD : atom->f[owns[k]];
+    const double *torque = owns[k] < 0 ? f + 3 : atom->torque[owns[k]], *x = atom->x[members[k]];
+    const double arm[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
+    double couple[3];
     sd_cross(arm, f, couple);
     for (int d = 0; d < 3; d++) {
       load[d] += f[d];
@@ -148,8 +163,10 @@ void Velocities::place(int width)
   for (size_t k = 0; k < n; k++) {
     const int i = who[k];
     row_of[i] = k;
-    std::copy_n(atom->f[i], 3, &F[m * k]);
-    if (width == 6) std::copy_n(atom->torque[i], 3, &F[m * k + 3]);
+    for (int d = 0; d < 3; d++) {
+      F[m * k + d] = atom->f[i][d];
+      if (width == 6) F[m * k + 3 + d] = atom->torque[i][d];
+    }
     ambient.fluid(i, &u[m * k]);
     drag[k] = ambient.drag(i);
     if (width == 6) spin[k] = ambient.spin(i);
@@ -224,14 +241,14 @@ sd_bodies Velocities::bodies(int width)
   return A;
 }
 
-sd_status Velocities::together(Rows &rows, bool warm, double tolerance, int max_iter,
+sd_status Velocities::together(const How &how, std::vector<double> &l, const Take &take,
                                sd_bodies_report &report)
 {
-  place(rows.width);
+  place(how.width);
   arrange();
-  sd_bodies A = bodies(rows.width);
+  sd_bodies A = bodies(how.width);
   sd_mobility_scene alone = {};
-  alone.how.width = rows.width;
+  alone.how.width = how.width;
   alone.n = A.n;
   const bool sees = scene.anybody_sees();
   A.apply = sees ? sd_mobility_apply : nobody;
@@ -242,53 +259,78 @@ sd_status Velocities::together(Rows &rows, bool warm, double tolerance, int max_
     for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
     sd_bodies_carry(&A, gradient.data(), u.data());
   }
+  v.resize(u.size());
   work.resize(sd_bodies_work(&A));
-  const sd_bodies_problem problem = {u.data(), F.data(), warm, tolerance, max_iter};
-  const sd_bodies_motion motion = {rows.l.data(), rows.v.data(), V.data()};
+  const sd_bodies_problem problem = {u.data(), F.data(), how.warm, how.tolerance, how.max_iter};
+  const sd_bodies_motion motion = {l.data(), v.data(), V.data()};
   const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work.data(), &report);
   for (size_t c = 0; c < clumps.size(); c++) std::copy_n(&V[6 * c], 6, clumps[c].V);
+  for (int k = 0; k < A.n; k++) {
+    double by_fluid[6];
+    for (int d = 0; d < how.width; d++) by_fluid[d] = -l[how.width * (size_t) k + d];
+    take(ambient.who()[k], &v[how.width * (size_t) k], by_fluid);
+  }
   return status;
 }
 
-void Velocities::apart(Rows &rows)
+void Velocities::apart(int width, const Take &take)
 {
-  const size_t m = rows.width;
-  place(rows.width);
-  for (int i : lone)
-    for (size_t d = 0; d < m; d++) {
-      const size_t k = row_of[i], j = m * k + d;
-      rows.l[j] = F[j];
-      rows.v[j] = u[j] + F[j] / (d < 3 ? drag : spin)[k];
+  double move[6], by_fluid[6];
+  for (int i : lone) {
+    const double k = ambient.drag(i), k_spin = ambient.spin(i);
+    ambient.fluid(i, move);
+    for (int d = 0; d < 3; d++) {
+      move[d] += atom->f[i][d] / k;
+      by_fluid[d] = -atom->f[i][d];
+      if (width == 3) continue;
+      move[3 + d] += atom->torque[i][d] / k_spin;
+      by_fluid[3 + d] = -atom->torque[i][d];
     }
+    take(i, move, by_fluid);
+  }
   std::vector<double> force, torque;
   for (Clump &clump : clumps) {
     const RigidClumps::Body &body = *clump.body;
-    const sd_clump *what = &body.shape->clump;
-    double fluid[3], G[9], load[6], s[3];
+    const int *owns = &rigid.owns()[body.begin];
+    double fluid[3], G[9], load[6], arm[3], turning[3];
     flow_over(clump, fluid, G);
     load_on(clump, load);
-    sd_clump_free_velocity(what, clump.pose, clump.eta, load, fluid, G, clump.V);
-    const double *W = clump.V + 3;
-    const double turns[9] = {0.0, -W[2], W[1], W[2], 0.0, -W[0], -W[1], W[0], 0.0};
-    for (int d = 0; d < 3; d++) s[d] = fluid[d] - clump.V[d];
-    for (int d = 0; d < 9; d++) G[d] -= turns[d];
+    sd_clump_free_velocity(&body.shape->clump, clump.pose, clump.eta, load, fluid, G, clump.V);
     force.resize(3 * (size_t) body.n);
     torque.resize(3 * (size_t) body.n);
-    sd_clump_forces(what, clump.pose, clump.eta, s, G, force.data(), torque.data());
+    drag_on(clump, fluid, G, force.data(), torque.data());
     for (int k = 0; k < body.n; k++) {
-      const int i = rigid.owns()[body.begin + k];
-      if (i < 0) continue;
-      double arm[3], across_arm[3], *v = &rows.v[m * row_of[i]], *l = &rows.l[m * row_of[i]];
+      if (owns[k] < 0) continue;
       sd_multiply3(clump.pose, body.shape->shape.x + 3 * (size_t) k, arm);
-      sd_cross(W, arm, across_arm);
+      sd_cross(clump.V + 3, arm, turning);
       for (int d = 0; d < 3; d++) {
-        v[d] = clump.V[d] + across_arm[d];
-        v[3 + d] = W[d];
-        l[d] = -force[3 * (size_t) k + d];
-        l[3 + d] = -torque[3 * (size_t) k + d];
+        move[d] = clump.V[d] + turning[d];
+        move[3 + d] = clump.V[3 + d];
+        by_fluid[d] = force[3 * (size_t) k + d];
+        by_fluid[3 + d] = torque[3 * (size_t) k + d];
       }
+      take(owns[k], move, by_fluid);
     }
   }
+}
+
+/* Of the fluid on the spheres of a clump that moves with V */
+void Velocities::drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
+                         double *T) const
+{
+  const sd_clump *what = &clump.body->shape->clump;
+  const double *W = clump.V + 3;
+  double s[3];
+  for (int d = 0; d < 3; d++) s[d] = fluid[d] - clump.V[d];
+  if (!ambient.gradients()) {
+    const double minus_W[3] = {-W[0], -W[1], -W[2]};
+    sd_clump_forces_rigid(what, clump.pose, clump.eta, s, minus_W, F, T);
+    return;
+  }
+  const double turning[9] = {0.0, -W[2], W[1], W[2], 0.0, -W[0], -W[1], W[0], 0.0};
+  double A[9];
+  for (int d = 0; d < 9; d++) A[d] = G[d] - turning[d];
+  sd_clump_forces(what, clump.pose, clump.eta, s, A, F, T);
 }
 
 }    // namespace StokesDyn

@@ -16,6 +16,7 @@
 
 #include "sd_bodies.h"
 
+#include <functional>
 #include <vector>
 
 namespace StokesDyn {
@@ -43,16 +44,21 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* Errors, on all ranks: those of RigidClumps; a clump that is not rigid, or not all selected. */
   void find();
 
-  /* Of rows, which are the atoms that take part: forces on the fluid, l [width n], a guess in if
-   * there is one (warm), and velocities, v [width n]. */
-  struct Rows {
+  /* What becomes of atom i: velocity, with torques angular velocity, and force of the fluid on it,
+   * with torque: v and F [width] */
+  using Take = std::function<void(int i, const double *v, const double *F)>;
+  /* Each clump alone in the flow, and the free spheres */
+  void apart(int width, const Take &take);
+  /* All together. l [width n]: of rows, which are the atoms that take part, forces on the fluid; a
+   * guess in if there is one (warm). scene has been updated. SD_OK or the core's. */
+  struct How {
     int width;
-    std::vector<double> l, v;
+    bool warm;
+    double tolerance;
+    int max_iter;
   };
-  /* scene: has been updated. SD_OK or the core's. */
-  sd_status together(Rows &rows, bool warm, double tolerance, int max_iter,
+  sd_status together(const How &how, std::vector<double> &l, const Take &take,
                      sd_bodies_report &report);
-  void apart(Rows &rows);
 
   double memory_usage() const;
 
@@ -65,23 +71,28 @@ class Velocities : protected LAMMPS_NS::Pointers {
   std::vector<int> row_of;
   /* does a clump cross ranks, anywhere? */
   bool across = false;
+  /* for which `lone` and `across` have been found: re-neighbouring, and who is selected */
+  long arranged = -1, selection = -1;
   /* of ghosts, columns: eta (0: takes no part), force and torque, fluid velocity and its gradient
    */
   std::vector<double> ghosts;
   int columns = 1;
 
   /* for the core, by rows, by clumps, by spheres of clumps */
-  std::vector<double> F, u, drag, spin, work;
+  std::vector<double> F, u, v, drag, spin, work;
   std::vector<double> R, eta, V, gradient;
   std::vector<int> first, member, loner;
   std::vector<const sd_body_shape *> shape;
 
+  void part_lone();
   void gather_ghosts();
   const double *ghost(int j) const { return &ghosts[(size_t) columns * (j - atom->nlocal)]; }
   void place(int width);
   void arrange();
   void flow_over(const Clump &clump, double u[3], double G[9]);
   void load_on(const Clump &clump, double load[6]) const;
+  void drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
+               double *T) const;
   sd_bodies bodies(int width);
 };
 

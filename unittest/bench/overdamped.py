@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Cost of motion without inertia, inside LAMMPS on one core.
+
+    overdamped.py [REPEATS] [N] [CLUMPS]
+
+Free spheres: a step of fix stokes_dynamics/overdamped, N spheres (4000), all pairs, in units of one product, which is half of what a
+solve of one iteration takes (max_iter 1: two products). Rigid clumps: a step of 10 000 clumps of ten with clumps_only yes, shell 42,
+against pair style and fix rigid/small. Medians; what is compared takes turns. Both answers are exact: one product, one 6x6."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from from_tests import np
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def loop_time(words, steps):
+    """Seconds a step, set-up not counted"""
+    with tempfile.TemporaryDirectory() as folder:
+        log = os.path.join(folder, "log")
+        subprocess.run(["lmp", "-log", log, "-screen", "none", "-nocite"] + words, check=True, cwd=HERE, stdout=subprocess.DEVNULL,
+                       env=dict(os.environ, OMP_NUM_THREADS="1"))
+        return float(re.findall(r"^Loop time of (\S+)", open(log).read(), re.M)[-1]) / steps
+
+
+def cloud(folder, n):
+    rng = np.random.default_rng(1)
+    side = (4 / 3 * np.pi * n / 0.1)**(1 / 3)
+    x = rng.uniform(0, side, (n, 3))
+    data = os.path.join(folder, "data")
+    with open(data, "w") as out:
+        out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n")
+        out.write("".join(f"{-side!r} {2 * side!r} {c}lo {c}hi\n" for c in "xyz"))
+        out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
+    return data
+
+
+def spheres(folder, data, rotation, overdamped, steps):
+    moves = ("pair_style stokes_dynamics cut_off_distance inf visc 1 rotation {}\npair_coeff * *\nfix f all addforce 0 0 -1\n"
+             "fix m all stokes_dynamics/overdamped") if overdamped else (
+             "pair_style stokes_dynamics cut_off_distance inf visc 1 rotation {} algorithm 2 max_iter 1 relative_tolerance 1e-15 "
+             "warm_start no precondition none\npair_coeff * *\nvelocity all set 0 0 1\nfix d all stokes_dynamics apply no")
+    with open(os.path.join(folder, "in"), "w") as out:
+        out.write("units lj\natom_style sphere\nboundary f f f\nplugin load stokesdynplugin.so\n"
+                  f"read_data {data}\ntimestep 1e-6\n{moves.format(rotation)}\nrun {steps}\n")
+    return loop_time(["-in", os.path.join(folder, "in")], steps)
+
+
+def clumps(overdamped, count, steps=50):
+    n = round((count / 10)**(1 / 3))
+    words = "clumps_only yes rigid_clumps yes shell 42"
+    return loop_time(["-in", "in.rigid_clumps", "-var", "n", str(n), "-var", "steps", str(steps), "-var", "model", words]
+                     + (["-var", "overdamped", "yes"] if overdamped else []), steps)
+
+
+def main():
+    repeats, n, count = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((1, 5), (2, 4000), (3, 10000)))
+    with tempfile.TemporaryDirectory() as folder:
+        data = cloud(folder, n)
+        for rotation in ("no", "yes"):
+            times = np.array([[spheres(folder, data, rotation, o, 5) for o in (True, False)] for _ in range(repeats)])
+            step, two = np.median(times, axis=0)
+            print(f"{n} free spheres, rotation {rotation}: a step {1e3 * step:.1f} ms, {2 * step / two:.2f} products of {500 * two:.1f} ms")
+    times = np.array([[clumps(o, count) for o in (True, False)] for _ in range(repeats)])
+    new, old = np.median(times, axis=0)
+    print(f"{count} clumps of 10, shell 42, clumps_only yes: a step {1e3 * new:.1f} ms; pair style and fix rigid/small"
+          f" {1e3 * old:.1f} ms: {new / old:.2f}")
+
+
+if __name__ == "__main__":
+    main()
