@@ -83,8 +83,9 @@ void Hydrodynamics::new_run(bool as_left)
  * are left to the solver. */
 void Hydrodynamics::clumps()
 {
-  if (!settings.rigid.on) {
+  if (!settings.rigid.apart()) {
     solvers = ambient.who();
+    if (settings.rigid.on) mobile.find();    // are they whole and rigid?
     return;
   }
   const bool wants_perturbation = reported || settings.rigid.auto_resolve;
@@ -135,7 +136,7 @@ void Hydrodynamics::drag()
  * of now. Where nobody sees anybody there is nothing to solve. */
 void Hydrodynamics::solve()
 {
-  if (settings.rigid.on && !rigid.any_loose()) return;
+  if (settings.rigid.apart() && !rigid.any_loose()) return;
   place();
   State::Global &global = memory->global;
   sd_solve_report report = {};
@@ -193,6 +194,7 @@ sd_system Hydrodynamics::gather()
   system.apply_ctx = scene.mobility();
   system.sum = Scene::sum;
   system.sum_ctx = &scene;
+  if (joined()) mobile.join(system, carried = slip);
   return system;
 }
 
@@ -216,7 +218,7 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
   sd_system system = gather();
   if (algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status =
-        sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
+        sd_solve_substitution(&system, right_hand_side(), settings.tolerance, settings.max_iter,
                               solution.data(), work.data(), &report);
     if (status != SD_EDIVERGED || settings.strict) return status;
     memory->global.diverged = 1;
@@ -244,7 +246,7 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   preconditioner.unpack(global.preconditioner);
   preconditioner.attach(system);
   const sd_status status =
-      sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
+      sd_solve_gradients(&system, right_hand_side(), settings.tolerance, settings.max_iter,
                          solution.data(), work.data(), &report);
   preconditioner.learn(report);
   global.preconditioner = preconditioner.pack();
@@ -351,7 +353,7 @@ void Hydrodynamics::velocities(const Velocities::Take &take)
   sd_status status = SD_OK;
   solvers = ambient.who();
   mobile.find();
-  if (settings.rigid.on && settings.scene.clumps_only) {
+  if (settings.rigid.apart()) {
     mobile.apart(width(), take);
     for (int i : solvers)
       memory->rows.give(i);    // those that have one are known to have moved here
@@ -375,7 +377,7 @@ void Hydrodynamics::velocities(const Velocities::Take &take)
 
 void Hydrodynamics::turn(int i, const double R[9])
 {
-  if (settings.scene.clumps_only) return;    // no guess is made there
+  if (settings.rigid.apart()) return;    // no guess is made there
   double *row = memory->rows.row(i), turned[3];
   for (int first : {(int) State::FORCE, (int) State::TORQUE}) {
     sd_multiply3(R, row + first, turned);

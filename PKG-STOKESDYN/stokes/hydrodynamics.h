@@ -92,10 +92,14 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   std::vector<int> solvers;
   /* of a solve, by rows: row k is the sphere solvers[k] */
   std::vector<double> eta, slip, resistance, spin, solution, work;
+  /* the slip of clumps with shells that interact: a strain carries them otherwise */
+  std::vector<double> carried;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
   sd_system gather();
+  bool joined() const { return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1; }
+  const double *right_hand_side() const { return joined() ? carried.data() : slip.data(); }
   sd_status run(sd_solve_report &report);
   sd_status gradients(sd_system &system, sd_solve_report &report);
   void guess();

@@ -187,10 +187,6 @@ void PairStokesDynamics::init_style()
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
   look_for_fixes();
-  if (hydro.settings.rigid.on && !scene.clumps_only && !hydro.overdamped)
-    fail(lmp,
-         COMMAND + ": keyword rigid_clumps: 'yes' with clumps_only no requires fix "
-                   "stokes_dynamics/overdamped");
   sorting_bins.limit(range());
 }
 

@@ -35,6 +35,9 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     int shell = 1;
     /* torques and angular velocities: rotation yes, or shells */
     bool rotation = false;
+    /* clumps_only: no clump feels another, and each has a table of its own forces */
+    bool clumps_only = false;
+    bool apart() const { return on && clumps_only; }
   } settings;
 
   RigidClumps(LAMMPS_NS::LAMMPS *lmp, Scene &scene, const std::string &command);

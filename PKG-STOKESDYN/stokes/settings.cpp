@@ -33,6 +33,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1) scene.rotation = true;
   rigid.rotation = scene.rotation;
+  rigid.clumps_only = scene.clumps_only;
   in.require(!scene.rotation || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rotation: yes is not available with tensor oseen, whose point forces do not "
              "rotate");

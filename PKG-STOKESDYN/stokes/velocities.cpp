@@ -241,6 +241,37 @@ sd_bodies Velocities::bodies(int width)
   return A;
 }
 
+/* A strain carries clumps as their shells say. */
+void Velocities::carry(const sd_bodies &A, double *flow)
+{
+  if (!ambient.gradients() || clumps.empty()) return;
+  gradient.resize(9 * clumps.size());
+  double centre[3];
+  for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
+  sd_bodies_carry(&A, gradient.data(), flow);
+}
+
+sd_status Velocities::apply_joined(void *ctx, const double *l, double *out)
+{
+  Velocities *self = static_cast<Velocities *>(ctx);
+  const sd_status status = self->bare(self->bare_ctx, l, out);
+  return status == SD_OK ? sd_bodies_add_shells(&self->joined, l, self->work.data(), out) : status;
+}
+
+void Velocities::join(sd_system &system, std::vector<double> &slip)
+{
+  const int width = system.spin ? 6 : 3;
+  place(width);
+  arrange();
+  joined = bodies(width);
+  carry(joined, slip.data());
+  work.resize(sd_bodies_work(&joined));
+  bare = system.apply;
+  bare_ctx = system.apply_ctx;
+  system.apply = apply_joined;
+  system.apply_ctx = this;
+}
+
 sd_status Velocities::together(const How &how, std::vector<double> &l, const Take &take,
                                sd_bodies_report &report)
 {
@@ -253,12 +284,7 @@ sd_status Velocities::together(const How &how, std::vector<double> &l, const Tak
   const bool sees = scene.anybody_sees();
   A.apply = sees ? sd_mobility_apply : nobody;
   A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
-  if (ambient.gradients() && !clumps.empty()) {
-    gradient.resize(9 * clumps.size());
-    double centre[3];
-    for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
-    sd_bodies_carry(&A, gradient.data(), u.data());
-  }
+  carry(A, u.data());
   v.resize(u.size());
   work.resize(sd_bodies_work(&A));
   const sd_bodies_problem problem = {u.data(), F.data(), how.warm, how.tolerance, how.max_iter};

@@ -60,6 +60,10 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_status together(const How &how, std::vector<double> &l, const Take &take,
                      sd_bodies_report &report);
 
+  /* The same bodies where velocities are given: the system (sd_solve.h) of the spheres that take
+   * part, slip [width n] its right-hand side, becomes that with what shells add. */
+  void join(sd_system &system, std::vector<double> &slip);
+
   double memory_usage() const;
 
  private:
@@ -83,6 +87,10 @@ class Velocities : protected LAMMPS_NS::Pointers {
   std::vector<double> R, eta, V, gradient;
   std::vector<int> first, member, loner;
   std::vector<const sd_body_shape *> shape;
+  /* of join() */
+  sd_bodies joined = {};
+  sd_apply *bare = nullptr;
+  void *bare_ctx = nullptr;
 
   void part_lone();
   void gather_ghosts();
@@ -94,6 +102,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   void drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
                double *T) const;
   sd_bodies bodies(int width);
+  void carry(const sd_bodies &A, double *flow);
+  static sd_status apply_joined(void *ctx, const double *l, double *out);
 };
 
 }    // namespace StokesDyn

@@ -371,6 +371,26 @@ def test_a_sphere_moved_by_hand_starts_anew(simulation):
     assert np.abs(ends[1] - ends[0]).max() < 1e-12
 
 
+def test_forces_for_given_velocities_are_the_inverse(simulation):
+    """rigid_clumps yes, clumps_only no: what moves the clumps so without inertia is what the pair style finds for that motion."""
+    words = CLUMPS.replace("rotation yes", "shell 12") + " relative_tolerance 1e-10 fluid_velocity v_u 0.2 0 max_iter 500"
+    spheres = mixed()
+    sim = simulation(spheres, words, fix=False, box=[(-40.0, 60.0)] * 3, dt=0.01, comm=COMM, before_pair="variable u atom 0.3*z+0.1*x")
+    sim.commands(f"variable fx atom sin(3*x)\nvariable fz atom -5-0.1*id\nfix pull all addforce v_fx 0 v_fz\n{FIX}").run(2)
+    load, before = sim.f, sim.fix_rows("move")[:, 3:9]
+    for algorithm in ("2", "2 precondition clump", "1"):
+        sim.commands(f"unfix move\nfix drag all stokes_dynamics\npair_style stokes_dynamics {words} algorithm {algorithm}\n"
+                     "pair_coeff * *").run(0)
+        rows = sim.fix_rows()
+        forces = np.hstack([rows[:, :3], rows[:, 6:9]])
+        assert np.abs(forces - before).max() < 1e-7 * np.abs(load).max()
+        for m in np.unique(spheres.molecule):
+            who = spheres.molecule == m
+            balance = (rows[who, :3] + load[who]).sum(axis=0) if m else rows[who, :3] + load[who]
+            assert np.abs(balance).max() < 1e-7 * np.abs(load).max()
+        sim.commands(f"unfix drag\n{FIX}")
+
+
 # --- what does not go with it -----------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("lines, message", [

@@ -136,6 +136,27 @@ void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *u)
   }
 }
 
+/* out += sign K dN f, f [6 clumps] */
+static void add_shells(const sd_bodies *A, const double *f, double sign, double *out)
+{
+  for (int b = 0; b < A->clumps; b++) {
+    double load[6], V[6];
+    to_shape(A->pose + 9 * (long) b, f + 6 * (long) b, load);
+    multiply6(A->shape[b]->shell, load, V);
+    for (int p = 0; p < 6; p++) V[p] *= sign / A->eta[b];
+    add_rigid(A, b, V, out);
+  }
+}
+
+sd_status sd_bodies_add_shells(const sd_bodies *A, const double *l, double *work, double *out)
+{
+  double *f = work;
+  loop c = {.A = A, .ghosts = work + 6 * (long) A->clumps};
+  const sd_status status = onto_clumps(&c, l, f);
+  if (status == SD_OK) add_shells(A, f, 1.0, out);
+  return status;
+}
+
 /* --- the preconditioner --- */
 
 /* pre(r, f) of clump b; r NULL: no slip, f NULL: no load */
@@ -249,13 +270,7 @@ static sd_status residual(loop *c)
   sd_status status = multiply(c, c->x.l, c->r);
   if (status != SD_OK) return status;
   for (long j = 0; j < (long) A->width * A->n; j++) c->r[j] = c->x.v[j] - c->u[j] - c->r[j];
-  for (int b = 0; b < A->clumps; b++) {
-    double load[6], V[6];
-    to_shape(A->pose + 9 * (long) b, c->F.clumps + 6 * (long) b, load);
-    multiply6(A->shape[b]->shell, load, V);
-    for (int p = 0; p < 6; p++) V[p] *= -1.0 / A->eta[b];
-    add_rigid(A, b, V, c->r);
-  }
+  add_shells(A, c->F.clumps, -1.0, c->r);
   status = pre(c, c->r, NULL, &c->z);
   return status == SD_OK ? dot(A, c->r, c->z.l, &c->power.rz) : status;
 }

@@ -93,6 +93,10 @@ typedef struct {
  * [width n] at their spheres. gradient [9 clumps]: of the fluid velocity over each clump. */
 void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *u);
 
+/* out [width n] += K dN K^T l, what shells add to D^-1 + Omega; for those who are given velocities
+ * and solve M' l = K V - u. work [sd_bodies_work]. SD_OK, or that of refresh. */
+sd_status sd_bodies_add_shells(const sd_bodies *A, const double *l, double *work, double *out);
+
 /* Doubles of scratch for n spheres and what else is in A. */
 long sd_bodies_work(const sd_bodies *A);
 
