@@ -371,11 +371,14 @@ def test_a_sphere_moved_by_hand_starts_anew(simulation):
     assert np.abs(ends[1] - ends[0]).max() < 1e-12
 
 
-def test_forces_for_given_velocities_are_the_inverse(simulation):
-    """rigid_clumps yes, clumps_only no: what moves the clumps so without inertia is what the pair style finds for that motion."""
-    words = CLUMPS.replace("rotation yes", "shell 12") + " relative_tolerance 1e-10 fluid_velocity v_u 0.2 0 max_iter 500"
+@pytest.mark.parametrize("boundary, flow", [("f f f", "v_u 0.2 0"), ("p p p", "0.1 0.2 0 far_field_tolerance 1e-12")])
+def test_forces_for_given_velocities_are_the_inverse(simulation, boundary, flow):
+    """rigid_clumps yes, clumps_only no: what moves the clumps so without inertia is what the pair style finds for that motion; in
+    open space and with all periodic images."""
+    words = f"{CLUMPS} relative_tolerance 1e-10 fluid_velocity {flow} max_iter 500".replace("rotation yes", "shell 12")
     spheres = mixed()
-    sim = simulation(spheres, words, fix=False, box=[(-40.0, 60.0)] * 3, dt=0.01, comm=COMM, before_pair="variable u atom 0.3*z+0.1*x")
+    sim = simulation(spheres, words, fix=False, box=[(-40.0, 60.0) if boundary == "f f f" else (-12.0, 22.0)] * 3, dt=0.01, comm=COMM,
+                     before_pair="variable u atom 0.3*z+0.1*x", boundary=boundary)
     sim.commands(f"variable fx atom sin(3*x)\nvariable fz atom -5-0.1*id\nfix pull all addforce v_fx 0 v_fz\n{FIX}").run(2)
     load, before = sim.f, sim.fix_rows("move")[:, 3:9]
     for algorithm in ("2", "2 precondition clump", "1"):
