@@ -99,9 +99,9 @@ typedef struct {
   /* [N] a force along x, taken off every grain of the slice; NULL: none */
   const double *convective;
   /* 0: a grain feels the water at its centre, and its drag is spread over the slices by volume.
-   * 1: each slice of a grain feels the water there, in proportion to its volume, and gives the drag
-   * back there: the grain feels the mean over its volume (of a drag linear in U, the mean of U), and
-   * what water and grains exchange is symmetric slice by slice. Not with Yade's rule. */
+   * 1: each slice of a grain feels the water there, in proportion to its volume, and gives the
+   * drag back there: the grain feels the mean over its volume (of a drag linear in U, the mean
+   * of U), and what water and grains exchange is symmetric slice by slice. Not with Yade's rule. */
   int felt_by_volume;
   sd_vans_rules rules;
 } sd_vans_force_law;
@@ -343,7 +343,7 @@ double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi,
 double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
                         const double *phi_new, double *U, double *scratch);
 
-/* ---- what the profiles tell ------------------------------------------------------------------- */
+/* ---- what the profiles tell ------------------------------------------------------------------ */
 
 /* Volume of grains that passes a line across the stream, per width and time: sum phi vx dz. */
 double sd_vans_transport(const sd_vans_mesh *mesh, const double *profile);

@@ -1,6 +1,8 @@
 #include "sd_vans.h"
 
-/* Share of what is outstanding that goes back in one solve. */
+/* Share of what is outstanding that goes back in one solve. All of it at once would hand the noise
+ * of single couplings to slices thinner than a grain; a tenth is a mean over ten of them, and what
+ * is on its way stays below ten couplings' worth. */
 static const double RETURNED = 0.1;
 
 double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, const double *back,
@@ -8,6 +10,7 @@ double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, co
 {
   const int N = mesh->ncell, M = N - 1;
   double returned = 0.0;
+  /* the slice above the surface has no water */
   for (int n = 0; n < N; n++) outstanding[n < M ? n : M - 1] += back[n];
   for (int n = 0; n < M; n++) {
     const double share = RETURNED * outstanding[n];
@@ -23,6 +26,7 @@ void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
                        const sd_vans_books *books, double *shear, double *foreseen)
 {
   const int M = mesh->ncell - 1;
+  /* books: per area of the bed; phi dz: volume of grains per area of the bed */
   for (int n = 0; n <= M; n++) {
     const double solid = n < M ? phi[n] * sd_vans_height(mesh, n) : 0.0;
     shear[n] = solid > 0.0 ? books->shear[n] / (T * solid) : 0.0;

@@ -26,12 +26,16 @@ static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
   for (int n = 0; n < mesh->ncell; n++) {
     double VA, SA;
     volume_and_surface(mesh, fluid, phi, classes, n, &VA, &SA);
+    /* volume of pores over surface of grains; phi below 1e-3 is clear water */
     pore[n] = (1.0 - phi[n]) / fmax(phi[n], 1e-3);
     if (SA > 0.0) pore[n] *= VA / SA;
     if (D) D[n] = SA > 0.0 ? 6.0 * VA / SA : 0.0;
   }
 }
 
+/* The mixing length grows with the room for eddies, dl/dz = kappa (1 - phi/phi_max): kappa z over a
+ * bed that lets none through, slower in a layer of moving grains. Below the highest packed slice
+ * it stays 0, however loose it is there. */
 static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
                         double *length)
 {
@@ -46,6 +50,7 @@ static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
   }
 }
 
+/* From the top down: what lies below the highest slice of bed is bed. */
 double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed)
 {
   int n = mesh->ncell - 1;
@@ -53,6 +58,10 @@ double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed)
   return mesh->edge[n];
 }
 
+/* Van Driest: l = kappa zv (1 - exp(-zv+/26)) with zv the height that is left to the water, and
+ * a length of pores that stays in the bed. zv+ = sqrt(zv U/nu) has the U of the slice below the
+ * node in place of u_star. The pore length is that of all classes in equal numbers, packed to
+ * phi_max. */
 static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
                      const double *phi, double *length)
 {
@@ -101,6 +110,7 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
     case SD_VANS_PORE:
       pore_length(mesh, fluid, phi, classes, pore, 0);
       for (int j = 0; j < N; j++) {
+        /* down from the node until kappa (z_j - z_m) is longer than the eddies that fit there */
         double limit = 0.5 * pore[j], value = 0.0;
         for (int m = j - 1; m > 0 && limit > value; m--) {
           limit = 0.5 * pore[m];
@@ -114,6 +124,7 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
       break;
     case SD_VANS_NI_CAPART: {
       pore_length(mesh, fluid, phi, classes, pore, D);
+      /* in the bed the pores set the length, above it the distance from its top */
       const double bed = sd_vans_bed(mesh, phi_bed_profile, fluid->phi_bed);
       for (int j = 0; j < N; j++)
         length[j] = fmax(fmin(0.5 * pore[j], 0.2 * D[j]), kappa * (z[j] - bed));
@@ -129,5 +140,5 @@ double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int b
   /* Yade leaves the bottom node to Einstein's law. */
   if (fluid->viscosity == SD_VANS_EINSTEIN || (bottom && fluid->rules == SD_VANS_YADE))
     return nu * (1.0 + 2.5 * phi);
-  return nu * pow(1.0 - phi, -2.8);
+  return nu * pow(1.0 - phi, -2.8); /* Krieger & Dougherty's form, [eta] phi_m = 2.8, phi_m = 1 */
 }

@@ -33,6 +33,8 @@ void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, doub
   cut[0] = cut[1] = 0.0;
   for (int n = 0; n < N; n++) {
     const double density = drag_density(mesh, fluid, profile, classes, n), slip = U[n + 1] - vx[n];
+    /* drag against the slip, or none: b would drive the water away from the grains. At most a tenth
+     * of the slip goes in one step. */
     const double value = density / (yade ? fmax(fabs(slip), fluid->least_slip) : slip) / fluid->rho;
     b[n] = !(value > 0.0) ? 0.0 : value > cap ? cap : value;
     if (n == N - 1 || !isfinite(density)) continue;
@@ -45,7 +47,8 @@ void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, doub
 
 /* n f/w over rho: the drag on one grain of slip w is f = factor w, there are phi/V grains in a
  * volume. */
-static double rate_of(const sd_vans_fluid *fluid, double a, double phi, double slip, double hindrance)
+static double rate_of(const sd_vans_fluid *fluid, double a, double phi, double slip,
+                      double hindrance)
 {
   const double factor =
       0.5 * SD_PI * a * (0.44 * fluid->rho * a * fabs(slip) + 12.2 * fluid->eta) * hindrance;
@@ -84,6 +87,7 @@ void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
   }
 }
 
+/* The sum in the original's loop is rounded after every step, and that is repeated. */
 int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
 {
   if (rules == SD_VANS_YADE) {
@@ -141,9 +145,9 @@ sd_vans_solver *sd_vans_solver_create(const sd_vans_mesh *mesh)
   s->mesh = mesh;
   s->memory = m;
   s->friction = friction;
-  double **arrays[] = {&s->cl, &s->cu, &s->cd,         &s->ce,   &s->cr,      &s->mix,     &s->gap, &s->nut,
-                       &s->T,  &s->c,  &s->g,          &s->sum,  &s->wall_cd, &s->wall_cr, &s->wall,
-                       &s->wall_scale};
+  double **arrays[] = {&s->cl,      &s->cu,      &s->cd,   &s->ce,        &s->cr, &s->mix,
+                       &s->gap,     &s->nut,     &s->T,    &s->c,         &s->g,  &s->sum,
+                       &s->wall_cd, &s->wall_cr, &s->wall, &s->wall_scale};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -189,6 +193,7 @@ static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
                              const double *length, int j)
 {
   if (fluid->turbulence == SD_VANS_LAMINAR) return 0.0;
+  /* z u_star/nu below which the law of the wall is linear, u_star of the whole depth */
   if (fluid->sublayer) {
     const double nu = fluid->eta / fluid->rho, H = mesh->edge[mesh->ncell - 1];
     const double drive = fluid->rules == SD_VANS_YADE ? fluid->gx
@@ -198,8 +203,11 @@ static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
   return length[j] * length[j] / gap_of(mesh, j);
 }
 
-/* Rows from both ends to the middle, then back: two independent chains of divisions run at once.
- * U[1..M] out. */
+/* Gauss's elimination for the tridiagonal rows, from both ends to the middle, then back: two
+ * independent chains of divisions run at once. Upwards row i becomes
+ *   x_i = g_i + c_i x_(i+1),  c_i = U_i w,  g_i = (r_i + L_i g_(i-1)) w,  1/w = D_i - L_i c_(i-1)
+ * and the mirror of it downwards. No pivot is needed: the implicit step makes the diagonal the
+ * largest. U[1..M] out. */
 static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double *cr, double *U)
 {
   const double *T = s->T, *cl = s->cl, *cu = s->cu, *ce = s->ce;
@@ -224,6 +232,7 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
     g[t] = g_top = (ce[t] * x[t] + cr[t] + Ut * g_top) * wt;
     c[t] = c_top = Lt * wt;
   }
+  /* where they meet: x_(half-1) = g_low + c_low x_half, x_half = g_top + c_top x_(half-1) */
   double up = (g_top + c_top * g_low) / (1.0 - c_top * c_low), down = g_low + c_low * up;
   x[half] = up;
   if (half > 0) x[half - 1] = down;
@@ -235,7 +244,8 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
   for (; t < M; t++) x[t] = up = g[t] + c[t] * up;
 }
 
-/* Side walls: half of the friction on U', half on U. */
+/* Side walls: half of the friction on U', half on U, both with the f and |U| of U. That is
+ * stable however strong it is. Yade's has U^2 in both, the explicit half without U's sign. */
 static void wall_rows(sd_vans_solver *s, int M, sd_vans_rules rules, const double *U)
 {
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
@@ -250,7 +260,9 @@ static void wall_rows(sd_vans_solver *s, int M, sd_vans_rules rules, const doubl
   }
 }
 
-/* The rows as far as they stay in a solve. */
+/* The rows as far as they stay in a solve: all but the eddy viscosity and the walls. The viscous
+ * part acts on the mixture e U + phi v, so that its jumps J of phi v are known and go to the right;
+ * the eddies on U alone. */
 static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans_column *column,
                     double dt)
 {
@@ -334,6 +346,7 @@ static double viscous_flux(const sd_vans_solver *s, const sd_vans_fluid *fluid,
 {
   const double *phi = column->phi, *vx = column->vx, *U = s->sum;
   const int M = s->mesh->ncell - 1;
+  /* no mixture moves on the bottom; the surface has the velocity of the highest slice or u_top */
   const double below = j == 0 ? 0.0 : (1.0 - phi[j - 1]) * U[j - 1];
   const double x = j < M ? U[j] : fluid->driven ? fluid->u_top * steps : U[M - 1];
   const double J = j == 0 ? 0.0 : phi[j] * vx[j] - phi[j - 1] * vx[j - 1];
@@ -341,6 +354,10 @@ static double viscous_flux(const sd_vans_solver *s, const sd_vans_fluid *fluid,
       ((1.0 - phi[j]) * x - below + J * steps);
 }
 
+/* The fluxes that the rows had, from the sum of U' over the steps: every row is linear in U' but
+ * for eddies and walls, which were summed step by step. A slice passes to its neighbours what it
+ * does not keep, so that inner fluxes cancel and what is left came from outside or went to
+ * grains: of the viscous force on the mixture, e of it acts on the water and phi on the grains. */
 static void close_books(const sd_vans_solver *s, const sd_vans_fluid *fluid,
                         const sd_vans_column *column, double steps, double dt,
                         sd_vans_books *books)
@@ -391,6 +408,7 @@ void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const 
   }
 }
 
+/* Of the water: the highest slice is above it. */
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U)
 {
   double sum = 0.0;
@@ -400,7 +418,8 @@ double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi,
 }
 
 /* In the coordinate "volume of water below" the old and the new slices are two cuts of one column,
- * in which U stays. */
+ * in which U stays: a new slice has the mean over the pieces of old ones that it covers. Volume and
+ * momentum are those of the column, so that only what passes its upper end is gained or lost. */
 double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
                         const double *phi_new, double *U, double *scratch)
 {

@@ -13,7 +13,7 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
     return s >= N ? N : (int) s;
   }
   if (height >= mesh->edge[N]) return N;
-  int lo = 0, hi = N; /* edge[lo] <= height < edge[hi] */
+  int lo = 0, hi = N; /* halved; edge[lo] <= height < edge[hi] */
   while (hi - lo > 1) {
     const int mid = (lo + hi) / 2;
     if (mesh->edge[mid] <= height)
@@ -24,7 +24,7 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
   return lo;
 }
 
-/* Volume between the equator and the height s, |s| <= a. */
+/* Volume between the equator and the height s, |s| <= a: integral of pi (a^2 - s^2). */
 static inline double primitive(double a2, double s)
 {
   return SD_PI * s * (a2 - s * s / 3.0);
@@ -86,11 +86,15 @@ int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, doub
   return count;
 }
 
+/* Richardson & Zaki: in a dense bed the drag on a grain is 20 times that on a lone one. */
 void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance)
 {
   for (int n = 0; n < ncell; n++) hindrance[n] = phi[n] == 0.0 ? 1.0 : pow(1.0 - phi[n], -exponent);
 }
 
+/* Drag over velocity, 1/2 rho pi a^2 (0.44 |w| + 24.4 nu/2a) with one a taken out: Dallavalle's
+ * form, Stokes' law for small |w| but for 24.4 in place of 24, 0.44 the constant of a blunt
+ * body. */
 static inline double drag_factor(double rho, double eta, double a, double hindrance,
                                  const double w[3])
 {
@@ -165,6 +169,8 @@ static void drag_on(const sd_vans_mesh *mesh, const sd_vans_force_law *law, cons
     add_drag(law, grains, i, p < 0 ? U[0] : U[seen + 1], hindrance[seen], 1.0, F);
 }
 
+/* Shear lift: dynamic pressure over the grain less that under it, with the water one radius above
+ * and below its centre; nothing where one of the two is outside the water. */
 static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
                          int p, double a, double vx)
 {
@@ -188,6 +194,8 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
                    double *drag_x)
 {
   const unsigned char *take = grains->take;
+  /* In a steady stream down a slope the pressure falls straight away from the bed: what gravity has
+   * along x is carried by the stress, and grains have no buoyancy that way. */
   const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
   int outside = 0;
   for (int i = 0; i < grains->n; i++) {
@@ -210,6 +218,7 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
   return outside;
 }
 
+/* Exactly, since radii are names here: a grain that has grown belongs to no class. */
 static int class_of(const sd_vans_averaging *how, double a)
 {
   for (int c = 0; c < how->nclass; c++)
@@ -248,6 +257,7 @@ static void add_slices_yade(double *sums, int first, int count, const double *V,
   }
 }
 
+/* The slices of a grain, or the one of its centre with all of its volume. */
 static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
                      int *first, double *V)
 {
@@ -259,19 +269,19 @@ static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, d
   return 1;
 }
 
-/* Drag along x of grain i, were all of it in the slice: in each that it reaches, or, if it feels the
- * water at its centre, of that slice p in all of them. */
+/* Drag along x of grain i, were all of it in the slice: in each that it reaches, or, if it feels
+ * the water at its centre, of that slice p in all of them. */
 static void drag_of_slices(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
                            const double *hindrance, const sd_vans_grains *grains, int i,
                            const int slices[2], double *drag)
 {
-  const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]), inside = p >= 0 && p < mesh->ncell;
+  const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]);
   double w[3], whole = 0.0;
-  if (!law->felt_by_volume && inside)
+  if (!law->felt_by_volume && p >= 0 && p < mesh->ncell)
     whole = drag_in(law, grains, i, U[p + 1], hindrance[p], w) * w[0];
-  for (int k = 0; k < slices[1]; k++) {
-    const int n = slices[0] + k;
-    drag[k] = law->felt_by_volume ? drag_in(law, grains, i, U[n + 1], hindrance[n], w) * w[0] : whole;
+  for (int k = 0, n = slices[0]; k < slices[1]; k++, n++) {
+    drag[k] = whole;
+    if (law->felt_by_volume) drag[k] = drag_in(law, grains, i, U[n + 1], hindrance[n], w) * w[0];
   }
 }
 
@@ -309,6 +319,7 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
 void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums, double *profile)
 {
   const int N = mesh->ncell;
+  /* means over volumes, not over grains: a slice through the edge of a grain counts it little */
   for (int n = 0; n < N; n++) {
     const double *sum = sums + (long) n * SD_VANS_ROWS, V = sum[SD_VANS_PHI];
     profile[n] = V / (area * sd_vans_height(mesh, n));
@@ -317,6 +328,7 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
   }
 }
 
+/* The last of the shares is what is left of the value, so that none is lost to rounding. */
 void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
                     const double *value, double *out, double *V)
 {
@@ -329,6 +341,7 @@ void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *g
     const int count = slices_of(mesh, SD_VANS_CONSISTENT, point, z, ai, &first, V);
     double inside = 0.0, rest = value[i];
     for (int k = 0; k < count; k++) inside += V[k];
+    /* what is neither in the slices nor below them is above the mesh */
     const double below = point ? (height < 0.0 ? all : 0.0)
                                : sd_vans_slice_volume(ai, -ai, -height);
     for (int k = 0; k < count; k++) {

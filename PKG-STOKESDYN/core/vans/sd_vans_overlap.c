@@ -14,9 +14,10 @@ static double dot(const double *a, const double *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Area of a disc of radius r within half-planes m.u <= c: half the sum of r^2 times the angle of
- * the arcs left and of the signed heights
- * times the lengths of the chords left. */
+/* Area of a disc of radius r within half-planes m.u <= c. Gauss's theorem for the field u/2
+ * whose divergence is 1: the area is half the integral of u.n over its border, r^2 times the
+ * angle of the arcs left plus, over the chords left, their signed distance from the centre times
+ * their length. */
 static double disc_area(double r, int count, double (*m)[2], const double *c)
 {
   double from[2 * MAX_CUTS], to[2 * MAX_CUTS], chords = 0.0;
@@ -32,6 +33,7 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
     if (height <= -r) return 0.0;
     const double middle = atan2(m[k][1], m[k][0]), half = acos(height / r);
     double lo = middle - half, hi = middle + half;
+    /* an arc over the ray of angle pi is two */
     if (lo < -SD_PI) from[arcs] = lo + 2 * SD_PI, to[arcs++] = SD_PI, lo = -SD_PI;
     if (hi > SD_PI) from[arcs] = -SD_PI, to[arcs++] = hi - 2 * SD_PI, hi = SD_PI;
     from[arcs] = lo, to[arcs++] = hi;
@@ -58,6 +60,7 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
       from[k] = from[k - 1], to[k] = to[k - 1];
       from[k - 1] = f, to[k - 1] = t;
     }
+  /* the angle that is covered by arcs cut off, counted once */
   double covered = 0.0, end = -SD_PI;
   for (int k = 0; k < arcs; k++) {
     const double begin = fmax(from[k], end);
@@ -66,14 +69,17 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
   return 0.5 * (r * r * fmax(2 * SD_PI - covered, 0.0) + chords);
 }
 
-/* Slabs across the first cut's normal; z = a sin(t) takes the root off both ends. */
+/* Volume of the sphere within all cuts: slabs across the first cut's normal, each a disc cut by
+ * the lines where the other planes meet it. With z = a sin(t) the radius is a cos(t), and no
+ * root is left at the ends of the sphere; Gauss's rule of eight points in every panel, since
+ * lines that come and go make kinks. */
 static double integrate(double a, int count, const cut *cuts)
 {
   static const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                  0.9602898564975363};
   static const double gauss[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                   0.1012285362903763};
-  double axis[3], side[3], up[3], volume = 0.0;
+  double axis[3], side[3], up[3], volume = 0.0; /* an orthonormal frame */
   for (int d = 0; d < 3; d++) axis[d] = cuts[0].n[d];
   const double helper[3] = {fabs(axis[0]) < 0.6 ? 1.0 : 0.0, fabs(axis[0]) < 0.6 ? 0.0 : 1.0, 0.0};
   for (int d = 0; d < 3; d++) side[d] = helper[d] - dot(helper, axis) * axis[d];
@@ -115,6 +121,8 @@ double sd_vans_union_share(int n, const double *x, const double *a, int i)
       if (a[j] > ai || (a[j] == ai && j < i)) return 0.0;
       continue;
     }
+    /* the radical plane, where the powers |x|^2 - a^2 for both spheres are equal, holds the circle
+     * in which they meet; it may lie beyond either centre */
     const double h = (distance * distance + ai * ai - a[j] * a[j]) / (2.0 * distance);
     if (h <= -ai) return 0.0;
     if (h >= ai || count == MAX_CUTS) continue;

@@ -18,11 +18,13 @@ double sd_vans_transport(const sd_vans_mesh *mesh, const double *profile)
 
 double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress)
 {
-  double largest = stress[0];
+  double largest = stress[0]; /* may be negative: a stream that flows the other way */
   for (int n = 1; n < mesh->ncell; n++) largest = fmax(largest, stress[n]);
   return largest;
 }
 
+/* Layers of grains are maxima of phi; the topmost layer that is dense is the bed. The highest slice
+ * is above the surface and the lowest has no neighbour below, so that neither counts. */
 double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi)
 {
   for (int n = mesh->ncell - 2; n > 0; n--)

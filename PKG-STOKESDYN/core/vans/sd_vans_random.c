@@ -10,6 +10,8 @@ static double uniform(uint64_t key, uint64_t k) /* in (0, 1) */
   return sd_hash_unit(sd_hash_mix(key + (k + 1) * SD_HASH_STEP)) + 0x1p-54;
 }
 
+/* The three keys are mixed one into the other, so that neighbours in any of them share nothing; no
+ * state is kept, and a grain has the same numbers wherever it is and whoever asks. */
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3])
 {
   const uint64_t key = sd_hash_mix(sd_hash_mix(sd_hash_mix(seed + SD_HASH_STEP) ^ id) +
@@ -24,6 +26,7 @@ void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3])
 
 void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3])
 {
+  /* -a in u'x with a in u'z: fast water comes from above, <u'x u'z> = -u_star^2 */
   u[0] = (correlated ? normal[2] - normal[0] : normal[2]) * u_star;
   u[1] = normal[1] * u_star;
   u[2] = normal[0] * u_star;
@@ -31,7 +34,8 @@ void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, 
 
 double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double longest, double dt)
 {
-  if (!(u_star > 0.0)) return 10.0 * dt;
+  if (!(u_star > 0.0)) return 10.0 * dt; /* nothing moves: look again later */
+  /* Lagrangian time 0.33 l/u_star of an eddy l = 0.41 z; in the viscous sublayer its edge */
   return fmin(0.33 * 0.41 * fmax(z_above_bed, 11.6 * nu / u_star) / u_star, longest);
 }
 

@@ -76,7 +76,7 @@ static double reach_of_end(double change, double slope, double before)
 
 /* r_(m+1) = 2 ln(Re sqrt(f_m)) + 0.32, f_m = 1/r_m^2, in the arithmetic of the original step by
  * step: for Re of 0.6 to 5 the substitution wanders, and another rounding may be another answer.
- * The series holds as far as every step ends as it does at Re, and nowhere if an r is close to 0. */
+ * The series holds as far as every step ends as it does at Re, and nowhere where r is near 0. */
 static void substitution(double Re, sd_vans_friction *near)
 {
   double f = 1.0 / (SMOOTH * SMOOTH), r[ORDER] = {SMOOTH}, q[ORDER] = {0};
