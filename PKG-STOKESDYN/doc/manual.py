@@ -30,7 +30,7 @@ myst_update_mathjax = False
 myst_heading_anchors = 4
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
 html_theme = "alabaster"
-html_theme_options = {{"page_width": "1260px", "sidebar_width": "240px", "fixed_sidebar": False, "description": "version {VERSION}",
+html_theme_options = {{"page_width": "1260px", "sidebar_width": "260px", "fixed_sidebar": False, "description": "version {VERSION}",
                       "show_powered_by": False}}
 html_sidebars = {{"**": ["about.html", "searchbox.html", "navigation.html"]}}
 html_static_path = ["manual.css"]
@@ -62,6 +62,11 @@ def contents(chapters):
     for title, documents in chapters:
         lines += [".. toctree::", "   :maxdepth: 1", f"   :caption: {title}", ""] + [f"   {name}" for name in documents] + [""]
     return "\n".join(lines)
+
+
+def contents_page(title, text, documents):
+    lines = [title, "=" * len(title), "", text, "", ".. toctree::", "   :maxdepth: 1", ""]
+    return "\n".join(lines + [f"   {name}" for name in documents] + [""])
 
 
 def header_page(header):
@@ -97,7 +102,8 @@ def source(folder):
     for title, part in re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", index, re.S | re.M):
         chapters.append((title, ["PKG-STOKESDYN/doc/" + name for name in re.findall(r"\]\((\w+)\.md\)", part)]))
     chapters += [("Examples", ["examples/README"] + names(sorted((TOP / "examples").glob("*/README.md")))),
-                 ("Inside", ["PKG-STOKESDYN/README", "PKG-STOKESDYN/CHANGELOG"]), ("Headers of the core", names(headers))]
+                 ("Inside", ["PKG-STOKESDYN/README", "PKG-STOKESDYN/CHANGELOG"]), ("Headers", ["headers"])]
+    (folder / "headers.rst").write_text(contents_page("Headers of the core", "Each is the manual of its functions.", names(headers)))
     (folder / "index.rst").write_text(contents(chapters))
     (folder / "conf.py").write_text(CONF)
     (folder / "manual.css").write_text(CSS)

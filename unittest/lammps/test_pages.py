@@ -160,6 +160,13 @@ def test_no_link_leads_nowhere(name):
             assert (PACKAGE / "doc" / target).exists(), target
 
 
+def test_every_example_and_every_page_is_in_its_list():
+    examples = PACKAGE.parent / "examples"
+    listed = (examples / "README.md").read_text()
+    assert not [path.parent.name for path in examples.glob("*/README.md") if f"]({path.parent.name}/README.md)" not in listed]
+    assert not [name for name in PAGES if name != "index.md" and f"]({name})" not in PAGES["index.md"]]
+
+
 def test_the_readme_is_short():
     readme = (PACKAGE.parent / "README.md").read_text().splitlines()
     assert len(readme) < 120 and max(len(line) for line in readme) <= 120
