@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "sd_constants.h"
+#include "sd_ewald_cost.h"
 
 /* Solves of which means are taken. */
 static const double TRIAL = 8.0;
@@ -26,12 +26,10 @@ static const double CLOUD_PAIR = 1.0 / 3.0, SPHERE = 40.0, SPHERE_APPLIED = 20.0
  * pairs. */
 static const double REACH = 42.0;
 
-/* Of the product by FFT, likewise in pairs by list: a near pair, a window point of a sphere there
- * and back, a point of the grid through both transforms; all of it with torques over forces alone.
- * Of the waves: a sphere in an application, without and with torques, and in the set-up for each
- * row of Z; the factor of G. */
-static const double NEAR_PAIR = 1.3, WINDOW_POINT = 0.63, GRID_POINT = 8.5, WITH_TORQUES = 2.5,
-                    WAVES_APPLIED[2] = {80.0, 110.0}, WAVES_ROW = 800.0, WAVES_FACTOR = 2e5;
+/* Of the long waves, likewise: a sphere in an application, without and with torques; in the set-up
+ * each row of Z, and the factor of G. The product by FFT counts in pairs of a cloud. */
+static const double WITH_TORQUES = 2.5, WAVES_APPLIED[2] = {80.0, 110.0}, WAVES_ROW = 800.0,
+                    WAVES_FACTOR = 2e5;
 
 static double product(double n, double pairs)
 {
@@ -65,20 +63,12 @@ sd_cost sd_cost_blocks_by_list(double n, int width, double pairs, double stored)
                    .solve = heavy * INVERTED * stored / one};
 }
 
-static double product_by_waves(const sd_ewald *e, int width)
-{
-  const double ball = 4.0 / 3.0 * SD_PI * pow(e->range, 3), n = e->count;
-  const double near = n * ball / sd_ewald_volume(&e->box), window = pow(e->points, 3);
-  const double grid = (double) e->grid[0] * e->grid[1] * e->grid[2];
-  const double one = n * (NEAR_PAIR * near + WINDOW_POINT * window) + GRID_POINT * grid;
-  return width == 6 ? WITH_TORQUES * one : one;
-}
-
 /* The blocks are applied twice. */
 sd_cost sd_cost_waves(const sd_ewald *e, int width, double stored)
 {
   if (!(e->count > 0.0)) return (sd_cost){.iteration = 1.0};
-  const double one = product_by_waves(e, width), heavy = width / 3.0;
+  const double one = CLOUD_PAIR * sd_ewald_cost(e) * (width == 6 ? WITH_TORQUES : 1.0);
+  const double heavy = width / 3.0;
   const double applied = WAVES_APPLIED[width == 6] * e->count + 2.0 * heavy * stored;
   const double made = WAVES_ROW * width * e->count + INVERTED * heavy * stored + WAVES_FACTOR;
   return (sd_cost){.iteration = 1.0 + applied / one, .make = made / one};
