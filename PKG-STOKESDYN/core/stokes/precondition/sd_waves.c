@@ -42,13 +42,16 @@ static void reciprocal(const sd_ewald_box *b, double G[9])
 }
 
 /* One of each pair +-k with |k| <= radius, into out if there is one. Returns how many. An edge a
- * has n = k.a/(2 pi), so |n| is at most |k||a|/(2 pi). */
+ * has n = k.a/(2 pi), so |n| is at most |k||a|/(2 pi). Those beyond SD_WAVES_MOST, as a very skew
+ * box has them, are left out: along one edge alone there are enough. */
 static long waves_within(const sd_ewald_box *b, const double G[9], double radius, wave *out)
 {
   const double *t = b->tilt, c = radius / (2.0 * SD_PI);
   const double lengths[3] = {b->edge[0], hypot(t[0], b->edge[1]),
                              hypot(hypot(t[1], t[2]), b->edge[2])};
-  const int x = (int) (c * lengths[0]), y = (int) (c * lengths[1]), z = (int) (c * lengths[2]);
+  int most[3];
+  for (int d = 0; d < 3; d++) most[d] = (int) fmin(SD_WAVES_MOST, c * lengths[d]);
+  const int x = most[0], y = most[1], z = most[2];
   long count = 0;
   for (int l = 0; l <= x; l++)
     for (int m = l > 0 ? -y : 0; m <= y; m++)
@@ -71,10 +74,11 @@ int sd_wave_list_of(const sd_ewald_box *box, sd_wave_list *list)
   int harmonics = 0;
   *list = (sd_wave_list){0};
   if (!box || !box->periodic) return 0;
+  const double volume = sd_ewald_volume(box);
+  if (!(volume > 0.0 && volume < INFINITY)) return 0;
   reciprocal(box, G);
   /* A cubic box has just so many pairs within 3 times its longest wave, and a ball of that size
    * holds about as many of any box; where there are fewer, it grows. */
-  const double volume = sd_ewald_volume(box);
   double radius = 3.05 * 2.0 * SD_PI / cbrt(volume);
   while (waves_within(box, G, radius, NULL) < SD_WAVES_MOST) radius *= 1.1;
   wave *w = malloc(sizeof(wave) * (size_t) waves_within(box, G, radius, NULL));

@@ -50,7 +50,8 @@ typedef struct {
   double k[SD_WAVES_PADDED], e[2][3][SD_WAVES_PADDED], strength[SD_WAVES_PADDED];
 } sd_wave_list;
 
-/* The longest waves of a box, |k| rising; none in an open one. Returns the largest |n_d|. */
+/* The longest waves of a box, |k| rising; none in an open one. Returns the largest |n_d|, at most
+ * SD_WAVES_MOST; -1: out of memory. */
 int sd_wave_list_of(const sd_ewald_box *box, sd_wave_list *list);
 
 typedef struct {

@@ -166,7 +166,15 @@ static void the_longest_waves_come_first(void **state)
   assert_true(sd_wave_list_of(&box, &list) >= SD_WAVES_MOST);
   for (int m = 1; m < SD_WAVES_MOST; m++) assert_true(list.k[m] >= list.k[m - 1]);
   for (int m = 0; m < 10; m++) assert_int_equal(abs(list.n[0][m]), m + 1);
-  box.periodic = 0;
+  for (int skew = 0; skew < 2; skew++) { /* lists of n, and of powers, end somewhere */
+    box = (sd_ewald_box){
+        .periodic = 1, .edge = {skew ? 5.0 : 5e6, 5.0, 5.0}, .tilt = {skew ? 5e4 : 0.0}};
+    const int harmonics = sd_wave_list_of(&box, &list);
+    assert_true(harmonics > 0 && harmonics <= SD_WAVES_MOST);
+  }
+  box.edge[1] = NAN;
+  assert_int_equal(sd_wave_list_of(&box, &list), 0);
+  box = (sd_ewald_box){.edge = {5.0, 5.0, 5.0}};
   assert_int_equal(sd_wave_list_of(&box, &list), 0);
 }
 
@@ -366,6 +374,43 @@ static void waves_stay_good(void **state)
   scene_free(&s);
 }
 
+/* One sphere in a box smaller than it is, two at one point, a cloud in a corner, a box that is a needle: always symmetric and
+ * positive definite. */
+static void odd_scenes_have_an_inverse(void **state)
+{
+  (void) state;
+  const sd_ewald_box boxes[4] = {
+      {.periodic = 1, .edge = {1.0, 1.0, 1.0}},
+      {.periodic = 1, .edge = {9.0, 9.0, 9.0}},
+      {.periodic = 1, .edge = {400.0, 400.0, 400.0}},
+      {.periodic = 1, .edge = {5e4, 3.0, 4.0}, .tilt = {2.0, -1.0, 1.5}}};
+  for (int k = 0; k < 4; k++)
+    for (int width = 3; width <= 6; width += 3) {
+      sd_ewald_box unused;
+      scene s = small_spheres(&unused);
+      const int n = k ? N : 1, size = width * n;
+      if (k == 0) s.a[0] = 7.0;
+      if (k == 1) memcpy(s.x + 3, s.x, 3 * sizeof(double));
+      const sd_precondition_case c = {.law = RPY,
+                                      .spheres = {s.x, s.a, s.w},
+                                      .n = n,
+                                      .width = width,
+                                      .parts = 1,
+                                      .box = boxes + k};
+      sd_waves p = {0};
+      assert_int_equal(sd_waves_make(&p, &c), SD_OK);
+      double *P = matrix_of(sd_waves_apply, &p, size);
+      for (int i = 0; i < size; i++)
+        for (int j = 0; j < size; j++)
+          CHECK_NEAR(P[size * i + j], P[size * j + i],
+                     1e-12 * sqrt(P[(size + 1) * i] * P[(size + 1) * j]));
+      assert_true(positive_definite(P, size, 0.0));
+      free(P);
+      sd_waves_free(&p);
+      scene_free(&s);
+    }
+}
+
 static void an_open_box_has_no_waves(void **state)
 {
   (void) state;
@@ -415,6 +460,7 @@ int main(void)
       cmocka_unit_test(iterations_of_a_suspension),
       cmocka_unit_test(iterations_with_torques_and_clumps),
       cmocka_unit_test(waves_stay_good),
+      cmocka_unit_test(odd_scenes_have_an_inverse),
       cmocka_unit_test(an_open_box_has_no_waves),
       cmocka_unit_test(no_numbers_are_refused),
   };
