@@ -25,7 +25,9 @@ typedef struct {
   double weight, per_length;
 } place;
 
-/* The last node at or below x, but for the last of all. */
+/* The last node at or below x, but for the last of all: a point on the last node belongs to the cell
+ * before it, with weight 1, and nothing beyond value[] is read. Even axes, which nearly all are, need
+ * no search. */
 static inline int cell_of(const sd_grid_axis *axis, double x)
 {
   if (axis->density > 0.0) {
@@ -86,6 +88,7 @@ size_t sd_flow_grid_size(const sd_flow_grid *grid)
   return size;
 }
 
+/* As the first of all faults, in the order of the file: the caller tells its row. */
 size_t sd_flow_grid_fault(const sd_flow_grid *grid)
 {
   const size_t size = sd_flow_grid_size(grid);
@@ -96,6 +99,8 @@ size_t sd_flow_grid_fault(const sd_flow_grid *grid)
   return size;
 }
 
+/* Two passes: what a jump is large against is known only at the end. Velocity and viscosity have
+ * units of their own, and so each its own scale. */
 double sd_flow_grid_seam(const sd_flow_grid *grid, int axis)
 {
   const int n = grid->axis[axis].n;
@@ -124,6 +129,8 @@ double sd_flow_grid_seam(const sd_flow_grid *grid, int axis)
   return largest;
 }
 
+/* Time is the fourth axis. What the weights of its two frames are is the same for every point, so it
+ * is settled once a step. */
 sd_status sd_flow_grid_frame(const sd_flow_grid *grid, double time, sd_flow_frame *frame)
 {
   const sd_grid_axis *axis = &grid->axis[SD_GRID_TIME];
@@ -225,6 +232,7 @@ static void slope_of_corners(const double *v, const strides *s, const cell *c, d
   slope[2] = (face[1] - face[0]) * c->at[2].per_length;
 }
 
+/* With the number of columns a constant the compiler keeps the sums in registers. */
 static void values_at(const double *v, const strides *s, const cell *c, int columns, double *value)
 {
   if (columns == 3)
@@ -238,6 +246,8 @@ static void gradient_at(const double *v, const strides *s, const cell *c, double
   for (int p = 0; p < 3; p++) slope_of_corners(v + p, s, c, gradient + 3 * p);
 }
 
+/* Linear in time between two frames, value and gradient alike: f + weight (later - f), which is f
+ * itself where the two are equal. */
 static void flow_in(const sd_flow_grid *grid, const sd_flow_frame *frame, const strides *s,
                     const cell *c, double *value, double *gradient)
 {
@@ -256,6 +266,7 @@ static void flow_in(const sd_flow_grid *grid, const sd_flow_frame *frame, const 
 void sd_flow_grid_at(const sd_flow_grid *grid, const sd_flow_frame *frame, int n, const double *x,
                      double *value, double *gradient)
 {
+  // a block's cells stay in the first cache, and its prefetches within what a core can have under way
   enum { BLOCK = 16 };
   const strides s = strides_of(grid);
   cell cells[BLOCK];

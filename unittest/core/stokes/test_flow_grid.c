@@ -133,6 +133,39 @@ static void errors_are_of_second_order_in_space_and_time(void **state)
   CHECK_NEAR(log2(largest_error(49, 5, &unused) / largest_error(49, 9, &unused)), 2.0, 0.2);
 }
 
+/* Along each axis the value is linear within a cell: its difference there is its derivative, to the
+ * rounding of the difference. Between two frames, on even and uneven axes. */
+static void the_gradient_is_the_derivative_of_the_value(void **state)
+{
+  (void) state;
+  const double step = 0.01;
+  for (int uneven = 0; uneven < 2; uneven++) {
+    sample s;
+    const int n[4] = {5, 4, 6, 3};
+    for (int d = 0; d < 4; d++) place_nodes(&s, d, n[d], 0.0, 2.0, uneven ? 0.3 : 0.0);
+    fill(&s, n, nowhere, 3, wavy);
+    uint64_t seed = 9;
+    for (int k = 0; k < 200; k++) {
+      double x[3], value[3], G[9];
+      for (int d = 0; d < 3; d++) {
+        const int cell = (int) uniform(&seed, 0.0, n[d] - 1);
+        x[d] = uniform(&seed, s.at[d][cell] + step, s.at[d][cell + 1] - step);
+      }
+      sd_flow_frame frame;
+      assert_int_equal(sd_flow_grid_frame(&s.grid, uniform(&seed, 0.0, 2.0), &frame), SD_OK);
+      sd_flow_grid_at(&s.grid, &frame, 1, x, value, G);
+      for (int q = 0; q < 3; q++) {
+        double side[6] = {x[0], x[1], x[2], x[0], x[1], x[2]}, u[6];
+        side[q] += step;
+        side[3 + q] -= step;
+        sd_flow_grid_at(&s.grid, &frame, 2, side, u, NULL);
+        for (int p = 0; p < 3; p++) CHECK_NEAR(G[3 * p + q], (u[p] - u[3 + p]) / (2.0 * step), 1e-12);
+      }
+    }
+    free(s.value);
+  }
+}
+
 /* Periodic, held and none, one on each axis; x again on the far side of many periods. */
 static void outside_an_axis_does_what_it_says(void **state)
 {
@@ -265,6 +298,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_linear_flow_is_exact),
       cmocka_unit_test(errors_are_of_second_order_in_space_and_time),
+      cmocka_unit_test(the_gradient_is_the_derivative_of_the_value),
       cmocka_unit_test(outside_an_axis_does_what_it_says),
       cmocka_unit_test(a_series_that_has_ended_says_so),
       cmocka_unit_test(nothing_varies_along_an_axis_of_one_node),
