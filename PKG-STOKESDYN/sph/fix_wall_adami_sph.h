@@ -8,16 +8,13 @@
 
 namespace StokesDyn {
 
-class FixWallAdamiSph : public SphFix {
+class FixWallAdamiSph : public WallFix {
  public:
   static constexpr const char *STYLE = "wall/adami/sph";
 
   FixWallAdamiSph(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override;
   void init() override;
-  void setup(int) override;
   void post_force(int) override;
-  double compute_vector(int) override;
 
   /* per mass, as the wall sees it; now */
   const double *body_force();
@@ -25,7 +22,7 @@ class FixWallAdamiSph : public SphFix {
 
  private:
   Field gravity[3];
-  double b[3] = {0.0, 0.0, 0.0}, total[3] = {0.0, 0.0, 0.0};
+  double b[3] = {0.0, 0.0, 0.0};
 };
 
 }    // namespace StokesDyn

@@ -18,28 +18,10 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixRepulsiveWall::FixRepulsiveWall(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), command("Fix " + std::string(arg[2]))
+void FixRepulsiveWall::push(int i, const double normal[3], double r, double more)
 {
-  dynamic_group_allow = 1;
-  vector_flag = 1;
-  size_vector = 3;
-  global_freq = 1;
-  extvector = 1;
-}
-
-int FixRepulsiveWall::setmask()
-{
-  return FixConst::POST_FORCE;
-}
-
-void FixRepulsiveWall::setup(int vflag)
-{
-  post_force(vflag);
-}
-
-void FixRepulsiveWall::push(int i, const double normal[3], double size)
-{
+  if (!(r > 0.0)) outside(i);
+  const double size = sd_sph_repulsion(D, r0, r) + more;
   for (int d = 0; d < 3; d++) {
     atom->f[i][d] += size * normal[d];
     on_wall[d] -= size * normal[d];
@@ -53,13 +35,6 @@ void FixRepulsiveWall::outside(int i)
            command + ": step " + std::to_string(update->ntimestep) + ": atom " +
                std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
                text(x[2]) + " is on or behind the wall");
-}
-
-double FixRepulsiveWall::compute_vector(int k)
-{
-  double all;
-  MPI_Allreduce(&on_wall[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
 }
 
 // --- planes and the cylinder --------------------------------------------------------------------
@@ -112,21 +87,18 @@ void FixWallSph::post_force(int /*vflag*/)
     const double *x = atom->x[i];
     if (axis < 0) {
       const double rho = sqrt(x[0] * x[0] + x[1] * x[1]), r = radius - rho;
-      if (r >= r0) continue;
-      if (!(r > 0.0)) outside(i);
-      if (rho == 0.0) continue;    // on the axis the wall pushes from all sides
+      if (r >= r0 || rho == 0.0) continue;    // on the axis the wall pushes from all sides
       const double inward[3] = {-x[0] / rho, -x[1] / rho, 0.0};
-      push(i, inward, sd_sph_repulsion(D, r0, r));
+      push(i, inward, r, 0.0);
       continue;
     }
     for (int side = 0; side < 2; side++) {
       if (!has[side]) continue;
       const double sign = side ? -1.0 : 1.0, r = sign * (x[axis] - at[side]);
       if (r >= r0) continue;
-      if (!(r > 0.0)) outside(i);
       double inward[3] = {0.0, 0.0, 0.0};
       inward[axis] = sign;
-      push(i, inward, sd_sph_repulsion(D, r0, r));
+      push(i, inward, r, 0.0);
     }
   }
 }
@@ -172,7 +144,7 @@ void FixWallRegionSph::post_force(int /*vflag*/)
       const double normal[3] = {contact.delx / r, contact.dely / r, contact.delz / r};
       const double mirror = sd_sph_mirror(Sph::mass(lmp, i), pair->pressure(i), atom->rho[i],
                                           pair->dW_dr(atom->type[i], r));
-      push(i, normal, sd_sph_repulsion(D, r0, r) + mirror);
+      push(i, normal, r, mirror);
     }
   }
 }

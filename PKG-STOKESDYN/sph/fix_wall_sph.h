@@ -2,9 +2,7 @@
 #ifndef SD_FIX_WALL_SPH_H
 #define SD_FIX_WALL_SPH_H
 
-#include "fix.h"
-
-#include <string>
+#include "sph_fix.h"
 
 namespace LAMMPS_NS {
 class Region;
@@ -12,22 +10,15 @@ class Region;
 
 namespace StokesDyn {
 
-class PairSph;
-
-/* Sums the force on the wall, for both. */
-class FixRepulsiveWall : public LAMMPS_NS::Fix {
+class FixRepulsiveWall : public WallFix {
  public:
-  FixRepulsiveWall(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override;
-  void setup(int) override;
-  double compute_vector(int) override;
+  using WallFix::WallFix;
 
  protected:
-  std::string command;
   double r0 = 0.0, D = 0.0;
-  double on_wall[3] = {0.0, 0.0, 0.0};
-  /* Adds a force to particle i, and its reaction to the wall. */
-  void push(int i, const double normal[3], double size);
+  /* Particle i at the distance r along the inward normal: the repulsion and `more`, and its reaction
+   * on the wall. */
+  void push(int i, const double normal[3], double r, double more);
   [[noreturn]] void outside(int i);
 };
 

@@ -3,15 +3,12 @@
 #include "sph.h"
 
 #include "atom.h"
-#include "memory.h"
-
-#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), command("Fix " + std::string(style))
+    RowsFix(lmp, narg, arg), command("Fix " + std::string(style))
 {
   Sph::require_scene(lmp, command);
 }
@@ -21,52 +18,44 @@ void SphFix::init()
   pair = Sph::require_pair(lmp, command);
 }
 
-SphOutputFix::SphOutputFix(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
+void SphOutputFix::begin()
 {
+  maxexchange = values.most_packed();
+  keep({&values}, nullptr, false);
   peratom_flag = 1;
   size_peratom_cols = 0;
   peratom_freq = 1;
-  create_attribute = 1;
-  maxexchange = 1;
-}
-
-void SphOutputFix::begin()
-{
-  grow_arrays(atom->nmax);
-  std::fill_n(vector_atom, atom->nlocal, 0.0);
-  atom->add_callback(Atom::GROW);
-}
-
-SphOutputFix::~SphOutputFix()
-{
-  if (!vector_atom) return;    // the words of the command were refused
-  atom->delete_callback(id, Atom::GROW);
-  memory->destroy(vector_atom);
-}
-
-double SphOutputFix::memory_usage()
-{
-  return sizeof(double) * (double) atom->nmax;
 }
 
 void SphOutputFix::grow_arrays(int nmax)
 {
-  memory->grow(vector_atom, nmax, "sph:output");
+  RowsFix::grow_arrays(nmax);
+  vector_atom = values.array()[0];
 }
 
-int SphOutputFix::pack_exchange(int i, double *buf)
+void SphOutputFix::output(const double *numbers)
 {
-  buf[0] = vector_atom[i];
-  return 1;
+  for (int i = 0; i < atom->nlocal; i++) *values.give(i) = numbers[i];
 }
 
-int SphOutputFix::unpack_exchange(int i, double *buf)
+WallFix::WallFix(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), command("Fix " + std::string(style))
 {
-  vector_atom[i] = buf[0];
-  return 1;
+  dynamic_group_allow = 1;
+  vector_flag = 1;
+  size_vector = 3;
+  global_freq = 1;
+  extvector = 1;
 }
 
-void SphOutputFix::output(const double *values)
+int WallFix::setmask()
 {
-  std::copy_n(values, atom->nlocal, vector_atom);
+  return FixConst::POST_FORCE;
+}
+
+double WallFix::compute_vector(int k)
+{
+  double all;
+  MPI_Allreduce(&on_wall[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
 }

@@ -2,7 +2,7 @@
 #ifndef SD_SPH_FIX_H
 #define SD_SPH_FIX_H
 
-#include "fix.h"
+#include "rows_fix.h"
 
 #include <string>
 
@@ -10,9 +10,8 @@ namespace StokesDyn {
 
 class PairSph;
 
-/* Knows the fluid: the scene must have its units and its atom style, and at a run the pair style.
- * */
-class SphFix : public LAMMPS_NS::Fix {
+/* Knows the fluid: the scene must have its units and its atom style, and at a run the pair style. */
+class SphFix : public RowsFix {
  public:
   SphFix(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }
@@ -23,26 +22,35 @@ class SphFix : public LAMMPS_NS::Fix {
   PairSph *pair = nullptr;
 };
 
-/* A fix whose per-atom vector is made in the pair style. The numbers stay with their atoms when
- * these move to another rank, are sorted, deleted or created: between runs the vector has those of
- * the latest force, and 0 for atoms that are new. */
+/* A fix whose per-atom vector is made in the pair style: between runs it has the numbers of the
+ * latest force, and 0 for atoms that are new. */
 class SphOutputFix : public SphFix {
  public:
-  SphOutputFix(LAMMPS_NS::LAMMPS *, int, char **);
-  ~SphOutputFix() override;
-  double memory_usage() override;
+  SphOutputFix(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg), values(1) {}
   void grow_arrays(int) override;
-  void copy_arrays(int i, int j, int) override { vector_atom[j] = vector_atom[i]; }
-  void set_arrays(int i) override { vector_atom[i] = 0.0; }
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
 
   /* One number for each atom of this rank. */
-  void output(const double *values);
+  void output(const double *numbers);
 
  protected:
   /* For the end of the constructor: LAMMPS cannot take back a callback of a fix that failed. */
   void begin();
+
+ private:
+  AtomArray values;
+};
+
+/* A wall: sums up the force of the fluid on it, global vector x y z. */
+class WallFix : public LAMMPS_NS::Fix {
+ public:
+  WallFix(LAMMPS_NS::LAMMPS *, int, char **);
+  int setmask() override;
+  void setup(int vflag) override { post_force(vflag); }
+  double compute_vector(int) override;
+
+ protected:
+  std::string command;
+  double on_wall[3] = {0.0, 0.0, 0.0};
 };
 
 }    // namespace StokesDyn
