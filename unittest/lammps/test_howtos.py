@@ -71,3 +71,14 @@ def test_a_howto_runs_as_it_stands(name, tmp_path):
 def test_every_howto_with_an_input_is_followed():
     with_input = {path.stem[len("howto_"):] for path in DOC.glob("howto_*.md") if re.search(r"^```\n# in\.", path.read_text(), re.M)}
     assert with_input <= set(HOWTOS)
+
+
+def test_the_input_of_the_readme_settles_as_it_says(tmp_path):
+    readme = (DOC.parents[1] / "README.md").read_text()
+    block = re.search(r"^    plugin +load.*?(?=^\S)", readme, re.S | re.M).group()
+    (tmp_path / "in.rod").write_text(block)
+    done = subprocess.run(["lmp", "-in", "in.rod"], cwd=tmp_path, env=environment(), stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-2000:]
+    said = re.search(r"settling velocity, (\S+) m/s", readme).group(1)
+    assert float(re.search(r"^ +100 +(\S+)", done.stdout, re.M).group(1)) == pytest.approx(float(said), rel=1e-3)
