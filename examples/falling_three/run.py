@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""Three and two spheres fall without inertia: paths of fix stokes_dynamics/overdamped against converged ones of the same model,
+which are computed here, and beside the published ones.
+
+    run.py --out DIR    results and the picture go to DIR (default: build/examples/falling_three)
+    run.py --update     also refreshes the picture in this folder
+
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
+"""
+import pathlib
+import shutil
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from checks import Checks  # noqa: E402
+from runs import np, plt, need, options  # noqa: E402
+
+THREE = np.array([(-5.0, 0, 0), (0, 0, 0), (7.0, 0, 0)])
+# Exact Stokes flow at t = 200 (multipoles of orders 5 and 7 agree to 3e-6), x and z
+EXACT = np.array([(-3.75262, -257.61411), (7.25190, -258.32847), (1.03032, -258.74972)])
+END = 200.0
+
+
+# --- the same model by other means -------------------------------------------------------------------------------
+
+
+def velocities(x):
+    """Rotne-Prager-Yamakawa tensor of equal spheres that do not overlap, each with weight 1 along -z"""
+    r = x[:, None] - x[None]
+    s = np.linalg.norm(r, axis=2) + np.eye(len(x))
+    f, g = 0.75 / s * (1 + 2 / (3 * s**2)), 0.75 / s * (1 - 2 / s**2)
+    u = -(g / s**2 * r[:, :, 2])[:, :, None] * r
+    u[:, :, 2] -= f
+    u[np.arange(len(x)), np.arange(len(x))] = (0, 0, -1)
+    return u.sum(axis=1)
+
+
+def runge_kutta(x, end, n):
+    """Fourth order; places at n + 1 times"""
+    path, h = [x], end / n
+    for _ in range(n):
+        k1 = velocities(x)
+        k2 = velocities(x + h / 2 * k1)
+        k3 = velocities(x + h / 2 * k2)
+        k4 = velocities(x + h * k3)
+        x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        path.append(x)
+    return np.array(path)
+
+
+# --- runs ---------------------------------------------------------------------------------------------------------
+
+
+def lammps(out, tag, **variables):
+    """Places and velocities [frames, spheres, 6]"""
+    path = out / f"{tag}.path"
+    command = ["stdbuf", "-oL", "lmp", "-in", "in.falling_three", "-log", str(out / f"log.{tag}"), "-var", "path", str(path)]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
+    done = subprocess.run(command, cwd=HERE, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\nfalling_three: {' '.join(command)} failed")
+    frames = []
+    for block in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
+        lines = block.split("\n")
+        frames.append([[float(w) for w in line.split()[1:]] for line in lines[8:8 + int(lines[2])]])
+    return np.array(frames)
+
+
+def distances(points, path):
+    """Sideways, of points x z from the nearest path of a sphere at that height"""
+    result = []
+    for x, z in points:
+        at = [np.interp(-z, -path[:, k, 2], path[:, k, 0]) for k in range(3)]
+        result.append(min(abs(x - a) for a in at))
+    return np.array(result)
+
+
+def draw(path, figure5, errors, target):
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5.5), layout="constrained", width_ratios=[1.2, 1])
+    for k, colour in enumerate(("C0", "C1", "C2")):
+        left.plot(-path[:, k, 2], path[:, k, 0], "-", color=colour, lw=1.5, label=f"sphere {k + 1}")
+    left.plot(-figure5[:, 1], figure5[:, 0], "ko", ms=3, label="Durlofsky, Brady & Bossis 1987, figure 5")
+    left.plot(-EXACT[:, 1], EXACT[:, 0], "x", color="crimson", ms=8, mew=2, label="exact Stokes flow, t = 200")
+    left.set(xlabel="depth / radius", ylabel="x / radius", title="Three spheres fall side by side")
+    left.legend(fontsize=9)
+    for scheme, marker in (("ab2", "o-"), ("euler", "s-")):
+        steps, e = np.array(errors[scheme]).T
+        right.loglog(steps, e, marker, label=scheme)
+    right.set(xlabel="time step, in radii of fall of a lone sphere", ylabel="largest error of a place at t = 100 / radius",
+              title="Adams-Bashforth and Euler")
+    right.grid(alpha=0.3)
+    right.legend()
+    figure.savefig(target, dpi=80, pil_kwargs={"optimize": True})
+    plt.close(figure)
+
+
+def main():
+    given = options(__file__, __doc__)
+    out = given.out
+    need("lmp")
+    reference = runge_kutta(THREE, END, 4000)
+    middle = reference[2000]
+
+    errors = {}
+    for scheme in ("ab2", "euler"):
+        errors[scheme] = []
+        for step in (4.0, 2.0, 1.0, 0.5, 0.25):
+            end = lammps(out, f"{scheme}_{step}", step=step, scheme=scheme, time=100.0, frames=1)[-1, :, :3]
+            errors[scheme].append((step, np.abs(end - middle).max()))
+            print(f"  {scheme}, step {step}: largest error at t = 100 {errors[scheme][-1][1]:.2e} radii", flush=True)
+    path = lammps(out, "three", step=0.05, frames=400)
+    fine = np.abs(lammps(out, "fine", step=0.001, time=40.0, frames=1)[-1, :, :3] - reference[800]).max()
+    two = lammps(out, "two", case="two", step=1.0, time=40.0, frames=1)[-1]
+    figure5 = np.loadtxt(HERE / "figure5.csv", delimiter=",", skiprows=3)
+    away = distances(figure5, path)
+    draw(path, figure5, errors, out / "falling_three.png")
+    print(f"picture: {out / 'falling_three.png'}\n")
+
+    c = Checks()
+    slope = {s: np.log2(errors[s][-2][1] / errors[s][-1][1]) for s in errors}
+    c.near("order of ab2", slope["ab2"], 2.0, 0.1)
+    c.near("order of euler", slope["euler"], 1.0, 0.05)
+    c.below("error of ab2 at step 0.25, in radii", errors["ab2"][-1][1], 4e-4)
+    c.below("error of ab2 at step 0.001 and t = 40, in radii", fine, 1e-8)
+    c.below("error at step 0.05 and t = 200, in radii", np.abs(path[-1, :, :3] - reference[-1]).max(), 1e-3)
+    pair = np.array([(0.0, 0, 0), (2.6, 0, 1.2)])
+    c.below("two equal spheres keep distance and speed: error of their places at t = 40, steps of 1",
+            np.abs(two[:, :3] - pair - 40 * velocities(pair)).max(), 1e-11)
+    c.below("median sideways distance to the published paths down to -100, in radii", np.median(away[figure5[:, 1] > -100]), 0.1)
+    c.below("the same from -100 to -200", np.median(away[figure5[:, 1] <= -100]), 0.2)
+    c.within("what the model lacks at t = 200: largest distance of x to exact Stokes flow, in radii",
+             np.abs(path[-1, :, 0] - EXACT[:, 0]).max(), 0.35, 0.45)
+    if given.update:
+        shutil.copy(out / "falling_three.png", HERE)
+    return c.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
