@@ -93,7 +93,8 @@ static void split(sd_ewald *e, const sd_ewald_sizes *s, int width, double *y)
   e->points = (int) ceil(2.0 + log10(1.0 / t) - 1e-9);
   if (e->points < 4) e->points = 4;
   if (e->points > SD_EWALD_MOST_POINTS) e->points = SD_EWALD_MOST_POINTS;
-  e->beta = 2.25 * e->points;
+  /* where windows are differentiated, their jump at the ends must be smaller */
+  e->beta = (equal && width == 3 ? 2.25 : 2.42) * e->points;
   e->largest = largest;
   e->reach = fmax(e->range, 2.0 * largest);
 }

@@ -40,7 +40,7 @@ void sd_window_fit(int points, double beta, double tolerance, sd_window *w)
       long double sum = 0.0L;
       for (int s = 0; s < NODES; s++) sum += sample[s] * cosl(pi * m * (s + 0.5L) / NODES);
       series[k][m] = sum * (m == 0 ? 1.0L : 2.0L) / NODES;
-      if (m < SD_WINDOW_TERMS && m > w->degree && fabsl(series[k][m]) > 0.005L * tolerance)
+      if (m < SD_WINDOW_TERMS && m > w->degree && fabsl(series[k][m]) > 1e-4L * tolerance)
         w->degree = m;
     }
   }

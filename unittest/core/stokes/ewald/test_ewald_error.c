@@ -1,0 +1,69 @@
+/* What the rule promises: predicted against measured error in random scenes, against a sum at a hundredth of the tolerance. */
+#include "periodic.h"
+
+enum { N = 240, SCENES = 40 };
+
+typedef struct {
+  double x[3 * N], a[N], F[3 * N], tolerance;
+  sd_ewald_box box;
+} scene;
+
+/* Volume fraction 0.01 to 0.5, radii 1 : 1 to 1 : 4, tolerances 1e-2 to 1e-9, boxes of any shape, some of them oblique */
+static scene make(uint64_t *seed, int k)
+{
+  scene s = {.tolerance = pow(10.0, -uniform(seed, 2.0, 9.0)), .box = {.periodic = 1}};
+  const double ratio = k % 3 ? exp(uniform(seed, 0.1, log(4.0))) : 1.0, phi = exp(uniform(seed, log(0.01), log(0.5)));
+  double V = 0.0;
+  for (int i = 0; i < N; i++) {
+    s.a[i] = exp(uniform(seed, 0.0, 1.0) * log(ratio));
+    V += 4.0 / 3.0 * SD_PI * pow(s.a[i], 3) / phi;
+  }
+  const double shape[3] = {uniform(seed, 0.8, 1.3), uniform(seed, 0.8, 1.3), 1.0};
+  for (int d = 0; d < 3; d++) {
+    s.box.edge[d] = cbrt(V / (shape[0] * shape[1])) * shape[d];
+    s.box.tilt[d] = k % 4 == 3 ? uniform(seed, -0.4, 0.4) * s.box.edge[0] : 0.0;
+  }
+  for (int i = 0; i < 3 * N; i++) s.x[i] = uniform(seed, 0, 1) * s.box.edge[i % 3];
+  for (int i = 0; i < 3 * N; i++) s.F[i] = (uniform(seed, -1, 1) + uniform(seed, -1, 1)) * s.a[i / 3];
+  return s;
+}
+
+static void the_predicted_error_is_the_measured_one(void **state)
+{
+  (void) state;
+  uint64_t seed = 2026;
+  double least = INFINITY, most = 0.0, largest = 0.0;
+  for (int k = 0; k < SCENES; k++) {
+    const scene s = make(&seed, k);
+    const sd_ewald_sizes sizes = periodic_sizes(s.a, N);
+    double u[2][3 * N], off = 0.0, bare = 0.0, predicted = 0.0;
+    for (int tight = 0; tight < 2; tight++) {
+      const sd_ewald how = periodic_choose(&s.box, s.a, N, 3, tight ? 0.01 * s.tolerance : s.tolerance);
+      if (!tight) predicted = sd_ewald_predicted(&how, &sizes);
+      periodic p;
+      periodic_place(&p, s.x, s.a, NULL, N, 3, &how);
+      periodic_apply(&p, s.F, u[tight]);
+      periodic_free(&p);
+    }
+    for (int i = 0; i < 3 * N; i++) {
+      off += pow(u[0][i] - u[1][i], 2);
+      bare += pow(s.F[i] / (6.0 * SD_PI * s.a[i / 3]), 2);
+    }
+    const double measured = sqrt(off / bare);
+    least = fmin(least, predicted / measured);
+    most = fmax(most, predicted / measured);
+    largest = fmax(largest, measured / s.tolerance);
+  }
+  if (getenv("STOKESDYN_SHOW")) /* the accuracy report in three numbers */
+    printf("predicted/measured %.2f to %.2f; measured/tolerance at most %.2f\n", least, most, largest);
+  assert_true(least > 0.5 && most < 2.0);
+  assert_true(largest < 1.0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_predicted_error_is_the_measured_one),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
