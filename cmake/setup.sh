@@ -35,8 +35,8 @@ fi
 
 lammps=$("$top/cmake/provide_lammps.sh" | tail -n 1)
 
-echo "[set-up] building the plugin"
 log=$top/build/build.log
+echo "[set-up] building the plugin (a minute on two cores; tail -f ${log#"$PWD"/})"
 mkdir -p "$top/build"
 { cmake -S "$top/cmake" -B "$top/build" -G Ninja -D LAMMPS_SOURCE_DIR="$lammps/src" -D LAMMPS_INSTALL_DIR="$lammps" \
     -D STOKESDYN_TESTS="$([ "${1:-}" = test ] && echo ON || echo OFF)" &&

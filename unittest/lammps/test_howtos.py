@@ -30,10 +30,9 @@ def blocks(name):
 
 def follow(name, folder):
     """The files of the page, its commands run: what they print."""
-    for block in blocks(name):
-        begin = re.match(r"# (\w+\.[\w.]+)", block)
-        if begin:
-            (folder / begin.group(1)).write_text(block)
+    written = subprocess.run([DOC / "files.sh", f"howto_{name}"], cwd=folder, capture_output=True, text=True, check=True).stdout.split()
+    for file in written:
+        assert (folder / file).read_text() in blocks(name), file
     said = ""
     for command in HOWTOS[name][0]:
         words = [sys.executable if word == "python" else word for word in command.split()]
