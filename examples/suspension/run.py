@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Hindered settling in periodic boxes: spheres with in.suspension at several volume fractions, rigid clumps with in.clumps.
+
+    run.py --out DIR    results and the picture go to DIR (default: build/examples/suspension)
+    run.py --update     also refreshes the logs and the picture in this folder
+
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from checks import Checks  # noqa: E402
+from runs import np, plt, need, options  # noqa: E402
+
+PHIS = (0.05, 0.1, 0.2, 0.3, 0.45)
+N = 4 * 14**3
+
+
+def theory(phi):
+    """Pair-additive hydrodynamics in random suspensions (Brady & Durlofsky, Phys. Fluids 31, 717 (1988))"""
+    return (1 - phi)**3 / (1 + 2 * phi)
+
+
+def beyond_the_box(phi):
+    """What the waves that are longer than the box would add: 1.7601 S(0) (phi/N)^(1/3), with the compressibility S(0) of hard
+    spheres (Carnahan & Starling) (Ladd, J. Chem. Phys. 93, 3484 (1990))"""
+    S0 = (1 - phi)**4 / ((1 + 2 * phi)**2 + phi**3 * (phi - 4))
+    return 1.7601 * S0 * (phi / N)**(1 / 3)
+
+
+def lammps(out, script, log, ranks=2, **variables):
+    command = ["mpirun", "-np", str(ranks), "lmp", "-in", script, "-log", log, "-nocite"]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
+    start = time.time()
+    run = subprocess.run(command, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    found = [float(word) for word in re.findall("^settling (.*)$", run.stdout, re.M)]
+    if run.returncode or not found:
+        sys.exit(run.stdout[-2000:] + f"suspension: {' '.join(command)} failed in {out}")
+    print(f"[{log}, {ranks} rank{'s' if ranks > 1 else ''}] {time.time() - start:.0f} s", flush=True)
+    return found
+
+
+def thermo(log):
+    """Rows of the last run"""
+    rows, inside = [], False
+    for line in log.read_text().splitlines():
+        words = line.split()
+        if words[:2] == ["Step", "Time"]:
+            rows, inside = [], True
+        elif words[:2] == ["Loop", "time"]:
+            inside = False
+        elif inside:
+            rows.append([float(word) for word in words])
+    return np.array(rows)
+
+
+def spheres(path):
+    """Columns of the last step that was dumped"""
+    block = path.read_text().split("ITEM: TIMESTEP\n")[-1].split("\n")
+    return np.array([line.split() for line in block[8:8 + int(block[2])]], dtype=float)
+
+
+def picture(speeds, fall, path):
+    fig, (left, right) = plt.subplots(1, 2, figsize=(11.0, 4.6), dpi=90, layout="constrained")
+    phi = np.linspace(0, 0.5, 100)
+    left.plot(phi, (1 - phi)**5, "k-", lw=1, label="experiments: $(1-\\phi)^5$ (Richardson & Zaki)")
+    left.plot(phi, theory(phi), "C1--", lw=1.2, label="theory of the model (Brady & Durlofsky)")
+    left.errorbar(PHIS, [np.mean(speeds[p]) + beyond_the_box(p) for p in PHIS], [np.ptp(speeds[p]) / 2 for p in PHIS], fmt="o", color="C0",
+                  label="this plugin, one point a sphere")
+    left.set(xlabel="volume fraction $\\phi$", ylabel="settling speed / that of a lone sphere", ylim=(0, 1))
+    left.legend(fontsize="small")
+    near = np.abs(fall[:, 2] - fall[:, 2].mean()) < 3.0
+    x, v = fall[near][:, 1:4], fall[near][:, 4:7]
+    v = v - fall[:, 4:7].mean(axis=0)
+    shown = right.scatter(x[:, 0], x[:, 2], c=v[:, 2], s=14, cmap="coolwarm", vmin=-1, vmax=1)
+    right.quiver(x[:, 0], x[:, 2], v[:, 0], v[:, 2], width=0.002, scale=30)
+    right.set(aspect="equal", xlabel="x / a", ylabel="z / a", title="a slice at $\\phi$ = 0.1: velocities less their mean")
+    fig.colorbar(shown, ax=right, label="upwards / speed of a lone sphere")
+    fig.savefig(path)
+    plt.close(fig)
+
+
+def main():
+    given = options(__file__, __doc__)
+    out = given.out
+    need("lmp", "mpirun")
+    for name in ("in.suspension", "in.clumps", "bipyramid5.mol"):
+        shutil.copy(HERE / name, out)
+    c, speeds = Checks(), {}
+    for phi in PHIS:
+        speeds[phi] = lammps(out, "in.suspension", f"log.{phi}", phi=phi, dump="yes" if phi == 0.1 else "no",
+                             steps=6000 if phi < 0.1 else 2000)     # the dilute forget their lattice later
+        c.near(f"spheres, phi {phi}: settling speed, beside the theory of the model", np.mean(speeds[phi]) + beyond_the_box(phi),
+               theory(phi), 0.02 if phi < 0.3 else 0.06)
+    fine, one, two = (lammps(out, "in.suspension", log, phi=0.1, tolerance=tolerance, steps=0, ranks=ranks) for log, tolerance, ranks in
+                      (("log.fine", 1e-6, 2), ("log.suspension.1", 1e-4, 1), ("log.suspension.2", 1e-4, 2)))
+    c.below("spheres on a lattice: 1 rank against 2", np.abs(np.subtract(one, two)).max(), 1e-10)
+    c.below("spheres on a lattice: far_field_tolerance 1e-4 against 1e-6", np.abs(np.subtract(two, fine)).max(), 4e-4)
+    lone = lammps(out, "in.clumps", "log.lone", ranks=1, phi=1e-9, steps=0)[0]
+    lammps(out, "in.clumps", "log.clumps")
+    rows = thermo(out / "log.clumps")
+    print(f"\n  clumps at phi 0.1: {rows[0, 2]:.3f} at first, {rows[-1, 2]:.3f} after falling {rows[:, 2].mean() * rows[-1, 1]:.1f} radii; alone {lone:.3f}")
+    c.within("clumps: mean speed over that of a lone clump", rows[-1, 2] / lone, 0.2, 0.5)
+    c.below("clumps: products of a solve to 1e-3 in flight", rows[1:, 4].max(), 4)
+
+    print("\n  phi     settling speed in the box (x, y, z)    without a box    theory    (1-phi)^5")
+    for phi in PHIS:
+        print(f"  {phi:4}    " + "  ".join(f"{u:.4f}" for u in speeds[phi]) +
+              f"                  {np.mean(speeds[phi]) + beyond_the_box(phi):.3f}            {theory(phi):.3f}     {(1 - phi)**5:.3f}")
+    picture(speeds, spheres(out / "suspension.spheres"), out / "suspension.png")
+    if given.update:
+        for name in ("suspension.png", "log.suspension.1", "log.suspension.2"):
+            shutil.copy(out / name, HERE)
+    sys.exit(c.finish())
+
+
+if __name__ == "__main__":
+    main()
