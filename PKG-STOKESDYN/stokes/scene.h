@@ -174,7 +174,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   const double *positions() const;
   bool periodic() const;
   bool split();
-  sd_ewald_sizes measure(sd_ewald_box &box) const;
+  sd_ewald_sizes measure(sd_ewald_box &box);
   void compare();
   void tell();
   void place_rows(const std::vector<double> &eta);

@@ -23,8 +23,9 @@ bool Scene::periodic() const
 }
 
 /* The spheres of all ranks, and the box that they are summed in: LAMMPS's if it is periodic, else
- * one around them. */
-sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
+ * one around them. An open cloud takes its origin along, so that the box, and the tables made for
+ * it, last while it falls. */
+sd_ewald_sizes Scene::measure(sd_ewald_box &box)
 {
   double sums[3] = {(double) size(), 0.0, 0.0};
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
@@ -48,9 +49,13 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
     const double tilt[3] = {domain->xy, domain->xz, domain->yz};
     if (domain->triclinic) std::copy_n(tilt, 3, box.tilt);
   } else if (sums[0] > 0.0) {
-    const double lo[3] = {-most[1], -most[2], -most[3]};
+    double lo[3] = {0.0, 0.0, 0.0}, hi[3];
+    for (int d = 0; d < 3; d++) {
+      hi[d] = most[4 + d] + most[1 + d];
+      for (int k = 0; k < size(); k++) x[3 * k + d] += most[1 + d];
+    }
     if (box.periodic) box = {};
-    sd_ewald_box_around(&box, lo, most + 4, most[0]);
+    sd_ewald_box_around(&box, lo, hi, most[0]);
   }
   return {sums[0], sums[1], sums[2], most[0]};
 }
