@@ -167,6 +167,7 @@ def test_every_example_and_every_page_is_in_its_list():
     assert not [name for name in PAGES if name != "index.md" and f"]({name})" not in PAGES["index.md"]]
 
 
-def test_the_readme_is_short():
-    readme = (PACKAGE.parent / "README.md").read_text().splitlines()
-    assert len(readme) < 120 and max(len(line) for line in readme) <= 120
+def test_the_readme_is_short_and_the_other_texts_are_narrow():
+    assert len((PACKAGE.parent / "README.md").read_text().splitlines()) < 120
+    for path in (PACKAGE.parent / "README.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md", PACKAGE.parent / "examples" / "README.md"):
+        assert max(len(line) for line in path.read_text().splitlines()) <= 120, path
