@@ -7,6 +7,7 @@
 void sd_sph_pack_masses(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
                         double *q)
 {
+  /* Two columns of four are used: a vector costs the same, and ranks exchange it whole. */
   memset(q, 0, 4 * sizeof(double) * (size_t) (p->n + 1));
   for (int i = 0; i < p->n; i++) {
     q[4 * (size_t) i] = sd_sph_mass(model, p, i);

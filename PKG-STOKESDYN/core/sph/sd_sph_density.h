@@ -12,7 +12,7 @@ extern "C" {
 void sd_sph_pack_masses(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
                         double *q);
 
-/* rho of the particles i < n with mask[i] & bit from these sums [4 n], the particle itself included:
+/* rho of the particles i < n with mask[i] & bit from these sums [4 n], itself included:
  *   summation   sum m_b W
  *   Shepard     sum m_b W / sum (m_b / rho_b) W */
 typedef struct {

@@ -2,6 +2,8 @@
 
 #include "sd_constants.h"
 
+/* N = 1 / integral of K over the support: 4 pi integral of K q^2 dq in three dimensions, 2 pi
+ * integral of K q dq in two. Exact fractions; the compiler divides. */
 double sd_sph_norm(sd_sph_kernel kernel, int dimension)
 {
   if (kernel == SD_SPH_CUBICSPLINE)
@@ -20,6 +22,8 @@ double sd_sph_K(sd_sph_kernel kernel, double q)
   return t * t * t * t * (2.0 * q + 1.0);
 }
 
+/* G = K'(q) / q. Wendland: K' = -5 q (1-q/2)^3. Cubic spline, q < 1: K' = -3 (2-q)^2 + 12 (1-q)^2 =
+ * 9 q^2 - 12 q; so neither divides by q where q may be 0. */
 double sd_sph_G(sd_sph_kernel kernel, double q)
 {
   if (q >= 2.0) return 0.0;
@@ -29,6 +33,7 @@ double sd_sph_G(sd_sph_kernel kernel, double q)
   return -5.0 * t * t * t;
 }
 
+/* h^n for n = 2 .. 5 */
 static double power(double h, int n)
 {
   double p = 1.0;

@@ -17,6 +17,7 @@ typedef double v4_unaligned __attribute__((vector_size(32), aligned(8), may_alia
 #define SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, (m4){i, j, k, l})
 #endif
 
+/* A row need not begin at a multiple of 32 bytes, and holds numbers of another type. */
 INLINE v4 load(const double *p)
 {
   return *(const v4_unaligned *) p;
@@ -32,6 +33,7 @@ INLINE v4 all(double a)
   return (v4){a, a, a, a};
 }
 
+/* yes is all bits or none in each lane, as comparisons make it: no branch. */
 INLINE v4 where(m4 yes, v4 a, v4 b)
 {
   return (v4) ((yes & (m4) a) | (~yes & (m4) b));
@@ -47,11 +49,13 @@ INLINE v4 larger(v4 a, v4 b)
   return where(a > b, a, b);
 }
 
+/* The compiler makes one instruction of these four. */
 INLINE v4 root(v4 a)
 {
   return (v4){sqrt(a[0]), sqrt(a[1]), sqrt(a[2]), sqrt(a[3])};
 }
 
+/* Four rows of four become four columns: eight shuffles, two levels of pairs. */
 INLINE void transpose(v4 r[4])
 {
   const v4 a = SHUFFLE(r[0], r[1], 0, 4, 2, 6), b = SHUFFLE(r[0], r[1], 1, 5, 3, 7);
@@ -81,6 +85,7 @@ INLINE void add_lanes(double *row, v4 sum[4])
   store(row, load(row) + ((sum[0] + sum[1]) + (sum[2] + sum[3])));
 }
 
+/* K and G of sd_sph_kernel.h for q <= 2, four at a time. */
 INLINE v4 K(sd_sph_kernel kernel, v4 q)
 {
   if (kernel == SD_SPH_CUBICSPLINE) {
@@ -109,6 +114,7 @@ INLINE v4 G(sd_sph_kernel kernel, v4 q)
 #define MASSES (many ? (v4){p->m[j[0]], p->m[j[1]], p->m[j[2]], p->m[j[3]]} : mi)
 #define ROW_OF(i) (model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0))
 
+/* The next four neighbours; the last ones are filled up with the far-away particle. */
 INLINE void next_four(const int *neighbor, int at, int count, int mask, int filler, int j[4])
 {
   for (int k = 0; k < 4; k++) j[k] = at + k < count ? neighbor[at + k] & mask : filler;
@@ -123,7 +129,18 @@ typedef struct {
   sd_sph_scheme scheme;
 } terms;
 
-/* R f^4 of tensCorr. */
+/* How the loops are written. A half list gives each pair to one of its two particles, i, which
+ * keeps its own sums in registers until its neighbours are through; what a neighbour j gets is
+ * added to its row in memory at once. Rows of four numbers are loaded whole, since neighbours lie
+ * anywhere in memory, and transposed: then lane k of every vector is the pair of i with j[k].
+ * Lanes of neighbours that are too far, and of the filler, carry zeros, because G or K are 0
+ * there: a test for each lane would cost more. So nothing in a lane may be infinite or undefined,
+ * were it multiplied by 0 or not.
+ *
+ * The order of the sums depends on the list, and so on the number of ranks, to rounding. */
+
+/* R f^4 of tensCorr. The attraction of negative pressures is what pairs; the small repulsion of two
+ * positive ones keeps lattices from forming along the force. f^4 falls from 1 at dp to 0 at 2 h. */
 INLINE v4 tension(double epsilon, v4 A, v4 B, v4 f)
 {
   const v4 zero = all(0.0), f2 = f * f;
@@ -131,8 +148,9 @@ INLINE v4 tension(double epsilon, v4 A, v4 B, v4 f)
   return where((A > zero) & (B > zero), 0.01 * (A + B), attraction) * (f2 * f2);
 }
 
-/* Pi of artVisc, with one division for s and 2 / (rho_a + rho_b): a1 = 2 alpha c h, b1 = 2 beta
- * h^2. */
+/* Pi of artVisc: s = h v.d / (r^2 + eta) counts only where v.d < 0, so that separating particles
+ * feel nothing: smaller(v.d, 0) is s without a test. With one division for s and 2 / (rho_a +
+ * rho_b): a1 = 2 alpha c h, b1 = 2 beta h^2. */
 INLINE v4 artificial(v4 vd, v4 lengths, v4 densities, v4 a1, v4 b1)
 {
   const v4 inverse = 1.0 / (lengths * densities);
@@ -197,6 +215,7 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
       next_four(neighbor, at, count, list->mask, p->n, j);
       v4 b[4];
       gather(p->x4, j, b);
+      /* K and G end at q = 2 with the value 0: beyond, q = 2 will do. */
       const v4 d[3] = {x - b[0], y - b[1], z - b[2]};
       const v4 r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       nearest = smaller(r2, nearest);
@@ -211,6 +230,7 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
         vd = u[0] * d[0] + u[1] * d[1] + u[2] * d[2];
         rho = theirs[3];
       }
+      /* one division for all that has 1 / (rho_a rho_b) */
       if (!plain || has.friction) inverse = 1.0 / (vi[3] * rho);
 
       if (has.tenscorr)
@@ -222,6 +242,8 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
       v4 mine[3], other[3];
       if (has.scheme == SD_SPH_CORRECTION)
         ratio = corrected(p->order + 8, i, j, d, r2, mine, other);
+      /* Along d, so into the bracket, whose force has the factor - m m g. The factor D + 2 of
+       * visc makes up for what lies across d. */
       if (has.friction == SD_SPH_CENTRAL)
         bracket -= COEFFICIENT(visc) * inverse * ratio * vd / (r2 + 0.001 / (inv_h * inv_h));
       const v4 fd = -mm * bracket * g;
@@ -230,6 +252,7 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
         const v4 fv = mm * COEFFICIENT(visc) * g * ratio * inverse;
         for (int c = 0; c < 3; c++) F[c] += fv * u[c];
       }
+      /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */
       if (has.scheme == SD_SPH_SHIFT) {
         v4 du[4];
         gather_from(p->order + 4, columns, j, du);
@@ -238,6 +261,7 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
         const v4 in = carry * rho * (du[0] * d[0] + du[1] * d[1] + du[2] * d[2]);
         for (int c = 0; c < 3; c++) F[c] += out * vi[c] + in * theirs[c];
       }
+      /* Whatever is antisymmetric is added to i and taken from j; the slope of P is not. */
       v4 on_j[4] = {F[0], F[1], F[2], zero};    // less the force on j
       if (has.scheme == SD_SPH_CORRECTION) {
         const v4 slope = -mm * inverse * (b[3] - A) * g;
@@ -256,6 +280,7 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
         for (int k = 0; k < 4 && at + k < count; k++)
           for (int c = 0; c < 3; c++) *each++ = 0.5 * (F[c][k] + on_j[c][k]);
 
+      /* One after the other: a filler may be there more than once, and rows are whole vectors. */
       transpose(on_j);
       for (int k = 0; k < 4; k++) {
         double *fj = f4 + 4 * (size_t) j[k];
@@ -277,10 +302,10 @@ INLINE int *keep(int *last, const int j[4], m4 inside)
   return last;
 }
 
-/* The near pairs of i to the end of the pool; returns its new end. Distances alone, so that the sums,
- * which cost more, come across no neighbour of the skin. */
-INLINE int *pick(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p, int i,
-                 int *last, double margin, int many)
+/* The near pairs of i to the end of the pool; returns its new end. Distances alone, so that the
+ * sums, which cost more, come across no neighbour of the skin. */
+INLINE int *pick(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                 int i, int *last, double margin, int many)
 {
   const v4 xi = load(p->x4 + 4 * (size_t) i);
   const sd_sph_coefficients *row = ROW_OF(i);
@@ -312,6 +337,9 @@ typedef struct {
 } pair_of_four;
 
 /* The columns of sd_sph_sums.h without the factor that is different for i and j. */
+/* grad_i W = g d. Under exchange of i and j, d and u change sign, g does not: what has two of them
+ * or none is the same for both, s has one. M and the gradient of the density use `near`, so that
+ * diffusion does not see the jump between two fluids. */
 INLINE void columns_of(const pair_of_four *q, sd_sph_level level, v4 *column)
 {
   const v4 *d = q->d, zero = all(0.0), jump = (q->rho_j - q->rho_i) * q->near;
@@ -334,9 +362,9 @@ INLINE void columns_of(const pair_of_four *q, sd_sph_level level, v4 *column)
   column[23] = zero;
 }
 
-/* Four columns of a row take those of one pair. The columns of i and j differ by factors: the other's
- * mass for the rate, +- the other's volume for the sums (s is odd in d), 0 for walls or 1 for the
- * speed U, which is not added: the larger stays. */
+/* Four columns of a row take those of one pair. The columns of i and j differ by factors: the
+ * other's mass for the rate, +- the other's volume for the sums (s is odd in d), 0 for walls or 1
+ * for the speed U, which is not added: the larger stays. */
 INLINE v4 take(v4 row, int first, v4 columns, v4 factor)
 {
   const v4 sum = row + columns * factor;
@@ -354,6 +382,9 @@ INLINE v4 factors(int first, v4 mass, v4 volume, v4 odd, v4 moves)
   return volume;
 }
 
+/* The first pass of a step. With the rate alone it is one column, added to each j as a number; the
+ * list of near pairs comes with it. With more, the near pairs are picked first (above), each pair
+ * makes its columns, and they are added in blocks of four. */
 INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                    double *sums, const sd_sph_near *near, sd_sph_kernel kernel, int many,
                    sd_sph_level level, int volume)
@@ -391,6 +422,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
       q.g = COEFFICIENT(grad) * G(kernel, reach);
       const v4 vd = q.d[0] * q.u[0] + q.d[1] * q.u[1] + q.d[2] * q.u[2];
       v4 w = q.g * vd, mass_j = MASSES, mass_i = mi;
+      /* m_b w 2 rho_a / (rho_a + rho_b): the common part in w, the density in the factors. */
       if (volume) {
         w *= 2.0 / (vi[3] + u[3]);
         mass_j *= vi[3];
@@ -412,6 +444,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
       }
       if (level >= SD_SPH_DISORDER) {
         q.f = COEFFICIENT(tens) * K(kernel, reach);
+        /* The filler is far away and rests, which is fast along d: only neighbours count. */
         q.speed = where(distance < two, larger(vd, -vd) / larger(r, all(1e-300)), zero);
       }
       /* Each pair's columns become a vector, so that the row of i is a few vectors too, and not a
@@ -446,8 +479,9 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_list *list, const sd_
   }
 }
 
-/* psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d), odd under exchange of i and
- * j. */
+/* The second pass of a step with delta, when the gradients are known on both sides of each pair.
+ * psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d), odd under exchange of i
+ * and j. */
 INLINE void diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                       double *rate, sd_sph_kernel kernel, int many)
 {
@@ -482,6 +516,8 @@ INLINE void diffusion(const sd_sph_model *model, const sd_sph_list *list, const 
   }
 }
 
+/* W is the same for i and j, so each takes the other's row times W. Between a fluid and its walls
+ * four neighbours of the same kind as i, most of them, cost no kernel. */
 INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   const double *q, double *sums, sd_sph_kernel kernel, int many, int fours,
                   int walls)
@@ -545,6 +581,7 @@ INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
   case ((law) << 2) + ((kernel) << 1) + (many):                                           \
     return forces(model, list, p, f4, each,                                                  \
                   (terms){kernel, many, model->artvisc, 0, 0, model->friction, law});
+/* All copies of a loop for the two kernels, each for one class and for many. */
 #define BY_KERNEL(next, ...)                                           \
   TWICE(next, __VA_ARGS__, SD_SPH_CUBICSPLINE) TWICE(next, __VA_ARGS__, SD_SPH_WENDLAND)
 
@@ -565,6 +602,7 @@ static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
   return 0.0;
 }
 
+/* Volume has neither shift nor correction. */
 #define LEVEL(level, volume, kernel, many)                                  \
   case ((level) << 3) + ((volume) << 2) + ((kernel) << 1) + (many):         \
     middle(model, list, p, sums, near, kernel, many, level, volume);        \

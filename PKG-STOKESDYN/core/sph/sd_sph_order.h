@@ -28,8 +28,8 @@ typedef struct {
 } sd_sph_closing;
 
 /* rate    the sum; with correction - rho tr(G B). With shift and correction + du . grad rho
- * grad rho = B sum V_b (rho_b - rho_a) g d, exact for a linear density; 0 where M is nearly singular
- * (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi 2009
+ * grad rho = B sum V_b (rho_b - rho_a) g d, exact for a linear density; 0 where M is nearly
+ * singular (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi 2009
  * there.
  * du      - U x, x = 10 h s, of length 1 at most: the law of Michel et al. 2022 in a bounded form;
  *         0 where an eigenvalue of M is below 0.9, at a free surface, and for walls

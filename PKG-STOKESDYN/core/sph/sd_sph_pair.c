@@ -1,5 +1,7 @@
 #include "sd_sph_sums.h"
 
+/* Everything about a pair of types that does not change from pair to pair. What no term of the
+ * model uses stays 0, so that types that differ in nothing that matters are found to be the same. */
 sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_sph_parameters *p)
 {
   const int dimension = model->dimension;
@@ -9,10 +11,13 @@ sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_s
                            .grad = N / (volume * h * h),
                            .weight = N / volume,
                            .support = 2.0 * h};
+  /* Pi has (-alpha c h + ...) 2 / (rho_a + rho_b) and s = h v.d / (r^2 + eta): factors that do not
+   * depend on the pair are multiplied here, once a step. */
   if (model->artvisc) {
     c.a1 = 2.0 * p->alpha * p->c * h;
     c.b1 = 2.0 * p->beta * h * h;
   }
+  /* f = W(r) / W(dp) = K(r/h) / K(dp/h): the norm cancels. */
   if (model->tenscorr || sd_sph_level_of(model) >= SD_SPH_DISORDER) {
     const double K = sd_sph_K(model->kernel, p->deltap / h);
     c.tens = K > 0.0 ? 1.0 / K : 0.0;
@@ -24,6 +29,8 @@ sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_s
   return c;
 }
 
+/* Diffusion needs the gradient of the density, and M for it; shift also the disorder; correction
+ * also the gradient of the velocity. */
 sd_sph_level sd_sph_level_of(const sd_sph_model *model)
 {
   if (model->scheme == SD_SPH_CORRECTION) return SD_SPH_VELOCITY;
@@ -61,6 +68,7 @@ void sd_sph_pack_x(int n, const double *x, const double *v, const double *du, do
   x4[4 * (size_t) n + 3] = 0.0;
 }
 
+/* The far-away particle rests and has density 1, so that nothing is divided by 0. */
 void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4)
 {
   for (int i = 0; i < n; i++) {
@@ -74,11 +82,14 @@ void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4)
 void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, const double *rho,
                            double *x4)
 {
+  /* Correction takes differences of P, volume weighs P with the other density; the plain force has
+   * A. */
   const int as_is = model->scheme == SD_SPH_CORRECTION || model->scheme == SD_SPH_VOLUME;
   for (int i = 0; i < n; i++)
     x4[4 * (size_t) i + 3] = as_is ? P[i] : P[i] / (rho[i] * rho[i]);
 }
 
+/* Asked of the processor at each call: one test of a word that the compiler keeps. */
 static const sd_sph_loops *loops(void)
 {
 #if defined(__x86_64__) && defined(__GNUC__)

@@ -1,7 +1,7 @@
 /* The model of weakly compressible SPH, and its pair forces over a half neighbour list.
  *
- * With d = x_a - x_b, v = v_a - v_b, A = P / rho^2, V = m / rho, g = W'(r) / r <= 0, D = 2 or 3, and
- * h, alpha, beta, c, dp, mu those of the pair:
+ * With d = x_a - x_b, v = v_a - v_b, A = P / rho^2, V = m / rho, g = W'(r) / r <= 0, D = 2 or 3,
+ * and h, alpha, beta, c, dp, mu those of the pair:
  *   force on a   F_a = - m_a m_b [ A_a + A_b + Pi + R f^4 ] g d  + friction,       F_b = - F_a
  *   artVisc      Pi = (- alpha c s + beta s^2) 2 / (rho_a + rho_b), s = h v.d / (r^2 + eta), for
  *                v.d < 0, otherwise 0; eta is a length^2, as given

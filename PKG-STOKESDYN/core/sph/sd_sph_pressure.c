@@ -25,6 +25,8 @@ double sd_sph_pressure(const sd_sph_state *s, double rho)
   }
 }
 
+/* Solved for rho: rho0 (1 + (P - P0) / B)^(1/gamma) for Tait. The bracket is rho^gamma and must be
+ * positive: no density pulls harder than P0 - B. */
 double sd_sph_density_of(const sd_sph_state *s, double P)
 {
   double rho;
@@ -43,6 +45,7 @@ double sd_sph_density_of(const sd_sph_state *s, double P)
   return rho > 0.0 ? rho : 0.0;
 }
 
+/* All three grow with rho, so the bound is the value at rho = 0. */
 double sd_sph_least_pressure(const sd_sph_state *s)
 {
   return sd_sph_pressure(s, 0.0);
@@ -51,6 +54,7 @@ double sd_sph_least_pressure(const sd_sph_state *s)
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
                       double *P)
 {
+  /* A copy that nobody else can change: the kind is then tested once and not for each particle. */
   const sd_sph_state s = *state;
   for (int i = 0; i < n; i++)
     if (mask[i] & bit) P[i] = sd_sph_pressure(&s, rho[i]);

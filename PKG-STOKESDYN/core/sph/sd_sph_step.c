@@ -2,6 +2,8 @@
 
 #include "sd_sph_visit.h"
 
+/* Once every few steps for check/timestep, so one pair after the other will do. v.d does not change
+ * sign between a and b, and h is that of the pair: one number for both. */
 void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *largest)
 {
@@ -17,6 +19,7 @@ void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const s
   }
 }
 
+/* Squares are compared; one root at the end. */
 double sd_sph_fastest(int n, const double *v)
 {
   double square = 0.0;
@@ -27,6 +30,8 @@ double sd_sph_fastest(int n, const double *v)
   return sqrt(square);
 }
 
+/* Sound and the approach of particles must not cross h in a step; momentum diffuses over h in
+ * h^2 rho / mu, of which an eighth is stable. */
 double sd_sph_step_limit(double h, double c, double approach, double mu, double rho)
 {
   const double courant = h / (c + approach);

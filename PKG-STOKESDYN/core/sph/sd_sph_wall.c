@@ -3,6 +3,8 @@
 #include <stddef.h>
 #include <string.h>
 
+/* D (s^4 - s^2) with s = r0 / r: a Lennard-Jones force without its attraction, 0 at r0 with a jump
+ * of the slope. */
 double sd_sph_repulsion(double D, double r0, double r)
 {
   if (!(r < r0)) return 0.0;
@@ -10,6 +12,7 @@ double sd_sph_repulsion(double D, double r0, double r)
   return D * (s2 * s2 - s2);
 }
 
+/* - m_a m_b (A_a + A_b) W' with the particle's own image as b: both have the same A. */
 double sd_sph_mirror(double m, double P, double rho, double dW)
 {
   return -m * m * 2.0 * P / (rho * rho) * dW;
@@ -29,15 +32,20 @@ void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const 
     const double *v4 = p->v4 + 4 * (size_t) i;
     double *row = q + 8 * (size_t) i;
     row[0] = 1.0;
+    /* P_f + rho_f b.(x_w - x_f) in parts: the first is summed here, the second takes x_w later. */
     row[1] = pressure[i] - v4[3] * dot(b, p->x4 + 4 * (size_t) i);
     row[2] = v4[3];
     memcpy(row + 4, v4, 3 * sizeof(double));
   }
 }
 
+/* The density is what carries the pressure on: ghosts of the wall get it as that of any particle,
+ * and the equation of state makes the same pressure of it on every rank. */
 double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double x[3],
                             const double v[3], double row[4])
 {
+  /* No slip: the wall shows the fluid the velocity that makes the mean of the two that of the wall,
+   * v - (fluid - v). With slip it shows the fluid its own. */
   const int alone = s[0] == 0.0;
   const double P = alone ? wall->state->P0 : (s[1] + dot(wall->b, x) * s[2]) / s[0];
   if (!alone || wall->state->kind != SD_SPH_ABSOLUT) row[0] = sd_sph_density_of(wall->state, P);
