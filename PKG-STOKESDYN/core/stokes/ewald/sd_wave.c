@@ -114,25 +114,42 @@ static int transform_octant(double *field, const int *n, const int *odd)
   return 1;
 }
 
-/* Component c, d of B_R(k) H (k^2 delta - k_c k_d)/w^2 on the octant of a grid of 2 (n - 1) points
- * of this spacing, large enough for the truncated kernel */
-static void fill_octant(const sd_ewald *e, double R, const int *n, int c, int d,
-                        double *const *inverse, double *field)
+/* Wave numbers of an octant: one step each way */
+static void octant_steps(const sd_ewald *e, const int *n, double *unit)
+{
+  for (int d = 0; d < 3; d++) unit[d] = SD_PI / ((n[d] - 1) * e->spacing);
+}
+
+/* B_R(k) H/w^2 on the octant of a grid of 2 (n - 1) points of this spacing, large enough for the
+ * truncated kernel: what all components share */
+static void fill_octant(const sd_ewald *e, double R, const int *n, double *const *inverse,
+                        double *shared)
+{
+  double unit[3], V = 1.0;
+  octant_steps(e, n, unit);
+  for (int d = 0; d < 3; d++) V *= 2.0 * (n[d] - 1) * e->spacing;
+  for (int x = 0; x < n[0]; x++)
+    for (int y = 0; y < n[1]; y++)
+      for (int z = 0; z < n[2]; z++, shared++) {
+        const double k[3] = {x * unit[0], y * unit[1], z * unit[2]};
+        const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2];
+        const double w = inverse[0][x] * inverse[1][y] * inverse[2][z];
+        *shared = w == 0.0 ? 0.0 : truncated(k2, R) * sd_ewald_screen(e, k2) * w * w / V;
+      }
+}
+
+/* Component c, d: k^2 delta_cd - k_c k_d times that */
+static void fill_component(const sd_ewald *e, const int *n, const int *pair, const double *shared,
+                           double *field)
 {
   double unit[3];
-  for (int l = 0; l < 3; l++) unit[l] = SD_PI / ((n[l] - 1) * e->spacing);
-  const double V = 8.0 * (n[0] - 1.0) * (n[1] - 1.0) * (n[2] - 1.0) * e->spacing * e->spacing *
-                   e->spacing;
+  octant_steps(e, n, unit);
   for (int x = 0; x < n[0]; x++)
     for (int y = 0; y < n[1]; y++)
       for (int z = 0; z < n[2]; z++) {
         const double k[3] = {x * unit[0], y * unit[1], z * unit[2]};
-        const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2];
-        const double w = inverse[0][x] * inverse[1][y] * inverse[2][z];
-        double *value = field + ((long) x * n[1] + y) * n[2] + z;
-        *value = w == 0.0 ? 0.0
-                          : truncated(k2, R) * sd_ewald_screen(e, k2) * w * w / V *
-                                ((c == d ? k2 : 0.0) - k[c] * k[d]);
+        const double k2 = pair[0] == pair[1] ? k[0] * k[0] + k[1] * k[1] + k[2] * k[2] : 0.0;
+        *field++ = *shared++ * (k2 - k[pair[0]] * k[pair[1]]);
       }
 }
 
@@ -185,14 +202,16 @@ static sd_status open_table(sd_wave *w, const sd_ewald *e)
     octant *= (size_t) m[d];
   }
   double *field = fftw_malloc(sizeof(double) * large), *kept = fftw_malloc(sizeof(double) * octant);
+  double *shared = fftw_malloc(sizeof(double) * large);
   w->table = malloc(sizeof(double) * 6 * octant);
   w->uniform = 1.0 / (4.0 * SD_PI * R);
-  int ok = field && kept && w->table && inverse[0] && inverse[1] && inverse[2];
+  int ok = field && kept && shared && w->table && inverse[0] && inverse[1] && inverse[2];
   static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  if (ok) fill_octant(e, R, n, inverse, shared);
   for (int c = 0; c < 6 && ok; c++) {
     int odd[3] = {0};
     if (c > 2) odd[pair[c][0]] = odd[pair[c][1]] = 1;
-    fill_octant(e, R, n, pair[c][0], pair[c][1], inverse, field);
+    fill_component(e, n, pair[c], shared, field);
     ok = transform_octant(field, n, odd);
     if (!ok) break;
     keep_offsets(field, n, kept, m);
@@ -202,6 +221,7 @@ static sd_status open_table(sd_wave *w, const sd_ewald *e)
   for (int d = 0; d < 3; d++) free(inverse[d]);
   fftw_free(field);
   fftw_free(kept);
+  fftw_free(shared);
   return ok ? SD_OK : SD_ENOMEMORY;
 }
 

@@ -81,7 +81,7 @@ static void open_boxes_agree_with_all_pairs(void **state)
       assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
       assert_int_equal(sd_mobility_apply(&m, s.F, u), SD_OK);
       const double error = error_of(&s, c->width, u, expected);
-      assert_true(error < 1.5 * pow(10.0, -digits)); /* a flat cloud has few spheres to average over */
+      assert_true(error < pow(10.0, -digits));
       sd_mobility_free(&m);
     }
   }
