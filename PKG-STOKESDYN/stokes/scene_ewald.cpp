@@ -66,7 +66,7 @@ bool Scene::split()
 {
   if (settings.far_field == Settings::DIRECT) return false;
   sd_ewald_box box = ewald.box;
-  const sd_ewald_sizes sizes = measure(box);
+  sizes = measure(box);
   const bool must = periodic() || settings.far_field == Settings::EWALD;
   ewald.count = sizes.count;
   if (sizes.count == 0.0) return must;
@@ -109,7 +109,8 @@ void Scene::tell()
       std::to_string(e.grid[0]) + " x " + std::to_string(e.grid[1]) + " x " +
       std::to_string(e.grid[2]) + ", windows of " + std::to_string(e.points) +
       " points, splitting parameter " + text(e.xi) + ", near part up to " + text(e.range) +
-      "; tolerance " + text(e.tolerance) + " of the rms of F/(6 pi eta a)\n";
+      "; error of velocities over the rms of F/(6 pi eta a) " + text(sd_ewald_predicted(&e, &sizes)) +
+      " expected, far_field_tolerance " + text(e.tolerance) + "\n";
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;
 }

@@ -4,6 +4,7 @@ Scenes of unittest/data/ewald (README there): dense sums over k and over images,
 import csv
 import functools
 import pathlib
+import re
 
 import numpy as np
 import pytest
@@ -157,7 +158,8 @@ def test_parameters_are_told_when_they_are_others(simulation, tmp_path):
     sim.run().close()
     lines = said(log)
     assert len(lines) == 2 and lines[0] != lines[1]
-    assert "60 spheres in the periodic box: grid" in lines[0] and "tolerance 0.0001 of the rms" in lines[0]
+    assert "60 spheres in the periodic box: grid" in lines[0] and "far_field_tolerance 0.0001" in lines[0]
+    assert 1e-6 < float(re.search("6 pi eta a\\) (.*) expected", lines[0]).group(1)) < 1e-3
 
 
 @pytest.mark.parametrize("boundary", ["p p f", "p f f", "f p s", "m f p"])

@@ -19,6 +19,7 @@ HOWTOS = {
     "cfd": (["python couple.py"], {}),
     "sph": (["lmp -in in.sph"], {"c_kinetic": 0.5}),
     "stream": (["lmp -in in.stream", "python plot.py"], {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35}),
+    "suspension": (["lmp -in in.settling"], {"v_down": 0.04, "f_move[1]": 0.25}),
     "speed": (["lmp -in in.speed"], {}),
     "python": (["python rod.py"], {}),
 }
