@@ -176,8 +176,8 @@ void Scene::find_pairs()
   if (settings.clumps_only) {
     std::vector<int> scratch(n_and_ghosts + 1);
     look_up(ids, molecules);
-    status = sd_neighbors_clump(&candidates, x.data(), ids.data(), molecules.data(), n, n_and_ghosts,
-                                reach, 0, scratch.data());
+    const sd_named known = {x.data(), ids.data(), molecules.data()};
+    status = sd_neighbors_clump(&candidates, &known, n, n_and_ghosts, reach, 0, scratch.data());
   } else
     status = sd_neighbors_cutoff(&candidates, x.data(), n, n_and_ghosts, reach);
   if (status != SD_OK) out_of_memory();

@@ -35,8 +35,8 @@ bool Scene::update_clumps()
     tag[i] = atom->tag[i];
     molecule[i] = i < nlocal ? (int64_t) atom->molecule[i] : ubuf(sent[i - nlocal]).i;
   }
-  if (sd_neighbors_clump(&rows, positions(), tag.data(), molecule.data(), nlocal, n, INFINITY, 1,
-                         order.data()) != SD_OK)
+  const sd_named known = {positions(), tag.data(), molecule.data()};
+  if (sd_neighbors_clump(&rows, &known, nlocal, n, INFINITY, 1, order.data()) != SD_OK)
     out_of_memory();
   check_clumps({nlocal, positions(), molecule.data()}, rows, true);
 

@@ -175,13 +175,6 @@ def test_wide_clump_in_an_open_direction_is_no_error(simulation):
     assert largest_difference(sim.drag, model.forces(spheres, ETA)) < 1e-10
 
 
-@pytest.mark.parametrize("boundary", ["p p p", "p f f", "f p f", "f f p"])
-def test_cut_off_inf_in_a_periodic_box_is_an_error(simulation, boundary):
-    sim = simulation(tetrahedron(), f"cut_off_distance inf {EXACT}", boundary=boundary, box=BOX)
-    with pytest.raises(LammpsError, match="cut_off_distance: 'inf' requires a box that is not periodic, or clumps_only yes"):
-        sim.run()
-
-
 def test_cut_off_wider_than_the_periodic_box_sees_images(simulation):
     """A lone sphere sees its six nearest images: two along the motion, four across."""
     L, v = 8.0, 0.3

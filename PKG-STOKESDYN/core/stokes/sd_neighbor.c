@@ -86,63 +86,75 @@ static int by_molecule_tag_index(const void *pa, const void *pb)
   return (a->index > b->index) - (a->index < b->index);
 }
 
-static sd_status sort_by_clump(const int64_t *tag, const int64_t *molecule, int n, int *order)
+static sd_status sort_by_clump(const sd_named *s, int n, int *order)
 {
   clump_key *key = malloc(sizeof(clump_key) * ((size_t) n + 1));
   if (!key) return SD_ENOMEMORY;
-  for (int j = 0; j < n; j++) key[j] = (clump_key){molecule[j], tag[j], j};
+  for (int j = 0; j < n; j++) key[j] = (clump_key){s->molecule[j], s->tag[j], j};
   qsort(key, (size_t) n, sizeof(clump_key), by_molecule_tag_index);
   for (int j = 0; j < n; j++) order[j] = key[j].index;
   free(key);
   return SD_OK;
 }
 
-sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
-                             const int64_t *molecule, int n, int n_all, double cutoff, int one_row,
-                             int *order)
-{
-  sd_status status = sd_neighbors_reserve(list, n, 0);
-  if (status == SD_OK) status = sort_by_clump(tag, molecule, n_all, order);
-  if (status != SD_OK) return status;
-  list->pairs.n = n;
+/* Of the sorted spheres, those of the molecule of each target: begin ... end - 1; none for molecule
+ * 0, which are lone spheres, and with one_row for all targets of a molecule but the first */
+typedef struct {
+  int begin, end;
+} block;
 
-  /* From the sorted spheres back to the targets.
-   * begin[i], end[i]: the block of the sorted spheres that has the molecule of target i */
-  int *begin = malloc(sizeof(int) * 2 * ((size_t) n + 1)), *end = begin + n;
-  if (!begin) return SD_ENOMEMORY;
+static void blocks_of_targets(const sd_named *s, const int *order, int n, int n_all, int one_row,
+                              block *of)
+{
   for (int b = 0, e; b < n_all; b = e) {
-    int rows = molecule[order[b]] != 0; /* molecule 0: a lone sphere */
-    for (e = b + 1; e < n_all && molecule[order[e]] == molecule[order[b]]; e++) {}
+    int rows = s->molecule[order[b]] != 0;
+    for (e = b + 1; e < n_all && s->molecule[order[e]] == s->molecule[order[b]]; e++) {}
     for (int k = b; k < e; k++)
       if (order[k] < n) {
-        begin[order[k]] = b;
-        end[order[k]] = rows ? e : b;
+        of[order[k]] = (block){b, rows ? e : b};
         if (one_row) rows = 0;
       }
   }
+}
 
-  const double cutsq = cutoff * cutoff;
-  long count = 0;
-  for (int i = 0; i < n && status == SD_OK; i++) {
-    const double *xi = x + 3 * (long) i;
-    list->first[i] = count;
-    /* one sphere of the clump after the other: k ... e - 1 are its images */
-    for (int k = begin[i], e; k < end[i] && status == SD_OK; k = e) {
-      int closest = order[k];
-      double rsq = sd_distance_squared(xi, x + 3 * (long) closest);
-      for (e = k + 1; e < end[i] && tag[order[e]] == tag[closest]; e++) {
-        const double other = sd_distance_squared(xi, x + 3 * (long) order[e]);
-        if (other < rsq) {
-          rsq = other;
-          closest = order[e];
-        }
-      }
-      if (tag[closest] == tag[i] || rsq > cutsq) continue;
-      status = append(list, n, &count, closest);
+/* The images of one sphere stand side by side in the block, from *k on: the one that is closest to
+ * x. *k goes on to the next sphere. */
+static int closest_image(const sd_named *s, const int *order, int end, const double *x, int *k,
+                         double *rsq)
+{
+  int closest = order[*k];
+  *rsq = sd_distance_squared(x, s->x + 3 * (long) closest);
+  for (++*k; *k < end && s->tag[order[*k]] == s->tag[closest]; ++*k) {
+    const double other = sd_distance_squared(x, s->x + 3 * (long) order[*k]);
+    if (other < *rsq) {
+      *rsq = other;
+      closest = order[*k];
     }
   }
-  list->first[n] = count;
-  free(begin);
+  return closest;
+}
+
+sd_status sd_neighbors_clump(sd_neighbors *list, const sd_named *s, int n, int n_all, double cutoff,
+                             int one_row, int *order)
+{
+  block *of = malloc(sizeof(block) * ((size_t) n + 1));
+  sd_status status = of ? sd_neighbors_reserve(list, n, 0) : SD_ENOMEMORY;
+  if (status == SD_OK) status = sort_by_clump(s, n_all, order);
+  if (status == SD_OK) {
+    long count = 0;
+    list->pairs.n = n;
+    blocks_of_targets(s, order, n, n_all, one_row, of);
+    for (int i = 0; i < n && status == SD_OK; i++) {
+      list->first[i] = count;
+      for (int k = of[i].begin; k < of[i].end && status == SD_OK;) {
+        double rsq;
+        const int j = closest_image(s, order, of[i].end, s->x + 3 * (long) i, &k, &rsq);
+        if (s->tag[j] != s->tag[i] && rsq <= cutoff * cutoff) status = append(list, n, &count, j);
+      }
+    }
+    list->first[n] = count;
+  }
+  free(of);
   return status;
 }
 

@@ -35,16 +35,20 @@ sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count);
  * SD_ENOMEMORY. */
 sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff);
 
+/* Spheres and who they are: x [3 n_all], tag [n_all], molecule [n_all] */
+typedef struct {
+  const double *x;
+  const int64_t *tag, *molecule;
+} sd_named;
+
 /* All directed pairs of one clump: equal molecule ID, not 0. Each partner once, as the image
  * closest to the target (ghosts of one sphere share its tag; the first in order of index wins a
  * tie), and closer than cutoff (INFINITY: the whole clump).
- *   x [3 n_all], tag [n_all], molecule [n_all]
  *   one_row         only the target of lowest tag of each molecule gets its row: the clumps
  *                   themselves, one row each
  *   order [n_all]   scratch;  on return sorted by molecule, tag, index */
-sd_status sd_neighbors_clump(sd_neighbors *list, const double *x, const int64_t *tag,
-                             const int64_t *molecule, int n, int n_all, double cutoff, int one_row,
-                             int *order);
+sd_status sd_neighbors_clump(sd_neighbors *list, const sd_named *s, int n, int n_all, double cutoff,
+                             int one_row, int *order);
 
 /* Tensor oseen knows no size of the spheres: the largest entry that any pair has along its axis in
  * the matrix scaled to unit diagonal, t 3 sqrt(ai aj)/(2R) with the taper t. From 1 on the matrix
