@@ -1,0 +1,142 @@
+/* Kernels of each instruction set against those in plain C. */
+#include "periodic.h"
+
+#include "sd_ewald_pairs.h"
+
+enum { N = 120, SIDE = 40, ROW = 3 * SIDE + 16 };
+
+static const sd_isa sets[] = {SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512};
+
+typedef struct {
+  double x[3 * N], a[N], w[N], F[6 * N];
+} cloud;
+
+static cloud make(uint64_t seed, int equal)
+{
+  cloud c;
+  for (int i = 0; i < N; i++) {
+    for (int d = 0; d < 3; d++) c.x[3 * i + d] = uniform(&seed, 0, 12);
+    c.a[i] = equal ? 0.8 : uniform(&seed, 0.3, 1.2); /* some overlap */
+    c.w[i] = uniform(&seed, 0.7, 1.3);
+    for (int d = 0; d < 6; d++) c.F[6 * i + d] = uniform(&seed, -1, 1);
+  }
+  return c;
+}
+
+static void near_parts_agree(void **state)
+{
+  (void) state;
+  const sd_ewald_box box = {.periodic = 1, .edge = {12, 12, 12}};
+  for (int equal = 0; equal < 2; equal++)
+    for (int width = 3; width <= 6; width += 3)
+      for (int digits = 1; digits <= 12; digits += 3) { /* each has another degree of polynomial */
+        const cloud c = make(5, equal);
+        const sd_spheres spheres = {c.x, c.a, c.w};
+        const sd_ewald how = periodic_choose(&box, c.a, N, width, pow(10.0, -digits));
+        double expected[6 * N], u[6 * N], scale = 0.0;
+        for (int k = -1; k < 3; k++) {
+          const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
+          if (!sd_isa_supported(isa)) continue;
+          sd_ewald_pairs p = {0};
+          sd_ewald_pairs_create(&p, &how, sd_ewald_kernels_of(isa), width);
+          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, N - 20, N), SD_OK); /* the last are ghosts */
+          sd_ewald_pairs_apply(&p, N - 20, c.F, c.F + width * (N - 20), k < 0 ? expected : u);
+          sd_ewald_pairs_free(&p);
+          for (int i = 0; i < width * (N - 20); i++) {
+            if (k < 0) scale = fmax(scale, fabs(expected[i]));
+            else CHECK_NEAR(u[i], expected[i], 1e-13 * scale);
+          }
+        }
+        assert_true(scale > 0.0);
+      }
+}
+
+/* Spheres without an order on a brick, with all kinds of windows */
+static sd_spreading spheres_on_a_brick(const cloud *c, sd_spread_place *place, const sd_window *w, int terms, int width)
+{
+  sd_spreading s = {.n = N, .width = width, .terms = terms, .window = w, .place = place, .row = ROW, .layer = (long) ROW * SIDE};
+  for (int i = 0; i < N; i++) {
+    place[i].b = terms == 1 ? 0.0 : 0.1 * c->a[i];
+    for (int d = 0; d < 3; d++) {
+      const double at = c->x[3 * i + d] / 12.0 * (SIDE - w->points - 1);
+      place[i].at[d] = (int) at;
+      place[i].v[d] = 2.0 * (at - floor(at)) - 1.0;
+    }
+    place[i].base = place[i].at[0] * s.layer + place[i].at[1] * s.row + 3L * place[i].at[2];
+  }
+  for (int d = 0; d < 3; d++) {
+    s.gradient[d][d] = 0.9 + 0.1 * d;
+    s.metric[d] = 0.8 + 0.1 * d;
+    if (terms == 4) s.metric[3 + d] = s.gradient[d][(d + 1) % 3] = 0.2 - 0.1 * d;
+  }
+  return s;
+}
+
+static void spreading_and_interpolation_agree(void **state)
+{
+  (void) state;
+  const size_t numbers = (size_t) SIDE * SIDE * ROW + 64;
+  double *expected = malloc(sizeof(double) * numbers), *brick = malloc(sizeof(double) * numbers);
+  const cloud c = make(7, 0);
+  for (int points = 4; points <= SD_EWALD_MOST_POINTS; points++)
+    for (int terms = 1; terms <= 4; terms *= 2) {
+      static sd_window w;
+      sd_spread_place place[N];
+      double first[6 * N], F[6 * N];
+      const int width = terms == 4 && points % 2 ? 6 : 3;
+      sd_window_fit(points, 2.25 * points, 1e-9, &w);
+      for (int k = -1; k < 3; k++) {
+        const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
+        if (!sd_isa_supported(isa)) continue;
+        sd_spreading s = spheres_on_a_brick(&c, place, &w, terms, width);
+        double largest = 0.0;
+        s.brick = k < 0 ? expected : brick;
+        s.F = k < 0 ? first : F;
+        memcpy(s.F, c.F, sizeof(c.F));
+        memset(s.brick, 0, sizeof(double) * numbers);
+        sd_ewald_kernels_of(isa)->spread(&s);
+        for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
+        for (size_t g = 0; g < numbers && k >= 0; g++) CHECK_NEAR(brick[g], expected[g], 1e-13 * largest);
+        sd_ewald_kernels_of(isa)->interpolate(&s);
+        for (int i = 0; i < width * N && k >= 0; i++) CHECK_NEAR(F[i], first[i], 1e-12 * largest * points * points);
+      }
+    }
+  free(expected);
+  free(brick);
+}
+
+static void rows_of_waves_agree(void **state)
+{
+  (void) state;
+  enum { HALF = 13 };
+  uint64_t seed = 4;
+  double B[6 * HALF], f[3][2 * HALF], u[2][3][2 * HALF];
+  for (int i = 0; i < 6 * HALF; i++) B[i] = uniform(&seed, 0, 1);
+  for (int i = 0; i < 6 * HALF; i++) f[i / (2 * HALF)][i % (2 * HALF)] = uniform(&seed, -1, 1);
+  B[0] = 0.0;
+  const double k[3] = {0.0, 0.0, 0.0};
+  for (int l = 0; l < 3; l++)
+    for (int open = 0; open < 2 && sd_isa_supported(sets[l]); open++) {
+      for (int turn = 0; turn < 2; turn++) {
+        double *rows[3] = {u[turn][0], u[turn][1], u[turn][2]};
+        const struct sd_ewald_kernels *kernels = sd_ewald_kernels_of(turn ? sets[l] : SD_ISA_PLAIN);
+        memcpy(u[turn], f, sizeof(f));
+        if (open) kernels->open_row(rows, B, -1.0, 1.0, HALF);
+        else kernels->periodic_row(rows, B, k, 0.7, HALF);
+      }
+      for (int i = 0; i < 6 * HALF; i++)
+        CHECK_NEAR(u[1][i / (2 * HALF)][i % (2 * HALF)], u[0][i / (2 * HALF)][i % (2 * HALF)], 1e-14);
+      if (!open) /* no flow along k, none at k = 0 */
+        for (int i = 0; i < 2 * HALF; i++) CHECK_NEAR(u[1][2][i], 0.0, 1e-14);
+    }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(near_parts_agree),
+      cmocka_unit_test(spreading_and_interpolation_agree),
+      cmocka_unit_test(rows_of_waves_agree),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
