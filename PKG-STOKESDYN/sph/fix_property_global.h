@@ -1,5 +1,5 @@
-/* fix property/global: speed of sound and smoothing length by type, as inputs of LIGGGHTS give them.
- * See doc/pair_sph_artvisc_tenscorr.md. */
+/* fix property/global: speed of sound and smoothing length by type, as inputs of LIGGGHTS give
+ * them. See doc/pair_sph_artvisc_tenscorr.md. */
 #ifndef SD_FIX_PROPERTY_GLOBAL_H
 #define SD_FIX_PROPERTY_GLOBAL_H
 

@@ -28,8 +28,8 @@ class FixSphShift : public RowsFix {
   const double *du() { return shifts.array()[0]; }
   /* Has there been a step? */
   bool filled() const { return has_rows; }
-  /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with correction B and kick
-   * of this rank's. */
+  /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with correction B and
+   * kick of this rank's. */
   void keep_rows(int n, const double *order, const double *kick);
   void put_back(double *order, double *kick) const;
 

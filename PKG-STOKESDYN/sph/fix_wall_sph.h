@@ -16,8 +16,8 @@ class FixRepulsiveWall : public WallFix {
 
  protected:
   double r0 = 0.0, D = 0.0;
-  /* Particle i at the distance r along the inward normal: the repulsion and `more`, and its reaction
-   * on the wall. */
+  /* Particle i at the distance r along the inward normal: the repulsion and `more`, and its
+   * reaction on the wall. */
   void push(int i, const double normal[3], double r, double more);
   [[noreturn]] void outside(int i);
 };

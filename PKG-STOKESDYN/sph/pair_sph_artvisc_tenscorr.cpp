@@ -355,7 +355,8 @@ double PairSph::init_one(int i, int j)
   auto require = [&](bool holds, const std::string &what, double value, const char *rule) {
     if (!holds) fail(lmp, what + "'" + text(value) + "' must be " + rule);
   };
-  if (model.artvisc) require(model.eta >= 0.0, COMMAND + ": keyword artVisc: eta ", model.eta, ">= 0");
+  if (model.artvisc)
+    require(model.eta >= 0.0, COMMAND + ": keyword artVisc: eta ", model.eta, ">= 0");
   if (model.tenscorr)
     require(model.epsilon >= 0.0, COMMAND + ": keyword tensCorr: epsilon ", model.epsilon, ">= 0");
   if (model.friction)
@@ -402,10 +403,12 @@ void *PairSph::extract(const char *name, int &dim)
 double PairSph::memory_usage()
 {
   double bytes = near.capacity() * sizeof(int *);
-  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order}) bytes += v->capacity() * sizeof(double);
+  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order})
+    bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows})
     bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&classes, &phases, &pool, &near_count}) bytes += v->capacity() * sizeof(int);
+  for (const auto *v : {&classes, &phases, &pool, &near_count})
+    bytes += v->capacity() * sizeof(int);
   return bytes;
 }
 

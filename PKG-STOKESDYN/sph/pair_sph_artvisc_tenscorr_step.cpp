@@ -304,7 +304,8 @@ void PairSph::wall_particles()
     const sd_sph_wall how = {&eos->state, {b[0], b[1], b[2]}, wall->slip};
     double *row = &wall_rows[4 * (size_t) i];
     row[0] = atom->rho[i];
-    const double asked = sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->x[i], atom->v[i], row);
+    const double asked =
+        sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->x[i], atom->v[i], row);
     if (row[0] == 0.0)
       fail_one(lmp,
                "Fix " + std::string(FixWallAdamiSph::STYLE) + ": step " +

@@ -10,7 +10,7 @@ namespace StokesDyn {
 
 class PairSph;
 
-/* Knows the fluid: the scene must have its units and its atom style, and at a run the pair style. */
+/* Knows the fluid: the scene must have its units and atom style, and at a run the pair style. */
 class SphFix : public RowsFix {
  public:
   SphFix(LAMMPS_NS::LAMMPS *, int, char **);

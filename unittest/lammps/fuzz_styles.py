@@ -383,7 +383,8 @@ LENGTH = positive("0.013", "0.012", border=["0", "-1", "1e-12", "0.05"])
 ARTVISC = [Number(lambda v: v >= 0, ["0.1", "0"], ["-1"])] * 2 + [Number(lambda v: v >= 0, ["1.7e-6", "0"], ["-1"])]
 SPACING = positive("0.01", border=["0", "-1", "0.03"])
 SOUND = positive("20", "25")
-SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING], "viscosity": [positive("1e-3", odd=lambda v: v == 0)]}
+SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING], "viscosity": [positive("1e-3", odd=lambda v: v == 0)],
+            "shift": [YES_NO], "correction": [YES_NO]}
 SPH_COEFF = {"h": [LENGTH], "c": [SOUND], "alpha": [NOT_NEGATIVE], "beta": [NOT_NEGATIVE], "deltap": [SPACING]}
 KERNELS = ["cubicspline", "wendland", "cubicspline2d", "wendland2d"]
 B, RHO = positive("57142.9", "300"), positive("1000")
@@ -422,6 +423,8 @@ def make_sph_pair(case):
         case.says(ODD, "")      # many times the box
     case.extreme |= violent(words)
     case.refuse_if("artVisc" in case.settings and not c, "artVisc")
+    moved = [name for name in ("shift", "correction") if case.settings.get(name, [""])[0] == "yes"]
+    case.refuse_if(moved, "shift", "correction")    # the scene has no delta
     case.refuse_if("tensCorr" in case.settings and float(case.settings["tensCorr"][1]) >= 2 * h, "deltap")
 
 

@@ -29,8 +29,8 @@ typedef struct {
 
 /* rate    the sum; with correction - rho tr(G B). With shift and correction + du . grad rho
  * grad rho = B sum V_b (rho_b - rho_a) g d, exact for a linear density; 0 where M is nearly
- * singular (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi 2009
- * there.
+ * singular (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi
+ * 2009 there.
  * du      - U x, x = 10 h s, of length 1 at most: the law of Michel et al. 2022 in a bounded form;
  *         0 where an eigenvalue of M is below 0.9, at a free surface, and for walls
  * Returns the first particle where correction stops, -1: there is none. */

@@ -1,7 +1,7 @@
 #include "sd_sph_sums.h"
 
 /* Everything about a pair of types that does not change from pair to pair. What no term of the
- * model uses stays 0, so that types that differ in nothing that matters are found to be the same. */
+ * model uses stays 0, so that types that differ in nothing that matters are found to be alike. */
 sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_sph_parameters *p)
 {
   const int dimension = model->dimension;

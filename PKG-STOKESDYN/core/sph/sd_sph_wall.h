@@ -20,8 +20,8 @@ double sd_sph_repulsion(double D, double r0, double r);
  * in its support,
  *   P_w = sum [P_f + rho_f b.(x_w - x_f)] W / sum W,   <v> = sum v_f W / sum W
  * with b = g - a_w, the body force per mass as the wall sees it. For sd_sph_weigh, walls only,
- * since the bracket is linear in x_w: q [8 (n+1)] is 1, P - rho b.x, rho, 0, v, 0 of the fluid and 0 of
- * walls. x4 and v4 of the particles must be packed. */
+ * since the bracket is linear in x_w: q [8 (n+1)] is 1, P - rho b.x, rho, 0, v, 0 of the fluid and
+ * 0 of walls. x4 and v4 of the particles must be packed. */
 void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const double b[3],
                        double *q);
 

@@ -1,0 +1,403 @@
+"""Flows with a known solution, in two dimensions: Gresho's vortex, Taylor-Green, Poiseuille, a still tank, a dam break, a gravity
+wave, a free disk, a rotating square, two layers. Each makes the particles, runs them with lmp and returns the figures of its last
+moment. An option of the pair style or of the density is a keyword of the function `flow`:
+
+    kernel wendland | cubicspline, hdx, pair "shift yes" ..., density "delta 0.1" ..., n (particles per unit length)
+"""
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from runs import np  # noqa: E402
+
+
+def lattice(x, y):
+    X, Y = np.meshgrid(x, y)
+    return np.stack([X.ravel(), Y.ravel()], axis=1)
+
+
+def write_data(path, x, v, rho, mass, types, lo, hi):
+    """LAMMPS data file for atom_style sph; mass: of each type."""
+    d3 = x.shape[1] == 3
+    with open(path, "w") as f:
+        f.write("# SPH particles\n\n%d atoms\n%d atom types\n\n" % (len(x), len(mass)))
+        for k, axis in enumerate("xyz"):
+            bounds = (lo[k], hi[k]) if k < 2 or d3 else (-0.5, 0.5)
+            f.write("%.17g %.17g %slo %shi\n" % (*bounds, axis, axis))
+        f.write("\nMasses\n\n" + "".join("%d %.17g\n" % (k + 1, m) for k, m in enumerate(mass)) + "\nAtoms\n\n")
+        for i in range(len(x)):
+            f.write("%d %d %.17g 0 1 %.17g %.17g %.17g\n" % (i + 1, types[i], rho[i], x[i][0], x[i][1], x[i][2] if d3 else 0.0))
+        f.write("\nVelocities\n\n")
+        for i in range(len(x)):
+            f.write("%d %.17g %.17g %.17g\n" % (i + 1, v[i][0], v[i][1], v[i][2] if d3 else 0.0))
+
+
+def tait(P, c, rho0=1.0):
+    """Density that has the pressure P (exponent 7, background left out)."""
+    return rho0 * (1 + 7 * P / (rho0 * c**2)) ** (1 / 7)
+
+
+INPUT = """
+plugin load {plugin}
+units lj
+dimension {dim}
+boundary {boundary}
+atom_style sph
+newton on
+read_data data.flow
+group fluid type {fluid}
+neighbor {skin} bin
+neigh_modify delay 0 every 1
+pair_style sph/artVisc/tensCorr {kernel} {h} {pair}
+{coeff}
+{eos}
+fix density all sph/density/continuity {density}
+{extra}
+fix move fluid nve/sph
+timestep {dt}
+thermo {every}
+thermo_style custom step cpu
+dump d all custom {every} dump.flow id type x y z vx vy vz f_p
+dump_modify d format float %.15g sort id
+run {steps}
+"""
+
+
+def run(s, T, dt, shots=2):
+    """Runs the scene s (dictionary) to the time T; returns the snapshots (arrays by column), the processor's
+    seconds, the time between snapshots."""
+    steps = max(1, int(np.ceil(T / dt / shots))) * shots
+    dt, every = T / steps, steps // shots
+    s = dict(dict(dim=2, boundary="p p p", pair="", density="", extra="", fluid="1", coeff="pair_coeff * * c %g" % s["c"], rough=None), **s)
+    if "eos" not in s:
+        s["eos"] = "fix p all sph/pressure Tait %.17g 1 7 %.17g" % (s["c"] ** 2 / 7, s.get("P0", 0.0))
+    plugin = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "stokesdynplugin.so")
+    with tempfile.TemporaryDirectory() as folder:
+        write_data(os.path.join(folder, "data.flow"), s["x"], s["v"], s["rho"], s["mass"], s["types"], s["lo"], s["hi"])
+        with open(os.path.join(folder, "in.flow"), "w") as f:
+            f.write(INPUT.format(plugin=plugin, dt=repr(dt), every=every, steps=steps, skin=0.25 * s["dx"], **{k: s[k] for k in (
+                "dim", "boundary", "fluid", "kernel", "h", "pair", "coeff", "eos", "density", "extra")}))
+        begin = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        done = subprocess.run(["lmp", "-in", "in.flow", "-log", "none", "-nocite"], cwd=folder, capture_output=True, text=True)
+        if done.returncode:
+            raise RuntimeError(done.stdout[-600:])
+        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - begin
+        return snapshots(os.path.join(folder, "dump.flow")), seconds, dt * every
+
+
+def snapshots(path):
+    with open(path) as f:
+        lines = f.read().splitlines()
+    begins = [k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS")] + [len(lines) + 9]
+    out = []
+    for a, b in zip(begins, begins[1:]):
+        names = lines[a].split()[2:]
+        rows = np.array([line.split() for line in lines[a + 1:b - 8 if b < len(lines) else len(lines)]], float)
+        out.append({name: rows[:, k] for k, name in enumerate(names)})
+    return out
+
+
+def options(o, dx):
+    return dict(kernel=o.get("kernel", "wendland"), h=o.get("hdx", 2.0) * dx, dx=dx, pair=o.get("pair", ""), density=o.get("density", ""))
+
+
+def gresho(n, **o):
+    """Triangular vortex (Gresho & Chan 1990), no viscosity, t = 1, c = 10: mean of the error of the velocity around, within r < 0.5."""
+    def speed(r):
+        return np.where(r < 0.2, 5 * r, np.where(r < 0.4, 2 - 5 * r, 0))
+
+    def pressure(r):
+        middle = 9 + 12.5 * r**2 - 20 * r + 4 * np.log(np.maximum(r, 1e-9) / 0.2)
+        return np.where(r < 0.2, 5 + 12.5 * r**2, np.where(r < 0.4, middle, 3 + 4 * np.log(2))) - 5
+    dx, c = 1 / n, 10.0
+    x = lattice(*[(np.arange(n) + 0.5) * dx] * 2)
+    d = x - 0.5
+    r = np.maximum(np.hypot(*d.T), 1e-12)
+    v = np.stack([-d[:, 1], d[:, 0]], axis=1) * (speed(r) / r)[:, None]
+    s = dict(options(o, dx), x=x, v=v, rho=tait(pressure(r), c), mass=[dx * dx], types=np.ones(n * n, int), lo=(0, 0), hi=(1, 1), c=c,
+             P0=o.get("background", 0.0))
+    shots, seconds, _ = run(s, 1.0, 0.25 * s["h"] / c, 1)
+    e = shots[-1]
+    q = np.stack([e["x"], e["y"]], axis=1) % 1 - 0.5
+    r1 = np.maximum(np.hypot(*q.T), 1e-12)
+    w = (e["vy"] * q[:, 0] - e["vx"] * q[:, 1]) / r1
+    return {"L1": np.abs(w - speed(r1))[r1 < 0.5].mean(), "seconds": seconds}
+
+
+def taylor_green(n, **o):
+    """Vortices at Re = 100 in a unit box, from a jittered lattice: error of the amplitude at t = 1, rms error of the velocity."""
+    dx, c, nu = 1 / n, 10.0, 0.01
+    random = np.random.default_rng(5)
+    x = (lattice(*[(np.arange(n) + 0.5) * dx] * 2) + random.uniform(-0.1, 0.1, (2, n * n)).T * dx) % 1
+
+    def U(x):
+        X, Y = 2 * np.pi * x.T
+        return np.stack([-np.cos(X) * np.sin(Y), np.sin(X) * np.cos(Y)], axis=1)
+    # starts with the pressure of the incompressible flow: a uniform one would make sound of 3 % of the velocity
+    P = -0.25 * (np.cos(4 * np.pi * x[:, 0]) + np.cos(4 * np.pi * x[:, 1]))
+    s = dict(options(o, dx), x=x, v=U(x), rho=tait(P, c), mass=[dx * dx], types=np.ones(n * n, int), lo=(0, 0), hi=(1, 1), c=c, P0=1.0)
+    s["pair"] += " viscosity %g" % nu
+    shots, seconds, _ = run(s, 1.0, 0.25 * min(s["h"] / c, s["h"] ** 2 / (8 * nu)), 1)
+    e = shots[-1]
+    v, u, decay = np.stack([e["vx"], e["vy"]], axis=1), U(np.stack([e["x"], e["y"]], axis=1)), np.exp(-8 * np.pi**2 * nu)
+    return {"amplitude": (v * u).sum() / (u * u).sum() / decay - 1, "rms": np.sqrt(((v - u * decay) ** 2).sum() / (u * u).sum()) / decay,
+            "seconds": seconds}
+
+
+def poiseuille(n, **o):
+    """Start of a channel flow between walls of particles: largest error of the velocity at t = 2 over the final speed 1."""
+    nu, g, dx, c = 0.1, 0.8, 1 / n, 10.0
+    hdx = o.get("hdx", 2.0)
+    layers, w = int(np.ceil(2 * hdx)), max(10, int(np.ceil(4 * hdx + 2)))
+    x = lattice((np.arange(w) + 0.5) * dx, (np.arange(-layers, n + layers) + 0.5) * dx)
+    fluid = (x[:, 1] > 0) & (x[:, 1] < 1)
+    s = dict(options(o, dx), x=x, v=0 * x, rho=np.ones(len(x)), mass=[dx * dx] * 2, types=np.where(fluid, 1, 2),
+             lo=(0, -(layers + 1) * dx), hi=(w * dx, 1 + (layers + 1) * dx), c=c, P0=1.0, boundary="p f p",
+             extra="group wall type 2\nfix w wall wall/adami/sph\nfix g fluid addforce %.17g 0 0" % (g * dx * dx))
+    s["pair"] += " viscosity %g" % nu
+    shots, seconds, t = run(s, 2.0, 0.25 * min(s["h"] / c, s["h"] ** 2 / (8 * nu)), 1)
+    e = shots[-1]
+    y, m = e["y"][fluid], np.arange(1, 400, 2)[:, None]
+    exact = g / (2 * nu) * y * (1 - y) - (4 * g / (nu * np.pi**3 * m**3) * np.sin(np.pi * y * m) * np.exp(-m * m * np.pi**2 * nu * 2.0)).sum(0)
+    return {"error": np.abs(e["vx"][fluid] - exact).max(), "seconds": seconds}
+
+
+# --- free surfaces ---------------------------------------------------------------------------------------------------------
+
+
+def basin(n, wide, high, top, hdx, dim=2):
+    """Lattice of a tank, walls of particles up to row `top`; which are fluid when it is filled to `high` rows."""
+    dx, layers = 1 / n, int(np.ceil(2 * hdx))
+    across = (np.arange(-layers, wide + layers) + 0.5) * dx
+    up = (np.arange(-layers, top) + 0.5) * dx
+    if dim == 2:
+        x = lattice(across, up)
+    else:
+        x = np.stack([a.ravel() for a in np.meshgrid(across, up, across, indexing="ij")], axis=1)
+    side = [k for k in range(dim) if k != 1]
+    inside = (x[:, 1] > 0) & np.all([(x[:, k] > 0) & (x[:, k] < wide * dx) for k in side], axis=0)
+    fluid = inside & (x[:, 1] < high * dx)
+    keep = fluid | ~inside
+    return dx, x[keep], fluid[keep], layers
+
+
+def hydrostatic(y, H, c, g=1.0, rho0=1.0):
+    """Where a row of a uniform lattice comes to lie under its own weight, and its density."""
+    a = 7 * g / c**2
+    rho = rho0 * (1 + a * np.maximum(H - y, 0)) ** (1 / 7)
+    return 7 / (6 * a) * ((1 + a * H) ** (6 / 7) - (1 + a * np.maximum(H - y, 0)) ** (6 / 7)), rho
+
+
+def walled(o, dx, x, fluid, rho, c, layers, dim=2, slip="yes", g=1.0):
+    m = dx**dim
+    lo, hi = x.min(0) - dx, x.max(0) + dx
+    hi[1] += 2.0    # spray stays in the box
+    weight = "fix g fluid addforce 0 %.17g 0\n" % (-m * g) if dim == 2 else "fix g fluid addforce 0 %.17g 0\n" % (-m * g)
+    return dict(options(o, dx), dim=dim, x=x, v=0 * x, rho=rho, mass=[m, m], types=np.where(fluid, 1, 2), lo=lo, hi=hi, c=c,
+                boundary="f f p" if dim == 2 else "f f f",
+                extra=weight + "group wall type 2\nfix w wall wall/adami/sph gravity 0 %.17g 0 slip %s" % (-g, slip))
+
+
+def tank(n, **o):
+    """Still water, 2 x 1 (3-D: 1 x 1 x 1), from a jittered hydrostatic lattice, `steps`: largest speed over sqrt(g H) at the end."""
+    dim, c = int(o.get("dim", 2)), 10.0
+    dx, x, fluid, layers = basin(n, 2 * n if dim == 2 else n, n, n + int(np.ceil(2 * o.get("hdx", 2.0))), o.get("hdx", 2.0), dim)
+    y, rho = hydrostatic(x[:, 1], 1.0, c)
+    rho = np.where(fluid, rho, 1.0)
+    x[fluid, 1] = y[fluid]
+    x[fluid] += np.random.default_rng(7).uniform(-1, 1, (fluid.sum(), dim)) * o.get("rough", 0.1) * dx
+    s = walled(o, dx, x, fluid, rho, c, layers, dim)
+    dt = 0.25 * s["h"] / c
+    shots, seconds, _ = run(s, int(o.get("steps", 10000)) * dt, dt, 4)
+    speeds = [np.sqrt(e["vx"] ** 2 + e["vy"] ** 2 + e["vz"] ** 2)[fluid].max() for e in shots]
+    return {"speed": speeds[-1], "speed/2": speeds[2], "outside": ((shots[-1]["y"][fluid] < 0)).sum(), "seconds": seconds}
+
+
+def dam_break(n, **o):
+    """Column 2 x 1 in a tank of length 4, slip, to t = 6 sqrt(H/g): front at 1.5, energy over that of the start, particles in walls."""
+    c = 20.0
+    dx, x, fluid, layers = basin(n, 4 * n, n, 3 * n, o.get("hdx", 2.0))
+    keep = ~fluid | (x[:, 0] < 2)
+    x, fluid = x[keep], fluid[keep]
+    y, rho = hydrostatic(x[:, 1], 1.0, c)
+    rho = np.where(fluid, rho, 1.0)
+    x[fluid, 1] = y[fluid]
+    s = walled(o, dx, x, fluid, rho, c, layers)
+    shots, seconds, every = run(s, 6.0, 0.25 * s["h"] / c, 60)
+
+    def energy(e):
+        rho = (1 + 7 * e["f_p"][fluid] / c**2) ** (1 / 7)
+        inner = c**2 / 7 * (rho**6 / 6 + 1 / rho - 7 / 6)
+        return (0.5 * (e["vx"] ** 2 + e["vy"] ** 2)[fluid] + e["y"][fluid] + inner).sum()
+    E = np.array([energy(e) for e in shots])
+    end = shots[-1]
+    X, Y = end["x"][fluid], end["y"][fluid]
+    return {"front": shots[int(round(1.5 / every))]["x"][fluid].max() + dx / 2, "energy": E.max() / E[0] - 1, "energy end": E[-1] / E[0] - 1,
+            "in walls": ((Y < 0) | (X < 0) | (X > 4)).sum(), "seconds": seconds}
+
+
+def wave(n, **o):
+    """Standing gravity wave, length 1, depth 1/2, dynamic viscosity 4 (nu 0.004): frequency and decay over linear theory."""
+    g, H, A, rho0, mu = 9.81, 0.5, 0.02, 1.0, 0.004
+    k = 2 * np.pi
+    om = np.sqrt(g * k * np.tanh(k * H))
+    dx, c = 1 / n, 10 * np.sqrt(g * H)
+    layers = int(np.ceil(2 * o.get("hdx", 2.0))) + 1
+    x = lattice((np.arange(n) + 0.5) * dx, (np.arange(-layers, n // 2) + 0.5) * dx)
+    fluid = x[:, 1] > 0
+    Y = np.maximum(x[:, 1], 0)
+    v = np.stack([-A * om * np.cosh(k * Y) / np.sinh(k * H) * np.sin(k * x[:, 0]),
+                  A * om * np.sinh(k * Y) / np.sinh(k * H) * np.cos(k * x[:, 0])], axis=1) * fluid[:, None]
+    y, rho = hydrostatic(x[:, 1], H, c, g)
+    x[fluid, 1] = y[fluid]
+    s = walled(o, dx, x, fluid, np.where(fluid, rho, rho0), c, layers, g=g)
+    s.update(v=v, boundary="p f p", lo=(0, x[:, 1].min() - dx), hi=(1, 2))
+    s["pair"] += " viscosity %g %s" % (mu, o.get("viscosity", "laplacian"))
+    T = 2 * np.pi / om
+    shots, seconds, every = run(s, 4 * T, 0.25 * s["h"] / c, 320)
+    v0 = v[fluid]
+    a = np.array([(np.stack([e["vx"], e["vy"]], axis=1)[fluid] * v0).sum() for e in shots[1:]]) / (v0**2).sum()
+    return dict(oscillation(a, every * (1 + np.arange(len(a))), om, 2 * mu * k * k), seconds=seconds)
+
+
+def oscillation(a, t, om, decay):
+    """Frequency from the zeros of the amplitude a(t), decay from its peaks, both over what they should be."""
+    z = np.nonzero(a[:-1] * a[1:] < 0)[0]
+    zeros = t[z] - a[z] * (t[z + 1] - t[z]) / (a[z + 1] - a[z])
+    peaks = [i for i in range(3, len(a) - 3) if abs(a[i]) == np.abs(a[i - 3:i + 4]).max()]
+    rate = -np.polyfit(t[peaks], np.log(np.abs(a[peaks])), 1)[0]
+    return {"frequency": np.pi * (len(zeros) - 1) / (zeros[-1] - zeros[0]) / om, "decay": rate / decay if decay else rate}
+
+
+def disk(n, **o):
+    """Free disk of radius 1/2 in solid rotation, mu 0.01, to t = 0.5: angular momentum left."""
+    dx, c = 1 / n, 10.0
+    x = lattice(*[(np.arange(-n, n) + 0.5) * dx] * 2)
+    x = x[np.hypot(*x.T) < 0.5]
+    v = np.stack([-x[:, 1], x[:, 0]], axis=1)
+    s = dict(options(o, dx), x=x, v=v, rho=tait(0.5 * ((x**2).sum(1) - 0.25), c), mass=[dx * dx], types=np.ones(len(x), int), lo=(-2, -2),
+             hi=(2, 2), c=c, boundary="f f p")
+    s["pair"] += " viscosity 0.01 " + o.get("viscosity", "laplacian")
+    shots, seconds, _ = run(s, 0.5, 0.25 * s["h"] / c, 1)
+    L = [(e["x"] * e["vy"] - e["y"] * e["vx"]).sum() for e in (shots[0], shots[-1])]
+    return {"angular momentum - 1": L[1] / L[0] - 1, "seconds": seconds}
+
+
+def square(n, **o):
+    """Rotating square patch, no viscosity, to t = 2: kinetic energy and angular momentum left."""
+    dx, c = 1 / n, 7.0
+    x = lattice(*[(np.arange(n) + 0.5) * dx - 0.5] * 2)
+    v = np.stack([x[:, 1], -x[:, 0]], axis=1)
+    s = dict(options(o, dx), x=x, v=v, rho=np.ones(n * n), mass=[dx * dx], types=np.ones(n * n, int), lo=(-3, -3), hi=(3, 3), c=c, boundary="f f p")
+    shots, seconds, _ = run(s, 2.0, 0.25 * s["h"] / c, 1)
+    a, b = shots[0], shots[-1]
+    return {"energy": (b["vx"] ** 2 + b["vy"] ** 2).sum() / (a["vx"] ** 2 + a["vy"] ** 2).sum(),
+            "angular momentum - 1": (b["x"] * b["vy"] - b["y"] * b["vx"]).sum() / (a["x"] * a["vy"] - a["y"] * a["vx"]).sum() - 1, "seconds": seconds}
+
+
+def sloshing(n, **o):
+    """A tank 1 long, filled to 1/2, moves by X (1 - cos W t) from rest, W 0.7 of its first frequency, three periods: largest difference
+    of the centre of the water (relative to the tank) from linear theory over the largest excursion. Modes k = j pi, j odd:
+    eta'' + w^2 eta = - k tanh(k/2) a X W^2 cos W t, w^2 = g k tanh(k/2), a = -4/k^2; the centre is the sum of eta a."""
+    c, X, H = 10.0, 0.01, 0.5
+    w1 = np.sqrt(np.pi * np.tanh(np.pi * H))
+    W = 0.7 * w1
+    dx, x, fluid, layers = basin(n, n, n // 2, n, o.get("hdx", 2.0))
+    y, rho = hydrostatic(x[:, 1], H, c)
+    x[fluid, 1] = y[fluid]
+    s = walled(o, dx, x, fluid, np.where(fluid, rho, 1.0), c, layers)
+    s["lo"], s["hi"] = s["lo"] - 0.1, s["hi"] + 0.1
+    s["extra"] = """variable w equal {W!r}
+    variable x equal {X!r}*(1-cos(v_w*time))
+    variable v equal {X!r}*v_w*sin(v_w*time)
+    variable b equal -{X!r}*v_w^2*cos(v_w*time)
+    fix g fluid addforce 0 {weight!r} 0
+    group wall type 2
+    variable none equal 0
+    fix push wall move variable v_x v_none NULL v_v v_none NULL
+    fix w wall wall/adami/sph gravity v_b -1 0 slip yes""".format(W=float(W), X=X, weight=-dx * dx)
+    shots, seconds, every = run(s, 3 * 2 * np.pi / w1, 0.25 * s["h"] / c, 120)
+    t = every * np.arange(len(shots))
+    centre = np.array([e["x"][fluid].mean() for e in shots]) - X * (1 - np.cos(W * t)) - 0.5
+    exact = 0 * t
+    for j in range(1, 20, 2):
+        k = j * np.pi
+        w2, a = k * np.tanh(k * H), -4 / k**2
+        exact += a / (2 * H) * -k * np.tanh(k * H) * a * X * W**2 / (w2 - W**2) * (np.cos(W * t) - np.cos(np.sqrt(w2) * t))
+    return {"error": np.abs(centre - exact).max() / np.abs(exact).max(), "seconds": seconds}
+
+
+# --- two fluids ------------------------------------------------------------------------------------------------------------
+
+
+def layers_scene(n, ratio, o, lid=False, high=1.0):
+    """A heavy fluid, depth 1/2, under a light one; wide 1 and periodic, hydrostatic. Types: heavy, light, their walls."""
+    g, c, dx = 1.0, 10.0, 1 / n
+    wall = int(np.ceil(2 * o.get("hdx", 2.0)))
+    x = lattice((np.arange(n) + 0.5) * dx, (np.arange(-wall, n + (wall if lid else 0)) + 0.5) * dx)
+    light = x[:, 1] > 0.5
+    fluid = (x[:, 1] > 0) & (x[:, 1] < 1)
+    rho0 = np.where(light, 1.0, ratio)
+    P = np.where(light, 1 - x[:, 1], 0.5 + ratio * (0.5 - x[:, 1])) * g
+    rho = np.where(fluid, tait(P, c, rho0), rho0)
+    rows = (np.arange(n) + 0.5) * dx
+    of_row = np.where(rows > 0.5, 1.0, ratio)
+    thick = dx * of_row / tait(np.where(rows > 0.5, 1 - rows, 0.5 + ratio * (0.5 - rows)) * g, c, of_row)
+    centre = np.cumsum(thick) - thick / 2
+    row = np.clip((x[:, 1] / dx).astype(int), 0, n - 1)
+    x[:, 1] = np.where(fluid, centre[row], np.where(x[:, 1] > 1, x[:, 1] - 1 + thick.sum(), x[:, 1]))
+    m = [ratio * dx * dx, dx * dx]
+    s = dict(options(o, dx), x=x, v=0 * x, rho=rho, mass=m * 2, types=1 + light + 2 * ~fluid, lo=(0, x[:, 1].min() - dx), hi=(1, 2), c=c,
+             boundary="p f p", fluid="1 2",
+             eos="group heavy type 1 3\ngroup light type 2 4\nfix p heavy sph/pressure Tait %.17g %.17g 7\n"
+                 "fix q light sph/pressure Tait %.17g 1 7" % (ratio * c * c / 7, ratio, c * c / 7),
+             extra="fix g1 fluid addforce 0 v_weight 0\ngroup wall type 3 4\nfix w wall wall/adami/sph gravity 0 -1 0 slip yes")
+    s["extra"] = "variable weight atom -mass*1.0\n" + s["extra"]
+    s["density"] += " volume yes"
+    return s, fluid, light
+
+
+def two_layers(n, **o):
+    """Two layers at rest, free surface, `steps`: largest speed over sqrt(g H), slope of the pressure over rho g, light and heavy."""
+    ratio = o.get("ratio", 10.0)
+    s, fluid, light = layers_scene(n, ratio, o)
+    dt = 0.25 * s["h"] / s["c"]
+    shots, seconds, _ = run(s, int(o.get("steps", 10000)) * dt, dt, 4)
+    e, c = shots[-1], s["c"]
+    speed = np.hypot(e["vx"], e["vy"])[fluid].max()
+    slope = []
+    for who, rho0 in ((light & fluid, 1.0), (~light & fluid, ratio)):
+        slope.append(-np.polyfit(e["y"][who], e["f_p"][who], 1)[0] / rho0)
+    return {"speed": speed, "slope light": slope[0], "slope heavy": slope[1], "seconds": seconds}
+
+
+def interface(n, **o):
+    """Standing wave on the interface of two layers below a lid: frequency over linear theory,
+    omega^2 = g k (rho_1 - rho_2) / (rho_1 coth k h_1 + rho_2 coth k h_2)."""
+    ratio, A, k = o.get("ratio", 2.0), 0.01, 2 * np.pi
+    s, fluid, light = layers_scene(n, ratio, o, lid=True)
+    coth = 1 / np.tanh(0.5 * k)
+    om = np.sqrt(k * (ratio - 1) / (ratio * coth + coth))
+    depth = np.where(light, 1 - s["x"][:, 1], s["x"][:, 1])    # from the wall
+    depth = np.clip(depth, 0, 0.5)
+    sign = np.where(light, 1.0, -1.0)
+    X = s["x"][:, 0]
+    v = A * om / np.sinh(0.5 * k) * np.stack([sign * np.cosh(k * depth) * np.sin(k * X), np.sinh(k * depth) * np.cos(k * X)], axis=1)
+    s["v"] = v * fluid[:, None]
+    shots, seconds, every = run(s, 3 * 2 * np.pi / om, 0.25 * s["h"] / s["c"], 240)
+    v0 = s["v"][fluid]
+    w = np.where(light, 1.0, ratio)[fluid][:, None]
+    a = np.array([(w * np.stack([e["vx"], e["vy"]], axis=1)[fluid] * v0).sum() for e in shots[1:]]) / (w * v0**2).sum()
+    return dict(oscillation(a, every * (1 + np.arange(len(a))), om, 0.0), seconds=seconds)
+
+
+if __name__ == "__main__":
+    name, n = sys.argv[1], [int(k) for k in sys.argv[2].split(",")]
+    words = dict(word.split("=", 1) for word in sys.argv[3:])
+    o = {k: v if k in ("kernel", "pair", "density", "viscosity") else float(v) for k, v in words.items()}
+    for k in n:
+        got = globals()[name](k, **o)
+        print(name, k, o, {key: float("%.4g" % value) for key, value in got.items()}, flush=True)
