@@ -63,24 +63,25 @@ STOKES = {
                                   odd=lambda v: v == 0.1, loud=lambda v: v > 0.1)],
     "max_iter": [Integer(lambda v: v >= 1, ["100", "1", "1000"], ["0", "-5", "2147483647"], odd=lambda v: v == 0)],
     "algorithm": [Choice("1", "2", "2", "2")], "fluid_velocity": [U, U, U], "tensor": [Choice("rpy", "rpy", "rpy", "oseen")],
-    "taper": [Choice("none", "wendland", "spherical")], "precondition": [Choice("auto", "none", "clump", "sparse")],
+    "taper": [Choice("none", "wendland", "spherical")], 
+    "precondition": [Choice("auto", "none", "clump", "sparse", "waves")], "far_field": [Choice("auto", "direct", "ewald")],
+    "far_field_tolerance": [Number(lambda v: 1e-13 <= v <= 0.1, ["1e-3", "1e-6"], ["0", "-1", "1", "1e-14", "0.11"])],
     "warm_start": [YES_NO], "rotation": [YES_NO], "fluid_vorticity": [U, U, U], "rigid_clumps": [Choice("yes", "no", "auto")],
     "shell": [Integer(lambda v: v == 1 or v >= 12, ["1", "12", "13", "42"],
                       ["0", "2", "11", "-1", "2147483647", "2147483646", "2147483648"], odd=lambda v: v > 500)],
 }
 
 
-class CutOff:
-    border = STOKES["cut_off_distance"][0].border
-
-    def __init__(self, number):
-        self.number, self.good = number, number.good
+class NumberOr:
+    def __init__(self, word, number):
+        self.word, self.number, self.good, self.border = word, number, number.good + [word], number.border
 
     def judge(self, word, case):
-        return GOOD if word == "inf" else self.number.judge(word, case)
+        return GOOD if word == self.word else self.number.judge(word, case)
 
 
-STOKES["cut_off_distance"] = [CutOff(STOKES["cut_off_distance"][0])]
+for key, word in (("cut_off_distance", "inf"), ("far_field_tolerance", "auto")):
+    STOKES[key] = [NumberOr(word, STOKES[key][0])]
 
 
 def spheres(case):
@@ -104,8 +105,15 @@ def judge_stokes(case, words, how):
     case.refuse_if(how == "no radius", "radius")
     case.refuse_if("visc" not in case.settings, "visc")
     case.refuse_if(cut is None and not clumps, "cut_off_distance")
-    if cut == "inf" and not clumps and how == "periodic":
-        case.says(ODD, "far_field", "cut_off_distance")     # an Ewald sum, which does not go with every keyword
+    everybody, far, sparse = cut == "inf" and not clumps, s("far_field", "auto"), s("precondition") == "sparse"
+    case.refuse_if("far_field" in case.settings and not everybody, "far_field")
+    case.refuse_if("far_field_tolerance" in case.settings and (not everybody or far == "direct"), "far_field_tolerance")
+    case.refuse_if(far == "ewald" and s("tensor") == "oseen", "far_field", "tensor")
+    case.refuse_if(far == "ewald" and sparse, "precondition", "far_field")
+    case.refuse_if(everybody and how == "periodic" and (sparse or far == "direct" or s("tensor") == "oseen"), "far_field",
+                   "precondition", "tensor")
+    case.refuse_if(s("precondition") == "waves" and (not everybody or how != "periodic" or s("algorithm", "1") != "2"),
+                   "precondition")
     case.refuse_if(clumps and how in ("no molecules", "no radius"), "clumps_only", "molecule", "radius")
     case.refuse_if(s("taper", "none") != "none" and cut in (None, "inf"), "taper")
     case.refuse_if(s("precondition") == "sparse" and cut != "inf", "precondition")
