@@ -142,6 +142,7 @@ static void drag_by_volume(const sd_vans_mesh *mesh, const sd_vans_force_law *la
   double below = -0.5 * whole; /* primitive at the lower end of the slice */
   int n = sd_vans_slice_of(mesh, z - a);
   F[0] = F[1] = F[2] = 0.0;
+  /* what is under the bottom sees water at rest */
   if (n < 0) {
     const double here = primitive(a * a, fmin(-height, a));
     add_drag(law, grains, i, U[0], hindrance[0], (here - below) / whole, F);
@@ -200,7 +201,7 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
   int outside = 0;
   for (int i = 0; i < grains->n; i++) {
     double *Fi = F + 3 * (long) i;
-    Fi[0] = Fi[1] = Fi[2] = 0.0;
+    Fi[0] = Fi[1] = Fi[2] = 0.0; /* also of those that take no part */
     if (drag_x) drag_x[i] = 0.0;
     if (take && !take[i]) continue;
     const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]),
@@ -235,7 +236,8 @@ static inline void add(double *sum, double V, const double *v, double drag)
   sum[SD_VANS_DRAG] += V * drag;
 }
 
-/* Adds one grain in its slices first to first + count - 1. drag [count] */
+/* Adds one grain in its slices first to first + count - 1, in each with its volume there, the same
+ * velocity and the drag of that slice. V, drag [count] */
 static void add_slices(double *sums, int first, int count, const double *V, const double *v,
                        const double *drag)
 {
@@ -297,6 +299,7 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     int slices[2] = {0, 0}; /* the first, how many */
     slices[1] = slices_of(mesh, law->rules, how->point, z, a, &slices[0], V);
     const int first = slices[0], count = slices[1];
+    /* a share of the sphere is that share of each of its slices */
     if (grains->weight)
       for (int k = 0; k < count; k++) V[k] *= grains->weight[i];
     drag_of_slices(mesh, law, U, hindrance, grains, i, slices, drag);
