@@ -420,14 +420,17 @@ bool PairSph::used(int itype) const
 }
 
 // --- restart ------------------------------------------------------------------------------------
-// The words of the pair_style command and the values of pair_coeff.
+// The words of the pair_style command and the values of pair_coeff. Each pair begins with its setflag,
+// 0 or 1, plus twice the number of its values; files from before mu have the flag alone, and five.
+
+static const int BEFORE_MU = 5;
 
 void PairSph::write_restart(FILE *fp)
 {
   write_restart_settings(fp);
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++) {
-      double row[1 + NPARAMETERS] = {(double) setflag[i][j]};
+      double row[1 + NPARAMETERS] = {(double) (setflag[i][j] + 2 * NPARAMETERS)};
       for (int k = 0; k < NPARAMETERS; k++) row[1 + k] = given[k][i][j];
       fwrite(row, sizeof(double), 1 + NPARAMETERS, fp);
     }
@@ -439,11 +442,15 @@ void PairSph::read_restart(FILE *fp)
   allocate();
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++) {
-      double row[1 + NPARAMETERS];
-      if (comm->me == 0)
-        utils::sfread(FLERR, row, sizeof(double), 1 + NPARAMETERS, fp, nullptr, error);
+      double row[1 + NPARAMETERS] = {0.0};
+      for (int k = 0; k < NPARAMETERS; k++) row[1 + k] = NAN;
+      if (comm->me == 0) {
+        utils::sfread(FLERR, row, sizeof(double), 1, fp, nullptr, error);
+        const int count = row[0] < 2.0 ? BEFORE_MU : NPARAMETERS;
+        utils::sfread(FLERR, row + 1, sizeof(double), count, fp, nullptr, error);
+      }
       MPI_Bcast(row, 1 + NPARAMETERS, MPI_DOUBLE, 0, world);
-      setflag[i][j] = (int) row[0];
+      setflag[i][j] = (int) row[0] % 2;
       for (int k = 0; k < NPARAMETERS; k++) given[k][i][j] = row[1 + k];
     }
 }

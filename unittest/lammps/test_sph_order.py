@@ -175,6 +175,24 @@ def test_a_broken_run_is_the_unbroken_one(option, tmp_path):
             close(value, expected)
 
 
+def test_a_restart_file_from_before_mu_is_read(tmp_path):
+    """Its pairs have a flag and five values; now twice the number of values is added to the flag."""
+    s = Scene(2, tmp_path / "scene.data")
+    text = s.commands("wendland 0.02 viscosity 1")
+    text = "\n".join(line.split(" mu ")[0] for line in text.splitlines()) + "\n"
+    path = tmp_path / "restart"
+    expected = trajectory(text + "run 0\nwrite_restart %s" % path)
+    data = path.read_bytes()
+    at = data.index(b"viscosity\n1\n") + len(b"viscosity\n1\n")
+    rows = np.frombuffer(data[at:at + 3 * 7 * 8]).reshape(3, 7)
+    assert (rows[:, 0] == [13, 12, 13]).all() and np.isnan(rows[:, 6]).all()
+    old = np.concatenate([rows[:, :1] % 2, rows[:, 1:6]], axis=1).tobytes()
+    path.write_bytes(data[:at] + old + data[at + 3 * 7 * 8:])
+    fixes = "\n".join(line for line in text.splitlines() if line.startswith("fix ") or line.startswith("neigh"))
+    for value, wanted in zip(trajectory("atom_modify map array\nread_restart %s\n" % path + fixes + "\nrun 0"), expected):
+        close(value, wanted)
+
+
 # --- refusals --------------------------------------------------------------------------------------------------------------
 
 SHIFT, CORRECT, DELTA = "wendland 0.02 shift yes", "wendland 0.02 correction yes", "delta 0.1"
