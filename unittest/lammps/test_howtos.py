@@ -17,6 +17,7 @@ DOC = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN" / "doc"
 HOWTOS = {
     "clumps": (["lmp -in in.clumps"], {"v_drift": 1e-2}),
     "cfd": (["python couple.py"], {}),
+    "overdamped": (["lmp -in in.overdamped"], {}),
     "sph": (["lmp -in in.sph"], {"c_kinetic": 0.5}),
     "stream": (["lmp -in in.stream", "python plot.py"], {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35}),
     "suspension": (["lmp -in in.settling"], {"v_down": 0.04, "f_move[1]": 0.25}),
