@@ -65,7 +65,7 @@ def strip(rows, path):
                 axis.add_patch(plt.Circle((x[k], z[k] - middle), 1.0, fc=f"C{int(frames[t, k, 0]) % 10}", ec="black", lw=0.3))
             axis.set(xlim=(-20, 20), ylim=(-20, 20), aspect="equal", xticks=[], yticks=[])
             axis.set_xlabel(f"{-middle:.0f} below" if t else "")
-            if row is axes[0]:
+            if row[0] is axes[0, 0]:
                 axis.set_title(f"time {t}", fontsize=10)
         row[0].set_ylabel(title)
     figure.savefig(path, dpi=85, pil_kwargs={"optimize": True})
