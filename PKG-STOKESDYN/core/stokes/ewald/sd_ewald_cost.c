@@ -7,7 +7,7 @@
 /* Near pairs have a polynomial to evaluate beside the tensor; a sphere spreads three forces to
  * points^3 of the grid and gathers three velocities from them; a grid point goes through three
  * transforms forth and three back. */
-static const double NEAR_PAIR = 2.9, WINDOW_POINT = 1.5, GRID_POINT = 20.0;
+static const double NEAR_PAIR = 5.8, WINDOW_POINT = 3.0, GRID_POINT = 40.0;
 
 double sd_ewald_cost(const sd_ewald *e)
 {

@@ -10,8 +10,9 @@ extern "C" {
 #endif
 
 /* In pairs of the sum over all pairs, which costs count^2 of them: near pairs, window points and
- * grid points, each weighed as it was measured (reference: one core, AVX-512, a pair 1 ns). All
- * spheres of equal radii, width 3; with torques both ways of summing cost about 2.5 times as much. */
+ * grid points, each weighed as it was measured (one core, AVX-512, a pair 0.44 ns): within a third
+ * for 4000 and 8000 spheres in an open box, at 1e-3 and at 1e-6. Equal radii, width 3; with torques
+ * both ways of summing cost about 2.5 times as much. */
 double sd_ewald_cost(const sd_ewald *e);
 
 #ifdef __cplusplus

@@ -27,9 +27,10 @@ static const double CLOUD_PAIR = 1.0 / 3.0, SPHERE = 40.0, SPHERE_APPLIED = 20.0
 static const double REACH = 42.0;
 
 /* Of the long waves, likewise: a sphere in an application, without and with torques; in the set-up
- * each row of Z, and the factor of G. The product by FFT counts in pairs of a cloud. */
-static const double WITH_TORQUES = 2.5, WAVES_APPLIED[2] = {80.0, 110.0}, WAVES_ROW = 800.0,
-                    WAVES_FACTOR = 2e5;
+ * each row of Z, and the factor of G. The product by FFT counts in pairs of a large
+ * cloud, which are faster than those of small ones. */
+static const double EWALD_PAIR = 1.0 / 6.0, WITH_TORQUES = 2.5, WAVES_APPLIED[2] = {80.0, 110.0},
+                    WAVES_ROW = 800.0, WAVES_FACTOR = 2e5;
 
 static double product(double n, double pairs)
 {
@@ -67,7 +68,7 @@ sd_cost sd_cost_blocks_by_list(double n, int width, double pairs, double stored)
 sd_cost sd_cost_waves(const sd_ewald *e, int width, double stored)
 {
   if (!(e->count > 0.0)) return (sd_cost){.iteration = 1.0};
-  const double one = CLOUD_PAIR * sd_ewald_cost(e) * (width == 6 ? WITH_TORQUES : 1.0);
+  const double one = EWALD_PAIR * sd_ewald_cost(e) * (width == 6 ? WITH_TORQUES : 1.0);
   const double heavy = width / 3.0;
   const double applied = WAVES_APPLIED[width == 6] * e->count + 2.0 * heavy * stored;
   const double made = WAVES_ROW * width * e->count + INVERTED * heavy * stored + WAVES_FACTOR;
