@@ -264,6 +264,26 @@ def test_a_lone_clump_with_shells_does_not_care_whether_others_could_interact(si
     assert np.abs(ends[1] - ends[0]).max() < 1e-10
 
 
+def test_period_of_the_doublet_in_shear(simulation):
+    """Jeffery's orbit: the rate of turning is w1 cos^2 + w2 sin^2, so the period is 2 pi/sqrt(w1 w2), here that of shell 42:
+    15.61585 in examples/tumbling, with a Stokes number of 0.01."""
+    words = "clumps_only yes visc 1 rigid_clumps yes shell 42 fluid_velocity v_u 0 0"
+
+    def chain_in_shear(axis, dt=0.01):
+        sim = simulation(Spheres(np.outer((-1, 1), axis), molecule=1), words, fix=False, box=[(-9.0, 9.0)] * 3, comm=COMM, dt=dt,
+                         before_pair="variable u atom z")
+        return sim.commands(FIX)
+
+    rates = [chain_in_shear(axis).run(0).atom("omega")[0, 1] for axis in ((0, 0, 1.0), (1.0, 0, 0))]
+    period = 2 * np.pi / np.sqrt(rates[0] * rates[1])
+    assert period == pytest.approx(15.61585, rel=1e-6)
+    sim = chain_in_shear((0, 0, 1.0), dt=period / 20000).run(20000)
+    axis = (sim.x[1] - sim.x[0]) / 2
+    late = np.arctan2(axis[0], axis[2]) / rates[0]      # how far it is past a whole turn, as a time
+    assert abs(late) < 1e-6 * period
+    assert np.abs(axis[1]) < 1e-10
+
+
 def test_shapes_stay_rigid(simulation):
     spheres = chains(2, 3, side=6.0)
     sim = fall(simulation, spheres, CLUMPS.replace("cut_off_distance inf", "clumps_only yes") + " fluid_velocity 0 0 0.5", t=100.0,
