@@ -62,14 +62,14 @@ static int sound(const sd_ewald_box *b, const sd_ewald_sizes *s, double toleranc
   return ok && isfinite(sd_ewald_volume(b)) && sd_ewald_volume(b) > 0.0;
 }
 
-/* Range of the near part that costs least, as measured: 80 spheres within it at 1e-3, and more at
+/* Range of the near part that costs least, as measured: 86 spheres within it at 1e-3, and more at
  * tight tolerances, since the grid gets finer while a near pair costs about the same; in an open box
  * with its padded grid 2.5 times as many. It need not reach the first images, nor beyond an open
  * box. (A range that is just an edge would by rounding hold one image of a sphere and not the
  * opposite one.) */
 static double natural_range(const sd_ewald_box *box, double count, double digits)
 {
-  const double many = fmax(80.0, 80.0 * pow(digits / 3.0, 1.6)) * (box->periodic ? 1.0 : 2.5);
+  const double many = fmax(86.0, 86.0 * pow(digits / 3.0, 1.6)) * (box->periodic ? 1.0 : 2.5);
   const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * count));
   if (box->periodic) return fmin(range, 0.97 * narrowest(box));
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
