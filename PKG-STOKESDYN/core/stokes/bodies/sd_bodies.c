@@ -79,7 +79,8 @@ static const double *row_of(const loop *c, const double *rows, int b, int k)
   return j < n ? rows + 6 * (long) j : c->ghosts + 6 * (long) (j - n);
 }
 
-/* out += K V, V in the axes of the shape, in the rows of this rank's spheres of clump b */
+/* out += K V, V in the axes of the shape, in the rows of this rank's spheres of clump b; those of
+ * other ranks are written there, by the same arithmetic */
 static void add_rigid(const sd_bodies *A, int b, const double V[6], double *out)
 {
   const sd_body_shape *s = A->shape[b];
@@ -159,7 +160,10 @@ sd_status sd_bodies_add_shells(const sd_bodies *A, const double *l, double *work
 
 /* --- the preconditioner --- */
 
-/* pre(r, f) of clump b; r NULL: no slip, f NULL: no load */
+/* pre(r, f) of clump b; r NULL: no slip, f NULL: no load. In the axes of the shape, where all
+ * matrices are constant: eta B for M_b'^-1 and eta G for M_b'^-1 K, with B and G of viscosity 1, so
+ *   V = N (f - eta G^T y) / eta,   z = eta (B y + G V),   y = r
+ * G^T y is K^T B y without a second product, since B is symmetric. */
 static void pre_clump(loop *c, int b, const double *r, const double *f, const state *out)
 {
   const sd_bodies *A = c->A;
@@ -318,7 +322,7 @@ static sd_status start(loop *c, int warm)
   return residual(c);
 }
 
-/* (p, q) = (z, dV) + beta (p, q) */
+/* (p, q) = (z, dV) + beta (p, q): conjugate to all before, since each lies within the constraint */
 static void turn_along(loop *c, double beta)
 {
   for (long j = 0; j < (long) c->A->width * c->A->n; j++) {
@@ -329,7 +333,8 @@ static void turn_along(loop *c, double beta)
     c->along.V[j] = c->z.V[j] + beta * c->along.V[j];
 }
 
-/* From x along (p, q) to where the power is least, and z = pre(r, 0) there */
+/* From x along (p, q) to where the power is least, and z = pre(r, 0) there. K^T p = 0, so p.K q = 0
+ * and the curvature is p.M p; K q stays in w all the same, where it keeps the digits of r. */
 static sd_status step(loop *c)
 {
   const sd_bodies *A = c->A;
@@ -353,6 +358,8 @@ static sd_status step(loop *c)
   return status == SD_OK ? dot(A, c->r, c->z.l, &c->power.rz) : status;
 }
 
+/* Until sqrt(r.z / spent) < tolerance. r.z is the power of what is still wrong, by the blocks of the
+ * bodies: below the floor it is rounding of velocities that are the stream's own. */
 static sd_status iterate(loop *c, double tolerance, int max_iter)
 {
   const powers *power = &c->power;
@@ -400,6 +407,7 @@ sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *prob
   if (status == SD_OK) status = start(&c, problem->warm);
   if (status == SD_OK) status = iterate(&c, problem->tolerance, problem->max_iter);
   if (status != SD_OK && status != SD_EMAXITER) return status;
+  /* The last pre(r, 0) is free, and without it free spheres would have their lone velocities. */
   for (long j = 0; j < size; j++) motion->v[j] += c.z.v[j];
   for (long j = 0; j < motions; j++) motion->V[j] += c.z.V[j];
   return status;

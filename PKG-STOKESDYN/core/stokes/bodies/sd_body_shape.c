@@ -25,6 +25,7 @@ static void strain_at(const double X[3], int c, double v[3])
   v[col[c]] = X[row[c]];
 }
 
+/* M_b: each pair of spheres, and 1/(6 pi a), 1/(8 pi a^3) on the diagonal (r = 0) */
 static void own_blocks(const sd_shape *shape, double *M)
 {
   const size_t N = 6 * (size_t) shape->n;
@@ -102,6 +103,7 @@ static void add_shells(sd_body_shape *s, const sd_clump *shells, const double *r
   }
 }
 
+/* A^-1 in the place of A, symmetric and positive definite */
 static sd_status invert(size_t N, double *A)
 {
   const sd_status status = sd_cholesky((int) N, A);
@@ -126,6 +128,7 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
     apply_to_rigid(s, s->inverse, s->rigid, R);
     sd_pseudo_inverse6(R, s->mobility);
   }
+  /* Now N_spheres and M_b^-1 K are known, which is what M_b' is made of; then once more with it. */
   if (status == SD_OK && shells) {
     own_blocks(shape, s->inverse);
     add_shells(s, shells, s->rigid, s->mobility, s->inverse);
