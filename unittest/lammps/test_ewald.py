@@ -273,3 +273,16 @@ def test_auto_takes_the_waves_in_a_run(simulation):
             sim.run(1 if k else 0, "pre no post no" if k else "post no")
         iterations[how] = sim.iterations
     assert iterations["auto"] < 0.6 * iterations["none"]
+
+
+@pytest.mark.parametrize("dt,warned", [(0.02, False), (2.0, True)])
+def test_the_time_step_guard_watches_in_a_periodic_box(simulation, tmp_path, dt, warned):
+    """lambda is the smallest eigenvalue of the mobility scaled to unit diagonal; a sphere alone forgets its velocity in m/(6 pi eta a)."""
+    spheres, side = lattice(5, 0.3)
+    log, mass, drag = tmp_path / "log", 1.7 * 4 / 3 * np.pi, 6 * np.pi * 1.3
+    sim = simulation(spheres, f"{ALL} visc 1.3", log=log, boundary="p p p", box=[(0.0, side)] * 3, dt=dt * mass / drag)
+    sim.commands(["unfix drag", "fix drag all stokes_dynamics", "fix move all nve"]).run(1)
+    limit, smallest = sim.fix_vector()[8], sim.fix_vector()[7]
+    sim.close()
+    assert ("is above" in " ".join(log.read_text().split())) == warned
+    assert 0.01 < smallest < 0.9 and limit == pytest.approx(2 * mass / drag * smallest, rel=1e-6)
