@@ -358,8 +358,8 @@ static sd_status step(loop *c)
   return status == SD_OK ? dot(A, c->r, c->z.l, &c->power.rz) : status;
 }
 
-/* Until sqrt(r.z / spent) < tolerance. r.z is the power of what is still wrong, by the blocks of the
- * bodies: below the floor it is rounding of velocities that are the stream's own. */
+/* Until sqrt(r.z / spent) < tolerance. r.z is the power of what is still wrong, by the blocks of
+ * the bodies: below the floor it is rounding of velocities that are the stream's own. */
 static sd_status iterate(loop *c, double tolerance, int max_iter)
 {
   const powers *power = &c->power;
