@@ -87,10 +87,12 @@ def source(folder):
         shutil.copy(path, to)
         for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text()) if path.suffix == ".md" else []:
             linked = (path.parent / target).resolve()    # pictures, and other files that a page links to
-            if linked.is_file() and linked.suffix != ".md":
+            if linked.is_file() and linked not in pages:
                 beside = folder / linked.relative_to(TOP)
                 beside.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(linked, beside)
+                if linked.suffix == ".md":    # a table beside a README: a page that no list of contents has
+                    beside.write_text("---\norphan: true\n---\n\n" + linked.read_text())
     for header in headers:
         (folder / header.relative_to(TOP)).with_suffix(".rst").write_text(header_page(header))
 
