@@ -60,8 +60,8 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
   return {sums[0], sums[1], sums[2], most[0]};
 }
 
-/* Is the sum over everybody split, and how? In an open box only if that costs less, or is asked for.
- * The same on all ranks. */
+/* Is the sum over everybody split, and how? In an open box only if that costs less, or is asked
+ * for. The same on all ranks. */
 bool Scene::split()
 {
   if (settings.far_field == Settings::DIRECT) return false;
@@ -109,8 +109,8 @@ void Scene::tell()
       std::to_string(e.grid[0]) + " x " + std::to_string(e.grid[1]) + " x " +
       std::to_string(e.grid[2]) + ", windows of " + std::to_string(e.points) +
       " points, splitting parameter " + text(e.xi) + ", near part up to " + text(e.range) +
-      "; error of velocities over the rms of F/(6 pi eta a) " + text(sd_ewald_predicted(&e, &sizes)) +
-      " expected, far_field_tolerance " + text(e.tolerance) + "\n";
+      "; error of velocities over the rms of F/(6 pi eta a) " +
+      text(sd_ewald_predicted(&e, &sizes)) + " expected, far_field_tolerance " + text(e.tolerance) + "\n";
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;
 }

@@ -101,7 +101,8 @@ void StokesSettings::parse(Keywords &in)
            in.refuse("'" + text(scene.far_field_tolerance) + "' must be 1e-13 ... 0.1");
        }},
       {"precondition", [&] {
-         precondition = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse", "waves"});
+         precondition =
+             (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse", "waves"});
        }},
       {"warm_start", [&] { warm_start = in.yes_no(); }},
   });

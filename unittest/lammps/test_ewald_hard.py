@@ -70,6 +70,31 @@ def test_a_cloud_in_one_corner(tmp_path):
     assert largest_difference(forces[1], forces[0]) < 1e-7
 
 
+@pytest.mark.hard_case("far field: bricks of unequal size, tiled communication, newton off, a wide skin")
+@pytest.mark.parametrize("where", [PERIODIC, {}], ids=["periodic", "open"])
+def test_any_decomposition(tmp_path, where):
+    rng = np.random.default_rng(2)
+    spheres = Spheres(9 * rng.uniform(0, 1, (80, 3))**2, 0.7, rng.normal(size=(80, 3)))
+    forces = []
+    for ranks, comm, newton in ((1, "", "on"), (3, "comm_style tiled\nbalance 1.0 rcb\nneighbor 1.5 bin", "off")):
+        lines = input_lines(spheres, f"{ALL} far_field ewald relative_tolerance 1e-11 far_field_tolerance 1e-9", tmp_path / "data",
+                            newton=newton, **where)
+        lines = [line for line in lines if not line.startswith("comm_modify mode")] + comm.splitlines()
+        lmp(tmp_path, lines + [f"dump out all custom 1 {tmp_path}/dump id f_drag[1] f_drag[2] f_drag[3]",
+                               "dump_modify out sort id format float %.15g", "run 0"], ranks=ranks)
+        forces.append(np.loadtxt(tmp_path / "dump", skiprows=9)[:, 1:])
+    assert largest_difference(forces[1], forces[0]) < 1e-9
+
+
+@pytest.mark.hard_case("far field: algorithm 1 in a periodic box, where it diverges")
+def test_substitution_in_a_periodic_box(simulation):
+    spheres = Spheres(3.0 * np.stack(np.meshgrid(*3 * [np.arange(4.0)], indexing="ij"), axis=-1).reshape(-1, 3), 1.0, (0.1, 0.2, 0.3))
+    words = "cut_off_distance inf visc 1.3 relative_tolerance 1e-6"
+    where = dict(boundary="p p p", box=[(0.0, 12.0)] * 3)
+    reference = simulation(spheres, words + " algorithm 2", **where).run().drag
+    assert largest_difference(simulation(spheres, words, **where).run().drag, reference) < 1e-5
+
+
 @pytest.mark.hard_case("far field: an open cloud with one sphere very far away")
 def test_a_sphere_far_away(simulation):
     """auto counts the grid, and sums pairs; whoever insists is told."""
