@@ -236,8 +236,12 @@ void PairStokesDynamics::look_for_fixes()
  * is none. */
 double PairStokesDynamics::range() const
 {
-  const double cutoff = hydro.settings.scene.cutoff;
-  return std::isfinite(cutoff) ? cutoff : largest_diameter;
+  const Scene::Settings &scene = hydro.settings.scene;
+  if (std::isfinite(scene.cutoff)) return scene.cutoff;
+  double length = largest_diameter;
+  for (int d = 0; d < 3 && scene.everybody(); d++)    // no ghosts of ghosts for a giant in a small box
+    if (domain->periodicity[d]) length = std::min(length, 0.5 * domain->prd[d]);
+  return length;
 }
 
 double PairStokesDynamics::init_one(int i, int j)

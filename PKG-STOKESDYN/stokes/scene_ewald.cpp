@@ -17,6 +17,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+// Of spheres near those of a rank: 10 GB.
+static const double MOST_IMAGES = 1e8;
+
 bool Scene::periodic() const
 {
   return domain->xperiodic && domain->yperiodic && domain->zperiodic;
@@ -79,6 +82,11 @@ bool Scene::split()
                   " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
                   text(box.edge[2]) + " at far_field_tolerance " +
                   text(settings.far_field_tolerance) + ": " + sd_status_string(status));
+  const double images = 8.0 * sizes.count * pow(ewald.reach, 3) / sd_ewald_volume(&box);
+  if (box.periodic && !(images < MOST_IMAGES))
+    fail(lmp, command + ": keyword far_field: the largest sphere, radius " + text(sizes.largest) +
+                  ", is so large for the periodic box that it would see " + text(images) +
+                  " images; is it in other units?");
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
 }
 
