@@ -1,4 +1,4 @@
-#include "sd_sph_sums.h"
+#include "sd_sph_pair.h"
 
 /* Everything about a pair of types that does not change from pair to pair. What no term of the
  * model uses stays 0, so that types that differ in nothing that matters are found to be alike. */
@@ -17,8 +17,9 @@ sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_s
     c.a1 = 2.0 * p->alpha * p->c * h;
     c.b1 = 2.0 * p->beta * h * h;
   }
-  /* f = W(r) / W(dp) = K(r/h) / K(dp/h): the norm cancels. */
-  if (model->tenscorr || sd_sph_level_of(model) >= SD_SPH_DISORDER) {
+  /* f = W(r) / W(dp) = K(r/h) / K(dp/h): the norm cancels. Shifting takes f, too. */
+  const int shifts = model->scheme == SD_SPH_SHIFT || model->scheme == SD_SPH_CORRECTION;
+  if (model->tenscorr || shifts) {
     const double K = sd_sph_K(model->kernel, p->deltap / h);
     c.tens = K > 0.0 ? 1.0 / K : 0.0;
   }
@@ -27,27 +28,6 @@ sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_s
     c.visc = 2.0 * p->mu * (model->friction == SD_SPH_CENTRAL ? dimension + 2 : 1);
   if (model->delta > 0.0) c.diffusion = model->delta * p->c * h;
   return c;
-}
-
-/* Diffusion needs the gradient of the density, and M for it; shift also the disorder; correction
- * also the gradient of the velocity. */
-sd_sph_level sd_sph_level_of(const sd_sph_model *model)
-{
-  if (model->scheme == SD_SPH_CORRECTION) return SD_SPH_VELOCITY;
-  if (model->scheme == SD_SPH_SHIFT) return SD_SPH_DISORDER;
-  return model->delta > 0.0 ? SD_SPH_GRADIENT : SD_SPH_RATE;
-}
-
-int sd_sph_sum_columns(sd_sph_level level)
-{
-  static const int columns[] = {1, 12, 16, 24};
-  return columns[level];
-}
-
-int sd_sph_columns(const sd_sph_model *model)
-{
-  static const int columns[] = {0, 4, 8, 16};
-  return columns[sd_sph_level_of(model)];
 }
 
 /* Far enough that every kernel is 0, near enough that the square of the distance is finite. */
@@ -87,37 +67,4 @@ void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, co
   const int as_is = model->scheme == SD_SPH_CORRECTION || model->scheme == SD_SPH_VOLUME;
   for (int i = 0; i < n; i++)
     x4[4 * (size_t) i + 3] = as_is ? P[i] : P[i] / (rho[i] * rho[i]);
-}
-
-/* Asked of the processor at each call: one test of a word that the compiler keeps. */
-static const sd_sph_loops *loops(void)
-{
-#if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return &sd_sph_loops_avx2;
-#endif
-  return &sd_sph_loops_any;
-}
-
-double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                     int rates, double *f4, double *each)
-{
-  return loops()->forces(model, list, p, rates, f4, each);
-}
-
-void sd_sph_middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                   double *sums, const sd_sph_near *near)
-{
-  loops()->middle(model, list, p, sums, near);
-}
-
-void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                      double *rate)
-{
-  loops()->diffusion(model, list, p, rate);
-}
-
-void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  int fours, int walls, const double *q, double *sums)
-{
-  loops()->weigh(model, list, p, fours, walls, q, sums);
 }

@@ -104,9 +104,6 @@ typedef struct {
   const double *order;
 } sd_sph_particles;
 
-/* Columns of a row of order: 4 with delta, 8 with shift, 16 with correction. */
-int sd_sph_columns(const sd_sph_model *model);
-
 /* Fills rows 0 .. n: position + shift * (velocity + du), with v and du [3 n] or null. The last
  * column is left alone but for row n. */
 void sd_sph_pack_x(int n, const double *x, const double *v, const double *du, double shift,

@@ -24,6 +24,9 @@ sd_sph_level sd_sph_level_of(const sd_sph_model *model);
 int sd_sph_sum_columns(sd_sph_level level);
 enum { SD_SPH_MAXIMUM = 13 };
 
+/* Columns of a row of order: 4 with delta, 8 with shift, 16 with correction. */
+int sd_sph_columns(const sd_sph_model *model);
+
 /* Room for the pairs closer than 2 h + margin: neighbor[i] and count[i], in the pool, which must
  * hold every pair of the list and three more entries. */
 typedef struct {

@@ -18,7 +18,7 @@
 #ifndef SD_BLOCKS_H
 #define SD_BLOCKS_H
 
-#include "sd_precondition.h"
+#include "sd_precondition_case.h"
 #include "sd_shape.h"
 #include "sd_sparse.h"
 

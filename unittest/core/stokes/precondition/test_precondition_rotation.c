@@ -2,6 +2,7 @@
 #include "clouds.h"
 
 #include "sd_clump.h"
+#include "sd_precondition.h"
 #include "in_clumps.h"
 
 #include <string.h>
