@@ -90,8 +90,11 @@ void Ambient::read_fluid(bool with_gradients)
   eta_uniform = settings.visc.number() * force->vxmu2f;
 
   u.resize(u_varies ? 3 * (size_t) n + 3 : 0);
+  // The grid is looked up for those that take part.
+  if (settings.grid && those.size() < (size_t) n) std::fill(u.begin(), u.end(), 0.0);
   for (int d = 0; d < 3; d++) {
-    settings.velocity[d].evaluate(lmp, igroup, u.empty() ? nullptr : u.data() + d, 3);
+    double *out = u.empty() || settings.grid ? nullptr : u.data() + d;
+    settings.velocity[d].evaluate(lmp, igroup, out, 3);
     u_uniform[d] = settings.velocity[d].number();
   }
   const bool nonuniform = with_gradients && (u_varies || settings.has_vorticity);
@@ -185,13 +188,16 @@ void Ambient::read_gradient()
   for (int i = 0; i < n; i++) sd_flow_rotation(&gradient[9 * (size_t) i], &w[3 * (size_t) i]);
 }
 
-/* An atom and its images are one place, and where LAMMPS keeps it depends on when it last looked. */
-void Ambient::in_the_box(int i, double *x) const
+/* An atom and its images are one place, and where LAMMPS keeps it depends on when it last looked.
+ * Nearly all are inside, so that there is no branch for each side. */
+inline void Ambient::in_the_box(int i, double *x) const
 {
-  std::copy_n(atom->x[i], 3, x);
+  const double *from = atom->x[i], *lo = domain->boxlo, *hi = domain->boxhi;
   bool inside = !domain->triclinic;
-  for (int d = 0; d < 3 && inside; d++)
-    inside = x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d];
+  for (int d = 0; d < 3; d++) {
+    inside &= (from[d] >= lo[d]) & (from[d] < hi[d]);
+    x[d] = from[d];
+  }
   // remap() goes box by box, for ever if x is infinite: fault() tells of those
   if (!inside && finite(x) && !far_out(i)) domain->remap(x);
 }
@@ -221,7 +227,7 @@ void Ambient::read_grid()
     for (size_t k = 0; k < count; k++) {
       const size_t i = those[begin + k];
       const double *row = value + grid.columns * k;
-      std::copy_n(row, 3, &u[3 * i]);
+      for (int d = 0; d < 3; d++) u[3 * i + d] = row[d];
       if (settings.grid_has_visc) eta[i] = row[3] * force->vxmu2f;
       if (with_gradients) std::copy_n(G + 9 * k, 9, &gradient[9 * i]);
     }

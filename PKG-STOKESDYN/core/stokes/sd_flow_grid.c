@@ -161,28 +161,65 @@ static strides strides_of(const sd_flow_grid *grid)
   return s;
 }
 
-/* The cell that a point lies in. */
-typedef struct {
-  sd_status status;
-  /* of its lowest node in value[] */
-  size_t corner;
-  place at[3];
-} cell;
+/* Points at a time: what is known of them stays in the first cache, and their prefetches within
+ * what a core can have under way. */
+enum { BLOCK = 16 };
 
-static void find_cell(const sd_flow_grid *grid, const strides *s, const double x[3], cell *c)
+/* The cells that a block of points lies in. */
+typedef struct {
+  /* of the lowest node in value[] */
+  size_t corner[BLOCK];
+  /* as in `place`; NaN where there is no cell, and so is all that is made of them */
+  double weight[3][BLOCK], per_length[3][BLOCK];
+} cells;
+
+/* On an even axis, and for points between its ends, arithmetic will do. Returns 0 where a point is
+ * not between them: what comes out is then of no use. */
+static int place_evenly(const sd_grid_axis *axis, int count, const double *x, int *node,
+                        double *weight, double *per_length)
 {
-  c->status = SD_OK;
-  c->corner = 0;
-  for (int d = 0; d < 3; d++) {
-    const sd_status status = find_place(&grid->axis[d], x[d], &c->at[d]);
-    if (status != SD_OK) c->status = status;
-    c->corner += s->next[d] * c->at[d].cell;
+  const double first = axis->at[0], last = axis->at[axis->n - 1], density = axis->density;
+  const double highest = axis->n - 2;
+  int beyond = 0;
+  for (int k = 0; k < count; k++) {
+    const double t = (x[3 * k] - first) * density, above = t > 0.0 ? t : 0.0;
+    beyond |= !(x[3 * k] >= first) | !(x[3 * k] <= last);
+    node[k] = (int) (above < highest ? above : highest);
+    weight[k] = t - node[k];
+    per_length[k] = density;
   }
+  return !beyond;
+}
+
+static void place_one_by_one(const sd_grid_axis *axis, int count, const double *x, int *node,
+                             double *weight, double *per_length)
+{
+  for (int k = 0; k < count; k++) {
+    place p;
+    const int found = find_place(axis, x[3 * k], &p) == SD_OK;
+    node[k] = p.cell;
+    weight[k] = found ? p.weight : NAN;
+    per_length[k] = found ? p.per_length : NAN;
+  }
+}
+
+static void find_cells(const sd_flow_grid *grid, const strides *s, int count, const double *x,
+                       cells *c)
+{
+  int node[3][BLOCK];
+  for (int d = 0; d < 3; d++) {
+    const sd_grid_axis *axis = &grid->axis[d];
+    if (!(axis->density > 0.0 &&
+          place_evenly(axis, count, x + d, node[d], c->weight[d], c->per_length[d])))
+      place_one_by_one(axis, count, x + d, node[d], c->weight[d], c->per_length[d]);
+  }
+  for (int k = 0; k < count; k++)
+    c->corner[k] = s->next[0] * node[0][k] + s->next[1] * node[1][k] + s->next[2] * node[2][k];
 }
 
 /* A grid is larger than caches are, and its cells are met in no order: what a point needs is asked
  * for while others are worked on. */
-static void prefetch(const double *v, const strides *s)
+static inline void prefetch(const double *v, const strides *s)
 {
 #ifdef __GNUC__
   for (int row = 0; row < 4; row++) {
@@ -196,28 +233,29 @@ static void prefetch(const double *v, const strides *s)
 #endif
 }
 
-/* value[p] = the trilinear mean of the eight corners: along x on four edges, whose weights are those
- * of y and z. columns is a constant where this is called, so that the loop unrolls. */
-static inline void mean_of_corners(const double *v, const strides *s, const cell *c, int columns,
-                                   double *value)
+/* value[p] = the trilinear mean of the eight corners: of the four edges along x, weighted by y and
+ * z, then along x. The two nodes of an edge are neighbours in memory, so that one loop takes the
+ * columns of both; `nodes` is 1 on an axis of one node. It and columns are constants where this is
+ * called, so that the loops unroll. */
+static inline void mean_of_corners(const double *v, const strides *s, const cells *c, int k,
+                                   int columns, int nodes, double *value)
 {
-  const double wx = c->at[0].weight, wy = c->at[1].weight, wz = c->at[2].weight;
-  const double *edge[4] = {v, v + s->next[1], v + s->next[2], v + s->next[1] + s->next[2]};
-  const double w[4] = {(1.0 - wy) * (1.0 - wz), wy * (1.0 - wz), (1.0 - wy) * wz, wy * wz};
-  const size_t next = s->next[0];
-  for (int p = 0; p < columns; p++) {
-    double sum = 0.0;
-    for (int e = 0; e < 4; e++)
-      sum += w[e] * (edge[e][p] + wx * (edge[e][next + p] - edge[e][p]));
-    value[p] = sum;
-  }
+  const double wx = c->weight[0][k], wy = c->weight[1][k], wz = c->weight[2][k];
+  const double w11 = wy * wz, w10 = wy - w11, w01 = wz - w11, w00 = 1.0 - wy - w01;
+  const double *v10 = v + s->next[1], *v01 = v + s->next[2], *v11 = v10 + s->next[2];
+  double mean[8];
+  for (int p = 0; p < nodes * columns; p++)
+    mean[p] = w00 * v[p] + w10 * v10[p] + (w01 * v01[p] + w11 * v11[p]);
+  const double *next = mean + (nodes - 1) * columns;
+  for (int p = 0; p < columns; p++) value[p] = mean[p] + wx * (next[p] - mean[p]);
 }
 
 /* slope[q] = the derivative along axis q of one column: of the four edges along x, then of what
  * they give along y, then along z. */
-static void slope_of_corners(const double *v, const strides *s, const cell *c, double slope[3])
+static inline void slope_of_corners(const double *v, const strides *s, const cells *c, int k,
+                                    double slope[3])
 {
-  const double wx = c->at[0].weight, wy = c->at[1].weight, wz = c->at[2].weight;
+  const double wx = c->weight[0][k], wy = c->weight[1][k], wz = c->weight[2][k];
   double face[2], face_x[2], face_y[2];
   for (int z = 0; z < 2; z++) {
     const double *low = v + z * s->next[2], *high = low + s->next[1];
@@ -227,66 +265,72 @@ static void slope_of_corners(const double *v, const strides *s, const cell *c, d
     face_x[z] = low_x + wy * (high_x - low_x);
     face_y[z] = high_0 - low_0;
   }
-  slope[0] = (face_x[0] + wz * (face_x[1] - face_x[0])) * c->at[0].per_length;
-  slope[1] = (face_y[0] + wz * (face_y[1] - face_y[0])) * c->at[1].per_length;
-  slope[2] = (face[1] - face[0]) * c->at[2].per_length;
+  slope[0] = (face_x[0] + wz * (face_x[1] - face_x[0])) * c->per_length[0][k];
+  slope[1] = (face_y[0] + wz * (face_y[1] - face_y[0])) * c->per_length[1][k];
+  slope[2] = (face[1] - face[0]) * c->per_length[2][k];
 }
 
-/* With the number of columns a constant the compiler keeps the sums in registers. */
-static void values_at(const double *v, const strides *s, const cell *c, int columns, double *value)
+static inline void values_of(const double *v, const strides *s, const cells *c, int count,
+                             int columns, int nodes, double *value)
 {
-  if (columns == 3)
-    mean_of_corners(v, s, c, 3, value);
+  for (int k = 0; k < count; k++)
+    mean_of_corners(v + c->corner[k], s, c, k, columns, nodes, value + columns * k);
+}
+
+static void values_at(const double *v, const strides *s, const cells *c, int count, int columns,
+                      double *value)
+{
+  if (s->next[0] == 0)
+    values_of(v, s, c, count, columns, 1, value);
+  else if (columns == 3)
+    values_of(v, s, c, count, 3, 2, value);
   else
-    mean_of_corners(v, s, c, 4, value);
+    values_of(v, s, c, count, 4, 2, value);
 }
 
-static void gradient_at(const double *v, const strides *s, const cell *c, double *gradient)
+static void gradients_at(const double *v, const strides *s, const cells *c, int count,
+                         double *gradient)
 {
-  for (int p = 0; p < 3; p++) slope_of_corners(v + p, s, c, gradient + 3 * p);
+  for (int k = 0; k < count; k++)
+    for (int p = 0; p < 3; p++)
+      slope_of_corners(v + c->corner[k] + p, s, c, k, gradient + 9 * k + 3 * p);
 }
 
-/* Linear in time between two frames, value and gradient alike: f + weight (later - f), which is f
- * itself where the two are equal. */
-static void flow_in(const sd_flow_grid *grid, const sd_flow_frame *frame, const strides *s,
-                    const cell *c, double *value, double *gradient)
+/* f + weight (later - f), which is f itself where the two are equal. */
+static void between_frames(double weight, int n, const double *later, double *f)
 {
-  values_at(frame->now + c->corner, s, c, grid->columns, value);
-  if (gradient) gradient_at(frame->now + c->corner, s, c, gradient);
+  for (int k = 0; k < n; k++) f[k] += weight * (later[k] - f[k]);
+}
+
+static void flow_of_block(const sd_flow_frame *frame, const strides *s, const cells *c, int count,
+                          int columns, double *value, double *gradient)
+{
+  values_at(frame->now, s, c, count, columns, value);
+  if (gradient) gradients_at(frame->now, s, c, count, gradient);
   if (!frame->next) return;
 
-  double later[4], later_gradient[9];
-  values_at(frame->next + c->corner, s, c, grid->columns, later);
-  for (int p = 0; p < grid->columns; p++) value[p] += frame->weight * (later[p] - value[p]);
+  double later[9 * BLOCK];
+  values_at(frame->next, s, c, count, columns, later);
+  between_frames(frame->weight, columns * count, later, value);
   if (!gradient) return;
-  gradient_at(frame->next + c->corner, s, c, later_gradient);
-  for (int k = 0; k < 9; k++) gradient[k] += frame->weight * (later_gradient[k] - gradient[k]);
+  gradients_at(frame->next, s, c, count, later);
+  between_frames(frame->weight, 9 * count, later, gradient);
 }
 
 void sd_flow_grid_at(const sd_flow_grid *grid, const sd_flow_frame *frame, int n, const double *x,
                      double *value, double *gradient)
 {
-  // a block's cells stay in the first cache, and its prefetches within what a core can have under way
-  enum { BLOCK = 16 };
   const strides s = strides_of(grid);
-  cell cells[BLOCK];
+  cells c;
   for (int begin = 0; begin < n; begin += BLOCK) {
     const int count = n - begin < BLOCK ? n - begin : BLOCK;
+    const size_t first = begin;
+    find_cells(grid, &s, count, x + 3 * first, &c);
     for (int k = 0; k < count; k++) {
-      find_cell(grid, &s, x + 3 * (size_t) (begin + k), &cells[k]);
-      if (cells[k].status != SD_OK) continue;
-      prefetch(frame->now + cells[k].corner, &s);
-      if (frame->next) prefetch(frame->next + cells[k].corner, &s);
+      prefetch(frame->now + c.corner[k], &s);
+      if (frame->next) prefetch(frame->next + c.corner[k], &s);
     }
-    for (int k = 0; k < count; k++) {
-      const size_t point = begin + k;
-      double *u = value + grid->columns * point, *G = gradient ? gradient + 9 * point : NULL;
-      if (cells[k].status == SD_OK) {
-        flow_in(grid, frame, &s, &cells[k], u, G);
-        continue;
-      }
-      for (int p = 0; p < grid->columns; p++) u[p] = NAN;
-      for (int p = 0; p < 9 && G; p++) G[p] = NAN;
-    }
+    flow_of_block(frame, &s, &c, count, grid->columns, value + grid->columns * first,
+                  gradient ? gradient + 9 * first : NULL);
   }
 }
