@@ -6,6 +6,7 @@
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_wall_adami_sph.h"
+#include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "restart_words.h"
@@ -163,7 +164,7 @@ double PairSph::mixed(int k, int i, int j) const
 {
   if (!std::isnan(given[k][i][j])) return given[k][i][j];
   if (i == j) {
-    for (const auto *fix : Sph::fixes<FixPropertyGlobal>(lmp))
+    for (const auto *fix : fixes_of<FixPropertyGlobal>(lmp))
       if (k == (fix->property == "sl" ? H : C)) return fix->of_type[i - 1];
     return k == DELTAP && shifts && !model.tenscorr ? spacing(i) : defaults[k];
   }
@@ -215,7 +216,7 @@ void PairSph::init_style()
 
 template <class Style> Style *PairSph::only(const char *otherwise)
 {
-  const auto found = Sph::fixes<Style>(lmp);
+  const auto found = fixes_of<Style>(lmp);
   if (found.size() > 1)
     fail(lmp, COMMAND + ": more than one fix " + Style::STYLE + otherwise);
   return found.empty() ? nullptr : found[0];
@@ -223,7 +224,7 @@ template <class Style> Style *PairSph::only(const char *otherwise)
 
 void PairSph::find_fixes()
 {
-  pressures = Sph::fixes<FixSphPressure>(lmp);
+  pressures = fixes_of<FixSphPressure>(lmp);
   if (pressures.empty())
     fail(lmp, COMMAND + ": no fix sph/pressure: it sets the pressure that belongs to a density");
   continuity = only<FixSphDensityContinuity>(": only one can set the density");
@@ -243,10 +244,10 @@ void PairSph::find_fixes()
 /* Who advances the density, and who sets vest. */
 void PairSph::find_integrators()
 {
-  integrators = Sph::fixes<FixNveSph>(lmp);
-  const auto moving = Sph::fixes(lmp, FixNveSph::STYLE);
-  const auto stationary = Sph::fixes(lmp, FixNveSphStationary::STYLE);
-  const auto theirs = Sph::fixes(lmp, "sph"), their_stationary = Sph::fixes(lmp, "sph/stationary");
+  integrators = fixes_of<FixNveSph>(lmp);
+  const auto moving = fixes_of(lmp, FixNveSph::STYLE);
+  const auto stationary = fixes_of(lmp, FixNveSphStationary::STYLE);
+  const auto theirs = fixes_of(lmp, "sph"), their_stationary = fixes_of(lmp, "sph/stationary");
   const bool ours = !moving.empty() || !stationary.empty(),
              others = !theirs.empty() || !their_stationary.empty();
   if (ours && others)
@@ -275,7 +276,7 @@ void PairSph::choose_scheme()
   if (shifts) {
     refuse(volume, "does not go with volume yes of fix sph/density/continuity: it blows up where "
                    "densities jump");
-    refuse(!leapfrog || !Sph::fixes(lmp, "sph").empty(),
+    refuse(!leapfrog || !fixes_of(lmp, "sph").empty(),
            "needs fix sph/density/continuity and fix nve/sph: particles are moved in the middle of a "
            "step");
     refuse(!(model.delta > 0.0), "needs fix sph/density/continuity with delta, usually 0.1");
@@ -283,8 +284,8 @@ void PairSph::choose_scheme()
     refuse(model.dimension != domain->dimension, "needs the kernel of the box's dimension");
     refuse(!corrects && model.kernel == SD_SPH_CUBICSPLINE,
            "needs kernel wendland: the cubic spline lets particles pair");
-    refuse(corrects && (!Sph::fixes(lmp, "wall/sph").empty() ||
-                        !Sph::fixes(lmp, "wall/region/sph").empty()),
+    refuse(corrects && (!fixes_of(lmp, "wall/sph").empty() ||
+                        !fixes_of(lmp, "wall/region/sph").empty()),
            "does not go with fix wall/sph and wall/region/sph: the support is empty behind them; use "
            "fix wall/adami/sph or shift yes");
   }
@@ -336,7 +337,7 @@ bigint PairSph::in_both(int bits, int more_bits)
 /* Here and not in init_style, since the domain learns of fix deform after that. */
 void PairSph::setup()
 {
-  if (needs_velocity && domain->deform_vremap && !Sph::fixes(lmp, "sph").empty())
+  if (needs_velocity && domain->deform_vremap && !fixes_of(lmp, "sph").empty())
     fail(lmp,
          COMMAND + ": fix deform with remap v: fix sph extrapolates velocities before they are "
                    "shifted at the faces that glide; use fix nve/sph");

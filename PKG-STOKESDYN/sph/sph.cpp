@@ -38,14 +38,6 @@ namespace Sph {
     return pair;
   }
 
-  std::vector<Fix *> fixes(LAMMPS *lmp, const char *style)
-  {
-    std::vector<Fix *> found;
-    for (int i = 0; i < lmp->modify->nfix; i++)
-      if (strcmp(lmp->modify->fix[i]->style, style) == 0) found.push_back(lmp->modify->fix[i]);
-    return found;
-  }
-
   std::vector<Fix *> integrators(LAMMPS *lmp)
   {
     std::vector<Fix *> found;

@@ -38,18 +38,8 @@ namespace Sph {
   /* The pair style of the scene; fails without one. */
   PairSph *require_pair(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
 
-  /* All fixes of this style, in the order of the input. */
-  std::vector<LAMMPS_NS::Fix *> fixes(LAMMPS_NS::LAMMPS *lmp, const char *style);
-
-  template <class Style> std::vector<Style *> fixes(LAMMPS_NS::LAMMPS *lmp)
-  {
-    std::vector<Style *> found;
-    for (auto *fix : fixes(lmp, Style::STYLE)) found.push_back(static_cast<Style *>(fix));
-    return found;
-  }
-
-  /* Those that move particles by forces: all that integrate in time but fix move and rigid bodies.
-   * */
+  /* Those that move particles by forces: all that integrate in time but fix move and rigid
+   * bodies. */
   std::vector<LAMMPS_NS::Fix *> integrators(LAMMPS_NS::LAMMPS *lmp);
 
   /* Union of their group bits. */

@@ -1,10 +1,10 @@
 #include "fix_stokes_dynamics.h"
 
+#include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
 
 #include "atom.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -73,10 +73,9 @@ void FixStokesDynamics::init()
              ": keyword apply: 'yes' together with add_force yes of pair_style stokes_dynamics "
              "would count the force twice");
   if (!applies) return;
-  for (int i = 0; i < modify->nfix; i++) {
-    Fix *other = modify->fix[i];
+  for (Fix *other : fixes_of(lmp, STYLE)) {
     int dim;
-    if (other != this && strcmp(other->style, STYLE) == 0 && *(bool *) other->extract("applies", dim))
+    if (other != this && *(bool *) other->extract("applies", dim))
       fail(lmp,
            COMMAND + ": keyword apply: the fixes " + std::string(id) + " and " + other->id +
                " both apply the force, which would count twice; give one of them apply no");

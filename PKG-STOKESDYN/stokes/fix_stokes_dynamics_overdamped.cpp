@@ -1,5 +1,6 @@
 #include "fix_stokes_dynamics_overdamped.h"
 
+#include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
 #include "lammps_compat.h"
@@ -21,7 +22,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -94,17 +94,13 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
 
 void FixStokesDynamicsLast::setup(int /*vflag*/)
 {
-  for (int i = 0; i < modify->nfix; i++)
-    if (strcmp(modify->fix[i]->style, FixStokesDynamicsOverdamped::STYLE) == 0)
-      static_cast<FixStokesDynamicsOverdamped *>(modify->fix[i])->after_setup();
+  for (auto *fix : fixes_of<FixStokesDynamicsOverdamped>(lmp)) fix->after_setup();
 }
 
 bool FixStokesDynamicsOverdamped::prepare(LAMMPS *lmp)
 {
   using Last = FixStokesDynamicsLast;
-  bool there = false;
-  for (int i = 0; i < lmp->modify->nfix; i++)
-    there = there || strcmp(lmp->modify->fix[i]->style, STYLE) == 0;
+  const bool there = !fixes_of(lmp, STYLE).empty();
   if (Compat::fix(lmp->modify, Last::ID)) lmp->modify->delete_fix(Last::ID);
   if (there) lmp->modify->add_fix(std::string(Last::ID) + " all " + Last::STYLE);
   return there;

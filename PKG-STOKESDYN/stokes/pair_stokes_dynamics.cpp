@@ -1,6 +1,7 @@
 #include "pair_stokes_dynamics.h"
 
 #include "fix_stokes_dynamics_overdamped.h"
+#include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "restart_words.h"
@@ -215,13 +216,12 @@ void PairStokesDynamics::look_for_fixes()
   bool applied = hydro.settings.add_force;
   hydro.reported = false;
   hydro.overdamped = FixStokesDynamicsOverdamped::prepare(lmp);
-  for (int i = 0; i < modify->nfix; i++)
-    if (strcmp(modify->fix[i]->style, "stokes_dynamics") == 0) {
-      int dim;
-      const bool *applies = (const bool *) modify->fix[i]->extract("applies", dim);
-      applied = applied || (applies && *applies);
-      hydro.reported = true;
-    }
+  for (Fix *fix : fixes_of(lmp, "stokes_dynamics")) {
+    int dim;
+    const bool *applies = (const bool *) fix->extract("applies", dim);
+    applied = applied || (applies && *applies);
+    hydro.reported = true;
+  }
   if (applied || hydro.overdamped || warned_nobody_applies) return;
   warned_nobody_applies = true;
   if (comm->me == 0)

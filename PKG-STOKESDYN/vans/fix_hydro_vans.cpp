@@ -1,5 +1,6 @@
 #include "fix_hydro_vans.h"
 
+#include "fixes.h"
 #include "lammps_compat.h"
 #include "ranks.h"
 
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 
 using namespace LAMMPS_NS;
@@ -172,9 +172,8 @@ void FixHydroVans::check_radius()
 /* Atoms that two fixes of this style push. */
 void FixHydroVans::check_others() const
 {
-  for (int k = 0; k < modify->nfix && set.has_grains(); k++) {
-    const Fix *other = modify->fix[k];
-    if (strcmp(other->style, style) != 0) continue;
+  if (!set.has_grains()) return;
+  for (const Fix *other : fixes_of(lmp, style)) {
     if (other == this) break;    // every pair once
     bigint mine = 0, all;
     for (int i = 0; i < atom->nlocal; i++)

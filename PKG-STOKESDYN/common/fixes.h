@@ -1,0 +1,31 @@
+/* The fixes of a scene by their style. */
+#ifndef SD_FIXES_H
+#define SD_FIXES_H
+
+#include "fix.h"
+#include "lammps.h"
+#include "modify.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+/* All of this style, in the order of the input. */
+inline std::vector<LAMMPS_NS::Fix *> fixes_of(LAMMPS_NS::LAMMPS *lmp, const std::string &style)
+{
+  std::vector<LAMMPS_NS::Fix *> found;
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    if (style == lmp->modify->fix[i]->style) found.push_back(lmp->modify->fix[i]);
+  return found;
+}
+
+template <class Style> std::vector<Style *> fixes_of(LAMMPS_NS::LAMMPS *lmp)
+{
+  std::vector<Style *> found;
+  for (auto *fix : fixes_of(lmp, Style::STYLE)) found.push_back(static_cast<Style *>(fix));
+  return found;
+}
+
+}    // namespace StokesDyn
+#endif
