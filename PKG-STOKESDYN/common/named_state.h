@@ -1,8 +1,9 @@
 /* What a fix or pair style keeps in a restart file: numbers by name, so that a file of another
  * version is read by what it says and not by where it stands.
  *
- * In the file: a text "stokesdyn 1 STYLE VERSION\n" (before version 1.0.0 without it) and then lines "NAME COUNT VALUE ... VALUE\n",
- * hexadecimal floating point, which loses nothing; closed by a 0. Names have no blanks. */
+ * In the file: a text "stokesdyn 1 STYLE VERSION\n" (before version 1.0.0 without it) and then lines
+ * "NAME COUNT VALUE ... VALUE\n", hexadecimal floating point, which loses nothing; closed by a 0.
+ * Names have no blanks. */
 #ifndef SD_NAMED_STATE_H
 #define SD_NAMED_STATE_H
 

@@ -184,6 +184,23 @@ void VansSettings::take_intensity(Keywords &in)
   if (intensity.number() < 0.0) in.refuse("'" + text(intensity.number()) + "' must be >= 0");
 }
 
+void VansSettings::take_fluid(Keywords &in)
+{
+  fluid.rho = law.rho = in.positive();
+  fluid.eta = law.eta = in.positive();
+}
+
+void VansSettings::take_gravity(Keywords &in)
+{
+  for (double &component : law.g) component = in.number();
+}
+
+void VansSettings::take_surface(Keywords &in)
+{
+  fluid.driven = in.choice({"free", "speed"}) == 1;
+  if (fluid.driven) u_top = Field::parse(in);
+}
+
 void VansSettings::take_sidewall(Keywords &in)
 {
   if (in.take("off")) return;
@@ -193,17 +210,6 @@ void VansSettings::take_sidewall(Keywords &in)
 
 void VansSettings::read(Keywords &in)
 {
-  const auto water = [&] {
-    fluid.rho = law.rho = in.positive();
-    fluid.eta = law.eta = in.positive();
-  };
-  const auto gravity = [&] {
-    for (double &component : law.g) component = in.number();
-  };
-  const auto surface = [&] {
-    fluid.driven = in.choice({"free", "speed"}) == 1;
-    if (fluid.driven) u_top = Field::parse(in);
-  };
   const auto closure = [&] {
     fluid.turbulence = in.option<sd_vans_turbulence>(
         {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
@@ -219,8 +225,8 @@ void VansSettings::read(Keywords &in)
   };
   in.parse({
       {"mesh", [&] { take_mesh(in); }},
-      {"fluid", water},
-      {"gravity", gravity},
+      {"fluid", [&] { take_fluid(in); }},
+      {"gravity", [&] { take_gravity(in); }},
       {"area", [&] { area = in.positive(); }},
       {"couple", coupling},
       {"profile", [&] { profile_file = file_or(in, "zero"); }},
@@ -237,7 +243,7 @@ void VansSettings::read(Keywords &in)
       {"bed_average", [&] { bed_average = (int) in.integer(1, 1000000); }},
       {"sublayer", [&] { fluid.sublayer = in.yes_no(); }},
       {"viscosity", viscosity},
-      {"surface", surface},
+      {"surface", [&] { take_surface(in); }},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
       {"radius", [&] { radius = in.positive(); }},

@@ -82,6 +82,9 @@ struct VansSettings {
   void take_class_radii(Keywords &in);
   void take_fluctuation(Keywords &in);
   void take_intensity(Keywords &in);
+  void take_fluid(Keywords &in);
+  void take_gravity(Keywords &in);
+  void take_surface(Keywords &in);
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void read_mesh();

@@ -1,5 +1,6 @@
 #include "sd_gap.h"
 
+#include "sd_linear.h"
 #include "sd_neighbor.h"
 
 #include <math.h>
@@ -14,9 +15,8 @@ sd_status sd_smallest_gap(const double *x, const double *a, const int64_t *body,
     for (long k = list.pairs.first[i]; k < list.pairs.first[i + 1]; k++) {
       const int j = list.pairs.neighbor[k];
       if (body && body[i] != 0 && body[i] == body[j]) continue;
-      double square = 0.0;
-      for (int d = 0; d < 3; d++) square += pow(x[3 * (long) i + d] - x[3 * (long) j + d], 2);
-      *gap = fmin(*gap, 2.0 * (sqrt(square) / (a[i] + a[j]) - 1.0));
+      const double R = sqrt(sd_distance_squared(x + 3 * (long) i, x + 3 * (long) j));
+      *gap = fmin(*gap, 2.0 * (R / (a[i] + a[j]) - 1.0));
     }
   sd_neighbors_free(&list);
   return status;

@@ -80,7 +80,7 @@ extern const sd_mobility_engine sd_mobility_list;
  * is nowhere, or outside of an open box. */
 extern const sd_mobility_engine sd_mobility_ewald;
 
-/* [sd_mobility_count] all of them */
+/* [sd_mobility_count] those that want nothing but a law: all but ewald */
 extern const sd_mobility_engine *const sd_mobility_engines[];
 extern const int sd_mobility_count;
 
