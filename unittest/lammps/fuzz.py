@@ -27,7 +27,8 @@ import tempfile
 import time
 
 from fuzz_grammar import BAD, GOOD, LOUD, ODD
-from fuzz_styles import draw, files
+from fuzz_styles import draw
+from fuzz_vans import files
 
 # --- running ------------------------------------------------------------------------------------------------------------
 

@@ -253,3 +253,40 @@ class Case:
             self.says(BAD, *names)
 
 
+class NumberOr:
+    def __init__(self, word, number):
+        self.word, self.number, self.good, self.border = word, number, number.good + [word], number.border
+
+    def judge(self, word, case):
+        return GOOD if word == self.word else self.number.judge(word, case)
+
+
+def delete_something(case, *settings):
+    """Perhaps a region, group or variable that the command names vanishes before the run."""
+    if case.draw.random() > 0.04:
+        return
+    names = {"region": "region {} delete", "group": "group {} delete", "average": "group {} delete"}
+    there = [k for k in settings if k in case.settings and case.value(k) != "all" and case.level != BAD]
+    if there:
+        k = case.draw.choice(there)
+        case.lines.append(names[k].format(case.value(k)))
+        case.says(BAD, k)
+    elif "v_eta" in case.variables and case.level != BAD:
+        case.lines.append("variable eta delete")
+        case.says(BAD, *[k for k, v in case.settings.items() if "v_eta" in v])
+
+
+# --- kinds of words that many keywords share
+
+ANY = Number(lambda v: True, ["0", "1", "-2.5", "0.3"])
+
+
+def positive(*good, border=("0", "-1"), odd=lambda v: False):
+    return Number(lambda v: v > 0, list(good), border, odd)
+
+
+POSITIVE = Number(lambda v: v > 0, ["1", "0.7", "2.5"], ["0", "-1", "1e-300", "1e300", "-0"])
+NOT_NEGATIVE = Number(lambda v: v >= 0, ["0", "0.1", "1"], ["-1", "-1e-300", "1e300"])
+COUNT = Integer(lambda v: v >= 1, ["1", "2", "7"], ["0", "-1", "2147483647", "2147483648", "1.0", "1e3"])
+YES_NO = Choice("yes", "no")
+U = Field(lambda v: True, ["0", "0.4", "-1"])

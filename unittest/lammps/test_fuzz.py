@@ -4,7 +4,8 @@ import pytest
 
 import fuzz
 import fuzz_grammar
-import fuzz_styles
+import fuzz_stokes
+import fuzz_vans
 
 STOKES = "visc 1 cut_off_distance inf"
 
@@ -33,7 +34,7 @@ class Read(fuzz_grammar.Case):
     ("relative_tolerance 0.5", "loud"), ("fluid_velocity 0 0", "bad"), ("fluid_velocity 0 0 0x1", "bad"), ("tensor RPY", "bad"),
     ("taper wendland", "bad"), ("precondition sparse", "bad"), ("precondition sparse algorithm 2", "good"), ("bogus", "bad")])
 def test_the_judge_reads_as_the_page_of_the_pair_style(words, level):
-    assert Read(fuzz_styles.judge_stokes, f"{STOKES} {words}").level == level
+    assert Read(fuzz_stokes.judge_stokes, f"{STOKES} {words}").level == level
 
 
 @pytest.mark.parametrize("words, level", [
@@ -41,7 +42,7 @@ def test_the_judge_reads_as_the_page_of_the_pair_style(words, level):
     ("phi_max 1.1", "bad"), ("lift off", "good"), ("lift on", "bad"), ("class_radii 2 0.003", "bad"), ("fluctuation depth 1", "bad"),
     ("fluctuation depth 1 auto", "good"), ("profile file short.txt", "bad"), ("mesh 20 0.001 0", "loud")])
 def test_the_judge_reads_as_the_page_of_the_stream(words, level):
-    assert Read(fuzz_styles.judge_vans, f"1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 {words}", "usual").level == level
+    assert Read(fuzz_vans.judge_vans, f"1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 {words}", "usual").level == level
 
 
 @pytest.mark.parametrize("words, result, wanted", [
@@ -57,7 +58,7 @@ def test_the_judge_reads_as_the_page_of_the_stream(words, level):
     ("", {"end": "crash"}, "crash")])
 def test_an_outcome_is_called_by_its_name(words, result, wanted):
     whole = dict({"number": 0, "at": 0, "finite": True, "warnings": ""}, **result)
-    assert fuzz.outcome(Read(fuzz_styles.judge_stokes, f"{STOKES} {words}"), whole) == wanted
+    assert fuzz.outcome(Read(fuzz_stokes.judge_stokes, f"{STOKES} {words}"), whole) == wanted
 
 
 def test_a_worker_that_dies_is_a_crash_and_the_next_case_goes_on(tmp_path, monkeypatch):

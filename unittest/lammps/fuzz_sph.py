@@ -1,0 +1,181 @@
+"""Scenes, grammar and rules of pair_style sph/artVisc/tensCorr and its fixes, written from their pages (for fuzz.py)."""
+from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, YES_NO, Choice, Name, Number, NumberOr, decimal, positive,
+                          write)
+
+WATER = """units si
+atom_style sph
+atom_modify map array
+boundary f f f
+plugin load stokesdynplugin.so
+region box block -0.05 0.08 -0.05 0.08 -0.05 0.08
+create_box 2 box
+lattice sc 0.01
+region water block -0.001 0.031 -0.001 0.031 -0.001 0.031 units box
+create_atoms 1 region water
+region bottom block -1 1 -1 1 -1 0.005 units box
+set region bottom type 2
+group fluid type 1
+group wall type 2
+group nobody empty
+mass * 0.001
+set group all sph/rho 1001
+velocity all set 0.1 -0.05 0.02
+velocity all create 1e16 4711 loop geom
+region zone block -0.02 0.05 -0.02 0.05 -0.02 0.05 units box
+region part block -0.005 0.015 -0.02 0.05 -0.02 0.05 units box
+variable eta equal 1.5
+neighbor 0.003 bin
+neigh_modify delay 0 every 1
+timestep 1e-6
+thermo 100000"""
+LENGTH = positive("0.013", "0.012", border=["0", "-1", "1e-12", "0.05"])
+ARTVISC = [Number(lambda v: v >= 0, ["0.1", "0"], ["-1"])] * 2 + [Number(lambda v: v >= 0, ["1.7e-6", "0"], ["-1"])]
+SPACING = positive("0.01", border=["0", "-1", "0.03"])
+SOUND = positive("20", "25")
+SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING], "viscosity": [positive("1e-3", odd=lambda v: v == 0)],
+            "shift": [YES_NO], "correction": [YES_NO]}
+SPH_COEFF = {"h": [LENGTH], "c": [SOUND], "alpha": [NOT_NEGATIVE], "beta": [NOT_NEGATIVE], "deltap": [SPACING]}
+KERNELS = ["cubicspline", "wendland", "cubicspline2d", "wendland2d"]
+B, RHO = positive("57142.9", "300"), positive("1000")
+PRESSURES = [("absolut", [positive("20", "7")]), ("relativ", [B, RHO]), ("relativ", [B, RHO, ANY]), ("Tait", [B, RHO, POSITIVE]),
+             ("Tait", [B, RHO, POSITIVE, ANY])]
+PLANE = Number(lambda v: True, ["-0.01", "-0.02"], ["0.06", "0.01"])
+FAR = Number(lambda v: True, ["0.06", "0.04"], ["-0.01", "0.01"])
+
+
+def water(case, **instead):
+    """The scene, with some of its lines replaced. The tried line is the one that is replaced first."""
+    lines = {"pair": "pair_style sph/artVisc/tensCorr wendland 0.013 artVisc 0.1 0 1.7e-6 tensCorr 0.2 0.01 viscosity 1e-3",
+             "coeff": "pair_coeff * * c 20", "eos": "fix eos all sph/pressure Tait 57142.9 1000 7",
+             "density": "fix density all sph/density/continuity", "move": "fix move all nve/sph"}
+    tried = next(iter(instead.values()))
+    lines.update(instead)
+    case.lines = WATER.split("\n") + [line for line in lines.values() if line]
+    case.tried = case.lines.index(tried)
+
+
+def violent(words, limit=1e5):
+    """Particles fly apart."""
+    return any(abs(decimal(w) or 0.0) > limit for w in words)
+
+
+def make_sph_pair(case):
+    case.style = "sph/artVisc/tensCorr"
+    words = case.damaged([case.draw.choice(KERNELS)] + write(LENGTH, case.draw) + case.words_of(SPH_PAIR, few=3))
+    c = case.draw.random() < 0.9
+    water(case, pair="pair_style sph/artVisc/tensCorr " + " ".join(words), coeff="pair_coeff * *" + " c 20" * c)
+    if not case.judge(words, SPH_PAIR, [("kernel", Choice(*KERNELS)), ("h", LENGTH)]):
+        case.faults += ["kernel", words[0] if words else "kernel"]
+        return
+    h = float(case.value("h"))
+    if h > 1:
+        case.says(ODD, "")      # many times the box
+    case.extreme |= violent(words)
+    case.refuse_if("artVisc" in case.settings and not c, "artVisc")
+    moved = [name for name in ("shift", "correction") if case.settings.get(name, [""])[0] == "yes"]
+    case.refuse_if(moved, "shift", "correction")    # the scene has no delta
+    case.refuse_if("tensCorr" in case.settings and float(case.settings["tensCorr"][1]) >= 2 * h, "deltap")
+
+
+def make_sph_coeff(case):
+    case.style = "sph/artVisc/tensCorr"
+    types = case.draw.choice([["*", "*"], ["*", "*"], ["1", "2"], ["1*2", "1*2"], ["2", "1"], ["1", "3"], ["0", "*"]])
+    words = case.damaged(types + case.words_of(SPH_COEFF, ["c"], few=4))
+    water(case, coeff="pair_coeff " + " ".join(words))
+    case.extreme |= violent(words)
+    usual = words[:2] in (["*", "*"], ["1*2", "1*2"])
+    if not usual:
+        case.says(ODD, "")      # pairs of types are LAMMPS's; missing ones too
+    if not case.judge(words[2:], SPH_COEFF):
+        if not usual:
+            case.faults.append("")
+        return
+    case.refuse_if(usual and "c" not in case.settings, "artVisc")
+    h = float(case.value("h", "0.013"))
+    case.refuse_if(usual and float(case.value("deltap", "0.01")) >= 2 * h, "deltap")
+
+
+def make_sph_pressure(case):
+    case.style = "sph/pressure"
+    name, kinds = case.draw.choice(PRESSURES)
+    words = case.damaged([name] + [w for kind in kinds for w in write(kind, case.draw)])
+    group = case.draw.choice(["all"] * 6 + ["fluid", "nobody"])
+    water(case, eos=f"fix eos {group} sph/pressure " + " ".join(words))
+    ways = [kinds for name, kinds in PRESSURES if words[:1] == [name]] or [[B]]
+    kinds = max((k for k in ways if len(k) < len(words)), key=len, default=ways[0])
+    first = words[0] if words else ""
+    case.judge(words, {}, [("equation of state", Choice("absolut", "relativ", "Tait"))] + [(first, k) for k in kinds])
+    if case.level == BAD:
+        case.faults += words[:1] + ["equation of state"]
+    elif group != "all":
+        case.says(ODD, "")
+    case.extreme |= violent(words, 1e8)
+
+
+def make_sph_density(case):
+    draw = case.draw
+    what = draw.choice(["continuity", "summation", "corr"])
+    case.style = "sph/density/" + what
+    grammar = {"continuity": {"delta": [NOT_NEGATIVE]}, "summation": {}, "corr": {}}[what]
+    begin = [("shepard", Choice("shepard")), ("every", Choice("every")), ("every", COUNT)] if what == "corr" else []
+    words = case.damaged([w for _, kind in begin for w in write(kind, draw)] + case.words_of(grammar, few=len(grammar)))
+    name, group = "filter" if what == "corr" else "density", draw.choice(["all"] * 5 + ["fluid", "nobody"])
+    water(case, **{name: f"fix {name} {group} {case.style} " + " ".join(words)})
+    if not case.judge(words, grammar, begin) and what == "corr":
+        case.faults += ["shepard", "every"]
+
+
+def make_sph_move(case):
+    draw = case.draw
+    case.style = draw.choice(["nve/sph", "nve/sph/stationary"])
+    words = case.damaged([]) if draw.random() < 0.5 else []
+    water(case, move=f"fix move {draw.choice(['all', 'fluid', 'wall', 'nobody', 'missing'])} {case.style} " + " ".join(words))
+    if "missing" in case.lines[case.tried].split()[2]:
+        case.says(BAD, "group")
+    case.refuse_if(bool(words), *words[:1])
+
+
+def make_sph_wall(case):
+    draw = case.draw
+    rest = [("wall", positive("0.01", "0.005")), ("wall", NOT_NEGATIVE)]
+    kind = draw.choice(["plane", "cylinder", "region"])
+    if kind == "region":
+        case.style, begin = "wall/region/sph", [("region", Name("zone", "part"))] + rest
+    elif kind == "cylinder":
+        case.style, begin = "wall/sph", [("wall", Choice("zcylinder")), ("zcylinder", positive("0.2"))] + rest
+    else:
+        planes = [("wall", Choice("xplane", "yplane", "zplane")), ("plane", NumberOr("NULL", PLANE)), ("plane", NumberOr("NULL", FAR))]
+        case.style, begin = "wall/sph", planes + rest
+    words = case.damaged([w for _, k in begin for w in write(k, draw)])
+    water(case, wall=f"fix wall all {case.style} " + " ".join(words))
+    if not case.judge(words, {}, begin):
+        case.faults += words[:1] + ["wall", "region", "plane"]
+    elif kind == "plane":
+        lo, hi = words[1:3]
+        if lo == hi == "NULL":
+            case.says(ODD, words[0])
+        case.refuse_if("NULL" not in (lo, hi) and float(lo) >= float(hi), words[0])
+    case.extreme |= violent(words, 1.0)     # r0, D
+
+
+ADAMI = {"gravity": [ANY, ANY, ANY], "slip": [YES_NO]}
+
+
+def make_sph_adami(case):
+    case.style = "wall/adami/sph"
+    words = case.damaged(case.words_of(ADAMI, few=2))
+    group = case.draw.choice(["wall"] * 6 + ["all", "nobody"])
+    water(case, adami=f"fix tank {group} wall/adami/sph " + " ".join(words), move="fix move fluid nve/sph")
+    case.judge(words, ADAMI)
+    if group != "wall":
+        case.says(ODD, "")
+    case.extreme |= violent(words)
+
+
+def make_sph_check(case):
+    case.style = "check/timestep/sph"
+    begin = [("N", COUNT), ("fraction", Number(lambda v: v > 0, ["0.3", "0.25"], ["0", "-1", "1.5"], odd=lambda v: v > 1))]
+    words = case.damaged([w for _, k in begin for w in write(k, case.draw)] + case.draw.choice([[], ["warn"], ["stop"]]))
+    water(case, check="fix limit all check/timestep/sph " + " ".join(words))
+    if not case.judge(words, {"warn": [], "stop": []}, begin):
+        case.faults += ["form", "N", "fraction"]

@@ -1,0 +1,153 @@
+"""Scenes, grammar and rules of fix hydro/vans, written from its page (for fuzz.py)."""
+import os
+
+from fuzz_grammar import (ANY, BAD, COUNT, LOUD, NOT_NEGATIVE, ODD, YES_NO, Choice, Counted, Field, File, Integer, Name,
+                          Number, Or, decimal, delete_something, positive)
+
+CELLS = 20
+GRAINS = """units si
+atom_style {style}
+atom_modify map array
+boundary p p f
+plugin load stokesdynplugin.so
+region box block 0 0.02 0 0.02 -0.02 0.15
+create_box 1 box
+create_atoms 1 single 0.004 0.004 0.004
+create_atoms 1 single 0.014 0.012 0.006
+create_atoms 1 single 0.005 0.013 0.018
+create_atoms 1 single 0.013 0.004 0.04
+{radii}
+velocity all set 0.1 0.01 -0.02
+variable eta equal 1.5
+variable zero equal 0
+variable minus equal -1
+variable nan equal 1e308*10-1e308*10
+variable text string hello
+variable index index 3 4
+variable place atom 1.2+0.01*x
+region zone block INF INF INF INF INF INF
+region part block 0 0.01 0 0.02 -1 1
+region nowhere block 0 0.001 0 0.001 0.1 0.101
+group g id 1 2
+group nobody empty
+pair_style zero 0.01
+pair_coeff * *
+neighbor 0.001 bin
+timestep 1e-5
+thermo 100000"""
+SEED = Integer(lambda v: v >= 1, ["4711", "1"], ["0", "-1", "9223372036854775807"], odd=lambda v: v <= 0)
+BED = Or(auto=[], otherwise=[ANY])
+EQUAL = Field(lambda v: True, ["0", "0.3", "-0.1"], atom=False)
+FRACTION = Number(lambda v: 0 < v <= 1, ["0.61", "0.08", "1"], ["0", "1.01", "-0.1"])
+VANS = {
+    "mesh": [Or(file=[File("mesh.txt")], otherwise=[
+        Integer(lambda v: v >= 1, [str(CELLS)] * 4 + ["40"], ["1", "0", "-3", "2", "99999999999", "20.0"],
+                odd=lambda v: v == 1 or v > 1e6),
+        positive("0.001", "0.002"), Number(lambda v: True, ["0", "-0.01"])])],
+    "fluid": [positive("1000"), positive("0.001")],
+    "gravity": [Number(lambda v: True, ["0.5", "0", "-0.3"]), Number(lambda v: True, ["0"]),
+                Number(lambda v: True, ["-9.81"], ["9.81", "0"])],
+    "area": [positive("0.0004", "0.0008")],
+    "couple": [Choice("none", "one", "two", "fluid")], "profile": [Or(zero=[], file=[File("profile.txt")])],
+    "given": [Or(averaged=[], file=[File("given.txt")])], "convective": [Or(off=[], file=[File("convective.txt")])],
+    "solve": [positive("1e-3", "0.01", border=["0", "-1", "1e-6", "1e3"]), positive("1e-4", "1e-3", border=["0", "-1", "1e-9"])],
+    "stream": [Choice("steady", "rest")], "hindrance": [Number(lambda v: True, ["3.1", "0", "2"], ["-1", "100"])],
+    "lift": [Or(off=[], otherwise=[ANY])],
+    "turbulence": [Choice("none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe")],
+    "kappa": [positive("0.41", odd=lambda v: v == 0)], "phi_max": [FRACTION], "phi_bed": [FRACTION],
+    "bed_average": [Integer(lambda v: v >= 1, ["1", "3"], ["0", "1000000"], odd=lambda v: v > 1e6)],
+    "sublayer": [YES_NO], "viscosity": [Choice("constant", "einstein", "power")],
+    "surface": [Or(free=[], speed=[EQUAL])], "pressure_gradient": [EQUAL],
+    "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")], "classes": [YES_NO],
+    "class_radii": [Counted(32, positive("0.003", "0.002"))],
+    "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
+    "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED])],
+    "intensity": [Or(stress=[], file=[File("convective.txt")], otherwise=[EQUAL])],
+    "renewal": [positive("0.1", "1e-4")], "region": [Name("zone", "part", "nowhere")],
+    "average": [Name("all", "g", "nobody")], "conserve": [YES_NO], "rules": [Choice("consistent", "consistent", "yade")],
+}
+
+
+def files(folder):
+    """What the keywords of hydro/vans read; CELLS slices."""
+    for name, text in (("mesh.txt", "\n".join(str(0.001 * k) for k in range(CELLS + 1))), ("short.txt", "1.0\n2.0\n1.5\n"),
+                       ("profile.txt", "# velocities\n" + "\n".join(str(0.01 * k) for k in range(CELLS + 1))),
+                       ("given.txt", "0.1 0.02 1e-4\n" * CELLS), ("full.txt", "1.2 0.02 1e-4\n" * CELLS),
+                       ("convective.txt", "1e-5\n" * CELLS), ("words.txt", "a b c\n" * CELLS), ("empty.txt", "")):
+        with open(os.path.join(folder, name), "w") as out:
+            out.write(text + "\n")
+
+
+def judge_vans(case, words, how):
+    case.judge(words, VANS, [("N", COUNT)])
+    s = case.value
+    if case.level == BAD and case.variables and int(s("N", "1")) > 2:
+        case.level = ODD        # the variables are not asked in a run of two steps
+    for name in ("mesh", "fluid", "gravity"):
+        case.refuse_if(name not in case.settings, name)
+    case.refuse_if(how == "no radius" and s("couple") != "fluid", "radius")
+    case.refuse_if(how == "no molecules" and s("overlap") == "once", "overlap")
+    for name in ("renewal", "intensity"):
+        case.refuse_if(name in case.settings and s("fluctuation", "none") == "none", name)
+    case.refuse_if(s("fluctuation", "none") != "none" and s("couple") == "fluid", "fluctuation")
+    case.refuse_if(s("felt") == "volume" and "yade" == s("rules"), "felt")
+    case.refuse_if(s("felt") == "volume" and s("grains") == "point", "felt")
+    if s("mesh", "file") != "file":
+        cells, dz, bottom = (float(w) for w in case.settings["mesh"])
+        for name in ("profile", "given", "convective"):
+            case.refuse_if(s(name) == "file" and cells != CELLS, name)
+        if not bottom <= 0.0 or not 0.02 <= bottom + cells * dz <= 0.1:
+            case.says(ODD, "mesh")      # it may miss the grains
+    if "solve" in case.settings:
+        period, dt = (float(w) for w in case.settings["solve"])
+        case.refuse_if(dt > period * 1.001, "solve")
+        if 0 < dt <= period and not period / dt < 1e6:
+            case.says(ODD if period / dt < 1e8 else LOUD, "solve")
+    driven = "pressure_gradient" in case.settings or s("surface") == "speed" or s("profile") == "file" or s("stream") == "rest"
+    if s("gravity") is not None and float(s("gravity")) == 0.0 and (not driven or s("pressure_gradient") in ("0", "v_zero")):
+        case.says(ODD, "drives")
+    if s("couple") == "fluid" and s("given") == "file" and "radius" not in case.settings:
+        case.says(ODD, "radius")
+    if s("class_radii") or s("rules") == "yade" or s("couple") == "fluid" and how == "no radius" or s("average") == "nobody" \
+            or s("region") == "nowhere" or case.settings.get("class_radii"):
+        case.says(ODD, "class_radii", "rules", "mesh", "average")
+    numbers = [abs(decimal(w)) for words in case.settings.values() for w in words if decimal(w) is not None]
+    if any(v > 1e5 or 0 < v < 1e-5 for v in numbers):      # a scale that no stream has: anything finite or refused will do
+        case.says(ODD, "")
+        case.extreme = True
+
+
+def make_vans(case):
+    case.style = "hydro/vans"
+    how = case.draw.choices(["usual", "no molecules", "no radius"], [80, 15, 5])[0]
+    style = {"no molecules": "sphere", "no radius": "atomic"}.get(how, "hybrid sphere bond")
+    radii = "mass 1 1" if how == "no radius" else "set group all diameter 0.006 density 2500"
+    if how == "usual":
+        radii += "\nmass 1 1\nset atom 1*2 mol 1"
+    case.lines = GRAINS.format(style=style, radii=radii).split("\n")
+    required = ["mesh", "fluid", "gravity"]
+    words = case.damaged([case.draw.choice(COUNT.good)] + case.words_of(VANS, required, few=7))
+    case.tried = len(case.lines)
+    case.lines.append("fix s " + case.draw.choice(["all", "all", "g"]) + " hydro/vans " + " ".join(words))
+    judge_vans(case, words, how)
+    delete_something(case, "region", "average")
+
+
+def make_vans_modify(case):
+    case.style = "hydro/vans"
+    case.lines = GRAINS.format(style="sphere", radii="set group all diameter 0.006 density 2500").split("\n")
+    case.lines.append(f"fix s all hydro/vans 1 mesh {CELLS} 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.81 solve 1e-3 1e-4")
+    values = ["values"] + [str(0.01 * k) for k in range(CELLS + 1)]
+    others = [["average"], ["solve", "1e-3", "1e-4"], ["given", "given.txt"]]
+    words = case.damaged(case.draw.choice([["profile"] + values, ["profile", "file", "profile.txt"]] + others))
+    case.tried = len(case.lines)
+    case.lines.append("fix_modify s " + " ".join(words))
+    numbers = [("profile", Number(lambda v: True, []))] * (CELLS + 1)
+    if words[:1] != ["profile"]:
+        case.says(ODD, "")      # energy, virial, ...: LAMMPS's own
+    elif words[1:2] == ["values"]:
+        case.judge(words[2:], {}, numbers)
+    else:
+        case.judge(words[1:], {}, [("profile", Choice("file")), ("profile", File("profile.txt"))])
+    if case.level == BAD:
+        case.faults += ["profile", "values", "fix_modify"]
