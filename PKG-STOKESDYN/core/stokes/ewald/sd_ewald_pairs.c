@@ -26,6 +26,7 @@ const struct sd_ewald_kernels *sd_ewald_kernels_of(sd_isa isa)
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
                            const struct sd_ewald_kernels *kernels, int width)
 {
+  if (width != p->width) sd_ewald_pairs_free(p); /* rows are wider */
   p->kernels = kernels;
   p->ewald = *e;
   p->width = width;

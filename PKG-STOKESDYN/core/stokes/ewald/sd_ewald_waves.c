@@ -1,0 +1,170 @@
+#include "sd_ewald_waves.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Gradients of the grid's coordinates, and their products */
+static void metric(sd_ewald_waves *w)
+{
+  const sd_ewald_box *b = &w->ewald.box;
+  const double lx = b->edge[0], ly = b->edge[1], lz = b->edge[2];
+  const double xy = b->tilt[0], xz = b->tilt[1], yz = b->tilt[2];
+  double G[3][3] = {{1.0 / lx, -xy / (lx * ly), (xy * yz - ly * xz) / (lx * ly * lz)},
+                    {0.0, 1.0 / ly, -yz / (ly * lz)},
+                    {0.0, 0.0, 1.0 / lz}};
+  for (int d = 0; d < 3; d++)
+    for (int c = 0; c < 3; c++) {
+      if (b->periodic)
+        G[d][c] *= w->ewald.grid[d];
+      else
+        G[d][c] = d == c ? 1.0 / w->ewald.spacing : 0.0;
+      w->spreading.gradient[d][c] = G[d][c];
+    }
+  static const int of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  for (int k = 0; k < 6; k++) {
+    const double *g = G[of[k][0]], *h = G[of[k][1]];
+    w->spreading.metric[k] = g[0] * h[0] + g[1] * h[1] + g[2] * h[2];
+  }
+}
+
+sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
+                                const struct sd_ewald_kernels *kernels, int width,
+                                const sd_world *world)
+{
+  sd_ewald_waves_free(w);
+  w->ewald = *e;
+  w->kernels = kernels;
+  w->width = width;
+  sd_window_fit(e->points, e->beta, e->tolerance, &w->window);
+  metric(w);
+  int size[3];
+  for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
+  const sd_status status = sd_grid_create(&w->grid, size, e->grid, world);
+  if (status != SD_OK) return status;
+  return sd_wave_create(&w->wave, e, kernels, size, w->grid.y0, w->grid.y1);
+}
+
+void sd_ewald_waves_free(sd_ewald_waves *w)
+{
+  sd_wave_free(&w->wave);
+  sd_grid_free(&w->grid);
+  free(w->place);
+  free(w->F);
+  memset(w, 0, sizeof(*w));
+}
+
+/* --- where the spheres stand on the grid --- */
+
+static int make_room(sd_ewald_waves *w, int n)
+{
+  if (n <= w->room && w->place) return 1;
+  const size_t many = (size_t) n + (size_t) n / 8 + 8;
+  free(w->place);
+  free(w->F);
+  w->place = malloc(sizeof(sd_spread_place) * many);
+  w->F = malloc(sizeof(double) * (size_t) w->width * many);
+  w->room = w->place && w->F ? (int) many : 0;
+  return w->room > 0;
+}
+
+/* Coordinates in grid spacings, P/2 beyond the first point of an open box */
+static void on_grid(const sd_ewald_waves *w, const double *x, double *s)
+{
+  const sd_ewald_box *b = &w->ewald.box;
+  for (int d = 0; d < 3; d++) {
+    s[d] = b->periodic ? 0.0 : 0.5 * w->ewald.points;
+    for (int c = 0; c < 3; c++) s[d] += w->spreading.gradient[d][c] * (x[c] - b->origin[c]);
+  }
+}
+
+/* Within an open box, whose tables know no larger distance; but for rounding */
+static int inside(const sd_ewald_box *b, double x, int d)
+{
+  const double spare = 1e-9 * b->edge[d];
+  return x >= b->origin[d] - spare && x <= b->origin[d] + b->edge[d] + spare;
+}
+
+/* In a periodic box all stand within half a period of the first. */
+static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
+{
+  const sd_ewald_box *box = &w->ewald.box;
+  const int points = w->ewald.points;
+  double near[3] = {0.0};
+  int hi[3] = {0}, *lo = brick, sound = 1;
+  for (int i = 0; i < w->n && sound; i++) {
+    const int j = w->sphere[i];
+    sd_spread_place *p = w->place + i;
+    double s[3];
+    on_grid(w, spheres->x + 3 * (long) j, s);
+    for (int d = 0; d < 3; d++) {
+      const double period = w->ewald.grid[d];
+      sound = sound && fabs(s[d]) < 1e9;
+      if (!sound) break;
+      if (i == 0) near[d] = box->periodic ? s[d] - period * floor(s[d] / period) : 0.0;
+      if (box->periodic) s[d] -= period * floor((s[d] - near[d]) / period + 0.5);
+      const double first = floor(s[d] - 0.5 * points);
+      p->at[d] = (int) first + 1;
+      p->v[d] = 2.0 * (s[d] - 0.5 * points - first) - 1.0;
+      if (!box->periodic) sound = sound && inside(box, spheres->x[3 * (long) j + d], d);
+      if (i == 0 || p->at[d] < lo[d]) lo[d] = p->at[d];
+      if (i == 0 || p->at[d] + points > hi[d]) hi[d] = p->at[d] + points;
+    }
+    p->b = sd_ewald_b(&w->ewald, spheres->a[j]);
+  }
+  for (int d = 0; d < 3; d++) brick[3 + d] = sound && w->n > 0 ? hi[d] - lo[d] : 0;
+  return sound;
+}
+
+sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int *sphere, int n,
+                              int *brick)
+{
+  if (!make_room(w, n)) return SD_ENOMEMORY;
+  w->sphere = sphere;
+  w->n = n;
+  return find_places(w, s, brick) ? SD_OK : SD_ENOTFINITE;
+}
+
+sd_status sd_ewald_waves_place(sd_ewald_waves *w, const int *bricks)
+{
+  sd_grid *g = &w->grid;
+  const sd_status status = sd_grid_place(g, bricks);
+  if (status != SD_OK) return status;
+  int equal = 1;
+  for (int i = 0; i < w->n; i++) {
+    sd_spread_place *p = w->place + i;
+    p->base = (p->at[0] - g->lo[0]) * g->layer + (p->at[1] - g->lo[1]) * g->row +
+              3L * (p->at[2] - g->lo[2]);
+    equal = equal && p->b == 0.0;
+  }
+  sd_spreading *s = &w->spreading;
+  const double *m = s->metric;
+  const int oblique = m[3] != 0.0 || m[4] != 0.0 || m[5] != 0.0;
+  s->n = w->n;
+  s->width = w->width;
+  s->window = &w->window;
+  s->terms = w->width == 6 || (oblique && !equal) ? 4 : equal ? 1 : 2;
+  s->place = w->place;
+  s->F = w->F;
+  s->brick = g->brick;
+  s->row = g->row;
+  s->layer = g->layer;
+  return SD_OK;
+}
+
+/* --- product --- */
+
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F)
+{
+  const long m = w->width;
+  for (int i = 0; i < w->n; i++) {
+    const long j = w->sphere[i];
+    for (int d = 0; d < m; d++) w->F[m * i + d] = s->w[j] * F[m * j + d];
+  }
+  sd_grid *g = &w->grid;
+  memset(g->brick, 0, sizeof(double) * ((size_t) (g->layer * g->n[0]) + 16));
+  w->kernels->spread(&w->spreading);
+  const sd_status status = sd_grid_convolve(g, sd_wave_multiply, &w->wave);
+  if (status == SD_OK) w->kernels->interpolate(&w->spreading);
+  return status;
+}

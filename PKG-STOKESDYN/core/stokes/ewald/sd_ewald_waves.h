@@ -1,0 +1,60 @@
+/* The wave part of an Ewald sum: from the forces on this rank's spheres to what those of all ranks
+ * do to them.
+ *
+ *   F --spread--> grid --transform, multiply, transform--> grid --interpolate--> u
+ *
+ * Each rank spreads and interpolates its own spheres on a brick of the grid; slabs of it are
+ * transformed by turns (sd_grid.h). */
+#ifndef SD_EWALD_WAVES_H
+#define SD_EWALD_WAVES_H
+
+#include "sd_ewald_internal.h"
+#include "sd_grid.h"
+#include "sd_status.h"
+#include "sd_wave.h"
+#include "sd_world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Zero-initialise; sd_ewald_waves_free in the end. */
+typedef struct {
+  sd_ewald ewald;
+  int width;
+  const struct sd_ewald_kernels *kernels;
+  sd_window window;
+  sd_wave wave;
+  sd_grid grid;
+  sd_spreading spreading;
+  /* [n] which spheres, where they stand; w F and then u [width n] */
+  int n, room;
+  const int *sphere;
+  sd_spread_place *place;
+  double *F;
+} sd_ewald_waves;
+
+/* Tables for a splitting. SD_OK or SD_ENOMEMORY. */
+sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
+                                const struct sd_ewald_kernels *kernels, int width,
+                                const sd_world *world);
+
+/* Where n of the spheres s stand on the grid: sphere [n] their numbers, which outlive the products;
+ * brick [6], out: the points that they reach, for sd_grid_place, which is next. SD_OK,
+ * SD_ENOMEMORY, or SD_ENOTFINITE if one is outside of an open box, or nowhere. */
+sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int *sphere, int n,
+                              int *brick);
+
+/* Bricks of all ranks [ranks][6]. SD_OK or SD_ENOMEMORY. */
+sd_status sd_ewald_waves_place(sd_ewald_waves *w, const int *bricks);
+
+/* F [width] a sphere -> w->F, in order of sphere and without its weight. SD_OK or what an exchange
+ * said. */
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F);
+
+void sd_ewald_waves_free(sd_ewald_waves *w);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
