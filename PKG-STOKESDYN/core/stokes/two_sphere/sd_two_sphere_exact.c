@@ -1,0 +1,44 @@
+#include "sd_two_sphere_exact.h"
+
+#include <math.h>
+
+#include "sd_two_sphere_modes.h"
+
+/* into its mean: a number that reciprocity makes equal to its mirror image */
+static void mirror(sd_real *p, sd_real *q, sd_real size, sd_real *asymmetry)
+{
+  *asymmetry = fmaxl(*asymmetry, fabsl(*p - *q) / size);
+  *p = *q = 0.5L * (*p + *q);
+}
+
+/* cosh(alpha + beta) - 1 = gap (2 (a1 + a2) + gap)/(2 a1 a2), and c = a1 a2 sinh(alpha + beta)/R */
+sd_pair_resistance sd_two_sphere_exact(double a1, double a2, double gap, double *asymmetry)
+{
+  if (a1 > a2) {
+    const sd_pair_resistance R = sd_two_sphere_exact(a2, a1, gap, asymmetry);
+    return sd_pair_resistance_exchanged(&R);
+  }
+  const sd_real A = a1, B = a2, t = gap * (2.0L * (A + B) + gap) / (2.0L * A * B);
+  const sd_real c = A * B * sqrtl(t * (t + 2.0L)) / (A + B + gap);
+  const sd_real alpha = asinhl(c / A), beta = asinhl(c / B), c2 = c * c, c3 = c2 * c;
+  sd_real XA[2][2], XC[2][2], Y[4][4], worst = 0.0L;
+  sd_two_sphere_axial_translation(alpha, beta, XA);
+  sd_two_sphere_axial_rotation(alpha, beta, XC);
+  sd_two_sphere_across(alpha, beta, Y);
+
+  mirror(&XA[0][1], &XA[1][0], fabsl(XA[0][0]), &worst);
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < i; j++)
+      mirror(&Y[i][j], &Y[j][i], sqrtl(Y[i][i] * Y[j][j]), &worst);
+  if (asymmetry) *asymmetry = (double) worst;
+  sd_pair_resistance R;
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      R.XA[i + j] = (double) (c * XA[i][j]);
+      R.YA[i + j] = (double) (c * Y[i][j]);
+      R.YB[2 * i + j] = (double) (c2 * Y[2 + i][j]);
+      R.XC[i + j] = (double) (c3 * XC[i][j]);
+      R.YC[i + j] = (double) (c3 * Y[2 + i][2 + j]);
+    }
+  return R;
+}
