@@ -241,6 +241,16 @@ typedef struct {
   double f[SD_VANS_FRICTION_TERMS];
 } sd_vans_friction;
 
+/* The length of the Reynolds number of the side walls, |U| length/nu: the hydraulic radius, area over
+ * wetted perimeter. The law below has its 0.32 for that one; on the hydraulic diameter, four times
+ * as long, it would be 0.32 - 2 log10(4) = -0.88 (smooth pipes: -0.8). A slice of water touches the
+ * walls alone, what it passes to its neighbours is in the solve: width dz over 2 dz.
+ * Yade's rule: the width. */
+static inline double sd_vans_wall_length(const sd_vans_fluid *fluid)
+{
+  return fluid->rules == SD_VANS_YADE ? fluid->width : 0.5 * fluid->width;
+}
+
 /* Friction factor f of a smooth side wall, 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32 (Graf &
  * Altinakar), tau = rho f/8 U^2; Re > 0. It has one solution for every Re, meant for turbulent
  * streams. Here solved by Halley's method to rounding, with the terms of its series.

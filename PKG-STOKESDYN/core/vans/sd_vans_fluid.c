@@ -302,7 +302,7 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
 
   const double factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0;
   s->walls = factor != 0.0;
-  s->Re_factor = fluid->width * fluid->rho / fluid->eta;
+  s->Re_factor = sd_vans_wall_length(fluid) * fluid->rho / fluid->eta;
   for (int j = 0; j < M; j++) s->wall_scale[j] = s->ce[j] * factor;
   memset(s->sum, 0, M * sizeof(double));
   s->T_bottom = s->T_surface = s->wall_sum = 0.0;

@@ -1,6 +1,6 @@
 """An independent model of one solve of the stream with side walls (numpy, dense matrices), for the table fluid_turb_lm2_wall.consistent.csv:
     python3 fluid_turb_lm2_wall.py > fluid_turb_lm2_wall.consistent.csv
-The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection."""
+The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection, with Re on the hydraulic radius, half the width."""
 import os
 import sys
 
@@ -60,7 +60,7 @@ def solve(header, c, friction=friction):
     for _ in range(steps):
         nut = l ** 2 * np.abs(U[1:] - U[:-1]) / h
         speed = np.abs(U[1:N])
-        wall = e[:M] * 2 / width * coef * friction(np.maximum(speed * width / nu, 1e-10)) / 8 * speed / 2
+        wall = e[:M] * 2 / width * coef * friction(np.maximum(speed * 0.5 * width / nu, 1e-10)) / 8 * speed / 2
         A, r = np.zeros((M, M)), np.zeros(M)
         for j in range(M):                                     # the row of slice j, unknown U'[j + 1]
             A[j, j] += e[j] / dt + b[j] + wall[j]
