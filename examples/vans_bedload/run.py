@@ -3,17 +3,14 @@
 
 Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. Results of an earlier run in DIR are read instead with --reuse."""
 import os
-import shutil
-import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from checks import Checks  # noqa: E402
 from runs import need, np, options, plt  # noqa: E402
+from vans_runs import D, SCALE, by_second, error, keep, lmp, profiles  # noqa: E402
 
-D = 0.006
-SCALE = np.sqrt(1.5 * 9.81 * D ** 3)
 # slope, depth over d, beginning of the mean, what Yade gave for a bed made the same way (mean and its error, from blocks of 1 s)
 CASES = {"a": (0.05, 10, 8, (0.579, 0.007), (0.2578, 0.0010), (1.666, 0.002)), "b": (0.08, 9, 7, (1.563, 0.026), (0.3426, 0.0025), (1.862, 0.003))}
 
@@ -26,14 +23,7 @@ TOLERANCE = {"q*": 0.06, "Shields number": 0.006, "surface velocity [m/s]": 0.01
 def blocks(t, values, begin):
     """Mean, standard deviation in time, and error of the mean from blocks of 1 s."""
     late = values[t >= begin]
-    means = [values[(t >= s) & (t < s + 1)].mean() for s in np.arange(begin, t[-1] - 0.9)]
-    return late.mean(), late.std(), np.std(means, ddof=1) / np.sqrt(len(means))
-
-
-def keep(given, *names):
-    """--update: what belongs beside this file."""
-    for name in names if given.update else ():
-        shutil.copy(given.out / name, HERE)
+    return late.mean(), late.std(), error(by_second(t, values, begin))
 
 
 def main():
@@ -44,20 +34,17 @@ def main():
     for k, (name, (slope, depth, begin, *yade)) in enumerate(CASES.items()):
         if not given.reuse:
             print(f"slope {slope}: {given.seconds:g} s of bedload", flush=True)
-            subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_bedload"), "-screen", "none",
-                            "-log", f"log.vans_bedload.{name}.{given.ranks}", "-var", "slope", str(slope), "-var", "depth", str(depth),
-                            "-var", "seconds", str(given.seconds), "-var", "name", name], cwd=directory, check=True)
+            lmp(HERE, given, directory, f"log.vans_bedload.{name}.{given.ranks}", slope=slope, depth=depth, seconds=given.seconds, name=name)
         series = np.loadtxt(os.path.join(directory, f"series.{name}"))
         t = series[:, 0] * 4e-5
         begin = min(begin, t[-1] / 2)
         for what, column, factor, peer in (("q*", 1, 1 / SCALE, yade[0]), ("Shields number", 2, 1, yade[1]), ("surface velocity [m/s]", 5, 1, yade[2])):
-            mean, scatter, error = blocks(t, series[:, column] * factor, begin)
-            print(f"  slope {slope}: {what:24s} {mean:.4f} +- {error:.4f} (scatter in time {scatter:.4f});  Yade {peer[0]} +- {peer[1]}")
+            mean, scatter, spread = blocks(t, series[:, column] * factor, begin)
+            print(f"  slope {slope}: {what:24s} {mean:.4f} +- {spread:.4f} (scatter in time {scatter:.4f});  Yade {peer[0]} +- {peer[1]}")
             c.near(f"slope {slope}: {what}", mean, FOUND[name][what], TOLERANCE[what])
         axes[0].plot(t, series[:, 1] / SCALE, lw=0.6, color=f"C{k}", alpha=0.8, label=f"slope {slope}")
         axes[0].axhline(yade[0][0], color=f"C{k}", ls="--", lw=1)
-        rows = [line.split() for line in open(os.path.join(directory, f"profiles.{name}")) if not line.startswith("#")]
-        profile = np.array([row for row in rows if len(row) == 11][-301:], dtype=float)
+        profile = profiles(os.path.join(directory, f"profiles.{name}"), 0.5)
         z = profile[:, 1] / D
         axes[1].plot(profile[:, 3], z, color=f"C{k}")
         axes[2].plot(profile[:-1, 2], z[:-1], color=f"C{k}", label=f"water, {slope}")
@@ -75,7 +62,7 @@ def main():
     axes[0].set_ylim(0, 2.6)
     figure.tight_layout()
     figure.savefig(given.out / "bedload.png", dpi=100)
-    keep(given, "bedload.png", "series.a", *(f"log.vans_bedload.{name}.{given.ranks}" for name in CASES))
+    keep(HERE, given, "bedload.png", "series.a", *(f"log.vans_bedload.{name}.{given.ranks}" for name in CASES))
     return c.finish()
 
 

@@ -3,26 +3,19 @@
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed."""
 import os
-import shutil
-import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from checks import Checks  # noqa: E402
 from runs import need, np, options, plt  # noqa: E402
+from vans_runs import keep, lmp  # noqa: E402
 
 
 def closed_form(d, phi):
     """(0.44 w + 24.4 nu/d) w (1 - phi)^-3.1 = 4/3 (s - 1) g d"""
     B, C = 24.4e-6 / d, 4 / 3 * 1.5 * 9.81 * d * (1 - phi) ** 3.1
     return (-B + np.sqrt(B * B + 4 * 0.44 * C)) / 0.88
-
-
-def keep(given, *names):
-    """--update: what belongs beside this file."""
-    for name in names if given.update else ():
-        shutil.copy(given.out / name, HERE)
 
 
 def main():
@@ -32,9 +25,7 @@ def main():
     fine = np.logspace(-4, -2, 200)
     speed = {}
     for phi in ("0.0", "0.2", "0.4"):
-        log = f"log.vans_drag.{given.ranks}" if phi == "0.2" else "none"
-        subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_drag"), "-log", log, "-screen", "none", "-var", "phi", phi],
-                       cwd=given.out, check=True)
+        lmp(HERE, given, given.out, f"log.vans_drag.{given.ranks}" if phi == "0.2" else "none", phi=phi)
         rows = np.loadtxt(given.out / f"speeds.{phi}", skiprows=9)
         rows = rows[np.argsort(rows[:, 0])]
         d, w = rows[:, 1], -rows[:, 2]
@@ -62,7 +53,7 @@ def main():
         axes.grid(alpha=0.3, which="both", lw=0.4)
     figure.tight_layout()
     figure.savefig(given.out / "drag.png", dpi=110)
-    keep(given, "drag.png", f"log.vans_drag.{given.ranks}")
+    keep(HERE, given, "drag.png", f"log.vans_drag.{given.ranks}")
     return c.finish()
 
 

@@ -3,14 +3,13 @@
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed."""
 import os
-import shutil
-import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from checks import Checks  # noqa: E402
 from runs import need, np, options, plt  # noqa: E402
+from vans_runs import keep, lmp, profiles  # noqa: E402
 
 NU, KAPPA, H, G = 1e-6, 0.41, 0.1, 0.49029565
 U_STAR = np.sqrt(G * H)
@@ -19,13 +18,10 @@ PARABOLA = {11: 1.0e-2, 26: 1.6e-3, 101: 1.0e-4, 401: 6.25e-6}
 LAYER = 6.1e-3, 2.0e-3, 5.0e-4, 7.2e-5
 
 
-def run(case, cells, directory, ranks):
-    log = f"log.vans_fluid.{case}.{ranks}" if cells in (101, 5001) else "none"
-    subprocess.run(["mpirun", "-np", str(ranks), "lmp", "-in", os.path.join(HERE, "in.vans_fluid"), "-log", log, "-screen", "none",
-                    "-var", "case", case, "-var", "cells", str(cells)], cwd=directory, check=True)
-    rows = [line.split() for line in open(os.path.join(directory, f"profile.{case}.{cells}")) if not line.startswith("#")]
-    rows = [row for row in rows if len(row) == 4]
-    values = np.array(rows[-cells:], dtype=float)
+def run(case, cells, given):
+    log = f"log.vans_fluid.{case}.{given.ranks}" if cells in (101, 5001) else "none"
+    lmp(HERE, given, given.out, log, case=case, cells=cells)
+    values = profiles(given.out / f"profile.{case}.{cells}", 0.5)
     return values[:-1, 1], values[:-1, 2]
 
 
@@ -44,21 +40,14 @@ def layer(z):
     return U_STAR ** 2 / NU * (below - below ** 2 / (2 * H)) + np.where(z > edge, np.interp(np.log(np.maximum(z, edge)), np.log(s), u), 0)
 
 
-def keep(given, *names):
-    """--update: what belongs beside this file."""
-    for name in names if given.update else ():
-        shutil.copy(given.out / name, HERE)
-
-
 def main():
     given, c = options(__file__, __doc__, ranks=1), Checks()
     need("mpirun", "lmp")
-    directory, ranks = given.out, given.ranks
     figure, (left, right, errors) = plt.subplots(1, 3, figsize=(13, 4.2))
     print("Poiseuille flow, error relative to the largest velocity")
     meshes, worst = (11, 26, 101, 401), []
     for cells in meshes:
-        z, u = run("poiseuille", cells, directory, ranks)
+        z, u = run("poiseuille", cells, given)
         dz, parabola = 1 / (cells - 1), 0.1 / 0.002 * z * (1 - z)
         discrete = parabola + 0.1 / 0.002 * dz ** 2 / 4
         worst.append(np.abs(u - parabola).max() / 12.5)
@@ -76,13 +65,13 @@ def main():
     meshes, worst = [], []
     # the end of the sublayer in the middle between two nodes, so that the order of convergence shows
     for cells in [int(round((n + 0.5) * U_STAR * H / NU / 11.3)) + 1 for n in k]:
-        z, u = run("layer", cells, directory, ranks)
+        z, u = run("layer", cells, given)
         meshes.append(cells)
         worst.append(np.abs(u - layer(z)).max() / U_STAR)
         print(f"  {cells:6d} slices, dz+ = {H / (cells - 1) * U_STAR / NU:.2f}: to the exact integral of the closure {worst[-1]:.2e}, surface {u[-1]:.4f} m/s")
     for found, wanted in zip(worst, LAYER):
         c.near("layer: to the exact integral of the closure", found, wanted, 0.03 * wanted)
-    run("layer", 5001, directory, ranks)
+    run("layer", 5001, given)
     right.semilogx(z * U_STAR / NU, u / U_STAR, "C0-", lw=3, alpha=0.5, label=f"{cells} slices")
     zp = np.logspace(0, np.log10(H * U_STAR / NU * 0.999), 300)
     right.semilogx(zp, layer(zp * NU / U_STAR) / U_STAR, "k-", lw=1, label="exact integral of the closure")
@@ -98,7 +87,7 @@ def main():
         axes.grid(alpha=0.3)
     figure.tight_layout()
     figure.savefig(given.out / "fluid.png", dpi=110)
-    keep(given, "fluid.png", f"log.vans_fluid.poiseuille.{ranks}", f"log.vans_fluid.layer.{ranks}")
+    keep(HERE, given, "fluid.png", f"log.vans_fluid.poiseuille.{given.ranks}", f"log.vans_fluid.layer.{given.ranks}")
     return c.finish()
 
 

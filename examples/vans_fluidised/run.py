@@ -3,16 +3,15 @@
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed."""
 import os
-import shutil
-import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from checks import Checks  # noqa: E402
 from runs import need, np, options, plt  # noqa: E402
+from vans_runs import D, keep, lmp  # noqa: E402
 
-D, AIR, RHO, ETA = 0.006, 18.5, 1.225, 1.813e-5
+AIR, RHO, ETA = 18.5, 1.225, 1.813e-5
 WEIGHT = np.pi / 6 * D ** 3 * 2500 * 9.81
 
 
@@ -29,8 +28,7 @@ def main():
     found = {}
     for name, intensity in (("calm", 0.0), ("shaken", 2.0)):
         log = f"log.vans_fluidised.{given.ranks}" if name == "shaken" else "none"
-        subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", os.path.join(HERE, "in.vans_fluidised"), "-screen", "none", "-log", log,
-                        "-var", "intensity", str(intensity), "-var", "name", name, "-var", "seconds", str(given.seconds)], cwd=given.out, check=True)
+        lmp(HERE, given, given.out, log, intensity=intensity, name=name, seconds=given.seconds)
         series = np.loadtxt(given.out / f"series.{name}")
         t = (series[:, 0] - series[0, 0]) * 5e-5
         found[name] = series[t > t[-1] / 2]
@@ -55,8 +53,7 @@ def main():
     axes.grid(alpha=0.3)
     figure.tight_layout()
     figure.savefig(given.out / "fluidised.png", dpi=100)
-    for name in ("fluidised.png", f"log.vans_fluidised.{given.ranks}") if given.update else ():
-        shutil.copy(given.out / name, HERE)
+    keep(HERE, given, "fluidised.png", f"log.vans_fluidised.{given.ranks}")
     return c.finish()
 
 
