@@ -50,6 +50,12 @@ if(NOT STOKESDYN_SANITIZE)
   endforeach()
 endif()
 
+# The shipped table of two-sphere functions (core/stokes/two_sphere/table): made anew at some nodes, it is the same.
+add_executable(make_two_sphere_table ${source}/core/stokes/two_sphere/table/make_two_sphere_table.c)
+target_compile_options(make_two_sphere_table PRIVATE -Wall -Wextra -Wshadow)
+target_link_libraries(make_two_sphere_table PRIVATE ${tested}_stokes)
+add_test(NAME two_sphere_table COMMAND make_two_sphere_table check 23)
+
 # Timings: cmake --build build --target bench_core. The rival loop in it gets all that this processor has.
 include(CheckCCompilerFlag)
 check_c_compiler_flag(-march=native STOKESDYN_MARCH_NATIVE)

@@ -227,7 +227,7 @@ static void step_down(int n, int first, const sphere s[2], above *a)
 {
   block B[3];
   triple slip[2][FAMILIES];
-  sd_real rhs[UNKNOWNS][MOTIONS], next[UNKNOWNS][UNKNOWNS + MOTIONS];
+  sd_real rhs[UNKNOWNS][MOTIONS], next[UNKNOWNS][UNKNOWNS + MOTIONS] = {{0.0L}};
   fill(n, s, B, slip);
   if (first == 0)
     right_hand_side(n, s, slip, rhs);

@@ -4,11 +4,11 @@
 
 #include "sd_two_sphere_modes.h"
 
-/* into its mean: a number that reciprocity makes equal to its mirror image */
-static void mirror(sd_real *p, sd_real *q, sd_real size, sd_real *asymmetry)
+/* The mirror image of a number becomes it; what they differed by */
+static void mirror(sd_real number, sd_real *image, sd_real size, sd_real *asymmetry)
 {
-  *asymmetry = fmaxl(*asymmetry, fabsl(*p - *q) / size);
-  *p = *q = 0.5L * (*p + *q);
+  *asymmetry = fmaxl(*asymmetry, fabsl(number - *image) / size);
+  *image = number;
 }
 
 /* cosh(alpha + beta) - 1 = gap (2 (a1 + a2) + gap)/(2 a1 a2), and c = a1 a2 sinh(alpha + beta)/R */
@@ -26,10 +26,12 @@ sd_pair_resistance sd_two_sphere_exact(double a1, double a2, double gap, double 
   sd_two_sphere_axial_rotation(alpha, beta, XC);
   sd_two_sphere_across(alpha, beta, Y);
 
-  mirror(&XA[0][1], &XA[1][0], fabsl(XA[0][0]), &worst);
+  /* the forces on the smaller sphere are the better ones: fewer modes, hardly any cancellation */
+  mirror(XA[0][1], &XA[1][0], fabsl(XA[0][0]), &worst);
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < i; j++)
-      mirror(&Y[i][j], &Y[j][i], sqrtl(Y[i][i] * Y[j][j]), &worst);
+    for (int j = 0; j < 4; j++)
+      if (i % 2 < j % 2 || (i % 2 == j % 2 && i < j))
+        mirror(Y[i][j], &Y[j][i], sqrtl(Y[i][i] * Y[j][j]), &worst);
   if (asymmetry) *asymmetry = (double) worst;
   sd_pair_resistance R;
   for (int i = 0; i < 2; i++)
