@@ -28,21 +28,58 @@ static void metric(sd_ewald_waves *w)
   }
 }
 
+/* Three things, one a direction, in the frame that is `turn` further */
+static void turn_numbers(double *v, int turn)
+{
+  const double old[3] = {v[0], v[1], v[2]};
+  for (int d = 0; d < 3; d++) v[d] = old[(d + turn) % 3];
+}
+
+static void turn_integers(int *v, int turn)
+{
+  const int old[3] = {v[0], v[1], v[2]};
+  for (int d = 0; d < 3; d++) v[d] = old[(d + turn) % 3];
+}
+
+static void turn_frame(sd_ewald_waves *w, int turn)
+{
+  turn_numbers(w->ewald.box.origin, turn);
+  turn_numbers(w->ewald.box.edge, turn);
+  turn_integers(w->ewald.grid, turn);
+  w->turn = (w->turn + turn) % 3;
+}
+
+static int may_turn(const sd_ewald_box *b)
+{
+  return b->tilt[0] == 0.0 && b->tilt[1] == 0.0 && b->tilt[2] == 0.0;
+}
+
+/* Grid and waves of the frame */
+static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
+{
+  const sd_ewald *e = &w->ewald;
+  metric(w);
+  int size[3];
+  for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
+  sd_status status = sd_grid_create(&w->grid, size, e->grid, world);
+  if (status == SD_OK)
+    status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.y0, w->grid.y1);
+  for (int k = 0; k < 3; k++) turn_numbers(w->wave.self[k], 3 - w->turn);
+  return status;
+}
+
 sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
                                 const struct sd_ewald_kernels *kernels, int width,
                                 const sd_world *world)
 {
+  const int turn = may_turn(&e->box) ? w->turn : 0;
   sd_ewald_waves_free(w);
   w->ewald = *e;
   w->kernels = kernels;
   w->width = width;
+  turn_frame(w, turn);
   sd_window_fit(e->points, e->beta, e->tolerance, &w->window);
-  metric(w);
-  int size[3];
-  for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
-  const sd_status status = sd_grid_create(&w->grid, size, e->grid, world);
-  if (status != SD_OK) return status;
-  return sd_wave_create(&w->wave, e, kernels, size, w->grid.y0, w->grid.y1);
+  return make_grid(w, world);
 }
 
 void sd_ewald_waves_free(sd_ewald_waves *w)
@@ -96,7 +133,10 @@ static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
     const int j = w->sphere[i];
     sd_spread_place *p = w->place + i;
     double s[3];
-    on_grid(w, spheres->x + 3 * (long) j, s);
+    double x[3] = {spheres->x[3 * (long) j], spheres->x[3 * (long) j + 1],
+                   spheres->x[3 * (long) j + 2]};
+    turn_numbers(x, w->turn);
+    on_grid(w, x, s);
     for (int d = 0; d < 3; d++) {
       const double period = w->ewald.grid[d];
       sound = sound && fabs(s[d]) < 1e9;
@@ -106,7 +146,7 @@ static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
       const double first = floor(s[d] - 0.5 * points);
       p->at[d] = (int) first + 1;
       p->v[d] = 2.0 * (s[d] - 0.5 * points - first) - 1.0;
-      if (!box->periodic) sound = sound && inside(box, spheres->x[3 * (long) j + d], d);
+      if (!box->periodic) sound = sound && inside(box, x[d], d);
       if (i == 0 || p->at[d] < lo[d]) lo[d] = p->at[d];
       if (i == 0 || p->at[d] + points > hi[d]) hi[d] = p->at[d] + points;
     }
@@ -125,16 +165,47 @@ sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int 
   return find_places(w, s, brick) ? SD_OK : SD_ENOTFINITE;
 }
 
-sd_status sd_ewald_waves_place(sd_ewald_waves *w, const int *bricks)
+/* How much further must the frame turn for slabs along which most of the bricks is at home? The first
+ * direction of the box that has nearly most, so that it depends on the bricks alone. */
+static int better_turn(const sd_ewald_waves *w, const int *bricks)
+{
+  double most = 0.0, points[3];
+  if (w->grid.ranks == 1 || !may_turn(&w->ewald.box)) return 0;
+  for (int d = 0; d < 3; d++) {
+    points[d] = sd_grid_at_home(&w->grid, bricks, d);
+    most = fmax(most, points[d]);
+  }
+  turn_numbers(points, 3 - w->turn);
+  for (int d = 0; d < 3; d++)
+    if (points[d] >= 0.9 * most) return (d - w->turn + 3) % 3;
+  return 0;
+}
+
+/* All that is known of the frame, in one `turn` further */
+static sd_status turn_by(sd_ewald_waves *w, int turn, int *bricks)
+{
+  const sd_world world = w->grid.world;
+  for (int k = 0; k < 2 * w->grid.ranks; k++) turn_integers(bricks + 3 * k, turn);
+  for (int i = 0; i < w->n; i++) {
+    turn_integers(w->place[i].at, turn);
+    turn_numbers(w->place[i].v, turn);
+  }
+  turn_frame(w, turn);
+  return make_grid(w, &world);
+}
+
+sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
 {
   sd_grid *g = &w->grid;
-  const sd_status status = sd_grid_place(g, bricks);
+  const int turn = better_turn(w, bricks);
+  sd_status status = turn ? turn_by(w, turn, bricks) : SD_OK;
+  if (status == SD_OK) status = sd_grid_place(g, bricks);
   if (status != SD_OK) return status;
   int equal = 1;
   for (int i = 0; i < w->n; i++) {
     sd_spread_place *p = w->place + i;
     p->base = (p->at[0] - g->lo[0]) * g->layer + (p->at[1] - g->lo[1]) * g->row +
-              3L * (p->at[2] - g->lo[2]);
+        3L * (p->at[2] - g->lo[2]);
     equal = equal && p->b == 0.0;
   }
   sd_spreading *s = &w->spreading;
@@ -156,15 +227,17 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, const int *bricks)
 
 sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F)
 {
-  const long m = w->width;
+  const long m = w->width, vectors = m / 3 * w->n;
   for (int i = 0; i < w->n; i++) {
     const long j = w->sphere[i];
     for (int d = 0; d < m; d++) w->F[m * i + d] = s->w[j] * F[m * j + d];
   }
+  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(w->F + 3 * k, w->turn);
   sd_grid *g = &w->grid;
   memset(g->brick, 0, sizeof(double) * ((size_t) (g->layer * g->n[0]) + 16));
   w->kernels->spread(&w->spreading);
   const sd_status status = sd_grid_convolve(g, sd_wave_multiply, &w->wave);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
+  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(w->F + 3 * k, 3 - w->turn);
   return status;
 }

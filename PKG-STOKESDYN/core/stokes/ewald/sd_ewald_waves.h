@@ -4,7 +4,9 @@
  *   F --spread--> grid --transform, multiply, transform--> grid --interpolate--> u
  *
  * Each rank spreads and interpolates its own spheres on a brick of the grid; slabs of it are
- * transformed by turns (sd_grid.h). */
+ * transformed by turns (sd_grid.h). Slabs are planes of the first direction. Where ranks are cut
+ * along another one, and the box has no tilt, all of this happens in a frame turned cyclically, so
+ * that most of a brick is in the slab of its own rank. */
 #ifndef SD_EWALD_WAVES_H
 #define SD_EWALD_WAVES_H
 
@@ -20,10 +22,12 @@ extern "C" {
 
 /* Zero-initialise; sd_ewald_waves_free in the end. */
 typedef struct {
+  /* in the frame, whose direction d is d + turn of the box */
   sd_ewald ewald;
-  int width;
+  int turn, width;
   const struct sd_ewald_kernels *kernels;
   sd_window window;
+  /* its self sums are those of the directions of the box */
   sd_wave wave;
   sd_grid grid;
   sd_spreading spreading;
@@ -34,7 +38,7 @@ typedef struct {
   double *F;
 } sd_ewald_waves;
 
-/* Tables for a splitting. SD_OK or SD_ENOMEMORY. */
+/* Tables for a splitting, in the frame of the last one. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
                                 const struct sd_ewald_kernels *kernels, int width,
                                 const sd_world *world);
@@ -45,8 +49,8 @@ sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
 sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int *sphere, int n,
                               int *brick);
 
-/* Bricks of all ranks [ranks][6]. SD_OK or SD_ENOMEMORY. */
-sd_status sd_ewald_waves_place(sd_ewald_waves *w, const int *bricks);
+/* Bricks of all ranks [ranks][6], which are turned if the frame is. SD_OK or SD_ENOMEMORY. */
+sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks);
 
 /* F [width] a sphere -> w->F, in order of sphere and without its weight. SD_OK or what an exchange
  * said. */

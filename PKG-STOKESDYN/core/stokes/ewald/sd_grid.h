@@ -1,11 +1,14 @@
 /* A grid of vectors over all ranks, and its Fourier transform: three real fields forth, a
  * multiplication at each wave vector, three fields back.
  *
- * Each rank has a brick, the grid points that its own spheres reach, three numbers a point, wherever
- * that is; bricks overlap and may hang over the faces of a periodic box. Transforms go along z and y
- * in slabs of whole x planes, then along x in slabs of whole y planes:
+ * Each rank has a brick, the grid points that its own spheres reach, three numbers a point,
+ * wherever that is; bricks overlap and may hang over the faces of a periodic box. Transforms go
+ * along z and y in slabs of whole x planes, then along x in slabs of whole y planes:
  *
- *   bricks --add--> x slabs --z, y--> exchange --x, multiply, x--> exchange --y, z--> bricks
+ *   bricks --add--> x planes --z, y--> exchange --x, multiply, x--> exchange --y, z--> bricks
+ *
+ * A plane is filled, transformed and sent while it is in the cache; rows that other ranks sent are
+ * transformed where they have come in.
  *
  * An open grid is twice as large as the part of it that holds something; what is known to be 0, or
  * is not asked for, is not transformed. */
@@ -21,9 +24,10 @@
 extern "C" {
 #endif
 
-/* A box of a brick and its place in the x slab of a rank */
+/* A box of a brick and its place in the x slab of a rank; where it begins in a message */
 typedef struct {
   int rank, at[3], to[3], n[3];
+  long message;
 } sd_piece;
 
 /* Zero-initialise; sd_grid_free in the end. */
@@ -34,10 +38,9 @@ typedef struct {
   int size[3], occupied[3], half;
   /* this rank's planes of the two slabs */
   int x0, x1, y0, y1;
-  /* [3] x slab [x1 - x0][size y][half], real rows of occupied z in its place; y slab [y1 - y0]
-   * [occupied x][half], of several ranks only; planes [size x][half] at work, and one [size x or
-   * y][half] beside them */
-  fftw_complex *x_slab[3], *y_slab[3], *plane[3], *beside;
+  /* [3] x slab [x1 - x0][size y][half], wave numbers of z and then y; a plane [size x or y][half]
+   * at work, of points or of wave numbers, and one beside them */
+  fftw_complex *slab[3], *plane[3], *beside;
   fftw_plan z_forth, z_back, y_forth, y_back, x_forth, x_back;
   /* brick: first point and number of points; rows along z of 3 numbers a point */
   int lo[3], n[3];
@@ -47,9 +50,10 @@ typedef struct {
   /* from the brick to slabs, by rank of the slab; to our slab from bricks, by rank of the brick */
   sd_piece *out, *in;
   int outs, ins, piece_capacity;
-  /* numbers to and from each rank: of pieces, and of the turn from x to y slabs; 4 [ranks] */
+  /* numbers to and from each rank: of pieces, and of the turn from x to y planes; 4 [ranks] */
   int *counts;
-  double *send, *receive;
+  /* messages: what is in one goes to the other */
+  double *message[2];
   size_t buffer_capacity;
 } sd_grid;
 
@@ -58,6 +62,10 @@ typedef void sd_grid_multiply(void *ctx, int y, double *const *plane);
 
 /* Slabs and plans. SD_OK or SD_ENOMEMORY. */
 sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const sd_world *world);
+
+/* Of the points of all bricks, as below, how many would be in the slab of their own rank if slabs
+ * were planes of direction d? They need no message. */
+double sd_grid_at_home(const sd_grid *g, const int *bricks, int d);
 
 /* Bricks for the spheres as they stand: of all ranks [ranks][6] first point and number of points
  * each way, which may be 0. SD_OK or SD_ENOMEMORY. */

@@ -76,6 +76,7 @@ static sd_status exchange(void *ctx, const double *send, const int *to, double *
 typedef struct {
   int width, periodic, scattered;
   double tilt;
+  int cut; /* direction along which ranks are cut */
 } layout;
 
 typedef struct {
@@ -99,12 +100,13 @@ static cloud make(const layout *l)
   return c;
 }
 
-/* Ours: by place along x, or dealt in turn, so that bricks of all ranks overlap everywhere. The last of 4 ranks has none. */
+/* Ours: by place along one direction, or dealt in turn, so that bricks of all ranks overlap everywhere. The last of 4 ranks has none. */
 static int owner(const cloud *c, const layout *l, int i, int ranks)
 {
   const int parts = ranks == 4 ? 3 : ranks;
   if (l->scattered) return i % parts;
-  return (int) ((c->x[3 * i] + 2.0) / 15.0 * parts) % parts;
+  const sd_ewald_box *b = &c->how.box;
+  return (int) ((c->x[3 * i + l->cut] - b->origin[l->cut]) / b->edge[l->cut] * parts) % parts;
 }
 
 static void work(const cloud *c, const layout *l, shared *all, int me, int ranks)
@@ -174,8 +176,9 @@ static shared *on_ranks(const cloud *c, const layout *l, int ranks)
 static void several_ranks_are_one(void **state)
 {
   (void) state;
-  const layout layouts[] = {{3, 1, 0, 0.0}, {6, 1, 1, 3.0}, {6, 0, 0, 0.0}, {3, 0, 1, 0.0}};
-  for (int k = 0; k < 4; k++) {
+  const layout layouts[] = {{3, 1, 0, 0.0, 0}, {6, 1, 1, 3.0, 0}, {6, 0, 0, 0.0, 0}, {3, 0, 1, 0.0, 0},
+                            {6, 1, 0, 0.0, 2}, {6, 0, 0, 0.0, 1}, {6, 0, 0, 0.0, 2}, {3, 1, 0, 2.0, 1}};
+  for (int k = 0; k < 8; k++) {
     const layout *l = layouts + k;
     const cloud c = make(l);
     shared *one = on_ranks(&c, l, 1);
@@ -199,12 +202,12 @@ static void several_ranks_are_one(void **state)
 static void a_place_that_is_no_number_stops_all_ranks(void **state)
 {
   (void) state;
-  const layout l = {3, 1, 0, 0.0};
+  const layout l = {3, 1, 0, 0.0, 0};
   cloud c = make(&l);
   c.x[3 * 4 + 1] = NAN;
   c.expected = SD_ENOTFINITE;
   munmap(on_ranks(&c, &l, 3), sizeof(shared));
-  const layout open = {3, 0, 0, 0.0};
+  const layout open = {3, 0, 0, 0.0, 0};
   c = make(&open);
   c.x[3 * 4] = c.how.box.origin[0] + 1.001 * c.how.box.edge[0]; /* outside of an open box: the same */
   c.expected = SD_ENOTFINITE;
