@@ -1,0 +1,252 @@
+#include "sd_lubrication.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sd_linear.h"
+
+/* How a pair shares its common motion: fitted to clusters of 3 to 27 close spheres. */
+static const double sharing = 1.2;
+
+/* Which sphere an image is of: its rank, its row there, its body */
+enum { RANK, ROW, BODY, IDENTITY };
+
+struct sd_lubrication_work {
+  sd_neighbors near;
+  /* [IDENTITY (n_all - n)] of the others */
+  double *identity;
+  /* [n_all] n_i */
+  double *neighbours;
+  /* [count] where the second sphere of a pair stands: itself, or its image */
+  int *at;
+  long most_spheres, most_others, most_pairs;
+};
+
+static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  struct sd_lubrication_work *w = L->work;
+  const size_t all = (size_t) s->n_all, others = (size_t) (s->n_all - s->n);
+  if (s->n_all >= w->most_spheres) {
+    double *neighbours = realloc(w->neighbours, sizeof(double) * (all + 1));
+    if (neighbours) w->neighbours = neighbours;
+    double *diagonal = realloc(L->diagonal, sizeof(double) * 36 * (all + 1));
+    if (diagonal) L->diagonal = diagonal;
+    if (!neighbours || !diagonal) return SD_ENOMEMORY;
+    w->most_spheres = s->n_all + 1;
+  }
+  if ((long) others >= w->most_others) {
+    double *identity = realloc(w->identity, sizeof(double) * IDENTITY * (others + 1));
+    if (identity) w->identity = identity;
+    double *rows = realloc(L->others, sizeof(double) * 6 * (others + 1));
+    if (rows) L->others = rows;
+    if (!identity || !rows) return SD_ENOMEMORY;
+    w->most_others = (long) others + 1;
+  }
+  L->n = s->n;
+  L->n_all = s->n_all;
+  L->world = s->world;
+  return SD_OK;
+}
+
+static sd_status reserve_pairs(sd_lubrication *L, long count)
+{
+  struct sd_lubrication_work *w = L->work;
+  if (count < w->most_pairs) return SD_OK;
+  const size_t room = (size_t) (count + count / 4 + 64);
+  int(*pair)[2] = realloc(L->pair, sizeof(*pair) * room);
+  if (pair) L->pair = pair;
+  int *at = realloc(w->at, sizeof(int) * room);
+  if (at) w->at = at;
+  double *block = realloc(L->block, sizeof(double) * 36 * room);
+  if (block) L->block = block;
+  if (!pair || !at || !block) return SD_ENOMEMORY;
+  w->most_pairs = (long) room;
+  return SD_OK;
+}
+
+/* --- who is near whom --- */
+
+static sd_status identify(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  if (!s->world.refresh) return SD_OK;
+  double *mine = malloc(sizeof(double) * IDENTITY * ((size_t) s->n + 1));
+  if (!mine) return SD_ENOMEMORY;
+  for (int i = 0; i < s->n; i++) {
+    mine[IDENTITY * i + RANK] = s->world.me;
+    mine[IDENTITY * i + ROW] = i;
+    mine[IDENTITY * i + BODY] = s->body ? (double) s->body[i] : 0.0;
+  }
+  const sd_status status = s->world.refresh(s->world.ctx, mine, L->work->identity, IDENTITY);
+  free(mine);
+  return status;
+}
+
+static const double *identity_of(const sd_lubrication *L, int j)
+{
+  return L->work->identity + IDENTITY * (long) (j - L->n);
+}
+
+/* The row of the sphere that stands at j: of this rank, or j itself */
+static int row_at(const sd_lubrication *L, int j)
+{
+  if (j < L->n || identity_of(L, j)[RANK] != L->world.me) return j;
+  return (int) identity_of(L, j)[ROW];
+}
+
+static int one_body(const sd_lubrication_scene *s, const sd_lubrication *L, int i, int j)
+{
+  if (!s->body || s->body[i] == 0) return 0;
+  return (j < L->n ? (double) s->body[j] : identity_of(L, j)[BODY]) == (double) s->body[i];
+}
+
+/* Pairs from rows of directed ones, each once; those of a sphere with its own images as often as
+ * they are there, since the other way round is the same force on the same sphere. */
+static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  struct sd_lubrication_work *w = L->work;
+  sd_status status = sd_near_find(&w->near, &s->spheres, 0, s->n, s->n_all, 2.0 + s->range);
+  if (status == SD_OK) status = reserve_pairs(L, w->near.first[s->n]);
+  if (status != SD_OK) return status;
+  L->count = 0;
+  for (int i = 0; i < s->n; i++)
+    for (long k = w->near.first[i]; k < w->near.first[i + 1]; k++) {
+      const int at = w->near.neighbor[k], j = row_at(L, at);
+      if (j < i || one_body(s, L, i, at)) continue;
+      L->pair[L->count][0] = i;
+      L->pair[L->count][1] = j;
+      w->at[L->count++] = at;
+    }
+  return SD_OK;
+}
+
+/* --- the sum --- */
+
+/* A pair as it stands: direction from the first to the second, gap, t, mean viscosity */
+typedef struct {
+  double d[3], xi, t, eta;
+} closeness;
+
+static closeness look(const sd_lubrication *L, const sd_lubrication_scene *s, long k)
+{
+  const sd_spheres *p = &s->spheres;
+  const int i = L->pair[k][0], j = L->work->at[k];
+  closeness c;
+  sd_minus(p->x + 3 * (long) j, p->x + 3 * (long) i, c.d);
+  const double R = sqrt(sd_dot(c.d, c.d));
+  if (R > 0.0)
+    for (int e = 0; e < 3; e++) c.d[e] /= R;
+  else
+    c.d[2] = 1.0; /* spheres at one point: any direction */
+  c.xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
+  const double q = fmin(fmax(2.0 * c.xi / s->range - 1.0, 0.0), 1.0);
+  c.t = 1.0 - q * q * (3.0 - 2.0 * q);
+  c.eta = 0.5 * (1.0 / (p->w[i] * p->w[i]) + 1.0 / (p->w[j] * p->w[j]));
+  return c;
+}
+
+static sd_status count_neighbours(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  double *n = L->work->neighbours;
+  memset(n, 0, sizeof(double) * (size_t) s->n_all);
+  for (long k = 0; k < L->count; k++) {
+    const int i = L->pair[k][0], j = L->pair[k][1];
+    const double t = look(L, s, k).t;
+    n[i] += t;
+    if (j != i && j < L->n) n[j] += t;
+  }
+  return s->world.refresh ? s->world.refresh(s->world.ctx, n, n + s->n, 1) : SD_OK;
+}
+
+static void add36(const double *B, double *out)
+{
+  for (int e = 0; e < 36; e++) out[e] += B[e];
+}
+
+static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long k)
+{
+  const int i = L->pair[k][0], j = L->pair[k][1], at = L->work->at[k];
+  const closeness c = look(L, s, k);
+  const double *n = L->work->neighbours;
+  double *B12 = L->block + 36 * k, B11[36], B22[36];
+  memset(B12, 0, 36 * sizeof(double));
+  if (!(c.t > 0.0)) return SD_OK;
+  sd_pair_resistance full, relative;
+  const double *a = s->spheres.a;
+  const sd_status status =
+      sd_two_sphere_correction(s->functions, a[i], a[at], fmax(c.xi, s->gap), &full, &relative);
+  if (status != SD_OK) return status;
+  const double share = pow(2.0 * c.t / (n[i] + n[at]), sharing), scale = c.eta * c.t;
+  const sd_pair_resistance R =
+      sd_pair_resistance_sum(scale * share, &full, scale * (1.0 - share), &relative);
+  sd_pair_resistance_blocks(&R, c.d, B11, B12, B22);
+  add36(B11, L->diagonal + 36 * (long) i);
+  if (j == i) {
+    add36(B12, L->diagonal + 36 * (long) i);
+    memset(B12, 0, 36 * sizeof(double));
+  } else if (j < L->n)
+    add36(B22, L->diagonal + 36 * (long) j);
+  return SD_OK;
+}
+
+sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene)
+{
+  if (!L->work) L->work = calloc(1, sizeof(*L->work));
+  if (!L->work) return SD_ENOMEMORY;
+  sd_status status = reserve_spheres(L, scene);
+  if (status == SD_OK) status = identify(L, scene);
+  if (status == SD_OK) status = find_pairs(L, scene);
+  if (status == SD_OK) status = count_neighbours(L, scene);
+  if (status != SD_OK) return status;
+  memset(L->diagonal, 0, sizeof(double) * 36 * (size_t) L->n);
+  for (long k = 0; k < L->count && status == SD_OK; k++) status = add_pair(L, scene, k);
+  return status;
+}
+
+sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
+{
+  const sd_lubrication *L = ctx;
+  if (L->world.refresh && L->world.ranks > 1) {
+    const sd_status status = L->world.refresh(L->world.ctx, V, L->others, 6);
+    if (status != SD_OK) return status;
+  }
+  for (long i = 0; i < L->n; i++)
+    for (int p = 0; p < 6; p++) {
+      double sum = 0.0;
+      for (int q = 0; q < 6; q++) sum += L->diagonal[36 * i + 6 * p + q] * V[6 * i + q];
+      out[6 * i + p] = sum;
+    }
+  for (long k = 0; k < L->count; k++) {
+    const int i = L->pair[k][0], j = L->pair[k][1];
+    const double *B = L->block + 36 * k, *Vi = V + 6 * (long) i;
+    const double *Vj = j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
+    double *out_i = out + 6 * (long) i, back[6] = {0.0};
+    for (int p = 0; p < 6; p++) {
+      double sum = 0.0;
+      for (int q = 0; q < 6; q++) {
+        sum += B[6 * p + q] * Vj[q];
+        back[q] += B[6 * p + q] * Vi[p];
+      }
+      out_i[p] += sum;
+    }
+    if (j < L->n)
+      for (int q = 0; q < 6; q++) out[6 * (long) j + q] += back[q];
+  }
+  return SD_OK;
+}
+
+void sd_lubrication_free(sd_lubrication *L)
+{
+  if (L->work) {
+    sd_neighbors_free(&L->work->near);
+    free(L->work->identity);
+    free(L->work->neighbours);
+    free(L->work->at);
+    free(L->work);
+  }
+  free(L->pair);
+  free(L->block);
+  free(L->diagonal);
+  free(L->others);
+  memset(L, 0, sizeof(*L));
+}

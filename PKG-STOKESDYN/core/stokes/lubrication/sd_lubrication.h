@@ -1,0 +1,74 @@
+/* Lubrication: what close spheres of different bodies resist beyond the Rotne-Prager-Yamakawa model,
+ * without counting anything twice.
+ *
+ *   L = sum over pairs  t [ w D + (1 - w) Q^T D Q ]        forces and torques on the fluid = L V
+ *   D    exact resistance of the two spheres alone less that of the model (sd_two_sphere.h)
+ *   Q    takes the motion of the pair as one rigid body out of its velocities
+ *   t    1 up to half the range, 1 - s^2 (3 - 2s) from there to the range, s = 2 xi/range - 1
+ *   w_ij = (2 t_ij / (n_i + n_j))^1.2,  n_i = sum_j t_ij
+ *
+ * xi is the gap over the mean radius. A pair resists its relative motion in full. What it resists of
+ * its common motion the neighbours resist as well, since they hold the same fluid: the sum of D
+ * would count it once for each, and a cluster of 27 would settle 40 % too slowly. So pairs share it,
+ * by a fit to exact velocities of clusters; a pair alone has w = 1 and is exact. D >= 0 and
+ * 0 <= w <= 1, so L >= 0. Gaps below the floor, and overlaps, count as the floor: roughness.
+ *
+ * In viscosities that differ from place to place a pair has the mean of its two. In a flow V is less
+ * the velocity (and angular velocity) of the fluid at the centre: what a pair resists to a strain
+ * around it is left out.
+ * Source: reference of the project, motion.md 4.3; the rule of sharing is our own. */
+#ifndef SD_LUBRICATION_H
+#define SD_LUBRICATION_H
+
+#include <stdint.h>
+
+#include "sd_near.h"
+#include "sd_two_sphere.h"
+#include "sd_world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+  const sd_two_sphere *functions;
+  /* gap: the floor, > 0; range > gap: where it ends. Over the mean radius of the pair */
+  double gap, range;
+  /* this rank's spheres, then those of other ranks and periodic images within the range */
+  int n, n_all;
+  sd_spheres spheres;
+  /* [n] spheres of one body, not 0, have no lubrication between them; NULL: all free */
+  const int64_t *body;
+  /* refresh: rows of the n_all - n from those of the n, NULL: there are none */
+  sd_world world;
+} sd_lubrication_scene;
+
+/* Zero-initialise; placed again it keeps its memory; sd_lubrication_free in the end. */
+typedef struct {
+  /* spheres of this rank, and with those of other ranks and images */
+  int n, n_all;
+  /* each pair once: i < j < n, or j >= n: another rank's. A sphere's own images are in the
+   * diagonal */
+  long count;
+  int (*pair)[2];
+  /* [36 count] L_ij, row-major, rows F T, columns U W; L_ji is its transpose */
+  double *block;
+  /* [36 n] L_ii */
+  double *diagonal;
+  /* of velocities of the others; NULL: there are none on any rank */
+  double *others;
+  sd_world world;
+  struct sd_lubrication_work *work;
+} sd_lubrication;
+
+/* The spheres have moved. On all ranks together. SD_OK; SD_ENOMEMORY; SD_EOUTSIDE: radii that
+ * `functions` does not have; SD_ENOTFINITE; that of refresh. */
+sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene);
+/* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
+sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
+void sd_lubrication_free(sd_lubrication *L);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

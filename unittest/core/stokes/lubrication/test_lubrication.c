@@ -1,0 +1,223 @@
+/* Lubrication: sd_lubrication.h. What a pair alone must be, where the sum must be continuous, that it
+ * is positive whatever the packing, and that images count as spheres do. */
+#include "near_scene.h"
+
+#include "sd_constants.h"
+#include "sd_linear.h"
+#include "sd_two_sphere_exact.h"
+
+/* 1.3: viscosity, so that no factor is 1 */
+static const double eta = 1.3;
+
+static near_scene pair_at(double xi, double a2)
+{
+  const double d[3] = {0.48, -0.6, 0.64}, R = (1.0 + a2) * (1.0 + 0.5 * xi);
+  scene s = scene_create(2);
+  scene_set(&s, 0, 0.2, 0.3, -0.1, 1.0, eta);
+  scene_set(&s, 1, 0.2 + R * d[0], 0.3 + R * d[1], -0.1 + R * d[2], a2, eta);
+  return near_create(s, 10.0, 1e-4);
+}
+
+/* M^-1 + L of two spheres is their exact resistance, up to half the range; tables give 1e-7. */
+static void a_pair_alone_is_exact(void **state)
+{
+  (void) state;
+  static const double gaps[] = {1e-4, 1e-3, 0.03, 0.3, 0.99}, radii[] = {1.0, 0.5, 2.0, 5.0};
+  for (int k = 0; k < 5; k++)
+    for (int l = 0; l < 4; l++) {
+      const double a2 = radii[l], gap = gaps[k] * 0.5 * (1.0 + a2);
+      near_scene q = pair_at(gaps[k], a2);
+      near_place(&q);
+      double *R = dense_mobility(&q.s), *L = near_dense(&q), exact[4][36];
+      const sd_pair_resistance e = sd_two_sphere_exact(1.0, a2, gap, NULL);
+      const double d[3] = {0.48, -0.6, 0.64};
+      sd_pair_resistance_blocks(&e, d, exact[0], exact[1], exact[3]);
+      for (int p = 0; p < 6; p++)
+        for (int c = 0; c < 6; c++) exact[2][6 * c + p] = exact[1][6 * p + c];
+      assert_int_equal(sd_cholesky(12, R), SD_OK);
+      assert_int_equal(sd_cholesky_inverse(12, R), SD_OK);
+      for (int i = 0; i < 12; i++)
+        for (int j = 0; j < 12; j++) {
+          const double expected = eta * exact[2 * (i / 6) + j / 6][6 * (i % 6) + j % 6];
+          CHECK_NEAR(R[12 * i + j] + L[12 * i + j], expected,
+                     1e-5 * 6.0 * SD_PI * eta * pow(fmax(1.0, a2), 3));
+        }
+      free(R), free(L);
+      near_free(&q);
+    }
+}
+
+/* The largest entry of L; of its difference between two gaps */
+static double change(double xi, double further)
+{
+  double most = 0.0, *L[2];
+  for (int k = 0; k < 2; k++) {
+    near_scene q = pair_at(k ? further : xi, 1.7);
+    near_place(&q);
+    L[k] = near_dense(&q);
+    near_free(&q);
+  }
+  for (int e = 0; e < 144; e++) most = fmax(most, fabs(L[0][e] - L[1][e]));
+  free(L[0]), free(L[1]);
+  return most;
+}
+
+/* No jump at contact, at the floor, at half the range, where t begins to fall, and at its end:
+ * what two gaps differ by falls with their distance. */
+static void gaps_change_it_without_a_jump(void **state)
+{
+  (void) state;
+  static const double at[] = {0.0, 1e-4, 1.0, 2.0};
+  for (int k = 0; k < 4; k++) {
+    const double h = at[k] > 0.5 ? 1e-5 : 1e-8, one = change(at[k] - h, at[k] + h),
+                 two = change(at[k] - 0.01 * h, at[k] + 0.01 * h);
+    assert_true(two < 0.05 * one + 1e-7);
+  }
+  assert_true(change(-0.3, 1e-4 * (1 - 1e-12)) < 1e-6); /* overlaps count as the floor */
+  assert_true(change(2.0, 2.5) == 0.0);
+  assert_true(change(0.1, 0.2) > 1.0);
+}
+
+/* Smallest eigenvalue over the largest, of the symmetric matrix scaled to Stokes drags: by the shift
+ * at which a factor exists. */
+static void check_positive(near_scene *q)
+{
+  const int N = 6 * q->s.n;
+  double *L = near_dense(q), *copy = malloc(sizeof(double) * (size_t) (N * N)), largest = 0.0;
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++) {
+      CHECK_NEAR(L[i * N + j], L[j * N + i], 1e-9 * fabs(L[i * N + j]) + 1e-12);
+      const double ai = q->s.a[i / 6], aj = q->s.a[j / 6];
+      copy[i * N + j] = L[i * N + j] / sqrt((i % 6 < 3 ? 6.0 * ai : 8.0 * ai * ai * ai) *
+                                            (j % 6 < 3 ? 6.0 * aj : 8.0 * aj * aj * aj));
+    }
+  for (int i = 0; i < N; i++) {
+    double row = 0.0;
+    for (int j = 0; j < N; j++) row += fabs(copy[i * N + j]);
+    largest = fmax(largest, row);
+  }
+  /* 1e-8 of the largest: tables err by 1e-7 Stokes drags, floors allow 1e4 of them */
+  assert_true(positive_definite(copy, N, -1e-8 * largest));
+  free(L), free(copy);
+}
+
+static void it_resists_every_motion(void **state)
+{
+  (void) state;
+  for (int k = 0; k < 100; k++) {
+    near_scene q = near_create(cloud_dense(12, 0.1 + 0.004 * k, 1.0, 1.0 + 0.04 * k, eta, 17 + k), 5.0, 1e-4);
+    for (int i = 0; i < 12; i++) q.s.w[i] = 1.0 / sqrt(eta * (1.0 + 0.1 * (i % 3)));
+    near_place(&q);
+    assert_true(q.L.count > 0);
+    check_positive(&q);
+    near_free(&q);
+  }
+}
+
+/* Spheres of one body, not 0, have none between them. */
+static void none_within_a_body(void **state)
+{
+  (void) state;
+  near_scene q = pair_at(0.01, 1.0);
+  q.body[0] = q.body[1] = -7;
+  near_place(&q);
+  assert_int_equal(q.L.count, 0);
+  q.body[1] = 7;
+  near_place(&q);
+  assert_int_equal(q.L.count, 1);
+  q.body[0] = q.body[1] = 0;
+  near_place(&q);
+  assert_int_equal(q.L.count, 1);
+  near_free(&q);
+}
+
+/* Common motion is shared: a sphere with six neighbours resists a translation of all of them with
+ * less than each pair would, and a relative one in full. */
+static void neighbours_share_the_common_motion(void **state)
+{
+  (void) state;
+  scene s = scene_create(7);
+  scene_set(&s, 0, 0, 0, 0, 1.0, eta);
+  for (int k = 0; k < 6; k++)
+    scene_set(&s, 1 + k, (k == 0) * 2.02 - (k == 1) * 2.02, (k == 2) * 2.02 - (k == 3) * 2.02,
+              (k == 4) * 2.02 - (k == 5) * 2.02, 1.0, eta);
+  near_scene q = near_create(s, 1.0, 1e-4), p = pair_at(0.02, 1.0);
+  near_place(&q);
+  near_place(&p);
+  double V[42] = {0}, f[42], V2[12] = {0}, f2[12], W[42] = {0};
+  for (int i = 0; i < 7; i++) V[6 * i] = 1.0;
+  for (int d = 0; d < 3; d++) V2[d] = V2[6 + d] = d == 0 ? 0.48 : d == 1 ? -0.6 : 0.64;
+  assert_int_equal(sd_lubrication_apply(&q.L, V, f), SD_OK);
+  assert_int_equal(sd_lubrication_apply(&p.L, V2, f2), SD_OK);
+  const double alone = f2[0] * V2[0] + f2[1] * V2[1] + f2[2] * V2[2];
+  assert_true(f[0] > 0.0 && f[0] < 6.0 * 0.5 * alone);
+  /* squeezed from both sides along x: two pairs, each with all that it has */
+  W[6] = -1.0, W[12] = 1.0;
+  for (int d = 0; d < 3; d++) V2[6 + d] = 0.0;
+  assert_int_equal(sd_lubrication_apply(&q.L, W, f), SD_OK);
+  assert_int_equal(sd_lubrication_apply(&p.L, V2, f2), SD_OK);
+  const double squeeze = -(f2[6] * V2[0] + f2[7] * V2[1] + f2[8] * V2[2]);
+  assert_true(-f[6] > 0.97 * squeeze);
+  near_free(&q);
+  near_free(&p);
+}
+
+/* --- images --- */
+
+/* A row along x that repeats itself: this rank's spheres, and copies to either side. */
+typedef struct {
+  int n, copies;
+} repeats;
+
+static sd_status from_originals(void *ctx, const double *rows, double *images, int width)
+{
+  const repeats *r = ctx;
+  for (int g = 0; g < r->copies; g++)
+    memcpy(images + width * g, rows + width * (g % r->n), sizeof(double) * (size_t) width);
+  return SD_OK;
+}
+
+/* n spheres in a period with their images are as many of them as stand within reach, all of which move
+ * alike: also a single one, which meets only itself. */
+static void images_count_as_spheres(void **state)
+{
+  (void) state;
+  for (int n = 1; n <= 3; n++) {
+    const double period = 2.1 * n + 0.3;
+    enum { SIDES = 3 };
+    const int all = n * (2 * SIDES + 1);
+    repeats r = {n, all - n};
+    near_scene q = near_create(scene_create(all), 1.0, 1e-3), full = near_create(scene_create(all), 1.0, 1e-3);
+    for (int k = 0, at = 0; k <= 2 * SIDES; k++)
+      for (int i = 0; i < n; i++, at++) {
+        const double shift = period * (k == 0 ? 0 : k <= SIDES ? k : SIDES - k);
+        scene_set(&q.s, at, 2.1 * i + shift, 0.1 * i, 0.2 * i * i, 1.0, eta);
+        scene_set(&full.s, at, 2.1 * i + shift, 0.1 * i, 0.2 * i * i, 1.0, eta);
+      }
+    sd_lubrication_scene where = near_where(&q);
+    where.n = n;
+    where.world = (sd_world){.ctx = &r, .me = 0, .ranks = 1, .refresh = from_originals};
+    assert_int_equal(sd_lubrication_place(&q.L, &where), SD_OK);
+    near_place(&full);
+    double V[6 * 21], f[6 * 21], g[6 * 21];
+    for (int j = 0; j < 6 * all; j++) V[j] = sin(1.0 + j % (6 * n));
+    assert_int_equal(sd_lubrication_apply(&q.L, V, f), SD_OK);
+    assert_int_equal(sd_lubrication_apply(&full.L, V, g), SD_OK);
+    for (int j = 0; j < 6 * n; j++) CHECK_NEAR(f[j], g[j], 1e-10);
+    near_free(&q);
+    near_free(&full);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_pair_alone_is_exact),
+      cmocka_unit_test(gaps_change_it_without_a_jump),
+      cmocka_unit_test(it_resists_every_motion),
+      cmocka_unit_test(none_within_a_body),
+      cmocka_unit_test(neighbours_share_the_common_motion),
+      cmocka_unit_test(images_count_as_spheres),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
