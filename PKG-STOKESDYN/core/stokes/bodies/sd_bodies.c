@@ -1,7 +1,5 @@
-#include "sd_bodies.h"
-
-#include "sd_clump_motion.h"
-#include "sd_linear.h"
+#include "sd_bodies_internal.h"
+#include "sd_tie.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,6 +30,8 @@ typedef struct {
   double *r, *w;
   /* rows of the ghosts; of the largest clump, slip and force in the axes of the shape */
   double *ghosts, *slip, *force;
+  /* by bodies: velocities without and with the tie, and L of these */
+  double *tied, tie_tolerance;
   powers power;
   sd_bodies_report *report;
 } loop;
@@ -46,135 +46,30 @@ static long largest_clump(const sd_bodies *A)
 
 long sd_bodies_work(const sd_bodies *A)
 {
+  const long tied = A->tie ? 18 * ((long) A->lone + A->clumps) + 6 * (long) A->n : 0;
   return (long) A->width * (6 * (long) A->n + A->ghosts) + 18 * (long) A->clumps +
-      12 * largest_clump(A) + 1;
-}
-
-/* --- between a clump's axes and space --- */
-
-static void to_shape(const double R[9], const double space[6], double shape[6])
-{
-  sd_multiply3t(R, space, shape);
-  sd_multiply3t(R, space + 3, shape + 3);
-}
-
-static void to_space(const double R[9], const double shape[6], double space[6])
-{
-  sd_multiply3(R, shape, space);
-  sd_multiply3(R, shape + 3, space + 3);
-}
-
-static void multiply6(const double A[36], const double x[6], double y[6])
-{
-  for (int p = 0; p < 6; p++) {
-    y[p] = 0.0;
-    for (int q = 0; q < 6; q++) y[p] += A[6 * p + q] * x[q];
-  }
-}
-
-/* The row of sphere k of clump b, of whatever rank it is */
-static const double *row_of(const loop *c, const double *rows, int b, int k)
-{
-  const int j = c->A->member[c->A->first[b] + k], n = c->A->n;
-  return j < n ? rows + 6 * (long) j : c->ghosts + 6 * (long) (j - n);
-}
-
-/* out += K V, V in the axes of the shape, in the rows of this rank's spheres of clump b; those of
- * other ranks are written there, by the same arithmetic */
-static void add_rigid(const sd_bodies *A, int b, const double V[6], double *out)
-{
-  const sd_body_shape *s = A->shape[b];
-  for (int k = 0; k < s->m; k++) {
-    const int j = A->member[A->first[b] + k];
-    if (j >= A->n) continue;
-    double v[6], space[6];
-    sd_cross(V + 3, s->x + 3 * k, v);
-    for (int d = 0; d < 3; d++) {
-      v[d] += V[d];
-      v[3 + d] = V[3 + d];
-    }
-    to_space(A->pose + 9 * (long) b, v, space);
-    for (int d = 0; d < 6; d++) out[6 * (long) j + d] += space[d];
-  }
-}
-
-static sd_status refresh(loop *c, const double *rows)
-{
-  const sd_bodies *A = c->A;
-  return A->refresh ? A->refresh(A->refresh_ctx, rows, c->ghosts, A->width) : SD_OK;
-}
-
-/* f [6 clumps] = K^T rows */
-static sd_status onto_clumps(loop *c, const double *rows, double *f)
-{
-  const sd_bodies *A = c->A;
-  const sd_status status = refresh(c, rows);
-  if (status != SD_OK) return status;
-  for (int b = 0; b < A->clumps; b++) {
-    const double *R = A->pose + 9 * (long) b;
-    double sum[6] = {0.0};
-    for (int k = 0; k < A->shape[b]->m; k++) {
-      double F[6], couple[3];
-      to_shape(R, row_of(c, rows, b, k), F);
-      sd_cross(A->shape[b]->x + 3 * k, F, couple);
-      for (int d = 0; d < 3; d++) {
-        sum[d] += F[d];
-        sum[3 + d] += F[3 + d] + couple[d];
-      }
-    }
-    to_space(R, sum, f + 6 * (long) b);
-  }
-  return SD_OK;
-}
-
-void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *u)
-{
-  for (int b = 0; b < A->clumps; b++) {
-    double W[3], E[6], V[6];
-    sd_clump_split_gradient(A->pose + 9 * (long) b, gradient + 9 * (long) b, W, E);
-    multiply6(A->shape[b]->carried, E, V);
-    add_rigid(A, b, V, u);
-  }
-}
-
-/* out += sign K dN f, f [6 clumps] */
-static void add_shells(const sd_bodies *A, const double *f, double sign, double *out)
-{
-  for (int b = 0; b < A->clumps; b++) {
-    double load[6], V[6];
-    to_shape(A->pose + 9 * (long) b, f + 6 * (long) b, load);
-    multiply6(A->shape[b]->shell, load, V);
-    for (int p = 0; p < 6; p++) V[p] *= sign / A->eta[b];
-    add_rigid(A, b, V, out);
-  }
-}
-
-sd_status sd_bodies_add_shells(const sd_bodies *A, const double *l, double *work, double *out)
-{
-  double *f = work;
-  loop c = {.A = A, .ghosts = work + 6 * (long) A->clumps};
-  const sd_status status = onto_clumps(&c, l, f);
-  if (status == SD_OK) add_shells(A, f, 1.0, out);
-  return status;
+      12 * largest_clump(A) + tied + 1;
 }
 
 /* --- the preconditioner --- */
 
-/* pre(r, f) of clump b; r NULL: no slip, f NULL: no load. In the axes of the shape, where all
+/* pre(r, f) of clump b; r NULL: no slip, f [6] NULL: no load. In the axes of the shape, where all
  * matrices are constant: eta B for M_b'^-1 and eta G for M_b'^-1 K, with B and G of viscosity 1, so
  *   V = N (f - eta G^T y) / eta,   z = eta (B y + G V),   y = r
- * G^T y is K^T B y without a second product, since B is symmetric. */
-static void pre_clump(loop *c, int b, const double *r, const double *f, const state *out)
+ * G^T y is K^T B y without a second product, since B is symmetric. V is returned; z is added to the
+ * rows of l. */
+static void respond(loop *c, int b, const double *r, const double *f, double *l, double V[6])
 {
   const sd_bodies *A = c->A;
   const sd_body_shape *s = A->shape[b];
   const double *R = A->pose + 9 * (long) b, eta = A->eta[b];
   const int N = 6 * s->m;
-  double *y = c->slip, *z = c->force, load[6] = {0.0}, V[6];
-  if (f) to_shape(R, f + 6 * (long) b, load);
+  double *y = c->slip, *z = c->force, load[6] = {0.0};
+  if (f) sd_bodies_to_shape(R, f, load);
   memset(z, 0, sizeof(double) * (size_t) N);
   if (r) {
-    for (int k = 0; k < s->m; k++) to_shape(R, row_of(c, r, b, k), y + 6 * k);
+    for (int k = 0; k < s->m; k++)
+      sd_bodies_to_shape(R, sd_bodies_row(A, r, c->ghosts, b, k), y + 6 * k);
     for (int i = 0; i < N; i++) {
       const double *row = s->inverse + (long) i * N, *rigid = s->rigid + 6 * (long) i;
       double sum = 0.0;
@@ -183,7 +78,7 @@ static void pre_clump(loop *c, int b, const double *r, const double *f, const st
       for (int p = 0; p < 6; p++) load[p] -= eta * rigid[p] * y[i];
     }
   }
-  multiply6(s->mobility, load, V);
+  sd_bodies_multiply6(s->mobility, load, V);
   for (int p = 0; p < 6; p++) V[p] /= eta;
   for (int i = 0; i < N; i++) {
     for (int p = 0; p < 6; p++) z[i] += s->rigid[6 * (long) i + p] * V[p];
@@ -192,16 +87,30 @@ static void pre_clump(loop *c, int b, const double *r, const double *f, const st
   for (int k = 0; k < s->m; k++) {
     const int j = A->member[A->first[b] + k];
     if (j >= A->n) continue;
-    to_space(R, z + 6 * k, out->l + 6 * (long) j);
-    memset(out->v + 6 * (long) j, 0, 6 * sizeof(double));
+    double space[6];
+    sd_bodies_to_space(R, z + 6 * k, space);
+    for (int d = 0; d < 6; d++) l[6 * (long) j + d] += space[d];
   }
-  add_rigid(A, b, V, out->v);
-  to_space(R, V, out->V + 6 * (long) b);
 }
 
-/* The same of all bodies: (l, V) = out. A free sphere has l = f and V = D^-1 f - r, since z = D r
- * drops out of l. */
-static sd_status pre(loop *c, const double *r, const loads *f, const state *out)
+/* Rows of clump b := 0 */
+static void clear(const sd_bodies *A, int b, double *rows)
+{
+  for (int k = A->first[b]; k < A->first[b + 1]; k++)
+    if (A->member[k] < A->n) memset(rows + 6 * (long) A->member[k], 0, 6 * sizeof(double));
+}
+
+/* V of clump b, in the axes of its shape */
+static void set_motion(const sd_bodies *A, int b, const double V[6], const state *out)
+{
+  clear(A, b, out->v);
+  sd_bodies_add_rigid(A, b, V, out->v);
+  sd_bodies_to_space(A->pose + 9 * (long) b, V, out->V + 6 * (long) b);
+}
+
+/* The same of all bodies, each for itself: (l, V) = out. A free sphere has l = f and V = D^-1 f - r,
+ * since z = D r drops out of l. */
+static sd_status pre_alone(loop *c, const double *r, const loads *f, const state *out)
 {
   const sd_bodies *A = c->A;
   for (int e = 0; e < A->lone; e++)
@@ -212,17 +121,58 @@ static sd_status pre(loop *c, const double *r, const loads *f, const state *out)
       out->v[j] = load / (d < 3 ? A->drag : A->spin)[A->loner[e]] - (r ? r[j] : 0.0);
     }
   if (r) {
-    const sd_status status = refresh(c, r);
+    const sd_status status = sd_bodies_refresh(A, r, c->ghosts);
     if (status != SD_OK) return status;
   }
-  for (int b = 0; b < A->clumps; b++) pre_clump(c, b, r, f ? f->clumps : NULL, out);
+  for (int b = 0; b < A->clumps; b++) {
+    double V[6];
+    clear(A, b, out->l);
+    respond(c, b, r, f ? f->clumps + 6 * (long) b : NULL, out->l, V);
+    set_motion(A, b, V, out);
+  }
   return SD_OK;
+}
+
+/* Bodies for themselves would have V_0; tied they have V, H V = H_0 V_0, and bear L V less. So the
+ * second line holds, whatever digits V has. */
+static sd_status tie_together(loop *c, const state *out)
+{
+  const sd_bodies *A = c->A;
+  const long size = 6 * ((long) A->lone + A->clumps), clumps = 6 * (long) A->lone;
+  double *V_0 = c->tied, *V = V_0 + size, *LV = V + size;
+  for (int e = 0; e < A->lone; e++)
+    memcpy(V_0 + 6 * (long) e, out->v + 6 * (long) A->loner[e], 6 * sizeof(double));
+  memcpy(V_0 + clumps, out->V, sizeof(double) * 6 * (size_t) A->clumps);
+  const sd_status status = sd_tie_solve(A, V_0, c->tie_tolerance, V, LV);
+  if (status != SD_OK) return status;
+  for (int e = 0; e < A->lone; e++)
+    for (int d = 0; d < 6; d++) {
+      out->l[6 * (long) A->loner[e] + d] -= LV[6 * (long) e + d];
+      out->v[6 * (long) A->loner[e] + d] = V[6 * (long) e + d];
+    }
+  for (int b = 0; b < A->clumps; b++) {
+    const long at = clumps + 6 * (long) b;
+    double less[6], moves[6];
+    for (int d = 0; d < 6; d++) less[d] = -LV[at + d];
+    respond(c, b, NULL, less, out->l, moves);
+    sd_bodies_to_shape(A->pose + 9 * (long) b, V + at, moves);
+    set_motion(A, b, moves, out);
+  }
+  return SD_OK;
+}
+
+static sd_status pre(loop *c, const double *r, const loads *f, const state *out)
+{
+  const sd_status status = pre_alone(c, r, f, out);
+  return status == SD_OK && c->A->tie ? tie_together(c, out) : status;
 }
 
 /* --- the loop --- */
 
 /* Slips of this part of the velocities are rounding, whatever the tolerance. */
 static const double rounding = 1e-14;
+/* Of the tolerance: that of the sparse system in the preconditioner */
+static const double tie_accuracy = 0.1;
 
 static double drag_of(const sd_bodies *A, long i, int d)
 {
@@ -237,6 +187,13 @@ static sd_status dot(const sd_bodies *A, const double *a, const double *b, doubl
   return A->sum ? A->sum(A->sum_ctx, sum, 1) : SD_OK;
 }
 
+/* out = L (v - u), with v - u in slip */
+static sd_status resist_slip(loop *c, const double *v, double *slip, double *out)
+{
+  for (long j = 0; j < (long) c->A->width * c->A->n; j++) slip[j] = v[j] - c->u[j];
+  return sd_lubrication_apply(c->A->tie->L, slip, out);
+}
+
 /* Of the start x */
 static sd_status find_power(loop *c)
 {
@@ -249,32 +206,41 @@ static sd_status find_power(loop *c)
       s[0] += c->x.l[j] * (v - u);
       s[1] += drag_of(A, i, d) * (u * u + v * v);
     }
+  if (A->tie) {
+    const sd_status status = resist_slip(c, c->x.v, c->w, c->z.l);
+    if (status != SD_OK) return status;
+    for (long j = 0; j < (long) A->width * A->n; j++) s[0] += c->w[j] * c->z.l[j];
+  }
   const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 2) : SD_OK;
   c->power.spent = fabs(s[0]);
   c->power.floor = rounding * rounding * s[1];
   return status;
 }
 
-/* out = (D^-1 + Omega) l */
+/* out = (D^-1 + Omega) l; of shells all but what K^T l = F gives once for all, which without a tie
+ * is all that they give */
 static sd_status multiply(loop *c, const double *l, double *out)
 {
   const sd_bodies *A = c->A;
-  const sd_status status = A->apply(A->apply_ctx, l, out);
+  sd_status status = A->apply(A->apply_ctx, l, out);
   c->report->products++;
   for (long i = 0; i < A->n; i++)
     for (int d = 0; d < A->width; d++)
       out[A->width * i + d] += l[A->width * i + d] / drag_of(A, i, d);
+  if (!A->tie || status != SD_OK) return status;
+  status = sd_bodies_onto_clumps(A, l, c->ghosts, c->tied);
+  if (status == SD_OK) sd_bodies_shells(A, c->tied, 1.0, out);
   return status;
 }
 
-/* r = K V - u - M' l of x, where K^T l = F; z = pre(r, 0) */
+/* r = K V - u - M' l of x, which obeys the second line; z = pre(r, 0) */
 static sd_status residual(loop *c)
 {
   const sd_bodies *A = c->A;
   sd_status status = multiply(c, c->x.l, c->r);
   if (status != SD_OK) return status;
   for (long j = 0; j < (long) A->width * A->n; j++) c->r[j] = c->x.v[j] - c->u[j] - c->r[j];
-  add_shells(A, c->F.clumps, -1.0, c->r);
+  if (!A->tie) sd_bodies_shells(A, c->F.clumps, -1.0, c->r);
   status = pre(c, c->r, NULL, &c->z);
   return status == SD_OK ? dot(A, c->r, c->z.l, &c->power.rz) : status;
 }
@@ -287,39 +253,65 @@ static sd_status start_cold(loop *c)
   return status == SD_OK ? find_power(c) : status;
 }
 
-/* guess += what it lacks of K^T l = F, by pre(0, F - K^T l) */
-static sd_status repair(loop *c, double *guess)
+/* guess += what it lacks of the second line, by pre(0, F - K^T (l + L K V)) */
+static sd_status repair(loop *c, const state *guess)
 {
-  const long size = (long) c->A->width * c->A->n;
-  const loads lacks = {c->r, c->along.V};
-  sd_status status = onto_clumps(c, guess, lacks.clumps);
+  const sd_bodies *A = c->A;
+  const long size = (long) A->width * A->n;
+  const loads lacks = {c->r, c->w};
+  sd_status status = SD_OK;
+  if (A->tie) status = sd_lubrication_apply(A->tie->L, guess->v, c->r);
+  for (long j = 0; j < size; j++) c->r[j] = guess->l[j] + (A->tie ? c->r[j] : 0.0);
+  if (status == SD_OK) status = sd_bodies_onto_clumps(A, c->r, c->ghosts, lacks.clumps);
   if (status != SD_OK) return status;
-  for (int j = 0; j < 6 * c->A->clumps; j++) lacks.clumps[j] = c->F.clumps[j] - lacks.clumps[j];
-  for (long j = 0; j < size; j++) c->r[j] = c->F.rows[j] - guess[j];
+  for (int j = 0; j < 6 * A->clumps; j++) lacks.clumps[j] = c->F.clumps[j] - lacks.clumps[j];
+  for (long j = 0; j < size; j++) c->r[j] = c->F.rows[j] - c->r[j];
   status = pre(c, NULL, &lacks, &c->z);
-  for (long j = 0; j < size; j++) guess[j] += c->z.l[j];
+  for (long j = 0; j < size; j++) guess->l[j] += c->z.l[j];
+  for (long j = 0; A->tie && j < size; j++) guess->v[j] += c->z.v[j];
+  for (int j = 0; A->tie && j < 6 * A->clumps; j++) guess->V[j] += c->z.V[j];
   return status;
 }
 
-/* x, r and z at the start of the loop. Warm: l is a guess, dropped when it leaves more than the
- * power itself. V needs none: pre(r, 0) finds what V lacks, whatever it is. */
-static sd_status start(loop *c, int warm)
+/* The motion that a guess goes with, by rows and by clumps: that of each clump's first sphere. */
+static sd_status guess_motion(loop *c, const double *before, const state *guess)
+{
+  const sd_bodies *A = c->A;
+  memcpy(guess->v, before, sizeof(double) * 6 * (size_t) A->n);
+  const sd_status status = sd_bodies_refresh(A, before, c->ghosts);
+  for (int b = 0; b < A->clumps && status == SD_OK; b++) {
+    double V[6], turning[3];
+    sd_bodies_to_shape(A->pose + 9 * (long) b, sd_bodies_row(A, before, c->ghosts, b, 0), V);
+    sd_cross(V + 3, A->shape[b]->x, turning);
+    for (int d = 0; d < 3; d++) V[d] -= turning[d];
+    set_motion(A, b, V, guess);
+  }
+  return status;
+}
+
+/* x, r and z at the start of the loop. Warm: l is a guess, with a tie (l, V), dropped when it leaves
+ * more than the power itself. Without a tie V needs none: pre(r, 0) finds what V lacks. */
+static sd_status start(loop *c, const double *before, int warm)
 {
   const size_t bytes = sizeof(double) * (size_t) c->A->width * (size_t) c->A->n;
-  double *other = c->along.l;
+  const state *guess = &c->along;
   sd_status status = SD_OK;
   if (warm) {
-    memcpy(other, c->x.l, bytes);
-    status = repair(c, other);
+    memcpy(guess->l, c->x.l, bytes);
+    if (c->A->tie) status = guess_motion(c, before, guess);
+    if (status == SD_OK) status = repair(c, guess);
   }
   if (status == SD_OK) status = start_cold(c);
   if (status != SD_OK || !warm) return status == SD_OK ? residual(c) : status;
-  memcpy(c->w, c->x.l, bytes);
-  memcpy(c->x.l, other, bytes);
+  memcpy(c->x.l, guess->l, bytes);
+  if (c->A->tie) {
+    memcpy(c->x.v, guess->v, bytes);
+    memcpy(c->x.V, guess->V, sizeof(double) * 6 * (size_t) c->A->clumps);
+  }
   status = residual(c);
   if (status != SD_OK || c->power.rz <= c->power.spent) return status;
-  memcpy(c->x.l, c->w, bytes);
-  return residual(c);
+  status = start_cold(c);
+  return status == SD_OK ? residual(c) : status;
 }
 
 /* (p, q) = (z, dV) + beta (p, q): conjugate to all before, since each lies within the constraint */
@@ -333,8 +325,8 @@ static void turn_along(loop *c, double beta)
     c->along.V[j] = c->z.V[j] + beta * c->along.V[j];
 }
 
-/* From x along (p, q) to where the power is least, and z = pre(r, 0) there. K^T p = 0, so p.K q = 0
- * and the curvature is p.M p; K q stays in w all the same, where it keeps the digits of r. */
+/* From x along (p, q) to where the power is least, and z = pre(r, 0) there. Without a tie K^T p = 0,
+ * so p.K q = 0 and the curvature is p.M p, with one -p.K q is q.L q; K q stays in w all the same, where it keeps the digits of r. */
 static sd_status step(loop *c)
 {
   const sd_bodies *A = c->A;
@@ -381,17 +373,45 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
   }
 }
 
+/* What the fluid bears beside M' l in a flow: a tie goes by velocities against it, so that K^T l +
+ * K^T L K V = F + K^T L u. */
+static sd_status take_loads(loop *c, const double *F, double *rows, double *clumps)
+{
+  const sd_bodies *A = c->A;
+  c->F = (loads){F, clumps};
+  if (A->tie) {
+    const sd_status status = sd_lubrication_apply(A->tie->L, c->u, rows);
+    if (status != SD_OK) return status;
+    for (long j = 0; j < (long) A->width * A->n; j++) rows[j] += F[j];
+    c->F.rows = rows;
+  }
+  return sd_bodies_onto_clumps(A, c->F.rows, c->ghosts, clumps);
+}
+
+/* The last pre(r, 0) is free, and without it free spheres would have their lone velocities. */
+static sd_status finish(loop *c, const sd_bodies_motion *motion)
+{
+  const sd_bodies *A = c->A;
+  const long size = (long) A->width * A->n, motions = 6 * (long) A->clumps;
+  if (A->tie) memcpy(motion->before, motion->v, sizeof(double) * (size_t) size);
+  for (long j = 0; j < size; j++) motion->v[j] += c->z.v[j];
+  for (long j = 0; j < motions; j++) motion->V[j] += c->z.V[j];
+  if (!A->tie) return SD_OK;
+  const sd_status status = resist_slip(c, motion->v, c->w, motion->near);
+  for (long j = 0; j < size; j++) motion->near[j] += c->z.l[j];
+  return status;
+}
+
 sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *problem,
                                const sd_bodies_motion *motion, double *work,
                                sd_bodies_report *report)
 {
   const long size = (long) A->width * A->n, motions = 6 * (long) A->clumps;
   double *rows = work, *clumps = rows + 6 * size, *ghosts = clumps + 3 * motions;
-  double *large = ghosts + (long) A->width * A->ghosts;
+  double *large = ghosts + (long) A->width * A->ghosts, *tied = large + 12 * largest_clump(A);
   loop c = {
       .A = A,
       .u = problem->u,
-      .F = {problem->F, clumps},
       .x = {motion->l, motion->v, motion->V},
       .z = {rows, rows + size, clumps + motions},
       .along = {rows + 2 * size, rows + 3 * size, clumps + 2 * motions},
@@ -400,15 +420,17 @@ sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *prob
       .ghosts = ghosts,
       .slip = large,
       .force = large + 6 * largest_clump(A),
+      .tied = tied,
+      .tie_tolerance = tie_accuracy * problem->tolerance,
       .report = report,
   };
   *report = (sd_bodies_report){0};
-  sd_status status = onto_clumps(&c, problem->F, clumps);
-  if (status == SD_OK) status = start(&c, problem->warm);
+  sd_status status = A->tie ? sd_tie_make(A) : SD_OK;
+  if (status == SD_OK)
+    status = take_loads(&c, problem->F, tied + 18 * ((long) A->lone + A->clumps), clumps);
+  if (status == SD_OK) status = start(&c, motion->before, problem->warm);
   if (status == SD_OK) status = iterate(&c, problem->tolerance, problem->max_iter);
   if (status != SD_OK && status != SD_EMAXITER) return status;
-  /* The last pre(r, 0) is free, and without it free spheres would have their lone velocities. */
-  for (long j = 0; j < size; j++) motion->v[j] += c.z.v[j];
-  for (long j = 0; j < motions; j++) motion->V[j] += c.z.V[j];
-  return status;
+  const sd_status last = finish(&c, motion);
+  return last == SD_OK ? status : last;
 }

@@ -22,7 +22,16 @@
  * >= 0 and p.w = p.M p, so that this is conjugate gradients with all that is known of them. r must
  * be updated with K q in it: without, digits are lost near 1e-7. Free spheres leave after their one
  * product with the exact answer. e = l.(K V - u) of the start, the power spent; the tolerance is
- * about an energy norm, and V + dV is a hundred times better than it. */
+ * about an energy norm, and V + dV is a hundred times better than it.
+ *
+ * With lubrication L between spheres of different bodies (a tie, sd_tie.h)
+ *
+ *   K^T (l + L (K V - u)) = F
+ *
+ * and the loop is the same: pre(r, f) then takes H = N^-1 + K^T L K in the place of N^-1, and K^T l
+ * + K^T L K V = f holds whatever H V is solved to, since l is made from V. r.z = z.M_b' z + dV.L dV,
+ * p.w = p.M p + q.L q, e has (K V - u).L (K V - u) besides. The gaps may be as small as they like:
+ * what is stiff is in H. */
 #ifndef SD_BODIES_H
 #define SD_BODIES_H
 
@@ -34,7 +43,9 @@
 extern "C" {
 #endif
 
-/* Rows have `width` numbers a sphere, 3 or 6; with clumps 6. Everything is in space axes. */
+struct sd_tie;
+
+/* Rows have `width` numbers a sphere, 3 or 6; with clumps or a tie 6. Everything is in space axes. */
 typedef struct {
   /* spheres of this rank, that is rows; those of other ranks that are in clumps with them */
   int n, ghosts, width;
@@ -59,6 +70,8 @@ typedef struct {
   /* rows [width n] -> those of the ghosts [width ghosts]; NULL: there are none on any rank */
   sd_status (*refresh)(void *ctx, const double *rows, double *ghosts, int width);
   void *refresh_ctx;
+  /* lubrication; NULL: none */
+  struct sd_tie *tie;
 } sd_bodies;
 
 typedef struct {
@@ -66,7 +79,7 @@ typedef struct {
   const double *u;
   /* [width n] forces and torques on the spheres, each about its own centre */
   const double *F;
-  /* does l hold a guess? Any will do: what it lacks of K^T l = F is made up */
+  /* does l (with a tie, and before) hold a guess? Any will do: what it lacks of F is made up */
   int warm;
   /* max_iter: of products */
   double tolerance;
@@ -81,6 +94,9 @@ typedef struct {
   double *v;
   /* [6 clumps] U of the centroid and W of the clumps */
   double *V;
+  /* with a tie, [width n]: the velocities that go with l in a guess; and what the spheres exert on
+   * the fluid by lubrication, l for the guess and `near` adding up to all that they exert */
+  double *before, *near;
 } sd_bodies_motion;
 
 typedef struct {
@@ -101,7 +117,7 @@ sd_status sd_bodies_add_shells(const sd_bodies *A, const double *l, double *work
 long sd_bodies_work(const sd_bodies *A);
 
 /* work [sd_bodies_work]. SD_OK; SD_EMAXITER: motion is the best that there is; SD_EINDEFINITE: p.w
- * <= 0, as a cut-off makes it; SD_ENOTFINITE; that of a function of the caller. */
+ * <= 0, as a cut-off makes it; SD_ENOTFINITE; that of sd_tie.h, or of a function of the caller. */
 sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *problem,
                                const sd_bodies_motion *motion, double *work,
                                sd_bodies_report *report);

@@ -113,7 +113,7 @@ static sd_status invert(size_t N, double *A)
 sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *s)
 {
   const size_t m = (size_t) shape->n, N = 6 * m;
-  double R[36];
+  double *const R = s->resistance;
   *s = (sd_body_shape){.m = shape->n};
   s->x = malloc(sizeof(double) * 3 * m);
   s->inverse = malloc(sizeof(double) * N * N);

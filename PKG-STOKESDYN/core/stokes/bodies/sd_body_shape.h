@@ -28,8 +28,8 @@ typedef struct {
   double *x;
   /* [(6m)^2] M_b'^-1, symmetric; [(6m) 6] M_b'^-1 K, row-major */
   double *inverse, *rigid;
-  /* [6 6] of the lone body: (U, W) from force and torque about the centroid */
-  double mobility[36];
+  /* [6 6] of the lone body: (U, W) from force and torque about the centroid; and its inverse */
+  double mobility[36], resistance[36];
   /* [6 6] dN, 0 without shells */
   double shell[36];
   /* [6 6] dE: (U, W) from E_xx E_yy E_zz E_yz E_xz E_xy, as in sd_clump.h; 0 without shells */

@@ -121,7 +121,7 @@ static inline sd_status flock_move(flock *f, int width, int warm, double toleran
 {
   const sd_bodies A = flock_place(f, width);
   const sd_bodies_problem problem = {f->u, f->F, warm, tolerance, max_iter};
-  const sd_bodies_motion motion = {f->l, f->v, f->V};
+  const sd_bodies_motion motion = {f->l, f->v, f->V, NULL, NULL};
   double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
   for (long j = 0; j < sd_bodies_work(&A); j++) work[j] = NAN; /* nobody may read it */
   const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work, &f->report);

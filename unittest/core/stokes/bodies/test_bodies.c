@@ -371,7 +371,7 @@ static void negative_curvature_is_refused(void **state)
   sd_bodies A = flock_place(f, 6);
   A.apply = wrong_sign;
   const sd_bodies_problem problem = {f->u, f->F, 0, 1e-6, 100};
-  const sd_bodies_motion motion = {f->l, f->v, f->V};
+  const sd_bodies_motion motion = {f->l, f->v, f->V, NULL, NULL};
   double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
   assert_int_equal(sd_bodies_velocities(&A, &problem, &motion, work, &f->report), SD_EINDEFINITE);
   free(work);

@@ -1,0 +1,301 @@
+/* Bodies with lubrication between them: sd_bodies.h with sd_tie.h, against the dense solution of its
+ * system, at gaps of nothing, and in as many products as the page says. */
+#include "flock.h"
+
+#include "lubrication/near_scene.h"
+
+#include "sd_tie.h"
+
+static const double P6 = 6.0 * SD_PI;
+static const double doublet[6] = {0, 0, -1, 0, 0, 1};
+static const double ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+
+/* The flock with lubrication between its spheres; clumps are bodies 1, 2, ... */
+typedef struct {
+  flock *f;
+  near_scene near;
+  sd_tie tie;
+  double before[6 * FLOCK_MOST], force[6 * FLOCK_MOST];
+} tied_flock;
+
+static tied_flock *tie_flock(flock *f, double gap)
+{
+  tied_flock *t = calloc(1, sizeof(tied_flock));
+  t->f = f;
+  flock_place(f, 6);
+  t->near = near_create(scene_create(f->n), 4.0, gap);
+  for (int i = 0; i < f->n; i++) {
+    scene_set(&t->near.s, i, f->x[3 * i], f->x[3 * i + 1], f->x[3 * i + 2], f->a[i], f->eta);
+    t->near.body[i] = i < f->m * f->clumps ? 1 + i / f->m : 0;
+  }
+  near_place(&t->near);
+  t->tie.L = &t->near.L;
+  return t;
+}
+
+static void untie(tied_flock *t)
+{
+  sd_tie_free(&t->tie);
+  near_free(&t->near);
+  flock_free(t->f);
+  free(t);
+}
+
+static sd_status tied_move(tied_flock *t, int warm, double tolerance, int max_iter)
+{
+  flock *f = t->f;
+  sd_bodies A = flock_place(f, 6);
+  A.tie = &t->tie;
+  const sd_bodies_problem problem = {f->u, f->F, warm, tolerance, max_iter};
+  const sd_bodies_motion motion = {f->l, f->v, f->V, t->before, t->force};
+  double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
+  for (long j = 0; j < sd_bodies_work(&A); j++) work[j] = NAN; /* nobody may read it */
+  const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work, &f->report);
+  free(work);
+  return status;
+}
+
+/* Clumps and free spheres pushed together until gaps are small: towards the middle, as far as they
+ * go */
+static void crowd(flock *f, double phi, uint64_t seed)
+{
+  flock_scatter(f, phi, seed);
+  const int bodies = f->clumps + f->free;
+  for (int sweep = 0; sweep < 30; sweep++)
+    for (int b = 0; b < bodies; b++) {
+      double *c = f->pose + 12 * b + 9, old[3] = {c[0], c[1], c[2]}, part = 0.3;
+      for (int half = 0; half < 6; half++, part *= 0.3) {
+        for (int d = 0; d < 3; d++) c[d] = old[d] * (1.0 - part);
+        flock_place(f, 6);
+        double gap = INFINITY;
+        for (int i = 0; i < f->n; i++)
+          for (int j = 0; j < i; j++) {
+            const int bi = i < f->m * f->clumps ? i / f->m : -i, bj = j < f->m * f->clumps ? j / f->m : -j;
+            if (bi != bj)
+              gap = fmin(gap, sqrt(sd_distance_squared(f->x + 3 * i, f->x + 3 * j)) - f->a[i] - f->a[j]);
+          }
+        if (gap > 1e-5) break;
+        memcpy(c, old, sizeof(old));
+      }
+    }
+  flock_place(f, 6);
+}
+
+/* K^T rows, by bodies: clumps about their centroids, then free spheres */
+static void onto_bodies(const flock *f, const double *rows, double *out)
+{
+  for (int b = 0; b < f->clumps + f->free; b++) {
+    double *to = out + 6 * b;
+    memset(to, 0, 6 * sizeof(double));
+    const int first = b < f->clumps ? f->m * b : f->m * f->clumps + b - f->clumps;
+    for (int k = 0; k < (b < f->clumps ? f->m : 1); k++) {
+      const double *F = rows + 6 * (first + k);
+      double arm[3], couple[3];
+      sd_minus(f->x + 3 * (first + k), f->pose + 12 * b + 9, arm);
+      sd_cross(arm, F, couple);
+      for (int d = 0; d < 3; d++) {
+        to[d] += F[d];
+        to[3 + d] += F[3 + d] + couple[d];
+      }
+    }
+  }
+}
+
+/* out = M l by spheres (without shells) */
+static void multiply_dense(const tied_flock *t, const double *l, double *out)
+{
+  const int N = 6 * t->f->n;
+  double *M = dense_mobility(&t->near.s);
+  for (int i = 0; i < N; i++) {
+    out[i] = 0.0;
+    for (int j = 0; j < N; j++) out[i] += M[N * i + j] * l[j];
+  }
+  free(M);
+}
+
+/* The system (3) line by line, from its definition: free spheres and doublets in a shear flow, loads at
+ * random. */
+static void both_lines_hold(void **state)
+{
+  (void) state;
+  for (int e = 0; e < 2; e++) {
+    flock *f = flock_create(2, doublet, ones, 1, 5 * e, 12, 1.3);
+    crowd(f, 0.2, 5 + e);
+    tied_flock *t = tie_flock(f, 1e-4);
+    const int N = 6 * f->n, bodies = f->clumps + f->free;
+    uint64_t seed = 7;
+    for (int j = 0; j < N; j++) f->F[j] = uniform(&seed, -10, 10);
+    for (int i = 0; i < f->n; i++) {
+      f->u[6 * i] = 0.3 * f->x[3 * i + 1];
+      f->u[6 * i + 5] = -0.15;
+    }
+    assert_int_equal(tied_move(t, 0, 1e-12, 400), SD_OK);
+    double *Ml = malloc(sizeof(double) * (size_t) N), *L = near_dense(&t->near);
+    /* loads: K^T (l + L (K V - u)) = F, where l and L .. are `l` and `force` of the answer */
+    double lubrication[6 * FLOCK_MOST], total[6 * FLOCK_MOST], got[6 * FLOCK_MOST], want[6 * FLOCK_MOST];
+    for (int i = 0; i < N; i++) {
+      lubrication[i] = 0.0;
+      for (int j = 0; j < N; j++) lubrication[i] += L[N * i + j] * (f->v[j] - f->u[j]);
+      total[i] = f->l[i] + t->force[i];
+    }
+    onto_bodies(f, total, got);
+    onto_bodies(f, f->F, want);
+    for (int j = 0; j < 6 * bodies; j++) CHECK_NEAR(got[j], want[j], 1e-7);
+    for (int i = 0; i < N; i++) total[i] -= lubrication[i]; /* what goes through the fluid of all */
+    multiply_dense(t, total, Ml);
+    double worst = 0.0, largest = 0.0;
+    for (int i = 0; i < N; i++) {
+      worst = fmax(worst, fabs(Ml[i] - f->v[i] + f->u[i]));
+      largest = fmax(largest, fabs(f->v[i]));
+    }
+    assert_true(worst < 1e-8 * largest);
+    free(Ml), free(L);
+    untie(t);
+  }
+}
+
+/* Without a pair within the range nothing is changed. */
+static void far_spheres_are_as_without(void **state)
+{
+  (void) state;
+  flock *f = flock_create(0, NULL, NULL, 1, 0, 5, 1.7), *g = flock_create(0, NULL, NULL, 1, 0, 5, 1.7);
+  for (int b = 0; b < 5; b++) f->pose[12 * b + 9] = g->pose[12 * b + 9] = 5.0 * b;
+  flock_weigh(f, P6), flock_weigh(g, P6);
+  tied_flock *t = tie_flock(f, 1e-4);
+  assert_int_equal(tied_move(t, 0, 1e-3, 50), SD_OK);
+  assert_int_equal(flock_move(g, 6, 0, 1e-3, 50), SD_OK);
+  assert_int_equal(f->report.products, 1);
+  for (int j = 0; j < 30; j++) CHECK_NEAR(f->v[j], g->v[j], 1e-14);
+  untie(t);
+  flock_free(g);
+}
+
+/* Shells: dN of a doublet of 42 points and lubrication of its spheres. A clump alone keeps its own
+ * mobility; two at rest against each other in a far field move as one where the gap is nothing. */
+static void shells_and_lubrication_go_together(void **state)
+{
+  (void) state;
+  flock *alone = flock_create(2, doublet, ones, 42, 1, 0, 0.6), *f = flock_create(2, doublet, ones, 42, 2, 0, 0.6);
+  tied_flock *t = tie_flock(alone, 1e-4);
+  flock_weigh(alone, P6);
+  assert_int_equal(tied_move(t, 0, 1e-8, 50), SD_OK);
+  CHECK_NEAR(alone->V[2] * alone->body.resistance[14] * 0.6, -2.0 * P6, 1e-9);
+  untie(t);
+
+  /* One doublet above the other, pushed together: what is left is the film between them. */
+  double squeeze[2];
+  for (int k = 0; k < 2; k++) {
+    f->pose[12 + 11] = 4.0 + (k ? 1e-2 : 1e-4);
+    memset(f->F, 0, sizeof(f->F));
+    f->F[6 * 1 + 2] = P6, f->F[6 * 2 + 2] = -P6;
+    t = tie_flock(f, 1e-5);
+    assert_int_equal(tied_move(t, 0, 1e-9, 100), SD_OK);
+    squeeze[k] = f->V[2] - f->V[8];
+    sd_tie_free(&t->tie);
+    near_free(&t->near);
+    free(t);
+  }
+  /* 6 pi eta a^2/(4 gap) resists, beside logarithms */
+  assert_true(squeeze[0] > 0.0);
+  CHECK_NEAR(squeeze[1] / squeeze[0], 100.0, 20.0);
+  flock_free(f);
+}
+
+/* A guess of (l, V) as the last solve left it gives the same answer at once. */
+static void a_guess_is_taken_up(void **state)
+{
+  (void) state;
+  flock *f = flock_create(2, doublet, ones, 12, 4, 10, 1.3);
+  crowd(f, 0.2, 9);
+  tied_flock *t = tie_flock(f, 1e-4);
+  flock_weigh(f, P6);
+  for (int j = 0; j < 6 * f->n; j++) f->l[j] = t->before[j] = 0.1 * cos(j); /* any guess will do */
+  assert_int_equal(tied_move(t, 1, 1e-4, 100), SD_OK);
+  const int cold = f->report.products;
+  double v[6 * FLOCK_MOST];
+  memcpy(v, f->v, sizeof(v));
+  assert_int_equal(tied_move(t, 1, 1e-4, 100), SD_OK);
+  assert_int_equal(f->report.products, 1);
+  assert_true(cold > 5);
+  assert_true(flock_distance(f->v, v, 6 * f->n) < 1e-8);
+  untie(t);
+}
+
+/* --- how many products --- */
+
+/* Free equal spheres at volume fraction phi, many of them within 1e-3 of each other and nearer */
+typedef struct {
+  int products, inner;
+  double error;
+} cost;
+
+static sd_status packed_apply(void *ctx, const double *F, double *u)
+{
+  sd_packed_share(ctx, 0, 1, F, u);
+  return SD_OK;
+}
+
+static cost settle(int n, double phi, double gap, double tolerance)
+{
+  near_scene near = near_create(cloud_dense(n, phi, 1.0, 1.0, 1.3, 7), 1.0, gap);
+  near_place(&near);
+  sd_tie tie = {.L = &near.L};
+  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_spheres spheres = {near.s.x, near.s.a, near.s.w};
+  sd_packed packed = {0};
+  assert_int_equal(sd_packed_all(&packed, SD_ISA_BEST, &law, &spheres, n, 6), SD_OK);
+  const size_t size = 6 * (size_t) n;
+  double *rows = calloc(7 * size + 2 * (size_t) n, sizeof(double));
+  double *u = rows, *F = u + size, *l = F + size, *v = l + size, *before = v + size, *force = before + size;
+  double *reference = force + size, *drag = reference + size, *spin = drag + n;
+  int *loner = malloc(sizeof(int) * (size_t) n), none = 0;
+  for (int i = 0; i < n; i++) {
+    drag[i] = P6 * 1.3, spin[i] = 8.0 * SD_PI * 1.3, loner[i] = i;
+    F[6 * i + 2] = -P6;
+  }
+  const sd_bodies A = {.n = n, .width = 6, .drag = drag, .spin = spin, .lone = n, .loner = loner, .first = &none,
+                       .apply = packed_apply, .apply_ctx = &packed, .tie = &tie};
+  const sd_bodies_motion motion = {l, v, NULL, before, force};
+  double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
+  sd_bodies_report report;
+  const sd_bodies_problem tight = {u, F, 0, 1e-8, 400}, problem = {u, F, 0, tolerance, 400};
+  assert_int_equal(sd_bodies_velocities(&A, &tight, &motion, work, &report), SD_OK);
+  memcpy(reference, v, sizeof(double) * size);
+  assert_int_equal(sd_bodies_velocities(&A, &problem, &motion, work, &report), SD_OK);
+  const cost c = {report.products, (int) tie.products, flock_distance(v, reference, (int) size)};
+  free(work), free(rows), free(loner);
+  sd_packed_free(&packed);
+  sd_tie_free(&tie);
+  near_free(&near);
+  return c;
+}
+
+/* The gap does not matter, and velocities are far better than the tolerance. */
+static void products_do_not_depend_on_the_gap(void **state)
+{
+  (void) state;
+  static const double phi[] = {0.1, 0.3, 0.5};
+  for (int k = 0; k < 3; k++) {
+    int products[3];
+    for (int e = 0; e < 3; e++) {
+      const cost c = settle(200, phi[k], pow(10.0, -2 - 2 * e), 1e-3);
+      products[e] = c.products;
+      assert_true(c.products <= 20);
+      assert_true(c.inner <= 10 * c.products);
+      assert_true(c.error < 1e-4);
+    }
+    assert_true(abs(products[2] - products[0]) <= 3);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(both_lines_hold),
+      cmocka_unit_test(far_spheres_are_as_without),
+      cmocka_unit_test(shells_and_lubrication_go_together),
+      cmocka_unit_test(a_guess_is_taken_up),
+      cmocka_unit_test(products_do_not_depend_on_the_gap),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
