@@ -26,7 +26,7 @@ static const std::string COMMAND = StokesSettings::COMMAND;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp, Pair *pair) :
     Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, pair, COMMAND), rigid(lmp, scene, COMMAND),
-    mobile(lmp, scene, ambient, rigid), preconditioner(lmp, scene), guard(lmp, COMMAND)
+    lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}), preconditioner(lmp, scene), guard(lmp, COMMAND)
 {
 }
 
@@ -43,6 +43,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   ambient.settings = settings.ambient;
   scene.settings = settings.scene;
   rigid.settings = settings.rigid;
+  lubrication.settings = settings.lubrication;
   scene.init();
   rigid.forget();
   preconditioner.forget();
@@ -116,7 +117,7 @@ void Hydrodynamics::clumps()
 }
 
 /* F = 6 pi eta a (u_inf + v' - v), and likewise the torque, of all spheres but those of rigid
- * clumps. */
+ * clumps; and lubrication. */
 void Hydrodynamics::drag()
 {
   const bool rotates = rotation();
@@ -129,6 +130,24 @@ void Hydrodynamics::drag()
     const double k_spin = ambient.spin(i);
     for (int d = 0; d < 3; d++)
       row[State::TORQUE + d] = k_spin * (s[3 + d] + row[State::WPRIME + d]);
+  }
+  if (settings.lubrication.on) lubricate();
+}
+
+/* F += L (u_inf - v), where the spheres stand and as they move now */
+void Hydrodynamics::lubricate()
+{
+  const size_t n = solvers.size();
+  std::vector<double> s(6 * n + 6), F(6 * n + 6);
+  for (size_t k = 0; k < n; k++) ambient.slip(solvers[k], &s[6 * k]);
+  lubrication.place(ambient);
+  lubrication.apply(s.data(), F.data());
+  for (size_t k = 0; k < n; k++) {
+    double *row = memory->rows.row(solvers[k]);
+    for (int d = 0; d < 3; d++) {
+      row[State::FORCE + d] += F[6 * k + d];
+      row[State::TORQUE + d] += F[6 * k + 3 + d];
+    }
   }
 }
 
@@ -326,24 +345,32 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
   fail(lmp, message);
 }
 
-/* In one loop, which begins from the forces of the last step. */
+/* In one loop, which begins from the forces of the last step, with lubrication from its velocities
+ * too: v' has no other use in such a run, so they are kept in its place. */
 sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_report &report)
 {
   const size_t m = width(), n = solvers.size();
   place();
-  solution.assign(m * n + m, 0.0);
+  begin_with.l.assign(m * n + m, 0.0);
+  begin_with.v.assign(m * n + m, 0.0);
   for (size_t k = 0; k < n && settings.warm_start; k++) {
     const double *row = memory->rows[solvers[k]];
-    for (size_t d = 0; d < m; d++)
-      solution[m * k + d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
+    for (size_t d = 0; d < m; d++) {
+      begin_with.l[m * k + d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
+      begin_with.v[m * k + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+    }
   }
   const Velocities::How how = {width(), settings.warm_start, settings.tolerance, settings.max_iter};
-  auto keep_too = [&](int i, const double *v, const double *F) {
-    double *row = memory->rows.give(i);
-    for (size_t d = 0; d < m; d++) row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = F[d];
-    take(i, v, F);
-  };
-  return mobile.together(how, solution, keep_too, report);
+  const sd_status status = mobile.together(how, begin_with, take, report);
+  for (size_t k = 0; k < n; k++) {
+    double *row = memory->rows.give(solvers[k]);
+    for (size_t d = 0; d < m; d++) {
+      row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = -begin_with.l[m * k + d];
+      if (settings.lubrication.on)
+        row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3] = begin_with.v[m * k + d];
+    }
+  }
+  return status;
 }
 
 void Hydrodynamics::velocities(const Velocities::Take &take)
@@ -379,7 +406,7 @@ void Hydrodynamics::turn(int i, const double R[9])
 {
   if (settings.rigid.apart()) return;    // no guess is made there
   double *row = memory->rows.row(i), turned[3];
-  for (int first : {(int) State::FORCE, (int) State::TORQUE}) {
+  for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) {
     sd_multiply3(R, row + first, turned);
     std::copy_n(turned, 3, row + first);
   }

@@ -12,6 +12,7 @@
 
 #include "ambient.h"
 #include "fix_stokes_dynamics_state.h"
+#include "lubrication.h"
 #include "preconditioner.h"
 #include "rigid_clumps.h"
 #include "scene.h"
@@ -81,6 +82,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
  private:
   RigidClumps rigid;
+  Lubrication lubrication;
   Velocities mobile;
   Preconditioner preconditioner;
   TimeStepGuard guard;
@@ -92,6 +94,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   std::vector<int> solvers;
   /* of a solve, by rows: row k is the sphere solvers[k] */
   std::vector<double> eta, slip, resistance, spin, solution, work;
+  /* where velocities from forces begin */
+  Velocities::Guess begin_with;
   /* the slip of clumps with shells that interact: a strain carries them otherwise */
   std::vector<double> carried;
 
@@ -100,6 +104,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   sd_system gather();
   bool joined() const { return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1; }
   const double *right_hand_side() const { return joined() ? carried.data() : slip.data(); }
+  void lubricate();
   sd_status run(sd_solve_report &report);
   sd_status gradients(sd_system &system, sd_solve_report &report);
   void guess();

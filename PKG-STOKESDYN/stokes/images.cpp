@@ -1,5 +1,7 @@
 #include "images.h"
 
+#include "domain.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -18,6 +20,17 @@ void exchange_numbers(MPI_Comm world, const double *send, const int *to, double 
   }
   MPI_Alltoallv(const_cast<double *>(send), const_cast<int *>(to), to_at.data(), MPI_DOUBLE, receive,
                 const_cast<int *>(from), from_at.data(), MPI_DOUBLE, world);
+}
+
+sd_ewald_box periodic_box(const LAMMPS_NS::Domain *domain)
+{
+  sd_ewald_box box = {};
+  box.periodic = domain->xperiodic && domain->yperiodic && domain->zperiodic;
+  std::copy_n(domain->boxlo, 3, box.origin);
+  std::copy_n(domain->prd, 3, box.edge);
+  const double tilt[3] = {domain->xy, domain->xz, domain->yz};
+  if (domain->triclinic) std::copy_n(tilt, 3, box.tilt);
+  return box;
 }
 
 Images::Images(MPI_Comm world) : world(world)

@@ -10,6 +10,10 @@
 
 #include <mpi.h>
 
+namespace LAMMPS_NS {
+class Domain;
+}
+
 #include <vector>
 
 namespace StokesDyn {
@@ -41,6 +45,9 @@ class Images {
   void choose(const sd_ewald_box &box, double reach, const std::vector<double> &x);
   template <class Row> void send(int width, const Row &row, double *images);
 };
+
+/* LAMMPS's box if it is periodic all ways; else an open one, whose lengths mean nothing. */
+sd_ewald_box periodic_box(const LAMMPS_NS::Domain *domain);
 
 /* to[p] numbers of `send` to rank p, from[p] of `receive` from it, one rank after the other. */
 void exchange_numbers(MPI_Comm world, const double *send, const int *to, double *receive,

@@ -44,14 +44,9 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
-  if (periodic()) {
-    box = {};
-    box.periodic = 1;
-    std::copy_n(domain->boxlo, 3, box.origin);
-    std::copy_n(domain->prd, 3, box.edge);
-    const double tilt[3] = {domain->xy, domain->xz, domain->yz};
-    if (domain->triclinic) std::copy_n(tilt, 3, box.tilt);
-  } else if (sums[0] > 0.0) {
+  if (periodic())
+    box = periodic_box(domain);
+  else if (sums[0] > 0.0) {
     double lo[3] = {0.0, 0.0, 0.0}, hi[3];
     for (int d = 0; d < 3; d++) {
       hi[d] = most[4 + d] + most[1 + d];

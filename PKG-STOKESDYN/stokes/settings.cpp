@@ -92,6 +92,17 @@ void StokesSettings::parse(Keywords &in)
          if (rigid.shell > 1 && rigid.shell < 12)
            in.refuse("'" + std::to_string(rigid.shell) + "' must be 1 or >= 12");
        }},
+      {"lubrication", [&] { lubrication.on = in.yes_no(); }},
+      {"lubrication_gap", [&] {
+         lubrication.gap = in.positive();
+         if (lubrication.gap < 1e-6)
+           in.refuse("'" + text(lubrication.gap) + "' must be >= 1e-6, in mean radii of a pair");
+       }},
+      {"lubrication_range", [&] {
+         lubrication.range = in.positive();
+         if (lubrication.range > SD_TWO_SPHERE_LARGEST_XI)
+           in.refuse("'" + text(lubrication.range) + "' must be <= 8, in mean radii of a pair");
+       }},
       {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
       {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
       {"far_field_tolerance", [&] {
@@ -131,6 +142,18 @@ void StokesSettings::check(const Keywords &in) const
              "far_field auto or ewald");
   in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
              "keyword far_field: 'ewald' is not available with tensor oseen");
+  in.require(!lubrication.on || all_pairs,
+             "keyword lubrication: yes requires cut_off_distance inf and clumps_only no: it is what "
+             "close spheres resist more than they do in the mobility of all");
+  in.require(!lubrication.on || scene.rotation || rigid.shell > 1,
+             "keyword lubrication: yes requires rotation yes (or a shell)");
+  in.require(!in.given("lubrication_gap") || lubrication.on,
+             "keyword lubrication_gap requires lubrication yes");
+  in.require(!in.given("lubrication_range") || lubrication.on,
+             "keyword lubrication_range requires lubrication yes");
+  in.require(lubrication.gap < lubrication.range,
+             "keyword lubrication_gap: '" + text(lubrication.gap) +
+                 "' must be below lubrication_range, " + text(lubrication.range));
   in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
              "keyword precondition: 'sparse' requires algorithm 2");
   in.require(precondition != Preconditioner::WAVES || (all_pairs && algorithm == GRADIENTS),

@@ -3,6 +3,7 @@
 #define SD_STOKES_SETTINGS_H
 
 #include "ambient.h"
+#include "lubrication.h"
 #include "preconditioner.h"
 #include "rigid_clumps.h"
 #include "scene.h"
@@ -31,6 +32,7 @@ struct StokesSettings {
   Ambient::Settings ambient;
   Scene::Settings scene;
   RigidClumps::Settings rigid;
+  Lubrication::Settings lubrication;
 
   /* Are solutions kept, from which the next solve begins? */
   bool history() const { return algorithm == GRADIENTS && warm_start; }

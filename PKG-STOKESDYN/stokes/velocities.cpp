@@ -14,15 +14,21 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Velocities::Velocities(LAMMPS *lmp, Scene &scene, Ambient &ambient, RigidClumps &rigid) :
-    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid)
+Velocities::Velocities(LAMMPS *lmp, const Parts &parts) :
+    Pointers(lmp), scene(parts.scene), ambient(parts.ambient), rigid(parts.rigid),
+    lubrication(parts.lubrication)
 {
+}
+
+Velocities::~Velocities()
+{
+  sd_tie_free(&tie);
 }
 
 double Velocities::memory_usage() const
 {
   double numbers = ghosts.capacity();
-  for (const auto *array : {&F, &u, &v, &drag, &spin, &work, &R, &eta, &V, &gradient})
+  for (const auto *array : {&F, &u, &v, &near, &drag, &spin, &work, &R, &eta, &V, &gradient})
     numbers += array->capacity();
   return sizeof(double) * numbers;
 }
@@ -272,12 +278,18 @@ void Velocities::join(sd_system &system, std::vector<double> &slip)
   system.apply_ctx = this;
 }
 
-sd_status Velocities::together(const How &how, std::vector<double> &l, const Take &take,
+sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
                                sd_bodies_report &report)
 {
   place(how.width);
   arrange();
   sd_bodies A = bodies(how.width);
+  near.assign(u.size(), 0.0);
+  if (lubrication.settings.on) {
+    lubrication.place(ambient);
+    tie.L = lubrication.matrix();
+    A.tie = &tie;
+  }
   sd_mobility_scene alone = {};
   alone.how.width = how.width;
   alone.n = A.n;
@@ -288,13 +300,14 @@ sd_status Velocities::together(const How &how, std::vector<double> &l, const Tak
   v.resize(u.size());
   work.resize(sd_bodies_work(&A));
   const sd_bodies_problem problem = {u.data(), F.data(), how.warm, how.tolerance, how.max_iter};
-  const sd_bodies_motion motion = {l.data(), v.data(), V.data()};
+  const sd_bodies_motion motion = {guess.l.data(), v.data(), V.data(), guess.v.data(), near.data()};
   const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work.data(), &report);
   for (size_t c = 0; c < clumps.size(); c++) std::copy_n(&V[6 * c], 6, clumps[c].V);
   for (int k = 0; k < A.n; k++) {
+    const size_t row = how.width * (size_t) k;
     double by_fluid[6];
-    for (int d = 0; d < how.width; d++) by_fluid[d] = -l[how.width * (size_t) k + d];
-    take(ambient.who()[k], &v[how.width * (size_t) k], by_fluid);
+    for (int d = 0; d < how.width; d++) by_fluid[d] = -(guess.l[row + d] + near[row + d]);
+    take(ambient.who()[k], &v[row], by_fluid);
   }
   return status;
 }

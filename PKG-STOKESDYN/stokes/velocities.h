@@ -10,11 +10,13 @@
 #define SD_VELOCITIES_H
 
 #include "ambient.h"
+#include "lubrication.h"
 #include "pointers.h"
 #include "rigid_clumps.h"
 #include "scene.h"
 
 #include "sd_bodies.h"
+#include "sd_tie.h"
 
 #include <functional>
 #include <vector>
@@ -39,7 +41,16 @@ class Velocities : protected LAMMPS_NS::Pointers {
   const std::vector<int> &members() const { return rigid.members(); }
   const std::vector<int> &owns() const { return rigid.owns(); }
 
-  Velocities(LAMMPS_NS::LAMMPS *lmp, Scene &scene, Ambient &ambient, RigidClumps &rigid);
+  struct Parts {
+    Scene &scene;
+    Ambient &ambient;
+    RigidClumps &rigid;
+    Lubrication &lubrication;
+  };
+  Velocities(LAMMPS_NS::LAMMPS *lmp, const Parts &parts);
+  ~Velocities();
+  Velocities(const Velocities &) = delete;
+  Velocities &operator=(const Velocities &) = delete;
 
   /* Errors, on all ranks: those of RigidClumps; a clump that is not rigid, or not all selected. */
   void find();
@@ -49,15 +60,20 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
-  /* All together. l [width n]: of rows, which are the atoms that take part, forces on the fluid; a
-   * guess in if there is one (warm). scene has been updated. SD_OK or the core's. */
+  /* Where the next solve may begin: by rows, which are the atoms that take part, [width n] forces on
+   * the fluid and, with lubrication, the velocities that go with them */
+  struct Guess {
+    std::vector<double> l, v;
+  };
+  /* All together, from a guess if there is one (warm). scene has been updated. SD_OK or the core's.
+   */
   struct How {
     int width;
     bool warm;
     double tolerance;
     int max_iter;
   };
-  sd_status together(const How &how, std::vector<double> &l, const Take &take,
+  sd_status together(const How &how, Guess &guess, const Take &take,
                      sd_bodies_report &report);
 
   /* The same bodies where velocities are given: the system (sd_solve.h) of the spheres that take
@@ -70,6 +86,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Scene &scene;
   Ambient &ambient;
   RigidClumps &rigid;
+  Lubrication &lubrication;
+  sd_tie tie = {};
 
   /* [nlocal] row of an atom, -1: takes no part */
   std::vector<int> row_of;
@@ -83,7 +101,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   int columns = 1;
 
   /* for the core, by rows, by clumps, by spheres of clumps */
-  std::vector<double> F, u, v, drag, spin, work;
+  std::vector<double> F, u, v, near, drag, spin, work;
   std::vector<double> R, eta, V, gradient;
   std::vector<int> first, member, loner;
   std::vector<const sd_body_shape *> shape;

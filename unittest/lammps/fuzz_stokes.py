@@ -44,7 +44,9 @@ STOKES = {
                                   odd=lambda v: v == 0.1, loud=lambda v: v > 0.1)],
     "max_iter": [Integer(lambda v: v >= 1, ["100", "1", "1000"], ["0", "-5", "2147483647"], odd=lambda v: v == 0)],
     "algorithm": [Choice("1", "2", "2", "2")], "fluid_velocity": [U, U, U], "tensor": [Choice("rpy", "rpy", "rpy", "oseen")],
-    "taper": [Choice("none", "wendland", "spherical")], 
+    "taper": [Choice("none", "wendland", "spherical")], "lubrication": [YES_NO],
+    "lubrication_gap": [Number(lambda v: v >= 1e-6, ["1e-3", "0.01"], ["0", "-1", "1e-7"])],
+    "lubrication_range": [Number(lambda v: 0 < v <= 8, ["2", "1", "8"], ["0", "-1", "9", "1e-3"], odd=lambda v: v == 1e-3)],
     "precondition": [Choice("auto", "none", "clump", "sparse", "waves")], "far_field": [Choice("auto", "direct", "ewald")],
     "far_field_tolerance": [Number(lambda v: 1e-13 <= v <= 0.1, ["1e-3", "1e-6"], ["0", "-1", "1", "1e-14", "0.11"])],
     "warm_start": [YES_NO], "rotation": [YES_NO], "fluid_vorticity": [U, U, U], "rigid_clumps": [Choice("yes", "no", "auto")],
@@ -87,6 +89,11 @@ def judge_stokes(case, words, how):
                    "precondition", "tensor")
     case.refuse_if(s("precondition") == "waves" and (not everybody or how != "periodic" or s("algorithm", "1") != "2"),
                    "precondition")
+    lubricated, gap, reach = s("lubrication") == "yes", s("lubrication_gap", "1e-3"), s("lubrication_range", "2")
+    case.refuse_if(lubricated and (not everybody or not rotation and shell == 1), "lubrication")
+    case.refuse_if(not lubricated and "lubrication_gap" in case.settings, "lubrication_gap")
+    case.refuse_if(not lubricated and "lubrication_range" in case.settings, "lubrication_range")
+    case.refuse_if(case.level != BAD and float(gap) >= float(reach), "lubrication_gap")
     case.refuse_if(clumps and how in ("no molecules", "no radius"), "clumps_only", "molecule", "radius")
     case.refuse_if(s("taper", "none") != "none" and cut in (None, "inf"), "taper")
     case.refuse_if(s("precondition") == "sparse" and cut != "inf", "precondition")

@@ -66,6 +66,18 @@ AT_THE_COMMAND += [("cut_off_distance 0x10 visc 1.3", ["keyword cut_off_distance
                    ("cut_off_distance inf visc 1e999", ["keyword visc: '1e999' is not a finite number"]),
                    ("cut_off_distance inf visc 1.3 visc 1.3", ["keyword visc: given twice"]),
                    ("clumps_only yes visc 1.3 region nowhere clumps_only yes", ["keyword clumps_only: given twice"])]
+AT_THE_COMMAND += [(f"{cut} visc 1.3 {words}", [expected]) for cut, words, expected in (
+    ("cut_off_distance 9", "rotation yes lubrication yes", "keyword lubrication: yes requires cut_off_distance inf and clumps_only no"),
+    ("clumps_only yes", "rotation yes lubrication yes", "keyword lubrication: yes requires cut_off_distance inf and clumps_only no"),
+    ("cut_off_distance inf", "lubrication yes", "keyword lubrication: yes requires rotation yes"),
+    ("cut_off_distance inf", "lubrication on", "keyword lubrication: 'on' is none of: no, yes"),
+    ("cut_off_distance inf", "rotation yes lubrication_gap 1e-3", "keyword lubrication_gap requires lubrication yes"),
+    ("cut_off_distance inf", "rotation yes lubrication no lubrication_range 1", "keyword lubrication_range requires lubrication yes"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 1e-7", "keyword lubrication_gap: '1e-07' must be >= 1e-6"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 0", "keyword lubrication_gap: '0' must be > 0"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_range 8.5", "keyword lubrication_range: '8.5' must be <= 8"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 0.1 lubrication_range 0.1",
+     "keyword lubrication_gap: '0.1' must be below lubrication_range, 0.1"))]
 AT_THE_COMMAND += [(keyword, [f"keyword {keyword}: value missing"])
                    for keyword in ("cut_off_distance", "update_every", "clumps_only", "visc", "region", "group", "add_force",
                                    "relative_tolerance",

@@ -1,0 +1,54 @@
+/* Lubrication between the spheres of a step (sd_lubrication.h): LAMMPS's atoms to the core. */
+#ifndef SD_STOKES_LUBRICATION_H
+#define SD_STOKES_LUBRICATION_H
+
+#include "ambient.h"
+#include "images.h"
+#include "pointers.h"
+
+#include "sd_lubrication.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+class Lubrication : protected LAMMPS_NS::Pointers {
+ public:
+  struct Settings {
+    bool on = false;
+    /* over the mean radius of a pair: the floor of gaps, and where it ends */
+    double gap = 1e-3, range = 2.0;
+  } settings;
+
+  Lubrication(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  ~Lubrication();
+  Lubrication(const Lubrication &) = delete;
+  Lubrication &operator=(const Lubrication &) = delete;
+
+  /* The spheres that take part where they stand now, on all ranks: row k is ambient.who()[k].
+   * Error: radii that are too different. */
+  void place(const Ambient &ambient);
+  /* Since then */
+  sd_lubrication *matrix() { return &near; }
+  /* out [6 n] = L v, v and out by rows */
+  void apply(const double *v, double *out);
+
+  double memory_usage() const;
+
+ private:
+  std::string command;
+  Images images;
+  sd_lubrication near = {};
+  sd_two_sphere *functions = nullptr;
+  double largest_ratio = 0.0;
+  std::vector<double> x, a, w;
+  std::vector<int64_t> body;
+
+  double measure();
+  void provide(double largest, double smallest);
+  void check(sd_status status) const;
+};
+
+}    // namespace StokesDyn
+#endif
