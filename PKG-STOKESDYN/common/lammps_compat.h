@@ -36,14 +36,18 @@ namespace Compat {
 #endif
   }
 
-  /* the usual half list, each pair once, as newton says; instance: the instance_me of the pair
-   * style */
-  inline void request_half_list(LAMMPS_NS::Neighbor *neighbor, LAMMPS_NS::Pair *pair, int instance)
+  /* the usual half list, each pair once, as newton says, or as if newton were off; instance: the
+   * instance_me of the pair style */
+  inline void request_half_list(LAMMPS_NS::Neighbor *neighbor, LAMMPS_NS::Pair *pair, int instance,
+                                bool newton_off)
   {
 #if SD_HAVE_ADD_REQUEST
-    neighbor->add_request(pair);
+    neighbor->add_request(pair,
+                          newton_off ? LAMMPS_NS::NeighConst::REQ_NEWTON_OFF
+                                     : LAMMPS_NS::NeighConst::REQ_DEFAULT);
 #else
-    neighbor->request(pair, instance);
+    const int request = neighbor->request(pair, instance);
+    if (newton_off) neighbor->requests[request]->newton = 2;
 #endif
   }
 

@@ -211,7 +211,8 @@ void PairSph::init_style()
                    COMMAND + ": with neigh_modify check no nobody sees when the neighbour list is "
                              "outdated");
   dangerous_builds = neighbor->ndanger;
-  Compat::request_half_list(neighbor, this, instance_me);
+  Compat::request_half_list(neighbor, this, instance_me, !shared);
+  both_of = -1;
 }
 
 template <class Style> Style *PairSph::only(const char *otherwise)
@@ -298,10 +299,11 @@ void PairSph::choose_scheme()
       : shifts          ? SD_SPH_SHIFT
                         : SD_SPH_PLAIN;
   state = FixSphShift::provide(lmp, shifts, corrects);
-  // the force is not along d, and on two particles not opposite: positions times forces have no sum
-  no_virial_fdotr_compute = corrects;
+  shared = sd_sph_level_of(&model) == SD_SPH_RATE;
+  // forces on ghosts, which positions times forces would need, are not summed
+  no_virial_fdotr_compute = !shared;
   comm_forward = std::max(sd_sph_columns(&model), wall ? 4 : 1);
-  comm_reverse = std::max(sd_sph_sum_columns(sd_sph_level_of(&model)), wall ? 8 : 4);
+  comm_reverse = wall ? 8 : 4;
 }
 
 void PairSph::check_groups()
@@ -401,14 +403,28 @@ void *PairSph::extract(const char *name, int &dim)
   return nullptr;
 }
 
+void PairSph::Neighbours::resize(int particles, size_t entries)
+{
+  if (pool.size() < entries) pool.resize(entries + entries / 8);
+  if ((int) own.size() >= particles) return;
+  for (auto *v : {&own, &count}) v->resize(particles);
+  neighbor.resize(particles);
+}
+
+double PairSph::Neighbours::bytes() const
+{
+  return sizeof(int) * (pool.capacity() + own.capacity() + count.capacity()) +
+      sizeof(int *) * neighbor.capacity();
+}
+
 double PairSph::memory_usage()
 {
-  double bytes = near.capacity() * sizeof(int *);
+  double bytes = near.bytes() + both.bytes();
   for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows})
     bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&classes, &phases, &pool, &near_count})
+  for (const auto *v : {&classes, &phases})
     bytes += v->capacity() * sizeof(int);
   return bytes;
 }

@@ -92,14 +92,26 @@ class PairSph : public LAMMPS_NS::Pair {
   // comm_modify vel was no
   bool asked_for_velocities = false;
 
+  // Neighbours with their memory, as sd_sph_both.
+  struct Neighbours {
+    std::vector<int> pool, own, count;
+    std::vector<int *> neighbor;
+    void resize(int particles, size_t entries);
+    double bytes() const;
+  };
+
   // a step
   sd_sph_list pairs = {}, raw = {};    // near ones, if a pass of the step has picked them; LAMMPS's
+  // Do two ranks share their pairs? With sums that have many columns each has its own: no ghost
+  // then gets anything, and nothing goes back.
+  bool shared = true;
+  Neighbours near, both;
+  LAMMPS_NS::bigint both_of = -1;    // the step of the list that `both` is made of
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   Rows x4, v4, f4, sums, weights, order;
   std::vector<double> P, masses, rate, each, kick, wall_rows;
-  std::vector<int> classes, phases, pool, near_count;
-  std::vector<int *> near;
+  std::vector<int> classes, phases;
   bool used(int itype) const;
   LAMMPS_NS::bigint in_both(int bits, int more_bits);
   std::string at_step() const;
@@ -107,6 +119,8 @@ class PairSph : public LAMMPS_NS::Pair {
   bool types_are_alike();
   void estimate_velocities();
   void density_step();
+  void sum_rates(double margin);
+  void sum_middle(double margin);
   void close_sums();
   bool resumes() const;
   void weigh(int fours, bool walls);
@@ -118,11 +132,12 @@ class PairSph : public LAMMPS_NS::Pair {
   [[noreturn]] void coincident();
   void tally();
 
-  // communication of one array at a time: rows, sums but for the column of a maximum
+  // communication of one array at a time: rows; sums, or the largest
   double *comm_array = nullptr;
-  int comm_columns = 0, comm_maximum = -1;
+  int comm_columns = 0;
+  bool comm_largest = false;
   void forward(double *array, int columns);
-  void reverse(double *array, int columns, int maximum = -1);
+  void reverse(double *array, int columns, bool largest = false);
 };
 
 }    // namespace StokesDyn

@@ -177,22 +177,10 @@ void PairSph::density_step()
     sd_sph_pack_x(n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
   sd_sph_pack_v(n, v, atom->rho, v4.data());
 
-  size_t entries = 3;
-  for (int k = 0; k < raw.n; k++) entries += raw.count[raw.first[k]];
-  if (pool.size() < entries) pool.resize(entries + entries / 8);
-  if ((int) near.size() < nlocal) {
-    near.resize(atom->nmax);
-    near_count.resize(atom->nmax);
-  }
-  const sd_sph_level level = sd_sph_level_of(&model);
-  const int columns = sd_sph_sum_columns(level);
-  const sd_sph_near found = {margin, pool.data(), near.data(), near_count.data()};
-  if (level > SD_SPH_RATE) sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());
-  sums.assign(columns * (size_t) (n + 1), 0.0);
-  sd_sph_middle(&model, &raw, &particles, sums.data(), &found);
-  pairs = {raw.n, ~0, raw.first, near_count.data(), near.data()};
-  reverse(sums.data(), columns, level >= SD_SPH_DISORDER ? SD_SPH_MAXIMUM : -1);
-  close_sums();
+  if (shared)
+    sum_rates(margin);
+  else
+    sum_middle(margin);
 
   for (int i = 0; i < nlocal; i++)
     atom->drho[i] = atom->mask[i] & continuity->groupbit ? rate[i] : 0.0;
@@ -202,7 +190,44 @@ void PairSph::density_step()
   forward(atom->rho, 1);
 }
 
-/* The rates, and with delta what the force and the next step need of the middle. */
+/* The rates alone. */
+void PairSph::sum_rates(double margin)
+{
+  size_t entries = SD_SPH_LANES;
+  for (int k = 0; k < raw.n; k++) entries += raw.count[raw.first[k]];
+  near.resize(atom->nmax, entries);
+  rate.assign(particles.n + 1, 0.0);
+  const sd_sph_near found = {margin, near.pool.data(), near.neighbor.data(), near.own.data(),
+                             near.count.data()};
+  sd_sph_rates(&model, &raw, &particles, rate.data(), &found);
+  pairs = {raw.n, ~0, raw.first, near.own.data(), near.neighbor.data()};
+  reverse(rate.data(), 1);
+}
+
+/* All sums that delta, shift and correction ask for, of both particles of each pair: a list both
+ * ways is made of LAMMPS's when that is new. */
+void PairSph::sum_middle(double margin)
+{
+  const int nlocal = atom->nlocal, columns = sd_sph_sum_columns(sd_sph_level_of(&model));
+  sd_sph_both all;
+  if (neighbor->ago == 0 || update->setupflag || both_of != neighbor->lastcall) {
+    both.resize(atom->nmax, sd_sph_both_size(&raw, nlocal));
+    all = {nlocal, both.neighbor.data(), both.own.data(), both.count.data()};
+    sd_sph_both_ways(&raw, particles.n, both.pool.data(), &all);
+    both_of = neighbor->lastcall;
+  } else
+    all = {nlocal, both.neighbor.data(), both.own.data(), both.count.data()};
+  near.resize(atom->nmax, both.pool.size());
+  sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());
+  sums.resize(columns * (size_t) nlocal);
+  const sd_sph_near found = {margin, near.pool.data(), near.neighbor.data(), near.own.data(),
+                             near.count.data()};
+  sd_sph_middle(&model, &all, &particles, sums.data(), &found);
+  pairs = {raw.n, ~0, raw.first, near.own.data(), near.neighbor.data()};
+  close_sums();
+}
+
+/* The rates, and what the force and the next step need of the middle. */
 void PairSph::close_sums()
 {
   const int n = particles.n, columns = sd_sph_columns(&model);
@@ -218,15 +243,15 @@ void PairSph::close_sums()
              at_step() + "keyword correction: atom " + std::to_string(atom->tag[stops]) +
                  " is at a free surface: the smallest eigenvalue of its matrix is below " +
                  text(least) + "; use shift yes, which is for free surfaces");
-  if (columns == 0) return;
   if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
   forward(order.data(), columns);
   std::fill_n(&order[columns * (size_t) n], columns, 0.0);
   if (state) state->keep_rows(n, order.data(), kick.data());
 
   particles.order = order.data();
-  sd_sph_diffusion(&model, &pairs, &particles, rate.data());
-  reverse(rate.data(), 1);
+  const sd_sph_both around = {atom->nlocal, near.neighbor.data(), near.own.data(),
+                              near.count.data()};
+  sd_sph_diffusion(&model, &around, &particles, rate.data());
 }
 
 /* Does this run go on where the last one ended? */
@@ -326,7 +351,7 @@ void PairSph::wall_particles()
 
 void PairSph::forces(bool rates)
 {
-  const int n = particles.n, receivers = force->newton_pair ? n : atom->nlocal;
+  const int n = particles.n, receivers = shared && force->newton_pair ? n : atom->nlocal;
   const bool pairwise = evflag && (vflag_atom || (vflag_either && !vflag_fdotr));
   if (model.artvisc || model.friction || rates || model.scheme != SD_SPH_PLAIN)
     sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
@@ -359,7 +384,7 @@ void PairSph::tally()
     for (int m = 0; m < pairs.count[i]; m++, F += 3) {
       const int j = pairs.neighbor[i][m] & pairs.mask;
       const double *xi = atom->x[i], *xj = atom->x[j];
-      ev_tally_xyz(i, j, atom->nlocal, force->newton_pair, 0.0, 0.0, F[0], F[1], F[2],
+      ev_tally_xyz(i, j, atom->nlocal, shared && force->newton_pair, 0.0, 0.0, F[0], F[1], F[2],
                    xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]);
     }
   }
@@ -389,7 +414,7 @@ void PairSph::largest_approach(std::vector<double> &largest)
   sd_sph_pack_v(particles.n, rows(atom->vest), atom->rho, v4.data());
   largest.assign(particles.n + 1, 0.0);
   sd_sph_approach(&model, &pairs, &particles, largest.data());
-  reverse(largest.data(), 1, 0);
+  reverse(largest.data(), 1, true);
 }
 
 double PairSph::dW_dr(int itype, double r) const
@@ -406,12 +431,12 @@ void PairSph::forward(double *array, int columns)
   Compat::forward_comm(comm, this);
 }
 
-void PairSph::reverse(double *array, int columns, int maximum)
+void PairSph::reverse(double *array, int columns, bool largest)
 {
-  if (!force->newton_pair) return;    // ghosts got nothing
+  if (!shared || !force->newton_pair) return;    // ghosts got nothing
   comm_array = array;
   comm_columns = columns;
-  comm_maximum = maximum;
+  comm_largest = largest;
   Compat::reverse_comm(comm, this);
 }
 
@@ -438,6 +463,6 @@ void PairSph::unpack_reverse_comm(int n, int *list, double *buf)
   for (int k = 0; k < n; k++)
     for (int c = 0; c < comm_columns; c++, buf++) {
       double &mine = comm_array[(size_t) list[k] * comm_columns + c];
-      mine = c == comm_maximum ? std::max(mine, *buf) : mine + *buf;
+      mine = comm_largest ? std::max(mine, *buf) : mine + *buf;
     }
 }

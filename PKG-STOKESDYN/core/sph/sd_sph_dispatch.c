@@ -5,6 +5,9 @@
 static const sd_sph_loops *loops(void)
 {
 #if defined(__x86_64__) && defined(__GNUC__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl"))
+    return &sd_sph_loops_avx512;
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return &sd_sph_loops_avx2;
 #endif
   return &sd_sph_loops_any;
@@ -16,13 +19,19 @@ double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const s
   return loops()->forces(model, list, p, rates, f4, each);
 }
 
-void sd_sph_middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  double *rate, const sd_sph_near *near)
+{
+  loops()->rates(model, list, p, rate, near);
+}
+
+void sd_sph_middle(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                    double *sums, const sd_sph_near *near)
 {
   loops()->middle(model, list, p, sums, near);
 }
 
-void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                       double *rate)
 {
   loops()->diffusion(model, list, p, rate);

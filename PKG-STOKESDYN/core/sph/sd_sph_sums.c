@@ -1,5 +1,7 @@
 #include "sd_sph_sums.h"
 
+#include <string.h>
+
 /* Diffusion needs the gradient of the density, and M for it; shift also the disorder; correction
  * also the gradient of the velocity. */
 sd_sph_level sd_sph_level_of(const sd_sph_model *model)
@@ -19,4 +21,50 @@ int sd_sph_columns(const sd_sph_model *model)
 {
   static const int columns[] = {0, 4, 8, 16};
   return columns[sd_sph_level_of(model)];
+}
+
+static int filled_up(int count)
+{
+  return (count + SD_SPH_LANES - 1) / SD_SPH_LANES * SD_SPH_LANES;
+}
+
+/* Each entry of the half list is there twice at most, and two parts of each particle are filled
+ * up. */
+size_t sd_sph_both_size(const sd_sph_list *half, int n)
+{
+  size_t size = 2 * SD_SPH_LANES * (size_t) (n + 1);
+  for (int k = 0; k < half->n; k++) size += 2 * (size_t) half->count[half->first[k]];
+  return size;
+}
+
+/* Counts what each particle gets, then hands it out, as one sorts by counting. */
+void sd_sph_both_ways(const sd_sph_list *half, int filler, int *pool, sd_sph_both *out)
+{
+  const int n = out->n;
+  memset(out->own, 0, sizeof(int) * (size_t) n);
+  memset(out->count, 0, sizeof(int) * (size_t) n);
+  for (int k = 0; k < half->n; k++) {
+    const int i = half->first[k];
+    out->own[i] = half->count[i];
+    for (int m = 0; m < half->count[i]; m++) {
+      const int j = half->neighbor[i][m] & half->mask;
+      if (j < n) out->count[j]++;
+    }
+  }
+  for (int i = 0; i < n; i++) {
+    const int own = filled_up(out->own[i]), all = own + filled_up(out->count[i]);
+    out->neighbor[i] = pool;
+    for (int m = 0; m < out->own[i]; m++) pool[m] = half->neighbor[i][m] & half->mask;
+    for (int m = out->own[i]; m < all; m++) pool[m] = filler;
+    out->own[i] = out->count[i] = own;    // the next free place of the second part
+    pool += all;
+  }
+  for (int k = 0; k < half->n; k++) {
+    const int i = half->first[k];
+    for (int m = 0; m < half->count[i]; m++) {
+      const int j = half->neighbor[i][m] & half->mask;
+      if (j < n) out->neighbor[j][out->count[j]++] = i;
+    }
+  }
+  for (int i = 0; i < n; i++) out->count[i] = filled_up(out->count[i]);
 }

@@ -27,22 +27,42 @@ enum { SD_SPH_MAXIMUM = 13 };
 /* Columns of a row of order: 4 with delta, 8 with shift, 16 with correction. */
 int sd_sph_columns(const sd_sph_model *model);
 
-/* Room for the pairs closer than 2 h + margin: neighbor[i] and count[i], in the pool, which must
- * hold every pair of the list and three more entries. */
+/* Neighbours both ways, each pair from both its sides: those of particle i < n are neighbor[i][0 ..
+ * count[i] - 1], and the first own[i] of them are those that the half list gives to i. count, and
+ * where the far-away particle fills them up own, are multiples of SD_SPH_LANES. */
+enum { SD_SPH_LANES = 8 };
+typedef struct {
+  int n, **neighbor, *own, *count;
+} sd_sph_both;
+
+/* How many entries the pool of a list both ways of n particles needs. */
+size_t sd_sph_both_size(const sd_sph_list *half, int n);
+
+/* Makes it of a half list in which particles from n on (ghosts) are only neighbours, and have no
+ * list of their own here: their pairs with i stand in the list of i, whoever owns them. pool
+ * [sd_sph_both_size] and the arrays of out are the caller's. */
+void sd_sph_both_ways(const sd_sph_list *half, int filler, int *pool, sd_sph_both *out);
+
+/* Room for the pairs closer than 2 h + margin, in the pool: as many entries as the list that they
+ * are picked from has, and SD_SPH_LANES more; as sd_sph_both. A half list fills own and count. */
 typedef struct {
   double margin;
-  int *pool, **neighbor, *count;
+  int *pool, **neighbor, *own, *count;
 } sd_sph_near;
 
-/* Adds to the rows of sums, and with near not null finds the near pairs. */
-void sd_sph_middle(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+/* Adds to rate [n+1] over a half list, for SD_SPH_RATE, and finds the near pairs. */
+void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  double *rate, const sd_sph_near *near);
+
+/* The rows of sums of the particles below list->n for the levels above, and the near pairs. */
+void sd_sph_middle(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                    double *sums, const sd_sph_near *near);
 
-/* Adds delta-SPH, Antuono et al. 2010, to rate [n+1]: with psi_ab = 2 (rho_b - rho_a) d_ba / r^2 -
- * (grad rho_a + grad rho_b), d_ba = x_b - x_a,
+/* Adds delta-SPH, Antuono et al. 2010, to rate [list->n]: with psi_ab = 2 (rho_b - rho_a) d_ba / r^2
+ * - (grad rho_a + grad rho_b), d_ba = x_b - x_a,
  *   delta h c sum_b V_b psi_ab . grad_a W
  * The corrected gradients come from order; of two fluids, pairs of the same fluid only. */
-void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                       double *rate);
 
 /* Adds sum_b W q_b to the rows of sums, both with 4 `fours` columns (1 or 2) and n + 1 rows; row n
@@ -54,13 +74,15 @@ void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 typedef struct {
   double (*forces)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int,
                    double *, double *);
-  void (*middle)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *,
+  void (*rates)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *,
+                const sd_sph_near *);
+  void (*middle)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,
                  const sd_sph_near *);
-  void (*diffusion)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *);
+  void (*diffusion)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *);
   void (*weigh)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int, int,
                 const double *, double *);
 } sd_sph_loops;
-extern const sd_sph_loops sd_sph_loops_any, sd_sph_loops_avx2;
+extern const sd_sph_loops sd_sph_loops_any, sd_sph_loops_avx2, sd_sph_loops_avx512;
 
 #ifdef __cplusplus
 }

@@ -79,6 +79,42 @@ static inline void build(scene *s, sd_sph_kernel kernel, int dimension, int clas
   sd_sph_pack_v(N, s->v, s->rho, s->v4);
 }
 
+/* Neighbours with their memory. */
+typedef struct {
+  int *neighbor[N], own[N], count[N], pool[2 * ALL + 2 * SD_SPH_LANES * (N + 1)];
+} neighbours;
+
+/* The list both ways of the first n particles, the others as ghosts. */
+static inline sd_sph_both both_ways(const scene *s, neighbours *room, int n)
+{
+  sd_sph_both both = {n, room->neighbor, room->own, room->count};
+  const sd_sph_list half = {n, s->list.mask, s->first, s->count, s->neighbor};
+  assert_true(sd_sph_both_size(&half, n) <= sizeof(room->pool) / sizeof(int));
+  sd_sph_both_ways(&half, N, room->pool, &both);
+  return both;
+}
+
+static inline sd_sph_near near_in(neighbours *room)
+{
+  return (sd_sph_near){0.0, room->pool, room->neighbor, room->own, room->count};
+}
+
+/* The middle of a step, and the diffusion, of all particles. */
+static inline void sum_middle(const scene *s, double *sums)
+{
+  neighbours around, close;
+  const sd_sph_both both = both_ways(s, &around, N);
+  const sd_sph_near near = near_in(&close);
+  sd_sph_middle(&s->model, &both, &s->p, sums, &near);
+}
+
+static inline void diffuse(const scene *s, double *rate)
+{
+  neighbours around;
+  const sd_sph_both both = both_ways(s, &around, N);
+  sd_sph_diffusion(&s->model, &both, &s->p, rate);
+}
+
 /* Everybody sees everybody, and masses as if the box filled the support: M near the unit matrix. */
 static inline void fill(scene *s)
 {

@@ -16,7 +16,7 @@ static void middle_of(scene *s, step *t, double least)
   for (int i = 0; i < N; i++) flows[i] = s->p.phase && s->phase[i] < 0 ? 0 : 1;
   sd_sph_pack_v(N, s->v, s->rho, s->v4);
   sd_sph_pack_volumes(&s->model, &s->p, s->rho, s->x4);
-  sd_sph_middle(&s->model, &s->list, &s->p, t->sums, NULL);
+  sum_middle(s, t->sums);
   const sd_sph_closing closing = {N, t->sums, flows, 1, least, t->rate, t->order, t->kick};
   t->stops = sd_sph_close(&s->model, &s->p, &closing);
   s->p.order = t->order;
@@ -345,12 +345,12 @@ static void two_fluids_do_not_mix(void **state)
   s.p.phase = s.phase;
   middle_of(&s, &t, 0.0);
   double rate[N + 1] = {0};
-  sd_sph_diffusion(&s.model, &s.list, &s.p, rate);
+  diffuse(&s, rate);
   for (int i = 0; i < N; i++) CHECK_NEAR(rate[i], 0.0, 1e-12);
   s.rho[4] *= 1.01;
   middle_of(&s, &t, 0.0);
   memset(rate, 0, sizeof(rate));
-  sd_sph_diffusion(&s.model, &s.list, &s.p, rate);
+  diffuse(&s, rate);
   double volume = 0.0;
   for (int i = 0; i < N; i++) volume += s.p.mass / s.rho[i] * rate[i];
   assert_true(rate[4] < 0.0);

@@ -89,21 +89,103 @@ static void every_combination(const sd_sph_loops *loops)
     }
 
     double rate[N + 1] = {0};
-    int pool[ALL + 3], count[N], *near[N];
-    const sd_sph_near found = {0.0, pool, near, count};
-    loops->middle(&s.model, &s.list, &s.p, rate, &found);
+    neighbours close;
+    const sd_sph_near found = near_in(&close);
+    loops->rates(&s.model, &s.list, &s.p, rate, &found);
     double both[4 * (N + 1)] = {0};
     loops->forces(&s.model, &s.list, &s.p, 1, both, NULL);
     for (int i = 0; i < N; i++) CHECK_NEAR(rate[i], both[4 * i + 3], 1e-12 * (1.0 + fabs(rate[i])));
 
     /* The near pairs give the same forces as all pairs, and are fewer. */
-    const sd_sph_list few = {N, ~0, s.first, count, near};
+    const sd_sph_list few = {N, ~0, s.first, close.own, close.neighbor};
     double again[4 * (N + 1)] = {0};
     loops->forces(&s.model, &few, &s.p, !!(bits & 64), again, NULL);
     compare(&s, again, !!(bits & 64));
     int total = 0;
-    for (int i = 0; i < N; i++) total += count[i];
+    for (int i = 0; i < N; i++) total += close.own[i];
     assert_true(total < ALL && total > 0);
+  }
+}
+
+/* The columns of sd_sph_sums.h, one pair after the other. */
+static void columns_by_the_book(const scene *s, int i, int columns, double *sums)
+{
+  for (int j = 0; j < N; j++) {
+    if (j == i) continue;
+    const sd_sph_parameters *t = &s->types[s->model.nclasses > 1 ? 2 * s->cls[i] + s->cls[j] : 0];
+    double d[3], u[3], r2 = 0.0, vd = 0.0;
+    for (int c = 0; c < 3; c++) {
+      d[c] = s->x[3 * i + c] - s->x[3 * j + c];
+      u[c] = s->v[3 * i + c] - s->v[3 * j + c];
+      r2 += d[c] * d[c];
+      vd += d[c] * u[c];
+    }
+    const double r = sqrt(r2), m = s->model.nclasses > 1 ? s->m[j] : s->p.mass, V = m / s->rho[j];
+    const int kernel = s->model.kernel, dimension = s->model.dimension;
+    const double g = sd_sph_dW_over_r(kernel, dimension, r, t->h);
+    const int two = s->model.scheme == SD_SPH_VOLUME, other = two && s->phase[i] != s->phase[j];
+    const double near = other ? 0.0 : g;
+    const double f = sd_sph_W(kernel, dimension, r, t->h) /
+        sd_sph_W(kernel, dimension, t->deltap, t->h);
+    sums[0] += m * g * vd * (two ? 2.0 * s->rho[i] / (s->rho[i] + s->rho[j]) : 1.0);
+    const int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+    for (int c = 0; c < 3; c++) sums[1 + c] += V * (s->rho[j] - s->rho[i]) * near * d[c];
+    for (int c = 0; c < 6; c++) sums[4 + c] -= V * near * d[pairs[c][0]] * d[pairs[c][1]];
+    if (columns < 16) continue;
+    for (int c = 0; c < 3; c++) sums[10 + c] += V * (1.0 + 0.2 * pow(f, 4)) * g * d[c];
+    const int moves = !s->p.phase || s->phase[j] >= 0;
+    if (g != 0.0 && moves) sums[13] = fmax(sums[13], fabs(vd) / r);
+    if (columns < 24) continue;
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) sums[14 + 3 * a + b] -= V * g * u[a] * d[b];
+  }
+}
+
+/* All columns of the middle of a step, of owned particles among ghosts; and the near pairs that come
+ * with it diffuse as all pairs do. */
+static void every_column(const sd_sph_loops *loops)
+{
+  enum { OWNED = 15 };
+  const sd_sph_scheme schemes[] = {SD_SPH_PLAIN, SD_SPH_VOLUME, SD_SPH_SHIFT, SD_SPH_CORRECTION};
+  for (int bits = 0; bits < 64; bits++) {
+    scene s;
+    build(&s, bits & 1 ? SD_SPH_WENDLAND : SD_SPH_CUBICSPLINE, bits & 2 ? 3 : 2, bits & 4 ? 2 : 1, 0,
+          0, SD_SPH_INVISCID);
+    s.model.scheme = schemes[bits >> 3 & 3];
+    s.model.delta = 0.1;
+    coefficients(&s);
+    for (int i = 0; i < N; i++)
+      s.phase[i] = s.model.scheme == SD_SPH_VOLUME ? i % 2 : i % 5 ? 0 : -1;
+    if (bits & 32 || s.model.scheme == SD_SPH_VOLUME) s.p.phase = s.phase;
+    sd_sph_pack_volumes(&s.model, &s.p, s.rho, s.x4);
+
+    const int columns = sd_sph_sum_columns(sd_sph_level_of(&s.model));
+    double sums[24 * (N + 1)];
+    neighbours around, close;
+    const sd_sph_both both = both_ways(&s, &around, OWNED);
+    const sd_sph_near found = near_in(&close);
+    loops->middle(&s.model, &both, &s.p, sums, &found);
+    for (int i = 0; i < OWNED; i++) {
+      double book[24] = {0};
+      columns_by_the_book(&s, i, columns, book);
+      for (int c = 0; c < columns; c++)
+        CHECK_NEAR(sums[columns * i + c], book[c], 1e-12 * (1e-3 + fabs(book[c])));
+    }
+
+    double order[16 * (N + 1)] = {0}, all[N] = {0}, few[N] = {0};
+    const int rows = sd_sph_columns(&s.model);
+    for (int i = 0; i < N; i++)
+      for (int c = 0; c < 4; c++) order[rows * i + c] = random_number();
+    s.p.order = order;
+    const sd_sph_both picked = {OWNED, close.neighbor, close.own, close.count};
+    loops->diffusion(&s.model, &both, &s.p, all);
+    loops->diffusion(&s.model, &picked, &s.p, few);
+    int total = 0;
+    for (int i = 0; i < OWNED; i++) {
+      CHECK_NEAR(few[i], all[i], 1e-13 * (1.0 + fabs(all[i])));
+      total += around.count[i] - close.count[i];
+    }
+    assert_true(total > 0 && all[1] != 0.0);
   }
 }
 
@@ -111,14 +193,29 @@ static void loops_for_any_processor(void **state)
 {
   (void) state;
   every_combination(&sd_sph_loops_any);
+  every_column(&sd_sph_loops_any);
 }
 
 static void loops_for_avx2(void **state)
 {
   (void) state;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
     every_combination(&sd_sph_loops_avx2);
+    every_column(&sd_sph_loops_avx2);
+  }
+#endif
+}
+
+static void loops_for_avx512(void **state)
+{
+  (void) state;
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl")) {
+    every_combination(&sd_sph_loops_avx512);
+    every_column(&sd_sph_loops_avx512);
+  }
 #endif
 }
 
@@ -222,18 +319,18 @@ static void linear_density_does_not_diffuse(void **state)
     sd_sph_pack_volumes(&s.model, &s.p, s.rho, s.x4);
     double sums[12 * (N + 1)] = {0}, order[4 * (N + 1)] = {0}, rate[N + 1] = {0},
                           curved[N + 1] = {0}, total = 0.0, largest = 0.0;
-    sd_sph_middle(&s.model, &s.list, &s.p, sums, NULL);
+    sum_middle(&s, sums);
     const sd_sph_closing closing = {N, sums, s.cls, 0, 0.0, rate, order, NULL};
     assert_int_equal(sd_sph_close(&s.model, &s.p, &closing), -1);
     for (int i = 0; i < N; i++)
       for (int d = 0; d < 3; d++) CHECK_NEAR(order[4 * i + d], slope[d], 1e-9);
     s.p.order = order;
     memset(rate, 0, sizeof(rate));
-    sd_sph_diffusion(&s.model, &s.list, &s.p, rate);
+    diffuse(&s, rate);
     for (int i = 0; i < N; i++) CHECK_NEAR(rate[i], 0.0, 1e-9);
     /* A density with a bump spreads, and the volume integral of the rate is 0. */
     order[4 * 4 + 3] += 20.0;
-    sd_sph_diffusion(&s.model, &s.list, &s.p, curved);
+    diffuse(&s, curved);
     assert_true(curved[4] < 0.0);
     for (int i = 0; i < N; i++) {
       total += s.m[i] / s.rho[i] * curved[i];
@@ -305,6 +402,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(loops_for_any_processor),
                                      cmocka_unit_test(loops_for_avx2),
+                                     cmocka_unit_test(loops_for_avx512),
                                      cmocka_unit_test(tensile_rule),
                                      cmocka_unit_test(one_place_is_reported),
                                      cmocka_unit_test(sums_over_neighbours),

@@ -1,0 +1,101 @@
+/* Sums over a half list: the density rate, and values weighed with W. */
+#ifndef SD_SPH_HALF_LOOPS_H
+#define SD_SPH_HALF_LOOPS_H
+
+#include "sd_sph_neighbours.h"
+
+/* The density rate of the plain scheme and of two fluids. The list of near pairs comes with it. */
+INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  double *rate, const sd_sph_near *near, sd_sph_kernel kernel, int many, int volume)
+{
+  const vec two = all(2.0);
+  int *last = near->pool;
+  for (int ii = 0; ii < list->n; ii++) {
+    const int i = list->first[ii], count = list->count[i];
+    const int *neighbor = list->neighbor[i];
+    const row4 xi = load(p->x4 + 4 * (size_t) i), vi = load(p->v4 + 4 * (size_t) i);
+    const sd_sph_coefficients *row = ROW_OF(i);
+    const vec mi = all(many ? p->m[i] : p->mass);
+    vec sum = all(0.0);
+    near->neighbor[i] = last;
+
+    for (int at = 0; at < count; at += LANES) {
+      int j[LANES];
+      next(neighbor + at, count - at, list->mask, p->n, j);
+      vec b[4], u[4];
+      gather(p->x4, j, b);
+      gather(p->v4, j, u);
+      vec r2 = all(0.0), vd = all(0.0);
+      for (int c = 0; c < 3; c++) {
+        const vec d = xi[c] - b[c];
+        r2 += d * d;
+        vd += d * (vi[c] - u[c]);
+      }
+      const vec inv_h = COEFFICIENT(inv_h), distance = root(r2) * inv_h;
+      vec w = COEFFICIENT(grad) * G(kernel, smaller(distance, two)) * vd, masses = MASSES, mine = mi;
+      /* m_b w 2 rho_a / (rho_a + rho_b): the common part in w, the density in the factors. */
+      if (volume) {
+        w *= 2.0 / (vi[3] + u[3]);
+        masses *= vi[3];
+        mine *= u[3];
+      }
+      last = keep(last, j, distance < two + near->margin * inv_h);
+      sum += w * masses;
+      for (int k = 0; k < LANES; k++) rate[j[k]] += mine[k] * w[k];
+    }
+    rate[i] += sum_of(sum);
+    near->own[i] = near->count[i] = (int) (last - near->neighbor[i]);
+  }
+}
+
+/* W is the same for i and j, so each takes the other's row times W. Between a fluid and its walls
+ * neighbours of the same kind as i, most of them, cost no kernel. */
+INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  const double *q, double *sums, sd_sph_kernel kernel, int many, int fours,
+                  int walls)
+{
+  const vec zero = all(0.0), two = all(2.0);
+  const int columns = 4 * fours;
+  for (int ii = 0; ii < list->n; ii++) {
+    const int i = list->first[ii], count = list->count[i];
+    const int *neighbor = list->neighbor[i];
+    const row4 xi = load(p->x4 + 4 * (size_t) i);
+    const sd_sph_coefficients *row = ROW_OF(i);
+    vec sum[8];
+    for (int c = 0; c < columns; c++) sum[c] = zero;
+
+    for (int at = 0; at < count; at += LANES) {
+      int j[LANES];
+      next(neighbor + at, count - at, list->mask, p->n, j);
+      yes_no counts = same(-1);
+      if (walls) {
+        counts = phases(p->phase, j) == same(~p->phase[i]);
+        long long some = 0;
+        for (int k = 0; k < LANES; k++) some |= counts[k];
+        if (!some) continue;
+      }
+      vec b[4];
+      gather(p->x4, j, b);
+      const vec dx = xi[0] - b[0], dy = xi[1] - b[1], dz = xi[2] - b[2];
+      const vec distance = smaller(root(dx * dx + dy * dy + dz * dz) * COEFFICIENT(inv_h), two);
+      vec W = COEFFICIENT(weight) * K(kernel, distance);
+      if (walls) W = where(counts, W, zero);
+      for (int first = 0; first < columns; first += 4) {
+        const row4 qi = load(q + (size_t) columns * i + first);
+        vec qj[4];
+        gather_from(q + first, columns, j, qj);
+        for (int c = 0; c < 4; c++) sum[first + c] += W * qj[c];
+        for (int k = 0; k < LANES; k++) {
+          double *row_j = sums + (size_t) columns * j[k] + first;
+          store(row_j, load(row_j) + W[k] * qi);
+        }
+      }
+    }
+    for (int first = 0; first < columns; first += 4) {
+      double *row_i = sums + (size_t) columns * i + first;
+      store(row_i, load(row_i) + over_lanes(sum + first));
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,17 @@
+/* For x86-64 with AVX-512 (F, DQ, VL); sd_sph_dispatch.c asks the processor. Compiled to nothing
+ * elsewhere. */
+#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), apply_to = function)
+#else
+#pragma GCC target("avx512f,avx512dq,avx512vl,avx2,fma")
+#endif
+#define LANES 8
+#define LOOPS sd_sph_loops_avx512
+#include "sd_sph_loops.h"
+#if defined(__clang__)
+#pragma clang attribute pop
+#endif
+#else
+typedef int sd_sph_loops_avx512_is_empty;
+#endif
