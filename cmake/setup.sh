@@ -8,7 +8,7 @@ export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare 
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 packages="build-essential cmake ninja-build dpkg-dev libopenmpi-dev openmpi-bin libpng-dev libopenblas-serial-dev libfftw3-dev python3 python3-numpy python3-matplotlib"
-[ "${1:-}" = test ] && packages="$packages python3-pytest libcmocka-dev valgrind"
+[ "${1:-}" = test ] && packages="$packages python3-pytest python3-pytest-xdist libcmocka-dev valgrind"
 packages="$packages ${STOKESDYN_PACKAGES:-}"
 
 missing=""

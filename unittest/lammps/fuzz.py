@@ -29,6 +29,7 @@ import time
 from fuzz_grammar import BAD, GOOD, LOUD, ODD
 from fuzz_styles import draw
 from fuzz_vans import files
+from system import environment, mpirun
 
 # --- running ------------------------------------------------------------------------------------------------------------
 
@@ -75,8 +76,9 @@ class Worker:
             command = [sys.executable, os.path.abspath(__file__), "--work", str(self.seed), str(begin), str(self.end),
                        self.folder]
             if self.ranks > 1:
-                command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(self.ranks)] + command
-            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True)
+                command = mpirun(self.ranks) + command
+            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment(),
+                                       start_new_session=True)
             end, pending, aborted = "crash", b"", False
             while begin < self.end:
                 # The first case of a worker bears its start.

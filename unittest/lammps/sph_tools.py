@@ -1,8 +1,11 @@
 """What the SPH tests share: reference tables, an independent evaluation of the equations in numpy, and small scenes in LAMMPS."""
 import csv
 import os
+import subprocess
 
 import numpy as np
+
+import system
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "sph")
 
@@ -182,20 +185,12 @@ def random_scene(newton="on", before="", density="continuity"):
 
 
 def mpirun(ranks, script, directory, name="in.test"):
-    """Runs an input script with lmp on some ranks; returns the folder's dump file final.dump as arrays by id, if it was written."""
-    import shutil
-    import subprocess
-
+    """Runs an input script with lmp on some ranks."""
     path = os.path.join(str(directory), name)
     with open(path, "w") as f:
         f.write("plugin load stokesdynplugin.so\n" + "\n".join(line.strip() for line in script.strip().splitlines()) + "\n")
-    env = dict(os.environ)
-    if os.getuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    mpi = shutil.which("mpirun.openmpi") or "mpirun"
-    command = [mpi, "--oversubscribe", "-np", str(ranks), "lmp", "-in", path, "-log", "none", "-nocite"]
-    done = subprocess.run(command, cwd=str(directory), env=env, capture_output=True, text=True, timeout=300)
-    return done
+    command = system.mpirun(ranks) + ["lmp", "-in", path, "-log", "none", "-nocite"]
+    return subprocess.run(command, cwd=str(directory), env=system.environment(), capture_output=True, text=True, timeout=300)
 
 
 def read_dump(path):

