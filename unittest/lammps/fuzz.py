@@ -73,10 +73,8 @@ class Worker:
 
     def results(self, begin):
         while begin < self.end:
-            command = [sys.executable, os.path.abspath(__file__), "--work", str(self.seed), str(begin), str(self.end),
-                       self.folder]
-            if self.ranks > 1:
-                command = mpirun(self.ranks) + command
+            command = mpirun(self.ranks) + [sys.executable, os.path.abspath(__file__), "--work", str(self.seed), str(begin),
+                                            str(self.end), self.folder]
             process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment(),
                                        start_new_session=True)
             end, pending, aborted = "crash", b"", False

@@ -173,9 +173,7 @@ def test_message_of_one_rank_reaches_a_file(tmp_path, ranks):
     """LAMMPS aborts all ranks then, and drops what its output buffers hold."""
     script = tmp_path / "in.test"
     script.write_text("plugin load stokesdynplugin.so\n" + random_scene() + PAIR + MOVE + "set atom 7 sph/rho 0\nrun 1\n")
-    command = ["lmp", "-in", str(script), "-log", "log.test", "-nocite"]
-    if ranks > 1:
-        command = mpirun(ranks) + command
+    command = mpirun(ranks) + ["lmp", "-in", str(script), "-log", "log.test", "-nocite"]
     with open(tmp_path / "out", "w") as out:
         code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=tmp_path, env=environment(),
                               timeout=60).returncode
