@@ -175,6 +175,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   const double *positions() const;
   bool periodic() const;
   bool split();
+  sd_ewald_sizes sizes_of_all(double largest);
   sd_ewald_sizes measure(sd_ewald_box &box);
   void compare();
   void tell();

@@ -25,28 +25,49 @@ bool Scene::periodic() const
   return domain->xperiodic && domain->yperiodic && domain->zperiodic;
 }
 
+/* How many of which size there are on all ranks. */
+sd_ewald_sizes Scene::sizes_of_all(double largest)
+{
+  sd_ewald_sizes s = {};
+  s.all.largest = largest;
+  for (int k = 0; k < size(); k++) sd_ewald_count(&s, a[k]);
+  std::vector<double> sums, most;
+  const auto classes = [&](auto &&each) {
+    each(s.all);
+    for (auto &octave : s.octave) each(octave);
+  };
+  classes([&](sd_ewald_class &c) {
+    sums.insert(sums.end(), {c.count, c.squares, c.fourths});
+    most.push_back(c.largest);
+  });
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, most.data(), most.size(), MPI_DOUBLE, MPI_MAX, world);
+  size_t k = 0;
+  classes([&](sd_ewald_class &c) {
+    c = {sums[3 * k], sums[3 * k + 1], sums[3 * k + 2], most[k]};
+    k++;
+  });
+  return s;
+}
+
 /* The spheres of all ranks, and the box that they are summed in: LAMMPS's if it is periodic, else
  * one around them. An open cloud takes its origin along, so that the box, and the tables made for
  * it, last while it falls. */
 sd_ewald_sizes Scene::measure(sd_ewald_box &box)
 {
-  double sums[3] = {(double) size(), 0.0, 0.0};
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
   for (int k = 0; k < size(); k++) {
-    const double a2 = a[k] * a[k];
-    sums[1] += a2;
-    sums[2] += a2 * a2;
     most[0] = std::max(most[0], a[k]);
     for (int d = 0; d < 3; d++) {
       most[1 + d] = std::max(most[1 + d], -x[3 * k + d]);
       most[4 + d] = std::max(most[4 + d], x[3 * k + d]);
     }
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
+  const sd_ewald_sizes all = sizes_of_all(most[0]);
   if (periodic())
     box = periodic_box(domain);
-  else if (sums[0] > 0.0) {
+  else if (all.all.count > 0.0) {
     double lo[3] = {0.0, 0.0, 0.0}, hi[3];
     for (int d = 0; d < 3; d++) {
       hi[d] = most[4 + d] + most[1 + d];
@@ -55,7 +76,7 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
     if (box.periodic) box = {};
     sd_ewald_box_around(&box, lo, hi, most[0]);
   }
-  return {sums[0], sums[1], sums[2], most[0]};
+  return all;
 }
 
 /* Is the sum over everybody split, and how? In an open box only if that costs less, or is asked
@@ -66,20 +87,21 @@ bool Scene::split()
   sd_ewald_box box = ewald.box;
   sizes = measure(box);
   const bool must = periodic() || settings.far_field == Settings::EWALD;
-  ewald.count = sizes.count;
-  if (sizes.count == 0.0) return must;
-  const double all_pairs = sizes.count * sizes.count;
+  ewald.count = sizes.all.count;
+  if (sizes.all.count == 0.0) return must;
+  const double all_pairs = sizes.all.count * sizes.all.count;
   const sd_status status =
       sd_ewald_choose(&box, &sizes, width(), settings.far_field_tolerance, &ewald);
   ewald.box = box;
   if (status != SD_OK && must)
-    fail(lmp, command + ": keyword far_field: no grid for Ewald sums of " + text(sizes.count) +
+    fail(lmp, command + ": keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
                   " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
                   text(box.edge[2]) + " at far_field_tolerance " +
                   text(settings.far_field_tolerance) + ": " + sd_status_string(status));
-  const double images = 8.0 * sizes.count * pow(ewald.reach, 3) / sd_ewald_volume(&box);
+  const double seen = std::max(pow(ewald.reach, 3), ewald.large.count * pow(ewald.large.range, 3));
+  const double images = 8.0 * sizes.all.count * seen / sd_ewald_volume(&box);
   if (box.periodic && !(images < MOST_IMAGES))
-    fail(lmp, command + ": keyword far_field: the largest sphere, radius " + text(sizes.largest) +
+    fail(lmp, command + ": keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
                   ", is so large for the periodic box that it would see " + text(images) +
                   " images; is it in other units?");
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
@@ -101,18 +123,25 @@ void Scene::compare()
   all_a = a;
 }
 
+static std::string parameters_of(const sd_ewald &e)
+{
+  return "grid " + std::to_string(e.grid[0]) + " x " + std::to_string(e.grid[1]) + " x " +
+      std::to_string(e.grid[2]) + ", windows of " + std::to_string(e.points) +
+      " points, splitting parameter " + text(e.xi) + ", near part up to " + text(e.range);
+}
+
 /* The parameters, once a run and when they are others than those told last. */
 void Scene::tell()
 {
   if (told) return;
   told = true;
   const sd_ewald &e = ewald;
-  const std::string now = "Far field by Ewald sums of " + text(e.count) + " spheres in " +
-      (e.box.periodic ? "the periodic box" : "an open box around them") + ": grid " +
-      std::to_string(e.grid[0]) + " x " + std::to_string(e.grid[1]) + " x " +
-      std::to_string(e.grid[2]) + ", windows of " + std::to_string(e.points) +
-      " points, splitting parameter " + text(e.xi) + ", near part up to " + text(e.range) +
-      "; error of velocities over the rms of F/(6 pi eta a) " +
+  std::string now = "Far field by Ewald sums of " + text(e.count) + " spheres in " +
+      (e.box.periodic ? "the periodic box" : "an open box around them") + ": " + parameters_of(e);
+  if (e.large.from > 0.0)
+    now += "; " + text(e.large.count) + " spheres of radius " + text(e.large.from) +
+        " and more on a second level: " + parameters_of(sd_ewald_of_large(&e));
+  now += "; error of velocities over the rms of F/(6 pi eta a) " +
       text(sd_ewald_predicted(&e, &sizes)) + " expected, far_field_tolerance " + text(e.tolerance) + "\n";
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;

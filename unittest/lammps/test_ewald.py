@@ -175,6 +175,39 @@ def test_what_a_periodic_sum_has_not_got(simulation, words, text):
         simulation(cloud(5, 0.01), f"{ALL} visc 1 {words}", boundary="p p p", box=[(-1.0, 40.0)] * 3).run()
 
 
+# --- two levels ------------------------------------------------------------------------------------------------------
+
+def wide(x, larges=3, ratio=25.0):
+    """Small spheres, and a few so large that a splitting of their own costs less; these hold some of the small ones."""
+    rng = np.random.default_rng(4)
+    a = rng.uniform(0.8, 1.2, len(x))
+    a[7:7 + larges] = ratio * rng.uniform(0.7, 1.0, larges)
+    return Spheres(x, a, rng.normal(size=x.shape) + (0.0, 0.0, 1.0))
+
+
+def test_few_large_spheres_in_an_open_cloud_have_the_forces_of_all_pairs(simulation, tmp_path):
+    log, words = tmp_path / "log", f"{ALL} visc 1.3 relative_tolerance 1e-3"
+    spheres = wide(lattice(12, 0.15)[0].x)
+    direct = simulation(spheres, words + " far_field direct").run().drag
+    sim = simulation(spheres, words + " far_field ewald far_field_tolerance 1e-4", log=log).run()
+    assert 0.0 < np.linalg.norm(sim.drag - direct) < 1e-2 * np.linalg.norm(direct)
+    sim.close()
+    assert re.search("; 3 spheres of radius [0-9.]+ and more on a second level: grid", said(log)[0])
+
+
+def test_two_levels_on_three_ranks(tmp_path):
+    spheres = wide(np.random.default_rng(6).uniform(0, 24.0, (250, 3)))
+    lines = input_lines(spheres, f"{ALL} visc 1.3 rotation no relative_tolerance 1e-11 far_field_tolerance 1e-6", tmp_path / "data",
+                        boundary="p p p", box=[(0.0, 24.0)] * 3, tilt=(4.0, -3.0, 2.0))
+    first = None
+    for ranks in (1, 3):
+        run = lmp(tmp_path, ["box tilt large"] + lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=ranks)
+        assert "on a second level" in run.log
+        rows = read_dump(tmp_path / "dump")[0][1][:, 6:]
+        first = rows if first is None else first
+        assert deviation(rows, first, spheres.a) < 1e-10
+
+
 # --- runs ------------------------------------------------------------------------------------------------------------
 
 def final(sim):

@@ -2,8 +2,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "sd_constants.h"
+#include "sd_ewald_cost.h"
 
 static const double TIGHTEST = 1e-13, LOOSEST = 1e-1;
 
@@ -51,7 +53,7 @@ static double narrowest(const sd_ewald_box *b)
   return fmin(lz, fmin(V / yz_face, V / xz_face));
 }
 
-static int sound(const sd_ewald_box *b, const sd_ewald_sizes *s, double tolerance)
+static int sound(const sd_ewald_box *b, const sd_ewald_class *s, double tolerance)
 {
   int ok = tolerance > 0.0 && isfinite(tolerance);
   ok = ok && isfinite(s->count) && isfinite(s->squares) && isfinite(s->fourths) &&
@@ -75,65 +77,194 @@ static double natural_range(const sd_ewald_box *box, double count, double digits
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
 
-/* xi, a_ref, range and the window. Spheres larger than 1/xi have large wave and near parts that
- * cancel: the tolerance of both is tightened by what is lost, A, which in turn moves xi. */
-static void split(sd_ewald *e, const sd_ewald_sizes *s, int width, double *y)
+/* The tolerance after what large spheres lose: those larger than 1/xi have large wave and near parts
+ * that cancel. y = sqrt(ln 1/t), xi = y/range. */
+static double tightened(double tolerance, int width, double xi_y_a)
+{
+  return tolerance / fmax(1.0, 0.05 * pow(2.0 * xi_y_a, 3.0)) / (width == 6 ? 3.0 : 1.0);
+}
+
+static double root_of_log(const sd_ewald_box *box, double t)
+{
+  return sqrt(log(1.0 / (box->periodic ? t : 0.7 * t))); /* no mean makes up for the cut-off */
+}
+
+static int window_points(double t)
+{
+  const int points = (int) ceil(2.0 + log10(1.0 / t) - 1e-9);
+  return points < 4 ? 4 : points > SD_EWALD_MOST_POINTS ? SD_EWALD_MOST_POINTS : points;
+}
+
+/* xi, a_ref, range and the window. What is lost tightens the tolerance, which in turn moves xi. */
+static void split(sd_ewald *e, const sd_ewald_class *s, int width, double *y)
 {
   const double rms = six_digits(sqrt(s->squares / s->count)), largest = s->largest;
   const int equal = fabs(rms / largest - 1.0) < 1e-5;
   const double ref = equal ? largest : rms;
-  double A = 1.0, t = 0.0;
+  double t = tightened(e->tolerance, width, 0.0);
   for (int k = 0; k < 6; k++) {
-    t = e->tolerance / A / (width == 6 ? 3.0 : 1.0);
-    *y = sqrt(log(1.0 / (e->box.periodic ? t : 0.7 * t))); /* no mean makes up for the cut-off */
+    *y = root_of_log(&e->box, t);
     e->range = fmax(natural_range(&e->box, s->count, log10(1.0 / t)),
                     *y * fmax(ref / 0.8, largest / 1.5));
     e->xi = *y / e->range;
-    A = equal ? 1.0 : fmax(1.0, 0.05 * pow(2.0 * e->xi * *y * largest, 3.0));
+    if (k < 5) t = tightened(e->tolerance, width, equal ? 0.0 : e->xi * *y * largest);
   }
   e->a_ref = fmin(ref, 0.8 / e->xi);
-  e->points = (int) ceil(2.0 + log10(1.0 / t) - 1e-9);
-  if (e->points < 4) e->points = 4;
-  if (e->points > SD_EWALD_MOST_POINTS) e->points = SD_EWALD_MOST_POINTS;
+  e->points = window_points(t);
   /* where windows are differentiated, their jump at the ends must be smaller */
   e->beta = (equal && width == 3 ? 2.25 : 2.42) * e->points;
   e->largest = largest;
   e->reach = fmax(e->range, 2.0 * largest);
 }
 
+/* Of the tolerance, for the second level: all spheres are so many more than the large ones that their
+ * rms says nothing of those, whose velocities shall be as good. */
+static const double LARGE_TOO = 0.12;
+
+/* The second level has no range of its own: `times` is xi times the largest sphere. */
+static void split_large(sd_ewald *e, const sd_ewald_class *s, int width, double times, double *y)
+{
+  double t = LARGE_TOO * e->tolerance;
+  *y = root_of_log(&e->box, t);
+  for (int k = 0; k < 6; k++) {
+    t = tightened(LARGE_TOO * e->tolerance, width, times * *y);
+    *y = root_of_log(&e->box, t);
+  }
+  e->large.count = s->count;
+  e->large.largest = s->largest;
+  e->large.xi = times / s->largest;
+  e->large.range = *y / e->large.xi;
+  e->large.points = window_points(t);
+  e->large.beta = 2.42 * e->large.points;
+}
+
 /* Grid spacing at most pi/(2.2 xi y). An open box has room for the windows of spheres at its
  * faces; the grid around it is twice as large. */
-static sd_status lay_grid(sd_ewald *e, double y)
+static sd_status lay_grid(const sd_ewald_box *box, double xi, double y, int points, double *spacing,
+                          int *grid)
 {
-  const double h = SD_PI / (2.2 * e->xi * y);
+  const double h = SD_PI / (2.2 * xi * y);
   double all = 1.0;
-  e->spacing = h;
+  *spacing = h;
   for (int d = 0; d < 3; d++) {
-    const double cells = edge_length(&e->box, d) / h;
+    const double cells = edge_length(box, d) / h;
     if (!(cells < 1e6)) return SD_ENOMEMORY;
-    if (e->box.periodic)
-      e->grid[d] = 2 * transformable(0.5 * fmax(cells, e->points + 2));
+    if (box->periodic)
+      grid[d] = 2 * transformable(0.5 * fmax(cells, points + 2));
     else
-      e->grid[d] = transformable(ceil(cells) + e->points + 1);
-    all *= e->grid[d];
+      grid[d] = transformable(ceil(cells) + points + 1);
+    all *= grid[d];
   }
   return all < 2147483648.0 ? SD_OK : SD_ENOMEMORY;
+}
+
+/* All bytes are set, since the engine compares them. */
+static void start(sd_ewald *e, const sd_ewald_box *box, double count, double tolerance)
+{
+  memset(e, 0, sizeof(*e));
+  memcpy(&e->box, box, sizeof(*box));
+  e->count = count;
+  e->tolerance = tolerance;
+}
+
+static sd_status one_level(sd_ewald *e, const sd_ewald_class *s, int width)
+{
+  double y;
+  split(e, s, width, &y);
+  return lay_grid(&e->box, e->xi, y, e->points, &e->spacing, e->grid);
+}
+
+static sd_status two_levels(sd_ewald *e, const sd_ewald_class *small, const sd_ewald_class *large,
+                            int width, double times)
+{
+  double y;
+  const sd_status status = one_level(e, small, width);
+  split_large(e, large, width, times, &y);
+  if (status != SD_OK || e->large.xi >= e->xi) return SD_ENOMEMORY;
+  return lay_grid(&e->box, e->large.xi, y, e->large.points, &e->large.spacing, e->large.grid);
+}
+
+static void add_class(sd_ewald_class *sum, const sd_ewald_class *s)
+{
+  sum->count += s->count;
+  sum->squares += s->squares;
+  sum->fourths += s->fourths;
+  sum->largest = fmax(sum->largest, s->largest);
+}
+
+/* Two levels that cost less than the one of `out` take its place. Where they part, and xi times the
+ * largest sphere, are those that cost least: a larger xi has fewer pairs and wider windows. */
+static sd_status try_two_levels(const sd_ewald_sizes *sizes, int width, sd_ewald *out,
+                                sd_status status)
+{
+  static const double times[] = {1.5, 2.0};
+  double least = status == SD_OK ? 0.8 * sd_ewald_cost(out) : INFINITY;
+  sd_ewald_class large = {0};
+  for (int k = 0; k + 1 < SD_EWALD_OCTAVES; k++) {
+    add_class(&large, sizes->octave + k);
+    if (!(sizes->octave[k].count > 0.0)) continue;
+    sd_ewald_class small = {0};
+    for (int l = k + 1; l < SD_EWALD_OCTAVES; l++) add_class(&small, sizes->octave + l);
+    for (int m = 0; m < 2 && small.count > 0.0; m++) {
+      sd_ewald e;
+      start(&e, &out->box, out->count, out->tolerance);
+      if (two_levels(&e, &small, &large, width, times[m]) != SD_OK) continue;
+      e.large.from = ldexp(large.largest, -k - 1);
+      const double cost = sd_ewald_cost(&e);
+      if (!(cost < least)) continue;
+      least = cost;
+      status = SD_OK;
+      memcpy(out, &e, sizeof(e));
+    }
+  }
+  return status;
 }
 
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                           double tolerance, sd_ewald *out)
 {
-  *out = (sd_ewald){.box = *box};
-  if (!sound(box, sizes, tolerance)) return SD_ENOTFINITE;
-  out->tolerance = fmin(fmax(tolerance, TIGHTEST), LOOSEST);
-  out->count = sizes->count;
-  if (!(sizes->count > 0.0) || !(sizes->largest > 0.0)) {
-    out->count = 0.0;
-    return SD_OK;
+  const sd_ewald_box own = *box;
+  const sd_ewald_class *all = &sizes->all;
+  if (!sound(&own, all, tolerance)) {
+    start(out, &own, 0.0, 0.0);
+    return SD_ENOTFINITE;
   }
-  double y;
-  split(out, sizes, width, &y);
-  return lay_grid(out, y);
+  const int some = all->count > 0.0 && all->largest > 0.0;
+  start(out, &own, some ? all->count : 0.0, fmin(fmax(tolerance, TIGHTEST), LOOSEST));
+  if (!some) return SD_OK;
+  const sd_status status = one_level(out, all, width);
+  return try_two_levels(sizes, width, out, status);
+}
+
+sd_ewald sd_ewald_of_large(const sd_ewald *e)
+{
+  sd_ewald large = *e;
+  const sd_ewald_large *from = &e->large;
+  large.xi = from->xi;
+  large.range = from->range;
+  large.largest = from->largest;
+  large.reach = fmax(from->range, 2.0 * from->largest);
+  large.spacing = from->spacing;
+  large.beta = from->beta;
+  large.points = from->points;
+  memcpy(large.grid, from->grid, sizeof(large.grid));
+  memset(&large.large, 0, sizeof(large.large));
+  return large;
+}
+
+int sd_ewald_octave(double largest, double a)
+{
+  int k = 0;
+  while (k + 1 < SD_EWALD_OCTAVES && a < ldexp(largest, -k - 1)) k++;
+  return k;
+}
+
+void sd_ewald_count(sd_ewald_sizes *s, double a)
+{
+  const double a2 = a * a;
+  const sd_ewald_class one = {1.0, a2, a2 * a2, a};
+  add_class(&s->all, &one);
+  add_class(s->octave + sd_ewald_octave(s->all.largest, a), &one);
 }
 
 int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, double largest)

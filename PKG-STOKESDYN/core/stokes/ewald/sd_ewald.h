@@ -21,8 +21,8 @@
 extern "C" {
 #endif
 
-/* The widest window */
-enum { SD_EWALD_MOST_POINTS = 20 };
+/* The widest window; classes of radii */
+enum { SD_EWALD_MOST_POINTS = 20, SD_EWALD_OCTAVES = 10 };
 
 /* The box with edges (lx 0 0), (xy ly 0), (xz yz lz). Spheres may stand outside of a periodic one;
  * an open one holds the centres of all and has no tilt: nothing is beyond it but fluid.
@@ -37,7 +37,29 @@ typedef struct {
  * The rule reads them rounded to six digits, since sums over ranks differ in the last ones. */
 typedef struct {
   double count, squares, fourths, largest;
+} sd_ewald_class;
+
+/* All of them; and, for a sum of two levels, by octaves: k has those from largest/2^(k + 1) to
+ * largest/2^k, that one not included except in octave 0, and the last all that are smaller. Octaves
+ * that are left 0: one level. */
+typedef struct {
+  sd_ewald_class all, octave[SD_EWALD_OCTAVES];
 } sd_ewald_sizes;
+
+/* Of spheres up to the radius `largest`, which octave is one of radius a > 0? */
+int sd_ewald_octave(double largest, double a);
+
+/* One more sphere; all.largest is known already. */
+void sd_ewald_count(sd_ewald_sizes *s, double a);
+
+/* The second level: a splitting for the spheres of radius `from` and larger. They meet each other
+ * and all the rest by it, the rest each other by the first. */
+typedef struct {
+  /* 0: there is no such level */
+  double from, count;
+  double xi, range, largest, spacing, beta;
+  int grid[3], points;
+} sd_ewald_large;
 
 /* What an engine is made from. Ready after sd_ewald_choose; all lengths as given. */
 typedef struct {
@@ -58,9 +80,15 @@ typedef struct {
   double beta;
   /* what was asked for: rms error of U over rms of F/(6 pi eta a) */
   double tolerance;
+  /* With it all that is above, but for count and a_ref, is of the smaller spheres. H of the first
+   * level is then less that of the second, whose waves all spheres make. */
+  sd_ewald_large large;
 } sd_ewald;
 
-/* The rule, for a box and its spheres.
+/* The second level as a splitting of its own */
+sd_ewald sd_ewald_of_large(const sd_ewald *e);
+
+/* The rule, for a box and its spheres. Two levels where they cost less (sd_ewald_cost.h).
  *   width       3, or 6 with torques
  *   tolerance   1e-13 ... 1e-1; outside of it the nearest of these is taken
  * SD_OK, SD_ENOTFINITE for a box without volume, numbers that are not finite or a tolerance that

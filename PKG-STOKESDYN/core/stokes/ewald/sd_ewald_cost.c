@@ -9,14 +9,36 @@
  * transforms forth and three back. */
 static const double NEAR_PAIR = 5.8, WINDOW_POINT = 3.0, GRID_POINT = 40.0;
 
-double sd_ewald_cost(const sd_ewald *e)
+/* A pair with a large sphere is kept as its tensor, made once a solve. */
+static const double LARGE_PAIR = 30.0;
+
+static double pairs(const sd_ewald *e, double targets, double sources, double range)
 {
-  const double ball = 4.0 / 3.0 * SD_PI * e->range * e->range * e->range;
-  const double neighbors = fmin(e->count, e->count * ball / sd_ewald_volume(&e->box));
-  const double window = (double) e->points * e->points * e->points;
-  double grid = (double) e->grid[0] * e->grid[1] * e->grid[2];
+  const double ball = 4.0 / 3.0 * SD_PI * range * range * range;
+  const double share = ball / sd_ewald_volume(&e->box); /* more than 1: images */
+  return targets * sources * (e->box.periodic ? share : fmin(1.0, share));
+}
+
+static double windows(double spheres, int points)
+{
+  return WINDOW_POINT * spheres * points * points * points;
+}
+
+static double transforms(const sd_ewald *e, const int *n)
+{
   /* An open box is padded to eight times as many points; of the transforms along its lines 7 in 12
    * have something to transform. */
-  if (!e->box.periodic) grid *= 8.0 * 7.0 / 12.0;
-  return e->count * (NEAR_PAIR * neighbors + WINDOW_POINT * window) + GRID_POINT * grid;
+  return GRID_POINT * (e->box.periodic ? 1.0 : 8.0 * 7.0 / 12.0) * n[0] * n[1] * (double) n[2];
+}
+
+double sd_ewald_cost(const sd_ewald *e)
+{
+  const sd_ewald_large *large = &e->large;
+  const double first = e->count - large->count;
+  double cost = NEAR_PAIR * pairs(e, first, first, e->range) + windows(first, e->points) +
+                transforms(e, e->grid);
+  if (large->from > 0.0)
+    cost += LARGE_PAIR * pairs(e, e->count, large->count, large->range) +
+            windows(e->count, large->points) + transforms(e, large->grid);
+  return cost;
 }

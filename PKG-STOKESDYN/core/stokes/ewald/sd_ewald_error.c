@@ -15,12 +15,15 @@ typedef struct {
 
 /* The sixth moment of the radii is that of a lognormal distribution with the second and fourth, if
  * the largest sphere allows it. */
-static moments moments_of(const sd_ewald *e, const sd_ewald_sizes *s)
+static moments moments_of(const sd_ewald *e, const sd_ewald_class *targets,
+                          const sd_ewald_class *sources)
 {
-  const double a2 = s->squares / s->count, a4 = s->fourths / s->count, ref = e->a_ref * e->a_ref;
-  const double spread = a4 / (a2 * a2);
-  const double a6 = fmin(a2 * a2 * a2 * spread * spread * spread, s->largest * s->largest * a4);
-  moments m = {{1.0, (a2 - ref) / 6.0, (a4 - 2.0 * ref * a2 + ref * ref) / 36.0},
+  const double t2 = targets->squares / targets->count, t4 = targets->fourths / targets->count;
+  const double a2 = sources->squares / sources->count, a4 = sources->fourths / sources->count;
+  const double ref = e->a_ref * e->a_ref, spread = a4 / (a2 * a2);
+  const double a6 =
+      fmin(a2 * a2 * a2 * spread * spread * spread, sources->largest * sources->largest * a4);
+  moments m = {{1.0, (t2 - ref) / 6.0, (t4 - 2.0 * ref * t2 + ref * ref) / 36.0},
                {1.0, (a4 - ref * a2) / (6.0 * a2),
                 (a6 - 2.0 * ref * a4 + ref * ref * a2) / (36.0 * a2)}};
   return m;
@@ -44,7 +47,7 @@ static double mean_square(const double *moment, double k2)
   return 1.0 - 2.0 * moment[1] * k2 + moment[2] * k2 * k2;
 }
 
-/* Near part: n int 4 pi r^2 [A^2 + (2AB + B^2)/3] dr of what lies beyond the range, A and B the
+/* Near part, of sources of number density 1: int 4 pi r^2 [A^2 + (2AB + B^2)/3] dr of what lies beyond the range, A and B the
  * coefficients of 1 and hh. The tensor is that of spheres apart. */
 static double near_error(const sd_ewald *e, const moments *m)
 {
@@ -63,7 +66,7 @@ static double near_error(const sd_ewald *e, const moments *m)
     sum += weight * 4.0 * SD_PI * r2 *
            (mean_product(m, A, A) + (2.0 * mean_product(m, A, B) + mean_product(m, B, B)) / 3.0);
   }
-  return sum * e->count / sd_ewald_volume(&e->box);
+  return sum;
 }
 
 /* One direction of the grid: pairs add up as squares, what a sphere does to itself as it is.
@@ -78,7 +81,7 @@ typedef struct {
 static void add_wave(const sd_ewald *e, const moments *m, double k, double k2, double h,
                      double weight, wave_errors *w)
 {
-  const double H = sd_ewald_screen(e, k2), amplitude = H / k2;
+  const double H = sd_ewald_wave_screen(e, k2), amplitude = H / k2;
   if (fabs(k) * h > SD_PI) {
     w->cut += weight * amplitude * amplitude * mean_square(m->target, k2) * mean_square(m->source, k2);
     w->cut_own += weight * amplitude * mean_square(m->source, k2);
@@ -110,24 +113,62 @@ static wave_errors along_direction(const sd_ewald *e, const moments *m, double h
   return w;
 }
 
-double sd_ewald_predicted(const sd_ewald *e, const sd_ewald_sizes *s)
+/* Square of the error of the wave part of n spheres a volume */
+static double wave_error(const sd_ewald *e, const moments *m, double n)
 {
-  if (!(e->count > 0.0)) return 0.0;
-  const moments m = moments_of(e, s);
-  const double V = sd_ewald_volume(&e->box), n = e->count / V;
   /* as many waves are within it as the box leaves out: the one of k = 0 */
-  const double least = cbrt(3.0 / (4.0 * SD_PI) / V) * 2.0 * SD_PI;
-  double square = near_error(e, &m), cut_own = 0.0;
+  const double least = cbrt(3.0 / (4.0 * SD_PI) / sd_ewald_volume(&e->box)) * 2.0 * SD_PI;
+  double square = 0.0, cut_own = 0.0;
   for (int d = 0; d < 3; d++) {
     const double length = d == 0   ? e->box.edge[0]
                           : d == 1 ? hypot(e->box.edge[1], e->box.tilt[0])
                                    : hypot(e->box.edge[2], hypot(e->box.tilt[1], e->box.tilt[2]));
     const double h = e->box.periodic ? length / e->grid[d] : e->spacing;
-    const wave_errors w = along_direction(e, &m, h, least);
+    const wave_errors w = along_direction(e, m, h, least);
     square += n * (w.cut + w.aliased) + 8.0 * (w.own[0] * w.own[0] + w.own[1] * w.own[1]);
     cut_own += w.cut_own;
   }
-  square += cut_own * cut_own;
-  /* F = 6 pi a times a bare velocity of 1 */
-  return 6.0 * SD_PI * sqrt(square * s->squares / s->count);
+  return square + cut_own * cut_own;
+}
+
+/* What sources do to targets, over the share that these have among all: F = 6 pi a times a bare
+ * velocity of 1. */
+static double share_of(const sd_ewald *e, const sd_ewald_class *targets,
+                       const sd_ewald_class *sources, int waves)
+{
+  if (!(targets->count > 0.0) || !(sources->count > 0.0)) return 0.0;
+  const moments m = moments_of(e, targets, sources);
+  const double n = sources->count / sd_ewald_volume(&e->box);
+  const double square = waves ? wave_error(e, &m, n) : n * near_error(e, &m);
+  return square * sources->squares / sources->count * targets->count / e->count;
+}
+
+static void divide(const sd_ewald *e, const sd_ewald_sizes *s, sd_ewald_class *small,
+                   sd_ewald_class *large)
+{
+  for (int k = 0; k < SD_EWALD_OCTAVES; k++) {
+    const sd_ewald_class *o = s->octave + k;
+    sd_ewald_class *to = ldexp(s->all.largest, -k - 1) < e->large.from ? small : large;
+    to->count += o->count;
+    to->squares += o->squares;
+    to->fourths += o->fourths;
+    to->largest = fmax(to->largest, o->largest);
+  }
+}
+
+double sd_ewald_predicted(const sd_ewald *e, const sd_ewald_sizes *s)
+{
+  if (!(e->count > 0.0)) return 0.0;
+  double square;
+  if (e->large.from > 0.0) {
+    const sd_ewald coarse = sd_ewald_of_large(e);
+    sd_ewald_class small = {0}, large = {0};
+    divide(e, s, &small, &large);
+    square = share_of(e, &small, &small, 0) + share_of(e, &small, &small, 1) +
+             share_of(&coarse, &s->all, &large, 0) + share_of(&coarse, &large, &small, 0) +
+             share_of(&coarse, &s->all, &s->all, 1);
+  } else {
+    square = share_of(e, &s->all, &s->all, 0) + share_of(e, &s->all, &s->all, 1);
+  }
+  return 6.0 * SD_PI * sqrt(square);
 }

@@ -5,10 +5,22 @@
 
 #include "sd_constants.h"
 
+static double screen(double xi, double a_ref, double k2)
+{
+  const double x = k2 / (4.0 * xi * xi);
+  return (1.0 + x - a_ref * a_ref * k2 / 3.0) * exp(-x);
+}
+
 double sd_ewald_screen(const sd_ewald *e, double k2)
 {
-  const double x = k2 / (4.0 * e->xi * e->xi);
-  return (1.0 + x - e->a_ref * e->a_ref * k2 / 3.0) * exp(-x);
+  return screen(e->xi, e->a_ref, k2);
+}
+
+/* H grows with xi as long as xi a_ref < sqrt(3)/2, so the difference is never negative. */
+double sd_ewald_wave_screen(const sd_ewald *e, double k2)
+{
+  const double H = screen(e->xi, e->a_ref, k2);
+  return e->large.from > 0.0 ? H - screen(e->large.xi, e->a_ref, k2) : H;
 }
 
 double sd_ewald_b(const sd_ewald *e, double a)

@@ -24,8 +24,10 @@ enum { SD_I0, SD_J0, SD_I1, SD_J1, SD_I2, SD_J2, SD_K0, SD_K1, SD_RADIALS };
 /* Terms of the longest polynomial that stands for one of them */
 enum { SD_RADIAL_TERMS = 40 };
 
-/* H(k^2), and b of a radius */
+/* H(k^2) of the near part, that of the wave part, which another level may have taken from it, and b
+ * of a radius */
 double sd_ewald_screen(const sd_ewald *e, double k2);
+double sd_ewald_wave_screen(const sd_ewald *e, double k2);
 double sd_ewald_b(const sd_ewald *e, double a);
 
 /* value [SD_RADIALS] at distance r >= 0, by quadrature over k: 1e-15 of their values at r = 0. */

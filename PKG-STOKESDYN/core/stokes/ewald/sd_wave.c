@@ -48,7 +48,7 @@ static void periodic_entries(sd_wave *w, const sd_ewald *e, const double *start,
     const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2], d = factor * inverse_z[m];
     table[m] = 0.0;
     if (!(k2 > 0.0) || d == 0.0) continue;
-    const double B = sd_ewald_screen(e, k2) / (k2 * sd_ewald_volume(&e->box));
+    const double B = sd_ewald_wave_screen(e, k2) / (k2 * sd_ewald_volume(&e->box));
     table[m] = B * d * d;
     for (int c = 0; c < 3; c++) {
       const double part = (m == 0 ? 1.0 : 2.0) * B * (1.0 - k[c] * k[c] / k2);
@@ -134,7 +134,7 @@ static void fill_octant(const sd_ewald *e, double R, const int *n, double *const
         const double k[3] = {x * unit[0], y * unit[1], z * unit[2]};
         const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2];
         const double w = inverse[0][x] * inverse[1][y] * inverse[2][z];
-        *shared = w == 0.0 ? 0.0 : truncated(k2, R) * sd_ewald_screen(e, k2) * w * w / V;
+        *shared = w == 0.0 ? 0.0 : truncated(k2, R) * sd_ewald_wave_screen(e, k2) * w * w / V;
       }
 }
 
@@ -188,7 +188,7 @@ static int next_fast(double at_least)
  * transform's grid. R covers the box and the range of H. */
 static sd_status open_table(sd_wave *w, const sd_ewald *e)
 {
-  const double range = 6.5 / e->xi, *L = e->box.edge;
+  const double range = 6.5 / (e->large.from > 0.0 ? e->large.xi : e->xi), *L = e->box.edge;
   const double R = sqrt(L[0] * L[0] + L[1] * L[1] + L[2] * L[2]) + range;
   int n[3], m[3];
   double *inverse[3] = {0};
@@ -204,7 +204,8 @@ static sd_status open_table(sd_wave *w, const sd_ewald *e)
   double *field = fftw_malloc(sizeof(double) * large), *kept = fftw_malloc(sizeof(double) * octant);
   double *shared = fftw_malloc(sizeof(double) * large);
   w->table = malloc(sizeof(double) * 6 * octant);
-  w->uniform = 1.0 / (4.0 * SD_PI * R);
+  /* the difference of two levels has no k = 0 */
+  w->uniform = e->large.from > 0.0 ? 0.0 : 1.0 / (4.0 * SD_PI * R);
   int ok = field && kept && shared && w->table && inverse[0] && inverse[1] && inverse[2];
   static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   if (ok) fill_octant(e, R, n, inverse, shared);

@@ -1,4 +1,5 @@
-/* Ewald sums: a near part by pairs, a wave part by FFT, and what both leave out. */
+/* Ewald sums: a near part by pairs, a wave part by FFT, and what both leave out. With two levels
+ * (sd_ewald.h) each has a wave part; the first is of the small spheres alone. */
 #include "sd_mobility.h"
 
 #include <math.h>
@@ -6,6 +7,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_ewald_large_pairs.h"
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
 
@@ -14,13 +16,19 @@ typedef struct {
   sd_ewald ewald;
   int width, ready;
   sd_world world;
-  sd_ewald_waves waves;
+  int levels;
+  sd_ewald_waves waves[2];
   sd_ewald_pairs pairs;
-  double tail[3], origin[SD_RADIALS];
+  sd_ewald_large_pairs large_pairs;
+  double tail[2][3], origin[2][SD_RADIALS];
   /* summed over the ranks: sd_wave.self */
-  double self[3][3];
-  /* [pairs.n] this rank's spheres with radius, in order of the near part's targets */
-  int *sphere, room;
+  double self[2][3][3];
+  /* this rank's spheres with radius: [small] in order of the near part's targets, then those of the
+   * second level */
+  int *sphere, small, own, room;
+  /* [n_all] two levels: radii, 0 of the large ones */
+  double *small_a;
+  int small_room;
   /* this rank's spheres, with ghosts */
   int n, n_all;
   double *ghosts;
@@ -46,10 +54,16 @@ static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
     return SD_OK;
   }
   const struct sd_ewald_kernels *kernels = sd_ewald_kernels_of(SD_ISA_BEST);
+  const sd_ewald level[2] = {*how, sd_ewald_of_large(how)};
+  e->levels = how->large.from > 0.0 ? 2 : 1;
   sd_ewald_pairs_create(&e->pairs, how, kernels, e->width);
-  sd_radial_tail(how, e->tail);
-  sd_radial(how, 0.0, e->origin);
-  const sd_status status = sd_ewald_waves_create(&e->waves, how, kernels, e->width, &s->world);
+  if (e->levels == 2) sd_ewald_large_pairs_create(&e->large_pairs, how, e->width);
+  sd_status status = SD_OK;
+  for (int l = 0; l < e->levels && status == SD_OK; l++) {
+    sd_radial_tail(level + l, e->tail[l]);
+    sd_radial(level + l, 0.0, e->origin[l]);
+    status = sd_ewald_waves_create(e->waves + l, level + l, kernels, e->width, &s->world);
+  }
   e->ready = status == SD_OK;
   return status;
 }
@@ -79,29 +93,60 @@ static int make_room(ewald *e, int n, size_t ghost_numbers)
   return e->ghosts != NULL;
 }
 
+/* Without the large spheres, of which the first level knows nothing */
+static int hide_large(ewald *e, const sd_mobility_scene *s, sd_spheres *small)
+{
+  *small = s->spheres;
+  if (e->levels == 1) return 1;
+  if (s->n_all > e->small_room || !e->small_a) {
+    free(e->small_a);
+    e->small_room = s->n_all + s->n_all / 8;
+    e->small_a = malloc(sizeof(double) * ((size_t) e->small_room + 1));
+    if (!e->small_a) return 0;
+  }
+  for (int i = 0; i < s->n_all; i++)
+    e->small_a[i] = s->spheres.a[i] < e->ewald.large.from ? s->spheres.a[i] : 0.0;
+  small->a = e->small_a;
+  return 1;
+}
+
+static void list_spheres(ewald *e)
+{
+  e->own = e->small = e->pairs.n;
+  for (int i = 0; i < e->pairs.n; i++) e->sphere[i] = e->pairs.sphere[e->pairs.target[i]];
+  for (int i = 0; i < e->n && e->levels == 2; i++)
+    if (e->spheres.a[i] >= e->ewald.large.from) e->sphere[e->own++] = i;
+}
+
 /* All bricks, by a sum over the ranks, which also carries what a sphere's images do to it, and who
- * has failed: then all fail. */
+ * has failed: then all fail. brick [levels][6] */
 static sd_status share_bricks(ewald *e, const int *brick, sd_status status)
 {
-  const int ranks = e->waves.grid.ranks, me = e->waves.grid.me, many = 6 * ranks + 2 + 9;
+  const int ranks = e->waves[0].grid.ranks, me = e->waves[0].grid.me, levels = e->levels;
+  const int failed = 6 * ranks * levels, self = failed + 2, many = self + 9 * levels;
   double *values = calloc((size_t) many, sizeof(double));
   int *bricks = calloc((size_t) many, sizeof(int));
   if (!values || !bricks) status = SD_ENOMEMORY;
+  for (int l = 0; l < levels && values; l++) {
+    for (int k = 0; k < 6; k++)
+      values[6 * (l * ranks + me) + k] = status == SD_OK ? brick[6 * l + k] : 0;
+    memcpy(values + self + 9 * l, e->waves[l].wave.self, sizeof(e->self[l]));
+  }
   if (values) {
-    for (int k = 0; k < 6; k++) values[6 * me + k] = status == SD_OK ? brick[k] : 0;
-    values[6 * ranks] = status == SD_ENOMEMORY;
-    values[6 * ranks + 1] = status != SD_OK && status != SD_ENOMEMORY;
-    memcpy(values + 6 * ranks + 2, e->waves.wave.self, sizeof(e->waves.wave.self));
+    values[failed] = status == SD_ENOMEMORY;
+    values[failed + 1] = status != SD_OK && status != SD_ENOMEMORY;
   }
   if (values && e->world.sum) {
     const sd_status said = e->world.sum(e->world.ctx, values, many);
     if (status == SD_OK) status = said;
   }
-  if (status == SD_OK && values[6 * ranks + 1] > 0.0) status = SD_ENOTFINITE;
-  if (status == SD_OK && values[6 * ranks] > 0.0) status = SD_ENOMEMORY;
-  for (int k = 0; k < 6 * ranks && status == SD_OK; k++) bricks[k] = (int) lrint(values[k]);
-  if (status == SD_OK) memcpy(e->self, values + 6 * ranks + 2, sizeof(e->self));
-  if (status == SD_OK) status = sd_ewald_waves_place(&e->waves, bricks);
+  if (status == SD_OK && values[failed + 1] > 0.0) status = SD_ENOTFINITE;
+  if (status == SD_OK && values[failed] > 0.0) status = SD_ENOMEMORY;
+  for (int k = 0; k < failed && status == SD_OK; k++) bricks[k] = (int) lrint(values[k]);
+  for (int l = 0; l < levels && status == SD_OK; l++) {
+    memcpy(e->self[l], values + self + 9 * l, sizeof(e->self[l]));
+    status = sd_ewald_waves_place(e->waves + l, bricks + 6 * ranks * l);
+  }
   free(values);
   free(bricks);
   return status;
@@ -124,57 +169,77 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   sd_status status = SD_OK;
   if (changed(e, s)) status = make_tables(e, s);
   e->world = s->world;
-  e->waves.grid.world = s->world;
+  for (int l = 0; l < 2; l++) e->waves[l].grid.world = s->world;
   if (!(e->ewald.count > 0.0)) return status;
-  int brick[6] = {0};
+  int brick[12] = {0};
+  sd_spheres small;
   if (status == SD_OK && !all_finite(s)) status = SD_ENOTFINITE;
-  if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &s->spheres, s->n, s->n_all);
-  if (status == SD_OK &&
-      !make_room(e, e->pairs.n, (size_t) e->width * (size_t) (s->n_all - s->n)))
+  if (status == SD_OK && !hide_large(e, s, &small)) status = SD_ENOMEMORY;
+  if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &small, s->n, s->n_all);
+  if (status == SD_OK && !make_room(e, s->n, (size_t) e->width * (size_t) (s->n_all - s->n)))
     status = SD_ENOMEMORY;
-  for (int i = 0; status == SD_OK && i < e->pairs.n; i++)
-    e->sphere[i] = e->pairs.sphere[e->pairs.target[i]];
-  if (status == SD_OK)
-    status = sd_ewald_waves_find(&e->waves, &e->spheres, e->sphere, e->pairs.n, brick);
+  if (status == SD_OK) list_spheres(e);
+  for (int l = 0; l < e->levels && status == SD_OK; l++)
+    status = sd_ewald_waves_find(e->waves + l, &e->spheres, e->sphere, l == 0 ? e->small : e->own,
+                                 brick + 6 * l);
+  if (e->levels == 2) { /* on all ranks, also where something has failed */
+    const sd_status large = sd_ewald_large_pairs_place(&e->large_pairs, &e->spheres, e->sphere,
+                                                       status == SD_OK ? e->own : 0, &e->world);
+    if (status == SD_OK) status = large;
+  }
   return share_bricks(e, brick, status);
 }
 
 /* --- product --- */
 
-/* Sums over all spheres of w F, b w F and w T: what is far is felt as a mean. */
+/* Sums over all spheres of w F, b w F and w T: what is far is felt as a mean. Those of the second
+ * level apart: sums [2][9]. */
 static sd_status sums_of(const ewald *e, const double *F, double *sums)
 {
   const long m = e->width;
-  memset(sums, 0, 9 * sizeof(double));
-  for (int i = 0; i < e->pairs.n; i++) {
+  memset(sums, 0, 18 * sizeof(double));
+  for (int i = 0; i < e->own; i++) {
     const long j = e->sphere[i];
-    const double w = e->spheres.w[j];
+    const double w = e->spheres.w[j], b = sd_ewald_b(&e->ewald, e->spheres.a[j]);
+    double *s = sums + (i < e->small ? 0 : 9);
     for (int d = 0; d < 3; d++) {
-      sums[d] += w * F[m * j + d];
-      sums[3 + d] += w * e->waves.place[i].b * F[m * j + d];
-      if (m == 6) sums[6 + d] += w * F[m * j + 3 + d];
+      s[d] += w * F[m * j + d];
+      s[3 + d] += w * b * F[m * j + d];
+      if (m == 6) s[6 + d] += w * F[m * j + 3 + d];
     }
   }
-  return e->world.sum ? e->world.sum(e->world.ctx, sums, 9) : SD_OK;
+  return e->world.sum ? e->world.sum(e->world.ctx, sums, 9 * e->levels) : SD_OK;
 }
 
-/* u += w (wave part + mean of what is beyond the range, or of what the open kernel leaves out) */
-static void add_waves(const ewald *e, const double *sums, double *u)
+static void add_waves(const ewald *e, int level, double *u)
 {
   const long m = e->width;
-  const double V = sd_ewald_volume(&e->ewald.box), *C = e->tail;
-  for (int i = 0; i < e->pairs.n; i++) {
+  const sd_ewald_waves *waves = e->waves + level;
+  for (int i = 0; i < waves->n; i++) {
     const long j = e->sphere[i];
-    const double w = e->spheres.w[j], b = e->waves.place[i].b;
-    for (int d = 0; d < 3; d++) {
-      const double mean = e->waves.wave.periodic
-                              ? ((C[0] - b * C[1]) * sums[d] - (C[1] - b * C[2]) * sums[3 + d]) / V
-                              : e->waves.wave.uniform * sums[d];
-      u[m * j + d] += w * (e->waves.F[m * i + d] + mean);
+    for (int d = 0; d < m; d++) u[m * j + d] += e->spheres.w[j] * waves->F[m * i + d];
+  }
+}
+
+/* u += w (mean of what is beyond the range, or of what the open kernel leaves out). Two small
+ * spheres have the range of the first level, any others that of the second. */
+static void add_means(const ewald *e, const double *sums, double *u)
+{
+  const long m = e->width;
+  const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box);
+  const double uniform = e->waves[e->levels - 1].wave.uniform;
+  for (int i = 0; i < e->own; i++) {
+    const long j = e->sphere[i];
+    const double w = e->spheres.w[j], b = sd_ewald_b(&e->ewald, e->spheres.a[j]);
+    for (int l = 0; l < e->levels; l++) {
+      const double *C = e->tail[i < e->small ? l : 1], *S = sums + 9 * l;
+      for (int d = 0; d < 3; d++)
+        u[m * j + d] += w * (e->ewald.box.periodic ? over_V * ((C[0] - b * C[1]) * S[d] -
+                                                               (C[1] - b * C[2]) * S[3 + d])
+                                                   : uniform * S[d]);
+      for (int d = 3; d < m && e->ewald.box.periodic; d++)
+        u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
     }
-    for (int d = 3; d < m; d++)
-      u[m * j + d] += w * (e->waves.F[m * i + d] +
-                           (e->waves.wave.periodic ? 0.25 * C[1] / V * sums[3 + d] : 0.0));
   }
 }
 
@@ -186,26 +251,30 @@ static sd_status apply(void *state, const double *F, double *u)
     memset(u, 0, sizeof(double) * (size_t) m * (size_t) e->n);
     return SD_OK;
   }
-  double sums[9];
+  double sums[18];
   sd_status status = sums_of(e, F, sums);
   if (status == SD_OK && e->world.refresh)
     status = e->world.refresh(e->world.ctx, F, e->ghosts, e->width);
   if (status != SD_OK) return status;
   sd_ewald_pairs_apply(&e->pairs, e->n, F, e->ghosts, u);
-  status = sd_ewald_waves_apply(&e->waves, &e->spheres, F);
-  if (status != SD_OK) return status;
-  add_waves(e, sums, u);
-  return SD_OK;
+  if (e->levels == 2)
+    status = sd_ewald_large_pairs_apply(&e->large_pairs, &e->spheres, e->sphere, &e->world, F, u);
+  for (int l = 0; l < e->levels && status == SD_OK; l++) {
+    status = sd_ewald_waves_apply(e->waves + l, &e->spheres, F);
+    if (status == SD_OK) add_waves(e, l, u);
+  }
+  if (status == SD_OK) add_means(e, sums, u);
+  return status;
 }
 
 /* Near part of a sphere of radius a and one of its images at r [3]: diagonal [6] += */
-static void add_image(const ewald *e, double a, const double *r, double *diagonal)
+static void add_image(const sd_ewald *e, double a, const double *r, double *diagonal)
 {
-  const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), b = sd_ewald_b(&e->ewald, a);
+  const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), b = sd_ewald_b(e, a);
   double M[36], D[SD_RADIALS];
-  if (R > fmax(e->ewald.range, 2.0 * a)) return;
+  if (R > fmax(e->range, 2.0 * a)) return;
   sd_tensor_grand(r, a, a, 1.0, M);
-  sd_radial(&e->ewald, R, D);
+  sd_radial(e, R, D);
   for (int d = 0; d < 3; d++) {
     const double along = r[d] * r[d];
     diagonal[d] += M[7 * d] - (D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2]) -
@@ -214,10 +283,10 @@ static void add_image(const ewald *e, double a, const double *r, double *diagona
   }
 }
 
-static void add_images(const ewald *e, double a, double *diagonal)
+static void add_images(const sd_ewald *e, double a, double *diagonal)
 {
-  const sd_ewald_box *b = &e->ewald.box;
-  const double reach = fmax(e->ewald.range, 2.0 * a);
+  const sd_ewald_box *b = &e->box;
+  const double reach = fmax(e->range, 2.0 * a);
   const int nz = (int) (reach / b->edge[2]);
   for (int k = -nz; k <= nz; k++) {
     const int ny = (int) ((reach + fabs(k * b->tilt[2])) / b->edge[1]);
@@ -241,18 +310,23 @@ static void self(const void *state, double *diagonal)
   const long m = e->width;
   memset(diagonal, 0, sizeof(double) * (size_t) m * (size_t) e->n);
   if (!(e->ewald.count > 0.0) || !e->ewald.box.periodic) return;
-  const double V = sd_ewald_volume(&e->ewald.box), *C = e->tail, *D = e->origin;
+  const double V = sd_ewald_volume(&e->ewald.box);
   double last = 0.0, own[6] = {0.0};
   for (int i = 0; i < e->n; i++) {
     const double a = e->spheres.a[i], w = e->spheres.w[i], b = sd_ewald_b(&e->ewald, a);
     if (!(a > 0.0)) continue;
+    const int level = e->levels == 2 && a >= e->ewald.large.from;
+    const double *C = e->tail[level], *D = e->origin[level];
     for (int d = 0; d < 3 && a != last; d++) {
-      own[d] = e->self[0][d] - 2.0 * b * e->self[1][d] + b * b * e->self[2][d] -
-               (D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2]) +
+      own[d] = -(D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2]) +
                (C[0] - 2.0 * b * C[1] + b * b * C[2]) / V;
-      own[d + 3] = 0.25 * (e->self[1][d] - D[SD_I1] + C[1] / V);
+      own[d + 3] = 0.25 * (C[1] / V - D[SD_I1]);
+      for (int l = level; l < e->levels; l++) {
+        own[d] += e->self[l][0][d] - 2.0 * b * e->self[l][1][d] + b * b * e->self[l][2][d];
+        own[d + 3] += 0.25 * e->self[l][1][d];
+      }
     }
-    if (a != last) add_images(e, a, own);
+    if (a != last) add_images(level ? &e->large_pairs.ewald : &e->ewald, a, own);
     last = a;
     for (int d = 0; d < m; d++) diagonal[m * i + d] = w * w * own[d];
   }
@@ -262,8 +336,10 @@ static void release(void *state)
 {
   ewald *e = state;
   sd_ewald_pairs_free(&e->pairs);
-  sd_ewald_waves_free(&e->waves);
+  sd_ewald_large_pairs_free(&e->large_pairs);
+  for (int l = 0; l < 2; l++) sd_ewald_waves_free(e->waves + l);
   free(e->sphere);
+  free(e->small_a);
   free(e->ghosts);
 }
 

@@ -29,13 +29,9 @@ static inline sd_status periodic_refresh(void *ctx, const double *rows, double *
 static inline sd_ewald_sizes periodic_sizes(const double *a, int n)
 {
   sd_ewald_sizes s = {0};
-  for (int i = 0; i < n; i++) {
-    if (!(a[i] > 0.0)) continue;
-    s.count += 1.0;
-    s.squares += a[i] * a[i];
-    s.fourths += a[i] * a[i] * a[i] * a[i];
-    s.largest = fmax(s.largest, a[i]);
-  }
+  for (int i = 0; i < n; i++) s.all.largest = fmax(s.all.largest, a[i]);
+  for (int i = 0; i < n; i++)
+    if (a[i] > 0.0) sd_ewald_count(&s, a[i]);
   return s;
 }
 

@@ -7,12 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { N = 90, MOST_RANKS = 4, MESSAGE = 400000 };
+enum { N = 300, MOST_RANKS = 4, MESSAGE = 400000 };
 
 /* What all processes see */
 typedef struct {
   pthread_barrier_t barrier;
-  double F[6 * N], u[6 * N], diagonal[6 * N], sum[MOST_RANKS][64], message[MOST_RANKS][MESSAGE];
+  double F[6 * N], u[6 * N], diagonal[6 * N], sum[MOST_RANKS][128], message[MOST_RANKS][MESSAGE];
   int count[MOST_RANKS][MOST_RANKS], failed;
 } shared;
 
@@ -77,6 +77,7 @@ typedef struct {
   int width, periodic, scattered;
   double tilt;
   int cut; /* direction along which ranks are cut */
+  int wide; /* some are so large that there are two levels */
 } layout;
 
 typedef struct {
@@ -93,10 +94,12 @@ static cloud make(const layout *l)
   for (int i = 0; i < N; i++) {
     for (int d = 0; d < 3; d++) c.x[3 * i + d] = box.origin[d] + uniform(&seed, 0, 1) * box.edge[d];
     c.a[i] = i % 7 == 6 ? 0.0 : uniform(&seed, 0.5, 1.5); /* some take no part */
+    if (l->wide) c.a[i] *= i % 80 == 20 ? 8.0 : 0.1; /* all see many images of the large */
     c.w[i] = uniform(&seed, 0.7, 1.3);
     for (int d = 0; d < l->width; d++) c.F[l->width * i + d] = uniform(&seed, -1, 1);
   }
-  c.how = periodic_choose(&box, c.a, N, l->width, 1e-12);
+  c.how = periodic_choose(&box, c.a, N, l->width, l->wide ? 1e-6 : 1e-12);
+  assert_int_equal(c.how.large.from > 0.0, l->wide);
   return c;
 }
 
@@ -176,9 +179,10 @@ static shared *on_ranks(const cloud *c, const layout *l, int ranks)
 static void several_ranks_are_one(void **state)
 {
   (void) state;
-  const layout layouts[] = {{3, 1, 0, 0.0, 0}, {6, 1, 1, 3.0, 0}, {6, 0, 0, 0.0, 0}, {3, 0, 1, 0.0, 0},
-                            {6, 1, 0, 0.0, 2}, {6, 0, 0, 0.0, 1}, {6, 0, 0, 0.0, 2}, {3, 1, 0, 2.0, 1}};
-  for (int k = 0; k < 8; k++) {
+  const layout layouts[] = {{3, 1, 0, 0.0, 0, 0}, {6, 1, 1, 3.0, 0, 0}, {6, 0, 0, 0.0, 0, 0}, {3, 0, 1, 0.0, 0, 0},
+                            {6, 1, 0, 0.0, 2, 0}, {6, 0, 0, 0.0, 1, 0}, {6, 0, 0, 0.0, 2, 0}, {3, 1, 0, 2.0, 1, 0},
+                            {3, 1, 0, 3.0, 1, 1}, {6, 1, 1, 0.0, 0, 1}};
+  for (int k = 0; k < 10; k++) {
     const layout *l = layouts + k;
     const cloud c = make(l);
     shared *one = on_ranks(&c, l, 1);
@@ -202,16 +206,20 @@ static void several_ranks_are_one(void **state)
 static void a_place_that_is_no_number_stops_all_ranks(void **state)
 {
   (void) state;
-  const layout l = {3, 1, 0, 0.0, 0};
+  const layout l = {3, 1, 0, 0.0, 0, 0};
   cloud c = make(&l);
   c.x[3 * 4 + 1] = NAN;
   c.expected = SD_ENOTFINITE;
   munmap(on_ranks(&c, &l, 3), sizeof(shared));
-  const layout open = {3, 0, 0, 0.0, 0};
+  const layout open = {3, 0, 0, 0.0, 0, 0}, wide = {6, 1, 0, 0.0, 0, 1};
   c = make(&open);
   c.x[3 * 4] = c.how.box.origin[0] + 1.001 * c.how.box.edge[0]; /* outside of an open box: the same */
   c.expected = SD_ENOTFINITE;
   munmap(on_ranks(&c, &open, 3), sizeof(shared));
+  c = make(&wide);
+  c.x[3 * 4 + 1] = NAN;
+  c.expected = SD_ENOTFINITE;
+  munmap(on_ranks(&c, &wide, 3), sizeof(shared));
 }
 
 int main(void)

@@ -196,7 +196,7 @@ static void waves_are_cheap_beside_a_product_by_fft(void **state)
   for (int k = 0; k < 2; k++) {
     const double side = cbrt(1e5 * 4.0 / 3.0 * SD_PI / 0.2);
     const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
-    const sd_ewald_sizes sizes = {1e5, 1e5, 1e5, 1.0};
+    const sd_ewald_sizes sizes = {.all = {1e5, 1e5, 1e5, 1.0}};
     sd_ewald e;
     assert_int_equal(sd_ewald_choose(&box, &sizes, 3, k ? 1e-6 : 1e-3, &e), SD_OK);
     const sd_cost c = sd_cost_waves(&e, 3, 0.0);
@@ -207,7 +207,7 @@ static void waves_are_cheap_beside_a_product_by_fft(void **state)
     assert_true(sd_choice_at_once(&c, k ? 1e-6 : 1e-3, 3e5));
   }
   const sd_ewald_box box = {.periodic = 1, .edge = {9.0, 9.0, 9.0}};
-  const sd_ewald_sizes sizes = {10.0, 10.0, 10.0, 1.0}, none = {0.0, 0.0, 0.0, 0.0};
+  const sd_ewald_sizes sizes = {.all = {10.0, 10.0, 10.0, 1.0}}, none = {0};
   sd_ewald e;
   assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-3, &e), SD_OK);
   const sd_cost few = sd_cost_waves(&e, 3, 0.0);

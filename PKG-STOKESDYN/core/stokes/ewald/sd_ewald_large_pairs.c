@@ -1,0 +1,325 @@
+#include "sd_ewald_large_pairs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sd_constants.h"
+#include "sd_tensor.h"
+
+static int numbers(const sd_ewald_large_pairs *p)
+{
+  return p->width == 6 ? SD_LARGE_PAIR_TORQUES : SD_LARGE_PAIR;
+}
+
+void sd_ewald_large_pairs_create(sd_ewald_large_pairs *p, const sd_ewald *e, int width)
+{
+  if (width != p->width) sd_ewald_large_pairs_free(p); /* tensors are longer */
+  p->ewald = sd_ewald_of_large(e);
+  p->from = e->large.from;
+  p->width = width;
+  p->degree = sd_radial_fit(&p->ewald, width, p->coefficient[0]);
+  sd_radial(&p->ewald, 0.0, p->origin);
+}
+
+void sd_ewald_large_pairs_free(sd_ewald_large_pairs *p)
+{
+  free(p->sphere);
+  free(p->large);
+  free(p->F);
+  free(p->image);
+  free(p->image_of);
+  free(p->image_itself);
+  free(p->begin);
+  free(p->other);
+  free(p->tensor);
+  sd_cells_free(&p->cells);
+  memset(p, 0, sizeof(*p));
+}
+
+/* --- the large spheres of all ranks --- */
+
+static sd_status sum(const sd_world *world, double *values, int count)
+{
+  return world->sum ? world->sum(world->ctx, values, count) : SD_OK;
+}
+
+static int room_for_larges(sd_ewald_large_pairs *p, int many)
+{
+  if (many <= p->large_room && p->large) return 1;
+  const size_t room = (size_t) many + (size_t) many / 8 + 8;
+  free(p->sphere);
+  free(p->large);
+  free(p->F);
+  p->sphere = malloc(sizeof(int) * room);
+  p->large = malloc(sizeof(sd_large_sphere) * room);
+  p->F = malloc(sizeof(double) * 12 * room);
+  p->large_room = p->sphere && p->large && p->F ? (int) room : 0;
+  return p->large_room > 0;
+}
+
+/* How many each rank has, and then who they are: sums, to which each rank adds its own. */
+static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list, int n,
+                              const sd_world *world)
+{
+  const int ranks = world->ranks > 0 ? world->ranks : 1, me = world->ranks > 0 ? world->me : 0;
+  double *counts = calloc((size_t) ranks, sizeof(double));
+  if (!counts) return SD_ENOMEMORY;
+  for (int i = 0; i < n; i++) counts[me] += s->a[list[i]] >= p->from;
+  const sd_status status = sum(world, counts, ranks);
+  p->larges = p->first = 0;
+  p->ours = (int) counts[me];
+  for (int r = 0; r < ranks; r++) {
+    if (r == me) p->first = p->larges;
+    p->larges += (int) counts[r];
+  }
+  free(counts);
+  if (status != SD_OK) return status;
+  if (!room_for_larges(p, p->larges)) return SD_ENOMEMORY;
+  p->u = p->F + 6 * (long) p->large_room;
+  memset(p->large, 0, sizeof(sd_large_sphere) * (size_t) p->larges);
+  int next = 0;
+  for (int i = 0; i < n; i++) {
+    const int j = list[i];
+    if (!(s->a[j] >= p->from)) continue;
+    sd_large_sphere *l = p->large + p->first + next;
+    memcpy(l->x, s->x + 3 * (long) j, sizeof(l->x));
+    l->a = s->a[j];
+    l->w = s->w[j];
+    p->sphere[next++] = j;
+  }
+  return sum(world, (double *) p->large, 5 * p->larges);
+}
+
+/* --- their images --- */
+
+static int add_image(sd_ewald_large_pairs *p, int large, const double *x, int itself)
+{
+  if (p->images == p->image_room || !p->image) {
+    const size_t room = 2 * (size_t) p->images + 64;
+    double *image = realloc(p->image, sizeof(double) * 3 * room);
+    if (image) p->image = image;
+    int *of = realloc(p->image_of, sizeof(int) * room);
+    if (of) p->image_of = of;
+    int *own = realloc(p->image_itself, sizeof(int) * room);
+    if (own) p->image_itself = own;
+    if (!image || !of || !own) return 0;
+    p->image_room = (int) room;
+  }
+  memcpy(p->image + 3 * (long) p->images, x, 3 * sizeof(double));
+  p->image_of[p->images] = large;
+  p->image_itself[p->images++] = itself;
+  return 1;
+}
+
+/* Steps of the box along direction d that take x into lo ... hi */
+static void steps_into(const sd_ewald_box *b, int d, double x, double lo, double hi, int *from,
+                       int *to)
+{
+  *from = *to = 0;
+  if (!b->periodic) return;
+  *from = (int) ceil((lo - x) / b->edge[d]);
+  *to = (int) floor((hi - x) / b->edge[d]);
+}
+
+/* Those that may see one of our spheres: in the box around these, wider by the reach. */
+static sd_status find_images(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list, int n)
+{
+  const sd_ewald_box *b = &p->ewald.box;
+  double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      lo[d] = fmin(lo[d], s->x[3 * (long) list[i] + d] - p->ewald.reach);
+      hi[d] = fmax(hi[d], s->x[3 * (long) list[i] + d] + p->ewald.reach);
+    }
+  p->images = 0;
+  for (int l = 0; l < p->larges && n > 0; l++) {
+    const double *x = p->large[l].x;
+    int from[3], to[3], m[3];
+    steps_into(b, 2, x[2], lo[2], hi[2], from + 2, to + 2);
+    for (m[2] = from[2]; m[2] <= to[2]; m[2]++) {
+      const double z = x[2] + m[2] * b->edge[2], y0 = x[1] + m[2] * b->tilt[2];
+      steps_into(b, 1, y0, lo[1], hi[1], from + 1, to + 1);
+      for (m[1] = from[1]; m[1] <= to[1]; m[1]++) {
+        const double y = y0 + m[1] * b->edge[1];
+        const double x0 = x[0] + m[2] * b->tilt[1] + m[1] * b->tilt[0];
+        steps_into(b, 0, x0, lo[0], hi[0], from, to);
+        for (m[0] = from[0]; m[0] <= to[0]; m[0]++) {
+          const double at[3] = {x0 + m[0] * b->edge[0], y, z};
+          if (!add_image(p, l, at, m[0] == 0 && m[1] == 0 && m[2] == 0)) return SD_ENOMEMORY;
+        }
+      }
+    }
+  }
+  return sd_cells_fill(&p->cells, p->image, p->images, 0.5 * p->ewald.reach);
+}
+
+/* --- pairs --- */
+
+static double polynomial(const sd_ewald_large_pairs *p, int f, double t)
+{
+  double value = p->coefficient[f][p->degree];
+  for (int k = p->degree - 1; k >= 0; k--) value = value * t + p->coefficient[f][k];
+  return value;
+}
+
+/* Beyond the range D is what the tensor would be if the two did not overlap. */
+static void far_radials(double R, double *D)
+{
+  const double y = 1.0 / (8.0 * SD_PI * R), y3 = y / (R * R);
+  D[SD_I0] = y;
+  D[SD_J0] = y3;
+  D[SD_I1] = -2.0 * y3;
+  D[SD_J1] = 6.0 * y3 / (R * R);
+  D[SD_I2] = D[SD_J2] = 0.0;
+  D[SD_K0] = y3;
+  D[SD_K1] = 0.0;
+}
+
+static void tensor_of(const sd_ewald_large_pairs *p, const double *r, double ai, double aj,
+                      double *out)
+{
+  const double R2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], R = sqrt(R2), range = p->ewald.range;
+  const double bi = sd_ewald_b(&p->ewald, ai), bj = sd_ewald_b(&p->ewald, aj);
+  const double over_r = R > 0.0 ? 1.0 / R : 0.0, forces = 1.0 / (6.0 * SD_PI);
+  const double torques = 1.0 / (8.0 * SD_PI);
+  double D[SD_RADIALS], f, g;
+  if (R <= range)
+    for (int k = 0; k < SD_RADIALS; k++) D[k] = polynomial(p, k, 2.0 * R2 / (range * range) - 1.0);
+  else
+    far_radials(R, D);
+  sd_rpy_radial(R, ai, aj, &f, &g);
+  memcpy(out, r, 3 * sizeof(double));
+  out[3] = forces * f - (D[SD_I0] - (bi + bj) * D[SD_I1] + bi * bj * D[SD_I2]);
+  out[4] = forces * g * over_r * over_r - (D[SD_J0] - (bi + bj) * D[SD_J1] + bi * bj * D[SD_J2]);
+  if (p->width < 6) return;
+  sd_rpy_radial_wt(R, ai, aj, &f, &g);
+  out[5] = torques * over_r * sd_rpy_radial_wf(R, ai, aj) - (D[SD_K0] - bj * D[SD_K1]);
+  out[6] = torques * over_r * sd_rpy_radial_wf(R, aj, ai) - (D[SD_K0] - bi * D[SD_K1]);
+  out[7] = torques * f - 0.25 * D[SD_I1];
+  out[8] = torques * g * over_r * over_r - 0.25 * D[SD_J1];
+}
+
+static int add_pair(sd_ewald_large_pairs *p, int other, const double *r, double ai, double aj)
+{
+  if (p->pairs == p->room || !p->other) {
+    const size_t room = 2 * (size_t) p->pairs + 256;
+    int *others = realloc(p->other, sizeof(int) * room);
+    if (others) p->other = others;
+    double *tensor = realloc(p->tensor, sizeof(double) * (size_t) numbers(p) * room);
+    if (tensor) p->tensor = tensor;
+    if (!others || !tensor) return 0;
+    p->room = (long) room;
+  }
+  p->other[p->pairs] = other;
+  tensor_of(p, r, ai, aj, p->tensor + numbers(p) * p->pairs++);
+  return 1;
+}
+
+/* mine: of our large spheres the one that i is, or -1 */
+static int pairs_of(sd_ewald_large_pairs *p, const double *x, double a, int mine)
+{
+  const double range2 = p->ewald.range * p->ewald.range;
+  for (sd_cells_walk w = sd_cells_near(&p->cells, x, p->ewald.reach); sd_cells_step(&p->cells, &w);)
+    for (int k = w.first; k >= 0; k = p->cells.next[k]) {
+      const double *y = p->image + 3 * (long) k, r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      const double R2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+      const int l = p->image_of[k];
+      const double touch = a + p->large[l].a;
+      if (R2 > range2 && R2 > touch * touch) continue;
+      if (mine >= 0 && l == p->first + mine && p->image_itself[k]) continue;
+      if (!add_pair(p, l, r, a, p->large[l].a)) return 0;
+    }
+  return 1;
+}
+
+sd_status sd_ewald_large_pairs_place(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list,
+                                     int n, const sd_world *world)
+{
+  sd_status status = share_larges(p, s, list, n, world);
+  if (status == SD_OK) status = find_images(p, s, list, n);
+  if (status != SD_OK) return status;
+  if (n > p->first_room || !p->begin) {
+    free(p->begin);
+    p->first_room = n + n / 8;
+    p->begin = malloc(sizeof(long) * ((size_t) p->first_room + 1));
+    if (!p->begin) return SD_ENOMEMORY;
+  }
+  p->pairs = 0;
+  int large = 0;
+  for (int i = 0; i < n; i++) {
+    const int j = list[i], mine = s->a[j] >= p->from ? large++ : -1;
+    p->begin[i] = p->pairs;
+    if (!pairs_of(p, s->x + 3 * (long) j, s->a[j], mine)) return SD_ENOMEMORY;
+  }
+  p->n = n;
+  p->begin[n] = p->pairs;
+  return SD_OK;
+}
+
+/* --- product --- */
+
+/* u += c a x b */
+static void add_cross(double c, const double *a, const double *b, double *u)
+{
+  u[0] += c * (a[1] * b[2] - a[2] * b[1]);
+  u[1] += c * (a[2] * b[0] - a[0] * b[2]);
+  u[2] += c * (a[0] * b[1] - a[1] * b[0]);
+}
+
+/* u += M F; turned: of the other sphere of the pair, r -> -r and its c instead. */
+static void add_pair_product(const double *t, int width, int turned, const double *F, double *u)
+{
+  const double along = t[4] * (t[0] * F[0] + t[1] * F[1] + t[2] * F[2]);
+  for (int d = 0; d < 3; d++) u[d] += t[3] * F[d] + along * t[d];
+  if (width < 6) return;
+  const double sign = turned ? -1.0 : 1.0, cij = sign * t[turned ? 6 : 5];
+  const double cji = sign * t[turned ? 5 : 6];
+  const double spin = t[8] * (t[0] * F[3] + t[1] * F[4] + t[2] * F[5]);
+  add_cross(cji, F + 3, t, u);
+  add_cross(cij, F, t, u + 3);
+  for (int d = 0; d < 3; d++) u[3 + d] += t[7] * F[3 + d] + spin * t[d];
+}
+
+/* w F of all large spheres */
+static sd_status load(sd_ewald_large_pairs *p, const sd_world *world, const double *F)
+{
+  const long m = p->width;
+  memset(p->F, 0, sizeof(double) * 6 * (size_t) p->larges);
+  memset(p->u, 0, sizeof(double) * 6 * (size_t) p->larges);
+  for (int l = 0; l < p->ours; l++)
+    for (int d = 0; d < m; d++)
+      p->F[6L * (p->first + l) + d] = p->large[p->first + l].w * F[m * p->sphere[l] + d];
+  return sum(world, p->F, 6 * p->larges);
+}
+
+sd_status sd_ewald_large_pairs_apply(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list,
+                                     const sd_world *world, const double *F, double *u)
+{
+  const long m = p->width, many = numbers(p);
+  sd_status status = load(p, world, F);
+  if (status != SD_OK) return status;
+  for (int i = 0; i < p->n; i++) {
+    const long j = list[i];
+    const int small = s->a[j] < p->from;
+    double own[6] = {0.0}, felt[6] = {0.0};
+    for (int d = 0; d < m; d++) own[d] = s->w[j] * F[m * j + d];
+    for (long k = p->begin[i]; k < p->begin[i + 1]; k++) {
+      add_pair_product(p->tensor + many * k, p->width, 0, p->F + 6L * p->other[k], felt);
+      if (small)
+        add_pair_product(p->tensor + many * k, p->width, 1, own, p->u + 6L * p->other[k]);
+    }
+    for (int d = 0; d < m; d++) u[m * j + d] += s->w[j] * felt[d];
+  }
+  status = sum(world, p->u, 6 * p->larges);
+  for (int l = 0; l < p->ours && status == SD_OK; l++) {
+    const long j = p->sphere[l];
+    const double w = s->w[j], b = sd_ewald_b(&p->ewald, s->a[j]), *D = p->origin;
+    const double self = D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2];
+    for (int d = 0; d < m; d++) {
+      const double own = w * (d < 3 ? self : 0.25 * D[SD_I1]) * F[m * j + d];
+      u[m * j + d] += w * (p->u[6L * (p->first + l) + d] - own);
+    }
+  }
+  return status;
+}
