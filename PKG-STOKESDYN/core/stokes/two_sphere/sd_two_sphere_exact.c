@@ -26,12 +26,13 @@ sd_pair_resistance sd_two_sphere_exact(double a1, double a2, double gap, double 
   sd_two_sphere_axial_rotation(alpha, beta, XC);
   sd_two_sphere_across(alpha, beta, Y);
 
-  /* the forces on the smaller sphere are the better ones: fewer modes, hardly any cancellation */
+  /* the better ones: what acts on the smaller sphere, and what cancels less */
+  static const int better[6][2] = {{0, 1}, {0, 3}, {2, 1}, {2, 3}, {0, 2}, {3, 1}};
   mirror(XA[0][1], &XA[1][0], fabsl(XA[0][0]), &worst);
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++)
-      if (i % 2 < j % 2 || (i % 2 == j % 2 && i < j))
-        mirror(Y[i][j], &Y[j][i], sqrtl(Y[i][i] * Y[j][j]), &worst);
+  for (int b = 0; b < 6; b++) {
+    const int i = better[b][0], j = better[b][1];
+    mirror(Y[i][j], &Y[j][i], sqrtl(Y[i][i] * Y[j][j]), &worst);
+  }
   if (asymmetry) *asymmetry = (double) worst;
   sd_pair_resistance R;
   for (int i = 0; i < 2; i++)

@@ -10,9 +10,10 @@ extern "C" {
 #endif
 
 /* a1, a2 > 0; gap = centre distance - a1 - a2 > 0. Never fails; needs no memory. Where long double
- * has 64 bits, 1e-10 of each function for gaps from 1e-4 of the smaller radius and 1e-8 below, ratios
- * to 100. Symmetry is not put in: asymmetry, if not NULL, is the largest difference between two
- * numbers that reciprocity makes equal, over the larger of all those of its kind. */
+ * has 64 bits: 1e-10 of each function (or of 1e-3 of its scale) for gaps from 1e-4 of the smaller
+ * radius on and 1e-8 below, ratios to 100. Symmetry is not put in: asymmetry, if not NULL, is the
+ * largest difference between two numbers that reciprocity makes equal, over the larger of all those
+ * of its kind. */
 sd_pair_resistance sd_two_sphere_exact(double a1, double a2, double gap, double *asymmetry);
 
 #ifdef __cplusplus
