@@ -212,7 +212,7 @@ void PairSph::init_style()
                              "outdated");
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me, !shared);
-  both_of = -1;
+  around_of = -1;
 }
 
 template <class Style> Style *PairSph::only(const char *otherwise)
@@ -419,7 +419,7 @@ double PairSph::Neighbours::bytes() const
 
 double PairSph::memory_usage()
 {
-  double bytes = near.bytes() + both.bytes();
+  double bytes = near.bytes() + around.bytes();
   for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows})

@@ -97,6 +97,11 @@ class PairSph : public LAMMPS_NS::Pair {
     std::vector<int> pool, own, count;
     std::vector<int *> neighbor;
     void resize(int particles, size_t entries);
+    sd_sph_both both(int n) { return {n, neighbor.data(), own.data(), count.data()}; }
+    sd_sph_near room(double margin)
+    {
+      return {margin, pool.data(), neighbor.data(), own.data(), count.data()};
+    }
     double bytes() const;
   };
 
@@ -105,8 +110,8 @@ class PairSph : public LAMMPS_NS::Pair {
   // Do two ranks share their pairs? With sums that have many columns each has its own: no ghost
   // then gets anything, and nothing goes back.
   bool shared = true;
-  Neighbours near, both;
-  LAMMPS_NS::bigint both_of = -1;    // the step of the list that `both` is made of
+  Neighbours near, around;
+  LAMMPS_NS::bigint around_of = -1;    // the step of the list that `around` is made of
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   Rows x4, v4, f4, sums, weights, order;

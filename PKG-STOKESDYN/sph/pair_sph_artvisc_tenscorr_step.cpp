@@ -197,8 +197,7 @@ void PairSph::sum_rates(double margin)
   for (int k = 0; k < raw.n; k++) entries += raw.count[raw.first[k]];
   near.resize(atom->nmax, entries);
   rate.assign(particles.n + 1, 0.0);
-  const sd_sph_near found = {margin, near.pool.data(), near.neighbor.data(), near.own.data(),
-                             near.count.data()};
+  const sd_sph_near found = near.room(margin);
   sd_sph_rates(&model, &raw, &particles, rate.data(), &found);
   pairs = {raw.n, ~0, raw.first, near.own.data(), near.neighbor.data()};
   reverse(rate.data(), 1);
@@ -209,19 +208,16 @@ void PairSph::sum_rates(double margin)
 void PairSph::sum_middle(double margin)
 {
   const int nlocal = atom->nlocal, columns = sd_sph_sum_columns(sd_sph_level_of(&model));
-  sd_sph_both all;
-  if (neighbor->ago == 0 || update->setupflag || both_of != neighbor->lastcall) {
-    both.resize(atom->nmax, sd_sph_both_size(&raw, nlocal));
-    all = {nlocal, both.neighbor.data(), both.own.data(), both.count.data()};
-    sd_sph_both_ways(&raw, particles.n, both.pool.data(), &all);
-    both_of = neighbor->lastcall;
-  } else
-    all = {nlocal, both.neighbor.data(), both.own.data(), both.count.data()};
-  near.resize(atom->nmax, both.pool.size());
+  const bool outdated =
+      neighbor->ago == 0 || update->setupflag || around_of != neighbor->lastcall;
+  if (outdated) around.resize(atom->nmax, sd_sph_both_size(&raw, nlocal));
+  sd_sph_both all = around.both(nlocal);
+  if (outdated) sd_sph_both_ways(&raw, particles.n, around.pool.data(), &all);
+  around_of = neighbor->lastcall;
+  near.resize(atom->nmax, around.pool.size());
   sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());
   sums.resize(columns * (size_t) nlocal);
-  const sd_sph_near found = {margin, near.pool.data(), near.neighbor.data(), near.own.data(),
-                             near.count.data()};
+  const sd_sph_near found = near.room(margin);
   sd_sph_middle(&model, &all, &particles, sums.data(), &found);
   pairs = {raw.n, ~0, raw.first, near.own.data(), near.neighbor.data()};
   close_sums();
@@ -249,9 +245,8 @@ void PairSph::close_sums()
   if (state) state->keep_rows(n, order.data(), kick.data());
 
   particles.order = order.data();
-  const sd_sph_both around = {atom->nlocal, near.neighbor.data(), near.own.data(),
-                              near.count.data()};
-  sd_sph_diffusion(&model, &around, &particles, rate.data());
+  const sd_sph_both close = near.both(atom->nlocal);
+  sd_sph_diffusion(&model, &close, &particles, rate.data());
 }
 
 /* Does this run go on where the last one ended? */
@@ -357,12 +352,16 @@ void PairSph::forces(bool rates)
     sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
   std::fill(f4.begin(), f4.end(), 0.0);
   if (pairwise) {
+    const int *count = corrects ? near.count.data() : pairs.count;
     size_t entries = 0;
-    for (int k = 0; k < pairs.n; k++) entries += pairs.count[pairs.first[k]];
+    for (int k = 0; k < pairs.n; k++) entries += count[pairs.first[k]];
     each.resize(3 * entries + 1);
   }
-  const double nearest =
-      sd_sph_forces(&model, &pairs, &particles, rates, f4.data(), pairwise ? each.data() : nullptr);
+  double *of_pairs = pairwise ? each.data() : nullptr;
+  const sd_sph_both close = near.both(atom->nlocal);
+  const double nearest = corrects
+      ? sd_sph_corrected_forces(&model, &close, &particles, f4.data(), of_pairs)
+      : sd_sph_forces(&model, &pairs, &particles, rates, f4.data(), of_pairs);
   if (nearest == 0.0) coincident();
 
   for (int i = 0; i < receivers; i++)
@@ -376,9 +375,21 @@ void PairSph::forces(bool rates)
   if (pairwise) tally();
 }
 
+/* For the virial. With correction F is not opposite on the two: each has its half of F d. */
 void PairSph::tally()
 {
   const double *F = each.data();
+  if (corrects) {
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int m = 0; m < near.count[i]; m++, F += 3) {
+        const int j = near.neighbor[i][m];
+        if (j == particles.n) continue;
+        const double *xi = atom->x[i], *xj = atom->x[j];
+        ev_tally_xyz_full(i, 0.0, 0.0, F[0], F[1], F[2], xi[0] - xj[0], xi[1] - xj[1],
+                          xi[2] - xj[2]);
+      }
+    return;
+  }
   for (int k = 0; k < pairs.n; k++) {
     const int i = pairs.first[k];
     for (int m = 0; m < pairs.count[i]; m++, F += 3) {

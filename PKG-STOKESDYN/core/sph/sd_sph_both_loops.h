@@ -7,11 +7,11 @@
 /* Pairs of i: d = x_i - x_j, u = v_i - v_j, V = m_j / rho_j. */
 typedef struct {
   vec d[3], u[3], V, rho_i, rho_j, g, near, f, speed;    // near: g, but 0 between two fluids
-} pairs_of_one;
+} pairs_with_sums;
 
 /* Adds to the columns of sd_sph_sums.h but the rate. grad_i W = g d. M and the gradient of the
  * density use `near`, so that diffusion does not see the jump between two fluids. */
-INLINE void add_columns(const pairs_of_one *q, sd_sph_level level, vec *sum)
+INLINE void add_columns(const pairs_with_sums *q, sd_sph_level level, vec *sum)
 {
   const vec *d = q->d, near = q->near * q->V, jump = (q->rho_j - q->rho_i) * near;
   const vec nx = near * d[0], ny = near * d[1];
@@ -65,7 +65,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
       vec b[4], u[4];
       gather(p->x4, j, b);
       gather(p->v4, j, u);
-      pairs_of_one q = {.V = b[3], .rho_i = all(vi[3]), .rho_j = u[3]};
+      pairs_with_sums q = {.V = b[3], .rho_i = all(vi[3]), .rho_j = u[3]};
       vec r2 = zero, vd = zero;
       for (int c = 0; c < 3; c++) {
         q.d[c] = xi[c] - b[c];

@@ -19,6 +19,12 @@ double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const s
   return loops()->forces(model, list, p, rates, f4, each);
 }
 
+double sd_sph_corrected_forces(const sd_sph_model *model, const sd_sph_both *list,
+                               const sd_sph_particles *p, double *f4, double *each)
+{
+  return loops()->slopes(model, list, p, f4, each);
+}
+
 void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   double *rate, const sd_sph_near *near)
 {

@@ -1,4 +1,4 @@
-/* The force on each particle, over a half list. */
+/* The force on each particle. */
 #ifndef SD_SPH_FORCES_LOOP_H
 #define SD_SPH_FORCES_LOOP_H
 
@@ -12,6 +12,62 @@ typedef struct {
   sd_sph_friction friction;
   sd_sph_scheme scheme;
 } terms;
+
+/* Particle i, and the pairs of it with j: d = x_i - x_j, u = v_i - v_j, A the last column of x4,
+ * grad_i W = g d, m = m_i m_j. */
+typedef struct {
+  row4 x, v, du;
+  vec m;
+  const sd_sph_coefficients *row;
+} particle;
+
+typedef struct {
+  vec d[3], u[3], v_j[3], vd, r2, inv_h, g, m, masses, A_i, A_j, rho_i, rho_j;
+  /* 1 / (rho_i rho_j), one division for all that has it */
+  vec inverse;
+} pairs_of_one;
+
+INLINE particle particle_of(const sd_sph_model *model, const sd_sph_particles *p, int i, terms has)
+{
+  const int many = has.many;
+  return (particle){.x = load(p->x4 + 4 * (size_t) i),
+                    .v = load(p->v4 + 4 * (size_t) i),
+                    .du = has.scheme == SD_SPH_SHIFT ? load(p->order + 8 * (size_t) i + 4)
+                                                     : (row4){0},
+                    .m = all(many ? p->m[i] : p->mass),
+                    .row = ROW_OF(i)};
+}
+
+INLINE pairs_of_one meet(const sd_sph_particles *p, const particle *i, const int j[LANES],
+                         terms has)
+{
+  const int many = has.many;
+  const sd_sph_coefficients *row = i->row;
+  const vec mi = i->m;
+  pairs_of_one q = {.A_i = all(i->x[3]), .rho_i = all(i->v[3]), .masses = MASSES};
+  vec b[4];
+  gather(p->x4, j, b);
+  for (int c = 0; c < 3; c++) {
+    q.d[c] = i->x[c] - b[c];
+    q.r2 += q.d[c] * q.d[c];
+  }
+  q.A_j = b[3];
+  /* K and G end at q = 2 with the value 0: beyond, q = 2 will do. */
+  q.inv_h = COEFFICIENT(inv_h);
+  q.g = COEFFICIENT(grad) * G(has.kernel, smaller(root(q.r2) * q.inv_h, all(2.0)));
+  q.m = mi * q.masses;
+  if (has.artvisc || has.friction || has.rates || has.scheme != SD_SPH_PLAIN) {
+    gather(p->v4, j, b);
+    for (int c = 0; c < 3; c++) {
+      q.v_j[c] = b[c];
+      q.u[c] = i->v[c] - b[c];
+      q.vd += q.u[c] * q.d[c];
+    }
+    q.rho_j = b[3];
+  }
+  if (has.scheme != SD_SPH_PLAIN || has.friction) q.inverse = 1.0 / (q.rho_i * q.rho_j);
+  return q;
+}
 
 /* R f^4 of tensCorr. The attraction of negative pressures is what pairs; the small repulsion of two
  * positive ones keeps lattices from forming along the force. f^4 falls from 1 at dp to 0 at 2 h. */
@@ -32,132 +88,152 @@ INLINE vec artificial(vec vd, vec lengths, vec densities, vec a1, vec b1)
   return s * (b1 * s - a1) * (lengths * inverse);
 }
 
-/* y = B d for B xx yy zz xy | xz yz in two blocks of four. */
-INLINE void turn(const vec B[8], const vec d[3], vec y[3])
+/* Friction, with correction's factor (d.B d) / r^2 in ratio. That of central is along d, so it
+ * belongs to the bracket, whose force has the factor - m m g; the D + 2 in visc makes up for what
+ * lies across d. */
+INLINE vec central(const pairs_of_one *q, vec visc, vec ratio)
+{
+  return visc * q->inverse * ratio * q->vd / (q->r2 + 0.001 / (q->inv_h * q->inv_h));
+}
+
+/* The force on i that is opposite to that on j: all of it, but for the slope of the pressure with
+ * correction. */
+INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p, const particle *i,
+                            const int j[LANES], const pairs_of_one *q, vec ratio, terms has,
+                            vec F[3])
+{
+  const int many = has.many;
+  const sd_sph_coefficients *row = i->row;
+  vec bracket = q->A_i + q->A_j;
+  if (has.scheme == SD_SPH_CORRECTION) bracket = all(0.0);
+  if (has.tenscorr) {
+    const vec distance = smaller(root(q->r2) * q->inv_h, all(2.0));
+    bracket += tension(model->epsilon, q->A_i, q->A_j, COEFFICIENT(tens) * K(has.kernel, distance));
+  }
+  if (has.scheme == SD_SPH_VOLUME)
+    bracket = 2.0 * (q->rho_j * q->A_i + q->rho_i * q->A_j) * q->inverse / (q->rho_i + q->rho_j);
+  if (has.artvisc)
+    bracket += artificial(q->vd, q->r2 + model->eta, q->rho_i + q->rho_j, COEFFICIENT(a1),
+                          COEFFICIENT(b1));
+  if (has.friction == SD_SPH_CENTRAL) bracket -= central(q, COEFFICIENT(visc), ratio);
+  const vec along = -q->m * bracket * q->g;
+  for (int c = 0; c < 3; c++) F[c] = along * q->d[c];
+  if (has.friction == SD_SPH_LAPLACIAN) {
+    const vec rub = q->m * COEFFICIENT(visc) * q->g * ratio * q->inverse;
+    for (int c = 0; c < 3; c++) F[c] += rub * q->u[c];
+  }
+  /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */
+  if (has.scheme == SD_SPH_SHIFT) {
+    vec du[4], mine = all(0.0), theirs = all(0.0);
+    gather_from(p->order + 4, 8, j, du);
+    for (int c = 0; c < 3; c++) {
+      mine += i->du[c] * q->d[c];
+      theirs += du[c] * q->d[c];
+    }
+    const vec carry = q->m * q->inverse * q->g;
+    const vec out = carry * q->rho_i * mine, in = carry * q->rho_j * theirs;
+    for (int c = 0; c < 3; c++) F[c] += out * i->v[c] + in * q->v_j[c];
+  }
+}
+
+/* Over a half list: what i gets is taken from j. */
+INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     double *f4, double *each, terms has)
+{
+  vec nearest = all(HUGE_VAL);
+  for (int ii = 0; ii < list->n; ii++) {
+    const int i = list->first[ii], count = list->count[i];
+    const particle of_i = particle_of(model, p, i, has);
+    vec sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+
+    for (int at = 0; at < count; at += LANES) {
+      int j[LANES];
+      next(list->neighbor[i] + at, count - at, list->mask, p->n, j);
+      const pairs_of_one q = meet(p, &of_i, j, has);
+      nearest = smaller(q.r2, nearest);
+      vec F[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+      opposite_forces(model, p, &of_i, j, &q, all(1.0), has, F);
+      for (int c = 0; c < 3; c++) sum[c] += F[c];
+      if (has.rates) {
+        const vec w = q.g * q.vd;
+        sum[3] += q.masses * w;
+        F[3] = -of_i.m * w;
+      }
+      if (each)
+        for (int k = 0; k < LANES && at + k < count; k++)
+          for (int c = 0; c < 3; c++) *each++ = F[c][k];
+      take_from(f4, j, F);
+    }
+    double *fi = f4 + 4 * (size_t) i;
+    store(fi, load(fi) + over_lanes(sum));
+  }
+  return least_of(nearest);
+}
+
+/* y = B d for B xx yy zz xy | xz yz */
+INLINE void turn(const vec B[6], const vec d[3], vec y[3])
 {
   y[0] = B[0] * d[0] + B[3] * d[1] + B[4] * d[2];
   y[1] = B[3] * d[0] + B[1] * d[1] + B[5] * d[2];
   y[2] = B[4] * d[0] + B[5] * d[1] + B[2] * d[2];
 }
 
-/* B d for both of a pair, and d.B d / r^2 with the mean of the two. `order` points to the eight
- * columns of B in a row of 16. Where one of them is a wall, it has the B of the other. */
-INLINE vec corrected(const double *order, int i, const int j[LANES], const vec d[3], vec r2,
-                     vec mine[3], vec theirs[3])
+/* B_i d, and d.B d / r^2 with the mean of the two. Where one of them is a wall, it has the B of the
+ * other. */
+INLINE vec corrected(const double *order, const vec own[8], const int j[LANES], const vec d[3],
+                     vec r2, vec mine[3])
 {
-  vec own[8], other[8], y[3];
-  const row4 low = load(order + 16 * (size_t) i), high = load(order + 16 * (size_t) i + 4);
-  gather_from(order, 16, j, other);
-  gather_from(order + 4, 16, j, other + 4);
-  for (int c = 0; c < 4; c++) {
-    own[c] = all(low[c]);
-    own[4 + c] = all(high[c]);
-  }
+  vec other[8], theirs[3], product = all(0.0);
+  gather_from(order + 8, 16, j, other);
+  gather_from(order + 12, 16, j, other + 4);
   turn(own, d, mine);
-  turn(other, d, y);
+  turn(other, d, theirs);
   const yes_no wall_j = other[6] > 0.5, wall_i = own[6] > 0.5;
-  vec product = all(0.0);
   for (int c = 0; c < 3; c++) {
-    theirs[c] = where(wall_j, mine[c], y[c]);
-    mine[c] = where(wall_i, y[c], mine[c]);
-    product += d[c] * (mine[c] + theirs[c]);
+    const vec y = where(wall_j, mine[c], theirs[c]);
+    mine[c] = where(wall_i, theirs[c], mine[c]);
+    product += d[c] * (mine[c] + y);
   }
   return 0.5 * product / r2;
 }
 
-INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+/* With correction, over a list both ways. Between fluid particles without friction B_j is not
+ * needed, and B_i stands before the sum. */
+INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                      double *f4, double *each, terms has)
 {
-  const vec zero = all(0.0), two = all(2.0);
   vec nearest = all(HUGE_VAL);
-  const int many = has.many, plain = has.scheme == SD_SPH_PLAIN;
-  const int moving = has.artvisc || has.friction || has.rates || !plain;
-  const int columns = has.scheme == SD_SPH_CORRECTION ? 16 : 8;
-  for (int ii = 0; ii < list->n; ii++) {
-    const int i = list->first[ii], count = list->count[i];
-    const int *neighbor = list->neighbor[i];
-    const row4 xi = load(p->x4 + 4 * (size_t) i);
-    const vec x = all(xi[0]), y = all(xi[1]), z = all(xi[2]), A = all(xi[3]);
-    const row4 vi = moving ? load(p->v4 + 4 * (size_t) i) : (row4){0};
-    const row4 dui = has.scheme == SD_SPH_SHIFT ? load(p->order + 8 * (size_t) i + 4) : (row4){0};
-    const sd_sph_coefficients *row = ROW_OF(i);
-    const vec mi = all(many ? p->m[i] : p->mass);
-    vec sum[4] = {zero, zero, zero, zero};
+  for (int i = 0; i < list->n; i++) {
+    const particle of_i = particle_of(model, p, i, has);
+    const double *B = p->order + 16 * (size_t) i + 8;
+    const int pairwise = has.friction || B[6] > 0.5 || each;
+    vec own[8], sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+    vec slope[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+    for (int c = 0; c < 8; c++) own[c] = all(B[c]);
 
-    for (int at = 0; at < count; at += LANES) {
-      int j[LANES];
-      next(neighbor + at, count - at, list->mask, p->n, j);
-      vec b[4];
-      gather(p->x4, j, b);
-      /* K and G end at q = 2 with the value 0: beyond, q = 2 will do. */
-      const vec d[3] = {x - b[0], y - b[1], z - b[2]};
-      const vec r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      nearest = smaller(r2, nearest);
-      const vec inv_h = COEFFICIENT(inv_h);
-      const vec q = smaller(root(r2) * inv_h, two);
-      const vec g = COEFFICIENT(grad) * G(has.kernel, q), mm = mi * MASSES;
-      vec bracket = plain || has.scheme == SD_SPH_SHIFT ? A + b[3] : zero;
-      vec u[4], theirs[4], vd = zero, inverse = zero, rho = zero, ratio = all(1.0);
-      if (moving) {
-        gather(p->v4, j, theirs);
-        for (int c = 0; c < 3; c++) u[c] = vi[c] - theirs[c];
-        vd = u[0] * d[0] + u[1] * d[1] + u[2] * d[2];
-        rho = theirs[3];
-      }
-      /* one division for all that has 1 / (rho_a rho_b) */
-      if (!plain || has.friction) inverse = 1.0 / (vi[3] * rho);
-
-      if (has.tenscorr)
-        bracket += tension(model->epsilon, A, b[3], COEFFICIENT(tens) * K(has.kernel, q));
-      if (has.scheme == SD_SPH_VOLUME)
-        bracket = 2.0 * (rho * A + vi[3] * b[3]) * inverse / (vi[3] + rho);
-      if (has.artvisc)
-        bracket += artificial(vd, r2 + model->eta, vi[3] + rho, COEFFICIENT(a1), COEFFICIENT(b1));
-      vec mine[3], other[3];
-      if (has.scheme == SD_SPH_CORRECTION)
-        ratio = corrected(p->order + 8, i, j, d, r2, mine, other);
-      /* Along d, so into the bracket, whose force has the factor - m m g. The factor D + 2 of
-       * visc makes up for what lies across d. */
-      if (has.friction == SD_SPH_CENTRAL)
-        bracket -= COEFFICIENT(visc) * inverse * ratio * vd / (r2 + 0.001 / (inv_h * inv_h));
-      const vec fd = -mm * bracket * g;
-      vec F[4] = {fd * d[0], fd * d[1], fd * d[2], zero};
-      if (has.friction == SD_SPH_LAPLACIAN) {
-        const vec fv = mm * COEFFICIENT(visc) * g * ratio * inverse;
-        for (int c = 0; c < 3; c++) F[c] += fv * u[c];
-      }
-      /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */
-      if (has.scheme == SD_SPH_SHIFT) {
-        vec du[4];
-        gather_from(p->order + 4, columns, j, du);
-        const vec carry = mm * inverse * g;
-        const vec out = carry * vi[3] * (dui[0] * d[0] + dui[1] * d[1] + dui[2] * d[2]);
-        const vec in = carry * rho * (du[0] * d[0] + du[1] * d[1] + du[2] * d[2]);
-        for (int c = 0; c < 3; c++) F[c] += out * vi[c] + in * theirs[c];
-      }
-      /* Whatever is antisymmetric is added to i and taken from j; the slope of P is not. */
-      vec on_j[4] = {F[0], F[1], F[2], zero};    // less the force on j
-      if (has.scheme == SD_SPH_CORRECTION) {
-        const vec slope = -mm * inverse * (b[3] - A) * g;
-        for (int c = 0; c < 3; c++) {
-          F[c] += slope * mine[c];
-          on_j[c] -= slope * other[c];
-        }
-      }
-      for (int c = 0; c < 3; c++) sum[c] += F[c];
-      if (has.rates) {
-        const vec w = g * vd;
-        sum[3] += MASSES * w;
-        on_j[3] = -mi * w;
+    for (int at = 0; at < list->count[i]; at += LANES) {
+      const int *j = list->neighbor[i] + at;
+      const pairs_of_one q = meet(p, &of_i, j, has);
+      nearest = smaller(q.r2, nearest);
+      const vec weight = -q.m * q.inverse * (q.A_j - q.A_i) * q.g;
+      vec F[3], mine[3], ratio = all(1.0);
+      if (pairwise) ratio = corrected(p->order, own, j, q.d, q.r2, mine);
+      opposite_forces(model, p, &of_i, j, &q, ratio, has, F);
+      for (int c = 0; c < 3; c++) {
+        if (pairwise)
+          F[c] += weight * mine[c];
+        else
+          slope[c] += weight * q.d[c];
+        sum[c] += F[c];
       }
       if (each)
-        for (int k = 0; k < LANES && at + k < count; k++)
-          for (int c = 0; c < 3; c++) *each++ = 0.5 * (F[c][k] + on_j[c][k]);
-
-      take_from(f4, j, on_j);
+        for (int k = 0; k < LANES; k++)
+          for (int c = 0; c < 3; c++) *each++ = F[c][k];
     }
-    double *fi = f4 + 4 * (size_t) i;
-    store(fi, load(fi) + over_lanes(sum));
+    vec turned[3];
+    turn(own, slope, turned);
+    for (int c = 0; c < 3; c++) sum[c] += turned[c];
+    store(f4 + 4 * (size_t) i, over_lanes(sum));
   }
   return least_of(nearest);
 }

@@ -40,11 +40,20 @@ static int kernel_copy(const sd_sph_model *model)
 #define SCHEME(scheme, kernel, many)                                                              \
   FORCES(scheme##kernel##many,                                                                    \
          {kernel, many, model->artvisc, 0, 0, model->friction, scheme})
+#define SLOPES(ignored, kernel, many)                                                             \
+  static double slopes##kernel##many(const sd_sph_model *model, const sd_sph_both *list,          \
+                                     const sd_sph_particles *p, double *f4, double *each)         \
+  {                                                                                               \
+    return slopes(model, list, p, f4, each,                                                       \
+                  (terms){kernel, many, model->artvisc, 0, 0, model->friction,                    \
+                          SD_SPH_CORRECTION});                                                    \
+  }
+#define SLOPES_ENTRY(ignored, kernel, many) slopes##kernel##many,
 #define SCHEME_ENTRY(scheme, kernel, many) scheme##kernel##many,
 BY_RATES(PLAIN)
 BY_KERNEL(SCHEME, SD_SPH_SHIFT)
-BY_KERNEL(SCHEME, SD_SPH_CORRECTION)
 BY_KERNEL(SCHEME, SD_SPH_VOLUME)
+BY_KERNEL(SLOPES, 0)
 
 static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
                          const sd_sph_particles *p, int with_rates, double *f4, double *each)
@@ -54,7 +63,6 @@ static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
   static copy *const plain[] = {BY_RATES(PLAIN_ENTRY)};
   static copy *const scheme[][4] = {
       [SD_SPH_SHIFT] = {BY_KERNEL(SCHEME_ENTRY, SD_SPH_SHIFT)},
-      [SD_SPH_CORRECTION] = {BY_KERNEL(SCHEME_ENTRY, SD_SPH_CORRECTION)},
       [SD_SPH_VOLUME] = {BY_KERNEL(SCHEME_ENTRY, SD_SPH_VOLUME)}};
   const int has = 8 * !!with_rates + 4 * !!model->friction + 2 * !!model->tenscorr +
       !!model->artvisc;
@@ -76,6 +84,15 @@ static void all_rates(const sd_sph_model *model, const sd_sph_list *list, const 
     BY_KERNEL(RATES, 0, 0)
     BY_KERNEL(RATES, 0, 1)
   }
+}
+
+static double all_slopes(const sd_sph_model *model, const sd_sph_both *list,
+                         const sd_sph_particles *p, double *f4, double *each)
+{
+  typedef double copy(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,
+                      double *);
+  static copy *const copies[] = {BY_KERNEL(SLOPES_ENTRY, 0)};
+  return copies[kernel_copy(model)](model, list, p, f4, each);
 }
 
 #define LEVEL(level, volume, kernel, many)                                                        \
@@ -133,4 +150,4 @@ static void all_weigh(const sd_sph_model *model, const sd_sph_list *list, const 
   }
 }
 
-const sd_sph_loops LOOPS = {all_forces, all_rates, all_middle, all_diffusion, all_weigh};
+const sd_sph_loops LOOPS = {all_forces, all_slopes, all_rates, all_middle, all_diffusion, all_weigh};

@@ -65,6 +65,11 @@ void sd_sph_middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
 void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                       double *rate);
 
+/* The forces of sd_sph_pair.h with correction, and what it says of sd_sph_forces: of the particles
+ * below list->n, rows Fx Fy Fz 0 of f4; each: F_a, for every entry of the list. */
+double sd_sph_corrected_forces(const sd_sph_model *model, const sd_sph_both *list,
+                               const sd_sph_particles *p, double *f4, double *each);
+
 /* Adds sum_b W q_b to the rows of sums, both with 4 `fours` columns (1 or 2) and n + 1 rows; row n
  * of q is 0. walls: only between a fluid and its walls, as phase says. */
 void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
@@ -74,6 +79,8 @@ void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 typedef struct {
   double (*forces)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int,
                    double *, double *);
+  double (*slopes)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,
+                   double *);
   void (*rates)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *,
                 const sd_sph_near *);
   void (*middle)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,

@@ -115,6 +115,16 @@ static inline void diffuse(const scene *s, double *rate)
   sd_sph_diffusion(&s->model, &both, &s->p, rate);
 }
 
+static inline void forces_of(const scene *s, double *f4)
+{
+  neighbours around;
+  const sd_sph_both both = both_ways(s, &around, N);
+  if (s->model.scheme == SD_SPH_CORRECTION)
+    sd_sph_corrected_forces(&s->model, &both, &s->p, f4, NULL);
+  else
+    sd_sph_forces(&s->model, &s->list, &s->p, 0, f4, NULL);
+}
+
 /* Everybody sees everybody, and masses as if the box filled the support: M near the unit matrix. */
 static inline void fill(scene *s)
 {

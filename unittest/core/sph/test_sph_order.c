@@ -26,7 +26,7 @@ static void force_of(scene *s, step *t)
 {
   sd_sph_pack_pressures(&s->model, N, s->P, s->rho, s->x4);
   memset(t->f4, 0, sizeof(t->f4));
-  sd_sph_forces(&s->model, &s->list, &s->p, 0, t->f4, NULL);
+  forces_of(s, t->f4);
 }
 
 static double mass(const scene *s, int i)
