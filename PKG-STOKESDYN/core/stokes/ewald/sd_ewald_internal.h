@@ -7,19 +7,20 @@
 #include "sd_radial.h"
 #include "sd_window.h"
 
-/* Near part: n targets, each a row among those of all spheres; lengths scaled as in sd_packed. Sums
- * times 8 pi and without w of the target, the sphere's own D(0) not among them. */
+/* Near part: each pair once, for both its spheres; lengths scaled as in sd_packed. Sums times 8 pi
+ * and without w of the sphere, its own D(0) not among them. */
 typedef struct {
-  int n, width;
+  int rows, width;
   /* all radii a_ref: b = 0 */
   int equal;
-  /* [n] row; [n + 1] where its neighbours begin, which are filled up to whole vectors of any set */
-  const int *target;
+  /* [rows + 1] where the neighbours of a row begin, which are filled up to whole vectors of any
+   * set */
   const long *first;
   const int *neighbor;
   /* [8 (rows + 1)] x y z a, w F; the last takes the place of missing neighbours. [4 (rows + 1)] w T */
   const double *row, *torque_row;
-  double *u[6];
+  /* [4 (rows + 1)] U, with torques [8 (rows + 1)] U, W, each and one number more; 0 before */
+  double *u;
   /* range^2, a_ref^2, and the polynomials of sd_radial.h times 8 pi; degree: one of the kernels' */
   double range2, ref2;
   int degree;
@@ -57,10 +58,11 @@ typedef struct {
   long row, layer;
 } sd_spreading;
 
-/* Which of the rows begin ... end - 1 are within a distance of a place? Their numbers to list, which
- * has room for 8 more than there are; returns how many. centre [3]: coordinates, stride apart. */
-typedef long sd_near_search(const double *centre, long stride, int begin, int end, const double *x,
-                            double distance2, int *list);
+/* Which rows of ranges, begin and end of each [count][2], are within a distance of a place? Their
+ * numbers to list, which has room for 8 more than there are; returns how many. centre [3]:
+ * coordinates, stride apart. */
+typedef long sd_near_search(const double *centre, long stride, const int *ranges, int count,
+                            const double *x, double distance2, int *list);
 
 struct sd_ewald_kernels {
   int lanes;

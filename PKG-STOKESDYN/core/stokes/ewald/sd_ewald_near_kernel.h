@@ -2,20 +2,21 @@
  * pair in open space, polynomials in t = 2 r^2/range^2 - 1. Included by sd_ewald_kernel.h. */
 
 /* The lanes beyond the end, of other rows, are cut off; centres have room for them. */
-static long search(const double *centre, long stride, int begin, int end, const double *x,
-                   double distance2, int *list)
+INLINE long search_range(const double *px, long stride, int begin, int end, const vec *x, vec most,
+                         int *list)
 {
-  const double *px = centre, *py = px + stride, *pz = py + stride;
-  const vec x0 = SET1(x[0]), y0 = SET1(x[1]), z0 = SET1(x[2]), most = SET1(distance2);
+  const double *py = px + stride, *pz = py + stride;
   long many = 0;
   for (int j = begin; j < end; j += LANES) {
-    const vec dx = load_any(px + j) - x0, dy = load_any(py + j) - y0, dz = load_any(pz + j) - z0;
+    const vec dx = load_any(px + j) - x[0], dy = load_any(py + j) - x[1];
+    const vec dz = load_any(pz + j) - x[2];
     unsigned hit = BITS(LE(dx * dx + dy * dy + dz * dz, most));
     if (end - j < LANES) hit &= (1u << (end - j)) - 1;
 #if LANES == 8
-    const __m256i row = _mm256_add_epi32(_mm256_set1_epi32(j),
-                                         _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-    _mm256_storeu_si256((__m256i *) (list + many), _mm256_maskz_compress_epi32((__mmask8) hit, row));
+    const __m256i row =
+        _mm256_add_epi32(_mm256_set1_epi32(j), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    _mm256_storeu_si256((__m256i *) (list + many),
+                        _mm256_maskz_compress_epi32((__mmask8) hit, row));
     many += __builtin_popcount(hit);
 #else
     for (int l = 0; l < LANES; l++) { /* without a branch: half of them are hits */
@@ -25,6 +26,50 @@ static long search(const double *centre, long stride, int begin, int end, const 
 #endif
   }
   return many;
+}
+
+static long search(const double *centre, long stride, const int *ranges, int count, const double *x,
+                   double distance2, int *list)
+{
+  const vec at[3] = {SET1(x[0]), SET1(x[1]), SET1(x[2])}, most = SET1(distance2);
+  long many = 0;
+  for (int k = 0; k < count; k++)
+    many += search_range(centre, stride, ranges[2 * k], ranges[2 * k + 1], at, most, list + many);
+  return many;
+}
+
+/* Rows j of u, `step` doubles apart, += three columns. The rows of a vector differ, but for the one
+ * that stands for nothing. */
+INLINE void add_to_rows(double *u, int step, const int *j, vec v0, vec v1, vec v2)
+{
+#if LANES == 8
+  const vec none = SET1(0.0);
+  const vec even01 = _mm512_unpacklo_pd(v0, v1), odd01 = _mm512_unpackhi_pd(v0, v1);
+  const vec even2 = _mm512_unpacklo_pd(v2, none), odd2 = _mm512_unpackhi_pd(v2, none);
+  const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
+                high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+#define ADD(k, v) \
+  _mm256_store_pd(u + step * (long) j[k], _mm256_load_pd(u + step * (long) j[k]) + (v))
+#define ADD_TWO(k, from, to)                                        \
+  do {                                                              \
+    const vec two_ = _mm512_permutex2var_pd(from##01, to, from##2); \
+    ADD(k, _mm512_castpd512_pd256(two_));                           \
+    ADD(k + 2, _mm512_extractf64x4_pd(two_, 1));                    \
+  } while (0)
+  ADD_TWO(0, even, low);
+  ADD_TWO(1, odd, low);
+  ADD_TWO(4, even, high);
+  ADD_TWO(5, odd, high);
+#undef ADD_TWO
+#undef ADD
+#else
+  double t[3][LANES] __attribute__((aligned(64)));
+  STORE(t[0], v0);
+  STORE(t[1], v1);
+  STORE(t[2], v2);
+  for (int l = 0; l < LANES; l++)
+    for (int k = 0; k < 3; k++) u[step * (long) j[l] + k] += t[k][l];
+#endif
 }
 
 /* COUNT polynomials of one degree at once: coefficient [COUNT][stride] */
@@ -56,18 +101,18 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 {
   const vec range2 = SET1(p->range2), twice = SET1(2.0 / p->range2), one = SET1(1.0);
   const vec sixth = SET1(1.0 / 6.0), ref2 = SET1(p->ref2);
-  for (int i = 0; i < p->n; i++) {
-    const double *own = p->row + 8 * (long) p->target[i];
+  for (int i = 0; i < p->rows; i++) {
+    const double *own = p->row + 8 * (long) i;
     const vec x = SET1(own[0]), y = SET1(own[1]), z = SET1(own[2]), a = SET1(own[3]);
-    const vec a2 = a * a;
+    const vec G0 = SET1(own[4]), G1 = SET1(own[5]), G2 = SET1(own[6]), a2 = a * a;
+    const long end = p->first[i + 1];
     double mine[4 * SD_RADIAL_TERMS];
     const double *c = p->coefficient[0];
-    if (!equal) {
+    if (!equal && p->first[i] < end) {
       polynomials_of_target(p, (own[3] * own[3] - p->ref2) / 6.0, degree, mine);
       c = mine;
     }
     vec u0 = SET1(0.0), u1 = u0, u2 = u0;
-    const long end = p->first[i + 1];
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
       vec xj, yj, zj, aj, F0, F1, F2, f, h, D[4];
@@ -84,14 +129,16 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
         f -= D[0] - b * D[2];
         h -= D[1] - b * D[3];
       }
-      const vec e = h * (dx * F0 + dy * F1 + dz * F2);
+      const vec e = h * (dx * F0 + dy * F1 + dz * F2), g = h * (dx * G0 + dy * G1 + dz * G2);
       u0 = (u0 + f * F0) + e * dx;
       u1 = (u1 + f * F1) + e * dy;
       u2 = (u2 + f * F2) + e * dz;
+      add_to_rows(p->u, 4, j, f * G0 + g * dx, f * G1 + g * dy, f * G2 + g * dz);
     }
-    p->u[0][i] = total(u0);
-    p->u[1][i] = total(u1);
-    p->u[2][i] = total(u2);
+    double *u = p->u + 4 * (long) i;
+    u[0] += total(u0);
+    u[1] += total(u1);
+    u[2] += total(u2);
   }
 }
 
@@ -100,17 +147,20 @@ INLINE void near_torques(int degree, const sd_near_part *p)
 {
   const vec range2 = SET1(p->range2), twice = SET1(2.0 / p->range2), one = SET1(1.0);
   const vec quarter = SET1(0.25), sixth = SET1(1.0 / 6.0), ref2 = SET1(p->ref2);
-  for (int i = 0; i < p->n; i++) {
-    const double *own = p->row + 8 * (long) p->target[i];
+  for (int i = 0; i < p->rows; i++) {
+    const double *own = p->row + 8 * (long) i, *turn = p->torque_row + 4 * (long) i;
     const vec x = SET1(own[0]), y = SET1(own[1]), z = SET1(own[2]), a = SET1(own[3]);
     const vec bi = (a * a - ref2) * sixth;
-    vec u[6];
+    vec u[6], G[6];
 #pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) u[k] = SET1(0.0);
+    for (int k = 0; k < 6; k++) {
+      u[k] = SET1(0.0);
+      G[k] = SET1(k < 3 ? own[4 + k] : turn[k - 3]);
+    }
     const long end = p->first[i + 1];
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec xj, yj, zj, aj, F[6], D[SD_RADIALS];
+      vec xj, yj, zj, aj, F[6], D[SD_RADIALS], v[6];
       grand b;
       ROWS(p->row, j, xj, yj, zj, aj, F[0], F[1], F[2]);
       TORQUES(p->torque_row, j, F[3], F[4], F[5]);
@@ -126,28 +176,46 @@ INLINE void near_torques(int degree, const sd_near_part *p)
       b.k -= quarter * D[SD_I1];
       b.e -= quarter * D[SD_J1];
       grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
-    }
 #pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) p->u[k][i] = total(u[k]);
+      for (int d = 0; d < 6; d++) v[d] = SET1(0.0);
+      grand_add(&b, b.cij, b.cji, -dx, -dy, -dz, G, v);
+      add_to_rows(p->u, 8, j, v[0], v[1], v[2]);
+      add_to_rows(p->u + 4, 8, j, v[3], v[4], v[5]);
+    }
+    double *at = p->u + 8 * (long) i;
+#pragma GCC unroll 6
+    for (int k = 0; k < 6; k++) at[k < 3 ? k : k + 1] += total(u[k]);
   }
 }
 
 /* A copy of each for each degree: loops of a length that is not known cost twice as much. */
-#define OF_DEGREE(d)                                                          \
-  static void near_equal_##d(const sd_near_part *p) { near_forces(1, d, p); } \
-  static void near_any_##d(const sd_near_part *p) { near_forces(0, d, p); }   \
-  static void near_torques_##d(const sd_near_part *p) { near_torques(d, p); }
+#define OF_DEGREE(d)                                  \
+  static void near_equal_##d(const sd_near_part *p)   \
+  {                                                   \
+    near_forces(1, d, p);                             \
+  }                                                   \
+  static void near_any_##d(const sd_near_part *p)     \
+  {                                                   \
+    near_forces(0, d, p);                             \
+  }                                                   \
+  static void near_torques_##d(const sd_near_part *p) \
+  {                                                   \
+    near_torques(d, p);                               \
+  }
 SD_NEAR_DEGREES(OF_DEGREE)
 #undef OF_DEGREE
 
 static void near_part(const sd_near_part *p)
 {
-#define OF_DEGREE(d)                                        \
-  if (p->degree == (d)) {                                   \
-    if (p->width == 6) near_torques_##d(p);                 \
-    else if (p->equal) near_equal_##d(p);                   \
-    else near_any_##d(p);                                   \
-    return;                                                 \
+#define OF_DEGREE(d)       \
+  if (p->degree == (d)) {  \
+    if (p->width == 6)     \
+      near_torques_##d(p); \
+    else if (p->equal)     \
+      near_equal_##d(p);   \
+    else                   \
+      near_any_##d(p);     \
+    return;                \
   }
   SD_NEAR_DEGREES(OF_DEGREE)
 #undef OF_DEGREE

@@ -48,7 +48,8 @@ void sd_ewald_pairs_free(sd_ewald_pairs *p)
   free(p->wide);
   free(p->row);
   free(p->cell_first);
-  free(p->centre);
+  free(p->column);
+  free(p->range);
   memset(p, 0, sizeof(*p));
 }
 
@@ -63,21 +64,20 @@ static double *lines(size_t doubles)
 static int make_room(sd_ewald_pairs *p, int n)
 {
   if (n <= p->room && p->row) return 1;
-  const size_t many = (size_t) n + (size_t) n / 8 + 8;
+  const size_t many = (size_t) n + (size_t) n / 8 + 8, rows = many + 1;
   free(p->sphere);
   free(p->target);
   free(p->first);
   free(p->row);
-  free(p->centre);
   p->sphere = malloc(sizeof(int) * many);
   p->target = malloc(sizeof(int) * many);
-  p->first = malloc(sizeof(long) * (many + 1));
-  p->row = lines((p->width == 6 ? 18 : 11) * many + 64);
-  p->centre = malloc(sizeof(double) * (3 * many + FULL));
-  p->room = (int) many;
-  if (p->sphere && p->target && p->first && p->row && p->centre) return 1;
-  p->room = 0;
-  return 0;
+  p->first = malloc(sizeof(long) * rows);
+  p->row = lines((p->width == 6 ? 20 : 12) * rows);
+  p->room = p->sphere && p->target && p->first && p->row ? (int) many : 0;
+  if (!p->room) return 0;
+  p->u = p->row + 8 * rows;
+  p->torque_row = p->width == 6 ? p->u + 8 * rows : NULL;
+  return 1;
 }
 
 /* Cells that the spheres stand in: a box around them, cut into n [3] cells of one side */
@@ -165,20 +165,14 @@ static void fill_rows(sd_ewald_pairs *p)
     double *row = p->row + 8 * (long) k;
     for (int d = 0; d < 3; d++) {
       row[d] = p->spheres.x[3 * i + d] * p->scale;
-      p->centre[(long) d * p->room + k] = p->spheres.x[3 * i + d];
+      p->u[(long) d * p->room + k] = p->spheres.x[3 * i + d];
     }
     row[3] = p->spheres.a[i] * p->scale;
     p->equal = p->equal && p->spheres.a[i] == p->ewald.a_ref;
   }
   const double last[8] = {nowhere, nowhere, nowhere};
   memcpy(p->row + 8 * (long) p->rows, last, sizeof(last));
-  double *next = p->row + 8 * ((long) p->rows + 1);
-  if (p->width == 6) {
-    p->torque_row = next;
-    next += 4 * ((long) p->rows + 1);
-    memset(p->torque_row, 0, sizeof(double) * 4 * ((size_t) p->rows + 1));
-  }
-  p->u = next;
+  if (p->width == 6) memset(p->torque_row + 4 * (long) p->rows, 0, 4 * sizeof(double));
 }
 
 /* --- neighbours --- */
@@ -194,7 +188,7 @@ static int room_for_neighbors(sd_ewald_pairs *p, long many)
   return 1;
 }
 
-static int add_wide(sd_ewald_pairs *p, int target, int row)
+static int add_wide(sd_ewald_pairs *p, int row, int other)
 {
   if (p->wides == p->wide_room) {
     const int room = 2 * p->wide_room + 64;
@@ -203,92 +197,129 @@ static int add_wide(sd_ewald_pairs *p, int target, int row)
     p->wide = more;
     p->wide_room = room;
   }
-  p->wide[2 * (long) p->wides] = target;
-  p->wide[2 * (long) p->wides + 1] = row;
+  p->wide[2 * (long) p->wides] = row;
+  p->wide[2 * (long) p->wides + 1] = other;
   p->wides++;
   return 1;
 }
 
-/* Gap between a place and the cells k of a direction; the last reaches as far as its spheres */
-static double gap_to(const cells *c, double x, int k, int d)
+static int add_column(sd_ewald_pairs *p, int x, int y, int z)
 {
-  const double lo = c->lo[d] + k * c->side;
-  if (x < lo) return lo - x;
-  return k < c->n[d] - 1 && x > lo + c->side ? x - lo - c->side : 0.0;
-}
-
-/* The rows of one column of cells, along z, within span of z: begin and end */
-static void column(const sd_ewald_pairs *p, const cells *c, long first, double z, double span,
-                   int *range)
-{
-  const double at = (z - c->lo[2]) * c->inverse, low = at - span * c->inverse;
-  const double high = at + span * c->inverse;
-  const int from = low > 0.0 ? (int) low : 0;
-  const int to = high < c->n[2] - 1 ? (int) high : c->n[2] - 1;
-  range[0] = range[1] = 0;
-  if (from >= c->n[2] || to < 0 || high < 0.0) return;
-  range[0] = p->cell_first[first + from];
-  range[1] = p->cell_first[first + to + 1];
-}
-
-static int wide_pairs(sd_ewald_pairs *p, int target, int begin, int end)
-{
-  const double *x = p->centre, *y = x + p->room, *z = y + p->room;
-  const int row = p->target[target];
-  const double own = p->spheres.a[p->sphere[row]], range2 = p->ewald.range * p->ewald.range;
-  for (int j = begin; j < end; j++) {
-    const double dx = x[j] - x[row], dy = y[j] - y[row], dz = z[j] - z[row];
-    const double r2 = dx * dx + dy * dy + dz * dz, sum = own + p->spheres.a[p->sphere[j]];
-    if (r2 > range2 && r2 < sum * sum && !add_wide(p, target, j)) return 0;
+  if (p->columns == p->column_room) {
+    const int room = 2 * p->column_room + 32;
+    int *more = realloc(p->column, 3 * sizeof(int) * (size_t) room);
+    if (more) p->column = more;
+    int *ranges = realloc(p->range, 2 * sizeof(int) * (size_t) room);
+    if (ranges) p->range = ranges;
+    if (!more || !ranges) return 0;
+    p->column_room = room;
   }
+  int *column = p->column + 3 * p->columns++;
+  column[0] = x;
+  column[1] = y;
+  column[2] = z;
   return 1;
 }
 
-/* Neighbours of a target, after the first `many` of all; -1: no memory */
-static long neighbors_of(sd_ewald_pairs *p, const cells *c, int target, double reach, long many)
+/* Which columns of cells, along z, may hold neighbours that come later in the order of cells; the
+ * first is that of the cell itself. */
+static int find_columns(sd_ewald_pairs *p, const cells *c, double reach)
 {
-  const int row = p->target[target], wide = reach > p->ewald.range;
-  const double range2 = p->ewald.range * p->ewald.range;
-  double x[3];
-  int low[2], high[2], own = -1;
-  for (int d = 0; d < 3; d++) x[d] = p->centre[(long) d * p->room + row];
-  for (int d = 0; d < 2; d++) {
-    const int steps = (int) ceil(reach / c->side), k = along(c, x[d], d);
-    low[d] = k > steps ? k - steps : 0;
-    high[d] = k + steps < c->n[d] ? k + steps : c->n[d] - 1;
-  }
-  for (int cx = low[0]; cx <= high[0]; cx++) {
-    const double gap_x = gap_to(c, x[0], cx, 0);
-    for (int cy = low[1]; cy <= high[1]; cy++) {
-      const double gap_y = gap_to(c, x[1], cy, 1), left = reach * reach - gap_x * gap_x - gap_y * gap_y;
-      int range[2];
+  int steps[2], ok = 1;
+  for (int d = 0; d < 2; d++) steps[d] = (int) fmin(ceil(reach / c->side), c->n[d] - 1);
+  p->columns = 0;
+  for (int x = 0; x <= steps[0]; x++)
+    for (int y = x == 0 ? 0 : -steps[1]; y <= steps[1] && ok; y++) {
+      const double gap_x = x > 1 ? (x - 1) * c->side : 0.0;
+      const double gap_y = abs(y) > 1 ? (abs(y) - 1) * c->side : 0.0;
+      const double left = reach * reach - gap_x * gap_x - gap_y * gap_y;
       if (left < 0.0) continue;
-      column(p, c, ((long) cx * c->n[1] + cy) * c->n[2], x[2], sqrt(left), range);
-      if (range[0] >= range[1]) continue;
-      if (!room_for_neighbors(p, many + range[1] - range[0] + 2 * FULL)) return -1;
-      many += p->kernels->search(p->centre, p->room, range[0], range[1], x, range2, p->neighbor + many);
-      if (wide && !wide_pairs(p, target, range[0], range[1])) return -1;
+      ok = add_column(p, x, y, (int) fmin(ceil(sqrt(left) / c->side), c->n[2] - 1));
     }
+  return ok;
+}
+
+/* The rows in the columns of a cell, as ranges; those of its own column begin with its own. Returns
+ * how many ranges, and in all how many rows. */
+static int ranges_of(const sd_ewald_pairs *p, const cells *c, const int *cell, long *rows)
+{
+  int many = 0;
+  *rows = 0;
+  for (int k = 0; k < p->columns; k++) {
+    const int x = cell[0] + p->column[3 * k], y = cell[1] + p->column[3 * k + 1];
+    if (x >= c->n[0] || y < 0 || y >= c->n[1]) continue;
+    const int span = p->column[3 * k + 2], z = cell[2];
+    const long column = ((long) x * c->n[1] + y) * c->n[2];
+    const long from = k == 0 ? z
+        : z > span           ? z - span
+                             : 0,
+               to = z + span < c->n[2] ? z + span : c->n[2] - 1;
+    p->range[2 * many] = p->cell_first[column + from];
+    p->range[2 * many + 1] = p->cell_first[column + to + 1];
+    *rows += p->range[2 * many + 1] - p->range[2 * many];
+    many++;
   }
-  /* the target itself is among them, once */
-  const long first = p->first[target];
-  for (long k = first; own < 0; k++)
-    if (p->neighbor[k] == row) own = (int) (k - first);
-  p->neighbor[first + own] = p->neighbor[--many];
-  while (many % FULL) p->neighbor[many++] = p->rows;
   return many;
 }
 
-static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, double reach)
+static int is_ghost(const sd_ewald_pairs *p, int row, int n)
 {
-  long many = 0;
-  p->wides = 0;
-  for (int i = 0; i < p->n; i++) {
-    p->first[i] = many;
-    many = neighbors_of(p, c, i, reach, many);
-    if (many < 0) return SD_ENOMEMORY;
+  return p->sphere[row] >= n;
+}
+
+static int wide_pairs(sd_ewald_pairs *p, int row, int n, int ranges)
+{
+  const double *x = p->u, *y = x + p->room, *z = y + p->room;
+  const double own = p->spheres.a[p->sphere[row]], range2 = p->ewald.range * p->ewald.range;
+  for (int k = 0; k < ranges; k++)
+    for (int j = p->range[2 * k]; j < p->range[2 * k + 1]; j++) {
+      const double dx = x[j] - x[row], dy = y[j] - y[row], dz = z[j] - z[row];
+      const double r2 = dx * dx + dy * dy + dz * dz, sum = own + p->spheres.a[p->sphere[j]];
+      if (!(r2 > range2 && r2 < sum * sum) || (is_ghost(p, row, n) && is_ghost(p, j, n))) continue;
+      if (!add_wide(p, row, j)) return 0;
+    }
+  return 1;
+}
+
+/* Neighbours of a row, after the first `many` of all; returns how many there are then */
+static long neighbors_of(sd_ewald_pairs *p, int row, int n, int ranges, long many)
+{
+  const double range2 = p->ewald.range * p->ewald.range, *centre = p->u + row;
+  const double x[3] = {centre[0], centre[p->room], centre[2 * (long) p->room]};
+  int *list = p->neighbor + many;
+  long found = p->kernels->search(p->u, p->room, p->range, ranges, x, range2, list);
+  if (is_ghost(p, row, n)) {
+    long ours = 0;
+    for (long k = 0; k < found; k++)
+      if (!is_ghost(p, list[k], n)) list[ours++] = list[k];
+    found = ours;
   }
-  p->first[p->n] = many;
+  while (found % FULL) list[found++] = p->rows;
+  return many + found;
+}
+
+static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, int n, double reach)
+{
+  const int wide = reach > p->ewald.range;
+  long many = 0, rows;
+  int cell[3], next = 0;
+  p->wides = 0;
+  if (!find_columns(p, c, reach)) return SD_ENOMEMORY;
+  for (cell[0] = 0; cell[0] < c->n[0]; cell[0]++)
+    for (cell[1] = 0; cell[1] < c->n[1]; cell[1]++)
+      for (cell[2] = 0; cell[2] < c->n[2]; cell[2]++) {
+        const int end = p->cell_first[((long) cell[0] * c->n[1] + cell[1]) * c->n[2] + cell[2] + 1];
+        if (next == end) continue;
+        const int ranges = ranges_of(p, c, cell, &rows);
+        for (; next < end; next++) {
+          p->range[0] = next + 1;
+          p->first[next] = many;
+          if (!room_for_neighbors(p, many + rows + 2 * FULL)) return SD_ENOMEMORY;
+          many = neighbors_of(p, next, n, ranges, many);
+          if (wide && !wide_pairs(p, next, n, ranges)) return SD_ENOMEMORY;
+        }
+      }
+  p->first[p->rows] = many;
   return SD_OK;
 }
 
@@ -302,7 +333,7 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, int n, in
   fill_rows(p);
   double largest = 0.0;
   for (int k = 0; k < p->rows; k++) largest = fmax(largest, s->a[p->sphere[k]]);
-  return find_pairs(p, &c, fmax(p->ewald.range, 2.0 * largest));
+  return find_pairs(p, &c, n, fmax(p->ewald.range, 2.0 * largest));
 }
 
 /* --- product --- */
@@ -322,13 +353,13 @@ static void load(sd_ewald_pairs *p, int n, const double *F, const double *ghosts
 /* The kernels' table: lengths scaled, and times 8 pi. */
 static sd_near_part near_part_of(sd_ewald_pairs *p)
 {
-  sd_near_part k = {.n = p->n,
+  sd_near_part k = {.rows = p->rows,
                     .width = p->width,
-                    .target = p->target,
                     .first = p->first,
                     .neighbor = p->neighbor,
                     .row = p->row,
                     .torque_row = p->torque_row,
+                    .u = p->u,
                     .degree = p->degree};
   const double s = p->scale, range = p->ewald.range * s, ref = p->ewald.a_ref * s;
   k.range2 = range * range;
@@ -339,23 +370,31 @@ static sd_near_part near_part_of(sd_ewald_pairs *p)
     const double unit = 8.0 * SD_PI / pow(s, power[f]);
     for (int m = 0; m <= p->degree; m++) k.coefficient[f][m] = unit * p->coefficient[f][m];
   }
-  for (int d = 0; d < p->width; d++) k.u[d] = p->u + (long) d * p->n;
   return k;
+}
+
+/* Row u += M f, or its transpose, times 8 pi */
+static void add_block(const sd_ewald_pairs *p, const double *M, int transposed, int from, int to)
+{
+  double G[6];
+  memcpy(G, p->row + 8 * (long) from + 4, 3 * sizeof(double));
+  if (p->width == 6) memcpy(G + 3, p->torque_row + 4 * (long) from, 3 * sizeof(double));
+  double *u = p->u + (p->width == 6 ? 8 : 4) * (long) to;
+  for (int a = 0; a < p->width; a++)
+    for (int b = 0; b < p->width; b++)
+      u[a < 3 ? a : a + 1] += 8.0 * SD_PI * M[transposed ? 6 * b + a : 6 * a + b] * G[b];
 }
 
 /* Beyond the range D is what the tensor would be if the two did not overlap. */
 static void add_wide_pairs(sd_ewald_pairs *p)
 {
   for (long l = 0; l < p->wides; l++) {
-    const int i = p->wide[2 * l];
-    const double *own = p->row + 8 * (long) p->target[i];
-    const double *other = p->row + 8 * (long) p->wide[2 * l + 1];
+    const int i = p->wide[2 * l], j = p->wide[2 * l + 1];
+    const double *own = p->row + 8 * (long) i, *other = p->row + 8 * (long) j;
     const double r[3] = {own[0] - other[0], own[1] - other[1], own[2] - other[2]};
     const double R2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], y = 1.0 / sqrt(R2);
     const double ai = own[3], aj = other[3], m = (ai * ai + aj * aj) * y * y;
-    double M[36], G[6] = {other[4], other[5], other[6]};
-    if (p->width == 6)
-      memcpy(G + 3, p->torque_row + 4 * (long) p->wide[2 * l + 1], 3 * sizeof(double));
+    double M[36];
     sd_tensor_grand(r, ai, aj, 1.0, M);
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++) {
@@ -367,9 +406,8 @@ static void add_wide_pairs(sd_ewald_pairs *p)
         M[6 * (a + 3) + b] -= y * y * y * cross / (8.0 * SD_PI);
         M[6 * (a + 3) + b + 3] -= y * y * y * (1.5 * hh - 0.5 * same) / (8.0 * SD_PI);
       }
-    for (int a = 0; a < p->width; a++)
-      for (int b = 0; b < p->width; b++)
-        p->u[(long) a * p->n + i] += 8.0 * SD_PI * M[6 * a + b] * G[b];
+    add_block(p, M, 0, j, i);
+    add_block(p, M, 1, i, j);
   }
 }
 
@@ -379,18 +417,19 @@ void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const doubl
   const long m = p->width;
   load(p, n, F, ghosts);
   const sd_near_part k = near_part_of(p);
+  const long step = m == 6 ? 8 : 4;
+  memset(p->u, 0, sizeof(double) * (size_t) (step * (p->rows + 1)));
   p->kernels->near_part(&k);
   add_wide_pairs(p);
   memset(u, 0, sizeof(double) * (size_t) m * (size_t) n);
   for (int i = 0; i < p->n; i++) {
     const long j = p->sphere[p->target[i]];
+    const double *near = p->u + step * p->target[i];
     const double w = p->spheres.w[j], unit = w * p->scale / (8.0 * SD_PI);
     const double b = sd_ewald_b(&p->ewald, p->spheres.a[j]);
     const double self = p->origin[SD_I0] - 2.0 * b * p->origin[SD_I1] + b * b * p->origin[SD_I2];
-    for (int d = 0; d < 3; d++)
-      u[m * j + d] = unit * p->u[(long) d * p->n + i] - w * w * self * F[m * j + d];
+    for (int d = 0; d < 3; d++) u[m * j + d] = unit * near[d] - w * w * self * F[m * j + d];
     for (int d = 3; d < m; d++)
-      u[m * j + d] = unit * p->scale * p->u[(long) d * p->n + i] -
-                     0.25 * w * w * p->origin[SD_I1] * F[m * j + d];
+      u[m * j + d] = unit * p->scale * near[d + 1] - 0.25 * w * w * p->origin[SD_I1] * F[m * j + d];
   }
 }

@@ -25,19 +25,22 @@ typedef struct {
   int rows, *sphere;
   /* all radii are a_ref */
   int equal;
-  /* our own among them: [n] rows in order of cells, [n + 1] their neighbours */
+  /* our own among them: [n] rows in order of cells */
   int n, *target;
+  /* each pair once, by the row that comes first, and no two ghosts: [rows + 1] neighbours of a row */
   long *first;
   int *neighbor;
-  /* pairs (target, row) that overlap beyond the range: [2 wides] */
+  /* pairs of rows that overlap beyond the range: [2 wides] */
   int wides, *wide;
+  /* sd_near_part's, in one block; before the products u holds the centres [3][room] */
   double *row, *torque_row, *u;
-  /* capacities: spheres, neighbours, wide pairs, doubles */
+  /* capacities: spheres, neighbours, wide pairs */
   int room, wide_room;
   long neighbor_room;
-  /* cells: [cells + 1] first row of each, and centres [3][rows] in order */
+  /* cells: [cells + 1] first row of each. Columns of cells near a cell: [3 columns] steps of x, of y,
+   * and along z to either side; begin and end of the rows in them, [2 columns] */
   int cell_room, *cell_first;
-  double *centre;
+  int columns, column_room, *column, *range;
 } sd_ewald_pairs;
 
 /* Polynomials for a splitting. */
