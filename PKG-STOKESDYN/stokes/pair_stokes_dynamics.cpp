@@ -184,6 +184,8 @@ void PairStokesDynamics::init_style()
     if (std::isfinite(atom->radius[i])) largest = std::max(largest, 2.0 * atom->radius[i]);
   MPI_Allreduce(&largest, &largest_diameter, 1, MPI_DOUBLE, MPI_MAX, world);
 
+  // a sphere's own block of lubrication, which its clump has to know on every rank
+  if (hydro.settings.lubrication.on && hydro.settings.rigid.on) comm_forward = 36;
   hydro.init();
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);

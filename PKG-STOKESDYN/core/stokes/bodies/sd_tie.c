@@ -8,7 +8,7 @@
 
 /* In units of the drags of the bodies: pairs whose block is smaller are left out of the factor, as
  * is such fill. */
-static const double weak = 0.3, drop = 0.05;
+static const double weak = 0.5, drop = 0.1;
 enum { MOST_PRODUCTS = 1000, VECTORS = 4 };
 
 static long bodies_of(const sd_bodies *A)
@@ -185,6 +185,22 @@ static void add_scaled(const double *B, const double *rows, const double *column
     for (int q = 0; q < 6; q++) out[6 * p + q] += rows[p] * B[6 * p + q] * columns[q];
 }
 
+static int is_zero(const double B[36])
+{
+  for (int e = 0; e < 36; e++)
+    if (B[e] != 0.0) return 0;
+  return 1;
+}
+
+/* A body that nobody is near to: scale 0 takes it out of the system, where it has V = V_0 exactly. */
+static void leave_out(double scale[6], double diagonal[36])
+{
+  for (int d = 0; d < 6; d++) {
+    scale[d] = 0.0;
+    diagonal[7 * d] = 1.0;
+  }
+}
+
 /* Diagonal blocks of H, scaled; sets the scale. Of clumps every sphere counts, of whatever rank. */
 static sd_status make_diagonal(const sd_bodies *A, double *diagonal)
 {
@@ -199,21 +215,30 @@ static sd_status make_diagonal(const sd_bodies *A, double *diagonal)
     double *scale = t->scale + 6 * (long) e, *out = diagonal + 36 * (long) e;
     for (int d = 0; d < 6; d++) scale[d] = 1.0 / sqrt((d < 3 ? A->drag : A->spin)[i]);
     add_scaled(L + 36 * (long) i, scale, scale, out);
-    for (int d = 0; d < 6; d++) out[7 * d] += 1.0;
+    if (is_zero(out))
+      leave_out(scale, out);
+    else
+      for (int d = 0; d < 6; d++) out[7 * d] += 1.0;
   }
   for (int b = 0; b < A->clumps; b++) {
     double H[36], *scale = t->scale + 6 * (long) (A->lone + b);
+    double *out = diagonal + 36 * (long) (A->lone + b);
+    int near = 0;
     own_block(A, b, H);
     for (int d = 0; d < 6; d++) scale[d] = 1.0 / sqrt(H[7 * d]);
     for (int k = 0; k < A->shape[b]->m; k++) {
       const int j = A->member[A->first[b] + k];
       double B[36], r[3];
       memcpy(B, j < A->n ? L + 36 * (long) j : t->ghosts + 36 * (long) (j - A->n), sizeof(B));
+      near = near || !is_zero(B);
       arm_of(A, A->lone + b, k, r);
       move_to_centres(r, r, B);
       for (int e = 0; e < 36; e++) H[e] += B[e];
     }
-    add_scaled(H, scale, scale, diagonal + 36 * (long) (A->lone + b));
+    if (near)
+      add_scaled(H, scale, scale, out);
+    else
+      leave_out(scale, out);
   }
   return SD_OK;
 }
@@ -285,45 +310,53 @@ static sd_status precondition(const sd_bodies *A, const double *r, double *z)
 
 /* --- conjugate gradients --- */
 
+/* r, z, p, w as ever: one step along p; w holds K^T L K p, z H_0 p */
+static sd_status step(const sd_bodies *A, double rz, double *V, double *LV)
+{
+  const sd_tie *t = A->tie;
+  const long size = 6 * bodies_of(A);
+  double *r = t->vectors, *z = r + size, *p = z + size, *w = p + size, sums[2];
+  sd_status status = apply(A, p, w);
+  if (status != SD_OK) return status;
+  resist_alone(A, p, z);
+  status = dots(A, 2, (const double *[]){p, p}, (const double *[]){w, z}, sums);
+  if (status != SD_OK) return status;
+  const double pHp = sums[0] + sums[1], alpha = rz / pHp;
+  if (!(pHp > 0.0)) return isfinite(pHp) ? SD_EINDEFINITE : SD_ENOTFINITE;
+  for (long j = 0; j < size; j++) {
+    V[j] += alpha * p[j];
+    LV[j] += alpha * w[j];
+    r[j] -= alpha * (w[j] + z[j]);
+  }
+  return SD_OK;
+}
+
 /* From V = 0. LV follows V by the same steps, so that it needs no product of its own. */
 sd_status sd_tie_solve(const sd_bodies *A, const double *V_0, double tolerance, double *V,
                        double *LV)
 {
-  sd_tie *t = A->tie;
+  const sd_tie *t = A->tie;
   const long size = 6 * bodies_of(A);
-  double *r = t->vectors, *z = r + size, *p = z + size, *w = p + size, rz, first = 0.0;
+  double *r = t->vectors, *z = r + size, *p = z + size, rz, before = 1.0, enough = 0.0;
   memset(V, 0, sizeof(double) * (size_t) size);
   memset(LV, 0, sizeof(double) * (size_t) size);
   memset(p, 0, sizeof(double) * (size_t) size);
   resist_alone(A, V_0, r);
-  double before = 1.0;
-  for (int k = 0; k < MOST_PRODUCTS; k++) {
-    double pHp;
+  for (int k = 0;; k++) {
     sd_status status = precondition(A, r, z);
     if (status == SD_OK) status = dots(A, 1, (const double *[]){r}, (const double *[]){z}, &rz);
     if (status != SD_OK) return status;
     if (!isfinite(rz)) return SD_ENOTFINITE;
-    if (k == 0) first = rz;
-    if (rz <= tolerance * tolerance * first) return SD_OK;
+    if (k == 0) enough = tolerance * tolerance * rz;
+    if (rz <= enough) break;
+    if (k == MOST_PRODUCTS) return SD_EMAXITER;
     for (long j = 0; j < size; j++) p[j] = z[j] + rz / before * p[j];
     before = rz;
-    /* w = K^T L K p, then H p */
-    status = apply(A, p, w);
-    if (status != SD_OK) return status;
-    resist_alone(A, p, z);
-    double sums[2];
-    status = dots(A, 2, (const double *[]){p, p}, (const double *[]){w, z}, sums);
-    if (status != SD_OK) return status;
-    pHp = sums[0] + sums[1];
-    if (!(pHp > 0.0)) return isfinite(pHp) ? SD_EINDEFINITE : SD_ENOTFINITE;
-    const double alpha = rz / pHp;
-    for (long j = 0; j < size; j++) {
-      V[j] += alpha * p[j];
-      LV[j] += alpha * w[j];
-      r[j] -= alpha * (w[j] + z[j]);
-    }
+    if ((status = step(A, rz, V, LV)) != SD_OK) return status;
   }
-  return SD_EMAXITER;
+  for (long j = 0; j < size; j++)
+    if (t->scale[j] == 0.0) V[j] = V_0[j];
+  return SD_OK;
 }
 
 void sd_tie_free(sd_tie *t)

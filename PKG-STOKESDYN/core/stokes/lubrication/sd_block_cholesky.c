@@ -22,6 +22,8 @@ struct sd_elimination {
   /* by node: the block between it and the node that is looked at, if stamp says so */
   int *seen, *stamp;
   char *gone;
+  /* room in what is applied */
+  int packed_nodes, packed_entries;
 };
 
 /* The array with room for as many; NULL: no memory, and it is as it was */
@@ -269,6 +271,56 @@ static sd_status eliminate(sd_block_cholesky *f, int p, double drop)
   return status;
 }
 
+/* --- to apply it --- */
+
+enum { LANES = SD_BLOCK_LANES, PADDED = 6 * LANES };
+
+/* out = A, columns with zeros behind them */
+static void pack(const double A[36], float *out)
+{
+  for (int c = 0; c < 6; c++)
+    for (int r = 0; r < LANES; r++) out[LANES * c + r] = r < 6 ? (float) A[6 * r + c] : 0.0f;
+}
+
+/* G^-1, lower as G is */
+static void invert_lower(const double G[36], double out[36])
+{
+  memset(out, 0, 36 * sizeof(double));
+  for (int c = 0; c < 6; c++)
+    for (int r = c; r < 6; r++) {
+      double sum = r == c ? 1.0 : 0.0;
+      for (int k = c; k < r; k++) sum -= G[6 * r + k] * out[6 * k + c];
+      out[6 * r + c] = sum / G[7 * r];
+    }
+}
+
+static sd_status pack_all(sd_block_cholesky *f, int n)
+{
+  struct sd_elimination *w = f->work;
+  if (n > w->packed_nodes || w->entries > w->packed_entries) {
+    free(f->inverse);
+    free(f->column);
+    free(f->vector);
+    w->packed_nodes = n + n / 4;
+    w->packed_entries = w->entries + w->entries / 4;
+    f->inverse = malloc(sizeof(float) * PADDED * ((size_t) w->packed_nodes + 1));
+    f->column = malloc(sizeof(float) * PADDED * ((size_t) w->packed_entries + 1));
+    f->vector = malloc(sizeof(float) * LANES * ((size_t) w->packed_nodes + 1));
+    if (!f->inverse || !f->column || !f->vector) {
+      w->packed_nodes = w->packed_entries = -1;
+      return SD_ENOMEMORY;
+    }
+  }
+  for (long k = 0; k < n; k++) {
+    double inverse[36];
+    invert_lower(f->pivot + 36 * (long) f->order[k], inverse);
+    pack(inverse, f->inverse + PADDED * k);
+    for (long e = f->first[k]; e < f->first[k + 1]; e++)
+      pack(f->block + 36 * (long) f->entry[e][1], f->column + PADDED * e);
+  }
+  return SD_OK;
+}
+
 sd_status sd_block_cholesky_make(sd_block_cholesky *f, int n, const double *diagonal, long count,
                                  const int (*pair)[2], const double *block, double drop)
 {
@@ -288,42 +340,58 @@ sd_status sd_block_cholesky_make(sd_block_cholesky *f, int n, const double *diag
     f->first[k + 1] = w->entries;
     if (degree > 0) degree--; /* no neighbour lost more than one */
   }
+  if (status == SD_OK) status = pack_all(f, n);
   if (status == SD_OK) f->n = n;
   return status;
 }
 
+/* out += s A v, v [6] */
+static inline void add_product(const float *restrict A, float s, const float *restrict v,
+                               float *restrict out)
+{
+  for (int c = 0; c < 6; c++)
+    for (int r = 0; r < LANES; r++) out[r] += A[LANES * c + r] * (s * v[c]);
+}
+
+/* lanes of A^T v, to be summed up: sums[c] += A_c v, one number after the other */
+static inline void add_transposed(const float *restrict A, const float *restrict v,
+                                  float *restrict sums)
+{
+  for (int c = 0; c < 6; c++)
+    for (int r = 0; r < LANES; r++) sums[LANES * c + r] += A[LANES * c + r] * v[r];
+}
+
+static inline float total(const float lanes[LANES])
+{
+  float sum = 0.0f;
+  for (int r = 0; r < LANES; r++) sum += lanes[r];
+  return sum;
+}
+
 void sd_block_cholesky_apply(const sd_block_cholesky *f, double *x)
 {
-  for (int k = 0; k < f->n; k++) {
-    const int p = f->order[k];
-    const double *G = f->pivot + 36 * (long) p;
-    double *y = x + 6 * (long) p;
-    for (int r = 0; r < 6; r++) {
-      for (int c = 0; c < r; c++) y[r] -= G[6 * r + c] * y[c];
-      y[r] /= G[7 * r];
-    }
-    for (long e = f->first[k]; e < f->first[k + 1]; e++) {
-      const double *C = f->block + 36 * (long) f->entry[e][1];
-      double *out = x + 6 * (long) f->entry[e][0];
-      for (int r = 0; r < 6; r++)
-        for (int c = 0; c < 6; c++) out[r] -= C[6 * r + c] * y[c];
-    }
+  float *v = f->vector;
+  for (long p = 0; p < f->n; p++)
+    for (int r = 0; r < LANES; r++) v[LANES * p + r] = r < 6 ? (float) x[6 * p + r] : 0.0f;
+  for (long k = 0; k < f->n; k++) {
+    float *at = v + LANES * (long) f->order[k], y[LANES] = {0.0f};
+    add_product(f->inverse + PADDED * k, 1.0f, at, y);
+    memcpy(at, y, sizeof(y));
+    for (long e = f->first[k]; e < f->first[k + 1]; e++)
+      add_product(f->column + PADDED * e, -1.0f, y, v + LANES * (long) f->entry[e][0]);
   }
-  for (int k = f->n - 1; k >= 0; k--) {
-    const int p = f->order[k];
-    const double *G = f->pivot + 36 * (long) p;
-    double *y = x + 6 * (long) p;
-    for (long e = f->first[k]; e < f->first[k + 1]; e++) {
-      const double *C = f->block + 36 * (long) f->entry[e][1];
-      const double *in = x + 6 * (long) f->entry[e][0];
-      for (int r = 0; r < 6; r++)
-        for (int c = 0; c < 6; c++) y[c] -= C[6 * r + c] * in[r];
-    }
-    for (int r = 5; r >= 0; r--) {
-      for (int c = r + 1; c < 6; c++) y[r] -= G[6 * c + r] * y[c];
-      y[r] /= G[7 * r];
-    }
+  for (long k = f->n - 1; k >= 0; k--) {
+    float *at = v + LANES * (long) f->order[k], sums[PADDED] = {0.0f}, y[LANES];
+    memcpy(y, at, sizeof(y));
+    for (long e = f->first[k]; e < f->first[k + 1]; e++)
+      add_transposed(f->column + PADDED * e, v + LANES * (long) f->entry[e][0], sums);
+    for (int c = 0; c < 6; c++) y[c] -= total(sums + LANES * c);
+    memset(sums, 0, sizeof(sums));
+    add_transposed(f->inverse + PADDED * k, y, sums);
+    for (int c = 0; c < 6; c++) at[c] = total(sums + LANES * c);
   }
+  for (long p = 0; p < f->n; p++)
+    for (int r = 0; r < 6; r++) x[6 * p + r] = v[LANES * p + r];
 }
 
 void sd_block_cholesky_free(sd_block_cholesky *f)
@@ -342,5 +410,8 @@ void sd_block_cholesky_free(sd_block_cholesky *f)
   free(f->entry);
   free(f->pivot);
   free(f->block);
+  free(f->inverse);
+  free(f->column);
+  free(f->vector);
   memset(f, 0, sizeof(*f));
 }

@@ -5,6 +5,7 @@
  * clusters have no fill at all. Fill is left out where its block has a norm below `drop`, and that
  * norm is added to the diagonals of its two nodes instead: then P >= A whatever is left out, no
  * pivot can fail, and A >= 1 gives P <= A (1 + drop x what a node has lost). drop 0: P = A.
+ * Made in double and applied in single precision, which a preconditioner has no need of more than.
  * Source: Ajiz & Jennings, Int. J. Numer. Methods Eng. 20, 949 (1984), here for blocks. */
 #ifndef SD_BLOCK_CHOLESKY_H
 #define SD_BLOCK_CHOLESKY_H
@@ -14,6 +15,8 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+enum { SD_BLOCK_LANES = 8 };
 
 /* Zero-initialise; made again with the memory that it has; sd_block_cholesky_free in the end. */
 typedef struct {
@@ -25,6 +28,9 @@ typedef struct {
   int (*entry)[2];
   /* [36 n] lower factors of the pivots, by node; [36 blocks] */
   double *pivot, *block;
+  /* What is applied, in the order of elimination: inverses of the pivots' factors, blocks of the
+   * columns; a column of 6 takes SD_BLOCK_LANES numbers. And the vector, by nodes */
+  float *inverse, *column, *vector;
   /* what the elimination works with */
   struct sd_elimination *work;
 } sd_block_cholesky;
