@@ -136,6 +136,7 @@ static void settling(void **state)
   (void) state;
   const errors all = errors_of("weight", 2, MOST), few = errors_of("weight", 2, 4),
                some = errors_of("weight", 5, 8), many = errors_of("weight", 12, MOST);
+  assert_int_equal(all.rows, 65);
   assert_true(all.mean[SHARED] < 0.013 && all.worst[SHARED] < 0.03);
   assert_true(few.mean[SHARED] < 0.3 * few.mean[CLASSICAL]);
   assert_true(some.mean[CLASSICAL] > some.mean[NONE]);
@@ -147,6 +148,7 @@ static void unlike_forces(void **state)
 {
   (void) state;
   const errors all = errors_of("random", 2, MOST), many = errors_of("random", 12, MOST);
+  assert_int_equal(all.rows, 33);
   assert_true(all.mean[SHARED] < 0.03);
   assert_true(all.mean[NONE] > 0.3);
   assert_true(many.mean[CLASSICAL] > 0.15);
