@@ -107,7 +107,7 @@ class Worker:
 
 # --- what came of it ----------------------------------------------------------------------------------------------------
 
-OURS = re.compile("stokes_dynamics|hydro/vans|/sph|sph/|fix_modify")
+OURS = re.compile("stokes_dynamics|hydro/vans|/sph|sph/|property/global|fix_modify")
 PHYSICS = re.compile("diverge|definite|not rigid|singular|comm_modify|behind|on the wall|drives|phi =|memory|GB|density|"
                      "moved more|one place|time step|not finite|pressure|no mean|volume fraction")
 LAMMPS = re.compile("fix group ID|Illegal|Incorrect args|Numeric index|All pair coeffs|Expected|Variable|Unrecognized|Unknown|"

@@ -126,6 +126,22 @@ class Or:
             w for kind in kinds for w in read(kind, case)]
 
 
+class Maybe:
+    """One of these words, or none."""
+
+    def __init__(self, *options):
+        self.options = options
+
+    def write(self, draw):
+        return draw.choice([[]] + [[word] for word in self.options])
+
+    def read(self, case):
+        if case.at == len(case.words) or case.words[case.at] not in self.options:
+            return []
+        case.at += 1
+        return [case.words[case.at - 1]]
+
+
 class Counted:
     """n, then n values."""
 

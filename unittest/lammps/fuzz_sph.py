@@ -1,5 +1,5 @@
 """Scenes, grammar and rules of pair_style sph/artVisc/tensCorr and its fixes, written from their pages (for fuzz.py)."""
-from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, YES_NO, Choice, Name, Number, NumberOr, decimal, positive,
+from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, YES_NO, Choice, Maybe, Name, Number, NumberOr, decimal, positive,
                           write)
 
 WATER = """units si
@@ -28,12 +28,15 @@ neighbor 0.003 bin
 neigh_modify delay 0 every 1
 timestep 1e-6
 thermo 100000"""
+# no free surface, as correction needs it
+BULK = WATER.replace("boundary f f f", "boundary p p p").replace("block -0.05 0.08 -0.05 0.08 -0.05 0.08", "block 0 0.04 0 0.04 0 0.04")
 LENGTH = positive("0.013", "0.012", border=["0", "-1", "1e-12", "0.05"])
 ARTVISC = [Number(lambda v: v >= 0, ["0.1", "0"], ["-1"])] * 2 + [Number(lambda v: v >= 0, ["1.7e-6", "0"], ["-1"])]
 SPACING = positive("0.01", border=["0", "-1", "0.03"])
 SOUND = positive("20", "25")
-SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING], "viscosity": [positive("1e-3", odd=lambda v: v == 0)],
+SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING], "viscosity": [positive("1e-3", odd=lambda v: v == 0), Maybe("central", "laplacian")],
             "shift": [YES_NO], "correction": [YES_NO]}
+SPH_DENSITY = {"delta": [Number(lambda v: v >= 0, ["0", "0.1", "0.1", "0.2"], ["-1", "1e300"])], "volume": [YES_NO]}
 SPH_COEFF = {"h": [LENGTH], "c": [SOUND], "alpha": [NOT_NEGATIVE], "beta": [NOT_NEGATIVE], "deltap": [SPACING]}
 KERNELS = ["cubicspline", "wendland", "cubicspline2d", "wendland2d"]
 B, RHO = positive("57142.9", "300"), positive("1000")
@@ -43,14 +46,14 @@ PLANE = Number(lambda v: True, ["-0.01", "-0.02"], ["0.06", "0.01"])
 FAR = Number(lambda v: True, ["0.06", "0.04"], ["-0.01", "0.01"])
 
 
-def water(case, **instead):
+def water(case, scene=WATER, **instead):
     """The scene, with some of its lines replaced. The tried line is the one that is replaced first."""
     lines = {"pair": "pair_style sph/artVisc/tensCorr wendland 0.013 artVisc 0.1 0 1.7e-6 tensCorr 0.2 0.01 viscosity 1e-3",
              "coeff": "pair_coeff * * c 20", "eos": "fix eos all sph/pressure Tait 57142.9 1000 7",
              "density": "fix density all sph/density/continuity", "move": "fix move all nve/sph"}
     tried = next(iter(instead.values()))
     lines.update(instead)
-    case.lines = WATER.split("\n") + [line for line in lines.values() if line]
+    case.lines = scene.split("\n") + [line for line in lines.values() if line]
     case.tried = case.lines.index(tried)
 
 
@@ -75,6 +78,64 @@ def make_sph_pair(case):
     moved = [name for name in ("shift", "correction") if case.settings.get(name, [""])[0] == "yes"]
     case.refuse_if(moved, "shift", "correction")    # the scene has no delta
     case.refuse_if("tensCorr" in case.settings and float(case.settings["tensCorr"][1]) >= 2 * h, "deltap")
+
+
+def make_sph_order(case):
+    """Shift, correction, central viscosity, two fluids and delta: what goes with what. The pair style or the density is damaged."""
+    draw = case.draw
+    case.style = "sph/artVisc/tensCorr"
+    bulk, walled, mover = draw.random() < 0.6, draw.random() < 0.1, draw.choice(["nve/sph"] * 9 + ["sph"])
+    kernel, h = draw.choice(["wendland"] * 5 + ["cubicspline", "wendland2d"]), draw.choice(["0.013", "0.012", "0.015"])
+    terms = [name for name, chance in (("artVisc", 0.3), ("tensCorr", 0.15), ("viscosity", 0.5), ("shift", 0.5), ("correction", 0.5))
+             if draw.random() < chance]
+    words = [w for name in terms for w in [name] + [w for kind in SPH_PAIR[name] for w in write(kind, draw)]]
+    density = [w for name in SPH_DENSITY if draw.random() < (0.85 if name == "delta" else 0.25)
+               for w in [name] + [w for kind in SPH_DENSITY[name] for w in write(kind, draw)]]
+    first = draw.random() < 0.6
+    words, density = (case.damaged(words), density) if first else (words, case.damaged(density))
+    lines = {"pair": f"pair_style sph/artVisc/tensCorr {kernel} {h} " + " ".join(words),
+             "density": "fix density all sph/density/continuity " + " ".join(density)}
+    lines = lines if first else dict(reversed(lines.items()))
+    water(case, BULK if bulk else WATER, **lines, move=f"fix move all {mover}",
+          **({"wall": "fix around all wall/region/sph zone 0.005 0"} if walled else {}))
+    case.extreme |= violent(words + density)
+    yes = lambda name: case.value(name, "no") == "yes"
+    names = ("shift", "correction", "volume")
+    if not case.judge(words, SPH_PAIR):
+        return
+    case.refuse_if(yes("correction") and case.value("shift") == "no", *names)
+    if not case.judge(density, SPH_DENSITY):
+        return
+    corrects, volume, tensile = yes("correction"), yes("volume"), "tensCorr" in case.settings
+    case.refuse_if(volume and (tensile or mover == "sph"), *names)
+    case.refuse_if(tensile and float(case.settings["tensCorr"][1]) >= 2 * float(h), "deltap")
+    if not (corrects or yes("shift")):
+        return
+    case.refuse_if(volume or tensile or mover == "sph" or kernel == "wendland2d", *names)
+    case.refuse_if(not float(case.value("delta", "0")) > 0, *names)
+    case.refuse_if(kernel == "cubicspline" and not corrects, *names)
+    case.refuse_if(corrects and (walled or not bulk), *names)
+
+
+def make_sph_global(case):
+    """Speed of sound or smoothing length of each type, beside pair_coeff or instead of it."""
+    case.style, draw = "property/global", case.draw
+    kinds = {"speedOfSound": SOUND, "sl": LENGTH}
+    name = draw.choice(list(kinds))
+    words = case.damaged([name, "peratomtype"] + [w for _ in range(2) for w in write(kinds[name], draw)])
+    c = draw.random() < 0.5
+    water(case, wide="fix wide all property/global " + " ".join(words), coeff="pair_coeff * *" + " c 20" * c)
+    case.extreme |= violent(words)
+    kind = kinds.get(words[0] if words else "", SOUND)
+    if not case.judge(words, {}, [("property", Choice(*kinds)), ("kind", Choice("peratomtype")), (name, kind), (name, kind)]):
+        case.faults += words[:1]
+        return
+    lengths = words[0] == "sl"
+    case.refuse_if(lengths and not c, "artVisc")
+    values = [float(w) for w in words[2:4]]
+    case.refuse_if(lengths and min(values) <= 0.005, "deltap")
+    if lengths and max(values) > 1:
+        case.says(ODD, "")
 
 
 def make_sph_coeff(case):
@@ -116,13 +177,15 @@ def make_sph_density(case):
     draw = case.draw
     what = draw.choice(["continuity", "summation", "corr"])
     case.style = "sph/density/" + what
-    grammar = {"continuity": {"delta": [NOT_NEGATIVE]}, "summation": {}, "corr": {}}[what]
+    grammar = {"continuity": SPH_DENSITY, "summation": {}, "corr": {}}[what]
     begin = [("shepard", Choice("shepard")), ("every", Choice("every")), ("every", COUNT)] if what == "corr" else []
     words = case.damaged([w for _, kind in begin for w in write(kind, draw)] + case.words_of(grammar, few=len(grammar)))
     name, group = "filter" if what == "corr" else "density", draw.choice(["all"] * 5 + ["fluid", "nobody"])
     water(case, **{name: f"fix {name} {group} {case.style} " + " ".join(words)})
-    if not case.judge(words, grammar, begin) and what == "corr":
-        case.faults += ["shepard", "every"]
+    if not case.judge(words, grammar, begin):
+        case.faults += ["shepard", "every"] if what == "corr" else []
+        return
+    case.refuse_if(case.value("volume") == "yes", "volume")     # the scene has tensCorr
 
 
 def make_sph_move(case):
