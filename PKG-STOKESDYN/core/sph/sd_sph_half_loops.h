@@ -32,7 +32,8 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
         vd += d * (vi[c] - u[c]);
       }
       const vec inv_h = COEFFICIENT(inv_h), distance = root(r2) * inv_h;
-      vec w = COEFFICIENT(grad) * G(kernel, smaller(distance, two)) * vd, masses = MASSES, mine = mi;
+      vec w = COEFFICIENT(grad) * G(kernel, smaller(distance, two)) * vd;
+      vec masses = MASSES, mine = mi;
       /* m_b w 2 rho_a / (rho_a + rho_b): the common part in w, the density in the factors. */
       if (volume) {
         w *= 2.0 / (vi[3] + u[3]);

@@ -1,5 +1,6 @@
 /* Pairs side by side: vectors of LANES numbers, and how rows of four numbers come into them. The
- * file that includes this one has defined LANES: 8 with AVX-512, otherwise 4, and AVX2 if it may. */
+ * file that includes this one has defined LANES: 8 with AVX-512, otherwise 4, and AVX2 if it
+ * may. */
 #ifndef SD_SPH_LANES_H
 #define SD_SPH_LANES_H
 

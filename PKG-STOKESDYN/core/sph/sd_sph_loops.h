@@ -150,4 +150,5 @@ static void all_weigh(const sd_sph_model *model, const sd_sph_list *list, const 
   }
 }
 
-const sd_sph_loops LOOPS = {all_forces, all_slopes, all_rates, all_middle, all_diffusion, all_weigh};
+const sd_sph_loops LOOPS = {all_forces, all_slopes,    all_rates,
+                            all_middle, all_diffusion, all_weigh};

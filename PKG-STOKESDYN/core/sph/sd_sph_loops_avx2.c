@@ -1,4 +1,5 @@
-/* For x86-64 with AVX2 and FMA; sd_sph_dispatch.c asks the processor. Compiled to nothing elsewhere. */
+/* For x86-64 with AVX2 and FMA; sd_sph_dispatch.c asks the processor. Compiled to nothing
+ * elsewhere. */
 #if defined(__x86_64__) && defined(__GNUC__)
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)

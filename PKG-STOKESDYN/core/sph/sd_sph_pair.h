@@ -116,7 +116,8 @@ void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, co
 /* Adds to f4 [4 (n+1)], rows Fx Fy Fz drho, the last column only with rates (then the scheme is
  * plain). Not with correction: sd_sph_corrected_forces. each, if not null: F_a of each pair, 3
  * numbers, in the order of the list. Returns the square of the shortest distance met: 0 means two
- * particles at one place, and then the forces are not finite. v4 is read where a term, the scheme or rates ask for velocities or densities. */
+ * particles at one place, and then the forces are not finite. v4 is read where a term, the scheme
+ * or rates ask for velocities or densities. */
 double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      int rates, double *f4, double *each);
 

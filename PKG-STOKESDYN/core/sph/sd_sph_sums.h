@@ -58,8 +58,8 @@ void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 void sd_sph_middle(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                    double *sums, const sd_sph_near *near);
 
-/* Adds delta-SPH, Antuono et al. 2010, to rate [list->n]: with psi_ab = 2 (rho_b - rho_a) d_ba / r^2
- * - (grad rho_a + grad rho_b), d_ba = x_b - x_a,
+/* Adds delta-SPH, Antuono et al. 2010, to rate [list->n]: with psi_ab = 2 (rho_b - rho_a) d_ba /
+ * r^2 - (grad rho_a + grad rho_b), d_ba = x_b - x_a,
  *   delta h c sum_b V_b psi_ab . grad_a W
  * The corrected gradients come from order; of two fluids, pairs of the same fluid only. */
 void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
