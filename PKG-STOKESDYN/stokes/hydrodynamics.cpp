@@ -23,6 +23,8 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 static const std::string COMMAND = StokesSettings::COMMAND;
+// Steps from one look at the limit that lubrication sets to the next: each costs 30 sparse products.
+static const int LOOK_AT_FILMS = 1000;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp, Pair *pair) :
     Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, pair, COMMAND), rigid(lmp, scene, COMMAND),
@@ -134,14 +136,19 @@ void Hydrodynamics::drag()
   if (settings.lubrication.on) lubricate();
 }
 
-/* F += L (u_inf - v), where the spheres stand and as they move now */
+/* Where the spheres stand and as they move now */
 void Hydrodynamics::lubricate()
 {
   const size_t n = solvers.size();
-  std::vector<double> s(6 * n + 6), F(6 * n + 6);
-  for (size_t k = 0; k < n; k++) ambient.slip(solvers[k], &s[6 * k]);
+  std::vector<double> v(6 * n + 6), F(6 * n + 6);
+  for (size_t k = 0; k < n; k++) {
+    std::copy_n(atom->v[solvers[k]], 3, &v[6 * k]);
+    std::copy_n(atom->omega[solvers[k]], 3, &v[6 * k + 3]);
+  }
   lubrication.place(ambient);
-  lubrication.apply(s.data(), F.data());
+  lubrication.forces(v.data(), F.data());
+  if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
+    guard.look_at_films(*lubrication.matrix(), solvers.data());
   for (size_t k = 0; k < n; k++) {
     double *row = memory->rows.row(solvers[k]);
     for (int d = 0; d < 3; d++) {

@@ -68,12 +68,14 @@ void Lubrication::place(const Ambient &ambient)
   x.resize(3 * n);
   a.resize(n);
   w.resize(n);
+  u.resize(6 * n + 6);
   body.assign(n + 1, 0);
   for (size_t k = 0; k < n; k++) {
     const int i = who[k];
     std::copy_n(atom->x[i], 3, &x[3 * k]);
     a[k] = atom->radius[i];
     w[k] = 1.0 / sqrt(ambient.viscosity(i));
+    ambient.fluid(i, &u[6 * k]);
     if (atom->molecule) body[k] = atom->molecule[i];
   }
   const double largest = measure();
@@ -86,6 +88,7 @@ void Lubrication::place(const Ambient &ambient)
   scene.n_all = a.size();
   scene.spheres = {x.data(), a.data(), w.data()};
   scene.body = body.data();
+  scene.u = u.data();
   scene.world.ctx = this;
   scene.world.me = comm->me;
   scene.world.ranks = comm->nprocs;
@@ -95,12 +98,18 @@ void Lubrication::place(const Ambient &ambient)
       return SD_OK;
     });
   };
+  scene.world.sum = [](void *ctx, double *values, int count) {
+    MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM,
+                  static_cast<Lubrication *>(ctx)->world);
+    return SD_OK;
+  };
   check(sd_lubrication_place(&near, &scene));
 }
 
-void Lubrication::apply(const double *v, double *out)
+void Lubrication::forces(const double *v, double *out)
 {
   check(sd_lubrication_apply(&near, v, out));
+  for (long j = 0; j < 6 * (long) near.n; j++) out[j] = near.carried[j] - out[j];
 }
 
 double Lubrication::memory_usage() const

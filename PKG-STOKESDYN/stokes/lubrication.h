@@ -31,8 +31,8 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   void place(const Ambient &ambient);
   /* Since then */
   sd_lubrication *matrix() { return &near; }
-  /* out [6 n] = L v, v and out by rows */
-  void apply(const double *v, double *out);
+  /* out [6 n]: forces and torques on the spheres that move with v, by rows */
+  void forces(const double *v, double *out);
 
   double memory_usage() const;
 
@@ -42,7 +42,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   sd_lubrication near = {};
   sd_two_sphere *functions = nullptr;
   double largest_ratio = 0.0;
-  std::vector<double> x, a, w;
+  std::vector<double> x, a, w, u;
   std::vector<int64_t> body;
 
   double measure();

@@ -30,7 +30,7 @@ static const int PRODUCTS = 200;
 // nearly held, they take part in the motion of the others without a limit of their own.
 static const double HELD = 100.0;
 
-TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms)
+std::vector<char> TimeStepGuard::held_atoms() const
 {
   std::vector<char> held(atom->nlocal + 1, 0);
   for (int f = 0; f < modify->nfix; f++)
@@ -39,19 +39,30 @@ TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms)
       if (const int *body = (const int *) modify->fix[f]->extract("body", dim))
         for (int i = 0; i < atom->nlocal; i++) held[i] = held[i] || body[i] >= 0;
     }
+  return held;
+}
+
+/* Of atom i in row d, force over acceleration in the units of this LAMMPS */
+double TimeStepGuard::inertia(int i, bool held, size_t d) const
+{
+  const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  double w = mass / force->ftm2v * (held ? HELD : 1.0);
+  if (d >= 3) w *= 0.4 * atom->radius[i] * atom->radius[i];
+  return w;
+}
+
+TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms)
+{
+  const std::vector<char> held = held_atoms();
   const size_t m = A.spin ? 6 : 3;
   double most[3] = {-INFINITY, -INFINITY, 0.0};    // -shortest, -of_velocity, longest
   weight.assign(m * A.n + 1, 1.0);
   for (int k = 0; k < A.n; k++) {
     if (A.drag[k] == 0.0) continue;
     const int i = atoms ? atoms[k] : k;
-    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
     for (size_t d = 0; d < m; d++) {
-      // Force over acceleration in the units of this LAMMPS
       double &w = weight[m * k + d];
-      w = mass / force->ftm2v;
-      if (d >= 3) w *= 0.4 * atom->radius[i] * atom->radius[i];
-      if (held[i]) w *= HELD;
+      w = inertia(i, held[i], d);
       const double time = w / (d < 3 ? A.drag[k] : A.spin[k]);
       if (!held[i]) most[0] = std::max(most[0], -time);
       if (!held[i] && d < 3) most[1] = std::max(most[1], -time);
@@ -128,6 +139,36 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   if ((due && near) || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
   state.lambda_min = 0.5 * state.limit / tau.of_velocity;
   warn(tau.of_velocity);
+}
+
+/* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */
+void TimeStepGuard::look_at_films(sd_lubrication &near, const int *atoms)
+{
+  const std::vector<char> held = held_atoms();
+  std::vector<double> W(6 * (size_t) near.n + 6), v(W.size()), work(W.size());
+  for (int k = 0; k < near.n; k++)
+    for (size_t d = 0; d < 6; d++) {
+      W[6 * k + d] = inertia(atoms[k], held[atoms[k]], d);
+      v[6 * k + d] = sd_hash_unit(sd_hash_mix((8 * (uint64_t) atom->tag[atoms[k]] + d) * SD_HASH_STEP)) - 0.5;
+    }
+  double rate;
+  const sd_status status = sd_lubrication_rate(&near, W.data(), v.data(), work.data(), &rate);
+  if (status != SD_OK && status != SD_ENOTFINITE)
+    fail_one(lmp, command + ": limit of the time step: " + sd_status_string(status));
+  if (status != SD_OK || !(rate > 0.0) || comm->me != 0) return;
+  const double films = 2.0 / rate;
+  if (update->setupflag)
+    utils::logmesg(lmp,
+                   command + ": keyword lubrication: explicit time steps of free spheres up to " +
+                       text(films) + " are stable with the gaps of now, shorter ones with smaller gaps; fix "
+                       "stokes_dynamics/overdamped has no such limit\n");
+  if (warned_of_films || update->dt <= films) return;
+  warned_of_films = true;
+  error->warning(FLERR,
+                 std::string(command + ": keyword lubrication: the time step " + text(update->dt) +
+                             " is above " + text(films) +
+                             ", the limit of explicit steps of free spheres with films between them: "
+                             "use fix stokes_dynamics/overdamped, or a larger lubrication_gap"));
 }
 
 }    // namespace StokesDyn

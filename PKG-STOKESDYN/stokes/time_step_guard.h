@@ -19,6 +19,7 @@
 
 #include "pointers.h"
 
+#include "sd_lubrication.h"
 #include "sd_solve.h"
 
 #include <string>
@@ -50,9 +51,13 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   void look(const sd_system &system, const sd_solve_report &report, const int *atoms,
             bool preconditioned, double solves);
 
+  /* Lubrication has a limit of its own, told once a run: the spheres where they stand now, rows as in
+   * look(). Warns once if the time step is above it. */
+  void look_at_films(sd_lubrication &near, const int *atoms);
+
  private:
   std::string command;
-  bool warned = false;
+  bool warned = false, warned_of_films = false;
   /* [width n] inertia of each row over the shortest relaxation time, which makes it a drag */
   std::vector<double> weight;
 
@@ -62,6 +67,8 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
     double shortest, of_velocity, longest;
   };
   Times weigh(const sd_system &system, const int *atoms);
+  std::vector<char> held_atoms() const;
+  double inertia(int i, bool held, size_t d) const;
   double compute(const sd_system &system, const int *atoms);
   void warn(double of_velocity);
 };

@@ -37,3 +37,136 @@ def test_film_ends_at_the_range(simulation):
     without = squeezed(simulation, 0.51, "lubrication_range 0.5")
     assert without != pytest.approx(squeezed(simulation, 0.51), rel=0.01)
     assert without == pytest.approx(2 * (1 - 1.5 / 2.51 + 1 / 2.51**3), rel=1e-8)
+
+
+# --- images, ranks, forces for given velocities ------------------------------------------------------------------------------
+
+L = 11.0
+CLOSE = "far_field_tolerance 1e-12 relative_tolerance 1e-11 max_iter 500"
+PERIODIC = dict(fix=False, boundary="p p p", comm="comm_modify cutoff 6 vel yes\nneigh_modify exclude molecule/intra all")
+LOADS = ["variable fx atom 3*sin(id)", "variable fz atom -5-0.1*id", "fix pull all addforce v_fx 0.3 v_fz", FIX]
+
+
+def dense(n=40, doublets=6, seed=4):
+    """Free spheres and doublets at random in the periodic cube, at volume fraction 0.13, pushed apart to gaps of 1e-4 and more"""
+    rng = np.random.default_rng(seed)
+    molecule = np.append(np.repeat(np.arange(1, doublets + 1), 2), np.zeros(n - 2 * doublets, int))
+    x = rng.uniform(0, L, (n, 3))
+    for _ in range(2000):
+        for k in range(doublets):    # doublets stay 2 apart
+            d = x[2 * k + 1] - x[2 * k]
+            d -= L * np.round(d / L)
+            middle = x[2 * k] + 0.5 * d
+            x[2 * k], x[2 * k + 1] = middle - d / np.linalg.norm(d), middle + d / np.linalg.norm(d)
+        d = x[:, None] - x
+        d -= L * np.round(d / L)
+        r = np.linalg.norm(d, axis=-1) + 9 * np.eye(n) + 9 * ((molecule[:, None] == molecule) & (molecule > 0))
+        overlap = np.maximum(2.0002 - r, 0)
+        if overlap.max() < 1e-4:
+            break
+        x += 0.3 * ((overlap + 2e-4 * (overlap > 0)) / r)[..., None].__mul__(d).sum(axis=1)
+    assert overlap.max() < 1e-4
+    return Spheres(np.mod(x, L), molecule=molecule)
+
+
+def test_periodic_border_is_none(simulation):
+    """Velocities are the same wherever the border cuts: films go through it."""
+    answers = []
+    for shift in (0.0, 0.37 * L):
+        spheres = dense()
+        spheres.x = np.mod(spheres.x + shift, L)
+        sim = simulation(spheres, f"{ALL} {CLOSE}", box=[(0.0, L)] * 3, **PERIODIC)
+        sim.commands(LOADS).run(0)
+        answers.append(np.hstack([sim.v, sim.atom("omega")]))
+    assert np.abs(answers[0] - answers[1]).max() < 1e-9 * np.abs(answers[0]).max()
+    alone = simulation(spheres, f"{ALL.replace('lubrication yes', '')} {CLOSE}", box=[(0.0, L)] * 3, **PERIODIC)
+    alone.commands(LOADS).run(0)
+    assert np.abs(alone.v - answers[0][:, :3]).max() > 0.1 * np.abs(answers[0]).max()
+
+
+@pytest.mark.parametrize("words", ["", "rigid_clumps yes shell 12"])
+def test_periodic_box_on_any_ranks(tmp_path, words):
+    frames = []
+    for ranks, newton in ((1, "on"), (2, "on"), (4, "off")):
+        lines = input_lines(dense(), f"{ALL} {CLOSE} {words}", tmp_path / "data", box=[(0.0, L)] * 3, dt=1e-3, newton=newton, **PERIODIC)
+        columns = "x y z vx vy vz omegax omegay omegaz f_move[4] f_move[5] f_move[6]"
+        lmp(tmp_path, lines + LOADS + dump_lines("out.dump", every=5, columns=columns, name="out") + ["run 5"], ranks)
+        frames.append(read_dump(tmp_path / "out.dump")[-1][1])
+    scale = np.abs(frames[0]).max(axis=0)
+    for frame in frames[1:]:
+        d = frame - frames[0]
+        d[:, :3] -= L * np.round(d[:, :3] / L)
+        assert (np.abs(d).max(axis=0) < 1e-10 * np.maximum(scale, 1)).all()
+
+
+@pytest.mark.parametrize("boundary, words", [("f f f", "fluid_velocity v_u 0.2 0"), ("p p p", "fluid_velocity 0.1 0.2 0"),
+                                             ("f f f", "fluid_velocity v_u 0.2 0 rigid_clumps yes shell 12"),
+                                             ("p p p", "rigid_clumps yes")])
+def test_forces_for_given_velocities_are_the_inverse(simulation, boundary, words):
+    """What moves spheres and clumps so without inertia is what the pair style finds for that motion."""
+    spheres = dense()
+    words = f"{ALL} {words} relative_tolerance 1e-11 max_iter 500" + (" far_field_tolerance 1e-12" if boundary[0] == "p" else "")
+    sim = simulation(spheres, words, box=[(0.0, L) if boundary[0] == "p" else (-20.0, 30.0)] * 3, before_pair="variable u atom 0.3*z+0.1*x",
+                     **dict(PERIODIC, boundary=boundary))
+    sim.commands(LOADS).run(0)
+    load, before = sim.f, sim.fix_rows("move")[:, 3:9]
+    power = sim.fix_scalar("move")
+    sim.commands(f"unfix move\nfix drag all stokes_dynamics\npair_style stokes_dynamics {words} algorithm 2\npair_coeff * *").run(0)
+    rows = sim.fix_rows()
+    forces = np.hstack([rows[:, :3], rows[:, 6:9]])
+    assert np.abs(forces - before).max() < 1e-6 * np.abs(load).max()
+    assert sim.fix_scalar() == pytest.approx(power, rel=1e-6) and power > 0
+    free = (spheres.molecule == 0) if "rigid" in words else slice(None)
+    assert np.abs(before[free, :3] + load[free]).max() < 1e-9 * np.abs(load).max()
+
+
+def test_spheres_far_apart_are_as_without(simulation):
+    far = Spheres([(0, 0, 0), (5, 0, 1), (0, 7, 0)])
+    answers = []
+    for words in (ALL, ALL.replace("lubrication yes", "")):
+        sim = simulation(far, words, fix=False).commands(LOADS)
+        sim.run(0)
+        assert sim.fix_vector("move")[3] == 1
+        answers.append(np.hstack([sim.v, sim.atom("omega")]))
+    assert np.abs(answers[0] - answers[1]).max() < 1e-15
+
+
+def test_radii_that_are_too_different_are_named(simulation):
+    spheres = Spheres([(0, 0, 0), (90, 0, 0)], [0.5, 80.0])
+    with pytest.raises(LammpsError, match="keyword lubrication: radii from 0.5 to 80: it knows pairs up to a ratio of 100"):
+        simulation(spheres, ALL, fix=False).commands(LOADS).run(0)
+
+
+def test_contact_comes_to_rest_and_opens(simulation):
+    """Two spheres pressed onto each other by 1 with a spring of 50, lubricated: they rest 1/50 into each other; pulled apart, they open
+    slowly, with forces that balance all the time."""
+    style = [f"pair_style hybrid/overlay gran/hooke/history 50 NULL 0 NULL 0 0 stokes_dynamics {ALL}", "pair_coeff * * gran/hooke/history",
+             "pair_coeff * * stokes_dynamics"]
+    sim = simulation(Spheres([(0, 0, 0), (2.05, 0, 0)]), style, fix=False, dt=0.05, comm="comm_modify vel yes", box=[(-60.0, 60.0)] * 3)
+    sim.commands("group left id 1\ngroup right id 2\nfix push left addforce 1 0 0\nfix back right addforce -1 0 0").commands(FIX)
+    sim.run(20000)
+    assert sim.x[1, 0] - sim.x[0, 0] == pytest.approx(2 - 1 / 50, rel=1e-5)
+    sim.commands("unfix push\nunfix back\nfix push left addforce -1 0 0\nfix back right addforce 1 0 0")
+    gaps, speeds = [], []
+    for _ in range(40):
+        sim.run(200)
+        gaps.append(sim.x[1, 0] - sim.x[0, 0] - 2)
+        speeds.append(sim.v[1, 0] - sim.v[0, 0])
+    assert (np.diff(gaps) > 0).all() and (np.diff(speeds)[np.array(gaps[1:]) > 1e-3] > 0).all() and gaps[-1] > 1e-3 > 0 > gaps[0]
+
+
+@pytest.mark.parametrize("part, stable", [(0.9, True), (1.1, False)])
+def test_films_limit_explicit_steps_as_is_told(simulation, tmp_path, part, stable):
+    """Two free spheres with inertia that approach each other: below the limit of the log they slow down, above it they shake, with a
+    warning."""
+    xi, mass = 0.01, 4 / 3 * np.pi * 1.7
+    limit = 2 / (2 * 1.3 * P6 * (1 / (4 * xi) - 0.75 + 0.225 * np.log(1 / xi) + 0.995 - 0.35) / mass)
+    log = tmp_path / "log"
+    sim = simulation(Spheres([(0, 0, 0), (2 + xi, 0, 0)], 1.0, [(1e-9, 0, 0), (-1e-9, 0, 0)]), f"{ALL} add_force yes algorithm 2", fix=False,
+                     dt=part * limit, log=log)
+    sim.commands("fix move all nve/sphere").run(60)
+    text = open(log).read()
+    told = float(text.split("explicit time steps of free spheres up to ")[1].split()[0])
+    assert told == pytest.approx(limit, rel=0.03)
+    assert ("is above" in text and "use fix stokes_dynamics/overdamped" in text) == (part * limit > told)
+    assert (np.abs(sim.v).max() < 1e-9) == stable

@@ -188,11 +188,13 @@ static sd_status dot(const sd_bodies *A, const double *a, const double *b, doubl
   return A->sum ? A->sum(A->sum_ctx, sum, 1) : SD_OK;
 }
 
-/* out = L (v - u), with v - u in slip */
-static sd_status resist_slip(loop *c, const double *v, double *slip, double *out)
+/* out = L (v - V_inf) */
+static sd_status resist(loop *c, const double *v, double *out)
 {
-  for (long j = 0; j < (long) c->A->width * c->A->n; j++) slip[j] = v[j] - c->u[j];
-  return sd_lubrication_apply(c->A->tie->L, slip, out);
+  const sd_lubrication *L = c->A->tie->L;
+  const sd_status status = sd_lubrication_apply(c->A->tie->L, v, out);
+  for (long j = 0; j < (long) c->A->width * c->A->n; j++) out[j] -= L->carried[j];
+  return status;
 }
 
 /* Of the start x */
@@ -208,9 +210,9 @@ static sd_status find_power(loop *c)
       s[1] += drag_of(A, i, d) * (u * u + v * v);
     }
   if (A->tie) {
-    const sd_status status = resist_slip(c, c->x.v, c->w, c->z.l);
+    const sd_status status = resist(c, c->x.v, c->w);
     if (status != SD_OK) return status;
-    for (long j = 0; j < (long) A->width * A->n; j++) s[0] += c->w[j] * c->z.l[j];
+    for (long j = 0; j < (long) A->width * A->n; j++) s[0] += c->w[j] * (c->x.v[j] - c->u[j]);
   }
   const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 2) : SD_OK;
   c->power.spent = fabs(s[0]);
@@ -385,18 +387,12 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
   }
 }
 
-/* What the fluid bears beside M' l in a flow: a tie goes by velocities against it, so that K^T l +
- * K^T L K V = F + K^T L u. */
+/* K^T l + K^T L K V = F + K^T L V_inf */
 static sd_status take_loads(loop *c, const double *F, double *rows, double *clumps)
 {
   const sd_bodies *A = c->A;
-  c->F = (loads){F, clumps};
-  if (A->tie) {
-    const sd_status status = sd_lubrication_apply(A->tie->L, c->u, rows);
-    if (status != SD_OK) return status;
-    for (long j = 0; j < (long) A->width * A->n; j++) rows[j] += F[j];
-    c->F.rows = rows;
-  }
+  for (long j = 0; A->tie && j < (long) A->width * A->n; j++) rows[j] = F[j] + A->tie->L->carried[j];
+  c->F = (loads){A->tie ? rows : F, clumps};
   return sd_bodies_onto_clumps(A, c->F.rows, c->ghosts, clumps);
 }
 
@@ -409,7 +405,7 @@ static sd_status finish(loop *c, const sd_bodies_motion *motion)
   for (long j = 0; j < size; j++) motion->v[j] += c->z.v[j];
   for (long j = 0; j < motions; j++) motion->V[j] += c->z.V[j];
   if (!A->tie) return SD_OK;
-  const sd_status status = resist_slip(c, motion->v, c->w, motion->near);
+  const sd_status status = resist(c, motion->v, motion->near);
   for (long j = 0; j < size; j++) motion->near[j] += c->z.l[j];
   return status;
 }

@@ -16,8 +16,8 @@ struct sd_lubrication_work {
   sd_neighbors near;
   /* [IDENTITY (n_all - n)] of the others */
   double *identity;
-  /* [n_all] n_i */
-  double *neighbours;
+  /* [n_all] n_i; [6 n_all] u */
+  double *neighbours, *flow;
   /* [count] where the second sphere of a pair stands: itself, or its image */
   int *at;
   long most_spheres, most_others, most_pairs;
@@ -30,9 +30,13 @@ static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *
   if (s->n_all >= w->most_spheres) {
     double *neighbours = realloc(w->neighbours, sizeof(double) * (all + 1));
     if (neighbours) w->neighbours = neighbours;
+    double *flow = realloc(w->flow, sizeof(double) * 6 * (all + 1));
+    if (flow) w->flow = flow;
     double *diagonal = realloc(L->diagonal, sizeof(double) * 36 * (all + 1));
     if (diagonal) L->diagonal = diagonal;
-    if (!neighbours || !diagonal) return SD_ENOMEMORY;
+    double *carried = realloc(L->carried, sizeof(double) * 6 * (all + 1));
+    if (carried) L->carried = carried;
+    if (!neighbours || !flow || !diagonal || !carried) return SD_ENOMEMORY;
     w->most_spheres = s->n_all + 1;
   }
   if ((long) others >= w->most_others) {
@@ -158,6 +162,57 @@ static sd_status count_neighbours(sd_lubrication *L, const sd_lubrication_scene 
   return s->world.refresh ? s->world.refresh(s->world.ctx, n, n + s->n, 1) : SD_OK;
 }
 
+/* u of all, those of others from where they are known */
+static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  double *flow = L->work->flow;
+  memset(L->carried, 0, sizeof(double) * 6 * (size_t) s->n);
+  if (!s->u) return SD_OK;
+  memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
+  return s->world.refresh ? s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6) : SD_OK;
+}
+
+/* V_inf of a pair at x, each of its two spheres 6 numbers */
+static void rigid_part(const double *const x[2], const double a[2], const double *const u[2],
+                       double V[2][6])
+{
+  double mean[6], d[3];
+  for (int e = 0; e < 6; e++) mean[e] = (a[0] * u[0][e] + a[1] * u[1][e]) / (a[0] + a[1]);
+  sd_minus(x[1], x[0], d);
+  for (int k = 0; k < 2; k++) { /* x_1 - c = -a_2 d/(a_1 + a_2), x_2 - c = a_1 d/(a_1 + a_2) */
+    const double part = (k ? a[0] : -a[1]) / (a[0] + a[1]), arm[3] = {part * d[0], part * d[1], part * d[2]};
+    sd_cross(mean + 3, arm, V[k]);
+    for (int e = 0; e < 3; e++) {
+      V[k][e] += mean[e];
+      V[k][3 + e] = mean[3 + e];
+    }
+  }
+}
+
+/* out += B V, or B^T V */
+static void add_product(const double *B, int transposed, const double *V, double *out)
+{
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) out[transposed ? q : p] += B[6 * p + q] * V[transposed ? p : q];
+}
+
+/* To the first sphere of the pair k, and to the second if it is this rank's own */
+static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k,
+                        const double *const B[3])
+{
+  const int i = L->pair[k][0], j = L->pair[k][1], at = L->work->at[k];
+  const double *const x[2] = {s->spheres.x + 3 * (long) i, s->spheres.x + 3 * (long) at};
+  const double *const u[2] = {L->work->flow + 6 * (long) i, L->work->flow + 6 * (long) at};
+  const double a[2] = {s->spheres.a[i], s->spheres.a[at]};
+  double V[2][6];
+  rigid_part(x, a, u, V);
+  add_product(B[0], 0, V[0], L->carried + 6 * (long) i);
+  add_product(B[1], 0, V[1], L->carried + 6 * (long) i);
+  if (j == i || j >= L->n) return;
+  add_product(B[1], 1, V[0], L->carried + 6 * (long) j);
+  add_product(B[2], 0, V[1], L->carried + 6 * (long) j);
+}
+
 static void add36(const double *B, double *out)
 {
   for (int e = 0; e < 36; e++) out[e] += B[e];
@@ -180,6 +235,7 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   const sd_pair_resistance R =
       sd_pair_resistance_sum(scale * share, &full, scale * (1.0 - share), &relative);
   sd_pair_resistance_blocks(&R, c.d, B11, B12, B22);
+  if (s->u) add_carried(L, s, k, (const double *const[]){B11, B12, B22});
   add36(B11, L->diagonal + 36 * (long) i);
   if (j == i) {
     add36(B12, L->diagonal + 36 * (long) i);
@@ -197,6 +253,7 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   if (status == SD_OK) status = identify(L, scene);
   if (status == SD_OK) status = find_pairs(L, scene);
   if (status == SD_OK) status = count_neighbours(L, scene);
+  if (status == SD_OK) status = find_flow(L, scene);
   if (status != SD_OK) return status;
   memset(L->diagonal, 0, sizeof(double) * 36 * (size_t) L->n);
   for (long k = 0; k < L->count && status == SD_OK; k++) status = add_pair(L, scene, k);
@@ -235,18 +292,46 @@ sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
   return SD_OK;
 }
 
+/* Rayleigh's quotient v.L v / v.W v of v := W^-1 L v, again and again */
+sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
+                              double *rate)
+{
+  enum { STEPS = 30 };
+  const sd_world *world = &L->world;
+  *rate = 0.0;
+  for (int k = 0; k < STEPS; k++) {
+    sd_status status = sd_lubrication_apply(L, v, work);
+    double sums[3] = {0.0, 0.0, 0.0};
+    for (long j = 0; j < 6 * (long) L->n; j++) {
+      sums[0] += v[j] * work[j];
+      sums[1] += v[j] * W[j] * v[j];
+      sums[2] += work[j] * work[j] / W[j];
+    }
+    if (status == SD_OK && world->sum) status = world->sum(world->ctx, sums, 3);
+    if (status != SD_OK) return status;
+    if (!isfinite(sums[0]) || !isfinite(sums[2])) return SD_ENOTFINITE;
+    if (!(sums[2] > 0.0)) return SD_OK; /* nobody is near */
+    *rate = fmax(*rate, sums[0] / sums[1]);
+    const double scale = 1.0 / sqrt(sums[2]); /* v.W v = 1 */
+    for (long j = 0; j < 6 * (long) L->n; j++) v[j] = scale * work[j] / W[j];
+  }
+  return SD_OK;
+}
+
 void sd_lubrication_free(sd_lubrication *L)
 {
   if (L->work) {
     sd_neighbors_free(&L->work->near);
     free(L->work->identity);
     free(L->work->neighbours);
+    free(L->work->flow);
     free(L->work->at);
     free(L->work);
   }
   free(L->pair);
   free(L->block);
   free(L->diagonal);
+  free(L->carried);
   free(L->others);
   memset(L, 0, sizeof(*L));
 }

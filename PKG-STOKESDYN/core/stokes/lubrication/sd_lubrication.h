@@ -13,9 +13,12 @@
  * by a fit to exact velocities of clusters; a pair alone has w = 1 and is exact. D >= 0 and
  * 0 <= w <= 1, so L >= 0. Gaps below the floor, and overlaps, count as the floor: roughness.
  *
- * In viscosities that differ from place to place a pair has the mean of its two. In a flow V is less
- * the velocity (and angular velocity) of the fluid at the centre: what a pair resists to a strain
- * around it is left out.
+ * In viscosities that differ from place to place a pair has the mean of its two.
+ *
+ * In a flow the forces are L V - sum over pairs t w D V_inf, V_inf the motion as one rigid body in
+ * which the fluid takes the pair along: with its mean velocity and angular velocity, weighted by the
+ * radii. So a film resists when its spheres approach, also if the flow presses them together, and
+ * does not when they are carried and turned as one; what else a strain does to a pair is left out.
  * Source: reference of the project, motion.md 4.3; the rule of sharing is our own. */
 #ifndef SD_LUBRICATION_H
 #define SD_LUBRICATION_H
@@ -39,6 +42,8 @@ typedef struct {
   sd_spheres spheres;
   /* [n] spheres of one body, not 0, have no lubrication between them; NULL: all free */
   const int64_t *body;
+  /* [6n] velocity and angular velocity of the undisturbed fluid at the centres; NULL: it rests */
+  const double *u;
   /* refresh: rows of the n_all - n from those of the n, NULL: there are none */
   sd_world world;
 } sd_lubrication_scene;
@@ -55,6 +60,8 @@ typedef struct {
   double *block;
   /* [36 n] L_ii */
   double *diagonal;
+  /* [6n] what the flow takes off: forces and torques on the fluid are L V - carried */
+  double *carried;
   /* of velocities of the others; NULL: there are none on any rank */
   double *others;
   sd_world world;
@@ -66,6 +73,13 @@ typedef struct {
 sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
+
+/* The largest eigenvalue of W^-1 L, W > 0 [6 n] an inertia: the rate at which the stiffest motion
+ * decays. By power iteration from v [6 n], not 0: a few per cent low at most where a pair is stiffer
+ * than all others. work [6 n]. sum over the ranks, NULL: one. SD_OK; SD_ENOTFINITE; that of a
+ * function of the caller. */
+sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
+                              double *rate);
 void sd_lubrication_free(sd_lubrication *L);
 
 #ifdef __cplusplus

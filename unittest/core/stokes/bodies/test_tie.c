@@ -72,7 +72,6 @@ static void both_lines_hold(void **state)
   for (int e = 0; e < 2; e++) {
     flock *f = flock_create(2, doublet, ones, 1, 5 * e, 12, 1.3);
     crowd(f, 0.2, 5 + e);
-    tied_flock *t = tie_flock(f, 1e-4);
     const int N = 6 * f->n, bodies = f->clumps + f->free;
     uint64_t seed = 7;
     for (int j = 0; j < N; j++) f->F[j] = uniform(&seed, -10, 10);
@@ -80,13 +79,14 @@ static void both_lines_hold(void **state)
       f->u[6 * i] = 0.3 * f->x[3 * i + 1];
       f->u[6 * i + 5] = -0.15;
     }
+    tied_flock *t = tie_flock(f, 1e-4);
     assert_int_equal(tied_move(t, 0, 1e-12, 400), SD_OK);
     double *Ml = malloc(sizeof(double) * (size_t) N), *L = near_dense(&t->near);
-    /* loads: K^T (l + L (K V - u)) = F, where l and L .. are `l` and `force` of the answer */
+    /* loads: K^T (l + L (K V - V_inf)) = F, where l and L .. are `l` and `force` of the answer */
     double lubrication[6 * FLOCK_MOST], total[6 * FLOCK_MOST], got[6 * FLOCK_MOST], want[6 * FLOCK_MOST];
     for (int i = 0; i < N; i++) {
-      lubrication[i] = 0.0;
-      for (int j = 0; j < N; j++) lubrication[i] += L[N * i + j] * (f->v[j] - f->u[j]);
+      lubrication[i] = -t->near.L.carried[i];
+      for (int j = 0; j < N; j++) lubrication[i] += L[N * i + j] * f->v[j];
       total[i] = f->l[i] + t->force[i];
     }
     onto_bodies(f, total, got);

@@ -26,6 +26,7 @@ static inline tied_flock *tie_flock(flock *f, double gap)
     scene_set(&t->near.s, i, f->x[3 * i], f->x[3 * i + 1], f->x[3 * i + 2], f->a[i], f->eta);
     t->near.body[i] = i < f->m * f->clumps ? 1 + i / f->m : 0;
   }
+  t->near.u = f->u;
   near_place(&t->near);
   t->tie.L = &t->near.L;
   return t;

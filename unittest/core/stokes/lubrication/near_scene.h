@@ -13,6 +13,8 @@ typedef struct {
   scene s;
   sd_two_sphere *functions;
   int64_t *body;
+  /* of the fluid; NULL: it rests */
+  const double *u;
   double gap, range;
   sd_lubrication L;
 } near_scene;
@@ -33,7 +35,8 @@ static inline sd_lubrication_scene near_where(const near_scene *q)
                                 .n = q->s.n,
                                 .n_all = q->s.n,
                                 .spheres = {q->s.x, q->s.a, q->s.w},
-                                .body = q->body};
+                                .body = q->body,
+                                .u = q->u};
 }
 
 static inline void near_place(near_scene *q)

@@ -162,6 +162,62 @@ static void neighbours_share_the_common_motion(void **state)
   near_free(&p);
 }
 
+/* A fluid that moves and turns as a rigid body takes spheres along: L V - carried is that of V less its
+ * motion. One that strains does not move two spheres that keep their distance: nothing as stiff as the
+ * film is in it. */
+static void a_flow_takes_pairs_along(void **state)
+{
+  (void) state;
+  near_scene q = near_create(cloud_dense(12, 0.4, 1.0, 3.0, eta, 5), 5.0, 1e-4);
+  double u[72], f[72];
+  for (int i = 0; i < 12; i++) {
+    const double W[3] = {0.3, -0.2, 0.5}, *x = q.s.x + 3 * i;
+    sd_cross(W, x, u + 6 * i);
+    for (int d = 0; d < 3; d++) {
+      u[6 * i + d] += d + 0.1;
+      u[6 * i + 3 + d] = W[d];
+    }
+  }
+  q.u = u;
+  near_place(&q);
+  assert_int_equal(sd_lubrication_apply(&q.L, u, f), SD_OK);
+  double largest = 0.0;
+  for (int j = 0; j < 72; j++) {
+    CHECK_NEAR(f[j], q.L.carried[j], 1e-7); /* of stiff films */
+    largest = fmax(largest, fabs(f[j]));
+  }
+  assert_true(largest > 1.0);
+  near_free(&q);
+
+  near_scene pair = pair_at(1e-4, 1.0);
+  double strain[12] = {0};
+  for (int i = 0; i < 2; i++)
+    for (int d = 0; d < 3; d++) strain[6 * i + d] = (d < 2 ? 1.0 : -2.0) * pair.s.x[3 * i + d];
+  pair.u = strain;
+  near_place(&pair);
+  for (int j = 0; j < 12; j++) assert_true(fabs(pair.L.carried[j]) < 3.0);
+  assert_int_equal(sd_lubrication_apply(&pair.L, strain, f), SD_OK);
+  assert_true(fabs(f[0]) > 1e3);
+  near_free(&pair);
+}
+
+/* Two spheres of masses m1, m2 lose their approach at the rate XA (1/m1 + 1/m2). */
+static void the_fastest_rate_is_that_of_the_film(void **state)
+{
+  (void) state;
+  near_scene q = pair_at(1e-3, 2.0);
+  near_place(&q);
+  sd_pair_resistance full, relative;
+  assert_int_equal(sd_two_sphere_correction(q.functions, 1.0, 2.0, 1e-3, &full, &relative), SD_OK);
+  const double W[12] = {0.3, 0.3, 0.3, 9.0, 9.0, 9.0, 0.7, 0.7, 0.7, 9.0, 9.0, 9.0};
+  double v[12], work[12], rate;
+  for (int j = 0; j < 12; j++) v[j] = 1.0 + 0.1 * j;
+  assert_int_equal(sd_lubrication_rate(&q.L, W, v, work, &rate), SD_OK);
+  const double expected = eta * (full.XA[0] / 0.3 + full.XA[2] / 0.7);
+  CHECK_NEAR(rate, expected, 2e-3 * expected); /* XA_12 is not quite -XA_11 */
+  near_free(&q);
+}
+
 /* --- images --- */
 
 /* A row along x that repeats itself: this rank's spheres, and copies to either side. */
@@ -217,6 +273,8 @@ int main(void)
       cmocka_unit_test(it_resists_every_motion),
       cmocka_unit_test(none_within_a_body),
       cmocka_unit_test(neighbours_share_the_common_motion),
+      cmocka_unit_test(a_flow_takes_pairs_along),
+      cmocka_unit_test(the_fastest_rate_is_that_of_the_film),
       cmocka_unit_test(images_count_as_spheres),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
