@@ -23,8 +23,7 @@ static double six_digits(double value)
   return rint(value / unit) * unit;
 }
 
-/* The next number whose only prime factors are 2, 3, 5 and 7 */
-static int transformable(double at_least)
+int sd_ewald_transformable(double at_least)
 {
   for (int n = (int) ceil(at_least);; n++) {
     int m = n;
@@ -150,9 +149,9 @@ static sd_status lay_grid(const sd_ewald_box *box, double xi, double y, int poin
     const double cells = edge_length(box, d) / h;
     if (!(cells < 1e6)) return SD_ENOMEMORY;
     if (box->periodic)
-      grid[d] = 2 * transformable(0.5 * fmax(cells, points + 2));
+      grid[d] = 2 * sd_ewald_transformable(0.5 * fmax(cells, points + 2));
     else
-      grid[d] = transformable(ceil(cells) + points + 1);
+      grid[d] = sd_ewald_transformable(ceil(cells) + points + 1);
     all *= grid[d];
   }
   return all < 2147483648.0 ? SD_OK : SD_ENOMEMORY;

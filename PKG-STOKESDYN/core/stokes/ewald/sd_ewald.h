@@ -107,6 +107,9 @@ double sd_ewald_predicted(const sd_ewald *e, const sd_ewald_sizes *sizes);
  * none. Returns 1 if the box is a new one. */
 int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, double largest);
 
+/* The next number whose only prime factors are 2, 3, 5 and 7: fast to transform */
+int sd_ewald_transformable(double at_least);
+
 /* Volume of the box: length^3 */
 double sd_ewald_volume(const sd_ewald_box *box);
 

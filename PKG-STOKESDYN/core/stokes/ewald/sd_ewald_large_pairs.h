@@ -39,7 +39,8 @@ typedef struct {
   int larges, first, ours, large_room, *sphere;
   sd_large_sphere *large;
   double *F, *u;
-  /* images within reach of our spheres: [3 images] where, [images] of which, which step of the box */
+  /* images within reach of our spheres: [3 images] where, [images] of which; 1: not an image but
+   * the sphere itself */
   int images, image_room, *image_of, *image_itself;
   double *image;
   sd_cells cells;

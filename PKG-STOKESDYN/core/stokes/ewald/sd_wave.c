@@ -1,12 +1,12 @@
 #include "sd_wave.h"
 
-#include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sd_constants.h"
 #include "sd_ewald_internal.h"
+#include "sd_open_kernel.h"
 
 /* Wave number of point m of n: 0, 1 ... n/2 - 1, then from -n/2 on */
 static int wave_number(int m, int n)
@@ -81,149 +81,22 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 
 /* --- open --- */
 
-/* The biharmonic kernel of Stokes flow, -r/(8 pi), cut at R where it is made to vanish with its
- * slope: (R/2 + r^2/(2R) - r)/(8 pi). Its transform is bounded and never negative,
- *   [2 + cos q - 3 sin(q)/q]/(2 k^4),   q = kR;   R^4/120 at k = 0
- * The constant makes no flow; r^2/(2R) a uniform one, which sd_wave.uniform takes back. */
-static double truncated(double k2, double R)
+/* Of the octant the rows that this rank's planes have, by |wave number| */
+static sd_status open_table(sd_wave *w, const sd_ewald *e, int y1)
 {
-  const double q2 = k2 * R * R, q = sqrt(q2);
-  if (q < 0.3) return R * R * R * R / 120.0 * (1.0 - q2 / 21.0 + q2 * q2 / 1008.0);
-  return (2.0 + cos(q) - 3.0 * sin(q) / q) / (2.0 * k2 * k2);
-}
-
-/* A real field that is even or odd in each direction, from its octant: transformed in place. Odd
- * ones are 0 at both ends of their direction, and FFTW does not see these. */
-static int transform_octant(double *field, const int *n, const int *odd)
-{
-  fftw_iodim dims[3], whole = {1, 0, 0};
-  fftw_r2r_kind kinds[3];
-  long stride = 1, first = 0;
-  for (int d = 2; d >= 0; d--) {
-    dims[d] = (fftw_iodim){odd[d] ? n[d] - 2 : n[d], (int) stride, (int) stride};
-    kinds[d] = odd[d] ? FFTW_RODFT00 : FFTW_REDFT00;
-    if (odd[d]) first += stride;
-    stride *= n[d];
+  int m[3], end = 0;
+  for (int d = 0; d < 3; d++) m[d] = w->size[d] / 2 + 1;
+  w->first_row = m[1];
+  for (int y = w->y0; y < y1; y++) {
+    const int row = abs(wave_number(y, w->size[1]));
+    if (row < w->first_row) w->first_row = row;
+    if (row + 1 > end) end = row + 1;
   }
-  whole.n = 1;
-  fftw_plan plan =
-      fftw_plan_guru_r2r(3, dims, 1, &whole, field + first, field + first, kinds, FFTW_ESTIMATE);
-  if (!plan) return 0;
-  fftw_execute(plan);
-  fftw_destroy_plan(plan);
-  return 1;
-}
-
-/* Wave numbers of an octant: one step each way */
-static void octant_steps(const sd_ewald *e, const int *n, double *unit)
-{
-  for (int d = 0; d < 3; d++) unit[d] = SD_PI / ((n[d] - 1) * e->spacing);
-}
-
-/* B_R(k) H/w^2 on the octant of a grid of 2 (n - 1) points of this spacing, large enough for the
- * truncated kernel: what all components share */
-static void fill_octant(const sd_ewald *e, double R, const int *n, double *const *inverse,
-                        double *shared)
-{
-  double unit[3], V = 1.0;
-  octant_steps(e, n, unit);
-  for (int d = 0; d < 3; d++) V *= 2.0 * (n[d] - 1) * e->spacing;
-  for (int x = 0; x < n[0]; x++)
-    for (int y = 0; y < n[1]; y++)
-      for (int z = 0; z < n[2]; z++, shared++) {
-        const double k[3] = {x * unit[0], y * unit[1], z * unit[2]};
-        const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2];
-        const double w = inverse[0][x] * inverse[1][y] * inverse[2][z];
-        *shared = w == 0.0 ? 0.0 : truncated(k2, R) * sd_ewald_wave_screen(e, k2) * w * w / V;
-      }
-}
-
-/* Component c, d: k^2 delta_cd - k_c k_d times that */
-static void fill_component(const sd_ewald *e, const int *n, const int *pair, const double *shared,
-                           double *field)
-{
-  double unit[3];
-  octant_steps(e, n, unit);
-  for (int x = 0; x < n[0]; x++)
-    for (int y = 0; y < n[1]; y++)
-      for (int z = 0; z < n[2]; z++) {
-        const double k[3] = {x * unit[0], y * unit[1], z * unit[2]};
-        const double k2 = pair[0] == pair[1] ? k[0] * k[0] + k[1] * k[1] + k[2] * k[2] : 0.0;
-        *field++ = *shared++ * (k2 - k[pair[0]] * k[pair[1]]);
-      }
-}
-
-/* Offsets 0 ... half - 2 of the kernel go to the octant of the transform's grid; the last, which no
- * two points within the box have, stays 0. */
-static void keep_offsets(const double *from, const int *n, double *to, const int *m)
-{
-  memset(to, 0, sizeof(double) * (size_t) m[0] * (size_t) m[1] * (size_t) m[2]);
-  for (int x = 0; x < m[0] - 1; x++)
-    for (int y = 0; y < m[1] - 1; y++)
-      memcpy(to + ((long) x * m[1] + y) * m[2], from + ((long) x * n[1] + y) * n[2],
-             sizeof(double) * (size_t) (m[2] - 1));
-}
-
-static void store_component(const sd_wave *w, const double *octant, const int *m, int component)
-{
-  const double unit = 1.0 / ((double) w->size[0] * w->size[1] * w->size[2]);
-  for (int x = 0; x < m[0]; x++)
-    for (int y = 0; y < m[1]; y++)
-      for (int z = 0; z < m[2]; z++)
-        w->table[(((long) y * m[0] + x) * 6 + component) * m[2] + z] =
-            unit * octant[((long) x * m[1] + y) * m[2] + z];
-}
-
-static int next_fast(double at_least)
-{
-  for (int n = (int) ceil(at_least);; n++) {
-    int m = n;
-    for (int p = 2; p < 8; p++)
-      while (m % p == 0) m /= p;
-    if (m == 1) return n;
-  }
-}
-
-/* Six components, one after the other: table of k on the large grid -> offsets -> table of k on the
- * transform's grid. R covers the box and the range of H. */
-static sd_status open_table(sd_wave *w, const sd_ewald *e)
-{
-  const double range = 6.5 / (e->large.from > 0.0 ? e->large.xi : e->xi), *L = e->box.edge;
-  const double R = sqrt(L[0] * L[0] + L[1] * L[1] + L[2] * L[2]) + range;
-  int n[3], m[3];
-  double *inverse[3] = {0};
-  size_t large = 1, octant = 1;
-  for (int d = 0; d < 3; d++) {
-    m[d] = w->size[d] / 2 + 1;
-    n[d] = next_fast(0.5 * (m[d] + (R + range) / e->spacing + 2.0)) + 1;
-    if (n[d] < m[d]) n[d] = m[d];
-    inverse[d] = deconvolution(e, 2 * (n[d] - 1));
-    large *= (size_t) n[d];
-    octant *= (size_t) m[d];
-  }
-  double *field = fftw_malloc(sizeof(double) * large), *kept = fftw_malloc(sizeof(double) * octant);
-  double *shared = fftw_malloc(sizeof(double) * large);
-  w->table = malloc(sizeof(double) * 6 * octant);
-  /* the difference of two levels has no k = 0 */
-  w->uniform = e->large.from > 0.0 ? 0.0 : 1.0 / (4.0 * SD_PI * R);
-  int ok = field && kept && shared && w->table && inverse[0] && inverse[1] && inverse[2];
-  static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-  if (ok) fill_octant(e, R, n, inverse, shared);
-  for (int c = 0; c < 6 && ok; c++) {
-    int odd[3] = {0};
-    if (c > 2) odd[pair[c][0]] = odd[pair[c][1]] = 1;
-    fill_component(e, n, pair[c], shared, field);
-    ok = transform_octant(field, n, odd);
-    if (!ok) break;
-    keep_offsets(field, n, kept, m);
-    ok = transform_octant(kept, m, odd);
-    if (ok) store_component(w, kept, m, c);
-  }
-  for (int d = 0; d < 3; d++) free(inverse[d]);
-  fftw_free(field);
-  fftw_free(kept);
-  fftw_free(shared);
-  return ok ? SD_OK : SD_ENOMEMORY;
+  if (end == 0) w->first_row = 0;
+  const size_t row = 6 * (size_t) m[0] * (size_t) m[2];
+  w->table = malloc(sizeof(double) * (row * (size_t) (end - w->first_row) + 1));
+  if (!w->table) return SD_ENOMEMORY;
+  return sd_open_kernel(e, m, w->first_row, end, w->table);
 }
 
 /* --- both --- */
@@ -237,7 +110,7 @@ sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_ke
   for (int d = 0; d < 3; d++) w->size[d] = size[d];
   w->half = size[2] / 2 + 1;
   w->y0 = y0;
-  return w->periodic ? periodic_table(w, e, y1) : open_table(w, e);
+  return w->periodic ? periodic_table(w, e, y1) : open_table(w, e, y1);
 }
 
 void sd_wave_free(sd_wave *w)
@@ -261,7 +134,7 @@ void sd_wave_multiply(void *ctx, int y, double *const *plane)
       for (int c = 0; c < 3; c++) k[c] = mx * w->k[0][c] + my * w->k[1][c];
       w->kernels->periodic_row(row, B, k, w->k[2][2], half);
     } else {
-      const double *K = w->table + ((long) abs(my) * half_x + abs(mx)) * 6 * half;
+      const double *K = w->table + ((long) (abs(my) - w->first_row) * half_x + abs(mx)) * 6 * half;
       w->kernels->open_row(row, K, mx < 0 ? -1.0 : 1.0, my < 0 ? -1.0 : 1.0, half);
     }
   }

@@ -21,12 +21,12 @@ struct sd_ewald_kernels;
 typedef struct {
   const struct sd_ewald_kernels *kernels;
   int periodic, size[3], half, y0;
+  /* open: the smallest |wave number| along y of this rank's planes */
+  int first_row;
   /* 2 pi times the reciprocal vectors, rows */
   double k[3][3];
-  /* periodic: [y1 - y0][size x][half]; open: one octant [half y][half x][6][half] */
+  /* periodic: [y1 - y0][size x][half]; open: rows of one octant [rows][half x][6][half] */
   double *table;
-  /* open: U_i += uniform sum F, which makes up for the kernel's constant beyond its range */
-  double uniform;
   /* periodic: sums over this rank's k of (1 - k_d^2/k^2) H k^2n/(k^2 V), n = 0, 1, 2: what the wave
    * part does to a sphere through itself and its images is self[0] - 2 b self[1] + b^2 self[2] */
   double self[3][3];

@@ -221,24 +221,20 @@ static void add_waves(const ewald *e, int level, double *u)
   }
 }
 
-/* u += w (mean of what is beyond the range, or of what the open kernel leaves out). Two small
- * spheres have the range of the first level, any others that of the second. */
+/* u += w (mean of what is beyond the range). Two small spheres have the range of the first level, any
+ * others that of the second. */
 static void add_means(const ewald *e, const double *sums, double *u)
 {
   const long m = e->width;
   const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box);
-  const double uniform = e->waves[e->levels - 1].wave.uniform;
   for (int i = 0; i < e->own; i++) {
     const long j = e->sphere[i];
     const double w = e->spheres.w[j], b = sd_ewald_b(&e->ewald, e->spheres.a[j]);
     for (int l = 0; l < e->levels; l++) {
       const double *C = e->tail[i < e->small ? l : 1], *S = sums + 9 * l;
       for (int d = 0; d < 3; d++)
-        u[m * j + d] += w * (e->ewald.box.periodic ? over_V * ((C[0] - b * C[1]) * S[d] -
-                                                               (C[1] - b * C[2]) * S[3 + d])
-                                                   : uniform * S[d]);
-      for (int d = 3; d < m && e->ewald.box.periodic; d++)
-        u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
+        u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
+      for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
     }
   }
 }
@@ -251,8 +247,9 @@ static sd_status apply(void *state, const double *F, double *u)
     memset(u, 0, sizeof(double) * (size_t) m * (size_t) e->n);
     return SD_OK;
   }
+  const int periodic = e->ewald.box.periodic;
   double sums[18];
-  sd_status status = sums_of(e, F, sums);
+  sd_status status = periodic ? sums_of(e, F, sums) : SD_OK;
   if (status == SD_OK && e->world.refresh)
     status = e->world.refresh(e->world.ctx, F, e->ghosts, e->width);
   if (status != SD_OK) return status;
@@ -263,7 +260,7 @@ static sd_status apply(void *state, const double *F, double *u)
     status = sd_ewald_waves_apply(e->waves + l, &e->spheres, F);
     if (status == SD_OK) add_waves(e, l, u);
   }
-  if (status == SD_OK) add_means(e, sums, u);
+  if (status == SD_OK && periodic) add_means(e, sums, u);
   return status;
 }
 

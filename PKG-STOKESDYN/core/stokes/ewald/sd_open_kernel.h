@@ -1,0 +1,27 @@
+/* The wave part of a pair in open space, I_0 1 + J_0 hh (sd_radial.h), as what the transform of a
+ * padded grid is multiplied with.
+ *
+ * It is smooth and known in closed form, so it is sampled at the offsets of the grid, beyond which
+ * a taper takes it to 0; its transform is freed of the windows (w^ twice); and of the result the
+ * offsets within the box are kept. The grid around them is wider than the box by a fixed number of
+ * points: long boxes need no more than others. The error is below the window's, down to 1e-13.
+ * Source: our own; the usual way, a kernel cut off at a sphere around the box (Vico, Greengard &
+ * Ferrando 2016), takes a cube of the box's longest edge. */
+#ifndef SD_OPEN_KERNEL_H
+#define SD_OPEN_KERNEL_H
+
+#include "sd_ewald.h"
+#include "sd_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* m [3]: half the points of the transform each way, plus 1. table [y1 - y0][m 0][6][m 2], out: rows
+ * y0 ... y1 - 1 of the octant, xx yy zz xy xz yz. SD_OK or SD_ENOMEMORY. */
+sd_status sd_open_kernel(const sd_ewald *e, const int *m, int y0, int y1, double *table);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
