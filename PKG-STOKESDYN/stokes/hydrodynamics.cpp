@@ -202,7 +202,12 @@ sd_system Hydrodynamics::gather()
   const int n = solvers.size();
   const size_t m = width();
   solution.resize(m * n + m);
-  work.resize(SD_SOLVE_WORK(n, width()) + 1);
+  const size_t scratch = SD_SOLVE_WORK(n, width()) + 1;
+  if (scratch > work_room) {
+    work.reset();
+    work.reset(new double[scratch]);
+    work_room = scratch;
+  }
   slip.resize(m * n + m);
   resistance.resize(n + 1);
   spin.resize(rotation() ? n + 1 : 0);
@@ -245,7 +250,7 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
   if (algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status =
         sd_solve_substitution(&system, right_hand_side(), settings.tolerance, settings.max_iter,
-                              solution.data(), work.data(), &report);
+                              solution.data(), work.get(), &report);
     if (status != SD_EDIVERGED || settings.strict) return status;
     memory->global.diverged = 1;
     if (comm->me == 0)
@@ -273,7 +278,7 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   preconditioner.attach(system);
   const sd_status status =
       sd_solve_gradients(&system, right_hand_side(), settings.tolerance, settings.max_iter,
-                         solution.data(), work.data(), &report);
+                         solution.data(), work.get(), &report);
   preconditioner.learn(report);
   global.preconditioner = preconditioner.pack();
   return status;
@@ -433,7 +438,7 @@ double Hydrodynamics::dissipation(int i) const
 double Hydrodynamics::memory_usage() const
 {
   const size_t numbers = eta.capacity() + slip.capacity() + resistance.capacity() +
-      spin.capacity() + solution.capacity() + work.capacity();
+      spin.capacity() + solution.capacity() + work_room;
   return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
       mobile.memory_usage() + sizeof(double) * (double) numbers;
 }

@@ -22,6 +22,7 @@
 
 #include "sd_solve.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -93,7 +94,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps */
   std::vector<int> solvers;
   /* of a solve, by rows: row k is the sphere solvers[k] */
-  std::vector<double> eta, slip, resistance, spin, solution, work;
+  std::vector<double> eta, slip, resistance, spin, solution;
+  /* scratch of the solver, not filled: parts that it does not need take no memory */
+  std::unique_ptr<double[]> work;
+  size_t work_room = 0;
   /* where velocities from forces begin */
   Velocities::Guess begin_with;
   /* the slip of clumps with shells that interact: a strain carries them otherwise */

@@ -153,6 +153,9 @@ void Images::find(const sd_ewald_box &box, double reach, std::vector<double> &x,
     row[3] = a[i];
     row[4] = w[i];
   }, images.data());
+  x.reserve(x.size() + 3 * count);    // and not twice as much, as they grow by themselves
+  a.reserve(a.size() + count);
+  w.reserve(w.size() + count);
   for (size_t g = 0; g < count; g++) {
     const double *row = &images[5 * g];
     x.insert(x.end(), row, row + 3);

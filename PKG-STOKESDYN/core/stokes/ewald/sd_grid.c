@@ -14,17 +14,15 @@ static int allocate(sd_grid *g)
 {
   const int longer = g->size[0] > g->size[1] ? g->size[0] : g->size[1];
   const size_t half = (size_t) g->half, plane = (size_t) longer * half;
-  /* a rank without planes still plans, on one of its own */
-  const size_t planes = g->x1 > g->x0 ? (size_t) (g->x1 - g->x0) : 1;
   int ok = 1;
   for (int c = 0; c < 3; c++) {
-    g->slab[c] = fftw_alloc_complex(planes * (size_t) g->size[1] * half);
     g->plane[c] = fftw_alloc_complex(plane);
-    ok = ok && g->slab[c] && g->plane[c];
+    ok = ok && g->plane[c];
   }
+  g->slab = calloc((size_t) (g->x1 - g->x0) + 1, sizeof(fftw_complex *));
   g->beside = fftw_alloc_complex(plane);
   g->counts = calloc(4 * (size_t) g->ranks, sizeof(int));
-  return ok && g->beside && g->counts;
+  return ok && g->slab && g->beside && g->counts;
 }
 
 /* One x plane along z, rows that hold something, to wave numbers beside; from there along y to the
@@ -34,7 +32,7 @@ static int plan(sd_grid *g)
 {
   const unsigned how = FFTW_ESTIMATE;
   const int half = g->half, rows = g->occupied[1], *size = g->size;
-  fftw_complex *slab = g->slab[0], *plane = g->plane[0], *beside = g->beside;
+  fftw_complex *slab = g->plane[1], *plane = g->plane[0], *beside = g->beside;
   g->z_forth = fftw_plan_many_dft_r2c(1, size + 2, rows, (double *) plane, NULL, 1, 2 * half,
                                       beside, NULL, 1, half, how);
   g->z_back = fftw_plan_many_dft_c2r(1, size + 2, rows, beside, NULL, 1, half, (double *) plane,
@@ -76,11 +74,10 @@ void sd_grid_free(sd_grid *g)
                               &g->y_back,  &g->x_forth, &g->x_back};
   for (int k = 0; k < 6; k++)
     if (*plans[k]) fftw_destroy_plan(*plans[k]);
-  for (int c = 0; c < 3; c++) {
-    fftw_free(g->slab[c]);
-    fftw_free(g->plane[c]);
-  }
+  for (int c = 0; c < 3; c++) { fftw_free(g->plane[c]); }
   fftw_free(g->beside);
+  free(g->slab);
+  free(g->spare);
   free(g->brick);
   free(g->out);
   free(g->in);
@@ -213,6 +210,25 @@ static int reserve(double **buffer, size_t *capacity, size_t doubles)
   return *buffer != NULL;
 }
 
+/* Where the planes of our slab will be */
+static int place_slab(sd_grid *g)
+{
+  const int planes = g->x1 - g->x0;
+  const long numbers = 6L * g->size[1] * g->half;
+  long missing = 0;
+  for (int x = 0; x < planes; x++) g->slab[x] = NULL;
+  for (int k = 0; k < g->ins && g->layer >= numbers; k++) {
+    const sd_piece *p = g->in + k;
+    for (int i = 0; i < p->n[0] && p->rank == g->me; i++)
+      g->slab[p->to[0] + i - g->x0] = (fftw_complex *) (g->brick + (p->at[0] + i) * g->layer);
+  }
+  for (int x = 0; x < planes; x++) missing += !g->slab[x];
+  if (!reserve(&g->spare, &g->spare_capacity, (size_t) (missing * numbers))) return 0;
+  for (int x = 0; x < planes; x++)
+    if (!g->slab[x]) g->slab[x] = (fftw_complex *) (g->spare + --missing * numbers);
+  return 1;
+}
+
 sd_status sd_grid_place(sd_grid *g, const int *bricks)
 {
   const int *own = bricks + 6 * g->me;
@@ -241,7 +257,7 @@ sd_status sd_grid_place(sd_grid *g, const int *bricks)
   if (!reserve(&g->message[0], &g->buffer_capacity, doubles) ||
       !reserve(&g->message[1], &capacity, doubles))
     return SD_ENOMEMORY;
-  return SD_OK;
+  return place_slab(g) ? SD_OK : SD_ENOMEMORY;
 }
 
 /* --- bricks and planes of points --- */
@@ -326,7 +342,7 @@ static void empty_plane(const sd_grid *g, int x, double *message)
 
 static fftw_complex *slab_row(const sd_grid *g, int c, int x, int y)
 {
-  return g->slab[c] + ((long) (x - g->x0) * g->size[1] + y) * g->half;
+  return g->slab[x - g->x0] + ((long) c * g->size[1] + y) * g->half;
 }
 
 /* Plane x of our slab along z and y, or back */
@@ -372,13 +388,12 @@ static void copy_plane(const sd_grid *g, int c, int y, double *message, int to_b
     int x[2];
     planes_of(g, r, 0, x);
     const long rows = x[1] - x[0];
-    const int ours = r == g->me;
-    const long step = row * (ours ? g->size[1] : planes);
-    double *at = ours ? (double *) (g->slab[c] + (long) y * g->half)
-                      : message + (c * rows * planes + y - g->y0) * row;
-    for (long k = 0; k < rows; k++, at += step, beside += row)
+    for (long k = 0; k < rows; k++, beside += row) {
+      double *at = r == g->me ? (double *) slab_row(g, c, x[0] + (int) k, y)
+                              : message + ((c * rows + k) * planes + y - g->y0) * row;
       memcpy(to_beside ? beside : at, to_beside ? at : beside, bytes);
-    if (!ours) message += 3 * rows * planes * row;
+    }
+    if (r != g->me) message += 3 * rows * planes * row;
   }
 }
 

@@ -38,9 +38,14 @@ typedef struct {
   int size[3], occupied[3], half;
   /* this rank's planes of the two slabs */
   int x0, x1, y0, y1;
-  /* [3] x slab [x1 - x0][size y][half], wave numbers of z and then y; a plane [size x or y][half]
-   * at work, of points or of wave numbers, and one beside them */
-  fftw_complex *slab[3], *plane[3], *beside;
+  /* a plane [size x or y][half] at work, of points or of wave numbers, and one beside them */
+  fftw_complex *plane[3], *beside;
+  /* [x1 - x0] planes of the x slab, wave numbers of z and then y: [3][size y][half]. Each is in the
+   * layer of the brick that it has been made from, which is free then; in `spare` where there is none
+   * of its size */
+  fftw_complex **slab;
+  double *spare;
+  size_t spare_capacity;
   fftw_plan z_forth, z_back, y_forth, y_back, x_forth, x_back;
   /* brick: first point and number of points; rows along z of 3 numbers a point */
   int lo[3], n[3];
