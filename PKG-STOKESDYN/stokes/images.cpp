@@ -18,8 +18,8 @@ void exchange_numbers(MPI_Comm world, const double *send, const int *to, double 
     to_at[p] = to_at[p - 1] + to[p - 1];
     from_at[p] = from_at[p - 1] + from[p - 1];
   }
-  MPI_Alltoallv(const_cast<double *>(send), const_cast<int *>(to), to_at.data(), MPI_DOUBLE, receive,
-                const_cast<int *>(from), from_at.data(), MPI_DOUBLE, world);
+  MPI_Alltoallv(const_cast<double *>(send), const_cast<int *>(to), to_at.data(), MPI_DOUBLE,
+                receive, const_cast<int *>(from), from_at.data(), MPI_DOUBLE, world);
 }
 
 sd_ewald_box periodic_box(const LAMMPS_NS::Domain *domain)
@@ -70,57 +70,59 @@ namespace {
   };
 }    // namespace
 
+/* Blocks of fractions of all ranks, lo [3] and hi [3] of each, as their spheres fill them */
+std::vector<double> Images::blocks(const sd_ewald_box &box, const std::vector<double> &x) const
+{
+  const Fractions fractions = {box};
+  std::vector<double> all(6 * (size_t) ranks);
+  double mine[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, f[3];
+  for (size_t i = 0; i < x.size(); i += 3) {
+    fractions.of(&x[i], f);
+    for (int d = 0; d < 3; d++) {
+      mine[d] = std::min(mine[d], f[d]);
+      mine[3 + d] = std::max(mine[3 + d], f[d]);
+    }
+  }
+  MPI_Allgather(mine, 6, MPI_DOUBLE, all.data(), 6, MPI_DOUBLE, world);
+  return all;
+}
+
 /* Who goes where: an image goes to a rank whose spheres it may be near, that is, whose block of
  * fractions, wider by the reach, holds it. */
 void Images::choose(const sd_ewald_box &box, double reach, const std::vector<double> &x)
 {
   const Fractions fractions = {box};
-  const size_t n = x.size() / 3;
-  std::vector<double> f(3 * n);
-  std::vector<double> block(6 * (size_t) ranks), mine(6);
-  double far[3];
-  for (int d = 0; d < 3; d++) {
-    far[d] = fractions.across(d, reach);
-    mine[d] = INFINITY;
-    mine[3 + d] = -INFINITY;
-  }
-  for (size_t i = 0; i < n; i++) {
-    fractions.of(&x[3 * i], &f[3 * i]);
-    for (int d = 0; d < 3; d++) {
-      mine[d] = std::min(mine[d], f[3 * i + d]);
-      mine[3 + d] = std::max(mine[3 + d], f[3 * i + d]);
+  std::vector<double> block = blocks(box, x);
+  for (size_t k = 0; k < block.size(); k++)
+    block[k] += (k % 6 < 3 ? -1.0 : 1.0) * fractions.across(k % 3, reach);
+  std::vector<std::vector<int>> spheres_to(ranks), steps_to(ranks);
+  for (size_t i = 0; i < x.size() / 3; i++) {
+    double f[3];
+    fractions.of(&x[3 * i], f);
+    for (int p = 0; p < ranks; p++) {
+      const double *lo = &block[6 * (size_t) p], *hi = lo + 3;
+      int first[3], last[3], s[3];
+      for (int d = 0; d < 3; d++) {    // none: a rank without spheres
+        const bool inside = f[d] >= lo[d] && f[d] <= hi[d];
+        first[d] = box.periodic && lo[d] <= hi[d] ? (int) std::ceil(lo[d] - f[d]) : inside ? 0 : 1;
+        last[d] = box.periodic && lo[d] <= hi[d] ? (int) std::floor(hi[d] - f[d]) : 0;
+      }
+      for (s[0] = first[0]; s[0] <= last[0]; s[0]++)
+        for (s[1] = first[1]; s[1] <= last[1]; s[1]++)
+          for (s[2] = first[2]; s[2] <= last[2]; s[2]++) {
+            if (p == me && s[0] == 0 && s[1] == 0 && s[2] == 0) continue;
+            spheres_to[p].push_back(i);
+            steps_to[p].insert(steps_to[p].end(), s, s + 3);
+          }
     }
   }
-  MPI_Allgather(mine.data(), 6, MPI_DOUBLE, block.data(), 6, MPI_DOUBLE, world);
-
-  to.assign(ranks, 0);
+  to.resize(ranks);
   sphere.clear();
   steps.clear();
   for (int p = 0; p < ranks; p++) {
-    const double *lo = &block[6 * (size_t) p], *hi = lo + 3;
-    if (n == 0 || lo[0] > hi[0]) continue;    // a rank without spheres
-    int first[3] = {0, 0, 0}, last[3] = {0, 0, 0};
-    for (int d = 0; d < 3 && box.periodic; d++) {
-      first[d] = (int) std::ceil(lo[d] - far[d] - mine[3 + d]);
-      last[d] = (int) std::floor(hi[d] + far[d] - mine[d]);
-    }
-    const size_t before = sphere.size();
-    int s[3];
-    for (s[0] = first[0]; s[0] <= last[0]; s[0]++)
-      for (s[1] = first[1]; s[1] <= last[1]; s[1]++)
-        for (s[2] = first[2]; s[2] <= last[2]; s[2]++) {
-          if (p == me && s[0] == 0 && s[1] == 0 && s[2] == 0) continue;
-          for (size_t i = 0; i < n; i++) {
-            const double *at = &f[3 * i];
-            bool near = true;
-            for (int d = 0; d < 3; d++)
-              near = near && at[d] + s[d] >= lo[d] - far[d] && at[d] + s[d] <= hi[d] + far[d];
-            if (!near) continue;
-            sphere.push_back(i);
-            steps.insert(steps.end(), s, s + 3);
-          }
-        }
-    to[p] = sphere.size() - before;
+    to[p] = spheres_to[p].size();
+    sphere.insert(sphere.end(), spheres_to[p].begin(), spheres_to[p].end());
+    steps.insert(steps.end(), steps_to[p].begin(), steps_to[p].end());
   }
   from.resize(ranks);
   MPI_Alltoall(to.data(), 1, MPI_INT, from.data(), 1, MPI_INT, world);
@@ -146,13 +148,16 @@ void Images::find(const sd_ewald_box &box, double reach, std::vector<double> &x,
   const Fractions fractions = {box};
   const size_t count = std::accumulate(from.begin(), from.end(), (size_t) 0);
   std::vector<double> images(5 * count + 1);
-  send(5, [&](size_t k, double *row) {
-    const int i = sphere[k];
-    std::copy_n(&x[3 * (size_t) i], 3, row);
-    fractions.move(row, &steps[3 * k]);
-    row[3] = a[i];
-    row[4] = w[i];
-  }, images.data());
+  send(
+      5,
+      [&](size_t k, double *row) {
+        const int i = sphere[k];
+        std::copy_n(&x[3 * (size_t) i], 3, row);
+        fractions.move(row, &steps[3 * k]);
+        row[3] = a[i];
+        row[4] = w[i];
+      },
+      images.data());
   x.reserve(x.size() + 3 * count);    // and not twice as much, as they grow by themselves
   a.reserve(a.size() + count);
   w.reserve(w.size() + count);
@@ -166,9 +171,12 @@ void Images::find(const sd_ewald_box &box, double reach, std::vector<double> &x,
 
 void Images::refresh(const double *rows, double *images, int width)
 {
-  send(width, [&](size_t k, double *row) {
-    std::copy_n(rows + width * (size_t) sphere[k], width, row);
-  }, images);
+  send(
+      width,
+      [&](size_t k, double *row) {
+        std::copy_n(rows + width * (size_t) sphere[k], width, row);
+      },
+      images);
 }
 
 double Images::memory_usage() const

@@ -42,6 +42,7 @@ class Images {
   std::vector<int> sphere, steps;
   std::vector<double> out;
 
+  std::vector<double> blocks(const sd_ewald_box &box, const std::vector<double> &x) const;
   void choose(const sd_ewald_box &box, double reach, const std::vector<double> &x);
   template <class Row> void send(int width, const Row &row, double *images);
 };

@@ -268,6 +268,7 @@ void Scene::gather(const std::vector<double> &eta)
   });
 
   cloud_is_new = (int) all_tag.size() != n_all;
+  spheres_hash = 0;
   all_x.resize(3 * (size_t) n_all);
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);
   for (auto *v : {&all_tag, &all_molecule}) v->resize(n_all);

@@ -155,8 +155,9 @@ class Scene : protected LAMMPS_NS::Pointers {
   int n_all = 0;
   bool cloud_is_new = true;
 
-  // view NEAR: images behind our own spheres, in x, a, w
+  // view NEAR: images behind our own spheres, in x, a, w; hash of the spheres of the last update
   Images images;
+  uint64_t spheres_hash = 0;
   sd_ewald ewald = {};
   sd_ewald_sizes sizes = {};
   /* its parameters, as they were last told */

@@ -2,8 +2,10 @@
 #include "scene.h"
 
 #include "keywords.h"
+#include "lammps_compat.h"
 
 #include "sd_ewald_cost.h"
+#include "sd_hash.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -94,33 +96,39 @@ bool Scene::split()
       sd_ewald_choose(&box, &sizes, width(), settings.far_field_tolerance, &ewald);
   ewald.box = box;
   if (status != SD_OK && must)
-    fail(lmp, command + ": keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
-                  " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
-                  text(box.edge[2]) + " at far_field_tolerance " +
-                  text(settings.far_field_tolerance) + ": " + sd_status_string(status));
+    fail(lmp,
+         command + ": keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
+             " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
+             text(box.edge[2]) + " at far_field_tolerance " + text(settings.far_field_tolerance) +
+             ": " + sd_status_string(status));
   const double seen = std::max(pow(ewald.reach, 3), ewald.large.count * pow(ewald.large.range, 3));
   const double images = 8.0 * sizes.all.count * seen / sd_ewald_volume(&box);
   if (box.periodic && !(images < MOST_IMAGES))
-    fail(lmp, command + ": keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
-                  ", is so large for the periodic box that it would see " + text(images) +
-                  " images; is it in other units?");
+    fail(lmp,
+         command + ": keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
+             ", is so large for the periodic box that it would see " + text(images) +
+             " images; is it in other units?");
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
 }
 
-/* Are our spheres those of the last update? */
+/* Are our spheres those of the last update? A hash of their tags, molecules and radii, in their order,
+ * tells; the lists themselves would be 24 bytes a sphere. */
 void Scene::compare()
 {
-  std::vector<int64_t> tags(size()), molecules(size(), 0);
+  uint64_t hash = SD_HASH_STEP;
+  const auto add = [&hash](uint64_t value) {
+    hash = sd_hash_mix((hash ^ value) * SD_HASH_STEP);
+  };
   for (int k = 0; k < size(); k++) {
-    tags[k] = atom->tag[own[k]];
-    if (atom->molecule) molecules[k] = atom->molecule[own[k]];
+    add(atom->tag[own[k]]);
+    if (atom->molecule) add(atom->molecule[own[k]]);
+    add(ubuf(a[k]).i);
   }
-  int changed = tags != all_tag || molecules != all_molecule || a != all_a, any;
+  int changed = hash != spheres_hash, any;
   MPI_Allreduce(&changed, &any, 1, MPI_INT, MPI_MAX, world);
   cloud_is_new = any;
-  all_tag.swap(tags);
-  all_molecule.swap(molecules);
-  all_a = a;
+  spheres_hash = hash;
+  all_tag.clear();    // those of view ALL are no longer the last ones
 }
 
 static std::string parameters_of(const sd_ewald &e)
@@ -142,7 +150,8 @@ void Scene::tell()
     now += "; " + text(e.large.count) + " spheres of radius " + text(e.large.from) +
         " and more on a second level: " + parameters_of(sd_ewald_of_large(&e));
   now += "; error of velocities over the rms of F/(6 pi eta a) " +
-      text(sd_ewald_predicted(&e, &sizes)) + " expected, far_field_tolerance " + text(e.tolerance) + "\n";
+      text(sd_ewald_predicted(&e, &sizes)) + " expected, far_field_tolerance " + text(e.tolerance) +
+      "\n";
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;
 }

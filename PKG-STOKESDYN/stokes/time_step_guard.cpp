@@ -139,6 +139,7 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   if ((due && near) || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
   state.lambda_min = 0.5 * state.limit / tau.of_velocity;
   warn(tau.of_velocity);
+  std::vector<double>().swap(weight);    // for long not needed again
 }
 
 /* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */

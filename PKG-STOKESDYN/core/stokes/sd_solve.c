@@ -152,7 +152,7 @@ typedef struct {
   /* iterate of conjugate gradients and its scaled residual; the smoothed ones, of which F is the
    * answer */
   double *x, *z, *F, *y;
-  /* direction, q = M p; u = P r, which without preconditioner is z itself; v = P q */
+  /* direction, q = M p; u = P r and v = P q, without preconditioner z itself and nothing */
   double *p, *q, *u, *v;
   /* squares of D s, and of y computed from its definition */
   squares rhs, start;
@@ -228,7 +228,7 @@ static sd_status next_direction(gradients *g)
   const sd_status status = sd_system_apply(&g->A, g->p, g->q);
   if (status != SD_OK) return status;
   g->report->products++;
-  return sd_system_precondition(&g->A, g->q, g->v);
+  return g->A.precondition ? sd_system_precondition(&g->A, g->q, g->v) : SD_OK;
 }
 
 /* r.u r.p p.q p.D^-1p q.v q.u; then those of forces, <z,z> <z,t> <t,t> <y,z> <y,t> <y,y> */
@@ -237,7 +237,8 @@ enum { RU, RP, PQ, PP, QV, QU, ZZ, ZT, TT, YZ, YT, YY, PRODUCTS };
 static sd_status inner_products(const gradients *g, double s[PRODUCTS])
 {
   const int m = sd_system_width(&g->A);
-  const double *z = g->z, *u = g->u, *p = g->p, *q = g->q, *v = g->v, *y = g->y;
+  const double *z = g->z, *u = g->u, *p = g->p, *q = g->q, *y = g->y;
+  const double *preconditioned = g->A.precondition ? g->v : NULL;
   for (int k = 0; k < PRODUCTS; k++) s[k] = 0.0;
   for (long i = 0; i < g->A.n; i++) {
     if (g->A.drag[i] == 0.0) continue;
@@ -245,11 +246,12 @@ static sd_status inner_products(const gradients *g, double s[PRODUCTS])
       const long j = m * i + k;
       const double D = sd_system_diagonal(&g->A, i, k), inverse = 1.0 / D;
       const double force = g->A.drag[i] * inverse, r = z[j] * inverse, t = D * q[j];
+      const double v = preconditioned ? preconditioned[j] : t;
       s[RU] += r * u[j];
       s[RP] += r * p[j];
       s[PQ] += p[j] * q[j];
       s[PP] += p[j] * p[j] * inverse;
-      s[QV] += q[j] * v[j];
+      s[QV] += q[j] * v;
       s[QU] += q[j] * u[j];
       s[ZZ] += force * z[j] * z[j];
       s[ZT] += force * z[j] * t;
