@@ -17,8 +17,8 @@ extern "C" {
 /* What the functions are read from: tables for a range of ratios, ready after create. */
 typedef struct sd_two_sphere sd_two_sphere;
 
-/* largest_ratio >= 1: of the two radii of any pair. One ratio, 1, needs 12 kB and is three times as
- * fast as others; all of them need 1.2 MB. SD_OK; SD_EOUTSIDE: above SD_TWO_SPHERE_LARGEST_RATIO;
+/* largest_ratio >= 1: of the two radii of any pair. One ratio, 1, needs 12 kB and is twice as fast
+ * as others; all of them need 1.2 MB. SD_OK; SD_EOUTSIDE: above SD_TWO_SPHERE_LARGEST_RATIO;
  * SD_ENOMEMORY. */
 sd_status sd_two_sphere_create(double largest_ratio, sd_two_sphere **out);
 void sd_two_sphere_free(sd_two_sphere *t);

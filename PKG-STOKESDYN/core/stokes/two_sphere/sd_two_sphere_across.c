@@ -82,13 +82,17 @@ static int exists(int family, int n)
 }
 
 /* Block n of the system: sum over b of B[b] x_(n - 1 + b) = rhs, unknowns + of all families, then -.
- * Where the other's part is met, it has come through the gap. */
+ * Where the other's part is met, it has come through the gap. first: of the unknowns, FAMILIES where
+ * there is nothing but sphere 2. */
 typedef sd_real block[UNKNOWNS][UNKNOWNS];
 
-static void fill(int n, const sphere s[2], block B[3], triple slip[2][FAMILIES])
+static void fill(int n, int first, const sphere s[2], block B[3], triple slip[2][FAMILIES])
 {
+  sd_real through[3] = {0.0L};
+  for (int b = 0; b < 3 && first == 0; b++)
+    through[b] = expl(-(n - 0.5L + b) * (s[0].g + s[1].g));
   memset(B, 0, 3 * sizeof(block));
-  for (int i = 0; i < 2; i++) {
+  for (int i = first / FAMILIES; i < 2; i++) {
     no_slip(n, &s[i], slip[i]);
     continuity(n, i ? -1.0L : 1.0L, &s[i], slip[i][P]);
     for (int f = 0; f < FAMILIES; f++) {
@@ -100,11 +104,10 @@ static void fill(int n, const sphere s[2], block B[3], triple slip[2][FAMILIES])
       for (int b = 0; b < 3; b++) {
         const int m = n - 1 + b;
         if (m < 0) continue;
-        const sd_real through = f == P ? 0.0L : expl(-(m + 0.5L) * (s[0].g + s[1].g));
         for (int g = 0; g < FAMILIES; g++) {
           const sd_real c = slip[i][f][b][g] * unscaled(g, m) / unscaled(f == P ? U : f, n);
           B[b][at][FAMILIES * i + g] = c;
-          B[b][at][FAMILIES * (1 - i) + g] = through * c;
+          if (f != P) B[b][at][FAMILIES * (1 - i) + g] = through[b] * c;
         }
       }
     }
@@ -228,7 +231,7 @@ static void step_down(int n, int first, const sphere s[2], above *a)
   block B[3];
   triple slip[2][FAMILIES];
   sd_real rhs[UNKNOWNS][MOTIONS], next[UNKNOWNS][UNKNOWNS + MOTIONS] = {{0.0L}};
-  fill(n, s, B, slip);
+  fill(n, first, s, B, slip);
   if (first == 0)
     right_hand_side(n, s, slip, rhs);
   else
