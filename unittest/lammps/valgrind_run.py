@@ -1,6 +1,6 @@
 """A small LAMMPS run under valgrind memcheck: no error may have our code in its stack.   valgrind_run.py FOLDER
 
-LAMMPS and Open MPI have errors of their own, so each is looked at: it is ours if a frame of its stack is in stokesdynplugin.so or
+LAMMPS and Open MPI have errors of their own, so each is looked at: it is ours if a frame of its stack is in one of our files or
 carries one of our names. Writes FOLDER/valgrind.xml."""
 import os
 import subprocess
@@ -27,11 +27,18 @@ def clumps():
     return Spheres(x, 0.9, v, np.repeat(np.arange(1, 6), 4))
 
 
+def wide():
+    """Few large spheres among small ones: Ewald sums of two levels."""
+    rng = np.random.default_rng(4)
+    a = np.where(np.arange(200) % 80 == 7, 20.0, 1.0)
+    return Spheres(rng.uniform(-11, 11, (200, 3)), a, rng.normal(size=(200, 3)))
+
+
 def script(folder):
     box, spheres = [(-6.0, 6.0)] * 3, clumps()
 
-    def scene(name, style, **options):
-        return input_lines(spheres, style, os.path.join(folder, name + ".data"), **options)
+    def scene(name, style, of=spheres, **options):
+        return input_lines(of, style, os.path.join(folder, name + ".data"), **options)
 
     lines = scene("clump", f"clumps_only yes {COMMON} add_force yes", boundary="p p p", box=box, comm="comm_modify cutoff 4",
                   before_pair="neigh_modify exclude molecule/intra all every 1 delay 0 check no")
@@ -48,6 +55,14 @@ def script(folder):
         "run 3", "create_atoms 1 single 1.1 1.2 1.3", "set type 1 diameter 1.2", "run 1", "group gone id 3 7 11",
         "delete_atoms group gone", "run 2",
         "clear"]
+    # Ewald sums: torques in an oblique box that shrinks, waves as preconditioner; an open box; two levels
+    lines += scene("periodic", f"cut_off_distance inf {COMMON} rotation yes precondition waves far_field_tolerance 1e-3",
+                   boundary="p p p", box=box, tilt=(1.0, 0.5, -0.5))
+    lines += MOVE + ["fix squeeze all deform 1 x scale 0.9 remap x", "run 2", "clear"]
+    lines += scene("open", f"cut_off_distance inf {COMMON} far_field ewald far_field_tolerance 1e-3") + MOVE + ["run 2", "clear"]
+    loose = "cut_off_distance inf visc 1.3 algorithm 2 relative_tolerance 0.5"
+    lines += scene("levels", f"{loose} far_field_tolerance 1e-2", wide(), boundary="p p p", box=[(-11.0, 11.0)] * 3)
+    lines += MOVE + ["run 1", "clear"]
     lines += scene("all", f"cut_off_distance inf {COMMON}", before_pair="variable s atom 1+0.1*x\nvariable u equal 0.1*step")
     lines += ["pair_style stokes_dynamics cut_off_distance inf visc v_s fluid_velocity v_u 0 0 update_every 2 algorithm 2",
               "pair_coeff * *"]
@@ -58,7 +73,7 @@ def is_ours(error):
     for stack in error.findall("stack"):
         for frame in stack.findall("frame"):
             library, function = frame.findtext("obj") or "", frame.findtext("fn") or ""
-            if library.endswith("stokesdynplugin.so") or "StokesDyn::" in function or function.startswith("sd_"):
+            if library.endswith(("stokesdynplugin.so", "stokesdynstyles.so")) or "StokesDyn::" in function or function.startswith("sd_"):
                 return True
     return False
 

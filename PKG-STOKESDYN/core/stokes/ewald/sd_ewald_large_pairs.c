@@ -151,6 +151,7 @@ static sd_status find_images(sd_ewald_large_pairs *p, const sd_spheres *s, const
       }
     }
   }
+  sd_cells_free(&p->cells);
   return sd_cells_fill(&p->cells, p->image, p->images, 0.5 * p->ewald.reach);
 }
 
