@@ -45,6 +45,30 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
                             "' allows forces that are off by more than a tenth");
 }
 
+static double smallest_gap(Keywords &in)
+{
+  const double gap = in.positive();
+  if (gap < 1e-6) in.refuse("'" + text(gap) + "' must be >= 1e-6, in mean radii of a pair");
+  return gap;
+}
+
+/* Of the films that lubrication knows. */
+static double largest_gap(Keywords &in)
+{
+  const double gap = in.positive();
+  if (gap > SD_TWO_SPHERE_LARGEST_XI)
+    in.refuse("'" + text(gap) + "' must be <= 8, in mean radii of a pair");
+  return gap;
+}
+
+static double far_field_tolerance(Keywords &in)
+{
+  const double tolerance = in.positive();
+  if (!(tolerance >= 1e-13 && tolerance <= 0.1))
+    in.refuse("'" + text(tolerance) + "' must be 1e-13 ... 0.1");
+  return tolerance;
+}
+
 void StokesSettings::parse(Keywords &in)
 {
   in.parse({
@@ -93,23 +117,12 @@ void StokesSettings::parse(Keywords &in)
            in.refuse("'" + std::to_string(rigid.shell) + "' must be 1 or >= 12");
        }},
       {"lubrication", [&] { lubrication.on = in.yes_no(); }},
-      {"lubrication_gap", [&] {
-         lubrication.gap = in.positive();
-         if (lubrication.gap < 1e-6)
-           in.refuse("'" + text(lubrication.gap) + "' must be >= 1e-6, in mean radii of a pair");
-       }},
-      {"lubrication_range", [&] {
-         lubrication.range = in.positive();
-         if (lubrication.range > SD_TWO_SPHERE_LARGEST_XI)
-           in.refuse("'" + text(lubrication.range) + "' must be <= 8, in mean radii of a pair");
-       }},
+      {"lubrication_gap", [&] { lubrication.gap = smallest_gap(in); }},
+      {"lubrication_range", [&] { lubrication.range = largest_gap(in); }},
       {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
       {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
       {"far_field_tolerance", [&] {
-         if (in.take("auto")) return;
-         scene.far_field_tolerance = in.positive();
-         if (!(scene.far_field_tolerance >= 1e-13 && scene.far_field_tolerance <= 0.1))
-           in.refuse("'" + text(scene.far_field_tolerance) + "' must be 1e-13 ... 0.1");
+         if (!in.take("auto")) scene.far_field_tolerance = far_field_tolerance(in);
        }},
       {"precondition", [&] {
          precondition =

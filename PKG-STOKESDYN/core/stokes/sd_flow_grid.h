@@ -1,7 +1,7 @@
 /* A flow given at the nodes of a grid: velocity and, if wanted, viscosity, steady or as a series of
  * frames in time. Between nodes, and between frames, every value is linear in each direction:
  *
- *   u(x, t) = sum_abcd  X_a(x) Y_b(y) Z_c(z) T_d(t) u_abcd,     X_a(x) = 1 - |x - x_a|/h next to node a
+ *   u(x, t) = sum_abcd  X_a(x) Y_b(y) Z_c(z) T_d(t) u_abcd,   X_a(x) = 1 - |x - x_a|/h by node a
  *
  * so that a flow linear in x, y, z and t comes out exactly, and any other with an error of
  * h^2 |u''|/8 in space and tau^2 |u_tt|/8 in time. The gradient is that of this formula: of first
@@ -71,7 +71,7 @@ sd_status sd_flow_grid_frame(const sd_flow_grid *grid, double time, sd_flow_fram
 /* The flow at n points.
  *   x         [n][3]
  *   value     [n][columns]  out
- *   gradient  [n][9]        out, or NULL; row-major, gradient[3 p + q] = d u_p / d x_q as in sd_flow.h
+ *   gradient  [n][9]        out, or NULL; gradient[3 p + q] = d u_p / d x_q as in sd_flow.h
  * Of a point outside of the grid, or one that is not finite, all that comes out is NaN. */
 void sd_flow_grid_at(const sd_flow_grid *grid, const sd_flow_frame *frame, int n, const double *x,
                      double *value, double *gradient);

@@ -69,9 +69,9 @@ int sd_shape_match(const sd_shape *shape, int n, const double *x, const double *
                    double *scratch);
 
 /* Pose of a clump whose spheres are at x [3n]: x_k = c + R X_k with X the shape's centres.
- *   R [9]   out, always a proper rotation. Centres on a line leave the azimuth free, one point leaves
- *           all free: R is then some rotation with the right axis; nothing that the shape stands for
- *           depends on which.
+ *   R [9]   out, always a proper rotation. Centres on a line leave the azimuth free, one point all:
+ *           R is then some rotation with the right axis; nothing that the shape stands for depends
+ *           on which.
  *   c [3]   out, centroid
  * Returns the largest deviation |x_k - c - R X_k|, a length; INFINITY for positions that are not
  * finite.
