@@ -30,7 +30,7 @@ static void across_to(const double Y[16], sd_pair_resistance *R)
     }
 }
 
-/* block += on dd + off (1 - dd), a 3x3 part of a 6x6 */
+/* block = along dd + across (1 - dd), a 3x3 part of a 6x6 */
 static void put_symmetric(double along, double across, const double d[3], double *block)
 {
   for (int p = 0; p < 3; p++)

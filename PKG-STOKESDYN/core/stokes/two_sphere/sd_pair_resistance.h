@@ -39,8 +39,8 @@ sd_pair_resistance sd_pair_resistance_exchanged(const sd_pair_resistance *R);
 sd_pair_resistance sd_pair_resistance_rpy(double a1, double a2, double distance);
 
 /* Q^T D Q: what D does to the relative motion of the pair. Q = 1 - K (K^T A K)^-1 K^T A takes out
- * the motion as one rigid body, K its six columns, A the Stokes drags 6 pi a and 8 pi a^3 of the two
- * spheres: Q K = 0. Positive semidefinite if D is. */
+ * the motion as one rigid body, K its six columns, A the Stokes drags 6 pi a and 8 pi a^3 of the
+ * two spheres: Q K = 0. Positive semidefinite if D is. */
 sd_pair_resistance sd_pair_resistance_relative(const sd_pair_resistance *D, double a1, double a2,
                                                double distance);
 

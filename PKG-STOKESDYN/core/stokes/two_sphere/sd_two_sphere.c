@@ -7,11 +7,15 @@
 #include "sd_two_sphere_near.h"
 #include "sd_two_sphere_table.h"
 
-/* The shipped table is read once, into a finer one from which six neighbours a direction are enough:
- * even steps in the logarithm of the ratio and in x = (mu over its largest value)^(1/2), in which
- * what is left at contact, mu^4 ln mu, is smooth. It holds D less what sd_two_sphere_near has, over
- * sd_two_sphere_scales. */
-enum { RATIOS = SD_TWO_SPHERE_RATIOS, GAPS = SD_TWO_SPHERE_GAPS, FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS };
+/* The shipped table is read once, into a finer one from which six neighbours a direction are
+ * enough: even steps in the logarithm of the ratio and in x = (mu over its largest value)^(1/2), in
+ * which what is left at contact, mu^4 ln mu, is smooth. It holds D less what sd_two_sphere_near
+ * has, over sd_two_sphere_scales. */
+enum {
+  RATIOS = SD_TWO_SPHERE_RATIOS,
+  GAPS = SD_TWO_SPHERE_GAPS,
+  FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS
+};
 enum { ROWS = 97, COLUMNS = 97, STENCIL = 6 };
 
 typedef double functions[FUNCTIONS];
@@ -28,7 +32,7 @@ static double row_step(void)
   return log(SD_TWO_SPHERE_LARGEST_RATIO) / (ROWS - 1);
 }
 
-/* Weights [n] of the values at the n Chebyshev nodes for that at t in [0, 1]: barycentric formula */
+/* Weights [n] of the values at n Chebyshev nodes for that at t in [0, 1]: barycentric formula */
 static void weights_of_nodes(int n, double t, double *w)
 {
   double sum = 0.0;
@@ -45,7 +49,7 @@ static void weights_of_nodes(int n, double t, double *w)
   for (int k = 0; k < n; k++) w[k] /= sum;
 }
 
-/* value += weight of the RPY part and the parts of the table, of radii 1 and ratio */
+/* value += what the spheres resist alone less what they do in the RPY model; radii 1 and ratio */
 static void take_off_rpy(double ratio, double mu, functions value)
 {
   const double xi = sd_two_sphere_xi(ratio, mu);
@@ -109,11 +113,11 @@ void sd_two_sphere_free(sd_two_sphere *t)
   free(t);
 }
 
-/* Lagrange's polynomials of STENCIL even steps around the place at >= 0 among n; the first of them */
+/* Lagrange's polynomials of STENCIL even steps around the place at >= 0 among n; the first step */
 static int stencil(double at, int n, double w[STENCIL])
 {
-  static const double inverse[STENCIL] = {-1.0 / 120, 1.0 / 24, -1.0 / 12, 1.0 / 12, -1.0 / 24,
-                                          1.0 / 120};
+  static const double inverse[STENCIL] = {-1.0 / 120, 1.0 / 24,  -1.0 / 12,
+                                          1.0 / 12,   -1.0 / 24, 1.0 / 120};
   int first = (int) at - STENCIL / 2 + 1;
   if (first > n - STENCIL) first = n - STENCIL;
   if (first < 0) first = 0;

@@ -15,8 +15,8 @@
  *
  * times (cosh xi - m)/S, with the recurrences of m P_n and its derivatives, couples a mode to its
  * neighbours. div v = 0 is 3P/2 + (r.grad P)/2 + dW/dz + dU/drho + dQ/drho + 2Q/rho = 0; each of
- * these maps bispherical harmonics to such, and parts + and - fulfil it by themselves. With it a mode
- * has four unknowns and four equations a sphere.
+ * these maps bispherical harmonics to such, and parts + and - fulfil it by themselves. With it a
+ * mode has four unknowns and four equations a sphere.
  *
  * The unknowns are scaled to be of one size: k^2 p, k w, u, k^2 q. */
 enum { P, W, U, Q, FAMILIES, UNKNOWNS = 2 * FAMILIES, MOTIONS = 4 };
@@ -81,16 +81,15 @@ static int exists(int family, int n)
   return n >= (family == U ? 0 : family == Q ? 2 : 1);
 }
 
-/* Block n of the system: sum over b of B[b] x_(n - 1 + b) = rhs, unknowns + of all families, then -.
- * Where the other's part is met, it has come through the gap. first: of the unknowns, FAMILIES where
+/* Block n of the system: sum over b of B[b] x_(n - 1 + b) = rhs, families of +, then of -. Where
+ * the other's part is met, it has come through the gap. first: of the unknowns, FAMILIES where
  * there is nothing but sphere 2. */
 typedef sd_real block[UNKNOWNS][UNKNOWNS];
 
 static void fill(int n, int first, const sphere s[2], block B[3], triple slip[2][FAMILIES])
 {
   sd_real through[3] = {0.0L};
-  for (int b = 0; b < 3 && first == 0; b++)
-    through[b] = expl(-(n - 0.5L + b) * (s[0].g + s[1].g));
+  for (int b = 0; b < 3 && first == 0; b++) through[b] = expl(-(n - 0.5L + b) * (s[0].g + s[1].g));
   memset(B, 0, 3 * sizeof(block));
   for (int i = first / FAMILIES; i < 2; i++) {
     no_slip(n, &s[i], slip[i]);
@@ -120,7 +119,7 @@ static void own_motion(int n, const sphere *s, sd_real along[FAMILIES], sd_real 
 {
   const sd_real k = n + 0.5L, e = expl(-k * s->g);
   const sd_real h = -0.5L / SD_ROOT2_LONG *
-                    (expl(-(k - 1.0L) * s->g) / (k - 1.0L) - expl(-(k + 1.0L) * s->g) / (k + 1.0L));
+      (expl(-(k - 1.0L) * s->g) / (k - 1.0L) - expl(-(k + 1.0L) * s->g) / (k + 1.0L));
   memset(along, 0, FAMILIES * sizeof(sd_real));
   memset(spin, 0, FAMILIES * sizeof(sd_real));
   along[U] = h;
@@ -129,8 +128,8 @@ static void own_motion(int n, const sphere *s, sd_real along[FAMILIES], sd_real 
 }
 
 /* Modes - of sphere 2 alone: v = (3a/4)(e_x/r + x r/r^3) + (a^3/4)(e_x/r^3 - 3x r/r^5) about its
- * centre, and a^3 e_y x r/r^3. 1/r has the modes sqrt2 sinh(beta) e^(-2k beta) here, the rest are its
- * derivatives. */
+ * centre, and a^3 e_y x r/r^3. 1/r has the modes sqrt2 sinh(beta) e^(-2k beta) here, the rest are
+ * its derivatives. */
 static void alone(int n, const sphere *s, sd_real along[FAMILIES], sd_real spin[FAMILIES])
 {
   const sd_real k = n + 0.5L, sh = -s->sh, ch = s->ch, e = SD_ROOT2_LONG * expl(-k * s->g);
@@ -210,14 +209,13 @@ typedef struct {
   sd_real next[UNKNOWNS][UNKNOWNS + MOTIONS], sum[4][UNKNOWNS + MOTIONS];
 } above;
 
-/* T += forces F1 F2 and torques T1 T2 about the centres of mode n. Far away P is F x/(4 pi r^3) and W
- * is -T x/(8 pi r^3) about the origin; a mode is 2 sqrt2 rho/r^3 n(n + 1)/2 there. */
+/* T += forces F1 F2 and torques T1 T2 about the centres of mode n. Far away P is F x/(4 pi r^3) and
+ * W is -T x/(8 pi r^3) about the origin; a mode is 2 sqrt2 rho/r^3 n(n + 1)/2 there. */
 static void add_forces(int n, const sphere s[2], sd_real T[4][UNKNOWNS + MOTIONS])
 {
   const sd_real k = n + 0.5L;
   for (int i = 0; i < 2; i++) {
-    const sd_real weight =
-        4.0L * SD_PI_LONG * SD_ROOT2_LONG * n * (n + 1.0L) * expl(-k * s[i].g);
+    const sd_real weight = 4.0L * SD_PI_LONG * SD_ROOT2_LONG * n * (n + 1.0L) * expl(-k * s[i].g);
     const int at = FAMILIES * i;
     T[i][at + P] += weight * unscaled(P, n);
     T[i + 2][at + P] -= s[i].z * weight * unscaled(P, n);

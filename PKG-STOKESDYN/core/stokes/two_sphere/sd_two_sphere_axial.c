@@ -2,9 +2,9 @@
 
 #include "sd_two_sphere_modes.h"
 
-/* The fluid only turns about the axis, its velocity is harmonic with sin t P_n'(m). On a sphere it is
- * W rho, so that the modes there are 2 sqrt2 W e^(-k |xi|), from (cosh xi - m)^(-3/2). A mode far
- * away is 2 sqrt2 rho/r^3 n(n + 1)/2, which is a torque. Jeffery 1915. */
+/* The fluid only turns about the axis, its velocity is harmonic with sin t P_n'(m). On a sphere it
+ * is W rho, so that the modes there are 2 sqrt2 W e^(-k |xi|), from (cosh xi - m)^(-3/2). A mode
+ * far away is 2 sqrt2 rho/r^3 n(n + 1)/2, which is a torque. Jeffery 1915. */
 void sd_two_sphere_axial_rotation(sd_real alpha, sd_real beta, sd_real XC[2][2])
 {
   const int modes = (int) (SD_TWO_SPHERE_DEPTH / (alpha + beta)) + 30;
@@ -43,7 +43,8 @@ static mode mode_on_spheres(int n, const sd_real xi[2])
   mode f = {n - 0.5L, n + 1.5L, {0}, {0}};
   const sd_real k = n * (n + 1.0L) / (SD_ROOT2_LONG * 4.0L * f.p * (2 * n + 1) * f.q);
   for (int s = 0; s < 2; s++) {
-    const sd_real ep = expl(-f.p * xi[s]), step = -expm1l(-2.0L * xi[s]); /* e^-p - e^-q = ep step */
+    const sd_real ep = expl(-f.p * xi[s]),
+                  step = -expm1l(-2.0L * xi[s]); /* e^-p - e^-q = ep step */
     f.value[s] = -k * ep * (4.0L + 2.0L * f.p * step);
     f.slope[s] = (s ? -2.0L : 2.0L) * k * f.p * f.q * ep * step;
   }
@@ -51,8 +52,8 @@ static mode mode_on_spheres(int n, const sd_real xi[2])
 }
 
 /* Growing and decaying coefficient, each that of p times e^(-p xi) plus that of q times e^(-q xi),
- * from f and f' at the ends of -h < th < h: even and odd part by themselves. Its determinants,
- * q ch_p sh_q - p sh_p ch_q and q sh_p ch_q - p ch_p sh_q, are [2 sinh(mh) +- m sinh(2h)]/2 with m =
+ * from f and f' at the ends of -h < th < h: even and odd part by themselves. Its determinants, q
+ * ch_p sh_q - p sh_p ch_q and q sh_p ch_q - p ch_p sh_q, are [2 sinh(mh) +- m sinh(2h)]/2 with m =
  * p + q. Everything carries e^(-p h) or e^(-q h). */
 static void coefficients(const mode *f, const sd_real v[2], const sd_real d[2], const sd_real xi[2],
                          sd_real out[2])
@@ -63,8 +64,8 @@ static void coefficients(const mode *f, const sd_real v[2], const sd_real d[2], 
   const sd_real fade = expl(-m * h);
   const sd_real even = -0.5L * expm1l(-2.0L * m * h) + 0.5L * m * sinhl(2.0L * h) * fade;
   const sd_real odd = m * h < 1.0L
-                          ? fade * (sinh_less(m * h) - 0.5L * m * sinh_less(2.0L * h))
-                          : -0.5L * expm1l(-2.0L * m * h) - 0.5L * m * sinhl(2.0L * h) * fade;
+      ? fade * (sinh_less(m * h) - 0.5L * m * sinh_less(2.0L * h))
+      : -0.5L * expm1l(-2.0L * m * h) - 0.5L * m * sinhl(2.0L * h) * fade;
   const sd_real ev = 0.5L * (v[0] + v[1]), ed = 0.5L * (d[0] - d[1]);
   const sd_real ov = 0.5L * (v[0] - v[1]), od = 0.5L * (d[0] + d[1]);
   const sd_real Ae = (ev * q * shq - ed * chq) / even, Ce = (ed * chp - ev * p * shp) / even;
@@ -91,8 +92,8 @@ void sd_two_sphere_axial_translation(sd_real alpha, sd_real beta, sd_real XA[2][
     }
     /* sphere 2 alone: both coefficients from its own value and slope */
     const sd_real v = f.value[1], d = f.slope[1];
-    XA[1][1] -= weight * 0.5L *
-                ((d + f.q * v) * expl(-f.p * beta) - (d + f.p * v) * expl(-f.q * beta));
+    XA[1][1] -=
+        weight * 0.5L * ((d + f.q * v) * expl(-f.p * beta) - (d + f.p * v) * expl(-f.q * beta));
   }
   XA[1][1] += 6.0L * SD_PI_LONG / sinhl(beta);
 }

@@ -1,5 +1,5 @@
-/* Two rigid spheres in unbounded fluid, exactly: sums over the modes of bispherical coordinates. For
- * the table of sd_two_sphere.h and for tests: a milliseconds' matter, a second at gaps of 1e-6. */
+/* Two rigid spheres in unbounded fluid, exactly: sums over the modes of bispherical coordinates.
+ * For the table of sd_two_sphere.h and for tests: milliseconds, seconds at gaps of 1e-6. */
 #ifndef SD_TWO_SPHERE_EXACT_H
 #define SD_TWO_SPHERE_EXACT_H
 

@@ -29,10 +29,9 @@ double sd_two_sphere_largest_mu(double ratio)
 void sd_two_sphere_scales(double a1, double a2, double scale[SD_TWO_SPHERE_FUNCTIONS])
 {
   const double spin = a1 * a1 * a1;
-  const double all[SD_TWO_SPHERE_FUNCTIONS] = {a1,      a1,      a1,      a1,   a1,   a1,
-                                               a1 * a1, a1 * a1, a1 * a2, a1 * a2,
-                                               spin,    spin,    spin,    spin, a1 * a1 * a2,
-                                               a1 * a2 * a2};
+  const double all[SD_TWO_SPHERE_FUNCTIONS] = {
+      a1,      a1,      a1,   a1,   a1,   a1,   a1 * a1,      a1 * a1,
+      a1 * a2, a1 * a2, spin, spin, spin, spin, a1 * a1 * a2, a1 * a2 * a2};
   for (int k = 0; k < SD_TWO_SPHERE_FUNCTIONS; k++) scale[k] = 6.0 * SD_PI * all[k];
 }
 

@@ -2,14 +2,15 @@
  *
  *   z = c sinh xi / (cosh xi - cos t),   rho = c sin t / (cosh xi - cos t),   m = cos t
  *
- * sphere 1 at xi = alpha (z > 0) is the smaller one, sphere 2 at xi = -beta. c is the unit of length
- * here, alpha >= beta > 0. Harmonic functions are
+ * sphere 1 at xi = alpha (z > 0) is the smaller one, sphere 2 at xi = -beta. c is the unit of
+ * length here, alpha >= beta > 0. Harmonic functions are
  *
- *   (cosh xi - m)^(1/2) sum_n [ f+_n e^(k (xi - alpha)) + f-_n e^(-k (xi + beta)) ] P_n(m),   k = n + 1/2
+ *   (cosh xi - m)^(1/2) sum_n [ f+_n e^(k (xi - alpha)) + f-_n e^(-k (xi + beta)) ] P_n(m)
  *
- * The part + is singular inside sphere 1 only, - inside sphere 2 only. All modes feel the other
- * sphere like e^(-k (alpha + beta)): SD_TWO_SPHERE_DEPTH/(alpha + beta) of them are enough, if the
- * motion of the larger sphere alone, which goes like e^(-k beta), is put in as it is known. */
+ * with k = n + 1/2. The part + is singular inside sphere 1 only, - inside sphere 2 only. All modes
+ * feel the other sphere like e^(-k (alpha + beta)): SD_TWO_SPHERE_DEPTH/(alpha + beta) of them are
+ * enough, if the motion of the larger sphere alone, which goes like e^(-k beta), is put in as it is
+ * known. */
 #ifndef SD_TWO_SPHERE_MODES_H
 #define SD_TWO_SPHERE_MODES_H
 

@@ -35,9 +35,6 @@ sd_pair_resistance sd_two_sphere_near(double a1, double a2, double xi)
   const double YC11 = 8.0 * SD_PI * a1 * a1 * a1 * torque_from_spin(l, L, xi);
   const double YC12 = spin * L * (l2 / 10.0 + l * (43.0 + l * (-24.0 + 43.0 * l)) / 500.0 * xi);
   const double YC22 = 8.0 * SD_PI * a2 * a2 * a2 * torque_from_spin(1.0 / l, L, xi);
-  return (sd_pair_resistance){{XA, -XA, XA},
-                              {YA, -YA, YA},
-                              {YB1, -YB1, -YB2, YB2},
-                              {XC, -XC, XC},
-                              {YC11, YC12, YC22}};
+  return (sd_pair_resistance){
+      {XA, -XA, XA}, {YA, -YA, YA}, {YB1, -YB1, -YB2, YB2}, {XC, -XC, XC}, {YC11, YC12, YC22}};
 }

@@ -3,8 +3,8 @@
  *
  *   mu = alpha + beta of the bispherical coordinates:  cosh mu - 1 = (1 + l)^2/l xi (4 + xi)/8
  *
- * in which near contact (mu^2 like the gap over a1) and far away (mu like twice the logarithm of the
- * distance) take about equal parts of the range, whatever the ratio. */
+ * in which near contact (mu^2 like the gap over a1) and far away (mu like twice the logarithm of
+ * the distance) take about equal parts of the range, whatever the ratio. */
 #ifndef SD_TWO_SPHERE_TABLE_H
 #define SD_TWO_SPHERE_TABLE_H
 
@@ -23,8 +23,8 @@ enum {
   SD_TWO_SPHERE_FUNCTIONS = 16
 };
 
-/* What is left of the exact functions without sd_two_sphere_near and without what each sphere resists
- * alone, over the scales below. Made by make_two_sphere_table. */
+/* What is left of the exact functions without sd_two_sphere_near and without what each sphere
+ * resists alone, over the scales below. Made by make_two_sphere_table. */
 extern const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS]
                                        [SD_TWO_SPHERE_FUNCTIONS];
 
@@ -36,8 +36,8 @@ double sd_two_sphere_mu(double ratio, double xi);
 double sd_two_sphere_xi(double ratio, double mu);
 double sd_two_sphere_largest_mu(double ratio);
 
-/* The table's unit of each function: the smaller sphere gives the force, the torques have the arms of
- * their own spheres. */
+/* The table's unit of each function: the smaller sphere gives the force, the torques have the arms
+ * of their own spheres. */
 void sd_two_sphere_scales(double a1, double a2, double scale[SD_TWO_SPHERE_FUNCTIONS]);
 
 /* Stokes drags of both, by themselves */

@@ -1,5 +1,5 @@
-/* Two rigid clumps near each other against exact velocities: spheres in the loop, shells of 42 points
- * beside it, lubrication between the spheres of the two. */
+/* Two rigid clumps near each other against exact velocities: spheres in the loop, shells of 42
+ * points beside it, lubrication between the spheres of the two. */
 #include "tied_flock.h"
 
 #include "table.h"
@@ -48,8 +48,8 @@ static double error_of(const flock *f, const double V[12])
   return sqrt(off / all);
 }
 
-/* Settling within 0.8 %, gaps 0.01 to 0.5, whatever the clump; without lubrication up to 2.7 %. Pushed
- * apart, where the films decide, within 5 %; without it twice or ten times too fast. */
+/* Settling within 0.8 %, gaps 0.01 to 0.5, whatever the clump; without lubrication up to 2.7 %.
+ * Pushed apart, where the films decide, within 5 %; without it up to 2.5 times as fast. */
 static void settling_and_apart(void **state)
 {
   (void) state;

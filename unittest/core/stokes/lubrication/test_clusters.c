@@ -1,6 +1,6 @@
 /* Free clusters near contact, as they settle and as unlike forces move them: the model with
- * sd_lubrication.h against exact velocities, beside it the same model without lubrication and with the
- * classical sum of D over all pairs. */
+ * sd_lubrication.h against exact velocities, beside it the same model without lubrication and with
+ * the classical sum of D over all pairs. */
 #include "near_scene.h"
 
 #include "table.h"
@@ -43,7 +43,8 @@ static int next_motion(table *t, motion *m)
 static near_scene scene_of(const motion *m)
 {
   scene s = scene_create(m->n);
-  for (int i = 0; i < m->n; i++) scene_set(&s, i, m->x[3 * i], m->x[3 * i + 1], m->x[3 * i + 2], m->a[i], 1.0);
+  for (int i = 0; i < m->n; i++)
+    scene_set(&s, i, m->x[3 * i], m->x[3 * i + 1], m->x[3 * i + 2], m->a[i], 1.0);
   near_scene q = near_create(s, 3.0, 1e-4);
   near_place(&q);
   return q;
@@ -62,7 +63,8 @@ static void add_classical(const near_scene *q, double *R)
       if (gap >= 1.0) continue;
       sd_normalize(d);
       sd_pair_resistance D, relative;
-      assert_int_equal(sd_two_sphere_correction(q->functions, q->s.a[j], q->s.a[i], gap, &D, &relative), SD_OK);
+      assert_int_equal(
+          sd_two_sphere_correction(q->functions, q->s.a[j], q->s.a[i], gap, &D, &relative), SD_OK);
       sd_pair_resistance_blocks(&D, d, B[0], B[1], B[2]);
       for (int p = 0; p < 6; p++)
         for (int e = 0; e < 6; e++) {
@@ -105,7 +107,7 @@ typedef struct {
   double mean[MODELS], worst[MODELS];
 } errors;
 
-/* Errors in all rows of some loads, of clusters of low to high spheres; all but a row along itself */
+/* Errors of clusters of low to high spheres under some loads; all but a row along itself */
 static errors errors_of(const char *load, int low, int high)
 {
   errors e = {0};
@@ -123,14 +125,16 @@ static errors errors_of(const char *load, int low, int high)
     }
   }
   for (int k = 0; k < MODELS; k++) e.mean[k] /= e.rows;
-  print_message("%s, %d to %d spheres, %d cases, mean/worst per cent: none %.1f/%.1f, classical %.1f/%.1f, "
-                "shared %.2f/%.2f\n", load, low, high, e.rows, 100 * e.mean[NONE], 100 * e.worst[NONE],
-                100 * e.mean[CLASSICAL], 100 * e.worst[CLASSICAL], 100 * e.mean[SHARED], 100 * e.worst[SHARED]);
+  print_message(
+      "%s, %d to %d spheres, %d cases, mean/worst per cent: none %.1f/%.1f, classical %.1f/%.1f, "
+      "shared %.2f/%.2f\n",
+      load, low, high, e.rows, 100 * e.mean[NONE], 100 * e.worst[NONE], 100 * e.mean[CLASSICAL],
+      100 * e.worst[CLASSICAL], 100 * e.mean[SHARED], 100 * e.worst[SHARED]);
   return e;
 }
 
-/* Settling: 1.3 % in the mean, 3 % at worst; the classical sum is the worse the more neighbours there
- * are, and from five spheres on worse than nothing. */
+/* Settling: 1.3 % in the mean, 3 % at worst; the classical sum is the worse the more neighbours
+ * there are, and from five spheres on worse than nothing. */
 static void settling(void **state)
 {
   (void) state;

@@ -23,7 +23,8 @@ static void whole(const sd_pair_resistance *R, const double d[3], double M[144])
 /* something without any symmetry but its own */
 static sd_pair_resistance some(void)
 {
-  return (sd_pair_resistance){{31, -17, 40}, {23, -9, 30}, {-5, 7, -11, 9}, {20, -3, 50}, {28, 6, 77}};
+  return (sd_pair_resistance){
+      {31, -17, 40}, {23, -9, 30}, {-5, 7, -11, 9}, {20, -3, 50}, {28, 6, 77}};
 }
 
 /* about the place [3]: 6 columns of the motion of both spheres as one body, M = K */
@@ -84,8 +85,8 @@ static void turned_and_exchanged(void **state)
       double turned = 0.0;
       for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-          turned += T[3 * (p % 3) + i] * T[3 * (q % 3) + j] *
-              M[12 * (p / 3 * 3 + i) + q / 3 * 3 + j];
+          turned +=
+              T[3 * (p % 3) + i] * T[3 * (q % 3) + j] * M[12 * (p / 3 * 3 + i) + q / 3 * 3 + j];
       CHECK_NEAR(N[12 * p + q], turned, 1e-12);
       CHECK_NEAR(M[12 * p + q], M[12 * q + p], 0.0);
     }

@@ -103,14 +103,15 @@ static void table_has_them_between_its_nodes(void **state)
   sd_two_sphere_free(all);
 }
 
-/* Smallest and largest eigenvalue in Stokes drags: along d for forces and torques, across for all */
+/* Smallest and largest eigenvalue in Stokes drags: along d forces, torques; across all of them */
 static void extremes(const sd_pair_resistance *D, double a1, double a2, double *low, double *high)
 {
   const double d[3] = {0.0, 0.0, 1.0}, a[2] = {a1, a2};
   double B[3][36], s[12];
   sd_pair_resistance_blocks(D, d, B[0], B[1], B[2]);
   for (int p = 0; p < 12; p++)
-    s[p] = p % 6 < 3 ? 1.0 / sqrt(6.0 * SD_PI * a[p / 6]) : 1.0 / sqrt(8.0 * SD_PI * pow(a[p / 6], 3));
+    s[p] = p % 6 < 3 ? 1.0 / sqrt(6.0 * SD_PI * a[p / 6])
+                     : 1.0 / sqrt(8.0 * SD_PI * pow(a[p / 6], 3));
   static const int set[3][4] = {{2, 8}, {5, 11}, {0, 6, 4, 10}}, size[3] = {2, 2, 4};
   *low = INFINITY, *high = -INFINITY;
   for (int b = 0; b < 3; b++) {
@@ -119,7 +120,9 @@ static void extremes(const sd_pair_resistance *D, double a1, double a2, double *
     for (int i = 0; i < n; i++)
       for (int j = 0; j < n; j++) {
         const int p = set[b][i], q = set[b][j], r = p % 6, c = q % 6;
-        const double v = p < 6 ? B[q < 6 ? 0 : 1][6 * r + c] : q < 6 ? B[1][6 * c + r] : B[2][6 * r + c];
+        const double v = p < 6 ? B[q < 6 ? 0 : 1][6 * r + c]
+            : q < 6            ? B[1][6 * c + r]
+                               : B[2][6 * r + c];
         A[n * i + j] = v * s[p] * s[q];
       }
     sd_eigen(n, A, w, V);
@@ -128,9 +131,9 @@ static void extremes(const sd_pair_resistance *D, double a1, double a2, double *
   }
 }
 
-/* D >= 0 and Q^T D Q >= 0, but for rounding and table: -1e-8 of the largest eigenvalue at that gap, for
- * ratios above 10 of a Stokes drag. (Far from contact the largest is 1e-4 there, and the smallest
- * 1e-12.) */
+/* D >= 0 and Q^T D Q >= 0, but for rounding and table: -1e-8 of the largest eigenvalue at that gap,
+ * for ratios above 10 of a Stokes drag. (Far from contact the largest is 1e-4 there, and the
+ * smallest 1e-12.) */
 static void correction_is_positive(void **state)
 {
   (void) state;
@@ -157,12 +160,14 @@ static void usual_forms_are_not_positive(void **state)
   (void) state;
   sd_two_sphere *one = create(1.0);
   sd_pair_resistance relative, full = correction(one, 1.0, 1.0, 1e-7, &relative);
-  const sd_pair_resistance touching = rpy(1.0, 1.0, 1e-7), pole = sd_two_sphere_near(1.0, 1.0, 1e-7);
+  const sd_pair_resistance touching = rpy(1.0, 1.0, 1e-7),
+                           pole = sd_two_sphere_near(1.0, 1.0, 1e-7);
   sd_pair_resistance constants = sd_pair_resistance_sum(1.0, &full, 1.0, &touching);
   constants = difference(&constants, &pole);
   const double xi[3] = {0.2, 0.5, 1.0};
   for (int k = 0; k < 3; k++) {
-    const sd_pair_resistance model = rpy(1.0, 1.0, xi[k]), near = sd_two_sphere_near(1.0, 1.0, xi[k]);
+    const sd_pair_resistance model = rpy(1.0, 1.0, xi[k]),
+                             near = sd_two_sphere_near(1.0, 1.0, xi[k]);
     sd_pair_resistance form = sd_pair_resistance_sum(1.0, &near, 1.0, &constants);
     form = difference(&form, &model);
     double low, high;
@@ -192,14 +197,19 @@ static void no_jumps(void **state)
       /* third differences: a jump would stay, e^3 of the functions goes */
       for (int k = 0; k < FUNCTIONS; k++) {
         const double jump = f[3][k] - 3.0 * f[2][k] + 3.0 * f[1][k] - f[0][k];
-        CHECK_NEAR(jump, 0.0, 1e-8 * fabs(f[0][k]) + 1e-7 * (k < 6 ? 1 : k < 10 ? ratio : ratio * ratio));
+        CHECK_NEAR(jump, 0.0,
+                   1e-8 * fabs(f[0][k]) +
+                       1e-7 *
+                           (k < 6        ? 1
+                                : k < 10 ? ratio
+                                         : ratio * ratio));
       }
     }
   sd_two_sphere_free(all);
 }
 
-/* Lengths: forces over velocities like a, torques over spins like a^3. Exchanged spheres are the same
- * pair, equal ones to the last bit. */
+/* Lengths: forces over velocities like a, torques over spins like a^3. Exchanged spheres are the
+ * same pair, equal ones to the last bit. */
 static void scales_and_exchange(void **state)
 {
   (void) state;
@@ -208,7 +218,8 @@ static void scales_and_exchange(void **state)
   const sd_pair_resistance f1 = correction(t, 0.9, 2.7, 0.03, &q1);
   const sd_pair_resistance f7 = correction(t, 7 * 0.9, 7 * 2.7, 0.03, &q7);
   const sd_pair_resistance fx = correction(t, 2.7, 0.9, 0.03, &qx);
-  const sd_pair_resistance *small[2] = {&f1, &q1}, *large[2] = {&f7, &q7}, *exchanged[2] = {&fx, &qx};
+  const sd_pair_resistance *small[2] = {&f1, &q1}, *large[2] = {&f7, &q7},
+                           *exchanged[2] = {&fx, &qx};
   for (int k = 0; k < 2; k++) {
     const sd_pair_resistance back = sd_pair_resistance_exchanged(exchanged[k]);
     double a[FUNCTIONS], b[FUNCTIONS], c[FUNCTIONS];
@@ -222,7 +233,8 @@ static void scales_and_exchange(void **state)
   }
   sd_pair_resistance q;
   const sd_pair_resistance f = correction(one, 1.3, 1.3, 0.2, &q);
-  assert_true(f.XA[0] == f.XA[2] && f.YA[0] == f.YA[2] && f.YB[0] == -f.YB[3] && f.YB[1] == -f.YB[2]);
+  assert_true(f.XA[0] == f.XA[2] && f.YA[0] == f.YA[2] && f.YB[0] == -f.YB[3] &&
+              f.YB[1] == -f.YB[2]);
   assert_true(f.XC[0] == f.XC[2] && f.YC[0] == f.YC[2]);
   sd_two_sphere_free(t);
   sd_two_sphere_free(one);

@@ -31,7 +31,7 @@ static void scalars(double a1, double a2, double gap, double s[SCALARS], double 
 }
 
 /* 1e-10 of every function from gaps of 1e-4 on, 1e-8 below. The table itself is less sure of small
- * numbers beside large ones: allowed are 5 of its own asymmetries of the largest across the axis. */
+ * numbers beside large ones: 5 of its own asymmetries of the largest across the axis. */
 static void table_of_another_computation(void **state)
 {
   (void) state;
@@ -44,8 +44,7 @@ static void table_of_another_computation(void **state)
     for (int k = 3; k < SCALARS; k++) largest = fmax(largest, fabs(s[k]));
     for (int k = 0; k < SCALARS; k++) {
       const double expected = table_number(&t, 3 + k), relative = gap < 9e-5 ? 1e-8 : 1e-10;
-      CHECK_NEAR(s[k], expected,
-                 relative * fabs(expected) + 5 * table_number(&t, 19) * largest);
+      CHECK_NEAR(s[k], expected, relative * fabs(expected) + 5 * table_number(&t, 19) * largest);
     }
     assert_true(asymmetry < (gap < 9e-5 ? 1e-8 : 1e-11));
     rows++;
@@ -53,16 +52,16 @@ static void table_of_another_computation(void **state)
   assert_int_equal(rows, 92);
 }
 
-/* A table of ratio, gap and 16 numbers in units, from the column `first` on, to a relative tolerance;
- * numbers below `small` of their scale count as that. Returns the asymmetry. */
+/* A table of ratio, gap and 16 numbers in units, from the column `first` on, to a relative
+ * tolerance; numbers below `small` of their scale count as that. Returns the asymmetry. */
 static double same_row(const table *t, int first, double tolerance, double small)
 {
   const double ratio = table_number(t, 0), a[2] = {1.0, ratio};
   double s[SCALARS], asymmetry;
   scalars(1.0, ratio, table_number(t, 1), s, &asymmetry);
   for (int k = 0; k < SCALARS; k++) {
-    const double expected = scaled(names[k][1], a[names[k][2] - '1'], a[names[k][3] - '1'],
-                                   table_number(t, first + k));
+    const double expected =
+        scaled(names[k][1], a[names[k][2] - '1'], a[names[k][3] - '1'], table_number(t, first + k));
     CHECK_NEAR(s[k], expected, tolerance * fmax(fabs(expected), small));
   }
   return asymmetry;
@@ -128,11 +127,11 @@ static void constants_at_contact(void **state)
   static const struct {
     int scalar;
     double value[3];
-  } left[] = {{0, {1.08807, 0.99536, 0.80831}},    {1, {-0.29573, -0.35022, -0.29573}},
-              {3, {1.01932, 0.99832, 0.90089}},    {4, {-0.22456, -0.27366, -0.22456}},
-              {6, {0.12004, 0.23897, 0.40156}},    {7, {0.08176, -0.00167, -0.06855}},
-              {10, {1.02078, 1.05180, 1.09405}},   {11, {-0.10553, -0.15026, -0.10553}},
-              {13, {0.84894, 0.70285, 0.48406}},   {14, {-0.03486, -0.02743, -0.03486}}};
+  } left[] = {{0, {1.08807, 0.99536, 0.80831}},  {1, {-0.29573, -0.35022, -0.29573}},
+              {3, {1.01932, 0.99832, 0.90089}},  {4, {-0.22456, -0.27366, -0.22456}},
+              {6, {0.12004, 0.23897, 0.40156}},  {7, {0.08176, -0.00167, -0.06855}},
+              {10, {1.02078, 1.05180, 1.09405}}, {11, {-0.10553, -0.15026, -0.10553}},
+              {13, {0.84894, 0.70285, 0.48406}}, {14, {-0.03486, -0.02743, -0.03486}}};
   const double ratio[3] = {0.5, 1.0, 2.0}, xi = 2e-6, zeta3 = 1.2020569031595942;
   for (int r = 0; r < 3; r++) {
     const double a[2] = {1.0, ratio[r]};

@@ -1,7 +1,7 @@
 /* make_two_sphere_table > sd_two_sphere_table.c: the exact functions at the nodes, a minute or two.
  *
- * make_two_sphere_table check STRIDE: the shipped ones at every STRIDE'th node against those computed
- * here and now; fails if they differ. */
+ * make_two_sphere_table check STRIDE: the shipped ones at every STRIDE'th node against those
+ * computed here and now; fails if they differ. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,11 @@
 #include "sd_two_sphere_near.h"
 #include "sd_two_sphere_table.h"
 
-enum { RATIOS = SD_TWO_SPHERE_RATIOS, GAPS = SD_TWO_SPHERE_GAPS, FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS };
+enum {
+  RATIOS = SD_TWO_SPHERE_RATIOS,
+  GAPS = SD_TWO_SPHERE_GAPS,
+  FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS
+};
 
 static void at_node(int i, int j, double value[FUNCTIONS])
 {
@@ -41,8 +45,14 @@ static void make(void)
       double value[FUNCTIONS];
       at_node(i, j, value);
       for (int k = 0; k < FUNCTIONS; k++)
-        printf("%s%.11f%s", k == 0 ? "        {" : k % 4 ? " " : "         ", value[k],
-               k == FUNCTIONS - 1 ? "},\n" : k % 4 == 3 ? ",\n" : ",");
+        printf("%s%.11f%s",
+               k == 0      ? "        {"
+                   : k % 4 ? " "
+                           : "         ",
+               value[k],
+               k == FUNCTIONS - 1 ? "},\n"
+                   : k % 4 == 3   ? ",\n"
+                                  : ",");
     }
     printf("    },\n");
   }
