@@ -65,10 +65,12 @@ target_include_directories(bench_core PRIVATE ${tests} ${tests}/stokes ${cmocka_
 target_compile_options(bench_core PRIVATE -Wall -Wextra -O3 $<$<BOOL:${STOKESDYN_MARCH_NATIVE}>:-march=native>)
 target_link_libraries(bench_core PRIVATE ${tested}_stokes ${cmocka_library})
 
-add_executable(bench_ewald EXCLUDE_FROM_ALL ${tests}/../bench/bench_ewald.c)
-target_include_directories(bench_ewald PRIVATE ${tests} ${tests}/stokes ${cmocka_include})
-target_compile_options(bench_ewald PRIVATE -Wall -Wextra -O2)
-target_link_libraries(bench_ewald PRIVATE ${tested}_stokes ${cmocka_library})
+foreach(bench ewald lubrication)
+  add_executable(bench_${bench} EXCLUDE_FROM_ALL ${tests}/../bench/bench_${bench}.c)
+  target_include_directories(bench_${bench} PRIVATE ${tests} ${tests}/stokes ${cmocka_include})
+  target_compile_options(bench_${bench} PRIVATE -Wall -Wextra -O2)
+  target_link_libraries(bench_${bench} PRIVATE ${tested}_stokes ${cmocka_library})
+endforeach()
 
 # A plugin that believes to be built for another LAMMPS, and styles whose symbols this LAMMPS has not, to see the guard refuse them.
 # In a folder of its own, since newer LAMMPS loads every plugin in LAMMPS_PLUGIN_PATH.

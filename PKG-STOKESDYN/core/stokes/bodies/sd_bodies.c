@@ -173,7 +173,7 @@ static sd_status pre(loop *c, const double *r, const loads *f, const state *out)
 static const double rounding = 1e-14;
 /* To which the sparse system in the preconditioner is solved, whatever the tolerance of the loop:
  * enough for as many products as an exact one takes, to 1e-10 as well */
-static const double tie_accuracy = 0.02;
+static const double tie_accuracy = 0.01;
 
 static double drag_of(const sd_bodies *A, long i, int d)
 {

@@ -8,7 +8,7 @@
 
 /* In units of the drags of the bodies: pairs whose block is smaller are left out of the factor, as
  * is such fill. */
-static const double weak = 0.5, drop = 0.1;
+static const double weak = 0.4, drop = 0.1;
 enum { MOST_PRODUCTS = 1000, VECTORS = 4 };
 
 static long bodies_of(const sd_bodies *A)
