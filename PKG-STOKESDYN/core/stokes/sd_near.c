@@ -92,15 +92,14 @@ sd_status sd_near_find(sd_neighbors *list, const sd_spheres *s, int begin, int n
     }
   sd_status status = sd_cells_create(&c, n_all);
   for (int size = lowest; size <= highest && status == SD_OK; size++) {
-    const double largest = ldexp(1.0, size + 1);
-    int members = 0;
+    double largest = 0.0;
+    for (int i = 0; i < n_all; i++)
+      if (s->a[i] > largest && ilogb(s->a[i]) == size) largest = s->a[i];
+    if (largest == 0.0) continue;
     sd_cells_clear(&c, (double[3]){0.0, 0.0, 0.0}, reach * largest);
     for (int i = n_all - 1; i >= 0; i--)
-      if (s->a[i] > 0.0 && ilogb(s->a[i]) == size) {
-        sd_cells_add(&c, s->x, i);
-        members++;
-      }
-    for (int j = 0; j < n_all && members > 0 && status == SD_OK; j++)
+      if (s->a[i] > 0.0 && ilogb(s->a[i]) == size) sd_cells_add(&c, s->x, i);
+    for (int j = 0; j < n_all && status == SD_OK; j++)
       if (s->a[j] > 0.0 && ilogb(s->a[j]) <= size)
         status = look_from(&q, &c, j, ilogb(s->a[j]) == size, largest);
   }

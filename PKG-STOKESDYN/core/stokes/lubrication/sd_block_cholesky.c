@@ -94,15 +94,15 @@ static sd_status factor6(double A[36])
   return SD_OK;
 }
 
-/* B := B G^-T, G lower: each row b becomes G^-1 b */
-static void divide_rows(const double G[36], double B[36])
+/* B := G^-1 B, G lower, row by row */
+static void divide(const double *restrict G, double *restrict B)
 {
-  for (int r = 0; r < 6; r++)
-    for (int p = 0; p < 6; p++) {
-      double sum = B[6 * r + p];
-      for (int k = 0; k < p; k++) sum -= G[6 * p + k] * B[6 * r + k];
-      B[6 * r + p] = sum / G[7 * p];
-    }
+  for (int p = 0; p < 6; p++) {
+    for (int k = 0; k < p; k++)
+      for (int c = 0; c < 6; c++) B[6 * p + c] -= G[6 * p + k] * B[6 * k + c];
+    const double part = 1.0 / G[7 * p];
+    for (int c = 0; c < 6; c++) B[6 * p + c] *= part;
+  }
 }
 
 static void transpose6(double B[36])
@@ -115,15 +115,13 @@ static void transpose6(double B[36])
     }
 }
 
-/* out -= A B^T */
-static void subtract_product(const double A[36], const double B[36], double out[36])
+/* out -= A^T B */
+static void subtract_product(const double *restrict A, const double *restrict B,
+                             double *restrict out)
 {
   for (int p = 0; p < 6; p++)
-    for (int q = 0; q < 6; q++) {
-      double sum = 0.0;
-      for (int k = 0; k < 6; k++) sum += A[6 * p + k] * B[6 * q + k];
-      out[6 * p + q] -= sum;
-    }
+    for (int k = 0; k < 6; k++)
+      for (int q = 0; q < 6; q++) out[6 * p + q] -= A[6 * k + p] * B[6 * k + q];
 }
 
 static double norm6(const double B[36])
@@ -205,7 +203,7 @@ static sd_status build(sd_block_cholesky *f, int n, long count, const int (*pair
   return SD_OK;
 }
 
-/* Column of p: its neighbours and C_qp = A_qp G^-T. Returns their number, -1 without memory. */
+/* Column of p: its neighbours and C_qp^T = G^-1 A_pq. Returns their number, -1 without memory. */
 static int make_column(sd_block_cholesky *f, int p)
 {
   struct sd_elimination *w = f->work;
@@ -213,14 +211,14 @@ static int make_column(sd_block_cholesky *f, int p)
   look_around(w, p);
   for (int e = w->list[p]; e >= 0; e = w->end[e].next) {
     const int q = w->end[e].node, b = w->end[e].block;
-    double *C = f->block + 36 * (long) b;
+    double *Ct = f->block + 36 * (long) b;
     int(*entry)[2] = grow(f->entry, sizeof(*entry), &w->most_entries, w->entries + 1);
     if (!entry) return -1;
     f->entry = entry;
     f->entry[w->entries][0] = q;
     f->entry[w->entries++][1] = b;
-    if (w->rows[b] != q) transpose6(C);
-    divide_rows(f->pivot + 36 * (long) p, C);
+    if (w->rows[b] == q) transpose6(Ct);
+    divide(f->pivot + 36 * (long) p, Ct);
   }
   return w->entries - begin;
 }
@@ -231,6 +229,7 @@ static sd_status couple(sd_block_cholesky *f, const int q[2], const int r[2], do
 {
   struct sd_elimination *w = f->work;
   double fill[36] = {0.0};
+  /* transposed */
   const double *Cq = f->block + 36 * (long) q[1], *Cr = f->block + 36 * (long) r[1];
   if (w->stamp[r[0]] == q[0]) {
     const int b = w->seen[r[0]], as_rows = w->rows[b] == q[0];
@@ -261,8 +260,8 @@ static sd_status eliminate(sd_block_cholesky *f, int p, double drop)
   }
   for (int s = begin; s < begin + m && status == SD_OK; s++) {
     const int q = f->entry[s][0];
-    const double *C = f->block + 36 * (long) f->entry[s][1];
-    subtract_product(C, C, f->pivot + 36 * (long) q);
+    const double *Ct = f->block + 36 * (long) f->entry[s][1];
+    subtract_product(Ct, Ct, f->pivot + 36 * (long) q);
     look_around(w, q);
     for (int t = s + 1; t < begin + m && status == SD_OK; t++)
       status = couple(f, f->entry[s], f->entry[t], drop);
@@ -275,23 +274,11 @@ static sd_status eliminate(sd_block_cholesky *f, int p, double drop)
 
 enum { LANES = SD_BLOCK_LANES, PADDED = 6 * LANES };
 
-/* out = A, columns with zeros behind them */
+/* out: the rows of A, zeros behind each */
 static void pack(const double A[36], float *out)
 {
   for (int c = 0; c < 6; c++)
-    for (int r = 0; r < LANES; r++) out[LANES * c + r] = r < 6 ? (float) A[6 * r + c] : 0.0f;
-}
-
-/* G^-1, lower as G is */
-static void invert_lower(const double G[36], double out[36])
-{
-  memset(out, 0, 36 * sizeof(double));
-  for (int c = 0; c < 6; c++)
-    for (int r = c; r < 6; r++) {
-      double sum = r == c ? 1.0 : 0.0;
-      for (int k = c; k < r; k++) sum -= G[6 * r + k] * out[6 * k + c];
-      out[6 * r + c] = sum / G[7 * r];
-    }
+    for (int r = 0; r < LANES; r++) out[LANES * c + r] = r < 6 ? (float) A[6 * c + r] : 0.0f;
 }
 
 static sd_status pack_all(sd_block_cholesky *f, int n)
@@ -312,8 +299,10 @@ static sd_status pack_all(sd_block_cholesky *f, int n)
     }
   }
   for (long k = 0; k < n; k++) {
-    double inverse[36];
-    invert_lower(f->pivot + 36 * (long) f->order[k], inverse);
+    double inverse[36] = {0.0};
+    for (int d = 0; d < 6; d++) inverse[7 * d] = 1.0;
+    divide(f->pivot + 36 * (long) f->order[k], inverse);
+    transpose6(inverse);
     pack(inverse, f->inverse + PADDED * k);
     for (long e = f->first[k]; e < f->first[k + 1]; e++)
       pack(f->block + 36 * (long) f->entry[e][1], f->column + PADDED * e);
@@ -345,7 +334,7 @@ sd_status sd_block_cholesky_make(sd_block_cholesky *f, int n, const double *diag
   return status;
 }
 
-/* out += s A v, v [6] */
+/* out += s A v, v [6], of which columns are packed */
 static inline void add_product(const float *restrict A, float s, const float *restrict v,
                                float *restrict out)
 {
