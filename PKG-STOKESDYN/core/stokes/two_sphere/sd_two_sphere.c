@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "sd_two_sphere_near.h"
-#include "sd_two_sphere_table.h"
+#include "sd_two_sphere_table_internal.h"
 
 /* The shipped table is read once, into a finer one from which six neighbours a direction are
  * enough: even steps in the logarithm of the ratio and in x = (mu over its largest value)^(1/2), in

@@ -26,8 +26,10 @@ void sd_two_sphere_free(sd_two_sphere *t);
 /* full = D = R_exact - R_rpy of two spheres alone, relative = Q^T D Q (sd_pair_resistance.h), for a
  * viscosity of 1. xi: the centre distance is a1 + a2 + xi (a1 + a2)/2. Both are positive
  * semidefinite: the flow of the RPY model is the one of least dissipation among more flows than the
- * exact one. D is the exact one within 1e-7 Stokes drags of the smaller sphere. SD_OK; SD_EOUTSIDE:
- * a ratio larger than that created for, xi not in (0, SD_TWO_SPHERE_LARGEST_XI]. */
+ * exact one. D is the exact one within 1e-8 (to ratio 10) or 1e-7 Stokes drags of the smaller
+ * sphere; what is lost of definiteness by that is less than 1e-8 of the largest eigenvalue, beyond
+ * ratio 10, where all of D is small, 1e-8 Stokes drags. SD_OK; SD_EOUTSIDE: a ratio larger than that
+ * created for, xi not in (0, SD_TWO_SPHERE_LARGEST_XI]. */
 sd_status sd_two_sphere_correction(const sd_two_sphere *t, double a1, double a2, double xi,
                                    sd_pair_resistance *full, sd_pair_resistance *relative);
 

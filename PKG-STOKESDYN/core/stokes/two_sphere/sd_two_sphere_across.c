@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "sd_two_sphere_modes.h"
+#include "sd_two_sphere_modes_internal.h"
 
 /* Motions across the axis, sphere moving along x or spinning about y:
  *

@@ -1,6 +1,6 @@
 #include <math.h>
 
-#include "sd_two_sphere_modes.h"
+#include "sd_two_sphere_modes_internal.h"
 
 /* The fluid only turns about the axis, its velocity is harmonic with sin t P_n'(m). On a sphere it
  * is W rho, so that the modes there are 2 sqrt2 W e^(-k |xi|), from (cosh xi - m)^(-3/2). A mode

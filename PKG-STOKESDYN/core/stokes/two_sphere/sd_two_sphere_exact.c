@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "sd_two_sphere_modes.h"
+#include "sd_two_sphere_modes_internal.h"
 
 /* The mirror image of a number becomes it; what they differed by */
 static void mirror(sd_real number, sd_real *image, sd_real size, sd_real *asymmetry)

@@ -1,7 +1,7 @@
 #include <math.h>
 
 #include "sd_constants.h"
-#include "sd_two_sphere_table.h"
+#include "sd_two_sphere_table_internal.h"
 
 double sd_two_sphere_node(int n, int k)
 {

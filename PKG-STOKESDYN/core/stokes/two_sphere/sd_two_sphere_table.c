@@ -1,5 +1,5 @@
-/* Made by make_two_sphere_table; sd_two_sphere_table.h says of what. */
-#include "sd_two_sphere_table.h"
+/* Made by make_two_sphere_table; sd_two_sphere_table_internal.h says of what. */
+#include "sd_two_sphere_table_internal.h"
 
 const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS]
                                 [SD_TWO_SPHERE_FUNCTIONS] = {

@@ -9,7 +9,7 @@
 
 #include "sd_two_sphere_exact.h"
 #include "sd_two_sphere_near.h"
-#include "sd_two_sphere_table.h"
+#include "sd_two_sphere_table_internal.h"
 
 enum {
   RATIOS = SD_TWO_SPHERE_RATIOS,
@@ -35,8 +35,8 @@ static void at_node(int i, int j, double value[FUNCTIONS])
 
 static void make(void)
 {
-  printf("/* Made by make_two_sphere_table; sd_two_sphere_table.h says of what. */\n"
-         "#include \"sd_two_sphere_table.h\"\n\n"
+  printf("/* Made by make_two_sphere_table; sd_two_sphere_table_internal.h says of what. */\n"
+         "#include \"sd_two_sphere_table_internal.h\"\n\n"
          "const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS]\n"
          "                                [SD_TWO_SPHERE_FUNCTIONS] = {\n");
   for (int i = 0; i < RATIOS; i++) {

@@ -11,8 +11,8 @@
  * feel the other sphere like e^(-k (alpha + beta)): SD_TWO_SPHERE_DEPTH/(alpha + beta) of them are
  * enough, if the motion of the larger sphere alone, which goes like e^(-k beta), is put in as it is
  * known. */
-#ifndef SD_TWO_SPHERE_MODES_H
-#define SD_TWO_SPHERE_MODES_H
+#ifndef SD_TWO_SPHERE_MODES_INTERNAL_H
+#define SD_TWO_SPHERE_MODES_INTERNAL_H
 
 #include "sd_constants.h"
 

@@ -5,8 +5,8 @@
  *
  * in which near contact (mu^2 like the gap over a1) and far away (mu like twice the logarithm of
  * the distance) take about equal parts of the range, whatever the ratio. */
-#ifndef SD_TWO_SPHERE_TABLE_H
-#define SD_TWO_SPHERE_TABLE_H
+#ifndef SD_TWO_SPHERE_TABLE_INTERNAL_H
+#define SD_TWO_SPHERE_TABLE_INTERNAL_H
 
 #include "sd_pair_resistance.h"
 #include "sd_two_sphere.h"
