@@ -440,7 +440,7 @@ double Hydrodynamics::memory_usage() const
   const size_t numbers = eta.capacity() + slip.capacity() + resistance.capacity() +
       spin.capacity() + solution.capacity() + work_room;
   return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
-      mobile.memory_usage() + sizeof(double) * (double) numbers;
+      lubrication.memory_usage() + mobile.memory_usage() + sizeof(double) * (double) numbers;
 }
 
 }    // namespace StokesDyn
