@@ -74,6 +74,16 @@ class Name(Choice):
         return GOOD if word in self.good else LATE
 
 
+# what a field may name, for the scenes
+VARIABLES = """variable eta equal 1.5
+variable zero equal 0
+variable minus equal -1
+variable nan equal 1e308*10-1e308*10
+variable text string hello
+variable index index 3 4
+variable place atom 1.2+0.01*x"""
+
+
 class Field(Number):
     """A number, or v_name: an equal-style variable, an atom-style one too where that is allowed."""
 

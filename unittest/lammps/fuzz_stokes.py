@@ -1,5 +1,6 @@
 """Scenes, grammar and rules of pair_style and fix stokes_dynamics, written from their pages (for fuzz.py)."""
-from fuzz_grammar import BAD, COUNT, GOOD, LOUD, ODD, U, YES_NO, Choice, Field, Integer, Name, Number, NumberOr, delete_something
+from fuzz_grammar import (BAD, COUNT, GOOD, LOUD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, Name, Number, NumberOr,
+                          delete_something)
 
 BOX = 18.0
 SPHERES = """units lj
@@ -19,13 +20,7 @@ create_atoms 1 single -3 -4 4
 {molecules}
 velocity all set 0.1 -0.2 0.3
 velocity all create 0.5 4711 loop geom
-variable eta equal 1.5
-variable zero equal 0
-variable minus equal -1
-variable nan equal 1e308*10-1e308*10
-variable text string hello
-variable index index 3 4
-variable place atom 1.2+0.01*x
+{variables}
 region zone block INF INF INF INF INF INF
 region part block -3 20 -20 20 -20 20
 region nowhere block 8 8.5 8 8.5 8 8.5
@@ -67,7 +62,8 @@ def spheres(case):
     molecules = "" if how == "no molecules" else "set atom 1*3 mol 1\nset atom 4*5 mol 2"
     radii += "\nmass 1 1" * (style == "hybrid sphere bond")
     boundary = "p p p" if how == "periodic" else "f f f"
-    case.lines = SPHERES.format(style=style, boundary=boundary, radii=radii, molecules=molecules).split("\n")
+    case.lines = SPHERES.format(style=style, boundary=boundary, radii=radii, molecules=molecules,
+                                variables=VARIABLES).split("\n")
     return how
 
 

@@ -1,8 +1,8 @@
 """Scenes, grammar and rules of fix hydro/vans, written from its page (for fuzz.py)."""
 import os
 
-from fuzz_grammar import (ANY, BAD, COUNT, LOUD, NOT_NEGATIVE, ODD, YES_NO, Choice, Counted, Field, File, Integer, Name,
-                          Number, Or, decimal, delete_something, positive)
+from fuzz_grammar import (ANY, BAD, COUNT, LOUD, NOT_NEGATIVE, ODD, VARIABLES, YES_NO, Choice, Counted, Field, File, Integer,
+                          Name, Number, Or, decimal, delete_something, positive)
 
 CELLS = 20
 GRAINS = """units si
@@ -18,13 +18,7 @@ create_atoms 1 single 0.005 0.013 0.018
 create_atoms 1 single 0.013 0.004 0.04
 {radii}
 velocity all set 0.1 0.01 -0.02
-variable eta equal 1.5
-variable zero equal 0
-variable minus equal -1
-variable nan equal 1e308*10-1e308*10
-variable text string hello
-variable index index 3 4
-variable place atom 1.2+0.01*x
+{variables}
 region zone block INF INF INF INF INF INF
 region part block 0 0.01 0 0.02 -1 1
 region nowhere block 0 0.001 0 0.001 0.1 0.101
@@ -124,7 +118,7 @@ def make_vans(case):
     radii = "mass 1 1" if how == "no radius" else "set group all diameter 0.006 density 2500"
     if how == "usual":
         radii += "\nmass 1 1\nset atom 1*2 mol 1"
-    case.lines = GRAINS.format(style=style, radii=radii).split("\n")
+    case.lines = GRAINS.format(variables=VARIABLES, style=style, radii=radii).split("\n")
     required = ["mesh", "fluid", "gravity"]
     words = case.damaged([case.draw.choice(COUNT.good)] + case.words_of(VANS, required, few=7))
     case.tried = len(case.lines)
@@ -135,7 +129,7 @@ def make_vans(case):
 
 def make_vans_modify(case):
     case.style = "hydro/vans"
-    case.lines = GRAINS.format(style="sphere", radii="set group all diameter 0.006 density 2500").split("\n")
+    case.lines = GRAINS.format(variables=VARIABLES, style="sphere", radii="set group all diameter 0.006 density 2500").split("\n")
     case.lines.append(f"fix s all hydro/vans 1 mesh {CELLS} 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.81 solve 1e-3 1e-4")
     values = ["values"] + [str(0.01 * k) for k in range(CELLS + 1)]
     others = [["average"], ["solve", "1e-3", "1e-4"], ["given", "given.txt"]]
