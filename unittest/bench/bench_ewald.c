@@ -20,14 +20,27 @@ typedef struct {
   const char *name;
   int n, periodic, width;
   double largest, phi, tolerance;
+  /* 0: radii evenly in the logarithm; so many of the largest, the others 1; -1: each octave with the same volume */
+  int few;
 } row;
 
 static const row rows[] = {
-    {"periodic", 100000, 1, 3, 1.0, 0.2, 1e-3},  {"periodic-6", 100000, 1, 3, 1.0, 0.2, 1e-6},
-    {"unequal", 100000, 1, 3, 3.0, 0.2, 1e-3},   {"unequal-6", 100000, 1, 3, 3.0, 0.2, 1e-6},
-    {"torques", 100000, 1, 6, 1.0, 0.2, 1e-3},   {"torques-6", 100000, 1, 6, 1.0, 0.2, 1e-6},
-    {"open-3", 100000, 0, 3, 1.0, 0.2, 1e-3},    {"open", 100000, 0, 3, 1.0, 0.2, 3e-7},
-    {"small", 10000, 1, 3, 1.0, 0.2, 1e-3},      {"million", 1000000, 1, 3, 1.0, 0.2, 1e-3},
+    {"periodic", 100000, 1, 3, 1.0, 0.2, 1e-3, 0},
+    {"periodic-6", 100000, 1, 3, 1.0, 0.2, 1e-6, 0},
+    {"unequal", 100000, 1, 3, 3.0, 0.2, 1e-3, 0},
+    {"unequal-6", 100000, 1, 3, 3.0, 0.2, 1e-6, 0},
+    {"torques", 100000, 1, 6, 1.0, 0.2, 1e-3, 0},
+    {"torques-6", 100000, 1, 6, 1.0, 0.2, 1e-6, 0},
+    {"open-3", 100000, 0, 3, 1.0, 0.2, 1e-3, 0},
+    {"open", 100000, 0, 3, 1.0, 0.2, 3e-7, 0},
+    {"small", 10000, 1, 3, 1.0, 0.2, 1e-3, 0},
+    {"million", 1000000, 1, 3, 1.0, 0.2, 1e-3, 0},
+    {"few-10", 100000, 1, 3, 10.0, 0.2, 1e-3, 100},
+    {"few-10-6", 100000, 1, 3, 10.0, 0.2, 1e-6, 100},
+    {"few-30", 100000, 1, 3, 30.0, 0.2, 1e-3, 4},
+    {"few-30-6", 100000, 1, 3, 30.0, 0.2, 1e-6, 4},
+    {"all-100", 100000, 1, 3, 100.0, 0.2, 1e-3, -1},
+    {"all-100-6", 100000, 1, 3, 100.0, 0.2, 1e-6, -1},
 };
 enum { ROWS = sizeof(rows) / sizeof(rows[0]) };
 
@@ -91,7 +104,9 @@ static void measure(const row *r)
   double *x = malloc(24 * n), *a = malloc(8 * n), *F = malloc(8 * n * (size_t) r->width), V = 0.0;
   double *u = malloc(8 * n * (size_t) r->width), *v = malloc(8 * n * (size_t) r->width);
   for (size_t i = 0; i < n; i++) {
-    a[i] = r->largest == 1.0 ? 1.0 : exp(uniform(&seed, 0, log(r->largest)));
+    if (r->few > 0) a[i] = i < (size_t) r->few ? r->largest : 1.0;
+    else if (r->few < 0) a[i] = cbrt(1.0 / (1.0 - uniform(&seed, 0, 1) * (1.0 - pow(r->largest, -3))));
+    else a[i] = r->largest == 1.0 ? 1.0 : exp(uniform(&seed, 0, log(r->largest)));
     V += 4.0 / 3.0 * SD_PI * pow(a[i], 3);
   }
   sd_ewald_box box = {.periodic = r->periodic};

@@ -151,15 +151,20 @@ def test_auto_splits_the_sum_of_large_open_clouds(simulation, tmp_path, n, split
     assert len(said(log)) == split      # once, though there are two runs
 
 
-def test_parameters_are_told_when_they_are_others(simulation, tmp_path):
-    log = tmp_path / "log"
-    sim = simulation(cloud(60, 0.1), f"{ALL} visc 1", log=log, boundary="p p p", box=[(0.0, 40.0)] * 3).run().run()
+def test_a_box_that_is_changed_between_runs(simulation, tmp_path):
+    """The parameters are told again, and the forces are those of a new run in the new box."""
+    log, spheres, words = tmp_path / "log", cloud(60, 0.1), f"{ALL} visc 1 relative_tolerance 1e-9 far_field_tolerance 1e-4"
+    sim = simulation(spheres, words, log=log, boundary="p p p", box=[(0.0, 40.0)] * 3).run().run()
     sim.command("change_box all x final 0 50 y final 0 50 z final 0 50 remap")
-    sim.run().close()
+    forces = sim.run().drag
+    sim.close()
     lines = said(log)
     assert len(lines) == 2 and lines[0] != lines[1]
     assert "60 spheres in the periodic box: grid" in lines[0] and "far_field_tolerance 0.0001" in lines[0]
     assert 1e-6 < float(re.search("6 pi eta a\\) (.*) expected", lines[0]).group(1)) < 1e-3
+    spheres.x = spheres.x * 50 / 40
+    again = simulation(spheres, words, boundary="p p p", box=[(0.0, 50.0)] * 3).run().drag
+    assert np.linalg.norm(forces - again) < 1e-7 * np.linalg.norm(again)
 
 
 @pytest.mark.parametrize("boundary", ["p p f", "p f f", "f p s", "m f p"])
