@@ -107,7 +107,7 @@ say "configuring: $packages"
 cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" -D MPI_CXX_COMPILER="$mpicxx" -D MPI_C_COMPILER="$mpicc" \
   -D CMAKE_INSTALL_PREFIX="$root" -D CMAKE_INSTALL_LIBDIR=lib -D CMAKE_INSTALL_RPATH="$root/lib" > "$root/configure.log" 2>&1 ||
   { tail -n 30 "$root/configure.log" >&2; fail "LAMMPS could not be configured; whole log: $root/configure.log"; }
-jobs=$(nproc)
+jobs=$(env -u OMP_NUM_THREADS nproc)
 say "compiling on $jobs cores (about 5 minutes on two)"
 # One line every 5 %: enough to see it move, little enough for a log.
 progress='/^\[[0-9]+\/[0-9]+\]/ { p = int(20 * $2 / $3); if (p > last) { last = p;

@@ -40,5 +40,5 @@ echo "[set-up] building the plugin (a minute on two cores; tail -f ${log#"$PWD"/
 mkdir -p "$top/build"
 { cmake -S "$top/cmake" -B "$top/build" -G Ninja -D LAMMPS_SOURCE_DIR="$lammps/src" -D LAMMPS_INSTALL_DIR="$lammps" \
     -D STOKESDYN_TESTS="$([ "${1:-}" = test ] && echo ON || echo OFF)" &&
-  cmake --build "$top/build" -j "$(nproc)"; } > "$log" 2>&1 || { tail -n 40 "$log" >&2; echo "setup: the plugin could not be built; whole log: $log" >&2; exit 1; }
+  cmake --build "$top/build" -j "$(env -u OMP_NUM_THREADS nproc)"; } > "$log" 2>&1 || { tail -n 40 "$log" >&2; echo "setup: the plugin could not be built; whole log: $log" >&2; exit 1; }
 echo "[set-up] ready: build/stokesdynplugin.so; '. build/env.sh' puts lmp on the PATH"

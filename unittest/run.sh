@@ -9,6 +9,7 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top" || exit 1
 export PATH=${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin}
 export HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}
+cores=$(env -u OMP_NUM_THREADS nproc)    # which takes that variable for a limit
 export OMP_NUM_THREADS=1
 if [ "$(id -u)" = 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
 
@@ -26,7 +27,7 @@ broken() { say "FAILED: $*"; failed=$((failed + 1)); }
 # ctest FOLDER: adds up its tests. Its summary reads "91% tests passed, 1 tests failed out of 11".
 core_tests() {
   local log=$1/ctest.log
-  ctest --test-dir "$1" -j "$(nproc)" --output-on-failure 2>&1 | tee "$log"
+  ctest --test-dir "$1" -j "$cores" --output-on-failure 2>&1 | tee "$log"
   local counts
   counts=$(sed -n 's/^.* \([0-9]*\) tests failed out of \([0-9]*\)$/\1 \2/p' "$log")
   if [ -z "$counts" ] || [ "${counts#* }" = 0 ]; then broken "no core tests in $1"; return; fi
@@ -46,7 +47,7 @@ lammps=$(sed -n 's/^LAMMPS_SOURCE_DIR:[A-Z]*=//p' build/CMakeCache.txt)
 log=build/sanitize.log
 { cmake -S cmake -B build/sanitize -G Ninja -D LAMMPS_SOURCE_DIR="$lammps" -D STOKESDYN_TESTS=ON \
     -D CMAKE_BUILD_TYPE=RelWithDebInfo -D STOKESDYN_SANITIZE=address,undefined &&
-  cmake --build build/sanitize -j "$(nproc)" --target $(find unittest/core -name 'test_*.c' -exec basename -s .c {} +); } > $log 2>&1
+  cmake --build build/sanitize -j "$cores" --target $(find unittest/core -name 'test_*.c' -exec basename -s .c {} +); } > $log 2>&1
 if [ $? = 0 ]; then
   core_tests build/sanitize
 else
@@ -65,7 +66,7 @@ if [ -z "$python" ]; then
 else
   report=build/pytest.xml
   rm -f $report
-  $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 -n "$(nproc)" --dist loadfile --junitxml=$report \
+  $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 -n "$cores" --dist loadfile --junitxml=$report \
     unittest/lammps
   counts=$($python - $report << 'END'
 import sys, xml.etree.ElementTree as tree
