@@ -181,7 +181,7 @@ void Hydrodynamics::solve()
 void Hydrodynamics::place()
 {
   const Scene::Settings &how = settings.scene;
-  eta.resize(solvers.size());
+  std::vector<double> eta(solvers.size());
   for (size_t k = 0; k < solvers.size(); k++) eta[k] = ambient.viscosity(solvers[k]);
   scene.set_open_box(memory->global.open_box);
   scene.update(solvers, eta);
@@ -437,7 +437,7 @@ double Hydrodynamics::dissipation(int i) const
 
 double Hydrodynamics::memory_usage() const
 {
-  const size_t numbers = eta.capacity() + slip.capacity() + resistance.capacity() +
+  const size_t numbers = slip.capacity() + resistance.capacity() +
       spin.capacity() + solution.capacity() + work_room;
   return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
       lubrication.memory_usage() + mobile.memory_usage() + sizeof(double) * (double) numbers;

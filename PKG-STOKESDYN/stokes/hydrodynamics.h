@@ -94,7 +94,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps */
   std::vector<int> solvers;
   /* of a solve, by rows: row k is the sphere solvers[k] */
-  std::vector<double> eta, slip, resistance, spin, solution;
+  std::vector<double> slip, resistance, spin, solution;
   /* scratch of the solver, not filled: parts that it does not need take no memory */
   std::unique_ptr<double[]> work;
   size_t work_room = 0;

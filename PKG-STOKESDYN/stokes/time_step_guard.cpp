@@ -51,26 +51,38 @@ double TimeStepGuard::inertia(int i, bool held, size_t d) const
   return w;
 }
 
-TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms)
+TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms,
+                                          std::vector<double> *weight)
 {
-  const std::vector<char> held = held_atoms();
+  std::vector<char> held(atom->nlocal + 1, 0);
+  for (int f = 0; f < modify->nfix; f++)
+    if (utils::strmatch(modify->fix[f]->style, "^rigid")) {
+      int dim;
+      if (const int *body = (const int *) modify->fix[f]->extract("body", dim))
+        for (int i = 0; i < atom->nlocal; i++) held[i] = held[i] || body[i] >= 0;
+    }
   const size_t m = A.spin ? 6 : 3;
   double most[3] = {-INFINITY, -INFINITY, 0.0};    // -shortest, -of_velocity, longest
-  weight.assign(m * A.n + 1, 1.0);
+  if (weight) weight->assign(m * A.n + 1, 1.0);
   for (int k = 0; k < A.n; k++) {
     if (A.drag[k] == 0.0) continue;
     const int i = atoms ? atoms[k] : k;
+    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
     for (size_t d = 0; d < m; d++) {
-      double &w = weight[m * k + d];
-      w = inertia(i, held[i], d);
+      // Force over acceleration in the units of this LAMMPS
+      double w = mass / force->ftm2v;
+      if (d >= 3) w *= 0.4 * atom->radius[i] * atom->radius[i];
+      if (held[i]) w *= HELD;
       const double time = w / (d < 3 ? A.drag[k] : A.spin[k]);
       if (!held[i]) most[0] = std::max(most[0], -time);
       if (!held[i] && d < 3) most[1] = std::max(most[1], -time);
       most[2] = std::max(most[2], time);
+      if (weight) (*weight)[m * k + d] = w;
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, world);
-  for (double &w : weight) w /= -most[0];
+  if (weight)
+    for (double &w : *weight) w /= -most[0];
   return {-most[0], -most[1], most[2]};
 }
 
@@ -79,6 +91,8 @@ TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms)
 double TimeStepGuard::compute(const sd_system &A, const int *atoms)
 {
   const size_t m = A.spin ? 6 : 3;
+  std::vector<double> weight;
+  weigh(A, atoms, &weight);
   std::vector<double> v(m * A.n + 1), work(SD_SOLVE_WORK(A.n, m) + 1);
   for (int k = 0; k < A.n; k++) {
     const uint64_t tag = atom->tag[atoms ? atoms[k] : k];
@@ -125,7 +139,7 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   const bool due = solves >= state.due;
   if (!due && state.limit > 0.0 && lambda >= state.lambda_min) return;
 
-  const Times tau = weigh(system, atoms);
+  const Times tau = weigh(system, atoms, nullptr);
   if (std::isinf(tau.shortest)) {
     state.limit = 0.0;
     return;
@@ -139,7 +153,6 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   if ((due && near) || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
   state.lambda_min = 0.5 * state.limit / tau.of_velocity;
   warn(tau.of_velocity);
-  std::vector<double>().swap(weight);    // for long not needed again
 }
 
 /* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */
@@ -150,7 +163,8 @@ void TimeStepGuard::look_at_films(sd_lubrication &near, const int *atoms)
   for (int k = 0; k < near.n; k++)
     for (size_t d = 0; d < 6; d++) {
       W[6 * k + d] = inertia(atoms[k], held[atoms[k]], d);
-      v[6 * k + d] = sd_hash_unit(sd_hash_mix((8 * (uint64_t) atom->tag[atoms[k]] + d) * SD_HASH_STEP)) - 0.5;
+      v[6 * k + d] =
+          sd_hash_unit(sd_hash_mix((8 * (uint64_t) atom->tag[atoms[k]] + d) * SD_HASH_STEP)) - 0.5;
     }
   double rate;
   const sd_status status = sd_lubrication_rate(&near, W.data(), v.data(), work.data(), &rate);
@@ -161,15 +175,17 @@ void TimeStepGuard::look_at_films(sd_lubrication &near, const int *atoms)
   if (update->setupflag)
     utils::logmesg(lmp,
                    command + ": keyword lubrication: explicit time steps of free spheres up to " +
-                       text(films) + " are stable with the gaps of now, shorter ones with smaller gaps; fix "
+                       text(films) +
+                       " are stable with the gaps of now, shorter ones with smaller gaps; fix "
                        "stokes_dynamics/overdamped has no such limit\n");
   if (warned_of_films || update->dt <= films) return;
   warned_of_films = true;
-  error->warning(FLERR,
-                 std::string(command + ": keyword lubrication: the time step " + text(update->dt) +
-                             " is above " + text(films) +
-                             ", the limit of explicit steps of free spheres with films between them: "
-                             "use fix stokes_dynamics/overdamped, or a larger lubrication_gap"));
+  error->warning(
+      FLERR,
+      std::string(command + ": keyword lubrication: the time step " + text(update->dt) +
+                  " is above " + text(films) +
+                  ", the limit of explicit steps of free spheres with films between them: "
+                  "use fix stokes_dynamics/overdamped, or a larger lubrication_gap"));
 }
 
 }    // namespace StokesDyn

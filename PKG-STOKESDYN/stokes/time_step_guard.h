@@ -58,15 +58,15 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
  private:
   std::string command;
   bool warned = false, warned_of_films = false;
-  /* [width n] inertia of each row over the shortest relaxation time, which makes it a drag */
-  std::vector<double> weight;
 
   /* W D^-1, the times in which spheres alone lose their velocity or spin: the shortest and the
-   * shortest of velocities of those that are free (INFINITY: nobody is), and the longest of all */
+   * shortest of velocities of those that are free (INFINITY: nobody is), and the longest of all.
+   * weight, if wanted: [width n] inertia of each row over the shortest of them, which makes it a
+   * drag */
   struct Times {
     double shortest, of_velocity, longest;
   };
-  Times weigh(const sd_system &system, const int *atoms);
+  Times weigh(const sd_system &system, const int *atoms, std::vector<double> *weight);
   std::vector<char> held_atoms() const;
   double inertia(int i, bool held, size_t d) const;
   double compute(const sd_system &system, const int *atoms);

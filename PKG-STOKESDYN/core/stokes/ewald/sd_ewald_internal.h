@@ -30,11 +30,10 @@ typedef struct {
 /* Degrees that there are kernels for: the polynomial is filled up with zeros. */
 #define SD_NEAR_DEGREES(_) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
 
-/* What windows need of a sphere: its first point on the grid and in the brick, v of sd_window.h each
- * way, b of sd_radial.h */
+/* What windows need of a sphere: its first point on the grid, v of sd_window.h each way, b of
+ * sd_radial.h */
 typedef struct {
   int at[3];
-  long base;
   double v[3], b;
 } sd_spread_place;
 
@@ -54,7 +53,9 @@ typedef struct {
   const sd_spread_place *place;
   /* [width n] w F in order of place; or the velocities that come out */
   double *F;
+  /* its first point on the grid; numbers from row to row and from layer to layer */
   double *brick;
+  int lo[3];
   long row, layer;
 } sd_spreading;
 

@@ -99,6 +99,13 @@ INLINE void rows_of_force(int terms, const sd_spreading *s, const windows *w, co
     }
 }
 
+/* The first point of a sphere in the brick */
+INLINE double *corner_of(const sd_spreading *s, const sd_spread_place *at)
+{
+  return s->brick + (at->at[0] - s->lo[0]) * s->layer + (at->at[1] - s->lo[1]) * s->row +
+         3L * (at->at[2] - s->lo[2]);
+}
+
 /* vectors: of a chunk */
 INLINE void spread_chunk(int terms, int vectors, const sd_spreading *s, const windows *w,
                          const double *V, double *corner)
@@ -133,7 +140,7 @@ INLINE void spread_with(int terms, int vectors, int chunks, const sd_spreading *
     rows_of_force(terms, s, &w, s->F + (long) s->width * i, at->b, V);
     for (int c = 0; c < chunks; c++) {
       const int skip = c * vectors * LANES;
-      spread_chunk(terms, vectors, s, &w, V[0] + skip, s->brick + at->base + skip);
+      spread_chunk(terms, vectors, s, &w, V[0] + skip, corner_of(s, at) + skip);
     }
   }
 }
@@ -206,7 +213,7 @@ INLINE void interpolate_with(int terms, int vectors, int chunks, const sd_spread
     windows_at(terms, s, at, &w);
     for (int c = 0; c < chunks; c++) {
       const int skip = c * vectors * LANES;
-      gather_chunk(terms, vectors, s, &w, s->brick + at->base + skip, S[0] + skip);
+      gather_chunk(terms, vectors, s, &w, corner_of(s, at) + skip, S[0] + skip);
     }
     force_of_rows(terms, s, &w, at->b, S, s->F + (long) s->width * i);
   }

@@ -87,7 +87,6 @@ void sd_ewald_waves_free(sd_ewald_waves *w)
   sd_wave_free(&w->wave);
   sd_grid_free(&w->grid);
   free(w->place);
-  free(w->F);
   memset(w, 0, sizeof(*w));
 }
 
@@ -98,10 +97,8 @@ static int make_room(sd_ewald_waves *w, int n)
   if (n <= w->room && w->place) return 1;
   const size_t many = (size_t) n + (size_t) n / 8 + 8;
   free(w->place);
-  free(w->F);
   w->place = malloc(sizeof(sd_spread_place) * many);
-  w->F = malloc(sizeof(double) * (size_t) w->width * many);
-  w->room = w->place && w->F ? (int) many : 0;
+  w->room = w->place ? (int) many : 0;
   return w->room > 0;
 }
 
@@ -202,12 +199,7 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
   if (status == SD_OK) status = sd_grid_place(g, bricks);
   if (status != SD_OK) return status;
   int equal = 1;
-  for (int i = 0; i < w->n; i++) {
-    sd_spread_place *p = w->place + i;
-    p->base = (p->at[0] - g->lo[0]) * g->layer + (p->at[1] - g->lo[1]) * g->row +
-        3L * (p->at[2] - g->lo[2]);
-    equal = equal && p->b == 0.0;
-  }
+  for (int i = 0; i < w->n; i++) equal = equal && w->place[i].b == 0.0;
   sd_spreading *s = &w->spreading;
   const double *m = s->metric;
   const int oblique = m[3] != 0.0 || m[4] != 0.0 || m[5] != 0.0;
@@ -216,8 +208,8 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
   s->window = &w->window;
   s->terms = w->width == 6 || (oblique && !equal) ? 4 : equal ? 1 : 2;
   s->place = w->place;
-  s->F = w->F;
   s->brick = g->brick;
+  memcpy(s->lo, g->lo, sizeof(s->lo));
   s->row = g->row;
   s->layer = g->layer;
   return SD_OK;
@@ -225,19 +217,20 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
 
 /* --- product --- */
 
-sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F)
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
 {
   const long m = w->width, vectors = m / 3 * w->n;
   for (int i = 0; i < w->n; i++) {
     const long j = w->sphere[i];
-    for (int d = 0; d < m; d++) w->F[m * i + d] = s->w[j] * F[m * j + d];
+    for (int d = 0; d < m; d++) u[m * i + d] = s->w[j] * F[m * j + d];
   }
-  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(w->F + 3 * k, w->turn);
+  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, w->turn);
   sd_grid *g = &w->grid;
   memset(g->brick, 0, sizeof(double) * ((size_t) (g->layer * g->n[0]) + 16));
+  w->spreading.F = u;
   w->kernels->spread(&w->spreading);
   const sd_status status = sd_grid_convolve(g, sd_wave_multiply, &w->wave);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
-  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(w->F + 3 * k, 3 - w->turn);
+  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
   return status;
 }

@@ -31,11 +31,10 @@ typedef struct {
   sd_wave wave;
   sd_grid grid;
   sd_spreading spreading;
-  /* [n] which spheres, where they stand; w F and then u [width n] */
+  /* [n] which spheres, where they stand */
   int n, room;
   const int *sphere;
   sd_spread_place *place;
-  double *F;
 } sd_ewald_waves;
 
 /* Tables for a splitting, in the frame of the last one. SD_OK or SD_ENOMEMORY. */
@@ -52,9 +51,9 @@ sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int 
 /* Bricks of all ranks [ranks][6], which are turned if the frame is. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks);
 
-/* F [width] a sphere -> w->F, in order of sphere and without its weight. SD_OK or what an exchange
- * said. */
-sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F);
+/* F [width] a sphere -> u [width n], in order of sphere and without its weight, memory that the
+ * caller has for it. SD_OK or what an exchange said. */
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u);
 
 void sd_ewald_waves_free(sd_ewald_waves *w);
 

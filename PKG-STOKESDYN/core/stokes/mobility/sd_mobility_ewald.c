@@ -211,13 +211,14 @@ static sd_status sums_of(const ewald *e, const double *F, double *sums)
   return e->world.sum ? e->world.sum(e->world.ctx, sums, 9 * e->levels) : SD_OK;
 }
 
-static void add_waves(const ewald *e, int level, double *u)
+/* u += w rows */
+static void add_waves(const ewald *e, int level, const double *rows, double *u)
 {
   const long m = e->width;
   const sd_ewald_waves *waves = e->waves + level;
   for (int i = 0; i < waves->n; i++) {
     const long j = e->sphere[i];
-    for (int d = 0; d < m; d++) u[m * j + d] += e->spheres.w[j] * waves->F[m * i + d];
+    for (int d = 0; d < m; d++) u[m * j + d] += e->spheres.w[j] * rows[m * i + d];
   }
 }
 
@@ -257,8 +258,9 @@ static sd_status apply(void *state, const double *F, double *u)
   if (e->levels == 2)
     status = sd_ewald_large_pairs_apply(&e->large_pairs, &e->spheres, e->sphere, &e->world, F, u);
   for (int l = 0; l < e->levels && status == SD_OK; l++) {
-    status = sd_ewald_waves_apply(e->waves + l, &e->spheres, F);
-    if (status == SD_OK) add_waves(e, l, u);
+    double *rows = e->pairs.u; /* free, and longer than a row for each of our spheres */
+    status = sd_ewald_waves_apply(e->waves + l, &e->spheres, F, rows);
+    if (status == SD_OK) add_waves(e, l, rows, u);
   }
   if (status == SD_OK && periodic) add_means(e, sums, u);
   return status;

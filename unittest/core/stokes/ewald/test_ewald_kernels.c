@@ -62,7 +62,6 @@ static sd_spreading spheres_on_a_brick(const cloud *c, sd_spread_place *place, c
       place[i].at[d] = (int) at;
       place[i].v[d] = 2.0 * (at - floor(at)) - 1.0;
     }
-    place[i].base = place[i].at[0] * s.layer + place[i].at[1] * s.row + 3L * place[i].at[2];
   }
   for (int d = 0; d < 3; d++) {
     s.gradient[d][d] = 0.9 + 0.1 * d;
