@@ -79,13 +79,13 @@ def pyplot():
     return plt
 
 
-def keep(folder, out, picture, table):
-    """Writes table.md beside the picture (None: there is none); with --update both go to the example's own folder too."""
-    with open(os.path.join(out, "table.md"), "w") as f:
+def keep(folder, out, picture, table, name="table.md"):
+    """Writes the table beside the picture (None: there is none); with --update both go to the example's own folder too."""
+    with open(os.path.join(out, name), "w") as f:
         f.write(table)
     print(table)
     if "--update" in sys.argv:
         import shutil
 
-        for name in filter(None, (picture, "table.md")):
-            shutil.copy(os.path.join(out, name), folder)
+        for file in filter(None, (picture, name)):
+            shutil.copy(os.path.join(out, file), folder)

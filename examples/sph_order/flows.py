@@ -2,7 +2,8 @@
 wave, a free disk, a rotating square, two layers. Each makes the particles, runs them with lmp and returns the figures of its last
 moment. An option of the pair style or of the density is a keyword of the function `flow`:
 
-    kernel wendland | cubicspline, hdx, pair "shift yes" ..., density "delta 0.1" ..., n (particles per unit length)
+    kernel wendland | cubicspline, hdx, pair "shift yes" ..., density "delta 0.1" ..., alpha (of artVisc), n (particles per unit
+    length)
 """
 import os
 import resource
@@ -101,7 +102,10 @@ def snapshots(path):
 
 
 def options(o, dx):
-    return dict(kernel=o.get("kernel", "wendland"), h=o.get("hdx", 2.0) * dx, dx=dx, pair=o.get("pair", ""), density=o.get("density", ""))
+    h, pair = o.get("hdx", 2.0) * dx, o.get("pair", "")
+    if "alpha" in o:
+        pair += " artVisc %.17g 0 %.17g" % (o["alpha"], 0.01 * h * h)
+    return dict(kernel=o.get("kernel", "wendland"), h=h, dx=dx, pair=pair, density=o.get("density", ""))
 
 
 def gresho(n, **o):

@@ -37,6 +37,8 @@ ROWS = [
     ("wave", "delta", 40, {}, {}, 0), ("wave", "central, shift", 40, {}, {"frequency": (0.97, 1.03), "decay": (0.95, 1.05)}, 0),
     ("tank", "plain", 20, {}, {}, 0), ("tank", "delta", 20, {}, {}, 0), ("tank", "shift", 20, {}, {"speed": 0.012}, 0),
     ("tank", "delta", 6, {"dim": 3, "steps": 4000}, {}, 0), ("tank", "shift", 6, {"dim": 3, "steps": 4000}, {}, 0),
+    ("tank", "shift", 6, {"dim": 3}, {}, 0),
+    ("tank", "shift", 6, {"dim": 3, "alpha": 0.01}, {"speed": 0.012}, 0),
     ("dam_break", "plain", 20, {}, {}, 0), ("dam_break", "delta", 20, {}, {"energy": 1e-9}, 0),
     ("dam_break", "shift", 20, {}, {"front": (3.62, 3.69), "energy": 1e-9, "in walls": 24}, 0),
     ("sloshing", "plain", 20, {}, {}, 0), ("sloshing", "shift", 20, {}, {"error": 0.08}, 1),
