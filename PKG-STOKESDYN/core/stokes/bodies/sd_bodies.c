@@ -376,8 +376,9 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
   for (;;) {
     const double before = power->rz;
     if (!isfinite(before) || !isfinite(power->spent)) return SD_ENOTFINITE;
+    if (before < -power->floor) return SD_EINDEFINITE;
+    c->report->residual = power->spent > 0.0 ? sqrt(fmax(before, 0.0) / power->spent) : 0.0;
     if (before <= power->floor) return SD_OK;
-    c->report->residual = sqrt(before / power->spent);
     if (c->report->residual < tolerance) return SD_OK;
     if (c->report->products >= max_iter) return SD_EMAXITER;
     double beta;
