@@ -28,7 +28,8 @@ Lubrication::~Lubrication()
 /* What may fail on one rank alone */
 void Lubrication::check(sd_status status) const
 {
-  if (status != SD_OK) fail_one(lmp, command + ": keyword lubrication: " + sd_status_string(status));
+  if (status != SD_OK)
+    fail_one(lmp, command + ": keyword lubrication: " + sd_status_string(status));
 }
 
 /* Functions for all pairs that there are, made anew when radii become more different. */

@@ -51,8 +51,8 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   void look(const sd_system &system, const sd_solve_report &report, const int *atoms,
             bool preconditioned, double solves);
 
-  /* Lubrication has a limit of its own, told once a run: the spheres where they stand now, rows as in
-   * look(). Warns once if the time step is above it. */
+  /* Lubrication has a limit of its own, told once a run: the spheres where they stand now, rows as
+   * in look(). Warns once if the time step is above it. */
   void look_at_films(sd_lubrication &near, const int *atoms);
 
  private:

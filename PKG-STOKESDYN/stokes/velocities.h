@@ -60,8 +60,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
-  /* Where the next solve may begin: by rows, which are the atoms that take part, [width n] forces on
-   * the fluid and, with lubrication, the velocities that go with them */
+  /* Where the next solve may begin: by rows, which are the atoms that take part, [width n] forces
+   * on the fluid and, with lubrication, the velocities that go with them */
   struct Guess {
     std::vector<double> l, v;
   };
@@ -73,8 +73,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
     double tolerance;
     int max_iter;
   };
-  sd_status together(const How &how, Guess &guess, const Take &take,
-                     sd_bodies_report &report);
+  sd_status together(const How &how, Guess &guess, const Take &take, sd_bodies_report &report);
 
   /* The same bodies where velocities are given: the system (sd_solve.h) of the spheres that take
    * part, slip [width n] its right-hand side, becomes that with what shells add. */

@@ -108,8 +108,8 @@ static void set_motion(const sd_bodies *A, int b, const double V[6], const state
   sd_bodies_to_space(A->pose + 9 * (long) b, V, out->V + 6 * (long) b);
 }
 
-/* The same of all bodies, each for itself: (l, V) = out. A free sphere has l = f and V = D^-1 f - r,
- * since z = D r drops out of l. */
+/* The same of all bodies, each for itself: (l, V) = out. A free sphere has l = f and V = D^-1 f -
+ * r, since z = D r drops out of l. */
 static sd_status pre_alone(loop *c, const double *r, const loads *f, const state *out)
 {
   const sd_bodies *A = c->A;
@@ -292,8 +292,8 @@ static sd_status guess_motion(loop *c, const double *before, const state *guess)
   return status;
 }
 
-/* x, r and z at the start of the loop. Warm: l is a guess, with a tie (l, V), dropped when it leaves
- * more than the power itself. Without a tie V needs none: pre(r, 0) finds what V lacks. */
+/* x, r and z at the start of the loop. Warm: l is a guess, with a tie (l, V), dropped when it
+ * leaves more than the power itself. Without a tie V needs none: pre(r, 0) finds what V lacks. */
 static sd_status start(loop *c, const double *before, int warm)
 {
   const size_t bytes = sizeof(double) * (size_t) c->A->width * (size_t) c->A->n;
@@ -328,9 +328,9 @@ static void turn_along(loop *c, double beta)
     c->along.V[j] = c->z.V[j] + beta * c->along.V[j];
 }
 
-/* From x along (p, q) to where the power is least, and z = pre(r, 0) there. Without a tie K^T p = 0,
- * so p.K q = 0 and the curvature is p.M p, with one -p.K q is q.L q; K q stays in w all the same,
- * where it keeps the digits of r. */
+/* From x along (p, q) to where the power is least, and z = pre(r, 0) there. Without a tie K^T p =
+ * 0, so p.K q = 0 and the curvature is p.M p, with one -p.K q is q.L q; K q stays in w all the
+ * same, where it keeps the digits of r. */
 static sd_status step(loop *c, double *beta)
 {
   const sd_bodies *A = c->A;
@@ -392,7 +392,8 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
 static sd_status take_loads(loop *c, const double *F, double *rows, double *clumps)
 {
   const sd_bodies *A = c->A;
-  for (long j = 0; A->tie && j < (long) A->width * A->n; j++) rows[j] = F[j] + A->tie->L->carried[j];
+  for (long j = 0; A->tie && j < (long) A->width * A->n; j++)
+    rows[j] = F[j] + A->tie->L->carried[j];
   c->F = (loads){A->tie ? rows : F, clumps};
   return sd_bodies_onto_clumps(A, c->F.rows, c->ghosts, clumps);
 }

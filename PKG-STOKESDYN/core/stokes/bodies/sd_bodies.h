@@ -29,8 +29,8 @@
  *   K^T (l + L (K V - V_inf)) = F          L V_inf: sd_lubrication.h
  *
  * and the loop is the same: pre(r, f) then takes H = N^-1 + K^T L K in the place of N^-1. What is
- * stiff is in H, so that gaps may be as small as they like. K^T l + K^T L K V = f holds whatever H V
- * is solved to, since l is made from V, and two digits of V will do, since beta makes the next
+ * stiff is in H, so that gaps may be as small as they like. K^T l + K^T L K V = f holds whatever H
+ * V is solved to, since l is made from V, and two digits of V will do, since beta makes the next
  * direction conjugate to the last one all the same. Here r.z = z.M_b' z + dV.L dV, p.w = p.M p +
  * q.L q, and e has (K V - u).L (K V - V_inf) besides. */
 #ifndef SD_BODIES_H
@@ -46,7 +46,7 @@ extern "C" {
 
 struct sd_tie;
 
-/* Rows have `width` numbers a sphere, 3 or 6; with clumps or a tie 6. Everything is in space axes. */
+/* Rows have `width` numbers a sphere, 3 or 6; with clumps or a tie 6. All is in space axes. */
 typedef struct {
   /* spheres of this rank, that is rows; those of other ranks that are in clumps with them */
   int n, ghosts, width;

@@ -18,8 +18,8 @@
 extern "C" {
 #endif
 
-/* Vectors have 6 numbers a body: the free spheres in the order of loner, then the clumps: velocities
- * in space axes, U at the centroid. Zero-initialise, set L; sd_tie_free in the end. */
+/* Vectors have 6 numbers a body: the free spheres in the order of loner, then the clumps:
+ * velocities in space axes, U at the centroid. Zero-initialise, set L; sd_tie_free in the end. */
 typedef struct sd_tie {
   sd_lubrication *L;
   /* of the bodies of all ranks */
@@ -34,13 +34,13 @@ typedef struct sd_tie {
   long most_bodies, most_rows, most_ghosts;
 } sd_tie;
 
-/* Where A and A->tie->L stand now. On all ranks together. SD_OK; SD_ENOMEMORY; SD_ESINGULAR, SD_ENOTFINITE;
- * that of a function of the caller. */
+/* Where A and A->tie->L stand now. On all ranks together. SD_OK; SD_ENOMEMORY; SD_ESINGULAR,
+ * SD_ENOTFINITE; that of a function of the caller. */
 sd_status sd_tie_make(const sd_bodies *A);
 
-/* V from V_0, and LV = K^T L K V, until what H V lacks of H_0 V_0 is below `tolerance` of it. Clumps
- * of several ranks have theirs on each of them. SD_OK; SD_EMAXITER; SD_EINDEFINITE; SD_ENOTFINITE; as
- * sd_tie_make. */
+/* V from V_0, and LV = K^T L K V, until what H V lacks of H_0 V_0 is below `tolerance` of it.
+ * Clumps of several ranks have theirs on each of them. SD_OK; SD_EMAXITER; SD_EINDEFINITE;
+ * SD_ENOTFINITE; as sd_tie_make. */
 sd_status sd_tie_solve(const sd_bodies *A, const double *V_0, double tolerance, double *V,
                        double *LV);
 void sd_tie_free(sd_tie *t);

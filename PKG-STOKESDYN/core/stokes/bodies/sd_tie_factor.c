@@ -8,15 +8,16 @@
  * is such fill. */
 static const double weak = 0.4, drop = 0.1;
 
-/* Stiff pairs chain bodies of all ranks together, and a factor that ends at a rank would not know how
- * they move as one. So each rank has the whole: blocks and vectors are put where they belong among
- * zeros and summed over the ranks. */
+/* Stiff pairs chain bodies of all ranks together, and a factor that ends at a rank would not know
+ * how they move as one. So each rank has the whole: blocks and vectors are put where they belong
+ * among zeros and summed over the ranks. */
 typedef struct {
-  /* bodies of all ranks; [36 total] blocks of H_ii, scaled; [6 total] 1 over the roots of the diagonal
-   * of H_0, 0: nobody is near to this body */
+  /* bodies of all ranks; [36 total] blocks of H_ii, scaled; [6 total] 1 over the roots of the
+   * diagonal of H_0, 0: nobody is near to this body */
   int total;
   double *diagonal, *scale;
-  /* by rows: number of the body, and from its centre to the sphere; likewise of other ranks' rows */
+  /* by rows: number of the body, and from its centre to the sphere; likewise of other ranks' rows
+   * */
   double *place, *others;
   /* blocks between bodies */
   long count;
@@ -53,8 +54,8 @@ static sd_status share(const sd_bodies *A, long mine, long *before, long *all)
   return status;
 }
 
-/* Numbers of bodies among those of all ranks; a clump of several ranks learns its own from the rank that
- * counts it. */
+/* Numbers of bodies among those of all ranks; a clump of several ranks learns its own from the
+ * rank that counts it. */
 static sd_status number_bodies(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;
@@ -136,7 +137,8 @@ static int is_zero(const double B[36])
   return 1;
 }
 
-/* A body that nobody is near to: scale 0 takes it out of the system, where it has V = V_0 exactly. */
+/* A body that nobody is near to: scale 0 takes it out of the system, where it has V = V_0 exactly.
+ * */
 static void leave_out(double scale[6], double diagonal[36])
 {
   for (int d = 0; d < 6; d++) {
@@ -152,7 +154,8 @@ static sd_status find_places(const sd_bodies *A, assembly *a)
   a->place = calloc(PLACE * ((size_t) A->n + 1), sizeof(double));
   a->others = malloc(sizeof(double) * PLACE * ((size_t) (L->n_all - L->n) + 1));
   if (!a->place || !a->others) return SD_ENOMEMORY;
-  for (int e = 0; e < A->lone; e++) a->place[PLACE * (long) A->loner[e] + NUMBER] = A->tie->number[e];
+  for (int e = 0; e < A->lone; e++)
+    a->place[PLACE * (long) A->loner[e] + NUMBER] = A->tie->number[e];
   for (int b = 0; b < A->clumps; b++)
     for (int k = 0; k < A->shape[b]->m; k++) {
       const int i = A->member[A->first[b] + k];
@@ -161,7 +164,8 @@ static sd_status find_places(const sd_bodies *A, assembly *a)
       arm_of(A, A->lone + b, k, a->place + PLACE * (long) i + ARM);
     }
   return L->world.refresh && ranks_of(A) > 1
-      ? L->world.refresh(L->world.ctx, a->place, a->others, PLACE) : SD_OK;
+      ? L->world.refresh(L->world.ctx, a->place, a->others, PLACE)
+      : SD_OK;
 }
 
 /* A lone sphere, scaled; sets the scale */
@@ -208,7 +212,8 @@ static sd_status find_diagonal(const sd_bodies *A, assembly *a)
   if (!a->diagonal || !a->scale) return SD_ENOMEMORY;
   for (int e = 0; e < A->lone; e++) {
     const long to = t->number[e];
-    lone_block(A, A->loner[e], L + 36 * (long) A->loner[e], a->scale + 6 * to, a->diagonal + 36 * to);
+    lone_block(A, A->loner[e], L + 36 * (long) A->loner[e], a->scale + 6 * to,
+               a->diagonal + 36 * to);
   }
   for (int b = 0; b < A->clumps; b++) {
     const long to = t->number[A->lone + b];
@@ -221,8 +226,8 @@ static sd_status find_diagonal(const sd_bodies *A, assembly *a)
   return status;
 }
 
-/* The blocks of this rank, scaled, those that are not weak. A pair of two ranks is known to both: it is
- * that one's whose own body has the lower number. */
+/* The blocks of this rank, scaled, those that are not weak. A pair of two ranks is known to both:
+ * it is that one's whose own body has the lower number. */
 static sd_status find_blocks(const sd_bodies *A, assembly *a)
 {
   const sd_lubrication *L = A->tie->L;
@@ -232,7 +237,8 @@ static sd_status find_blocks(const sd_bodies *A, assembly *a)
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
     const double *first = a->place + PLACE * (long) i;
-    const double *second = j < A->n ? a->place + PLACE * (long) j : a->others + PLACE * (long) (j - A->n);
+    const double *second = j < A->n ? a->place + PLACE * (long) j
+                                    : a->others + PLACE * (long) (j - A->n);
     const int p = (int) first[NUMBER], q = (int) second[NUMBER];
     if (p == q || (j >= A->n && p > q)) continue;
     double B[36], *out = a->block + 36 * a->count, sum = 0.0;
@@ -306,12 +312,14 @@ sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
   memset(t->all, 0, sizeof(double) * 6 * (size_t) total);
   for (long p = 0; p < bodies; p++) {
     if (p >= A->lone && !sd_tie_ours(A, (int) (p - A->lone))) continue;
-    for (int d = 0; d < 6; d++) t->all[6 * (long) t->number[p] + d] = t->scale[6 * p + d] * r[6 * p + d];
+    for (int d = 0; d < 6; d++)
+      t->all[6 * (long) t->number[p] + d] = t->scale[6 * p + d] * r[6 * p + d];
   }
   const sd_status status = sum_over_ranks(A, t->all, 6 * total);
   if (status != SD_OK) return status;
   sd_block_cholesky_apply(&t->factor, t->all);
   for (long p = 0; p < bodies; p++)
-    for (int d = 0; d < 6; d++) z[6 * p + d] = t->scale[6 * p + d] * t->all[6 * (long) t->number[p] + d];
+    for (int d = 0; d < 6; d++)
+      z[6 * p + d] = t->scale[6 * p + d] * t->all[6 * (long) t->number[p] + d];
   return SD_OK;
 }

@@ -17,8 +17,8 @@ static inline int sd_tie_ours(const sd_bodies *A, int b)
   return A->member[A->first[b]] < A->n;
 }
 
-/* Of all ranks: the incomplete factor of H. SD_OK; SD_ENOMEMORY; SD_ESINGULAR; SD_ENOTFINITE; that of
- * a function of the caller */
+/* Of all ranks: the incomplete factor of H. SD_OK; SD_ENOMEMORY; SD_ESINGULAR; SD_ENOTFINITE; that
+ * of a function of the caller */
 sd_status sd_tie_factor(const sd_bodies *A);
 /* z = P^-1 r, by numbers of bodies; 0 for those that nobody is near to */
 sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z);

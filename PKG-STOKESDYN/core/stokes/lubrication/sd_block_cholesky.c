@@ -41,8 +41,8 @@ static int reserve_nodes(sd_block_cholesky *f, int n)
   struct sd_elimination *w = f->work;
   if (n <= w->nodes && w->list) return 1;
   const size_t room = (size_t) n + 1;
-  int **const arrays[] = {&w->list, &w->degree, &w->before, &w->after, &w->queue, &w->seen, &w->stamp,
-                          &f->order};
+  int **const arrays[] = {&w->list,  &w->degree, &w->before, &w->after,
+                          &w->queue, &w->seen,   &w->stamp,  &f->order};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) {
     int *larger = realloc(*arrays[k], sizeof(int) * room);
     if (!larger) return 0;
@@ -223,8 +223,8 @@ static int make_column(sd_block_cholesky *f, int p)
   return w->entries - begin;
 }
 
-/* What the elimination of p leaves between q and r, its neighbours: C_q C_r^T less, where there is a
- * block or where this is large. */
+/* What the elimination of p leaves between q and r, its neighbours: C_q C_r^T less, where there is
+ * a block or where this is large. */
 static sd_status couple(sd_block_cholesky *f, const int q[2], const int r[2], double drop)
 {
   struct sd_elimination *w = f->work;

@@ -180,7 +180,8 @@ static void rigid_part(const double *const x[2], const double a[2], const double
   for (int e = 0; e < 6; e++) mean[e] = (a[0] * u[0][e] + a[1] * u[1][e]) / (a[0] + a[1]);
   sd_minus(x[1], x[0], d);
   for (int k = 0; k < 2; k++) { /* x_1 - c = -a_2 d/(a_1 + a_2), x_2 - c = a_1 d/(a_1 + a_2) */
-    const double part = (k ? a[0] : -a[1]) / (a[0] + a[1]), arm[3] = {part * d[0], part * d[1], part * d[2]};
+    const double part = (k ? a[0] : -a[1]) / (a[0] + a[1]),
+                 arm[3] = {part * d[0], part * d[1], part * d[2]};
     sd_cross(mean + 3, arm, V[k]);
     for (int e = 0; e < 3; e++) {
       V[k][e] += mean[e];

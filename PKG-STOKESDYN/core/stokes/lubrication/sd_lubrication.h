@@ -1,5 +1,5 @@
-/* Lubrication: what close spheres of different bodies resist beyond the Rotne-Prager-Yamakawa model,
- * without counting anything twice.
+/* Lubrication: what close spheres of different bodies resist beyond the Rotne-Prager-Yamakawa
+ * model, without counting anything twice.
  *
  *   L = sum over pairs  t [ w D + (1 - w) Q^T D Q ]        forces and torques on the fluid = L V
  *   D    exact resistance of the two spheres alone less that of the model (sd_two_sphere.h)
@@ -7,18 +7,19 @@
  *   t    1 up to half the range, 1 - s^2 (3 - 2s) from there to the range, s = 2 xi/range - 1
  *   w_ij = (2 t_ij / (n_i + n_j))^1.2,  n_i = sum_j t_ij
  *
- * xi is the gap over the mean radius. A pair resists its relative motion in full. What it resists of
- * its common motion the neighbours resist as well, since they hold the same fluid: the sum of D
- * would count it once for each, and a cluster of 27 would settle 40 % too slowly. So pairs share it,
- * by a fit to exact velocities of clusters; a pair alone has w = 1 and is exact. D >= 0 and
+ * xi is the gap over the mean radius. A pair resists its relative motion in full. What it resists
+ * of its common motion the neighbours resist as well, since they hold the same fluid: the sum of D
+ * would count it once for each, and a cluster of 27 would settle 40 % too slowly. So pairs share
+ * it, by a fit to exact velocities of clusters; a pair alone has w = 1 and is exact. D >= 0 and
  * 0 <= w <= 1, so L >= 0. Gaps below the floor, and overlaps, count as the floor: roughness.
  *
  * In viscosities that differ from place to place a pair has the mean of its two.
  *
  * In a flow the forces are L V - sum over pairs t w D V_inf, V_inf the motion as one rigid body in
- * which the fluid takes the pair along: with its mean velocity and angular velocity, weighted by the
- * radii. So a film resists when its spheres approach, also if the flow presses them together, and
- * does not when they are carried and turned as one; what else a strain does to a pair is left out.
+ * which the fluid takes the pair along: with its mean velocity and angular velocity, weighted by
+ * the radii. So a film resists when its spheres approach, also if the flow presses them together,
+ * and does not when they are carried and turned as one; what else a strain does to a pair is left
+ * out.
  * Source: reference of the project, motion.md 4.3; the rule of sharing is our own. */
 #ifndef SD_LUBRICATION_H
 #define SD_LUBRICATION_H
@@ -75,9 +76,9 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
 
 /* The largest eigenvalue of W^-1 L, W > 0 [6 n] an inertia: the rate at which the stiffest motion
- * decays. By power iteration from v [6 n], not 0: a few per cent low at most where a pair is stiffer
- * than all others. work [6 n]. sum over the ranks, NULL: one. SD_OK; SD_ENOTFINITE; that of a
- * function of the caller. */
+ * decays. By power iteration from v [6 n], not 0: a few per cent low at most where a pair is
+ * stiffer than all others. work [6 n]. sum over the ranks, NULL: one. SD_OK; SD_ENOTFINITE; that
+ * of a function of the caller. */
 sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
                               double *rate);
 void sd_lubrication_free(sd_lubrication *L);
