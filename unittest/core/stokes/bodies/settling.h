@@ -16,6 +16,7 @@ typedef struct {
   /* rows */
   double *u, *F, *l, *v, *before, *force, *drag, *spin, *work;
   int *loner, none;
+  double no_clump;
   sd_bodies_report report;
 } settling;
 
@@ -67,7 +68,7 @@ static inline settling *settling_create(int n, double phi, double gap)
 
 static inline void settling_solve(settling *s, int warm, double tolerance)
 {
-  const sd_bodies_motion motion = {s->l, s->v, NULL, s->before, s->force};
+  const sd_bodies_motion motion = {s->l, s->v, &s->no_clump, s->before, s->force};
   const sd_bodies_problem problem = {s->u, s->F, warm, tolerance, 400};
   assert_int_equal(sd_bodies_velocities(&s->A, &problem, &motion, s->work, &s->report), SD_OK);
 }
