@@ -9,11 +9,6 @@
 
 static const double TIGHTEST = 1e-13, LOOSEST = 1e-1;
 
-double sd_ewald_volume(const sd_ewald_box *box)
-{
-  return box->edge[0] * box->edge[1] * box->edge[2];
-}
-
 /* Six digits: ranks whose sums differ in the last bits round to the same number, but for the rare
  * one that lies on the border; the caller hands out sums that are equal anyway. */
 static double six_digits(double value)

@@ -15,6 +15,7 @@
 #ifndef SD_EWALD_H
 #define SD_EWALD_H
 
+#include "sd_ewald_split.h"
 #include "sd_status.h"
 
 #ifdef __cplusplus
@@ -23,15 +24,6 @@ extern "C" {
 
 /* The widest window; classes of radii */
 enum { SD_EWALD_MOST_POINTS = 20, SD_EWALD_OCTAVES = 10 };
-
-/* The box with edges (lx 0 0), (xy ly 0), (xz yz lz). Spheres may stand outside of a periodic one;
- * an open one holds the centres of all and has no tilt: nothing is beyond it but fluid.
- *   edge [3]   lx ly lz      length, > 0
- *   tilt [3]   xy xz yz      length */
-typedef struct {
-  int periodic;
-  double origin[3], edge[3], tilt[3];
-} sd_ewald_box;
 
 /* The spheres that take part, of all ranks: how many, sums of a^2 and a^4, the largest a; length.
  * The rule reads them rounded to six digits, since sums over ranks differ in the last ones. */
@@ -51,39 +43,6 @@ int sd_ewald_octave(double largest, double a);
 
 /* One more sphere; all.largest is known already. */
 void sd_ewald_count(sd_ewald_sizes *s, double a);
-
-/* The second level: a splitting for the spheres of radius `from` and larger. They meet each other
- * and all the rest by it, the rest each other by the first. */
-typedef struct {
-  /* 0: there is no such level */
-  double from, count;
-  double xi, range, largest, spacing, beta;
-  int grid[3], points;
-} sd_ewald_large;
-
-/* What an engine is made from. Ready after sd_ewald_choose; all lengths as given. */
-typedef struct {
-  sd_ewald_box box;
-  /* no spheres: 0, and the rest is not read */
-  double count;
-  /* splitting, 1/length; its reference radius; where the near part ends, centre to centre; the
-   * largest sphere */
-  double xi, a_ref, range, largest;
-  /* how far ghosts must reach: range, or two of the largest spheres that overlap */
-  double reach;
-  /* grid points of the box each way; those of an open box are an eighth of the grid, which is
-   * twice as large; no spacing is larger than this one, which an open box has */
-  int grid[3];
-  double spacing;
-  /* the window: so many grid points each way, and its parameter (Kaiser-Bessel) */
-  int points;
-  double beta;
-  /* what was asked for: rms error of U over rms of F/(6 pi eta a) */
-  double tolerance;
-  /* With it all that is above, but for count and a_ref, is of the smaller spheres. H of the first
-   * level is then less that of the second, whose waves all spheres make. */
-  sd_ewald_large large;
-} sd_ewald;
 
 /* The second level as a splitting of its own */
 sd_ewald sd_ewald_of_large(const sd_ewald *e);
@@ -109,9 +68,6 @@ int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, d
 
 /* The next number whose only prime factors are 2, 3, 5 and 7: fast to transform */
 int sd_ewald_transformable(double at_least);
-
-/* Volume of the box: length^3 */
-double sd_ewald_volume(const sd_ewald_box *box);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,61 @@
+/* A sum over periodic images, split: what sd_ewald.h chooses, and its cost (sd_ewald_cost.h) and
+ * all who sum go by. */
+#ifndef SD_EWALD_SPLIT_H
+#define SD_EWALD_SPLIT_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The box with edges (lx 0 0), (xy ly 0), (xz yz lz). Spheres may stand outside of a periodic one;
+ * an open one holds the centres of all and has no tilt: nothing is beyond it but fluid.
+ *   edge [3]   lx ly lz      length, > 0
+ *   tilt [3]   xy xz yz      length */
+typedef struct {
+  int periodic;
+  double origin[3], edge[3], tilt[3];
+} sd_ewald_box;
+
+/* length^3 */
+static inline double sd_ewald_volume(const sd_ewald_box *box)
+{
+  return box->edge[0] * box->edge[1] * box->edge[2];
+}
+
+/* The second level: a splitting for the spheres of radius `from` and larger. They meet each other
+ * and all the rest by it, the rest each other by the first. */
+typedef struct {
+  /* 0: there is no such level */
+  double from, count;
+  double xi, range, largest, spacing, beta;
+  int grid[3], points;
+} sd_ewald_large;
+
+/* What an engine is made from. Ready after sd_ewald_choose; all lengths as given. */
+typedef struct {
+  sd_ewald_box box;
+  /* no spheres: 0, and the rest is not read */
+  double count;
+  /* splitting, 1/length; its reference radius; where the near part ends, centre to centre; the
+   * largest sphere */
+  double xi, a_ref, range, largest;
+  /* how far ghosts must reach: range, or two of the largest spheres that overlap */
+  double reach;
+  /* grid points of the box each way; those of an open box are an eighth of the grid, which is
+   * twice as large; no spacing is larger than this one, which an open box has */
+  int grid[3];
+  double spacing;
+  /* the window: so many grid points each way, and its parameter (Kaiser-Bessel) */
+  int points;
+  double beta;
+  /* what was asked for: rms error of U over rms of F/(6 pi eta a) */
+  double tolerance;
+  /* With it all that is above, but for count and a_ref, is of the smaller spheres. H of the first
+   * level is then less that of the second, whose waves all spheres make. */
+  sd_ewald_large large;
+} sd_ewald;
+
+#ifdef __cplusplus
+}
+#endif
+#endif
