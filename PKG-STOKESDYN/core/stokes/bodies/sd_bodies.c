@@ -1,4 +1,4 @@
-#include "sd_bodies_internal.h"
+#include "sd_bodies.h"
 #include "sd_tie.h"
 
 #include <math.h>

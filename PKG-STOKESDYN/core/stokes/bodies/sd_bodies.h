@@ -36,44 +36,11 @@
 #ifndef SD_BODIES_H
 #define SD_BODIES_H
 
-#include "sd_body_shape.h"
-#include "sd_mobility.h"
-#include "sd_solve.h"
+#include "sd_bodies_rigid.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-struct sd_tie;
-
-/* Rows have `width` numbers a sphere, 3 or 6; with clumps or a tie 6. All is in space axes. */
-typedef struct {
-  /* spheres of this rank, that is rows; those of other ranks that are in clumps with them */
-  int n, ghosts, width;
-  /* [n] 6 pi eta a, 8 pi eta a^3 (NULL for width 3) */
-  const double *drag, *spin;
-  /* [lone] rows of the free spheres */
-  int lone;
-  const int *loner;
-  /* rigid clumps of which this rank has a sphere; a clump is the same, to rounding, on each rank
-   * that knows it */
-  int clumps;
-  /* [clumps + 1] into member: rows of the spheres in the order of the shape, n + g for ghost g */
-  const int *first, *member;
-  /* [clumps] shape, [9 clumps] pose R (space = R shape), [clumps] viscosity */
-  const sd_body_shape *const *shape;
-  const double *pose, *eta;
-  /* Omega, without the diagonal; sum over the ranks (NULL: one rank) */
-  sd_apply *apply;
-  void *apply_ctx;
-  sd_sum *sum;
-  void *sum_ctx;
-  /* rows [width n] -> those of the ghosts [width ghosts]; NULL: there are none on any rank */
-  sd_status (*refresh)(void *ctx, const double *rows, double *ghosts, int width);
-  void *refresh_ctx;
-  /* lubrication; NULL: none */
-  struct sd_tie *tie;
-} sd_bodies;
 
 typedef struct {
   /* [width n] velocity and angular velocity of the undisturbed fluid at the spheres */
@@ -105,14 +72,6 @@ typedef struct {
   int products;
   double residual;
 } sd_bodies_report;
-
-/* Clumps with shells are carried by a strain otherwise than as spheres: adds K dE E to the flow u
- * [width n] at their spheres. gradient [9 clumps]: of the fluid velocity over each clump. */
-void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *u);
-
-/* out [width n] += K dN K^T l, what shells add to D^-1 + Omega; for those who are given velocities
- * and solve M' l = K V - u. work [sd_bodies_work]. SD_OK, or that of refresh. */
-sd_status sd_bodies_add_shells(const sd_bodies *A, const double *l, double *work, double *out);
 
 /* Doubles of scratch for n spheres and what else is in A. */
 long sd_bodies_work(const sd_bodies *A);

@@ -1,4 +1,4 @@
-#include "sd_bodies_internal.h"
+#include "sd_bodies_rigid.h"
 
 #include "sd_clump_motion.h"
 

@@ -1,7 +1,5 @@
 #include "sd_tie.h"
 
-#include "sd_tie_internal.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,29 +10,11 @@
 #ifndef SD_TIE_H
 #define SD_TIE_H
 
-#include "sd_block_cholesky.h"
-#include "sd_bodies.h"
-#include "sd_lubrication.h"
+#include "sd_tie_factor.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Vectors have 6 numbers a body: the free spheres in the order of loner, then the clumps:
- * velocities in space axes, U at the centroid. Zero-initialise, set L; sd_tie_free in the end. */
-typedef struct sd_tie {
-  sd_lubrication *L;
-  /* of the bodies of all ranks */
-  sd_block_cholesky factor;
-  /* products with L since sd_tie_make */
-  long products;
-  /* by bodies: which of all it is; 1 over the roots of the diagonal of H_0, 0: nobody is near */
-  int *number;
-  double *scale;
-  /* scratch: by bodies of all ranks, by bodies, by rows, by ghosts */
-  double *all, *vectors, *rows, *ghosts;
-  long most_bodies, most_rows, most_ghosts;
-} sd_tie;
 
 /* Where A and A->tie->L stand now. On all ranks together. SD_OK; SD_ENOMEMORY; SD_ESINGULAR,
  * SD_ENOTFINITE; that of a function of the caller. */

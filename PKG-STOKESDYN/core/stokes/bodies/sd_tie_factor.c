@@ -1,4 +1,4 @@
-#include "sd_tie_internal.h"
+#include "sd_tie_factor.h"
 
 #include <math.h>
 #include <stdlib.h>

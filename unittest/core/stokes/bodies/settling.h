@@ -5,6 +5,7 @@
 
 #include "lubrication/near_scene.h"
 
+#include "sd_bodies.h"
 #include "sd_constants.h"
 #include "sd_tie.h"
 

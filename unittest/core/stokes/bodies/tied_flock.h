@@ -6,6 +6,7 @@
 
 #include "lubrication/near_scene.h"
 
+#include "sd_bodies.h"
 #include "sd_tie.h"
 
 /* The flock with lubrication between its spheres; clumps are bodies 1, 2, ... */
