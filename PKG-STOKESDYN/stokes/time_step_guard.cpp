@@ -46,33 +46,23 @@ std::vector<char> TimeStepGuard::held_atoms() const
 double TimeStepGuard::inertia(int i, bool held, size_t d) const
 {
   const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-  double w = mass / force->ftm2v * (held ? HELD : 1.0);
+  double w = mass / force->ftm2v;
   if (d >= 3) w *= 0.4 * atom->radius[i] * atom->radius[i];
-  return w;
+  return held ? HELD * w : w;
 }
 
 TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms,
                                           std::vector<double> *weight)
 {
-  std::vector<char> held(atom->nlocal + 1, 0);
-  for (int f = 0; f < modify->nfix; f++)
-    if (utils::strmatch(modify->fix[f]->style, "^rigid")) {
-      int dim;
-      if (const int *body = (const int *) modify->fix[f]->extract("body", dim))
-        for (int i = 0; i < atom->nlocal; i++) held[i] = held[i] || body[i] >= 0;
-    }
+  const std::vector<char> held = held_atoms();
   const size_t m = A.spin ? 6 : 3;
   double most[3] = {-INFINITY, -INFINITY, 0.0};    // -shortest, -of_velocity, longest
   if (weight) weight->assign(m * A.n + 1, 1.0);
   for (int k = 0; k < A.n; k++) {
     if (A.drag[k] == 0.0) continue;
     const int i = atoms ? atoms[k] : k;
-    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
     for (size_t d = 0; d < m; d++) {
-      // Force over acceleration in the units of this LAMMPS
-      double w = mass / force->ftm2v;
-      if (d >= 3) w *= 0.4 * atom->radius[i] * atom->radius[i];
-      if (held[i]) w *= HELD;
+      const double w = inertia(i, held[i], d);
       const double time = w / (d < 3 ? A.drag[k] : A.spin[k]);
       if (!held[i]) most[0] = std::max(most[0], -time);
       if (!held[i] && d < 3) most[1] = std::max(most[1], -time);
