@@ -5,17 +5,30 @@
 
 #include "sph_scene.h"
 
+/* What a pair is made of */
+typedef struct {
+  const sd_sph_parameters *t;
+  double d[3], u[3], r2, vd;
+} couple;
+
+static couple couple_of(const scene *s, int i, int j)
+{
+  couple p = {.t = &s->types[s->model.nclasses > 1 ? 2 * s->cls[i] + s->cls[j] : 0]};
+  for (int c = 0; c < 3; c++) {
+    p.d[c] = s->x[3 * i + c] - s->x[3 * j + c];
+    p.u[c] = s->v[3 * i + c] - s->v[3 * j + c];
+    p.r2 += p.d[c] * p.d[c];
+    p.vd += p.d[c] * p.u[c];
+  }
+  return p;
+}
+
 /* The equations of the header of sd_sph_pair.h for one pair: force on i, and v.d W'/r. */
 static void by_the_book(const scene *s, int i, int j, double F[3], double *rate)
 {
-  const sd_sph_parameters *t = &s->types[s->model.nclasses > 1 ? 2 * s->cls[i] + s->cls[j] : 0];
-  double d[3], u[3], r2 = 0.0, vd = 0.0;
-  for (int c = 0; c < 3; c++) {
-    d[c] = s->x[3 * i + c] - s->x[3 * j + c];
-    u[c] = s->v[3 * i + c] - s->v[3 * j + c];
-    r2 += d[c] * d[c];
-    vd += d[c] * u[c];
-  }
+  const couple p = couple_of(s, i, j);
+  const sd_sph_parameters *t = p.t;
+  const double *d = p.d, *u = p.u, r2 = p.r2, vd = p.vd;
   const double r = sqrt(r2), mi = s->m[i], mj = s->m[j], rho = 0.5 * (s->rho[i] + s->rho[j]);
   const double g = sd_sph_dW_over_r(s->model.kernel, s->model.dimension, r, t->h);
   double bracket = s->P[i] / (s->rho[i] * s->rho[i]) + s->P[j] / (s->rho[j] * s->rho[j]);
@@ -112,15 +125,10 @@ static void columns_by_the_book(const scene *s, int i, int columns, double *sums
 {
   for (int j = 0; j < N; j++) {
     if (j == i) continue;
-    const sd_sph_parameters *t = &s->types[s->model.nclasses > 1 ? 2 * s->cls[i] + s->cls[j] : 0];
-    double d[3], u[3], r2 = 0.0, vd = 0.0;
-    for (int c = 0; c < 3; c++) {
-      d[c] = s->x[3 * i + c] - s->x[3 * j + c];
-      u[c] = s->v[3 * i + c] - s->v[3 * j + c];
-      r2 += d[c] * d[c];
-      vd += d[c] * u[c];
-    }
-    const double r = sqrt(r2), m = s->model.nclasses > 1 ? s->m[j] : s->p.mass, V = m / s->rho[j];
+    const couple p = couple_of(s, i, j);
+    const sd_sph_parameters *t = p.t;
+    const double *d = p.d, *u = p.u, vd = p.vd;
+    const double r = sqrt(p.r2), m = s->model.nclasses > 1 ? s->m[j] : s->p.mass, V = m / s->rho[j];
     const int kernel = s->model.kernel, dimension = s->model.dimension;
     const double g = sd_sph_dW_over_r(kernel, dimension, r, t->h);
     const int two = s->model.scheme == SD_SPH_VOLUME, other = two && s->phase[i] != s->phase[j];
