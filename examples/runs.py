@@ -3,6 +3,7 @@ import argparse
 import os
 import pathlib
 import shutil
+import subprocess
 import sys
 
 TOP = pathlib.Path(__file__).resolve().parents[1]
@@ -46,3 +47,27 @@ def options(script, text, **more):
     given.out = given.out.resolve()
     given.out.mkdir(parents=True, exist_ok=True)
     return given
+
+
+def finished(name, command, cwd):
+    """Runs the command in cwd, or ends with the last lines it printed. name: of the example."""
+    done = subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0 or "ERROR" in done.stdout:
+        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\n{name}: {' '.join(command)} failed in {cwd}")
+
+
+def values(variables):
+    """-var name value ... of a command line of LAMMPS"""
+    return [word for name, value in variables.items() for word in ("-var", name, str(value))]
+
+
+def dumped(path):
+    """Of a dump custom file: step and rows [atoms, columns] of each frame."""
+    for block in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
+        lines = block.split("\n")
+        yield int(lines[0]), np.array([[float(w) for w in line.split()] for line in lines[8:8 + int(lines[2])]])
+
+
+def save(figure, path, dpi=80):
+    figure.savefig(path, dpi=dpi, pil_kwargs={"optimize": True})
+    plt.close(figure)

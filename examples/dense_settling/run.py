@@ -9,13 +9,12 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 import csv
 import pathlib
 import shutil
-import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, finished, need, options, save, values  # noqa: E402
 
 
 def table(name):
@@ -43,11 +42,8 @@ def write_data(path, x):
 def lammps(out, name, lubrication):
     """Velocities [n, 3]"""
     tag = f"{name}_{lubrication}"
-    command = ["lmp", "-in", str(HERE / "in.dense_settling"), "-log", f"log.{tag}", "-var", "path", f"{tag}.path",
-               "-var", "data", f"{name}.data", "-var", "lubrication", lubrication]
-    done = subprocess.run(command, cwd=out, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0:
-        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\ndense_settling: {' '.join(command)} failed")
+    command = ["lmp", "-in", str(HERE / "in.dense_settling"), "-log", f"log.{tag}"]
+    finished("dense_settling", command + values(dict(path=f"{tag}.path", data=f"{name}.data", lubrication=lubrication)), out)
     return np.loadtxt(out / f"{tag}.path", skiprows=9)[:, 1:4]
 
 
@@ -61,8 +57,7 @@ def draw(numbers, speeds, target):
     axes.set(xlabel="spheres in the cluster, gaps of 0.01 to 0.02 radii", ylabel="speed of settling / exact", xticks=numbers,
              ylim=(0.5, 1.25), title="Each pair holds fluid that its neighbours hold as well")
     axes.legend()
-    figure.savefig(target, dpi=80, pil_kwargs={"optimize": True})
-    plt.close(figure)
+    save(figure, target)
 
 
 def main():

@@ -8,13 +8,12 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 """
 import pathlib
 import shutil
-import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
 SHOWN = (0, 2, 4, 6, 8, 10, 12)
 
@@ -26,17 +25,10 @@ def lammps(out, tag, ranks=1, **variables):
         shutil.copy(HERE / name, out / tag)
     command = ["mpirun", "-np", str(ranks)] if ranks > 1 else ["stdbuf", "-oL"]
     command += ["lmp", "-in", "in.falling_clumps", "-var", "out", "."]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
-    done = subprocess.run(command, cwd=out / tag, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0 or "ERROR" in done.stdout:
-        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\nfalling_clumps: {' '.join(command)} failed in {out / tag}")
+    finished("falling_clumps", command + values(variables), out / tag)
     only = variables.get("only", "no")
-    frames = []
-    for block in (out / tag / f"spheres.{only}").read_text().split("ITEM: TIMESTEP\n")[1:]:
-        lines = block.split("\n")
-        frames.append([[float(w) for w in line.split()[1:]] for line in lines[8:8 + int(lines[2])]])
-    return np.array(frames), np.loadtxt(out / tag / f"curve.{only}", ndmin=2)[:, 1:]
+    frames = np.array([rows[:, 1:] for _, rows in dumped(out / tag / f"spheres.{only}")])
+    return frames, np.loadtxt(out / tag / f"curve.{only}", ndmin=2)[:, 1:]
 
 
 def point_forces(spheres, own):
@@ -68,8 +60,7 @@ def strip(rows, path):
             if row[0] is axes[0, 0]:
                 axis.set_title(f"time {t}", fontsize=10)
         row[0].set_ylabel(title)
-    figure.savefig(path, dpi=85, pil_kwargs={"optimize": True})
-    plt.close(figure)
+    save(figure, path, 85)
 
 
 def main():

@@ -9,13 +9,12 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 """
 import pathlib
 import shutil
-import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
 THREE = np.array([(-5.0, 0, 0), (0, 0, 0), (7.0, 0, 0)])
 # Exact Stokes flow at t = 200 (multipoles of orders 5 and 7 agree to 3e-6), x and z
@@ -57,16 +56,8 @@ def lammps(out, tag, **variables):
     """Places and velocities [frames, spheres, 6]"""
     path = out / f"{tag}.path"
     command = ["stdbuf", "-oL", "lmp", "-in", "in.falling_three", "-log", str(out / f"log.{tag}"), "-var", "path", str(path)]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
-    done = subprocess.run(command, cwd=HERE, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0:
-        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\nfalling_three: {' '.join(command)} failed")
-    frames = []
-    for block in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
-        lines = block.split("\n")
-        frames.append([[float(w) for w in line.split()[1:]] for line in lines[8:8 + int(lines[2])]])
-    return np.array(frames)
+    finished("falling_three", command + values(variables), HERE)
+    return np.array([rows[:, 1:] for _, rows in dumped(path)])
 
 
 def distances(points, path):
@@ -94,8 +85,7 @@ def draw(path, figure5, errors, target):
               title="Adams-Bashforth and Euler")
     right.grid(alpha=0.3)
     right.legend()
-    figure.savefig(target, dpi=80, pil_kwargs={"optimize": True})
-    plt.close(figure)
+    save(figure, target)
 
 
 def main():

@@ -9,13 +9,12 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
 WEIGHT = 4 / 3 * np.pi * 9.81e-6        # nN, less buoyancy
 LONE = WEIGHT / (6 * np.pi) * 1e6       # um/s, settling speed of a lone sphere
@@ -25,22 +24,12 @@ def lammps(out, tag, **variables):
     """Rows of the thermo output, seconds of computing, steps"""
     log = out / f"log.{tag}"
     command = ["stdbuf", "-oL", "lmp", "-in", "in.micron_floc", "-log", str(log), "-var", "out", str(out)]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
-    done = subprocess.run(command, cwd=HERE, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0 or "ERROR" in done.stdout:
-        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\nmicron_floc: {' '.join(command)} failed")
+    finished("micron_floc", command + values(variables), HERE)
     text = log.read_text()
     loops = re.findall(r"^Loop time of (\S+) on 1 procs for (\d+) steps.*?^(\S+)% CPU use", text, re.M | re.S)
     seconds = sum(float(t) * float(share) / 100 for t, _, share in loops)       # of the processor
     rows = [[float(w) for w in line.split()] for line in text.splitlines() if re.match(r" +\d+( +[-+.\de]+){6,10} *$", line)]
     return np.array([row for row in rows if len(row) == len(rows[0])]), seconds, sum(int(n) for _, n, _ in loops)
-
-
-def frames(path):
-    for block in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
-        lines = block.split("\n")
-        yield int(lines[0]), np.array([[float(w) for w in line.split()[1:]] for line in lines[8:8 + int(lines[2])]])
 
 
 def point_forces(x):
@@ -64,8 +53,7 @@ def draw(rows, shots, path):
     axes[0].set_ylabel("height / um")
     axes[-1].plot(rows[:, 1], rows[:, 3])
     axes[-1].set(xlabel="time / s", title="height of the centre / um")
-    figure.savefig(path, dpi=85, pil_kwargs={"optimize": True})
-    plt.close(figure)
+    save(figure, path, 85)
 
 
 def main():
@@ -76,7 +64,7 @@ def main():
     step_inertia = spent / steps
     rows, computing, steps = lammps(out, "floc")
     times = dict(zip(rows[:, 0].astype(int), rows[:, 1]))
-    whole = [(times[n], x) for n, x in frames(out / "spheres") if n in times]
+    whole = [(times[n], x[:, 1:]) for n, x in dumped(out / "spheres") if n in times]
     end = rows[-1, 1]
     draw(rows, [whole[np.argmin([abs(t - s) for t, _ in whole])] for s in (0.0, 0.2, 0.35, 0.8, end)], out / "micron_floc.png")
 

@@ -8,13 +8,12 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 """
 import pathlib
 import shutil
-import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
 
 def approach_drag(gap):
@@ -39,18 +38,10 @@ def squeeze_time(gaps):
 def lammps(out, tag, **variables):
     """Times, places of both spheres [frames, 2, 3], gaps"""
     command = ["lmp", "-in", str(HERE / "in.squeeze"), "-log", f"log.{tag}", "-var", "path", f"{tag}.path"]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
-    done = subprocess.run(command, cwd=out, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0:
-        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\nsqueeze: {' '.join(command)} failed")
-    times, frames = [], []
-    for block in (out / f"{tag}.path").read_text().split("ITEM: TIMESTEP\n")[1:]:
-        lines = block.split("\n")
-        times.append(int(lines[0]) * float(variables["step"]))
-        frames.append([[float(w) for w in line.split()[1:4]] for line in lines[8:10]])
-    x = np.array(frames)
-    return np.array(times), x, np.linalg.norm(x[:, 1] - x[:, 0], axis=1) - 2
+    finished("squeeze", command + values(variables), out)
+    steps, rows = zip(*dumped(out / f"{tag}.path"))
+    x = np.array(rows)[:, :, 1:4]
+    return np.array(steps) * float(variables["step"]), x, np.linalg.norm(x[:, 1] - x[:, 0], axis=1) - 2
 
 
 def draw(pressed, exact_gap, passed, exact, target):
@@ -72,8 +63,7 @@ def draw(pressed, exact_gap, passed, exact, target):
     right.set(xlabel="x / radius", ylabel="z / radius", xlim=(0, 5), ylim=(-4.5, 4.5), aspect="equal",
               title="One that falls past another,\nits centre as seen from that")
     right.legend(loc="upper right")
-    figure.savefig(target, dpi=80, pil_kwargs={"optimize": True})
-    plt.close(figure)
+    save(figure, target)
 
 
 def main():
