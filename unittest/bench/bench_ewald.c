@@ -3,18 +3,11 @@
  *   bench_ewald [ROW ...]      rows: names of the table below; none: all but those of 10^6 */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/ewald/periodic.h"
+#include "cpu.h"
 
 #include <sys/resource.h>
-#include <time.h>
 
 enum { RUNS = 5 };
-
-static double cpu(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return t.tv_sec + 1e-9 * t.tv_nsec;
-}
 
 typedef struct {
   const char *name;

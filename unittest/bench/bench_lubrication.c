@@ -3,17 +3,9 @@
  *   bench_lubrication [n phi xi]      without: those of the table in README.md */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/bodies/settling.h"
-
-#include <time.h>
+#include "cpu.h"
 
 enum { RUNS = 5 };
-
-static double cpu(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return t.tv_sec + 1e-9 * t.tv_nsec;
-}
 
 static int ascending(const void *a, const void *b)
 {
