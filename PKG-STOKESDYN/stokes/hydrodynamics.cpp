@@ -23,12 +23,14 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 static const std::string COMMAND = StokesSettings::COMMAND;
-// Steps from one look at the limit that lubrication sets to the next: each costs 30 sparse products.
+// Steps from one look at the limit that lubrication sets to the next: each costs 30 sparse
+// products.
 static const int LOOK_AT_FILMS = 1000;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp, Pair *pair) :
     Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, pair, COMMAND), rigid(lmp, scene, COMMAND),
-    lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}), preconditioner(lmp, scene), guard(lmp, COMMAND)
+    lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}),
+    preconditioner(lmp, scene), guard(lmp, COMMAND)
 {
 }
 

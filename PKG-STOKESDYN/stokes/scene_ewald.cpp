@@ -111,8 +111,8 @@ bool Scene::split()
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
 }
 
-/* Are our spheres those of the last update? A hash of their tags, molecules and radii, in their order,
- * tells; the lists themselves would be 24 bytes a sphere. */
+/* Are our spheres those of the last update? A hash of their tags, molecules and radii, in their
+ * order, tells; the lists themselves would be 24 bytes a sphere. */
 void Scene::compare()
 {
   uint64_t hash = SD_HASH_STEP;

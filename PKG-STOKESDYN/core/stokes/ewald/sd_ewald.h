@@ -56,8 +56,8 @@ sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, 
                           double tolerance, sd_ewald *out);
 
 /* The error to expect, as the tolerance is meant, of forces that are independent and about as large
- * as a: the part of each pair beyond the range, the waves beyond the grid, and those that the window
- * mistakes. A formula with integrals over k and r; sizes as for sd_ewald_choose. */
+ * as a: the part of each pair beyond the range, the waves beyond the grid, and those that the
+ * window mistakes. A formula with integrals over k and r; sizes as for sd_ewald_choose. */
 double sd_ewald_predicted(const sd_ewald *e, const sd_ewald_sizes *sizes);
 
 /* An open box for spheres with centres within lo [3] ... hi [3] (of all ranks): the present one if
