@@ -242,7 +242,7 @@ static sd_status find_blocks(const sd_bodies *A, assembly *a)
     const int p = (int) first[NUMBER], q = (int) second[NUMBER];
     if (p == q || (j >= A->n && p > q)) continue;
     double B[36], *out = a->block + 36 * a->count, sum = 0.0;
-    memcpy(B, L->block + 36 * k, sizeof(B));
+    sd_lubrication_block(L, k, B);
     if (A->clumps > 0 || j >= A->n) move_to_centres(first + ARM, second + ARM, B);
     memset(out, 0, 36 * sizeof(double));
     add_scaled(B, a->scale + 6 * (long) p, a->scale + 6 * (long) q, out);

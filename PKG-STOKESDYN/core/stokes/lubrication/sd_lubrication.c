@@ -62,9 +62,9 @@ static sd_status reserve_pairs(sd_lubrication *L, long count)
   if (pair) L->pair = pair;
   int *at = realloc(w->at, sizeof(int) * room);
   if (at) w->at = at;
-  double *block = realloc(L->block, sizeof(double) * 36 * room);
-  if (block) L->block = block;
-  if (!pair || !at || !block) return SD_ENOMEMORY;
+  sd_lubrication_link *link = realloc(L->link, sizeof(*link) * room);
+  if (link) L->link = link;
+  if (!pair || !at || !link) return SD_ENOMEMORY;
   w->most_pairs = (long) room;
   return SD_OK;
 }
@@ -224,8 +224,8 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   const int i = L->pair[k][0], j = L->pair[k][1], at = L->work->at[k];
   const closeness c = look(L, s, k);
   const double *n = L->work->neighbours;
-  double *B12 = L->block + 36 * k, B11[36], B22[36];
-  memset(B12, 0, 36 * sizeof(double));
+  double B11[36], B12[36], B22[36];
+  memset(L->link + k, 0, sizeof(L->link[k]));
   if (!(c.t > 0.0)) return SD_OK;
   sd_pair_resistance full, relative;
   const double *a = s->spheres.a;
@@ -240,9 +240,11 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   add36(B11, L->diagonal + 36 * (long) i);
   if (j == i) {
     add36(B12, L->diagonal + 36 * (long) i);
-    memset(B12, 0, 36 * sizeof(double));
-  } else if (j < L->n)
-    add36(B22, L->diagonal + 36 * (long) j);
+    return SD_OK;
+  }
+  L->link[k] = (sd_lubrication_link){
+      {c.d[0], c.d[1], c.d[2]}, R.XA[1], R.YA[1], R.YB[1], R.YB[2], R.XC[1], R.YC[1]};
+  if (j < L->n) add36(B22, L->diagonal + 36 * (long) j);
   return SD_OK;
 }
 
@@ -261,6 +263,32 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   return status;
 }
 
+void sd_lubrication_block(const sd_lubrication *L, long k, double B[36])
+{
+  const sd_lubrication_link *l = L->link + k;
+  const sd_pair_resistance R = {{0.0, l->XA, 0.0},
+                                {0.0, l->YA, 0.0},
+                                {0.0, l->YB12, l->YB21, 0.0},
+                                {0.0, l->XC, 0.0},
+                                {0.0, l->YC, 0.0}};
+  double B11[36], B22[36];
+  sd_pair_resistance_blocks(&R, l->d, B11, B, B22);
+}
+
+/* out += L_12 V, or with YB12 and YB21 exchanged L_21 V: d turns round, and so do their signs */
+static inline void add_link(const sd_lubrication_link *l, double YB12, double YB21, const double *V,
+                            double *out)
+{
+  double dU[3], dW[3];
+  sd_cross(l->d, V, dU);
+  sd_cross(l->d, V + 3, dW);
+  const double F = (l->XA - l->YA) * sd_dot(l->d, V), T = (l->XC - l->YC) * sd_dot(l->d, V + 3);
+  for (int e = 0; e < 3; e++) {
+    out[e] += l->YA * V[e] + F * l->d[e] + YB21 * dW[e];
+    out[3 + e] += l->YC * V[3 + e] + T * l->d[e] - YB12 * dU[e];
+  }
+}
+
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
 {
   const sd_lubrication *L = ctx;
@@ -276,19 +304,10 @@ sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
     }
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    const double *B = L->block + 36 * k, *Vi = V + 6 * (long) i;
+    const sd_lubrication_link *l = L->link + k;
     const double *Vj = j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
-    double *out_i = out + 6 * (long) i, back[6] = {0.0};
-    for (int p = 0; p < 6; p++) {
-      double sum = 0.0;
-      for (int q = 0; q < 6; q++) {
-        sum += B[6 * p + q] * Vj[q];
-        back[q] += B[6 * p + q] * Vi[p];
-      }
-      out_i[p] += sum;
-    }
-    if (j < L->n)
-      for (int q = 0; q < 6; q++) out[6 * (long) j + q] += back[q];
+    add_link(l, l->YB12, l->YB21, Vj, out + 6 * (long) i);
+    if (j < L->n) add_link(l, l->YB21, l->YB12, V + 6 * (long) i, out + 6 * (long) j);
   }
   return SD_OK;
 }
@@ -330,7 +349,7 @@ void sd_lubrication_free(sd_lubrication *L)
     free(L->work);
   }
   free(L->pair);
-  free(L->block);
+  free(L->link);
   free(L->diagonal);
   free(L->carried);
   free(L->others);

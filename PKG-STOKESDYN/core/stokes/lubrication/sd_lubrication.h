@@ -49,6 +49,12 @@ typedef struct {
   sd_world world;
 } sd_lubrication_scene;
 
+/* L_12 of a pair by what it knows, a quarter of its numbers: d the unit vector from 1 to 2, the
+ * rest as in sd_pair_resistance.h */
+typedef struct {
+  double d[3], XA, YA, YB12, YB21, XC, YC;
+} sd_lubrication_link;
+
 /* Zero-initialise; placed again it keeps its memory; sd_lubrication_free in the end. */
 typedef struct {
   /* spheres of this rank, and with those of other ranks and images */
@@ -57,9 +63,9 @@ typedef struct {
    * diagonal */
   long count;
   int (*pair)[2];
-  /* [36 count] L_ij, row-major, rows F T, columns U W; L_ji is its transpose */
-  double *block;
-  /* [36 n] L_ii */
+  /* [count] L_ij; L_ji is its transpose */
+  sd_lubrication_link *link;
+  /* [36 n] L_ii, row-major, rows F T, columns U W */
   double *diagonal;
   /* [6n] what the flow takes off: forces and torques on the fluid are L V - carried */
   double *carried;
@@ -72,6 +78,8 @@ typedef struct {
 /* The spheres have moved. On all ranks together. SD_OK; SD_ENOMEMORY; SD_EOUTSIDE: radii that
  * `functions` does not have; SD_ENOTFINITE; that of refresh. */
 sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene);
+/* L_ij of pair k, row-major, rows F T, columns U W */
+void sd_lubrication_block(const sd_lubrication *L, long k, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
 
