@@ -17,6 +17,9 @@ if(STOKESDYN_SANITIZE)
   set(tested sanitized)
 endif()
 
+# Every program that ctest runs here: what the run with sanitizers builds.
+add_custom_target(core_tests)
+
 # core_test(NAME MODEL FILE): a test sees the core of its own model, and what the rooms above it share
 function(core_test name model file)
   add_executable(${name} ${file} ${ARGN})
@@ -25,6 +28,7 @@ function(core_test name model file)
   target_compile_options(${name} PRIVATE -Wall -Wextra -g)
   target_link_libraries(${name} PRIVATE ${tested}_${model} ${cmocka_library})
   add_test(NAME ${name} COMMAND ${name})
+  add_dependencies(core_tests ${name})
 endfunction()
 
 foreach(model base ${models})
@@ -56,6 +60,7 @@ add_executable(make_two_sphere_table ${source}/core/stokes/two_sphere/table/make
 target_compile_options(make_two_sphere_table PRIVATE -Wall -Wextra -Wshadow)
 target_link_libraries(make_two_sphere_table PRIVATE ${tested}_stokes)
 add_test(NAME two_sphere_table COMMAND make_two_sphere_table check 23)
+add_dependencies(core_tests make_two_sphere_table)
 
 # Timings: cmake --build build --target bench_core. The rival loop in it gets all that this processor has.
 include(CheckCCompilerFlag)

@@ -47,7 +47,7 @@ lammps=$(sed -n 's/^LAMMPS_SOURCE_DIR:[A-Z]*=//p' build/CMakeCache.txt)
 log=build/sanitize.log
 { cmake -S cmake -B build/sanitize -G Ninja -D LAMMPS_SOURCE_DIR="$lammps" -D STOKESDYN_TESTS=ON \
     -D CMAKE_BUILD_TYPE=RelWithDebInfo -D STOKESDYN_SANITIZE=address,undefined &&
-  cmake --build build/sanitize -j "$cores" --target $(find unittest/core -name 'test_*.c' -exec basename -s .c {} +); } > $log 2>&1
+  cmake --build build/sanitize -j "$cores" --target core_tests; } > $log 2>&1
 if [ $? = 0 ]; then
   core_tests build/sanitize
 else
