@@ -284,8 +284,8 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
   place(how.width);
   arrange();
   sd_bodies A = bodies(how.width);
-  near.assign(u.size(), 0.0);
   if (lubrication.settings.on) {
+    near.assign(u.size(), 0.0);
     lubrication.place(ambient);
     tie.L = lubrication.matrix();
     A.tie = &tie;
@@ -306,7 +306,8 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
   for (int k = 0; k < A.n; k++) {
     const size_t row = how.width * (size_t) k;
     double by_fluid[6];
-    for (int d = 0; d < how.width; d++) by_fluid[d] = -(guess.l[row + d] + near[row + d]);
+    for (int d = 0; d < how.width; d++) by_fluid[d] = -guess.l[row + d];
+    for (int d = 0; A.tie && d < how.width; d++) by_fluid[d] -= near[row + d];
     take(ambient.who()[k], &v[row], by_fluid);
   }
   return status;

@@ -34,7 +34,7 @@ sd_status sd_tie_make(const sd_bodies *A)
 
 /* --- K, by numbers of bodies --- */
 
-static sd_status spread(const sd_bodies *A, const double *V, double *rows)
+static void spread(const sd_bodies *A, const double *V, double *rows)
 {
   for (int e = 0; e < A->lone; e++)
     memcpy(rows + 6 * (long) A->loner[e], V + 6 * (long) e, 6 * sizeof(double));
@@ -45,7 +45,6 @@ static sd_status spread(const sd_bodies *A, const double *V, double *rows)
     sd_bodies_to_shape(A->pose + 9 * (long) b, V + 6 * (long) (A->lone + b), in_shape);
     sd_bodies_add_rigid(A, b, in_shape, rows);
   }
-  return SD_OK;
 }
 
 static sd_status collect(const sd_bodies *A, const double *rows, double *f)
@@ -76,8 +75,8 @@ static sd_status apply(const sd_bodies *A, const double *V, double *out)
 {
   sd_tie *t = A->tie;
   double *v = t->rows, *f = v + 6 * (long) A->n;
-  sd_status status = spread(A, V, v);
-  if (status == SD_OK) status = sd_lubrication_apply(t->L, v, f);
+  spread(A, V, v);
+  const sd_status status = sd_lubrication_apply(t->L, v, f);
   t->products++;
   return status == SD_OK ? collect(A, f, out) : status;
 }
