@@ -292,8 +292,23 @@ static sd_status guess_motion(loop *c, const double *before, const state *guess)
   return status;
 }
 
+/* V takes what it lacks at once, and r loses it. Without that r of a good guess would be K times
+ * the V of neighbours, and r.z no power but rounding of it, of any sign. Not with a tie, where
+ * l goes with V. */
+static sd_status settle(loop *c)
+{
+  const sd_bodies *A = c->A;
+  for (long j = 0; j < (long) A->width * A->n; j++) {
+    c->x.v[j] += c->z.v[j];
+    c->r[j] += c->z.v[j];
+  }
+  for (int j = 0; j < 6 * A->clumps; j++) c->x.V[j] += c->z.V[j];
+  const sd_status status = pre(c, c->r, NULL, &c->z);
+  return status == SD_OK ? dot(A, c->r, c->z.l, &c->power.rz) : status;
+}
+
 /* x, r and z at the start of the loop. Warm: l is a guess, with a tie (l, V), dropped when it
- * leaves more than the power itself. Without a tie V needs none: pre(r, 0) finds what V lacks. */
+ * leaves more than the power itself. */
 static sd_status start(loop *c, const double *before, int warm)
 {
   const size_t bytes = sizeof(double) * (size_t) c->A->width * (size_t) c->A->n;
@@ -312,6 +327,7 @@ static sd_status start(loop *c, const double *before, int warm)
     memcpy(c->x.V, guess->V, sizeof(double) * 6 * (size_t) c->A->clumps);
   }
   status = residual(c);
+  if (status == SD_OK && !c->A->tie) status = settle(c);
   if (status != SD_OK || c->power.rz <= c->power.spent) return status;
   status = start_cold(c);
   return status == SD_OK ? residual(c) : status;

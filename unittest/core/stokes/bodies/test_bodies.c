@@ -262,6 +262,21 @@ static void a_guess_saves_products(void **state)
   flock_free(f);
 }
 
+/* The answer itself as a guess is found to be right, however tight the tolerance. */
+static void the_answer_is_a_guess_that_ends_the_loop(void **state)
+{
+  (void) state;
+  for (int seed = 1; seed <= 10; seed++) {
+    flock *f = flock_create(5, chain5, ones, 1, 6, 3, 1.0);
+    flock_scatter(f, 0.1, seed);
+    flock_weigh(f, P6);
+    assert_int_equal(flock_move(f, 6, 0, 1e-13, 100), SD_OK);
+    assert_int_equal(flock_move(f, 6, 1, 1e-11, 100), SD_OK);
+    assert_int_equal(f->report.products, 1);
+    flock_free(f);
+  }
+}
+
 /* Nothing acts, or a uniform stream carries all: that is no reason to iterate. */
 static void who_is_only_carried_costs_one_product(void **state)
 {
@@ -389,6 +404,7 @@ int main(void)
       cmocka_unit_test(spheres_and_clumps_solve_the_system),
       cmocka_unit_test(products_are_few),
       cmocka_unit_test(a_guess_saves_products),
+      cmocka_unit_test(the_answer_is_a_guess_that_ends_the_loop),
       cmocka_unit_test(who_is_only_carried_costs_one_product),
       cmocka_unit_test(far_clumps_are_as_shells_everywhere),
       cmocka_unit_test(negative_curvature_is_refused),
