@@ -6,6 +6,7 @@
 
 #include "sd_cells.h"
 #include "sd_linear.h"
+#include "sd_room.h"
 
 /* Pairs in the order in which they are found: row and source */
 typedef struct {
@@ -17,9 +18,7 @@ static sd_status append(found *f, int row, int source)
 {
   if (f->count == f->capacity) {
     const long capacity = 2 * f->capacity + 1024;
-    int(*pair)[2] = realloc(f->pair, sizeof(*pair) * (size_t) capacity);
-    if (!pair) return SD_ENOMEMORY;
-    f->pair = pair;
+    if (!sd_grow(&f->pair, sizeof(*f->pair), (size_t) capacity)) return SD_ENOMEMORY;
     f->capacity = capacity;
   }
   f->pair[f->count][0] = row;

@@ -2,6 +2,7 @@
 
 #include "sd_cells.h"
 #include "sd_linear.h"
+#include "sd_room.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,17 +19,13 @@ void sd_neighbors_free(sd_neighbors *list)
 sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count)
 {
   if (rows > list->rows || !list->first) {
-    long *first = realloc(list->first, sizeof(long) * ((size_t) rows + 1));
-    if (!first) return SD_ENOMEMORY;
-    list->first = first;
+    if (!sd_grow(&list->first, sizeof(long), (size_t) rows + 1)) return SD_ENOMEMORY;
     list->rows = rows;
   }
   /* a quarter more than is asked for: a list that grows pair by pair is copied a few times only */
   if (count > list->capacity) {
     const long capacity = count + count / 4 + 64;
-    int *neighbor = realloc(list->neighbor, sizeof(int) * (size_t) capacity);
-    if (!neighbor) return SD_ENOMEMORY;
-    list->neighbor = neighbor;
+    if (!sd_grow(&list->neighbor, sizeof(int), (size_t) capacity)) return SD_ENOMEMORY;
     list->capacity = capacity;
   }
   list->pairs.first = list->first;

@@ -1,6 +1,7 @@
 #include "sd_clump_internal.h"
 
 #include "sd_linear.h"
+#include "sd_room.h"
 #include "sd_tensor.h"
 
 #include <stdlib.h>
@@ -17,11 +18,9 @@ sd_status sd_shells_get(sd_shells *cache, int n, const sd_shell **shell)
       *shell = cache->shell + i;
       return SD_OK;
     }
-  sd_shell *larger = realloc(cache->shell, sizeof(sd_shell) * (size_t) (cache->count + 1));
-  if (!larger) return SD_ENOMEMORY;
-  cache->shell = larger;
-  const sd_status status = sd_shell_create(size, larger + cache->count);
-  if (status == SD_OK) *shell = larger + cache->count++;
+  if (!sd_grow(&cache->shell, sizeof(sd_shell), (size_t) cache->count + 1)) return SD_ENOMEMORY;
+  const sd_status status = sd_shell_create(size, cache->shell + cache->count);
+  if (status == SD_OK) *shell = cache->shell + cache->count++;
   return status;
 }
 

@@ -2,6 +2,7 @@
 
 #include "sd_constants.h"
 #include "sd_linear.h"
+#include "sd_room.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -206,11 +207,9 @@ static sd_status add_symmetry(sd_shape *s, const double g[9], int *capacity, con
 {
   if (s->symmetries == *capacity) {
     const size_t larger = *capacity ? 2 * (size_t) *capacity : 2;
-    double *more_g = realloc(s->g, sizeof(double) * 9 * larger);
-    if (more_g) s->g = more_g;
-    int *more_perm = realloc(s->perm, sizeof(int) * (size_t) s->n * larger);
-    if (more_perm) s->perm = more_perm;
-    if (!more_g || !more_perm) return SD_ENOMEMORY;
+    if (!sd_grow(&s->g, 9 * sizeof(double), larger) ||
+        !sd_grow(&s->perm, sizeof(int) * (size_t) s->n, larger))
+      return SD_ENOMEMORY;
     *capacity = (int) larger;
   }
   memcpy(s->g + 9 * s->symmetries, g, sizeof(double) * 9);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_room.h"
 #include "sd_tensor.h"
 
 static int numbers(const sd_ewald_large_pairs *p)
@@ -46,16 +47,14 @@ static sd_status sum(const sd_world *world, double *values, int count)
 
 static int room_for_larges(sd_ewald_large_pairs *p, int many)
 {
+  const int room = many + many / 8 + 8;
   if (many <= p->large_room && p->large) return 1;
-  const size_t room = (size_t) many + (size_t) many / 8 + 8;
-  free(p->sphere);
-  free(p->large);
-  free(p->F);
-  p->sphere = malloc(sizeof(int) * room);
-  p->large = malloc(sizeof(sd_large_sphere) * room);
-  p->F = malloc(sizeof(double) * 12 * room);
-  p->large_room = p->sphere && p->large && p->F ? (int) room : 0;
-  return p->large_room > 0;
+  if (!sd_grow(&p->sphere, sizeof(int), (size_t) room) ||
+      !sd_grow(&p->large, sizeof(sd_large_sphere), (size_t) room) ||
+      !sd_grow(&p->F, 12 * sizeof(double), (size_t) room))
+    return 0;
+  p->large_room = room;
+  return 1;
 }
 
 /* How many each rank has, and then who they are: sums, to which each rank adds its own. */
@@ -97,13 +96,10 @@ static int add_image(sd_ewald_large_pairs *p, int large, const double *x, int it
 {
   if (p->images == p->image_room || !p->image) {
     const size_t room = 2 * (size_t) p->images + 64;
-    double *image = realloc(p->image, sizeof(double) * 3 * room);
-    if (image) p->image = image;
-    int *of = realloc(p->image_of, sizeof(int) * room);
-    if (of) p->image_of = of;
-    int *own = realloc(p->image_itself, sizeof(int) * room);
-    if (own) p->image_itself = own;
-    if (!image || !of || !own) return 0;
+    if (!sd_grow(&p->image, 3 * sizeof(double), room) ||
+        !sd_grow(&p->image_of, sizeof(int), room) ||
+        !sd_grow(&p->image_itself, sizeof(int), room))
+      return 0;
     p->image_room = (int) room;
   }
   memcpy(p->image + 3 * (long) p->images, x, 3 * sizeof(double));
@@ -205,11 +201,9 @@ static int add_pair(sd_ewald_large_pairs *p, int other, const double *r, double 
 {
   if (p->pairs == p->room || !p->other) {
     const size_t room = 2 * (size_t) p->pairs + 256;
-    int *others = realloc(p->other, sizeof(int) * room);
-    if (others) p->other = others;
-    double *tensor = realloc(p->tensor, sizeof(double) * (size_t) numbers(p) * room);
-    if (tensor) p->tensor = tensor;
-    if (!others || !tensor) return 0;
+    if (!sd_grow(&p->other, sizeof(int), room) ||
+        !sd_grow(&p->tensor, sizeof(double) * (size_t) numbers(p), room))
+      return 0;
     p->room = (long) room;
   }
   p->other[p->pairs] = other;
@@ -240,12 +234,7 @@ sd_status sd_ewald_large_pairs_place(sd_ewald_large_pairs *p, const sd_spheres *
   sd_status status = share_larges(p, s, list, n, world);
   if (status == SD_OK) status = find_images(p, s, list, n);
   if (status != SD_OK) return status;
-  if (n > p->first_room || !p->begin) {
-    free(p->begin);
-    p->first_room = n + n / 8;
-    p->begin = malloc(sizeof(long) * ((size_t) p->first_room + 1));
-    if (!p->begin) return SD_ENOMEMORY;
-  }
+  if (!sd_reserve(&p->begin, sizeof(long), (size_t) n + 1, &p->begin_room)) return SD_ENOMEMORY;
   p->pairs = 0;
   int large = 0;
   for (int i = 0; i < n; i++) {

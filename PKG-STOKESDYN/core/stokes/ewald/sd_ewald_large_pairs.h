@@ -45,7 +45,8 @@ typedef struct {
   double *image;
   sd_cells cells;
   /* pairs of our spheres in their order: [n + 1] first, [pairs] the other, [pairs] tensors */
-  int n, first_room;
+  int n;
+  size_t begin_room;
   long pairs, room, *begin;
   int *other;
   double *tensor;

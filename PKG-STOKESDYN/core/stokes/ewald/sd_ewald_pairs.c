@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_room.h"
 
 /* Vectors of every instruction set are full with so many neighbours. */
 enum { FULL = 8 };
@@ -65,16 +66,13 @@ static int make_room(sd_ewald_pairs *p, int n)
 {
   if (n <= p->room && p->row) return 1;
   const size_t many = (size_t) n + (size_t) n / 8 + 8, rows = many + 1;
-  free(p->sphere);
-  free(p->target);
-  free(p->first);
+  p->room = 0;
   free(p->row);
-  p->sphere = malloc(sizeof(int) * many);
-  p->target = malloc(sizeof(int) * many);
-  p->first = malloc(sizeof(long) * rows);
   p->row = lines((p->width == 6 ? 20 : 12) * rows);
-  p->room = p->sphere && p->target && p->first && p->row ? (int) many : 0;
-  if (!p->room) return 0;
+  if (!p->row || !sd_grow(&p->sphere, sizeof(int), many) ||
+      !sd_grow(&p->target, sizeof(int), many) || !sd_grow(&p->first, sizeof(long), rows))
+    return 0;
+  p->room = (int) many;
   p->u = p->row + 8 * rows;
   p->torque_row = p->width == 6 ? p->u + 8 * rows : NULL;
   return 1;
@@ -131,12 +129,8 @@ static sd_status sort(sd_ewald_pairs *p, const cells *c, int n, int n_all)
 {
   const sd_spheres *s = &p->spheres;
   const int all = c->n[0] * c->n[1] * c->n[2];
-  if (all > p->cell_room || !p->cell_first) {
-    free(p->cell_first);
-    p->cell_first = malloc(sizeof(int) * ((size_t) all + 2));
-    p->cell_room = p->cell_first ? all : 0;
-    if (!p->cell_first) return SD_ENOMEMORY;
-  }
+  if (!sd_reserve(&p->cell_first, sizeof(int), (size_t) all + 2, &p->cell_room))
+    return SD_ENOMEMORY;
   int *first = p->cell_first;
   memset(first, 0, sizeof(int) * ((size_t) all + 2));
   for (int i = 0; i < n_all; i++)
@@ -181,9 +175,7 @@ static int room_for_neighbors(sd_ewald_pairs *p, long many)
 {
   if (many <= p->neighbor_room && p->neighbor) return 1;
   const long room = many + many / 4;
-  int *more = realloc(p->neighbor, sizeof(int) * (size_t) room);
-  if (!more) return 0;
-  p->neighbor = more;
+  if (!sd_grow(&p->neighbor, sizeof(int), (size_t) room)) return 0;
   p->neighbor_room = room;
   return 1;
 }
@@ -192,9 +184,7 @@ static int add_wide(sd_ewald_pairs *p, int row, int other)
 {
   if (p->wides == p->wide_room) {
     const int room = 2 * p->wide_room + 64;
-    int *more = realloc(p->wide, sizeof(int) * 2 * (size_t) room);
-    if (!more) return 0;
-    p->wide = more;
+    if (!sd_grow(&p->wide, 2 * sizeof(int), (size_t) room)) return 0;
     p->wide_room = room;
   }
   p->wide[2 * (long) p->wides] = row;
@@ -207,11 +197,9 @@ static int add_column(sd_ewald_pairs *p, int x, int y, int z)
 {
   if (p->columns == p->column_room) {
     const int room = 2 * p->column_room + 32;
-    int *more = realloc(p->column, 3 * sizeof(int) * (size_t) room);
-    if (more) p->column = more;
-    int *ranges = realloc(p->range, 2 * sizeof(int) * (size_t) room);
-    if (ranges) p->range = ranges;
-    if (!more || !ranges) return 0;
+    if (!sd_grow(&p->column, 3 * sizeof(int), (size_t) room) ||
+        !sd_grow(&p->range, 2 * sizeof(int), (size_t) room))
+      return 0;
     p->column_room = room;
   }
   int *column = p->column + 3 * p->columns++;

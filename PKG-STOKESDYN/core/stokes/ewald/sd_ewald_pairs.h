@@ -39,7 +39,8 @@ typedef struct {
   long neighbor_room;
   /* cells: [cells + 1] first row of each. Columns of cells near a cell: [3 columns] steps of x, of y,
    * and along z to either side; begin and end of the rows in them, [2 columns] */
-  int cell_room, *cell_first;
+  int *cell_first;
+  size_t cell_room;
   int columns, column_room, *column, *range;
 } sd_ewald_pairs;
 

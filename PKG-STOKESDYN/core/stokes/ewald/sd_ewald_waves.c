@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_room.h"
+
 /* Gradients of the grid's coordinates, and their products */
 static void metric(sd_ewald_waves *w)
 {
@@ -92,16 +94,6 @@ void sd_ewald_waves_free(sd_ewald_waves *w)
 
 /* --- where the spheres stand on the grid --- */
 
-static int make_room(sd_ewald_waves *w, int n)
-{
-  if (n <= w->room && w->place) return 1;
-  const size_t many = (size_t) n + (size_t) n / 8 + 8;
-  free(w->place);
-  w->place = malloc(sizeof(sd_spread_place) * many);
-  w->room = w->place ? (int) many : 0;
-  return w->room > 0;
-}
-
 /* Coordinates in grid spacings, P/2 beyond the first point of an open box */
 static void on_grid(const sd_ewald_waves *w, const double *x, double *s)
 {
@@ -156,7 +148,7 @@ static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
 sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int *sphere, int n,
                               int *brick)
 {
-  if (!make_room(w, n)) return SD_ENOMEMORY;
+  if (!sd_reserve(&w->place, sizeof(sd_spread_place), (size_t) n, &w->room)) return SD_ENOMEMORY;
   w->sphere = sphere;
   w->n = n;
   return find_places(w, s, brick) ? SD_OK : SD_ENOTFINITE;

@@ -32,9 +32,10 @@ typedef struct {
   sd_grid grid;
   sd_spreading spreading;
   /* [n] which spheres, where they stand */
-  int n, room;
+  int n;
   const int *sphere;
   sd_spread_place *place;
+  size_t room;
 } sd_ewald_waves;
 
 /* Tables for a splitting, in the frame of the last one. SD_OK or SD_ENOMEMORY. */

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_room.h"
+
 /* --- plans and slabs --- */
 
 static int share(int all, int part, int parts)
@@ -201,15 +203,6 @@ static size_t count_numbers(sd_grid *g)
   return turned > most ? turned : most;
 }
 
-static int reserve(double **buffer, size_t *capacity, size_t doubles)
-{
-  if (doubles <= *capacity && *buffer) return 1;
-  free(*buffer);
-  *buffer = malloc(sizeof(double) * (doubles + 8));
-  *capacity = *buffer ? doubles : 0;
-  return *buffer != NULL;
-}
-
 /* Where the planes of our slab will be */
 static int place_slab(sd_grid *g)
 {
@@ -223,7 +216,7 @@ static int place_slab(sd_grid *g)
       g->slab[p->to[0] + i - g->x0] = (fftw_complex *) (g->brick + (p->at[0] + i) * g->layer);
   }
   for (int x = 0; x < planes; x++) missing += !g->slab[x];
-  if (!reserve(&g->spare, &g->spare_capacity, (size_t) (missing * numbers))) return 0;
+  if (!sd_reserve(&g->spare, sizeof(double), (size_t) (missing * numbers), &g->spare_room)) return 0;
   for (int x = 0; x < planes; x++)
     if (!g->slab[x]) g->slab[x] = (fftw_complex *) (g->spare + --missing * numbers);
   return 1;
@@ -239,24 +232,17 @@ sd_status sd_grid_place(sd_grid *g, const int *bricks)
   g->row =
       (3 * (long) g->n[2] + 7) / 8 * 8 + 8; /* vectors of the windows end beyond the last point */
   g->layer = g->row * g->n[1];
-  if (!reserve(&g->brick, &g->brick_capacity, (size_t) (g->layer * g->n[0]) + 16))
-    return SD_ENOMEMORY;
+  const size_t brick = (size_t) (g->layer * g->n[0]) + 24;
+  if (!sd_reserve(&g->brick, sizeof(double), brick, &g->brick_room)) return SD_ENOMEMORY;
   list_pieces(g, bricks, NULL, NULL, &g->outs, &g->ins);
-  const int most = g->outs > g->ins ? g->outs : g->ins;
-  if (most > g->piece_capacity || !g->out) {
-    free(g->out);
-    free(g->in);
-    g->out = malloc(sizeof(sd_piece) * ((size_t) most + 1));
-    g->in = malloc(sizeof(sd_piece) * ((size_t) most + 1));
-    g->piece_capacity = g->out && g->in ? most : 0;
-    if (!g->out || !g->in) return SD_ENOMEMORY;
-  }
-  list_pieces(g, bricks, g->out, g->in, &g->outs, &g->ins);
-  size_t capacity = g->buffer_capacity;
-  const size_t doubles = count_numbers(g);
-  if (!reserve(&g->message[0], &g->buffer_capacity, doubles) ||
-      !reserve(&g->message[1], &capacity, doubles))
+  if (!sd_reserve(&g->out, sizeof(sd_piece), (size_t) g->outs, &g->out_room) ||
+      !sd_reserve(&g->in, sizeof(sd_piece), (size_t) g->ins, &g->in_room))
     return SD_ENOMEMORY;
+  list_pieces(g, bricks, g->out, g->in, &g->outs, &g->ins);
+  const size_t doubles = count_numbers(g);
+  for (int k = 0; k < 2; k++)
+    if (!sd_reserve(g->message + k, sizeof(double), doubles, g->message_room + k))
+      return SD_ENOMEMORY;
   return place_slab(g) ? SD_OK : SD_ENOMEMORY;
 }
 

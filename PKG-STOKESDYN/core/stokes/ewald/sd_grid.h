@@ -45,21 +45,22 @@ typedef struct {
    * of its size */
   fftw_complex **slab;
   double *spare;
-  size_t spare_capacity;
+  size_t spare_room;
   fftw_plan z_forth, z_back, y_forth, y_back, x_forth, x_back;
   /* brick: first point and number of points; rows along z of 3 numbers a point */
   int lo[3], n[3];
   long row, layer;
   double *brick;
-  size_t brick_capacity;
+  size_t brick_room;
   /* from the brick to slabs, by rank of the slab; to our slab from bricks, by rank of the brick */
   sd_piece *out, *in;
-  int outs, ins, piece_capacity;
+  int outs, ins;
+  size_t out_room, in_room;
   /* numbers to and from each rank: of pieces, and of the turn from x to y planes; 4 [ranks] */
   int *counts;
   /* messages: what is in one goes to the other */
   double *message[2];
-  size_t buffer_capacity;
+  size_t message_room[2];
 } sd_grid;
 
 /* Multiplies the three fields at all wave vectors of one y: plane [3] [size x][half] complex. */

@@ -7,13 +7,15 @@
 
 #include <stdlib.h>
 
+#include "sd_room.h"
+
 typedef struct {
   sd_packed packed;
   sd_world world;
   int width, n_all;
   /* F and u of all, when there are other ranks or another order: 2 [width n_all] */
   double *all;
-  size_t capacity;
+  size_t room;
 } all_pairs;
 
 static double ghosts(const sd_mobility_how *how)
@@ -25,16 +27,12 @@ static double ghosts(const sd_mobility_how *how)
 static sd_status place(void *state, const sd_mobility_scene *s)
 {
   all_pairs *e = state;
-  const size_t doubles = 2 * (size_t) s->how.width * (size_t) s->n_all + 1;
+  const size_t doubles = 2 * (size_t) s->how.width * (size_t) s->n_all;
   e->world = s->world;
   e->width = s->how.width;
   e->n_all = s->n_all;
-  if (s->world.spread && doubles > e->capacity) {
-    free(e->all);
-    e->all = malloc(sizeof(double) * doubles);
-    e->capacity = e->all ? doubles : 0;
-    if (!e->all) return SD_ENOMEMORY;
-  }
+  if (s->world.spread && !sd_reserve(&e->all, sizeof(double), doubles, &e->room))
+    return SD_ENOMEMORY;
   return sd_packed_all(&e->packed, SD_ISA_BEST, &s->how.law, &s->spheres, s->n_all, s->how.width);
 }
 

@@ -10,6 +10,7 @@
 #include "sd_ewald_large_pairs.h"
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
+#include "sd_room.h"
 
 typedef struct {
   /* what the tables are made for */
@@ -25,10 +26,11 @@ typedef struct {
   double self[2][3][3];
   /* this rank's spheres with radius: [small] in order of the near part's targets, then those of the
    * second level */
-  int *sphere, small, own, room;
+  int *sphere, small, own;
+  size_t sphere_room;
   /* [n_all] two levels: radii, 0 of the large ones */
   double *small_a;
-  int small_room;
+  size_t small_room;
   /* this rank's spheres, with ghosts */
   int n, n_all;
   double *ghosts;
@@ -78,19 +80,8 @@ static int changed(const ewald *e, const sd_mobility_scene *s)
 
 static int make_room(ewald *e, int n, size_t ghost_numbers)
 {
-  if (n > e->room || !e->sphere) {
-    const size_t many = (size_t) n + (size_t) n / 8 + 8;
-    free(e->sphere);
-    e->sphere = malloc(sizeof(int) * many);
-    e->room = e->sphere ? (int) many : 0;
-    if (!e->room) return 0;
-  }
-  if (ghost_numbers > e->ghost_room || !e->ghosts) {
-    free(e->ghosts);
-    e->ghosts = malloc(sizeof(double) * (ghost_numbers + 1));
-    e->ghost_room = e->ghosts ? ghost_numbers : 0;
-  }
-  return e->ghosts != NULL;
+  return sd_reserve(&e->sphere, sizeof(int), (size_t) n, &e->sphere_room) &&
+      sd_reserve(&e->ghosts, sizeof(double), ghost_numbers, &e->ghost_room);
 }
 
 /* Without the large spheres, of which the first level knows nothing */
@@ -98,12 +89,7 @@ static int hide_large(ewald *e, const sd_mobility_scene *s, sd_spheres *small)
 {
   *small = s->spheres;
   if (e->levels == 1) return 1;
-  if (s->n_all > e->small_room || !e->small_a) {
-    free(e->small_a);
-    e->small_room = s->n_all + s->n_all / 8;
-    e->small_a = malloc(sizeof(double) * ((size_t) e->small_room + 1));
-    if (!e->small_a) return 0;
-  }
+  if (!sd_reserve(&e->small_a, sizeof(double), (size_t) s->n_all, &e->small_room)) return 0;
   for (int i = 0; i < s->n_all; i++)
     e->small_a[i] = s->spheres.a[i] < e->ewald.large.from ? s->spheres.a[i] : 0.0;
   small->a = e->small_a;

@@ -4,6 +4,8 @@
 
 #include <stdlib.h>
 
+#include "sd_room.h"
+
 typedef struct {
   sd_packed packed;
   const sd_pairs *pairs;
@@ -11,7 +13,7 @@ typedef struct {
   int width;
   /* [width (n_all - n)] F of the ghosts */
   double *ghosts;
-  size_t capacity;
+  size_t room;
 } list;
 
 static double ghosts(const sd_mobility_how *how)
@@ -22,16 +24,11 @@ static double ghosts(const sd_mobility_how *how)
 static sd_status place(void *state, const sd_mobility_scene *s)
 {
   list *e = state;
-  const size_t doubles = (size_t) s->how.width * (size_t) (s->n_all - s->n) + 1;
+  const size_t doubles = (size_t) s->how.width * (size_t) (s->n_all - s->n);
   e->pairs = s->pairs;
   e->world = s->world;
   e->width = s->how.width;
-  if (doubles > e->capacity) {
-    free(e->ghosts);
-    e->ghosts = malloc(sizeof(double) * doubles);
-    e->capacity = e->ghosts ? doubles : 0;
-    if (!e->ghosts) return SD_ENOMEMORY;
-  }
+  if (!sd_reserve(&e->ghosts, sizeof(double), doubles, &e->room)) return SD_ENOMEMORY;
   return sd_packed_list(&e->packed, SD_ISA_BEST, &s->how.law, &s->spheres, s->n_all, s->how.width);
 }
 

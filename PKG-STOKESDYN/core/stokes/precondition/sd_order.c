@@ -2,6 +2,7 @@
 
 #include "sd_cells.h"
 #include "sd_linear.h"
+#include "sd_room.h"
 
 #include <stdlib.h>
 
@@ -129,9 +130,7 @@ int sd_farthest_first(const sd_spheres *s, int n, int *order, double *distance)
 static sd_status grow(sd_rows *rows, long *capacity, long wanted)
 {
   if (wanted <= *capacity) return SD_OK;
-  int *more = realloc(rows->row, sizeof(int) * 2 * (size_t) wanted);
-  if (!more) return SD_ENOMEMORY;
-  rows->row = more;
+  if (!sd_grow(&rows->row, sizeof(int), 2 * (size_t) wanted)) return SD_ENOMEMORY;
   *capacity = 2 * wanted;
   return SD_OK;
 }

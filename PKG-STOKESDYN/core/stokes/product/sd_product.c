@@ -6,6 +6,7 @@
 
 #include "sd_linear.h"
 #include "sd_product_internal.h"
+#include "sd_room.h"
 
 /* In factors of 1 - q, so that no digits are lost where both go to 0 */
 double sd_taper_factor(const sd_law *law, double R)
@@ -66,12 +67,7 @@ void sd_packed_free(sd_packed *p)
 /* Room for doubles on a cache line's border. */
 static double *reserve(sd_packed *p, long doubles)
 {
-  if (doubles > p->capacity || !p->memory) {
-    free(p->memory);
-    p->memory = malloc(sizeof(double) * (size_t) doubles + 64);
-    p->capacity = p->memory ? doubles : 0;
-    if (!p->memory) return NULL;
-  }
+  if (!sd_reserve(&p->memory, sizeof(double), (size_t) doubles + 8, &p->room)) return NULL;
   return (double *) (((uintptr_t) p->memory + 63) & ~(uintptr_t) 63);
 }
 

@@ -9,6 +9,8 @@
 #ifndef SD_PRODUCT_H
 #define SD_PRODUCT_H
 
+#include <stddef.h>
+
 #include "sd_status.h"
 #include "sd_tensor.h"
 
@@ -96,7 +98,7 @@ typedef struct {
    * */
   double *row, *torque_row;
   void *memory;
-  long capacity;
+  size_t room;
 } sd_packed;
 
 void sd_packed_free(sd_packed *p);
