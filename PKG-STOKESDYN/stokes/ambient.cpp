@@ -97,11 +97,14 @@ void Ambient::read_fluid(bool with_gradients)
     settings.velocity[d].evaluate(lmp, igroup, out, 3);
     u_uniform[d] = settings.velocity[d].number();
   }
-  const bool nonuniform = with_gradients && (u_varies || settings.has_vorticity);
-  w.assign(nonuniform ? 3 * (size_t) n + 3 : 0, 0.0);
-  gradient.assign(nonuniform ? 9 * (size_t) n + 9 : 0, 0.0);
-  if (settings.grid) read_grid();
-  if (nonuniform) read_gradient();
+  const bool nonuniform = u_varies || settings.has_vorticity;
+  w.assign(nonuniform && (spins || with_gradients) ? 3 * (size_t) n + 3 : 0, 0.0);
+  gradient.assign(nonuniform && with_gradients ? 9 * (size_t) n + 9 : 0, 0.0);
+  if (settings.grid)
+    read_grid();
+  else if (u_varies && !w.empty())
+    read_gradient();
+  if (settings.has_vorticity) read_vorticity();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 }
 
@@ -154,38 +157,44 @@ double Ambient::misfit()
   return most[0] > 0.0 ? most[0] / std::max(most[0], most[1]) : 0.0;
 }
 
-/* gradient[9 i + 3 p + q] = d u_p / d x_q, by central differences over one radius to either side.
- * For a field given by variables that are formulas in x, y, z; values stored per atom do not
- * follow, and their gradient comes out as 0. */
-static void velocity_gradient(LAMMPS *lmp, Field u[3], int igroup, double *gradient)
+/* slope [nlocal] = d u_p / d x_q, by central differences over one radius to either side. For a field
+ * given by variables that are formulas in x, y, z; values stored per atom do not follow, and their
+ * gradient comes out as 0. */
+void Ambient::slope_of(int p, int q, std::vector<double> &slope)
 {
-  const int n = lmp->atom->nlocal;
+  const int n = atom->nlocal;
   std::vector<double> ahead(n + 1), behind(n + 1);
+  for (const double side : {1.0, -1.0}) {
+    const double by[3] = {q == 0 ? side : 0.0, q == 1 ? side : 0.0, q == 2 ? side : 0.0};
+    Shift shift(atom, by, true);
+    settings.velocity[p].evaluate(lmp, igroup, (side > 0.0 ? ahead : behind).data(), 1);
+  }
+  slope.resize(n + 1);
+  sd_flow_slope(n, ahead.data(), behind.data(), atom->radius, slope.data());
+}
+
+/* From the formulas of the fluid velocity, as much as is wanted of it: a vorticity that is given
+ * needs none of them. */
+void Ambient::read_gradient()
+{
+  if (gradient.empty() && settings.has_vorticity) return;
+  std::vector<double> slope;
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++) {
-      if (!u[p].is_atom_style()) continue;
-      for (const double side : {1.0, -1.0}) {
-        const double by[3] = {q == 0 ? side : 0.0, q == 1 ? side : 0.0, q == 2 ? side : 0.0};
-        Shift shift(lmp->atom, by, true);
-        u[p].evaluate(lmp, igroup, (side > 0.0 ? ahead : behind).data(), 1);
-      }
-      sd_flow_difference(n, ahead.data(), behind.data(), lmp->atom->radius, 9,
-                         gradient + 3 * p + q);
+      if (!settings.velocity[p].is_atom_style() || (p == q && gradient.empty())) continue;
+      slope_of(p, q, slope);
+      if (p != q) sd_flow_add_rotation(atom->nlocal, p, q, slope.data(), w.data());
+      for (size_t i = 0; 9 * i + 9 < gradient.size(); i++) gradient[9 * i + 3 * p + q] = slope[i];
     }
 }
 
-/* From the formulas of the fluid velocity, its rotation replaced by fluid_vorticity where that is
- * given. */
-void Ambient::read_gradient()
+void Ambient::read_vorticity()
 {
-  const int n = atom->nlocal;
-  if (!u.empty() && !settings.grid)
-    velocity_gradient(lmp, settings.velocity, igroup, gradient.data());
-  if (settings.has_vorticity) {
-    for (int d = 0; d < 3; d++) settings.vorticity[d].evaluate(lmp, igroup, w.data() + d, 3);
-    for (int i = 0; i < n; i++) sd_flow_set_vorticity(&w[3 * (size_t) i], &gradient[9 * (size_t) i]);
-  }
-  for (int i = 0; i < n; i++) sd_flow_rotation(&gradient[9 * (size_t) i], &w[3 * (size_t) i]);
+  for (int d = 0; d < 3; d++) settings.vorticity[d].evaluate(lmp, igroup, w.data() + d, 3);
+  if (!gradient.empty())
+    for (int i = 0; i < atom->nlocal; i++)
+      sd_flow_set_vorticity(&w[3 * (size_t) i], &gradient[9 * (size_t) i]);
+  for (double &value : w) value *= 0.5;
 }
 
 /* An atom and its images are one place, and where LAMMPS keeps it depends on when it last looked.
@@ -219,7 +228,7 @@ void Ambient::read_grid()
   // so many at once that memory keeps up, and few enough for the stack
   constexpr size_t BLOCK = 64;
   double x[3 * BLOCK], value[4 * BLOCK], G[9 * BLOCK];
-  const bool with_gradients = !gradient.empty();
+  const bool with_gradients = !w.empty();
   for (size_t begin = 0; begin < those.size(); begin += BLOCK) {
     const size_t count = std::min(BLOCK, those.size() - begin);
     for (size_t k = 0; k < count; k++) in_the_box(those[begin + k], x + 3 * k);
@@ -229,7 +238,8 @@ void Ambient::read_grid()
       const double *row = value + grid.columns * k;
       for (int d = 0; d < 3; d++) u[3 * i + d] = row[d];
       if (settings.grid_has_visc) eta[i] = row[3] * force->vxmu2f;
-      if (with_gradients) std::copy_n(G + 9 * k, 9, &gradient[9 * i]);
+      if (with_gradients) sd_flow_rotation(G + 9 * k, &w[3 * i]);
+      if (!gradient.empty()) std::copy_n(G + 9 * k, 9, &gradient[9 * i]);
     }
   }
 }

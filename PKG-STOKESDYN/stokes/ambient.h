@@ -42,8 +42,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
 
   /* Looks up variables, group and region. Errors: one that does not exist. */
   void init();
-  /* The state of this step. spins: angular velocities count; gradients: the gradient of the fluid
-   * velocity is wanted; time: of this step, for a series.
+  /* The state of this step. spins: angular velocities count; gradients: that of the fluid velocity
+   * is wanted, not only its rotation; time: of this step, for a series.
    * Errors, on all ranks: a number that is none, an atom far outside of a periodic box or outside
    * of the grid, with atom and step; a time outside of the series. */
   void read(bool spins, bool gradients, double time);
@@ -83,7 +83,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
     for (int d = 0; d < 3 && spins; d++) s[3 + d] -= atom->omega[i][d];
   }
 
-  /* Of all atoms; nullptr: the velocity is the same everywhere, namely uniform_velocity(). */
+  /* [nlocal][9] d u_p / d x_q; nullptr: not asked for, or the velocity is the same everywhere,
+   * namely uniform_velocity(). */
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
   const double *uniform_velocity() const { return u_uniform; }
 
@@ -113,7 +114,9 @@ class Ambient : protected LAMMPS_NS::Pointers {
   bool group_stands() const;
   void select();
   void read_fluid(bool gradients);
+  void slope_of(int p, int q, std::vector<double> &slope);
   void read_gradient();
+  void read_vorticity();
   void read_grid();
   void in_the_box(int i, double *x) const;
   std::string outside_of_grid(const double *x) const;

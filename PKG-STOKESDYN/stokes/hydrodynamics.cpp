@@ -69,7 +69,7 @@ void Hydrodynamics::begin()
          COMMAND + ": its internal fix " + State::ID +
              " has been deleted; a run without 'pre no' makes it anew");
   if (neighbor->ago == 0) scene.lists_are_stale();
-  ambient.read(rotation(), rotation() || settings.rigid.on, memory->time());
+  ambient.read(rotation(), settings.rigid.on, memory->time());
   if (selection == ambient.selection()) return;
   selection = ambient.selection();
   for (int i = 0; i < atom->nlocal; i++)

@@ -10,14 +10,16 @@ extern "C" {
  * for d, e, f in cyclic order. */
 void sd_flow_rotation(const double G[9], double w[3]);
 
+/* The same piece by piece: adds to w [3n] what slope [n] = d u_p / d x_q, p != q, has part in it. */
+void sd_flow_add_rotation(int n, int p, int q, const double *slope, double *w);
+
 /* Puts the given vorticity (2 w) in place of that of G; the rate of strain stays. */
 void sd_flow_set_vorticity(const double vorticity[3], double G[9]);
 
 /* Central difference of one component over +-a: exact for a linear field, to order a^2 for others.
- * 0 where a = 0.
- *   ahead, behind, a  [n]     out  [stride n]: every stride-th number is written */
-void sd_flow_difference(int n, const double *ahead, const double *behind, const double *a,
-                        int stride, double *out);
+ * 0 where a = 0. All [n]. */
+void sd_flow_slope(int n, const double *ahead, const double *behind, const double *a,
+                   double *slope);
 
 #ifdef __cplusplus
 }

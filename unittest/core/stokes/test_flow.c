@@ -1,0 +1,75 @@
+/* Gradients of a flow. */
+#include "check.h"
+
+#include "sd_flow.h"
+
+#include <string.h>
+
+/* A fluid that turns like a rigid body, with a strain that must not show */
+static const double TURN[3] = {0.7, -1.9, 2.3};
+static const double G[9] = {0.4, 1.1 - 2.3, -0.6 - 1.9, 1.1 + 2.3, -0.9, 0.3 - 0.7,
+                            -0.6 + 1.9, 0.3 + 0.7, 0.5};
+
+static void rigid_fluid_turns_at_its_rate(void **state)
+{
+  (void) state;
+  double w[3];
+  sd_flow_rotation(G, w);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(w[d], TURN[d], 1e-15);
+}
+
+static void rotation_is_the_sum_of_its_pieces(void **state)
+{
+  (void) state;
+  double w[6] = {0.0}, whole[3];
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      if (p != q) sd_flow_add_rotation(2, p, q, (double[2]){G[3 * p + q], 2.0 * G[3 * p + q]}, w);
+  sd_flow_rotation(G, whole);
+  for (int d = 0; d < 3; d++) {
+    CHECK_NEAR(w[d], whole[d], 1e-15);
+    CHECK_NEAR(w[3 + d], 2.0 * whole[d], 1e-15);
+  }
+}
+
+static void given_vorticity_leaves_the_strain(void **state)
+{
+  (void) state;
+  const double vorticity[3] = {3.1, 0.2, -1.7};
+  double other[9], w[3];
+  memcpy(other, G, sizeof(other));
+  sd_flow_set_vorticity(vorticity, other);
+  sd_flow_rotation(other, w);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(w[d], 0.5 * vorticity[d], 1e-15);
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      CHECK_NEAR(other[3 * p + q] + other[3 * q + p], G[3 * p + q] + G[3 * q + p], 1e-15);
+}
+
+/* u = 2 x + 5 x^2 + 4 x^3 at x = 0.3: the slope, and 4 a^2 more */
+static void slope_of_a_cubic_is_off_by_its_radius_squared(void **state)
+{
+  (void) state;
+  const double x = 0.3, a[3] = {0.2, 0.1, 0.0};
+  double ahead[3], behind[3], slope[3];
+  for (int i = 0; i < 3; i++) {
+    const double p = x + a[i], m = x - a[i];
+    ahead[i] = 2.0 * p + 5.0 * p * p + 4.0 * p * p * p;
+    behind[i] = 2.0 * m + 5.0 * m * m + 4.0 * m * m * m;
+  }
+  sd_flow_slope(3, ahead, behind, a, slope);
+  const double exact = 2.0 + 10.0 * x + 12.0 * x * x;
+  for (int i = 0; i < 2; i++) CHECK_NEAR(slope[i], exact + 4.0 * a[i] * a[i], 1e-13);
+  CHECK_NEAR(slope[2], 0.0, 0.0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rigid_fluid_turns_at_its_rate),
+      cmocka_unit_test(rotation_is_the_sum_of_its_pieces),
+      cmocka_unit_test(given_vorticity_leaves_the_strain),
+      cmocka_unit_test(slope_of_a_cubic_is_off_by_its_radius_squared),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
