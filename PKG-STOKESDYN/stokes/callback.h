@@ -1,6 +1,9 @@
-/* What the core calls must not throw: its frames are C. */
+/* Between the core and LAMMPS: exceptions become statuses, and statuses errors. What the core calls
+ * must not throw: its frames are C. */
 #ifndef SD_CALLBACK_H
 #define SD_CALLBACK_H
+
+#include "keywords.h"
 
 #include "sd_status.h"
 
@@ -9,8 +12,7 @@
 namespace StokesDyn {
 
 /* The body of a function that the core calls. An exception ends there, as a status that the core
- * hands back to its caller;
- * LAMMPS has printed the text of its own by then. */
+ * hands back to its caller; LAMMPS has printed the text of its own by then. */
 template <class Body> sd_status callback(const Body &body) noexcept
 {
   try {
@@ -20,6 +22,15 @@ template <class Body> sd_status callback(const Body &body) noexcept
   } catch (...) {
     return SD_ECALLBACK;
   }
+}
+
+/* Ends the run for a status of the core. Memory and callbacks fail on one rank, while the others
+ * wait for it; everything else is the same on all. */
+[[noreturn]] inline void fail_by(LAMMPS_NS::LAMMPS *lmp, sd_status status,
+                                 const std::string &message)
+{
+  if (status == SD_ENOMEMORY || status == SD_ECALLBACK) fail_one(lmp, message);
+  fail(lmp, message);
 }
 
 }    // namespace StokesDyn

@@ -1,5 +1,6 @@
 #include "hydrodynamics.h"
 
+#include "callback.h"
 #include "checks.h"
 #include "keywords.h"
 
@@ -353,10 +354,7 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
     why += " with cut_off_distance " + (std::isinf(how.cutoff) ? "inf" : text(how.cutoff)) +
         ", so any answer would be noise: use cut_off_distance inf, or a taper, or clumps_only yes "
         "with a cut-off larger than the clump";
-  const std::string message = where(algorithm()) + why + " (" + numbers + ")";
-  // These are of one rank, while the others wait for it.
-  if (status == SD_ENOMEMORY || status == SD_ECALLBACK) fail_one(lmp, message);
-  fail(lmp, message);
+  fail_by(lmp, status, where(algorithm()) + why + " (" + numbers + ")");
 }
 
 /* In one loop, which begins from the forces of the last step, with lubrication from its velocities

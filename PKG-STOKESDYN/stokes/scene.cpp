@@ -161,7 +161,11 @@ void Scene::place(int n_all_or_ghosts)
       return SD_OK;
     });
   };
-  if (sd_mobility_place(&omega, engine, &scene) != SD_OK) out_of_memory();
+  const sd_status status = sd_mobility_place(&omega, engine, &scene);
+  if (status != SD_OK)
+    fail_by(lmp, status,
+            command + ": the spheres of a product by " + engine->name + ": " +
+                sd_status_string(status));
 }
 
 /* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did

@@ -1,5 +1,6 @@
 #include "time_step_guard.h"
 
+#include "callback.h"
 #include "keywords.h"
 
 #include "atom.h"
@@ -95,7 +96,7 @@ double TimeStepGuard::compute(const sd_system &A, const int *atoms)
   const sd_status status = sd_smallest_eigenvalue(&A, weight.data(), ACCURACY, PRODUCTS, v.data(),
                                                   work.data(), &mu, &products);
   if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
-    fail_one(lmp, command + ": limit of the time step: " + sd_status_string(status));
+    fail_by(lmp, status, command + ": limit of the time step: " + sd_status_string(status));
   return status != SD_ENOTFINITE && mu > 0.0 ? mu : INFINITY;
 }
 
@@ -159,7 +160,7 @@ void TimeStepGuard::look_at_films(sd_lubrication &near, const int *atoms)
   double rate;
   const sd_status status = sd_lubrication_rate(&near, W.data(), v.data(), work.data(), &rate);
   if (status != SD_OK && status != SD_ENOTFINITE)
-    fail_one(lmp, command + ": limit of the time step: " + sd_status_string(status));
+    fail_by(lmp, status, command + ": limit of the time step: " + sd_status_string(status));
   if (status != SD_OK || !(rate > 0.0) || comm->me != 0) return;
   const double films = 2.0 / rate;
   if (update->setupflag)
