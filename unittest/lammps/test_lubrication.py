@@ -131,6 +131,21 @@ def test_spheres_far_apart_are_as_without(simulation):
     assert np.abs(answers[0] - answers[1]).max() < 1e-15
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_doublet_along_an_axis_is_solved_to_rounding(simulation, axis):
+    """By symmetry the loop meets the answer itself, where what is left of the power is rounding, of any sign."""
+    for place in np.random.default_rng(3).uniform(5, 15, (10, 3)):
+        x = np.array([place, place])
+        x[1, axis] += 2.02
+        answers = []
+        for words in (ALL, ALL.replace("lubrication yes", "")):
+            words += " rigid_clumps yes relative_tolerance 1e-10 far_field_tolerance 1e-11"
+            sim = simulation(Spheres(x, molecule=1), words, box=[(0.0, 20.0), (0.0, 21.0), (0.0, 22.0)], **PERIODIC)
+            sim.commands("fix weight all addforce 0.1 0.2 -1").commands(FIX).run(0)
+            answers.append(sim.v)
+        assert np.abs(answers[0] - answers[1]).max() < 1e-9 * np.abs(answers[1]).max()
+
+
 def test_radii_that_are_too_different_are_named(simulation):
     spheres = Spheres([(0, 0, 0), (90, 0, 0)], [0.5, 80.0])
     with pytest.raises(LammpsError, match="keyword lubrication: radii from 0.5 to 80: it knows pairs up to a ratio of 100"):

@@ -15,10 +15,10 @@ typedef struct {
   double *l, *v, *V;
 } state;
 
-/* What the loop goes by: r.z; the power l.(K V - u) of the start; and that of slips that are
- * rounding */
+/* What the loop goes by: r.z, and what of it is rounding; the power l.(K V - u) of the start; and
+ * that of slips that are rounding */
 typedef struct {
-  double rz, spent, floor;
+  double rz, noise, spent, floor;
 } powers;
 
 typedef struct {
@@ -188,6 +188,25 @@ static sd_status dot(const sd_bodies *A, const double *a, const double *b, doubl
   return A->sum ? A->sum(A->sum_ctx, sum, 1) : SD_OK;
 }
 
+/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. Also, with w, w.z. */
+static sd_status weigh(loop *c, const double *w, double *wz)
+{
+  const sd_bodies *A = c->A;
+  double s[3] = {0.0, 0.0, 0.0};
+  for (long i = 0; i < A->n; i++)
+    for (int d = 0; d < A->width; d++) {
+      const long j = A->width * i + d;
+      s[0] += c->r[j] * c->z.l[j];
+      s[1] += drag_of(A, i, d) * c->r[j] * c->r[j];
+      if (w) s[2] += w[j] * c->z.l[j];
+    }
+  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 3) : SD_OK;
+  c->power.rz = s[0];
+  c->power.noise = rounding * s[1];
+  if (w) *wz = s[2];
+  return status;
+}
+
 /* out = L (v - V_inf) */
 static sd_status resist(loop *c, const double *v, double *out)
 {
@@ -245,7 +264,7 @@ static sd_status residual(loop *c)
   for (long j = 0; j < (long) A->width * A->n; j++) c->r[j] = c->x.v[j] - c->u[j] - c->r[j];
   if (!A->tie) sd_bodies_shells(A, c->F.clumps, -1.0, c->r);
   status = pre(c, c->r, NULL, &c->z);
-  return status == SD_OK ? dot(A, c->r, c->z.l, &c->power.rz) : status;
+  return status == SD_OK ? weigh(c, NULL, NULL) : status;
 }
 
 /* x = pre(-u, F) and its power */
@@ -304,7 +323,7 @@ static sd_status settle(loop *c)
   }
   for (int j = 0; j < 6 * A->clumps; j++) c->x.V[j] += c->z.V[j];
   const sd_status status = pre(c, c->r, NULL, &c->z);
-  return status == SD_OK ? dot(A, c->r, c->z.l, &c->power.rz) : status;
+  return status == SD_OK ? weigh(c, NULL, NULL) : status;
 }
 
 /* x, r and z at the start of the loop. Warm: l is a guess, with a tie (l, V), dropped when it
@@ -368,14 +387,9 @@ static sd_status step(loop *c, double *beta)
   for (int j = 0; j < 6 * A->clumps; j++) x->V[j] += alpha * along->V[j];
   status = pre(c, c->r, NULL, &c->z);
   if (status != SD_OK) return status;
-  double sums[2] = {0.0, 0.0};
-  for (long j = 0; j < size; j++) {
-    sums[0] += c->r[j] * c->z.l[j];
-    sums[1] += c->w[j] * c->z.l[j];
-  }
-  status = A->sum ? A->sum(A->sum_ctx, sums, 2) : SD_OK;
-  c->power.rz = sums[0];
-  *beta = -sums[1] / curvature;
+  double wz = 0.0;
+  status = weigh(c, c->w, &wz);
+  *beta = -wz / curvature;
   return status;
 }
 
@@ -392,7 +406,7 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
   for (;;) {
     const double before = power->rz;
     if (!isfinite(before) || !isfinite(power->spent)) return SD_ENOTFINITE;
-    if (before < -power->floor) return SD_EINDEFINITE;
+    if (before < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
     c->report->residual = power->spent > 0.0 ? sqrt(fmax(before, 0.0) / power->spent) : 0.0;
     if (before <= power->floor) return SD_OK;
     if (c->report->residual < tolerance) return SD_OK;
