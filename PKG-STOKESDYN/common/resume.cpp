@@ -4,16 +4,27 @@
 #include "domain.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 namespace StokesDyn {
+
+/* Hash (FNV-1a, by words) of atom and molecule ID, which commands may change where nothing moves:
+ * the 53 bits that a double holds */
+static double name_of(const LAMMPS_NS::Atom *atom, int i)
+{
+  uint64_t h = 14695981039346656037u;
+  for (LAMMPS_NS::tagint id : {atom->tag[i], atom->molecule ? atom->molecule[i] : 0})
+    h = (h ^ (uint64_t) id) * 1099511628211u;
+  return (double) (h >> 11);
+}
 
 void Resume::record(int i, double *row) const
 {
   domain->unmap(atom->x[i], atom->image[i], row + X);
   memcpy(row + V, atom->v[i], 3 * sizeof(double));
   row[RADIUS] = atom->radius ? atom->radius[i] : 0.0;
-  row[MOLECULE] = atom->molecule ? atom->molecule[i] : 0;
+  row[NAME] = name_of(atom, i);
   if (spins) memcpy(row + OMEGA, atom->omega[i], 3 * sizeof(double));
 }
 
@@ -24,7 +35,7 @@ bool Resume::placed(int i, const double *row) const
   domain->unmap(atom->x[i], atom->image[i], x);
   for (int k = 0; k < 3; k++)
     if (!(std::fabs(x[k] - row[X + k]) <= 1e-9 * radius)) return false;
-  return radius == row[RADIUS] && (!atom->molecule || atom->molecule[i] == row[MOLECULE]);
+  return radius == row[RADIUS] && name_of(atom, i) == row[NAME];
 }
 
 static bool same_vector(const double *now, const double *then)

@@ -13,15 +13,16 @@ namespace StokesDyn {
 
 class Resume : protected LAMMPS_NS::Pointers {
  public:
-  enum { X = 0, V = 3, RADIUS = 6, MOLECULE = 7, OMEGA = 8 };
+  enum { X = 0, V = 3, RADIUS = 6, NAME = 7, OMEGA = 8 };
 
   Resume(LAMMPS_NS::LAMMPS *lmp, bool spins) : Pointers(lmp), spins(spins) {}
 
   int columns() const { return spins ? 11 : 8; }
-  /* Row of atom i: unwrapped position, velocity, radius, molecule, with spins angular velocity. */
+  /* Row of atom i: unwrapped position, velocity, radius, a hash of atom and molecule ID, with spins
+   * angular velocity. */
   void record(int i, double *row) const;
-  /* Same place (within rounding: wrapping into the box leaves it), radius and molecule. A row of
-   * zeros is no place. */
+  /* Same place (within rounding: wrapping into the box leaves it), radius and IDs. A row of zeros
+   * is no place. */
   bool placed(int i, const double *row) const;
   /* Same velocity and angular velocity (within rounding: rigid bodies set them anew). */
   bool moving(int i, const double *row) const;

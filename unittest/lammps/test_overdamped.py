@@ -394,6 +394,23 @@ def test_a_sphere_moved_by_hand_starts_anew(simulation):
     assert np.abs(ends[1] - ends[0]).max() < 1e-12
 
 
+@pytest.mark.parametrize("change", ["reset", "delete"])
+def test_clumps_are_known_by_their_atoms_of_now(simulation, change):
+    """Commands between two runs give other IDs: to the spheres of a clump each other's, or those of a sphere that is gone."""
+    spheres = Spheres([(0, 0, 0), (-1.5, 0, 0), (0, 6, 0), (2, 6, 0), (2, 8, 0), (30, 0, 0)], [1, 0.5, 1, 1, 1, 1], molecule=[1, 1, 2, 2, 2, 0])
+    words, comm = "cut_off_distance inf visc 1.3 rigid_clumps yes rotation yes relative_tolerance 1e-9", "comm_modify cutoff 9"
+    sim = simulation(spheres, words, fix=False, box=[(-60, 60)] * 3, comm=comm)
+    sim.commands("fix weight all addforce 0.1 0 -1").commands(FIX).run(0)
+    if change == "delete":      # a sphere of molecule 2 as well
+        sim.commands("group gone id 3 6\ndelete_atoms group gone compress no")
+    sim.commands(f"{'reset_atoms id' if sim.lmp.version() >= 20230615 else 'reset_atom_ids'} sort yes").run(0)
+    now, v = Spheres(sim.x, sim.atom("radius"), molecule=sim.atom("molecule")), sim.v
+    assert change == "delete" or (now.a[:2] == [0.5, 1]).all()
+    fresh = simulation(now, words, fix=False, box=[(-60, 60)] * 3, comm=comm)
+    fresh.commands("fix weight all addforce 0.1 0 -1").commands(FIX).run(0)
+    assert np.abs(fresh.v - v).max() < 1e-7 * np.abs(v).max()
+
+
 @pytest.mark.parametrize("boundary, flow", [("f f f", "v_u 0.2 0"), ("p p p", "0.1 0.2 0 far_field_tolerance 1e-12")])
 def test_forces_for_given_velocities_are_the_inverse(simulation, boundary, flow):
     """rigid_clumps yes, clumps_only no: what moves the clumps so without inertia is what the pair style finds for that motion; in
