@@ -1,16 +1,10 @@
 /* Slices of spheres, averages, and the force on one grain against closed forms. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <string.h>
+#include "check.h"
 
-#include <cmocka.h> /* after the headers that it needs */
-
+#include "sd_constants.h"
 #include "sd_vans.h"
 
-static const double PI = 3.14159265358979323846;
+#include <string.h>
 
 /* The slices share their cuts, so that only rounding is left: each is one subtraction, 1e-16 of the volume, and there are
  * up to 2000. */
@@ -34,7 +28,7 @@ static void slices_sum_to_the_sphere(void **state)
         assert_true(V[i] >= 0.0);
         sum += V[i];
       }
-      const double sphere = 4.0 / 3.0 * PI * a * a * a;
+      const double sphere = 4.0 / 3.0 * SD_PI * a * a * a;
       assert_true(fabs(sum - sphere) <= 1e-13 * sphere);
     }
 }
@@ -52,7 +46,7 @@ static void slices_of_uneven_mesh_sum_to_the_sphere(void **state)
     const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first, V, N);
     double sum = 0.0;
     for (int i = 0; i < count; i++) sum += V[i];
-    assert_true(fabs(sum - 4.0 / 3.0 * PI * a * a * a) <= 1e-13 * 4.2 * a * a * a);
+    assert_true(fabs(sum - 4.0 / 3.0 * SD_PI * a * a * a) <= 1e-13 * 4.2 * a * a * a);
     assert_int_equal(sd_vans_slice_of(&mesh, 0.02 + 0.5 * (edge[first] + edge[first + 1])), first);
   }
 }
@@ -71,7 +65,7 @@ static void slices_end_at_the_mesh(void **state)
     const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, ends[k], a, &first, V, N);
     double sum = 0.0;
     for (int i = 0; i < count; i++) sum += V[i];
-    assert_true(fabs(sum - 2.0 / 3.0 * PI * a * a * a) <= 1e-13);
+    assert_true(fabs(sum - 2.0 / 3.0 * SD_PI * a * a * a) <= 1e-13);
   }
   assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 4.2, a, &first, V, N), 0);
   assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 8.8, a, &first, V, N), 0);
@@ -113,7 +107,7 @@ static void point_grains_stay_in_one_slice(void **state)
       -1);
   sd_vans_profiles(&mesh, 11.0, sums, profile);
   for (int n = 0; n < N; n++)
-    assert_true(fabs(profile[n] - (n == 3 ? 4.0 / 3.0 * PI * 0.729 / 5.5 : 0.0)) < 1e-15);
+    assert_true(fabs(profile[n] - (n == 3 ? 4.0 / 3.0 * SD_PI * 0.729 / 5.5 : 0.0)) < 1e-15);
   assert_true(fabs(profile[N + 3] - 0.3) < 1e-15 && fabs(profile[3 * N + 3] - 0.5) < 1e-15);
 }
 
@@ -132,7 +126,7 @@ static void drag_balances_weight_at_terminal_velocity(void **state)
   double F[3];
   assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance,
                  &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL), 0);
-  const double weight = 4.0 / 3.0 * PI * a * a * a * rho_s * g;
+  const double weight = 4.0 / 3.0 * SD_PI * a * a * a * rho_s * g;
   assert_true(fabs(F[2] - weight) < 1e-13 * weight);
 }
 
@@ -164,7 +158,7 @@ static void lift_sees_both_ends_of_the_grain(void **state)
     sd_vans_forces(&mesh, &law, U, hindrance,
                  &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
     const double over = U[5 + 1 + 2] - 0.4, under = U[5 + 1 - 2] - 0.4;
-    assert_true(fabs(F[2] - 0.5 * 1.3 * PI * a * a * 0.27 * (over * over - under * under)) < 1e-13);
+    assert_true(fabs(F[2] - 0.5 * 1.3 * SD_PI * a * a * 0.27 * (over * over - under * under)) < 1e-13);
   }
 }
 
@@ -196,7 +190,7 @@ static void grains_outside_feel_the_end_values(void **state)
   assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, NULL), 2);
   sd_vans_drag(1.3, 0.1, 0.2, 1.5, (double[3]){0.8, 0, 0}, expected);
   assert_true(fabs(F[0] - expected[0]) < 1e-15 &&
-              fabs(F[2] - 4.0 / 3.0 * PI * 0.008 * 2.6) < 1e-15);
+              fabs(F[2] - 4.0 / 3.0 * SD_PI * 0.008 * 2.6) < 1e-15);
   sd_vans_drag(1.3, 0.1, 0.2, 3.0, (double[3]){-0.1, 0, 0}, expected);
   assert_true(fabs(F[3] - expected[0]) < 1e-15);
   law.rules = SD_VANS_YADE;
@@ -241,7 +235,7 @@ static void a_slice_gives_what_its_grain_gets(void **state)
   sd_vans_hindrance(N, phi, law.exponent, hindrance);
   for (int k = 0; k < 50; k++) {
     const double a = 0.0031, x[3] = {0, 0, 0.02 + a + 0.0005 * k}, v[3] = {0.3, 0, 0},
-                 whole = 4.0 / 3.0 * PI * a * a * a;
+                 whole = 4.0 / 3.0 * SD_PI * a * a * a;
     const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL};
     const sd_vans_averaging how = {0, 0, NULL};
     int first;
@@ -289,7 +283,7 @@ static void drag_by_volume_converges(void **state)
         const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL};
         double F[3];
         sd_vans_forces(&mesh, &law, U, hindrance, &grain, F, NULL);
-        const double exact = 0.5 * PI * a * 12.2 * law.eta * c * (z * z + 0.2 * a * a);
+        const double exact = 0.5 * SD_PI * a * 12.2 * law.eta * c * (z * z + 0.2 * a * a);
         largest = fmax(largest, fabs(F[0] / exact - 1.0));
       }
       error[felt][level] = largest;
@@ -328,6 +322,44 @@ static void eddies_live_as_long_as_the_length_over_the_velocity(void **state)
               sd_vans_eddy_life(1.0, 1e-6, 0.0, 7.0, 1e-3) == 10e-3);
 }
 
+/* Two equal spheres at distance h share a lens of volume pi (4a+h)(2a-h)^2/12; three in a chain; a sphere inside another;
+ * three that meet. */
+static void overlaps_count_once(void **state)
+{
+  (void) state;
+  const double a = 0.4, h = 0.5, all = 4.0 / 3.0 * SD_PI * a * a * a,
+               lens = SD_PI * (4 * a + h) * (2 * a - h) * (2 * a - h) / 12;
+  const double chain[9] = {0, 0, 0, h, 0, 0, 2 * h, 0, 0}, radii[3] = {a, a, a};
+  assert_true(fabs(sd_vans_union_share(2, chain, radii, 0) - (1 - lens / 2 / all)) < 1e-14);
+  assert_true(fabs(sd_vans_union_share(3, chain, radii, 1) - (1 - lens / all)) < 1e-14);
+  const double within[6] = {0, 0, 0, 0.1, 0, 0}, unequal[2] = {0.4, 0.2}, same[6] = {0};
+  assert_true(sd_vans_union_share(2, within, unequal, 0) == 1.0 &&
+              sd_vans_union_share(2, within, unequal, 1) == 0.0);
+  assert_true(sd_vans_union_share(2, same, radii, 0) == 1.0 &&
+              sd_vans_union_share(2, same, radii, 1) == 0.0);
+  /* triangle with a common core, by counting points of a fine lattice: 1e-3 */
+  const double side = 0.45, triangle[9] = {0, 0, 0, side, 0, 0, side / 2, side * sqrt(3) / 2, 0};
+  double sum = 0.0;
+  for (int i = 0; i < 3; i++) sum += sd_vans_union_share(3, triangle, radii, i) * all;
+  long inside = 0;
+  enum { LATTICE = 160 };
+  const double step = 1.4 / LATTICE;
+  for (int i = 0; i < LATTICE; i++)
+    for (int j = 0; j < LATTICE; j++)
+      for (int k = 0; k < LATTICE; k++) {
+        const double p[3] = {-0.45 + (i + 0.5) * step, -0.45 + (j + 0.5) * step,
+                             -0.7 + (k + 0.5) * step};
+        for (int s = 0; s < 3; s++) {
+          const double x = p[0] - triangle[3 * s], y = p[1] - triangle[3 * s + 1], z = p[2];
+          if (x * x + y * y + z * z < a * a) {
+            inside++;
+            break;
+          }
+        }
+      }
+  assert_true(fabs(sum / (inside * step * step * step) - 1) < 1e-3);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -346,6 +378,7 @@ int main(void)
       cmocka_unit_test(fluctuations_have_their_moments),
       cmocka_unit_test(fluctuations_depend_on_their_keys_alone),
       cmocka_unit_test(eddies_live_as_long_as_the_length_over_the_velocity),
+      cmocka_unit_test(overlaps_count_once),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

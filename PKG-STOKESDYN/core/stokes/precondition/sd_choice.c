@@ -19,7 +19,7 @@ static const double PATIENCE = 4.0;
  * matrix that is factored have their tensor evaluated by itself, and an inverse in double precision
  * takes more than a factor in single. Each column of the sparse factor has its neighbours found and
  * its memory taken, whatever its length: in a cloud of ten spheres that is nearly all. Measured
- * within a factor of 1.5 (bench_core), which is enough: what decides in the end is iterations. */
+ * within a factor of 1.5 (bench_solve), which is enough: what decides in the end is iterations. */
 static const double CLOUD_PAIR = 1.0 / 3.0, SPHERE = 40.0, SPHERE_APPLIED = 20.0, FACTORED = 15.0,
                     INVERTED = 40.0, COLUMN = 1800.0;
 /* Blocks a sphere in the sparse factor of a large compact cloud, rho 3; a small one has half of its

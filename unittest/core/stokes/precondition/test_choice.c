@@ -169,7 +169,7 @@ static void saved_numbers_go_on_alike(void **state)
   }
 }
 
-/* What is counted against what sd_product and the preconditioners take (bench_core), in products: a
+/* What is counted against what sd_product and the preconditioners take (bench_product, bench_solve), in products: a
  * factor of 2 at most. The lattice of 1000, 50 clumps of 20 spheres, with torques too. */
 static void counted_costs_are_those_measured(void **state)
 {
@@ -188,7 +188,7 @@ static void counted_costs_are_those_measured(void **state)
 }
 
 /* Of the waves beside the engine's product, 10^5 equal spheres, phi 0.2 (reference, ewald.md section 9: 0.051 s at 1e-3 and 0.18 s
- * at 1e-6, where bench_core waves has 0.02 s an application and 0.55 s a set-up): 0.4 and 0.1 of a product, ten and three of them.
+ * at 1e-6, where bench_solve waves has 0.02 s an application and 0.55 s a set-up): 0.4 and 0.1 of a product, ten and three of them.
  * A solve from zero to 1e-3 pays for both; one of ten spheres does not. */
 static void waves_are_cheap_beside_a_product_by_fft(void **state)
 {

@@ -1,0 +1,123 @@
+/* What water and grains give each other. */
+#include "check.h"
+
+#include "sd_constants.h"
+#include "sd_vans.h"
+
+/* The signed coefficient survives grains that are faster than the water; Yade's is cut to 0 there. Both are limited to
+ * 1/(10 dt), which keeps some of the drag from the water; what, is told. */
+static void exchange_coefficient(void **state)
+{
+  (void) state;
+  enum { N = 4 };
+  const double edge[N + 1] = {0, 1, 2, 3, 4}, U[N + 1] = {0, 0.5, 0.5, 0.501, 0.5};
+  const double profile[SD_VANS_ROWS * N] = {0.3, 0.3, 0.3,         0.0,   0.2,  0.9,
+                                            0.5, 0.0, [16] = 2e-5, -3e-5, 3e-5, 0.0};
+  const sd_vans_mesh mesh = {N, 0, 1, edge};
+  sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .radius = 0.003, .least_slip = 1e-5};
+  const double n = 0.3 / (4.0 / 3.0 * SD_PI * 27e-9);
+  double b[N], cut[2];
+  sd_vans_exchange(&mesh, &fluid, 1e-2, U, profile, NULL, b, cut);
+  assert_true(fabs(b[0] / (n * 2e-5 / 0.3 / 1000) - 1) < 1e-14 &&
+              fabs(b[1] / (n * 3e-5 / 0.4 / 1000) - 1) < 1e-14 && b[2] == 10.0 && b[3] == 0.0);
+  assert_true(fabs(cut[1] / (n * 8e-5) - 1) < 1e-14 &&
+              fabs(cut[0] / (n * 3e-5 - 1000 * 10.0 * 0.001) - 1) < 1e-12);
+  fluid.rules = SD_VANS_YADE;
+  sd_vans_exchange(&mesh, &fluid, 1e-2, U, profile, NULL, b, cut);
+  assert_true(b[0] == 0.0 && b[1] == 0.0 && b[2] == 10.0);
+}
+
+/* In any units: lengths, times and masses by factors, the coefficient by 1/time. The slip is 1e-9 of the velocities. */
+static void exchange_knows_no_unit(void **state)
+{
+  (void) state;
+  double b[2];
+  for (int k = 0; k < 2; k++) {
+    const double L = k ? 1e6 : 1.0, T = k ? 1e3 : 1.0, M = k ? 1e-4 : 1.0, u = 0.5 * L / T;
+    const double edge[3] = {0, L, 2 * L}, U[3] = {0, u * (1 + 1e-9), u};
+    const double profile[SD_VANS_ROWS * 2] = {0.3, 0.0, u, 0.0, [8] = 2e-20 * M * L / T / T, 0.0};
+    const sd_vans_mesh mesh = {2, 0, L, edge};
+    const sd_vans_fluid fluid = {.rho = 1000 * M / L / L / L, .radius = 0.003 * L};
+    double each[2], cut[2];
+    sd_vans_exchange(&mesh, &fluid, 1e-6 * T, U, profile, NULL, each, cut);
+    b[k] = each[0] * T;
+  }
+  assert_true(b[0] > 0.0 && fabs(b[1] / b[0] - 1) < 1e-6);
+}
+
+/* dU/dt of water past fixed grains, by the drag that one of them feels. */
+static void rate_of_drag_is_that_of_its_grains(void **state)
+{
+  (void) state;
+  enum { N = 4 };
+  const double edge[N + 1] = {0, 1, 2, 3, 4}, U[N + 1] = {0, 0.02, 0.3, 0.1, 0.1}, a = 0.003;
+  const double profile[SD_VANS_ROWS * N] = {0.3, 0.5, 0.0, 0.6, 0.0, 0.1};
+  const sd_vans_mesh mesh = {N, 0, 1, edge};
+  const sd_vans_fluid fluid = {.rho = 1030, .eta = 2e-3, .radius = a};
+  double hindrance[N], F[3], w[3] = {0.2, 0, 0};
+  int slice = -1;
+  sd_vans_hindrance(N, profile, 3.1, hindrance);
+  const double rate = sd_vans_drag_rate(&mesh, &fluid, U, hindrance, profile, &slice);
+  sd_vans_drag(fluid.rho, fluid.eta, a, hindrance[1], w, F);
+  assert_int_equal(slice, 1);
+  assert_true(fabs(rate * 0.2 * fluid.rho * 4.0 / 3.0 * SD_PI * a * a * a / 0.5 / F[0] - 1) < 1e-13);
+}
+
+/* b from the law, whatever the drag: positive, of one class as of two halves of it, and with the
+ * rest the drag that there is. */
+static void exchange_by_law_takes_the_drag_as_it_is(void **state)
+{
+  (void) state;
+  enum { N = 4 };
+  const double edge[N + 1] = {0, 1, 2, 3, 4}, U[N + 1] = {0, 0.02, 0.3, 0.1, 0.1}, a = 0.003;
+  double profile[SD_VANS_ROWS * N] = {0.3, 0.5, 0.1, 0.0, 0.1, 0.1, 0.1}, classes[2 * SD_VANS_ROWS * N] = {0};
+  const double drag[N] = {3e-5, -2e-5, 1e-5, 0}, radii[2] = {a, a};
+  const sd_vans_mesh mesh = {N, 0, 1, edge};
+  sd_vans_fluid fluid = {.rho = 1030, .eta = 2e-3, .radius = a, .class_radius = radii};
+  double hindrance[N], b[N], rest[N], of_classes[N];
+  sd_vans_hindrance(N, profile, 3.1, hindrance);
+  for (int n = 0; n < N; n++) {
+    profile[SD_VANS_DRAG * N + n] = drag[n];
+    for (int c = 0; c < 2; c++) {
+      classes[c * SD_VANS_ROWS * N + n] = 0.5 * profile[n];
+      classes[(c * SD_VANS_ROWS + SD_VANS_DRAG) * N + n] = drag[n];
+    }
+  }
+  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, profile, NULL, b, rest);
+  for (int n = 0; n < N; n++) {
+    const double slip = U[n + 1] - profile[N + n], w[3] = {slip, 0, 0}, V = 4.0 / 3.0 * SD_PI * a * a * a;
+    double F[3];
+    sd_vans_drag(fluid.rho, fluid.eta, a, hindrance[n], w, F);
+    assert_true(n == 3 ? b[n] == 0.0 : fabs(b[n] * slip - profile[n] / V * F[0] / fluid.rho) < 1e-12 * b[n]);
+    assert_true(fabs(b[n] * slip - rest[n] - profile[n] / V * drag[n] / fluid.rho) < 1e-13);
+  }
+  fluid.nclass = 2;
+  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, profile, classes, of_classes, rest);
+  for (int n = 0; n < N; n++) assert_true(fabs(of_classes[n] - b[n]) <= 1e-14 * b[n]);
+}
+
+/* Nine tenths of what is outstanding stay; none is lost, and the slice above the surface has no water. */
+static void momentum_goes_back_in_tenths(void **state)
+{
+  (void) state;
+  enum { N = 5 };
+  const double edge[N + 1] = {0, 0.1, 0.3, 0.6, 1.0, 1.5}, back[N] = {1, -2, 3, 4, 5};
+  const sd_vans_mesh mesh = {N, 0, 0, edge};
+  double outstanding[N] = {0.5, 0, 0, 0, 0}, source[N], sum = 0.0;
+  const double returned = sd_vans_give_back(&mesh, 1030 * 0.7, 0.25, back, outstanding, source);
+  for (int n = 0; n < N; n++) sum += source[n] * 1030 * 0.7 * (edge[n + 1] - edge[n]) * 0.25;
+  assert_true(fabs(returned - 1.15) < 1e-14 && fabs(sum - returned) < 1e-14);
+  assert_true(source[4] == 0.0 && outstanding[4] == 0.0 && fabs(outstanding[3] - 8.1) < 1e-14);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(exchange_coefficient),
+      cmocka_unit_test(exchange_knows_no_unit),
+      cmocka_unit_test(rate_of_drag_is_that_of_its_grains),
+      cmocka_unit_test(exchange_by_law_takes_the_drag_as_it_is),
+      cmocka_unit_test(momentum_goes_back_in_tenths),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,142 @@
+/* Friction of side walls: its law, Yade's, and the stream between them. */
+#include "column.h"
+
+/* 1/sqrt(f) - 2 log10(Re sqrt(f)) - 0.32, over 1/sqrt(f) */
+static double residual_of_law(double Re, double f)
+{
+  return 1.0 - (2.0 * log10(Re * sqrt(f)) + 0.32) * sqrt(f);
+}
+
+/* Friction of the side walls: the base-10 law to rounding, from any start; f falls smoothly,
+ * without the jumps of a substitution that stops at 1 %. */
+static void wall_friction_follows_its_law(void **state)
+{
+  (void) state;
+  double previous = INFINITY;
+  sd_vans_friction near_by = {0};
+  for (double Re = 1e-6; Re < 1e12; Re *= 1.0007) {
+    sd_vans_friction anew = {0};
+    const double f = sd_vans_wall_friction(SD_VANS_CONSISTENT, Re, &anew);
+    assert_true(fabs(residual_of_law(Re, f)) < 1e-13 * (1.0 + fabs(log10(Re)) * sqrt(f)));
+    assert_true(f < previous && (f > 0.997 * previous || previous == INFINITY));
+    const double warm = sd_vans_wall_friction(SD_VANS_CONSISTENT, Re, &near_by);
+    assert_true(fabs(warm - f) < 1e-12 * f);
+    previous = f;
+  }
+  /* from far away: water that comes to rest, or starts */
+  sd_vans_friction far = {0};
+  sd_vans_wall_friction(SD_VANS_CONSISTENT, 1e6, &far);
+  assert_true(fabs(residual_of_law(0.01, sd_vans_wall_friction(SD_VANS_CONSISTENT, 0.01, &far))) <
+              1e-12);
+  /* Graf & Altinakar's law at Re 1e2..1e5, four digits */
+  const double law[4] = {0.0927, 0.0411, 0.0225, 0.0140};
+  for (int k = 0; k < 4; k++) {
+    const double f = sd_vans_wall_friction(SD_VANS_CONSISTENT, pow(10.0, k + 2), &far);
+    assert_true(fabs(f / law[k] - 1.0) < 0.006);
+  }
+}
+
+/* A stream that speeds up and slows down by 3e-5 a step: the law to 1e-12 of its equation, though it is solved for
+ * once in 20 steps. */
+static void wall_friction_holds_between_two_solutions(void **state)
+{
+  (void) state;
+  sd_vans_friction near_by = {0};
+  double largest = 0.0, Re = 1e2;
+  int steps = 0, solved = 0;
+  for (int up = 1; up >= 0; up--)
+    for (; up ? Re < 1e8 : Re > 1e2; Re *= up ? 1.00003 : 1 / 1.00003) {
+      const double before = near_by.inverse;
+      const double f = sd_vans_wall_friction(SD_VANS_CONSISTENT, Re, &near_by);
+      largest = fmax(largest, fabs(residual_of_law(Re, f)));
+      steps++;
+      solved += near_by.inverse != before;
+    }
+  printf("    Re 1e2 to 1e8 and back: largest residual %.1e, solved for %d times in %d\n", largest,
+         solved, steps);
+  assert_true(largest < 1e-13);
+  assert_in_range(solved, steps / 25, steps / 15);
+}
+
+/* Yade's: the iterate at which f changes by less than 1 %, with a natural logarithm: 3.3 to 4.3 times too small. */
+static double yades_friction(double Re)
+{
+  double f = 1.0 / (0.32 * 0.32);
+  for (int k = 0; k < 100; k++) {
+    const double root = 2.0 * log(Re * sqrt(f)) + 0.32, next = 1.0 / (root * root),
+                 change = fabs(next - f) / f;
+    f = next;
+    if (change < 1e-2) return f;
+  }
+  return 0.0;
+}
+
+/* Also where its jumps are: what a series reaches lies on the same side of them. */
+static void yades_wall_friction_is_a_substitution(void **state)
+{
+  (void) state;
+  const double yade[4] = {0.0281, 0.0108, 0.0055, 0.0032};
+  for (int k = 0; k < 4; k++)
+    assert_true(fabs(yades_friction(pow(10.0, k + 2)) / yade[k] - 1.0) < 0.02);
+  sd_vans_friction near_by = {0};
+  int steps = 0, jumps = 0, solved = 0;
+  double previous = 0.0;
+  for (double Re = 1e-3; Re < 1e8; Re *= 1.000007, steps++) {
+    const double before = near_by.inverse, exact = yades_friction(Re);
+    const double f = sd_vans_wall_friction(SD_VANS_YADE, Re, &near_by);
+    assert_true(fabs(f - exact) <= 1e-12 * exact);
+    solved += near_by.inverse != before;
+    jumps += Re > 10.0 && fabs(f / previous - 1.0) > 1e-4;
+    previous = f;
+  }
+  printf("    yade: %d jumps, solved for %d times in %d\n", jumps, solved, steps);
+  assert_true(jumps > 3);
+  assert_true(solved < steps / 2);
+}
+
+/* f of a smooth pipe (Prandtl), Re on the diameter. */
+static double pipe_friction(double Re)
+{
+  double f = 0.02;
+  for (int k = 0; k < 60; k++) f = pow(2.0 * log10(Re * sqrt(f)) - 0.8, -2.0);
+  return f;
+}
+
+/* Far from the bottom, without grains and turbulence, slope and side walls balance: g = 2/width f/8 U^2, with the f of
+ * the law on the hydraulic radius, and so with that of a pipe whose diameter is four times that: to 3 %, as far as the
+ * two laws of smooth walls agree. On the width it would be 15 % off. */
+static void side_walls_balance_the_slope(void **state)
+{
+  (void) state;
+  const double width = 0.02, g = 0.3, nu = 1e-6;
+  column *c = column_create(41, 0.4, 0.0);
+  const sd_vans_fluid fluid = {.rho = 1000,
+                               .eta = 1e-3,
+                               .gx = g,
+                               .turbulence = SD_VANS_LAMINAR,
+                               .kappa = 0.41,
+                               .phi_max = 0.6,
+                               .width = width,
+                               .wall_coef = 1.2};
+  solve(c, &fluid, 4000, 0.01);
+  sd_vans_friction anew = {0};
+  const double U = c->U[40], hydraulic_radius = width / 2.0,
+               f = sd_vans_wall_friction(SD_VANS_CONSISTENT, U * hydraulic_radius / nu, &anew);
+  assert_true(fabs(2.0 / width * 1.2 * f / 8.0 * U * U / g - 1.0) < 1e-6);
+  const double found = g * width * 8.0 / (2.0 * 1.2 * U * U),
+               pipe = pipe_friction(U * 4.0 * hydraulic_radius / nu);
+  printf("    walls 20 mm apart, %.2f m/s: f = %.5f, of a pipe %.5f\n", U, found, pipe);
+  assert_true(fabs(found / pipe - 1.0) < 0.03);
+  column_free(c);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(wall_friction_follows_its_law),
+      cmocka_unit_test(wall_friction_holds_between_two_solutions),
+      cmocka_unit_test(yades_wall_friction_is_a_substitution),
+      cmocka_unit_test(side_walls_balance_the_slope),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
