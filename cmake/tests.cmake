@@ -62,20 +62,17 @@ target_link_libraries(make_two_sphere_table PRIVATE ${tested}_stokes)
 add_test(NAME two_sphere_table COMMAND make_two_sphere_table check 23)
 add_dependencies(core_tests make_two_sphere_table)
 
-# Timings: cmake --build build --target bench_core. The rival loop in it gets all that this processor has.
-include(CheckCCompilerFlag)
-check_c_compiler_flag(-march=native STOKESDYN_MARCH_NATIVE)
-add_executable(bench_core EXCLUDE_FROM_ALL ${tests}/../bench/bench_core.c)
-target_include_directories(bench_core PRIVATE ${tests} ${tests}/stokes ${cmocka_include})
-target_compile_options(bench_core PRIVATE -Wall -Wextra -O3 $<$<BOOL:${STOKESDYN_MARCH_NATIVE}>:-march=native>)
-target_link_libraries(bench_core PRIVATE ${tested}_stokes ${cmocka_library})
-
-foreach(bench ewald lubrication)
+# Timings: cmake --build build --target bench_product bench_solve (unittest/bench/README.md)
+foreach(bench product solve ewald lubrication)
   add_executable(bench_${bench} EXCLUDE_FROM_ALL ${tests}/../bench/bench_${bench}.c)
   target_include_directories(bench_${bench} PRIVATE ${tests} ${tests}/stokes ${cmocka_include})
   target_compile_options(bench_${bench} PRIVATE -Wall -Wextra -O2)
   target_link_libraries(bench_${bench} PRIVATE ${tested}_stokes ${cmocka_library})
 endforeach()
+# The rival loop in it gets all that this processor has.
+include(CheckCCompilerFlag)
+check_c_compiler_flag(-march=native STOKESDYN_MARCH_NATIVE)
+target_compile_options(bench_product PRIVATE -O3 $<$<BOOL:${STOKESDYN_MARCH_NATIVE}>:-march=native>)
 
 # A plugin that believes to be built for another LAMMPS, and styles whose symbols this LAMMPS has not, to see the guard refuse them.
 # In a folder of its own, since newer LAMMPS loads every plugin in LAMMPS_PLUGIN_PATH.

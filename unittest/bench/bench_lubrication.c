@@ -7,22 +7,10 @@
 
 enum { RUNS = 5 };
 
-static int ascending(const void *a, const void *b)
-{
-  const double d = *(const double *) a - *(const double *) b;
-  return (d > 0.0) - (d < 0.0);
-}
-
 /* Medians, taken in turns */
 typedef struct {
   double product, place, make, apply, solve;
 } times;
-
-static double median(double *t)
-{
-  qsort(t, RUNS, sizeof(double), ascending);
-  return t[RUNS / 2];
-}
 
 static times measure(settling *s, int warm, double tolerance)
 {
@@ -49,7 +37,8 @@ static times measure(settling *s, int warm, double tolerance)
     t[4][k] = end - t[4][k];
   }
   free(out), free(l), free(v);
-  return (times){median(t[0]), median(t[1]), median(t[2]), median(t[3]), median(t[4])};
+  return (times){median(t[0], RUNS), median(t[1], RUNS), median(t[2], RUNS), median(t[3], RUNS),
+                 median(t[4], RUNS)};
 }
 
 static void tell(settling *s, const char *what, int warm, double tolerance)

@@ -1,35 +1,16 @@
 /* Cost of the stream of fix hydro/vans on one core: fluid step per slice, averages and forces per grain. Processor time,
  * median of 9 runs.
  *   build/bench_vans */
-#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "cpu.h"
 #include "sd_vans.h"
 
 enum { RUNS = 9 };
-
-static double seconds(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return t.tv_sec + 1e-9 * t.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-  const double d = *(const double *) a - *(const double *) b;
-  return (d > 0) - (d < 0);
-}
-
-static double median(double *values)
-{
-  qsort(values, RUNS, sizeof(double), ascending);
-  return values[RUNS / 2];
-}
 
 static double *array(int n)
 {
@@ -68,15 +49,15 @@ static double fluid(int N, sd_vans_rules rules, double width, int account)
   sd_vans_books books = {moved, shear, 0, 0, 0, 0};
   const int steps = 2000000 / N;
   for (int r = -1; r < RUNS; r++) {
-    const double t = seconds();
+    const double t = cpu();
     if (sd_vans_solve(solver, &f, &column, steps, dt, &flow, account ? &books : NULL) != SD_OK)
       abort();
-    if (r >= 0) times[r] = (seconds() - t) / steps / N * 1e9;
+    if (r >= 0) times[r] = (cpu() - t) / steps / N * 1e9;
   }
   sd_vans_solver_free(solver);
   double *all[] = {edge, phi, vx, b, length, U, nut, stress, scratch, moved, shear};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
-  return median(times);
+  return median(times, RUNS);
 }
 
 static void grains(double ratio, int n, double *average, double *force)
@@ -101,20 +82,20 @@ static void grains(double ratio, int n, double *average, double *force)
   const sd_vans_grains grains = {n, x, v, radius, NULL, NULL, NULL};
   const int repeat = 400000 / n;
   for (int r = -1; r < RUNS; r++) {
-    double t = seconds();
+    double t = cpu();
     for (int k = 0; k < repeat; k++) {
       sd_vans_hindrance(N, phi, 3.1, hindrance);
       memset(sums, 0, N * SD_VANS_ROWS * sizeof(double));
       sd_vans_average(&mesh, &law, &how, U, hindrance, &grains, sums, V);
     }
-    if (r >= 0) averages[r] = (seconds() - t) / repeat / n * 1e9;
-    t = seconds();
+    if (r >= 0) averages[r] = (cpu() - t) / repeat / n * 1e9;
+    t = cpu();
     for (int k = 0; k < repeat; k++)
       sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, drag);
-    if (r >= 0) forces[r] = (seconds() - t) / repeat / n * 1e9;
+    if (r >= 0) forces[r] = (cpu() - t) / repeat / n * 1e9;
   }
-  *average = median(averages);
-  *force = median(forces);
+  *average = median(averages, RUNS);
+  *force = median(forces, RUNS);
   double *all[] = {edge, phi, U, hindrance, V, sums, x, v, radius, F, drag};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
 }

@@ -2,7 +2,7 @@
 """Rate of the all-pairs product inside a LAMMPS run, on 1 and 2 ranks, against the bare kernel of the core: 10 000 polydisperse
 spheres, forces alone and with torques (rotation yes), max_iter 1.
 
-    cmake --build build --target bench_core; . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/product_in_lammps.py [REPEATS]
+    cmake --build build --target bench_product; . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/product_in_lammps.py [REPEATS]
 
 The pair time of the log holds all that a step of the pair style does. A solve of one iteration from zero has two products, that
 of the iteration and that of the residual checked at its end. Kernel, 1 rank and 2 ranks take turns; medians of the repeats."""
@@ -15,12 +15,12 @@ import tempfile
 from from_tests import np
 
 N, STEPS = 10000, 5
-BENCH_CORE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "bench_core")
+BENCH = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "bench_product")
 
 
 def kernel():
     """Pairs per second of the bare kernel: of forces, with torques"""
-    words = subprocess.run([BENCH_CORE, "kernel"], check=True, capture_output=True, text=True).stdout.split()
+    words = subprocess.run([BENCH, "kernel"], check=True, capture_output=True, text=True).stdout.split()
     return {"no": float(words[1]), "yes": float(words[3])}
 
 

@@ -1,7 +1,9 @@
-/* Timings of the core, each as a ratio to a rival run in the same program, with the error of the answer beside it.
- *   bench_core [quick|kernel|solve|waves]      README.md has the command, what the rows mean and figures
- * Times are process CPU time on one core, medians of five; rival and core take turns, so that both meet the same load. */
-#include "clouds.h"
+/* Timings of solves, preconditioned and not, beside LAPACK's dense Cholesky in the same program, with the error of the answer.
+ *   bench_solve [quick|waves]      README.md has the command, what the rows mean and figures
+ * Times are processor time on one core, medians of five. */
+#define _POSIX_C_SOURCE 200809L
+#include "bench_scene.h"
+#include "cpu.h"
 
 #include "../core/stokes/ewald/periodic.h"
 #include "in_clumps.h"
@@ -9,279 +11,13 @@
 #include "sd_waves.h"
 
 #include <string.h>
-#include <time.h>
 
 void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info);
 void dpotrs_(const char *uplo, const int *n, const int *nrhs, const double *A, const int *lda,
              double *b, const int *ldb, int *info);
 
-static const double ETA = 1.3, U = 0.9;
-static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+static const double U = 0.9;
 enum { RUNS = 5 };
-
-static double cpu(void)
-{
-  return (double) clock() / CLOCKS_PER_SEC;
-}
-
-static int by_value(const void *a, const void *b)
-{
-  const double x = *(const double *) a, y = *(const double *) b;
-  return (x > y) - (x < y);
-}
-
-static double median(double *t)
-{
-  qsort(t, RUNS, sizeof(double), by_value);
-  return t[RUNS / 2];
-}
-
-/* --- the rival: what one would write first. One root and one division for a pair that does not overlap. --- */
-
-static inline void rival_pair(const double *x, const double *a, const double *F, int i, int j,
-                              double u[3])
-{
-  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1],
-               dz = x[3 * i + 2] - x[3 * j + 2];
-  const double r2 = dx * dx + dy * dy + dz * dz, R = sqrt(r2);
-  double f, h;
-  if (R > a[i] + a[j]) {
-    const double y = 1.0 / R, y2 = y * y, m = (a[i] * a[i] + a[j] * a[j]) * y2;
-    f = 0.75 * y * (1.0 + m / 3.0);
-    h = 0.75 * y * (1.0 - m) * y2;
-  } else {
-    double g;
-    sd_rpy_radial(R, a[i], a[j], &f, &g);
-    h = R > 0.0 ? g / r2 : 0.0;
-  }
-  const double c = h * (dx * F[3 * j] + dy * F[3 * j + 1] + dz * F[3 * j + 2]);
-  u[0] += f * F[3 * j] + c * dx;
-  u[1] += f * F[3 * j + 1] + c * dy;
-  u[2] += f * F[3 * j + 2] + c * dz;
-}
-
-/* The same with torques, times 8 pi instead of 6 pi. */
-static inline void rival_grand_pair(const double *x, const double *a, const double *F, int i, int j,
-                                    double u[6])
-{
-  const double *G = F + 6 * j, *T = G + 3;
-  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1],
-               dz = x[3 * i + 2] - x[3 * j + 2];
-  const double r2 = dx * dx + dy * dy + dz * dz, R = sqrt(r2);
-  double f, h, k, e, cij, cji;
-  if (R > a[i] + a[j]) {
-    const double y = 1.0 / R, y2 = y * y, m = (a[i] * a[i] + a[j] * a[j]) * y2;
-    f = y * (1.0 + m / 3.0);
-    h = y * (1.0 - m) * y2;
-    cij = cji = y * y2;
-    k = -0.5 * cij;
-    e = 1.5 * cij * y2;
-  } else {
-    const double y = R > 0.0 ? 1.0 / R : 0.0;
-    double g, ge;
-    sd_rpy_radial(R, a[i], a[j], &f, &g);
-    sd_rpy_radial_wt(R, a[i], a[j], &k, &ge);
-    f *= 4.0 / 3.0;
-    h = 4.0 / 3.0 * g * y * y;
-    e = ge * y * y;
-    cij = sd_rpy_radial_wf(R, a[i], a[j]) * y;
-    cji = sd_rpy_radial_wf(R, a[j], a[i]) * y;
-  }
-  const double c = h * (dx * G[0] + dy * G[1] + dz * G[2]),
-               d = e * (dx * T[0] + dy * T[1] + dz * T[2]);
-  u[0] += f * G[0] + c * dx + cji * (T[1] * dz - T[2] * dy);
-  u[1] += f * G[1] + c * dy + cji * (T[2] * dx - T[0] * dz);
-  u[2] += f * G[2] + c * dz + cji * (T[0] * dy - T[1] * dx);
-  u[3] += k * T[0] + d * dx + cij * (G[1] * dz - G[2] * dy);
-  u[4] += k * T[1] + d * dy + cij * (G[2] * dx - G[0] * dz);
-  u[5] += k * T[2] + d * dz + cij * (G[0] * dy - G[1] * dx);
-}
-
-static __attribute__((noinline)) void rival_all(int m, const double *x, const double *a,
-                                                const double *F, int n, double *u)
-{
-  for (int i = 0; i < n; i++) {
-    double sum[6] = {0.0};
-    if (m == 3)
-      for (int j = 0; j < n; j++) {
-        if (j != i) rival_pair(x, a, F, i, j, sum);
-      }
-    else
-      for (int j = 0; j < n; j++)
-        if (j != i) rival_grand_pair(x, a, F, i, j, sum);
-    for (int d = 0; d < m; d++) u[m * i + d] = sum[d] / ((m == 3 ? 6.0 : 8.0) * SD_PI);
-  }
-}
-
-static __attribute__((noinline)) void rival_list(int m, const double *x, const double *a,
-                                                 const double *F, const sd_pairs *pairs, double *u)
-{
-  for (int i = 0; i < pairs->n; i++) {
-    double sum[6] = {0.0};
-    if (m == 3)
-      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
-        rival_pair(x, a, F, i, pairs->neighbor[k], sum);
-    else
-      for (long k = pairs->first[i]; k < pairs->first[i + 1]; k++)
-        rival_grand_pair(x, a, F, i, pairs->neighbor[k], sum);
-    for (int d = 0; d < m; d++) u[m * i + d] = sum[d] / ((m == 3 ? 6.0 : 8.0) * SD_PI);
-  }
-}
-
-/* Random forces, and those of the rival: times w of their own sphere, as the packed product does inside. */
-static double *random_forces(const scene *s, int m, double **rival)
-{
-  double *F = malloc((size_t) m * sizeof(double) * (size_t) s->n),
-         *f = malloc((size_t) m * sizeof(double) * (size_t) s->n);
-  uint64_t seed = 2;
-  for (int i = 0; i < m * s->n; i++) {
-    F[i] = uniform(&seed, -1, 1);
-    f[i] = s->w[i / m] * F[i];
-  }
-  if (rival)
-    *rival = f;
-  else
-    free(f);
-  return F;
-}
-
-/* Of the m numbers of each of the first n spheres */
-static double difference(const scene *s, int m, int n, const double *u, const double *rival)
-{
-  double off = 0.0, norm = 0.0;
-  for (int i = 0; i < m * n; i++) {
-    const double v = s->w[i / m] * rival[i];
-    off += (u[i] - v) * (u[i] - v);
-    norm += v * v;
-  }
-  return sqrt(off / norm);
-}
-
-/* n spheres of radii 0.5 ... 1.5 at random at volume fraction 0.2: some overlap */
-static scene polydisperse(int n, uint64_t seed)
-{
-  scene s = scene_create(n);
-  double volume = 0.0;
-  for (int i = 0; i < n; i++) {
-    s.a[i] = uniform(&seed, 0.5, 1.5);
-    volume += 4.0 / 3.0 * SD_PI * pow(s.a[i], 3);
-  }
-  const double side = cbrt(volume / 0.2);
-  for (int i = 0; i < n; i++)
-    scene_set(&s, i, uniform(&seed, 0, side), uniform(&seed, 0, side), uniform(&seed, 0, side),
-              s.a[i], ETA);
-  return s;
-}
-
-static void head_of_products(void)
-{
-  printf("  %-34s %10s %8s %10s\n", "", "G pairs/s", "ratio", "error");
-}
-
-/* m: 3 numbers a sphere, with torques 6 */
-static void bench_product(int n, int m)
-{
-  scene s = polydisperse(n, 1);
-  const sd_spheres spheres = {s.x, s.a, s.w};
-  const size_t bytes = (size_t) m * sizeof(double) * (size_t) n;
-  double *u = malloc(bytes), *expected = malloc(bytes), *rival, t[2][RUNS];
-  double *F = random_forces(&s, m, &rival);
-  const double pairs = (double) n * n;
-  const int repeat = 1 + (int) (1e8 / pairs);
-  printf("\nProduct, all pairs, %d polydisperse spheres, phi 0.2%s\n", n,
-         m == 6 ? ", with torques" : "");
-  head_of_products();
-  for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
-    if (!sd_isa_supported(isa)) continue;
-    sd_packed p = {0};
-    if (sd_packed_all(&p, isa, &RPY, &spheres, n, m) != SD_OK) abort();
-    for (int k = 0; k < RUNS; k++) {
-      double begin = cpu();
-      rival_all(m, s.x, s.a, rival, n, expected);
-      t[0][k] = cpu() - begin;
-      begin = cpu();
-      for (int r = 0; r < repeat; r++) sd_packed_share(&p, 0, 1, F, u);
-      t[1][k] = (cpu() - begin) / repeat;
-    }
-    const double mine = median(t[1]), its = median(t[0]);
-    printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
-           difference(&s, m, n, u, expected));
-    sd_packed_free(&p);
-  }
-  printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(t[0]));
-  free(rival);
-  free(F);
-  free(u);
-  free(expected);
-  scene_free(&s);
-}
-
-/* The bare kernel alone, for unittest/bench/product_in_lammps.py: directed pairs per second. */
-static void bench_kernel(int n, int m)
-{
-  scene s = polydisperse(n, 1);
-  const sd_spheres spheres = {s.x, s.a, s.w};
-  double *rival, *F = random_forces(&s, m, &rival), t[RUNS];
-  sd_packed p = {0};
-  if (sd_packed_all(&p, SD_ISA_BEST, &RPY, &spheres, n, m) != SD_OK) abort();
-  for (int k = 0; k < RUNS; k++) {
-    const double begin = cpu();
-    sd_packed_share(&p, 0, 1, F, rival);
-    t[k] = cpu() - begin;
-  }
-  printf("%d %.6g\n", m, (double) n * n / median(t));
-  sd_packed_free(&p);
-  free(rival);
-  free(F);
-  scene_free(&s);
-}
-
-static void bench_list(int n, double neighbors, int m)
-{
-  scene s = polydisperse(n, 1);
-  const sd_spheres spheres = {s.x, s.a, s.w};
-  const size_t bytes = (size_t) m * sizeof(double) * (size_t) n;
-  double *u = malloc(bytes), *expected = malloc(bytes), *rival, t[2][RUNS], side = 0.0;
-  double *F = random_forces(&s, m, &rival);
-  for (int i = 0; i < 3 * n; i++) side = fmax(side, s.x[i]);
-  sd_neighbors list = {0};
-  double cutoff = side * cbrt(neighbors / (4.0 / 3.0 * SD_PI * n));
-  for (int k = 0; k < 6; k++) { /* fewer neighbours at the border: widen the cut-off */
-    if (sd_neighbors_cutoff(&list, s.x, n, n, cutoff) != SD_OK) abort();
-    cutoff *= cbrt(neighbors / ((double) list.pairs.first[n] / n));
-  }
-  const double pairs = (double) list.pairs.first[n];
-  const int repeat = 1 + (int) (2e7 / pairs);
-  printf("\nProduct by list, %d polydisperse spheres, %.1f neighbours%s\n", n, pairs / n,
-         m == 6 ? ", with torques" : "");
-  head_of_products();
-  for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
-    if (!sd_isa_supported(isa)) continue;
-    sd_packed p = {0};
-    if (sd_packed_list(&p, isa, &RPY, &spheres, n, m) != SD_OK) abort();
-    for (int k = 0; k < RUNS; k++) {
-      double begin = cpu();
-      for (int r = 0; r < repeat; r++) rival_list(m, s.x, s.a, rival, &list.pairs, expected);
-      t[0][k] = (cpu() - begin) / repeat;
-      begin = cpu();
-      for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, F, NULL, u);
-      t[1][k] = (cpu() - begin) / repeat;
-    }
-    const double mine = median(t[1]), its = median(t[0]);
-    printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
-           difference(&s, m, n, u, expected));
-    sd_packed_free(&p);
-  }
-  printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(t[0]));
-  sd_neighbors_free(&list);
-  free(rival);
-  free(F);
-  free(u);
-  free(expected);
-  scene_free(&s);
-}
-
-/* --- solves -------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
   double seconds, drag;
@@ -324,7 +60,7 @@ static solved solve_median(scene *s, sd_precondition *P, void *ctx, double toler
     r = solve_once(s, tolerance, F, work, slip);
     t[k] = r.seconds;
   }
-  r.seconds = median(t);
+  r.seconds = median(t, RUNS);
   free(slip);
   free(F);
   free(work);
@@ -367,7 +103,7 @@ static double dense(const scene *s, double *drag)
   for (int i = 0; i < size; i += 3) *drag += b[i];
   free(M);
   free(b);
-  return median(t);
+  return median(t, RUNS);
 }
 
 static void print_solve(const char *name, solved r, double rival, double drag, double set_up)
@@ -521,7 +257,7 @@ static void solve_rotating(const char *name, const scene *s, const double *spin,
     if (sd_solve_gradients(&A, slip, 1e-6, 1000, F, work, &report) != SD_OK) abort();
     t[k] = cpu() - begin;
   }
-  printf("  %-34s %6d %10.4f %10.4f %8s %10.1e\n", name, report.iterations, median(t), set_up, "",
+  printf("  %-34s %6d %10.4f %10.4f %8s %10.1e\n", name, report.iterations, median(t, RUNS), set_up, "",
          report.residual);
   sd_packed_free(&g.packed);
   free(slip);
@@ -593,7 +329,7 @@ static void bench_cost_of_waves(int n, int width)
   scene s = polydisperse(n, 1);
   const double side = cbrt(n * 4.0 / 3.0 * SD_PI * 1.25 / 0.2);
   const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
-  double *r = random_forces(&s, width, NULL), *z = malloc(sizeof(double) * (size_t) (width * n));
+  double *r = random_numbers(width * n), *z = malloc(sizeof(double) * (size_t) (width * n));
   double t[3][RUNS];
   const sd_precondition_case c = {
       .law = RPY, .spheres = {s.x, s.a, s.w}, .n = n, .width = width, .box = &box, .parts = 1};
@@ -614,11 +350,11 @@ static void bench_cost_of_waves(int n, int width)
     t[2][k] = cpu() - t[2][k];
     sd_waves_free(&waves);
   }
-  const double pair = median(t[2]) / (double) list.pairs.first[n];
+  const double pair = median(t[2], RUNS) / (double) list.pairs.first[n];
   printf("  %d spheres, width %d: set-up %.0f ns a sphere, %.0f pairs; application %.0f ns, %.0f "
          "pairs\n",
-         n, width, 1e9 * median(t[0]) / n, median(t[0]) / n / pair, 1e9 * median(t[1]) / n,
-         median(t[1]) / n / pair);
+         n, width, 1e9 * median(t[0], RUNS) / n, median(t[0], RUNS) / n / pair, 1e9 * median(t[1], RUNS) / n,
+         median(t[1], RUNS) / n / pair);
   sd_neighbors_free(&list);
   sd_packed_free(&packed);
   free(r);
@@ -639,7 +375,7 @@ static void bench_solve_with_waves(int n, double tolerance)
   const sd_precondition_case c = {
       .law = RPY, .spheres = {s.x, s.a, s.w}, .n = n, .width = 3, .box = &box, .parts = 1};
   const sd_cost cost = sd_cost_waves(&how, 3, 0.0);
-  double *slip = random_forces(&s, 3, NULL), *F = malloc(sizeof(double) * 3 * (size_t) n),
+  double *slip = random_numbers(3 * n), *F = malloc(sizeof(double) * 3 * (size_t) n),
          *work = malloc(sizeof(double) * SD_SOLVE_WORK(n, 3)), first = 0.0;
   periodic p;
   periodic_place(&p, s.x, s.a, s.w, n, 3, &how);
@@ -675,21 +411,10 @@ int main(int argc, char **argv)
 {
   const int quick = argc > 1 && strcmp(argv[1], "quick") == 0;
   setvbuf(stdout, NULL, _IOLBF, 0);
-  if (argc > 1 && strcmp(argv[1], "kernel") == 0) {
-    for (int m = 3; m <= 6; m += 3) bench_kernel(10000, m);
-    return 0;
-  }
   if (argc > 1 && strcmp(argv[1], "waves") == 0) {
     for (int width = 3; width <= 6; width += 3) bench_cost_of_waves(20000, width);
     bench_solve_with_waves(30000, 1e-3);
     return 0;
-  }
-  const int solve = argc > 1 && strcmp(argv[1], "solve") == 0;
-  printf("Best instruction set: %s\n", sd_isa_name(sd_isa_best()));
-  for (int m = 3; m <= 6 && !solve; m += 3) {
-    bench_product(1000, m);
-    if (!quick) bench_product(10000, m);
-    bench_list(10000, 88.0, m);
   }
   bench_lattice(quick ? 5 : 10);
   bench_flocs();
@@ -697,6 +422,6 @@ int main(int argc, char **argv)
   bench_rotating("10^3 touching spheres", scene_lattice(10, 10, 10, 2.0, 0.7, ETA), 0);
   bench_rotating("phi 0.45", cloud_dense(1000, 0.45, 0.7, 1.3, ETA, 1), 0);
   bench_rotating("50 flocs of 20", cloud_flocs(50, 20, 1.0, 34.7, 1, ETA, 1), 20);
-  if (!quick && !solve) bench_large_lattice();
+  if (!quick) bench_large_lattice();
   return 0;
 }
