@@ -1,10 +1,12 @@
 """What the scripts of the examples share: a python with numpy and matplotlib, MPI, programs that must be there, where results go."""
 import argparse
+import csv
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parents[1]
 
@@ -50,10 +52,19 @@ def options(script, text, **more):
 
 
 def finished(name, command, cwd):
-    """Runs the command in cwd, or ends with the last lines it printed. name: of the example."""
-    done = subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    """What the command printed in cwd, or the end with the last lines of that. name: of the example. Several at once would trip over
+    each other in Open MPI's folder of temporary files."""
+    with tempfile.TemporaryDirectory(prefix="sd") as scratch:
+        done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0 or "ERROR" in done.stdout:
         sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\n{name}: {' '.join(command)} failed in {cwd}")
+    return done.stdout
+
+
+def read_table(path):
+    """Rows of a table with comments and one line of names, as dictionaries"""
+    return list(csv.DictReader(line for line in path.read_text().splitlines() if not line.startswith("#")))
 
 
 def values(variables):

@@ -9,14 +9,13 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, values  # noqa: E402
 
 
 def lammps(out, log, ranks, **variables):
@@ -24,22 +23,15 @@ def lammps(out, log, ranks, **variables):
     shutil.copy(HERE / "in.cloud_100000", out)
     (out / "out").mkdir(exist_ok=True)
     command = ["mpirun", "-np", str(ranks), "lmp", "-in", "in.cloud_100000", "-log", log, "-nocite"]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
     start = time.time()
-    run = subprocess.run(command, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    found = re.findall("^settling (.*) predicted (.*)$", run.stdout, re.M)
-    if run.returncode or not found:
-        sys.exit(run.stdout[-2000:] + f"cloud_100000: {' '.join(command)} failed in {out}")
+    said = finished("cloud_100000", command + values(variables), out)
     print(f"[{log}, {ranks} rank{'s' if ranks > 1 else ''}] {time.time() - start:.0f} s", flush=True)
-    return [float(word) for word in found[0]]
+    return [float(word) for word in re.search("^settling (.*) predicted (.*)$", said, re.M).groups()]
 
 
 def frames(out):
     """id x y z vz of every sphere, frame by frame"""
-    for block in (out / "out" / "film").read_text().split("ITEM: TIMESTEP\n")[1:]:
-        lines = block.split("\n")
-        yield np.array([line.split() for line in lines[8:8 + int(lines[2])]], dtype=float)
+    return [rows for _, rows in dumped(out / "out" / "film")]
 
 
 def film_strip(film, R, path):
@@ -64,7 +56,7 @@ def main():
     found = {}
     for name, ranks, words in (("direct", 2, dict(far_field="direct")), ("ewald", 2, dict(far_field="ewald")), ("one", 1, dict(far_field="ewald"))):
         lammps(out, f"log.{name}", ranks, spheres=20000, steps=1, frames=1, falls=1e-6, **words)
-        found[name] = next(iter(frames(out)))[:, 4]
+        found[name] = frames(out)[0][:, 4]
     scale = np.sqrt(np.mean(found["direct"]**2))
     c.below("20 000 spheres: rms error of their speed, far_field_tolerance 1e-3, over its rms",
             np.sqrt(np.mean((found["ewald"] - found["direct"])**2)) / scale, 1e-4)
@@ -72,7 +64,7 @@ def main():
 
     lammps(out, "log.cloud_100000.1", 1, steps=1, frames=1, falls=0.05)
     speed, predicted = lammps(out, "log.cloud_100000.2", 2)
-    film = list(frames(out))
+    film = frames(out)
     R = (100000 / 0.05)**(1 / 3)
     c.near("speed of the ball at first, in that of point forces in a ball", -film[0][:, 4].mean() / predicted, 1.0, 0.01)
     c.near("the same in the end", speed / predicted, 1.0, 0.02)

@@ -6,7 +6,6 @@
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
-import csv
 import pathlib
 import shutil
 import sys
@@ -14,18 +13,13 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, finished, need, options, save, values  # noqa: E402
-
-
-def table(name):
-    with open(HERE / name) as lines:
-        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+from runs import np, plt, finished, need, options, read_table, save, values  # noqa: E402
 
 
 def clusters():
     """Places [n, 3] and exact velocities [n, 3] by name, in the order of the table"""
     found = {}
-    for row in table("exact.csv"):
+    for row in read_table(HERE / "exact.csv"):
         found.setdefault(row["cluster"], []).append([float(row[k]) for k in ("x", "y", "z", "Ux", "Uy", "Uz")])
     return {name: (np.array(rows)[:, :3], np.array(rows)[:, 3:]) for name, rows in found.items()}
 
@@ -64,7 +58,7 @@ def main():
     given = options(__file__, __doc__)
     out = given.out
     need("lmp")
-    usual = {row["cluster"]: row for row in table("classical.csv")}
+    usual = {row["cluster"]: row for row in read_table(HERE / "classical.csv")}
     numbers, speeds, errors = [], {"no": [], "yes": [], "sum": []}, {"no": [], "yes": [], "sum": []}
     for name, (x, exact) in clusters().items():
         write_data(out / f"{name}.data", x)

@@ -10,13 +10,9 @@ Two values to compare with, at the orientation that the clump has at each time:
   exact   the same from exact Stokes flow, ../sedimentation/data/clusters_exact.csv
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
-import csv
-import os
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -24,7 +20,8 @@ SEDIMENTATION = HERE.parent / "sedimentation"
 
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options, TOP  # noqa: E402
+from rigid import rigid_velocities, rotation_between  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, read_table, values, TOP  # noqa: E402
 
 WEIGHT = np.array([0.0, 0.0, -4 * 6 * np.pi])       # four spheres; viscosity, radius and their settling velocity are 1
 MIRROR = np.diag([-1.0, 1.0, 1.0])
@@ -33,17 +30,14 @@ EXACT_LIMIT = 0.03                                 # of the spin at the end of t
 
 
 def shape():
-    rows = csv.DictReader(line for line in (SEDIMENTATION / "data" / "cluster_geometry.csv").read_text().splitlines()
-                          if not line.startswith("#"))
-    x = np.array([[float(r[k]) for k in "xyz"] for r in rows if r["name"] == "helix4_chiral"])
+    x = np.array([[float(r[k]) for k in "xyz"] for r in read_table(SEDIMENTATION / "data" / "cluster_geometry.csv")
+                  if r["name"] == "helix4_chiral"])
     return x - x.mean(axis=0)
 
 
 def exact_resistance():
-    rows = csv.DictReader(line for line in (SEDIMENTATION / "data" / "clusters_exact.csv").read_text().splitlines()
-                          if not line.startswith("#"))
-    return next(np.array([[float(r[f"R{i}{j}"]) for j in range(1, 7)] for i in range(1, 7)]) for r in rows
-                if r["name"] == "helix4_chiral")
+    return next(np.array([[float(r[f"R{i}{j}"]) for j in range(1, 7)] for i in range(1, 7)])
+                for r in read_table(SEDIMENTATION / "data" / "clusters_exact.csv") if r["name"] == "helix4_chiral")
 
 
 def mirrored(R):
@@ -56,20 +50,6 @@ def settle(R, turn):
     """U (of the centroid) and W of a clump of resistance R, turned by the matrix turn, under its weight."""
     V = np.linalg.solve(R, np.concatenate((turn.T @ WEIGHT, np.zeros(3))))
     return turn @ V[:3], turn @ V[3:]
-
-
-def rigid_velocities(x):
-    K = np.zeros((3 * len(x), 6))
-    for i, r in enumerate(x):
-        K[3 * i:3 * i + 3, :3] = np.eye(3)
-        K[3 * i:3 * i + 3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
-    return K
-
-
-def rotation_between(x, y):
-    """Rotation matrix that turns the points x into the points y, both about their centroids (Kabsch 1976)."""
-    u, _, vt = np.linalg.svd((y - y.mean(0)).T @ (x - x.mean(0)))
-    return u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
 
 
 def spin_curve(R, turn, t):
@@ -93,29 +73,17 @@ def spin_curve(R, turn, t):
     return np.array(angle)
 
 
-def lammps(command, cwd, ranks=1):
-    command = ["mpirun", "-np", str(ranks)] * (ranks > 1) + ["stdbuf", "-oL", "lmp"] + command
-    with tempfile.TemporaryDirectory(prefix="sd") as scratch:
-        done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0:
-        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\npropeller: {' '.join(command)} failed")
-
-
-def frames(path):
-    """[(step, rows)] of a dump sorted by atom ID."""
-    for block in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
-        lines = block.split("\n")
-        n = int(lines[2])
-        yield int(lines[0]), np.array([line.split() for line in lines[8:8 + n]], dtype=float)
+def lammps(cwd, script, log, ranks=1, **variables):
+    command = ["mpirun", "-np", str(ranks)] * (ranks > 1) + ["stdbuf", "-oL", "lmp", "-in", script, "-log", str(log)]
+    finished("propeller", command + values(variables), cwd)
 
 
 def own_resistance(out, name, shell):
-    lammps(["-in", "in.six_motions", "-log", "none", "-var", "clump", str(HERE / f"{name}.mol"), "-var", "model",
-            f"rigid_clumps yes shell {shell}", "-var", "out", str(out / f"{name}_{shell}")], SEDIMENTATION)
+    lammps(SEDIMENTATION, "in.six_motions", "none", clump=HERE / f"{name}.mol", model=f"rigid_clumps yes shell {shell}",
+           out=out / f"{name}_{shell}")
     R = np.zeros((6, 6))
     for mode in range(6):
-        (_, rows), = frames(out / f"{name}_{shell}.{mode + 1}")
+        (_, rows), = dumped(out / f"{name}_{shell}.{mode + 1}")
         x, F, T = rows[:, 1:4], rows[:, 4:7], rows[:, 7:10]
         R[:3, mode], R[3:, mode] = -F.sum(0), -(T + np.cross(x - x.mean(0), F)).sum(0)
     return R
@@ -147,9 +115,8 @@ class Fall:
 
 def run(out, shell, ranks=1):
     motion = out / f"{shell}_{ranks}.motion"
-    lammps(["-in", "in.propeller", "-log", str(out / f"{shell}_{ranks}.log"), "-var", "shell", str(shell),
-            "-var", "motion", str(motion)], HERE, ranks)
-    steps, rows = zip(*frames(motion))
+    lammps(HERE, "in.propeller", out / f"{shell}_{ranks}.log", ranks, shell=shell, motion=motion)
+    steps, rows = zip(*dumped(motion))
     dt = 0.5 * 2 * 0.05 / 9                                         # as in in.propeller
     x0, R = shape(), exact_resistance()
     clump = Fall(rows, 1, x0, own_resistance(out, "helix4_chiral", shell), R)

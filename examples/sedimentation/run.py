@@ -14,19 +14,17 @@ with exact, and with what the clump's own 6x6 resistance says.
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
 import concurrent.futures
-import csv
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options, TOP  # noqa: E402
+from rigid import rigid_velocities, rotation_between  # noqa: E402
+from runs import np, plt, finished, need, options, read_table, TOP  # noqa: E402
 
 # As in in.sedimentation; lengths below are in radii, velocities in those of a lone sphere.
 A, RHO, RHOF, ETA, G = 50e-6, 2500.0, 970.0, 0.97, 9.81
@@ -53,31 +51,18 @@ TIMED = {"Stokes drag of each sphere": "cut_off_distance 9e-5",
 TIMED_CLUMP, COPIES, TIMED_STEPS = "cube8", 6, 300
 
 
-def read_csv(name):
-    lines = [line for line in (HERE / "data" / name).read_text().splitlines() if not line.startswith("#")]
-    return list(csv.DictReader(lines))
-
-
 GEOMETRY = {}
-for row in read_csv("cluster_geometry.csv"):
+for row in read_table(HERE / "data" / "cluster_geometry.csv"):
     GEOMETRY.setdefault(row["name"], []).append([float(row[k]) for k in "xyz"])
 GEOMETRY = {name: np.array(x) for name, x in GEOMETRY.items()}
 CLUMP_EXACT = {row["name"]: np.array([[float(row[f"R{i}{j}"]) for j in range(1, 7)] for i in range(1, 7)]) / (6 * np.pi)
-               for row in read_csv("clusters_exact.csv")}
-CHAIN_EXACT = {int(row["N"]): (float(row["Fpar"]), float(row["Fperp"])) for row in read_csv("chains_exact.csv")}
-DRIFT_MODEL = {(int(row["N"]), float(row["angle_deg"])): float(row["drift_deg_model"]) for row in read_csv("drift.csv")}
+               for row in read_table(HERE / "data" / "clusters_exact.csv")}
+CHAIN_EXACT = {int(row["N"]): (float(row["Fpar"]), float(row["Fperp"])) for row in read_table(HERE / "data" / "chains_exact.csv")}
+DRIFT_MODEL = {(int(row["N"]), float(row["angle_deg"])): float(row["drift_deg_model"])
+               for row in read_table(HERE / "data" / "drift.csv")}
 
 
 # --- the two values to compare with -------------------------------------------------------------------------------
-
-
-def rigid_velocities(x):
-    """[3N x 6] matrix: velocities of points x from (U, W) of the rigid body."""
-    K = np.zeros((3 * len(x), 6))
-    for i, r in enumerate(x):
-        K[3 * i:3 * i + 3, :3] = np.eye(3)
-        K[3 * i:3 * i + 3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
-    return K
 
 
 def rotne_prager(x):
@@ -137,21 +122,8 @@ def steepest(par, perp):
 # --- one run --------------------------------------------------------------------------------------------------------
 
 
-def rotation_between(x, y):
-    """Rotation matrix that turns the points x into the points y, both about their centroids (Kabsch 1976)."""
-    u, _, vt = np.linalg.svd((y - y.mean(0)).T @ (x - x.mean(0)))
-    return u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
-
-
 def execute(command):
-    # Several runs at once would trip over each other in Open MPI's folder of temporary files.
-    with tempfile.TemporaryDirectory(prefix="sd") as scratch:
-        done = subprocess.run(command, cwd=HERE, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0:
-        lines = done.stdout.splitlines()
-        raise RuntimeError("\n".join(["this run failed: " + " ".join(command)] +
-                                     ([line for line in lines if line.startswith("ERROR")] or lines[-20:])))
+    return finished("sedimentation", command, HERE)
 
 
 class Case:
@@ -181,7 +153,7 @@ class Case:
         execute(command)
         spheres = np.loadtxt(state, skiprows=9, ndmin=2)
         if spheres.shape != (self.n, 10) or not np.isfinite(spheres).all():
-            raise RuntimeError(f"{state} does not hold {self.n} spheres with finite numbers")
+            sys.exit(f"sedimentation: {state} does not hold {self.n} spheres with finite numbers")
         self.evaluate(spheres)
         return self
 
@@ -509,9 +481,9 @@ def main():
                 for name, words in TIMED.items():
                     times[name] = min(times.get(name, (np.inf, 0.0)), measure(out, words))
                     print(".", end="", flush=True)
-        except RuntimeError as failure:
+        except SystemExit:
             pool.shutdown(cancel_futures=True)
-            sys.exit(f"sedimentation: {failure}")
+            raise
     ladder_rows = ladder_table(times, done, ladder)
     print("\n" + table(ladder_rows))
 

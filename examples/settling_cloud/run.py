@@ -16,7 +16,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, dumped, need, options, values  # noqa: E402
 from PIL import Image  # noqa: E402
 
 # As in in.settling_cloud. Lengths are in radii of a sphere, speeds in those of a lone sphere, forces in its weight.
@@ -70,9 +70,7 @@ def lammps(out, ranks, log, variables, show=True):
     (out / "out").mkdir(parents=True, exist_ok=True)
     for name in ("in.settling_cloud", "tetrahedron.mol"):
         shutil.copy(HERE / name, out)
-    command = ["mpirun", "-np", str(ranks), "lmp", "-in", "in.settling_cloud", "-log", log]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
+    command = ["mpirun", "-np", str(ranks), "lmp", "-in", "in.settling_cloud", "-log", log] + values(variables)
     start = time.time()
     print(f"[{log}, {ranks} rank{'s' if ranks > 1 else ''}] ", end="", flush=True)
     run = subprocess.Popen(command, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -93,9 +91,7 @@ def curve(out, name):
 
 def frames(out, name):
     """Step; id, molecule, x, y, z, vz of every sphere."""
-    for block in (out / "out" / f"{name}.spheres").read_text().split("ITEM: TIMESTEP\n")[1:]:
-        lines = block.split("\n")
-        yield int(lines[0]), np.array([line.split() for line in lines[8:8 + int(lines[2])]], dtype=float)
+    return list(dumped(out / "out" / f"{name}.spheres"))
 
 
 def centres(spheres):
@@ -164,7 +160,7 @@ def main():
     short = {}
     for ranks in (1, 2):
         lammps(out, ranks, f"log.settling_cloud.{ranks}", dict(time=0.05, frame=0.05, images="no"))
-        short[ranks] = list(frames(out, "all"))[-1][1]
+        short[ranks] = frames(out, "all")[-1][1]
     for name in TITLE:
         # Clumps alone are compared to five digits, and their blocks make every solve exact in one iteration.
         lammps(out, 2, f"log.{name}", dict(interactions=name, images="no" if name == "none" else "yes",
@@ -172,7 +168,7 @@ def main():
 
     curves = {name: curve(out, name) for name in TITLE}
     step, now = np.loadtxt(out / "out" / "all.curve")[-1, :2]
-    whole = list(frames(out, "all"))
+    whole = frames(out, "all")
     t = np.array([n for n, _ in whole]) * now / step
     exact = np.array([point_forces(centres(s)) for _, s in whole])
     R = np.interp(t, curves["all"][:, 0], curves["all"][:, 3])

@@ -9,14 +9,13 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, values  # noqa: E402
 
 PHIS = (0.05, 0.1, 0.2, 0.3, 0.45)
 N = 4 * 14**3
@@ -36,15 +35,10 @@ def beyond_the_box(phi):
 
 def lammps(out, script, log, ranks=2, **variables):
     command = ["mpirun", "-np", str(ranks), "lmp", "-in", script, "-log", log, "-nocite"]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
     start = time.time()
-    run = subprocess.run(command, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    found = [float(word) for word in re.findall("^settling (.*)$", run.stdout, re.M)]
-    if run.returncode or not found:
-        sys.exit(run.stdout[-2000:] + f"suspension: {' '.join(command)} failed in {out}")
+    said = finished("suspension", command + values(variables), out)
     print(f"[{log}, {ranks} rank{'s' if ranks > 1 else ''}] {time.time() - start:.0f} s", flush=True)
-    return found
+    return [float(word) for word in re.findall("^settling (.*)$", said, re.M)]
 
 
 def thermo(log):
@@ -59,12 +53,6 @@ def thermo(log):
         elif inside:
             rows.append([float(word) for word in words])
     return np.array(rows)
-
-
-def spheres(path):
-    """Columns of the last step that was dumped"""
-    block = path.read_text().split("ITEM: TIMESTEP\n")[-1].split("\n")
-    return np.array([line.split() for line in block[8:8 + int(block[2])]], dtype=float)
 
 
 def picture(speeds, fall, path):
@@ -114,7 +102,8 @@ def main():
     for phi in PHIS:
         print(f"  {phi:4}    " + "  ".join(f"{u:.4f}" for u in speeds[phi]) +
               f"                  {np.mean(speeds[phi]) + beyond_the_box(phi):.3f}            {theory(phi):.3f}     {(1 - phi)**5:.3f}")
-    picture(speeds, spheres(out / "suspension.spheres"), out / "suspension.png")
+    *_, (_, last) = dumped(out / "suspension.spheres")
+    picture(speeds, last, out / "suspension.png")
     if given.update:
         for name in ("suspension.png", "log.suspension.1", "log.suspension.2"):
             shutil.copy(out / name, HERE)

@@ -6,18 +6,15 @@
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
-import os
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, need, options, TOP  # noqa: E402
+from runs import np, plt, finished, need, options, TOP  # noqa: E402
 
 # Effective aspect ratios of chains of touching spheres in exact Stokes flow (Lamb's multipole solution, computed independently of
 # the plugin's code, 1e-8); the period is 2 pi (re + 1/re)/shear rate (Jeffery 1922; Bretherton 1962).
@@ -63,11 +60,7 @@ class Case:
             command += ["-var", "image", str(out / self.tag)]
         if self.ranks > 1:
             command = ["mpirun", "-np", str(self.ranks)] + command
-        with tempfile.TemporaryDirectory(prefix="sd") as scratch:
-            done = subprocess.run(command, cwd=HERE, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        if done.returncode != 0:
-            sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\ntumbling: {' '.join(command)} failed")
+        finished("tumbling", command, HERE)
         self.t, x, y, z = np.loadtxt(curve).T
         self.axis = np.stack((x, y, z), axis=1) / np.sqrt(x * x + y * y + z * z)[:, None]
         self.phi = np.unwrap(np.arctan2(x, z))
