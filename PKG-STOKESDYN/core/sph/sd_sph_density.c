@@ -1,6 +1,6 @@
 #include "sd_sph_density.h"
 
-#include "sd_sph_visit.h"
+#include "sd_sph_class.h"
 
 #include <string.h>
 
@@ -22,7 +22,7 @@ void sd_sph_sum_densities(const sd_sph_model *model, const sd_sph_particles *p,
     if (!(how->mask[i] & how->bit)) continue;
     /* what a particle adds to its own sum: m W(0, h) */
     const double own = sd_sph_mass(model, p, i) *
-        model->pair[sd_sph_class_pair(model, p, i, i)].weight * sd_sph_K(model->kernel, 0.0);
+        sd_sph_of_pair(model, p, i, i)->weight * sd_sph_K(model->kernel, 0.0);
     const double *s = how->sums + 4 * (size_t) i;
     rho[i] = how->shepard ? (s[0] + own) / (s[1] + own / rho[i]) : s[0] + own;
   }

@@ -1,7 +1,8 @@
 #include "sd_sph_order.h"
 
-#include "sd_sph_visit.h"
+#include "sd_sph_class.h"
 
+#include <math.h>
 #include <string.h>
 
 void sd_sph_pack_volumes(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
@@ -123,7 +124,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     const int flows = (c->mask[i] & c->moving) != 0;
     memset(du, 0, 4 * sizeof(double));
     if (flows && above(&M, SURFACE))
-      shift(sums, model->pair[sd_sph_class_pair(model, p, i, i)].support, du);
+      shift(sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level == SD_SPH_VELOCITY) {
       memset(row + 8, 0, 8 * sizeof(double));
       memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));

@@ -1,21 +1,36 @@
 #include "sd_sph_step.h"
 
-#include "sd_sph_visit.h"
+#include "sd_sph_class.h"
 
-/* Once every few steps for check/timestep, so one pair after the other will do. v.d does not change
- * sign between a and b, and h is that of the pair: one number for both. */
+#include <math.h>
+
+/* |h v.d / (r^2 + eta)| of two particles: the same for both, since v.d does not change sign and h
+ * is that of the pair. 0 beyond the support. */
+static double approach(const sd_sph_model *model, const sd_sph_particles *p, int i, int j)
+{
+  const sd_sph_coefficients *pair = sd_sph_of_pair(model, p, i, j);
+  double r2 = 0.0, vd = 0.0;
+  for (int c = 0; c < 3; c++) {
+    const double d = p->x4[4 * (size_t) i + c] - p->x4[4 * (size_t) j + c];
+    r2 += d * d;
+    vd += d * (p->v4[4 * (size_t) i + c] - p->v4[4 * (size_t) j + c]);
+  }
+  if (!(r2 < pair->support * pair->support)) return 0.0;
+  return fabs(vd) / (pair->inv_h * (r2 + model->eta));
+}
+
+/* Once every few steps for check/timestep, so one pair after the other will do. */
 void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *largest)
 {
-  sd_sph_visitor v;
-  SD_SPH_VISIT(model, list, p, v)
-  {
-    const double *vi = p->v4 + 4 * (size_t) v.i, *vj = p->v4 + 4 * (size_t) v.j;
-    double vd = 0.0;
-    for (int c = 0; c < 3; c++) vd += (vi[c] - vj[c]) * v.d[c];
-    const double s = fabs(vd) / (v.k->inv_h * (v.r2 + model->eta));
-    if (s > largest[v.i]) largest[v.i] = s;
-    if (s > largest[v.j]) largest[v.j] = s;
+  for (int k = 0; k < list->n; k++) {
+    const int i = list->first[k];
+    for (int m = 0; m < list->count[i]; m++) {
+      const int j = list->neighbor[i][m] & list->mask;
+      const double s = approach(model, p, i, j);
+      if (s > largest[i]) largest[i] = s;
+      if (s > largest[j]) largest[j] = s;
+    }
   }
 }
 
