@@ -1,25 +1,18 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
-#include "fix_nve_sph.h"
 #include "fix_property_global.h"
-#include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
-#include "fix_wall_adami_sph.h"
 #include "fixes.h"
 #include "keywords.h"
-#include "lammps_compat.h"
 #include "restart_words.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "memory.h"
 #include "modify.h"
-#include "neighbor.h"
-#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -29,7 +22,7 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = "Pair style " + std::string(PairSph::STYLE);
+const std::string PairSph::COMMAND = "Pair style " + std::string(STYLE);
 const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
                                                        "beta", "deltap", "mu"};
 
@@ -184,169 +177,6 @@ double PairSph::spacing(int itype) const
              " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass a type, it "
              "is (mass/rho0)^(1/dimension))");
   return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
-}
-
-void PairSph::init_style()
-{
-  Sph::require_scene(lmp, COMMAND);
-  if (update->whichflag == 2)
-    fail(lmp, COMMAND + " cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
-  if (strncmp(update->integrate_style, "respa", 5) == 0)
-    fail(lmp, COMMAND + " cannot be used with run_style respa");
-  if (force->pair_match(STYLE, 1) != this)
-    fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
-  if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
-  find_fixes();
-  find_integrators();
-  choose_scheme();
-  check_groups();
-
-  needs_velocity = model.artvisc || model.friction || continuity;
-  // As comm_modify vel yes: each pair must see the same velocities on both sides.
-  if (needs_velocity && !comm->ghost_velocity) comm->ghost_velocity = asked_for_velocities = 1;
-  if (neighbor->skin <= 0.0)
-    fail(lmp, COMMAND + ": command neighbor: a skin of 0 is too small; a tenth of h is usual");
-  if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1 && comm->me == 0)
-    error->warning(FLERR,
-                   COMMAND + ": with neigh_modify check no nobody sees when the neighbour list is "
-                             "outdated");
-  dangerous_builds = neighbor->ndanger;
-  Compat::request_half_list(neighbor, this, instance_me, !shared);
-  around_of = -1;
-}
-
-template <class Style> Style *PairSph::only(const char *otherwise)
-{
-  const auto found = fixes_of<Style>(lmp);
-  if (found.size() > 1)
-    fail(lmp, COMMAND + ": more than one fix " + Style::STYLE + otherwise);
-  return found.empty() ? nullptr : found[0];
-}
-
-void PairSph::find_fixes()
-{
-  pressures = fixes_of<FixSphPressure>(lmp);
-  if (pressures.empty())
-    fail(lmp, COMMAND + ": no fix sph/pressure: it sets the pressure that belongs to a density");
-  continuity = only<FixSphDensityContinuity>(": only one can set the density");
-  summation = only<FixSphDensitySummation>(": only one can set the density");
-  if (!continuity && !summation)
-    fail(lmp,
-         COMMAND + ": no fix sph/density/continuity or sph/density/summation: one of them sets "
-                   "the density");
-  if (continuity && summation)
-    fail(lmp,
-         COMMAND + ": fix sph/density/continuity and fix sph/density/summation: only one can set "
-                   "the density");
-  filter = only<FixSphDensityCorr>("");
-  wall = only<FixWallAdamiSph>("; put all wall particles into one group");
-}
-
-/* Who advances the density, and who sets vest. */
-void PairSph::find_integrators()
-{
-  integrators = fixes_of<FixNveSph>(lmp);
-  const auto moving = fixes_of(lmp, FixNveSph::STYLE);
-  const auto stationary = fixes_of(lmp, FixNveSphStationary::STYLE);
-  const auto theirs = fixes_of(lmp, "sph"), their_stationary = fixes_of(lmp, "sph/stationary");
-  const bool ours = !moving.empty() || !stationary.empty(),
-             others = !theirs.empty() || !their_stationary.empty();
-  if (ours && others)
-    fail(lmp,
-         COMMAND + ": fix nve/sph and fix " + (theirs.empty() ? "sph/stationary" : "sph") +
-             " cannot be mixed: they advance the density at different times; use nve/sph and "
-             "nve/sph/stationary");
-  if (continuity && !ours && !others && update->whichflag == 1 && update->nsteps > 0)
-    fail(lmp,
-         "Fix " + std::string(FixSphDensityContinuity::STYLE) +
-             ": nothing advances the density; use fix nve/sph");
-  leapfrog = continuity && ours;
-  leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
-  own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
-}
-
-/* What the options make of rate and force, and what does not go with them. */
-void PairSph::choose_scheme()
-{
-  model.delta = continuity && leapfrog ? continuity->delta : 0.0;
-  const bool volume = continuity && continuity->volume;
-  const std::string what = COMMAND + ": " + (corrects ? "correction" : "shift") + " yes ";
-  auto refuse = [&](bool when, const std::string &why) {
-    if (when) fail(lmp, what + why);
-  };
-  if (shifts) {
-    refuse(volume, "does not go with volume yes of fix sph/density/continuity: it blows up where "
-                   "densities jump");
-    refuse(!leapfrog || !fixes_of(lmp, "sph").empty(),
-           "needs fix sph/density/continuity and fix nve/sph: particles are moved in the middle of a "
-           "step");
-    refuse(!(model.delta > 0.0), "needs fix sph/density/continuity with delta, usually 0.1");
-    refuse(model.tenscorr, "does not go with tensCorr: it has its own force against pairing");
-    refuse(model.dimension != domain->dimension, "needs the kernel of the box's dimension");
-    refuse(!corrects && model.kernel == SD_SPH_CUBICSPLINE,
-           "needs kernel wendland: the cubic spline lets particles pair");
-    refuse(corrects && (!fixes_of(lmp, "wall/sph").empty() ||
-                        !fixes_of(lmp, "wall/region/sph").empty()),
-           "does not go with fix wall/sph and wall/region/sph: the support is empty behind them; use "
-           "fix wall/adami/sph or shift yes");
-  }
-  if (volume && (!leapfrog || model.tenscorr))
-    fail(lmp,
-         COMMAND + ": volume yes of fix sph/density/continuity needs fix nve/sph, and does not go "
-                   "with tensCorr");
-  model.scheme = volume ? SD_SPH_VOLUME
-      : corrects        ? SD_SPH_CORRECTION
-      : shifts          ? SD_SPH_SHIFT
-                        : SD_SPH_PLAIN;
-  state = FixSphShift::provide(lmp, shifts, corrects);
-  shared = sd_sph_level_of(&model) == SD_SPH_RATE;
-  // forces on ghosts, which positions times forces would need, are not summed
-  no_virial_fdotr_compute = !shared;
-  comm_forward = std::max(sd_sph_columns(&model), wall ? 4 : 1);
-  comm_reverse = wall ? 8 : 4;
-}
-
-void PairSph::check_groups()
-{
-  pressure_bits = 0;
-  for (const auto *fix : pressures) {
-    if (const bigint both = in_both(pressure_bits, fix->groupbit))
-      fail(lmp,
-           COMMAND + ": atom " + std::to_string(both) +
-               " is in the groups of two fixes sph/pressure");
-    pressure_bits |= fix->groupbit;
-  }
-  if (!wall) return;
-  for (const auto *fix : Sph::integrators(lmp))
-    if (const bigint both = in_both(wall->groupbit, fix->groupbit))
-      fail(lmp,
-           "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " + std::to_string(both) +
-               " of its group is also integrated by fix " + fix->id +
-               ", so the wall would flow; give that fix the group of the fluid");
-}
-
-/* The largest ID of the atoms in both of these sets of groups, 0: there are none. */
-bigint PairSph::in_both(int bits, int more_bits)
-{
-  bigint mine = 0, all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & bits) && (atom->mask[i] & more_bits))
-      mine = std::max(mine, (bigint) atom->tag[i]);
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_MAX, world);
-  return all;
-}
-
-/* Here and not in init_style, since the domain learns of fix deform after that. */
-void PairSph::setup()
-{
-  if (needs_velocity && domain->deform_vremap && !fixes_of(lmp, "sph").empty())
-    fail(lmp,
-         COMMAND + ": fix deform with remap v: fix sph extrapolates velocities before they are "
-                   "shifted at the faces that glide; use fix nve/sph");
-  if (domain->deform_vremap && model.scheme == SD_SPH_SHIFT)
-    fail(lmp,
-         COMMAND + ": fix deform with remap v: the momentum that shift carries is not the same on "
-                   "both sides of a face that glides; use correction yes");
 }
 
 double PairSph::init_one(int i, int j)

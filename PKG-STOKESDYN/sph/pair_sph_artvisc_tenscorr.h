@@ -60,6 +60,7 @@ class PairSph : public LAMMPS_NS::Pair {
  private:
   enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, NPARAMETERS };
   static const char *const PARAMETER[NPARAMETERS];
+  static const std::string COMMAND;    // for errors
 
   // settings
   std::vector<std::string> args;    // of pair_style, for restart files
@@ -70,11 +71,6 @@ class PairSph : public LAMMPS_NS::Pair {
   sd_sph_model model = {};
   void parse();
   void allocate();
-  template <class Style> Style *only(const char *otherwise);
-  void find_fixes();
-  void find_integrators();
-  void choose_scheme();
-  void check_groups();
   double spacing(int itype) const;
   double mixed(int parameter, int i, int j) const;
 
@@ -87,10 +83,16 @@ class PairSph : public LAMMPS_NS::Pair {
   FixWallAdamiSph *wall = nullptr;
   FixSphShift *state = nullptr;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
-  bool leapfrog = false, all_own_vest = false, needs_velocity = false;
+  bool leapfrog = false, needs_velocity = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
   // comm_modify vel was no
   bool asked_for_velocities = false;
+  template <class Style> Style *only(const char *otherwise);
+  void find_fixes();
+  void find_integrators();
+  void choose_scheme();
+  void check_groups();
+  LAMMPS_NS::bigint in_both(int bits, int more_bits);
 
   // Neighbours with their memory, as sd_sph_both.
   struct Neighbours {
@@ -118,7 +120,6 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<double> P, masses, rate, each, kick, wall_rows;
   std::vector<int> classes, phases;
   bool used(int itype) const;
-  LAMMPS_NS::bigint in_both(int bits, int more_bits);
   std::string at_step() const;
   void prepare();
   bool types_are_alike();

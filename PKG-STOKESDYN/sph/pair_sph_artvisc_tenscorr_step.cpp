@@ -1,3 +1,4 @@
+/* Of pair_style sph/artVisc/tensCorr: a step. */
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
@@ -24,8 +25,6 @@
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
-
-static const std::string COMMAND = "Pair style " + std::string(PairSph::STYLE);
 
 static double *rows(double **array)
 {
