@@ -59,18 +59,13 @@ def profiles(path):
 
 def dump(path):
     """Snapshots of a dump custom file: list of dictionaries of columns."""
-    with open(path) as f:
-        lines = f.read().splitlines()
-    begins = [i for i, line in enumerate(lines) if line.startswith("ITEM: ATOMS")]
     shots = []
-    for i in begins:
-        names, rows = lines[i].split()[2:], []
-        for line in lines[i + 1:]:
-            if line.startswith("ITEM"):
-                break
-            rows.append([float(w) for w in line.split()])
-        table = np.array(rows)
-        shots.append({name: table[:, k] for k, name in enumerate(names)})
+    with open(path) as f:
+        for block in f.read().split("ITEM: ATOMS")[1:]:
+            names, *lines = block.split("ITEM:")[0].splitlines()
+            names = names.split()
+            rows = np.array([line.split() for line in lines], float).reshape(-1, len(names))
+            shots.append(dict(zip(names, rows.T)))
     return shots
 
 

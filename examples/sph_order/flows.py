@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from runs import np  # noqa: E402
+from sph_runs import dump, np  # noqa: E402
 
 
 def lattice(x, y):
@@ -88,19 +88,7 @@ def run(s, T, dt, shots=2):
         if done.returncode:
             raise RuntimeError(done.stdout[-600:])
         seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - begin
-        return snapshots(os.path.join(folder, "dump.flow")), seconds, dt * every
-
-
-def snapshots(path):
-    with open(path) as f:
-        lines = f.read().splitlines()
-    begins = [k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS")] + [len(lines) + 9]
-    out = []
-    for a, b in zip(begins, begins[1:]):
-        names = lines[a].split()[2:]
-        rows = np.array([line.split() for line in lines[a + 1:b - 8 if b < len(lines) else len(lines)]], float)
-        out.append({name: rows[:, k] for k, name in enumerate(names)})
-    return out
+        return dump(os.path.join(folder, "dump.flow")), seconds, dt * every
 
 
 def options(o, dx):
@@ -201,7 +189,7 @@ def walled(o, dx, x, fluid, rho, c, layers, dim=2, slip="yes", g=1.0):
     m = dx**dim
     lo, hi = x.min(0) - dx, x.max(0) + dx
     hi[1] += 2.0    # spray stays in the box
-    weight = "fix g fluid addforce 0 %.17g 0\n" % (-m * g) if dim == 2 else "fix g fluid addforce 0 %.17g 0\n" % (-m * g)
+    weight = "fix g fluid addforce 0 %.17g 0\n" % (-m * g)
     return dict(options(o, dx), dim=dim, x=x, v=0 * x, rho=rho, mass=[m, m], types=np.where(fluid, 1, 2), lo=lo, hi=hi, c=c,
                 boundary="f f p" if dim == 2 else "f f f",
                 extra=weight + "group wall type 2\nfix w wall wall/adami/sph gravity 0 %.17g 0 slip %s" % (-g, slip))
