@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_room.h"
+
 /* In units of the drags of the bodies: pairs whose block is smaller are left out of the factor, as
  * is such fill. */
 static const double weak = 0.4, drop = 0.1;
@@ -16,16 +18,15 @@ typedef struct {
    * diagonal of H_0, 0: nobody is near to this body */
   int total;
   double *diagonal, *scale;
-  /* by rows: number of the body, and from its centre to the sphere; likewise of other ranks' rows
-   * */
+  /* by rows: number of the body, from its centre to the sphere, largest scales of its U and W;
+   * likewise of other ranks' rows */
   double *place, *others;
-  /* blocks between bodies */
+  /* [count] blocks between bodies where they go to other ranks: numbers of the two, block */
   long count;
-  int (*pair)[2];
-  double *block;
+  double (*rows)[2 + 36];
 } assembly;
 
-enum { NUMBER, ARM, PLACE = 4 };
+enum { NUMBER, ARM, SCALES = 4, PLACE = 6 };
 
 static int ranks_of(const sd_bodies *A)
 {
@@ -63,13 +64,11 @@ static sd_status number_bodies(const sd_bodies *A, assembly *a)
   long mine = A->lone, next, total;
   for (int b = 0; b < A->clumps; b++) mine += sd_tie_ours(A, b);
   sd_status status = share(A, mine, &next, &total);
-  int *number = realloc(t->number, sizeof(int) * (size_t) (bodies + 1));
-  if (number) t->number = number;
-  double *all = realloc(t->all, sizeof(double) * 6 * (size_t) (total + 1));
-  if (all) t->all = all;
-  double *scale = realloc(t->scale, sizeof(double) * 6 * (size_t) (bodies + 1));
-  if (scale) t->scale = scale;
-  if (!number || !all || !scale) return SD_ENOMEMORY;
+  if (!sd_grow(&t->number, sizeof(int), (size_t) bodies) ||
+      !sd_grow(&t->scale, 6 * sizeof(double), (size_t) bodies) ||
+      !sd_grow(&t->all, 6 * sizeof(double), (size_t) total))
+    return SD_ENOMEMORY;
+  int *number = t->number;
   a->total = (int) total;
   for (int e = 0; e < A->lone; e++) number[e] = (int) next++;
   for (int b = 0; b < A->clumps; b++)
@@ -92,6 +91,11 @@ static void arm_of(const sd_bodies *A, int body, int k, double r[3])
     memset(r, 0, 3 * sizeof(double));
   else
     sd_multiply3(A->pose + 9 * (long) b, A->shape[b]->x + 3 * k, r);
+}
+
+static int has_arm(const double r[3])
+{
+  return r[0] != 0.0 || r[1] != 0.0 || r[2] != 0.0;
 }
 
 /* B := K_p^T B K_q for spheres at the arms r_p and r_q of their bodies: K = (1, -[r]x; 0, 1) */
@@ -147,27 +151,6 @@ static void leave_out(double scale[6], double diagonal[36])
   }
 }
 
-/* Where the spheres are in their bodies; of other ranks' too */
-static sd_status find_places(const sd_bodies *A, assembly *a)
-{
-  const sd_lubrication *L = A->tie->L;
-  a->place = calloc(PLACE * ((size_t) A->n + 1), sizeof(double));
-  a->others = malloc(sizeof(double) * PLACE * ((size_t) (L->n_all - L->n) + 1));
-  if (!a->place || !a->others) return SD_ENOMEMORY;
-  for (int e = 0; e < A->lone; e++)
-    a->place[PLACE * (long) A->loner[e] + NUMBER] = A->tie->number[e];
-  for (int b = 0; b < A->clumps; b++)
-    for (int k = 0; k < A->shape[b]->m; k++) {
-      const int i = A->member[A->first[b] + k];
-      if (i >= A->n) continue;
-      a->place[PLACE * (long) i + NUMBER] = A->tie->number[A->lone + b];
-      arm_of(A, A->lone + b, k, a->place + PLACE * (long) i + ARM);
-    }
-  return L->world.refresh && ranks_of(A) > 1
-      ? L->world.refresh(L->world.ctx, a->place, a->others, PLACE)
-      : SD_OK;
-}
-
 /* A lone sphere, scaled; sets the scale */
 static void lone_block(const sd_bodies *A, int i, const double *L, double *scale, double *out)
 {
@@ -221,9 +204,62 @@ static sd_status find_diagonal(const sd_bodies *A, assembly *a)
   }
   if (status == SD_OK) status = sum_over_ranks(A, a->scale, 6 * (long) a->total);
   if (status == SD_OK) status = sum_over_ranks(A, a->diagonal, 36 * (long) a->total);
+  if (status == SD_OK) status = sd_block_cholesky_begin(&t->factor, a->total);
+  for (int p = 0; p < a->total && status == SD_OK; p++)
+    status = sd_block_cholesky_add(&t->factor, p, p, a->diagonal + 36 * (long) p);
   for (long p = 0; p < sd_tie_bodies(A); p++)
     memcpy(t->scale + 6 * p, a->scale + 6 * (long) t->number[p], 6 * sizeof(double));
   return status;
+}
+
+/* A sphere of body p of this rank; arm [3] set by the caller */
+static void place_sphere(const sd_tie *t, int p, double place[PLACE])
+{
+  const double *s = t->scale + 6 * (long) p;
+  place[NUMBER] = t->number[p];
+  place[SCALES] = fmax(fmax(s[0], s[1]), s[2]);
+  place[SCALES + 1] = fmax(fmax(s[3], s[4]), s[5]);
+}
+
+/* Where the spheres are in their bodies; of other ranks' too */
+static sd_status find_places(const sd_bodies *A, assembly *a)
+{
+  const sd_lubrication *L = A->tie->L;
+  a->place = calloc(PLACE * ((size_t) A->n + 1), sizeof(double));
+  a->others = malloc(sizeof(double) * PLACE * ((size_t) (L->n_all - L->n) + 1));
+  if (!a->place || !a->others) return SD_ENOMEMORY;
+  for (int e = 0; e < A->lone; e++) place_sphere(A->tie, e, a->place + PLACE * (long) A->loner[e]);
+  for (int b = 0; b < A->clumps; b++)
+    for (int k = 0; k < A->shape[b]->m; k++) {
+      const int i = A->member[A->first[b] + k];
+      if (i >= A->n) continue;
+      place_sphere(A->tie, A->lone + b, a->place + PLACE * (long) i);
+      arm_of(A, A->lone + b, k, a->place + PLACE * (long) i + ARM);
+    }
+  return L->world.refresh && ranks_of(A) > 1
+      ? L->world.refresh(L->world.ctx, a->place, a->others, PLACE)
+      : SD_OK;
+}
+
+/* The square of the norm of a pair's scaled block, if its spheres are free; at least that if they
+ * are the middles of clumps */
+static double strength(const sd_lubrication_link *l, const double p[2], const double q[2])
+{
+  const double UU = p[0] * q[0], UW = p[0] * q[1], WU = p[1] * q[0], WW = p[1] * q[1];
+  return UU * UU * (l->XA * l->XA + 2.0 * l->YA * l->YA) +
+      2.0 * (UW * UW * l->YB21 * l->YB21 + WU * WU * l->YB12 * l->YB12) +
+      WW * WW * (l->XC * l->XC + 2.0 * l->YC * l->YC);
+}
+
+/* Keeps B, by numbers of bodies: in the factor, or for all ranks. */
+static sd_status keep(const sd_bodies *A, assembly *a, int p, int q, const double B[36])
+{
+  if (ranks_of(A) == 1) return sd_block_cholesky_add(&A->tie->factor, p, q, B);
+  double *row = a->rows[a->count++];
+  row[0] = p;
+  row[1] = q;
+  memcpy(row + 2, B, 36 * sizeof(double));
+  return SD_OK;
 }
 
 /* The blocks of this rank, scaled, those that are not weak. A pair of two ranks is known to both:
@@ -231,60 +267,44 @@ static sd_status find_diagonal(const sd_bodies *A, assembly *a)
 static sd_status find_blocks(const sd_bodies *A, assembly *a)
 {
   const sd_lubrication *L = A->tie->L;
-  a->pair = malloc(sizeof(*a->pair) * (size_t) (L->count + 1));
-  a->block = malloc(sizeof(double) * 36 * (size_t) (L->count + 1));
-  if (!a->pair || !a->block) return SD_ENOMEMORY;
-  for (long k = 0; k < L->count; k++) {
+  sd_status status = SD_OK;
+  if (ranks_of(A) > 1 && !sd_grow(&a->rows, sizeof(*a->rows), (size_t) L->count))
+    return SD_ENOMEMORY;
+  for (long k = 0; k < L->count && status == SD_OK; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
     const double *first = a->place + PLACE * (long) i;
     const double *second = j < A->n ? a->place + PLACE * (long) j
                                     : a->others + PLACE * (long) (j - A->n);
     const int p = (int) first[NUMBER], q = (int) second[NUMBER];
     if (p == q || (j >= A->n && p > q)) continue;
-    double B[36], *out = a->block + 36 * a->count, sum = 0.0;
+    const int arms = has_arm(first + ARM) || has_arm(second + ARM);
+    if (!arms && strength(L->link + k, first + SCALES, second + SCALES) < weak * weak) continue;
+    double B[36], scaled[36] = {0.0}, sum = 0.0;
     sd_lubrication_block(L, k, B);
-    if (A->clumps > 0 || j >= A->n) move_to_centres(first + ARM, second + ARM, B);
-    memset(out, 0, 36 * sizeof(double));
-    add_scaled(B, a->scale + 6 * (long) p, a->scale + 6 * (long) q, out);
-    for (int e = 0; e < 36; e++) sum += out[e] * out[e];
-    if (sum < weak * weak) continue;
-    a->pair[a->count][0] = p;
-    a->pair[a->count++][1] = q;
+    if (arms) move_to_centres(first + ARM, second + ARM, B);
+    add_scaled(B, a->scale + 6 * (long) p, a->scale + 6 * (long) q, scaled);
+    for (int e = 0; e < 36; e++) sum += scaled[e] * scaled[e];
+    if (sum >= weak * weak) status = keep(A, a, p, q, scaled);
   }
-  return SD_OK;
+  return status;
 }
 
 /* Those of all ranks on each */
 static sd_status gather_blocks(const sd_bodies *A, assembly *a)
 {
-  enum { WIDTH = 38 };
   long before, all;
   if (ranks_of(A) == 1) return SD_OK;
+  const size_t row = sizeof(*a->rows);
   sd_status status = share(A, a->count, &before, &all);
-  double *rows = calloc(WIDTH * ((size_t) all + 1), sizeof(double));
-  int(*pair)[2] = malloc(sizeof(*pair) * (size_t) (all + 1));
-  double *block = malloc(sizeof(double) * 36 * (size_t) (all + 1));
-  if (status == SD_OK && !(rows && pair && block)) status = SD_ENOMEMORY;
-  if (status == SD_OK) {
-    for (long k = 0; k < a->count; k++) {
-      double *row = rows + WIDTH * (before + k);
-      row[0] = a->pair[k][0];
-      row[1] = a->pair[k][1];
-      memcpy(row + 2, a->block + 36 * k, 36 * sizeof(double));
-    }
-    status = sum_over_ranks(A, rows, WIDTH * all);
-    for (long k = 0; k < all; k++) {
-      pair[k][0] = (int) rows[WIDTH * k];
-      pair[k][1] = (int) rows[WIDTH * k + 1];
-      memcpy(block + 36 * k, rows + WIDTH * k + 2, 36 * sizeof(double));
-    }
-    a->count = all;
-  }
-  free(rows);
-  free(a->pair);
-  free(a->block);
-  a->pair = pair;
-  a->block = block;
+  if (status == SD_OK && !sd_grow(&a->rows, row, (size_t) all)) status = SD_ENOMEMORY;
+  if (status != SD_OK) return status;
+  memmove(a->rows + before, a->rows, row * (size_t) a->count);
+  memset(a->rows, 0, row * (size_t) before);
+  memset(a->rows + before + a->count, 0, row * (size_t) (all - before - a->count));
+  status = sum_over_ranks(A, a->rows[0], (long) (row / sizeof(double)) * all);
+  for (long k = 0; k < all && status == SD_OK; k++)
+    status = sd_block_cholesky_add(&A->tie->factor, (int) a->rows[k][0], (int) a->rows[k][1],
+                                   a->rows[k] + 2);
   return status;
 }
 
@@ -292,16 +312,14 @@ sd_status sd_tie_factor(const sd_bodies *A)
 {
   assembly a = {0};
   sd_status status = number_bodies(A, &a);
-  if (status == SD_OK) status = find_places(A, &a);
   if (status == SD_OK) status = find_diagonal(A, &a);
+  if (status == SD_OK) status = find_places(A, &a);
   if (status == SD_OK) status = find_blocks(A, &a);
   if (status == SD_OK) status = gather_blocks(A, &a);
-  if (status == SD_OK)
-    status = sd_block_cholesky_make(&A->tie->factor, a.total, a.diagonal, a.count,
-                                    (const int(*)[2]) a.pair, a.block, drop);
-  double *const arrays[] = {a.diagonal, a.scale, a.place, a.others, a.block};
+  if (status == SD_OK) status = sd_block_cholesky_factor(&A->tie->factor, drop);
+  double *const arrays[] = {a.diagonal, a.scale, a.place, a.others};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
-  free(a.pair);
+  free(a.rows);
   return status;
 }
 

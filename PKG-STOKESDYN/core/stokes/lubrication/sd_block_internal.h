@@ -1,0 +1,34 @@
+/* Between the elimination of sd_block_cholesky.c and its kernels, of which each instruction set has
+ * its own build. Blocks are [6][SD_BLOCK_LANES], row by row, zeros behind each row. */
+#ifndef SD_BLOCK_INTERNAL_H
+#define SD_BLOCK_INTERNAL_H
+
+#include "sd_block_cholesky.h"
+#include "sd_product_internal.h"
+
+enum { SD_BLOCK = 6 * SD_BLOCK_LANES };
+
+/* What a product of two blocks of a column goes to: `to` -= C_q C_r^T, the other way round if its
+ * rows are those of r; or `to` is new */
+typedef enum { SD_BLOCK_AS_IT_IS, SD_BLOCK_TURNED, SD_BLOCK_NEW } sd_block_way;
+typedef struct {
+  float *to;
+  sd_block_way way;
+  /* sum of the squares of what is new */
+  float square;
+} sd_block_target;
+
+struct sd_block_kernels {
+  /* pivot = G G^T, inverse = G^-1 by columns; column [count] blocks B become G^-1 B. 0: the pivot
+   * is not positive definite. */
+  int (*divide)(float *pivot, float *inverse, int count, float *column);
+  /* Of blocks C_q^T, C_r^T of a column, first q and then `count` r: pivot -= C_q C_q^T, and the
+   * targets by r */
+  void (*subtract)(const float *column, float *pivot, int count, sd_block_target *target);
+  /* f->vector becomes P^-1 of it */
+  void (*apply)(const sd_block_cholesky *f);
+};
+
+extern const struct sd_block_kernels sd_block_plain, sd_block_baseline, sd_block_avx2;
+
+#endif
