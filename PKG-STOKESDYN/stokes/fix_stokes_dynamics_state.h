@@ -35,8 +35,8 @@ class FixStokesDynamicsState : public RowsFix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is kept.
-   * */
+  /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is
+   * kept. */
   enum { FORCE = 0, VPRIME = 3, WITHOUT_ROTATION = 6, TORQUE = 6, WPRIME = 9, WITH_ROTATION = 12 };
   const bool rotation, history;
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }

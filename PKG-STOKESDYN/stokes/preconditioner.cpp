@@ -73,8 +73,8 @@ void Preconditioner::look(const sd_system &system)
   member.clear();
 }
 
-/* Members of each molecule with two spheres or more; true if they are at least half of the spheres.
- * */
+/* Members of each molecule with two spheres or more; true if they are at least half of the
+ * spheres. */
 bool Preconditioner::group_by_molecule()
 {
   const bool cloud = extent == CLOUD;

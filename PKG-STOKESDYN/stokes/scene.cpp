@@ -193,8 +193,8 @@ void Scene::find_pairs()
   stale = false;
 }
 
-/* Tags and molecule IDs of the spheres, by row. Not every atom style sends molecule IDs to ghosts.
- * */
+/* Tags and molecule IDs of the spheres, by row. Not every atom style sends molecule IDs to
+ * ghosts. */
 void Scene::look_up(std::vector<int64_t> &ids, std::vector<int64_t> &molecules)
 {
   std::vector<double> sent;

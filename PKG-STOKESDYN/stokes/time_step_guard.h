@@ -46,8 +46,7 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   } state;
 
   /* After solve number `solves`, of conjugate gradients: looks at the time step, and warns once if
-   * it is too long. atoms[k]: the atom of this rank that is row k of the system; nullptr: atom k.
-   * */
+   * it is too long. atoms[k]: the atom of this rank that is row k; nullptr: atom k. */
   void look(const sd_system &system, const sd_solve_report &report, const int *atoms,
             bool preconditioned, double solves);
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* LAPACK, Fortran: all by reference, column-major, the lengths of character arguments in the end.
- * */
+/* LAPACK, Fortran: all by reference, column-major, the lengths of character arguments in the
+ * end. */
 void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
 void spotrf_(const char *uplo, const int *n, float *A, const int *lda, int *info, size_t);
 void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);

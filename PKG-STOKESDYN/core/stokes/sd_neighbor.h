@@ -20,8 +20,9 @@ typedef struct {
   sd_pairs pairs;
   long *first;
   int *neighbor;
-  long capacity; /* of neighbor */
-  int rows;      /* capacity of first, less one */
+  /* room of neighbor; that of first, less one */
+  long capacity;
+  int rows;
 } sd_neighbors;
 
 void sd_neighbors_free(sd_neighbors *list);
@@ -31,8 +32,8 @@ sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count);
 
 /* All directed pairs closer than cutoff: targets 0 ... n-1, sources 0 ... n_all-1, a target is no
  * source of its own.
- *   x [3 n_all], cutoff finite > 0. By cells of side cutoff: O(n_all + pairs). SD_OK or
- * SD_ENOMEMORY. */
+ *   x [3 n_all], cutoff finite > 0. By cells of side cutoff: O(n_all + pairs).
+ * SD_OK or SD_ENOMEMORY. */
 sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff);
 
 /* Spheres and who they are: x [3 n_all], tag [n_all], molecule [n_all] */

@@ -17,8 +17,7 @@ typedef struct {
 void sd_ritz_add(sd_ritz *r, double alpha, double beta);
 
 /* Smallest and largest Ritz value, to six digits of the largest; both 0 without an iteration. They
- * lie within the spectrum of the (preconditioned) matrix, and near its ends once these have shown.
- * */
+ * lie within the spectrum of the (preconditioned) matrix, and near its ends once these show. */
 void sd_ritz_extremes(const sd_ritz *r, double *smallest, double *largest);
 
 #ifdef __cplusplus

@@ -21,8 +21,7 @@ static double inverse_weight(const sd_system *A, const double *weight, long i, i
 }
 
 /* w = P r, r = M v - mu W^-1 v, at mu = v.Mv; own: r.W r of this rank. Since v.W^-1 v = 1, some
- * eigenvalue lies within sqrt(r.W r) of mu: the residual theorem for the symmetric W^1/2 M W^1/2.
- * */
+ * eigenvalue lies within sqrt(r.W r) of mu: the residual theorem for W^1/2 M W^1/2, symmetric. */
 static sd_status direction(const sd_system *A, const double *weight, double mu, const span *s,
                            double *r, double *own)
 {

@@ -178,8 +178,8 @@ static sd_status verify(gradients *g)
   return SD_OK;
 }
 
-/* The first y: of the guess; or of F = 0, whose Omega F is 0, where that is nearer to the answer.
- * */
+/* The first y: of the guess; or of F = 0, whose Omega F is 0, where that is nearer to the
+ * answer. */
 static sd_status begin(gradients *g)
 {
   if (g->A.warm) {

@@ -388,8 +388,8 @@ typedef struct {
   double foreseen;
 } sd_vans_account;
 
-/* A step of velocity Verlet gives half of its force to the time before it, half to the time after.
- * */
+/* A step of velocity Verlet gives half of its force to the time before it, half to the time
+ * after. */
 static inline void sd_vans_account_step(sd_vans_account *account, double force, double dt)
 {
   account->impulse += 0.5 * dt * (account->force + force);

@@ -9,8 +9,7 @@
 
 enum { RIGID = 6 };
 
-/* --- the table -----------------------------------------------------------------------------------
- * */
+/* --- the table -------------------------------------------------------------------------------- */
 
 /* Response of one sphere to a slip given in columns: forces are linear in it */
 static void respond(const double *table, const double in[SD_CLUMP_COLUMNS], double out[6])
@@ -216,8 +215,7 @@ static void derive(const sd_shape *s, sd_clump *clump)
   clump->radius = 3.0 / (6.0 * SD_PI * mu);
 }
 
-/* --- create, forces ------------------------------------------------------------------------------
- * */
+/* --- create, forces --------------------------------------------------------------------------- */
 
 /* Two equal spheres at one point: the force is split between them in no particular way. */
 static int coincident(const sd_shape *s)

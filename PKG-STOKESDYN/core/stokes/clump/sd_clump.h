@@ -58,7 +58,8 @@ typedef struct {
  * bound. */
 typedef struct {
   long points;
-  double dense, iterative; /* bytes */
+  /* bytes */
+  double dense, iterative;
 } sd_clump_need;
 
 /* A cache of shells by number of points, the caller's: start with {0}, free when no more clumps are

@@ -200,8 +200,7 @@ static int map_onto(const sd_shape *s, const double Q[9], const cluster *c, doub
   return 1;
 }
 
-/* --- the shape -----------------------------------------------------------------------------------
- * */
+/* --- the shape -------------------------------------------------------------------------------- */
 
 static sd_status add_symmetry(sd_shape *s, const double g[9], int *capacity, const int *perm)
 {

@@ -37,8 +37,7 @@ typedef struct {
   /* rotations and reflections that map it onto itself, at least 1 (rank 1: eight azimuths stand for
    * all) */
   int symmetries;
-  /* [9 symmetries] their matrices, x_perm[k] = g x_k within the tolerance, and perm [n symmetries]
-   * */
+  /* [9 symmetries] their matrices, perm [n symmetries]: x_perm[k] = g x_k within the tolerance */
   double *g;
   int *perm;
   /* private: what the pair of spheres that spans the frame has in common with no other but its

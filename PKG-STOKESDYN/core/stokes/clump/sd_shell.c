@@ -18,8 +18,7 @@ int sd_shell_size(int n)
   return n;
 }
 
-/* --- points --------------------------------------------------------------------------------------
- * */
+/* --- points ----------------------------------------------------------------------------------- */
 
 /* Orbit of p under T_h, appended to out [3n]: sign changes and cyclic permutations. Returns the new
  * n. */
@@ -72,8 +71,8 @@ static int icosahedral(int n, double *out)
   return count == n;
 }
 
-/* Orbits of a point set: fixed ones (6, 8), then m on mirror planes (0, y, z), then k general ones.
- * */
+/* Orbits of a point set: fixed ones (6, 8), then m on mirror planes (0, y, z), then k general
+ * ones. */
 typedef struct {
   int six, eight, planar, general;
   double (*p)[3]; /* [planar + general] representatives */

@@ -22,10 +22,14 @@ extern "C" {
 #endif
 
 typedef struct {
-  int n;         /* points */
-  double radius; /* of the shell, in units of the sphere's radius */
-  double point;  /* hydrodynamic radius of a point, in the same unit */
-  double *p;     /* [3n] unit vectors */
+  /* points */
+  int n;
+  /* of the shell, in units of the sphere's radius */
+  double radius;
+  /* hydrodynamic radius of a point, in the same unit */
+  double point;
+  /* [3n] unit vectors */
+  double *p;
 } sd_shell;
 
 /* Number of points of the shell that is made for n: 1 for n = 1, else the next number >= max(n, 12)
@@ -33,9 +37,8 @@ typedef struct {
 int sd_shell_size(int n);
 
 /* Points and calibration; a pure function of n (for n = 1 one point at the centre: radius 0, point
- * 1). The owner frees.
- * Costs memory and time of a dense solve with 3n/8 unknowns. SD_OK; SD_ENOMEMORY; SD_ESINGULAR: no
- * calibration (never met). */
+ * 1). The owner frees. Costs memory and time of a dense solve with 3n/8 unknowns. SD_OK;
+ * SD_ENOMEMORY; SD_ESINGULAR: no calibration (never met). */
 sd_status sd_shell_create(int n, sd_shell *shell);
 void sd_shell_free(sd_shell *shell);
 

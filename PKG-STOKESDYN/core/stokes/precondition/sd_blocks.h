@@ -68,8 +68,8 @@ sd_status sd_blocks_apply(void *ctx, const double *r, double *z);
 /* out = B in, in the rows of block k at set-up: [width m][count] numbers each */
 void sd_blocks_multiply(const sd_blocks *b, int k, int count, const double *in, double *out);
 
-/* Block k anew, of its spheres as they stand now. On failure b is of no use but to sd_blocks_free.
- * */
+/* Block k anew, of its spheres as they stand now. On failure b is of no use but to
+ * sd_blocks_free. */
 sd_status sd_blocks_renew(sd_blocks *b, const sd_precondition_case *c, int k);
 
 /* The clump of this block has turned by the rotation matrix R [9], row-major, since its set-up. */

@@ -46,8 +46,8 @@ typedef struct {
   double with;
   /* Products beyond those of the better way, as far as it is known, since the last change */
   double spent;
-  /* since the last change, solves and mean cost: of the first ones with, of the last ones without
-   * */
+  /* since the last change, solves and mean cost: of the first ones with, of the last ones
+   * without */
   double solves, mean;
   /* that of the other way when it was left, until this one's is known well enough for the ratio */
   double other;

@@ -18,9 +18,11 @@ int sd_farthest_first(const sd_spheres *s, int n, int *order, double *distance);
  * times its distance. */
 typedef struct {
   int columns;
-  long *first; /* [columns + 1] into row */
+  /* [columns + 1] into row */
+  long *first;
   int *row;
-  int largest; /* most rows of a column */
+  /* most rows of a column */
+  int largest;
 } sd_rows;
 
 /* In the order of sd_farthest_first. Zero-initialise; sd_rows_free in the end, also after a

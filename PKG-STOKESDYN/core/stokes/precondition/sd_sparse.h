@@ -24,8 +24,8 @@ typedef struct {
   int part, parts;
   /* of this part; the first of each column of blocks is its own sphere */
   sd_rows rows;
-  /* Blocks, as floats: L L^T is exactly symmetric with rounded L too, and half the bytes are read.
-   * */
+  /* Blocks, as floats: L L^T is exactly symmetric with rounded L too, and half the bytes are
+   * read. */
   float *value;
   /* [2n] sd_unit_roots */
   double *root;

@@ -38,15 +38,14 @@ double sd_taper_factor(const sd_law *law, double R);
 /* Spheres that a product reads.
  *   x [3n]  centres        length
  *   a [n]   radii; 0: the sphere takes no part, neither as target nor as source
- *   w [n]   1/sqrt(eta)  */
+ *   w [n]   1/sqrt(eta) */
 typedef struct {
   const double *x, *a, *w;
 } sd_spheres;
 
 /* Pairs as rows: targets 0 ... n-1 are the first n spheres; their sources are neighbor[first[i]]
- * ... neighbor[first[i+1]-1].
- * Every directed pair once. A source may be a ghost (index >= n) and may be the image of any
- * sphere, also of i itself. */
+ * ... neighbor[first[i+1]-1]. Every directed pair once. A source may be a ghost (index >= n) and
+ * may be the image of any sphere, also of i itself. */
 typedef struct {
   int n;
   const long *first;
@@ -94,8 +93,8 @@ typedef struct {
   int *index;
   /* columns [padded]; f = w F, u = sums; then those of the torques */
   double *x, *y, *z, *a, *f[6], *u[6];
-  /* rows [8 (n+1)] x y z a, then w F; the last takes the place of missing neighbours. [4 (n+1)] w T
-   * */
+  /* rows [8 (n+1)] x y z a, then w F, and [4 (n+1)] w T; the last takes the place of missing
+   * neighbours */
   double *row, *torque_row;
   void *memory;
   size_t room;
@@ -104,8 +103,7 @@ typedef struct {
 void sd_packed_free(sd_packed *p);
 
 /* Copy n spheres for products of all pairs, or for products by list (ghosts included). Memory grows
- * and is kept.
- * SD_OK or SD_ENOMEMORY. */
+ * and is kept. SD_OK or SD_ENOMEMORY. */
 sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                         int width);
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,

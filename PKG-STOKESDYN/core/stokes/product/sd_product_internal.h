@@ -8,7 +8,8 @@
  *   symmetric   columns, u += the part's share of all pairs
  *   list        rows, u = */
 struct sd_kernel {
-  int lanes; /* doubles of a vector: padding of the columns */
+  /* doubles of a vector: padding of the columns */
+  int lanes;
   void (*symmetric)(const sd_packed *p, int part, int parts);
   void (*list)(const sd_packed *p, const sd_pairs *pairs);
 };
