@@ -3,107 +3,228 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "sd_cells.h"
 #include "sd_linear.h"
 #include "sd_room.h"
 
-/* Pairs in the order in which they are found: row and source */
 typedef struct {
-  int (*pair)[2];
-  long count, capacity;
-} found;
+  double x[3], a;
+  int index;
+} sphere;
 
-static sd_status append(found *f, int row, int source)
-{
-  if (f->count == f->capacity) {
-    const long capacity = 2 * f->capacity + 1024;
-    if (!sd_grow(&f->pair, sizeof(*f->pair), (size_t) capacity)) return SD_ENOMEMORY;
-    f->capacity = capacity;
-  }
-  f->pair[f->count][0] = row;
-  f->pair[f->count++][1] = source;
-  return SD_OK;
-}
+/* A cell that holds spheres: where it is, and which of the sorted ones are its own */
+typedef struct {
+  int64_t at[3];
+  int begin, end;
+} cell;
 
 typedef struct {
   const sd_spheres *s;
-  int begin, n;
+  int n_all;
+  /* a pair counts if one of the two is a target: begin ... end - 1 */
+  int begin, end;
   double reach;
-  found found;
+  /* hash of the cells, whose first is a number of `cell`; its next says so for each sphere */
+  sd_cells hash;
+  int cells;
+  cell *cell;
+  /* [n_all] those of a size, cell by cell */
+  sphere *sorted;
+  /* in the order in which they are found, each once */
+  int (*pair)[2];
+  long count, capacity;
 } search;
 
-/* The rows that are asked for are those of the targets begin ... begin + n - 1. */
-static sd_status take(search *q, int i, int j)
+static sd_status create(search *q)
 {
-  const int row = i - q->begin;
-  return row >= 0 && row < q->n ? append(&q->found, row, j) : SD_OK;
+  const size_t room = (size_t) q->n_all + 1;
+  q->cell = malloc(sizeof(cell) * room);
+  q->sorted = malloc(sizeof(sphere) * room);
+  const sd_status status = sd_cells_create(&q->hash, q->n_all);
+  return q->cell && q->sorted ? status : SD_ENOMEMORY;
 }
 
-/* Sphere j against those in the cells, which are of its class or of a larger one. In its own class
- * the other sphere finds j when its turn comes; a larger one does not look for smaller ones, so its
- * pair is taken here as well. */
-static sd_status look_from(search *q, const sd_cells *c, int j, int own_class, double largest)
+static void release(search *q)
 {
-  const double *x = q->s->x, *a = q->s->a, *xj = x + 3 * (long) j;
-  sd_status status = SD_OK;
-  for (sd_cells_walk w = sd_cells_near(c, xj, 0.5 * q->reach * (a[j] + largest));
-       sd_cells_step(c, &w);)
-    for (int i = w.first; i >= 0 && status == SD_OK; i = c->next[i]) {
-      const double limit = 0.5 * q->reach * (a[i] + a[j]);
-      if (i == j || sd_distance_squared(x + 3 * (long) i, xj) > limit * limit) continue;
-      status = take(q, j, i);
-      if (!own_class && status == SD_OK) status = take(q, i, j);
+  sd_cells_free(&q->hash);
+  free(q->cell);
+  free(q->sorted);
+  free(q->pair);
+}
+
+static sd_status reserve(search *q, long more)
+{
+  if (q->count + more <= q->capacity) return SD_OK;
+  const long capacity = 2 * q->capacity + more + 8 * (long) q->n_all;
+  if (!sd_grow(&q->pair, sizeof(*q->pair), (size_t) capacity)) return SD_ENOMEMORY;
+  q->capacity = capacity;
+  return SD_OK;
+}
+
+/* One sphere against some of the sorted ones. Most are too far away, which a processor cannot
+ * foresee: every pair is written, and those that count stay. */
+static sd_status look_at(search *q, const sphere *one, int begin, int end)
+{
+  const sd_status status = reserve(q, end - begin);
+  if (status != SD_OK) return status;
+  const int is_target = one->index >= q->begin && one->index < q->end;
+  const double half = 0.5 * q->reach;
+  long count = q->count;
+  for (int k = begin; k < end; k++) {
+    const sphere *other = q->sorted + k;
+    const double limit = half * (one->a + other->a);
+    const int counts = is_target | ((other->index >= q->begin) & (other->index < q->end));
+    q->pair[count][0] = one->index;
+    q->pair[count][1] = other->index;
+    count += (sd_distance_squared(other->x, one->x) <= limit * limit) & counts;
+  }
+  q->count = count;
+  return SD_OK;
+}
+
+static int size_of(const search *q, int i)
+{
+  return q->s->a[i] > 0.0 ? ilogb(q->s->a[i]) : INT_MAX;
+}
+
+static sphere sphere_of(const search *q, int i)
+{
+  const double *x = q->s->x + 3 * (long) i;
+  return (sphere){{x[0], x[1], x[2]}, q->s->a[i], i};
+}
+
+/* All of a size, by counting */
+static void sort_into_cells(search *q, int size)
+{
+  uint64_t number;
+  int64_t at[3];
+  q->cells = 0;
+  for (int i = 0; i < q->n_all; i++) {
+    if (size_of(q, i) != size) continue;
+    for (int d = 0; d < 3; d++) at[d] = sd_cells_along(&q->hash, q->s->x[3 * (long) i + d]);
+    sd_cell *slot = sd_cells_slot(&q->hash, at[0], at[1], at[2], &number);
+    if (slot->first < 0) {
+      *slot = (sd_cell){number, q->cells};
+      q->cell[q->cells++] = (cell){{at[0], at[1], at[2]}, 0, 0};
     }
+    q->hash.next[i] = slot->first;
+    q->cell[slot->first].end++;
+  }
+  for (int c = 0, before = 0; c < q->cells; c++) {
+    const int count = q->cell[c].end;
+    q->cell[c].begin = q->cell[c].end = before;
+    before += count;
+  }
+  for (int i = 0; i < q->n_all; i++)
+    if (size_of(q, i) == size) q->sorted[q->cell[q->hash.next[i]].end++] = sphere_of(q, i);
+}
+
+/* Pairs of one size: those within cell c, and those with half of its neighbours, which do not look
+ * at c again */
+static sd_status look_around(search *q, int c)
+{
+  const cell *own = q->cell + c;
+  sd_status status = SD_OK;
+  for (int k = own->begin; k < own->end && status == SD_OK; k++)
+    status = look_at(q, q->sorted + k, k + 1, own->end);
+  for (int half = 14; half < 27; half++) {
+    uint64_t number;
+    const int64_t at[3] = {own->at[0] + half % 3 - 1, own->at[1] + half / 3 % 3 - 1,
+                           own->at[2] + half / 9 - 1};
+    const int other = sd_cells_slot(&q->hash, at[0], at[1], at[2], &number)->first;
+    for (int k = own->begin; other >= 0 && k < own->end && status == SD_OK; k++)
+      status = look_at(q, q->sorted + k, q->cell[other].begin, q->cell[other].end);
+  }
+  return status;
+}
+
+/* A smaller sphere against those in the cells */
+static sd_status look_from(search *q, int i, double largest)
+{
+  const sphere one = sphere_of(q, i);
+  sd_status status = SD_OK;
+  for (sd_cells_walk w = sd_cells_near(&q->hash, one.x, 0.5 * q->reach * (one.a + largest));
+       status == SD_OK && sd_cells_step(&q->hash, &w);)
+    status = look_at(q, &one, q->cell[w.first].begin, q->cell[w.first].end);
+  return status;
+}
+
+/* Spheres whose largest radii are alike, a factor of two at most, go into cells that are as wide as
+ * their reach, and a hair more, so that rounding loses none. All that are smaller look there, so a
+ * ball meets 27 cells at most, and few spheres that are too far away. */
+static sd_status find(search *q)
+{
+  int lowest = INT_MAX, highest = INT_MIN;
+  for (int i = 0; i < q->n_all; i++)
+    if (q->s->a[i] > 0.0) {
+      const int size = size_of(q, i);
+      lowest = size < lowest ? size : lowest;
+      highest = size > highest ? size : highest;
+    }
+  sd_status status = create(q);
+  for (int size = lowest; size <= highest && status == SD_OK; size++) {
+    double largest = 0.0;
+    for (int i = 0; i < q->n_all; i++)
+      if (q->s->a[i] > largest && size_of(q, i) == size) largest = q->s->a[i];
+    if (largest == 0.0) continue;
+    sd_cells_clear(&q->hash, (double[3]){0.0, 0.0, 0.0}, (1.0 + 1e-6) * q->reach * largest);
+    sort_into_cells(q, size);
+    for (int c = 0; c < q->cells && status == SD_OK; c++) status = look_around(q, c);
+    for (int i = 0; i < q->n_all && status == SD_OK && lowest < size; i++)
+      if (size_of(q, i) < size) status = look_from(q, i, largest);
+  }
   return status;
 }
 
 /* Rows by counting. Pairs of row r are first counted in first[r + 2]; summed up, first[r + 1] is
  * where row r begins, and moves on with every pair that is put there until it is where row r + 1
- * begins. */
-static sd_status sort_rows(sd_neighbors *list, const found *f, int n)
+ * begins. Each pair in the row of its first sphere, and in both in that of its second. */
+static sd_status sort_rows(sd_neighbors *list, const search *q, int both)
 {
-  const sd_status status = sd_neighbors_reserve(list, n + 1, f->count);
+  const int n = q->end - q->begin;
+  const sd_status status = sd_neighbors_reserve(list, n + 1, (1 + both) * q->count);
   if (status != SD_OK) return status;
   long *first = list->first;
-  for (int i = 0; i <= n + 1; i++) first[i] = 0;
-  for (long k = 0; k < f->count; k++) first[f->pair[k][0] + 2]++;
-  for (int i = 2; i <= n + 1; i++) first[i] += first[i - 1];
-  for (long k = 0; k < f->count; k++) list->neighbor[first[f->pair[k][0] + 1]++] = f->pair[k][1];
+  memset(first, 0, sizeof(long) * ((size_t) n + 2));
+  for (int put = 0; put < 2; put++) {
+    for (long k = 0; k < q->count; k++)
+      for (int e = 0; e <= both; e++) {
+        const int row = q->pair[k][e] - q->begin;
+        if (row < 0 || row >= n) continue;
+        if (put)
+          list->neighbor[first[row + 1]++] = q->pair[k][1 - e];
+        else
+          first[row + 2]++;
+      }
+    for (int i = 2; !put && i <= n + 1; i++) first[i] += first[i - 1];
+  }
   list->pairs.n = n;
   return SD_OK;
 }
 
-/* Spheres whose largest radii are alike, a factor of two at most, go into cells that are as wide as
- * their reach. All that are no larger than those look there, so a ball meets 27 cells at most, and
- * few spheres that are too far away. */
 sd_status sd_near_find(sd_neighbors *list, const sd_spheres *s, int begin, int n, int n_all,
                        double reach)
 {
-  search q = {.s = s, .begin = begin, .n = n, .reach = reach};
-  sd_cells c = {0};
-  int lowest = INT_MAX, highest = INT_MIN;
-  for (int i = 0; i < n_all; i++)
-    if (s->a[i] > 0.0) {
-      const int size = ilogb(s->a[i]);
-      lowest = size < lowest ? size : lowest;
-      highest = size > highest ? size : highest;
+  search q = {.s = s, .n_all = n_all, .begin = begin, .end = begin + n, .reach = reach};
+  sd_status status = find(&q);
+  if (status == SD_OK) status = sort_rows(list, &q, 1);
+  release(&q);
+  return status;
+}
+
+sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all, double reach)
+{
+  search q = {.s = s, .n_all = n_all, .begin = 0, .end = n, .reach = reach};
+  sd_status status = find(&q);
+  for (long k = 0; k < q.count; k++)
+    if (q.pair[k][0] > q.pair[k][1]) {
+      const int larger = q.pair[k][0];
+      q.pair[k][0] = q.pair[k][1];
+      q.pair[k][1] = larger;
     }
-  sd_status status = sd_cells_create(&c, n_all);
-  for (int size = lowest; size <= highest && status == SD_OK; size++) {
-    double largest = 0.0;
-    for (int i = 0; i < n_all; i++)
-      if (s->a[i] > largest && ilogb(s->a[i]) == size) largest = s->a[i];
-    if (largest == 0.0) continue;
-    sd_cells_clear(&c, (double[3]){0.0, 0.0, 0.0}, reach * largest);
-    for (int i = n_all - 1; i >= 0; i--)
-      if (s->a[i] > 0.0 && ilogb(s->a[i]) == size) sd_cells_add(&c, s->x, i);
-    for (int j = 0; j < n_all && status == SD_OK; j++)
-      if (s->a[j] > 0.0 && ilogb(s->a[j]) <= size)
-        status = look_from(&q, &c, j, ilogb(s->a[j]) == size, largest);
-  }
-  if (status == SD_OK) status = sort_rows(list, &q.found, n);
-  free(q.found.pair);
-  sd_cells_free(&c);
+  if (status == SD_OK) status = sort_rows(list, &q, 0);
+  release(&q);
   return status;
 }

@@ -17,6 +17,8 @@ extern "C" {
  * SD_ENOMEMORY. */
 sd_status sd_near_find(sd_neighbors *list, const sd_spheres *s, int begin, int n, int n_all,
                        double reach);
+/* The same pairs, each once: row i < n, its sources j > i. */
+sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all, double reach);
 
 #ifdef __cplusplus
 }
