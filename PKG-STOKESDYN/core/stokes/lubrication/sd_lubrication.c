@@ -12,14 +12,29 @@ static const double sharing = 1.2;
 /* Which sphere an image is of: its rank, its row there, its body */
 enum { RANK, ROW, BODY, IDENTITY };
 
+/* How near a pair is: gap over the mean radius, t of it; and where its second sphere stands:
+ * itself, or its image */
+typedef struct {
+  double xi, t;
+  int at;
+} closeness;
+
+/* A symmetric sum of blocks of one sphere with itself: (UU, [UW]x; -[UW]x, WW), rows F T; of UU and
+ * WW xx xy xz yy yz zz */
+typedef struct {
+  double UU[6], UW[3], WW[6];
+} own_block;
+
 struct sd_lubrication_work {
   sd_neighbors near;
   /* [IDENTITY (n_all - n)] of the others */
   double *identity;
   /* [n_all] n_i; [6 n_all] u */
   double *neighbours, *flow;
-  /* [count] where the second sphere of a pair stands: itself, or its image */
-  int *at;
+  /* [n] */
+  own_block *own;
+  /* [count] */
+  closeness *close;
   long most_spheres, most_others, most_pairs;
 };
 
@@ -36,7 +51,9 @@ static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *
     if (diagonal) L->diagonal = diagonal;
     double *carried = realloc(L->carried, sizeof(double) * 6 * (all + 1));
     if (carried) L->carried = carried;
-    if (!neighbours || !flow || !diagonal || !carried) return SD_ENOMEMORY;
+    own_block *own = realloc(w->own, sizeof(*own) * (all + 1));
+    if (own) w->own = own;
+    if (!neighbours || !flow || !diagonal || !carried || !own) return SD_ENOMEMORY;
     w->most_spheres = s->n_all + 1;
   }
   if ((long) others >= w->most_others) {
@@ -60,11 +77,11 @@ static sd_status reserve_pairs(sd_lubrication *L, long count)
   const size_t room = (size_t) (count + count / 4 + 64);
   int(*pair)[2] = realloc(L->pair, sizeof(*pair) * room);
   if (pair) L->pair = pair;
-  int *at = realloc(w->at, sizeof(int) * room);
-  if (at) w->at = at;
+  closeness *close = realloc(w->close, sizeof(*close) * room);
+  if (close) w->close = close;
   sd_lubrication_link *link = realloc(L->link, sizeof(*link) * room);
   if (link) L->link = link;
-  if (!pair || !at || !link) return SD_ENOMEMORY;
+  if (!pair || !close || !link) return SD_ENOMEMORY;
   w->most_pairs = (long) room;
   return SD_OK;
 }
@@ -104,12 +121,27 @@ static int one_body(const sd_lubrication_scene *s, const sd_lubrication *L, int 
   return (j < L->n ? (double) s->body[j] : identity_of(L, j)[BODY]) == (double) s->body[i];
 }
 
-/* Pairs from rows of directed ones, each once; those of a sphere with its own images as often as
- * they are there, since the other way round is the same force on the same sphere. */
+/* What there is to know of a pair where it stands; d from sphere i to j */
+static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
+{
+  const sd_spheres *p = &s->spheres;
+  sd_minus(p->x + 3 * (long) j, p->x + 3 * (long) i, d);
+  const double R = sqrt(sd_dot(d, d));
+  if (R > 0.0)
+    for (int e = 0; e < 3; e++) d[e] /= R;
+  else
+    d[2] = 1.0; /* spheres at one point: any direction */
+  const double xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
+  const double q = fmin(fmax(2.0 * xi / s->range - 1.0, 0.0), 1.0);
+  return (closeness){xi, 1.0 - q * q * (3.0 - 2.0 * q), j};
+}
+
+/* Pairs of a sphere with its own images are there as often as these are, since the other way round
+ * is the same force on the same sphere. All others are there once, from the lower row. */
 static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   struct sd_lubrication_work *w = L->work;
-  sd_status status = sd_near_find(&w->near, &s->spheres, 0, s->n, s->n_all, 2.0 + s->range);
+  sd_status status = sd_near_once(&w->near, &s->spheres, s->n, s->n_all, 2.0 + s->range);
   if (status == SD_OK) status = reserve_pairs(L, w->near.first[s->n]);
   if (status != SD_OK) return status;
   L->count = 0;
@@ -117,37 +149,16 @@ static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
     for (long k = w->near.first[i]; k < w->near.first[i + 1]; k++) {
       const int at = w->near.neighbor[k], j = row_at(L, at);
       if (j < i || one_body(s, L, i, at)) continue;
+      const closeness close = look(s, i, at, L->link[L->count].d);
+      if (!(close.t > 0.0)) continue;
       L->pair[L->count][0] = i;
       L->pair[L->count][1] = j;
-      w->at[L->count++] = at;
+      w->close[L->count++] = close;
     }
   return SD_OK;
 }
 
 /* --- the sum --- */
-
-/* A pair as it stands: direction from the first to the second, gap, t, mean viscosity */
-typedef struct {
-  double d[3], xi, t, eta;
-} closeness;
-
-static closeness look(const sd_lubrication *L, const sd_lubrication_scene *s, long k)
-{
-  const sd_spheres *p = &s->spheres;
-  const int i = L->pair[k][0], j = L->work->at[k];
-  closeness c;
-  sd_minus(p->x + 3 * (long) j, p->x + 3 * (long) i, c.d);
-  const double R = sqrt(sd_dot(c.d, c.d));
-  if (R > 0.0)
-    for (int e = 0; e < 3; e++) c.d[e] /= R;
-  else
-    c.d[2] = 1.0; /* spheres at one point: any direction */
-  c.xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
-  const double q = fmin(fmax(2.0 * c.xi / s->range - 1.0, 0.0), 1.0);
-  c.t = 1.0 - q * q * (3.0 - 2.0 * q);
-  c.eta = 0.5 * (1.0 / (p->w[i] * p->w[i]) + 1.0 / (p->w[j] * p->w[j]));
-  return c;
-}
 
 static sd_status count_neighbours(sd_lubrication *L, const sd_lubrication_scene *s)
 {
@@ -155,9 +166,8 @@ static sd_status count_neighbours(sd_lubrication *L, const sd_lubrication_scene 
   memset(n, 0, sizeof(double) * (size_t) s->n_all);
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    const double t = look(L, s, k).t;
-    n[i] += t;
-    if (j != i && j < L->n) n[j] += t;
+    n[i] += L->work->close[k].t;
+    if (j != i && j < L->n) n[j] += L->work->close[k].t;
   }
   return s->world.refresh ? s->world.refresh(s->world.ctx, n, n + s->n, 1) : SD_OK;
 }
@@ -190,62 +200,109 @@ static void rigid_part(const double *const x[2], const double a[2], const double
   }
 }
 
-/* out += B V, or B^T V */
-static void add_product(const double *B, int transposed, const double *V, double *out)
+/* out += B V for a block of a pair. That of 21 is that of 12 with YB12 and YB21 exchanged: d turns
+ * round, and so do their signs. */
+static inline void add_product(const sd_lubrication_link *B, double YB12, double YB21,
+                               const double *V, double *out)
 {
-  for (int p = 0; p < 6; p++)
-    for (int q = 0; q < 6; q++) out[transposed ? q : p] += B[6 * p + q] * V[transposed ? p : q];
+  double dU[3], dW[3];
+  sd_cross(B->d, V, dU);
+  sd_cross(B->d, V + 3, dW);
+  const double F = (B->XA - B->YA) * sd_dot(B->d, V), T = (B->XC - B->YC) * sd_dot(B->d, V + 3);
+  for (int e = 0; e < 3; e++) {
+    out[e] += B->YA * V[e] + F * B->d[e] + YB21 * dW[e];
+    out[3 + e] += B->YC * V[3 + e] + T * B->d[e] - YB12 * dU[e];
+  }
 }
 
-/* To the first sphere of the pair k, and to the second if it is this rank's own */
+/* What the flow does to pair k: to its first sphere, and to its second if that is this rank's */
 static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k,
-                        const double *const B[3])
+                        const sd_lubrication_link block[3])
 {
-  const int i = L->pair[k][0], j = L->pair[k][1], at = L->work->at[k];
-  const double *const x[2] = {s->spheres.x + 3 * (long) i, s->spheres.x + 3 * (long) at};
-  const double *const u[2] = {L->work->flow + 6 * (long) i, L->work->flow + 6 * (long) at};
-  const double a[2] = {s->spheres.a[i], s->spheres.a[at]};
-  double V[2][6];
-  rigid_part(x, a, u, V);
-  add_product(B[0], 0, V[0], L->carried + 6 * (long) i);
-  add_product(B[1], 0, V[1], L->carried + 6 * (long) i);
-  if (j == i || j >= L->n) return;
-  add_product(B[1], 1, V[0], L->carried + 6 * (long) j);
-  add_product(B[2], 0, V[1], L->carried + 6 * (long) j);
+  const int i = L->pair[k][0], j = L->pair[k][1], at = L->work->close[k].at;
+  const sd_spheres *p = &s->spheres;
+  const double *flow = L->work->flow;
+  double V[2][6], *carried = L->carried;
+  rigid_part((const double *const[]){p->x + 3 * (long) i, p->x + 3 * (long) at},
+             (const double[]){p->a[i], p->a[at]},
+             (const double *const[]){flow + 6 * (long) i, flow + 6 * (long) at}, V);
+  add_product(block, block[0].YB12, block[0].YB21, V[0], carried + 6 * (long) i);
+  add_product(block + 1, block[1].YB12, block[1].YB21, V[1], carried + 6 * (long) i);
+  if (j >= L->n || j == i) return;
+  add_product(block + 1, block[1].YB21, block[1].YB12, V[0], carried + 6 * (long) j);
+  add_product(block + 2, block[2].YB12, block[2].YB21, V[1], carried + 6 * (long) j);
 }
 
-static void add36(const double *B, double *out)
+/* Block 11, 12 or 22 of a pair, b = 0, 1, 2, times scale */
+static sd_lubrication_link block_of(const sd_pair_resistance *R, int b, double scale,
+                                    const double d[3])
 {
-  for (int e = 0; e < 36; e++) out[e] += B[e];
+  static const int YB12[3] = {0, 1, 3}, YB21[3] = {0, 2, 3};
+  return (sd_lubrication_link){{d[0], d[1], d[2]},
+                               scale * R->XA[b],
+                               scale * R->YA[b],
+                               scale * R->YB[YB12[b]],
+                               scale * R->YB[YB21[b]],
+                               scale * R->XC[b],
+                               scale * R->YC[b]};
+}
+
+static inline void add_symmetric(double along, double across, const double d[3], double out[6])
+{
+  const double v[3] = {(along - across) * d[0], (along - across) * d[1], (along - across) * d[2]};
+  out[0] += v[0] * d[0] + across;
+  out[1] += v[0] * d[1];
+  out[2] += v[0] * d[2];
+  out[3] += v[1] * d[1] + across;
+  out[4] += v[1] * d[2];
+  out[5] += v[2] * d[2] + across;
+}
+
+static void add_own(const sd_lubrication_link *B, own_block *sum)
+{
+  add_symmetric(B->XA, B->YA, B->d, sum->UU);
+  add_symmetric(B->XC, B->YC, B->d, sum->WW);
+  for (int e = 0; e < 3; e++) sum->UW[e] += B->YB21 * B->d[e];
 }
 
 static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long k)
 {
-  const int i = L->pair[k][0], j = L->pair[k][1], at = L->work->at[k];
-  const closeness c = look(L, s, k);
-  const double *n = L->work->neighbours;
-  double B11[36], B12[36], B22[36];
-  memset(L->link + k, 0, sizeof(L->link[k]));
-  if (!(c.t > 0.0)) return SD_OK;
-  sd_pair_resistance full, relative;
-  const double *a = s->spheres.a;
+  const int i = L->pair[k][0], j = L->pair[k][1];
+  const closeness *c = L->work->close + k;
+  const double *n = L->work->neighbours, *a = s->spheres.a, *w = s->spheres.w;
+  own_block *own = L->work->own;
+  const double share = pow(2.0 * c->t / (n[i] + n[c->at]), sharing);
+  const double scale = 0.5 * c->t * (1.0 / (w[i] * w[i]) + 1.0 / (w[c->at] * w[c->at]));
+  sd_pair_resistance R;
   const sd_status status =
-      sd_two_sphere_correction(s->functions, a[i], a[at], fmax(c.xi, s->gap), &full, &relative);
+      sd_two_sphere_correction(s->functions, a[i], a[c->at], fmax(c->xi, s->gap), 1.0 - share, &R);
   if (status != SD_OK) return status;
-  const double share = pow(2.0 * c.t / (n[i] + n[at]), sharing), scale = c.eta * c.t;
-  const sd_pair_resistance R =
-      sd_pair_resistance_sum(scale * share, &full, scale * (1.0 - share), &relative);
-  sd_pair_resistance_blocks(&R, c.d, B11, B12, B22);
-  if (s->u) add_carried(L, s, k, (const double *const[]){B11, B12, B22});
-  add36(B11, L->diagonal + 36 * (long) i);
-  if (j == i) {
-    add36(B12, L->diagonal + 36 * (long) i);
-    return SD_OK;
-  }
-  L->link[k] = (sd_lubrication_link){
-      {c.d[0], c.d[1], c.d[2]}, R.XA[1], R.YA[1], R.YB[1], R.YB[2], R.XC[1], R.YC[1]};
-  if (j < L->n) add36(B22, L->diagonal + 36 * (long) j);
+  sd_lubrication_link *link = L->link + k, block[3];
+  for (int b = 0; b < 3; b++) block[b] = block_of(&R, b, scale, link->d);
+  if (s->u) add_carried(L, s, k, block);
+  add_own(block, own + i);
+  *link = block[1];
+  if (j == i) { /* an image on either side, so that what UW and WU have of these cancels */
+    block[1].YB21 = 0.0;
+    add_own(block + 1, own + i);
+    *link = (sd_lubrication_link){.XA = 0.0};
+  } else if (j < L->n)
+    add_own(block + 2, own + j);
   return SD_OK;
+}
+
+/* out [36] row-major */
+static void spread_own(const own_block *own, double *out)
+{
+  static const int at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  const double *v = own->UW, cross[9] = {0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0};
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++) {
+      out[6 * p + q] = own->UU[at[3 * p + q]];
+      out[6 * p + q + 3] = cross[3 * p + q];
+      out[6 * (p + 3) + q] = -cross[3 * p + q];
+      out[6 * (p + 3) + q + 3] = own->WW[at[3 * p + q]];
+    }
 }
 
 sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene)
@@ -258,8 +315,9 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   if (status == SD_OK) status = count_neighbours(L, scene);
   if (status == SD_OK) status = find_flow(L, scene);
   if (status != SD_OK) return status;
-  memset(L->diagonal, 0, sizeof(double) * 36 * (size_t) L->n);
+  memset(L->work->own, 0, sizeof(own_block) * (size_t) L->n);
   for (long k = 0; k < L->count && status == SD_OK; k++) status = add_pair(L, scene, k);
+  for (long i = 0; i < L->n; i++) spread_own(L->work->own + i, L->diagonal + 36 * i);
   return status;
 }
 
@@ -273,20 +331,6 @@ void sd_lubrication_block(const sd_lubrication *L, long k, double B[36])
                                 {0.0, l->YC, 0.0}};
   double B11[36], B22[36];
   sd_pair_resistance_blocks(&R, l->d, B11, B, B22);
-}
-
-/* out += L_12 V, or with YB12 and YB21 exchanged L_21 V: d turns round, and so do their signs */
-static inline void add_link(const sd_lubrication_link *l, double YB12, double YB21, const double *V,
-                            double *out)
-{
-  double dU[3], dW[3];
-  sd_cross(l->d, V, dU);
-  sd_cross(l->d, V + 3, dW);
-  const double F = (l->XA - l->YA) * sd_dot(l->d, V), T = (l->XC - l->YC) * sd_dot(l->d, V + 3);
-  for (int e = 0; e < 3; e++) {
-    out[e] += l->YA * V[e] + F * l->d[e] + YB21 * dW[e];
-    out[3 + e] += l->YC * V[3 + e] + T * l->d[e] - YB12 * dU[e];
-  }
 }
 
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
@@ -306,8 +350,8 @@ sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
     const int i = L->pair[k][0], j = L->pair[k][1];
     const sd_lubrication_link *l = L->link + k;
     const double *Vj = j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
-    add_link(l, l->YB12, l->YB21, Vj, out + 6 * (long) i);
-    if (j < L->n) add_link(l, l->YB21, l->YB12, V + 6 * (long) i, out + 6 * (long) j);
+    add_product(l, l->YB12, l->YB21, Vj, out + 6 * (long) i);
+    if (j < L->n) add_product(l, l->YB21, l->YB12, V + 6 * (long) i, out + 6 * (long) j);
   }
   return SD_OK;
 }
@@ -345,7 +389,8 @@ void sd_lubrication_free(sd_lubrication *L)
     free(L->work->identity);
     free(L->work->neighbours);
     free(L->work->flow);
-    free(L->work->at);
+    free(L->work->own);
+    free(L->work->close);
     free(L->work);
   }
   free(L->pair);

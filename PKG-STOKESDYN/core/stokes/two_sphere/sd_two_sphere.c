@@ -7,24 +7,38 @@
 #include "sd_two_sphere_near.h"
 #include "sd_two_sphere_table_internal.h"
 
-/* The shipped table is read once, into a finer one from which six neighbours a direction are
- * enough: even steps in the logarithm of the ratio and in x = (mu over its largest value)^(1/2), in
- * which what is left at contact, mu^4 ln mu, is smooth. It holds D less what sd_two_sphere_near
- * has, over sd_two_sphere_scales. */
+/* The shipped table is read once, into a finer one of what is wanted, D and Q^T D Q, from which six
+ * neighbours a direction are enough: even steps in the logarithms of the ratio and of xi, in which
+ * near contact, where D goes like 1/xi and ln xi, is as smooth as far away. Radii 1 and ratio >= 1;
+ * XA is held times xi. Reading is linear, so that a combination of the functions that is small has
+ * an error as small: that keeps D >= 0. */
 enum {
   RATIOS = SD_TWO_SPHERE_RATIOS,
   GAPS = SD_TWO_SPHERE_GAPS,
   FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS
 };
-enum { ROWS = 97, COLUMNS = 97, STENCIL = 6 };
+enum { ROWS = 97, COLUMNS = 193, STENCIL = 6 };
 
 typedef double functions[FUNCTIONS];
+
+/* D, ordered as sd_pair_resistance, and Q^T D Q, which knows relative motion only: along d one
+ * number each; across it the slip s = U_1 - U_2 - h W_1 - g W_2, h and g the parts of the distance
+ * in the ratio of the radii, and the relative spin q = W_1 - W_2 resist as ss, sq, qq. All over the
+ * scales of XA_11 ... */
+typedef struct {
+  functions full;
+  double XA, XC, ss, sq, qq;
+  /* whole registers */
+  double none[3];
+} entry;
+
+enum { NUMBERS = sizeof(entry) / sizeof(double) };
 
 struct sd_two_sphere {
   double largest_ratio;
   /* of ratios: 1, or at least STENCIL */
   int rows;
-  functions value[][COLUMNS];
+  double value[][COLUMNS][NUMBERS];
 };
 
 static double row_step(void)
@@ -49,46 +63,61 @@ static void weights_of_nodes(int n, double t, double *w)
   for (int k = 0; k < n; k++) w[k] /= sum;
 }
 
-/* value += what the spheres resist alone less what they do in the RPY model; radii 1 and ratio */
-static void take_off_rpy(double ratio, double mu, functions value)
+static double column_step(void)
 {
-  const double xi = sd_two_sphere_xi(ratio, mu);
-  const sd_pair_resistance rpy =
-      sd_pair_resistance_rpy(1.0, ratio, (1.0 + ratio) * (1.0 + 0.5 * xi));
-  const sd_pair_resistance alone = sd_two_sphere_alone(1.0, ratio);
-  const sd_pair_resistance rest = sd_pair_resistance_sum(1.0, &alone, -1.0, &rpy);
-  functions scale, less;
-  sd_two_sphere_scales(1.0, ratio, scale);
-  memcpy(less, &rest, sizeof rest);
-  for (int k = 0; k < FUNCTIONS; k++) value[k] += less[k] / scale[k];
+  return log(SD_TWO_SPHERE_LARGEST_XI / SD_TWO_SPHERE_SMALLEST_XI) / (COLUMNS - 1);
 }
 
-static void fill_row(double ratio, functions row[COLUMNS])
+/* D = what is left in the table + near + alone - model, radii 1 and ratio; at_ratio: the table
+ * there */
+static sd_pair_resistance correction_at(const functions *at_ratio, double ratio, double xi)
 {
-  double w[RATIOS > GAPS ? RATIOS : GAPS];
-  functions at_ratio[GAPS] = {{0.0}};
+  double w[GAPS];
+  functions left = {0.0}, scale;
+  weights_of_nodes(GAPS, sd_two_sphere_mu(ratio, xi) / sd_two_sphere_largest_mu(ratio), w);
+  sd_two_sphere_scales(1.0, ratio, scale);
+  for (int j = 0; j < GAPS; j++)
+    for (int k = 0; k < FUNCTIONS; k++) left[k] += w[j] * at_ratio[j][k];
+  for (int k = 0; k < FUNCTIONS; k++) left[k] *= scale[k];
+  sd_pair_resistance D;
+  memcpy(&D, left, sizeof D);
+  const sd_pair_resistance near = sd_two_sphere_near(1.0, ratio, xi);
+  const sd_pair_resistance alone = sd_two_sphere_alone(1.0, ratio);
+  const sd_pair_resistance model =
+      sd_pair_resistance_rpy(1.0, ratio, (1.0 + ratio) * (1.0 + 0.5 * xi));
+  D = sd_pair_resistance_sum(1.0, &D, 1.0, &near);
+  D = sd_pair_resistance_sum(1.0, &D, 1.0, &alone);
+  return sd_pair_resistance_sum(1.0, &D, -1.0, &model);
+}
+
+static void fill_row(double ratio, double row[COLUMNS][NUMBERS])
+{
+  double w[RATIOS];
+  functions at_ratio[GAPS] = {{0.0}}, scale;
   weights_of_nodes(RATIOS, log(ratio) / log(SD_TWO_SPHERE_LARGEST_RATIO), w);
   for (int i = 0; i < RATIOS; i++)
     for (int j = 0; j < GAPS; j++)
       for (int k = 0; k < FUNCTIONS; k++) at_ratio[j][k] += w[i] * sd_two_sphere_table[i][j][k];
-  memset(row, 0, COLUMNS * sizeof(functions));
+  sd_two_sphere_scales(1.0, ratio, scale);
   for (int c = 0; c < COLUMNS; c++) {
-    const double x = (double) c / (COLUMNS - 1);
-    weights_of_nodes(GAPS, x * x, w);
-    for (int j = 0; j < GAPS; j++)
-      for (int k = 0; k < FUNCTIONS; k++) row[c][k] += w[j] * at_ratio[j][k];
-    take_off_rpy(ratio, x * x * sd_two_sphere_largest_mu(ratio), row[c]);
+    const double xi = SD_TWO_SPHERE_SMALLEST_XI * exp(c * column_step());
+    sd_pair_resistance D = correction_at(at_ratio, ratio, xi);
+    if (ratio == 1.0) { /* equal spheres do not know which is 1, to the last bit */
+      const sd_pair_resistance E = sd_pair_resistance_exchanged(&D);
+      D = sd_pair_resistance_sum(0.5, &D, 0.5, &E);
+    }
+    const double h = 1.0 + 0.5 * xi;
+    const sd_pair_resistance Q = sd_pair_resistance_relative(&D, 1.0, ratio, (1.0 + ratio) * h);
+    const double ss = Q.YA[0], sq = Q.YB[0] + h * ss, qq = Q.YC[0] + h * (2.0 * sq - h * ss);
+    entry e = {.XA = Q.XA[0] / scale[0] * xi,
+               .XC = Q.XC[0] / scale[10],
+               .ss = ss / scale[3],
+               .sq = sq / scale[6],
+               .qq = qq / scale[13]};
+    memcpy(e.full, &D, sizeof e.full);
+    for (int k = 0; k < FUNCTIONS; k++) e.full[k] *= (k < 3 ? xi : 1.0) / scale[k];
+    memcpy(row[c], &e, sizeof e);
   }
-}
-
-/* Equal spheres do not know which is 1, to the last bit. */
-static void make_symmetric(functions value)
-{
-  sd_pair_resistance R;
-  memcpy(&R, value, sizeof R);
-  const sd_pair_resistance E = sd_pair_resistance_exchanged(&R);
-  R = sd_pair_resistance_sum(0.5, &R, 0.5, &E);
-  memcpy(value, &R, sizeof R);
 }
 
 sd_status sd_two_sphere_create(double largest_ratio, sd_two_sphere **out)
@@ -103,7 +132,6 @@ sd_status sd_two_sphere_create(double largest_ratio, sd_two_sphere **out)
   t->largest_ratio = largest_ratio;
   t->rows = rows;
   for (int r = 0; r < rows; r++) fill_row(exp(r * row_step()), t->value[r]);
-  for (int c = 0; c < COLUMNS; c++) make_symmetric(t->value[0][c]);
   *out = t;
   return SD_OK;
 }
@@ -131,42 +159,52 @@ static int stencil(double at, int n, double w[STENCIL])
   return first;
 }
 
-/* radii 1 and ratio >= 1 */
-static void read_table(const sd_two_sphere *t, double ratio, double xi, functions value)
+/* Radii 1 and ratio >= 1, both inside. Equal spheres, the commonest, are row 0. */
+static entry read_table(const sd_two_sphere *t, double ratio, double xi)
 {
-  double wr[STENCIL] = {1.0}, wc[STENCIL];
-  const double x = sqrt(sd_two_sphere_mu(ratio, xi) / sd_two_sphere_largest_mu(ratio));
-  const int rows = t->rows > 1 ? STENCIL : 1;
-  const int r = rows > 1 ? stencil(log(ratio) / row_step(), t->rows, wr) : 0;
-  const int c = stencil(x * (COLUMNS - 1), COLUMNS, wc);
-  memset(value, 0, sizeof(functions));
+  static const double one[STENCIL] = {1.0};
+  double wr[STENCIL], wc[STENCIL], value[NUMBERS] = {0.0};
+  const int rows = ratio == 1.0 ? 1 : STENCIL;
+  const int r = rows > 1 ? stencil(log(ratio) * (1.0 / row_step()), t->rows, wr) : 0;
+  const double lowest = log(SD_TWO_SPHERE_SMALLEST_XI);
+  const int c = stencil((log(xi) - lowest) * (1.0 / column_step()), COLUMNS, wc);
   for (int i = 0; i < rows; i++)
-    for (int j = 0; j < STENCIL; j++)
-      for (int k = 0; k < FUNCTIONS; k++) value[k] += wr[i] * wc[j] * t->value[r + i][c + j][k];
+    for (int j = 0; j < STENCIL; j++) {
+      const double w = (rows > 1 ? wr : one)[i] * wc[j], *from = t->value[r + i][c + j];
+      for (int k = 0; k < NUMBERS; k++) value[k] += w * from[k];
+    }
+  entry e;
+  memcpy(&e, value, sizeof e);
+  return e;
+}
+
+/* (1 - q) D + q Q^T D Q with the radii */
+static sd_pair_resistance put_together(const entry *e, double a1, double a2, double xi, double q)
+{
+  const double h = a1 * (1.0 + 0.5 * xi), g = a2 * (1.0 + 0.5 * xi), p = 1.0 - q;
+  functions scale, D;
+  sd_two_sphere_scales(a1, a2, scale);
+  for (int k = 0; k < FUNCTIONS; k++) D[k] = p * scale[k] * e->full[k];
+  const double XA = q * scale[0] * e->XA, XC = q * scale[10] * e->XC, ss = q * scale[3] * e->ss,
+               sq = q * scale[6] * e->sq, qq = q * scale[13] * e->qq;
+  const double B1 = sq - h * ss, B2 = sq + g * ss;
+  const double film = 1.0 / xi;
+  return (sd_pair_resistance){
+      {film * (D[0] + XA), film * (D[1] - XA), film * (D[2] + XA)},
+      {D[3] + ss, D[4] - ss, D[5] + ss},
+      {D[6] + B1, D[7] - B1, D[8] - B2, D[9] + B2},
+      {D[10] + XC, D[11] - XC, D[12] + XC},
+      {D[13] + qq - h * (sq + B1), D[14] - qq + h * sq - g * B1, D[15] + qq + g * (sq + B2)}};
 }
 
 sd_status sd_two_sphere_correction(const sd_two_sphere *t, double a1, double a2, double xi,
-                                   sd_pair_resistance *full, sd_pair_resistance *relative)
+                                   double q, sd_pair_resistance *R)
 {
-  if (a1 > a2) {
-    sd_pair_resistance f, q;
-    const sd_status status = sd_two_sphere_correction(t, a2, a1, xi, &f, &q);
-    if (status != SD_OK) return status;
-    *full = sd_pair_resistance_exchanged(&f);
-    *relative = sd_pair_resistance_exchanged(&q);
-    return SD_OK;
-  }
-  const double ratio = a2 / a1;
+  const double small = a1 < a2 ? a1 : a2, large = a1 < a2 ? a2 : a1, ratio = large / small;
   if (!(ratio <= t->largest_ratio * (1.0 + 1e-12))) return SD_EOUTSIDE;
-  if (!(xi > 0.0 && xi <= SD_TWO_SPHERE_LARGEST_XI)) return SD_EOUTSIDE;
-  functions value, scale;
-  read_table(t, ratio, xi, value);
-  sd_two_sphere_scales(a1, a2, scale);
-  *full = sd_two_sphere_near(a1, a2, xi);
-  for (int k = 0; k < FUNCTIONS; k++) value[k] *= scale[k];
-  const sd_pair_resistance near = *full;
-  memcpy(full, value, sizeof *full);
-  *full = sd_pair_resistance_sum(1.0, full, 1.0, &near);
-  *relative = sd_pair_resistance_relative(full, a1, a2, (a1 + a2) * (1.0 + 0.5 * xi));
+  if (!(xi >= SD_TWO_SPHERE_SMALLEST_XI && xi <= SD_TWO_SPHERE_LARGEST_XI)) return SD_EOUTSIDE;
+  const entry e = read_table(t, ratio, xi);
+  *R = put_together(&e, small, large, xi, q);
+  if (a1 > a2) *R = sd_pair_resistance_exchanged(R);
   return SD_OK;
 }

@@ -7,6 +7,7 @@
 #include "sd_two_sphere.h"
 #include "sd_two_sphere_exact.h"
 #include "sd_two_sphere_near.h"
+#include "sd_two_sphere_table_internal.h"
 
 enum { FUNCTIONS = 16 };
 
@@ -36,7 +37,8 @@ static sd_pair_resistance correction(const sd_two_sphere *t, double a1, double a
                                      sd_pair_resistance *relative)
 {
   sd_pair_resistance full;
-  assert_int_equal(sd_two_sphere_correction(t, a1, a2, xi, &full, relative), SD_OK);
+  assert_int_equal(sd_two_sphere_correction(t, a1, a2, xi, 0.0, &full), SD_OK);
+  assert_int_equal(sd_two_sphere_correction(t, a1, a2, xi, 1.0, relative), SD_OK);
   return full;
 }
 
@@ -153,6 +155,34 @@ static void correction_is_positive(void **state)
   sd_two_sphere_free(all);
 }
 
+/* The relative part is that of D, though it is read from numbers of its own, and resists no rigid
+ * motion: a turn about sphere 2 takes sphere 1 along by R. */
+static void relative_part_is_that_of_d(void **state)
+{
+  (void) state;
+  uint64_t seed = 4;
+  sd_two_sphere *all = create(100.0);
+  for (int i = 0; i < 1000; i++) {
+    const double a2 = i % 5 ? 1.3 * exp(uniform(&seed, 0.0, log(100.0))) : 1.3;
+    const double xi = exp(uniform(&seed, log(1e-7), log(8.0))), R = (1.3 + a2) * (1.0 + 0.5 * xi);
+    sd_pair_resistance Q;
+    const sd_pair_resistance D = correction(all, 1.3, a2, xi, &Q);
+    const sd_pair_resistance P = sd_pair_resistance_relative(&D, 1.3, a2, R);
+    double p[FUNCTIONS], q[FUNCTIONS], unit[FUNCTIONS];
+    memcpy(p, &P, sizeof p);
+    memcpy(q, &Q, sizeof q);
+    sd_two_sphere_scales(1.3, a2, unit);
+    for (int k = 0; k < FUNCTIONS; k++)
+      CHECK_NEAR(q[k], p[k], 1e-7 * fmax(fabs(p[k]), unit[k]));
+    const double *YB = Q.YB, *YC = Q.YC;
+    assert_true(Q.XA[0] == -Q.XA[1] && Q.XC[2] == -Q.XC[1] && YB[0] == -YB[1] && YB[2] == -YB[3]);
+    CHECK_NEAR(Q.YA[0] * R, YB[1] + YB[3], 1e-13 * (fabs(YB[1]) + fabs(YB[3])));
+    CHECK_NEAR(YB[1] * R, YC[0] + YC[1], 1e-13 * (YC[0] + fabs(YC[1])));
+    CHECK_NEAR(YB[3] * R, YC[1] + YC[2], 1e-13 * (YC[2] + fabs(YC[1])));
+  }
+  sd_two_sphere_free(all);
+}
+
 /* What is common instead fails: the near-contact form, exact at contact with its constants, used at
  * larger gaps. */
 static void usual_forms_are_not_positive(void **state)
@@ -248,13 +278,13 @@ static void outside_is_refused(void **state)
   assert_int_equal(sd_two_sphere_create(0.9, &t), SD_EOUTSIDE);
   assert_int_equal(sd_two_sphere_create(NAN, &t), SD_EOUTSIDE);
   t = create(2.0);
-  sd_pair_resistance f, q;
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.0, &f, &q), SD_OK);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.1, 1.0, &f, &q), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 2.1, 1.0, 1.0, &f, &q), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.1, &f, &q), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 0.0, &f, &q), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, NAN, &f, &q), SD_EOUTSIDE);
+  sd_pair_resistance f;
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.0, 0.0, &f), SD_OK);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.1, 1.0, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 2.1, 1.0, 1.0, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.1, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 0.9e-8, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, NAN, 0.0, &f), SD_EOUTSIDE);
   sd_two_sphere_free(t);
 }
 
@@ -264,6 +294,7 @@ int main(void)
       cmocka_unit_test(table_has_the_exact_functions),
       cmocka_unit_test(table_has_them_between_its_nodes),
       cmocka_unit_test(correction_is_positive),
+      cmocka_unit_test(relative_part_is_that_of_d),
       cmocka_unit_test(usual_forms_are_not_positive),
       cmocka_unit_test(no_jumps),
       cmocka_unit_test(scales_and_exchange),
