@@ -197,6 +197,70 @@ def test_region_wall_adds_a_mirror_particle():
     assert np.abs(force - expected).max() <= 1e-12 * np.abs(expected).max()
 
 
+TANK = """
+units lj
+dimension 2
+atom_style sph
+boundary f f p
+lattice sq 100 origin 0.5 0.5 0
+region box block -0.6 1.6 -0.6 1.2 -0.05 0.05 units box
+create_box 2 box
+region water block 0 1 0 0.5 -0.05 0.05 units box
+region tank block -0.39 1.39 -0.39 0.79 -0.05 0.05 units box
+region outside block 0 1 0 1.2 -0.05 0.05 units box side out
+region walls intersect 2 tank outside
+create_atoms 1 region water
+create_atoms 2 region walls
+mass * 0.01
+group water type 1
+group walls type 2
+set group all sph/rho 1
+neighbor 0.05 bin
+pair_style sph/artVisc/tensCorr wendland 0.2 viscosity 0.01 central
+pair_coeff * * c 10
+fix eos all sph/pressure Tait 14.3 1 7
+fix density all sph/density/continuity delta 0.1
+fix move water nve/sph
+fix weight water addforce %g -0.01 0
+variable x equal 0.5*%g*time^2
+variable v equal %g*time
+variable b equal -0.3
+variable zero equal 0
+fix push walls move variable v_x v_zero NULL v_v v_zero NULL
+fix w walls wall/adami/sph gravity v_b -1 0 slip %s
+timestep %g
+run %d
+"""
+
+
+def tank(a, push, slip, dt, steps):
+    """Water in a tank that moves with a t^2/2, and on it the force per mass `push`: where it is in the tank, how fast, and its
+    force on the walls."""
+    lmp = start()
+    try:
+        run(lmp, TANK % (0.01 * push, a, a, slip, dt, steps))
+        water, t = by_id(lmp, "type") == 1, dt * steps
+        x, v = by_id(lmp, "x", 3)[water], by_id(lmp, "v", 3)[water]
+        force = np.array([lmp.extract_fix("w", 0, 1, k) for k in range(3)])
+        return x - [0.5 * a * t * t, 0, 0], v - [a * t, 0, 0], force
+    finally:
+        lmp.close()
+
+
+@pytest.mark.parametrize("slip", ["yes", "no"])
+def test_a_tank_that_is_pushed_is_a_tank_at_rest_with_the_inertial_force(slip):
+    """Up to a t dt/2: the density takes the velocity of the water in the middle of a step, and of the walls what fix move has set, that
+    at the end."""
+    a, t, apart = 0.3, 0.6, []
+    for steps in (150, 300):
+        dt = t / steps
+        (x, v, F), (x0, v0, F0) = tank(a, 0.0, slip, dt, steps), tank(0.0, -a, slip, dt, steps)
+        assert np.abs(v0).max() > 0.1 and abs(F0[0]) > 0.1
+        apart.append([np.abs(x - x0).max() / (a * t * dt / 2), np.abs(v - v0).max() / dt, np.abs(F - F0).max() / dt])
+    assert 0.9 < apart[1][0] < 1.1
+    assert np.allclose(apart[0], apart[1], rtol=0.02)
+
+
 # --- time step limits ---------------------------------------------------------------------------------------------------
 
 
