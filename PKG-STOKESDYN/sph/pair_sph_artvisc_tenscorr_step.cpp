@@ -261,12 +261,11 @@ const double *PairSph::shift() const
   return state ? state->du() : nullptr;
 }
 
-/* Sums of W times the rows of weights, complete for the particles of this rank. */
+/* Sums of W times the rows of weights, over the pairs of this rank. */
 void PairSph::weigh(int fours, bool walls)
 {
   sums.assign(4 * fours * (size_t) (particles.n + 1), 0.0);
   sd_sph_weigh(&model, &pairs, &particles, fours, walls, weights.data(), sums.data());
-  reverse(sums.data(), 4 * fours);
 }
 
 /* Densities of a group from the sums over neighbours, or filtered by them. */
@@ -275,6 +274,7 @@ void PairSph::sum_densities(int bit, bool shepard)
   weights.resize(4 * (size_t) (particles.n + 1));
   sd_sph_pack_masses(&model, &particles, atom->rho, weights.data());
   weigh(1, false);
+  reverse(sums.data(), 4);
   const sd_sph_densities how = {atom->nlocal, bit, shepard, atom->mask, sums.data()};
   sd_sph_sum_densities(&model, &particles, &how, atom->rho);
   forward(atom->rho, 1);
@@ -313,6 +313,8 @@ void PairSph::wall_particles()
   const double *b = wall->body_force();
   sd_sph_pack_fluid(&particles, P.data(), b, weights.data());
   weigh(2, true);
+  sd_sph_level_walls(&particles, b, sums.data());
+  reverse(sums.data(), 8);
 
   wall_rows.resize(4 * (size_t) (n + 1));
   for (int i = 0; i < atom->nlocal; i++) {
@@ -320,11 +322,10 @@ void PairSph::wall_particles()
     const FixSphPressure *eos = nullptr;
     for (const auto *fix : pressures)
       if (atom->mask[i] & fix->groupbit) eos = fix;
-    const sd_sph_wall how = {&eos->state, {b[0], b[1], b[2]}, wall->slip};
+    const sd_sph_wall how = {&eos->state, wall->slip};
     double *row = &wall_rows[4 * (size_t) i];
     row[0] = atom->rho[i];
-    const double asked =
-        sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->x[i], atom->v[i], row);
+    const double asked = sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->v[i], row);
     if (row[0] == 0.0)
       fail_one(lmp,
                "Fix " + std::string(FixWallAdamiSph::STYLE) + ": step " +

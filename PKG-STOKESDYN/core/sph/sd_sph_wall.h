@@ -25,18 +25,21 @@ double sd_sph_repulsion(double D, double r0, double r);
 void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const double b[3],
                        double *q);
 
+/* After sd_sph_weigh, of its sums [8 (n+1)]: column 1 takes b.x_w, so that it is the same for every
+ * image of a wall particle, and those of ghosts may be added to it. */
+void sd_sph_level_walls(const sd_sph_particles *p, const double b[3], double *sums);
+
 typedef struct {
   const sd_sph_state *state;
-  double b[3];
   int slip;
 } sd_sph_wall;
 
-/* What the sums s make of one wall particle at x that moves with v. row, in: its density. Out: the
+/* What the levelled sums s make of one wall particle that moves with v. row, in: its density. Out: the
  * density that has the pressure of the fluid before it (0: none has), and by how much the velocity
  * that friction sees differs from v: to that of the fluid with slip, to its mirror image without.
  * A wall without fluid in reach has P0, or keeps its density (absolut). Returns the pressure. */
-double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double x[3],
-                            const double v[3], double row[4]);
+double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double v[3],
+                            double row[4]);
 
 #ifdef __cplusplus
 }
