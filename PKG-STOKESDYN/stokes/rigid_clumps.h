@@ -1,10 +1,9 @@
-/* Rigid clumps: the shapes of a scene, each with its resistance, and the forces of every step from
- * pose and motion.
+/* Rigid clumps: which shape each clump of a scene has, and its forces in every step from pose and
+ * motion.
  *
  * A clump keeps the shape that it was given when it was first seen, whatever rank it moves to,
  * until a run begins anew or it is not rigid any more (auto: it is loose then, the solver's, until
- * a run begins anew).
- * Shapes are numbered alike on all ranks; in order of molecule ID, a clump that has none of the
+ * a run begins anew). Shapes are numbered alike on all ranks; in order of molecule ID, a clump that has none of the
  * shapes before it is the first of a new one. Each is solved on one rank and sent to all. A clump
  * that crosses ranks is evaluated by every rank that owns one of its spheres, from the same
  * numbers. */
@@ -12,15 +11,14 @@
 #define SD_RIGID_CLUMPS_H
 
 #include "ambient.h"
+#include "clump_shapes.h"
 #include "pointers.h"
 #include "scene.h"
 
-#include "sd_body_shape.h"
 #include "sd_clump_motion.h"
 
 #include <limits>
 #include <map>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -29,19 +27,15 @@ namespace StokesDyn {
 
 class RigidClumps : protected LAMMPS_NS::Pointers {
  public:
-  struct Settings {
+  struct Settings : ClumpModel {
     /* rigid_clumps yes | auto */
     bool on = false, auto_resolve = false;
-    int shell = 1;
-    /* torques and angular velocities: rotation yes, or shells */
-    bool rotation = false;
     /* clumps_only: no clump feels another, and each has a table of its own forces */
     bool clumps_only = false;
     bool apart() const { return on && clumps_only; }
   } settings;
 
   RigidClumps(LAMMPS_NS::LAMMPS *lmp, Scene &scene, const std::string &command);
-  ~RigidClumps();
   RigidClumps(const RigidClumps &) = delete;
   RigidClumps &operator=(const RigidClumps &) = delete;
 
@@ -76,21 +70,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     end_step(step, loose);
   }
 
-  struct Shape {
-    int number;
-    int64_t molecule;    // of the first of its kind
-    sd_shape shape = {};
-    sd_clump clump = {};
-    /* made by blocks() */
-    mutable sd_body_shape body = {};
-    Shape(int number, int64_t molecule) : number(number), molecule(molecule) {}
-    ~Shape();
-    Shape(const Shape &) = delete;
-  };
   /* A clump of which this rank has a sphere; its spheres, in the order of the shape, are begin ...
    * begin + n - 1 of members() and owns() */
   struct Body {
-    const Shape *shape;
+    const ClumpShape *shape;
     int64_t molecule;
     int begin, n;
   };
@@ -103,7 +86,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   const std::vector<int> &members() const { return member; }
   const std::vector<int> &owns() const { return owned; }
   /* The shape in a cloud with others. Error: memory. */
-  const sd_body_shape &blocks(const Shape &shape) const;
+  const sd_body_shape &blocks(const ClumpShape &shape) const
+  {
+    return shapes.blocks(shape, settings);
+  }
   /* Errors, which all ranks know: molecule IDs of a clump of which not all spheres are selected, and
    * of one that is not rigid; NOBODY: there is none */
   static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();
@@ -115,14 +101,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   Scene &scene;
   std::string command;
 
-  using BySize = std::multimap<double, const Shape *>;
-  std::map<int, std::unique_ptr<Shape>> shapes;          // by number
-  BySize by_size;
-  int solved = 0;    // shapes up to this number have been
-  sd_shells shells;
+  ClumpShapes shapes;
 
   struct Known {
-    const Shape *shape = nullptr;
+    const ClumpShape *shape = nullptr;
     uint64_t atoms = 0;       // hash of the IDs
     std::vector<int> perm;    // sphere k of the shape is sphere perm[k] in order of ID
   };
@@ -151,15 +133,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
 
   void recognise();
   uint64_t atoms_of(const Scene::Clump &clump) const;
-  void geometry(const Scene::Clump &clump, std::vector<double> &x, std::vector<double> &a) const;
-  static const Shape *find(const BySize &among, const std::vector<double> &x,
-                           const std::vector<double> &a, std::vector<int> &perm);
+  ClumpGeometry geometry(const Scene::Clump &clump) const;
   void take_over(std::vector<size_t> &unknown);
   void find_shapes(std::vector<size_t> unknown);
   void accept(const std::vector<double> &candidates);
-  void solve();
-  [[noreturn]] void cannot_be_solved(const Shape &s, sd_status status, double need) const;
-  void announce(const Shape &s, double seconds) const;
   void drop_unused();
   void arrange();
   void gather(const Ambient &ambient);
