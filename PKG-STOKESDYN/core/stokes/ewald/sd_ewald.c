@@ -36,6 +36,17 @@ static double edge_length(const sd_ewald_box *b, int d)
   return hypot(b->edge[2], hypot(b->tilt[1], b->tilt[2]));
 }
 
+void sd_ewald_reciprocal(const sd_ewald_box *b, double k[3][3])
+{
+  const double lx = b->edge[0], ly = b->edge[1], lz = b->edge[2];
+  const double xy = b->tilt[0], xz = b->tilt[1], yz = b->tilt[2], unit = 2.0 * SD_PI;
+  const double rows[3][3] = {{unit / lx, -unit * xy / (lx * ly),
+                              unit * (xy * yz - ly * xz) / (lx * ly * lz)},
+                             {0.0, unit / ly, -unit * yz / (ly * lz)},
+                             {0.0, 0.0, unit / lz}};
+  memcpy(k, rows, sizeof(rows));
+}
+
 /* The smallest distance between opposite faces */
 static double narrowest(const sd_ewald_box *b)
 {

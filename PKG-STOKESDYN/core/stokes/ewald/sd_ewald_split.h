@@ -22,6 +22,10 @@ static inline double sd_ewald_volume(const sd_ewald_box *box)
   return box->edge[0] * box->edge[1] * box->edge[2];
 }
 
+/* 2 pi times the reciprocal edges, 1/length: row d is across the other two edges and has 2 pi along
+ * edge d, so that the wave of numbers n has k = n_1 k[0] + n_2 k[1] + n_3 k[2]. */
+void sd_ewald_reciprocal(const sd_ewald_box *box, double k[3][3]);
+
 /* The second level: a splitting for the spheres of radius `from` and larger. They meet each other
  * and all the rest by it, the rest each other by the first. */
 typedef struct {

@@ -27,17 +27,6 @@ static double *deconvolution(const sd_ewald *e, int n)
 
 /* --- periodic --- */
 
-static void reciprocal(sd_wave *w, const sd_ewald_box *b)
-{
-  const double lx = b->edge[0], ly = b->edge[1], lz = b->edge[2];
-  const double xy = b->tilt[0], xz = b->tilt[1], yz = b->tilt[2], unit = 2.0 * SD_PI;
-  const double rows[3][3] = {{unit / lx, -unit * xy / (lx * ly),
-                              unit * (xy * yz - ly * xz) / (lx * ly * lz)},
-                             {0.0, unit / ly, -unit * yz / (ly * lz)},
-                             {0.0, 0.0, unit / lz}};
-  memcpy(w->k, rows, sizeof(rows));
-}
-
 /* One row along z of the table */
 static void periodic_entries(const sd_wave *w, const sd_ewald *e, const double *start, double factor,
                              const double *inverse_z, double *table)
@@ -53,7 +42,7 @@ static void periodic_entries(const sd_wave *w, const sd_ewald *e, const double *
 
 static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 {
-  reciprocal(w, &e->box);
+  sd_ewald_reciprocal(&e->box, w->k);
   double *inverse[3];
   for (int d = 0; d < 3; d++) inverse[d] = deconvolution(e, w->size[d]);
   const size_t row = (size_t) w->half, rows = (size_t) (y1 - w->y0) * (size_t) w->size[0];
