@@ -57,6 +57,17 @@ static inline void sd_rpy_radial(double R, double ai, double aj, double *f, doub
   *f = (b - 0.25 * t * (1.0 - q)) / (A * b) - *g / 3.0;
 }
 
+/* What two spheres resist of their approach by the model, beyond their drags:
+ *   6 pi eta [ 1/(1/ai + 1/aj - 2 (f + g)) - 1/(1/ai + 1/aj) ]   force over relative velocity, >= 0
+ * R  >= ai + aj. */
+static inline double sd_rpy_approach(double R, double ai, double aj, double eta)
+{
+  double f, g;
+  sd_rpy_radial(R, ai, aj, &f, &g);
+  const double apart = 1.0 / ai + 1.0 / aj, both = apart - 2.0 * (f + g);
+  return 6.0 * SD_PI * eta * (1.0 / both - 1.0 / apart);
+}
+
 /* Angular velocity from torque: f' and g' of the Rotne-Prager-Yamakawa model, any two radii, any
  * distance. A, b, d, t, q as above, u = A + b - R:
  *   R > A + b        f' = -1/(2 R^3),   g' = 3/(2 R^3)

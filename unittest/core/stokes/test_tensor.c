@@ -129,6 +129,23 @@ static void touching_pair_along_its_axis(void **state)
   CHECK_NEAR(self / (self + M[8]), 4.0 / 7.0, 1e-15);
 }
 
+/* Equal and opposite forces along the line of centres: what their relative velocity lacks of that of
+ * two lone spheres, from the blocks themselves. */
+static void approach_is_resisted_as_the_blocks_say(void **state)
+{
+  (void) state;
+  const double eta = 1.3;
+  for (int k = 0; k < N_RADII; k++)
+    for (int m = 0; m < 5; m++) {
+      const double ai = radii[k][0], aj = radii[k][1], R = (ai + aj) * (1.0 + 0.3 * m), r[3] = {0.0, 0.0, R};
+      double M[9];
+      sd_tensor_uf(SD_TENSOR_RPY, r, ai, aj, eta, M);
+      const double alone = (1.0 / ai + 1.0 / aj) / (6.0 * SD_PI * eta), both = alone - 2.0 * M[8];
+      CHECK_NEAR(sd_rpy_approach(R, ai, aj, eta), 1.0 / both - 1.0 / alone, 1e-13 / both);
+      assert_true(sd_rpy_approach(R, ai, aj, eta) > 0.0);
+    }
+}
+
 static void block_is_symmetric_and_reciprocal(void **state)
 {
   (void) state;
@@ -382,6 +399,7 @@ int main(void)
       cmocka_unit_test(near_coincidence_keeps_its_digits),
       cmocka_unit_test(tensor_is_divergence_free),
       cmocka_unit_test(touching_pair_along_its_axis),
+      cmocka_unit_test(approach_is_resisted_as_the_blocks_say),
       cmocka_unit_test(block_is_symmetric_and_reciprocal),
       cmocka_unit_test(rotation_overlap_is_the_published_form),
       cmocka_unit_test(rotation_branches_join_with_their_values),

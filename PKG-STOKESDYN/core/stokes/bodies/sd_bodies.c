@@ -30,7 +30,7 @@ typedef struct {
   double *r, *w;
   /* rows of the ghosts; of the largest clump, slip and force in the axes of the shape */
   double *ghosts, *slip, *force;
-  /* by bodies: velocities without and with the tie, and L of these */
+  /* velocities without and with the tie and what is borne, by bodies; its share, by rows */
   double *tied, tie_tolerance;
   powers power;
   sd_bodies_report *report;
@@ -46,7 +46,7 @@ static long largest_clump(const sd_bodies *A)
 
 long sd_bodies_work(const sd_bodies *A)
 {
-  const long tied = A->tie ? 18 * ((long) A->lone + A->clumps) + 6 * (long) A->n : 0;
+  const long tied = A->tie ? 18 * ((long) A->lone + A->clumps) + 12 * (long) A->n : 0;
   return (long) A->width * (6 * (long) A->n + A->ghosts) + 18 * (long) A->clumps +
       12 * largest_clump(A) + tied + 1;
 }
@@ -133,38 +133,39 @@ static sd_status pre_alone(loop *c, const double *r, const loads *f, const state
   return SD_OK;
 }
 
-/* Bodies for themselves would have V_0; tied they have V, H V = H_0 V_0, and bear L V less. So the
- * second line holds, whatever digits V has. */
-static sd_status tie_together(loop *c, const state *out)
+/* Bodies for themselves would have V_0; tied they have V. By the second line they bear L V less,
+ * whatever digits V has, of which X (r + K V) is with the spheres that feel it. */
+static sd_status tie_together(loop *c, const double *r, const state *out)
 {
   const sd_bodies *A = c->A;
   const long size = 6 * ((long) A->lone + A->clumps), clumps = 6 * (long) A->lone;
-  double *V_0 = c->tied, *V = V_0 + size, *LV = V + size;
+  double *V_0 = c->tied, *V = V_0 + size, *borne = V + size, *share = borne + size;
   for (int e = 0; e < A->lone; e++)
     memcpy(V_0 + 6 * (long) e, out->v + 6 * (long) A->loner[e], 6 * sizeof(double));
   memcpy(V_0 + clumps, out->V, sizeof(double) * 6 * (size_t) A->clumps);
-  const sd_status status = sd_tie_solve(A, V_0, c->tie_tolerance, V, LV);
+  const sd_status status = sd_tie_solve(A, V_0, r, c->tie_tolerance, V, borne, share);
   if (status != SD_OK) return status;
   for (int e = 0; e < A->lone; e++)
     for (int d = 0; d < 6; d++) {
-      out->l[6 * (long) A->loner[e] + d] -= LV[6 * (long) e + d];
+      out->l[6 * (long) A->loner[e] + d] -= borne[6 * (long) e + d];
       out->v[6 * (long) A->loner[e] + d] = V[6 * (long) e + d];
     }
   for (int b = 0; b < A->clumps; b++) {
     const long at = clumps + 6 * (long) b;
     double less[6], moves[6];
-    for (int d = 0; d < 6; d++) less[d] = -LV[at + d];
+    for (int d = 0; d < 6; d++) less[d] = -borne[at + d];
     respond(c, b, NULL, less, out->l, moves);
     sd_bodies_to_shape(A->pose + 9 * (long) b, V + at, moves);
     set_motion(A, b, moves, out);
   }
+  for (long j = 0; j < 6 * (long) A->n; j++) out->l[j] += share[j];
   return SD_OK;
 }
 
 static sd_status pre(loop *c, const double *r, const loads *f, const state *out)
 {
   const sd_status status = pre_alone(c, r, f, out);
-  return status == SD_OK && c->A->tie ? tie_together(c, out) : status;
+  return status == SD_OK && c->A->tie ? tie_together(c, r, out) : status;
 }
 
 /* --- the loop --- */
@@ -467,7 +468,7 @@ sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *prob
   *report = (sd_bodies_report){0};
   sd_status status = A->tie ? sd_tie_make(A) : SD_OK;
   if (status == SD_OK)
-    status = take_loads(&c, problem->F, tied + 18 * ((long) A->lone + A->clumps), clumps);
+    status = take_loads(&c, problem->F, tied + 18 * ((long) A->lone + A->clumps) + size, clumps);
   if (status == SD_OK) status = start(&c, motion->before, problem->warm);
   if (status == SD_OK) status = iterate(&c, problem->tolerance, problem->max_iter);
   if (status != SD_OK && status != SD_EMAXITER) return status;

@@ -1,4 +1,5 @@
 #include "sd_tie.h"
+#include "sd_tie_approach.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,7 +29,8 @@ static sd_status reserve_all(const sd_bodies *A)
 sd_status sd_tie_make(const sd_bodies *A)
 {
   A->tie->products = 0;
-  const sd_status status = reserve_all(A);
+  sd_status status = reserve_all(A);
+  if (status == SD_OK) status = sd_tie_approach_make(A);
   return status == SD_OK ? sd_tie_factor(A) : status;
 }
 
@@ -70,7 +72,7 @@ static void resist_alone(const sd_bodies *A, const double *V, double *out)
   }
 }
 
-/* out = K^T L K V */
+/* out = K^T (L + X) K V */
 static sd_status apply(const sd_bodies *A, const double *V, double *out)
 {
   sd_tie *t = A->tie;
@@ -78,7 +80,9 @@ static sd_status apply(const sd_bodies *A, const double *V, double *out)
   spread(A, V, v);
   const sd_status status = sd_lubrication_apply(t->L, v, f);
   t->products++;
-  return status == SD_OK ? collect(A, f, out) : status;
+  if (status != SD_OK) return status;
+  sd_tie_approach_add(A, v, f);
+  return collect(A, f, out);
 }
 
 /* sums[k] = a[k].b[k] over all bodies, each once */
@@ -99,8 +103,8 @@ static sd_status dots(const sd_bodies *A, int count, const double *const *a, con
 
 /* --- conjugate gradients --- */
 
-/* r, z, p, w as ever: one step along p; w holds K^T L K p, z H_0 p */
-static sd_status step(const sd_bodies *A, double rz, double *V, double *LV)
+/* r, z, p, w as ever: one step along p; w holds K^T (L + X) K p, z H_0 p */
+static sd_status step(const sd_bodies *A, double rz, double *V, double *borne)
 {
   const sd_tie *t = A->tie;
   const long size = 6 * sd_tie_bodies(A);
@@ -114,43 +118,79 @@ static sd_status step(const sd_bodies *A, double rz, double *V, double *LV)
   if (!(pHp > 0.0)) return isfinite(pHp) ? SD_EINDEFINITE : SD_ENOTFINITE;
   for (long j = 0; j < size; j++) {
     V[j] += alpha * p[j];
-    LV[j] += alpha * w[j];
+    borne[j] += alpha * w[j];
     r[j] -= alpha * (w[j] + z[j]);
   }
   return SD_OK;
 }
 
-/* From V = 0. LV follows V by the same steps, so that it needs no product of its own. */
-sd_status sd_tie_solve(const sd_bodies *A, const double *V_0, double tolerance, double *V,
-                       double *LV)
+/* --- the model --- */
+
+/* share += X v, by rows */
+static sd_status add_approach(const sd_bodies *A, const double *v, double *share)
 {
-  const sd_tie *t = A->tie;
+  const sd_world *world = &A->tie->L->world;
+  if (world->refresh && world->ranks > 1) {
+    const sd_status status = world->refresh(world->ctx, v, A->tie->L->others, 6);
+    if (status != SD_OK) return status;
+  }
+  sd_tie_approach_add(A, v, share);
+  return SD_OK;
+}
+
+/* share = X r, borne = K^T X r */
+static sd_status take_slip(const sd_bodies *A, const double *r, double *borne, double *share)
+{
+  memset(borne, 0, sizeof(double) * 6 * (size_t) sd_tie_bodies(A));
+  memset(share, 0, sizeof(double) * 6 * (size_t) A->n);
+  if (!r) return SD_OK;
+  const sd_status status = add_approach(A, r, share);
+  return status == SD_OK ? collect(A, share, borne) : status;
+}
+
+/* H V = f, t->vectors on entry, from V = 0. What is borne follows V by the same steps, so that it
+ * needs no product of its own. */
+static sd_status solve(const sd_bodies *A, double tolerance, double *V, double *borne)
+{
   const long size = 6 * sd_tie_bodies(A);
-  double *r = t->vectors, *z = r + size, *p = z + size, rz, before = 1.0, enough = 0.0;
+  double *r = A->tie->vectors, *z = r + size, *p = z + size, rz, before = 1.0, enough = 0.0;
   memset(V, 0, sizeof(double) * (size_t) size);
-  memset(LV, 0, sizeof(double) * (size_t) size);
   memset(p, 0, sizeof(double) * (size_t) size);
-  resist_alone(A, V_0, r);
   for (int k = 0;; k++) {
     sd_status status = sd_tie_precondition(A, r, z);
     if (status == SD_OK) status = dots(A, 1, (const double *[]){r}, (const double *[]){z}, &rz);
     if (status != SD_OK) return status;
     if (!isfinite(rz)) return SD_ENOTFINITE;
     if (k == 0) enough = tolerance * tolerance * rz;
-    if (rz <= enough) break;
+    if (rz <= enough) return SD_OK;
     if (k == MOST_PRODUCTS) return SD_EMAXITER;
     for (long j = 0; j < size; j++) p[j] = z[j] + rz / before * p[j];
     before = rz;
-    if ((status = step(A, rz, V, LV)) != SD_OK) return status;
+    if ((status = step(A, rz, V, borne)) != SD_OK) return status;
   }
+}
+
+sd_status sd_tie_solve(const sd_bodies *A, const double *V_0, const double *r, double tolerance,
+                       double *V, double *borne, double *share)
+{
+  const sd_tie *t = A->tie;
+  const long size = 6 * sd_tie_bodies(A);
+  sd_status status = take_slip(A, r, borne, share);
+  if (status != SD_OK) return status;
+  resist_alone(A, V_0, t->vectors);
+  for (long j = 0; j < size; j++) t->vectors[j] -= borne[j];
+  if ((status = solve(A, tolerance, V, borne)) != SD_OK) return status;
   for (long j = 0; j < size; j++)
     if (t->scale[j] == 0.0) V[j] = V_0[j];
-  return SD_OK;
+  spread(A, V, t->rows);
+  return add_approach(A, t->rows, share);
 }
 
 void sd_tie_free(sd_tie *t)
 {
   sd_block_cholesky_free(&t->factor);
+  free(t->spring);
+  free(t->stiff);
   free(t->vectors);
   free(t->rows);
   free(t->ghosts);

@@ -1,8 +1,9 @@
 /* Bodies tied to one another by lubrication L (sd_lubrication.h): the sparse system of the
  * preconditioner of sd_bodies.h,
  *
- *   H V = H_0 V_0,   H = H_0 + K^T L K,   H_0: the resistances of the bodies alone
+ *   H V = H_0 V_0 - K^T X r,   H = H_0 + K^T (X + L) K,   H_0: the resistances of bodies alone
  *
+ * X: sd_tie_approach.h; r the slip for which V_0 is the velocity of bodies alone. Solved
  * by conjugate gradients within those for the forces, since a product with L is cheap beside one
  * with the mobility. Their preconditioner is an incomplete factor of H where pairs are stiff; what
  * is left couples weakly, so that the number of products does not depend on the gaps. Each rank has
@@ -20,11 +21,12 @@ extern "C" {
  * SD_ENOTFINITE; that of a function of the caller. */
 sd_status sd_tie_make(const sd_bodies *A);
 
-/* V from V_0, and LV = K^T L K V, until what H V lacks of H_0 V_0 is below `tolerance` of it.
- * Clumps of several ranks have theirs on each of them. SD_OK; SD_EMAXITER; SD_EINDEFINITE;
- * SD_ENOTFINITE; as sd_tie_make. */
-sd_status sd_tie_solve(const sd_bodies *A, const double *V_0, double tolerance, double *V,
-                       double *LV);
+/* V from V_0 and r (rows, NULL: 0), until what H V lacks of the right side is below `tolerance` of
+ * that; share (rows) = X (r + K V), and borne (by bodies) = K^T (L K V + share): what a body bears
+ * less than alone. Clumps of several ranks have theirs on each of them. SD_OK; SD_EMAXITER;
+ * SD_EINDEFINITE; SD_ENOTFINITE; as sd_tie_make. */
+sd_status sd_tie_solve(const sd_bodies *A, const double *V_0, const double *r, double tolerance,
+                       double *V, double *borne, double *share);
 void sd_tie_free(sd_tie *t);
 
 #ifdef __cplusplus

@@ -8,7 +8,7 @@
 
 /* In units of the drags of the bodies: pairs whose block is smaller are left out of the factor, as
  * is such fill. */
-static const double weak = 0.4, drop = 0.1;
+static const double weak = 0.8, drop = 0.1;
 
 /* Stiff pairs chain bodies of all ranks together, and a factor that ends at a rank would not know
  * how they move as one. So each rank has the whole: blocks and vectors are put where they belong
@@ -165,7 +165,7 @@ static void lone_block(const sd_bodies *A, int i, const double *L, double *scale
 /* Of a clump every sphere counts, of whatever rank: ghosts [36 ghosts] have their L_ii. */
 static void clump_block(const sd_bodies *A, int b, const double *ghosts, double *scale, double *out)
 {
-  const double *L = A->tie->L->diagonal;
+  const double *L = A->tie->stiff;
   double H[36];
   int near = 0;
   own_block(A, b, H);
@@ -188,7 +188,7 @@ static void clump_block(const sd_bodies *A, int b, const double *ghosts, double 
 static sd_status find_diagonal(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;
-  const double *L = t->L->diagonal;
+  const double *L = t->stiff;
   sd_status status = A->refresh ? A->refresh(A->refresh_ctx, L, t->ghosts, 36) : SD_OK;
   a->diagonal = calloc(36 * ((size_t) a->total + 1), sizeof(double));
   a->scale = calloc(6 * ((size_t) a->total + 1), sizeof(double));
@@ -278,9 +278,11 @@ static sd_status find_blocks(const sd_bodies *A, assembly *a)
     const int p = (int) first[NUMBER], q = (int) second[NUMBER];
     if (p == q || (j >= A->n && p > q)) continue;
     const int arms = has_arm(first + ARM) || has_arm(second + ARM);
-    if (!arms && strength(L->link + k, first + SCALES, second + SCALES) < weak * weak) continue;
+    sd_lubrication_link both = L->link[k];
+    both.XA -= L->model[k]; /* L_12 + X_12 */
+    if (!arms && strength(&both, first + SCALES, second + SCALES) < weak * weak) continue;
     double B[36], scaled[36] = {0.0}, sum = 0.0;
-    sd_lubrication_block(L, k, B);
+    sd_lubrication_block(&both, B);
     if (arms) move_to_centres(first + ARM, second + ARM, B);
     add_scaled(B, a->scale + 6 * (long) p, a->scale + 6 * (long) q, scaled);
     for (int e = 0; e < 36; e++) sum += scaled[e] * scaled[e];

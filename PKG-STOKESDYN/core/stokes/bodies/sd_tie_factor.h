@@ -17,6 +17,11 @@ typedef struct sd_tie {
   sd_lubrication *L;
   /* of the bodies of all ranks */
   sd_block_cholesky factor;
+  /* what the model resists beside the drags (sd_tie_approach.h): by pairs of L; by spheres, L_ii
+   * and its own together */
+  float (*spring)[3];
+  double *stiff;
+  size_t most_springs, most_stiff;
   /* products with L since sd_tie_make */
   long products;
   /* by bodies: which of all it is; 1 over the roots of the diagonal of H_0, 0: nobody is near */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_linear.h"
+#include "sd_tensor.h"
 
 /* How a pair shares its common motion: fitted to clusters of 3 to 27 close spheres. */
 static const double sharing = 1.2;
@@ -81,7 +82,9 @@ static sd_status reserve_pairs(sd_lubrication *L, long count)
   if (close) w->close = close;
   sd_lubrication_link *link = realloc(L->link, sizeof(*link) * room);
   if (link) L->link = link;
-  if (!pair || !close || !link) return SD_ENOMEMORY;
+  double *model = realloc(L->model, sizeof(double) * room);
+  if (model) L->model = model;
+  if (!pair || !close || !link || !model) return SD_ENOMEMORY;
   w->most_pairs = (long) room;
   return SD_OK;
 }
@@ -265,6 +268,14 @@ static void add_own(const sd_lubrication_link *B, own_block *sum)
   for (int e = 0; e < 3; e++) sum->UW[e] += B->YB21 * B->d[e];
 }
 
+/* What the model resists of an approach, fading from contact to the range */
+static double model_resists(double xi, double range, double ai, double aj, double eta)
+{
+  const double q = fmin(xi / range, 1.0);
+  return (1.0 - q * q * (3.0 - 2.0 * q)) *
+      sd_rpy_approach((1.0 + 0.5 * xi) * (ai + aj), ai, aj, eta);
+}
+
 static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long k)
 {
   const int i = L->pair[k][0], j = L->pair[k][1];
@@ -272,7 +283,7 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   const double *n = L->work->neighbours, *a = s->spheres.a, *w = s->spheres.w;
   own_block *own = L->work->own;
   const double share = pow(2.0 * c->t / (n[i] + n[c->at]), sharing);
-  const double scale = 0.5 * c->t * (1.0 / (w[i] * w[i]) + 1.0 / (w[c->at] * w[c->at]));
+  const double eta = 0.5 * (1.0 / (w[i] * w[i]) + 1.0 / (w[c->at] * w[c->at])), scale = c->t * eta;
   sd_pair_resistance R;
   const sd_status status =
       sd_two_sphere_correction(s->functions, a[i], a[c->at], fmax(c->xi, s->gap), 1.0 - share, &R);
@@ -288,6 +299,7 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
     *link = (sd_lubrication_link){.XA = 0.0};
   } else if (j < L->n)
     add_own(block + 2, own + j);
+  L->model[k] = model_resists(fmax(c->xi, 0.0), s->range, a[i], a[c->at], eta);
   return SD_OK;
 }
 
@@ -321,9 +333,8 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   return status;
 }
 
-void sd_lubrication_block(const sd_lubrication *L, long k, double B[36])
+void sd_lubrication_block(const sd_lubrication_link *l, double B[36])
 {
-  const sd_lubrication_link *l = L->link + k;
   const sd_pair_resistance R = {{0.0, l->XA, 0.0},
                                 {0.0, l->YA, 0.0},
                                 {0.0, l->YB12, l->YB21, 0.0},
@@ -395,6 +406,7 @@ void sd_lubrication_free(sd_lubrication *L)
   }
   free(L->pair);
   free(L->link);
+  free(L->model);
   free(L->diagonal);
   free(L->carried);
   free(L->others);

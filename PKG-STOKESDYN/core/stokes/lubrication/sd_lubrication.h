@@ -65,6 +65,9 @@ typedef struct {
   int (*pair)[2];
   /* [count] L_ij; L_ji is its transpose */
   sd_lubrication_link *link;
+  /* [count] for preconditioners: what the model itself resists when the two approach each other,
+   * beyond their drags, fading from contact to the range */
+  double *model;
   /* [36 n] L_ii, row-major, rows F T, columns U W */
   double *diagonal;
   /* [6n] what the flow takes off: forces and torques on the fluid are L V - carried */
@@ -78,8 +81,8 @@ typedef struct {
 /* The spheres have moved. On all ranks together. SD_OK; SD_ENOMEMORY; SD_EOUTSIDE: radii that
  * `functions` does not have; SD_ENOTFINITE; that of refresh. */
 sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene);
-/* L_ij of pair k, row-major, rows F T, columns U W */
-void sd_lubrication_block(const sd_lubrication *L, long k, double B[36]);
+/* L_ij of a pair, row-major, rows F T, columns U W */
+void sd_lubrication_block(const sd_lubrication_link *l, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
 

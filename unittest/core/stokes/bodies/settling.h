@@ -67,6 +67,17 @@ static inline settling *settling_create(int n, double phi, double gap)
   return s;
 }
 
+/* Unlike forces and torques that add up to nothing, in place of the weight */
+static inline void settling_shake(settling *s, uint64_t seed)
+{
+  double mean[6] = {0.0};
+  for (int j = 0; j < 6 * s->A.n; j++) {
+    s->F[j] = uniform(&seed, -6.0 * SD_PI, 6.0 * SD_PI);
+    mean[j % 6] += s->F[j] / s->A.n;
+  }
+  for (int j = 0; j < 6 * s->A.n; j++) s->F[j] -= mean[j % 6];
+}
+
 static inline void settling_solve(settling *s, int warm, double tolerance)
 {
   const sd_bodies_motion motion = {s->l, s->v, &s->no_clump, s->before, s->force};

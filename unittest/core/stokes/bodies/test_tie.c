@@ -3,6 +3,8 @@
 #include "settling.h"
 #include "tied_flock.h"
 
+#include "sd_tie_approach.h"
+
 static const double P6 = 6.0 * SD_PI;
 static const double doublet[6] = {0, 0, -1, 0, 0, 1};
 static const double ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
@@ -199,6 +201,68 @@ static void products_do_not_depend_on_the_gap(void **state)
   }
 }
 
+/* --- what the model resists --- */
+
+/* X of a crowd of unequal spheres: a sum of squares, zero for whatever moves all alike, and nothing but
+ * translations; `stiff` is its diagonal beside that of L. */
+static void model_resists_approach_alone(void **state)
+{
+  (void) state;
+  static const double a[8] = {1.0, 1.4, 0.6, 1.0, 0.8, 1.2, 1.0, 0.7};
+  flock *f = flock_create(0, NULL, NULL, 1, 0, 8, 1.3);
+  memcpy(f->a, a, sizeof(a));
+  crowd(f, 0.3, 11);
+  tied_flock *t = tie_flock(f, 1e-3);
+  flock_weigh(f, P6);
+  assert_int_equal(tied_move(t, 0, 1e-3, 100), SD_OK);
+  sd_bodies A = flock_place(f, 6);
+  A.tie = &t->tie;
+  enum { N = 48 };
+  double X[N][N] = {{0.0}}, together[N] = {0.0}, out[N] = {0.0};
+  for (int j = 0; j < N; j++) {
+    double unit[N] = {0.0};
+    unit[j] = 1.0;
+    sd_tie_approach_add(&A, unit, X[j]);
+    if (j % 6 == 1) together[j] = 1.0;
+  }
+  sd_tie_approach_add(&A, together, out);
+  double largest = 0.0;
+  for (int p = 0; p < N; p++)
+    for (int q = 0; q < N; q++) {
+      CHECK_NEAR(X[p][q], X[q][p], 1e-14);
+      if (p % 6 > 2 || q % 6 > 2) assert_true(X[p][q] == 0.0);
+      largest = fmax(largest, X[p][q]);
+      if (p / 6 != q / 6) continue;
+      const int e = 36 * (p / 6) + 6 * (p % 6) + q % 6;
+      CHECK_NEAR(t->tie.stiff[e], t->near.L.diagonal[e] + X[p][q], 1e-12 * t->tie.stiff[e - e % 36]);
+    }
+  assert_true(largest > 0.5 * P6);
+  for (int j = 0; j < N; j++) CHECK_NEAR(out[j], 0.0, 1e-14 * largest);
+  uint64_t seed = 3;
+  for (int k = 0; k < 100; k++) {
+    double v[N], w[N] = {0.0}, power = 0.0;
+    for (int j = 0; j < N; j++) v[j] = uniform(&seed, -1, 1);
+    sd_tie_approach_add(&A, v, w);
+    for (int j = 0; j < N; j++) power += v[j] * w[j];
+    assert_true(power > 0.0);
+  }
+  untie(t);
+}
+
+/* Where the blocks of lone spheres alone would take 28 (weight) and 24 */
+static void dense_clouds_take_few_products(void **state)
+{
+  (void) state;
+  settling *s = settling_create(1000, 0.5, 1e-6);
+  for (int k = 0; k < 2; k++) {
+    settling_solve(s, 0, 1e-3);
+    assert_true(s->report.products <= 20);
+    assert_true(s->tie.products <= 6 * s->report.products);
+    settling_shake(s, 5);
+  }
+  settling_free(s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -207,6 +271,8 @@ int main(void)
       cmocka_unit_test(shells_and_lubrication_go_together),
       cmocka_unit_test(a_guess_is_taken_up),
       cmocka_unit_test(products_do_not_depend_on_the_gap),
+      cmocka_unit_test(model_resists_approach_alone),
+      cmocka_unit_test(dense_clouds_take_few_products),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
