@@ -237,7 +237,10 @@ void PairSph::close_sums()
     fail_one(lmp,
              at_step() + "keyword correction: atom " + std::to_string(atom->tag[stops]) +
                  " is at a free surface: the smallest eigenvalue of its matrix is below " +
-                 text(least) + "; use shift yes, which is for free surfaces");
+                 text(least) + "; use shift yes, which is for free surfaces" +
+                 (update->setupflag ? "" : "; inside the fluid: start from a lattice disturbed by "
+                                           "displace_atoms, since from an exact one rows are drawn "
+                                           "apart"));
   if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
   forward(order.data(), columns);
   std::fill_n(&order[columns * (size_t) n], columns, 0.0);
