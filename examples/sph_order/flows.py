@@ -99,7 +99,8 @@ def options(o, dx):
 
 
 def gresho(n, **o):
-    """Triangular vortex (Gresho & Chan 1990), no viscosity, t = 1, c = 10: mean of the error of the velocity around, within r < 0.5."""
+    """Triangular vortex (Gresho & Chan 1990), no viscosity, t = 1, c = 10, from a lattice jittered by `rough`: mean of the error of the
+    velocity around, within r < 0.5."""
     def speed(r):
         return np.where(r < 0.2, 5 * r, np.where(r < 0.4, 2 - 5 * r, 0))
 
@@ -108,6 +109,7 @@ def gresho(n, **o):
         return np.where(r < 0.2, 5 + 12.5 * r**2, np.where(r < 0.4, middle, 3 + 4 * np.log(2))) - 5
     dx, c = 1 / n, 10.0
     x = lattice(*[(np.arange(n) + 0.5) * dx] * 2)
+    x += np.random.default_rng(3).uniform(-1, 1, x.shape) * o.get("rough", 0.0) * dx
     d = x - 0.5
     r = np.maximum(np.hypot(*d.T), 1e-12)
     v = np.stack([-d[:, 1], d[:, 0]], axis=1) * (speed(r) / r)[:, None]

@@ -24,11 +24,13 @@ ROWS = [
     ("gresho", "shift", 25, {}, {"L1": 0.032}, 1), ("gresho", "shift", 50, {}, {"L1": 0.015}, 0), ("gresho", "shift", 100, {}, {"L1": 0.015}, 0),
     ("gresho", "correction", 25, {}, {"L1": 0.030}, 1), ("gresho", "correction", 50, {}, {"L1": 0.006}, 0),
     ("gresho", "correction", 100, {}, {"L1": 0.0013}, 0),
+    ("gresho", "correction, cubic spline", 100, {"rough": 0.1}, {"L1": 0.0013}, 0),
     ("taylor_green", "plain", 50, {}, {}, 0), ("taylor_green", "delta", 50, {}, {}, 0),
     ("taylor_green", "shift", 25, {}, {"amplitude": 0.025, "rms": 0.035}, 1),
     ("taylor_green", "shift", 50, {}, {"amplitude": 0.01, "rms": 0.017}, 0),
     ("taylor_green", "correction", 50, {}, {"amplitude": 0.01, "rms": 0.017}, 0),
     ("taylor_green", "correction, cubic spline", 50, {}, {"amplitude": 0.005, "rms": 0.017}, 0),
+    ("taylor_green", "correction, cubic spline", 50, {"hdx": 1.2}, {"amplitude": 0.004, "rms": 0.005}, 0),
     ("poiseuille", "cubic spline", 40, {}, {}, 0),
     ("poiseuille", "correction, cubic spline", 10, {}, {"error": 0.02}, 1), ("poiseuille", "correction, cubic spline", 20, {}, {"error": 0.007}, 1),
     ("poiseuille", "correction, cubic spline", 40, {}, {"error": 0.0025}, 0),
@@ -62,7 +64,7 @@ def main():
         what = "%s, %s, %d%s" % (name, option, n, "".join(", %s %g" % item for item in more.items()))
         print("[sph_order] " + what, flush=True)
         try:
-            got = getattr(flows, name)(n, **OPTIONS[option], **more)
+            got = getattr(flows, name)(n, **dict(OPTIONS[option], **more))
         except RuntimeError:
             got = {"blown up": 1, "seconds": 0}
         for figure, limit in figures.items():
