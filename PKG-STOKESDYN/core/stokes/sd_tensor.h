@@ -12,11 +12,11 @@
 
 #include <math.h>
 
+#include "sd_constants.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-#include "sd_constants.h"
 
 typedef enum { SD_TENSOR_RPY, SD_TENSOR_OSEEN } sd_tensor;
 

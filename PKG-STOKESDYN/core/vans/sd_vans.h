@@ -12,7 +12,8 @@
  *   nut, stress, length   [N]  at the lower edge (node) of each slice
  *   profile  [SD_VANS_ROWS][N] averages of the grains: phi, vx, vy, vz, drag
  *   classes  [nclass] profiles one after the other, one a size class; NULL: all are one class
- * A grain whose centre is in slice p sees U[p+1] and phi[p]; nothing is interpolated.
+ * A grain whose centre is in slice p sees U[p+1] and phi[p], nothing is interpolated; or, with
+ * felt_by_volume, those of every slice that it reaches.
  *
  * Rules. SD_VANS_CONSISTENT is the physics. SD_VANS_YADE repeats Yade 2023.02a with its defects,
  * for those who must repeat a published run; where the two differ the functions below say so.
@@ -140,8 +141,7 @@ typedef struct {
 /* Adds grains to the sums [1 + nclass][N][ROWS]: of all, then of each class. The drag is that of
  * the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre
  * outside the mesh; with felt_by_volume in every slice that of the slip there. scratch [2 N].
- * Returns -1, or the index of the first sphere that belongs to no
- * class.
+ * Returns -1, or the index of the first sphere that belongs to no class.
  * Yade's rule: mirrored slices; the velocities of a class all in the slice of the centre. */
 int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
                     const sd_vans_averaging *how, const double *U, const double *hindrance,
@@ -228,7 +228,9 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
  * is none. */
 double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed);
 
-/* Effective kinematic viscosity at a node of solid fraction phi. */
+/* Effective kinematic viscosity at a node of solid fraction phi: eta/rho times 1 (constant), 1 + 2.5
+ * phi (Einstein), (1 - phi)^-2.8 (power: Krieger & Dougherty's form). Yade's rule has Einstein's at
+ * the node on the bottom, where `bottom` is 1, in place of the power. */
 double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom);
 
 /* The friction factor near a Reynolds number: f(Re (1 + s)) = sum f_k s^k for |s| <= reach. Zeros:
@@ -259,8 +261,8 @@ static inline double sd_vans_wall_length(const sd_vans_fluid *fluid)
  * at most 100 times, then 0: a function with jumps, which no series crosses. */
 double sd_vans_wall_friction_anew(sd_vans_rules rules, double Re, sd_vans_friction *near);
 
-/* The same from the series as far as it reaches (an error of 1e-13), otherwise anew:
- * the streams of two time steps are so near each other that few slices need that. */
+/* The same from the series as far as it reaches (an error of 1e-13), otherwise anew: the streams of
+ * two time steps are so near each other that few slices need that. */
 static inline double sd_vans_wall_friction(sd_vans_rules rules, double Re, sd_vans_friction *near)
 {
   const double s = Re * near->inverse - 1.0, *f = near->f;
@@ -333,7 +335,7 @@ void sd_vans_solver_free(sd_vans_solver *solver);
  *   books  out or NULL. Water gains driving + bottom + walls + surface - sum of moved + source, to
  *          rounding.
  * SD_OK or SD_ENOTFINITE.
- * wall = e 2/width coef f/8 (1/2 |U| U' + 1/2 |U| U), Re = |U| width/nu.
+ * wall = e 2/width coef f/8 (1/2 |U| U' + 1/2 |U| U), Re = |U| sd_vans_wall_length/nu.
  * Yade's rule: (1/2 U^2 U' + 1/2 U^2), and |g| for g. */
 sd_status sd_vans_solve(sd_vans_solver *solver, const sd_vans_fluid *fluid,
                         const sd_vans_column *column, int64_t nsteps, double dt,
@@ -373,8 +375,8 @@ double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, do
  * force until the next solve. Its drag is what the exchange coefficient foresees. When the next
  * solve comes each grain has felt its true drag, and the difference goes back to the water as a
  * source in the slices of that grain. So the water gives no more and no less than the grains get,
- * and the drag stays implicit. Grain by grain and not slice by slice: a grain sees the water at its
- * centre only, and a thin slice could not bear its part of that drag if it had no momentum left.
+ * and the drag stays implicit. Grain by grain and not slice by slice: a grain that sees the water
+ * at its centre only would take drag from a thin slice beside it that has no momentum left.
  *
  * The account of a grain, along x. */
 typedef struct {
@@ -426,8 +428,7 @@ void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
 
 /* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):
- * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2;  uncorrelated: (c, b, a) u_star.
- *                                                                 */
+ * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2;  uncorrelated: (c, b, a) u_star. */
 void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3]);
 
 /* Life of an eddy at the height z above the bed: 0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, at most

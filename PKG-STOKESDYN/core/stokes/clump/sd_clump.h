@@ -95,11 +95,9 @@ typedef struct {
 sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *options,
                          sd_clump_need *need);
 
-/* Solve. The shape must live as long as the clump does not need it: it is not kept. The owner
- * frees.
- * SD_OK; SD_ENOMEMORY (see need); SD_ESINGULAR: spheres at one point with equal radii (within 1e-6
- * of the size), or so close to it that double precision does not tell them apart; the iterative
- * solver's codes. need may be NULL. */
+/* Solve. The shape is not kept. The owner frees. need may be NULL.
+ * SD_OK; SD_ENOMEMORY (see need); SD_ESINGULAR: spheres of equal radii at one point, or so close to
+ * it that double precision does not tell them apart; the iterative solver's codes. */
 sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *options, sd_shells *cache,
                           sd_clump *clump, sd_clump_need *need);
 void sd_clump_free(sd_clump *clump);
