@@ -96,8 +96,8 @@ sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *options,
                          sd_clump_need *need);
 
 /* Solve. The shape is not kept. The owner frees. need may be NULL.
- * SD_OK; SD_ENOMEMORY (see need); SD_ESINGULAR: spheres of equal radii at one point, or so close to
- * it that double precision does not tell them apart; the iterative solver's codes. */
+ * SD_OK; SD_ENOMEMORY (see need); SD_ESINGULAR: spheres of equal radii at one point
+ * (SD_SHAPE_TOLERANCE); the codes of Cholesky's factorisation and of the iterative solver. */
 sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *options, sd_shells *cache,
                           sd_clump *clump, sd_clump_need *need);
 void sd_clump_free(sd_clump *clump);
