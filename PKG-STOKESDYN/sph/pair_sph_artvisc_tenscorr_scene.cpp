@@ -2,6 +2,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
+#include "fix_property_global.h"
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -78,6 +80,10 @@ void PairSph::find_fixes()
                    "the density");
   filter = only<FixSphDensityCorr>("");
   wall = only<FixWallAdamiSph>("; put all wall particles into one group");
+  std::set<std::string> properties;
+  for (const auto *fix : fixes_of<FixPropertyGlobal>(lmp))
+    if (!properties.insert(fix->property).second)
+      fail(lmp, COMMAND + ": more than one fix property/global gives " + fix->property);
 }
 
 /* Who advances the density, and who sets vest. */

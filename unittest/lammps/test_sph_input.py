@@ -95,6 +95,9 @@ AT_RUN = {
     "two densities": (PAIR + MOVE + "fix more all sph/density/summation", "only one can set the density"),
     "two filters": (PAIR + MOVE + "fix a all sph/density/corr shepard every 3\nfix b all sph/density/corr shepard every 3",
                     "more than one fix sph/density/corr"),
+    "two speeds of sound": (PAIR + MOVE + "fix a all property/global speedOfSound peratomtype 20 20\n"
+                            "fix h all property/global sl peratomtype 0.012 0.012\nfix b all property/global speedOfSound peratomtype 30 20",
+                            "more than one fix property/global gives speedOfSound"),
     "two pressures": (PAIR + MOVE + "fix more all sph/pressure absolut 3", "atom 60 is in the groups of two fixes sph/pressure"),
     "pressure for a part": (PAIR + MOVE + "unfix eos\ngroup one type 1\nfix eos one sph/pressure absolut 3", "is in the group of no fix"),
     "no pair style": (MOVE, "Fix sph/pressure: there is no pair_style sph/artVisc/tensCorr"),
