@@ -95,7 +95,8 @@ void VansStream::no_average(int n, double area)
   set.voice.fail("phi = " + text(phi()[n]) + " in " + slice + " (z = " +
                  text(mesh.z_ref + mesh.edge[n]) + " to " + text(mesh.z_ref + mesh.edge[n + 1]) +
                  "): more grains than fit. Is the area " + text(area) +
-                 " right, or do members of clumps overlap (overlap once)?");
+                 (set.point ? " right, and are slices as high as grains (grains point)?"
+                            : " right, or do members of clumps overlap (overlap once)?"));
 }
 
 void VansStream::take_averages(double area, const double *sums)
