@@ -178,10 +178,11 @@ static entry read_table(const sd_two_sphere *t, double ratio, double xi)
   return e;
 }
 
-/* (1 - q) D + q Q^T D Q with the radii */
-static sd_pair_resistance put_together(const entry *e, double a1, double a2, double xi, double q)
+/* p D + q Q^T D Q with the radii */
+static sd_pair_resistance put_together(const entry *e, double a1, double a2, double xi, double p,
+                                       double q)
 {
-  const double h = a1 * (1.0 + 0.5 * xi), g = a2 * (1.0 + 0.5 * xi), p = 1.0 - q;
+  const double h = a1 * (1.0 + 0.5 * xi), g = a2 * (1.0 + 0.5 * xi);
   functions scale, D;
   sd_two_sphere_scales(a1, a2, scale);
   for (int k = 0; k < FUNCTIONS; k++) D[k] = p * scale[k] * e->full[k];
@@ -198,13 +199,13 @@ static sd_pair_resistance put_together(const entry *e, double a1, double a2, dou
 }
 
 sd_status sd_two_sphere_correction(const sd_two_sphere *t, double a1, double a2, double xi,
-                                   double q, sd_pair_resistance *R)
+                                   double p, double q, sd_pair_resistance *R)
 {
   const double small = a1 < a2 ? a1 : a2, large = a1 < a2 ? a2 : a1, ratio = large / small;
   if (!(ratio <= t->largest_ratio * (1.0 + 1e-12))) return SD_EOUTSIDE;
   if (!(xi >= SD_TWO_SPHERE_SMALLEST_XI && xi <= SD_TWO_SPHERE_LARGEST_XI)) return SD_EOUTSIDE;
   const entry e = read_table(t, ratio, xi);
-  *R = put_together(&e, small, large, xi, q);
+  *R = put_together(&e, small, large, xi, p, q);
   if (a1 > a2) *R = sd_pair_resistance_exchanged(R);
   return SD_OK;
 }

@@ -25,9 +25,9 @@ typedef struct sd_two_sphere sd_two_sphere;
 sd_status sd_two_sphere_create(double largest_ratio, sd_two_sphere **out);
 void sd_two_sphere_free(sd_two_sphere *t);
 
-/* R = (1 - q) D + q Q^T D Q, D = R_exact - R_rpy of two spheres alone, Q^T D Q what it does to
+/* R = p D + q Q^T D Q, D = R_exact - R_rpy of two spheres alone, Q^T D Q what it does to
  * their relative motion (sd_pair_resistance.h), for a viscosity of 1. xi: the centre distance is
- * a1 + a2 + xi (a1 + a2)/2. 0 <= q <= 1. Both parts are positive semidefinite: the flow of the RPY
+ * a1 + a2 + xi (a1 + a2)/2. p, q >= 0. Both parts are positive semidefinite: the flow of the RPY
  * model is the one of least dissipation among more flows than the exact one. D is the exact one
  * within 2e-8 (to ratio 10) or 1e-7 Stokes drags of the smaller sphere, or of D where that is
  * larger; what is lost of definiteness by that is less than 1e-8 of the largest eigenvalue, beyond
@@ -36,7 +36,7 @@ void sd_two_sphere_free(sd_two_sphere *t);
  * SD_OK; SD_EOUTSIDE: a ratio larger than that created for, xi not in [SD_TWO_SPHERE_SMALLEST_XI,
  * SD_TWO_SPHERE_LARGEST_XI]. */
 sd_status sd_two_sphere_correction(const sd_two_sphere *t, double a1, double a2, double xi,
-                                   double q, sd_pair_resistance *R);
+                                   double p, double q, sd_pair_resistance *R);
 
 #ifdef __cplusplus
 }

@@ -64,7 +64,7 @@ static void add_classical(const near_scene *q, double *R)
       sd_normalize(d);
       sd_pair_resistance D;
       assert_int_equal(
-          sd_two_sphere_correction(q->functions, q->s.a[j], q->s.a[i], gap, 0.0, &D), SD_OK);
+          sd_two_sphere_correction(q->functions, q->s.a[j], q->s.a[i], gap, 1.0, 0.0, &D), SD_OK);
       sd_pair_resistance_blocks(&D, d, B[0], B[1], B[2]);
       for (int p = 0; p < 6; p++)
         for (int e = 0; e < 6; e++) {

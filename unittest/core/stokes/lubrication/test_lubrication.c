@@ -212,7 +212,7 @@ static void the_fastest_rate_is_that_of_the_film(void **state)
   near_scene q = pair_at(1e-3, 2.0);
   near_place(&q);
   sd_pair_resistance full;
-  assert_int_equal(sd_two_sphere_correction(q.functions, 1.0, 2.0, 1e-3, 0.0, &full), SD_OK);
+  assert_int_equal(sd_two_sphere_correction(q.functions, 1.0, 2.0, 1e-3, 1.0, 0.0, &full), SD_OK);
   const double W[12] = {0.3, 0.3, 0.3, 9.0, 9.0, 9.0, 0.7, 0.7, 0.7, 9.0, 9.0, 9.0};
   double v[12], work[12], rate;
   for (int j = 0; j < 12; j++) v[j] = 1.0 + 0.1 * j;

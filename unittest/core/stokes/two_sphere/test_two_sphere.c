@@ -37,8 +37,8 @@ static sd_pair_resistance correction(const sd_two_sphere *t, double a1, double a
                                      sd_pair_resistance *relative)
 {
   sd_pair_resistance full;
-  assert_int_equal(sd_two_sphere_correction(t, a1, a2, xi, 0.0, &full), SD_OK);
-  assert_int_equal(sd_two_sphere_correction(t, a1, a2, xi, 1.0, relative), SD_OK);
+  assert_int_equal(sd_two_sphere_correction(t, a1, a2, xi, 1.0, 0.0, &full), SD_OK);
+  assert_int_equal(sd_two_sphere_correction(t, a1, a2, xi, 0.0, 1.0, relative), SD_OK);
   return full;
 }
 
@@ -279,12 +279,12 @@ static void outside_is_refused(void **state)
   assert_int_equal(sd_two_sphere_create(NAN, &t), SD_EOUTSIDE);
   t = create(2.0);
   sd_pair_resistance f;
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.0, 0.0, &f), SD_OK);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.1, 1.0, 0.0, &f), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 2.1, 1.0, 1.0, 0.0, &f), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.1, 0.0, &f), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 0.9e-8, 0.0, &f), SD_EOUTSIDE);
-  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, NAN, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.0, 1.0, 0.0, &f), SD_OK);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.1, 1.0, 1.0, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 2.1, 1.0, 1.0, 1.0, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 8.1, 1.0, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, 0.9e-8, 1.0, 0.0, &f), SD_EOUTSIDE);
+  assert_int_equal(sd_two_sphere_correction(t, 1.0, 2.0, NAN, 1.0, 0.0, &f), SD_EOUTSIDE);
   sd_two_sphere_free(t);
 }
 
