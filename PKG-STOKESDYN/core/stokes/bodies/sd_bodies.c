@@ -15,15 +15,16 @@ typedef struct {
   double *l, *v, *V;
 } state;
 
-/* What the loop goes by: r.z, and what of it is rounding; the power l.(K V - u) of the start; and
- * that of slips that are rounding */
+/* What the loop goes by: r.z, and what of it is rounding; the power l.(K V - u) of the start, that
+ * of the loads by V + dV as they stand, and that of slips that are rounding */
 typedef struct {
-  double rz, noise, spent, floor;
+  double rz, noise, spent, loads, floor;
 } powers;
 
 typedef struct {
   const sd_bodies *A;
-  const double *u;
+  /* of the problem, by rows; and what is to be borne, with L V_inf */
+  const double *u, *given;
   loads F;
   /* (l, V); pre(r, 0); (p, q) */
   state x, z, along;
@@ -189,22 +190,25 @@ static sd_status dot(const sd_bodies *A, const double *a, const double *b, doubl
   return A->sum ? A->sum(A->sum_ctx, sum, 1) : SD_OK;
 }
 
-/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. Also, with w, w.z. */
+/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. The power of the loads.
+ * Also, with w, w.z. */
 static sd_status weigh(loop *c, const double *w, double *wz)
 {
   const sd_bodies *A = c->A;
-  double s[3] = {0.0, 0.0, 0.0};
+  double s[4] = {0.0};
   for (long i = 0; i < A->n; i++)
     for (int d = 0; d < A->width; d++) {
       const long j = A->width * i + d;
       s[0] += c->r[j] * c->z.l[j];
       s[1] += drag_of(A, i, d) * c->r[j] * c->r[j];
-      if (w) s[2] += w[j] * c->z.l[j];
+      s[2] += c->given[j] * (c->x.v[j] + c->z.v[j] - c->u[j]);
+      if (w) s[3] += w[j] * c->z.l[j];
     }
-  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 3) : SD_OK;
+  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 4) : SD_OK;
   c->power.rz = s[0];
   c->power.noise = rounding * s[1];
-  if (w) *wz = s[2];
+  c->power.loads = s[2];
+  if (w) *wz = s[3];
   return status;
 }
 
@@ -394,7 +398,7 @@ static sd_status step(loop *c, double *beta)
   return status;
 }
 
-/* Until sqrt(r.z / spent) < tolerance. r.z is the power of what is still wrong, by the blocks of
+/* Until sqrt(r.z / e) < tolerance, e the larger of both powers. r.z is the power of what is still wrong, by the blocks of
  * the bodies: below the floor it is rounding of velocities that are the stream's own. */
 static sd_status iterate(loop *c, double tolerance, int max_iter)
 {
@@ -406,9 +410,10 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
   turn_along(c, 0.0);
   for (;;) {
     const double before = power->rz;
-    if (!isfinite(before) || !isfinite(power->spent)) return SD_ENOTFINITE;
+    const double e = fmax(power->spent, power->loads);
+    if (!isfinite(before + power->spent + power->loads)) return SD_ENOTFINITE;
     if (before < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
-    c->report->residual = power->spent > 0.0 ? sqrt(fmax(before, 0.0) / power->spent) : 0.0;
+    c->report->residual = e > 0.0 ? sqrt(fmax(before, 0.0) / e) : 0.0;
     if (before <= power->floor) return SD_OK;
     if (c->report->residual < tolerance) return SD_OK;
     if (c->report->products >= max_iter) return SD_EMAXITER;
@@ -453,6 +458,7 @@ sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *prob
   loop c = {
       .A = A,
       .u = problem->u,
+      .given = problem->F,
       .x = {motion->l, motion->v, motion->V},
       .z = {rows, rows + size, clumps + motions},
       .along = {rows + 2 * size, rows + 3 * size, clumps + 2 * motions},

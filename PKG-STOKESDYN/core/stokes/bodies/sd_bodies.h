@@ -21,8 +21,10 @@
  * K^T l = F holds from the start, so K^T p = 0, and of dN only K dN F is ever seen. r.z = z.M_b' z
  * >= 0 and p.w = p.M p, so that this is conjugate gradients with all that is known of them. r must
  * be updated with K q in it: without, digits are lost near 1e-7. Free spheres leave after their one
- * product with the exact answer. e = l.(K V - u) of the start, the power spent; the tolerance is
- * about an energy norm, and V + dV is a hundred times better than it.
+ * product with the exact answer. e is the power spent: l.(K V - u) of the start, or that of the
+ * loads, F.(K (V + dV) - u) by spheres, whichever is larger. Bodies that fall together spend many
+ * times what they would alone, and the start knows them alone. The tolerance is about an energy
+ * norm, and V + dV is ten times better than it, a hundred times where all fall together.
  *
  * With lubrication L between spheres of different bodies (a tie, sd_tie.h)
  *
