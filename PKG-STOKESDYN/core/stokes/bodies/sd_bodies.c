@@ -316,9 +316,8 @@ static sd_status guess_motion(loop *c, const double *before, const state *guess)
   return status;
 }
 
-/* V takes what it lacks at once, and r loses it. Without that r of a good guess would be K times
- * the V of neighbours, and r.z no power but rounding of it, of any sign. Not with a tie, where
- * l goes with V. */
+/* V takes what it lacks at once, and r loses it: for a guess so good that r is K times what
+ * neighbours add to V, and r.z close to its noise. Not with a tie, where l goes with V. */
 static sd_status settle(loop *c)
 {
   const sd_bodies *A = c->A;
@@ -351,7 +350,8 @@ static sd_status start(loop *c, const double *before, int warm)
     memcpy(c->x.V, guess->V, sizeof(double) * 6 * (size_t) c->A->clumps);
   }
   status = residual(c);
-  if (status == SD_OK && !c->A->tie) status = settle(c);
+  const int blurred = c->power.rz < 1e4 * c->power.noise;
+  if (status == SD_OK && blurred && !c->A->tie) status = settle(c);
   if (status != SD_OK || c->power.rz <= c->power.spent) return status;
   status = start_cold(c);
   return status == SD_OK ? residual(c) : status;
