@@ -99,6 +99,24 @@ def test_periodic_box_on_any_ranks(tmp_path, words):
         assert (np.abs(d).max(axis=0) < 1e-10 * np.maximum(scale, 1)).all()
 
 
+@pytest.mark.parametrize("words, ranks", [("", 2), ("rigid_clumps yes shell 12", 1)])
+def test_periodic_run_in_pieces_is_the_run_in_one(tmp_path, words, ranks):
+    """Films and images after a restart are those of before it, and so is what the solver begins from."""
+    style = f"{ALL} {CLOSE} {words}"
+    lines = input_lines(dense(), style, tmp_path / "data", box=[(0.0, L)] * 3, dt=1e-3, **PERIODIC) + LOADS
+    columns = "x y z vx vy vz omegax omegay omegaz f_move[4] f_move[5] f_move[6]"
+    end = dump_lines("end.dump", every=10, columns=columns, name="end")
+    lmp(tmp_path, lines + end + ["run 10"], ranks)
+    whole = read_dump(tmp_path / "end.dump")[-1][1]
+    lmp(tmp_path, lines + ["run 4", "write_restart half.restart"], ranks)
+    cut = [k for k, line in enumerate(lines) if line.startswith("read_data")][0]
+    again = [line for line in lines[:cut] if "boundary" not in line] + ["read_restart half.restart"] + lines[cut + 1:]
+    lmp(tmp_path, again + end + ["run 6"], ranks)
+    d = read_dump(tmp_path / "end.dump")[-1][1] - whole
+    d[:, :3] -= L * np.round(d[:, :3] / L)
+    assert (np.abs(d).max(axis=0) < 1e-10 * np.maximum(np.abs(whole).max(axis=0), 1)).all()
+
+
 @pytest.mark.parametrize("boundary, words", [("f f f", "fluid_velocity v_u 0.2 0"), ("p p p", "fluid_velocity 0.1 0.2 0"),
                                              ("f f f", "fluid_velocity v_u 0.2 0 rigid_clumps yes shell 12"),
                                              ("p p p", "rigid_clumps yes")])

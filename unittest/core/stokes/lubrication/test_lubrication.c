@@ -82,12 +82,12 @@ static void gaps_change_it_without_a_jump(void **state)
   assert_true(change(0.1, 0.2) > 1.0);
 }
 
-/* Smallest eigenvalue over the largest, of the symmetric matrix scaled to Stokes drags: by the shift
- * at which a factor exists. */
-static void check_positive(near_scene *q)
+/* Smallest eigenvalue over the largest, of the symmetric L [(6n)^2] scaled to Stokes drags: by the
+ * shift at which a factor exists. */
+static void check_positive(const near_scene *q, const double *L)
 {
   const int N = 6 * q->s.n;
-  double *L = near_dense(q), *copy = malloc(sizeof(double) * (size_t) (N * N)), largest = 0.0;
+  double *copy = malloc(sizeof(double) * (size_t) (N * N)), largest = 0.0;
   for (int i = 0; i < N; i++)
     for (int j = 0; j < N; j++) {
       CHECK_NEAR(L[i * N + j], L[j * N + i], 1e-9 * fabs(L[i * N + j]) + 1e-12);
@@ -102,7 +102,7 @@ static void check_positive(near_scene *q)
   }
   /* 1e-8 of the largest: tables err by 1e-7 Stokes drags, floors allow 1e4 of them */
   assert_true(positive_definite(copy, N, -1e-8 * largest));
-  free(L), free(copy);
+  free(copy);
 }
 
 static void it_resists_every_motion(void **state)
@@ -113,7 +113,51 @@ static void it_resists_every_motion(void **state)
     for (int i = 0; i < 12; i++) q.s.w[i] = 1.0 / sqrt(eta * (1.0 + 0.1 * (i % 3)));
     near_place(&q);
     assert_true(q.L.count > 0);
-    check_positive(&q);
+    double *L = near_dense(&q);
+    check_positive(&q, L);
+    free(L);
+    near_free(&q);
+  }
+}
+
+/* The sum over the pairs of q with any p D + (1 - p) Q^T D Q, and any t >= 0 */
+static double *dense_of_any_shares(const near_scene *q, uint64_t *seed)
+{
+  const int N = 6 * q->s.n;
+  double *L = calloc((size_t) (N * N), sizeof(double)), d[3], B[3][36];
+  for (long k = 0; k < q->L.count; k++) {
+    const int i = q->L.pair[k][0], j = q->L.pair[k][1];
+    const double ai = q->s.a[i], aj = q->s.a[j], t = uniform(seed, 0.0, 1.0);
+    const double p = k % 3 ? uniform(seed, 0.0, 1.0) : k % 2;
+    sd_minus(q->s.x + 3 * j, q->s.x + 3 * i, d);
+    const double xi = fmax(2.0 * (sqrt(sd_dot(d, d)) / (ai + aj) - 1.0), q->gap);
+    sd_normalize(d);
+    sd_pair_resistance R;
+    assert_int_equal(sd_two_sphere_correction(q->functions, ai, aj, xi, t * p, t * (1.0 - p), &R), SD_OK);
+    sd_pair_resistance_blocks(&R, d, B[0], B[1], B[2]);
+    for (int r = 0; r < 6; r++)
+      for (int c = 0; c < 6; c++) {
+        L[(6 * i + r) * N + 6 * i + c] += B[0][6 * r + c];
+        L[(6 * j + r) * N + 6 * j + c] += B[2][6 * r + c];
+        L[(6 * i + r) * N + 6 * j + c] += B[1][6 * r + c];
+        L[(6 * j + c) * N + 6 * i + r] += B[1][6 * r + c];
+      }
+  }
+  return L;
+}
+
+/* Whatever the rule by which pairs share their common motion */
+static void any_shares_resist_every_motion(void **state)
+{
+  (void) state;
+  uint64_t seed = 8;
+  for (int k = 0; k < 100; k++) {
+    near_scene q = near_create(cloud_dense(12, 0.1 + 0.004 * k, 1.0, 1.0 + 0.04 * k, eta, 23 + k), 5.0, 1e-4);
+    near_place(&q);
+    assert_true(q.L.count > 0);
+    double *L = dense_of_any_shares(&q, &seed);
+    check_positive(&q, L);
+    free(L);
     near_free(&q);
   }
 }
@@ -275,6 +319,7 @@ int main(void)
       cmocka_unit_test(a_pair_alone_is_exact),
       cmocka_unit_test(gaps_change_it_without_a_jump),
       cmocka_unit_test(it_resists_every_motion),
+      cmocka_unit_test(any_shares_resist_every_motion),
       cmocka_unit_test(none_within_a_body),
       cmocka_unit_test(neighbours_share_the_common_motion),
       cmocka_unit_test(a_flow_takes_pairs_along),
