@@ -143,20 +143,21 @@ void Hydrodynamics::drag()
 void Hydrodynamics::lubricate()
 {
   const size_t n = solvers.size();
-  std::vector<double> v(6 * n + 6), F(6 * n + 6);
+  films_v.resize(6 * n + 6);
+  films_F.resize(6 * n + 6);
   for (size_t k = 0; k < n; k++) {
-    std::copy_n(atom->v[solvers[k]], 3, &v[6 * k]);
-    std::copy_n(atom->omega[solvers[k]], 3, &v[6 * k + 3]);
+    std::copy_n(atom->v[solvers[k]], 3, &films_v[6 * k]);
+    std::copy_n(atom->omega[solvers[k]], 3, &films_v[6 * k + 3]);
   }
   lubrication.place(ambient);
-  lubrication.forces(v.data(), F.data());
+  lubrication.forces(films_v.data(), films_F.data());
   if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
     guard.look_at_films(*lubrication.matrix(), solvers.data());
   for (size_t k = 0; k < n; k++) {
     double *row = memory->rows.row(solvers[k]);
     for (int d = 0; d < 3; d++) {
-      row[State::FORCE + d] += F[6 * k + d];
-      row[State::TORQUE + d] += F[6 * k + 3 + d];
+      row[State::FORCE + d] += films_F[6 * k + d];
+      row[State::TORQUE + d] += films_F[6 * k + 3 + d];
     }
   }
 }
@@ -438,7 +439,7 @@ double Hydrodynamics::dissipation(int i) const
 double Hydrodynamics::memory_usage() const
 {
   const size_t numbers = slip.capacity() + resistance.capacity() +
-      spin.capacity() + solution.capacity() + work_room;
+      spin.capacity() + solution.capacity() + films_v.capacity() + films_F.capacity() + work_room;
   return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
       lubrication.memory_usage() + mobile.memory_usage() + sizeof(double) * (double) numbers;
 }

@@ -102,6 +102,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Velocities::Guess begin_with;
   /* the slip of clumps with shells that interact: a strain carries them otherwise */
   std::vector<double> carried;
+  /* velocities, and forces of lubrication on them, likewise */
+  std::vector<double> films_v, films_F;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();

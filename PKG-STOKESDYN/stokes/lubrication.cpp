@@ -115,7 +115,7 @@ void Lubrication::forces(const double *v, double *out)
 
 double Lubrication::memory_usage() const
 {
-  return sizeof(double) * (10.0 * near.count + 42.0 * near.n_all) + images.memory_usage();
+  return sizeof(double) * (14.0 * near.count + 64.0 * near.n_all) + images.memory_usage();
 }
 
 }    // namespace StokesDyn

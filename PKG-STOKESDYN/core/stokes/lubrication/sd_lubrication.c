@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_linear.h"
+#include "sd_room.h"
 #include "sd_tensor.h"
 
 /* Which sphere an image is of: its rank, its row there, its body */
@@ -29,6 +30,8 @@ struct sd_lubrication_work {
   double *identity;
   /* [n_all] n_i; [6 n_all] u */
   double *neighbours, *flow;
+  /* some u is not 0 */
+  int flows;
   /* [n] */
   own_block *own;
   /* [count] */
@@ -41,25 +44,17 @@ static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *
   struct sd_lubrication_work *w = L->work;
   const size_t all = (size_t) s->n_all, others = (size_t) (s->n_all - s->n);
   if (s->n_all >= w->most_spheres) {
-    double *neighbours = realloc(w->neighbours, sizeof(double) * (all + 1));
-    if (neighbours) w->neighbours = neighbours;
-    double *flow = realloc(w->flow, sizeof(double) * 6 * (all + 1));
-    if (flow) w->flow = flow;
-    double *diagonal = realloc(L->diagonal, sizeof(double) * 36 * (all + 1));
-    if (diagonal) L->diagonal = diagonal;
-    double *carried = realloc(L->carried, sizeof(double) * 6 * (all + 1));
-    if (carried) L->carried = carried;
-    own_block *own = realloc(w->own, sizeof(*own) * (all + 1));
-    if (own) w->own = own;
-    if (!neighbours || !flow || !diagonal || !carried || !own) return SD_ENOMEMORY;
+    if (!sd_grow(&w->neighbours, sizeof(double), all) ||
+        !sd_grow(&w->flow, 6 * sizeof(double), all) || !sd_grow(&w->own, sizeof(*w->own), all) ||
+        !sd_grow(&L->diagonal, 36 * sizeof(double), all) ||
+        !sd_grow(&L->carried, 6 * sizeof(double), all))
+      return SD_ENOMEMORY;
     w->most_spheres = s->n_all + 1;
   }
   if ((long) others >= w->most_others) {
-    double *identity = realloc(w->identity, sizeof(double) * IDENTITY * (others + 1));
-    if (identity) w->identity = identity;
-    double *rows = realloc(L->others, sizeof(double) * 6 * (others + 1));
-    if (rows) L->others = rows;
-    if (!identity || !rows) return SD_ENOMEMORY;
+    if (!sd_grow(&w->identity, IDENTITY * sizeof(double), others) ||
+        !sd_grow(&L->others, 6 * sizeof(double), others))
+      return SD_ENOMEMORY;
     w->most_others = (long) others + 1;
   }
   L->n = s->n;
@@ -73,15 +68,9 @@ static sd_status reserve_pairs(sd_lubrication *L, long count)
   struct sd_lubrication_work *w = L->work;
   if (count < w->most_pairs) return SD_OK;
   const size_t room = (size_t) (count + count / 4 + 64);
-  int(*pair)[2] = realloc(L->pair, sizeof(*pair) * room);
-  if (pair) L->pair = pair;
-  closeness *close = realloc(w->close, sizeof(*close) * room);
-  if (close) w->close = close;
-  sd_lubrication_link *link = realloc(L->link, sizeof(*link) * room);
-  if (link) L->link = link;
-  double *model = realloc(L->model, sizeof(double) * room);
-  if (model) L->model = model;
-  if (!pair || !close || !link || !model) return SD_ENOMEMORY;
+  if (!sd_grow(&L->pair, sizeof(*L->pair), room) || !sd_grow(&w->close, sizeof(*w->close), room) ||
+      !sd_grow(&L->link, sizeof(*L->link), room) || !sd_grow(&L->model, sizeof(double), room))
+    return SD_ENOMEMORY;
   w->most_pairs = (long) room;
   return SD_OK;
 }
@@ -172,14 +161,18 @@ static sd_status count_neighbours(sd_lubrication *L, const sd_lubrication_scene 
   return s->world.refresh ? s->world.refresh(s->world.ctx, n, n + s->n, 1) : SD_OK;
 }
 
-/* u of all, those of others from where they are known */
+/* u of all, those of others from where they are known; most fluids rest */
 static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   double *flow = L->work->flow;
+  sd_status status = SD_OK;
   memset(L->carried, 0, sizeof(double) * 6 * (size_t) s->n);
+  L->work->flows = 0;
   if (!s->u) return SD_OK;
   memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
-  return s->world.refresh ? s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6) : SD_OK;
+  if (s->world.refresh) status = s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6);
+  for (long j = 0; j < 6 * (long) s->n_all; j++) L->work->flows |= flow[j] != 0.0;
+  return status;
 }
 
 /* V_inf of a pair at x, each of its two spheres 6 numbers */
@@ -304,7 +297,7 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
                                scale * (1.0 - share), &R);
   if (status != SD_OK) return status;
   sd_lubrication_link *link = L->link + k;
-  if (s->u) add_carried(L, s, k, &R);
+  if (L->work->flows) add_carried(L, s, k, &R);
   add_own(&R, 0, R.YB[0], link->d, own + i);
   if (j == i) { /* an image on either side: what their 12 and 21 have in UW and WU cancels */
     add_own(&R, 1, 0.0, link->d, own + i);
