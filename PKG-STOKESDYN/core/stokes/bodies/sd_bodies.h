@@ -33,9 +33,10 @@
  * and the loop is the same: pre(r, f) then takes M_b'^-1 + X in the place of M_b'^-1, X what
  * close spheres resist by M itself (sd_tie_approach.h), and H = N^-1 + K^T (X + L) K in that of
  * N^-1. What is stiff is in H, so that gaps may be as small as they like. K^T l + K^T L K V = f
- * holds whatever H V is solved to, since l is made from V, and two digits of V will do, since
- * beta makes the next direction conjugate to the last one all the same. Here, but for X, r.z =
- * z.M_b' z + dV.L dV, p.w = p.M p + q.L q, and e has (K V - u).L (K V - V_inf) besides. */
+ * holds whatever H V is solved to, since l is made from V. A few digits of the first V will do and
+ * less than one of the last, since beta makes the next direction conjugate to the last one all the
+ * same. Here, but for X, r.z = z.M_b' z + dV.L dV, p.w = p.M p + q.L q, and e has (K V - u).L (K V
+ * - V_inf) besides. */
 #ifndef SD_BODIES_H
 #define SD_BODIES_H
 
