@@ -70,31 +70,25 @@ def test_bad_keyword(changes, message):
         s.do(line(**changes), "run 0")
 
 
-@pytest.mark.parametrize("rows, message", [
-    (["1"] * 20, "has 20 values, ncell \\+ 1 = 21 are needed"),
-    (["1"] * 22, "has 22 values, ncell \\+ 1 = 21 are needed"),
-    (["0 1"] * 10 + ["1"], "row 1 has 2 values, one a row is needed"),
-    (["1"] * 20 + ["nan"], "line 21: 'nan' is not a finite number"),
-    (["1"] * 20 + ["fast"], "line 21: 'fast' is not a finite number"),
-])
-def test_bad_profile_file(tmp_path, monkeypatch, rows, message):
-    monkeypatch.chdir(tmp_path)    # short names: the python module cuts messages off
-    (tmp_path / "u").write_text("\n".join(rows))
-    with pytest.raises(Exception, match=message):
-        Scene().do(line(profile="file u"))
+PROFILE, GIVEN = dict(profile="file rows"), dict(couple="fluid", given="file rows")
 
 
-@pytest.mark.parametrize("rows, message", [
-    (["0.1 0 0"] * 19, "has 19 rows, ncell = 20 are needed"),
-    (["0.1 0 0"] * 19 + ["0.1 0"], "row 20 has 2 values"),
-    (["0.1 0 0"] * 19 + ["1.1 0 0"], "phi = 1.1 in slice 20"),
-    (["0.1 0 0"] * 19 + ["0.1 0 inf"], "line 20: 'inf' is not a finite number"),
+@pytest.mark.parametrize("keywords, rows, message", [
+    (PROFILE, ["1"] * 20, "has 20 values, ncell \\+ 1 = 21 are needed"),
+    (PROFILE, ["1"] * 22, "has 22 values, ncell \\+ 1 = 21 are needed"),
+    (PROFILE, ["0 1"] * 10 + ["1"], "row 1 has 2 values, one a row is needed"),
+    (PROFILE, ["1"] * 20 + ["nan"], "line 21: 'nan' is not a finite number"),
+    (PROFILE, ["1"] * 20 + ["fast"], "line 21: 'fast' is not a finite number"),
+    (GIVEN, ["0.1 0 0"] * 19, "has 19 rows, ncell = 20 are needed"),
+    (GIVEN, ["0.1 0 0"] * 19 + ["0.1 0"], "row 20 has 2 values"),
+    (GIVEN, ["0.1 0 0"] * 19 + ["1.1 0 0"], "phi = 1.1 in slice 20"),
+    (GIVEN, ["0.1 0 0"] * 19 + ["0.1 0 inf"], "line 20: 'inf' is not a finite number"),
 ])
-def test_bad_given_file(tmp_path, monkeypatch, rows, message):
+def test_bad_file(tmp_path, monkeypatch, keywords, rows, message):
     monkeypatch.chdir(tmp_path)    # short names: the python module cuts messages off
-    (tmp_path / "given").write_text("\n".join(rows))
+    (tmp_path / "rows").write_text("\n".join(rows))
     with pytest.raises(Exception, match=message):
-        Scene().do(line(couple="fluid", given="file given"))
+        Scene().do(line(**keywords))
 
 
 @pytest.mark.parametrize("edges, message", [("0 0.1", "has 2 edges, at least 3 are needed"), ("0 0.1 0.1 0.2", "edge 3 \\(0.1\\) is not above the one before")])
