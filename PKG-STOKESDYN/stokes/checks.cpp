@@ -62,6 +62,9 @@ void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Sett
   int periodic = 0;
   for (int d = 0; d < domain->dimension; d++) periodic += domain->periodicity[d] != 0;
   if (periodic == 0) return;
+  if (domain->dimension == 2)
+    fail(lmp, command + ": keyword cut_off_distance: 'inf' in two dimensions requires boundary f f p "
+                        "(or s, m in x and y): there are no sums over periodic images of a plane");
   if (periodic < 3)
     fail(lmp,
          command +

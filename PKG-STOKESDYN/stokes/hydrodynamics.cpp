@@ -351,8 +351,11 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
     why += " with tensor oseen: spheres are too close for it, use tensor rpy";
   else if (status == SD_ESINGULAR)
     why += ": equal spheres at one point with different velocities";
+  else if (status == SD_EINDEFINITE && std::isinf(how.cutoff))
+    why += " to the digits that are left of it: use a larger relative_tolerance, or with Ewald sums "
+           "a smaller far_field_tolerance";
   else if (status == SD_EINDEFINITE)
-    why += " with cut_off_distance " + (std::isinf(how.cutoff) ? "inf" : text(how.cutoff)) +
+    why += " with cut_off_distance " + text(how.cutoff) +
         ", so any answer would be noise: use cut_off_distance inf, or a taper, or clumps_only yes "
         "with a cut-off larger than the clump";
   fail_by(lmp, status, where(algorithm()) + why + " (" + numbers + ")");

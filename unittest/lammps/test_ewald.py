@@ -173,6 +173,14 @@ def test_partly_periodic_boxes_are_refused(simulation, boundary):
         simulation(cloud(5, 0.01), f"{ALL} visc 1", boundary=boundary, box=[(-1.0, 40.0)] * 3).run()
 
 
+def test_periodic_planes_are_refused(simulation):
+    flat = Spheres([(1, 1, 0), (4, 2, 0)], 0.5, (0, 1, 0))
+    sim = simulation()
+    lines = input_lines(flat, f"{ALL} visc 1", str(sim.folder / "flat.data"), boundary="p p p", box=[(0, 9), (0, 9), (-0.5, 0.5)])
+    with pytest.raises(LammpsError, match="cut_off_distance: 'inf' in two dimensions requires boundary f f p"):
+        sim.commands(["dimension 2"] + lines).run()
+
+
 @pytest.mark.parametrize("words,text", [("far_field direct", "far_field direct"), ("precondition sparse", "precondition sparse"),
                                         ("tensor oseen", "tensor: 'oseen'")])
 def test_what_a_periodic_sum_has_not_got(simulation, words, text):
