@@ -7,7 +7,7 @@
  * by conjugate gradients within those for the forces, since a product with L is cheap beside one
  * with the mobility. Their preconditioner is an incomplete factor of H where pairs are stiff; what
  * is left couples weakly, so that the number of products does not depend on the gaps. Each rank has
- * the factor of all of them: 12 ms for 10^4 spheres at a volume fraction of 0.3. */
+ * the factor of all of them: 18 ms for 10^4 spheres at a volume fraction of 0.3. */
 #ifndef SD_TIE_H
 #define SD_TIE_H
 
