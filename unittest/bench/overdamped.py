@@ -2,10 +2,13 @@
 """Cost of motion without inertia, inside LAMMPS on one core.
 
     overdamped.py [REPEATS] [N] [CLUMPS]
+    overdamped.py films [REPEATS] [SIDE]
 
 Free spheres: a step of fix stokes_dynamics/overdamped, N spheres (4000), all pairs, in units of one product, which is half of what a
 solve of one iteration takes (max_iter 1: two products). Rigid clumps: a step of 10 000 clumps of ten with clumps_only yes, shell 42,
-against pair style and fix rigid/small. Medians; what is compared takes turns. Both answers are exact: one product, one 6x6."""
+against pair style and fix rigid/small. Films: a step of SIDE^3 (22) spheres at volume
+fraction 0.3 in a periodic box, every second pulled up and the others down, with and without lubrication; the fastest move 0.01 radii a
+step. Medians; what is compared takes turns. Both answers are exact: one product, one 6x6."""
 import os
 import pathlib
 import re
@@ -50,6 +53,22 @@ def spheres(folder, data, rotation, overdamped, steps):
     return loop_time(["-in", os.path.join(folder, "in")], steps)
 
 
+def films(folder, side, words, steps=20):
+    """A cubic lattice shaken by up to 0.19 radii, so that nobody overlaps"""
+    spacing, rng = (4 / 3 * np.pi / 0.3)**(1 / 3), np.random.default_rng(1)
+    places = np.indices((side, side, side)).reshape(3, -1).T
+    x = spacing * (places + 0.5) + rng.uniform(-0.19, 0.19, places.shape)
+    with open(os.path.join(folder, "data"), "w") as out:
+        out.write(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {side * spacing!r} {c}lo {c}hi\n" for c in "xyz"))
+        out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
+    with open(os.path.join(folder, "in"), "w") as out:
+        out.write(f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {folder}/data\ntimestep 0.2\n"
+                  "comm_modify cutoff 5\npair_style stokes_dynamics cut_off_distance inf visc 1 rotation yes relative_tolerance 1e-3 "
+                  f"{words}\npair_coeff * *\nvariable f atom 2*(id%2)-1\nfix f all addforce 0 0 v_f\nfix m all stokes_dynamics/overdamped\n"
+                  f"run 5\nrun {steps}\n")
+    return loop_time(["-in", os.path.join(folder, "in")], steps)
+
+
 def clumps(overdamped, count, steps=50):
     n = round((count / 10)**(1 / 3))
     words = "clumps_only yes rigid_clumps yes shell 42"
@@ -58,6 +77,13 @@ def clumps(overdamped, count, steps=50):
 
 
 def main():
+    if sys.argv[1:2] == ["films"]:
+        repeats, side = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((2, 3), (3, 22)))
+        with tempfile.TemporaryDirectory() as folder:
+            times = np.array([[films(folder, side, words) for words in ("", "lubrication yes")] for _ in range(repeats)])
+        without, with_films = np.median(times, axis=0)
+        print(f"{side**3} free spheres in a periodic box: a step {1e3 * without:.1f} ms, with lubrication {1e3 * with_films:.1f} ms")
+        return
     repeats, n, count = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((1, 5), (2, 4000), (3, 10000)))
     with tempfile.TemporaryDirectory() as folder:
         data = cloud(folder, n)
