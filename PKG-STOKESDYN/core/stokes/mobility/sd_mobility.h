@@ -62,6 +62,9 @@ typedef struct {
   /* F [width n] -> u [width n]. A sphere without radius gets 0 and its F is not read. SD_OK or as
    * place */
   sd_status (*apply)(void *state, const double *F, double *u);
+  /* diagonal of Omega [width n], what a sphere does to itself beyond 1/(6 pi eta a): through its
+   * periodic images. NULL: nothing */
+  void (*self)(const void *state, double *diagonal);
   void (*free)(void *state);
 } sd_mobility_engine;
 
@@ -84,6 +87,7 @@ extern const int sd_mobility_count;
 typedef struct {
   const sd_mobility_engine *engine;
   void *state;
+  int width, n;
 } sd_mobility;
 
 /* The same engine as before keeps its memory. SD_OK or SD_ENOMEMORY, or as place. */
@@ -92,6 +96,9 @@ sd_status sd_mobility_place(sd_mobility *m, const sd_mobility_engine *engine,
 
 /* In the solver's signature sd_apply: ctx is an sd_mobility. */
 sd_status sd_mobility_apply(void *ctx, const double *F, double *u);
+
+/* diagonal [width n]: engine->self, or 0 */
+void sd_mobility_self(const sd_mobility *m, double *diagonal);
 
 void sd_mobility_free(sd_mobility *m);
 

@@ -12,7 +12,7 @@ enum { N = 300, MOST_RANKS = 4, MESSAGE = 400000 };
 /* What all processes see */
 typedef struct {
   pthread_barrier_t barrier;
-  double F[6 * N], u[6 * N], sum[MOST_RANKS][128], message[MOST_RANKS][MESSAGE];
+  double F[6 * N], u[6 * N], diagonal[6 * N], sum[MOST_RANKS][128], message[MOST_RANKS][MESSAGE];
   int count[MOST_RANKS][MOST_RANKS], failed;
 } shared;
 
@@ -119,7 +119,7 @@ static void work(const cloud *c, const layout *l, shared *all, int me, int ranks
   periodic_images(&p, c->x, c->a, c->w);
   const int total = l->periodic ? p.n_all : N;
   double *x = malloc(sizeof(double) * 3 * (size_t) total), *a = malloc(sizeof(double) * (size_t) total);
-  double *w = malloc(sizeof(double) * (size_t) total), mine[6 * N], u[6 * N];
+  double *w = malloc(sizeof(double) * (size_t) total), mine[6 * N], u[6 * N], diagonal[6 * N];
   rank r = {.all = all, .me = me, .ranks = ranks, .number = malloc(sizeof(int) * (size_t) total)};
   for (int pass = 0; pass < 2; pass++) {
     for (int k = 0; k < total; k++) {
@@ -141,8 +141,11 @@ static void work(const cloud *c, const layout *l, shared *all, int me, int ranks
     if (sd_mobility_place(&m, &sd_mobility_ewald, &scene) != c->expected) all->failed = 1;
     if (c->expected == SD_OK && sd_mobility_apply(&m, mine, u) != SD_OK) all->failed = 1;
   }
-  for (int i = 0; i < r.n && c->expected == SD_OK; i++)
+  if (c->expected == SD_OK) sd_mobility_self(&m, diagonal);
+  for (int i = 0; i < r.n && c->expected == SD_OK; i++) {
     memcpy(all->u + l->width * r.number[i], u + l->width * i, sizeof(double) * (size_t) l->width);
+    memcpy(all->diagonal + l->width * r.number[i], diagonal + l->width * i, sizeof(double) * (size_t) l->width);
+  }
   sd_mobility_free(&m);
   periodic_free(&p);
   free(x), free(a), free(w), free(r.number);
@@ -190,6 +193,7 @@ static void several_ranks_are_one(void **state)
       shared *many = on_ranks(&c, l, ranks);
       for (int i = 0; i < l->width * N; i++) {
         CHECK_NEAR(many->u[i], one->u[i], 1e-12 * scale);
+        CHECK_NEAR(many->diagonal[i], one->diagonal[i], 1e-12 * scale);
         if (c.a[i / l->width] == 0.0) CHECK_NEAR(many->u[i], 0.0, 0.0);
       }
       munmap(many, sizeof(shared));

@@ -47,7 +47,7 @@ static void engines_agree_with_plain_c(void **state)
     sd_neighbors list = {0};
     assert_int_equal(sd_neighbors_cutoff(&list, s.x, N, N, 100.0), SD_OK);
     const sd_mobility_scene where = whole(&s, width, &list.pairs);
-    double F[MOST], expected[MOST], u[MOST];
+    double F[MOST], expected[MOST], u[MOST], diagonal[MOST];
     uint64_t seed = 4;
     for (int i = 0; i < width * N; i++) F[i] = uniform(&seed, -1, 1);
     plain_all(&where.how.law, &where.spheres, N, width, F, expected);
@@ -57,6 +57,8 @@ static void engines_agree_with_plain_c(void **state)
       assert_int_equal(sd_mobility_place(&m, engine, &where), SD_OK);
       assert_int_equal(sd_mobility_apply(&m, F, u), SD_OK);
       assert_true(worst(u, expected, width * N) < 1e-14);
+      sd_mobility_self(&m, diagonal);
+      for (int i = 0; i < width * N; i++) CHECK_NEAR(diagonal[i], 0.0, 0.0);
     }
     sd_mobility_free(&m);
     sd_neighbors_free(&list);
