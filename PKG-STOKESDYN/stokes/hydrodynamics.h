@@ -102,13 +102,16 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Velocities::Guess begin_with;
   /* the slip of clumps with shells that interact: a strain carries them otherwise */
   std::vector<double> carried;
-  /* velocities, and forces of lubrication on them, likewise */
+  /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
   sd_system gather();
-  bool joined() const { return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1; }
+  bool joined() const
+  {
+    return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1;
+  }
   const double *right_hand_side() const { return joined() ? carried.data() : slip.data(); }
   void lubricate();
   sd_status run(sd_solve_report &report);

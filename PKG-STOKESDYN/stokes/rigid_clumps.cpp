@@ -5,6 +5,7 @@
 #include "ranks.h"
 
 #include "atom.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -152,7 +153,8 @@ void RigidClumps::take_over(std::vector<size_t> &unknown)
   std::vector<Has> have;
   for (int64_t molecule : from_all(world, wanted)) {
     const auto found = known.find(molecule);
-    if (found != known.end()) have.push_back({molecule, found->second.atoms, found->second.shape->number});
+    if (found != known.end())
+      have.push_back({molecule, found->second.atoms, found->second.shape->number});
   }
   std::map<int64_t, Has> elsewhere;
   for (const Has &has : from_all(world, have)) elsewhere[has.molecule] = has;

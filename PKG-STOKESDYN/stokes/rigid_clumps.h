@@ -3,10 +3,10 @@
  *
  * A clump keeps the shape that it was given when it was first seen, whatever rank it moves to,
  * until a run begins anew or it is not rigid any more (auto: it is loose then, the solver's, until
- * a run begins anew). Shapes are numbered alike on all ranks; in order of molecule ID, a clump that has none of the
- * shapes before it is the first of a new one. Each is solved on one rank and sent to all. A clump
- * that crosses ranks is evaluated by every rank that owns one of its spheres, from the same
- * numbers. */
+ * a run begins anew). Shapes are numbered alike on all ranks; in order of molecule ID, a clump that
+ * has none of the shapes before it is the first of a new one. Each is solved on one rank and sent to
+ * all. A clump that crosses ranks is evaluated by every rank that owns one of its spheres, from the
+ * same numbers. */
 #ifndef SD_RIGID_CLUMPS_H
 #define SD_RIGID_CLUMPS_H
 
