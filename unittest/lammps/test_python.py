@@ -114,7 +114,8 @@ clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.m
     pages = moved / "share" / "doc" / "stokesdyn" / "PKG-STOKESDYN" / "doc"
     assert {path.name for path in pages.glob("*.md")} == {path.name for path in (TOP / "PKG-STOKESDYN" / "doc").glob("*.md")}
     program = tmp_path / "use.c"    # the headers and the static libraries serve a C program
-    program.write_text('#include "sd_clump.h"\nint main(void) { sd_shape s; double x[3] = {0}, a = 1;\n'
+    headers = sorted(path.name for path in (moved / "include" / "stokesdyn").glob("*.h"))
+    program.write_text("".join(f'#include "{name}"\n' for name in headers) + 'int main(void) { sd_shape s; double x[3] = {0}, a = 1;\n'
                        'return sd_shape_create(1, x, &a, &s) != SD_OK || s.n != 1; }\n')
     libraries = [f"-lstokesdyn_{name}" for name in ("stokes", "base")] + ["-llapack", "-lblas", "-lm"]
     subprocess.run(["cc", program, "-o", tmp_path / "use", f"-I{moved}/include/stokesdyn", f"-L{moved}/lib", *libraries], check=True)
