@@ -164,7 +164,7 @@ static entry read_table(const sd_two_sphere *t, double ratio, double xi)
 {
   static const double one[STENCIL] = {1.0};
   double wr[STENCIL], wc[STENCIL], value[NUMBERS] = {0.0};
-  const int rows = ratio == 1.0 ? 1 : STENCIL;
+  const int rows = ratio == 1.0 || t->rows == 1 ? 1 : STENCIL;
   const int r = rows > 1 ? stencil(log(ratio) * (1.0 / row_step()), t->rows, wr) : 0;
   const double lowest = log(SD_TWO_SPHERE_SMALLEST_XI);
   const int c = stencil((log(xi) - lowest) * (1.0 / column_step()), COLUMNS, wc);

@@ -288,6 +288,22 @@ static void outside_is_refused(void **state)
   sd_two_sphere_free(t);
 }
 
+/* A ratio that rounding has made a hair larger than the table's is read from its last row. */
+static void a_hair_outside_is_inside(void **state)
+{
+  (void) state;
+  for (double ratio = 1.0; ratio < 101.0; ratio *= 10.0) {
+    sd_two_sphere *t = create(ratio);
+    sd_pair_resistance at, beyond;
+    assert_int_equal(sd_two_sphere_correction(t, 1.3, 1.3 * ratio, 1e-3, 0.7, 0.2, &at), SD_OK);
+    assert_int_equal(
+        sd_two_sphere_correction(t, 1.3, 1.3 * ratio * (1.0 + 5e-13), 1e-3, 0.7, 0.2, &beyond), SD_OK);
+    CHECK_NEAR(at.XA[0], beyond.XA[0], 1e-10 * at.XA[0]);
+    CHECK_NEAR(at.YC[2], beyond.YC[2], 1e-10 * at.YC[2]);
+    sd_two_sphere_free(t);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -299,6 +315,7 @@ int main(void)
       cmocka_unit_test(no_jumps),
       cmocka_unit_test(scales_and_exchange),
       cmocka_unit_test(outside_is_refused),
+      cmocka_unit_test(a_hair_outside_is_inside),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
