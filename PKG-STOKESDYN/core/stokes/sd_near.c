@@ -22,9 +22,8 @@ typedef struct {
 
 typedef struct {
   const sd_spheres *s;
-  int n_all;
-  /* a pair counts if one of the two is a target: begin ... end - 1 */
-  int begin, end;
+  /* a pair counts if one of the two is a target, 0 ... n - 1 */
+  int n, n_all;
   double reach;
   /* hash of the cells, whose first is a number of `cell`; its next says so for each sphere */
   sd_cells hash;
@@ -69,13 +68,13 @@ static sd_status look_at(search *q, const sphere *one, int begin, int end)
 {
   const sd_status status = reserve(q, end - begin);
   if (status != SD_OK) return status;
-  const int is_target = one->index >= q->begin && one->index < q->end;
+  const int is_target = one->index < q->n;
   const double half = 0.5 * q->reach;
   long count = q->count;
   for (int k = begin; k < end; k++) {
     const sphere *other = q->sorted + k;
     const double limit = half * (one->a + other->a);
-    const int counts = is_target | ((other->index >= q->begin) & (other->index < q->end));
+    const int counts = is_target | (other->index < q->n);
     q->pair[count][0] = one->index;
     q->pair[count][1] = other->index;
     count += (sd_distance_squared(other->x, one->x) <= limit * limit) & counts;
@@ -178,53 +177,34 @@ static sd_status find(search *q)
   return status;
 }
 
-/* Rows by counting. Pairs of row r are first counted in first[r + 2]; summed up, first[r + 1] is
- * where row r begins, and moves on with every pair that is put there until it is where row r + 1
- * begins. Each pair in the row of its first sphere, and in both in that of its second. */
-static sd_status sort_rows(sd_neighbors *list, const search *q, int both)
+/* Rows by counting, each pair in that of its lower sphere. Pairs of row r are first counted in
+ * first[r + 2]; summed up, first[r + 1] is where row r begins, and moves on with every pair that is
+ * put there until it is where row r + 1 begins. */
+static sd_status sort_rows(sd_neighbors *list, const search *q)
 {
-  const int n = q->end - q->begin;
-  const sd_status status = sd_neighbors_reserve(list, n + 1, (1 + both) * q->count);
+  const sd_status status = sd_neighbors_reserve(list, q->n + 1, q->count);
   if (status != SD_OK) return status;
   long *first = list->first;
-  memset(first, 0, sizeof(long) * ((size_t) n + 2));
+  memset(first, 0, sizeof(long) * ((size_t) q->n + 2));
   for (int put = 0; put < 2; put++) {
-    for (long k = 0; k < q->count; k++)
-      for (int e = 0; e <= both; e++) {
-        const int row = q->pair[k][e] - q->begin;
-        if (row < 0 || row >= n) continue;
-        if (put)
-          list->neighbor[first[row + 1]++] = q->pair[k][1 - e];
-        else
-          first[row + 2]++;
-      }
-    for (int i = 2; !put && i <= n + 1; i++) first[i] += first[i - 1];
+    for (long k = 0; k < q->count; k++) {
+      const int i = q->pair[k][0], j = q->pair[k][1], row = i < j ? i : j;
+      if (put)
+        list->neighbor[first[row + 1]++] = i < j ? j : i;
+      else
+        first[row + 2]++;
+    }
+    for (int i = 2; !put && i <= q->n + 1; i++) first[i] += first[i - 1];
   }
-  list->pairs.n = n;
+  list->pairs.n = q->n;
   return SD_OK;
-}
-
-sd_status sd_near_find(sd_neighbors *list, const sd_spheres *s, int begin, int n, int n_all,
-                       double reach)
-{
-  search q = {.s = s, .n_all = n_all, .begin = begin, .end = begin + n, .reach = reach};
-  sd_status status = find(&q);
-  if (status == SD_OK) status = sort_rows(list, &q, 1);
-  release(&q);
-  return status;
 }
 
 sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all, double reach)
 {
-  search q = {.s = s, .n_all = n_all, .begin = 0, .end = n, .reach = reach};
+  search q = {.s = s, .n = n, .n_all = n_all, .reach = reach};
   sd_status status = find(&q);
-  for (long k = 0; k < q.count; k++)
-    if (q.pair[k][0] > q.pair[k][1]) {
-      const int larger = q.pair[k][0];
-      q.pair[k][0] = q.pair[k][1];
-      q.pair[k][1] = larger;
-    }
-  if (status == SD_OK) status = sort_rows(list, &q, 0);
+  if (status == SD_OK) status = sort_rows(list, &q);
   release(&q);
   return status;
 }
