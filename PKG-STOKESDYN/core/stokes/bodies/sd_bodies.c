@@ -94,17 +94,10 @@ static void respond(loop *c, int b, const double *r, const double *f, double *l,
   }
 }
 
-/* Rows of clump b := 0 */
-static void clear(const sd_bodies *A, int b, double *rows)
-{
-  for (int k = A->first[b]; k < A->first[b + 1]; k++)
-    if (A->member[k] < A->n) memset(rows + 6 * (long) A->member[k], 0, 6 * sizeof(double));
-}
-
 /* V of clump b, in the axes of its shape */
 static void set_motion(const sd_bodies *A, int b, const double V[6], const state *out)
 {
-  clear(A, b, out->v);
+  sd_bodies_clear(A, b, out->v);
   sd_bodies_add_rigid(A, b, V, out->v);
   sd_bodies_to_space(A->pose + 9 * (long) b, V, out->V + 6 * (long) b);
 }
@@ -119,7 +112,7 @@ static sd_status pre_alone(loop *c, const double *r, const loads *f, const state
       const long j = (long) A->width * A->loner[e] + d;
       const double load = f ? f->rows[j] : 0.0;
       out->l[j] = load;
-      out->v[j] = load / (d < 3 ? A->drag : A->spin)[A->loner[e]] - (r ? r[j] : 0.0);
+      out->v[j] = load / sd_bodies_drag(A, A->loner[e], d) - (r ? r[j] : 0.0);
     }
   if (r) {
     const sd_status status = sd_bodies_refresh(A, r, c->ghosts);
@@ -127,7 +120,7 @@ static sd_status pre_alone(loop *c, const double *r, const loads *f, const state
   }
   for (int b = 0; b < A->clumps; b++) {
     double V[6];
-    clear(A, b, out->l);
+    sd_bodies_clear(A, b, out->l);
     respond(c, b, r, f ? f->clumps + 6 * (long) b : NULL, out->l, V);
     set_motion(A, b, V, out);
   }
@@ -173,20 +166,15 @@ static sd_status pre(loop *c, const double *r, const loads *f, const state *out)
 
 /* Slips of this part of the velocities are rounding, whatever the tolerance. */
 static const double rounding = 1e-14;
-/* How well the sparse system in the preconditioner is solved: what is left of it, of what there was.
- * What the first direction lacks must be made up by directions of its own, but what later ones lack
- * is as small as they are. So it is the first of these parts of sqrt(spent), at most the second of
+/* How well the sparse system in the preconditioner is solved: what is left, of what there was. What
+ * the first direction lacks must be made up by directions of its own, but what later ones lack is
+ * as small as they are. So it is the first of these parts of sqrt(spent), at most the second of
  * what there is. That takes at most one product in ten more than exact solutions, to 1e-8 as well,
  * and half to three quarters of the products with L that 0.01 all the way takes.
  * Source: van den Eshof & Sleijpen, SIAM J. Matrix Anal. Appl. 26, 125 (2004). */
 static const double tie_accuracy = 0.003, tie_loosest = 0.2;
 /* And that of a guess, whose error the loop takes up, and of the power beside it */
 static const double tie_guess = 0.3;
-
-static double drag_of(const sd_bodies *A, long i, int d)
-{
-  return (d < 3 ? A->drag : A->spin)[i];
-}
 
 /* a.b, the sum over all rows of all ranks */
 static sd_status dot(const sd_bodies *A, const double *a, const double *b, double *sum)
@@ -203,8 +191,8 @@ static double tie_tolerance(const loop *c, double power)
   return fmax(tie_accuracy, fmin(tie_loosest, part));
 }
 
-/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. The power of the loads.
- * Also, with w, w.z. */
+/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. The power of the
+ * loads. Also, with w, w.z. */
 static sd_status weigh(loop *c, const double *w, double *wz)
 {
   const sd_bodies *A = c->A;
@@ -213,7 +201,7 @@ static sd_status weigh(loop *c, const double *w, double *wz)
     for (int d = 0; d < A->width; d++) {
       const long j = A->width * i + d;
       s[0] += c->r[j] * c->z.l[j];
-      s[1] += drag_of(A, i, d) * c->r[j] * c->r[j];
+      s[1] += sd_bodies_drag(A, i, d) * c->r[j] * c->r[j];
       s[2] += c->given[j] * (c->x.v[j] + c->z.v[j] - c->u[j]);
       if (w) s[3] += w[j] * c->z.l[j];
     }
@@ -244,7 +232,7 @@ static sd_status find_power(loop *c)
       const long j = A->width * i + d;
       const double u = c->u[j], v = c->x.v[j];
       s[0] += c->x.l[j] * (v - u);
-      s[1] += drag_of(A, i, d) * (u * u + v * v);
+      s[1] += sd_bodies_drag(A, i, d) * (u * u + v * v);
     }
   if (A->tie) {
     const sd_status status = resist(c, c->x.v, c->w);
@@ -266,7 +254,7 @@ static sd_status multiply(loop *c, const double *l, double *out)
   c->report->products++;
   for (long i = 0; i < A->n; i++)
     for (int d = 0; d < A->width; d++)
-      out[A->width * i + d] += l[A->width * i + d] / drag_of(A, i, d);
+      out[A->width * i + d] += l[A->width * i + d] / sd_bodies_drag(A, i, d);
   if (!A->tie || status != SD_OK) return status;
   status = sd_bodies_onto_clumps(A, l, c->ghosts, c->tied);
   if (status == SD_OK) sd_bodies_shells(A, c->tied, 1.0, out);
@@ -281,7 +269,7 @@ static sd_status expect(loop *c)
   if (!A->tie) return SD_OK;
   for (long i = 0; i < A->n; i++)
     for (int d = 0; d < A->width; d++)
-      most += drag_of(A, i, d) * c->r[A->width * i + d] * c->r[A->width * i + d];
+      most += sd_bodies_drag(A, i, d) * c->r[A->width * i + d] * c->r[A->width * i + d];
   const sd_status status = A->sum ? A->sum(A->sum_ctx, &most, 1) : SD_OK;
   c->tie_tolerance = tie_tolerance(c, most);
   return status;
@@ -295,8 +283,7 @@ static sd_status residual(loop *c)
   if (status != SD_OK) return status;
   for (long j = 0; j < (long) A->width * A->n; j++) c->r[j] = c->x.v[j] - c->u[j] - c->r[j];
   if (!A->tie) sd_bodies_shells(A, c->F.clumps, -1.0, c->r);
-  if ((status = expect(c)) != SD_OK) return status;
-  status = pre(c, c->r, NULL, &c->z);
+  if ((status = expect(c)) == SD_OK) status = pre(c, c->r, NULL, &c->z);
   return status == SD_OK ? weigh(c, NULL, NULL) : status;
 }
 
@@ -346,16 +333,19 @@ static sd_status guess_motion(loop *c, const double *before, const state *guess)
   return status;
 }
 
+/* V takes what it lacks. */
+static void take_motion(loop *c)
+{
+  for (long j = 0; j < (long) c->A->width * c->A->n; j++) c->x.v[j] += c->z.v[j];
+  for (long j = 0; j < 6 * (long) c->A->clumps; j++) c->x.V[j] += c->z.V[j];
+}
+
 /* V takes what it lacks at once, and r loses it: for a guess so good that r is K times what
  * neighbours add to V, and r.z close to its noise. Not with a tie, where l goes with V. */
 static sd_status settle(loop *c)
 {
-  const sd_bodies *A = c->A;
-  for (long j = 0; j < (long) A->width * A->n; j++) {
-    c->x.v[j] += c->z.v[j];
-    c->r[j] += c->z.v[j];
-  }
-  for (int j = 0; j < 6 * A->clumps; j++) c->x.V[j] += c->z.V[j];
+  take_motion(c);
+  for (long j = 0; j < (long) c->A->width * c->A->n; j++) c->r[j] += c->z.v[j];
   const sd_status status = pre(c, c->r, NULL, &c->z);
   return status == SD_OK ? weigh(c, NULL, NULL) : status;
 }
@@ -380,8 +370,7 @@ static sd_status start(loop *c, const double *before, int warm)
     memcpy(c->x.V, guess->V, sizeof(double) * 6 * (size_t) c->A->clumps);
   }
   status = residual(c);
-  const int blurred = c->power.rz < 1e4 * c->power.noise;
-  if (status == SD_OK && blurred && !c->A->tie) status = settle(c);
+  if (status == SD_OK && !c->A->tie && c->power.rz < 1e4 * c->power.noise) status = settle(c);
   if (status != SD_OK || c->power.rz <= c->power.spent) return status;
   status = start_cold(c, tie_accuracy);
   return status == SD_OK ? residual(c) : status;
@@ -429,8 +418,9 @@ static sd_status step(loop *c, double *beta)
   return status;
 }
 
-/* Until sqrt(r.z / e) < tolerance, e the larger of both powers. r.z is the power of what is still wrong, by the blocks of
- * the bodies: below the floor it is rounding of velocities that are the stream's own. */
+/* Until sqrt(r.z / e) < tolerance, e the larger of both powers. r.z is the power of what is still
+ * wrong, by the blocks of the bodies: below the floor it is rounding of velocities that are the
+ * stream's own. */
 static sd_status iterate(loop *c, double tolerance, int max_iter)
 {
   const powers *power = &c->power;
@@ -438,20 +428,17 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
   memset(c->along.l, 0, sizeof(double) * rows);
   memset(c->along.v, 0, sizeof(double) * rows);
   memset(c->along.V, 0, sizeof(double) * motions);
-  turn_along(c, 0.0);
-  for (;;) {
-    const double before = power->rz;
-    const double e = fmax(power->spent, power->loads);
+  for (double beta = 0.0;;) {
+    const double before = power->rz, e = fmax(power->spent, power->loads);
     if (!isfinite(before + power->spent + power->loads)) return SD_ENOTFINITE;
     if (before < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
     c->report->residual = e > 0.0 ? sqrt(fmax(before, 0.0) / e) : 0.0;
     if (before <= power->floor) return SD_OK;
     if (c->report->residual < tolerance) return SD_OK;
     if (c->report->products >= max_iter) return SD_EMAXITER;
-    double beta;
+    turn_along(c, beta);
     const sd_status status = step(c, &beta);
     if (status != SD_OK) return status;
-    turn_along(c, beta);
   }
 }
 
@@ -469,10 +456,9 @@ static sd_status take_loads(loop *c, const double *F, double *rows, double *clum
 static sd_status finish(loop *c, const sd_bodies_motion *motion)
 {
   const sd_bodies *A = c->A;
-  const long size = (long) A->width * A->n, motions = 6 * (long) A->clumps;
+  const long size = (long) A->width * A->n;
   if (A->tie) memcpy(motion->before, motion->v, sizeof(double) * (size_t) size);
-  for (long j = 0; j < size; j++) motion->v[j] += c->z.v[j];
-  for (long j = 0; j < motions; j++) motion->V[j] += c->z.V[j];
+  take_motion(c);
   if (!A->tie) return SD_OK;
   const sd_status status = resist(c, motion->v, motion->near);
   for (long j = 0; j < size; j++) motion->near[j] += c->z.l[j];

@@ -71,6 +71,19 @@ static inline const double *sd_bodies_row(const sd_bodies *A, const double *rows
   return j < A->n ? rows + 6 * (long) j : ghosts + 6 * (long) (j - A->n);
 }
 
+/* 6 pi eta a or 8 pi eta a^3: number d of row i */
+static inline double sd_bodies_drag(const sd_bodies *A, long i, int d)
+{
+  return (d < 3 ? A->drag : A->spin)[i];
+}
+
+/* Rows of clump b := 0 */
+static inline void sd_bodies_clear(const sd_bodies *A, int b, double *rows)
+{
+  for (int k = A->first[b]; k < A->first[b + 1]; k++)
+    for (int d = 0; d < 6 && A->member[k] < A->n; d++) rows[6 * (long) A->member[k] + d] = 0.0;
+}
+
 /* The ghosts of rows [width n]; SD_OK or that of the caller's function */
 static inline sd_status sd_bodies_refresh(const sd_bodies *A, const double *rows, double *ghosts)
 {
@@ -92,8 +105,7 @@ void sd_bodies_shells(const sd_bodies *A, const double *f, double sign, double *
 void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *u);
 
 /* out [width n] += K dN K^T l, what shells add to D^-1 + Omega; for those who are given velocities
- * and solve M' l = K V - u. work [6 clumps + width ghosts]. SD_OK, or
- * that of refresh. */
+ * and solve M' l = K V - u. work [6 clumps + width ghosts]. SD_OK, or that of refresh. */
 sd_status sd_bodies_add_shells(const sd_bodies *A, const double *l, double *work, double *out);
 
 #ifdef __cplusplus

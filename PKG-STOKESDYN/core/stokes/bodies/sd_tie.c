@@ -1,29 +1,23 @@
 #include "sd_tie.h"
-#include "sd_tie_approach.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PRODUCTS = 1000, VECTORS = 4 };
+#include "sd_room.h"
+#include "sd_tie_approach.h"
 
-static sd_status reserve(double **array, long *most, long wanted, int numbers)
-{
-  if (wanted < *most) return SD_OK;
-  double *larger = realloc(*array, sizeof(double) * (size_t) numbers * (size_t) (wanted + 1));
-  if (!larger) return SD_ENOMEMORY;
-  *array = larger;
-  *most = wanted + 1;
-  return SD_OK;
-}
+enum { MOST_PRODUCTS = 1000, VECTORS = 4 };
 
 static sd_status reserve_all(const sd_bodies *A)
 {
   sd_tie *t = A->tie;
-  sd_status status = reserve(&t->vectors, &t->most_bodies, sd_tie_bodies(A), 6 * VECTORS);
-  /* as wide as L_ii */
-  if (status == SD_OK) status = reserve(&t->ghosts, &t->most_ghosts, A->ghosts, 36);
-  return status == SD_OK ? reserve(&t->rows, &t->most_rows, A->n, 12) : status;
+  const size_t number = sizeof(double), bodies = (size_t) sd_tie_bodies(A);
+  /* ghosts are as wide as L_ii */
+  const int there = sd_reserve(&t->vectors, number, 6 * VECTORS * bodies, &t->most_vectors) &&
+      sd_reserve(&t->rows, number, 12 * (size_t) A->n, &t->most_rows) &&
+      sd_reserve(&t->ghosts, number, 36 * (size_t) A->ghosts, &t->most_ghosts);
+  return there ? SD_OK : SD_ENOMEMORY;
 }
 
 sd_status sd_tie_make(const sd_bodies *A)
@@ -42,8 +36,7 @@ static void spread(const sd_bodies *A, const double *V, double *rows)
     memcpy(rows + 6 * (long) A->loner[e], V + 6 * (long) e, 6 * sizeof(double));
   for (int b = 0; b < A->clumps; b++) {
     double in_shape[6];
-    for (int k = A->first[b]; k < A->first[b + 1]; k++)
-      if (A->member[k] < A->n) memset(rows + 6 * (long) A->member[k], 0, 6 * sizeof(double));
+    sd_bodies_clear(A, b, rows);
     sd_bodies_to_shape(A->pose + 9 * (long) b, V + 6 * (long) (A->lone + b), in_shape);
     sd_bodies_add_rigid(A, b, in_shape, rows);
   }
@@ -61,7 +54,7 @@ static void resist_alone(const sd_bodies *A, const double *V, double *out)
 {
   for (int e = 0; e < A->lone; e++)
     for (int d = 0; d < 6; d++)
-      out[6 * (long) e + d] = (d < 3 ? A->drag : A->spin)[A->loner[e]] * V[6 * (long) e + d];
+      out[6 * (long) e + d] = sd_bodies_drag(A, A->loner[e], d) * V[6 * (long) e + d];
   for (int b = 0; b < A->clumps; b++) {
     const double *R = A->pose + 9 * (long) b;
     double v[6], f[6], *to = out + 6 * (long) (A->lone + b);
@@ -83,45 +76,6 @@ static sd_status apply(const sd_bodies *A, const double *V, double *out)
   if (status != SD_OK) return status;
   sd_tie_approach_add(A, v, f);
   return collect(A, f, out);
-}
-
-/* sums[k] = a[k].b[k] over all bodies, each once */
-static sd_status dots(const sd_bodies *A, int count, const double *const *a, const double *const *b,
-                      double *sums)
-{
-  for (int k = 0; k < count; k++) {
-    sums[k] = 0.0;
-    for (long j = 0; j < 6 * (long) A->lone; j++) sums[k] += a[k][j] * b[k][j];
-    for (int c = 0; c < A->clumps; c++)
-      for (long d = 0; d < 6 && sd_tie_ours(A, c); d++) {
-        const long j = 6 * (long) (A->lone + c) + d;
-        sums[k] += a[k][j] * b[k][j];
-      }
-  }
-  return A->sum ? A->sum(A->sum_ctx, sums, count) : SD_OK;
-}
-
-/* --- conjugate gradients --- */
-
-/* r, z, p, w as ever: one step along p; w holds K^T (L + X) K p, z H_0 p */
-static sd_status step(const sd_bodies *A, double rz, double *V, double *borne)
-{
-  const sd_tie *t = A->tie;
-  const long size = 6 * sd_tie_bodies(A);
-  double *r = t->vectors, *z = r + size, *p = z + size, *w = p + size, sums[2];
-  sd_status status = apply(A, p, w);
-  if (status != SD_OK) return status;
-  resist_alone(A, p, z);
-  status = dots(A, 2, (const double *[]){p, p}, (const double *[]){w, z}, sums);
-  if (status != SD_OK) return status;
-  const double pHp = sums[0] + sums[1], alpha = rz / pHp;
-  if (!(pHp > 0.0)) return isfinite(pHp) ? SD_EINDEFINITE : SD_ENOTFINITE;
-  for (long j = 0; j < size; j++) {
-    V[j] += alpha * p[j];
-    borne[j] += alpha * w[j];
-    r[j] -= alpha * (w[j] + z[j]);
-  }
-  return SD_OK;
 }
 
 /* --- the model --- */
@@ -146,6 +100,45 @@ static sd_status take_slip(const sd_bodies *A, const double *r, double *borne, d
   if (!r) return SD_OK;
   const sd_status status = add_approach(A, r, share);
   return status == SD_OK ? collect(A, share, borne) : status;
+}
+
+/* --- conjugate gradients --- */
+
+/* sums[k] = a[k].b[k] over all bodies, each once */
+static sd_status dots(const sd_bodies *A, int count, const double *const *a, const double *const *b,
+                      double *sums)
+{
+  for (int k = 0; k < count; k++) {
+    sums[k] = 0.0;
+    for (long j = 0; j < 6 * (long) A->lone; j++) sums[k] += a[k][j] * b[k][j];
+    for (int c = 0; c < A->clumps; c++)
+      for (long d = 0; d < 6 && sd_tie_ours(A, c); d++) {
+        const long j = 6 * (long) (A->lone + c) + d;
+        sums[k] += a[k][j] * b[k][j];
+      }
+  }
+  return A->sum ? A->sum(A->sum_ctx, sums, count) : SD_OK;
+}
+
+/* r, z, p, w as ever: one step along p; w holds K^T (L + X) K p, z H_0 p */
+static sd_status step(const sd_bodies *A, double rz, double *V, double *borne)
+{
+  const sd_tie *t = A->tie;
+  const long size = 6 * sd_tie_bodies(A);
+  double *r = t->vectors, *z = r + size, *p = z + size, *w = p + size, sums[2];
+  sd_status status = apply(A, p, w);
+  if (status != SD_OK) return status;
+  resist_alone(A, p, z);
+  status = dots(A, 2, (const double *[]){p, p}, (const double *[]){w, z}, sums);
+  if (status != SD_OK) return status;
+  const double pHp = sums[0] + sums[1], alpha = rz / pHp;
+  if (!(pHp > 0.0)) return isfinite(pHp) ? SD_EINDEFINITE : SD_ENOTFINITE;
+  for (long j = 0; j < size; j++) {
+    V[j] += alpha * p[j];
+    borne[j] += alpha * w[j];
+    r[j] -= alpha * (w[j] + z[j]);
+  }
+  return SD_OK;
 }
 
 /* H V = f, t->vectors on entry, from V = 0. What is borne follows V by the same steps, so that it

@@ -141,8 +141,7 @@ static int is_zero(const double B[36])
   return 1;
 }
 
-/* A body that nobody is near to: scale 0 takes it out of the system, where it has V = V_0 exactly.
- * */
+/* A body that nobody is near to: scale 0 takes it out of the system, and it has V = V_0 exactly. */
 static void leave_out(double scale[6], double diagonal[36])
 {
   for (int d = 0; d < 6; d++) {
@@ -154,7 +153,7 @@ static void leave_out(double scale[6], double diagonal[36])
 /* A lone sphere, scaled; sets the scale */
 static void lone_block(const sd_bodies *A, int i, const double *L, double *scale, double *out)
 {
-  for (int d = 0; d < 6; d++) scale[d] = 1.0 / sqrt((d < 3 ? A->drag : A->spin)[i]);
+  for (int d = 0; d < 6; d++) scale[d] = 1.0 / sqrt(sd_bodies_drag(A, i, d));
   add_scaled(L, scale, scale, out);
   if (is_zero(out))
     leave_out(scale, out);

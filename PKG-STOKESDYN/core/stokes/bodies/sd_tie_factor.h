@@ -21,7 +21,6 @@ typedef struct sd_tie {
    * and its own together */
   float (*spring)[3];
   double *stiff;
-  size_t most_springs, most_stiff;
   /* products with L since sd_tie_make */
   long products;
   /* by bodies: which of all it is; 1 over the roots of the diagonal of H_0, 0: nobody is near */
@@ -29,7 +28,7 @@ typedef struct sd_tie {
   double *scale;
   /* scratch: by bodies of all ranks, by bodies, by rows, by ghosts */
   double *all, *vectors, *rows, *ghosts;
-  long most_bodies, most_rows, most_ghosts;
+  size_t most_springs, most_stiff, most_vectors, most_rows, most_ghosts;
 } sd_tie;
 
 static inline long sd_tie_bodies(const sd_bodies *A)
