@@ -203,6 +203,8 @@ static void kernels_agree(void **state)
   const struct sd_block_kernels *const sets[] = {
 #ifdef SD_HAS_X86_KERNELS
       sd_isa_supported(SD_ISA_AVX2) ? &sd_block_avx2 : NULL, &sd_block_baseline
+#elif defined(SD_HAS_PORTABLE_KERNELS)
+      &sd_block_baseline
 #else
       NULL
 #endif
