@@ -1,5 +1,5 @@
-/* Arrays that grow. array is the address of a pointer of any type, NULL or from malloc; size is that
- * of an element in bytes. Both return 1, or 0: out of memory. */
+/* Arrays that grow. array is the address of a pointer of any type, NULL or from malloc; size is
+ * that of an element in bytes. Both return 1, or 0: out of memory. */
 #ifndef SD_ROOM_H
 #define SD_ROOM_H
 

@@ -10,7 +10,7 @@ extern "C" {
  * for d, e, f in cyclic order. */
 void sd_flow_rotation(const double G[9], double w[3]);
 
-/* The same piece by piece: adds to w [3n] what slope [n] = d u_p / d x_q, p != q, has part in it. */
+/* The same piece by piece: adds to w [3n] what is due to slope [n] = d u_p / d x_q, p != q. */
 void sd_flow_add_rotation(int n, int p, int q, const double *slope, double *w);
 
 /* Puts the given vorticity (2 w) in place of that of G; the rate of strain stays. */

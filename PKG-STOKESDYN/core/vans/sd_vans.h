@@ -228,9 +228,9 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
  * is none. */
 double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed);
 
-/* Effective kinematic viscosity at a node of solid fraction phi: eta/rho times 1 (constant), 1 + 2.5
- * phi (Einstein), (1 - phi)^-2.8 (power: Krieger & Dougherty's form). Yade's rule has Einstein's at
- * the node on the bottom, where `bottom` is 1, in place of the power. */
+/* Effective kinematic viscosity at a node of solid fraction phi: eta/rho times 1 (constant),
+ * 1 + 2.5 phi (Einstein), (1 - phi)^-2.8 (power: Krieger & Dougherty's form). Yade's rule has
+ * Einstein's at the node on the bottom, where `bottom` is 1, in place of the power. */
 double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom);
 
 /* The friction factor near a Reynolds number: f(Re (1 + s)) = sum f_k s^k for |s| <= reach. Zeros:
@@ -428,7 +428,7 @@ void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
 
 /* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):
- * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2;  uncorrelated: (c, b, a) u_star. */
+ * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2; uncorrelated: (c, b, a) u_star. */
 void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3]);
 
 /* Life of an eddy at the height z above the bed: 0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, at most

@@ -216,7 +216,8 @@ static int place_slab(sd_grid *g)
       g->slab[p->to[0] + i - g->x0] = (fftw_complex *) (g->brick + (p->at[0] + i) * g->layer);
   }
   for (int x = 0; x < planes; x++) missing += !g->slab[x];
-  if (!sd_reserve(&g->spare, sizeof(double), (size_t) (missing * numbers), &g->spare_room)) return 0;
+  if (!sd_reserve(&g->spare, sizeof(double), (size_t) (missing * numbers), &g->spare_room))
+    return 0;
   for (int x = 0; x < planes; x++)
     if (!g->slab[x]) g->slab[x] = (fftw_complex *) (g->spare + --missing * numbers);
   return 1;

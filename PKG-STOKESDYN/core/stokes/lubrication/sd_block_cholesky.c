@@ -8,8 +8,7 @@
 #include "sd_room.h"
 
 /* The graph of what is not yet eliminated. An edge has two ends, one in the list of each node; both
- * name the one block, whose rows are those of the one, so that it is turned as the other sees it.
- */
+ * name the one block, whose rows are those of the one: it is turned as the other sees it. */
 typedef struct {
   int node, block, turned;
 } end_of_edge;

@@ -26,7 +26,7 @@ typedef struct {
 
 struct sd_lubrication_work {
   sd_neighbors near;
-  /* [IDENTITY (n_all - n)] of the others */
+  /* [IDENTITY (n_all - n)] */
   double *identity;
   /* [n_all] n_i; [6 n_all] u */
   double *neighbours, *flow;

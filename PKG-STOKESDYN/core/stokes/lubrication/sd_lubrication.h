@@ -72,7 +72,7 @@ typedef struct {
   double *diagonal;
   /* [6n] what the flow takes off: forces and torques on the fluid are L V - carried */
   double *carried;
-  /* of velocities of the others; NULL: there are none on any rank */
+  /* [6 (n_all - n)] velocities of the others */
   double *others;
   sd_world world;
   struct sd_lubrication_work *work;
