@@ -73,6 +73,8 @@ static void scene_of(int n, double phi, double xi)
     for (int d = 0; d < 3; d++) s->near.s.x[3 * i + d] += 0.01 / fastest * s->v[6 * i + d];
   settling_place(s);
   tell(s, "from the last step", 1, 1e-3);
+  settling_shake(s, 5);
+  tell(s, "from nothing, unlike forces", 0, 1e-3);
   settling_free(s);
 }
 
