@@ -3,10 +3,10 @@
  *
  *   H V = H_0 V_0 - K^T X r,   H = H_0 + K^T (X + L) K,   H_0: the resistances of bodies alone
  *
- * X: sd_tie_approach.h; r the slip for which V_0 is the velocity of bodies alone. Solved
- * by conjugate gradients within those for the forces, since a product with L is cheap beside one
- * with the mobility. Their preconditioner is an incomplete factor of H where pairs are stiff; what
- * is left couples weakly, so that the number of products does not depend on the gaps. Each rank has
+ * X: sd_tie_approach.h; r the slip for which V_0 is the velocity of bodies alone. Solved by
+ * conjugate gradients within those for the forces, since a product with L is cheap beside one with
+ * the mobility. Their preconditioner is an incomplete factor of H where pairs are stiff; what is
+ * left couples weakly, so that the number of products does not depend on the gaps. Each rank has
  * the factor of all of them: 18 ms for 10^4 spheres at a volume fraction of 0.3. */
 #ifndef SD_TIE_H
 #define SD_TIE_H

@@ -1,7 +1,6 @@
 #include "sd_ewald_pairs.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

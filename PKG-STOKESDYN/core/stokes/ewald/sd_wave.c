@@ -1,6 +1,5 @@
 #include "sd_wave.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_constants.h"
 #include "sd_ewald_large_pairs.h"
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
