@@ -238,7 +238,7 @@ def dam_break(n, **o):
 
 
 def wave(n, **o):
-    """Standing gravity wave, length 1, depth 1/2, dynamic viscosity 4 (nu 0.004): frequency and decay over those without and with leading
+    """Standing gravity wave, length 1, depth 1/2, kinematic viscosity 0.004: frequency and decay over those without and with leading
     order of viscosity, sqrt(g k tanh k H) and 2 nu k^2; "exact": decay over that of linear theory, free slip at the bottom."""
     g, H, A, rho0, mu = 9.81, 0.5, 0.02, 1.0, 0.004
     k = 2 * np.pi
