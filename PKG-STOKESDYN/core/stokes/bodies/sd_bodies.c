@@ -15,10 +15,10 @@ typedef struct {
   double *l, *v, *V;
 } state;
 
-/* What the loop goes by: r.z, and what of it is rounding; the power l.(K V - u) of the start, that
- * of the loads by V + dV as they stand, and that of slips that are rounding */
+/* What the loop goes by: r.z, and what of it is rounding; the power spent as it stands now; what
+ * the bodies would spend alone, and the power of slips that are rounding */
 typedef struct {
-  double rz, noise, spent, loads, floor;
+  double rz, noise, spent, alone, floor;
 } powers;
 
 typedef struct {
@@ -173,7 +173,7 @@ static const double rounding = 1e-14;
  * and half to three quarters of the products with L that 0.01 all the way takes.
  * Source: van den Eshof & Sleijpen, SIAM J. Matrix Anal. Appl. 26, 125 (2004). */
 static const double tie_accuracy = 0.003, tie_loosest = 0.2;
-/* And that of a guess, whose error the loop takes up, and of the power beside it */
+/* And that of a guess, whose error the loop takes up */
 static const double tie_guess = 0.3;
 
 /* a.b, the sum over all rows of all ranks */
@@ -191,25 +191,27 @@ static double tie_tolerance(const loop *c, double power)
   return fmax(tie_accuracy, fmin(tie_loosest, part));
 }
 
-/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. The power of the
- * loads. Also, with w, w.z. */
+/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. The power spent. Also,
+ * with w, w.z. */
 static sd_status weigh(loop *c, const double *w, double *wz)
 {
   const sd_bodies *A = c->A;
-  double s[4] = {0.0};
+  const state *x = &c->x, *z = &c->z;
+  double s[5] = {0.0};
   for (long i = 0; i < A->n; i++)
     for (int d = 0; d < A->width; d++) {
       const long j = A->width * i + d;
-      s[0] += c->r[j] * c->z.l[j];
+      s[0] += c->r[j] * z->l[j];
       s[1] += sd_bodies_drag(A, i, d) * c->r[j] * c->r[j];
-      s[2] += c->given[j] * (c->x.v[j] + c->z.v[j] - c->u[j]);
-      if (w) s[3] += w[j] * c->z.l[j];
+      s[2] += x->l[j] * (x->v[j] - c->u[j]);
+      s[3] += c->given[j] * (x->v[j] + z->v[j] - c->u[j]);
+      if (w) s[4] += w[j] * z->l[j];
     }
-  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 4) : SD_OK;
+  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 5) : SD_OK;
   c->power.rz = s[0];
   c->power.noise = rounding * s[1];
-  c->power.loads = s[2];
-  if (w) *wz = s[3];
+  c->power.spent = fmax(fabs(s[2]), s[3]);
+  if (w) *wz = s[4];
   return status;
 }
 
@@ -219,29 +221,6 @@ static sd_status resist(loop *c, const double *v, double *out)
   const sd_lubrication *L = c->A->tie->L;
   const sd_status status = sd_lubrication_apply(c->A->tie->L, v, out);
   for (long j = 0; j < (long) c->A->width * c->A->n; j++) out[j] -= L->carried[j];
-  return status;
-}
-
-/* Of the start x */
-static sd_status find_power(loop *c)
-{
-  const sd_bodies *A = c->A;
-  double s[2] = {0.0, 0.0};
-  for (long i = 0; i < A->n; i++)
-    for (int d = 0; d < A->width; d++) {
-      const long j = A->width * i + d;
-      const double u = c->u[j], v = c->x.v[j];
-      s[0] += c->x.l[j] * (v - u);
-      s[1] += sd_bodies_drag(A, i, d) * (u * u + v * v);
-    }
-  if (A->tie) {
-    const sd_status status = resist(c, c->x.v, c->w);
-    if (status != SD_OK) return status;
-    for (long j = 0; j < (long) A->width * A->n; j++) s[0] += c->w[j] * (c->x.v[j] - c->u[j]);
-  }
-  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 2) : SD_OK;
-  c->power.spent = fabs(s[0]);
-  c->power.floor = rounding * rounding * s[1];
   return status;
 }
 
@@ -261,17 +240,21 @@ static sd_status multiply(loop *c, const double *l, double *out)
   return status;
 }
 
-/* The accuracy of pre(r, 0) before anything is known of r.z, which is at most r.D r */
+/* The accuracy of the first pre(r, 0): r.z is at most r.D r */
 static sd_status expect(loop *c)
 {
   const sd_bodies *A = c->A;
-  double most = 0.0;
+  double s[2] = {0.0, 0.0};
   if (!A->tie) return SD_OK;
   for (long i = 0; i < A->n; i++)
-    for (int d = 0; d < A->width; d++)
-      most += sd_bodies_drag(A, i, d) * c->r[A->width * i + d] * c->r[A->width * i + d];
-  const sd_status status = A->sum ? A->sum(A->sum_ctx, &most, 1) : SD_OK;
-  c->tie_tolerance = tie_tolerance(c, most);
+    for (int d = 0; d < A->width; d++) {
+      const long j = A->width * i + d;
+      s[0] += sd_bodies_drag(A, i, d) * c->r[j] * c->r[j];
+      s[1] += c->given[j] * (c->x.v[j] - c->u[j]);
+    }
+  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 2) : SD_OK;
+  c->power.spent = fmax(c->power.alone, s[1]);
+  c->tie_tolerance = tie_tolerance(c, s[0]);
   return status;
 }
 
@@ -287,13 +270,33 @@ static sd_status residual(loop *c)
   return status == SD_OK ? weigh(c, NULL, NULL) : status;
 }
 
-/* x = pre(-u, F), the tie to so much of it, and its power */
-static sd_status start_cold(loop *c, double tie)
+/* x = pre(-u, F) of bodies for themselves, and their power */
+static sd_status start_alone(loop *c)
 {
-  c->tie_tolerance = tie;
-  for (long j = 0; j < (long) c->A->width * c->A->n; j++) c->r[j] = -c->u[j];
-  const sd_status status = pre(c, c->r, &c->F, &c->x);
-  return status == SD_OK ? find_power(c) : status;
+  const sd_bodies *A = c->A;
+  double s[2] = {0.0, 0.0};
+  for (long j = 0; j < (long) A->width * A->n; j++) c->r[j] = -c->u[j];
+  sd_status status = pre_alone(c, c->r, &c->F, &c->x);
+  for (long i = 0; i < A->n; i++)
+    for (int d = 0; d < A->width; d++) {
+      const long j = A->width * i + d;
+      const double u = c->u[j], v = c->x.v[j];
+      s[0] += c->x.l[j] * (v - u);
+      s[1] += sd_bodies_drag(A, i, d) * (u * u + v * v);
+    }
+  if (status == SD_OK && A->sum) status = A->sum(A->sum_ctx, s, 2);
+  c->power.alone = fabs(s[0]);
+  c->power.floor = rounding * rounding * s[1];
+  return status;
+}
+
+/* From x = pre(-u, F) */
+static sd_status start_cold(loop *c)
+{
+  sd_status status = start_alone(c);
+  c->tie_tolerance = tie_accuracy;
+  if (status == SD_OK && c->A->tie) status = tie_together(c, c->r, &c->x);
+  return status == SD_OK ? residual(c) : status;
 }
 
 /* guess += what it lacks of the second line, by pre(0, F - K^T (l + L K V)) */
@@ -351,29 +354,24 @@ static sd_status settle(loop *c)
 }
 
 /* x, r and z at the start of the loop. Warm: l is a guess, with a tie (l, V), dropped when it
- * leaves more than the power itself. */
+ * leaves more than bodies would spend alone. */
 static sd_status start(loop *c, const double *before, int warm)
 {
   const size_t bytes = sizeof(double) * (size_t) c->A->width * (size_t) c->A->n;
   const state *guess = &c->along;
-  sd_status status = SD_OK;
-  if (warm) {
-    memcpy(guess->l, c->x.l, bytes);
-    if (c->A->tie) status = guess_motion(c, before, guess);
-    if (status == SD_OK) status = repair(c, guess);
-  }
-  if (status == SD_OK) status = start_cold(c, warm ? tie_guess : tie_accuracy);
-  if (status != SD_OK || !warm) return status == SD_OK ? residual(c) : status;
+  if (!warm) return start_cold(c);
+  memcpy(guess->l, c->x.l, bytes);
+  sd_status status = c->A->tie ? guess_motion(c, before, guess) : SD_OK;
+  if (status == SD_OK) status = repair(c, guess);
+  if (status == SD_OK) status = start_alone(c);
   memcpy(c->x.l, guess->l, bytes);
   if (c->A->tie) {
     memcpy(c->x.v, guess->v, bytes);
     memcpy(c->x.V, guess->V, sizeof(double) * 6 * (size_t) c->A->clumps);
   }
-  status = residual(c);
+  if (status == SD_OK) status = residual(c);
   if (status == SD_OK && !c->A->tie && c->power.rz < 1e4 * c->power.noise) status = settle(c);
-  if (status != SD_OK || c->power.rz <= c->power.spent) return status;
-  status = start_cold(c, tie_accuracy);
-  return status == SD_OK ? residual(c) : status;
+  return status == SD_OK && c->power.rz > c->power.alone ? start_cold(c) : status;
 }
 
 /* (p, q) = (z, dV) + beta (p, q): conjugate to all before, since each lies within the constraint */
@@ -418,9 +416,8 @@ static sd_status step(loop *c, double *beta)
   return status;
 }
 
-/* Until sqrt(r.z / e) < tolerance, e the larger of both powers. r.z is the power of what is still
- * wrong, by the blocks of the bodies: below the floor it is rounding of velocities that are the
- * stream's own. */
+/* Until sqrt(r.z / spent) < tolerance. r.z is the power of what is still wrong, by the blocks of
+ * the bodies: below the floor it is rounding of velocities that are the stream's own. */
 static sd_status iterate(loop *c, double tolerance, int max_iter)
 {
   const powers *power = &c->power;
@@ -429,10 +426,10 @@ static sd_status iterate(loop *c, double tolerance, int max_iter)
   memset(c->along.v, 0, sizeof(double) * rows);
   memset(c->along.V, 0, sizeof(double) * motions);
   for (double beta = 0.0;;) {
-    const double before = power->rz, e = fmax(power->spent, power->loads);
-    if (!isfinite(before + power->spent + power->loads)) return SD_ENOTFINITE;
+    const double before = power->rz;
+    if (!isfinite(before + power->spent)) return SD_ENOTFINITE;
     if (before < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
-    c->report->residual = e > 0.0 ? sqrt(fmax(before, 0.0) / e) : 0.0;
+    c->report->residual = power->spent > 0.0 ? sqrt(fmax(before, 0.0) / power->spent) : 0.0;
     if (before <= power->floor) return SD_OK;
     if (c->report->residual < tolerance) return SD_OK;
     if (c->report->products >= max_iter) return SD_EMAXITER;

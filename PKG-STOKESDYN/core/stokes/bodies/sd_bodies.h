@@ -21,10 +21,10 @@
  * K^T l = F holds from the start, so K^T p = 0, and of dN only K dN F is ever seen. r.z = z.M_b' z
  * >= 0 and p.w = p.M p, so that this is conjugate gradients with all that is known of them. r must
  * be updated with K q in it: without, digits are lost near 1e-7. Free spheres leave after their one
- * product with the exact answer. e is the power spent: l.(K V - u) of the start, or that of the
- * loads, F.(K (V + dV) - u) by spheres, whichever is larger. Bodies that fall together spend many
- * times what they would alone, and the start knows them alone. The tolerance is about an energy
- * norm, and V + dV is ten times better than it, a hundred times where all fall together.
+ * product with the exact answer. e is the power spent as it stands: l.(K V - u), or that of the
+ * loads, F.(K (V + dV) - u) by spheres, whichever is larger; of the answer both are the same.
+ * Bodies that fall together spend many times what they would alone. The tolerance is about an
+ * energy norm, and V + dV is ten times better than it, a hundred times where all fall together.
  *
  * With lubrication L between spheres of different bodies (a tie, sd_tie.h)
  *
@@ -35,8 +35,8 @@
  * N^-1. What is stiff is in H, so that gaps may be as small as they like. K^T l + K^T L K V = f
  * holds whatever H V is solved to, since l is made from V. A few digits of the first V will do and
  * less than one of the last, since beta makes the next direction conjugate to the last one all the
- * same. Here, but for X, r.z = z.M_b' z + dV.L dV, p.w = p.M p + q.L q, and e has (K V - u).L (K V
- * - V_inf) besides. */
+ * same. Here, but for X, r.z = z.M_b' z + dV.L dV and p.w = p.M p + q.L q; of the power spent L has
+ * a part, so that l.(K V - u) is less than that of the loads. */
 #ifndef SD_BODIES_H
 #define SD_BODIES_H
 

@@ -273,8 +273,8 @@ static void dense_clouds_take_few_products(void **state)
   settling_free(s);
 }
 
-/* Nor does that of products with L: with less than one digit for each product, and one for the guess and its
- * power, a step from the last one takes a half of what a hundredth of each would. */
+/* Nor does that of products with L: with less than one digit for each product, and one for the guess, a step from the
+ * last one takes a half of what a hundredth of each would. */
 static void products_within_are_few(void **state)
 {
   (void) state;
