@@ -13,6 +13,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "modify.h"
@@ -349,32 +350,35 @@ double FixStokesDynamicsOverdamped::error_figure() const
   return 0.5 * update->dt * most;
 }
 
-/* Between spheres whose centres are within the ghost cut-off */
+/* Between spheres whose centres are within four times the largest radius */
 double FixStokesDynamicsOverdamped::smallest_gap() const
 {
-  Hydrodynamics &hydro = hydrodynamics();
-  const int nlocal = atom->nlocal, n = nlocal + atom->nghost;
+  const Hydrodynamics &hydro = hydrodynamics();
+  const std::vector<int> &who = hydro.ambient.who();
   const bool bound = hydro.settings.rigid.on;
-  std::vector<double> sent, x, a;
-  std::vector<int64_t> body;
-  hydro.scene.refresh_ghosts(sent, 2, [&](int i, double *row) {
-    row[0] = hydro.ambient.active()[i] ? atom->radius[i] : 0.0;
-    row[1] = bound ? ubuf(atom->molecule[i]).d : 0.0;
-  });
-  int mine = 0;
-  for (int i = 0; i < n; i++) {
-    const double *ghost = i < nlocal ? nullptr : &sent[2 * (size_t) (i - nlocal)];
-    const double radius = ghost ? ghost[0] : hydro.ambient.active()[i] ? atom->radius[i] : 0.0;
-    if (radius == 0.0) continue;
+  std::vector<double> x, a, w(who.size(), 1.0), bodies;
+  double mine = 0.0, largest;
+  for (int i : who) {
     x.insert(x.end(), atom->x[i], atom->x[i] + 3);
-    a.push_back(radius);
-    body.push_back(!bound ? 0 : ghost ? (int64_t) ubuf(ghost[1]).i : (int64_t) atom->molecule[i]);
-    mine += i < nlocal;
+    a.push_back(atom->radius[i]);
+    bodies.push_back(bound ? atom->molecule[i] : 0);
+    mine = std::max(mine, atom->radius[i]);
   }
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (largest == 0.0) return INFINITY;
+  const double reach = 4.0 * largest;
+  sd_ewald_box box = periodic_box(domain);
+  box.periodic = 1;
+  for (int d = 0; d < 3; d++)    // what has no images has them too far away
+    if (!domain->periodicity[d]) box.edge[d] = 4.0 * (box.edge[d] + reach);
+  Images images(world);
+  images.find(box, reach, x, a, w);
+  bodies.resize(a.size() + 1);
+  images.refresh(bodies.data(), &bodies[who.size()], 1);
+  const std::vector<int64_t> body(bodies.begin(), bodies.end());
   double gap = INFINITY, all;
-  const double reach = std::max(comm->get_comm_cutoff(), 1e-300);
-  if (mine > 0 &&
-      sd_smallest_gap(x.data(), a.data(), body.data(), mine, a.size(), reach, &gap) != SD_OK)
+  if (!who.empty() &&
+      sd_smallest_gap(x.data(), a.data(), body.data(), who.size(), a.size(), reach, &gap) != SD_OK)
     fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
   MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
   return all;

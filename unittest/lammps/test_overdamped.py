@@ -380,6 +380,19 @@ def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way, options, ranks):
     assert difference(last_frame(tmp_path), whole) < 1e-10
 
 
+@pytest.mark.parametrize("boundary, style, gap", [("p p p", "cut_off_distance inf", 2 * (np.hypot(1.2, 0.3) - 1)),
+                                                  ("f f f", "cut_off_distance inf", 1.2),
+                                                  ("f s p", "cut_off_distance 3", 2 * (np.hypot(1.2, 0.3) - 1)),
+                                                  ("f p f", "cut_off_distance 1.1 taper wendland", 1.2)])
+@pytest.mark.parametrize("ranks", [1, 3])
+def test_smallest_gap_needs_no_ghosts(tmp_path, boundary, style, gap, ranks):
+    """Across a periodic face and across ranks, and where the faces are none: no ghosts are asked for, or too few."""
+    spheres = Spheres([(0, 0, -9.4), (1, 0, -0.8), (1, 0, 0.8), (0, 0.3, 9.4)], 0.5)
+    lines = input_lines(spheres, f"{style} visc 1", str(tmp_path / "data"), boundary, [(-10.0, 10.0)] * 3, fix=False, dt=1e-3)
+    lmp(tmp_path, lines + [FIX, "run 0", f'print "$(f_move[8]:%.15g)" file {tmp_path}/gap'], ranks)
+    assert float((tmp_path / "gap").read_text()) == pytest.approx(gap, rel=1e-12)
+
+
 def test_a_sphere_moved_by_hand_starts_anew(simulation):
     """displace_atoms between runs: what was before the move says nothing of the path after it."""
     ends = []
