@@ -370,7 +370,8 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   sd_ewald_box box = periodic_box(domain);
   box.periodic = 1;
   for (int d = 0; d < 3; d++)    // what has no images has them too far away
-    if (!domain->periodicity[d]) box.edge[d] = 4.0 * (box.edge[d] + reach);
+    if (!domain->periodicity[d] || d >= domain->dimension)
+      box.edge[d] = 4.0 * (box.edge[d] + reach);
   Images images(world);
   images.find(box, reach, x, a, w);
   bodies.resize(a.size() + 1);

@@ -393,6 +393,14 @@ def test_smallest_gap_needs_no_ghosts(tmp_path, boundary, style, gap, ranks):
     assert float((tmp_path / "gap").read_text()) == pytest.approx(gap, rel=1e-12)
 
 
+def test_smallest_gap_in_a_plane(tmp_path):
+    """The third direction of a plane is periodic by name only."""
+    lines = input_lines(Spheres([(0, 0, 0), (1.4, 0, 0)], 0.5), "cut_off_distance inf visc 1", str(tmp_path / "data"), "f f p",
+                        [(-10.0, 10.0), (-10.0, 10.0), (-0.3, 0.3)], fix=False, dt=1e-3)
+    lmp(tmp_path, ["dimension 2"] + lines + ["fix plane all enforce2d", FIX, "run 0", f'print "$(f_move[8]:%.15g)" file {tmp_path}/gap'])
+    assert float((tmp_path / "gap").read_text()) == pytest.approx(0.8, rel=1e-12)
+
+
 def test_a_sphere_moved_by_hand_starts_anew(simulation):
     """displace_atoms between runs: what was before the move says nothing of the path after it."""
     ends = []
