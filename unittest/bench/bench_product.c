@@ -126,14 +126,45 @@ static void head_of_products(void)
   printf("  %-34s %10s %8s %10s\n", "", "G pairs/s", "ratio", "error");
 }
 
-/* m: 3 numbers a sphere, with torques 6 */
+/* The core against the rival: forces F and F times the root of the drag, m numbers a sphere, with
+ * torques 6; answers of both; seconds of the rival and of the core */
+typedef struct {
+  scene s;
+  sd_spheres spheres;
+  int n, m;
+  double *F, *rival, *u, *expected, t[2][RUNS];
+} contest;
+
+static contest contest_begin(int n, int m)
+{
+  const size_t bytes = (size_t) m * sizeof(double) * (size_t) n;
+  contest c = {.s = polydisperse(n, 1), .n = n, .m = m, .u = malloc(bytes), .expected = malloc(bytes)};
+  c.spheres = (sd_spheres){c.s.x, c.s.a, c.s.w};
+  c.F = random_numbers(m * n);
+  c.rival = times_root(&c.s, m, c.F);
+  return c;
+}
+
+static void contest_tell(contest *c, sd_isa isa, double pairs)
+{
+  const double mine = median(c->t[1], RUNS), its = median(c->t[0], RUNS);
+  printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
+         difference(&c->s, c->m, c->n, c->u, c->expected));
+}
+
+static void contest_end(contest *c, double pairs)
+{
+  printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(c->t[0], RUNS));
+  free(c->rival);
+  free(c->F);
+  free(c->u);
+  free(c->expected);
+  scene_free(&c->s);
+}
+
 static void bench_product(int n, int m)
 {
-  scene s = polydisperse(n, 1);
-  const sd_spheres spheres = {s.x, s.a, s.w};
-  const size_t bytes = (size_t) m * sizeof(double) * (size_t) n;
-  double *u = malloc(bytes), *expected = malloc(bytes), t[2][RUNS];
-  double *F = random_numbers(m * n), *rival = times_root(&s, m, F);
+  contest c = contest_begin(n, m);
   const double pairs = (double) n * n;
   const int repeat = 1 + (int) (1e8 / pairs);
   printf("\nProduct, all pairs, %d polydisperse spheres, phi 0.2%s\n", n,
@@ -142,26 +173,19 @@ static void bench_product(int n, int m)
   for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
     if (!sd_isa_supported(isa)) continue;
     sd_packed p = {0};
-    if (sd_packed_all(&p, isa, &RPY, &spheres, n, m) != SD_OK) abort();
+    if (sd_packed_all(&p, isa, &RPY, &c.spheres, n, m) != SD_OK) abort();
     for (int k = 0; k < RUNS; k++) {
       double begin = cpu();
-      rival_all(m, s.x, s.a, rival, n, expected);
-      t[0][k] = cpu() - begin;
+      rival_all(m, c.s.x, c.s.a, c.rival, n, c.expected);
+      c.t[0][k] = cpu() - begin;
       begin = cpu();
-      for (int r = 0; r < repeat; r++) sd_packed_share(&p, 0, 1, F, u);
-      t[1][k] = (cpu() - begin) / repeat;
+      for (int r = 0; r < repeat; r++) sd_packed_share(&p, 0, 1, c.F, c.u);
+      c.t[1][k] = (cpu() - begin) / repeat;
     }
-    const double mine = median(t[1], RUNS), its = median(t[0], RUNS);
-    printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
-           difference(&s, m, n, u, expected));
+    contest_tell(&c, isa, pairs);
     sd_packed_free(&p);
   }
-  printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(t[0], RUNS));
-  free(rival);
-  free(F);
-  free(u);
-  free(expected);
-  scene_free(&s);
+  contest_end(&c, pairs);
 }
 
 /* The bare kernel alone, for unittest/bench/product_in_lammps.py: directed pairs per second. */
@@ -186,16 +210,13 @@ static void bench_kernel(int n, int m)
 
 static void bench_list(int n, double neighbors, int m)
 {
-  scene s = polydisperse(n, 1);
-  const sd_spheres spheres = {s.x, s.a, s.w};
-  const size_t bytes = (size_t) m * sizeof(double) * (size_t) n;
-  double *u = malloc(bytes), *expected = malloc(bytes), t[2][RUNS], side = 0.0;
-  double *F = random_numbers(m * n), *rival = times_root(&s, m, F);
-  for (int i = 0; i < 3 * n; i++) side = fmax(side, s.x[i]);
+  contest c = contest_begin(n, m);
+  double side = 0.0;
+  for (int i = 0; i < 3 * n; i++) side = fmax(side, c.s.x[i]);
   sd_neighbors list = {0};
   double cutoff = side * cbrt(neighbors / (4.0 / 3.0 * SD_PI * n));
   for (int k = 0; k < 6; k++) { /* fewer neighbours at the border: widen the cut-off */
-    if (sd_neighbors_cutoff(&list, s.x, n, n, cutoff) != SD_OK) abort();
+    if (sd_neighbors_cutoff(&list, c.s.x, n, n, cutoff) != SD_OK) abort();
     cutoff *= cbrt(neighbors / ((double) list.pairs.first[n] / n));
   }
   const double pairs = (double) list.pairs.first[n];
@@ -206,27 +227,21 @@ static void bench_list(int n, double neighbors, int m)
   for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
     if (!sd_isa_supported(isa)) continue;
     sd_packed p = {0};
-    if (sd_packed_list(&p, isa, &RPY, &spheres, n, m) != SD_OK) abort();
+    if (sd_packed_list(&p, isa, &RPY, &c.spheres, n, m) != SD_OK) abort();
     for (int k = 0; k < RUNS; k++) {
       double begin = cpu();
-      for (int r = 0; r < repeat; r++) rival_list(m, s.x, s.a, rival, &list.pairs, expected);
-      t[0][k] = (cpu() - begin) / repeat;
+      for (int r = 0; r < repeat; r++)
+        rival_list(m, c.s.x, c.s.a, c.rival, &list.pairs, c.expected);
+      c.t[0][k] = (cpu() - begin) / repeat;
       begin = cpu();
-      for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, F, NULL, u);
-      t[1][k] = (cpu() - begin) / repeat;
+      for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, c.F, NULL, c.u);
+      c.t[1][k] = (cpu() - begin) / repeat;
     }
-    const double mine = median(t[1], RUNS), its = median(t[0], RUNS);
-    printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
-           difference(&s, m, n, u, expected));
+    contest_tell(&c, isa, pairs);
     sd_packed_free(&p);
   }
-  printf("  %-34s %10.3f\n", "scalar C loop", 1e-9 * pairs / median(t[0], RUNS));
   sd_neighbors_free(&list);
-  free(rival);
-  free(F);
-  free(u);
-  free(expected);
-  scene_free(&s);
+  contest_end(&c, pairs);
 }
 
 int main(int argc, char **argv)

@@ -28,12 +28,7 @@ typedef struct {
 /* One solve for uniform velocity along x. Time includes packing the spheres. */
 static solved solve_once(scene *s, double tolerance, double *F, double *work, const double *slip)
 {
-  const sd_system A = {.n = s->n,
-                       .drag = s->drag,
-                       .apply = scene_apply,
-                       .apply_ctx = s,
-                       .precondition = s->precondition,
-                       .precondition_ctx = s->precondition_ctx};
+  const sd_system A = scene_system(s);
   sd_solve_report report;
   solved r = {0};
   s->fast = 1;

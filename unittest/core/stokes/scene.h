@@ -85,6 +85,16 @@ static inline sd_status scene_apply(void *ctx, const double *F, double *u)
   return SD_OK;
 }
 
+static inline sd_system scene_system(scene *s)
+{
+  return (sd_system){.n = s->n,
+                     .drag = s->drag,
+                     .apply = scene_apply,
+                     .apply_ctx = s,
+                     .precondition = s->precondition,
+                     .precondition_ctx = s->precondition_ctx};
+}
+
 typedef sd_status solver(const sd_system *, const double *, double, int, double *, double *,
                          sd_solve_report *);
 
@@ -92,12 +102,7 @@ typedef sd_status solver(const sd_system *, const double *, double, int, double 
 static inline double *scene_solve(scene *s, solver *solve, const double *slip, double tolerance,
                                   int max_iter, sd_status *status, sd_solve_report *report)
 {
-  const sd_system A = {.n = s->n,
-                       .drag = s->drag,
-                       .apply = scene_apply,
-                       .apply_ctx = s,
-                       .precondition = s->precondition,
-                       .precondition_ctx = s->precondition_ctx};
+  const sd_system A = scene_system(s);
   double *F = malloc(sizeof(double) * 3 * (size_t) s->n),
          *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 3));
   *status = solve(&A, slip, tolerance, max_iter, F, work, report);
