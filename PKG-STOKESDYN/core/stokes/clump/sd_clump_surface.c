@@ -45,6 +45,14 @@ void sd_surface_free(sd_surface *s)
  * and rows at any overlap (0.1 to 1.9 radii apart) as accurate as that of touching spheres. */
 static const double seam = 0.4;
 
+/* Where the points of a shell stand for a surface, and the radius of points there. Those of
+ * SD_SHELL_FAT stand deep inside their sphere: for it those that twelve points apart would have. */
+static void surface_of(const sd_shell *shell, double *radius, double *point)
+{
+  *radius = shell->n == SD_SHELL_FAT ? 0.9364 : shell->radius;
+  *point = shell->n == SD_SHELL_FAT ? 0.2862 : shell->point;
+}
+
 /* Is p inside one of the spheres but its own, whose radii are given? */
 static int hidden(const sd_shape *s, const double *radius, int own, const double p[3])
 {
@@ -156,7 +164,7 @@ sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_sh
                                sd_surface *out)
 {
   size_t total = 0;
-  double Q[9], G[9];
+  double Q[9], G[9], radius, point;
   const sd_shell *shell;
   sd_status status = SD_OK;
   *out = (sd_surface){0};
@@ -165,7 +173,8 @@ sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_sh
   for (int i = 0; i < s->n && status == SD_OK; i++) {
     status = sd_shells_get(cache, count[i], &shell);
     if (status != SD_OK) break;
-    deep[i] = (shell->radius - seam * shell->point) * s->a[i];
+    surface_of(shell, &radius, &point);
+    deep[i] = (radius - seam * point) * s->a[i];
     total += (size_t) shell->n;
   }
   if (status == SD_OK) status = surface_allocate(out, total);
@@ -173,11 +182,13 @@ sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_sh
   sd_product3(s->frame, Q, G);
   for (int i = 0; i < s->n && status == SD_OK; i++) {
     status = sd_shells_get(cache, count[i], &shell);
+    surface_of(shell, &radius, &point);
     for (int m = 0; m < shell->n; m++) {
       double e[3], *p = out->x + 3 * (size_t) out->n;
       sd_multiply3(G, shell->p + 3 * m, e);
-      for (int d = 0; d < 3; d++) p[d] = s->x[3 * i + d] + shell->radius * s->a[i] * e[d];
+      for (int d = 0; d < 3; d++) p[d] = s->x[3 * i + d] + radius * s->a[i] * e[d];
       if (hidden(s, deep, i, p)) continue;
+      for (int d = 0; d < 3; d++) p[d] = s->x[3 * i + d] + shell->radius * s->a[i] * e[d];
       out->a[out->n] = shell->point * s->a[i];
       out->sphere[out->n++] = i;
     }

@@ -292,6 +292,32 @@ static sd_status mismatch(const double *octant, int m, double kappa, double *A, 
   return status;
 }
 
+/* Two values of kappa between which the mismatch vanishes: < 0 at lo, >= 0 at hi.
+ * It rises with kappa through its first root near kappa = 1.1/sqrt(n), where the points do not
+ * overlap yet, and falls through a second one, which is the icosahedron's (sd_shell.h). */
+static sd_status bracket(const double *octant, int m, int n, double *A, double *b, double *lo,
+                         double *glo, double *hi, double *ghi)
+{
+  double T, step = 1.2;
+  *lo = 0.5 / sqrt(n);
+  if (n == SD_SHELL_FAT) {
+    *lo = 1.0;
+    step = 1.0 / step;
+  }
+  *hi = *lo;
+  sd_status status = mismatch(octant, m, *lo, A, b, &T, glo);
+  *ghi = *glo;
+  while (status == SD_OK && *ghi < 0.0) {
+    *lo = *hi;
+    *glo = *ghi;
+    *hi *= step;
+    status = fabs(log(*hi * sqrt(n))) > 1.4 ? SD_ESINGULAR
+                                            : mismatch(octant, m, *hi, A, b, &T, ghi);
+  }
+  return status == SD_OK && *glo >= 0.0 ? SD_ESINGULAR : status;
+}
+
+/* Regula falsi (Illinois) */
 static sd_status calibrate(sd_shell *shell)
 {
   const int n = shell->n;
@@ -308,21 +334,10 @@ static sd_status calibrate(sd_shell *shell)
     return SD_ENOMEMORY;
   }
   double *b = A + 9 * (size_t) m * m, T = 0.0;
-
-  /* The mismatch rises with kappa through its first root near kappa = 1.1/sqrt(n), where the points
-   * do not overlap yet. Bracket it from below, then regula falsi (Illinois). */
-  double lo = 0.5 / sqrt(n), hi = lo, glo, ghi;
-  sd_status status = mismatch(octant, m, lo, A, b, &T, &glo);
-  ghi = glo;
-  while (status == SD_OK && ghi < 0.0) {
-    lo = hi;
-    glo = ghi;
-    hi *= 1.2;
-    status = hi * sqrt(n) > 4.0 ? SD_ESINGULAR : mismatch(octant, m, hi, A, b, &T, &ghi);
-  }
-  if (status == SD_OK && glo >= 0.0) status = SD_ESINGULAR;
+  double lo, hi, glo, ghi;
+  sd_status status = bracket(octant, m, n, A, b, &lo, &glo, &hi, &ghi);
   double kappa = hi, g = ghi;
-  for (int k = 0; k < 60 && status == SD_OK && fabs(g) > 1e-14 && hi - lo > 1e-15 * hi; k++) {
+  for (int k = 0; k < 60 && status == SD_OK && fabs(g) > 1e-14 && fabs(hi - lo) > 1e-15 * hi; k++) {
     kappa = (lo * ghi - hi * glo) / (ghi - glo);
     status = mismatch(octant, m, kappa, A, b, &T, &g);
     if (g < 0.0) {

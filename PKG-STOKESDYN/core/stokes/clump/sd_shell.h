@@ -5,7 +5,10 @@
  * exactly its two drags: with a = 1
  *   resistance to translation = 6 pi eta,   to rotation = 8 pi eta.
  * With kappa = point/radius they are eta radius T(kappa) and eta radius^3 Q(kappa), so kappa is the
- * root of T^3/Q = 27 pi^2 and radius = 6 pi/T.
+ * root of T^3/Q = 27 pi^2 and radius = 6 pi/T. There are two roots. At the first one the points do
+ * not overlap, and a flow that changes over the sphere leaks between them. At the second one they
+ * do: the twelve points of the icosahedron, SD_SHELL_FAT, have it, with radius 0.6563, point 0.5623
+ * and the stresslet of a sphere within 1e-3. Shells of more points have the first.
  *
  * All point sets have the symmetry T_h of a cube with stripes (the pyritohedron), which makes both
  * resistances isotropic:
@@ -20,6 +23,8 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+enum { SD_SHELL_FAT = 12 };
 
 typedef struct {
   /* points */
