@@ -61,6 +61,12 @@ target_compile_options(make_two_sphere_table PRIVATE -Wall -Wextra -Wshadow)
 target_link_libraries(make_two_sphere_table PRIVATE ${tested}_stokes)
 add_test(NAME two_sphere_table COMMAND make_two_sphere_table check 23)
 add_dependencies(core_tests make_two_sphere_table)
+# and that of shells of points
+add_executable(make_film_table ${source}/core/stokes/two_sphere/table/make_film_table.c)
+target_compile_options(make_film_table PRIVATE -Wall -Wextra -Wshadow)
+target_link_libraries(make_film_table PRIVATE ${tested}_stokes)
+add_test(NAME film_table COMMAND make_film_table check 1 4 5)
+add_dependencies(core_tests make_film_table)
 
 # Timings: cmake --build build --target bench_product bench_solve (unittest/bench/README.md)
 foreach(bench product solve ewald lubrication)

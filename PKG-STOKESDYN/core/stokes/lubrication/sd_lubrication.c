@@ -5,39 +5,12 @@
 #include <string.h>
 
 #include "sd_linear.h"
+#include "sd_lubrication_internal.h"
 #include "sd_room.h"
 #include "sd_tensor.h"
 
 /* Which sphere an image is of: its rank, its row there, its body */
 enum { RANK, ROW, BODY, IDENTITY };
-
-/* How near a pair is: gap over the mean radius, t of it; and where its second sphere stands:
- * itself, or its image */
-typedef struct {
-  double xi, t;
-  int at;
-} closeness;
-
-/* A symmetric sum of blocks of one sphere with itself: (UU, [UW]x; -[UW]x, WW), rows F T; of UU and
- * WW xx xy xz yy yz zz */
-typedef struct {
-  double UU[6], UW[3], WW[6];
-} own_block;
-
-struct sd_lubrication_work {
-  sd_neighbors near;
-  /* [IDENTITY (n_all - n)] */
-  double *identity;
-  /* [n_all] n_i; [6 n_all] u */
-  double *neighbours, *flow;
-  /* some u is not 0 */
-  int flows;
-  /* [n] */
-  own_block *own;
-  /* [count] */
-  closeness *close;
-  long most_spheres, most_others, most_pairs;
-};
 
 static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *s)
 {
@@ -63,13 +36,18 @@ static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *
   return SD_OK;
 }
 
-static sd_status reserve_pairs(sd_lubrication *L, long count)
+static sd_status reserve_pairs(sd_lubrication *L, const sd_lubrication_scene *s, long count)
 {
   struct sd_lubrication_work *w = L->work;
-  if (count < w->most_pairs) return SD_OK;
+  if (s->films) {
+    free(L->model);
+    L->model = NULL;
+  }
+  if (count < w->most_pairs && (s->films || L->model)) return SD_OK;
   const size_t room = (size_t) (count + count / 4 + 64);
   if (!sd_grow(&L->pair, sizeof(*L->pair), room) || !sd_grow(&w->close, sizeof(*w->close), room) ||
-      !sd_grow(&L->link, sizeof(*L->link), room) || !sd_grow(&L->model, sizeof(double), room))
+      !sd_grow(&L->link, sizeof(*L->link), room) ||
+      (!s->films && !sd_grow(&L->model, sizeof(double), room)))
     return SD_ENOMEMORY;
   w->most_pairs = (long) room;
   return SD_OK;
@@ -122,7 +100,7 @@ static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
     d[2] = 1.0; /* spheres at one point: any direction */
   const double xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
   const double q = fmin(fmax(2.0 * xi / s->range - 1.0, 0.0), 1.0);
-  return (closeness){xi, 1.0 - q * q * (3.0 - 2.0 * q), j};
+  return (closeness){xi, 1.0 - q * q * (3.0 - 2.0 * q), R, j};
 }
 
 /* Pairs of a sphere with its own images are there as often as these are, since the other way round
@@ -131,7 +109,7 @@ static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   struct sd_lubrication_work *w = L->work;
   sd_status status = sd_near_once(&w->near, &s->spheres, s->n, s->n_all, 2.0 + s->range);
-  if (status == SD_OK) status = reserve_pairs(L, w->near.first[s->n]);
+  if (status == SD_OK) status = reserve_pairs(L, s, w->near.first[s->n]);
   if (status != SD_OK) return status;
   L->count = 0;
   for (int i = 0; i < s->n; i++)
@@ -151,6 +129,7 @@ static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
 
 static sd_status count_neighbours(sd_lubrication *L, const sd_lubrication_scene *s)
 {
+  if (s->films) return SD_OK; /* nothing is shared */
   double *n = L->work->neighbours;
   memset(n, 0, sizeof(double) * (size_t) s->n_all);
   for (long k = 0; k < L->count; k++) {
@@ -167,8 +146,12 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   double *flow = L->work->flow;
   sd_status status = SD_OK;
   memset(L->carried, 0, sizeof(double) * 6 * (size_t) s->n);
-  L->work->flows = 0;
-  if (!s->u) return SD_OK;
+  L->work->flows = L->work->shears = 0;
+  L->work->images = 0;
+  memset(L->work->gradient, 0, sizeof L->work->gradient);
+  if (s->films && s->gradient) memcpy(L->work->gradient, s->gradient, sizeof L->work->gradient);
+  for (int e = 0; e < 9; e++) L->work->shears |= L->work->gradient[e] != 0.0;
+  if (!s->u || s->films) return SD_OK;
   memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
   if (s->world.refresh) status = s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6);
   for (long j = 0; j < 6 * (long) s->n_all; j++) L->work->flows |= flow[j] != 0.0;
@@ -191,31 +174,6 @@ static void rigid_part(const double *const x[2], const double a[2], const double
       V[k][3 + e] = mean[3 + e];
     }
   }
-}
-
-/* out += B V for a block of a pair. That of 21 is that of 12 with YB12 and YB21 exchanged: d turns
- * round, and so do their signs. */
-static inline void add_product(const sd_lubrication_link *B, double YB12, double YB21,
-                               const double *V, double *out)
-{
-  double dU[3], dW[3];
-  sd_cross(B->d, V, dU);
-  sd_cross(B->d, V + 3, dW);
-  const double F = (B->XA - B->YA) * sd_dot(B->d, V), T = (B->XC - B->YC) * sd_dot(B->d, V + 3);
-  for (int e = 0; e < 3; e++) {
-    out[e] += B->YA * V[e] + F * B->d[e] + YB21 * dW[e];
-    out[3 + e] += B->YC * V[3 + e] + T * B->d[e] - YB12 * dU[e];
-  }
-}
-
-/* Block 11, 12 or 22 of a pair: b = 0, 1, 2 */
-static sd_lubrication_link block_of(const sd_pair_resistance *R, int b, const double d[3])
-{
-  static const int YB12[3] = {0, 1, 3}, YB21[3] = {0, 2, 3};
-  return (sd_lubrication_link){{d[0], d[1], d[2]}, R->XA[b],
-                               R->YA[b],           R->YB[YB12[b]],
-                               R->YB[YB21[b]],     R->XC[b],
-                               R->YC[b]};
 }
 
 /* What the flow does to pair k: to its first sphere, and to its second if that is this rank's */
@@ -283,30 +241,48 @@ static double model_resists(double xi, double range, double ai, double aj, doubl
       sd_rpy_approach((1.0 + 0.5 * xi) * (ai + aj), ai, aj, eta);
 }
 
+/* t [ w D + (1 - w) Q^T D Q ] or t times the film; eta: of the pair */
+static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_scene *s, long k,
+                               double eta, sd_pair_resistance *R)
+{
+  const closeness *c = L->work->close + k;
+  const int i = L->pair[k][0];
+  const double *n = L->work->neighbours, ai = s->spheres.a[i], aj = s->spheres.a[c->at];
+  const double scale = c->t * eta, xi = fmax(c->xi, s->gap);
+  if (!s->films) {
+    const double share = shared(2.0 * c->t / (n[i] + n[c->at]));
+    return sd_two_sphere_correction(s->functions, ai, aj, xi, scale * share, scale * (1.0 - share),
+                                    R);
+  }
+  sd_film film;
+  const sd_status status = sd_film_at(s->films, ai, aj, xi, &film);
+  if (status == SD_OK) *R = sd_film_resistance(&film, fmax(c->distance, 0.01 * (ai + aj)), scale);
+  return status;
+}
+
 static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long k)
 {
   const int i = L->pair[k][0], j = L->pair[k][1];
   const closeness *c = L->work->close + k;
-  const double *n = L->work->neighbours, *a = s->spheres.a, *w = s->spheres.w;
+  const double *a = s->spheres.a, *w = s->spheres.w;
   own_block *own = L->work->own;
-  const double share = shared(2.0 * c->t / (n[i] + n[c->at]));
-  const double eta = 0.5 * (1.0 / (w[i] * w[i]) + 1.0 / (w[c->at] * w[c->at])), scale = c->t * eta;
+  const double eta = 0.5 * (1.0 / (w[i] * w[i]) + 1.0 / (w[c->at] * w[c->at]));
   sd_pair_resistance R;
-  const sd_status status =
-      sd_two_sphere_correction(s->functions, a[i], a[c->at], fmax(c->xi, s->gap), scale * share,
-                               scale * (1.0 - share), &R);
+  const sd_status status = resistance_of(L, s, k, eta, &R);
   if (status != SD_OK) return status;
   sd_lubrication_link *link = L->link + k;
   if (L->work->flows) add_carried(L, s, k, &R);
+  if (L->work->shears) sd_lubrication_shear(L, k, &R);
   add_own(&R, 0, R.YB[0], link->d, own + i);
   if (j == i) { /* an image on either side: what their 12 and 21 have in UW and WU cancels */
     add_own(&R, 1, 0.0, link->d, own + i);
+    if (s->films && !sd_lubrication_remember(L, k, &R)) return SD_ENOMEMORY;
     *link = (sd_lubrication_link){.XA = 0.0};
   } else {
     *link = block_of(&R, 1, link->d);
     if (j < L->n) add_own(&R, 2, R.YB[3], link->d, own + j);
   }
-  L->model[k] = model_resists(fmax(c->xi, 0.0), s->range, a[i], a[c->at], eta);
+  if (L->model) L->model[k] = model_resists(fmax(c->xi, 0.0), s->range, a[i], a[c->at], eta);
   return SD_OK;
 }
 
@@ -413,6 +389,7 @@ void sd_lubrication_free(sd_lubrication *L)
     free(L->work->flow);
     free(L->work->own);
     free(L->work->close);
+    free(L->work->image);
     free(L->work);
   }
   free(L->pair);

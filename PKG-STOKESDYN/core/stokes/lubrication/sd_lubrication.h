@@ -20,14 +20,22 @@
  * the radii. So a film resists when its spheres approach, also if the flow presses them together,
  * and does not when they are carried and turned as one; what else a strain does to a pair is left
  * out.
- * Source: reference of the project, motion.md 4.3; the rule of sharing is our own. */
+ *
+ * Where spheres are shells of points (sd_multiblob.h) that know the common motion of a pair and of
+ * its neighbours, nothing is shared: L = sum of t times the films of sd_film.h. These see no motion
+ * of the pair as one rigid body, so that the flow takes nothing off where V are the velocities as
+ * they are. Where U are counted from a linear flow of gradient G at the centre of each sphere (W
+ * are not), as in a sheared box, whose images move, spheres approach each other across the pair
+ * vector r from 1 to 2 with U_2 - U_1 + G r: `carried` is what that takes.
+ * Source: reference of the project, motion.md 4.3 and multiblob.md 3; the rule of sharing is our
+ * own. */
 #ifndef SD_LUBRICATION_H
 #define SD_LUBRICATION_H
 
 #include <stdint.h>
 
+#include "sd_film.h"
 #include "sd_near.h"
-#include "sd_two_sphere.h"
 #include "sd_world.h"
 
 #ifdef __cplusplus
@@ -36,6 +44,8 @@ extern "C" {
 
 typedef struct {
   const sd_two_sphere *functions;
+  /* spheres are shells of points, then range up to SD_FILM_LARGEST_XI; NULL: they are points */
+  const sd_films *films;
   /* gap: the floor, > 0; range > gap: where it ends. Over the mean radius of the pair */
   double gap, range;
   /* this rank's spheres, then those of other ranks and periodic images within the range */
@@ -43,8 +53,11 @@ typedef struct {
   sd_spheres spheres;
   /* [n] spheres of one body, not 0, have no lubrication between them; NULL: all free */
   const int64_t *body;
-  /* [6n] velocity and angular velocity of the undisturbed fluid at the centres; NULL: it rests */
+  /* [6n] velocity and angular velocity of the undisturbed fluid at the centres; NULL: it rests.
+   * Not read with films */
   const double *u;
+  /* with films: [9] G_pq = du_p/dx_q, row-major, of the flow that V are counted from; NULL: 0 */
+  const double *gradient;
   /* refresh: rows of the n_all - n from those of the n, NULL: there are none */
   sd_world world;
 } sd_lubrication_scene;
@@ -66,7 +79,8 @@ typedef struct {
   /* [count] L_ij; L_ji is its transpose */
   sd_lubrication_link *link;
   /* [count] for preconditioners: what the model itself resists when the two approach each other,
-   * beyond their drags, fading from contact to the range */
+   * beyond their drags, fading from contact to the range; NULL: with films, where the blocks of
+   * the shells are enough */
   double *model;
   /* [36 n] L_ii, row-major, rows F T, columns U W */
   double *diagonal;
@@ -85,6 +99,12 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
 void sd_lubrication_block(const sd_lubrication_link *l, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
+
+/* First moments of films, symmetric and traceless, xx yy zz xy xz yz: S [6 n] += half of that of
+ * each pair of this sphere, r F with F the force of the first on the fluid and r from the first to
+ * the second, V rows as for sd_lubrication_apply. The other half is its neighbour's. Placed with
+ * films. SD_OK or that of refresh. */
+sd_status sd_lubrication_stress(const sd_lubrication *L, const double *V, double *S);
 
 /* The largest eigenvalue of W^-1 L, W > 0 [6 n] an inertia: the rate at which the stiffest motion
  * decays. By power iteration from v [6 n], not 0: a few per cent low at most where a pair is

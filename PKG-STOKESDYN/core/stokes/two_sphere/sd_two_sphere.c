@@ -46,23 +46,6 @@ static double row_step(void)
   return log(SD_TWO_SPHERE_LARGEST_RATIO) / (ROWS - 1);
 }
 
-/* Weights [n] of the values at n Chebyshev nodes for that at t in [0, 1]: barycentric formula */
-static void weights_of_nodes(int n, double t, double *w)
-{
-  double sum = 0.0;
-  for (int k = 0; k < n; k++) {
-    const double d = t - sd_two_sphere_node(n, k);
-    if (d == 0.0) {
-      memset(w, 0, sizeof(double) * (size_t) n);
-      w[k] = 1.0;
-      return;
-    }
-    const double node = sd_two_sphere_node(n, k), s = sqrt(node * (1.0 - node));
-    sum += w[k] = (k % 2 ? -s : s) / d;
-  }
-  for (int k = 0; k < n; k++) w[k] /= sum;
-}
-
 static double column_step(void)
 {
   return log(SD_TWO_SPHERE_LARGEST_XI / SD_TWO_SPHERE_SMALLEST_XI) / (COLUMNS - 1);
@@ -74,7 +57,7 @@ static sd_pair_resistance correction_at(const functions *at_ratio, double ratio,
 {
   double w[GAPS];
   functions left = {0.0}, scale;
-  weights_of_nodes(GAPS, sd_two_sphere_mu(ratio, xi) / sd_two_sphere_largest_mu(ratio), w);
+  sd_two_sphere_weights(GAPS, sd_two_sphere_mu(ratio, xi) / sd_two_sphere_largest_mu(ratio), w);
   sd_two_sphere_scales(1.0, ratio, scale);
   for (int j = 0; j < GAPS; j++)
     for (int k = 0; k < FUNCTIONS; k++) left[k] += w[j] * at_ratio[j][k];
@@ -94,7 +77,7 @@ static void fill_row(double ratio, double row[COLUMNS][NUMBERS])
 {
   double w[RATIOS];
   functions at_ratio[GAPS] = {{0.0}}, scale;
-  weights_of_nodes(RATIOS, log(ratio) / log(SD_TWO_SPHERE_LARGEST_RATIO), w);
+  sd_two_sphere_weights(RATIOS, log(ratio) / log(SD_TWO_SPHERE_LARGEST_RATIO), w);
   for (int i = 0; i < RATIOS; i++)
     for (int j = 0; j < GAPS; j++)
       for (int k = 0; k < FUNCTIONS; k++) at_ratio[j][k] += w[i] * sd_two_sphere_table[i][j][k];

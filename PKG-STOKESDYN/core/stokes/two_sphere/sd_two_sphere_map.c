@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "sd_constants.h"
 #include "sd_two_sphere_table_internal.h"
@@ -6,6 +7,22 @@
 double sd_two_sphere_node(int n, int k)
 {
   return 0.5 + 0.5 * cos(SD_PI * (k + 0.5) / n);
+}
+
+void sd_two_sphere_weights(int n, double t, double *w)
+{
+  double sum = 0.0;
+  for (int k = 0; k < n; k++) {
+    const double d = t - sd_two_sphere_node(n, k);
+    if (d == 0.0) {
+      memset(w, 0, sizeof(double) * (size_t) n);
+      w[k] = 1.0;
+      return;
+    }
+    const double node = sd_two_sphere_node(n, k), s = sqrt(node * (1.0 - node));
+    sum += w[k] = (k % 2 ? -s : s) / d;
+  }
+  for (int k = 0; k < n; k++) w[k] /= sum;
 }
 
 double sd_two_sphere_mu(double ratio, double xi)

@@ -31,6 +31,9 @@ extern const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS
 /* Node 0 <= k < n of n in (0, 1), largest first */
 double sd_two_sphere_node(int n, int k);
 
+/* Weights [n] of the values at these nodes for that at t in [0, 1]: barycentric formula */
+void sd_two_sphere_weights(int n, double t, double *w);
+
 /* mu of a gap, and the gap of a mu; mu of SD_TWO_SPHERE_LARGEST_XI */
 double sd_two_sphere_mu(double ratio, double xi);
 double sd_two_sphere_xi(double ratio, double mu);

@@ -1,0 +1,75 @@
+/* What the files of sd_lubrication.h share. */
+#ifndef SD_LUBRICATION_INTERNAL_H
+#define SD_LUBRICATION_INTERNAL_H
+
+#include "sd_linear.h"
+#include "sd_lubrication.h"
+
+/* How near a pair is: gap over the mean radius, t of it, distance of the centres; and where its
+ * second sphere stands: itself, or its image */
+typedef struct {
+  double xi, t, distance;
+  int at;
+} closeness;
+
+/* A symmetric sum of blocks of one sphere with itself: (UU, [UW]x; -[UW]x, WW), rows F T; of UU and
+ * WW xx xy xz yy yz zz */
+typedef struct {
+  double UU[6], UW[3], WW[6];
+} own_block;
+
+/* The film of a sphere with its own image: pair k, and its block 12 */
+typedef struct {
+  long k;
+  sd_lubrication_link film;
+} own_image;
+
+struct sd_lubrication_work {
+  sd_neighbors near;
+  /* [IDENTITY (n_all - n)] */
+  double *identity;
+  /* [n_all] n_i; [6 n_all] u */
+  double *neighbours, *flow;
+  /* some u is not 0 */
+  int flows;
+  /* [n] */
+  own_block *own;
+  /* [count] */
+  closeness *close;
+  /* films: G of the flow, 0 or not */
+  int shears;
+  double gradient[9];
+  own_image *image;
+  long images, most_images;
+  long most_spheres, most_others, most_pairs;
+};
+
+/* out += B V for a block of a pair. That of 21 is that of 12 with YB12 and YB21 exchanged: d turns
+ * round, and so do their signs. */
+static inline void add_product(const sd_lubrication_link *B, double YB12, double YB21,
+                               const double *V, double *out)
+{
+  double dU[3], dW[3];
+  sd_cross(B->d, V, dU);
+  sd_cross(B->d, V + 3, dW);
+  const double F = (B->XA - B->YA) * sd_dot(B->d, V), T = (B->XC - B->YC) * sd_dot(B->d, V + 3);
+  for (int e = 0; e < 3; e++) {
+    out[e] += B->YA * V[e] + F * B->d[e] + YB21 * dW[e];
+    out[3 + e] += B->YC * V[3 + e] + T * B->d[e] - YB12 * dU[e];
+  }
+}
+
+/* Block 11, 12 or 22 of a pair: b = 0, 1, 2 */
+static inline sd_lubrication_link block_of(const sd_pair_resistance *R, int b, const double d[3])
+{
+  static const int YB12[3] = {0, 1, 3}, YB21[3] = {0, 2, 3};
+  return (sd_lubrication_link){{d[0], d[1], d[2]}, R->XA[b], R->YA[b], R->YB[YB12[b]],
+                               R->YB[YB21[b]],     R->XC[b], R->YC[b]};
+}
+
+/* Films: what the flow does to that of pair k, R, goes into L->carried. */
+void sd_lubrication_shear(sd_lubrication *L, long k, const sd_pair_resistance *R);
+/* Keeps the film of a sphere with its own image for the stress; 0: out of memory. */
+int sd_lubrication_remember(sd_lubrication *L, long k, const sd_pair_resistance *R);
+
+#endif

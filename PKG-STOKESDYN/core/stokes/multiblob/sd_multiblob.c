@@ -1,0 +1,165 @@
+#include "sd_multiblob.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sd_linear.h"
+#include "sd_shell.h"
+#include "sd_tensor.h"
+
+int sd_multiblob_has(int n)
+{
+  return n == 12 || n == 42;
+}
+
+void sd_multiblob_matrix(int n, const double *x, const double *b, double *M)
+{
+  const size_t N = 3 * (size_t) n;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j <= i; j++) {
+      double r[3], block[9];
+      sd_minus(x + 3 * (size_t) i, x + 3 * (size_t) j, r);
+      sd_tensor_uf(SD_TENSOR_RPY, r, b[i], b[j], 1.0, block);
+      for (int p = 0; p < 3; p++)
+        for (int q = 0; q < 3; q++)
+          M[(3 * (size_t) i + p) * N + 3 * (size_t) j + q] =
+              M[(3 * (size_t) j + q) * N + 3 * (size_t) i + p] = block[3 * p + q];
+    }
+}
+
+/* out = g_k v for r over a */
+static void pressure_mode(const sd_multiblob *m, const double r[3], const double v[3],
+                          double out[3])
+{
+  const double faxen = (m->point * m->point - 1.0) / 6.0;
+  const double along = sd_dot(r, v), square = sd_dot(r, r);
+  for (int d = 0; d < 3; d++) out[d] = 0.1 * (2.0 * square * v[d] - along * r[d]) + faxen * v[d];
+}
+
+/* --- the lone sphere -------------------------------------------------------------------------- */
+
+enum { UNIFORM, PRESSURE, TURN, STRAIN, MODES };
+
+/* Velocity of a point of the unit sphere in each of the motions whose resistance the five numbers
+ * are. By the symmetry of the icosahedron one direction of each stands for all, and only the first
+ * two know each other. */
+static void motions_at(const sd_multiblob *m, const double r[3], double v[MODES][3])
+{
+  const double x[3] = {1.0, 0.0, 0.0}, z[3] = {0.0, 0.0, 1.0};
+  memcpy(v[UNIFORM], x, sizeof x);
+  pressure_mode(m, r, x, v[PRESSURE]);
+  sd_cross(z, r, v[TURN]);
+  v[STRAIN][0] = r[1];
+  v[STRAIN][1] = r[0];
+  v[STRAIN][2] = 0.0;
+}
+
+/* R [MODES][MODES] = motions^T M^-1 motions of the shell of radius 1 */
+static sd_status resistance_of_lone(const sd_multiblob *m, double R[MODES][MODES])
+{
+  const size_t N = 3 * (size_t) m->n;
+  double b[SD_MULTIBLOB_MOST];
+  double *M = malloc(sizeof(double) * N * (N + 2 * MODES));
+  if (!M) return SD_ENOMEMORY;
+  double *v = M + N * N, *f = v + MODES * N;
+  for (int k = 0; k < m->n; k++) {
+    double motion[MODES][3];
+    b[k] = m->point;
+    motions_at(m, m->r + 3 * k, motion);
+    for (size_t e = 0; e < MODES; e++) memcpy(v + e * N + 3 * k, motion[e], sizeof motion[e]);
+  }
+  sd_multiblob_matrix(m->n, m->r, b, M);
+  memcpy(f, v, sizeof(double) * MODES * N);
+  const sd_status status = sd_cholesky_solve((int) N, M, MODES, f);
+  for (size_t e = 0; e < MODES; e++)
+    for (size_t g = 0; g < MODES; g++) {
+      R[e][g] = 0.0;
+      for (size_t k = 0; k < N; k++) R[e][g] += v[e * N + k] * f[g * N + k];
+    }
+  free(M);
+  return status;
+}
+
+/* With the forces of the motion g_k V, which is the pressure mode as it passes a sphere that moves
+ * with the exact Faxen velocity: a free one moves at -R_01/R_00 more. */
+static sd_multiblob_lone over_exact(double R[MODES][MODES])
+{
+  const double moves = R[UNIFORM][PRESSURE] / R[UNIFORM][UNIFORM];
+  return (sd_multiblob_lone){
+      .drag = R[UNIFORM][UNIFORM] / (6.0 * SD_PI),
+      .rotation = R[TURN][TURN] / (8.0 * SD_PI),
+      .stresslet = R[STRAIN][STRAIN] / (40.0 / 3.0 * SD_PI), /* S:E = 20 pi/3 E:E, E:E = 2 */
+      .faxen = 1.0 + 6.0 * moves,
+      .pressure_gradient =
+          (R[PRESSURE][PRESSURE] - moves * R[UNIFORM][PRESSURE]) / (2.0 / 15.0 * SD_PI)};
+}
+
+static void find_addition(double R[MODES][MODES], sd_multiblob *m)
+{
+  const double p = R[UNIFORM][UNIFORM] / (6.0 * SD_PI), q = R[UNIFORM][PRESSURE] / (6.0 * SD_PI),
+               s = R[PRESSURE][PRESSURE] / (6.0 * SD_PI), det = p * s - q * q;
+  m->alpha = 1.0 - s / det;
+  m->beta = q / det;
+  m->delta = 45.0 - p / det;
+  m->strain = 0.9 * (1.0 - 1.0 / m->lone.stresslet);
+}
+
+sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
+{
+  const double s = 1.0 / 15.0; /* rotation of the quaternion (1, 2, 3, 4)/sqrt 30 */
+  const double turn[9] = {-10.0 * s, 2.0 * s, 11.0 * s, 10.0 * s, -5.0 * s,
+                          10.0 * s,  5.0 * s, 14.0 * s, 2.0 * s};
+  sd_shell shell;
+  double R[MODES][MODES];
+  *m = (sd_multiblob){.n = n};
+  if (!sd_multiblob_has(n)) return SD_EOUTSIDE;
+  sd_status status = sd_shell_create(n, &shell);
+  if (status != SD_OK) return status;
+  m->radius = shell.radius;
+  m->point = shell.point;
+  for (int k = 0; k < n; k++) {
+    double e[3];
+    sd_multiply3(turn, shell.p + 3 * k, e);
+    for (int d = 0; d < 3; d++) m->r[3 * k + d] = m->radius * e[d];
+  }
+  sd_shell_free(&shell);
+  status = resistance_of_lone(m, R);
+  if (status != SD_OK) return status;
+  m->lone = over_exact(R);
+  if (one_body) find_addition(R, m);
+  return SD_OK;
+}
+
+/* --- the addition ----------------------------------------------------------------------------- */
+
+void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const double *r,
+                           const double *f, double *u)
+{
+  const double unit = 1.0 / (6.0 * SD_PI * eta * a), inverse = 1.0 / a;
+  double A0[3] = {0.0}, A1[3] = {0.0}, S[9] = {0.0}, even[3], odd[3];
+  for (int k = 0; k < m->n; k++) {
+    const double *fk = f + 3 * k;
+    double e[3], g[3];
+    for (int d = 0; d < 3; d++) e[d] = inverse * r[3 * k + d];
+    pressure_mode(m, e, fk, g); /* g_k is symmetric */
+    for (int d = 0; d < 3; d++) {
+      A0[d] += fk[d];
+      A1[d] += g[d];
+      for (int p = 0; p < 3; p++) S[3 * d + p] += 0.5 * (e[d] * fk[p] + e[p] * fk[d]);
+    }
+  }
+  const double trace = (S[0] + S[4] + S[8]) / 3.0;
+  for (int d = 0; d < 3; d++) {
+    S[4 * d] -= trace;
+    even[d] = unit * (m->alpha * A0[d] + m->beta * A1[d]);
+    odd[d] = unit * (m->beta * A0[d] + m->delta * A1[d]);
+  }
+  for (int k = 0; k < 9; k++) S[k] *= unit * m->strain;
+  for (int k = 0; k < m->n; k++) {
+    double e[3], g[3], strain[3];
+    for (int d = 0; d < 3; d++) e[d] = inverse * r[3 * k + d];
+    pressure_mode(m, e, odd, g);
+    sd_multiply3(S, e, strain);
+    for (int d = 0; d < 3; d++) u[3 * k + d] += even[d] + g[d] + strain[d];
+  }
+}

@@ -1,0 +1,69 @@
+/* Films between spheres that are shells of points (sd_multiblob.h): what two spheres resist of
+ * their relative motion beyond what their shells know.
+ *
+ *   D = Q^T (R_exact - <R_shells>) Q          <>: mean over the orientations of both shells
+ *
+ * Q takes the motion of the pair as one rigid body out of its velocities (sd_pair_resistance.h):
+ * shells know the common motion of a pair and of all its neighbours, so nothing is shared. d:
+ * unit vector from sphere 1 to 2, R the distance of the centres. A film sees the approach u =
+ * d.(U2 - U1), the relative spin w = d.(W2 - W1), and the turns om_q = (W_q - Om) across d
+ * against the line of centres, which turns with Om = d x (U2 - U1)/R:
+ *
+ *   power = A_n u^2 + A_t w^2 + sum_pq B_pq om_p.om_q                 five numbers of gap and ratio
+ *   t_q = B_q1 om_1 + B_q2 om_2,   F_2 = A_n u d - (t_1 + t_2) x d/R = -F_1
+ *   T_1 = t_1 - A_t w d,   T_2 = t_2 + A_t w d                      forces and torques on the fluid
+ *
+ * A_n goes like 1/xi, B like ln(1/xi), A_t stays finite; xi: gap over the mean radius. The mean
+ * shell is a little too stiff between xi 0.25 and 1, by 0.002 Stokes drags, so A_n, A_t and the
+ * eigenvalues of B_pq/(8 pi a_p^1.5 a_q^1.5) are clipped at 0: D >= 0. Source: reference of the
+ * project, multiblob.md 3; the form is our own. */
+#ifndef SD_FILM_H
+#define SD_FILM_H
+
+#include "sd_two_sphere.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Of two radii; and of the gap */
+#define SD_FILM_LARGEST_RATIO 10.0
+#define SD_FILM_LARGEST_XI 2.0
+
+enum { SD_FILM_RATIOS = 10, SD_FILM_GAPS = 12 };
+
+/* For a viscosity of 1 */
+typedef struct {
+  /* force over speed; torque over spin; torques over turns, 11 12 22 */
+  double A_n, A_t, B[3];
+} sd_film;
+
+/* What films are read from, ready after create. It owns no memory. */
+typedef struct {
+  const sd_two_sphere *exact;
+  const double (*shells)[SD_FILM_GAPS][5];
+  /* those of equal spheres, the commonest */
+  double equal[SD_FILM_GAPS][5];
+} sd_films;
+
+/* Of shells of n points with or without the one-body addition; `exact` outlives it. SD_OK;
+ * SD_EOUTSIDE: another n than 12 and 42. */
+sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_films *out);
+
+/* SD_OK; SD_EOUTSIDE: xi not in [SD_TWO_SPHERE_SMALLEST_XI, SD_FILM_LARGEST_XI], a ratio above
+ * SD_FILM_LARGEST_RATIO or that of `exact`. The means over orientations are within 1e-3 of
+ * themselves; a given pair of shells differs from its mean by 1 to 2 % of the shells' share. */
+sd_status sd_film_at(const sd_films *films, double a1, double a2, double xi, sd_film *film);
+
+/* scale times the film, as the resistance of a pair at this distance of the centres: it resists no
+ * rigid motion of the pair, to rounding. */
+sd_pair_resistance sd_film_resistance(const sd_film *film, double distance, double scale);
+
+/* R, which resists rigid motions or not, as it acts on the relative motion of a pair: a film that
+ * is not clipped. Linear in R. */
+sd_film sd_film_of(const sd_pair_resistance *R, double a1, double a2, double distance);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
