@@ -100,7 +100,10 @@ static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
     d[2] = 1.0; /* spheres at one point: any direction */
   const double xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
   const double q = fmin(fmax(2.0 * xi / s->range - 1.0, 0.0), 1.0);
-  return (closeness){xi, 1.0 - q * q * (3.0 - 2.0 * q), R, j};
+  closeness close = {xi, 1.0 - q * q * (3.0 - 2.0 * q), R, {0.0, 0.0, 0.0}, j};
+  if (s->drift && j >= s->n)
+    memcpy(close.drift, s->drift + 3 * (long) (j - s->n), sizeof close.drift);
+  return close;
 }
 
 /* Pairs of a sphere with its own images are there as often as these are, since the other way round
@@ -146,11 +149,8 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   double *flow = L->work->flow;
   sd_status status = SD_OK;
   memset(L->carried, 0, sizeof(double) * 6 * (size_t) s->n);
-  L->work->flows = L->work->shears = 0;
+  L->work->flows = 0;
   L->work->images = 0;
-  memset(L->work->gradient, 0, sizeof L->work->gradient);
-  if (s->films && s->gradient) memcpy(L->work->gradient, s->gradient, sizeof L->work->gradient);
-  for (int e = 0; e < 9; e++) L->work->shears |= L->work->gradient[e] != 0.0;
   if (!s->u || s->films) return SD_OK;
   memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
   if (s->world.refresh) status = s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6);
@@ -272,7 +272,7 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   if (status != SD_OK) return status;
   sd_lubrication_link *link = L->link + k;
   if (L->work->flows) add_carried(L, s, k, &R);
-  if (L->work->shears) sd_lubrication_shear(L, k, &R);
+  if (s->films && s->drift) sd_lubrication_drift(L, k, &R);
   add_own(&R, 0, R.YB[0], link->d, own + i);
   if (j == i) { /* an image on either side: what their 12 and 21 have in UW and WU cancels */
     add_own(&R, 1, 0.0, link->d, own + i);

@@ -24,9 +24,7 @@
  * Where spheres are shells of points (sd_multiblob.h) that know the common motion of a pair and of
  * its neighbours, nothing is shared: L = sum of t times the films of sd_film.h. These see no motion
  * of the pair as one rigid body, so that the flow takes nothing off where V are the velocities as
- * they are. Where U are counted from a linear flow of gradient G at the centre of each sphere (W
- * are not), as in a sheared box, whose images move, spheres approach each other across the pair
- * vector r from 1 to 2 with U_2 - U_1 + G r: `carried` is what that takes.
+ * they are; only the drift of images is in `carried`.
  * Source: reference of the project, motion.md 4.3 and multiblob.md 3; the rule of sharing is our
  * own. */
 #ifndef SD_LUBRICATION_H
@@ -56,8 +54,9 @@ typedef struct {
   /* [6n] velocity and angular velocity of the undisturbed fluid at the centres; NULL: it rests.
    * Not read with films */
   const double *u;
-  /* with films: [9] G_pq = du_p/dx_q, row-major, of the flow that V are counted from; NULL: 0 */
-  const double *gradient;
+  /* [3 (n_all - n)] velocities of the images beyond those of their spheres, and of the fluid there
+   * likewise, in a box that deforms with the flow; NULL: none */
+  const double *drift;
   /* refresh: rows of the n_all - n from those of the n, NULL: there are none */
   sd_world world;
 } sd_lubrication_scene;

@@ -1,21 +1,12 @@
 #include "sd_lubrication_internal.h"
 #include "sd_room.h"
 
-/* G r of pair k: what the flow adds to the velocity of its second sphere as the first sees it */
-static void flow_across(const sd_lubrication *L, long k, double U[3])
-{
-  sd_multiply3(L->work->gradient, L->link[k].d, U);
-  for (int e = 0; e < 3; e++) U[e] *= L->work->close[k].distance;
-}
-
-/* What the flow does to the film of pair k: forces are L V - carried. */
-void sd_lubrication_shear(sd_lubrication *L, long k, const sd_pair_resistance *R)
+void sd_lubrication_drift(sd_lubrication *L, long k, const sd_pair_resistance *R)
 {
   const int i = L->pair[k][0], j = L->pair[k][1];
-  const sd_lubrication_link B12 = block_of(R, 1, L->link[k].d), B22 = block_of(R, 2, L->link[k].d);
-  double V[6] = {0.0};
-  flow_across(L, k, V);
-  for (int e = 0; e < 3; e++) V[e] = -V[e];
+  const double *d = L->link[k].d, *drift = L->work->close[k].drift;
+  const sd_lubrication_link B12 = block_of(R, 1, d), B22 = block_of(R, 2, d);
+  const double V[6] = {-drift[0], -drift[1], -drift[2], 0.0, 0.0, 0.0};
   add_product(&B12, B12.YB12, B12.YB21, V, L->carried + 6 * (long) i);
   if (j < L->n && j != i) add_product(&B22, B22.YB12, B22.YB21, V, L->carried + 6 * (long) j);
 }
@@ -41,9 +32,8 @@ static void add_moment(const sd_lubrication *L, long k, const sd_lubrication_lin
   const int i = L->pair[k][0], j = L->pair[k][1];
   const double *d = film->d, half = 0.5 * L->work->close[k].distance;
   double U[3], spin[3], turned[3], F[3];
-  flow_across(L, k, U);
   for (int e = 0; e < 3; e++) {
-    U[e] += Vj[e] - Vi[e];
+    U[e] = Vj[e] + L->work->close[k].drift[e] - Vi[e];
     spin[e] = film->YB21 * Vj[3 + e] - film->YB12 * Vi[3 + e];
   }
   const double along = sd_dot(d, U);

@@ -6,9 +6,9 @@
 #include "sd_lubrication.h"
 
 /* How near a pair is: gap over the mean radius, t of it, distance of the centres; and where its
- * second sphere stands: itself, or its image */
+ * second sphere stands: itself, or its image, which drifts */
 typedef struct {
-  double xi, t, distance;
+  double xi, t, distance, drift[3];
   int at;
 } closeness;
 
@@ -36,9 +36,7 @@ struct sd_lubrication_work {
   own_block *own;
   /* [count] */
   closeness *close;
-  /* films: G of the flow, 0 or not */
-  int shears;
-  double gradient[9];
+  /* films */
   own_image *image;
   long images, most_images;
   long most_spheres, most_others, most_pairs;
@@ -67,8 +65,8 @@ static inline sd_lubrication_link block_of(const sd_pair_resistance *R, int b, c
                                R->YB[YB21[b]],     R->XC[b], R->YC[b]};
 }
 
-/* Films: what the flow does to that of pair k, R, goes into L->carried. */
-void sd_lubrication_shear(sd_lubrication *L, long k, const sd_pair_resistance *R);
+/* Films: forces are L V - carried; the drift of pair k, R its film, goes into `carried`. */
+void sd_lubrication_drift(sd_lubrication *L, long k, const sd_pair_resistance *R);
 /* Keeps the film of a sphere with its own image for the stress; 0: out of memory. */
 int sd_lubrication_remember(sd_lubrication *L, long k, const sd_pair_resistance *R);
 

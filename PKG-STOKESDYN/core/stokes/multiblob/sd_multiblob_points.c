@@ -64,11 +64,6 @@ void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, cons
   }
 }
 
-void sd_multiblob_flow(const double G[9], int points, const double *r, double *u)
-{
-  for (long k = 0; k < points; k++) sd_multiply3(G, r + 3 * k, u + 3 * k);
-}
-
 void sd_multiblob_moments(const sd_multiblob *m, int spheres, const double *r, const double *f,
                           double *S)
 {

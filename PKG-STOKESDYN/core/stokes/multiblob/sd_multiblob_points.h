@@ -48,10 +48,6 @@ void sd_multiblob_expand(const sd_multiblob *m, const sd_multiblob_spheres *s, d
 void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *w,
                       const double *r, const double *f, double *u);
 
-/* u [3 points] = G r: a linear flow of this gradient (G_pq = du_p/dx_q, row-major), counted from
- * the velocity at the centre of each point's sphere */
-void sd_multiblob_flow(const double G[9], int points, const double *r, double *u);
-
 /* First moments of the forces f of the points of each sphere about its centre, symmetric and
  * traceless, xx yy zz xy xz yz: S [6 spheres] += dev sym sum r_k f_k. f acts on the fluid; the
  * stress of the suspension is 2 eta E - (sum of S)/V. */

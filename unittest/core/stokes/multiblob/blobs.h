@@ -108,6 +108,7 @@ static inline void blobs_open(blobs *s)
 /* M in a cube, by products of the engine with unit vectors */
 static inline void blobs_periodic(blobs *s, double side, double tolerance)
 {
+  for (int k = 0; k < 3 * s->n; k++) s->x[k] -= side * floor(s->x[k] / side);
   blobs_expand(s);
   s->side = side;
   sd_ewald split;
@@ -184,6 +185,7 @@ static inline void blobs_resistance(blobs *s)
 typedef struct {
   int n, count;
   int owner[27 * BLOBS_MOST];
+  double drift[3 * 27 * BLOBS_MOST];
   double x[3 * 27 * BLOBS_MOST], a[27 * BLOBS_MOST], w[27 * BLOBS_MOST];
 } blob_images;
 
@@ -196,7 +198,7 @@ static inline sd_status blobs_refresh(void *ctx, const double *rows, double *gho
   return SD_OK;
 }
 
-static inline blob_images *blobs_images(const blobs *s, double range)
+static inline blob_images *blobs_images(const blobs *s, double range, const double *gradient)
 {
   blob_images *g = calloc(1, sizeof(blob_images));
   double largest = 0.0;
@@ -211,13 +213,13 @@ static inline blob_images *blobs_images(const blobs *s, double range)
       int near = 1;
       double *x = g->x + 3 * g->count;
       for (int d = 0; d < 3; d++) {
-        const double wrapped =
-            s->x[3 * i + d] - (s->side > 0.0 ? s->side * floor(s->x[3 * i + d] / s->side) : 0.0);
-        x[d] = wrapped + at[d] * s->side;
+        x[d] = s->x[3 * i + d] + at[d] * s->side;
         near = near && (s->side == 0.0 || (x[d] > -reach && x[d] < s->side + reach));
       }
       if (!near) continue;
       g->a[g->count] = s->a[i], g->w[g->count] = 1.0;
+      const double moved[3] = {at[0] * s->side, at[1] * s->side, at[2] * s->side};
+      if (gradient && shift >= 0) sd_multiply3(gradient, moved, g->drift + 3 * (g->count - s->n));
       g->owner[g->count++] = i;
     }
   }
@@ -228,7 +230,7 @@ static inline blob_images *blobs_images(const blobs *s, double range)
 static inline void blobs_add_films(blobs *s, double range, const double *gradient)
 {
   const int one_body = s->m.delta != 0.0;
-  blob_images *g = blobs_images(s, range);
+  blob_images *g = blobs_images(s, range, gradient);
   if (!s->functions)
     assert_int_equal(sd_two_sphere_create(SD_FILM_LARGEST_RATIO, &s->functions), SD_OK);
   assert_int_equal(sd_films_create(s->m.n, one_body, s->functions, &s->films), SD_OK);
@@ -241,7 +243,7 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
       .n_all = g->count,
       .spheres = {g->x, g->a, g->w},
       .body = s->side > 0.0 ? NULL : s->body,
-      .gradient = gradient,
+      .drift = g->drift,
       .world = {.ctx = g, .refresh = s->side > 0.0 ? blobs_refresh : NULL}};
   assert_int_equal(sd_lubrication_place(&s->L, &scene), SD_OK);
   double *V = calloc((size_t) s->size, sizeof(double)),
@@ -263,7 +265,11 @@ static inline void blobs_move(const blobs *s, const double *F, const double *G, 
 {
   double *u = calloc((size_t) s->N, sizeof(double)), *l = malloc(sizeof(double) * (size_t) s->N);
   double *drag = malloc(sizeof(double) * (size_t) s->size);
-  if (G) sd_multiblob_flow(G, s->N / 3, s->r, u);
+  for (int k = 0; G && k < s->N / 3; k++) {
+    double x[3];
+    for (int d = 0; d < 3; d++) x[d] = s->x[3 * (k / s->m.n) + d] + s->r[3 * k + d];
+    sd_multiply3(G, x, u + 3 * k);
+  }
   for (int k = 0; k < s->N; k++)
     if (!(s->b[k / 3] > 0.0)) u[k] = 0.0;
   sd_cholesky_apply(s->N, s->M, 1, u);
@@ -279,6 +285,11 @@ static inline void blobs_move(const blobs *s, const double *F, const double *G, 
     memset(S, 0, sizeof(double) * (size_t) s->size);
     sd_multiblob_moments(&s->m, s->n, s->r, l, S);
     if (s->L.count) assert_int_equal(sd_lubrication_stress(&s->L, V, S), SD_OK);
+  }
+  for (int i = 0; G && i < s->n; i++) {
+    double flow[3];
+    sd_multiply3(G, s->x + 3 * i, flow);
+    for (int d = 0; d < 3; d++) V[6 * i + d] -= flow[d];
   }
   free(u), free(l), free(drag);
 }
