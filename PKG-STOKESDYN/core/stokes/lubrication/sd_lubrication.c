@@ -171,6 +171,8 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   if (!s->u) return SD_OK;
   memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
   if (s->world.refresh) status = s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6);
+  for (long j = 0; s->drift && j < s->n_all - s->n; j++)
+    for (int d = 0; d < 3; d++) flow[6 * (s->n + j) + d] += s->drift[3 * j + d];
   for (long j = 0; j < 6 * (long) s->n_all; j++) L->work->flows |= flow[j] != 0.0;
   return status;
 }
@@ -231,6 +233,8 @@ static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k
   rigid_part((const double *const[]){p->x + 3 * (long) i, p->x + 3 * (long) at},
              (const double[]){p->a[i], p->a[at]},
              (const double *const[]){flow + 6 * (long) i, flow + 6 * (long) at}, V);
+  /* L V is of velocities without the drift: what that makes of V_inf is left */
+  for (int e = 0; s->drift && at >= s->n && e < 3; e++) V[1][e] -= s->drift[3 * (at - s->n) + e];
   add_product(&B11, B11.YB12, B11.YB21, V[0], carried + 6 * (long) i);
   add_product(&B12, B12.YB12, B12.YB21, V[1], carried + 6 * (long) i);
   if (j >= L->n || j == i) return;

@@ -45,6 +45,9 @@ typedef struct {
   const int64_t *body;
   /* [6n] velocity and angular velocity of the undisturbed fluid at the centres; NULL: it rests */
   const double *u;
+  /* [3 (n_all - n)] velocities of the images beyond those of their spheres, and of the fluid there
+   * likewise, in a box that deforms with the flow; NULL: none */
+  const double *drift;
   /* refresh: rows of the n_all - n from those of the n, NULL: there are none */
   sd_world world;
 } sd_lubrication_scene;
