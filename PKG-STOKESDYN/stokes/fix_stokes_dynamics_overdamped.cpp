@@ -403,8 +403,8 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   const Lattice lattice = Lattice::of(domain);
   Halo halo(world);
   if (!halo.find(lattice, reach, x))
-    fail_one(lmp, COMMAND + ": the smallest gap: spheres of radius " + text(largest) +
-                      " see more than 1000 images of every other and 1e7 in all; is it in other "
+    fail_one(lmp, COMMAND + ": the smallest gap: the largest radius, " + text(largest) +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other "
                       "units?");
   const size_t all_spheres = n + halo.count();
   x.resize(3 * all_spheres + 3);
@@ -415,7 +415,8 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   }
   const std::vector<int64_t> body(bodies.begin(), bodies.end());
   double gap = INFINITY, all;
-  if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, (int) all_spheres, reach, &gap) != SD_OK)
+  if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, (int) all_spheres, reach,
+                               &gap) != SD_OK)
     fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
   MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
   return all;

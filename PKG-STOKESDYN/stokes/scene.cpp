@@ -142,13 +142,12 @@ sd_status Scene::refresh(void *ctx, const double *rows, double *copies, int widt
   });
 }
 
-void Scene::surround(double reach, const char *why)
+void Scene::surround(double reach, const std::string &keyword)
 {
-  Lattice lattice = Lattice::of(domain);
-  if (!halo.find(lattice, reach, x))
-    fail_one(lmp, command + ": " + why + ": " + text(reach) +
-                      " around each sphere holds more than 1000 images of every other and 1e7 in "
-                      "all; is it in other units?");
+  if (!halo.find(Lattice::of(domain), reach, x))
+    fail_one(lmp, command + ": keyword " + keyword +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in "
+                      "other units?");
   add_copies();
 }
 
@@ -167,7 +166,7 @@ void Scene::add_copies()
 
 void Scene::surround_films()
 {
-  surround(settings.films * most, "keyword lubrication_range and the largest radius");
+  surround(settings.films * most, "lubrication: the largest radius, " + text(most));
 }
 
 // --- who sees whom -------------------------------------------------------------------------------
@@ -180,7 +179,8 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
       if (somebody_sees || settings.films > 0.0)
-        surround(std::max(ewald.reach, settings.films * most), "keyword far_field");
+        surround(std::max(ewald.reach, settings.films * most),
+                 "far_field: the largest radius, " + text(most));
       if (!somebody_sees) return;
       compare();
       tell();
@@ -220,7 +220,7 @@ void Scene::find_pairs()
   if (settings.whole && settings.clumps_only)
     halo.clear();
   else
-    surround(reach, "keyword cut_off_distance");
+    surround(reach, "cut_off_distance: '" + text(settings.cutoff) + "'");
   const int n_all = size_with_copies();
   sd_status status;
   if (settings.clumps_only) {

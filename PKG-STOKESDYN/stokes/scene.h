@@ -205,7 +205,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void compare();
   void tell();
   void find_rows();
-  void surround(double reach, const char *why);
+  void surround(double reach, const std::string &keyword);
   void add_copies();
   void find_pairs();
   void gather();
