@@ -151,16 +151,11 @@ void Hydrodynamics::lubricate()
     scene.stand(solvers, ambient);
     scene.surround_films();
   }
-  const size_t n = scene.size();
-  films_v.resize(6 * n + 6);
-  films_F.resize(6 * n + 6);
-  scene.to_rows(
-      6,
-      [this](int i, double *out) {
-        std::copy_n(atom->v[i], 3, out);
-        std::copy_n(atom->omega[i], 3, out + 3);
-      },
-      films_v.data());
+  films_v = scene.rows(6, [this](int i, double *out) {
+    std::copy_n(atom->v[i], 3, out);
+    std::copy_n(atom->omega[i], 3, out + 3);
+  });
+  films_F.resize(films_v.size());
   scene.drift(films_v.data(), 6, 1.0);
   lubrication.place(scene, ambient);
   lubrication.forces(films_v.data(), films_F.data());
@@ -227,15 +222,11 @@ sd_system Hydrodynamics::gather()
   slip.resize(m * n + m);
   resistance.resize(n + 1);
   spin.resize(rotation() ? n + 1 : 0);
-  std::vector<double> rows(8 * (size_t) n + 8);
-  scene.to_rows(
-      8,
-      [this](int i, double *out) {
-        ambient.slip(i, out);
-        out[6] = ambient.drag(i);
-        out[7] = ambient.spin(i);
-      },
-      rows.data());
+  const std::vector<double> rows = scene.rows(8, [this](int i, double *out) {
+    ambient.slip(i, out);
+    out[6] = ambient.drag(i);
+    out[7] = ambient.spin(i);
+  });
   for (int k = 0; k < n; k++) {
     std::copy_n(&rows[8 * (size_t) k], m, &slip[m * k]);
     resistance[k] = rows[8 * (size_t) k + 6];
@@ -315,16 +306,13 @@ void Hydrodynamics::guess()
 {
   const size_t m = width();
   const bool line = memory->global.solutions > 1;
-  scene.to_rows(
-      (int) m,
-      [&](int i, double *out) {
-        const double *row = memory->rows[i], *before = row + memory->before();
-        for (size_t d = 0; d < m; d++) {
-          const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-          out[d] = line ? 2.0 * last - before[d] : last;
-        }
-      },
-      solution.data());
+  solution = scene.rows(width(), [&](int i, double *out) {
+    const double *row = memory->rows[i], *before = row + memory->before();
+    for (size_t d = 0; d < m; d++) {
+      const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      out[d] = line ? 2.0 * last - before[d] : last;
+    }
+  });
   for (size_t k = 0; k < (size_t) scene.size(); k++)
     for (size_t d = 0; d < m; d++) {
       double &F = solution[m * k + d];
@@ -342,7 +330,7 @@ void Hydrodynamics::keep()
   for (size_t k = 0; k < (size_t) scene.size(); k++)
     for (size_t d = 0; d < m && !scene.alone((int) k); d++)
       found[m * k + d] = solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
-  scene.to_atoms((int) m, found.data(), [&](int i, const double *v) {
+  scene.to_atoms(width(), found.data(), [&](int i, const double *v) {
     double *row = memory->rows.give(i), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       double &last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
@@ -398,18 +386,13 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   const size_t m = width();
   place();
   const size_t n = scene.size();
-  std::vector<double> rows(2 * m * n + 2 * m, 0.0);
-  if (settings.warm_start)
-    scene.to_rows(
-        (int) (2 * m),
-        [&](int i, double *out) {
-          const double *row = memory->rows[i];
-          for (size_t d = 0; d < m; d++) {
-            out[d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
-            out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-          }
-        },
-        rows.data());
+  std::vector<double> rows = scene.rows(2 * width(), [&](int i, double *out) {
+    const double *row = memory->rows[i];
+    for (size_t d = 0; d < m && settings.warm_start; d++) {
+      out[d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
+      out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+    }
+  });
   begin_with.l.assign(m * n + m, 0.0);
   begin_with.v.assign(m * n + m, 0.0);
   for (size_t k = 0; k < n; k++) {
@@ -422,7 +405,7 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
     std::copy_n(&begin_with.l[m * k], m, &rows[2 * m * k]);
     std::copy_n(&begin_with.v[m * k], m, &rows[2 * m * k + m]);
   }
-  scene.to_atoms((int) (2 * m), rows.data(), [&](int i, const double *from) {
+  scene.to_atoms(2 * width(), rows.data(), [&](int i, const double *from) {
     double *row = memory->rows.give(i);
     for (size_t d = 0; d < m; d++) {
       row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = -from[d];

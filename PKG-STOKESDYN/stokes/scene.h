@@ -74,30 +74,31 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Rows of this rank's lone spheres come first; whole: row of a member, -1: it takes no part */
   int lone() const { return (int) loose.size(); }
   int row_of_member(int m) const { return row_of[m]; }
-  /* row(i, out) writes what goes of atom i, which may be one that takes no part: rows [width
-   * size()]. And back: take(i, row) for every atom of this rank that takes part. On all ranks
+  /* Rows [width size()], at least one: row(i, out) writes what goes of atom i, which may be one that
+   * takes no part. And back: take(i, row) for every atom of this rank that takes part. On all ranks
    * together. */
-  template <class Row> void to_rows(int width, const Row &row, double *rows)
+  template <class Row> std::vector<double> rows(int width, const Row &row) const
   {
-    for (size_t k = 0; k < loose.size(); k++) row(loose[k], rows + width * k);
-    if (!settings.whole) return;
-    whole.gather(width, row, carried);
+    std::vector<double> out(width * (tags.size() + 1));
+    for (size_t k = 0; k < loose.size(); k++) row(loose[k], &out[width * k]);
+    if (!settings.whole) return out;
+    const std::vector<double> members = whole.gather(width, row);
     for (size_t m = 0; m < row_of.size(); m++)
-      if (row_of[m] >= 0)
-        std::copy_n(&carried[width * m], width, rows + width * (size_t) row_of[m]);
+      if (row_of[m] >= 0) std::copy_n(&members[width * m], width, &out[width * (size_t) row_of[m]]);
+    return out;
   }
-  template <class Take> void to_atoms(int width, const double *rows, const Take &take)
+  template <class Take> void to_atoms(int width, const double *rows, const Take &take) const
   {
     for (size_t k = 0; k < loose.size(); k++) take(loose[k], rows + width * k);
     if (!settings.whole) return;
     const size_t m = width + 1;
-    carried.assign(m * row_of.size() + m, 0.0);
+    std::vector<double> members(m * row_of.size() + m, 0.0);
     for (size_t k = 0; k < row_of.size(); k++) {
       if (row_of[k] < 0) continue;
-      std::copy_n(rows + width * (size_t) row_of[k], width, &carried[m * k]);
-      carried[m * k + width] = 1.0;
+      std::copy_n(rows + width * (size_t) row_of[k], width, &members[m * k]);
+      members[m * k + width] = 1.0;
     }
-    whole.scatter((int) m, carried.data(), [=, &take](int i, const double *row) {
+    whole.scatter((int) m, members.data(), [=, &take](int i, const double *row) {
       if (row[width] != 0.0) take(i, row);
     });
   }
@@ -172,7 +173,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* by how much the velocity of an image grows with each edge of the box: Ambient::jumps */
   double jumps[6] = {0.0};
   bool jumping = false;
-  std::vector<double> carried, of_copies;
+  std::vector<double> of_copies;
   Halo halo;
   sd_neighbors candidates, pairs;
 
@@ -206,7 +207,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   void tell();
   void find_rows();
   void surround(double reach, const std::string &keyword);
-  void add_copies();
   void find_pairs();
   void gather();
   void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;

@@ -47,17 +47,12 @@ std::vector<char> TimeStepGuard::held_atoms() const
 std::vector<double> TimeStepGuard::inertia(Scene &scene) const
 {
   const std::vector<char> held = held_atoms();
-  std::vector<double> rows(3 * (size_t) scene.size() + 3);
-  scene.to_rows(
-      3,
-      [&](int i, double *out) {
-        const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-        out[0] = mass / force->ftm2v * (held[i] ? HELD : 1.0);
-        out[1] = out[0] * 0.4 * atom->radius[i] * atom->radius[i];
-        out[2] = held[i];
-      },
-      rows.data());
-  return rows;
+  return scene.rows(3, [&](int i, double *out) {
+    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    out[0] = mass / force->ftm2v * (held[i] ? HELD : 1.0);
+    out[1] = out[0] * 0.4 * atom->radius[i] * atom->radius[i];
+    out[2] = held[i];
+  });
 }
 
 TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, Scene &scene,
