@@ -5,7 +5,6 @@
 #include "lammps_compat.h"
 
 #include "sd_ewald_cost.h"
-#include "sd_hash.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -111,26 +110,6 @@ bool Scene::split()
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
 }
 
-/* Are our spheres those of the last update? A hash of their tags, molecules and radii, in their
- * order, tells; the lists themselves would be 24 bytes a sphere. */
-void Scene::compare()
-{
-  uint64_t hash = SD_HASH_STEP;
-  const auto add = [&hash](uint64_t value) {
-    hash = sd_hash_mix((hash ^ value) * SD_HASH_STEP);
-  };
-  for (int k = 0; k < size(); k++) {
-    add(atom->tag[own[k]]);
-    if (atom->molecule) add(atom->molecule[own[k]]);
-    add(ubuf(a[k]).i);
-  }
-  int changed = hash != spheres_hash, any;
-  MPI_Allreduce(&changed, &any, 1, MPI_INT, MPI_MAX, world);
-  cloud_is_new = any;
-  spheres_hash = hash;
-  all_tag.clear();    // those of view ALL are no longer the last ones
-}
-
 static std::string parameters_of(const sd_ewald &e)
 {
   return "grid " + std::to_string(e.grid[0]) + " x " + std::to_string(e.grid[1]) + " x " +
@@ -154,13 +133,6 @@ void Scene::tell()
       "\n";
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;
-}
-
-double Scene::cost_of_product() const
-{
-  if (view() == SD_VIEW_NEAR) return sd_ewald_cost(&ewald) / comm->nprocs;
-  return view() == SD_VIEW_ALL ? (double) n_all * n_all / comm->nprocs
-                               : (double) list().first[size()];
 }
 
 std::vector<double> Scene::open_box() const
