@@ -235,6 +235,49 @@ def test_auto_is_the_blocks_where_spheres_see_by_list(tmp_path, mode, ranks):
         assert its["clump", "yes"][0] == 1 and residual["clump", "yes"][0] < 1e-12
 
 
+# --- kept from step to step --------------------------------------------------------------------------------------------
+
+def going(tmp_path, name, mode, precondition, molecules, tolerance, ranks=1, newton="on", cut=False):
+    """Positions, velocities and forces after 12 steps in which a cloud is sheared by 0.6, so that what preconditions is made two
+    or three times; cut: in a run to step 5 and one from its restart file."""
+    spheres, folder = loose_lattice(4), tmp_path / name
+    folder.mkdir()
+    spheres.x += 2.0
+    spheres.v = spheres.x @ np.array([[0.0, 0.5, 0.0], [0.0, 0.0, -0.4], [0.3, 0.0, 0.0]])
+    spheres.molecule = molecules * (np.arange(64) // 4 + 1)
+    words, boundary, box = MODES.get(mode, MODES["all"]), "f f f", [(-20.0, 40.0)] * 3
+    if mode == "periodic":
+        boundary, box, words = "p p p", [(0.0, 9.0)] * 3, words + " far_field_tolerance 1e-6"
+    words += f" visc {ETA} algorithm 2 relative_tolerance {tolerance} precondition {precondition}"
+    lines = input_lines(spheres, words, folder / "data", boundary=boundary, box=box, newton=newton, comm="comm_modify cutoff 8",
+                        density=1e3, dt=0.1)
+    rest = ["fix move all nve/sphere"]
+    end = [f"dump end all custom 1 {folder}/dump id xu yu zu vx vy vz f_drag[1] f_drag[2] f_drag[3]",
+           "dump_modify end sort id format float %.17g first no"]
+    if cut:
+        lmp(folder, lines + rest + ["run 5", f"write_restart {folder}/mid"], ranks=ranks)
+        lines = [f"newton {newton}", "plugin load stokesdynplugin.so", f"read_restart {folder}/mid", "comm_modify cutoff 8",
+                 "fix drag all stokes_dynamics", "timestep 0.1"]
+        lmp(folder, lines + rest + end + ["run 7"], ranks=ranks)
+    else:
+        lmp(folder, lines + rest + end + ["run 12"], ranks=ranks)
+    return read_dump(folder / "dump")[-1][1][:, 1:]
+
+
+@pytest.mark.parametrize("mode,precondition,molecules,tolerance", [
+    ("all", "none", 1, 1e-3), ("all", "sparse", 0, 1e-3), ("all", "clump", 1, 1e-3), ("clumps", "clump", 1, 1e-3),
+    ("periodic", "waves", 0, 1e-3),
+    # blocks of the parts of clumps that a rank owns are others on other ranks: at a loose tolerance the answer shows them
+    ("periodic", "waves", 1, 1e-13), ("taper", "clump", 1, 1e-13)])
+def test_ranks_restart_and_newton_leave_the_run_as_it_is(tmp_path, mode, precondition, molecules, tolerance):
+    """Also at a tolerance at which the answer shows what preconditioned it, and though it was made some steps before."""
+    args = (mode, precondition, molecules, tolerance)
+    expected = going(tmp_path, "one", *args)
+    scale = np.abs(expected).max(axis=0)
+    for name, how in (("four", {"ranks": 4}), ("newton", {"newton": "off", "ranks": 2}), ("cut", {"cut": True, "ranks": 2})):
+        assert (np.abs(going(tmp_path, name, *args, **how) - expected) / scale).max() < 1e-10, name
+
+
 # --- warm start ------------------------------------------------------------------------------------------------------
 
 def test_warm_start_takes_two_iterations_a_step_and_keeps_the_tolerance(simulation, tmp_path):
