@@ -1,4 +1,4 @@
-/* make_two_sphere_table > sd_two_sphere_table.c: the exact functions at the nodes, a minute or two.
+/* make_two_sphere_table > sd_two_sphere_table.inc: the exact functions at the nodes, a minute or two.
  *
  * make_two_sphere_table check STRIDE: the shipped ones at every STRIDE'th node against those
  * computed here and now; fails if they differ. */
@@ -35,10 +35,7 @@ static void at_node(int i, int j, double value[FUNCTIONS])
 
 static void make(void)
 {
-  printf("/* Made by make_two_sphere_table; sd_two_sphere_table_internal.h says of what. */\n"
-         "#include \"sd_two_sphere_table_internal.h\"\n\n"
-         "const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS]\n"
-         "                                [SD_TWO_SPHERE_FUNCTIONS] = {\n");
+  printf("/* Made by make_two_sphere_table; sd_two_sphere_table_internal.h says of what. */\n");
   for (int i = 0; i < RATIOS; i++) {
     printf("    {\n");
     for (int j = 0; j < GAPS; j++) {
@@ -56,7 +53,6 @@ static void make(void)
     }
     printf("    },\n");
   }
-  printf("};\n");
 }
 
 static int check(int stride)
