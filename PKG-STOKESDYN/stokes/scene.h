@@ -152,7 +152,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   // view NEAR: images behind our own spheres, in x, a, w
   Images images;
   sd_ewald ewald = {};
-  sd_ewald_sizes sizes = {};
   /* its parameters, as they were last told */
   std::string said;
   bool told = false;

@@ -44,7 +44,8 @@ static void at_most(int count, int limit, const char *what)
   if (count > limit) fail_msg("%s: %d iterations, at most %d", what, count, limit);
 }
 
-/* By brute force: each sphere is the one farthest from all before it, the smaller index first. */
+/* By brute force: each sphere is the one farthest from all before it, the smaller index first, and sees those of them that are
+ * within 1.5 times that distance. */
 static void spheres_come_farthest_first(void **state)
 {
   (void) state;
@@ -62,24 +63,29 @@ static void spheres_come_farthest_first(void **state)
         scene_set(&s, i, i % 3 ? 1e-3 * i : 5e6, i % 5 ? 0 : 1e3 * i, 0, A, ETA);
     for (int i = 5; i < N; i += 50) s.a[i] = 0.0;
     int order[N], taken[N] = {0};
-    double distance[N], best[N];
+    double best[N];
     const sd_spheres spheres = {s.x, s.a, s.w};
-    const int count = sd_farthest_first(&spheres, N, order, distance);
-    assert_int_equal(count, N - 6);
+    sd_rows rows = {0};
+    assert_int_equal(sd_rows_find(&rows, &spheres, N, 1.5, 0, 1), SD_OK);
+    assert_int_equal(rows.columns, N - 6);
+    for (int k = 0; k < rows.columns; k++) order[k] = rows.row[rows.first[k]];
     for (int i = 0; i < N; i++) best[i] = s.a[i] > 0.0 ? INFINITY : -1.0;
-    for (int k = 0; k < count; k++) {
-      int far = -1;
+    for (int k = 0; k < rows.columns; k++) {
+      int far = -1, near = 0;
       for (int i = 0; i < N; i++)
         if (!taken[i] && best[i] >= 0.0 && (far < 0 || best[i] > best[far])) far = i;
       assert_int_equal(order[k], far);
-      assert_true(k == 0 ? isinf(distance[0]) : fabs(distance[k] - sqrt(best[far])) <= 1e-12);
-      taken[far] = 1;
+      const double reach = 2.25 * best[far] * (1.0 + 1e-6);
       for (int i = 0; i < N; i++) {
         double sq = 0.0;
         for (int d = 0; d < 3; d++) sq += pow(s.x[3 * i + d] - s.x[3 * far + d], 2);
+        near += taken[i] && sq <= reach;
         if (s.a[i] > 0.0) best[i] = fmin(best[i], sq);
       }
+      taken[far] = 1;
+      assert_int_equal(rows.first[k + 1] - rows.first[k], 1 + near);
     }
+    sd_rows_free(&rows);
     scene_free(&s);
   }
 }

@@ -17,11 +17,19 @@ enum {
   FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS
 };
 
+/* The inverse of sd_two_sphere_mu */
+static double gap_of(double ratio, double mu)
+{
+  const double s = sinh(0.5 * mu), t = 2.0 * s * s;
+  const double q = 8.0 * t * ratio / ((1.0 + ratio) * (1.0 + ratio));
+  return q / (2.0 + sqrt(4.0 + q));
+}
+
 static void at_node(int i, int j, double value[FUNCTIONS])
 {
   const double ratio = pow(SD_TWO_SPHERE_LARGEST_RATIO, sd_two_sphere_node(RATIOS, i));
   const double mu = sd_two_sphere_node(GAPS, j) * sd_two_sphere_largest_mu(ratio);
-  const double xi = sd_two_sphere_xi(ratio, mu);
+  const double xi = gap_of(ratio, mu);
   const sd_pair_resistance exact = sd_two_sphere_exact(1.0, ratio, 0.5 * xi * (1.0 + ratio), NULL);
   const sd_pair_resistance near = sd_two_sphere_near(1.0, ratio, xi);
   const sd_pair_resistance alone = sd_two_sphere_alone(1.0, ratio);
