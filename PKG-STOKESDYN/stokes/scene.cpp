@@ -162,7 +162,6 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
         surround(std::max(ewald.reach, settings.films * most),
                  "far_field: the largest radius, " + text(most));
       if (!somebody_sees) return;
-      compare();
       tell();
       place(size_with_copies());
     } else {
@@ -284,21 +283,16 @@ void Scene::gather()
     return all[p].tag < all[q].tag;
   });
 
-  cloud_is_new = (int) all_tag.size() != n_all;
-  spheres_hash = 0;
   all_x.resize(3 * (size_t) n_all);
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);
-  for (auto *v : {&all_tag, &all_molecule}) v->resize(n_all);
+  all_molecule.resize(n_all);
   place_of.resize(n_all);
   for (int k = 0; k < n_all; k++) {
     const Sphere &s = all[by_tag[k]];
     place_of[by_tag[k]] = k;
     std::copy_n(s.x, 3, &all_x[3 * (size_t) k]);
-    cloud_is_new =
-        cloud_is_new || all_tag[k] != s.tag || all_a[k] != s.a || all_molecule[k] != s.molecule;
     all_a[k] = s.a;
     all_w[k] = s.w;
-    all_tag[k] = s.tag;
     all_molecule[k] = s.molecule;
   }
 }

@@ -67,6 +67,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* The same, and the engine's pairs: anew if LAMMPS has re-neighboured, or if the spheres are
    * others than before on any rank. */
   void update(const std::vector<int> &who, const Ambient &ambient);
+  const std::vector<int> &who() const { return own; }
   int size() const { return (int) tags.size(); }
   int64_t tag(int k) const { return tags[k]; }
   int64_t molecule(int k) const { return molecules[k]; }
@@ -127,13 +128,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   {
     return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
-  /* Views ALL and NEAR: other spheres than at the last update, or in another order? The same on all
-   * ranks. */
-  bool spheres_changed() const { return cloud_is_new; }
   /* View NEAR; else nullptr */
   const sd_ewald *splitting() const { return view() == SD_VIEW_NEAR ? &ewald : nullptr; }
-  /* What a product costs this rank, in pairs. */
-  double cost_of_product() const;
   /* The box around an open cloud whose sum is split: six numbers to keep, as the next box depends
    * on the last one. */
   std::vector<double> open_box() const;
@@ -183,14 +179,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* [nprocs] */
   std::vector<int> spheres_of_rank;
   std::vector<double> all_x, all_a, all_w, in_order_of_rank;
-  std::vector<int64_t> all_tag, all_molecule;
+  std::vector<int64_t> all_molecule;
   int n_all = 0;
-  bool cloud_is_new = true;
 
-  // view NEAR: hash of the spheres of the last update
-  uint64_t spheres_hash = 0;
   sd_ewald ewald = {};
-  sd_ewald_sizes sizes = {};
   /* its parameters, as they were last told */
   std::string said;
   bool told = false;
@@ -203,7 +195,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool split();
   sd_ewald_sizes sizes_of_all(double largest);
   sd_ewald_sizes measure(sd_ewald_box &box);
-  void compare();
   void tell();
   void find_rows();
   void surround(double reach, const std::string &keyword);
