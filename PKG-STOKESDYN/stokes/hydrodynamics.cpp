@@ -229,7 +229,6 @@ sd_system Hydrodynamics::gather()
   system.apply_ctx = scene.mobility();
   system.sum = Scene::sum;
   system.sum_ctx = &scene;
-  if (joined()) mobile.join(system, carried = slip);
   return system;
 }
 
@@ -251,9 +250,16 @@ static std::string how_far(const sd_solve_report &report)
 sd_status Hydrodynamics::run(sd_solve_report &report)
 {
   sd_system system = gather();
+  if (joined()) {
+    const sd_status status = together(report);
+    guard.state = memory->global.guard;
+    guard.look(system, report, solvers.data(), true, memory->global.solves);
+    memory->global.guard = guard.state;
+    return status;
+  }
   if (algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status =
-        sd_solve_substitution(&system, right_hand_side(), settings.tolerance, settings.max_iter,
+        sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
                               solution.data(), work.get(), &report);
     if (status != SD_EDIVERGED || settings.strict) return status;
     memory->global.diverged = 1;
@@ -281,10 +287,25 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   preconditioner.unpack(global.preconditioner);
   preconditioner.attach(system);
   const sd_status status =
-      sd_solve_gradients(&system, right_hand_side(), settings.tolerance, settings.max_iter,
+      sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
                          solution.data(), work.get(), &report);
   preconditioner.learn(report);
   global.preconditioner = preconditioner.pack();
+  return status;
+}
+
+/* Clumps with shells: bodies that are held in the slip, by the loop that moves them without
+ * inertia. */
+sd_status Hydrodynamics::together(sd_solve_report &report)
+{
+  const bool warm = memory->history && memory->global.solutions > 0;
+  if (warm) guess();
+  const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};
+  sd_bodies_report made = {};
+  const sd_status status = mobile.resist(how, slip, solution, made);
+  report.iterations = report.products = made.products;
+  report.residual = made.residual;
+  report.curvature = made.curvature;
   return status;
 }
 

@@ -6,6 +6,7 @@
 #include "sd_linear.h"
 
 #include "atom.h"
+#include "comm.h"
 
 #include <algorithm>
 #include <cstring>
@@ -28,7 +29,7 @@ Velocities::~Velocities()
 double Velocities::memory_usage() const
 {
   double numbers = ghosts.capacity();
-  for (const auto *array : {&F, &u, &v, &near, &drag, &spin, &work, &R, &eta, &V, &gradient})
+  for (const auto *array : {&F, &u, &v, &exerted, &D, &arm, &V, &work, &gradient})
     numbers += array->capacity();
   return sizeof(double) * numbers;
 }
@@ -164,8 +165,7 @@ void Velocities::place(int width)
   row_of.assign(atom->nlocal, -1);
   F.resize(m * n + m);
   u.resize(m * n + m);
-  drag.resize(n + 1);
-  spin.resize(n + 1);
+  D.resize(m * n + m);
   for (size_t k = 0; k < n; k++) {
     const int i = who[k];
     row_of[i] = k;
@@ -174,34 +174,43 @@ void Velocities::place(int width)
       if (width == 6) F[m * k + 3 + d] = atom->torque[i][d];
     }
     ambient.fluid(i, &u[m * k]);
-    drag[k] = ambient.drag(i);
-    if (width == 6) spin[k] = ambient.spin(i);
+    for (size_t d = 0; d < m; d++) D[m * k + d] = d < 3 ? ambient.drag(i) : ambient.spin(i);
   }
 }
 
-/* The clumps as the core wants them */
+/* The bodies as the core wants them: free spheres, then clumps */
 void Velocities::arrange()
 {
-  const int n = ambient.who().size();
-  first.assign(1, 0);
+  const size_t n = ambient.who().size();
   member.clear();
-  shape.clear();
-  R.clear();
-  eta.clear();
+  shaped.clear();
   loner.clear();
-  for (const Clump &clump : clumps) {
-    const RigidClumps::Body &body = *clump.body;
-    for (int k = body.begin; k < body.begin + body.n; k++) {
-      const int i = rigid.owns()[k];
-      member.push_back(i < 0 ? n + rigid.members()[k] - atom->nlocal : row_of[i]);
-    }
-    first.push_back(member.size());
-    shape.push_back(&rigid.blocks(*body.shape));
-    R.insert(R.end(), clump.pose, clump.pose + 9);
-    eta.push_back(clump.eta);
+  whole.assign(n + 1, 0);
+  arm.assign(3 * n + 3, 0.0);
+  for (int i : lone) {
+    whole[row_of[i]] = loner.size();
+    loner.push_back(row_of[i]);
   }
-  for (int i : lone) loner.push_back(row_of[i]);
-  V.resize(6 * clumps.size() + 1);
+  std::vector<double> arms;
+  for (const Clump &clump : clumps) {
+    sd_body body = {&rigid.blocks(*clump.body->shape), {}, 1.0, clump.eta, nullptr};
+    std::copy_n(clump.pose, 9, body.R);
+    arms.resize(3 * (size_t) clump.body->n);
+    sd_body_arms(&body, arms.data());
+    for (int k = 0; k < clump.body->n; k++) {
+      const int row = row_of[rigid.owns()[clump.body->begin + k]];
+      member.push_back(row);
+      whole[row] = loner.size() + shaped.size();
+      std::copy_n(&arms[3 * (size_t) k], 3, &arm[3 * (size_t) row]);
+    }
+    shaped.push_back(body);
+  }
+  size_t at = 0;
+  for (sd_body &body : shaped) {
+    body.row = &member[at];
+    at += body.shape->m;
+  }
+  V.resize(6 * (loner.size() + shaped.size()) + 6);
 }
 
 /* u = 0: nobody sees anybody */
@@ -214,36 +223,24 @@ static sd_status nobody(void *ctx, const double * /*F*/, double *out)
 
 sd_bodies Velocities::bodies(int width)
 {
+  const int n = ambient.who().size();
   sd_bodies A = {};
-  A.n = ambient.who().size();
-  A.ghosts = across ? atom->nghost : 0;
-  A.width = width;
-  A.drag = drag.data();
-  A.spin = width == 6 ? spin.data() : nullptr;
   A.lone = loner.size();
   A.loner = loner.data();
-  A.clumps = clumps.size();
-  A.first = first.data();
-  A.member = member.data();
-  A.shape = shape.data();
-  A.pose = R.data();
-  A.eta = eta.data();
-  A.sum = Scene::sum;
-  A.sum_ctx = &scene;
-  if (!across) return A;
-  A.refresh = [](void *ctx, const double *rows, double *out, int columns) {
-    return callback([=] {
-      Velocities *self = static_cast<Velocities *>(ctx);
-      std::vector<double> sent;
-      self->scene.refresh_ghosts(sent, columns, [=](int i, double *row) {
-        const int k = self->row_of[i];
-        if (k >= 0) std::copy_n(rows + columns * (size_t) k, columns, row);
-      });
-      std::copy_n(sent.begin(), columns * (size_t) self->atom->nghost, out);
-      return SD_OK;
-    });
-  };
-  A.refresh_ctx = this;
+  A.shaped = shaped.size();
+  A.body = shaped.data();
+  A.spheres = {n, width, whole.data(), arm.data()};
+  A.points = {n, width, nullptr, nullptr};
+  A.D = D.data();
+  alone.how.width = width;
+  alone.n = n;
+  const bool sees = scene.anybody_sees();
+  A.apply = sees ? sd_mobility_apply : nobody;
+  A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
+  A.world.ctx = &scene;
+  A.world.me = comm->me;
+  A.world.ranks = comm->nprocs;
+  A.world.sum = Scene::sum;
   return A;
 }
 
@@ -254,28 +251,41 @@ void Velocities::carry(const sd_bodies &A, double *flow)
   gradient.resize(9 * clumps.size());
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
-  sd_bodies_carry(&A, gradient.data(), flow);
+  work.resize(sd_bodies_work(&A));
+  sd_bodies_carry(&A, gradient.data(), work.data(), flow);
 }
 
-sd_status Velocities::apply_joined(void *ctx, const double *l, double *out)
+sd_status Velocities::solve(const sd_bodies &A, const How &how, const sd_bodies_problem &problem,
+                            Guess &guess, sd_bodies_report &report)
 {
-  Velocities *self = static_cast<Velocities *>(ctx);
-  const sd_status status = self->bare(self->bare_ctx, l, out);
-  return status == SD_OK ? sd_bodies_add_shells(&self->joined, l, self->work.data(), out) : status;
+  v.resize(u.size());
+  exerted.resize(u.size());
+  work.resize(sd_bodies_work(&A));
+  const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
+                                   exerted.data()};
+  return sd_bodies_solve(&A, &problem, &motion, work.data(), &report);
 }
 
-void Velocities::join(sd_system &system, std::vector<double> &slip)
+/* Everybody is held, at rest in a fluid that moves with the slip. */
+sd_status Velocities::resist(const How &how, const std::vector<double> &slip,
+                             std::vector<double> &on_spheres, sd_bodies_report &report)
 {
-  const int width = system.spin ? 6 : 3;
-  place(width);
+  place(how.width);
   arrange();
-  joined = bodies(width);
-  carry(joined, slip.data());
-  work.resize(sd_bodies_work(&joined));
-  bare = system.apply;
-  bare_ctx = system.apply_ctx;
-  system.apply = apply_joined;
-  system.apply_ctx = this;
+  sd_bodies A = bodies(how.width);
+  const std::vector<char> held(loner.size() + shaped.size() + 1, 1);
+  A.held = held.data();
+  const size_t m = how.width, rows = m * ambient.who().size();
+  std::copy_n(slip.begin(), rows, u.begin());
+  carry(A, u.data());
+  Guess guess;
+  guess.l.assign(rows + m, 0.0);
+  for (size_t j = 0; j < rows && how.warm; j++) guess.l[j] = -on_spheres[j];
+  const sd_bodies_problem problem = {u.data(),      F.data(),     nullptr,
+                                     how.warm, how.tolerance, how.max_iter};
+  const sd_status status = solve(A, how, problem, guess, report);
+  for (size_t j = 0; j < rows; j++) on_spheres[j] = -exerted[j];
+  return status;
 }
 
 sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
@@ -285,29 +295,20 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
   arrange();
   sd_bodies A = bodies(how.width);
   if (lubrication.settings.on) {
-    near.assign(u.size(), 0.0);
     lubrication.place(ambient);
     tie.L = lubrication.matrix();
     A.tie = &tie;
   }
-  sd_mobility_scene alone = {};
-  alone.how.width = how.width;
-  alone.n = A.n;
-  const bool sees = scene.anybody_sees();
-  A.apply = sees ? sd_mobility_apply : nobody;
-  A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
   carry(A, u.data());
-  v.resize(u.size());
-  work.resize(sd_bodies_work(&A));
-  const sd_bodies_problem problem = {u.data(), F.data(), how.warm, how.tolerance, how.max_iter};
-  const sd_bodies_motion motion = {guess.l.data(), v.data(), V.data(), guess.v.data(), near.data()};
-  const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work.data(), &report);
-  for (size_t c = 0; c < clumps.size(); c++) std::copy_n(&V[6 * c], 6, clumps[c].V);
-  for (int k = 0; k < A.n; k++) {
-    const size_t row = how.width * (size_t) k;
+  const sd_bodies_problem problem = {u.data(),      F.data(),     nullptr,
+                                     how.warm, how.tolerance, how.max_iter};
+  const sd_status status = solve(A, how, problem, guess, report);
+  for (size_t c = 0; c < clumps.size(); c++)
+    std::copy_n(&V[6 * (loner.size() + c)], 6, clumps[c].V);
+  for (size_t k = 0; k < ambient.who().size(); k++) {
+    const size_t row = how.width * k;
     double by_fluid[6];
-    for (int d = 0; d < how.width; d++) by_fluid[d] = -guess.l[row + d];
-    for (int d = 0; A.tie && d < how.width; d++) by_fluid[d] -= near[row + d];
+    for (int d = 0; d < how.width; d++) by_fluid[d] = -exerted[row + d];
     take(ambient.who()[k], &v[row], by_fluid);
   }
   return status;

@@ -85,12 +85,12 @@ static void both_lines_hold(void **state)
     tied_flock *t = tie_flock(f, 1e-4);
     assert_int_equal(tied_move(t, 0, 1e-12, 400), SD_OK);
     double *Ml = malloc(sizeof(double) * (size_t) N), *L = near_dense(&t->near);
-    /* loads: K^T (l + L (K V - V_inf)) = F, where l and L .. are `l` and `force` of the answer */
+    /* loads: K^T (l + L (K V - V_inf)) = F, the sum of which is exerted */
     double lubrication[6 * FLOCK_MOST], total[6 * FLOCK_MOST], got[6 * FLOCK_MOST], want[6 * FLOCK_MOST];
     for (int i = 0; i < N; i++) {
       lubrication[i] = -t->near.L.carried[i];
       for (int j = 0; j < N; j++) lubrication[i] += L[N * i + j] * f->v[j];
-      total[i] = f->l[i] + t->force[i];
+      total[i] = f->exerted[i];
     }
     onto_bodies(f, total, got);
     onto_bodies(f, f->F, want);
@@ -163,7 +163,7 @@ static void a_guess_is_taken_up(void **state)
   crowd(f, 0.2, 9);
   tied_flock *t = tie_flock(f, 1e-4);
   flock_weigh(f, P6);
-  for (int j = 0; j < 6 * f->n; j++) f->l[j] = t->before[j] = 0.1 * cos(j); /* any guess will do */
+  for (int j = 0; j < 6 * f->n; j++) f->l[j] = f->before[j] = 0.1 * cos(j); /* any guess will do */
   assert_int_equal(tied_move(t, 1, 1e-4, 100), SD_OK);
   const int cold = f->report.products;
   double v[6 * FLOCK_MOST];
