@@ -103,7 +103,7 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
   } else {
     const sd_spheres spheres = scene.local();
     const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
-    status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_ghosts(), 0, scene.size(),
+    status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_copies(), 0, scene.size(),
                                &mine);
   }
   if (status != SD_OK) fail_one(lmp, command + ": " + sd_status_string(status));
@@ -133,7 +133,7 @@ void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &
   };
   const sd_pairs &list = scene.list();
   for (int k = 0; k < scene.size(); k++)
-    if (const tagint molecule = lmp->atom->molecule[scene.who()[k]])
+    if (const tagint molecule = scene.molecule(k))
       add({molecule, 1, (bigint) (list.first[k + 1] - list.first[k])});
   std::vector<Sight> mine;
   for (const auto &clump : clumps) mine.push_back(clump.second);

@@ -40,7 +40,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* of this LAMMPS as it is now; nullptr before the first run */
   FixStokesDynamicsState *memory = nullptr;
 
-  Hydrodynamics(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair);
+  explicit Hydrodynamics(LAMMPS_NS::LAMMPS *lmp);
   /* That of the pair style; nullptr: there is no pair style stokes_dynamics. */
   static Hydrodynamics *of(LAMMPS_NS::LAMMPS *lmp);
 
@@ -91,9 +91,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* those whose rows are here (Ambient::selection) */
   long selection = -1;
 
-  /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps */
+  /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps. Rows of
+   * a solve are those that the scene makes of them */
   std::vector<int> solvers;
-  /* of a solve, by rows: row k is the sphere solvers[k] */
   std::vector<double> slip, resistance, spin, solution;
   /* scratch of the solver, not filled: parts that it does not need take no memory */
   std::unique_ptr<double[]> work;
@@ -102,6 +102,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Velocities::Guess begin_with;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
+
+  /* do the scene's rows, and what films need around them, stand as in this step? */
+  bool standing = false;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();

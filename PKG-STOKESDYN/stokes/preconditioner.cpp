@@ -66,7 +66,7 @@ void Preconditioner::look(const sd_system &system)
     seen.part = comm->me;
     seen.parts = comm->nprocs;
   } else {
-    seen.n = extent == WHOLE_CLUMPS ? scene.size_with_ghosts() : scene.size();
+    seen.n = scene.size();
     seen.spheres = scene.local();
   }
   first.assign(1, 0);
@@ -85,7 +85,7 @@ bool Preconditioner::group_by_molecule()
     if (!(seen.spheres.a[i] > 0.0)) continue;
     spheres++;
     const int64_t molecule =
-        cloud ? scene.cloud_molecules()[i] : (int64_t) atom->molecule[scene.who()[i]];
+        cloud ? scene.cloud_molecules()[i] : scene.molecule(i);
     if (molecule != 0) clumps[molecule].push_back(i);
   }
   for (const auto &clump : clumps) {
@@ -260,10 +260,6 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
       p->scene.to_cloud(r, p->in.data(), width);
     else
       p->in.assign(r, r + own);
-    if (p->extent == WHOLE_CLUMPS) {
-      p->in.resize(width * p->seen.n + 1);
-      p->scene.refresh_ghosts(p->in.data(), &p->in[own], width);
-    }
     p->out.resize(width * p->seen.n + 1);
     status = p->made->apply(p->state.data(), p->in.data(), p->out.data());
     if (cloud)

@@ -156,7 +156,7 @@ static int by_identity(const void *one, const void *other)
   return (p->copy > q->copy) - (p->copy < q->copy);
 }
 
-/* Copies of one body are brought together, and the first of each sphere stands for it. */
+/* Those with spheres near this rank's. Copies of one body are brought together, and the first of each sphere stands for it. */
 static sd_status know_others(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;
@@ -165,10 +165,15 @@ static sd_status know_others(const sd_bodies *A, assembly *a)
   int count = 0;
   if (!who) return SD_ENOMEMORY;
   for (int j = 0; j < a->copies; j++) {
-    const double *row = a->place + PLACE * (long) j;
     a->body[j] = -1;
     a->stands[j] = 0;
-    if ((int) row[RANK] == t->L->world.me || row[SCALE] == 0.0) continue;
+  }
+  for (long k = 0; a->copies > 0 && k < t->L->count; k++) {
+    const int j = t->L->pair[k][1] - t->L->n;
+    if (j < 0 || a->stands[j]) continue;
+    const double *row = a->place + PLACE * (long) j;
+    a->stands[j] = 1; /* seen */
+    if (row[SCALE] == 0.0) continue;
     who[count++] = (identity){(int) row[RANK], (int) row[BODY], (int) row[ROW], j};
   }
   qsort(who, (size_t) count, sizeof(identity), by_identity);

@@ -154,11 +154,14 @@ static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
       const int at = w->near.neighbor[k], j = row_at(L, at);
       if (j >= i) keep_pair(L, s, &L->count, i, j, at);
     }
+  double *met = w->neighbours;
+  memset(met, 0, sizeof(double) * (size_t) s->n_all);
+  for (long k = 0; k < L->count; k++) met[L->pair[k][1]] = 1.0;
   long last = L->count;
   for (int i = s->n; i < rows; i++)
-    for (long k = w->near.first[i]; row_at(L, i) == i && k < w->near.first[i + 1]; k++) {
+    for (long k = w->near.first[i]; met[i] != 0.0 && k < w->near.first[i + 1]; k++) {
       const int j = w->near.neighbor[k];
-      if (row_at(L, j) == j) keep_pair(L, s, &last, i, j, j);
+      if (met[j] != 0.0) keep_pair(L, s, &last, i, j, j);
     }
   L->beyond = last - L->count;
   return SD_OK;
@@ -188,6 +191,8 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   if (!s->u) return SD_OK;
   memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
   if (s->world.refresh) status = s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6);
+  for (long j = 0; s->drift && j < s->n_all - s->n; j++)
+    for (int d = 0; d < 3; d++) flow[6 * (s->n + j) + d] += s->drift[3 * j + d];
   for (long j = 0; j < 6 * (long) s->n_all; j++) L->work->flows |= flow[j] != 0.0;
   return status;
 }
@@ -248,6 +253,8 @@ static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k
   rigid_part((const double *const[]){p->x + 3 * (long) i, p->x + 3 * (long) at},
              (const double[]){p->a[i], p->a[at]},
              (const double *const[]){flow + 6 * (long) i, flow + 6 * (long) at}, V);
+  /* L V is of velocities without the drift: what that makes of V_inf is left */
+  for (int e = 0; s->drift && at >= s->n && e < 3; e++) V[1][e] -= s->drift[3 * (at - s->n) + e];
   add_product(&B11, B11.YB12, B11.YB21, V[0], carried + 6 * (long) i);
   add_product(&B12, B12.YB12, B12.YB21, V[1], carried + 6 * (long) i);
   if (j >= L->n || j == i) return;
