@@ -247,8 +247,8 @@ sd_system Hydrodynamics::gather()
   system.spin = rotation() ? spin.data() : nullptr;
   system.apply = sd_mobility_apply;
   system.apply_ctx = scene.mobility();
-  system.sum = Scene::sum;
-  system.sum_ctx = &scene;
+  system.world.ctx = &scene;
+  system.world.sum = Scene::sum;
   return system;
 }
 
@@ -270,14 +270,7 @@ static std::string how_far(const sd_solve_report &report)
 sd_status Hydrodynamics::run(sd_solve_report &report)
 {
   sd_system system = gather();
-  if (joined()) {
-    const sd_status status = together(report);
-    guard.state = memory->global.guard;
-    guard.look(system, report, solvers.data(), true, memory->global.solves);
-    memory->global.guard = guard.state;
-    return status;
-  }
-  if (algorithm() == StokesSettings::SUBSTITUTION) {
+  if (!joined() && algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status =
         sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
                               solution.data(), work.get(), &report);
@@ -288,9 +281,10 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
                      where(StokesSettings::SUBSTITUTION) + "diverged: " + how_far(report) +
                          "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
-  const sd_status status = gradients(system, report);
+  const sd_status status = joined() ? together(report) : gradients(system, report);
+  const bool preconditioned = joined() || preconditioner.attached();
   guard.state = memory->global.guard;
-  guard.look(system, report, scene, preconditioner.attached(), memory->global.solves);
+  guard.look(system, report, scene, preconditioned, memory->global.solves);
   memory->global.guard = guard.state;
   return status;
 }
