@@ -195,6 +195,14 @@ void Halo::refresh(const double *rows, double *out, int width) const
   post.carry(outbox.data(), out, width);
 }
 
+void Halo::reduce(const double *of_copies, double *rows, int width) const
+{
+  outbox.resize((size_t) width * sphere.size() + 1);
+  post.reversed().carry(of_copies, outbox.data(), width);
+  for (size_t k = 0; k < sphere.size(); k++)
+    for (int d = 0; d < width; d++) rows[width * (size_t) sphere[k] + d] += outbox[width * k + d];
+}
+
 void Halo::place(const double h[6], const double *x, double *out) const
 {
   outbox.assign(3 * sphere.size() + 1, 0.0);

@@ -53,6 +53,8 @@ class Halo {
   int count() const { return copies; }
   /* Since then, in one order: rows [width n] -> those of the copies [width count()] */
   void refresh(const double *rows, double *out, int width) const;
+  /* And back: rows += those of their copies */
+  void reduce(const double *of_copies, double *rows, int width) const;
   /* Positions x [3n] -> where the copies stand now; h: the lattice's edges now. Or of zeros and the
    * rates of the edges: the velocities of the copies beyond those of their spheres. x nullptr:
    * zeros */

@@ -241,9 +241,8 @@ sd_system Hydrodynamics::gather()
   system.spin = rotation() ? spin.data() : nullptr;
   system.apply = sd_mobility_apply;
   system.apply_ctx = scene.mobility();
-  system.sum = Scene::sum;
-  system.sum_ctx = &scene;
-  if (joined()) mobile.join(system, carried = slip);
+  system.world.ctx = &scene;
+  system.world.sum = Scene::sum;
   return system;
 }
 
@@ -265,9 +264,9 @@ static std::string how_far(const sd_solve_report &report)
 sd_status Hydrodynamics::run(sd_solve_report &report)
 {
   sd_system system = gather();
-  if (algorithm() == StokesSettings::SUBSTITUTION) {
+  if (!joined() && algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status =
-        sd_solve_substitution(&system, right_hand_side(), settings.tolerance, settings.max_iter,
+        sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
                               solution.data(), work.get(), &report);
     if (status != SD_EDIVERGED || settings.strict) return status;
     memory->global.diverged = 1;
@@ -276,9 +275,10 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
                      where(StokesSettings::SUBSTITUTION) + "diverged: " + how_far(report) +
                          "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
-  const sd_status status = gradients(system, report);
+  const sd_status status = joined() ? together(report) : gradients(system, report);
+  const bool preconditioned = joined() || preconditioner.attached();
   guard.state = memory->global.guard;
-  guard.look(system, report, scene, preconditioner.attached(), memory->global.solves);
+  guard.look(system, report, scene, preconditioned, memory->global.solves);
   memory->global.guard = guard.state;
   return status;
 }
@@ -289,8 +289,23 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   system.warm = memory->history && global.solutions > 0;
   if (system.warm) guess();
   preconditioner.attach(system, memory->places, global.places_box);
-  return sd_solve_gradients(&system, right_hand_side(), settings.tolerance, settings.max_iter,
+  return sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
                             solution.data(), work.get(), &report);
+}
+
+/* Clumps with shells: bodies that are held in the slip, by the loop that moves them without
+ * inertia. */
+sd_status Hydrodynamics::together(sd_solve_report &report)
+{
+  const bool warm = memory->history && memory->global.solutions > 0;
+  if (warm) guess();
+  const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};
+  sd_bodies_report made = {};
+  const sd_status status = mobile.resist(how, slip, solution, made);
+  report.iterations = report.products = made.products;
+  report.residual = made.residual;
+  report.curvature = made.curvature;
+  return status;
 }
 
 /* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'

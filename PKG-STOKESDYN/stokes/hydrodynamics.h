@@ -100,8 +100,6 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   size_t work_room = 0;
   /* where velocities from forces begin */
   Velocities::Guess begin_with;
-  /* the slip of clumps with shells that interact: a strain carries them otherwise */
-  std::vector<double> carried;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
 
@@ -111,14 +109,15 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
   sd_system gather();
+  // clumps with shells that interact
   bool joined() const
   {
     return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1;
   }
-  const double *right_hand_side() const { return joined() ? carried.data() : slip.data(); }
   void lubricate();
   sd_status run(sd_solve_report &report);
   sd_status gradients(sd_system &system, sd_solve_report &report);
+  sd_status together(sd_solve_report &report);
   void guess();
   void keep();
   int algorithm() const    // of the next solve

@@ -64,6 +64,7 @@ void Lubrication::place(Scene &where, const Ambient &ambient)
   scene.world.me = comm->me;
   scene.world.ranks = comm->nprocs;
   scene.world.refresh = Scene::refresh;
+  scene.world.reduce = Scene::reduce;
   scene.world.sum = Scene::sum;
   check(sd_lubrication_place(&near, &scene));
 }

@@ -134,6 +134,14 @@ sd_status Scene::refresh(void *ctx, const double *rows, double *copies, int widt
   });
 }
 
+sd_status Scene::reduce(void *ctx, const double *copies, double *rows, int width)
+{
+  return callback([=] {
+    static_cast<Scene *>(ctx)->halo.reduce(copies, rows, width);
+    return SD_OK;
+  });
+}
+
 void Scene::surround(double reach, const std::string &keyword)
 {
   const Lattice lattice = Lattice::of(domain);

@@ -117,6 +117,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   double smallest() const { return least; }
   /* rows [width size()] -> those of the copies */
   static sd_status refresh(void *ctx, const double *rows, double *copies, int width);
+  /* and back: rows += those of their copies */
+  static sd_status reduce(void *ctx, const double *copies, double *rows, int width);
 
   // --- who sees whom, since the last update()
 

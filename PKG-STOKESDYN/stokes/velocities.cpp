@@ -4,6 +4,7 @@
 #include "sd_linear.h"
 
 #include "atom.h"
+#include "comm.h"
 
 #include <algorithm>
 #include <cstring>
@@ -26,7 +27,7 @@ Velocities::~Velocities()
 double Velocities::memory_usage() const
 {
   double numbers = of_members.capacity();
-  for (const auto *array : {&F, &u, &v, &near, &drag, &spin, &work, &R, &eta, &V, &gradient})
+  for (const auto *array : {&F, &u, &v, &exerted, &D, &arm, &V, &work, &gradient})
     numbers += array->capacity();
   return sizeof(double) * numbers;
 }
@@ -138,38 +139,49 @@ void Velocities::place(int width)
   });
   F.resize(m * n + m);
   u.resize(m * n + m);
-  drag.resize(n + 1);
-  spin.resize(n + 1);
+  D.resize(m * n + m);
   for (size_t k = 0; k < n; k++) {
     const double *row = &rows[most * k];
     std::copy_n(row, m, &F[m * k]);
     std::copy_n(row + 6, m, &u[m * k]);
-    drag[k] = row[12];
-    spin[k] = row[13];
+    for (size_t d = 0; d < m; d++) D[m * k + d] = row[d < 3 ? 12 : 13];
   }
   scene.drift(u.data(), width, 1.0);
 }
 
-/* The clumps as the core wants them */
+/* The bodies as the core wants them: free spheres, then clumps */
 void Velocities::arrange()
 {
-  first.assign(1, 0);
+  const size_t n = scene.size();
   member.clear();
-  shape.clear();
-  R.clear();
-  eta.clear();
+  shaped.clear();
   loner.clear();
-  for (const Clump &clump : clumps) {
-    const RigidClumps::Body &body = *clump.body;
-    for (int k = 0; k < body.n; k++)
-      member.push_back(scene.row_of_member((int) member_of(clump, k)));
-    first.push_back(member.size());
-    shape.push_back(&rigid.blocks(*body.shape));
-    R.insert(R.end(), clump.pose, clump.pose + 9);
-    eta.push_back(clump.eta);
+  whole.assign(n + 1, 0);
+  arm.assign(3 * n + 3, 0.0);
+  for (int k = 0; k < scene.lone(); k++) {
+    whole[k] = k;
+    loner.push_back(k);
   }
-  for (int k = 0; k < scene.lone(); k++) loner.push_back(k);
-  V.resize(6 * clumps.size() + 1);
+  std::vector<double> arms;
+  for (const Clump &clump : clumps) {
+    sd_body body = {&rigid.blocks(*clump.body->shape), {}, 1.0, clump.eta, nullptr};
+    std::copy_n(clump.pose, 9, body.R);
+    arms.resize(3 * (size_t) clump.body->n);
+    sd_body_arms(&body, arms.data());
+    for (int k = 0; k < clump.body->n; k++) {
+      const int row = scene.row_of_member((int) member_of(clump, k));
+      member.push_back(row);
+      whole[row] = loner.size() + shaped.size();
+      std::copy_n(&arms[3 * (size_t) k], 3, &arm[3 * (size_t) row]);
+    }
+    shaped.push_back(body);
+  }
+  size_t at = 0;
+  for (sd_body &body : shaped) {
+    body.row = &member[at];
+    at += body.shape->m;
+  }
+  V.resize(6 * (loner.size() + shaped.size()) + 6);
 }
 
 /* u = 0: nobody sees anybody */
@@ -182,21 +194,24 @@ static sd_status nobody(void *ctx, const double * /*F*/, double *out)
 
 sd_bodies Velocities::bodies(int width)
 {
+  const int n = scene.size();
   sd_bodies A = {};
-  A.n = scene.size();
-  A.width = width;
-  A.drag = drag.data();
-  A.spin = width == 6 ? spin.data() : nullptr;
   A.lone = loner.size();
   A.loner = loner.data();
-  A.clumps = clumps.size();
-  A.first = first.data();
-  A.member = member.data();
-  A.shape = shape.data();
-  A.pose = R.data();
-  A.eta = eta.data();
-  A.sum = Scene::sum;
-  A.sum_ctx = &scene;
+  A.shaped = shaped.size();
+  A.body = shaped.data();
+  A.spheres = {n, width, whole.data(), arm.data()};
+  A.points = {n, width, nullptr, nullptr};
+  A.D = D.data();
+  alone.how.width = width;
+  alone.n = n;
+  const bool sees = scene.anybody_sees();
+  A.apply = sees ? sd_mobility_apply : nobody;
+  A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
+  A.world.ctx = &scene;
+  A.world.me = comm->me;
+  A.world.ranks = comm->nprocs;
+  A.world.sum = Scene::sum;
   return A;
 }
 
@@ -207,28 +222,41 @@ void Velocities::carry(const sd_bodies &A, double *flow)
   gradient.resize(9 * clumps.size());
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
-  sd_bodies_carry(&A, gradient.data(), flow);
+  work.resize(sd_bodies_work(&A));
+  sd_bodies_carry(&A, gradient.data(), work.data(), flow);
 }
 
-sd_status Velocities::apply_joined(void *ctx, const double *l, double *out)
+sd_status Velocities::solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
+                            sd_bodies_report &report)
 {
-  Velocities *self = static_cast<Velocities *>(ctx);
-  const sd_status status = self->bare(self->bare_ctx, l, out);
-  return status == SD_OK ? sd_bodies_add_shells(&self->joined, l, self->work.data(), out) : status;
+  v.resize(u.size());
+  exerted.resize(u.size());
+  work.resize(sd_bodies_work(&A));
+  const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
+                                   exerted.data()};
+  return sd_bodies_solve(&A, &problem, &motion, work.data(), &report);
 }
 
-void Velocities::join(sd_system &system, std::vector<double> &slip)
+/* Everybody is held, at rest in a fluid that moves with the slip. */
+sd_status Velocities::resist(const How &how, const std::vector<double> &slip,
+                             std::vector<double> &on_spheres, sd_bodies_report &report)
 {
-  const int width = system.spin ? 6 : 3;
-  place(width);
+  place(how.width);
   arrange();
-  joined = bodies(width);
-  carry(joined, slip.data());
-  work.resize(sd_bodies_work(&joined));
-  bare = system.apply;
-  bare_ctx = system.apply_ctx;
-  system.apply = apply_joined;
-  system.apply_ctx = this;
+  sd_bodies A = bodies(how.width);
+  const std::vector<char> held(loner.size() + shaped.size() + 1, 1);
+  A.held = held.data();
+  const size_t m = how.width, rows = m * scene.size();
+  std::copy_n(slip.begin(), rows, u.begin());
+  carry(A, u.data());
+  Guess guess;
+  guess.l.assign(rows + m, 0.0);
+  for (size_t j = 0; j < rows && how.warm; j++) guess.l[j] = -on_spheres[j];
+  const sd_bodies_problem problem = {u.data(), F.data(),      nullptr,
+                                     how.warm, how.tolerance, how.max_iter};
+  const sd_status status = solve(A, problem, guess, report);
+  for (size_t j = 0; j < rows; j++) on_spheres[j] = -exerted[j];
+  return status;
 }
 
 sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
@@ -238,32 +266,23 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
   arrange();
   sd_bodies A = bodies(how.width);
   if (lubrication.settings.on) {
-    near.assign(u.size(), 0.0);
     lubrication.place(scene, ambient);
     tie.L = lubrication.matrix();
     A.tie = &tie;
   }
-  sd_mobility_scene alone = {};
-  alone.how.width = how.width;
-  alone.n = A.n;
-  const bool sees = scene.anybody_sees();
-  A.apply = sees ? sd_mobility_apply : nobody;
-  A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
   carry(A, u.data());
-  v.resize(u.size());
-  work.resize(sd_bodies_work(&A));
-  const sd_bodies_problem problem = {u.data(), F.data(), how.warm, how.tolerance, how.max_iter};
-  const sd_bodies_motion motion = {guess.l.data(), v.data(), V.data(), guess.v.data(), near.data()};
-  const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work.data(), &report);
-  for (size_t c = 0; c < clumps.size(); c++) std::copy_n(&V[6 * c], 6, clumps[c].V);
-  const size_t m = how.width;
-  std::vector<double> moved(2 * m * A.n + 2 * m);
+  const sd_bodies_problem problem = {u.data(), F.data(),      nullptr,
+                                     how.warm, how.tolerance, how.max_iter};
+  const sd_status status = solve(A, problem, guess, report);
+  for (size_t c = 0; c < clumps.size(); c++)
+    std::copy_n(&V[6 * (loner.size() + c)], 6, clumps[c].V);
+  const size_t m = how.width, n = scene.size();
+  std::vector<double> moved(2 * m * n + 2 * m);
   scene.drift(v.data(), how.width, -1.0);    // an atom's, not those of the image next to its clump
-  for (int k = 0; k < A.n; k++) {
+  for (size_t k = 0; k < n; k++) {
     double *row = &moved[2 * m * k];
     std::copy_n(&v[m * k], m, row);
-    for (size_t d = 0; d < m; d++)
-      row[m + d] = -guess.l[m * k + d] - (A.tie ? near[m * k + d] : 0.0);
+    for (size_t d = 0; d < m; d++) row[m + d] = -exerted[m * k + d];
   }
   scene.to_atoms(2 * how.width, moved.data(),
                  [&](int i, const double *row) { take(i, row, row + m); });

@@ -73,9 +73,10 @@ class Velocities : protected LAMMPS_NS::Pointers {
   };
   sd_status together(const How &how, Guess &guess, const Take &take, sd_bodies_report &report);
 
-  /* The same bodies where velocities are given: the system (sd_solve.h) of the spheres that take
-   * part, slip [width n] its right-hand side, becomes that with what shells add. */
-  void join(sd_system &system, std::vector<double> &slip);
+  /* The same bodies where velocities are given: forces F [width n] of the fluid on the spheres that
+   * take part, from their slip [width n]; warm: F holds a guess */
+  sd_status resist(const How &how, const std::vector<double> &slip, std::vector<double> &F,
+                   sd_bodies_report &report);
 
   double memory_usage() const;
 
@@ -92,14 +93,11 @@ class Velocities : protected LAMMPS_NS::Pointers {
   int columns = 0;
 
   /* for the core, by rows, by clumps, by spheres of clumps */
-  std::vector<double> F, u, v, near, drag, spin, work;
-  std::vector<double> R, eta, V, gradient;
-  std::vector<int> first, member, loner;
-  std::vector<const sd_body_shape *> shape;
-  /* of join() */
-  sd_bodies joined = {};
-  sd_apply *bare = nullptr;
-  void *bare_ctx = nullptr;
+  std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
+  std::vector<int> member, whole, loner;
+  std::vector<sd_body> shaped;
+  /* where nobody sees anybody */
+  sd_mobility_scene alone = {};
 
   void gather();
   const double *known_of(const Clump &clump, int k) const
@@ -118,7 +116,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
                double *T) const;
   sd_bodies bodies(int width);
   void carry(const sd_bodies &A, double *flow);
-  static sd_status apply_joined(void *ctx, const double *l, double *out);
+  sd_status solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
+                  sd_bodies_report &report);
 };
 
 }    // namespace StokesDyn
