@@ -72,12 +72,13 @@ typedef struct {
   /* spheres of this rank, and with those of other ranks and images */
   int n, n_all;
   /* each pair once: i < j < n, or j >= n: another rank's. A sphere's own images are in the
-   * diagonal */
-  long count;
+   * diagonal. Behind them, for preconditioners, those between two spheres of other ranks that have
+   * pairs with this one's, i, j >= n */
+  long count, beyond;
   int (*pair)[2];
-  /* [count] L_ij; L_ji is its transpose */
+  /* [count + beyond] L_ij; L_ji is its transpose */
   sd_lubrication_link *link;
-  /* [count] for preconditioners: what the model itself resists when the two approach each other,
+  /* [count + beyond] for preconditioners: what the model itself resists when the two approach each other,
    * beyond their drags, fading from contact to the range; NULL: with films, where the blocks of
    * the shells are enough */
   double *model;

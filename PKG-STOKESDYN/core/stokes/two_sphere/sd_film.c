@@ -9,26 +9,14 @@
 
 enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
 
-static const double largest_v = (SD_FILM_LARGEST_RATIO - 1.0) / (SD_FILM_LARGEST_RATIO + 1.0);
-
-double sd_film_node_of_ratio(double ratio)
+static double node_of_ratio(double ratio)
 {
-  return (ratio - 1.0) / (ratio + 1.0) / largest_v;
+  return (ratio - 1.0) / (ratio + 1.0) / SD_FILM_LARGEST_V;
 }
 
-double sd_film_ratio_at_node(double t)
-{
-  return (1.0 + largest_v * t) / (1.0 - largest_v * t);
-}
-
-double sd_film_node_of_xi(double xi)
+static double node_of_xi(double xi)
 {
   return sqrt(xi / SD_FILM_LARGEST_XI);
-}
-
-double sd_film_xi_at_node(double t)
-{
-  return SD_FILM_LARGEST_XI * t * t;
 }
 
 void sd_film_scales(double a1, double a2, double scale[SCALARS])
@@ -46,7 +34,7 @@ static void at_ratio(const double table[RATIOS][GAPS][SCALARS], double ratio,
                      double out[GAPS][SCALARS])
 {
   double w[RATIOS];
-  sd_two_sphere_weights(RATIOS, sd_film_node_of_ratio(ratio), w);
+  sd_two_sphere_weights(RATIOS, node_of_ratio(ratio), w);
   memset(out, 0, sizeof(double) * GAPS * SCALARS);
   for (int i = 0; i < RATIOS; i++)
     for (int j = 0; j < GAPS; j++)
@@ -94,7 +82,7 @@ static sd_status read_film(const sd_films *films, double a1, double a2, double x
     at_ratio(films->shells, a2 / a1, unequal);
     shells = unequal;
   }
-  sd_two_sphere_weights(GAPS, sd_film_node_of_xi(xi), w);
+  sd_two_sphere_weights(GAPS, node_of_xi(xi), w);
   for (int j = 0; j < GAPS; j++)
     for (int k = 0; k < SCALARS; k++) sums[k] += w[j] * shells[j][k];
   sd_film_scales(a1, a2, scale);
@@ -131,10 +119,4 @@ sd_pair_resistance sd_film_resistance(const sd_film *film, double distance, doub
   const double slide = (s1 + s2) / distance;
   return (sd_pair_resistance){
       {A, -A, A}, {slide, -slide, slide}, {-s1, s1, -s2, s2}, {C, -C, C}, {B[0], B[1], B[2]}};
-}
-
-sd_film sd_film_of(const sd_pair_resistance *R, double a1, double a2, double distance)
-{
-  const sd_pair_resistance Q = sd_pair_resistance_relative(R, a1, a2, distance);
-  return (sd_film){Q.XA[0], Q.XC[0], {Q.YC[0], Q.YC[1], Q.YC[2]}};
 }

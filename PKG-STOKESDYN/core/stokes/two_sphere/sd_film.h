@@ -59,10 +59,6 @@ sd_status sd_film_at(const sd_films *films, double a1, double a2, double xi, sd_
  * rigid motion of the pair, to rounding. */
 sd_pair_resistance sd_film_resistance(const sd_film *film, double distance, double scale);
 
-/* R, which resists rigid motions or not, as it acts on the relative motion of a pair: a film that
- * is not clipped. Linear in R. */
-sd_film sd_film_of(const sd_pair_resistance *R, double a1, double a2, double distance);
-
 #ifdef __cplusplus
 }
 #endif

@@ -18,10 +18,7 @@ extern const double sd_film_table[SD_FILM_KINDS][SD_FILM_RATIOS][SD_FILM_GAPS][S
 
 /* Nodes in (0, 1) (sd_two_sphere_node) stand for
  *   v = (a2 - a1)/(a2 + a1) over its largest value,   q = (xi/SD_FILM_LARGEST_XI)^(1/2) */
-double sd_film_node_of_ratio(double ratio);
-double sd_film_ratio_at_node(double t);
-double sd_film_node_of_xi(double xi);
-double sd_film_xi_at_node(double t);
+#define SD_FILM_LARGEST_V ((SD_FILM_LARGEST_RATIO - 1.0) / (SD_FILM_LARGEST_RATIO + 1.0))
 
 /* 6 pi h_1, 8 pi h_3, 8 pi (a_p a_q)^1.5; 1/h_k = 1/a1^k + 1/a2^k */
 void sd_film_scales(double a1, double a2, double scale[SD_FILM_SCALARS]);

@@ -34,9 +34,8 @@ double sd_two_sphere_node(int n, int k);
 /* Weights [n] of the values at these nodes for that at t in [0, 1]: barycentric formula */
 void sd_two_sphere_weights(int n, double t, double *w);
 
-/* mu of a gap, and the gap of a mu; mu of SD_TWO_SPHERE_LARGEST_XI */
+/* mu of a gap; mu of SD_TWO_SPHERE_LARGEST_XI */
 double sd_two_sphere_mu(double ratio, double xi);
-double sd_two_sphere_xi(double ratio, double mu);
 double sd_two_sphere_largest_mu(double ratio);
 
 /* The table's unit of each function: the smaller sphere gives the force, the torques have the arms

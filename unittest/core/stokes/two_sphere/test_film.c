@@ -2,7 +2,7 @@
 #include "table.h"
 
 #include "sd_constants.h"
-#include "sd_film.h"
+#include "sd_film_of.h"
 #include "sd_linear.h"
 #include "sd_two_sphere_exact.h"
 

@@ -1,4 +1,4 @@
-/* make_film_table > sd_film_table.c: the mean resistance of two shells of points at the nodes of
+/* make_film_table > sd_film_table.inc: the mean resistance of two shells of points at the nodes of
  * sd_film_table_internal.h; some minutes.
  *
  * make_film_table check KIND RATIO GAP: the shipped numbers of one node against those computed here
@@ -9,12 +9,23 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_film_of.h"
 #include "sd_film_table_internal.h"
 #include "sd_linear.h"
 #include "sd_multiblob.h"
 #include "sd_two_sphere_table_internal.h"
 
 enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
+
+static double ratio_at_node(double t)
+{
+  return (1.0 + SD_FILM_LARGEST_V * t) / (1.0 - SD_FILM_LARGEST_V * t);
+}
+
+static double xi_at_node(double t)
+{
+  return SD_FILM_LARGEST_XI * t * t;
+}
 
 /* Pairs of orientations: those of 42 points differ less, and cost more. */
 static int pairs_of(int n)
@@ -119,8 +130,8 @@ static void add_resistance(shells *s, sd_pair_resistance *sum)
 static void at_node(int kind, int i, int j, double value[SCALARS])
 {
   const int n = kind < 2 ? 12 : 42, pairs = pairs_of(n), N = 6 * n;
-  const double ratio = sd_film_ratio_at_node(sd_two_sphere_node(RATIOS, i));
-  const double xi = sd_film_xi_at_node(sd_two_sphere_node(GAPS, j));
+  const double ratio = ratio_at_node(sd_two_sphere_node(RATIOS, i));
+  const double xi = xi_at_node(sd_two_sphere_node(GAPS, j));
   sd_multiblob m;
   if (sd_multiblob_create(n, kind % 2, &m) != SD_OK) exit(EXIT_FAILURE);
   shells s = {.m = &m, .a = {1.0, ratio}, .distance = (1.0 + ratio) * (1.0 + 0.5 * xi)};
@@ -150,10 +161,7 @@ static void at_node(int kind, int i, int j, double value[SCALARS])
 
 static void make(void)
 {
-  printf("/* Made by make_film_table; sd_film_table_internal.h says of what. */\n"
-         "#include \"sd_film_table_internal.h\"\n\n"
-         "const double sd_film_table[SD_FILM_KINDS][SD_FILM_RATIOS][SD_FILM_GAPS]"
-         "[SD_FILM_SCALARS] = {\n");
+  printf("/* Made by make_film_table; sd_film_table_internal.h says of what. */\n");
   for (int kind = 0; kind < SD_FILM_KINDS; kind++) {
     printf("    {\n");
     for (int i = 0; i < RATIOS; i++) {
@@ -170,7 +178,6 @@ static void make(void)
     }
     printf("    },\n");
   }
-  printf("};\n");
 }
 
 static int check(int kind, int i, int j)

@@ -1,0 +1,94 @@
+#include "sd_multiblob_shape.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* M [(3 count)^2] += the addition of each sphere; row [count]: which points these are; f, u:
+ * scratch */
+static void add_one_body(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *r,
+                         const int *row, int count, double *M, double *f, double *u)
+{
+  const double w[1] = {1.0};
+  for (int i = 0; i < s->n; i++) {
+    const sd_multiblob_spheres one = {s->x + 3 * (long) i, s->a + i, NULL, s->mask + i, 1};
+    const int first = m->n * i;
+    for (int p = 0; p < count; p++)
+      for (int e = 0; e < 3 && row[p] >= first && row[p] < first + m->n; e++) {
+        memset(f, 0, sizeof(double) * 3 * (size_t) m->n);
+        memset(u, 0, sizeof(double) * 3 * (size_t) m->n);
+        f[3 * (row[p] - first) + e] = 1.0;
+        sd_multiblob_add(m, &one, w, r + 3 * (long) first, f, u);
+        for (int q = 0; q < count; q++)
+          for (int d = 0; d < 3 && row[q] >= first && row[q] < first + m->n; d++)
+            M[(3 * (size_t) q + d) * 3 * (size_t) count + 3 * (size_t) p + e] +=
+                u[3 * (row[q] - first) + d];
+      }
+  }
+}
+
+/* r, x [3 all] and b [all] of the body's points; those that are there become the shape */
+static sd_status make_shape(const sd_multiblob *m, const sd_multiblob_spheres *s, double *r,
+                            sd_multiblob_shape *out)
+{
+  const size_t all = (size_t) m->n * (size_t) s->n;
+  double *x = r + 3 * all, *b = x + 3 * all, *f = b + all, *u = f + 3 * (size_t) m->n;
+  int count = 0;
+  sd_multiblob_expand(m, s, r, x, b);
+  for (size_t k = 0; k < all; k++) {
+    if (!(b[k] > 0.0)) continue;
+    memmove(x + 3 * count, x + 3 * k, 3 * sizeof(double));
+    b[count] = b[k];
+    out->row[count++] = (int) k;
+  }
+  double *M = malloc(sizeof(double) * 9 * (size_t) count * (size_t) count);
+  if (!M) return SD_ENOMEMORY;
+  sd_body_shape_matrix(count, 3, x, b, M);
+  add_one_body(m, s, r, out->row, count, M, f, u);
+  const sd_status status = sd_body_shape_of(count, 3, x, M, &out->points);
+  free(M);
+  return status;
+}
+
+sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
+                                    sd_multiblob_shape *out)
+{
+  const double origin[3] = {0.0}, one = 1.0, unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const size_t n = clump ? (size_t) clump->n : 1, all = n * (size_t) m->n;
+  *out = (sd_multiblob_shape){.spheres = (int) n};
+  memcpy(out->turn, clump ? clump->frame : unity, sizeof unity);
+  out->mask = malloc(n * sizeof *out->mask);
+  out->row = malloc(all * sizeof *out->row);
+  double *turn = malloc(n * sizeof unity),
+         *scratch = malloc(sizeof(double) * (7 * all + 6 * (size_t) m->n));
+  sd_status status = out->mask && out->row && turn && scratch ? SD_OK : SD_ENOMEMORY;
+  if (status == SD_OK) {
+    if (clump)
+      sd_multiblob_masks(m, clump, out->mask);
+    else
+      out->mask[0] = sd_multiblob_whole(m);
+    for (size_t i = 0; i < n; i++) memcpy(turn + 9 * i, out->turn, sizeof unity);
+    const sd_multiblob_spheres s = {clump ? clump->x : origin, clump ? clump->a : &one, turn,
+                                    out->mask, (int) n};
+    status = make_shape(m, &s, scratch, out);
+  }
+  free(turn);
+  free(scratch);
+  if (status != SD_OK) sd_multiblob_shape_free(out);
+  return status;
+}
+
+void sd_multiblob_shape_free(sd_multiblob_shape *s)
+{
+  free(s->mask);
+  free(s->row);
+  sd_body_shape_free(&s->points);
+  *s = (sd_multiblob_shape){0};
+}
+
+sd_status sd_multiblob_apply(void *ctx, const double *f, double *u)
+{
+  const sd_multiblob_mobility *M = ctx;
+  const sd_status status = M->pairs(M->pairs_ctx, f, u);
+  if (status == SD_OK) sd_multiblob_add(M->model, &M->spheres, M->w, M->r, f, u);
+  return status;
+}

@@ -1,0 +1,53 @@
+/* What spheres as shells of points are to the loop of sd_bodies.h: bodies of a shape each, and the
+ * mobility of their points.
+ *
+ * A free sphere is a body of a shape, the same for all, scaled by its radius; a clump has its own.
+ * Points are rows as in sd_multiblob_points.h, those that are left out among them. */
+#ifndef SD_MULTIBLOB_SHAPE_H
+#define SD_MULTIBLOB_SHAPE_H
+
+#include "sd_body_shape.h"
+#include "sd_multiblob_points.h"
+#include "sd_solve.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+  /* [spheres] */
+  int spheres;
+  sd_multiblob_mask *mask;
+  /* [9] how the shells of a clump stand in its own axes; unity for a free sphere */
+  double turn[9];
+  /* [points.m] row of each point among the n spheres rows of the body */
+  int *row;
+  sd_body_shape points;
+} sd_multiblob_shape;
+
+/* The lone sphere of radius 1 (clump NULL), or a rigid clump in the axes and the order of its
+ * shape: with the one-body addition where sd_multiblob_masks says so. The owner frees.
+ * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: not positive definite. */
+sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
+                                    sd_multiblob_shape *out);
+void sd_multiblob_shape_free(sd_multiblob_shape *s);
+
+/* M without 1/(6 pi eta b): the pairs of points by an engine, and the one-body addition. For
+ * sd_bodies.apply; all that it points to outlives it. */
+typedef struct {
+  const sd_multiblob *model;
+  /* of this rank */
+  sd_multiblob_spheres spheres;
+  /* [spheres.n] 1/sqrt(eta); [3 points] from the centres */
+  const double *w, *r;
+  sd_apply *pairs;
+  void *pairs_ctx;
+} sd_multiblob_mobility;
+
+/* u = M f; ctx is an sd_multiblob_mobility. SD_OK or that of pairs. */
+sd_status sd_multiblob_apply(void *ctx, const double *f, double *u);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
