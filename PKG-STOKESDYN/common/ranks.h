@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <cstring>
 #include <new>
 #include <type_traits>
 #include <vector>
@@ -46,42 +45,6 @@ template <class T> std::vector<T> from_all(MPI_Comm world, const std::vector<T> 
   return all;
 }
 
-/* Sends every item to the rank that home(item) names, where answer(items), given all that came
- * there, may change them in place; they come back in the order of `mine`. So ranks settle together
- * what none of them knows alone, without a list of all on each. At most 2 GB a rank. */
-template <class T, class Home, class Answer>
-void ask_homes(MPI_Comm world, std::vector<T> &mine, const Home &home, const Answer &answer)
-{
-  static_assert(std::is_trivially_copyable<T>::value, "travels by its bytes");
-  int nprocs;
-  MPI_Comm_size(world, &nprocs);
-  mpi_count((double) mine.size() * sizeof(T));
-  std::vector<int> sent(nprocs, 0), received(nprocs), sent_at(nprocs, 0), received_at(nprocs, 0);
-  for (const T &item : mine) sent[home(item)] += sizeof(T);
-  MPI_Alltoall(sent.data(), 1, MPI_INT, received.data(), 1, MPI_INT, world);
-  double coming = 0.0;
-  for (int p = 0; p < nprocs; p++) {
-    sent_at[p] = p ? sent_at[p - 1] + sent[p - 1] : 0;
-    received_at[p] = mpi_count(coming);
-    coming += received[p];
-  }
-  std::vector<int> next(sent_at);
-  std::vector<T> out(mine.size()), in(mpi_count(coming) / sizeof(T));
-  auto slot = [&next, &home](const T &item) {
-    int &at = next[home(item)];
-    at += sizeof(T);
-    return at / sizeof(T) - 1;
-  };
-  for (const T &item : mine) out[slot(item)] = item;
-  MPI_Alltoallv(out.data(), sent.data(), sent_at.data(), MPI_BYTE, in.data(), received.data(),
-                received_at.data(), MPI_BYTE, world);
-  answer(in);
-  MPI_Alltoallv(in.data(), received.data(), received_at.data(), MPI_BYTE, out.data(), sent.data(),
-                sent_at.data(), MPI_BYTE, world);
-  next = sent_at;
-  for (T &item : mine) item = out[slot(item)];
-}
-
 /* Rows between this rank and its partners, point to point. Both sides know how many rows go and
  * come; a rank may be a partner of its own. */
 class Post {
@@ -104,6 +67,15 @@ class Post {
     double rows = 0.0;
     for (const Partner &p : partners) rows += p.in;
     return mpi_count(rows);
+  }
+  /* The partners by how many rows go to each rank; from all ranks to all. */
+  void address(const std::vector<int> &to)
+  {
+    std::vector<int> from(to);
+    if (ranks > 1) MPI_Alltoall(to.data(), 1, MPI_INT, from.data(), 1, MPI_INT, world);
+    partners.clear();
+    for (int p = 0; p < ranks; p++)
+      if (to[p] || from[p]) partners.push_back({p, to[p], from[p]});
   }
   /* Each tells its partners how many rows it has for them: sets `in` from their `out`. */
   void tell()
@@ -167,6 +139,34 @@ class Post {
     for (MPI_Request &request : under_way) MPI_Wait(&request, MPI_STATUS_IGNORE);
   }
 };
+
+/* Sends every item to the rank that home(item) names, where answer(items), given all that came
+ * there, may change them in place; they come back in the order of `mine`. So ranks settle together
+ * what none of them knows alone, without a list of all on each. */
+template <class T, class Home, class Answer>
+void ask_homes(MPI_Comm world, std::vector<T> &mine, const Home &home, const Answer &answer)
+{
+  constexpr int width = sizeof(T) / sizeof(double);
+  static_assert(std::is_trivially_copyable<T>::value && sizeof(T) == width * sizeof(double),
+                "travels as so many numbers");
+  Post post(world);
+  std::vector<size_t> order(mine.size());
+  std::vector<int> to(post.ranks, 0);
+  for (size_t k = 0; k < mine.size(); k++) {
+    order[k] = k;
+    to[home(mine[k])]++;
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t p, size_t q) { return home(mine[p]) < home(mine[q]); });
+  std::vector<T> out, in;
+  for (size_t k : order) out.push_back(mine[k]);
+  post.address(to);
+  in.resize(post.rows_in());
+  post.carry((const double *) out.data(), (double *) in.data(), width);
+  answer(in);
+  post.reversed().carry((const double *) in.data(), (double *) out.data(), width);
+  for (size_t k = 0; k < mine.size(); k++) mine[order[k]] = out[k];
+}
 
 /* to[p] numbers of `send` to rank p, from[p] of `receive` from it, one rank after the other; only
  * those speak that have something to say. */

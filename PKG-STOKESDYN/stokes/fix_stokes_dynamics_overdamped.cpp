@@ -214,15 +214,10 @@ void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
 /* By members of clumps, seven each: has it a velocity of before? U and W of its clump then */
 std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
 {
-  std::vector<double> rows;
-  hydrodynamics().scene.whole.gather(
-      7,
-      [this](int i, double *out) {
-        out[0] = before.has(i);
-        std::copy_n(before[i], 6, out + 1);
-      },
-      rows);
-  return rows;
+  return hydrodynamics().scene.whole.gather(7, [this](int i, double *out) {
+    out[0] = before.has(i);
+    std::copy_n(before[i], 6, out + 1);
+  });
 }
 
 /* Positions are those of images side by side: an atom moves as its image does, less what the edges
@@ -403,19 +398,13 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   const Lattice lattice = Lattice::of(domain);
   Halo halo(world);
   if (!halo.find(lattice, reach, x))
-    fail_one(lmp, COMMAND + ": the smallest gap: spheres of radius " + text(largest) +
-                      " see more than 1000 images of every other and 1e7 in all; is it in other "
+    fail_one(lmp, COMMAND + ": the smallest gap: the largest radius, " + text(largest) +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other "
                       "units?");
-  const size_t all_spheres = n + halo.count();
-  x.resize(3 * all_spheres + 3);
-  halo.place(lattice.h, x.data(), &x[3 * (size_t) n]);
-  for (auto *column : {&a, &bodies}) {
-    column->resize(all_spheres + 1);
-    halo.refresh(column->data(), column->data() + n, 1);
-  }
+  halo.extend(lattice.h, x, {&a, &bodies});
   const std::vector<int64_t> body(bodies.begin(), bodies.end());
   double gap = INFINITY, all;
-  if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, (int) all_spheres, reach, &gap) != SD_OK)
+  if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, a.size(), reach, &gap) != SD_OK)
     fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
   MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
   return all;

@@ -213,6 +213,18 @@ void Halo::place(const double h[6], const double *x, double *out) const
   post.carry(outbox.data(), out, 3);
 }
 
+void Halo::extend(const double h[6], std::vector<double> &x,
+                  std::initializer_list<std::vector<double> *> columns) const
+{
+  const size_t n = x.size() / 3, all = n + copies;
+  x.resize(3 * all);
+  place(h, x.data(), x.data() + 3 * n);
+  for (auto *column : columns) {
+    column->resize(all);
+    refresh(column->data(), column->data() + n, 1);
+  }
+}
+
 double Halo::memory_usage() const
 {
   return sizeof(int) * ((double) sphere.capacity() + steps.capacity()) +

@@ -9,6 +9,7 @@
 
 #include "ranks.h"
 
+#include <initializer_list>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -58,6 +59,10 @@ class Halo {
    * rates of the edges: the velocities of the copies beyond those of their spheres. x nullptr:
    * zeros */
   void place(const double h[6], const double *x, double *out) const;
+
+  /* Behind the rows of x and the columns, those of the copies */
+  void extend(const double h[6], std::vector<double> &x,
+              std::initializer_list<std::vector<double> *> columns) const;
 
   /* Ranks that this one speaks with; bytes that one refresh of a row's width sends */
   int partners() const { return (int) post.partners.size(); }

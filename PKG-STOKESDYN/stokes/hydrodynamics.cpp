@@ -79,7 +79,10 @@ void Hydrodynamics::begin()
   if (selection == ambient.selection()) return;
   selection = ambient.selection();
   for (int i = 0; i < atom->nlocal; i++)
-    if (!ambient.active()[i]) memory->rows.take(i);
+    if (!ambient.active()[i]) {
+      memory->rows.take(i);
+      memory->places.take(i);
+    }
 }
 
 void Hydrodynamics::new_run(bool as_left)
@@ -151,16 +154,11 @@ void Hydrodynamics::lubricate()
     scene.stand(solvers, ambient);
     scene.surround_films();
   }
-  const size_t n = scene.size();
-  films_v.resize(6 * n + 6);
-  films_F.resize(6 * n + 6);
-  scene.to_rows(
-      6,
-      [this](int i, double *out) {
-        std::copy_n(atom->v[i], 3, out);
-        std::copy_n(atom->omega[i], 3, out + 3);
-      },
-      films_v.data());
+  films_v = scene.rows(6, [this](int i, double *out) {
+    std::copy_n(atom->v[i], 3, out);
+    std::copy_n(atom->omega[i], 3, out + 3);
+  });
+  films_F.resize(films_v.size());
   scene.drift(films_v.data(), 6, 1.0);
   lubrication.place(scene, ambient);
   lubrication.forces(films_v.data(), films_F.data());
@@ -227,15 +225,11 @@ sd_system Hydrodynamics::gather()
   slip.resize(m * n + m);
   resistance.resize(n + 1);
   spin.resize(rotation() ? n + 1 : 0);
-  std::vector<double> rows(8 * (size_t) n + 8);
-  scene.to_rows(
-      8,
-      [this](int i, double *out) {
-        ambient.slip(i, out);
-        out[6] = ambient.drag(i);
-        out[7] = ambient.spin(i);
-      },
-      rows.data());
+  const std::vector<double> rows = scene.rows(8, [this](int i, double *out) {
+    ambient.slip(i, out);
+    out[6] = ambient.drag(i);
+    out[7] = ambient.spin(i);
+  });
   for (int k = 0; k < n; k++) {
     std::copy_n(&rows[8 * (size_t) k], m, &slip[m * k]);
     resistance[k] = rows[8 * (size_t) k + 6];
@@ -294,18 +288,9 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   State::Global &global = memory->global;
   system.warm = memory->history && global.solutions > 0;
   if (system.warm) guess();
-  if (memory->restart_written) preconditioner.make_anew();
-  memory->restart_written = false;
-  preconditioner.tolerance = settings.tolerance;
-  preconditioner.warm_start = memory->history;
-  preconditioner.unpack(global.preconditioner);
-  preconditioner.attach(system);
-  const sd_status status =
-      sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
-                         solution.data(), work.get(), &report);
-  preconditioner.learn(report);
-  global.preconditioner = preconditioner.pack();
-  return status;
+  preconditioner.attach(system, memory->places, global.places_box);
+  return sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
+                            solution.data(), work.get(), &report);
 }
 
 /* Clumps with shells: bodies that are held in the slip, by the loop that moves them without
@@ -330,16 +315,13 @@ void Hydrodynamics::guess()
 {
   const size_t m = width();
   const bool line = memory->global.solutions > 1;
-  scene.to_rows(
-      (int) m,
-      [&](int i, double *out) {
-        const double *row = memory->rows[i], *before = row + memory->before();
-        for (size_t d = 0; d < m; d++) {
-          const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-          out[d] = line ? 2.0 * last - before[d] : last;
-        }
-      },
-      solution.data());
+  solution = scene.rows(width(), [&](int i, double *out) {
+    const double *row = memory->rows[i], *before = row + memory->before();
+    for (size_t d = 0; d < m; d++) {
+      const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      out[d] = line ? 2.0 * last - before[d] : last;
+    }
+  });
   for (size_t k = 0; k < (size_t) scene.size(); k++)
     for (size_t d = 0; d < m; d++) {
       double &F = solution[m * k + d];
@@ -357,7 +339,7 @@ void Hydrodynamics::keep()
   for (size_t k = 0; k < (size_t) scene.size(); k++)
     for (size_t d = 0; d < m && !scene.alone((int) k); d++)
       found[m * k + d] = solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
-  scene.to_atoms((int) m, found.data(), [&](int i, const double *v) {
+  scene.to_atoms(width(), found.data(), [&](int i, const double *v) {
     double *row = memory->rows.give(i), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       double &last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
@@ -413,18 +395,13 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   const size_t m = width();
   place();
   const size_t n = scene.size();
-  std::vector<double> rows(2 * m * n + 2 * m, 0.0);
-  if (settings.warm_start)
-    scene.to_rows(
-        (int) (2 * m),
-        [&](int i, double *out) {
-          const double *row = memory->rows[i];
-          for (size_t d = 0; d < m; d++) {
-            out[d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
-            out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-          }
-        },
-        rows.data());
+  std::vector<double> rows = scene.rows(2 * width(), [&](int i, double *out) {
+    const double *row = memory->rows[i];
+    for (size_t d = 0; d < m && settings.warm_start; d++) {
+      out[d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
+      out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+    }
+  });
   begin_with.l.assign(m * n + m, 0.0);
   begin_with.v.assign(m * n + m, 0.0);
   for (size_t k = 0; k < n; k++) {
@@ -437,7 +414,7 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
     std::copy_n(&begin_with.l[m * k], m, &rows[2 * m * k]);
     std::copy_n(&begin_with.v[m * k], m, &rows[2 * m * k + m]);
   }
-  scene.to_atoms((int) (2 * m), rows.data(), [&](int i, const double *from) {
+  scene.to_atoms(2 * width(), rows.data(), [&](int i, const double *from) {
     double *row = memory->rows.give(i);
     for (size_t d = 0; d < m; d++) {
       row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = -from[d];
@@ -503,7 +480,8 @@ double Hydrodynamics::memory_usage() const
   const size_t numbers = slip.capacity() + resistance.capacity() +
       spin.capacity() + solution.capacity() + films_v.capacity() + films_F.capacity() + work_room;
   return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
-      lubrication.memory_usage() + mobile.memory_usage() + sizeof(double) * (double) numbers;
+      lubrication.memory_usage() + mobile.memory_usage() + preconditioner.memory_usage() +
+      sizeof(double) * (double) numbers;
 }
 
 }    // namespace StokesDyn

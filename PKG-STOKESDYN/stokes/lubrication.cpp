@@ -48,8 +48,7 @@ void Lubrication::provide(double largest, double smallest)
 void Lubrication::place(Scene &where, const Ambient &ambient)
 {
   if (where.largest() > 0.0) provide(where.largest(), where.smallest());
-  u.resize(6 * (size_t) where.size() + 6);
-  where.to_rows(6, [&](int i, double *out) { ambient.fluid(i, out); }, u.data());
+  u = where.rows(6, [&](int i, double *out) { ambient.fluid(i, out); });
   where.drift(u.data(), 6, 1.0);
   sd_lubrication_scene scene = {};
   scene.functions = functions;

@@ -176,7 +176,6 @@ void PairStokesDynamics::init_style()
   if (scene.everybody()) check_boundaries(lmp, COMMAND, scene);
   if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
     fail(lmp, COMMAND + ": keyword precondition: 'waves' requires a periodic box");
-  if (std::isfinite(scene.cutoff)) check_vast_cutoff(lmp, COMMAND, scene);
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
@@ -230,15 +229,13 @@ void PairStokesDynamics::look_for_fixes()
                        "applies it");
 }
 
-/* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length
- * is given to LAMMPS all the same, since it warns of lost atoms and stops sorting them when there
- * is none. */
+/* This style needs no ghosts (halo.h). A length is given to LAMMPS all the same, since it warns of
+ * lost atoms and stops sorting them when there is none; no ghosts of ghosts for a giant in a small
+ * box. */
 double PairStokesDynamics::range() const
 {
-  const Scene::Settings &scene = hydro.settings.scene;
-  if (std::isfinite(scene.cutoff)) return scene.cutoff;
   double length = largest_diameter;
-  for (int d = 0; d < 3 && scene.everybody(); d++)    // no ghosts of ghosts for a giant in a small box
+  for (int d = 0; d < 3; d++)
     if (domain->periodicity[d]) length = std::min(length, 0.5 * domain->prd[d]);
   return length;
 }

@@ -124,7 +124,7 @@ void RigidClumps::recognise()
   }
   if (count[0]) {
     const size_t before = shapes.count();
-    whole.gather(1, [this](int i, double *out) { *out = atom->radius[i]; }, radius);
+    radius = whole.gather(1, [this](int i, double *out) { *out = atom->radius[i]; });
     if (count[2]) take_over(unknown);
     find_shapes(unknown);
     if (shapes.count() > before || !count[2]) drop_unused();

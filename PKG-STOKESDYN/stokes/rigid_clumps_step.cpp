@@ -25,19 +25,15 @@ void RigidClumps::gather(const Ambient &ambient)
     column.gradient = column.u + 3;
     column.end = column.gradient + 9;
   }
-  whole.gather(
-      column.end,
-      [&](int i, double *row) {
-        row[0] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
-        row[column.radius] = atom->radius[i];
-        memcpy(row + column.v, atom->v[i], 3 * sizeof(double));
-        if (settings.rotation) memcpy(row + column.omega, atom->omega[i], 3 * sizeof(double));
-        if (gradient) {
-          memcpy(row + column.u, ambient.velocity(i), 3 * sizeof(double));
-          memcpy(row + column.gradient, gradient + 9 * (size_t) i, 9 * sizeof(double));
-        }
-      },
-      known_of);
+  known_of = whole.gather(column.end, [&](int i, double *row) {
+    row[0] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+    row[column.radius] = atom->radius[i];
+    memcpy(row + column.v, atom->v[i], 3 * sizeof(double));
+    if (settings.rotation) memcpy(row + column.omega, atom->omega[i], 3 * sizeof(double));
+    if (!gradient) return;
+    memcpy(row + column.u, ambient.velocity(i), 3 * sizeof(double));
+    memcpy(row + column.gradient, gradient + 9 * (size_t) i, 9 * sizeof(double));
+  });
   for (size_t m = 0; m < whole.tag.size() && jumps; m++) {
     double *row = &known_of[column.end * m];
     Lattice::add(jumps, &whole.steps[3 * m], row + column.v);

@@ -58,19 +58,15 @@ void Scene::find_rows()
   if (settings.whole) {
     std::vector<char> active(atom->nlocal + 1, 0);
     for (int i : own) active[i] = 1;
-    whole.gather(1, [&](int i, double *out) { *out = active[i]; }, carried);
-    for (int m = 0; m < whole.size(); m++) row_of.push_back(carried[m] != 0.0 ? (int) n++ : -1);
+    const std::vector<double> in = whole.gather(1, [&](int i, double *out) { *out = active[i]; });
+    for (int m = 0; m < whole.size(); m++) row_of.push_back(in[m] != 0.0 ? (int) n++ : -1);
   }
-  std::vector<double> who(2 * n + 2);
   tags.resize(n);
   molecules.resize(n);
-  to_rows(
-      2,
-      [this](int i, double *out) {
-        out[0] = ubuf((int64_t) atom->tag[i]).d;
-        out[1] = ubuf(atom->molecule ? (int64_t) atom->molecule[i] : (int64_t) 0).d;
-      },
-      who.data());
+  const std::vector<double> who = rows(2, [this](int i, double *out) {
+    out[0] = ubuf((int64_t) atom->tag[i]).d;
+    out[1] = ubuf(atom->molecule ? (int64_t) atom->molecule[i] : (int64_t) 0).d;
+  });
   for (size_t k = 0; k < n; k++) {
     tags[k] = ubuf(who[2 * k]).i;
     molecules[k] = ubuf(who[2 * k + 1]).i;
@@ -96,22 +92,18 @@ void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
   jumping = ambient.jumps();
   if (jumping) std::copy_n(ambient.jumps(), 6, jumps);
   const size_t n = tags.size();
-  std::vector<double> rows(5 * n + 5);
-  to_rows(
-      5,
-      [&](int i, double *out) {
-        std::copy_n(atom->x[i], 3, out);
-        out[3] = atom->radius[i];
-        out[4] = 1.0 / sqrt(ambient.viscosity(i));
-      },
-      rows.data());
+  const std::vector<double> known = rows(5, [&](int i, double *out) {
+    std::copy_n(atom->x[i], 3, out);
+    out[3] = atom->radius[i];
+    out[4] = 1.0 / sqrt(ambient.viscosity(i));
+  });
   x.resize(3 * n);
   a.resize(n);
   w.resize(n);
   for (size_t k = 0; k < n; k++) {
-    std::copy_n(&rows[5 * k], 3, &x[3 * k]);
-    a[k] = rows[5 * k + 3];
-    w[k] = rows[5 * k + 4];
+    std::copy_n(&known[5 * k], 3, &x[3 * k]);
+    a[k] = known[5 * k + 3];
+    w[k] = known[5 * k + 4];
   }
   for (size_t m = 0; m < row_of.size(); m++)
     if (row_of[m] >= 0) std::copy_n(&whole.x[3 * m], 3, &x[3 * (size_t) row_of[m]]);
@@ -150,32 +142,19 @@ sd_status Scene::reduce(void *ctx, const double *copies, double *rows, int width
   });
 }
 
-void Scene::surround(double reach, const char *why)
+void Scene::surround(double reach, const std::string &keyword)
 {
-  Lattice lattice = Lattice::of(domain);
-  if (!halo.find(lattice, reach, x))
-    fail_one(lmp, command + ": " + why + ": " + text(reach) +
-                      " around each sphere holds more than 1000 images of every other and 1e7 in "
-                      "all; is it in other units?");
-  add_copies();
-}
-
-/* Behind the rows, where they stand now */
-void Scene::add_copies()
-{
-  const size_t n = tags.size(), all = n + halo.count();
   const Lattice lattice = Lattice::of(domain);
-  for (auto *column : {&a, &w}) {
-    column->resize(all);
-    halo.refresh(column->data(), column->data() + n, 1);
-  }
-  x.resize(3 * all);
-  halo.place(lattice.h, x.data(), x.data() + 3 * n);
+  if (!halo.find(lattice, reach, x))
+    fail_one(lmp, command + ": keyword " + keyword +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in "
+                      "other units?");
+  halo.extend(lattice.h, x, {&a, &w});
 }
 
 void Scene::surround_films()
 {
-  surround(settings.films * most, "keyword lubrication_range and the largest radius");
+  surround(settings.films * most, "lubrication: the largest radius, " + text(most));
 }
 
 // --- who sees whom -------------------------------------------------------------------------------
@@ -188,9 +167,9 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
       if (somebody_sees || settings.films > 0.0)
-        surround(std::max(ewald.reach, settings.films * most), "keyword far_field");
+        surround(std::max(ewald.reach, settings.films * most),
+                 "far_field: the largest radius, " + text(most));
       if (!somebody_sees) return;
-      compare();
       tell();
       place(size_with_copies());
     } else {
@@ -207,7 +186,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
   else if (!somebody_sees)
     return;    // nobody will ask where the spheres are
   else
-    add_copies();
+    halo.extend(Lattice::of(domain).h, x, {&a, &w});
   filtered = std::isfinite(settings.cutoff);
   if (filtered) {
     const sd_spheres spheres = local();
@@ -228,7 +207,7 @@ void Scene::find_pairs()
   if (settings.whole && settings.clumps_only)
     halo.clear();
   else
-    surround(reach, "keyword cut_off_distance");
+    surround(reach, "cut_off_distance: '" + text(settings.cutoff) + "'");
   const int n_all = size_with_copies();
   sd_status status;
   if (settings.clumps_only) {
@@ -312,21 +291,16 @@ void Scene::gather()
     return all[p].tag < all[q].tag;
   });
 
-  cloud_is_new = (int) all_tag.size() != n_all;
-  spheres_hash = 0;
   all_x.resize(3 * (size_t) n_all);
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);
-  for (auto *v : {&all_tag, &all_molecule}) v->resize(n_all);
+  all_molecule.resize(n_all);
   place_of.resize(n_all);
   for (int k = 0; k < n_all; k++) {
     const Sphere &s = all[by_tag[k]];
     place_of[by_tag[k]] = k;
     std::copy_n(s.x, 3, &all_x[3 * (size_t) k]);
-    cloud_is_new =
-        cloud_is_new || all_tag[k] != s.tag || all_a[k] != s.a || all_molecule[k] != s.molecule;
     all_a[k] = s.a;
     all_w[k] = s.w;
-    all_tag[k] = s.tag;
     all_molecule[k] = s.molecule;
   }
 }
@@ -379,7 +353,7 @@ double Scene::memory_usage() const
 {
   return sizeof(int) * ((double) candidates.capacity + pairs.capacity + row_of.capacity()) +
       sizeof(double) *
-      (x.capacity() + a.capacity() + w.capacity() + carried.capacity() + 5.0 * n_all) +
+      (x.capacity() + a.capacity() + w.capacity() + of_copies.capacity() + 5.0 * n_all) +
       2.0 * sizeof(int64_t) * (double) tags.capacity() + halo.memory_usage() +
       whole.memory_usage();
 }

@@ -67,6 +67,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* The same, and the engine's pairs: anew if LAMMPS has re-neighboured, or if the spheres are
    * others than before on any rank. */
   void update(const std::vector<int> &who, const Ambient &ambient);
+  const std::vector<int> &who() const { return own; }
   int size() const { return (int) tags.size(); }
   int64_t tag(int k) const { return tags[k]; }
   int64_t molecule(int k) const { return molecules[k]; }
@@ -74,30 +75,31 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Rows of this rank's lone spheres come first; whole: row of a member, -1: it takes no part */
   int lone() const { return (int) loose.size(); }
   int row_of_member(int m) const { return row_of[m]; }
-  /* row(i, out) writes what goes of atom i, which may be one that takes no part: rows [width
-   * size()]. And back: take(i, row) for every atom of this rank that takes part. On all ranks
+  /* Rows [width size()], at least one: row(i, out) writes what goes of atom i, which may be one that
+   * takes no part. And back: take(i, row) for every atom of this rank that takes part. On all ranks
    * together. */
-  template <class Row> void to_rows(int width, const Row &row, double *rows)
+  template <class Row> std::vector<double> rows(int width, const Row &row) const
   {
-    for (size_t k = 0; k < loose.size(); k++) row(loose[k], rows + width * k);
-    if (!settings.whole) return;
-    whole.gather(width, row, carried);
+    std::vector<double> out(width * (tags.size() + 1));
+    for (size_t k = 0; k < loose.size(); k++) row(loose[k], &out[width * k]);
+    if (!settings.whole) return out;
+    const std::vector<double> members = whole.gather(width, row);
     for (size_t m = 0; m < row_of.size(); m++)
-      if (row_of[m] >= 0)
-        std::copy_n(&carried[width * m], width, rows + width * (size_t) row_of[m]);
+      if (row_of[m] >= 0) std::copy_n(&members[width * m], width, &out[width * (size_t) row_of[m]]);
+    return out;
   }
-  template <class Take> void to_atoms(int width, const double *rows, const Take &take)
+  template <class Take> void to_atoms(int width, const double *rows, const Take &take) const
   {
     for (size_t k = 0; k < loose.size(); k++) take(loose[k], rows + width * k);
     if (!settings.whole) return;
     const size_t m = width + 1;
-    carried.assign(m * row_of.size() + m, 0.0);
+    std::vector<double> members(m * row_of.size() + m, 0.0);
     for (size_t k = 0; k < row_of.size(); k++) {
       if (row_of[k] < 0) continue;
-      std::copy_n(rows + width * (size_t) row_of[k], width, &carried[m * k]);
-      carried[m * k + width] = 1.0;
+      std::copy_n(rows + width * (size_t) row_of[k], width, &members[m * k]);
+      members[m * k + width] = 1.0;
     }
-    whole.scatter((int) m, carried.data(), [=, &take](int i, const double *row) {
+    whole.scatter((int) m, members.data(), [=, &take](int i, const double *row) {
       if (row[width] != 0.0) take(i, row);
     });
   }
@@ -128,13 +130,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   {
     return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
-  /* Views ALL and NEAR: other spheres than at the last update, or in another order? The same on all
-   * ranks. */
-  bool spheres_changed() const { return cloud_is_new; }
   /* View NEAR; else nullptr */
   const sd_ewald *splitting() const { return view() == SD_VIEW_NEAR ? &ewald : nullptr; }
-  /* What a product costs this rank, in pairs. */
-  double cost_of_product() const;
   /* The box around an open cloud whose sum is split: six numbers to keep, as the next box depends
    * on the last one. */
   std::vector<double> open_box() const;
@@ -174,7 +171,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* by how much the velocity of an image grows with each edge of the box: Ambient::jumps */
   double jumps[6] = {0.0};
   bool jumping = false;
-  std::vector<double> carried, of_copies;
+  std::vector<double> of_copies;
   Halo halo;
   sd_neighbors candidates, pairs;
 
@@ -184,14 +181,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* [nprocs] */
   std::vector<int> spheres_of_rank;
   std::vector<double> all_x, all_a, all_w, in_order_of_rank;
-  std::vector<int64_t> all_tag, all_molecule;
+  std::vector<int64_t> all_molecule;
   int n_all = 0;
-  bool cloud_is_new = true;
 
-  // view NEAR: hash of the spheres of the last update
-  uint64_t spheres_hash = 0;
   sd_ewald ewald = {};
-  sd_ewald_sizes sizes = {};
   /* its parameters, as they were last told */
   std::string said;
   bool told = false;
@@ -204,11 +197,9 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool split();
   sd_ewald_sizes sizes_of_all(double largest);
   sd_ewald_sizes measure(sd_ewald_box &box);
-  void compare();
   void tell();
   void find_rows();
-  void surround(double reach, const char *why);
-  void add_copies();
+  void surround(double reach, const std::string &keyword);
   void find_pairs();
   void gather();
   void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;

@@ -41,18 +41,15 @@ void Velocities::gather()
 {
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   columns = gradients ? WITH_FLOW : FLOW;
-  scene.whole.gather(
-      columns,
-      [&](int i, double *row) {
-        row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
-        row[RADIUS] = atom->radius[i];
-        std::copy_n(atom->f[i], 3, row + LOAD);
-        std::copy_n(atom->torque[i], 3, row + LOAD + 3);
-        if (!gradients) return;
-        std::copy_n(ambient.velocity(i), 3, row + FLOW);
-        std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
-      },
-      of_members);
+  of_members = scene.whole.gather(columns, [&](int i, double *row) {
+    row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+    row[RADIUS] = atom->radius[i];
+    std::copy_n(atom->f[i], 3, row + LOAD);
+    std::copy_n(atom->torque[i], 3, row + LOAD + 3);
+    if (!gradients) return;
+    std::copy_n(ambient.velocity(i), 3, row + FLOW);
+    std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
+  });
   for (int m = 0; m < scene.whole.size() && gradients && jumps; m++)
     Lattice::add(jumps, &scene.whole.steps[3 * (size_t) m], &of_members[columns * (size_t) m + FLOW]);
 }
@@ -133,17 +130,13 @@ void Velocities::load_on(const Clump &clump, double load[6]) const
 void Velocities::place(int width)
 {
   const size_t m = width, n = scene.size(), most = 14;
-  std::vector<double> rows(most * n + most);
-  scene.to_rows(
-      most,
-      [&](int i, double *out) {
-        std::copy_n(atom->f[i], 3, out);
-        if (width == 6) std::copy_n(atom->torque[i], 3, out + 3);
-        ambient.fluid(i, out + 6);
-        out[12] = ambient.drag(i);
-        out[13] = ambient.spin(i);
-      },
-      rows.data());
+  const std::vector<double> rows = scene.rows(most, [&](int i, double *out) {
+    std::copy_n(atom->f[i], 3, out);
+    if (width == 6) std::copy_n(atom->torque[i], 3, out + 3);
+    ambient.fluid(i, out + 6);
+    out[12] = ambient.drag(i);
+    out[13] = ambient.spin(i);
+  });
   F.resize(m * n + m);
   u.resize(m * n + m);
   D.resize(m * n + m);
@@ -291,7 +284,7 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
     std::copy_n(&v[m * k], m, row);
     for (size_t d = 0; d < m; d++) row[m + d] = -exerted[m * k + d];
   }
-  scene.to_atoms((int) (2 * m), moved.data(),
+  scene.to_atoms(2 * how.width, moved.data(),
                  [&](int i, const double *row) { take(i, row, row + m); });
   return status;
 }

@@ -37,17 +37,17 @@ std::vector<int> WholeClumps::owners(const std::vector<int> &bound) const
     part.lowest = std::min(part.lowest, (int64_t) atom->tag[i]);
   }
   const int ranks = comm->nprocs;
-  if (ranks > 1)
-    ask_homes(
-        world, parts, [ranks](const Part &p) { return (int) ((uint64_t) p.molecule % ranks); },
-        [](std::vector<Part> &all) {
-          std::unordered_map<int64_t, Part> first;
-          for (const Part &p : all) {
-            Part &best = first.insert({p.molecule, p}).first->second;
-            if (p.lowest < best.lowest) best = p;
-          }
-          for (Part &p : all) p.owner = first[p.molecule].owner;
-        });
+  const auto home = [ranks](const Part &p) {
+    return (int) ((uint64_t) p.molecule % ranks);
+  };
+  if (ranks > 1) ask_homes(world, parts, home, [](std::vector<Part> &all) {
+    std::unordered_map<int64_t, Part> first;
+    for (const Part &p : all) {
+      Part &best = first.insert({p.molecule, p}).first->second;
+      if (p.lowest < best.lowest) best = p;
+    }
+    for (Part &p : all) p.owner = first[p.molecule].owner;
+  });
   std::vector<int> of;
   for (int i : bound) of.push_back(parts[number[atom->molecule[i]]].owner);
   return of;
@@ -57,8 +57,7 @@ std::vector<int> WholeClumps::owners(const std::vector<int> &bound) const
 void WholeClumps::route(const std::vector<int> &bound)
 {
   const std::vector<int> owner = owners(bound);
-  const int ranks = comm->nprocs;
-  std::vector<int> to(ranks, 0), from(ranks, 0), by_owner;
+  std::vector<int> to(comm->nprocs, 0), by_owner;
   at_home.clear();
   for (size_t k = 0; k < bound.size(); k++) {
     if (owner[k] == comm->me)
@@ -72,10 +71,7 @@ void WholeClumps::route(const std::vector<int> &bound)
                    [&owner](int p, int q) { return owner[p] < owner[q]; });
   away.clear();
   for (int k : by_owner) away.push_back(bound[k]);
-  if (ranks > 1) MPI_Alltoall(to.data(), 1, MPI_INT, from.data(), 1, MPI_INT, world);
-  post.partners.clear();
-  for (int p = 0; p < ranks; p++)
-    if (to[p] || from[p]) post.partners.push_back({p, to[p], from[p]});
+  post.address(to);
 }
 
 /* The members in order of molecule and tag, as they come from at_home and from others */
@@ -87,14 +83,10 @@ void WholeClumps::arrange()
   };
   slot.resize(at_home.size() + post.rows_in());
   for (size_t k = 0; k < slot.size(); k++) slot[k] = (int) k;
-  std::vector<double> who;
-  gather(
-      2,
-      [this](int i, double *out) {
-        out[0] = ubuf((int64_t) atom->molecule[i]).d;
-        out[1] = ubuf((int64_t) atom->tag[i]).d;
-      },
-      who);
+  const std::vector<double> who = gather(2, [this](int i, double *out) {
+    out[0] = ubuf((int64_t) atom->molecule[i]).d;
+    out[1] = ubuf((int64_t) atom->tag[i]).d;
+  });
   std::vector<Member> members;
   for (size_t k = 0; k < slot.size(); k++)
     members.push_back({(int64_t) ubuf(who[2 * k]).i, (int64_t) ubuf(who[2 * k + 1]).i, (int) k});
@@ -133,15 +125,15 @@ void WholeClumps::stand()
 {
   const Lattice lattice = Lattice::of(domain);
   std::copy_n(lattice.h, 6, h);
-  gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); }, raw);
-  x.assign(raw.begin(), raw.end());
+  x = gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); });
   steps.assign(3 * tag.size() + 3, 0);
   for (const Clump &clump : clumps)
     for (int k = clump.begin + 1; k < clump.end; k++) {
-      const double *first = &raw[3 * (size_t) clump.begin], *there = &raw[3 * (size_t) k];
+      const double *first = &x[3 * (size_t) clump.begin];
+      double *there = &x[3 * (size_t) k];
       double d[3] = {there[0] - first[0], there[1] - first[1], there[2] - first[2]};
       lattice.closest(d, &steps[3 * (size_t) k]);
-      for (int e = 0; e < 3; e++) x[3 * (size_t) k + e] = first[e] + d[e];
+      for (int e = 0; e < 3; e++) there[e] = first[e] + d[e];
     }
 }
 
@@ -171,7 +163,7 @@ void WholeClumps::check_widths() const
 double WholeClumps::memory_usage() const
 {
   return sizeof(double) *
-      ((double) x.capacity() + raw.capacity() + outbox.capacity() + inbox.capacity()) +
+      ((double) x.capacity() + outbox.capacity() + inbox.capacity()) +
       sizeof(int) * ((double) at_home.capacity() + away.capacity() + slot.capacity() +
                      steps.capacity()) +
       sizeof(int64_t) * (double) tag.capacity();

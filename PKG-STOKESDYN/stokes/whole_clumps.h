@@ -43,18 +43,19 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   std::vector<int> steps;
   double h[6] = {0.0};
 
-  /* row(i, out) writes what goes of atom i: rows [width size()]. On all ranks together, as
-   * scatter(), where take(i, row) is called for every atom of this rank that is in a clump. */
-  template <class Row> void gather(int width, const Row &row, std::vector<double> &rows) const
+  /* Rows [width size()], at least one: row(i, out) writes what goes of atom i. On all ranks together,
+   * as scatter(), where take(i, row) is called for every atom of this rank that is in a clump. */
+  template <class Row> std::vector<double> gather(int width, const Row &row) const
   {
     outbox.assign((size_t) width * away.size() + 1, 0.0);
     inbox.assign((size_t) width * (at_home.size() + post.rows_in()) + 1, 0.0);
     for (size_t k = 0; k < away.size(); k++) row(away[k], &outbox[width * k]);
     for (size_t k = 0; k < at_home.size(); k++) row(at_home[k], &inbox[width * k]);
     post.carry(outbox.data(), &inbox[width * at_home.size()], width);
-    rows.resize((size_t) width * slot.size() + width);
+    std::vector<double> rows((size_t) width * slot.size() + width);
     for (size_t k = 0; k < slot.size(); k++)
       std::copy_n(&inbox[width * (size_t) slot[k]], width, &rows[width * k]);
+    return rows;
   }
   template <class Take> void scatter(int width, const double *rows, const Take &take) const
   {
@@ -79,7 +80,6 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   /* [members] place among at_home and, after them, the rows that come */
   std::vector<int> slot;
   mutable std::vector<double> outbox, inbox;
-  std::vector<double> raw;
 
   std::vector<int> owners(const std::vector<int> &bound) const;
   void route(const std::vector<int> &bound);
