@@ -137,15 +137,24 @@ static const double rounding = 1e-14;
  * what there is. That takes at most one product in ten more than exact solutions, to 1e-8 as well,
  * and half to three quarters of the products with L that 0.01 all the way takes.
  * Source: van den Eshof & Sleijpen, SIAM J. Matrix Anal. Appl. 26, 125 (2004). */
-static const double tie_accuracy = 0.003, tie_loosest = 0.2;
-/* And that of a guess, whose error the loop takes up; among ranks, where the norm of the sparse
- * system sees less of it */
-static const double tie_guess = 0.3, tie_guess_among_ranks = 0.01;
+typedef struct {
+  double first, loosest;
+  /* that of a guess, whose error the loop takes up */
+  double guess;
+} accuracy;
+/* Among ranks the norm of the sparse system sees less of what is lacking (sd_tie_factor.h). */
+static const accuracy alone = {0.003, 0.2, 0.3}, among_ranks = {0.001, 0.07, 0.01};
+
+static const accuracy *accuracy_of(const loop *c)
+{
+  return c->A->world.ranks > 1 ? &among_ranks : &alone;
+}
 
 /* For pre(r, 0) where r.z is about so much */
 static double tie_tolerance(const loop *c, double power)
 {
-  return fmax(tie_accuracy, fmin(tie_loosest, tie_accuracy * sqrt(c->power.spent / power)));
+  const accuracy *a = accuracy_of(c);
+  return fmax(a->first, fmin(a->loosest, a->first * sqrt(c->power.spent / power)));
 }
 
 /* given.V of those that are not held */
@@ -271,7 +280,7 @@ static sd_status start_cold(loop *c)
 {
   sd_status status = start_alone(c);
   if (status == SD_OK && c->A->tie) {
-    c->tie_tolerance = tie_accuracy;
+    c->tie_tolerance = accuracy_of(c)->first;
     hold(c, motion_of(c, c->v.x));
     status = pre(c, c->v.r, c->f, c->problem->given != NULL, c->v.x, motion_of(c, c->v.x));
   }
@@ -311,7 +320,7 @@ static sd_status repair(loop *c, double *guess)
     for (long j = 0; j < motions(c); j++) lacks[j] += dV[j];
   }
   for (long j = 0; j < motions(c); j++) lacks[j] = c->f[j] - lacks[j];
-  c->tie_tolerance = A->world.ranks > 1 ? tie_guess_among_ranks : tie_guess;
+  c->tie_tolerance = accuracy_of(c)->guess;
   memset(dV, 0, sizeof(double) * (size_t) motions(c));
   const sd_status status = pre(c, NULL, lacks, 0, c->v.z, dV);
   for (long j = 0; j < rows; j++) guess[j] += c->v.z[j];

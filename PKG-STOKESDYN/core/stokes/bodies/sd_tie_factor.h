@@ -6,9 +6,9 @@
  *   P^-1 = sum over ranks  R^T H_R^-1 R,   H_R: the rows and columns of H of these bodies
  *
  * Stiff pairs chain bodies together, and a factor that ends at the last body of a rank would not
- * know how they move as one: the velocities would take a hundred products. With the layer beyond it
- * they take twice as many as one factor of all, on four ranks at a volume fraction of 0.5, half as
- * many more on two.
+ * know how they move as one: products with L would have no end. With the layer beyond it they are
+ * twice as many as with one factor of all, on four ranks of 100 spheres each at a volume fraction of
+ * 0.5, and half as many more on two (test_tie_ranks.c).
  * Memory and messages are those of a rank's bodies and its surface. */
 #ifndef SD_TIE_FACTOR_H
 #define SD_TIE_FACTOR_H
