@@ -20,6 +20,7 @@ ClumpShape::~ClumpShape()
 {
   sd_shape_free(&shape);
   sd_clump_free(&clump);
+  sd_multiblob_shape_free(&points);
   sd_body_shape_free(&body);
 }
 
@@ -183,15 +184,30 @@ void ClumpShapes::solve(const ClumpModel &model)
   if (!shapes.empty()) solved = std::max(solved, shapes.rbegin()->first);
 }
 
+/* What may fail where a shape is first needed */
+static void check_blocks(LAMMPS *lmp, const std::string &command, const ClumpShape &s,
+                         sd_status status)
+{
+  if (status != SD_OK)
+    fail_one(lmp,
+             command + ": keyword rigid_clumps: the clump of molecule " +
+                 std::to_string(s.molecule) + ", " + std::to_string(s.shape.n) +
+                 " spheres: " + sd_status_string(status));
+}
+
 const sd_body_shape &ClumpShapes::blocks(const ClumpShape &s, const ClumpModel &model) const
 {
-  if (s.body.m > 0) return s.body;
-  const sd_status status =
-      sd_body_shape_create(&s.shape, model.shell > 1 ? &s.clump : nullptr, &s.body);
-  if (status == SD_OK) return s.body;
-  fail_one(lmp,
-           command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(s.molecule) +
-               ", " + std::to_string(s.shape.n) + " spheres: " + sd_status_string(status));
+  if (s.body.m == 0)
+    check_blocks(lmp, command, s,
+                 sd_body_shape_create(&s.shape, model.shell > 1 ? &s.clump : nullptr, &s.body));
+  return s.body;
+}
+
+const sd_multiblob_shape &ClumpShapes::points(const ClumpShape &s, const sd_multiblob &model) const
+{
+  if (s.points.spheres == 0)
+    check_blocks(lmp, command, s, sd_multiblob_shape_create(&model, &s.shape, &s.points));
+  return s.points;
 }
 
 void ClumpShapes::announce(const ClumpShape &s, double seconds) const

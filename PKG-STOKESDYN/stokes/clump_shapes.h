@@ -7,6 +7,7 @@
 
 #include "sd_body_shape.h"
 #include "sd_clump.h"
+#include "sd_multiblob_shape.h"
 
 #include <cstdint>
 #include <map>
@@ -31,6 +32,8 @@ struct ClumpShape {
   sd_clump clump = {};
   /* made by ClumpShapes::blocks() */
   mutable sd_body_shape body = {};
+  /* made by ClumpShapes::points() */
+  mutable sd_multiblob_shape points = {};
   ClumpShape(int number, int64_t molecule) : number(number), molecule(molecule) {}
   ~ClumpShape();
   ClumpShape(const ClumpShape &) = delete;
@@ -71,6 +74,8 @@ class ClumpShapes : protected LAMMPS_NS::Pointers {
                                      sd_status status, double need = 0.0) const;
   /* A shape in a cloud with others. Error: memory. */
   const sd_body_shape &blocks(const ClumpShape &shape, const ClumpModel &model) const;
+  /* The same where all spheres are shells of points */
+  const sd_multiblob_shape &points(const ClumpShape &shape, const sd_multiblob &model) const;
 
   double memory_usage() const;
 

@@ -33,27 +33,35 @@ FixStokesDynamicsState *FixStokesDynamicsState::find(LAMMPS *lmp)
   return static_cast<FixStokesDynamicsState *>(fix);
 }
 
-FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history)
+FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history,
+                                                        int points)
 {
   FixStokesDynamicsState *fix = find(lmp);
-  if (fix && fix->rotation == rotation && fix->history == history) return fix;
+  if (fix && fix->rotation == rotation && fix->history == history && fix->points == points)
+    return fix;
   if (fix) lmp->modify->delete_fix(ID);
   lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (rotation ? " rotation" : "") +
-                       (history ? " history" : ""));
+                       (history ? " history" : "") +
+                       (points ? " points " + std::to_string(points) : ""));
   return find(lmp);
 }
 
-static int columns_of(bool rotation, bool history)
+static int points_of(int narg, char **arg)
+{
+  return narg > 3 && says(narg, arg, "points") ? std::stoi(arg[narg - 1]) : 0;
+}
+
+static int columns_of(bool rotation, bool history, int points)
 {
   using State = FixStokesDynamicsState;
-  if (rotation) return State::WITH_ROTATION + (history ? 6 : 0);
-  return State::WITHOUT_ROTATION + (history ? 3 : 0);
+  if (rotation) return State::WITH_ROTATION + (history ? 6 : 0) + 3 * points;
+  return State::WITHOUT_ROTATION + (history ? 3 : 0) + 3 * points;
 }
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), rotation(says(narg, arg, "rotation")), history(says(narg, arg, "history")),
-    rows(columns_of(rotation, history)), places(3), resume(lmp, rotation),
-    left(resume.columns())
+    points(points_of(narg, arg)), rows(columns_of(rotation, history, points)), places(3),
+    resume(lmp, rotation), left(resume.columns())
 {
   restart_global = 1;
   keep({&rows, &places, &left}, nullptr, true);

@@ -26,7 +26,8 @@ class FixStokesDynamicsState : public RowsFix {
   /* The one of this LAMMPS, nullptr if there is none. Error: a fix of the user's has its ID. */
   static FixStokesDynamicsState *find(LAMMPS_NS::LAMMPS *lmp);
   /* The same, made anew unless it is of this kind. */
-  static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history);
+  static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history,
+                                         int points);
 
   FixStokesDynamicsState(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }
@@ -40,6 +41,9 @@ class FixStokesDynamicsState : public RowsFix {
   enum { FORCE = 0, VPRIME = 3, WITHOUT_ROTATION = 6, TORQUE = 6, WPRIME = 9, WITH_ROTATION = 12 };
   const bool rotation, history;
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
+  /* of each sphere, whose forces on the fluid are behind that: 3 columns each; 0: none */
+  const int points;
+  int of_points() const { return before() + (history ? (rotation ? 6 : 3) : 0); }
   AtomRows rows;
   /* where spheres stood when the preconditioner was made (preconditioner.h) */
   AtomRows places;

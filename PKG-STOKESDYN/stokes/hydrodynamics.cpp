@@ -29,7 +29,7 @@ static const std::string COMMAND = StokesSettings::COMMAND;
 static const int LOOK_AT_FILMS = 1000;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
-    Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND),
+    Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, COMMAND), shells(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND),
     lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}),
     preconditioner(lmp, scene), guard(lmp, COMMAND)
 {
@@ -52,6 +52,13 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   if (settings.lubrication.on) scene.settings.films = 2.0 + settings.lubrication.range;
   rigid.settings = settings.rigid;
   lubrication.settings = settings.lubrication;
+  shells.settings = settings.shells;
+  shells.make();
+  scene.shells = shells.settings.on() ? &shells : nullptr;
+  lubrication.shells = shells.settings.on() ? &shells.settings : nullptr;
+  scene.orient = [this] {
+    mobile.orient();
+  };
   scene.init();
   rigid.forget();
   preconditioner.forget();
@@ -73,7 +80,7 @@ void Hydrodynamics::begin()
          COMMAND + ": its internal fix " + State::ID +
              " has been deleted; a run without 'pre no' makes it anew");
   if (neighbor->ago == 0) scene.lists_are_stale();
-  ambient.read(rotation(), settings.rigid.on, memory->time());
+  ambient.read(rotation(), settings.rigid.on || shells.settings.on(), memory->time());
   standing = false;
   if (scene.settings.whole) scene.whole.find();
   if (selection == ambient.selection()) return;
@@ -276,6 +283,7 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
                          "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
   const sd_status status = joined() ? together(report) : gradients(system, report);
+  if (shells.settings.on()) return status;    // the guard knows spheres
   const bool preconditioned = joined() || preconditioner.attached();
   guard.state = memory->global.guard;
   guard.look(system, report, scene, preconditioned, memory->global.solves);
@@ -298,14 +306,38 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
 sd_status Hydrodynamics::together(sd_solve_report &report)
 {
   const bool warm = memory->history && memory->global.solutions > 0;
-  if (warm) guess();
+  if (shells.settings.on())
+    recall_points(begin_with.l);
+  else if (warm)
+    guess();
   const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};
   sd_bodies_report made = {};
-  const sd_status status = mobile.resist(how, slip, solution, made);
+  const sd_status status = mobile.resist(how, slip, begin_with, solution, made);
+  keep_points(begin_with.l);
   report.iterations = report.products = made.products;
   report.residual = made.residual;
   report.curvature = made.curvature;
   return status;
+}
+
+/* Forces of the points of this rank's rows as the last solve left them; 0 where there are none */
+void Hydrodynamics::recall_points(std::vector<double> &l)
+{
+  const size_t m = 3 * (size_t) shells.points();
+  l.assign(m * scene.size() + m, 0.0);
+  if (memory->points == 0) return;
+  l = scene.rows((int) m, [&](int i, double *out) {
+    std::copy_n(memory->rows[i] + memory->of_points(), m, out);
+  });
+}
+
+void Hydrodynamics::keep_points(const std::vector<double> &l)
+{
+  const size_t m = 3 * (size_t) memory->points;
+  if (m == 0) return;
+  scene.to_atoms((int) m, l.data(), [&](int i, const double *row) {
+    std::copy_n(row, m, memory->rows.give(i) + memory->of_points());
+  });
 }
 
 /* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
@@ -376,6 +408,8 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
   if (status == SD_EINDEFINITE) numbers += ", curvature " + text(report.curvature);
   if (how.tensor == SD_TENSOR_OSEEN && (status == SD_EINDEFINITE || status == SD_ESINGULAR))
     why += " with tensor oseen: spheres are too close for it, use tensor rpy";
+  else if (status == SD_EINDEFINITE && shells.settings.on() && shells.settings.one_body)
+    why += " with the one-body addition of multiblob: use one_body no";
   else if (status == SD_ESINGULAR)
     why += ": equal spheres at one point with different velocities";
   else if (status == SD_EINDEFINITE && std::isinf(how.cutoff))
@@ -402,18 +436,22 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
       out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
     }
   });
-  begin_with.l.assign(m * n + m, 0.0);
+  if (shells.settings.on())
+    recall_points(begin_with.l);
+  else
+    begin_with.l.assign(m * n + m, 0.0);
   begin_with.v.assign(m * n + m, 0.0);
   for (size_t k = 0; k < n; k++) {
-    std::copy_n(&rows[2 * m * k], m, &begin_with.l[m * k]);
+    if (!shells.settings.on()) std::copy_n(&rows[2 * m * k], m, &begin_with.l[m * k]);
     std::copy_n(&rows[2 * m * k + m], m, &begin_with.v[m * k]);
   }
   const Velocities::How how = {width(), settings.warm_start, settings.tolerance, settings.max_iter};
   const sd_status status = mobile.together(how, begin_with, take, report);
   for (size_t k = 0; k < n; k++) {
-    std::copy_n(&begin_with.l[m * k], m, &rows[2 * m * k]);
+    if (!shells.settings.on()) std::copy_n(&begin_with.l[m * k], m, &rows[2 * m * k]);
     std::copy_n(&begin_with.v[m * k], m, &rows[2 * m * k + m]);
   }
+  if (shells.settings.on()) keep_points(begin_with.l);
   scene.to_atoms(2 * width(), rows.data(), [&](int i, const double *from) {
     double *row = memory->rows.give(i);
     for (size_t d = 0; d < m; d++) {
@@ -461,6 +499,11 @@ void Hydrodynamics::turn(int i, const double R[9])
   for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) {
     sd_multiply3(R, row + first, turned);
     std::copy_n(turned, 3, row + first);
+  }
+  for (int p = 0; p < memory->points; p++) {
+    double *of_point = row + memory->of_points() + 3 * p;
+    sd_multiply3(R, of_point, turned);
+    std::copy_n(turned, 3, of_point);
   }
 }
 

@@ -82,6 +82,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
+  Shells shells;
   RigidClumps rigid;
   Lubrication lubrication;
   Velocities mobile;
@@ -109,10 +110,11 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
   sd_system gather();
-  // clumps with shells that interact
+  // spheres as shells of points, or clumps with shells that interact
   bool joined() const
   {
-    return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1;
+    return shells.settings.on() ||
+        (settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1);
   }
   void lubricate();
   sd_status run(sd_solve_report &report);
@@ -120,6 +122,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   sd_status together(sd_solve_report &report);
   void guess();
   void keep();
+  void recall_points(std::vector<double> &l);
+  void keep_points(const std::vector<double> &l);
   int algorithm() const    // of the next solve
   {
     return memory->global.diverged != 0.0 ? StokesSettings::GRADIENTS : settings.algorithm;

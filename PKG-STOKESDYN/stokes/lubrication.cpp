@@ -32,6 +32,11 @@ void Lubrication::check(sd_status status) const
 void Lubrication::provide(double largest, double smallest)
 {
   const double ratio = largest / smallest;
+  if (shells && ratio > SD_FILM_LARGEST_RATIO)
+    fail(lmp,
+         command + ": keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
+             ": with multiblob it knows pairs up to a ratio of 10; use group to select, or "
+             "lubrication no");
   if (ratio <= largest_ratio) return;
   sd_two_sphere *wider = nullptr;
   const sd_status status = sd_two_sphere_create(ratio, &wider);
@@ -43,6 +48,7 @@ void Lubrication::provide(double largest, double smallest)
   sd_two_sphere_free(functions);
   functions = wider;
   largest_ratio = ratio;
+  if (shells) check(sd_films_create(shells->points, shells->one_body, functions, &films));
 }
 
 void Lubrication::place(Scene &where, const Ambient &ambient)
@@ -52,6 +58,7 @@ void Lubrication::place(Scene &where, const Ambient &ambient)
   where.drift(u.data(), 6, 1.0);
   sd_lubrication_scene scene = {};
   scene.functions = functions;
+  scene.films = shells ? &films : nullptr;
   scene.gap = settings.gap;
   scene.range = settings.range;
   scene.n = where.size();

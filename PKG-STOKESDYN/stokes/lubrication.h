@@ -20,6 +20,9 @@ class Lubrication : protected LAMMPS_NS::Pointers {
     double gap = 1e-3, range = 2.0;
   } settings;
 
+  /* spheres are shells of points: films are of what these do not know; nullptr: they are points */
+  const Shells::Settings *shells = nullptr;
+
   Lubrication(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
   ~Lubrication();
   Lubrication(const Lubrication &) = delete;
@@ -40,6 +43,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   sd_lubrication near = {};
   sd_two_sphere *functions = nullptr;
   double largest_ratio = 0.0;
+  sd_films films = {};
   std::vector<double> u;
 
   void provide(double largest, double smallest);

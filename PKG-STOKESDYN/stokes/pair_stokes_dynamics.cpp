@@ -184,7 +184,9 @@ void PairStokesDynamics::init_style()
 
   hydro.init();
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
-  State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
+  const Shells::Settings &shells = hydro.settings.shells;
+  const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
+  State::provide(lmp, scene.rotation, hydro.settings.history(), points)->settings_are(args);
   look_for_fixes();
   sorting_bins.limit(range());
 }

@@ -83,6 +83,11 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   {
     return shapes.blocks(shape, settings);
   }
+  /* The same where all spheres are shells of points */
+  const sd_multiblob_shape &points(const ClumpShape &shape, const sd_multiblob &model) const
+  {
+    return shapes.points(shape, model);
+  }
   /* Errors, which all ranks know: molecule IDs of a clump of which not all spheres are selected, and
    * of one that is not rigid; NOBODY: there is none */
   static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();

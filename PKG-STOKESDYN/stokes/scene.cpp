@@ -162,13 +162,17 @@ void Scene::surround_films()
 void Scene::update(const std::vector<int> &who, const Ambient &ambient)
 {
   stand(who, ambient);
+  if (shells) {
+    shells->free_rows(size());
+    orient();
+  }
   if (settings.everybody()) {
     const std::vector<double> there = x;    // the sum over an open cloud takes its origin along
     engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
       if (somebody_sees || settings.films > 0.0)
-        surround(std::max(ewald.reach, settings.films * most),
+        surround(std::max(ewald.reach + 2.0 * extent() * most, settings.films * most),
                  "far_field: the largest radius, " + text(most));
       if (!somebody_sees) return;
       tell();
@@ -239,24 +243,34 @@ void Scene::place(int n_all_or_copies)
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
   scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr};
-  scene.n = size();
-  scene.n_all = n_all_or_copies;
-  scene.spheres = cloud ? this->cloud() : local();
+  if (shells && cloud) {
+    std::vector<double> rows(10 * (size_t) n_all + 10);
+    to_cloud(shells->sent(size()).data(), rows.data(), 10);
+    shells->expand_cloud(n_all, rows.data(), this->cloud());
+  } else if (shells)
+    shells->expand(halo, size_with_copies(), local());
+  scene.n = points() * size();
+  scene.n_all = points() * n_all_or_copies;
+  scene.spheres = shells ? shells->all() : cloud ? this->cloud() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
   scene.world.ctx = this;
   scene.world.me = comm->me;
   scene.world.ranks = comm->nprocs;
   scene.world.sum = sum;
-  scene.world.refresh = refresh;
+  scene.world.refresh = [](void *ctx, const double *rows, double *copies, int width) {
+    return refresh(ctx, rows, copies, width * static_cast<Scene *>(ctx)->points());
+  };
   scene.world.spread = [](void *ctx, const double *rows, double *all, int width) {
     return callback([=] {
-      static_cast<Scene *>(ctx)->to_cloud(rows, all, width);
+      Scene *self = static_cast<Scene *>(ctx);
+      self->to_cloud(rows, all, width * self->points());
       return SD_OK;
     });
   };
   scene.world.collect = [](void *ctx, const double *all, double *rows, int width) {
     return callback([=] {
-      static_cast<Scene *>(ctx)->from_cloud(all, rows, width);
+      Scene *self = static_cast<Scene *>(ctx);
+      self->from_cloud(all, rows, width * self->points());
       return SD_OK;
     });
   };

@@ -12,6 +12,7 @@
 #include "ambient.h"
 #include "halo.h"
 #include "pointers.h"
+#include "shells.h"
 #include "whole_clumps.h"
 
 #include "sd_mobility.h"
@@ -19,6 +20,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -56,6 +58,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Which spheres of which ranks the engine sees, since the last update(). */
   sd_view view() const { return engine->view; }
   WholeClumps whole;
+  /* Spheres are shells of points, which are what the engine sees; nullptr: they are points */
+  Shells *shells = nullptr;
+  /* With shells: turns those of clumps, when the rows stand */
+  std::function<void()> orient;
 
   // --- rows
 
@@ -192,7 +198,11 @@ class Scene : protected LAMMPS_NS::Pointers {
   const sd_mobility_engine *engine = &sd_mobility_list;
   sd_mobility omega;
 
-  int width() const { return settings.rotation ? 6 : 3; }
+  int width() const { return settings.rotation && !shells ? 6 : 3; }
+  /* how far a sphere's points are from its centre, over its radius; their radius likewise */
+  double extent() const { return shells ? shells->radius() : 0.0; }
+  double grain() const { return shells ? shells->point() : 1.0; }
+  int points() const { return shells ? shells->points() : 1; }
   bool periodic() const;
   bool split();
   sd_ewald_sizes sizes_of_all(double largest);

@@ -42,7 +42,8 @@ sd_ewald_sizes Scene::sizes_of_all(double largest)
 {
   sd_ewald_sizes s = {};
   s.all.largest = largest;
-  for (int k = 0; k < size(); k++) sd_ewald_count(&s, a[k]);
+  for (int k = 0; k < size(); k++)
+    for (int p = 0; p < points(); p++) sd_ewald_count(&s, grain() * a[k]);
   std::vector<double> sums, most;
   const auto classes = [&](auto &&each) {
     each(s.all);
@@ -69,10 +70,10 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
 {
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
   for (int k = 0; k < size(); k++) {
-    most[0] = std::max(most[0], a[k]);
+    most[0] = std::max(most[0], grain() * a[k]);
     for (int d = 0; d < 3; d++) {
-      most[1 + d] = std::max(most[1 + d], -x[3 * k + d]);
-      most[4 + d] = std::max(most[4 + d], x[3 * k + d]);
+      most[1 + d] = std::max(most[1 + d], extent() * a[k] - x[3 * k + d]);
+      most[4 + d] = std::max(most[4 + d], extent() * a[k] + x[3 * k + d]);
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);

@@ -31,7 +31,8 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE)
     scene.far_field = Scene::Settings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
-  if (rigid.shell > 1) scene.rotation = true;
+  if (rigid.shell > 1 || shells.on()) scene.rotation = true;
+  if (shells.on() && !in.given("lubrication_range")) lubrication.range = 1.0;
   rigid.rotation = scene.rotation;
   rigid.clumps_only = scene.clumps_only;
   in.require(!scene.rotation || scene.tensor != SD_TENSOR_OSEEN,
@@ -116,6 +117,12 @@ void StokesSettings::parse(Keywords &in)
          if (rigid.shell > 1 && rigid.shell < 12)
            in.refuse("'" + std::to_string(rigid.shell) + "' must be 1 or >= 12");
        }},
+      {"multiblob", [&] {
+         shells.points = in.integer(1);
+         if (shells.on() && !sd_multiblob_has(shells.points))
+           in.refuse("'" + std::to_string(shells.points) + "' must be 1, 12 or 42");
+       }},
+      {"one_body", [&] { shells.one_body = in.yes_no(); }},
       {"lubrication", [&] { lubrication.on = in.yes_no(); }},
       {"lubrication_gap", [&] { lubrication.gap = smallest_gap(in); }},
       {"lubrication_range", [&] { lubrication.range = largest_gap(in); }},
@@ -158,8 +165,24 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!lubrication.on || all_pairs,
              "keyword lubrication: yes requires cut_off_distance inf and clumps_only no: it is what "
              "close spheres resist more than they do in the mobility of all");
-  in.require(!lubrication.on || scene.rotation || rigid.shell > 1,
-             "keyword lubrication: yes requires rotation yes (or a shell)");
+  in.require(!lubrication.on || scene.rotation || rigid.shell > 1 || shells.on(),
+             "keyword lubrication: yes requires rotation yes (or a shell, or multiblob)");
+  in.require(!shells.on() || all_pairs,
+             "keyword multiblob: '" + std::to_string(shells.points) +
+                 "' requires cut_off_distance inf and clumps_only no");
+  in.require(!shells.on() || scene.tensor != SD_TENSOR_OSEEN,
+             "keyword multiblob is not available with tensor oseen: use tensor rpy");
+  in.require(!shells.on() || !in.given("shell"),
+             "keyword multiblob: the spheres of rigid clumps are shells of points already; leave "
+             "out shell");
+  in.require(!shells.on() || !in.given("rotation") || scene.rotation,
+             "keyword multiblob: bodies of points turn; leave out rotation no");
+  in.require(!shells.on() || !in.given("precondition"),
+             "keyword multiblob has its own preconditioner; leave out precondition");
+  in.require(!shells.on() || lubrication.range <= SD_FILM_LARGEST_XI,
+             "keyword lubrication_range: '" + text(lubrication.range) +
+                 "' must be <= 2 with multiblob");
+  in.require(!in.given("one_body") || shells.on(), "keyword one_body requires multiblob 12 or 42");
   in.require(!in.given("lubrication_gap") || lubrication.on,
              "keyword lubrication_gap requires lubrication yes");
   in.require(!in.given("lubrication_range") || lubrication.on,
@@ -179,8 +202,9 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!rigid.on || !scene.clumps_only || std::isinf(scene.cutoff),
              "keyword rigid_clumps: no cut_off_distance may be given with clumps_only yes, the whole "
              "of a clump is solved");
-  in.require(!rigid.on || scene.clumps_only || scene.rotation || rigid.shell > 1,
-             "keyword rigid_clumps: with clumps_only no, rotation yes (or a shell) is required");
+  in.require(!rigid.on || scene.clumps_only || scene.rotation || rigid.shell > 1 || shells.on(),
+             "keyword rigid_clumps: with clumps_only no, rotation yes (or a shell, or multiblob) is "
+             "required");
   in.require(!in.given("shell") || rigid.on, "keyword shell requires rigid_clumps yes");
   in.require(!rigid.on || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rigid_clumps is not available with tensor oseen");

@@ -33,6 +33,7 @@ struct StokesSettings {
   Scene::Settings scene;
   RigidClumps::Settings rigid;
   Lubrication::Settings lubrication;
+  Shells::Settings shells;
 
   /* Are solutions kept, from which the next solve begins? */
   bool history() const { return algorithm == GRADIENTS && warm_start; }

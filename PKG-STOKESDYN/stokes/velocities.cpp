@@ -215,10 +215,147 @@ sd_bodies Velocities::bodies(int width)
   return A;
 }
 
+sd_bodies Velocities::assemble(int width)
+{
+  if (scene.shells) {
+    place_shells();
+    arrange_shells();
+    return bodies_of_shells();
+  }
+  place(width);
+  arrange();
+  return bodies(width);
+}
+
+// --- spheres as shells of points -----------------------------------------------------------------
+
+void Velocities::orient()
+{
+  for (const Clump &clump : clumps) {
+    const sd_multiblob_shape &shape = rigid.points(*clump.body->shape, scene.shells->model());
+    double turn[9];
+    sd_product3(clump.pose, shape.turn, turn);
+    for (int k = 0; k < clump.body->n; k++)
+      scene.shells->turn_row(scene.row_of_member((int) member_of(clump, k)), turn, shape.mask[k]);
+  }
+}
+
+/* out [3 points] = velocity + gradient r, by rows */
+void Velocities::flow_at_points(const double *velocity, int stride, const double *gradient,
+                                double *out) const
+{
+  for (size_t k = 0; k < sphere.size(); k++) {
+    double change[3];
+    sd_multiply3(gradient + 9 * (size_t) sphere[k], &r[3 * k], change);
+    for (int d = 0; d < 3; d++) out[3 * k + d] = velocity[stride * (size_t) sphere[k] + d] + change[d];
+  }
+}
+
+/* Points around the spheres; forces on these, the fluid at the points, their drags */
+void Velocities::place_shells()
+{
+  enum { VELOCITY = 0, SLOPE = 3, FORCE = 12, COLUMNS = 18 };
+  const size_t n = scene.size(), P = scene.shells->points();
+  const double *gradients = ambient.gradients();
+  std::vector<double> x(3 * P * n + 3), b(P * n + 1);
+  std::vector<double> rows = scene.rows(COLUMNS, [&](int i, double *out) {
+    std::fill_n(out, (int) COLUMNS, 0.0);
+    std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
+    if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
+    std::copy_n(atom->f[i], 3, out + FORCE);
+    std::copy_n(atom->torque[i], 3, out + FORCE + 3);
+  });
+  scene.drift(rows.data(), COLUMNS, 1.0);
+  F.resize(6 * n + 6);
+  slope.resize(9 * n + 9);
+  for (size_t k = 0; k < n; k++) {
+    std::copy_n(&rows[COLUMNS * k + FORCE], 6, &F[6 * k]);
+    std::copy_n(&rows[COLUMNS * k + SLOPE], 9, &slope[9 * k]);
+  }
+  const sd_spheres spheres = scene.local();
+  of_points.model = &scene.shells->model();
+  of_points.spheres = {spheres.x, spheres.a, scene.shells->turns(), scene.shells->masks(), (int) n};
+  of_points.w = spheres.w;
+  r.resize(3 * P * n + 3);
+  of_points.r = r.data();
+  sd_multiblob_expand(of_points.model, &of_points.spheres, r.data(), x.data(), b.data());
+  sphere.resize(P * n);
+  D.assign(3 * P * n + 3, 1.0);
+  u.resize(3 * P * n + 3);
+  for (size_t k = 0; k < P * n; k++) {
+    sphere[k] = (int) (k / P);
+    const double w = spheres.w[sphere[k]], drag = 6.0 * SD_PI * b[k] / (w * w);
+    for (int d = 0; d < 3 && b[k] > 0.0; d++) D[3 * k + d] = drag;
+  }
+  flow_at_points(rows.data() + VELOCITY, COLUMNS, slope.data(), u.data());
+}
+
+/* A body for each free sphere, then the clumps */
+void Velocities::arrange_shells()
+{
+  const size_t n = scene.size(), P = scene.shells->points();
+  const sd_spheres spheres = scene.local();
+  member.clear();
+  shaped.clear();
+  loner.clear();
+  whole.assign(n + 1, 0);
+  arm.assign(3 * n + 3, 0.0);
+  const auto add_points = [&](const sd_multiblob_shape &shape, const std::vector<int> &rows) {
+    for (int k = 0; k < shape.points.m; k++)
+      member.push_back(P * rows[shape.row[k] / P] + shape.row[k] % P);
+  };
+  for (int k = 0; k < scene.lone(); k++) {
+    const double w = spheres.w[k];
+    whole[k] = shaped.size();
+    add_points(scene.shells->free_sphere(), {k});
+    shaped.push_back({&scene.shells->free_sphere().points,
+                      {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                      spheres.a[k],
+                      1.0 / (w * w),
+                      nullptr});
+  }
+  for (const Clump &clump : clumps) {
+    const sd_multiblob_shape &shape = rigid.points(*clump.body->shape, scene.shells->model());
+    std::vector<int> rows;
+    for (int k = 0; k < clump.body->n; k++) {
+      rows.push_back(scene.row_of_member((int) member_of(clump, k)));
+      whole[rows.back()] = shaped.size();
+      sd_multiply3(clump.pose, clump.body->shape->shape.x + 3 * (size_t) k,
+                   &arm[3 * (size_t) rows.back()]);
+    }
+    add_points(shape, rows);
+    sd_body body = {&shape.points, {}, 1.0, clump.eta, nullptr};
+    std::copy_n(clump.pose, 9, body.R);
+    shaped.push_back(body);
+  }
+  size_t at = 0;
+  for (sd_body &body : shaped) {
+    body.row = &member[at];
+    at += body.shape->m;
+  }
+  V.resize(6 * shaped.size() + 6);
+}
+
+sd_bodies Velocities::bodies_of_shells()
+{
+  const int n = scene.size(), all = scene.shells->points() * n;
+  sd_bodies A = bodies(3);
+  A.spheres = {n, 6, whole.data(), arm.data()};
+  A.points = {all, 3, sphere.data(), r.data()};
+  alone.n = all;
+  of_points.pairs = A.apply;
+  of_points.pairs_ctx = A.apply_ctx;
+  A.apply = sd_multiblob_apply;
+  A.apply_ctx = &of_points;
+  return A;
+}
+
+// --- the loop --------------------------------------------------------------------------------------
+
 /* A strain carries clumps as their shells say. */
 void Velocities::carry(const sd_bodies &A, double *flow)
 {
-  if (!ambient.gradients() || clumps.empty()) return;
+  if (!ambient.gradients() || clumps.empty() || scene.shells) return;
   gradient.resize(9 * clumps.size());
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
@@ -229,8 +366,8 @@ void Velocities::carry(const sd_bodies &A, double *flow)
 sd_status Velocities::solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
                             sd_bodies_report &report)
 {
-  v.resize(u.size());
-  exerted.resize(u.size());
+  v.resize(sd_bodies_loads(&A) + 6);
+  exerted.resize(sd_bodies_loads(&A) + 6);
   work.resize(sd_bodies_work(&A));
   const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
                                    exerted.data()};
@@ -238,20 +375,21 @@ sd_status Velocities::solve(const sd_bodies &A, const sd_bodies_problem &problem
 }
 
 /* Everybody is held, at rest in a fluid that moves with the slip. */
-sd_status Velocities::resist(const How &how, const std::vector<double> &slip,
+sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Guess &guess,
                              std::vector<double> &on_spheres, sd_bodies_report &report)
 {
-  place(how.width);
-  arrange();
-  sd_bodies A = bodies(how.width);
-  const std::vector<char> held(loner.size() + shaped.size() + 1, 1);
+  sd_bodies A = assemble(how.width);
+  const std::vector<char> held(sd_bodies_count(&A) + 1, 1);
   A.held = held.data();
   const size_t m = how.width, rows = m * scene.size();
-  std::copy_n(slip.begin(), rows, u.begin());
+  if (scene.shells)
+    slip_at_points(slip.data());
+  else {
+    std::copy_n(slip.begin(), rows, u.begin());
+    guess.l.assign(rows + m, 0.0);
+    for (size_t j = 0; j < rows && how.warm; j++) guess.l[j] = -on_spheres[j];
+  }
   carry(A, u.data());
-  Guess guess;
-  guess.l.assign(rows + m, 0.0);
-  for (size_t j = 0; j < rows && how.warm; j++) guess.l[j] = -on_spheres[j];
   const sd_bodies_problem problem = {u.data(), F.data(),      nullptr,
                                      how.warm, how.tolerance, how.max_iter};
   const sd_status status = solve(A, problem, guess, report);
@@ -259,12 +397,31 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip,
   return status;
 }
 
+/* u of spheres that the fluid passes with this slip, velocity and spin [6 n], and strains */
+void Velocities::slip_at_points(const double *slip)
+{
+  for (size_t k = 0; k < (size_t) scene.size(); k++) {
+    double *G = &slope[9 * k];
+    const double *w = slip + 6 * k + 3;
+    const double turning[9] = {0.0, -w[2], w[1], w[2], 0.0, -w[0], -w[1], w[0], 0.0};
+    const double E[9] = {G[0],
+                         0.5 * (G[1] + G[3]),
+                         0.5 * (G[2] + G[6]),
+                         0.5 * (G[1] + G[3]),
+                         G[4],
+                         0.5 * (G[5] + G[7]),
+                         0.5 * (G[2] + G[6]),
+                         0.5 * (G[5] + G[7]),
+                         G[8]};
+    for (int d = 0; d < 9; d++) G[d] = E[d] + turning[d];
+  }
+  flow_at_points(slip, 6, slope.data(), u.data());
+}
+
 sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
                                sd_bodies_report &report)
 {
-  place(how.width);
-  arrange();
-  sd_bodies A = bodies(how.width);
+  sd_bodies A = assemble(how.width);
   if (lubrication.settings.on) {
     lubrication.place(scene, ambient);
     tie.L = lubrication.matrix();
@@ -275,7 +432,7 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
                                      how.warm, how.tolerance, how.max_iter};
   const sd_status status = solve(A, problem, guess, report);
   for (size_t c = 0; c < clumps.size(); c++)
-    std::copy_n(&V[6 * (loner.size() + c)], 6, clumps[c].V);
+    std::copy_n(&V[6 * (sd_bodies_count(&A) - clumps.size() + c)], 6, clumps[c].V);
   const size_t m = how.width, n = scene.size();
   std::vector<double> moved(2 * m * n + 2 * m);
   scene.drift(v.data(), how.width, -1.0);    // an atom's, not those of the image next to its clump

@@ -53,13 +53,17 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* Errors, on all ranks: those of RigidClumps; a clump that is not rigid, or not all selected. */
   void find();
 
+  /* With shells of points: those of clumps turn with them. The rows of the scene stand. */
+  void orient();
+
   /* What becomes of atom i: velocity, with torques angular velocity, and force of the fluid on it,
    * with torque: v and F [width] */
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
   /* Where the next solve may begin: by rows, which are the atoms that take part, [width n] forces
-   * on the fluid and, with lubrication, the velocities that go with them */
+   * on the fluid, with shells those of their points, and, with lubrication, the velocities that go
+   * with them */
   struct Guess {
     std::vector<double> l, v;
   };
@@ -74,9 +78,9 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_status together(const How &how, Guess &guess, const Take &take, sd_bodies_report &report);
 
   /* The same bodies where velocities are given: forces F [width n] of the fluid on the spheres that
-   * take part, from their slip [width n]; warm: F holds a guess */
-  sd_status resist(const How &how, const std::vector<double> &slip, std::vector<double> &F,
-                   sd_bodies_report &report);
+   * take part, from their slip [width n]; warm: F holds a guess, with shells guess.l */
+  sd_status resist(const How &how, const std::vector<double> &slip, Guess &guess,
+                   std::vector<double> &F, sd_bodies_report &report);
 
   double memory_usage() const;
 
@@ -95,6 +99,10 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* for the core, by rows, by clumps, by spheres of clumps */
   std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
   std::vector<int> member, whole, loner;
+  /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow */
+  std::vector<int> sphere;
+  std::vector<double> r, slope;
+  sd_multiblob_mobility of_points = {};
   std::vector<sd_body> shaped;
   /* where nobody sees anybody */
   sd_mobility_scene alone = {};
@@ -115,6 +123,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
   void drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
                double *T) const;
   sd_bodies bodies(int width);
+  sd_bodies assemble(int width);
+  void place_shells();
+  void slip_at_points(const double *slip);
+  void arrange_shells();
+  sd_bodies bodies_of_shells();
+  void flow_at_points(const double *velocity, int stride, const double *gradient, double *out) const;
   void carry(const sd_bodies &A, double *flow);
   sd_status solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
                   sd_bodies_report &report);

@@ -329,6 +329,8 @@ WAYS = {"spheres": "cut_off_distance inf visc 1.1 rotation yes", "spheres by lis
         "close spheres": "cut_off_distance inf visc 1.1 rotation yes lubrication yes relative_tolerance 1e-12",
         "close clumps": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0 lubrication yes "
                         "lubrication_gap 1e-2 relative_tolerance 1e-12",
+        "shells of points": "cut_off_distance inf visc 1.1 multiblob 12 rigid_clumps yes fluid_velocity v_u 0 0 lubrication yes "
+                            "relative_tolerance 1e-12",
         "clumps apart": "clumps_only yes visc 1.1 rotation yes rigid_clumps yes shell 12 fluid_velocity v_u 0 0"}
 
 

@@ -125,8 +125,9 @@ static void keep_pair(sd_lubrication *L, const sd_lubrication_scene *s, long *co
 static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   struct sd_lubrication_work *w = L->work;
-  sd_status status = sd_near_once(&w->near, &s->spheres, s->n, s->n_all, 2.0 + s->range);
-  if (status == SD_OK) status = reserve_pairs(L, s, w->near.first[s->n]);
+  const int beyond = s->world.ranks > 1, rows = beyond ? s->n_all : s->n;
+  sd_status status = sd_near_once(&w->near, &s->spheres, rows, s->n_all, 2.0 + s->range);
+  if (status == SD_OK) status = reserve_pairs(L, s, w->near.first[rows]);
   if (status != SD_OK) return status;
   L->count = 0;
   for (int i = 0; i < s->n; i++)

@@ -3,28 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_body_shape.h"
+#include "sd_constants.h"
 #include "sd_linear.h"
 #include "sd_shell.h"
-#include "sd_tensor.h"
 
 int sd_multiblob_has(int n)
 {
   return n == 12 || n == 42;
-}
-
-void sd_multiblob_matrix(int n, const double *x, const double *b, double *M)
-{
-  const size_t N = 3 * (size_t) n;
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j <= i; j++) {
-      double r[3], block[9];
-      sd_minus(x + 3 * (size_t) i, x + 3 * (size_t) j, r);
-      sd_tensor_uf(SD_TENSOR_RPY, r, b[i], b[j], 1.0, block);
-      for (int p = 0; p < 3; p++)
-        for (int q = 0; q < 3; q++)
-          M[(3 * (size_t) i + p) * N + 3 * (size_t) j + q] =
-              M[(3 * (size_t) j + q) * N + 3 * (size_t) i + p] = block[3 * p + q];
-    }
 }
 
 /* out = g_k v for r over a */
@@ -68,7 +54,7 @@ static sd_status resistance_of_lone(const sd_multiblob *m, double R[MODES][MODES
     motions_at(m, m->r + 3 * k, motion);
     for (size_t e = 0; e < MODES; e++) memcpy(v + e * N + 3 * k, motion[e], sizeof motion[e]);
   }
-  sd_multiblob_matrix(m->n, m->r, b, M);
+  sd_body_shape_matrix(m->n, 3, m->r, b, M);
   memcpy(f, v, sizeof(double) * MODES * N);
   const sd_status status = sd_cholesky_solve((int) N, M, MODES, f);
   for (size_t e = 0; e < MODES; e++)

@@ -65,10 +65,6 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *out);
 void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const double *r,
                            const double *f, double *u);
 
-/* M [(3n)^2], symmetric: velocities of the points of radii b [n] at x [3n] from their forces,
- * viscosity 1, without any addition */
-void sd_multiblob_matrix(int n, const double *x, const double *b, double *M);
-
 #ifdef __cplusplus
 }
 #endif

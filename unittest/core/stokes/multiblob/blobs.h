@@ -9,6 +9,7 @@
 
 #include "ewald/periodic.h"
 
+#include "sd_body_shape.h"
 #include "sd_linear.h"
 #include "sd_lubrication.h"
 #include "sd_multiblob_points.h"
@@ -100,7 +101,7 @@ static inline void blobs_leave_out(blobs *s)
 static inline void blobs_open(blobs *s)
 {
   blobs_expand(s);
-  sd_multiblob_matrix(s->N / 3, s->at, s->b, s->M);
+  sd_body_shape_matrix(s->N / 3, 3, s->at, s->b, s->M);
   blobs_leave_out(s);
   blobs_add_one_body(s);
 }

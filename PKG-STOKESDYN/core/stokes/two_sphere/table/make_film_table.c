@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_body_shape.h"
 #include "sd_constants.h"
 #include "sd_film_of.h"
 #include "sd_film_table_internal.h"
@@ -103,7 +104,7 @@ static void add_resistance(shells *s, sd_pair_resistance *sum)
 {
   const int N = 6 * s->m->n;
   double R[12][12];
-  sd_multiblob_matrix(2 * s->m->n, s->x, s->b, s->M);
+  sd_body_shape_matrix(2 * s->m->n, 3, s->x, s->b, s->M);
   if (s->m->delta != 0.0) add_one_body(s);
   set_motions(s);
   memcpy(s->f, s->v, sizeof(double) * 12 * (size_t) N);

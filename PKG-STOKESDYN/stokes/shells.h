@@ -1,0 +1,71 @@
+/* Spheres as shells of points (keyword multiblob): how the shell of each row stands, and its points,
+ * for the scene's engine and for the bodies' loop. Points are made where they are used, from the
+ * sphere's row. */
+#ifndef SD_SHELLS_H
+#define SD_SHELLS_H
+
+#include "halo.h"
+#include "pointers.h"
+
+#include "sd_film.h"
+#include "sd_multiblob_shape.h"
+#include "sd_product.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+class Shells : protected LAMMPS_NS::Pointers {
+ public:
+  struct Settings {
+    /* of each sphere; 1: spheres are points */
+    int points = 1;
+    bool one_body = true;
+    bool on() const { return points > 1; }
+  } settings;
+
+  Shells(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command) {}
+  ~Shells() { sd_multiblob_shape_free(&lone); }
+  Shells(const Shells &) = delete;
+  Shells &operator=(const Shells &) = delete;
+
+  /* The settings are new. */
+  void make();
+  const sd_multiblob &model() const { return blob; }
+  const sd_multiblob_shape &free_sphere() const { return lone; }
+  int points() const { return blob.n; }
+  /* How far points reach from the centre of a unit sphere */
+  double radius() const { return blob.radius; }
+  double point() const { return blob.point; }
+
+  /* n rows of this rank, all of them free; then those of clumps are turned. */
+  void free_rows(int n);
+  void turn_row(int k, const double turn[9], sd_multiblob_mask mask);
+  /* Rows and copies have been surrounded: points of all [n_all], x, a, w as in Scene::local() */
+  void expand(const Halo &halo, int n_all, const sd_spheres &spheres);
+  /* The same of a cloud whose rows, [10 n] as they are sent, are given */
+  void expand_cloud(int n, const double *rows, const sd_spheres &spheres);
+
+  /* Points of rows and copies, or of the cloud */
+  sd_spheres all() const { return {x.data(), b.data(), w.data()}; }
+  /* Of this rank's rows: turn [9 n], mask [n]; as they are sent: [10 n], turn and mask */
+  const double *turns() const { return turn.data(); }
+  const sd_multiblob_mask *masks() const { return mask.data(); }
+  std::vector<double> sent(int n) const;
+
+  double memory_usage() const;
+
+ private:
+  std::string command;
+  sd_multiblob blob = {};
+  sd_multiblob_shape lone = {};
+  std::vector<double> turn;
+  std::vector<sd_multiblob_mask> mask;
+  std::vector<double> x, b, w;
+
+  void put(int n, const sd_spheres &spheres);
+};
+
+}    // namespace StokesDyn
+#endif
