@@ -233,8 +233,8 @@ void Velocities::orient()
 {
   for (const Clump &clump : clumps) {
     const sd_multiblob_shape &shape = rigid.points(*clump.body->shape, scene.shells->model());
-    double turn[9];
-    sd_product3(clump.pose, shape.turn, turn);
+    double pose[9], turn[9];
+    sd_multiblob_shape_stand(&shape, clump.pose, pose, turn);
     for (int k = 0; k < clump.body->n; k++)
       scene.shells->turn_row(scene.row_of_member((int) member_of(clump, k)), turn, shape.mask[k]);
   }
@@ -325,7 +325,8 @@ void Velocities::arrange_shells()
     }
     add_points(shape, rows);
     sd_body body = {&shape.points, {}, 1.0, clump.eta, nullptr};
-    std::copy_n(clump.pose, 9, body.R);
+    double turn[9];
+    sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
     shaped.push_back(body);
   }
   size_t at = 0;

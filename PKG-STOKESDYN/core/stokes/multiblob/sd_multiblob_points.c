@@ -10,7 +10,8 @@ static int inside(const double p[3], const double centre[3], double radius)
   return sd_distance_squared(p, centre) < radius * radius;
 }
 
-void sd_multiblob_masks(const sd_multiblob *m, const sd_shape *clump, sd_multiblob_mask *mask)
+void sd_multiblob_masks(const sd_multiblob *m, const sd_shape *clump, const double turn[9],
+                        sd_multiblob_mask *mask)
 {
   const double hair = SD_SHAPE_TOLERANCE * clump->size;
   for (int i = 0; i < clump->n; i++) {
@@ -21,7 +22,7 @@ void sd_multiblob_masks(const sd_multiblob *m, const sd_shape *clump, sd_multibl
       mask[i] &= ~SD_MULTIBLOB_WHOLE;
       for (int k = 0; k < m->n; k++) {
         double p[3];
-        sd_multiply3(clump->frame, m->r + 3 * k, p);
+        sd_multiply3(turn, m->r + 3 * k, p);
         for (int d = 0; d < 3; d++) p[d] = x[d] + a * p[d];
         if (inside(p, clump->x + 3 * (long) j, m->radius * clump->a[j]))
           mask[i] &= ~(UINT64_C(1) << k);

@@ -25,10 +25,11 @@ static inline sd_multiblob_mask sd_multiblob_whole(const sd_multiblob *m)
   return SD_MULTIBLOB_WHOLE | ((UINT64_C(1) << m->n) - 1);
 }
 
-/* Of the members of a rigid clump, mask [clump->n]: points nearer to the centre of another member
- * than the radius of its shell are left out; the addition is for members that overlap no other, by
- * more than the tolerance of shapes. */
-void sd_multiblob_masks(const sd_multiblob *m, const sd_shape *clump, sd_multiblob_mask *mask);
+/* Of the members of a rigid clump, mask [clump->n], whose shells are turned by turn [9] in its axes:
+ * points nearer to the centre of another member than the radius of its shell are left out; the
+ * addition is for members that overlap no other, by more than the tolerance of shapes. */
+void sd_multiblob_masks(const sd_multiblob *m, const sd_shape *clump, const double turn[9],
+                        sd_multiblob_mask *mask);
 
 typedef struct {
   /* [3 n], [n] centres and radii */

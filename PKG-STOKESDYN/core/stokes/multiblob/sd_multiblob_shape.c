@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_linear.h"
+
 /* M [(3 count)^2] += the addition of each sphere; row [count]: which points these are; f, u:
  * scratch */
 static void add_one_body(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *r,
@@ -49,13 +51,57 @@ static sd_status make_shape(const sd_multiblob *m, const sd_multiblob_spheres *s
   return status;
 }
 
+/* A right-handed frame that only its first axis says; generic, so that nothing special happens to a
+ * line along an axis of space or between two */
+static void along_line(const double u[3], double E[9])
+{
+  const double some[3] = {0.52, -0.31, 0.79};
+  double v[3], w[3];
+  sd_cross(u, some, v);
+  if (sd_dot(v, v) < 1e-12) sd_across(u, v);
+  sd_normalize(v);
+  sd_cross(u, v, w);
+  for (int d = 0; d < 3; d++) {
+    E[3 * d] = u[d];
+    E[3 * d + 1] = v[d];
+    E[3 * d + 2] = w[d];
+  }
+}
+
+void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], double pose[9],
+                              double turn[9])
+{
+  const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, *T = s->turn;
+  if (s->rank == 2) {
+    memcpy(pose, R, 9 * sizeof(double));
+    sd_product3(R, T, turn);
+    return;
+  }
+  memcpy(turn, unity, sizeof unity);
+  if (s->rank == 1) {
+    const double line[3] = {T[0], T[3], T[6]};
+    double u[3];
+    sd_multiply3(R, line, u);
+    sd_normalize(u);
+    along_line(u, turn);
+  }
+  const double back[9] = {T[0], T[3], T[6], T[1], T[4], T[7], T[2], T[5], T[8]};
+  sd_product3(turn, back, pose);
+}
+
 sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
                                     sd_multiblob_shape *out)
 {
   const double origin[3] = {0.0}, one = 1.0, unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const size_t n = clump ? (size_t) clump->n : 1, all = n * (size_t) m->n;
   *out = (sd_multiblob_shape){.spheres = (int) n};
+  out->rank = clump ? clump->rank : 0;
   memcpy(out->turn, clump ? clump->frame : unity, sizeof unity);
+  if (clump && clump->rank == 0) memcpy(out->turn, unity, sizeof unity);
+  if (clump && clump->rank == 1) {
+    const double *E = clump->frame, line[3] = {E[0], E[3], E[6]};
+    along_line(line, out->turn);
+  }
   out->mask = malloc(n * sizeof *out->mask);
   out->row = malloc(all * sizeof *out->row);
   double *turn = malloc(n * sizeof unity),
@@ -63,7 +109,7 @@ sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump
   sd_status status = out->mask && out->row && turn && scratch ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) {
     if (clump)
-      sd_multiblob_masks(m, clump, out->mask);
+      sd_multiblob_masks(m, clump, out->turn, out->mask);
     else
       out->mask[0] = sd_multiblob_whole(m);
     for (size_t i = 0; i < n; i++) memcpy(turn + 9 * i, out->turn, sizeof unity);

@@ -18,8 +18,10 @@ typedef struct {
   /* [spheres] */
   int spheres;
   sd_multiblob_mask *mask;
-  /* [9] how the shells of a clump stand in its own axes; unity for a free sphere */
+  /* [9] how the shells of a clump stand in its own axes, by its frame; unity for a free sphere.
+   * rank: of the clump, 0 1 2 (sd_shape.h) */
   double turn[9];
+  int rank;
   /* [points.m] row of each point among the n spheres rows of the body */
   int *row;
   sd_body_shape points;
@@ -31,6 +33,12 @@ typedef struct {
 sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
                                     sd_multiblob_shape *out);
 void sd_multiblob_shape_free(sd_multiblob_shape *s);
+
+/* A clump that stands with R (sd_shape_pose): pose [9] of the body, and turn [9] of its shells in
+ * space. Both are the same whatever clump of its kind the shape was made from. On a line R has any
+ * azimuth: the shells get one that only the line's direction says, and the pose with them. */
+void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], double pose[9],
+                              double turn[9]);
 
 /* M without 1/(6 pi eta b): the pairs of points by an engine, and the one-body addition. For
  * sd_bodies.apply; all that it points to outlives it. */

@@ -119,9 +119,9 @@ static void points_inside_another_member(void **state)
   assert_int_equal(sd_multiblob_create(42, 1, &m), SD_OK);
   assert_int_equal(sd_shape_create(2, x, a, &touching), SD_OK);
   assert_int_equal(sd_shape_create(2, y, a, &fused), SD_OK);
-  sd_multiblob_masks(&m, &touching, mask);
+  sd_multiblob_masks(&m, &touching, touching.frame, mask);
   assert_true(mask[0] == sd_multiblob_whole(&m) && mask[1] == sd_multiblob_whole(&m));
-  sd_multiblob_masks(&m, &fused, mask);
+  sd_multiblob_masks(&m, &fused, fused.frame, mask);
   for (int i = 0; i < 2; i++) {
     int left = 0;
     assert_true(!(mask[i] & SD_MULTIBLOB_WHOLE));
