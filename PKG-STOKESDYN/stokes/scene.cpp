@@ -180,7 +180,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     } else {
       x = there;
       gather();
-      somebody_sees = n_all > 1;
+      somebody_sees = n_all * points() > 1;
       if (settings.films > 0.0) surround_films();
       place(n_all);
     }

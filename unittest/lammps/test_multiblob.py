@@ -1,0 +1,145 @@
+"""multiblob: spheres as shells of points, through LAMMPS, against unittest/data/multiblob and against each other."""
+import csv
+import os
+
+import numpy as np
+import pytest
+
+import model
+from system import LammpsError, Spheres, input_lines, lmp
+
+MOVE = "fix move all stokes_dynamics/overdamped"
+P6 = 6 * np.pi
+
+
+def rows_of(name, **wanted):
+    path = os.path.join(model.DATA, "multiblob", name)
+    rows = csv.DictReader(line for line in open(path) if not line.startswith("#"))
+    return [row for row in rows if all(row[key] == value for key, value in wanted.items())]
+
+
+def columns(rows, names):
+    return np.array([[float(row[name]) for name in names.split()] for row in rows])
+
+
+def pull(F):
+    """A force of its own on every sphere"""
+    lines = ["fix own all property/atom d_fx d_fy d_fz"]
+    lines += [f"set atom {i + 1} " + " ".join(f"d_f{c} {value!r}" for c, value in zip("xyz", map(float, f))) for i, f in enumerate(F)]
+    return lines + ["compute own all property/atom d_fx d_fy d_fz"] + [f"variable f{c} atom c_own[{d + 1}]" for d, c in enumerate("xyz")] + \
+        ["fix pull all addforce v_fx v_fy v_fz"]
+
+
+def fall(simulation, spheres, F, style, **options):
+    sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob {style}", fix=False, dt=1e-9, **options)
+    return sim.commands(pull(F) + [MOVE]).run()
+
+
+def off(v, w):
+    return np.linalg.norm(v - w) / np.linalg.norm(w)
+
+
+@pytest.mark.parametrize("points", [12, 42])
+def test_lone_sphere_is_exact(simulation, points):
+    eta, a, F, spin = 1.3, 0.7, np.array((0.3, -1.0, 2.0)), np.array((0.2, 0.1, -0.4))
+    sim = simulation(Spheres([(1, 2, 3)], a), f"cut_off_distance inf visc {eta} multiblob {points} relative_tolerance 1e-10", fix=False,
+                     dt=1e-9)
+    sim.commands([f"fix pull all addforce {F[0]} {F[1]} {F[2]}", MOVE]).run()
+    assert np.abs(sim.v[0] - F / (P6 * eta * a)).max() < 1e-10
+    sim = simulation(Spheres([(1, 2, 3)], a, F), f"cut_off_distance inf visc {eta} multiblob {points} relative_tolerance 1e-10")
+    sim.set("omega", 1, spin)
+    sim.run()
+    assert np.abs(sim.fix_rows()[0, :3] / (-P6 * eta * a) - F).max() < 1e-9
+    assert np.abs(sim.fix_rows()[0, 6:9] / (-8 * np.pi * eta * a ** 3) - spin).max() < 1e-9
+
+
+def test_lone_sphere_turns_with_half_the_rate_of_a_shear(simulation):
+    sim = simulation(Spheres([(1, 2, 3)]), "cut_off_distance inf visc 1 multiblob 12 fluid_velocity v_u 0 0 relative_tolerance 1e-10",
+                     before_pair="variable u atom 0.8*y", fix=False, dt=1e-9)
+    sim.commands(MOVE).run()
+    assert np.abs(sim.v[0] - (1.6, 0, 0)).max() < 1e-10
+    assert np.abs(sim.atom("omega")[0] - (0, 0, -0.4)).max() < 1e-10
+
+
+@pytest.mark.parametrize("case, load", [("cube8_0.1", "random"), ("unequal4_0.01", "weight_z"), ("random5_0.001", "random")])
+def test_clusters_near_contact(simulation, case, load):
+    rows = rows_of("clusters_multiblob.csv", case=case, load=load)
+    spheres = Spheres(columns(rows, "x y z"), columns(rows, "a")[:, 0])
+    sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), "12 lubrication yes relative_tolerance 1e-8")
+    assert off(sim.v, columns(rows, "Ux Uy Uz")) < 3e-3
+    assert off(sim.atom("omega"), columns(rows, "Wx Wy Wz")) < 3e-3
+
+
+def test_suspension_of_two_radii_in_a_periodic_box(simulation):
+    rows = rows_of("bidisperse.csv", load="random")
+    side = float(rows[0]["box"])
+    spheres = Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0])
+    sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), "12 lubrication yes relative_tolerance 1e-6", boundary="p p p",
+               box=[(0.0, side)] * 3, comm="neighbor 0.1 bin")
+    assert off(sim.v, columns(rows, "Ux Uy Uz")) < 3e-3
+    assert off(sim.atom("omega"), columns(rows, "Wx Wy Wz")) < 3e-3
+
+
+def test_ewald_sums_in_open_space_are_all_pairs(simulation):
+    rows = rows_of("clusters_multiblob.csv", case="cube8_0.1", load="random")
+    spheres = Spheres(columns(rows, "x y z"), columns(rows, "a")[:, 0])
+    found = []
+    for way in ("direct", "ewald far_field_tolerance 1e-9"):
+        sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), f"12 relative_tolerance 1e-9 far_field {way}")
+        found.append(sim.v)
+    assert off(*found) < 1e-7
+
+
+@pytest.mark.parametrize("clumps", ["", "rigid_clumps yes"])
+def test_forces_of_velocities_of_forces(simulation, clumps):
+    """The pair style undoes what the fix does."""
+    rows = rows_of("clusters_multiblob.csv", case="unequal4_0.01", load="random")
+    F = columns(rows, "Fx Fy Fz")
+    spheres = Spheres(columns(rows, "x y z"), columns(rows, "a")[:, 0], molecule=[1, 1, 0, 0] if clumps else 0)
+    style = f"12 lubrication yes relative_tolerance 1e-10 {clumps}"
+    sim = fall(simulation, spheres, F, style)
+    spheres.v, spins = sim.v, sim.atom("omega")
+    sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob {style}")
+    for i, spin in enumerate(spins):
+        sim.set("omega", i + 1, spin)
+    sim.run()
+    found = -sim.fix_rows()
+    if clumps:    # what holds the members of a clump together is not the fluid's
+        found[0, :3] += found[1, :3]
+        F = np.vstack([F[0] + F[1], F[2:]])
+        found = np.delete(found, 1, 0)
+    assert off(found[:, :3], F) < 1e-7
+
+
+def test_a_solve_begins_where_the_last_one_ended(simulation):
+    rows = rows_of("bidisperse.csv", load="weight_z")
+    side = float(rows[0]["box"])
+    spheres = Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0])
+    products = []
+    for warm in ("yes", "no"):
+        sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob 12 lubrication yes warm_start {warm}", fix=False, dt=0.01,
+                         boundary="p p p", box=[(0.0, side)] * 3, comm="neighbor 0.1 bin")
+        sim.commands([f"fix weight all addforce 0 0 {-P6!r}", MOVE]).run(5)
+        products.append(sim.fix_vector("move")[3])
+    assert products[0] < 0.6 * products[1]
+
+
+def test_radii_too_different_for_films(simulation):
+    sim = simulation(Spheres([(0, 0, 0), (0, 0, 13)], [1.0, 11.0]), "cut_off_distance inf visc 1 multiblob 12 lubrication yes")
+    with pytest.raises(LammpsError, match="with multiblob it knows pairs up to a ratio of 10; use group to select, or lubrication no"):
+        sim.run()
+
+
+@pytest.mark.parametrize("ranks", [2, 3])
+def test_forces_do_not_depend_on_ranks(tmp_path, ranks):
+    rows = rows_of("bidisperse.csv", load="random")
+    side = float(rows[0]["box"])
+    spheres = Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0], columns(rows, "Ux Uy Uz"))
+    found = []
+    for number in (1, ranks):
+        lines = input_lines(spheres, "cut_off_distance inf visc 1 multiblob 12 lubrication yes relative_tolerance 1e-11 add_force yes",
+                            os.path.join(str(tmp_path), "data"), "p p p", [(0.0, side)] * 3, comm="neighbor 0.1 bin", dt=1e-9)
+        lmp(tmp_path, lines + [f"dump d all custom 1 {tmp_path}/forces id fx fy fz tqx tqy tqz", "dump_modify d sort id format float %.15g",
+                               "run 0"], number)
+        found.append(np.loadtxt(f"{tmp_path}/forces", skiprows=9))
+    assert np.abs(found[1] - found[0]).max() < 1e-8 * np.abs(found[0]).max()
