@@ -7,6 +7,7 @@
 #include "library.h"
 #include "version.h"
 
+#include "compute_stokes_dynamics_stress.h"
 #include "fix_check_timestep_sph.h"
 #include "fix_hydro_vans.h"
 #include "fix_nve_sph.h"
@@ -38,6 +39,11 @@ template <class Style> static void *make_fix(LAMMPS *lmp, int narg, char **arg)
   return static_cast<Fix *>(new Style(lmp, narg, arg));
 }
 
+template <class Style> static void *make_compute(LAMMPS *lmp, int narg, char **arg)
+{
+  return static_cast<Compute *>(new Style(lmp, narg, arg));
+}
+
 static lammpsplugin_t entry(const char *kind, const char *name, const char *info)
 {
   lammpsplugin_t plugin = {};
@@ -63,6 +69,13 @@ template <class Style> static lammpsplugin_t fix(const char *info)
   return plugin;
 }
 
+template <class Style> static lammpsplugin_t compute(const char *info)
+{
+  lammpsplugin_t plugin = entry("compute", Style::STYLE, info);
+  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_compute<Style>;
+  return plugin;
+}
+
 static std::vector<lammpsplugin_t> styles()
 {
   return {pair<PairStokesDynamics>("Stokes drag with hydrodynamic interactions: pair_style stokes_dynamics"),
@@ -70,6 +83,7 @@ static std::vector<lammpsplugin_t> styles()
           fix<FixStokesDynamicsOverdamped>("Stokes dynamics without inertia: fix stokes_dynamics/overdamped"),
           fix<FixStokesDynamicsLast>("Stokes dynamics without inertia: comes last"),
           fix<FixStokesDynamicsState>("Stokes drag with hydrodynamic interactions: memory of the pair style"),
+          compute<ComputeStokesDynamicsStress>("Stress of a suspension: compute stokes_dynamics/stress"),
           fix<FixHydroVans>("One-dimensional turbulent stream over a granular bed: fix hydro/vans")};
 }
 

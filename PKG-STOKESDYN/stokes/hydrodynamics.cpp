@@ -507,6 +507,28 @@ void Hydrodynamics::turn(int i, const double R[9])
   }
 }
 
+void Hydrodynamics::stress(std::vector<double> &of_atoms)
+{
+  const size_t n = scene.size();
+  std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0), rows(12 * n + 12);
+  mobile.add_moments(begin_with.l, points.data());
+  if (overdamped) mobile.add_constraints(points.data());
+  if (settings.lubrication.on) {
+    const double *v = overdamped ? mobile.last_velocities() : films_v.data();
+    const sd_status status = sd_lubrication_stress(lubrication.matrix(), v, films.data());
+    if (status != SD_OK)
+      fail_by(lmp, status, COMMAND + ": stress of films: " + sd_status_string(status));
+  }
+  for (size_t k = 0; k < n; k++) {
+    std::copy_n(&points[6 * k], 6, &rows[12 * k]);
+    std::copy_n(&films[6 * k], 6, &rows[12 * k + 6]);
+  }
+  of_atoms.assign(12 * (size_t) atom->nlocal + 12, 0.0);
+  scene.to_atoms(12, rows.data(), [&](int i, const double *row) {
+    std::copy_n(row, 12, &of_atoms[12 * (size_t) i]);
+  });
+}
+
 double Hydrodynamics::dissipation(int i) const
 {
   if (!ambient.active()[i]) return 0.0;

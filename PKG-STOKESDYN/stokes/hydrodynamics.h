@@ -64,6 +64,11 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
    * which the next solve begins. */
   void turn(int i, const double R[9]);
 
+  /* With shells, since the last step: first moments of the forces on the fluid, of the spheres'
+   * points and of their films, [12 nlocal]: xx yy zz xy xz yz of each. Points about the centre of
+   * their sphere; without inertia also what keeps clumps together. On all ranks together. */
+  void stress(std::vector<double> &of_atoms);
+
   bool rotation() const { return settings.scene.rotation; }
   /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
   bool computed_in(double step) const { return memory && memory->global.last_step == step; }

@@ -351,6 +351,27 @@ sd_bodies Velocities::bodies_of_shells()
   return A;
 }
 
+void Velocities::add_moments(const std::vector<double> &l, double *S) const
+{
+  sd_multiblob_moments(&scene.shells->model(), scene.size(), r.data(), l.data(), S);
+}
+
+/* What keeps member k of a clump in its place is what it exerts on the fluid less what acts on it. */
+void Velocities::add_constraints(double *S) const
+{
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++) {
+    const double *x = &arm[3 * k];
+    double f[3];
+    sd_minus(&exerted[6 * k], &F[6 * k], f);
+    const double trace = sd_dot(x, f) / 3.0;
+    for (int e = 0; e < 6; e++) {
+      const int p = row[e], q = column[e];
+      S[6 * k + e] += 0.5 * (x[p] * f[q] + x[q] * f[p]) - (p == q ? trace : 0.0);
+    }
+  }
+}
+
 // --- the loop --------------------------------------------------------------------------------------
 
 /* A strain carries clumps as their shells say. */
@@ -436,6 +457,7 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
     std::copy_n(&V[6 * (sd_bodies_count(&A) - clumps.size() + c)], 6, clumps[c].V);
   const size_t m = how.width, n = scene.size();
   std::vector<double> moved(2 * m * n + 2 * m);
+  if (scene.shells) moved_with = v;
   scene.drift(v.data(), how.width, -1.0);    // an atom's, not those of the image next to its clump
   for (size_t k = 0; k < n; k++) {
     double *row = &moved[2 * m * k];

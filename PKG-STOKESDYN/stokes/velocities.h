@@ -82,6 +82,13 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_status resist(const How &how, const std::vector<double> &slip, Guess &guess,
                    std::vector<double> &F, sd_bodies_report &report);
 
+  /* With shells, since then: S [6 rows] += first moments of the points' forces l; velocities of the
+   * rows, those of the images that they stand for */
+  void add_moments(const std::vector<double> &l, double *S) const;
+  /* Likewise of what keeps the spheres of clumps together, after velocities were found */
+  void add_constraints(double *S) const;
+  const double *last_velocities() const { return moved_with.data(); }
+
   double memory_usage() const;
 
  private:
@@ -101,7 +108,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   std::vector<int> member, whole, loner;
   /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow */
   std::vector<int> sphere;
-  std::vector<double> r, slope;
+  std::vector<double> r, slope, moved_with;
   sd_multiblob_mobility of_points = {};
   std::vector<sd_body> shaped;
   /* where nobody sees anybody */

@@ -143,3 +143,66 @@ def test_forces_do_not_depend_on_ranks(tmp_path, ranks):
                                "run 0"], number)
         found.append(np.loadtxt(f"{tmp_path}/forces", skiprows=9))
     assert np.abs(found[1] - found[0]).max() < 1e-8 * np.abs(found[0]).max()
+
+
+# --- shear and stress ------------------------------------------------------------------------------------------------------
+
+STRESS = "compute S all stokes_dynamics/stress"
+
+
+def moments(sim):
+    rows = np.array(sim.lmp.numpy.extract_compute("S", 1, 2))[:sim.n][np.argsort(sim.ids())]
+    return rows[:, :6], rows[:, 6:]
+
+
+def test_moment_of_a_lone_sphere_in_a_shear(simulation):
+    eta, a, rate = 1.3, 0.7, 0.8
+    sim = simulation(Spheres([(1, 2, 3)], a), f"cut_off_distance inf visc {eta} multiblob 12 fluid_velocity v_u 0 0",
+                     before_pair=f"variable u atom {rate}*y", fix=False, dt=1e-9)
+    sim.commands([MOVE, STRESS, "dump d all custom 1 /dev/null c_S[1]"]).run()
+    points, films = moments(sim)
+    expected = np.array((0, 0, 0, -20 / 3 * np.pi * eta * a ** 3 * rate / 2, 0, 0))
+    assert np.abs(points[0] - expected).max() < 1e-3 * abs(expected[3]) and (films == 0).all()
+
+
+def sheared(simulation, style="", clump=0):
+    """Two radii at a volume fraction of 0.3 in a box that shears with the fluid: half of the rate of shear is a strain."""
+    rows = rows_of("bidisperse.csv", load="E_xy")
+    side, rate = float(rows[0]["box"]), np.sqrt(2)
+    spheres = Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0])
+    sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob 12 lubrication yes relative_tolerance 1e-6 fluid_velocity v_u 0 0 "
+                              f"{style}", boundary="p p p", box=[(0.0, side)] * 3, tilt=(0, 0, 0), fix=False, dt=1e-9,
+                     before_pair=f"variable u atom {rate!r}*y", comm="neighbor 0.1 bin")
+    sim.commands([f"fix shear all deform 1 xy erate {rate!r} remap none", MOVE, STRESS,
+                  "thermo_style custom step " + " ".join(f"c_S[{k}]" for k in range(1, 19))])
+    return sim.run(), rows, side, rate
+
+
+def test_stress_of_a_sheared_suspension(simulation):
+    sim, rows, side, rate = sheared(simulation)
+    U, W = sim.v.copy(), sim.atom("omega").copy()
+    U[:, 0] -= rate * sim.x[:, 1]
+    W[:, 2] += 0.5 * rate
+    assert off(U, columns(rows, "Ux Uy Uz")) < 3e-3 and off(W, columns(rows, "Wx Wy Wz")) < 3e-3
+    points, films = moments(sim)
+    assert off(points + films, columns(rows, "Sxx Syy Szz Sxy Sxz Syz")) < 3e-3
+    whole = sim.compute_vector("S", 18)
+    assert np.abs(whole[:6] - points.sum(axis=0) / side ** 3).max() < 1e-10
+    assert np.abs(whole[6:12] - films.sum(axis=0) / side ** 3).max() < 1e-10
+    # what resists the strain raises the viscosity: signs of compute pressure
+    assert 1.0 < -whole[3] / rate < 1.2 and 1.0 < -whole[9] / rate < 1.2 and (whole[12:] == 0).all()
+
+
+def test_stress_needs_shells_of_points(simulation):
+    sim = simulation(Spheres([(1, 2, 3)]), "cut_off_distance inf visc 1", fix=False)
+    with pytest.raises(LammpsError, match="Compute stokes_dynamics/stress: it requires pair_style stokes_dynamics with multiblob 12 or 42"):
+        sim.commands([STRESS]).run()
+    with pytest.raises(LammpsError, match="it has no keywords, but there is 'virial'"):
+        sim.command("compute T all stokes_dynamics/stress virial")
+
+
+def test_stress_of_an_open_box_has_no_average(simulation):
+    sim = simulation(Spheres([(1, 2, 3)]), "cut_off_distance inf visc 1 multiblob 12", fix=False)
+    sim.commands([MOVE, STRESS, "thermo_style custom step c_S[1]"])
+    with pytest.raises(LammpsError, match="its vector is an average over a periodic box; per-atom rows need none"):
+        sim.run()

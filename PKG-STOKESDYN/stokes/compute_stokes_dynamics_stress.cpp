@@ -1,0 +1,113 @@
+#include "compute_stokes_dynamics_stress.h"
+
+#include "hydrodynamics.h"
+#include "keywords.h"
+
+#include "angle.h"
+#include "atom.h"
+#include "bond.h"
+#include "domain.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
+#include "pair.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+static const std::string COMMAND = "Compute stokes_dynamics/stress";
+
+ComputeStokesDynamicsStress::ComputeStokesDynamicsStress(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg)
+{
+  if (narg != 3) fail(lmp, COMMAND + ": it has no keywords, but there is '" + arg[3] + "'");
+  vector_flag = 1;
+  size_vector = 18;
+  extvector = 0;
+  vector = new double[18];
+  peratom_flag = 1;
+  size_peratom_cols = COLUMNS;
+  // virials of pairs, bonds and fixes are wanted in the steps in which this is asked for
+  pressflag = timeflag = 1;
+}
+
+ComputeStokesDynamicsStress::~ComputeStokesDynamicsStress()
+{
+  delete[] vector;
+}
+
+Hydrodynamics &ComputeStokesDynamicsStress::hydrodynamics() const
+{
+  Hydrodynamics *hydro = Hydrodynamics::of(lmp);
+  if (!hydro || !hydro->settings.shells.on())
+    fail(lmp, COMMAND + ": it requires pair_style stokes_dynamics with multiblob 12 or 42");
+  return *hydro;
+}
+
+void ComputeStokesDynamicsStress::init()
+{
+  hydrodynamics();
+}
+
+void ComputeStokesDynamicsStress::find_moments()
+{
+  Hydrodynamics &hydro = hydrodynamics();
+  if (!hydro.computed_in((double) update->ntimestep))
+    fail(lmp,
+         COMMAND + ": step " + std::to_string(update->ntimestep) +
+             ": the forces of this step are not there; use it in a run");
+  hydro.stress(moments);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(atom->mask[i] & groupbit))
+      std::fill_n(&moments[COLUMNS * (size_t) i], (int) COLUMNS, 0.0);
+}
+
+/* Virials of all other forces, as compute pressure sums them: of this rank */
+void ComputeStokesDynamicsStress::add_others(double *virial) const
+{
+  const auto add = [virial](const double *of) {
+    for (int k = 0; k < 6; k++) virial[k] += of[k];
+  };
+  if (force->pair) add(force->pair->virial);
+  if (force->bond) add(force->bond->virial);
+  if (force->angle) add(force->angle->virial);
+  for (int k = 0; k < modify->nfix; k++)
+    if (modify->fix[k]->virial_global_flag && modify->fix[k]->thermo_virial)
+      add(modify->fix[k]->virial);
+}
+
+void ComputeStokesDynamicsStress::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  if (!domain->xperiodic || !domain->yperiodic || !domain->zperiodic)
+    fail(lmp, COMMAND + ": its vector is an average over a periodic box; per-atom rows need none");
+  if (update->vflag_global != invoked_vector)
+    fail(lmp,
+         COMMAND +
+             ": virials of other forces were not tallied in this step; ask for it in thermo_style");
+  find_moments();
+  double sums[18] = {0.0};
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int k = 0; k < COLUMNS; k++) sums[k] += moments[COLUMNS * (size_t) i + k];
+  add_others(sums + COLUMNS);
+  MPI_Allreduce(sums, vector, 18, MPI_DOUBLE, MPI_SUM, world);
+  const double unit = force->nktv2p / (domain->xprd * domain->yprd * domain->zprd);
+  for (int k = 0; k < 18; k++) vector[k] *= unit;
+}
+
+void ComputeStokesDynamicsStress::compute_peratom()
+{
+  invoked_peratom = update->ntimestep;
+  find_moments();
+  rows.resize(atom->nlocal + 1);
+  for (int i = 0; i < atom->nlocal; i++) rows[i] = &moments[COLUMNS * (size_t) i];
+  array_atom = rows.data();
+}
+
+double ComputeStokesDynamicsStress::memory_usage()
+{
+  return sizeof(double) * (double) (moments.capacity() + rows.capacity());
+}
