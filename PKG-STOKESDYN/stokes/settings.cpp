@@ -166,7 +166,7 @@ void StokesSettings::check(const Keywords &in) const
              "keyword lubrication: yes requires cut_off_distance inf and clumps_only no: it is what "
              "close spheres resist more than they do in the mobility of all");
   in.require(!lubrication.on || scene.rotation || rigid.shell > 1 || shells.on(),
-             "keyword lubrication: yes requires rotation yes (or a shell, or multiblob)");
+             "keyword lubrication: yes requires rotation yes (or a shell)");
   in.require(!shells.on() || all_pairs,
              "keyword multiblob: '" + std::to_string(shells.points) +
                  "' requires cut_off_distance inf and clumps_only no");
@@ -203,8 +203,7 @@ void StokesSettings::check(const Keywords &in) const
              "keyword rigid_clumps: no cut_off_distance may be given with clumps_only yes, the whole "
              "of a clump is solved");
   in.require(!rigid.on || scene.clumps_only || scene.rotation || rigid.shell > 1 || shells.on(),
-             "keyword rigid_clumps: with clumps_only no, rotation yes (or a shell, or multiblob) is "
-             "required");
+             "keyword rigid_clumps: with clumps_only no, rotation yes (or a shell) is required");
   in.require(!in.given("shell") || rigid.on, "keyword shell requires rigid_clumps yes");
   in.require(!rigid.on || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rigid_clumps is not available with tensor oseen");

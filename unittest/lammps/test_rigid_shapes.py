@@ -27,7 +27,7 @@ def test_nearly_equal_clumps_have_their_drag_on_any_ranks(tmp_path, d):
                           + dump_lines(tmp_path / "dump", columns="f_drag[1]") + ["run 0"], ranks=ranks).log.count("Rigid clumps, shape"))
         F = read_dump(tmp_path / "dump")[-1][1][:, 0]
         totals.append(F.reshape(3, 3).sum(axis=1))
-    assert np.abs(np.array(totals) / -30.73 - 1).max() < 1e-3
+    assert np.abs(np.array(totals) / -30.825 - 1).max() < 1e-3
     assert np.abs(np.array(totals) / totals[0] - 1).max() < 1e-10
     assert shapes == shapes[:1] * 3
 
