@@ -30,6 +30,16 @@ typedef struct {
                         const int *from);
 } sd_world;
 
+static inline int sd_world_ranks(const sd_world *world)
+{
+  return world->ranks > 0 ? world->ranks : 1;
+}
+
+static inline int sd_world_me(const sd_world *world)
+{
+  return world->ranks > 0 ? world->me : 0;
+}
+
 #ifdef __cplusplus
 }
 #endif

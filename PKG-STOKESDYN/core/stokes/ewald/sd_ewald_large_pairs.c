@@ -61,7 +61,7 @@ static int room_for_larges(sd_ewald_large_pairs *p, int many)
 static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list, int n,
                               const sd_world *world)
 {
-  const int ranks = world->ranks > 0 ? world->ranks : 1, me = world->ranks > 0 ? world->me : 0;
+  const int ranks = sd_world_ranks(world), me = sd_world_me(world);
   double *counts = calloc((size_t) ranks, sizeof(double));
   if (!counts) return SD_ENOMEMORY;
   for (int i = 0; i < n; i++) counts[me] += s->a[list[i]] >= p->from;

@@ -26,9 +26,8 @@ static double *deconvolution(const sd_ewald *e, int n)
 
 /* --- periodic --- */
 
-/* One row along z of the table, and its share of the self sums: all but the first of the row stand
- * for their partner at -k too. */
-static void periodic_entries(sd_wave *w, const sd_ewald *e, const double *start, double factor,
+/* One row along z of the table */
+static void periodic_entries(const sd_wave *w, const sd_ewald *e, const double *start, double factor,
                              const double *inverse_z, double *table)
 {
   for (int m = 0; m < w->half; m++) {
@@ -36,14 +35,7 @@ static void periodic_entries(sd_wave *w, const sd_ewald *e, const double *start,
     const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2], d = factor * inverse_z[m];
     table[m] = 0.0;
     if (!(k2 > 0.0) || d == 0.0) continue;
-    const double B = sd_ewald_wave_screen(e, k2) / (k2 * sd_ewald_volume(&e->box));
-    table[m] = B * d * d;
-    for (int c = 0; c < 3; c++) {
-      const double part = (m == 0 ? 1.0 : 2.0) * B * (1.0 - k[c] * k[c] / k2);
-      w->self[0][c] += part;
-      w->self[1][c] += part * k2;
-      w->self[2][c] += part * k2 * k2;
-    }
+    table[m] = d * d * sd_ewald_wave_screen(e, k2) / (k2 * sd_ewald_volume(&e->box));
   }
 }
 

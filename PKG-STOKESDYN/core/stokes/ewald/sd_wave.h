@@ -27,9 +27,6 @@ typedef struct {
   double k[3][3];
   /* periodic: [y1 - y0][size x][half]; open: rows of one octant [rows][half x][6][half] */
   double *table;
-  /* periodic: sums over this rank's k of (1 - k_d^2/k^2) H k^2n/(k^2 V), n = 0, 1, 2: what the wave
-   * part does to a sphere through itself and its images is self[0] - 2 b self[1] + b^2 self[2] */
-  double self[3][3];
 } sd_wave;
 
 /* size: points of the transform; this rank's y planes are y0 ... y1 - 1. SD_OK or SD_ENOMEMORY. */
