@@ -47,7 +47,8 @@ static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
     e->ready = 1;
     return SD_OK;
   }
-  const struct sd_ewald_kernels *kernels = sd_ewald_kernels_of(SD_ISA_BEST);
+  const struct sd_ewald_kernels *kernels =
+      SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
   const sd_ewald level[2] = {*how, sd_ewald_of_large(how)};
   e->levels = how->large.from > 0.0 ? 2 : 1;
   sd_ewald_pairs_create(&e->pairs, how, kernels, e->width);
