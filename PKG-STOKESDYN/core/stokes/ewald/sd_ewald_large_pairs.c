@@ -1,5 +1,6 @@
 #include "sd_ewald_large_pairs.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,7 +75,7 @@ static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, cons
   }
   free(counts);
   if (status != SD_OK) return status;
-  if (!room_for_larges(p, p->larges)) return SD_ENOMEMORY;
+  if (p->larges > INT_MAX / 6 || !room_for_larges(p, p->larges)) return SD_ENOMEMORY;
   p->u = p->F + 6 * (long) p->large_room;
   memset(p->large, 0, sizeof(sd_large_sphere) * (size_t) p->larges);
   int next = 0;
