@@ -1,90 +1,25 @@
 #include "sd_grid.h"
 
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_grid_internal.h"
 #include "sd_room.h"
-
-/* --- who has what --- */
-
-static int share(int all, int part, int parts)
-{
-  return (int) ((long) all * part / parts);
-}
-
-static double most_of(int all, int parts)
-{
-  return (all + parts - 1) / parts;
-}
-
-/* Of ranks in so many columns, the most numbers that one of them transforms along z, y and x, if the
- * first direction is d */
-static double load(const sd_grid *g, int d, int columns)
-{
-  const int e = (d + 1) % 3, half = g->size[(d + 2) % 3] / 2 + 1, rows = g->ranks / columns;
-  const double planes = most_of(g->occupied[d], rows), depth = most_of(half, columns);
-  return planes * most_of(g->occupied[e], columns) * half + planes * g->size[e] * depth +
-      g->size[d] * most_of(g->size[e], rows) * depth;
-}
-
-/* As many columns as make the load least; the turn that more than one need is a quarter of it. */
-static int columns_for(const sd_grid *g, int d)
-{
-  const int most = g->occupied[(d + 1) % 3], half = g->size[(d + 2) % 3] / 2 + 1;
-  int best = 1;
-  double least = load(g, d, 1);
-  for (int c = 2; c <= g->ranks && c <= most && c <= half; c++)
-    if (1.25 * load(g, d, c) < least) {
-      least = 1.25 * load(g, d, c);
-      best = c;
-    }
-  return best;
-}
-
-/* What a rank has of `all` planes: first and end. Rows share those of X and Y, columns the others. */
-static void part_of_rank(int all, sd_grid_part what, int rank, int rows, int columns, int *range)
-{
-  const int by_row = what == SD_GRID_X || what == SD_GRID_Y;
-  const int part = by_row ? rank / columns : rank % columns, parts = by_row ? rows : columns;
-  range[0] = range[1] = 0;
-  if (rank >= rows * columns) return;
-  range[0] = share(all, part, parts);
-  range[1] = share(all, part + 1, parts);
-}
-
-static void range_of(const sd_grid *g, sd_grid_part what, int rank, int *range)
-{
-  const int all[] = {g->occupied[0], g->occupied[1], g->size[1], g->half};
-  part_of_rank(all[what], what, rank, g->rows, g->columns, range);
-}
-
-static int length_of(const sd_grid *g, sd_grid_part what, int rank)
-{
-  int range[2];
-  range_of(g, what, rank, range);
-  return range[1] - range[0];
-}
-
-static int own_length(const sd_grid *g, sd_grid_part what)
-{
-  return g->own[what][1] - g->own[what][0];
-}
 
 /* --- plans --- */
 
 static int allocate(sd_grid *g)
 {
-  const size_t lines = (size_t) own_length(g, SD_GRID_LINES) * (size_t) g->half;
+  const size_t lines = (size_t) sd_grid_own(g, SD_GRID_LINES) * (size_t) g->half;
   const int longer = g->size[0] > g->size[1] ? g->size[0] : g->size[1];
-  const size_t waves = (size_t) longer * (size_t) own_length(g, SD_GRID_Z);
+  const size_t waves = (size_t) longer * (size_t) sd_grid_own(g, SD_GRID_Z);
   const size_t plane = (lines > waves ? lines : waves) + 1;
   int ok = 1;
   for (int c = 0; c < 3; c++) {
     g->plane[c] = fftw_alloc_complex(plane);
     ok = ok && g->plane[c];
   }
-  g->slab = calloc((size_t) own_length(g, SD_GRID_X) + 1, sizeof(fftw_complex *));
+  g->slab = calloc((size_t) sd_grid_own(g, SD_GRID_X) + 1, sizeof(fftw_complex *));
   g->beside = fftw_alloc_complex(plane);
   g->counts = calloc(6 * (size_t) g->ranks, sizeof(int));
   return ok && g->slab && g->beside && g->counts;
@@ -96,7 +31,7 @@ static int allocate(sd_grid *g)
 static int plan(sd_grid *g)
 {
   const unsigned how = FFTW_ESTIMATE;
-  const int half = g->half, lines = own_length(g, SD_GRID_LINES), depth = own_length(g, SD_GRID_Z);
+  const int half = g->half, lines = sd_grid_own(g, SD_GRID_LINES), depth = sd_grid_own(g, SD_GRID_Z);
   const int *size = g->size;
   fftw_complex *slab = g->plane[1], *plane = g->plane[0], *beside = g->beside;
   if (depth == 0) return 1; /* no pencils */
@@ -115,46 +50,6 @@ static int plan(sd_grid *g)
   return g->z_forth && g->z_back && g->y_forth && g->y_back && g->x_forth && g->x_back;
 }
 
-/* --- messages --- */
-
-enum { PIECES_TO, PIECES_FROM, ROW_TO, ROW_FROM, COLUMN_TO, COLUMN_FROM };
-
-/* Numbers of a message to or from a rank, after `all` others; 0: more than an int counts */
-static int count(const sd_grid *g, int which, int rank, long numbers, long *all)
-{
-  *all += numbers;
-  if (*all > INT_MAX) return 0;
-  g->counts[which * g->ranks + rank] += (int) numbers;
-  return 1;
-}
-
-/* Of both turns, each of which goes to those of our row or column */
-static int count_turns(const sd_grid *g)
-{
-  const long planes = own_length(g, SD_GRID_X), lines = own_length(g, SD_GRID_LINES);
-  const long rows = own_length(g, SD_GRID_Y), depth = own_length(g, SD_GRID_Z);
-  long all[4] = {0};
-  int ok = 1;
-  for (int r = 0; r < g->rows * g->columns && ok; r++) {
-    if (r == g->me || g->me >= g->rows * g->columns) continue;
-    if (r / g->columns == g->me / g->columns)
-      ok = count(g, ROW_TO, r, 6 * planes * lines * length_of(g, SD_GRID_Z, r), all) &&
-          count(g, ROW_FROM, r, 6 * planes * length_of(g, SD_GRID_LINES, r) * depth, all + 1);
-    if (r % g->columns == g->me % g->columns)
-      ok = ok && count(g, COLUMN_TO, r, 6 * planes * length_of(g, SD_GRID_Y, r) * depth, all + 2) &&
-          count(g, COLUMN_FROM, r, 6 * length_of(g, SD_GRID_X, r) * rows * depth, all + 3);
-  }
-  return ok;
-}
-
-/* What is in message `from` to the other ranks, what they send to the other message */
-static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_counts)
-{
-  if (g->ranks == 1) return SD_OK;
-  return g->world.exchange(g->world.ctx, g->message[from], g->counts + to_counts * g->ranks,
-                           g->message[1 - from], g->counts + from_counts * g->ranks);
-}
-
 sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const sd_world *world)
 {
   sd_grid_free(g);
@@ -166,10 +61,10 @@ sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const
     g->occupied[d] = occupied[d];
   }
   g->half = size[2] / 2 + 1;
-  g->columns = columns_for(g, 0);
+  g->columns = sd_grid_columns(g, 0);
   g->rows = g->ranks / g->columns;
-  for (int k = 0; k < 4; k++) range_of(g, k, g->me, g->own[k]);
-  if (allocate(g) && count_turns(g) && plan(g)) return SD_OK;
+  for (int k = 0; k < 4; k++) sd_grid_range_of(g, k, g->me, g->own[k]);
+  if (allocate(g) && sd_grid_count_turns(g) && plan(g)) return SD_OK;
   sd_grid_free(g);
   return SD_ENOMEMORY;
 }
@@ -193,113 +88,13 @@ void sd_grid_free(sd_grid *g)
   memset(g, 0, sizeof(*g));
 }
 
-/* --- bricks and pieces --- */
-
-/* Part k of the points lo ... lo + n - 1 that lies within one period and within [begin, end) of it:
- * its offset in the brick, its place, its points; 0: there is no part k. */
-static int part_of(int lo, int n, int period, int begin, int end, int k, int *at, int *to)
-{
-  const int first = lo >= 0 ? lo / period : -((period - 1 - lo) / period);
-  const int origin = (first + k) * period;
-  if (origin >= lo + n) return -1;
-  const int from = lo > origin + begin ? lo : origin + begin;
-  const int till = lo + n < origin + end ? lo + n : origin + end;
-  *at = from - lo;
-  *to = from - origin;
-  return till > from ? till - from : 0;
-}
-
-/* The pieces of a brick [6] in some rank's pencils, after those in list; NULL: only counted. rank: at
- * the other end of the message that they go by */
-static int pieces_of(const sd_grid *g, const int *brick, int pencils, int rank, sd_piece *list)
-{
-  const int *lo = brick, *n = brick + 3;
-  int x[2], y[2];
-  range_of(g, SD_GRID_X, pencils, x);
-  range_of(g, SD_GRID_LINES, pencils, y);
-  int count = 0;
-  sd_piece p = {.rank = rank};
-  if (n[0] == 0 || n[1] == 0 || n[2] == 0) return 0;
-  for (int i = 0; (p.n[0] = part_of(lo[0], n[0], g->size[0], x[0], x[1], i, p.at, p.to)) >= 0; i++)
-    for (int j = 0;
-         (p.n[1] = part_of(lo[1], n[1], g->size[1], y[0], y[1], j, p.at + 1, p.to + 1)) >= 0;
-         j++)
-      for (int k = 0;
-           (p.n[2] = part_of(lo[2], n[2], g->size[2], 0, g->size[2], k, p.at + 2, p.to + 2)) >= 0;
-           k++) {
-        if (p.n[0] == 0 || p.n[1] == 0 || p.n[2] == 0) continue;
-        if (list) list[count] = p;
-        count++;
-      }
-  return count;
-}
-
-/* How many of the points lo ... lo + n - 1 are within a range of the period */
-static int points_within(int lo, int n, int period, const int *range)
-{
-  int at, to, part, points = 0;
-  for (int k = 0; n > 0 && (part = part_of(lo, n, period, range[0], range[1], k, &at, &to)) >= 0; k++)
-    points += part;
-  return points;
-}
-
-double sd_grid_at_home(const sd_grid *g, const int *bricks, int d)
-{
-  const int e = (d + 1) % 3, columns = columns_for(g, d), rows = g->ranks / columns;
-  double points = 0.0;
-  for (int r = 0; r < g->ranks; r++) {
-    const int *lo = bricks + 6 * r, *n = lo + 3;
-    int x[2], y[2];
-    part_of_rank(g->occupied[d], SD_GRID_X, r, rows, columns, x);
-    part_of_rank(g->occupied[e], SD_GRID_LINES, r, rows, columns, y);
-    points += (double) points_within(lo[d], n[d], g->size[d], x) *
-        points_within(lo[e], n[e], g->size[e], y) * n[(d + 2) % 3];
-  }
-  return points;
-}
-
-static void list_pieces(const sd_grid *g, const int *bricks, sd_piece *out, sd_piece *in, int *outs,
-                        int *ins)
-{
-  *outs = *ins = 0;
-  for (int r = 0; r < g->ranks; r++) {
-    *outs += pieces_of(g, bricks + 6 * g->me, r, r, out ? out + *outs : NULL);
-    *ins += pieces_of(g, bricks + 6 * r, g->me, r, in ? in + *ins : NULL);
-  }
-}
-
-/* Numbers of pieces to or from each rank, one rank after the other; our own need no message. 0: more
- * than an int counts */
-static int count_pieces(const sd_grid *g, sd_piece *list, int pieces, int which)
-{
-  long all = 0;
-  int ok = 1;
-  memset(g->counts + which * g->ranks, 0, sizeof(int) * (size_t) g->ranks);
-  for (int k = 0; k < pieces && ok; k++) {
-    sd_piece *p = list + k;
-    p->message = all;
-    if (p->rank != g->me) ok = count(g, which, p->rank, 3L * p->n[0] * p->n[1] * p->n[2], &all);
-  }
-  return ok;
-}
-
-/* Of the longest of all messages */
-static size_t largest_message(const sd_grid *g)
-{
-  size_t most = 0;
-  for (int which = PIECES_TO; which <= COLUMN_FROM; which++) {
-    size_t all = 0;
-    for (int r = 0; r < g->ranks; r++) all += (size_t) g->counts[which * g->ranks + r];
-    if (all > most) most = all;
-  }
-  return most;
-}
+/* --- bricks --- */
 
 /* Where the planes of our slab will be */
 static int place_slab(sd_grid *g)
 {
-  const int planes = own_length(g, SD_GRID_X), x0 = g->own[SD_GRID_X][0];
-  const long numbers = 6L * g->size[1] * own_length(g, SD_GRID_Z);
+  const int planes = sd_grid_own(g, SD_GRID_X), x0 = g->own[SD_GRID_X][0];
+  const long numbers = 6L * g->size[1] * sd_grid_own(g, SD_GRID_Z);
   long missing = 0;
   for (int x = 0; x < planes; x++) g->slab[x] = NULL;
   for (int k = 0; k < g->ins && g->layer >= numbers; k++) {
@@ -325,14 +120,14 @@ sd_status sd_grid_place(sd_grid *g, const int *bricks)
   g->row =
       (3 * (long) g->n[2] + 7) / 8 * 8 + 8; /* vectors of the windows end beyond the last point */
   g->layer = g->row * g->n[1];
-  list_pieces(g, bricks, NULL, NULL, &g->outs, &g->ins);
+  sd_grid_list_pieces(g, bricks, NULL, NULL, &g->outs, &g->ins);
   if (!sd_reserve(&g->out, sizeof(sd_piece), (size_t) g->outs, &g->out_room) ||
       !sd_reserve(&g->in, sizeof(sd_piece), (size_t) g->ins, &g->in_room))
     return SD_ENOMEMORY;
-  list_pieces(g, bricks, g->out, g->in, &g->outs, &g->ins);
-  if (!count_pieces(g, g->out, g->outs, PIECES_TO) || !count_pieces(g, g->in, g->ins, PIECES_FROM))
+  sd_grid_list_pieces(g, bricks, g->out, g->in, &g->outs, &g->ins);
+  if (!sd_grid_count_pieces(g, g->out, g->outs, PIECES_TO) || !sd_grid_count_pieces(g, g->in, g->ins, PIECES_FROM))
     return SD_ENOMEMORY;
-  const size_t brick = (size_t) (g->layer * g->n[0]) + 24, doubles = largest_message(g);
+  const size_t brick = (size_t) (g->layer * g->n[0]) + 24, doubles = sd_grid_largest_message(g);
   if (!sd_reserve(&g->brick, sizeof(double), brick, &g->brick_room)) return SD_ENOMEMORY;
   for (int k = 0; k < 2; k++)
     if (!sd_reserve(g->message + k, sizeof(double), doubles, g->message_room + k))
@@ -396,7 +191,7 @@ static void fill_plane(const sd_grid *g, int x, double *message)
 {
   for (int c = 0; c < 3; c++)
     memset(g->plane[c], 0,
-           sizeof(fftw_complex) * (size_t) own_length(g, SD_GRID_LINES) * (size_t) g->half);
+           sizeof(fftw_complex) * (size_t) sd_grid_own(g, SD_GRID_LINES) * (size_t) g->half);
   for (int k = 0; k < g->ins; k++) {
     const sd_piece *p = g->in + k;
     const int i = x - p->to[0];
@@ -423,7 +218,7 @@ static void empty_plane(const sd_grid *g, int x, double *message)
 
 static fftw_complex *slab_row(const sd_grid *g, int c, int x, int y)
 {
-  const long depth = own_length(g, SD_GRID_Z);
+  const long depth = sd_grid_own(g, SD_GRID_Z);
   return g->slab[x - g->own[SD_GRID_X][0]] + ((long) c * g->size[1] + y) * depth;
 }
 
@@ -437,11 +232,11 @@ static void copy(double *beside, double *box, long numbers, int to_beside)
  * slab will be. Our lines, all z of them, between boxes and `beside` */
 static void copy_lines(const sd_grid *g, int c, int x, double *message, int to_beside)
 {
-  const long planes = own_length(g, SD_GRID_X), lines = own_length(g, SD_GRID_LINES);
+  const long planes = sd_grid_own(g, SD_GRID_X), lines = sd_grid_own(g, SD_GRID_LINES);
   const int first = g->me - g->me % g->columns;
   for (int r = first; r < first + g->columns; r++) {
     int z[2];
-    range_of(g, SD_GRID_Z, r, z);
+    sd_grid_range_of(g, SD_GRID_Z, r, z);
     const long row = 2L * (z[1] - z[0]);
     double *box = message + (c * planes + x - g->own[SD_GRID_X][0]) * lines * row;
     if (r == g->me) box = (double *) slab_row(g, c, x, 0);
@@ -454,11 +249,11 @@ static void copy_lines(const sd_grid *g, int c, int x, double *message, int to_b
 /* All lines at our z, between boxes and `beside` */
 static void copy_depths(const sd_grid *g, int c, int x, double *message, int to_beside)
 {
-  const long planes = own_length(g, SD_GRID_X), row = 2L * own_length(g, SD_GRID_Z);
+  const long planes = sd_grid_own(g, SD_GRID_X), row = 2L * sd_grid_own(g, SD_GRID_Z);
   const int first = g->me - g->me % g->columns;
   double *beside = (double *) g->beside;
   for (int r = first; r < first + g->columns; r++) {
-    const long numbers = length_of(g, SD_GRID_LINES, r) * row;
+    const long numbers = sd_grid_length(g, SD_GRID_LINES, r) * row;
     double *box = message + (c * planes + x - g->own[SD_GRID_X][0]) * numbers;
     copy(beside, r == g->me ? (double *) slab_row(g, c, x, 0) : box, numbers, to_beside);
     beside += numbers;
@@ -470,11 +265,11 @@ static void copy_depths(const sd_grid *g, int c, int x, double *message, int to_
  * x][its y][z]. Rows y of other ranks in our plane x, to the message or from it */
 static void copy_rows(const sd_grid *g, int c, int x, double *message, int to_slab)
 {
-  const long planes = own_length(g, SD_GRID_X), row = 2L * own_length(g, SD_GRID_Z);
+  const long planes = sd_grid_own(g, SD_GRID_X), row = 2L * sd_grid_own(g, SD_GRID_Z);
   for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
     int y[2];
     if (r == g->me) continue;
-    range_of(g, SD_GRID_Y, r, y);
+    sd_grid_range_of(g, SD_GRID_Y, r, y);
     const long rows = y[1] - y[0];
     copy((double *) slab_row(g, c, x, y[0]),
          message + (c * planes + x - g->own[SD_GRID_X][0]) * rows * row, rows * row, to_slab);
@@ -486,11 +281,11 @@ static void copy_rows(const sd_grid *g, int c, int x, double *message, int to_sl
  * or from it */
 static void copy_plane(const sd_grid *g, int c, int y, double *message, int to_beside)
 {
-  const long row = 2L * own_length(g, SD_GRID_Z), planes = own_length(g, SD_GRID_Y);
+  const long row = 2L * sd_grid_own(g, SD_GRID_Z), planes = sd_grid_own(g, SD_GRID_Y);
   double *beside = (double *) g->beside;
   for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
     int x[2];
-    range_of(g, SD_GRID_X, r, x);
+    sd_grid_range_of(g, SD_GRID_X, r, x);
     const long rows = x[1] - x[0];
     for (long k = 0; k < rows; k++, beside += row)
       copy(beside,
@@ -504,7 +299,7 @@ static void copy_plane(const sd_grid *g, int c, int y, double *message, int to_b
 /* Rows of `beside` that hold nothing, at our z */
 static void clear_rows(const sd_grid *g, int from, int end)
 {
-  const size_t depth = (size_t) own_length(g, SD_GRID_Z);
+  const size_t depth = (size_t) sd_grid_own(g, SD_GRID_Z);
   memset(g->beside + (size_t) from * depth, 0, sizeof(fftw_complex) * (size_t) (end - from) * depth);
 }
 
@@ -540,6 +335,14 @@ static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *c
 }
 
 /* --- all of it --- */
+
+/* What is in message `from` to the other ranks, what they send to the other message */
+static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_counts)
+{
+  if (g->ranks == 1) return SD_OK;
+  return g->world.exchange(g->world.ctx, g->message[from], g->counts + to_counts * g->ranks,
+                           g->message[1 - from], g->counts + from_counts * g->ranks);
+}
 
 /* From the pieces in the second message to the slab, and what of it is others' to the first */
 static sd_status forth(sd_grid *g)
