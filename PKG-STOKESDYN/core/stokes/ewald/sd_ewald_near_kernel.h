@@ -12,9 +12,7 @@ INLINE long search_range(const double *px, long stride, int begin, int end, cons
     const vec dz = load_any(pz + j) - x[2];
     unsigned hits = bits(dx * dx + dy * dy + dz * dz <= most);
     if (end - j < LANES) hits &= (1u << (end - j)) - 1;
-    int row[LANES];
-    for (int l = 0; l < LANES; l++) row[l] = j + l;
-    many += keep(list + many, row, hits);
+    many += keep_next(list + many, j, hits);
   }
   return many;
 }
