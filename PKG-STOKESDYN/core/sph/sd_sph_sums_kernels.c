@@ -1,6 +1,6 @@
-/* The loops, compiled once for each instruction set by the files that define LANES and LOOPS and
- * include this one. What a scene does not ask for is a constant 0 in its copy of a loop, so the
+/* The loops of SPH. What a scene does not ask for is a constant 0 in its copy of a loop, so the
  * compiler drops it. */
+#if SD_LANES > 1 /* there are no loops in plain C */
 #include "sd_sph_both_loops.h"
 #include "sd_sph_forces_loop.h"
 #include "sd_sph_half_loops.h"
@@ -150,5 +150,6 @@ static void all_weigh(const sd_sph_model *model, const sd_sph_list *list, const 
   }
 }
 
-const sd_sph_loops LOOPS = {all_forces, all_slopes,    all_rates,
-                            all_middle, all_diffusion, all_weigh};
+const sd_sph_loops SD_KERNELS(sd_sph_loops) = {all_forces, all_slopes,    all_rates,
+                                               all_middle, all_diffusion, all_weigh};
+#endif

@@ -1,12 +1,9 @@
-/* Kernels of the engine ewald, one source for every instruction set. A file that includes this one
- * has first included its sd_vectors_*.h, and defines SD_KERNELS, the name of the table made here. */
+/* Kernels of the engine ewald. */
 #include "sd_ewald_internal.h"
-
-#include "sd_pair_kernel.h"
-
-#include "sd_ewald_spread_kernel.h"
+#include "sd_tensor_lanes.h"
 
 #include "sd_ewald_near_kernel.h"
+#include "sd_ewald_spread_kernel.h"
 
 /* k = 0: B is 0 there, and 1e-300 keeps 1/k^2 finite. */
 static void periodic_row(double *const *f, const double *B, const double *k, double dkz, int half)
@@ -39,5 +36,5 @@ static void open_row(double *const *f, const double *K, double sx, double sy, in
   }
 }
 
-const struct sd_ewald_kernels SD_KERNELS = {
-    LANES, search, near_part, spread, interpolate, periodic_row, open_row};
+const struct sd_ewald_kernels SD_KERNELS(sd_ewald) = {
+    search, near_part, spread, interpolate, periodic_row, open_row};
