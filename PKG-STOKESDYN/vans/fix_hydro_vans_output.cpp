@@ -57,6 +57,8 @@ double FixHydroVans::compute_array(int n, int k)
     case STRESS: return stream.stress[n];
   }
   if (k < ARRAY_COLUMNS) return stream.grain[(k - PHI) * N + n];
+  if (set.upflow && k >= size_array_cols - 2)
+    return k == size_array_cols - 2 ? stream.upward[n] : stream.pressure[n];
   const size_t at = (size_t) (k - ARRAY_COLUMNS) * N + n;
   return at < stream.class_grain.size() ? stream.class_grain[at] : 0.0;
 }
@@ -114,6 +116,11 @@ int FixHydroVans::modify_param(int narg, char **arg)
     stream.take_given(read_given(what, in.word(), stream.ncell(), set.class_radii.size()));
     if (!set.has_grains()) check_radius();
     last_step = -1;
+  } else if (key == "gravity") {
+    set.take_gravity(in);
+    for (Field &component : set.gravity) component.init(lmp, what.command);
+    take_gravity();
+    last_step = -1;
   } else if (key == "average") {
     if (!set.averages()) what.fail("couple none and fluid have no averages");
     find_names();
@@ -137,7 +144,10 @@ int FixHydroVans::modify_param(int narg, char **arg)
 /* What the columns of memo are. */
 static std::vector<double> layout(const VansSettings &set)
 {
-  return {(double) set.conserve, (double) set.overlap_once, (double) set.fluctuates()};
+  std::vector<double> columns = {(double) set.conserve, (double) set.overlap_once,
+                                 (double) set.fluctuates()};
+  if (set.law.added_mass > 0.0) columns.push_back(1.0);
+  return columns;
 }
 
 void FixHydroVans::write_restart(FILE *fp)

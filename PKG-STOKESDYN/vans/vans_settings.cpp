@@ -192,7 +192,20 @@ void VansSettings::take_fluid(Keywords &in)
 
 void VansSettings::take_gravity(Keywords &in)
 {
-  for (double &component : law.g) component = in.number();
+  for (int d = 0; d < 3; d++) {
+    gravity[d] = Field::parse(in);
+    law.g[d] = gravity[d].number();
+  }
+}
+
+void VansSettings::take_hindrance(Keywords &in)
+{
+  if (in.take("richardson_zaki"))
+    law.drag.hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI;
+  else if (in.take("di_felice"))
+    law.drag.hindrance = SD_VANS_HINDRANCE_DI_FELICE;
+  else
+    law.exponent = in.not_negative();
 }
 
 void VansSettings::take_surface(Keywords &in)
@@ -220,6 +233,10 @@ void VansSettings::read(Keywords &in)
   const auto coupling = [&] {
     couple = in.option<decltype(couple)>({"none", "one", "two", "fluid"});
   };
+  const auto drag = [&] {
+    law.drag.law = in.option<sd_vans_drag_of_one>(
+        {"yade", "schiller_naumann", "brown_lawler", "ferguson_church"});
+  };
   const auto rules = [&] {
     fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"});
   };
@@ -234,7 +251,10 @@ void VansSettings::read(Keywords &in)
       {"convective", [&] { convective_file = file_or(in, "off"); }},
       {"solve", [&] { take_solve(in); }},
       {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
-      {"hindrance", [&] { law.exponent = in.number(); }},
+      {"drag", drag},
+      {"hindrance", [&] { take_hindrance(in); }},
+      {"added_mass", [&] { law.added_mass = in.take("off") ? 0.0 : in.not_negative(); }},
+      {"upflow", [&] { upflow = !in.take("off"); if (upflow) flux = Field::parse(in); }},
       {"lift", [&] { law.lift = in.take("off") ? 0.0 : in.number(); }},
       {"turbulence", closure},
       {"kappa", [&] { fluid.kappa = in.positive(); }},
@@ -246,6 +266,8 @@ void VansSettings::read(Keywords &in)
       {"surface", [&] { take_surface(in); }},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
+      {"wall_roughness", [&] { fluid.wall_roughness = in.not_negative(); }},
+      {"wall_mixing", [&] { fluid.narrow = in.yes_no(); }},
       {"radius", [&] { radius = in.positive(); }},
       {"classes", [&] { classes = in.yes_no(); }},
       {"class_radii", [&] { take_class_radii(in); }},
@@ -277,7 +299,18 @@ void VansSettings::check(const Keywords &in) const
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal: there are no fluctuations");
   in.require(!in.given("intensity") || fluctuates(), "keyword intensity: there are no fluctuations");
   in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
-  const bool stands = law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&
+  in.require(!yade() || (law.drag.law == SD_VANS_DRAG_YADE &&
+                         law.drag.hindrance == SD_VANS_HINDRANCE_POWER),
+             "keyword drag: rules yade have drag yade and hindrance n only");
+  in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass: rules yade have none");
+  in.require(!upflow || (averages() && !yade()),
+             "keyword upflow: it needs couple one or two, and rules consistent");
+  const bool walls = fluid.width > 0.0;
+  in.require(walls || fluid.wall_roughness == 0.0, "keyword wall_roughness: there is no sidewall");
+  in.require(walls || !fluid.narrow, "keyword wall_mixing: there is no sidewall");
+  in.require(!yade() || (fluid.wall_roughness == 0.0 && !fluid.narrow),
+             "keywords wall_roughness and wall_mixing: rules yade have smooth walls only");
+  const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&
       !fluid.driven && profile_file.empty();
   in.require(!solves() || law.rest || !stands,
              "nothing drives the stream: give gravity an x component (the slope), "
@@ -332,6 +365,10 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   every = (int) in.positional("N").integer(1, 1000000000);
   read(in);
   check(in);
+  /* a law other than Yade's is one for lone grains, without Yade's exponent */
+  if (!in.given("hindrance") && law.drag.law != SD_VANS_DRAG_YADE)
+    law.drag.hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI;
+  fluid.drag = law.drag;
   if (yade() || couple != TWO) conserve = false;
   if (!mesh_file.empty()) read_mesh();
   mesh.ncell = (int) edge.size() - 1;

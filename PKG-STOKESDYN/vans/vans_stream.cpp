@@ -20,6 +20,8 @@ VansStream::VansStream(const VansSettings &settings) :
   for (auto *array :
        {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
     array->assign(N, 0.0);
+  drag_density.assign(2 * (size_t) N, 0.0);
+  if (set.upflow) upward.assign(N, 0.0), pressure.assign(N, 0.0);
   scratch.resize(2 * (size_t) N + 2);
   set_classes(set.class_radii);
   take_given(set.given);
@@ -56,6 +58,7 @@ void VansStream::take_given(const std::vector<std::vector<double>> &columns)
     put(3 + 2 * c, &class_grain[profile * c]);
     put(4 + 2 * c, &class_grain[profile * c + SD_VANS_DRAG * ncell()]);
   }
+  density_known = false;
   profile_changed();
 }
 
@@ -80,7 +83,7 @@ void VansStream::mixing_length()
 
 void VansStream::profile_changed()
 {
-  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
   mixing_length();
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_stress(&mesh, &fluid, phi(), length.data(), &flow);
@@ -99,7 +102,31 @@ void VansStream::no_average(int n, double area)
                             : " right, or do members of clumps overlap (overlap once)?"));
 }
 
-void VansStream::take_averages(double area, const double *sums)
+/* Water and grains together rise with the flux q, e w + phi v = q: w = q + phi (w - v). With the w
+ * of before on the right this is the solution after a few couplings, whose mean v lags behind the
+ * grains: where grains follow the water at once, phi/e times their last velocity would swing. */
+void VansStream::take_upflow(bool first)
+{
+  const double *vz = row(SD_VANS_VZ), *of = phi();
+  for (int n = 0; n < ncell(); n++)
+    upward[n] = first ? (flux - of[n] * vz[n]) / (1.0 - of[n])
+                      : flux + of[n] * (upward[n] - vz[n]);
+}
+
+/* dp/dz = -(force of the drag on the grains), from the surface down. */
+void VansStream::find_pressure()
+{
+  const int N = ncell();
+  const double *up = &drag_density[N];
+  double above = 0.0;
+  for (int n = N - 1; n >= 0; n--) {
+    const double here = up[n] * sd_vans_height(&mesh, n);
+    pressure[n] = above + 0.5 * here;
+    above += here;
+  }
+}
+
+void VansStream::take_averages(double area, const double *sums, const double *forces)
 {
   const size_t N = ncell(), profile = SD_VANS_ROWS * N;
   const std::vector<double> before(phi(), phi() + N);
@@ -111,10 +138,17 @@ void VansStream::take_averages(double area, const double *sums)
   if (set.conserve && averaged)
     ledger.surface +=
         area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
+  for (size_t k = 0; k < 2 * N; k++)
+    drag_density[k] = forces[k] / (area * sd_vans_height(&mesh, (int) (k % N)));
+  density_known = true;
+  if (set.upflow) {
+    take_upflow(!averaged);
+    find_pressure();
+  }
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();
   averaged = true;
-  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
 }
 
 /* Once each: couplings that are longer than the drag allows, and drag that the limits of b keep
@@ -147,13 +181,16 @@ void VansStream::tell_limits(double T, double dt, const double cut[2])
 void VansStream::exchange(double T, double dt, std::vector<double> &rest)
 {
   const double *of_classes = set.classes ? classes() : nullptr;
+  /* exact for any sizes, unless the user has a radius of his own or the grains are given */
+  const bool by_radius = set.yade() || set.radius > 0.0 || !density_known;
+  const double *density = by_radius ? nullptr : drag_density.data();
   double cut[2] = {0.0, 0.0};
   if (set.law.felt_by_volume) {
     rest.resize(ncell());
     sd_vans_exchange_by_law(&mesh, &fluid, U.data(), hindrance.data(), grain.data(), of_classes,
-                            b.data(), rest.data());
+                            density, b.data(), rest.data());
   } else
-    sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, b.data(), cut);
+    sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, density, b.data(), cut);
   tell_limits(T, dt, cut);
 }
 
@@ -165,8 +202,8 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   exchange(T, dt, rest);
   mixing_length();
 
-  const bool settle = !given.back.empty(), account = settle || (set.conserve && given.held);
-  std::vector<double> source(account ? N : 0), moved(source), shear(source);
+  const bool settle = !given.back.empty();
+  std::vector<double> source(settle ? N : 0), moved(N), shear(N);
   double returned = 0.0;
   if (settle)
     returned = sd_vans_give_back(&mesh, fluid.rho * area, T, given.back.data(), outstanding.data(),
@@ -178,12 +215,11 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0};
   const sd_status status =
-      sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, account ? &books : nullptr);
+      sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, &books);
   if (status != SD_OK)
     set.voice.fail("the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
                    " steps: " + sd_status_string(status) +
                    ". Take a shorter time between couplings");
-  if (!account) return;
 
   for (size_t n = 0; n + 1 < rest.size(); n++)
     moved[n] -= fluid.rho * sd_vans_height(&mesh, (int) n) * T * rest[n];
@@ -221,7 +257,10 @@ std::vector<VansStream::Saved> VansStream::saved()
           {"stress", &stress},
           {"shear", &shear_density},
           {"foreseen", &foreseen_density},
-          {"outstanding", &outstanding}};
+          {"outstanding", &outstanding},
+          {"drag_density", &drag_density},
+          {"upward", &upward},
+          {"pressure", &pressure}};
 }
 
 void VansStream::save(NamedState &state)
@@ -229,6 +268,7 @@ void VansStream::save(NamedState &state)
   state.put("z_ref", mesh.z_ref);
   state.put("edge", set.edge);
   state.put("averaged", averaged);
+  state.put("density_known", density_known);
   state.put("radius", fluid.radius);
   state.put("ledger", {ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface,
                        ledger.others});
@@ -259,6 +299,7 @@ void VansStream::load(const NamedState &state)
 {
   check_mesh(state);
   averaged = state.get("averaged", 0.0) != 0.0;
+  density_known = state.get("density_known", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
   double sums[6];
   if (state.get("ledger", sums, 6)) ledger = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
@@ -269,5 +310,5 @@ void VansStream::load(const NamedState &state)
   phi_history.clear();
   for (size_t at = 0; at + N <= history.size(); at += N)
     phi_history.emplace_back(history.begin() + at, history.begin() + at + N);
-  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
 }

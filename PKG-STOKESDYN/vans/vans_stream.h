@@ -4,6 +4,7 @@
 #define SD_VANS_STREAM_H
 
 #include "named_state.h"
+#include "sd_vans_books.h"
 #include "vans_settings.h"
 
 #include <deque>
@@ -34,6 +35,13 @@ class VansStream {
   /* [N] per volume of grains: force of the viscous stress, impulse of the drag that the last solve
    * foresaw */
   std::vector<double> shear_density, foreseen_density;
+  /* [2][N] force of the drag on the grains per volume of mixture, along x and z */
+  std::vector<double> drag_density;
+  /* [N] velocity of the water along z, with upflow; and what rises */
+  std::vector<double> upward;
+  /* [N] what the water bears besides its own weight, in the middle of the slices; with upflow */
+  std::vector<double> pressure;
+  double flux = 0.0;
   /* are there averages? */
   bool averaged = false;
 
@@ -56,8 +64,9 @@ class VansStream {
   /* U or phi set from outside: hindrance, eddy viscosity and stress follow. */
   void profile_changed();
 
-  /* New averages from sums over all grains, then of each class. */
-  void take_averages(double area, const double *sums);
+  /* New averages from sums over all grains, then of each class; forces [2][N] of the drag in each
+   * slice, along x and z. */
+  void take_averages(double area, const double *sums, const double *forces);
   /* Since the last solve, impulses along x. */
   struct Given {
     /* [N] what the drag foreseen then was more than the true one; empty: momentum is not accounted
@@ -92,9 +101,13 @@ class VansStream {
   /* ni_capart: the last profiles of phi */
   std::deque<std::vector<double>> phi_history;
   std::vector<double> scratch;
+  /* is drag_density that of the profile? */
+  bool density_known = false;
   bool told_far = false, told_cut = false;
 
   const double *classes() const;
+  void take_upflow(bool first);
+  void find_pressure();
   void mixing_length();
   void exchange(double T, double dt, std::vector<double> &rest);
   void tell_limits(double T, double dt, const double cut[2]);

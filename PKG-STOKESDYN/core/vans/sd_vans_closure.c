@@ -82,9 +82,9 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
   }
 }
 
-void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                           const double *phi, const double *classes, const double *phi_bed_profile,
-                           double *length, double *scratch)
+static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                             const double *phi, const double *classes,
+                             const double *phi_bed_profile, double *length, double *scratch)
 {
   const int N = mesh->ncell;
   const double *z = mesh->edge, H = z[N - 1], kappa = fluid->kappa;
@@ -131,6 +131,16 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
       break;
     }
   }
+}
+
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                           const double *phi, const double *classes, const double *phi_bed_profile,
+                           double *length, double *scratch)
+{
+  unlimited_length(mesh, fluid, U, phi, classes, phi_bed_profile, length, scratch);
+  if (!fluid->narrow) return;
+  const double most = 0.5 * fluid->kappa * fluid->width;
+  for (int j = 0; j < mesh->ncell; j++) length[j] = fmin(length[j], most);
 }
 
 double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom)

@@ -38,7 +38,7 @@ struct sd_vans_solver {
   double *nut, *T, *c, *g;
   /* side walls, if any: e dz/width coef/8, friction of the step, cd and cr with them */
   int walls;
-  double Re_factor;
+  double Re_factor, least_speed;
   double *wall_scale, *wall, *wall_cd, *wall_cr;
   sd_vans_friction *friction;
   /* over steps: U', and the fluxes through the turbulent bottom and surface and the walls */
@@ -168,7 +168,8 @@ static void wall_rows(sd_vans_solver *s, int M, sd_vans_rules rules, const doubl
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
   double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
   for (int j = 0; j < M; j++) {
-    const double u = U[j + 1], speed = fabs(u),
+    const double u = U[j + 1],
+                 speed = rules == SD_VANS_YADE ? fabs(u) : fmax(fabs(u), s->least_speed),
                  f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->friction[j]);
     const double K = scale[j] * f * (rules == SD_VANS_YADE ? speed * speed : speed);
     wall[j] = K;
@@ -220,6 +221,9 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
   const double factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0;
   s->walls = factor != 0.0;
   s->Re_factor = sd_vans_wall_length(fluid) * fluid->rho / fluid->eta;
+  s->least_speed = s->walls ? SD_VANS_LEAST_RE / s->Re_factor : 0.0;
+  const double roughness = s->walls ? fluid->wall_roughness / sd_vans_wall_length(fluid) : 0.0;
+  for (int j = 0; j < M; j++) s->friction[j].roughness = roughness;
   for (int j = 0; j < M; j++) s->wall_scale[j] = s->ce[j] * factor;
   memset(s->sum, 0, M * sizeof(double));
   s->T_bottom = s->T_surface = s->wall_sum = 0.0;

@@ -98,13 +98,45 @@ static void substitution(double Re, sd_vans_friction *near)
   memset(near->f, 0, sizeof near->f);
 }
 
+/* f = 24/Re, between parallel walls: 24/Re (1 - s + s^2 - s^3), the next term below 1e-13. */
+static void laminar(double Re, sd_vans_friction *near)
+{
+  near->f[0] = 24.0 / Re;
+  for (int n = 1; n < ORDER; n++) near->f[n] = -near->f[n - 1];
+  near->reach = 5e-4;
+}
+
+/* r = 1/sqrt(f):  g(r) = r + 2 log10(k + B r/Re) = 0, rising and concave, so that Newton's steps
+ * from the left of the root stay there. Laminar below Re 100, whatever the roughness. */
+static void rough(double Re, sd_vans_friction *near)
+{
+  const double A = 2.0 / 2.302585092994046, k = near->roughness / 14.8,
+               B = pow(10.0, -0.5 * SMOOTH) / Re;
+  double r = 1e-3;
+  for (int n = 0; n < 60 && Re >= 100.0; n++) {
+    const double inside = k + B * r, step = (r + A * log(inside)) / (1.0 + A * B / inside);
+    r = fmax(r - step, 1e-3);
+    if (fabs(step) <= 1e-14 * r) break;
+  }
+  laminar(Re, near);
+  near->reach = 0.0;
+  if (Re >= 100.0) near->f[0] = fmax(near->f[0], 1.0 / (r * r));
+}
+
 double sd_vans_wall_friction_anew(sd_vans_rules rules, double Re, sd_vans_friction *near)
 {
-  if (!(Re > 1e-10)) Re = 1e-10;
+  if (!(Re > SD_VANS_LEAST_RE)) Re = SD_VANS_LEAST_RE;
   near->inverse = 1.0 / Re;
   if (rules == SD_VANS_YADE)
     substitution(Re, near);
+  else if (near->roughness > 0.0)
+    rough(Re, near);
+  else if (Re < SD_VANS_WALL_TRANSITION)
+    laminar(Re, near);
   else
     series_of_law(1.0 / root_of_law(Re, sqrt(near->f[0])), near);
+  /* no series crosses the transition */
+  if (rules != SD_VANS_YADE)
+    near->reach = fmin(near->reach, fabs(SD_VANS_WALL_TRANSITION / Re - 1.0));
   return near->f[0];
 }

@@ -1,0 +1,27 @@
+/* What the files of this room share and nobody else needs. */
+#ifndef SD_VANS_INTERNAL_H
+#define SD_VANS_INTERNAL_H
+
+#include "sd_constants.h"
+#include "sd_vans.h"
+
+/* Volume of a sphere between its equator and the height s, |s| <= a: integral of pi (a^2 - s^2). */
+static inline double primitive(double a2, double s)
+{
+  return SD_PI * s * (a2 - s * s / 3.0);
+}
+
+/* The water at a height: velocity along x and z, hindrance. */
+typedef struct {
+  double u, w, hindrance;
+} sd_vans_water;
+
+/* Of slice n; n < 0: below the mesh, n >= N: above it. */
+sd_vans_water sd_vans_water_in(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
+                               const double *U, const double *hindrance, int n);
+
+/* F += share times the drag of grain i, were it all in this water. */
+void sd_vans_add_drag(const sd_vans_force_law *law, const sd_vans_grains *grains, int i,
+                      sd_vans_water water, double share, double F[3]);
+
+#endif
