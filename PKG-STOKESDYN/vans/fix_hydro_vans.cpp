@@ -146,6 +146,7 @@ void FixHydroVans::find_names()
   equal_style(set.voice, set.u_top, "surface");
   equal_style(set.voice, set.intensity, "intensity");
   equal_style(set.voice, set.flux, "upflow");
+  equal_style(set.voice, set.discharge, "discharge");
   for (Field &component : set.gravity) equal_style(set.voice, component, "gravity");
   if (set.overlap_once && !atom->molecule)
     set.voice.fail("keyword overlap: molecule IDs are needed to know the clumps");
@@ -265,11 +266,11 @@ void FixHydroVans::tell_stiff()
 void FixHydroVans::check_mesh()
 {
   const Voice what = set.voice.of("keyword mesh");
-  const int N = stream.ncell(), top = N - 2;
+  const int N = stream.ncell(), top = stream.wet.ncell - 2;
   const double z_ref = set.mesh.z_ref;
   if (stream.phi()[top] > 0.5 * set.fluid.phi_max)
     what.fail("the bed reaches the surface of the water: phi = " + text(stream.phi()[top]) +
-              " in the slice below z = " + text(z_ref + set.edge[top + 1]) +
+              " in the slice below z = " + text(stream.surface()) +
               "; the mesh must hold bed and flow depth");
   select(average_bit);
   double volume[2] = {0, 0}, all[2];
@@ -396,7 +397,7 @@ bool FixHydroVans::gravity_varies() const
 void FixHydroVans::take_gravity()
 {
   for (int d = 0; d < 3; d++) set.law.g[d] = set.gravity[d].number();
-  stream.fluid.gx = set.law.g[0];
+  if (!stream.fluid.held) stream.fluid.gx = set.law.g[0];
 }
 
 void FixHydroVans::read_variables()
@@ -410,6 +411,7 @@ void FixHydroVans::read_variables()
                    {set.u_top, stream.fluid.u_top, -HUGE_VAL, "surface: speed "},
                    {set.intensity, stream.intensity, 0.0, "intensity: "},
                    {set.flux, stream.flux, -HUGE_VAL, "upflow: "},
+                   {set.discharge, stream.fluid.discharge, -HUGE_VAL, "discharge: "},
                    {set.gravity[0], set.law.g[0], -HUGE_VAL, "gravity: gx "},
                    {set.gravity[1], set.law.g[1], -HUGE_VAL, "gravity: gy "},
                    {set.gravity[2], set.law.g[2], -HUGE_VAL, "gravity: gz "}};
@@ -442,6 +444,7 @@ void FixHydroVans::end_of_step()
   else if (set.solves())
     couple(elapsed, 0.1 * elapsed);
   end_interval();
+  if (set.averages() || set.solves()) stream.sample();
   tell_outside();
 }
 

@@ -271,7 +271,7 @@ void FixHydroVans::renew_fluctuations(double time, bool first)
     eddy_age = 0.0;
     eddy_period = set.renewal > 0.0
         ? set.renewal
-        : sd_vans_depth_over_velocity(&set.mesh, stream.U.data(), bed);
+        : sd_vans_depth_over_velocity(&stream.wet, stream.U.data(), bed);
   }
   renewals += 1.0;
   const std::vector<double> u_star = stream.friction_velocities();
@@ -280,7 +280,7 @@ void FixHydroVans::renew_fluctuations(double time, bool first)
       set.fluctuation != VansSettings::UNCORRELATED,
       bed,
       u_star.data(),
-      sd_vans_longest_life(&set.mesh, &stream.fluid, stream.stress.data()),
+      sd_vans_longest_life(&stream.wet, &stream.fluid, stream.stress.data()),
       nevery * update->dt};
   select(groupbit);
   for (int i = 0; i < atom->nlocal; i++) {

@@ -24,7 +24,7 @@ double FixHydroVans::compute_vector(int k)
     case FORCE_Z: return global.force[k - FORCE_X];
     case TOTAL_DRAG: return global.drag;
     case OUTSIDE: return global.outside;
-    case TRANSPORT: return sd_vans_transport(&set.mesh, stream.grain.data());
+    case TRANSPORT: return stream.transport();
     case FRICTION_VELOCITY: return std::sqrt(std::max(largest, 0.0) / set.fluid.rho);
     case LARGEST_STRESS: return largest;
     case SHIELDS: {
@@ -35,15 +35,35 @@ double FixHydroVans::compute_vector(int k)
     case BED: return stream.bed_elevation();
     case MOMENTUM:
       return area() *
-          sd_vans_momentum(&set.mesh, set.fluid.rho, stream.phi(), stream.U.data());
+          sd_vans_momentum(&stream.wet, set.fluid.rho, stream.phi(), stream.U.data());
     case TRANSIT: return ledger.transit;
     case DRIVING: return ledger.driving;
     case BOTTOM: return ledger.bottom;
     case WALLS: return ledger.walls;
     case SURFACE: return ledger.surface;
     case OTHERS: return ledger.others;
+    case DISCHARGE:
+      return sd_vans_momentum(&stream.wet, 1.0, stream.phi(), stream.U.data());
+    case DRIVE: return stream.drive;
+    case ELEVATION: return stream.surface();
+    case VOLUME: return sd_vans_volume(&stream.wet, stream.phi());
+    case WALL_SHARE:
+      return sd_vans_wall_share(&stream.wet, &stream.fluid, stream.phi(), stream.U.data(),
+                                stream.drive);
+    case MEAN_TRANSPORT:
+    case TRANSPORT_ERROR:
+    case MEAN_STRESS:
+    case STRESS_ERROR: return steady(k);
   }
   return 0.0;
+}
+
+/* Means over the steady part of the run, and their errors. */
+double FixHydroVans::steady(int k) const
+{
+  double mean, error;
+  sd_vans_series_mean(&stream.series, k >= MEAN_STRESS, &mean, &error);
+  return k == MEAN_TRANSPORT || k == MEAN_STRESS ? mean : error;
 }
 
 double FixHydroVans::compute_array(int n, int k)
@@ -121,6 +141,9 @@ int FixHydroVans::modify_param(int narg, char **arg)
     for (Field &component : set.gravity) component.init(lmp, what.command);
     take_gravity();
     last_step = -1;
+  } else if (key == "steady") {
+    in.choice({"anew"});
+    stream.series = {};
   } else if (key == "average") {
     if (!set.averages()) what.fail("couple none and fluid have no averages");
     find_names();

@@ -210,8 +210,17 @@ void VansSettings::take_hindrance(Keywords &in)
 
 void VansSettings::take_surface(Keywords &in)
 {
-  fluid.driven = in.choice({"free", "speed"}) == 1;
-  if (fluid.driven) u_top = Field::parse(in);
+  const size_t kind = in.choice({"free", "speed", "follow"});
+  fluid.driven = kind == 1;
+  if (kind == 1) u_top = Field::parse(in);
+  if (kind == 2) surface = in.positive();
+}
+
+void VansSettings::take_discharge(Keywords &in)
+{
+  if (in.take("off")) return;
+  fluid.held = 1;
+  discharge = Field::parse(in);
 }
 
 void VansSettings::take_sidewall(Keywords &in)
@@ -264,6 +273,7 @@ void VansSettings::read(Keywords &in)
       {"sublayer", [&] { fluid.sublayer = in.yes_no(); }},
       {"viscosity", viscosity},
       {"surface", [&] { take_surface(in); }},
+      {"discharge", [&] { take_discharge(in); }},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
       {"wall_roughness", [&] { fluid.wall_roughness = in.not_negative(); }},
@@ -305,6 +315,14 @@ void VansSettings::check(const Keywords &in) const
   in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass: rules yade have none");
   in.require(!upflow || (averages() && !yade()),
              "keyword upflow: it needs couple one or two, and rules consistent");
+  in.require(!fluid.held || (solves() && !yade()),
+             "keyword discharge: it needs couple two or fluid, and rules consistent");
+  in.require(!fluid.held || !fluid.driven,
+             "keyword discharge: with surface speed the stream is driven already");
+  in.require(!fluid.held || !in.given("pressure_gradient"),
+             "keyword discharge: the pressure gradient follows from it, leave pressure_gradient out");
+  in.require(!follows() || (couple == TWO && !yade()),
+             "keyword surface: follow needs couple two and rules consistent");
   const bool walls = fluid.width > 0.0;
   in.require(walls || fluid.wall_roughness == 0.0, "keyword wall_roughness: there is no sidewall");
   in.require(walls || !fluid.narrow, "keyword wall_mixing: there is no sidewall");
@@ -312,9 +330,9 @@ void VansSettings::check(const Keywords &in) const
              "keywords wall_roughness and wall_mixing: rules yade have smooth walls only");
   const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&
       !fluid.driven && profile_file.empty();
-  in.require(!solves() || law.rest || !stands,
+  in.require(!solves() || law.rest || !stands || fluid.held,
              "nothing drives the stream: give gravity an x component (the slope), "
-             "pressure_gradient, surface speed or a profile, or stream rest");
+             "pressure_gradient, discharge, surface speed or a profile, or stream rest");
 }
 
 void VansSettings::read_mesh()
@@ -377,6 +395,10 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   fluid.gx = law.g[0];
   fluid.dpdx = dpdx.number();
   fluid.u_top = u_top.number();
+  fluid.discharge = discharge.number();
+  if (follows() && !(surface < edge[mesh.ncell - 1]))
+    voice.of("keyword surface").fail("the surface at " + text(surface) +
+        " has no room to rise: the water of the mesh ends at " + text(edge[mesh.ncell - 1]));
   if (period > 0.0) check_solve(voice.of("keyword solve"), period, dt);
 }
 

@@ -40,6 +40,10 @@ struct VansSettings {
   /* of water and grains, up through a horizontal plane; with upflow only */
   Field flux;
   bool upflow = false;
+  /* volume of water that passes per width and time, with fluid.held only */
+  Field discharge;
+  /* above z_ref where the surface begins, if it moves; 0: it stays at the top of the mesh */
+  double surface = 0.0;
   /* 0: mean of the grains */
   double radius = 0.0;
   bool classes = false;
@@ -66,6 +70,7 @@ struct VansSettings {
   /* gx gy gz, each a number or a variable */
   void take_gravity(Keywords &in);
   int ncell() const { return mesh.ncell; }
+  bool follows() const { return surface > 0.0; }
   bool yade() const { return law.rules == SD_VANS_YADE; }
   bool has_grains() const { return couple != FLUID; }
   bool solves() const { return couple == TWO || couple == FLUID; }
@@ -90,6 +95,7 @@ struct VansSettings {
   void take_fluid(Keywords &in);
   void take_hindrance(Keywords &in);
   void take_surface(Keywords &in);
+  void take_discharge(Keywords &in);
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void read_mesh();

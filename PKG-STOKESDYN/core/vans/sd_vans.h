@@ -217,6 +217,10 @@ typedef struct {
   /* 0: free surface; 1: the surface moves at u_top */
   int driven;
   double u_top;
+  /* 1: what drives the stream follows from the volume of water that passes per width and time; free
+   * surface */
+  int held;
+  double discharge;
   /* side walls: distance, a factor on the friction, k_s; width 0: none */
   double width, wall_coef, wall_roughness;
   /* 1: mixing lengths are at most kappa width/2 */
@@ -273,8 +277,8 @@ typedef struct {
 } sd_vans_friction;
 
 /* The length of the Reynolds number of the side walls, |U| length/nu: the hydraulic radius, area
- * over wetted perimeter. The law below has its 0.32 for that one; on the hydraulic diameter, four times
- * as long, it would be 0.32 - 2 log10(4) = -0.88 (smooth pipes: -0.8). A slice of water touches the
+ * over wetted perimeter. The law below has its 0.32 for that one; on the hydraulic diameter, four
+ * times as long, it would be 0.32 - 2 log10(4) = -0.88 (smooth pipes: -0.8). A slice of water touches the
  * walls alone, what it passes to its neighbours is in the solve: width dz over 2 dz.
  * Yade's rule: the width. */
 static inline double sd_vans_wall_length(const sd_vans_fluid *fluid)
@@ -360,6 +364,8 @@ typedef struct {
   double *shear;
   /* what the water received from outside; driving: gravity and pressure gradient */
   double driving, bottom, walls, surface;
+  /* mean acceleration by gravity and pressure gradient, as found where the discharge is held */
+  double drive;
 } sd_vans_books;
 
 typedef struct sd_vans_solver sd_vans_solver;
@@ -375,6 +381,8 @@ void sd_vans_solver_free(sd_vans_solver *solver);
  *   books  out or NULL. Water gains driving + bottom + walls + surface - sum of moved + source, to
  *          rounding.
  * SD_OK or SD_ENOTFINITE.
+ * With the discharge held each step finds the g - dpdx/rho for which sum e U' dz = discharge: U' is
+ * linear in it.
  * wall = e 2/width coef f/8 (1/2 |U| U' + 1/2 |U| U), Re = |U| sd_vans_wall_length/nu.
  * Yade's rule: (1/2 U^2 U' + 1/2 U^2), and |g| for g. */
 sd_status sd_vans_solve(sd_vans_solver *solver, const sd_vans_fluid *fluid,
@@ -388,12 +396,28 @@ void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const 
 /* Momentum of the water per area of the bed, rho sum (1 - phi) U dz. */
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U);
 
+/* Volume of the water per area, sum (1 - phi) dz. */
+double sd_vans_volume(const sd_vans_mesh *mesh, const double *phi);
+
+/* A surface between the edges of a mesh: the mesh of the water alone, whose slices are those of the
+ * mesh but for the one below the surface, which ends there (it is 0.01 to 1.01 of its height).
+ *   volume  of water per area, that fills the mesh up to the surface; or, with phi NULL, the height
+ *           of the surface above z_ref
+ *   edge    [N+1] out: edges of the slices of water, then one slice above the surface
+ * Returns how many slices there are with that one, or 0 if the mesh does not hold the water. */
+int sd_vans_fill(const sd_vans_mesh *mesh, const double *phi, double volume, double *edge);
+
 /* The grains have moved: phi_old became phi_new. They displace water, which keeps its order over
  * the height and takes its momentum along. Changes U [N+1] (not U[0], U[N]) so that the momentum is
  * conserved but for what passes the surface; returns that, per area, gained by the water. scratch
  * [2 (N+1)] */
 double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
                         const double *phi_new, double *U, double *scratch);
+
+/* The same where the surface has moved: from one mesh of sd_vans_fill to another. */
+double sd_vans_displace_to(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
+                           const double *phi_old, const double *phi_new, double *U,
+                           double *scratch);
 
 /* ---- what the profiles tell ------------------------------------------------------------------ */
 
@@ -405,6 +429,14 @@ double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress);
 /* Elevation of the bed: middle of the highest slice under water where phi has a maximum above 0.5;
  * 0 if there is none. */
 double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi);
+
+/* The part of what drives the clear water (phi < 0.1) that smooth side walls take by the side wall
+ * correction of Einstein, Vanoni and Brooks: the section is shared out between walls and bed, and
+ * each part has the mean speed U and the slope of the whole. Of a stream between parallel walls,
+ *   2 R_w/width,  R_w = f_w(U R_w/nu) U^2/(8 drive)
+ * 0 without walls or where nothing drives, at most 1. */
+double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                          const double *U, double drive);
 
 /* Depth of the water above the bed over its mean velocity there; 0 unless that is positive. */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed);
