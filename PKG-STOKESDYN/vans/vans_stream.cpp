@@ -83,8 +83,17 @@ void VansStream::mixing_length()
     for (const auto &profile : phi_history)
       for (int n = 0; n < N; n++) mean[n] += profile[n] / (double) phi_history.size();
   }
-  sd_vans_mixing_length(&wet, &fluid, U.data(), phi(), classes(), mean.data(), length.data(),
-                        scratch.data());
+  /* of the classes phi counts, in rows as long as the mesh of the water */
+  std::vector<double> of_classes;
+  const size_t profile = SD_VANS_ROWS * (size_t) N, wet_profile = SD_VANS_ROWS * (size_t) wet.ncell;
+  if (classes() && set.follows()) {
+    of_classes.assign(wet_profile * class_radii.size(), 0.0);
+    for (size_t c = 0; c < class_radii.size(); c++)
+      std::copy_n(&class_grain[c * profile], wet.ncell, &of_classes[c * wet_profile]);
+  }
+  sd_vans_mixing_length(&wet, &fluid, U.data(), phi(),
+                        of_classes.empty() ? classes() : of_classes.data(), mean.data(),
+                        length.data(), scratch.data());
 }
 
 void VansStream::profile_changed()
@@ -211,7 +220,7 @@ void VansStream::sample()
 void VansStream::tell_limits(double T, double dt, const double cut[2])
 {
   int slice = 0;
-  const double rate = sd_vans_drag_rate(&wet, &fluid, U.data(), hindrance.data(), grain.data(),
+  const double rate = sd_vans_drag_rate(&mesh, &fluid, U.data(), hindrance.data(), grain.data(),
                                         &slice);
   if (set.couple == VansSettings::TWO && !told_far && rate * T > 3.0) {
     told_far = true;
@@ -242,11 +251,14 @@ void VansStream::exchange(double T, double dt, std::vector<double> &rest)
   double cut[2] = {0.0, 0.0};
   if (set.law.felt_by_volume) {
     rest.resize(ncell());
-    sd_vans_exchange_by_law(&wet, &fluid, U.data(), hindrance.data(), grain.data(), of_classes,
+    sd_vans_exchange_by_law(&mesh, &fluid, U.data(), hindrance.data(), grain.data(), of_classes,
                             density, b.data(), rest.data());
   } else
-    sd_vans_exchange(&wet, &fluid, dt, U.data(), grain.data(), of_classes, density, b.data(), cut);
+    sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, density, b.data(), cut);
   tell_limits(T, dt, cut);
+  /* grains above the surface have no water */
+  std::fill(b.begin() + wet.ncell, b.end(), 0.0);
+  if (!rest.empty()) std::fill(rest.begin() + wet.ncell, rest.end(), 0.0);
 }
 
 void VansStream::solve(double area, double T, double dt, const Given &given)

@@ -155,7 +155,7 @@ static void momentum_is_balanced(void **state)
       const int steps = 37;
       const sd_vans_column column = {c->phi, c->vx, c->b, c->length, source};
       const sd_vans_flow flow = {c->U, c->nut, c->stress};
-      sd_vans_books in = {c->moved, c->shear, 0, 0, 0, 0};
+      sd_vans_books in = {c->moved, c->shear, 0, 0, 0, 0, 0};
       assert_int_equal(sd_vans_solve(c->solver, &fluid, &column, steps, dt, &flow, &in), SD_OK);
       double gain = in.driving + in.bottom + in.walls + in.surface;
       double size = fabs(in.driving) + fabs(in.bottom) + fabs(in.walls) + fabs(in.surface);
