@@ -364,7 +364,8 @@ typedef struct {
   double *shear;
   /* what the water received from outside; driving: gravity and pressure gradient */
   double driving, bottom, walls, surface;
-  /* mean acceleration by gravity and pressure gradient, as found where the discharge is held */
+  /* acceleration by gravity and pressure gradient in the last step, found where the discharge is
+   * held */
   double drive;
 } sd_vans_books;
 

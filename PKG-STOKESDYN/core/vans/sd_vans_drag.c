@@ -22,10 +22,9 @@ double sd_vans_drag_number(sd_vans_drag_of_one law, double Re)
   return 0.0;
 }
 
-double sd_vans_rowe_exponent(double Re)
+double sd_vans_richardson_zaki(double Re)
 {
-  const double s = 0.175 * pow(Re, 0.75);
-  return (4.7 + 2.35 * s) / (1.0 + s);
+  return fmin(fmax(4.4 * pow(Re, Re < 1.0 ? -0.03 : -0.1), 2.39), 4.65);
 }
 
 void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
@@ -37,15 +36,15 @@ void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, do
                                                              : pow(1.0 - phi[n], -exponent);
 }
 
-/* y = ln(Re_0/Re) = (1 - n(Re_0)) ln e, by Newton's method: the right side changes with y by less
- * than 0.44 |ln e|, so that four steps from n(Re) are at rounding in any bed. */
+/* y = ln(Re_0/Re) = (1 - n(Re_0)) ln e, by Newton's method: n falls by less than 0.44 with y, so
+ * that the left side less the right rises, and six steps are at rounding in any bed. */
 static double logarithm_of_lone_speed(double Re, double log_e)
 {
   double y = 0.0;
-  if (!(Re > 0.0)) return -3.7 * log_e;
-  for (int k = 0; k < 4; k++) {
-    const double s = 0.175 * pow(Re * exp(y), 0.75), n = (4.7 + 2.35 * s) / (1.0 + s),
-                 slope = -2.35 * 0.75 * s / ((1.0 + s) * (1.0 + s)); /* dn/dy */
+  if (!(Re > 0.0)) return -3.65 * log_e;
+  for (int k = 0; k < 6; k++) {
+    const double lone = Re * exp(y), n = sd_vans_richardson_zaki(lone),
+                 slope = n == 4.65 || n == 2.39 ? 0.0 : (lone < 1.0 ? -0.03 : -0.1) * n; /* dn/dy */
     y -= (y - (1.0 - n) * log_e) / (1.0 + slope * log_e);
   }
   return y;

@@ -16,16 +16,16 @@
  *   di_felice                  e Re                 e^-beta(e Re)
  * Richardson & Zaki measured that the volume of grains and water past each other, per area, is
  * e w = w_0 e^n where a lone grain falls with w_0: so the drag at w is that of a lone grain at
- * w_0 = w e^(1-n), and n is that of Re_0 = 2 a rho w_0/eta. Rowe's fit, n between 4.7 and 2.35:
- *   (4.7 - n)/(n - 2.35) = 0.175 Re_0^(3/4)
+ * w_0 = w e^(1-n), and n is that of Re_0 = 2 a rho w_0/eta, as they have it but for the steps
+ * between its parts: 4.4 Re_0^-0.03 below Re_0 = 1, 4.4 Re_0^-0.1 above, within 4.65 and 2.39.
  * Di Felice: beta = 3.7 - 0.65 exp(-(1.5 - log10 Re')^2/2).
  * All of F acts beside the buoyancy of the clear fluid, rho g V: what the water's own excess
  * pressure does to a grain is in h. (Di Felice's exponent is for a drag beside the buoyancy of the
  * mixture, e times as large: there it is h = e^(1-beta).)
  *
  * Sources: Dallavalle 1948; Schiller & Naumann 1933; Brown & Lawler 2003 (J. Environ. Eng. 129);
- * Ferguson & Church 2004 (J. Sediment. Res. 74); Richardson & Zaki 1954; Rowe 1987 (Chem. Eng. Sci.
- * 42); Di Felice 1994 (Int. J. Multiphase Flow 20). */
+ * Ferguson & Church 2004 (J. Sediment. Res. 74); Richardson & Zaki 1954 (Trans. Inst. Chem. Eng.
+ * 32); Di Felice 1994 (Int. J. Multiphase Flow 20). */
 #ifndef SD_VANS_DRAG_H
 #define SD_VANS_DRAG_H
 
@@ -55,8 +55,8 @@ typedef struct {
 /* N(Re), Re >= 0. */
 double sd_vans_drag_number(sd_vans_drag_of_one law, double Re);
 
-/* n(Re) of Rowe's fit, Re that of a lone grain. */
-double sd_vans_rowe_exponent(double Re);
+/* n(Re), Re that of a lone grain. */
+double sd_vans_richardson_zaki(double Re);
 
 /* What a slice does to the drag of the grains in it: e^-exponent where the hindrance is a power,
  * otherwise e = 1 - phi itself. Once per profile instead of once per grain. [ncell] */

@@ -312,7 +312,7 @@ static void close_books(const sd_vans_solver *s, const sd_vans_fluid *fluid,
   const int M = s->mesh->ncell - 1;
   double flux = viscous_flux(s, fluid, column, steps, 0);
   books->driving = 0.0;
-  books->drive = s->drive_sum / steps;
+  books->drive = s->drive;
   books->bottom = -rho_dt * (flux + s->T_bottom);
   books->walls = -rho_dt * s->wall_sum;
   for (int j = 0; j < M; j++) {
