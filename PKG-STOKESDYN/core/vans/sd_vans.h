@@ -278,8 +278,8 @@ typedef struct {
 
 /* The length of the Reynolds number of the side walls, |U| length/nu: the hydraulic radius, area
  * over wetted perimeter. The law below has its 0.32 for that one; on the hydraulic diameter, four
- * times as long, it would be 0.32 - 2 log10(4) = -0.88 (smooth pipes: -0.8). A slice of water touches the
- * walls alone, what it passes to its neighbours is in the solve: width dz over 2 dz.
+ * times as long, it would be 0.32 - 2 log10(4) = -0.88 (smooth pipes: -0.8). A slice of water
+ * touches the walls alone, what it passes to its neighbours is in the solve: width dz over 2 dz.
  * Yade's rule: the width. */
 static inline double sd_vans_wall_length(const sd_vans_fluid *fluid)
 {

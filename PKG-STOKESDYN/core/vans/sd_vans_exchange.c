@@ -1,5 +1,5 @@
 #include "sd_constants.h"
-#include "sd_vans.h"
+#include "sd_vans_yade.h"
 
 #include <math.h>
 
@@ -29,7 +29,7 @@ void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, doub
                       const double *U, const double *profile, const double *classes,
                       const double *density, double *b, double cut[2])
 {
-  const int N = mesh->ncell, yade = fluid->rules == SD_VANS_YADE;
+  const int N = mesh->ncell;
   const double *vx = profile + (long) SD_VANS_VX * N, cap = 0.1 / dt;
   cut[0] = cut[1] = 0.0;
   for (int n = 0; n < N; n++) {
@@ -37,14 +37,15 @@ void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, doub
                  slip = U[n + 1] - vx[n];
     /* drag against the slip, or none: b would drive the water away from the grains. At most a tenth
      * of the slip goes in one step. */
-    const double value = drag / (yade ? fmax(fabs(slip), fluid->least_slip) : slip) / fluid->rho;
+    const double value = fluid->rules == SD_VANS_YADE
+        ? sd_vans_yade_coefficient(fluid, n, drag, slip)
+        : drag / slip / fluid->rho;
     b[n] = !(value > 0.0) ? 0.0 : value > cap ? cap : value;
     if (n == N - 1 || !isfinite(drag)) continue;
     cut[1] += fabs(drag) * sd_vans_height(mesh, n);
     if (b[n] > 0.0)
       cut[0] += (fabs(drag) - fluid->rho * b[n] * fabs(slip)) * sd_vans_height(mesh, n);
   }
-  if (yade) b[0] = 0.0;
 }
 
 /* n f/w over rho: the drag on one grain of slip w is f = factor w, there are phi/V grains in a

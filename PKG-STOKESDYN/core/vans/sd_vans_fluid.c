@@ -1,17 +1,12 @@
-#include "sd_vans.h"
+#include "sd_vans_yade.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The sum in the original's loop is rounded after every step, and that is repeated. */
 int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
 {
-  if (rules == SD_VANS_YADE) {
-    int64_t n = 0;
-    for (double t = 0.0; t < T; t += *dt) n++;
-    return n;
-  }
+  if (rules == SD_VANS_YADE) return sd_vans_yade_steps(T, *dt);
   int64_t n = (int64_t) ceil(T / *dt * (1.0 - 1e-9));
   if (n < 1) n = 1;
   *dt = T / (double) n;
@@ -166,20 +161,22 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
 }
 
 /* Side walls: half of the friction on U', half on U, both with the f and |U| of U. That is
- * stable however strong it is. Yade's has U^2 in both, the explicit half without U's sign. */
-static void wall_rows(sd_vans_solver *s, int M, sd_vans_rules rules, const double *U)
+ * stable however strong it is. Returns what the explicit half takes. */
+static double wall_rows(sd_vans_solver *s, int M, const double *U)
 {
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
-  double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
+  double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr, taken = 0.0;
   for (int j = 0; j < M; j++) {
-    const double u = U[j + 1],
-                 speed = rules == SD_VANS_YADE ? fabs(u) : fmax(fabs(u), s->least_speed),
-                 f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->friction[j]);
-    const double K = scale[j] * f * (rules == SD_VANS_YADE ? speed * speed : speed);
+    const double u = U[j + 1], speed = fmax(fabs(u), s->least_speed),
+                 f = sd_vans_wall_friction(SD_VANS_CONSISTENT, speed * s->Re_factor,
+                                           &s->friction[j]);
+    const double K = scale[j] * f * speed;
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
-    wall_cr[j] = cr[j] - (rules == SD_VANS_YADE ? K : K * u);
+    wall_cr[j] = cr[j] - K * u;
+    taken += K * u;
   }
+  return taken;
 }
 
 /* The rows as far as they stay in a solve: all but the eddy viscosity and the walls. The viscous
@@ -191,8 +188,8 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
   const sd_vans_mesh *mesh = s->mesh;
   const double *phi = column->phi, *vx = column->vx, *b = column->b;
   const int N = mesh->ncell, M = N - 1;
-  s->drive = fluid->rules == SD_VANS_YADE ? fabs(fluid->gx) : fluid->gx;
-  s->drive -= fluid->dpdx / fluid->rho;
+  s->drive = fluid->rules == SD_VANS_YADE ? sd_vans_yade_drive(fluid)
+                                          : fluid->gx - fluid->dpdx / fluid->rho;
   if (fluid->held) s->drive = 0.0;
   s->drive_sum = 0.0;
   for (int j = 0; j < N; j++) {
@@ -255,7 +252,6 @@ static void hold_discharge(sd_vans_solver *s, const double *cd, double discharge
 static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int keep)
 {
   const int N = s->mesh->ncell, M = N - 1;
-  const int yade = fluid->rules == SD_VANS_YADE;
   for (int j = 0; j < N; j++) {
     s->nut[j] = s->mix[j] * fabs(U[j + 1] - U[j]);
     s->T[j] = s->gap[j] * s->nut[j];
@@ -266,9 +262,10 @@ static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int k
   else
     s->T[M] = 0.0;
   if (s->walls) {
-    wall_rows(s, M, fluid->rules, U);
-    if (keep)
-      for (int j = 0; j < M; j++) s->wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
+    s->wall_sum += fluid->rules == SD_VANS_YADE
+        ? sd_vans_yade_walls(M, s->Re_factor, s->wall_scale, U, s->cd, s->cr, s->friction, s->wall,
+                             s->wall_cd, s->wall_cr)
+        : wall_rows(s, M, U);
   }
 
   const double *cd = s->walls ? s->wall_cd : s->cd;

@@ -1,4 +1,5 @@
 #include "sd_vans_internal.h"
+#include "sd_vans_yade.h"
 
 #include <math.h>
 
@@ -29,32 +30,10 @@ double sd_vans_slice_volume(double a, double lo, double hi)
   return primitive(a * a, s1) - primitive(a * a, s0);
 }
 
-/* Yade gives slice n the limits of slice 2p-n, p that of the centre, and cuts the sphere's lower
- * end only off the lower limit and its
- * upper end only off the upper one. */
-static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first, double *V, int max)
-{
-  const double height = z - mesh->z_ref, dz = mesh->dz;
-  const double centre = floor(height / dz), offset = height - centre * dz;
-  const double lowest = fmax(floor((height - a) / dz), 0.0),
-               highest = fmin(floor((height + a) / dz), mesh->ncell - 1.0);
-  if (!(lowest <= highest)) return 0;
-  *first = (int) lowest;
-  const int count = (int) (highest - lowest) + 1;
-  for (int k = 0; k < count && k < max; k++) {
-    const double above = lowest + k - centre;
-    double s0 = (above - 1.0) * dz + offset, s1 = above * dz + offset;
-    if (s0 < -a) s0 = -a;
-    if (s1 > a) s1 = a;
-    V[k] = SD_PI * (a * a * (s1 - s0) - (s1 * s1 * s1 - s0 * s0 * s0) / 3.0);
-  }
-  return count < max ? count : max;
-}
-
 int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
                    double *V, int max)
 {
-  if (rules == SD_VANS_YADE) return slices_yade(mesh, z, a, first, V, max);
+  if (rules == SD_VANS_YADE) return sd_vans_yade_slices(mesh, z, a, first, V, max);
   const int N = mesh->ncell;
   const double height = z - mesh->z_ref, a2 = a * a;
   int n = sd_vans_slice_of(mesh, z - a);
@@ -103,20 +82,6 @@ static void add_slices(double *sums, int first, int count, const double *V, cons
 {
   double *sum = sums + (long) first * SD_VANS_ROWS;
   for (int k = 0; k < count; k++) add(sum + k * SD_VANS_ROWS, V[k], v, drag[k]);
-}
-
-/* Yade: volume and drag where they are, velocities all in the slice p of the centre, if it is in
- * the mesh. */
-static void add_slices_yade(double *sums, int first, int count, const double *V, const double *v,
-                            const double *drag, double *centre)
-{
-  for (int k = 0; k < count; k++) {
-    double *here = sums + (long) (first + k) * SD_VANS_ROWS;
-    here[SD_VANS_PHI] += V[k];
-    here[SD_VANS_DRAG] += V[k] * drag[k];
-    if (!centre) continue;
-    for (int d = 0; d < 3; d++) centre[SD_VANS_VX + d] += V[k] * v[d];
-  }
 }
 
 /* The slices of a grain, or the one of its centre with all of its volume. */
@@ -189,8 +154,8 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     double *class_sums = sums + (long) (1 + c) * N * SD_VANS_ROWS;
     const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;
     if (law->rules == SD_VANS_YADE)
-      add_slices_yade(class_sums, first, count, V, v, drag,
-                      inside ? class_sums + (long) p * SD_VANS_ROWS : 0);
+      sd_vans_yade_add_slices(class_sums, first, count, V, v, drag,
+                              inside ? class_sums + (long) p * SD_VANS_ROWS : 0);
     else
       add_slices(class_sums, first, count, V, v, drag);
   }

@@ -8,8 +8,8 @@
  * independent (the marginal standard error rule, White 1997). The error of that mean is the largest
  * of: the standard errors from blocks, from pairs and from fours of them (what is correlated looks
  * better than it is in blocks that are too short), and half the difference between the means of
- * both halves (a drift). Fewer than 16 blocks, or a cut in the second half: it is not steady, and the
- * error is the range of the blocks or the mean, whichever is larger. */
+ * both halves (a drift). Fewer than 16 blocks, or a cut in the second half: it is not steady, and
+ * the error is the range of the blocks or the mean, whichever is larger. */
 #ifndef SD_VANS_STEADY_H
 #define SD_VANS_STEADY_H
 
