@@ -236,7 +236,7 @@ void FixHydroVans::tell_sizes()
  * at when a run begins and then every 100 steps at most. */
 void FixHydroVans::tell_stiff()
 {
-  if (told_stiff || !set.has_grains() || set.yade()) return;
+  if (told_stiff || !set.has_grains()) return;
   if (looked_step >= 0 && update->ntimestep < looked_step + 100) return;
   looked_step = update->ntimestep;
   select(groupbit);
@@ -256,7 +256,7 @@ void FixHydroVans::tell_stiff()
   MPI_Bcast(&tag, 1, MPI_DOUBLE, largest.rank, world);
   told_stiff = true;
   set.voice.warn("the time step " + text(update->dt) + " is too long for the drag on atom " +
-                 text(tag) + ", which changes its velocity at the rate " + text(largest.rate) +
+                 std::to_string((bigint) tag) + ", which changes its velocity at the rate " + text(largest.rate) +
                  ": take at most " + text(1.0 / largest.rate) + "; beyond " +
                  text(2.0 / largest.rate) + " the velocity grows without bound");
 }

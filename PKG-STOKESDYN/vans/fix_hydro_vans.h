@@ -48,8 +48,9 @@ class FixHydroVans : public RowsFix {
          STRESS, ARRAY_COLUMNS };
   /* Entries of the global vector. */
   enum { FORCE_X, FORCE_Y, FORCE_Z, TRANSPORT, FRICTION_VELOCITY, LARGEST_STRESS, OUTSIDE, SHIELDS,
-         TOTAL_DRAG, BED, MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, DISCHARGE, DRIVE, ELEVATION, VOLUME,
-         MEAN_TRANSPORT, TRANSPORT_ERROR, MEAN_STRESS, STRESS_ERROR, WALL_SHARE, VECTOR_SIZE };
+         TOTAL_DRAG, BED, MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, DISCHARGE,
+         DRIVE, ELEVATION, VOLUME, MEAN_TRANSPORT, TRANSPORT_ERROR, MEAN_STRESS, STRESS_ERROR,
+         WALL_SHARE, VECTOR_SIZE };
 
   /* Per atom: force and velocity fluctuation; memo: what must follow the atom besides, a column
    * that no keyword asks for is not there. LOST: share of its volume that is another's too. */

@@ -303,11 +303,13 @@ void VansSettings::check(const Keywords &in) const
              "keyword gravity (gx gy gz) is required; its x component is the slope");
   in.require(!yade() || mesh_file.empty(),
              "keyword mesh: rules yade knows slices of one height only");
-  in.require(!law.felt_by_volume || !yade(), "keyword felt: rules yade feel the water at the centre");
+  in.require(!law.felt_by_volume || !yade(),
+             "keyword felt: rules yade feel the water at the centre");
   in.require(!law.felt_by_volume || !point,
              "keyword felt: with grains point all of a grain is at its centre");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal: there are no fluctuations");
-  in.require(!in.given("intensity") || fluctuates(), "keyword intensity: there are no fluctuations");
+  in.require(!in.given("intensity") || fluctuates(),
+             "keyword intensity: there are no fluctuations");
   in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
   in.require(!yade() || (law.drag.law == SD_VANS_DRAG_YADE &&
                          law.drag.hindrance == SD_VANS_HINDRANCE_POWER),
@@ -320,7 +322,8 @@ void VansSettings::check(const Keywords &in) const
   in.require(!fluid.held || !fluid.driven,
              "keyword discharge: with surface speed the stream is driven already");
   in.require(!fluid.held || !in.given("pressure_gradient"),
-             "keyword discharge: the pressure gradient follows from it, leave pressure_gradient out");
+             "keyword discharge: the pressure gradient follows from it, "
+             "leave pressure_gradient out");
   in.require(!follows() || (couple == TWO && !yade()),
              "keyword surface: follow needs couple two and rules consistent");
   const bool walls = fluid.width > 0.0;
@@ -328,8 +331,8 @@ void VansSettings::check(const Keywords &in) const
   in.require(walls || !fluid.narrow, "keyword wall_mixing: there is no sidewall");
   in.require(!yade() || (fluid.wall_roughness == 0.0 && !fluid.narrow),
              "keywords wall_roughness and wall_mixing: rules yade have smooth walls only");
-  const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&
-      !fluid.driven && profile_file.empty();
+  const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() &&
+      dpdx.number() == 0.0 && !fluid.driven && profile_file.empty();
   in.require(!solves() || law.rest || !stands || fluid.held,
              "nothing drives the stream: give gravity an x component (the slope), "
              "pressure_gradient, discharge, surface speed or a profile, or stream rest");

@@ -400,7 +400,8 @@ void VansStream::load(const NamedState &state)
   double sums[6];
   if (state.get("ledger", sums, 6)) ledger = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
   set_classes(state.get("class_radii"));
-  for (const Saved &array : saved()) state.get(array.name, array.values->data(), array.values->size());
+  for (const Saved &array : saved())
+    state.get(array.name, array.values->data(), array.values->size());
   load_surface(state);
   const size_t N = ncell();
   const auto history = state.get("phi_history");
