@@ -397,7 +397,9 @@ bool FixHydroVans::gravity_varies() const
 void FixHydroVans::take_gravity()
 {
   for (int d = 0; d < 3; d++) set.law.g[d] = set.gravity[d].number();
-  if (!stream.fluid.held) stream.fluid.gx = set.law.g[0];
+  if (stream.fluid.held) return;
+  stream.fluid.gx = set.law.g[0];
+  stream.drive = stream.fluid.gx - stream.fluid.dpdx / stream.fluid.rho;
 }
 
 void FixHydroVans::read_variables()

@@ -195,8 +195,7 @@ void VansStream::fill_above()
 {
   const int M = wet.ncell - 1, N = ncell();
   if (!set.follows()) return;
-  const double at_surface = fluid.driven ? U[wet.ncell] : U[M];
-  for (int n = M + 1; n <= N; n++) U[n] = at_surface;
+  for (int n = M + 1; n <= N; n++) U[n] = U[M];
   for (int n = M + 1; n < N; n++) b[n] = length[n] = nut[n] = stress[n] = 0.0;
 }
 

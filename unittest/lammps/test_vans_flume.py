@@ -225,3 +225,17 @@ def test_suspensions_settle_in_a_vessel_by_richardson_and_zaki(d, eta, expected,
         weight = 1650 * 9.81 * np.pi / 6 * d ** 3 * len(x) / (9 * h * h)
         assert abs(pressure[0] / weight - 1) < 0.02
         s.close()
+
+
+def test_a_run_stops_when_its_mean_is_known():
+    """A stream that shakes about its mean: fix halt on the error of the steady state; asked anew, it knows nothing."""
+    s = Scene()
+    s.do("variable p equal -100*(1+0.3*sin(step*1.7))", "fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.1 gravity 0 0 -9.8 couple fluid turbulence kz pressure_gradient v_p "
+         "solve 0.1 0.01", "variable e equal f_h[25]/(f_h[24]+1e-99)", "fix stop all halt 1 v_e < 0.02 error continue", "run 3000")
+    steps = s.lmp.extract_global("ntimestep")
+    assert 16 <= steps < 3000 and 0 < s.number("stress_error") < 0.02 * s.number("mean_stress")
+    s.do("unfix stop", "run 500")
+    assert abs(s.number("mean_stress") / s.number("largest_stress") - 1) < 0.4
+    s.do("fix_modify h steady anew")
+    assert s.number("mean_stress") == 0
+    s.close()

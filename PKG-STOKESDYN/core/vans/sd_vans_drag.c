@@ -1,7 +1,5 @@
 #include "sd_vans_drag.h"
 
-#include "sd_constants.h"
-
 #include <math.h>
 
 double sd_vans_drag_number(sd_vans_drag_of_one law, double Re)
@@ -50,11 +48,9 @@ static double logarithm_of_lone_speed(double Re, double log_e)
   return y;
 }
 
-double sd_vans_drag_factor(sd_vans_drag_law law, double rho, double eta, double a,
+double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
                            double hindrance, double speed)
 {
-  if (law.law == SD_VANS_DRAG_YADE && law.hindrance == SD_VANS_HINDRANCE_POWER)
-    return 0.5 * SD_PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
   const double Re = 2.0 * a * rho * speed / eta, viscous = 0.25 * SD_PI * a * eta;
   switch (law.hindrance) {
     case SD_VANS_HINDRANCE_POWER: break;

@@ -29,6 +29,8 @@
 #ifndef SD_VANS_DRAG_H
 #define SD_VANS_DRAG_H
 
+#include "sd_constants.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -63,9 +65,18 @@ double sd_vans_richardson_zaki(double Re);
 void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
                           double *hindrance);
 
-/* F/w of a grain of radius a for the speed |w|; hindrance: that of its slice. */
-double sd_vans_drag_factor(sd_vans_drag_law law, double rho, double eta, double a,
+/* F/w of a grain of radius a for the speed |w|, of any law; hindrance: that of its slice. */
+double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
                            double hindrance, double speed);
+
+/* The same; Yade's law with a power on the spot. */
+static inline double sd_vans_drag_factor(sd_vans_drag_law law, double rho, double eta, double a,
+                                         double hindrance, double speed)
+{
+  if (law.law == SD_VANS_DRAG_YADE && law.hindrance == SD_VANS_HINDRANCE_POWER)
+    return 0.5 * SD_PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
+  return sd_vans_drag_by_law(law, rho, eta, a, hindrance, speed);
+}
 
 /* dF/dw of the same: between F/w and twice that. */
 double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,

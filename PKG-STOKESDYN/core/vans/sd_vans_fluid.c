@@ -161,22 +161,21 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
 }
 
 /* Side walls: half of the friction on U', half on U, both with the f and |U| of U. That is
- * stable however strong it is. Returns what the explicit half takes. */
-static double wall_rows(sd_vans_solver *s, int M, const double *U)
+ * stable however strong it is. */
+static void wall_rows(sd_vans_solver *s, int M, const double *U)
 {
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
-  double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr, taken = 0.0;
+  double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
   for (int j = 0; j < M; j++) {
-    const double u = U[j + 1], speed = fmax(fabs(u), s->least_speed),
+    const double u = U[j + 1], size = fabs(u),
+                 speed = size > s->least_speed ? size : s->least_speed,
                  f = sd_vans_wall_friction(SD_VANS_CONSISTENT, speed * s->Re_factor,
                                            &s->friction[j]);
     const double K = scale[j] * f * speed;
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
     wall_cr[j] = cr[j] - K * u;
-    taken += K * u;
   }
-  return taken;
 }
 
 /* The rows as far as they stay in a solve: all but the eddy viscosity and the walls. The viscous
@@ -262,10 +261,14 @@ static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int k
   else
     s->T[M] = 0.0;
   if (s->walls) {
-    s->wall_sum += fluid->rules == SD_VANS_YADE
-        ? sd_vans_yade_walls(M, s->Re_factor, s->wall_scale, U, s->cd, s->cr, s->friction, s->wall,
-                             s->wall_cd, s->wall_cr)
-        : wall_rows(s, M, U);
+    const int yade = fluid->rules == SD_VANS_YADE;
+    if (yade)
+      sd_vans_yade_walls(M, s->Re_factor, s->wall_scale, U, s->cd, s->cr, s->friction, s->wall,
+                         s->wall_cd, s->wall_cr);
+    else
+      wall_rows(s, M, U);
+    if (keep)
+      for (int j = 0; j < M; j++) s->wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
   }
 
   const double *cd = s->walls ? s->wall_cd : s->cd;

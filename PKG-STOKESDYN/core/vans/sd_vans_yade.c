@@ -81,20 +81,17 @@ void sd_vans_yade_friction(double Re, sd_vans_friction *near)
   memset(near->f, 0, sizeof near->f);
 }
 
-double sd_vans_yade_walls(int M, double Re_factor, const double *scale, const double *U,
-                          const double *cd, const double *cr, sd_vans_friction *friction,
-                          double *wall, double *wall_cd, double *wall_cr)
+void sd_vans_yade_walls(int M, double Re_factor, const double *scale, const double *U,
+                        const double *cd, const double *cr, sd_vans_friction *friction,
+                        double *wall, double *wall_cd, double *wall_cr)
 {
-  double taken = 0.0;
   for (int j = 0; j < M; j++) {
     const double speed = fabs(U[j + 1]),
                  f = sd_vans_wall_friction(SD_VANS_YADE, speed * Re_factor, &friction[j]);
     wall[j] = scale[j] * f * (speed * speed);
     wall_cd[j] = cd[j] + wall[j];
     wall_cr[j] = cr[j] - wall[j];
-    taken += wall[j];
   }
-  return taken;
 }
 
 double sd_vans_yade_drive(const sd_vans_fluid *fluid)

@@ -26,11 +26,11 @@ double sd_vans_yade_coefficient(const sd_vans_fluid *fluid, int n, double drag, 
  * than 1 %; after 100 steps 0. */
 void sd_vans_yade_friction(double Re, sd_vans_friction *near);
 
-/* Rows with side walls: U^2 in the implicit and in the explicit half, the latter without U's sign.
- * Returns what the explicit halves take. */
-double sd_vans_yade_walls(int M, double Re_factor, const double *scale, const double *U,
-                          const double *cd, const double *cr, sd_vans_friction *friction,
-                          double *wall, double *wall_cd, double *wall_cr);
+/* Rows with side walls: U^2 in the implicit and in the explicit half, the latter without U's
+ * sign. */
+void sd_vans_yade_walls(int M, double Re_factor, const double *scale, const double *U,
+                        const double *cd, const double *cr, sd_vans_friction *friction,
+                        double *wall, double *wall_cd, double *wall_cr);
 
 /* Gravity along x drives by its size. */
 double sd_vans_yade_drive(const sd_vans_fluid *fluid);
