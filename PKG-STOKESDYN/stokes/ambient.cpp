@@ -45,10 +45,17 @@ void Ambient::init()
 
 bool Ambient::numbers_only() const
 {
-  bool plain = !settings.visc.is_variable();
+  bool plain = !settings.visc.is_variable() && !settings.box;
   for (int d = 0; d < 3; d++)
     plain = plain && !settings.velocity[d].is_variable() && !settings.vorticity[d].is_variable();
   return plain;
+}
+
+bool Ambient::varies() const
+{
+  bool varies = settings.grid || settings.box;
+  for (const auto &field : settings.velocity) varies = varies || field.is_atom_style();
+  return varies;
 }
 
 void Ambient::numbers(double *nine) const
@@ -80,9 +87,9 @@ void Ambient::read(bool with_spins, bool with_gradients, double time)
 void Ambient::read_fluid(bool with_gradients)
 {
   const int n = atom->nlocal;
-  bool u_varies = settings.grid != nullptr;
-  for (const auto &field : settings.velocity) u_varies = u_varies || field.is_atom_style();
+  const bool u_varies = varies();
   if (!numbers_only()) modify->clearstep_compute();
+  motion = u_varies ? motion_of_box(lmp, command) : BoxMotion();
 
   eta.resize(settings.visc.is_atom_style() || settings.grid_has_visc ? n + 1 : 0);
   settings.visc.evaluate(lmp, igroup, eta.empty() ? nullptr : eta.data(), 1);
@@ -93,7 +100,7 @@ void Ambient::read_fluid(bool with_gradients)
   // The grid is looked up for those that take part.
   if (settings.grid && those.size() < (size_t) n) std::fill(u.begin(), u.end(), 0.0);
   for (int d = 0; d < 3; d++) {
-    double *out = u.empty() || settings.grid ? nullptr : u.data() + d;
+    double *out = u.empty() || settings.grid || settings.box ? nullptr : u.data() + d;
     settings.velocity[d].evaluate(lmp, igroup, out, 3);
     u_uniform[d] = settings.velocity[d].number();
   }
@@ -102,6 +109,8 @@ void Ambient::read_fluid(bool with_gradients)
   gradient.assign(nonuniform && with_gradients ? 9 * (size_t) n + 9 : 0, 0.0);
   if (settings.grid)
     read_grid();
+  else if (settings.box)
+    read_box(!gradient.empty());
   else if (u_varies && !w.empty())
     read_gradient();
   if (settings.has_vorticity) read_vorticity();
@@ -131,6 +140,18 @@ namespace {
     std::vector<double> x;
   };
 }    // namespace
+
+/* The same gradient everywhere */
+void Ambient::read_box(bool with_gradients)
+{
+  double rotation[3];
+  sd_flow_rotation(motion.gradient, rotation);
+  for (size_t i : those) {
+    motion.at(atom->x[i], &u[3 * i]);
+    if (!w.empty()) std::copy_n(rotation, 3, &w[3 * i]);
+    if (with_gradients) std::copy_n(motion.gradient, 9, &gradient[9 * i]);
+  }
+}
 
 /* By formulas in x, y, z; a velocity stored per atom does not follow. */
 double Ambient::misfit()

@@ -8,6 +8,7 @@
 #ifndef SD_AMBIENT_H
 #define SD_AMBIENT_H
 
+#include "deforming_box.h"
 #include "field.h"
 #include "flow_file.h"
 #include "atom.h"
@@ -33,6 +34,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
     /* the velocity, or nullptr: that of the fields; the viscosity too? */
     std::shared_ptr<const FlowFile> grid;
     bool grid_has_visc = false;
+    /* the velocity is that of the box, which fix deform changes */
+    bool box = false;
     /* empty: the whole box */
     std::string region;
     std::string group = "all";
@@ -88,6 +91,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
   const double *uniform_velocity() const { return u_uniform; }
 
+  /* Does the fluid velocity differ from place to place? */
+  bool varies() const;
+  /* Of this step, for a velocity that varies, otherwise none: an image of a sphere moves as the
+   * sphere does, and by the gradient times the shift between them. */
+  const BoxMotion &box_motion() const { return motion; }
+
   /* Is all of it known without asking variables? Then these numbers say it: viscosity, velocity,
    * vorticity, which grid, and in a series the time that was read. */
   enum { NUMBERS = 9 };
@@ -108,6 +117,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   /* the run, by its first step, in which the group was last looked at; -1: in none */
   LAMMPS_NS::bigint looked_in = -1;
   double now = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
+  BoxMotion motion;
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient;
 
@@ -115,6 +125,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   void select();
   void read_fluid(bool gradients);
   void slope_of(int p, int q, std::vector<double> &slope);
+  void read_box(bool gradients);
   void read_gradient();
   void read_vorticity();
   void read_grid();

@@ -5,9 +5,11 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "named_state.h"
+#include "deforming_box.h"
 #include "overdamped_checks.h"
 
 #include "sd_gap.h"
+#include "sd_hash.h"
 #include "sd_linear.h"
 #include "sd_pose.h"
 
@@ -30,7 +32,7 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), before(6), output(9)
+    RowsFix(lmp, narg, arg), adapt(), motion(6), before(9), output(9)
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({
@@ -58,7 +60,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  keep({&before, &output}, &output, true);
+  keep({&motion, &before, &output}, &output, true);
 }
 
 int FixStokesDynamicsOverdamped::setmask()
@@ -93,6 +95,35 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
   return !moved;
 }
 
+/* Fingerprints of force, torque, fluid and viscosity: where spheres stand as they did, their velocities
+ * follow from these. */
+void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
+{
+  const int width = hydro.rotation() ? 6 : 3;
+  double sums[8] = {0.0}, fluid[6];
+  for (int i : hydro.ambient.who()) {
+    const uint64_t tag = atom->tag[i];
+    const double eta = hydro.ambient.viscosity(i);
+    hydro.ambient.fluid(i, fluid);
+    sd_hash_add_row(tag, atom->f[i], 3, sums);
+    if (atom->torque_flag) sd_hash_add_row(tag, atom->torque[i], 3, sums + 2);
+    sd_hash_add_row(tag, fluid, width, sums + 4);
+    sd_hash_add_row(tag, &eta, 1, sums + 6);
+  }
+  MPI_Allreduce(sums, causes, 8, MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */
+bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
+{
+  double now[8];
+  find_causes(hydro, now);
+  bool same = last.atoms == atom->natoms;
+  for (int k = 0; k < 8; k += 2)
+    same = same && fabs(now[k] - last.causes[k]) <= 1e-8 * std::max(now[k + 1], last.causes[k + 1]);
+  return same;
+}
+
 void FixStokesDynamicsLast::setup(int /*vflag*/)
 {
   for (auto *fix : fixes_of<FixStokesDynamicsOverdamped>(lmp)) fix->after_setup();
@@ -112,9 +143,9 @@ void FixStokesDynamicsOverdamped::after_setup()
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
   const bool same_run = goes_on(hydro);
-  if (!same_run) before.clear();
+  if (!same_run || !causes_stand(hydro)) before.clear();
   hydro.new_run(same_run);
-  if (same_run && from_file && adapt.every && last.next_dt > 0.0) update->dt = last.next_dt;
+  if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
   displaced = changed_before = 0.0;
   doublings = 0;
@@ -137,12 +168,15 @@ void FixStokesDynamicsOverdamped::final_integrate()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
+  if (last.atoms != atom->natoms) before.clear();    // those that are left move as they did not before
   find_velocities(hydro);
 }
 
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
+  find_causes(hydro, last.causes);
+  last.atoms = atom->natoms;
   const bool rotates = hydro.rotation();
   hydro.velocities([this, &hydro, rotates](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
@@ -155,7 +189,11 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       atom->omega[i][d] = v[3 + d];
       row[6 + d] = F[3 + d];
     }
+    std::copy_n(v, 3, motion.give(i));
   });
+  for (const auto &clump : hydro.motion().clumps)
+    for (int k = clump.body->begin; k < clump.body->begin + clump.body->n; k++)
+      if (const int i = hydro.motion().owns()[k]; i >= 0) std::copy_n(clump.V, 6, motion.give(i));
   last.step = update->ntimestep;
 }
 
@@ -187,21 +225,43 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
   displaced = changed = 0.0;
   for (int i : hydro.motion().lone) move_free(i);
   for (const auto &clump : hydro.motion().clumps) move_clump(hydro, clump);
+  bring_box_to_this_step(lmp);
   last.dt = update->dt;
   if (!warned_growth) watch();
 }
 
+/* V [6] of atom i in the step before, if there was one. place: where its body is now. */
+bool FixStokesDynamicsOverdamped::old_velocity(int i, const double *place, double *V) const
+{
+  if (!before.has(i)) return false;
+  const double *G = hydrodynamics().ambient.box_motion().gradient, *old = before[i];
+  double shift[3], jump[3];
+  for (int d = 0; d < 3; d++) shift[d] = place[d] - old[6 + d];
+  sd_multiply3(G, shift, jump);
+  std::copy_n(old, 6, V);
+  for (int d = 0; d < 3; d++) V[d] += jump[d];
+  return true;
+}
+
+void FixStokesDynamicsOverdamped::remember(int i, const double *V, const double *place)
+{
+  double *row = before.give(i);
+  std::copy_n(V, 6, row);
+  std::copy_n(place, 3, row + 6);
+}
+
 void FixStokesDynamicsOverdamped::move_free(int i)
 {
-  const double dt = update->dt, c = weight(i);
-  const bool first = !before.has(i);
-  double *old = before.give(i), *v = atom->v[i], mean[3], change[3];
-  sd_mean_velocity(3, v, old, c, mean);
+  const double dt = update->dt, *V = motion[i];
+  double *x = atom->x[i], old[6], mean[3], change[3] = {0.0};
+  std::copy_n(V, 6, old);
+  const double c = old_velocity(i, x, old) ? weight(i) : 0.0;
+  sd_mean_velocity(3, V, old, c, mean);
   for (int d = 0; d < 3; d++) {
-    atom->x[i][d] += dt * mean[d];
-    change[d] = first ? 0.0 : v[d] - old[d];
-    old[d] = v[d];
+    x[d] += dt * mean[d];
+    change[d] = V[d] - old[d];
   }
+  remember(i, V, x);
   moves(i, dt * sqrt(sd_dot(mean, mean)), sqrt(sd_dot(change, change)));
 }
 
@@ -220,21 +280,22 @@ void FixStokesDynamicsOverdamped::move_clump(Hydrodynamics &hydro, const Velocit
   const sd_shape &shape = body.shape->shape;
   int mine = body.begin;
   while (owns[mine] < 0) mine++;
-  const double *old = before[owns[mine]];
-  double pose[12], mean[6], turn[9], change = 0.0;
+  double pose[12], old[6], mean[6], turn[9], change = 0.0;
   x.resize(3 * (size_t) body.n);
   std::copy_n(clump.pose, 12, pose);
-  sd_mean_velocity(6, clump.V, old, weight(owns[mine]), mean);
-  for (int d = 0; d < 3 && before.has(owns[mine]); d++)
+  std::copy_n(clump.V, 6, old);
+  const double c = old_velocity(owns[mine], pose + 9, old) ? weight(owns[mine]) : 0.0;
+  sd_mean_velocity(6, clump.V, old, c, mean);
+  for (int d = 0; d < 3; d++)
     change += fabs(clump.V[d] - old[d]) + shape.size * fabs(clump.V[3 + d] - old[3 + d]);
   sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
   for (int k = 0; k < body.n; k++) {
     const int i = owns[body.begin + k], j = members[body.begin + k];
     if (i < 0) continue;
-    double step[3], *row = before.has(i) ? before.row(i) : before.give(i);
+    double step[3];
     for (int d = 0; d < 3; d++) step[d] = x[3 * (size_t) k + d] - atom->x[j][d];
     for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
-    for (int d = 0; d < 6; d++) row[d] = clump.V[d];
+    remember(i, clump.V, pose + 9);
     moves(i, sqrt(sd_dot(step, step)), change);
     hydro.turn(i, turn);
   }
@@ -246,7 +307,11 @@ void FixStokesDynamicsOverdamped::end_of_step()
 {
   const double dt = sd_next_step(update->dt, fastest(), adapt.tmin, adapt.tmax, adapt.xmax);
   last.next_dt = dt;
-  if (dt == update->dt) return;
+  if (dt != update->dt) set_step(dt);
+}
+
+void FixStokesDynamicsOverdamped::set_step(double dt)
+{
   update->update_time();
   update->dt = dt;
   update->dt_default = 0;
@@ -277,7 +342,7 @@ double FixStokesDynamicsOverdamped::compute_scalar()
   double mine = 0.0, all, s[6] = {0.0};
   for (int i : hydro.ambient.who()) {
     hydro.ambient.slip(i, s);
-    mine += sd_dot(s, output[i] + 3) + sd_dot(s + 3, output[i] + 6);
+    mine += sd_dot(s + 3, output[i] + 6) - sd_dot(output[i], output[i] + 3);
   }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
@@ -286,9 +351,10 @@ double FixStokesDynamicsOverdamped::compute_scalar()
 double FixStokesDynamicsOverdamped::compute_vector(int k)
 {
   enum { SPEED, ERROR, DISPLACEMENT, PRODUCTS, RESIDUAL, SOLVES, UNCONVERGED, GAP, STEP };
-  const Hydrodynamics &hydro = hydrodynamics();
-  if (!hydro.memory) return 0.0;
-  const auto &solver = hydro.memory->global;
+  hydrodynamics();    // an error if there is none
+  const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
+  if (!memory) return 0.0;
+  const auto &solver = memory->global;
   double mine = 0.0, all;
   switch (k) {
     case SPEED:
@@ -316,10 +382,15 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
   return all;
 }
 
+/* By the velocity of the fluid and that beyond it: nobody else writes to those. */
 double FixStokesDynamicsOverdamped::fastest() const
 {
-  double mine = 0.0, all;
-  for (int i : hydrodynamics().ambient.who()) mine = std::max(mine, sd_dot(atom->v[i], atom->v[i]));
+  const Ambient &ambient = hydrodynamics().ambient;
+  double mine = 0.0, all, v[3];
+  for (int i : ambient.who()) {
+    for (int d = 0; d < 3; d++) v[d] = output[i][d] + ambient.velocity(i)[d];
+    mine = std::max(mine, sd_dot(v, v));
+  }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return sqrt(all);
 }
@@ -327,25 +398,24 @@ double FixStokesDynamicsOverdamped::fastest() const
 /* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
 double FixStokesDynamicsOverdamped::error_figure() const
 {
-  const Velocities &motion = hydrodynamics().motion();
-  double most = 0.0;
-  auto compare = [&](int i, const double *old) {
-    double change[3];
-    for (int d = 0; d < 3; d++) change[d] = atom->v[i][d] - old[d];
-    most = std::max(most, sqrt(sd_dot(change, change)) / atom->radius[i]);
-  };
-  for (int i : motion.lone)
-    if (before.has(i)) compare(i, before[i]);
-  for (const auto &clump : motion.clumps)
+  const Velocities &moving = hydrodynamics().motion();
+  double most = 0.0, old[6];
+  for (int i : moving.lone) {
+    if (!old_velocity(i, atom->x[i], old)) continue;
+    for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
+    most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
+  }
+  for (const auto &clump : moving.clumps)
     for (int k = clump.body->begin; k < clump.body->begin + clump.body->n; k++) {
-      const int i = motion.owns()[k];
-      if (i < 0 || !before.has(i)) continue;
-      const double *V = before[i], *X = clump.body->shape->shape.x + 3 * (k - clump.body->begin);
-      double arm[3], old[3];
+      const int i = moving.owns()[k];
+      if (i < 0 || !old_velocity(i, clump.pose + 9, old)) continue;
+      const double *X = clump.body->shape->shape.x + 3 * (k - clump.body->begin);
+      double arm[3], turning[3];
+      for (int d = 0; d < 6; d++) old[d] -= clump.V[d];
       sd_multiply3(clump.pose, X, arm);
-      sd_cross(V + 3, arm, old);
-      for (int d = 0; d < 3; d++) old[d] += V[d];
-      compare(i, old);
+      sd_cross(old + 3, arm, turning);
+      for (int d = 0; d < 3; d++) old[d] += turning[d];
+      most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
     }
   return 0.5 * update->dt * most;
 }
@@ -394,6 +464,8 @@ void FixStokesDynamicsOverdamped::write_restart(FILE *fp)
   out.put("step", last.step);
   out.put("dt", last.dt);
   out.put("next_dt", last.next_dt);
+  out.put("atoms", last.atoms);
+  out.put("causes", std::vector<double>(last.causes, last.causes + 8));
   out.write(fp);
 }
 
@@ -404,5 +476,7 @@ void FixStokesDynamicsOverdamped::restart(char *buf)
   last.step = in.get("step", -1.0);
   last.dt = in.get("dt", 0.0);
   last.next_dt = in.get("next_dt", 0.0);
+  last.atoms = in.get("atoms", 0.0);
+  in.get("causes", last.causes, 8);
   from_file = true;
 }

@@ -43,15 +43,20 @@ class FixStokesDynamicsOverdamped : public RowsFix {
     double tmin, tmax, xmax;
   } adapt;
 
-  /* velocity of a free sphere, U and W of its clump, in the step before the one that the atom
-   * stands in */
+  /* [6] velocity of a free sphere, U and W of its clump, by which the next step goes: LAMMPS's v is
+   * output, and others may write to it */
+  AtomRows motion;
+  /* [9] the same of the step before, and where the sphere, or the centroid of the clump, was put by
+   * it: when LAMMPS has made an image of it since, v_old is that of the image */
   AtomRows before;
   /* v less that of the fluid, force, torque */
   AtomArray output;
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
-   * adapt wants next */
+   * adapt wants next; atoms there are */
   struct {
-    double step = -1, dt = 0.0, next_dt = 0.0;
+    double step = -1, dt = 0.0, next_dt = 0.0, atoms = 0.0;
+    /* fingerprints of what velocities follow from: forces, torques, the fluid (sd_hash_add_row) */
+    double causes[8] = {0.0};
   } last;
   bool from_file = false;
 
@@ -66,10 +71,15 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool restored() const override { return last.step >= 0; }
   Hydrodynamics &hydrodynamics() const;
   bool goes_on(const Hydrodynamics &) const;
+  void find_causes(const Hydrodynamics &, double *causes) const;
+  bool causes_stand(const Hydrodynamics &) const;
+  void set_step(double dt);
   void announce();
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
   double weight(int i) const;
+  bool old_velocity(int i, const double *place, double *V) const;
+  void remember(int i, const double *V, const double *place);
   void moves(int i, double distance, double change);
   void move_free(int i);
   void move_clump(Hydrodynamics &, const Velocities::Clump &);

@@ -190,6 +190,7 @@ void PairStokesDynamics::init_style()
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
   look_for_fixes();
+  check_deform(lmp, COMMAND, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
   sorting_bins.limit(range());
 }
 
