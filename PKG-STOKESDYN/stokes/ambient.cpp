@@ -153,10 +153,11 @@ void Ambient::read_box(bool with_gradients)
   }
 }
 
-/* By formulas in x, y, z; a velocity stored per atom does not follow. */
+/* By formulas in x, y, z; a velocity stored per atom does not follow. In a run of no steps fix deform
+ * has no rate for some of its styles. */
 double Ambient::misfit()
 {
-  if (u.empty()) return 0.0;
+  if (u.empty() || (motion.deforms && update->endstep == update->beginstep)) return 0.0;
   const double *h = domain->h, tilt[3] = {h[5], h[4], h[3]};
   const double edge[3][3] = {{domain->xprd, 0.0, 0.0},
                              {tilt[0], domain->yprd, 0.0},
@@ -168,8 +169,10 @@ double Ambient::misfit()
     for (int q = 0; q < 3 && settings.velocity[p].is_atom_style(); q++) {
       Shift shift(atom, edge[q], false);
       settings.velocity[p].evaluate(lmp, igroup, there.data(), 1);
+      double jump = 0.0;    // of the box's own motion
+      for (int d = 0; d < 3; d++) jump += motion.gradient[3 * p + d] * edge[q][d];
       for (int i : those) {
-        most[0] = std::max(most[0], std::fabs(there[i] - u[3 * (size_t) i + p]));
+        most[0] = std::max(most[0], std::fabs(there[i] - u[3 * (size_t) i + p] - jump));
         most[1] = std::max(most[1], std::fabs(u[3 * (size_t) i + p]));
       }
     }

@@ -52,7 +52,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   void read(bool spins, bool gradients, double time);
 
   /* How much the fluid velocity of this step differs between atoms and their images an edge of the
-   * box away, relative to the largest velocity: 0 fits a periodic box. On all ranks together. */
+   * box away, less what the box itself does, relative to the largest velocity: 0 fits a periodic
+   * box. On all ranks together. */
   double misfit();
 
   const std::vector<char> &active() const { return takes_part; }

@@ -82,11 +82,11 @@ void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Sett
 
 void warn_of_misfit(LAMMPS *lmp, const std::string &command, double misfit)
 {
-  if (misfit < 1e-9 || lmp->domain->deform_flag || lmp->comm->me != 0) return;
+  if (misfit < 1e-9 || lmp->comm->me != 0) return;
   lmp->error->warning(FLERR,
                       command + ": keyword fluid_velocity: the formula does not have the period of "
                                 "the box, and spheres near its faces feel the jump; a shear flow "
-                                "needs a triclinic box that fix deform shears with it");
+                                "needs a triclinic box that fix deform shears with it, and fluid_velocity box");
 }
 
 void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)

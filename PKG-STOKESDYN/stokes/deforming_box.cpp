@@ -12,7 +12,6 @@
 #include "utils.h"
 #include "variable.h"
 
-#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -89,14 +88,23 @@ template <class Set> static Edge corner_of(const Set &set, const Edge &edge, con
   return {0.5 * (set.lo_start + set.hi_start) - 0.5 * edge.now, -0.5 * edge.rate};
 }
 
-/* The relative rate of a length that keeps a volume: that of the others, turned round. */
-template <class Set> static double relative_rate(const Set &set, int d, const Edge *edge)
+/* A length that keeps the volume, or with another one shares what is due: it follows from those that
+ * do not. */
+template <class Set> static Edge volume_edge(const Set &set, int d, const Edge *edge)
 {
   enum { ONE_FROM_ONE, ONE_FROM_TWO, TWO_FROM_ONE };
-  const Edge &one = edge[set[d].dynamic1], &two = edge[set[d].dynamic2];
-  const double first = -one.rate / one.now;
-  if (set[d].substyle == TWO_FROM_ONE) return 0.5 * first;
-  return set[d].substyle == ONE_FROM_TWO ? first - two.rate / two.now : first;
+  const auto start = [&](int e) { return set[e].hi_start - set[e].lo_start; };
+  const int one = set[d].dynamic1, two = set[d].dynamic2;
+  double shrunk = start(one) / edge[one].now, rate = -edge[one].rate / edge[one].now;
+  if (set[d].substyle == ONE_FROM_TWO) {
+    shrunk *= start(two) / edge[two].now;
+    rate -= edge[two].rate / edge[two].now;
+  } else if (set[d].substyle == TWO_FROM_ONE) {
+    shrunk = sqrt(shrunk);
+    rate *= 0.5;
+  }
+  const double now = start(d) * shrunk;
+  return {now, rate * now};
 }
 
 BoxMotion motion_of_box(LAMMPS *lmp, const std::string &command)
@@ -124,7 +132,7 @@ BoxMotion motion_of_box(LAMMPS *lmp, const std::string &command)
                     : edge_of(lmp, set[d], set[d].tilt_start, set[d].tilt_stop, length, clock);
   }
   for (int d = 0; d < 3; d++)
-    if (set[d].style == Compat::VOLUME) edge[d].rate = relative_rate(set, d, edge) * edge[d].now;
+    if (set[d].style == Compat::VOLUME) edge[d] = volume_edge(set, d, edge);
   double h[6], rate[6];
   for (int d = 0; d < 6; d++) {
     h[d] = edge[d].now;

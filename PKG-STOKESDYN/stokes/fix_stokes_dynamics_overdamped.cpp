@@ -80,7 +80,7 @@ Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
 
 void FixStokesDynamicsOverdamped::init()
 {
-  refuse_inertia(lmp, COMMAND, this, hydrodynamics());
+  refuse_inertia(lmp, COMMAND, this, hydrodynamics(), adapt.every > 0);
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------

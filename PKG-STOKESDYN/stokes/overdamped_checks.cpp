@@ -86,9 +86,14 @@ static void refuse_settings(LAMMPS *lmp, const std::string &command, const Stoke
              "requires rotation yes or a shell: points do not tell how a clump on a line spins");
 }
 
-static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self, const Fix *other)
+static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self, const Fix *other,
+                       bool adapts)
 {
   const std::string name = "fix " + std::string(other->id) + " of style " + other->style;
+  if (adapts && utils::strmatch(other->style, "^deform"))
+    fail(lmp,
+         command + ": keyword adapt: " + name +
+             " counts its rate by steps, which must have one length: leave adapt out");
   if (strcmp(other->style, "stokes_dynamics") == 0)
     fail(lmp,
          command + ": " + name +
@@ -104,7 +109,7 @@ static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self,
 }
 
 void refuse_inertia(LAMMPS *lmp, const std::string &command, const Fix *self,
-                    const Hydrodynamics &hydro)
+                    const Hydrodynamics &hydro, bool adapts)
 {
   if (lmp->update->whichflag == 2)
     fail(lmp,
@@ -113,7 +118,7 @@ void refuse_inertia(LAMMPS *lmp, const std::string &command, const Fix *self,
     fail(lmp, command + " does not support run_style respa");
   refuse_settings(lmp, command, hydro.settings);
   for (int i = 0; i < lmp->modify->nfix; i++)
-    if (lmp->modify->fix[i] != self) refuse_fix(lmp, command, self, lmp->modify->fix[i]);
+    if (lmp->modify->fix[i] != self) refuse_fix(lmp, command, self, lmp->modify->fix[i], adapts);
   if (lmp->force->pair_match("^lubricate", 0, 1))
     fail(lmp,
          command +

@@ -15,9 +15,10 @@ namespace StokesDyn {
 
 class Hydrodynamics;
 
-/* The settings of the pair style, other fixes and pair styles, the kind of run. On all ranks. */
+/* The settings of the pair style, other fixes and pair styles, the kind of run; adapts: the time step
+ * does. On all ranks. */
 void refuse_inertia(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const LAMMPS_NS::Fix *self,
-                    const Hydrodynamics &hydro);
+                    const Hydrodynamics &hydro, bool adapts);
 
 /* Once a run, when something besides the pair style acts on the spheres: how long a step contacts
  * and bonds allow. A contact of stiffness k relaxes at the rate lambda k/(6 pi eta a), lambda up to
