@@ -66,7 +66,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   bool rotation() const { return settings.scene.rotation; }
   /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
-  bool computed_in(double step) const { return memory && memory->global.last_step == step; }
+  bool computed_in(double step) const
+  {
+    return memory && memory == FixStokesDynamicsState::find(lmp) && memory->global.last_step == step;
+  }
   const double *force(int i) const { return memory->rows[i] + FixStokesDynamicsState::FORCE; }
   const double *perturbation(int i) const
   {
