@@ -342,7 +342,7 @@ double FixStokesDynamicsOverdamped::compute_scalar()
   double mine = 0.0, all, s[6] = {0.0};
   for (int i : hydro.ambient.who()) {
     hydro.ambient.slip(i, s);
-    mine += sd_dot(s + 3, output[i] + 6) - sd_dot(output[i], output[i] + 3);
+    mine += sd_dot(s + 3, output[i] + 6) - sd_dot(output[i], output[i] + 3) + hydro.strain_power(i);
   }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;

@@ -139,8 +139,29 @@ void Hydrodynamics::drag()
   if (settings.lubrication.on) lubricate();
 }
 
-/* Where the spheres stand and as they move now */
-void Hydrodynamics::lubricate()
+/* Of the films where they stand, by rows of velocities. */
+void Hydrodynamics::find_films_power(const double *v)
+{
+  films_power.clear();
+  if (!ambient.varies()) return;
+  std::vector<double> power(solvers.size() + 1);
+  sd_lubrication_strain_power(lubrication.matrix(), v, power.data());
+  films_power.assign(atom->nlocal + 1, 0.0);
+  for (size_t k = 0; k < solvers.size(); k++) films_power[solvers[k]] = power[k];
+}
+
+void Hydrodynamics::stand()
+{
+  films_power.clear();
+  if (!settings.lubrication.on || !ambient.varies()) return;
+  solvers = ambient.who();
+  read_motion();
+  lubrication.place(ambient);
+  find_films_power(films_v.data());
+}
+
+/* As the spheres move now */
+void Hydrodynamics::read_motion()
 {
   const size_t n = solvers.size();
   films_v.resize(6 * n + 6);
@@ -149,8 +170,16 @@ void Hydrodynamics::lubricate()
     std::copy_n(atom->v[solvers[k]], 3, &films_v[6 * k]);
     std::copy_n(atom->omega[solvers[k]], 3, &films_v[6 * k + 3]);
   }
+}
+
+/* Where the spheres stand and as they move now */
+void Hydrodynamics::lubricate()
+{
+  const size_t n = solvers.size();
+  read_motion();
   lubrication.place(ambient);
   lubrication.forces(films_v.data(), films_F.data());
+  find_films_power(films_v.data());
   if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
     guard.look_at_films(*lubrication.matrix(), solvers.data());
   for (size_t k = 0; k < n; k++) {
@@ -378,6 +407,8 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   }
   const Velocities::How how = {width(), settings.warm_start, settings.tolerance, settings.max_iter};
   const sd_status status = mobile.together(how, begin_with, take, report);
+  films_power.clear();
+  if (settings.lubrication.on && status == SD_OK) find_films_power(begin_with.v.data());
   for (size_t k = 0; k < n; k++) {
     double *row = memory->rows.give(solvers[k]);
     for (size_t d = 0; d < m; d++) {
@@ -436,7 +467,7 @@ double Hydrodynamics::dissipation(int i) const
   ambient.slip(i, s);
   double power = F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
   if (T) power += T[0] * s[3] + T[1] * s[4] + T[2] * s[5];
-  return power;
+  return power + strain_power(i);
 }
 
 double Hydrodynamics::memory_usage() const

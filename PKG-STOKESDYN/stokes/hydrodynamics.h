@@ -80,8 +80,13 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   {
     return rotation() ? memory->rows[i] + FixStokesDynamicsState::TORQUE : nullptr;
   }
-  /* -F.(v - u_inf) of one sphere, >= 0 in the sum over all */
+  /* -F.(v - u_inf) of one sphere, with what a strain puts into its films: >= 0 in the sum over all
+   * free spheres */
   double dissipation(int i) const;
+  /* That second part, of the velocities of this step */
+  double strain_power(int i) const { return films_power.empty() ? 0.0 : films_power[i]; }
+  /* Where a run goes on with the forces of before: what else is told of them. */
+  void stand();
   double memory_usage() const;
 
  private:
@@ -107,6 +112,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   std::vector<double> carried;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
+  /* [nlocal], or empty: of strain_power() */
+  std::vector<double> films_power;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
@@ -116,7 +123,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
     return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1;
   }
   const double *right_hand_side() const { return joined() ? carried.data() : slip.data(); }
+  void read_motion();
   void lubricate();
+  void find_films_power(const double *v);
   sd_status run(sd_solve_report &report);
   sd_status gradients(sd_system &system, sd_solve_report &report);
   void guess();

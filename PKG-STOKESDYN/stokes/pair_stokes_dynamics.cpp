@@ -63,7 +63,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     hydro.clumps();
     if (verdict == SOLVE) hydro.solve();
     hydro.drag();
-  }
+  } else
+    hydro.stand();
   if (hydro.settings.add_force) add();
   report();
 }
