@@ -115,6 +115,8 @@ class Clump:
         status = _core.stokesdyn_clump(n, self.x, self.radius, int(shell), int(rotation), _positive("memory", memory),
                                        ctypes.byref(result))
         if status == _NO_MEMORY:
+            if result.iterative == 0.0:
+                raise Error("out of memory: linear algebra (BLAS) needs 0.14 GB of address space at once; is there a limit (ulimit -v)?")
             raise Error(f"memory {memory:g}: the solve needs {result.iterative:.3g} bytes, {result.dense:.3g} for a dense one")
         if status == _SINGULAR:
             raise Error("x: two spheres of equal radius lie at one point, or too nearly so")

@@ -10,6 +10,7 @@
 #include "neighbor.h"
 #include "update.h"
 
+#include "sd_linear.h"
 #include "sd_neighbor.h"
 
 #include <algorithm>
@@ -54,6 +55,17 @@ void check_vast_cutoff(LAMMPS *lmp, const std::string &command, const Scene::Set
        keyword + text(boxes) +
            " times the box, which is more than LAMMPS can make ghost atoms for; use " +
            (open || settings.clumps_only ? "inf" : "a shorter one"));
+}
+
+void check_room_of_blas(LAMMPS *lmp, const std::string &command)
+{
+  static bool there = false;    // of the process, as BLAS's memory is
+  if (!there && sd_linear_room() != SD_OK)
+    fail_one(lmp,
+             command + ": out of memory: linear algebra (BLAS) needs 0.14 GB of address space at "
+                       "once on each rank; is there a limit (ulimit -v)? With precondition none and "
+                       "without rigid_clumps none is needed");
+  there = true;
 }
 
 void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)

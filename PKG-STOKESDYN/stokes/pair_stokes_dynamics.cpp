@@ -178,6 +178,9 @@ void PairStokesDynamics::init_style()
   if (scene.everybody()) check_boundaries(lmp, COMMAND, scene);
   if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
     fail(lmp, COMMAND + ": keyword precondition: 'waves' requires a periodic box");
+  const bool may_precondition = hydro.settings.algorithm == StokesSettings::GRADIENTS &&
+      hydro.settings.precondition != Preconditioner::NONE;
+  if (hydro.settings.rigid.on || may_precondition) check_room_of_blas(lmp, COMMAND);
   if (std::isfinite(scene.cutoff)) check_vast_cutoff(lmp, COMMAND, scene);
 
   double largest = 0.0;
