@@ -1,5 +1,6 @@
 #include "checks.h"
 
+#include "ghosts.h"
 #include "keywords.h"
 #include "ranks.h"
 
@@ -24,37 +25,18 @@ namespace StokesDyn {
 void check_vast_cutoff(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
 {
   const Domain *domain = lmp->domain;
-  const double cut = settings.cutoff + lmp->neighbor->skin;
-  double atoms = lmp->atom->natoms, most = 0.0, boxes = 0.0, periodic_boxes = 0.0;
-  for (int d = 0; d < domain->dimension; d++) {
-    double row = 1.0 / domain->prd[d];    // one over the distance of opposite faces
-    if (domain->triclinic && d < 2) {
-      const double *inv = domain->h_inv;
-      row = d == 0 ? sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4])
-                   : sqrt(inv[1] * inv[1] + inv[3] * inv[3]);
-    }
-    boxes = std::max(boxes, cut * row);
-    most = std::max(most, cut * row * lmp->comm->procgrid[d]);
-    if (!domain->periodicity[d]) continue;
-    atoms *= 2.0 * cut * row + 1.0;
-    periodic_boxes = std::max(periodic_boxes, cut * row);
-  }
   const std::string keyword =
-      command + ": keyword cut_off_distance: '" + text(settings.cutoff) + "' is ";
-  if (std::max(most, atoms) < MAXSMALLINT) {
-    if (periodic_boxes > 10.0 && lmp->comm->me == 0)
-      lmp->error->warning(FLERR,
-                          std::string(keyword + text(periodic_boxes) +
-                                      " times the periodic box: LAMMPS keeps about " + text(atoms) +
-                                      " ghost atoms for it"));
-    return;
-  }
+      command + ": keyword cut_off_distance: '" + text(settings.cutoff) + "'";
   bool open = true;
   for (int d = 0; d < domain->dimension; d++) open = open && !domain->periodicity[d];
-  fail(lmp,
-       keyword + text(boxes) +
-           " times the box, which is more than LAMMPS can make ghost atoms for; use " +
-           (open || settings.clumps_only ? "inf" : "a shorter one"));
+  refuse_endless_ghosts(lmp, keyword, settings.cutoff,
+                        open || settings.clumps_only ? " If not, use inf" : " If not, use a shorter one");
+  const GhostNeed need = ghosts_for(lmp, settings.cutoff);
+  if (need.periodic_boxes > 10.0 && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        std::string(keyword + " is " + text(need.periodic_boxes) +
+                                    " times the periodic box: LAMMPS keeps about " +
+                                    text(need.atoms) + " ghost atoms for it"));
 }
 
 void check_room_of_blas(LAMMPS *lmp, const std::string &command)

@@ -10,9 +10,8 @@
 
 namespace StokesDyn {
 
-/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts
- * of them: refused. One of more than ten periodic boxes, perhaps a mistake in units, takes minutes
- * and is warned of. */
+/* A cut-off of so many boxes that ghosts have no end is refused (ghosts.h). One of more than ten
+ * periodic boxes, perhaps a mistake in units, is warned of. */
 void check_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
                        const Scene::Settings &settings);
 

@@ -137,6 +137,7 @@ def test_start_of_a_run(simulation, words, before, expected):
 VAST = [("cut_off_distance 1e12", "f f f", "'1e+12' is 5.55556e+10 times the box", "use inf"),
         ("cut_off_distance 1e300", "f f f", "'1e+300' is", "use inf"),
         ("cut_off_distance 1e4", "p p p", "'10000' is 555.572 times the box", "use a shorter one"),
+        ("cut_off_distance 3200 taper wendland", "p p p", "'3200' is 177.794 times the box", "is it in other units"),
         ("clumps_only yes cut_off_distance 1e4", "p p p", "'10000' is 555.572 times the box", "use inf")]
 
 
