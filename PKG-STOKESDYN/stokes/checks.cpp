@@ -1,6 +1,5 @@
 #include "checks.h"
 
-#include "ghosts.h"
 #include "keywords.h"
 #include "ranks.h"
 
@@ -21,23 +20,6 @@
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
-
-void check_vast_cutoff(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
-{
-  const Domain *domain = lmp->domain;
-  const std::string keyword =
-      command + ": keyword cut_off_distance: '" + text(settings.cutoff) + "'";
-  bool open = true;
-  for (int d = 0; d < domain->dimension; d++) open = open && !domain->periodicity[d];
-  refuse_endless_ghosts(lmp, keyword, settings.cutoff,
-                        open || settings.clumps_only ? " If not, use inf" : " If not, use a shorter one");
-  const GhostNeed need = ghosts_for(lmp, settings.cutoff);
-  if (need.periodic_boxes > 10.0 && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        std::string(keyword + " is " + text(need.periodic_boxes) +
-                                    " times the periodic box: LAMMPS keeps about " +
-                                    text(need.atoms) + " ghost atoms for it"));
-}
 
 void check_room_of_blas(LAMMPS *lmp, const std::string &command)
 {
@@ -97,7 +79,7 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
   } else {
     const sd_spheres spheres = scene.local();
     const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
-    status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_ghosts(), 0, scene.size(),
+    status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_copies(), 0, scene.size(),
                                &mine);
   }
   if (status != SD_OK) fail_one(lmp, command + ": " + sd_status_string(status));
@@ -127,7 +109,7 @@ void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &
   };
   const sd_pairs &list = scene.list();
   for (int k = 0; k < scene.size(); k++)
-    if (const tagint molecule = lmp->atom->molecule[scene.who()[k]])
+    if (const tagint molecule = scene.molecule(k))
       add({molecule, 1, (bigint) (list.first[k + 1] - list.first[k])});
   std::vector<Sight> mine;
   for (const auto &clump : clumps) mine.push_back(clump.second);

@@ -10,11 +10,6 @@
 
 namespace StokesDyn {
 
-/* A cut-off of so many boxes that ghosts have no end is refused (ghosts.h). One of more than ten
- * periodic boxes, perhaps a mistake in units, is warned of. */
-void check_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
-                       const Scene::Settings &settings);
-
 /* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
 void check_room_of_blas(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
 

@@ -32,7 +32,7 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), motion(6), before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), motion(3), before(9), output(9)
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({
@@ -191,9 +191,6 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     }
     std::copy_n(v, 3, motion.give(i));
   });
-  for (const auto &clump : hydro.motion().clumps)
-    for (int k = clump.body->begin; k < clump.body->begin + clump.body->n; k++)
-      if (const int i = hydro.motion().owns()[k]; i >= 0) std::copy_n(clump.V, 6, motion.give(i));
   last.step = update->ntimestep;
 }
 
@@ -224,44 +221,42 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
   Hydrodynamics &hydro = hydrodynamics();
   displaced = changed = 0.0;
   for (int i : hydro.motion().lone) move_free(i);
-  for (const auto &clump : hydro.motion().clumps) move_clump(hydro, clump);
+  if (hydro.settings.rigid.on) move_clumps(hydro);
   bring_box_to_this_step(lmp);
   last.dt = update->dt;
   if (!warned_growth) watch();
 }
 
-/* V [6] of atom i in the step before, if there was one. place: where its body is now. */
-bool FixStokesDynamicsOverdamped::old_velocity(int i, const double *place, double *V) const
+/* old [6] of the step before (a row of `before`) for a body whose place is now another image */
+void FixStokesDynamicsOverdamped::at_image(const double *row, const double *place, double *old) const
 {
-  if (!before.has(i)) return false;
-  const double *G = hydrodynamics().ambient.box_motion().gradient, *old = before[i];
   double shift[3], jump[3];
-  for (int d = 0; d < 3; d++) shift[d] = place[d] - old[6 + d];
-  sd_multiply3(G, shift, jump);
-  std::copy_n(old, 6, V);
-  for (int d = 0; d < 3; d++) V[d] += jump[d];
-  return true;
+  for (int d = 0; d < 3; d++) shift[d] = place[d] - row[6 + d];
+  sd_multiply3(hydrodynamics().ambient.box_motion().gradient, shift, jump);
+  std::copy_n(row, 6, old);
+  for (int d = 0; d < 3; d++) old[d] += jump[d];
 }
 
-void FixStokesDynamicsOverdamped::remember(int i, const double *V, const double *place)
+/* V [6] of the free sphere i in the step before, if there was one. place: where it is now. */
+bool FixStokesDynamicsOverdamped::old_velocity(int i, const double *place, double *V) const
 {
-  double *row = before.give(i);
-  std::copy_n(V, 6, row);
-  std::copy_n(place, 3, row + 6);
+  if (before.has(i)) at_image(before[i], place, V);
+  return before.has(i);
 }
 
 void FixStokesDynamicsOverdamped::move_free(int i)
 {
   const double dt = update->dt, *V = motion[i];
-  double *x = atom->x[i], old[6], mean[3], change[3] = {0.0};
-  std::copy_n(V, 6, old);
+  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], change[3] = {0.0};
   const double c = old_velocity(i, x, old) ? weight(i) : 0.0;
   sd_mean_velocity(3, V, old, c, mean);
   for (int d = 0; d < 3; d++) {
     x[d] += dt * mean[d];
     change[d] = V[d] - old[d];
   }
-  remember(i, V, x);
+  double *row = before.give(i);
+  std::copy_n(V, 3, row);
+  std::copy_n(x, 3, row + 6);
   moves(i, dt * sqrt(sd_dot(mean, mean)), sqrt(sd_dot(change, change)));
 }
 
@@ -271,34 +266,60 @@ void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
   changed = std::max(changed, 0.5 * update->dt * change / atom->radius[i]);
 }
 
-/* Each rank sets its own spheres. Positions are those of images side by side: an atom moves as its
- * image does. */
-void FixStokesDynamicsOverdamped::move_clump(Hydrodynamics &hydro, const Velocities::Clump &clump)
+/* By members of clumps: has it a velocity of before? Its row then, of its clump */
+std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
 {
-  const RigidClumps::Body &body = *clump.body;
-  const auto &members = hydro.motion().members(), &owns = hydro.motion().owns();
-  const sd_shape &shape = body.shape->shape;
-  int mine = body.begin;
-  while (owns[mine] < 0) mine++;
-  double pose[12], old[6], mean[6], turn[9], change = 0.0;
-  x.resize(3 * (size_t) body.n);
-  std::copy_n(clump.pose, 12, pose);
-  std::copy_n(clump.V, 6, old);
-  const double c = old_velocity(owns[mine], pose + 9, old) ? weight(owns[mine]) : 0.0;
-  sd_mean_velocity(6, clump.V, old, c, mean);
-  for (int d = 0; d < 3; d++)
-    change += fabs(clump.V[d] - old[d]) + shape.size * fabs(clump.V[3 + d] - old[3 + d]);
-  sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
-  for (int k = 0; k < body.n; k++) {
-    const int i = owns[body.begin + k], j = members[body.begin + k];
-    if (i < 0) continue;
-    double step[3];
-    for (int d = 0; d < 3; d++) step[d] = x[3 * (size_t) k + d] - atom->x[j][d];
-    for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
-    remember(i, clump.V, pose + 9);
-    moves(i, sqrt(sd_dot(step, step)), change);
-    hydro.turn(i, turn);
+  return hydrodynamics().scene.whole.gather(BEFORE, [this](int i, double *out) {
+    out[0] = before.has(i);
+    std::copy_n(before[i], 9, out + 1);
+  });
+}
+
+/* Positions are those of images side by side: an atom moves as its image does, less what the edges
+ * of the box between them have moved since. */
+void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
+{
+  enum { MOVES, CHANGE, STEP, V = STEP + 3, PLACE = V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
+  const Velocities &motion = hydro.motion();
+  const WholeClumps &whole = hydro.scene.whole;
+  const Lattice now = Lattice::of(domain);
+  const std::vector<double> all_before = velocities_before();
+  std::vector<double> x, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
+  double box[6];
+  for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
+  for (const auto &clump : motion.clumps) {
+    const RigidClumps::Body &body = *clump.body;
+    const sd_shape &shape = body.shape->shape;
+    const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
+    const bool has = row[0] != 0.0;
+    const double c = scheme == AB2 && has && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
+    double pose[12], old[6], mean[6], turn[9], change = 0.0;
+    at_image(row + 1, clump.pose + 9, old);
+    x.resize(3 * (size_t) body.n);
+    std::copy_n(clump.pose, 12, pose);
+    sd_mean_velocity(6, clump.V, old, c, mean);
+    for (int d = 0; d < 3 && has; d++)
+      change += fabs(clump.V[d] - old[d]) + shape.size * fabs(clump.V[3 + d] - old[3 + d]);
+    sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
+    for (int k = 0; k < body.n; k++) {
+      const size_t m = motion.member_of(clump, k);
+      double *row = &rows[COLUMNS * m];
+      row[MOVES] = 1.0;
+      row[CHANGE] = change;
+      for (int d = 0; d < 3; d++) row[STEP + d] = x[3 * (size_t) k + d] - whole.x[3 * m + d];
+      Lattice::add(box, &whole.steps[3 * m], row + STEP);
+      std::copy_n(clump.V, 6, row + V);
+      std::copy_n(pose + 9, 3, row + PLACE);
+      std::copy_n(turn, 9, row + TURN);
+    }
   }
+  whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
+    if (row[MOVES] == 0.0) return;
+    for (int d = 0; d < 3; d++) atom->x[i][d] += row[STEP + d];
+    std::copy_n(row + V, 6, before.give(i));
+    moves(i, sqrt(sd_dot(row + STEP, row + STEP)), row[CHANGE]);
+    hydro.turn(i, row + TURN);
+  });
 }
 
 /* The next step as long as the fastest sphere allows; what must be told of it, as by fix dt/reset.
@@ -398,24 +419,28 @@ double FixStokesDynamicsOverdamped::fastest() const
 /* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
 double FixStokesDynamicsOverdamped::error_figure() const
 {
-  const Velocities &moving = hydrodynamics().motion();
+  const Hydrodynamics &hydro = hydrodynamics();
+  const Velocities &moving = hydro.motion();
   double most = 0.0, old[6];
   for (int i : moving.lone) {
     if (!old_velocity(i, atom->x[i], old)) continue;
     for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
     most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
   }
+  const std::vector<double> all_before =
+      hydro.settings.rigid.on ? velocities_before() : std::vector<double>();
   for (const auto &clump : moving.clumps)
-    for (int k = clump.body->begin; k < clump.body->begin + clump.body->n; k++) {
-      const int i = moving.owns()[k];
-      if (i < 0 || !old_velocity(i, clump.pose + 9, old)) continue;
-      const double *X = clump.body->shape->shape.x + 3 * (k - clump.body->begin);
-      double arm[3], turning[3];
-      for (int d = 0; d < 6; d++) old[d] -= clump.V[d];
-      sd_multiply3(clump.pose, X, arm);
-      sd_cross(old + 3, arm, turning);
-      for (int d = 0; d < 3; d++) old[d] += turning[d];
-      most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
+    for (int k = 0; k < clump.body->n; k++) {
+      const sd_shape &shape = clump.body->shape->shape;
+      const double *row = &all_before[BEFORE * moving.member_of(clump, k)];
+      double arm[3], change[3];
+      if (row[0] == 0.0) continue;
+      at_image(row + 1, clump.pose + 9, old);
+      for (int d = 0; d < 6; d++) old[d] = clump.V[d] - old[d];
+      sd_multiply3(clump.pose, shape.x + 3 * (size_t) k, arm);
+      sd_cross(old + 3, arm, change);
+      for (int d = 0; d < 3; d++) change[d] += old[d];
+      most = std::max(most, sqrt(sd_dot(change, change)) / shape.a[k]);
     }
   return 0.5 * update->dt * most;
 }
@@ -426,7 +451,8 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   const Hydrodynamics &hydro = hydrodynamics();
   const std::vector<int> &who = hydro.ambient.who();
   const bool bound = hydro.settings.rigid.on;
-  std::vector<double> x, a, w(who.size(), 1.0), bodies;
+  const int n = (int) who.size();
+  std::vector<double> x, a, bodies;
   double mine = 0.0, largest;
   for (int i : who) {
     x.insert(x.end(), atom->x[i], atom->x[i] + 3);
@@ -437,19 +463,16 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
   if (largest == 0.0) return INFINITY;
   const double reach = 4.0 * largest;
-  sd_ewald_box box = periodic_box(domain);
-  box.periodic = 1;
-  for (int d = 0; d < 3; d++)    // what has no images has them too far away
-    if (!domain->periodicity[d] || d >= domain->dimension)
-      box.edge[d] = 4.0 * (box.edge[d] + reach);
-  Images images(world);
-  images.find(box, reach, x, a, w);
-  bodies.resize(a.size() + 1);
-  images.refresh(bodies.data(), &bodies[who.size()], 1);
+  const Lattice lattice = Lattice::of(domain);
+  Halo halo(world);
+  if (!halo.find(lattice, reach, x))
+    fail_one(lmp, COMMAND + ": the smallest gap: the largest radius, " + text(largest) +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other "
+                      "units?");
+  halo.extend(lattice.h, x, {&a, &bodies});
   const std::vector<int64_t> body(bodies.begin(), bodies.end());
   double gap = INFINITY, all;
-  if (!who.empty() &&
-      sd_smallest_gap(x.data(), a.data(), body.data(), who.size(), a.size(), reach, &gap) != SD_OK)
+  if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, a.size(), reach, &gap) != SD_OK)
     fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
   MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
   return all;

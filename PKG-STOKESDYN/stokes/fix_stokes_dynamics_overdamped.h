@@ -43,12 +43,14 @@ class FixStokesDynamicsOverdamped : public RowsFix {
     double tmin, tmax, xmax;
   } adapt;
 
-  /* [6] velocity of a free sphere, U and W of its clump, by which the next step goes: LAMMPS's v is
-   * output, and others may write to it */
+  /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
+   * write to it */
   AtomRows motion;
-  /* [9] the same of the step before, and where the sphere, or the centroid of the clump, was put by
+  /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump, was put by
    * it: when LAMMPS has made an image of it since, v_old is that of the image */
   AtomRows before;
+  /* of a member of a clump: has it such a row, and which? */
+  enum { BEFORE = 10 };
   /* v less that of the fluid, force, torque */
   AtomArray output;
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
@@ -65,8 +67,6 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double displaced = 0.0, changed = 0.0, changed_before = 0.0;
   int doublings = 0;
   bool warned_growth = false, announced = false;
-  /* spheres of a clump in the next step */
-  std::vector<double> x;
 
   bool restored() const override { return last.step >= 0; }
   Hydrodynamics &hydrodynamics() const;
@@ -79,10 +79,11 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void check_selection(const Hydrodynamics &) const;
   double weight(int i) const;
   bool old_velocity(int i, const double *place, double *V) const;
-  void remember(int i, const double *V, const double *place);
+  void at_image(const double *row, const double *place, double *old) const;
   void moves(int i, double distance, double change);
   void move_free(int i);
-  void move_clump(Hydrodynamics &, const Velocities::Clump &);
+  void move_clumps(Hydrodynamics &);
+  std::vector<double> velocities_before() const;
   void watch();
   double fastest() const;
   double error_figure() const;
