@@ -54,14 +54,6 @@ void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double>
   system.precondition_ctx = this;
 }
 
-/* Lengths of the periodic edges, and tilts */
-static std::vector<double> periodic_lengths(const Domain *domain)
-{
-  std::vector<double> box = {domain->xy, domain->xz, domain->yz};
-  for (int d = 0; d < 3; d++) box.push_back(domain->periodicity[d] ? domain->prd[d] : 0.0);
-  return box;
-}
-
 /* On all ranks alike. */
 void Preconditioner::refresh_places()
 {
@@ -77,7 +69,9 @@ void Preconditioner::refresh_places()
     sd_moved_add(sums, d, atom->radius[i]);
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, SD_MOVED + 1, MPI_DOUBLE, MPI_SUM, world);
-  const std::vector<double> now = periodic_lengths(domain);
+  std::vector<double> now;
+  if (wanted == &sd_precondition_waves)
+    now = {domain->prd[0], domain->prd[1], domain->prd[2], domain->xy, domain->xz, domain->yz};
   if (without == 0.0 && !sd_moved_too_far(sums) && *box == now) return;
   *box = now;
   for (int i : scene.who()) std::copy_n(atom->x[i], 3, places->give(i));

@@ -3,8 +3,8 @@
  * changes the number of iterations, never the answer.
  *
  * It is made at positions that are rows of the memory, and those are taken anew where spheres have
- * moved too far since (sd_preconditioner.h), where one has none yet, and where the periodic box is
- * another one. So the same preconditioner is there after a restart and on other ranks.
+ * moved too far since (sd_preconditioner.h), where one has none yet, and where waves are those of
+ * another box. So the same preconditioner is there after a restart and on other ranks.
  *
  * All pairs: of the whole cloud, shared by all ranks; else of this rank's rows, which hold whole
  * clumps where clumps must be whole, and otherwise parts. */

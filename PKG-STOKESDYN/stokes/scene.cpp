@@ -163,6 +163,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
 {
   stand(who, ambient);
   if (settings.everybody()) {
+    const std::vector<double> there = x;    // the sum over an open cloud takes its origin along
     engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
@@ -173,6 +174,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
       tell();
       place(size_with_copies());
     } else {
+      x = there;
       gather();
       somebody_sees = n_all > 1;
       if (settings.films > 0.0) surround_films();
