@@ -220,9 +220,9 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 {
   Hydrodynamics &hydro = hydrodynamics();
   displaced = changed = 0.0;
+  bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
   for (int i : hydro.motion().lone) move_free(i);
   if (hydro.settings.rigid.on) move_clumps(hydro);
-  bring_box_to_this_step(lmp);
   last.dt = update->dt;
   if (!warned_growth) watch();
 }
