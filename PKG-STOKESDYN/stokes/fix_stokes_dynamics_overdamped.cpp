@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "group.h"
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
@@ -50,6 +51,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
            in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" + text(adapt.tmax) +
                      "'");
        }},
+      {"held", [&] { held = in.word(); }},
   });
   time_integrate = 1;
   dynamic_group_allow = 0;
@@ -80,7 +82,14 @@ Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
 
 void FixStokesDynamicsOverdamped::init()
 {
-  refuse_inertia(lmp, COMMAND, this, hydrodynamics(), adapt.every > 0);
+  held_bit = moved_bits = 0;
+  if (!held.empty()) {
+    const int igroup_held = group->find(held);
+    if (igroup_held < 0) fail(lmp, COMMAND + ": keyword held: group '" + held + "' does not exist");
+    held_bit = group->bitmask[igroup_held];
+    for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
+  }
+  refuse_inertia(lmp, COMMAND, this, hydrodynamics(), {adapt.every > 0, held_bit});
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------
@@ -100,7 +109,7 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
 void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
 {
   const int width = hydro.rotation() ? 6 : 3;
-  double sums[8] = {0.0}, fluid[6];
+  double sums[10] = {0.0}, fluid[6], given[6];
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
     const double eta = hydro.ambient.viscosity(i);
@@ -109,17 +118,18 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
     if (atom->torque_flag) sd_hash_add_row(tag, atom->torque[i], 3, sums + 2);
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
+    if (given_velocity(i, given)) sd_hash_add_row(tag, given, 6, sums + 8);
   }
-  MPI_Allreduce(sums, causes, 8, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(sums, causes, 10, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */
 bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
 {
-  double now[8];
+  double now[10];
   find_causes(hydro, now);
   bool same = last.atoms == atom->natoms;
-  for (int k = 0; k < 8; k += 2)
+  for (int k = 0; k < 10; k += 2)
     same = same && fabs(now[k] - last.causes[k]) <= 1e-8 * std::max(now[k + 1], last.causes[k + 1]);
   return same;
 }
@@ -172,6 +182,18 @@ void FixStokesDynamicsOverdamped::final_integrate()
   find_velocities(hydro);
 }
 
+/* Those that fix move moves have the velocity that it gave them, others that are held have none. */
+bool FixStokesDynamicsOverdamped::given_velocity(int i, double *V) const
+{
+  if (!is_held(i)) return false;
+  const bool moved = atom->mask[i] & moved_bits;
+  for (int d = 0; d < 3; d++) {
+    V[d] = moved ? atom->v[i][d] : 0.0;
+    V[3 + d] = moved && atom->omega_flag ? atom->omega[i][d] : 0.0;
+  }
+  return true;
+}
+
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
@@ -190,7 +212,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       row[6 + d] = F[3 + d];
     }
     std::copy_n(v, 3, motion.give(i));
-  });
+  }, held_bit ? [this](int i, double *V) { return given_velocity(i, V); } : Velocities::Held());
   last.step = update->ntimestep;
 }
 
@@ -246,6 +268,7 @@ bool FixStokesDynamicsOverdamped::old_velocity(int i, const double *place, doubl
 
 void FixStokesDynamicsOverdamped::move_free(int i)
 {
+  if (is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
   double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], change[3] = {0.0};
   const double c = old_velocity(i, x, old) ? weight(i) : 0.0;
@@ -288,6 +311,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   double box[6];
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
   for (const auto &clump : motion.clumps) {
+    if (clump.held) continue;
     const RigidClumps::Body &body = *clump.body;
     const sd_shape &shape = body.shape->shape;
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
@@ -488,7 +512,7 @@ void FixStokesDynamicsOverdamped::write_restart(FILE *fp)
   out.put("dt", last.dt);
   out.put("next_dt", last.next_dt);
   out.put("atoms", last.atoms);
-  out.put("causes", std::vector<double>(last.causes, last.causes + 8));
+  out.put("causes", std::vector<double>(last.causes, last.causes + 10));
   out.write(fp);
 }
 
@@ -500,6 +524,6 @@ void FixStokesDynamicsOverdamped::restart(char *buf)
   last.dt = in.get("dt", 0.0);
   last.next_dt = in.get("next_dt", 0.0);
   last.atoms = in.get("atoms", 0.0);
-  in.get("causes", last.causes, 8);
+  in.get("causes", last.causes, 10);
   from_file = true;
 }

@@ -463,12 +463,13 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   return status;
 }
 
-void Hydrodynamics::velocities(const Velocities::Take &take)
+void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::Held &held)
 {
   State::Global &global = memory->global;
   sd_bodies_report report = {};
   sd_status status = SD_OK;
   solvers = ambient.who();
+  mobile.held = held;
   mobile.find();
   if (settings.rigid.apart()) {
     mobile.apart(width(), take);
