@@ -15,6 +15,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+static const std::string HELD = "Fix stokes_dynamics/overdamped: keyword held";
+
 Velocities::Velocities(LAMMPS *lmp, const Parts &parts) :
     Pointers(lmp), scene(parts.scene), ambient(parts.ambient), rigid(parts.rigid),
     lubrication(parts.lubrication)
@@ -156,8 +158,7 @@ void Velocities::find_held()
   MPI_Allreduce(MPI_IN_PLACE, &split, 1, MPI_LMP_BIGINT, MPI_MIN, world);
   if (split != RigidClumps::NOBODY)
     fail(lmp,
-         "Fix stokes_dynamics/overdamped: keyword held: the clump of molecule " +
-             std::to_string(split) + " is in the group in part: all of its spheres must be, or none");
+         HELD + ": the clump of molecule " + std::to_string(split) + " is in the group in part: all of its spheres must be, or none");
 }
 
 /* [6 bodies] velocities of those that are held, for the core; is_held tells which */
