@@ -19,6 +19,7 @@
 #include "fix_stokes_dynamics_state.h"
 #include "fix_wall_adami_sph.h"
 #include "fix_wall_sph.h"
+#include "guard.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "pair_stokes_dynamics.h"
 
@@ -30,12 +31,14 @@ using namespace StokesDyn;
 
 template <class Style> static void *make_pair(LAMMPS *lmp)
 {
-  return static_cast<Pair *>(new Style(lmp));
+  return guarded(lmp, "Pair style", Style::STYLE,
+                 [=] { return static_cast<Pair *>(new GuardedPair<Style>(lmp)); });
 }
 
 template <class Style> static void *make_fix(LAMMPS *lmp, int narg, char **arg)
 {
-  return static_cast<Fix *>(new Style(lmp, narg, arg));
+  return guarded(lmp, "Fix", Style::STYLE,
+                 [=] { return static_cast<Fix *>(new GuardedFix<Style>(lmp, narg, arg)); });
 }
 
 static lammpsplugin_t entry(const char *kind, const char *name, const char *info)

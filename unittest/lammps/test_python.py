@@ -50,6 +50,26 @@ def test_a_sphere_is_stokes():
     assert U[2] == pytest.approx(-2 / exact[2, 2]) and W[0] == pytest.approx(1 / exact[3, 3])
 
 
+@pytest.mark.parametrize("words, message", [
+    (dict(radius=1e-160), "radius must be 1e-60 ... 1e\\+60, not 1e-160: use other units"),
+    (dict(radius=1e160), "radius must be 1e-60 ... 1e\\+60, not 1e\\+160: use other units"),
+    (dict(x=[(0, 0, 0), (0, 0, 1e200)]), "x must be 0 ... 1e\\+60, not 1e\\+200: use other units"),
+    (dict(viscosity=1e-320), "viscosity must be 1e-100 ... 1e\\+100, not 9.99989e-321: use other units"),
+    (dict(viscosity=1e200), "viscosity must be"),
+])
+def test_numbers_that_double_precision_cannot_carry_are_named(words, message):
+    with pytest.raises(stokesdyn.Error, match=message):
+        stokesdyn.Clump(**{"x": [(0, 0, 0), (0, 0, 2)], "radius": 1.0, **words})
+
+
+@pytest.mark.parametrize("unit, eta", [(1e-60, 1e-100), (5e59, 1e100), (1e-60, 1e100)])
+def test_the_smallest_and_largest_units_have_the_same_answer(unit, eta):
+    small, one = (stokesdyn.Clump([(0, 0, 0), (0, 0, 2 * u)], u, shell=12, viscosity=v) for u, v in ((unit, eta), (1.0, 1.0)))
+    scale = eta * np.kron([[unit, unit**2], [unit**2, unit**3]], np.ones((3, 3)))
+    assert np.abs(small.resistance / scale - one.resistance).max() < 1e-11 * one.resistance.max()
+    assert np.abs(small.mobility * scale - one.mobility).max() < 1e-11 * one.mobility.max()
+
+
 def test_a_clump_that_does_not_fit_is_solved_iteratively_and_in_less_memory_refused():
     x = [(2.0 * k, 0.0, 0.0) for k in range(10)]
     dense = stokesdyn.Clump(x, 1, shell=12)
