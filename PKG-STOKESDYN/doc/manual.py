@@ -35,9 +35,9 @@ mathjax_options = {{"defer": "defer"}}
 html_theme = "furo"
 html_title = "PKG-STOKESDYN {VERSION}"
 html_theme_options = {{"navigation_with_keys": True}}
-html_static_path = ["manual.css", "formulas.js"]
+html_static_path = ["manual.css", "page.js"]
 html_css_files = ["katex/katex.min.css", "manual.css"]
-html_js_files = [("formulas.js", {{"defer": "defer"}})]
+html_js_files = [("page.js", {{"defer": "defer"}})]
 html_search_scorer = str(pathlib.Path(__file__).with_name("scorer.js"))
 html_show_sourcelink = False
 html_copy_source = False
@@ -50,23 +50,40 @@ highlight_language = "none"
 
 # Tables, formulas and code that are too wide for a phone move in a frame of their own, never the page.
 CSS = """
+.content { width: 54em; max-width: 100%; }
 article table { font-size: 0.9em; }
 article td, article th { vertical-align: top; }
-article td code { white-space: normal; overflow-wrap: anywhere; }
+article td code { white-space: normal; overflow-wrap: break-word; }
 article img { max-width: 100%; height: auto; }
 article p, article li { overflow-wrap: break-word; }
-body[data-theme="dark"] article img, body[data-theme="auto"] article img { background: white; }
+article div.highlight pre { font-size: 0.8em; }
+article blockquote { border-left: 4px solid #5a9a5a; font-style: normal; padding: 4px 14px; overflow-x: auto; }
+article h1, article h2, article h3 { overflow-wrap: anywhere; }
+@media (max-width: 46em) {
+  article h1 { font-size: 1.7em; }
+  article table { font-size: 0.75em; }
+  article td, article th { padding: 2px 4px; }
+  article td code, article td a { overflow-wrap: anywhere; }
+}
 .katex-display { overflow-x: auto; overflow-y: hidden; padding: 2px 0; }
 .katex { font-size: 1.1em; }
-article blockquote { background: var(--color-admonition-background, #eef5ee); border-left: 4px solid #5a9a5a; font-style: normal;
-  padding: 4px 14px; overflow-x: auto; }
+body[data-theme="dark"] article img { background: white; }
+@media (prefers-color-scheme: dark) { body:not([data-theme="light"]) article img { background: white; } }
 """
 
-FORMULAS = r"""
+# Formulas, and the switch of the colours: Furo's own script is a module in Debian's build, which no browser loads from a file.
+SCRIPT = r"""
 for (const formula of document.querySelectorAll(".math")) {
   const text = formula.textContent.trim();
   katex.render(text.slice(2, -2), formula, {displayMode: text.startsWith("\\["), throwOnError: false});
 }
+document.documentElement.classList.remove("no-js");
+for (const button of document.querySelectorAll(".theme-toggle"))
+  button.addEventListener("click", () => {
+    const next = {auto: "dark", dark: "light", light: "auto"}[document.body.dataset.theme];
+    document.body.dataset.theme = next;
+    localStorage.setItem("theme", next);
+  });
 """
 
 # What a user looks for is on the pages of the styles and in the howtos; headers of the core come last.
@@ -98,6 +115,14 @@ def header_page(header):
     """A header of the core is the manual of its functions: shown as it stands."""
     name = str(header.relative_to(PACKAGE / "core"))
     return f"{name}\n{'=' * len(name)}\n\n.. literalinclude:: /PKG-STOKESDYN/core/{name}\n   :language: c\n"
+
+
+def dark_when_asked():
+    """Colours of Furo for a browser that asks for dark pages: Debian's build of the theme has lost them, those of its switch it has."""
+    import furo
+    styles = (pathlib.Path(furo.__file__).parent / "theme/furo/static/styles/furo.css").read_text()
+    colours = re.search(r'body\[data-theme="?dark"?\] *\{([^}]*)\}', styles).group(1)
+    return "@media (prefers-color-scheme: dark) { body[data-theme=\"auto\"] {" + colours + "} }\n"
 
 
 def links(text):
@@ -147,7 +172,7 @@ def source(folder):
     (folder / "headers.rst").write_text(contents_page("Headers of the core", "Each is the manual of its functions.", names(headers)))
     (folder / "index.rst").write_text(contents(chapters))
     (folder / "conf.py").write_text(CONF)
-    for name, text in (("manual.css", CSS), ("formulas.js", FORMULAS), ("scorer.js", SCORER)):
+    for name, text in (("manual.css", CSS + dark_when_asked()), ("page.js", SCRIPT), ("scorer.js", SCORER)):
         (folder / name).write_text(text)
 
 
