@@ -55,10 +55,21 @@ if(NOT STOKESDYN_SANITIZE)
   endforeach()
 endif()
 
-# The shipped table of two-sphere functions (core/stokes/two_sphere/table): made anew at some nodes, it is the same.
-add_executable(make_two_sphere_table ${source}/core/stokes/two_sphere/table/make_two_sphere_table.c)
+# Two spheres exactly, which the plugin has as a table: what makes the shipped one (core/stokes/two_sphere/table), and is
+# tested. Made anew at some nodes, it is the same.
+set(table ${source}/core/stokes/two_sphere/table)
+file(GLOB exact_sources CONFIGURE_DEPENDS ${table}/sd_*.c)
+add_library(two_sphere_exact STATIC ${exact_sources})
+target_include_directories(two_sphere_exact PUBLIC ${table})
+target_compile_options(two_sphere_exact PRIVATE -Wall -Wextra -Wshadow)
+target_link_libraries(two_sphere_exact PUBLIC ${tested}_stokes)
+set_target_properties(two_sphere_exact PROPERTIES EXCLUDE_FROM_ALL ON)
+foreach(test test_two_sphere test_two_sphere_exact test_lubrication)
+  target_link_libraries(${test} PRIVATE two_sphere_exact)
+endforeach()
+add_executable(make_two_sphere_table ${table}/make_two_sphere_table.c)
 target_compile_options(make_two_sphere_table PRIVATE -Wall -Wextra -Wshadow)
-target_link_libraries(make_two_sphere_table PRIVATE ${tested}_stokes)
+target_link_libraries(make_two_sphere_table PRIVATE two_sphere_exact)
 add_test(NAME two_sphere_table COMMAND make_two_sphere_table check 23)
 add_dependencies(core_tests make_two_sphere_table)
 

@@ -52,10 +52,11 @@ static int columns_of(bool rotation, bool history)
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), rotation(says(narg, arg, "rotation")), history(says(narg, arg, "history")),
-    rows(columns_of(rotation, history)), resume(lmp, rotation), left(resume.columns())
+    rows(columns_of(rotation, history)), places(3), resume(lmp, rotation),
+    left(resume.columns())
 {
   restart_global = 1;
-  keep({&rows, &left}, nullptr, true);
+  keep({&rows, &places, &left}, nullptr, true);
 }
 
 void FixStokesDynamicsState::forget()
@@ -66,6 +67,7 @@ void FixStokesDynamicsState::forget()
   global.unconverged = old.unconverged;
   global.time_before = old.time_before;
   rows.clear();
+  places.clear();
   left.clear();
 }
 
@@ -149,14 +151,13 @@ template <class Global, class Visit> static void each_number(Global &g, const Vi
 void FixStokesDynamicsState::write_restart(FILE *fp)
 {
   present_box(global.box);
-  restart_written = true;
   if (comm->me != 0) return;
   NamedState out(STYLE);
   each_number(global, [&out](const char *name, double value) { out.put(name, value); });
   out.put("numbers", std::vector<double>(global.numbers, global.numbers + Ambient::NUMBERS));
   out.put("time", time());
   out.put("box", std::vector<double>(global.box, global.box + 6));
-  out.put("preconditioner", global.preconditioner);
+  out.put("places_box", global.places_box);
   out.put("loose", global.loose);
   out.put("open_box", global.open_box);
   out.put_bits("settings", global.settings);
@@ -171,7 +172,7 @@ void FixStokesDynamicsState::restart(char *buf)
   in.get("numbers", global.numbers, Ambient::NUMBERS);
   global.time_before = in.get("time", time()) - lammps_time(update);
   in.get("box", global.box, 6);
-  global.preconditioner = in.get("preconditioner");
+  global.places_box = in.get("places_box");
   global.loose = in.get("loose");
   global.open_box = in.get("open_box");
   global.settings = in.get_bits("settings", 0);

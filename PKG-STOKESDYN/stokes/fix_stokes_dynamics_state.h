@@ -41,6 +41,8 @@ class FixStokesDynamicsState : public RowsFix {
   const bool rotation, history;
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
   AtomRows rows;
+  /* where spheres stood when the preconditioner was made (preconditioner.h) */
+  AtomRows places;
 
   /* The same on all ranks. A step of -1: never. */
   struct Global {
@@ -67,10 +69,9 @@ class FixStokesDynamicsState : public RowsFix {
     uint64_t settings = 0;
     /* kept for those who know what they mean */
     TimeStepGuard::State guard;
-    std::vector<double> preconditioner, loose, open_box;
+    std::vector<double> places_box, loose, open_box;
   } global;
 
-  bool restart_written = false;    // since the last solve
   /* Of this step, since the first run: it goes on after a restart. */
   double time() const;
   /* If they are new: nothing of the past stands. */

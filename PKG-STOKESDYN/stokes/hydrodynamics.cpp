@@ -74,7 +74,10 @@ void Hydrodynamics::begin()
   if (selection == ambient.selection()) return;
   selection = ambient.selection();
   for (int i = 0; i < atom->nlocal; i++)
-    if (!ambient.active()[i]) memory->rows.take(i);
+    if (!ambient.active()[i]) {
+      memory->rows.take(i);
+      memory->places.take(i);
+    }
 }
 
 void Hydrodynamics::new_run(bool as_left)
@@ -274,18 +277,9 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   State::Global &global = memory->global;
   system.warm = memory->history && global.solutions > 0;
   if (system.warm) guess();
-  if (memory->restart_written) preconditioner.make_anew();
-  memory->restart_written = false;
-  preconditioner.tolerance = settings.tolerance;
-  preconditioner.warm_start = memory->history;
-  preconditioner.unpack(global.preconditioner);
-  preconditioner.attach(system);
-  const sd_status status =
-      sd_solve_gradients(&system, right_hand_side(), settings.tolerance, settings.max_iter,
-                         solution.data(), work.get(), &report);
-  preconditioner.learn(report);
-  global.preconditioner = preconditioner.pack();
-  return status;
+  preconditioner.attach(system, memory->places, global.places_box);
+  return sd_solve_gradients(&system, right_hand_side(), settings.tolerance, settings.max_iter,
+                            solution.data(), work.get(), &report);
 }
 
 /* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
@@ -444,7 +438,8 @@ double Hydrodynamics::memory_usage() const
   const size_t numbers = slip.capacity() + resistance.capacity() +
       spin.capacity() + solution.capacity() + films_v.capacity() + films_F.capacity() + work_room;
   return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
-      lubrication.memory_usage() + mobile.memory_usage() + sizeof(double) * (double) numbers;
+      lubrication.memory_usage() + mobile.memory_usage() + preconditioner.memory_usage() +
+      sizeof(double) * (double) numbers;
 }
 
 }    // namespace StokesDyn

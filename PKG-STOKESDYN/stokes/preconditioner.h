@@ -1,15 +1,21 @@
-/* Which preconditioner a scene gets, and when it is made anew. All pairs: of the whole cloud,
- * shared by all ranks; clumps_only without a cut-off: of all clumps that this rank has a sphere of;
- * other lists and Ewald sums: of the parts of clumps that this rank owns, and in a periodic box
- * with the long waves. It changes the number of iterations, never the answer. */
-#ifndef SD_PRECONDITIONER_H
-#define SD_PRECONDITIONER_H
+/* Which preconditioner a scene gets, by a rule: the long waves in a periodic box with Ewald sums,
+ * the sparse factor where the sum goes over all pairs, blocks of molecules for other sums. It
+ * changes the number of iterations, never the answer.
+ *
+ * It is made at positions that are rows of the memory, and those are taken anew where spheres have
+ * moved too far since (sd_preconditioner.h), where one has none yet, and where the periodic box is
+ * another one. So the same preconditioner is there after a restart and on other ranks.
+ *
+ * All pairs: of the whole cloud, shared by all ranks; clumps_only without a cut-off: of all clumps
+ * that this rank has a sphere of; else of the parts of clumps that this rank owns. */
+#ifndef SD_PRECONDITIONER_GLUE_H
+#define SD_PRECONDITIONER_GLUE_H
 
+#include "atom_rows.h"
 #include "pointers.h"
 #include "scene.h"
 
-#include "sd_choice.h"
-#include "sd_precondition.h"
+#include "sd_preconditioner.h"
 
 #include <vector>
 
@@ -19,59 +25,43 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
  public:
   enum Kind { AUTO, NONE, CLUMP, SPARSE, WAVES };
   Kind kind = AUTO;
-  double tolerance = 1e-3;    // of the solves
-  bool warm_start = true;     // of the solves
 
   Preconditioner(LAMMPS_NS::LAMMPS *lmp, Scene &scene) : Pointers(lmp), scene(scene) {}
-  ~Preconditioner() { release(); }
+  ~Preconditioner() { forget(); }
   Preconditioner(const Preconditioner &) = delete;
   Preconditioner &operator=(const Preconditioner &) = delete;
 
-  void forget();
-  /* What is kept between solves is not in restart files. The run that writes one makes it anew in
-   * its next solve, as the run that reads it must, so both go on alike; and the numbers of the
-   * choice go along. */
-  std::vector<double> pack() const;
-  void unpack(const std::vector<double> &saved);    // others than pack() gives: as if new
-  void make_anew() { place = LOST; }
-  /* Before a solve, after Scene::update(): chooses, and puts what is chosen into the system. */
-  void attach(sd_system &system);
-  /* After it: was it worth it, is it still good? */
-  void learn(const sd_solve_report &report);
+  void forget() { sd_preconditioner_free(&made); }
+  /* Before a solve, after Scene::update(): puts the one that suits the scene into the system. It is
+   * made at its first use, since a warm start often needs none at all. places: 3 numbers of an
+   * atom, where it stood when it was made; box: of then. Both are the caller's to keep. */
+  void attach(sd_system &system, AtomRows &places, std::vector<double> &box);
   bool attached() const { return wanted != nullptr; }
+  double memory_usage() const;
 
  private:
   Scene &scene;
-  sd_choice choice = {};
-  Kind candidate = NONE;    // that the choice is about
+  const sd_precondition_kind *wanted = nullptr;    // nullptr: none
+  sd_preconditioner made = {};
 
   // of this solve
   enum { CLOUD, WHOLE_CLUMPS, OWN_PARTS } extent = CLOUD;
-  sd_precondition_case seen = {};
-  const sd_precondition_kind *wanted = nullptr;    // nullptr: none
-  sd_cost cost = {};                               // of the kind in question; 0: there is none
-  bool alone = false;                              // it says nothing of those to come
+  int n = 0, width = 3;
+  bool ready = false;
+  AtomRows *places = nullptr;
+  std::vector<double> *box = nullptr;
 
-  // what is made: is it for the spheres where they stand?
-  enum { LOST, ELSEWHERE, HERE } place = LOST;
-  const sd_precondition_kind *made = nullptr;
-  std::vector<double> state;
-
-  std::vector<double> in, out, near;
+  std::vector<double> rows, x, in, out;
   std::vector<long> first;
   std::vector<int> member;
 
-  void look(const sd_system &system);
-  bool group_by_molecule();
+  const sd_precondition_kind *suited() const;
+  sd_spheres spheres() const { return extent == CLOUD ? scene.cloud() : scene.local(); }
+  void refresh_places();
+  void find_positions();
+  void group_by_molecule();
   void group_by_list();
-  Kind suited();
-  bool choose(Kind that, bool lost);
-  /* Is what was made kept from solve to solve? */
-  bool lasts() const { return extent == CLOUD || wanted == &sd_precondition_waves; }
-  sd_cost cost_by_list();
-  sd_cost cost_of_waves();
-  void release();
-  sd_status make(const sd_precondition_kind *which);
+  void put_side_by_side();
   sd_status put();
   static sd_status apply(void *ctx, const double *r, double *z);
 };

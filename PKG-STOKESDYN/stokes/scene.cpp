@@ -57,7 +57,6 @@ void Scene::update(const std::vector<int> &who, const std::vector<double> &eta)
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
       if (!somebody_sees) return;
-      compare();
       tell();
       images.find(ewald.box, ewald.reach, x, a, w);
       place(size_with_ghosts());
@@ -271,21 +270,16 @@ void Scene::gather(const std::vector<double> &eta)
     return all[p].tag < all[q].tag;
   });
 
-  cloud_is_new = (int) all_tag.size() != n_all;
-  spheres_hash = 0;
   all_x.resize(3 * (size_t) n_all);
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);
-  for (auto *v : {&all_tag, &all_molecule}) v->resize(n_all);
+  all_molecule.resize(n_all);
   place_of.resize(n_all);
   for (int k = 0; k < n_all; k++) {
     const Sphere &s = all[by_tag[k]];
     place_of[by_tag[k]] = k;
     std::copy_n(s.x, 3, &all_x[3 * (size_t) k]);
-    cloud_is_new =
-        cloud_is_new || all_tag[k] != s.tag || all_a[k] != s.a || all_molecule[k] != s.molecule;
     all_a[k] = s.a;
     all_w[k] = s.w;
-    all_tag[k] = s.tag;
     all_molecule[k] = s.molecule;
   }
 }

@@ -92,13 +92,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   {
     return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
-  /* Views ALL and NEAR: other spheres than at the last update, or in another order? The same on all
-   * ranks. */
-  bool spheres_changed() const { return cloud_is_new; }
   /* View NEAR; else nullptr */
   const sd_ewald *splitting() const { return view() == SD_VIEW_NEAR ? &ewald : nullptr; }
-  /* What a product costs this rank, in pairs. */
-  double cost_of_product() const;
   /* The box around an open cloud whose sum is split: six numbers to keep, as the next box depends
    * on the last one. */
   std::vector<double> open_box() const;
@@ -151,15 +146,12 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* [nprocs] */
   std::vector<int> spheres_of_rank;
   std::vector<double> all_x, all_a, all_w, in_order_of_rank;
-  std::vector<int64_t> all_tag, all_molecule;
+  std::vector<int64_t> all_molecule;
   int n_all = 0;
-  bool cloud_is_new = true;
 
-  // view NEAR: images behind our own spheres, in x, a, w; hash of the spheres of the last update
+  // view NEAR: images behind our own spheres, in x, a, w
   Images images;
-  uint64_t spheres_hash = 0;
   sd_ewald ewald = {};
-  sd_ewald_sizes sizes = {};
   /* its parameters, as they were last told */
   std::string said;
   bool told = false;
@@ -178,7 +170,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool split();
   sd_ewald_sizes sizes_of_all(double largest);
   sd_ewald_sizes measure(sd_ewald_box &box);
-  void compare();
   void tell();
   void place_rows(const std::vector<double> &eta);
   void place_ghosts();

@@ -5,7 +5,6 @@
 #include "lammps_compat.h"
 
 #include "sd_ewald_cost.h"
-#include "sd_hash.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -87,7 +86,7 @@ bool Scene::split()
 {
   if (settings.far_field == Settings::DIRECT) return false;
   sd_ewald_box box = ewald.box;
-  sizes = measure(box);
+  const sd_ewald_sizes sizes = measure(box);
   const bool must = periodic() || settings.far_field == Settings::EWALD;
   ewald.count = sizes.all.count;
   if (sizes.all.count == 0.0) return must;
@@ -111,26 +110,6 @@ bool Scene::split()
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
 }
 
-/* Are our spheres those of the last update? A hash of their tags, molecules and radii, in their
- * order, tells; the lists themselves would be 24 bytes a sphere. */
-void Scene::compare()
-{
-  uint64_t hash = SD_HASH_STEP;
-  const auto add = [&hash](uint64_t value) {
-    hash = sd_hash_mix((hash ^ value) * SD_HASH_STEP);
-  };
-  for (int k = 0; k < size(); k++) {
-    add(atom->tag[own[k]]);
-    if (atom->molecule) add(atom->molecule[own[k]]);
-    add(ubuf(a[k]).i);
-  }
-  int changed = hash != spheres_hash, any;
-  MPI_Allreduce(&changed, &any, 1, MPI_INT, MPI_MAX, world);
-  cloud_is_new = any;
-  spheres_hash = hash;
-  all_tag.clear();    // those of view ALL are no longer the last ones
-}
-
 static std::string parameters_of(const sd_ewald &e)
 {
   return "grid " + std::to_string(e.grid[0]) + " x " + std::to_string(e.grid[1]) + " x " +
@@ -149,18 +128,9 @@ void Scene::tell()
   if (e.large.from > 0.0)
     now += "; " + text(e.large.count) + " spheres of radius " + text(e.large.from) +
         " and more on a second level: " + parameters_of(sd_ewald_of_large(&e));
-  now += "; error of velocities over the rms of F/(6 pi eta a) " +
-      text(sd_ewald_predicted(&e, &sizes)) + " expected, far_field_tolerance " + text(e.tolerance) +
-      "\n";
+  now += "; far_field_tolerance " + text(e.tolerance) + "\n";
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;
-}
-
-double Scene::cost_of_product() const
-{
-  if (view() == SD_VIEW_NEAR) return sd_ewald_cost(&ewald) / comm->nprocs;
-  return view() == SD_VIEW_ALL ? (double) n_all * n_all / comm->nprocs
-                               : (double) list().first[size()];
 }
 
 std::vector<double> Scene::open_box() const

@@ -13,7 +13,6 @@
 #include "utils.h"
 
 #include "sd_hash.h"
-#include "sd_smallest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +21,10 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-// The eigenvalue, good to a few per cent, costs tens of products. So it is computed only where the
-// limit may be as near as the free estimates were ever off (30 times), and again after so many
-// solves.
-static const double ACCURACY = 0.2, NEAR = 40.0, PERIOD = 2000.0;
+// A solve costs tens of products. So it is made only where the limit may be as near as the free
+// estimates were ever off (30 times), and again after so many solves. At this residual the smallest
+// eigenvalue is good to a few per cent.
+static const double RESIDUAL = 1e-5, NEAR = 40.0, PERIOD = 2000.0;
 static const int PRODUCTS = 200;
 // Spheres in the rigid bodies of LAMMPS are not free. Their bodies weigh as much as many of them:
 // nearly held, they take part in the motion of the others without a limit of their own.
@@ -77,27 +76,41 @@ TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms,
   return {-most[0], -most[1], most[2]};
 }
 
-/* mu in units of the shortest time; INFINITY: it could not be had. It starts from numbers that
- * depend on the sphere alone, so that the ranks do not matter. */
+/* z = W r */
+static sd_status weighed(void *ctx, const double *r, double *z)
+{
+  const std::vector<double> &weight = *static_cast<std::vector<double> *>(ctx);
+  for (size_t j = 0; j + 1 < weight.size(); j++) z[j] = weight[j] * r[j];
+  return SD_OK;
+}
+
+/* mu in units of the shortest time; INFINITY: it could not be had. Conjugate gradients that are
+ * preconditioned by W have the eigenvalues of W M as their Ritz values, and a slip of random
+ * numbers, with a share of every eigenvector, shows the smallest. The numbers depend on the sphere
+ * alone, so that the ranks do not matter. */
 double TimeStepGuard::compute(const sd_system &A, const int *atoms)
 {
   const size_t m = A.spin ? 6 : 3;
   std::vector<double> weight;
   weigh(A, atoms, &weight);
-  std::vector<double> v(m * A.n + 1), work(SD_SOLVE_WORK(A.n, m) + 1);
+  std::vector<double> slip(m * A.n + 1), F(m * A.n + 1), work(SD_SOLVE_WORK(A.n, m) + 1);
   for (int k = 0; k < A.n; k++) {
     const uint64_t tag = atom->tag[atoms ? atoms[k] : k];
     for (size_t d = 0; d < m; d++)
-      v[m * k + d] = (sd_hash_unit(sd_hash_mix((8 * tag + d) * SD_HASH_STEP)) - 0.5) *
+      slip[m * k + d] = (sd_hash_unit(sd_hash_mix((8 * tag + d) * SD_HASH_STEP)) - 0.5) /
           std::sqrt(weight[m * k + d]);
   }
-  double mu = 0.0;
-  int products;
-  const sd_status status = sd_smallest_eigenvalue(&A, weight.data(), ACCURACY, PRODUCTS, v.data(),
-                                                  work.data(), &mu, &products);
+  sd_system system = A;
+  system.precondition = weighed;
+  system.precondition_ctx = &weight;
+  system.warm = 0;
+  sd_solve_report report;
+  const sd_status status = sd_solve_gradients(&system, slip.data(), RESIDUAL, PRODUCTS, F.data(),
+                                              work.data(), &report);
   if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
     fail_by(lmp, status, command + ": limit of the time step: " + sd_status_string(status));
-  return status != SD_ENOTFINITE && mu > 0.0 ? mu : INFINITY;
+  const bool sound = status == SD_OK || status == SD_EMAXITER || status == SD_ESTAGNATED;
+  return sound && report.ritz_smallest > 0.0 ? report.ritz_smallest : INFINITY;
 }
 
 void TimeStepGuard::warn(double of_velocity)

@@ -7,7 +7,6 @@
 
 #include "../core/stokes/ewald/periodic.h"
 #include "in_clumps.h"
-#include "sd_choice.h"
 #include "sd_waves.h"
 
 #include <string.h>
@@ -160,12 +159,6 @@ static void bench_flocs(void)
   if (sd_blocks_make(&b, &flocs.c) != SD_OK) abort();
   set_up = cpu() - begin;
   print_solve("clump blocks", solve_median(&s, sd_blocks_apply, &b, 1e-6), rival, drag, set_up);
-  begin = cpu();
-  flocs.c.rho = 3.0;
-  if (sd_blocks_couple(&b, &flocs.c) != SD_OK) abort();
-  set_up += cpu() - begin;
-  print_solve("clump blocks, coupled", solve_median(&s, sd_blocks_apply, &b, 1e-6), rival, drag,
-              set_up);
   sd_sparse f = {0};
   sparse_factor(&s, 3.0, &f, &set_up);
   print_solve("sparse, rho 3", solve_median(&s, sd_sparse_apply, &f, 1e-6), rival, drag, set_up);
@@ -277,11 +270,10 @@ static void bench_rotating(const char *name, scene s, int m)
   if (m) {
     in_clumps clumps;
     clumps_of(&clumps, RPY, spheres, s.n, 6, m);
-    clumps.c.rho = 3.0;
     sd_blocks b = {0};
     begin = cpu();
     if (sd_blocks_make(&b, &clumps.c) != SD_OK) abort();
-    solve_rotating("clump blocks, coupled", &s, spin, sd_blocks_apply, &b, cpu() - begin);
+    solve_rotating("clump blocks", &s, spin, sd_blocks_apply, &b, cpu() - begin);
     sd_blocks_free(&b);
   }
   free(spin);
@@ -318,7 +310,7 @@ static void bench_large_lattice(void)
 
 /* --- long waves of a periodic box ------------------------------------------------------------- */
 
-/* What sd_choice counts: nanoseconds a sphere, and as pairs of a product by list in the same run */
+/* Nanoseconds a sphere, and as pairs of a product by list in the same run */
 static void bench_cost_of_waves(int n, int width)
 {
   scene s = polydisperse(n, 1);
@@ -369,13 +361,11 @@ static void bench_solve_with_waves(int n, double tolerance)
   const sd_ewald how = periodic_choose(&box, s.a, n, 3, 0.1 * tolerance);
   const sd_precondition_case c = {
       .law = RPY, .spheres = {s.x, s.a, s.w}, .n = n, .width = 3, .box = &box, .parts = 1};
-  const sd_cost cost = sd_cost_waves(&how, 3, 0.0);
   double *slip = random_numbers(3 * n), *F = malloc(sizeof(double) * 3 * (size_t) n),
          *work = malloc(sizeof(double) * SD_SOLVE_WORK(n, 3)), first = 0.0;
   periodic p;
   periodic_place(&p, s.x, s.a, s.w, n, 3, &how);
-  printf("  %d spheres, periodic, %.0e; counted: %.1f products an iteration, %.1f a set-up\n", n,
-         tolerance, cost.iteration, cost.make);
+  printf("  %d spheres, periodic, %.0e\n", n, tolerance);
   for (int k = 0; k < 2; k++) {
     sd_waves waves = {0};
     const double begin = cpu();

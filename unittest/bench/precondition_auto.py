@@ -3,8 +3,8 @@
 
     . build/env.sh; unittest/bench/precondition_auto.py [--repeat N] [SCENE ...]
 
-The ways take turns, so that a loaded machine slows all; best of N runs. "Latest": time of the second half of the run alone, when
-auto has made up its mind. Spheres of cold scenes rest and every solve starts from zero; those of warm scenes fall, freely, and
+The ways take turns, so that a loaded machine slows all; best of N runs. "Latest": time of the second half of the run alone,
+when the first factor is made. Spheres of cold scenes rest and every solve starts from zero; those of warm scenes fall, freely, and
 solves start from the last ones."""
 import argparse
 import os

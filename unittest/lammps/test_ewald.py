@@ -161,7 +161,6 @@ def test_a_box_that_is_changed_between_runs(simulation, tmp_path):
     lines = said(log)
     assert len(lines) == 2 and lines[0] != lines[1]
     assert "60 spheres in the periodic box: grid" in lines[0] and "far_field_tolerance 0.0001" in lines[0]
-    assert 1e-6 < float(re.search("6 pi eta a\\) (.*) expected", lines[0]).group(1)) < 1e-3
     spheres.x = spheres.x * 50 / 40
     again = simulation(spheres, words, boundary="p p p", box=[(0.0, 50.0)] * 3).run().drag
     assert np.linalg.norm(forces - again) < 1e-7 * np.linalg.norm(again)

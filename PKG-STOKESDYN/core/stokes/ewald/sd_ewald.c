@@ -257,7 +257,8 @@ sd_ewald sd_ewald_of_large(const sd_ewald *e)
   return large;
 }
 
-int sd_ewald_octave(double largest, double a)
+/* Of spheres up to the radius `largest`, which octave is one of radius a > 0? */
+static int octave_of(double largest, double a)
 {
   int k = 0;
   while (k + 1 < SD_EWALD_OCTAVES && a < ldexp(largest, -k - 1)) k++;
@@ -269,7 +270,7 @@ void sd_ewald_count(sd_ewald_sizes *s, double a)
   const double a2 = a * a;
   const sd_ewald_class one = {1.0, a2, a2 * a2, a};
   add_class(&s->all, &one);
-  add_class(s->octave + sd_ewald_octave(s->all.largest, a), &one);
+  add_class(s->octave + octave_of(s->all.largest, a), &one);
 }
 
 int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, double largest)

@@ -38,9 +38,6 @@ typedef struct {
   sd_ewald_class all, octave[SD_EWALD_OCTAVES];
 } sd_ewald_sizes;
 
-/* Of spheres up to the radius `largest`, which octave is one of radius a > 0? */
-int sd_ewald_octave(double largest, double a);
-
 /* One more sphere; all.largest is known already. */
 void sd_ewald_count(sd_ewald_sizes *s, double a);
 
@@ -54,11 +51,6 @@ sd_ewald sd_ewald_of_large(const sd_ewald *e);
  * is not > 0, SD_ENOMEMORY for a grid of more than 2^31 points. */
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                           double tolerance, sd_ewald *out);
-
-/* The error to expect, as the tolerance is meant, of forces that are independent and about as large
- * as a: the part of each pair beyond the range, the waves beyond the grid, and those that the
- * window mistakes. A formula with integrals over k and r; sizes as for sd_ewald_choose. */
-double sd_ewald_predicted(const sd_ewald *e, const sd_ewald_sizes *sizes);
 
 /* An open box for spheres with centres within lo [3] ... hi [3] (of all ranks): the present one if
  * it holds them and no edge is more than 1.5 times what they need, else one with a twentieth of

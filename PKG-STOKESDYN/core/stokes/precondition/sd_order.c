@@ -93,9 +93,11 @@ static void take_farthest_first(const double *x, heap *h, sd_cells *c, double *s
   }
 }
 
-/* O(n log n): each sphere is looked at by those taken within its present distance, which are few at
- * each scale, and a heap gives the farthest. The first sphere is the first that takes part. */
-int sd_farthest_first(const sd_spheres *s, int n, int *order, double *distance)
+/* order [n] spheres that take part, farthest first; distance [n] of order[i] from those before it
+ * (INFINITY for the first, which is the first that takes part). Returns their number, or -1 without
+ * memory. O(n log n): each sphere is looked at by those taken within its present distance, which
+ * are few at each scale, and a heap gives the farthest. */
+static int farthest_first(const sd_spheres *s, int n, int *order, double *distance)
 {
   sd_cells c = {0};
   heap h = {0};
@@ -178,7 +180,7 @@ sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, double rho, in
   sd_cells c = {0};
   int *order = malloc(sizeof(int) * (size_t) (n + 1));
   double *distance = malloc(sizeof(double) * (size_t) (n + 1));
-  const int count = order && distance ? sd_farthest_first(s, n, order, distance) : -1;
+  const int count = order && distance ? farthest_first(s, n, order, distance) : -1;
   *rows = (sd_rows){.first = malloc(sizeof(long) * (size_t) (n / parts + 2))};
   sd_status status = count >= 0 && rows->first ? sd_cells_create(&c, n) : SD_ENOMEMORY;
   if (status == SD_OK)

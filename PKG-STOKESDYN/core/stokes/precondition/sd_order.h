@@ -9,13 +9,9 @@
 extern "C" {
 #endif
 
-/* Each sphere the one farthest from all before it: order [n] spheres that take part, farthest
- * first; distance [n] of order[i] from those before it (INFINITY for the first). Returns their
- * number, or -1 without memory. Ties: the smaller index first. */
-int sd_farthest_first(const sd_spheres *s, int n, int *order, double *distance);
-
-/* Rows: of sphere order[k] (k % parts == part) itself, then those before it and nearer than rho
- * times its distance. */
+/* Spheres in order, each the one farthest from all before it; ties: the smaller index first. Rows
+ * of each: sphere k of the order (k % parts == part) itself, then those before it and nearer than
+ * rho times its distance from them. Spheres with radius 0 take no part. */
 typedef struct {
   int columns;
   /* [columns + 1] into row */
@@ -25,8 +21,7 @@ typedef struct {
   int largest;
 } sd_rows;
 
-/* In the order of sd_farthest_first. Zero-initialise; sd_rows_free in the end, also after a
- * failure. SD_OK; SD_ENOMEMORY. */
+/* Zero-initialise; sd_rows_free in the end, also after a failure. SD_OK; SD_ENOMEMORY. */
 sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, double rho, int part, int parts);
 void sd_rows_free(sd_rows *rows);
 

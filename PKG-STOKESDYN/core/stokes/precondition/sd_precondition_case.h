@@ -23,9 +23,6 @@ typedef struct {
   const int *member;
   /* The periodic box, of the long waves (sd_waves.h) alone. NULL: open space */
   const sd_ewald_box *box;
-  /* Reach of the sparse factor (sd_sparse.h), and of the one that couples blocks. 0: the blocks are
-   * not coupled, and never moved. */
-  double rho;
   /* P is the sum of `parts` terms, and this is term `part`: what apply returns is to be summed. */
   int part, parts;
   /* Over all ranks, parts or not, so that they agree on failures; NULL: one rank, one part. */

@@ -108,8 +108,6 @@ static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
   return status;
 }
 
-/* Everything but the roots depends on places and radii only; sd_sparse_scale puts the viscosities
- * in. */
 sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
                            double rho, int part, int parts)
 {
@@ -126,14 +124,9 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
   sd_status status = f->root && f->scratch ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) status = sd_rows_find(&f->rows, s, n, rho, part, parts);
   if (status == SD_OK) status = fill(f, law, s);
-  if (status == SD_OK) sd_sparse_scale(f, s);
+  if (status == SD_OK) sd_unit_roots(s, n, f->root);
   if (status != SD_OK) sd_sparse_free(f);
   return status;
-}
-
-void sd_sparse_scale(sd_sparse *f, const sd_spheres *s)
-{
-  sd_unit_roots(s, f->n, f->root);
 }
 
 /* What the kernels do, where there are none: out += L (L^T in); the numbers of a sphere stand every

@@ -6,7 +6,7 @@
  * ones of the inverse Cholesky factor of their C. Among all matrices L of this sparsity it is the
  * one nearest to C^-1 in the Kullback-Leibler sense. L L^T is positive definite whatever the
  * rounding. rho 2, 3, 4:
- * about 14, 42, 93 blocks a sphere in a compact cloud. It stays good while spheres move less than a
+ * about 14, 42, 93 blocks per sphere in a compact cloud. It stays good while spheres move less than a
  * radius or so. Parts: spheres i in this order with i % parts == part have their columns made and
  * applied; the sum of z over the parts is P r.
  * Zero-initialise. */
@@ -38,9 +38,6 @@ void sd_sparse_free(sd_sparse *f);
  * the law's place; SD_ENOTFINITE. On failure f is empty. */
 sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
                            double rho, int part, int parts);
-
-/* The same factor with D of now: other viscosities. */
-void sd_sparse_scale(sd_sparse *f, const sd_spheres *s);
 
 /* z = P r (this part's share), in the signature of sd_precondition: ctx is an sd_sparse. */
 sd_status sd_sparse_apply(void *ctx, const double *r, double *z);

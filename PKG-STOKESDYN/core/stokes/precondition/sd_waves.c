@@ -361,7 +361,6 @@ sd_status sd_waves_make(sd_waves *p, const sd_precondition_case *c)
 {
   static const long none[1] = {0};
   sd_precondition_case near = *c;
-  near.rho = 0.0;
   if (c->clumps == 0) near.first = none;
   p->n = c->n;
   p->width = c->width;

@@ -7,7 +7,7 @@
  *
  *   M_0 = alpha B^-1 + Z E Z^T,   alpha = 0.6,   E = 2/(k^2 V)
  *
- * B: one block per clump, and D for spheres in none (sd_blocks.h, not coupled). Z has four columns
+ * B: one block per clump, and D for spheres in none (sd_blocks.h). Z has four columns
  * for a pair of waves +-k: cosine and sine of k.x times two directions e across k. In the rows of
  * sphere i, w_i = 1/sqrt(eta_i),
  *
@@ -61,7 +61,7 @@ typedef struct {
 
 /* As of sd_precondition_kind, with c->box. c->n are the spheres of this rank, or with parts those
  * of all ranks on each; c->sum adds the ranks' shares of G here and of Z^T B r in every
- * application. Clumps (c->clumps) may be none. c->rho is not read. */
+ * application. Clumps (c->clumps) may be none. */
 sd_status sd_waves_make(sd_waves *p, const sd_precondition_case *c);
 
 void sd_waves_free(sd_waves *p);

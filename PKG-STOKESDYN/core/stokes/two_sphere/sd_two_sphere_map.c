@@ -14,13 +14,6 @@ double sd_two_sphere_mu(double ratio, double xi)
   return log1p(t + sqrt(t * (t + 2.0)));
 }
 
-double sd_two_sphere_xi(double ratio, double mu)
-{
-  const double s = sinh(0.5 * mu), t = 2.0 * s * s;
-  const double q = 8.0 * t * ratio / ((1.0 + ratio) * (1.0 + ratio));
-  return q / (2.0 + sqrt(4.0 + q));
-}
-
 double sd_two_sphere_largest_mu(double ratio)
 {
   return sd_two_sphere_mu(ratio, SD_TWO_SPHERE_LARGEST_XI);

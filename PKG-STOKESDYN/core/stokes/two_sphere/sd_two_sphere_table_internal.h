@@ -31,9 +31,8 @@ extern const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS
 /* Node 0 <= k < n of n in (0, 1), largest first */
 double sd_two_sphere_node(int n, int k);
 
-/* mu of a gap, and the gap of a mu; mu of SD_TWO_SPHERE_LARGEST_XI */
+/* mu of a gap; mu of SD_TWO_SPHERE_LARGEST_XI */
 double sd_two_sphere_mu(double ratio, double xi);
-double sd_two_sphere_xi(double ratio, double mu);
 double sd_two_sphere_largest_mu(double ratio);
 
 /* The table's unit of each function: the smaller sphere gives the force, the torques have the arms

@@ -1,5 +1,6 @@
 /* Ewald sums of two levels, for few spheres that are far larger than the rest. */
 #include "periodic.h"
+#include "predicted.h"
 
 #include "plain.h"
 #include "sd_linear.h"
@@ -201,7 +202,7 @@ static void the_predicted_error_is_the_measured_one(void **state)
     double off = 0.0, bare = 0.0, predicted = 0.0;
     for (int tight = 0; tight < 2; tight++) {
       const sd_ewald how = choose(&s, &m, tight ? 0.01 * tolerance : tolerance, 2);
-      if (!tight) predicted = sd_ewald_predicted(&how, &sizes);
+      if (!tight) predicted = predicted_error(&how, &sizes);
       periodic p;
       periodic_place(&p, s.x, s.a, NULL, m.n, 3, &how);
       periodic_apply(&p, s.F, u[tight]);

@@ -13,14 +13,6 @@ static sd_status blocks_of(sd_blocks *b, const scene *s, int m)
   return sd_blocks_make(b, clumps_of(&k, RPY, (sd_spheres){s->x, s->a, s->w}, s->n, 3, m));
 }
 
-static sd_status couple(sd_blocks *b, const scene *s, int m)
-{
-  in_clumps k;
-  clumps_of(&k, RPY, (sd_spheres){s->x, s->a, s->w}, s->n, 3, m);
-  k.c.rho = 3.0;
-  return sd_blocks_couple(b, &k.c);
-}
-
 static sd_status sparse_of(sd_sparse *f, const scene *s, double rho)
 {
   const sd_spheres spheres = {s->x, s->a, s->w};
@@ -52,7 +44,8 @@ static void at_most(int count, int limit, const char *what)
   if (count > limit) fail_msg("%s: %d iterations, at most %d", what, count, limit);
 }
 
-/* By brute force: each sphere is the one farthest from all before it, the smaller index first. */
+/* By brute force: each sphere is the one farthest from all before it, the smaller index first, and sees those of them that are
+ * within 1.5 times that distance. */
 static void spheres_come_farthest_first(void **state)
 {
   (void) state;
@@ -70,24 +63,29 @@ static void spheres_come_farthest_first(void **state)
         scene_set(&s, i, i % 3 ? 1e-3 * i : 5e6, i % 5 ? 0 : 1e3 * i, 0, A, ETA);
     for (int i = 5; i < N; i += 50) s.a[i] = 0.0;
     int order[N], taken[N] = {0};
-    double distance[N], best[N];
+    double best[N];
     const sd_spheres spheres = {s.x, s.a, s.w};
-    const int count = sd_farthest_first(&spheres, N, order, distance);
-    assert_int_equal(count, N - 6);
+    sd_rows rows = {0};
+    assert_int_equal(sd_rows_find(&rows, &spheres, N, 1.5, 0, 1), SD_OK);
+    assert_int_equal(rows.columns, N - 6);
+    for (int k = 0; k < rows.columns; k++) order[k] = rows.row[rows.first[k]];
     for (int i = 0; i < N; i++) best[i] = s.a[i] > 0.0 ? INFINITY : -1.0;
-    for (int k = 0; k < count; k++) {
-      int far = -1;
+    for (int k = 0; k < rows.columns; k++) {
+      int far = -1, near = 0;
       for (int i = 0; i < N; i++)
         if (!taken[i] && best[i] >= 0.0 && (far < 0 || best[i] > best[far])) far = i;
       assert_int_equal(order[k], far);
-      assert_true(k == 0 ? isinf(distance[0]) : fabs(distance[k] - sqrt(best[far])) <= 1e-12);
-      taken[far] = 1;
+      const double reach = 2.25 * best[far] * (1.0 + 1e-6);
       for (int i = 0; i < N; i++) {
         double sq = 0.0;
         for (int d = 0; d < 3; d++) sq += pow(s.x[3 * i + d] - s.x[3 * far + d], 2);
+        near += taken[i] && sq <= reach;
         if (s.a[i] > 0.0) best[i] = fmin(best[i], sq);
       }
+      taken[far] = 1;
+      assert_int_equal(rows.first[k + 1] - rows.first[k], 1 + near);
     }
+    sd_rows_free(&rows);
     scene_free(&s);
   }
 }
@@ -151,9 +149,9 @@ static void sparse_factor_is_symmetric_and_splits(void **state)
   scene_free(&s);
 }
 
-/* Coupled blocks are symmetric and positive definite: lone spheres in blocks of one, some spheres in no block, some take no part,
- * viscosity that varies, clumps turned since the set-up. */
-static void coupled_blocks_are_symmetric(void **state)
+/* Blocks are symmetric and positive definite: lone spheres in blocks of one, some spheres in no block, some take no part,
+ * viscosity that varies. */
+static void blocks_are_symmetric(void **state)
 {
   (void) state;
   enum { N = 60, BLOCKS = 13 };
@@ -177,13 +175,9 @@ static void coupled_blocks_are_symmetric(void **state)
                                   .clumps = BLOCKS,
                                   .first = first,
                                   .member = member,
-                                  .rho = 2.0,
                                   .parts = 1};
   sd_blocks b = {0};
   assert_int_equal(sd_blocks_make(&b, &c), SD_OK);
-  const double turn[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
-  sd_blocks_turn(&b, 2, turn);
-  assert_int_equal(sd_blocks_couple(&b, &c), SD_OK);
   double *P = malloc(sizeof(double) * 9 * N * N), r[3 * N] = {0}, z[3 * N];
   double scale = 0.0;
   for (int k = 0; k < 3 * N; k++) {
@@ -227,27 +221,6 @@ static void iterations_of_the_lattice(void **state)
   scene_free(&s);
 }
 
-/* Turn the spheres begin ... end - 1 about their centroid by a random rotation, which goes to R [9] (Rodrigues). */
-static void turn_spheres(scene *s, int begin, int end, uint64_t *seed, double R[9])
-{
-  double e[3];
-  random_vector(seed, 1.0, e);
-  const double angle = uniform(seed, 0.5, 3), c = cos(angle), sn = sin(angle);
-  const double cross[9] = {0, -e[2], e[1], e[2], 0, -e[0], -e[1], e[0], 0};
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++)
-      R[3 * p + q] = (p == q ? c : 0.0) + (1 - c) * e[p] * e[q] + sn * cross[3 * p + q];
-  double middle[3] = {0.0, 0.0, 0.0};
-  for (int i = 3 * begin; i < 3 * end; i++) middle[i % 3] += s->x[i] / (end - begin);
-  for (int i = begin; i < end; i++) {
-    double *x = s->x + 3 * i;
-    const double r[3] = {x[0] - middle[0], x[1] - middle[1], x[2] - middle[2]};
-    for (int d = 0; d < 3; d++)
-      x[d] = middle[d] + R[3 * d] * r[0] + R[3 * d + 1] * r[1] + R[3 * d + 2] * r[2];
-  }
-  sd_packed_free(&s->packed);
-}
-
 static double largest_difference(const double *F, const double *G, int n)
 {
   double off = 0.0, largest = 0.0;
@@ -258,8 +231,7 @@ static double largest_difference(const double *F, const double *G, int n)
   return off / largest;
 }
 
-/* 50 flocs of 20 overlapping spheres at volume fraction 0.1; then every floc turns its own way and is pushed aside, and its block
- * turns with it. Coupled where the flocs were before, or anew: no difference. The answer is that without preconditioner. */
+/* 50 flocs of 20 overlapping spheres at volume fraction 0.1. The answer is that without preconditioner. */
 static void iterations_of_flocs(void **state)
 {
   (void) state;
@@ -267,23 +239,13 @@ static void iterations_of_flocs(void **state)
   scene s = cloud_flocs(FLOCS, M, 1.0, 34.7, 1, ETA, 1);
   s.fast = 1;
   sd_blocks b = {0};
+  sd_sparse f = {0};
   assert_int_equal(blocks_of(&b, &s, M), SD_OK);
+  assert_int_equal(sparse_of(&f, &s, 3.0), SD_OK);
   assert_true(iterations(&s, NULL, NULL, 1e-6, NULL) > 60);
   at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 25, "blocks");
-  assert_int_equal(couple(&b, &s, M), SD_OK);
-  at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 15, "coupled blocks");
-
-  uint64_t seed = 9;
-  for (int k = 0; k < FLOCS; k++) {
-    double R[9], push[3];
-    turn_spheres(&s, M * k, M * (k + 1), &seed, R);
-    random_vector(&seed, 0.3, push);
-    for (int i = 3 * M * k; i < 3 * M * (k + 1); i++) s.x[i] += push[i % 3];
-    sd_blocks_turn(&b, k, R);
-  }
-  at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 16, "turned blocks, coupled before");
-  assert_int_equal(couple(&b, &s, M), SD_OK);
-  at_most(iterations(&s, sd_blocks_apply, &b, 1e-6, NULL), 16, "turned blocks, coupled again");
+  at_most(iterations(&s, sd_sparse_apply, &f, 1e-6, NULL), 15, "sparse");
+  sd_sparse_free(&f);
 
   double *slip = scene_uniform_slip(&s, U, 0, 0), *F[2];
   for (int k = 0; k < 2; k++) {
@@ -298,24 +260,6 @@ static void iterations_of_flocs(void **state)
   free(F[0]);
   free(F[1]);
   free(slip);
-  sd_blocks_free(&b);
-  scene_free(&s);
-}
-
-/* The block of a rigid clump stays its exact inverse while it turns and moves. */
-static void blocks_turn_with_their_clump(void **state)
-{
-  (void) state;
-  enum { M = 25 };
-  scene s = cloud_flocs(1, M, 2.0, 5.0, 0, ETA, 3);
-  sd_blocks b = {0};
-  uint64_t seed = 10;
-  double R[9];
-  assert_int_equal(blocks_of(&b, &s, M), SD_OK);
-  turn_spheres(&s, 0, M, &seed, R);
-  at_most(-iterations(&s, sd_blocks_apply, &b, 1e-9, NULL), -5, "not turned: no inverse");
-  sd_blocks_turn(&b, 0, R);
-  at_most(iterations(&s, sd_blocks_apply, &b, 1e-9, NULL), 1, "turned");
   sd_blocks_free(&b);
   scene_free(&s);
 }
@@ -436,10 +380,9 @@ int main(void)
       cmocka_unit_test(spheres_come_farthest_first),
       cmocka_unit_test(whole_inverse_converges_at_once),
       cmocka_unit_test(sparse_factor_is_symmetric_and_splits),
-      cmocka_unit_test(coupled_blocks_are_symmetric),
+      cmocka_unit_test(blocks_are_symmetric),
       cmocka_unit_test(iterations_of_the_lattice),
       cmocka_unit_test(iterations_of_flocs),
-      cmocka_unit_test(blocks_turn_with_their_clump),
       cmocka_unit_test(iterations_of_a_dense_cloud),
       cmocka_unit_test(coincident_spheres_do_not_stop_the_set_up),
       cmocka_unit_test(nearly_coincident_spheres_keep_a_good_factor),

@@ -2,7 +2,7 @@
 #include "clouds.h"
 
 #include "sd_clump.h"
-#include "sd_precondition.h"
+#include "sd_preconditioner.h"
 #include "in_clumps.h"
 
 #include <string.h>
@@ -57,14 +57,6 @@ static void blocks_of(sd_blocks *b, const rotating *g, int m)
 {
   in_clumps k;
   assert_int_equal(sd_blocks_make(b, clumps_in(&k, g, m)), SD_OK);
-}
-
-static void couple(sd_blocks *b, const rotating *g, int m)
-{
-  in_clumps k;
-  clumps_in(&k, g, m);
-  k.c.rho = 3.0;
-  assert_int_equal(sd_blocks_couple(b, &k.c), SD_OK);
 }
 
 static void vary_viscosity(scene *s, uint64_t *seed)
@@ -157,20 +149,6 @@ static void check_symmetric_positive(double *M, int size)
   assert_true(positive_definite(M, size, 0.0));
 }
 
-/* Sums over parts of blocks, by the blocks in one part that do not need any: each number is that or 0 in
- * a part. */
-static sd_status sum_over_parts(void *ctx, double *values, int count)
-{
-  const sd_blocks *all = ctx;
-  if (count == 1) return SD_OK; /* of failures */
-  const int of_mobility = count == 9 * all->blocks;
-  assert_true(of_mobility || count == 18 * all->first[all->blocks]);
-  const double *sum = of_mobility ? all->mobility : all->rigid;
-  for (int i = 0; i < count; i++) assert_true(values[i] == 0.0 || values[i] == sum[i]);
-  memcpy(values, sum, sizeof(double) * (size_t) count);
-  return SD_OK;
-}
-
 static void both_are_symmetric_positive_definite_and_split(void **state)
 {
   (void) state;
@@ -185,22 +163,15 @@ static void both_are_symmetric_positive_definite_and_split(void **state)
   sd_sparse f[1 + PARTS] = {{0}};
   sd_blocks b[1 + PARTS] = {{0}};
   void *fs[1 + PARTS], *bs[1 + PARTS];
-  const double turn[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
   for (int k = 0; k <= PARTS; k++) {
     sparse_of(&f[k], &g, 2.0, k ? k - 1 : 0, k ? PARTS : 1);
     in_clumps clumps;
     clumps_in(&clumps, &g, M);
-    clumps.c.rho = 3.0;
-    if (k) {
-      clumps.c.part = k - 1;
-      clumps.c.parts = PARTS;
-      clumps.c.sum = sum_over_parts;
-      clumps.c.sum_ctx = &b[0];
-    }
+    clumps.c.part = k ? k - 1 : 0;
+    clumps.c.parts = k ? PARTS : 1;
     assert_int_equal(sd_blocks_make(&b[k], &clumps.c), SD_OK);
     fs[k] = &f[k];
     bs[k] = &b[k];
-    sd_blocks_turn(&b[k], 2, turn); /* after coupling: far and near need not agree */
   }
   for (int kind = 0; kind < 2; kind++) {
     sd_precondition *P = kind ? sd_blocks_apply : sd_sparse_apply;
@@ -219,69 +190,90 @@ static void both_are_symmetric_positive_definite_and_split(void **state)
   scene_free(&s);
 }
 
-static void blocks_turn_with_forces_and_torques(void **state)
+/* What is kept is P of the positions that it was made of, for the viscosities of now, whichever kind and
+ * however often it was asked for; other positions, radii, clumps or boxes make another one. */
+static void what_is_kept_is_the_preconditioner_of_its_positions(void **state)
 {
   (void) state;
-  enum { M = 25 };
-  scene s = cloud_flocs(1, M, 2.0, 5.0, 0, ETA, 3);
-  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
-  sd_blocks b = {0};
-  blocks_of(&b, &g, M);
-  const double R[9] = {0.48, -0.8, 0.36, 0.64, 0.6, 0.48, -0.6, 0.0, 0.8};
-  for (int i = 0; i < M; i++) {
-    double *x = s.x + 3 * i, y[3];
-    for (int d = 0; d < 3; d++) y[d] = R[3 * d] * x[0] + R[3 * d + 1] * x[1] + R[3 * d + 2] * x[2];
-    memcpy(x, y, sizeof(y));
+  enum { FLOCS = 4, M = 5, N = FLOCS * M };
+  const sd_precondition_kind *kinds[] = {&sd_precondition_blocks, &sd_precondition_sparse,
+                                         &sd_precondition_waves};
+  const sd_ewald_box boxes[] = {{.edge = {30, 31, 32}, .periodic = 1},
+                                {.edge = {30, 31, 32}, .tilt = {2, 0, 0}, .periodic = 1}};
+  for (int kind = 0; kind < 3; kind++) {
+    scene s = cloud_flocs(FLOCS, M, 2.0, 12.0, 0, ETA, 3);
+    const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
+    sd_preconditioner kept = {0};
+    uint64_t seed = 5;
+    double r[6 * N], z[6 * N], expected[6 * N];
+    for (int i = 0; i < 6 * N; i++) r[i] = uniform(&seed, -1, 1);
+    for (int turn = 0; turn < 6; turn++) {
+      in_clumps k;
+      if (turn == 1) vary_viscosity(&s, &seed);
+      if (turn == 2) s.x[7] += 0.3;
+      if (turn == 3) s.a[4] *= 0.9;
+      clumps_in(&k, &g, turn == 4 ? M - 1 : M);
+      if (kind == 2) k.c.box = &boxes[turn == 5];
+      assert_int_equal(sd_preconditioner_make(&kept, kinds[kind], &k.c), SD_OK);
+      const void *as_it_was = kept.state;
+      assert_int_equal(sd_preconditioner_make(&kept, kinds[kind], &k.c), SD_OK);
+      assert_ptr_equal(kept.state, as_it_was);
+      assert_int_equal(sd_preconditioner_apply(&kept, s.w, r, z), SD_OK);
+      double largest = 0.0;
+      void *P = calloc(1, kinds[kind]->size);
+      assert_int_equal(kinds[kind]->make(P, &k.c), SD_OK);
+      assert_int_equal(kinds[kind]->apply(P, r, expected), SD_OK);
+      for (int i = 0; i < 6 * N; i++) largest = fmax(largest, fabs(expected[i]));
+      for (int i = 0; i < 6 * N; i++) CHECK_NEAR(z[i], expected[i], 1e-12 * largest);
+      kinds[kind]->free(P);
+      free(P);
+    }
+    sd_preconditioner_free(&kept);
+    free(g.spin);
+    scene_free(&s);
   }
-  assert_true(error_of_inverse(&g, sd_blocks_apply, &b) > 0.1);
-  sd_blocks_turn(&b, 0, R);
-  assert_true(error_of_inverse(&g, sd_blocks_apply, &b) < 1e-9);
-  s.x[3] += 0.1;
-  assert_true(error_of_inverse(&g, sd_blocks_apply, &b) > 1e-3);
+}
+
+/* A hard cut-off has no factor: D is there instead, and is not tried again for the same spheres. */
+static void diagonal_where_there_is_no_other(void **state)
+{
+  (void) state;
+  scene s = scene_lattice(5, 5, 5, 2.0, A, ETA);
+  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_OSEEN, SD_TAPER_NONE, 0.0});
   in_clumps k;
-  assert_int_equal(sd_blocks_renew(&b, clumps_in(&k, &g, M), 0), SD_OK);
-  assert_true(error_of_inverse(&g, sd_blocks_apply, &b) < 1e-9);
-  sd_blocks_free(&b);
+  clumps_of(&k, g.law, (sd_spheres){s.x, s.a, s.w}, s.n, 3, 5);
+  for (int i = 0; i < s.n; i++) s.x[3 * i] *= 0.1;
+  sd_preconditioner kept = {0};
+  double r[375], z[375];
+  for (int i = 0; i < 375; i++) r[i] = 1.0 + i;
+  assert_int_equal(sd_preconditioner_make(&kept, &sd_precondition_sparse, &k.c), SD_OK);
+  assert_ptr_equal(kept.kind, &sd_precondition_blocks);
+  const void *as_it_was = kept.state;
+  assert_int_equal(sd_preconditioner_make(&kept, &sd_precondition_sparse, &k.c), SD_OK);
+  assert_ptr_equal(kept.state, as_it_was);
+  assert_int_equal(sd_preconditioner_apply(&kept, s.w, r, z), SD_OK);
+  for (int i = 0; i < 375; i++) CHECK_NEAR(z[i] / (s.drag[i / 3] * r[i]), 1.0, 1e-14);
+  sd_preconditioner_free(&kept);
   free(g.spin);
   scene_free(&s);
 }
 
-/* Moved: flocs that turned and went their own way, one that bent. As if made where they are now. */
-static void moved_blocks_are_as_new_ones(void **state)
+/* A common motion is none; half a radius, root of the mean square, is the limit. */
+static void moved_is_what_is_not_common(void **state)
 {
   (void) state;
-  enum { FLOCS = 6, M = 8, N = FLOCS * M };
-  scene s = cloud_flocs(FLOCS, M, 2.0, 14.0, 0, ETA, 3);
-  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
-  sd_blocks moved = {0}, anew = {0};
-  in_clumps k;
-  clumps_in(&k, &g, M);
-  k.c.rho = 3.0;
-  const sd_precondition_kind *blocks = &sd_precondition_blocks;
-  assert_true(blocks->size == sizeof(sd_blocks));
-  assert_int_equal(blocks->make(&moved, &k.c), SD_OK);
-  const double R[9] = {0.48, -0.8, 0.36, 0.64, 0.6, 0.48, -0.6, 0.0, 0.8};
-  for (int i = 0; i < N; i++) {
-    double *x = s.x + 3 * i, y[3];
-    const int floc = i / M;
-    for (int d = 0; d < 3; d++)
-      y[d] = floc % 2 ? R[3 * d] * x[0] + R[3 * d + 1] * x[1] + R[3 * d + 2] * x[2] : x[d];
-    for (int d = 0; d < 3; d++) x[d] = y[d] + 20.0 * floc;
+  const double a = 0.8, far[3] = {1e3, -2e3, 3e3};
+  for (int k = 0; k < 2; k++) {
+    double sums[SD_MOVED] = {0.0};
+    assert_false(sd_moved_too_far(sums));
+    for (int i = 0; i < 100; i++) {
+      double d[3];
+      memcpy(d, far, sizeof(d));
+      d[i % 3] += (i % 2 ? 1.0 : -1.0) * (k ? 0.51 : 0.49) * a;
+      sd_moved_add(sums, d, a);
+    }
+    assert_int_equal(sd_moved_too_far(sums), k);
   }
-  s.x[3 * (2 * M + 3)] += 0.6;
-  assert_int_equal(blocks->move(&moved, &k.c), SD_OK);
-  assert_int_equal(blocks->make(&anew, &k.c), SD_OK);
-  double r[6 * N], z[6 * N], expected[6 * N], largest = 0.0;
-  uint64_t seed = 5;
-  for (int i = 0; i < 6 * N; i++) r[i] = uniform(&seed, -1, 1);
-  assert_int_equal(blocks->apply(&moved, r, z), SD_OK);
-  assert_int_equal(blocks->apply(&anew, r, expected), SD_OK);
-  for (int i = 0; i < 6 * N; i++) largest = fmax(largest, fabs(expected[i]));
-  for (int i = 0; i < 6 * N; i++) CHECK_NEAR(z[i], expected[i], 1e-9 * largest);
-  blocks->free(&moved);
-  blocks->free(&anew);
-  free(g.spin);
-  scene_free(&s);
 }
 
 /* Another rank whose nth sum of failures counts one */
@@ -296,31 +288,25 @@ static sd_status sum_with_other(void *ctx, double *values, int count)
   return SD_OK;
 }
 
-/* What fails on one rank fails on all; blocks that cannot be coupled on one are coupled on none. */
+/* What fails on one rank fails on all. */
 static void ranks_fail_together(void **state)
 {
   (void) state;
   scene s = cloud_flocs(4, 5, 2.0, 12.0, 0, ETA, 3);
   const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
-  const sd_precondition_kind *kinds[] = {&sd_precondition_none, &sd_precondition_blocks,
-                                         &sd_precondition_sparse};
-  for (int kind = 0; kind < 3; kind++)
-    for (int fails_at = 0; fails_at < 3; fails_at++) {
+  const sd_precondition_kind *kinds[] = {&sd_precondition_blocks, &sd_precondition_sparse};
+  for (int kind = 0; kind < 2; kind++)
+    for (int fails_at = 0; fails_at < 2; fails_at++) {
       other_rank other = {0, fails_at};
       in_clumps k;
       clumps_in(&k, &g, 5);
-      k.c.rho = 3.0;
       k.c.sum = sum_with_other;
       k.c.sum_ctx = &other;
-      union {
-        sd_blocks blocks;
-        sd_sparse sparse;
-      } P;
-      memset(&P, 0, sizeof(P));
-      const sd_status status = kinds[kind]->make(&P, &k.c);
+      void *P = calloc(1, kinds[kind]->size);
+      const sd_status status = kinds[kind]->make(P, &k.c);
       assert_int_equal(status, fails_at == 1 ? SD_EINDEFINITE : SD_OK);
-      if (kind == 1 && status == SD_OK) assert_int_equal(P.blocks.far.n, fails_at == 2 ? 0 : 4);
-      kinds[kind]->free(&P);
+      kinds[kind]->free(P);
+      free(P);
     }
   free(g.spin);
   scene_free(&s);
@@ -380,8 +366,6 @@ static void iterations_with_random_spins(void **state)
   between(100, iterations(&g, NULL, NULL), 1000, "flocs, diagonal");
   between(1, iterations(&g, sd_sparse_apply, &f), 20, "flocs, sparse");
   between(1, iterations(&g, sd_blocks_apply, &b), 30, "flocs, blocks");
-  couple(&b, &g, 20);
-  between(1, iterations(&g, sd_blocks_apply, &b), 20, "flocs, coupled blocks");
   sd_sparse_free(&f);
   sd_blocks_free(&b);
   free(g.spin);
@@ -425,8 +409,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_sees_all_is_the_inverse),
       cmocka_unit_test(both_are_symmetric_positive_definite_and_split),
-      cmocka_unit_test(blocks_turn_with_forces_and_torques),
-      cmocka_unit_test(moved_blocks_are_as_new_ones),
+      cmocka_unit_test(what_is_kept_is_the_preconditioner_of_its_positions),
+      cmocka_unit_test(diagonal_where_there_is_no_other),
+      cmocka_unit_test(moved_is_what_is_not_common),
       cmocka_unit_test(ranks_fail_together),
       cmocka_unit_test(iterations_with_random_spins),
       cmocka_unit_test(clumps_with_torques_are_solved_in_few_iterations),

@@ -1,4 +1,4 @@
-/* make_two_sphere_table > sd_two_sphere_table.c: the exact functions at the nodes, a minute or two.
+/* make_two_sphere_table > sd_two_sphere_table.inc: the exact functions at the nodes, a minute or two.
  *
  * make_two_sphere_table check STRIDE: the shipped ones at every STRIDE'th node against those
  * computed here and now; fails if they differ. */
@@ -17,11 +17,19 @@ enum {
   FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS
 };
 
+/* The inverse of sd_two_sphere_mu */
+static double gap_of(double ratio, double mu)
+{
+  const double s = sinh(0.5 * mu), t = 2.0 * s * s;
+  const double q = 8.0 * t * ratio / ((1.0 + ratio) * (1.0 + ratio));
+  return q / (2.0 + sqrt(4.0 + q));
+}
+
 static void at_node(int i, int j, double value[FUNCTIONS])
 {
   const double ratio = pow(SD_TWO_SPHERE_LARGEST_RATIO, sd_two_sphere_node(RATIOS, i));
   const double mu = sd_two_sphere_node(GAPS, j) * sd_two_sphere_largest_mu(ratio);
-  const double xi = sd_two_sphere_xi(ratio, mu);
+  const double xi = gap_of(ratio, mu);
   const sd_pair_resistance exact = sd_two_sphere_exact(1.0, ratio, 0.5 * xi * (1.0 + ratio), NULL);
   const sd_pair_resistance near = sd_two_sphere_near(1.0, ratio, xi);
   const sd_pair_resistance alone = sd_two_sphere_alone(1.0, ratio);
@@ -35,10 +43,7 @@ static void at_node(int i, int j, double value[FUNCTIONS])
 
 static void make(void)
 {
-  printf("/* Made by make_two_sphere_table; sd_two_sphere_table_internal.h says of what. */\n"
-         "#include \"sd_two_sphere_table_internal.h\"\n\n"
-         "const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS]\n"
-         "                                [SD_TWO_SPHERE_FUNCTIONS] = {\n");
+  printf("/* Made by make_two_sphere_table; sd_two_sphere_table_internal.h says of what. */\n");
   for (int i = 0; i < RATIOS; i++) {
     printf("    {\n");
     for (int j = 0; j < GAPS; j++) {
@@ -56,7 +61,6 @@ static void make(void)
     }
     printf("    },\n");
   }
-  printf("};\n");
 }
 
 static int check(int stride)

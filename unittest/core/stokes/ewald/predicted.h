@@ -1,11 +1,16 @@
+/* The error of an Ewald sum to expect, as its tolerance is meant, of forces that are independent and about as large as a: the part
+ * of each pair beyond the range, the waves beyond the grid, and those that the window mistakes. A formula with integrals over k
+ * and r; sizes as for sd_ewald_choose. */
+#ifndef PREDICTED_H
+#define PREDICTED_H
+
+#include "sd_constants.h"
 #include "sd_ewald.h"
+#include "sd_radial.h"
+#include "sd_window.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-#include "sd_constants.h"
-#include "sd_radial.h"
-#include "sd_window.h"
 
 /* Means of b and b^2 over the spheres on which velocities are wanted, and over those that forces act
  * on, which count as F^2 ~ a^2. */
@@ -156,7 +161,7 @@ static void divide(const sd_ewald *e, const sd_ewald_sizes *s, sd_ewald_class *s
   }
 }
 
-double sd_ewald_predicted(const sd_ewald *e, const sd_ewald_sizes *s)
+static double predicted_error(const sd_ewald *e, const sd_ewald_sizes *s)
 {
   if (!(e->count > 0.0)) return 0.0;
   double square;
@@ -172,3 +177,5 @@ double sd_ewald_predicted(const sd_ewald *e, const sd_ewald_sizes *s)
   }
   return 6.0 * SD_PI * sqrt(square);
 }
+
+#endif
