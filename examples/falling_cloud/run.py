@@ -6,7 +6,6 @@
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
-import io
 import pathlib
 import re
 import shutil
@@ -16,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from runs import np, plt, dumped, finished, need, options, values  # noqa: E402
-from PIL import Image  # noqa: E402
+import film  # noqa: E402
 
 SPHERES, RADIUS, TIME = 800, 24.0, 4.2
 PANELS = {"none": "each sphere alone\n(Stokes drag)", "all": "all spheres feel\neach other"}
@@ -42,18 +41,13 @@ def frame(positions, upper, time):
         side.set(xlim=(-45, 45), ylim=(-202, 32), xticks=[], yticks=[], aspect="equal")
         side.set_title(title, fontsize=10)
     axes[0].text(-42, -198, f"time {time:.1f} a/U", fontsize=8)
-    with io.BytesIO() as png:
-        figure.savefig(png, format="png")
-        plt.close(figure)
-        return Image.open(png).convert("RGB")
+    return film.picture(figure)
 
 
-def film(paths, times, path):
+def moving(paths, times, path):
     start = paths["all"][0][:, 2]
     pictures = [frame({name: frames[k] for name, frames in paths.items()}, start > start.mean(), time) for k, time in enumerate(times)]
-    palette = pictures[0].quantize(16)
-    first, *rest = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    first.save(path, save_all=True, append_images=rest, duration=[600] + [70] * (len(rest) - 1) + [1500], loop=0, optimize=True)
+    film.write(pictures, path)
 
 
 def main():
@@ -69,9 +63,9 @@ def main():
     c.near("all feel each other: speed at first, over that of an even ball of point forces", rows["all"][0, 2] / predicted, 1.0, 0.05)
     fallen = {name: table[-1, 3] - table[0, 3] for name, table in rows.items()}
     c.within("all feel each other: how many times farther the cloud has fallen", fallen["all"] / fallen["none"], 40.0, 42.0)
-    film(paths, rows["all"][:, 1], given.out / "falling_cloud.gif")
+    moving(paths, rows["all"][:, 1], given.out / "falling_cloud.gif")
     c.below("size of the moving picture, MB", (given.out / "falling_cloud.gif").stat().st_size / 1e6, 2.0)
-    c.holds("the moving picture has a frame for each time", Image.open(given.out / "falling_cloud.gif").n_frames == len(paths["all"]))
+    c.holds("the moving picture has a frame for each time", film.frames(given.out / "falling_cloud.gif") == len(paths["all"]))
     if given.update:
         shutil.copy(given.out / "falling_cloud.gif", HERE)
         shutil.copy(given.out / "log.all", HERE / "log.falling_cloud.1")
