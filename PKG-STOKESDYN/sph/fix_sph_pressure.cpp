@@ -2,6 +2,8 @@
 
 #include "keywords.h"
 
+#include "atom.h"
+
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
@@ -24,4 +26,10 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
     in.unknown();
   in.parse({});
   begin();
+}
+
+void FixSphPressure::set_arrays(int i)
+{
+  SphOutputFix::set_arrays(i);
+  if ((atom->mask[i] & groupbit) && atom->rho[i] == 0.0) atom->rho[i] = state.rho0;
 }

@@ -12,6 +12,9 @@ class FixSphPressure : public SphOutputFix {
   static constexpr const char *STYLE = "sph/pressure";
 
   FixSphPressure(LAMMPS_NS::LAMMPS *, int, char **);
+  /* A particle that is made (fix deposit, create_atoms) has no density: it gets rho0, if the
+   * equation of state has one. */
+  void set_arrays(int) override;
 
   sd_sph_state state = {};
 };

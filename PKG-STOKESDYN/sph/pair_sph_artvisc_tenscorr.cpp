@@ -26,7 +26,7 @@ const std::string PairSph::COMMAND = "Pair style " + std::string(STYLE);
 const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
                                                        "beta", "deltap", "mu"};
 
-PairSph::PairSph(LAMMPS *lmp) : Pair(lmp)
+PairSph::PairSph(LAMMPS *lmp) : Pair(lmp), moved_box(lmp)
 {
   single_enable = 0;
   respa_enable = 0;

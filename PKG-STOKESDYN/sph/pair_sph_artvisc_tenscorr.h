@@ -4,6 +4,7 @@
 #ifndef SD_PAIR_SPH_ARTVISC_TENSCORR_H
 #define SD_PAIR_SPH_ARTVISC_TENSCORR_H
 
+#include "moved_box.h"
 #include "pair.h"
 #include "sd_sph_sums.h"
 #include "sph.h"
@@ -116,11 +117,16 @@ class PairSph : public LAMMPS_NS::Pair {
   LAMMPS_NS::bigint around_of = -1;    // the step of the list that `around` is made of
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
+  MovedBox moved_box;
   Rows x4, v4, f4, sums, weights, order;
   std::vector<double> P, masses, rate, each, kick, wall_rows;
   std::vector<int> classes, phases;
   bool used(int itype) const;
   std::string at_step() const;
+  void look_at_densities(int n);
+  void look_at_walls();
+  void look_at_sound();
+  void look_at_widths();
   void prepare();
   bool types_are_alike();
   void estimate_velocities();

@@ -14,6 +14,8 @@
 #include "sd_sph_wall.h"
 
 #include "atom.h"
+#include "comm.h"
+#include "error.h"
 #include "force.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -40,7 +42,17 @@ void PairSph::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   check_list();
+  if (continuity && !moved_box.follow(atom->rho) && comm->me == 0)
+    error->warning(FLERR,
+                   COMMAND + ": the box has changed since the last run and the particles were moved "
+                             "otherwise: their densities are left as they are (set ... sph/rho)");
+  look_at_densities(atom->nlocal);
   prepare();
+  if (update->setupflag) {
+    look_at_sound();
+    look_at_widths();
+    if (wall) look_at_walls();
+  }
   if (needs_velocity) estimate_velocities();
 
   if (leapfrog) density_step();
@@ -289,17 +301,7 @@ void PairSph::pressures_of_all()
 {
   const int n = particles.n;
   const double *rho = atom->rho;
-  for (int i = 0; i < n; i++) {
-    if (rho[i] > 0.0 && std::isfinite(rho[i]) && (atom->mask[i] & pressure_bits)) continue;
-    if (!used(atom->type[i])) continue;
-    const std::string who = at_step() + "atom " + std::to_string(atom->tag[i]);
-    if (!(atom->mask[i] & pressure_bits))
-      fail_one(lmp, who + " is in the group of no fix sph/pressure");
-    fail_one(lmp,
-             who + " has the density " + text(rho[i]) + "; it must be a number > 0" +
-                 (update->setupflag ? " (set it with: set ... sph/rho)"
-                                    : " (a smaller time step?)"));
-  }
+  look_at_densities(n);
   for (auto *fix : pressures)
     sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
   sd_sph_pack_pressures(&model, n, P.data(), rho, x4.data());

@@ -105,6 +105,7 @@ void Ambient::read_fluid(bool with_gradients)
   else if (u_varies && !w.empty())
     read_gradient();
   if (settings.has_vorticity) read_vorticity();
+  find_jumps();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 }
 
@@ -130,31 +131,66 @@ namespace {
     Atom *atom;
     std::vector<double> x;
   };
+
+  struct Edges {
+    double edge[3][3];
+    explicit Edges(const Domain *domain) :
+        edge{{domain->xprd, 0.0, 0.0},
+             {domain->h[5], domain->yprd, 0.0},
+             {domain->h[4], domain->h[3], domain->zprd}}
+    {
+    }
+  };
 }    // namespace
 
-/* By formulas in x, y, z; a velocity stored per atom does not follow. */
+/* Sum over this rank's spheres of what velocity p grows by along an edge; most [2]: the largest
+ * growth, and velocity. By formulas in x, y, z; a velocity stored per atom does not follow. */
+double Ambient::growth_along(const double *edge, int p, double *most)
+{
+  std::vector<double> there(atom->nlocal + 1);
+  Shift shift(atom, edge, false);
+  settings.velocity[p].evaluate(lmp, igroup, there.data(), 1);
+  double sum = 0.0;
+  for (int i : those) {
+    const double growth = there[i] - u[3 * (size_t) i + p];
+    most[0] = std::max(most[0], std::fabs(growth));
+    most[1] = std::max(most[1], std::fabs(u[3 * (size_t) i + p]));
+    sum += growth;
+  }
+  return sum;
+}
+
 double Ambient::misfit()
 {
   if (u.empty()) return 0.0;
-  const double *h = domain->h, tilt[3] = {h[5], h[4], h[3]};
-  const double edge[3][3] = {{domain->xprd, 0.0, 0.0},
-                             {tilt[0], domain->yprd, 0.0},
-                             {tilt[1], tilt[2], domain->zprd}};
-  double most[2] = {0.0, 0.0};    // difference, velocity
-  std::vector<double> there(atom->nlocal + 1);
+  const Edges edges(domain);
+  double most[2] = {0.0, 0.0};
   modify->clearstep_compute();
   for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3 && settings.velocity[p].is_atom_style(); q++) {
-      Shift shift(atom, edge[q], false);
-      settings.velocity[p].evaluate(lmp, igroup, there.data(), 1);
-      for (int i : those) {
-        most[0] = std::max(most[0], std::fabs(there[i] - u[3 * (size_t) i + p]));
-        most[1] = std::max(most[1], std::fabs(u[3 * (size_t) i + p]));
-      }
-    }
+    for (int q = 0; q < 3 && settings.velocity[p].is_atom_style(); q++)
+      growth_along(edges.edge[q], p, most);
   modify->addstep_compute(update->ntimestep + 1);
   MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
   return most[0] > 0.0 ? most[0] / std::max(most[0], most[1]) : 0.0;
+}
+
+/* The mean over all spheres, since in a flow that goes with the box it is the same for each; the
+ * edges have no other components. */
+void Ambient::find_jumps()
+{
+  static const int OF[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};    // velocity, edge
+  jumping = false;
+  if (!domain->deform_flag || u.empty() || settings.grid) return;
+  const Edges edges(domain);
+  double sums[7] = {0.0}, most[2] = {0.0, 0.0};
+  for (int k = 0; k < 6; k++)
+    if (settings.velocity[OF[k][0]].is_atom_style() && domain->periodicity[OF[k][1]])
+      sums[k] = growth_along(edges.edge[OF[k][1]], OF[k][0], most);
+  sums[6] = those.size();
+  MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
+  jumping = most[0] > 1e-9 * most[1];
+  for (int k = 0; k < 6; k++) jump[k] = jumping ? sums[k] / sums[6] : 0.0;
 }
 
 /* slope [nlocal] = d u_p / d x_q, by central differences over one radius to either side. For a field

@@ -52,6 +52,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
    * box away, relative to the largest velocity: 0 fits a periodic box. On all ranks together. */
   double misfit();
 
+  /* By how much the fluid velocity grows from an atom to its images, in a box that fix deform
+   * deforms: that of the image one edge away, for each edge, in the order of Lattice::h. So the
+   * images move in a flow that deforms with the box. nullptr: the velocity has the period of the
+   * box, or is no formula. */
+  const double *jumps() const { return jumping ? jump : nullptr; }
+
   const std::vector<char> &active() const { return takes_part; }
   /* The atoms of this rank that take part, in their order. */
   const std::vector<int> &who() const { return those; }
@@ -107,6 +113,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   long selections = 0;
   /* the run, by its first step, in which the group was last looked at; -1: in none */
   LAMMPS_NS::bigint looked_in = -1;
+  double jump[6] = {0.0};
+  bool jumping = false;
   double now = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient;
@@ -114,6 +122,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   bool group_stands() const;
   void select();
   void read_fluid(bool gradients);
+  double growth_along(const double *edge, int p, double *most);
+  void find_jumps();
   void slope_of(int p, int q, std::vector<double> &slope);
   void read_gradient();
   void read_vorticity();

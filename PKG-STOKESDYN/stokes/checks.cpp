@@ -20,42 +20,6 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-void check_vast_cutoff(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
-{
-  const Domain *domain = lmp->domain;
-  const double cut = settings.cutoff + lmp->neighbor->skin;
-  double atoms = lmp->atom->natoms, most = 0.0, boxes = 0.0, periodic_boxes = 0.0;
-  for (int d = 0; d < domain->dimension; d++) {
-    double row = 1.0 / domain->prd[d];    // one over the distance of opposite faces
-    if (domain->triclinic && d < 2) {
-      const double *inv = domain->h_inv;
-      row = d == 0 ? sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4])
-                   : sqrt(inv[1] * inv[1] + inv[3] * inv[3]);
-    }
-    boxes = std::max(boxes, cut * row);
-    most = std::max(most, cut * row * lmp->comm->procgrid[d]);
-    if (!domain->periodicity[d]) continue;
-    atoms *= 2.0 * cut * row + 1.0;
-    periodic_boxes = std::max(periodic_boxes, cut * row);
-  }
-  const std::string keyword =
-      command + ": keyword cut_off_distance: '" + text(settings.cutoff) + "' is ";
-  if (std::max(most, atoms) < MAXSMALLINT) {
-    if (periodic_boxes > 10.0 && lmp->comm->me == 0)
-      lmp->error->warning(FLERR,
-                          std::string(keyword + text(periodic_boxes) +
-                                      " times the periodic box: LAMMPS keeps about " + text(atoms) +
-                                      " ghost atoms for it"));
-    return;
-  }
-  bool open = true;
-  for (int d = 0; d < domain->dimension; d++) open = open && !domain->periodicity[d];
-  fail(lmp,
-       keyword + text(boxes) +
-           " times the box, which is more than LAMMPS can make ghost atoms for; use " +
-           (open || settings.clumps_only ? "inf" : "a shorter one"));
-}
-
 void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
 {
   const Domain *domain = lmp->domain;
@@ -103,7 +67,7 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
   } else {
     const sd_spheres spheres = scene.local();
     const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
-    status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_ghosts(), 0, scene.size(),
+    status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_copies(), 0, scene.size(),
                                &mine);
   }
   if (status != SD_OK) fail_one(lmp, command + ": " + sd_status_string(status));
@@ -133,7 +97,7 @@ void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &
   };
   const sd_pairs &list = scene.list();
   for (int k = 0; k < scene.size(); k++)
-    if (const tagint molecule = lmp->atom->molecule[scene.who()[k]])
+    if (const tagint molecule = scene.molecule(k))
       add({molecule, 1, (bigint) (list.first[k + 1] - list.first[k])});
   std::vector<Sight> mine;
   for (const auto &clump : clumps) mine.push_back(clump.second);

@@ -10,12 +10,6 @@
 
 namespace StokesDyn {
 
-/* A cut-off of very many boxes would keep LAMMPS at copying ghosts for ever, or overflow its counts
- * of them: refused. One of more than ten periodic boxes, perhaps a mistake in units, takes minutes
- * and is warned of. */
-void check_vast_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
-                       const Scene::Settings &settings);
-
 /* Without a cut-off the box is periodic in all directions or in none; what Ewald sums have not got
  * needs an open one. */
 void check_boundaries(LAMMPS_NS::LAMMPS *lmp, const std::string &command,

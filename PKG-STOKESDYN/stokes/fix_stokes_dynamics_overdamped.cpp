@@ -186,7 +186,7 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
   Hydrodynamics &hydro = hydrodynamics();
   displaced = changed = 0.0;
   for (int i : hydro.motion().lone) move_free(i);
-  for (const auto &clump : hydro.motion().clumps) move_clump(hydro, clump);
+  if (hydro.settings.rigid.on) move_clumps(hydro);
   last.dt = update->dt;
   if (!warned_growth) watch();
 }
@@ -211,33 +211,58 @@ void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
   changed = std::max(changed, 0.5 * update->dt * change / atom->radius[i]);
 }
 
-/* Each rank sets its own spheres. Positions are those of images side by side: an atom moves as its
- * image does. */
-void FixStokesDynamicsOverdamped::move_clump(Hydrodynamics &hydro, const Velocities::Clump &clump)
+/* By members of clumps, seven each: has it a velocity of before? U and W of its clump then */
+std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
 {
-  const RigidClumps::Body &body = *clump.body;
-  const auto &members = hydro.motion().members(), &owns = hydro.motion().owns();
-  const sd_shape &shape = body.shape->shape;
-  int mine = body.begin;
-  while (owns[mine] < 0) mine++;
-  const double *old = before[owns[mine]];
-  double pose[12], mean[6], turn[9], change = 0.0;
-  x.resize(3 * (size_t) body.n);
-  std::copy_n(clump.pose, 12, pose);
-  sd_mean_velocity(6, clump.V, old, weight(owns[mine]), mean);
-  for (int d = 0; d < 3 && before.has(owns[mine]); d++)
-    change += fabs(clump.V[d] - old[d]) + shape.size * fabs(clump.V[3 + d] - old[3 + d]);
-  sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
-  for (int k = 0; k < body.n; k++) {
-    const int i = owns[body.begin + k], j = members[body.begin + k];
-    if (i < 0) continue;
-    double step[3], *row = before.has(i) ? before.row(i) : before.give(i);
-    for (int d = 0; d < 3; d++) step[d] = x[3 * (size_t) k + d] - atom->x[j][d];
-    for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
-    for (int d = 0; d < 6; d++) row[d] = clump.V[d];
-    moves(i, sqrt(sd_dot(step, step)), change);
-    hydro.turn(i, turn);
+  return hydrodynamics().scene.whole.gather(7, [this](int i, double *out) {
+    out[0] = before.has(i);
+    std::copy_n(before[i], 6, out + 1);
+  });
+}
+
+/* Positions are those of images side by side: an atom moves as its image does, less what the edges
+ * of the box between them have moved since. */
+void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
+{
+  enum { MOVES, CHANGE, STEP, V = STEP + 3, TURN = V + 6, COLUMNS = TURN + 9 };
+  const Velocities &motion = hydro.motion();
+  const WholeClumps &whole = hydro.scene.whole;
+  const Lattice now = Lattice::of(domain);
+  const std::vector<double> all_before = velocities_before();
+  std::vector<double> x, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
+  double box[6];
+  for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
+  for (const auto &clump : motion.clumps) {
+    const RigidClumps::Body &body = *clump.body;
+    const sd_shape &shape = body.shape->shape;
+    const double *old = &all_before[7 * motion.member_of(clump, 0)];
+    const bool has = *old++ != 0.0;
+    const double c = scheme == AB2 && has && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
+    double pose[12], mean[6], turn[9], change = 0.0;
+    x.resize(3 * (size_t) body.n);
+    std::copy_n(clump.pose, 12, pose);
+    sd_mean_velocity(6, clump.V, old, c, mean);
+    for (int d = 0; d < 3 && has; d++)
+      change += fabs(clump.V[d] - old[d]) + shape.size * fabs(clump.V[3 + d] - old[3 + d]);
+    sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
+    for (int k = 0; k < body.n; k++) {
+      const size_t m = motion.member_of(clump, k);
+      double *row = &rows[COLUMNS * m];
+      row[MOVES] = 1.0;
+      row[CHANGE] = change;
+      for (int d = 0; d < 3; d++) row[STEP + d] = x[3 * (size_t) k + d] - whole.x[3 * m + d];
+      Lattice::add(box, &whole.steps[3 * m], row + STEP);
+      std::copy_n(clump.V, 6, row + V);
+      std::copy_n(turn, 9, row + TURN);
+    }
   }
+  whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
+    if (row[MOVES] == 0.0) return;
+    for (int d = 0; d < 3; d++) atom->x[i][d] += row[STEP + d];
+    std::copy_n(row + V, 6, before.give(i));
+    moves(i, sqrt(sd_dot(row + STEP, row + STEP)), row[CHANGE]);
+    hydro.turn(i, row + TURN);
+  });
 }
 
 /* The next step as long as the fastest sphere allows; what must be told of it, as by fix dt/reset.
@@ -327,25 +352,27 @@ double FixStokesDynamicsOverdamped::fastest() const
 /* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
 double FixStokesDynamicsOverdamped::error_figure() const
 {
-  const Velocities &motion = hydrodynamics().motion();
+  const Hydrodynamics &hydro = hydrodynamics();
+  const Velocities &motion = hydro.motion();
   double most = 0.0;
-  auto compare = [&](int i, const double *old) {
+  for (int i : motion.lone) {
     double change[3];
-    for (int d = 0; d < 3; d++) change[d] = atom->v[i][d] - old[d];
-    most = std::max(most, sqrt(sd_dot(change, change)) / atom->radius[i]);
-  };
-  for (int i : motion.lone)
-    if (before.has(i)) compare(i, before[i]);
+    for (int d = 0; d < 3; d++) change[d] = atom->v[i][d] - before[i][d];
+    if (before.has(i)) most = std::max(most, sqrt(sd_dot(change, change)) / atom->radius[i]);
+  }
+  const std::vector<double> all_before =
+      hydro.settings.rigid.on ? velocities_before() : std::vector<double>();
   for (const auto &clump : motion.clumps)
-    for (int k = clump.body->begin; k < clump.body->begin + clump.body->n; k++) {
-      const int i = motion.owns()[k];
-      if (i < 0 || !before.has(i)) continue;
-      const double *V = before[i], *X = clump.body->shape->shape.x + 3 * (k - clump.body->begin);
-      double arm[3], old[3];
-      sd_multiply3(clump.pose, X, arm);
-      sd_cross(V + 3, arm, old);
-      for (int d = 0; d < 3; d++) old[d] += V[d];
-      compare(i, old);
+    for (int k = 0; k < clump.body->n; k++) {
+      const sd_shape &shape = clump.body->shape->shape;
+      const double *old = &all_before[7 * motion.member_of(clump, k)];
+      double V[6], arm[3], change[3];
+      if (*old++ == 0.0) continue;
+      for (int d = 0; d < 6; d++) V[d] = clump.V[d] - old[d];
+      sd_multiply3(clump.pose, shape.x + 3 * (size_t) k, arm);
+      sd_cross(V + 3, arm, change);
+      for (int d = 0; d < 3; d++) change[d] += V[d];
+      most = std::max(most, sqrt(sd_dot(change, change)) / shape.a[k]);
     }
   return 0.5 * update->dt * most;
 }
@@ -356,7 +383,8 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   const Hydrodynamics &hydro = hydrodynamics();
   const std::vector<int> &who = hydro.ambient.who();
   const bool bound = hydro.settings.rigid.on;
-  std::vector<double> x, a, w(who.size(), 1.0), bodies;
+  const int n = (int) who.size();
+  std::vector<double> x, a, bodies;
   double mine = 0.0, largest;
   for (int i : who) {
     x.insert(x.end(), atom->x[i], atom->x[i] + 3);
@@ -367,19 +395,16 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
   if (largest == 0.0) return INFINITY;
   const double reach = 4.0 * largest;
-  sd_ewald_box box = periodic_box(domain);
-  box.periodic = 1;
-  for (int d = 0; d < 3; d++)    // what has no images has them too far away
-    if (!domain->periodicity[d] || d >= domain->dimension)
-      box.edge[d] = 4.0 * (box.edge[d] + reach);
-  Images images(world);
-  images.find(box, reach, x, a, w);
-  bodies.resize(a.size() + 1);
-  images.refresh(bodies.data(), &bodies[who.size()], 1);
+  const Lattice lattice = Lattice::of(domain);
+  Halo halo(world);
+  if (!halo.find(lattice, reach, x))
+    fail_one(lmp, COMMAND + ": the smallest gap: the largest radius, " + text(largest) +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other "
+                      "units?");
+  halo.extend(lattice.h, x, {&a, &bodies});
   const std::vector<int64_t> body(bodies.begin(), bodies.end());
   double gap = INFINITY, all;
-  if (!who.empty() &&
-      sd_smallest_gap(x.data(), a.data(), body.data(), who.size(), a.size(), reach, &gap) != SD_OK)
+  if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, a.size(), reach, &gap) != SD_OK)
     fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
   MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
   return all;

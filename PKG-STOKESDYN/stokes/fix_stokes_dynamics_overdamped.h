@@ -60,8 +60,6 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double displaced = 0.0, changed = 0.0, changed_before = 0.0;
   int doublings = 0;
   bool warned_growth = false, announced = false;
-  /* spheres of a clump in the next step */
-  std::vector<double> x;
 
   bool restored() const override { return last.step >= 0; }
   Hydrodynamics &hydrodynamics() const;
@@ -72,7 +70,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double weight(int i) const;
   void moves(int i, double distance, double change);
   void move_free(int i);
-  void move_clump(Hydrodynamics &, const Velocities::Clump &);
+  void move_clumps(Hydrodynamics &);
+  std::vector<double> velocities_before() const;
   void watch();
   double fastest() const;
   double error_figure() const;

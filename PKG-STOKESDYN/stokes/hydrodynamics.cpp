@@ -28,8 +28,8 @@ static const std::string COMMAND = StokesSettings::COMMAND;
 // products.
 static const int LOOK_AT_FILMS = 1000;
 
-Hydrodynamics::Hydrodynamics(LAMMPS *lmp, Pair *pair) :
-    Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, pair, COMMAND), rigid(lmp, scene, COMMAND),
+Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
+    Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND),
     lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}),
     preconditioner(lmp, scene), guard(lmp, COMMAND)
 {
@@ -47,6 +47,9 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   settings = StokesSettings(lmp, words);
   ambient.settings = settings.ambient;
   scene.settings = settings.scene;
+  scene.settings.whole =
+      settings.rigid.on || (settings.scene.clumps_only && std::isinf(settings.scene.cutoff));
+  if (settings.lubrication.on) scene.settings.films = 2.0 + settings.lubrication.range;
   rigid.settings = settings.rigid;
   lubrication.settings = settings.lubrication;
   scene.init();
@@ -71,6 +74,8 @@ void Hydrodynamics::begin()
              " has been deleted; a run without 'pre no' makes it anew");
   if (neighbor->ago == 0) scene.lists_are_stale();
   ambient.read(rotation(), settings.rigid.on, memory->time());
+  standing = false;
+  if (scene.settings.whole) scene.whole.find();
   if (selection == ambient.selection()) return;
   selection = ambient.selection();
   for (int i = 0; i < atom->nlocal; i++)
@@ -145,24 +150,27 @@ void Hydrodynamics::drag()
 /* Where the spheres stand and as they move now */
 void Hydrodynamics::lubricate()
 {
-  const size_t n = solvers.size();
-  films_v.resize(6 * n + 6);
-  films_F.resize(6 * n + 6);
-  for (size_t k = 0; k < n; k++) {
-    std::copy_n(atom->v[solvers[k]], 3, &films_v[6 * k]);
-    std::copy_n(atom->omega[solvers[k]], 3, &films_v[6 * k + 3]);
+  if (!standing) {
+    scene.stand(solvers, ambient);
+    scene.surround_films();
   }
-  lubrication.place(ambient);
+  films_v = scene.rows(6, [this](int i, double *out) {
+    std::copy_n(atom->v[i], 3, out);
+    std::copy_n(atom->omega[i], 3, out + 3);
+  });
+  films_F.resize(films_v.size());
+  scene.drift(films_v.data(), 6, 1.0);
+  lubrication.place(scene, ambient);
   lubrication.forces(films_v.data(), films_F.data());
   if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
-    guard.look_at_films(*lubrication.matrix(), solvers.data());
-  for (size_t k = 0; k < n; k++) {
-    double *row = memory->rows.row(solvers[k]);
+    guard.look_at_films(*lubrication.matrix(), scene);
+  scene.to_atoms(6, films_F.data(), [this](int i, const double *F) {
+    double *row = memory->rows.row(i);
     for (int d = 0; d < 3; d++) {
-      row[State::FORCE + d] += films_F[6 * k + d];
-      row[State::TORQUE + d] += films_F[6 * k + 3 + d];
+      row[State::FORCE + d] += F[d];
+      row[State::TORQUE + d] += F[3 + d];
     }
-  }
+  });
 }
 
 /* v' of every sphere that is the solver's, from the forces that solve the system for the velocities
@@ -188,10 +196,9 @@ void Hydrodynamics::solve()
 void Hydrodynamics::place()
 {
   const Scene::Settings &how = settings.scene;
-  std::vector<double> eta(solvers.size());
-  for (size_t k = 0; k < solvers.size(); k++) eta[k] = ambient.viscosity(solvers[k]);
   scene.set_open_box(memory->global.open_box);
-  scene.update(solvers, eta);
+  scene.update(solvers, ambient);
+  standing = true;
   memory->global.open_box = scene.open_box();
   if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && !looked_at_flow)
     warn_of_misfit(lmp, COMMAND, ambient.misfit());
@@ -203,10 +210,10 @@ void Hydrodynamics::place()
   warn_of_short_cutoff(lmp, COMMAND, scene);
 }
 
-/* The linear system of this step: row k is the sphere solvers[k]. */
+/* The linear system of this step, by the rows of the scene. */
 sd_system Hydrodynamics::gather()
 {
-  const int n = solvers.size();
+  const int n = scene.size();
   const size_t m = width();
   solution.resize(m * n + m);
   const size_t scratch = SD_SOLVE_WORK(n, width()) + 1;
@@ -218,11 +225,15 @@ sd_system Hydrodynamics::gather()
   slip.resize(m * n + m);
   resistance.resize(n + 1);
   spin.resize(rotation() ? n + 1 : 0);
+  const std::vector<double> rows = scene.rows(8, [this](int i, double *out) {
+    ambient.slip(i, out);
+    out[6] = ambient.drag(i);
+    out[7] = ambient.spin(i);
+  });
   for (int k = 0; k < n; k++) {
-    const int i = solvers[k];
-    ambient.slip(i, &slip[m * k]);
-    resistance[k] = ambient.drag(i);
-    if (rotation()) spin[k] = ambient.spin(i);
+    std::copy_n(&rows[8 * (size_t) k], m, &slip[m * k]);
+    resistance[k] = rows[8 * (size_t) k + 6];
+    if (rotation()) spin[k] = rows[8 * (size_t) k + 7];
   }
   sd_system system = {};
   system.n = n;
@@ -230,9 +241,8 @@ sd_system Hydrodynamics::gather()
   system.spin = rotation() ? spin.data() : nullptr;
   system.apply = sd_mobility_apply;
   system.apply_ctx = scene.mobility();
-  system.sum = Scene::sum;
-  system.sum_ctx = &scene;
-  if (joined()) mobile.join(system, carried = slip);
+  system.world.ctx = &scene;
+  system.world.sum = Scene::sum;
   return system;
 }
 
@@ -254,9 +264,9 @@ static std::string how_far(const sd_solve_report &report)
 sd_status Hydrodynamics::run(sd_solve_report &report)
 {
   sd_system system = gather();
-  if (algorithm() == StokesSettings::SUBSTITUTION) {
+  if (!joined() && algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status =
-        sd_solve_substitution(&system, right_hand_side(), settings.tolerance, settings.max_iter,
+        sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
                               solution.data(), work.get(), &report);
     if (status != SD_EDIVERGED || settings.strict) return status;
     memory->global.diverged = 1;
@@ -265,9 +275,10 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
                      where(StokesSettings::SUBSTITUTION) + "diverged: " + how_far(report) +
                          "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
-  const sd_status status = gradients(system, report);
+  const sd_status status = joined() ? together(report) : gradients(system, report);
+  const bool preconditioned = joined() || preconditioner.attached();
   guard.state = memory->global.guard;
-  guard.look(system, report, solvers.data(), preconditioner.attached(), memory->global.solves);
+  guard.look(system, report, scene, preconditioned, memory->global.solves);
   memory->global.guard = guard.state;
   return status;
 }
@@ -278,8 +289,23 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   system.warm = memory->history && global.solutions > 0;
   if (system.warm) guess();
   preconditioner.attach(system, memory->places, global.places_box);
-  return sd_solve_gradients(&system, right_hand_side(), settings.tolerance, settings.max_iter,
+  return sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
                             solution.data(), work.get(), &report);
+}
+
+/* Clumps with shells: bodies that are held in the slip, by the loop that moves them without
+ * inertia. */
+sd_status Hydrodynamics::together(sd_solve_report &report)
+{
+  const bool warm = memory->history && memory->global.solutions > 0;
+  if (warm) guess();
+  const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};
+  sd_bodies_report made = {};
+  const sd_status status = mobile.resist(how, slip, solution, made);
+  report.iterations = report.products = made.products;
+  report.residual = made.residual;
+  report.curvature = made.curvature;
+  return status;
 }
 
 /* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
@@ -289,14 +315,18 @@ void Hydrodynamics::guess()
 {
   const size_t m = width();
   const bool line = memory->global.solutions > 1;
-  for (size_t k = 0; k < solvers.size(); k++) {
-    const double *row = memory->rows[solvers[k]], *before = row + memory->before();
+  solution = scene.rows(width(), [&](int i, double *out) {
+    const double *row = memory->rows[i], *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-      const double v = line ? 2.0 * last - before[d] : last;
-      solution[m * k + d] = (d < 3 ? resistance[k] : spin[k]) * (slip[m * k + d] + v);
+      out[d] = line ? 2.0 * last - before[d] : last;
     }
-  }
+  });
+  for (size_t k = 0; k < (size_t) scene.size(); k++)
+    for (size_t d = 0; d < m; d++) {
+      double &F = solution[m * k + d];
+      F = (d < 3 ? resistance[k] : spin[k]) * (slip[m * k + d] + F);
+    }
 }
 
 /* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have
@@ -305,15 +335,18 @@ void Hydrodynamics::keep()
 {
   const size_t m = width();
   State::Global &global = memory->global;
-  for (size_t k = 0; k < solvers.size(); k++) {
-    const bool alone = scene.alone(k);
-    double *row = memory->rows.give(solvers[k]), *before = row + memory->before();
+  std::vector<double> found(m * scene.size() + m, 0.0);
+  for (size_t k = 0; k < (size_t) scene.size(); k++)
+    for (size_t d = 0; d < m && !scene.alone((int) k); d++)
+      found[m * k + d] = solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
+  scene.to_atoms(width(), found.data(), [&](int i, const double *v) {
+    double *row = memory->rows.give(i), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
-      double &v = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-      if (memory->history) before[d] = v;
-      v = alone ? 0.0 : solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
+      double &last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      if (memory->history) before[d] = last;
+      last = v[d];
     }
-  }
+  });
   global.solutions = std::min(2.0, global.solutions + 1.0);
 }
 
@@ -359,27 +392,36 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
  * too: v' has no other use in such a run, so they are kept in its place. */
 sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_report &report)
 {
-  const size_t m = width(), n = solvers.size();
+  const size_t m = width();
   place();
+  const size_t n = scene.size();
+  std::vector<double> rows = scene.rows(2 * width(), [&](int i, double *out) {
+    const double *row = memory->rows[i];
+    for (size_t d = 0; d < m && settings.warm_start; d++) {
+      out[d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
+      out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+    }
+  });
   begin_with.l.assign(m * n + m, 0.0);
   begin_with.v.assign(m * n + m, 0.0);
-  for (size_t k = 0; k < n && settings.warm_start; k++) {
-    const double *row = memory->rows[solvers[k]];
-    for (size_t d = 0; d < m; d++) {
-      begin_with.l[m * k + d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
-      begin_with.v[m * k + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-    }
+  for (size_t k = 0; k < n; k++) {
+    std::copy_n(&rows[2 * m * k], m, &begin_with.l[m * k]);
+    std::copy_n(&rows[2 * m * k + m], m, &begin_with.v[m * k]);
   }
   const Velocities::How how = {width(), settings.warm_start, settings.tolerance, settings.max_iter};
   const sd_status status = mobile.together(how, begin_with, take, report);
   for (size_t k = 0; k < n; k++) {
-    double *row = memory->rows.give(solvers[k]);
-    for (size_t d = 0; d < m; d++) {
-      row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = -begin_with.l[m * k + d];
-      if (settings.lubrication.on)
-        row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3] = begin_with.v[m * k + d];
-    }
+    std::copy_n(&begin_with.l[m * k], m, &rows[2 * m * k]);
+    std::copy_n(&begin_with.v[m * k], m, &rows[2 * m * k + m]);
   }
+  scene.to_atoms(2 * width(), rows.data(), [&](int i, const double *from) {
+    double *row = memory->rows.give(i);
+    for (size_t d = 0; d < m; d++) {
+      row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = -from[d];
+      if (settings.lubrication.on)
+        row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3] = from[m + d];
+    }
+  });
   return status;
 }
 

@@ -40,7 +40,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* of this LAMMPS as it is now; nullptr before the first run */
   FixStokesDynamicsState *memory = nullptr;
 
-  Hydrodynamics(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair);
+  explicit Hydrodynamics(LAMMPS_NS::LAMMPS *lmp);
   /* That of the pair style; nullptr: there is no pair style stokes_dynamics. */
   static Hydrodynamics *of(LAMMPS_NS::LAMMPS *lmp);
 
@@ -91,31 +91,33 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* those whose rows are here (Ambient::selection) */
   long selection = -1;
 
-  /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps */
+  /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps. Rows of
+   * a solve are those that the scene makes of them */
   std::vector<int> solvers;
-  /* of a solve, by rows: row k is the sphere solvers[k] */
   std::vector<double> slip, resistance, spin, solution;
   /* scratch of the solver, not filled: parts that it does not need take no memory */
   std::unique_ptr<double[]> work;
   size_t work_room = 0;
   /* where velocities from forces begin */
   Velocities::Guess begin_with;
-  /* the slip of clumps with shells that interact: a strain carries them otherwise */
-  std::vector<double> carried;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
+
+  /* do the scene's rows, and what films need around them, stand as in this step? */
+  bool standing = false;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
   sd_system gather();
+  // clumps with shells that interact
   bool joined() const
   {
     return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1;
   }
-  const double *right_hand_side() const { return joined() ? carried.data() : slip.data(); }
   void lubricate();
   sd_status run(sd_solve_report &report);
   sd_status gradients(sd_system &system, sd_solve_report &report);
+  sd_status together(sd_solve_report &report);
   void guess();
   void keep();
   int algorithm() const    // of the next solve

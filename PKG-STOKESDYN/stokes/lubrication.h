@@ -2,9 +2,8 @@
 #ifndef SD_STOKES_LUBRICATION_H
 #define SD_STOKES_LUBRICATION_H
 
-#include "ambient.h"
-#include "images.h"
 #include "pointers.h"
+#include "scene.h"
 
 #include "sd_lubrication.h"
 
@@ -26,9 +25,9 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   Lubrication(const Lubrication &) = delete;
   Lubrication &operator=(const Lubrication &) = delete;
 
-  /* The spheres that take part where they stand now, on all ranks: row k is ambient.who()[k].
-   * Error: radii that are too different. */
-  void place(const Ambient &ambient);
+  /* The rows of the scene where they stand now, with the films' surroundings, in the fluid of this
+   * step, on all ranks. Error: radii that are too different. */
+  void place(Scene &scene, const Ambient &ambient);
   /* Since then */
   sd_lubrication *matrix() { return &near; }
   /* out [6 n]: forces and torques on the spheres that move with v, by rows */
@@ -38,14 +37,11 @@ class Lubrication : protected LAMMPS_NS::Pointers {
 
  private:
   std::string command;
-  Images images;
   sd_lubrication near = {};
   sd_two_sphere *functions = nullptr;
   double largest_ratio = 0.0;
-  std::vector<double> x, a, w, u;
-  std::vector<int64_t> body;
+  std::vector<double> u;
 
-  double measure();
   void provide(double largest, double smallest);
   void check(sd_status status) const;
 };

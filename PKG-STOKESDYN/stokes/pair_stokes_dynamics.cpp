@@ -26,7 +26,7 @@ using namespace StokesDyn;
 static const std::string COMMAND = StokesSettings::COMMAND;
 using State = FixStokesDynamicsState;
 
-PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp, this), sorting_bins(lmp)
+PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp), sorting_bins(lmp)
 {
   single_enable = 0;
   respa_enable = 0;
@@ -34,8 +34,7 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp, this
   one_coeff = 1;
   restartinfo = 1;
   no_virial_fdotr_compute = 1;    // drag is between sphere and fluid: its x.F depends on the origin
-  comm_forward = 19;    // most: what rigid clumps know of an atom (RigidClumps::gather)
-  nextra = 4;           // compute pair: iterations, residual, unconverged solves, dissipation
+  nextra = 4;    // compute pair: iterations, residual, unconverged solves, dissipation
   pvector = new double[nextra];
   for (int k = 0; k < nextra; k++) pvector[k] = 0.0;
 }
@@ -177,15 +176,12 @@ void PairStokesDynamics::init_style()
   if (scene.everybody()) check_boundaries(lmp, COMMAND, scene);
   if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
     fail(lmp, COMMAND + ": keyword precondition: 'waves' requires a periodic box");
-  if (std::isfinite(scene.cutoff)) check_vast_cutoff(lmp, COMMAND, scene);
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
     if (std::isfinite(atom->radius[i])) largest = std::max(largest, 2.0 * atom->radius[i]);
   MPI_Allreduce(&largest, &largest_diameter, 1, MPI_DOUBLE, MPI_MAX, world);
 
-  // a sphere's own block of lubrication, which its clump has to know on every rank
-  if (hydro.settings.lubrication.on && hydro.settings.rigid.on) comm_forward = 36;
   hydro.init();
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
@@ -233,15 +229,13 @@ void PairStokesDynamics::look_for_fixes()
                        "applies it");
 }
 
-/* Without a cut-off this style needs no ghosts but those of clumps (Scene::check_clumps). A length
- * is given to LAMMPS all the same, since it warns of lost atoms and stops sorting them when there
- * is none. */
+/* This style needs no ghosts (halo.h). A length is given to LAMMPS all the same, since it warns of
+ * lost atoms and stops sorting them when there is none; no ghosts of ghosts for a giant in a small
+ * box. */
 double PairStokesDynamics::range() const
 {
-  const Scene::Settings &scene = hydro.settings.scene;
-  if (std::isfinite(scene.cutoff)) return scene.cutoff;
   double length = largest_diameter;
-  for (int d = 0; d < 3 && scene.everybody(); d++)    // no ghosts of ghosts for a giant in a small box
+  for (int d = 0; d < 3; d++)
     if (domain->periodicity[d]) length = std::min(length, 0.5 * domain->prd[d]);
   return length;
 }
@@ -265,17 +259,6 @@ void *PairStokesDynamics::extract(const char *name, int &dim)
 double PairStokesDynamics::memory_usage()
 {
   return hydro.memory_usage();
-}
-
-int PairStokesDynamics::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/,
-                                          int * /*pbc*/)
-{
-  return hydro.scene.pack_forward_comm(n, list, buf);
-}
-
-void PairStokesDynamics::unpack_forward_comm(int n, int first, double *buf)
-{
-  hydro.scene.unpack_forward_comm(n, first, buf);
 }
 
 // --- restart -------------------------------------------------------------------------------------------------

@@ -28,8 +28,6 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   void read_restart(FILE *) override;
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
   /* "visc": the viscosity, for fix adapt. "hydrodynamics": the Hydrodynamics, for fixes. */
   void *extract(const char *, int &) override;
   double memory_usage() override;

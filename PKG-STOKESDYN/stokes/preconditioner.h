@@ -3,11 +3,11 @@
  * changes the number of iterations, never the answer.
  *
  * It is made at positions that are rows of the memory, and those are taken anew where spheres have
- * moved too far since (sd_preconditioner.h), where one has none yet, and where the periodic box is
- * another one. So the same preconditioner is there after a restart and on other ranks.
+ * moved too far since (sd_preconditioner.h), where one has none yet, and where waves are those of
+ * another box. So the same preconditioner is there after a restart and on other ranks.
  *
- * All pairs: of the whole cloud, shared by all ranks; clumps_only without a cut-off: of all clumps
- * that this rank has a sphere of; else of the parts of clumps that this rank owns. */
+ * All pairs: of the whole cloud, shared by all ranks; else of this rank's rows, which hold whole
+ * clumps where clumps must be whole, and otherwise parts. */
 #ifndef SD_PRECONDITIONER_GLUE_H
 #define SD_PRECONDITIONER_GLUE_H
 
@@ -45,7 +45,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   sd_preconditioner made = {};
 
   // of this solve
-  enum { CLOUD, WHOLE_CLUMPS, OWN_PARTS } extent = CLOUD;
+  bool cloud = false;
   int n = 0, width = 3;
   bool ready = false;
   AtomRows *places = nullptr;
@@ -56,11 +56,10 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   std::vector<int> member;
 
   const sd_precondition_kind *suited() const;
-  sd_spheres spheres() const { return extent == CLOUD ? scene.cloud() : scene.local(); }
+  sd_spheres spheres() const { return cloud ? scene.cloud() : scene.local(); }
   void refresh_places();
   void find_positions();
   void group_by_molecule();
-  void group_by_list();
   void put_side_by_side();
   sd_status put();
   static sd_status apply(void *ctx, const double *r, double *z);

@@ -13,8 +13,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-RigidClumps::RigidClumps(LAMMPS *lmp, Scene &scene, const std::string &command) :
-    Pointers(lmp), scene(scene), command(command), shapes(lmp, command)
+RigidClumps::RigidClumps(LAMMPS *lmp, WholeClumps &whole, const std::string &command) :
+    Pointers(lmp), whole(whole), command(command), shapes(lmp, command)
 {
 }
 
@@ -29,7 +29,7 @@ void RigidClumps::new_run()
 {
   known.clear();
   loose_molecules.clear();
-  recognised = false;
+  recognised = -1;
 }
 
 std::vector<double> RigidClumps::loose() const
@@ -47,25 +47,25 @@ void RigidClumps::set_loose(const std::vector<double> &ids)
   loose_molecules.clear();
   for (size_t k = 0; k + 1 < ids.size(); k += 2)
     loose_molecules.insert((int64_t) ids[k] * 4294967296 + (int64_t) ids[k + 1]);
-  recognised = false;
+  recognised = -1;
 }
 
 double RigidClumps::memory_usage() const
 {
-  return sizeof(double) * ((double) ghosts.capacity() + radius.capacity()) +
-      sizeof(int) * ((double) member.capacity() + owned.capacity()) + shapes.memory_usage();
+  return sizeof(double) *
+      ((double) known_of.capacity() + radius.capacity() + result.capacity()) +
+      sizeof(int) * (double) member.capacity() + shapes.memory_usage();
 }
 
 // --- which clump has which shape ---------------------------------------------------------------------
 
 /* Of a clump's spheres in order of ID. */
-ClumpGeometry RigidClumps::geometry(const Scene::Clump &clump) const
+ClumpGeometry RigidClumps::geometry(const WholeClumps::Clump &clump) const
 {
   ClumpGeometry g;
   for (int k = clump.begin; k < clump.end; k++) {
-    const double *xk = atom->x[scene.member[k]];
-    g.x.insert(g.x.end(), xk, xk + 3);
-    g.a.push_back(radius[scene.member[k]]);
+    g.x.insert(g.x.end(), &whole.x[3 * (size_t) k], &whole.x[3 * (size_t) k] + 3);
+    g.a.push_back(radius[k]);
   }
   return g;
 }
@@ -101,8 +101,8 @@ void RigidClumps::recognise()
   shapes.drop_unsolved();
   std::vector<size_t> unknown;
   std::vector<int64_t> changed;
-  for (size_t c = 0; c < scene.clumps.size(); c++) {
-    const auto &clump = scene.clumps[c];
+  for (size_t c = 0; c < whole.clumps.size(); c++) {
+    const auto &clump = whole.clumps[c];
     if (loose_molecules.count(clump.molecule)) continue;
     const auto found = known.find(clump.molecule);
     if (found == known.end())
@@ -124,10 +124,7 @@ void RigidClumps::recognise()
   }
   if (count[0]) {
     const size_t before = shapes.count();
-    std::vector<double> of_ghosts;
-    scene.refresh_ghosts(of_ghosts, 1, [this](int i, double *out) { *out = atom->radius[i]; });
-    radius.assign(atom->radius, atom->radius + atom->nlocal);
-    radius.insert(radius.end(), of_ghosts.begin(), of_ghosts.end());
+    radius = whole.gather(1, [this](int i, double *out) { *out = atom->radius[i]; });
     if (count[2]) take_over(unknown);
     find_shapes(unknown);
     if (shapes.count() > before || !count[2]) drop_unused();
@@ -135,9 +132,9 @@ void RigidClumps::recognise()
   arrange();
 }
 
-uint64_t RigidClumps::atoms_of(const Scene::Clump &clump) const
+uint64_t RigidClumps::atoms_of(const WholeClumps::Clump &clump) const
 {
-  return hash_of(&scene.member_tag[clump.begin], clump.end - clump.begin);
+  return hash_of(&whole.tag[clump.begin], clump.end - clump.begin);
 }
 
 /* Clumps that come from other ranks bring their shape along; taken off the unknown ones. */
@@ -149,7 +146,7 @@ void RigidClumps::take_over(std::vector<size_t> &unknown)
     int shape;
   };
   std::vector<int64_t> wanted, bent;
-  for (size_t c : unknown) wanted.push_back(scene.clumps[c].molecule);
+  for (size_t c : unknown) wanted.push_back(whole.clumps[c].molecule);
   std::vector<Has> have;
   for (int64_t molecule : from_all(world, wanted)) {
     const auto found = known.find(molecule);
@@ -161,7 +158,7 @@ void RigidClumps::take_over(std::vector<size_t> &unknown)
 
   std::vector<size_t> still_unknown;
   for (size_t c : unknown) {
-    const auto &clump = scene.clumps[c];
+    const auto &clump = whole.clumps[c];
     const auto has = elsewhere.find(clump.molecule);
     if (has == elsewhere.end()) {
       still_unknown.push_back(c);
@@ -189,14 +186,14 @@ void RigidClumps::take_over(std::vector<size_t> &unknown)
 void RigidClumps::find_shapes(std::vector<size_t> unknown)
 {
   std::sort(unknown.begin(), unknown.end(), [this](size_t p, size_t q) {
-    return scene.clumps[p].molecule < scene.clumps[q].molecule;
+    return whole.clumps[p].molecule < whole.clumps[q].molecule;
   });
   while (true) {
     std::vector<size_t> without;
     std::vector<double> candidates;
     ClumpShapes mine(lmp, command);
     for (size_t c : unknown) {
-      const auto &clump = scene.clumps[c];
+      const auto &clump = whole.clumps[c];
       const ClumpGeometry g = geometry(clump);
       std::vector<int> perm;
       if (const ClumpShape *shape = shapes.find(g, perm)) {
@@ -231,6 +228,8 @@ void RigidClumps::accept(const std::vector<double> &candidates)
     std::vector<int> perm;
     if (shapes.find(g, perm)) return;
     const sd_status status = shapes.add(candidate.first, g);
+    if (status == SD_ENOMEMORY)    // of this rank alone
+      fail_one(lmp, command + ": keyword rigid_clumps: out of memory");
     if (status != SD_OK) shapes.cannot_be_solved(candidate.first, g.n(), settings, status);
   }
 }
@@ -249,29 +248,16 @@ void RigidClumps::drop_unused()
 void RigidClumps::arrange()
 {
   std::map<int64_t, Known> here;
-  arrangements++;
   bodies.clear();
-  not_ours.clear();
-  member.resize(scene.member.size());
-  owned.resize(scene.member.size());
-  int end = 0;
-  for (const auto &clump : scene.clumps) {
+  member.clear();
+  for (const auto &clump : whole.clumps) {
     const auto found = known.find(clump.molecule);
-    if (found == known.end()) {
-      for (int k = clump.begin; k < clump.end; k++)
-        if (scene.owned[k] >= 0) not_ours.push_back(scene.owned[k]);
-      continue;
-    }
+    if (found == known.end()) continue;
     const Known &k = here[clump.molecule] = std::move(found->second);
-    bodies.push_back({k.shape, clump.molecule, end, (int) k.perm.size()});
-    for (int p : k.perm) {
-      member[end] = scene.member[clump.begin + p];
-      owned[end++] = scene.owned[clump.begin + p];
-    }
+    bodies.push_back({k.shape, clump.molecule, (int) member.size(), (int) k.perm.size()});
+    for (int p : k.perm) member.push_back(clump.begin + p);
   }
   known.swap(here);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->molecule[i] == 0) not_ours.push_back(i);
 }
 
 }    // namespace StokesDyn

@@ -5,15 +5,14 @@
  * until a run begins anew or it is not rigid any more (auto: it is loose then, the solver's, until
  * a run begins anew). Shapes are numbered alike on all ranks; in order of molecule ID, a clump that
  * has none of the shapes before it is the first of a new one. Each is solved on one rank and sent to
- * all. A clump that crosses ranks is evaluated by every rank that owns one of its spheres, from the
- * same numbers. */
+ * all. A clump is evaluated by the rank that owns it (whole_clumps.h). */
 #ifndef SD_RIGID_CLUMPS_H
 #define SD_RIGID_CLUMPS_H
 
 #include "ambient.h"
 #include "clump_shapes.h"
 #include "pointers.h"
-#include "scene.h"
+#include "whole_clumps.h"
 
 #include "sd_clump_motion.h"
 
@@ -35,7 +34,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     bool apart() const { return on && clumps_only; }
   } settings;
 
-  RigidClumps(LAMMPS_NS::LAMMPS *lmp, Scene &scene, const std::string &command);
+  RigidClumps(LAMMPS_NS::LAMMPS *lmp, WholeClumps &whole, const std::string &command);
   RigidClumps(const RigidClumps &) = delete;
   RigidClumps &operator=(const RigidClumps &) = delete;
 
@@ -51,27 +50,23 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void set_loose(const std::vector<double> &ids);
   bool any_loose() const { return !loose_molecules.empty(); }
 
-  /* Calls take(i, F, T) for every owned sphere i of a rigid clump that takes part: force [3],
-   * torque [3] (nullptr without rotation). loose[i] = 1: atom i belongs to a loose clump, or to
-   * none (molecule 0), and is the solver's. Errors: a clump whose spheres are not all selected; one
-   * that is not rigid (yes). */
+  /* Calls take(i, F, T) for every sphere i of this rank that is in a rigid clump that takes part:
+   * force [3], torque [3] (nullptr without rotation). loose[i] = 1: atom i belongs to a loose clump,
+   * or to none (molecule 0), and is the solver's. Errors: a clump whose spheres are not all
+   * selected; one that is not rigid (yes). */
   template <class Take>
   void forces(const Ambient &ambient, const Take &take, std::vector<char> &loose)
   {
-    Step step;
-    begin_step(ambient, loose);
-    for (size_t k = 0; k < bodies.size(); k++) {
-      if (!evaluate(bodies[k], ambient, step)) continue;
-      for (int s = 0; s < bodies[k].n; s++) {
-        const int i = owned[bodies[k].begin + s];
-        if (i >= 0) take(i, &step.F[3 * s], settings.rotation ? &step.T[3 * s] : nullptr);
-      }
-    }
-    end_step(step, loose);
+    evaluate_all(ambient);
+    mark_lone(loose);
+    whole.scatter(7, result.data(), [&](int i, const double *row) {
+      if (row[0] == EVALUATED) take(i, row + 1, settings.rotation ? row + 4 : nullptr);
+      if (row[0] == LOOSE) loose[i] = 1;
+    });
   }
 
-  /* A clump of which this rank has a sphere; its spheres, in the order of the shape, are begin ...
-   * begin + n - 1 of members() and owns() */
+  /* A clump of this rank's; its spheres, in the order of the shape, are begin ... begin + n - 1 of
+   * members(), which are members of whole */
   struct Body {
     const ClumpShape *shape;
     int64_t molecule;
@@ -79,12 +74,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   };
   /* All of them, looked at anew if LAMMPS has re-neighboured. Errors as of forces(). */
   const std::vector<Body> &find();
-  /* another number: they are others, or elsewhere in members() */
-  long arrangement() const { return arrangements; }
-  /* As in the scene: images side by side, which may be ghosts; the same sphere as an atom of this
-   * rank, -1: another has it */
   const std::vector<int> &members() const { return member; }
-  const std::vector<int> &owns() const { return owned; }
+  /* Do the spheres of a body stand as its shape says? radii by members of whole, `columns` apart.
+   * pose [12] out */
+  bool fits(const Body &body, const double *radii, int columns, double *pose) const;
   /* The shape in a cloud with others. Error: memory. */
   const sd_body_shape &blocks(const ClumpShape &shape) const
   {
@@ -98,7 +91,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  Scene &scene;
+  WholeClumps &whole;
   std::string command;
 
   ClumpShapes shapes;
@@ -108,17 +101,16 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     uint64_t atoms = 0;       // hash of the IDs
     std::vector<int> perm;    // sphere k of the shape is sphere perm[k] in order of ID
   };
-  std::map<int64_t, Known> known;    // by molecule ID: clumps that this rank owns a part of
+  std::map<int64_t, Known> known;    // by molecule ID: clumps that this rank owns
   std::set<int64_t> loose_molecules;
-  bool recognised = false;
+  /* the arrangement of whole for which they have been; -1: none */
+  long recognised = -1;
 
   /* since the last re-neighbouring */
   std::vector<Body> bodies;
-  long arrangements = 0;
-  std::vector<int> member, owned;
-  std::vector<int> not_ours;         // atoms of loose clumps, and of none
+  std::vector<int> member;
 
-  /* What a step gathers of a clump, finds for it, and finds wrong with clumps */
+  /* What a step finds of a clump, and finds wrong with clumps */
   struct Step {
     std::vector<double> x, v, omega, u, gradient, F, T;
     int64_t split = NOBODY;    // molecule ID, the lowest
@@ -126,25 +118,29 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   };
 
   struct {
-    int eta, v, omega, u, gradient, end;
+    int eta, radius, v, omega, u, gradient, end;
   } column = {};
-  std::vector<double> radius;    // per atom, ghosts included
-  std::vector<double> ghosts;    // what a step knows of ghosts, in columns
+  std::vector<double> radius;    // by members
+  std::vector<double> known_of;    // what a step knows of members, in columns
+  /* [7 members]: what becomes of each, force, torque */
+  enum { NOT_SELECTED, EVALUATED, LOOSE };
+  std::vector<double> result;
 
   void recognise();
-  uint64_t atoms_of(const Scene::Clump &clump) const;
-  ClumpGeometry geometry(const Scene::Clump &clump) const;
+  uint64_t atoms_of(const WholeClumps::Clump &clump) const;
+  ClumpGeometry geometry(const WholeClumps::Clump &clump) const;
   void take_over(std::vector<size_t> &unknown);
   void find_shapes(std::vector<size_t> unknown);
   void accept(const std::vector<double> &candidates);
   void drop_unused();
   void arrange();
   void gather(const Ambient &ambient);
-  void begin_step(const Ambient &ambient, std::vector<char> &loose);
+  void evaluate_all(const Ambient &ambient);
+  void mark_lone(std::vector<char> &loose) const;
   bool asks_for_spins(const Body &body) const;
-  int collect(const Body &body, const Ambient &ambient, Step &step, double &eta) const;
+  int collect(const Body &body, bool gradients, Step &step, double &eta) const;
   bool evaluate(const Body &body, const Ambient &ambient, Step &step) const;
-  void end_step(const Step &step, std::vector<char> &loose);
+  void settle(const Step &step);
   void loosen(const std::vector<int64_t> &molecules);
   [[noreturn]] void not_rigid(int64_t molecule) const;
 };

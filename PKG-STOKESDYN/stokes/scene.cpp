@@ -3,10 +3,9 @@
 #include "callback.h"
 #include "keywords.h"
 #include "lammps_compat.h"
-#include "ranks.h"
 
-#include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "neighbor.h"
 
 #include <algorithm>
@@ -16,8 +15,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Scene::Scene(LAMMPS *lmp, Pair *pair, const std::string &command) :
-    Pointers(lmp), pair(pair), command(command), candidates(), pairs(), rows(), images(lmp->world),
+Scene::Scene(LAMMPS *lmp, const std::string &command) :
+    Pointers(lmp), whole(lmp, command), command(command), halo(lmp->world), candidates(), pairs(),
     omega()
 {
 }
@@ -26,7 +25,6 @@ Scene::~Scene()
 {
   sd_neighbors_free(&candidates);
   sd_neighbors_free(&pairs);
-  sd_neighbors_free(&rows);
   sd_mobility_free(&omega);
 }
 
@@ -36,10 +34,10 @@ void Scene::init()
   told = false;
 }
 
-const double *Scene::positions() const
+void Scene::lists_are_stale()
 {
-  static const double none[3] = {0.0, 0.0, 0.0};
-  return atom->nlocal + atom->nghost > 0 ? atom->x[0] : none;
+  stale = true;
+  whole.lost();
 }
 
 void Scene::out_of_memory()
@@ -47,37 +45,150 @@ void Scene::out_of_memory()
   fail_one(lmp, command + ": out of memory for the list of pairs");
 }
 
-void Scene::update(const std::vector<int> &who, const std::vector<double> &eta)
+// --- rows ----------------------------------------------------------------------------------------
+
+/* Who has which row, and who that is. */
+void Scene::find_rows()
 {
-  int changed = stale || who != own;
+  loose.clear();
+  row_of.clear();
+  for (int i : own)
+    if (!settings.whole || atom->molecule[i] == 0) loose.push_back(i);
+  size_t n = loose.size();
+  if (settings.whole) {
+    std::vector<char> active(atom->nlocal + 1, 0);
+    for (int i : own) active[i] = 1;
+    const std::vector<double> in = whole.gather(1, [&](int i, double *out) { *out = active[i]; });
+    for (int m = 0; m < whole.size(); m++) row_of.push_back(in[m] != 0.0 ? (int) n++ : -1);
+  }
+  tags.resize(n);
+  molecules.resize(n);
+  const std::vector<double> who = rows(2, [this](int i, double *out) {
+    out[0] = ubuf((int64_t) atom->tag[i]).d;
+    out[1] = ubuf(atom->molecule ? (int64_t) atom->molecule[i] : (int64_t) 0).d;
+  });
+  for (size_t k = 0; k < n; k++) {
+    tags[k] = ubuf(who[2 * k]).i;
+    molecules[k] = ubuf(who[2 * k + 1]).i;
+  }
+}
+
+void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
+{
+  double measured[3] = {stale || who != own ? 1.0 : 0.0, 0.0, -INFINITY};
+  for (int i : who) {
+    measured[1] = std::max(measured[1], atom->radius[i]);
+    measured[2] = std::max(measured[2], -atom->radius[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, measured, 3, MPI_DOUBLE, MPI_MAX, world);
   own = who;
+  most = measured[1];
+  least = -measured[2];
+  if (measured[0] != 0.0) {
+    others = true;
+    find_rows();
+  }
+  stale = false;
+  jumping = ambient.jumps();
+  if (jumping) std::copy_n(ambient.jumps(), 6, jumps);
+  const size_t n = tags.size();
+  const std::vector<double> known = rows(5, [&](int i, double *out) {
+    std::copy_n(atom->x[i], 3, out);
+    out[3] = atom->radius[i];
+    out[4] = 1.0 / sqrt(ambient.viscosity(i));
+  });
+  x.resize(3 * n);
+  a.resize(n);
+  w.resize(n);
+  for (size_t k = 0; k < n; k++) {
+    std::copy_n(&known[5 * k], 3, &x[3 * k]);
+    a[k] = known[5 * k + 3];
+    w[k] = known[5 * k + 4];
+  }
+  for (size_t m = 0; m < row_of.size(); m++)
+    if (row_of[m] >= 0) std::copy_n(&whole.x[3 * m], 3, &x[3 * (size_t) row_of[m]]);
+}
+
+void Scene::drift(double *rows, int width, double sign) const
+{
+  double signed_jumps[6];
+  for (int d = 0; d < 6; d++) signed_jumps[d] = sign * jumps[d];
+  for (size_t m = 0; m < row_of.size() && jumping; m++)
+    if (row_of[m] >= 0)
+      Lattice::add(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
+}
+
+const double *Scene::drift_of_copies()
+{
+  if (!jumping) return nullptr;
+  of_copies.resize(3 * (size_t) halo.count() + 3);
+  halo.place(jumps, nullptr, of_copies.data());
+  return of_copies.data();
+}
+
+sd_status Scene::refresh(void *ctx, const double *rows, double *copies, int width)
+{
+  return callback([=] {
+    static_cast<Scene *>(ctx)->halo.refresh(rows, copies, width);
+    return SD_OK;
+  });
+}
+
+sd_status Scene::reduce(void *ctx, const double *copies, double *rows, int width)
+{
+  return callback([=] {
+    static_cast<Scene *>(ctx)->halo.reduce(copies, rows, width);
+    return SD_OK;
+  });
+}
+
+void Scene::surround(double reach, const std::string &keyword)
+{
+  const Lattice lattice = Lattice::of(domain);
+  if (!halo.find(lattice, reach, x))
+    fail_one(lmp, command + ": keyword " + keyword +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in "
+                      "other units?");
+  halo.extend(lattice.h, x, {&a, &w});
+}
+
+void Scene::surround_films()
+{
+  surround(settings.films * most, "lubrication: the largest radius, " + text(most));
+}
+
+// --- who sees whom -------------------------------------------------------------------------------
+
+void Scene::update(const std::vector<int> &who, const Ambient &ambient)
+{
+  stand(who, ambient);
   if (settings.everybody()) {
-    place_rows(eta);
+    const std::vector<double> there = x;    // the sum over an open cloud takes its origin along
     engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
+      if (somebody_sees || settings.films > 0.0)
+        surround(std::max(ewald.reach, settings.films * most),
+                 "far_field: the largest radius, " + text(most));
       if (!somebody_sees) return;
       tell();
-      images.find(ewald.box, ewald.reach, x, a, w);
-      place(size_with_ghosts());
+      place(size_with_copies());
     } else {
-      gather(eta);
+      x = there;
+      gather();
       somebody_sees = n_all > 1;
+      if (settings.films > 0.0) surround_films();
       place(n_all);
     }
     return;
   }
   engine = &sd_mobility_list;
-  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
-  if (!changed && !somebody_sees) return;    // nobody will ask where the spheres are
-  if (changed) {
-    row_of.assign(atom->nlocal, -1);
-    for (size_t k = 0; k < own.size(); k++) row_of[own[k]] = k;
-  }
-  place_rows(eta);
-  place_ghosts();
-  if (changed) find_pairs();
-
+  if (others)
+    find_pairs();
+  else if (!somebody_sees)
+    return;    // nobody will ask where the spheres are
+  else
+    halo.extend(Lattice::of(domain).h, x, {&a, &w});
   filtered = std::isfinite(settings.cutoff);
   if (filtered) {
     const sd_spheres spheres = local();
@@ -85,62 +196,58 @@ void Scene::update(const std::vector<int> &who, const std::vector<double> &eta)
     sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
     pairs.pairs.n = size();
   }
-  place(size_with_ghosts());
+  place(size_with_copies());
 }
 
-/* Our own spheres. */
-void Scene::place_rows(const std::vector<double> &eta)
+/* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did
+ * so last. A list made then holds with the cut-off and one skin; made later, both spheres of a pair
+ * may still move a whole skin from where they are. */
+void Scene::find_pairs()
 {
-  x.resize(3 * own.size());
-  a.resize(own.size());
-  w.resize(own.size());
-  for (size_t k = 0; k < own.size(); k++) {
-    std::copy_n(atom->x[own[k]], 3, &x[3 * k]);
-    a[k] = atom->radius[own[k]];
-    w[k] = 1.0 / sqrt(eta[k]);
-  }
-}
-
-/* Ghosts of spheres that take part, behind them. */
-void Scene::place_ghosts()
-{
-  std::vector<double> sent;    // radius, 0: takes no part; and w
-  refresh_ghosts(sent, 2, [this](int i, double *out) {
-    const int k = row_of[i];
-    out[0] = k < 0 ? 0.0 : a[k];
-    out[1] = k < 0 ? 0.0 : w[k];
-  });
-  row_of_ghost.assign(atom->nghost, -1);
-  for (int g = 0; g < atom->nghost; g++) {
-    if (!(sent[2 * g] > 0.0)) continue;
-    row_of_ghost[g] = size_with_ghosts();
-    const double *xg = atom->x[atom->nlocal + g];
-    x.insert(x.end(), xg, xg + 3);
-    a.push_back(sent[2 * g]);
-    w.push_back(sent[2 * g + 1]);
-  }
+  const double reach = settings.cutoff + (neighbor->ago == 0 ? 1.0 : 2.0) * neighbor->skin;
+  const int n = size();
+  if (settings.whole && settings.clumps_only)
+    halo.clear();
+  else
+    surround(reach, "cut_off_distance: '" + text(settings.cutoff) + "'");
+  const int n_all = size_with_copies();
+  sd_status status;
+  if (settings.clumps_only) {
+    std::vector<double> sent(n_all + 1);
+    std::vector<int64_t> ids(tags), known_molecules(molecules);
+    for (auto *names : {&ids, &known_molecules}) {
+      for (int k = 0; k < n; k++) sent[k] = ubuf((*names)[k]).d;
+      halo.refresh(sent.data(), sent.data() + n, 1);
+      names->resize(n_all + 1);
+      for (int k = n; k < n_all; k++) (*names)[k] = ubuf(sent[k]).i;
+    }
+    std::vector<int> scratch(n_all + 1);
+    const sd_named known = {x.data(), ids.data(), known_molecules.data()};
+    status = sd_neighbors_clump(&candidates, &known, n, n_all, reach, 0, scratch.data());
+  } else
+    status = sd_neighbors_cutoff(&candidates, x.data(), n, n_all, reach);
+  if (status != SD_OK) out_of_memory();
+  int sees = candidates.first[n] > 0, any;
+  MPI_Allreduce(&sees, &any, 1, MPI_INT, MPI_MAX, world);
+  somebody_sees = any;
+  others = false;
 }
 
 /* The spheres where they stand, and what their engine may ask. */
-void Scene::place(int n_all_or_ghosts)
+void Scene::place(int n_all_or_copies)
 {
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
   scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr};
   scene.n = size();
-  scene.n_all = n_all_or_ghosts;
+  scene.n_all = n_all_or_copies;
   scene.spheres = cloud ? this->cloud() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
   scene.world.ctx = this;
   scene.world.me = comm->me;
   scene.world.ranks = comm->nprocs;
   scene.world.sum = sum;
-  scene.world.refresh = [](void *ctx, const double *rows, double *ghosts, int width) {
-    return callback([=] {
-      static_cast<Scene *>(ctx)->refresh_ghosts(rows, ghosts, width);
-      return SD_OK;
-    });
-  };
+  scene.world.refresh = refresh;
   scene.world.spread = [](void *ctx, const double *rows, double *all, int width) {
     return callback([=] {
       static_cast<Scene *>(ctx)->to_cloud(rows, all, width);
@@ -167,100 +274,16 @@ void Scene::place(int n_all_or_ghosts)
                 sd_status_string(status));
 }
 
-/* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did
- * so last. A list made then holds with the cut-off and one skin; made later, both spheres of a pair
- * may still move a whole skin from where they are. */
-void Scene::find_pairs()
-{
-  const double reach = settings.cutoff + (neighbor->ago == 0 ? 1.0 : 2.0) * neighbor->skin;
-  const int n = size(), n_and_ghosts = size_with_ghosts();
-  std::vector<int64_t> ids, molecules;
-  sd_status status;
-  if (settings.clumps_only) {
-    std::vector<int> scratch(n_and_ghosts + 1);
-    look_up(ids, molecules);
-    const sd_named known = {x.data(), ids.data(), molecules.data()};
-    status = sd_neighbors_clump(&candidates, &known, n, n_and_ghosts, reach, 0, scratch.data());
-  } else
-    status = sd_neighbors_cutoff(&candidates, x.data(), n, n_and_ghosts, reach);
-  if (status != SD_OK) out_of_memory();
-  if (settings.clumps_only && std::isinf(settings.cutoff))
-    check_clumps({n, x.data(), molecules.data()}, candidates, false);
-  int sees = candidates.first[n] > 0, any;
-  MPI_Allreduce(&sees, &any, 1, MPI_INT, MPI_MAX, world);
-  somebody_sees = any;
-  stale = false;
-}
-
-/* Tags and molecule IDs of the spheres, by row. Not every atom style sends molecule IDs to
- * ghosts. */
-void Scene::look_up(std::vector<int64_t> &ids, std::vector<int64_t> &molecules)
-{
-  std::vector<double> sent;
-  refresh_ghosts(sent, 1, [this](int i, double *out) { *out = ubuf(atom->molecule[i]).d; });
-  ids.resize(size_with_ghosts() + 1);
-  molecules.resize(size_with_ghosts() + 1);
-  for (int k = 0; k < size(); k++) {
-    ids[k] = atom->tag[own[k]];
-    molecules[k] = atom->molecule[own[k]];
-  }
-  for (int g = 0; g < atom->nghost; g++)
-    if (const int k = row_of_ghost[g]; k >= 0) {
-      ids[k] = atom->tag[atom->nlocal + g];
-      molecules[k] = ubuf(sent[g]).i;
-    }
-}
-
-void Scene::refresh_ghosts(std::vector<double> &ghosts, int width,
-                           const std::function<void(int, double *)> &row)
-{
-  ghosts.resize((size_t) width * atom->nghost + 1);
-  send_rows(ghosts.data(), width, row);
-}
-
-void Scene::refresh_ghosts(const double *sphere_rows, double *ghosts, int width)
-{
-  if (view() == SD_VIEW_NEAR) {
-    images.refresh(sphere_rows, ghosts, width);
-    return;
-  }
-  const auto row = [=](int i, double *out) {
-    if (row_of[i] >= 0) std::copy_n(sphere_rows + width * (size_t) row_of[i], width, out);
-  };
-  if (size_with_ghosts() - size() == atom->nghost) {    // all of them take part, in this order
-    send_rows(ghosts, width, row);
-    return;
-  }
-  std::vector<double> sent;
-  refresh_ghosts(sent, width, row);
-  for (int g = 0; g < atom->nghost; g++)
-    if (row_of_ghost[g] >= 0)
-      std::copy_n(&sent[width * (size_t) g], width,
-                  ghosts + width * (size_t) (row_of_ghost[g] - size()));
-}
-
-void Scene::send_rows(double *ghosts, int width, const std::function<void(int, double *)> &row)
-{
-  ghost_rows = ghosts;
-  row_width = width;
-  row_writer = &row;
-  Compat::forward_comm(comm, pair);
-}
-
 /* The cloud: the spheres of all ranks, sorted by tag. */
-void Scene::gather(const std::vector<double> &eta)
+void Scene::gather()
 {
   struct Sphere {
     double x[3], a, w;
     int64_t tag, molecule;
   };
   std::vector<Sphere> ours;
-  for (size_t k = 0; k < own.size(); k++) {
-    const int i = own[k];
-    const double *xi = atom->x[i];
-    ours.push_back({{xi[0], xi[1], xi[2]}, atom->radius[i], 1.0 / sqrt(eta[k]), atom->tag[i],
-                    atom->molecule ? atom->molecule[i] : 0});
-  }
+  for (size_t k = 0; k < tags.size(); k++)
+    ours.push_back({{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, a[k], w[k], tags[k], molecules[k]});
   spheres_of_rank = from_all(world, std::vector<int>(1, size()));
   const std::vector<Sphere> all = from_all(world, ours);
   n_all = all.size();
@@ -289,8 +312,8 @@ void Scene::shares(int width, std::vector<int> &counts, std::vector<int> &displs
 {
   int n = 0;
   for (int k : spheres_of_rank) {
-    counts.push_back(width * k);
-    displs.push_back(width * n);
+    counts.push_back(mpi_count((double) width * k));
+    displs.push_back(mpi_count((double) width * n));
     n += k;
   }
 }
@@ -303,7 +326,7 @@ void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width)
     std::vector<int> counts, displs;
     shares(width, counts, displs);
     in_order_of_rank.resize(m * n_all + 1);
-    MPI_Allgatherv(const_cast<double *>(own_rows), m * own.size(), MPI_DOUBLE,
+    MPI_Allgatherv(const_cast<double *>(own_rows), counts[comm->me], MPI_DOUBLE,
                    in_order_of_rank.data(), counts.data(), displs.data(), MPI_DOUBLE, world);
     from = in_order_of_rank.data();
   }
@@ -328,29 +351,13 @@ sd_status Scene::sum(void *ctx, double *values, int count)
   return SD_OK;
 }
 
-int Scene::pack_forward_comm(int n, int *list, double *buf)
-{
-  for (int k = 0; k < n; k++, buf += row_width) {
-    const int i = list[k];
-    if (i < atom->nlocal)
-      (*row_writer)(i, buf);
-    else    // ghosts pass on what they have from a neighbour
-      std::copy_n(ghost_rows + row_width * (size_t) (i - atom->nlocal), row_width, buf);
-  }
-  return n * row_width;
-}
-
-void Scene::unpack_forward_comm(int n, int first, double *buf)
-{
-  std::copy_n(buf, (size_t) n * row_width, ghost_rows + row_width * (size_t) (first - atom->nlocal));
-}
-
 double Scene::memory_usage() const
 {
-  return sizeof(int) *
-      ((double) candidates.capacity + pairs.capacity + row_of.capacity() + row_of_ghost.capacity()) +
-      sizeof(double) * (x.capacity() + a.capacity() + w.capacity() + 5.0 * n_all) +
-      images.memory_usage();
+  return sizeof(int) * ((double) candidates.capacity + pairs.capacity + row_of.capacity()) +
+      sizeof(double) *
+      (x.capacity() + a.capacity() + w.capacity() + of_copies.capacity() + 5.0 * n_all) +
+      2.0 * sizeof(int64_t) * (double) tags.capacity() + halo.memory_usage() +
+      whole.memory_usage();
 }
 
 }    // namespace StokesDyn

@@ -1,27 +1,26 @@
-/* From LAMMPS atoms to the core's arrays and back: who sees whom, on which rank. The only room that
- * knows ghosts.
+/* From LAMMPS atoms to the core's arrays and back: who has the row of a sphere, who sees whom.
  *
- * Vectors of the core have a row of 3 numbers (6 with rotation) for each sphere of this rank that
- * takes part, in the order of who(). Atoms that take no part have none, so they cost nothing. */
+ * Vectors of the core have a row of 3 numbers (6 with rotation) for each sphere that takes part.
+ * Where clumps must be whole (Settings::whole) those of a clump are all on the rank that owns it,
+ * side by side (whole_clumps.h), after the lone spheres of this rank; else every rank has the rows
+ * of its own atoms. Atoms that take no part have none, so they cost nothing. Around the rows stand
+ * copies of those that are near, of other ranks and images (halo.h): one halo for engine and films
+ * alike. */
 #ifndef SD_SCENE_H
 #define SD_SCENE_H
 
-#include "images.h"
+#include "ambient.h"
+#include "halo.h"
 #include "pointers.h"
+#include "whole_clumps.h"
 
 #include "sd_mobility.h"
 #include "sd_neighbor.h"
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <set>
 #include <string>
 #include <vector>
-
-namespace LAMMPS_NS {
-class Pair;
-}
 
 namespace StokesDyn {
 
@@ -33,6 +32,10 @@ class Scene : protected LAMMPS_NS::Pointers {
     double cutoff = 0.0;    // INFINITY: no cut-off
     bool clumps_only = false;
     bool rotation = false;    // vectors have force and torque, 6 numbers an atom
+    /* clumps must be whole: they are rigid, or their spheres see each other and nobody else */
+    bool whole = false;
+    /* films reach so far, in largest radii, centre to centre; 0: there are none */
+    double films = 0.0;
     /* how everybody sees everybody: all pairs, Ewald sums, or what costs less */
     enum { AUTO, DIRECT, EWALD };
     int far_field = AUTO;
@@ -41,52 +44,87 @@ class Scene : protected LAMMPS_NS::Pointers {
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
   } settings;
 
-  Scene(LAMMPS_NS::LAMMPS *lmp, LAMMPS_NS::Pair *pair, const std::string &command);
+  Scene(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
   ~Scene();
   Scene(const Scene &) = delete;
   Scene &operator=(const Scene &) = delete;
 
   /* Other settings, or a new run. */
   void init();
+  /* LAMMPS has re-neighboured. */
+  void lists_are_stale();
   /* Which spheres of which ranks the engine sees, since the last update(). */
   sd_view view() const { return engine->view; }
+  WholeClumps whole;
 
-  /* The spheres of this step: row k is the atom who[k] of this rank, in a fluid of viscosity
-   * eta[k]. Finds the pairs again if LAMMPS has re-neighboured, or if they are others than before
-   * on any rank.
-   * Errors: a clump that the ghosts do not cover, or wider than half the periodic box. */
-  void update(const std::vector<int> &who, const std::vector<double> &eta);
+  // --- rows
+
+  /* The atoms of this rank that take part, in the fluid of this step: the rows, and where they
+   * stand. whole stands already. */
+  void stand(const std::vector<int> &who, const Ambient &ambient);
+  /* Copies around the rows, out to the films' reach; update() does the same for the engine. */
+  void surround_films();
+  /* The same, and the engine's pairs: anew if LAMMPS has re-neighboured, or if the spheres are
+   * others than before on any rank. */
+  void update(const std::vector<int> &who, const Ambient &ambient);
   const std::vector<int> &who() const { return own; }
-  int size() const { return (int) own.size(); }
+  int size() const { return (int) tags.size(); }
+  int64_t tag(int k) const { return tags[k]; }
+  int64_t molecule(int k) const { return molecules[k]; }
+  const std::vector<int64_t> &all_molecules() const { return molecules; }
+  /* Rows of this rank's lone spheres come first; whole: row of a member, -1: it takes no part */
+  int lone() const { return (int) loose.size(); }
+  int row_of_member(int m) const { return row_of[m]; }
+  /* Rows [width size()], at least one: row(i, out) writes what goes of atom i, which may be one that
+   * takes no part. And back: take(i, row) for every atom of this rank that takes part. On all ranks
+   * together. */
+  template <class Row> std::vector<double> rows(int width, const Row &row) const
+  {
+    std::vector<double> out(width * (tags.size() + 1));
+    for (size_t k = 0; k < loose.size(); k++) row(loose[k], &out[width * k]);
+    if (!settings.whole) return out;
+    const std::vector<double> members = whole.gather(width, row);
+    for (size_t m = 0; m < row_of.size(); m++)
+      if (row_of[m] >= 0) std::copy_n(&members[width * m], width, &out[width * (size_t) row_of[m]]);
+    return out;
+  }
+  template <class Take> void to_atoms(int width, const double *rows, const Take &take) const
+  {
+    for (size_t k = 0; k < loose.size(); k++) take(loose[k], rows + width * k);
+    if (!settings.whole) return;
+    const size_t m = width + 1;
+    std::vector<double> members(m * row_of.size() + m, 0.0);
+    for (size_t k = 0; k < row_of.size(); k++) {
+      if (row_of[k] < 0) continue;
+      std::copy_n(rows + width * (size_t) row_of[k], width, &members[m * k]);
+      members[m * k + width] = 1.0;
+    }
+    whole.scatter((int) m, members.data(), [=, &take](int i, const double *row) {
+      if (row[width] != 0.0) take(i, row);
+    });
+  }
+  /* Rows [width n] that begin with velocities, from those of atoms to those of the images that the
+   * rows stand for; sign -1: back */
+  void drift(double *rows, int width, double sign) const;
+  /* The same of copies, beyond their rows: [3 copies]; nullptr: there is none */
+  const double *drift_of_copies();
 
-  /* The clumps of which this rank owns an atom, each once; lone spheres (molecule 0) are none. */
-  struct Clump {
-    int64_t molecule;
-    int begin, end;    // its spheres: member[begin] ... member[end-1], in order of tag
-  };
-  std::vector<Clump> clumps;
-  std::vector<int> member;    // owned or ghost atom: the images closest to the first owned one
-  std::vector<int> owned;     // the same sphere as an atom of this rank, -1: another rank has it
-  std::vector<int64_t> member_tag;
-  /* Finds them if LAMMPS has re-neighboured; did it? Errors as of update(). */
-  bool update_clumps();
-
-  /* Of all atoms: row(i, out) writes the row of the owned atom i, only where it goes to a ghost.
-   * ghosts [width nghost], in order of LAMMPS. */
-  void refresh_ghosts(std::vector<double> &ghosts, int width,
-                      const std::function<void(int, double *)> &row);
-  /* Of the spheres: rows [width size()] -> ghosts [width (size_with_ghosts() - size())] */
-  void refresh_ghosts(const double *rows, double *ghosts, int width);
-
-  void lists_are_stale() { stale = clumps_stale = true; }
-
-  /* View LIST: who sees whom since the last update(), in rows; ghosts that take part come after
-   * this rank's spheres. */
-  const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
-  int size_with_ghosts() const { return (int) a.size(); }
+  /* Rows and copies */
+  int size_with_copies() const { return (int) a.size(); }
   sd_spheres local() const { return {x.data(), a.data(), w.data()}; }
-  /* Since the last update(): does one sphere see another, or an image of itself, on any rank? Does
-   * that of row k see nobody? */
+  const Halo &neighbourhood() const { return halo; }
+  double largest() const { return most; }
+  double smallest() const { return least; }
+  /* rows [width size()] -> those of the copies */
+  static sd_status refresh(void *ctx, const double *rows, double *copies, int width);
+  /* and back: rows += those of their copies */
+  static sd_status reduce(void *ctx, const double *copies, double *rows, int width);
+
+  // --- who sees whom, since the last update()
+
+  const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
+  /* Does one sphere see another, or an image of itself, on any rank? Does that of row k see
+   * nobody? */
   bool anybody_sees() const { return somebody_sees; }
   bool alone(int k) const
   {
@@ -113,32 +151,29 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Sum over all ranks, in the core's signature: ctx is a Scene. */
   static sd_status sum(void *ctx, double *values, int count);
 
-  int pack_forward_comm(int n, int *list, double *buf);
-  void unpack_forward_comm(int n, int first, double *buf);
   double memory_usage() const;
 
  private:
-  LAMMPS_NS::Pair *pair;
   std::string command;
 
-  bool stale = true, clumps_stale = true;
+  bool stale = true;
+  /* have the rows changed, on any rank, since the lists were made? */
+  bool others = true;
   /* does pairs differ from candidates? */
   bool filtered = false;
   bool somebody_sees = false;
-  /* atoms of this rank's spheres: those of the last update() */
-  std::vector<int> own;
-  /* view LIST: spheres, those of ghosts after our own */
+  /* atoms that take part; those whose rows are the first here; rows of the members of whole */
+  std::vector<int> own, loose, row_of;
+  std::vector<int64_t> tags, molecules;
+  /* rows, then copies */
   std::vector<double> x, a, w;
-  /* [nghost] row of a ghost, -1: takes no part */
-  std::vector<int> row_of_ghost;
-  /* [nlocal] row of an atom, -1: takes no part */
-  std::vector<int> row_of;
+  double most = 0.0, least = 0.0;
+  /* by how much the velocity of an image grows with each edge of the box: Ambient::jumps */
+  double jumps[6] = {0.0};
+  bool jumping = false;
+  std::vector<double> of_copies;
+  Halo halo;
   sd_neighbors candidates, pairs;
-
-  // of all atoms, for the clumps
-  std::vector<int64_t> tag, molecule;
-  std::vector<int> order;
-  sd_neighbors rows;    // one for each clump
 
   // view ALL: the spheres of all ranks in order of tag: nothing depends on the decomposition
   /* [n_all] place of each sphere, the ranks' spheres one after the other */
@@ -149,8 +184,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<int64_t> all_molecule;
   int n_all = 0;
 
-  // view NEAR: images behind our own spheres, in x, a, w
-  Images images;
   sd_ewald ewald = {};
   /* its parameters, as they were last told */
   std::string said;
@@ -159,34 +192,18 @@ class Scene : protected LAMMPS_NS::Pointers {
   const sd_mobility_engine *engine = &sd_mobility_list;
   sd_mobility omega;
 
-  // of a communication
-  double *ghost_rows = nullptr;
-  int row_width = 0;
-  const std::function<void(int, double *)> *row_writer = nullptr;
-
   int width() const { return settings.rotation ? 6 : 3; }
-  const double *positions() const;
   bool periodic() const;
   bool split();
   sd_ewald_sizes sizes_of_all(double largest);
   sd_ewald_sizes measure(sd_ewald_box &box);
   void tell();
-  void place_rows(const std::vector<double> &eta);
-  void place_ghosts();
+  void find_rows();
+  void surround(double reach, const std::string &keyword);
   void find_pairs();
-  void look_up(std::vector<int64_t> &ids, std::vector<int64_t> &molecules);
-  /* Spheres among which clumps are checked: those of this rank. */
-  struct Checked {
-    int n;
-    const double *x;
-    const int64_t *molecule;
-  };
-  void check_clumps(const Checked &of, const sd_neighbors &list, bool one_row);
-  void gather(const std::vector<double> &eta);
-  void send_rows(double *ghosts, int width, const std::function<void(int, double *)> &row);
+  void gather();
   void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;
-  void place(int n_all);
-  [[noreturn]] void complain_about_clumps(const Checked &of, const std::set<int64_t> &suspect);
+  void place(int n_all_or_copies);
   [[noreturn]] void out_of_memory();
 };
 

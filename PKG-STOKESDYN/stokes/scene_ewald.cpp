@@ -21,6 +21,17 @@ namespace StokesDyn {
 // Of spheres near those of a rank: 10 GB.
 static const double MOST_IMAGES = 1e8;
 
+static sd_ewald_box periodic_box(const Domain *domain)
+{
+  const Lattice lattice = Lattice::of(domain);
+  sd_ewald_box box = {};
+  box.periodic = 1;
+  std::copy_n(lattice.origin, 3, box.origin);
+  std::copy_n(lattice.h, 3, box.edge);
+  for (int d = 0; d < 3; d++) box.tilt[d] = lattice.h[5 - d];    // xy xz yz
+  return box;
+}
+
 bool Scene::periodic() const
 {
   return domain->xperiodic && domain->yperiodic && domain->zperiodic;

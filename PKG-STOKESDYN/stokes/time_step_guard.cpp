@@ -42,30 +42,33 @@ std::vector<char> TimeStepGuard::held_atoms() const
   return held;
 }
 
-/* Of atom i in row d, force over acceleration in the units of this LAMMPS */
-double TimeStepGuard::inertia(int i, bool held, size_t d) const
-{
-  const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-  double w = mass / force->ftm2v;
-  if (d >= 3) w *= 0.4 * atom->radius[i] * atom->radius[i];
-  return held ? HELD * w : w;
-}
-
-TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const int *atoms,
-                                          std::vector<double> *weight)
+/* In the units of this LAMMPS */
+std::vector<double> TimeStepGuard::inertia(Scene &scene) const
 {
   const std::vector<char> held = held_atoms();
+  return scene.rows(3, [&](int i, double *out) {
+    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    out[0] = mass / force->ftm2v * (held[i] ? HELD : 1.0);
+    out[1] = out[0] * 0.4 * atom->radius[i] * atom->radius[i];
+    out[2] = held[i];
+  });
+}
+
+TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, Scene &scene,
+                                          std::vector<double> *weight)
+{
+  const std::vector<double> W = inertia(scene);
   const size_t m = A.spin ? 6 : 3;
   double most[3] = {-INFINITY, -INFINITY, 0.0};    // -shortest, -of_velocity, longest
   if (weight) weight->assign(m * A.n + 1, 1.0);
-  for (int k = 0; k < A.n; k++) {
+  for (size_t k = 0; k < (size_t) A.n; k++) {
     if (A.drag[k] == 0.0) continue;
-    const int i = atoms ? atoms[k] : k;
+    const bool held = W[3 * k + 2] != 0.0;
     for (size_t d = 0; d < m; d++) {
-      const double w = inertia(i, held[i], d);
+      const double w = W[3 * k + (d < 3 ? 0 : 1)];
       const double time = w / (d < 3 ? A.drag[k] : A.spin[k]);
-      if (!held[i]) most[0] = std::max(most[0], -time);
-      if (!held[i] && d < 3) most[1] = std::max(most[1], -time);
+      if (!held) most[0] = std::max(most[0], -time);
+      if (!held && d < 3) most[1] = std::max(most[1], -time);
       most[2] = std::max(most[2], time);
       if (weight) (*weight)[m * k + d] = w;
     }
@@ -88,14 +91,14 @@ static sd_status weighed(void *ctx, const double *r, double *z)
  * preconditioned by W have the eigenvalues of W M as their Ritz values, and a slip of random
  * numbers, with a share of every eigenvector, shows the smallest. The numbers depend on the sphere
  * alone, so that the ranks do not matter. */
-double TimeStepGuard::compute(const sd_system &A, const int *atoms)
+double TimeStepGuard::compute(const sd_system &A, Scene &scene)
 {
   const size_t m = A.spin ? 6 : 3;
   std::vector<double> weight;
-  weigh(A, atoms, &weight);
+  weigh(A, scene, &weight);
   std::vector<double> slip(m * A.n + 1), F(m * A.n + 1), work(SD_SOLVE_WORK(A.n, m) + 1);
   for (int k = 0; k < A.n; k++) {
-    const uint64_t tag = atom->tag[atoms ? atoms[k] : k];
+    const uint64_t tag = scene.tag(k);
     for (size_t d = 0; d < m; d++)
       slip[m * k + d] = (sd_hash_unit(sd_hash_mix((8 * tag + d) * SD_HASH_STEP)) - 0.5) /
           std::sqrt(weight[m * k + d]);
@@ -132,7 +135,7 @@ void TimeStepGuard::warn(double of_velocity)
  * Both may be many times too large, as a smooth right-hand side, a loose tolerance or a
  * preconditioner hides the smallest eigenvalue. So they are the limit only where it is far; where
  * it may be near it is computed. */
-void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report, const int *atoms,
+void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report, Scene &scene,
                          bool preconditioned, double solves)
 {
   if (report.iterations == 0) return;
@@ -143,7 +146,7 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   const bool due = solves >= state.due;
   if (!due && state.limit > 0.0 && lambda >= state.lambda_min) return;
 
-  const Times tau = weigh(system, atoms, nullptr);
+  const Times tau = weigh(system, scene, nullptr);
   if (std::isinf(tau.shortest)) {
     state.limit = 0.0;
     return;
@@ -151,7 +154,7 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   double mu = std::min(tau.shortest, lambda * tau.longest);
   const bool near = NEAR * update->dt > 2.0 * lambda * tau.shortest;
   if (due && near) {
-    mu = std::min(mu, tau.shortest * compute(system, atoms));
+    mu = std::min(mu, tau.shortest * compute(system, scene));
     state.due = solves + PERIOD;
   }
   if ((due && near) || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
@@ -160,15 +163,15 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
 }
 
 /* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */
-void TimeStepGuard::look_at_films(sd_lubrication &near, const int *atoms)
+void TimeStepGuard::look_at_films(sd_lubrication &near, Scene &scene)
 {
-  const std::vector<char> held = held_atoms();
+  const std::vector<double> of_rows = inertia(scene);
   std::vector<double> W(6 * (size_t) near.n + 6), v(W.size()), work(W.size());
   for (int k = 0; k < near.n; k++)
     for (size_t d = 0; d < 6; d++) {
-      W[6 * k + d] = inertia(atoms[k], held[atoms[k]], d);
+      W[6 * k + d] = of_rows[3 * (size_t) k + (d < 3 ? 0 : 1)];
       v[6 * k + d] =
-          sd_hash_unit(sd_hash_mix((8 * (uint64_t) atom->tag[atoms[k]] + d) * SD_HASH_STEP)) - 0.5;
+          sd_hash_unit(sd_hash_mix((8 * (uint64_t) scene.tag(k) + d) * SD_HASH_STEP)) - 0.5;
     }
   double rate;
   const sd_status status = sd_lubrication_rate(&near, W.data(), v.data(), work.data(), &rate);

@@ -18,6 +18,7 @@
 #define SD_TIME_STEP_GUARD_H
 
 #include "pointers.h"
+#include "scene.h"
 
 #include "sd_lubrication.h"
 #include "sd_solve.h"
@@ -45,14 +46,14 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
     double limit = 0;
   } state;
 
-  /* After solve number `solves`, of conjugate gradients: looks at the time step, and warns once if
-   * it is too long. atoms[k]: the atom of this rank that is row k; nullptr: atom k. */
-  void look(const sd_system &system, const sd_solve_report &report, const int *atoms,
+  /* After solve number `solves`, of conjugate gradients, by the rows of the scene: looks at the time
+   * step, and warns once if it is too long. */
+  void look(const sd_system &system, const sd_solve_report &report, Scene &scene,
             bool preconditioned, double solves);
 
   /* Lubrication has a limit of its own, told once a run: the spheres where they stand now, rows as
    * in look(). Warns once if the time step is above it. */
-  void look_at_films(sd_lubrication &near, const int *atoms);
+  void look_at_films(sd_lubrication &near, Scene &scene);
 
  private:
   std::string command;
@@ -65,10 +66,11 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   struct Times {
     double shortest, of_velocity, longest;
   };
-  Times weigh(const sd_system &system, const int *atoms, std::vector<double> *weight);
+  Times weigh(const sd_system &system, Scene &scene, std::vector<double> *weight);
   std::vector<char> held_atoms() const;
-  double inertia(int i, bool held, size_t d) const;
-  double compute(const sd_system &system, const int *atoms);
+  /* by rows, three each: force over acceleration of velocity and of spin, is it held? */
+  std::vector<double> inertia(Scene &scene) const;
+  double compute(const sd_system &system, Scene &scene);
   void warn(double of_velocity);
 };
 

@@ -1,11 +1,10 @@
 #include "velocities.h"
 
-#include "callback.h"
-
 #include "sd_clump_motion.h"
 #include "sd_linear.h"
 
 #include "atom.h"
+#include "comm.h"
 
 #include <algorithm>
 #include <cstring>
@@ -27,81 +26,58 @@ Velocities::~Velocities()
 
 double Velocities::memory_usage() const
 {
-  double numbers = ghosts.capacity();
-  for (const auto *array : {&F, &u, &v, &near, &drag, &spin, &work, &R, &eta, &V, &gradient})
+  double numbers = of_members.capacity();
+  for (const auto *array : {&F, &u, &v, &exerted, &D, &arm, &V, &work, &gradient})
     numbers += array->capacity();
   return sizeof(double) * numbers;
 }
 
 // --- the clumps where they stand -----------------------------------------------------------------
 
-enum { ETA = 0, LOAD = 1, FLOW = 7, GRADIENT = 10, WITH_FLOW = 19 };
+enum { ETA = 0, RADIUS = 1, LOAD = 2, FLOW = 8, GRADIENT = 11, WITH_FLOW = 20 };
 
-/* What clumps must know of spheres on other ranks. */
-void Velocities::gather_ghosts()
+/* What clumps must know of their spheres; velocities are those of the images side by side. */
+void Velocities::gather()
 {
-  const double *gradients = ambient.gradients();
+  const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   columns = gradients ? WITH_FLOW : FLOW;
-  scene.refresh_ghosts(ghosts, columns, [&](int i, double *row) {
+  of_members = scene.whole.gather(columns, [&](int i, double *row) {
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+    row[RADIUS] = atom->radius[i];
     std::copy_n(atom->f[i], 3, row + LOAD);
     std::copy_n(atom->torque[i], 3, row + LOAD + 3);
     if (!gradients) return;
     std::copy_n(ambient.velocity(i), 3, row + FLOW);
     std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
   });
-}
-
-/* Who is in no clump; and is a clump here and elsewhere? */
-void Velocities::part_lone()
-{
-  if (arranged == rigid.arrangement() && selection == ambient.selection()) return;
-  arranged = rigid.arrangement();
-  selection = ambient.selection();
-  std::vector<char> bound(atom->nlocal, 0);
-  int crosses = 0;
-  for (int i : rigid.owns()) {
-    if (i >= 0) bound[i] = 1;
-    crosses = crosses || i < 0;
-  }
-  across = crosses;
-  lone.clear();
-  for (int i : ambient.who())
-    if (!bound[i]) lone.push_back(i);
+  for (int m = 0; m < scene.whole.size() && gradients && jumps; m++)
+    Lattice::add(jumps, &scene.whole.steps[3 * (size_t) m], &of_members[columns * (size_t) m + FLOW]);
 }
 
 void Velocities::find()
 {
   clumps.clear();
-  if (!rigid.settings.on) {
-    lone = ambient.who();
-    return;
-  }
+  lone = ambient.who();
+  if (!rigid.settings.on) return;
   const auto &all = rigid.find();
-  part_lone();
-  int anywhere = across;
-  MPI_Allreduce(MPI_IN_PLACE, &anywhere, 1, MPI_INT, MPI_MAX, world);
-  across = anywhere;
-  if (across) gather_ghosts();
-
+  const auto bound = [this](int i) {
+    return atom->molecule[i] != 0;
+  };
+  lone.erase(std::remove_if(lone.begin(), lone.end(), bound), lone.end());
+  gather();
   int64_t split = RigidClumps::NOBODY, bent = RigidClumps::NOBODY;
-  std::vector<double> x;
   for (const auto &body : all) {
-    const sd_shape &shape = body.shape->shape;
     Clump clump = {&body, {}, 0.0, {}};
     int taking_part = 0;
-    x.resize(3 * (size_t) body.n);
     for (int k = 0; k < body.n; k++) {
-      const int j = rigid.members()[body.begin + k], i = rigid.owns()[body.begin + k];
-      const double eta_k = i < 0 ? ghost(j)[ETA] : ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+      const double eta_k = known_of(clump, k)[ETA];
       taking_part += eta_k > 0.0;
       clump.eta += eta_k / body.n;
-      for (int d = 0; d < 3; d++) x[3 * (size_t) k + d] = atom->x[j][d];
     }
     if (taking_part == 0) continue;
     if (taking_part < body.n) split = std::min(split, body.molecule);
-    const double deviation = sd_shape_pose(&shape, x.data(), clump.pose, clump.pose + 9);
-    if (!(deviation <= SD_SHAPE_TOLERANCE * shape.size)) bent = std::min(bent, body.molecule);
+    if (!rigid.fits(body, &of_members[RADIUS], columns, clump.pose))
+      bent = std::min(bent, body.molecule);
     clumps.push_back(clump);
   }
   int64_t trouble[2] = {split, bent};
@@ -119,13 +95,10 @@ void Velocities::flow_over(const Clump &clump, double fluid[3], double G[9])
   std::vector<double> x, velocity, of_velocity;
   if (gradients) {
     for (int k = 0; k < body.n; k++) {
-      const int j = rigid.members()[body.begin + k], i = rigid.owns()[body.begin + k];
-      const double *at = atom->x[j];
-      const double *v = i < 0 ? ghost(j) + FLOW : ambient.velocity(i);
-      const double *g = i < 0 ? ghost(j) + GRADIENT : gradients + 9 * (size_t) i;
-      x.insert(x.end(), at, at + 3);
-      velocity.insert(velocity.end(), v, v + 3);
-      of_velocity.insert(of_velocity.end(), g, g + 9);
+      const double *there = at(clump, k), *known = known_of(clump, k);
+      x.insert(x.end(), there, there + 3);
+      velocity.insert(velocity.end(), known + FLOW, known + FLOW + 3);
+      of_velocity.insert(of_velocity.end(), known + GRADIENT, known + GRADIENT + 9);
     }
     motion.x = x.data();
     motion.u = velocity.data();
@@ -137,13 +110,10 @@ void Velocities::flow_over(const Clump &clump, double fluid[3], double G[9])
 /* Force and torque about the centroid */
 void Velocities::load_on(const Clump &clump, double load[6]) const
 {
-  const RigidClumps::Body &body = *clump.body;
-  const int *members = &rigid.members()[body.begin], *owns = &rigid.owns()[body.begin];
   const double *c = clump.pose + 9;
   std::fill_n(load, 6, 0.0);
-  for (int k = 0; k < body.n; k++) {
-    const double *f = owns[k] < 0 ? ghost(members[k]) + LOAD : atom->f[owns[k]];
-    const double *torque = owns[k] < 0 ? f + 3 : atom->torque[owns[k]], *x = atom->x[members[k]];
+  for (int k = 0; k < clump.body->n; k++) {
+    const double *f = known_of(clump, k) + LOAD, *torque = f + 3, *x = at(clump, k);
     const double arm[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
     double couple[3];
     sd_cross(arm, f, couple);
@@ -159,49 +129,59 @@ void Velocities::load_on(const Clump &clump, double load[6]) const
 /* Forces on the spheres, the fluid at them, their drags */
 void Velocities::place(int width)
 {
-  const std::vector<int> &who = ambient.who();
-  const size_t m = width, n = who.size();
-  row_of.assign(atom->nlocal, -1);
+  const size_t m = width, n = scene.size(), most = 14;
+  const std::vector<double> rows = scene.rows(most, [&](int i, double *out) {
+    std::copy_n(atom->f[i], 3, out);
+    if (width == 6) std::copy_n(atom->torque[i], 3, out + 3);
+    ambient.fluid(i, out + 6);
+    out[12] = ambient.drag(i);
+    out[13] = ambient.spin(i);
+  });
   F.resize(m * n + m);
   u.resize(m * n + m);
-  drag.resize(n + 1);
-  spin.resize(n + 1);
+  D.resize(m * n + m);
   for (size_t k = 0; k < n; k++) {
-    const int i = who[k];
-    row_of[i] = k;
-    for (int d = 0; d < 3; d++) {
-      F[m * k + d] = atom->f[i][d];
-      if (width == 6) F[m * k + 3 + d] = atom->torque[i][d];
-    }
-    ambient.fluid(i, &u[m * k]);
-    drag[k] = ambient.drag(i);
-    if (width == 6) spin[k] = ambient.spin(i);
+    const double *row = &rows[most * k];
+    std::copy_n(row, m, &F[m * k]);
+    std::copy_n(row + 6, m, &u[m * k]);
+    for (size_t d = 0; d < m; d++) D[m * k + d] = row[d < 3 ? 12 : 13];
   }
+  scene.drift(u.data(), width, 1.0);
 }
 
-/* The clumps as the core wants them */
+/* The bodies as the core wants them: free spheres, then clumps */
 void Velocities::arrange()
 {
-  const int n = ambient.who().size();
-  first.assign(1, 0);
+  const size_t n = scene.size();
   member.clear();
-  shape.clear();
-  R.clear();
-  eta.clear();
+  shaped.clear();
   loner.clear();
-  for (const Clump &clump : clumps) {
-    const RigidClumps::Body &body = *clump.body;
-    for (int k = body.begin; k < body.begin + body.n; k++) {
-      const int i = rigid.owns()[k];
-      member.push_back(i < 0 ? n + rigid.members()[k] - atom->nlocal : row_of[i]);
-    }
-    first.push_back(member.size());
-    shape.push_back(&rigid.blocks(*body.shape));
-    R.insert(R.end(), clump.pose, clump.pose + 9);
-    eta.push_back(clump.eta);
+  whole.assign(n + 1, 0);
+  arm.assign(3 * n + 3, 0.0);
+  for (int k = 0; k < scene.lone(); k++) {
+    whole[k] = k;
+    loner.push_back(k);
   }
-  for (int i : lone) loner.push_back(row_of[i]);
-  V.resize(6 * clumps.size() + 1);
+  std::vector<double> arms;
+  for (const Clump &clump : clumps) {
+    sd_body body = {&rigid.blocks(*clump.body->shape), {}, 1.0, clump.eta, nullptr};
+    std::copy_n(clump.pose, 9, body.R);
+    arms.resize(3 * (size_t) clump.body->n);
+    sd_body_arms(&body, arms.data());
+    for (int k = 0; k < clump.body->n; k++) {
+      const int row = scene.row_of_member((int) member_of(clump, k));
+      member.push_back(row);
+      whole[row] = loner.size() + shaped.size();
+      std::copy_n(&arms[3 * (size_t) k], 3, &arm[3 * (size_t) row]);
+    }
+    shaped.push_back(body);
+  }
+  size_t at = 0;
+  for (sd_body &body : shaped) {
+    body.row = &member[at];
+    at += body.shape->m;
+  }
+  V.resize(6 * (loner.size() + shaped.size()) + 6);
 }
 
 /* u = 0: nobody sees anybody */
@@ -214,36 +194,24 @@ static sd_status nobody(void *ctx, const double * /*F*/, double *out)
 
 sd_bodies Velocities::bodies(int width)
 {
+  const int n = scene.size();
   sd_bodies A = {};
-  A.n = ambient.who().size();
-  A.ghosts = across ? atom->nghost : 0;
-  A.width = width;
-  A.drag = drag.data();
-  A.spin = width == 6 ? spin.data() : nullptr;
   A.lone = loner.size();
   A.loner = loner.data();
-  A.clumps = clumps.size();
-  A.first = first.data();
-  A.member = member.data();
-  A.shape = shape.data();
-  A.pose = R.data();
-  A.eta = eta.data();
-  A.sum = Scene::sum;
-  A.sum_ctx = &scene;
-  if (!across) return A;
-  A.refresh = [](void *ctx, const double *rows, double *out, int columns) {
-    return callback([=] {
-      Velocities *self = static_cast<Velocities *>(ctx);
-      std::vector<double> sent;
-      self->scene.refresh_ghosts(sent, columns, [=](int i, double *row) {
-        const int k = self->row_of[i];
-        if (k >= 0) std::copy_n(rows + columns * (size_t) k, columns, row);
-      });
-      std::copy_n(sent.begin(), columns * (size_t) self->atom->nghost, out);
-      return SD_OK;
-    });
-  };
-  A.refresh_ctx = this;
+  A.shaped = shaped.size();
+  A.body = shaped.data();
+  A.spheres = {n, width, whole.data(), arm.data()};
+  A.points = {n, width, nullptr, nullptr};
+  A.D = D.data();
+  alone.how.width = width;
+  alone.n = n;
+  const bool sees = scene.anybody_sees();
+  A.apply = sees ? sd_mobility_apply : nobody;
+  A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
+  A.world.ctx = &scene;
+  A.world.me = comm->me;
+  A.world.ranks = comm->nprocs;
+  A.world.sum = Scene::sum;
   return A;
 }
 
@@ -254,28 +222,41 @@ void Velocities::carry(const sd_bodies &A, double *flow)
   gradient.resize(9 * clumps.size());
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
-  sd_bodies_carry(&A, gradient.data(), flow);
+  work.resize(sd_bodies_work(&A));
+  sd_bodies_carry(&A, gradient.data(), work.data(), flow);
 }
 
-sd_status Velocities::apply_joined(void *ctx, const double *l, double *out)
+sd_status Velocities::solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
+                            sd_bodies_report &report)
 {
-  Velocities *self = static_cast<Velocities *>(ctx);
-  const sd_status status = self->bare(self->bare_ctx, l, out);
-  return status == SD_OK ? sd_bodies_add_shells(&self->joined, l, self->work.data(), out) : status;
+  v.resize(u.size());
+  exerted.resize(u.size());
+  work.resize(sd_bodies_work(&A));
+  const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
+                                   exerted.data()};
+  return sd_bodies_solve(&A, &problem, &motion, work.data(), &report);
 }
 
-void Velocities::join(sd_system &system, std::vector<double> &slip)
+/* Everybody is held, at rest in a fluid that moves with the slip. */
+sd_status Velocities::resist(const How &how, const std::vector<double> &slip,
+                             std::vector<double> &on_spheres, sd_bodies_report &report)
 {
-  const int width = system.spin ? 6 : 3;
-  place(width);
+  place(how.width);
   arrange();
-  joined = bodies(width);
-  carry(joined, slip.data());
-  work.resize(sd_bodies_work(&joined));
-  bare = system.apply;
-  bare_ctx = system.apply_ctx;
-  system.apply = apply_joined;
-  system.apply_ctx = this;
+  sd_bodies A = bodies(how.width);
+  const std::vector<char> held(loner.size() + shaped.size() + 1, 1);
+  A.held = held.data();
+  const size_t m = how.width, rows = m * scene.size();
+  std::copy_n(slip.begin(), rows, u.begin());
+  carry(A, u.data());
+  Guess guess;
+  guess.l.assign(rows + m, 0.0);
+  for (size_t j = 0; j < rows && how.warm; j++) guess.l[j] = -on_spheres[j];
+  const sd_bodies_problem problem = {u.data(), F.data(),      nullptr,
+                                     how.warm, how.tolerance, how.max_iter};
+  const sd_status status = solve(A, problem, guess, report);
+  for (size_t j = 0; j < rows; j++) on_spheres[j] = -exerted[j];
+  return status;
 }
 
 sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
@@ -285,31 +266,26 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
   arrange();
   sd_bodies A = bodies(how.width);
   if (lubrication.settings.on) {
-    near.assign(u.size(), 0.0);
-    lubrication.place(ambient);
+    lubrication.place(scene, ambient);
     tie.L = lubrication.matrix();
     A.tie = &tie;
   }
-  sd_mobility_scene alone = {};
-  alone.how.width = how.width;
-  alone.n = A.n;
-  const bool sees = scene.anybody_sees();
-  A.apply = sees ? sd_mobility_apply : nobody;
-  A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
   carry(A, u.data());
-  v.resize(u.size());
-  work.resize(sd_bodies_work(&A));
-  const sd_bodies_problem problem = {u.data(), F.data(), how.warm, how.tolerance, how.max_iter};
-  const sd_bodies_motion motion = {guess.l.data(), v.data(), V.data(), guess.v.data(), near.data()};
-  const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work.data(), &report);
-  for (size_t c = 0; c < clumps.size(); c++) std::copy_n(&V[6 * c], 6, clumps[c].V);
-  for (int k = 0; k < A.n; k++) {
-    const size_t row = how.width * (size_t) k;
-    double by_fluid[6];
-    for (int d = 0; d < how.width; d++) by_fluid[d] = -guess.l[row + d];
-    for (int d = 0; A.tie && d < how.width; d++) by_fluid[d] -= near[row + d];
-    take(ambient.who()[k], &v[row], by_fluid);
+  const sd_bodies_problem problem = {u.data(), F.data(),      nullptr,
+                                     how.warm, how.tolerance, how.max_iter};
+  const sd_status status = solve(A, problem, guess, report);
+  for (size_t c = 0; c < clumps.size(); c++)
+    std::copy_n(&V[6 * (loner.size() + c)], 6, clumps[c].V);
+  const size_t m = how.width, n = scene.size();
+  std::vector<double> moved(2 * m * n + 2 * m);
+  scene.drift(v.data(), how.width, -1.0);    // an atom's, not those of the image next to its clump
+  for (size_t k = 0; k < n; k++) {
+    double *row = &moved[2 * m * k];
+    std::copy_n(&v[m * k], m, row);
+    for (size_t d = 0; d < m; d++) row[m + d] = -exerted[m * k + d];
   }
+  scene.to_atoms(2 * how.width, moved.data(),
+                 [&](int i, const double *row) { take(i, row, row + m); });
   return status;
 }
 
@@ -328,10 +304,12 @@ void Velocities::apart(int width, const Take &take)
     }
     take(i, move, by_fluid);
   }
-  std::vector<double> force, torque;
+  const WholeClumps &whole = scene.whole;
+  std::vector<double> force, torque, moved(13 * (size_t) whole.size() + 13, 0.0);
+  double back[6] = {0.0};
+  for (int d = 0; d < 6 && ambient.jumps(); d++) back[d] = -ambient.jumps()[d];
   for (Clump &clump : clumps) {
     const RigidClumps::Body &body = *clump.body;
-    const int *owns = &rigid.owns()[body.begin];
     double fluid[3], G[9], load[6], arm[3], turning[3];
     flow_over(clump, fluid, G);
     load_on(clump, load);
@@ -340,18 +318,23 @@ void Velocities::apart(int width, const Take &take)
     torque.resize(3 * (size_t) body.n);
     drag_on(clump, fluid, G, force.data(), torque.data());
     for (int k = 0; k < body.n; k++) {
-      if (owns[k] < 0) continue;
+      double *row = &moved[13 * member_of(clump, k)];
       sd_multiply3(clump.pose, body.shape->shape.x + 3 * (size_t) k, arm);
       sd_cross(clump.V + 3, arm, turning);
+      row[0] = 1.0;
       for (int d = 0; d < 3; d++) {
-        move[d] = clump.V[d] + turning[d];
-        move[3 + d] = clump.V[3 + d];
-        by_fluid[d] = force[3 * (size_t) k + d];
-        by_fluid[3 + d] = torque[3 * (size_t) k + d];
+        row[1 + d] = clump.V[d] + turning[d];
+        row[4 + d] = clump.V[3 + d];
+        row[7 + d] = force[3 * (size_t) k + d];
+        row[10 + d] = torque[3 * (size_t) k + d];
       }
-      take(owns[k], move, by_fluid);
+      Lattice::add(back, &whole.steps[3 * member_of(clump, k)], row + 1);
     }
   }
+  if (!rigid.settings.on) return;
+  whole.scatter(13, moved.data(), [&](int i, const double *row) {
+    if (row[0] != 0.0) take(i, row + 1, row + 7);
+  });
 }
 
 /* Of the fluid on the spheres of a clump that moves with V */

@@ -4,8 +4,7 @@
  *   find()                     the clumps, where they stand now
  *   together() or apart()      velocities of all: each other's, or each clump alone in the flow
  *
- * A clump that crosses ranks is moved by every rank that owns one of its spheres, from the same
- * numbers. */
+ * A clump is moved by the rank that owns it (whole_clumps.h). */
 #ifndef SD_VELOCITIES_H
 #define SD_VELOCITIES_H
 
@@ -33,13 +32,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
     /* U of the centroid, W */
     double V[6];
   };
-  /* of which this rank owns a sphere, since the last find() */
+  /* that this rank owns, since the last find() */
   std::vector<Clump> clumps;
   /* atoms that are free spheres */
   std::vector<int> lone;
-  /* as of RigidClumps */
-  const std::vector<int> &members() const { return rigid.members(); }
-  const std::vector<int> &owns() const { return rigid.owns(); }
+  /* Sphere k of a clump, in the order of its shape: its number among the members of whole */
+  size_t member_of(const Clump &clump, int k) const { return rigid.members()[clump.body->begin + k]; }
 
   struct Parts {
     Scene &scene;
@@ -75,9 +73,10 @@ class Velocities : protected LAMMPS_NS::Pointers {
   };
   sd_status together(const How &how, Guess &guess, const Take &take, sd_bodies_report &report);
 
-  /* The same bodies where velocities are given: the system (sd_solve.h) of the spheres that take
-   * part, slip [width n] its right-hand side, becomes that with what shells add. */
-  void join(sd_system &system, std::vector<double> &slip);
+  /* The same bodies where velocities are given: forces F [width n] of the fluid on the spheres that
+   * take part, from their slip [width n]; warm: F holds a guess */
+  sd_status resist(const How &how, const std::vector<double> &slip, std::vector<double> &F,
+                   sd_bodies_report &report);
 
   double memory_usage() const;
 
@@ -88,30 +87,27 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Lubrication &lubrication;
   sd_tie tie = {};
 
-  /* [nlocal] row of an atom, -1: takes no part */
-  std::vector<int> row_of;
-  /* does a clump cross ranks, anywhere? */
-  bool across = false;
-  /* for which `lone` and `across` have been found: re-neighbouring, and who is selected */
-  long arranged = -1, selection = -1;
-  /* of ghosts, columns: eta (0: takes no part), force and torque, fluid velocity and its gradient
-   */
-  std::vector<double> ghosts;
-  int columns = 1;
+  /* of members, columns: eta (0: takes no part), radius, force and torque, fluid velocity and its
+   * gradient */
+  std::vector<double> of_members;
+  int columns = 0;
 
   /* for the core, by rows, by clumps, by spheres of clumps */
-  std::vector<double> F, u, v, near, drag, spin, work;
-  std::vector<double> R, eta, V, gradient;
-  std::vector<int> first, member, loner;
-  std::vector<const sd_body_shape *> shape;
-  /* of join() */
-  sd_bodies joined = {};
-  sd_apply *bare = nullptr;
-  void *bare_ctx = nullptr;
+  std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
+  std::vector<int> member, whole, loner;
+  std::vector<sd_body> shaped;
+  /* where nobody sees anybody */
+  sd_mobility_scene alone = {};
 
-  void part_lone();
-  void gather_ghosts();
-  const double *ghost(int j) const { return &ghosts[(size_t) columns * (j - atom->nlocal)]; }
+  void gather();
+  const double *known_of(const Clump &clump, int k) const
+  {
+    return &of_members[columns * member_of(clump, k)];
+  }
+  const double *at(const Clump &clump, int k) const
+  {
+    return &scene.whole.x[3 * member_of(clump, k)];
+  }
   void place(int width);
   void arrange();
   void flow_over(const Clump &clump, double u[3], double G[9]);
@@ -120,7 +116,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
                double *T) const;
   sd_bodies bodies(int width);
   void carry(const sd_bodies &A, double *flow);
-  static sd_status apply_joined(void *ctx, const double *l, double *out);
+  sd_status solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
+                  sd_bodies_report &report);
 };
 
 }    // namespace StokesDyn

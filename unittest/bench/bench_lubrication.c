@@ -14,9 +14,9 @@ typedef struct {
 
 static times measure(settling *s, int warm, double tolerance)
 {
-  double t[5][RUNS], *out = calloc(6 * (size_t) s->A.n, sizeof(double));
-  double *l = malloc(sizeof(double) * 6 * (size_t) s->A.n), *v = malloc(sizeof(double) * 6 * (size_t) s->A.n);
-  const size_t bytes = sizeof(double) * 6 * (size_t) s->A.n;
+  double t[5][RUNS], *out = calloc(6 * (size_t) s->A.lone, sizeof(double));
+  double *l = malloc(sizeof(double) * 6 * (size_t) s->A.lone), *v = malloc(sizeof(double) * 6 * (size_t) s->A.lone);
+  const size_t bytes = sizeof(double) * 6 * (size_t) s->A.lone;
   memcpy(l, s->l, bytes);
   memcpy(v, s->before, bytes);
   for (int k = 0; k < RUNS; k++) {
@@ -46,8 +46,8 @@ static void tell(settling *s, const char *what, int warm, double tolerance)
   const times t = measure(s, warm, tolerance);
   const int products = s->report.products;
   const long within = s->tie.products;
-  double *reference = malloc(sizeof(double) * 6 * (size_t) s->A.n), *mine = malloc(sizeof(double) * 6 * (size_t) s->A.n);
-  const size_t bytes = sizeof(double) * 6 * (size_t) s->A.n;
+  double *reference = malloc(sizeof(double) * 6 * (size_t) s->A.lone), *mine = malloc(sizeof(double) * 6 * (size_t) s->A.lone);
+  const size_t bytes = sizeof(double) * 6 * (size_t) s->A.lone;
   memcpy(mine, s->v, bytes);
   settling_solve(s, 0, 1e-8);
   memcpy(reference, s->v, bytes);

@@ -1,5 +1,4 @@
 """Clumps across borders of the box and of ranks; periodic boxes; ghosts that do not reach."""
-import re
 
 import numpy as np
 import pytest
@@ -82,42 +81,26 @@ def test_molecule_ids_from_a_fix_property_atom(simulation):
     assert largest_difference(sim.drag, model.forces(tetrahedron(), ETA)) < 1e-10
 
 
-def cutoff_to_set(text):
-    assert "does not reach across the clump of molecule" in text
-    return float(re.search(r"comm_modify cutoff ([0-9.e+-]+)", text).group(1))
-
-
 def long_chain(box_border):
     return Spheres(chain(6, 2 * A, axis=0).x + (box_border, 0, 0), A, (0.1, 0.2, 0.3), molecule=5)
 
 
-def test_ghosts_that_do_not_reach_across_the_box_border_are_an_error_with_the_cut_off_to_set(simulation):
-    options = dict(boundary="p p p", box=[(-10.0, 10.0)] * 3)
-    sim = simulation(long_chain(7.0), f"clumps_only yes {EXACT}", **options)
-    with pytest.raises(LammpsError) as error:
-        sim.run()
-    assert "molecule 5" in str(error.value)
-    cutoff = cutoff_to_set(str(error.value))
-    assert 7.0 < cutoff < 8.0                           # width of the clump and the skin of 0.3
-    sim = simulation(long_chain(7.0), f"clumps_only yes {EXACT}", comm=f"comm_modify cutoff {cutoff}", **options).run()
+def test_a_clump_across_the_box_border_needs_no_wider_ghosts(simulation):
+    sim = simulation(long_chain(7.0), f"clumps_only yes {EXACT}", boundary="p p p", box=[(-10.0, 10.0)] * 3).run()
     assert largest_difference(sim.drag, model.forces(long_chain(0.0), ETA)) < 1e-10
 
 
 @pytest.mark.hard_case("ghosts that do not reach across a clump")
-def test_ghosts_that_do_not_reach_to_the_next_rank_are_an_error_with_the_cut_off_to_set(tmp_path):
+def test_a_clump_across_ranks_needs_no_wider_ghosts(tmp_path):
     box = [(-10.0, 10.0), (-3.0, 3.0), (-3.0, 3.0)]
     spheres = long_chain(-4.0)
-    failed = lmp(tmp_path, input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", box=box) + ["run 0"], ranks=2,
-                 succeed=False)
-    assert failed.code != 0
-    cutoff = cutoff_to_set(failed.log)
-    lines = input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", box=box, comm=f"comm_modify cutoff {cutoff}")
+    lines = input_lines(spheres, f"clumps_only yes {EXACT}", tmp_path / "data", box=box)
     lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=2)
     assert largest_difference(read_dump(tmp_path / "dump")[0][1], model.forces(spheres, ETA)) < 1e-10
 
 
-def test_cut_off_that_the_error_asks_for_reaches_while_the_clump_turns(simulation):
-    """A rigid chain tumbles through the borders of a periodic box; its width and the skin are the ghost cut-off."""
+def test_clump_that_turns_through_the_borders_of_its_box(simulation):
+    """A rigid chain tumbles; LAMMPS's rigid bodies want ghosts as far as it is wide."""
     spheres = chain(4, 2 * A, axis=0, a=A)
     spheres.v = np.cross((0.4, 0.8, 0.6), spheres.x - spheres.x.mean(axis=0)) + (2.0, 1.0, 3.0)
     sim = simulation(spheres, "clumps_only yes visc 0.01 algorithm 2 relative_tolerance 1e-12",

@@ -324,8 +324,11 @@ def test_a_resistance_too_large_for_memory_is_an_error_before_anything_is_alloca
         simulation(Spheres(CLUSTERS["fcc13"], molecule=1), "clumps_only yes rigid_clumps yes shell 100000000 visc 1", comm=WIDE).run(0)
 
 
-def test_ghosts_too_short_for_a_clump_are_an_error(tmp_path):
+def test_a_clump_longer_than_the_ghost_cut_off_is_solved_on_one_rank(tmp_path):
     spheres = Spheres(np.column_stack((2.0 * np.arange(10), np.zeros(10), np.zeros(10))), molecule=1)
-    ended = lmp(tmp_path, input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1", tmp_path / "data") + ["run 0"], ranks=2,
-                succeed=False)
-    assert "use: comm_modify cutoff 18.3" in ended.text
+    forces = []
+    for ranks in (1, 2):
+        lmp(tmp_path, input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1", tmp_path / "data")
+            + ["velocity all set 0.1 0.2 0.3", *dump_lines(tmp_path / "dump", columns="f_drag[1] f_drag[2] f_drag[3]"), "run 0"], ranks=ranks)
+        forces.append(read_dump(tmp_path / "dump")[0][1])
+    assert np.abs(forces[0]).max() > 1 and np.abs(forces[1] - forces[0]).max() < 1e-10

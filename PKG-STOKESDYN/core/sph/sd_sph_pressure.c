@@ -45,6 +45,18 @@ double sd_sph_density_of(const sd_sph_state *s, double P)
   return rho > 0.0 ? rho : 0.0;
 }
 
+double sd_sph_speed_of_sound(const sd_sph_state *s, double rho)
+{
+  switch (s->kind) {
+    case SD_SPH_ABSOLUT:
+      return s->B;
+    case SD_SPH_RELATIV:
+      return sqrt(s->B);
+    default:
+      return sqrt(s->B * s->gamma / s->rho0 * power(rho / s->rho0, s->gamma) * s->rho0 / rho);
+  }
+}
+
 /* All three grow with rho, so the bound is the value at rho = 0. */
 double sd_sph_least_pressure(const sd_sph_state *s)
 {

@@ -24,6 +24,9 @@ double sd_sph_pressure(const sd_sph_state *state, double rho);
 /* The density > 0 that has the pressure P; 0 if there is none. */
 double sd_sph_density_of(const sd_sph_state *state, double P);
 
+/* sqrt(dP / drho) of a density > 0. */
+double sd_sph_speed_of_sound(const sd_sph_state *state, double rho);
+
 /* The pressure of no density at all: those of all densities are above it. */
 double sd_sph_least_pressure(const sd_sph_state *state);
 

@@ -1,5 +1,8 @@
 #include "sd_sph_wall.h"
 
+#include "sd_sph_class.h"
+
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -45,6 +48,32 @@ void sd_sph_level_walls(const sd_sph_particles *p, const double b[3], double *su
     if (p->phase[i] >= 0) continue;
     double *row = sums + 8 * (size_t) i;
     row[1] += dot(b, p->x4 + 4 * (size_t) i) * row[2];
+  }
+}
+
+static void compare(const sd_sph_model *model, const sd_sph_particles *p, int wall, int fluid,
+                    double *row)
+{
+  const double ratio = sd_sph_mass(model, p, wall) / sd_sph_mass(model, p, fluid);
+  row[0] = fmax(row[0], -fabs(log(ratio)));
+  row[1] = fmax(row[1], ~p->phase[wall] == p->phase[fluid] ? 1.0 : 0.0);
+}
+
+void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     double *likeness)
+{
+  for (int k = 0; k < list->n; k++) {
+    const int i = list->first[k];
+    for (int m = 0; m < list->count[i]; m++) {
+      const int j = list->neighbor[i][m] & list->mask;
+      if ((p->phase[i] < 0) == (p->phase[j] < 0)) continue;
+      const double *xi = p->x4 + 4 * (size_t) i, *xj = p->x4 + 4 * (size_t) j;
+      const double d[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+      const double support = sd_sph_of_pair(model, p, i, j)->support;
+      if (!(dot(d, d) < support * support)) continue;
+      const int wall = p->phase[i] < 0 ? i : j, fluid = p->phase[i] < 0 ? j : i;
+      compare(model, p, wall, fluid, likeness + 2 * (size_t) wall);
+    }
   }
 }
 

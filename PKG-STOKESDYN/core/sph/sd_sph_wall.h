@@ -29,6 +29,14 @@ void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const 
  * image of a wall particle, and those of ghosts may be added to it. */
 void sd_sph_level_walls(const sd_sph_particles *p, const double b[3], double *sums);
 
+/* How well each wall particle fits the fluid in its support: likeness [2 (n+1)], taken as maximum
+ * with what is there, of
+ *   -|ln(m_w / m_f)| over all fluid particles f in its support, 0: one has its mass
+ *   1 if one of them is of the wall's own fluid (phase), else 0
+ * Rows without fluid in reach are left alone. x4 of the particles must be packed. */
+void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     double *likeness);
+
 typedef struct {
   const sd_sph_state *state;
   int slip;

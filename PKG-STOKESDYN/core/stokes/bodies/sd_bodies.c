@@ -1,168 +1,133 @@
 #include "sd_bodies.h"
-#include "sd_tie.h"
 
 #include <math.h>
 #include <string.h>
 
-/* What acts: on free spheres by rows [width n], on clumps by clump [6 clumps] about the centroid */
-typedef struct {
-  const double *rows;
-  double *clumps;
-} loads;
+#include "sd_bodies_alone.h"
+#include "sd_cg.h"
+#include "sd_tie.h"
 
-/* A pair (l, V) of the system, with K V by rows */
+/* What the loop goes by: what of r.z is rounding, and the power spent as it stands; what the bodies
+ * would spend alone, the part of the loads' power that the flow has, and the power of slips that are
+ * rounding */
 typedef struct {
-  double *l, *v, *V;
-} state;
-
-/* What the loop goes by: r.z, and what of it is rounding; the power spent as it stands now; what
- * the bodies would spend alone, and the power of slips that are rounding */
-typedef struct {
-  double rz, noise, spent, alone, floor;
+  double noise, spent, alone, carried, floor;
 } powers;
+
+/* What comes of a guess: the loop goes on, r is to lose what V takes at once, or the guess is bad */
+typedef enum { GO_ON, SETTLE, BEGIN_ANEW } verdict;
 
 typedef struct {
   const sd_bodies *A;
-  /* of the problem, by rows; and what is to be borne, with L V_inf */
-  const double *u, *given;
-  loads F;
-  /* (l, V); pre(r, 0); (p, q) */
-  state x, z, along;
-  double *r, *w;
-  /* rows of the ghosts; of the largest clump, slip and force in the axes of the shape */
-  double *ghosts, *slip, *force;
-  /* velocities without and with the tie and what is borne, by bodies; its share, by rows */
-  double *tied, tie_tolerance;
+  const sd_bodies_problem *problem;
+  /* x = (l, V), z = pre(r, 0), p: [rows + 6 bodies]; r, w: [rows] */
+  sd_cg_vectors v;
+  /* [6 bodies] the loads, and those with L V_inf, of the second line */
+  double *given, *f;
+  /* scratch: rows; spheres, twice; bodies, three times; of sd_bodies_alone */
+  double *rows, *on_spheres, *bodies, *alone;
+  int shells, guess_is_new;
+  verdict verdict;
+  double tie_tolerance;
   powers power;
   sd_bodies_report *report;
 } loop;
 
-static long largest_clump(const sd_bodies *A)
+static long largest_body(const sd_bodies *A)
 {
   long m = 0;
-  for (int b = 0; b < A->clumps; b++)
-    if (A->first[b + 1] - A->first[b] > m) m = A->first[b + 1] - A->first[b];
-  return m;
+  for (int b = 0; b < A->shaped; b++)
+    if (A->body[b].shape->m > m) m = A->body[b].shape->m;
+  return A->points.width * m;
 }
 
 long sd_bodies_work(const sd_bodies *A)
 {
-  const long tied = A->tie ? 18 * ((long) A->lone + A->clumps) + 12 * (long) A->n : 0;
-  return (long) A->width * (6 * (long) A->n + A->ghosts) + 18 * (long) A->clumps +
-      12 * largest_clump(A) + tied + 1;
+  return 6 * sd_bodies_rows(A) + 8 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
+      2 * largest_body(A) + 1;
+}
+
+static long motions(const loop *c)
+{
+  return 6 * (long) sd_bodies_count(c->A);
+}
+
+/* V behind the forces of a vector of the loop */
+static double *motion_of(const loop *c, double *vector)
+{
+  return vector + sd_bodies_rows(c->A);
 }
 
 /* --- the preconditioner --- */
 
-/* pre(r, f) of clump b; r NULL: no slip, f [6] NULL: no load. In the axes of the shape, where all
- * matrices are constant: eta B for M_b'^-1 and eta G for M_b'^-1 K, with B and G of viscosity 1, so
- *   V = N (f - eta G^T y) / eta,   z = eta (B y + G V),   y = r
- * G^T y is K^T B y without a second product, since B is symmetric. V is returned; z is added to the
- * rows of l. */
-static void respond(loop *c, int b, const double *r, const double *f, double *l, double V[6])
+/* pre(r, f): l, and V, which holds velocities of the held bodies on entry (moved: not all 0) and 0
+ * elsewhere. By the second line tied bodies bear L V less, whatever digits V has. */
+static sd_status pre(loop *c, const double *r, const double *f, int moved, double *l, double *V)
 {
   const sd_bodies *A = c->A;
-  const sd_body_shape *s = A->shape[b];
-  const double *R = A->pose + 9 * (long) b, eta = A->eta[b];
-  const int N = 6 * s->m;
-  double *y = c->slip, *z = c->force, load[6] = {0.0};
-  if (f) sd_bodies_to_shape(R, f, load);
-  memset(z, 0, sizeof(double) * (size_t) N);
-  if (r) {
-    for (int k = 0; k < s->m; k++)
-      sd_bodies_to_shape(R, sd_bodies_row(A, r, c->ghosts, b, k), y + 6 * k);
-    for (int i = 0; i < N; i++) {
-      const double *row = s->inverse + (long) i * N, *rigid = s->rigid + 6 * (long) i;
-      double sum = 0.0;
-      for (int j = 0; j < N; j++) sum += row[j] * y[j];
-      z[i] = sum;
-      for (int p = 0; p < 6; p++) load[p] -= eta * rigid[p] * y[i];
-    }
+  const long size = motions(c);
+  double *load = c->bodies, *tied = load + size, *borne = tied + size;
+  if (!A->tie) {
+    sd_bodies_alone(A, r, f, c->alone, l, V);
+    return SD_OK;
   }
-  sd_bodies_multiply6(s->mobility, load, V);
-  for (int p = 0; p < 6; p++) V[p] /= eta;
-  for (int i = 0; i < N; i++) {
-    for (int p = 0; p < 6; p++) z[i] += s->rigid[6 * (long) i + p] * V[p];
-    z[i] *= eta;
-  }
-  for (int k = 0; k < s->m; k++) {
-    const int j = A->member[A->first[b] + k];
-    if (j >= A->n) continue;
-    double space[6];
-    sd_bodies_to_space(R, z + 6 * k, space);
-    for (int d = 0; d < 6; d++) l[6 * (long) j + d] += space[d];
-  }
-}
-
-/* V of clump b, in the axes of its shape */
-static void set_motion(const sd_bodies *A, int b, const double V[6], const state *out)
-{
-  sd_bodies_clear(A, b, out->v);
-  sd_bodies_add_rigid(A, b, V, out->v);
-  sd_bodies_to_space(A->pose + 9 * (long) b, V, out->V + 6 * (long) b);
-}
-
-/* The same of all bodies, each for itself: (l, V) = out. A free sphere has l = f and V = D^-1 f -
- * r, since z = D r drops out of l. */
-static sd_status pre_alone(loop *c, const double *r, const loads *f, const state *out)
-{
-  const sd_bodies *A = c->A;
-  for (int e = 0; e < A->lone; e++)
-    for (int d = 0; d < A->width; d++) {
-      const long j = (long) A->width * A->loner[e] + d;
-      const double load = f ? f->rows[j] : 0.0;
-      out->l[j] = load;
-      out->v[j] = load / sd_bodies_drag(A, A->loner[e], d) - (r ? r[j] : 0.0);
-    }
-  if (r) {
-    const sd_status status = sd_bodies_refresh(A, r, c->ghosts);
-    if (status != SD_OK) return status;
-  }
-  for (int b = 0; b < A->clumps; b++) {
-    double V[6];
-    sd_bodies_clear(A, b, out->l);
-    respond(c, b, r, f ? f->clumps + 6 * (long) b : NULL, out->l, V);
-    set_motion(A, b, V, out);
-  }
-  return SD_OK;
-}
-
-/* Bodies for themselves would have V_0; tied they have V. By the second line they bear L V less,
- * whatever digits V has, of which X (r + K V) is with the spheres that feel it. */
-static sd_status tie_together(loop *c, const double *r, const state *out)
-{
-  const sd_bodies *A = c->A;
-  const long size = 6 * ((long) A->lone + A->clumps), clumps = 6 * (long) A->lone;
-  double *V_0 = c->tied, *V = V_0 + size, *borne = V + size, *share = borne + size;
-  for (int e = 0; e < A->lone; e++)
-    memcpy(V_0 + 6 * (long) e, out->v + 6 * (long) A->loner[e], 6 * sizeof(double));
-  memcpy(V_0 + clumps, out->V, sizeof(double) * 6 * (size_t) A->clumps);
-  const sd_status status = sd_tie_solve(A, V_0, r, c->tie_tolerance, V, borne, share);
+  if (f)
+    memcpy(load, f, sizeof(double) * (size_t) size);
+  else
+    memset(load, 0, sizeof(double) * (size_t) size);
+  if (r) sd_bodies_alone_bear(A, r, c->alone, load);
+  memcpy(tied, V, sizeof(double) * (size_t) size);
+  const sd_status status =
+      sd_tie_solve(A, load, r, c->tie_tolerance, moved, tied, borne, c->rows);
   if (status != SD_OK) return status;
-  for (int e = 0; e < A->lone; e++)
-    for (int d = 0; d < 6; d++) {
-      out->l[6 * (long) A->loner[e] + d] -= borne[6 * (long) e + d];
-      out->v[6 * (long) A->loner[e] + d] = V[6 * (long) e + d];
-    }
-  for (int b = 0; b < A->clumps; b++) {
-    const long at = clumps + 6 * (long) b;
-    double less[6], moves[6];
-    for (int d = 0; d < 6; d++) less[d] = -borne[at + d];
-    respond(c, b, NULL, less, out->l, moves);
-    sd_bodies_to_shape(A->pose + 9 * (long) b, V + at, moves);
-    set_motion(A, b, moves, out);
-  }
-  for (long j = 0; j < 6 * (long) A->n; j++) out->l[j] += share[j];
+  for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - borne[j];
+  sd_bodies_alone(A, r, load, c->alone, l, V);
+  for (int b = 0; b < sd_bodies_count(A); b++)
+    if (sd_tie_binds(A, b)) memcpy(V + 6 * (long) b, tied + 6 * (long) b, 6 * sizeof(double));
+  for (long j = 0; A->tie->L->model && j < sd_bodies_rows(A); j++) l[j] += c->rows[j];
   return SD_OK;
 }
 
-static sd_status pre(loop *c, const double *r, const loads *f, const state *out)
+static sd_status precondition(void *ctx, const double *r, double *z)
 {
-  const sd_status status = pre_alone(c, r, f, out);
-  return status == SD_OK && c->A->tie ? tie_together(c, r, out) : status;
+  loop *c = ctx;
+  memset(motion_of(c, z), 0, sizeof(double) * (size_t) motions(c));
+  return pre(c, r, NULL, 0, z, motion_of(c, z));
 }
 
-/* --- the loop --- */
+/* --- the matrix --- */
+
+/* w = M' l - K V of p = (l, V) */
+static sd_status apply(void *ctx, const double *p, double *w)
+{
+  loop *c = ctx;
+  const sd_bodies *A = c->A;
+  const double *V = p + sd_bodies_rows(A);
+  double *f = c->bodies, *less = f + motions(c);
+  const sd_status status = A->apply(A->apply_ctx, p, w);
+  if (status != SD_OK) return status;
+  c->report->products++;
+  if (c->shells) {
+    memcpy(less, V, sizeof(double) * (size_t) motions(c));
+    sd_bodies_collect(A, p, c->on_spheres, f);
+    sd_bodies_alone_shells(A, f, less);
+    V = less;
+  }
+  sd_bodies_move(A, V, c->on_spheres, c->rows);
+  for (long j = 0; j < sd_bodies_rows(A); j++) w[j] += p[j] / A->D[j] - c->rows[j];
+  return SD_OK;
+}
+
+/* p.D^-1 p of the forces */
+static double square(void *ctx, const double *p)
+{
+  const sd_bodies *A = ((loop *) ctx)->A;
+  double sum = 0.0;
+  for (long j = 0; j < sd_bodies_rows(A); j++) sum += p[j] * p[j] / A->D[j];
+  return sum;
+}
+
+/* --- when to stop --- */
 
 /* Slips of this part of the velocities are rounding, whatever the tolerance. */
 static const double rounding = 1e-14;
@@ -172,71 +137,118 @@ static const double rounding = 1e-14;
  * what there is. That takes at most one product in ten more than exact solutions, to 1e-8 as well,
  * and half to three quarters of the products with L that 0.01 all the way takes.
  * Source: van den Eshof & Sleijpen, SIAM J. Matrix Anal. Appl. 26, 125 (2004). */
-static const double tie_accuracy = 0.003, tie_loosest = 0.2;
-/* And that of a guess, whose error the loop takes up */
-static const double tie_guess = 0.3;
+typedef struct {
+  double first, loosest;
+  /* that of a guess, whose error the loop takes up */
+  double guess;
+} accuracy;
+/* Among ranks the norm of the sparse system sees less of what is lacking (sd_tie_factor.h). */
+static const accuracy alone = {0.003, 0.2, 0.3}, among_ranks = {0.001, 0.07, 0.01};
 
-/* a.b, the sum over all rows of all ranks */
-static sd_status dot(const sd_bodies *A, const double *a, const double *b, double *sum)
+static const accuracy *accuracy_of(const loop *c)
 {
-  *sum = 0.0;
-  for (long j = 0; j < (long) A->width * A->n; j++) *sum += a[j] * b[j];
-  return A->sum ? A->sum(A->sum_ctx, sum, 1) : SD_OK;
+  return c->A->world.ranks > 1 ? &among_ranks : &alone;
 }
 
 /* For pre(r, 0) where r.z is about so much */
 static double tie_tolerance(const loop *c, double power)
 {
-  const double part = tie_accuracy * sqrt(c->power.spent / power);
-  return fmax(tie_accuracy, fmin(tie_loosest, part));
+  const accuracy *a = accuracy_of(c);
+  return fmax(a->first, fmin(a->loosest, a->first * sqrt(c->power.spent / power)));
 }
 
-/* r.z and its noise: z is what pre leaves of r, whose rigid part it cancels. The power spent. Also,
- * with w, w.z. */
-static sd_status weigh(loop *c, const double *w, double *wz)
+/* given.V of those that are not held */
+static double spent_by_loads(const loop *c, const double *V)
+{
+  double sum = 0.0;
+  for (int b = 0; b < sd_bodies_count(c->A); b++)
+    for (int d = 0; d < 6 && !sd_bodies_held(c->A, b); d++)
+      sum += c->given[6 * (long) b + d] * V[6 * (long) b + d];
+  return sum;
+}
+
+enum { NOISE, FORCES, LOADS };
+
+/* r.D r, r.z's rounding: z is what pre leaves of r, whose rigid part it cancels; l.(K V - u);
+ * F.(V + dV) */
+static void measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
+{
+  const loop *c = ctx;
+  const sd_bodies *A = c->A;
+  const double *V = motion_of(c, v->x);
+  sd_bodies_move(A, V, c->on_spheres, c->rows);
+  for (long j = 0; j < sd_bodies_rows(A); j++) {
+    own[NOISE] += A->D[j] * v->r[j] * v->r[j];
+    own[FORCES] += v->x[j] * (c->rows[j] - c->problem->u[j]);
+  }
+  own[LOADS] = spent_by_loads(c, V) + spent_by_loads(c, motion_of(c, v->z));
+}
+
+/* Of the first r of a guess. V takes what it lacks at once where the guess is so good that r is K
+ * times what neighbours add to V, and r.z close to its noise; not with a tie, where l goes with V. A
+ * guess that leaves more than bodies would spend alone is dropped. */
+static verdict judge_guess(loop *c, double rz)
+{
+  const int settle = c->guess_is_new && !c->A->tie && rz < 1e4 * c->power.noise;
+  c->guess_is_new = 0;
+  if (settle) return SETTLE;
+  return rz > c->power.alone ? BEGIN_ANEW : GO_ON;
+}
+
+/* r.z is the power of what is still wrong, by the blocks of the bodies: below the floor it is
+ * rounding of velocities that are the stream's own. */
+static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
+{
+  loop *c = ctx;
+  powers *power = &c->power;
+  sd_bodies_report *report = c->report;
+  *done = 1;
+  power->noise = rounding * now->own[NOISE];
+  power->spent = fmax(fabs(now->own[FORCES]), now->own[LOADS] - power->carried);
+  if (now->steps > 0 && now->pp > 0.0)
+    report->curvature = fmin(report->curvature, now->pw / now->pp);
+  if (now->steps == 0 && c->verdict == GO_ON && c->problem->warm &&
+      (c->verdict = judge_guess(c, now->rz)) != GO_ON)
+    return SD_OK;
+  if (now->rz < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
+  report->residual = power->spent > 0.0 ? sqrt(fmax(now->rz, 0.0) / power->spent) : 0.0;
+  if (now->rz <= power->floor || report->residual < c->problem->tolerance) return SD_OK;
+  if (report->products >= c->problem->max_iter) return SD_EMAXITER;
+  c->tie_tolerance = tie_tolerance(c, now->rz);
+  *done = 0;
+  return SD_OK;
+}
+
+/* --- where it begins --- */
+
+static void hold(const loop *c, double *V)
+{
+  const double *given = c->problem->given;
+  memset(V, 0, sizeof(double) * (size_t) motions(c));
+  for (int b = 0; given && b < sd_bodies_count(c->A); b++)
+    if (sd_bodies_held(c->A, b)) memcpy(V + 6 * (long) b, given + 6 * (long) b, 6 * sizeof(double));
+}
+
+/* x = pre(-u, F) of bodies for themselves, and their power; z is scratch */
+static sd_status start_alone(loop *c)
 {
   const sd_bodies *A = c->A;
-  const state *x = &c->x, *z = &c->z;
-  double s[5] = {0.0};
-  for (long i = 0; i < A->n; i++)
-    for (int d = 0; d < A->width; d++) {
-      const long j = A->width * i + d;
-      s[0] += c->r[j] * z->l[j];
-      s[1] += sd_bodies_drag(A, i, d) * c->r[j] * c->r[j];
-      s[2] += x->l[j] * (x->v[j] - c->u[j]);
-      s[3] += c->given[j] * (x->v[j] + z->v[j] - c->u[j]);
-      if (w) s[4] += w[j] * z->l[j];
-    }
-  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 5) : SD_OK;
-  c->power.rz = s[0];
-  c->power.noise = rounding * s[1];
-  c->power.spent = fmax(fabs(s[2]), s[3]);
-  if (w) *wz = s[4];
-  return status;
-}
-
-/* out = L (v - V_inf) */
-static sd_status resist(loop *c, const double *v, double *out)
-{
-  const sd_lubrication *L = c->A->tie->L;
-  const sd_status status = sd_lubrication_apply(c->A->tie->L, v, out);
-  for (long j = 0; j < (long) c->A->width * c->A->n; j++) out[j] -= L->carried[j];
-  return status;
-}
-
-/* out = (D^-1 + Omega) l; of shells all but what K^T l = F gives once for all, which without a tie
- * is all that they give */
-static sd_status multiply(loop *c, const double *l, double *out)
-{
-  const sd_bodies *A = c->A;
-  sd_status status = A->apply(A->apply_ctx, l, out);
-  c->report->products++;
-  for (long i = 0; i < A->n; i++)
-    for (int d = 0; d < A->width; d++)
-      out[A->width * i + d] += l[A->width * i + d] / sd_bodies_drag(A, i, d);
-  if (!A->tie || status != SD_OK) return status;
-  status = sd_bodies_onto_clumps(A, l, c->ghosts, c->tied);
-  if (status == SD_OK) sd_bodies_shells(A, c->tied, 1.0, out);
+  double s[3] = {0.0}, *V = motion_of(c, c->v.x), *still = motion_of(c, c->v.z);
+  for (long j = 0; j < sd_bodies_rows(A); j++) c->v.r[j] = -c->problem->u[j];
+  hold(c, V);
+  sd_bodies_alone(A, c->v.r, c->f, c->alone, c->v.x, V);
+  sd_bodies_move(A, V, c->on_spheres, c->rows);
+  for (long j = 0; j < sd_bodies_rows(A); j++) {
+    const double u = c->problem->u[j], v = c->rows[j];
+    s[0] += c->v.x[j] * (v - u);
+    s[1] += A->D[j] * (u * u + v * v);
+  }
+  sd_bodies_alone_move(A, c->f, still);
+  s[2] = spent_by_loads(c, V) - spent_by_loads(c, still);
+  const sd_status status = sd_world_sum(&A->world, s, 3);
+  c->power.alone = fabs(s[0]);
+  c->power.floor = rounding * rounding * s[1];
+  c->power.carried = s[2];
   return status;
 }
 
@@ -246,250 +258,199 @@ static sd_status expect(loop *c)
   const sd_bodies *A = c->A;
   double s[2] = {0.0, 0.0};
   if (!A->tie) return SD_OK;
-  for (long i = 0; i < A->n; i++)
-    for (int d = 0; d < A->width; d++) {
-      const long j = A->width * i + d;
-      s[0] += sd_bodies_drag(A, i, d) * c->r[j] * c->r[j];
-      s[1] += c->given[j] * (c->x.v[j] - c->u[j]);
-    }
-  const sd_status status = A->sum ? A->sum(A->sum_ctx, s, 2) : SD_OK;
-  c->power.spent = fmax(c->power.alone, s[1]);
+  for (long j = 0; j < sd_bodies_rows(A); j++) s[0] += A->D[j] * c->v.r[j] * c->v.r[j];
+  s[1] = spent_by_loads(c, motion_of(c, c->v.x));
+  const sd_status status = sd_world_sum(&A->world, s, 2);
+  c->power.spent = fmax(c->power.alone, s[1] - c->power.carried);
   c->tie_tolerance = tie_tolerance(c, s[0]);
   return status;
 }
 
-/* r = K V - u - M' l of x, which obeys the second line; z = pre(r, 0) */
-static sd_status residual(loop *c)
+/* r = K V - u - M' l of x, which obeys the second line */
+static sd_status find_residual(loop *c)
 {
-  const sd_bodies *A = c->A;
-  sd_status status = multiply(c, c->x.l, c->r);
+  const sd_status status = apply(c, c->v.x, c->v.w);
   if (status != SD_OK) return status;
-  for (long j = 0; j < (long) A->width * A->n; j++) c->r[j] = c->x.v[j] - c->u[j] - c->r[j];
-  if (!A->tie) sd_bodies_shells(A, c->F.clumps, -1.0, c->r);
-  if ((status = expect(c)) == SD_OK) status = pre(c, c->r, NULL, &c->z);
-  return status == SD_OK ? weigh(c, NULL, NULL) : status;
-}
-
-/* x = pre(-u, F) of bodies for themselves, and their power */
-static sd_status start_alone(loop *c)
-{
-  const sd_bodies *A = c->A;
-  double s[2] = {0.0, 0.0};
-  for (long j = 0; j < (long) A->width * A->n; j++) c->r[j] = -c->u[j];
-  sd_status status = pre_alone(c, c->r, &c->F, &c->x);
-  for (long i = 0; i < A->n; i++)
-    for (int d = 0; d < A->width; d++) {
-      const long j = A->width * i + d;
-      const double u = c->u[j], v = c->x.v[j];
-      s[0] += c->x.l[j] * (v - u);
-      s[1] += sd_bodies_drag(A, i, d) * (u * u + v * v);
-    }
-  if (status == SD_OK && A->sum) status = A->sum(A->sum_ctx, s, 2);
-  c->power.alone = fabs(s[0]);
-  c->power.floor = rounding * rounding * s[1];
-  return status;
+  for (long j = 0; j < sd_bodies_rows(c->A); j++) c->v.r[j] = -c->problem->u[j] - c->v.w[j];
+  return expect(c);
 }
 
 /* From x = pre(-u, F) */
 static sd_status start_cold(loop *c)
 {
   sd_status status = start_alone(c);
-  c->tie_tolerance = tie_accuracy;
-  if (status == SD_OK && c->A->tie) status = tie_together(c, c->r, &c->x);
-  return status == SD_OK ? residual(c) : status;
-}
-
-/* guess += what it lacks of the second line, by pre(0, F - K^T (l + L K V)) */
-static sd_status repair(loop *c, const state *guess)
-{
-  const sd_bodies *A = c->A;
-  const long size = (long) A->width * A->n;
-  const loads lacks = {c->r, c->w};
-  sd_status status = SD_OK;
-  if (A->tie) status = sd_lubrication_apply(A->tie->L, guess->v, c->r);
-  for (long j = 0; j < size; j++) c->r[j] = guess->l[j] + (A->tie ? c->r[j] : 0.0);
-  if (status == SD_OK) status = sd_bodies_onto_clumps(A, c->r, c->ghosts, lacks.clumps);
-  if (status != SD_OK) return status;
-  c->tie_tolerance = tie_guess;
-  for (int j = 0; j < 6 * A->clumps; j++) lacks.clumps[j] = c->F.clumps[j] - lacks.clumps[j];
-  for (long j = 0; j < size; j++) c->r[j] = c->F.rows[j] - c->r[j];
-  status = pre(c, NULL, &lacks, &c->z);
-  for (long j = 0; j < size; j++) guess->l[j] += c->z.l[j];
-  for (long j = 0; A->tie && j < size; j++) guess->v[j] += c->z.v[j];
-  for (int j = 0; A->tie && j < 6 * A->clumps; j++) guess->V[j] += c->z.V[j];
-  return status;
-}
-
-/* The motion that a guess goes with, by rows and by clumps: that of each clump's first sphere. */
-static sd_status guess_motion(loop *c, const double *before, const state *guess)
-{
-  const sd_bodies *A = c->A;
-  memcpy(guess->v, before, sizeof(double) * 6 * (size_t) A->n);
-  const sd_status status = sd_bodies_refresh(A, before, c->ghosts);
-  for (int b = 0; b < A->clumps && status == SD_OK; b++) {
-    double V[6], turning[3];
-    sd_bodies_to_shape(A->pose + 9 * (long) b, sd_bodies_row(A, before, c->ghosts, b, 0), V);
-    sd_cross(V + 3, A->shape[b]->x, turning);
-    for (int d = 0; d < 3; d++) V[d] -= turning[d];
-    set_motion(A, b, V, guess);
+  if (status == SD_OK && c->A->tie) {
+    c->tie_tolerance = accuracy_of(c)->first;
+    hold(c, motion_of(c, c->v.x));
+    status = pre(c, c->v.r, c->f, c->problem->given != NULL, c->v.x, motion_of(c, c->v.x));
   }
+  return status == SD_OK ? find_residual(c) : status;
+}
+
+/* V of a guess, that of each body's first sphere */
+static void guess_motion(const loop *c, const double *before, double *V)
+{
+  const sd_rigid *K = &c->A->spheres;
+  hold(c, V);
+  for (int i = K->n - 1; i >= 0; i--) {
+    const int b = K->whole ? K->whole[i] : i;
+    if (sd_bodies_held(c->A, b)) continue;
+    const double *v = before + 6 * (long) i, *arm = K->arm ? K->arm + 3 * (long) i : NULL;
+    memcpy(V + 6 * (long) b, v, 6 * sizeof(double));
+    for (int d = 0; d < 3 && arm; d++) {
+      const int e = (d + 1) % 3, g = (d + 2) % 3;
+      V[6 * (long) b + d] -= v[3 + e] * arm[g] - v[3 + g] * arm[e];
+    }
+  }
+}
+
+/* guess (l, V) += what it lacks of the second line, by pre(0, F - K^T l - K_s^T L K_s V) */
+static sd_status repair(loop *c, double *guess)
+{
+  const sd_bodies *A = c->A;
+  const long rows = sd_bodies_rows(A);
+  double *V = motion_of(c, guess), *dV = motion_of(c, c->v.z), *lacks = motion_of(c, c->v.x);
+  sd_bodies_collect(A, guess, c->on_spheres, lacks);
+  if (A->tie) {
+    double *v = c->on_spheres, *borne = v + 6 * (long) A->spheres.n;
+    sd_rigid_move(&A->spheres, V, v);
+    const sd_status status = sd_lubrication_apply(A->tie->L, v, borne);
+    if (status != SD_OK) return status;
+    sd_rigid_collect(&A->spheres, borne, sd_bodies_count(A), dV);
+    for (long j = 0; j < motions(c); j++) lacks[j] += dV[j];
+  }
+  for (long j = 0; j < motions(c); j++) lacks[j] = c->f[j] - lacks[j];
+  c->tie_tolerance = accuracy_of(c)->guess;
+  memset(dV, 0, sizeof(double) * (size_t) motions(c));
+  const sd_status status = pre(c, NULL, lacks, 0, c->v.z, dV);
+  for (long j = 0; j < rows; j++) guess[j] += c->v.z[j];
+  for (long j = 0; A->tie && j < motions(c); j++) V[j] += dV[j];
   return status;
+}
+
+/* From the guess, with a tie (l, V) */
+static sd_status start_warm(loop *c, const double *before)
+{
+  const sd_bodies *A = c->A;
+  double *guess = c->v.p;
+  memcpy(guess, c->v.x, sizeof(double) * (size_t) sd_bodies_rows(A));
+  if (A->tie) guess_motion(c, before, motion_of(c, guess));
+  sd_status status = repair(c, guess);
+  if (status == SD_OK) status = start_alone(c);
+  memcpy(c->v.x, guess, sizeof(double) * (size_t) (sd_bodies_rows(A) + (A->tie ? motions(c) : 0)));
+  return status == SD_OK ? find_residual(c) : status;
 }
 
 /* V takes what it lacks. */
 static void take_motion(loop *c)
 {
-  for (long j = 0; j < (long) c->A->width * c->A->n; j++) c->x.v[j] += c->z.v[j];
-  for (long j = 0; j < 6 * (long) c->A->clumps; j++) c->x.V[j] += c->z.V[j];
+  double *V = motion_of(c, c->v.x);
+  const double *dV = motion_of(c, c->v.z);
+  for (long j = 0; j < motions(c); j++) V[j] += dV[j];
 }
 
-/* V takes what it lacks at once, and r loses it: for a guess so good that r is K times what
- * neighbours add to V, and r.z close to its noise. Not with a tie, where l goes with V. */
 static sd_status settle(loop *c)
 {
   take_motion(c);
-  for (long j = 0; j < (long) c->A->width * c->A->n; j++) c->r[j] += c->z.v[j];
-  const sd_status status = pre(c, c->r, NULL, &c->z);
-  return status == SD_OK ? weigh(c, NULL, NULL) : status;
+  sd_bodies_move(c->A, motion_of(c, c->v.z), c->on_spheres, c->rows);
+  for (long j = 0; j < sd_bodies_rows(c->A); j++) c->v.r[j] += c->rows[j];
+  return SD_OK;
 }
 
-/* x, r and z at the start of the loop. Warm: l is a guess, with a tie (l, V), dropped when it
- * leaves more than bodies would spend alone. */
-static sd_status start(loop *c, const double *before, int warm)
+static sd_status iterate(loop *c)
 {
-  const size_t bytes = sizeof(double) * (size_t) c->A->width * (size_t) c->A->n;
-  const state *guess = &c->along;
-  if (!warm) return start_cold(c);
-  memcpy(guess->l, c->x.l, bytes);
-  sd_status status = c->A->tie ? guess_motion(c, before, guess) : SD_OK;
-  if (status == SD_OK) status = repair(c, guess);
-  if (status == SD_OK) status = start_alone(c);
-  memcpy(c->x.l, guess->l, bytes);
-  if (c->A->tie) {
-    memcpy(c->x.v, guess->v, bytes);
-    memcpy(c->x.V, guess->V, sizeof(double) * 6 * (size_t) c->A->clumps);
-  }
-  if (status == SD_OK) status = residual(c);
-  if (status == SD_OK && !c->A->tie && c->power.rz < 1e4 * c->power.noise) status = settle(c);
-  return status == SD_OK && c->power.rz > c->power.alone ? start_cold(c) : status;
+  const sd_cg cg = {.size = sd_bodies_rows(c->A) + motions(c),
+                    .paired = sd_bodies_rows(c->A),
+                    .ctx = c,
+                    .apply = apply,
+                    .precondition = precondition,
+                    .measure = measure,
+                    .judge = judge,
+                    .square = square,
+                    .world = &c->A->world};
+  sd_cg_state state;
+  sd_status status = SD_OK;
+  do {
+    const verdict last = c->verdict;
+    if (last != GO_ON) status = last == SETTLE ? settle(c) : start_cold(c);
+    if (last == SETTLE) c->verdict = GO_ON;
+    if (status == SD_OK) status = sd_cg_run(&cg, &c->v, &state);
+    if (last == BEGIN_ANEW) break;
+  } while (status == SD_OK && c->verdict != GO_ON);
+  return status == SD_ESINGULAR ? SD_EINDEFINITE : status;
 }
 
-/* (p, q) = (z, dV) + beta (p, q): conjugate to all before, since each lies within the constraint */
-static void turn_along(loop *c, double beta)
-{
-  for (long j = 0; j < (long) c->A->width * c->A->n; j++) {
-    c->along.l[j] = c->z.l[j] + beta * c->along.l[j];
-    c->along.v[j] = c->z.v[j] + beta * c->along.v[j];
-  }
-  for (long j = 0; j < 6 * (long) c->A->clumps; j++)
-    c->along.V[j] = c->z.V[j] + beta * c->along.V[j];
-}
+/* --- what comes of it --- */
 
-/* From x along (p, q) to where the power is least, and z = pre(r, 0) there. Without a tie K^T p =
- * 0, so p.K q = 0 and the curvature is p.M p, with one -p.K q is q.L q; K q stays in w all the
- * same, where it keeps the digits of r. */
-static sd_status step(loop *c, double *beta)
+/* K^T l + K_s^T L K_s V = F + K_s^T L V_inf */
+static void take_loads(loop *c)
 {
   const sd_bodies *A = c->A;
-  const state *x = &c->x, *along = &c->along;
-  const long size = (long) A->width * A->n;
-  double curvature;
-  sd_status status = multiply(c, along->l, c->w);
-  if (status != SD_OK) return status;
-  for (long j = 0; j < size; j++) c->w[j] -= along->v[j];
-  if ((status = dot(A, along->l, c->w, &curvature)) != SD_OK) return status;
-  if (!isfinite(curvature)) return SD_ENOTFINITE;
-  if (!(curvature > 0.0)) return SD_EINDEFINITE;
-  const double alpha = c->power.rz / curvature;
-  for (long j = 0; j < size; j++) {
-    x->l[j] += alpha * along->l[j];
-    x->v[j] += alpha * along->v[j];
-    c->r[j] -= alpha * c->w[j];
-  }
-  for (int j = 0; j < 6 * A->clumps; j++) x->V[j] += alpha * along->V[j];
-  c->tie_tolerance = tie_tolerance(c, c->power.rz);
-  status = pre(c, c->r, NULL, &c->z);
-  if (status != SD_OK) return status;
-  double wz = 0.0;
-  status = weigh(c, c->w, &wz);
-  *beta = -wz / curvature;
-  return status;
-}
-
-/* Until sqrt(r.z / spent) < tolerance. r.z is the power of what is still wrong, by the blocks of
- * the bodies: below the floor it is rounding of velocities that are the stream's own. */
-static sd_status iterate(loop *c, double tolerance, int max_iter)
-{
-  const powers *power = &c->power;
-  const size_t rows = (size_t) c->A->width * (size_t) c->A->n, motions = 6 * (size_t) c->A->clumps;
-  memset(c->along.l, 0, sizeof(double) * rows);
-  memset(c->along.v, 0, sizeof(double) * rows);
-  memset(c->along.V, 0, sizeof(double) * motions);
-  for (double beta = 0.0;;) {
-    const double before = power->rz;
-    if (!isfinite(before + power->spent)) return SD_ENOTFINITE;
-    if (before < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
-    c->report->residual = power->spent > 0.0 ? sqrt(fmax(before, 0.0) / power->spent) : 0.0;
-    if (before <= power->floor) return SD_OK;
-    if (c->report->residual < tolerance) return SD_OK;
-    if (c->report->products >= max_iter) return SD_EMAXITER;
-    turn_along(c, beta);
-    const sd_status status = step(c, &beta);
-    if (status != SD_OK) return status;
-  }
-}
-
-/* K^T l + K^T L K V = F + K^T L V_inf */
-static sd_status take_loads(loop *c, const double *F, double *rows, double *clumps)
-{
-  const sd_bodies *A = c->A;
-  for (long j = 0; A->tie && j < (long) A->width * A->n; j++)
-    rows[j] = F[j] + A->tie->L->carried[j];
-  c->F = (loads){A->tie ? rows : F, clumps};
-  return sd_bodies_onto_clumps(A, c->F.rows, c->ghosts, clumps);
+  sd_rigid_collect(&A->spheres, c->problem->F, sd_bodies_count(A), c->given);
+  memcpy(c->f, c->given, sizeof(double) * (size_t) motions(c));
+  if (!A->tie) return;
+  sd_rigid_collect(&A->spheres, A->tie->L->carried, sd_bodies_count(A), c->bodies);
+  for (long j = 0; j < motions(c); j++) c->f[j] += c->bodies[j];
 }
 
 /* The last pre(r, 0) is free, and without it free spheres would have their lone velocities. */
 static sd_status finish(loop *c, const sd_bodies_motion *motion)
 {
   const sd_bodies *A = c->A;
-  const long size = (long) A->width * A->n;
-  if (A->tie) memcpy(motion->before, motion->v, sizeof(double) * (size_t) size);
+  const long rows = sd_bodies_rows(A), loads = sd_bodies_loads(A);
+  double *V = motion_of(c, c->v.x);
+  memcpy(motion->l, c->v.x, sizeof(double) * (size_t) rows);
+  if (A->tie) sd_rigid_move(&A->spheres, V, motion->before);
   take_motion(c);
+  memcpy(motion->V, V, sizeof(double) * (size_t) motions(c));
+  sd_rigid_move(&A->spheres, V, motion->v);
+  for (long j = 0; j < rows; j++) c->rows[j] = c->v.x[j] + c->v.z[j];
+  if (A->points.whole)
+    sd_rigid_collect(&A->points, c->rows, A->spheres.n, motion->exerted);
+  else
+    memcpy(motion->exerted, c->rows, sizeof(double) * (size_t) loads);
   if (!A->tie) return SD_OK;
-  const sd_status status = resist(c, motion->v, motion->near);
-  for (long j = 0; j < size; j++) motion->near[j] += c->z.l[j];
+  const sd_status status = sd_lubrication_apply(A->tie->L, motion->v, c->on_spheres);
+  for (long j = 0; j < loads; j++)
+    motion->exerted[j] += c->on_spheres[j] - A->tie->L->carried[j];
   return status;
 }
 
-sd_status sd_bodies_velocities(const sd_bodies *A, const sd_bodies_problem *problem,
-                               const sd_bodies_motion *motion, double *work,
-                               sd_bodies_report *report)
+static int any_shells(const sd_bodies *A)
 {
-  const long size = (long) A->width * A->n, motions = 6 * (long) A->clumps;
-  double *rows = work, *clumps = rows + 6 * size, *ghosts = clumps + 3 * motions;
-  double *large = ghosts + (long) A->width * A->ghosts, *tied = large + 12 * largest_clump(A);
+  for (int b = 0; b < A->shaped; b++)
+    for (int e = 0; e < 36; e++)
+      if (A->body[b].shape->shell[e] != 0.0) return 1;
+  return 0;
+}
+
+sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
+                          const sd_bodies_motion *motion, double *work, sd_bodies_report *report)
+{
+  const long rows = sd_bodies_rows(A), bodies = 6 * (long) sd_bodies_count(A), size = rows + bodies;
+  double *r = work + 3 * size, *given = r + 3 * rows, *on_spheres = given + 5 * bodies;
   loop c = {
       .A = A,
-      .u = problem->u,
-      .given = problem->F,
-      .x = {motion->l, motion->v, motion->V},
-      .z = {rows, rows + size, clumps + motions},
-      .along = {rows + 2 * size, rows + 3 * size, clumps + 2 * motions},
-      .r = rows + 4 * size,
-      .w = rows + 5 * size,
-      .ghosts = ghosts,
-      .slip = large,
-      .force = large + 6 * largest_clump(A),
-      .tied = tied,
+      .problem = problem,
+      .v = {work, work + size, work + 2 * size, r, r + rows},
+      .rows = r + 2 * rows,
+      .given = given,
+      .f = given + bodies,
+      .bodies = given + 2 * bodies,
+      .on_spheres = on_spheres,
+      .alone = on_spheres + 12 * (long) A->spheres.n,
+      .shells = any_shells(A),
+      .guess_is_new = problem->warm,
       .report = report,
   };
-  *report = (sd_bodies_report){0};
+  *report = (sd_bodies_report){.curvature = 1.0};
+  memset(work, 0, sizeof(double) * (size_t) (2 * size));
+  if (problem->warm) memcpy(c.v.x, motion->l, sizeof(double) * (size_t) rows);
   sd_status status = A->tie ? sd_tie_make(A) : SD_OK;
-  if (status == SD_OK)
-    status = take_loads(&c, problem->F, tied + 18 * ((long) A->lone + A->clumps) + size, clumps);
-  if (status == SD_OK) status = start(&c, motion->before, problem->warm);
-  if (status == SD_OK) status = iterate(&c, problem->tolerance, problem->max_iter);
+  if (status != SD_OK) return status;
+  take_loads(&c);
+  status = problem->warm ? start_warm(&c, motion->before) : start_cold(&c);
+  if (status == SD_OK) status = iterate(&c);
   if (status != SD_OK && status != SD_EMAXITER) return status;
   const sd_status last = finish(&c, motion);
   return last == SD_OK ? status : last;

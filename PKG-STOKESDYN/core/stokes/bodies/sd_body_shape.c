@@ -25,18 +25,18 @@ static void strain_at(const double X[3], int c, double v[3])
   v[col[c]] = X[row[c]];
 }
 
-/* M_b: each pair of spheres, and 1/(6 pi a), 1/(8 pi a^3) on the diagonal (r = 0) */
-static void own_blocks(const sd_shape *shape, double *M)
+/* Each pair of points, and 1/(6 pi a), 1/(8 pi a^3) on the diagonal (r = 0); forces are the first
+ * three rows and columns of a block with torques. */
+void sd_body_shape_matrix(int m, int width, const double *x, const double *a, double *M)
 {
-  const size_t N = 6 * (size_t) shape->n;
-  for (int i = 0; i < shape->n; i++)
-    for (int j = 0; j < shape->n; j++) {
-      const double *x = shape->x + 3 * (size_t) i, *y = shape->x + 3 * (size_t) j;
-      const double r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
-      double block[36];
-      sd_tensor_grand(r, shape->a[i], shape->a[j], 1.0, block);
-      for (int p = 0; p < 6; p++)
-        memcpy(M + (6 * (size_t) i + p) * N + 6 * (size_t) j, block + 6 * p, 6 * sizeof(double));
+  const size_t w = (size_t) width, N = w * (size_t) m;
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < m; j++) {
+      double r[3], block[36];
+      sd_minus(x + 3 * (size_t) i, x + 3 * (size_t) j, r);
+      sd_tensor_grand(r, a[i], a[j], 1.0, block);
+      for (size_t p = 0; p < w; p++)
+        memcpy(M + (w * (size_t) i + p) * N + w * (size_t) j, block + 6 * p, w * sizeof(double));
     }
 }
 
@@ -44,18 +44,18 @@ static void own_blocks(const sd_shape *shape, double *M)
 static void apply_to_rigid(const sd_body_shape *s, const double *inverse, double *rigid,
                            double R[36])
 {
-  const size_t N = 6 * (size_t) s->m;
+  const size_t w = (size_t) s->width, N = w * (size_t) s->m;
   memset(rigid, 0, sizeof(double) * 6 * N);
   memset(R, 0, 36 * sizeof(double));
   for (size_t j = 0; j < N; j++) {
     double K[6];
-    rigid_row(s->x + 3 * (j / 6), (int) (j % 6), K);
+    rigid_row(s->x + 3 * (j / w), (int) (j % w), K);
     for (size_t i = 0; i < N; i++)
       for (int c = 0; c < 6; c++) rigid[6 * i + c] += inverse[i * N + j] * K[c];
   }
   for (size_t i = 0; i < N; i++) {
     double K[6];
-    rigid_row(s->x + 3 * (i / 6), (int) (i % 6), K);
+    rigid_row(s->x + 3 * (i / w), (int) (i % w), K);
     for (int p = 0; p < 6; p++)
       for (int c = 0; c < 6; c++) R[6 * p + c] += K[p] * rigid[6 * i + c];
   }
@@ -71,7 +71,7 @@ static void motion_in_strain(const double N[36], const double C[36], double out[
       for (int q = 0; q < 6; q++) out[6 * p + c] += sign * N[6 * p + q] * C[6 * q + c];
 }
 
-/* dN and dE, and K dN K^T added to M. rigid = M_b^-1 K of the spheres without shells: its transpose
+/* dN and dE, and K dN K^T added to M, with torques. rigid = M_b^-1 K of the spheres without shells: its transpose
  * gives C of the spheres, column by column, without another solve. */
 static void add_shells(sd_body_shape *s, const sd_clump *shells, const double *rigid,
                        const double N_spheres[36], double *M)
@@ -110,35 +110,50 @@ static sd_status invert(size_t N, double *A)
   return status == SD_OK ? sd_cholesky_inverse((int) N, A) : status;
 }
 
-sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *s)
+/* inverse, rigid, mobility and resistance from M, which `inverse` holds on entry */
+static sd_status complete(sd_body_shape *s)
 {
-  const size_t m = (size_t) shape->n, N = 6 * m;
-  double *const R = s->resistance;
-  *s = (sd_body_shape){.m = shape->n};
-  s->x = malloc(sizeof(double) * 3 * m);
+  const sd_status status = invert((size_t) s->width * (size_t) s->m, s->inverse);
+  if (status != SD_OK) return status;
+  apply_to_rigid(s, s->inverse, s->rigid, s->resistance);
+  sd_pseudo_inverse6(s->resistance, s->mobility);
+  return SD_OK;
+}
+
+sd_status sd_body_shape_of(int m, int width, const double *x, const double *M,
+                           sd_body_shape *s)
+{
+  const size_t N = (size_t) width * (size_t) m;
+  *s = (sd_body_shape){.m = m, .width = width};
+  s->x = malloc(sizeof(double) * 3 * (size_t) m);
   s->inverse = malloc(sizeof(double) * N * N);
   s->rigid = malloc(sizeof(double) * 6 * N);
   sd_status status = s->x && s->inverse && s->rigid ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) {
-    memcpy(s->x, shape->x, sizeof(double) * 3 * m);
-    own_blocks(shape, s->inverse);
-    status = invert(N, s->inverse);
-  }
-  if (status == SD_OK) {
-    apply_to_rigid(s, s->inverse, s->rigid, R);
-    sd_pseudo_inverse6(R, s->mobility);
-  }
-  /* Now N_spheres and M_b^-1 K are known, which is what M_b' is made of; then once more with it. */
-  if (status == SD_OK && shells) {
-    own_blocks(shape, s->inverse);
-    add_shells(s, shells, s->rigid, s->mobility, s->inverse);
-    status = invert(N, s->inverse);
-  }
-  if (status == SD_OK && shells) {
-    apply_to_rigid(s, s->inverse, s->rigid, R);
-    sd_pseudo_inverse6(R, s->mobility);
+    memcpy(s->x, x, sizeof(double) * 3 * (size_t) m);
+    memcpy(s->inverse, M, sizeof(double) * N * N);
+    status = complete(s);
   }
   if (status != SD_OK) sd_body_shape_free(s);
+  return status;
+}
+
+sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *s)
+{
+  const size_t N = 6 * (size_t) shape->n;
+  double *M = malloc(sizeof(double) * N * N);
+  *s = (sd_body_shape){0};
+  if (!M) return SD_ENOMEMORY;
+  sd_body_shape_matrix(shape->n, 6, shape->x, shape->a, M);
+  sd_status status = sd_body_shape_of(shape->n, 6, shape->x, M, s);
+  /* Now N_spheres and M_b^-1 K are known, which M_b' is made of; then once more with it. */
+  if (status == SD_OK && shells) {
+    memcpy(s->inverse, M, sizeof(double) * N * N);
+    add_shells(s, shells, s->rigid, s->mobility, s->inverse);
+    status = complete(s);
+    if (status != SD_OK) sd_body_shape_free(s);
+  }
+  free(M);
   return status;
 }
 

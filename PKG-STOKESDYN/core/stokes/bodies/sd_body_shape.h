@@ -1,11 +1,18 @@
-/* What a rigid shape of spheres is to the loop of sd_bodies.h: constant blocks, in the frame of
- * the shape and for eta = 1, which are turned with every clump of this shape.
+/* What a rigid shape of points is to the loop of sd_bodies.h: constant blocks, in the frame of the
+ * shape and for eta = 1, which are turned with every body of this shape.
  *
- * The unknowns are force and torque of each sphere about its own centre, 6 m numbers, with the
- * Rotne-Prager-Yamakawa blocks M_b between them. K (6 m x 6): velocities of the spheres from those
- * of the body about the centroid, v_k = U + W x X_k, w_k = W.
+ * Unknowns of a point are its force, width 3, or force and torque about its own centre, width 6:
+ * width m numbers, with the matrix M_b between them. K (width m x 6): velocities of the points from
+ * those of the body about the centre of the shape, v_k = U + W x X_k, w_k = W.
  *
- * Shells at the price of spheres: with N_spheres = (K^T M_b^-1 K)^-1, the mobility that the body
+ * One shape serves bodies of any size. With lengths a times as large, T = diag(1, 1/a) on (velocity,
+ * angular velocity) and on (force, torque) of points and bodies alike, and viscosity eta
+ *
+ *   M_b(a) = T M_b T / (eta a),   K(a) = T K T^-1,   so N(a) = T N T / (eta a)
+ *
+ * of which width 3 sees M_b / (eta a) alone.
+ *
+ * Shells at the price of spheres: with N_spheres = (K^T M_b^-1 K)^-1, the mobility that a clump
  * has as spheres, and N_shell, the one that it has with shells (sd_clump.h), the body's own matrix
  * is
  *   M_b' = M_b + K dN K^T,   dN = N_shell - N_spheres
@@ -22,13 +29,13 @@ extern "C" {
 #endif
 
 typedef struct {
-  /* spheres */
-  int m;
-  /* [3m] X_k, from the centroid */
+  /* points, and numbers of each: 3 or 6 */
+  int m, width;
+  /* [3m] X_k, from the centre */
   double *x;
-  /* [(6m)^2] M_b'^-1, symmetric; [(6m) 6] M_b'^-1 K, row-major */
+  /* [(width m)^2] M_b'^-1, symmetric; [(width m) 6] M_b'^-1 K, row-major */
   double *inverse, *rigid;
-  /* [6 6] of the lone body: (U, W) from force and torque about the centroid; and its inverse */
+  /* [6 6] of the lone body: (U, W) from force and torque about the centre; and its inverse */
   double mobility[36], resistance[36];
   /* [6 6] dN, 0 without shells */
   double shell[36];
@@ -36,9 +43,16 @@ typedef struct {
   double carried[36];
 } sd_body_shape;
 
-/* shells: the clump of this shape with shells; NULL: spheres are points with force and torque. The
- * owner frees.
- * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: spheres at one point with equal radii. */
+/* M [(width m)^2], row-major: RPY between m points x [3m] of radii a [m] in a fluid of viscosity 1,
+ * with torques for width 6 */
+void sd_body_shape_matrix(int m, int width, const double *x, const double *a, double *M);
+/* The shape of points x [3m] whose matrix is M [(width m)^2]: that of sd_body_shape_matrix,
+ * or with what a model adds for each body alone. The owner frees.
+ * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: M is not positive definite (points of equal radii at one
+ * place); SD_ENOTFINITE. */
+sd_status sd_body_shape_of(int m, int width, const double *x, const double *M, sd_body_shape *out);
+/* A clump of spheres with forces and torques. shells: the clump of this shape with shells; NULL:
+ * none. The owner frees. Status as above. */
 sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *out);
 void sd_body_shape_free(sd_body_shape *s);
 

@@ -1,5 +1,5 @@
 /* What the mobility itself resists of the approach of close spheres, for the preconditioner of
- * sd_tie.h.
+ * sd_tie.h. It belongs to the model of one point per sphere: spheres are rows.
  *
  * The blocks M_b know a sphere alone. Close spheres that are pressed together drive each other's
  * fluid away: by the model, a pair of equal ones that touch resists its approach 2.7 times as much
@@ -15,13 +15,13 @@
 #ifndef SD_TIE_APPROACH_H
 #define SD_TIE_APPROACH_H
 
-#include "sd_tie_factor.h"
+#include "sd_tie.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Where A->tie->L stands now. SD_OK or SD_ENOMEMORY */
+/* Where A->tie->L stands now; without L->model X = 0. SD_OK or SD_ENOMEMORY */
 sd_status sd_tie_approach_make(const sd_bodies *A);
 /* out += X v, rows; those of other ranks are in A->tie->L->others */
 void sd_tie_approach_add(const sd_bodies *A, const double *v, double *out);

@@ -4,94 +4,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_bodies_alone.h"
+#include "sd_linear.h"
 #include "sd_room.h"
 
 /* In units of the drags of the bodies: pairs whose block is smaller are left out of the factor, as
  * is such fill. */
 static const double weak = 0.8, drop = 0.1;
 
-/* Stiff pairs chain bodies of all ranks together, and a factor that ends at a rank would not know
- * how they move as one. So each rank has the whole: blocks and vectors are put where they belong
- * among zeros and summed over the ranks. */
+/* What other ranks know of a sphere: whose it is, row and number of the body there; from the centre
+ * of the body to it; scales and block H_ii of the body, scaled */
+enum { RANK, ROW, BODY, ARM, SCALE = ARM + 3, BLOCK = SCALE + 6, PLACE = BLOCK + 36 };
+
 typedef struct {
-  /* bodies of all ranks; [36 total] blocks of H_ii, scaled; [6 total] 1 over the roots of the
-   * diagonal of H_0, 0: nobody is near to this body */
-  int total;
-  double *diagonal, *scale;
-  /* by rows: number of the body, from its centre to the sphere, largest scales of its U and W;
-   * likewise of other ranks' rows */
-  double *place, *others;
-  /* [count] blocks between bodies where they go to other ranks: numbers of the two, block */
-  long count;
-  double (*rows)[2 + 36];
+  /* [36 bodies] blocks of H_ii, scaled */
+  double *diagonal;
+  /* of the copies [PLACE]; the body that each belongs to, among those of the factor, -1: none;
+   * does it stand for its sphere, which may have more copies? */
+  int copies;
+  double *place;
+  int *body;
+  char *stands;
 } assembly;
 
-enum { NUMBER, ARM, SCALES = 4, PLACE = 6 };
-
-static int ranks_of(const sd_bodies *A)
+static int layered(const sd_bodies *A)
 {
-  return A->tie->L->world.ranks > 1 ? A->tie->L->world.ranks : 1;
+  const sd_world *world = &A->tie->L->world;
+  return world->ranks > 1 && world->refresh && world->reduce;
 }
 
-static sd_status sum_over_ranks(const sd_bodies *A, double *values, long count)
+static int body_of(const sd_bodies *A, int sphere)
 {
-  return ranks_of(A) > 1 && A->sum ? A->sum(A->sum_ctx, values, (int) count) : SD_OK;
+  return A->spheres.whole ? A->spheres.whole[sphere] : sphere;
 }
 
-/* How many there are before this rank's, and in all */
-static sd_status share(const sd_bodies *A, long mine, long *before, long *all)
-{
-  const int ranks = ranks_of(A), me = ranks > 1 ? A->tie->L->world.me : 0;
-  double *counts = calloc((size_t) ranks, sizeof(double));
-  if (!counts) return SD_ENOMEMORY;
-  counts[me] = (double) mine;
-  const sd_status status = sum_over_ranks(A, counts, ranks);
-  *before = *all = 0;
-  for (int p = 0; p < ranks; p++) {
-    if (p < me) *before += (long) counts[p];
-    *all += (long) counts[p];
-  }
-  free(counts);
-  return status;
-}
-
-/* Numbers of bodies among those of all ranks; a clump of several ranks learns its own from the
- * rank that counts it. */
-static sd_status number_bodies(const sd_bodies *A, assembly *a)
-{
-  sd_tie *t = A->tie;
-  const long bodies = sd_tie_bodies(A);
-  long mine = A->lone, next, total;
-  for (int b = 0; b < A->clumps; b++) mine += sd_tie_ours(A, b);
-  sd_status status = share(A, mine, &next, &total);
-  if (!sd_grow(&t->number, sizeof(int), (size_t) bodies) ||
-      !sd_grow(&t->scale, 6 * sizeof(double), (size_t) bodies) ||
-      !sd_grow(&t->all, 6 * sizeof(double), (size_t) total))
-    return SD_ENOMEMORY;
-  int *number = t->number;
-  a->total = (int) total;
-  for (int e = 0; e < A->lone; e++) number[e] = (int) next++;
-  for (int b = 0; b < A->clumps; b++)
-    if (sd_tie_ours(A, b)) number[A->lone + b] = (int) next++;
-  if (status != SD_OK || !A->refresh) return status;
-  memset(t->rows, 0, sizeof(double) * 6 * (size_t) A->n);
-  for (int b = 0; b < A->clumps; b++)
-    if (sd_tie_ours(A, b)) t->rows[6 * (long) A->member[A->first[b]]] = number[A->lone + b];
-  status = sd_bodies_refresh(A, t->rows, t->ghosts);
-  for (int b = 0; b < A->clumps && status == SD_OK; b++)
-    number[A->lone + b] = (int) sd_bodies_row(A, t->rows, t->ghosts, b, 0)[0];
-  return status;
-}
-
-/* From the centroid of body b to its sphere number k, in space axes; 0 for a free sphere */
-static void arm_of(const sd_bodies *A, int body, int k, double r[3])
-{
-  const int b = body - A->lone;
-  if (b < 0)
-    memset(r, 0, 3 * sizeof(double));
-  else
-    sd_multiply3(A->pose + 9 * (long) b, A->shape[b]->x + 3 * k, r);
-}
+/* --- H_ii --- */
 
 static int has_arm(const double r[3])
 {
@@ -114,18 +61,12 @@ static void move_to_centres(const double rp[3], const double rq[3], double B[36]
   }
 }
 
-/* H_0 of clump b in space axes */
-static void own_block(const sd_bodies *A, int b, double *out)
+static const double *arm_of(const sd_bodies *A, const assembly *a, int sphere)
 {
-  const double *R = A->pose + 9 * (long) b;
-  for (int q = 0; q < 6; q++) {
-    double unit[6] = {0.0}, v[6], f[6], column[6];
-    unit[q] = 1.0;
-    sd_bodies_to_shape(R, unit, v);
-    sd_bodies_multiply6(A->shape[b]->resistance, v, f);
-    sd_bodies_to_space(R, f, column);
-    for (int p = 0; p < 6; p++) out[6 * p + q] = A->eta[b] * column[p];
-  }
+  static const double none[3] = {0.0};
+  const int n = A->spheres.n;
+  if (sphere >= n) return a->place + PLACE * (long) (sphere - n) + ARM;
+  return A->spheres.arm ? A->spheres.arm + 3 * (long) sphere : none;
 }
 
 static void add_scaled(const double *B, const double *rows, const double *columns, double *out)
@@ -141,107 +82,120 @@ static int is_zero(const double B[36])
   return 1;
 }
 
-/* A body that nobody is near to: scale 0 takes it out of the system, and it has V = V_0 exactly. */
-static void leave_out(double scale[6], double diagonal[36])
+/* H_0 of body b */
+static void own_block(const sd_bodies *A, int b, double H[36])
 {
-  for (int d = 0; d < 6; d++) {
-    scale[d] = 0.0;
-    diagonal[7 * d] = 1.0;
+  const double *D = b < A->lone ? A->D + 6 * (long) A->loner[b] : NULL;
+  for (int q = 0; q < 6; q++) {
+    double unit[6] = {0.0}, column[6] = {0.0};
+    unit[q] = 1.0;
+    if (D)
+      column[q] = D[q];
+    else
+      sd_body_resistance(A->body + b - A->lone, unit, column);
+    for (int p = 0; p < 6; p++) H[6 * p + q] = column[p];
   }
 }
 
-/* A lone sphere, scaled; sets the scale */
-static void lone_block(const sd_bodies *A, int i, const double *L, double *scale, double *out)
+/* Films on spheres, by bodies, then all in units of the drags. A body that nobody is near to is
+ * taken out by a scale of 0, and so is one that is held. */
+static void find_diagonal(const sd_bodies *A, assembly *a)
 {
-  for (int d = 0; d < 6; d++) scale[d] = 1.0 / sqrt(sd_bodies_drag(A, i, d));
-  add_scaled(L, scale, scale, out);
-  if (is_zero(out))
-    leave_out(scale, out);
-  else
-    for (int d = 0; d < 6; d++) out[7 * d] += 1.0;
+  const sd_tie *t = A->tie;
+  for (int i = 0; i < A->spheres.n; i++) {
+    const double *r = arm_of(A, a, i);
+    double B[36], *to = a->diagonal + 36 * (long) body_of(A, i);
+    memcpy(B, t->stiff + 36 * (long) i, sizeof(B));
+    if (has_arm(r)) move_to_centres(r, r, B);
+    for (int e = 0; e < 36; e++) to[e] += B[e];
+  }
+  for (int b = 0; b < sd_bodies_count(A); b++) {
+    double *block = a->diagonal + 36 * (long) b, *scale = t->scale + 6 * (long) b, H[36];
+    const int out = is_zero(block) || sd_bodies_held(A, b);
+    own_block(A, b, H);
+    for (int d = 0; d < 6; d++) scale[d] = out ? 0.0 : 1.0 / sqrt(H[7 * d]);
+    for (int e = 0; e < 36; e++) H[e] += block[e];
+    memset(block, 0, 36 * sizeof(double));
+    add_scaled(H, scale, scale, block);
+    for (int d = 0; d < 6 && out; d++) block[7 * d] = 1.0;
+  }
 }
 
-/* Of a clump every sphere counts, of whatever rank: ghosts [36 ghosts] have their L_ii. */
-static void clump_block(const sd_bodies *A, int b, const double *ghosts, double *scale, double *out)
-{
-  const double *L = A->tie->stiff;
-  double H[36];
-  int near = 0;
-  own_block(A, b, H);
-  for (int d = 0; d < 6; d++) scale[d] = 1.0 / sqrt(H[7 * d]);
-  for (int k = 0; k < A->shape[b]->m; k++) {
-    const int j = A->member[A->first[b] + k];
-    double B[36], r[3];
-    memcpy(B, j < A->n ? L + 36 * (long) j : ghosts + 36 * (long) (j - A->n), sizeof(B));
-    near = near || !is_zero(B);
-    arm_of(A, A->lone + b, k, r);
-    move_to_centres(r, r, B);
-    for (int e = 0; e < 36; e++) H[e] += B[e];
-  }
-  if (near)
-    add_scaled(H, scale, scale, out);
-  else
-    leave_out(scale, out);
-}
+/* --- bodies of other ranks --- */
 
-static sd_status find_diagonal(const sd_bodies *A, assembly *a)
+static sd_status tell_places(const sd_bodies *A, assembly *a)
 {
-  sd_tie *t = A->tie;
-  const double *L = t->stiff;
-  sd_status status = A->refresh ? A->refresh(A->refresh_ctx, L, t->ghosts, 36) : SD_OK;
-  a->diagonal = calloc(36 * ((size_t) a->total + 1), sizeof(double));
-  a->scale = calloc(6 * ((size_t) a->total + 1), sizeof(double));
-  if (!a->diagonal || !a->scale) return SD_ENOMEMORY;
-  for (int e = 0; e < A->lone; e++) {
-    const long to = t->number[e];
-    lone_block(A, A->loner[e], L + 36 * (long) A->loner[e], a->scale + 6 * to,
-               a->diagonal + 36 * to);
+  const sd_lubrication *L = A->tie->L;
+  double *mine = malloc(sizeof(double) * PLACE * ((size_t) L->n + 1));
+  sd_status status = sd_world_agree(&L->world, mine ? SD_OK : SD_ENOMEMORY);
+  for (int i = 0; i < L->n && status == SD_OK; i++) {
+    double *row = mine + PLACE * (long) i;
+    const long b = body_of(A, i);
+    row[RANK] = L->world.me;
+    row[ROW] = i;
+    row[BODY] = (double) b;
+    memcpy(row + ARM, arm_of(A, a, i), 3 * sizeof(double));
+    memcpy(row + SCALE, A->tie->scale + 6 * b, 6 * sizeof(double));
+    memcpy(row + BLOCK, a->diagonal + 36 * b, 36 * sizeof(double));
   }
-  for (int b = 0; b < A->clumps; b++) {
-    const long to = t->number[A->lone + b];
-    if (sd_tie_ours(A, b)) clump_block(A, b, t->ghosts, a->scale + 6 * to, a->diagonal + 36 * to);
-  }
-  if (status == SD_OK) status = sum_over_ranks(A, a->scale, 6 * (long) a->total);
-  if (status == SD_OK) status = sum_over_ranks(A, a->diagonal, 36 * (long) a->total);
-  if (status == SD_OK) status = sd_block_cholesky_begin(&t->factor, a->total);
-  for (int p = 0; p < a->total && status == SD_OK; p++)
-    status = sd_block_cholesky_add(&t->factor, p, p, a->diagonal + 36 * (long) p);
-  for (long p = 0; p < sd_tie_bodies(A); p++)
-    memcpy(t->scale + 6 * p, a->scale + 6 * (long) t->number[p], 6 * sizeof(double));
+  if (status == SD_OK) status = L->world.refresh(L->world.ctx, mine, a->place, PLACE);
+  free(mine);
   return status;
 }
 
-/* A sphere of body p of this rank; arm [3] set by the caller */
-static void place_sphere(const sd_tie *t, int p, double place[PLACE])
+typedef struct {
+  int rank, body, row, copy;
+} identity;
+
+static int by_identity(const void *one, const void *other)
 {
-  const double *s = t->scale + 6 * (long) p;
-  place[NUMBER] = t->number[p];
-  place[SCALES] = fmax(fmax(s[0], s[1]), s[2]);
-  place[SCALES + 1] = fmax(fmax(s[3], s[4]), s[5]);
+  const identity *p = one, *q = other;
+  if (p->rank != q->rank) return p->rank < q->rank ? -1 : 1;
+  if (p->body != q->body) return p->body < q->body ? -1 : 1;
+  if (p->row != q->row) return p->row < q->row ? -1 : 1;
+  return (p->copy > q->copy) - (p->copy < q->copy);
 }
 
-/* Where the spheres are in their bodies; of other ranks' too */
-static sd_status find_places(const sd_bodies *A, assembly *a)
+/* Those with spheres near this rank's. Copies of one body are brought together, and the first of each sphere stands for it. */
+static sd_status know_others(const sd_bodies *A, assembly *a)
 {
-  const sd_lubrication *L = A->tie->L;
-  a->place = calloc(PLACE * ((size_t) A->n + 1), sizeof(double));
-  a->others = malloc(sizeof(double) * PLACE * ((size_t) (L->n_all - L->n) + 1));
-  if (!a->place || !a->others) return SD_ENOMEMORY;
-  for (int e = 0; e < A->lone; e++) place_sphere(A->tie, e, a->place + PLACE * (long) A->loner[e]);
-  for (int b = 0; b < A->clumps; b++)
-    for (int k = 0; k < A->shape[b]->m; k++) {
-      const int i = A->member[A->first[b] + k];
-      if (i >= A->n) continue;
-      place_sphere(A->tie, A->lone + b, a->place + PLACE * (long) i);
-      arm_of(A, A->lone + b, k, a->place + PLACE * (long) i + ARM);
+  sd_tie *t = A->tie;
+  const int bodies = sd_bodies_count(A);
+  identity *who = malloc(sizeof(identity) * ((size_t) a->copies + 1));
+  int count = 0;
+  if (!who) return SD_ENOMEMORY;
+  for (int j = 0; j < a->copies; j++) {
+    a->body[j] = -1;
+    a->stands[j] = 0;
+  }
+  for (long k = 0; a->copies > 0 && k < t->L->count; k++) {
+    const int j = t->L->pair[k][1] - t->L->n;
+    if (j < 0 || a->stands[j]) continue;
+    const double *row = a->place + PLACE * (long) j;
+    a->stands[j] = 1; /* seen */
+    if (row[SCALE] == 0.0) continue;
+    who[count++] = (identity){(int) row[RANK], (int) row[BODY], (int) row[ROW], j};
+  }
+  qsort(who, (size_t) count, sizeof(identity), by_identity);
+  for (int k = 0; k < count; k++) {
+    const identity *p = who + k, *last = k > 0 ? p - 1 : NULL;
+    const int known = last && last->rank == p->rank && last->body == p->body;
+    if (!known) {
+      const double *row = a->place + PLACE * (long) p->copy;
+      memcpy(t->scale + 6 * (long) (bodies + t->others), row + SCALE, 6 * sizeof(double));
+      t->copy[t->others++] = p->copy;
     }
-  return L->world.refresh && ranks_of(A) > 1
-      ? L->world.refresh(L->world.ctx, a->place, a->others, PLACE)
-      : SD_OK;
+    a->body[p->copy] = bodies + t->others - 1;
+    a->stands[p->copy] = !(known && last->row == p->row);
+  }
+  free(who);
+  return SD_OK;
 }
+
+/* --- H_ij --- */
 
 /* The square of the norm of a pair's scaled block, if its spheres are free; at least that if they
- * are the middles of clumps */
+ * are the middles of clumps. p, q: largest scales of U and W */
 static double strength(const sd_lubrication_link *l, const double p[2], const double q[2])
 {
   const double UU = p[0] * q[0], UW = p[0] * q[1], WU = p[1] * q[0], WW = p[1] * q[1];
@@ -250,95 +204,137 @@ static double strength(const sd_lubrication_link *l, const double p[2], const do
       WW * WW * (l->XC * l->XC + 2.0 * l->YC * l->YC);
 }
 
-/* Keeps B, by numbers of bodies: in the factor, or for all ranks. */
-static sd_status keep(const sd_bodies *A, assembly *a, int p, int q, const double B[36])
+static void largest_scales(const double s[6], double of[2])
 {
-  if (ranks_of(A) == 1) return sd_block_cholesky_add(&A->tie->factor, p, q, B);
-  double *row = a->rows[a->count++];
-  row[0] = p;
-  row[1] = q;
-  memcpy(row + 2, B, 36 * sizeof(double));
-  return SD_OK;
+  of[0] = fmax(fmax(s[0], s[1]), s[2]);
+  of[1] = fmax(fmax(s[3], s[4]), s[5]);
 }
 
-/* The blocks of this rank, scaled, those that are not weak. A pair of two ranks is known to both:
- * it is that one's whose own body has the lower number. */
-static sd_status find_blocks(const sd_bodies *A, assembly *a)
+/* Number of the body in the factor; -1: not there */
+static int number_of(const sd_bodies *A, const assembly *a, int sphere)
 {
-  const sd_lubrication *L = A->tie->L;
-  sd_status status = SD_OK;
-  if (ranks_of(A) > 1 && !sd_grow(&a->rows, sizeof(*a->rows), (size_t) L->count))
-    return SD_ENOMEMORY;
-  for (long k = 0; k < L->count && status == SD_OK; k++) {
-    const int i = L->pair[k][0], j = L->pair[k][1];
-    const double *first = a->place + PLACE * (long) i;
-    const double *second = j < A->n ? a->place + PLACE * (long) j
-                                    : a->others + PLACE * (long) (j - A->n);
-    const int p = (int) first[NUMBER], q = (int) second[NUMBER];
-    if (p == q || (j >= A->n && p > q)) continue;
-    const int arms = has_arm(first + ARM) || has_arm(second + ARM);
-    sd_lubrication_link both = L->link[k];
-    both.XA -= L->model[k]; /* L_12 + X_12 */
-    if (!arms && strength(&both, first + SCALES, second + SCALES) < weak * weak) continue;
-    double B[36], scaled[36] = {0.0}, sum = 0.0;
-    sd_lubrication_block(&both, B);
-    if (arms) move_to_centres(first + ARM, second + ARM, B);
-    add_scaled(B, a->scale + 6 * (long) p, a->scale + 6 * (long) q, scaled);
-    for (int e = 0; e < 36; e++) sum += scaled[e] * scaled[e];
-    if (sum >= weak * weak) status = keep(A, a, p, q, scaled);
-  }
-  return status;
+  const int n = A->spheres.n, b = sphere < n ? body_of(A, sphere) : a->body[sphere - n];
+  return b >= 0 && A->tie->scale[6 * (long) b] != 0.0 ? b : -1;
 }
 
-/* Those of all ranks on each */
-static sd_status gather_blocks(const sd_bodies *A, assembly *a)
+/* The block of pair k, scaled, if it is not weak. Pairs beyond are those of spheres that stand for
+ * themselves, each once. */
+static sd_status add_block(const sd_bodies *A, const assembly *a, long k)
 {
-  long before, all;
-  if (ranks_of(A) == 1) return SD_OK;
-  const size_t row = sizeof(*a->rows);
-  sd_status status = share(A, a->count, &before, &all);
-  if (status == SD_OK && !sd_grow(&a->rows, row, (size_t) all)) status = SD_ENOMEMORY;
-  if (status != SD_OK) return status;
-  memmove(a->rows + before, a->rows, row * (size_t) a->count);
-  memset(a->rows, 0, row * (size_t) before);
-  memset(a->rows + before + a->count, 0, row * (size_t) (all - before - a->count));
-  status = sum_over_ranks(A, a->rows[0], (long) (row / sizeof(double)) * all);
-  for (long k = 0; k < all && status == SD_OK; k++)
-    status = sd_block_cholesky_add(&A->tie->factor, (int) a->rows[k][0], (int) a->rows[k][1],
-                                   a->rows[k] + 2);
-  return status;
+  sd_tie *t = A->tie;
+  const sd_lubrication *L = t->L;
+  const int i = L->pair[k][0], j = L->pair[k][1];
+  const int p = number_of(A, a, i), q = number_of(A, a, j);
+  if (p < 0 || q < 0 || p == q) return SD_OK;
+  if (i >= L->n && !(a->stands[i - L->n] && a->stands[j - L->n])) return SD_OK;
+  const double *rp = arm_of(A, a, i), *rq = arm_of(A, a, j);
+  const double *sp = t->scale + 6 * (long) p, *sq = t->scale + 6 * (long) q;
+  const int arms = has_arm(rp) || has_arm(rq);
+  sd_lubrication_link both = L->link[k];
+  double of_p[2], of_q[2], B[36], scaled[36] = {0.0}, sum = 0.0;
+  if (L->model) both.XA -= L->model[k]; /* L_12 + X_12 */
+  largest_scales(sp, of_p);
+  largest_scales(sq, of_q);
+  if (!arms && strength(&both, of_p, of_q) < weak * weak) return SD_OK;
+  sd_lubrication_block(&both, B);
+  if (arms) move_to_centres(rp, rq, B);
+  add_scaled(B, sp, sq, scaled);
+  for (int e = 0; e < 36; e++) sum += scaled[e] * scaled[e];
+  return sum < weak * weak ? SD_OK : sd_block_cholesky_add(&t->factor, p, q, scaled);
+}
+
+static sd_status reserve(const sd_bodies *A, assembly *a)
+{
+  sd_tie *t = A->tie;
+  const size_t bodies = (size_t) sd_bodies_count(A), number = sizeof(double);
+  a->copies = layered(A) ? t->L->n_all - t->L->n : 0;
+  const size_t all = bodies + (size_t) a->copies, copies = (size_t) a->copies;
+  a->diagonal = calloc(36 * bodies + 1, number);
+  a->place = malloc(number * (PLACE * copies + 1));
+  a->body = malloc(sizeof(int) * (copies + 1));
+  a->stands = malloc(copies + 1);
+  t->others = 0;
+  const int there = a->diagonal && a->place && a->body && a->stands &&
+      sd_reserve(&t->scale, number, 6 * all, &t->most_scales) &&
+      sd_reserve(&t->all, number, 6 * all, &t->most_all) &&
+      sd_reserve(&t->copy, sizeof(int), copies, &t->most_copies) &&
+      sd_reserve(&t->copies, number, 6 * copies, &t->most_rows_there);
+  return there ? SD_OK : SD_ENOMEMORY;
+}
+
+/* What needs no other rank any more */
+static sd_status assemble(const sd_bodies *A, assembly *a)
+{
+  sd_tie *t = A->tie;
+  const int bodies = sd_bodies_count(A);
+  sd_status status = know_others(A, a);
+  if (status == SD_OK) status = sd_block_cholesky_begin(&t->factor, bodies + t->others);
+  for (int b = 0; b < bodies && status == SD_OK; b++)
+    status = sd_block_cholesky_add(&t->factor, b, b, a->diagonal + 36 * (long) b);
+  for (int o = 0; o < t->others && status == SD_OK; o++)
+    status = sd_block_cholesky_add(&t->factor, bodies + o, bodies + o,
+                                   a->place + PLACE * (long) t->copy[o] + BLOCK);
+  const long pairs = t->L->count + (a->copies > 0 ? t->L->beyond : 0);
+  for (long k = 0; k < pairs && status == SD_OK; k++) status = add_block(A, a, k);
+  return status == SD_OK ? sd_block_cholesky_factor(&t->factor, drop) : status;
 }
 
 sd_status sd_tie_factor(const sd_bodies *A)
 {
+  const sd_world *world = &A->tie->L->world;
   assembly a = {0};
-  sd_status status = number_bodies(A, &a);
-  if (status == SD_OK) status = find_diagonal(A, &a);
-  if (status == SD_OK) status = find_places(A, &a);
-  if (status == SD_OK) status = find_blocks(A, &a);
-  if (status == SD_OK) status = gather_blocks(A, &a);
-  if (status == SD_OK) status = sd_block_cholesky_factor(&A->tie->factor, drop);
-  double *const arrays[] = {a.diagonal, a.scale, a.place, a.others};
-  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
-  free(a.rows);
+  sd_status status = sd_world_agree(world, reserve(A, &a));
+  if (status == SD_OK) find_diagonal(A, &a);
+  if (status == SD_OK && layered(A)) status = tell_places(A, &a);
+  if (status == SD_OK) status = sd_world_agree(world, assemble(A, &a));
+  free(a.diagonal);
+  free(a.place);
+  free(a.body);
+  free(a.stands);
+  return status;
+}
+
+/* --- P^-1 --- */
+
+/* Of the other ranks' bodies, what the factor is applied to */
+static sd_status fetch(const sd_bodies *A)
+{
+  const sd_tie *t = A->tie;
+  const sd_world *world = &t->L->world;
+  const long bodies = sd_bodies_count(A);
+  for (int i = 0; i < A->spheres.n; i++)
+    memcpy(t->rows + 6 * (long) i, t->all + 6 * (long) body_of(A, i), 6 * sizeof(double));
+  const sd_status status = world->refresh(world->ctx, t->rows, t->copies, 6);
+  for (long o = 0; o < t->others; o++)
+    memcpy(t->all + 6 * (bodies + o), t->copies + 6 * (long) t->copy[o], 6 * sizeof(double));
+  return status;
+}
+
+/* And back what it gives them, to be added to theirs */
+static sd_status give_back(const sd_bodies *A)
+{
+  const sd_tie *t = A->tie;
+  const sd_lubrication *L = t->L;
+  const long bodies = sd_bodies_count(A);
+  memset(t->copies, 0, sizeof(double) * 6 * (size_t) (L->n_all - L->n));
+  memset(t->rows, 0, sizeof(double) * 6 * (size_t) L->n);
+  for (long o = 0; o < t->others; o++)
+    memcpy(t->copies + 6 * (long) t->copy[o], t->all + 6 * (bodies + o), 6 * sizeof(double));
+  const sd_status status = L->world.reduce(L->world.ctx, t->copies, t->rows, 6);
+  for (int i = 0; i < A->spheres.n; i++)
+    for (int d = 0; d < 6; d++) t->all[6 * (long) body_of(A, i) + d] += t->rows[6 * (long) i + d];
   return status;
 }
 
 sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
 {
   const sd_tie *t = A->tie;
-  const long bodies = sd_tie_bodies(A), total = t->factor.n;
-  memset(t->all, 0, sizeof(double) * 6 * (size_t) total);
-  for (long p = 0; p < bodies; p++) {
-    if (p >= A->lone && !sd_tie_ours(A, (int) (p - A->lone))) continue;
-    for (int d = 0; d < 6; d++)
-      t->all[6 * (long) t->number[p] + d] = t->scale[6 * p + d] * r[6 * p + d];
-  }
-  const sd_status status = sum_over_ranks(A, t->all, 6 * total);
-  if (status != SD_OK) return status;
-  sd_block_cholesky_apply(&t->factor, t->all);
-  for (long p = 0; p < bodies; p++)
-    for (int d = 0; d < 6; d++)
-      z[6 * p + d] = t->scale[6 * p + d] * t->all[6 * (long) t->number[p] + d];
-  return SD_OK;
+  const long size = 6 * (long) sd_bodies_count(A);
+  sd_status status = SD_OK;
+  for (long j = 0; j < size; j++) t->all[j] = t->scale[j] * r[j];
+  if (layered(A)) status = fetch(A);
+  if (status == SD_OK) sd_block_cholesky_apply(&t->factor, t->all);
+  if (status == SD_OK && layered(A)) status = give_back(A);
+  for (long j = 0; j < size; j++) z[j] = t->scale[j] * t->all[j];
+  return status;
 }

@@ -1,3 +1,4 @@
+#include "sd_cg.h"
 #include "sd_ritz.h"
 #include "sd_system.h"
 
@@ -102,42 +103,19 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
 
 /* --- algorithm 2 ---
  *
- * Conjugate gradients on M x = s with the preconditioner P (Golub & Van Loan, Matrix Computations).
- * Residuals are kept as forces, z = D r of r = s - M x, so that without preconditioner P r is z
- * itself. With q = M p, v = P q and u = P r, one iteration is
+ * The loop of sd_cg.h on M x = s. Its residual goes up and down. Minimal residual smoothing
+ * (Schoenauer 1987; Zhou & Walker, SIAM J. Sci. Comput. 15, 297 (1994)) keeps F with the scaled
+ * residual y beside x and z = D r, and moves both towards them, y' = y + theta (z - y), by the theta
+ * that makes <y',y'> smallest, <a,b> = sum of D_F/D a b:
  *
- *   p = u + beta p,   alpha = r.p / p.q,
- *   x' = x + alpha p,   r' = r - alpha q   (z' = z - alpha D q),   u' = u - alpha v,
- *   beta' = r'.u' / r.u
+ *   theta = <y,y - z> / <y - z,y - z>,   <y - z,y - z> = <y,y> - 2 <y,z> + <z,z>
+ *   <y',y'> = (<y,y> <z,z> - <y,z>^2) / <y - z,y - z>
  *
- * A textbook sums over the ranks twice an iteration, since r'.u' needs alpha. But r' and u' are
- * linear in alpha, and r.v = r.P q = u.q, so before the step, with t = D q and <a,b> = sum of
- * D_F/D a b,
- *
- *   r'.u'   = r.u   - 2 alpha q.u   + alpha^2 q.v
- *   <z',z'> = <z,z> - 2 alpha <z,t> + alpha^2 <t,t>
- *   <y,z'>  = <y,z> -   alpha <y,t>
- *
- * all follow from products of what is known, in one sum. They are computed anew in the next
- * iteration, so their rounding does not pile up.
- *
- * The residual of conjugate gradients goes up and down. Minimal residual smoothing (Schoenauer
- * 1987; Zhou & Walker, SIAM J. Sci. Comput. 15, 297 (1994)) keeps F with the scaled residual y
- * beside x and moves both towards it, y' = y + theta (z' - y), by the theta that makes <y',y'>
- * smallest:
- *
- *   theta = <y,y - z'> / <y - z',y - z'>,   <y - z',y - z'> = <y,y> - 2 <y,z'> + <z',z'>
- *   <y',y'> = (<y,y> <z',z'> - <y,z'>^2) / <y - z',y - z'>
- *
- * in which, unlike in <y,y> less what theta takes off, no digits are lost where z' << y. */
+ * in which, unlike in <y,y> less what theta takes off, no digits are lost where z << y. */
 
-/* Rayleigh quotients of the mobility scaled to unit diagonal below this are rounding. */
-static const double singular_below = 1e-13;
 /* Slip along a singular direction, relative to all slip: below this it is rounding, and nobody has
  * asked for it. */
 static const double asked_for = 1e-9;
-/* Digits that may cancel before a product is computed itself. */
-static const double cancelled = 1e-10;
 /* Recurrences drift from the residual that they stand for by rounding, and a fresh start takes
  * that out. One that does not even halve the true residual works on its rounding, and so would all
  * others. */
@@ -149,22 +127,91 @@ typedef struct {
   const double *slip;
   double tolerance;
   int max_iter;
-  /* iterate of conjugate gradients and its scaled residual; the smoothed ones, of which F is the
-   * answer */
-  double *x, *z, *F, *y;
-  /* direction, q = M p; u = P r and v = P q, without preconditioner z itself and nothing */
-  double *p, *q, *u, *v;
+  sd_cg_vectors v;
+  /* the smoothed iterate, which is the answer, and its scaled residual */
+  double *F, *y;
   /* squares of D s, and of y computed from its definition */
   squares rhs, start;
-  double beta;
-  /* the last direction could not be moved along, and nobody had asked for it */
-  int stuck;
+  /* iterations before this run of the loop; the steps of the first run; the last direction could not
+   * be moved along, and nobody had asked for it */
+  int before, stuck;
+  sd_ritz *ritz;
   sd_solve_report *report;
 } gradients;
 
-static size_t bytes(const gradients *g)
+static long size_of(const gradients *g)
 {
-  return sizeof(double) * (size_t) sd_system_width(&g->A) * (size_t) g->A.n;
+  return (long) sd_system_width(&g->A) * g->A.n;
+}
+
+static sd_status apply(void *ctx, const double *p, double *w)
+{
+  gradients *g = ctx;
+  g->report->products++;
+  return sd_system_apply(&g->A, p, w);
+}
+
+static sd_status precondition(void *ctx, const double *r, double *z)
+{
+  return sd_system_precondition(&((gradients *) ctx)->A, r, z);
+}
+
+/* p.D^-1 p: p.w / p.p is then a Rayleigh quotient of the mobility scaled to unit diagonal */
+static double square(void *ctx, const double *p)
+{
+  const sd_system *A = &((gradients *) ctx)->A;
+  const int m = sd_system_width(A);
+  double sum = 0.0;
+  for (long i = 0; i < A->n; i++)
+    for (int k = 0; k < m && A->drag[i] != 0.0; k++)
+      sum += p[m * i + k] * p[m * i + k] / sd_system_diagonal(A, i, k);
+  return sum;
+}
+
+enum { ZZ, YZ, YY };
+
+static void measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
+{
+  const gradients *g = ctx;
+  const int m = sd_system_width(&g->A);
+  for (long i = 0; i < g->A.n; i++)
+    for (int k = 0; k < m && g->A.drag[i] != 0.0; k++) {
+      const long j = m * i + k;
+      const double D = sd_system_diagonal(&g->A, i, k), force = g->A.drag[i] / D, y = g->y[j];
+      own[ZZ] += force * D * v->r[j] * D * v->r[j];
+      own[YZ] += force * y * D * v->r[j];
+      own[YY] += force * y * y;
+    }
+}
+
+/* F and y move towards x and D r; the residual reported is the one that y then has. */
+static void smooth(gradients *g, const double own[SD_CG_OWN])
+{
+  const int m = sd_system_width(&g->A);
+  const double yy = own[YY], yz = own[YZ], zz = own[ZZ], apart = yy - 2.0 * yz + zz;
+  const double theta = apart > 0.0 ? (yy - yz) / apart : 1.0;
+  const double of_y = apart > 0.0 ? (yy * zz - yz * yz) / apart : zz;
+  for (long i = 0; i < g->A.n; i++)
+    for (int k = 0; k < m && g->A.drag[i] != 0.0; k++) {
+      const long j = m * i + k;
+      g->y[j] += theta * (sd_system_diagonal(&g->A, i, k) * g->v.r[j] - g->y[j]);
+      g->F[j] += theta * (g->v.x[j] - g->F[j]);
+    }
+  g->report->residual = sqrt(fmax(of_y, 0.0) / g->rhs.plain);
+}
+
+static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
+{
+  gradients *g = ctx;
+  sd_solve_report *report = g->report;
+  if (now->steps > 0) {
+    report->curvature = fmin(report->curvature, now->pw / now->pp);
+    if (g->ritz) sd_ritz_add(g->ritz, now->alpha, fmax(now->beta, 0.0));
+    smooth(g, now->own);
+    report->iterations = g->before + now->steps;
+  }
+  *done = report->residual <= g->tolerance || !(now->rz > 0.0) || report->iterations >= g->max_iter;
+  return SD_OK;
 }
 
 /* y and the residual reported: those of F, from the definition, by one product */
@@ -182,238 +229,98 @@ static sd_status verify(gradients *g)
  * answer. */
 static sd_status begin(gradients *g)
 {
+  const size_t bytes = sizeof(double) * (size_t) size_of(g);
   if (g->A.warm) {
     const sd_status status = verify(g);
     if (status != SD_OK) return status;
     if (g->report->residual <= g->tolerance || g->start.plain < g->rhs.plain) return SD_OK;
-    memset(g->F, 0, bytes(g));
+    memset(g->F, 0, bytes);
   }
-  memset(g->y, 0, bytes(g));
+  memset(g->y, 0, bytes);
   g->report->residual = 1.0;
   return scaled_residual(&g->A, g->slip, g->F, g->y, &g->start);
 }
 
-/* Conjugate gradients start where the smoothed iterate is. */
-static sd_status restart(gradients *g)
+/* The loop from where the smoothed iterate is, until the residual of the recurrences is below the
+ * tolerance, nothing is left of that of conjugate gradients, they are stuck, or all iterations are
+ * used up. No force along p moves anything: slip along p has no answer then; where there is none, p
+ * is rounding that the inverse of a nearly singular matrix, the preconditioner, has blown up. */
+static sd_status iterate(gradients *g)
 {
-  memcpy(g->x, g->F, bytes(g));
-  memcpy(g->z, g->y, bytes(g));
-  memset(g->p, 0, bytes(g));
-  g->beta = 0.0;
-  g->stuck = 0;
-  if (!g->A.precondition) return SD_OK;
   const int m = sd_system_width(&g->A);
+  const sd_cg cg = {.size = size_of(g),
+                    .paired = size_of(g),
+                    .ctx = g,
+                    .apply = apply,
+                    .precondition = precondition,
+                    .measure = measure,
+                    .judge = judge,
+                    .square = square,
+                    .world = &g->A.world};
+  sd_cg_state state;
+  memcpy(g->v.x, g->F, sizeof(double) * (size_t) size_of(g));
   for (long i = 0; i < g->A.n; i++)
     for (int k = 0; k < m; k++) {
       const long j = m * i + k;
-      g->q[j] = g->A.drag[i] == 0.0 ? 0.0 : g->z[j] / sd_system_diagonal(&g->A, i, k);
+      g->v.r[j] = g->A.drag[i] == 0.0 ? 0.0 : g->y[j] / sd_system_diagonal(&g->A, i, k);
     }
-  return sd_system_precondition(&g->A, g->q, g->u);
-}
-
-/* P becomes D: then u = D r is z. */
-static void drop_preconditioner(gradients *g)
-{
-  g->A.precondition = NULL;
-  g->u = g->z;
-}
-
-/* The next p, q and v: one product with M, one with P. */
-static sd_status next_direction(gradients *g)
-{
-  const long size = (long) sd_system_width(&g->A) * g->A.n;
-  const double *u = g->u, beta = g->beta;
-  double *p = g->p;
-  for (long j = 0; j < size; j++) p[j] = u[j] + beta * p[j];
-  const sd_status status = sd_system_apply(&g->A, g->p, g->q);
-  if (status != SD_OK) return status;
-  g->report->products++;
-  return g->A.precondition ? sd_system_precondition(&g->A, g->q, g->v) : SD_OK;
-}
-
-/* r.u r.p p.q p.D^-1p q.v q.u; then those of forces, <z,z> <z,t> <t,t> <y,z> <y,t> <y,y> */
-enum { RU, RP, PQ, PP, QV, QU, ZZ, ZT, TT, YZ, YT, YY, PRODUCTS };
-
-static sd_status inner_products(const gradients *g, double s[PRODUCTS])
-{
-  const int m = sd_system_width(&g->A);
-  const double *z = g->z, *u = g->u, *p = g->p, *q = g->q, *y = g->y;
-  const double *preconditioned = g->A.precondition ? g->v : NULL;
-  for (int k = 0; k < PRODUCTS; k++) s[k] = 0.0;
-  for (long i = 0; i < g->A.n; i++) {
-    if (g->A.drag[i] == 0.0) continue;
-    for (int k = 0; k < m; k++) {
-      const long j = m * i + k;
-      const double D = sd_system_diagonal(&g->A, i, k), inverse = 1.0 / D;
-      const double force = g->A.drag[i] * inverse, r = z[j] * inverse, t = D * q[j];
-      const double v = preconditioned ? preconditioned[j] : t;
-      s[RU] += r * u[j];
-      s[RP] += r * p[j];
-      s[PQ] += p[j] * q[j];
-      s[PP] += p[j] * p[j] * inverse;
-      s[QV] += q[j] * v;
-      s[QU] += q[j] * u[j];
-      s[ZZ] += force * z[j] * z[j];
-      s[ZT] += force * z[j] * t;
-      s[TT] += force * t * t;
-      s[YZ] += force * y[j] * z[j];
-      s[YT] += force * y[j] * t;
-      s[YY] += force * y[j] * y[j];
-    }
-  }
-  return sd_system_sum(&g->A, s, PRODUCTS);
-}
-
-/* p.q <= 0: no force along p moves anything, or M is not positive definite. Slip along p has no
- * answer then; where there is none, p is rounding that the inverse of a nearly singular matrix,
- * the preconditioner, has blown up. */
-static sd_status judge_curvature(gradients *g, const double s[PRODUCTS])
-{
-  if (!isfinite(s[PQ]) || !isfinite(s[QV])) return SD_ENOTFINITE;
-  g->report->curvature = fmin(g->report->curvature, s[PQ] / s[PP]);
-  if (s[PQ] > singular_below * s[PP]) return SD_OK;
+  g->before = g->report->iterations;
+  g->stuck = 0;
+  const sd_status status = sd_cg_run(&cg, &g->v, &state);
+  if (status != SD_EINDEFINITE && status != SD_ESINGULAR) return status;
+  g->report->curvature = fmin(g->report->curvature, state.pw / state.pp);
   g->stuck = 1;
-  if (s[PQ] < -singular_below * s[PP]) return SD_EINDEFINITE;
-  const int asked = s[RP] * s[RP] > asked_for * asked_for * s[PP] * g->rhs.natural;
+  if (status == SD_EINDEFINITE) return status;
+  const int asked = state.rp * state.rp > asked_for * asked_for * state.pp * g->rhs.natural;
   return asked ? SD_ESINGULAR : SD_OK;
 }
 
-/* x, z and u after a step of length alpha */
-static void cg_step(gradients *g, double alpha)
+/* Until the residual by its definition is small, or there is no hope of it */
+static sd_status repeat(gradients *g)
 {
-  const int m = sd_system_width(&g->A);
-  const double *p = g->p, *q = g->q, *v = g->v;
-  double *x = g->x, *z = g->z, *u = g->u;
-  for (long i = 0; i < g->A.n; i++) {
-    if (g->A.drag[i] == 0.0) continue;
-    for (int k = 0; k < m; k++) {
-      const long j = m * i + k;
-      x[j] += alpha * p[j];
-      z[j] -= alpha * sd_system_diagonal(&g->A, i, k) * q[j];
-      if (g->A.precondition) u[j] -= alpha * v[j];
-    }
+  sd_solve_report *report = g->report;
+  double verified = INFINITY;
+  for (;; g->ritz = NULL) {
+    sd_status status = iterate(g);
+    if (status == SD_OK) status = verify(g);
+    if (status == SD_OK && !isfinite(report->residual)) status = SD_ENOTFINITE;
+    if (status != SD_OK || report->residual <= g->tolerance) return status;
+    if (report->iterations >= g->max_iter) return SD_EMAXITER;
+    if (g->stuck && g->A.precondition)
+      g->A.precondition = NULL;
+    else if (g->stuck || report->residual > worth_a_restart * verified)
+      return SD_ESTAGNATED;
+    verified = report->residual;
   }
-}
-
-/* Products of the residual after the step */
-typedef struct {
-  double ru, zz, yz;
-} stepped;
-
-/* By the recurrences; where too many digits cancel in them, from the vectors, in a second sum. */
-static sd_status products_after(const gradients *g, const double s[PRODUCTS], double alpha,
-                                stepped *next)
-{
-  next->ru = s[RU] - 2.0 * alpha * s[QU] + alpha * alpha * s[QV];
-  next->zz = s[ZZ] - 2.0 * alpha * s[ZT] + alpha * alpha * s[TT];
-  next->yz = s[YZ] - alpha * s[YT];
-  if (!(next->ru < cancelled * s[RU]) && !(next->zz < cancelled * s[ZZ])) return SD_OK;
-
-  const int m = sd_system_width(&g->A);
-  double itself[3] = {0.0, 0.0, 0.0};
-  for (long i = 0; i < g->A.n; i++) {
-    if (g->A.drag[i] == 0.0) continue;
-    for (int k = 0; k < m; k++) {
-      const long j = m * i + k;
-      const double inverse = 1.0 / sd_system_diagonal(&g->A, i, k), force = g->A.drag[i] * inverse;
-      itself[0] += g->z[j] * inverse * g->u[j];
-      itself[1] += force * g->z[j] * g->z[j];
-      itself[2] += force * g->y[j] * g->z[j];
-    }
-  }
-  const sd_status status = sd_system_sum(&g->A, itself, 3);
-  *next = (stepped){itself[0], itself[1], itself[2]};
-  return status;
-}
-
-/* F and y move towards x and z; the residual reported is the one that y then has. */
-static void smooth(gradients *g, double yy, const stepped *next)
-{
-  const long size = (long) sd_system_width(&g->A) * g->A.n;
-  const double apart = yy - 2.0 * next->yz + next->zz;
-  const double theta = apart > 0.0 ? (yy - next->yz) / apart : 1.0;
-  const double square = apart > 0.0 ? (yy * next->zz - next->yz * next->yz) / apart : next->zz;
-  const double *x = g->x, *z = g->z;
-  double *F = g->F, *y = g->y;
-  for (long j = 0; j < size; j++) {
-    y[j] += theta * (z[j] - y[j]);
-    F[j] += theta * (x[j] - F[j]);
-  }
-  g->report->residual = sqrt(fmax(square, 0.0) / g->rhs.plain);
-}
-
-/* Iterations until the residual of the recurrences is below the tolerance, nothing is left of that
- * of conjugate gradients, they are stuck, or all iterations are used up. ritz: NULL, or gets the
- * steps. */
-static sd_status iterate(gradients *g, sd_ritz *ritz)
-{
-  stepped next = {.ru = g->start.natural};
-  sd_status status = restart(g);
-  while (status == SD_OK && g->report->residual > g->tolerance && next.ru > 0.0 &&
-         g->report->iterations < g->max_iter) {
-    double s[PRODUCTS];
-    if ((status = next_direction(g)) != SD_OK) return status;
-    if ((status = inner_products(g, s)) != SD_OK) return status;
-    if ((status = judge_curvature(g, s)) != SD_OK || g->stuck) return status;
-    const double alpha = s[RP] / s[PQ];
-    cg_step(g, alpha);
-    if ((status = products_after(g, s, alpha, &next)) != SD_OK) return status;
-    g->beta = fmax(next.ru, 0.0) / s[RU];
-    if (ritz) sd_ritz_add(ritz, alpha, g->beta);
-    smooth(g, s[YY], &next);
-    g->report->iterations++;
-  }
-  return status;
 }
 
 sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,
                              double *F, double *work, sd_solve_report *report)
 {
   const long size = (long) sd_system_width(A) * A->n;
+  const size_t bytes = sizeof(double) * (size_t) size;
+  sd_ritz ritz = {.count = 0};
   gradients g = {.A = *A,
                  .slip = slip,
                  .tolerance = tolerance,
                  .max_iter = max_iter,
+                 .v = {work, work + size, work + 2 * size, work + 3 * size, work + 4 * size},
                  .F = F,
-                 .x = work,
-                 .z = work + size,
-                 .y = work + 2 * size,
-                 .p = work + 3 * size,
-                 .q = work + 4 * size,
-                 .u = A->precondition ? work + 5 * size : work + size,
-                 .v = work + 6 * size,
+                 .y = work + 5 * size,
+                 .ritz = &ritz,
                  .report = report};
-  sd_ritz ritz = {.count = 0};
-  double verified = INFINITY;
   *report = (sd_solve_report){.curvature = 1.0};
-  if (!A->warm) memset(F, 0, bytes(&g));
+  if (!A->warm) memset(F, 0, bytes);
   sd_status status = free_draining(A, slip, g.y, &g.rhs);
   if (status != SD_OK) return status;
   if (!isfinite(g.rhs.plain)) return SD_ENOTFINITE;
   if (g.rhs.plain == 0.0) {
-    memset(F, 0, bytes(&g));
+    memset(F, 0, bytes);
     return SD_OK;
   }
   status = begin(&g);
   if (status != SD_OK || report->residual <= tolerance) return status;
-
-  for (int first = 1;; first = 0) {
-    status = iterate(&g, first ? &ritz : NULL);
-    if (status == SD_OK) status = verify(&g);
-    if (status == SD_OK && !isfinite(report->residual)) status = SD_ENOTFINITE;
-    if (status != SD_OK || report->residual <= tolerance) break;
-    if (report->iterations >= max_iter) {
-      status = SD_EMAXITER;
-      break;
-    }
-    if (g.stuck && g.A.precondition)
-      drop_preconditioner(&g);
-    else if (g.stuck || report->residual > worth_a_restart * verified) {
-      status = SD_ESTAGNATED;
-      break;
-    }
-    verified = report->residual;
-  }
+  status = repeat(&g);
   sd_ritz_extremes(&ritz, &report->ritz_smallest, &report->ritz_largest);
   return status;
 }

@@ -19,6 +19,7 @@
 #define SD_SOLVE_H
 
 #include "sd_status.h"
+#include "sd_world.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,8 +32,7 @@ extern "C" {
 /* u = Omega F, the pair part of M: F, u [width n] of this rank's spheres. Refreshes whatever
  * ghosts it needs. */
 typedef sd_status sd_apply(void *ctx, const double *F, double *u);
-/* Sum over all ranks, in place, with the same bits on every rank: each decides by these numbers
- * alone whether to go on, and one that decided otherwise would leave the others waiting. */
+/* As in sd_world.h */
 typedef sd_status sd_sum(void *ctx, double *values, int count);
 /* z = P r, P an approximation of the inverse of M: symmetric, positive definite, the same in all
  * calls of one solve. r [width n] are velocities, z forces; 0 for spheres that take no part
@@ -48,9 +48,8 @@ typedef struct {
   const double *spin;
   sd_apply *apply;
   void *apply_ctx;
-  /* NULL: one rank */
-  sd_sum *sum;
-  void *sum_ctx;
+  /* sum */
+  sd_world world;
   /* gradients; NULL: D, the diagonal */
   sd_precondition *precondition;
   void *precondition_ctx;
@@ -89,12 +88,12 @@ typedef struct {
 sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
                                 int max_iter, double *F, double *work, sd_solve_report *report);
 
-/* Algorithm 2, preconditioned conjugate gradients. Conjugate gradients minimise the energy norm of
+/* Algorithm 2, preconditioned conjugate gradients (sd_cg.h). Conjugate gradients minimise the energy norm of
  * the error and their residual goes up and down; the F returned is their iterates after minimal
  * residual smoothing (Schoenauer; Zhou & Walker 1994), whose residual only falls and reaches the
  * tolerance some iterations earlier. The residual is the one above with any preconditioner.
  *
- * One call of sum an iteration; where more than ten digits would cancel, one more.
+ * Two sums over the ranks an iteration (sd_cg.h).
  *
  * The residual is computed from its definition before the solver says SD_OK, and the iteration
  * goes on from there if rounding has led it astray. Warm: one product gives the residual of the

@@ -18,7 +18,7 @@ static inline double sd_system_diagonal(const sd_system *A, long i, int k)
 
 static inline sd_status sd_system_sum(const sd_system *A, double *values, int count)
 {
-  return A->sum ? A->sum(A->sum_ctx, values, count) : SD_OK;
+  return sd_world_sum(&A->world, values, count);
 }
 
 /* q = M p = Omega p + D^-1 p; 0 in the rows of spheres that take no part. */

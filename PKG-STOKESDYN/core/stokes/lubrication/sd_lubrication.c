@@ -106,8 +106,10 @@ static int row_at(const sd_lubrication *L, int j)
 
 static int one_body(const sd_lubrication_scene *s, const sd_lubrication *L, int i, int j)
 {
-  if (!s->body || s->body[i] == 0) return 0;
-  return (j < L->n ? (double) s->body[j] : identity_of(L, j)[BODY]) == (double) s->body[i];
+  if (!s->body) return 0;
+  const double own = i < L->n ? (double) s->body[i] : identity_of(L, i)[BODY];
+  if (own == 0.0) return 0;
+  return (j < L->n ? (double) s->body[j] : identity_of(L, j)[BODY]) == own;
 }
 
 /* What there is to know of a pair where it stands; d from sphere i to j */
@@ -125,25 +127,43 @@ static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
   return (closeness){xi, 1.0 - q * q * (3.0 - 2.0 * q), j};
 }
 
+/* The pair of i and `at`, and of j that stands there, if they feel each other */
+static void keep_pair(sd_lubrication *L, const sd_lubrication_scene *s, long *count, int i, int j,
+                      int at)
+{
+  if (one_body(s, L, i, at)) return;
+  const closeness close = look(s, i, at, L->link[*count].d);
+  if (!(close.t > 0.0)) return;
+  L->pair[*count][0] = i;
+  L->pair[*count][1] = j;
+  L->work->close[(*count)++] = close;
+}
+
 /* Pairs of a sphere with its own images are there as often as these are, since the other way round
  * is the same force on the same sphere. All others are there once, from the lower row. */
 static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   struct sd_lubrication_work *w = L->work;
-  sd_status status = sd_near_once(&w->near, &s->spheres, s->n, s->n_all, 2.0 + s->range);
-  if (status == SD_OK) status = reserve_pairs(L, w->near.first[s->n]);
+  const int beyond = s->world.ranks > 1, rows = beyond ? s->n_all : s->n;
+  sd_status status = sd_near_once(&w->near, &s->spheres, rows, s->n_all, 2.0 + s->range);
+  if (status == SD_OK) status = reserve_pairs(L, w->near.first[rows]);
   if (status != SD_OK) return status;
   L->count = 0;
   for (int i = 0; i < s->n; i++)
     for (long k = w->near.first[i]; k < w->near.first[i + 1]; k++) {
       const int at = w->near.neighbor[k], j = row_at(L, at);
-      if (j < i || one_body(s, L, i, at)) continue;
-      const closeness close = look(s, i, at, L->link[L->count].d);
-      if (!(close.t > 0.0)) continue;
-      L->pair[L->count][0] = i;
-      L->pair[L->count][1] = j;
-      w->close[L->count++] = close;
+      if (j >= i) keep_pair(L, s, &L->count, i, j, at);
     }
+  double *met = w->neighbours;
+  memset(met, 0, sizeof(double) * (size_t) s->n_all);
+  for (long k = 0; k < L->count; k++) met[L->pair[k][1]] = 1.0;
+  long last = L->count;
+  for (int i = s->n; i < rows; i++)
+    for (long k = w->near.first[i]; met[i] != 0.0 && k < w->near.first[i + 1]; k++) {
+      const int j = w->near.neighbor[k];
+      if (met[j] != 0.0) keep_pair(L, s, &last, i, j, j);
+    }
+  L->beyond = last - L->count;
   return SD_OK;
 }
 
@@ -171,6 +191,8 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   if (!s->u) return SD_OK;
   memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
   if (s->world.refresh) status = s->world.refresh(s->world.ctx, flow, flow + 6 * (long) s->n, 6);
+  for (long j = 0; s->drift && j < s->n_all - s->n; j++)
+    for (int d = 0; d < 3; d++) flow[6 * (s->n + j) + d] += s->drift[3 * j + d];
   for (long j = 0; j < 6 * (long) s->n_all; j++) L->work->flows |= flow[j] != 0.0;
   return status;
 }
@@ -231,6 +253,8 @@ static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k
   rigid_part((const double *const[]){p->x + 3 * (long) i, p->x + 3 * (long) at},
              (const double[]){p->a[i], p->a[at]},
              (const double *const[]){flow + 6 * (long) i, flow + 6 * (long) at}, V);
+  /* L V is of velocities without the drift: what that makes of V_inf is left */
+  for (int e = 0; s->drift && at >= s->n && e < 3; e++) V[1][e] -= s->drift[3 * (at - s->n) + e];
   add_product(&B11, B11.YB12, B11.YB21, V[0], carried + 6 * (long) i);
   add_product(&B12, B12.YB12, B12.YB21, V[1], carried + 6 * (long) i);
   if (j >= L->n || j == i) return;
@@ -297,8 +321,8 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
                                scale * (1.0 - share), &R);
   if (status != SD_OK) return status;
   sd_lubrication_link *link = L->link + k;
-  if (L->work->flows) add_carried(L, s, k, &R);
-  add_own(&R, 0, R.YB[0], link->d, own + i);
+  if (L->work->flows && i < L->n) add_carried(L, s, k, &R);
+  if (i < L->n) add_own(&R, 0, R.YB[0], link->d, own + i);
   if (j == i) { /* an image on either side: what their 12 and 21 have in UW and WU cancels */
     add_own(&R, 1, 0.0, link->d, own + i);
     *link = (sd_lubrication_link){.XA = 0.0};
@@ -335,9 +359,10 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   if (status == SD_OK) status = find_flow(L, scene);
   if (status != SD_OK) return status;
   memset(L->work->own, 0, sizeof(own_block) * (size_t) L->n);
-  for (long k = 0; k < L->count && status == SD_OK; k++) {
+  const long pairs = L->count + L->beyond;
+  for (long k = 0; k < pairs && status == SD_OK; k++) {
     /* the second sphere of a pair may be anywhere in memory */
-    __builtin_prefetch(L->work->own + L->pair[k + 6 < L->count ? k + 6 : k][1], 1);
+    __builtin_prefetch(L->work->own + L->pair[k + 6 < pairs ? k + 6 : k][1], 1);
     status = add_pair(L, scene, k);
   }
   for (long i = 0; i < L->n; i++) spread_own(L->work->own + i, L->diagonal + 36 * i);

@@ -45,6 +45,9 @@ typedef struct {
   const int64_t *body;
   /* [6n] velocity and angular velocity of the undisturbed fluid at the centres; NULL: it rests */
   const double *u;
+  /* [3 (n_all - n)] velocities of the images beyond those of their spheres, and of the fluid there
+   * likewise, in a box that deforms with the flow; NULL: none */
+  const double *drift;
   /* refresh: rows of the n_all - n from those of the n, NULL: there are none */
   sd_world world;
 } sd_lubrication_scene;
@@ -60,13 +63,14 @@ typedef struct {
   /* spheres of this rank, and with those of other ranks and images */
   int n, n_all;
   /* each pair once: i < j < n, or j >= n: another rank's. A sphere's own images are in the
-   * diagonal */
-  long count;
+   * diagonal. Behind them, for preconditioners, those between two spheres of other ranks that have
+   * pairs with this one's, i, j >= n */
+  long count, beyond;
   int (*pair)[2];
-  /* [count] L_ij; L_ji is its transpose */
+  /* [count + beyond] L_ij; L_ji is its transpose */
   sd_lubrication_link *link;
-  /* [count] for preconditioners: what the model itself resists when the two approach each other,
-   * beyond their drags, fading from contact to the range */
+  /* [count + beyond] for preconditioners: what the model itself resists when the two approach each
+   * other, beyond their drags, fading from contact to the range; NULL: nothing */
   double *model;
   /* [36 n] L_ii, row-major, rows F T, columns U W */
   double *diagonal;

@@ -41,8 +41,8 @@ static int made_of(const sd_preconditioner *p, const sd_precondition_kind *kind,
   edges_of(c, edges);
   return p->state && p->wanted == kind && p->n == c->n && p->width == c->width &&
       p->clumps == c->clumps && !memcmp(p->edges, edges, sizeof(edges)) &&
-      !memcmp(p->x, c->spheres.x, 3 * n * sizeof(double)) &&
-      !memcmp(p->x + 3 * n, c->spheres.a, n * sizeof(double)) &&
+      (n == 0 || (!memcmp(p->x, c->spheres.x, 3 * n * sizeof(double)) &&
+                  !memcmp(p->x + 3 * n, c->spheres.a, n * sizeof(double)))) &&
       (clumps == 0 ||
        (!memcmp(p->first, c->first, (clumps + 1) * sizeof(long)) &&
         !memcmp(p->member, c->member, (size_t) c->first[clumps] * sizeof(int))));

@@ -24,12 +24,15 @@ typedef struct {
   double pose[12 * FLOCK_MOST];
   /* rows */
   double x[3 * FLOCK_MOST], a[FLOCK_MOST], w[FLOCK_MOST], drag[FLOCK_MOST], spin[FLOCK_MOST];
-  /* for sd_bodies */
-  int first[FLOCK_MOST + 1], member[FLOCK_MOST], loner[FLOCK_MOST];
-  const sd_body_shape *kind[FLOCK_MOST];
-  double R[9 * FLOCK_MOST], etas[FLOCK_MOST];
-  double l[6 * FLOCK_MOST], v[6 * FLOCK_MOST], V[6 * FLOCK_MOST], u[6 * FLOCK_MOST],
-      F[6 * FLOCK_MOST];
+  /* for sd_bodies, whose numbers are those of free spheres first */
+  int row[FLOCK_MOST], whole[FLOCK_MOST], loner[FLOCK_MOST];
+  sd_body clump[FLOCK_MOST];
+  double arm[3 * FLOCK_MOST], D[6 * FLOCK_MOST];
+  char held[FLOCK_MOST];
+  double l[6 * FLOCK_MOST], v[6 * FLOCK_MOST], u[6 * FLOCK_MOST], F[6 * FLOCK_MOST],
+      before[6 * FLOCK_MOST], exerted[6 * FLOCK_MOST], given[6 * FLOCK_MOST];
+  /* V: of the clumps, behind the free spheres' in all_V */
+  double all_V[6 * FLOCK_MOST], *V;
   sd_packed packed;
   sd_bodies_report report;
 } flock;
@@ -89,44 +92,49 @@ static inline sd_bodies flock_place(flock *f, int width)
     f->w[i] = 1.0 / sqrt(f->eta);
     f->drag[i] = 6.0 * SD_PI * f->eta * f->a[i];
     f->spin[i] = 8.0 * SD_PI * f->eta * pow(f->a[i], 3);
-    f->member[i] = i;
+    f->row[i] = i;
+    f->whole[i] = b < f->clumps ? f->free + b : b - f->clumps;
+    for (int d = 0; d < width; d++) f->D[width * i + d] = (d < 3 ? f->drag : f->spin)[i];
   }
+  memset(f->arm, 0, sizeof(f->arm));
   for (int b = 0; b < f->clumps; b++) {
-    f->first[b] = f->m * b;
-    f->kind[b] = &f->body;
-    f->etas[b] = f->eta;
-    memcpy(f->R + 9 * b, f->pose + 12 * b, 9 * sizeof(double));
+    f->clump[b] =
+        (sd_body){.shape = &f->body, .a = 1.0, .eta = f->eta, .row = f->row + f->m * b};
+    memcpy(f->clump[b].R, f->pose + 12 * b, 9 * sizeof(double));
+    sd_body_arms(f->clump + b, f->arm + 3 * f->m * b);
   }
-  f->first[f->clumps] = f->m * f->clumps;
   for (int k = 0; k < f->free; k++) f->loner[k] = f->m * f->clumps + k;
+  f->V = f->all_V + 6 * f->free;
   const sd_spheres spheres = {f->x, f->a, f->w};
   assert_int_equal(sd_packed_all(&f->packed, SD_ISA_BEST, &law, &spheres, f->n, width), SD_OK);
-  return (sd_bodies){.n = f->n,
-                     .width = width,
-                     .drag = f->drag,
-                     .spin = width == 6 ? f->spin : NULL,
-                     .lone = f->free,
+  return (sd_bodies){.lone = f->free,
                      .loner = f->loner,
-                     .clumps = f->clumps,
-                     .first = f->first,
-                     .member = f->member,
-                     .shape = f->kind,
-                     .pose = f->R,
-                     .eta = f->etas,
+                     .shaped = f->clumps,
+                     .body = f->clump,
+                     .held = f->held,
+                     .spheres = {f->n, width, f->whole, f->arm},
+                     .points = {f->n, width, NULL, NULL},
+                     .D = f->D,
                      .apply = flock_apply,
                      .apply_ctx = f};
+}
+
+static inline sd_status flock_solve(flock *f, const sd_bodies *A, int warm, double tolerance,
+                                    int max_iter)
+{
+  const sd_bodies_problem problem = {f->u, f->F, f->given, warm, tolerance, max_iter};
+  const sd_bodies_motion motion = {f->l, f->before, f->all_V, f->v, f->exerted};
+  double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(A));
+  for (long j = 0; j < sd_bodies_work(A); j++) work[j] = NAN; /* nobody may read it */
+  const sd_status status = sd_bodies_solve(A, &problem, &motion, work, &f->report);
+  free(work);
+  return status;
 }
 
 static inline sd_status flock_move(flock *f, int width, int warm, double tolerance, int max_iter)
 {
   const sd_bodies A = flock_place(f, width);
-  const sd_bodies_problem problem = {f->u, f->F, warm, tolerance, max_iter};
-  const sd_bodies_motion motion = {f->l, f->v, f->V, NULL, NULL};
-  double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
-  for (long j = 0; j < sd_bodies_work(&A); j++) work[j] = NAN; /* nobody may read it */
-  const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work, &f->report);
-  free(work);
-  return status;
+  return flock_solve(f, &A, warm, tolerance, max_iter);
 }
 
 /* A weight on every sphere, along -z */

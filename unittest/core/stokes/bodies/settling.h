@@ -15,9 +15,8 @@ typedef struct {
   sd_packed packed;
   sd_bodies A;
   /* rows */
-  double *u, *F, *l, *v, *before, *force, *drag, *spin, *work;
-  int *loner, none;
-  double no_clump;
+  double *u, *F, *l, *v, *before, *exerted, *V, *D, *work;
+  int *loner;
   sd_bodies_report report;
 } settling;
 
@@ -44,22 +43,19 @@ static inline settling *settling_create(int n, double phi, double gap)
   s->near = near_create(cloud_dense(n, phi, 1.0, 1.0, eta, 7), 1.0, gap);
   settling_place(s);
   s->tie.L = &s->near.L;
-  double **const rows[] = {&s->u, &s->F, &s->l, &s->v, &s->before, &s->force, &s->drag, &s->spin};
+  double **const rows[] = {&s->u, &s->F, &s->l, &s->v, &s->before, &s->exerted, &s->V, &s->D};
   for (int k = 0; k < 8; k++) *rows[k] = calloc(6 * (size_t) n, sizeof(double));
   s->loner = malloc(sizeof(int) * (size_t) n);
   for (int i = 0; i < n; i++) {
-    s->drag[i] = 6.0 * SD_PI * eta;
-    s->spin[i] = 8.0 * SD_PI * eta;
+    for (int d = 0; d < 6; d++) s->D[6 * i + d] = (d < 3 ? 6.0 : 8.0) * SD_PI * eta;
     s->loner[i] = i;
     s->F[6 * i + 2] = -6.0 * SD_PI;
   }
-  s->A = (sd_bodies){.n = n,
-                     .width = 6,
-                     .drag = s->drag,
-                     .spin = s->spin,
-                     .lone = n,
+  s->A = (sd_bodies){.lone = n,
                      .loner = s->loner,
-                     .first = &s->none,
+                     .spheres = {n, 6, NULL, NULL},
+                     .points = {n, 6, NULL, NULL},
+                     .D = s->D,
                      .apply = settling_product,
                      .apply_ctx = &s->packed,
                      .tie = &s->tie};
@@ -71,25 +67,25 @@ static inline settling *settling_create(int n, double phi, double gap)
 static inline void settling_shake(settling *s, uint64_t seed)
 {
   double mean[6] = {0.0};
-  for (int j = 0; j < 6 * s->A.n; j++) {
+  for (int j = 0; j < 6 * s->A.lone; j++) {
     s->F[j] = uniform(&seed, -6.0 * SD_PI, 6.0 * SD_PI);
-    mean[j % 6] += s->F[j] / s->A.n;
+    mean[j % 6] += s->F[j] / s->A.lone;
   }
-  for (int j = 0; j < 6 * s->A.n; j++) s->F[j] -= mean[j % 6];
+  for (int j = 0; j < 6 * s->A.lone; j++) s->F[j] -= mean[j % 6];
 }
 
 static inline void settling_solve(settling *s, int warm, double tolerance)
 {
-  const sd_bodies_motion motion = {s->l, s->v, &s->no_clump, s->before, s->force};
-  const sd_bodies_problem problem = {s->u, s->F, warm, tolerance, 400};
-  assert_int_equal(sd_bodies_velocities(&s->A, &problem, &motion, s->work, &s->report), SD_OK);
+  const sd_bodies_motion motion = {s->l, s->before, s->V, s->v, s->exerted};
+  const sd_bodies_problem problem = {s->u, s->F, NULL, warm, tolerance, 400};
+  assert_int_equal(sd_bodies_solve(&s->A, &problem, &motion, s->work, &s->report), SD_OK);
 }
 
 /* |v - reference| / |reference| */
 static inline double settling_error(const settling *s, const double *reference)
 {
   double off = 0.0, all = 0.0;
-  for (int j = 0; j < 6 * s->A.n; j++) {
+  for (int j = 0; j < 6 * s->A.lone; j++) {
     off += pow(s->v[j] - reference[j], 2);
     all += pow(reference[j], 2);
   }
@@ -98,7 +94,7 @@ static inline double settling_error(const settling *s, const double *reference)
 
 static inline void settling_free(settling *s)
 {
-  double *const rows[] = {s->u, s->F, s->l, s->v, s->before, s->force, s->drag, s->spin, s->work};
+  double *const rows[] = {s->u, s->F, s->l, s->v, s->before, s->exerted, s->V, s->D, s->work};
   for (int k = 0; k < 9; k++) free(rows[k]);
   free(s->loner);
   sd_packed_free(&s->packed);

@@ -385,11 +385,7 @@ static void negative_curvature_is_refused(void **state)
   flock_weigh(f, P6);
   sd_bodies A = flock_place(f, 6);
   A.apply = wrong_sign;
-  const sd_bodies_problem problem = {f->u, f->F, 0, 1e-6, 100};
-  const sd_bodies_motion motion = {f->l, f->v, f->V, NULL, NULL};
-  double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
-  assert_int_equal(sd_bodies_velocities(&A, &problem, &motion, work, &f->report), SD_EINDEFINITE);
-  free(work);
+  assert_int_equal(flock_solve(f, &A, 0, 1e-6, 100), SD_EINDEFINITE);
   assert_int_equal(flock_move(f, 6, 0, 1e-12, 3), SD_EMAXITER);
   assert_int_equal(f->report.products, 3);
   flock_free(f);

@@ -14,7 +14,6 @@ typedef struct {
   flock *f;
   near_scene near;
   sd_tie tie;
-  double before[6 * FLOCK_MOST], force[6 * FLOCK_MOST];
 } tied_flock;
 
 static inline tied_flock *tie_flock(flock *f, double gap)
@@ -43,16 +42,9 @@ static inline void untie(tied_flock *t)
 
 static inline sd_status tied_move(tied_flock *t, int warm, double tolerance, int max_iter)
 {
-  flock *f = t->f;
-  sd_bodies A = flock_place(f, 6);
+  sd_bodies A = flock_place(t->f, 6);
   A.tie = &t->tie;
-  const sd_bodies_problem problem = {f->u, f->F, warm, tolerance, max_iter};
-  const sd_bodies_motion motion = {f->l, f->v, f->V, t->before, t->force};
-  double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
-  for (long j = 0; j < sd_bodies_work(&A); j++) work[j] = NAN; /* nobody may read it */
-  const sd_status status = sd_bodies_velocities(&A, &problem, &motion, work, &f->report);
-  free(work);
-  return status;
+  return flock_solve(t->f, &A, warm, tolerance, max_iter);
 }
 
 #endif

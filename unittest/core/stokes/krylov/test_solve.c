@@ -329,8 +329,7 @@ static void failed_callback_ends_the_solve(void **state)
                                 .drag = s.drag,
                                 .apply = apply_or_fail,
                                 .apply_ctx = &f,
-                                .sum = sum_or_fail,
-                                .sum_ctx = &f,
+                                .world = {.ctx = &f, .sum = sum_or_fail},
                                 .precondition = ways[k].precondition,
                                 .precondition_ctx = &f,
                                 .warm = ways[k].warm};

@@ -133,7 +133,7 @@ static void two_ranks_are_one(void **state)
       sd_mobility m = {0};
       sd_mobility_scene where = one;
       where.n = N / 2;
-      where.world = (sd_world){&r, r.rank, 2, refresh, NULL, spread, collect, NULL};
+      where.world = (sd_world){&r, r.rank, 2, refresh, NULL, spread, collect, NULL, NULL};
       assert_int_equal(sd_mobility_place(&m, &sd_mobility_all_pairs, &where), SD_OK);
       assert_int_equal(sd_mobility_apply(&m, mine, answer), SD_OK);
       where.spheres = (sd_spheres){x, a, w};
@@ -172,7 +172,7 @@ static void a_failure_of_the_caller_is_returned(void **state)
   double *work = malloc(sizeof(double) * SD_SOLVE_WORK(N, 3));
   for (int k = 0; k < sd_mobility_count; k++) {
     sd_mobility_scene where = whole(&s, 3, &list.pairs);
-    where.world = (sd_world){&said, 0, 1, fails, NULL, fails, fails, NULL};
+    where.world = (sd_world){&said, 0, 1, fails, NULL, fails, fails, NULL, NULL};
     sd_mobility m = {0};
     assert_int_equal(sd_mobility_place(&m, sd_mobility_engines[k], &where), SD_OK);
     assert_int_equal(sd_mobility_apply(&m, slip, u), SD_ECALLBACK);

@@ -1,0 +1,22 @@
+/* Every body for itself, by the blocks M_b': the preconditioner of sd_bodies.h without what ties
+ * them. V, f [6 bodies], r, l [rows]; scratch [2 x the rows of the largest body]. */
+#ifndef SD_BODIES_ALONE_H
+#define SD_BODIES_ALONE_H
+
+#include "sd_body.h"
+
+/* pre(r, f): l and V; r, f NULL: 0. Of held bodies V is read. */
+void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, double *scratch,
+                     double *l, double *V);
+/* f -= K^T M_b'^-1 r */
+void sd_bodies_alone_bear(const sd_bodies *A, const double *r, double *scratch, double *f);
+/* f = N^-1 V; V = N f */
+void sd_bodies_alone_resist(const sd_bodies *A, const double *V, double *f);
+void sd_bodies_alone_move(const sd_bodies *A, const double *f, double *V);
+/* V -= dN f */
+void sd_bodies_alone_shells(const sd_bodies *A, const double *f, double *V);
+/* The same of one body */
+void sd_body_resistance(const sd_body *b, const double V[6], double f[6]);
+void sd_body_mobility(const sd_body *b, const double f[6], double V[6]);
+
+#endif

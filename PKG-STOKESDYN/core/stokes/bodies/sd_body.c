@@ -1,0 +1,216 @@
+#include "sd_body.h"
+#include "sd_bodies_alone.h"
+
+#include <string.h>
+
+#include "sd_clump_motion.h"
+#include "sd_linear.h"
+
+/* --- K --- */
+
+void sd_bodies_move(const sd_bodies *A, const double *V, double *on_spheres, double *rows)
+{
+  const int through = A->points.whole != NULL;
+  sd_rigid_move(&A->spheres, V, through ? on_spheres : rows);
+  if (through) sd_rigid_move(&A->points, on_spheres, rows);
+}
+
+void sd_bodies_collect(const sd_bodies *A, const double *rows, double *on_spheres, double *f)
+{
+  const int through = A->points.whole != NULL;
+  if (through) sd_rigid_collect(&A->points, rows, A->spheres.n, on_spheres);
+  sd_rigid_collect(&A->spheres, through ? on_spheres : rows, sd_bodies_count(A), f);
+}
+
+void sd_body_arms(const sd_body *b, double *arm)
+{
+  for (int k = 0; k < b->shape->m; k++, arm += 3) {
+    sd_multiply3(b->R, b->shape->x + 3 * k, arm);
+    for (int d = 0; d < 3; d++) arm[d] *= b->a;
+  }
+}
+
+/* --- a body alone --- */
+
+/* (velocity, angular velocity) of a point or body, `width` numbers, to the axes and lengths of its
+ * shape: T^-1 R^T; and with `scale` 1/a instead of a likewise (force, torque): T R^T */
+static void to_shape(const double R[9], int width, double scale, const double *space, double *shape)
+{
+  sd_multiply3t(R, space, shape);
+  if (width < 6) return;
+  sd_multiply3t(R, space + 3, shape + 3);
+  for (int d = 3; d < 6; d++) shape[d] *= scale;
+}
+
+/* And back: scale 1/a for velocities, a for forces */
+static void to_space(const double R[9], int width, double scale, const double *shape, double *space)
+{
+  sd_multiply3(R, shape, space);
+  if (width < 6) return;
+  sd_multiply3(R, shape + 3, space + 3);
+  for (int d = 3; d < 6; d++) space[d] *= scale;
+}
+
+static void multiply6(const double A[36], double scale, const double x[6], double y[6])
+{
+  for (int p = 0; p < 6; p++) {
+    y[p] = 0.0;
+    for (int q = 0; q < 6; q++) y[p] += scale * A[6 * p + q] * x[q];
+  }
+}
+
+/* out = R T A T R^T x, times `factor`, for N: T on both sides; out = R T^-1 A T^-1 R^T for N^-1 */
+static void turned6(const sd_body *b, const double A[36], double scale, double factor,
+                    const double x[6], double out[6])
+{
+  double in[6], y[6];
+  to_shape(b->R, 6, scale, x, in);
+  multiply6(A, factor, in, y);
+  to_space(b->R, 6, scale, y, out);
+}
+
+void sd_body_mobility(const sd_body *b, const double f[6], double V[6])
+{
+  turned6(b, b->shape->mobility, 1.0 / b->a, 1.0 / (b->eta * b->a), f, V);
+}
+
+void sd_body_resistance(const sd_body *b, const double V[6], double f[6])
+{
+  turned6(b, b->shape->resistance, b->a, b->eta * b->a, V, f);
+}
+
+/* G^T y of a body, G = M_b'^-1 K of its shape, as load in its axes and lengths */
+static void add_rigid(const sd_body_shape *s, const double *y, double sign, double load[6])
+{
+  for (long i = 0; i < (long) s->width * s->m; i++)
+    for (int p = 0; p < 6; p++) load[p] += sign * s->rigid[6 * i + p] * y[i];
+}
+
+static void read_rows(const sd_body *b, const double *rows, double *y)
+{
+  const int w = b->shape->width;
+  for (int k = 0; k < b->shape->m; k++)
+    to_shape(b->R, w, b->a, rows + (long) w * b->row[k], y + w * k);
+}
+
+/* pre(r, f) of body b. In the axes and lengths of the shape all matrices are constant: with s = eta a,
+ * s B for M_b'^-1 and s G for M_b'^-1 K, V = N (f - s G^T y) / s, z = s (B y + G V), y = r. G^T y is
+ * K^T B y without a second product, since B is symmetric. */
+static void respond(const sd_body *b, int held, const double *r, const double *f, double *scratch,
+                    double *l, double V[6])
+{
+  const sd_body_shape *shape = b->shape;
+  const double s = b->eta * b->a;
+  const int w = shape->width, N = w * shape->m;
+  double *y = scratch, *z = scratch + N, load[6] = {0.0}, motion[6];
+  memset(z, 0, sizeof(double) * (size_t) N);
+  if (f) to_shape(b->R, 6, 1.0 / b->a, f, load);
+  if (r) {
+    read_rows(b, r, y);
+    add_rigid(shape, y, -s, load);
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++) z[i] += shape->inverse[(long) j * N + i] * y[j];
+  }
+  if (held)
+    to_shape(b->R, 6, b->a, V, motion);
+  else {
+    multiply6(shape->mobility, 1.0 / s, load, motion);
+    to_space(b->R, 6, 1.0 / b->a, motion, V);
+  }
+  for (int i = 0; i < N; i++) {
+    for (int p = 0; p < 6; p++) z[i] += shape->rigid[6 * (long) i + p] * motion[p];
+    z[i] *= s;
+  }
+  for (int k = 0; k < shape->m; k++)
+    to_space(b->R, w, b->a, z + w * k, l + (long) w * b->row[k]);
+}
+
+void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, double *scratch,
+                     double *l, double *V)
+{
+  const int w = A->points.width;
+  for (int e = 0; e < A->lone; e++)
+    for (int d = 0; d < w; d++) {
+      const long j = (long) w * A->loner[e] + d, of = 6 * (long) e + d;
+      const double slip = r ? r[j] : 0.0, load = f ? f[of] : 0.0;
+      l[j] = sd_bodies_held(A, e) ? A->D[j] * (slip + V[of]) : load;
+      if (!sd_bodies_held(A, e)) V[of] = load / A->D[j] - slip;
+    }
+  for (int b = 0; b < A->shaped; b++) {
+    const long of = 6 * (long) (A->lone + b);
+    respond(A->body + b, sd_bodies_held(A, A->lone + b), r, f ? f + of : NULL, scratch, l, V + of);
+  }
+}
+
+void sd_bodies_alone_bear(const sd_bodies *A, const double *r, double *scratch, double *f)
+{
+  const int w = A->points.width;
+  for (int e = 0; e < A->lone; e++)
+    for (int d = 0; d < w; d++) {
+      const long j = (long) w * A->loner[e] + d;
+      f[6 * (long) e + d] -= A->D[j] * r[j];
+    }
+  for (int b = 0; b < A->shaped; b++) {
+    const sd_body *body = A->body + b;
+    double load[6] = {0.0}, space[6], *to = f + 6 * (long) (A->lone + b);
+    read_rows(body, r, scratch);
+    add_rigid(body->shape, scratch, -body->eta * body->a, load);
+    to_space(body->R, 6, body->a, load, space);
+    for (int d = 0; d < 6; d++) to[d] += space[d];
+  }
+}
+
+void sd_bodies_alone_resist(const sd_bodies *A, const double *V, double *f)
+{
+  const int w = A->points.width;
+  for (int e = 0; e < A->lone; e++)
+    for (int d = 0; d < 6; d++) {
+      const long of = 6 * (long) e + d;
+      f[of] = d < w ? A->D[(long) w * A->loner[e] + d] * V[of] : 0.0;
+    }
+  for (int b = 0; b < A->shaped; b++)
+    sd_body_resistance(A->body + b, V + 6 * (long) (A->lone + b), f + 6 * (long) (A->lone + b));
+}
+
+void sd_bodies_alone_move(const sd_bodies *A, const double *f, double *V)
+{
+  const int w = A->points.width;
+  for (int e = 0; e < A->lone; e++)
+    for (int d = 0; d < 6; d++) {
+      const long of = 6 * (long) e + d;
+      V[of] = d < w ? f[of] / A->D[(long) w * A->loner[e] + d] : 0.0;
+    }
+  for (int b = 0; b < A->shaped; b++)
+    sd_body_mobility(A->body + b, f + 6 * (long) (A->lone + b), V + 6 * (long) (A->lone + b));
+}
+
+/* --- shells --- */
+
+void sd_bodies_alone_shells(const sd_bodies *A, const double *f, double *V)
+{
+  for (int b = 0; b < A->shaped; b++) {
+    const sd_body *body = A->body + b;
+    const long of = 6 * (long) (A->lone + b);
+    double moves[6];
+    turned6(body, body->shape->shell, 1.0 / body->a, 1.0 / (body->eta * body->a), f + of, moves);
+    for (int d = 0; d < 6; d++) V[of + d] -= moves[d];
+  }
+}
+
+/* Both in E and in the velocities lengths are those of the shape, a times as large: (U, W) in its
+ * lengths is dE E a. */
+void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *work, double *u)
+{
+  double *V = work, *on_spheres = V + 6 * (long) sd_bodies_count(A);
+  double *rows = on_spheres + 6 * (long) A->spheres.n;
+  memset(V, 0, sizeof(double) * 6 * (size_t) sd_bodies_count(A));
+  for (int b = 0; b < A->shaped; b++) {
+    const sd_body *body = A->body + b;
+    double W[3], E[6], moves[6];
+    sd_clump_split_gradient(body->R, gradient + 9 * (long) b, W, E);
+    multiply6(body->shape->carried, body->a, E, moves);
+    to_space(body->R, 6, 1.0 / body->a, moves, V + 6 * (long) (A->lone + b));
+  }
+  sd_bodies_move(A, V, on_spheres, rows);
+  for (long j = 0; j < sd_bodies_rows(A); j++) u[j] += rows[j];
+}

@@ -1,0 +1,84 @@
+/* The bodies of sd_bodies.h: who they are, what they consist of, and how each of them moves alone.
+ *
+ *   bodies     free spheres of one point first, then rigid bodies of a shape; 6 numbers each, U of
+ *              the centre and W, or force and torque about it
+ *   spheres    what loads and films (sd_tie.h) act on; 6 numbers each, rigid parts of bodies
+ *   points     rows of unknowns, the forces l on the fluid: width 3, or 6 with torques; rigid parts
+ *              of spheres. In the model of one point per sphere the points are the spheres
+ *
+ * A body belongs to one rank, with all its spheres and points. All is in space axes. */
+#ifndef SD_BODY_H
+#define SD_BODY_H
+
+#include "sd_body_shape.h"
+#include "sd_rigid.h"
+#include "sd_solve.h"
+#include "sd_world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct sd_tie;
+
+/* A body of a shape: points at c + a R X_k in a fluid of viscosity eta, and at those rows */
+typedef struct {
+  const sd_body_shape *shape;
+  double R[9], a, eta;
+  /* [shape->m] rows of its points in the order of the shape */
+  const int *row;
+} sd_body;
+
+typedef struct {
+  /* free spheres of one point: [lone] their rows. They are bodies 0 ... lone - 1 */
+  int lone;
+  const int *loner;
+  /* bodies of a shape, of the width of the points: lone ... lone + shaped - 1 */
+  int shaped;
+  const sd_body *body;
+  /* [bodies] is its velocity given, and its force unknown? NULL: nobody's is */
+  const char *held;
+  /* Spheres on bodies: width 6, in the model without torques 3. Points on spheres: whole NULL: the
+   * spheres are the points, of equal width */
+  sd_rigid spheres, points;
+  /* [width points] 6 pi eta a in rows of forces, 8 pi eta a^3 in those of torques */
+  const double *D;
+  /* M without D^-1: the pairs of an engine, and what a model adds for each body alone */
+  sd_apply *apply;
+  void *apply_ctx;
+  /* lubrication; NULL: none */
+  struct sd_tie *tie;
+  /* sum */
+  sd_world world;
+} sd_bodies;
+
+static inline int sd_bodies_count(const sd_bodies *A)
+{
+  return A->lone + A->shaped;
+}
+static inline int sd_bodies_held(const sd_bodies *A, int b)
+{
+  return A->held && A->held[b];
+}
+/* Numbers of rows, of spheres */
+static inline long sd_bodies_rows(const sd_bodies *A)
+{
+  return (long) A->points.width * A->points.n;
+}
+static inline long sd_bodies_loads(const sd_bodies *A)
+{
+  return (long) A->spheres.width * A->spheres.n;
+}
+
+/* K V by rows, and K^T of rows [6 bodies]. on_spheres [6 spheres]: scratch, or where points are not
+ * the spheres what becomes of these on the way */
+void sd_bodies_move(const sd_bodies *A, const double *V, double *on_spheres, double *rows);
+void sd_bodies_collect(const sd_bodies *A, const double *rows, double *on_spheres, double *f);
+
+/* Arms of the points of a body, in space axes: arm [3 shape->m] = a R X_k */
+void sd_body_arms(const sd_body *b, double *arm);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

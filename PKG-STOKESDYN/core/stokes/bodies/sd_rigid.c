@@ -1,0 +1,30 @@
+#include "sd_rigid.h"
+
+#include <string.h>
+
+#include "sd_linear.h"
+
+void sd_rigid_move(const sd_rigid *K, const double *V, double *v)
+{
+  for (long i = 0; i < K->n; i++, v += K->width) {
+    const double *whole = V + 6 * (K->whole ? K->whole[i] : i);
+    memcpy(v, whole, sizeof(double) * (size_t) K->width);
+    if (!K->arm) continue;
+    double turning[3];
+    sd_cross(whole + 3, K->arm + 3 * i, turning);
+    for (int d = 0; d < 3; d++) v[d] += turning[d];
+  }
+}
+
+void sd_rigid_collect(const sd_rigid *K, const double *parts, int wholes, double *f)
+{
+  memset(f, 0, sizeof(double) * 6 * (size_t) wholes);
+  for (long i = 0; i < K->n; i++, parts += K->width) {
+    double *whole = f + 6 * (K->whole ? K->whole[i] : i);
+    for (int d = 0; d < K->width; d++) whole[d] += parts[d];
+    if (!K->arm) continue;
+    double couple[3];
+    sd_cross(K->arm + 3 * i, parts, couple);
+    for (int d = 0; d < 3; d++) whole[3 + d] += couple[d];
+  }
+}

@@ -1,0 +1,116 @@
+/* Of pair_style sph/artVisc/tensCorr: what may be wrong with the particles of a scene. */
+#include "pair_sph_artvisc_tenscorr.h"
+
+#include "fix_sph_pressure.h"
+#include "fix_wall_adami_sph.h"
+#include "keywords.h"
+#include "sd_sph_wall.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+/* Owned particles before any sum takes them in (what one lacks is no number in all around it then),
+ * and with their ghosts after the density has been advanced. */
+void PairSph::look_at_densities(int n)
+{
+  const double *rho = atom->rho;
+  for (int i = 0; i < n; i++) {
+    if (rho[i] > 0.0 && std::isfinite(rho[i]) && (atom->mask[i] & pressure_bits)) continue;
+    if (!used(atom->type[i])) continue;
+    const std::string who = at_step() + "atom " + std::to_string(atom->tag[i]);
+    if (!(atom->mask[i] & pressure_bits))
+      fail_one(lmp, who + " is in the group of no fix sph/pressure");
+    const char *cure = update->setupflag ? " (set it with: set ... sph/rho)"
+        : rho[i] == 0.0                  ? " (new? fix sph/pressure relativ and Tait give new atoms of "
+                                           "their group the density rho0)"
+                                         : " (a smaller time step?)";
+    fail_one(lmp, who + " has the density " + text(rho[i]) + "; it must be a number > 0" + cure);
+  }
+}
+
+// --- at the beginning of a run ---------------------------------------------------------------------
+
+/* Both speeds of sound should be one: limits of the time step, artVisc and delta go by that of
+ * pair_coeff, the fluid by that of the equation of state. */
+void PairSph::look_at_sound()
+{
+  struct {
+    double off;
+    int type;
+  } worst = {log(1.1), 0};
+  double sound = 0.0;
+  for (const auto *fix : pressures)
+    for (int i = 0; i < atom->nlocal; i++) {
+      const int type = atom->type[i];
+      if (!(atom->mask[i] & fix->groupbit) || !used(type) || !has_sound_speed(type)) continue;
+      const double rho = fix->state.rho0 > 0.0 ? fix->state.rho0 : atom->rho[i];
+      const double c = sd_sph_speed_of_sound(&fix->state, rho), off = fabs(log(c / sound_speed(type)));
+      if (!(off > worst.off)) continue;
+      worst = {off, type};
+      sound = c;
+    }
+  auto all = worst;
+  MPI_Allreduce(&worst, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  if (all.type == 0) return;
+  if (worst.type != all.type || worst.off != all.off) sound = 0.0;
+  MPI_Allreduce(MPI_IN_PLACE, &sound, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   COMMAND + ": the speed of sound of type " + std::to_string(all.type) + ", pair_coeff c " +
+                       text(sound_speed(all.type)) + ", is not that of its equation of state, " +
+                       text(sound) + ": time step limits, artVisc and delta go by pair_coeff");
+}
+
+/* The pressure of a pair is that of one width: where widths meet, sums of the two sides differ. */
+void PairSph::look_at_widths()
+{
+  if (comm->me != 0) return;
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i + 1; j <= atom->ntypes; j++) {
+      const double one = table[H][i][i], other = table[H][j][j];
+      if (!(one > 0.0 && other > 0.0 && fabs(log(one / other)) > log(1.2))) continue;
+      error->warning(FLERR,
+                     COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) +
+                         " differ in h: where they meet, particles do not stay at rest");
+      return;
+    }
+}
+
+/* Wall particles stand for fluid: they push with its mass and, with volume yes, by the pressure of
+ * their own fluid alone. */
+void PairSph::look_at_walls()
+{
+  constexpr double NOBODY = -1e300;
+  const int n = particles.n;
+  std::vector<double> likeness(2 * (size_t) (n + 1), NOBODY);
+  sd_sph_pack_x(n, atom->x ? atom->x[0] : nullptr, nullptr, nullptr, 0.0, x4.data());
+  sd_sph_likeness(&model, &raw, &particles, likeness.data());
+  reverse(likeness.data(), 2, true);
+  tagint other_mass = MAXTAGINT;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *row = &likeness[2 * (size_t) i];
+    if (!(atom->mask[i] & wall->groupbit) || row[1] == NOBODY) continue;
+    if (row[1] == 0.0)
+      fail_one(lmp,
+               "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " +
+                   std::to_string(atom->tag[i]) +
+                   " meets no fluid of its own fix sph/pressure, so with volume yes it has no "
+                   "pressure; put the wall into the group of the fix sph/pressure of its fluid");
+    if (row[0] < -log(1.1)) other_mass = std::min(other_mass, atom->tag[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &other_mass, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (other_mass < MAXTAGINT && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " +
+                       std::to_string(other_mass) +
+                       " has not the mass of the fluid before it (10 %): walls need the fluid's mass "
+                       "and spacing; a light or heavy body gets its mass by fix rigid ... infile");
+}

@@ -1,0 +1,84 @@
+/* Spheres that are near those of this rank: of other ranks, and periodic images, also of its own.
+ *
+ * They are found from where the rows of the ranks stand, and not among LAMMPS's ghosts: a long
+ * reach needs no comm_modify and costs other styles nothing, any decomposition will do, and the
+ * reach may change in any step. All ranks tell each other the blocks that their rows fill; after
+ * that a rank speaks only with those whose blocks, wider by the reach, meet its own. */
+#ifndef SD_HALO_H
+#define SD_HALO_H
+
+#include "ranks.h"
+
+#include <initializer_list>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Domain;
+}
+
+namespace StokesDyn {
+
+/* The parallelepiped that LAMMPS repeats in the directions with periodic = 1. */
+struct Lattice {
+  double origin[3];
+  /* xx yy zz yz xz xy, the order of LAMMPS: edges (h0 0 0), (h5 h1 0), (h4 h3 h2) */
+  double h[6];
+  int periodic[3];
+
+  static Lattice of(const LAMMPS_NS::Domain *domain);
+  /* out [3] += steps edges; h: those of another time, or their rates */
+  static void add(const double h[6], const int steps[3], double out[3])
+  {
+    out[0] += steps[0] * h[0] + steps[1] * h[5] + steps[2] * h[4];
+    out[1] += steps[1] * h[1] + steps[2] * h[3];
+    out[2] += steps[2] * h[2];
+  }
+  /* Of the separation d [3] the shortest image; steps: by how many edges it has been moved */
+  void closest(double d[3], int steps[3]) const;
+  /* Positions in units of the edges, so that faces are planes of equal coordinates */
+  void fractions(const double x[3], double f[3]) const;
+  /* A length across the faces of edge d, which are volume / (their area) apart */
+  double across(int d, double length) const;
+};
+
+class Halo {
+ public:
+  explicit Halo(MPI_Comm world) : post(world) {}
+
+  /* Copies of spheres within `reach` of the smallest parallelepiped, with faces as the lattice has
+   * them, that holds this rank's rows x [3n]. On all ranks together. false: more copies of this
+   * rank's spheres than 1e7 and than 1000 for each. */
+  bool find(const Lattice &lattice, double reach, const std::vector<double> &x);
+  void clear();
+  int count() const { return copies; }
+  /* Since then, in one order: rows [width n] -> those of the copies [width count()] */
+  void refresh(const double *rows, double *out, int width) const;
+  /* And back: rows += those of their copies */
+  void reduce(const double *of_copies, double *rows, int width) const;
+  /* Positions x [3n] -> where the copies stand now; h: the lattice's edges now. Or of zeros and the
+   * rates of the edges: the velocities of the copies beyond those of their spheres. x nullptr:
+   * zeros */
+  void place(const double h[6], const double *x, double *out) const;
+
+  /* Behind the rows of x and the columns, those of the copies */
+  void extend(const double h[6], std::vector<double> &x,
+              std::initializer_list<std::vector<double> *> columns) const;
+
+  /* Ranks that this one speaks with; bytes that one refresh of a row's width sends */
+  int partners() const { return (int) post.partners.size(); }
+  double rows_sent() const { return (double) sphere.size(); }
+  double memory_usage() const;
+
+ private:
+  Post post;
+  int copies = 0;
+  /* the spheres of this rank that go, partner by partner, and by how many edges each is moved */
+  std::vector<int> sphere, steps;
+  mutable std::vector<double> outbox;
+
+  struct Sorted;
+  bool send_to(int p, const double *lo, const double *hi, const Lattice &lattice, const Sorted &s);
+};
+
+}    // namespace StokesDyn
+#endif

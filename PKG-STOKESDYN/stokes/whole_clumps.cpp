@@ -1,0 +1,172 @@
+#include "whole_clumps.h"
+
+#include "keywords.h"
+#include "lammps_compat.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+WholeClumps::WholeClumps(LAMMPS *lmp, const std::string &command) :
+    Pointers(lmp), command(command), post(lmp->world)
+{
+}
+
+/* Of the atoms `bound`, which are in molecules: the rank that has the lowest tag of each. */
+std::vector<int> WholeClumps::owners(const std::vector<int> &bound) const
+{
+  struct Part {
+    int64_t molecule, lowest;
+    int owner, unused;
+  };
+  std::unordered_map<int64_t, size_t> number;
+  std::vector<Part> parts;
+  for (int i : bound) {
+    const auto known = number.insert({atom->molecule[i], parts.size()});
+    if (known.second) parts.push_back({atom->molecule[i], atom->tag[i], comm->me, 0});
+    Part &part = parts[known.first->second];
+    part.lowest = std::min(part.lowest, (int64_t) atom->tag[i]);
+  }
+  const int ranks = comm->nprocs;
+  const auto home = [ranks](const Part &p) {
+    return (int) ((uint64_t) p.molecule % ranks);
+  };
+  if (ranks > 1) ask_homes(world, parts, home, [](std::vector<Part> &all) {
+    std::unordered_map<int64_t, Part> first;
+    for (const Part &p : all) {
+      Part &best = first.insert({p.molecule, p}).first->second;
+      if (p.lowest < best.lowest) best = p;
+    }
+    for (Part &p : all) p.owner = first[p.molecule].owner;
+  });
+  std::vector<int> of;
+  for (int i : bound) of.push_back(parts[number[atom->molecule[i]]].owner);
+  return of;
+}
+
+/* Which atoms go where, and how many come. */
+void WholeClumps::route(const std::vector<int> &bound)
+{
+  const std::vector<int> owner = owners(bound);
+  std::vector<int> to(comm->nprocs, 0), by_owner;
+  at_home.clear();
+  for (size_t k = 0; k < bound.size(); k++) {
+    if (owner[k] == comm->me)
+      at_home.push_back(bound[k]);
+    else {
+      to[owner[k]]++;
+      by_owner.push_back((int) k);
+    }
+  }
+  std::stable_sort(by_owner.begin(), by_owner.end(),
+                   [&owner](int p, int q) { return owner[p] < owner[q]; });
+  away.clear();
+  for (int k : by_owner) away.push_back(bound[k]);
+  post.address(to);
+}
+
+/* The members in order of molecule and tag, as they come from at_home and from others */
+void WholeClumps::arrange()
+{
+  struct Member {
+    int64_t molecule, tag;
+    int slot;
+  };
+  slot.resize(at_home.size() + post.rows_in());
+  for (size_t k = 0; k < slot.size(); k++) slot[k] = (int) k;
+  const std::vector<double> who = gather(2, [this](int i, double *out) {
+    out[0] = ubuf((int64_t) atom->molecule[i]).d;
+    out[1] = ubuf((int64_t) atom->tag[i]).d;
+  });
+  std::vector<Member> members;
+  for (size_t k = 0; k < slot.size(); k++)
+    members.push_back({(int64_t) ubuf(who[2 * k]).i, (int64_t) ubuf(who[2 * k + 1]).i, (int) k});
+  std::sort(members.begin(), members.end(), [](const Member &p, const Member &q) {
+    return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
+  });
+  clumps.clear();
+  tag.clear();
+  for (size_t k = 0; k < members.size(); k++) {
+    const int at = (int) k;
+    if (clumps.empty() || clumps.back().molecule != members[k].molecule)
+      clumps.push_back({members[k].molecule, at, at});
+    clumps.back().end = at + 1;
+    tag.push_back(members[k].tag);
+    slot[k] = members[k].slot;
+  }
+}
+
+void WholeClumps::find()
+{
+  const bool again = stale;
+  if (again) {
+    std::vector<int> bound;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->molecule[i] != 0) bound.push_back(i);
+    route(bound);
+    arrange();
+    arrangements++;
+    stale = false;
+  }
+  stand();
+  if (again) check_widths();
+}
+
+void WholeClumps::stand()
+{
+  const Lattice lattice = Lattice::of(domain);
+  std::copy_n(lattice.h, 6, h);
+  x = gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); });
+  steps.assign(3 * tag.size() + 3, 0);
+  for (const Clump &clump : clumps)
+    for (int k = clump.begin + 1; k < clump.end; k++) {
+      const double *first = &x[3 * (size_t) clump.begin];
+      double *there = &x[3 * (size_t) k];
+      double d[3] = {there[0] - first[0], there[1] - first[1], there[2] - first[2]};
+      lattice.closest(d, &steps[3 * (size_t) k]);
+      for (int e = 0; e < 3; e++) there[e] = first[e] + d[e];
+    }
+}
+
+/* How far a clump reaches in x, y, z: beyond half of a periodic box the image next to the first
+ * sphere need not be that next to the second. */
+void WholeClumps::check_widths() const
+{
+  int64_t widest = std::numeric_limits<int64_t>::max();
+  for (const Clump &clump : clumps)
+    for (int d = 0; d < 3; d++) {
+      double lo = INFINITY, hi = -INFINITY;
+      for (int k = clump.begin; k < clump.end; k++) {
+        lo = std::min(lo, x[3 * (size_t) k + d]);
+        hi = std::max(hi, x[3 * (size_t) k + d]);
+      }
+      if (domain->periodicity[d] && hi - lo > 0.5 * domain->prd[d] * (1.0 + 1e-9))
+        widest = std::min(widest, clump.molecule);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &widest, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  if (widest == std::numeric_limits<int64_t>::max()) return;
+  fail(lmp,
+       command + ": the clump of molecule " + std::to_string(widest) +
+           " is wider than half of the periodic box, so which image of a sphere it sees is "
+           "ambiguous; use a larger box or a cut_off_distance below half of it");
+}
+
+double WholeClumps::memory_usage() const
+{
+  return sizeof(double) *
+      ((double) x.capacity() + outbox.capacity() + inbox.capacity()) +
+      sizeof(int) * ((double) at_home.capacity() + away.capacity() + slot.capacity() +
+                     steps.capacity()) +
+      sizeof(int64_t) * (double) tag.capacity();
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,143 @@
+"""What may be wrong with the particles of an SPH scene: it is put right, warned of or refused."""
+import pytest
+
+from sph_tools import run, start
+
+SQUARE = """
+units lj
+dimension 2
+atom_style sph
+lattice sq 144 origin 0.5 0.5 0
+region b block 0 1 0 1 -0.04 0.04 units box
+create_box 1 b
+create_atoms 1 box
+mass 1 $(1/144)
+set group all sph/rho 1.1
+neighbor 0.02 bin
+neigh_modify delay 0 every 1
+pair_style sph/artVisc/tensCorr wendland $(1/6) viscosity 0.01 central
+pair_coeff * * c 10
+fix p all sph/pressure Tait $(100*1.1/7) 1.1 7
+fix d all sph/density/continuity
+fix m all nve/sph
+fix e all enforce2d
+compute r all sph/rho/atom
+compute rho all reduce ave c_r
+thermo_style custom step lx c_rho
+timestep 0.003
+"""
+
+
+def density(lmp):
+    lmp.command("run 0 post no")
+    return lmp.extract_compute("rho", 0, 0)
+
+
+@pytest.mark.parametrize("how, there", [
+    ("fix x all deform 1 x scale 0.98 y scale 0.95 remap x", 0.98 * 0.95),
+    ("fix x all press/berendsen x 1 1 0.05 y 1 1 0.05 modulus 100", None),
+])
+def test_density_follows_a_box_that_moves_its_particles(how, there):
+    """The mass per volume of the box, by whatever the box is changed."""
+    lmp = start()
+    run(lmp, SQUARE + how + "\nrun 100 post no\nunfix x\n")
+    rho = density(lmp)
+    area = lmp.get_thermo("lx") * lmp.get_thermo("ly")
+    assert rho * area == pytest.approx(1.1, rel=1e-4)
+    if there:
+        assert area == pytest.approx(there, rel=1e-9)
+    lmp.close()
+
+
+@pytest.mark.parametrize("remap, factor", [("remap", 1 / 0.9), ("", 1.0)])
+def test_density_follows_change_box_only_where_it_moves_particles(remap, factor):
+    lmp = start()
+    run(lmp, SQUARE.replace("region b block 0 1", "region b block 0 1.2") + "region cut block 1 1.2 INF INF INF INF units box\n"
+        "delete_atoms region cut\nrun 1 post no\n")
+    before = density(lmp)
+    run(lmp, "change_box all x scale 0.9 " + remap)
+    assert density(lmp) == pytest.approx(before * factor, rel=1e-9)
+    lmp.close()
+
+
+def test_a_particle_made_in_a_run_has_the_density_of_its_equation_of_state():
+    lmp = start()
+    run(lmp, SQUARE + "region r block 0.3 0.7 0.3 0.7 0 0 units box\nfix in all deposit 1 1 1 77 region r near 0.03\nrun 3 post no\n")
+    assert lmp.get_natoms() == 145
+    assert density(lmp) == pytest.approx(1.1, rel=0.05)
+    lmp.close()
+
+
+def test_a_particle_without_density_is_named_before_its_neighbours():
+    lmp = start()
+    with pytest.raises(Exception, match=r"step [12]: atom 145 has the density 0; it must be a number > 0 \(new\?"):
+        run(lmp, SQUARE.replace("fix p all sph/pressure Tait $(100*1.1/7) 1.1 7", "fix p all sph/pressure absolut 10") +
+            "region r block 0.3 0.7 0.3 0.7 0 0 units box\nfix in all deposit 1 1 1 77 region r near 0.03\nrun 3 post no\n")
+    lmp.close()
+
+
+FLOOR = """
+units lj
+dimension 2
+atom_style sph
+boundary p f p
+lattice sq 400 origin 0.5 0.5 0
+region b block 0 0.5 -0.25 0.5 -0.025 0.025 units box
+create_box 2 b
+region w block INF INF 0 0.3 INF INF units box
+region f block INF INF -0.2 0 INF INF units box
+create_atoms 1 region w
+create_atoms 2 region f
+mass 1 0.0025
+mass 2 $(0.0025*v_ratio)
+group water type 1
+group floor type 2
+set group all sph/rho 1
+neighbor 0.015 bin
+neigh_modify delay 0 every 1 exclude type 2 2
+pair_style sph/artVisc/tensCorr wendland 0.1 viscosity 0.001 central
+pair_coeff * * c 10
+"""
+REST = """
+fix d all sph/density/continuity delta 0.1 volume {volume}
+fix m water nve/sph
+fix w floor wall/adami/sph gravity 0 -1 0
+fix e all enforce2d
+timestep 0.002
+run 1 post no
+"""
+
+
+def log_of(tmp_path, text):
+    lmp = start()
+    lmp.command(f"log {tmp_path}/log")
+    run(lmp, text)
+    lmp.close()
+    return (tmp_path / "log").read_text()
+
+
+@pytest.mark.parametrize("ratio, warned", [(1, False), (1.05, False), (0.8, True), (2, True)])
+def test_walls_of_another_mass_than_the_fluid_are_warned_of(tmp_path, ratio, warned):
+    log = log_of(tmp_path, f"variable ratio index {ratio}\n" + FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" + REST.format(volume="no"))
+    assert ("has not the mass of the fluid before it" in log) == warned
+
+
+def test_a_wall_that_meets_no_fluid_of_its_own_is_refused():
+    lmp = start()
+    own = "fix p water sph/pressure Tait 14.2857 1 7\nfix q floor sph/pressure Tait 14.2857 1 7"
+    with pytest.raises(Exception, match="meets no fluid of its own fix sph/pressure"):
+        run(lmp, "variable ratio index 1\n" + FLOOR + own + REST.format(volume="yes"))
+    lmp.close()
+
+
+@pytest.mark.parametrize("c, warned", [(10, False), (9.2, False), (5, True), (12, True)])
+def test_a_speed_of_sound_that_is_not_the_fluids_is_warned_of(tmp_path, c, warned):
+    log = log_of(tmp_path, SQUARE.replace("c 10", f"c {c}") + "run 0 post no\n")
+    assert (f"pair_coeff c {c}, is not that of its equation of state, 10" in log) == warned
+
+
+@pytest.mark.parametrize("h, warned", [(0.1, False), (0.2, True)])
+def test_widths_that_differ_are_warned_of(tmp_path, h, warned):
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + f"pair_coeff 2 2 c 10 h {h}\nfix p all sph/pressure Tait 14.2857 1 7" +
+                 REST.format(volume="no"))
+    assert ("types 1 and 2 differ in h" in log) == warned
