@@ -85,7 +85,6 @@ class Lammps:
             atom_style hybrid sphere bond
             atom_modify map array
             boundary {boundary}
-            comm_modify cutoff {3.0 if case.box else 12.0} vel yes
             plugin load stokesdynplugin.so
             fix load all property/atom d_fx d_fy d_fz
             read_data {self.data}
