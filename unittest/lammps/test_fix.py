@@ -52,7 +52,7 @@ def test_scalar_is_the_dissipation_rate(simulation):
 
 def test_vector_is_total_force_and_the_solver_s_numbers(simulation):
     spheres = five()
-    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-9")
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-9 precondition none")
     sim.commands("fix move all nve/sphere\ntimestep 1e-4").run(3)
     vector = sim.fix_vector()
     assert vector[0:3] == pytest.approx(sim.drag.sum(axis=0), rel=1e-12)
@@ -147,7 +147,7 @@ def test_drag_has_neither_energy_nor_virial(simulation):
 
 def test_compute_pair_reports_iterations_residual_unconverged_and_dissipation(simulation):
     spheres = five()
-    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-14 max_iter 3")
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-14 max_iter 3 precondition none")
     sim.commands("compute p all pair stokes_dynamics\nthermo_style custom step c_p c_p[1]")
     sim.commands("fix move all nve/sphere\ntimestep 1e-4").run(2)
     vector = sim.compute_vector("p", 4)
