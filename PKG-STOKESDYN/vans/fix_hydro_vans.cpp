@@ -31,6 +31,7 @@ FixHydroVans::Columns::Columns(const VansSettings &set, const Resume &resume)
   if (set.conserve) add(account, sizeof(sd_vans_account));
   if (set.overlap_once) add(lost, sizeof(double));
   if (set.fluctuates()) add(eddy, sizeof(sd_vans_eddy));
+  if (set.law.added_mass > 0.0) add(motion, sizeof(Motion));
 }
 
 FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) :
@@ -44,6 +45,7 @@ FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) :
   stream.fluid.least_slip = units == "cgs" ? 1e-3 : 1e-5;
   stream.fluid.longest_life = units == "micro" ? 1e7 : units == "nano" ? 1e10 : 10.0;
 
+  if (set.upflow) set.law.upward = stream.upward.data();
   vector_flag = 1;
   size_vector = VECTOR_SIZE;
   array_flag = 1;
@@ -54,6 +56,7 @@ FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) :
   extarray = 0;
   restart_global = 1;
   dynamic_group_allow = 1;
+  set.law.flux = stream.flux = set.flux.number();
   keep({&out, &memo}, &out, true);
   find_classes();
 }
@@ -117,8 +120,8 @@ void FixHydroVans::find_classes()
     for (const First &entry : all) radii.push_back(entry.radius);
     if (!radii.empty()) stream.set_classes(radii);
   }
-  if (set.classes)
-    size_array_cols = ARRAY_COLUMNS + SD_VANS_ROWS * (int) stream.class_radii.size();
+  size_array_cols = ARRAY_COLUMNS + (set.upflow ? 2 : 0);
+  if (set.classes) size_array_cols += SD_VANS_ROWS * (int) stream.class_radii.size();
 }
 
 static void equal_style(const Voice &voice, Field &field, const std::string &name)
@@ -142,6 +145,9 @@ void FixHydroVans::find_names()
   equal_style(set.voice, set.dpdx, "pressure_gradient");
   equal_style(set.voice, set.u_top, "surface");
   equal_style(set.voice, set.intensity, "intensity");
+  equal_style(set.voice, set.flux, "upflow");
+  equal_style(set.voice, set.discharge, "discharge");
+  for (Field &component : set.gravity) equal_style(set.voice, component, "gravity");
   if (set.overlap_once && !atom->molecule)
     set.voice.fail("keyword overlap: molecule IDs are needed to know the clumps");
   find_classes();
@@ -157,6 +163,7 @@ void FixHydroVans::init()
   find_names();
   if (!set.has_grains()) check_radius();
   if (set.solves()) tell_steps();
+  if (set.couple == VansSettings::TWO) tell_sizes();
   check_others();
 }
 
@@ -208,16 +215,62 @@ void FixHydroVans::tell_steps()
   }
 }
 
+/* The exchange of rules yade knows one size or classes. */
+void FixHydroVans::tell_sizes()
+{
+  if (!set.yade() || set.classes) return;
+  double mine[2] = {0.0, 0.0}, all[2];    // the largest radius and the largest inverse
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & average_bit) && atom->radius[i] > 0.0) {
+      mine[0] = std::max(mine[0], atom->radius[i]);
+      mine[1] = std::max(mine[1], 1.0 / atom->radius[i]);
+    }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (all[0] * all[1] > 1.01)
+    set.voice.warn("rules yade: radii from " + text(1.0 / all[1]) + " to " + text(all[0]) +
+                   " count as their mean in what the water gives to the grains, which can be "
+                   "wrong by a factor of two: take classes yes, or rules consistent");
+}
+
+/* Drag acts with the velocity of the step before: beyond 2/rate a step overshoots and grows. Looked
+ * at when a run begins and then every 100 steps at most. */
+void FixHydroVans::tell_stiff()
+{
+  if (told_stiff || !set.has_grains()) return;
+  if (looked_step >= 0 && update->ntimestep < looked_step + 100) return;
+  looked_step = update->ntimestep;
+  select(groupbit);
+  std::vector<double> mass(atom->nlocal + 1);
+  for (int i = 0; i < atom->nlocal; i++)
+    mass[i] = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  const sd_vans_grains all = grains();
+  int stiffest = -1;
+  struct {
+    double rate;
+    int rank;
+  } mine = {sd_vans_stiffest(&set.mesh, &set.law, stream.U.data(), stream.hindrance.data(), &all,
+                             mass.data(), &stiffest), comm->me}, largest;
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  if (!(largest.rate * update->dt > 1.0)) return;
+  double tag = stiffest < 0 ? 0.0 : (double) atom->tag[stiffest];
+  MPI_Bcast(&tag, 1, MPI_DOUBLE, largest.rank, world);
+  told_stiff = true;
+  set.voice.warn("the time step " + text(update->dt) + " is too long for the drag on atom " +
+                 std::to_string((bigint) tag) + ", which changes its velocity at the rate " + text(largest.rate) +
+                 ": take at most " + text(1.0 / largest.rate) + "; beyond " +
+                 text(2.0 / largest.rate) + " the velocity grows without bound");
+}
+
 /* A bed up to the surface, or a mesh that misses most of the grains, is a mistake in the mesh and
  * not a state of the run. */
 void FixHydroVans::check_mesh()
 {
   const Voice what = set.voice.of("keyword mesh");
-  const int N = stream.ncell(), top = N - 2;
+  const int N = stream.ncell(), top = stream.wet.ncell - 2;
   const double z_ref = set.mesh.z_ref;
   if (stream.phi()[top] > 0.5 * set.fluid.phi_max)
     what.fail("the bed reaches the surface of the water: phi = " + text(stream.phi()[top]) +
-              " in the slice below z = " + text(z_ref + set.edge[top + 1]) +
+              " in the slice below z = " + text(stream.surface()) +
               "; the mesh must hold bed and flow depth");
   select(average_bit);
   double volume[2] = {0, 0}, all[2];
@@ -238,6 +291,8 @@ void FixHydroVans::check_mesh()
 
 void FixHydroVans::setup(int vflag)
 {
+  if (gravity_varies() || set.flux.is_variable()) read_variables();
+  if (set.overlap_once && !set.averages()) count_overlaps();
   if (set.averages() && !stream.averaged) {
     average();
     stream.profile_changed();
@@ -247,7 +302,9 @@ void FixHydroVans::setup(int vflag)
     read_variables();
     renew_fluctuations(0.0, true);
   }
+  looked_step = -1;
   post_force(vflag);
+  tell_stiff();
 }
 
 void FixHydroVans::post_force(int /*vflag*/)
@@ -262,7 +319,8 @@ void FixHydroVans::post_force(int /*vflag*/)
   local = Sums();
   if (!set.has_grains()) return;
   select(groupbit);
-  local.outside = forces(grains());
+  if (set.law.added_mass > 0.0) find_accelerations(stepping, repeat);
+  local.outside = forces(grains(), true);
   for (int i = 0; i < atom->nlocal; i++) push(i, stepping, repeat);
   check_forces();
 }
@@ -312,6 +370,38 @@ void FixHydroVans::check_forces() const
                            "there");
 }
 
+/* What a velocity of half a step ago became. A run begins with that of its step, half a step before
+ * the next that is seen here. */
+void FixHydroVans::find_accelerations(bool stepping, bool repeat)
+{
+  acceleration.assign(3 * (size_t) atom->nlocal + 3, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!take[i]) continue;
+    Motion *motion = (Motion *) (memo.give(i) + column.motion);
+    if (stepping && motion->span > 0.0)
+      for (int d = 0; d < 3; d++)
+        acceleration[3 * (size_t) i + d] =
+            (atom->v[i][d] - motion->v[d]) / (motion->span * update->dt);
+    if (repeat && motion->span > 0.0) continue;
+    std::copy_n(atom->v[i], 3, motion->v);
+    motion->span = stepping ? 1.0 : 0.5;
+  }
+}
+
+bool FixHydroVans::gravity_varies() const
+{
+  return std::any_of(std::begin(set.gravity), std::end(set.gravity),
+                     [](const Field &component) { return component.is_variable(); });
+}
+
+void FixHydroVans::take_gravity()
+{
+  for (int d = 0; d < 3; d++) set.law.g[d] = set.gravity[d].number();
+  if (stream.fluid.held) return;
+  stream.fluid.gx = set.law.g[0];
+  stream.drive = stream.fluid.gx - stream.fluid.dpdx / stream.fluid.rho;
+}
+
 void FixHydroVans::read_variables()
 {
   struct {
@@ -321,7 +411,12 @@ void FixHydroVans::read_variables()
     const char *name;
   } const all[] = {{set.dpdx, stream.fluid.dpdx, -HUGE_VAL, "pressure_gradient: "},
                    {set.u_top, stream.fluid.u_top, -HUGE_VAL, "surface: speed "},
-                   {set.intensity, stream.intensity, 0.0, "intensity: "}};
+                   {set.intensity, stream.intensity, 0.0, "intensity: "},
+                   {set.flux, stream.flux, -HUGE_VAL, "upflow: "},
+                   {set.discharge, stream.fluid.discharge, -HUGE_VAL, "discharge: "},
+                   {set.gravity[0], set.law.g[0], -HUGE_VAL, "gravity: gx "},
+                   {set.gravity[1], set.law.g[1], -HUGE_VAL, "gravity: gy "},
+                   {set.gravity[2], set.law.g[2], -HUGE_VAL, "gravity: gz "}};
   if (std::none_of(std::begin(all), std::end(all),
                    [](const auto &each) { return each.field.is_variable(); }))
     return;
@@ -335,18 +430,23 @@ void FixHydroVans::read_variables()
     if (each.value < each.least) set.voice.fail(what + " must be >= 0");
   }
   modify->addstep_compute(update->ntimestep + nevery);
+  take_gravity();
+  set.law.flux = stream.flux;
 }
 
 void FixHydroVans::end_of_step()
 {
   read_variables();
   if (set.averages()) average();
+  else if (set.overlap_once) count_overlaps();
+  tell_stiff();
   if (set.couple == VansSettings::ONE) stream.profile_changed();
   if (set.solves() && set.period > 0.0)
     couple(set.period, set.dt);
   else if (set.solves())
     couple(elapsed, 0.1 * elapsed);
   end_interval();
+  if (set.averages() || set.solves()) stream.sample();
   tell_outside();
 }
 

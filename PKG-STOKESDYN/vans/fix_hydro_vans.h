@@ -6,6 +6,7 @@
 
 #include "resume.h"
 #include "rows_fix.h"
+#include "sd_vans_random.h"
 #include "vans_stream.h"
 
 #include <memory>
@@ -47,7 +48,9 @@ class FixHydroVans : public RowsFix {
          STRESS, ARRAY_COLUMNS };
   /* Entries of the global vector. */
   enum { FORCE_X, FORCE_Y, FORCE_Z, TRANSPORT, FRICTION_VELOCITY, LARGEST_STRESS, OUTSIDE, SHIELDS,
-         TOTAL_DRAG, BED, MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, VECTOR_SIZE };
+         TOTAL_DRAG, BED, MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, DISCHARGE,
+         DRIVE, ELEVATION, VOLUME, MEAN_TRANSPORT, TRANSPORT_ERROR, MEAN_STRESS, STRESS_ERROR,
+         WALL_SHARE, VECTOR_SIZE };
 
   /* Per atom: force and velocity fluctuation; memo: what must follow the atom besides, a column
    * that no keyword asks for is not there. LOST: share of its volume that is another's too. */
@@ -56,10 +59,15 @@ class FixHydroVans : public RowsFix {
   Resume resume;
   struct Columns {
     enum { SOLVED = 0, LEFT = 1 };
-    int account = -1, lost = -1, eddy = -1, all = LEFT;
+    int account = -1, lost = -1, eddy = -1, motion = -1, all = LEFT;
     Columns(const VansSettings &set, const Resume &resume);
   } column;
   AtomRows memo;
+  /* For the added mass: the velocity of the last step, and how much of a step lies between it and
+   * that of the next; 0: nothing is known. */
+  struct Motion {
+    double v[3], span;
+  };
   sd_vans_account *account(int i) { return (sd_vans_account *) (memo.give(i) + column.account); }
 
   /* The same on all ranks and in the restart file; last_step: of the forces in array_atom; elapsed:
@@ -74,12 +82,14 @@ class FixHydroVans : public RowsFix {
     double force[3] = {0, 0, 0}, drag = 0, outside = 0;
   } local, global;
   LAMMPS_NS::bigint summed_step = -1;
-  bool told_outside = false, told_work = false;
+  bool told_outside = false, told_work = false, told_stiff = false;
+  /* of the last look at the grains' time step */
+  LAMMPS_NS::bigint looked_step = -1;
 
   /* of the members of clumps when their overlaps were counted; 0: never */
   uint64_t members_counted = 0;
   std::vector<unsigned char> take;
-  std::vector<double> F, drag_x, u, weight, work;
+  std::vector<double> F, drag_x, u, weight, work, acceleration;
 
   double area() const;
   void check_box() const;
@@ -87,18 +97,23 @@ class FixHydroVans : public RowsFix {
   void check_others() const;
   void check_mesh();
   void tell_steps();
+  void tell_stiff();
+  void tell_sizes();
   void find_classes();
   void find_names();
 
   void select(int bit, bool not_in_group = false);
   sd_vans_grains grains();
-  int forces(const sd_vans_grains &grains);
+  int forces(const sd_vans_grains &all, bool accelerated = false);
   void push(int i, bool stepping, bool repeat);
   void check_forces() const;
   void sum_up();
   void tell_outside();
 
+  bool gravity_varies() const;
+  void take_gravity();
   void read_variables();
+  void find_accelerations(bool stepping, bool repeat);
   void average();
   void couple(double T, double dt);
   void end_interval();
@@ -109,6 +124,7 @@ class FixHydroVans : public RowsFix {
   uint64_t members() const;
   void count_overlaps();
 
+  double steady(int k) const;
   void modify_profile(Keywords &in, const Voice &what);
 
   void record(int i) override;

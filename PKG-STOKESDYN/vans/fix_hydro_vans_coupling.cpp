@@ -37,7 +37,7 @@ sd_vans_grains FixHydroVans::grains()
 {
   const int n = atom->nlocal;
   sd_vans_grains all = {n, n ? atom->x[0] : nullptr, n ? atom->v[0] : nullptr, atom->radius,
-                        nullptr, nullptr, take.data()};
+                        nullptr, nullptr, take.data(), nullptr};
   if (set.fluctuates()) {
     u.resize(3 * (size_t) n + 3);
     for (int i = 0; i < n; i++) std::copy_n(out[i] + FLUCTUATION, 3, &u[3 * (size_t) i]);
@@ -52,8 +52,10 @@ sd_vans_grains FixHydroVans::grains()
 }
 
 /* Of those atoms into F and drag_x; how many are outside the mesh. */
-int FixHydroVans::forces(const sd_vans_grains &grains)
+int FixHydroVans::forces(const sd_vans_grains &all, bool accelerated)
 {
+  sd_vans_grains grains = all;
+  if (set.law.added_mass > 0.0 && accelerated) grains.acceleration = acceleration.data();
   F.resize(3 * (size_t) grains.n + 3);
   drag_x.resize(grains.n + 1);
   return sd_vans_forces(&set.mesh, &set.law, stream.U.data(), stream.hindrance.data(), &grains,
@@ -112,7 +114,11 @@ void FixHydroVans::count_overlaps()
         Compat::minimum_image(domain, &x[3 * j]);
         a[j] = all[begin + j].a;
       }
-      share[all[begin + k].tag] = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
+      const double part = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
+      if (part < 0.0)
+        set.voice.fail("keyword overlap: out of memory for a clump of " + std::to_string(n) +
+                       " members");
+      share[all[begin + k].tag] = part;
     }
   }
   for (int i = 0; i < atom->nlocal; i++) {
@@ -127,13 +133,14 @@ void FixHydroVans::count_overlaps()
 void FixHydroVans::average()
 {
   const size_t N = stream.ncell(), nclass = stream.class_radii.size(),
-               total = N * SD_VANS_ROWS * (1 + nclass);
+               forces = N * SD_VANS_ROWS * (1 + nclass), total = forces + 2 * N;
   if (set.overlap_once) count_overlaps();
   select(average_bit);
   enum { COUNT, RADIUS, VOLUME, MASS, MEANS };
   std::vector<double> sums(total + MEANS, 0.0), all(total + MEANS);
-  work.resize(2 * N);
-  const sd_vans_averaging how = {set.point, (int) nclass, stream.class_radii.data()};
+  work.resize(3 * N);
+  const sd_vans_averaging how = {set.point, (int) nclass, stream.class_radii.data(),
+                                 &sums[forces]};
   const sd_vans_grains grains = this->grains();
   const int odd = sd_vans_average(&set.mesh, &set.law, &how, stream.U.data(),
                                   stream.hindrance.data(), &grains, sums.data(), work.data());
@@ -147,7 +154,7 @@ void FixHydroVans::average()
     const double a = atom->radius[i];
     mine[COUNT] += 1.0;
     mine[RADIUS] += a;
-    mine[VOLUME] += 4.0 / 3.0 * SD_PI * a * a * a;
+    mine[VOLUME] += (grains.weight ? weight[i] : 1.0) * 4.0 / 3.0 * SD_PI * a * a * a;
     mine[MASS] += atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
   }
   MPI_Allreduce(sums.data(), all.data(), (int) sums.size(), MPI_DOUBLE, MPI_SUM, world);
@@ -156,7 +163,7 @@ void FixHydroVans::average()
     mean_density = means[MASS] / means[VOLUME];
   }
   if (set.radius == 0.0) stream.fluid.radius = mean_radius;
-  stream.take_averages(area(), all.data());
+  stream.take_averages(area(), all.data(), &all[forces]);
 }
 
 /* What the grains got from the water since the last coupling: those of the group as booked step by
@@ -264,7 +271,7 @@ void FixHydroVans::renew_fluctuations(double time, bool first)
     eddy_age = 0.0;
     eddy_period = set.renewal > 0.0
         ? set.renewal
-        : sd_vans_depth_over_velocity(&set.mesh, stream.U.data(), bed);
+        : sd_vans_depth_over_velocity(&stream.wet, stream.U.data(), bed);
   }
   renewals += 1.0;
   const std::vector<double> u_star = stream.friction_velocities();
@@ -273,7 +280,7 @@ void FixHydroVans::renew_fluctuations(double time, bool first)
       set.fluctuation != VansSettings::UNCORRELATED,
       bed,
       u_star.data(),
-      sd_vans_longest_life(&set.mesh, &stream.fluid, stream.stress.data()),
+      sd_vans_longest_life(&stream.wet, &stream.fluid, stream.stress.data()),
       nevery * update->dt};
   select(groupbit);
   for (int i = 0; i < atom->nlocal; i++) {

@@ -24,7 +24,7 @@ double FixHydroVans::compute_vector(int k)
     case FORCE_Z: return global.force[k - FORCE_X];
     case TOTAL_DRAG: return global.drag;
     case OUTSIDE: return global.outside;
-    case TRANSPORT: return sd_vans_transport(&set.mesh, stream.grain.data());
+    case TRANSPORT: return stream.transport();
     case FRICTION_VELOCITY: return std::sqrt(std::max(largest, 0.0) / set.fluid.rho);
     case LARGEST_STRESS: return largest;
     case SHIELDS: {
@@ -35,15 +35,35 @@ double FixHydroVans::compute_vector(int k)
     case BED: return stream.bed_elevation();
     case MOMENTUM:
       return area() *
-          sd_vans_momentum(&set.mesh, set.fluid.rho, stream.phi(), stream.U.data());
+          sd_vans_momentum(&stream.wet, set.fluid.rho, stream.phi(), stream.U.data());
     case TRANSIT: return ledger.transit;
     case DRIVING: return ledger.driving;
     case BOTTOM: return ledger.bottom;
     case WALLS: return ledger.walls;
     case SURFACE: return ledger.surface;
     case OTHERS: return ledger.others;
+    case DISCHARGE:
+      return sd_vans_momentum(&stream.wet, 1.0, stream.phi(), stream.U.data());
+    case DRIVE: return stream.drive;
+    case ELEVATION: return stream.surface();
+    case VOLUME: return sd_vans_volume(&stream.wet, stream.phi());
+    case WALL_SHARE:
+      return sd_vans_wall_share(&stream.wet, &stream.fluid, stream.phi(), stream.U.data(),
+                                stream.drive);
+    case MEAN_TRANSPORT:
+    case TRANSPORT_ERROR:
+    case MEAN_STRESS:
+    case STRESS_ERROR: return steady(k);
   }
   return 0.0;
+}
+
+/* Means over the steady part of the run, and their errors. */
+double FixHydroVans::steady(int k) const
+{
+  double mean, error;
+  sd_vans_series_mean(&stream.series, k >= MEAN_STRESS, &mean, &error);
+  return k == MEAN_TRANSPORT || k == MEAN_STRESS ? mean : error;
 }
 
 double FixHydroVans::compute_array(int n, int k)
@@ -57,6 +77,8 @@ double FixHydroVans::compute_array(int n, int k)
     case STRESS: return stream.stress[n];
   }
   if (k < ARRAY_COLUMNS) return stream.grain[(k - PHI) * N + n];
+  if (set.upflow && k >= size_array_cols - 2)
+    return k == size_array_cols - 2 ? stream.upward[n] : stream.pressure[n];
   const size_t at = (size_t) (k - ARRAY_COLUMNS) * N + n;
   return at < stream.class_grain.size() ? stream.class_grain[at] : 0.0;
 }
@@ -114,6 +136,14 @@ int FixHydroVans::modify_param(int narg, char **arg)
     stream.take_given(read_given(what, in.word(), stream.ncell(), set.class_radii.size()));
     if (!set.has_grains()) check_radius();
     last_step = -1;
+  } else if (key == "gravity") {
+    set.take_gravity(in);
+    for (Field &component : set.gravity) component.init(lmp, what.command);
+    take_gravity();
+    last_step = -1;
+  } else if (key == "steady") {
+    in.choice({"anew"});
+    stream.series = {};
   } else if (key == "average") {
     if (!set.averages()) what.fail("couple none and fluid have no averages");
     find_names();
@@ -137,7 +167,10 @@ int FixHydroVans::modify_param(int narg, char **arg)
 /* What the columns of memo are. */
 static std::vector<double> layout(const VansSettings &set)
 {
-  return {(double) set.conserve, (double) set.overlap_once, (double) set.fluctuates()};
+  std::vector<double> columns = {(double) set.conserve, (double) set.overlap_once,
+                                 (double) set.fluctuates()};
+  if (set.law.added_mass > 0.0) columns.push_back(1.0);
+  return columns;
 }
 
 void FixHydroVans::write_restart(FILE *fp)

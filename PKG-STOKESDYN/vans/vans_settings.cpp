@@ -192,13 +192,35 @@ void VansSettings::take_fluid(Keywords &in)
 
 void VansSettings::take_gravity(Keywords &in)
 {
-  for (double &component : law.g) component = in.number();
+  for (int d = 0; d < 3; d++) {
+    gravity[d] = Field::parse(in);
+    law.g[d] = gravity[d].number();
+  }
+}
+
+void VansSettings::take_hindrance(Keywords &in)
+{
+  if (in.take("richardson_zaki"))
+    law.drag.hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI;
+  else if (in.take("di_felice"))
+    law.drag.hindrance = SD_VANS_HINDRANCE_DI_FELICE;
+  else
+    law.exponent = in.not_negative();
 }
 
 void VansSettings::take_surface(Keywords &in)
 {
-  fluid.driven = in.choice({"free", "speed"}) == 1;
-  if (fluid.driven) u_top = Field::parse(in);
+  const size_t kind = in.choice({"free", "speed", "follow"});
+  fluid.driven = kind == 1;
+  if (kind == 1) u_top = Field::parse(in);
+  if (kind == 2) surface = in.positive();
+}
+
+void VansSettings::take_discharge(Keywords &in)
+{
+  if (in.take("off")) return;
+  fluid.held = 1;
+  discharge = Field::parse(in);
 }
 
 void VansSettings::take_sidewall(Keywords &in)
@@ -220,6 +242,10 @@ void VansSettings::read(Keywords &in)
   const auto coupling = [&] {
     couple = in.option<decltype(couple)>({"none", "one", "two", "fluid"});
   };
+  const auto drag = [&] {
+    law.drag.law = in.option<sd_vans_drag_of_one>(
+        {"yade", "schiller_naumann", "brown_lawler", "ferguson_church"});
+  };
   const auto rules = [&] {
     fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"});
   };
@@ -234,7 +260,10 @@ void VansSettings::read(Keywords &in)
       {"convective", [&] { convective_file = file_or(in, "off"); }},
       {"solve", [&] { take_solve(in); }},
       {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
-      {"hindrance", [&] { law.exponent = in.number(); }},
+      {"drag", drag},
+      {"hindrance", [&] { take_hindrance(in); }},
+      {"added_mass", [&] { law.added_mass = in.take("off") ? 0.0 : in.not_negative(); }},
+      {"upflow", [&] { upflow = !in.take("off"); if (upflow) flux = Field::parse(in); }},
       {"lift", [&] { law.lift = in.take("off") ? 0.0 : in.number(); }},
       {"turbulence", closure},
       {"kappa", [&] { fluid.kappa = in.positive(); }},
@@ -244,8 +273,11 @@ void VansSettings::read(Keywords &in)
       {"sublayer", [&] { fluid.sublayer = in.yes_no(); }},
       {"viscosity", viscosity},
       {"surface", [&] { take_surface(in); }},
+      {"discharge", [&] { take_discharge(in); }},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
+      {"wall_roughness", [&] { fluid.wall_roughness = in.not_negative(); }},
+      {"wall_mixing", [&] { fluid.narrow = in.yes_no(); }},
       {"radius", [&] { radius = in.positive(); }},
       {"classes", [&] { classes = in.yes_no(); }},
       {"class_radii", [&] { take_class_radii(in); }},
@@ -271,17 +303,39 @@ void VansSettings::check(const Keywords &in) const
              "keyword gravity (gx gy gz) is required; its x component is the slope");
   in.require(!yade() || mesh_file.empty(),
              "keyword mesh: rules yade knows slices of one height only");
-  in.require(!law.felt_by_volume || !yade(), "keyword felt: rules yade feel the water at the centre");
+  in.require(!law.felt_by_volume || !yade(),
+             "keyword felt: rules yade feel the water at the centre");
   in.require(!law.felt_by_volume || !point,
              "keyword felt: with grains point all of a grain is at its centre");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal: there are no fluctuations");
-  in.require(!in.given("intensity") || fluctuates(), "keyword intensity: there are no fluctuations");
+  in.require(!in.given("intensity") || fluctuates(),
+             "keyword intensity: there are no fluctuations");
   in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
-  const bool stands = law.g[0] == 0.0 && !dpdx.is_variable() && dpdx.number() == 0.0 &&
-      !fluid.driven && profile_file.empty();
-  in.require(!solves() || law.rest || !stands,
+  in.require(!yade() || (law.drag.law == SD_VANS_DRAG_YADE &&
+                         law.drag.hindrance == SD_VANS_HINDRANCE_POWER),
+             "keyword drag: rules yade have drag yade and hindrance n only");
+  in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass: rules yade have none");
+  in.require(!upflow || (averages() && !yade()),
+             "keyword upflow: it needs couple one or two, and rules consistent");
+  in.require(!fluid.held || (solves() && !yade()),
+             "keyword discharge: it needs couple two or fluid, and rules consistent");
+  in.require(!fluid.held || !fluid.driven,
+             "keyword discharge: with surface speed the stream is driven already");
+  in.require(!fluid.held || !in.given("pressure_gradient"),
+             "keyword discharge: the pressure gradient follows from it, "
+             "leave pressure_gradient out");
+  in.require(!follows() || (couple == TWO && !yade()),
+             "keyword surface: follow needs couple two and rules consistent");
+  const bool walls = fluid.width > 0.0;
+  in.require(walls || fluid.wall_roughness == 0.0, "keyword wall_roughness: there is no sidewall");
+  in.require(walls || !fluid.narrow, "keyword wall_mixing: there is no sidewall");
+  in.require(!yade() || (fluid.wall_roughness == 0.0 && !fluid.narrow),
+             "keywords wall_roughness and wall_mixing: rules yade have smooth walls only");
+  const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() &&
+      dpdx.number() == 0.0 && !fluid.driven && profile_file.empty();
+  in.require(!solves() || law.rest || !stands || fluid.held,
              "nothing drives the stream: give gravity an x component (the slope), "
-             "pressure_gradient, surface speed or a profile, or stream rest");
+             "pressure_gradient, discharge, surface speed or a profile, or stream rest");
 }
 
 void VansSettings::read_mesh()
@@ -332,6 +386,10 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   every = (int) in.positional("N").integer(1, 1000000000);
   read(in);
   check(in);
+  /* a law other than Yade's is one for lone grains, without Yade's exponent */
+  if (!in.given("hindrance") && law.drag.law != SD_VANS_DRAG_YADE)
+    law.drag.hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI;
+  fluid.drag = law.drag;
   if (yade() || couple != TWO) conserve = false;
   if (!mesh_file.empty()) read_mesh();
   mesh.ncell = (int) edge.size() - 1;
@@ -340,6 +398,10 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   fluid.gx = law.g[0];
   fluid.dpdx = dpdx.number();
   fluid.u_top = u_top.number();
+  fluid.discharge = discharge.number();
+  if (follows() && !(surface < edge[mesh.ncell - 1]))
+    voice.of("keyword surface").fail("the surface at " + text(surface) +
+        " has no room to rise: the water of the mesh ends at " + text(edge[mesh.ncell - 1]));
   if (period > 0.0) check_solve(voice.of("keyword solve"), period, dt);
 }
 

@@ -36,7 +36,14 @@ struct VansSettings {
   std::vector<double> convective;
   /* of the solve; 0: N steps, a tenth of it */
   double period = 0.0, dt = 0.0;
-  Field u_top, dpdx;
+  Field u_top, dpdx, gravity[3];
+  /* of water and grains, up through a horizontal plane; with upflow only */
+  Field flux;
+  bool upflow = false;
+  /* volume of water that passes per width and time, with fluid.held only */
+  Field discharge;
+  /* above z_ref where the surface begins, if it moves; 0: it stays at the top of the mesh */
+  double surface = 0.0;
   /* 0: mean of the grains */
   double radius = 0.0;
   bool classes = false;
@@ -60,7 +67,10 @@ struct VansSettings {
   bool overlap_once = false;
   std::string region, average = "all";
 
+  /* gx gy gz, each a number or a variable */
+  void take_gravity(Keywords &in);
   int ncell() const { return mesh.ncell; }
+  bool follows() const { return surface > 0.0; }
   bool yade() const { return law.rules == SD_VANS_YADE; }
   bool has_grains() const { return couple != FLUID; }
   bool solves() const { return couple == TWO || couple == FLUID; }
@@ -83,8 +93,9 @@ struct VansSettings {
   void take_fluctuation(Keywords &in);
   void take_intensity(Keywords &in);
   void take_fluid(Keywords &in);
-  void take_gravity(Keywords &in);
+  void take_hindrance(Keywords &in);
   void take_surface(Keywords &in);
+  void take_discharge(Keywords &in);
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void read_mesh();

@@ -7,12 +7,18 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 VansStream::VansStream(const VansSettings &settings) :
-    set(settings), mesh(set.mesh), fluid(set.fluid), U(set.profile),
-    solver(sd_vans_solver_create(&mesh))
+    set(settings), mesh(set.mesh), wet(set.mesh), fluid(set.fluid), U(set.profile),
+    wet_edge(set.edge), solver(sd_vans_solver_create(&wet))
 {
   const int N = ncell();
   if (!solver) set.voice.fail("out of memory for " + std::to_string(N) + " slices");
   U.resize(N + 1, 0.0);
+  wet.edge = wet_edge.data();
+  if (set.follows()) {
+    wet.dz = 0.0;
+    wet.ncell = sd_vans_fill(&mesh, nullptr, set.surface, wet_edge.data());
+  }
+  drive = fluid.gx - fluid.dpdx / fluid.rho;
   if (set.profile.empty() && fluid.driven && !set.u_top.is_variable()) U[N] = fluid.u_top;
   fluid.radius = set.radius;
   intensity = set.intensity.number();
@@ -20,6 +26,8 @@ VansStream::VansStream(const VansSettings &settings) :
   for (auto *array :
        {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
     array->assign(N, 0.0);
+  drag_density.assign(2 * (size_t) N, 0.0);
+  if (set.upflow) upward.assign(N, 0.0), pressure.assign(N, 0.0);
   scratch.resize(2 * (size_t) N + 2);
   set_classes(set.class_radii);
   take_given(set.given);
@@ -56,6 +64,7 @@ void VansStream::take_given(const std::vector<std::vector<double>> &columns)
     put(3 + 2 * c, &class_grain[profile * c]);
     put(4 + 2 * c, &class_grain[profile * c + SD_VANS_DRAG * ncell()]);
   }
+  density_known = false;
   profile_changed();
 }
 
@@ -74,16 +83,26 @@ void VansStream::mixing_length()
     for (const auto &profile : phi_history)
       for (int n = 0; n < N; n++) mean[n] += profile[n] / (double) phi_history.size();
   }
-  sd_vans_mixing_length(&mesh, &fluid, U.data(), phi(), classes(), mean.data(), length.data(),
-                        scratch.data());
+  /* of the classes phi counts, in rows as long as the mesh of the water */
+  std::vector<double> of_classes;
+  const size_t profile = SD_VANS_ROWS * (size_t) N, wet_profile = SD_VANS_ROWS * (size_t) wet.ncell;
+  if (classes() && set.follows()) {
+    of_classes.assign(wet_profile * class_radii.size(), 0.0);
+    for (size_t c = 0; c < class_radii.size(); c++)
+      std::copy_n(&class_grain[c * profile], wet.ncell, &of_classes[c * wet_profile]);
+  }
+  sd_vans_mixing_length(&wet, &fluid, U.data(), phi(),
+                        of_classes.empty() ? classes() : of_classes.data(), mean.data(),
+                        length.data(), scratch.data());
 }
 
 void VansStream::profile_changed()
 {
-  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
   mixing_length();
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
-  sd_vans_stress(&mesh, &fluid, phi(), length.data(), &flow);
+  sd_vans_stress(&wet, &fluid, phi(), length.data(), &flow);
+  fill_above();
 }
 
 void VansStream::no_average(int n, double area)
@@ -99,7 +118,31 @@ void VansStream::no_average(int n, double area)
                             : " right, or do members of clumps overlap (overlap once)?"));
 }
 
-void VansStream::take_averages(double area, const double *sums)
+/* Water and grains together rise with the flux q, e w + phi v = q: w = q + phi (w - v). With the w
+ * of before on the right this is the solution after a few couplings, whose mean v lags behind the
+ * grains: where grains follow the water at once, phi/e times their last velocity would swing. */
+void VansStream::take_upflow(bool first)
+{
+  const double *vz = row(SD_VANS_VZ), *of = phi();
+  for (int n = 0; n < ncell(); n++)
+    upward[n] = first ? (flux - of[n] * vz[n]) / (1.0 - of[n])
+                      : flux + of[n] * (upward[n] - vz[n]);
+}
+
+/* dp/dz = -(force of the drag on the grains), from the surface down. */
+void VansStream::find_pressure()
+{
+  const int N = ncell();
+  const double *up = &drag_density[N];
+  double above = 0.0;
+  for (int n = N - 1; n >= 0; n--) {
+    const double here = up[n] * sd_vans_height(&mesh, n);
+    pressure[n] = above + 0.5 * here;
+    above += here;
+  }
+}
+
+void VansStream::take_averages(double area, const double *sums, const double *forces)
 {
   const size_t N = ncell(), profile = SD_VANS_ROWS * N;
   const std::vector<double> before(phi(), phi() + N);
@@ -108,13 +151,67 @@ void VansStream::take_averages(double area, const double *sums)
     sd_vans_profiles(&mesh, area, sums + (1 + c) * profile, class_grain.data() + c * profile);
   for (size_t n = 0; n < N; n++)
     if (!(phi()[n] < 1.0)) no_average((int) n, area);
-  if (set.conserve && averaged)
+  if (set.follows())
+    move_surface(area, before);
+  else if (set.conserve && averaged)
     ledger.surface +=
         area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
+  for (size_t k = 0; k < 2 * N; k++)
+    drag_density[k] = forces[k] / (area * sd_vans_height(&mesh, (int) (k % N)));
+  density_known = true;
+  if (set.upflow) {
+    take_upflow(!averaged);
+    find_pressure();
+  }
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();
   averaged = true;
-  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
+}
+
+/* The surface goes where the water that there is fills the mesh between the grains. */
+void VansStream::move_surface(double area, const std::vector<double> &before)
+{
+  if (volume < 0.0) {
+    volume = sd_vans_volume(&wet, phi());
+    return;
+  }
+  wet_before = wet_edge;
+  sd_vans_mesh old = wet;
+  old.edge = wet_before.data();
+  wet.ncell = sd_vans_fill(&mesh, phi(), volume, wet_edge.data());
+  if (wet.ncell == 0)
+    set.voice.of("keyword surface")
+        .fail("the water rises above the mesh, which ends at z = " +
+              text(mesh.z_ref + mesh.edge[ncell() - 1]) + ": give the mesh more slices");
+  if (set.conserve)
+    ledger.surface += area * sd_vans_displace_to(&old, &wet, fluid.rho, before.data(), phi(),
+                                                 U.data(), scratch.data());
+  fill_above();
+}
+
+/* Above the surface the water, if there were any, moves with it. */
+void VansStream::fill_above()
+{
+  const int M = wet.ncell - 1, N = ncell();
+  if (!set.follows()) return;
+  for (int n = M + 1; n <= N; n++) U[n] = U[M];
+  for (int n = M + 1; n < N; n++) b[n] = length[n] = nut[n] = stress[n] = 0.0;
+}
+
+/* What belongs to grains above the surface goes to the water below it. */
+void VansStream::fold_above(std::vector<double> &of_slices) const
+{
+  for (int n = wet.ncell; n < ncell(); n++) {
+    of_slices[wet.ncell - 1] += of_slices[n];
+    of_slices[n] = 0.0;
+  }
+}
+
+void VansStream::sample()
+{
+  const double now[SD_VANS_SERIES] = {transport(), largest_stress()};
+  sd_vans_series_add(&series, now);
 }
 
 /* Once each: couplings that are longer than the drag allows, and drag that the limits of b keep
@@ -132,8 +229,8 @@ void VansStream::tell_limits(double T, double dt, const double cut[2])
                    " of a coupling; above 3 drag and stream drive each other up. Take a T of at "
                    "most " + text(3.0 / rate));
   }
-  const double drive = std::fabs(fluid.rho * fluid.gx - fluid.dpdx) * mesh.edge[ncell() - 1];
-  if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * drive) {
+  const double force = std::fabs(fluid.rho * drive) * wet.edge[wet.ncell - 1];
+  if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * force) {
     told_cut = true;
     set.voice.warn(text(100.0 * cut[0] / cut[1]) +
                    " % of the drag does not reach the water: b is cut off at 1/(10 dt) = " +
@@ -147,14 +244,20 @@ void VansStream::tell_limits(double T, double dt, const double cut[2])
 void VansStream::exchange(double T, double dt, std::vector<double> &rest)
 {
   const double *of_classes = set.classes ? classes() : nullptr;
+  /* exact for any sizes, unless the user has a radius of his own or the grains are given */
+  const bool by_radius = set.yade() || set.radius > 0.0 || !density_known;
+  const double *density = by_radius ? nullptr : drag_density.data();
   double cut[2] = {0.0, 0.0};
   if (set.law.felt_by_volume) {
     rest.resize(ncell());
     sd_vans_exchange_by_law(&mesh, &fluid, U.data(), hindrance.data(), grain.data(), of_classes,
-                            b.data(), rest.data());
+                            density, b.data(), rest.data());
   } else
-    sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, b.data(), cut);
+    sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, density, b.data(), cut);
   tell_limits(T, dt, cut);
+  /* grains above the surface have no water */
+  std::fill(b.begin() + wet.ncell, b.end(), 0.0);
+  if (!rest.empty()) std::fill(rest.begin() + wet.ncell, rest.end(), 0.0);
 }
 
 void VansStream::solve(double area, double T, double dt, const Given &given)
@@ -162,35 +265,45 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   const int N = ncell();
   const int64_t steps = sd_vans_steps(fluid.rules, T, &dt);
   std::vector<double> rest;
+  if (!fluid.held) drive = fluid.gx - fluid.dpdx / fluid.rho;
   exchange(T, dt, rest);
   mixing_length();
 
-  const bool settle = !given.back.empty(), account = settle || (set.conserve && given.held);
-  std::vector<double> source(account ? N : 0), moved(source), shear(source);
+  const bool settle = !given.back.empty();
+  std::vector<double> source(settle ? N : 0), moved(N), shear(N);
   double returned = 0.0;
-  if (settle)
-    returned = sd_vans_give_back(&mesh, fluid.rho * area, T, given.back.data(), outstanding.data(),
+  if (settle) {
+    std::vector<double> back = given.back;
+    fold_above(back);
+    fold_above(outstanding);
+    returned = sd_vans_give_back(&wet, fluid.rho * area, T, back.data(), outstanding.data(),
                                  source.data());
+  }
   source.resize(std::max(source.size(), rest.size()));
   for (size_t n = 0; n < rest.size(); n++) source[n] += rest[n];
   const sd_vans_column column = {phi(), row(SD_VANS_VX), b.data(), length.data(),
                                  source.empty() ? nullptr : source.data()};
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
-  sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0};
+  sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0, 0};
   const sd_status status =
-      sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, account ? &books : nullptr);
+      sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, &books);
   if (status != SD_OK)
     set.voice.fail("the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
                    " steps: " + sd_status_string(status) +
                    ". Take a shorter time between couplings");
-  if (!account) return;
 
-  for (size_t n = 0; n + 1 < rest.size(); n++)
-    moved[n] -= fluid.rho * sd_vans_height(&mesh, (int) n) * T * rest[n];
+  fill_above();
+  drive = books.drive;
+  if (fluid.held) fluid.gx = drive;    // for what else asks how strong the stream is
+  for (size_t n = 0; n + 1 < std::min(rest.size(), (size_t) wet.ncell); n++)
+    moved[n] -= fluid.rho * sd_vans_height(&wet, (int) n) * T * rest[n];
   double &taken = settle ? ledger.transit : ledger.others;
   for (int n = 0; n < N; n++) taken += area * moved[n];
-  if (settle)
-    sd_vans_hand_over(&mesh, phi(), T, &books, shear_density.data(), foreseen_density.data());
+  if (settle) {
+    std::fill(shear_density.begin(), shear_density.end(), 0.0);
+    std::fill(foreseen_density.begin(), foreseen_density.end(), 0.0);
+    sd_vans_hand_over(&wet, phi(), T, &books, shear_density.data(), foreseen_density.data());
+  }
   ledger.transit -= given.all + returned;
   ledger.others += given.others;
   ledger.driving += area * books.driving;
@@ -221,14 +334,23 @@ std::vector<VansStream::Saved> VansStream::saved()
           {"stress", &stress},
           {"shear", &shear_density},
           {"foreseen", &foreseen_density},
-          {"outstanding", &outstanding}};
+          {"outstanding", &outstanding},
+          {"drag_density", &drag_density},
+          {"upward", &upward},
+          {"pressure", &pressure}};
 }
 
 void VansStream::save(NamedState &state)
 {
   state.put("z_ref", mesh.z_ref);
   state.put("edge", set.edge);
+  state.put("volume", volume);
+  state.put("surface", {(double) wet.ncell, drive});
+  state.put("wet", wet_edge);
+  const double *numbers = &series.blocks;
+  state.put("series", std::vector<double>(numbers, numbers + sizeof(series) / sizeof(double)));
   state.put("averaged", averaged);
+  state.put("density_known", density_known);
   state.put("radius", fluid.radius);
   state.put("ledger", {ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface,
                        ledger.others});
@@ -255,19 +377,35 @@ void VansStream::check_mesh(const NamedState &state) const
               " away from those of this fix");
 }
 
+void VansStream::load_surface(const NamedState &state)
+{
+  state.get("series", &series.blocks, sizeof(series) / sizeof(double));
+  double now[2];
+  if (!state.get("surface", now, 2)) return;
+  drive = now[1];
+  if (fluid.held) fluid.gx = drive;
+  if (!set.follows()) return;
+  volume = state.get("volume", -1.0);
+  wet.ncell = (int) now[0];
+  state.get("wet", wet_edge.data(), wet_edge.size());
+}
+
 void VansStream::load(const NamedState &state)
 {
   check_mesh(state);
   averaged = state.get("averaged", 0.0) != 0.0;
+  density_known = state.get("density_known", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
   double sums[6];
   if (state.get("ledger", sums, 6)) ledger = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
   set_classes(state.get("class_radii"));
-  for (const Saved &array : saved()) state.get(array.name, array.values->data(), array.values->size());
+  for (const Saved &array : saved())
+    state.get(array.name, array.values->data(), array.values->size());
+  load_surface(state);
   const size_t N = ncell();
   const auto history = state.get("phi_history");
   phi_history.clear();
   for (size_t at = 0; at + N <= history.size(); at += N)
     phi_history.emplace_back(history.begin() + at, history.begin() + at + N);
-  sd_vans_hindrance(ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
 }

@@ -4,6 +4,8 @@
 #define SD_VANS_STREAM_H
 
 #include "named_state.h"
+#include "sd_vans_books.h"
+#include "sd_vans_steady.h"
 #include "vans_settings.h"
 
 #include <deque>
@@ -20,6 +22,8 @@ class VansStream {
 
   const VansSettings &set;
   const sd_vans_mesh &mesh;
+  /* the slices of the water and one above its surface: the mesh itself unless the surface moves */
+  sd_vans_mesh wet;
   /* as the settings have it, and what changes in a run */
   sd_vans_fluid fluid;
   /* of velocity fluctuations, if the user gives one number */
@@ -34,6 +38,17 @@ class VansStream {
   /* [N] per volume of grains: force of the viscous stress, impulse of the drag that the last solve
    * foresaw */
   std::vector<double> shear_density, foreseen_density;
+  /* [2][N] force of the drag on the grains per volume of mixture, along x and z */
+  std::vector<double> drag_density;
+  /* [N] velocity of the water along z, with upflow; and what rises */
+  std::vector<double> upward;
+  /* [N] what the water bears besides its own weight, in the middle of the slices; with upflow */
+  std::vector<double> pressure;
+  double flux = 0.0;
+  /* what drives the stream, gravity and pressure gradient, an acceleration */
+  double drive = 0.0;
+  /* samples of the transport rate and of the largest stress, one a coupling */
+  sd_vans_series series = {};
   /* are there averages? */
   bool averaged = false;
 
@@ -56,8 +71,9 @@ class VansStream {
   /* U or phi set from outside: hindrance, eddy viscosity and stress follow. */
   void profile_changed();
 
-  /* New averages from sums over all grains, then of each class. */
-  void take_averages(double area, const double *sums);
+  /* New averages from sums over all grains, then of each class; forces [2][N] of the drag in each
+   * slice, along x and z. */
+  void take_averages(double area, const double *sums, const double *forces);
   /* Since the last solve, impulses along x. */
   struct Given {
     /* [N] what the drag foreseen then was more than the true one; empty: momentum is not accounted
@@ -72,6 +88,11 @@ class VansStream {
   /* Over the time T in steps of about dt. */
   void solve(double area, double T, double dt, const Given &given);
 
+  /* The end of a coupling. */
+  void sample();
+  double transport() const { return sd_vans_transport(&mesh, grain.data()); }
+  double surface() const { return wet.z_ref + wet.edge[wet.ncell - 1]; }
+
   /* [N], for the fluctuations */
   std::vector<double> friction_velocities() const;
   double largest_stress() const { return sd_vans_largest_stress(&mesh, stress.data()); }
@@ -85,6 +106,9 @@ class VansStream {
   void load(const NamedState &state);
 
  private:
+  std::vector<double> wet_edge, wet_before;
+  /* of water per area, which stays when the surface moves; < 0: not known yet */
+  double volume = -1.0;
   sd_vans_solver *solver;
   std::vector<std::vector<double>> given;
   /* [N] momentum that is to go back to the water */
@@ -92,14 +116,22 @@ class VansStream {
   /* ni_capart: the last profiles of phi */
   std::deque<std::vector<double>> phi_history;
   std::vector<double> scratch;
+  /* is drag_density that of the profile? */
+  bool density_known = false;
   bool told_far = false, told_cut = false;
 
   const double *classes() const;
+  void take_upflow(bool first);
+  void move_surface(double area, const std::vector<double> &phi_before);
+  void fill_above();
+  void fold_above(std::vector<double> &of_slices) const;
+  void find_pressure();
   void mixing_length();
   void exchange(double T, double dt, std::vector<double> &rest);
   void tell_limits(double T, double dt, const double cut[2]);
   [[noreturn]] void no_average(int n, double area);
   void check_mesh(const NamedState &state) const;
+  void load_surface(const NamedState &state);
   struct Saved {
     const char *name;
     std::vector<double> *values;

@@ -62,7 +62,7 @@ def main():
     axes[0].set_ylim(0, 2.6)
     figure.tight_layout()
     figure.savefig(given.out / "bedload.png", dpi=100)
-    keep(HERE, given, "bedload.png", "series.a", *(f"log.vans_bedload.{name}.{given.ranks}" for name in CASES))
+    keep(HERE, given, "bedload.png", *(f"log.vans_bedload.{name}.{given.ranks}" for name in CASES))
     return c.finish()
 
 

@@ -39,19 +39,22 @@ VANS = {
                 odd=lambda v: v == 1 or v > 1e6),
         positive("0.001", "0.002"), Number(lambda v: True, ["0", "-0.01"])])],
     "fluid": [positive("1000"), positive("0.001")],
-    "gravity": [Number(lambda v: True, ["0.5", "0", "-0.3"]), Number(lambda v: True, ["0"]),
-                Number(lambda v: True, ["-9.81"], ["9.81", "0"])],
+    "gravity": [Field(lambda v: True, ["0.5", "0", "-0.3"], atom=False), Field(lambda v: True, ["0"], atom=False),
+                Field(lambda v: True, ["-9.81", "9.81"], atom=False)],
+    "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church")],
+    "added_mass": [Or(off=[], otherwise=[NOT_NEGATIVE])], "upflow": [Or(off=[], otherwise=[EQUAL])],
+    "discharge": [Or(off=[], otherwise=[EQUAL])], "wall_roughness": [NOT_NEGATIVE], "wall_mixing": [YES_NO],
     "area": [positive("0.0004", "0.0008")],
     "couple": [Choice("none", "one", "two", "fluid")], "profile": [Or(zero=[], file=[File("profile.txt")])],
     "given": [Or(averaged=[], file=[File("given.txt")])], "convective": [Or(off=[], file=[File("convective.txt")])],
     "solve": [positive("1e-3", "0.01", border=["0", "-1", "1e-6", "1e3"]), positive("1e-4", "1e-3", border=["0", "-1", "1e-9"])],
-    "stream": [Choice("steady", "rest")], "hindrance": [Number(lambda v: True, ["3.1", "0", "2"], ["-1", "100"])],
+    "stream": [Choice("steady", "rest")], "hindrance": [Or(richardson_zaki=[], di_felice=[], otherwise=[NOT_NEGATIVE])],
     "lift": [Or(off=[], otherwise=[ANY])],
     "turbulence": [Choice("none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe")],
     "kappa": [positive("0.41", odd=lambda v: v == 0)], "phi_max": [FRACTION], "phi_bed": [FRACTION],
     "bed_average": [Integer(lambda v: v >= 1, ["1", "3"], ["0", "1000000"], odd=lambda v: v > 1e6)],
     "sublayer": [YES_NO], "viscosity": [Choice("constant", "einstein", "power")],
-    "surface": [Or(free=[], speed=[EQUAL])], "pressure_gradient": [EQUAL],
+    "surface": [Or(free=[], speed=[EQUAL], follow=[positive("0.012")])], "pressure_gradient": [EQUAL],
     "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")], "classes": [YES_NO],
     "class_radii": [Counted(32, positive("0.003", "0.002"))],
     "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
@@ -86,6 +89,19 @@ def judge_vans(case, words, how):
     case.refuse_if(s("fluctuation", "none") != "none" and s("couple") == "fluid", "fluctuation")
     case.refuse_if(s("felt") == "volume" and "yade" == s("rules"), "felt")
     case.refuse_if(s("felt") == "volume" and s("grains") == "point", "felt")
+    yade, couple = s("rules") == "yade", s("couple", "two")
+    case.refuse_if(yade and (s("drag", "yade") != "yade" or s("hindrance") in ("richardson_zaki", "di_felice")), "drag")
+    case.refuse_if(s("upflow", "off") != "off" and (yade or couple in ("none", "fluid")), "upflow")
+    held, walls = s("discharge", "off") != "off", s("sidewall", "off") != "off"
+    case.refuse_if(held and (yade or couple in ("none", "one") or s("surface") == "speed" or "pressure_gradient" in case.settings), "discharge")
+    case.refuse_if(s("surface") == "follow" and (yade or couple != "two"), "surface")
+    if yade and (s("added_mass", "off") != "off" or "wall_roughness" in case.settings or s("wall_mixing") == "yes"):
+        case.says(ODD, "added_mass", "wall_roughness", "wall_mixing")
+    case.refuse_if(s("wall_mixing") == "yes" and not walls, "wall_mixing")
+    if "wall_roughness" in case.settings and not walls:
+        case.says(ODD, "wall_roughness")
+    if held or s("surface") == "follow" or "upflow" in case.settings or "added_mass" in case.settings:
+        case.says(ODD, "surface", "discharge", "mesh", "upflow", "added_mass")
     if s("mesh", "file") != "file":
         cells, dz, bottom = (float(w) for w in case.settings["mesh"])
         for name in ("profile", "given", "convective"):
@@ -98,7 +114,7 @@ def judge_vans(case, words, how):
         if 0 < dt <= period and not period / dt < 1e6:
             case.says(ODD if period / dt < 1e8 else LOUD, "solve")
     driven = "pressure_gradient" in case.settings or s("surface") == "speed" or s("profile") == "file" or s("stream") == "rest"
-    if s("gravity") is not None and float(s("gravity")) == 0.0 and (not driven or s("pressure_gradient") in ("0", "v_zero")):
+    if s("gravity") is not None and decimal(s("gravity")) in (0.0, None) and (not driven or s("pressure_gradient") in ("0", "v_zero")):
         case.says(ODD, "drives")
     if s("couple") == "fluid" and s("given") == "file" and "radius" not in case.settings:
         case.says(ODD, "radius")
@@ -132,7 +148,7 @@ def make_vans_modify(case):
     case.lines = GRAINS.format(variables=VARIABLES, style="sphere", radii="set group all diameter 0.006 density 2500").split("\n")
     case.lines.append(f"fix s all hydro/vans 1 mesh {CELLS} 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.81 solve 1e-3 1e-4")
     values = ["values"] + [str(0.01 * k) for k in range(CELLS + 1)]
-    others = [["average"], ["solve", "1e-3", "1e-4"], ["given", "given.txt"]]
+    others = [["gravity", "0.3", "0", "-9.81"], ["steady", "anew"], ["average"], ["solve", "1e-3", "1e-4"], ["given", "given.txt"]]
     words = case.damaged(case.draw.choice([["profile"] + values, ["profile", "file", "profile.txt"]] + others))
     case.tried = len(case.lines)
     case.lines.append("fix_modify s " + " ".join(words))

@@ -14,7 +14,9 @@ def profile(tmp_path):
 
 @pytest.mark.parametrize("keywords", ["", "sidewall 0.03 1", "surface speed 0.7 viscosity einstein", "turbulence none pressure_gradient -300 viscosity power",
                                       "fluctuation correlated 7 0.01 renewal 0.0004", "lift 0.2", "felt volume",
-                                      "felt volume classes yes surface speed 0.7 viscosity power", "mesh 16 0.004 0 profile zero grains point"])
+                                      "felt volume classes yes surface speed 0.7 viscosity power",
+                                      "discharge 0.02", "felt volume surface follow 0.045 drag brown_lawler", "drag ferguson_church added_mass 0.4 upflow 0.002 discharge 0.02 "
+                                      "surface follow 0.045 sidewall 0.03 1 wall_roughness 1e-3 wall_mixing yes", "mesh 16 0.004 0 profile zero grains point"])
 def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
     """Mobile grains + water + what is on its way = start + what came from outside - what the fixed bed took, by drag and by contacts. Velocity Verlet
     gives the force of the first and the last step half a time step each. 1e-10 of all that was moved."""
@@ -47,18 +49,29 @@ def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
     s.close()
 
 
+def mesh_for(kind):
+    """The mesh, and gravity and side walls unless the kind has its own; gravity of a flume that tilts is a variable."""
+    if "gravity" not in kind:
+        return MESH + " sidewall 0.03 1"
+    return MESH.replace("gravity 0.4905 0 -9.797 ", "")
+
+
 def moving(kind):
     """kind: of the fluctuations, and more keywords"""
     name, _, more = kind.partition(" ")
     return f"fluctuation {name} 4711 0.008 renewal 0.001 {more}"
 
 
-@pytest.mark.parametrize("kind", ["correlated", "depth", "depth felt volume"])
+ALL_THAT_MOVES = ("depth felt volume drag brown_lawler hindrance di_felice added_mass 0.4 upflow 0.002 discharge 0.02 surface follow 0.045 wall_roughness 1e-3 wall_mixing yes "
+                  "gravity v_gx 0 -9.797 sidewall 0.03 1")
+
+
+@pytest.mark.parametrize("kind", ["correlated", "depth", "depth felt volume", ALL_THAT_MOVES])
 def test_ranks_agree(tmp_path, profile, kind):
     """Positions, velocities, forces and profiles on 2 and 4 ranks as on one, to 1e-10; fluctuations on."""
     result = {}
     for ranks, grid in ((1, "1 1 1"), (2, "2 1 1"), (4, "2 1 2")):
-        script = bed_script(f"{MESH} profile file {profile} sidewall 0.03 1 classes yes " + moving(kind), damp=0, processors="processors " + grid)
+        script = bed_script(f"{mesh_for(kind)} profile file {profile} classes yes " + moving(kind), damp=0, processors="processors " + grid)
         script += f"""
 fix out all ave/time 100 1 100 f_vans[*] mode vector file profile.{ranks}
 thermo_style custom step f_vans[1] f_vans[4] f_vans[6] f_vans[8]
@@ -78,11 +91,11 @@ write_dump all custom dump.{ranks} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[
         assert (np.abs(result[ranks][1] - profiles).max(axis=0) / scale).max() < 1e-5    # ave/time prints 6 digits
 
 
-@pytest.mark.parametrize("kind", ["correlated", "depth", "correlated felt volume"])
+@pytest.mark.parametrize("kind", ["correlated", "depth", "correlated felt volume", ALL_THAT_MOVES])
 def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
     """Broken at a step that is no coupling step. Contacts without damping: LAMMPS's own contact forces at the first step of a run are those of the
     velocity at full step, others those at half step, so that damped contacts are not the same after any restart."""
-    script = bed_script(f"{MESH} profile file {profile} " + moving(kind), damp=0)
+    script = bed_script(f"{mesh_for(kind)} profile file {profile} " + moving(kind), damp=0)
     output = "write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] f_vans[6] modify format float %.17g\n"
     done = run_lmp(tmp_path, script + "run 150\nwrite_restart half\nrun 250\n" + output.format("split"), name="in.split")
     assert done.returncode == 0, done.stdout[-2000:]

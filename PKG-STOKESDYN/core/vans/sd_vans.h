@@ -28,6 +28,7 @@
 #define SD_VANS_H
 
 #include "sd_status.h"
+#include "sd_vans_drag.h"
 
 #include <stdint.h>
 
@@ -66,10 +67,12 @@ typedef struct {
   const double *x, *v, *a;
   /* [n][3] u', added to the velocity of the water; NULL: none */
   const double *fluctuation;
-  /* [n] share of each sphere's volume that counts (overlaps); NULL: all of it */
+  /* [n] share of each sphere that counts (overlaps), in averages and forces; NULL: all of it */
   const double *weight;
   /* [n] 0 leaves a sphere out; NULL: all take part */
   const unsigned char *take;
+  /* [n][3] for the added mass; NULL: none */
+  const double *acceleration;
 } sd_vans_grains;
 
 /* Volume of a sphere of radius a between the heights lo <= hi above its centre; any lo, hi.
@@ -105,25 +108,41 @@ typedef struct {
    * of U), and what water and grains exchange is symmetric slice by slice. Not with Yade's rule. */
   int felt_by_volume;
   sd_vans_rules rules;
+  /* which drag; zeros: Yade's */
+  sd_vans_drag_law drag;
+  /* C: -C rho V dv/dt on an accelerated grain */
+  double added_mass;
+  /* velocity of the water along z: [N] of the slices, and outside the mesh; NULL: none */
+  const double *upward;
+  double flux;
 } sd_vans_force_law;
 
 /* Hindrance of each slice, (1 - phi_n)^-exponent: once per profile instead of once per grain. */
 void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance);
 
-/* Drag on one sphere: 1/2 rho pi a^2 (0.44 |w| + 24.4 eta/(rho 2a)) hindrance * w, w [3] velocity
- * of the water past the sphere. */
+/* Yade's drag on one sphere: 1/2 rho pi a^2 (0.44 |w| + 24.4 eta/(rho 2a)) hindrance * w, w [3]
+ * velocity of the water past the sphere. */
 void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
                   double F[3]);
 
-/* Force of the stream on the grains that take part, 0 on the others.
- *   F       [n][3] out: drag, buoyancy, lift, convective
- *   drag_x  [n] out or NULL: the part that the water takes back, drag along x
+/* Force of the stream on the grains that take part, 0 on the others. Of members that overlap each
+ * has its share of all of it, so that the buoyancy of a clump is that of its union.
+ *   hindrance  [N] of sd_vans_hindrance_of
+ *   F       [n][3] out: drag, added mass, buoyancy, lift, convective
+ *   drag_x  [n] out or NULL: the part that the water takes back, drag and added mass along x
  * Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom)
  * values: above U[N] and the phi of the last slice, below U[0] = 0 and the phi of the first. Yade's
  * rule: no force at all. */
 int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
                    const double *hindrance, const sd_vans_grains *grains, double *F,
                    double *drag_x);
+
+/* The largest rate at which drag takes the velocity of a grain to that of the water, dF/dw/m over
+ * the grains that take part, and which grain: a step of velocity Verlet must be shorter than
+ * 2/rate. mass [n]. 0 if there is none. */
+double sd_vans_stiffest(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                        const double *hindrance, const sd_vans_grains *grains, const double *mass,
+                        int *stiffest);
 
 /* Rows of a profile; in sums over grains the first is the volume, the others are volume times (vx,
  * vy, vz, drag along x). */
@@ -136,11 +155,15 @@ typedef struct {
   int nclass;
   /* [nclass]; a grain belongs to the class of exactly its radius */
   const double *class_radius;
+  /* [2][N] out, added to: force of the drag along x and along z in each slice, of grains of any
+   * sizes; NULL: not wanted */
+  double *density;
 } sd_vans_averaging;
 
 /* Adds grains to the sums [1 + nclass][N][ROWS]: of all, then of each class. The drag is that of
  * the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre
- * outside the mesh; with felt_by_volume in every slice that of the slip there. scratch [2 N].
+ * outside the mesh; with felt_by_volume in every slice that of the slip there. scratch [2 N], or
+ * [3 N] with density.
  * Returns -1, or the index of the first sphere that belongs to no class.
  * Yade's rule: mirrored slices; the velocities of a class all in the slice of the centre. */
 int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
@@ -165,7 +188,7 @@ void sd_vans_gather(const sd_vans_mesh *mesh, int point, const sd_vans_grains *g
 /* Share of sphere i's volume that counts when n spheres that overlap are one body: its part of the
  * union, cut off from the others by their radical planes, over its volume. The sum over the spheres
  * is the volume of the union: exact while no three spheres overlap in one place, to 1e-6 of the
- * sphere otherwise. x [n][3], a [n]. */
+ * sphere otherwise. As many spheres may cut it as there are. x [n][3], a [n]. -1: out of memory. */
 double sd_vans_union_share(int n, const double *x, const double *a, int i);
 
 /* ---- closures -------------------------------------------------------------------------------- */
@@ -194,8 +217,14 @@ typedef struct {
   /* 0: free surface; 1: the surface moves at u_top */
   int driven;
   double u_top;
-  /* side walls: distance and a factor on the friction; width 0: none */
-  double width, wall_coef;
+  /* 1: what drives the stream follows from the volume of water that passes per width and time; free
+   * surface */
+  int held;
+  double discharge;
+  /* side walls: distance, a factor on the friction, k_s; width 0: none */
+  double width, wall_coef, wall_roughness;
+  /* 1: mixing lengths are at most kappa width/2 */
+  int narrow;
   /* of the grains, in the exchange term */
   double radius;
   /* size classes of the exchange term and of the pore length; 0: one class of that radius */
@@ -205,9 +234,11 @@ typedef struct {
    * yade only */
   double least_slip, longest_life;
   sd_vans_rules rules;
+  /* of the grains, for what the exchange foresees; zeros: Yade's */
+  sd_vans_drag_law drag;
 } sd_vans_fluid;
 
-/* Mixing length at every node, [N].
+/* Mixing length at every node, [N]; between narrow walls at most kappa width/2.
  *   U [N+1] (Rousseau only); phi [N]; phi_bed_profile [N]: the (time-averaged) phi that marks the
  *   bed for Ni & Capart; scratch [2 N]
  * kz           kappa z
@@ -241,24 +272,36 @@ typedef struct {
   double inverse;
   double reach;
   double f[SD_VANS_FRICTION_TERMS];
+  /* k_s over the hydraulic radius, set by the caller; 0: smooth */
+  double roughness;
 } sd_vans_friction;
 
-/* The length of the Reynolds number of the side walls, |U| length/nu: the hydraulic radius, area over
- * wetted perimeter. The law below has its 0.32 for that one; on the hydraulic diameter, four times
- * as long, it would be 0.32 - 2 log10(4) = -0.88 (smooth pipes: -0.8). A slice of water touches the
- * walls alone, what it passes to its neighbours is in the solve: width dz over 2 dz.
+/* The length of the Reynolds number of the side walls, |U| length/nu: the hydraulic radius, area
+ * over wetted perimeter. The law below has its 0.32 for that one; on the hydraulic diameter, four
+ * times as long, it would be 0.32 - 2 log10(4) = -0.88 (smooth pipes: -0.8). A slice of water
+ * touches the walls alone, what it passes to its neighbours is in the solve: width dz over 2 dz.
  * Yade's rule: the width. */
 static inline double sd_vans_wall_length(const sd_vans_fluid *fluid)
 {
   return fluid->rules == SD_VANS_YADE ? fluid->width : 0.5 * fluid->width;
 }
 
-/* Friction factor f of a smooth side wall, 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32 (Graf &
- * Altinakar), tau = rho f/8 U^2; Re > 0. It has one solution for every Re, meant for turbulent
- * streams. Here solved by Halley's method to rounding, with the terms of its series.
+/* Below this Reynolds number the law of turbulent streams between smooth walls is below 24/Re, that
+ * of a laminar one: sqrt(Re/24) = log10(24 Re) + 0.32. Re on the hydraulic diameter: 1824. */
+#define SD_VANS_WALL_TRANSITION 456.0724176307417
+/* Friction of water at rest is that at this Reynolds number. */
+#define SD_VANS_LEAST_RE 1e-10
+
+/* Friction factor f of a side wall, tau = rho f/8 U^2; Re > 0:
+ *   laminar    24/Re (between parallel walls: U = g width^2/(12 nu)), wherever that is the larger
+ *   turbulent  1/sqrt(f) = -2 log10(k_s/(14.8 R_h) + 10^-0.16/(Re sqrt(f)))
+ * Smooth walls, k_s = 0: 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32 (Graf & Altinakar). Rough ones:
+ * Colebrook's form, k_s of Nikuradse's sand (14.8 = 4 times 3.7). Smooth: by Halley's method
+ * to rounding, with the terms of its series; rough: Newton's, anew every time.
  *   near  in: as it was for a Reynolds number near by, or zeros; out: about Re
- * Yade's rule: a natural logarithm, by substitution from 0.32^-2 until f changes by less than 1 %,
- * at most 100 times, then 0: a function with jumps, which no series crosses. */
+ * Yade's rule: smooth and turbulent only, a natural logarithm, by substitution from 0.32^-2 until f
+ * changes by less than 1 %, at most 100 times, then 0: a function with jumps, which no series
+ * crosses. */
 double sd_vans_wall_friction_anew(sd_vans_rules rules, double Re, sd_vans_friction *near);
 
 /* The same from the series as far as it reaches (an error of 1e-13), otherwise anew: the streams of
@@ -274,12 +317,13 @@ static inline double sd_vans_wall_friction(sd_vans_rules rules, double Re, sd_va
 
 /* Exchange coefficient of every slice, divided by rho (1/s): b = n<f> / (U - v) / rho, in [0, 1/(10
  * dt)].
- *   n<f> = phi / (4/3 pi a^3) drag, or the sum of that over classes;  b [N] out
+ *   n<f> = density [N], of grains of any sizes, or, if that is NULL, phi / (4/3 pi a^3) drag or the
+ *          sum of that over classes;  b [N] out
  *   cut  out: [0] force per area that the limit keeps from the water, [1] all drag
  * Yade's rule: the size of the slip, at least least_slip, and nothing in the lowest slice. */
 void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
-                      const double *U, const double *profile, const double *classes, double *b,
-                      double cut[2]);
+                      const double *U, const double *profile, const double *classes,
+                      const double *density, double *b, double cut[2]);
 
 /* The largest rate at which the law of drag brings the water of a slice to the speed of its grains,
  * all of the fluid's radius, and the slice. 1/rate is the time that couplings must resolve. */
@@ -292,7 +336,7 @@ double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, c
  * Together they are the drag to rounding, and close to it while U changes. */
 void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
                              const double *hindrance, const double *profile, const double *classes,
-                             double *b, double *rest);
+                             const double *density, double *b, double *rest);
 
 /* Time steps in a solve of length T with steps of about dt. Consistent: the least number of equal
  * steps no longer than dt (to 1e-9), and dt is made to fit. Yade's rule: dt stays and is added up
@@ -320,6 +364,9 @@ typedef struct {
   double *shear;
   /* what the water received from outside; driving: gravity and pressure gradient */
   double driving, bottom, walls, surface;
+  /* acceleration by gravity and pressure gradient in the last step, found where the discharge is
+   * held */
+  double drive;
 } sd_vans_books;
 
 typedef struct sd_vans_solver sd_vans_solver;
@@ -335,6 +382,8 @@ void sd_vans_solver_free(sd_vans_solver *solver);
  *   books  out or NULL. Water gains driving + bottom + walls + surface - sum of moved + source, to
  *          rounding.
  * SD_OK or SD_ENOTFINITE.
+ * With the discharge held each step finds the g - dpdx/rho for which sum e U' dz = discharge: U' is
+ * linear in it.
  * wall = e 2/width coef f/8 (1/2 |U| U' + 1/2 |U| U), Re = |U| sd_vans_wall_length/nu.
  * Yade's rule: (1/2 U^2 U' + 1/2 U^2), and |g| for g. */
 sd_status sd_vans_solve(sd_vans_solver *solver, const sd_vans_fluid *fluid,
@@ -348,12 +397,28 @@ void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const 
 /* Momentum of the water per area of the bed, rho sum (1 - phi) U dz. */
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U);
 
+/* Volume of the water per area, sum (1 - phi) dz. */
+double sd_vans_volume(const sd_vans_mesh *mesh, const double *phi);
+
+/* A surface between the edges of a mesh: the mesh of the water alone, whose slices are those of the
+ * mesh but for the one below the surface, which ends there (it is 0.01 to 1.01 of its height).
+ *   volume  of water per area, that fills the mesh up to the surface; or, with phi NULL, the height
+ *           of the surface above z_ref
+ *   edge    [N+1] out: edges of the slices of water, then one slice above the surface
+ * Returns how many slices there are with that one, or 0 if the mesh does not hold the water. */
+int sd_vans_fill(const sd_vans_mesh *mesh, const double *phi, double volume, double *edge);
+
 /* The grains have moved: phi_old became phi_new. They displace water, which keeps its order over
  * the height and takes its momentum along. Changes U [N+1] (not U[0], U[N]) so that the momentum is
  * conserved but for what passes the surface; returns that, per area, gained by the water. scratch
  * [2 (N+1)] */
 double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
                         const double *phi_new, double *U, double *scratch);
+
+/* The same where the surface has moved: from one mesh of sd_vans_fill to another. */
+double sd_vans_displace_to(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
+                           const double *phi_old, const double *phi_new, double *U,
+                           double *scratch);
 
 /* ---- what the profiles tell ------------------------------------------------------------------ */
 
@@ -366,102 +431,16 @@ double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress);
  * 0 if there is none. */
 double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi);
 
+/* The part of what drives the clear water (phi < 0.1) that smooth side walls take by the side wall
+ * correction of Einstein, Vanoni and Brooks: the section is shared out between walls and bed, and
+ * each part has the mean speed U and the slope of the whole. Of a stream between parallel walls,
+ *   2 R_w/width,  R_w = f_w(U R_w/nu) U^2/(8 drive)
+ * 0 without walls or where nothing drives, at most 1. */
+double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                          const double *U, double drive);
+
 /* Depth of the water above the bed over its mean velocity there; 0 unless that is positive. */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed);
-
-/* ---- settlement between water and grains ----------------------------------------------------- */
-
-/* A solve takes `moved` from the water for the grains. Its viscous part is handed to them as a
- * force until the next solve. Its drag is what the exchange coefficient foresees. When the next
- * solve comes each grain has felt its true drag, and the difference goes back to the water as a
- * source in the slices of that grain. So the water gives no more and no less than the grains get,
- * and the drag stays implicit. Grain by grain and not slice by slice: a grain that sees the water
- * at its centre only would take drag from a thin slice beside it that has no momentum left.
- *
- * The account of a grain, along x. */
-typedef struct {
-  /* drag and viscous force of the last step */
-  double force;
-  /* impulse that it got by them since the last coupling */
-  double impulse;
-  /* viscous force now, and before the last coupling */
-  double shear, past;
-  /* impulse of drag that the last solve took from the water for it */
-  double foreseen;
-} sd_vans_account;
-
-/* A step of velocity Verlet gives half of its force to the time before it, half to the time
- * after. */
-static inline void sd_vans_account_step(sd_vans_account *account, double force, double dt)
-{
-  account->impulse += 0.5 * dt * (account->force + force);
-}
-
-/* What was foreseen for the grain but not taken by it in the time T since the last coupling, steps
- * of dt: impulse less that of the viscous force; the force of the coupling's own step acted for
- * another half step. ratio: time of the water over that of the grains. */
-static inline double sd_vans_account_rest(const sd_vans_account *account, double T, double dt,
-                                          double ratio)
-{
-  const double viscous = (T - 0.5 * dt) * account->shear + 0.5 * dt * account->past;
-  return account->foreseen - ratio * (account->impulse - viscous);
-}
-
-/* A tenth of what is outstanding goes back at a time: the differences of single couplings are
- * mostly noise, which would shake the water of a dense bed.
- *   back         [N] momentum that the grains of each slice have left since the last solve; what is
- *                above the surface goes to the slice below it
- *   outstanding  [N] in and out, momentum;   source [N] out, for a solve over the time T
- * Returns the momentum that goes back in this solve. */
-double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, const double *back,
-                         double *outstanding, double *source);
-
-/* What the solve took from the water, per volume of grains: shear [N] as a force, foreseen [N] as
- * an impulse. */
-void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
-                       const sd_vans_books *books, double *shear, double *foreseen);
-
-/* ---- velocity fluctuations ------------------------------------------------------------------- */
-
-/* Three independent standard normal numbers that depend on nothing but the three keys: the same on
- * any number of ranks. */
-void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
-
-/* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):
- * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2; uncorrelated: (c, b, a) u_star. */
-void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3]);
-
-/* Life of an eddy at the height z above the bed: 0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, at most
- * longest; where nothing moves, 10 dt. */
-double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double longest, double dt);
-
-/* The longest life. Where next to nothing moves an eddy would live for ever: thirty times H/u_star
- * are about two hundred lives of one as high as the stream, u_star from what drives the stream or
- * from its largest stress. Yade's rule: fluid->longest_life. */
-double sd_vans_longest_life(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                            const double *stress);
-
-/* The random walk of all grains. */
-typedef struct {
-  uint64_t seed;
-  int correlated;
-  /* height above z_ref below which there is none */
-  double bed;
-  /* [N] friction velocity of each slice */
-  const double *u_star;
-  /* of an eddy; time step of the walk */
-  double longest, dt;
-} sd_vans_walk;
-
-/* What a grain carries: life left of its eddy, and how many it has had. */
-typedef struct {
-  double life, count;
-} sd_vans_eddy;
-
-/* A new eddy for the grain of this ID at the height z (LAMMPS's): u' [3] out, 0 below the bed and
- * outside the mesh. */
-void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *walk, double z,
-                      uint64_t id, sd_vans_eddy *eddy, double u[3]);
 
 #ifdef __cplusplus
 }

@@ -1,4 +1,4 @@
-#include "sd_vans.h"
+#include "sd_vans_books.h"
 
 /* Share of what is outstanding that goes back in one solve. All of it at once would hand the noise
  * of single couplings to slices thinner than a grain; a tenth is a mean over ten of them, and what

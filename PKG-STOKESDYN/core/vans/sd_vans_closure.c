@@ -1,5 +1,5 @@
 #include "sd_constants.h"
-#include "sd_vans.h"
+#include "sd_vans_yade.h"
 
 #include <math.h>
 
@@ -39,12 +39,15 @@ static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
 static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
                         double *length)
 {
+  if (fluid->rules == SD_VANS_YADE) {
+    sd_vans_yade_li_sawamoto(mesh, fluid, phi, length);
+    return;
+  }
   int packed = mesh->ncell - 1; /* the highest slice that reaches phi_max; -1: none */
   while (packed >= 0 && phi[packed] < fluid->phi_max) packed--;
   length[0] = 0.0;
   for (int j = 1; j < mesh->ncell; j++) {
-    double p = j - 1 < packed ? fluid->phi_max : phi[j - 1];
-    if (fluid->rules != SD_VANS_YADE) p = fmin(p, fluid->phi_max);
+    const double p = j - 1 < packed ? fluid->phi_max : fmin(phi[j - 1], fluid->phi_max);
     length[j] = length[j - 1] +
         fluid->kappa * sd_vans_height(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
   }
@@ -82,9 +85,9 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
   }
 }
 
-void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                           const double *phi, const double *classes, const double *phi_bed_profile,
-                           double *length, double *scratch)
+static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                             const double *phi, const double *classes,
+                             const double *phi_bed_profile, double *length, double *scratch)
 {
   const int N = mesh->ncell;
   const double *z = mesh->edge, H = z[N - 1], kappa = fluid->kappa;
@@ -131,6 +134,16 @@ void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
       break;
     }
   }
+}
+
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
+                           const double *phi, const double *classes, const double *phi_bed_profile,
+                           double *length, double *scratch)
+{
+  unlimited_length(mesh, fluid, U, phi, classes, phi_bed_profile, length, scratch);
+  if (!fluid->narrow) return;
+  const double most = 0.5 * fluid->kappa * fluid->width;
+  for (int j = 0; j < mesh->ncell; j++) length[j] = fmin(length[j], most);
 }
 
 double sd_vans_effective_viscosity(const sd_vans_fluid *fluid, double phi, int bottom)

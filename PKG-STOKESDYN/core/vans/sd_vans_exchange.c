@@ -1,5 +1,5 @@
 #include "sd_constants.h"
-#include "sd_vans.h"
+#include "sd_vans_yade.h"
 
 #include <math.h>
 
@@ -8,11 +8,14 @@ static double sphere(double a)
   return 4.0 / 3.0 * SD_PI * a * a * a;
 }
 
-/* n<f> of slice n: force per volume of mixture, phi / V of a grain times the drag on a grain. */
+/* n<f> of slice n: force per volume of mixture. Without the sum over grains phi / V of a grain
+ * times the mean drag on a grain, which is right for grains of one size. */
 static double drag_density(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                           const double *profile, const double *classes, int n)
+                           const double *profile, const double *classes, const double *density,
+                           int n)
 {
   const long N = mesh->ncell;
+  if (density) return density[n];
   if (!classes) return profile[n] / sphere(fluid->radius) * profile[SD_VANS_DRAG * N + n];
   double sum = 0.0;
   for (int c = 0; c < fluid->nclass; c++) {
@@ -23,24 +26,26 @@ static double drag_density(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
 }
 
 void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
-                      const double *U, const double *profile, const double *classes, double *b,
-                      double cut[2])
+                      const double *U, const double *profile, const double *classes,
+                      const double *density, double *b, double cut[2])
 {
-  const int N = mesh->ncell, yade = fluid->rules == SD_VANS_YADE;
+  const int N = mesh->ncell;
   const double *vx = profile + (long) SD_VANS_VX * N, cap = 0.1 / dt;
   cut[0] = cut[1] = 0.0;
   for (int n = 0; n < N; n++) {
-    const double density = drag_density(mesh, fluid, profile, classes, n), slip = U[n + 1] - vx[n];
+    const double drag = drag_density(mesh, fluid, profile, classes, density, n),
+                 slip = U[n + 1] - vx[n];
     /* drag against the slip, or none: b would drive the water away from the grains. At most a tenth
      * of the slip goes in one step. */
-    const double value = density / (yade ? fmax(fabs(slip), fluid->least_slip) : slip) / fluid->rho;
+    const double value = fluid->rules == SD_VANS_YADE
+        ? sd_vans_yade_coefficient(fluid, n, drag, slip)
+        : drag / slip / fluid->rho;
     b[n] = !(value > 0.0) ? 0.0 : value > cap ? cap : value;
-    if (n == N - 1 || !isfinite(density)) continue;
-    cut[1] += fabs(density) * sd_vans_height(mesh, n);
+    if (n == N - 1 || !isfinite(drag)) continue;
+    cut[1] += fabs(drag) * sd_vans_height(mesh, n);
     if (b[n] > 0.0)
-      cut[0] += (fabs(density) - fluid->rho * b[n] * fabs(slip)) * sd_vans_height(mesh, n);
+      cut[0] += (fabs(drag) - fluid->rho * b[n] * fabs(slip)) * sd_vans_height(mesh, n);
   }
-  if (yade) b[0] = 0.0;
 }
 
 /* n f/w over rho: the drag on one grain of slip w is f = factor w, there are phi/V grains in a
@@ -49,7 +54,7 @@ static double rate_of(const sd_vans_fluid *fluid, double a, double phi, double s
                       double hindrance)
 {
   const double factor =
-      0.5 * SD_PI * a * (0.44 * fluid->rho * a * fabs(slip) + 12.2 * fluid->eta) * hindrance;
+      sd_vans_drag_factor(fluid->drag, fluid->rho, fluid->eta, a, hindrance, fabs(slip));
   return phi / sphere(a) * factor / fluid->rho;
 }
 
@@ -70,7 +75,7 @@ double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, c
 
 void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
                              const double *hindrance, const double *profile, const double *classes,
-                             double *b, double *rest)
+                             const double *density, double *b, double *rest)
 {
   const long N = mesh->ncell;
   const double *vx = profile + SD_VANS_VX * N;
@@ -81,6 +86,6 @@ void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
       const double phi = classes[c * SD_VANS_ROWS * N + n];
       b[n] += rate_of(fluid, fluid->class_radius[c], phi, slip, hindrance[n]);
     }
-    rest[n] = b[n] * slip - drag_density(mesh, fluid, profile, classes, n) / fluid->rho;
+    rest[n] = b[n] * slip - drag_density(mesh, fluid, profile, classes, density, n) / fluid->rho;
   }
 }

@@ -1,17 +1,12 @@
-#include "sd_vans.h"
+#include "sd_vans_yade.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The sum in the original's loop is rounded after every step, and that is repeated. */
 int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
 {
-  if (rules == SD_VANS_YADE) {
-    int64_t n = 0;
-    for (double t = 0.0; t < T; t += *dt) n++;
-    return n;
-  }
+  if (rules == SD_VANS_YADE) return sd_vans_yade_steps(T, *dt);
   int64_t n = (int64_t) ceil(T / *dt * (1.0 - 1e-9));
   if (n < 1) n = 1;
   *dt = T / (double) n;
@@ -32,13 +27,16 @@ struct sd_vans_solver {
   /* constant in a solve */
   double *cl, *cu, *cd, *ce, *cr;
   double drive, cu_top, cr_top;
+  /* with the discharge held: dz e, what a unit of drive does to U' in a step; drive summed up */
+  double *content, *response;
+  double drive_sum;
   /* node: l^2/h, eN/h */
   double *mix, *gap;
   /* of a step */
   double *nut, *T, *c, *g;
   /* side walls, if any: e dz/width coef/8, friction of the step, cd and cr with them */
   int walls;
-  double Re_factor;
+  double Re_factor, least_speed;
   double *wall_scale, *wall, *wall_cd, *wall_cr;
   sd_vans_friction *friction;
   /* over steps: U', and the fluxes through the turbulent bottom and surface and the walls */
@@ -51,7 +49,7 @@ sd_vans_solver *sd_vans_solver_create(const sd_vans_mesh *mesh)
 {
   sd_vans_solver *s = malloc(sizeof *s);
   const size_t n = (size_t) mesh->ncell + 1;
-  double *m = calloc(16 * n, sizeof(double));
+  double *m = calloc(18 * n, sizeof(double));
   sd_vans_friction *friction = calloc(n, sizeof *friction);
   if (!s || !m || !friction) {
     free(s);
@@ -64,7 +62,8 @@ sd_vans_solver *sd_vans_solver_create(const sd_vans_mesh *mesh)
   s->friction = friction;
   double **arrays[] = {&s->cl,      &s->cu,      &s->cd,   &s->ce,        &s->cr, &s->mix,
                        &s->gap,     &s->nut,     &s->T,    &s->c,         &s->g,  &s->sum,
-                       &s->wall_cd, &s->wall_cr, &s->wall, &s->wall_scale};
+                       &s->wall_cd, &s->wall_cr, &s->wall, &s->wall_scale,
+                       &s->content, &s->response};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -162,18 +161,20 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
 }
 
 /* Side walls: half of the friction on U', half on U, both with the f and |U| of U. That is
- * stable however strong it is. Yade's has U^2 in both, the explicit half without U's sign. */
-static void wall_rows(sd_vans_solver *s, int M, sd_vans_rules rules, const double *U)
+ * stable however strong it is. */
+static void wall_rows(sd_vans_solver *s, int M, const double *U)
 {
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
   double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
   for (int j = 0; j < M; j++) {
-    const double u = U[j + 1], speed = fabs(u),
-                 f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->friction[j]);
-    const double K = scale[j] * f * (rules == SD_VANS_YADE ? speed * speed : speed);
+    const double u = U[j + 1], size = fabs(u),
+                 speed = size > s->least_speed ? size : s->least_speed,
+                 f = sd_vans_wall_friction(SD_VANS_CONSISTENT, speed * s->Re_factor,
+                                           &s->friction[j]);
+    const double K = scale[j] * f * speed;
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
-    wall_cr[j] = cr[j] - (rules == SD_VANS_YADE ? K : K * u);
+    wall_cr[j] = cr[j] - K * u;
   }
 }
 
@@ -186,8 +187,10 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
   const sd_vans_mesh *mesh = s->mesh;
   const double *phi = column->phi, *vx = column->vx, *b = column->b;
   const int N = mesh->ncell, M = N - 1;
-  s->drive = fluid->rules == SD_VANS_YADE ? fabs(fluid->gx) : fluid->gx;
-  s->drive -= fluid->dpdx / fluid->rho;
+  s->drive = fluid->rules == SD_VANS_YADE ? sd_vans_yade_drive(fluid)
+                                          : fluid->gx - fluid->dpdx / fluid->rho;
+  if (fluid->held) s->drive = 0.0;
+  s->drive_sum = 0.0;
   for (int j = 0; j < N; j++) {
     s->mix[j] = mixing_at_node(mesh, fluid, column->length, j);
     s->gap[j] = porosity_at_node(mesh, phi, j) / gap_of(mesh, j);
@@ -203,6 +206,7 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
     s->cl[j] = e * A * e_below;
     s->cu[j] = e * above * e_above;
     s->ce[j] = e * dz / dt;
+    s->content[j] = e * dz;
     s->cd[j] = s->ce[j] + e * e * (A + above) + dz * b[j];
     s->cr[j] = e * (above * J_above - A * J) +
         dz * (b[j] * vx[j] + e * s->drive + (column->source ? column->source[j] : 0.0));
@@ -220,16 +224,33 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
   const double factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0;
   s->walls = factor != 0.0;
   s->Re_factor = sd_vans_wall_length(fluid) * fluid->rho / fluid->eta;
+  s->least_speed = s->walls ? SD_VANS_LEAST_RE / s->Re_factor : 0.0;
+  const double roughness = s->walls ? fluid->wall_roughness / sd_vans_wall_length(fluid) : 0.0;
+  for (int j = 0; j < M; j++) s->friction[j].roughness = roughness;
   for (int j = 0; j < M; j++) s->wall_scale[j] = s->ce[j] * factor;
   memset(s->sum, 0, M * sizeof(double));
   s->T_bottom = s->T_surface = s->wall_sum = 0.0;
+}
+
+/* The drive for which the discharge is what it should be, added to U'. */
+static void hold_discharge(sd_vans_solver *s, const double *cd, double discharge, double *U)
+{
+  const int M = s->mesh->ncell - 1;
+  double *R = s->response, passes = 0.0, more = 0.0;
+  memset(R, 0, (M + 1) * sizeof(double));
+  solve_rows(s, M, cd, s->content, R);
+  for (int j = 0; j < M; j++) {
+    passes += s->content[j] * U[j + 1];
+    more += s->content[j] * R[j + 1];
+  }
+  s->drive = (discharge - passes) / more;
+  for (int j = 0; j < M; j++) U[j + 1] += s->drive * R[j + 1];
 }
 
 /* One step: U becomes U'. With keep the sums for the books go on. */
 static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int keep)
 {
   const int N = s->mesh->ncell, M = N - 1;
-  const int yade = fluid->rules == SD_VANS_YADE;
   for (int j = 0; j < N; j++) {
     s->nut[j] = s->mix[j] * fabs(U[j + 1] - U[j]);
     s->T[j] = s->gap[j] * s->nut[j];
@@ -240,12 +261,20 @@ static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int k
   else
     s->T[M] = 0.0;
   if (s->walls) {
-    wall_rows(s, M, fluid->rules, U);
+    const int yade = fluid->rules == SD_VANS_YADE;
+    if (yade)
+      sd_vans_yade_walls(M, s->Re_factor, s->wall_scale, U, s->cd, s->cr, s->friction, s->wall,
+                         s->wall_cd, s->wall_cr);
+    else
+      wall_rows(s, M, U);
     if (keep)
       for (int j = 0; j < M; j++) s->wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
   }
 
-  solve_rows(s, M, s->walls ? s->wall_cd : s->cd, s->walls ? s->wall_cr : s->cr, U);
+  const double *cd = s->walls ? s->wall_cd : s->cd;
+  solve_rows(s, M, cd, s->walls ? s->wall_cr : s->cr, U);
+  if (fluid->held) hold_discharge(s, cd, fluid->discharge, U);
+  s->drive_sum += s->drive;
   U[N] = fluid->driven ? fluid->u_top : U[M];
 
   if (!keep) return;
@@ -283,6 +312,7 @@ static void close_books(const sd_vans_solver *s, const sd_vans_fluid *fluid,
   const int M = s->mesh->ncell - 1;
   double flux = viscous_flux(s, fluid, column, steps, 0);
   books->driving = 0.0;
+  books->drive = s->drive;
   books->bottom = -rho_dt * (flux + s->T_bottom);
   books->walls = -rho_dt * s->wall_sum;
   for (int j = 0; j < M; j++) {
@@ -291,7 +321,7 @@ static void close_books(const sd_vans_solver *s, const sd_vans_fluid *fluid,
     books->shear[j] = rho_dt * phi[j] * (above - flux);
     books->moved[j] =
         rho_dt * dz * column->b[j] * (s->sum[j] - column->vx[j] * steps) + books->shear[j];
-    books->driving += rho_dt * steps * dz * (1.0 - phi[j]) * s->drive;
+    books->driving += rho_dt * dz * (1.0 - phi[j]) * s->drive_sum;
     flux = above;
   }
   books->moved[M] = books->shear[M] = 0.0;
@@ -323,50 +353,4 @@ void sd_vans_stress(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const 
     flow->stress[j] =
         fluid->rho * porosity_at_node(mesh, phi, j) * flow->nut[j] * jump / gap_of(mesh, j);
   }
-}
-
-/* Of the water: the highest slice is above it. */
-double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U)
-{
-  double sum = 0.0;
-  for (int n = 0; n < mesh->ncell - 1; n++)
-    sum += (1.0 - phi[n]) * U[n + 1] * sd_vans_height(mesh, n);
-  return rho * sum;
-}
-
-/* In the coordinate "volume of water below" the old and the new slices are two cuts of one column,
- * in which U stays: a new slice has the mean over the pieces of old ones that it covers. Volume and
- * momentum are those of the column, so that only what passes its upper end is gained or lost. */
-double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
-                        const double *phi_new, double *U, double *scratch)
-{
-  const int M = mesh->ncell - 1;
-  double *below = scratch, *old = scratch + M + 1;
-  const double surface = U[M + 1];
-  below[0] = 0.0;
-  for (int n = 0; n < M; n++) {
-    below[n + 1] = below[n] + (1.0 - phi_old[n]) * sd_vans_height(mesh, n);
-    old[n] = U[n + 1];
-  }
-  int source = 0;
-  double lo = 0.0, through = 0.0;
-  for (int n = 0; n < M; n++) {
-    const double content = (1.0 - phi_new[n]) * sd_vans_height(mesh, n), hi = lo + content;
-    double at = lo, momentum = 0.0;
-    while (source < M && below[source + 1] < hi) {
-      momentum += old[source] * (below[source + 1] - at);
-      at = below[++source];
-    }
-    const double rest = hi - at, u = source < M ? old[source] : surface;
-    momentum += u * rest;
-    if (source == M) through += u * rest; /* water from above the surface */
-    if (content > 0.0) U[n + 1] = momentum / content;
-    lo = hi;
-  }
-  /* What no slice has taken has left through the surface. */
-  for (; source < M; source++) {
-    const double from = below[source] > lo ? below[source] : lo;
-    through -= old[source] * (below[source + 1] - from);
-  }
-  return rho * through;
 }

@@ -1,5 +1,5 @@
-#include "sd_constants.h"
-#include "sd_vans.h"
+#include "sd_vans_internal.h"
+#include "sd_vans_yade.h"
 
 #include <math.h>
 
@@ -24,44 +24,16 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
   return lo;
 }
 
-/* Volume between the equator and the height s, |s| <= a: integral of pi (a^2 - s^2). */
-static inline double primitive(double a2, double s)
-{
-  return SD_PI * s * (a2 - s * s / 3.0);
-}
-
 double sd_vans_slice_volume(double a, double lo, double hi)
 {
   const double s0 = fmin(fmax(lo, -a), a), s1 = fmin(fmax(hi, -a), a);
   return primitive(a * a, s1) - primitive(a * a, s0);
 }
 
-/* Yade gives slice n the limits of slice 2p-n, p that of the centre, and cuts the sphere's lower
- * end only off the lower limit and its
- * upper end only off the upper one. */
-static int slices_yade(const sd_vans_mesh *mesh, double z, double a, int *first, double *V, int max)
-{
-  const double height = z - mesh->z_ref, dz = mesh->dz;
-  const double centre = floor(height / dz), offset = height - centre * dz;
-  const double lowest = fmax(floor((height - a) / dz), 0.0),
-               highest = fmin(floor((height + a) / dz), mesh->ncell - 1.0);
-  if (!(lowest <= highest)) return 0;
-  *first = (int) lowest;
-  const int count = (int) (highest - lowest) + 1;
-  for (int k = 0; k < count && k < max; k++) {
-    const double above = lowest + k - centre;
-    double s0 = (above - 1.0) * dz + offset, s1 = above * dz + offset;
-    if (s0 < -a) s0 = -a;
-    if (s1 > a) s1 = a;
-    V[k] = SD_PI * (a * a * (s1 - s0) - (s1 * s1 * s1 - s0 * s0 * s0) / 3.0);
-  }
-  return count < max ? count : max;
-}
-
 int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
                    double *V, int max)
 {
-  if (rules == SD_VANS_YADE) return slices_yade(mesh, z, a, first, V, max);
+  if (rules == SD_VANS_YADE) return sd_vans_yade_slices(mesh, z, a, first, V, max);
   const int N = mesh->ncell;
   const double height = z - mesh->z_ref, a2 = a * a;
   int n = sd_vans_slice_of(mesh, z - a);
@@ -84,139 +56,6 @@ int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, doub
     n++;
   }
   return count;
-}
-
-/* Richardson & Zaki: in a dense bed the drag on a grain is 20 times that on a lone one. */
-void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance)
-{
-  for (int n = 0; n < ncell; n++) hindrance[n] = phi[n] == 0.0 ? 1.0 : pow(1.0 - phi[n], -exponent);
-}
-
-/* Drag over velocity, 1/2 rho pi a^2 (0.44 |w| + 24.4 nu/2a) with one a taken out: Dallavalle's
- * form, Stokes' law for small |w| but for 24.4 in place of 24, 0.44 the constant of a blunt
- * body. */
-static inline double drag_factor(double rho, double eta, double a, double hindrance,
-                                 const double w[3])
-{
-  const double speed = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-  return 0.5 * SD_PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
-}
-
-void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
-                  double F[3])
-{
-  const double factor = drag_factor(rho, eta, a, hindrance, w);
-  for (int d = 0; d < 3; d++) F[d] = factor * w[d];
-}
-
-/* Velocity past grain i of water that moves at u, and the drag on the grain over that velocity. */
-static double drag_in(const sd_vans_force_law *law, const sd_vans_grains *grains, int i, double u,
-                      double hindrance, double w[3])
-{
-  const double *v = grains->v + 3 * (long) i;
-  w[0] = u - v[0];
-  w[1] = -v[1];
-  w[2] = -v[2];
-  if (grains->fluctuation)
-    for (int d = 0; d < 3; d++) w[d] += grains->fluctuation[3 * (long) i + d];
-  return drag_factor(law->rho, law->eta, grains->a[i], hindrance, w);
-}
-
-/* Adds share V/whole of the drag of grain i in water of velocity u. */
-static void add_drag(const sd_vans_force_law *law, const sd_vans_grains *grains, int i, double u,
-                     double hindrance, double share, double F[3])
-{
-  double w[3];
-  const double factor = drag_in(law, grains, i, u, hindrance, w);
-  for (int d = 0; d < 3; d++) F[d] += share * factor * w[d];
-}
-
-/* Drag on grain i slice by slice. What lies outside the mesh sees the values of its ends. */
-static void drag_by_volume(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                           const double *hindrance, const sd_vans_grains *grains, int i,
-                           double F[3])
-{
-  const int N = mesh->ncell;
-  const double a = grains->a[i], z = grains->x[3 * (long) i + 2], height = z - mesh->z_ref,
-               whole = 2.0 * primitive(a * a, a);
-  double below = -0.5 * whole; /* primitive at the lower end of the slice */
-  int n = sd_vans_slice_of(mesh, z - a);
-  F[0] = F[1] = F[2] = 0.0;
-  /* what is under the bottom sees water at rest */
-  if (n < 0) {
-    const double here = primitive(a * a, fmin(-height, a));
-    add_drag(law, grains, i, U[0], hindrance[0], (here - below) / whole, F);
-    below = here;
-    n = 0;
-  }
-  for (; n < N && mesh->edge[n] - height < a; n++) {
-    const double here = primitive(a * a, fmin(mesh->edge[n + 1] - height, a));
-    add_drag(law, grains, i, U[n + 1], hindrance[n], (here - below) / whole, F);
-    below = here;
-  }
-  add_drag(law, grains, i, U[N], hindrance[N - 1], 0.5 - below / whole, F);
-}
-
-/* Drag on grain i, centre in slice p. */
-static void drag_on(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                    const double *hindrance, const sd_vans_grains *grains, int i, int p,
-                    double F[3])
-{
-  const int seen = p < 0 ? 0 : p < mesh->ncell ? p : mesh->ncell - 1;
-  F[0] = F[1] = F[2] = 0.0;
-  if (law->felt_by_volume)
-    drag_by_volume(mesh, law, U, hindrance, grains, i, F);
-  else
-    add_drag(law, grains, i, p < 0 ? U[0] : U[seen + 1], hindrance[seen], 1.0, F);
-}
-
-/* Shear lift: dynamic pressure over the grain less that under it, with the water one radius above
- * and below its centre; nothing where one of the two is outside the water. */
-static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                         int p, double a, double vx)
-{
-  int upper, lower;
-  if (mesh->dz > 0.0) {
-    const double k = floor(a / mesh->dz);
-    if (k > mesh->ncell) return 0.0;
-    upper = p + (int) k;
-    lower = p - (int) k;
-  } else {
-    upper = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p] + a);
-    lower = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p + 1] - a);
-  }
-  if (upper >= mesh->ncell || lower <= 0) return 0.0;
-  const double over = U[upper + 1] - vx, under = U[lower + 1] - vx;
-  return 0.5 * law->rho * SD_PI * a * a * law->lift * (over * over - under * under);
-}
-
-int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                   const double *hindrance, const sd_vans_grains *grains, double *F,
-                   double *drag_x)
-{
-  const unsigned char *take = grains->take;
-  /* In a steady stream down a slope the pressure falls straight away from the bed: what gravity has
-   * along x is carried by the stress, and grains have no buoyancy that way. */
-  const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
-  int outside = 0;
-  for (int i = 0; i < grains->n; i++) {
-    double *Fi = F + 3 * (long) i;
-    Fi[0] = Fi[1] = Fi[2] = 0.0; /* also of those that take no part */
-    if (drag_x) drag_x[i] = 0.0;
-    if (take && !take[i]) continue;
-    const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]),
-              inside = p >= 0 && p < mesh->ncell;
-    if (!inside) outside++;
-    if (!inside && law->rules == SD_VANS_YADE) continue;
-    const double a = grains->a[i], displaced = 4.0 / 3.0 * SD_PI * a * a * a * law->rho;
-    drag_on(mesh, law, U, hindrance, grains, i, p, Fi);
-    if (drag_x) drag_x[i] = Fi[0];
-    for (int d = 0; d < 3; d++) Fi[d] -= displaced * g[d];
-    if (inside && law->lift != 0.0)
-      Fi[2] += lift_force(mesh, law, U, p, a, grains->v[3 * (long) i]);
-    if (inside && law->convective) Fi[0] -= law->convective[p];
-  }
-  return outside;
 }
 
 /* Exactly, since radii are names here: a grain that has grown belongs to no class. */
@@ -245,20 +84,6 @@ static void add_slices(double *sums, int first, int count, const double *V, cons
   for (int k = 0; k < count; k++) add(sum + k * SD_VANS_ROWS, V[k], v, drag[k]);
 }
 
-/* Yade: volume and drag where they are, velocities all in the slice p of the centre, if it is in
- * the mesh. */
-static void add_slices_yade(double *sums, int first, int count, const double *V, const double *v,
-                            const double *drag, double *centre)
-{
-  for (int k = 0; k < count; k++) {
-    double *here = sums + (long) (first + k) * SD_VANS_ROWS;
-    here[SD_VANS_PHI] += V[k];
-    here[SD_VANS_DRAG] += V[k] * drag[k];
-    if (!centre) continue;
-    for (int d = 0; d < 3; d++) centre[SD_VANS_VX + d] += V[k] * v[d];
-  }
-}
-
 /* The slices of a grain, or the one of its centre with all of its volume. */
 static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
                      int *first, double *V)
@@ -271,19 +96,36 @@ static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, d
   return 1;
 }
 
-/* Drag along x of grain i, were all of it in the slice: in each that it reaches, or, if it feels
- * the water at its centre, of that slice p in all of them. */
+/* Drag on grain i along x (and z), were all of it in the slice: in each that it reaches, or, if it
+ * feels the water at its centre, of that slice p in all of them. */
 static void drag_of_slices(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
                            const double *hindrance, const sd_vans_grains *grains, int i,
-                           const int slices[2], double *drag)
+                           const int slices[2], double *along_x, double *along_z)
 {
   const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]);
-  double w[3], whole = 0.0;
-  if (!law->felt_by_volume && p >= 0 && p < mesh->ncell)
-    whole = drag_in(law, grains, i, U[p + 1], hindrance[p], w) * w[0];
+  const int inside = p >= 0 && p < mesh->ncell;
+  double F[3] = {0.0, 0.0, 0.0};
+  if (!law->felt_by_volume && inside)
+    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, p), 1.0, F);
   for (int k = 0, n = slices[0]; k < slices[1]; k++, n++) {
-    drag[k] = whole;
-    if (law->felt_by_volume) drag[k] = drag_in(law, grains, i, U[n + 1], hindrance[n], w) * w[0];
+    if (law->felt_by_volume) {
+      F[0] = F[1] = F[2] = 0.0;
+      sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, n), 1.0, F);
+    }
+    along_x[k] = F[0];
+    if (along_z) along_z[k] = F[2];
+  }
+}
+
+/* Force per volume of mixture: each slice has the part of the grain's drag that it has of its
+ * volume. */
+static void add_density(double *density, int N, double a, int first, int count, const double *V,
+                        const double *along_x, const double *along_z)
+{
+  const double whole = 4.0 / 3.0 * SD_PI * a * a * a;
+  for (int k = 0; k < count; k++) {
+    density[first + k] += V[k] / whole * along_x[k];
+    density[N + first + k] += V[k] / whole * along_z[k];
   }
 }
 
@@ -292,7 +134,7 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
                     const sd_vans_grains *grains, double *sums, double *scratch)
 {
   const int N = mesh->ncell;
-  double *V = scratch, *drag = scratch + N;
+  double *V = scratch, *drag = scratch + N, *upward = how->density ? scratch + 2 * N : 0;
   for (int i = 0; i < grains->n; i++) {
     if (grains->take && !grains->take[i]) continue;
     const double z = grains->x[3 * (long) i + 2], *v = grains->v + 3 * (long) i, a = grains->a[i];
@@ -302,8 +144,9 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     /* a share of the sphere is that share of each of its slices */
     if (grains->weight)
       for (int k = 0; k < count; k++) V[k] *= grains->weight[i];
-    drag_of_slices(mesh, law, U, hindrance, grains, i, slices, drag);
+    drag_of_slices(mesh, law, U, hindrance, grains, i, slices, drag, upward);
     add_slices(sums, first, count, V, v, drag);
+    if (how->density) add_density(how->density, N, a, first, count, V, drag, upward);
     if (how->nclass == 0) continue;
 
     const int c = class_of(how, a);
@@ -311,8 +154,8 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     double *class_sums = sums + (long) (1 + c) * N * SD_VANS_ROWS;
     const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;
     if (law->rules == SD_VANS_YADE)
-      add_slices_yade(class_sums, first, count, V, v, drag,
-                      inside ? class_sums + (long) p * SD_VANS_ROWS : 0);
+      sd_vans_yade_add_slices(class_sums, first, count, V, v, drag,
+                              inside ? class_sums + (long) p * SD_VANS_ROWS : 0);
     else
       add_slices(class_sums, first, count, V, v, drag);
   }

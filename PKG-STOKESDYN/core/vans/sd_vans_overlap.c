@@ -2,57 +2,59 @@
 #include "sd_vans.h"
 
 #include <math.h>
-
-enum { MAX_CUTS = 64 };
+#include <stdlib.h>
 
 typedef struct {
   double n[3], h; /* the sphere keeps r.n <= h, r from its centre */
 } cut;
+
+/* Of one disc: the lines m.u <= c that cut it, |m| = 1, and the ends of the arcs that they take;
+ * room for as many as there are cuts, of arcs for twice as many. */
+typedef struct {
+  double (*m)[2], *c, *from, *to;
+} lines;
 
 static double dot(const double *a, const double *b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Area of a disc of radius r within half-planes m.u <= c. Gauss's theorem for the field u/2
- * whose divergence is 1: the area is half the integral of u.n over its border, r^2 times the
+/* What the other lines leave of the chord k, from -t to t along (-m_y, m_x): its length. */
+static double chord_left(double r, int count, const lines *line, int k)
+{
+  const double ex = line->m[k][0], ey = line->m[k][1], height = line->c[k];
+  double t0 = -sqrt(r * r - height * height), t1 = -t0;
+  for (int j = 0; j < count; j++) {
+    if (j == k) continue;
+    const double along = -line->m[j][0] * ey + line->m[j][1] * ex,
+                 rest = line->c[j] - height * (line->m[j][0] * ex + line->m[j][1] * ey);
+    if (fabs(along) < 1e-14) {
+      if (rest < 0.0 || (rest == 0.0 && j < k)) t1 = t0;
+    } else if (along > 0.0)
+      t1 = fmin(t1, rest / along);
+    else
+      t0 = fmax(t0, rest / along);
+  }
+  return fmax(t1 - t0, 0.0);
+}
+
+/* Area of a disc of radius r within half-planes, all of which cut it. Gauss's theorem for the field
+ * u/2 whose divergence is 1: the area is half the integral of u.n over its border, r^2 times the
  * angle of the arcs left plus, over the chords left, their signed distance from the centre times
  * their length. */
-static double disc_area(double r, int count, double (*m)[2], const double *c)
+static double disc_area(double r, int count, const lines *line)
 {
-  double from[2 * MAX_CUTS], to[2 * MAX_CUTS], chords = 0.0;
+  double *from = line->from, *to = line->to, chords = 0.0;
   int arcs = 0;
   for (int k = 0; k < count; k++) {
-    const double size = hypot(m[k][0], m[k][1]);
-    if (size < 1e-14) {
-      if (c[k] < 0.0) return 0.0;
-      continue;
-    }
-    const double height = c[k] / size;
-    if (height >= r) continue;
-    if (height <= -r) return 0.0;
-    const double middle = atan2(m[k][1], m[k][0]), half = acos(height / r);
+    const double height = line->c[k], middle = atan2(line->m[k][1], line->m[k][0]),
+                 half = acos(height / r);
     double lo = middle - half, hi = middle + half;
     /* an arc over the ray of angle pi is two */
     if (lo < -SD_PI) from[arcs] = lo + 2 * SD_PI, to[arcs++] = SD_PI, lo = -SD_PI;
     if (hi > SD_PI) from[arcs] = -SD_PI, to[arcs++] = hi - 2 * SD_PI, hi = SD_PI;
     from[arcs] = lo, to[arcs++] = hi;
-
-    /* the chord, from -t to t along (-m_y, m_x)/size, within the other half-planes */
-    const double ex = m[k][0] / size, ey = m[k][1] / size;
-    double t0 = -sqrt(r * r - height * height), t1 = -t0;
-    for (int j = 0; j < count; j++) {
-      if (j == k) continue;
-      const double along = -m[j][0] * ey + m[j][1] * ex,
-                   rest = c[j] - height * (m[j][0] * ex + m[j][1] * ey);
-      if (fabs(along) < 1e-14) {
-        if (rest < 0.0 || (rest == 0.0 && j < k)) t1 = t0;
-      } else if (along > 0.0)
-        t1 = fmin(t1, rest / along);
-      else
-        t0 = fmax(t0, rest / along);
-    }
-    if (t1 > t0) chords += height * (t1 - t0);
+    chords += height * chord_left(r, count, line, k);
   }
   for (int i = 1; i < arcs; i++) /* sort by the beginning */
     for (int k = i; k > 0 && from[k] < from[k - 1]; k--) {
@@ -69,11 +71,29 @@ static double disc_area(double r, int count, double (*m)[2], const double *c)
   return 0.5 * (r * r * fmax(2 * SD_PI - covered, 0.0) + chords);
 }
 
+/* The lines in which the planes 1 to count - 1 meet the disc of radius r at the height z along the
+ * axis; how many cut it, or -1 if one of them leaves nothing of it. */
+static int lines_in(double r, double z, const double axis[3], const double side[3],
+                    const double up[3], int count, const cut *cuts, const lines *line)
+{
+  int found = 0;
+  for (int k = 1; k < count; k++) {
+    const double mx = dot(cuts[k].n, side), my = dot(cuts[k].n, up),
+                 c = cuts[k].h - dot(cuts[k].n, axis) * z, size = hypot(mx, my);
+    if (size < 1e-14 ? c < 0.0 : c <= -r * size) return -1;
+    if (size < 1e-14 || c >= r * size) continue;
+    line->m[found][0] = mx / size;
+    line->m[found][1] = my / size;
+    line->c[found++] = c / size;
+  }
+  return found;
+}
+
 /* Volume of the sphere within all cuts: slabs across the first cut's normal, each a disc cut by
  * the lines where the other planes meet it. With z = a sin(t) the radius is a cos(t), and no
  * root is left at the ends of the sphere; Gauss's rule of eight points in every panel, since
  * lines that come and go make kinks. */
-static double integrate(double a, int count, const cut *cuts)
+static double integrate(double a, int count, const cut *cuts, const lines *line)
 {
   static const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                  0.9602898564975363};
@@ -94,22 +114,17 @@ static double integrate(double a, int count, const cut *cuts)
     for (int q = 0; q < 8; q++) {
       const double t = -SD_PI / 2 + (p + 0.5 + 0.5 * (q < 4 ? node[q] : -node[q - 4])) * width,
                    z = a * sin(t), r = a * cos(t);
-      double m[MAX_CUTS][2], c[MAX_CUTS];
-      for (int k = 1; k < count; k++) {
-        m[k - 1][0] = dot(cuts[k].n, side);
-        m[k - 1][1] = dot(cuts[k].n, up);
-        c[k - 1] = cuts[k].h - dot(cuts[k].n, axis) * z;
-      }
-      volume += 0.5 * width * gauss[q % 4] * disc_area(r, count - 1, m, c) *
-          r; /* dz = a cos t dt = r dt */
+      const int found = lines_in(r, z, axis, side, up, count, cuts, line);
+      if (found >= 0) /* dz = a cos t dt = r dt */
+        volume += 0.5 * width * gauss[q % 4] * disc_area(r, found, line) * r;
     }
   return volume;
 }
 
-double sd_vans_union_share(int n, const double *x, const double *a, int i)
+/* The planes that cut sphere i, as many as there are; -1 if one of them leaves nothing of it. */
+static int cuts_of(int n, const double *x, const double *a, int i, cut *cuts)
 {
-  const double ai = a[i], all = 4.0 / 3.0 * SD_PI * ai * ai * ai;
-  cut cuts[MAX_CUTS];
+  const double ai = a[i];
   int count = 0;
   for (int j = 0; j < n; j++) {
     if (j == i) continue;
@@ -118,27 +133,45 @@ double sd_vans_union_share(int n, const double *x, const double *a, int i)
     const double distance = sqrt(dot(r, r));
     if (distance >= ai + a[j]) continue;
     if (distance <= 1e-12 * ai) { /* concentric: the larger counts, of equal ones the first */
-      if (a[j] > ai || (a[j] == ai && j < i)) return 0.0;
+      if (a[j] > ai || (a[j] == ai && j < i)) return -1;
       continue;
     }
     /* the radical plane, where the powers |x|^2 - a^2 for both spheres are equal, holds the circle
      * in which they meet; it may lie beyond either centre */
     const double h = (distance * distance + ai * ai - a[j] * a[j]) / (2.0 * distance);
-    if (h <= -ai) return 0.0;
-    if (h >= ai || count == MAX_CUTS) continue;
+    if (h <= -ai) return -1;
+    if (h >= ai) continue;
     for (int d = 0; d < 3; d++) cuts[count].n[d] = r[d] / distance;
     cuts[count++].h = h;
   }
-  /* The caps cut off: if none meets another, their volumes just add. */
-  int apart = 1;
+  return count;
+}
+
+/* Do the caps cut off meet nowhere? Then their volumes just add. */
+static int caps_are_apart(double a, int count, const cut *cuts)
+{
   for (int k = 0; k < count; k++)
     for (int j = 0; j < k; j++) {
       const double between = acos(fmax(-1.0, fmin(1.0, dot(cuts[j].n, cuts[k].n))));
-      if (between < acos(cuts[j].h / ai) + acos(cuts[k].h / ai)) apart = 0;
+      if (between < acos(cuts[j].h / a) + acos(cuts[k].h / a)) return 0;
     }
-  if (!apart) return integrate(ai, count, cuts) / all;
-  double volume = all;
-  for (int k = 0; k < count; k++)
-    volume -= SD_PI * (ai - cuts[k].h) * (ai - cuts[k].h) * (2.0 * ai + cuts[k].h) / 3.0;
+  return 1;
+}
+
+double sd_vans_union_share(int n, const double *x, const double *a, int i)
+{
+  const double ai = a[i], all = 4.0 / 3.0 * SD_PI * ai * ai * ai;
+  cut *cuts = malloc((size_t) n * (sizeof(cut) + 7 * sizeof(double)));
+  if (!cuts) return -1.0;
+  const int count = cuts_of(n, x, a, i, cuts);
+  double volume = count < 0 ? 0.0 : all;
+  if (count >= 0 && !caps_are_apart(ai, count, cuts)) {
+    double *room = (double *) (cuts + n);
+    const lines line = {(double(*)[2]) room, room + 2 * n, room + 3 * n, room + 5 * n};
+    volume = integrate(ai, count, cuts, &line);
+  } else
+    for (int k = 0; k < count; k++)
+      volume -= SD_PI * (ai - cuts[k].h) * (ai - cuts[k].h) * (2.0 * ai + cuts[k].h) / 3.0;
+  free(cuts);
   return volume / all;
 }

@@ -32,6 +32,27 @@ double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi)
   return 0.0;
 }
 
+double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                          const double *U, double drive)
+{
+  const int M = mesh->ncell - 1;
+  double flux = 0.0, depth = 0.0;
+  for (int n = M - 1; n >= 0 && phi[n] < 0.1; n--) {
+    flux += (1.0 - phi[n]) * U[n + 1] * sd_vans_height(mesh, n);
+    depth += (1.0 - phi[n]) * sd_vans_height(mesh, n);
+  }
+  if (!(fluid->width > 0.0) || !(drive * flux > 0.0)) return 0.0;
+  /* R grows with f(R), which falls with R: substitution converges */
+  const double mean = fabs(flux / depth);
+  double R = 0.5 * fluid->width;
+  for (int k = 0; k < 60; k++) {
+    sd_vans_friction anew = {0};
+    R = sd_vans_wall_friction(SD_VANS_CONSISTENT, mean * R * fluid->rho / fluid->eta, &anew) *
+        mean * mean / (8.0 * fabs(drive));
+  }
+  return fmin(2.0 * R / fluid->width, 1.0);
+}
+
 /* depth / (flux / depth) */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed)
 {

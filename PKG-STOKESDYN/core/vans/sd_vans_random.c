@@ -1,4 +1,4 @@
-#include "sd_vans.h"
+#include "sd_vans_random.h"
 
 #include "sd_constants.h"
 #include "sd_hash.h"

@@ -1,6 +1,8 @@
 /* Closures where they have a closed form, and what profiles tell. */
 #include "column.h"
 
+#include "sd_vans_random.h"
+
 /* Mixing lengths where they have a closed form. */
 static void mixing_lengths(void **state)
 {

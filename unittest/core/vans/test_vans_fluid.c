@@ -155,7 +155,7 @@ static void momentum_is_balanced(void **state)
       const int steps = 37;
       const sd_vans_column column = {c->phi, c->vx, c->b, c->length, source};
       const sd_vans_flow flow = {c->U, c->nut, c->stress};
-      sd_vans_books in = {c->moved, c->shear, 0, 0, 0, 0};
+      sd_vans_books in = {c->moved, c->shear, 0, 0, 0, 0, 0};
       assert_int_equal(sd_vans_solve(c->solver, &fluid, &column, steps, dt, &flow, &in), SD_OK);
       double gain = in.driving + in.bottom + in.walls + in.surface;
       double size = fabs(in.driving) + fabs(in.bottom) + fabs(in.walls) + fabs(in.surface);
@@ -194,6 +194,66 @@ static void displaced_water_keeps_its_momentum(void **state)
   column_free(c);
 }
 
+/* Each step finds the drive that passes the discharge: against walls, drag and a turbulent bottom. In
+ * the end the books say the same: what drives is what bottom, walls and grains take. */
+static void discharge_is_held_step_by_step(void **state)
+{
+  (void) state;
+  column *c = column_create(61, 0.06, 0.0);
+  sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .turbulence = SD_VANS_LI_SAWAMOTO, .kappa = 0.41,
+                         .phi_max = 0.61, .width = 0.05, .wall_coef = 1, .held = 1};
+  for (int n = 0; n < 61; n++) {
+    c->phi[n] = 0.55 / (1.0 + exp(0.7 * (n - 20)));
+    c->b[n] = 30 * c->phi[n];
+  }
+  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  const sd_vans_column column = {c->phi, c->vx, c->b, c->length, NULL};
+  const sd_vans_flow flow = {c->U, c->nut, c->stress};
+  sd_vans_books in = {c->moved, c->shear, 0, 0, 0, 0, 0};
+  for (int k = 1; k <= 3; k++) {
+    fluid.discharge = 0.01 * k;
+    assert_int_equal(sd_vans_solve(c->solver, &fluid, &column, 5000, 1e-3, &flow, &in), SD_OK);
+    assert_true(fabs(sd_vans_momentum(&c->mesh, 1.0, c->phi, c->U) / fluid.discharge - 1.0) < 1e-12);
+  }
+  fluid.discharge = 0.03;
+  assert_int_equal(sd_vans_solve(c->solver, &fluid, &column, 1000, 1e-3, &flow, &in), SD_OK);
+  double taken = -in.bottom - in.walls;
+  for (int n = 0; n < 61; n++) taken += in.moved[n];
+  assert_true(in.drive > 0.0 && fabs(taken / in.driving - 1.0) < 1e-10);
+  column_free(c);
+}
+
+/* A surface between two edges: the water below it has the volume that is asked for, wherever the
+ * surface falls, and what is displaced from one surface to another keeps all its momentum. */
+static void water_fills_the_mesh_up_to_its_surface(void **state)
+{
+  (void) state;
+  column *c = column_create(61, 0.06, 0.0);
+  double edge[62], before[62], old[61], scratch[130];
+  for (int n = 0; n < 61; n++) {
+    c->phi[n] = 0.6 / (1.0 + exp(0.5 * (n - 25)));
+    old[n] = 0.5 / (1.0 + exp(0.3 * (n - 28)));
+    c->U[n + 1] = 0.3 + 0.01 * n + 0.1 * sin(n);
+  }
+  for (double W = 1e-3; W < 0.044; W *= 1.01) {
+    const sd_vans_mesh wet = {sd_vans_fill(&c->mesh, c->phi, W, edge), 0.0, 0.0, edge};
+    assert_in_range(wet.ncell, 2, 61);
+    assert_true(fabs(sd_vans_volume(&wet, c->phi) / W - 1.0) < 1e-14);
+    const int top = wet.ncell - 2;
+    assert_true(sd_vans_height(&wet, top) < 1.0101e-3 && (top == 0 || sd_vans_height(&wet, top) > 0.0099e-3));
+  }
+  assert_int_equal(sd_vans_fill(&c->mesh, c->phi, 0.07, edge), 0);
+  const double W = 0.03;
+  const sd_vans_mesh from = {sd_vans_fill(&c->mesh, old, W, before), 0.0, 0.0, before},
+                     to = {sd_vans_fill(&c->mesh, c->phi, W, edge), 0.0, 0.0, edge};
+  assert_true(from.ncell != to.ncell);
+  const double start = sd_vans_momentum(&from, 1000, old, c->U),
+               through = sd_vans_displace_to(&from, &to, 1000, old, c->phi, c->U, scratch);
+  assert_true(fabs(through) < 1e-13 * start);
+  assert_true(fabs(sd_vans_momentum(&to, 1000, c->phi, c->U) / start - 1.0) < 1e-13);
+  column_free(c);
+}
+
 /* Yade adds dt up: the counts measured there. Consistent: the right number, and dt is made to fit. */
 static void number_of_steps(void **state)
 {
@@ -222,6 +282,8 @@ int main(void)
       cmocka_unit_test(turbulent_layer_converges),
       cmocka_unit_test(momentum_is_balanced),
       cmocka_unit_test(displaced_water_keeps_its_momentum),
+      cmocka_unit_test(discharge_is_held_step_by_step),
+      cmocka_unit_test(water_fills_the_mesh_up_to_its_surface),
       cmocka_unit_test(number_of_steps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

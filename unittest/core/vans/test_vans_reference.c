@@ -47,7 +47,7 @@ static void check_forces(const char *name, sd_vans_rules rules)
   vectors(t, "ufx", "ufy", "ufz", n, u);
   vectors(t, "fx", "fy", "fz", n, reference);
   sd_vans_hindrance(mesh.ncell, vans_column(p, "phi"), law.exponent, hindrance);
-  const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL};
+  const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL, NULL};
   const int outside =
       sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, &grains, F, NULL);
   assert_int_equal(outside, 8);
@@ -93,13 +93,13 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
                                  .eta = vans_key(t, "viscoDyn", 0),
                                  .exponent = vans_key(t, "expoRZ", 0),
                                  .rules = rules};
-  const sd_vans_averaging how = {0, classes, radii};
+  const sd_vans_averaging how = {0, classes, radii, NULL};
   enum { n = 60 };
   double x[3 * n], v[3 * n], u[3 * n], hindrance[N_MAX], V[2 * N_MAX], profile[5 * N_MAX];
   vectors(t, "x", "y", "z", n, x);
   vectors(t, "vx", "vy", "vz", n, v);
   vectors(t, "ufx", "ufy", "ufz", n, u);
-  const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL};
+  const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL, NULL};
   double phi[N_MAX];
   memcpy(phi, vans_column(p, "phi_in"), N * sizeof(double));
   for (int call = 1; call <= 2; call++) {
@@ -186,7 +186,7 @@ static void check_fluid(const char *name, sd_vans_rules rules)
   memcpy(profile, phi, N * sizeof(double));
   memcpy(profile + SD_VANS_VX * N, vx, N * sizeof(double));
   memcpy(profile + SD_VANS_DRAG * N, vans_column(t, "drag"), N * sizeof(double));
-  sd_vans_exchange(&mesh, &fluid, dt, U, profile, NULL, b, cut);
+  sd_vans_exchange(&mesh, &fluid, dt, U, profile, NULL, NULL, b, cut);
   sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? classes : NULL, phi, length, scratch);
   sd_vans_solver *solver = sd_vans_solver_create(&mesh);
   const sd_vans_column column = {phi, vx, b, length, NULL};

@@ -1,9 +1,11 @@
 /* Friction of side walls: its law, Yade's, and the stream between them. */
 #include "column.h"
 
-/* 1/sqrt(f) - 2 log10(Re sqrt(f)) - 0.32, over 1/sqrt(f) */
+/* 1/sqrt(f) - 2 log10(Re sqrt(f)) - 0.32, over 1/sqrt(f); below the Reynolds number where the
+ * two meet f is 24/Re */
 static double residual_of_law(double Re, double f)
 {
+  if (Re < SD_VANS_WALL_TRANSITION) return f * Re / 24.0 - 1.0;
   return 1.0 - (2.0 * log10(Re * sqrt(f)) + 0.32) * sqrt(f);
 }
 
@@ -28,8 +30,8 @@ static void wall_friction_follows_its_law(void **state)
   sd_vans_wall_friction(SD_VANS_CONSISTENT, 1e6, &far);
   assert_true(fabs(residual_of_law(0.01, sd_vans_wall_friction(SD_VANS_CONSISTENT, 0.01, &far))) <
               1e-12);
-  /* Graf & Altinakar's law at Re 1e2..1e5, four digits */
-  const double law[4] = {0.0927, 0.0411, 0.0225, 0.0140};
+  /* laminar at Re 1e2, Graf & Altinakar's law at Re 1e3..1e5, four digits */
+  const double law[4] = {0.24, 0.0411, 0.0225, 0.0140};
   for (int k = 0; k < 4; k++) {
     const double f = sd_vans_wall_friction(SD_VANS_CONSISTENT, pow(10.0, k + 2), &far);
     assert_true(fabs(f / law[k] - 1.0) < 0.006);
@@ -130,9 +132,82 @@ static void side_walls_balance_the_slope(void **state)
   column_free(c);
 }
 
+/* At the transition both laws have one f, so that no speed is left out, and no speed of the stream
+ * jumps when the slope grows. */
+static void laminar_and_turbulent_friction_meet(void **state)
+{
+  (void) state;
+  const double Re = SD_VANS_WALL_TRANSITION;
+  sd_vans_friction below = {0}, above = {0};
+  const double lower = sd_vans_wall_friction(SD_VANS_CONSISTENT, Re * (1 - 1e-12), &below),
+               upper = sd_vans_wall_friction(SD_VANS_CONSISTENT, Re * (1 + 1e-12), &above);
+  assert_true(fabs(lower * Re / 24.0 - 1.0) < 1e-11 && fabs(upper / lower - 1.0) < 1e-11);
+  /* no series reaches over it: asked on the other side, the other law answers */
+  assert_true(fabs(sd_vans_wall_friction(SD_VANS_CONSISTENT, Re * 1.0004, &below) /
+                       (24.0 / (Re * 1.0004)) - 1.0) > 1e-5);
+}
+
+/* Water in a slot, at rest until the slope drives it, is plane Poiseuille flow in the mean over the
+ * width, U = g W^2/(12 nu), from water to a liquid a thousand times as viscous. */
+static void slow_stream_between_walls_is_laminar(void **state)
+{
+  (void) state;
+  const double W = 0.0065;
+  static const double nu[] = {1e-6, 1e-5, 1e-4, 1e-3}, g[] = {2e-3, 0.05, 0.98, 0.98};
+  for (int k = 0; k < 4; k++) {
+    column *c = column_create(201, 1.0, 0.0);
+    const sd_vans_fluid fluid = {.rho = 1000, .eta = 1000 * nu[k], .gx = g[k], .kappa = 0.41,
+                                 .phi_max = 0.6, .width = W, .wall_coef = 1.0};
+    solve(c, &fluid, 4000, 0.02 * W * W / nu[k] / 12.0);
+    const double exact = g[k] * W * W / (12.0 * nu[k]);
+    printf("    nu %.0e: U %.6g, plane Poiseuille %.6g\n", nu[k], c->U[150], exact);
+    assert_true(fabs(c->U[150] / exact - 1.0) < 1e-3);
+    column_free(c);
+  }
+}
+
+/* Rough walls: fully rough, 1/sqrt(f) = 2 log10(14.8 R/k_s), whatever the viscosity; with k_s -> 0
+ * the smooth law; and never less than laminar. */
+static void rough_walls_follow_colebrook(void **state)
+{
+  (void) state;
+  sd_vans_friction wall = {.roughness = 0.05};
+  double f = sd_vans_wall_friction(SD_VANS_CONSISTENT, 1e9, &wall);
+  assert_true(fabs(f * pow(2.0 * log10(14.8 / 0.05), 2.0) - 1.0) < 1e-5);
+  wall.roughness = 1e-12;
+  for (double Re = 500; Re < 1e6; Re *= 7) {
+    sd_vans_friction smooth = {0};
+    f = sd_vans_wall_friction(SD_VANS_CONSISTENT, Re, &wall);
+    assert_true(fabs(f / sd_vans_wall_friction(SD_VANS_CONSISTENT, Re, &smooth) - 1.0) < 1e-9);
+  }
+  wall.roughness = 0.3;
+  for (double Re = 1; Re < 1e6; Re *= 1.3) {
+    f = sd_vans_wall_friction(SD_VANS_CONSISTENT, Re, &wall);
+    const double law = 1.0 / sqrt(f) +
+        2.0 * log10(0.3 / 14.8 + pow(10.0, -0.16) / (Re * sqrt(f)));
+    assert_true(f >= 24.0 / Re * (1 - 1e-14) && (fabs(law) < 1e-12 || f * Re < 24.0 + 1e-9));
+  }
+}
+
+/* Eddies between narrow walls are no longer than kappa W/2. */
+static void narrow_walls_limit_the_mixing_length(void **state)
+{
+  (void) state;
+  column *c = column_create(101, 0.2, 0.0);
+  sd_vans_fluid fluid = {.turbulence = SD_VANS_KZ, .kappa = 0.4, .width = 0.03, .narrow = 1};
+  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  for (int j = 0; j <= 100; j++)
+    assert_true(fabs(c->length[j] - 0.4 * fmin(c->edge[j], 0.015)) < 1e-15);
+  column_free(c);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(laminar_and_turbulent_friction_meet),
+      cmocka_unit_test(slow_stream_between_walls_is_laminar),
+      cmocka_unit_test(rough_walls_follow_colebrook),
+      cmocka_unit_test(narrow_walls_limit_the_mixing_length),
       cmocka_unit_test(wall_friction_follows_its_law),
       cmocka_unit_test(wall_friction_holds_between_two_solutions),
       cmocka_unit_test(yades_wall_friction_is_a_substitution),

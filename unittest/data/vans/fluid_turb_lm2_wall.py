@@ -1,6 +1,7 @@
 """An independent model of one solve of the stream with side walls (numpy, dense matrices), for the table fluid_turb_lm2_wall.consistent.csv:
     python3 fluid_turb_lm2_wall.py > fluid_turb_lm2_wall.consistent.csv
-The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection, with Re on the hydraulic radius, half the width."""
+The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection, with Re on the hydraulic radius, half the width, or the
+laminar 24/Re where that is the larger (below Re 0.02 the law of turbulent streams would be larger again: it does not count there)."""
 import os
 import sys
 
@@ -30,7 +31,7 @@ def friction(Re):
         middle = 0.5 * (low + high)
         above = 10 ** -middle - 2 * (np.log10(Re) + middle) - 0.32 > 0
         low, high = np.where(above, middle, low), np.where(above, high, middle)
-    return 10 ** (2 * low)
+    return np.where(Re < 1, 24 / Re, np.maximum(10 ** (2 * low), 24 / Re))
 
 
 def solve(header, c, friction=friction):
@@ -59,7 +60,7 @@ def solve(header, c, friction=friction):
     q = phi * v
     for _ in range(steps):
         nut = l ** 2 * np.abs(U[1:] - U[:-1]) / h
-        speed = np.abs(U[1:N])
+        speed = np.maximum(np.abs(U[1:N]), 1e-10 * nu / (0.5 * width))
         wall = e[:M] * 2 / width * coef * friction(np.maximum(speed * 0.5 * width / nu, 1e-10)) / 8 * speed / 2
         A, r = np.zeros((M, M)), np.zeros(M)
         for j in range(M):                                     # the row of slice j, unknown U'[j + 1]

@@ -1,0 +1,64 @@
+/* Settlement between water and grains: what the water gives the grains get. */
+#ifndef SD_VANS_BOOKS_H
+#define SD_VANS_BOOKS_H
+
+#include "sd_vans.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A solve takes `moved` from the water for the grains. Its viscous part is handed to them as a
+ * force until the next solve. Its drag is what the exchange coefficient foresees. When the next
+ * solve comes each grain has felt its true drag, and the difference goes back to the water as a
+ * source in the slices of that grain. So the water gives no more and no less than the grains get,
+ * and the drag stays implicit. Grain by grain and not slice by slice: a grain that sees the water
+ * at its centre only would take drag from a thin slice beside it that has no momentum left.
+ *
+ * The account of a grain, along x. */
+typedef struct {
+  /* drag and viscous force of the last step */
+  double force;
+  /* impulse that it got by them since the last coupling */
+  double impulse;
+  /* viscous force now, and before the last coupling */
+  double shear, past;
+  /* impulse of drag that the last solve took from the water for it */
+  double foreseen;
+} sd_vans_account;
+
+/* A step of velocity Verlet gives half of its force to the time before it, half to the time
+ * after. */
+static inline void sd_vans_account_step(sd_vans_account *account, double force, double dt)
+{
+  account->impulse += 0.5 * dt * (account->force + force);
+}
+
+/* What was foreseen for the grain but not taken by it in the time T since the last coupling, steps
+ * of dt: impulse less that of the viscous force; the force of the coupling's own step acted for
+ * another half step. ratio: time of the water over that of the grains. */
+static inline double sd_vans_account_rest(const sd_vans_account *account, double T, double dt,
+                                          double ratio)
+{
+  const double viscous = (T - 0.5 * dt) * account->shear + 0.5 * dt * account->past;
+  return account->foreseen - ratio * (account->impulse - viscous);
+}
+
+/* A tenth of what is outstanding goes back at a time: the differences of single couplings are
+ * mostly noise, which would shake the water of a dense bed.
+ *   back         [N] momentum that the grains of each slice have left since the last solve; what is
+ *                above the surface goes to the slice below it
+ *   outstanding  [N] in and out, momentum;   source [N] out, for a solve over the time T
+ * Returns the momentum that goes back in this solve. */
+double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, const double *back,
+                         double *outstanding, double *source);
+
+/* What the solve took from the water, per volume of grains: shear [N] as a force, foreseen [N] as
+ * an impulse. */
+void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
+                       const sd_vans_books *books, double *shear, double *foreseen);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

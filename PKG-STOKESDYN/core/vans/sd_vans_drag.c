@@ -1,0 +1,79 @@
+#include "sd_vans_drag.h"
+
+#include <math.h>
+
+double sd_vans_drag_number(sd_vans_drag_of_one law, double Re)
+{
+  switch (law) {
+    case SD_VANS_DRAG_YADE: return 24.4 + 0.44 * Re;
+    case SD_VANS_DRAG_SCHILLER_NAUMANN:
+      return fmax(24.0 * (1.0 + 0.15 * pow(Re, 0.687)), 0.44 * Re);
+    case SD_VANS_DRAG_BROWN_LAWLER:
+      return 24.0 * (1.0 + 0.15 * pow(Re, 0.681)) + 0.407 * Re * Re / (Re + 8710.0);
+    case SD_VANS_DRAG_FERGUSON_CHURCH: {
+      /* w (18 nu + sqrt(3/4 C_2 R g d^3)/w ...) solved for the drag: with C = C_d,
+       * C - sqrt(C_2 C) - 24/Re = 0, C_2 = 1 */
+      const double root = 0.5 * (sqrt(Re) + sqrt(Re + 96.0));
+      return root * root;
+    }
+  }
+  return 0.0;
+}
+
+double sd_vans_richardson_zaki(double Re)
+{
+  return fmin(fmax(4.4 * pow(Re, Re < 1.0 ? -0.03 : -0.1), 2.39), 4.65);
+}
+
+void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
+                          double *hindrance)
+{
+  for (int n = 0; n < ncell; n++)
+    hindrance[n] = law.hindrance != SD_VANS_HINDRANCE_POWER ? 1.0 - phi[n]
+        : phi[n] == 0.0                                      ? 1.0
+                                                             : pow(1.0 - phi[n], -exponent);
+}
+
+/* y = ln(Re_0/Re) = (1 - n(Re_0)) ln e, by Newton's method: n falls by less than 0.44 with y, so
+ * that the left side less the right rises, and six steps are at rounding in any bed. */
+static double logarithm_of_lone_speed(double Re, double log_e)
+{
+  double y = 0.0;
+  if (!(Re > 0.0)) return -3.65 * log_e;
+  for (int k = 0; k < 6; k++) {
+    const double lone = Re * exp(y), n = sd_vans_richardson_zaki(lone),
+                 slope = n == 4.65 || n == 2.39 ? 0.0 : (lone < 1.0 ? -0.03 : -0.1) * n; /* dn/dy */
+    y -= (y - (1.0 - n) * log_e) / (1.0 + slope * log_e);
+  }
+  return y;
+}
+
+double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
+                           double hindrance, double speed)
+{
+  const double Re = 2.0 * a * rho * speed / eta, viscous = 0.25 * SD_PI * a * eta;
+  switch (law.hindrance) {
+    case SD_VANS_HINDRANCE_POWER: break;
+    case SD_VANS_HINDRANCE_RICHARDSON_ZAKI: {
+      if (hindrance == 1.0) return viscous * sd_vans_drag_number(law.law, Re);
+      const double more = exp(logarithm_of_lone_speed(Re, log(hindrance)));
+      return viscous * sd_vans_drag_number(law.law, Re * more) * more;
+    }
+    case SD_VANS_HINDRANCE_DI_FELICE: {
+      const double through = hindrance * Re, x = 1.5 - log10(fmax(through, 1e-30)),
+                   beta = 3.7 - 0.65 * exp(-0.5 * x * x);
+      return viscous * sd_vans_drag_number(law.law, through) * pow(hindrance, -beta);
+    }
+  }
+  return viscous * sd_vans_drag_number(law.law, Re) * hindrance;
+}
+
+double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,
+                          double speed)
+{
+  /* a step of 1e-3 of the speed, for a derivative that needs two digits */
+  const double more = 1.001 * speed,
+               F = sd_vans_drag_factor(law, rho, eta, a, hindrance, speed) * speed;
+  if (!(speed > 0.0)) return sd_vans_drag_factor(law, rho, eta, a, hindrance, 0.0);
+  return (sd_vans_drag_factor(law, rho, eta, a, hindrance, more) * more - F) / (more - speed);
+}

@@ -1,0 +1,88 @@
+/* The drag of the stream on a lone sphere or grain, and what its neighbours add to it.
+ *
+ * With w the velocity of the water past the grain (between the grains), a its radius and
+ * Re = 2 a rho |w|/eta,
+ *   F = pi a eta/4  N(Re')  h  w,    N(Re) = Re C_d(Re), 24 for Re -> 0 (Stokes)
+ *
+ * Law                 N(Re)                                            of what
+ *   yade              24.4 + 0.44 Re                                   Dallavalle's form
+ *   schiller_naumann  24 (1 + 0.15 Re^0.687); 0.44 Re where that is more (Re > 989)
+ *   brown_lawler      24 (1 + 0.15 Re^0.681) + 0.407 Re/(1 + 8710/Re)  spheres, Re to 2e5
+ *   ferguson_church   (sqrt(Re) + sqrt(Re + 96))^2/4                   natural sand (C_1 18, C_2 1)
+ *
+ * Hindrance, e = 1 - phi       Re'                  h
+ *   power                      Re                   e^-n, n given
+ *   richardson_zaki            Re_0: Re e^(1-n(Re_0))   e^(1-n(Re_0))
+ *   di_felice                  e Re                 e^-beta(e Re)
+ * Richardson & Zaki measured that the volume of grains and water past each other, per area, is
+ * e w = w_0 e^n where a lone grain falls with w_0: so the drag at w is that of a lone grain at
+ * w_0 = w e^(1-n), and n is that of Re_0 = 2 a rho w_0/eta, as they have it but for the steps
+ * between its parts: 4.4 Re_0^-0.03 below Re_0 = 1, 4.4 Re_0^-0.1 above, within 4.65 and 2.39.
+ * Di Felice: beta = 3.7 - 0.65 exp(-(1.5 - log10 Re')^2/2).
+ * All of F acts beside the buoyancy of the clear fluid, rho g V: what the water's own excess
+ * pressure does to a grain is in h. (Di Felice's exponent is for a drag beside the buoyancy of the
+ * mixture, e times as large: there it is h = e^(1-beta).)
+ *
+ * Sources: Dallavalle 1948; Schiller & Naumann 1933; Brown & Lawler 2003 (J. Environ. Eng. 129);
+ * Ferguson & Church 2004 (J. Sediment. Res. 74); Richardson & Zaki 1954 (Trans. Inst. Chem. Eng.
+ * 32); Di Felice 1994 (Int. J. Multiphase Flow 20). */
+#ifndef SD_VANS_DRAG_H
+#define SD_VANS_DRAG_H
+
+#include "sd_constants.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum {
+  SD_VANS_DRAG_YADE,
+  SD_VANS_DRAG_SCHILLER_NAUMANN,
+  SD_VANS_DRAG_BROWN_LAWLER,
+  SD_VANS_DRAG_FERGUSON_CHURCH
+} sd_vans_drag_of_one;
+
+typedef enum {
+  SD_VANS_HINDRANCE_POWER,
+  SD_VANS_HINDRANCE_RICHARDSON_ZAKI,
+  SD_VANS_HINDRANCE_DI_FELICE
+} sd_vans_drag_of_many;
+
+/* Zeros: Yade's law with a power of the porosity. */
+typedef struct {
+  sd_vans_drag_of_one law;
+  sd_vans_drag_of_many hindrance;
+} sd_vans_drag_law;
+
+/* N(Re), Re >= 0. */
+double sd_vans_drag_number(sd_vans_drag_of_one law, double Re);
+
+/* n(Re), Re that of a lone grain. */
+double sd_vans_richardson_zaki(double Re);
+
+/* What a slice does to the drag of the grains in it: e^-exponent where the hindrance is a power,
+ * otherwise e = 1 - phi itself. Once per profile instead of once per grain. [ncell] */
+void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
+                          double *hindrance);
+
+/* F/w of a grain of radius a for the speed |w|, of any law; hindrance: that of its slice. */
+double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
+                           double hindrance, double speed);
+
+/* The same; Yade's law with a power on the spot. */
+static inline double sd_vans_drag_factor(sd_vans_drag_law law, double rho, double eta, double a,
+                                         double hindrance, double speed)
+{
+  if (law.law == SD_VANS_DRAG_YADE && law.hindrance == SD_VANS_HINDRANCE_POWER)
+    return 0.5 * SD_PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
+  return sd_vans_drag_by_law(law, rho, eta, a, hindrance, speed);
+}
+
+/* dF/dw of the same: between F/w and twice that. */
+double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,
+                          double speed);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

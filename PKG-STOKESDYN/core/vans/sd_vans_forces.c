@@ -1,0 +1,169 @@
+#include "sd_vans_internal.h"
+
+#include <math.h>
+
+static double speed_of(const double w[3])
+{
+  return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+}
+
+void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance)
+{
+  const sd_vans_drag_law power = {0};
+  sd_vans_hindrance_of(power, ncell, phi, exponent, hindrance);
+}
+
+void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
+                  double F[3])
+{
+  const double factor =
+      sd_vans_drag_factor((sd_vans_drag_law){0}, rho, eta, a, hindrance, speed_of(w));
+  for (int d = 0; d < 3; d++) F[d] = factor * w[d];
+}
+
+sd_vans_water sd_vans_water_in(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
+                               const double *U, const double *hindrance, int n)
+{
+  const int N = mesh->ncell, seen = n < 0 ? 0 : n < N ? n : N - 1;
+  const double upward = !law->upward ? 0.0 : n >= 0 && n < N ? law->upward[n] : law->flux;
+  return (sd_vans_water){n < 0 ? U[0] : U[seen + 1], upward, hindrance[seen]};
+}
+
+/* Velocity past grain i, size of it out. */
+static double velocity_past(const sd_vans_grains *grains, int i, sd_vans_water water, double w[3])
+{
+  const double *v = grains->v + 3 * (long) i;
+  w[0] = water.u - v[0];
+  w[1] = -v[1];
+  w[2] = water.w - v[2];
+  if (grains->fluctuation)
+    for (int d = 0; d < 3; d++) w[d] += grains->fluctuation[3 * (long) i + d];
+  return speed_of(w);
+}
+
+void sd_vans_add_drag(const sd_vans_force_law *law, const sd_vans_grains *grains, int i,
+                      sd_vans_water water, double share, double F[3])
+{
+  double w[3];
+  const double speed = velocity_past(grains, i, water, w);
+  const double factor =
+      sd_vans_drag_factor(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
+  for (int d = 0; d < 3; d++) F[d] += share * factor * w[d];
+}
+
+/* Drag on grain i slice by slice. What lies outside the mesh sees the values of its ends. */
+static void drag_by_volume(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                           const double *hindrance, const sd_vans_grains *grains, int i,
+                           double F[3])
+{
+  const int N = mesh->ncell;
+  const double a = grains->a[i], z = grains->x[3 * (long) i + 2], height = z - mesh->z_ref,
+               whole = 2.0 * primitive(a * a, a);
+  double below = -0.5 * whole; /* primitive at the lower end of the slice */
+  int n = sd_vans_slice_of(mesh, z - a);
+  F[0] = F[1] = F[2] = 0.0;
+  /* what is under the bottom sees water at rest */
+  if (n < 0) {
+    const double here = primitive(a * a, fmin(-height, a));
+    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, -1),
+                     (here - below) / whole, F);
+    below = here;
+    n = 0;
+  }
+  for (; n < N && mesh->edge[n] - height < a; n++) {
+    const double here = primitive(a * a, fmin(mesh->edge[n + 1] - height, a));
+    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, n),
+                     (here - below) / whole, F);
+    below = here;
+  }
+  sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, N),
+                   0.5 - below / whole, F);
+}
+
+/* Drag on grain i, centre in slice p. */
+static void drag_on(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                    const double *hindrance, const sd_vans_grains *grains, int i, int p,
+                    double F[3])
+{
+  F[0] = F[1] = F[2] = 0.0;
+  if (law->felt_by_volume)
+    drag_by_volume(mesh, law, U, hindrance, grains, i, F);
+  else
+    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, p), 1.0, F);
+}
+
+/* Shear lift: dynamic pressure over the grain less that under it, with the water one radius above
+ * and below its centre; nothing where one of the two is outside the water. */
+static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                         int p, double a, double vx)
+{
+  int upper, lower;
+  if (mesh->dz > 0.0) {
+    const double k = floor(a / mesh->dz);
+    if (k > mesh->ncell) return 0.0;
+    upper = p + (int) k;
+    lower = p - (int) k;
+  } else {
+    upper = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p] + a);
+    lower = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p + 1] - a);
+  }
+  if (upper >= mesh->ncell || lower <= 0) return 0.0;
+  const double over = U[upper + 1] - vx, under = U[lower + 1] - vx;
+  return 0.5 * law->rho * SD_PI * a * a * law->lift * (over * over - under * under);
+}
+
+int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                   const double *hindrance, const sd_vans_grains *grains, double *F,
+                   double *drag_x)
+{
+  const unsigned char *take = grains->take;
+  /* In a steady stream down a slope the pressure falls straight away from the bed: what gravity has
+   * along x is carried by the stress, and grains have no buoyancy that way. */
+  const double g[3] = {law->rest ? law->g[0] : 0.0, law->g[1], law->g[2]};
+  int outside = 0;
+  for (int i = 0; i < grains->n; i++) {
+    double *Fi = F + 3 * (long) i;
+    Fi[0] = Fi[1] = Fi[2] = 0.0; /* also of those that take no part */
+    if (drag_x) drag_x[i] = 0.0;
+    if (take && !take[i]) continue;
+    const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]),
+              inside = p >= 0 && p < mesh->ncell;
+    if (!inside) outside++;
+    if (!inside && law->rules == SD_VANS_YADE) continue;
+    const double a = grains->a[i], displaced = 4.0 / 3.0 * SD_PI * a * a * a * law->rho,
+                 share = grains->weight ? grains->weight[i] : 1.0;
+    drag_on(mesh, law, U, hindrance, grains, i, p, Fi);
+    if (grains->acceleration)
+      for (int d = 0; d < 3; d++)
+        Fi[d] -= law->added_mass * displaced * grains->acceleration[3 * (long) i + d];
+    if (drag_x) drag_x[i] = share * Fi[0];
+    for (int d = 0; d < 3; d++) Fi[d] -= displaced * g[d];
+    if (inside && law->lift != 0.0)
+      Fi[2] += lift_force(mesh, law, U, p, a, grains->v[3 * (long) i]);
+    if (inside && law->convective) Fi[0] -= law->convective[p];
+    for (int d = 0; d < 3; d++) Fi[d] *= share;
+  }
+  return outside;
+}
+
+double sd_vans_stiffest(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                        const double *hindrance, const sd_vans_grains *grains, const double *mass,
+                        int *stiffest)
+{
+  double largest = 0.0;
+  for (int i = 0; i < grains->n; i++) {
+    if (grains->take && !grains->take[i]) continue;
+    const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]);
+    const sd_vans_water water = sd_vans_water_in(mesh, law, U, hindrance, p);
+    double w[3];
+    const double speed = velocity_past(grains, i, water, w),
+                 share = grains->weight ? grains->weight[i] : 1.0;
+    const double rate = share / mass[i] *
+        sd_vans_drag_slope(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
+    if (rate > largest) {
+      largest = rate;
+      *stiffest = i;
+    }
+  }
+  return largest;
+}

@@ -1,0 +1,56 @@
+/* Velocity fluctuations of the water: a discrete random walk of each grain. */
+#ifndef SD_VANS_RANDOM_H
+#define SD_VANS_RANDOM_H
+
+#include "sd_vans.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Three independent standard normal numbers that depend on nothing but the three keys: the same on
+ * any number of ranks. */
+void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
+
+/* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):
+ * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2; uncorrelated: (c, b, a) u_star. */
+void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3]);
+
+/* Life of an eddy at the height z above the bed: 0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, at most
+ * longest; where nothing moves, 10 dt. */
+double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double longest, double dt);
+
+/* The longest life. Where next to nothing moves an eddy would live for ever: thirty times H/u_star
+ * are about two hundred lives of one as high as the stream, u_star from what drives the stream or
+ * from its largest stress. Yade's rule: fluid->longest_life. */
+double sd_vans_longest_life(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                            const double *stress);
+
+/* The random walk of all grains. */
+typedef struct {
+  uint64_t seed;
+  int correlated;
+  /* height above z_ref below which there is none */
+  double bed;
+  /* [N] friction velocity of each slice */
+  const double *u_star;
+  /* of an eddy; time step of the walk */
+  double longest, dt;
+} sd_vans_walk;
+
+/* What a grain carries: life left of its eddy, and how many it has had. */
+typedef struct {
+  double life, count;
+} sd_vans_eddy;
+
+/* A new eddy for the grain of this ID at the height z (LAMMPS's): u' [3] out, 0 below the bed and
+ * outside the mesh. */
+void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *walk, double z,
+                      uint64_t id, sd_vans_eddy *eddy, double u[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

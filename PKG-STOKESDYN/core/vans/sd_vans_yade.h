@@ -1,0 +1,42 @@
+/* What Yade 2023.02a does in another way than this room, whole function by whole function, its
+ * defects included: SD_VANS_YADE repeats its answers to rounding. */
+#ifndef SD_VANS_YADE_H
+#define SD_VANS_YADE_H
+
+#include "sd_vans.h"
+
+/* As sd_vans_slices. Slice n has the limits of slice 2p-n, p that of the centre, and the sphere's
+ * lower end is cut only off the lower limit, its upper end only off the upper one. */
+int sd_vans_yade_slices(const sd_vans_mesh *mesh, double z, double a, int *first, double *V,
+                        int max);
+
+/* Adds a grain to the sums of its class: volume and drag where they are, velocities all in the
+ * slice of the centre (NULL: outside the mesh). V, drag [count] */
+void sd_vans_yade_add_slices(double *sums, int first, int count, const double *V,
+                             const double *v, const double *drag, double *centre);
+
+/* As sd_vans_steps: dt is added up until the sum, rounded after every step, reaches T. */
+int64_t sd_vans_yade_steps(double T, double dt);
+
+/* The exchange coefficient of slice n: over the size of the slip, at least least_slip, and none in
+ * the lowest slice. */
+double sd_vans_yade_coefficient(const sd_vans_fluid *fluid, int n, double drag, double slip);
+
+/* r_(m+1) = 2 ln(Re sqrt(f_m)) + 0.32, f_m = 1/r_m^2, from f_0 = 0.32^-2 until f changes by less
+ * than 1 %; after 100 steps 0. */
+void sd_vans_yade_friction(double Re, sd_vans_friction *near);
+
+/* Rows with side walls: U^2 in the implicit and in the explicit half, the latter without U's
+ * sign. */
+void sd_vans_yade_walls(int M, double Re_factor, const double *scale, const double *U,
+                        const double *cd, const double *cr, sd_vans_friction *friction,
+                        double *wall, double *wall_cd, double *wall_cr);
+
+/* Gravity along x drives by its size. */
+double sd_vans_yade_drive(const sd_vans_fluid *fluid);
+
+/* The slice that exceeds phi_max takes length away. */
+void sd_vans_yade_li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                              const double *phi, double *length);
+
+#endif

@@ -1,0 +1,183 @@
+/* Laws of drag: lone spheres and sand, hindrance, shares of members that overlap, added mass. */
+#include "check.h"
+
+#include "sd_constants.h"
+#include "sd_vans.h"
+
+static const double RHO = 1000, ETA = 1e-3, G = 9.81;
+
+/* C_d of Clift & Gauvin (1970), within 6 % of all measurements below Re 3e5. */
+static double clift_gauvin(double Re)
+{
+  return 24.0 / Re * (1.0 + 0.15 * pow(Re, 0.687)) + 0.42 / (1.0 + 42500.0 * pow(Re, -1.16));
+}
+
+/* Speed at which the drag of a law is the submerged weight, by bisection. */
+static double terminal(sd_vans_drag_law law, double a, double density, double hindrance)
+{
+  const double weight = 4.0 / 3.0 * SD_PI * a * a * a * (density - RHO) * G;
+  double low = 0.0, high = 100.0;
+  for (int k = 0; k < 200; k++) {
+    const double w = 0.5 * (low + high);
+    *(sd_vans_drag_factor(law, RHO, ETA, a, hindrance, w) * w < weight ? &low : &high) = w;
+  }
+  return low;
+}
+
+static double measured(double a, double density)
+{
+  double low = 0.0, high = 100.0;
+  for (int k = 0; k < 200; k++) {
+    const double w = 0.5 * (low + high), Re = 2 * a * w * RHO / ETA;
+    *(0.375 * RHO * clift_gauvin(Re) * w * w / a < (density - RHO) * G ? &low : &high) = w;
+  }
+  return low;
+}
+
+/* Quartz of 0.1 to 10 mm in water. */
+static void spheres_fall_as_measured(void **state)
+{
+  (void) state;
+  const sd_vans_drag_law brown = {SD_VANS_DRAG_BROWN_LAWLER, 0}, schiller = {SD_VANS_DRAG_SCHILLER_NAUMANN, 0};
+  double worst = 0.0;
+  for (double d = 1e-4; d < 1.001e-2; d *= 1.2589) {
+    const double w = measured(0.5 * d, 2650);
+    worst = fmax(worst, fabs(terminal(brown, 0.5 * d, 2650, 1.0) / w - 1.0));
+    if (2 * d * w < 2e-3) assert_true(fabs(terminal(schiller, 0.5 * d, 2650, 1.0) / w - 1.0) < 0.03);
+  }
+  printf("    brown_lawler: largest error %.4f of Clift & Gauvin\n", worst);
+  assert_true(worst < 0.03);
+}
+
+/* w = (s-1) g d^2/(18 nu + sqrt(0.75 (s-1) g d^3)) */
+static void sand_falls_by_ferguson_and_church(void **state)
+{
+  (void) state;
+  const sd_vans_drag_law law = {SD_VANS_DRAG_FERGUSON_CHURCH, 0};
+  for (double d = 5e-5; d < 1e-2; d *= 1.7) {
+    const double R = 1.65 * G, w = R * d * d / (18e-6 + sqrt(0.75 * R * d * d * d));
+    assert_true(fabs(terminal(law, 0.5 * d, 2650, 1.0) / w - 1.0) < 1e-12);
+  }
+}
+
+static void every_law_is_stokes_for_slow_spheres(void **state)
+{
+  (void) state;
+  const double stokes = 6 * SD_PI * ETA * 0.003;
+  for (int law = SD_VANS_DRAG_SCHILLER_NAUMANN; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
+    for (int many = SD_VANS_HINDRANCE_POWER; many <= SD_VANS_HINDRANCE_DI_FELICE; many++) {
+      const sd_vans_drag_law kind = {(sd_vans_drag_of_one) law, (sd_vans_drag_of_many) many};
+      assert_true(fabs(sd_vans_drag_factor(kind, RHO, ETA, 0.003, 1.0, 1e-16) / stokes - 1) < 1e-5);
+    }
+}
+
+/* Grains that fall past water at the slip w have the flux e w through the water: w_0 e^n, n of the
+ * lone grain; from Stokes' law to Newton's. */
+static void richardson_and_zaki_find_their_exponent(void **state)
+{
+  (void) state;
+  const sd_vans_drag_law law = {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
+  double first = 0.0, last = 0.0;
+  for (double d = 3e-5; d < 0.2; d *= 3) {
+    const double w0 = terminal(law, 0.5 * d, 2650, 1.0), n = sd_vans_richardson_zaki(w0 * d * 1e6);
+    for (double e = 0.4; e < 1.0; e += 0.1)
+      assert_true(fabs(e * terminal(law, 0.5 * d, 2650, e) / (w0 * pow(e, n)) - 1.0) < 1e-9);
+    if (first == 0.0) first = n;
+    last = n;
+  }
+  assert_true(first > 4.6 && first <= 4.65 && last == 2.39);
+}
+
+/* Di Felice's drag leads to speeds within 7 % of that at phi 0.3, and 27 % at 0.5. */
+static void di_felice_agrees_with_richardson_and_zaki(void **state)
+{
+  (void) state;
+  const sd_vans_drag_law rz = {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_RICHARDSON_ZAKI},
+                         di_felice = {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_DI_FELICE};
+  double worst[2] = {0, 0};
+  for (double d = 3e-5; d < 0.05; d *= 1.5)
+    for (int k = 0; k < 2; k++) {
+      const double e = k ? 0.5 : 0.7,
+                   ratio = terminal(di_felice, 0.5 * d, 2650, e) / terminal(rz, 0.5 * d, 2650, e);
+      worst[k] = fmax(worst[k], fabs(ratio - 1.0));
+    }
+  printf("    di_felice beside richardson_zaki: %.3f at phi 0.3, %.3f at 0.5\n", worst[0], worst[1]);
+  assert_true(worst[0] < 0.07 && worst[1] < 0.27);
+}
+
+static void slope_is_that_of_the_force(void **state)
+{
+  (void) state;
+  for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
+    for (double w = 1e-6; w < 10; w *= 7) {
+      const sd_vans_drag_law kind = {(sd_vans_drag_of_one) law, SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
+      const double h = 1e-5 * w, e = 0.6, a = 0.002,
+                   up = sd_vans_drag_factor(kind, RHO, ETA, a, e, w + h) * (w + h),
+                   down = sd_vans_drag_factor(kind, RHO, ETA, a, e, w - h) * (w - h);
+      assert_true(fabs(sd_vans_drag_slope(kind, RHO, ETA, a, e, w) / ((up - down) / (2 * h)) - 1) < 2e-3);
+    }
+}
+
+/* The share of a member is its part in drag and buoyancy; so two spheres at one place are one. */
+static void members_push_by_their_share(void **state)
+{
+  (void) state;
+  const double edge[3] = {0, 1, 2}, U[3] = {0, 0.3, 0.3}, hindrance[2] = {1, 1}, a[2] = {0.1, 0.1},
+               x[6] = {0, 0, 0.5, 0, 0, 0.5}, v[6] = {0}, weight[2] = {1.0, 0.0};
+  const sd_vans_mesh mesh = {2, 0, 1, edge};
+  const sd_vans_force_law law = {.rho = RHO, .eta = ETA, .g = {0, 0, -G}};
+  double one[3], both[6], drag[2];
+  sd_vans_forces(&mesh, &law, U, hindrance, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = a}, one, NULL);
+  sd_vans_forces(&mesh, &law, U, hindrance,
+                 &(sd_vans_grains){.n = 2, .x = x, .v = v, .a = a, .weight = weight}, both, drag);
+  for (int d = 0; d < 3; d++) assert_true(both[d] + both[3 + d] == one[d]);
+  assert_true(drag[0] + drag[1] == one[0] && one[2] > 0.0);
+}
+
+/* A core within a shell of a hundred small spheres that do not touch each other loses a hundred caps. */
+static void a_core_may_have_any_number_of_neighbours(void **state)
+{
+  (void) state;
+  enum { N = 101 };
+  double x[3 * N] = {0}, a[N] = {1.0};
+  for (int k = 1; k < N; k++) { /* a spiral of even steps in z */
+    const double z = 1.0 - (2.0 * k - 1.0) / (N - 1), turn = 2.399963229728653 * k, r = sqrt(1.0 - z * z);
+    x[3 * k] = r * cos(turn);
+    x[3 * k + 1] = r * sin(turn);
+    x[3 * k + 2] = z;
+    a[k] = 0.12;
+  }
+  const double h = 1.0 - 0.5 * 0.12 * 0.12, cap = SD_PI * (1 - h) * (1 - h) * (2 + h) / 3.0;
+  assert_true(fabs(sd_vans_union_share(N, x, a, 0) - (1.0 - 100 * cap * 0.75 / SD_PI)) < 1e-12);
+}
+
+/* Water that rises with the mixture's flux carries a grain: the slip counts, not the speed. */
+static void rising_water_lifts_a_grain(void **state)
+{
+  (void) state;
+  const double edge[3] = {0, 1, 2}, U[3] = {0}, hindrance[2] = {1, 1}, a = 0.1, x[3] = {0, 0, 1.5},
+               still[3] = {0}, falling[3] = {0, 0, -0.7}, up[2] = {0.2, 0.7};
+  const sd_vans_mesh mesh = {2, 0, 1, edge};
+  sd_vans_force_law law = {.rho = RHO, .eta = ETA, .upward = up, .flux = 0.3};
+  double rising[3], fallen[3];
+  sd_vans_forces(&mesh, &law, U, hindrance, &(sd_vans_grains){.n = 1, .x = x, .v = still, .a = &a}, rising, NULL);
+  law.upward = NULL;
+  sd_vans_forces(&mesh, &law, U, hindrance, &(sd_vans_grains){.n = 1, .x = x, .v = falling, .a = &a}, fallen, NULL);
+  assert_true(rising[2] > 0.0 && fabs(rising[2] / fallen[2] - 1.0) < 1e-15);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(spheres_fall_as_measured),
+      cmocka_unit_test(sand_falls_by_ferguson_and_church),
+      cmocka_unit_test(every_law_is_stokes_for_slow_spheres),
+      cmocka_unit_test(richardson_and_zaki_find_their_exponent),
+      cmocka_unit_test(di_felice_agrees_with_richardson_and_zaki),
+      cmocka_unit_test(slope_is_that_of_the_force),
+      cmocka_unit_test(members_push_by_their_share),
+      cmocka_unit_test(a_core_may_have_any_number_of_neighbours),
+      cmocka_unit_test(rising_water_lifts_a_grain),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
