@@ -4,16 +4,20 @@
  * symbols, or load without complaint and then read wrong members.
  * So nothing here refers to LAMMPS or MPI. What must be known of LAMMPS is asked of its C
  * functions, which depend on no layout, looked up by name. */
-#define _GNU_SOURCE    // dladdr, realpath
+#define _GNU_SOURCE    // dladdr, realpath, access
 #include <dlfcn.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define STYLES "stokesdynstyles.so"
 #define ENTRY "lammpsplugin_init"
 #define WHY 2000
+/* ways out */
+#define BUILD "Build the plugin for this LAMMPS: cmake -S cmake -B build -D LAMMPS_SOURCE_DIR=DIR"
+#define TOGETHER "Copy " STYLES " into the folder of stokesdynplugin.so: they belong together"
 
 typedef void entry(void *lmp, void *handle, void *regfunc);
 
@@ -92,9 +96,9 @@ static int fits(const host *lammps, void *lmp, char *why)
   return 1;
 }
 
-/* The entry of the styles; NULL and the reason if they cannot be opened. They are never closed: a
- * style in use may outlive the 'plugin unload' that closes this file. */
-static entry *open_styles(char *why)
+/* The entry of the styles; NULL, the reason and the way out if they cannot be opened. They are never
+ * closed: a style in use may outlive the 'plugin unload' that closes this file. */
+static entry *open_styles(char *why, const char **cure)
 {
   static const char here;    // not the entry: of all plugins in the process, the first one's would be found
   char path[PATH_MAX + sizeof(STYLES)];
@@ -106,23 +110,25 @@ static entry *open_styles(char *why)
   void *symbol = styles ? dlsym(styles, ENTRY) : NULL;
   entry *there;
   memcpy(&there, &symbol, sizeof(symbol));
-  if (!there) snprintf(why, WHY, "its styles (" STYLES ", beside it) cannot be opened: %s", dlerror());
+  if (!there) {
+    snprintf(why, WHY, "its styles (" STYLES ", beside it) cannot be opened: %s", dlerror());
+    if (!styles && access(path, F_OK) != 0) *cure = TOGETHER;
+  }
   return there;
 }
 
 void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
 {
   char why[WHY];
+  const char *cure = BUILD;
   host lammps = {0};
   entry *styles = NULL;
-  if (find_host(&lammps, why) && fits(&lammps, lmp, why)) styles = open_styles(why);
+  if (find_host(&lammps, why) && fits(&lammps, lmp, why)) styles = open_styles(why, &cure);
   if (styles) {
     styles(lmp, handle, regfunc);
     return;
   }
   if (lammps.setting && lammps.setting(lmp, "universe_rank") != 0) return;
-  printf("ERROR: stokesdynplugin.so is not loaded: %s. Build the plugin for this LAMMPS: cmake -S "
-         "cmake -B build -D LAMMPS_SOURCE_DIR=DIR\n",
-         why);
+  printf("ERROR: stokesdynplugin.so is not loaded: %s. %s\n", why, cure);
   fflush(stdout);
 }

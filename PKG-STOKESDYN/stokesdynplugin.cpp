@@ -19,10 +19,12 @@
 #include "fix_stokes_dynamics_state.h"
 #include "fix_wall_adami_sph.h"
 #include "fix_wall_sph.h"
+#include "guard.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "pair_stokes_dynamics.h"
 
 #include <cstdio>
+#include <string>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -30,12 +32,14 @@ using namespace StokesDyn;
 
 template <class Style> static void *make_pair(LAMMPS *lmp)
 {
-  return static_cast<Pair *>(new Style(lmp));
+  return guarded(lmp, "Pair style", Style::STYLE,
+                 [=] { return static_cast<Pair *>(new GuardedPair<Style>(lmp)); });
 }
 
 template <class Style> static void *make_fix(LAMMPS *lmp, int narg, char **arg)
 {
-  return static_cast<Fix *>(new Style(lmp, narg, arg));
+  return guarded(lmp, "Fix", Style::STYLE,
+                 [=] { return static_cast<Fix *>(new GuardedFix<Style>(lmp, narg, arg)); });
 }
 
 static lammpsplugin_t entry(const char *kind, const char *name, const char *info)
@@ -65,24 +69,24 @@ template <class Style> static lammpsplugin_t fix(const char *info)
 
 static std::vector<lammpsplugin_t> styles()
 {
-  return {pair<PairStokesDynamics>("Stokes drag with hydrodynamic interactions: pair_style stokes_dynamics"),
-          fix<FixStokesDynamics>("Stokes drag with hydrodynamic interactions: fix stokes_dynamics"),
-          fix<FixStokesDynamicsOverdamped>("Stokes dynamics without inertia: fix stokes_dynamics/overdamped"),
-          fix<FixStokesDynamicsLast>("Stokes dynamics without inertia: comes last"),
-          fix<FixStokesDynamicsState>("Stokes drag with hydrodynamic interactions: memory of the pair style"),
-          fix<FixHydroVans>("One-dimensional turbulent stream over a granular bed: fix hydro/vans")};
+  return {pair<PairStokesDynamics>("Stokes drag with hydrodynamic interactions"),
+          fix<FixStokesDynamics>("applies or reports the force of pair_style stokes_dynamics"),
+          fix<FixStokesDynamicsOverdamped>("Stokes dynamics without inertia"),
+          fix<FixStokesDynamicsLast>("internal: end of a step without inertia"),
+          fix<FixStokesDynamicsState>("internal: memory of pair_style stokes_dynamics"),
+          fix<FixHydroVans>("one-dimensional turbulent stream over a granular bed")};
 }
 
 static std::vector<lammpsplugin_t> sph_styles()
 {
-  return {pair<PairSph>("weakly compressible SPH: pair_style sph/artVisc/tensCorr"),
+  return {pair<PairSph>("weakly compressible SPH"),
           fix<FixSphPressure>("SPH: equation of state"),
           fix<FixSphDensityContinuity>("SPH: density from continuity"),
           fix<FixSphDensitySummation>("SPH: density from summation"),
           fix<FixSphDensityCorr>("SPH: Shepard filter of the density"),
           fix<FixNveSph>("SPH: time integration"),
           fix<FixPropertyGlobal>("SPH: speed of sound and smoothing length by type"),
-          fix<FixSphShift>("SPH: memory of the pair style"),
+          fix<FixSphShift>("internal: memory of the SPH pair style"),
           fix<FixNveSphStationary>("SPH: density of particles at rest"),
           fix<FixWallAdamiSph>("SPH: walls of particles"),
           fix<FixWallSph>("SPH: repulsive planes and cylinder"),
@@ -90,24 +94,70 @@ static std::vector<lammpsplugin_t> sph_styles()
           fix<FixCheckTimestepSph>("SPH: checks the time step")};
 }
 
+/* LAMMPS prints a line for each style that it takes in. One line for all of them says more: while
+ * this lives, only our own lines come out. */
+class OneLine {
+  LAMMPS *lammps;
+  FILE *screen, *logfile;
+
+ public:
+  explicit OneLine(LAMMPS *host) : lammps(host), screen(host->screen), logfile(host->logfile)
+  {
+    lammps->screen = lammps->logfile = nullptr;
+  }
+  ~OneLine()
+  {
+    lammps->screen = screen;
+    lammps->logfile = logfile;
+  }
+  void print(const std::string &line) const
+  {
+    if (lammps->comm->me == 0)
+      for (FILE *out : {screen, logfile})
+        if (out) fputs((line + "\n").c_str(), out);
+  }
+};
+
+/* Is this style on the list of plugins, which all LAMMPS of a process share? */
+static bool listed(const lammpsplugin_t &wanted)
+{
+  char kind[64] = "", name[64] = "";
+  for (int k = 0; k < lammps_plugin_count(); k++)
+    if (lammps_plugin_name(k, kind, name, sizeof(name) - 1) &&
+        kind == std::string(wanted.style) && name == std::string(wanted.name))
+      return true;
+  return false;
+}
+
 extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle,
                                                                          void *regfunc)
 {
-  LAMMPS *host = static_cast<LAMMPS *>(lmp);
-  if (host->comm->me == 0)
-    for (FILE *out : {host->screen, host->logfile})
-      if (out) fprintf(out, "PKG-STOKESDYN " SD_VERSION ", built for LAMMPS %s\n", LAMMPS_VERSION);
+  const OneLine out(static_cast<LAMMPS *>(lmp));
+  const bool sph = lammps_has_style(lmp, "atom", "sph");
   std::vector<lammpsplugin_t> all = styles();
-  if (lammps_has_style(lmp, "atom", "sph")) {
-    const auto sph = sph_styles();
-    all.insert(all.end(), sph.begin(), sph.end());
-  } else if (lammps_extract_setting(lmp, "universe_rank") == 0) {
-    printf("stokesdynplugin.so: this LAMMPS has no atom_style sph, so the SPH styles are not "
-           "loaded; they need a LAMMPS with the SPH package\n");
-    fflush(stdout);
+  if (sph) {
+    const auto more = sph_styles();
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  const std::string version = "PKG-STOKESDYN " SD_VERSION;
+  if (listed(all.front())) {
+    if (lammps_has_style(lmp, all.front().style, all.front().name))
+      out.print(version + " is loaded already");
+    else
+      out.print("WARNING: another LAMMPS of this process has the plugin, so this one does not get its "
+                "styles");
+    return;
   }
   for (lammpsplugin_t &plugin : all) {
+    if (lammps_has_style(lmp, plugin.style, plugin.name))
+      out.print(std::string("WARNING: the plugin takes the place of ") + plugin.style + " style " +
+                plugin.name + " of LAMMPS");
     plugin.handle = handle;
     ((lammpsplugin_regfunc) regfunc)(&plugin, lmp);
   }
+  out.print(version + ", built for LAMMPS " LAMMPS_VERSION ": stokes_dynamics, hydro/vans" +
+            (sph ? ", sph" : ""));
+  if (!sph)
+    out.print("stokesdynplugin.so: this LAMMPS has no atom_style sph, so the SPH styles are not "
+              "loaded; they need a LAMMPS with the SPH package");
 }

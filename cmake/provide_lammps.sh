@@ -8,10 +8,12 @@
 #   provide_lammps.sh --check    prints that folder if it is complete, else exits 1; touches nothing
 #
 # No system file is changed: the apt source list is a private copy, derived from the machine's own. Everything lands in
-# ${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn/<key>, where the key names version, system and build options. An interrupted
-# run is taken up where it stopped; two runs at once wait for each other.
+# $STOKESDYN_CACHE/<key>, where the key names version, system and build options; unless told that folder is
+# ${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn. It may be one that others can read, /opt/stokesdyn say: then they use the same LAMMPS.
+# An interrupted run is taken up where it stopped; two runs at once wait for each other.
 set -euo pipefail
 export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither
+. "$(cd "$(dirname "$0")" && pwd)/progress.sh"
 
 packages="PLUGIN RIGID MOLECULE GRANULAR COLLOID SPH"
 options=(
@@ -24,7 +26,7 @@ for p in $packages; do options+=(-D "PKG_$p=ON"); done
 
 fail() { printf 'provide_lammps: %s\n' "$*" >&2; exit 1; }
 
-cache=${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn
+cache=${STOKESDYN_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn}
 . /etc/os-release
 system="$ID${VERSION_ID:-}-$(uname -m)"
 hash=$(printf '%s\n' "${options[@]}" | sha256sum | cut -c1-8)
@@ -41,7 +43,8 @@ found=$(newest_complete)
 if [ -n "$found" ]; then printf '%s\n' "$found"; exit 0; fi
 [ "${1:-}" = --check ] && exit 1
 
-mkdir -p "$cache"
+mkdir -p "$cache" && [ -w "$cache" ] || fail "there is no LAMMPS of this version in $cache, and you may not write there. Ask its owner
+  to run cmake/provide_lammps.sh, or set STOKESDYN_CACHE to a folder of your own"
 exec 9> "$cache/lock"
 flock -n 9 || { echo "provide_lammps: another run is building LAMMPS, waiting for it" >&2; flock 9; }
 found=$(newest_complete)                     # the other run may have finished it
@@ -71,7 +74,8 @@ apt_options=(-o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$apt/
 [ "$(id -u)" = 0 ] || apt_options+=(-o "Debug::NoLocking=1")
 
 say "asking the package registry for the source of LAMMPS"
-apt-get "${apt_options[@]}" -qq update > "$apt/update.log" 2>&1 || true        # one dead third-party list must not stop us
+unknown() { :; }
+with_progress "LAMMPS, source" "$apt/update.log" unknown apt-get "${apt_options[@]}" -qq update || true   # one dead list must not stop us
 version=$(apt-cache "${apt_options[@]}" showsrc --only-source lammps 2> /dev/null | sed -n 's/^Version: //p' | sort -V | tail -n 1)
 [ -n "$version" ] || { cat "$apt/update.log" >&2
   fail "the package registry of this machine could not be reached, or it has no source package 'lammps' (see above). Check the network
@@ -84,8 +88,8 @@ if [ ! -d "$root/src" ]; then
   rm -rf "$root/download"; mkdir "$root/download"
   # A mirror may lack the description (.dsc) of a package whose tarball it has. apt has checked the tarball then, so it is
   # taken as it is, without the distribution's patches (which concern its own packaging).
-  (cd "$root/download" &&
-   apt-get "${apt_options[@]}" -q source --only-source --download-only "lammps=$version" > get.log 2>&1) || true
+  (cd "$root/download" && with_progress "LAMMPS, source" get.log unknown \
+     apt-get "${apt_options[@]}" -q source --only-source --download-only "lammps=$version") || true
   mkdir "$root/download/tree"
   if compgen -G "$root/download/*.dsc" > /dev/null; then
     rmdir "$root/download/tree"
@@ -108,11 +112,8 @@ cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" -D MPI_CXX_
   -D CMAKE_INSTALL_PREFIX="$root" -D CMAKE_INSTALL_LIBDIR=lib -D CMAKE_INSTALL_RPATH="$root/lib" > "$root/configure.log" 2>&1 ||
   { tail -n 30 "$root/configure.log" >&2; fail "LAMMPS could not be configured; whole log: $root/configure.log"; }
 jobs=$(env -u OMP_NUM_THREADS nproc)
-say "compiling on $jobs cores (about 5 minutes on two)"
-# One line every 5 %: enough to see it move, little enough for a log.
-progress='/^\[[0-9]+\/[0-9]+\]/ { p = int(20 * $2 / $3); if (p > last) { last = p;
-  printf "[LAMMPS] compiled %d of %d (%d %%)\n", $2, $3, 5 * p; fflush() } }'
-if ! ninja -C "$root/build" -j "$jobs" install 2>&1 | tee "$root/build.log" | awk -F '[][/]' "$progress" >&2; then
+say "compiling on $jobs cores: about 5 minutes on two that have nothing else to do, half a GB while it goes on, 150 MB for good"
+if ! with_progress LAMMPS "$root/build.log" ninja_percent ninja -C "$root/build" -j "$jobs" install; then
   grep -nE 'error|Error|FAILED' "$root/build.log" | head -n 20 >&2
   fail "LAMMPS could not be compiled; whole log: $root/build.log"
 fi

@@ -20,13 +20,14 @@ endif()
 # Every program that ctest runs here: what the run with sanitizers builds.
 add_custom_target(core_tests)
 
-# core_test(NAME MODEL FILE): a test sees the core of its own model, and what the rooms above it share
+# core_test(NAME MODEL FILE [LIBRARY...]): a test sees the core of its own model, and what the rooms above it share.
+# Libraries come before the model's.
 function(core_test name model file)
-  add_executable(${name} ${file} ${ARGN})
+  add_executable(${name} ${file})
   target_include_directories(${name} PRIVATE ${cmocka_include} ${tests} ${tests}/${model})
   target_compile_definitions(${name} PRIVATE TEST_DATA="${CMAKE_CURRENT_SOURCE_DIR}/../unittest/data/")
   target_compile_options(${name} PRIVATE -Wall -Wextra -g)
-  target_link_libraries(${name} PRIVATE ${tested}_${model} ${cmocka_library})
+  target_link_libraries(${name} PRIVATE ${ARGN} ${tested}_${model} ${cmocka_library})
   add_test(NAME ${name} COMMAND ${name})
   add_dependencies(core_tests ${name})
 endfunction()
@@ -39,18 +40,27 @@ foreach(model base ${models})
   endforeach()
 endforeach()
 
-# The product, and the look-up in a grid, as processors other than x86-64 have them, and as compilers without vector types.
+# Kernels, and the look-up in a grid, as processors other than x86-64 have them, and as compilers without vector types: these
+# rooms once more, before the library that has them too.
 if(NOT STOKESDYN_SANITIZE)
+  set(kernel_rooms base stokes/tensor stokes/product stokes/ewald stokes/lubrication stokes/precondition stokes/flow)
+  list(TRANSFORM kernel_rooms PREPEND ${source}/core/)
   foreach(variant portable no)
     string(TOUPPER SD_${variant}_KERNELS definition)
-    file(GLOB kernel_sources CONFIGURE_DEPENDS ${source}/core/stokes/product/*.c)
-    add_library(${variant}_kernels OBJECT ${kernel_sources} ${source}/core/stokes/flow/sd_flow_grid.c)
+    set(kernel_sets plain)
+    if(variant STREQUAL portable)
+      list(APPEND kernel_sets baseline)
+    endif()
+    add_rooms(${variant}_kernels ${kernel_rooms})
     target_compile_definitions(${variant}_kernels PRIVATE ${definition})
-    target_compile_options(${variant}_kernels PRIVATE -Wall -Wextra -Wshadow)
-    target_link_libraries(${variant}_kernels PRIVATE stokesdyn_stokes)
-    foreach(file product/test_simd product/test_product flow/test_flow_grid)
+    target_include_directories(${variant}_kernels PRIVATE $<TARGET_PROPERTY:stokesdyn_stokes,INCLUDE_DIRECTORIES>)
+    target_link_libraries(${variant}_kernels PUBLIC stokesdyn_stokes)
+    set_target_properties(${variant}_kernels PROPERTIES EXCLUDE_FROM_ALL ON)
+    foreach(file product/test_simd product/test_product ewald/test_ewald_kernels lubrication/test_block_cholesky
+            flow/test_flow_grid)
       get_filename_component(name ${file} NAME)
-      core_test(${name}_${variant}_kernels stokes ${tests}/stokes/${file}.c $<TARGET_OBJECTS:${variant}_kernels>)
+      core_test(${name}_${variant}_kernels stokes ${tests}/stokes/${file}.c ${variant}_kernels)
+      target_compile_definitions(${name}_${variant}_kernels PRIVATE ${definition})
     endforeach()
   endforeach()
 endif()

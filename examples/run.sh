@@ -3,7 +3,7 @@
 #   run.sh              examples/sedimentation; tables and pictures go to build/examples/sedimentation
 #   run.sh --update     also refreshes those that are kept in examples/sedimentation
 #   run.sh all          every example, one after the other, and a table of their figures at the end; exits with 1 when one is missed
-#   run.sh NAME ...     these examples, with the same table
+#   run.sh NAME ...     these examples, with the same table; first_look and clump_resistance need no LAMMPS
 set -euo pipefail
 export PATH=${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin      # sbin: dpkg looks for its tools there
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -21,15 +21,34 @@ case "${1:-}" in
     names=("$@") ;;
 esac
 
-"$top/cmake/setup.sh"
+# Some need the core only, which is there in a minute.
+what=core
+[ ${#names[@]} != 0 ] || what=all
+for name in "${names[@]}"; do
+  case $name in first_look | clump_resistance) ;; *) what=all ;; esac
+done
+"$top/cmake/setup.sh" $what
 . "$top/build/env.sh"
+
+# The pictures that an example has made: those that it keeps beside its README have the same names.
+look_at() {
+  local picture found=""
+  for picture in "$here/$1"/*.png "$here/$1"/*.gif; do
+    picture=$top/build/examples/$1/$(basename "$picture")
+    if [ -f "$picture" ]; then found="$found ${picture#"$PWD"/}"; fi
+  done
+  if [ -n "$found" ]; then echo "Look at:$found"; fi
+}
 
 # Debian's python has the numpy and matplotlib that the set-up installed; another one on the PATH need not.
 python=/usr/bin/python3
 "$python" -c "import numpy, matplotlib" 2> /dev/null || python=python3
 if [ ${#names[@]} = 0 ]; then
   echo "[sedimentation] rigid clumps fall in a viscous fluid"
-  exec "$python" "$here/sedimentation/run.py" "$@"
+  status=0
+  "$python" "$here/sedimentation/run.py" "$@" || status=$?
+  look_at sedimentation
+  exit $status
 fi
 
 # Each run.py ends with lines "ok" and "MISSED" (checks.py) and exits with 1 when a figure is missed, with 1 as well when it fails.
@@ -46,4 +65,5 @@ for name in "${names[@]}"; do
   table+=$(printf '%-18s %5d %7d %8d  %s' "$name" "$ok" "$missed" $((SECONDS - began)) "$remark")$'\n'
 done
 printf '\n%-18s %5s %7s %8s\n%s' example ok missed seconds "$table"
+for name in "${names[@]}"; do look_at "$name"; done
 exit $bad

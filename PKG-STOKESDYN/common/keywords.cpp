@@ -14,10 +14,38 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+/* How many bytes of UTF-8 begin here: 1 to 4, 0: none that can be printed */
+static size_t printable_bytes(const std::string &text, size_t at)
+{
+  const unsigned char c = text[at];
+  if (c < 0x80) return c >= ' ' && c != 0x7f;
+  const size_t n = c >= 0xc2 && c < 0xe0 ? 2 : c >= 0xe0 && c < 0xf0 ? 3 : c >= 0xf0 && c < 0xf5 ? 4 : 0;
+  if (n == 0 || at + n > text.size()) return 0;
+  for (size_t k = 1; k < n; k++)
+    if (((unsigned char) text[at + k] & 0xc0) != 0x80) return 0;
+  const unsigned char second = text[at + 1];    // no overlong forms, no surrogates, no controls
+  const bool proper = !(c == 0xe0 && second < 0xa0) && !(c == 0xed && second > 0x9f) &&
+      !(c == 0xf0 && second < 0x90) && !(c == 0xf4 && second > 0x8f) && !(c == 0xc2 && second < 0xa0);
+  return proper ? n : 0;
+}
+
+std::string printable(const std::string &text)
+{
+  std::string out;
+  for (size_t at = 0; at < text.size();) {
+    const size_t n = printable_bytes(text, at);
+    char code[5];
+    snprintf(code, sizeof(code), "\\x%02x", (unsigned char) text[at]);
+    out += n > 0 ? text.substr(at, n) : code;
+    at += n > 0 ? n : 1;
+  }
+  return out;
+}
+
 void fail(LAMMPS *lmp, const std::string &message)
 {
   // The std::string overload: no fmt types among our symbols, and no fmt in the message.
-  lmp->error->all(FLERR, message);
+  lmp->error->all(FLERR, printable(message));
   abort();    // error->all does not return
 }
 
@@ -25,7 +53,7 @@ void fail_one(LAMMPS *lmp, const std::string &message)
 {
   // LAMMPS ends by MPI_Abort, which drops what the buffers hold: the message, where the output is a file or a pipe.
   try {
-    lmp->error->one(FLERR, message);
+    lmp->error->one(FLERR, printable(message));
   } catch (...) {
     if (lmp->screen) fflush(lmp->screen);
     if (lmp->logfile) fflush(lmp->logfile);
@@ -46,7 +74,7 @@ void Voice::fail_one(const std::string &what) const
 
 void Voice::warn(const std::string &what) const
 {
-  if (lmp->comm->me == 0) lmp->error->warning(FLERR, command + ": " + what);
+  if (lmp->comm->me == 0) lmp->error->warning(FLERR, printable(command + ": " + what));
 }
 
 void Voice::tell(const std::string &what) const

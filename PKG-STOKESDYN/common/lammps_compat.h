@@ -6,6 +6,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
+#include "fix_deform.h"
 #include "modify.h"
 #include "neigh_request.h"
 #include "neighbor.h"
@@ -78,6 +79,14 @@ namespace Compat {
     const int i = modify->find_fix(id);
     return i < 0 ? nullptr : modify->fix[i];
   }
+
+  /* Its settings of x y z yz xz xy, by index 0 ... 5: fields as in fix_deform.h, styles as below. It
+   * tells its derived classes only. */
+  enum DeformStyle { NONE, FINAL, DELTA, SCALE, VEL, ERATE, TRATE, VOLUME, WIGGLE, VARIABLE };
+  class DeformSettings : private LAMMPS_NS::FixDeform {
+   public:
+    static auto of(LAMMPS_NS::FixDeform *deform) { return deform->*&DeformSettings::set; }
+  };
 
   inline void minimum_image(LAMMPS_NS::Domain *domain, double *d)
   {

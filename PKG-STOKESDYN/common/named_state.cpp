@@ -1,5 +1,7 @@
 #include "named_state.h"
 
+#include "keywords.h"
+
 #include "comm.h"
 #include "error.h"
 
@@ -78,7 +80,7 @@ bool NamedState::read(LAMMPS *lmp, const char *buffer)
       lmp->error->warning(FLERR,
                           "Fix " + style +
                               ": the restart file was written by another version of the plugin, " +
-                              version_of(buffer) + ", this is " SD_VERSION
+                              printable(version_of(buffer)) + ", this is " SD_VERSION
                               ": what it holds for this fix is not taken, the fix begins afresh");
     return false;
   }

@@ -16,6 +16,9 @@ void RowsFix::keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, boo
     size_peratom_cols = shown->columns();
   }
   create_attribute = 1;
+  // beyond a thousand numbers of all fixes LAMMPS's buffers hold what is announced
+  maxexchange = 0;
+  for (const RowsOfAtoms *rows : kept) maxexchange += rows->most_packed();
   restart_peratom = restarts;
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # The manual for the browser: README, pages, howtos, examples and the headers of the core, with search and formulas.
 #   build.sh            leaves build/manual/html/index.html; nothing in it needs the network
-#   build.sh check      stops at a warning, and opens every page in a headless chromium: links, pictures, formulas, and whether the search finds each
-#                       keyword and the first words of each message
+#   build.sh check      stops at a warning, and opens every page in a headless chromium: links, pictures, formulas, and whether the
+#                       search finds each keyword and the first words of each message, on the pages for users first
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 top=$(cd "$here/../.." && pwd)
 out=$top/build/manual
 
-packages="python3-sphinx python3-myst-parser libjs-mathjax" strict=""
+packages="python3-sphinx python3-myst-parser furo python3-sphinx-copybutton libjs-katex" strict=""
 if [ "${1:-}" = check ]; then packages="$packages chromium" strict="-W --keep-going"; fi
 missing=""
 for p in $packages; do
@@ -25,17 +25,12 @@ mkdir -p "$out"
 /usr/bin/python3 "$here/manual.py" source "$out/source"
 /usr/bin/python3 -m sphinx -q $strict -b html "$out/source" "$out/html"
 
-# MathJax, as far as these formulas need it: 3 MB of 54
-from=/usr/share/javascript/mathjax to=$out/html/_static/mathjax
+# KaTeX, with its fonts
+to=$out/html/_static/katex
 rm -rf "$to"
-mkdir -p "$to/config" "$to/jax/input" "$to/jax/output" "$to/fonts/HTML-CSS/TeX"
-cp -L "$from/MathJax.js" "$to"
-cp -L "$from/config/TeX-AMS_CHTML.js" "$to/config"
-cp -rL "$from/jax/input/TeX" "$to/jax/input"
-cp -rL "$from/jax/output/CommonHTML" "$to/jax/output"
-cp -rL "$from/jax/element" "$to/jax"
-cp -rL "$from/extensions" "$to"
-cp -rL "$from/fonts/HTML-CSS/TeX/woff" "$to/fonts/HTML-CSS/TeX"
+mkdir -p "$to/fonts"
+cp -L /usr/share/javascript/katex/katex.min.{js,css} "$to"
+cp -L /usr/share/javascript/katex/fonts/*.woff2 "$to/fonts"
 
 echo "[manual] $out/html/index.html"
 if [ "${1:-}" = check ]; then /usr/bin/python3 "$here/manual.py" check "$out/html"; fi

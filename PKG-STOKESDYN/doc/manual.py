@@ -17,48 +17,90 @@ PACKAGE = TOP / "PKG-STOKESDYN"
 VERSION = (PACKAGE / "VERSION").read_text().strip()
 
 CONF = f"""
+import pathlib
 import sphinx.search.en
 # The stem of "its" is too short for the index, and a search for it would find nothing.
 sphinx.search.en.english_stopwords.add("its")
 project = "PKG-STOKESDYN"
 version = release = "{VERSION}"
-extensions = ["myst_parser", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_copybutton"]
 root_doc = "index"
 exclude_patterns = []
 myst_enable_extensions = ["dollarmath"]
 myst_update_mathjax = False
 myst_heading_anchors = 4
-mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
-html_theme = "alabaster"
-html_theme_options = {{"page_width": "1260px", "sidebar_width": "260px", "fixed_sidebar": False, "description": "version {VERSION}",
-                      "show_powered_by": False}}
-html_sidebars = {{"**": ["about.html", "searchbox.html", "navigation.html"]}}
-html_static_path = ["manual.css"]
-html_css_files = ["manual.css"]
+# Formulas by KaTeX, which draws them before a page is seen; Sphinx's own extension only marks them and asks for the script.
+mathjax_path = "katex/katex.min.js"
+mathjax_options = {{"defer": "defer"}}
+html_theme = "furo"
+html_title = "PKG-STOKESDYN {VERSION}"
+html_theme_options = {{"navigation_with_keys": True}}
+html_static_path = ["manual.css", "page.js"]
+html_css_files = ["katex/katex.min.css", "manual.css"]
+html_js_files = [("page.js", {{"defer": "defer"}})]
+html_search_scorer = str(pathlib.Path(__file__).with_name("scorer.js"))
 html_show_sourcelink = False
 html_copy_source = False
 html_show_copyright = False
+html_show_sphinx = False
+copybutton_prompt_text = "$ "
 suppress_warnings = ["myst.header"]
 highlight_language = "none"
 """
 
+# Tables, formulas and code that are too wide for a phone move in a frame of their own, never the page.
 CSS = """
-div.body { max-width: 1000px; }
-div.body table { font-size: 0.92em; }
-div.body td, div.body th { padding: 3px 8px; vertical-align: top; }
-div.body td code { white-space: normal; }
-div.body img { max-width: 100%; }
-div.highlight pre { font-size: 0.82em; }
-blockquote { background: #eef5ee; border-left: 4px solid #5a9a5a; padding: 4px 14px; margin: 12px 0; }
-a.headerlink { visibility: hidden; }
+.content { width: 54em; max-width: 100%; }
+article table { font-size: 0.9em; }
+article td, article th { vertical-align: top; }
+article td code { white-space: normal; overflow-wrap: break-word; }
+article img { max-width: 100%; height: auto; }
+article p, article li { overflow-wrap: break-word; }
+article div.highlight pre { font-size: 0.8em; }
+article blockquote { border-left: 4px solid #5a9a5a; font-style: normal; padding: 4px 14px; overflow-x: auto; }
+article h1, article h2, article h3 { overflow-wrap: anywhere; }
+@media (max-width: 46em) {
+  article h1 { font-size: 1.7em; }
+  article table { font-size: 0.75em; }
+  article td, article th { padding: 2px 4px; }
+  article td code, article td a { overflow-wrap: anywhere; }
+}
+.katex-display { overflow-x: auto; overflow-y: hidden; padding: 2px 0; }
+.katex { font-size: 1.1em; }
+body[data-theme="dark"] article img { background: white; }
+@media (prefers-color-scheme: dark) { body:not([data-theme="light"]) article img { background: white; } }
+"""
+
+# Formulas, and the switch of the colours: Furo's own script is a module in Debian's build, which no browser loads from a file.
+SCRIPT = r"""
+for (const formula of document.querySelectorAll(".math")) {
+  const text = formula.textContent.trim();
+  katex.render(text.slice(2, -2), formula, {displayMode: text.startsWith("\\["), throwOnError: false});
+}
+document.documentElement.classList.remove("no-js");
+for (const button of document.querySelectorAll(".theme-toggle"))
+  button.addEventListener("click", () => {
+    const next = {auto: "dark", dark: "light", light: "auto"}[document.body.dataset.theme];
+    document.body.dataset.theme = next;
+    localStorage.setItem("theme", next);
+  });
+"""
+
+# What a user looks for is on the pages of the styles and in the howtos; headers of the core come last.
+SCORER = """
+const weights = [[/^PKG-STOKESDYN\\/doc\\//, 80], [/\\/doc\\/howto_/, 20], [/\\/doc\\/(pair|fix|compute)_/, 40], [/^README$/, 60], [/^examples\\//, 30], [/^PKG-STOKESDYN\\/core\\//, -100]];
+var Scorer = {
+  score: ([page, title, anchor, description, score, file]) => score + weights.filter(([name]) => name.test(page)).reduce((sum, [, w]) => sum + w, 0),
+  objNameMatch: 11, objPartialMatch: 6, objPrio: {0: 15, 1: 5, 2: -5}, objPrioDefault: 0, title: 15, partialTitle: 7, term: 5, partialTerm: 2,
+};
 """
 
 
 # --- what Sphinx reads -----------------------------------------------------------------------------------------------------
 
 def contents(chapters):
-    """A root document with a table of contents for each chapter: (title, documents)."""
-    lines = ["Manual", "======", "", f"PKG-STOKESDYN, version {VERSION}. Start with :doc:`README`.", ""]
+    """The root document: the README, whose pages follow in the menu, a list for each chapter (title, documents)."""
+    lines = ["PKG-STOKESDYN", "=============", "", f"The manual of version {VERSION}. It begins with :doc:`the README <README>`.", ""]
     for title, documents in chapters:
         lines += [".. toctree::", "   :maxdepth: 1", f"   :caption: {title}", ""] + [f"   {name}" for name in documents] + [""]
     return "\n".join(lines)
@@ -75,24 +117,46 @@ def header_page(header):
     return f"{name}\n{'=' * len(name)}\n\n.. literalinclude:: /PKG-STOKESDYN/core/{name}\n   :language: c\n"
 
 
+def dark_when_asked():
+    """Colours of Furo for a browser that asks for dark pages: Debian's build of the theme has lost them, those of its switch it has."""
+    import furo
+    styles = (pathlib.Path(furo.__file__).parent / "theme/furo/static/styles/furo.css").read_text()
+    colours = re.search(r'body\[data-theme="?dark"?\] *\{([^}]*)\}', styles).group(1)
+    return "@media (prefers-color-scheme: dark) { body[data-theme=\"auto\"] {" + colours + "} }\n"
+
+
+def links(text):
+    """Files of this project that a page links to, as it names them: in the line, or below as [name]: file."""
+    return re.findall(r"\]\(([^)#: ]+)(?:#[^)]*)?\)", text) + re.findall(r"^\[[^]]+\]: ([^#:\s]+)$", text, re.M)
+
+
+def menu_of_examples():
+    """Title and document of each example, in the order of the list of examples; the folder stands behind the title."""
+    for name in re.findall(r"\]\((\w+)/README\.md\)", (TOP / "examples" / "README.md").read_text()):
+        title = (TOP / "examples" / name / "README.md").read_text().splitlines()[0].lstrip("# ")
+        yield f"{title} ({name}) <examples/{name}/README>"
+
+
 def source(folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    pages = [TOP / "README.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md", TOP / "examples" / "README.md",
+    pages = [TOP / "README.md", TOP / ".github" / "CONTRIBUTING.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md", TOP / "examples" / "README.md",
              *sorted((PACKAGE / "doc").glob("*.md")), *sorted((TOP / "examples").glob("*/README.md"))]
     headers = [path for path in sorted((PACKAGE / "core").rglob("*.h")) if not re.search("_(internal|kernel|loops|visit)\\.h", path.name)]
-    for path in pages + headers:
+    waiting, laid = pages + headers, set(pages)
+    for path in waiting:
+        text = path.read_text() if path.suffix in (".md", ".h") else None
         to = folder / path.relative_to(TOP)
         to.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(path, to)
-        for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text()) if path.suffix == ".md" else []:
+        if path.suffix == ".md" and path not in pages:    # a table beside a README: a page that no list of contents has
+            to.write_text("---\norphan: true\n---\n\n" + text)
+        else:
+            shutil.copy(path, to)
+        for target in links(text) if path.suffix == ".md" else []:
             linked = (path.parent / target).resolve()    # pictures, and other files that a page links to
-            if linked.is_file() and linked not in pages:
-                beside = folder / linked.relative_to(TOP)
-                beside.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(linked, beside)
-                if linked.suffix == ".md":    # a table beside a README: a page that no list of contents has
-                    beside.write_text("---\norphan: true\n---\n\n" + linked.read_text())
+            if linked.is_file() and linked not in laid:
+                laid.add(linked)
+                waiting.append(linked)
     for header in headers:
         (folder / header.relative_to(TOP)).with_suffix(".rst").write_text(header_page(header))
 
@@ -103,12 +167,13 @@ def source(folder):
     chapters = [("Start", ["README", "PKG-STOKESDYN/doc/index"])]
     for title, part in re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", index, re.S | re.M):
         chapters.append((title, ["PKG-STOKESDYN/doc/" + name for name in re.findall(r"\]\((\w+)\.md\)", part)]))
-    chapters += [("Examples", ["examples/README"] + names(sorted((TOP / "examples").glob("*/README.md")))),
-                 ("Inside", ["PKG-STOKESDYN/README", "PKG-STOKESDYN/CHANGELOG"]), ("Headers", ["headers"])]
+    chapters += [("Examples", ["examples/README", *dict.fromkeys(menu_of_examples())]),
+                 ("Inside", ["PKG-STOKESDYN/README", ".github/CONTRIBUTING", "PKG-STOKESDYN/CHANGELOG"]), ("Headers", ["headers"])]
     (folder / "headers.rst").write_text(contents_page("Headers of the core", "Each is the manual of its functions.", names(headers)))
     (folder / "index.rst").write_text(contents(chapters))
     (folder / "conf.py").write_text(CONF)
-    (folder / "manual.css").write_text(CSS)
+    for name, text in (("manual.css", CSS + dark_when_asked()), ("page.js", SCRIPT), ("scorer.js", SCORER)):
+        (folder / name).write_text(text)
 
 
 # --- checks in a browser ---------------------------------------------------------------------------------------------------
@@ -153,7 +218,7 @@ for (const name of ["out", "title", "dots", "status", "output"]) Search[name] = 
 for (const query of QUERIES) {
   answer = [];
   Search.query(query);
-  found[query] = answer.map(result => result[0]);
+  found[query] = answer.sort((a, b) => Scorer.score(b) - Scorer.score(a)).map(result => result[0]);
 }
 document.getElementById("found").textContent = JSON.stringify(found);
 </script></body></html>"""
@@ -169,6 +234,11 @@ def searches():
         yield begin, test_pages.ROOMS.get(room, []) + [test_pages.EVERYWHERE]
 
 
+# what people look for, and how the page begins that must come first
+FIRST = {"no grid for Ewald": "PKG-STOKESDYN/doc/pair_stokes_dynamics", "uninstall": "PKG-STOKESDYN/doc/howto_build",
+         "OVITO": "PKG-STOKESDYN/doc/howto_", "Brownian": "PKG-STOKESDYN/doc/"}
+
+
 def check(folder):
     wrong = [f"dead link in {page}: {target}" for page, target in dead_links(folder)]
 
@@ -179,21 +249,23 @@ def check(folder):
         if not wanted and "<img" not in text:
             continue
         seen = dom(page.as_uri())
-        got = len(re.findall(r'class="mjx-chtml MathJax_CHTML', seen))
+        got = len(re.findall(r'<span class="katex">', seen))
         formulas, drawn, pictures = formulas + wanted, drawn + got, pictures + len(re.findall("<img", text))
-        if got < wanted or 'class="mjx-merror' in seen:
+        if got < wanted or 'class="katex-error' in seen:
             wrong.append(f"formulas of {page.relative_to(folder)}: {got} of {wanted} drawn")
     print(f"[manual] {drawn} of {formulas} formulas drawn, {pictures} pictures")
 
     asked = list(searches())
     probe = folder / "search_probe.html"
-    probe.write_text(PROBE.replace("QUERIES", json.dumps(sorted({query for query, _ in asked}))))
+    probe.write_text(PROBE.replace("QUERIES", json.dumps(sorted({query for query, _ in asked} | set(FIRST)))))
     seen = dom(probe.as_uri())
     probe.unlink()
     found = json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', seen, re.S).group(1)) or "{}")
     missed = [(query, pages) for query, pages in asked
               if not any(f"PKG-STOKESDYN/doc/{name[:-3]}" in found.get(query, []) for name in pages)]
     wrong += [f"search for '{query}' does not find any of {pages}" for query, pages in missed]
+    wrong += [f"search for '{query}' begins with {found.get(query, [])[:3]}, not with {page}" for query, page in FIRST.items()
+              if not (found.get(query) or [""])[0].startswith(page)]
     print(f"[manual] search finds {len(asked) - len(missed)} of {len(asked)} keywords and messages")
 
     print("\n".join(wrong))

@@ -1,6 +1,7 @@
 /* libstokesdyn.so: what the Python module stokesdyn.py calls, with flat arrays. Everything else of the
  * core is hidden in it; C programs link the static libraries instead. */
 #include "sd_clump.h"
+#include "sd_linear.h"
 
 #include <math.h>
 
@@ -29,7 +30,7 @@ EXPORT const char *stokesdyn_status(int status)
 }
 
 /* Resistance of the rigid clump of n spheres at x [3n] with radii a [n]. shell, rotation, memory: see
- * sd_clump_options. Returns SD_OK, or the status of sd_shape_create or sd_clump_create. */
+ * sd_clump_options. Returns SD_OK, or the status of sd_linear_room, sd_shape_create or sd_clump_create. */
 EXPORT int stokesdyn_clump(int n, const double *x, const double *a, int shell, int rotation,
                            double memory, result *out)
 {
@@ -38,7 +39,9 @@ EXPORT int stokesdyn_clump(int n, const double *x, const double *a, int shell, i
   options.rotation = rotation;
   options.memory = memory;
   sd_shape shape;
-  sd_status status = sd_shape_create(n, x, a, &shape);
+  sd_status status = sd_linear_room();
+  if (status != SD_OK) return status;
+  status = sd_shape_create(n, x, a, &shape);
   if (status != SD_OK) return status;
   sd_shells shells = {0};
   sd_clump clump;

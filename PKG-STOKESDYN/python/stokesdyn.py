@@ -64,6 +64,13 @@ def _numbers(name, value, shape):
     return array
 
 
+def _within(name, values, least, most):
+    """Resistances go like viscosity * length^3, and double numbers end at 1e308."""
+    for number in np.ravel(values):
+        if not least <= abs(number) <= most:
+            raise Error(f"{name} must be {least:g} ... {most:g}, not {number:g}: use other units")
+
+
 def _positive(name, value):
     number = float(_numbers(name, value, ()))
     if number <= 0.0:
@@ -96,7 +103,10 @@ class Clump:
         self.radius = np.full(n, _numbers("radius", radius, ())) if np.ndim(radius) == 0 else _numbers("radius", radius, (n,))
         if (self.radius <= 0.0).any():
             raise Error(f"radius must be > 0: there is {self.radius.min()}")
+        _within("radius", self.radius, 1e-60, 1e60)
+        _within("x", self.x, 0, 1e60)
         self.viscosity = _positive("viscosity", viscosity)
+        _within("viscosity", self.viscosity, 1e-100, 1e100)
         if not isinstance(shell, numbers.Integral) or isinstance(shell, bool) or not (shell == 1 or 12 <= shell <= 100000):
             raise Error(f"shell must be 1 or a whole number from 12 on, not {shell!r}")
         if not isinstance(rotation, (bool, np.bool_)):
@@ -105,6 +115,8 @@ class Clump:
         status = _core.stokesdyn_clump(n, self.x, self.radius, int(shell), int(rotation), _positive("memory", memory),
                                        ctypes.byref(result))
         if status == _NO_MEMORY:
+            if result.iterative == 0.0:
+                raise Error("out of memory: linear algebra (BLAS) needs 0.14 GB of address space at once; is there a limit (ulimit -v)?")
             raise Error(f"memory {memory:g}: the solve needs {result.iterative:.3g} bytes, {result.dense:.3g} for a dense one")
         if status == _SINGULAR:
             raise Error("x: two spheres of equal radius lie at one point, or too nearly so")

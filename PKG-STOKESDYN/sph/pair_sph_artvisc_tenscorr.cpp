@@ -4,6 +4,7 @@
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fixes.h"
+#include "ghosts.h"
 #include "keywords.h"
 #include "restart_words.h"
 
@@ -201,6 +202,7 @@ double PairSph::init_one(int i, int j)
             who + "keyword " + PARAMETER[k] + ": ", value, may_vanish ? ">= 0" : "> 0");
   }
   const double support = 2.0 * table[H][i][j];
+  refuse_endless_ghosts(lmp, who + "the support 2 h = " + text(support), support);
   if (model.artvisc && std::isnan(table[C][i][j]))
     fail(lmp,
          who + "keyword artVisc needs the speed of sound: pair_coeff " + std::to_string(i) + " " +

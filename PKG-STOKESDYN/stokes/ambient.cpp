@@ -5,6 +5,7 @@
 
 #include "sd_constants.h"
 #include "sd_flow.h"
+#include "sd_linear.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -45,10 +46,17 @@ void Ambient::init()
 
 bool Ambient::numbers_only() const
 {
-  bool plain = !settings.visc.is_variable();
+  bool plain = !settings.visc.is_variable() && !settings.box;
   for (int d = 0; d < 3; d++)
     plain = plain && !settings.velocity[d].is_variable() && !settings.vorticity[d].is_variable();
   return plain;
+}
+
+bool Ambient::varies() const
+{
+  bool varies = settings.grid || settings.box;
+  for (const auto &field : settings.velocity) varies = varies || field.is_atom_style();
+  return varies;
 }
 
 void Ambient::numbers(double *nine) const
@@ -80,9 +88,9 @@ void Ambient::read(bool with_spins, bool with_gradients, double time)
 void Ambient::read_fluid(bool with_gradients)
 {
   const int n = atom->nlocal;
-  bool u_varies = settings.grid != nullptr;
-  for (const auto &field : settings.velocity) u_varies = u_varies || field.is_atom_style();
+  const bool u_varies = varies();
   if (!numbers_only()) modify->clearstep_compute();
+  motion = u_varies ? motion_of_box(lmp, command) : BoxMotion();
 
   eta.resize(settings.visc.is_atom_style() || settings.grid_has_visc ? n + 1 : 0);
   settings.visc.evaluate(lmp, igroup, eta.empty() ? nullptr : eta.data(), 1);
@@ -93,7 +101,7 @@ void Ambient::read_fluid(bool with_gradients)
   // The grid is looked up for those that take part.
   if (settings.grid && those.size() < (size_t) n) std::fill(u.begin(), u.end(), 0.0);
   for (int d = 0; d < 3; d++) {
-    double *out = u.empty() || settings.grid ? nullptr : u.data() + d;
+    double *out = u.empty() || settings.grid || settings.box ? nullptr : u.data() + d;
     settings.velocity[d].evaluate(lmp, igroup, out, 3);
     u_uniform[d] = settings.velocity[d].number();
   }
@@ -102,6 +110,8 @@ void Ambient::read_fluid(bool with_gradients)
   gradient.assign(nonuniform && with_gradients ? 9 * (size_t) n + 9 : 0, 0.0);
   if (settings.grid)
     read_grid();
+  else if (settings.box)
+    read_box(!gradient.empty());
   else if (u_varies && !w.empty())
     read_gradient();
   if (settings.has_vorticity) read_vorticity();
@@ -143,9 +153,22 @@ namespace {
   };
 }    // namespace
 
+/* The same gradient everywhere */
+void Ambient::read_box(bool with_gradients)
+{
+  double rotation[3];
+  sd_flow_rotation(motion.gradient, rotation);
+  for (size_t i : those) {
+    motion.at(atom->x[i], &u[3 * i]);
+    if (!w.empty()) std::copy_n(rotation, 3, &w[3 * i]);
+    if (with_gradients) std::copy_n(motion.gradient, 9, &gradient[9 * i]);
+  }
+}
+
 /* Sum over this rank's spheres of what velocity p grows by along an edge; most [2]: the largest
- * growth, and velocity. By formulas in x, y, z; a velocity stored per atom does not follow. */
-double Ambient::growth_along(const double *edge, int p, double *most)
+ * growth beyond the one expected, and velocity. By formulas in x, y, z; a velocity stored per atom
+ * does not follow. */
+double Ambient::growth_along(const double *edge, int p, double expected, double *most)
 {
   std::vector<double> there(atom->nlocal + 1);
   Shift shift(atom, edge, false);
@@ -153,22 +176,29 @@ double Ambient::growth_along(const double *edge, int p, double *most)
   double sum = 0.0;
   for (int i : those) {
     const double growth = there[i] - u[3 * (size_t) i + p];
-    most[0] = std::max(most[0], std::fabs(growth));
+    most[0] = std::max(most[0], std::fabs(growth - expected));
     most[1] = std::max(most[1], std::fabs(u[3 * (size_t) i + p]));
     sum += growth;
   }
   return sum;
 }
 
+/* By how much velocity p of the box's own flow grows along an edge */
+double Ambient::growth_of_box(const double *edge, int p) const
+{
+  return sd_dot(motion.gradient + 3 * p, edge);
+}
+
+/* In a run of no steps fix deform has no rate for some of its styles. */
 double Ambient::misfit()
 {
-  if (u.empty()) return 0.0;
+  if (u.empty() || (motion.deforms && update->endstep == update->beginstep)) return 0.0;
   const Edges edges(domain);
   double most[2] = {0.0, 0.0};
   modify->clearstep_compute();
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3 && settings.velocity[p].is_atom_style(); q++)
-      growth_along(edges.edge[q], p, most);
+      growth_along(edges.edge[q], p, growth_of_box(edges.edge[q], p), most);
   modify->addstep_compute(update->ntimestep + 1);
   MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
   return most[0] > 0.0 ? most[0] / std::max(most[0], most[1]) : 0.0;
@@ -183,9 +213,14 @@ void Ambient::find_jumps()
   if (!domain->deform_flag || u.empty() || settings.grid) return;
   const Edges edges(domain);
   double sums[7] = {0.0}, most[2] = {0.0, 0.0};
+  if (settings.box) {
+    jumping = true;
+    for (int k = 0; k < 6; k++) jump[k] = growth_of_box(edges.edge[OF[k][1]], OF[k][0]);
+    return;
+  }
   for (int k = 0; k < 6; k++)
     if (settings.velocity[OF[k][0]].is_atom_style() && domain->periodicity[OF[k][1]])
-      sums[k] = growth_along(edges.edge[OF[k][1]], OF[k][0], most);
+      sums[k] = growth_along(edges.edge[OF[k][1]], OF[k][0], 0.0, most);
   sums[6] = those.size();
   MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);

@@ -8,6 +8,7 @@
 #ifndef SD_AMBIENT_H
 #define SD_AMBIENT_H
 
+#include "deforming_box.h"
 #include "field.h"
 #include "flow_file.h"
 #include "atom.h"
@@ -33,6 +34,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
     /* the velocity, or nullptr: that of the fields; the viscosity too? */
     std::shared_ptr<const FlowFile> grid;
     bool grid_has_visc = false;
+    /* the velocity is that of the box, which fix deform changes */
+    bool box = false;
     /* empty: the whole box */
     std::string region;
     std::string group = "all";
@@ -49,7 +52,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   void read(bool spins, bool gradients, double time);
 
   /* How much the fluid velocity of this step differs between atoms and their images an edge of the
-   * box away, relative to the largest velocity: 0 fits a periodic box. On all ranks together. */
+   * box away, less what the box itself does, relative to the largest velocity: 0 fits a periodic
+   * box. On all ranks together. */
   double misfit();
 
   /* By how much the fluid velocity grows from an atom to its images, in a box that fix deform
@@ -94,6 +98,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
   const double *uniform_velocity() const { return u_uniform; }
 
+  /* Does the fluid velocity differ from place to place? */
+  bool varies() const;
+  /* Of this step, for a velocity that varies, otherwise none: an image of a sphere moves as the
+   * sphere does, and by the gradient times the shift between them. */
+  const BoxMotion &box_motion() const { return motion; }
+
   /* Is all of it known without asking variables? Then these numbers say it: viscosity, velocity,
    * vorticity, which grid, and in a series the time that was read. */
   enum { NUMBERS = 9 };
@@ -116,15 +126,18 @@ class Ambient : protected LAMMPS_NS::Pointers {
   double jump[6] = {0.0};
   bool jumping = false;
   double now = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
+  BoxMotion motion;
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient;
 
   bool group_stands() const;
   void select();
   void read_fluid(bool gradients);
-  double growth_along(const double *edge, int p, double *most);
+  double growth_along(const double *edge, int p, double expected, double *most);
+  double growth_of_box(const double *edge, int p) const;
   void find_jumps();
   void slope_of(int p, int q, std::vector<double> &slope);
+  void read_box(bool gradients);
   void read_gradient();
   void read_vorticity();
   void read_grid();

@@ -10,6 +10,7 @@
 #include "neighbor.h"
 #include "update.h"
 
+#include "sd_linear.h"
 #include "sd_neighbor.h"
 
 #include <algorithm>
@@ -19,6 +20,17 @@
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
+
+void check_room_of_blas(LAMMPS *lmp, const std::string &command)
+{
+  static bool there = false;    // of the process, as BLAS's memory is
+  if (!there && sd_linear_room() != SD_OK)
+    fail_one(lmp,
+             command + ": out of memory: linear algebra (BLAS) needs 0.14 GB of address space at "
+                       "once on each rank; is there a limit (ulimit -v)? With precondition none and "
+                       "without rigid_clumps none is needed");
+  there = true;
+}
 
 void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
 {
@@ -46,11 +58,11 @@ void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Sett
 
 void warn_of_misfit(LAMMPS *lmp, const std::string &command, double misfit)
 {
-  if (misfit < 1e-9 || lmp->domain->deform_flag || lmp->comm->me != 0) return;
+  if (misfit < 1e-9 || lmp->comm->me != 0) return;
   lmp->error->warning(FLERR,
                       command + ": keyword fluid_velocity: the formula does not have the period of "
                                 "the box, and spheres near its faces feel the jump; a shear flow "
-                                "needs a triclinic box that fix deform shears with it");
+                                "needs a triclinic box that fix deform shears with it, and fluid_velocity box");
 }
 
 void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)

@@ -10,6 +10,9 @@
 
 namespace StokesDyn {
 
+/* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
+void check_room_of_blas(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+
 /* Without a cut-off the box is periodic in all directions or in none; what Ewald sums have not got
  * needs an open one. */
 void check_boundaries(LAMMPS_NS::LAMMPS *lmp, const std::string &command,

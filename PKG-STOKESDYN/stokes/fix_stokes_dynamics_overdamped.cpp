@@ -5,9 +5,11 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "named_state.h"
+#include "deforming_box.h"
 #include "overdamped_checks.h"
 
 #include "sd_gap.h"
+#include "sd_hash.h"
 #include "sd_linear.h"
 #include "sd_pose.h"
 
@@ -16,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "group.h"
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
@@ -30,7 +33,7 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), before(6), output(9)
+    RowsFix(lmp, narg, arg), adapt(), motion(3), before(9), output(9)
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({
@@ -48,6 +51,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
            in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" + text(adapt.tmax) +
                      "'");
        }},
+      {"held", [&] { held = in.word(); }},
   });
   time_integrate = 1;
   dynamic_group_allow = 0;
@@ -58,7 +62,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  keep({&before, &output}, &output, true);
+  keep({&motion, &before, &output}, &output, true);
 }
 
 int FixStokesDynamicsOverdamped::setmask()
@@ -78,7 +82,14 @@ Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
 
 void FixStokesDynamicsOverdamped::init()
 {
-  refuse_inertia(lmp, COMMAND, this, hydrodynamics());
+  held_bit = moved_bits = 0;
+  if (!held.empty()) {
+    const int igroup_held = group->find(held);
+    if (igroup_held < 0) fail(lmp, COMMAND + ": keyword held: group '" + held + "' does not exist");
+    held_bit = group->bitmask[igroup_held];
+    for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
+  }
+  refuse_inertia(lmp, COMMAND, this, hydrodynamics(), {adapt.every > 0, held_bit});
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------
@@ -91,6 +102,36 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
     if (!hydro.memory->placed_as_left(i)) moved = 1;
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
   return !moved;
+}
+
+/* Fingerprints of force, torque, fluid and viscosity: where spheres stand as they did, their velocities
+ * follow from these. */
+void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
+{
+  const int width = hydro.rotation() ? 6 : 3;
+  double sums[10] = {0.0}, fluid[6], given[6];
+  for (int i : hydro.ambient.who()) {
+    const uint64_t tag = atom->tag[i];
+    const double eta = hydro.ambient.viscosity(i);
+    hydro.ambient.fluid(i, fluid);
+    sd_hash_add_row(tag, atom->f[i], 3, sums);
+    if (atom->torque_flag) sd_hash_add_row(tag, atom->torque[i], 3, sums + 2);
+    sd_hash_add_row(tag, fluid, width, sums + 4);
+    sd_hash_add_row(tag, &eta, 1, sums + 6);
+    if (given_velocity(i, given)) sd_hash_add_row(tag, given, 6, sums + 8);
+  }
+  MPI_Allreduce(sums, causes, 10, MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */
+bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
+{
+  double now[10];
+  find_causes(hydro, now);
+  bool same = last.atoms == atom->natoms;
+  for (int k = 0; k < 10; k += 2)
+    same = same && fabs(now[k] - last.causes[k]) <= 1e-8 * std::max(now[k + 1], last.causes[k + 1]);
+  return same;
 }
 
 void FixStokesDynamicsLast::setup(int /*vflag*/)
@@ -112,9 +153,9 @@ void FixStokesDynamicsOverdamped::after_setup()
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
   const bool same_run = goes_on(hydro);
-  if (!same_run) before.clear();
+  if (!same_run || !causes_stand(hydro)) before.clear();
   hydro.new_run(same_run);
-  if (same_run && from_file && adapt.every && last.next_dt > 0.0) update->dt = last.next_dt;
+  if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
   displaced = changed_before = 0.0;
   doublings = 0;
@@ -137,12 +178,27 @@ void FixStokesDynamicsOverdamped::final_integrate()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
+  if (last.atoms != atom->natoms) before.clear();    // those that are left move as they did not before
   find_velocities(hydro);
+}
+
+/* Those that fix move moves have the velocity that it gave them, others that are held have none. */
+bool FixStokesDynamicsOverdamped::given_velocity(int i, double *V) const
+{
+  if (!is_held(i)) return false;
+  const bool moved = atom->mask[i] & moved_bits;
+  for (int d = 0; d < 3; d++) {
+    V[d] = moved ? atom->v[i][d] : 0.0;
+    V[3 + d] = moved && atom->omega_flag ? atom->omega[i][d] : 0.0;
+  }
+  return true;
 }
 
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
+  find_causes(hydro, last.causes);
+  last.atoms = atom->natoms;
   const bool rotates = hydro.rotation();
   hydro.velocities([this, &hydro, rotates](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
@@ -155,7 +211,8 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       atom->omega[i][d] = v[3 + d];
       row[6 + d] = F[3 + d];
     }
-  });
+    std::copy_n(v, 3, motion.give(i));
+  }, held_bit ? [this](int i, double *V) { return given_velocity(i, V); } : Velocities::Held());
   last.step = update->ntimestep;
 }
 
@@ -185,23 +242,44 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 {
   Hydrodynamics &hydro = hydrodynamics();
   displaced = changed = 0.0;
+  bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
   for (int i : hydro.motion().lone) move_free(i);
   if (hydro.settings.rigid.on) move_clumps(hydro);
   last.dt = update->dt;
   if (!warned_growth) watch();
 }
 
+/* old [6] of the step before (a row of `before`) for a body whose place is now another image */
+void FixStokesDynamicsOverdamped::at_image(const double *row, const double *place, double *old) const
+{
+  double shift[3], jump[3];
+  for (int d = 0; d < 3; d++) shift[d] = place[d] - row[6 + d];
+  sd_multiply3(hydrodynamics().ambient.box_motion().gradient, shift, jump);
+  std::copy_n(row, 6, old);
+  for (int d = 0; d < 3; d++) old[d] += jump[d];
+}
+
+/* V [6] of the free sphere i in the step before, if there was one. place: where it is now. */
+bool FixStokesDynamicsOverdamped::old_velocity(int i, const double *place, double *V) const
+{
+  if (before.has(i)) at_image(before[i], place, V);
+  return before.has(i);
+}
+
 void FixStokesDynamicsOverdamped::move_free(int i)
 {
-  const double dt = update->dt, c = weight(i);
-  const bool first = !before.has(i);
-  double *old = before.give(i), *v = atom->v[i], mean[3], change[3];
-  sd_mean_velocity(3, v, old, c, mean);
+  if (is_held(i)) return;
+  const double dt = update->dt, *V = motion[i];
+  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], change[3] = {0.0};
+  const double c = old_velocity(i, x, old) ? weight(i) : 0.0;
+  sd_mean_velocity(3, V, old, c, mean);
   for (int d = 0; d < 3; d++) {
-    atom->x[i][d] += dt * mean[d];
-    change[d] = first ? 0.0 : v[d] - old[d];
-    old[d] = v[d];
+    x[d] += dt * mean[d];
+    change[d] = V[d] - old[d];
   }
+  double *row = before.give(i);
+  std::copy_n(V, 3, row);
+  std::copy_n(x, 3, row + 6);
   moves(i, dt * sqrt(sd_dot(mean, mean)), sqrt(sd_dot(change, change)));
 }
 
@@ -211,12 +289,12 @@ void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
   changed = std::max(changed, 0.5 * update->dt * change / atom->radius[i]);
 }
 
-/* By members of clumps, seven each: has it a velocity of before? U and W of its clump then */
+/* By members of clumps: has it a velocity of before? Its row then, of its clump */
 std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
 {
-  return hydrodynamics().scene.whole.gather(7, [this](int i, double *out) {
+  return hydrodynamics().scene.whole.gather(BEFORE, [this](int i, double *out) {
     out[0] = before.has(i);
-    std::copy_n(before[i], 6, out + 1);
+    std::copy_n(before[i], 9, out + 1);
   });
 }
 
@@ -224,7 +302,7 @@ std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
  * of the box between them have moved since. */
 void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
 {
-  enum { MOVES, CHANGE, STEP, V = STEP + 3, TURN = V + 6, COLUMNS = TURN + 9 };
+  enum { MOVES, CHANGE, STEP, V = STEP + 3, PLACE = V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
   const Velocities &motion = hydro.motion();
   const WholeClumps &whole = hydro.scene.whole;
   const Lattice now = Lattice::of(domain);
@@ -233,12 +311,14 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   double box[6];
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
   for (const auto &clump : motion.clumps) {
+    if (clump.held) continue;
     const RigidClumps::Body &body = *clump.body;
     const sd_shape &shape = body.shape->shape;
-    const double *old = &all_before[7 * motion.member_of(clump, 0)];
-    const bool has = *old++ != 0.0;
+    const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
+    const bool has = row[0] != 0.0;
     const double c = scheme == AB2 && has && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
-    double pose[12], mean[6], turn[9], change = 0.0;
+    double pose[12], old[6], mean[6], turn[9], change = 0.0;
+    at_image(row + 1, clump.pose + 9, old);
     x.resize(3 * (size_t) body.n);
     std::copy_n(clump.pose, 12, pose);
     sd_mean_velocity(6, clump.V, old, c, mean);
@@ -253,6 +333,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
       for (int d = 0; d < 3; d++) row[STEP + d] = x[3 * (size_t) k + d] - whole.x[3 * m + d];
       Lattice::add(box, &whole.steps[3 * m], row + STEP);
       std::copy_n(clump.V, 6, row + V);
+      std::copy_n(pose + 9, 3, row + PLACE);
       std::copy_n(turn, 9, row + TURN);
     }
   }
@@ -271,7 +352,11 @@ void FixStokesDynamicsOverdamped::end_of_step()
 {
   const double dt = sd_next_step(update->dt, fastest(), adapt.tmin, adapt.tmax, adapt.xmax);
   last.next_dt = dt;
-  if (dt == update->dt) return;
+  if (dt != update->dt) set_step(dt);
+}
+
+void FixStokesDynamicsOverdamped::set_step(double dt)
+{
   update->update_time();
   update->dt = dt;
   update->dt_default = 0;
@@ -302,7 +387,7 @@ double FixStokesDynamicsOverdamped::compute_scalar()
   double mine = 0.0, all, s[6] = {0.0};
   for (int i : hydro.ambient.who()) {
     hydro.ambient.slip(i, s);
-    mine += sd_dot(s, output[i] + 3) + sd_dot(s + 3, output[i] + 6);
+    mine += sd_dot(s + 3, output[i] + 6) - sd_dot(output[i], output[i] + 3) + hydro.strain_power(i);
   }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
@@ -311,9 +396,10 @@ double FixStokesDynamicsOverdamped::compute_scalar()
 double FixStokesDynamicsOverdamped::compute_vector(int k)
 {
   enum { SPEED, ERROR, DISPLACEMENT, PRODUCTS, RESIDUAL, SOLVES, UNCONVERGED, GAP, STEP };
-  const Hydrodynamics &hydro = hydrodynamics();
-  if (!hydro.memory) return 0.0;
-  const auto &solver = hydro.memory->global;
+  hydrodynamics();    // an error if there is none
+  const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
+  if (!memory) return 0.0;
+  const auto &solver = memory->global;
   double mine = 0.0, all;
   switch (k) {
     case SPEED:
@@ -341,10 +427,15 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
   return all;
 }
 
+/* By the velocity of the fluid and that beyond it: nobody else writes to those. */
 double FixStokesDynamicsOverdamped::fastest() const
 {
-  double mine = 0.0, all;
-  for (int i : hydrodynamics().ambient.who()) mine = std::max(mine, sd_dot(atom->v[i], atom->v[i]));
+  const Ambient &ambient = hydrodynamics().ambient;
+  double mine = 0.0, all, v[3];
+  for (int i : ambient.who()) {
+    for (int d = 0; d < 3; d++) v[d] = output[i][d] + ambient.velocity(i)[d];
+    mine = std::max(mine, sd_dot(v, v));
+  }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return sqrt(all);
 }
@@ -353,25 +444,26 @@ double FixStokesDynamicsOverdamped::fastest() const
 double FixStokesDynamicsOverdamped::error_figure() const
 {
   const Hydrodynamics &hydro = hydrodynamics();
-  const Velocities &motion = hydro.motion();
-  double most = 0.0;
-  for (int i : motion.lone) {
-    double change[3];
-    for (int d = 0; d < 3; d++) change[d] = atom->v[i][d] - before[i][d];
-    if (before.has(i)) most = std::max(most, sqrt(sd_dot(change, change)) / atom->radius[i]);
+  const Velocities &moving = hydro.motion();
+  double most = 0.0, old[6];
+  for (int i : moving.lone) {
+    if (!old_velocity(i, atom->x[i], old)) continue;
+    for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
+    most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
   }
   const std::vector<double> all_before =
       hydro.settings.rigid.on ? velocities_before() : std::vector<double>();
-  for (const auto &clump : motion.clumps)
+  for (const auto &clump : moving.clumps)
     for (int k = 0; k < clump.body->n; k++) {
       const sd_shape &shape = clump.body->shape->shape;
-      const double *old = &all_before[7 * motion.member_of(clump, k)];
-      double V[6], arm[3], change[3];
-      if (*old++ == 0.0) continue;
-      for (int d = 0; d < 6; d++) V[d] = clump.V[d] - old[d];
+      const double *row = &all_before[BEFORE * moving.member_of(clump, k)];
+      double arm[3], change[3];
+      if (row[0] == 0.0) continue;
+      at_image(row + 1, clump.pose + 9, old);
+      for (int d = 0; d < 6; d++) old[d] = clump.V[d] - old[d];
       sd_multiply3(clump.pose, shape.x + 3 * (size_t) k, arm);
-      sd_cross(V + 3, arm, change);
-      for (int d = 0; d < 3; d++) change[d] += V[d];
+      sd_cross(old + 3, arm, change);
+      for (int d = 0; d < 3; d++) change[d] += old[d];
       most = std::max(most, sqrt(sd_dot(change, change)) / shape.a[k]);
     }
   return 0.5 * update->dt * most;
@@ -419,6 +511,8 @@ void FixStokesDynamicsOverdamped::write_restart(FILE *fp)
   out.put("step", last.step);
   out.put("dt", last.dt);
   out.put("next_dt", last.next_dt);
+  out.put("atoms", last.atoms);
+  out.put("causes", std::vector<double>(last.causes, last.causes + 10));
   out.write(fp);
 }
 
@@ -429,5 +523,7 @@ void FixStokesDynamicsOverdamped::restart(char *buf)
   last.step = in.get("step", -1.0);
   last.dt = in.get("dt", 0.0);
   last.next_dt = in.get("next_dt", 0.0);
+  last.atoms = in.get("atoms", 0.0);
+  in.get("causes", last.causes, 10);
   from_file = true;
 }

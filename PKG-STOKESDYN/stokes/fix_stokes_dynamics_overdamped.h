@@ -43,15 +43,26 @@ class FixStokesDynamicsOverdamped : public RowsFix {
     double tmin, tmax, xmax;
   } adapt;
 
-  /* velocity of a free sphere, U and W of its clump, in the step before the one that the atom
-   * stands in */
+  /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
+   * write to it */
+  AtomRows motion;
+  /* those whose velocity is given, empty: nobody; and the groups that fix move moves */
+  std::string held;
+  int held_bit = 0, moved_bits = 0;
+  /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump, was put by
+   * it: when LAMMPS has made an image of it since, v_old is that of the image */
   AtomRows before;
+  /* of a member of a clump: has it such a row, and which? */
+  enum { BEFORE = 10 };
   /* v less that of the fluid, force, torque */
   AtomArray output;
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
-   * adapt wants next */
+   * adapt wants next; atoms there are */
   struct {
-    double step = -1, dt = 0.0, next_dt = 0.0;
+    double step = -1, dt = 0.0, next_dt = 0.0, atoms = 0.0;
+    /* fingerprints of what velocities follow from: forces, torques, the fluid, given velocities
+     * (sd_hash_add_row) */
+    double causes[10] = {0.0};
   } last;
   bool from_file = false;
 
@@ -64,10 +75,17 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool restored() const override { return last.step >= 0; }
   Hydrodynamics &hydrodynamics() const;
   bool goes_on(const Hydrodynamics &) const;
+  void find_causes(const Hydrodynamics &, double *causes) const;
+  bool causes_stand(const Hydrodynamics &) const;
+  void set_step(double dt);
   void announce();
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
+  bool is_held(int i) const { return atom->mask[i] & held_bit; }
+  bool given_velocity(int i, double *V) const;
   double weight(int i) const;
+  bool old_velocity(int i, const double *place, double *V) const;
+  void at_image(const double *row, const double *place, double *old) const;
   void moves(int i, double distance, double change);
   void move_free(int i);
   void move_clumps(Hydrodynamics &);

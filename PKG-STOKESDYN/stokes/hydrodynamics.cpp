@@ -147,21 +147,54 @@ void Hydrodynamics::drag()
   if (settings.lubrication.on) lubricate();
 }
 
-/* Where the spheres stand and as they move now */
-void Hydrodynamics::lubricate()
+/* Of the films where they stand, as the spheres move. */
+void Hydrodynamics::find_films_power()
 {
-  if (!standing) {
-    scene.stand(solvers, ambient);
-    scene.surround_films();
-  }
+  films_power.clear();
+  if (!ambient.varies()) return;
+  std::vector<double> power(scene.size() + 1);
+  sd_lubrication_strain_power(lubrication.matrix(), films_v.data(), power.data());
+  films_power.assign(atom->nlocal + 1, 0.0);
+  scene.to_atoms(1, power.data(), [this](int i, const double *p) { films_power[i] = *p; });
+}
+
+void Hydrodynamics::stand()
+{
+  films_power.clear();
+  if (!settings.lubrication.on || !ambient.varies()) return;
+  solvers = ambient.who();
+  surround();
+  read_motion();
+  lubrication.place(scene, ambient);
+  find_films_power();
+}
+
+void Hydrodynamics::surround()
+{
+  if (standing) return;
+  scene.stand(solvers, ambient);
+  scene.surround_films();
+}
+
+/* As the spheres move now, by rows of the scene */
+void Hydrodynamics::read_motion()
+{
   films_v = scene.rows(6, [this](int i, double *out) {
     std::copy_n(atom->v[i], 3, out);
     std::copy_n(atom->omega[i], 3, out + 3);
   });
-  films_F.resize(films_v.size());
   scene.drift(films_v.data(), 6, 1.0);
+}
+
+/* Where the spheres stand and as they move now */
+void Hydrodynamics::lubricate()
+{
+  surround();
+  read_motion();
+  films_F.resize(films_v.size());
   lubrication.place(scene, ambient);
   lubrication.forces(films_v.data(), films_F.data());
+  find_films_power();
   if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
     guard.look_at_films(*lubrication.matrix(), scene);
   scene.to_atoms(6, films_F.data(), [this](int i, const double *F) {
@@ -410,6 +443,11 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   }
   const Velocities::How how = {width(), settings.warm_start, settings.tolerance, settings.max_iter};
   const sd_status status = mobile.together(how, begin_with, take, report);
+  films_power.clear();
+  if (settings.lubrication.on && status == SD_OK) {
+    read_motion();
+    find_films_power();
+  }
   for (size_t k = 0; k < n; k++) {
     std::copy_n(&begin_with.l[m * k], m, &rows[2 * m * k]);
     std::copy_n(&begin_with.v[m * k], m, &rows[2 * m * k + m]);
@@ -425,12 +463,13 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   return status;
 }
 
-void Hydrodynamics::velocities(const Velocities::Take &take)
+void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::Held &held)
 {
   State::Global &global = memory->global;
   sd_bodies_report report = {};
   sd_status status = SD_OK;
   solvers = ambient.who();
+  mobile.held = held;
   mobile.find();
   if (settings.rigid.apart()) {
     mobile.apart(width(), take);
@@ -472,7 +511,7 @@ double Hydrodynamics::dissipation(int i) const
   ambient.slip(i, s);
   double power = F[0] * s[0] + F[1] * s[1] + F[2] * s[2];
   if (T) power += T[0] * s[3] + T[1] * s[4] + T[2] * s[5];
-  return power;
+  return power + strain_power(i);
 }
 
 double Hydrodynamics::memory_usage() const

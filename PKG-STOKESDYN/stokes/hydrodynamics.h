@@ -55,9 +55,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void solve();
   void drag();
 
-  /* Of all that takes part, from what is in f and torque, in any order. A step is begin() and this.
+  /* Of all that takes part, from what is in f and torque, in any order; and forces on those that are
+   * held. A step is begin() and this.
    * Where all interact, the forces go to rows of the memory too: the next guess. */
-  void velocities(const Velocities::Take &take);
+  void velocities(const Velocities::Take &take, const Velocities::Held &held);
   /* Those of rigid clumps, and who is free, since then */
   const Velocities &motion() const { return mobile; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
@@ -66,7 +67,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   bool rotation() const { return settings.scene.rotation; }
   /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
-  bool computed_in(double step) const { return memory && memory->global.last_step == step; }
+  bool computed_in(double step) const
+  {
+    return memory && memory == FixStokesDynamicsState::find(lmp) && memory->global.last_step == step;
+  }
   const double *force(int i) const { return memory->rows[i] + FixStokesDynamicsState::FORCE; }
   const double *perturbation(int i) const
   {
@@ -77,8 +81,13 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   {
     return rotation() ? memory->rows[i] + FixStokesDynamicsState::TORQUE : nullptr;
   }
-  /* -F.(v - u_inf) of one sphere, >= 0 in the sum over all */
+  /* -F.(v - u_inf) of one sphere, with what a strain puts into its films: >= 0 in the sum over all
+   * free spheres */
   double dissipation(int i) const;
+  /* That second part, of the velocities of this step */
+  double strain_power(int i) const { return films_power.empty() ? 0.0 : films_power[i]; }
+  /* Where a run goes on with the forces of before: what else is told of them. */
+  void stand();
   double memory_usage() const;
 
  private:
@@ -102,6 +111,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Velocities::Guess begin_with;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
+  /* [nlocal], or empty: of strain_power() */
+  std::vector<double> films_power;
 
   /* do the scene's rows, and what films need around them, stand as in this step? */
   bool standing = false;
@@ -114,7 +125,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   {
     return settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1;
   }
+  void surround();
+  void read_motion();
   void lubricate();
+  void find_films_power();
   sd_status run(sd_solve_report &report);
   sd_status gradients(sd_system &system, sd_solve_report &report);
   sd_status together(sd_solve_report &report);

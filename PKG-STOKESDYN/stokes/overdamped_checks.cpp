@@ -21,12 +21,14 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-static bool overlap(LAMMPS *lmp, const Fix *one, const Fix *other)
+/* Do the groups of two fixes share an atom that is in none of the groups of `but`? */
+static bool overlap(LAMMPS *lmp, const Fix *one, const Fix *other, int but)
 {
   const Atom *atom = lmp->atom;
   int any = 0;
   for (int i = 0; i < atom->nlocal && !any; i++)
-    any = (atom->mask[i] & one->groupbit) && (atom->mask[i] & other->groupbit);
+    any = (atom->mask[i] & one->groupbit) && (atom->mask[i] & other->groupbit) &&
+        !(atom->mask[i] & but);
   MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, lmp->world);
   return any;
 }
@@ -86,9 +88,14 @@ static void refuse_settings(LAMMPS *lmp, const std::string &command, const Stoke
              "requires rotation yes or a shell: points do not tell how a clump on a line spins");
 }
 
-static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self, const Fix *other)
+static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self, const Fix *other,
+                       const OverdampedWays &ways)
 {
   const std::string name = "fix " + std::string(other->id) + " of style " + other->style;
+  if (ways.adapts && utils::strmatch(other->style, "^deform"))
+    fail(lmp,
+         command + ": keyword adapt: " + name +
+             " counts its rate by steps, which must have one length: leave adapt out");
   if (strcmp(other->style, "stokes_dynamics") == 0)
     fail(lmp,
          command + ": " + name +
@@ -97,14 +104,23 @@ static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self,
   bool drags = false;
   for (const char *style : {"^viscous", "^langevin", "^brownian", "^rigid"})
     drags = drags || utils::strmatch(other->style, style);
-  if (!(drags || other->time_integrate) || !overlap(lmp, self, other)) return;
+  const bool moves_held = strcmp(other->style, "move") == 0;
+  const bool zeroes = strcmp(other->style, "setforce") == 0 || strcmp(other->style, "freeze") == 0;
+  if (zeroes && overlap(lmp, self, other, ways.held_bit) && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        command + ": " + name +
+                            " takes forces away, and without inertia that holds no sphere: keyword "
+                            "held GROUP does");
+  const int but = moves_held ? ways.held_bit : 0;
+  if (!(drags || other->time_integrate) || !overlap(lmp, self, other, but)) return;
   fail(lmp,
        command + ": " + name + (other->time_integrate ? " integrates" : " drags") +
-           " atoms of the same group: this fix does all of that itself");
+           " atoms of the same group: this fix does all of that itself" +
+           (moves_held ? " (but for those of keyword held)" : ""));
 }
 
 void refuse_inertia(LAMMPS *lmp, const std::string &command, const Fix *self,
-                    const Hydrodynamics &hydro)
+                    const Hydrodynamics &hydro, const OverdampedWays &ways)
 {
   if (lmp->update->whichflag == 2)
     fail(lmp,
@@ -113,7 +129,7 @@ void refuse_inertia(LAMMPS *lmp, const std::string &command, const Fix *self,
     fail(lmp, command + " does not support run_style respa");
   refuse_settings(lmp, command, hydro.settings);
   for (int i = 0; i < lmp->modify->nfix; i++)
-    if (lmp->modify->fix[i] != self) refuse_fix(lmp, command, self, lmp->modify->fix[i]);
+    if (lmp->modify->fix[i] != self) refuse_fix(lmp, command, self, lmp->modify->fix[i], ways);
   if (lmp->force->pair_match("^lubricate", 0, 1))
     fail(lmp,
          command +

@@ -15,9 +15,15 @@ namespace StokesDyn {
 
 class Hydrodynamics;
 
+/* Does the time step adapt? Group bit of those that are held, 0: nobody is. */
+struct OverdampedWays {
+  bool adapts;
+  int held_bit;
+};
+
 /* The settings of the pair style, other fixes and pair styles, the kind of run. On all ranks. */
 void refuse_inertia(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const LAMMPS_NS::Fix *self,
-                    const Hydrodynamics &hydro);
+                    const Hydrodynamics &hydro, const OverdampedWays &ways);
 
 /* Once a run, when something besides the pair style acts on the spheres: how long a step contacts
  * and bonds allow. A contact of stiffness k relaxes at the rate lambda k/(6 pi eta a), lambda up to

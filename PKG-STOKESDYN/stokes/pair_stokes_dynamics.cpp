@@ -62,7 +62,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     hydro.clumps();
     if (verdict == SOLVE) hydro.solve();
     hydro.drag();
-  }
+  } else
+    hydro.stand();
   if (hydro.settings.add_force) add();
   report();
 }
@@ -176,6 +177,9 @@ void PairStokesDynamics::init_style()
   if (scene.everybody()) check_boundaries(lmp, COMMAND, scene);
   if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
     fail(lmp, COMMAND + ": keyword precondition: 'waves' requires a periodic box");
+  const bool may_precondition = hydro.settings.algorithm == StokesSettings::GRADIENTS &&
+      hydro.settings.precondition != Preconditioner::NONE;
+  if (hydro.settings.rigid.on || may_precondition) check_room_of_blas(lmp, COMMAND);
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
@@ -186,6 +190,7 @@ void PairStokesDynamics::init_style()
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   State::provide(lmp, scene.rotation, hydro.settings.history())->settings_are(args);
   look_for_fixes();
+  check_deform(lmp, COMMAND, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
   sorting_bins.limit(range());
 }
 

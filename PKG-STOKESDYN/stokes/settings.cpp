@@ -97,7 +97,7 @@ void StokesSettings::parse(Keywords &in)
       {"fluid_velocity", [&] {
          if (in.take("grid"))
            grid_file = in.word();
-         else
+         else if (!(ambient.box = in.take("box")))
            for (Field &u : ambient.velocity) u = Field::parse(in);
        }},
       {"fluid_vorticity", [&] {
@@ -139,6 +139,8 @@ void StokesSettings::check(const Keywords &in) const
   in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
   in.require(!ambient.grid_has_visc || !grid_file.empty(),
              "keyword visc: 'grid' requires fluid_velocity grid FILE");
+  in.require(!ambient.box || !ambient.has_vorticity,
+             "keyword fluid_vorticity: fluid_velocity box has one of its own");
   in.require(in.given("cut_off_distance") || scene.clumps_only,
              "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
   in.require(scene.taper == SD_TAPER_NONE || std::isfinite(scene.cutoff),

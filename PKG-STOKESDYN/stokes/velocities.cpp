@@ -1,5 +1,7 @@
 #include "velocities.h"
 
+#include "keywords.h"
+
 #include "sd_clump_motion.h"
 #include "sd_linear.h"
 
@@ -12,6 +14,8 @@
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
+
+static const std::string HELD = "Fix stokes_dynamics/overdamped: keyword held";
 
 Velocities::Velocities(LAMMPS *lmp, const Parts &parts) :
     Pointers(lmp), scene(parts.scene), ambient(parts.ambient), rigid(parts.rigid),
@@ -67,7 +71,7 @@ void Velocities::find()
   gather();
   int64_t split = RigidClumps::NOBODY, bent = RigidClumps::NOBODY;
   for (const auto &body : all) {
-    Clump clump = {&body, {}, 0.0, {}};
+    Clump clump = {&body, {}, 0.0, {}, false};
     int taking_part = 0;
     for (int k = 0; k < body.n; k++) {
       const double eta_k = known_of(clump, k)[ETA];
@@ -83,6 +87,7 @@ void Velocities::find()
   int64_t trouble[2] = {split, bent};
   MPI_Allreduce(MPI_IN_PLACE, trouble, 2, MPI_LMP_BIGINT, MPI_MIN, world);
   rigid.refuse(trouble[0], trouble[1]);
+  find_held();
 }
 
 /* Velocity of the fluid at the centroid and its gradient over the clump */
@@ -125,6 +130,56 @@ void Velocities::load_on(const Clump &clump, double load[6]) const
 }
 
 // --- rows ------------------------------------------------------------------------------------------
+
+/* Clumps whose velocity is given: by that of their first sphere, on its image. */
+void Velocities::find_held()
+{
+  for (Clump &clump : clumps) clump.held = false;
+  if (!held || !rigid.settings.on) return;
+  const std::vector<double> of_member = scene.whole.gather(7, [this](int i, double *out) {
+    out[0] = held(i, out + 1);
+  });
+  int64_t split = RigidClumps::NOBODY;
+  for (Clump &clump : clumps) {
+    const double *first = &of_member[7 * member_of(clump, 0)];
+    clump.held = first[0] != 0.0;
+    for (int k = 1; k < clump.body->n; k++)
+      if ((of_member[7 * member_of(clump, k)] != 0.0) != clump.held)
+        split = std::min(split, clump.body->molecule);
+    if (!clump.held) continue;
+    double arm[3], turning[3];
+    std::copy_n(first + 1, 6, clump.V);
+    if (ambient.jumps())
+      Lattice::add(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
+    for (int d = 0; d < 3; d++) arm[d] = clump.pose[9 + d] - at(clump, 0)[d];
+    sd_cross(clump.V + 3, arm, turning);
+    for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &split, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  if (split != RigidClumps::NOBODY)
+    fail(lmp,
+         HELD + ": the clump of molecule " + std::to_string(split) + " is in the group in part: all of its spheres must be, or none");
+}
+
+/* [6 bodies] velocities of those that are held, for the core; is_held tells which */
+std::vector<double> Velocities::given_velocities()
+{
+  const size_t bodies = loner.size() + shaped.size();
+  std::vector<double> given(6 * bodies + 6, 0.0);
+  is_held.assign(bodies + 1, 0);
+  const std::vector<double> rows =
+      scene.rows(7, [this](int i, double *out) { out[0] = held(i, out + 1); });
+  for (size_t b = 0; b < loner.size(); b++) {
+    const double *row = &rows[7 * (size_t) loner[b]];
+    is_held[b] = row[0] != 0.0;
+    if (is_held[b]) std::copy_n(row + 1, 6, &given[6 * b]);
+  }
+  for (size_t c = 0, b = loner.size(); c < clumps.size(); c++, b++) {
+    is_held[b] = clumps[c].held;
+    if (is_held[b]) std::copy_n(clumps[c].V, 6, &given[6 * b]);
+  }
+  return given;
+}
 
 /* Forces on the spheres, the fluid at them, their drags */
 void Velocities::place(int width)
@@ -271,7 +326,12 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
     A.tie = &tie;
   }
   carry(A, u.data());
-  const sd_bodies_problem problem = {u.data(), F.data(),      nullptr,
+  std::vector<double> given;
+  if (held) {
+    given = given_velocities();
+    A.held = is_held.data();
+  }
+  const sd_bodies_problem problem = {u.data(), F.data(),      held ? given.data() : nullptr,
                                      how.warm, how.tolerance, how.max_iter};
   const sd_status status = solve(A, problem, guess, report);
   for (size_t c = 0; c < clumps.size(); c++)
@@ -302,6 +362,14 @@ void Velocities::apart(int width, const Take &take)
       move[3 + d] += atom->torque[i][d] / k_spin;
       by_fluid[3 + d] = -atom->torque[i][d];
     }
+    double given[6];
+    if (held && held(i, given)) {
+      ambient.fluid(i, by_fluid);
+      for (int d = 0; d < width; d++) {
+        move[d] = given[d];
+        by_fluid[d] = (d < 3 ? k : k_spin) * (by_fluid[d] - given[d]);
+      }
+    }
     take(i, move, by_fluid);
   }
   const WholeClumps &whole = scene.whole;
@@ -313,7 +381,8 @@ void Velocities::apart(int width, const Take &take)
     double fluid[3], G[9], load[6], arm[3], turning[3];
     flow_over(clump, fluid, G);
     load_on(clump, load);
-    sd_clump_free_velocity(&body.shape->clump, clump.pose, clump.eta, load, fluid, G, clump.V);
+    if (!clump.held)
+      sd_clump_free_velocity(&body.shape->clump, clump.pose, clump.eta, load, fluid, G, clump.V);
     force.resize(3 * (size_t) body.n);
     torque.resize(3 * (size_t) body.n);
     drag_on(clump, fluid, G, force.data(), torque.data());

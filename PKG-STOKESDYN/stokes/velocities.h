@@ -31,6 +31,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
     double eta;
     /* U of the centroid, W */
     double V[6];
+    /* is V given, and the force on it unknown? */
+    bool held;
   };
   /* that this rank owns, since the last find() */
   std::vector<Clump> clumps;
@@ -50,7 +52,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Velocities(const Velocities &) = delete;
   Velocities &operator=(const Velocities &) = delete;
 
-  /* Errors, on all ranks: those of RigidClumps; a clump that is not rigid, or not all selected. */
+  /* Who is held: whether atom i is, and then its velocity and angular velocity [6]. Empty: nobody. A
+   * clump is held when all its spheres are. */
+  using Held = std::function<bool(int i, double *V)>;
+  Held held;
+
+  /* Errors, on all ranks: those of RigidClumps; a clump held in part; a clump that is not rigid, or not all selected. */
   void find();
 
   /* What becomes of atom i: velocity, with torques angular velocity, and force of the fluid on it,
@@ -95,6 +102,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* for the core, by rows, by clumps, by spheres of clumps */
   std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
   std::vector<int> member, whole, loner;
+  /* [bodies] of the solve */
+  std::vector<char> is_held;
   std::vector<sd_body> shaped;
   /* where nobody sees anybody */
   sd_mobility_scene alone = {};
@@ -108,6 +117,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   {
     return &scene.whole.x[3 * member_of(clump, k)];
   }
+  void find_held();
+  std::vector<double> given_velocities();
   void place(int width);
   void arrange();
   void flow_over(const Clump &clump, double u[3], double G[9]);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""30 rigid chains of five spheres fall without inertia, as all feel each other and each as if it were alone; a film strip of both.
+"""30 rigid chains of five spheres fall without inertia, as all feel each other and each as if it were alone; a film of both.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/falling_clumps)
-    run.py --update     also refreshes the picture in this folder
+    run.py --update     also refreshes the pictures in this folder
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -13,9 +13,11 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
+import film  # noqa: E402
 from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
 SHOWN = (0, 2, 4, 6, 8, 10, 12)
+FINE = 5    # frames of the film per time
 
 
 def lammps(out, tag, ranks=1, **variables):
@@ -63,12 +65,30 @@ def strip(rows, path):
     save(figure, path, 85)
 
 
+def moving(rows, path):
+    """Both clouds side by side, each seen from its centre."""
+    pictures = []
+    for k in range(len(rows[0][1])):
+        figure, axes = plt.subplots(1, 2, figsize=(6.2, 3.5), dpi=80)
+        figure.subplots_adjust(0.01, 0.02, 0.99, 0.88, wspace=0.03)
+        for axis, (title, frames) in zip(axes, rows):
+            x, y, z = frames[k, :, 1:4].T
+            for i in np.argsort(-y):
+                axis.add_patch(plt.Circle((x[i], z[i] - z.mean()), 1.0, fc=f"C{int(frames[k, i, 0]) % 10}", ec="black", lw=0.3))
+            axis.set(xlim=(-20, 20), ylim=(-20, 20), aspect="equal", xticks=[], yticks=[])
+            axis.set_title(f"{title}, {-z.mean():.0f} radii below", fontsize=9)
+        pictures.append(film.picture(figure))
+    film.write(pictures, path, colours=32)
+
+
 def main():
     given = options(__file__, __doc__)
     out = given.out
     need("lmp", "mpirun")
-    together, curve = lammps(out, "together")
-    alone, lonely = lammps(out, "alone", only="yes")
+    together, curve = lammps(out, "together", frame=1 / FINE)
+    alone, lonely = lammps(out, "alone", only="yes", frame=1 / FINE)
+    moving((("all feel each other", together), ("each alone", alone)), out / "falling_clumps.gif")
+    together, alone = together[::FINE], alone[::FINE]
     exact, _ = lammps(out, "exact", tolerance="1e-10", time=0.01, frame=0.01)
     fine, _ = lammps(out, "fine", step=0.005)
     two, _ = lammps(out, "two_ranks", ranks=2, time=1.0)
@@ -93,9 +113,11 @@ def main():
     c.below("largest overlap, in radii", -curve[:, 5].min(), 0.15)
     c.below("half the step: change of the centre at the end, in radii",
             np.abs((fine[-1] - together[-1])[:, 1:4].mean(axis=0)).max(), 0.01)
+    c.below("size of the film, MB", (out / "falling_clumps.gif").stat().st_size / 1e6, 2.0)
     c.below("2 ranks against 1 at time 1, in radii", np.abs(two[-1] - together[1])[:, 1:4].max(), 1e-6)
     if given.update:
-        shutil.copy(out / "falling_clumps.png", HERE)
+        for name in ("falling_clumps.png", "falling_clumps.gif"):
+            shutil.copy(out / name, HERE)
     return c.finish()
 
 

@@ -148,7 +148,7 @@ static contest contest_begin(int n, int m)
 static void contest_tell(contest *c, sd_isa isa, double pairs)
 {
   const double mine = median(c->t[1], RUNS), its = median(c->t[0], RUNS);
-  printf("  %-34s %10.3f %8.2f %10.1e\n", sd_isa_name(isa), 1e-9 * pairs / mine, its / mine,
+  printf("  %-34s %10.3f %8.2f %10.1e\n", isa_name(isa), 1e-9 * pairs / mine, its / mine,
          difference(&c->s, c->m, c->n, c->u, c->expected));
 }
 
@@ -252,7 +252,7 @@ int main(int argc, char **argv)
     for (int m = 3; m <= 6; m += 3) bench_kernel(10000, m);
     return 0;
   }
-  printf("Best instruction set: %s\n", sd_isa_name(sd_isa_best()));
+  printf("Best instruction set: %s\n", isa_name(sd_isa_of(SD_ISA_BEST)));
   for (int m = 3; m <= 6; m += 3) {
     bench_product(1000, m);
     if (!quick) bench_product(10000, m);

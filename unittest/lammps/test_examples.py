@@ -11,7 +11,7 @@ import pytest
 from system import environment
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
-QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "fixed_bed", "python_clump", "squeeze", "tumbling", "vans_drag",
+QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "first_look", "fixed_bed", "python_clump", "squeeze", "tumbling", "vans_drag",
          "vans_fluid", "vans_fluidised"]
 
 

@@ -323,6 +323,13 @@ def test_binary_rows_that_are_cut_off_or_no_numbers(simulation, tmp_path):
         assert "line 6: after it come" in refused(simulation, tmp_path / "bad.grid")
 
 
+def test_bytes_of_a_file_are_printed_so_that_they_can_be(simulation, tmp_path):
+    """No byte of a message is beyond UTF-8 or a control character, which terminals and LAMMPS's Python module would choke on."""
+    for bad, shown in ((b"x 2 -20 \xfe", "\\xfe"), (b"x 2 -20 \x1b[31m", "\\x1b[31m"), ("x 2 -20 ü".encode(), "ü"), (b"x 2 -20 \xed\xa0\x80", "\\xed\\xa0\\x80")):
+        (tmp_path / "bad.grid").write_bytes(b"stokesdyn_grid 1\n" + bad + b"\ny 1 0\nz 1 0\ncolumns ux uy uz\nrows text\n0 0 0\n0 0 0\n")
+        assert shown in refused(simulation, tmp_path / "bad.grid")
+
+
 def test_a_viscosity_must_be_one_and_must_be_there(simulation, tmp_path):
     text = (GOOD + ROWS).replace("uz\n", "uz eta\n", 1)
     (tmp_path / "bad.grid").write_text("".join(line + " 0\n" if k > 8 else line + "\n" for k, line in enumerate(text.splitlines())))

@@ -1,7 +1,8 @@
-"""The inputs of the howtos run as they stand on the page, and print what the page says.
+"""The howtos run as they stand on the page, commands pasted into a shell, and print what the page says.
 
 A block of a page whose first line is "# NAME" with a dot in NAME is that file. A block that begins with "Step" is what the log of
-the input before it must hold."""
+the input before it must hold. The first block of commands, which begins with ". build/env.sh", is pasted as it is."""
+import os
 import pathlib
 import re
 import subprocess
@@ -11,37 +12,45 @@ import pytest
 
 from system import environment
 
-DOC = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN" / "doc"
+TOP = pathlib.Path(__file__).resolve().parents[2]
+DOC = TOP / "PKG-STOKESDYN" / "doc"
 
-# page -> commands, and how far each column of its tables may be off (relative)
+# page -> how far each column of its tables may be off (relative)
 HOWTOS = {
-    "clumps": (["lmp -in in.clumps"], {"v_drift": 1e-2}),
-    "cfd": (["python couple.py"], {}),
-    "overdamped": (["lmp -in in.overdamped"], {}),
-    "sph": (["lmp -in in.sph"], {"c_kinetic": 0.5}),
-    "stream": (["lmp -in in.stream", "python plot.py"], {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35}),
-    "suspension": (["lmp -in in.settling"], {"v_down": 0.04, "f_move[1]": 0.25}),
-    "speed": (["lmp -in in.speed"], {}),
-    "python": (["python rod.py"], {}),
+    "clumps": {"v_drift": 1e-2},
+    "cfd": {},
+    "overdamped": {},
+    "sph": {"c_kinetic": 0.5},
+    "stream": {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35},
+    "suspension": {"v_down": 0.04, "f_move[1]": 0.25},
+    "speed": {},
+    "python": {},
 }
+PASTE = re.compile(r"^    \. build/env\.sh\n(?:    .*\n)+", re.M)
 
 
 def blocks(name):
     return re.findall(r"^```\n(.*?)^```", (DOC / f"howto_{name}.md").read_text(), re.S | re.M)
 
 
+def paste(commands, clone):
+    """What the commands print in a shell that stands in a clone. The clone is a folder with links: what they write stays here."""
+    for name in ("PKG-STOKESDYN", "examples", "build"):
+        (clone / name).symlink_to(TOP / name if name != "build" else os.environ["LAMMPS_PLUGIN_PATH"])
+    env = {key: value for key, value in environment().items() if not key.startswith(("LAMMPS_", "LD_", "PYTHONPATH"))}
+    env["PATH"] = os.path.dirname(sys.executable) + ":" + env["PATH"]      # the python3 that has numpy
+    done = subprocess.run(["bash", "-e"], input=commands, cwd=clone, env=dict(env, MPLCONFIGDIR=str(clone)), stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-3000:]
+    return done.stdout
+
+
 def follow(name, folder):
-    """The files of the page, its commands run: what they print."""
-    written = subprocess.run([DOC / "files.sh", f"howto_{name}"], cwd=folder, capture_output=True, text=True, check=True).stdout.split()
-    for file in written:
-        assert (folder / file).read_text() in blocks(name), file
-    said = ""
-    for command in HOWTOS[name][0]:
-        words = [sys.executable if word == "python" else word for word in command.split()]
-        done = subprocess.run(words, cwd=folder, env=dict(environment(), MPLCONFIGDIR=str(folder)), stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
-        assert done.returncode == 0, done.stdout[-3000:]
-        said += done.stdout
+    """The block of commands of the page, pasted: what it prints."""
+    said = paste(PASTE.search((DOC / f"howto_{name}.md").read_text()).group(), folder)
+    for block in blocks(name):
+        file = re.match(r"# ([A-Za-z_]+\.[A-Za-z_.]+)", block)
+        assert not file or (folder / "try" / file.group(1)).read_text() == block
     return said
 
 
@@ -57,13 +66,14 @@ def test_a_howto_runs_as_it_stands(name, tmp_path):
             found = re.search(rf"^ *{row[0]} +(.*)$", table, re.M)
             assert found, f"no row {row[0]} below {head}"
             for column, wanted, got in zip(head[1:], row[1:], found.group(1).split()):
-                assert float(got) == pytest.approx(float(wanted), rel=HOWTOS[name][1].get(column, 1e-3)), (column, wanted, got)
+                assert float(got) == pytest.approx(float(wanted), rel=HOWTOS[name].get(column, 1e-3)), (column, wanted, got)
     for picture in re.findall(r"\]\((howto_\w+\.png)\)", page):
-        assert (tmp_path / picture).stat().st_size > 2000, picture
+        assert (tmp_path / "try" / picture).stat().st_size > 2000, picture
     if name == "cfd":
         assert float(re.search(r"momentum lost (\S+)", said).group(1)) < 1e-12
     if name == "python":
-        assert said.splitlines() == re.findall(r"^    (\S.*)$", re.sub(r"```\n.*?```", "", page, flags=re.S), re.M)
+        printed = re.findall(r"^    (\S.*)$", re.sub(r"```\n.*?```", "", PASTE.sub("", page), flags=re.S), re.M)
+        assert said.splitlines() == ["rod.py"] + printed
     if name == "speed":
         errors = [float(error) for error in re.findall(r"^tolerance \S+ iterations \d+ error (\S+)", said, re.M)]
         assert len(errors) == 6 and errors[0] == 0.0 and all(a > b for a, b in zip(errors[1:], errors[2:]))
@@ -74,12 +84,25 @@ def test_every_howto_with_an_input_is_followed():
     assert with_input <= set(HOWTOS)
 
 
-def test_the_input_of_the_readme_settles_as_it_says(tmp_path):
-    readme = (DOC.parents[1] / "README.md").read_text()
-    block = re.search(r"^    plugin +load.*?(?=^\S)", readme, re.S | re.M).group()
-    (tmp_path / "in.rod").write_text(block)
-    done = subprocess.run(["lmp", "-in", "in.rod"], cwd=tmp_path, env=environment(), stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-2000:]
-    said = re.search(r"settling velocity, (\S+) m/s", readme).group(1)
-    assert float(re.search(r"^ +100 +(\S+)", done.stdout, re.M).group(1)) == pytest.approx(float(said), rel=1e-3)
+def test_the_commands_of_the_readme_settle_a_rod_as_it_says(tmp_path):
+    readme = (TOP / "README.md").read_text()
+    printed = paste(PASTE.search(readme).group(), tmp_path)
+    said = float(re.search(r"settling velocity, (\S+) m/s", readme).group(1))
+    exact = float(re.search(r"Exact Stokes flow gives (\S+) m/s", readme).group(1))
+    found = float(re.search(r"^ +100 +(\S+)", printed, re.M).group(1))
+    assert found == pytest.approx(said, rel=1e-3) and found == pytest.approx(exact, rel=1e-2)
+
+
+@pytest.mark.parametrize("path", sorted(DOC.glob("howto_*.md")) + sorted((TOP / "examples").glob("*/README.md")) + [TOP / "README.md"],
+                         ids=lambda path: path.stem if path.parent == DOC else path.parent.name)
+def test_commands_begin_where_a_shell_stands_in_the_clone(path):
+    """One convention: a block that runs LAMMPS or an example says . build/env.sh first and then goes to the folder that it needs."""
+    text = re.sub(r"```\n.*?```", "", path.read_text(), flags=re.S)
+    for block in re.findall(r"(?:^    .*\n|^\n(?=    ))+", text, re.M):
+        lines = [line[4:].split("#")[0].strip() for line in block.splitlines() if line]
+        if not any(re.match(r"(mpirun .*)?lmp -in|\./run\.py|python3? \w+\.py", line) for line in lines):
+            continue
+        if lines[0] == "examples/run.sh":      # which makes build/env.sh
+            del lines[0]
+        assert lines[0] == ". build/env.sh", block
+        assert re.match(r"cd examples/|examples/|mkdir -p try; cd try", lines[1]), block

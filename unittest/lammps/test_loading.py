@@ -30,6 +30,14 @@ def test_plugin_is_found_by_name_and_registers_its_styles(tmp_path):
 def test_loading_twice_is_harmless(tmp_path):
     text = lmp(tmp_path, ["plugin load stokesdynplugin.so", "plugin load stokesdynplugin.so", "plugin list"]).text
     assert len(re.findall(r"pair style plugin stokes_dynamics\n", text)) == 1
+    assert len(re.findall(r"^PKG-STOKESDYN \S+ is loaded already$", text, re.M)) == 1
+
+
+def test_loading_says_one_line_with_the_version(tmp_path):
+    text = lmp(tmp_path, ["print before", "plugin load stokesdynplugin.so", "print after"]).text
+    said = re.search(r"^before\n(.*?)^after$", text, re.S | re.M).group(1).splitlines()
+    said = [line for line in said if not line.startswith(("plugin load", "print"))]
+    assert len(said) == 1 and re.match(r"PKG-STOKESDYN \d+\.\d+\.\d+\S*, built for LAMMPS .*: stokes_dynamics, hydro/vans, sph$", said[0])
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -43,16 +51,16 @@ def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("styles,reason", [(WRONG_STYLES, "undefined symbol: function_of_another_lammps"),
-                                           (None, "No such file")])
-def test_styles_that_cannot_be_opened_are_the_plugins_own_message(tmp_path, styles, reason, ranks):
+@pytest.mark.parametrize("styles,reason,cure", [(WRONG_STYLES, "undefined symbol: function_of_another_lammps", "LAMMPS_SOURCE_DIR"),
+                                                (None, "No such file", "Copy stokesdynstyles.so into the folder")])
+def test_styles_that_cannot_be_opened_are_the_plugins_own_message(tmp_path, styles, reason, cure, ranks):
     shutil.copy(PLUGIN, tmp_path)
     if styles:
         shutil.copy(styles, tmp_path)
     text = lmp(tmp_path, [f"plugin load {tmp_path}/stokesdynplugin.so", "print 'the run goes on'", "plugin list"],
                ranks=ranks, succeed=False).text
     assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: its styles \(stokesdynstyles.so, beside it\) cannot be opened: "
-                          f".*{reason}.*LAMMPS_SOURCE_DIR", text)) == 1
+                          f".*{reason}.*{cure}", text)) == 1
     assert "Open of file" not in text and "style plugin" not in text and "the run goes on" in text
 
 

@@ -203,3 +203,38 @@ def test_films_limit_explicit_steps_as_is_told(simulation, tmp_path, part, stabl
     assert told == pytest.approx(limit, rel=0.03)
     assert ("is above" in text and "use fix stokes_dynamics/overdamped" in text) == (part * limit > told)
     assert (np.abs(sim.v).max() < 1e-9) == stable
+
+
+@pytest.mark.parametrize("e", [0.01, -0.01, 0.03])
+def test_films_in_shear_dissipate(simulation, e):
+    """A film resists what a strain does to its pair, so that power is lost also where no sphere slips, and where spheres move a little
+    with the force on them: never less than nothing, here a parabola in the slip."""
+    lost = []
+    for k in (0.0, e, 2 * e):
+        sim = simulation(Spheres([(0, 0, 0), (1.21166208, 0, 1.61554944)]), "cut_off_distance inf visc 0.05305 fluid_velocity v_ux 0 0 rotation yes "
+                         "lubrication yes algorithm 2 relative_tolerance 1e-10 add_force yes", box=[(-20.0, 20.0)] * 3, comm="comm_modify cutoff 12 vel yes",
+                         before_pair=f"variable ux atom 0.2*z\nvariable vx atom 0.2*z+{k}*0.6*(3-2*id)\nvariable vz atom {k}*0.8*(3-2*id)\n"
+                         "velocity all set v_vx 0 v_vz\nset group all omega 0 0.1 0")
+        sim.commands("compute p all pair stokes_dynamics\nthermo_style custom step f_drag c_p[4]").run(0)
+        lost.append(sim.fix_scalar())
+        assert sim.compute_vector("p", 4)[3] == pytest.approx(lost[-1], rel=1e-12)
+    assert lost[0] == pytest.approx(0.4935869, abs=1e-6) and min(lost) > 0
+    assert lost[2] - 2 * lost[1] + lost[0] >= 0
+
+
+def test_what_is_lost_in_shear_is_the_same_with_and_without_inertia(simulation):
+    """Velocities from forces, and forces from these velocities: one power."""
+    rng = np.random.default_rng(6)
+    x = np.array([(0, 0, 0), (2.03, 0, 0.1), (0.9, 1.85, 0.2), (4.0, 4.0, 4.0), (3.0, 0.4, 2.1)])
+    words = "cut_off_distance inf visc 1.3 fluid_velocity v_ux v_uy 0 rotation yes lubrication yes relative_tolerance 1e-11"
+    options = dict(fix=False, box=[(-20.0, 20.0)] * 3, dt=1e-3, before_pair="variable ux atom 0.7*z\nvariable uy atom 0.3*y-0.2*x")
+    sim = simulation(Spheres(x), words, **options)
+    sim.commands("variable f atom 2*sin(9*id)\nfix pull all addforce v_f 0 v_f\nfix move all stokes_dynamics/overdamped").run(0)
+    power, v, w = sim.fix_scalar("move"), sim.v, sim.atom("omega")
+    sim = simulation(Spheres(x, v=v), words + " algorithm 2 add_force yes", **{**options, "fix": True})
+    for k in range(len(x)):
+        sim.set("omega", k + 1, w[k])
+    sim.run(0)
+    assert power > 0 and sim.fix_scalar() == pytest.approx(power, rel=1e-7)
+    sim.run(0)      # a run that begins where the last one ended
+    assert sim.fix_scalar() == pytest.approx(power, rel=1e-7)

@@ -455,6 +455,87 @@ def test_forces_for_given_velocities_are_the_inverse(simulation, boundary, flow)
         sim.commands(f"unfix drag\n{FIX}")
 
 
+# --- whose velocities, which forces ------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("other", ["temp/rescale 1 1 1 0.01 1", "temp/berendsen 1 1 1", "momentum 1 linear 1 1 1"])
+def test_who_writes_to_v_does_not_steer(simulation, other):
+    """v is output: thermostats and fix momentum change what is printed, not the path, and not the step of adapt."""
+    ends = []
+    for line in ("", f"fix other all {other}"):
+        sim = simulation(cloud(8), ALL, fix=False, box=[(-30.0, 30.0)] * 3, dt=0.05)
+        sim.commands(weight(THREE)).commands(line).commands(f"{FIX} adapt 1 1e-3 0.5 0.05").run(20)
+        ends.append(sim.x)
+    assert np.abs(ends[0][:, 2] - cloud(8).x[:, 2]).max() > 0.5
+    assert (ends[1] == ends[0]).all()
+
+
+@pytest.mark.parametrize("change, after", [("unfix weight", 0.0), ("unfix weight\nfix weight all addforce 0 0 2", 2.0),
+                                           ("pair_style stokes_dynamics cut_off_distance inf visc 4\npair_coeff * *", -0.25),
+                                           ("variable u equal 0.5", -0.5), ("variable u equal 0.0", -1.0)])
+def test_a_force_that_is_taken_away_leaves_nothing(simulation, change, after):
+    """Between two runs: the first step goes by the velocity of now alone. Nothing has changed in the last case."""
+    sim = simulation(Spheres([(0, 0, 0)]), f"cut_off_distance inf visc {1 / P6!r} fluid_velocity 0 0 v_u", fix=False,
+                     box=[(-30.0, 30.0)] * 3, dt=0.1, before_pair="variable u equal 0.0")
+    sim.commands("fix weight all addforce 0 0 -1").commands(FIX).run(10)
+    assert sim.x[0, 2] == pytest.approx(-1.0, abs=1e-13)
+    after = after if "visc" not in change else -1 / (P6 * 4)
+    sim.commands(change).run(10)
+    assert sim.x[0, 2] == pytest.approx(-1.0 + after, abs=1e-13)
+
+
+def test_a_run_goes_on_by_the_second_order_when_nothing_has_changed(simulation):
+    """Euler's step is for changes alone: a run in ten pieces is the run in one."""
+    ends = []
+    for pieces in (1, 10):
+        sim = simulation(THREE, ALL, fix=False, box=[(-99.0, 99.0)] * 3, dt=0.5)
+        sim.commands([weight(THREE), FIX])
+        for _ in range(pieces):
+            sim.run(20 // pieces)
+        ends.append(sim.x)
+    assert np.abs(ends[1] - ends[0]).max() < 1e-13
+
+
+@pytest.mark.parametrize("way", ["delete_atoms", "evaporate"])
+def test_the_step_after_atoms_have_gone_is_eulers(simulation, way):
+    """What is left falls more slowly at once: no part of the step is of the velocities before."""
+    spheres = Spheres([(0, 0, 0), (3, 0, 0), (0.5, 2.5, 0)])
+    sim = simulation(spheres, ALL, fix=False, box=[(-40.0, 40.0)] * 3, dt=0.3)
+    sim.commands(weight(THREE)).commands(FIX).commands("group heavy id 3")
+    if way == "evaporate":
+        sim.commands("region all block EDGE EDGE EDGE EDGE EDGE EDGE\nfix gone heavy evaporate 10 1 all 4711").run(9)
+        assert sim.n == 3
+        sim.run(1)
+    else:
+        sim.run(9).commands("delete_atoms group heavy compress no").run(0)
+    assert sim.n == 2 and sim.fix_vector("move")[1] == 0.0
+    x, v = sim.x, sim.v
+    sim.run(1)
+    assert np.abs(sim.x - x - 0.3 * v).max() < 1e-14
+
+
+def test_a_restarted_step_of_adapt_is_told_to_others(simulation, tmp_path):
+    """Whoever keeps the length of a step (another integration here, springs of friction elsewhere) has that of the run, not that which
+    a script names after read_restart."""
+    words = "pair_style stokes_dynamics cut_off_distance inf visc 1 group slow\npair_coeff * *"
+    lines = input_lines(THREE, words.splitlines(), str(tmp_path / "data"), fix=False, box=[(-40.0, 40.0)] * 3, dt=0.1,
+                        before_pair="group slow id 1 2\ngroup fast id 3\nvelocity fast set 1 0 0")
+    rest = ["fix pull slow addforce 0 0 -1", "fix other fast nve/sphere", "fix move slow stokes_dynamics/overdamped adapt 5 1e-3 0.1 10"]
+    x = simulation().commands(lines + rest).run(18).x
+    simulation().commands(lines + rest + ["run 12", f"write_restart {tmp_path}/half"])
+    again = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/half", *words.splitlines()] + rest)
+    assert np.abs(again.command("timestep 0.01") or again.run(6).x - x).max() < 1e-12
+
+
+def test_values_outlive_the_memory_of_the_pair_style(simulation):
+    """unfix of the internal fix: no number is read from where it was."""
+    sim = simulation(THREE, ALL, fix=False, box=[(-40.0, 40.0)] * 3, dt=0.3)
+    sim.commands(weight(THREE)).commands(FIX).run(3)
+    assert sim.fix_vector("move")[5] == 4
+    sim.command("unfix STOKES_DYNAMICS_STATE")
+    assert (sim.fix_vector("move")[3:7] == 0).all()
+    assert sim.run(1).fix_vector("move")[5] == 2
+
+
 # --- what does not go with it -----------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("lines, message", [

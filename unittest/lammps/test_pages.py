@@ -160,6 +160,29 @@ def test_no_link_leads_nowhere(name):
             assert (PACKAGE / "doc" / target).exists(), target
 
 
+TEXTS = [PACKAGE.parent / "README.md", PACKAGE.parent / ".github" / "CONTRIBUTING.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md",
+         *sorted((PACKAGE / "doc").glob("*.md")), *sorted((PACKAGE.parent / "examples").rglob("*.md")),
+         *sorted((PACKAGE.parent / "unittest").rglob("*.md"))]
+
+
+def anchors(path):
+    """Of the headings of a text, as GitHub and the manual name them."""
+    headings = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", path.read_text(), flags=re.S | re.M), re.M)
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_every_link_and_every_anchor_leads_somewhere(path):
+    text = re.sub(r"^```.*?^```", "", path.read_text(), flags=re.S | re.M)
+    for target in re.findall(r"\]\(([^)\s]+)\)", text) + re.findall(r"^\[[^]]+\]: (\S+)$", text, re.M):
+        file, _, anchor = target.partition("#")
+        if re.match(r"(https?|mailto):", target):
+            continue
+        to = (path.parent / file).resolve() if file else path
+        assert to.exists(), target
+        assert not anchor or anchor in anchors(to), target
+
+
 def test_every_example_and_every_page_is_in_its_list():
     examples = PACKAGE.parent / "examples"
     listed = (examples / "README.md").read_text()

@@ -1,9 +1,12 @@
 """The Python module stokesdyn: the answers of the C program, and exceptions for bad input. And what cmake --install leaves."""
+import base64
+import hashlib
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import zipfile
 
 import numpy as np
 import pytest
@@ -48,6 +51,26 @@ def test_a_sphere_is_stokes():
     assert np.allclose(clump.resistance, exact, rtol=1e-9, atol=1e-9) and np.allclose(clump.centre, (0.3, -2, 5), atol=1e-14)
     U, W = clump.velocity(force=(0, 0, -2), torque=(1, 0, 0))
     assert U[2] == pytest.approx(-2 / exact[2, 2]) and W[0] == pytest.approx(1 / exact[3, 3])
+
+
+@pytest.mark.parametrize("words, message", [
+    (dict(radius=1e-160), "radius must be 1e-60 ... 1e\\+60, not 1e-160: use other units"),
+    (dict(radius=1e160), "radius must be 1e-60 ... 1e\\+60, not 1e\\+160: use other units"),
+    (dict(x=[(0, 0, 0), (0, 0, 1e200)]), "x must be 0 ... 1e\\+60, not 1e\\+200: use other units"),
+    (dict(viscosity=1e-320), "viscosity must be 1e-100 ... 1e\\+100, not 9.99989e-321: use other units"),
+    (dict(viscosity=1e200), "viscosity must be"),
+])
+def test_numbers_that_double_precision_cannot_carry_are_named(words, message):
+    with pytest.raises(stokesdyn.Error, match=message):
+        stokesdyn.Clump(**{"x": [(0, 0, 0), (0, 0, 2)], "radius": 1.0, **words})
+
+
+@pytest.mark.parametrize("unit, eta", [(1e-60, 1e-100), (5e59, 1e100), (1e-60, 1e100)])
+def test_the_smallest_and_largest_units_have_the_same_answer(unit, eta):
+    small, one = (stokesdyn.Clump([(0, 0, 0), (0, 0, 2 * u)], u, shell=12, viscosity=v) for u, v in ((unit, eta), (1.0, 1.0)))
+    scale = eta * np.kron([[unit, unit**2], [unit**2, unit**3]], np.ones((3, 3)))
+    assert np.abs(small.resistance / scale - one.resistance).max() < 1e-11 * one.resistance.max()
+    assert np.abs(small.mobility * scale - one.mobility).max() < 1e-11 * one.mobility.max()
 
 
 def test_a_clump_that_does_not_fit_is_solved_iteratively_and_in_less_memory_refused():
@@ -97,7 +120,7 @@ def test_an_installation_works_wherever_it_is_moved(tmp_path):
     moved = tmp_path / "moved"
     script = f"""
 . {moved}/share/stokesdyn/env.sh
-[ "$LAMMPS_PLUGIN_PATH" = {moved}/lib/stokesdyn ] || exit 3
+[ "$LAMMPS_PLUGIN_PATH" = {moved}/lib/lammps/plugins ] || exit 3
 echo 'plugin load stokesdynplugin.so
 plugin list' | lmp -log none
 {sys.executable} -c 'import stokesdyn; print(stokesdyn.__file__, stokesdyn._core._name); stokesdyn.Clump([(0, 0, 0)], 1)'
@@ -108,10 +131,12 @@ clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.m
     done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     version = (TOP / "PKG-STOKESDYN" / "VERSION").read_text().strip()
-    assert f"PKG-STOKESDYN {version}" in done.stdout and "pair style stokes_dynamics" in done.stdout.lower()
+    assert f"PKG-STOKESDYN {version}" in done.stdout and "pair style plugin stokes_dynamics" in done.stdout.lower()
     assert f"{moved}/lib/stokesdyn/python/stokesdyn.py {moved}/lib/libstokesdyn.so" in done.stdout
     assert "3 spheres, shell 12" in done.stdout
     pages = moved / "share" / "doc" / "stokesdyn" / "PKG-STOKESDYN" / "doc"
+    subprocess.run([pages / "files.sh", "howto_python"], cwd=tmp_path, check=True)    # a script that may be run
+    assert (tmp_path / "rod.py").exists()
     assert {path.name for path in pages.glob("*.md")} == {path.name for path in (TOP / "PKG-STOKESDYN" / "doc").glob("*.md")}
     program = tmp_path / "use.c"    # the headers and the static libraries serve a C program
     headers = sorted(path.name for path in (moved / "include" / "stokesdyn").glob("*.h"))
@@ -120,3 +145,37 @@ clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.m
     libraries = [f"-lstokesdyn_{name}" for name in ("stokes", "base")] + ["-llapack", "-lblas", "-lm"]
     subprocess.run(["cc", program, "-o", tmp_path / "use", f"-I{moved}/include/stokesdyn", f"-L{moved}/lib", *libraries], check=True)
     assert subprocess.run([tmp_path / "use"]).returncode == 0
+
+
+def test_uninstall_leaves_what_is_not_its_own(tmp_path):
+    there = tmp_path / "a b"
+    (there / "lib").mkdir(parents=True)
+    (there / "lib" / "mine").write_text("kept")
+    before = BUILD / "install_manifest.txt"
+    kept = before.read_bytes() if before.exists() else None
+    subprocess.run(["cmake", "--install", BUILD, "--prefix", there], check=True, stdout=subprocess.DEVNULL)
+    assert (there / "share/stokesdyn/env.sh").exists() and (there / "lib/lammps/plugins/stokesdynplugin.so").exists()
+    shutil.move(before, tmp_path / "manifest.txt")
+    if kept:
+        before.write_bytes(kept)
+    subprocess.run(["cmake", "-D", f"MANIFEST={tmp_path}/manifest.txt", "-P", TOP / "cmake/uninstall.cmake"], check=True, capture_output=True)
+    assert sorted(path.relative_to(there) for path in there.rglob("*")) == [pathlib.Path("lib"), pathlib.Path("lib/mine")]
+
+
+def test_the_wheel_that_pip_installs_holds_module_and_library(tmp_path):
+    build = ("import wheel_of_core; print(wheel_of_core.build_wheel('.'))")
+    env = dict(environment(), STOKESDYN_LIBRARY=str(BUILD / "libstokesdyn.so"), PYTHONPATH=str(TOP / "PKG-STOKESDYN" / "python"),
+               PYTHONDONTWRITEBYTECODE="1")
+    name = subprocess.run([sys.executable, "-c", build], cwd=tmp_path, env=env, check=True, capture_output=True, text=True).stdout.strip()
+    with zipfile.ZipFile(tmp_path / name) as wheel:
+        wheel.extractall(tmp_path / "site")
+        rows = [line.split(",") for line in wheel.read(next(n for n in wheel.namelist() if n.endswith("RECORD"))).decode().splitlines()]
+        assert sorted(row[0] for row in rows) == sorted(wheel.namelist())
+        for path, digest, size in rows[:-1]:
+            assert len(wheel.read(path)) == int(size)
+            assert digest == "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(wheel.read(path)).digest()).rstrip(b"=").decode()
+    env = {key: value for key, value in environment().items() if not key.startswith(("LD_", "STOKESDYN_"))}
+    done = subprocess.run([sys.executable, "-c", "import stokesdyn; print(stokesdyn.__file__, stokesdyn.Clump([(0, 0, 0)], 2).hydrodynamic_radius)"],
+                          env=dict(env, PYTHONPATH=str(tmp_path / "site")), capture_output=True, text=True, check=True)
+    file, radius = done.stdout.split()
+    assert file == str(tmp_path / "site" / "stokesdyn.py") and float(radius) == pytest.approx(2.0, rel=1e-9)

@@ -146,6 +146,13 @@ def test_walls_of_a_periodic_box(wall, bad, good):
     assert message(scene.replace("boundary f f f", "boundary " + good)) == "no error"
 
 
+def test_a_support_of_very_many_boxes_is_asked_about():
+    """h in other units: LAMMPS would make ghosts without end."""
+    scene = random_scene().replace("boundary f f f", "boundary p p p") + "pair_style sph/artVisc/tensCorr wendland 5\npair_coeff * *\n" + MOVE
+    text = message(scene + "run 0")
+    assert "types 1 and 1: the support 2 h = 10 is 60.6" in text and "is it in other units?" in text
+
+
 def test_cylinder_inside_a_periodic_box():
     """Nobody gets out of a cylinder that is a support away from its images."""
     box = "units si\natom_style sph\nregion b block -1 1 -1 1 -1 1\ncreate_box 1 b\ncreate_atoms 1 single 0.1 0.2 0\nmass 1 1\n" \

@@ -26,6 +26,18 @@ static inline double sd_hash_unit(uint64_t x)
   return (double) (x >> 11) * 0x1p-53;
 }
 
+/* Adds row number `tag` to the fingerprint of many rows: sums[0] += sum_k g v_k with g in -1 ... 1 of
+ * (tag, k), sums[1] += sum_k |v_k|. Two sets of rows whose sums[0] differ by less than 1e-8 of
+ * sums[1] are the same but for rounding, whatever the order in which they were added. */
+static inline void sd_hash_add_row(uint64_t tag, const double *v, int n, double sums[2])
+{
+  for (int k = 0; k < n; k++) {
+    const uint64_t key = sd_hash_mix(tag * SD_HASH_STEP + (uint64_t) (k + 1));
+    sums[0] += (2.0 * sd_hash_unit(key) - 1.0) * v[k];
+    sums[1] += v[k] < 0.0 ? -v[k] : v[k];
+  }
+}
+
 #ifdef __cplusplus
 }
 #endif

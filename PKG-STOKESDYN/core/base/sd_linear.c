@@ -1,6 +1,7 @@
 #include "sd_linear.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* LAPACK, Fortran: all by reference, column-major, the lengths of character arguments in the
@@ -44,6 +45,14 @@ static void threads_as_before(int before)
   (void) before;
 }
 #endif
+
+sd_status sd_linear_room(void)
+{
+  void *volatile room = malloc(136u << 20); /* volatile: else no compiler asks for it */
+  if (!room) return SD_ENOMEMORY;
+  free(room);
+  return SD_OK;
+}
 
 /* info of a factor: the pivot, counted from 1, that is not positive. A NaN is neither, and need not
  * stop LAPACK; it stays in its pivot. */

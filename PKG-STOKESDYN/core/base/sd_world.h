@@ -51,6 +51,16 @@ static inline sd_status sd_world_agree(const sd_world *w, sd_status mine)
   return SD_OK;
 }
 
+static inline int sd_world_ranks(const sd_world *world)
+{
+  return world->ranks > 0 ? world->ranks : 1;
+}
+
+static inline int sd_world_me(const sd_world *world)
+{
+  return world->ranks > 0 ? world->me : 0;
+}
+
 #ifdef __cplusplus
 }
 #endif

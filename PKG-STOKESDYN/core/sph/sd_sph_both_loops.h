@@ -39,7 +39,7 @@ INLINE void store_columns(double *row, int columns, vec *sum)
   double largest = 0.0;
   if (columns > SD_SPH_MAXIMUM)
     for (int k = 0; k < LANES; k++) largest = fmax(largest, sum[SD_SPH_MAXIMUM][k]);
-  for (int first = 0; first < columns; first += 4) store(row + first, over_lanes(sum + first));
+  for (int first = 0; first < columns; first += 4) store4(row + first, over_lanes(sum + first));
   if (columns > SD_SPH_MAXIMUM) row[SD_SPH_MAXIMUM] = largest;
 }
 
@@ -51,7 +51,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
   const int columns = 8 + 4 * level + 4 * (level == SD_SPH_VELOCITY);
   int *last = near->pool;
   for (int i = 0; i < list->n; i++) {
-    const row4 xi = load(p->x4 + 4 * (size_t) i), vi = load(p->v4 + 4 * (size_t) i);
+    const row4 xi = load4(p->x4 + 4 * (size_t) i), vi = load4(p->v4 + 4 * (size_t) i);
     const sd_sph_coefficients *row = ROW_OF(i);
     const vec mi = all(many ? p->m[i] : p->mass);
     const int phase = p->phase ? p->phase[i] : 0;
@@ -63,8 +63,8 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
       const int *j = list->neighbor[i] + at;
       if (at == list->own[i]) near->own[i] = (int) (last - near->neighbor[i]);
       vec b[4], u[4];
-      gather(p->x4, j, b);
-      gather(p->v4, j, u);
+      gather(p->x4, 4, j, b);
+      gather(p->v4, 4, j, u);
       pairs_with_sums q = {.V = b[3], .rho_i = all(vi[3]), .rho_j = u[3]};
       vec r2 = zero, vd = zero;
       for (int c = 0; c < 3; c++) {
@@ -74,7 +74,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
         vd += q.d[c] * q.u[c];
       }
       const vec inv_h = COEFFICIENT(inv_h), r = root(r2), distance = smaller(r * inv_h, two);
-      last = keep(last, j, r * inv_h < two + near->margin * inv_h);
+      last += keep(last, j, bits(r * inv_h < two + near->margin * inv_h));
       q.g = COEFFICIENT(grad) * G(kernel, distance);
       vec w = MASSES * q.g * vd;
       if (volume) w *= 2.0 * vi[3] / (vi[3] + u[3]);
@@ -109,7 +109,7 @@ INLINE void diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
   const vec zero = all(0.0), two = all(2.0);
   const int columns = sd_sph_columns(model);
   for (int i = 0; i < list->n; i++) {
-    const row4 xi = load(p->x4 + 4 * (size_t) i), gi = load(p->order + (size_t) columns * i);
+    const row4 xi = load4(p->x4 + 4 * (size_t) i), gi = load4(p->order + (size_t) columns * i);
     const sd_sph_coefficients *row = ROW_OF(i);
     const int phase = p->phase ? p->phase[i] : 0;
     if (phase < 0) continue;
@@ -118,8 +118,8 @@ INLINE void diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
     for (int at = 0; at < list->count[i]; at += LANES) {
       const int *j = list->neighbor[i] + at;
       vec b[4], gj[4];
-      gather(p->x4, j, b);
-      gather_from(p->order, columns, j, gj);
+      gather(p->x4, 4, j, b);
+      gather(p->order, columns, j, gj);
       vec r2 = zero, along = zero;
       for (int c = 0; c < 3; c++) {
         const vec d = xi[c] - b[c];

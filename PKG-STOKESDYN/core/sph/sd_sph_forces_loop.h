@@ -30,9 +30,9 @@ typedef struct {
 INLINE particle particle_of(const sd_sph_model *model, const sd_sph_particles *p, int i, terms has)
 {
   const int many = has.many;
-  return (particle){.x = load(p->x4 + 4 * (size_t) i),
-                    .v = load(p->v4 + 4 * (size_t) i),
-                    .du = has.scheme == SD_SPH_SHIFT ? load(p->order + 8 * (size_t) i + 4)
+  return (particle){.x = load4(p->x4 + 4 * (size_t) i),
+                    .v = load4(p->v4 + 4 * (size_t) i),
+                    .du = has.scheme == SD_SPH_SHIFT ? load4(p->order + 8 * (size_t) i + 4)
                                                      : (row4){0},
                     .m = all(many ? p->m[i] : p->mass),
                     .row = ROW_OF(i)};
@@ -46,7 +46,7 @@ INLINE pairs_of_one meet(const sd_sph_particles *p, const particle *i, const int
   const vec mi = i->m;
   pairs_of_one q = {.A_i = all(i->x[3]), .rho_i = all(i->v[3]), .masses = MASSES};
   vec b[4];
-  gather(p->x4, j, b);
+  gather(p->x4, 4, j, b);
   for (int c = 0; c < 3; c++) {
     q.d[c] = i->x[c] - b[c];
     q.r2 += q.d[c] * q.d[c];
@@ -57,7 +57,7 @@ INLINE pairs_of_one meet(const sd_sph_particles *p, const particle *i, const int
   q.g = COEFFICIENT(grad) * G(has.kernel, smaller(root(q.r2) * q.inv_h, all(2.0)));
   q.m = mi * q.masses;
   if (has.artvisc || has.friction || has.rates || has.scheme != SD_SPH_PLAIN) {
-    gather(p->v4, j, b);
+    gather(p->v4, 4, j, b);
     for (int c = 0; c < 3; c++) {
       q.v_j[c] = b[c];
       q.u[c] = i->v[c] - b[c];
@@ -125,7 +125,7 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
   /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */
   if (has.scheme == SD_SPH_SHIFT) {
     vec du[4], mine = all(0.0), theirs = all(0.0);
-    gather_from(p->order + 4, 8, j, du);
+    gather(p->order + 4, 8, j, du);
     for (int c = 0; c < 3; c++) {
       mine += i->du[c] * q->d[c];
       theirs += du[c] * q->d[c];
@@ -165,7 +165,7 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
       take_from(f4, j, F);
     }
     double *fi = f4 + 4 * (size_t) i;
-    store(fi, load(fi) + over_lanes(sum));
+    store4(fi, load4(fi) + over_lanes(sum));
   }
   return least_of(nearest);
 }
@@ -184,8 +184,8 @@ INLINE vec corrected(const double *order, const vec own[8], const int j[LANES], 
                      vec r2, vec mine[3])
 {
   vec other[8], theirs[3], product = all(0.0);
-  gather_from(order + 8, 16, j, other);
-  gather_from(order + 12, 16, j, other + 4);
+  gather(order + 8, 16, j, other);
+  gather(order + 12, 16, j, other + 4);
   turn(own, d, mine);
   turn(other, d, theirs);
   const yes_no wall_j = other[6] > 0.5, wall_i = own[6] > 0.5;
@@ -233,7 +233,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
     vec turned[3];
     turn(own, slope, turned);
     for (int c = 0; c < 3; c++) sum[c] += turned[c];
-    store(f4 + 4 * (size_t) i, over_lanes(sum));
+    store4(f4 + 4 * (size_t) i, over_lanes(sum));
   }
   return least_of(nearest);
 }

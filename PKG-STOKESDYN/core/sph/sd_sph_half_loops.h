@@ -13,7 +13,7 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
     const int *neighbor = list->neighbor[i];
-    const row4 xi = load(p->x4 + 4 * (size_t) i), vi = load(p->v4 + 4 * (size_t) i);
+    const row4 xi = load4(p->x4 + 4 * (size_t) i), vi = load4(p->v4 + 4 * (size_t) i);
     const sd_sph_coefficients *row = ROW_OF(i);
     const vec mi = all(many ? p->m[i] : p->mass);
     vec sum = all(0.0);
@@ -23,8 +23,8 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
       int j[LANES];
       next(neighbor + at, count - at, list->mask, p->n, j);
       vec b[4], u[4];
-      gather(p->x4, j, b);
-      gather(p->v4, j, u);
+      gather(p->x4, 4, j, b);
+      gather(p->v4, 4, j, u);
       vec r2 = all(0.0), vd = all(0.0);
       for (int c = 0; c < 3; c++) {
         const vec d = xi[c] - b[c];
@@ -40,7 +40,7 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
         masses *= vi[3];
         mine *= u[3];
       }
-      last = keep(last, j, distance < two + near->margin * inv_h);
+      last += keep(last, j, bits(distance < two + near->margin * inv_h));
       sum += w * masses;
       for (int k = 0; k < LANES; k++) rate[j[k]] += mine[k] * w[k];
     }
@@ -60,7 +60,7 @@ INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
     const int *neighbor = list->neighbor[i];
-    const row4 xi = load(p->x4 + 4 * (size_t) i);
+    const row4 xi = load4(p->x4 + 4 * (size_t) i);
     const sd_sph_coefficients *row = ROW_OF(i);
     vec sum[8];
     for (int c = 0; c < columns; c++) sum[c] = zero;
@@ -71,30 +71,28 @@ INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
       yes_no counts = same(-1);
       if (walls) {
         counts = phases(p->phase, j) == same(~p->phase[i]);
-        long long some = 0;
-        for (int k = 0; k < LANES; k++) some |= counts[k];
-        if (!some) continue;
+        if (!any(counts)) continue;
       }
       vec b[4];
-      gather(p->x4, j, b);
+      gather(p->x4, 4, j, b);
       const vec dx = xi[0] - b[0], dy = xi[1] - b[1], dz = xi[2] - b[2];
       const vec distance = smaller(root(dx * dx + dy * dy + dz * dz) * COEFFICIENT(inv_h), two);
       vec W = COEFFICIENT(weight) * K(kernel, distance);
       if (walls) W = where(counts, W, zero);
       for (int first = 0; first < columns; first += 4) {
-        const row4 qi = load(q + (size_t) columns * i + first);
+        const row4 qi = load4(q + (size_t) columns * i + first);
         vec qj[4];
-        gather_from(q + first, columns, j, qj);
+        gather(q + first, columns, j, qj);
         for (int c = 0; c < 4; c++) sum[first + c] += W * qj[c];
         for (int k = 0; k < LANES; k++) {
           double *row_j = sums + (size_t) columns * j[k] + first;
-          store(row_j, load(row_j) + W[k] * qi);
+          store4(row_j, load4(row_j) + W[k] * qi);
         }
       }
     }
     for (int first = 0; first < columns; first += 4) {
       double *row_i = sums + (size_t) columns * i + first;
-      store(row_i, load(row_i) + over_lanes(sum + first));
+      store4(row_i, load4(row_i) + over_lanes(sum + first));
     }
   }
 }

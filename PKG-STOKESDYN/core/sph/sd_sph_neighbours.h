@@ -15,7 +15,7 @@
 #define SD_SPH_NEIGHBOURS_H
 
 #include "sd_sph_lanes.h"
-#include "sd_sph_sums.h"
+#include "sd_sph_internal.h"
 
 /* Coefficient NAME of the pairs of i with j, and masses of j. */
 #define PAIR_NAME(k, NAME) row[p->cls[j[k]]].NAME

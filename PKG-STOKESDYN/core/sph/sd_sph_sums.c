@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "sd_sph_internal.h"
+
 /* Diffusion needs the gradient of the density, and M for it; shift also the disorder; correction
  * also the gradient of the velocity. */
 sd_sph_level sd_sph_level_of(const sd_sph_model *model)
@@ -67,4 +69,47 @@ void sd_sph_both_ways(const sd_sph_list *half, int filler, int *pool, sd_sph_bot
     }
   }
   for (int i = 0; i < n; i++) out->count[i] = filled_up(out->count[i]);
+}
+
+/* --- the sums, in the widest vectors that this processor has -------------------------------------- */
+
+static const sd_sph_loops *loops(void)
+{
+  return SD_KERNELS_OF(sd_sph_loops, baseline, sd_isa_of(SD_ISA_BEST));
+}
+
+double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     int rates, double *f4, double *each)
+{
+  return loops()->forces(model, list, p, rates, f4, each);
+}
+
+double sd_sph_corrected_forces(const sd_sph_model *model, const sd_sph_both *list,
+                               const sd_sph_particles *p, double *f4, double *each)
+{
+  return loops()->slopes(model, list, p, f4, each);
+}
+
+void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  double *rate, const sd_sph_near *near)
+{
+  loops()->rates(model, list, p, rate, near);
+}
+
+void sd_sph_middle(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
+                   double *sums, const sd_sph_near *near)
+{
+  loops()->middle(model, list, p, sums, near);
+}
+
+void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
+                      double *rate)
+{
+  loops()->diffusion(model, list, p, rate);
+}
+
+void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                  int fours, int walls, const double *q, double *sums)
+{
+  loops()->weigh(model, list, p, fours, walls, q, sums);
 }

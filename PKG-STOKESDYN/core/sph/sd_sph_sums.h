@@ -75,22 +75,6 @@ double sd_sph_corrected_forces(const sd_sph_model *model, const sd_sph_both *lis
 void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   int fours, int walls, const double *q, double *sums);
 
-/* The loops as compiled for one instruction set: sd_sph_loops.h. */
-typedef struct {
-  double (*forces)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int,
-                   double *, double *);
-  double (*slopes)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,
-                   double *);
-  void (*rates)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *,
-                const sd_sph_near *);
-  void (*middle)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,
-                 const sd_sph_near *);
-  void (*diffusion)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *);
-  void (*weigh)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, int, int,
-                const double *, double *);
-} sd_sph_loops;
-extern const sd_sph_loops sd_sph_loops_any, sd_sph_loops_avx2, sd_sph_loops_avx512;
-
 #ifdef __cplusplus
 }
 #endif

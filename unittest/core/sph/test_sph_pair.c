@@ -2,6 +2,7 @@
 #include "sd_sph_density.h"
 #include "sd_sph_order.h"
 #include "sd_sph_wall.h"
+#include "sd_sph_internal.h"
 
 #include "sph_scene.h"
 
@@ -197,34 +198,31 @@ static void every_column(const sd_sph_loops *loops)
   }
 }
 
+/* Those of a set that this processor has not: nothing to see */
+static void every_loop(sd_isa isa)
+{
+  if (!sd_isa_supported(isa)) return;
+  const sd_sph_loops *loops = SD_KERNELS_OF(sd_sph_loops, baseline, isa);
+  every_combination(loops);
+  every_column(loops);
+}
+
 static void loops_for_any_processor(void **state)
 {
   (void) state;
-  every_combination(&sd_sph_loops_any);
-  every_column(&sd_sph_loops_any);
+  every_loop(SD_ISA_BASELINE);
 }
 
 static void loops_for_avx2(void **state)
 {
   (void) state;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-    every_combination(&sd_sph_loops_avx2);
-    every_column(&sd_sph_loops_avx2);
-  }
-#endif
+  every_loop(SD_ISA_AVX2);
 }
 
 static void loops_for_avx512(void **state)
 {
   (void) state;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl")) {
-    every_combination(&sd_sph_loops_avx512);
-    every_column(&sd_sph_loops_avx512);
-  }
-#endif
+  every_loop(SD_ISA_AVX512);
 }
 
 /* Two particles on the x axis, Wendland in 3-D: R read off the force, against the rule. */

@@ -6,6 +6,12 @@
 
 #include "sd_product.h"
 
+static inline const char *isa_name(sd_isa isa)
+{
+  static const char *const names[] = {"best", "plain C", "baseline", "AVX2", "AVX-512"};
+  return names[isa];
+}
+
 /* Every one of n spheres with every other: F [width n] -> u [width n] */
 static inline void plain_all(const sd_law *law, const sd_spheres *s, int n, int width,
                              const double *F, double *u)

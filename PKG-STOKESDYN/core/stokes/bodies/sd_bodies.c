@@ -211,7 +211,9 @@ static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
       (c->verdict = judge_guess(c, now->rz)) != GO_ON)
     return SD_OK;
   if (now->rz < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
-  report->residual = power->spent > 0.0 ? sqrt(fmax(now->rz, 0.0) / power->spent) : 0.0;
+  /* nothing is spent yet: a guess of no forces on bodies that are all held */
+  const double wrong = fmax(now->rz, 0.0);
+  report->residual = power->spent > 0.0 ? sqrt(wrong / power->spent) : wrong > power->floor;
   if (now->rz <= power->floor || report->residual < c->problem->tolerance) return SD_OK;
   if (report->products >= c->problem->max_iter) return SD_EMAXITER;
   c->tie_tolerance = tie_tolerance(c, now->rz);

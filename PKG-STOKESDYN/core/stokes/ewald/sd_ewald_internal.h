@@ -3,7 +3,6 @@
 #define SD_EWALD_INTERNAL_H
 
 #include "sd_product.h"
-#include "sd_product_internal.h"
 #include "sd_radial.h"
 #include "sd_window.h"
 
@@ -66,7 +65,6 @@ typedef long sd_near_search(const double *centre, long stride, const int *ranges
                             const double *x, double distance2, int *list);
 
 struct sd_ewald_kernels {
-  int lanes;
   sd_near_search *search;
   void (*near_part)(const sd_near_part *p);
   void (*spread)(const sd_spreading *s);
@@ -78,10 +76,6 @@ struct sd_ewald_kernels {
   void (*open_row)(double *const *f, const double *K, double sx, double sy, int half);
 };
 
-extern const struct sd_ewald_kernels sd_ewald_plain, sd_ewald_baseline, sd_ewald_avx2,
-    sd_ewald_avx512;
-
-/* The best that build and processor have */
-const struct sd_ewald_kernels *sd_ewald_kernels_of(sd_isa isa);
+SD_KERNEL_TABLES(struct sd_ewald_kernels, sd_ewald);
 
 #endif

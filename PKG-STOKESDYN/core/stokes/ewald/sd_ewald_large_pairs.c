@@ -1,5 +1,6 @@
 #include "sd_ewald_large_pairs.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +62,7 @@ static int room_for_larges(sd_ewald_large_pairs *p, int many)
 static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list, int n,
                               const sd_world *world)
 {
-  const int ranks = world->ranks > 0 ? world->ranks : 1, me = world->ranks > 0 ? world->me : 0;
+  const int ranks = sd_world_ranks(world), me = sd_world_me(world);
   double *counts = calloc((size_t) ranks, sizeof(double));
   if (!counts) return SD_ENOMEMORY;
   for (int i = 0; i < n; i++) counts[me] += s->a[list[i]] >= p->from;
@@ -74,7 +75,7 @@ static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, cons
   }
   free(counts);
   if (status != SD_OK) return status;
-  if (!room_for_larges(p, p->larges)) return SD_ENOMEMORY;
+  if (p->larges > INT_MAX / 6 || !room_for_larges(p, p->larges)) return SD_ENOMEMORY;
   p->u = p->F + 6 * (long) p->large_room;
   memset(p->large, 0, sizeof(sd_large_sphere) * (size_t) p->larges);
   int next = 0;

@@ -1,5 +1,5 @@
-/* Kernels of the near part: the block of a pair (sd_pair_kernel.h) less the wave part of the same
- * pair in open space, polynomials in t = 2 r^2/range^2 - 1. Included by sd_ewald_kernel.h. */
+/* Kernels of the near part: the block of a pair (sd_tensor_lanes.h) less the wave part of the same
+ * pair in open space, polynomials in t = 2 r^2/range^2 - 1. Included by sd_ewald_kernels.c. */
 
 /* The lanes beyond the end, of other rows, are cut off; centres have room for them. */
 INLINE long search_range(const double *px, long stride, int begin, int end, const vec *x, vec most,
@@ -10,20 +10,9 @@ INLINE long search_range(const double *px, long stride, int begin, int end, cons
   for (int j = begin; j < end; j += LANES) {
     const vec dx = load_any(px + j) - x[0], dy = load_any(py + j) - x[1];
     const vec dz = load_any(pz + j) - x[2];
-    unsigned hit = BITS(LE(dx * dx + dy * dy + dz * dz, most));
-    if (end - j < LANES) hit &= (1u << (end - j)) - 1;
-#if LANES == 8
-    const __m256i row =
-        _mm256_add_epi32(_mm256_set1_epi32(j), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-    _mm256_storeu_si256((__m256i *) (list + many),
-                        _mm256_maskz_compress_epi32((__mmask8) hit, row));
-    many += __builtin_popcount(hit);
-#else
-    for (int l = 0; l < LANES; l++) { /* without a branch: half of them are hits */
-      list[many] = j + l;
-      many += hit >> l & 1;
-    }
-#endif
+    unsigned hits = bits(dx * dx + dy * dy + dz * dz <= most);
+    if (end - j < LANES) hits &= (1u << (end - j)) - 1;
+    many += keep_next(list + many, j, hits);
   }
   return many;
 }
@@ -31,56 +20,22 @@ INLINE long search_range(const double *px, long stride, int begin, int end, cons
 static long search(const double *centre, long stride, const int *ranges, int count, const double *x,
                    double distance2, int *list)
 {
-  const vec at[3] = {SET1(x[0]), SET1(x[1]), SET1(x[2])}, most = SET1(distance2);
+  const vec at[3] = {all(x[0]), all(x[1]), all(x[2])}, most = all(distance2);
   long many = 0;
   for (int k = 0; k < count; k++)
     many += search_range(centre, stride, ranges[2 * k], ranges[2 * k + 1], at, most, list + many);
   return many;
 }
 
-/* Rows j of u, `step` doubles apart, += three columns. The rows of a vector differ, but for the one
- * that stands for nothing. */
-INLINE void add_to_rows(double *u, int step, const int *j, vec v0, vec v1, vec v2)
-{
-#if LANES == 8
-  const vec none = SET1(0.0);
-  const vec even01 = _mm512_unpacklo_pd(v0, v1), odd01 = _mm512_unpackhi_pd(v0, v1);
-  const vec even2 = _mm512_unpacklo_pd(v2, none), odd2 = _mm512_unpackhi_pd(v2, none);
-  const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
-                high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
-#define ADD(k, v) \
-  _mm256_store_pd(u + step * (long) j[k], _mm256_load_pd(u + step * (long) j[k]) + (v))
-#define ADD_TWO(k, from, to)                                        \
-  do {                                                              \
-    const vec two_ = _mm512_permutex2var_pd(from##01, to, from##2); \
-    ADD(k, _mm512_castpd512_pd256(two_));                           \
-    ADD(k + 2, _mm512_extractf64x4_pd(two_, 1));                    \
-  } while (0)
-  ADD_TWO(0, even, low);
-  ADD_TWO(1, odd, low);
-  ADD_TWO(4, even, high);
-  ADD_TWO(5, odd, high);
-#undef ADD_TWO
-#undef ADD
-#else
-  double t[3][LANES] __attribute__((aligned(64)));
-  STORE(t[0], v0);
-  STORE(t[1], v1);
-  STORE(t[2], v2);
-  for (int l = 0; l < LANES; l++)
-    for (int k = 0; k < 3; k++) u[step * (long) j[l] + k] += t[k][l];
-#endif
-}
-
 /* COUNT polynomials of one degree at once: coefficient [COUNT][stride] */
 INLINE void horner(int count, int degree, const double *coefficient, int stride, vec t, vec *value)
 {
 #pragma GCC unroll 8
-  for (int f = 0; f < count; f++) value[f] = SET1(coefficient[f * stride + degree]);
+  for (int f = 0; f < count; f++) value[f] = all(coefficient[f * stride + degree]);
 #pragma GCC unroll 40
   for (int k = degree - 1; k >= 0; k--)
 #pragma GCC unroll 8
-    for (int f = 0; f < count; f++) value[f] = value[f] * t + SET1(coefficient[f * stride + k]);
+    for (int f = 0; f < count; f++) value[f] = value[f] * t + all(coefficient[f * stride + k]);
 }
 
 /* A = I_0 - (b_i + b_j) I_1 + b_i b_j I_2 = (I_0 - b_i I_1) - b_j (I_1 - b_i I_2), and the same of J:
@@ -99,12 +54,12 @@ INLINE void polynomials_of_target(const sd_near_part *p, double b, int degree, d
 /* Forces. equal: all radii are a_ref, and two polynomials do. */
 INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 {
-  const vec range2 = SET1(p->range2), twice = SET1(2.0 / p->range2), one = SET1(1.0);
-  const vec sixth = SET1(1.0 / 6.0), ref2 = SET1(p->ref2);
+  const vec range2 = all(p->range2), twice = all(2.0 / p->range2), one = all(1.0);
+  const vec sixth = all(1.0 / 6.0), ref2 = all(p->ref2);
   for (int i = 0; i < p->rows; i++) {
     const double *own = p->row + 8 * (long) i;
-    const vec x = SET1(own[0]), y = SET1(own[1]), z = SET1(own[2]), a = SET1(own[3]);
-    const vec G0 = SET1(own[4]), G1 = SET1(own[5]), G2 = SET1(own[6]), a2 = a * a;
+    const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
+    const vec G0 = all(own[4]), G1 = all(own[5]), G2 = all(own[6]), a2 = a * a;
     const long end = p->first[i + 1];
     double mine[4 * SD_RADIAL_TERMS];
     const double *c = p->coefficient[0];
@@ -112,14 +67,15 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
       polynomials_of_target(p, (own[3] * own[3] - p->ref2) / 6.0, degree, mine);
       c = mine;
     }
-    vec u0 = SET1(0.0), u1 = u0, u2 = u0;
+    vec u0 = all(0.0), u1 = u0, u2 = u0;
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec xj, yj, zj, aj, F0, F1, F2, f, h, D[4];
-      ROWS(p->row, j, xj, yj, zj, aj, F0, F1, F2);
-      const vec dx = x - xj, dy = y - yj, dz = z - zj, r2 = dx * dx + dy * dy + dz * dz;
-      const vec t = SELECT(LE(r2, range2), r2, range2) * twice - one;
-      block(SD_TENSOR_RPY, SD_TAPER_NONE, one, r2, a, aj, a2 + aj * aj, &f, &h);
+      vec at[4], F[4], f, h, D[4];
+      gather(p->row, 8, j, at);
+      gather(p->row + 4, 8, j, F);
+      const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
+      const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
+      block(r2, a, aj, a2 + aj * aj, &f, &h);
       horner(equal ? 2 : 4, degree, c, SD_RADIAL_TERMS, t, D);
       if (equal) {
         f -= D[0];
@@ -129,11 +85,13 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
         f -= D[0] - b * D[2];
         h -= D[1] - b * D[3];
       }
-      const vec e = h * (dx * F0 + dy * F1 + dz * F2), g = h * (dx * G0 + dy * G1 + dz * G2);
-      u0 = (u0 + f * F0) + e * dx;
-      u1 = (u1 + f * F1) + e * dy;
-      u2 = (u2 + f * F2) + e * dz;
-      add_to_rows(p->u, 4, j, f * G0 + g * dx, f * G1 + g * dy, f * G2 + g * dz);
+      const vec e = h * (dx * F[0] + dy * F[1] + dz * F[2]);
+      const vec g = h * (dx * G0 + dy * G1 + dz * G2);
+      u0 = (u0 + f * F[0]) + e * dx;
+      u1 = (u1 + f * F[1]) + e * dy;
+      u2 = (u2 + f * F[2]) + e * dz;
+      vec v[4] = {f * G0 + g * dx, f * G1 + g * dy, f * G2 + g * dz, all(0.0)};
+      add_to_rows(p->u, 4, j, v);
     }
     double *u = p->u + 4 * (long) i;
     u[0] += total(u0);
@@ -145,28 +103,29 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 /* With torques all eight, whatever the radii. */
 INLINE void near_torques(int degree, const sd_near_part *p)
 {
-  const vec range2 = SET1(p->range2), twice = SET1(2.0 / p->range2), one = SET1(1.0);
-  const vec quarter = SET1(0.25), sixth = SET1(1.0 / 6.0), ref2 = SET1(p->ref2);
+  const vec range2 = all(p->range2), twice = all(2.0 / p->range2), one = all(1.0);
+  const vec quarter = all(0.25), sixth = all(1.0 / 6.0), ref2 = all(p->ref2);
   for (int i = 0; i < p->rows; i++) {
     const double *own = p->row + 8 * (long) i, *turn = p->torque_row + 4 * (long) i;
-    const vec x = SET1(own[0]), y = SET1(own[1]), z = SET1(own[2]), a = SET1(own[3]);
+    const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
     const vec bi = (a * a - ref2) * sixth;
     vec u[6], G[6];
 #pragma GCC unroll 6
     for (int k = 0; k < 6; k++) {
-      u[k] = SET1(0.0);
-      G[k] = SET1(k < 3 ? own[4 + k] : turn[k - 3]);
+      u[k] = all(0.0);
+      G[k] = all(k < 3 ? own[4 + k] : turn[k - 3]);
     }
     const long end = p->first[i + 1];
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec xj, yj, zj, aj, F[6], D[SD_RADIALS], v[6];
+      vec at[4], F[7], D[SD_RADIALS], v[6];
       grand b;
-      ROWS(p->row, j, xj, yj, zj, aj, F[0], F[1], F[2]);
-      TORQUES(p->torque_row, j, F[3], F[4], F[5]);
-      const vec dx = x - xj, dy = y - yj, dz = z - zj, r2 = dx * dx + dy * dy + dz * dz;
-      const vec t = SELECT(LE(r2, range2), r2, range2) * twice - one;
-      grand_block(SD_TAPER_NONE, one, r2, a, aj, a * a + aj * aj, &b);
+      gather(p->row, 8, j, at);
+      gather(p->row + 4, 8, j, F);
+      gather(p->torque_row, 4, j, F + 3);
+      const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
+      const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
+      grand_block(r2, a, aj, a * a + aj * aj, &b);
       horner(SD_RADIALS, degree, p->coefficient[0], SD_RADIAL_TERMS, t, D);
       const vec bj = (aj * aj - ref2) * sixth, sum = bi + bj, product = bi * bj;
       b.f -= D[SD_I0] - sum * D[SD_I1] + product * D[SD_I2];
@@ -177,14 +136,15 @@ INLINE void near_torques(int degree, const sd_near_part *p)
       b.e -= quarter * D[SD_J1];
       grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
 #pragma GCC unroll 6
-      for (int d = 0; d < 6; d++) v[d] = SET1(0.0);
+      for (int d = 0; d < 6; d++) v[d] = all(0.0);
       grand_add(&b, b.cij, b.cji, -dx, -dy, -dz, G, v);
-      add_to_rows(p->u, 8, j, v[0], v[1], v[2]);
-      add_to_rows(p->u + 4, 8, j, v[3], v[4], v[5]);
+      vec U[4] = {v[0], v[1], v[2], all(0.0)}, W[4] = {v[3], v[4], v[5], all(0.0)};
+      add_to_rows(p->u, 8, j, U);
+      add_to_rows(p->u + 4, 8, j, W);
     }
-    double *at = p->u + 8 * (long) i;
+    double *own_u = p->u + 8 * (long) i;
 #pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) at[k < 3 ? k : k + 1] += total(u[k]);
+    for (int k = 0; k < 6; k++) own_u[k < 3 ? k : k + 1] += total(u[k]);
   }
 }
 

@@ -10,19 +10,6 @@
 /* Vectors of every instruction set are full with so many neighbours. */
 enum { FULL = 8 };
 
-const struct sd_ewald_kernels *sd_ewald_kernels_of(sd_isa isa)
-{
-  if (isa == SD_ISA_BEST) isa = sd_isa_best();
-#if defined(SD_HAS_X86_KERNELS)
-  if (isa == SD_ISA_AVX512) return &sd_ewald_avx512;
-  if (isa == SD_ISA_AVX2) return &sd_ewald_avx2;
-#endif
-#if defined(SD_HAS_X86_KERNELS) || defined(SD_HAS_PORTABLE_KERNELS)
-  if (isa == SD_ISA_BASELINE) return &sd_ewald_baseline;
-#endif
-  return &sd_ewald_plain;
-}
-
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
                            const struct sd_ewald_kernels *kernels, int width)
 {

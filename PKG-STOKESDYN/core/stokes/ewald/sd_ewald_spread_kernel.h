@@ -1,4 +1,4 @@
-/* Kernels of spreading and interpolation. Included by sd_ewald_kernel.h. */
+/* Kernels of spreading and interpolation. Included by sd_ewald_kernels.c. */
 
 /* A row along z is taken in chunks of so many vectors at most, which stay in registers. */
 #define MOST_VECTORS (LANES == 8 ? 6 : 4)
@@ -8,26 +8,14 @@ enum {
   MOST_ROW = (3 * MOST_POINTS + MOST_VECTORS * LANES + 7) / 8 * 8
 };
 
-INLINE vec load_any(const double *p)
-{
-  vec v;
-  __builtin_memcpy(&v, p, sizeof(v));
-  return v;
-}
-
-INLINE void store_any(double *p, vec v)
-{
-  __builtin_memcpy(p, &v, sizeof(v));
-}
-
 /* phi, and with derivatives phi' and phi'', at the points of one direction; derivatives with
  * respect to the grid's coordinate: d/ds = -2 d/dv. */
 INLINE void window_at(const sd_window *w, double v_, int derivatives, double *value, double *first,
                       double *second)
 {
-  const vec v = SET1(v_);
+  const vec v = all(v_);
   for (int k = 0; k < w->points; k += LANES) {
-    vec f = load_any(w->coefficient[w->degree] + k), f1 = SET1(0.0), f2 = f1;
+    vec f = load_any(w->coefficient[w->degree] + k), f1 = all(0.0), f2 = f1;
     for (int m = w->degree - 1; m >= 0; m--) {
       if (derivatives) {
         f2 = f2 * v + f1;
@@ -37,8 +25,8 @@ INLINE void window_at(const sd_window *w, double v_, int derivatives, double *va
     }
     store_any(value + k, f);
     if (derivatives) {
-      store_any(first + k, SET1(-2.0) * f1);
-      store_any(second + k, SET1(8.0) * f2); /* f2 is half the second derivative */
+      store_any(first + k, all(-2.0) * f1);
+      store_any(second + k, all(8.0) * f2); /* f2 is half the second derivative */
     }
   }
 }
@@ -124,7 +112,7 @@ INLINE void spread_chunk(int terms, int vectors, const sd_spreading *s, const wi
       for (int l = 0; l < vectors; l++) {
         vec sum = load_any(row + LANES * l);
 #pragma GCC unroll 4
-        for (int t = 0; t < terms; t++) sum += SET1(m[t]) * v[t][l];
+        for (int t = 0; t < terms; t++) sum += all(m[t]) * v[t][l];
         store_any(row + LANES * l, sum);
       }
     }
@@ -185,7 +173,7 @@ INLINE void gather_chunk(int terms, int vectors, const sd_spreading *s, const wi
 #pragma GCC unroll 4
   for (int t = 0; t < terms; t++)
 #pragma GCC unroll 6
-    for (int l = 0; l < vectors; l++) v[t][l] = SET1(0.0);
+    for (int l = 0; l < vectors; l++) v[t][l] = all(0.0);
   for (int p = 0; p < points; p++)
     for (int q = 0; q < points; q++) {
       const double *row = corner + p * s->layer + q * s->row;
@@ -195,7 +183,7 @@ INLINE void gather_chunk(int terms, int vectors, const sd_spreading *s, const wi
       for (int l = 0; l < vectors; l++) {
         const vec u = load_any(row + LANES * l);
 #pragma GCC unroll 4
-        for (int t = 0; t < terms; t++) v[t][l] += SET1(m[t]) * u;
+        for (int t = 0; t < terms; t++) v[t][l] += all(m[t]) * u;
       }
     }
 #pragma GCC unroll 4
@@ -237,9 +225,9 @@ INLINE void interpolate_with(int terms, int vectors, int chunks, const sd_spread
 #endif
 #define OF_TERMS(call)                                                  \
   do {                                                                  \
-    const int all = (3 * s->window->points + LANES - 1) / LANES;            \
-    const int chunks = (all + MOST_VECTORS - 1) / MOST_VECTORS;         \
-    const int vectors = (all + chunks - 1) / chunks;                    \
+    const int wide = (3 * s->window->points + LANES - 1) / LANES;       \
+    const int chunks = (wide + MOST_VECTORS - 1) / MOST_VECTORS;        \
+    const int vectors = (wide + chunks - 1) / chunks;                   \
     if (s->terms == 1) OF_VECTORS(call, 1)                              \
     else if (s->terms == 2) OF_VECTORS(call, 2)                         \
     else OF_VECTORS(call, 4)                                            \

@@ -65,8 +65,8 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
   sd_status status = sd_grid_create(&w->grid, size, e->grid, world);
   if (status == SD_OK)
-    status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.y0, w->grid.y1);
-  for (int k = 0; k < 3; k++) turn_numbers(w->wave.self[k], 3 - w->turn);
+    status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_GRID_Y],
+                            w->grid.own[SD_GRID_Z]);
   return status;
 }
 

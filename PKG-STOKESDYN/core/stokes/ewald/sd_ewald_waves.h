@@ -27,7 +27,6 @@ typedef struct {
   int turn, width;
   const struct sd_ewald_kernels *kernels;
   sd_window window;
-  /* its self sums are those of the directions of the box */
   sd_wave wave;
   sd_grid grid;
   sd_spreading spreading;

@@ -3,49 +3,49 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_grid_internal.h"
 #include "sd_room.h"
 
-/* --- plans and slabs --- */
-
-static int share(int all, int part, int parts)
-{
-  return (int) ((long) all * part / parts);
-}
+/* --- plans --- */
 
 static int allocate(sd_grid *g)
 {
+  const size_t lines = (size_t) sd_grid_own(g, SD_GRID_LINES) * (size_t) g->half;
   const int longer = g->size[0] > g->size[1] ? g->size[0] : g->size[1];
-  const size_t half = (size_t) g->half, plane = (size_t) longer * half;
+  const size_t waves = (size_t) longer * (size_t) sd_grid_own(g, SD_GRID_Z);
+  const size_t plane = (lines > waves ? lines : waves) + 1;
   int ok = 1;
   for (int c = 0; c < 3; c++) {
     g->plane[c] = fftw_alloc_complex(plane);
     ok = ok && g->plane[c];
   }
-  g->slab = calloc((size_t) (g->x1 - g->x0) + 1, sizeof(fftw_complex *));
+  g->slab = calloc((size_t) sd_grid_own(g, SD_GRID_X) + 1, sizeof(fftw_complex *));
   g->beside = fftw_alloc_complex(plane);
-  g->counts = calloc(4 * (size_t) g->ranks, sizeof(int));
+  g->counts = calloc(6 * (size_t) g->ranks, sizeof(int));
   return ok && g->slab && g->beside && g->counts;
 }
 
-/* One x plane along z, rows that hold something, to wave numbers beside; from there along y to the
- * slab, all wave numbers of z; one y plane along x. From one place to another, which FFTW does faster
- * than in one place. FFTW_ESTIMATE: measured plans differ from run to run, and so do their last bits. */
+/* Our lines of an x plane along z to wave numbers beside; all lines at our z along y to the slab; all
+ * x at our z along x. From one place to another, which FFTW does faster than in one place.
+ * FFTW_ESTIMATE: measured plans differ from run to run, and so do their last bits. */
 static int plan(sd_grid *g)
 {
   const unsigned how = FFTW_ESTIMATE;
-  const int half = g->half, rows = g->occupied[1], *size = g->size;
+  const int half = g->half, lines = sd_grid_own(g, SD_GRID_LINES), depth = sd_grid_own(g, SD_GRID_Z);
+  const int *size = g->size;
   fftw_complex *slab = g->plane[1], *plane = g->plane[0], *beside = g->beside;
-  g->z_forth = fftw_plan_many_dft_r2c(1, size + 2, rows, (double *) plane, NULL, 1, 2 * half,
+  if (depth == 0) return 1; /* no pencils */
+  g->z_forth = fftw_plan_many_dft_r2c(1, size + 2, lines, (double *) plane, NULL, 1, 2 * half,
                                       beside, NULL, 1, half, how);
-  g->z_back = fftw_plan_many_dft_c2r(1, size + 2, rows, beside, NULL, 1, half, (double *) plane,
+  g->z_back = fftw_plan_many_dft_c2r(1, size + 2, lines, beside, NULL, 1, half, (double *) plane,
                                      NULL, 1, 2 * half, how);
-  g->y_forth = fftw_plan_many_dft(1, size + 1, half, beside, NULL, half, 1, slab, NULL, half, 1,
+  g->y_forth = fftw_plan_many_dft(1, size + 1, depth, beside, NULL, depth, 1, slab, NULL, depth, 1,
                                   FFTW_FORWARD, how);
-  g->y_back = fftw_plan_many_dft(1, size + 1, half, slab, NULL, half, 1, beside, NULL, half, 1,
+  g->y_back = fftw_plan_many_dft(1, size + 1, depth, slab, NULL, depth, 1, beside, NULL, depth, 1,
                                  FFTW_BACKWARD, how);
-  g->x_forth = fftw_plan_many_dft(1, size, half, beside, NULL, half, 1, plane, NULL, half, 1,
+  g->x_forth = fftw_plan_many_dft(1, size, depth, beside, NULL, depth, 1, plane, NULL, depth, 1,
                                   FFTW_FORWARD, how);
-  g->x_back = fftw_plan_many_dft(1, size, half, plane, NULL, half, 1, beside, NULL, half, 1,
+  g->x_back = fftw_plan_many_dft(1, size, depth, plane, NULL, depth, 1, beside, NULL, depth, 1,
                                  FFTW_BACKWARD, how);
   return g->z_forth && g->z_back && g->y_forth && g->y_back && g->x_forth && g->x_back;
 }
@@ -54,18 +54,17 @@ sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const
 {
   sd_grid_free(g);
   g->world = *world;
-  g->ranks = world->ranks > 0 && world->exchange ? world->ranks : 1;
+  g->ranks = world->exchange ? sd_world_ranks(world) : 1;
   g->me = g->ranks > 1 ? world->me : 0;
   for (int d = 0; d < 3; d++) {
     g->size[d] = size[d];
     g->occupied[d] = occupied[d];
   }
   g->half = size[2] / 2 + 1;
-  g->x0 = share(occupied[0], g->me, g->ranks);
-  g->x1 = share(occupied[0], g->me + 1, g->ranks);
-  g->y0 = share(size[1], g->me, g->ranks);
-  g->y1 = share(size[1], g->me + 1, g->ranks);
-  if (allocate(g) && plan(g)) return SD_OK;
+  g->columns = sd_grid_columns(g, 0);
+  g->rows = g->ranks / g->columns;
+  for (int k = 0; k < 4; k++) sd_grid_range_of(g, k, g->me, g->own[k]);
+  if (allocate(g) && sd_grid_count_turns(g) && plan(g)) return SD_OK;
   sd_grid_free(g);
   return SD_ENOMEMORY;
 }
@@ -89,131 +88,19 @@ void sd_grid_free(sd_grid *g)
   memset(g, 0, sizeof(*g));
 }
 
-/* --- bricks and pieces --- */
-
-/* Part k of the points lo ... lo + n - 1 that lies within one period and within [begin, end) of it:
- * its offset in the brick, its place, its points; 0: there is no part k. */
-static int part_of(int lo, int n, int period, int begin, int end, int k, int *at, int *to)
-{
-  const int first = lo >= 0 ? lo / period : -((period - 1 - lo) / period);
-  const int origin = (first + k) * period;
-  if (origin >= lo + n) return -1;
-  const int from = lo > origin + begin ? lo : origin + begin;
-  const int till = lo + n < origin + end ? lo + n : origin + end;
-  *at = from - lo;
-  *to = from - origin;
-  return till > from ? till - from : 0;
-}
-
-/* The pieces of a brick [6] within the x planes begin ... end - 1, after those in list; NULL: only
- * counted. */
-static int pieces_of(const sd_grid *g, const int *brick, int rank, int begin, int end,
-                     sd_piece *list)
-{
-  const int *lo = brick, *n = brick + 3;
-  int count = 0;
-  sd_piece p = {.rank = rank};
-  if (n[0] == 0 || n[1] == 0 || n[2] == 0) return 0;
-  for (int i = 0; (p.n[0] = part_of(lo[0], n[0], g->size[0], begin, end, i, p.at, p.to)) >= 0; i++)
-    for (int j = 0;
-         (p.n[1] = part_of(lo[1], n[1], g->size[1], 0, g->size[1], j, p.at + 1, p.to + 1)) >= 0;
-         j++)
-      for (int k = 0;
-           (p.n[2] = part_of(lo[2], n[2], g->size[2], 0, g->size[2], k, p.at + 2, p.to + 2)) >= 0;
-           k++) {
-        if (p.n[0] == 0 || p.n[1] == 0 || p.n[2] == 0) continue;
-        if (list) list[count] = p;
-        count++;
-      }
-  return count;
-}
-
-double sd_grid_at_home(const sd_grid *g, const int *bricks, int d)
-{
-  double points = 0.0;
-  for (int r = 0; r < g->ranks; r++) {
-    const int *lo = bricks + 6 * r, *n = lo + 3;
-    const int begin = share(g->occupied[d], r, g->ranks),
-              end = share(g->occupied[d], r + 1, g->ranks);
-    int at, to, planes = 0, part;
-    for (int k = 0;
-         n[d] > 0 && (part = part_of(lo[d], n[d], g->size[d], begin, end, k, &at, &to)) >= 0; k++)
-      planes += part;
-    points += (double) planes * n[(d + 1) % 3] * n[(d + 2) % 3];
-  }
-  return points;
-}
-
-static void list_pieces(const sd_grid *g, const int *bricks, sd_piece *out, sd_piece *in, int *outs,
-                        int *ins)
-{
-  *outs = *ins = 0;
-  for (int r = 0; r < g->ranks; r++) {
-    const int begin = share(g->occupied[0], r, g->ranks);
-    const int end = share(g->occupied[0], r + 1, g->ranks);
-    *outs += pieces_of(g, bricks + 6 * g->me, r, begin, end, out ? out + *outs : NULL);
-    *ins += pieces_of(g, bricks + 6 * r, r, g->x0, g->x1, in ? in + *ins : NULL);
-  }
-}
-
-/* Numbers of pieces to or from each rank, one rank after the other; our own need no message. All
- * together */
-static size_t count_pieces(const sd_grid *g, sd_piece *list, int pieces, int *counts)
-{
-  long all = 0;
-  for (int k = 0; k < pieces; k++) {
-    sd_piece *p = list + k;
-    p->message = all;
-    if (p->rank == g->me) continue;
-    const int numbers = 3 * p->n[0] * p->n[1] * p->n[2];
-    counts[p->rank] += numbers;
-    all += numbers;
-  }
-  return (size_t) all;
-}
-
-/* Planes of a rank in the slabs along x or y: first and end */
-static void planes_of(const sd_grid *g, int rank, int d, int *planes)
-{
-  const int all = d == 0 ? g->occupied[0] : g->size[1];
-  planes[0] = share(all, rank, g->ranks);
-  planes[1] = share(all, rank + 1, g->ranks);
-}
-
-/* Numbers to and from each rank; returns the largest message. */
-static size_t count_numbers(sd_grid *g)
-{
-  int *to = g->counts, *from = to + g->ranks, *turn_to = from + g->ranks;
-  int *turn_from = turn_to + g->ranks;
-  memset(g->counts, 0, sizeof(int) * 4 * (size_t) g->ranks);
-  const size_t out = count_pieces(g, g->out, g->outs, to);
-  size_t most = count_pieces(g, g->in, g->ins, from), turn = 0, turned = 0;
-  for (int r = 0; r < g->ranks; r++) {
-    int x[2], y[2];
-    planes_of(g, r, 0, x);
-    planes_of(g, r, 1, y);
-    if (r == g->me) continue;
-    turn_to[r] = 6 * g->half * (g->x1 - g->x0) * (y[1] - y[0]);
-    turn_from[r] = 6 * g->half * (x[1] - x[0]) * (g->y1 - g->y0);
-    turn += (size_t) turn_to[r];
-    turned += (size_t) turn_from[r];
-  }
-  if (out > most) most = out;
-  if (turn > most) most = turn;
-  return turned > most ? turned : most;
-}
+/* --- bricks --- */
 
 /* Where the planes of our slab will be */
 static int place_slab(sd_grid *g)
 {
-  const int planes = g->x1 - g->x0;
-  const long numbers = 6L * g->size[1] * g->half;
+  const int planes = sd_grid_own(g, SD_GRID_X), x0 = g->own[SD_GRID_X][0];
+  const long numbers = 6L * g->size[1] * sd_grid_own(g, SD_GRID_Z);
   long missing = 0;
   for (int x = 0; x < planes; x++) g->slab[x] = NULL;
   for (int k = 0; k < g->ins && g->layer >= numbers; k++) {
     const sd_piece *p = g->in + k;
     for (int i = 0; i < p->n[0] && p->rank == g->me; i++)
-      g->slab[p->to[0] + i - g->x0] = (fftw_complex *) (g->brick + (p->at[0] + i) * g->layer);
+      g->slab[p->to[0] + i - x0] = (fftw_complex *) (g->brick + (p->at[0] + i) * g->layer);
   }
   for (int x = 0; x < planes; x++) missing += !g->slab[x];
   if (!sd_reserve(&g->spare, sizeof(double), (size_t) (missing * numbers), &g->spare_room))
@@ -233,14 +120,15 @@ sd_status sd_grid_place(sd_grid *g, const int *bricks)
   g->row =
       (3 * (long) g->n[2] + 7) / 8 * 8 + 8; /* vectors of the windows end beyond the last point */
   g->layer = g->row * g->n[1];
-  const size_t brick = (size_t) (g->layer * g->n[0]) + 24;
-  if (!sd_reserve(&g->brick, sizeof(double), brick, &g->brick_room)) return SD_ENOMEMORY;
-  list_pieces(g, bricks, NULL, NULL, &g->outs, &g->ins);
+  sd_grid_list_pieces(g, bricks, NULL, NULL, &g->outs, &g->ins);
   if (!sd_reserve(&g->out, sizeof(sd_piece), (size_t) g->outs, &g->out_room) ||
       !sd_reserve(&g->in, sizeof(sd_piece), (size_t) g->ins, &g->in_room))
     return SD_ENOMEMORY;
-  list_pieces(g, bricks, g->out, g->in, &g->outs, &g->ins);
-  const size_t doubles = count_numbers(g);
+  sd_grid_list_pieces(g, bricks, g->out, g->in, &g->outs, &g->ins);
+  if (!sd_grid_count_pieces(g, g->out, g->outs, PIECES_TO) || !sd_grid_count_pieces(g, g->in, g->ins, PIECES_FROM))
+    return SD_ENOMEMORY;
+  const size_t brick = (size_t) (g->layer * g->n[0]) + 24, doubles = sd_grid_largest_message(g);
+  if (!sd_reserve(&g->brick, sizeof(double), brick, &g->brick_room)) return SD_ENOMEMORY;
   for (int k = 0; k < 2; k++)
     if (!sd_reserve(g->message + k, sizeof(double), doubles, g->message_room + k))
       return SD_ENOMEMORY;
@@ -297,18 +185,19 @@ static void take_row(const sd_grid *g, long at, double *restrict row, int n)
   }
 }
 
-/* Points of plane x of our slab: added from what of the pieces lies in it, or given to them. Our own
+/* Points of our lines of plane x: added from what of the pieces lies in it, or given to them. Our own
  * are in the brick, others in the message. */
 static void fill_plane(const sd_grid *g, int x, double *message)
 {
   for (int c = 0; c < 3; c++)
-    memset(g->plane[c], 0, sizeof(fftw_complex) * (size_t) g->occupied[1] * (size_t) g->half);
+    memset(g->plane[c], 0,
+           sizeof(fftw_complex) * (size_t) sd_grid_own(g, SD_GRID_LINES) * (size_t) g->half);
   for (int k = 0; k < g->ins; k++) {
     const sd_piece *p = g->in + k;
     const int i = x - p->to[0];
     if (i < 0 || i >= p->n[0]) continue;
     for (int j = 0; j < p->n[1]; j++)
-      add_row(g, 2L * g->half * (p->to[1] + j) + p->to[2],
+      add_row(g, 2L * g->half * (p->to[1] - g->own[SD_GRID_LINES][0] + j) + p->to[2],
               p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
   }
 }
@@ -320,7 +209,7 @@ static void empty_plane(const sd_grid *g, int x, double *message)
     const int i = x - p->to[0];
     if (i < 0 || i >= p->n[0]) continue;
     for (int j = 0; j < p->n[1]; j++)
-      take_row(g, 2L * g->half * (p->to[1] + j) + p->to[2],
+      take_row(g, 2L * g->half * (p->to[1] - g->own[SD_GRID_LINES][0] + j) + p->to[2],
                p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
   }
 }
@@ -329,37 +218,61 @@ static void empty_plane(const sd_grid *g, int x, double *message)
 
 static fftw_complex *slab_row(const sd_grid *g, int c, int x, int y)
 {
-  return g->slab[x - g->x0] + ((long) c * g->size[1] + y) * g->half;
+  const long depth = sd_grid_own(g, SD_GRID_Z);
+  return g->slab[x - g->own[SD_GRID_X][0]] + ((long) c * g->size[1] + y) * depth;
 }
 
-/* Plane x of our slab along z and y, or back */
-static void forth_along_zy(sd_grid *g, int c, int x)
+static void copy(double *beside, double *box, long numbers, int to_beside)
 {
-  const size_t empty = (size_t) (g->size[1] - g->occupied[1]) * (size_t) g->half;
-  fftw_execute_dft_r2c(g->z_forth, (double *) g->plane[c], g->beside);
-  memset(g->beside + (long) g->occupied[1] * g->half, 0, sizeof(fftw_complex) * empty);
-  fftw_execute_dft(g->y_forth, g->beside, slab_row(g, c, x, 0));
+  memcpy(to_beside ? beside : box, to_beside ? box : beside, sizeof(double) * (size_t) numbers);
 }
 
-static void back_along_yz(sd_grid *g, int c, int x)
+/* The turn in a row, of pencils from z to y: from each of its ranks to each a box of wave numbers
+ * [3][x][its lines][z of the other], which goes forth and comes back; what stays here waits where the
+ * slab will be. Our lines, all z of them, between boxes and `beside` */
+static void copy_lines(const sd_grid *g, int c, int x, double *message, int to_beside)
 {
-  fftw_execute_dft(g->y_back, slab_row(g, c, x, 0), g->beside);
-  fftw_execute_dft_c2r(g->z_back, g->beside, (double *) g->plane[c]);
+  const long planes = sd_grid_own(g, SD_GRID_X), lines = sd_grid_own(g, SD_GRID_LINES);
+  const int first = g->me - g->me % g->columns;
+  for (int r = first; r < first + g->columns; r++) {
+    int z[2];
+    sd_grid_range_of(g, SD_GRID_Z, r, z);
+    const long row = 2L * (z[1] - z[0]);
+    double *box = message + (c * planes + x - g->own[SD_GRID_X][0]) * lines * row;
+    if (r == g->me) box = (double *) slab_row(g, c, x, 0);
+    for (long l = 0; l < lines; l++, box += row)
+      copy((double *) g->beside + 2 * (l * g->half + z[0]), box, row, to_beside);
+    if (r != g->me) message += 3 * planes * lines * row;
+  }
 }
 
-/* The turn from x to y planes: from each rank to each a box of wave numbers [3][its x][its y][half],
- * which goes forth and comes back. Rows y of other ranks in our plane x, to the message or from it */
+/* All lines at our z, between boxes and `beside` */
+static void copy_depths(const sd_grid *g, int c, int x, double *message, int to_beside)
+{
+  const long planes = sd_grid_own(g, SD_GRID_X), row = 2L * sd_grid_own(g, SD_GRID_Z);
+  const int first = g->me - g->me % g->columns;
+  double *beside = (double *) g->beside;
+  for (int r = first; r < first + g->columns; r++) {
+    const long numbers = sd_grid_length(g, SD_GRID_LINES, r) * row;
+    double *box = message + (c * planes + x - g->own[SD_GRID_X][0]) * numbers;
+    copy(beside, r == g->me ? (double *) slab_row(g, c, x, 0) : box, numbers, to_beside);
+    beside += numbers;
+    if (r != g->me) message += 3 * planes * numbers;
+  }
+}
+
+/* The turn in a column, from x to y planes: from each rank to each a box of wave numbers [3][its
+ * x][its y][z]. Rows y of other ranks in our plane x, to the message or from it */
 static void copy_rows(const sd_grid *g, int c, int x, double *message, int to_slab)
 {
-  const long planes = g->x1 - g->x0, row = 2L * g->half;
-  for (int r = 0; r < g->ranks; r++) {
+  const long planes = sd_grid_own(g, SD_GRID_X), row = 2L * sd_grid_own(g, SD_GRID_Z);
+  for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
     int y[2];
     if (r == g->me) continue;
-    planes_of(g, r, 1, y);
+    sd_grid_range_of(g, SD_GRID_Y, r, y);
     const long rows = y[1] - y[0];
-    double *there = message + (c * planes + x - g->x0) * rows * row;
-    double *here = (double *) slab_row(g, c, x, y[0]);
-    memcpy(to_slab ? here : there, to_slab ? there : here, sizeof(double) * (size_t) (rows * row));
+    copy((double *) slab_row(g, c, x, y[0]),
+         message + (c * planes + x - g->own[SD_GRID_X][0]) * rows * row, rows * row, to_slab);
     message += 3 * planes * rows * row;
   }
 }
@@ -368,31 +281,50 @@ static void copy_rows(const sd_grid *g, int c, int x, double *message, int to_sl
  * or from it */
 static void copy_plane(const sd_grid *g, int c, int y, double *message, int to_beside)
 {
-  const long row = 2L * g->half, planes = g->y1 - g->y0;
-  const size_t bytes = sizeof(double) * (size_t) row;
+  const long row = 2L * sd_grid_own(g, SD_GRID_Z), planes = sd_grid_own(g, SD_GRID_Y);
   double *beside = (double *) g->beside;
-  for (int r = 0; r < g->ranks; r++) {
+  for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
     int x[2];
-    planes_of(g, r, 0, x);
+    sd_grid_range_of(g, SD_GRID_X, r, x);
     const long rows = x[1] - x[0];
-    for (long k = 0; k < rows; k++, beside += row) {
-      double *at = r == g->me ? (double *) slab_row(g, c, x[0] + (int) k, y)
-                              : message + ((c * rows + k) * planes + y - g->y0) * row;
-      memcpy(to_beside ? beside : at, to_beside ? at : beside, bytes);
-    }
+    for (long k = 0; k < rows; k++, beside += row)
+      copy(beside,
+           r == g->me ? (double *) slab_row(g, c, x[0] + (int) k, y)
+                      : message + ((c * rows + k) * planes + y - g->own[SD_GRID_Y][0]) * row,
+           row, to_beside);
     if (r != g->me) message += 3 * rows * planes * row;
   }
+}
+
+/* Rows of `beside` that hold nothing, at our z */
+static void clear_rows(const sd_grid *g, int from, int end)
+{
+  const size_t depth = (size_t) sd_grid_own(g, SD_GRID_Z);
+  memset(g->beside + (size_t) from * depth, 0, sizeof(fftw_complex) * (size_t) (end - from) * depth);
+}
+
+/* What is beside along y to the slab, or back */
+static void forth_along_y(sd_grid *g, int c, int x, double *message)
+{
+  clear_rows(g, g->occupied[1], g->size[1]);
+  fftw_execute_dft(g->y_forth, g->beside, slab_row(g, c, x, 0));
+  copy_rows(g, c, x, message, 0);
+}
+
+static void back_along_y(sd_grid *g, int c, int x, double *message)
+{
+  copy_rows(g, c, x, message, 1);
+  fftw_execute_dft(g->y_back, slab_row(g, c, x, 0), g->beside);
 }
 
 /* One y plane: along x, the product, back along x. It stays in the cache meanwhile. */
 static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *ctx, double *message)
 {
-  const size_t empty = (size_t) (g->size[0] - g->occupied[0]) * (size_t) g->half;
   double *planes[3];
   for (int c = 0; c < 3; c++) {
     planes[c] = (double *) g->plane[c];
     copy_plane(g, c, y, message, 1);
-    memset(g->beside + (long) g->occupied[0] * g->half, 0, sizeof(fftw_complex) * empty);
+    clear_rows(g, g->occupied[0], g->size[0]);
     fftw_execute_dft(g->x_forth, g->beside, g->plane[c]);
   }
   multiply(ctx, y, planes);
@@ -404,8 +336,7 @@ static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *c
 
 /* --- all of it --- */
 
-/* What is in message `from` to the other ranks, what they send to the other message; counts: which
- * numbers of those of the grid, to and from each rank */
+/* What is in message `from` to the other ranks, what they send to the other message */
 static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_counts)
 {
   if (g->ranks == 1) return SD_OK;
@@ -413,30 +344,67 @@ static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_co
                            g->message[1 - from], g->counts + from_counts * g->ranks);
 }
 
-sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
+/* From the pieces in the second message to the slab, and what of it is others' to the first */
+static sd_status forth(sd_grid *g)
 {
   double *first = g->message[0], *second = g->message[1];
-  copy_pieces(g, first, 0);
-  sd_status status = exchange(g, 0, 0, 1);
-  if (status != SD_OK) return status;
-  for (int x = g->x0; x < g->x1; x++) {
-    fill_plane(g, x, second);
+  const int *x = g->own[SD_GRID_X];
+  for (int k = x[0]; k < x[1]; k++) {
+    fill_plane(g, k, second);
     for (int c = 0; c < 3; c++) {
-      forth_along_zy(g, c, x);
-      copy_rows(g, c, x, first, 0);
+      fftw_execute_dft_r2c(g->z_forth, (double *) g->plane[c], g->beside);
+      if (g->columns == 1)
+        forth_along_y(g, c, k, first);
+      else
+        copy_lines(g, c, k, first, 0);
     }
   }
-  if ((status = exchange(g, 0, 2, 3)) != SD_OK) return status;
-  for (int y = g->y0; y < g->y1; y++) through_plane(g, y, multiply, ctx, second);
-  if ((status = exchange(g, 1, 3, 2)) != SD_OK) return status;
-  for (int x = g->x0; x < g->x1; x++) {
+  if (g->columns == 1) return SD_OK;
+  const sd_status status = exchange(g, 0, ROW_TO, ROW_FROM);
+  for (int k = x[0]; k < x[1] && status == SD_OK; k++)
     for (int c = 0; c < 3; c++) {
-      copy_rows(g, c, x, first, 1);
-      back_along_yz(g, c, x);
+      copy_depths(g, c, k, second, 1);
+      forth_along_y(g, c, k, first);
     }
-    empty_plane(g, x, second);
+  return status;
+}
+
+/* From what came back in the first message to the pieces in the second */
+static sd_status back(sd_grid *g)
+{
+  double *first = g->message[0], *second = g->message[1];
+  const int *x = g->own[SD_GRID_X];
+  for (int k = x[0]; k < x[1] && g->columns > 1; k++)
+    for (int c = 0; c < 3; c++) {
+      back_along_y(g, c, k, first);
+      copy_depths(g, c, k, second, 0);
+    }
+  const sd_status status = g->columns > 1 ? exchange(g, 1, ROW_FROM, ROW_TO) : SD_OK;
+  for (int k = x[0]; k < x[1] && status == SD_OK; k++) {
+    for (int c = 0; c < 3; c++) {
+      if (g->columns == 1)
+        back_along_y(g, c, k, first);
+      else
+        copy_lines(g, c, k, first, 1);
+      fftw_execute_dft_c2r(g->z_back, g->beside, (double *) g->plane[c]);
+    }
+    empty_plane(g, k, second);
   }
-  if ((status = exchange(g, 1, 1, 0)) != SD_OK) return status;
-  copy_pieces(g, first, 1);
-  return SD_OK;
+  return status;
+}
+
+sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
+{
+  const int *y = g->own[SD_GRID_Y];
+  copy_pieces(g, g->message[0], 0);
+  sd_status status = exchange(g, 0, PIECES_TO, PIECES_FROM);
+  if (status == SD_OK) status = forth(g);
+  if (status == SD_OK) status = exchange(g, 0, COLUMN_TO, COLUMN_FROM);
+  for (int k = y[0]; k < y[1] && status == SD_OK; k++)
+    through_plane(g, k, multiply, ctx, g->message[1]);
+  if (status == SD_OK) status = exchange(g, 1, COLUMN_FROM, COLUMN_TO);
+  if (status == SD_OK) status = back(g);
+  if (status == SD_OK) status = exchange(g, 1, PIECES_FROM, PIECES_TO);
+  if (status == SD_OK) copy_pieces(g, g->message[0], 1);
+  return status;
 }

@@ -1,14 +1,20 @@
 /* A grid of vectors over all ranks, and its Fourier transform: three real fields forth, a
  * multiplication at each wave vector, three fields back.
  *
- * Each rank has a brick, the grid points that its own spheres reach, three numbers a point,
- * wherever that is; bricks overlap and may hang over the faces of a periodic box. Transforms go
- * along z and y in slabs of whole x planes, then along x in slabs of whole y planes:
+ * Each rank has a brick, the grid points that its own spheres reach, three numbers per point,
+ * wherever that is; bricks overlap and may hang over the faces of a periodic box. Ranks stand in
+ * rows x columns: the row says which planes of x a rank has, and later which y; the column which y,
+ * and later which wave numbers of z:
  *
- *   bricks --add--> x planes --z, y--> exchange --x, multiply, x--> exchange --y, z--> bricks
+ *   bricks --add--> pencils along z --z, turn in rows--> along y --y, turn in columns--> along x,
+ *   multiply, and all of it back
+ *
+ * With one column pencils along z and y are slabs of whole x planes and nothing is turned in rows;
+ * that is so until there are more ranks than planes, or planes that few ranks share unevenly. Ranks
+ * that rows x columns leave over have a brick and no pencils.
  *
  * A plane is filled, transformed and sent while it is in the cache; rows that other ranks sent are
- * transformed where they have come in.
+ * transformed where they have come in. Messages go only to ranks that something is for.
  *
  * An open grid is twice as large as the part of it that holds something; what is known to be 0, or
  * is not asked for, is not transformed. */
@@ -24,11 +30,15 @@
 extern "C" {
 #endif
 
-/* A box of a brick and its place in the x slab of a rank; where it begins in a message */
+/* A box of a brick and its place in the pencils of a rank; where it begins in a message */
 typedef struct {
   int rank, at[3], to[3], n[3];
   long message;
 } sd_piece;
+
+/* What is shared among rows and columns: planes of x and, of each, lines of y; then y and wave
+ * numbers of z. */
+typedef enum { SD_GRID_X, SD_GRID_LINES, SD_GRID_Y, SD_GRID_Z } sd_grid_part;
 
 /* Zero-initialise; sd_grid_free in the end. */
 typedef struct {
@@ -36,11 +46,12 @@ typedef struct {
   int me, ranks;
   /* points of the transform, of its occupied part, and complex numbers along z */
   int size[3], occupied[3], half;
-  /* this rank's planes of the two slabs */
-  int x0, x1, y0, y1;
-  /* a plane [size x or y][half] at work, of points or of wave numbers, and one beside them */
+  int rows, columns;
+  /* this rank's part of each sd_grid_part: first and end */
+  int own[4][2];
+  /* three planes at work, of points or of wave numbers, and one beside them */
   fftw_complex *plane[3], *beside;
-  /* [x1 - x0] planes of the x slab, wave numbers of z and then y: [3][size y][half]. Each is in the
+  /* [planes of x] wave numbers of y and our z: [3][size y][depth], depth of our z. Each is in the
    * layer of the brick that it has been made from, which is free then; in `spare` where there is none
    * of its size */
   fftw_complex **slab;
@@ -52,29 +63,30 @@ typedef struct {
   long row, layer;
   double *brick;
   size_t brick_room;
-  /* from the brick to slabs, by rank of the slab; to our slab from bricks, by rank of the brick */
+  /* from the brick to pencils, by rank of the pencils; to ours from bricks, by rank of the brick */
   sd_piece *out, *in;
   int outs, ins;
   size_t out_room, in_room;
-  /* numbers to and from each rank: of pieces, and of the turn from x to y planes; 4 [ranks] */
+  /* numbers to and from each rank: of pieces, of the turn in rows, of that in columns; 6 [ranks] */
   int *counts;
   /* messages: what is in one goes to the other */
   double *message[2];
   size_t message_room[2];
 } sd_grid;
 
-/* Multiplies the three fields at all wave vectors of one y: plane [3] [size x][half] complex. */
+/* Multiplies the three fields at the wave vectors of one y and our z: plane [3][size x][depth]
+ * complex. */
 typedef void sd_grid_multiply(void *ctx, int y, double *const *plane);
 
-/* Slabs and plans. SD_OK or SD_ENOMEMORY. */
+/* Rows, columns and plans. SD_OK; SD_ENOMEMORY, also for turns of more numbers than an int counts. */
 sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const sd_world *world);
 
-/* Of the points of all bricks, as below, how many would be in the slab of their own rank if slabs
- * were planes of direction d? They need no message. */
+/* Of the points of all bricks, as below, how many would be in the pencils of their own rank if the
+ * first direction were d? They need no message. */
 double sd_grid_at_home(const sd_grid *g, const int *bricks, int d);
 
 /* Bricks for the spheres as they stand: of all ranks [ranks][6] first point and number of points
- * each way, which may be 0. SD_OK or SD_ENOMEMORY. */
+ * each way, which may be 0. SD_OK; SD_ENOMEMORY as above. */
 sd_status sd_grid_place(sd_grid *g, const int *bricks);
 
 /* Brick [points][3] of forces -> velocities. The transforms are not normalised. SD_OK or what

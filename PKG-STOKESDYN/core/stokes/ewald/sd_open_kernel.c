@@ -151,15 +151,16 @@ static void keep_offsets(const double *from, const int *n, double *to, const int
              sizeof(double) * (size_t) (m[2] - 1));
 }
 
-static void store_component(const double *octant, const int *m, int y0, int y1, int component,
-                            double *table)
+static void store_component(const double *octant, const int *m, const int *y, const int *z,
+                            int component, double *table)
 {
+  const int depth = z[1] - z[0];
   const double unit = 0.125 / ((m[0] - 1.0) * (m[1] - 1.0) * (m[2] - 1.0));
   for (int x = 0; x < m[0]; x++)
-    for (int y = y0; y < y1; y++)
-      for (int z = 0; z < m[2]; z++)
-        table[(((long) (y - y0) * m[0] + x) * 6 + component) * m[2] + z] =
-            unit * octant[((long) x * m[1] + y) * m[2] + z];
+    for (int k = y[0]; k < y[1]; k++)
+      for (int l = z[0]; l < z[1]; l++)
+        table[(((long) (k - y[0]) * m[0] + x) * 6 + component) * depth + l - z[0]] =
+            unit * octant[((long) x * m[1] + k) * m[2] + l];
 }
 
 /* --- the table --- */
@@ -210,7 +211,7 @@ static void give_back(workspace *s)
 
 /* Six components, one after the other: offsets -> waves of the large grid, without windows ->
  * offsets that are kept -> waves of the transform's grid */
-sd_status sd_open_kernel(const sd_ewald *e, const int *m, int y0, int y1, double *table)
+sd_status sd_open_kernel(const sd_ewald *e, const int *m, const int *y, const int *z, double *table)
 {
   static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   workspace s = {0};
@@ -225,7 +226,7 @@ sd_status sd_open_kernel(const sd_ewald *e, const int *m, int y0, int y1, double
     ok = ok && transform_octant(s.field, s.n, odd);
     if (ok) keep_offsets(s.field, s.n, s.kept, m);
     ok = ok && transform_octant(s.kept, m, odd);
-    if (ok) store_component(s.kept, m, y0, y1, c, table);
+    if (ok) store_component(s.kept, m, y, z, c, table);
   }
   give_back(&s);
   return ok ? SD_OK : SD_ENOMEMORY;

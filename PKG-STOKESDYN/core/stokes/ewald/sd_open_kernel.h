@@ -17,9 +17,9 @@
 extern "C" {
 #endif
 
-/* m [3]: half the points of the transform each way, plus 1. table [y1 - y0][m 0][6][m 2], out: rows
- * y0 ... y1 - 1 of the octant, xx yy zz xy xz yz. SD_OK or SD_ENOMEMORY. */
-sd_status sd_open_kernel(const sd_ewald *e, const int *m, int y0, int y1, double *table);
+/* m [3]: half the points of the transform each way, plus 1. y, z [2]: first and end of what is wanted
+ * of the octant; table [y][m 0][6][z], out: xx yy zz xy xz yz. SD_OK or SD_ENOMEMORY. */
+sd_status sd_open_kernel(const sd_ewald *e, const int *m, const int *y, const int *z, double *table);
 
 #ifdef __cplusplus
 }

@@ -26,24 +26,16 @@ static double *deconvolution(const sd_ewald *e, int n)
 
 /* --- periodic --- */
 
-/* One row along z of the table, and its share of the self sums: all but the first of the row stand
- * for their partner at -k too. */
-static void periodic_entries(sd_wave *w, const sd_ewald *e, const double *start, double factor,
+/* One row along z of the table */
+static void periodic_entries(const sd_wave *w, const sd_ewald *e, const double *start, double factor,
                              const double *inverse_z, double *table)
 {
-  for (int m = 0; m < w->half; m++) {
-    const double k[3] = {start[0], start[1], start[2] + m * w->k[2][2]};
-    const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2], d = factor * inverse_z[m];
+  for (int m = 0; m < w->depth; m++) {
+    const double k[3] = {start[0], start[1], start[2] + (w->z0 + m) * w->k[2][2]};
+    const double k2 = k[0] * k[0] + k[1] * k[1] + k[2] * k[2], d = factor * inverse_z[w->z0 + m];
     table[m] = 0.0;
     if (!(k2 > 0.0) || d == 0.0) continue;
-    const double B = sd_ewald_wave_screen(e, k2) / (k2 * sd_ewald_volume(&e->box));
-    table[m] = B * d * d;
-    for (int c = 0; c < 3; c++) {
-      const double part = (m == 0 ? 1.0 : 2.0) * B * (1.0 - k[c] * k[c] / k2);
-      w->self[0][c] += part;
-      w->self[1][c] += part * k2;
-      w->self[2][c] += part * k2 * k2;
-    }
+    table[m] = d * d * sd_ewald_wave_screen(e, k2) / (k2 * sd_ewald_volume(&e->box));
   }
 }
 
@@ -52,7 +44,7 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
   sd_ewald_reciprocal(&e->box, w->k);
   double *inverse[3];
   for (int d = 0; d < 3; d++) inverse[d] = deconvolution(e, w->size[d]);
-  const size_t row = (size_t) w->half, rows = (size_t) (y1 - w->y0) * (size_t) w->size[0];
+  const size_t row = (size_t) w->depth, rows = (size_t) (y1 - w->y0) * (size_t) w->size[0];
   w->table = malloc(sizeof(double) * (row * rows + 1));
   const int ok = w->table && inverse[0] && inverse[1] && inverse[2];
   double *next = w->table;
@@ -81,24 +73,26 @@ static sd_status open_table(sd_wave *w, const sd_ewald *e, int y1)
     if (row + 1 > end) end = row + 1;
   }
   if (end == 0) w->first_row = 0;
-  const size_t row = 6 * (size_t) m[0] * (size_t) m[2];
+  const size_t row = 6 * (size_t) m[0] * (size_t) w->depth;
   w->table = malloc(sizeof(double) * (row * (size_t) (end - w->first_row) + 1));
   if (!w->table) return SD_ENOMEMORY;
-  return sd_open_kernel(e, m, w->first_row, end, w->table);
+  const int y[2] = {w->first_row, end}, z[2] = {w->z0, w->z0 + w->depth};
+  return sd_open_kernel(e, m, y, z, w->table);
 }
 
 /* --- both --- */
 
 sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_kernels *kernels,
-                         const int *size, int y0, int y1)
+                         const int *size, const int *y, const int *z)
 {
   sd_wave_free(w);
   w->kernels = kernels;
   w->periodic = e->box.periodic;
   for (int d = 0; d < 3; d++) w->size[d] = size[d];
-  w->half = size[2] / 2 + 1;
-  w->y0 = y0;
-  return w->periodic ? periodic_table(w, e, y1) : open_table(w, e, y1);
+  w->y0 = y[0];
+  w->z0 = z[0];
+  w->depth = z[1] - z[0];
+  return w->periodic ? periodic_table(w, e, y[1]) : open_table(w, e, y[1]);
 }
 
 void sd_wave_free(sd_wave *w)
@@ -110,20 +104,21 @@ void sd_wave_free(sd_wave *w)
 void sd_wave_multiply(void *ctx, int y, double *const *plane)
 {
   const sd_wave *w = ctx;
-  const int half = w->half, half_x = w->size[0] / 2 + 1;
+  const int depth = w->depth, half_x = w->size[0] / 2 + 1;
   const int my = wave_number(y, w->size[1]);
   for (int x = 0; x < w->size[0]; x++) {
     const int mx = wave_number(x, w->size[0]);
     double *row[3];
-    for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * half;
+    for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * depth;
     if (w->periodic) {
-      const double *B = w->table + ((long) (y - w->y0) * w->size[0] + x) * half;
+      const double *B = w->table + ((long) (y - w->y0) * w->size[0] + x) * depth;
       double k[3];
       for (int c = 0; c < 3; c++) k[c] = mx * w->k[0][c] + my * w->k[1][c];
-      w->kernels->periodic_row(row, B, k, w->k[2][2], half);
+      k[2] += w->z0 * w->k[2][2];
+      w->kernels->periodic_row(row, B, k, w->k[2][2], depth);
     } else {
-      const double *K = w->table + ((long) (abs(my) - w->first_row) * half_x + abs(mx)) * 6 * half;
-      w->kernels->open_row(row, K, mx < 0 ? -1.0 : 1.0, my < 0 ? -1.0 : 1.0, half);
+      const double *K = w->table + ((long) (abs(my) - w->first_row) * half_x + abs(mx)) * 6 * depth;
+      w->kernels->open_row(row, K, mx < 0 ? -1.0 : 1.0, my < 0 ? -1.0 : 1.0, depth);
     }
   }
 }

@@ -20,21 +20,20 @@ struct sd_ewald_kernels;
 /* Zero-initialise; sd_wave_free in the end. */
 typedef struct {
   const struct sd_ewald_kernels *kernels;
-  int periodic, size[3], half, y0;
+  /* this rank has the waves y0 ... of y and z0 ... of z, of these `depth` */
+  int periodic, size[3], y0, z0, depth;
   /* open: the smallest |wave number| along y of this rank's planes */
   int first_row;
   /* 2 pi times the reciprocal vectors, rows */
   double k[3][3];
-  /* periodic: [y1 - y0][size x][half]; open: rows of one octant [rows][half x][6][half] */
+  /* periodic: [y][size x][depth]; open: rows of one octant [rows][half x][6][depth] */
   double *table;
-  /* periodic: sums over this rank's k of (1 - k_d^2/k^2) H k^2n/(k^2 V), n = 0, 1, 2: what the wave
-   * part does to a sphere through itself and its images is self[0] - 2 b self[1] + b^2 self[2] */
-  double self[3][3];
 } sd_wave;
 
-/* size: points of the transform; this rank's y planes are y0 ... y1 - 1. SD_OK or SD_ENOMEMORY. */
+/* size: points of the transform; y, z: first and end of the waves that this rank has. SD_OK or
+ * SD_ENOMEMORY. */
 sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_kernels *kernels,
-                         const int *size, int y0, int y1);
+                         const int *size, const int *y, const int *z);
 
 /* As sd_grid_multiply: ctx is an sd_wave. */
 void sd_wave_multiply(void *ctx, int y, double *const *plane);

@@ -33,3 +33,16 @@ void sd_flow_slope(int n, const double *ahead, const double *behind, const doubl
 {
   for (int i = 0; i < n; i++) slope[i] = a[i] > 0.0 ? (ahead[i] - behind[i]) / (2.0 * a[i]) : 0.0;
 }
+
+/* G H = dH/dt, column by column: all three are upper triangles. */
+void sd_flow_of_cell(const double h[6], const double rate[6], double G[9])
+{
+  enum { XX, YY, ZZ, YZ, XZ, XY };
+  for (int k = 0; k < 9; k++) G[k] = 0.0;
+  G[0] = rate[XX] / h[XX];
+  G[4] = rate[YY] / h[YY];
+  G[8] = rate[ZZ] / h[ZZ];
+  G[1] = (rate[XY] - G[0] * h[XY]) / h[YY];
+  G[5] = (rate[YZ] - G[4] * h[YZ]) / h[ZZ];
+  G[2] = (rate[XZ] - G[0] * h[XZ] - G[1] * h[YZ]) / h[ZZ];
+}

@@ -21,6 +21,11 @@ void sd_flow_set_vorticity(const double vorticity[3], double G[9]);
 void sd_flow_slope(int n, const double *ahead, const double *behind, const double *a,
                    double *slope);
 
+/* The flow that takes a cell along: G = (dH/dt) H^-1, H = (xx xy xz; 0 yy yz; 0 0 zz) with the
+ * edges as columns. h and rate [6]: xx yy zz yz xz xy of H, > 0 the first three, and of dH/dt. The
+ * same for every choice of the edges of one lattice, as long as h and rate are of one choice. */
+void sd_flow_of_cell(const double h[6], const double rate[6], double G[9]);
+
 #ifdef __cplusplus
 }
 #endif

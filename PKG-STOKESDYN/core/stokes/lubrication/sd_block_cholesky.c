@@ -42,17 +42,6 @@ struct sd_elimination {
 
 /* --- memory --- */
 
-static const struct sd_block_kernels *best_kernels(void)
-{
-#if defined(SD_HAS_X86_KERNELS)
-  return sd_isa_supported(SD_ISA_AVX2) ? &sd_block_avx2 : &sd_block_baseline;
-#elif defined(SD_HAS_PORTABLE_KERNELS)
-  return &sd_block_baseline;
-#else
-  return &sd_block_plain;
-#endif
-}
-
 /* What was there is lost. */
 static int reserve_nodes(sd_block_cholesky *f, int n)
 {
@@ -193,7 +182,7 @@ sd_status sd_block_cholesky_begin(sd_block_cholesky *f, int n)
   f->n = 0;
   if (!w || !reserve_nodes(f, n) || !reserve_ends(w, 4 * n)) return SD_ENOMEMORY;
   f->n = n;
-  w->kernels = best_kernels();
+  w->kernels = SD_KERNELS_OF(sd_block, plain, sd_isa_of(SD_ISA_BEST));
   w->ends = w->blocks = w->free_blocks = 0;
   w->entries = 0;
   for (int p = 0; p < n; p++) {

@@ -4,7 +4,7 @@
 #define SD_BLOCK_INTERNAL_H
 
 #include "sd_block_cholesky.h"
-#include "sd_product_internal.h"
+#include "sd_isa.h"
 
 enum { SD_BLOCK = 6 * SD_BLOCK_LANES };
 
@@ -29,6 +29,6 @@ struct sd_block_kernels {
   void (*apply)(const sd_block_cholesky *f);
 };
 
-extern const struct sd_block_kernels sd_block_plain, sd_block_baseline, sd_block_avx2;
+SD_KERNEL_TABLES(struct sd_block_kernels, sd_block);
 
 #endif

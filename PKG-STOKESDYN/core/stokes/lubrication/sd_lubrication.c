@@ -47,7 +47,8 @@ static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *
     if (!sd_grow(&w->neighbours, sizeof(double), all) ||
         !sd_grow(&w->flow, 6 * sizeof(double), all) || !sd_grow(&w->own, sizeof(*w->own), all) ||
         !sd_grow(&L->diagonal, 36 * sizeof(double), all) ||
-        !sd_grow(&L->carried, 6 * sizeof(double), all))
+        !sd_grow(&L->carried, 6 * sizeof(double), all) ||
+        !sd_grow(&L->strain, 7 * sizeof(double), all))
       return SD_ENOMEMORY;
     w->most_spheres = s->n_all + 1;
   }
@@ -187,6 +188,7 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   double *flow = L->work->flow;
   sd_status status = SD_OK;
   memset(L->carried, 0, sizeof(double) * 6 * (size_t) s->n);
+  memset(L->strain, 0, sizeof(double) * 7 * (size_t) s->n);
   L->work->flows = 0;
   if (!s->u) return SD_OK;
   memcpy(flow, s->u, sizeof(double) * 6 * (size_t) s->n);
@@ -240,6 +242,21 @@ static sd_lubrication_link block_of(const sd_pair_resistance *R, int b, const do
                                R->YC[b]};
 }
 
+/* What the flow does to sphere i of a pair, from its own block and that with the other: V_inf, and e */
+static void carry(sd_lubrication *L, long i, const sd_lubrication_link *own,
+                  const sd_lubrication_link *with, const double V[2][6], const double e[2][6])
+{
+  double force[6] = {0.0}, *strain = L->strain + 7 * i;
+  add_product(own, own->YB12, own->YB21, V[0], force);
+  add_product(with, with->YB12, with->YB21, V[1], force);
+  add_product(own, own->YB12, own->YB21, e[0], strain);
+  add_product(with, with->YB12, with->YB21, e[1], strain);
+  for (int k = 0; k < 6; k++) {
+    L->carried[6 * i + k] += force[k];
+    strain[6] += e[0][k] * force[k];
+  }
+}
+
 /* What the flow does to pair k: to its first sphere, and to its second if that is this rank's */
 static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k,
                         const sd_pair_resistance *R)
@@ -247,19 +264,26 @@ static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k
   const int i = L->pair[k][0], j = L->pair[k][1], at = L->work->close[k].at;
   const sd_spheres *p = &s->spheres;
   const double *flow = L->work->flow, *d = L->link[k].d;
+  const double *u[2] = {flow + 6 * (long) i, flow + 6 * (long) at};
   const sd_lubrication_link B11 = block_of(R, 0, d), B12 = block_of(R, 1, d),
                             B22 = block_of(R, 2, d);
-  double V[2][6], *carried = L->carried;
+  double V[2][6], e[2][6];
   rigid_part((const double *const[]){p->x + 3 * (long) i, p->x + 3 * (long) at},
-             (const double[]){p->a[i], p->a[at]},
-             (const double *const[]){flow + 6 * (long) i, flow + 6 * (long) at}, V);
+             (const double[]){p->a[i], p->a[at]}, u, V);
+  for (int q = 0; q < 12; q++) e[q / 6][q % 6] = V[q / 6][q % 6] - u[q / 6][q % 6];
   /* L V is of velocities without the drift: what that makes of V_inf is left */
-  for (int e = 0; s->drift && at >= s->n && e < 3; e++) V[1][e] -= s->drift[3 * (at - s->n) + e];
-  add_product(&B11, B11.YB12, B11.YB21, V[0], carried + 6 * (long) i);
-  add_product(&B12, B12.YB12, B12.YB21, V[1], carried + 6 * (long) i);
+  for (int q = 0; s->drift && at >= s->n && q < 3; q++) V[1][q] -= s->drift[3 * (at - s->n) + q];
+  carry(L, i, &B11, &B12, V, e);
   if (j >= L->n || j == i) return;
-  add_product(&B12, B12.YB21, B12.YB12, V[0], carried + 6 * (long) j);
-  add_product(&B22, B22.YB12, B22.YB21, V[1], carried + 6 * (long) j);
+  sd_lubrication_link B21 = B12;
+  B21.YB12 = B12.YB21;
+  B21.YB21 = B12.YB12;
+  double V2[2][6], e2[2][6];
+  for (int q = 0; q < 12; q++) {
+    V2[q / 6][q % 6] = V[1 - q / 6][q % 6];
+    e2[q / 6][q % 6] = e[1 - q / 6][q % 6];
+  }
+  carry(L, j, &B22, &B21, V2, e2);
 }
 
 /* out += along dd + across (1 - dd) */
@@ -403,6 +427,15 @@ sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
   return SD_OK;
 }
 
+void sd_lubrication_strain_power(const sd_lubrication *L, const double *V, double *out)
+{
+  for (long i = 0; i < L->n; i++) {
+    const double *strain = L->strain + 7 * i;
+    out[i] = strain[6];
+    for (int k = 0; k < 6; k++) out[i] -= strain[k] * V[6 * i + k];
+  }
+}
+
 /* Rayleigh's quotient v.L v / v.W v of v := W^-1 L v, again and again */
 sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
                               double *rate)
@@ -445,6 +478,7 @@ void sd_lubrication_free(sd_lubrication *L)
   free(L->model);
   free(L->diagonal);
   free(L->carried);
+  free(L->strain);
   free(L->others);
   memset(L, 0, sizeof(*L));
 }

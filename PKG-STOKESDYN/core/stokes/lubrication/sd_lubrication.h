@@ -76,6 +76,8 @@ typedef struct {
   double *diagonal;
   /* [6n] what the flow takes off: forces and torques on the fluid are L V - carried */
   double *carried;
+  /* [7n] of sd_lubrication_strain_power: sum of t w D e of each sphere, and of e.(t w D V_inf) */
+  double *strain;
   /* [6 (n_all - n)] velocities of the others */
   double *others;
   sd_world world;
@@ -89,6 +91,13 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
 void sd_lubrication_block(const sd_lubrication_link *l, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
+
+/* out [n]: the power that the flow puts into films beside that of the forces f on the spheres. It
+ * carries a sphere with u and its pair with V_inf; with e = V_inf - u that power is sum f.e, f =
+ * t w D (V_inf - V), and the films then lose, summed over all spheres,
+ *   sum f.(u - V) + out = (V_inf - V).t w D (V_inf - V) >= 0.
+ * 0 in a flow without a strain. V [6n] */
+void sd_lubrication_strain_power(const sd_lubrication *L, const double *V, double *out);
 
 /* The largest eigenvalue of W^-1 L, W > 0 [6 n] an inertia: the rate at which the stiffest motion
  * decays. By power iteration from v [6 n], not 0: a few per cent low at most where a pair is

@@ -1,7 +1,7 @@
 /* u = Omega F for spheres where they stand: the pair part of the mobility, whatever sums it.
  *
  * An engine is a table of functions. A new one is a file in this folder that defines the table, and
- * a line in sd_mobility.c.
+ * its declaration here.
  * Whoever uses an engine knows it by this header alone: solvers, preconditioners, bodies. The
  * caller never asks which engine it has; it asks the table what the engine needs.
  *
@@ -29,8 +29,7 @@ extern "C" {
  *   ALL    those of all ranks in one order, the same on every rank; no ghosts, no pairs */
 typedef enum { SD_VIEW_LIST, SD_VIEW_NEAR, SD_VIEW_ALL } sd_view;
 
-/* How the spheres interact: what is known before they are placed. law.range is the cut-off, and the
- * taper's range; INFINITY: every sphere sees all that it is given. width 3 or 6 as in sd_product.h.
+/* How the spheres interact: what is known before they are placed. law.range: of the taper. width 3 or 6 as in sd_product.h.
  * ewald: of the engine that splits the sum, which has no other law than RPY without taper. */
 typedef struct {
   sd_law law;
@@ -53,18 +52,12 @@ typedef struct {
   /* bytes of its own struct, zero before the first place */
   size_t state;
   sd_view view;
-  /* how far pairs and ghosts must reach, centre to centre; 0: no ghosts; INFINITY: as far as the
-   * pairs that the caller chose */
-  double (*ghosts)(const sd_mobility_how *how);
   /* the spheres have moved: once before the products of a solve. SD_OK, SD_ENOMEMORY or what a
    * function of sd_world said */
   sd_status (*place)(void *state, const sd_mobility_scene *scene);
   /* F [width n] -> u [width n]. A sphere without radius gets 0 and its F is not read. SD_OK or as
    * place */
   sd_status (*apply)(void *state, const double *F, double *u);
-  /* diagonal of Omega [width n], what a sphere does to itself beyond 1/(6 pi eta a): through its
-   * periodic images. NULL: nothing */
-  void (*self)(const void *state, double *diagonal);
   void (*free)(void *state);
 } sd_mobility_engine;
 
@@ -79,15 +72,10 @@ extern const sd_mobility_engine sd_mobility_list;
  * is nowhere, or outside of an open box. */
 extern const sd_mobility_engine sd_mobility_ewald;
 
-/* [sd_mobility_count] those that want nothing but a law: all but ewald */
-extern const sd_mobility_engine *const sd_mobility_engines[];
-extern const int sd_mobility_count;
-
 /* An engine with its state. Zero-initialise; sd_mobility_free in the end. */
 typedef struct {
   const sd_mobility_engine *engine;
   void *state;
-  int width, n;
 } sd_mobility;
 
 /* The same engine as before keeps its memory. SD_OK or SD_ENOMEMORY, or as place. */
@@ -96,9 +84,6 @@ sd_status sd_mobility_place(sd_mobility *m, const sd_mobility_engine *engine,
 
 /* In the solver's signature sd_apply: ctx is an sd_mobility. */
 sd_status sd_mobility_apply(void *ctx, const double *F, double *u);
-
-/* diagonal [width n]: engine->self, or 0 */
-void sd_mobility_self(const sd_mobility *m, double *diagonal);
 
 void sd_mobility_free(sd_mobility *m);
 

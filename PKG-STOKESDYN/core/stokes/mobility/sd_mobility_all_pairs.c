@@ -18,12 +18,6 @@ typedef struct {
   size_t room;
 } all_pairs;
 
-static double ghosts(const sd_mobility_how *how)
-{
-  (void) how;
-  return 0.0;
-}
-
 static sd_status place(void *state, const sd_mobility_scene *s)
 {
   all_pairs *e = state;
@@ -40,15 +34,15 @@ static sd_status apply(void *state, const double *F, double *u)
 {
   all_pairs *e = state;
   const sd_world *w = &e->world;
-  const int ranks = w->ranks > 0 ? w->ranks : 1;
+  const int me = sd_world_me(w), ranks = sd_world_ranks(w);
   if (!w->spread) {
-    sd_packed_share(&e->packed, w->me, ranks, F, u);
+    sd_packed_share(&e->packed, me, ranks, F, u);
     return SD_OK;
   }
   double *F_all = e->all, *u_all = e->all + (size_t) e->width * (size_t) e->n_all;
   const sd_status status = w->spread(w->ctx, F, F_all, e->width);
   if (status != SD_OK) return status;
-  sd_packed_share(&e->packed, w->me, ranks, F_all, u_all);
+  sd_packed_share(&e->packed, me, ranks, F_all, u_all);
   return w->collect(w->ctx, u_all, u, e->width);
 }
 
@@ -63,7 +57,6 @@ const sd_mobility_engine sd_mobility_all_pairs = {
     .name = "all pairs",
     .state = sizeof(all_pairs),
     .view = SD_VIEW_ALL,
-    .ghosts = ghosts,
     .place = place,
     .apply = apply,
     .free = release,

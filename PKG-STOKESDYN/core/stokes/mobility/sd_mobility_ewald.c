@@ -20,9 +20,7 @@ typedef struct {
   sd_ewald_waves waves[2];
   sd_ewald_pairs pairs;
   sd_ewald_large_pairs large_pairs;
-  double tail[2][3], origin[2][SD_RADIALS];
-  /* summed over the ranks: sd_wave.self */
-  double self[2][3][3];
+  double tail[2][3];
   /* this rank's spheres with radius: [small] in order of the near part's targets, then those of the
    * second level */
   int *sphere, small, own;
@@ -37,11 +35,6 @@ typedef struct {
   sd_spheres spheres;
 } ewald;
 
-static double ghosts(const sd_mobility_how *how)
-{
-  return how->ewald ? how->ewald->reach : 0.0;
-}
-
 /* --- tables of a splitting --- */
 
 static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
@@ -54,7 +47,8 @@ static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
     e->ready = 1;
     return SD_OK;
   }
-  const struct sd_ewald_kernels *kernels = sd_ewald_kernels_of(SD_ISA_BEST);
+  const struct sd_ewald_kernels *kernels =
+      SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
   const sd_ewald level[2] = {*how, sd_ewald_of_large(how)};
   e->levels = how->large.from > 0.0 ? 2 : 1;
   sd_ewald_pairs_create(&e->pairs, how, kernels, e->width);
@@ -62,7 +56,6 @@ static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
   sd_status status = SD_OK;
   for (int l = 0; l < e->levels && status == SD_OK; l++) {
     sd_radial_tail(level + l, e->tail[l]);
-    sd_radial(level + l, 0.0, e->origin[l]);
     status = sd_ewald_waves_create(e->waves + l, level + l, kernels, e->width, &s->world);
   }
   e->ready = status == SD_OK;
@@ -103,20 +96,17 @@ static void list_spheres(ewald *e)
     if (e->spheres.a[i] >= e->ewald.large.from) e->sphere[e->own++] = i;
 }
 
-/* All bricks, by a sum over the ranks, which also carries what a sphere's images do to it, and who
- * has failed: then all fail. brick [levels][6] */
+/* All bricks, by a sum over the ranks, which also carries who has failed: then all fail. Of all ranks
+ * of the world, also where this one has no grid. brick [levels][6] */
 static sd_status share_bricks(ewald *e, const int *brick, sd_status status)
 {
-  const int ranks = e->waves[0].grid.ranks, me = e->waves[0].grid.me, levels = e->levels;
-  const int failed = 6 * ranks * levels, self = failed + 2, many = self + 9 * levels;
+  const int ranks = sd_world_ranks(&e->world), me = sd_world_me(&e->world), levels = e->levels;
+  const int failed = 6 * ranks * levels, many = failed + 2;
   double *values = calloc((size_t) many, sizeof(double));
   int *bricks = calloc((size_t) many, sizeof(int));
   if (!values || !bricks) status = SD_ENOMEMORY;
-  for (int l = 0; l < levels && values; l++) {
-    for (int k = 0; k < 6; k++)
-      values[6 * (l * ranks + me) + k] = status == SD_OK ? brick[6 * l + k] : 0;
-    memcpy(values + self + 9 * l, e->waves[l].wave.self, sizeof(e->self[l]));
-  }
+  for (int l = 0; l < levels && values && status == SD_OK; l++)
+    for (int k = 0; k < 6; k++) values[6 * (l * ranks + me) + k] = brick[6 * l + k];
   if (values) {
     values[failed] = status == SD_ENOMEMORY;
     values[failed + 1] = status != SD_OK && status != SD_ENOMEMORY;
@@ -128,10 +118,8 @@ static sd_status share_bricks(ewald *e, const int *brick, sd_status status)
   if (status == SD_OK && values[failed + 1] > 0.0) status = SD_ENOTFINITE;
   if (status == SD_OK && values[failed] > 0.0) status = SD_ENOMEMORY;
   for (int k = 0; k < failed && status == SD_OK; k++) bricks[k] = (int) lrint(values[k]);
-  for (int l = 0; l < levels && status == SD_OK; l++) {
-    memcpy(e->self[l], values + self + 9 * l, sizeof(e->self[l]));
+  for (int l = 0; l < levels && status == SD_OK; l++)
     status = sd_ewald_waves_place(e->waves + l, bricks + 6 * ranks * l);
-  }
   free(values);
   free(bricks);
   return status;
@@ -251,71 +239,6 @@ static sd_status apply(void *state, const double *F, double *u)
   return status;
 }
 
-/* Near part of a sphere of radius a and one of its images at r [3]: diagonal [6] += */
-static void add_image(const sd_ewald *e, double a, const double *r, double *diagonal)
-{
-  const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), b = sd_ewald_b(e, a);
-  double M[36], D[SD_RADIALS];
-  if (R > fmax(e->range, 2.0 * a)) return;
-  sd_tensor_grand(r, a, a, 1.0, M);
-  sd_radial(e, R, D);
-  for (int d = 0; d < 3; d++) {
-    const double along = r[d] * r[d];
-    diagonal[d] += M[7 * d] - (D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2]) -
-                   along * (D[SD_J0] - 2.0 * b * D[SD_J1] + b * b * D[SD_J2]);
-    diagonal[d + 3] += M[7 * (d + 3)] - 0.25 * (D[SD_I1] + along * D[SD_J1]);
-  }
-}
-
-static void add_images(const sd_ewald *e, double a, double *diagonal)
-{
-  const sd_ewald_box *b = &e->box;
-  const double reach = fmax(e->range, 2.0 * a);
-  const int nz = (int) (reach / b->edge[2]);
-  for (int k = -nz; k <= nz; k++) {
-    const int ny = (int) ((reach + fabs(k * b->tilt[2])) / b->edge[1]);
-    for (int j = -ny; j <= ny; j++) {
-      const double offset = j * b->tilt[0] + k * b->tilt[1];
-      const int nx = (int) ((reach + fabs(offset)) / b->edge[0]);
-      for (int i = -nx; i <= nx; i++) {
-        const double r[3] = {i * b->edge[0] + offset, j * b->edge[1] + k * b->tilt[2],
-                             k * b->edge[2]};
-        if (i != 0 || j != 0 || k != 0) add_image(e, a, r, diagonal);
-      }
-    }
-  }
-}
-
-/* Through its images: wave part with its own D(0) taken away, near images, and the mean of what is
- * beyond. In an open box wave part and D(0) are the same. */
-static void self(const void *state, double *diagonal)
-{
-  const ewald *e = state;
-  const long m = e->width;
-  memset(diagonal, 0, sizeof(double) * (size_t) m * (size_t) e->n);
-  if (!(e->ewald.count > 0.0) || !e->ewald.box.periodic) return;
-  const double V = sd_ewald_volume(&e->ewald.box);
-  double last = 0.0, own[6] = {0.0};
-  for (int i = 0; i < e->n; i++) {
-    const double a = e->spheres.a[i], w = e->spheres.w[i], b = sd_ewald_b(&e->ewald, a);
-    if (!(a > 0.0)) continue;
-    const int level = e->levels == 2 && a >= e->ewald.large.from;
-    const double *C = e->tail[level], *D = e->origin[level];
-    for (int d = 0; d < 3 && a != last; d++) {
-      own[d] = -(D[SD_I0] - 2.0 * b * D[SD_I1] + b * b * D[SD_I2]) +
-               (C[0] - 2.0 * b * C[1] + b * b * C[2]) / V;
-      own[d + 3] = 0.25 * (C[1] / V - D[SD_I1]);
-      for (int l = level; l < e->levels; l++) {
-        own[d] += e->self[l][0][d] - 2.0 * b * e->self[l][1][d] + b * b * e->self[l][2][d];
-        own[d + 3] += 0.25 * e->self[l][1][d];
-      }
-    }
-    if (a != last) add_images(level ? &e->large_pairs.ewald : &e->ewald, a, own);
-    last = a;
-    for (int d = 0; d < m; d++) diagonal[m * i + d] = w * w * own[d];
-  }
-}
-
 static void release(void *state)
 {
   ewald *e = state;
@@ -331,9 +254,7 @@ const sd_mobility_engine sd_mobility_ewald = {
     .name = "Ewald sum",
     .state = sizeof(ewald),
     .view = SD_VIEW_NEAR,
-    .ghosts = ghosts,
     .place = place,
     .apply = apply,
-    .self = self,
     .free = release,
 };

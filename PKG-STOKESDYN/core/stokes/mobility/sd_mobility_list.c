@@ -16,11 +16,6 @@ typedef struct {
   size_t room;
 } list;
 
-static double ghosts(const sd_mobility_how *how)
-{
-  return how->law.range;
-}
-
 static sd_status place(void *state, const sd_mobility_scene *s)
 {
   list *e = state;
@@ -55,7 +50,6 @@ const sd_mobility_engine sd_mobility_list = {
     .name = "pairs by list",
     .state = sizeof(list),
     .view = SD_VIEW_LIST,
-    .ghosts = ghosts,
     .place = place,
     .apply = apply,
     .free = release,

@@ -3,16 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_product_internal.h"
+#include "sd_sparse_internal.h"
 #include "sd_unit.h"
-
-/* A block by columns of floats. Width 3: each column has a fourth number, 0, as the kernel of
- * sd_product_internal.h wants it; width 6: the kernel below reads the next two numbers with each
- * column, which do no harm. */
-static int block_floats(int width)
-{
-  return width == 3 ? 12 : 36;
-}
 
 void sd_sparse_free(sd_sparse *f)
 {
@@ -56,7 +48,7 @@ static void last_columns(const float *R, int size, int width, float *X)
 /* The column of blocks of m spheres, its own last in X and first in value. */
 static void store(const float *X, int m, int width, float *value)
 {
-  const int size = block_floats(width), lda = width == 3 ? 4 : 6;
+  const int size = sd_sparse_floats(width), lda = width == 3 ? 4 : 6;
   memset(value, 0, sizeof(float) * (size_t) (size * m));
   for (int l = 0; l < m; l++)
     for (int q = 0; q < width; q++)
@@ -84,7 +76,7 @@ static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
 {
   const sd_rows *rows = &f->rows;
   const size_t blocks = (size_t) rows->first[rows->columns], most = (size_t) rows->largest;
-  const size_t size = (size_t) f->width * most, floats = (size_t) block_floats(f->width);
+  const size_t size = (size_t) f->width * most, floats = (size_t) sd_sparse_floats(f->width);
   f->value = malloc(sizeof(float) * (floats * blocks + 2));
   int *member = malloc(sizeof(int) * (most + 1));
   float *A = malloc(sizeof(float) * (size * size + 1)),
@@ -129,100 +121,6 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
   return status;
 }
 
-/* What the kernels do, where there are none: out += L (L^T in); the numbers of a sphere stand every
- * `step`. One column of blocks after the other, each read twice while it is in the cache. */
-static inline void plain_sparse(int width, int step, int columns, const long *first, const int *row,
-                                const float *value, const double *in, double *out)
-{
-  const int size = block_floats(width), lda = width == 3 ? 4 : 6;
-  for (int k = 0; k < columns; k++) {
-    double t[6] = {0.0};
-    for (long l = first[k]; l < first[k + 1]; l++)
-      for (int q = 0; q < width; q++)
-        for (int p = 0; p < width; p++)
-          t[q] += value[size * l + lda * q + p] * in[step * (long) row[l] + p];
-    for (long l = first[k]; l < first[k + 1]; l++)
-      for (int q = 0; q < width; q++)
-        for (int p = 0; p < width; p++)
-          out[step * (long) row[l] + p] += value[size * l + lda * q + p] * t[q];
-  }
-}
-
-static void plain_three(int columns, const long *first, const int *row, const float *value,
-                        const double *in, double *out)
-{
-  plain_sparse(3, 4, columns, first, row, value, in, out);
-}
-
-static void plain_six(int columns, const long *first, const int *row, const float *value,
-                      const double *in, double *out)
-{
-  plain_sparse(6, 8, columns, first, row, value, in, out);
-}
-
-typedef void kernel(int columns, const long *first, const int *row, const float *value,
-                    const double *in, double *out);
-
-#if defined(SD_HAS_X86_KERNELS)
-typedef double quad __attribute__((vector_size(32)));
-typedef float quad_float __attribute__((vector_size(16)));
-
-/* Two vectors of four lanes for the six numbers of a sphere; in the last two lanes of the second
- * one there are zeros in `in` and something without meaning in `out`. */
-__attribute__((target("avx2,fma"))) static void six_avx2(int columns, const long *first,
-                                                         const int *row, const float *value,
-                                                         const double *in, double *out)
-{
-  for (int k = 0; k < columns; k++) {
-    quad s[6] = {{0.0}}, t[6];
-    for (long l = first[k]; l < first[k + 1]; l++) { /* t = L^T in */
-      quad low, high;
-      __builtin_memcpy(&low, in + 8 * (long) row[l], sizeof(low));
-      __builtin_memcpy(&high, in + 8 * (long) row[l] + 4, sizeof(high));
-#pragma GCC unroll 6
-      for (int q = 0; q < 6; q++) {
-        quad_float b, c;
-        __builtin_memcpy(&b, value + 36 * l + 6 * q, sizeof(b));
-        __builtin_memcpy(&c, value + 36 * l + 6 * q + 4, sizeof(c));
-        s[q] += __builtin_convertvector(b, quad) * low + __builtin_convertvector(c, quad) * high;
-      }
-    }
-    for (int q = 0; q < 6; q++) {
-      const double sum = s[q][0] + s[q][1] + s[q][2] + s[q][3];
-      t[q] = (quad){sum, sum, sum, sum};
-    }
-    for (long l = first[k]; l < first[k + 1]; l++) { /* out += L t */
-      double *o = out + 8 * (long) row[l];
-      quad low, high;
-      __builtin_memcpy(&low, o, sizeof(low));
-      __builtin_memcpy(&high, o + 4, sizeof(high));
-#pragma GCC unroll 6
-      for (int q = 0; q < 6; q++) {
-        quad_float b, c;
-        __builtin_memcpy(&b, value + 36 * l + 6 * q, sizeof(b));
-        __builtin_memcpy(&c, value + 36 * l + 6 * q + 4, sizeof(c));
-        low += __builtin_convertvector(b, quad) * t[q];
-        high += __builtin_convertvector(c, quad) * t[q];
-      }
-      __builtin_memcpy(o, &low, sizeof(low));
-      __builtin_memcpy(o + 4, &high, sizeof(high));
-    }
-  }
-}
-#endif
-
-/* Width 3 has a kernel of each instruction set among those of the product; width 6 is worth its own
- * only where six columns fit into registers. */
-static kernel *kernel_of(int width)
-{
-  const struct sd_kernels *kernels = sd_kernels_of(sd_isa_best());
-  if (width == 3) return kernels->sparse ? kernels->sparse : plain_three;
-#if defined(SD_HAS_X86_KERNELS)
-  if (sd_isa_supported(SD_ISA_AVX2)) return six_avx2;
-#endif
-  return plain_six;
-}
-
 /* z = D^1/2 L L^T D^1/2 r: scaled into vectors that the kernels can load whole, and back. */
 sd_status sd_sparse_apply(void *ctx, const double *r, double *z)
 {
@@ -233,7 +131,10 @@ sd_status sd_sparse_apply(void *ctx, const double *r, double *z)
     for (int d = 0; d < step; d++)
       in[step * i + d] = d < width ? f->root[2 * i + (d >= 3)] * r[width * i + d] : 0.0;
   memset(out, 0, sizeof(double) * (size_t) (step * f->n));
-  kernel_of(f->width)(f->rows.columns, f->rows.first, f->rows.row, f->value, in, out);
+  const struct sd_sparse_kernels *kernels =
+      SD_KERNELS_OF(sd_sparse, plain, sd_isa_of(SD_ISA_BEST));
+  sd_sparse_product *product = width == 3 ? kernels->three : kernels->six;
+  product(f->rows.columns, f->rows.first, f->rows.row, f->value, in, out);
   for (long i = 0; i < f->n; i++)
     for (int d = 0; d < width; d++)
       z[width * i + d] = f->root[2 * i + (d >= 3)] * out[step * i + d];

@@ -17,47 +17,6 @@ double sd_taper_factor(const sd_law *law, double R)
   return s * s * (1.0 + 0.5 * q);
 }
 
-/* Which kernels this build holds; sd_isa_supported says what the processor can run of them. */
-const struct sd_kernels *sd_kernels_of(sd_isa isa)
-{
-  if (isa == SD_ISA_PLAIN) return &sd_kernels_plain;
-#if defined(SD_HAS_X86_KERNELS)
-  if (isa == SD_ISA_BASELINE) return &sd_kernels_baseline;
-  if (isa == SD_ISA_AVX2) return &sd_kernels_avx2;
-  if (isa == SD_ISA_AVX512) return &sd_kernels_avx512;
-#elif defined(SD_HAS_PORTABLE_KERNELS)
-  if (isa == SD_ISA_BASELINE) return &sd_kernels_baseline;
-#endif
-  return NULL;
-}
-
-int sd_isa_supported(sd_isa isa)
-{
-  if (isa == SD_ISA_BEST) return 1;
-  if (!sd_kernels_of(isa)) return 0;
-#if defined(SD_HAS_X86_KERNELS)
-  if (isa == SD_ISA_AVX512)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
-  if (isa == SD_ISA_AVX2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#endif
-  return 1;
-}
-
-/* From the widest on: each is faster than the next on every processor that has both. */
-sd_isa sd_isa_best(void)
-{
-  static const sd_isa order[] = {SD_ISA_AVX512, SD_ISA_AVX2, SD_ISA_BASELINE};
-  for (int k = 0; k < 3; k++)
-    if (sd_isa_supported(order[k])) return order[k];
-  return SD_ISA_PLAIN;
-}
-
-const char *sd_isa_name(sd_isa isa)
-{
-  static const char *const names[] = {"best", "plain C", "baseline", "AVX2", "AVX-512"};
-  return names[isa];
-}
-
 void sd_packed_free(sd_packed *p)
 {
   free(p->memory);
@@ -100,16 +59,15 @@ static int fits(sd_packed *p)
 static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                           int width)
 {
-  if (isa == SD_ISA_BEST) isa = sd_isa_best();
   p->spheres = *s;
   p->law = *law;
   p->n = n;
   p->width = width;
-  if (isa == SD_ISA_PLAIN || !fits(p)) {
+  isa = sd_isa_of(isa);
+  if ((law->tensor != SD_TENSOR_RPY && width == 3) || law->taper != SD_TAPER_NONE || !fits(p))
     isa = SD_ISA_PLAIN;
-    p->scale = 1.0;
-  }
-  const struct sd_kernels *kernels = sd_kernels_of(isa);
+  if (isa == SD_ISA_PLAIN) p->scale = 1.0;
+  const struct sd_kernels *kernels = SD_KERNELS_OF(sd_product, plain, isa);
   p->kernel = width == 6 ? &kernels->torques : &kernels->forces;
   p->law.range *= p->scale;
   p->active = 0;

@@ -11,6 +11,7 @@
 
 #include <stddef.h>
 
+#include "sd_isa.h"
 #include "sd_status.h"
 #include "sd_tensor.h"
 
@@ -53,28 +54,19 @@ typedef struct {
 } sd_pairs;
 
 /* --- the product ---------------------------------------------------------------------------------
- * Kernels on a copy of the spheres in the order that they read, made once per solve. Each
- * instruction set has its own build of one source (sd_product_kernel.h); the best that the
- * processor has is taken at run time. SD_ISA_PLAIN is plain C, pair by pair by the formulas of
- * sd_tensor.h: for other compilers, for lengths beyond the range of the vector kernels, and to
- * compare those with.
+ * Kernels on a copy of the spheres in the order that they read, made once per solve; the best that
+ * the processor has are taken at run time (sd_isa.h). SD_ISA_PLAIN is plain C, pair by pair by the
+ * formulas of sd_tensor.h: for other compilers, for Oseen's tensor and for tapers, which only
+ * comparisons want, for lengths beyond the range of the vector kernels, and to compare those with.
  * Relative error of a pair's block: 1e-15. The order of summation is fixed: same input, same
  * instruction set, same bits.
  *
- * Vectors have `width` numbers a sphere: 3, force and velocity; or 6, force and torque, velocity
+ * Vectors have `width` numbers per sphere: 3, force and velocity; or 6, force and torque, velocity
  * and angular velocity:
  *
  *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j)
  *
  * M_ij: the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the law. */
-typedef enum { SD_ISA_BEST, SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512 } sd_isa;
-
-/* Does this build hold kernels for it, and does the processor run them? SD_ISA_PLAIN: always. */
-int sd_isa_supported(sd_isa isa);
-/* The one that SD_ISA_BEST stands for here. */
-sd_isa sd_isa_best(void);
-const char *sd_isa_name(sd_isa isa);
-
 struct sd_kernel;
 
 /* Zero-initialise; sd_packed_free in the end. Members are the kernels' own. */

@@ -115,7 +115,5 @@ static void torques_list(const sd_packed *p, const sd_pairs *pairs)
   list(p, pairs, 6, add_force_and_torque);
 }
 
-const struct sd_kernels sd_kernels_plain = {
-    {1, forces_symmetric, forces_list},
-    {1, torques_symmetric, torques_list},
-    NULL};
+const struct sd_kernels sd_product_plain = {{1, forces_symmetric, forces_list},
+                                            {1, torques_symmetric, torques_list}};

@@ -241,7 +241,7 @@ static void cubic_arrays_settle_as_they_should(void **state)
     const double phi = table_number(&t, 1), radius = cbrt(3.0 * phi / (4.0 * SD_PI * n));
     const double touching[] = {SD_PI / 6.0, SD_PI * sqrt(3.0) / 8.0, SD_PI * sqrt(2.0) / 6.0};
     const sd_ewald_box box = {.periodic = 1, .edge = {1, 1, 1}};
-    double a[4], F[24] = {0.0}, u[24], diagonal[24];
+    double a[4], F[24] = {0.0}, u[24];
     for (int i = 0; i < n; i++) {
       a[i] = radius;
       F[6 * i] = 6.0 * SD_PI * radius;
@@ -254,33 +254,6 @@ static void cubic_arrays_settle_as_they_should(void **state)
     const double K = table_number(&t, 3);
     CHECK_NEAR(1.0 / u[0], K, 1e-9 * K);
     if (phi < touching[k]) CHECK_NEAR(u[4], 1.0 - phi, 1e-9);
-    sd_mobility_self(&p.omega, diagonal);
-    if (n == 1) {
-      CHECK_NEAR(1.0 + F[0] * diagonal[0], u[0], 1e-10);
-      CHECK_NEAR(1.0 + F[4] * diagonal[4], u[4], 1e-10);
-    }
-    periodic_free(&p);
-  }
-}
-
-/* What the self of the table says is the diagonal of the matrix, any radii, any box. */
-static void self_is_the_diagonal(void **state)
-{
-  (void) state;
-  for (int k = 0; k < VARIED; k++) {
-    const reference s = reference_scene(varied[k]);
-    const sd_ewald how = periodic_choose(&s.box, s.a, s.n, s.width, 1e-9);
-    periodic p;
-    periodic_place(&p, s.x, s.a, NULL, s.n, s.width, &how);
-    double diagonal[6 * MOST], F[6 * MOST] = {0.0}, u[6 * MOST];
-    sd_mobility_self(&p.omega, diagonal);
-    for (int i = 0; i < s.width * s.n; i += 5) {
-      F[i] = 1.0;
-      assert_int_equal(sd_mobility_apply(&p.omega, F, u), SD_OK);
-      const double a = s.a[i / s.width], own = i % s.width < 3 ? 1.0 / (6.0 * SD_PI * a) : 1.0 / (8.0 * SD_PI * a * a * a);
-      CHECK_NEAR(diagonal[i], u[i], 1e-7 * own);
-      F[i] = 0.0;
-    }
     periodic_free(&p);
   }
 }
@@ -295,7 +268,6 @@ int main(void)
       cmocka_unit_test(a_flip_of_the_box_changes_nothing),
       cmocka_unit_test(the_matrix_is_symmetric_at_any_tolerance),
       cmocka_unit_test(cubic_arrays_settle_as_they_should),
-      cmocka_unit_test(self_is_the_diagonal),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,14 +54,10 @@ static void one_sphere_in_an_open_box_feels_nothing(void **state)
   assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-9, &how), SD_OK);
   const sd_mobility_scene scene = {.how = {.width = 3, .ewald = &how}, .n = 1, .n_all = 1, .spheres = {x, &a, &w}};
   sd_mobility m = {0};
-  double u[3], self[3];
+  double u[3];
   assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
   assert_int_equal(sd_mobility_apply(&m, F, u), SD_OK);
-  sd_mobility_self(&m, self);
-  for (int d = 0; d < 3; d++) {
-    CHECK_NEAR(u[d], 0.0, 1e-9 * F[d] / (6.0 * SD_PI * a));
-    CHECK_NEAR(self[d], 0.0, 0.0);
-  }
+  for (int d = 0; d < 3; d++) CHECK_NEAR(u[d], 0.0, 1e-9 * F[d] / (6.0 * SD_PI * a));
   sd_mobility_free(&m);
 }
 

@@ -38,7 +38,7 @@ static void near_parts_agree(void **state)
           const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
           if (!sd_isa_supported(isa)) continue;
           sd_ewald_pairs p = {0};
-          sd_ewald_pairs_create(&p, &how, sd_ewald_kernels_of(isa), width);
+          sd_ewald_pairs_create(&p, &how, SD_KERNELS_OF(sd_ewald, plain, isa), width);
           assert_int_equal(sd_ewald_pairs_place(&p, &spheres, N - 20, N), SD_OK); /* the last are ghosts */
           sd_ewald_pairs_apply(&p, N - 20, c.F, c.F + width * (N - 20), k < 0 ? expected : u);
           sd_ewald_pairs_free(&p);
@@ -93,10 +93,10 @@ static void spreading_and_interpolation_agree(void **state)
         s.F = k < 0 ? first : F;
         memcpy(s.F, c.F, sizeof(c.F));
         memset(s.brick, 0, sizeof(double) * numbers);
-        sd_ewald_kernels_of(isa)->spread(&s);
+        SD_KERNELS_OF(sd_ewald, plain, isa)->spread(&s);
         for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
         for (size_t g = 0; g < numbers && k >= 0; g++) CHECK_NEAR(brick[g], expected[g], 1e-13 * largest);
-        sd_ewald_kernels_of(isa)->interpolate(&s);
+        SD_KERNELS_OF(sd_ewald, plain, isa)->interpolate(&s);
         for (int i = 0; i < width * N && k >= 0; i++) CHECK_NEAR(F[i], first[i], 1e-12 * largest * points * points);
       }
     }
@@ -118,7 +118,8 @@ static void rows_of_waves_agree(void **state)
     for (int open = 0; open < 2 && sd_isa_supported(sets[l]); open++) {
       for (int turn = 0; turn < 2; turn++) {
         double *rows[3] = {u[turn][0], u[turn][1], u[turn][2]};
-        const struct sd_ewald_kernels *kernels = sd_ewald_kernels_of(turn ? sets[l] : SD_ISA_PLAIN);
+        const sd_isa isa = turn ? sets[l] : SD_ISA_PLAIN;
+        const struct sd_ewald_kernels *kernels = SD_KERNELS_OF(sd_ewald, plain, isa);
         memcpy(u[turn], f, sizeof(f));
         if (open) kernels->open_row(rows, B, -1.0, 1.0, HALF);
         else kernels->periodic_row(rows, B, k, 0.7, HALF);

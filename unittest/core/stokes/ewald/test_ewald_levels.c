@@ -166,28 +166,6 @@ static void the_matrix_is_symmetric_and_positive(void **state)
   }
 }
 
-static void self_is_the_diagonal(void **state)
-{
-  (void) state;
-  for (int k = 0; k < MIXTURES; k++) {
-    const mixture *m = mixtures + k;
-    const scene s = make(m, 1, 70 + k);
-    const sd_ewald how = choose(&s, m, 1e-6, 2);
-    static double F[6 * MOST], u[6 * MOST], diagonal[6 * MOST];
-    periodic p;
-    periodic_place(&p, s.x, s.a, s.w, m->n, m->width, &how);
-    sd_mobility_self(&p.omega, diagonal);
-    for (int i = 0; i < 4 * m->width; i++) { /* the second is a large one */
-      memset(F, 0, sizeof(F));
-      F[i] = 1.0;
-      assert_int_equal(sd_mobility_apply(&p.omega, F, u), SD_OK);
-      const double a = s.a[i / m->width];
-      CHECK_NEAR(diagonal[i], u[i], 1e-4 / (i % m->width < 3 ? 6.0 * SD_PI * a : 8.0 * SD_PI * a * a * a));
-    }
-    periodic_free(&p);
-  }
-}
-
 static void the_predicted_error_is_the_measured_one(void **state)
 {
   (void) state;
@@ -227,7 +205,6 @@ int main(void)
       cmocka_unit_test(open_boxes_agree_with_all_pairs),
       cmocka_unit_test(periodic_boxes_agree_with_one_level),
       cmocka_unit_test(the_matrix_is_symmetric_and_positive),
-      cmocka_unit_test(self_is_the_diagonal),
       cmocka_unit_test(the_predicted_error_is_the_measured_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

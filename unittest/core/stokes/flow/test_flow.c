@@ -63,6 +63,34 @@ static void slope_of_a_cubic_is_off_by_its_radius_squared(void **state)
   CHECK_NEAR(slope[2], 0.0, 0.0);
 }
 
+/* Points at fixed fractions of a cell move with the flow of the cell: G (H s) = (dH/dt) s. A cell
+ * whose edge c is taken as c + 2 a - b has the same lattice, and the same flow. */
+static void flow_of_a_cell_moves_its_edges(void **state)
+{
+  (void) state;
+  const double h[6] = {3.1, 2.3, 4.7, 0.9, -1.3, 0.6}, rate[6] = {0.2, -0.5, 0.4, 0.7, -0.3, 1.1};
+  const double s[3] = {0.3, -0.7, 1.9};
+  double G[9], other[9], x[3], v[3];
+  sd_flow_of_cell(h, rate, G);
+  const double *of[2] = {h, rate};
+  for (int k = 0; k < 2; k++) {
+    double *out = k ? v : x;
+    out[0] = of[k][0] * s[0] + of[k][5] * s[1] + of[k][4] * s[2];
+    out[1] = of[k][1] * s[1] + of[k][3] * s[2];
+    out[2] = of[k][2] * s[2];
+  }
+  for (int p = 0; p < 3; p++)
+    CHECK_NEAR(G[3 * p] * x[0] + G[3 * p + 1] * x[1] + G[3 * p + 2] * x[2], v[p], 1e-14);
+  double chosen[2][6];
+  for (int k = 0; k < 2; k++) {
+    for (int e = 0; e < 6; e++) chosen[k][e] = of[k][e];
+    chosen[k][3] -= of[k][1];
+    chosen[k][4] += 2.0 * of[k][0] - of[k][5];
+  }
+  sd_flow_of_cell(chosen[0], chosen[1], other);
+  for (int k = 0; k < 9; k++) CHECK_NEAR(other[k], G[k], 1e-14);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -70,6 +98,7 @@ int main(void)
       cmocka_unit_test(rotation_is_the_sum_of_its_pieces),
       cmocka_unit_test(given_vorticity_leaves_the_strain),
       cmocka_unit_test(slope_of_a_cubic_is_off_by_its_radius_squared),
+      cmocka_unit_test(flow_of_a_cell_moves_its_edges),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -200,18 +200,9 @@ static void kernels_agree(void **state)
 {
   (void) state;
   const worked expected = work_with(&sd_block_plain);
-  const struct sd_block_kernels *const sets[] = {
-#ifdef SD_HAS_X86_KERNELS
-      sd_isa_supported(SD_ISA_AVX2) ? &sd_block_avx2 : NULL, &sd_block_baseline
-#elif defined(SD_HAS_PORTABLE_KERNELS)
-      &sd_block_baseline
-#else
-      NULL
-#endif
-  };
-  for (size_t k = 0; k < sizeof(sets) / sizeof(sets[0]); k++) {
-    if (!sets[k]) continue;
-    const worked w = work_with(sets[k]);
+  for (sd_isa isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
+    if (!sd_isa_supported(isa)) continue;
+    const worked w = work_with(SD_KERNELS_OF(sd_block, plain, isa));
     const float *a = (const float *) &w, *b = (const float *) &expected;
     for (size_t e = 0; e < sizeof(worked) / sizeof(float); e++) CHECK_NEAR(a[e], b[e], 1e-5);
   }

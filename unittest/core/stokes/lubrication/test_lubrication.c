@@ -249,6 +249,44 @@ static void a_flow_takes_pairs_along(void **state)
   near_free(&pair);
 }
 
+/* Films lose (V_inf - V).L (V_inf - V) >= 0 in any flow at any motion: the power of the forces, and that
+ * of the strain. A pair that moves as the fluid does has the second alone; a rigid flow has none. */
+static void films_in_a_strain_lose_power(void **state)
+{
+  (void) state;
+  near_scene q = near_create(cloud_dense(12, 0.4, 1.0, 3.0, eta, 5), 5.0, 1e-3);
+  const double G[9] = {0.4, 1.1, -0.3, 0.2, 0.5, 0.7, -0.6, 0.1, -0.9};
+  double u[72], V[72], f[72], power[12];
+  for (int i = 0; i < 12; i++) {
+    const double *x = q.s.x + 3 * i;
+    sd_multiply3(G, x, u + 6 * i);
+    u[6 * i + 3] = 0.5 * (G[7] - G[5]);
+    u[6 * i + 4] = 0.5 * (G[2] - G[6]);
+    u[6 * i + 5] = 0.5 * (G[3] - G[1]);
+  }
+  q.u = u;
+  near_place(&q);
+  double losses[3], least = INFINITY;
+  for (int way = 0; way < 3; way++) { /* with the fluid; along and against the forces */
+    for (int j = 0; j < 72; j++) V[j] = u[j] + (way ? (way == 1 ? 1e-3 : -1e-3) * f[j] : 0.0);
+    if (!way) assert_int_equal(sd_lubrication_apply(&q.L, V, f), SD_OK);
+    for (int j = 0; j < 72 && !way; j++) f[j] = q.L.carried[j] - f[j];
+    double F[72];
+    assert_int_equal(sd_lubrication_apply(&q.L, V, F), SD_OK);
+    sd_lubrication_strain_power(&q.L, V, power);
+    losses[way] = 0.0;
+    for (int i = 0; i < 12; i++) losses[way] += power[i];
+    for (int j = 0; j < 72; j++) losses[way] += (q.L.carried[j] - F[j]) * (u[j] - V[j]);
+    least = fmin(least, losses[way]);
+  }
+  assert_true(least > 0.0);
+  /* a quadratic form in V: along and against differ by twice the linear part, which is 2 |f|^2 1e-3 */
+  double square = 0.0;
+  for (int j = 0; j < 72; j++) square += f[j] * f[j];
+  CHECK_NEAR(losses[2] - losses[1], 4e-3 * square, 1e-9 * square);
+  near_free(&q);
+}
+
 /* Two spheres of masses m1, m2 lose their approach at the rate XA (1/m1 + 1/m2). */
 static void the_fastest_rate_is_that_of_the_film(void **state)
 {
@@ -323,6 +361,7 @@ int main(void)
       cmocka_unit_test(none_within_a_body),
       cmocka_unit_test(neighbours_share_the_common_motion),
       cmocka_unit_test(a_flow_takes_pairs_along),
+      cmocka_unit_test(films_in_a_strain_lose_power),
       cmocka_unit_test(the_fastest_rate_is_that_of_the_film),
       cmocka_unit_test(images_count_as_spheres),
   };

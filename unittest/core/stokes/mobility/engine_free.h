@@ -1,5 +1,5 @@
 /* The smallest engine: spheres do not see each other, u = 0. In the product it would be a file like this one in
- * core/stokes/mobility and the line `&sd_mobility_free_spheres,` in sd_mobility.c. */
+ * core/stokes/mobility and its declaration in sd_mobility.h. */
 #ifndef ENGINE_FREE_H
 #define ENGINE_FREE_H
 
@@ -10,12 +10,6 @@
 typedef struct {
   size_t numbers;
 } free_spheres;
-
-static double free_ghosts(const sd_mobility_how *how)
-{
-  (void) how;
-  return 0.0;
-}
 
 static sd_status free_place(void *state, const sd_mobility_scene *s)
 {
@@ -39,7 +33,6 @@ static const sd_mobility_engine sd_mobility_free_spheres = {
     .name = "free spheres",
     .state = sizeof(free_spheres),
     .view = SD_VIEW_LIST,
-    .ghosts = free_ghosts,
     .place = free_place,
     .apply = free_apply,
     .free = free_release,

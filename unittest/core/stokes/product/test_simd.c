@@ -74,7 +74,7 @@ static void check_width(const scene *s, double range, int m)
     for (size_t k = 0; k < sizeof(isas) / sizeof(isas[0]); k++) {
       char what[80];
       if (!sd_isa_supported(isas[k])) continue;
-      snprintf(what, sizeof(what), "%s, width %d, tensor %d, taper %d", sd_isa_name(isas[k]), m,
+      snprintf(what, sizeof(what), "%s, width %d, tensor %d, taper %d", isa_name(isas[k]), m,
                s->kind, taper);
       sd_packed p = {0};
       assert_int_equal(sd_packed_all(&p, isas[k], &law, &spheres, s->n, m), SD_OK);

@@ -1,0 +1,41 @@
+/* Between the parts of sd_grid.h: which rank has which pencils and how long messages are
+ * (sd_grid_share.c), which boxes of bricks go where (sd_grid_pieces.c), and the rest of it. */
+#ifndef SD_GRID_INTERNAL_H
+#define SD_GRID_INTERNAL_H
+
+#include <stddef.h>
+
+#include "sd_grid.h"
+
+/* --- who has what --- */
+
+/* The columns of ranks for a grid whose first direction is d */
+int sd_grid_columns(const sd_grid *g, int d);
+/* What a rank has of `all` planes: first and end */
+void sd_grid_range(int all, sd_grid_part what, int rank, int rows, int columns, int *range);
+void sd_grid_range_of(const sd_grid *g, sd_grid_part what, int rank, int *range);
+int sd_grid_length(const sd_grid *g, sd_grid_part what, int rank);
+/* The length of this rank's */
+int sd_grid_own(const sd_grid *g, sd_grid_part what);
+
+/* --- messages: sd_grid.counts --- */
+
+enum { PIECES_TO, PIECES_FROM, ROW_TO, ROW_FROM, COLUMN_TO, COLUMN_FROM };
+
+/* So many numbers more to or from a rank, after `all` others of the message; 0: more than an int
+ * counts */
+int sd_grid_count(const sd_grid *g, int which, int rank, long numbers, long *all);
+/* Of both turns; 0 as above */
+int sd_grid_count_turns(const sd_grid *g);
+size_t sd_grid_largest_message(const sd_grid *g);
+
+/* --- pieces --- */
+
+/* Of bricks [ranks][6]: outs of ours in the pencils of all ranks, ins of all ranks in ours. out, in
+ * NULL: only counted */
+void sd_grid_list_pieces(const sd_grid *g, const int *bricks, sd_piece *out, sd_piece *in, int *outs,
+                         int *ins);
+/* Where each begins in its message, and how long that is; our own need none. 0 as above */
+int sd_grid_count_pieces(const sd_grid *g, sd_piece *list, int pieces, int which);
+
+#endif

@@ -1,0 +1,176 @@
+#include "deforming_box.h"
+
+#include "fixes.h"
+#include "keywords.h"
+#include "lammps_compat.h"
+
+#include "sd_flow.h"
+
+#include "domain.h"
+#include "input.h"
+#include "update.h"
+#include "utils.h"
+#include "variable.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+static const double TWO_PI = 6.283185307179586477;
+
+static FixDeform *deform_of(LAMMPS *lmp)
+{
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    if (utils::strmatch(lmp->modify->fix[i]->style, "^deform"))
+      return static_cast<FixDeform *>(lmp->modify->fix[i]);
+  return nullptr;
+}
+
+namespace {
+  /* A length or a tilt, and its rate. */
+  struct Edge {
+    double now, rate;
+  };
+
+  /* The clock of fix deform: since the run began, and how much of the run that is. */
+  struct Clock {
+    double time, part, length;
+    explicit Clock(const Update *update)
+    {
+      const double steps = update->ntimestep - update->beginstep,
+                   all = update->endstep - update->beginstep;
+      time = steps * update->dt;
+      part = all > 0.0 ? steps / all : 0.0;
+      length = all * update->dt;
+    }
+  };
+}    // namespace
+
+/* What fix deform makes of start and stop by its style; start: at the begin of the run. The rates of
+ * erate and vel are known in a run of no steps as well. */
+template <class Set>
+static Edge edge_of(LAMMPS *lmp, const Set &set, double start, double stop, double length,
+                    const Clock &clock)
+{
+  const double now = start + clock.part * (stop - start);
+  switch (set.style) {
+    case Compat::ERATE:
+      return {now, set.rate * length};
+    case Compat::VEL:
+      return {now, set.vel};
+    case Compat::TRATE: {
+      const double grown = start * exp(set.rate * clock.time);
+      return {grown, set.rate * grown};
+    }
+    case Compat::WIGGLE: {
+      const double turns = TWO_PI / set.tperiod;
+      return {start + set.amplitude * sin(turns * clock.time),
+              set.amplitude * turns * cos(turns * clock.time)};
+    }
+    case Compat::VARIABLE: {
+      Variable *variable = lmp->input->variable;
+      return {start + variable->compute_equal(set.hvar), variable->compute_equal(set.hratevar)};
+    }
+    default:
+      return {now, clock.length > 0.0 ? (stop - start) / clock.length : 0.0};
+  }
+}
+
+/* The lower end of an edge along an axis: most styles keep its middle. */
+template <class Set> static Edge corner_of(const Set &set, const Edge &edge, const Clock &clock)
+{
+  if (set.style == Compat::FINAL || set.style == Compat::DELTA || set.style == Compat::SCALE) {
+    const double rate = clock.length > 0.0 ? (set.lo_stop - set.lo_start) / clock.length : 0.0;
+    return {set.lo_start + rate * clock.time, rate};
+  }
+  return {0.5 * (set.lo_start + set.hi_start) - 0.5 * edge.now, -0.5 * edge.rate};
+}
+
+/* A length that keeps the volume, or with another one shares what is due: it follows from those that
+ * do not. */
+template <class Set> static Edge volume_edge(const Set &set, int d, const Edge *edge)
+{
+  enum { ONE_FROM_ONE, ONE_FROM_TWO, TWO_FROM_ONE };
+  const auto start = [&](int e) { return set[e].hi_start - set[e].lo_start; };
+  const int one = set[d].dynamic1, two = set[d].dynamic2;
+  double shrunk = start(one) / edge[one].now, rate = -edge[one].rate / edge[one].now;
+  if (set[d].substyle == ONE_FROM_TWO) {
+    shrunk *= start(two) / edge[two].now;
+    rate -= edge[two].rate / edge[two].now;
+  } else if (set[d].substyle == TWO_FROM_ONE) {
+    shrunk = sqrt(shrunk);
+    rate *= 0.5;
+  }
+  const double now = start(d) * shrunk;
+  return {now, rate * now};
+}
+
+BoxMotion motion_of_box(LAMMPS *lmp, const std::string &command)
+{
+  BoxMotion motion;
+  FixDeform *deform = deform_of(lmp);
+  if (!deform) return motion;
+  motion.deforms = true;
+  const Domain *domain = lmp->domain;
+  const auto set = Compat::DeformSettings::of(deform);
+  const Clock clock(lmp->update);
+  Edge edge[6];
+  for (int d = 0; d < 6; d++) {
+    edge[d] = {d < 3 || domain->triclinic ? domain->h[d] : 0.0, 0.0};
+    if (set[d].style == Compat::NONE || set[d].style == Compat::VOLUME) continue;
+    if (set[d].style < Compat::NONE || set[d].style > Compat::VARIABLE)
+      fail(lmp,
+           command + ": fix " + deform->id + " of style " + deform->style +
+               " changes the box at a rate that cannot be seen from here: use fix deform, or "
+               "fluid_velocity 0 0 0");
+    // by what length an erate is one: its own, or for a tilt that of the edge that it leans over
+    const auto &of = set[d < 3 ? d : d == 5 ? 1 : 2];
+    const double length = of.hi_start - of.lo_start;
+    edge[d] = d < 3 ? edge_of(lmp, set[d], length, set[d].hi_stop - set[d].lo_stop, length, clock)
+                    : edge_of(lmp, set[d], set[d].tilt_start, set[d].tilt_stop, length, clock);
+  }
+  for (int d = 0; d < 3; d++)
+    if (set[d].style == Compat::VOLUME) edge[d] = volume_edge(set, d, edge);
+  double h[6], rate[6];
+  for (int d = 0; d < 6; d++) {
+    h[d] = edge[d].now;
+    rate[d] = edge[d].rate;
+  }
+  sd_flow_of_cell(h, rate, motion.gradient);
+  for (int d = 0; d < 3; d++) {
+    const Edge corner = corner_of(set[d], edge[d], clock);
+    motion.corner[d] = set[d].style == Compat::NONE ? domain->boxlo[d] : corner.now;
+    motion.corner_velocity[d] = corner.rate;
+  }
+  return motion;
+}
+
+void check_deform(LAMMPS *lmp, const std::string &command, bool inertia, bool moving, bool clumps)
+{
+  const FixDeform *deform = deform_of(lmp);
+  if (!deform) return;
+  const std::string name = command + ": fix " + deform->id + " of style " + deform->style + ": ";
+  const bool x = deform->remapflag == Domain::X_REMAP, v = deform->remapflag == Domain::V_REMAP;
+  if (x && moving)
+    fail(lmp,
+         name + "remap x moves the spheres with the box, and the fluid carries them as well (keyword "
+                "fluid_velocity): they would move twice; use remap v");
+  if (x && clumps)
+    fail(lmp,
+         name + "remap x moves the spheres of a rigid clump apart: use remap v and fluid_velocity "
+                "box");
+  if (inertia && moving && !v)
+    fail(lmp,
+         name + "a sphere that crosses a face of the box needs the velocity of its image, since the "
+                "fluid moves with the box (keyword fluid_velocity): use remap v");
+}
+
+void bring_box_to_this_step(LAMMPS *lmp)
+{
+  FixDeform *deform = deform_of(lmp);
+  if (deform && lmp->update->ntimestep % deform->nevery == 0) deform->end_of_step();
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,26 @@
+/* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more has
+ * nothing to give, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none. */
+#include <cstdlib>
+#include <new>
+
+extern "C" void *__libc_malloc(size_t);
+
+static size_t limit_of(const char *name)
+{
+  const char *value = getenv(name);
+  return value ? strtoul(value, nullptr, 10) : 0;
+}
+
+extern "C" void *malloc(size_t bytes)
+{
+  static size_t limit = limit_of("MALLOC_LIMIT");
+  return limit && bytes >= limit ? nullptr : __libc_malloc(bytes);
+}
+
+void *operator new(size_t bytes)
+{
+  static size_t limit = limit_of("NEW_LIMIT");
+  void *memory = limit && bytes >= limit ? nullptr : __libc_malloc(bytes ? bytes : 1);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}

@@ -1,0 +1,134 @@
+"""fix stokes_dynamics/overdamped with held: spheres and clumps of given velocity, and the forces on them, against dense algebra."""
+import numpy as np
+import pytest
+
+import model
+from system import Spheres, dump_lines, input_lines, lmp, read_dump
+
+ETA = 1.3
+FIX = "fix move all stokes_dynamics/overdamped"
+X = np.array([(0, 0, 0), (2.3, 0.4, 0), (0.7, 2.6, 0.5), (-1.9, 1.0, 2.2), (-3.8, 0.6, 2.9), (2.0, 2.0, 3.5), (5.0, -1.0, 1.0)])
+MOLECULE = np.array([0, 0, 0, 1, 1, 0, 0])
+U = np.array((0.1, 0.2, -0.3))
+LOAD = np.array([[np.sin(3 * i), 0.1 * i, -5 - 0.2 * i] for i in range(1, 8)])
+PULL = "variable fx atom sin(3*id)\nvariable fy atom 0.1*id\nvariable fz atom -5-0.2*id\nfix pull all addforce v_fx v_fy v_fz"
+BOX = [(-30.0, 30.0)] * 3
+
+
+def rigid(x, molecule):
+    """K [6 n, 6 bodies], and the first sphere of each body"""
+    bodies = [[i] for i in np.nonzero(molecule == 0)[0]] + [list(np.nonzero(molecule == m)[0]) for m in np.unique(molecule[molecule > 0])]
+    K = np.zeros((6 * len(x), 6 * len(bodies)))
+    for b, who in enumerate(bodies):
+        centre = x[who].mean(axis=0)
+        for i in who:
+            r = x[i] - centre
+            K[6 * i:6 * i + 6, 6 * b:6 * b + 6] = np.eye(6)
+            K[6 * i:6 * i + 3, 6 * b + 3:6 * b + 6] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
+    return K, bodies
+
+
+def exact(x, molecule, held, given):
+    """Velocities of the spheres and forces of the fluid on them [n, 6]: free bodies have their loads, held ones V = given(centre)."""
+    K, bodies = rigid(x, molecule)
+    R = np.linalg.inv(model.mobility(x, np.ones(len(x)), ETA, rotation=True))
+    u = np.hstack([np.tile(U, (len(x), 1)), np.zeros((len(x), 3))]).ravel()
+    load = np.hstack([LOAD, np.zeros((len(x), 3))]).ravel()
+    is_held = np.repeat([who[0] in held for who in bodies], 6)
+    V = np.concatenate([given(x[who].mean(axis=0)) if who[0] in held else np.zeros(6) for who in bodies])
+    A = K.T @ R @ K
+    right = K.T @ (load + R @ u)
+    V[~is_held] = np.linalg.solve(A[np.ix_(~is_held, ~is_held)], (right - A @ np.where(is_held, V, 0))[~is_held])
+    v = K @ V
+    return v.reshape(-1, 6), -(R @ (v - u)).reshape(-1, 6)
+
+
+CASES = {"one sphere": ([0], ""), "a sphere and a clump": ([2, 3, 4], ""), "all": (list(range(7)), ""),
+         "moved": ([0, 3, 4], "fix m still move linear 0.5 -0.2 0.1"),
+         "turned": ([1, 3, 4], "fix m still move rotate 1 0 0 0 0 1 20")}
+
+
+def given_by(move, x):
+    if "linear" in move:
+        return lambda centre: np.array((0.5, -0.2, 0.1, 0, 0, 0))
+    if "rotate" in move:
+        W = np.array((0, 0, 2 * np.pi / 20))
+        return lambda centre: np.concatenate([np.cross(W, centre - (1, 0, 0)), W])
+    return lambda centre: np.zeros(6)
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_held_bodies_move_as_given_and_the_others_as_the_fluid_between_says(tmp_path, case, ranks):
+    held, move = CASES[case]
+    words = f"cut_off_distance inf visc {ETA} rotation yes rigid_clumps yes relative_tolerance 1e-10 fluid_velocity {U[0]} {U[1]} {U[2]}"
+    lines = input_lines(Spheres(X, molecule=MOLECULE), words, str(tmp_path / "data"), fix=False, box=BOX, dt=0.01)
+    lines += [f"group still id {' '.join(str(i + 1) for i in held)}"] + PULL.splitlines() + [move, f"{FIX} held still"]
+    columns = "x y z vx vy vz omegax omegay omegaz " + " ".join(f"f_move[{k}]" for k in range(4, 10))
+    lmp(tmp_path, lines + dump_lines(tmp_path / "end", every=3, columns=columns) + ["run 3"], ranks)
+    rows = read_dump(tmp_path / "end")[-1][1]
+    x = rows[:, :3]
+    v, F = exact(x, MOLECULE, held, given_by(move, x))
+    scale, force = np.abs(v).max(), np.abs(F).max()
+    assert np.abs(rows[:, 3:9] - v).max() < 1e-7 * max(scale, 1)
+    K, bodies = rigid(x, MOLECULE)
+    assert np.abs(K.T @ (rows[:, 9:15] - F).ravel()).max() < 1e-7 * force     # of bodies: a doublet's two share theirs as they like
+    moved = np.abs(x[held] - X[held]).max()
+    assert moved == 0 if not move else moved > 0.01
+
+
+def test_a_held_sphere_alone_feels_the_stream(simulation):
+    """Clumps that do not feel each other: 6 pi eta a u on a sphere, and on a clump what the pair style finds for it at rest."""
+    ends = []
+    for motion in (f"group still molecule 0 1\n{FIX} held still", "fix drag all stokes_dynamics apply no"):
+        sim = simulation(Spheres(X[3:6], molecule=[1, 1, 0]), f"clumps_only yes visc {ETA} rigid_clumps yes shell 12 fluid_velocity 0.1 v_u -0.3",
+                         fix=False, box=BOX, dt=0.1, before_pair="variable u atom 0.3*z")
+        sim.commands(motion).run(1)
+        ends.append(sim.fix_rows("move" if "overdamped" in motion else "drag")[:, [3, 4, 5] if "overdamped" in motion else [0, 1, 2]])
+        assert (sim.x == X[3:6]).all()
+    assert np.abs(ends[0] - ends[1]).max() < 1e-12 * np.abs(ends[1]).max()
+    assert ends[0][2, 0] == pytest.approx(6 * np.pi * ETA * 0.1, rel=1e-12)
+
+
+def test_films_press_a_sphere_onto_a_held_one(simulation):
+    """What holds it is what the other one is pressed on with, whatever the gap: all force goes through the film and the fluid."""
+    sim = simulation(Spheres([(0, 0, 0), (0, 0, 2.001)]), "cut_off_distance inf visc 1 rotation yes lubrication yes relative_tolerance 1e-9",
+                     fix=False, box=BOX, dt=1e-3)
+    sim.commands(f"group floor id 1\nfix w all addforce 0 0 -3\n{FIX} held floor").run(10)
+    rows = sim.fix_rows("move")
+    assert (sim.x[0] == 0).all() and -0.01 < sim.v[1, 2] < 0
+    assert rows[1, 5] == pytest.approx(3, rel=1e-9) and rows[0, 5] < -2.5
+
+
+def test_a_held_run_in_pieces_is_the_run_in_one(simulation, tmp_path):
+    words = f"cut_off_distance inf visc {ETA} rotation yes rigid_clumps yes relative_tolerance 1e-12"
+    lines = input_lines(Spheres(X, molecule=MOLECULE), words, str(tmp_path / "data"), fix=False, box=BOX, dt=0.05)
+    rest = ["group still id 1 4 5"] + PULL.splitlines() + ["fix m still move linear 0.5 -0.2 0.1", f"{FIX} held still"]
+    whole = simulation().commands(lines + rest).run(30).x
+    sim = simulation().commands(lines + rest).run(13)
+    sim.command(f"write_restart {tmp_path}/half")
+    assert np.abs(sim.run(17).x - whole).max() < 1e-10
+    again = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/half", f"pair_style stokes_dynamics {words}",
+                                   "pair_coeff * *", "timestep 0.05"] + rest[1:])
+    assert np.abs(again.run(17).x - whole).max() < 1e-10
+
+
+@pytest.mark.parametrize("line, message", [
+    (f"{FIX} held nobody", "keyword held: group 'nobody' does not exist"),
+    (f"group part id 4\n{FIX} held part", "keyword held: the clump of molecule 1 is in the group in part"),
+    (f"{FIX}\nfix m all move linear 1 0 0", "fix m of style move integrates atoms of the same group"),
+    (f"group some id 1\n{FIX} held some\nfix m all move linear 1 0 0", "fix m of style move integrates atoms of the same group"),
+])
+def test_what_cannot_be_held_is_named(simulation, line, message):
+    sim = simulation(Spheres(X, molecule=MOLECULE), f"cut_off_distance inf visc {ETA} rotation yes rigid_clumps yes", fix=False, box=BOX, dt=0.01)
+    with pytest.raises(Exception, match=message):
+        sim.commands(line).run(1)
+
+
+@pytest.mark.parametrize("style, told", [("setforce 0 0 0", True), ("freeze", True), ("addforce 0 0 0", False)])
+def test_who_takes_forces_away_to_hold_spheres_is_told_how(tmp_path, style, told):
+    lines = input_lines(Spheres(X), f"cut_off_distance inf visc {ETA}", str(tmp_path / "data"), fix=False, box=BOX, dt=0.01)
+    log = lmp(tmp_path, lines + ["group bed id 1 2", f"fix hold bed {style}", FIX, "run 0"]).log
+    assert ("without inertia that holds no sphere: keyword held GROUP does" in log) == told
+    log = lmp(tmp_path, lines + ["group bed id 1 2", f"fix hold bed {style}", f"{FIX} held bed", "run 0"]).log
+    assert "holds no sphere" not in log
