@@ -49,8 +49,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* those whose velocity is given, empty: nobody; and the groups that fix move moves */
   std::string held;
   int held_bit = 0, moved_bits = 0;
-  /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump, was put by
-   * it: when LAMMPS has made an image of it since, v_old is that of the image */
+  /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump,
+   * was put by it: when LAMMPS has made an image of it since, v_old is that of the image */
   AtomRows before;
   /* of a member of a clump: has it such a row, and which? */
   enum { BEFORE = 10 };

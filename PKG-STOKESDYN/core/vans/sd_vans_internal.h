@@ -5,6 +5,8 @@
 #include "sd_constants.h"
 #include "sd_vans.h"
 
+#include <math.h>
+
 /* Volume of a sphere between its equator and the height s, |s| <= a: integral of pi (a^2 - s^2). */
 static inline double primitive(double a2, double s)
 {
@@ -16,13 +18,44 @@ typedef struct {
   double u, w, hindrance;
 } sd_vans_water;
 
+static inline double speed_of(const double w[3])
+{
+  return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+}
+
 /* Of slice n; n < 0: below the mesh, n >= N: above it. */
-sd_vans_water sd_vans_water_in(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
-                               const double *U, const double *hindrance, int n);
+static inline sd_vans_water sd_vans_water_in(const sd_vans_mesh *mesh,
+                                             const sd_vans_force_law *law, const double *U,
+                                             const double *hindrance, int n)
+{
+  const int N = mesh->ncell, seen = n < 0 ? 0 : n < N ? n : N - 1;
+  const double upward = !law->upward ? 0.0 : n >= 0 && n < N ? law->upward[n] : law->flux;
+  return (sd_vans_water){n < 0 ? U[0] : U[seen + 1], upward, hindrance[seen]};
+}
+
+/* Velocity past grain i, size of it out. */
+static inline double velocity_past(const sd_vans_grains *grains, int i, sd_vans_water water,
+                                   double w[3])
+{
+  const double *v = grains->v + 3 * (long) i;
+  w[0] = water.u - v[0];
+  w[1] = -v[1];
+  w[2] = water.w - v[2];
+  if (grains->fluctuation)
+    for (int d = 0; d < 3; d++) w[d] += grains->fluctuation[3 * (long) i + d];
+  return speed_of(w);
+}
 
 /* F += share times the drag of grain i, were it all in this water. */
-void sd_vans_add_drag(const sd_vans_force_law *law, const sd_vans_grains *grains, int i,
-                      sd_vans_water water, double share, double F[3]);
+static inline void sd_vans_add_drag(const sd_vans_force_law *law, const sd_vans_grains *grains,
+                                    int i, sd_vans_water water, double share, double F[3])
+{
+  double w[3];
+  const double speed = velocity_past(grains, i, water, w);
+  const double factor =
+      sd_vans_drag_factor(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
+  for (int d = 0; d < 3; d++) F[d] += share * factor * w[d];
+}
 
 #define SD_VANS_SMOOTH 0.32 /* of the laws of smooth walls */
 

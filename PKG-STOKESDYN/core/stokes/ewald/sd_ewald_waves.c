@@ -65,8 +65,8 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
   sd_status status = sd_grid_create(&w->grid, size, e->grid, world);
   if (status == SD_OK)
-    status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_GRID_Y],
-                            w->grid.own[SD_GRID_Z]);
+    status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_SHARED_Y],
+                            w->grid.own[SD_SHARED_Z]);
   return status;
 }
 

@@ -10,16 +10,16 @@
 
 static int allocate(sd_grid *g)
 {
-  const size_t lines = (size_t) sd_grid_own(g, SD_GRID_LINES) * (size_t) g->half;
+  const size_t lines = (size_t) sd_grid_own(g, SD_SHARED_LINES) * (size_t) g->half;
   const int longer = g->size[0] > g->size[1] ? g->size[0] : g->size[1];
-  const size_t waves = (size_t) longer * (size_t) sd_grid_own(g, SD_GRID_Z);
+  const size_t waves = (size_t) longer * (size_t) sd_grid_own(g, SD_SHARED_Z);
   const size_t plane = (lines > waves ? lines : waves) + 1;
   int ok = 1;
   for (int c = 0; c < 3; c++) {
     g->plane[c] = fftw_alloc_complex(plane);
     ok = ok && g->plane[c];
   }
-  g->slab = calloc((size_t) sd_grid_own(g, SD_GRID_X) + 1, sizeof(fftw_complex *));
+  g->slab = calloc((size_t) sd_grid_own(g, SD_SHARED_X) + 1, sizeof(fftw_complex *));
   g->beside = fftw_alloc_complex(plane);
   g->counts = calloc(6 * (size_t) g->ranks, sizeof(int));
   return ok && g->slab && g->beside && g->counts;
@@ -31,7 +31,7 @@ static int allocate(sd_grid *g)
 static int plan(sd_grid *g)
 {
   const unsigned how = FFTW_ESTIMATE;
-  const int half = g->half, lines = sd_grid_own(g, SD_GRID_LINES), depth = sd_grid_own(g, SD_GRID_Z);
+  const int half = g->half, lines = sd_grid_own(g, SD_SHARED_LINES), depth = sd_grid_own(g, SD_SHARED_Z);
   const int *size = g->size;
   fftw_complex *slab = g->plane[1], *plane = g->plane[0], *beside = g->beside;
   if (depth == 0) return 1; /* no pencils */
@@ -93,8 +93,8 @@ void sd_grid_free(sd_grid *g)
 /* Where the planes of our slab will be */
 static int place_slab(sd_grid *g)
 {
-  const int planes = sd_grid_own(g, SD_GRID_X), x0 = g->own[SD_GRID_X][0];
-  const long numbers = 6L * g->size[1] * sd_grid_own(g, SD_GRID_Z);
+  const int planes = sd_grid_own(g, SD_SHARED_X), x0 = g->own[SD_SHARED_X][0];
+  const long numbers = 6L * g->size[1] * sd_grid_own(g, SD_SHARED_Z);
   long missing = 0;
   for (int x = 0; x < planes; x++) g->slab[x] = NULL;
   for (int k = 0; k < g->ins && g->layer >= numbers; k++) {
@@ -191,13 +191,13 @@ static void fill_plane(const sd_grid *g, int x, double *message)
 {
   for (int c = 0; c < 3; c++)
     memset(g->plane[c], 0,
-           sizeof(fftw_complex) * (size_t) sd_grid_own(g, SD_GRID_LINES) * (size_t) g->half);
+           sizeof(fftw_complex) * (size_t) sd_grid_own(g, SD_SHARED_LINES) * (size_t) g->half);
   for (int k = 0; k < g->ins; k++) {
     const sd_piece *p = g->in + k;
     const int i = x - p->to[0];
     if (i < 0 || i >= p->n[0]) continue;
     for (int j = 0; j < p->n[1]; j++)
-      add_row(g, 2L * g->half * (p->to[1] - g->own[SD_GRID_LINES][0] + j) + p->to[2],
+      add_row(g, 2L * g->half * (p->to[1] - g->own[SD_SHARED_LINES][0] + j) + p->to[2],
               p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
   }
 }
@@ -209,7 +209,7 @@ static void empty_plane(const sd_grid *g, int x, double *message)
     const int i = x - p->to[0];
     if (i < 0 || i >= p->n[0]) continue;
     for (int j = 0; j < p->n[1]; j++)
-      take_row(g, 2L * g->half * (p->to[1] - g->own[SD_GRID_LINES][0] + j) + p->to[2],
+      take_row(g, 2L * g->half * (p->to[1] - g->own[SD_SHARED_LINES][0] + j) + p->to[2],
                p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
   }
 }
@@ -218,8 +218,8 @@ static void empty_plane(const sd_grid *g, int x, double *message)
 
 static fftw_complex *slab_row(const sd_grid *g, int c, int x, int y)
 {
-  const long depth = sd_grid_own(g, SD_GRID_Z);
-  return g->slab[x - g->own[SD_GRID_X][0]] + ((long) c * g->size[1] + y) * depth;
+  const long depth = sd_grid_own(g, SD_SHARED_Z);
+  return g->slab[x - g->own[SD_SHARED_X][0]] + ((long) c * g->size[1] + y) * depth;
 }
 
 static void copy(double *beside, double *box, long numbers, int to_beside)
@@ -232,13 +232,13 @@ static void copy(double *beside, double *box, long numbers, int to_beside)
  * slab will be. Our lines, all z of them, between boxes and `beside` */
 static void copy_lines(const sd_grid *g, int c, int x, double *message, int to_beside)
 {
-  const long planes = sd_grid_own(g, SD_GRID_X), lines = sd_grid_own(g, SD_GRID_LINES);
+  const long planes = sd_grid_own(g, SD_SHARED_X), lines = sd_grid_own(g, SD_SHARED_LINES);
   const int first = g->me - g->me % g->columns;
   for (int r = first; r < first + g->columns; r++) {
     int z[2];
-    sd_grid_range_of(g, SD_GRID_Z, r, z);
+    sd_grid_range_of(g, SD_SHARED_Z, r, z);
     const long row = 2L * (z[1] - z[0]);
-    double *box = message + (c * planes + x - g->own[SD_GRID_X][0]) * lines * row;
+    double *box = message + (c * planes + x - g->own[SD_SHARED_X][0]) * lines * row;
     if (r == g->me) box = (double *) slab_row(g, c, x, 0);
     for (long l = 0; l < lines; l++, box += row)
       copy((double *) g->beside + 2 * (l * g->half + z[0]), box, row, to_beside);
@@ -249,12 +249,12 @@ static void copy_lines(const sd_grid *g, int c, int x, double *message, int to_b
 /* All lines at our z, between boxes and `beside` */
 static void copy_depths(const sd_grid *g, int c, int x, double *message, int to_beside)
 {
-  const long planes = sd_grid_own(g, SD_GRID_X), row = 2L * sd_grid_own(g, SD_GRID_Z);
+  const long planes = sd_grid_own(g, SD_SHARED_X), row = 2L * sd_grid_own(g, SD_SHARED_Z);
   const int first = g->me - g->me % g->columns;
   double *beside = (double *) g->beside;
   for (int r = first; r < first + g->columns; r++) {
-    const long numbers = sd_grid_length(g, SD_GRID_LINES, r) * row;
-    double *box = message + (c * planes + x - g->own[SD_GRID_X][0]) * numbers;
+    const long numbers = sd_grid_length(g, SD_SHARED_LINES, r) * row;
+    double *box = message + (c * planes + x - g->own[SD_SHARED_X][0]) * numbers;
     copy(beside, r == g->me ? (double *) slab_row(g, c, x, 0) : box, numbers, to_beside);
     beside += numbers;
     if (r != g->me) message += 3 * planes * numbers;
@@ -265,14 +265,14 @@ static void copy_depths(const sd_grid *g, int c, int x, double *message, int to_
  * x][its y][z]. Rows y of other ranks in our plane x, to the message or from it */
 static void copy_rows(const sd_grid *g, int c, int x, double *message, int to_slab)
 {
-  const long planes = sd_grid_own(g, SD_GRID_X), row = 2L * sd_grid_own(g, SD_GRID_Z);
+  const long planes = sd_grid_own(g, SD_SHARED_X), row = 2L * sd_grid_own(g, SD_SHARED_Z);
   for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
     int y[2];
     if (r == g->me) continue;
-    sd_grid_range_of(g, SD_GRID_Y, r, y);
+    sd_grid_range_of(g, SD_SHARED_Y, r, y);
     const long rows = y[1] - y[0];
     copy((double *) slab_row(g, c, x, y[0]),
-         message + (c * planes + x - g->own[SD_GRID_X][0]) * rows * row, rows * row, to_slab);
+         message + (c * planes + x - g->own[SD_SHARED_X][0]) * rows * row, rows * row, to_slab);
     message += 3 * planes * rows * row;
   }
 }
@@ -281,16 +281,16 @@ static void copy_rows(const sd_grid *g, int c, int x, double *message, int to_sl
  * or from it */
 static void copy_plane(const sd_grid *g, int c, int y, double *message, int to_beside)
 {
-  const long row = 2L * sd_grid_own(g, SD_GRID_Z), planes = sd_grid_own(g, SD_GRID_Y);
+  const long row = 2L * sd_grid_own(g, SD_SHARED_Z), planes = sd_grid_own(g, SD_SHARED_Y);
   double *beside = (double *) g->beside;
   for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
     int x[2];
-    sd_grid_range_of(g, SD_GRID_X, r, x);
+    sd_grid_range_of(g, SD_SHARED_X, r, x);
     const long rows = x[1] - x[0];
     for (long k = 0; k < rows; k++, beside += row)
       copy(beside,
            r == g->me ? (double *) slab_row(g, c, x[0] + (int) k, y)
-                      : message + ((c * rows + k) * planes + y - g->own[SD_GRID_Y][0]) * row,
+                      : message + ((c * rows + k) * planes + y - g->own[SD_SHARED_Y][0]) * row,
            row, to_beside);
     if (r != g->me) message += 3 * rows * planes * row;
   }
@@ -299,7 +299,7 @@ static void copy_plane(const sd_grid *g, int c, int y, double *message, int to_b
 /* Rows of `beside` that hold nothing, at our z */
 static void clear_rows(const sd_grid *g, int from, int end)
 {
-  const size_t depth = (size_t) sd_grid_own(g, SD_GRID_Z);
+  const size_t depth = (size_t) sd_grid_own(g, SD_SHARED_Z);
   memset(g->beside + (size_t) from * depth, 0, sizeof(fftw_complex) * (size_t) (end - from) * depth);
 }
 
@@ -348,7 +348,7 @@ static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_co
 static sd_status forth(sd_grid *g)
 {
   double *first = g->message[0], *second = g->message[1];
-  const int *x = g->own[SD_GRID_X];
+  const int *x = g->own[SD_SHARED_X];
   for (int k = x[0]; k < x[1]; k++) {
     fill_plane(g, k, second);
     for (int c = 0; c < 3; c++) {
@@ -373,7 +373,7 @@ static sd_status forth(sd_grid *g)
 static sd_status back(sd_grid *g)
 {
   double *first = g->message[0], *second = g->message[1];
-  const int *x = g->own[SD_GRID_X];
+  const int *x = g->own[SD_SHARED_X];
   for (int k = x[0]; k < x[1] && g->columns > 1; k++)
     for (int c = 0; c < 3; c++) {
       back_along_y(g, c, k, first);
@@ -395,7 +395,7 @@ static sd_status back(sd_grid *g)
 
 sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
 {
-  const int *y = g->own[SD_GRID_Y];
+  const int *y = g->own[SD_SHARED_Y];
   copy_pieces(g, g->message[0], 0);
   sd_status status = exchange(g, 0, PIECES_TO, PIECES_FROM);
   if (status == SD_OK) status = forth(g);

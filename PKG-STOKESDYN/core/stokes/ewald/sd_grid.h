@@ -38,7 +38,7 @@ typedef struct {
 
 /* What is shared among rows and columns: planes of x and, of each, lines of y; then y and wave
  * numbers of z. */
-typedef enum { SD_GRID_X, SD_GRID_LINES, SD_GRID_Y, SD_GRID_Z } sd_grid_part;
+typedef enum { SD_SHARED_X, SD_SHARED_LINES, SD_SHARED_Y, SD_SHARED_Z } sd_grid_part;
 
 /* Zero-initialise; sd_grid_free in the end. */
 typedef struct {

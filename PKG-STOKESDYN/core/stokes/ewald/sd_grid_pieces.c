@@ -22,8 +22,8 @@ static int pieces_of(const sd_grid *g, const int *brick, int pencils, int rank, 
 {
   const int *lo = brick, *n = brick + 3;
   int x[2], y[2];
-  sd_grid_range_of(g, SD_GRID_X, pencils, x);
-  sd_grid_range_of(g, SD_GRID_LINES, pencils, y);
+  sd_grid_range_of(g, SD_SHARED_X, pencils, x);
+  sd_grid_range_of(g, SD_SHARED_LINES, pencils, y);
   int count = 0;
   sd_piece p = {.rank = rank};
   if (n[0] == 0 || n[1] == 0 || n[2] == 0) return 0;
@@ -57,8 +57,8 @@ double sd_grid_at_home(const sd_grid *g, const int *bricks, int d)
   for (int r = 0; r < g->ranks; r++) {
     const int *lo = bricks + 6 * r, *n = lo + 3;
     int x[2], y[2];
-    sd_grid_range(g->occupied[d], SD_GRID_X, r, rows, columns, x);
-    sd_grid_range(g->occupied[e], SD_GRID_LINES, r, rows, columns, y);
+    sd_grid_range(g->occupied[d], SD_SHARED_X, r, rows, columns, x);
+    sd_grid_range(g->occupied[e], SD_SHARED_LINES, r, rows, columns, y);
     points += (double) points_within(lo[d], n[d], g->size[d], x) *
         points_within(lo[e], n[e], g->size[e], y) * n[(d + 2) % 3];
   }

@@ -42,7 +42,7 @@ int sd_grid_columns(const sd_grid *g, int d)
 /* What a rank has of `all` planes: first and end. Rows share those of X and Y, columns the others. */
 void sd_grid_range(int all, sd_grid_part what, int rank, int rows, int columns, int *range)
 {
-  const int by_row = what == SD_GRID_X || what == SD_GRID_Y;
+  const int by_row = what == SD_SHARED_X || what == SD_SHARED_Y;
   const int part = by_row ? rank / columns : rank % columns, parts = by_row ? rows : columns;
   range[0] = range[1] = 0;
   if (rank >= rows * columns) return;
@@ -82,18 +82,18 @@ int sd_grid_count(const sd_grid *g, int which, int rank, long numbers, long *all
 /* Of both turns, each of which goes to those of our row or column */
 int sd_grid_count_turns(const sd_grid *g)
 {
-  const long planes = sd_grid_own(g, SD_GRID_X), lines = sd_grid_own(g, SD_GRID_LINES);
-  const long rows = sd_grid_own(g, SD_GRID_Y), depth = sd_grid_own(g, SD_GRID_Z);
+  const long planes = sd_grid_own(g, SD_SHARED_X), lines = sd_grid_own(g, SD_SHARED_LINES);
+  const long rows = sd_grid_own(g, SD_SHARED_Y), depth = sd_grid_own(g, SD_SHARED_Z);
   long all[4] = {0};
   int ok = 1;
   for (int r = 0; r < g->rows * g->columns && ok; r++) {
     if (r == g->me || g->me >= g->rows * g->columns) continue;
     if (r / g->columns == g->me / g->columns)
-      ok = sd_grid_count(g, ROW_TO, r, 6 * planes * lines * sd_grid_length(g, SD_GRID_Z, r), all) &&
-          sd_grid_count(g, ROW_FROM, r, 6 * planes * sd_grid_length(g, SD_GRID_LINES, r) * depth, all + 1);
+      ok = sd_grid_count(g, ROW_TO, r, 6 * planes * lines * sd_grid_length(g, SD_SHARED_Z, r), all) &&
+          sd_grid_count(g, ROW_FROM, r, 6 * planes * sd_grid_length(g, SD_SHARED_LINES, r) * depth, all + 1);
     if (r % g->columns == g->me % g->columns)
-      ok = ok && sd_grid_count(g, COLUMN_TO, r, 6 * planes * sd_grid_length(g, SD_GRID_Y, r) * depth, all + 2) &&
-          sd_grid_count(g, COLUMN_FROM, r, 6 * sd_grid_length(g, SD_GRID_X, r) * rows * depth, all + 3);
+      ok = ok && sd_grid_count(g, COLUMN_TO, r, 6 * planes * sd_grid_length(g, SD_SHARED_Y, r) * depth, all + 2) &&
+          sd_grid_count(g, COLUMN_FROM, r, 6 * sd_grid_length(g, SD_SHARED_X, r) * rows * depth, all + 3);
   }
   return ok;
 }

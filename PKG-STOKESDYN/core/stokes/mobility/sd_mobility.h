@@ -29,8 +29,9 @@ extern "C" {
  *   ALL    those of all ranks in one order, the same on every rank; no ghosts, no pairs */
 typedef enum { SD_VIEW_LIST, SD_VIEW_NEAR, SD_VIEW_ALL } sd_view;
 
-/* How the spheres interact: what is known before they are placed. law.range: of the taper. width 3 or 6 as in sd_product.h.
- * ewald: of the engine that splits the sum, which has no other law than RPY without taper. */
+/* How the spheres interact: what is known before they are placed. law.range: of the taper. width 3
+ * or 6 as in sd_product.h. ewald: of the engine that splits the sum, which has no other law than RPY
+ * without taper. */
 typedef struct {
   sd_law law;
   int width;

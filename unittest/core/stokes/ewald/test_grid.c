@@ -52,7 +52,7 @@ static sd_status exchange(void *ctx, const double *send, const int *to, double *
 static void multiply(void *ctx, int y, double *const *plane)
 {
   const sd_grid *g = ctx;
-  const int *z = g->own[SD_GRID_Z];
+  const int *z = g->own[SD_SHARED_Z];
   long k = 0;
   for (int x = 0; x < g->size[0]; x++)
     for (int w = z[0]; w < z[1]; w++)
@@ -184,7 +184,7 @@ static void ranks_are_not_limited_by_planes(void **state)
     for (int me = 0; me < ranks; me++) {
       const sd_world world = {.me = me, .ranks = ranks, .exchange = exchange};
       assert_int_equal(sd_grid_create(&g, size, size, &world), SD_OK);
-      busy += g.own[SD_GRID_X][1] > g.own[SD_GRID_X][0] && g.own[SD_GRID_LINES][1] > g.own[SD_GRID_LINES][0];
+      busy += g.own[SD_SHARED_X][1] > g.own[SD_SHARED_X][0] && g.own[SD_SHARED_LINES][1] > g.own[SD_SHARED_LINES][0];
       columns = g.columns;
       sd_grid_free(&g);
     }

@@ -1,0 +1,170 @@
+/* Of fix stokes_dynamics/overdamped: what it reports, and its restart files. */
+#include "fix_stokes_dynamics_overdamped.h"
+
+#include "hydrodynamics.h"
+#include "keywords.h"
+#include "named_state.h"
+
+#include "sd_gap.h"
+#include "sd_linear.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
+
+/* Power that the spheres lose to the fluid */
+double FixStokesDynamicsOverdamped::compute_scalar()
+{
+  const Hydrodynamics &hydro = hydrodynamics();
+  double mine = 0.0, all, s[6] = {0.0};
+  for (int i : hydro.ambient.who()) {
+    hydro.ambient.slip(i, s);
+    mine += sd_dot(s + 3, output[i] + 6) - sd_dot(output[i], output[i] + 3) + hydro.strain_power(i);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixStokesDynamicsOverdamped::compute_vector(int k)
+{
+  enum { SPEED, ERROR, DISPLACEMENT, PRODUCTS, RESIDUAL, SOLVES, UNCONVERGED, GAP, STEP };
+  hydrodynamics();    // an error if there is none
+  const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
+  if (!memory) return 0.0;
+  const auto &solver = memory->global;
+  double mine = 0.0, all;
+  switch (k) {
+    case SPEED:
+      return fastest();
+    case ERROR:
+      mine = error_figure();
+      break;
+    case DISPLACEMENT:
+      mine = displaced;
+      break;
+    case PRODUCTS:
+      return solver.iterations;
+    case RESIDUAL:
+      return solver.residual;
+    case SOLVES:
+      return solver.solves;
+    case UNCONVERGED:
+      return solver.unconverged;
+    case GAP:
+      return smallest_gap();
+    case STEP:
+      return update->dt;
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+/* By the velocity of the fluid and that beyond it: nobody else writes to those. */
+double FixStokesDynamicsOverdamped::fastest() const
+{
+  const Ambient &ambient = hydrodynamics().ambient;
+  double mine = 0.0, all, v[3];
+  for (int i : ambient.who()) {
+    for (int d = 0; d < 3; d++) v[d] = output[i][d] + ambient.velocity(i)[d];
+    mine = std::max(mine, sd_dot(v, v));
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return sqrt(all);
+}
+
+/* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
+double FixStokesDynamicsOverdamped::error_figure() const
+{
+  const Hydrodynamics &hydro = hydrodynamics();
+  const Velocities &moving = hydro.motion();
+  double most = 0.0, old[6];
+  for (int i : moving.lone) {
+    if (!old_velocity(i, atom->x[i], old)) continue;
+    for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
+    most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
+  }
+  const std::vector<double> all_before =
+      hydro.settings.rigid.on ? velocities_before() : std::vector<double>();
+  for (const auto &clump : moving.clumps)
+    for (int k = 0; k < clump.body->n; k++) {
+      const sd_shape &shape = clump.body->shape->shape;
+      const double *row = &all_before[BEFORE * moving.member_of(clump, k)];
+      double arm[3], change[3];
+      if (row[0] == 0.0) continue;
+      at_image(row + 1, clump.pose + 9, old);
+      for (int d = 0; d < 6; d++) old[d] = clump.V[d] - old[d];
+      sd_multiply3(clump.pose, shape.x + 3 * (size_t) k, arm);
+      sd_cross(old + 3, arm, change);
+      for (int d = 0; d < 3; d++) change[d] += old[d];
+      most = std::max(most, sqrt(sd_dot(change, change)) / shape.a[k]);
+    }
+  return 0.5 * update->dt * most;
+}
+
+/* Between spheres whose centres are within four times the largest radius */
+double FixStokesDynamicsOverdamped::smallest_gap() const
+{
+  const Hydrodynamics &hydro = hydrodynamics();
+  const std::vector<int> &who = hydro.ambient.who();
+  const bool bound = hydro.settings.rigid.on;
+  const int n = (int) who.size();
+  std::vector<double> x, a, bodies;
+  double mine = 0.0, largest;
+  for (int i : who) {
+    x.insert(x.end(), atom->x[i], atom->x[i] + 3);
+    a.push_back(atom->radius[i]);
+    bodies.push_back(bound ? atom->molecule[i] : 0);
+    mine = std::max(mine, atom->radius[i]);
+  }
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (largest == 0.0) return INFINITY;
+  const double reach = 4.0 * largest;
+  const Lattice lattice = Lattice::of(domain);
+  Halo halo(world);
+  if (!halo.find(lattice, reach, x))
+    fail_one(lmp, COMMAND + ": the smallest gap: the largest radius, " + text(largest) +
+                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other "
+                      "units?");
+  halo.extend(lattice.h, x, {&a, &bodies});
+  const std::vector<int64_t> body(bodies.begin(), bodies.end());
+  double gap = INFINITY, all;
+  if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, a.size(), reach, &gap) != SD_OK)
+    fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
+  MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
+  return all;
+}
+
+// --- restart -------------------------------------------------------------------------------------------------
+
+void FixStokesDynamicsOverdamped::write_restart(FILE *fp)
+{
+  if (comm->me != 0) return;
+  NamedState out(STYLE);
+  out.put("step", last.step);
+  out.put("dt", last.dt);
+  out.put("next_dt", last.next_dt);
+  out.put("atoms", last.atoms);
+  out.put("causes", std::vector<double>(last.causes, last.causes + 10));
+  out.write(fp);
+}
+
+void FixStokesDynamicsOverdamped::restart(char *buf)
+{
+  NamedState in(STYLE);
+  if (!in.read(lmp, buf)) return;
+  last.step = in.get("step", -1.0);
+  last.dt = in.get("dt", 0.0);
+  last.next_dt = in.get("next_dt", 0.0);
+  last.atoms = in.get("atoms", 0.0);
+  in.get("causes", last.causes, 10);
+  from_file = true;
+}
