@@ -44,6 +44,7 @@ MODELS = [
     Model("one point", "cut_off_distance inf", FREE),
     Model("rotation", "cut_off_distance inf rotation yes", FREE),
     Model("lubrication", "cut_off_distance inf rotation yes lubrication yes", FREE),
+    Model("multiblob 12", "cut_off_distance inf multiblob 12 lubrication yes", FREE, stresslets=True),
     Model("one point", dict(shell=1, rotation=False), CLUMPS),
     Model("rotation", dict(shell=1), CLUMPS),
     Model("shell 12", dict(shell=12), CLUMPS),
