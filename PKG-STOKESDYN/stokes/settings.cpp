@@ -139,31 +139,9 @@ void StokesSettings::parse(Keywords &in)
   });
 }
 
-/* Which keywords go together. */
-void StokesSettings::check(const Keywords &in) const
+/* Of films and of shells of points */
+void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) const
 {
-  const bool all_pairs = scene.everybody(), by_ewald = scene.far_field == Scene::Settings::EWALD;
-  in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
-  in.require(!ambient.grid_has_visc || !grid_file.empty(),
-             "keyword visc: 'grid' requires fluid_velocity grid FILE");
-  in.require(!ambient.box || !ambient.has_vorticity,
-             "keyword fluid_vorticity: fluid_velocity box has one of its own");
-  in.require(in.given("cut_off_distance") || scene.clumps_only,
-             "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
-  in.require(scene.taper == SD_TAPER_NONE || std::isfinite(scene.cutoff),
-             "keyword taper requires a cut_off_distance, its range");
-  in.require(precondition != Preconditioner::SPARSE || all_pairs,
-             "keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
-  in.require(precondition != Preconditioner::SPARSE || !by_ewald,
-             "keyword precondition: 'sparse' is not available with far_field ewald");
-  in.require(!in.given("far_field") || all_pairs,
-             "keyword far_field requires cut_off_distance inf and clumps_only no");
-  in.require(!in.given("far_field_tolerance") ||
-                 (all_pairs && scene.far_field != Scene::Settings::DIRECT),
-             "keyword far_field_tolerance requires cut_off_distance inf, clumps_only no, and "
-             "far_field auto or ewald");
-  in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
-             "keyword far_field: 'ewald' is not available with tensor oseen");
   in.require(!lubrication.on || all_pairs,
              "keyword lubrication: yes requires cut_off_distance inf and clumps_only no: it is what "
              "close spheres resist more than they do in the mobility of all");
@@ -192,6 +170,34 @@ void StokesSettings::check(const Keywords &in) const
   in.require(lubrication.gap < lubrication.range,
              "keyword lubrication_gap: '" + text(lubrication.gap) +
                  "' must be below lubrication_range, " + text(lubrication.range));
+}
+
+/* Which keywords go together. */
+void StokesSettings::check(const Keywords &in) const
+{
+  const bool all_pairs = scene.everybody(), by_ewald = scene.far_field == Scene::Settings::EWALD;
+  in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
+  in.require(!ambient.grid_has_visc || !grid_file.empty(),
+             "keyword visc: 'grid' requires fluid_velocity grid FILE");
+  in.require(!ambient.box || !ambient.has_vorticity,
+             "keyword fluid_vorticity: fluid_velocity box has one of its own");
+  in.require(in.given("cut_off_distance") || scene.clumps_only,
+             "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
+  in.require(scene.taper == SD_TAPER_NONE || std::isfinite(scene.cutoff),
+             "keyword taper requires a cut_off_distance, its range");
+  in.require(precondition != Preconditioner::SPARSE || all_pairs,
+             "keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
+  in.require(precondition != Preconditioner::SPARSE || !by_ewald,
+             "keyword precondition: 'sparse' is not available with far_field ewald");
+  in.require(!in.given("far_field") || all_pairs,
+             "keyword far_field requires cut_off_distance inf and clumps_only no");
+  in.require(!in.given("far_field_tolerance") ||
+                 (all_pairs && scene.far_field != Scene::Settings::DIRECT),
+             "keyword far_field_tolerance requires cut_off_distance inf, clumps_only no, and "
+             "far_field auto or ewald");
+  in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
+             "keyword far_field: 'ewald' is not available with tensor oseen");
+  check_close_spheres(in, all_pairs);
   in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
              "keyword precondition: 'sparse' requires algorithm 2");
   in.require(precondition != Preconditioner::WAVES || (all_pairs && algorithm == GRADIENTS),

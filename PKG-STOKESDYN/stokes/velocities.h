@@ -57,7 +57,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Held = std::function<bool(int i, double *V)>;
   Held held;
 
-  /* Errors, on all ranks: those of RigidClumps; a clump held in part; a clump that is not rigid, or not all selected. */
+  /* Errors, on all ranks: those of RigidClumps; a clump held in part; a clump that is not rigid, or
+   * not all selected. */
   void find();
 
   /* With shells of points: those of clumps turn with them. The rows of the scene stand. */
