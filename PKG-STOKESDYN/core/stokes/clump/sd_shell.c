@@ -286,6 +286,7 @@ static sd_status mismatch(const double *octant, int m, double kappa, double *A, 
                           double *T, double *g)
 {
   double Q;
+  *g = 0.0;
   sd_status status = shell_resistance(octant, m, kappa, 0, A, b, T);
   if (status == SD_OK) status = shell_resistance(octant, m, kappa, 1, A, b, &Q);
   if (status == SD_OK) *g = *T * *T * *T / (27.0 * SD_PI * SD_PI * Q) - 1.0;
