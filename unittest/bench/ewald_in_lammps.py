@@ -45,6 +45,8 @@ for k in iterations:
     best.append(min(times))
 if lmp.extract_setting("world_rank") == 0:
     print(*best, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+lmp.close()
+lmp.finalize()
 """
 
 
