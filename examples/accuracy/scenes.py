@@ -10,6 +10,7 @@
 import csv
 import pathlib
 
+from exact import approach_drag
 from runs import np
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -51,16 +52,6 @@ def rigid_clumps():
             force[:, axis] = -1.0
             motion = np.linalg.solve(R, np.concatenate([force.sum(axis=0), np.zeros(3)]))
             yield Case(x, force, motion[:3] + np.cross(motion[3:], x), molecule=np.ones(len(x), int))
-
-
-def approach_drag(gap):
-    """Force over 6 pi eta a U of equal spheres that approach each other with U each (Brenner 1961, gap in radii)"""
-    alpha = np.arccosh(1 + gap / 2)
-    n = np.arange(1, int(25 / alpha) + 30, dtype=float)
-    w, m = np.exp(-(2 * n + 1) * alpha), 2 * n + 1          # numerator and denominator times w
-    top = 1 + 2 * w + w * w + m * m * np.sinh(alpha) ** 2 * w
-    bottom = 1 - w * w - m * np.sinh(2 * alpha) * w
-    return 4 / 3 * np.sinh(alpha) * np.sum(n * (n + 1) / ((2 * n - 1) * (2 * n + 3)) * (top / bottom - 1))
 
 
 def two_spheres_settle():

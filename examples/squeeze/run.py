@@ -13,17 +13,8 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
+from exact import approach_drag  # noqa: E402
 from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
-
-
-def approach_drag(gap):
-    """Force over 6 pi eta a U of equal spheres that approach each other with U each (Brenner 1961, gap in radii)"""
-    alpha = np.arccosh(1 + gap / 2)
-    n = np.arange(1, int(25 / alpha) + 30, dtype=float)
-    w, m = np.exp(-(2 * n + 1) * alpha), 2 * n + 1          # numerator and denominator times w
-    top = 1 + 2 * w + w * w + m * m * np.sinh(alpha) ** 2 * w
-    bottom = 1 - w * w - m * np.sinh(2 * alpha) * w
-    return 4 / 3 * np.sinh(alpha) * np.sum(n * (n + 1) / ((2 * n - 1) * (2 * n + 3)) * (top / bottom - 1))
 
 
 def squeeze_time(gaps):
