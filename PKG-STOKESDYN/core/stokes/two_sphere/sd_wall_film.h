@@ -53,8 +53,8 @@ typedef struct {
 
 /* Exact less model, and exact, of a sphere of radius a > 0 whose centre is `height` above the wall;
  * floor > 0: gap in radii of the sphere below which nothing grows any more. flow_force and
- * flow_torque of the exact one are what a sphere at rest bears in the flow. One logarithm and some 70
- * multiplications. Never fail. */
+ * flow_torque of the exact one are what a sphere at rest bears in the flow. One logarithm and some
+ * 70 multiplications. Never fail. */
 sd_wall_film sd_wall_film_at(double a, double height, double floor);
 sd_wall_film sd_wall_film_exact(double a, double height, double floor);
 
