@@ -39,13 +39,11 @@
 #ifndef SD_WALL_FILM_H
 #define SD_WALL_FILM_H
 
-#include "sd_status.h"
-
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Of one sphere, for a viscosity of 1 */
+/* Resistances of one sphere, for a viscosity of 1 */
 typedef struct {
   /* force over velocity; force over spin, or torque over velocity; torque over spin */
   double normal, parallel, coupling, roll, spin;
@@ -53,18 +51,12 @@ typedef struct {
   double flow_force, flow_torque;
 } sd_wall_film;
 
-/* What films at a wall are read from, ready after create. It owns no memory. */
-typedef struct {
-  /* gap in radii of the sphere below which nothing grows any more, > 0 */
-  double floor;
-} sd_wall_films;
-
-/* Spheres of n = 1 point with torques. SD_OK; SD_EOUTSIDE: another n. */
-sd_status sd_wall_films_create(int n, double floor, sd_wall_films *out);
-
-/* Of a sphere of radius a > 0 whose centre is `height` above the wall. One logarithm and some 70
- * multiplications. Never fails. */
-void sd_wall_film_at(const sd_wall_films *films, double a, double height, sd_wall_film *film);
+/* Exact less model, and exact, of a sphere of radius a > 0 whose centre is `height` above the wall;
+ * floor > 0: gap in radii of the sphere below which nothing grows any more. flow_force and
+ * flow_torque of the exact one are what a sphere at rest bears in the flow. One logarithm and some
+ * 70 multiplications. Never fail. */
+sd_wall_film sd_wall_film_at(double a, double height, double floor);
+sd_wall_film sd_wall_film_exact(double a, double height, double floor);
 
 /* B eta, row-major, symmetric: rows F T, columns U W. e [3] unit normal. */
 void sd_wall_film_matrix(const sd_wall_film *film, const double e[3], double eta, double B[36]);
