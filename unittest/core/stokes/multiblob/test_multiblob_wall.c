@@ -52,7 +52,7 @@ static void add_wall_films(blobs *s)
 }
 
 /* The lone sphere at a gap, its shell turned somehow: by how much points and film together differ
- * from the exact one, in Stokes drags, over its settling velocity, and for one that rests in a flow */
+ * from the exact one, in Stokes drags, in its settling velocity, and at rest in a flow */
 typedef struct {
   double all, settling, flow;
 } lone_error;
@@ -91,9 +91,9 @@ static lone_error lone_sphere(double gap, int points, int one_body, uint64_t *se
 }
 
 /* However the shell is turned, points and film of a lone sphere are the exact sphere, in a flow as
- * well: to rounding where nothing is clipped, near contact; elsewhere within 4 % of a Stokes drag, for
- * a few motions along the wall at gaps of 0.1 to 0.3, and within 5e-4 where it settles, or 1.2e-3
- * where the film fades. */
+ * well: to rounding where nothing is clipped, near contact; elsewhere within 4 % of a Stokes drag,
+ * for a few motions along the wall at gaps of 0.1 to 0.3, and within 5e-4 where it settles, or
+ * 1.2e-3 where the film fades. */
 static void lone_sphere_is_exact(void **state)
 {
   (void) state;
@@ -248,8 +248,8 @@ static void groups(void **state)
   }
 }
 
-/* Two layers on the wall, touching, or pressed into it and into each other by 5 and 10 % of a radius:
- * the mobility of the points is positive definite; with the addition up to 5 %. */
+/* Two layers on the wall, touching, or pressed into it and into each other by 5 and 10 % of a
+ * radius: the mobility of the points is positive definite; with the addition up to 5 %. */
 static void layers_are_definite(void **state)
 {
   (void) state;
