@@ -68,6 +68,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
 void Hydrodynamics::init()
 {
   ambient.init();
+  scene.settings.positive = false;
   scene.init();
   warned_unconverged = looked_at_clumps = looked_at_flow = false;
 }
