@@ -173,6 +173,7 @@ void Hydrodynamics::stand()
   films_power.clear();
   if (!settings.lubrication.on || !ambient.varies()) return;
   solvers = ambient.who();
+  if (settings.rigid.on) mobile.find();
   surround();
   read_motion();
   lubrication.place(scene, ambient);
@@ -183,6 +184,7 @@ void Hydrodynamics::surround()
 {
   if (standing) return;
   scene.stand(solvers, ambient);
+  scene.turn_shells();
   scene.surround_films();
 }
 

@@ -162,10 +162,7 @@ void Scene::surround_films()
 void Scene::update(const std::vector<int> &who, const Ambient &ambient)
 {
   stand(who, ambient);
-  if (shells) {
-    shells->free_rows(size());
-    orient();
-  }
+  turn_shells();
   if (settings.everybody()) {
     const std::vector<double> there = x;    // the sum over an open cloud takes its origin along
     engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;

@@ -65,6 +65,12 @@ class Scene : protected LAMMPS_NS::Pointers {
   Shells *shells = nullptr;
   /* With shells: turns those of clumps, when the rows stand */
   std::function<void()> orient;
+  void turn_shells()
+  {
+    if (!shells) return;
+    shells->free_rows(size());
+    orient();
+  }
 
   // --- rows
 

@@ -31,6 +31,7 @@ def fall(simulation, spheres, F, style=FT, steps=0, dt=1e-9, **options):
     return sim.commands(pull(np.broadcast_to(np.array(F, float), spheres.x.shape)) + [MOVE]).run(steps)
 
 
+FILM = FT + " lubrication yes lubrication_gap 1e-6"
 # Times from z = 5, weight 1: the ordinary differential equation of the self mobility by another code
 @pytest.mark.parametrize("z, t, steps", [(3, 2.7806341314, 150), (2, 4.5232388997, 200), (1.1, 6.8907636319, 800)])
 def test_a_sphere_falls_to_the_wall_in_the_known_time(simulation, z, t, steps):
@@ -67,6 +68,43 @@ def test_rigid_doublet_above_the_wall(simulation, x, expected):
             assert sim.atom("omega")[0, 1] == pytest.approx(expected[3], abs=1e-9)
 
 
+# --- films --------------------------------------------------------------------------------------------------------------
+
+# Exact, another code; the film stops a sphere, so that the last step is not longer than the rest
+@pytest.mark.parametrize("z, t, steps", [(3, 2.7902751, 150), (1.5, 5.8482487, 300), (1.01, 10.4213978, 1500)])
+def test_a_sphere_with_a_film_falls_as_it_should(simulation, z, t, steps):
+    sim = fall(simulation, Spheres([(0.3, 0.2, 5)]), (0, 0, -1), FILM.replace("1e-10", "1e-8"), steps, t / steps)
+    assert sim.x[0] == pytest.approx((0.3, 0.2, z), abs=3e-5)
+
+
+@pytest.mark.parametrize("gap, U, W", [(0.1, 0.44304988, 0.02703135), (0.01, 0.29611765, 0.03654131), (0.001, None, 0.159055)])
+def test_a_sphere_with_a_film_rolls_as_it_should(simulation, gap, U, W):
+    sim = fall(simulation, Spheres([(0, 0, 1 + gap)]), (1, 0, 0), FILM)
+    v, w = sim.v[0], sim.atom("omega")[0]
+    if U:
+        assert v == pytest.approx((U, 0, 0), abs=3e-6)
+        assert w == pytest.approx((0, W, 0), abs=3e-6)
+    assert w[1] / v[0] == pytest.approx(W / (U or 1), abs=2e-5)
+
+
+# Goldman, Cox & Brenner's problem, computed again: U/h and 2W of a free sphere in u_x = z
+@pytest.mark.parametrize("gap, U, W", [(0.05, 0.6636, 0.6838), (0.1, 0.7389, 0.7534), (0.3, 0.864, 0.869), (1, 0.964, 0.964)])
+@pytest.mark.parametrize("model", ["rotation yes", "multiblob 12"])
+def test_a_free_sphere_in_shear(simulation, gap, U, W, model):
+    style = f"cut_off_distance inf visc 1 {model} relative_tolerance 1e-10 wall zlo 0 lubrication yes fluid_velocity v_u 0 0"
+    sim = fall(simulation, Spheres([(0, 0, 1 + gap)]), (0, 0, 0), style, before_pair="variable u atom z")
+    off = 6e-4 if model == "rotation yes" else 2e-2
+    assert sim.v[0, 0] / (1 + gap) == pytest.approx(U, abs=off)
+    assert 2 * sim.atom("omega")[0, 1] == pytest.approx(W, abs=off)
+
+
+def test_a_held_sphere_in_shear(simulation):
+    sim = simulation(Spheres([(0, 0, 1.1)]), FILM + " fluid_velocity v_u 0 0", box=BOX, before_pair="variable u atom z")
+    sim.run()
+    assert sim.drag[0] == pytest.approx((1.6325438 * 1.1, 0, 0), abs=3e-5)
+    assert sim.fix_rows()[0, 6:9] == pytest.approx((0, 0.9517912 * 2 / 3, 0), abs=2e-5)
+
+
 # --- one scene, turned and dealt out ------------------------------------------------------------------------------------
 
 def heap(n=12, seed=7):
@@ -93,7 +131,8 @@ def turned(rows, side):
     return out
 
 
-@pytest.mark.parametrize("style", ["", "rotation yes", "rotation yes rigid_clumps yes", "multiblob 12 rigid_clumps yes"])
+@pytest.mark.parametrize("style", ["", "rotation yes", "rotation yes rigid_clumps yes", "rotation yes lubrication yes",
+                                   "multiblob 12 rigid_clumps yes lubrication yes"])
 def test_six_sides_are_one_scene_turned(simulation, style):
     spheres, F = heap()
     spheres.x[3] *= 1.3
@@ -157,7 +196,8 @@ def test_the_edge_of_the_box_is_a_position(simulation):
     assert (edge == at).all()
 
 
-STYLES = {"points": "rotation yes", "doublet": "rotation yes rigid_clumps yes", "shells": "multiblob 12 rigid_clumps yes"}
+STYLES = {"points": "rotation yes", "doublet": "rotation yes rigid_clumps yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
+          "films": "rotation yes rigid_clumps yes lubrication yes"}
 
 
 def script(folder, style, runs, newton="on", begin=None):
