@@ -53,6 +53,8 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
       {"temperature", [&] { noise.read_temperature(in); }},
       {"noise_tolerance", [&] { noise.read_tolerance(in); }},
   });
+  in.require(in.given("temperature") || !in.given("noise_tolerance"),
+             "keyword noise_tolerance requires a temperature");
   time_integrate = 1;
   dynamic_group_allow = 0;
   nevery = adapt.every ? adapt.every : 1;

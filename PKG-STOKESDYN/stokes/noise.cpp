@@ -56,8 +56,8 @@ void Noise::draw(Hydrodynamics &hydro, const Take &take)
 {
   const double T = temperature.evaluate(lmp);
   if (!(T >= 0.0) || std::isinf(T))
-    fail(lmp, command + ": keyword temperature: '" + text(T) + "' in step " +
-                  std::to_string(update->ntimestep) + " must be >= 0");
+    fail(lmp, command + ": keyword temperature: '" + text(T) + "' must be >= 0, in step " +
+                  std::to_string(update->ntimestep));
   kT = force->boltz * T;
   last = {};
   of_clumps.assign(6 * hydro.motion().clumps.size() + 6, 0.0);

@@ -159,7 +159,7 @@ void refuse_friction(LAMMPS *lmp, const std::string &keyword)
   if (contact.friction > 0.0)
     fail(lmp,
          keyword + "pair_style " + contact.style + " has friction (" + text(contact.friction) +
-             "), which goes by velocities without noise: use friction 0");
+             "), which goes by velocities without noise: use 0");
   const bool walls = has_fix(lmp, "^wall/gran");
   if (!walls && !lmp->force->pair_match("^granular", 0, 1)) return;
   if (lmp->comm->me == 0)

@@ -1,5 +1,8 @@
 """fix stokes_dynamics/overdamped with a temperature: covariance of one step against the mobility, Boltzmann's distribution in traps and
 bonds, one run on several ranks and in pieces, and what is refused. Bounds are four standard deviations of the sample."""
+import os
+import re
+
 import numpy as np
 import pytest
 
@@ -68,7 +71,7 @@ def test_open_cloud_has_the_covariance_of_all_pairs(simulation):
     """Four near spheres that all see each other: every draw is one sample."""
     x = A * np.array([(0, 0, 0), (2.2, 0, 0), (1.0, 1.9, 0), (0.8, 0.5, 1.7)])
     sim = noise(simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA}", fix=False, dt=SHORT))
-    check_covariance(steps_of(sim, 4000).reshape(-1, 12), model.mobility(x, np.full(4, A), ETA), SHORT)
+    check_covariance(steps_of(sim, 2000).reshape(-1, 12), model.mobility(x, np.full(4, A), ETA), SHORT)
 
 
 # N, phi: 1 - 1.7600873 (phi/N)^(1/3) + phi/N for each sphere, wherever they stand (one point per sphere, equal radii)
@@ -77,7 +80,7 @@ def test_self_diffusion_in_a_periodic_cube(simulation, m, phi, own):
     side = m * A * (4 / 3 * np.pi / phi)**(1 / 3)
     g = (np.arange(m) + 0.5) * side / m
     x = np.array([(p, q, r) for p in g for q in g for r in g]) + np.random.default_rng(m).uniform(-0.2, 0.2, (m**3, 3)) * A
-    steps = max(100, 9000 // m**3)
+    steps = max(60, 4000 // m**3)
     sim = noise(simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} far_field_tolerance 1e-4", fix=False, dt=SHORT, boundary="p p p",
                            box=[(0.0, side)] * 3))
     d = steps_of(sim, steps)
@@ -93,12 +96,12 @@ def test_periodic_noise_has_the_covariance_of_the_products(simulation):
     for k in range(9):
         sim = simulation(Spheres(x, A), style, fix=False, dt=SHORT, boundary="p p p", box=[(0.0, side)] * 3)
         force = ["0", "0", "0"]
-        force[k % 3] = f"$(id=={k // 3 + 1})" if False else "v_one"
+        force[k % 3] = "v_one"
         sim.commands(f"variable one atom id=={k // 3 + 1}\nfix push all addforce {' '.join(force)}\n"
                      "fix move all stokes_dynamics/overdamped").run(0)
         M[:, k] = sim.v.ravel()
     sim = noise(simulation(Spheres(x, A), style, fix=False, dt=SHORT, boundary="p p p", box=[(0.0, side)] * 3))
-    check_covariance(steps_of(sim, 4000).reshape(-1, 9), M, SHORT)
+    check_covariance(steps_of(sim, 1500).reshape(-1, 9), M, SHORT)
 
 
 # --- rigid clumps ---------------------------------------------------------------------------------------------------------
@@ -119,8 +122,7 @@ def rigid_motion(d, shape):
 
 
 def test_clump_without_symmetry_moves_with_its_six_by_six(simulation):
-    dt = 1e-4 * SHORT    # turns come from differences of positions: of the step no more than of rounding
-    sim = noise(simulation(copies(L_OF_FOUR, 2500), CLUMPS, fix=False, dt=1e4 * dt))
+    sim = noise(simulation(copies(L_OF_FOUR, 2500), CLUMPS, fix=False, dt=SHORT))
     V = rigid_motion(steps_of(sim, 8).reshape(-1, 4, 3), L_OF_FOUR)
     V[:, 3:] *= A
     C = V.T @ V / len(V) / (2 * KT * SHORT) * UNIT
@@ -146,27 +148,212 @@ def test_rod_turns_as_its_diffusivity_says(simulation):
     assert (axes() * before).sum(axis=1).mean() == pytest.approx(np.exp(-0.5), abs=4 * 0.34 / np.sqrt(2000))
 
 
-def test_tracking_by_the_centre_of_mobility_has_no_drift(simulation):
-    """L of four in a trap on its centroid: <c^2> = 3 kT/k. About another point the noise would drive it."""
-    k = 3.0
-    count = 2000
-    sim = simulation(copies(L_OF_FOUR, count), CLUMPS, fix=False, dt=0.1 * UNIT / k, before_pair="")
-    sim.commands("fix home all property/atom d_hx d_hy d_hz") if False else None
-    centre = np.repeat(copies(L_OF_FOUR, count).x.reshape(-1, 4, 3).mean(axis=1), 4, axis=0)
-    offset = (L_OF_FOUR - L_OF_FOUR.mean(axis=0))
-    # each sphere is pulled by k/4 of the distance of the centroid from its place: forces by compute chunk
-    sim.commands("compute mol all chunk/atom molecule\ncompute com all com/chunk mol\ncompute spread all chunk/spread/atom mol c_com[*]")
+def home(count, centre, spacing=12.0):
+    """Variables hx hy hz: how far an atom is from where the centroid of its clump of four was when copies() put it there"""
     side = int(np.ceil(count**(1 / 3)))
-    at = centre[0]
-    sim.commands(f"variable n atom (mol-1)%{side}\nvariable m atom floor((mol-1)/{side})%{side}\nvariable l atom floor((mol-1)/{side * side})")
-    for d, name, index in ((0, "x", "n"), (1, "y", "m"), (2, "z", "l")):
-        sim.commands(f"variable f{name} atom -{k / 4!r}*(c_spread[{d + 1}]-12.0*v_{index}-({at[d]!r}))")
-    sim.commands("fix trap all addforce v_fx v_fy v_fz")
-    noise(sim).run(60)
+    return [f"variable hx atom x-({centre[0]!r})-{spacing}*((mol-1)%{side})",
+            f"variable hy atom y-({centre[1]!r})-{spacing}*(floor((mol-1)/{side})%{side})",
+            f"variable hz atom z-({centre[2]!r})-{spacing}*floor((mol-1)/{side * side})"]
+
+
+def test_boltzmann_of_a_clump_in_a_field_and_a_trap(simulation):
+    """Spheres pulled to one place are a trap on the centroid, <c^2> = 3 kT/k; a couple on the long arm a field, energy -2 kT cos:
+    <cos> = coth 2 - 1/2. A clump that its noise moved about another point would drift against both."""
+    count, k, E = 1000, 0.5 * KT / A**2, 2 * KT / (4 * A)
+    sim = simulation(copies(L_OF_FOUR, count), CLUMPS, fix=False, dt=0.2 * UNIT * A**2 / KT)
+    sim.commands(home(count, L_OF_FOUR.mean(axis=0)))
+    sim.commands([f"variable f{d} atom -{k / 4!r}*v_h{d}" for d in "xyz"])
+    sim.commands(f"variable couple atom {E!r}*((id-1)%4==2)-{E!r}*((id-1)%4==0)\n"
+                 "fix trap all addforce v_fx v_fy v_fz\nfix field all addforce 0 0 v_couple")
+    noise(sim).run(200)
+    squares, cosines = [], []
+    x0 = copies(L_OF_FOUR, count).x.reshape(-1, 4, 3).mean(axis=1)
+    for _ in range(5):
+        sim.run(30)
+        x = sim.x.reshape(-1, 4, 3)
+        squares.append(((x.mean(axis=1) - x0)**2).sum(axis=1))
+        cosines.append((x[:, 2] - x[:, 0])[:, 2] / (4 * A))
+    n = 3.0 * count    # samples 30 steps apart are not quite independent
+    cosines = np.array(cosines)
+    assert cosines.mean() == pytest.approx(0.53731, abs=4 * 0.417 / np.sqrt(n))
+    assert (cosines**2).mean() == pytest.approx(0.46269, abs=4 * 0.31 / np.sqrt(n))
+    assert np.mean(squares) * k / (3 * KT) == pytest.approx(1, abs=4 * np.sqrt(2 / (3 * n)) + 0.01)
+
+
+# --- equilibrium of free spheres ------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("scheme, expected", [("ab2", 1.0227), ("euler", 1.1111)])
+def test_variance_in_a_trap_is_that_of_the_scheme(simulation, scheme, expected):
+    """h = dt k/(6 pi eta a) = 0.2: (1 - h/2)/(1 - h/2 - h^2/2) and 1/(1 - h/2)"""
+    k, h = 3.0, 0.2
+    x = copies(np.zeros((1, 3)), 3000).x
+    side = int(np.ceil(3000**(1 / 3)))
+    sim = simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} clumps_only yes", fix=False, dt=h * UNIT / k)
+    index = {"x": f"((id-1)%{side})", "y": f"(floor((id-1)/{side})%{side})", "z": f"floor((id-1)/{side * side})"}
+    sim.commands([f"variable f{d} atom -{k!r}*({d}-12.0*{index[d]})" for d in "xyz"] + ["fix trap all addforce v_fx v_fy v_fz"])
+    noise(sim, f"scheme {scheme}").run(40)
     samples = []
-    for _ in range(8):
-        sim.run(15)
-        c = sim.x.reshape(-1, 4, 3).mean(axis=1) - centre[::4]
-        samples.append((c**2).sum(axis=1).mean())
-    assert np.mean(samples) == pytest.approx(3 * KT / k, rel=0.03)
-    assert offset.shape == (4, 3)
+    for _ in range(15):
+        sim.run(12)
+        samples.append(((sim.x - x)**2).mean())
+    assert np.mean(samples) * k / KT == pytest.approx(expected, abs=4 * np.sqrt(2 / (3000 * 3 * 15 * 0.8)) * expected)
+
+
+def test_bond_has_boltzmanns_length(simulation):
+    """k = 100, r0 = 2.2 in units of kT and a, h = 0.1 for the relative motion: <r> - r0 = 0.009072, variance 9.959e-3 (+0.5 %)."""
+    count, k = 1200, 100 * KT / A**2
+    spheres = copies(A * np.array([(0, 0, 0), (2.2, 0, 0)]), count).chain_bonds()
+    rate = k / UNIT * 2 * (1 - 1.5 / 2.2 + 1 / 2.2**3)    # of r, by the mobility along the line
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} clumps_only yes", fix=False, dt=0.1 / rate)
+    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {2.2 * A!r}"])
+    noise(sim).run(60)
+    lengths = []
+    for _ in range(6):
+        sim.run(30)
+        x = sim.x.reshape(-1, 2, 3)
+        lengths.append(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) / A)
+    r, n = np.array(lengths), 6 * count * 0.9
+    assert r.mean() - 2.2 == pytest.approx(0.009072, abs=4 * 0.0998 / np.sqrt(n))
+    assert r.var() == pytest.approx(9.959e-3 * 1.005, rel=4 * np.sqrt(2 / n) + 0.005)
+
+
+# --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------------
+
+def scattered(n=40, side=18.0, seed=4):
+    """Spheres of several sizes that do not overlap by more than a tenth, and at last three clumps of four"""
+    rng, x, a = np.random.default_rng(seed), [], []
+    while len(x) < n:
+        p, r = rng.uniform(0, side, 3), rng.uniform(0.6, 1.0)
+        if all(np.linalg.norm((p - q + side / 2) % side - side / 2) > 0.9 * (r + b) for q, b in zip(x, a)):
+            x.append(p)
+            a.append(r)
+    return Spheres(x, a)
+
+
+def in_clumps():
+    spheres = copies(L_OF_FOUR, 9, 6.0)
+    spheres.x += 3.0
+    spheres.molecule[32:] = 0
+    return spheres
+
+
+WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes"),
+        "periodic": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6"),
+        "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes"),
+        "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes")}
+MOVE = "fix move all stokes_dynamics/overdamped temperature {} {}"
+
+
+def script(folder, way, runs, newton="on", T="v_T", seed=7):
+    boundary, make, words = WAYS[way]
+    lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary, newton=newton, dt=0.02,
+                        box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
+    return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2",
+                    MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]] + runs
+
+
+def end(folder, lines, ranks=1):
+    lmp(folder, lines, ranks)
+    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
+
+
+END = dump_lines("end.dump", every=20, columns="xu yu zu vx vy vz")
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_ranks_and_newton_do_not_matter(tmp_path, way):
+    one = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
+    for ranks, newton in ((2, "on"), (4, "off")):
+        assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 20"], newton), ranks) - one).max() < 1e-10
+    other = end(tmp_path, script(tmp_path, way, END + ["run 20"], seed=8))
+    still = end(tmp_path, script(tmp_path, way, END + ["run 20"], T="0"))
+    assert np.abs(other - one)[:, :3].max() > 0.1 and np.abs(still - one)[:, :3].max() > 0.1
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way):
+    whole = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
+    assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 7", "run 13"])) - whole).max() < 1e-10
+    lmp(tmp_path, script(tmp_path, way, ["run 7", "write_restart half.restart"]))
+    again = script(tmp_path, way, END + ["run 13"])
+    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
+    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
+    assert np.abs(end(tmp_path, again) - whole).max() < 1e-10
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_temperature_0_is_the_run_without(tmp_path, way):
+    """Bit for bit"""
+    without = end(tmp_path, script(tmp_path, way, END + ["run 20"], T=None))
+    assert (end(tmp_path, script(tmp_path, way, END + ["run 20"], T="0")) == without).all()
+
+
+def test_numbers_of_the_root_are_told(simulation):
+    spheres = scattered(100, 14.0)
+    sim = simulation(spheres, "cut_off_distance inf visc 1.1", fix=False, dt=1e-6)
+    noise(sim, "noise_tolerance 0.01").run(0)
+    products, error = (sim.lmp.extract_fix("move", 0, 1, nrow=k) for k in (9, 10))
+    assert 5 <= products <= 20 and error < 0.01 / 3
+    sim.commands("unfix move")
+    noise(sim, "noise_tolerance 1e-4").run(0)
+    assert products < sim.lmp.extract_fix("move", 0, 1, nrow=9)
+    assert sim.lmp.extract_fix("move", 0, 1, nrow=10) < 1e-4 / 3
+
+
+# --- what is refused --------------------------------------------------------------------------------------------------------
+
+INF = f"cut_off_distance inf visc {ETA}"
+
+
+@pytest.mark.parametrize("words, message", [("temperature -1 5", "'-1' must be >= 0"), ("temperature 1 0", "keyword temperature: '0' must"),
+                                            ("temperature 1 5 noise_tolerance 0.5", "'0.5' must be below 0.5"),
+                                            ("temperature 1 5 noise_tolerance 0", "noise_tolerance: '0' must be > 0"),
+                                            ("temperature v_none 5", "variable 'none' does not exist"),
+                                            ("temperature v_atoms 5", "noise has one temperature"),
+                                            ("temperature v_minus 5", "'-2' must be >= 0, in step 0"),
+                                            ("temperature 1 5 adapt 1 1e-3 1 1", "leave adapt out"),
+                                            ("temperature 1 5 held some", "keyword held: the mobility has a drift"),
+                                            ("noise_tolerance 0.1", "keyword noise_tolerance requires a temperature")])
+def test_words_that_mean_nothing_are_errors(simulation, words, message):
+    sim = simulation(Spheres(TRIO, A), INF, fix=False, dt=1e-3)
+    sim.commands("variable atoms atom id\nvariable minus equal -2\ngroup some id 1")
+    with pytest.raises(LammpsError, match=re.escape(message)):
+        sim.commands(f"fix move all stokes_dynamics/overdamped {words}").run(0)
+
+
+FIELD = "variable eta atom 1+0.1*x"
+
+
+@pytest.mark.parametrize("style, lines, message", [
+    (f"{INF} rotation yes lubrication yes", "", "keyword lubrication of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"{INF} multiblob 12", "", "keyword multiblob of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"{INF} rigid_clumps yes rotation yes", "", "use clumps_only yes"),
+    (f"{INF} tensor oseen", "", "use tensor rpy"),
+    (f"cut_off_distance 4 visc {ETA}", "", "keyword cut_off_distance: '4' of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"cut_off_distance 4 taper wendland visc {ETA}", "", "keyword taper of pair_style stokes_dynamics: the mobility has a drift"),
+    ("cut_off_distance inf visc v_eta", "", "keyword visc of pair_style stokes_dynamics, which varies in space"),
+    (INF, "fix step all dt/reset 10 NULL 0.1 0.1", "of style dt/reset makes steps of unequal length"),
+    (INF, "fix bath none langevin 1 1 1 77", "of style langevin has noise or a drag of its own"),
+    (INF, "fix bath none viscous 1", "of style viscous has noise or a drag of its own")])
+def test_drifts_and_other_noise_are_errors(simulation, style, lines, message):
+    sim = simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), style, fix=False, dt=1e-3, before_pair=FIELD)
+    sim.commands(f"group none id 99\n{lines}")
+    with pytest.raises(LammpsError, match=re.escape(message)):
+        noise(sim).run(0)
+
+
+def test_friction_is_an_error(simulation):
+    style = [f"pair_style hybrid/overlay gran/hooke/history 10 NULL 0 NULL 0.5 0 stokes_dynamics {INF}",
+             "pair_coeff * * gran/hooke/history", "pair_coeff * * stokes_dynamics"]
+    sim = simulation(Spheres(TRIO, A), style, fix=False, dt=1e-3, comm="comm_modify vel yes")
+    with pytest.raises(LammpsError, match=re.escape("pair_style gran/hooke/history has friction (0.5)")):
+        noise(sim).run(0)
+
+
+def test_steps_that_are_too_long_are_warned_of(tmp_path):
+    lines = input_lines(Spheres(TRIO, A), INF, os.path.join(str(tmp_path), "spheres.data"), fix=False, dt=3.0, box=[(-90.0, 90.0)] * 3)
+    text = lmp(tmp_path, lines + [MOVE.format(1.0, 3), "run 1"]).text
+    assert "of its radius: use a shorter time step" in text and "of half the skin, so that lists" in text
+    quiet = [line.replace("timestep 3.0", "timestep 1e-4") for line in lines]
+    text = lmp(tmp_path, quiet + [MOVE.format(1.0, 3), "run 1"]).text
+    assert "of its radius: use" not in text and "Brownian motion, kT = 1, seed 3" in text

@@ -36,21 +36,22 @@ static void centre_of_mobility(const double N[36], double o[3])
   if (sd_cholesky_solve(3, A, 1, o) != SD_OK) memset(o, 0, 3 * sizeof(double));
 }
 
-/* Cholesky; a pivot that is rounding beside its own diagonal is 0, and so is its column */
+/* With S = diag(1, 1, 1, l, l, l), l^2 = tr TT / tr RR, the matrix S N S has one unit, and L = S^-1 (S N
+ * S)^1/2. Eigenvalues below 0 are rounding. */
 static void take_root(const double N[36], double L[36])
 {
-  memset(L, 0, 36 * sizeof(double));
-  for (int q = 0; q < 6; q++) {
-    double pivot = N[7 * q];
-    for (int k = 0; k < q; k++) pivot -= L[6 * q + k] * L[6 * q + k];
-    if (!(pivot > 1e-12 * N[7 * q])) continue;
-    L[7 * q] = sqrt(pivot);
-    for (int p = q + 1; p < 6; p++) {
-      double sum = N[6 * p + q];
-      for (int k = 0; k < q; k++) sum -= L[6 * p + k] * L[6 * q + k];
-      L[6 * p + q] = sum / L[7 * q];
+  const double tt = N[0] + N[7] + N[14], rr = N[21] + N[28] + N[35];
+  const double length = rr > 0.0 ? sqrt(tt / rr) : 1.0;
+  double A[36], w[6], V[36];
+  for (int p = 0; p < 36; p++)
+    A[p] = N[p] * (p / 6 < 3 ? 1.0 : length) * (p % 6 < 3 ? 1.0 : length);
+  sd_eigen(6, A, w, V);
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) {
+      double sum = 0.0;
+      for (int k = 0; k < 6; k++) sum += V[6 * p + k] * V[6 * q + k] * sqrt(fmax(w[k], 0.0));
+      L[6 * p + q] = sum / (p < 3 ? 1.0 : length);
     }
-  }
 }
 
 void sd_clump_noise_of(const sd_clump *clump, sd_clump_noise *out)
@@ -66,9 +67,11 @@ void sd_clump_noise_draw(const sd_clump_noise *n, const double R[9], double eta,
                          double y[6])
 {
   const double factor = 1.0 / sqrt(eta);
-  double own[6] = {0.0};
+  double in[6], out[6] = {0.0};
+  sd_multiply3t(R, w, in);
+  sd_multiply3t(R, w + 3, in + 3);
   for (int p = 0; p < 6; p++)
-    for (int q = 0; q <= p; q++) own[p] += factor * n->root[6 * p + q] * w[q];
-  sd_multiply3(R, own, y);
-  sd_multiply3(R, own + 3, y + 3);
+    for (int q = 0; q < 6; q++) out[p] += factor * n->root[6 * p + q] * in[q];
+  sd_multiply3(R, out, y);
+  sd_multiply3(R, out + 3, y + 3);
 }

@@ -21,14 +21,16 @@ extern "C" {
 typedef struct {
   /* of mobility, from the centroid */
   double centre[3];
-  /* L [6 6], lower, L L^T = N about it: (U, W) from force and torque */
+  /* L [6 6], L L^T = N about it: (U, W) from force and torque. L is the symmetric root once rotations are
+   * made comparable to translations by a length of the clump, so that other axes of the same shape give
+   * the same motion from the same numbers */
   double root[36];
 } sd_clump_noise;
 
-/* What the clump cannot do (points on a line turn about it by nothing) has rows of 0. */
+/* What the clump cannot do (points on a line turn about it by nothing) it does not do. */
 void sd_clump_noise_of(const sd_clump *clump, sd_clump_noise *out);
 
-/* y [6] = N^1/2 w, U of the centre of mobility and W in space, from standard normal numbers w [6]: of a
+/* y [6] = N^1/2 w, U of the centre of mobility and W, from standard normal numbers w [6], all in space: of a
  * clump in pose R [9] in a fluid of viscosity eta. */
 void sd_clump_noise_draw(const sd_clump_noise *n, const double R[9], double eta, const double w[6],
                          double y[6]);
