@@ -58,7 +58,6 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (rigid.shell > 1 || shells.on()) scene.rotation = true;
   if (shells.on() && !in.given("lubrication_range")) lubrication.range = 1.0;
   rigid.rotation = scene.rotation;
-  if (scene.wall.sign) shells.one_body = false;
   in.require(!scene.rotation || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rotation: yes is not available with tensor oseen, whose point forces do not "
              "rotate");
@@ -219,8 +218,6 @@ void StokesSettings::check_wall(const Keywords &in) const
   in.require(rigid.shell == 1,
              "keyword wall: a shell is computed once, without the wall: use multiblob 12 in its "
              "place");
-  in.require(!in.given("one_body") || !shells.one_body,
-             "keyword wall: one_body yes has not been tried near a wall: leave it out");
 }
 
 /* Which keywords go together. */

@@ -26,6 +26,7 @@ Velocities::Velocities(LAMMPS *lmp, const Parts &parts) :
 Velocities::~Velocities()
 {
   sd_tie_free(&tie);
+  leave_wall();
 }
 
 double Velocities::memory_usage() const
@@ -214,9 +215,16 @@ void Velocities::arrange()
   loner.clear();
   whole.assign(n + 1, 0);
   arm.assign(3 * n + 3, 0.0);
+  const bool wall = scene.settings.wall.sign && scene.settings.rotation;
   for (int k = 0; k < scene.lone(); k++) {
     whole[k] = k;
-    loner.push_back(k);
+    if (!wall) {
+      loner.push_back(k);
+      continue;
+    }
+    const double w = scene.local().w[k];    // with its image it is a body of a shape
+    member.push_back(k);
+    shaped.push_back({nullptr, {}, 1.0, 1.0 / (w * w), nullptr});
   }
   std::vector<double> arms;
   for (const Clump &clump : clumps) {
@@ -235,8 +243,9 @@ void Velocities::arrange()
   size_t at = 0;
   for (sd_body &body : shaped) {
     body.row = &member[at];
-    at += body.shape->m;
+    at += body.shape ? body.shape->m : 1;
   }
+  if (wall) stand_at_wall();
   V.resize(6 * (loner.size() + shaped.size()) + 6);
 }
 
@@ -288,7 +297,7 @@ sd_bodies Velocities::assemble(int width)
 /* A strain carries clumps as their shells say. */
 void Velocities::carry(const sd_bodies &A, double *flow)
 {
-  if (!ambient.gradients() || clumps.empty() || scene.shells) return;
+  if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.wall.sign) return;
   gradient.resize(9 * clumps.size());
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);

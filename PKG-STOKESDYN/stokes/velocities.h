@@ -146,6 +146,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
   void place_shells();
   void slip_at_points(const double *slip);
   void arrange_shells();
+  /* near a wall: blocks of the bodies where they stand */
+  std::vector<sd_body_shape> standing;
+  void leave_wall();
+  void stand_at_wall();
+  sd_status stand_at_wall(sd_body &body, double bodies);
+  std::vector<int> spheres_of(const sd_body &body) const;
   sd_bodies bodies_of_shells();
   void flow_at_points(const double *velocity, int stride, const double *gradient, double *out) const;
   void carry(const sd_bodies &A, double *flow);

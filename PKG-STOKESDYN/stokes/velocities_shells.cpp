@@ -116,6 +116,7 @@ void Velocities::arrange_shells()
     body.row = &member[at];
     at += body.shape->m;
   }
+  stand_at_wall();
   V.resize(6 * shaped.size() + 6);
 }
 

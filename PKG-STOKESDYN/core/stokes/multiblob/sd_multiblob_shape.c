@@ -28,9 +28,17 @@ static void add_one_body(const sd_multiblob *m, const sd_multiblob_spheres *s, c
   }
 }
 
-/* r, x [3 all] and b [all] of the body's points; those that are there become the shape */
-static sd_status make_shape(const sd_multiblob *m, const sd_multiblob_spheres *s, double *r,
-                            sd_multiblob_shape *out)
+/* Doubles of make_shape's scratch */
+static size_t scratch_of(const sd_multiblob *m, int spheres)
+{
+  return 7 * (size_t) m->n * (size_t) spheres + 6 * (size_t) m->n;
+}
+
+/* r, x [3 all] and b [all] of the body's points; those that are there, and in row [all], become the
+ * shape. wall NULL: there is none */
+static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall,
+                            const sd_multiblob_spheres *s, const double centre[3], double *r,
+                            int *row, sd_body_shape *out)
 {
   const size_t all = (size_t) m->n * (size_t) s->n;
   double *x = r + 3 * all, *b = x + 3 * all, *f = b + all, *u = f + 3 * (size_t) m->n;
@@ -40,13 +48,17 @@ static sd_status make_shape(const sd_multiblob *m, const sd_multiblob_spheres *s
     if (!(b[k] > 0.0)) continue;
     memmove(x + 3 * count, x + 3 * k, 3 * sizeof(double));
     b[count] = b[k];
-    out->row[count++] = (int) k;
+    row[count++] = (int) k;
   }
   double *M = malloc(sizeof(double) * 9 * (size_t) count * (size_t) count);
   if (!M) return SD_ENOMEMORY;
-  sd_body_shape_matrix(count, 3, x, b, M);
-  add_one_body(m, s, r, out->row, count, M, f, u);
-  const sd_status status = sd_body_shape_of(count, 3, x, M, &out->points);
+  if (wall)
+    sd_body_wall_matrix(wall, count, 3, x, b, M);
+  else
+    sd_body_shape_matrix(count, 3, x, b, M);
+  add_one_body(m, s, r, row, count, M, f, u);
+  for (int k = 0; k < 3 * count; k++) x[k] -= centre[k % 3];
+  const sd_status status = sd_body_shape_of(count, 3, x, M, out);
   free(M);
   return status;
 }
@@ -105,7 +117,7 @@ sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump
   out->mask = malloc(n * sizeof *out->mask);
   out->row = malloc(all * sizeof *out->row);
   double *turn = malloc(n * sizeof unity),
-         *scratch = malloc(sizeof(double) * (7 * all + 6 * (size_t) m->n));
+         *scratch = malloc(sizeof(double) * scratch_of(m, (int) n));
   sd_status status = out->mask && out->row && turn && scratch ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) {
     if (clump)
@@ -115,11 +127,26 @@ sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump
     for (size_t i = 0; i < n; i++) memcpy(turn + 9 * i, out->turn, sizeof unity);
     const sd_multiblob_spheres s = {clump ? clump->x : origin, clump ? clump->a : &one, turn,
                                     out->mask, (int) n};
-    status = make_shape(m, &s, scratch, out);
+    status = make_shape(m, NULL, &s, origin, scratch, out->row, &out->points);
   }
   free(turn);
   free(scratch);
   if (status != SD_OK) sd_multiblob_shape_free(out);
+  return status;
+}
+
+sd_status sd_multiblob_wall_shape(const sd_multiblob *m, const sd_wall *wall,
+                                  const sd_multiblob_spheres *s, const double centre[3],
+                                  sd_body_shape *out)
+{
+  int *row = malloc(sizeof(int) * (size_t) m->n * (size_t) s->n);
+  double *scratch = malloc(sizeof(double) * scratch_of(m, s->n));
+  *out = (sd_body_shape){0};
+  const sd_status status = row && scratch
+      ? make_shape(m, wall, s, centre, scratch, row, out)
+      : SD_ENOMEMORY;
+  free(row);
+  free(scratch);
   return status;
 }
 

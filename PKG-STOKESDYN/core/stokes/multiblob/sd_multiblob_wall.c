@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "sd_body_shape.h"
+#include "sd_body_wall.h"
 #include "sd_linear.h"
 #include "sd_wall_film.h"
 
@@ -26,7 +26,6 @@ long sd_multiblob_wall_work(const sd_multiblob *m)
   return N * N + (2 * COLUMNS + 2) * N + m->n;
 }
 
-/* heights: those of the points for the flow, at least their radius in M */
 static void place(lone_shell *s, const double *r, double a, const double u[3])
 {
   const size_t N = 3 * (size_t) s->m->n;
@@ -44,19 +43,7 @@ static void place(lone_shell *s, const double *r, double a, const double u[3])
     const double height = sd_wall_height(&s->wall, s->x + k);
     for (size_t d = 0; d < 3; d++) s->v[FLOW * N + k + d] = u[d] * height / s->height;
     s->b[k / 3] = s->m->point;
-    s->x[k + (size_t) s->wall.axis] = s->wall.sign * fmax(height, s->m->point);
   }
-}
-
-static void add_images(lone_shell *s)
-{
-  const size_t n = (size_t) s->m->n;
-  double block[9];
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < n; j++) {
-      sd_wall_block(&s->wall, 3, s->x + 3 * i, s->b[i], s->x + 3 * j, s->b[j], 1.0, block);
-      for (size_t p = 0; p < 9; p++) s->M[(3 * i + p / 3) * 3 * n + 3 * j + p % 3] += block[p];
-    }
 }
 
 /* f is not needed yet: forces and velocities of one number at a time */
@@ -139,8 +126,7 @@ sd_status sd_multiblob_wall_film(const sd_multiblob *m, const sd_wall *wall, con
   memcpy(along, u ? u : rest, sizeof along);
   along[wall->axis] = 0.0;
   place(&s, r, a, along);
-  sd_body_shape_matrix(m->n, 3, s.x, s.b, s.M);
-  add_images(&s);
+  sd_body_wall_matrix(&s.wall, m->n, 3, s.x, s.b, s.M);
   if (one_body) add_one_body(&s);
   const sd_wall_film exact = sd_wall_film_exact(1.0, s.height, floor);
   sd_wall_film_matrix(&exact, s.e, 1.0, B);
