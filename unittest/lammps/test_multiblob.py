@@ -193,6 +193,26 @@ def test_stress_of_a_sheared_suspension(simulation):
     assert 1.0 < -whole[3] / rate < 1.2 and 1.0 < -whole[9] / rate < 1.2 and (whole[12:] == 0).all()
 
 
+def test_stress_of_other_forces_is_their_virial(simulation):
+    """Columns 13 to 18: a spring between two spheres across the border of the box, - r f/V as compute pressure has it, and nothing of
+    it in the others' beside what it makes them do."""
+    side, k, rest = 9.0, 3.0, 2.2
+    x = np.array([(0.4, 3.0, 8.0), (8.0, 4.5, 0.6)])
+    spheres = Spheres(x, bonds=[(1, 2)], molecule=1)
+    sim = simulation(spheres, "cut_off_distance inf visc 1.3 multiblob 12 lubrication yes", boundary="p p p", box=[(0.0, side)] * 3,
+                     fix=False, dt=1e-9, comm="comm_modify cutoff 5")
+    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k} {rest}", MOVE, STRESS, "compute P all pressure NULL bond",
+                  "thermo_style custom step c_S[13] c_P[1]"]).run()
+    r = x[0] - x[1]
+    r -= side * np.round(r / side)
+    length = np.linalg.norm(r)
+    expected = np.outer(r, r) * (-2 * k * (length - rest)) / length / side ** 3
+    whole = sim.compute_vector("S", 18)
+    assert abs(length - rest) > 0.1
+    assert np.abs(whole[12:] - expected[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]).max() < 1e-12
+    assert np.abs(whole[12:] - sim.compute_vector("P", 6)).max() < 1e-12
+
+
 def test_stress_needs_shells_of_points(simulation):
     sim = simulation(Spheres([(1, 2, 3)]), "cut_off_distance inf visc 1", fix=False)
     with pytest.raises(LammpsError, match="Compute stokes_dynamics/stress: it requires pair_style stokes_dynamics with multiblob 12 or 42"):

@@ -57,15 +57,15 @@ FLOWS = {"box": "fluid_velocity box", "formula": "fluid_velocity v_ux 0 0"}
 PULL = "variable fy atom 25*(id-2)-20\nvariable fz atom -12*id\nfix pull all addforce 3.0 v_fy v_fz\n"
 
 
-def sheared(flow, dt, rate=0.4, remap="v", tolerance=1e-6):
-    words = f"cut_off_distance inf visc 1 far_field_tolerance {tolerance} {FLOWS[flow]}"
+def sheared(flow, dt, rate=0.4, remap="v", tolerance=1e-6, style=""):
+    words = f"cut_off_distance inf visc 1 far_field_tolerance {tolerance} {FLOWS[flow]} {style}"
     lines = (words, dict(fix=False, box=BOX, tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=dt, comm="comm_modify vel yes",
                          before_pair=f"variable ux atom {rate}*(y-1.0)"))
     return lines, PULL + f"{FIX}\nfix d all deform 1 xy erate {rate} remap {remap} flip yes"
 
 
-def path(simulation, flow, dt, t=5.0, remap="v"):
-    (words, options), commands = sheared(flow, dt, remap=remap)
+def path(simulation, flow, dt, t=5.0, remap="v", style=""):
+    (words, options), commands = sheared(flow, dt, remap=remap, style=style)
     sim = simulation(cloud(), words, **options)
     sim.commands(commands).run(round(t / dt))
     return sim
@@ -77,11 +77,15 @@ def up_to_images(d, H):
     return (s - np.round(s)) @ H.T
 
 
-def test_ab2_is_of_second_order_through_sheared_faces(simulation):
+SHELLS = "multiblob 12 lubrication yes relative_tolerance 1e-8"
+
+
+@pytest.mark.parametrize("style", ["", SHELLS], ids=["points", "shells"])
+def test_ab2_is_of_second_order_through_sheared_faces(simulation, style):
     """Three spheres that interact, through faces and flips of the box: differences of paths fall with the square of the step."""
     ends = []
     for dt in (0.1, 0.05, 0.025):
-        sim = path(simulation, "box", dt)
+        sim = path(simulation, "box", dt, style=style)
         ends.append(sim.x)
         H, _ = edges(sim)
     assert (np.abs(sim.atom("image") - (512 << 20 | 512 << 10 | 512)) > 0).any()
@@ -106,10 +110,10 @@ def test_velocities_and_box_are_of_one_moment(simulation):
     assert np.abs(sim.v - v).max() < 1e-10 * np.abs(v).max()
 
 
-@pytest.mark.parametrize("ranks", [1, 3])
-def test_a_sheared_run_in_pieces_on_any_ranks_is_the_run_in_one(tmp_path, ranks):
+@pytest.mark.parametrize("ranks, style", [(1, ""), (3, ""), (1, SHELLS + " max_iter 200"), (2, SHELLS + " max_iter 200")])
+def test_a_sheared_run_in_pieces_on_any_ranks_is_the_run_in_one(tmp_path, ranks, style):
     def script(runs, restart=False):
-        (words, options), commands = sheared("box", 0.05)
+        (words, options), commands = sheared("box", 0.05, style=style.replace("1e-8", "1e-12"))
         lines = input_lines(cloud(), words, str(tmp_path / "data"), **options)
         if restart:
             cut = [i for i, line in enumerate(lines) if line.startswith("read_data")][0]

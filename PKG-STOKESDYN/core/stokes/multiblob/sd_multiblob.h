@@ -21,8 +21,11 @@
  *
  * 12 points: -9.0e-5, -0.0728, -13.755, -7.6e-4. The mobility of the points alone is positive
  * definite for every configuration; the addition is negative, so there is no theorem with it,
- * but it is so in all that was tried: random spheres up to a volume fraction of 0.5, crystals to
- * 0.7 (12 points) and 0.66 (42), groups pressed by 20 % of a radius, touching clumps.
+ * but it is so in all that was tried: random spheres up to a volume fraction of 0.5, face-centred
+ * crystals to 0.7, groups pressed by 20 % of a radius, touching clumps; but one: with 42 points such
+ * a crystal along the axes, to 0.66. There it depends on how shells that are all alike stand: among
+ * 15 orientations the smallest eigenvalue at 0.7 is -0.05 to 0.06 over 6 pi eta a. Shells that each
+ * stand at random have 0.05 to 0.09.
  * Source: reference of the project, multiblob.md 1 and 2; rigid multiblobs: Balboa Usabiaga et al.
  * 2016; the fat icosahedron and the addition are our own. */
 #ifndef SD_MULTIBLOB_H

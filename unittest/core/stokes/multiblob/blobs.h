@@ -29,6 +29,8 @@ typedef struct {
    * size] and then its factor */
   double *r, *at, *b, *M, *forces, *R;
   double side;
+  /* of the films */
+  double floor;
   sd_lubrication L;
   sd_two_sphere *functions;
   sd_films films;
@@ -40,6 +42,7 @@ static inline blobs *blobs_create(int points, int one_body, int n, const double 
   assert_true(n <= BLOBS_MOST);
   assert_int_equal(sd_multiblob_create(points, one_body, &s->m), SD_OK);
   s->n = n, s->N = 3 * points * n, s->size = 6 * n;
+  s->floor = 1e-3;
   memcpy(s->x, x, sizeof(double) * 3 * (size_t) n);
   for (int i = 0; i < n; i++) {
     s->a[i] = a ? a[i] : 1.0;
@@ -238,7 +241,7 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
   const sd_lubrication_scene scene = {
       .functions = s->functions,
       .films = &s->films,
-      .gap = 1e-3,
+      .gap = s->floor,
       .range = range,
       .n = s->n,
       .n_all = g->count,

