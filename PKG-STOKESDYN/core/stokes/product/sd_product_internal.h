@@ -18,7 +18,7 @@ struct sd_kernels {
   struct sd_kernel forces, torques;
 };
 
-/* In vectors: RPY without taper. In plain C, sd_product_plain.c: any law */
+/* In vectors, and in plain C: sd_product_plain.c */
 SD_KERNEL_TABLES(struct sd_kernels, sd_product);
 
 #endif

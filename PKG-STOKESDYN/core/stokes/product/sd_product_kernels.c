@@ -1,9 +1,62 @@
-/* Kernels of the fast product: RPY, without taper. The block of a pair (sd_tensor_lanes.h) is the same
- * for both of its spheres: the symmetric kernels compute it once. */
+/* Kernels of the fast product. The block of a pair (sd_tensor_lanes.h) is the same for both of its
+ * spheres: the symmetric kernels compute it once. */
 #include "sd_product_internal.h"
 
 #if SD_LANES > 1 /* sd_product_plain.c has its own */
 #include "sd_tensor_lanes.h"
+
+/* The law of a product. The kernels of forces have a copy for this one as a constant: a branch on
+ * the law, though it always goes the same way, would cost them 4 %. */
+typedef struct {
+  sd_tensor tensor;
+  sd_taper taper;
+  vec inverse_range;
+} law;
+
+static const law rpy = {SD_TENSOR_RPY, SD_TAPER_NONE, {0.0}};
+
+INLINE law law_of(const sd_packed *p)
+{
+  return (law){p->law.tensor, p->law.taper, all(1.0 / p->law.range)};
+}
+
+/* sd_taper_factor at the distance whose square is r2 */
+INLINE vec taper_of(const law *w, vec r2)
+{
+  const vec q = root(r2) * w->inverse_range, s = larger(all(1.0) - q, all(0.0));
+  if (w->taper == SD_TAPER_WENDLAND) return (s * s) * (s * s) * (all(1.0) + all(4.0) * q);
+  return s * s * (all(1.0) + all(0.5) * q);
+}
+
+/* f and h of the force. squares = a_i^2 + a_j^2 */
+INLINE void forces_block(const law *w, vec r2, vec ai, vec aj, vec squares, vec *f, vec *h)
+{
+  if (w->tensor == SD_TENSOR_RPY)
+    block(r2, ai, aj, squares, f, h);
+  else {
+    *f = all(1.0) / root(r2);
+    *h = *f * *f * *f;
+  }
+  if (w->taper != SD_TAPER_NONE) {
+    const vec t = taper_of(w, r2);
+    *f *= t;
+    *h *= t;
+  }
+}
+
+INLINE void torques_block(const law *w, vec r2, vec ai, vec aj, vec squares, grand *b)
+{
+  grand_block(r2, ai, aj, squares, b);
+  if (w->taper != SD_TAPER_NONE) {
+    const vec t = taper_of(w, r2);
+    b->f *= t;
+    b->h *= t;
+    b->cij *= t;
+    b->cji *= t;
+    b->k *= t;
+    b->e *= t;
+  }
+}
 
 /* Lanes of the columns j ... j + LANES - 1 that are column i itself take no part. */
 NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
@@ -15,7 +68,7 @@ NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
 
 /* Two targets, i and i + 1, against the vectors of sources from j0 to j1: what is loaded serves
  * twice. both: the sources receive from the targets as well. */
-INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
+INLINE void tile(int both, const law *w, const sd_packed *p, int i, int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   const double *restrict p0 = p->f[0], *restrict p1 = p->f[1], *restrict p2 = p->f[2];
@@ -46,7 +99,7 @@ INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
       const vec dx = x[t] - xj, dy = y[t] - yj, dz = z[t] - zj;
       const vec r2 = dx * dx + dy * dy + dz * dz;
       vec f, h;
-      block(r2, a[t], aj, a[t] * a[t] + aj2, &f, &h);
+      forces_block(w, r2, a[t], aj, a[t] * a[t] + aj2, &f, &h);
       if (!both && i + t >= j && i + t < j + LANES) leave_out_self(i + t - j, &f, &h);
       const vec c = h * (dx * G0 + dy * G1 + dz * G2);
       u0[t] = (u0[t] + f * G0) + c * dx;
@@ -87,7 +140,7 @@ INLINE int mine(int group, int part, int parts)
 /* All pairs of this part. A group of LANES targets meets itself one-sidedly, as its own lanes are
  * among the sources, and every later group once for both: a block serves two spheres, which is what
  * makes this about 1.4 times as fast as a loop over all targets. */
-static void symmetric(const sd_packed *p, int part, int parts)
+INLINE void symmetric_by(const law *w, const sd_packed *p, int part, int parts)
 {
   for (int c = 0; c < p->padded; c += CHUNK) {
     const int end = c + CHUNK < p->padded ? c + CHUNK : p->padded;
@@ -95,11 +148,20 @@ static void symmetric(const sd_packed *p, int part, int parts)
       if (!mine(i / LANES, part, parts)) continue;
       const int from = i + LANES > c ? i + LANES : c;
       for (int t = i; t < i + LANES; t += 2) {
-        if (i >= c) tile(0, p, t, i, i + LANES);
-        if (from < end) tile(1, p, t, from, end);
+        if (i >= c) tile(0, w, p, t, i, i + LANES);
+        if (from < end) tile(1, w, p, t, from, end);
       }
     }
   }
+}
+
+static void symmetric(const sd_packed *p, int part, int parts)
+{
+  const law w = law_of(p);
+  if (w.tensor == rpy.tensor && w.taper == rpy.taper)
+    symmetric_by(&rpy, p, part, parts);
+  else
+    symmetric_by(&w, p, part, parts);
 }
 
 /* The next LANES neighbours from k on; what is missing before end is the row that stands for
@@ -114,7 +176,7 @@ INLINE const int *neighbors(const sd_pairs *pairs, long k, long end, int nothing
 
 /* Row by row, LANES neighbours at a time. A neighbour has a row of its own, so its sums are its own
  * row's: nothing is written but u of the target, and no two targets meet. */
-static void list(const sd_packed *p, const sd_pairs *pairs)
+INLINE void list_by(const law *w, const sd_packed *p, const sd_pairs *pairs)
 {
   for (int i = 0; i < pairs->n; i++) {
     const double *own = p->row + 8 * (long) i;
@@ -129,7 +191,7 @@ static void list(const sd_packed *p, const sd_pairs *pairs)
       gather(p->row, 8, j, at);
       gather(p->row + 4, 8, j, F);
       const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
-      block(dx * dx + dy * dy + dz * dz, a, aj, a2 + aj * aj, &f, &h);
+      forces_block(w, dx * dx + dy * dy + dz * dz, a, aj, a2 + aj * aj, &f, &h);
       const vec c = h * (dx * F[0] + dy * F[1] + dz * F[2]);
       u0 = (u0 + f * F[0]) + c * dx;
       u1 = (u1 + f * F[1]) + c * dy;
@@ -142,11 +204,20 @@ static void list(const sd_packed *p, const sd_pairs *pairs)
   }
 }
 
+static void list(const sd_packed *p, const sd_pairs *pairs)
+{
+  const law w = law_of(p);
+  if (w.tensor == rpy.tensor && w.taper == rpy.taper)
+    list_by(&rpy, p, pairs);
+  else
+    list_by(&w, p, pairs);
+}
+
 /* --- forces and torques --- */
 
 /* Target i against the vectors of sources from j0 to j1. both: the sources receive from the target
  * as well. */
-INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
+INLINE void grand_tile(int both, const law *w, const sd_packed *p, int i, int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   const vec x = all(px[i]), y = all(py[i]), z = all(pz[i]), a = all(pa[i]);
@@ -161,7 +232,7 @@ INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
     const vec aj = load(pa + j), r2 = dx * dx + dy * dy + dz * dz;
     vec G[6];
     grand b;
-    grand_block(r2, a, aj, a * a + aj * aj, &b);
+    torques_block(w, r2, a, aj, a * a + aj * aj, &b);
     if (!both && i >= j && i < j + LANES) {
       vec f = b.f, k = b.k; /* the others are 0 or multiply r */
       leave_out_self(i - j, &f, &k);
@@ -190,14 +261,15 @@ enum { GRAND_CHUNK = 128 };
 
 static void grand_symmetric(const sd_packed *p, int part, int parts)
 {
+  const law w = law_of(p);
   for (int c = 0; c < p->padded; c += GRAND_CHUNK) {
     const int end = c + GRAND_CHUNK < p->padded ? c + GRAND_CHUNK : p->padded;
     for (int i = 0; i < end; i += LANES) {
       if (!mine(i / LANES, part, parts)) continue;
       const int from = i + LANES > c ? i + LANES : c;
       for (int t = i; t < i + LANES; t++) {
-        if (i >= c) grand_tile(0, p, t, i, i + LANES);
-        if (from < end) grand_tile(1, p, t, from, end);
+        if (i >= c) grand_tile(0, &w, p, t, i, i + LANES);
+        if (from < end) grand_tile(1, &w, p, t, from, end);
       }
     }
   }
@@ -205,6 +277,7 @@ static void grand_symmetric(const sd_packed *p, int part, int parts)
 
 static void grand_list(const sd_packed *p, const sd_pairs *pairs)
 {
+  const law w = law_of(p);
   for (int i = 0; i < pairs->n; i++) {
     const double *own = p->row + 8 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
@@ -222,7 +295,7 @@ static void grand_list(const sd_packed *p, const sd_pairs *pairs)
       gather(p->torque_row, 4, j, F + 3);
       const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz;
-      grand_block(r2, a, aj, a * a + aj * aj, &b);
+      torques_block(&w, r2, a, aj, a * a + aj * aj, &b);
       grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
     }
 #pragma GCC unroll 6
