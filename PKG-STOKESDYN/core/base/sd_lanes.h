@@ -246,6 +246,12 @@ INLINE double total(vec a)
 
 /* --- rows of four numbers and columns --- */
 
+#if defined(__clang__) || __GNUC__ >= 12
+#define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (yes_no){__VA_ARGS__})
+#endif
+
 #if LANES >= 4
 typedef double row4 __attribute__((vector_size(32)));
 typedef double row4_anywhere __attribute__((vector_size(32), aligned(8), may_alias));
@@ -259,12 +265,6 @@ INLINE void store4(double *p, row4 a)
 {
   *(row4_anywhere *) p = a;
 }
-
-#if defined(__clang__) || __GNUC__ >= 12
-#define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
-#else
-#define SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (yes_no){__VA_ARGS__})
-#endif
 
 #if LANES == 8
 /* Two rows side by side, and the rows of a vector */
@@ -341,13 +341,19 @@ INLINE void add_to_rows(double *rows, int columns, const int j[LANES], vec colum
   }
 }
 #else
-/* Element by element: there is no shuffle that would be quicker. */
-#define OF_ROW(lane, c) rows[columns * (long) j[lane] + (c)]
 INLINE void gather(const double *rows, int columns, const int j[LANES], vec r[4])
 {
-  for (int c = 0; c < 4; c++) r[c] = (vec) LANEWISE(OF_ROW, c);
+#if LANES == 2
+  const double *a = rows + columns * (long) j[0], *b = rows + columns * (long) j[1];
+  for (int c = 0; c < 4; c += 2) { /* two rows of two at a time */
+    const vec first = load_any(a + c), second = load_any(b + c);
+    r[c] = SHUFFLE(first, second, 0, 2);
+    r[c + 1] = SHUFFLE(first, second, 1, 3);
+  }
+#else
+  for (int c = 0; c < 4; c++) r[c] = rows[columns * (long) j[0] + c];
+#endif
 }
-#undef OF_ROW
 
 INLINE void add_to_rows(double *rows, int columns, const int j[LANES], vec column[4])
 {

@@ -78,8 +78,7 @@ static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_
   p->n = n;
   p->width = width;
   isa = sd_isa_of(isa);
-  if ((law->tensor != SD_TENSOR_RPY && width == 3) || law->taper != SD_TAPER_NONE || !fits(p))
-    isa = SD_ISA_PLAIN;
+  if (!fits(p)) isa = SD_ISA_PLAIN;
   if (isa == SD_ISA_PLAIN) p->scale = 1.0;
   const struct sd_kernels *kernels = SD_KERNELS_OF(sd_product, plain, isa);
   p->kernel = width == 6 ? &kernels->torques : &kernels->forces;

@@ -60,8 +60,8 @@ typedef struct {
 /* --- the product ---------------------------------------------------------------------------------
  * Kernels on a copy of the spheres in the order that they read, made once per solve; the best that
  * the processor has are taken at run time (sd_isa.h). SD_ISA_PLAIN is plain C, pair by pair by the
- * formulas of sd_tensor.h: for other compilers, for Oseen's tensor and for tapers, which only
- * comparisons want, for lengths beyond the range of the vector kernels, and to compare those with.
+ * formulas of sd_tensor.h: for other compilers, for lengths beyond the range of the vector kernels,
+ * and to compare those with.
  * Relative error of a pair's block: 1e-15. The order of summation is fixed: same input, same
  * instruction set, same bits.
  *

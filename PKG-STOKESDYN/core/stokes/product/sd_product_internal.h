@@ -18,8 +18,8 @@ struct sd_kernels {
   struct sd_kernel forces, torques;
 };
 
-/* In vectors: RPY without taper. In plain C, sd_product_plain.c: any law. sd_wall: what images add,
- * a sphere's own among them */
+/* In vectors, and in plain C: sd_product_plain.c. sd_wall: what images add, a sphere's own among
+ * them */
 SD_KERNEL_TABLES(struct sd_kernels, sd_product);
 SD_KERNEL_TABLES(struct sd_kernels, sd_wall);
 

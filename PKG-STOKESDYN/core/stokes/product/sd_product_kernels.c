@@ -1,10 +1,63 @@
-/* Kernels of the fast product: RPY, without taper. The block of a pair (sd_tensor_lanes.h) is the same
- * for both of its spheres: the symmetric kernels compute it once. */
+/* Kernels of the fast product. The block of a pair (sd_tensor_lanes.h) is the same for both of its
+ * spheres: the symmetric kernels compute it once. */
 #include "sd_product_internal.h"
 
 #if SD_LANES > 1 /* sd_product_plain.c has its own */
 #include "sd_product_loops.h"
 #include "sd_tensor_lanes.h"
+
+/* The law of a product. The kernels of forces have a copy for this one as a constant: a branch on
+ * the law, though it always goes the same way, would cost them 4 %. */
+typedef struct {
+  sd_tensor tensor;
+  sd_taper taper;
+  vec inverse_range;
+} law;
+
+static const law rpy = {SD_TENSOR_RPY, SD_TAPER_NONE, {0.0}};
+
+INLINE law law_of(const sd_packed *p)
+{
+  return (law){p->law.tensor, p->law.taper, all(1.0 / p->law.range)};
+}
+
+/* sd_taper_factor at the distance whose square is r2 */
+INLINE vec taper_of(const law *w, vec r2)
+{
+  const vec q = root(r2) * w->inverse_range, s = larger(all(1.0) - q, all(0.0));
+  if (w->taper == SD_TAPER_WENDLAND) return (s * s) * (s * s) * (all(1.0) + all(4.0) * q);
+  return s * s * (all(1.0) + all(0.5) * q);
+}
+
+/* f and h of the force. squares = a_i^2 + a_j^2 */
+INLINE void forces_block(const law *w, vec r2, vec ai, vec aj, vec squares, vec *f, vec *h)
+{
+  if (w->tensor == SD_TENSOR_RPY)
+    block(r2, ai, aj, squares, f, h);
+  else {
+    *f = all(1.0) / root(r2);
+    *h = *f * *f * *f;
+  }
+  if (w->taper != SD_TAPER_NONE) {
+    const vec t = taper_of(w, r2);
+    *f *= t;
+    *h *= t;
+  }
+}
+
+INLINE void torques_block(const law *w, vec r2, vec ai, vec aj, vec squares, grand *b)
+{
+  grand_block(r2, ai, aj, squares, b);
+  if (w->taper != SD_TAPER_NONE) {
+    const vec t = taper_of(w, r2);
+    b->f *= t;
+    b->h *= t;
+    b->cij *= t;
+    b->cji *= t;
+    b->k *= t;
+    b->e *= t;
+  }
+}
 
 /* Lanes of the columns j ... j + LANES - 1 that are column i itself take no part. */
 NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
@@ -16,7 +69,7 @@ NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
 
 /* Two targets, i and i + 1, against the vectors of sources from j0 to j1: what is loaded serves
  * twice. both: the sources receive from the targets as well. */
-INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
+INLINE void tile(int both, const law *w, const sd_packed *p, int i, int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   const double *restrict p0 = p->f[0], *restrict p1 = p->f[1], *restrict p2 = p->f[2];
@@ -47,7 +100,7 @@ INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
       const vec dx = x[t] - xj, dy = y[t] - yj, dz = z[t] - zj;
       const vec r2 = dx * dx + dy * dy + dz * dz;
       vec f, h;
-      block(r2, a[t], aj, a[t] * a[t] + aj2, &f, &h);
+      forces_block(w, r2, a[t], aj, a[t] * a[t] + aj2, &f, &h);
       if (!both && i + t >= j && i + t < j + LANES) leave_out_self(i + t - j, &f, &h);
       const vec c = h * (dx * G0 + dy * G1 + dz * G2);
       u0[t] = (u0[t] + f * G0) + c * dx;
@@ -74,14 +127,33 @@ INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
   }
 }
 
+INLINE void rpy_tile(int both, const sd_packed *p, int i, int j0, int j1)
+{
+  tile(both, &rpy, p, i, j0, j1);
+}
+
+INLINE void law_tile(int both, const sd_packed *p, int i, int j0, int j1)
+{
+  const law w = law_of(p);
+  tile(both, &w, p, i, j0, j1);
+}
+
+static int plain_rpy(const sd_packed *p)
+{
+  return p->law.tensor == rpy.tensor && p->law.taper == rpy.taper;
+}
+
 static void symmetric(const sd_packed *p, int part, int parts)
 {
-  share_of_pairs(p, part, parts, CHUNK, 2, tile);
+  if (plain_rpy(p))
+    share_of_pairs(p, part, parts, CHUNK, 2, rpy_tile);
+  else
+    share_of_pairs(p, part, parts, CHUNK, 2, law_tile);
 }
 
 /* Row by row, LANES neighbours at a time. A neighbour has a row of its own, so its sums are its own
  * row's: nothing is written but u of the target, and no two targets meet. */
-static void list(const sd_packed *p, const sd_pairs *pairs)
+INLINE void list_by(const law *w, const sd_packed *p, const sd_pairs *pairs)
 {
   for (int i = 0; i < pairs->n; i++) {
     const double *own = p->row + 8 * (long) i;
@@ -96,7 +168,7 @@ static void list(const sd_packed *p, const sd_pairs *pairs)
       gather(p->row, 8, j, at);
       gather(p->row + 4, 8, j, F);
       const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
-      block(dx * dx + dy * dy + dz * dz, a, aj, a2 + aj * aj, &f, &h);
+      forces_block(w, dx * dx + dy * dy + dz * dz, a, aj, a2 + aj * aj, &f, &h);
       const vec c = h * (dx * F[0] + dy * F[1] + dz * F[2]);
       u0 = (u0 + f * F[0]) + c * dx;
       u1 = (u1 + f * F[1]) + c * dy;
@@ -109,12 +181,22 @@ static void list(const sd_packed *p, const sd_pairs *pairs)
   }
 }
 
+static void list(const sd_packed *p, const sd_pairs *pairs)
+{
+  const law w = law_of(p);
+  if (plain_rpy(p))
+    list_by(&rpy, p, pairs);
+  else
+    list_by(&w, p, pairs);
+}
+
 /* --- forces and torques --- */
 
 /* Target i against the vectors of sources from j0 to j1. both: the sources receive from the target
  * as well. */
 INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
 {
+  const law w = law_of(p);
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   const vec x = all(px[i]), y = all(py[i]), z = all(pz[i]), a = all(pa[i]);
   vec F[6], u[6];
@@ -128,7 +210,7 @@ INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
     const vec aj = load(pa + j), r2 = dx * dx + dy * dy + dz * dz;
     vec G[6];
     grand b;
-    grand_block(r2, a, aj, a * a + aj * aj, &b);
+    torques_block(&w, r2, a, aj, a * a + aj * aj, &b);
     if (!both && i >= j && i < j + LANES) {
       vec f = b.f, k = b.k; /* the others are 0 or multiply r */
       leave_out_self(i - j, &f, &k);
@@ -159,6 +241,7 @@ static void grand_symmetric(const sd_packed *p, int part, int parts)
 
 static void grand_list(const sd_packed *p, const sd_pairs *pairs)
 {
+  const law w = law_of(p);
   for (int i = 0; i < pairs->n; i++) {
     const double *own = p->row + 8 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
@@ -176,7 +259,7 @@ static void grand_list(const sd_packed *p, const sd_pairs *pairs)
       gather(p->torque_row, 4, j, F + 3);
       const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz;
-      grand_block(r2, a, aj, a * a + aj * aj, &b);
+      torques_block(&w, r2, a, aj, a * a + aj * aj, &b);
       grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
     }
 #pragma GCC unroll 6
