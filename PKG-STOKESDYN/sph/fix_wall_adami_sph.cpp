@@ -1,21 +1,28 @@
 #include "fix_wall_adami_sph.h"
 
 #include "keywords.h"
+#include "sd_sph_wall.h"
 #include "sph.h"
 
 #include "atom.h"
+#include "update.h"
+
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) : WallFix(lmp, narg, arg)
+FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) :
+    WallFix(lmp, narg, arg), motion(6)
 {
   Sph::require_scene(lmp, command);
   Keywords in(lmp, command, words(narg, arg), 3);
   in.parse({
       {"gravity", [&] { for (Field &g : gravity) g = Field::parse(in); }},
       {"slip", [&] { slip = in.yes_no(); }},
+      {"own_acceleration", [&] { own_acceleration = in.yes_no(); }},
   });
+  if (own_acceleration) keep({&motion}, nullptr, true);
 }
 
 void FixWallAdamiSph::init()
@@ -28,9 +35,19 @@ void FixWallAdamiSph::init()
   }
 }
 
-const double *FixWallAdamiSph::body_force()
+void FixWallAdamiSph::find_gravity()
 {
-  for (int d = 0; d < 3; d++) b[d] = gravity[d].evaluate(lmp);
+  for (int d = 0; d < 3; d++) g[d] = gravity[d].evaluate(lmp);
+}
+
+const double *FixWallAdamiSph::body_force(int i, double tau)
+{
+  if (!own_acceleration) return g;
+  const bool is_new = !motion.has(i);
+  double *row = motion.give(i);
+  if (is_new) std::copy_n(atom->v[i], 3, row);
+  if (!update->setupflag) sd_sph_wall_acceleration(atom->v[i], update->dt, tau, row, row + 3);
+  for (int d = 0; d < 3; d++) b[d] = g[d] - row[3 + d];
   return b;
 }
 

@@ -16,13 +16,19 @@ class FixWallAdamiSph : public WallFix {
   void init() override;
   void post_force(int) override;
 
-  /* per mass, as the wall sees it; now */
-  const double *body_force();
+  /* Of this step; all ranks. */
+  void find_gravity();
+  /* Per mass, as wall particle i sees it: gravity, with own_acceleration less that of the particle,
+   * a mean over the time tau; once a step. */
+  const double *body_force(int i, double tau);
   bool slip = false;
 
  private:
   Field gravity[3];
-  double b[3] = {0.0, 0.0, 0.0};
+  bool own_acceleration = false;
+  double g[3] = {0.0, 0.0, 0.0}, b[3] = {0.0, 0.0, 0.0};
+  /* velocity at the last force, acceleration */
+  AtomArray motion;
 };
 
 }    // namespace StokesDyn

@@ -145,7 +145,6 @@ class PairSph : public LAMMPS_NS::Pair {
   void sum_middle(double margin);
   void close_sums();
   bool resumes() const;
-  void weigh(int fours, bool walls);
   void sum_densities(int bit, bool shepard);
   void wall_particles();
   void pressures_of_all();

@@ -277,19 +277,13 @@ const double *PairSph::shift() const
   return state ? state->du() : nullptr;
 }
 
-/* Sums of W times the rows of weights, over the pairs of this rank. */
-void PairSph::weigh(int fours, bool walls)
-{
-  sums.assign(4 * fours * (size_t) (particles.n + 1), 0.0);
-  sd_sph_weigh(&model, &pairs, &particles, fours, walls, weights.data(), sums.data());
-}
-
 /* Densities of a group from the sums over neighbours, or filtered by them. */
 void PairSph::sum_densities(int bit, bool shepard)
 {
   weights.resize(4 * (size_t) (particles.n + 1));
   sd_sph_pack_masses(&model, &particles, atom->rho, weights.data());
-  weigh(1, false);
+  sums.assign(4 * (size_t) (particles.n + 1), 0.0);
+  sd_sph_weigh(&model, &pairs, &particles, weights.data(), sums.data());
   reverse(sums.data(), 4);
   const sd_sph_densities how = {atom->nlocal, bit, shepard, atom->mask, sums.data()};
   sd_sph_sum_densities(&model, &particles, &how, atom->rho);
@@ -316,13 +310,13 @@ void PairSph::wall_particles()
   const int n = particles.n, bit = wall->groupbit;
   sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
   weights.resize(8 * (size_t) (n + 1));
-  const double *b = wall->body_force();
-  sd_sph_pack_fluid(&particles, P.data(), b, weights.data());
-  weigh(2, true);
-  sd_sph_level_walls(&particles, b, sums.data());
+  sd_sph_pack_fluid(&particles, P.data(), weights.data());
+  sums.assign(8 * (size_t) (n + 1), 0.0);
+  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), sums.data());
   reverse(sums.data(), 8);
 
   wall_rows.resize(4 * (size_t) (n + 1));
+  wall->find_gravity();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & bit)) continue;
     const FixSphPressure *eos = nullptr;
@@ -331,7 +325,9 @@ void PairSph::wall_particles()
     const sd_sph_wall how = {&eos->state, wall->slip};
     double *row = &wall_rows[4 * (size_t) i];
     row[0] = atom->rho[i];
-    const double asked = sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->v[i], row);
+    const double sound = sd_sph_speed_of_sound(&eos->state, row[0]);
+    const double *b = wall->body_force(i, 2.0 * smoothing_length(atom->type[i]) / sound);
+    const double asked = sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->v[i], b, row);
     if (row[0] == 0.0)
       fail_one(lmp,
                "Fix " + std::string(FixWallAdamiSph::STYLE) + ": step " +

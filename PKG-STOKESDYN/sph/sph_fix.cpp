@@ -39,7 +39,7 @@ void SphOutputFix::output(const double *numbers)
 }
 
 WallFix::WallFix(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), command("Fix " + std::string(style))
+    RowsFix(lmp, narg, arg), command("Fix " + std::string(style))
 {
   dynamic_group_allow = 1;
   vector_flag = 1;

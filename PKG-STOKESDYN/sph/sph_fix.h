@@ -41,7 +41,7 @@ class SphOutputFix : public SphFix {
 };
 
 /* A wall: sums up the force of the fluid on it, global vector x y z. */
-class WallFix : public LAMMPS_NS::Fix {
+class WallFix : public RowsFix {
  public:
   WallFix(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;

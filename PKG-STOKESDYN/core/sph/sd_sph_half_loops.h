@@ -49,51 +49,91 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
   }
 }
 
-/* W is the same for i and j, so each takes the other's row times W. Between a fluid and its walls
- * neighbours of the same kind as i, most of them, cost no kernel. */
+/* W is the same for i and j, so each takes the other's row times W. */
 INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  const double *q, double *sums, sd_sph_kernel kernel, int many, int fours,
-                  int walls)
+                  const double *q, double *sums, sd_sph_kernel kernel, int many)
 {
-  const vec zero = all(0.0), two = all(2.0);
-  const int columns = 4 * fours;
+  const vec two = all(2.0);
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
     const int *neighbor = list->neighbor[i];
-    const row4 xi = load4(p->x4 + 4 * (size_t) i);
+    const row4 xi = load4(p->x4 + 4 * (size_t) i), qi = load4(q + 4 * (size_t) i);
     const sd_sph_coefficients *row = ROW_OF(i);
-    vec sum[8];
-    for (int c = 0; c < columns; c++) sum[c] = zero;
+    vec sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
 
     for (int at = 0; at < count; at += LANES) {
       int j[LANES];
       next(neighbor + at, count - at, list->mask, p->n, j);
-      yes_no counts = same(-1);
-      if (walls) {
-        counts = phases(p->phase, j) == same(~p->phase[i]);
-        if (!any(counts)) continue;
-      }
-      vec b[4];
+      vec b[4], qj[4];
       gather(p->x4, 4, j, b);
+      gather(q, 4, j, qj);
       const vec dx = xi[0] - b[0], dy = xi[1] - b[1], dz = xi[2] - b[2];
       const vec distance = smaller(root(dx * dx + dy * dy + dz * dz) * COEFFICIENT(inv_h), two);
-      vec W = COEFFICIENT(weight) * K(kernel, distance);
-      if (walls) W = where(counts, W, zero);
-      for (int first = 0; first < columns; first += 4) {
-        const row4 qi = load4(q + (size_t) columns * i + first);
-        vec qj[4];
-        gather(q + first, columns, j, qj);
-        for (int c = 0; c < 4; c++) sum[first + c] += W * qj[c];
-        for (int k = 0; k < LANES; k++) {
-          double *row_j = sums + (size_t) columns * j[k] + first;
-          store4(row_j, load4(row_j) + W[k] * qi);
-        }
+      const vec W = COEFFICIENT(weight) * K(kernel, distance);
+      for (int c = 0; c < 4; c++) sum[c] += W * qj[c];
+      for (int k = 0; k < LANES; k++) {
+        double *row_j = sums + 4 * (size_t) j[k];
+        store4(row_j, load4(row_j) + W[k] * qi);
       }
     }
-    for (int first = 0; first < columns; first += 4) {
-      double *row_i = sums + (size_t) columns * i + first;
-      store4(row_i, load4(row_i) + over_lanes(sum + first));
+    double *row_i = sums + 4 * (size_t) i;
+    store4(row_i, load4(row_i) + over_lanes(sum));
+  }
+}
+
+/* What wall particles take from the fluid before them. A pair counts for its wall particle alone,
+ * and neighbours of the same kind as i, most of them, cost no kernel. */
+INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
+                         const sd_sph_particles *p, const double *q, double *sums,
+                         sd_sph_kernel kernel, int many)
+{
+  const vec zero = all(0.0), two = all(2.0);
+  for (int ii = 0; ii < list->n; ii++) {
+    const int i = list->first[ii], count = list->count[i], is_wall = p->phase[i] < 0;
+    const int *neighbor = list->neighbor[i];
+    const row4 xi = load4(p->x4 + 4 * (size_t) i);
+    const double *qi = q + 8 * (size_t) i;
+    const sd_sph_coefficients *row = ROW_OF(i);
+    vec sum[8];
+    for (int c = 0; c < 8; c++) sum[c] = zero;
+
+    for (int at = 0; at < count; at += LANES) {
+      int j[LANES];
+      next(neighbor + at, count - at, list->mask, p->n, j);
+      const yes_no counts = phases(p->phase, j) == same(~p->phase[i]);
+      if (!any(counts)) continue;
+      vec b[4], d[3], r2 = zero;
+      gather(p->x4, 4, j, b);
+      for (int c = 0; c < 3; c++) {
+        d[c] = xi[c] - b[c];
+        r2 += d[c] * d[c];
+      }
+      const vec distance = smaller(root(r2) * COEFFICIENT(inv_h), two);
+      const vec W = where(counts, COEFFICIENT(weight) * K(kernel, distance), zero);
+      if (is_wall) {
+        vec qj[8];
+        gather(q, 8, j, qj);
+        gather(q + 4, 8, j, qj + 4);
+        for (int c = 0; c < 2; c++) sum[c] += W * qj[c];
+        for (int c = 0; c < 3; c++) {
+          sum[2 + c] += W * qj[2] * d[c];
+          sum[5 + c] += W * qj[4 + c];
+        }
+      } else
+        for (int k = 0; k < LANES; k++) {
+          if (W[k] == 0.0) continue;
+          double *row_j = sums + 8 * (size_t) j[k];
+          for (int c = 0; c < 2; c++) row_j[c] += W[k] * qi[c];
+          for (int c = 0; c < 3; c++) {
+            row_j[2 + c] -= W[k] * qi[2] * d[c][k];
+            row_j[5 + c] += W[k] * qi[4 + c];
+          }
+        }
     }
+    if (!is_wall) continue;
+    double *row_i = sums + 8 * (size_t) i;
+    store4(row_i, load4(row_i) + over_lanes(sum));
+    store4(row_i + 4, load4(row_i + 4) + over_lanes(sum + 4));
   }
 }
 

@@ -109,7 +109,13 @@ void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
 }
 
 void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  int fours, int walls, const double *q, double *sums)
+                  const double *q, double *sums)
 {
-  loops()->weigh(model, list, p, fours, walls, q, sums);
+  loops()->weigh(model, list, p, q, sums);
+}
+
+void sd_sph_before_walls(const sd_sph_model *model, const sd_sph_list *list,
+                         const sd_sph_particles *p, const double *q, double *sums)
+{
+  loops()->before_walls(model, list, p, q, sums);
 }

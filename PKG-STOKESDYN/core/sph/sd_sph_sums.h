@@ -70,10 +70,15 @@ void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
 double sd_sph_corrected_forces(const sd_sph_model *model, const sd_sph_both *list,
                                const sd_sph_particles *p, double *f4, double *each);
 
-/* Adds sum_b W q_b to the rows of sums, both with 4 `fours` columns (1 or 2) and n + 1 rows; row n
- * of q is 0. walls: only between a fluid and its walls, as phase says. */
+/* Adds sum_b W q_b to the rows of sums, both [4 (n+1)]; row n of q is 0. */
 void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  int fours, int walls, const double *q, double *sums);
+                  const double *q, double *sums);
+
+/* Adds to the rows of wall particles w, sums [8 (n+1)], over the particles f of their fluid, as
+ * phase says, with d = x_w - x_f and rows 1, P, rho, 0, v, 0 of q [8 (n+1)], row n of which is 0:
+ *   0 sum W    1 sum W P_f    2-4 sum W rho_f d    5-7 sum W v_f */
+void sd_sph_before_walls(const sd_sph_model *model, const sd_sph_list *list,
+                         const sd_sph_particles *p, const double *q, double *sums);
 
 #ifdef __cplusplus
 }

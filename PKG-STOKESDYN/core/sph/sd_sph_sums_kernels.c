@@ -136,20 +136,28 @@ static void all_diffusion(const sd_sph_model *model, const sd_sph_both *list,
   }
 }
 
-#define WEIGH(fours, walls, kernel, many)                                    \
-  case ((fours) << 3) + ((walls) << 2) + ((kernel) << 1) + (many):           \
-    weigh(model, list, p, q, sums, kernel, many, fours, walls);              \
+#define WEIGH(loop, kernel, many)                         \
+  case ((kernel) << 1) + (many):                          \
+    loop(model, list, p, q, sums, kernel, many);          \
     break;
 
 static void all_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                      int fours, int walls, const double *q, double *sums)
+                      const double *q, double *sums)
 {
-  switch ((fours << 3) + (walls << 2) + kernel_copy(model)) {
-    BY_KERNEL(WEIGH, 1, 0)
-    BY_KERNEL(WEIGH, 2, 1)
+  switch (kernel_copy(model)) {
+    BY_KERNEL(WEIGH, weigh)
+  }
+}
+
+static void all_before_walls(const sd_sph_model *model, const sd_sph_list *list,
+                             const sd_sph_particles *p, const double *q, double *sums)
+{
+  switch (kernel_copy(model)) {
+    BY_KERNEL(WEIGH, before_walls)
   }
 }
 
 const sd_sph_loops SD_KERNELS(sd_sph_loops) = {all_forces, all_slopes,    all_rates,
-                                               all_middle, all_diffusion, all_weigh};
+                                               all_middle, all_diffusion, all_weigh,
+                                               all_before_walls};
 #endif

@@ -26,8 +26,7 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const double b[3],
-                       double *q)
+void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, double *q)
 {
   memset(q, 0, 8 * sizeof(double) * (size_t) (p->n + 1));
   for (int i = 0; i < p->n; i++) {
@@ -35,19 +34,18 @@ void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const 
     const double *v4 = p->v4 + 4 * (size_t) i;
     double *row = q + 8 * (size_t) i;
     row[0] = 1.0;
-    /* P_f + rho_f b.(x_w - x_f) in parts: the loop sums the first, sd_sph_level_walls adds x_w. */
-    row[1] = pressure[i] - v4[3] * dot(b, p->x4 + 4 * (size_t) i);
+    row[1] = pressure[i];
     row[2] = v4[3];
     memcpy(row + 4, v4, 3 * sizeof(double));
   }
 }
 
-void sd_sph_level_walls(const sd_sph_particles *p, const double b[3], double *sums)
+void sd_sph_wall_acceleration(const double v[3], double dt, double tau, double before[3],
+                              double a[3])
 {
-  for (int i = 0; i < p->n; i++) {
-    if (p->phase[i] >= 0) continue;
-    double *row = sums + 8 * (size_t) i;
-    row[1] += dot(b, p->x4 + 4 * (size_t) i) * row[2];
+  for (int d = 0; d < 3; d++) {
+    a[d] += (v[d] - before[d] - dt * a[d]) / (dt + tau);
+    before[d] = v[d];
   }
 }
 
@@ -80,15 +78,15 @@ void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const s
 /* The density is what carries the pressure on: ghosts of the wall get it as that of any particle,
  * and the equation of state makes the same pressure of it on every rank. */
 double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double v[3],
-                            double row[4])
+                            const double b[3], double row[4])
 {
   /* No slip: the wall shows the fluid the velocity that makes the mean of the two that of the wall,
    * v - (fluid - v). With slip it shows the fluid its own. */
   const int alone = s[0] == 0.0;
-  const double P = alone ? wall->state->P0 : s[1] / s[0];
+  const double P = alone ? wall->state->P0 : (s[1] + dot(b, s + 2)) / s[0];
   if (!alone || wall->state->kind != SD_SPH_ABSOLUT) row[0] = sd_sph_density_of(wall->state, P);
   for (int d = 0; d < 3; d++) {
-    const double ahead = alone ? 0.0 : s[4 + d] / s[0] - v[d];
+    const double ahead = alone ? 0.0 : s[5 + d] / s[0] - v[d];
     row[1 + d] = wall->slip ? ahead : -ahead;
   }
   return P;

@@ -19,15 +19,17 @@ double sd_sph_repulsion(double D, double r0, double r);
 /* Adami, Hu & Adams 2012: a wall particle w takes pressure and velocity from the fluid particles f
  * in its support,
  *   P_w = sum [P_f + rho_f b.(x_w - x_f)] W / sum W,   <v> = sum v_f W / sum W
- * with b = g - a_w, the body force per mass as the wall sees it. For sd_sph_weigh, walls only,
- * since the bracket is linear in x_w: q [8 (n+1)] is 1, P - rho b.x, rho, 0, v, 0 of the fluid and
- * 0 of walls. x4 and v4 of the particles must be packed. */
-void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, const double b[3],
-                       double *q);
+ * with b = g - a_w, the body force per mass as the wall particle sees it. q [8 (n+1)] for
+ * sd_sph_before_walls: 1, P, rho, 0, v, 0 of the fluid and 0 of walls. v4 must be packed. */
+void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, double *q);
 
-/* After sd_sph_weigh, of its sums [8 (n+1)]: column 1 takes b.x_w, so that it is the same for every
- * image of a wall particle, and those of ghosts may be added to it. */
-void sd_sph_level_walls(const sd_sph_particles *p, const double b[3], double *sums);
+/* The acceleration a [3] of a wall particle from its velocities v and before, dt apart, as a mean
+ * over the time tau: a += dt / (dt + tau) ((v - before) / dt - a). The wall's pressure acts on a
+ * body that swims with it, and the body's acceleration on that pressure: with tau of the time that
+ * sound takes through the support, also bodies much lighter than the fluid are stable. before
+ * becomes v. */
+void sd_sph_wall_acceleration(const double v[3], double dt, double tau, double before[3],
+                              double a[3]);
 
 /* How well each wall particle fits the fluid in its support: likeness [2 (n+1)], taken as maximum
  * with what is there, of
@@ -42,13 +44,13 @@ typedef struct {
   int slip;
 } sd_sph_wall;
 
-/* What the levelled sums s make of one wall particle that moves with v. row, in: its density. Out:
- * the density that has the pressure of the fluid before it (0: none has), and by how much the
+/* What the sums s of sd_sph_before_walls make of one wall particle that moves with v and sees the
+ * body force b. row, in: its density. Out: the density that has the pressure of the fluid before it (0: none has), and by how much the
  * velocity that friction sees differs from v: to that of the fluid with slip, to its mirror image
  * without.
  * A wall without fluid in reach has P0, or keeps its density (absolut). Returns the pressure. */
 double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double v[3],
-                            double row[4]);
+                            const double b[3], double row[4]);
 
 #ifdef __cplusplus
 }

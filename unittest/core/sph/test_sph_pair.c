@@ -278,7 +278,7 @@ static void sums_over_neighbours(void **state)
   build(&s, SD_SPH_WENDLAND, 2, 2, 0, 0, 0);
   double sums[4 * (N + 1)] = {0}, weights[4 * (N + 1)];
   sd_sph_pack_masses(&s.model, &s.p, s.rho, weights);
-  sd_sph_weigh(&s.model, &s.list, &s.p, 1, 0, weights, sums);
+  sd_sph_weigh(&s.model, &s.list, &s.p, weights, sums);
   for (int i = 0; i < N; i++) {
     double mW = 0.0, VW = 0.0;
     for (int j = 0; j < N; j++) {
@@ -361,16 +361,15 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
   sd_sph_pack_v(N, s.v, s.rho, s.v4);
   s.p.phase = s.phase;
   double sums[8 * (N + 1)] = {0}, weights[8 * (N + 1)];
-  sd_sph_pack_fluid(&s.p, s.P, g, weights);
-  sd_sph_weigh(&s.model, &s.list, &s.p, 2, 1, weights, sums);
+  sd_sph_pack_fluid(&s.p, s.P, weights);
+  sd_sph_before_walls(&s.model, &s.list, &s.p, weights, sums);
   const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0};
   const sd_sph_wall wall = {&water, 0};
-  sd_sph_level_walls(&s.p, g, sums);
   int tried = 0;
   for (int i = 0; i < N; i++) {
     if (s.phase[i] == 0 || sums[8 * i] < 0.01) continue;
     double row[4];
-    const double P = sd_sph_wall_particle(&wall, sums + 8 * i, s.v + 3 * i, row);
+    const double P = sd_sph_wall_particle(&wall, sums + 8 * i, s.v + 3 * i, g, row);
     CHECK_NEAR(P, s.P[i], 1e-9 * s.P[i]);
     tried++;
   }
@@ -383,26 +382,45 @@ static void wall_particle_continues_the_fluid(void **state)
 {
   (void) state;
   const sd_sph_state tait = {SD_SPH_TAIT, 5e4, 990.0, 7.0, 30.0};
-  const double sums[8] = {0.8, 0.8 * 2.4e3, 0.8 * 1000.0, 0.0, 0.8 * 0.3, 0.8 * -0.7},
-               v[3] = {0.1, 0.2, -0.3};
+  const double sums[8] = {0.8, 0.8 * 2.1e3, 0.0, 0.8 * 100.0, 0.0, 0.8 * 0.3, 0.8 * -0.7, 0.0},
+               v[3] = {0.1, 0.2, -0.3}, b[3] = {5.0, 3.0, 7.0};
   const sd_sph_wall sticks = {&tait, 0}, slides = {&tait, 1};
   double row[4] = {1.0}, glides[4] = {1.0};
-  sd_sph_wall_particle(&sticks, sums, v, row);
-  sd_sph_wall_particle(&slides, sums, v, glides);
+  sd_sph_wall_particle(&sticks, sums, v, b, row);
+  sd_sph_wall_particle(&slides, sums, v, b, glides);
   CHECK_NEAR(sd_sph_pressure(&tait, row[0]), 2.4e3, 1e-8);
   for (int d = 0; d < 3; d++) {
-    const double fluid = sums[4 + d] / sums[0];
+    const double fluid = sums[5 + d] / sums[0];
     CHECK_NEAR(v[d] + glides[1 + d], fluid, 1e-15);
     CHECK_NEAR(v[d] + row[1 + d], 2 * v[d] - fluid, 1e-15);
   }
   const double none[8] = {0.0};
-  sd_sph_wall_particle(&sticks, none, v, row);
+  sd_sph_wall_particle(&sticks, none, v, b, row);
   CHECK_NEAR(row[0], 990.0, 1e-9);
   assert_true(row[1] == 0.0 && row[2] == 0.0 && row[3] == 0.0);
   const double torn[8] = {0.8, 0.8 * -5e4};
-  sd_sph_wall_particle(&sticks, torn, v, row);
+  sd_sph_wall_particle(&sticks, torn, v, b, row);
   assert_true(row[0] == 0.0);
   CHECK_NEAR(sd_sph_least_pressure(&tait), 30.0 - 5e4, 1e-9);
+}
+
+/* At rest, then uniformly accelerated: the mean follows within tau, and is exact then; dt only
+ * resolves it. */
+static void walls_know_their_acceleration(void **state)
+{
+  (void) state;
+  const double g[3] = {0.3, -2.0, 0.0}, tau = 0.1;
+  for (double dt = 0.02; dt > 0.004; dt /= 2) {
+    double before[3] = {0.1, 0.0, 0.0}, a[3] = {0.0};
+    double v[3] = {0.1, 0.0, 0.0};
+    const int steps = (int) (tau / dt + 0.5);
+    for (int k = 1; k <= 15 * steps; k++) {
+      for (int d = 0; d < 3; d++) v[d] += dt * g[d];
+      sd_sph_wall_acceleration(v, dt, tau, before, a);
+      if (k == steps) CHECK_NEAR(a[1] / g[1], 1.0 - exp(-1.0), 2.0 * dt);
+    }
+    for (int d = 0; d < 3; d++) CHECK_NEAR(a[d], g[d], 1e-5);
+  }
 }
 
 int main(void)
@@ -415,6 +433,7 @@ int main(void)
                                      cmocka_unit_test(sums_over_neighbours),
                                      cmocka_unit_test(linear_density_does_not_diffuse),
                                      cmocka_unit_test(wall_continues_the_hydrostatic_pressure),
-                                     cmocka_unit_test(wall_particle_continues_the_fluid)};
+                                     cmocka_unit_test(wall_particle_continues_the_fluid),
+                                     cmocka_unit_test(walls_know_their_acceleration)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

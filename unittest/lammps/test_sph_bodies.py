@@ -1,0 +1,110 @@
+"""Walls and bodies that move: each has the pressure that its own acceleration asks for; a box floats where Archimedes has it, and heaves
+as linear theory says."""
+import os
+import re
+import sys
+
+import numpy as np
+import pytest
+
+from sph_tools import by_id, fix_by_id, mpirun, run, start
+from test_sph_input import message
+
+EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples", "floating_box")
+sys.path.insert(0, EXAMPLE)
+
+FLOORS = """
+units lj
+dimension 2
+atom_style sph
+atom_modify map array
+boundary p f p
+lattice sq 400 origin 0.5 0.5 0
+region all block 0 0.5 -0.2 3 -0.025 0.025 units box
+create_box 3 all
+region low block INF INF -0.2 0.3 INF INF units box
+region high block INF INF 1.5 2 INF INF units box
+create_atoms 1 region low
+create_atoms 1 region high
+region under block INF INF -0.2 0 INF INF units box
+region shelf block INF INF 1.5 1.7 INF INF units box
+set region under type 2
+set region shelf type 3
+group water type 1
+group under type 2
+group shelf type 3
+group walls type 2 3
+mass * 0.0025
+set group all sph/rho 1
+neighbor 0.03 bin
+neigh_modify delay 0 every 1 exclude type 2 2 exclude type 3 3
+pair_style sph/artVisc/tensCorr wendland 0.1 artVisc 1 0 1e-4
+pair_coeff * * c 20
+fix eos all sph/pressure Tait $(400/7) 1 7
+fix density all sph/density/continuity delta 0.1
+fix move water nve/sph
+fix g water gravity 1 vector 0 -1 0
+fix wall walls wall/adami/sph gravity 0 -1 0 slip yes own_acceleration {own}
+variable o equal 0
+variable y equal 0.5*2*(step*dt)^2
+variable v equal 2*step*dt
+fix lift shelf move variable v_o v_y NULL v_o v_v NULL
+fix flat all enforce2d
+timestep 0.001
+"""
+
+
+def test_each_wall_has_the_pressure_of_its_own_acceleration():
+    """Two floors with water: one at rest, one that is lifted with twice gravity. Pressure grows into a floor as in the water over it."""
+    lmp = start()
+    run(lmp, FLOORS.format(own="yes") + "run 500 post no")
+    y, P, types = by_id(lmp, "x", 3)[:, 1], fix_by_id(lmp, "eos"), by_id(lmp, "type")
+    for kind, expected in ((2, 1.0), (3, 3.0)):
+        rows = np.sort(np.unique(y[types == kind].round(6)))[-2:]
+        low, high = [P[(types == kind) & (np.abs(y - row) < 1e-3)].mean() for row in rows]
+        assert (low - high) / 0.05 == pytest.approx(expected, rel=0.05), kind
+    lmp.close()
+
+
+
+
+def test_moving_walls_on_any_number_of_ranks_and_over_restarts(tmp_path):
+    scene = FLOORS.format(own="yes") + "fix swing under move wiggle 0.02 0.01 0 0.3 units box\ncompute E water sph/energy\n"
+    scene = re.sub("variable [oyv] .*\n|fix lift .*\n", "", scene)
+    dump = "dump d all custom 100 %s.dump.* x y vx vy f_eos\ndump_modify d format float %%.17g\nrun %d post no\n"
+
+    def go(name, ranks, text):
+        done = mpirun(ranks, text, tmp_path)
+        assert done.returncode == 0, done.stdout + done.stderr
+        rows = np.loadtxt(tmp_path / (name + ".dump.100"), skiprows=9)
+        return rows[np.lexsort((rows[:, 1].round(7), rows[:, 0].round(7)))]
+    first = go("one", 1, scene + dump % ("one", 100))
+    assert np.abs(go("three", 3, scene + dump % ("three", 100)) - first).max() <= 1e-12 * np.abs(first).max()
+    done = mpirun(1, scene + "run 60\nwrite_restart half\nrun 10\n", tmp_path)
+    assert done.returncode == 0, done.stdout
+    fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep", "compute")))
+    again = go("again", 2, "atom_modify map array\nread_restart half\n" + fixes + "\n" + dump % ("again", 40))
+    assert np.abs(again - first).max() <= 1e-12 * np.abs(first).max()
+
+
+def test_a_floating_box_heaves_as_linear_theory_says(tmp_path):
+    """4 particles high: the period within 4 %, from the first to the fourth passage of its new place."""
+    import linear
+
+    done = mpirun(1, open(os.path.join(EXAMPLE, "in.floating_box")).read().replace("index 40", "index 20").replace("density index 0.5", "density index 0.75")
+                  .replace("thermo        $(floor(0.02/dt))", "thermo 1").replace("thermo_style  custom step time v_y c_gauge[1] f_float[1][8] c_E[4]",
+                                                                                  "thermo_style custom time v_y")
+                  .replace("time    index 3", "time index 6"), tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = np.array([[float(w) for w in line.split()] for line in done.stdout.splitlines() if re.fullmatch(r"\s*[\d.e+-]+\s+0\.[45]\d*\s*", line)])
+
+    def passages(t, z):
+        u = z - z[0] + 0.035
+        k = np.nonzero(u[:-1] * u[1:] < 0)[0]
+        return (t[k] + u[k] * (t[k + 1] - t[k]) / (u[k] - u[k + 1]))[:4]
+    mine, exact = passages(*rows.T), passages(*linear.heave(0.045, 0.03, T=6))
+    assert mine[3] - mine[0] == pytest.approx(exact[3] - exact[0], rel=0.04)
+
+
+def test_own_acceleration_maybe():
+    assert "'maybe' is none of: no, yes" in message(FLOORS.format(own="maybe"))
