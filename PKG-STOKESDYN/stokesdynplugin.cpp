@@ -19,6 +19,7 @@
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_stokes_dynamics.h"
+#include "fix_stokes_dynamics_field.h"
 #include "fix_stokes_dynamics_overdamped.h"
 #include "fix_stokes_dynamics_state.h"
 #include "fix_wall_adami_sph.h"
@@ -88,6 +89,7 @@ static std::vector<lammpsplugin_t> styles()
 {
   return {pair<PairStokesDynamics>("Stokes drag with hydrodynamic interactions"),
           fix<FixStokesDynamics>("applies or reports the force of pair_style stokes_dynamics"),
+          fix<FixStokesDynamicsField>("writes the flow around spheres for ParaView"),
           fix<FixStokesDynamicsOverdamped>("Stokes dynamics without inertia"),
           fix<FixStokesDynamicsLast>("internal: end of a step without inertia"),
           fix<FixStokesDynamicsState>("internal: memory of pair_style stokes_dynamics"),

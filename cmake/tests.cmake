@@ -90,7 +90,7 @@ add_test(NAME film_table COMMAND make_film_table check 1 4 5)
 add_dependencies(core_tests make_film_table)
 
 # Timings: cmake --build build --target bench_product bench_solve (unittest/bench/README.md)
-foreach(bench product solve ewald lubrication)
+foreach(bench product solve ewald lubrication field)
   add_executable(bench_${bench} EXCLUDE_FROM_ALL ${tests}/../bench/bench_${bench}.c)
   target_include_directories(bench_${bench} PRIVATE ${tests} ${tests}/stokes ${cmocka_include})
   target_compile_options(bench_${bench} PRIVATE -Wall -Wextra -O2)

@@ -98,6 +98,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
   const double *uniform_velocity() const { return u_uniform; }
 
+  /* Velocity u [3n] of the fluid at places x [3n], each rank has its own; read() has been called in
+   * this step. On all ranks together. Formulas in x, y, z are asked of the atoms that take part, put
+   * at these places one after the other. Errors: a velocity that belongs to atoms, not to places; a
+   * place outside of the grid. */
+  std::vector<double> at_places(const std::vector<double> &x);
+
   /* Does the fluid velocity differ from place to place? */
   bool varies() const;
   /* Of this step, for a velocity that varies, otherwise none: an image of a sphere moves as the
@@ -130,6 +136,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient;
 
+  std::vector<double> formulas_at(const std::vector<double> &x);
   bool group_stands() const;
   void select();
   void read_fluid(bool gradients);

@@ -1,5 +1,6 @@
 #include "fix_stokes_dynamics_overdamped.h"
 
+#include "fix_stokes_dynamics_field.h"
 #include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
@@ -140,6 +141,7 @@ bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
 void FixStokesDynamicsLast::setup(int /*vflag*/)
 {
   for (auto *fix : fixes_of<FixStokesDynamicsOverdamped>(lmp)) fix->after_setup();
+  for (auto *fix : fixes_of<FixStokesDynamicsField>(lmp)) fix->end_of_step();
 }
 
 bool FixStokesDynamicsOverdamped::prepare(LAMMPS *lmp)

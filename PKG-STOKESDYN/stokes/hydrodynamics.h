@@ -28,6 +28,11 @@
 
 namespace StokesDyn {
 
+/* Force and torque on the fluid, over its viscosity, of a sphere or of a point of its shell */
+struct OnFluid {
+  double x[3], a, F[3], T[3];
+};
+
 class Hydrodynamics : protected LAMMPS_NS::Pointers {
  public:
   StokesSettings settings;
@@ -69,6 +74,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
    * points and of their films, [12 nlocal]: xx yy zz xy xz yz of each. Points about the centre of
    * their sphere; without inertia also what keeps clumps together. On all ranks together. */
   void stress(std::vector<double> &of_atoms);
+
+  /* In a step that was computed, until its end: what makes the flow, of this rank. On all ranks
+   * together. */
+  std::vector<OnFluid> on_fluid();
 
   bool rotation() const { return settings.scene.rotation; }
   /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
@@ -144,6 +153,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void keep();
   void recall_points(std::vector<double> &l);
   void keep_points(const std::vector<double> &l);
+  std::vector<OnFluid> of_points_on_fluid();
   int algorithm() const    // of the next solve
   {
     return memory->global.diverged != 0.0 ? StokesSettings::GRADIENTS : settings.algorithm;

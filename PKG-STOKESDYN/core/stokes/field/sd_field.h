@@ -12,8 +12,8 @@
  * spheres.
  *
  * Every rank knows all sources and has the points of some planes; the transforms are shared. */
-#ifndef SD_FIELD_H
-#define SD_FIELD_H
+#ifndef SD_FLOW_FIELD_H
+#define SD_FLOW_FIELD_H
 
 #include "sd_ewald.h"
 #include "sd_ewald_waves.h"
@@ -62,7 +62,8 @@ typedef struct {
   sd_ewald_box around;
   /* sources and their images as the kernels read them; columns u x, u y, u z of our points */
   double *source, *column;
-  size_t source_room, column_room;
+  int *order;
+  size_t source_room, column_room, order_room;
 } sd_field;
 
 /* The flow u [3 sd_field_points], x fastest, added to what is there.

@@ -44,29 +44,35 @@ typedef struct {
   /* of the points of a row, made anew only where it differs from row to row */
   place *of_row;
   int oblique, made;
-  /* velocities on the waves' grid in the plane of z, and on the line of y and z: [n0][n1][3], [n0][3] */
-  double *plane, *line;
+  /* velocities on the waves' grid in some planes of z, and on the line of y and z:
+   * [PLANES][n0][n1][3], [n0][3] */
+  double *planes, *line;
 } gathering;
 
-static void sum_along_z(const gathering *q, const place *z)
+/* So many planes at once, since their windows share points */
+enum { PLANES = 8 };
+
+static void sum_along_z(const gathering *q, const place *z, int planes)
 {
   const sd_spreading *s = &q->w->spreading;
   const int *n = q->w->grid.n, points = q->w->window.points;
-  double *out = q->plane;
+  const long size = 3L * n[0] * n[1];
   for (int i = 0; i < n[0]; i++)
-    for (int j = 0; j < n[1]; j++, out += 3) {
-      const double *from = s->brick + i * s->layer + j * s->row + 3L * z->at;
-      out[0] = out[1] = out[2] = 0.0;
-      for (int k = 0; k < points; k++)
-        for (int c = 0; c < 3; c++) out[c] += z->value[k] * from[3 * k + c];
-    }
+    for (int j = 0; j < n[1]; j++)
+      for (int b = 0; b < planes; b++) {
+        const double *from = s->brick + i * s->layer + j * s->row + 3L * z[b].at;
+        double sum[3] = {0.0}, *out = q->planes + b * size + 3L * ((long) i * n[1] + j);
+        for (int k = 0; k < points; k++)
+          for (int c = 0; c < 3; c++) sum[c] += z[b].value[k] * from[3 * k + c];
+        for (int c = 0; c < 3; c++) out[c] = sum[c];
+      }
 }
 
-static void sum_along_y(const gathering *q, const place *y)
+static void sum_along_y(const gathering *q, const double *plane, const place *y)
 {
   const int *n = q->w->grid.n, points = q->w->window.points;
   for (int i = 0; i < n[0]; i++) {
-    const double *from = q->plane + 3L * ((long) i * n[1] + y->at);
+    const double *from = plane + 3L * ((long) i * n[1] + y->at);
     double sum[3] = {0.0};
     for (int k = 0; k < points; k++)
       for (int c = 0; c < 3; c++) sum[c] += y->value[k] * from[3 * k + c];
@@ -74,7 +80,7 @@ static void sum_along_y(const gathering *q, const place *y)
   }
 }
 
-static void sum_along_x(gathering *q, const double *x, double *const *column, long row)
+static void sum_along_x(gathering *q, const double *x, long stride, double *row)
 {
   const int points = q->w->window.points;
   if (!q->made || q->oblique)
@@ -89,34 +95,45 @@ static void sum_along_x(gathering *q, const double *x, double *const *column, lo
     double sum[3] = {0.0};
     for (int k = 0; k < points; k++)
       for (int c = 0; c < 3; c++) sum[c] += p->value[k] * from[3 * k + c];
-    for (int c = 0; c < 3; c++) column[c][row + i] += q->factor * sum[c];
+    for (int c = 0; c < 3; c++) row[c * stride + i] += q->factor * sum[c];
+  }
+}
+
+static void gather_plane(gathering *q, int k, const double *plane, long stride, double *u)
+{
+  const sd_field_grid *g = q->g;
+  for (int j = 0; j < g->n[1]; j++) {
+    const double x[3] = {0.0, g->lo[1] + j * g->step[1], g->lo[2] + k * g->step[2]};
+    place y;
+    place_window(q->w, 1, coordinate(q->w, 1, x), &y);
+    sum_along_y(q, plane, &y);
+    sum_along_x(q, x, stride, u + 3 * ((long) (k - g->from) * g->n[1] + j) * stride);
   }
 }
 
 sd_status sd_field_gather(const sd_ewald_waves *w, const sd_field_grid *g, double factor,
-                          long stride, double *const *column)
+                          long stride, double *u)
 {
   const int *n = w->grid.n;
   const double *G = w->spreading.gradient[0];
   gathering q = {.w = w, .g = g, .factor = factor, .oblique = G[1] != 0.0 || G[2] != 0.0};
   q.of_row = malloc(sizeof(place) * (size_t) g->n[0]);
-  q.plane = malloc(sizeof(double) * 3 * (size_t) n[0] * (size_t) n[1]);
+  q.planes = malloc(sizeof(double) * 3 * PLANES * (size_t) n[0] * (size_t) n[1]);
   q.line = malloc(sizeof(double) * 3 * (size_t) n[0]);
-  const int ok = q.of_row && q.plane && q.line;
-  for (int k = g->from; k < g->to && ok; k++) {
-    double x[3] = {0.0, 0.0, g->lo[2] + k * g->step[2]};
-    place z, y;
-    place_window(w, 2, coordinate(w, 2, x), &z);
-    sum_along_z(&q, &z);
-    for (int j = 0; j < g->n[1]; j++) {
-      x[1] = g->lo[1] + j * g->step[1];
-      place_window(w, 1, coordinate(w, 1, x), &y);
-      sum_along_y(&q, &y);
-      sum_along_x(&q, x, column, ((long) (k - g->from) * g->n[1] + j) * stride);
+  const int ok = q.of_row && q.planes && q.line;
+  for (int k = g->from; k < g->to && ok; k += PLANES) {
+    const int planes = g->to - k < PLANES ? g->to - k : PLANES;
+    place z[PLANES];
+    for (int b = 0; b < planes; b++) {
+      const double x[3] = {0.0, 0.0, g->lo[2] + (k + b) * g->step[2]};
+      place_window(w, 2, coordinate(w, 2, x), z + b);
     }
+    sum_along_z(&q, z, planes);
+    for (int b = 0; b < planes; b++)
+      gather_plane(&q, k + b, q.planes + 3L * b * n[0] * n[1], stride, u);
   }
   free(q.of_row);
-  free(q.plane);
+  free(q.planes);
   free(q.line);
   return ok ? SD_OK : SD_ENOMEMORY;
 }

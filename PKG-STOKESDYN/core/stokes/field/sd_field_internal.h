@@ -8,8 +8,8 @@
 /* A row of a source: x y z a, F, T, and two numbers that are free */
 enum { SD_FIELD_ROW = 12 };
 
-/* Our points in columns, rows along x `stride` apart, which is more than a vector longer than the
- * row; lengths scaled as in sd_packed, sums times 8 pi.
+/* Our points in rows along x: three columns, u x, u y, u z, each `stride` long, which is more than a
+ * vector longer than the row; lengths scaled as in sd_packed, sums times 8 pi.
  *   source [n]   rows, images among them
  *   range        only points nearer than this get something; not read by `direct`
  *   I0 J0 I1 J1 K0   of sd_radial.h, so scaled, of a degree that there is a kernel for */
@@ -22,7 +22,7 @@ typedef struct {
   double range;
   int degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS];
-  double *u[3];
+  double *u;
 } sd_field_part;
 
 struct sd_field_kernels {
@@ -40,8 +40,8 @@ typedef int sd_field_visit(void *ctx, const double *image, const int *steps);
 int sd_field_images(const sd_ewald_box *box, const double *lo, const double *hi, const double *x,
                     sd_field_visit *visit, void *ctx);
 
-/* u columns += what the convolved grid of the waves has at our points: f = scale u */
+/* u, as above, += factor times what the convolved grid of the waves has at our points */
 sd_status sd_field_gather(const sd_ewald_waves *w, const sd_field_grid *g, double factor,
-                          long stride, double *const *column);
+                          long stride, double *u);
 
 #endif

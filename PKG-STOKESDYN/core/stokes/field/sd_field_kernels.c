@@ -53,7 +53,7 @@ INLINE void direct_with(int turns, const sd_field_part *p)
   for (int k = 0; k < p->points[2]; k++)
     for (int j = 0; j < p->points[1]; j++) {
       const vec y = all(p->lo[1] + j * p->step[1]), z = all(p->lo[2] + k * p->step[2]);
-      const long row = ((long) k * p->points[1] + j) * p->stride;
+      double *row = p->u + 3 * ((long) k * p->points[1] + j) * p->stride;
       for (int i = 0; i < p->points[0]; i += LANES) {
         const vec x = along(p, i);
         vec u[3] = {all(0.0), all(0.0), all(0.0)};
@@ -66,7 +66,7 @@ INLINE void direct_with(int turns, const sd_field_part *p)
           add_flow(turns, s, f, h, c, dx, dy, dz, u);
         }
         for (int d = 0; d < 3; d++) {
-          double *out = p->u[d] + row + i;
+          double *out = row + d * p->stride + i;
           store_any(out, load_any(out) + u[d]);
         }
       }
@@ -83,13 +83,25 @@ static void direct(const sd_field_part *p)
 
 /* --- within the range --- */
 
-/* The points of a direction nearer than `half` to x: first and end */
-INLINE int points_near(const sd_field_part *p, int d, double x, double half, int *end)
+/* Without a branch */
+INLINE double smaller1(double a, double b)
 {
-  const double from = (x - half - p->lo[d]) / p->step[d], to = (x + half - p->lo[d]) / p->step[d];
-  const double most = p->points[d];
-  *end = to < 0.0 ? 0 : to >= most ? p->points[d] : (int) floor(to) + 1;
-  return from <= 0.0 ? 0 : from >= most ? p->points[d] : (int) ceil(from);
+  return a < b ? a : b;
+}
+
+INLINE double larger1(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+/* The points of a direction nearer than `half` to x, first and end; perhaps one more at the start */
+INLINE int points_near(const sd_field_part *p, int d, double x, double half, double inverse, int *end)
+{
+  const double middle = (x - p->lo[d]) * inverse, width = half * inverse, most = p->points[d];
+  const double from = smaller1(larger1(middle - width, 0.0), most);
+  const double to = smaller1(larger1(middle + width + 1.0, 0.0), most);
+  *end = (int) to;
+  return (int) from;
 }
 
 /* value[f] of three polynomials of one degree */
@@ -115,40 +127,80 @@ INLINE void polynomials_of_source(const sd_field_part *p, double a2, int degree,
   }
 }
 
+/* LANES points of a row: the first one's place in the columns, and from the sphere to it */
+typedef struct {
+  long at;
+  double dx, dy, dz;
+} piece;
+
+/* So many wait for their sum while their memory is on its way: rows are short, and a loop over rows
+ * of some points each would spend its time in starting anew and in waiting. */
+enum { PIECES = 128 };
+
+INLINE void soon(const double *p)
+{
+#if LANES > 1
+  __builtin_prefetch(p, 1);
+#else
+  (void) p;
+#endif
+}
+
 /* Lanes beyond the range get nothing; those beyond the end of a row nobody reads. */
+INLINE void near_pieces(int turns, int degree, const sd_field_part *p, const double *s,
+                        const double (*c)[SD_RADIAL_TERMS], const piece *list, int count)
+{
+  const constants of = constants_of(s);
+  const double range2 = p->range * p->range;
+  const vec most = all(range2), twice = all(2.0 / range2), one = all(1.0), zero = all(0.0);
+  const vec steps = (vec) LANEWISE(NUMBER, 0) * all(p->step[0]);
+  double *u0 = p->u, *u1 = u0 + p->stride, *u2 = u1 + p->stride;
+  for (int k = 0; k < count; k++) {
+    const long at = list[k].at;
+    const vec dx = all(list[k].dx) + steps, dy = all(list[k].dy), dz = all(list[k].dz);
+    const vec r2 = dx * dx + dy * dy + dz * dz;
+    const yes_no far = r2 > most;
+    vec f, h, g, D[3], u[3] = {load_any(u0 + at), load_any(u1 + at), load_any(u2 + at)};
+    point_block(r2, &of, &f, &h, &g);
+    horner3(turns ? 3 : 2, degree, c, smaller(r2, most) * twice - one, D);
+    f = where(far, zero, f - D[0]);
+    h = where(far, zero, h - D[1]);
+    if (turns) g = where(far, zero, g - D[2]);
+    add_flow(turns, s, f, h, g, dx, dy, dz, u);
+    store_any(u0 + at, u[0]);
+    store_any(u1 + at, u[1]);
+    store_any(u2 + at, u[2]);
+  }
+}
+
 INLINE void near_with(int turns, int degree, const sd_field_part *p)
 {
   const double range2 = p->range * p->range;
-  const vec most = all(range2), twice = all(2.0 / range2), one = all(1.0), zero = all(0.0);
+  const double inverse[3] = {1.0 / p->step[0], 1.0 / p->step[1], 1.0 / p->step[2]};
+  piece list[PIECES];
   for (int m = 0; m < p->n; m++) {
     const double *s = p->source + (long) SD_FIELD_ROW * m;
-    const constants of = constants_of(s);
-    double c[3][SD_RADIAL_TERMS];
-    polynomials_of_source(p, of.a2, degree, c);
-    int end_z, end_y, end_x;
-    for (int k = points_near(p, 2, s[2], p->range, &end_z); k < end_z; k++) {
+    double mixed[3][SD_RADIAL_TERMS];
+    const double (*c)[SD_RADIAL_TERMS] = (const double (*)[SD_RADIAL_TERMS]) mixed;
+    polynomials_of_source(p, s[3] * s[3], degree, mixed);
+    int end_z, end_y, end_x, count = 0;
+    for (int k = points_near(p, 2, s[2], p->range, inverse[2], &end_z); k < end_z; k++) {
       const double dz = p->lo[2] + k * p->step[2] - s[2], left = range2 - dz * dz;
       if (!(left > 0.0)) continue;
-      for (int j = points_near(p, 1, s[1], sqrt(left), &end_y); j < end_y; j++) {
+      for (int j = points_near(p, 1, s[1], sqrt(left), inverse[1], &end_y); j < end_y; j++) {
         const double dy = p->lo[1] + j * p->step[1] - s[1], rest = left - dy * dy;
         if (!(rest > 0.0)) continue;
-        const long row = ((long) k * p->points[1] + j) * p->stride;
-        for (int i = points_near(p, 0, s[0], sqrt(rest), &end_x); i < end_x; i += LANES) {
-          const vec dx = along(p, i) - all(s[0]), r2 = dx * dx + all(dy * dy + dz * dz);
-          const yes_no far = r2 > most;
-          vec f, h, g, D[3], u[3];
-          point_block(r2, &of, &f, &h, &g);
-          horner3(turns ? 3 : 2, degree, (const double (*)[SD_RADIAL_TERMS]) c,
-                  smaller(r2, most) * twice - one, D);
-          f = where(far, zero, f - D[0]);
-          h = where(far, zero, h - D[1]);
-          if (turns) g = where(far, zero, g - D[2]);
-          for (int d = 0; d < 3; d++) u[d] = load_any(p->u[d] + row + i);
-          add_flow(turns, s, f, h, g, dx, all(dy), all(dz), u);
-          for (int d = 0; d < 3; d++) store_any(p->u[d] + row + i, u[d]);
+        const long row = 3 * ((long) k * p->points[1] + j) * p->stride;
+        for (int i = points_near(p, 0, s[0], sqrt(rest), inverse[0], &end_x); i < end_x; i += LANES) {
+          list[count++] = (piece){row + i, p->lo[0] + i * p->step[0] - s[0], dy, dz};
+          for (int d = 0; d < 3; d++) soon(p->u + row + d * p->stride + i);
+          if (count < PIECES) continue;
+          near_pieces(turns, degree, p, s, c, list, count);
+          count = 0;
         }
       }
     }
+    near_pieces(turns, degree, p, s, c, list, count);
   }
 }
 

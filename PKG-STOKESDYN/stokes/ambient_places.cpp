@@ -1,0 +1,126 @@
+/* Of ambient: the fluid velocity at places where there is no sphere. */
+#include "ambient.h"
+
+#include "keywords.h"
+#include "ranks.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+namespace {
+  /* Holds the positions of the atoms that are moved, and puts them back whatever happens. */
+  class Elsewhere {
+   public:
+    Elsewhere(Atom *atom, const std::vector<int> &who) : atom(atom), who(who), x(3 * who.size())
+    {
+      for (size_t k = 0; k < who.size(); k++) std::copy_n(atom->x[who[k]], 3, &x[3 * k]);
+    }
+    ~Elsewhere()
+    {
+      for (size_t k = 0; k < who.size(); k++) std::copy_n(&x[3 * k], 3, atom->x[who[k]]);
+    }
+
+   private:
+    Atom *atom;
+    const std::vector<int> &who;
+    std::vector<double> x;
+  };
+}    // namespace
+
+/* As many places at a time as there are atoms on all ranks. In the first round all atoms are at the
+ * first place: a velocity that still differs among them is not that of a place. */
+std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
+{
+  const std::vector<double> x = from_all(world, mine);
+  const std::vector<int> atoms = from_all(world, std::vector<int>(1, (int) those.size()));
+  const std::vector<int> numbers = from_all(world, std::vector<int>(1, (int) mine.size()));
+  size_t at_once = 0, before = 0, begin_of_mine = 0;
+  for (int p = 0; p < comm->nprocs; p++) {
+    if (p == comm->me) before = at_once;
+    if (p < comm->me) begin_of_mine += numbers[p];
+    at_once += atoms[p];
+  }
+  std::vector<double> u(x.size() + 1, 0.0), value(atom->nlocal + 1);
+  const size_t places = x.size() / 3;
+  Elsewhere elsewhere(atom, those);
+  double extremes[6];
+  std::fill_n(extremes, 6, -INFINITY);
+  modify->clearstep_compute();
+  for (size_t round = 0; at_once > 0 && places > 0 && round <= (places - 1) / at_once + 1; round++) {
+    const auto place_of = [&](size_t k) {
+      return round == 0 ? 0 : std::min(places - 1, (round - 1) * at_once + before + k);
+    };
+    for (size_t k = 0; k < those.size(); k++)
+      std::copy_n(&x[3 * place_of(k)], 3, atom->x[those[k]]);
+    for (int d = 0; d < 3; d++) {
+      if (!settings.velocity[d].is_atom_style()) continue;
+      settings.velocity[d].evaluate(lmp, igroup, value.data(), 1);
+      for (size_t k = 0; k < those.size(); k++) {
+        const double v = value[those[k]];
+        if (round == 0) {
+          extremes[d] = std::max(extremes[d], v);
+          extremes[3 + d] = std::max(extremes[3 + d], -v);
+        } else if ((round - 1) * at_once + before + k < places)
+          u[3 * place_of(k) + d] = v;
+      }
+    }
+  }
+  modify->addstep_compute(update->ntimestep + 1);
+  MPI_Allreduce(MPI_IN_PLACE, extremes, 6, MPI_DOUBLE, MPI_MAX, world);
+  for (int d = 0; d < 3; d++)
+    if (extremes[d] + extremes[3 + d] > 1e-12 * std::fabs(extremes[d]))
+      fail(lmp,
+           command + ": keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
+               ": the velocity belongs to atoms (" + text(-extremes[3 + d]) + " to " +
+               text(extremes[d]) +
+               " at one place), so that it is not known between them; use formulas in x, y, z, or "
+               "grid FILE, or box");
+  MPI_Allreduce(MPI_IN_PLACE, u.data(), mpi_count((double) x.size()), MPI_DOUBLE, MPI_SUM, world);
+  return std::vector<double>(u.begin() + begin_of_mine, u.begin() + begin_of_mine + mine.size());
+}
+
+std::vector<double> Ambient::at_places(const std::vector<double> &x)
+{
+  const size_t n = x.size() / 3;
+  std::vector<double> out(3 * n);
+  for (size_t k = 0; k < n; k++) std::copy_n(u_uniform, 3, &out[3 * k]);
+  if (settings.box)
+    for (size_t k = 0; k < n; k++) motion.at(&x[3 * k], &out[3 * k]);
+  else if (!settings.grid && varies()) {
+    const std::vector<double> formulas = formulas_at(x);
+    for (size_t k = 0; k < 3 * n; k++)
+      if (settings.velocity[k % 3].is_atom_style()) out[k] = formulas[k];
+  }
+  if (!settings.grid) return out;
+  const sd_flow_grid &grid = settings.grid->grid;
+  sd_flow_frame frame;
+  sd_flow_grid_frame(&grid, now, &frame);    // read() has looked at the time
+  double wrong[4] = {0.0, 0.0, 0.0, 0.0};
+  for (size_t k = 0; k < n; k++) {
+    double place[3] = {x[3 * k], x[3 * k + 1], x[3 * k + 2]}, value[4];
+    domain->remap(place);
+    sd_flow_grid_at(&grid, &frame, 1, place, value, nullptr);
+    std::copy_n(value, 3, &out[3 * k]);
+    if (std::isfinite(value[0]) || wrong[0] > 0.0) continue;
+    wrong[0] = comm->me + 1;
+    std::copy_n(place, 3, wrong + 1);
+  }
+  for (const auto &there : from_all(world, std::vector<std::array<double, 4>>(1, {wrong[0], wrong[1], wrong[2], wrong[3]})))
+    if (there[0] > 0.0)
+      fail(lmp,
+           command + ": keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
+               ": a point of fix stokes_dynamics/field: " + outside_of_grid(&there[1]));
+  return out;
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,47 @@
+/* fix stokes_dynamics/field: the velocity of the fluid on a grid, as files for ParaView. See
+ * doc/fix_stokes_dynamics_field.md. */
+#ifndef SD_FIX_STOKES_DYNAMICS_FIELD_H
+#define SD_FIX_STOKES_DYNAMICS_FIELD_H
+
+#include "fix.h"
+
+#include "sd_field.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+class Hydrodynamics;
+
+class FixStokesDynamicsField : public LAMMPS_NS::Fix {
+ public:
+  static constexpr const char *STYLE = "stokes_dynamics/field";
+
+  FixStokesDynamicsField(LAMMPS_NS::LAMMPS *, int, char **);
+  ~FixStokesDynamicsField() override;
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void end_of_step() override;
+  double memory_usage() override;
+
+ private:
+  std::string file;
+  int points[3];
+  /* corners of the grid, where they are given; else those of the box */
+  bool has_lo = false, has_hi = false;
+  double lo[3], hi[3];
+  sd_field tables = {};
+
+  Hydrodynamics &hydrodynamics() const;
+  sd_field_grid grid() const;
+  void add_flow(Hydrodynamics &, const sd_ewald_box &, const sd_field_grid &, double *u);
+  std::vector<unsigned char> put_spheres(const Hydrodynamics &, const sd_ewald_box &,
+                                         const sd_field_grid &, double *u) const;
+  void write(const sd_field_grid &, const std::vector<double> &u,
+             const std::vector<unsigned char> &inside) const;
+};
+
+}    // namespace StokesDyn
+#endif
