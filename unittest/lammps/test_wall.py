@@ -152,6 +152,16 @@ def test_shells_with_both_films_are_near_the_full_flow(simulation, points):
     assert worst == {group: pytest.approx(figures[points == 42], abs=0.006) for group, figures in WORST.items()}
 
 
+# A sphere that touches the wall has a quarter of its mobility across it, so that a quarter of the step is stable
+@pytest.mark.parametrize("step, warned", [(0.55, True), (0.45, False)])
+def test_the_time_step_of_a_lone_sphere_at_the_wall(tmp_path, step, warned):
+    mass = 4 / 3 * np.pi * 1.7
+    lines = input_lines(Spheres([(0, 0, 1.0001)], v=(0, 0, 0.1)), TT.replace("relative_tolerance 1e-10", ""), str(tmp_path / "one.data"),
+                        box=BOX, dt=step * mass)
+    said = lmp(tmp_path, lines + ["run 0"]).log
+    assert ("the limit 2 m lambda/(6 pi eta a)" in said) == warned
+
+
 # --- one scene, turned and dealt out ------------------------------------------------------------------------------------
 
 def heap(n=12, seed=7):
@@ -198,7 +208,7 @@ def test_six_sides_are_one_scene_turned(simulation, style):
 
 
 @pytest.mark.parametrize("algorithm", ["algorithm 1", "algorithm 2", "algorithm 2 precondition none", "algorithm 2 precondition clump"])
-@pytest.mark.parametrize("rotation", ["no", "yes"])
+@pytest.mark.parametrize("rotation", ["no", "yes", "yes lubrication yes"])
 def test_forces_for_given_velocities_are_the_inverse(simulation, rotation, algorithm):
     spheres, F = heap()
     style = f"cut_off_distance inf visc 1 rotation {rotation} wall zlo 0 relative_tolerance 1e-11 max_iter 300 "
