@@ -284,6 +284,21 @@ def test_ranks_newton_and_restart_do_not_matter(tmp_path, style):
     assert np.abs(end_of(tmp_path, style, ["run 25"], begin="half") - whole).max() < 1e-10
 
 
+@pytest.mark.parametrize("style", ["cut_off_distance 6", "cut_off_distance 6 taper wendland rotation yes", "clumps_only yes rotation yes"])
+def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
+    """Images of spheres that other ranks have"""
+    spheres, _ = heap(30)
+    spheres.molecule[:] = [k // 3 + 1 for k in range(30)]
+    spheres.v = np.random.default_rng(2).normal(size=(30, 3))
+    answers = []
+    for ranks, newton in ((1, "on"), (4, "off")):
+        lines = input_lines(spheres, f"{style} visc 1 algorithm 2 wall zlo 0 relative_tolerance 1e-12 max_iter 500", str(tmp_path / "heap.data"),
+                            newton=newton, box=[(-9, 9), (-9, 9), (-1, 20)])
+        lmp(tmp_path, lines + dump_lines("out.dump") + ["run 0"], ranks)
+        answers.append(read_dump(str(tmp_path / "out.dump"))[-1][1][:, 6:])
+    assert np.abs(answers[1] - answers[0]).max() < 1e-10 * np.abs(answers[0]).max()
+
+
 # --- what there is no answer for ----------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("words, options, message", [
