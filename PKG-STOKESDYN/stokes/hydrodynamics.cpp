@@ -69,6 +69,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
 void Hydrodynamics::init()
 {
   ambient.init();
+  scene.settings.positive = false;
   scene.init();
   find_wall(lmp, COMMAND, scene.settings);
   check_stream_at_wall(lmp, COMMAND, scene.settings.wall, ambient.settings);

@@ -46,6 +46,8 @@ class Scene : protected LAMMPS_NS::Pointers {
     int far_field = AUTO;
     /* error of a product by Ewald sums over the rms of F/(6 pi eta a) */
     double far_field_tolerance = 0.0;
+    /* periodic sums are split into two positive parts, for noise */
+    bool positive = false;
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
   } settings;
 

@@ -216,7 +216,9 @@ void Velocities::arrange()
   whole.assign(n + 1, 0);
   arm.assign(3 * n + 3, 0.0);
   const bool wall = scene.settings.wall.sign && scene.settings.rotation;
-  for (int k = 0; k < scene.lone(); k++) {
+  /* rows of clumps that are not rigid are free spheres as well */
+  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
+  for (int k = 0; k < free_ones; k++) {
     whole[k] = k;
     if (!wall) {
       loner.push_back(k);

@@ -79,8 +79,7 @@ typedef struct {
   /* [count + beyond] L_ij; L_ji is its transpose */
   sd_lubrication_link *link;
   /* [count + beyond] for preconditioners: what the model itself resists when the two approach each other,
-   * beyond their drags, fading from contact to the range; NULL: with films, where the blocks of
-   * the shells are enough */
+   * beyond their drags, fading from contact to the range */
   double *model;
   /* [36 n] L_ii, row-major, rows F T, columns U W */
   double *diagonal;
