@@ -27,6 +27,11 @@ FREE = {
     "a triangle, gaps of 0.01": list(scenes.close_clusters("triangle_0.01")),
     "clusters near contact": list(scenes.close_clusters()),
     **{f"array, phi {phi}": list(scenes.arrays(phi)) for phi in (0.027, 0.064, 0.125, 0.216, 0.343, 0.45)},
+    "one falls to a wall": list(scenes.one_at_a_wall(pushed=False)),
+    "one slides along a wall": list(scenes.one_at_a_wall(pushed=True)),
+    "groups fall to a wall": list(scenes.groups_at_a_wall("down")),
+    "groups slide along a wall": list(scenes.groups_at_a_wall("along")),
+    "groups at a wall, random forces": list(scenes.groups_at_a_wall("random")),
 }    # suspensions are added in main(), as their places come from a run of LAMMPS
 PHIS, CONFIGURATIONS = (0.05, 0.1, 0.2, 0.3, 0.45), 4
 CLUMPS = {"rigid clumps": list(scenes.rigid_clumps())}
@@ -90,7 +95,7 @@ class Lammps:
             fix load all property/atom d_fx d_fy d_fz
             read_data {self.data}
             mass 1 1
-            pair_style stokes_dynamics visc {1 / (6 * np.pi)!r} algorithm 2 relative_tolerance 1e-6 {model.keywords}
+            pair_style stokes_dynamics visc {1 / (6 * np.pi)!r} algorithm 2 relative_tolerance 1e-6 {model.keywords} {"wall zlo 0" if case.wall else ""}
             pair_coeff * *
             compute load all property/atom d_fx d_fy d_fz
             variable fx atom c_load[1]

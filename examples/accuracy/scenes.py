@@ -4,13 +4,14 @@
     force     [n, 3] on each; 6 pi eta a = 1, so a lone sphere has the velocity of its force
     molecule  [n] spheres of one number, not 0, are one rigid body
     box       edge of the periodic cube, or None: open
+    wall      is there a wall at z = 0?
     exact     the answer of `measure`, by exact Stokes flow
     measure   function of the velocities [n, 3] that the error is about
 """
 import csv
 import pathlib
 
-from exact import approach_drag
+from exact import WALLS, along_wall, approach_drag, sphere_at_wall
 from runs import np
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -18,10 +19,10 @@ SEDIMENTATION = HERE.parent / "sedimentation" / "data"
 
 
 class Case:
-    def __init__(self, x, force, exact, measure=np.asarray, molecule=None, box=None):
+    def __init__(self, x, force, exact, measure=np.asarray, molecule=None, box=None, wall=False):
         self.x, self.force = np.atleast_2d(np.asarray(x, float)), np.asarray(force, float)
         self.molecule = np.zeros(len(self.x), int) if molecule is None else molecule
-        self.exact, self.measure, self.box = np.asarray(exact, float), measure, box
+        self.exact, self.measure, self.box, self.wall = np.asarray(exact, float), measure, box, wall
 
     def error(self, velocity, correction=0.0):
         return np.linalg.norm(self.measure(velocity) + correction - self.exact) / np.linalg.norm(self.exact)
@@ -77,6 +78,26 @@ def close_clusters(only=None):
             found.setdefault(row["cluster"], []).append([float(row[k]) for k in ("x", "y", "z", "Ux", "Uy", "Uz")])
     for rows in map(np.array, found.values()):
         yield Case(rows[:, :3], downwards(len(rows)), rows[:, 3:])
+
+
+def one_at_a_wall(pushed):
+    """A lone sphere above a wall at gaps of 0.01 to 1 radius that falls to it, or is pushed along it."""
+    known = sphere_at_wall()
+    along, _ = along_wall(known, 1.0, 0.0)
+    for gap, normal, sideways in zip(known["gap"], known["normal"], along):
+        if 0.01 <= gap <= 1:
+            exact = np.array([(sideways, 0, 0)]) if pushed else downwards(1) / normal
+            yield Case([(0, 0, 1 + gap)], [(1, 0, 0)] if pushed else downwards(1), exact, wall=True)
+
+
+def groups_at_a_wall(load):
+    """Two and three equal spheres above a wall, gaps of 0.1 to 0.5 from it and among each other, all under one force or random ones."""
+    found = {}
+    for row in table(WALLS / "groups_exact.csv"):
+        if row["load"] == load and not row["group"].startswith("pair_radii"):
+            found.setdefault(row["group"], []).append([float(row[k]) for k in ("x", "y", "z", "Fx", "Fy", "Fz", "Ux", "Uy", "Uz")])
+    for rows in map(np.array, found.values()):
+        yield Case(rows[:, :3], rows[:, 3:6], 6 * np.pi * rows[:, 6:], wall=True)
 
 
 def mean_fall(velocity):

@@ -11,8 +11,8 @@ import pytest
 from system import environment
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
-QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "first_look", "fixed_bed", "python_clump", "squeeze", "tumbling", "vans_drag",
-         "vans_fluid", "vans_fluidised"]
+QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "python_clump", "rolling", "squeeze",
+         "tumbling", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
 
 
 def kept(folder):
