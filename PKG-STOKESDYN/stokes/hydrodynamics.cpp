@@ -327,7 +327,10 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
     const sd_status status =
         sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
                               solution.data(), work.get(), &report);
-    if (status != SD_EDIVERGED || settings.strict) return status;
+    if (status != SD_EDIVERGED || settings.strict) {
+      if (settings.scene.wall.sign) look_at_step(system, report, false);
+      return status;
+    }
     memory->global.diverged = 1;
     if (comm->me == 0)
       error->warning(FLERR,
@@ -336,11 +339,16 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
   }
   const sd_status status = joined() ? together(report) : gradients(system, report);
   if (shells.settings.on()) return status;    // the guard knows spheres
-  const bool preconditioned = joined() || preconditioner.attached();
+  look_at_step(system, report, joined() || preconditioner.attached());
+  return status;
+}
+
+void Hydrodynamics::look_at_step(const sd_system &system, const sd_solve_report &report,
+                                 bool preconditioned)
+{
   guard.state = memory->global.guard;
   guard.look(system, report, scene, preconditioned, memory->global.solves);
   memory->global.guard = guard.state;
-  return status;
 }
 
 sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)

@@ -129,6 +129,23 @@ void TimeStepGuard::warn(double of_velocity)
                              text(of_velocity) + ", lambda " + text(state.lambda_min) + ")"));
 }
 
+/* p.Mp / p.D^-1 p of the lone sphere that the wall takes most from, p across the wall; 1: no wall */
+double TimeStepGuard::lone_at_wall(const Scene &scene) const
+{
+  const sd_wall &wall = scene.settings.wall;
+  const sd_spheres spheres = scene.local();
+  double least = 1.0;
+  if (!wall.sign) return least;
+  for (int k = 0; k < scene.size(); k++) {
+    const double a = spheres.a[k], *x = spheres.x + 3 * (size_t) k;
+    double image[9];
+    sd_wall_block(&wall, 3, x, a, x, a, 1.0, image);
+    least = std::min(least, 1.0 + 6.0 * SD_PI * a * image[4 * wall.axis]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, world);
+  return least;
+}
+
 /* Two bounds of mu from above cost nothing: the shortest time of a sphere alone, and that by the
  * Rayleigh quotients lambda = p.Mp / p.D^-1 p of conjugate gradients (Ritz values are such too,
  * but only without preconditioner), p.Mp / p.W^-1 p being at most lambda times the longest time.
@@ -142,6 +159,7 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   double lambda = report.curvature;
   if (!preconditioned && report.ritz_smallest > 0.0)
     lambda = std::min(lambda, report.ritz_smallest);
+  if (scene.settings.wall.sign) lambda = std::min(lambda > 0.0 ? lambda : 1.0, lone_at_wall(scene));
   if (!(lambda > 0.0)) return;
   const bool due = solves >= state.due;
   if (!due && state.limit > 0.0 && lambda >= state.lambda_min) return;

@@ -70,6 +70,7 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   std::vector<char> held_atoms() const;
   /* by rows, three each: force over acceleration of velocity and of spin, is it held? */
   std::vector<double> inertia(Scene &scene) const;
+  double lone_at_wall(const Scene &scene) const;
   double compute(const sd_system &system, Scene &scene);
   void warn(double of_velocity);
 };

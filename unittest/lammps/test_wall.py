@@ -152,6 +152,16 @@ def test_shells_with_both_films_are_near_the_full_flow(simulation, points):
     assert worst == {group: pytest.approx(figures[points == 42], abs=0.006) for group, figures in WORST.items()}
 
 
+# A sphere that touches the wall has a quarter of its mobility across it, so that a quarter of the step is stable
+@pytest.mark.parametrize("step, warned", [(0.55, True), (0.45, False)])
+def test_the_time_step_of_a_lone_sphere_at_the_wall(tmp_path, step, warned):
+    mass = 4 / 3 * np.pi * 1.7
+    lines = input_lines(Spheres([(0, 0, 1.0001)], v=(0, 0, 0.1)), TT.replace("relative_tolerance 1e-10", ""), str(tmp_path / "one.data"),
+                        box=BOX, dt=step * mass)
+    said = lmp(tmp_path, lines + ["run 0"]).log
+    assert ("the limit 2 m lambda/(6 pi eta a)" in said) == warned
+
+
 # --- one scene, turned and dealt out ------------------------------------------------------------------------------------
 
 def heap(n=12, seed=7):
@@ -198,7 +208,7 @@ def test_six_sides_are_one_scene_turned(simulation, style):
 
 
 @pytest.mark.parametrize("algorithm", ["algorithm 1", "algorithm 2", "algorithm 2 precondition none", "algorithm 2 precondition clump"])
-@pytest.mark.parametrize("rotation", ["no", "yes"])
+@pytest.mark.parametrize("rotation", ["no", "yes", "yes lubrication yes"])
 def test_forces_for_given_velocities_are_the_inverse(simulation, rotation, algorithm):
     spheres, F = heap()
     style = f"cut_off_distance inf visc 1 rotation {rotation} wall zlo 0 relative_tolerance 1e-11 max_iter 300 "
@@ -243,7 +253,7 @@ def test_the_edge_of_the_box_is_a_position(simulation):
     assert (edge == at).all()
 
 
-STYLES = {"points": "rotation yes", "doublet": "rotation yes rigid_clumps yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
+STYLES = {"points": "rotation yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
           "films": "rotation yes rigid_clumps yes lubrication yes"}
 
 
@@ -272,6 +282,21 @@ def test_ranks_newton_and_restart_do_not_matter(tmp_path, style):
         assert np.abs(end_of(tmp_path, style, ["run 40"], ranks, newton=newton) - whole).max() < 1e-10
     lmp(tmp_path, script(tmp_path, style, ["run 15", "write_restart half"]))
     assert np.abs(end_of(tmp_path, style, ["run 25"], begin="half") - whole).max() < 1e-10
+
+
+@pytest.mark.parametrize("style", ["cut_off_distance 6", "cut_off_distance 6 taper wendland rotation yes", "clumps_only yes rotation yes"])
+def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
+    """Images of spheres that other ranks have"""
+    spheres, _ = heap(30)
+    spheres.molecule[:] = [k // 3 + 1 for k in range(30)]
+    spheres.v = np.random.default_rng(2).normal(size=(30, 3))
+    answers = []
+    for ranks, newton in ((1, "on"), (4, "off")):
+        lines = input_lines(spheres, f"{style} visc 1 algorithm 2 wall zlo 0 relative_tolerance 1e-12 max_iter 500", str(tmp_path / "heap.data"),
+                            newton=newton, box=[(-9, 9), (-9, 9), (-1, 20)])
+        lmp(tmp_path, lines + dump_lines("out.dump") + ["run 0"], ranks)
+        answers.append(read_dump(str(tmp_path / "out.dump"))[-1][1][:, 6:])
+    assert np.abs(answers[1] - answers[0]).max() < 1e-10 * np.abs(answers[0]).max()
 
 
 # --- what there is no answer for ----------------------------------------------------------------------------------------
