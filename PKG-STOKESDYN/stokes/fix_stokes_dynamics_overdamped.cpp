@@ -31,7 +31,7 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), motion(3), random(3), load(3), before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), motion(3), random(6), load(6), before(9), output(9)
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({
@@ -229,8 +229,9 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     }
     std::copy_n(v, 3, motion.give(i));
   }, held_bit ? [this](int i, double *V) { return given_velocity(i, V); } : Velocities::Held());
-  const auto take = [this](int i, const double *y) {
-    std::copy_n(y, 3, random.give(i));
+  const int numbers = scheme == MIDPOINT ? 6 : 3;
+  const auto take = [this, numbers](int i, const double *y) {
+    std::copy_n(y, numbers, random.give(i));
   };
   if (noise.on() && scheme == MIDPOINT)
     noise.draw_forces(hydro, take);
@@ -270,7 +271,7 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
     move_by_midpoint(hydro);
   else
     for (int i : hydro.motion().lone) move_free(i);
-  if (hydro.settings.rigid.on) move_clumps(hydro);
+  if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
   last.dt = update->dt;
   if (!warned_growth) watch();
 }

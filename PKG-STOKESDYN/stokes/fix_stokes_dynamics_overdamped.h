@@ -49,9 +49,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
   AtomRows motion;
-  /* [3] y of a free sphere (noise.h); scheme midpoint: f */
+  /* [6] y of a free sphere, three numbers (noise.h); scheme midpoint: f and its torque */
   AtomRows random;
-  /* [3] scheme midpoint: force on it in the step before */
+  /* [6] scheme midpoint: force and torque on a sphere in the step before */
   AtomRows load;
   /* those whose velocity is given, empty: nobody; and the groups that fix move moves */
   std::string held;
@@ -99,7 +99,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void move_free(int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
-  void push(const double *F, int i);
+  void push(int i);
+  using Clumps = std::vector<Velocities::Clump>;
+  void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
   void move_by_midpoint(Hydrodynamics &);
   std::vector<double> velocities_before() const;
   void watch();

@@ -56,8 +56,9 @@ class Noise : protected LAMMPS_NS::Pointers {
    * mobility without a root. */
   using Take = std::function<void(int i, const double *y)>;
   void draw(Hydrodynamics &hydro, const Take &take);
-  /* The same of covariance M^-1, forces [3] in place of velocities, without what a plane holds: for steps
-   * of scheme midpoint, of free spheres */
+  /* The same of covariance M^-1, forces and torques [6] in place of velocities, of all spheres: for steps of
+   * scheme midpoint. Torques only where clumps are rigid and feel each other; nothing along what a plane
+   * holds */
   void draw_forces(Hydrodynamics &hydro, const Take &take);
   /* sqrt(2 kT dt) for a step dt from there */
   double scale(double dt) const;
@@ -90,7 +91,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   void find_temperature(const Hydrodynamics &hydro);
   [[noreturn]] void no_root(sd_status status) const;
   void draw_alone(const Hydrodynamics &hydro, const Take &take);
-  void place(Hydrodynamics &hydro, struct Forces &forces, sd_noise_matrix &M);
+  void place(Hydrodynamics &hydro, size_t width, struct Forces &forces, sd_noise_matrix &M);
   void draw_together(Hydrodynamics &hydro, const Take &take);
 };
 

@@ -36,9 +36,13 @@ static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const Stoke
   const std::string pair = " of pair_style stokes_dynamics";
   if (s.shells.on()) drifts(lmp, keyword, "keyword multiblob" + pair, "leave it out");
   if (s.lubrication.on) drifts(lmp, keyword, "keyword lubrication" + pair, "use lubrication no");
-  if (s.rigid.on && !s.rigid.apart())
+  if (s.rigid.on && !s.rigid.apart() && !midpoint)
     drifts(lmp, keyword, "keyword rigid_clumps" + pair + " with clumps that feel each other",
-           "use clumps_only yes");
+           "use scheme midpoint or clumps_only yes");
+  if (s.rigid.on && !s.rigid.apart() && s.rigid.shell > 1)
+    fail(lmp, keyword + "keyword shell" + pair +
+                  ": clumps with shells that feel each other have no noise: use rotation yes "
+                  "without a shell");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
     fail(lmp, keyword + "keyword tensor: 'oseen'" + pair +
                   " has negative mobilities, and no noise: use tensor rpy");

@@ -261,7 +261,31 @@ def test_midpoint_is_of_second_order_in_the_forces_too(simulation):
     assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.25)
 
 
-@pytest.mark.parametrize("words, message", [("rigid_clumps yes rotation yes", "moves free spheres alone: use ab2 for rigid clumps")])
+def two_dumbbells():
+    return Spheres(A * np.array([(0, 0, 0), (0, 0, 2), (2.3, 0.2, 0), (2.4, 2.2, 0), (-1, -2.5, 0.4)]), A, molecule=[1, 1, 2, 2, 0])
+
+
+def test_clumps_that_feel_each_other_move_with_their_common_mobility(simulation):
+    """Both centroids and a free sphere: covariance of a step against velocities under unit forces"""
+    share = np.kron(np.array([(0.5, 0.5, 0, 0, 0), (0, 0, 0.5, 0.5, 0), (0, 0, 0, 0, 1.0)]), np.eye(3))
+    style = f"cut_off_distance inf visc {ETA} rigid_clumps yes rotation yes relative_tolerance 1e-8"
+    N = np.zeros((9, 9))
+    for k in range(9):
+        sim = simulation(two_dumbbells(), style, fix=False, dt=SHORT)
+        load = [f"{part!r}*(id=={i + 1})" for i, part in enumerate(share[k, k % 3::3]) if part]
+        force = ["v_load" if d == k % 3 else "0" for d in range(3)]
+        sim.commands([f"variable load atom {'+'.join(load)}", f"fix push all addforce {' '.join(force)}",
+                      "fix move all stokes_dynamics/overdamped"]).run(0)
+        N[:, k] = share @ sim.v.ravel()
+    sim = noise(simulation(two_dumbbells(), style, fix=False, dt=SHORT), "scheme midpoint")
+    d = steps_of(sim, 1500)
+    check_covariance(d.reshape(-1, 15) @ share.T, N, SHORT)
+    arm = d[:, 1] - d[:, 0]    # the dumbbells turn, and stay as long as they are
+    assert np.abs(arm[:, 2]).max() < 1e-3 * np.abs(arm[:, 0]).max()
+
+
+@pytest.mark.parametrize("words, message", [("clumps_only yes rigid_clumps yes rotation yes", "midpoint moves what feels each other"),
+                                            ("rigid_clumps yes shell 12", "clumps with shells that feel each other have no noise")])
 def test_what_midpoint_cannot_move_is_an_error(simulation, words, message):
     sim = simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), f"cut_off_distance inf visc {ETA} {words}", fix=False, dt=1e-3)
     with pytest.raises(LammpsError, match=message):
@@ -298,6 +322,7 @@ WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes
         "periodic": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6"),
         "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes"),
         "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes"),
+        "clumps midpoint": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes relative_tolerance 1e-12"),
         "midpoint": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6")}
 MOVE = "fix move all stokes_dynamics/overdamped temperature {} {}"
 
@@ -307,7 +332,7 @@ def script(folder, way, runs, newton="on", T="v_T", seed=7):
     lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary, newton=newton, dt=0.02,
                         box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
     return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2",
-                    (MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]) + " scheme midpoint" * (way == "midpoint")] + runs
+                    (MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]) + " scheme midpoint" * ("midpoint" in way)] + runs
 
 
 def end(folder, lines, ranks=1):
@@ -385,7 +410,7 @@ FIELD = "variable eta atom 1+0.1*x"
 @pytest.mark.parametrize("style, lines, message", [
     (f"{INF} rotation yes lubrication yes", "", "keyword lubrication of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} multiblob 12", "", "keyword multiblob of pair_style stokes_dynamics: the mobility has a drift"),
-    (f"{INF} rigid_clumps yes rotation yes", "", "use clumps_only yes"),
+    (f"{INF} rigid_clumps yes rotation yes", "", "use scheme midpoint or clumps_only yes"),
     (f"{INF} tensor oseen", "", "use tensor rpy"),
     (f"cut_off_distance 4 visc {ETA}", "", "keyword cut_off_distance: '4' of pair_style stokes_dynamics: the mobility has a drift"),
     (f"cut_off_distance 4 taper wendland visc {ETA}", "", "keyword taper of pair_style stokes_dynamics: the mobility has a drift"),
