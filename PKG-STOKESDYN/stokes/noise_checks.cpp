@@ -43,6 +43,8 @@ static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const Stoke
     fail(lmp, keyword + "keyword shell" + pair +
                   ": clumps with shells that feel each other have no noise: use rotation yes "
                   "without a shell");
+  if (s.scene.wall.sign && !midpoint)
+    drifts(lmp, keyword, "keyword wall" + pair, "use scheme midpoint");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
     fail(lmp, keyword + "keyword tensor: 'oseen'" + pair +
                   " has negative mobilities, and no noise: use tensor rpy");
