@@ -32,13 +32,14 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), motion(3), random(3), before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), motion(3), random(6), load(6), before(9), output(9)
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({
       {"scheme",
        [&] {
-         scheme = in.choice({"ab2", "euler"}) == 0 ? AB2 : EULER;
+         const size_t which = in.choice({"ab2", "euler", "midpoint"});
+         scheme = which == 0 ? AB2 : which == 1 ? EULER : MIDPOINT;
        }},
       {"adapt",
        [&] {
@@ -65,7 +66,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  keep({&motion, &random, &before, &output}, &output, true);
+  keep({&motion, &random, &load, &before, &output}, &output, true);
 }
 
 int FixStokesDynamicsOverdamped::setmask()
@@ -93,7 +94,9 @@ void FixStokesDynamicsOverdamped::init()
     for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
   }
   refuse_inertia(lmp, COMMAND, this, hydrodynamics(), {adapt.every > 0, held_bit});
-  if (noise.on()) noise.init(hydrodynamics(), this, adapt.every > 0, held_bit);
+  if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
+  if (noise.on())
+    noise.init(hydrodynamics(), this, {adapt.every > 0, held_bit != 0, scheme == MIDPOINT});
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------
@@ -158,7 +161,10 @@ void FixStokesDynamicsOverdamped::after_setup()
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
   const bool same_run = goes_on(hydro);
-  if (!same_run || !causes_stand(hydro)) before.clear();
+  if (!same_run || !causes_stand(hydro)) {
+    before.clear();
+    load.clear();
+  }
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
@@ -187,7 +193,10 @@ void FixStokesDynamicsOverdamped::final_integrate()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
-  if (last.atoms != atom->natoms) before.clear();    // those that are left move as they did not before
+  if (last.atoms != atom->natoms) {    // those that are left move as they did not before
+    before.clear();
+    load.clear();
+  }
   find_velocities(hydro);
 }
 
@@ -222,8 +231,14 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     }
     std::copy_n(v, 3, motion.give(i));
   }, held_bit ? [this](int i, double *V) { return given_velocity(i, V); } : Velocities::Held());
-  if (noise.on())
-    noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
+  const int numbers = scheme == MIDPOINT ? 6 : 3;
+  const auto take = [this, numbers](int i, const double *y) {
+    std::copy_n(y, numbers, random.give(i));
+  };
+  if (noise.on() && scheme == MIDPOINT)
+    noise.draw_forces(hydro, take);
+  else if (noise.on())
+    noise.draw(hydro, take);
   last.step = update->ntimestep;
 }
 
@@ -254,8 +269,11 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
   Hydrodynamics &hydro = hydrodynamics();
   displaced = changed = 0.0;
   bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
-  for (int i : hydro.motion().lone) move_free(i);
-  if (hydro.settings.rigid.on) move_clumps(hydro);
+  if (scheme == MIDPOINT)
+    move_by_midpoint(hydro);
+  else
+    for (int i : hydro.motion().lone) move_free(i);
+  if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
   last.dt = update->dt;
   if (!warned_growth) watch();
 }

@@ -38,7 +38,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void restart(char *) override;
 
  private:
-  enum { AB2, EULER } scheme = AB2;
+  enum { AB2, EULER, MIDPOINT } scheme = AB2;
   struct {
     int every = 0;    // 0: the step is the user's
     double tmin, tmax, xmax;
@@ -49,8 +49,10 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
   AtomRows motion;
-  /* [3] y of a free sphere (noise.h) */
+  /* [6] y of a free sphere, three numbers (noise.h); scheme midpoint: f and its torque */
   AtomRows random;
+  /* [6] scheme midpoint: force and torque on a sphere in the step before */
+  AtomRows load;
   /* those whose velocity is given, empty: nobody; and the groups that fix move moves */
   std::string held;
   int held_bit = 0, moved_bits = 0;
@@ -96,6 +98,11 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void moves(int i, double distance, double change);
   void move_free(int i);
   void move_clumps(Hydrodynamics &);
+  void refuse_midpoint(const Hydrodynamics &) const;
+  void push(int i);
+  using Clumps = std::vector<Velocities::Clump>;
+  void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
+  void move_by_midpoint(Hydrodynamics &);
   std::vector<double> velocities_before() const;
   void watch();
   double fastest() const;

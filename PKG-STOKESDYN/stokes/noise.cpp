@@ -8,6 +8,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "neighbor.h"
@@ -52,7 +53,7 @@ sd_random_key Noise::key(sd_random_purpose what) const
   return {seed, what, (uint64_t) update->ntimestep};
 }
 
-void Noise::draw(Hydrodynamics &hydro, const Take &take)
+void Noise::find_temperature(const Hydrodynamics &hydro)
 {
   const double T = temperature.evaluate(lmp);
   if (!(T >= 0.0) || std::isinf(T))
@@ -61,6 +62,11 @@ void Noise::draw(Hydrodynamics &hydro, const Take &take)
   kT = force->boltz * T;
   last = {};
   of_clumps.assign(6 * hydro.motion().clumps.size() + 6, 0.0);
+}
+
+void Noise::draw(Hydrodynamics &hydro, const Take &take)
+{
+  find_temperature(hydro);
   if (hydro.settings.rigid.apart())
     draw_alone(hydro, take);
   else
@@ -91,54 +97,56 @@ void Noise::draw_alone(const Hydrodynamics &hydro, const Take &take)
   }
 }
 
-/* M of forces alone, from that of the engine, which may have torques: nobody turns by its noise.
- * Where the engine's M divides, the part that is not drawn at once. */
-namespace {
-  struct Forces {
-    size_t rows, width;
-    /* [3 rows] */
-    const double *D;
-    sd_mobility *engine;
-    /* nullptr: nobody sees anybody */
-    sd_apply *apply;
-    /* [width rows] */
-    std::vector<double> F, u;
-  };
+/* M of `width` numbers a row, from that of the engine, which may have torques where nobody turns by its
+ * noise. Where the engine's M divides, the part that is not drawn at once. */
+struct Forces {
+  size_t rows, width, engine_width;
+  /* [width rows] */
+  const double *D;
+  sd_mobility *engine;
+  /* nullptr: nobody sees anybody */
+  sd_apply *apply;
+  /* [engine_width rows] */
+  std::vector<double> F, u;
+};
 
-  sd_status apply_forces(void *ctx, const double *F, double *u)
-  {
-    Forces &m = *static_cast<Forces *>(ctx);
-    for (size_t k = 0; k < m.rows && m.apply; k++) std::copy_n(F + 3 * k, 3, &m.F[m.width * k]);
-    const sd_status status =
-        m.apply ? m.apply(m.engine, m.F.data(), m.u.data()) : SD_OK;
-    for (size_t k = 0; k < m.rows; k++)
-      for (int d = 0; d < 3; d++) u[3 * k + d] = m.u[m.width * k + d] + F[3 * k + d] / m.D[3 * k + d];
-    return status;
-  }
-}    // namespace
+static sd_status apply_forces(void *ctx, const double *F, double *u)
+{
+  Forces &m = *static_cast<Forces *>(ctx);
+  const size_t width = m.width;
+  for (size_t k = 0; k < m.rows && m.apply; k++)
+    std::copy_n(F + width * k, width, &m.F[m.engine_width * k]);
+  const sd_status status = m.apply ? m.apply(m.engine, m.F.data(), m.u.data()) : SD_OK;
+  for (size_t k = 0; k < m.rows; k++)
+    for (size_t d = 0; d < width; d++) {
+      const size_t j = width * k + d;
+      u[j] = m.D[j] > 0.0 ? m.u[m.engine_width * k + d] + F[j] / m.D[j] : 0.0;
+    }
+  return status;
+}
 
-void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
+/* The rows with their numbers w and drags D, and the matrix: whole */
+void Noise::place(Hydrodynamics &hydro, size_t width, Forces &forces, sd_noise_matrix &M)
 {
   Scene &scene = hydro.scene;
   const size_t n = scene.size();
-  const std::vector<double> drag =
-      scene.rows(1, [&hydro](int i, double *out) { *out = hydro.ambient.drag(i); });
-  D.resize(3 * n + 3);
-  w.resize(3 * n + 3);
-  y.resize(3 * n + 3);
+  const std::vector<double> drags = scene.rows(2, [&hydro](int i, double *out) {
+    out[0] = hydro.ambient.drag(i);
+    out[1] = hydro.ambient.spin(i);
+  });
+  for (auto *rows : {&D, &w, &y}) rows->resize(width * (n + 1));
   const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
   for (size_t k = 0; k < n; k++) {
-    std::fill_n(&D[3 * k], 3, drag[k]);
-    sd_random_normals(&of_sphere, scene.tag(k), 3, &w[3 * k]);
+    for (size_t d = 0; d < width; d++) D[width * k + d] = drags[2 * k + (d >= 3)];
+    sd_random_normals(&of_sphere, scene.tag(k), (int) width, &w[width * k]);
   }
-  const size_t width = hydro.rotation() ? 6 : 3;
-  Forces forces = {n, width, D.data(), scene.mobility(), nullptr, {}, {}};
-  forces.F.assign(width * (n + 1), 0.0);
-  forces.u.assign(width * (n + 1), 0.0);
-  divided = scene.anybody_sees() && sd_mobility_divides(forces.engine);
-  if (scene.anybody_sees()) forces.apply = divided ? sd_mobility_apply_rest : sd_mobility_apply;
-  sd_noise_matrix M = {};
-  M.n = 3 * (long) n;
+  const size_t engine_width = hydro.rotation() ? 6 : 3;
+  forces = {n, width, engine_width, D.data(), scene.mobility(), nullptr, {}, {}};
+  forces.F.assign(engine_width * (n + 1), 0.0);
+  forces.u.assign(engine_width * (n + 1), 0.0);
+  if (scene.anybody_sees()) forces.apply = sd_mobility_apply;
+  M = {};
+  M.n = (long) (width * n);
   M.apply = apply_forces;
   M.ctx = &forces;
   M.D = D.data();
@@ -146,20 +154,54 @@ void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
   M.world.me = comm->me;
   M.world.ranks = comm->nprocs;
   M.world.sum = Scene::sum;
+}
+
+void Noise::no_root(sd_status status) const
+{
+  fail_by(lmp, status,
+          command + ": keyword temperature: no root of the mobility in step " +
+              std::to_string(update->ntimestep) + " (" + std::to_string(last.products) +
+              " products, error " + text(last.error) + ", noise_tolerance " + text(tolerance) +
+              "): " + sd_status_string(status));
+}
+
+void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
+{
+  Forces forces;
+  sd_noise_matrix M;
+  place(hydro, 3, forces, M);
+  divided = forces.apply && sd_mobility_divides(forces.engine);
+  if (divided) forces.apply = sd_mobility_apply_rest;
   sd_status status =
       sd_noise_velocities(&process, &M, w.data(), tolerance / 3.0, y.data(), &last);
-  if (status == SD_OK && divided) {
-    status = sd_mobility_draw(forces.engine, &of_sphere, forces.u.data());
-    for (size_t k = 0; k < n; k++)
-      for (int d = 0; d < 3; d++) y[3 * k + d] += forces.u[width * k + d];
-  }
-  if (status != SD_OK)
-    fail_by(lmp, status,
-            command + ": keyword temperature: no root of the mobility in step " +
-                std::to_string(update->ntimestep) + " (" + std::to_string(last.products) +
-                " products, error " + text(last.error) + ", noise_tolerance " + text(tolerance) +
-                "): " + sd_status_string(status));
-  scene.to_atoms(3, y.data(), take);
+  const sd_random_key of_waves = key(SD_RANDOM_GRID);
+  if (status == SD_OK && divided)
+    status = sd_mobility_draw(forces.engine, &of_waves, forces.u.data());
+  if (status != SD_OK) no_root(status);
+  for (size_t k = 0; k < forces.rows && divided; k++)
+    for (int d = 0; d < 3; d++) y[3 * k + d] += forces.u[forces.engine_width * k + d];
+  hydro.scene.to_atoms(3, y.data(), take);
+}
+
+/* Of a third of the tolerance: slow modes of forces are off by more than those of velocities. */
+void Noise::draw_forces(Hydrodynamics &hydro, const Take &take)
+{
+  find_temperature(hydro);
+  Forces forces;
+  sd_noise_matrix M;
+  const size_t width = hydro.settings.rigid.on ? 6 : 3;
+  place(hydro, width, forces, M);
+  divided = false;
+  if (domain->dimension == 2)
+    for (size_t k = 0; k < forces.rows; k++) D[width * k + 2] = 0.0;
+  const sd_status status =
+      sd_noise_forces(&process, &M, w.data(), tolerance / 10.0, y.data(), &last);
+  if (status != SD_OK) no_root(status);
+  hydro.scene.to_atoms((int) width, y.data(), [&take, width](int i, const double *row) {
+    double f[6] = {0.0};
+    std::copy_n(row, width, f);
+    take(i, f);
+  });
 }
 
 void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) const

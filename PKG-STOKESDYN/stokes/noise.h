@@ -42,15 +42,24 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* Is there a temperature that is not always 0? Otherwise none of the rest is called. */
   bool on() const { return temperature.is_variable() || temperature.number() > 0.0; }
 
+  /* What else the fix does. midpoint: steps that have the drift of the mobility (forces(), below) */
+  struct Ways {
+    bool adapts, holds, midpoint;
+  };
   /* Before a run: the variable, and how sums over images are split. Errors: a variable that is none,
-   * and whatever has a drift or no noise: settings of the pair style, other commands. */
-  void init(Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, bool adapts, bool holds);
+   * and whatever has a drift that is left out or no noise: settings of the pair style, other
+   * commands. */
+  void init(Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, const Ways &ways);
 
   /* y [3] of the free spheres to take(i, y); [6] of the clumps of this rank are kept, U of their centre
    * of mobility and W. The velocities of this step have been found. Errors: a temperature below 0; a
    * mobility without a root. */
   using Take = std::function<void(int i, const double *y)>;
   void draw(Hydrodynamics &hydro, const Take &take);
+  /* The same of covariance M^-1, forces and torques [6] in place of velocities, of all spheres: for steps of
+   * scheme midpoint. Torques only where clumps are rigid and feel each other; nothing along what a plane
+   * holds */
+  void draw_forces(Hydrodynamics &hydro, const Take &take);
   /* sqrt(2 kT dt) for a step dt from there */
   double scale(double dt) const;
   const double *of_clump(size_t c) const { return &of_clumps[6 * c]; }
@@ -78,8 +87,11 @@ class Noise : protected LAMMPS_NS::Pointers {
   bool divided = false;
 
   sd_random_key key(sd_random_purpose what) const;
-  void refuse(const Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, bool adapts, bool holds) const;
+  void refuse(const Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, const Ways &ways) const;
+  void find_temperature(const Hydrodynamics &hydro);
+  [[noreturn]] void no_root(sd_status status) const;
   void draw_alone(const Hydrodynamics &hydro, const Take &take);
+  void place(Hydrodynamics &hydro, size_t width, struct Forces &forces, sd_noise_matrix &M);
   void draw_together(Hydrodynamics &hydro, const Take &take);
 };
 

@@ -31,15 +31,21 @@ namespace StokesDyn {
 
 /* Of the pair style: a divergence of the mobility, or no noise that is known */
 static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const StokesSettings &s,
-                            const Ambient::Settings &fluid)
+                            const Ambient::Settings &fluid, bool midpoint)
 {
   const std::string pair = " of pair_style stokes_dynamics";
   if (s.scene.wall.sign) drifts(lmp, keyword, "keyword wall" + pair, "leave it out");
   if (s.shells.on()) drifts(lmp, keyword, "keyword multiblob" + pair, "leave it out");
   if (s.lubrication.on) drifts(lmp, keyword, "keyword lubrication" + pair, "use lubrication no");
-  if (s.rigid.on && !s.rigid.apart())
+  if (s.rigid.on && !s.rigid.apart() && !midpoint)
     drifts(lmp, keyword, "keyword rigid_clumps" + pair + " with clumps that feel each other",
-           "use clumps_only yes");
+           "use scheme midpoint or clumps_only yes");
+  if (s.rigid.on && !s.rigid.apart() && s.rigid.shell > 1)
+    fail(lmp, keyword + "keyword shell" + pair +
+                  ": clumps with shells that feel each other have no noise: use rotation yes "
+                  "without a shell");
+  if (s.scene.wall.sign && !midpoint)
+    drifts(lmp, keyword, "keyword wall" + pair, "use scheme midpoint");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
     fail(lmp, keyword + "keyword tensor: 'oseen'" + pair +
                   " has negative mobilities, and no noise: use tensor rpy");
@@ -48,22 +54,22 @@ static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const Stoke
   if (std::isfinite(s.scene.cutoff) && !s.rigid.apart())
     drifts(lmp, keyword, "keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + pair,
            "use inf");
-  if (fluid.visc.is_atom_style() || fluid.grid_has_visc)
+  if ((fluid.visc.is_atom_style() || fluid.grid_has_visc) && !midpoint)
     drifts(lmp, keyword, "keyword visc" + pair + ", which varies in space",
-           "use one viscosity for all");
+           "use scheme midpoint or one viscosity for all");
 }
 
-void Noise::refuse(const Hydrodynamics &hydro, const Fix *self, bool adapts, bool holds) const
+void Noise::refuse(const Hydrodynamics &hydro, const Fix *self, const Ways &ways) const
 {
   const std::string keyword = command + ": keyword temperature: ";
-  refuse_settings(lmp, keyword, hydro.settings, hydro.ambient.settings);
+  refuse_settings(lmp, keyword, hydro.settings, hydro.ambient.settings, ways.midpoint);
   if (!atom->tag_enable)
     fail(lmp, keyword + "the noise of an atom goes by its ID, and there are none: atom_modify id yes");
-  if (domain->dimension == 2)
-    drifts(lmp, keyword, "dimension 2, which holds a coordinate", "use three dimensions");
-  if (adapts)
+  if (domain->dimension == 2 && !ways.midpoint)
+    drifts(lmp, keyword, "dimension 2, which holds a coordinate", "use scheme midpoint");
+  if (ways.adapts)
     fail(lmp, keyword + "averages over steps of unequal length are not those of time: leave adapt out");
-  if (holds) drifts(lmp, keyword, "keyword held", "leave it out");
+  if (ways.holds) drifts(lmp, keyword, "keyword held", "leave it out");
   for (int i = 0; i < modify->nfix; i++) {
     const Fix *fix = modify->fix[i];
     if (fix == self) continue;
@@ -72,8 +78,6 @@ void Noise::refuse(const Hydrodynamics &hydro, const Fix *self, bool adapts, boo
       fail(lmp, keyword + name +
                     " makes steps of unequal length, whose averages are not those of time: take it "
                     "away");
-    if (utils::strmatch(fix->style, "^enforce2d"))
-      drifts(lmp, keyword, name + ", which holds a coordinate", "take it away");
     for (const char *style : {"^viscous", "^langevin", "^brownian"})
       if (utils::strmatch(fix->style, style))
         fail(lmp, keyword + name + " has noise or a drag of its own: take it away");
@@ -83,15 +87,15 @@ void Noise::refuse(const Hydrodynamics &hydro, const Fix *self, bool adapts, boo
   refuse_friction(lmp, keyword);
 }
 
-void Noise::init(Hydrodynamics &hydro, const Fix *self, bool adapts, bool holds)
+void Noise::init(Hydrodynamics &hydro, const Fix *self, const Ways &ways)
 {
   const std::string keyword = command + ": keyword temperature";
   check_room_of_blas(lmp, command);
   temperature.init(lmp, keyword);
   if (temperature.is_atom_style())
     fail(lmp, keyword + ": noise has one temperature: use an equal-style variable");
-  refuse(hydro, self, adapts, holds);
-  hydro.scene.settings.positive = true;
+  refuse(hydro, self, ways);
+  hydro.scene.settings.positive = !ways.midpoint;
 }
 
 }    // namespace StokesDyn

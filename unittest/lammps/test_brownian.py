@@ -217,6 +217,105 @@ def test_bond_has_boltzmanns_length(simulation):
     assert r.var() == pytest.approx(9.959e-3 * 1.005, rel=4 * np.sqrt(2 / n) + 0.005)
 
 
+# --- scheme midpoint: where the mobility has a drift ------------------------------------------------------------------------
+
+def in_a_plane(simulation, tmp_path, spheres, words, dt):
+    """In a plane of an unbounded fluid: z is held, and the mobility of x and y has a divergence."""
+    side = spheres.x[:, :2].max() + 20.0
+    lines = input_lines(spheres, words, os.path.join(str(tmp_path), "plane.data"), fix=False, dt=dt, boundary="f f p",
+                        box=[(-20.0, side), (-20.0, side), (-0.5, 0.5)])
+    return simulation().commands(["dimension 2"] + lines)
+
+
+def test_bond_in_a_plane_has_boltzmanns_length(simulation, tmp_path):
+    """k = 4, r0 = 2.2 in units of kT and a: <r> 2.31364, variance 0.23709; without the drift the mean is 0.107 sigma short."""
+    count, k = 900, 4 * KT / A**2
+    c = np.arange(count)
+    origin = 12.0 * np.column_stack([c % 40, c // 40, 0 * c])
+    pair = A * np.array([(0, 0, 0), (2.3, 0, 0)])
+    spheres = Spheres((origin[:, None] + pair).reshape(-1, 3), A, molecule=np.repeat(c + 1, 2)).chain_bonds()
+    sim = in_a_plane(simulation, tmp_path, spheres, f"cut_off_distance inf visc {ETA} clumps_only yes", 0.1 * UNIT / k)
+    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {2.2 * A!r}", "comm_modify cutoff 8"])
+    noise(sim, "scheme midpoint").run(60)
+    lengths = []
+    for _ in range(8):
+        sim.run(25)
+        x = sim.x.reshape(-1, 2, 3)
+        lengths.append(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) / A)
+    assert (sim.x[:, 2] == 0).all()
+    r, n = np.array(lengths), 8 * count * 0.9
+    assert (r.mean() - 2.31364) / np.sqrt(0.23709) == pytest.approx(0, abs=4 / np.sqrt(n) + 0.003)
+    assert r.var() == pytest.approx(0.23709, rel=4 * np.sqrt(2 / n) + 0.01)
+
+
+def test_midpoint_is_of_second_order_in_the_forces_too(simulation):
+    """A bonded pair that falls beside a third sphere: forces change with position."""
+    x, ends = np.array([(0, 0, 0), (2.6, 0, 0.3), (-1.0, 3.5, 0)]), []
+    for steps in (25, 50, 100, 1600):
+        sim = simulation(Spheres(x, molecule=[1, 1, 2]).chain_bonds(), "cut_off_distance inf visc 1", fix=False, dt=20.0 / steps,
+                         box=[(-90.0, 90.0)] * 3)
+        sim.commands(["bond_style harmonic", "bond_coeff 1 4 2.2", f"fix weight all addforce 0 0 {-P6!r}",
+                      "fix move all stokes_dynamics/overdamped scheme midpoint"]).run(steps)
+        ends.append(sim.x)
+    errors = [np.abs(e - ends[-1]).max() for e in ends[:-1]]
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.25)
+
+
+def two_dumbbells():
+    return Spheres(A * np.array([(0, 0, 0), (0, 0, 2), (2.3, 0.2, 0), (2.4, 2.2, 0), (-1, -2.5, 0.4)]), A, molecule=[1, 1, 2, 2, 0])
+
+
+def test_clumps_that_feel_each_other_move_with_their_common_mobility(simulation):
+    """Both centroids and a free sphere: covariance of a step against velocities under unit forces"""
+    share = np.kron(np.array([(0.5, 0.5, 0, 0, 0), (0, 0, 0.5, 0.5, 0), (0, 0, 0, 0, 1.0)]), np.eye(3))
+    style = f"cut_off_distance inf visc {ETA} rigid_clumps yes rotation yes relative_tolerance 1e-8"
+    N = np.zeros((9, 9))
+    for k in range(9):
+        sim = simulation(two_dumbbells(), style, fix=False, dt=SHORT)
+        load = [f"{part!r}*(id=={i + 1})" for i, part in enumerate(share[k, k % 3::3]) if part]
+        force = ["v_load" if d == k % 3 else "0" for d in range(3)]
+        sim.commands([f"variable load atom {'+'.join(load)}", f"fix push all addforce {' '.join(force)}",
+                      "fix move all stokes_dynamics/overdamped"]).run(0)
+        N[:, k] = share @ sim.v.ravel()
+    sim = noise(simulation(two_dumbbells(), style, fix=False, dt=SHORT), "scheme midpoint")
+    d = steps_of(sim, 1500)
+    check_covariance(d.reshape(-1, 15) @ share.T, N, SHORT)
+    arm = d[:, 1] - d[:, 0]    # the dumbbells turn, and stay as long as they are
+    assert np.abs(arm[:, 2]).max() < 1e-3 * np.abs(arm[:, 0]).max()
+
+
+def test_spheres_above_a_wall_stand_as_boltzmann_says(simulation):
+    """A trap of 25 kT/a^2 at 1.9 a and a weight of 0.5 kT/a: mean height 1.88 a, sigma 0.2 a; without the drift 0.11 sigma lower."""
+    count, K = 64, 25 * KT / A**2
+    k = np.arange(count)
+    x = np.column_stack([25.0 * A * (k % 8), 25.0 * A * (k // 8), 0 * k + 1.88 * A])
+    sim = simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} wall zlo 0", fix=False, dt=0.12 * UNIT / K,
+                     box=[(-40.0, 170.0), (-40.0, 170.0), (-1.0, 60.0)])
+    sim.commands(f"variable fz atom {K!r}*({1.9 * A!r}-z)-{0.5 * KT / A!r}\nfix trap all addforce 0 0 v_fz")
+    noise(sim, "scheme midpoint").run(60)
+    z = []
+    for _ in range(60):
+        sim.run(20, "pre no post no")
+        z.append(sim.x[:, 2] / A)
+    z, n = np.array(z), 60 * count * 0.8
+    assert (z.mean() - 1.88) / 0.2 == pytest.approx(0, abs=4 / np.sqrt(n) + 0.003)
+    assert z.var() == pytest.approx(0.04 * 1.008, rel=4 * np.sqrt(2 / n) + 0.005)
+
+
+@pytest.mark.parametrize("words, message", [("clumps_only yes rigid_clumps yes rotation yes", "midpoint moves what feels each other"),
+                                            ("rigid_clumps yes shell 12", "clumps with shells that feel each other have no noise")])
+def test_what_midpoint_cannot_move_is_an_error(simulation, words, message):
+    sim = simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), f"cut_off_distance inf visc {ETA} {words}", fix=False, dt=1e-3)
+    with pytest.raises(LammpsError, match=message):
+        noise(sim, "scheme midpoint").run(0)
+
+
+def test_a_plane_needs_the_midpoint(simulation, tmp_path):
+    sim = in_a_plane(simulation, tmp_path, Spheres([(0, 0, 0), (3, 0, 0)], A), f"cut_off_distance inf visc {ETA}", 1e-3)
+    with pytest.raises(LammpsError, match="dimension 2, which holds a coordinate: the mobility has a drift"):
+        noise(sim).run(0)
+
+
 # --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------------
 
 def scattered(n=40, side=18.0, seed=4):
@@ -240,7 +339,9 @@ def in_clumps():
 WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes"),
         "periodic": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6"),
         "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes"),
-        "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes")}
+        "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes"),
+        "clumps midpoint": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes relative_tolerance 1e-12"),
+        "midpoint": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6")}
 MOVE = "fix move all stokes_dynamics/overdamped temperature {} {}"
 
 
@@ -249,7 +350,7 @@ def script(folder, way, runs, newton="on", T="v_T", seed=7):
     lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary, newton=newton, dt=0.02,
                         box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
     return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2",
-                    MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]] + runs
+                    (MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]) + " scheme midpoint" * ("midpoint" in way)] + runs
 
 
 def end(folder, lines, ranks=1):
@@ -281,7 +382,7 @@ def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way):
     assert np.abs(end(tmp_path, again) - whole).max() < 1e-10
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", ["open", "periodic", "clumps", "flexible"])
 def test_temperature_0_is_the_run_without(tmp_path, way):
     """Bit for bit"""
     without = end(tmp_path, script(tmp_path, way, END + ["run 20"], T=None))
@@ -327,7 +428,8 @@ FIELD = "variable eta atom 1+0.1*x"
 @pytest.mark.parametrize("style, lines, message", [
     (f"{INF} rotation yes lubrication yes", "", "keyword lubrication of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} multiblob 12", "", "keyword multiblob of pair_style stokes_dynamics: the mobility has a drift"),
-    (f"{INF} rigid_clumps yes rotation yes", "", "use clumps_only yes"),
+    (f"{INF} rigid_clumps yes rotation yes", "", "use scheme midpoint or clumps_only yes"),
+    (f"{INF} wall zlo -9", "", "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} tensor oseen", "", "use tensor rpy"),
     (f"cut_off_distance 4 visc {ETA}", "", "keyword cut_off_distance: '4' of pair_style stokes_dynamics: the mobility has a drift"),
     (f"cut_off_distance inf wall zlo -99 visc {ETA}", "", "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
