@@ -316,12 +316,30 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
                          "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
   const sd_status status = joined() ? together(report) : gradients(system, report);
-  if (shells.settings.on()) return status;    // the guard knows spheres
   const bool preconditioned = joined() || preconditioner.attached();
   guard.state = memory->global.guard;
-  guard.look(system, report, scene, preconditioned, memory->global.solves);
+  if (!shells.settings.on())
+    guard.look(system, report, scene, preconditioned, memory->global.solves);
+  else if (status == SD_OK)
+    look_at_shells(system);
   memory->global.guard = guard.state;
   return status;
+}
+
+/* A hundredth of the forces is enough there. */
+void Hydrodynamics::look_at_shells(const sd_system &system)
+{
+  const Velocities::How how = {width(), false, 1e-2, settings.max_iter, true};
+  Velocities::Guess none;
+  none.l.resize(3 * (size_t) shells.points() * scene.size() + 3);
+  none.v.resize(6 * (size_t) scene.size() + 6);
+  sd_bodies_report made = {};
+  guard.look_at_shells(
+      system,
+      [&](const std::vector<double> &v, std::vector<double> &Rv) {
+        return mobile.resist(how, v, none, Rv, made);
+      },
+      scene, memory->global.solves);
 }
 
 sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)

@@ -139,6 +139,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   sd_status run(sd_solve_report &report);
   sd_status gradients(sd_system &system, sd_solve_report &report);
   sd_status together(sd_solve_report &report);
+  void look_at_shells(const sd_system &system);
   void guess();
   void keep();
   void recall_points(std::vector<double> &l);
