@@ -361,6 +361,12 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   return status;
 }
 
+void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6])
+{
+  for (long e = 0; e < 36; e++) L->diagonal[36L * i + e] += B[e];
+  for (long k = 0; k < 6; k++) L->carried[6L * i + k] += E[k];
+}
+
 void sd_lubrication_block(const sd_lubrication_link *l, double B[36])
 {
   const sd_pair_resistance R = {{0.0, l->XA, 0.0},
