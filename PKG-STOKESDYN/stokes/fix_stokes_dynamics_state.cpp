@@ -54,8 +54,9 @@ static int points_of(int narg, char **arg)
 static int columns_of(bool rotation, bool history, int points)
 {
   using State = FixStokesDynamicsState;
-  if (rotation) return State::WITH_ROTATION + (history ? 6 : 0) + 3 * points;
-  return State::WITHOUT_ROTATION + (history ? 3 : 0) + 3 * points;
+  const int of_points = points > 0 ? 6 * points + 6 : 0;
+  if (rotation) return State::WITH_ROTATION + (history ? 6 : 0) + of_points;
+  return State::WITHOUT_ROTATION + (history ? 3 : 0) + of_points;
 }
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
@@ -151,6 +152,7 @@ template <class Global, class Visit> static void each_number(Global &g, const Vi
   visit("iterations", g.iterations);
   visit("residual", g.residual);
   visit("solutions", g.solutions);
+  visit("line", g.line);
   visit("lambda_min", g.guard.lambda_min);
   visit("guard_due", g.guard.due);
   visit("dt_limit", g.guard.limit);

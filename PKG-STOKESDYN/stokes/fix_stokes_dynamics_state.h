@@ -41,9 +41,12 @@ class FixStokesDynamicsState : public RowsFix {
   enum { FORCE = 0, VPRIME = 3, WITHOUT_ROTATION = 6, TORQUE = 6, WPRIME = 9, WITH_ROTATION = 12 };
   const bool rotation, history;
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
-  /* of each sphere, whose forces on the fluid are behind that: 3 columns each; 0: none */
+  /* of each sphere, whose forces on the fluid are behind that: 3 columns each; 0: none. Then those of
+   * the solve before, and the velocities that went with them */
   const int points;
   int of_points() const { return before() + (history ? (rotation ? 6 : 3) : 0); }
+  int of_points_before() const { return of_points() + 3 * points; }
+  int of_motion_before() const { return of_points() + 6 * points; }
   AtomRows rows;
   /* where spheres stood when the preconditioner was made (preconditioner.h) */
   AtomRows places;
@@ -67,6 +70,9 @@ class FixStokesDynamicsState : public RowsFix {
     double time_before = 0;
     /* v' that the rows hold, of solves that follow one another: 0, 1, 2 */
     double solutions = 0;
+    /* forces of points in the last solve: were they nearer to the line through the two before it
+     * than to the last of these? */
+    double line = 0;
     /* periodic lengths and tilts as the last run left them */
     double box[6] = {0};
     /* hash of the words of the pair_style command */

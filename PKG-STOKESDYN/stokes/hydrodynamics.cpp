@@ -338,8 +338,8 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
                          "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
   const sd_status status = joined() ? together(report) : gradients(system, report);
-  if (shells.settings.on()) return status;    // the guard knows spheres
-  look_at_step(system, report, joined() || preconditioner.attached());
+  if (!shells.settings.on() || status == SD_OK)
+    look_at_step(system, report, joined() || preconditioner.attached());
   return status;
 }
 
@@ -347,8 +347,27 @@ void Hydrodynamics::look_at_step(const sd_system &system, const sd_solve_report 
                                  bool preconditioned)
 {
   guard.state = memory->global.guard;
-  guard.look(system, report, scene, preconditioned, memory->global.solves);
+  if (shells.settings.on())
+    look_at_shells(system);
+  else
+    guard.look(system, report, scene, preconditioned, memory->global.solves);
   memory->global.guard = guard.state;
+}
+
+/* A hundredth of the forces is enough there. */
+void Hydrodynamics::look_at_shells(const sd_system &system)
+{
+  const Velocities::How how = {width(), false, 1e-2, settings.max_iter, true};
+  Velocities::Guess none;
+  none.l.resize(3 * (size_t) shells.points() * scene.size() + 3);
+  none.v.resize(6 * (size_t) scene.size() + 6);
+  sd_bodies_report made = {};
+  guard.look_at_shells(
+      system,
+      [&](const std::vector<double> &v, std::vector<double> &Rv) {
+        return mobile.resist(how, v, none, Rv, made);
+      },
+      scene, memory->global.solves);
 }
 
 sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)

@@ -150,6 +150,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void look_at_step(const sd_system &system, const sd_solve_report &report, bool preconditioned);
   sd_status gradients(sd_system &system, sd_solve_report &report);
   sd_status together(sd_solve_report &report);
+  void look_at_shells(const sd_system &system);
   void guess();
   void keep();
   void recall_points(std::vector<double> &l);

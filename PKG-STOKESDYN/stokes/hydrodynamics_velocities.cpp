@@ -17,14 +17,18 @@ namespace StokesDyn {
 using State = FixStokesDynamicsState;
 static const std::string COMMAND = StokesSettings::COMMAND;
 
-/* Forces of the points of this rank's rows as the last solve left them; 0 where there are none */
+/* Forces of the points of this rank's rows as the last solve left them, or on the line through the
+ * last two where that was nearer the last time; 0 where there are none */
 void Hydrodynamics::recall_points(std::vector<double> &l)
 {
   const size_t m = 3 * (size_t) shells.points();
   l.assign(m * scene.size() + m, 0.0);
   if (memory->points == 0) return;
+  const double line = memory->global.line;
   l = scene.rows((int) m, [&](int i, double *out) {
-    std::copy_n(memory->rows[i] + memory->of_points(), m, out);
+    const double *row = memory->rows[i], *last = row + memory->of_points(),
+                 *before = row + memory->of_points_before();
+    for (size_t d = 0; d < m; d++) out[d] = last[d] + line * (last[d] - before[d]);
   });
 }
 
@@ -32,9 +36,20 @@ void Hydrodynamics::keep_points(const std::vector<double> &l)
 {
   const size_t m = 3 * (size_t) memory->points;
   if (m == 0) return;
+  double off[2] = {0.0, 0.0};    // from the last, from the line
   scene.to_atoms((int) m, l.data(), [&](int i, const double *row) {
-    std::copy_n(row, m, memory->rows.give(i) + memory->of_points());
+    double *last = memory->rows.give(i) + memory->of_points();
+    double *before = memory->rows.give(i) + memory->of_points_before();
+    for (size_t d = 0; d < m; d++) {
+      const double change = row[d] - last[d], bend = change - (last[d] - before[d]);
+      off[0] += change * change;
+      off[1] += bend * bend;
+      before[d] = last[d];
+      last[d] = row[d];
+    }
   });
+  MPI_Allreduce(MPI_IN_PLACE, off, 2, MPI_DOUBLE, MPI_SUM, world);
+  memory->global.line = off[1] < off[0];
 }
 
 /* In one loop, which begins from the forces of the last step, with lubrication from its velocities
@@ -44,11 +59,13 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   const size_t m = width();
   place();
   const size_t n = scene.size();
+  const double line = shells.settings.on() ? memory->global.line : 0.0;
   std::vector<double> rows = scene.rows(2 * width(), [&](int i, double *out) {
-    const double *row = memory->rows[i];
+    const double *row = memory->rows[i], *before = row + memory->of_motion_before();
     for (size_t d = 0; d < m && settings.warm_start; d++) {
       out[d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
       out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      if (line != 0.0) out[m + d] += line * (out[m + d] - before[d]);
     }
   });
   if (shells.settings.on())
@@ -76,8 +93,10 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
     double *row = memory->rows.give(i);
     for (size_t d = 0; d < m; d++) {
       row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = -from[d];
-      if (settings.lubrication.on)
-        row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3] = from[m + d];
+      if (!settings.lubrication.on) continue;
+      double &v = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      if (memory->points > 0) row[memory->of_motion_before() + (int) d] = v;
+      v = from[m + d];
     }
   });
   return status;
@@ -121,7 +140,8 @@ void Hydrodynamics::turn(int i, const double R[9])
     sd_multiply3(R, row + first, turned);
     std::copy_n(turned, 3, row + first);
   }
-  for (int p = 0; p < memory->points; p++) {
+  const int behind = memory->points > 0 ? 2 * memory->points + 2 : 0;
+  for (int p = 0; p < behind; p++) { /* of both solves, and the motion before */
     double *of_point = row + memory->of_points() + 3 * p;
     sd_multiply3(R, of_point, turned);
     std::copy_n(turned, 3, of_point);

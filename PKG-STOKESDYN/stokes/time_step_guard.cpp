@@ -25,7 +25,7 @@ namespace StokesDyn {
 // estimates were ever off (30 times), and again after so many solves. At this residual the smallest
 // eigenvalue is good to a few per cent.
 static const double RESIDUAL = 1e-5, NEAR = 40.0, PERIOD = 2000.0;
-static const int PRODUCTS = 200;
+static const int PRODUCTS = 200, SOLVES = 12;
 // Spheres in the rigid bodies of LAMMPS are not free. Their bodies weigh as much as many of them:
 // nearly held, they take part in the motion of the others without a limit of their own.
 static const double HELD = 100.0;
@@ -175,9 +175,62 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
     mu = std::min(mu, tau.shortest * compute(system, scene));
     state.due = solves + PERIOD;
   }
-  if ((due && near) || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
-  state.lambda_min = 0.5 * state.limit / tau.of_velocity;
-  warn(tau.of_velocity);
+  take(mu, due && near, tau.of_velocity);
+}
+
+/* A limit that was computed replaces the last one, a bound only a larger one. */
+void TimeStepGuard::take(double mu, bool computed, double of_velocity)
+{
+  if (computed || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
+  state.lambda_min = 0.5 * state.limit / of_velocity;
+  warn(of_velocity);
+}
+
+/* The largest eigenvalue of W^-1 R is 1/mu: by power iteration from random numbers, whose Rayleigh
+ * quotient is a few per cent low at most. */
+double TimeStepGuard::compute_of_shells(const sd_system &A, const Resist &resist, Scene &scene)
+{
+  const size_t m = 6 * (size_t) A.n;
+  std::vector<double> weight, v(m + 6), Rv(m + 6);
+  weigh(A, scene, &weight);
+  for (size_t j = 0; j < m; j++)
+    v[j] = sd_hash_unit(sd_hash_mix((8 * (uint64_t) scene.tag((int) (j / 6)) + j % 6) *
+                                    SD_HASH_STEP)) - 0.5;
+  double rate = 0.0;
+  for (int k = 0; k < SOLVES; k++) {
+    double sums[2] = {0.0, 0.0};
+    const sd_status status = resist(v, Rv);
+    if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
+      fail_by(lmp, status, command + ": limit of the time step: " + sd_status_string(status));
+    if (status != SD_OK && status != SD_EMAXITER) return INFINITY;
+    for (size_t j = 0; j < m; j++) {
+      sums[0] += v[j] * Rv[j];
+      sums[1] += v[j] * weight[j] * v[j];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, world);
+    rate = std::max(rate, sums[0] / sums[1]);
+    for (size_t j = 0; j < m; j++) v[j] = Rv[j] / (weight[j] * rate);
+  }
+  return rate > 0.0 ? 1.0 / rate : INFINITY;
+}
+
+void TimeStepGuard::look_at_shells(const sd_system &system, const Resist &resist, Scene &scene,
+                                   double solves)
+{
+  const bool due = solves >= state.due;
+  if (!due && state.limit > 0.0) return;
+  const Times tau = weigh(system, scene, nullptr);
+  if (std::isinf(tau.shortest)) {
+    state.limit = 0.0;
+    return;
+  }
+  const bool near = NEAR * update->dt > 2.0 * tau.shortest;
+  double mu = tau.shortest;
+  if (due && near) {
+    mu *= std::min(1.0, compute_of_shells(system, resist, scene));
+    state.due = solves + PERIOD;
+  }
+  take(mu, due && near, tau.of_velocity);
 }
 
 /* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */

@@ -23,6 +23,7 @@
 #include "sd_lubrication.h"
 #include "sd_solve.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,11 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   void look(const sd_system &system, const sd_solve_report &report, Scene &scene,
             bool preconditioned, double solves);
 
+  /* R v of spheres whose resistance is a solve of its own, [6 n] in and out: shells of points */
+  using Resist = std::function<sd_status(const std::vector<double> &v, std::vector<double> &Rv)>;
+  /* The same of those; system: the drags of spheres alone */
+  void look_at_shells(const sd_system &system, const Resist &resist, Scene &scene, double solves);
+
   /* Lubrication has a limit of its own, told once a run: the spheres where they stand now, rows as
    * in look(). Warns once if the time step is above it. */
   void look_at_films(sd_lubrication &near, Scene &scene);
@@ -72,6 +78,8 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   std::vector<double> inertia(Scene &scene) const;
   double lone_at_wall(const Scene &scene) const;
   double compute(const sd_system &system, Scene &scene);
+  double compute_of_shells(const sd_system &system, const Resist &resist, Scene &scene);
+  void take(double mu, bool computed, double of_velocity);
   void warn(double of_velocity);
 };
 

@@ -326,9 +326,10 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
   const std::vector<char> held(sd_bodies_count(&A) + 1, 1);
   A.held = held.data();
   const size_t m = how.width, rows = m * scene.size();
-  if (scene.shells)
+  if (scene.shells) {
+    if (how.unstrained) std::fill(slope.begin(), slope.end(), 0.0);
     slip_at_points(slip.data());
-  else {
+  } else {
     std::copy_n(slip.begin(), rows, u.begin());
     guess.l.assign(rows + m, 0.0);
     for (size_t j = 0; j < rows && how.warm; j++) guess.l[j] = -on_spheres[j];

@@ -82,6 +82,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
     bool warm;
     double tolerance;
     int max_iter;
+    /* with shells: a fluid that does not strain, whatever the ambient one does */
+    bool unstrained = false;
   };
   sd_status together(const How &how, Guess &guess, const Take &take, sd_bodies_report &report);
 

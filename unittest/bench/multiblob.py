@@ -93,7 +93,7 @@ if error:
     exact = velocities()
     off = np.linalg.norm(v - exact) / np.linalg.norm(exact)
 set_style("relative_tolerance 1e-3 max_iter 100", 0.01 / np.std(v))
-lmp.command("run 1 post no")
+lmp.command("run 3 post no")
 run, warm = 0.0, []
 for _ in range(steps):
     run += clocked("run 1 pre no post no") / steps
