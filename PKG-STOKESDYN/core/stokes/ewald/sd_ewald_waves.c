@@ -183,13 +183,10 @@ static sd_status turn_by(sd_ewald_waves *w, int turn, int *bricks)
   return make_grid(w, &world);
 }
 
-sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
+/* The grid has its bricks. */
+static void find_terms(sd_ewald_waves *w)
 {
-  sd_grid *g = &w->grid;
-  const int turn = better_turn(w, bricks);
-  sd_status status = turn ? turn_by(w, turn, bricks) : SD_OK;
-  if (status == SD_OK) status = sd_grid_place(g, bricks);
-  if (status != SD_OK) return status;
+  const sd_grid *g = &w->grid;
   int equal = 1;
   for (int i = 0; i < w->n; i++) equal = equal && w->place[i].b == 0.0;
   sd_spreading *s = &w->spreading;
@@ -204,12 +201,40 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
   memcpy(s->lo, g->lo, sizeof(s->lo));
   s->row = g->row;
   s->layer = g->layer;
-  return SD_OK;
+}
+
+sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
+{
+  const int turn = better_turn(w, bricks);
+  sd_status status = turn ? turn_by(w, turn, bricks) : SD_OK;
+  if (status == SD_OK) status = sd_grid_place(&w->grid, bricks);
+  if (status == SD_OK) find_terms(w);
+  return status;
+}
+
+sd_status sd_ewald_waves_place_whole(sd_ewald_waves *w)
+{
+  const sd_ewald *e = &w->ewald;
+  const int ranks = w->grid.ranks;
+  int *bricks = calloc(6 * (size_t) ranks, sizeof(int));
+  if (!bricks) return SD_ENOMEMORY;
+  for (int k = 0; k < ranks; k++)
+    for (int d = 0; d < 3; d++)
+      bricks[6 * k + 3 + d] = e->grid[d] + (e->box.periodic ? e->points - 1 : 0);
+  for (int i = 0; i < w->n && e->box.periodic; i++)
+    for (int d = 0; d < 3; d++) {
+      int *at = w->place[i].at + d;
+      *at = (*at % e->grid[d] + e->grid[d]) % e->grid[d];
+    }
+  const sd_status status = sd_grid_place(&w->grid, bricks);
+  free(bricks);
+  if (status == SD_OK) find_terms(w);
+  return status;
 }
 
 /* --- product --- */
 
-sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
+sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
 {
   const long m = w->width, vectors = m / 3 * w->n;
   for (int i = 0; i < w->n; i++) {
@@ -221,7 +246,13 @@ sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const dou
   memset(g->brick, 0, sizeof(double) * ((size_t) (g->layer * g->n[0]) + 16));
   w->spreading.F = u;
   w->kernels->spread(&w->spreading);
-  const sd_status status = sd_grid_convolve(g, sd_wave_multiply, &w->wave);
+  return sd_grid_convolve(g, sd_wave_multiply, &w->wave);
+}
+
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
+{
+  const long vectors = (long) w->width / 3 * w->n;
+  const sd_status status = sd_ewald_waves_convolve(w, s, F, u);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
   for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
   return status;

@@ -3,6 +3,7 @@
 #include "sd_product_internal.h"
 
 #if SD_LANES > 1 /* sd_product_plain.c has its own */
+#include "sd_product_loops.h"
 #include "sd_tensor_lanes.h"
 
 /* The law of a product. The kernels of forces have a copy for this one as a constant: a branch on
@@ -18,6 +19,11 @@ static const law rpy = {SD_TENSOR_RPY, SD_TAPER_NONE, {0.0}};
 INLINE law law_of(const sd_packed *p)
 {
   return (law){p->law.tensor, p->law.taper, all(1.0 / p->law.range)};
+}
+
+static int is_rpy(const sd_packed *p)
+{
+  return p->law.tensor == rpy.tensor && p->law.taper == rpy.taper;
 }
 
 /* sd_taper_factor at the distance whose square is r2 */
@@ -68,7 +74,7 @@ NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
 
 /* Two targets, i and i + 1, against the vectors of sources from j0 to j1: what is loaded serves
  * twice. both: the sources receive from the targets as well. */
-INLINE void tile(int both, const law *w, const sd_packed *p, int i, int j0, int j1)
+INLINE void tile_by(const law *w, int both, const sd_packed *p, int i, int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   const double *restrict p0 = p->f[0], *restrict p1 = p->f[1], *restrict p2 = p->f[2];
@@ -126,52 +132,23 @@ INLINE void tile(int both, const law *w, const sd_packed *p, int i, int j0, int 
   }
 }
 
-/* Sources are taken in chunks that stay in the first-level cache while all targets pass. */
-enum { CHUNK = 256 };
-
-/* Groups of LANES columns: does the pair of a group with any later one belong to this part? In
- * turn, there and back, so that the sums of (groups - I) over a part's groups are equal. */
-INLINE int mine(int group, int part, int parts)
+INLINE void rpy_tile(int both, const sd_packed *p, int i, int j0, int j1)
 {
-  const int turn = group % (2 * parts);
-  return turn == part || turn == 2 * parts - 1 - part;
+  tile_by(&rpy, both, p, i, j0, j1);
 }
 
-/* All pairs of this part. A group of LANES targets meets itself one-sidedly, as its own lanes are
- * among the sources, and every later group once for both: a block serves two spheres, which is what
- * makes this about 1.4 times as fast as a loop over all targets. */
-INLINE void symmetric_by(const law *w, const sd_packed *p, int part, int parts)
+INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
 {
-  for (int c = 0; c < p->padded; c += CHUNK) {
-    const int end = c + CHUNK < p->padded ? c + CHUNK : p->padded;
-    for (int i = 0; i < end; i += LANES) {
-      if (!mine(i / LANES, part, parts)) continue;
-      const int from = i + LANES > c ? i + LANES : c;
-      for (int t = i; t < i + LANES; t += 2) {
-        if (i >= c) tile(0, w, p, t, i, i + LANES);
-        if (from < end) tile(1, w, p, t, from, end);
-      }
-    }
-  }
+  const law w = law_of(p);
+  tile_by(&w, both, p, i, j0, j1);
 }
 
 static void symmetric(const sd_packed *p, int part, int parts)
 {
-  const law w = law_of(p);
-  if (w.tensor == rpy.tensor && w.taper == rpy.taper)
-    symmetric_by(&rpy, p, part, parts);
+  if (is_rpy(p))
+    share_of_pairs(p, part, parts, CHUNK, 2, rpy_tile);
   else
-    symmetric_by(&w, p, part, parts);
-}
-
-/* The next LANES neighbours from k on; what is missing before end is the row that stands for
- * nothing. */
-INLINE const int *neighbors(const sd_pairs *pairs, long k, long end, int nothing, int *rest)
-{
-  const int *j = pairs->neighbor + k;
-  if (end - k >= LANES) return j;
-  for (int l = 0; l < LANES; l++) rest[l] = k + l < end ? j[l] : nothing;
-  return rest;
+    share_of_pairs(p, part, parts, CHUNK, 2, tile);
 }
 
 /* Row by row, LANES neighbours at a time. A neighbour has a row of its own, so its sums are its own
@@ -198,16 +175,16 @@ INLINE void list_by(const law *w, const sd_packed *p, const sd_pairs *pairs)
       u2 = (u2 + f * F[2]) + c * dz;
     }
     /* w_i and the units are the caller's; there are no columns here, so the sums go to its u */
-    p->u[0][i] = total(u0);
-    p->u[1][i] = total(u1);
-    p->u[2][i] = total(u2);
+    p->u[0][i] += total(u0);
+    p->u[1][i] += total(u1);
+    p->u[2][i] += total(u2);
   }
 }
 
 static void list(const sd_packed *p, const sd_pairs *pairs)
 {
   const law w = law_of(p);
-  if (w.tensor == rpy.tensor && w.taper == rpy.taper)
+  if (is_rpy(p))
     list_by(&rpy, p, pairs);
   else
     list_by(&w, p, pairs);
@@ -217,9 +194,10 @@ static void list(const sd_packed *p, const sd_pairs *pairs)
 
 /* Target i against the vectors of sources from j0 to j1. both: the sources receive from the target
  * as well. */
-INLINE void grand_tile(int both, const law *w, const sd_packed *p, int i, int j0, int j1)
+INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
+  const law w = law_of(p);
   const vec x = all(px[i]), y = all(py[i]), z = all(pz[i]), a = all(pa[i]);
   vec F[6], u[6];
 #pragma GCC unroll 6
@@ -232,7 +210,7 @@ INLINE void grand_tile(int both, const law *w, const sd_packed *p, int i, int j0
     const vec aj = load(pa + j), r2 = dx * dx + dy * dy + dz * dz;
     vec G[6];
     grand b;
-    torques_block(w, r2, a, aj, a * a + aj * aj, &b);
+    torques_block(&w, r2, a, aj, a * a + aj * aj, &b);
     if (!both && i >= j && i < j + LANES) {
       vec f = b.f, k = b.k; /* the others are 0 or multiply r */
       leave_out_self(i - j, &f, &k);
@@ -256,23 +234,9 @@ INLINE void grand_tile(int both, const law *w, const sd_packed *p, int i, int j0
   for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
 }
 
-/* Sixteen columns of so many spheres are 16 KiB, half of a first-level cache. */
-enum { GRAND_CHUNK = 128 };
-
 static void grand_symmetric(const sd_packed *p, int part, int parts)
 {
-  const law w = law_of(p);
-  for (int c = 0; c < p->padded; c += GRAND_CHUNK) {
-    const int end = c + GRAND_CHUNK < p->padded ? c + GRAND_CHUNK : p->padded;
-    for (int i = 0; i < end; i += LANES) {
-      if (!mine(i / LANES, part, parts)) continue;
-      const int from = i + LANES > c ? i + LANES : c;
-      for (int t = i; t < i + LANES; t++) {
-        if (i >= c) grand_tile(0, &w, p, t, i, i + LANES);
-        if (from < end) grand_tile(1, &w, p, t, from, end);
-      }
-    }
-  }
+  share_of_pairs(p, part, parts, GRAND_CHUNK, 1, grand_tile);
 }
 
 static void grand_list(const sd_packed *p, const sd_pairs *pairs)
@@ -299,7 +263,7 @@ static void grand_list(const sd_packed *p, const sd_pairs *pairs)
       grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
     }
 #pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) p->u[k][i] = total(u[k]);
+    for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
   }
 }
 

@@ -87,7 +87,7 @@ static flock *clumps_at(int points, int clumps, int m, const double *X, const do
 static sd_bodies place(flock *f, double side, double tolerance)
 {
   blobs *s = f->s;
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   const int own = s->m.n, points = own * s->n;
   for (int k = 0; k < 3 * s->n && side > 0.0; k++) s->x[k] -= side * floor(s->x[k] / side);
   if (!s->r) blobs_expand(s);
