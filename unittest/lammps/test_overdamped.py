@@ -61,6 +61,15 @@ def test_polygon_keeps_its_shape_and_speed(simulation, n):
     assert np.abs(sim.x - x + (0, 0, 10 * speed)).max() < 1e-10
 
 
+def test_flexible_clumps_see_their_own_spheres_alone(simulation):
+    x = np.array([(0, 0, 0), (2.5, 0, 0), (0.4, 2.3, 0.6), (5, 1, 0), (5, 3.2, 0.5)])
+    spheres = Spheres(x, molecule=[1, 1, 0, 2, 2])
+    sim = simulation(spheres, "visc 1.3 clumps_only yes", fix=False, box=[(-50.0, 50.0)] * 3, dt=0.01)
+    sim.commands(f"variable fx atom id\nfix pull all addforce v_fx 0.3 -1\n{FIX}").run(3)
+    expected = model.mobility(sim.x, spheres.a, 1.3, sees=model.same_clump(spheres)) @ sim.f.ravel()
+    assert np.abs(sim.v.ravel() - expected).max() < 1e-12 * np.abs(expected).max()
+
+
 @pytest.mark.parametrize("rotation", [False, True])
 def test_velocities_are_those_of_the_mobility(simulation, rotation):
     eta, spheres = 1.3, cloud()
