@@ -64,9 +64,6 @@ class Halo {
   void extend(const double h[6], std::vector<double> &x,
               std::initializer_list<std::vector<double> *> columns) const;
 
-  /* Ranks that this one speaks with; bytes that one refresh of a row's width sends */
-  int partners() const { return (int) post.partners.size(); }
-  double rows_sent() const { return (double) sphere.size(); }
   double memory_usage() const;
 
  private:

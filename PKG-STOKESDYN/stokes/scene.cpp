@@ -224,7 +224,7 @@ void Scene::find_pairs()
     }
     std::vector<int> scratch(n_all + 1);
     const sd_named known = {x.data(), ids.data(), known_molecules.data()};
-    status = sd_neighbors_clump(&candidates, &known, n, n_all, reach, 0, scratch.data());
+    status = sd_neighbors_clump(&candidates, &known, n, n_all, reach, scratch.data());
   } else
     status = sd_neighbors_cutoff(&candidates, x.data(), n, n_all, reach);
   if (status != SD_OK) out_of_memory();

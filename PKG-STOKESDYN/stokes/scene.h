@@ -129,7 +129,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Rows and copies */
   int size_with_copies() const { return (int) a.size(); }
   sd_spheres local() const { return {x.data(), a.data(), w.data()}; }
-  const Halo &neighbourhood() const { return halo; }
   double largest() const { return most; }
   double smallest() const { return least; }
   /* rows [width size()] -> those of the copies */

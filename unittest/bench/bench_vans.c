@@ -84,7 +84,7 @@ static void grains(double ratio, int n, double *average, double *force)
   for (int r = -1; r < RUNS; r++) {
     double t = cpu();
     for (int k = 0; k < repeat; k++) {
-      sd_vans_hindrance(N, phi, 3.1, hindrance);
+      sd_vans_hindrance_of((sd_vans_drag_law){0}, N, phi, 3.1, hindrance);
       memset(sums, 0, N * SD_VANS_ROWS * sizeof(double));
       sd_vans_average(&mesh, &law, &how, U, hindrance, &grains, sums, V);
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a rank has to hold and to say, for more and more ranks: no times, so ranks may share a core.
 
-    . build/env.sh && unittest/bench/scaling.py [--spheres 10000 100000] [--ranks 1 2 4 8 16] [--films]
+    . build/env.sh && unittest/bench/scaling.py [--spheres 10000 100000] [--ranks 1 2 4 8 16 32] [--films]
 
 A periodic box of spheres (volume fraction 0.1) that settle without inertia, tolerances 1e-3. Of the ranks the one with most:
 memory beyond that of LAMMPS without the style; messages, bytes and collective calls of a step beyond LAMMPS's; and the ranks
@@ -55,7 +55,7 @@ def count(folder, library, data, words, steps, ranks):
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--spheres", type=int, nargs="+", default=[10000])
-    options.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4, 8, 16])
+    options.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4, 8, 16, 32])
     options.add_argument("--films", action="store_true")
     asked = options.parse_args()
     os.environ.update(OMP_NUM_THREADS="1", OMPI_MCA_mpi_yield_when_idle="1")

@@ -117,14 +117,6 @@ typedef struct {
   double flux;
 } sd_vans_force_law;
 
-/* Hindrance of each slice, (1 - phi_n)^-exponent: once per profile instead of once per grain. */
-void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance);
-
-/* Yade's drag on one sphere: 1/2 rho pi a^2 (0.44 |w| + 24.4 eta/(rho 2a)) hindrance * w, w [3]
- * velocity of the water past the sphere. */
-void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
-                  double F[3]);
-
 /* Force of the stream on the grains that take part, 0 on the others. Of members that overlap each
  * has its share of all of it, so that the buoyancy of a clump is that of its union.
  *   hindrance  [N] of sd_vans_hindrance_of

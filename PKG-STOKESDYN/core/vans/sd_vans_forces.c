@@ -2,20 +2,6 @@
 
 #include <math.h>
 
-void sd_vans_hindrance(int ncell, const double *phi, double exponent, double *hindrance)
-{
-  const sd_vans_drag_law power = {0};
-  sd_vans_hindrance_of(power, ncell, phi, exponent, hindrance);
-}
-
-void sd_vans_drag(double rho, double eta, double a, double hindrance, const double w[3],
-                  double F[3])
-{
-  const double factor =
-      sd_vans_drag_factor((sd_vans_drag_law){0}, rho, eta, a, hindrance, speed_of(w));
-  for (int d = 0; d < 3; d++) F[d] = factor * w[d];
-}
-
 /* Drag on grain i slice by slice. What lies outside the mesh sees the values of its ends. */
 static void drag_by_volume(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
                            const double *hindrance, const sd_vans_grains *grains, int i,

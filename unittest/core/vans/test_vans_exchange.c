@@ -3,6 +3,7 @@
 
 #include "sd_constants.h"
 #include "sd_vans_books.h"
+#include "yade_drag.h"
 
 /* The signed coefficient survives grains that are faster than the water; Yade's is cut to 0 there. Both are limited to
  * 1/(10 dt), which keeps some of the drag from the water; what, is told. */
@@ -56,9 +57,9 @@ static void rate_of_drag_is_that_of_its_grains(void **state)
   const sd_vans_fluid fluid = {.rho = 1030, .eta = 2e-3, .radius = a};
   double hindrance[N], F[3], w[3] = {0.2, 0, 0};
   int slice = -1;
-  sd_vans_hindrance(N, profile, 3.1, hindrance);
+  hindrance_of(N, profile, 3.1, hindrance);
   const double rate = sd_vans_drag_rate(&mesh, &fluid, U, hindrance, profile, &slice);
-  sd_vans_drag(fluid.rho, fluid.eta, a, hindrance[1], w, F);
+  yade_drag(fluid.rho, fluid.eta, a, hindrance[1], w, F);
   assert_int_equal(slice, 1);
   assert_true(fabs(rate * 0.2 * fluid.rho * 4.0 / 3.0 * SD_PI * a * a * a / 0.5 / F[0] - 1) < 1e-13);
 }
@@ -75,7 +76,7 @@ static void exchange_by_law_takes_the_drag_as_it_is(void **state)
   const sd_vans_mesh mesh = {N, 0, 1, edge};
   sd_vans_fluid fluid = {.rho = 1030, .eta = 2e-3, .radius = a, .class_radius = radii};
   double hindrance[N], b[N], rest[N], of_classes[N];
-  sd_vans_hindrance(N, profile, 3.1, hindrance);
+  hindrance_of(N, profile, 3.1, hindrance);
   for (int n = 0; n < N; n++) {
     profile[SD_VANS_DRAG * N + n] = drag[n];
     for (int c = 0; c < 2; c++) {
@@ -87,7 +88,7 @@ static void exchange_by_law_takes_the_drag_as_it_is(void **state)
   for (int n = 0; n < N; n++) {
     const double slip = U[n + 1] - profile[N + n], w[3] = {slip, 0, 0}, V = 4.0 / 3.0 * SD_PI * a * a * a;
     double F[3];
-    sd_vans_drag(fluid.rho, fluid.eta, a, hindrance[n], w, F);
+    yade_drag(fluid.rho, fluid.eta, a, hindrance[n], w, F);
     assert_true(n == 3 ? b[n] == 0.0 : fabs(b[n] * slip - profile[n] / V * F[0] / fluid.rho) < 1e-12 * b[n]);
     assert_true(fabs(b[n] * slip - rest[n] - profile[n] / V * drag[n] / fluid.rho) < 1e-13);
   }

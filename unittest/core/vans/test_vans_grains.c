@@ -3,6 +3,7 @@
 
 #include "sd_constants.h"
 #include "sd_vans_random.h"
+#include "yade_drag.h"
 
 #include <string.h>
 
@@ -135,7 +136,7 @@ static void hindrance_has_its_exponent(void **state)
   (void) state;
   const double phi[3] = {0.0, 0.3, 0.6};
   double h[3];
-  sd_vans_hindrance(3, phi, 3.1, h);
+  hindrance_of(3, phi, 3.1, h);
   assert_true(h[0] == 1.0);
   assert_true(fabs(log(h[1]) / log(1 - 0.3) + 3.1) < 1e-13 &&
               fabs(log(h[2]) / log(1 - 0.6) + 3.1) < 1e-13);
@@ -188,10 +189,10 @@ static void grains_outside_feel_the_end_values(void **state)
   sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .g = {0, 0, -2}};
   double F[6], expected[3];
   assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, NULL), 2);
-  sd_vans_drag(1.3, 0.1, 0.2, 1.5, (double[3]){0.8, 0, 0}, expected);
+  yade_drag(1.3, 0.1, 0.2, 1.5, (double[3]){0.8, 0, 0}, expected);
   assert_true(fabs(F[0] - expected[0]) < 1e-15 &&
               fabs(F[2] - 4.0 / 3.0 * SD_PI * 0.008 * 2.6) < 1e-15);
-  sd_vans_drag(1.3, 0.1, 0.2, 3.0, (double[3]){-0.1, 0, 0}, expected);
+  yade_drag(1.3, 0.1, 0.2, 3.0, (double[3]){-0.1, 0, 0}, expected);
   assert_true(fabs(F[3] - expected[0]) < 1e-15);
   law.rules = SD_VANS_YADE;
   assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, NULL), 2);
@@ -232,7 +233,7 @@ static void a_slice_gives_what_its_grain_gets(void **state)
   for (int n = 0; n < N; n++) phi[n] = 0.6 / (1.0 + 0.1 * n);
   const sd_vans_mesh mesh = {N, 0.02, 0.0, edge};
   const sd_vans_force_law law = {.rho = 1030, .eta = 2e-3, .exponent = 3.1, .felt_by_volume = 1};
-  sd_vans_hindrance(N, phi, law.exponent, hindrance);
+  hindrance_of(N, phi, law.exponent, hindrance);
   for (int k = 0; k < 50; k++) {
     const double a = 0.0031, x[3] = {0, 0, 0.02 + a + 0.0005 * k}, v[3] = {0.3, 0, 0},
                  whole = 4.0 / 3.0 * SD_PI * a * a * a;
@@ -246,7 +247,7 @@ static void a_slice_gives_what_its_grain_gets(void **state)
       U[moves + 1] += 0.2;
       sd_vans_forces(&mesh, &law, U, hindrance, &grain, F, &drag);
       sd_vans_average(&mesh, &law, &how, U, hindrance, &grain, sums, scratch);
-      sd_vans_drag(law.rho, law.eta, a, hindrance[moves], (double[3]){0.2, 0, 0}, whole_drag);
+      yade_drag(law.rho, law.eta, a, hindrance[moves], (double[3]){0.2, 0, 0}, whole_drag);
       const int reached = moves >= first && moves < first + count;
       const double expected = reached ? V[moves - first] / whole * whole_drag[0] : 0.0;
       assert_true(fabs(drag - expected) < 1e-15 * whole_drag[0]);

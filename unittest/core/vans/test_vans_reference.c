@@ -10,6 +10,7 @@
 
 #include "sd_vans.h"
 #include "vans_table.h"
+#include "yade_drag.h"
 
 enum { N_MAX = 64 };
 static double edges[N_MAX + 1];
@@ -46,7 +47,7 @@ static void check_forces(const char *name, sd_vans_rules rules)
   vectors(t, "vx", "vy", "vz", n, v);
   vectors(t, "ufx", "ufy", "ufz", n, u);
   vectors(t, "fx", "fy", "fz", n, reference);
-  sd_vans_hindrance(mesh.ncell, vans_column(p, "phi"), law.exponent, hindrance);
+  hindrance_of(mesh.ncell, vans_column(p, "phi"), law.exponent, hindrance);
   const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL, NULL};
   const int outside =
       sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, &grains, F, NULL);
@@ -104,7 +105,7 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
   memcpy(phi, vans_column(p, "phi_in"), N * sizeof(double));
   for (int call = 1; call <= 2; call++) {
     double sums[3 * N_MAX * SD_VANS_ROWS] = {0};
-    sd_vans_hindrance(N, phi, law.exponent, hindrance);
+    hindrance_of(N, phi, law.exponent, hindrance);
     assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance,
                                      &grains, sums, V),
                      -1);

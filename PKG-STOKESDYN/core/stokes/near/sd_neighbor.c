@@ -95,22 +95,17 @@ static sd_status sort_by_clump(const sd_named *s, int n, int *order)
 }
 
 /* Of the sorted spheres, those of the molecule of each target: begin ... end - 1; none for molecule
- * 0, which are lone spheres, and with one_row for all targets of a molecule but the first */
+ * 0, which are lone spheres */
 typedef struct {
   int begin, end;
 } block;
 
-static void blocks_of_targets(const sd_named *s, const int *order, int n, int n_all, int one_row,
-                              block *of)
+static void blocks_of_targets(const sd_named *s, const int *order, int n, int n_all, block *of)
 {
   for (int b = 0, e; b < n_all; b = e) {
-    int rows = s->molecule[order[b]] != 0;
     for (e = b + 1; e < n_all && s->molecule[order[e]] == s->molecule[order[b]]; e++) {}
     for (int k = b; k < e; k++)
-      if (order[k] < n) {
-        of[order[k]] = (block){b, rows ? e : b};
-        if (one_row) rows = 0;
-      }
+      if (order[k] < n) of[order[k]] = (block){b, s->molecule[order[b]] ? e : b};
   }
 }
 
@@ -132,7 +127,7 @@ static int closest_image(const sd_named *s, const int *order, int end, const dou
 }
 
 sd_status sd_neighbors_clump(sd_neighbors *list, const sd_named *s, int n, int n_all, double cutoff,
-                             int one_row, int *order)
+                             int *order)
 {
   block *of = malloc(sizeof(block) * ((size_t) n + 1));
   sd_status status = of ? sd_neighbors_reserve(list, n, 0) : SD_ENOMEMORY;
@@ -140,7 +135,7 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const sd_named *s, int n, int n
   if (status == SD_OK) {
     long count = 0;
     list->pairs.n = n;
-    blocks_of_targets(s, order, n, n_all, one_row, of);
+    blocks_of_targets(s, order, n, n_all, of);
     for (int i = 0; i < n && status == SD_OK; i++) {
       list->first[i] = count;
       for (int k = of[i].begin; k < of[i].end && status == SD_OK;) {

@@ -45,11 +45,9 @@ typedef struct {
 /* All directed pairs of one clump: equal molecule ID, not 0. Each partner once, as the image
  * closest to the target (ghosts of one sphere share its tag; the first in order of index wins a
  * tie), and closer than cutoff (INFINITY: the whole clump).
- *   one_row         only the target of lowest tag of each molecule gets its row: the clumps
- *                   themselves, one row each
  *   order [n_all]   scratch;  on return sorted by molecule, tag, index */
 sd_status sd_neighbors_clump(sd_neighbors *list, const sd_named *s, int n, int n_all, double cutoff,
-                             int one_row, int *order);
+                             int *order);
 
 /* Tensor oseen knows no size of the spheres: the largest entry that any pair has along its axis in
  * the matrix scaled to unit diagonal, t 3 sqrt(ai aj)/(2R) with the taper t. From 1 on the matrix

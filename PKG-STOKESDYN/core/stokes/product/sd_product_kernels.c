@@ -21,6 +21,11 @@ INLINE law law_of(const sd_packed *p)
   return (law){p->law.tensor, p->law.taper, all(1.0 / p->law.range)};
 }
 
+static int is_rpy(const sd_packed *p)
+{
+  return p->law.tensor == rpy.tensor && p->law.taper == rpy.taper;
+}
+
 /* sd_taper_factor at the distance whose square is r2 */
 INLINE vec taper_of(const law *w, vec r2)
 {
@@ -69,7 +74,7 @@ NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
 
 /* Two targets, i and i + 1, against the vectors of sources from j0 to j1: what is loaded serves
  * twice. both: the sources receive from the targets as well. */
-INLINE void tile(int both, const law *w, const sd_packed *p, int i, int j0, int j1)
+INLINE void tile_by(const law *w, int both, const sd_packed *p, int i, int j0, int j1)
 {
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   const double *restrict p0 = p->f[0], *restrict p1 = p->f[1], *restrict p2 = p->f[2];
@@ -129,26 +134,21 @@ INLINE void tile(int both, const law *w, const sd_packed *p, int i, int j0, int 
 
 INLINE void rpy_tile(int both, const sd_packed *p, int i, int j0, int j1)
 {
-  tile(both, &rpy, p, i, j0, j1);
+  tile_by(&rpy, both, p, i, j0, j1);
 }
 
-INLINE void law_tile(int both, const sd_packed *p, int i, int j0, int j1)
+INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
 {
   const law w = law_of(p);
-  tile(both, &w, p, i, j0, j1);
-}
-
-static int plain_rpy(const sd_packed *p)
-{
-  return p->law.tensor == rpy.tensor && p->law.taper == rpy.taper;
+  tile_by(&w, both, p, i, j0, j1);
 }
 
 static void symmetric(const sd_packed *p, int part, int parts)
 {
-  if (plain_rpy(p))
+  if (is_rpy(p))
     share_of_pairs(p, part, parts, CHUNK, 2, rpy_tile);
   else
-    share_of_pairs(p, part, parts, CHUNK, 2, law_tile);
+    share_of_pairs(p, part, parts, CHUNK, 2, tile);
 }
 
 /* Row by row, LANES neighbours at a time. A neighbour has a row of its own, so its sums are its own
@@ -184,7 +184,7 @@ INLINE void list_by(const law *w, const sd_packed *p, const sd_pairs *pairs)
 static void list(const sd_packed *p, const sd_pairs *pairs)
 {
   const law w = law_of(p);
-  if (plain_rpy(p))
+  if (is_rpy(p))
     list_by(&rpy, p, pairs);
   else
     list_by(&w, p, pairs);
@@ -196,8 +196,8 @@ static void list(const sd_packed *p, const sd_pairs *pairs)
  * as well. */
 INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
 {
-  const law w = law_of(p);
   const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
+  const law w = law_of(p);
   const vec x = all(px[i]), y = all(py[i]), z = all(pz[i]), a = all(pa[i]);
   vec F[6], u[6];
 #pragma GCC unroll 6

@@ -69,7 +69,7 @@ static void no_spheres_no_pairs(void **state)
   sd_neighbors list = {0};
   assert_int_equal(sd_neighbors_cutoff(&list, x, 0, 0, 1.0), SD_OK);
   assert_int_equal(list.first[0], 0);
-  assert_int_equal(sd_neighbors_clump(&list, &(sd_named){x, NULL, NULL}, 0, 0, INFINITY, 0, order), SD_OK);
+  assert_int_equal(sd_neighbors_clump(&list, &(sd_named){x, NULL, NULL}, 0, 0, INFINITY, order), SD_OK);
   assert_int_equal(list.first[0], 0);
   sd_neighbors_free(&list);
 }
@@ -85,22 +85,15 @@ static void clump_members_once_as_the_closest_image(void **state)
   const int n = 3 + 2, n_all = 8;
   int order[8];
   sd_neighbors list = {0};
-  assert_int_equal(sd_neighbors_clump(&list, &s, n, n_all, INFINITY, 0, order),
-                   SD_OK);
+  assert_int_equal(sd_neighbors_clump(&list, &s, n, n_all, INFINITY, order), SD_OK);
   const int rows[5][2] = {{1, 5}, {0, 5}, {7, 1}, {-1, -1}, {-1, -1}};
   for (int i = 0; i < 5; i++) {
     assert_int_equal(list.first[i + 1] - list.first[i], rows[i][0] < 0 ? 0 : 2);
     for (int k = 0; rows[i][0] >= 0 && k < 2; k++)
       assert_int_equal(list.neighbor[list.first[i] + k], rows[i][k]);
   }
-  /* one row for the clump, that of sphere 10 */
-  sd_neighbors one = {0};
-  assert_int_equal(sd_neighbors_clump(&one, &s, n, n_all, INFINITY, 1, order), SD_OK);
-  assert_int_equal(one.first[1], 2);
-  assert_int_equal(one.first[5], 2);
-  sd_neighbors_free(&one);
   /* with a cut-off only the partners within it */
-  assert_int_equal(sd_neighbors_clump(&list, &s, n, n_all, 1.5, 0, order), SD_OK);
+  assert_int_equal(sd_neighbors_clump(&list, &s, n, n_all, 1.5, order), SD_OK);
   assert_int_equal(list.first[1], 2);
   assert_int_equal(list.first[2] - list.first[1], 1);
   assert_int_equal(list.first[3] - list.first[2], 1);
