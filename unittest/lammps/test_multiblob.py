@@ -244,3 +244,39 @@ def test_stress_of_an_open_box_has_no_average(simulation):
     sim.commands([MOVE, STRESS, "thermo_style custom step c_S[1]"])
     with pytest.raises(LammpsError, match="its vector is an average over a periodic box; per-atom rows need none"):
         sim.run()
+
+
+# --- pairs and clumps in a strain, exact -----------------------------------------------------------------------------------
+
+
+def strained(simulation, spheres, E, style):
+    """Velocities less those of the flow E x, and the moments of all spheres along E, in those of a lone sphere in E"""
+    formulas = [f"variable u{c} atom " + "+".join(f"({g!r})*{d}" for g, d in zip(row, "xyz")) for c, row in zip("xyz", E.tolist())]
+    sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob 12 fluid_velocity v_ux v_uy v_uz relative_tolerance 1e-8 {style}",
+                     before_pair="\n".join(formulas), fix=False, dt=1e-9)
+    sim.commands([MOVE, STRESS, "dump d all custom 1 /dev/null c_S[1]"]).run()
+    S = sum(moments(sim)).sum(axis=0)[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+    return sim.v - sim.x @ E, -np.sum(S * E) / np.sum(E * E) / (20 / 3 * np.pi)
+
+
+@pytest.mark.parametrize("gap, A, S", [(1e-4, 0.999593, 1.910044), (1e-2, 0.961946, 1.873095), (0.1, 0.732436, 1.655834),
+                                       (0.5, 0.347646, 1.312501)])
+def test_pair_in_a_strain_along_its_line_of_centres(simulation, gap, A, S):
+    """Batchelor & Green (1972): the pair comes near at 1 - A of the flow's rate, and each sphere has S of a lone one's stresslet.
+    Numbers: bispherical coordinates."""
+    x = np.outer([-1 - gap / 2, 1 + gap / 2], np.array((2, -1, 2)) / 3)
+    E = 1.7 * (np.outer(x[1], x[1]) / (x[1] @ x[1]) - np.eye(3) / 3)
+    slip, whole = strained(simulation, Spheres(x), E, "lubrication yes lubrication_gap 1e-6")
+    assert abs((slip[0] - slip[1]) @ x[1] / ((x[1] - x[0]) @ E @ x[1]) - A) < 0.015 * A
+    assert abs(whole / 2 - S) < 0.015 * S
+
+
+@pytest.mark.parametrize("n, exact", [(1, 2.5), (2, 3.053452), (5, 4.618060)])
+def test_intrinsic_viscosity_of_a_rigid_row(simulation, n, exact):
+    """Galerkin multipoles; films and neighbours apart, this is the dilute limit of a suspension of such clumps."""
+    d = np.array((1, 2, 2)) / 3
+    spheres = Spheres(np.outer(2 * np.arange(n) - n + 1.0, d), molecule=1)
+    basis = [np.diag((1.0, -1.0, 0.0)), np.diag((1.0, 1.0, -2.0))]
+    basis += [np.outer(a, b) + np.outer(b, a) for a, b in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0))]
+    found = 2.5 / n * np.mean([strained(simulation, spheres, E, "rigid_clumps yes")[1] for E in basis])
+    assert abs(found / exact - 1) < (1e-6 if n == 1 else 6e-3)
