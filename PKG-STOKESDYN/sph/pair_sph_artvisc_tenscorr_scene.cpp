@@ -121,8 +121,8 @@ void PairSph::choose_scheme()
     if (when) fail(lmp, what + why);
   };
   if (shifts) {
-    refuse(volume, "does not go with volume yes of fix sph/density/continuity: it blows up where "
-                   "densities jump");
+    refuse(volume && corrects,
+           "does not go with volume yes of fix sph/density/continuity: shift yes does");
     refuse(!leapfrog || !fixes_of(lmp, "sph").empty(),
            "needs fix sph/density/continuity and fix nve/sph: particles are moved in the middle of a "
            "step");
@@ -140,7 +140,8 @@ void PairSph::choose_scheme()
     fail(lmp,
          COMMAND + ": volume yes of fix sph/density/continuity needs fix nve/sph, and does not go "
                    "with tensCorr");
-  model.scheme = volume ? SD_SPH_VOLUME
+  model.scheme = volume && shifts ? SD_SPH_VOLUME_SHIFT
+      : volume          ? SD_SPH_VOLUME
       : corrects        ? SD_SPH_CORRECTION
       : shifts          ? SD_SPH_SHIFT
                         : SD_SPH_PLAIN;
@@ -189,7 +190,7 @@ void PairSph::setup()
     fail(lmp,
          COMMAND + ": fix deform with remap v: fix sph extrapolates velocities before they are "
                    "shifted at the faces that glide; use fix nve/sph");
-  if (domain->deform_vremap && model.scheme == SD_SPH_SHIFT)
+  if (domain->deform_vremap && (model.scheme == SD_SPH_SHIFT || model.scheme == SD_SPH_VOLUME_SHIFT))
     fail(lmp,
          COMMAND + ": fix deform with remap v: the momentum that shift carries is not the same on "
                    "both sides of a face that glides; use correction yes");

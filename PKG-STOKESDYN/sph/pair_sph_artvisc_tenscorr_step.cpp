@@ -118,10 +118,10 @@ void PairSph::prepare()
   model.pair = coefficients.data();
   raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
   pairs = raw;
-  if (!wall && !state && model.scheme != SD_SPH_VOLUME) return;
+  if (!wall && !state && !sd_sph_of_fluids(&model)) return;
   phases.assign(n + 1, 0);
   for (int i = 0; i < n; i++) {
-    if (model.scheme == SD_SPH_VOLUME)
+    if (sd_sph_of_fluids(&model))
       for (size_t k = 0; k < pressures.size(); k++)
         if (atom->mask[i] & pressures[k]->groupbit) phases[i] = (int) k;
     const bool still = (wall && (atom->mask[i] & wall->groupbit)) ||

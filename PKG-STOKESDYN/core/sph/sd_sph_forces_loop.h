@@ -13,6 +13,9 @@ typedef struct {
   sd_sph_scheme scheme;
 } terms;
 
+/* Momentum goes along with du: of correction it is an acceleration. */
+#define CARRIES(has) ((has).scheme == SD_SPH_SHIFT || (has).scheme == SD_SPH_VOLUME_SHIFT)
+
 /* Particle i, and the pairs of it with j: d = x_i - x_j, u = v_i - v_j, A the last column of x4,
  * grad_i W = g d, m = m_i m_j. */
 typedef struct {
@@ -32,8 +35,7 @@ INLINE particle particle_of(const sd_sph_model *model, const sd_sph_particles *p
   const int many = has.many;
   return (particle){.x = load4(p->x4 + 4 * (size_t) i),
                     .v = load4(p->v4 + 4 * (size_t) i),
-                    .du = has.scheme == SD_SPH_SHIFT ? load4(p->order + 8 * (size_t) i + 4)
-                                                     : (row4){0},
+                    .du = CARRIES(has) ? load4(p->order + 8 * (size_t) i + 4) : (row4){0},
                     .m = all(many ? p->m[i] : p->mass),
                     .row = ROW_OF(i)};
 }
@@ -110,7 +112,7 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
     const vec distance = smaller(root(q->r2) * q->inv_h, all(2.0));
     bracket += tension(model->epsilon, q->A_i, q->A_j, COEFFICIENT(tens) * K(has.kernel, distance));
   }
-  if (has.scheme == SD_SPH_VOLUME)
+  if (has.scheme == SD_SPH_VOLUME || has.scheme == SD_SPH_VOLUME_SHIFT)
     bracket = 2.0 * (q->rho_j * q->A_i + q->rho_i * q->A_j) * q->inverse / (q->rho_i + q->rho_j);
   if (has.artvisc)
     bracket += artificial(q->vd, q->r2 + model->eta, q->rho_i + q->rho_j, COEFFICIENT(a1),
@@ -123,7 +125,7 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
     for (int c = 0; c < 3; c++) F[c] += rub * q->u[c];
   }
   /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */
-  if (has.scheme == SD_SPH_SHIFT) {
+  if (CARRIES(has)) {
     vec du[4], mine = all(0.0), theirs = all(0.0);
     gather(p->order + 4, 8, j, du);
     for (int c = 0; c < 3; c++) {

@@ -32,7 +32,8 @@ typedef struct {
  * singular (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi
  * 2009 there.
  * du      - U x, x = 10 h s, of length 1 at most: the law of Michel et al. 2022 in a bounded form;
- *         0 where an eigenvalue of M is below 0.9, at a free surface, and for walls
+ *         0 where an eigenvalue of M is below 0.9, at a free surface and, since M is that of one
+ *         fluid, at an interface; and for walls
  * Returns the first particle where correction stops, -1: there is none. */
 int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c);
 

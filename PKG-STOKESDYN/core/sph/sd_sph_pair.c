@@ -1,5 +1,16 @@
 #include "sd_sph_pair.h"
 
+int sd_sph_of_fluids(const sd_sph_model *model)
+{
+  return model->scheme == SD_SPH_VOLUME || model->scheme == SD_SPH_VOLUME_SHIFT;
+}
+
+int sd_sph_shifts(const sd_sph_model *model)
+{
+  return model->scheme == SD_SPH_SHIFT || model->scheme == SD_SPH_CORRECTION ||
+      model->scheme == SD_SPH_VOLUME_SHIFT;
+}
+
 /* Everything about a pair of types that does not change from pair to pair. What no term of the
  * model uses stays 0, so that types that differ in nothing that matters are found to be alike. */
 sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_sph_parameters *p)
@@ -18,7 +29,7 @@ sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_s
     c.b1 = 2.0 * p->beta * h * h;
   }
   /* f = W(r) / W(dp) = K(r/h) / K(dp/h): the norm cancels. Shifting takes f, too. */
-  const int shifts = model->scheme == SD_SPH_SHIFT || model->scheme == SD_SPH_CORRECTION;
+  const int shifts = sd_sph_shifts(model);
   if (model->tenscorr || shifts) {
     const double K = sd_sph_K(model->kernel, p->deltap / h);
     c.tens = K > 0.0 ? 1.0 / K : 0.0;
@@ -64,7 +75,7 @@ void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, co
 {
   /* Correction takes differences of P, volume weighs P with the other density; the plain force has
    * A. */
-  const int as_is = model->scheme == SD_SPH_CORRECTION || model->scheme == SD_SPH_VOLUME;
+  const int as_is = model->scheme == SD_SPH_CORRECTION || sd_sph_of_fluids(model);
   for (int i = 0; i < n; i++)
     x4[4 * (size_t) i + 3] = as_is ? P[i] : P[i] / (rho[i] * rho[i]);
 }

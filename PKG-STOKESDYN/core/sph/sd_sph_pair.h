@@ -19,7 +19,7 @@
  *                the two. A wall has the B of its partner
  *   volume       F_a = - 2 V_a V_b p g d, p = (rho_b P_a + rho_a P_b) / (rho_a + rho_b): continuous
  *                where densities jump, Hu & Adams 2006. Rate: sum m_b g v.d 2 rho_a / (rho_a +
- *                rho_b), its adjoint: sum F.v = - sum V P rate / rho
+ *                rho_b), its adjoint: sum F.v = - sum V P rate / rho. VOLUME_SHIFT: with the term of shift
  *
  * The loops work on four pairs at a time, without a branch: K and G vanish beyond the support, so
  * neighbours outside contribute zeros. Every particle array therefore has one row more than there
@@ -35,7 +35,13 @@
 extern "C" {
 #endif
 
-typedef enum { SD_SPH_PLAIN, SD_SPH_SHIFT, SD_SPH_CORRECTION, SD_SPH_VOLUME } sd_sph_scheme;
+typedef enum {
+  SD_SPH_PLAIN,
+  SD_SPH_SHIFT,
+  SD_SPH_CORRECTION,
+  SD_SPH_VOLUME,
+  SD_SPH_VOLUME_SHIFT
+} sd_sph_scheme;
 typedef enum { SD_SPH_INVISCID, SD_SPH_LAPLACIAN, SD_SPH_CENTRAL } sd_sph_friction;
 
 /* What the user gives for a pair of types. */
@@ -74,6 +80,11 @@ typedef struct {
   /* [nclasses * nclasses] */
   const sd_sph_coefficients *pair;
 } sd_sph_model;
+
+/* Is its scheme one for several fluids, volume with or without shift? */
+int sd_sph_of_fluids(const sd_sph_model *model);
+/* Does it move particles with v + du? */
+int sd_sph_shifts(const sd_sph_model *model);
 
 sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_sph_parameters *p);
 

@@ -9,7 +9,7 @@
 sd_sph_level sd_sph_level_of(const sd_sph_model *model)
 {
   if (model->scheme == SD_SPH_CORRECTION) return SD_SPH_VELOCITY;
-  if (model->scheme == SD_SPH_SHIFT) return SD_SPH_DISORDER;
+  if (sd_sph_shifts(model)) return SD_SPH_DISORDER;
   return model->delta > 0.0 ? SD_SPH_GRADIENT : SD_SPH_RATE;
 }
 

@@ -53,6 +53,7 @@ static int kernel_copy(const sd_sph_model *model)
 BY_RATES(PLAIN)
 BY_KERNEL(SCHEME, SD_SPH_SHIFT)
 BY_KERNEL(SCHEME, SD_SPH_VOLUME)
+BY_KERNEL(SCHEME, SD_SPH_VOLUME_SHIFT)
 BY_KERNEL(SLOPES, 0)
 
 static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
@@ -63,7 +64,8 @@ static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
   static copy *const plain[] = {BY_RATES(PLAIN_ENTRY)};
   static copy *const scheme[][4] = {
       [SD_SPH_SHIFT] = {BY_KERNEL(SCHEME_ENTRY, SD_SPH_SHIFT)},
-      [SD_SPH_VOLUME] = {BY_KERNEL(SCHEME_ENTRY, SD_SPH_VOLUME)}};
+      [SD_SPH_VOLUME] = {BY_KERNEL(SCHEME_ENTRY, SD_SPH_VOLUME)},
+      [SD_SPH_VOLUME_SHIFT] = {BY_KERNEL(SCHEME_ENTRY, SD_SPH_VOLUME_SHIFT)}};
   const int has = 8 * !!with_rates + 4 * !!model->friction + 2 * !!model->tenscorr +
       !!model->artvisc;
   copy *const chosen = model->scheme == SD_SPH_PLAIN
@@ -80,7 +82,7 @@ static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
 static void all_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                       double *rate, const sd_sph_near *near)
 {
-  switch (4 * (model->scheme == SD_SPH_VOLUME) + kernel_copy(model)) {
+  switch (4 * sd_sph_of_fluids(model) + kernel_copy(model)) {
     BY_KERNEL(RATES, 0, 0)
     BY_KERNEL(RATES, 0, 1)
   }
@@ -103,10 +105,11 @@ static double all_slopes(const sd_sph_model *model, const sd_sph_both *list,
     middle(model, list, p, sums, near, kernel, many, level, volume);                              \
   }
 #define LEVEL_ENTRY(level, volume, kernel, many) level##volume##kernel##many,
-/* Volume has neither shift nor correction. */
+/* Volume has no correction. */
 BY_KERNEL(LEVEL, SD_SPH_GRADIENT, 0)
 BY_KERNEL(LEVEL, SD_SPH_GRADIENT, 1)
 BY_KERNEL(LEVEL, SD_SPH_DISORDER, 0)
+BY_KERNEL(LEVEL, SD_SPH_DISORDER, 1)
 BY_KERNEL(LEVEL, SD_SPH_VELOCITY, 0)
 
 static void all_middle(const sd_sph_model *model, const sd_sph_both *list,
@@ -117,9 +120,10 @@ static void all_middle(const sd_sph_model *model, const sd_sph_both *list,
   static copy *const copies[][2][4] = {
       [SD_SPH_GRADIENT] = {{BY_KERNEL(LEVEL_ENTRY, SD_SPH_GRADIENT, 0)},
                            {BY_KERNEL(LEVEL_ENTRY, SD_SPH_GRADIENT, 1)}},
-      [SD_SPH_DISORDER] = {{BY_KERNEL(LEVEL_ENTRY, SD_SPH_DISORDER, 0)}},
+      [SD_SPH_DISORDER] = {{BY_KERNEL(LEVEL_ENTRY, SD_SPH_DISORDER, 0)},
+                           {BY_KERNEL(LEVEL_ENTRY, SD_SPH_DISORDER, 1)}},
       [SD_SPH_VELOCITY] = {{BY_KERNEL(LEVEL_ENTRY, SD_SPH_VELOCITY, 0)}}};
-  const int volume = model->scheme == SD_SPH_VOLUME;
+  const int volume = sd_sph_of_fluids(model);
   copies[sd_sph_level_of(model)][volume][kernel_copy(model)](model, list, p, sums, near);
 }
 

@@ -216,13 +216,45 @@ static void shift_leaves_walls_alone(void **state)
   }
 }
 
+/* Of one fluid du is that of shift alone; a few particles in another fluid have too few of their own
+ * around them, and stay where they are. */
+static void shift_is_off_at_an_interface(void **state)
+{
+  (void) state;
+  scene s;
+  step one, t;
+  wide_scene(&s, SD_SPH_SHIFT, 2, 1);
+  s.p.mass *= 4.0;
+  middle_of(&s, &one, 0.0);
+  s.model.scheme = SD_SPH_VOLUME_SHIFT;
+  for (int i = 0; i < N; i++) s.phase[i] = 0;
+  s.p.phase = s.phase;
+  middle_of(&s, &t, 0.0);
+  double others = 0.0, few = 0.0;
+  for (int i = 0; i < N; i++)
+    for (int d = 0; d < 2; d++) {
+      CHECK_NEAR(t.order[8 * i + 4 + d], one.order[8 * i + 4 + d], 1e-13);
+      if (i % 6 == 0) few = fmax(few, fabs(t.order[8 * i + 4 + d]));
+    }
+  assert_true(few > 0.01);
+  for (int i = 0; i < N; i++) s.phase[i] = i % 6 == 0;
+  middle_of(&s, &t, 0.0);
+  for (int i = 0; i < N; i++)
+    for (int d = 0; d < 2; d++) {
+      if (i % 6 == 0) assert_true(t.order[8 * i + 4 + d] == 0.0);
+      if (i % 6) others = fmax(others, fabs(t.order[8 * i + 4 + d]));
+    }
+  assert_true(others > 0.01);
+}
+
 static void shift_keeps_momentum(void **state)
 {
   (void) state;
-  for (int classes = 1; classes <= 2; classes++) {
+  for (int variant = 0; variant < 4; variant++) {
+    const int classes = 1 + variant % 2;
     scene s;
     step t;
-    wide_scene(&s, SD_SPH_SHIFT, 3, classes);
+    wide_scene(&s, variant / 2 ? SD_SPH_VOLUME_SHIFT : SD_SPH_SHIFT, 3, classes);
     for (int i = 0; i < N; i++) s.m[i] *= 4.0;
     s.p.mass *= 4.0;
     for (int i = 0; i < N; i++) s.P[i] = 0.0;    // the momentum term alone
@@ -365,6 +397,7 @@ int main(void)
                                      cmocka_unit_test(shift_is_the_law),
                                      cmocka_unit_test(shift_sees_neither_drift_nor_rotation),
                                      cmocka_unit_test(shift_leaves_walls_alone),
+                                     cmocka_unit_test(shift_is_off_at_an_interface),
                                      cmocka_unit_test(shift_keeps_momentum),
                                      cmocka_unit_test(central_friction_keeps_both_momenta),
                                      cmocka_unit_test(corrected_friction),
