@@ -330,6 +330,7 @@ FIELD = "variable eta atom 1+0.1*x"
     (f"{INF} rigid_clumps yes rotation yes", "", "use clumps_only yes"),
     (f"{INF} tensor oseen", "", "use tensor rpy"),
     (f"cut_off_distance 4 visc {ETA}", "", "keyword cut_off_distance: '4' of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"cut_off_distance inf wall zlo -99 visc {ETA}", "", "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
     (f"cut_off_distance 4 taper wendland visc {ETA}", "", "keyword taper of pair_style stokes_dynamics: the mobility has a drift"),
     ("cut_off_distance inf visc v_eta", "", "keyword visc of pair_style stokes_dynamics, which varies in space"),
     (INF, "fix step all dt/reset 10 NULL 0.1 0.1", "of style dt/reset makes steps of unequal length"),

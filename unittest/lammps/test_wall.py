@@ -253,7 +253,7 @@ def test_the_edge_of_the_box_is_a_position(simulation):
     assert (edge == at).all()
 
 
-STYLES = {"points": "rotation yes", "doublet": "rotation yes rigid_clumps yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
+STYLES = {"points": "rotation yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
           "films": "rotation yes rigid_clumps yes lubrication yes"}
 
 
