@@ -89,9 +89,10 @@ double spheres_cut_by_wall(LAMMPS *lmp, const std::string &command, const Scene 
     if (height > 0.0) continue;
     fail_one(lmp,
              step + "keyword wall: the centre of atom " + std::to_string(scene.tag(k)) +
-                 ", radius " + text(spheres.a[k]) + ", is " + text(0.0 - height) + " behind the wall " +
-                 wall_name(wall) + ": spheres must stand in front of it; is it on the right side? "
-                 "A contact (fix wall/gran) or a shorter time step keeps them there");
+                 ", radius " + text(spheres.a[k]) + ", is " + text(0.0 - height) +
+                 " behind the wall " + wall_name(wall) +
+                 ": spheres must stand in front of it; is it on the right side? A contact "
+                 "(fix wall/gran) or a shorter time step keeps them there");
   }
   MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
   return cut;

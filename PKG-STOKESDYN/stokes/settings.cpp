@@ -25,7 +25,8 @@ static void refuse_second_wall(LAMMPS *lmp, const std::vector<std::string> &word
   int walls = 0;
   for (size_t k = 0; k + 1 < words.size(); k++) {
     walls += words[k] == "wall" && names_a_side(words[k + 1]);
-    walls += k > 2 && words[k - 3] == "wall" && names_a_side(words[k - 2]) && names_a_side(words[k]);
+    walls += k > 2 && words[k - 3] == "wall" && names_a_side(words[k - 2]) &&
+        names_a_side(words[k]);
   }
   if (walls > 1)
     fail(lmp, std::string(StokesSettings::COMMAND) +
