@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""2000 spheres of 2 micrometres fall through water onto a floor: a second of theirs without inertia, and how long it would take with it.
+"""2000 spheres of 2 micrometres fall through water towards a floor: a second of theirs without inertia, and how long it would take with it.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/micron_floc)
     run.py --update     also refreshes the picture in this folder
@@ -48,7 +48,7 @@ def point_forces(x, floor=True):
 
 def draw(rows, shots, speeds, path):
     plt.rcParams.update({"font.size": 10})
-    figure, axes = plt.subplots(1, 6, figsize=(12, 3.4), layout="constrained", width_ratios=[1] * 5 + [1.5])
+    figure, axes = plt.subplots(1, 6, figsize=(12, 2.7), layout="constrained", width_ratios=[1] * 5 + [1.6])
     for axis, (t, x) in zip(axes, shots):
         axis.scatter(x[:, 0], x[:, 2], s=1.2, c=x[:, 1], cmap="viridis", linewidths=0)
         axis.axhline(0, color="black", lw=2)
@@ -59,7 +59,7 @@ def draw(rows, shots, speeds, path):
     t, with_floor, without = np.transpose(speeds)
     axes[-1].plot(t, without, "C3--", label="same places, no floor")
     axes[-1].plot(t, with_floor, "k.", label="point forces, floor")
-    axes[-1].set(xlabel="time / s", title="mean speed / (um/s)", ylim=(0, None))
+    axes[-1].set(xlabel="time / s", title="mean speed / (um/s)", ylim=(0, 400))
     axes[-1].legend(fontsize=8)
     save(figure, path, 85)
 
@@ -88,13 +88,13 @@ def main():
         print(f"  {t:.2f} s: speed {np.interp(t, rows[1:, 1], rows[1:, 2]):.1f} um/s, point forces {v:.1f}, without floor {free:.1f}; lone {LONE:.3f}")
     print(f"  picture: {out / 'micron_floc.png'}\n")
     c = Checks()
-    c.within("speed over that of point forces and their images in the same places, as it falls: least", min(ratio), 0.94, 1.03)
-    c.within("the same, most", max(ratio), 0.97, 1.06)
+    c.within("speed over that of point forces and their images in the same places, as it falls: least", min(ratio), 0.96, 1.02)
+    c.within("the same, most", max(ratio), 0.98, 1.03)
     c.within("speed at the start over that without floor", speeds[0][1] / speeds[0][2], 0.7, 0.8)
     c.below("largest error figure of a step, in radii", rows[1:, 5].max(), 1e-3)
     c.below("largest overlap of two spheres once it falls, in radii", -rows[1:, 8].min(), 0.02)
-    c.below("largest dent of the floor, in radii", rows[:, 4].max(), 0.05)
-    c.below("it has come down: height of the centre at the end, um", rows[-1, 3], 15.0)
+    c.below("no sphere touches the floor: largest dent of it, in radii", rows[:, 4].max(), 0.0)
+    c.below("it has come down: height of the centre at the end, um", rows[-1, 3], 10.0)
     c.holds("computing with inertia takes more than a thousand times as long", with_inertia > 1000 * computing)
     if given.update:
         shutil.copy(out / "micron_floc.png", HERE)
