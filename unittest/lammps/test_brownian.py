@@ -340,7 +340,7 @@ WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes
         "periodic": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6"),
         "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes"),
         "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes"),
-        "clumps midpoint": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes relative_tolerance 1e-12"),
+        "clumps midpoint": ("f f f", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes relative_tolerance 1e-12"),
         "midpoint": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6")}
 MOVE = "fix move all stokes_dynamics/overdamped temperature {} {}"
 
@@ -399,6 +399,17 @@ def test_numbers_of_the_root_are_told(simulation):
     noise(sim, "noise_tolerance 1e-4").run(0)
     assert products < sim.lmp.extract_fix("move", 0, 1, nrow=9)
     assert sim.lmp.extract_fix("move", 0, 1, nrow=10) < 1e-4 / 3
+
+
+def test_products_in_a_periodic_box_do_not_depend_on_the_number(simulation):
+    """At most 7 of the near part; by the same rule as for 10^5 spheres"""
+    for n, side in ((64, 11.0), (500, 21.8)):
+        m = int(np.ceil(n**(1 / 3)))
+        g = np.indices((m, m, m)).reshape(3, -1).T[:n] * side / m
+        sim = simulation(Spheres(g + np.random.default_rng(2).uniform(-0.2, 0.2, g.shape)), "cut_off_distance inf visc 1.1 far_field_tolerance 1e-3",
+                         fix=False, dt=1e-6, boundary="p p p", box=[(0.0, side)] * 3)
+        noise(sim).run(0)
+        assert 3 <= sim.lmp.extract_fix("move", 0, 1, nrow=9) <= 7
 
 
 # --- what is refused --------------------------------------------------------------------------------------------------------

@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""Cost of Brownian motion, inside LAMMPS on one core.
+
+    brownian.py [N] [STEPS] [PHI]
+
+A step of N spheres (100 000) in a periodic box at volume fraction PHI (0.2) to 1e-3, with a temperature and without, in one process:
+processor time, products of the near part and their ratio. noise_tolerance 0.01."""
+import resource
+import sys
+import tempfile
+
+import from_tests  # noqa: F401
+from from_tests import np
+from system import Simulation, Spheres
+
+
+def lattice(n, phi):
+    """Spheres about the places of a lattice, and the edge of the box"""
+    edge, m = (n * 4 / 3 * np.pi / phi)**(1 / 3), int(np.ceil(n**(1 / 3)))
+    x = (np.indices((m, m, m)).reshape(3, -1).T[:n] + 0.5) * edge / m
+    return x + np.random.default_rng(1).uniform(-0.3, 0.3, x.shape) * max(0.0, edge / m - 2), edge
+
+
+def seconds(n, steps, phi, words):
+    """Processor time of a step; products of the root"""
+    x, edge = lattice(n, phi)
+    with tempfile.TemporaryDirectory() as folder:
+        sim = Simulation(folder, Spheres(x), "cut_off_distance inf visc 1 far_field_tolerance 1e-3", fix=False, dt=1e-5, boundary="p p p",
+                         box=[(0.0, edge)] * 3)
+        sim.commands(f"neighbor 0.6 bin\nfix w all addforce 0 0 -1\nfix move all stokes_dynamics/overdamped {words}").run(1)
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
+        sim.run(steps, "pre no post no")
+        spent = (resource.getrusage(resource.RUSAGE_SELF).ru_utime - before) / steps
+        products = sim.lmp.extract_fix("move", 0, 1, nrow=9)
+        sim.close()
+    return spent, products
+
+
+def main():
+    n, steps, phi = (kind(word) for kind, word in zip((int, int, float), sys.argv[1:] + ["100000", "3", "0.2"][len(sys.argv) - 1:]))
+    still, _ = seconds(n, steps, phi, "")
+    moving, products = seconds(n, steps, phi, "temperature 1 7")
+    print(f"{n} spheres, phi {phi}: {still:.4f} s a step, with Brownian motion {moving:.4f} s, {moving / still:.2f} times as much; "
+          f"{products:.0f} products of the near part")
+
+
+if __name__ == "__main__":
+    main()
