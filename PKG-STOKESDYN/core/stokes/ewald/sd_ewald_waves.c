@@ -183,13 +183,10 @@ static sd_status turn_by(sd_ewald_waves *w, int turn, int *bricks)
   return make_grid(w, &world);
 }
 
-sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
+/* The grid has its bricks. */
+static void find_terms(sd_ewald_waves *w)
 {
-  sd_grid *g = &w->grid;
-  const int turn = better_turn(w, bricks);
-  sd_status status = turn ? turn_by(w, turn, bricks) : SD_OK;
-  if (status == SD_OK) status = sd_grid_place(g, bricks);
-  if (status != SD_OK) return status;
+  const sd_grid *g = &w->grid;
   int equal = 1;
   for (int i = 0; i < w->n; i++) equal = equal && w->place[i].b == 0.0;
   sd_spreading *s = &w->spreading;
@@ -204,12 +201,40 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
   memcpy(s->lo, g->lo, sizeof(s->lo));
   s->row = g->row;
   s->layer = g->layer;
-  return SD_OK;
+}
+
+sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
+{
+  const int turn = better_turn(w, bricks);
+  sd_status status = turn ? turn_by(w, turn, bricks) : SD_OK;
+  if (status == SD_OK) status = sd_grid_place(&w->grid, bricks);
+  if (status == SD_OK) find_terms(w);
+  return status;
+}
+
+sd_status sd_ewald_waves_place_whole(sd_ewald_waves *w)
+{
+  const sd_ewald *e = &w->ewald;
+  const int ranks = w->grid.ranks;
+  int *bricks = calloc(6 * (size_t) ranks, sizeof(int));
+  if (!bricks) return SD_ENOMEMORY;
+  for (int k = 0; k < ranks; k++)
+    for (int d = 0; d < 3; d++)
+      bricks[6 * k + 3 + d] = e->grid[d] + (e->box.periodic ? e->points - 1 : 0);
+  for (int i = 0; i < w->n && e->box.periodic; i++)
+    for (int d = 0; d < 3; d++) {
+      int *at = w->place[i].at + d;
+      *at = (*at % e->grid[d] + e->grid[d]) % e->grid[d];
+    }
+  const sd_status status = sd_grid_place(&w->grid, bricks);
+  free(bricks);
+  if (status == SD_OK) find_terms(w);
+  return status;
 }
 
 /* --- product --- */
 
-sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
+sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
 {
   const long m = w->width, vectors = m / 3 * w->n;
   for (int i = 0; i < w->n; i++) {
@@ -221,7 +246,54 @@ sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const dou
   memset(g->brick, 0, sizeof(double) * ((size_t) (g->layer * g->n[0]) + 16));
   w->spreading.F = u;
   w->kernels->spread(&w->spreading);
-  const sd_status status = sd_grid_convolve(g, sd_wave_multiply, &w->wave);
+  return sd_grid_convolve(g, sd_wave_multiply, &w->wave);
+}
+
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
+{
+  const long vectors = (long) w->width / 3 * w->n;
+  const sd_status status = sd_ewald_waves_convolve(w, s, F, u);
+  if (status == SD_OK) w->kernels->interpolate(&w->spreading);
+  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
+  return status;
+}
+
+/* --- noise --- */
+
+typedef struct {
+  const sd_ewald_waves *waves;
+  sd_random_key key;
+} white;
+
+/* Direction d of the frame is d + turn of the box, and so is component d. */
+static void fill_white(void *ctx, int x, int y, int y_end, long stride, double *const *fields)
+{
+  const white *from = ctx;
+  const sd_ewald_waves *w = from->waves;
+  int size[3], at[3];
+  for (int d = 0; d < 3; d++) size[(d + w->turn) % 3] = w->ewald.grid[d];
+  at[w->turn] = x;
+  for (int k = y; k < y_end; k++) {
+    at[(1 + w->turn) % 3] = k;
+    for (int z = 0; z < w->ewald.grid[2]; z++) {
+      at[(2 + w->turn) % 3] = z;
+      const uint64_t point = ((uint64_t) at[0] * (uint64_t) size[1] + (uint64_t) at[1]) *
+              (uint64_t) size[2] + (uint64_t) at[2];
+      double normals[3];
+      sd_random_normals(&from->key, point, 3, normals);
+      for (int d = 0; d < 3; d++) fields[d][(k - y) * stride + z] = normals[(d + w->turn) % 3];
+    }
+  }
+}
+
+sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, double *u)
+{
+  const long vectors = w->width / 3 * w->n;
+  white from = {w, *key};
+  from.key.purpose = SD_RANDOM_GRID;
+  w->spreading.F = u;
+  const sd_status status =
+      sd_grid_convolve_values(&w->grid, fill_white, &from, sd_wave_multiply_root, &w->wave);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
   for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
   return status;

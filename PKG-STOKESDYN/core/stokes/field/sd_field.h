@@ -1,0 +1,97 @@
+/* The flow around spheres at the points of a regular grid, from the forces and torques on them.
+ *
+ *   u(x) = sum_j [ (1 + a_j^2/6 lap) G(x - x_j) F_j + 1/(8 pi) T_j x (x - x_j)/|x - x_j|^3 ] / eta
+ *
+ * G: Oseen's tensor, over all periodic images where the box is periodic (then against zero flux of
+ * the mixture). It is the mobility of sd_tensor.h with a sphere of radius 0 for the point: within a
+ * sphere its overlapping form, F/(6 pi eta a) + T x (x - x_j)/(8 pi eta a^3), so that nothing
+ * jumps. What flows without the spheres is not in it.
+ *
+ * Points are a grid, because then a window is interpolated one direction after the other and the
+ * near part of a sphere is a few whole rows: 10^6 points cost less than three products of 10^5
+ * spheres.
+ *
+ * Every rank knows all sources and has the points of some planes; the transforms are shared. */
+#ifndef SD_FIELD_H
+#define SD_FIELD_H
+
+#include "sd_ewald.h"
+#include "sd_ewald_waves.h"
+#include "sd_status.h"
+#include "sd_world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Point (i, j, k) at lo + (i, j, k) step; ours are those of the planes from <= k < to.
+ *   lo [3], step [3]   length, step > 0 */
+typedef struct {
+  double lo[3], step[3];
+  int n[3], from, to;
+} sd_field_grid;
+
+/* How many points are ours */
+static inline size_t sd_field_points(const sd_field_grid *g)
+{
+  return (size_t) g->n[0] * (size_t) g->n[1] * (size_t) (g->to - g->from);
+}
+
+/* Spheres, those of all ranks in the same order.
+ *   x [3n]        centres                                 length
+ *   a [n]         radii >= 0; 0: a point force            length
+ *   F, T [3n]     on the fluid, over its viscosity        length velocity, length^2 velocity
+ *                 T NULL: there are none */
+typedef struct {
+  int n;
+  const double *x, *a, *F, *T;
+} sd_field_sources;
+
+/* AUTO: in an open box all pairs or a split sum, whichever costs less, counted */
+typedef enum { SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT } sd_field_sum;
+
+/* What is kept between two fields: tables of the split sum and memory. Zero-initialise;
+ * sd_field_free in the end. */
+typedef struct {
+  /* of the last split sum; the box that an open one was made for */
+  sd_ewald ewald;
+  int ready, width;
+  sd_ewald_waves waves;
+  int degree;
+  double coefficient[SD_RADIALS][SD_RADIAL_TERMS], tail[3];
+  sd_ewald_box around;
+  /* sources and their images as the kernels read them; columns u x, u y, u z of our points */
+  double *source, *column;
+  size_t source_room, column_room;
+} sd_field;
+
+/* The flow u [3 sd_field_points], x fastest, added to what is there.
+ *   box         periodic: where the images are; else only `periodic` = 0 is read
+ *   tolerance   rms error of a split sum over the rms of F/(6 pi eta a): 1e-13 ... 1e-1
+ * On all ranks together. SD_OK, SD_ENOMEMORY, SD_ENOTFINITE for numbers that are none, or what
+ * world said. */
+sd_status sd_field_add(sd_field *f, sd_field_sum how, const sd_ewald_box *box, double tolerance,
+                       const sd_field_sources *s, const sd_field_grid *g, const sd_world *world,
+                       double *u);
+
+void sd_field_free(sd_field *f);
+
+/* Spheres as they move.
+ *   x [3n], a [n], V [6n]   centre, radius, velocity and angular velocity
+ *   jump [9]                by how much the velocity of an image is larger than that of its sphere
+ *                           for each edge of a periodic box, row d: edge d; NULL: by nothing */
+typedef struct {
+  int n;
+  const double *x, *a, *V, *jump;
+} sd_field_bodies;
+
+/* Puts V + W x r in the place of u at our points within a sphere or an image of it, and a 1 into
+ * inside [sd_field_points], 0 elsewhere. Where spheres overlap the point belongs to that of which it
+ * is nearest to the centre, in radii. SD_OK or SD_ENOMEMORY. */
+sd_status sd_field_inside(const sd_field_bodies *b, const sd_ewald_box *box, const sd_field_grid *g,
+                          double *u, unsigned char *inside);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
