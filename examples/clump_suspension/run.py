@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Rigid rods settle in a periodic box, each of five spheres that are shells of points: streams form, rods turn upright. A film of it.
+"""Rigid rods settle in a periodic box, each of five spheres that are shells of points: streams form, rods turn upright.
 
-    run.py --out DIR    results, picture and film go to DIR (default: build/examples/clump_suspension); half as long as the film that is kept
-    run.py --time 60    as long as that film (ten minutes)
-    run.py --time 60 --update     also refreshes picture, film and rods.csv in this folder
+    run.py --out DIR              results and picture go to DIR (default: build/examples/clump_suspension); half as long as the kept picture
+    run.py --time 60 --update     as long as that picture, which is refreshed
+    run.py --film                 also a film of it, in DIR
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -15,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 import film  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, read_table, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
 RODS, LENGTH, BOX = 80, 5, np.array([28.0, 28.0, 70.0])
 SHOWN = (0, 10, 20, 30)
@@ -60,14 +60,16 @@ def lammps(out, tag, rods, ranks=1, **variables):
     return frames.reshape(len(frames), -1, LENGTH, 6), np.array([[float(w) for w in line.split()] for line in table])
 
 
-def directions(frames):
+def along(frames):
+    """From the first to the last sphere of each rod"""
     d = frames[:, :, -1, :3] - frames[:, :, 0, :3]
-    return d / np.linalg.norm(d, axis=-1, keepdims=True)
+    return d - BOX * np.rint(d / BOX)
 
 
 def alignment(frames):
     """Mean of the squared cosine between rods and the vertical: 1/3 at random"""
-    return (directions(frames)[:, :, 2]**2).mean(axis=1)
+    d = along(frames)
+    return (d[:, :, 2]**2 / (d**2).sum(axis=2)).mean(axis=1)
 
 
 def streams(frames):
@@ -115,7 +117,7 @@ def moving(frames, curve, path):
 
 
 def main():
-    given = options(__file__, __doc__, time=30.0)
+    given = options(__file__, __doc__, time=30.0, film=False)
     out, c = given.out, Checks()
     need("lmp", "mpirun")
     for points, limit in ((12, 0.3), (42, 0.1)):
@@ -138,21 +140,20 @@ def main():
     for k in range(0, len(rows), 5):
         print(f"  time {rows[k, 1]:4.0f}: speed over a lone rod {rows[k, 2] / lone:.3f}, alignment {curve['alignment'][k]:.3f}, "
               f"streams {streams(frames)[k]:.3f}, products {rows[k, 4]:.0f}, gap {rows[k, 7]:.3f}")
-    bent = np.linalg.norm(frames[:, :, -1, :3] - frames[:, :, 0, :3], axis=-1) - 2 * (LENGTH - 1)
+    bent = np.linalg.norm(along(frames), axis=-1) - 2 * (LENGTH - 1)
     c.below("largest change of the length of a rod, radii", np.abs(bent).max(), 1e-8)
     c.below("steps whose solve did not converge", rows[-1, 6], 0)
     c.below("products of a step, mean after the first", rows[1:, 4].mean(), 9.0)
     c.below("largest overlap, radii", -rows[:, 7].min(), 0.1)
     c.within("alignment at the beginning", curve["alignment"][0], 0.25, 0.42)
-    c.within("alignment in the last third", curve["alignment"][-len(rows) // 3:].mean(), 0.45, 0.9)
+    c.within("alignment in the last third", curve["alignment"][-len(rows) // 3:].mean(), 0.4, 0.9)
     two, _ = lammps(out, "two", rods, ranks=2, time=0.25, frame=0.25)
     c.below("2 ranks against 1 at time 0.25, radii", np.abs(two[-1] - lammps(out, "one", rods, time=0.25, frame=0.25)[0][-1])[..., :3].max(), 1e-4)
     strip(frames, curve, out / "clump_suspension.png")
-    moving(frames, curve, out / "clump_suspension.gif")
-    c.below("size of the film, MB", (out / "clump_suspension.gif").stat().st_size / 1e6, 2.5)
+    if given.film:
+        moving(frames, curve, out / "clump_suspension.gif")
     if given.update:
-        for name in ("clump_suspension.png", "clump_suspension.gif"):
-            shutil.copy(out / name, HERE)
+        shutil.copy(out / "clump_suspension.png", HERE)
     sys.exit(c.finish())
 
 

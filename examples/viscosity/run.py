@@ -124,7 +124,7 @@ def mean_of_blocks(strain, curve):
 def steady(out, phi, strain, step=0.01):
     rows = sheared(out, f"shear_{phi}", phi, N, strain=strain, step=step, every=5)
     at = rows[:, 0] * step
-    result = dict(phi=phi)
+    result = dict(phi=phi, strain=strain)
     for name, curve in (("viscosity", viscosity_of(rows)), ("films", -rows[:, 10]), ("contacts", -rows[:, 16]),
                         *zip(("N1", "N2"), normal_stresses(rows))):
         result[name], result[name + "_error"] = mean_of_blocks(at, curve)
@@ -163,7 +163,7 @@ def draw(clumps, table, path):
     for k, (model, mark) in enumerate(zip(MODELS, "os")):
         left.plot(place, [found[k] for _, found in clumps.values()], mark, color=f"C{2 * k}", ms=7 - 3 * k, label=model)
     for x, (exact, found) in zip(place, clumps.values()):
-        left.annotate(f"{exact:.3g}\n{100 * (found[0] / exact - 1):+.2f} %", (x, exact), xytext=(0, 5), textcoords="offset points",
+        left.annotate(f"{exact:.3g}\n{100 * (found[0] / exact - 1) + 0.0:+.2f} %", (x, exact), xytext=(0, 5), textcoords="offset points",
                       ha="center", fontsize=8)
     left.set_xticks(place, names, rotation=35, ha="right")
     left.set(ylabel="intrinsic viscosity", ylim=(0, 22), title="rigid clumps, dilute")
