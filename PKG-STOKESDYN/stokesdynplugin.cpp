@@ -7,12 +7,15 @@
 #include "library.h"
 #include "version.h"
 
+#include "compute_sph_energy.h"
+#include "compute_sph_probe.h"
 #include "compute_stokes_dynamics_stress.h"
 #include "fix_check_timestep_sph.h"
 #include "fix_hydro_vans.h"
 #include "fix_nve_sph.h"
 #include "fix_property_global.h"
 #include "fix_sph_density.h"
+#include "fix_sph_energy.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_stokes_dynamics.h"
@@ -104,6 +107,10 @@ static std::vector<lammpsplugin_t> sph_styles()
           fix<FixNveSph>("SPH: time integration"),
           fix<FixPropertyGlobal>("SPH: speed of sound and smoothing length by type"),
           fix<FixSphShift>("internal: memory of the SPH pair style"),
+          fix<FixSphEnergy>("internal: memory of compute sph/energy"),
+          compute<ComputeSphEnergy>("SPH: kinetic, potential, elastic and dissipated energy"),
+          compute<ComputeSphProbe>("SPH: pressure at points, height of the free surface"),
+          compute<ComputeSphSurface>("SPH: free surface"),
           fix<FixNveSphStationary>("SPH: density of particles at rest"),
           fix<FixWallAdamiSph>("SPH: walls of particles"),
           fix<FixWallSph>("SPH: repulsive planes and cylinder"),

@@ -57,6 +57,16 @@ class PairSph : public LAMMPS_NS::Pair {
   double dW_dr(int itype, double r) const;
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
+  /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc
+   * and viscosity): x y z and a number without meaning. Kept while there is a compute sph/energy. */
+  const double *own_forces() const { return own.data(); }
+  const double *own_friction() const { return rubs.data(); }
+  /* [6 n] of each owned particle: sd_sph_moments. Not inside compute; false: no force has been
+   * computed yet. */
+  bool moments(std::vector<double> &M);
+  /* the kernel, for any place */
+  sd_sph_kernel kernel() const { return model.kernel; }
+  int dimension() const { return model.dimension; }
 
  private:
   enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, NPARAMETERS };
@@ -84,7 +94,7 @@ class PairSph : public LAMMPS_NS::Pair {
   FixWallAdamiSph *wall = nullptr;
   FixSphShift *state = nullptr;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
-  bool leapfrog = false, needs_velocity = false;
+  bool leapfrog = false, needs_velocity = false, measured = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
   // comm_modify vel was no
   bool asked_for_velocities = false;
@@ -118,7 +128,7 @@ class PairSph : public LAMMPS_NS::Pair {
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   MovedBox moved_box;
-  Rows x4, v4, f4, sums, weights, order;
+  Rows x4, v4, f4, sums, weights, order, own, rubs;
   std::vector<double> P, masses, rate, each, kick, wall_rows;
   std::vector<int> classes, phases;
   bool used(int itype) const;
@@ -140,6 +150,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void wall_particles();
   void pressures_of_all();
   void forces(bool rates);
+  void keep_forces();
   void check_list();
   [[noreturn]] void coincident();
   void tally();

@@ -4,6 +4,7 @@
 #include "fix_nve_sph.h"
 #include "fix_property_global.h"
 #include "fix_sph_density.h"
+#include "fix_sph_energy.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_wall_adami_sph.h"
@@ -41,6 +42,7 @@ void PairSph::init_style()
   choose_scheme();
   check_groups();
 
+  measured = !fixes_of(lmp, FixSphEnergy::STYLE).empty();
   needs_velocity = model.artvisc || model.friction || continuity;
   // As comm_modify vel yes: each pair must see the same velocities on both sides.
   if (needs_velocity && !comm->ghost_velocity) comm->ghost_velocity = asked_for_velocities = 1;
@@ -147,7 +149,7 @@ void PairSph::choose_scheme()
   // forces on ghosts, which positions times forces would need, are not summed
   no_virial_fdotr_compute = !shared;
   comm_forward = std::max(sd_sph_columns(&model), wall ? 4 : 1);
-  comm_reverse = wall ? 8 : 4;
+  comm_reverse = wall ? 8 : 6;
 }
 
 void PairSph::check_groups()

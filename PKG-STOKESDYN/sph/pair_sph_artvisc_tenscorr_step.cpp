@@ -10,6 +10,7 @@
 #include "lammps_compat.h"
 #include "sd_sph_density.h"
 #include "sd_sph_order.h"
+#include "sd_sph_probe.h"
 #include "sd_sph_step.h"
 #include "sd_sph_wall.h"
 
@@ -378,6 +379,31 @@ void PairSph::forces(bool rates)
     for (int i = 0; i < receivers; i++)
       if (atom->mask[i] & continuity->groupbit) atom->drho[i] += f4[4 * (size_t) i + 3];
   if (pairwise) tally();
+  if (measured) keep_forces();
+}
+
+/* The forces as their owners have them, and friction: the same loop without pressure. */
+void PairSph::keep_forces()
+{
+  const int n = particles.n;
+  own = f4;
+  reverse(own.data(), 4);
+  if (corrects)
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < 3; d++)
+        own[4 * (size_t) i + d] += Sph::mass(lmp, i) * kick[3 * (size_t) i + d];
+  rubs.assign(f4.size(), 0.0);
+  if (!model.artvisc && !model.friction) return;
+  sd_sph_model friction = model;
+  friction.tenscorr = 0;
+  if (!corrects) friction.scheme = SD_SPH_PLAIN;
+  for (int i = 0; i < n; i++) x4[4 * (size_t) i + 3] = 0.0;
+  const sd_sph_both close = near.both(atom->nlocal);
+  if (corrects)
+    sd_sph_corrected_forces(&friction, &close, &particles, rubs.data(), nullptr);
+  else
+    sd_sph_forces(&friction, &pairs, &particles, 0, rubs.data(), nullptr);
+  reverse(rubs.data(), 4);
 }
 
 /* For the virial. With correction F is not opposite on the two: each has its half of F d. */
@@ -431,6 +457,18 @@ void PairSph::largest_approach(std::vector<double> &largest)
   largest.assign(particles.n + 1, 0.0);
   sd_sph_approach(&model, &pairs, &particles, largest.data());
   reverse(largest.data(), 1, true);
+}
+
+bool PairSph::moments(std::vector<double> &M)
+{
+  if (x4.empty()) return false;
+  prepare();
+  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
+  sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());
+  M.assign(6 * (size_t) (particles.n + 1), 0.0);
+  sd_sph_moments(&model, &pairs, &particles, M.data());
+  reverse(M.data(), 6);
+  return true;
 }
 
 double PairSph::dW_dr(int itype, double r) const

@@ -179,6 +179,7 @@ void ClumpShapes::solve(const ClumpModel &model)
     if (!clump.table) fail_one(lmp, command + ": keyword rigid_clumps: out of memory");
     s.clump = clump;
     MPI_Bcast(s.clump.table, size, MPI_DOUBLE, root, world);
+    sd_clump_noise_of(&s.clump, &s.noise);
     announce(s, r.seconds);
   }
   if (!shapes.empty()) solved = std::max(solved, shapes.rbegin()->first);

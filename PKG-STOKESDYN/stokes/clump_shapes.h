@@ -7,6 +7,7 @@
 
 #include "sd_body_shape.h"
 #include "sd_clump.h"
+#include "sd_clump_noise.h"
 #include "sd_multiblob_shape.h"
 
 #include <cstdint>
@@ -30,6 +31,7 @@ struct ClumpShape {
   int64_t molecule;    // of the first of its kind
   sd_shape shape = {};
   sd_clump clump = {};
+  sd_clump_noise noise = {};
   /* made by ClumpShapes::blocks() */
   mutable sd_body_shape body = {};
   /* made by ClumpShapes::points() */

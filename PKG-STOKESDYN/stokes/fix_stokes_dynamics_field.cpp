@@ -69,7 +69,10 @@ Hydrodynamics &FixStokesDynamicsField::hydrodynamics() const
 
 void FixStokesDynamicsField::init()
 {
-  hydrodynamics();
+  if (hydrodynamics().settings.scene.wall.sign)
+    fail(lmp,
+         COMMAND + ": the pair style has keyword wall, whose images are not in the flow that this fix "
+                   "knows; use it without a wall");
   const int directions = domain->xperiodic + domain->yperiodic + domain->zperiodic;
   if (directions != 0 && directions != 3)
     fail(lmp,

@@ -32,7 +32,7 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), motion(3), before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), motion(3), random(3), before(9), output(9)
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({
@@ -51,17 +51,21 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
                      "'");
        }},
       {"held", [&] { held = in.word(); }},
+      {"temperature", [&] { noise.read_temperature(in); }},
+      {"noise_tolerance", [&] { noise.read_tolerance(in); }},
   });
+  in.require(in.given("temperature") || !in.given("noise_tolerance"),
+             "keyword noise_tolerance requires a temperature");
   time_integrate = 1;
   dynamic_group_allow = 0;
   nevery = adapt.every ? adapt.every : 1;
   restart_global = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 9;
+  size_vector = 11;
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  keep({&motion, &before, &output}, &output, true);
+  keep({&motion, &random, &before, &output}, &output, true);
 }
 
 int FixStokesDynamicsOverdamped::setmask()
@@ -89,6 +93,7 @@ void FixStokesDynamicsOverdamped::init()
     for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
   }
   refuse_inertia(lmp, COMMAND, this, hydrodynamics(), {adapt.every > 0, held_bit});
+  if (noise.on()) noise.init(hydrodynamics(), this, adapt.every > 0, held_bit);
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------
@@ -167,10 +172,14 @@ void FixStokesDynamicsOverdamped::after_setup()
 void FixStokesDynamicsOverdamped::announce()
 {
   const Ambient &ambient = hydrodynamics().ambient;
-  double drag = INFINITY;
-  for (int i : ambient.who()) drag = std::min(drag, ambient.drag(i));
-  MPI_Allreduce(MPI_IN_PLACE, &drag, 1, MPI_DOUBLE, MPI_MIN, world);
-  announce_step_limit(lmp, COMMAND, scheme == EULER, drag);
+  double least[2] = {INFINITY, INFINITY};    // drag, radius
+  for (int i : ambient.who()) {
+    least[0] = std::min(least[0], ambient.drag(i));
+    least[1] = std::min(least[1], atom->radius[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_DOUBLE, MPI_MIN, world);
+  announce_step_limit(lmp, COMMAND, scheme == EULER, least[0]);
+  if (noise.on()) noise.announce(hydrodynamics(), least[1], least[0]);
   announced = true;
 }
 
@@ -213,6 +222,8 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     }
     std::copy_n(v, 3, motion.give(i));
   }, held_bit ? [this](int i, double *V) { return given_velocity(i, V); } : Velocities::Held());
+  if (noise.on())
+    noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
   last.step = update->ntimestep;
 }
 
@@ -277,10 +288,20 @@ void FixStokesDynamicsOverdamped::move_free(int i)
     x[d] += dt * mean[d];
     change[d] = V[d] - old[d];
   }
+  double distance = dt * sqrt(sd_dot(mean, mean));
+  if (noise.on()) {
+    const double scale = noise.scale(dt), *y = random[i];
+    double step[3];
+    for (int d = 0; d < 3; d++) {
+      x[d] += scale * y[d];
+      step[d] = dt * mean[d] + scale * y[d];
+    }
+    distance = sqrt(sd_dot(step, step));
+  }
   double *row = before.give(i);
   std::copy_n(V, 3, row);
   std::copy_n(x, 3, row + 6);
-  moves(i, dt * sqrt(sd_dot(mean, mean)), sqrt(sd_dot(change, change)));
+  moves(i, distance, sqrt(sd_dot(change, change)));
 }
 
 void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
@@ -298,6 +319,25 @@ std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
   });
 }
 
+/* The point by which a clump is moved, from its centroid in the axes of its shape: with noise the centre
+ * of mobility, where there is no drift. */
+const double *FixStokesDynamicsOverdamped::tracked(const Velocities::Clump &clump) const
+{
+  static const double CENTROID[3] = {0.0, 0.0, 0.0};
+  return noise.on() ? clump.body->shape->noise.centre : CENTROID;
+}
+
+/* V [6] of that point and W */
+void FixStokesDynamicsOverdamped::tracked_velocity(const Velocities::Clump &clump,
+                                                   double V[6]) const
+{
+  double arm[3], turning[3];
+  sd_multiply3(clump.pose, tracked(clump), arm);
+  sd_cross(clump.V + 3, arm, turning);
+  std::copy_n(clump.V, 6, V);
+  for (int d = 0; d < 3; d++) V[d] += turning[d];
+}
+
 /* Positions are those of images side by side: an atom moves as its image does, less what the edges
  * of the box between them have moved since. */
 void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
@@ -310,21 +350,28 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   std::vector<double> x, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
   double box[6];
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
-  for (const auto &clump : motion.clumps) {
+  const double scale = noise.on() ? noise.scale(update->dt) : 0.0;
+  for (size_t number = 0; number < motion.clumps.size(); number++) {
+    const Velocities::Clump &clump = motion.clumps[number];
     if (clump.held) continue;
     const RigidClumps::Body &body = *clump.body;
     const sd_shape &shape = body.shape->shape;
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
     const bool has = row[0] != 0.0;
     const double c = scheme == AB2 && has && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
-    double pose[12], old[6], mean[6], turn[9], change = 0.0;
+    double pose[12], now_V[6], old[6], mean[6], turn[9], change = 0.0;
+    tracked_velocity(clump, now_V);
     at_image(row + 1, clump.pose + 9, old);
     x.resize(3 * (size_t) body.n);
     std::copy_n(clump.pose, 12, pose);
-    sd_mean_velocity(6, clump.V, old, c, mean);
+    sd_mean_velocity(6, now_V, old, c, mean);
     for (int d = 0; d < 3 && has; d++)
-      change += fabs(clump.V[d] - old[d]) + shape.size * fabs(clump.V[3 + d] - old[3 + d]);
-    sd_pose_advance(pose, mean, update->dt, body.n, shape.x, turn, x.data());
+      change += fabs(now_V[d] - old[d]) + shape.size * fabs(now_V[3 + d] - old[3 + d]);
+    for (int d = 0; d < 6; d++) {
+      mean[d] *= update->dt;
+      if (noise.on()) mean[d] += scale * noise.of_clump(number)[d];
+    }
+    sd_pose_step(pose, tracked(clump), mean, body.n, shape.x, turn, x.data());
     for (int k = 0; k < body.n; k++) {
       const size_t m = motion.member_of(clump, k);
       double *row = &rows[COLUMNS * m];
@@ -332,7 +379,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
       row[CHANGE] = change;
       for (int d = 0; d < 3; d++) row[STEP + d] = x[3 * (size_t) k + d] - whole.x[3 * m + d];
       Lattice::add(box, &whole.steps[3 * m], row + STEP);
-      std::copy_n(clump.V, 6, row + V);
+      std::copy_n(now_V, 6, row + V);
       std::copy_n(pose + 9, 3, row + PLACE);
       std::copy_n(turn, 9, row + TURN);
     }

@@ -7,6 +7,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
+#include "noise.h"
 #include "rows_fix.h"
 #include "velocities.h"
 
@@ -43,14 +44,18 @@ class FixStokesDynamicsOverdamped : public RowsFix {
     double tmin, tmax, xmax;
   } adapt;
 
+  Noise noise;
+
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
   AtomRows motion;
+  /* [3] y of a free sphere (noise.h) */
+  AtomRows random;
   /* those whose velocity is given, empty: nobody; and the groups that fix move moves */
   std::string held;
   int held_bit = 0, moved_bits = 0;
   /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump,
-   * was put by it: when LAMMPS has made an image of it since, v_old is that of the image */
+   * was put by it; U is that of the point by which the clump is moved: when LAMMPS has made an image of it since, v_old is that of the image */
   AtomRows before;
   /* of a member of a clump: has it such a row, and which? */
   enum { BEFORE = 10 };
@@ -79,6 +84,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool causes_stand(const Hydrodynamics &) const;
   void set_step(double dt);
   void announce();
+  const double *tracked(const Velocities::Clump &clump) const;
+  void tracked_velocity(const Velocities::Clump &clump, double V[6]) const;
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
   bool is_held(int i) const { return atom->mask[i] & held_bit; }

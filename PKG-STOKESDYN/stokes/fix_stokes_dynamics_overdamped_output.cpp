@@ -36,7 +36,19 @@ double FixStokesDynamicsOverdamped::compute_scalar()
 
 double FixStokesDynamicsOverdamped::compute_vector(int k)
 {
-  enum { SPEED, ERROR, DISPLACEMENT, PRODUCTS, RESIDUAL, SOLVES, UNCONVERGED, GAP, STEP };
+  enum {
+    SPEED,
+    ERROR,
+    DISPLACEMENT,
+    PRODUCTS,
+    RESIDUAL,
+    SOLVES,
+    UNCONVERGED,
+    GAP,
+    STEP,
+    NOISE_PRODUCTS,
+    NOISE_ERROR
+  };
   hydrodynamics();    // an error if there is none
   const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
   if (!memory) return 0.0;
@@ -63,6 +75,10 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
       return smallest_gap();
     case STEP:
       return update->dt;
+    case NOISE_PRODUCTS:
+      return noise.report().products;
+    case NOISE_ERROR:
+      return noise.report().error;
   }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
@@ -98,11 +114,13 @@ double FixStokesDynamicsOverdamped::error_figure() const
     for (int k = 0; k < clump.body->n; k++) {
       const sd_shape &shape = clump.body->shape->shape;
       const double *row = &all_before[BEFORE * moving.member_of(clump, k)];
-      double arm[3], change[3];
+      double now_V[6], from[3], arm[3], change[3];
       if (row[0] == 0.0) continue;
+      tracked_velocity(clump, now_V);
       at_image(row + 1, clump.pose + 9, old);
-      for (int d = 0; d < 6; d++) old[d] = clump.V[d] - old[d];
-      sd_multiply3(clump.pose, shape.x + 3 * (size_t) k, arm);
+      for (int d = 0; d < 6; d++) old[d] = now_V[d] - old[d];
+      sd_minus(shape.x + 3 * (size_t) k, tracked(clump), from);
+      sd_multiply3(clump.pose, from, arm);
       sd_cross(old + 3, arm, change);
       for (int d = 0; d < 3; d++) change[d] += old[d];
       most = std::max(most, sqrt(sd_dot(change, change)) / shape.a[k]);

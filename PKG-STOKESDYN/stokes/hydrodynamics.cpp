@@ -3,6 +3,7 @@
 #include "callback.h"
 #include "checks.h"
 #include "keywords.h"
+#include "plane_wall.h"
 
 #include "sd_linear.h"
 
@@ -68,8 +69,11 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
 void Hydrodynamics::init()
 {
   ambient.init();
+  scene.settings.positive = false;
   scene.init();
-  warned_unconverged = looked_at_clumps = looked_at_flow = false;
+  find_wall(lmp, COMMAND, scene.settings);
+  check_stream_at_wall(lmp, COMMAND, scene.settings.wall, ambient.settings);
+  warned_unconverged = warned_cut = looked_at_clumps = looked_at_flow = false;
 }
 
 void Hydrodynamics::begin()
@@ -170,6 +174,7 @@ void Hydrodynamics::stand()
   films_power.clear();
   if (!settings.lubrication.on || !ambient.varies()) return;
   solvers = ambient.who();
+  if (settings.rigid.on) mobile.find();
   surround();
   read_motion();
   lubrication.place(scene, ambient);
@@ -180,6 +185,7 @@ void Hydrodynamics::surround()
 {
   if (standing) return;
   scene.stand(solvers, ambient);
+  scene.turn_shells();
   scene.surround_films();
 }
 
@@ -232,6 +238,18 @@ void Hydrodynamics::solve()
   keep();
 }
 
+void Hydrodynamics::look_at_wall()
+{
+  if (!settings.scene.wall.sign) return;
+  const double cut = spheres_cut_by_wall(lmp, COMMAND, scene);
+  if (cut == 0.0 || warned_cut) return;
+  warned_cut = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   COMMAND + ": keyword wall: " + text(cut) + " spheres cut the wall " +
+                       wall_name(scene.settings.wall) + ": they move as if they touched it");
+}
+
 /* The spheres of this solve, and what may be wrong with how they stand. */
 void Hydrodynamics::place()
 {
@@ -239,6 +257,7 @@ void Hydrodynamics::place()
   scene.set_open_box(memory->global.open_box);
   scene.update(solvers, ambient);
   standing = true;
+  look_at_wall();
   memory->global.open_box = scene.open_box();
   if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && !looked_at_flow)
     warn_of_misfit(lmp, COMMAND, ambient.misfit());

@@ -111,7 +111,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Velocities mobile;
   Preconditioner preconditioner;
   TimeStepGuard guard;
-  bool warned_unconverged = false, looked_at_clumps = false, looked_at_flow = false;
+  bool warned_unconverged = false, warned_cut = false, looked_at_clumps = false, looked_at_flow = false;
   /* those whose rows are here (Ambient::selection) */
   long selection = -1;
 
@@ -134,6 +134,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
+  void look_at_wall();
   sd_system gather();
   // spheres as shells of points, or clumps with shells that interact
   bool joined() const

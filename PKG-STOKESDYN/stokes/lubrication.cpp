@@ -2,6 +2,10 @@
 
 #include "keywords.h"
 
+#include "sd_linear.h"
+#include "sd_multiblob_wall.h"
+#include "sd_wall_film.h"
+
 #include "comm.h"
 
 #include <algorithm>
@@ -74,6 +78,35 @@ void Lubrication::place(Scene &where, const Ambient &ambient)
   scene.world.reduce = Scene::reduce;
   scene.world.sum = Scene::sum;
   check(sd_lubrication_place(&near, &scene));
+  if (where.settings.wall.sign) add_wall(where);
+}
+
+/* The film of each sphere at its own height; its floor is in radii of the sphere. */
+void Lubrication::add_wall(const Scene &where)
+{
+  const sd_wall &wall = where.settings.wall;
+  const sd_spheres s = where.local();
+  const sd_multiblob *model = shells ? &where.shells->model() : nullptr;
+  std::vector<double> r(model ? 3 * model->n : 0), work(model ? sd_multiblob_wall_work(model) : 0);
+  double normal[3] = {0.0};
+  normal[wall.axis] = wall.sign;
+  for (size_t k = 0; k < (size_t) where.size(); k++) {
+    const double *x = s.x + 3 * k, *flow = &u[6 * k], eta = 1.0 / (s.w[k] * s.w[k]);
+    double B[36], E[6];
+    if (model) {
+      for (int p = 0; p < model->n; p++) {
+        sd_multiply3(where.shells->turns() + 9 * k, model->r + 3 * p, &r[3 * p]);
+        for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];
+      }
+      check(sd_multiblob_wall_film(model, &wall, x, s.a[k], r.data(), shells->one_body, settings.gap,
+                                   eta, flow, B, E, work.data()));
+    } else {
+      const sd_wall_film film = sd_wall_film_at(s.a[k], sd_wall_height(&wall, x), settings.gap);
+      sd_wall_film_matrix(&film, normal, eta, B);
+      sd_wall_film_flow(&film, normal, eta, flow, E);
+    }
+    sd_lubrication_add_own(&near, (int) k, B, E);
+  }
 }
 
 void Lubrication::forces(const double *v, double *out)

@@ -1,4 +1,5 @@
-/* Lubrication between the spheres of a step (sd_lubrication.h): LAMMPS's atoms to the core. */
+/* Lubrication between the spheres of a step (sd_lubrication.h), and between them and a wall
+ * (sd_wall_film.h, sd_multiblob_wall.h): LAMMPS's atoms to the core. */
 #ifndef SD_STOKES_LUBRICATION_H
 #define SD_STOKES_LUBRICATION_H
 
@@ -46,6 +47,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   sd_films films = {};
   std::vector<double> u;
 
+  void add_wall(const Scene &where);
   void provide(double largest, double smallest);
   void check(sd_status status) const;
 };

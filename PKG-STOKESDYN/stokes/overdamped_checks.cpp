@@ -43,7 +43,7 @@ static Pair *pair_named(LAMMPS *lmp, const char *name)
  * file: k_n k_t gamma_n gamma_t friction */
 struct Contact {
   const char *style = nullptr;
-  double k = 0.0, damping = 0.0;
+  double k = 0.0, damping = 0.0, friction = 0.0;
 };
 
 static Contact contact_of(LAMMPS *lmp)
@@ -63,6 +63,7 @@ static Contact contact_of(LAMMPS *lmp)
     contact.style = style;
     contact.k = settings[0];
     contact.damping = std::max(settings[2], settings[3]);
+    contact.friction = settings[4];
   }
   return contact;
 }
@@ -144,14 +145,36 @@ void refuse_inertia(LAMMPS *lmp, const std::string &command, const Fix *self,
              "NULL with gamma_n 0) and dampflag 0");
 }
 
+/* Is there a fix of this style? */
+static bool has_fix(LAMMPS *lmp, const char *pattern)
+{
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    if (utils::strmatch(lmp->modify->fix[i]->style, pattern)) return true;
+  return false;
+}
+
+void refuse_friction(LAMMPS *lmp, const std::string &keyword)
+{
+  const Contact contact = contact_of(lmp);
+  if (contact.friction > 0.0)
+    fail(lmp,
+         keyword + "pair_style " + contact.style + " has friction (" + text(contact.friction) +
+             "), which goes by velocities without noise: use 0");
+  const bool walls = has_fix(lmp, "^wall/gran");
+  if (!walls && !lmp->force->pair_match("^granular", 0, 1)) return;
+  if (lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        keyword + "contacts of " + (walls ? "fix wall/gran" : "pair_style granular") +
+                            " must have no friction, which goes by velocities without noise, and this "
+                            "cannot be seen from here");
+}
+
 void announce_step_limit(LAMMPS *lmp, const std::string &command, bool euler, double smallest_drag)
 {
   Force *force = lmp->force;
   const double part = euler ? 0.78 : 0.39;
   const Contact contact = contact_of(lmp);
-  bool walls = false;
-  for (int i = 0; i < lmp->modify->nfix; i++)
-    walls = walls || utils::strmatch(lmp->modify->fix[i]->style, "^wall/gran");
+  const bool walls = has_fix(lmp, "^wall/gran");
   const bool granular = force->pair_match("^granular", 0, 1) != nullptr;
   const bool others = strcmp(force->pair_style, "stokes_dynamics") != 0 || force->bond || walls;
   if (!others || lmp->comm->me != 0) return;

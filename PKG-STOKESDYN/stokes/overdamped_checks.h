@@ -25,6 +25,10 @@ struct OverdampedWays {
 void refuse_inertia(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const LAMMPS_NS::Fix *self,
                     const Hydrodynamics &hydro, const OverdampedWays &ways);
 
+/* With Brownian motion: contacts with friction, whose damping has no noise; keyword begins the message. A
+ * warning for contacts that do not tell. */
+void refuse_friction(LAMMPS_NS::LAMMPS *lmp, const std::string &keyword);
+
 /* Once a run, when something besides the pair style acts on the spheres: how long a step contacts
  * and bonds allow. A contact of stiffness k relaxes at the rate lambda k/(6 pi eta a), lambda up to
  * 2.6 in dense packings, and a scheme is stable while that times the step is below 1 (ab2) or 2

@@ -174,7 +174,7 @@ void PairStokesDynamics::init_style()
     fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
   require_atoms();
   const Scene::Settings &scene = hydro.settings.scene;
-  if (scene.everybody()) check_boundaries(lmp, COMMAND, scene);
+  if (scene.everybody() && !scene.wall.sign) check_boundaries(lmp, COMMAND, scene);
   if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
     fail(lmp, COMMAND + ": keyword precondition: 'waves' requires a periodic box");
   const bool may_precondition = hydro.settings.algorithm == StokesSettings::GRADIENTS &&

@@ -104,6 +104,19 @@ void Preconditioner::group_by_molecule()
     member.insert(member.end(), clump.second.begin(), clump.second.end());
     first.push_back(member.size());
   }
+  if (scene.settings.wall.sign) add_lone();
+}
+
+/* A sphere near a wall is a clump with its image. */
+void Preconditioner::add_lone()
+{
+  std::vector<char> bound(n + 1, 0);
+  for (int i : member) bound[i] = 1;
+  for (int i = 0; i < n; i++) {
+    if (bound[i] || !(spheres().a[i] > 0.0)) continue;
+    member.push_back(i);
+    first.push_back(member.size());
+  }
 }
 
 /* A clump may lie across a periodic boundary. */

@@ -60,6 +60,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   void refresh_places();
   void find_positions();
   void group_by_molecule();
+  void add_lone();
   void put_side_by_side();
   sd_status put();
   static sd_status apply(void *ctx, const double *r, double *z);

@@ -162,10 +162,7 @@ void Scene::surround_films()
 void Scene::update(const std::vector<int> &who, const Ambient &ambient)
 {
   stand(who, ambient);
-  if (shells) {
-    shells->free_rows(size());
-    orient();
-  }
+  turn_shells();
   if (settings.everybody()) {
     const std::vector<double> there = x;    // the sum over an open cloud takes its origin along
     engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
@@ -180,7 +177,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     } else {
       x = there;
       gather();
-      somebody_sees = n_all * points() > 1;
+      somebody_sees = n_all * points() > (settings.wall.sign ? 0 : 1);
       if (settings.films > 0.0) surround_films();
       place(n_all);
     }
@@ -231,7 +228,7 @@ void Scene::find_pairs()
   } else
     status = sd_neighbors_cutoff(&candidates, x.data(), n, n_all, reach);
   if (status != SD_OK) out_of_memory();
-  int sees = candidates.first[n] > 0, any;
+  int sees = candidates.first[n] > 0 || (settings.wall.sign && n > 0), any;
   MPI_Allreduce(&sees, &any, 1, MPI_INT, MPI_MAX, world);
   somebody_sees = any;
   others = false;

@@ -38,11 +38,16 @@ class Scene : protected LAMMPS_NS::Pointers {
     bool whole = false;
     /* films reach so far, in largest radii, centre to centre; 0: there are none */
     double films = 0.0;
+    /* one plane wall, sign 0: none; at_edge: it is that side of the box, found before a run */
+    sd_wall wall = {};
+    bool at_edge = false;
     /* how everybody sees everybody: all pairs, Ewald sums, or what costs less */
     enum { AUTO, DIRECT, EWALD };
     int far_field = AUTO;
     /* error of a product by Ewald sums over the rms of F/(6 pi eta a) */
     double far_field_tolerance = 0.0;
+    /* periodic sums are split into two positive parts, for noise */
+    bool positive = false;
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
   } settings;
 
@@ -62,6 +67,12 @@ class Scene : protected LAMMPS_NS::Pointers {
   Shells *shells = nullptr;
   /* With shells: turns those of clumps, when the rows stand */
   std::function<void()> orient;
+  void turn_shells()
+  {
+    if (!shells) return;
+    shells->free_rows(size());
+    orient();
+  }
 
   // --- rows
 
@@ -130,10 +141,11 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
   /* Does one sphere see another, or an image of itself, on any rank? Does that of row k see
-   * nobody? */
+   * nobody? Near a wall every sphere sees itself. */
   bool anybody_sees() const { return somebody_sees; }
   bool alone(int k) const
   {
+    if (settings.wall.sign) return false;
     return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
   /* View NEAR; else nullptr */
@@ -142,7 +154,10 @@ class Scene : protected LAMMPS_NS::Pointers {
    * on the last one. */
   std::vector<double> open_box() const;
   void set_open_box(const std::vector<double> &box);
-  sd_law law() const { return {settings.tensor, settings.taper, settings.cutoff}; }
+  sd_law law() const
+  {
+    return {settings.tensor, settings.taper, settings.cutoff, settings.wall};
+  }
 
   /* View ALL: the spheres of all ranks that take part, in order of tag, the same on every rank. */
   int cloud_size() const { return n_all; }

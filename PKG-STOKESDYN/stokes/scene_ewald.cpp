@@ -103,8 +103,9 @@ bool Scene::split()
   ewald.count = sizes.all.count;
   if (sizes.all.count == 0.0) return must;
   const double all_pairs = sizes.all.count * sizes.all.count;
-  const sd_status status =
-      sd_ewald_choose(&box, &sizes, width(), settings.far_field_tolerance, &ewald);
+  const auto choose =
+      settings.positive && box.periodic ? sd_ewald_choose_positive : sd_ewald_choose;
+  const sd_status status = choose(&box, &sizes, width(), settings.far_field_tolerance, &ewald);
   ewald.box = box;
   if (status != SD_OK && must)
     fail(lmp,

@@ -12,11 +12,35 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+/* Of the keyword wall */
+static bool names_a_side(const std::string &word)
+{
+  for (const char *side : {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"})
+    if (word == side) return true;
+  return false;
+}
+
+static void refuse_second_wall(LAMMPS *lmp, const std::vector<std::string> &words)
+{
+  int walls = 0;
+  for (size_t k = 0; k + 1 < words.size(); k++) {
+    walls += words[k] == "wall" && names_a_side(words[k + 1]);
+    walls += k > 2 && words[k - 3] == "wall" && names_a_side(words[k - 2]) && names_a_side(words[k]);
+  }
+  if (walls > 1)
+    fail(lmp, std::string(StokesSettings::COMMAND) +
+                  ": keyword wall: there is one plane wall. The images of two walls, or of a corner, "
+                  "do not add up to their flow: leave out the farther one, which at 25 radii is "
+                  "worth 3 %");
+}
+
 StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &words)
 {
   Keywords in(lmp, COMMAND, words);
+  refuse_second_wall(lmp, words);
   parse(in);
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
+  rigid.clumps_only = scene.clumps_only;
   check(in);
   if (!grid_file.empty()) {
     ambient.grid =
@@ -28,13 +52,13 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (scene.far_field_tolerance == 0.0)
     scene.far_field_tolerance = std::max(1e-13, 0.1 * tolerance);
   // What Ewald sums have not got.
-  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE)
+  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE || scene.wall.sign)
     scene.far_field = Scene::Settings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1 || shells.on()) scene.rotation = true;
   if (shells.on() && !in.given("lubrication_range")) lubrication.range = 1.0;
   rigid.rotation = scene.rotation;
-  rigid.clumps_only = scene.clumps_only;
+  if (scene.wall.sign) shells.one_body = false;
   in.require(!scene.rotation || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rotation: yes is not available with tensor oseen, whose point forces do not "
              "rotate");
@@ -126,6 +150,12 @@ void StokesSettings::parse(Keywords &in)
       {"lubrication", [&] { lubrication.on = in.yes_no(); }},
       {"lubrication_gap", [&] { lubrication.gap = smallest_gap(in); }},
       {"lubrication_range", [&] { lubrication.range = largest_gap(in); }},
+      {"wall", [&] {
+         const size_t side = in.choice({"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"});
+         scene.wall = {(int) side / 2, side % 2 ? -1 : 1, 0.0};
+         scene.at_edge = in.take("EDGE");
+         if (!scene.at_edge) scene.wall.at = in.number();
+       }},
       {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
       {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
       {"far_field_tolerance", [&] {
@@ -172,6 +202,27 @@ void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) con
                  "' must be below lubrication_range, " + text(lubrication.range));
 }
 
+/* What there is no image for */
+void StokesSettings::check_wall(const Keywords &in) const
+{
+  if (!scene.wall.sign) return;
+  in.require(scene.tensor != SD_TENSOR_OSEEN,
+             "keyword wall is not available with tensor oseen: use tensor rpy");
+  in.require(scene.far_field != Scene::Settings::EWALD,
+             "keyword wall is not available with far_field ewald, whose sums know no images in a "
+             "wall: use far_field auto, which takes all pairs");
+  in.require(precondition != Preconditioner::WAVES,
+             "keyword wall: precondition waves is for periodic boxes: use precondition auto");
+  in.require(!rigid.apart(),
+             "keyword wall: with clumps_only yes rigid clumps have a resistance that is computed "
+             "once, without the wall: use cut_off_distance inf and multiblob 12");
+  in.require(rigid.shell == 1,
+             "keyword wall: a shell is computed once, without the wall: use multiblob 12 in its "
+             "place");
+  in.require(!in.given("one_body") || !shells.one_body,
+             "keyword wall: one_body yes has not been tried near a wall: leave it out");
+}
+
 /* Which keywords go together. */
 void StokesSettings::check(const Keywords &in) const
 {
@@ -198,6 +249,7 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
              "keyword far_field: 'ewald' is not available with tensor oseen");
   check_close_spheres(in, all_pairs);
+  check_wall(in);
   in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
              "keyword precondition: 'sparse' requires algorithm 2");
   in.require(precondition != Preconditioner::WAVES || (all_pairs && algorithm == GRADIENTS),

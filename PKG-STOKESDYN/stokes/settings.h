@@ -43,6 +43,7 @@ struct StokesSettings {
 
   void parse(class Keywords &in);
   void check(const class Keywords &in) const;
+  void check_wall(const class Keywords &in) const;
   void check_close_spheres(const class Keywords &in, bool all_pairs) const;
 };
 

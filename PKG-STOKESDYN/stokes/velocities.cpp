@@ -214,7 +214,9 @@ void Velocities::arrange()
   loner.clear();
   whole.assign(n + 1, 0);
   arm.assign(3 * n + 3, 0.0);
-  for (int k = 0; k < scene.lone(); k++) {
+  /* rows of clumps that are not rigid are free spheres as well */
+  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
+  for (int k = 0; k < free_ones; k++) {
     whole[k] = k;
     loner.push_back(k);
   }

@@ -118,6 +118,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   std::vector<int> sphere;
   std::vector<double> r, slope, moved_with;
   sd_multiblob_mobility of_points = {};
+  sd_faces faces = {};
+  std::vector<char> whole_shells;
   /* [bodies] of the solve */
   std::vector<char> is_held;
   std::vector<sd_body> shaped;

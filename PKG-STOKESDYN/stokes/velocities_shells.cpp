@@ -125,6 +125,12 @@ sd_bodies Velocities::bodies_of_shells()
   sd_bodies A = bodies(3);
   A.spheres = {n, 6, whole.data(), arm.data()};
   A.points = {all, 3, sphere.data(), r.data()};
+  whole_shells.resize(n + 1);
+  for (int k = 0; k < n; k++)
+    whole_shells[k] = (of_points.spheres.mask[k] & SD_MULTIBLOB_WHOLE) != 0;
+  faces = {scene.shells->points(), scene.shells->free_sphere().faces, of_points.spheres.turn,
+           whole_shells.data()};
+  A.faces = &faces;
   alone.n = all;
   of_points.pairs = A.apply;
   of_points.pairs_ctx = A.apply_ctx;

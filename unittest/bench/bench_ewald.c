@@ -45,7 +45,8 @@ static double all_pairs(void)
   uint64_t seed = 4;
   for (int i = 0; i < 3 * N; i++) x[i] = uniform(&seed, 0, 50), F[i] = uniform(&seed, -1, 1);
   for (int i = 0; i < N; i++) a[i] = w[i] = 1.0;
-  const sd_mobility_scene s = {.how = {.law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, .width = 3},
+  const sd_mobility_scene s = {
+      .how = {.law = {.tensor = SD_TENSOR_RPY}, .width = 3},
                                .n = N, .n_all = N, .spheres = {x, a, w}};
   sd_mobility m = {0};
   if (sd_mobility_place(&m, &sd_mobility_all_pairs, &s) != SD_OK) exit(1);
@@ -68,7 +69,8 @@ static void product(const row *r, const double *x, const double *a, const double
   const sd_ewald_sizes sizes = periodic_sizes(a, r->n);
   if (sd_ewald_choose(box, &sizes, r->width, tolerance, how) != SD_OK) exit(1);
   periodic p = {.n = r->n, .width = r->width, .ewald = *how};
-  sd_mobility_scene s = {.how = {.law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, .width = r->width, .ewald = &p.ewald},
+  sd_mobility_scene s = {
+      .how = {.law = {.tensor = SD_TENSOR_RPY}, .width = r->width, .ewald = &p.ewald},
                          .n = r->n, .n_all = r->n, .spheres = {x, a, w}};
   if (r->periodic) {
     periodic_images(&p, x, a, w);

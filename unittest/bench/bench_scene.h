@@ -5,7 +5,7 @@
 #include "clouds.h"
 
 static const double ETA = 1.3;
-static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+static const sd_law RPY = {.tensor = SD_TENSOR_RPY};
 
 /* n spheres of radii 0.5 ... 1.5 at random at volume fraction 0.2: some overlap */
 static inline scene polydisperse(int n, uint64_t seed)

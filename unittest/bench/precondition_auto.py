@@ -14,7 +14,7 @@ import tempfile
 
 from from_tests import np
 from system import Spheres, environment, input_lines
-from test_preconditioner import A, flocs, lattice, loose_lattice
+from suspensions import A, flocs, lattice, loose_lattice
 
 
 def dilute(n=1000, phi=0.02):

@@ -14,7 +14,7 @@ import tempfile
 from from_tests import np
 from precondition_auto import dilute, falling
 from system import Simulation, environment
-from test_preconditioner import A, flocs, loose_lattice
+from suspensions import A, flocs, loose_lattice
 
 EXAMPLE = pathlib.Path(__file__).resolve().parents[2] / "examples" / "settling_cloud"
 TETRAHEDRON = 2.462500      # speed of a lone clump in that of a sphere

@@ -212,3 +212,5 @@ def test_what_it_needs(tmp_path):
     own = input_lines(cloud(), "cut_off_distance inf visc 1.3 algorithm 2 fluid_velocity v_ux 0 0", str(tmp_path / "data"), fix=False,
                       before_pair="variable ux atom 0.1*id")
     assert "the velocity belongs to atoms (0.1 to 1.2 at one place)" in lmp(tmp_path, own + [field, "run 0"], succeed=False).text
+    wall = input_lines(cloud(), "cut_off_distance inf visc 1.3 wall zlo -20", str(tmp_path / "data"), fix=False)
+    assert "the pair style has keyword wall" in lmp(tmp_path, wall + [field, "run 0"], succeed=False).text

@@ -3,7 +3,9 @@ their Stokes drag, since their v' is 0 and F = 6 pi eta a (u_inf + v' - v)."""
 import numpy as np
 import pytest
 
-from system import Spheres, chain
+import suspensions
+from suspensions import flocs, loose_lattice
+from system import Spheres, chain, input_lines
 
 ETA = 0.37
 EXACT = 1e-13           # of the largest force: rounding
@@ -79,3 +81,42 @@ def test_a_guess_that_is_exact_needs_no_iteration(simulation):
         sim.raw("v")[order] = now[:, :3]
         sim.run(1 if k else 0, "pre no post no" if k else "post no")
         assert k == 0 or sim.iterations == 0
+
+
+def test_warm_start_takes_two_iterations_a_step_and_keeps_the_tolerance(simulation, tmp_path):
+    spheres = loose_lattice(6, v=0.3)
+    spheres.v += (0.0, 0.0, -1.0)
+    words = f"cut_off_distance inf visc {suspensions.ETA} algorithm 2 warm_start"
+    taken = {}
+    for warm in ("no", "yes"):
+        log = tmp_path / f"log.{warm}"
+        sim = simulation(spheres, f"{words} {warm}", log=log, box=[(-40.0, 60.0)] * 3, density=20.0, dt=1e-3)
+        sim.commands(["fix move all nve/sphere", "fix pull all gravity 1 vector 0 0 -1",
+                      "variable its equal f_drag[4]", "variable left equal f_drag[5]",
+                      "thermo_style custom step v_its v_left", "thermo 1", "run 200"])
+        sim.close()
+        rows = [line.split() for line in log.read_text().splitlines()]
+        rows = np.array([[float(w) for w in r] for r in rows if len(r) == 3 and r[0].isdigit()])
+        assert len(rows) == 201
+        assert rows[:, 2].max() <= 1e-3
+        taken[warm] = rows[1:, 1].mean()
+    assert taken["yes"] <= 2.0 < taken["no"]
+
+
+@pytest.mark.parametrize("precondition,molecules,tolerance", [("none", 0, 1e-2), ("clump", 1, 1e-2), ("sparse", 0, 1e-2),
+                                                             ("auto", 0, 1e-6), ("auto", 0, 1e-3), ("auto", 1, 1e-3)])
+def test_warm_start_survives_a_restart(simulation, tmp_path, precondition, molecules, tolerance):
+    """At a loose tolerance the answer shows where the solver began and what preconditioned it. The factor is not in the restart
+    file, but where it was made: after 40 steps it is worn and not yet made anew."""
+    words = f"cut_off_distance inf visc {suspensions.ETA} algorithm 2 relative_tolerance {tolerance} precondition {precondition}"
+    spheres = flocs(4, 6, 8.0)
+    spheres.molecule *= molecules
+    rest = ["fix drag all stokes_dynamics", "fix pull all gravity 1.5 vector 0.3 0 -1", "fix move all nve/sphere"]
+    begin = input_lines(spheres, words, tmp_path / "data", box=[(-30.0, 40.0)] * 3, fix=False, dt=0.002) + rest
+    sim = simulation().commands(begin).run(40)
+    sim.command(f"write_restart {tmp_path}/mid")
+    sim.run(40)
+    expected = np.hstack([sim.x, sim.v, sim.drag])
+    sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.002"] + rest)
+    sim.run(40)
+    assert np.abs(np.hstack([sim.x, sim.v, sim.drag]) - expected).max() < 1e-10

@@ -8,6 +8,8 @@
  * end. */
 void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
 void spotrf_(const char *uplo, const int *n, float *A, const int *lda, int *info, size_t);
+void dstev_(const char *job, const int *n, double *d, double *e, double *Z, const int *ldz, double *work,
+            int *info, size_t);
 void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
 void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha,
             const double *A, const int *lda, const double *beta, double *C, const int *ldc, size_t,
@@ -115,6 +117,18 @@ void sd_add_gram(int n, int rows, const double *A, const double *B, double *G)
   else
     dgemm_("N", "T", &n, &n, &rows, &one, A, &n, B, &n, &one, G, &n, 1, 1);
   threads_as_before(before);
+}
+
+/* Columns are rows here. */
+sd_status sd_tridiagonal_eigen(int n, double *d, double *e, double *Z, double *work)
+{
+  for (int k = 0; k < n; k++)
+    if (!isfinite(d[k]) || (k + 1 < n && !isfinite(e[k]))) return SD_ENOTFINITE;
+  const int before = one_thread();
+  int info;
+  dstev_("V", &n, d, e, Z, &n, work, &info, 1);
+  threads_as_before(before);
+  return info == 0 ? SD_OK : SD_ENOTFINITE;
 }
 
 /* Jacobi: a rotation by phi in the plane of p and q makes a_pq zero when cot(2 phi) = theta = (a_qq

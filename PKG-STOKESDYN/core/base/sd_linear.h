@@ -45,6 +45,11 @@ void sd_add_gram(int n, int rows, const double *A, const double *B, double *G);
  * X in its place. Status of sd_cholesky. */
 sd_status sd_cholesky_solve(int n, double *A, int count, double *B);
 
+/* Eigenvalues d [n], smallest first, and eigenvectors of the symmetric tridiagonal matrix with
+ * diagonal d [n] in and e [n - 1], destroyed, beside it: row k of Z [n n], out, belongs to d[k].
+ * work [2 n]. SD_OK; SD_ENOTFINITE. */
+sd_status sd_tridiagonal_eigen(int n, double *d, double *e, double *Z, double *work);
+
 /* y = A x; y = A^T x; C = A B. 3x3 row-major, no aliasing. */
 static inline void sd_multiply3(const double A[9], const double x[3], double y[3])
 {

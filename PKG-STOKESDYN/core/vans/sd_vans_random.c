@@ -1,27 +1,13 @@
 #include "sd_vans_random.h"
 
-#include "sd_constants.h"
-#include "sd_hash.h"
+#include "sd_random.h"
 
 #include <math.h>
 
-static double uniform(uint64_t key, uint64_t k) /* in (0, 1) */
-{
-  return sd_hash_unit(sd_hash_mix(key + (k + 1) * SD_HASH_STEP)) + 0x1p-54;
-}
-
-/* The three keys are mixed one into the other, so that neighbours in any of them share nothing; no
- * state is kept, and a grain has the same numbers wherever it is and whoever asks. */
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3])
 {
-  const uint64_t key = sd_hash_mix(sd_hash_mix(sd_hash_mix(seed + SD_HASH_STEP) ^ id) +
-                                   count * UINT64_C(0xd1342543de82ef95));
-  /* Box & Muller: two pairs, of which one number is not used. */
-  const double r1 = sqrt(-2.0 * log(uniform(key, 0))), r2 = sqrt(-2.0 * log(uniform(key, 2)));
-  const double t1 = 2.0 * SD_PI * uniform(key, 1), t2 = 2.0 * SD_PI * uniform(key, 3);
-  out[0] = r1 * cos(t1);
-  out[1] = r1 * sin(t1);
-  out[2] = r2 * cos(t2);
+  const sd_random_key key = {(uint32_t) seed, SD_RANDOM_EDDY, count};
+  sd_random_normals(&key, id, 3, out);
 }
 
 void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3])

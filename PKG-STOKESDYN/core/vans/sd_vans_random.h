@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 /* Three independent standard normal numbers that depend on nothing but the three keys: the same on
- * any number of ranks. */
+ * any number of ranks (sd_random.h, of which the seed has the lower 32 bits). */
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
 
 /* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):

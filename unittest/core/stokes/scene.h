@@ -70,7 +70,7 @@ static inline sd_status scene_apply(void *ctx, const double *F, double *u)
   scene *s = ctx;
   const sd_spheres spheres = {s->x, s->a, s->w};
   s->products++;
-  const sd_law law = {s->kind, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = s->kind};
   if (s->fast) {
     if (!s->packed.n)
       assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, s->n, 3), SD_OK);

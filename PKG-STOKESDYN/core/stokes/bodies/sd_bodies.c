@@ -84,7 +84,7 @@ static sd_status pre(loop *c, const double *r, const double *f, int moved, doubl
   sd_bodies_alone(A, r, load, c->alone, l, V);
   for (int b = 0; b < sd_bodies_count(A); b++)
     if (sd_tie_binds(A, b)) memcpy(V + 6 * (long) b, tied + 6 * (long) b, 6 * sizeof(double));
-  for (long j = 0; A->tie->L->model && j < sd_bodies_rows(A); j++) l[j] += c->rows[j];
+  for (long j = 0; sd_tie_has_springs(A) && j < sd_bodies_rows(A); j++) l[j] += c->rows[j];
   return SD_OK;
 }
 

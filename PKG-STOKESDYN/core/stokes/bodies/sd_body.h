@@ -11,6 +11,7 @@
 #define SD_BODY_H
 
 #include "sd_body_shape.h"
+#include "sd_faces.h"
 #include "sd_rigid.h"
 #include "sd_solve.h"
 #include "sd_world.h"
@@ -41,6 +42,8 @@ typedef struct {
   /* Spheres on bodies: width 6, in the model without torques 3. Points on spheres: whole NULL: the
    * spheres are the points, of equal width */
   sd_rigid spheres, points;
+  /* points on spheres, how these face each other, for what ties them; NULL: not known */
+  const sd_faces *faces;
   /* [width points] 6 pi eta a in rows of forces, 8 pi eta a^3 in those of torques */
   const double *D;
   /* M without D^-1: the pairs of an engine, and what a model adds for each body alone */

@@ -30,19 +30,29 @@ void sd_rotation(const double w[3], double R[9])
   R[8] = 1.0 - 2.0 * (x * x + y * y);
 }
 
-void sd_pose_advance(double pose[12], const double V[6], double dt, int n, const double *X,
-                     double turn[9], double *x)
+void sd_pose_step(double pose[12], const double centre[3], const double step[6], int n,
+                  const double *X, double turn[9], double *x)
 {
-  const double w[3] = {dt * V[3], dt * V[4], dt * V[5]};
-  double R[9], *c = pose + 9;
-  sd_rotation(w, turn);
+  double R[9], before[3], after[3], *c = pose + 9;
+  sd_multiply3(pose, centre, before);
+  sd_rotation(step + 3, turn);
   sd_product3(turn, pose, R);
   memcpy(pose, R, sizeof(R));
-  for (int d = 0; d < 3; d++) c[d] += dt * V[d];
+  sd_multiply3(R, centre, after);
+  for (int d = 0; d < 3; d++) c[d] += step[d] + (before[d] - after[d]);
   for (int k = 0; k < n; k++) {
     sd_multiply3(R, X + 3 * k, x + 3 * k);
     for (int d = 0; d < 3; d++) x[3 * k + d] += c[d];
   }
+}
+
+void sd_pose_advance(double pose[12], const double V[6], double dt, int n, const double *X,
+                     double turn[9], double *x)
+{
+  static const double CENTROID[3] = {0.0, 0.0, 0.0};
+  double step[6];
+  for (int k = 0; k < 6; k++) step[k] = dt * V[k];
+  sd_pose_step(pose, CENTROID, step, n, X, turn, x);
 }
 
 double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax)

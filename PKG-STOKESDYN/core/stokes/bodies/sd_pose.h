@@ -24,6 +24,11 @@ void sd_rotation(const double w[3], double R[9]);
 void sd_pose_advance(double pose[12], const double V[6], double dt, int n, const double *X,
                      double turn[9], double *x);
 
+/* The same by a displacement and a turn, step [6], of the point at centre [3] in the axes of the body,
+ * from c: what moves it is known there (sd_clump_noise.h). */
+void sd_pose_step(double pose[12], const double centre[3], const double step[6], int n,
+                  const double *X, double turn[9], double *x);
+
 /* The step in which the fastest sphere goes xmax, not more than twice the last, and from tmin to
  * tmax. fastest 0: as long as allowed. */
 double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax);

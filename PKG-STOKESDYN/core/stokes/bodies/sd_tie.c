@@ -17,21 +17,11 @@ sd_status sd_tie_make(const sd_bodies *A)
   sd_tie *t = A->tie;
   const size_t number = sizeof(double), bodies = (size_t) sd_bodies_count(A);
   t->products = 0;
-  sd_status status = SD_ENOMEMORY;
-  if (sd_reserve(&t->vectors, number, 6 * VECTORS * bodies, &t->most_vectors) &&
-      sd_reserve(&t->rows, number, 12 * (size_t) t->L->n, &t->most_rows))
-    status = sd_tie_approach_make(A);
-  status = sd_world_agree(&t->L->world, status);
+  const int room = sd_reserve(&t->vectors, number, 6 * VECTORS * bodies, &t->most_vectors) &&
+      sd_reserve(&t->rows, number, 12 * (size_t) t->L->n, &t->most_rows);
+  sd_status status = sd_world_agree(&t->L->world, room ? SD_OK : SD_ENOMEMORY);
+  if (status == SD_OK) status = sd_tie_approach_make(A);
   return status == SD_OK ? sd_tie_factor(A) : status;
-}
-
-/* others = those of v, for X */
-static sd_status refresh(const sd_bodies *A, const double *v)
-{
-  const sd_world *world = &A->tie->L->world;
-  return world->refresh && world->ranks > 1
-      ? world->refresh(world->ctx, v, A->tie->L->others, 6)
-      : SD_OK;
 }
 
 /* out = K^T (L + X) K V */
@@ -79,20 +69,15 @@ static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
   return SD_OK;
 }
 
-/* borne = K^T (L + X) K V_held + K^T X r, what is so before anybody moves; share = X r */
+/* borne = K^T (L + X) K V_held + K^T X r, what is so before anybody moves; share: scratch */
 static sd_status bear_before(const sd_bodies *A, const double *r, int moved, const double *V,
                              double *borne, double *share)
 {
-  const int bodies = sd_bodies_count(A), springs = A->tie->L->model != NULL;
+  const int bodies = sd_bodies_count(A);
   sd_status status = SD_OK;
   memset(borne, 0, sizeof(double) * 6 * (size_t) bodies);
-  if (springs) memset(share, 0, sizeof(double) * (size_t) sd_bodies_rows(A));
-  if (springs && r) {
-    if ((status = refresh(A, r)) != SD_OK) return status;
-    sd_tie_approach_add(A, r, share);
-    sd_rigid_collect(&A->spheres, share, bodies, borne);
-  }
-  if (!moved) return status;
+  if (sd_tie_has_springs(A) && r) status = sd_tie_approach_share(A, r, NULL, share, borne);
+  if (!moved || status != SD_OK) return status;
   double *by_held = A->tie->vectors;
   status = resist(A, V, by_held);
   for (long j = 0; j < 6 * (long) bodies; j++) borne[j] += by_held[j];
@@ -127,17 +112,15 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
     borne[j] = g[j] - v.r[j] - borne[j];
     V[j] += x[j];
   }
-  if (!t->L->model) return SD_OK;
-  sd_rigid_move(&A->spheres, V, t->rows);
-  if ((status = refresh(A, t->rows)) == SD_OK) sd_tie_approach_add(A, t->rows, share);
-  return status;
+  return sd_tie_has_springs(A) ? sd_tie_approach_share(A, r, V, share, t->vectors) : SD_OK;
 }
 
 void sd_tie_free(sd_tie *t)
 {
   sd_block_cholesky_free(&t->factor);
   void *const arrays[] = {t->spring, t->stiff, t->vectors, t->rows,
-                          t->scale,  t->copy,  t->all,     t->copies};
+                          t->scale,  t->copy,  t->all,     t->copies,
+                          t->face,   t->faces_there};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
   *t = (sd_tie){0};
 }

@@ -117,7 +117,7 @@ static sd_status apply(void *ctx, const double *F, double *u)
 static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o, int k, int times,
                                  double *B, int *iterations)
 {
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   const int m = sd_clump_width(o), n = s->n;
   const size_t N = (size_t) m * n;
   double *F = malloc(sizeof(double) * (N + (size_t) SD_SOLVE_WORK(n, m) + 3 * (size_t) n));

@@ -100,8 +100,9 @@ static int window_points(double t)
   return points < 4 ? 4 : points > SD_EWALD_MOST_POINTS ? SD_EWALD_MOST_POINTS : points;
 }
 
-/* xi, a_ref, range and the window. What is lost tightens the tolerance, which in turn moves xi. */
-static void split(sd_ewald *e, const sd_ewald_class *s, int width, double *y)
+/* xi, a_ref, range and the window. What is lost tightens the tolerance, which in turn moves xi. most: of
+ * xi times the largest radius */
+static void split(sd_ewald *e, const sd_ewald_class *s, int width, double most, double *y)
 {
   const double rms = six_digits(sqrt(s->squares / s->count)), largest = s->largest;
   const int equal = fabs(rms / largest - 1.0) < 1e-5;
@@ -110,7 +111,7 @@ static void split(sd_ewald *e, const sd_ewald_class *s, int width, double *y)
   for (int k = 0; k < 6; k++) {
     *y = root_of_log(&e->box, t);
     e->range = fmax(natural_range(&e->box, s->count, log10(1.0 / t)),
-                    *y * fmax(ref / 0.8, largest / 1.5));
+                    *y * fmax(ref / 0.8, largest / most));
     e->xi = *y / e->range;
     if (k < 5) t = tightened(e->tolerance, width, equal ? 0.0 : e->xi * *y * largest);
   }
@@ -172,10 +173,13 @@ static void start(sd_ewald *e, const sd_ewald_box *box, double count, double tol
   e->tolerance = tolerance;
 }
 
-static sd_status one_level(sd_ewald *e, const sd_ewald_class *s, int width)
+/* xi times the largest radius where the parts need not be positive */
+static const double LARGEST = 1.5;
+
+static sd_status one_level(sd_ewald *e, const sd_ewald_class *s, int width, double most)
 {
   double y;
-  split(e, s, width, &y);
+  split(e, s, width, most, &y);
   return lay_grid(&e->box, e->xi, y, e->points, &e->spacing, e->grid);
 }
 
@@ -183,7 +187,7 @@ static sd_status two_levels(sd_ewald *e, const sd_ewald_class *small, const sd_e
                             int width, double times)
 {
   double y;
-  const sd_status status = one_level(e, small, width);
+  const sd_status status = one_level(e, small, width, LARGEST);
   split_large(e, large, width, times, &y);
   if (status != SD_OK || e->large.xi >= e->xi) return SD_ENOMEMORY;
   return lay_grid(&e->box, e->large.xi, y, e->large.points, &e->large.spacing, e->large.grid);
@@ -225,20 +229,37 @@ static sd_status try_two_levels(const sd_ewald_sizes *sizes, int width, sd_ewald
   return status;
 }
 
-sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
-                          double tolerance, sd_ewald *out)
+/* Everything but the splitting; *some: are there spheres to split for? */
+static sd_status prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
+                         sd_ewald *out, int *some)
 {
   const sd_ewald_box own = *box;
-  const sd_ewald_class *all = &sizes->all;
+  *some = 0;
   if (!sound(&own, all, tolerance)) {
     start(out, &own, 0.0, 0.0);
     return SD_ENOTFINITE;
   }
-  const int some = all->count > 0.0 && all->largest > 0.0;
-  start(out, &own, some ? all->count : 0.0, fmin(fmax(tolerance, TIGHTEST), LOOSEST));
-  if (!some) return SD_OK;
-  const sd_status status = one_level(out, all, width);
+  *some = all->count > 0.0 && all->largest > 0.0;
+  start(out, &own, *some ? all->count : 0.0, fmin(fmax(tolerance, TIGHTEST), LOOSEST));
+  return SD_OK;
+}
+
+sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
+                          double tolerance, sd_ewald *out)
+{
+  int some;
+  sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
+  if (!some) return status;
+  status = one_level(out, &sizes->all, width, LARGEST);
   return try_two_levels(sizes, width, out, status);
+}
+
+sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
+                                   double tolerance, sd_ewald *out)
+{
+  int some;
+  const sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
+  return some ? one_level(out, &sizes->all, width, SD_EWALD_POSITIVE) : status;
 }
 
 sd_ewald sd_ewald_of_large(const sd_ewald *e)

@@ -257,3 +257,44 @@ sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const dou
   for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
   return status;
 }
+
+/* --- noise --- */
+
+typedef struct {
+  const sd_ewald_waves *waves;
+  sd_random_key key;
+} white;
+
+/* Direction d of the frame is d + turn of the box, and so is component d. */
+static void fill_white(void *ctx, int x, int y, int y_end, long stride, double *const *fields)
+{
+  const white *from = ctx;
+  const sd_ewald_waves *w = from->waves;
+  int size[3], at[3];
+  for (int d = 0; d < 3; d++) size[(d + w->turn) % 3] = w->ewald.grid[d];
+  at[w->turn] = x;
+  for (int k = y; k < y_end; k++) {
+    at[(1 + w->turn) % 3] = k;
+    for (int z = 0; z < w->ewald.grid[2]; z++) {
+      at[(2 + w->turn) % 3] = z;
+      const uint64_t point = ((uint64_t) at[0] * (uint64_t) size[1] + (uint64_t) at[1]) *
+              (uint64_t) size[2] + (uint64_t) at[2];
+      double normals[3];
+      sd_random_normals(&from->key, point, 3, normals);
+      for (int d = 0; d < 3; d++) fields[d][(k - y) * stride + z] = normals[(d + w->turn) % 3];
+    }
+  }
+}
+
+sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, double *u)
+{
+  const long vectors = w->width / 3 * w->n;
+  white from = {w, *key};
+  from.key.purpose = SD_RANDOM_GRID;
+  w->spreading.F = u;
+  const sd_status status =
+      sd_grid_convolve_values(&w->grid, fill_white, &from, sd_wave_multiply_root, &w->wave);
+  if (status == SD_OK) w->kernels->interpolate(&w->spreading);
+  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
+  return status;
+}

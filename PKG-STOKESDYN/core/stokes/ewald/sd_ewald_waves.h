@@ -12,6 +12,7 @@
 
 #include "sd_ewald_internal.h"
 #include "sd_grid.h"
+#include "sd_random.h"
 #include "sd_status.h"
 #include "sd_wave.h"
 #include "sd_world.h"
@@ -62,6 +63,11 @@ sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, const sd_spheres *s, const 
 /* F [width] a sphere -> u [width n], in order of sphere and without its weight, memory that the
  * caller has for it. SD_OK or what an exchange said. */
 sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u);
+
+/* u [width n] as above, random, with the covariance of the wave part of a periodic box, window and
+ * all: from three normal numbers at each point of the grid, by the number of the point in the frame
+ * of the box (SD_RANDOM_GRID). SD_OK or what an exchange said. */
+sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, double *u);
 
 void sd_ewald_waves_free(sd_ewald_waves *w);
 

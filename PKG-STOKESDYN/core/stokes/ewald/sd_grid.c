@@ -344,13 +344,18 @@ static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_co
                            g->message[1 - from], g->counts + from_counts * g->ranks);
 }
 
-/* From the pieces in the second message to the slab, and what of it is others' to the first */
-static sd_status forth(sd_grid *g)
+/* From the pieces in the second message, or from what `fill` says, to the slab, and what of it is
+ * others' to the first */
+static sd_status forth(sd_grid *g, sd_grid_fill *fill, void *fill_ctx)
 {
   double *first = g->message[0], *second = g->message[1];
-  const int *x = g->own[SD_SHARED_X];
+  const int *x = g->own[SD_SHARED_X], *lines = g->own[SD_SHARED_LINES];
+  double *const fields[3] = {(double *) g->plane[0], (double *) g->plane[1], (double *) g->plane[2]};
   for (int k = x[0]; k < x[1]; k++) {
-    fill_plane(g, k, second);
+    if (fill)
+      fill(fill_ctx, k, lines[0], lines[1], 2L * g->half, fields);
+    else
+      fill_plane(g, k, second);
     for (int c = 0; c < 3; c++) {
       fftw_execute_dft_r2c(g->z_forth, (double *) g->plane[c], g->beside);
       if (g->columns == 1)
@@ -395,10 +400,16 @@ static sd_status back(sd_grid *g)
 
 sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
 {
-  const int *y = g->own[SD_SHARED_Y];
   copy_pieces(g, g->message[0], 0);
-  sd_status status = exchange(g, 0, PIECES_TO, PIECES_FROM);
-  if (status == SD_OK) status = forth(g);
+  const sd_status status = exchange(g, 0, PIECES_TO, PIECES_FROM);
+  return status == SD_OK ? sd_grid_convolve_values(g, NULL, NULL, multiply, ctx) : status;
+}
+
+sd_status sd_grid_convolve_values(sd_grid *g, sd_grid_fill *fill, void *fill_ctx,
+                                  sd_grid_multiply *multiply, void *ctx)
+{
+  const int *y = g->own[SD_SHARED_Y];
+  sd_status status = forth(g, fill, fill_ctx);
   if (status == SD_OK) status = exchange(g, 0, COLUMN_TO, COLUMN_FROM);
   for (int k = y[0]; k < y[1] && status == SD_OK; k++)
     through_plane(g, k, multiply, ctx, g->message[1]);

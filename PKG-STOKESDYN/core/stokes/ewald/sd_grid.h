@@ -93,6 +93,14 @@ sd_status sd_grid_place(sd_grid *g, const int *bricks);
  * exchange said. */
 sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx);
 
+/* Values at the points of plane x and of its lines y ... y_end - 1: fields [3], line y of each begins
+ * at its first number, the next `stride` further. */
+typedef void sd_grid_fill(void *ctx, int x, int y, int y_end, long stride, double *const *fields);
+
+/* The same from values that are known on the grid, in place of what bricks hold; brick out */
+sd_status sd_grid_convolve_values(sd_grid *g, sd_grid_fill *fill, void *fill_ctx,
+                                  sd_grid_multiply *multiply, void *ctx);
+
 void sd_grid_free(sd_grid *g);
 
 #ifdef __cplusplus

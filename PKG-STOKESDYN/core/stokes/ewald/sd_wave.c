@@ -1,5 +1,6 @@
 #include "sd_wave.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,7 +47,8 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
   for (int d = 0; d < 3; d++) inverse[d] = deconvolution(e, w->size[d]);
   const size_t row = (size_t) w->depth, rows = (size_t) (y1 - w->y0) * (size_t) w->size[0];
   w->table = malloc(sizeof(double) * (row * rows + 1));
-  const int ok = w->table && inverse[0] && inverse[1] && inverse[2];
+  w->roots = malloc(sizeof(double) * (row + 1));
+  const int ok = w->table && w->roots && inverse[0] && inverse[1] && inverse[2];
   double *next = w->table;
   for (int y = w->y0; y < y1 && ok; y++)
     for (int x = 0; x < w->size[0]; x++, next += row) {
@@ -98,7 +100,37 @@ sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_ke
 void sd_wave_free(sd_wave *w)
 {
   free(w->table);
+  free(w->roots);
   memset(w, 0, sizeof(*w));
+}
+
+/* B of the row of wave numbers x and y along z */
+static const double *periodic_entry(const sd_wave *w, int x, int y)
+{
+  return w->table + ((long) (y - w->y0) * w->size[0] + x) * w->depth;
+}
+
+/* That row of the three fields, times B and the projection */
+static void periodic_row(const sd_wave *w, int x, int y, const double *B, double *const *row)
+{
+  const int mx = wave_number(x, w->size[0]), my = wave_number(y, w->size[1]);
+  double k[3];
+  for (int c = 0; c < 3; c++) k[c] = mx * w->k[0][c] + my * w->k[1][c];
+  k[2] += w->z0 * w->k[2][2];
+  w->kernels->periodic_row(row, B, k, w->k[2][2], w->depth);
+}
+
+void sd_wave_multiply_root(void *ctx, int y, double *const *plane)
+{
+  const sd_wave *w = ctx;
+  const double points = (double) w->size[0] * w->size[1] * w->size[2];
+  for (int x = 0; x < w->size[0]; x++) {
+    const double *B = periodic_entry(w, x, y);
+    double *row[3];
+    for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * w->depth;
+    for (int m = 0; m < w->depth; m++) w->roots[m] = sqrt(B[m] / points);
+    periodic_row(w, x, y, w->roots, row);
+  }
 }
 
 void sd_wave_multiply(void *ctx, int y, double *const *plane)
@@ -110,13 +142,9 @@ void sd_wave_multiply(void *ctx, int y, double *const *plane)
     const int mx = wave_number(x, w->size[0]);
     double *row[3];
     for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * depth;
-    if (w->periodic) {
-      const double *B = w->table + ((long) (y - w->y0) * w->size[0] + x) * depth;
-      double k[3];
-      for (int c = 0; c < 3; c++) k[c] = mx * w->k[0][c] + my * w->k[1][c];
-      k[2] += w->z0 * w->k[2][2];
-      w->kernels->periodic_row(row, B, k, w->k[2][2], depth);
-    } else {
+    if (w->periodic)
+      periodic_row(w, x, y, periodic_entry(w, x, y), row);
+    else {
       const double *K = w->table + ((long) (abs(my) - w->first_row) * half_x + abs(mx)) * 6 * depth;
       w->kernels->open_row(row, K, mx < 0 ? -1.0 : 1.0, my < 0 ? -1.0 : 1.0, depth);
     }

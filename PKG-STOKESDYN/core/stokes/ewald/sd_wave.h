@@ -28,6 +28,8 @@ typedef struct {
   double k[3][3];
   /* periodic: [y][size x][depth]; open: rows of one octant [rows][half x][6][depth] */
   double *table;
+  /* periodic: [depth] */
+  double *roots;
 } sd_wave;
 
 /* size: points of the transform; y, z: first and end of the waves that this rank has. SD_OK or
@@ -37,6 +39,11 @@ sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_ke
 
 /* As sd_grid_multiply: ctx is an sd_wave. */
 void sd_wave_multiply(void *ctx, int y, double *const *plane);
+
+/* The same of a periodic box with the root of B over that of the number of points: applied to the
+ * transform of independent standard normal numbers, and transformed back, it gives velocities on the
+ * grid whose covariance is what sd_wave_multiply convolves with. */
+void sd_wave_multiply_root(void *ctx, int y, double *const *plane);
 
 void sd_wave_free(sd_wave *w);
 

@@ -37,18 +37,14 @@ static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *
   return SD_OK;
 }
 
-static sd_status reserve_pairs(sd_lubrication *L, const sd_lubrication_scene *s, long count)
+static sd_status reserve_pairs(sd_lubrication *L, long count)
 {
   struct sd_lubrication_work *w = L->work;
-  if (s->films) {
-    free(L->model);
-    L->model = NULL;
-  }
-  if (count < w->most_pairs && (s->films || L->model)) return SD_OK;
+  if (count < w->most_pairs) return SD_OK;
   const size_t room = (size_t) (count + count / 4 + 64);
   if (!sd_grow(&L->pair, sizeof(*L->pair), room) || !sd_grow(&w->close, sizeof(*w->close), room) ||
       !sd_grow(&L->link, sizeof(*L->link), room) ||
-      (!s->films && !sd_grow(&L->model, sizeof(double), room)))
+      !sd_grow(&L->model, sizeof(double), room))
     return SD_ENOMEMORY;
   w->most_pairs = (long) room;
   return SD_OK;
@@ -128,7 +124,7 @@ static sd_status find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
   struct sd_lubrication_work *w = L->work;
   const int beyond = s->world.ranks > 1, rows = beyond ? s->n_all : s->n;
   sd_status status = sd_near_once(&w->near, &s->spheres, rows, s->n_all, 2.0 + s->range);
-  if (status == SD_OK) status = reserve_pairs(L, s, w->near.first[rows]);
+  if (status == SD_OK) status = reserve_pairs(L, w->near.first[rows]);
   if (status != SD_OK) return status;
   L->count = 0;
   for (int i = 0; i < s->n; i++)
@@ -281,42 +277,39 @@ static double shared(double x)
   return x / root;
 }
 
-/* What the model resists of an approach, fading from contact to the range */
-static double model_resists(double xi, double range, double ai, double aj, double eta)
-{
-  const double q = fmin(xi / range, 1.0);
-  return (1.0 - q * q * (3.0 - 2.0 * q)) *
-      sd_rpy_approach((1.0 + 0.5 * xi) * (ai + aj), ai, aj, eta);
-}
-
-/* t [ w D + (1 - w) Q^T D Q ] or t times the film; eta: of the pair */
+/* t [ w D + (1 - w) Q^T D Q ] or t times the film; eta: of the pair. model: what the model resists of
+ * an approach, fading from contact to the range */
 static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_scene *s, long k,
-                               double eta, sd_pair_resistance *R)
+                               double eta, sd_pair_resistance *R, double *model)
 {
   const closeness *c = L->work->close + k;
   const int i = L->pair[k][0];
   const double *n = L->work->neighbours, ai = s->spheres.a[i], aj = s->spheres.a[c->at];
-  const double scale = c->t * eta, xi = fmax(c->xi, s->gap);
+  const double scale = c->t * eta, xi = fmax(c->xi, s->gap), apart = fmax(c->xi, 0.0);
+  const double q = fmin(apart / s->range, 1.0), fading = 1.0 - q * q * (3.0 - 2.0 * q);
   if (!s->films) {
+    *model = fading * sd_rpy_approach((1.0 + 0.5 * apart) * (ai + aj), ai, aj, eta);
     const double share = shared(2.0 * c->t / (n[i] + n[c->at]));
     return sd_two_sphere_correction(s->functions, ai, aj, xi, scale * share, scale * (1.0 - share),
                                     R);
   }
   sd_film film;
   const sd_status status = sd_film_at(s->films, ai, aj, xi, &film);
-  if (status == SD_OK) *R = sd_film_resistance(&film, fmax(c->distance, 0.01 * (ai + aj)), scale);
-  return status;
+  if (status != SD_OK) return status;
+  *R = sd_film_resistance(&film, fmax(c->distance, 0.01 * (ai + aj)), scale);
+  *model = fading * eta * film.shells_approach;
+  return SD_OK;
 }
 
 static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long k)
 {
   const int i = L->pair[k][0], j = L->pair[k][1];
   const closeness *c = L->work->close + k;
-  const double *a = s->spheres.a, *w = s->spheres.w;
+  const double *w = s->spheres.w;
   own_block *own = L->work->own;
   const double eta = 0.5 * (1.0 / (w[i] * w[i]) + 1.0 / (w[c->at] * w[c->at]));
   sd_pair_resistance R;
-  const sd_status status = resistance_of(L, s, k, eta, &R);
+  const sd_status status = resistance_of(L, s, k, eta, &R, L->model + k);
   if (status != SD_OK) return status;
   sd_lubrication_link *link = L->link + k;
   if (L->work->flows && i < L->n) add_carried(L, s, k, &R);
@@ -330,7 +323,6 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
     *link = block_of(&R, 1, link->d);
     if (j < L->n) add_own(&R, 2, R.YB[3], link->d, own + j);
   }
-  if (L->model) L->model[k] = model_resists(fmax(c->xi, 0.0), s->range, a[i], a[c->at], eta);
   return SD_OK;
 }
 
@@ -367,6 +359,12 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   }
   for (long i = 0; i < L->n; i++) spread_own(L->work->own + i, L->diagonal + 36 * i);
   return status;
+}
+
+void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6])
+{
+  for (long e = 0; e < 36; e++) L->diagonal[36L * i + e] += B[e];
+  for (long k = 0; k < 6; k++) L->carried[6L * i + k] += E[k];
 }
 
 void sd_lubrication_block(const sd_lubrication_link *l, double B[36])

@@ -79,8 +79,7 @@ typedef struct {
   /* [count + beyond] L_ij; L_ji is its transpose */
   sd_lubrication_link *link;
   /* [count + beyond] for preconditioners: what the model itself resists when the two approach each other,
-   * beyond their drags, fading from contact to the range; NULL: with films, where the blocks of
-   * the shells are enough */
+   * beyond their drags, fading from contact to the range */
   double *model;
   /* [36 n] L_ii, row-major, rows F T, columns U W */
   double *diagonal;
@@ -97,6 +96,9 @@ typedef struct {
 /* The spheres have moved. On all ranks together. SD_OK; SD_ENOMEMORY; SD_EOUTSIDE: radii that
  * `functions` does not have; SD_ENOTFINITE; that of refresh. */
 sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene);
+/* What sphere i < n resists alone, as a wall makes it: L_ii += B [36], carried += E [6]. After place,
+ * which forgets it. */
+void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6]);
 /* L_ij of a pair, row-major, rows F T, columns U W */
 void sd_lubrication_block(const sd_lubrication_link *l, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */

@@ -20,6 +20,22 @@ sd_status sd_mobility_apply(void *ctx, const double *F, double *u)
   return m->engine->apply(m->state, F, u);
 }
 
+int sd_mobility_divides(const sd_mobility *m)
+{
+  return m->engine && m->engine->divides && m->engine->divides(m->state);
+}
+
+sd_status sd_mobility_apply_rest(void *ctx, const double *F, double *u)
+{
+  const sd_mobility *m = ctx;
+  return m->engine->apply_rest(m->state, F, u);
+}
+
+sd_status sd_mobility_draw(sd_mobility *m, const sd_random_key *key, double *u)
+{
+  return m->engine->draw(m->state, key, u);
+}
+
 void sd_mobility_free(sd_mobility *m)
 {
   if (m->engine) m->engine->free(m->state);

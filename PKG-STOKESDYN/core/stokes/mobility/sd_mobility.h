@@ -14,6 +14,7 @@
 
 #include "sd_ewald.h"
 #include "sd_product.h"
+#include "sd_random.h"
 #include "sd_status.h"
 #include "sd_world.h"
 
@@ -60,6 +61,12 @@ typedef struct {
    * place */
   sd_status (*apply)(void *state, const double *F, double *u);
   void (*free)(void *state);
+  /* For random numbers of covariance M: is M, as it stands, a sum of two positive matrices, one of
+   * which needs no products? Then apply_rest is apply of the other one, and draw gives u [width n] of
+   * the covariance of the first, which depends on the key alone. NULL, all three: it never is */
+  int (*divides)(const void *state);
+  sd_status (*apply_rest)(void *state, const double *F, double *u);
+  sd_status (*draw)(void *state, const sd_random_key *key, double *u);
 } sd_mobility_engine;
 
 /* Every sphere of all ranks with every other: cost n_all^2 / ranks, nothing depends on how the
@@ -85,6 +92,11 @@ sd_status sd_mobility_place(sd_mobility *m, const sd_mobility_engine *engine,
 
 /* In the solver's signature sd_apply: ctx is an sd_mobility. */
 sd_status sd_mobility_apply(void *ctx, const double *F, double *u);
+
+/* As said of the engine; the last two only where it divides. ctx is an sd_mobility. */
+int sd_mobility_divides(const sd_mobility *m);
+sd_status sd_mobility_apply_rest(void *ctx, const double *F, double *u);
+sd_status sd_mobility_draw(sd_mobility *m, const sd_random_key *key, double *u);
 
 void sd_mobility_free(sd_mobility *m);
 

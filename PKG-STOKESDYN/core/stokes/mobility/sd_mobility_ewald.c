@@ -213,29 +213,73 @@ static void add_means(const ewald *e, const double *sums, double *u)
   }
 }
 
-static sd_status apply(void *state, const double *F, double *u)
+/* u = what is near, of both levels; and the sums for what is far, of a periodic box. There are
+ * spheres. */
+static sd_status near_part(ewald *e, const double *F, double *u, double *sums)
 {
-  ewald *e = state;
-  const long m = e->width;
-  if (!(e->ewald.count > 0.0)) {
-    memset(u, 0, sizeof(double) * (size_t) m * (size_t) e->n);
-    return SD_OK;
-  }
-  const int periodic = e->ewald.box.periodic;
-  double sums[18];
-  sd_status status = periodic ? sums_of(e, F, sums) : SD_OK;
+  sd_status status = e->ewald.box.periodic ? sums_of(e, F, sums) : SD_OK;
   if (status == SD_OK && e->world.refresh)
     status = e->world.refresh(e->world.ctx, F, e->ghosts, e->width);
   if (status != SD_OK) return status;
   sd_ewald_pairs_apply(&e->pairs, e->n, F, e->ghosts, u);
   if (e->levels == 2)
     status = sd_ewald_large_pairs_apply(&e->large_pairs, &e->spheres, e->sphere, &e->world, F, u);
+  return status;
+}
+
+/* Free between two products of the near part, and longer than a row for each of our spheres */
+static double *rows_of_waves(const ewald *e)
+{
+  return e->pairs.u;
+}
+
+static void clear(const ewald *e, double *u)
+{
+  memset(u, 0, sizeof(double) * (size_t) e->width * (size_t) e->n);
+}
+
+static sd_status apply(void *state, const double *F, double *u)
+{
+  ewald *e = state;
+  double sums[18], *rows = rows_of_waves(e);
+  if (!(e->ewald.count > 0.0)) {
+    clear(e, u);
+    return SD_OK;
+  }
+  sd_status status = near_part(e, F, u, sums);
   for (int l = 0; l < e->levels && status == SD_OK; l++) {
-    double *rows = e->pairs.u; /* free, and longer than a row for each of our spheres */
     status = sd_ewald_waves_apply(e->waves + l, &e->spheres, F, rows);
     if (status == SD_OK) add_waves(e, l, rows, u);
   }
-  if (status == SD_OK && periodic) add_means(e, sums, u);
+  if (status == SD_OK && e->ewald.box.periodic) add_means(e, sums, u);
+  return status;
+}
+
+/* --- noise: the wave part is drawn, the rest are products --- */
+
+static int divides(const void *state)
+{
+  const ewald *e = state;
+  return e->ewald.count > 0.0 && e->ewald.box.periodic && e->levels == 1 &&
+      e->ewald.xi * e->ewald.largest <= SD_EWALD_POSITIVE * (1.0 + 1e-9);
+}
+
+static sd_status apply_rest(void *state, const double *F, double *u)
+{
+  ewald *e = state;
+  double sums[18];
+  const sd_status status = near_part(e, F, u, sums);
+  if (status == SD_OK) add_means(e, sums, u);
+  return status;
+}
+
+static sd_status draw(void *state, const sd_random_key *key, double *u)
+{
+  ewald *e = state;
+  clear(e, u);
+  double *rows = rows_of_waves(e);
+  const sd_status status = sd_ewald_waves_draw(e->waves, key, rows);
+  if (status == SD_OK) add_waves(e, 0, rows, u);
   return status;
 }
 
@@ -257,4 +301,7 @@ const sd_mobility_engine sd_mobility_ewald = {
     .place = place,
     .apply = apply,
     .free = release,
+    .divides = divides,
+    .apply_rest = apply_rest,
+    .draw = draw,
 };

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_constants.h"
 #include "sd_linear.h"
 
 /* M [(3 count)^2] += the addition of each sphere; row [count]: which points these are; f, u:
@@ -89,6 +90,33 @@ void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], do
   sd_product3(turn, back, pose);
 }
 
+/* By the symmetry of the icosahedron uniform motions, rotations and strains of the lone sphere do not
+ * know each other: R of them is 6 pi and, of strains, that of the lone shell. */
+static sd_status find_faces(const sd_multiblob *m, sd_multiblob_shape *s)
+{
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  const int N = 3 * m->n;
+  double stresslet = 0.0;
+  s->faces = calloc(SD_FACES_WIDTH * (size_t) N, sizeof(double));
+  if (!s->faces) return SD_ENOMEMORY;
+  for (int j = 0; j < N; j++) {
+    const double *force = s->points.inverse + (long) j * N; /* of the points, for a unit velocity */
+    for (int k = 0; k < m->n; k++) {
+      const double *r = m->r + 3 * k, *f = force + 3 * k, trace = sd_dot(r, f) / 3.0;
+      for (int d = 0; d < 3; d++) s->faces[d * N + j] += f[d] / (6.0 * SD_PI);
+      for (int e = 0; e < 6; e++) {
+        const int p = row[e], q = column[e];
+        s->faces[(3 + e) * N + j] += 0.5 * (r[p] * f[q] + r[q] * f[p]) - (p == q ? trace : 0.0);
+      }
+    }
+  }
+  /* of the strain xy + yx, whose moment is in row xy */
+  for (int j = 0; j < N; j++)
+    stresslet += s->faces[6 * N + j] * (j % 3 == 2 ? 0.0 : m->r[3 * (j / 3) + 1 - j % 3]);
+  for (int j = 3 * N; j < SD_FACES_WIDTH * N; j++) s->faces[j] /= stresslet;
+  return SD_OK;
+}
+
 sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
                                     sd_multiblob_shape *out)
 {
@@ -116,6 +144,7 @@ sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump
     const sd_multiblob_spheres s = {clump ? clump->x : origin, clump ? clump->a : &one, turn,
                                     out->mask, (int) n};
     status = make_shape(m, &s, scratch, out);
+    if (status == SD_OK && !clump) status = find_faces(m, out);
   }
   free(turn);
   free(scratch);
@@ -125,6 +154,7 @@ sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump
 
 void sd_multiblob_shape_free(sd_multiblob_shape *s)
 {
+  free(s->faces);
   free(s->mask);
   free(s->row);
   sd_body_shape_free(&s->points);

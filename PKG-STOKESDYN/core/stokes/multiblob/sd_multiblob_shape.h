@@ -7,6 +7,7 @@
 #define SD_MULTIBLOB_SHAPE_H
 
 #include "sd_body_shape.h"
+#include "sd_faces.h"
 #include "sd_multiblob_points.h"
 #include "sd_solve.h"
 
@@ -25,6 +26,8 @@ typedef struct {
   /* [points.m] row of each point among the n spheres rows of the body */
   int *row;
   sd_body_shape points;
+  /* [SD_FACES_WIDTH][3 n] of the lone sphere, for sd_faces.h; NULL: of a clump */
+  double *faces;
 } sd_multiblob_shape;
 
 /* The lone sphere of radius 1 (clump NULL), or a rigid clump in the axes and the order of its

@@ -1,5 +1,7 @@
 #include "sd_unit.h"
 
+#include <string.h>
+
 #include "sd_linear.h"
 
 void sd_unit_roots(const sd_spheres *s, int n, double *root)
@@ -29,6 +31,28 @@ static inline void put_cross(double c, const double h[3], double *B)
   }
 }
 
+/* What the wall adds to the block of spheres at xi and xj */
+static void add_image(const sd_law *law, const double xi[3], double ai, const double xj[3],
+                      double aj, double taper, int width, double B[36])
+{
+  const double root_i[2] = {sqrt(6.0 * SD_PI * ai), sqrt(8.0 * SD_PI * ai) * ai};
+  const double root_j[2] = {sqrt(6.0 * SD_PI * aj), sqrt(8.0 * SD_PI * aj) * aj};
+  double M[36];
+  sd_wall_block(&law->wall, width, xi, ai, xj, aj, 1.0, M);
+  for (int p = 0; p < width; p++)
+    for (int q = 0; q < width; q++)
+      B[p + 6 * q] += taper * root_i[p / 3] * root_j[q / 3] * M[width * p + q];
+}
+
+/* Where the matrix has a sphere that cuts the wall */
+static void stand(const sd_law *law, const sd_spheres *s, long i, double x[3])
+{
+  const sd_wall *wall = &law->wall;
+  memcpy(x, s->x + 3 * i, 3 * sizeof(double));
+  if (wall->sign)
+    x[wall->axis] = wall->at + wall->sign * fmax(sd_wall_height(wall, x), s->a[i]);
+}
+
 /* Block of C into B [6 x 6], column-major, of which width 3 uses a corner. The pair tensors of
  * sd_tensor.h, times the roots of the diagonal:
  *   U F   1/(6 pi) times 6 pi sqrt(a_i a_j)            U T   1/(8 pi) times sqrt(6 a_i 8 a_j^3) pi = sqrt(3)/2 sqrt(a_i a_j^3)
@@ -37,8 +61,10 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
                               double B[36])
 {
   const double ai = s->a[i], aj = s->a[j];
-  double r[3];
-  sd_minus(s->x + 3 * (long) i, s->x + 3 * (long) j, r);
+  double xi[3], xj[3], r[3];
+  stand(law, s, i, xi);
+  stand(law, s, j, xj);
+  sd_minus(xi, xj, r);
   const double R = sqrt(sd_dot(r, r)), inv = R > 0.0 ? 1.0 / R : 0.0;
   const double h[3] = {r[0] * inv, r[1] * inv, r[2] * inv};
   double f, g;
@@ -46,15 +72,29 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
     sd_oseen_radial(R, &f, &g);
   else
     sd_rpy_radial(R, ai, aj, &f, &g);
-  double c = sqrt(ai * aj);
-  if (law->taper != SD_TAPER_NONE) c *= sd_taper_factor(law, R);
+  const double taper = law->taper == SD_TAPER_NONE ? 1.0 : sd_taper_factor(law, R);
+  const double c = sqrt(ai * aj) * taper;
   put_isotropic(c, f, g, h, B);
-  if (width == 3) return;
-  const double half_root_3 = 0.86602540378443864676;
-  sd_rpy_radial_wt(R, ai, aj, &f, &g);
-  put_isotropic(c * ai * aj, f, g, h, B + 3 + 6 * 3);
-  put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, B + 6 * 3);
-  put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
+  if (width == 6) {
+    const double half_root_3 = 0.86602540378443864676;
+    sd_rpy_radial_wt(R, ai, aj, &f, &g);
+    put_isotropic(c * ai * aj, f, g, h, B + 3 + 6 * 3);
+    put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, B + 6 * 3);
+    put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
+  }
+  if (law->wall.sign) add_image(law, xi, ai, xj, aj, taper, width, B);
+}
+
+/* That of a sphere with itself, and a little on the diagonal */
+static inline void own_block(const sd_law *law, const sd_spheres *s, int i, int width, double extra,
+                             double B[36])
+{
+  double x[3];
+  memset(B, 0, 36 * sizeof(double));
+  for (int p = 0; p < width; p++) B[7 * p] = 1.0 + extra;
+  if (!law->wall.sign) return;
+  stand(law, s, i, x);
+  add_image(law, x, s->a[i], x, s->a[i], 1.0, width, B);
 }
 
 /* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of
@@ -63,19 +103,20 @@ static inline void fill(const sd_law *law, const sd_spheres *s, const int *membe
                         double extra, double *A, float *A_single)
 {
   const long lda = width * (long) m;
-  double unity[36] = {0.0}, B[36];
-  for (int p = 0; p < width; p++) unity[7 * p] = 1.0 + extra;
+  double B[36];
   for (int j = 0; j < m; j++)
     for (int i = j; i < m; i++) {
-      const double *block = i == j ? unity : B;
       const long at = width * i + lda * (width * j);
-      if (i != j) unit_block(law, s, member[i], member[j], width, B);
+      if (i == j)
+        own_block(law, s, member[i], width, extra, B);
+      else
+        unit_block(law, s, member[i], member[j], width, B);
       for (int q = 0; q < width; q++)
         for (int p = 0; p < width; p++)
           if (A)
-            A[at + p + lda * q] = block[p + 6 * q];
+            A[at + p + lda * q] = B[p + 6 * q];
           else
-            A_single[at + p + lda * q] = (float) block[p + 6 * q];
+            A_single[at + p + lda * q] = (float) B[p + 6 * q];
     }
 }
 

@@ -1,6 +1,7 @@
 /* The mobility matrix of a few spheres scaled to unit diagonal, C = D^1/2 M D^1/2, D = 6 pi eta a
  * in the rows of forces and 8 pi eta a^3 in those of torques: its blocks depend on positions, radii
- * and the law only. Preconditioners are made of its parts. width: 3 (forces), or 6 (forces and
+ * and the law only. Above a wall the diagonal has the sphere's own image besides. Preconditioners
+ * are made of its parts. width: 3 (forces), or 6 (forces and
  * torques, sd_tensor_grand; not with SD_TENSOR_OSEEN). */
 #ifndef SD_UNIT_H
 #define SD_UNIT_H

@@ -35,15 +35,17 @@ static double *reserve(sd_packed *p, long doubles)
  * that their squares leave its range: plain C, not scaled. */
 static int fits(sd_packed *p)
 {
-  const double *x = p->spheres.x, *a = p->spheres.a;
+  const double *a = p->spheres.a;
   double largest = 0.0, smallest = INFINITY, far = 0.0;
   int sound = 1;
   for (int i = 0; i < p->n; i++) {
     if (!(a[i] > 0.0)) continue;
     largest = fmax(largest, a[i]);
     smallest = fmin(smallest, a[i]);
+    double x[3];
+    sd_wall_stand(&p->law.wall, p->spheres.x + 3 * (long) i, a[i], x);
     for (int d = 0; d < 3; d++) {
-      const double c = fabs(x[3 * (long) i + d]);
+      const double c = fabs(x[d]);
       sound = sound && c < INFINITY;
       far = fmax(far, c);
     }
@@ -53,6 +55,18 @@ static int fits(sd_packed *p)
   if (abs(exponent) > 1000) return 0;
   p->scale = ldexp(1.0, exponent);
   return far * p->scale < 1e15 && smallest * p->scale > 1e-14;
+}
+
+/* Numbers of a sphere in the axes of the wall */
+static void turn_to_wall(sd_packed *p)
+{
+  const sd_wall *wall = &p->law.wall;
+  int axis[3];
+  sd_wall_axes(wall, axis);
+  for (int k = 0; k < 6; k++) {
+    p->from[k] = k - k % 3 + axis[k % 3];
+    p->sign[k] = wall->sign < 0 && k % 3 == 2 ? -1.0 : 1.0;
+  }
 }
 
 /* Which kernel, in which unit of length */
@@ -69,6 +83,9 @@ static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_
   if (isa == SD_ISA_PLAIN) p->scale = 1.0;
   const struct sd_kernels *kernels = SD_KERNELS_OF(sd_product, plain, isa);
   p->kernel = width == 6 ? &kernels->torques : &kernels->forces;
+  kernels = SD_KERNELS_OF(sd_wall, plain, isa);
+  p->images = !law->wall.sign ? NULL : width == 6 ? &kernels->torques : &kernels->forces;
+  turn_to_wall(p);
   p->law.range *= p->scale;
   p->active = 0;
   for (int i = 0; i < n; i++) p->active += s->a[i] > 0.0;
@@ -98,9 +115,11 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
   for (int i = 0; i < n; i++) {
     if (!(s->a[i] > 0.0)) continue;
     p->index[k] = i;
-    p->x[k] = s->x[3 * (long) i] * p->scale;
-    p->y[k] = s->x[3 * (long) i + 1] * p->scale;
-    p->z[k] = s->x[3 * (long) i + 2] * p->scale;
+    double x[3];
+    sd_wall_stand(&law->wall, s->x + 3 * (long) i, s->a[i], x);
+    p->x[k] = x[0] * p->scale;
+    p->y[k] = x[1] * p->scale;
+    p->z[k] = x[2] * p->scale;
     p->a[k] = s->a[i] * p->scale;
     k++;
   }
@@ -133,7 +152,9 @@ sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_s
   for (long i = 0; i < n; i++) {
     double *row = p->row + 8 * i;
     const int takes_part = s->a[i] > 0.0;
-    for (int d = 0; d < 3; d++) row[d] = takes_part ? s->x[3 * i + d] * p->scale : nowhere;
+    double x[3];
+    sd_wall_stand(&law->wall, s->x + 3 * i, s->a[i], x);
+    for (int d = 0; d < 3; d++) row[d] = takes_part ? x[d] * p->scale : nowhere;
     row[3] = takes_part ? s->a[i] * p->scale : 0.0;
   }
   const double last[8] = {nowhere, nowhere, nowhere};
@@ -145,8 +166,8 @@ sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_s
 static void take_sums(const sd_packed *p, int i, int k, double *u)
 {
   const double unit = p->scale * p->spheres.w[i] / (8.0 * SD_PI), turn = unit * p->scale;
-  for (int d = 0; d < 3; d++) u[d] = unit * p->u[d][k];
-  for (int d = 3; d < p->width; d++) u[d] = turn * p->u[d][k];
+  for (int d = 0; d < 3; d++) u[p->from[d]] = unit * p->sign[d] * p->u[d][k];
+  for (int d = 3; d < p->width; d++) u[p->from[d]] = turn * p->sign[d] * p->u[d][k];
 }
 
 /* F of all spheres into the columns, sums to 0. The sphere's own w = 1/sqrt(eta) goes with its
@@ -157,8 +178,8 @@ static void load_columns(sd_packed *p, const double *F)
   for (int k = 0; k < p->active; k++) {
     const long i = p->index[k];
     const double w = p->spheres.w[i];
-    for (int d = 0; d < 3; d++) p->f[d][k] = w * F[m * i + d];
-    for (int d = 3; d < m; d++) p->f[d][k] = w * p->scale * F[m * i + d];
+    for (int d = 0; d < 3; d++) p->f[d][k] = w * p->sign[d] * F[m * i + p->from[d]];
+    for (int d = 3; d < m; d++) p->f[d][k] = w * p->scale * p->sign[d] * F[m * i + p->from[d]];
   }
   for (int d = 0; d < m; d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
 }
@@ -167,6 +188,7 @@ void sd_packed_share(sd_packed *p, int part, int parts, const double *F, double 
 {
   load_columns(p, F);
   p->kernel->symmetric(p, part, parts);
+  if (p->images) p->images->symmetric(p, part, parts);
   memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) p->n);
   for (int k = 0; k < p->active; k++) take_sums(p, p->index[k], k, u + (long) p->width * p->index[k]);
 }
@@ -179,9 +201,9 @@ static void load_rows(sd_packed *p, long begin, long end, const double *F)
   for (long i = begin; i < end; i++, F += m) {
     double *row = p->row + 8 * i;
     const double w = row[3] > 0.0 ? p->spheres.w[i] : 0.0;
-    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * F[d] : 0.0;
+    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * p->sign[d] * F[p->from[d]] : 0.0;
     for (int d = 3; d < m; d++)
-      p->torque_row[4 * i + d - 3] = w > 0.0 ? w * p->scale * F[d] : 0.0;
+      p->torque_row[4 * i + d - 3] = w > 0.0 ? w * p->scale * p->sign[d] * F[p->from[d]] : 0.0;
   }
 }
 
@@ -191,7 +213,9 @@ void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, const
   const long m = p->width;
   load_rows(p, 0, pairs->n, F);
   if (ghosts) load_rows(p, pairs->n, p->n, ghosts);
+  for (long d = 0; d < m; d++) memset(p->u[d], 0, sizeof(double) * (size_t) pairs->n);
   p->kernel->list(p, pairs);
+  if (p->images) p->images->list(p, pairs);
   for (int i = 0; i < pairs->n; i++) {
     if (p->row[8 * (long) i + 3] > 0.0)
       take_sums(p, i, i, u + m * i);

@@ -1,5 +1,6 @@
 /* Mobility times vector, the pair part only: u_i = sum_{j != i} Omega_ij F_j. The diagonal 1/(6 pi
- * eta_i a_i) is the solver's.
+ * eta_i a_i) is the solver's. With a wall Omega_ij has the image of j, and there is an Omega_ii,
+ * the image of the sphere itself (sd_wall.h).
  *
  * Local viscosity: Omega_ij is taken with sqrt(eta_i eta_j). Then the matrix is E^-1/2 M_1 E^-1/2
  * with M_1 the matrix of unit viscosity and E = diag(eta): symmetric and positive definite whenever
@@ -14,6 +15,7 @@
 #include "sd_isa.h"
 #include "sd_status.h"
 #include "sd_tensor.h"
+#include "sd_wall.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -26,11 +28,13 @@ extern "C" {
  * the far field is screened. */
 typedef enum { SD_TAPER_NONE, SD_TAPER_WENDLAND, SD_TAPER_SPHERICAL } sd_taper;
 
-/* How two spheres interact. range: of the taper, > 0; not read without taper. */
+/* How two spheres interact. range: of the taper, > 0; not read without taper. wall: not with
+ * Oseen's tensor; a taper is of the distance of the spheres for their images too. */
 typedef struct {
   sd_tensor tensor;
   sd_taper taper;
   double range;
+  sd_wall wall;
 } sd_law;
 
 /* t(R/range); 1 without taper */
@@ -66,13 +70,15 @@ typedef struct {
  *
  *   (U_i W_i) = sum_{j != i} M_ij (F_j T_j)
  *
- * M_ij: the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the law. */
+ * M_ij: the 6x6 block of sd_tensor_grand; the tensor is RPY there, whatever the law. A wall adds to
+ * both widths sum_j of sd_wall_block, j = i as well. */
 struct sd_kernel;
 
 /* Zero-initialise; sd_packed_free in the end. Members are the kernels' own. */
 typedef struct {
   int width;
-  const struct sd_kernel *kernel;
+  /* images: NULL without wall */
+  const struct sd_kernel *kernel, *images;
   /* as given; they must outlive the products */
   sd_spheres spheres;
   sd_law law;
@@ -81,6 +87,10 @@ typedef struct {
   int active, padded;
   /* lengths below are times this power of two, so that radii are about 1 */
   double scale;
+  /* numbers 0 ... 5 of a sphere in the axes below, which are those of the wall: which of F or u
+   * they are, and with which sign */
+  int from[6];
+  double sign[6];
   /* [padded] sphere of each column */
   int *index;
   /* columns [padded]; f = w F, u = sums; then those of the torques */

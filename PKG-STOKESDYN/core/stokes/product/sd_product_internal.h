@@ -6,7 +6,7 @@
 
 /* One kind of product. Sums are times 8 pi and without w of the target; lengths are scaled.
  *   symmetric   columns, u += the part's share of all pairs
- *   list        rows, u = */
+ *   list        rows, u += */
 struct sd_kernel {
   /* doubles of a vector: padding of the columns */
   int lanes;
@@ -18,7 +18,9 @@ struct sd_kernels {
   struct sd_kernel forces, torques;
 };
 
-/* In vectors: RPY without taper. In plain C, sd_product_plain.c: any law */
+/* In vectors: RPY without taper. In plain C, sd_product_plain.c: any law. sd_wall: what images add,
+ * a sphere's own among them */
 SD_KERNEL_TABLES(struct sd_kernels, sd_product);
+SD_KERNEL_TABLES(struct sd_kernels, sd_wall);
 
 #endif

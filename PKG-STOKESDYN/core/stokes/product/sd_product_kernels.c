@@ -3,6 +3,7 @@
 #include "sd_product_internal.h"
 
 #if SD_LANES > 1 /* sd_product_plain.c has its own */
+#include "sd_product_loops.h"
 #include "sd_tensor_lanes.h"
 
 /* Lanes of the columns j ... j + LANES - 1 that are column i itself take no part. */
@@ -73,43 +74,9 @@ INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
   }
 }
 
-/* Sources are taken in chunks that stay in the first-level cache while all targets pass. */
-enum { CHUNK = 256 };
-
-/* Groups of LANES columns: does the pair of a group with any later one belong to this part? In
- * turn, there and back, so that the sums of (groups - I) over a part's groups are equal. */
-INLINE int mine(int group, int part, int parts)
-{
-  const int turn = group % (2 * parts);
-  return turn == part || turn == 2 * parts - 1 - part;
-}
-
-/* All pairs of this part. A group of LANES targets meets itself one-sidedly, as its own lanes are
- * among the sources, and every later group once for both: a block serves two spheres, which is what
- * makes this about 1.4 times as fast as a loop over all targets. */
 static void symmetric(const sd_packed *p, int part, int parts)
 {
-  for (int c = 0; c < p->padded; c += CHUNK) {
-    const int end = c + CHUNK < p->padded ? c + CHUNK : p->padded;
-    for (int i = 0; i < end; i += LANES) {
-      if (!mine(i / LANES, part, parts)) continue;
-      const int from = i + LANES > c ? i + LANES : c;
-      for (int t = i; t < i + LANES; t += 2) {
-        if (i >= c) tile(0, p, t, i, i + LANES);
-        if (from < end) tile(1, p, t, from, end);
-      }
-    }
-  }
-}
-
-/* The next LANES neighbours from k on; what is missing before end is the row that stands for
- * nothing. */
-INLINE const int *neighbors(const sd_pairs *pairs, long k, long end, int nothing, int *rest)
-{
-  const int *j = pairs->neighbor + k;
-  if (end - k >= LANES) return j;
-  for (int l = 0; l < LANES; l++) rest[l] = k + l < end ? j[l] : nothing;
-  return rest;
+  share_of_pairs(p, part, parts, CHUNK, 2, tile);
 }
 
 /* Row by row, LANES neighbours at a time. A neighbour has a row of its own, so its sums are its own
@@ -136,9 +103,9 @@ static void list(const sd_packed *p, const sd_pairs *pairs)
       u2 = (u2 + f * F[2]) + c * dz;
     }
     /* w_i and the units are the caller's; there are no columns here, so the sums go to its u */
-    p->u[0][i] = total(u0);
-    p->u[1][i] = total(u1);
-    p->u[2][i] = total(u2);
+    p->u[0][i] += total(u0);
+    p->u[1][i] += total(u1);
+    p->u[2][i] += total(u2);
   }
 }
 
@@ -185,22 +152,9 @@ INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
   for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
 }
 
-/* Sixteen columns of so many spheres are 16 KiB, half of a first-level cache. */
-enum { GRAND_CHUNK = 128 };
-
 static void grand_symmetric(const sd_packed *p, int part, int parts)
 {
-  for (int c = 0; c < p->padded; c += GRAND_CHUNK) {
-    const int end = c + GRAND_CHUNK < p->padded ? c + GRAND_CHUNK : p->padded;
-    for (int i = 0; i < end; i += LANES) {
-      if (!mine(i / LANES, part, parts)) continue;
-      const int from = i + LANES > c ? i + LANES : c;
-      for (int t = i; t < i + LANES; t++) {
-        if (i >= c) grand_tile(0, p, t, i, i + LANES);
-        if (from < end) grand_tile(1, p, t, from, end);
-      }
-    }
-  }
+  share_of_pairs(p, part, parts, GRAND_CHUNK, 1, grand_tile);
 }
 
 static void grand_list(const sd_packed *p, const sd_pairs *pairs)
@@ -226,7 +180,7 @@ static void grand_list(const sd_packed *p, const sd_pairs *pairs)
       grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
     }
 #pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) p->u[k][i] = total(u[k]);
+    for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
   }
 }
 

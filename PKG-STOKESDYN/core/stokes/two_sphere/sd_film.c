@@ -5,6 +5,7 @@
 
 #include "sd_constants.h"
 #include "sd_film_table_internal.h"
+#include "sd_tensor.h"
 #include "sd_two_sphere_table_internal.h"
 
 enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
@@ -52,9 +53,7 @@ sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_fi
   return SD_OK;
 }
 
-/* Both eigenvalues of the symmetric (p q; q r) clipped at 0: it keeps the part of the larger one,
- * m m^T with m along its eigenvector, or nothing. */
-static void clip(double *p, double *q, double *r)
+void sd_film_clip(double *p, double *q, double *r)
 {
   const double mean = 0.5 * (*p + *r), half = 0.5 * (*p - *r), root = sqrt(half * half + *q * *q);
   const double most = mean + root;
@@ -86,12 +85,15 @@ static sd_status read_film(const sd_films *films, double a1, double a2, double x
   for (int j = 0; j < GAPS; j++)
     for (int k = 0; k < SCALARS; k++) sums[k] += w[j] * shells[j][k];
   sd_film_scales(a1, a2, scale);
+  const double approach =
+      scale[0] * sums[0] + sd_rpy_approach((1.0 + 0.5 * xi) * (a1 + a2), a1, a2, 1.0);
   const double beyond[SCALARS] = {R.XA[0], R.XC[0], R.YC[0], R.YC[1], R.YC[2]};
   for (int k = 0; k < SCALARS; k++) sums[k] = beyond[k] / scale[k] - sums[k];
-  clip(&sums[2], &sums[3], &sums[4]);
+  sd_film_clip(&sums[2], &sums[3], &sums[4]);
   *film = (sd_film){scale[0] * fmax(sums[0], 0.0),
                     scale[1] * fmax(sums[1], 0.0),
-                    {scale[2] * sums[2], scale[3] * sums[3], scale[4] * sums[4]}};
+                    {scale[2] * sums[2], scale[3] * sums[3], scale[4] * sums[4]},
+                    fmax(approach, 0.0)};
   return SD_OK;
 }
 

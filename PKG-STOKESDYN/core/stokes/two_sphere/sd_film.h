@@ -36,6 +36,8 @@ enum { SD_FILM_RATIOS = 10, SD_FILM_GAPS = 12 };
 typedef struct {
   /* force over speed; torque over spin; torques over turns, 11 12 22 */
   double A_n, A_t, B[3];
+  /* what the mean shells themselves resist of an approach, beyond their drags; like A_n */
+  double shells_approach;
 } sd_film;
 
 /* What films are read from, ready after create. It owns no memory. */

@@ -23,6 +23,10 @@ extern const double sd_film_table[SD_FILM_KINDS][SD_FILM_RATIOS][SD_FILM_GAPS][S
 /* 6 pi h_1, 8 pi h_3, 8 pi (a_p a_q)^1.5; 1/h_k = 1/a1^k + 1/a2^k */
 void sd_film_scales(double a1, double a2, double scale[SD_FILM_SCALARS]);
 
+/* Both eigenvalues of the symmetric (p q; q r) clipped at 0: it keeps the part of the larger one,
+ * m m^T with m along its eigenvector, or nothing. */
+void sd_film_clip(double *p, double *q, double *r);
+
 #ifdef __cplusplus
 }
 #endif

@@ -81,7 +81,7 @@ static inline sd_status flock_apply(void *ctx, const double *F, double *u)
 /* Spheres where the poses say */
 static inline sd_bodies flock_place(flock *f, int width)
 {
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   for (int i = 0; i < f->n; i++) {
     const int b = i < f->m * f->clumps ? i / f->m : i - f->m * f->clumps + f->clumps;
     const double *p = f->pose + 12 * b;

@@ -29,7 +29,7 @@ static inline sd_status settling_product(void *ctx, const double *F, double *u)
 /* Where the spheres stand */
 static inline void settling_place(settling *s)
 {
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   const sd_spheres spheres = {s->near.s.x, s->near.s.a, s->near.s.w};
   near_place(&s->near);
   assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, s->near.s.n, 6), SD_OK);

@@ -102,7 +102,7 @@ static cloud *cloud_create(void)
   }
   for (int j = 0; j < 6 * SPHERES; j++) s->F[j] = uniform(&seed, -20, 20);
   for (int j = 0; j < 6 * BODIES; j++) s->given[j] = uniform(&seed, -1, 1);
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   const sd_spheres spheres = {s->x, s->a, s->w};
   assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, POINTS, 3), SD_OK);
   return s;
@@ -264,7 +264,7 @@ static void a_lone_sphere_of_points_has_its_own_drag(void **state)
     int row[K];
     sd_body lone = s->body[b];
     const sd_spheres spheres = {s->x + 3 * K * b, s->a + K * b, s->w};
-    const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+    const sd_law law = {.tensor = SD_TENSOR_RPY};
     for (int k = 0; k < K; k++) row[k] = k;
     lone.row = row;
     F[1] = F[5] = 1.0;

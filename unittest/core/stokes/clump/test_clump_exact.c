@@ -17,7 +17,7 @@ static sd_status apply(void *ctx, const double *F, double *u)
 {
   const pairs *p = ctx;
   const sd_spheres s = {p->x, p->a, p->ones};
-  plain_all(&(sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, &s, p->n, 3, F, u);
+  plain_all(&(sd_law){.tensor = SD_TENSOR_RPY}, &s, p->n, 3, F, u);
   return SD_OK;
 }
 

@@ -118,7 +118,8 @@ static inline void periodic_place(periodic *p, const double *x, const double *a,
   p->width = width;
   p->ewald = *how;
   periodic_images(p, x, a, w);
-  sd_mobility_scene scene = {.how = {.law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0}, .width = width, .ewald = &p->ewald},
+  sd_mobility_scene scene = {
+      .how = {.law = {.tensor = SD_TENSOR_RPY}, .width = width, .ewald = &p->ewald},
                              .n = n,
                              .n_all = p->n_all,
                              .spheres = {p->x, p->a, p->w},

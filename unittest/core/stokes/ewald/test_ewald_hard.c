@@ -128,7 +128,7 @@ static void a_cloud_in_a_corner(void **state)
   sd_ewald_box box = {0};
   sd_ewald_box_around(&box, lo, hi, 1.0);
   const sd_ewald_sizes sizes = periodic_sizes(a, MOST);
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   const sd_spheres spheres = {x, a, w};
   sd_ewald how;
   assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-5, &how), SD_OK);

@@ -89,7 +89,7 @@ static void open_boxes_agree_with_all_pairs(void **state)
     many.n *= 8; /* all pairs of few, or of spheres that are close, are cheaper than two grids */
 
     const scene s = make(m, 0, 3 + k);
-    const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+    const sd_law law = {.tensor = SD_TENSOR_RPY};
     const sd_spheres spheres = {s.x, s.a, s.w};
     static double expected[6 * MOST], u[6 * MOST];
     plain_all(&law, &spheres, m->n, m->width, s.F, expected);

@@ -68,7 +68,7 @@ static void open_boxes_agree_with_all_pairs(void **state)
   for (int k = 0; k < CLOUDS; k++) {
     const cloud *c = clouds + k;
     const scene s = make(c, 7 + k);
-    const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+    const sd_law law = {.tensor = SD_TENSOR_RPY};
     const sd_spheres spheres = {s.x, s.a, s.w};
     double expected[6 * N], u[6 * N];
     plain_all(&law, &spheres, N, c->width, s.F, expected);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static const double A = 0.7, ETA = 1.3, U = 0.9;
-static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+static const sd_law RPY = {.tensor = SD_TENSOR_RPY};
 
 /* 10 000 clumps of 2 to 12 spheres that overlap, radii 1:100, some wholly hidden, to 1e-6; by the diagonal and by blocks. */
 static void ten_thousand_random_clumps(void **state)

@@ -24,7 +24,7 @@ static scene cloud(uint64_t seed)
 
 static sd_mobility_scene whole(const scene *s, int width, const sd_pairs *pairs)
 {
-  return (sd_mobility_scene){.how = {{SD_TENSOR_RPY, SD_TAPER_NONE, INFINITY}, width},
+  return (sd_mobility_scene){.how = {{.tensor = SD_TENSOR_RPY, .taper = SD_TAPER_NONE, .range = INFINITY}, width},
                              .n = s->n,
                              .n_all = s->n,
                              .spheres = {s->x, s->a, s->w},

@@ -3,6 +3,8 @@
 
 #include "table.h"
 
+#include "sd_multiblob_shape.h"
+
 enum { MOST = 3 * SD_MULTIBLOB_MOST };
 
 /* What the lone sphere of radius a and viscosity eta has over exact, from its whole matrix, in
@@ -160,6 +162,49 @@ static void moments_in_a_strain(void **state)
   blobs_free(s);
 }
 
+/* A rigid motion of a sphere is seen as its velocity and no strain, a strain as itself, turned as
+ * they may be; and what is pushed is the transpose of what is read. */
+static void faces_see_motion_and_strain(void **state)
+{
+  (void) state;
+  const double a = 1.7, U[3] = {0.4, -1.1, 0.3}, W[3] = {0.7, 0.2, -0.9},
+               E[9] = {0.2, 0.5, -0.1, 0.5, -0.3, 0.7, -0.1, 0.7, 0.1};
+  uint64_t seed = 5;
+  for (int n = 12; n <= 42; n += 30) {
+    sd_multiblob m;
+    sd_multiblob_shape lone;
+    double turn[9], u[MOST], l[MOST] = {0.0}, v[SD_FACES_WIDTH], f[SD_FACES_WIDTH], by_v = 0, by_u = 0;
+    assert_int_equal(sd_multiblob_create(n, 1, &m), SD_OK);
+    assert_int_equal(sd_multiblob_shape_create(&m, NULL, &lone), SD_OK);
+    random_rotation(&seed, turn);
+    for (int k = 0; k < n; k++) {
+      double r[3], spin[3], strain[3];
+      sd_multiply3(turn, m.r + 3 * k, r);
+      for (int d = 0; d < 3; d++) r[d] *= a;
+      sd_cross(W, r, spin);
+      sd_multiply3(E, r, strain);
+      for (int d = 0; d < 3; d++) u[3 * k + d] = U[d] + spin[d] + strain[d];
+    }
+    const sd_faces faces = {n, lone.faces, turn, NULL};
+    sd_faces_read(&faces, 1, u, v);
+    const double expected[SD_FACES_WIDTH] = {U[0],     U[1],     U[2],     a * E[0], a * E[4],
+                                             a * E[8], a * E[1], a * E[2], a * E[5]};
+    for (int e = 0; e < SD_FACES_WIDTH; e++) CHECK_NEAR(v[e], expected[e], 1e-12);
+    for (int e = 0; e < SD_FACES_WIDTH; e++) {
+      f[e] = uniform(&seed, -1, 1);
+      by_v += f[e] * v[e];
+    }
+    sd_faces_push(&faces, 1, f, l);
+    for (int j = 0; j < 3 * n; j++) by_u += l[j] * u[j];
+    CHECK_NEAR(by_u, by_v, 1e-12);
+    const char none = 0;
+    const sd_faces without = {n, lone.faces, turn, &none};
+    sd_faces_read(&without, 1, u, v);
+    for (int e = 0; e < SD_FACES_WIDTH; e++) assert_true(v[e] == 0.0);
+    sd_multiblob_shape_free(&lone);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -168,6 +213,7 @@ int main(void)
       cmocka_unit_test(orientation_in_the_laboratory),
       cmocka_unit_test(points_inside_another_member),
       cmocka_unit_test(moments_in_a_strain),
+      cmocka_unit_test(faces_see_motion_and_strain),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,6 +20,8 @@ typedef struct {
   periodic p;
   sd_tie tie;
   sd_multiblob_mobility M;
+  sd_faces faces;
+  char whole_shell[MOST];
   sd_body body[MOST];
   int whole[MOST], sphere[POINTS], row[POINTS];
   double arm[3 * MOST], D[3 * POINTS], w[POINTS], pose[9 * MOST], centre[3 * MOST];
@@ -73,6 +75,7 @@ static flock *clumps_at(int points, int clumps, int m, const double *X, const do
   memcpy(f->pose, R, sizeof(double) * 9 * (size_t) clumps);
   memcpy(f->centre, centre, sizeof(double) * 3 * (size_t) clumps);
   assert_int_equal(sd_multiblob_shape_create(&f->s->m, &f->clump, &f->shape), SD_OK);
+  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, &f->lone), SD_OK);
   for (int i = 0; i < clumps * m; i++) {
     f->s->mask[i] = f->shape.mask[i % m];
     f->s->body[i] = 1 + i / m;
@@ -87,7 +90,7 @@ static flock *clumps_at(int points, int clumps, int m, const double *X, const do
 static sd_bodies place(flock *f, double side, double tolerance)
 {
   blobs *s = f->s;
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   const int own = s->m.n, points = own * s->n;
   for (int k = 0; k < 3 * s->n && side > 0.0; k++) s->x[k] -= side * floor(s->x[k] / side);
   if (!s->r) blobs_expand(s);
@@ -124,10 +127,13 @@ static sd_bodies place(flock *f, double side, double tolerance)
     f->sphere[k] = k / own;
     for (int d = 0; d < 3; d++) f->D[3 * k + d] = s->b[k] > 0.0 ? 6.0 * SD_PI * s->b[k] : 1.0;
   }
+  for (int i = 0; i < s->n; i++) f->whole_shell[i] = (s->mask[i] & SD_MULTIBLOB_WHOLE) != 0;
+  f->faces = (sd_faces){own, f->lone.faces, s->turn, f->whole_shell};
   return (sd_bodies){.shaped = bodies,
                      .body = f->body,
                      .spheres = {s->n, 6, f->whole, f->arm},
                      .points = {points, 3, f->sphere, s->r},
+                     .faces = &f->faces,
                      .D = f->D,
                      .apply = sd_multiblob_apply,
                      .apply_ctx = &f->M};
@@ -225,7 +231,7 @@ static void loop_is_dense_algebra(void **state)
 static void products_in_a_suspension(void **state)
 {
   (void) state;
-  static const int most[2][2] = {{12, 12}, {19, 19}};
+  static const int most[2][2] = {{12, 12}, {13, 13}};
   double x[3 * MOST], side = 0.0, F[2][6 * MOST] = {{0.0}}, V[6 * MOST];
   uint64_t seed = 2;
   const int n = positions_of(x, &side);
@@ -252,6 +258,41 @@ static void products_in_a_suspension(void **state)
     }
     flock_free(f);
   }
+}
+
+/* After a step along the velocities in which no sphere moves further than 1 % of its radius against
+ * the others, from the last forces of the points: 3 to 5 products to 1e-3, where a cold start has 12. */
+static void warm_start_in_a_suspension(void **state)
+{
+  (void) state;
+  static const double steps[3] = {0.002, 0.01, 0.03};
+  static const int most[3] = {3, 5, 7};
+  double x[3 * MOST], y[3 * MOST], side = 0.0, F[6 * MOST] = {0.0}, mean = 0.0, fastest = 0.0;
+  const int n = positions_of(x, &side);
+  for (int i = 0; i < n; i++) F[6 * i + 2] = -6.0 * SD_PI;
+  flock *f = free_spheres(12, n, x, NULL);
+  sd_bodies A = place(f, side, 1e-5);
+  tie_with_films(f, &A);
+  assert_int_equal(move(f, &A, F, 0, 1e-3), SD_OK);
+  for (int i = 0; i < n; i++) mean += f->V[6 * i + 2] / n;
+  for (int i = 0; i < n; i++) {
+    const double v[3] = {f->V[6 * i], f->V[6 * i + 1], f->V[6 * i + 2] - mean};
+    fastest = fmax(fastest, sqrt(sd_dot(v, v)));
+  }
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; i < n; i++)
+      for (int d = 0; d < 3; d++) y[3 * i + d] = x[3 * i + d] + steps[k] / fastest * f->V[6 * i + d];
+    flock *g = free_spheres(12, n, y, NULL);
+    sd_bodies B = place(g, side, 1e-5);
+    tie_with_films(g, &B);
+    memcpy(g->l, f->l, sizeof f->l);
+    memcpy(g->before, f->before, sizeof f->before);
+    assert_int_equal(move(g, &B, F, 1, 1e-3), SD_OK);
+    print_message("a step of %g radii: %d products\n", steps[k], g->report.products);
+    assert_true(g->report.products <= most[k]);
+    flock_free(g);
+  }
+  flock_free(f);
 }
 
 #define T 0.70710678118654752440
@@ -347,6 +388,7 @@ int main(void)
       cmocka_unit_test(lone_clumps),
       cmocka_unit_test(two_rigid_clumps),
       cmocka_unit_test(products_in_a_suspension),
+      cmocka_unit_test(warm_start_in_a_suspension),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

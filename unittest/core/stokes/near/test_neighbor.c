@@ -115,7 +115,7 @@ static void oseen_coupling_of_the_closest_pair(void **state)
   const double x[] = {0, 0, 0, /**/ 0, 3, 4, /**/ 12, 3, 4, /**/ 0.1, 0, 0}, w[] = {1, 2, 3, 4};
   double a[] = {0.7, 2.8, 0.3, 0.0}, q;
   const sd_spheres s = {x, a, w};
-  sd_law law = {SD_TENSOR_OSEEN, SD_TAPER_NONE, INFINITY};
+  sd_law law = {.tensor = SD_TENSOR_OSEEN, .taper = SD_TAPER_NONE, .range = INFINITY};
   assert_int_equal(sd_oseen_coupling(&law, &s, NULL, 0, 0, 0, &q), SD_OK);
   assert_true(q == 0.0);
   sd_oseen_coupling(&law, &s, NULL, 4, 0, 4, &q);
@@ -146,7 +146,7 @@ static void oseen_coupling_finds_every_close_pair(void **state)
 {
   (void) state;
   enum { N = 200 };
-  const sd_law law = {SD_TENSOR_OSEEN, SD_TAPER_NONE, INFINITY};
+  const sd_law law = {.tensor = SD_TENSOR_OSEEN, .taper = SD_TAPER_NONE, .range = INFINITY};
   double x[3 * N], a[N], w[N];
   int close = 0;
   for (int scene = 0; scene < 100; scene++) {

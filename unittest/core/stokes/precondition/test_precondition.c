@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const double A = 0.7, ETA = 1.3, U = 0.9;
-static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+static const sd_law RPY = {.tensor = SD_TENSOR_RPY};
 
 static sd_status blocks_of(sd_blocks *b, const scene *s, int m)
 {

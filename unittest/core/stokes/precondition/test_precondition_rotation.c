@@ -96,8 +96,8 @@ static double error_of_inverse(const rotating *g, sd_precondition *P, void *ctx)
 static void what_sees_all_is_the_inverse(void **state)
 {
   (void) state;
-  const sd_law laws[] = {{SD_TENSOR_RPY, SD_TAPER_NONE, 0.0},
-                         {SD_TENSOR_RPY, SD_TAPER_WENDLAND, 9.0}};
+  const sd_law laws[] = {{.tensor = SD_TENSOR_RPY},
+                         {.tensor = SD_TENSOR_RPY, .taper = SD_TAPER_WENDLAND, .range = 9.0}};
   for (int k = 0; k < 2; k++) {
     scene s = cloud_flocs(1, 40, 3.0, 1.0, 0, ETA, 2);
     uint64_t seed = 3;
@@ -159,7 +159,7 @@ static void both_are_symmetric_positive_definite_and_split(void **state)
   vary_viscosity(&s, &seed);
   leave_out(&s, 7);
   for (int i = 40; i < 45; i++) leave_out(&s, i); /* a block without spheres */
-  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
+  const rotating g = rotating_create(&s, (sd_law){.tensor = SD_TENSOR_RPY});
   sd_sparse f[1 + PARTS] = {{0}};
   sd_blocks b[1 + PARTS] = {{0}};
   void *fs[1 + PARTS], *bs[1 + PARTS];
@@ -202,7 +202,7 @@ static void what_is_kept_is_the_preconditioner_of_its_positions(void **state)
                                 {.edge = {30, 31, 32}, .tilt = {2, 0, 0}, .periodic = 1}};
   for (int kind = 0; kind < 3; kind++) {
     scene s = cloud_flocs(FLOCS, M, 2.0, 12.0, 0, ETA, 3);
-    const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
+    const rotating g = rotating_create(&s, (sd_law){.tensor = SD_TENSOR_RPY});
     sd_preconditioner kept = {0};
     uint64_t seed = 5;
     double r[6 * N], z[6 * N], expected[6 * N];
@@ -239,7 +239,7 @@ static void diagonal_where_there_is_no_other(void **state)
 {
   (void) state;
   scene s = scene_lattice(5, 5, 5, 2.0, A, ETA);
-  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_OSEEN, SD_TAPER_NONE, 0.0});
+  const rotating g = rotating_create(&s, (sd_law){.tensor = SD_TENSOR_OSEEN});
   in_clumps k;
   clumps_of(&k, g.law, (sd_spheres){s.x, s.a, s.w}, s.n, 3, 5);
   for (int i = 0; i < s.n; i++) s.x[3 * i] *= 0.1;
@@ -293,7 +293,7 @@ static void ranks_fail_together(void **state)
 {
   (void) state;
   scene s = cloud_flocs(4, 5, 2.0, 12.0, 0, ETA, 3);
-  const rotating g = rotating_create(&s, (sd_law){SD_TENSOR_RPY, SD_TAPER_NONE, 0.0});
+  const rotating g = rotating_create(&s, (sd_law){.tensor = SD_TENSOR_RPY});
   const sd_precondition_kind *kinds[] = {&sd_precondition_blocks, &sd_precondition_sparse};
   for (int kind = 0; kind < 2; kind++)
     for (int fails_at = 0; fails_at < 2; fails_at++) {
@@ -347,7 +347,7 @@ static void between(int low, int count, int high, const char *what)
 static void iterations_with_random_spins(void **state)
 {
   (void) state;
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   sd_sparse f = {0};
   sd_blocks b = {0};
   scene s = scene_lattice(7, 7, 7, 2.0, A, ETA);

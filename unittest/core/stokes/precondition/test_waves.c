@@ -6,7 +6,7 @@
 #include "sd_linear.h"
 #include "sd_waves.h"
 
-static const sd_law RPY = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+static const sd_law RPY = {.tensor = SD_TENSOR_RPY};
 static const double ALPHA = 0.6;
 
 /* --- what is inverted --------------------------------------------------------------------------------------------- */

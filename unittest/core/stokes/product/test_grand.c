@@ -2,7 +2,7 @@
 
 enum { N = 30 };
 
-static const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+static const sd_law law = {.tensor = SD_TENSOR_RPY};
 
 static scene random_scene(uint64_t seed, double side)
 {

@@ -67,7 +67,7 @@ static void check_width(const scene *s, double range, int m)
     F[i] = uniform(&seed, -1, 1) * (i % m < 3 ? 1.0 : largest); /* torques in the scene's units */
 
   for (int taper = SD_TAPER_NONE; taper <= SD_TAPER_SPHERICAL; taper++) {
-    const sd_law law = {s->kind, taper, range};
+    const sd_law law = {.tensor = s->kind, .taper = taper, .range = range};
     plain_all(&law, &spheres, s->n, m, F, expected);
     plain_list(&law, &spheres, s->n, m, &list, F, u);
     compare(s, m, F, u, expected, "plain list");
@@ -218,7 +218,7 @@ static void not_a_number_comes_through(void **state)
   (void) state;
   scene s = cloud(30, 12.0, 0.3, 1.2, 9);
   const sd_spheres spheres = {s.x, s.a, s.w};
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY};
   double F[90], u[90];
   for (int bad = 0; bad < 2; bad++)
     for (size_t k = 0; k < sizeof(isas) / sizeof(isas[0]); k++) {
@@ -243,7 +243,7 @@ static void the_product_is_symmetric(void **state)
   (void) state;
   scene s = cloud(256, 12.0, 0.3, 1.2, 11);
   const sd_spheres spheres = {s.x, s.a, s.w};
-  const sd_law law = {SD_TENSOR_RPY, SD_TAPER_WENDLAND, 6.0};
+  const sd_law law = {.tensor = SD_TENSOR_RPY, .taper = SD_TAPER_WENDLAND, .range = 6.0};
   double F[768], G[768], uF[768], uG[768], one = 0.0, other = 0.0;
   uint64_t seed = 12;
   for (int i = 0; i < 768; i++) {
@@ -267,9 +267,9 @@ static void the_product_is_symmetric(void **state)
 static void tapers(void **state)
 {
   (void) state;
-  const sd_law none = {SD_TENSOR_RPY, SD_TAPER_NONE, 0.0},
-               wendland = {SD_TENSOR_RPY, SD_TAPER_WENDLAND, 1.7},
-               spherical = {SD_TENSOR_RPY, SD_TAPER_SPHERICAL, 1.7};
+  const sd_law none = {.tensor = SD_TENSOR_RPY},
+               wendland = {.tensor = SD_TENSOR_RPY, .taper = SD_TAPER_WENDLAND, .range = 1.7},
+               spherical = {.tensor = SD_TENSOR_RPY, .taper = SD_TAPER_SPHERICAL, .range = 1.7};
   CHECK_NEAR(sd_taper_factor(&none, 1e9), 1.0, 0.0);
   for (double q = 0.0; q <= 1.0; q += 0.125) {
     CHECK_NEAR(sd_taper_factor(&wendland, 1.7 * q), pow(1 - q, 4) * (1 + 4 * q), 1e-15);
@@ -290,7 +290,7 @@ static void taper_keeps_the_matrix_positive_definite(void **state)
   double *M = malloc(sizeof(double) * 9 * N * N), *copy = malloc(sizeof(double) * 9 * N * N);
   double F[3 * N] = {0}, u[3 * N];
   for (int taper = SD_TAPER_NONE; taper <= SD_TAPER_SPHERICAL; taper++) {
-    const sd_law law = {SD_TENSOR_RPY, taper, 6.1 * 0.7};
+    const sd_law law = {.tensor = SD_TENSOR_RPY, .taper = taper, .range = 6.1 * 0.7};
     sd_neighbors list = {0};
     assert_int_equal(sd_neighbors_cutoff(&list, s.x, N, N, law.range ? law.range : 1.0), SD_OK);
     sd_packed p = {0};

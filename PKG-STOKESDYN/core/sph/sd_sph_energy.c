@@ -1,0 +1,63 @@
+#include "sd_sph_energy.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* int_0^s e^(k t) dt. expm1 keeps the small strains of a fluid that is hardly compressed. */
+static double integral(double k, double s)
+{
+  return k == 0.0 ? s : expm1(k * s) / k;
+}
+
+/* de = P / rho^2 drho = P / rho ds, and 1 / rho = e^-s / rho0. */
+double sd_sph_elastic(const sd_sph_state *state, double rho)
+{
+  if (state->kind == SD_SPH_ABSOLUT) return state->B * state->B * log(rho);
+  const double s = log(rho / state->rho0), inverse = integral(-1.0, s) / state->rho0;
+  if (state->kind == SD_SPH_RELATIV)
+    return state->B * (s - state->rho0 * inverse) + state->P0 * inverse;
+  return state->B * (integral(state->gamma - 1.0, s) / state->rho0 - inverse) + state->P0 * inverse;
+}
+
+static int member(const sd_sph_members *g, int i)
+{
+  return (g->mask[i] & g->members) == g->members;
+}
+
+static double dot(const double *a, const double *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+double sd_sph_kinetic_energy(const sd_sph_members *g)
+{
+  double sum = 0.0;
+  for (int i = 0; i < g->n; i++)
+    if (member(g, i)) sum += 0.5 * g->m[i] * dot(g->v + 3 * (size_t) i, g->v + 3 * (size_t) i);
+  return sum;
+}
+
+double sd_sph_elastic_energy(const sd_sph_members *g, const sd_sph_state *state, const double *rho)
+{
+  double sum = 0.0;
+  for (int i = 0; i < g->n; i++)
+    if (member(g, i)) sum += g->m[i] * sd_sph_elastic(state, rho[i]);
+  return sum;
+}
+
+double sd_sph_power(const sd_sph_members *g, const double *F, double *others)
+{
+  double sum = 0.0;
+  *others = 0.0;
+  for (int i = 0; i < g->n; i++)
+    *(member(g, i) ? &sum : others) += dot(F + 4 * (size_t) i, g->v + 3 * (size_t) i);
+  return sum;
+}
+
+double sd_sph_along(const sd_sph_members *g, const double b[3], const double *y)
+{
+  double sum = 0.0;
+  for (int i = 0; i < g->n; i++)
+    if (member(g, i)) sum += g->m[i] * dot(b, y + 3 * (size_t) i);
+  return sum;
+}

@@ -1,0 +1,82 @@
+#include "sd_sph_probe.h"
+
+#include "sd_constants.h"
+#include "sd_sph_class.h"
+
+#include <math.h>
+
+void sd_sph_probe_add(sd_sph_kernel kernel, int dimension, double h, double r, double V, double P,
+                      double sums[2])
+{
+  const double VW = V * sd_sph_W(kernel, dimension, r, h);
+  sums[0] += VW;
+  sums[1] += VW * P;
+}
+
+double sd_sph_probe_pressure(const double sums[2])
+{
+  return sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
+}
+
+/* The line crosses the support of a particle from z - reach to z + reach. */
+void sd_sph_gauge_add(sd_sph_kernel kernel, int dimension, double h, double across, double z,
+                      double V, double step, int count, double *fraction)
+{
+  if (!(across < 2.0 * h)) return;
+  const double reach = sqrt(4.0 * h * h - across * across);
+  const double first = fmax(0.0, ceil((z - reach) / step));
+  const double last = fmin(count - 1.0, floor((z + reach) / step));
+  for (int k = (int) first; k <= last; k++)
+    fraction[k] += V * sd_sph_W(kernel, dimension, hypot(across, z - k * step), h);
+}
+
+double sd_sph_gauge_height(const double *fraction, int count, double step)
+{
+  for (int k = count - 2; k >= 0; k--) {
+    const double below = fraction[k], above = fraction[k + 1];
+    if (below >= 0.5 && above < 0.5) return step * (k + (below - 0.5) / (below - above));
+  }
+  return 0.0;
+}
+
+/* Once every few steps, for output, so one pair after the other will do. */
+void sd_sph_moments(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                    double *M)
+{
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  for (int k = 0; k < list->n; k++) {
+    const int i = list->first[k];
+    const double *xi = p->x4 + 4 * (size_t) i;
+    for (int m = 0; m < list->count[i]; m++) {
+      const int j = list->neighbor[i][m] & list->mask;
+      const double *xj = p->x4 + 4 * (size_t) j;
+      const sd_sph_coefficients *pair = sd_sph_of_pair(model, p, i, j);
+      const double d[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+      const double q = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * pair->inv_h;
+      if (!(q < 2.0)) continue;
+      const double g = -pair->grad * sd_sph_G(model->kernel, q);
+      for (int c = 0; c < 6; c++) {
+        const double dd = g * d[row[c]] * d[column[c]];
+        M[6 * (size_t) i + c] += xj[3] * dd;
+        M[6 * (size_t) j + c] += xi[3] * dd;
+      }
+    }
+  }
+}
+
+/* Two dimensions: mean less radius of Mohr's circle. Three: roots of the characteristic polynomial
+ * by a cosine, Smith 1961; with N = (M - mean I) / p they are mean + 2 p cos(angle + 2 pi k / 3),
+ * cos(3 angle) = det N / 2. */
+double sd_sph_least_eigenvalue(int dimension, const double M[6])
+{
+  if (dimension == 2) return 0.5 * (M[0] + M[1]) - hypot(0.5 * (M[0] - M[1]), M[3]);
+  const double mean = (M[0] + M[1] + M[2]) / 3.0;
+  const double a = M[0] - mean, b = M[1] - mean, c = M[2] - mean;
+  const double p =
+      sqrt((a * a + b * b + c * c + 2.0 * (M[3] * M[3] + M[4] * M[4] + M[5] * M[5])) / 6.0);
+  if (p == 0.0) return mean;
+  const double det = a * (b * c - M[5] * M[5]) - M[3] * (M[3] * c - M[5] * M[4]) +
+      M[4] * (M[3] * M[5] - b * M[4]);
+  const double cosine = fmax(-1.0, fmin(1.0, det / (2.0 * p * p * p)));
+  return mean + 2.0 * p * cos((acos(cosine) + 2.0 * SD_PI) / 3.0);
+}

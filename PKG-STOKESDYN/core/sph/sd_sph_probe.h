@@ -1,0 +1,44 @@
+/* What SPH says of a place: the pressure at a point, the free surface over it, and how far a
+ * particle is inside the fluid. */
+#ifndef SD_SPH_PROBE_H
+#define SD_SPH_PROBE_H
+
+#include "sd_sph_pair.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Pressure at a point, Shepard's mean P = sum V P W / sum V W over the particles in reach: adds a
+ * particle of volume V at the distance r to the two sums. */
+void sd_sph_probe_add(sd_sph_kernel kernel, int dimension, double h, double r, double V, double P,
+                      double sums[2]);
+
+/* Of the sums of all; 0 where nobody is in reach. */
+double sd_sph_probe_pressure(const double sums[2]);
+
+/* Free surface over a point: the fraction of space that is filled, sum V W, is 1 in the fluid and
+ * 1/2 at a plane surface. Adds a particle of volume V at the height z over the point and the
+ * distance across from the line upwards to fraction [count], samples at k * step. */
+void sd_sph_gauge_add(sd_sph_kernel kernel, int dimension, double h, double across, double z,
+                      double V, double step, int count, double *fraction);
+
+/* The uppermost height at which the fraction falls through 1/2, linear between samples; 0: there is
+ * none. */
+double sd_sph_gauge_height(const double *fraction, int count, double step);
+
+/* Adds to M [6 n + 6], rows xx yy zz xy xz yz of - sum V_b g d d^T, the unit matrix in the bulk. x4
+ * holds V. */
+void sd_sph_moments(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                    double *M);
+
+/* The smallest eigenvalue of such a row: 1 in the bulk, about 1/2 at a free surface, 0 of a
+ * particle alone. With Wendland, h of 2 spacings: 0.50, 0.70, 0.94 in the first three rows under a plane
+ * surface; the first is below SD_SPH_SURFACE. */
+static const double SD_SPH_SURFACE = 0.65;
+double sd_sph_least_eigenvalue(int dimension, const double M[6]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

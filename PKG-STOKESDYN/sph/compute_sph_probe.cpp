@@ -1,0 +1,155 @@
+#include "compute_sph_probe.h"
+
+#include "fix_sph_pressure.h"
+#include "fixes.h"
+#include "keywords.h"
+#include "lammps_compat.h"
+#include "pair_sph_artvisc_tenscorr.h"
+#include "sd_sph_probe.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+static const std::string PROBE = "Compute sph/probe", SURFACE = "Compute sph/surface/atom";
+
+ComputeSphProbe::ComputeSphProbe(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
+{
+  Sph::require_scene(lmp, PROBE);
+  Keywords in(lmp, PROBE, words(narg, arg), 3);
+  while (in.more()) {
+    Probe probe = {-1, {0.0, 0.0, 0.0}};
+    if (in.positional("probe").choice({"pressure", "height"}) == 1)
+      probe.axis = (int) in.positional("axis of a height").choice({"x", "y", "z"});
+    for (double &x : probe.x) x = in.positional("point of a probe").number();
+    probes.push_back(probe);
+  }
+  in.require(!probes.empty(), "no probe: pressure X Y Z or height AXIS X Y Z");
+  vector_flag = 1;
+  size_vector = (int) probes.size();
+  extvector = 0;
+  vector = new double[probes.size()]();
+}
+
+ComputeSphProbe::~ComputeSphProbe()
+{
+  delete[] vector;
+}
+
+void ComputeSphProbe::init()
+{
+  pair = Sph::require_pair(lmp, PROBE);
+}
+
+double ComputeSphProbe::volume(int i) const
+{
+  return Sph::mass(lmp, i) / atom->rho[i];
+}
+
+void ComputeSphProbe::offset(const Probe &probe, int i, double d[3]) const
+{
+  for (int k = 0; k < 3; k++) d[k] = atom->x[i][k] - probe.x[k];
+  const double up = probe.axis < 0 ? 0.0 : d[probe.axis];
+  Compat::minimum_image(domain, d);
+  if (probe.axis >= 0) d[probe.axis] = up;
+}
+
+/* From the densities, as the force has it. */
+double ComputeSphProbe::pressure(const Probe &probe) const
+{
+  double mine[2] = {0.0, 0.0}, sums[2];
+  for (const auto *fix : fixes_of<FixSphPressure>(lmp))
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & groupbit) || !(atom->mask[i] & fix->groupbit)) continue;
+      double d[3];
+      offset(probe, i, d);
+      const double h = pair->smoothing_length(atom->type[i]), r = std::hypot(d[0], d[1], d[2]);
+      if (r < 2.0 * h)
+        sd_sph_probe_add(pair->kernel(), pair->dimension(), h, r, volume(i),
+                         sd_sph_pressure(&fix->state, atom->rho[i]), mine);
+    }
+  MPI_Allreduce(mine, sums, 2, MPI_DOUBLE, MPI_SUM, world);
+  return sd_sph_probe_pressure(sums);
+}
+
+/* Samples are an eighth of h apart, up to the end of the highest support that the line crosses. */
+double ComputeSphProbe::height(const Probe &probe) const
+{
+  struct Near {
+    int i;
+    double across, z, h;
+  };
+  std::vector<Near> near;
+  double mine[2] = {0.0, -HUGE_VAL}, ends[2];    // the highest, - the smallest h
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    double d[3];
+    offset(probe, i, d);
+    const double z = d[probe.axis], h = pair->smoothing_length(atom->type[i]);
+    d[probe.axis] = 0.0;
+    const double across = std::hypot(d[0], d[1], d[2]);
+    if (!(across < 2.0 * h)) continue;
+    near.push_back({i, across, z, h});
+    mine[0] = std::max(mine[0], z + 2.0 * h);
+    mine[1] = std::max(mine[1], -h);
+  }
+  MPI_Allreduce(mine, ends, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (!(ends[0] > 0.0)) return 0.0;
+  const double step = -ends[1] / 8.0;
+  const int count = 2 + (int) ceil(ends[0] / step);
+  std::vector<double> part(count, 0.0), fraction(count);
+  for (const Near &at : near)
+    sd_sph_gauge_add(pair->kernel(), pair->dimension(), at.h, at.across, at.z, volume(at.i), step,
+                     count, part.data());
+  MPI_Allreduce(part.data(), fraction.data(), count, MPI_DOUBLE, MPI_SUM, world);
+  return sd_sph_gauge_height(fraction.data(), count, step);
+}
+
+void ComputeSphProbe::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  for (size_t k = 0; k < probes.size(); k++)
+    vector[k] = probes[k].axis < 0 ? pressure(probes[k]) : height(probes[k]);
+}
+
+// --- the free surface ---------------------------------------------------------------------------
+
+ComputeSphSurface::ComputeSphSurface(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
+{
+  Sph::require_scene(lmp, SURFACE);
+  Keywords(lmp, SURFACE, words(narg, arg), 3).parse({});
+  peratom_flag = 1;
+  size_peratom_cols = 2;
+}
+
+void ComputeSphSurface::init()
+{
+  pair = Sph::require_pair(lmp, SURFACE);
+}
+
+void ComputeSphSurface::compute_peratom()
+{
+  invoked_peratom = update->ntimestep;
+  if (!pair->moments(moments))
+    fail(lmp, SURFACE + ": there is no neighbour list yet; use it in a run, or after 'run 0'");
+  values.assign(2 * (size_t) (atom->nlocal + 1), 0.0);
+  rows.resize(atom->nlocal + 1);
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *row = rows[i] = &values[2 * (size_t) i];
+    if (!(atom->mask[i] & groupbit)) continue;
+    row[0] = sd_sph_least_eigenvalue(pair->dimension(), &moments[6 * (size_t) i]);
+    row[1] = row[0] < SD_SPH_SURFACE;
+  }
+  array_atom = rows.data();
+}
+
+double ComputeSphSurface::memory_usage()
+{
+  return sizeof(double) * (double) (moments.capacity() + values.capacity() + rows.capacity());
+}

@@ -1,0 +1,56 @@
+/* compute sph/probe and sph/surface/atom: pressures at points, heights of the free surface, and
+ * who is at it. See doc/compute_sph_probe.md. */
+#ifndef SD_COMPUTE_SPH_PROBE_H
+#define SD_COMPUTE_SPH_PROBE_H
+
+#include "compute.h"
+
+#include <vector>
+
+namespace StokesDyn {
+
+class PairSph;
+
+class ComputeSphProbe : public LAMMPS_NS::Compute {
+ public:
+  static constexpr const char *STYLE = "sph/probe";
+
+  ComputeSphProbe(LAMMPS_NS::LAMMPS *, int, char **);
+  ~ComputeSphProbe() override;
+  void init() override;
+  void compute_vector() override;
+
+ private:
+  struct Probe {
+    /* 0 1 2: the height of the surface along it; -1: pressure */
+    int axis;
+    double x[3];
+  };
+  std::vector<Probe> probes;
+  PairSph *pair = nullptr;
+
+  double pressure(const Probe &) const;
+  double height(const Probe &) const;
+  double volume(int i) const;
+  /* from the probe to particle i, to its nearest image across `axis` only */
+  void offset(const Probe &, int i, double d[3]) const;
+};
+
+class ComputeSphSurface : public LAMMPS_NS::Compute {
+ public:
+  static constexpr const char *STYLE = "sph/surface/atom";
+
+  ComputeSphSurface(LAMMPS_NS::LAMMPS *, int, char **);
+  void init() override;
+  void compute_peratom() override;
+  double memory_usage() override;
+
+ private:
+  PairSph *pair = nullptr;
+  std::vector<double> moments, values;
+  /* LAMMPS reads rows through these */
+  std::vector<double *> rows;
+};
+
+}    // namespace StokesDyn
+#endif

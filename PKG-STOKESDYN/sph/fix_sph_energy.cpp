@@ -1,0 +1,153 @@
+#include "fix_sph_energy.h"
+
+#include "fix_sph_pressure.h"
+#include "fixes.h"
+#include "keywords.h"
+#include "named_state.h"
+#include "pair_sph_artvisc_tenscorr.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+FixSphEnergy::FixSphEnergy(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
+{
+  nevery = 1;
+  restart_global = 1;
+  dynamic_group_allow = 1;
+}
+
+int FixSphEnergy::setmask()
+{
+  return FixConst::INITIAL_INTEGRATE | FixConst::END_OF_STEP | FixConst::POST_RUN;
+}
+
+sd_sph_members FixSphEnergy::group()
+{
+  masses.resize(atom->nlocal + 1);
+  for (int i = 0; i < atom->nlocal; i++) masses[i] = Sph::mass(lmp, i);
+  return {atom->nlocal, atom->mask, groupbit, masses.data(), atom->v ? atom->v[0] : nullptr};
+}
+
+double FixSphEnergy::elastic()
+{
+  double mine = 0.0, all;
+  for (const auto *fix : fixes_of<FixSphPressure>(lmp)) {
+    sd_sph_members of_fluid = group();
+    of_fluid.members |= fix->groupbit;
+    mine += sd_sph_elastic_energy(&of_fluid, &fix->state, atom->rho);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* Of all fix gravity, whose vector is the one of this step; positions go on through the faces of a
+ * periodic box. */
+double FixSphEnergy::potential(const sd_sph_members &members)
+{
+  std::vector<double> places(3 * (size_t) atom->nlocal + 3);
+  for (int i = 0; i < atom->nlocal; i++)
+    domain->unmap(atom->x[i], atom->image[i], &places[3 * (size_t) i]);
+  double sum = 0.0;
+  for (auto *fix : fixes_of(lmp, "gravity")) {
+    int dim;
+    sd_sph_members pulled = members;
+    pulled.members |= fix->groupbit;
+    sum -= sd_sph_along(&pulled, (const double *) fix->extract("gvec", dim), places.data());
+  }
+  return sum;
+}
+
+void FixSphEnergy::measure(double *out)
+{
+  const sd_sph_members members = group();
+  double others;
+  out[ON_GROUP] = sd_sph_power(&members, pair->own_forces(), &out[ON_OTHERS]);
+  out[RUBS] = sd_sph_power(&members, pair->own_friction(), &others);
+  out[RUBS] += others;
+  out[SHIFTED] = 0.0;
+  if (const double *du = pair->shift())
+    for (auto *fix : fixes_of(lmp, "gravity")) {
+      int dim;
+      sd_sph_members pulled = members;
+      pulled.members |= fix->groupbit;
+      out[SHIFTED] += sd_sph_along(&pulled, (const double *) fix->extract("gvec", dim), du);
+    }
+}
+
+void FixSphEnergy::setup(int /*vflag*/)
+{
+  const double now = elastic();
+  jumps += now - (has_run ? elastic_then : 0.0);
+  has_run = true;
+  elastic_then = now;
+  measure(power);
+}
+
+/* fix dt/reset changes the step at the end of one, before or after this fix. */
+void FixSphEnergy::initial_integrate(int /*vflag*/)
+{
+  dt = update->dt;
+}
+
+/* The leapfrog's v at full steps: F.v there, times dt, is all that v^2 / 2 gains in the two halves
+ * around it, but for the first and last half step of a run. */
+void FixSphEnergy::end_of_step()
+{
+  double now[POWERS];
+  measure(now);
+  for (int k = 0; k < POWERS; k++) {
+    done[k] += 0.5 * dt * (power[k] + now[k]);
+    power[k] = now[k];
+  }
+}
+
+void FixSphEnergy::post_run()
+{
+  elastic_then = elastic();
+}
+
+void FixSphEnergy::values(double *out)
+{
+  const sd_sph_members members = group();
+  double mine[2 + POWERS] = {sd_sph_kinetic_energy(&members), potential(members)},
+         all[2 + POWERS];
+  std::copy_n(done, (int) POWERS, mine + 2);
+  MPI_Allreduce(mine, all, 2 + POWERS, MPI_DOUBLE, MPI_SUM, world);
+  const double *work = all + 2;
+  out[KINETIC] = all[0];
+  out[POTENTIAL] = all[1];
+  out[ELASTIC] = elastic();
+  out[WORK] = -work[ON_OTHERS];
+  const double stored = has_run ? out[ELASTIC] - jumps : 0.0;
+  out[DISSIPATED] = out[WORK] - work[ON_GROUP] + work[SHIFTED] - stored;
+  out[FRICTION] = -work[RUBS];
+}
+
+void FixSphEnergy::write_restart(FILE *fp)
+{
+  std::vector<double> sums(POWERS);
+  MPI_Reduce(done, sums.data(), POWERS, MPI_DOUBLE, MPI_SUM, 0, world);
+  NamedState state(STYLE);
+  state.put("done", sums);
+  state.put("elastic", update->whichflag == 1 ? elastic() : elastic_then);
+  state.put("jumps", jumps);
+  state.put("has_run", has_run);
+  if (comm->me == 0) state.write(fp);
+}
+
+void FixSphEnergy::restart(char *buf)
+{
+  NamedState state(STYLE);
+  if (!state.read(lmp, buf)) return;
+  if (comm->me == 0) state.get("done", done, POWERS);
+  elastic_then = state.get("elastic", 0.0);
+  jumps = state.get("jumps", 0.0);
+  has_run = state.get("has_run", 0.0) != 0.0;
+}

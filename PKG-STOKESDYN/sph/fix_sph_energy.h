@@ -1,0 +1,49 @@
+/* Internal fix: the memory of a compute sph/energy, what the forces of the pair style have done
+ * since it was made. It follows the run through restart files. */
+#ifndef SD_FIX_SPH_ENERGY_H
+#define SD_FIX_SPH_ENERGY_H
+
+#include "sph_fix.h"
+
+#include "sd_sph_energy.h"
+
+#include <vector>
+
+namespace StokesDyn {
+
+class FixSphEnergy : public SphFix {
+ public:
+  static constexpr const char *STYLE = "SPH/ENERGY";
+
+  FixSphEnergy(LAMMPS_NS::LAMMPS *, int, char **);
+  int setmask() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
+  void end_of_step() override;
+  void post_run() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  enum Value { KINETIC, POTENTIAL, ELASTIC, DISSIPATED, FRICTION, WORK, VALUES };
+  /* All of the moment, the same on all ranks. */
+  void values(double *out);
+
+ private:
+  /* Of this rank: power of the pair style's forces on the group, of friction among them and on
+   * others (the sum is what it dissipates), of all forces on others, of gravity along the shift. */
+  enum { ON_GROUP, RUBS, ON_OTHERS, SHIFTED, POWERS };
+  double power[POWERS] = {}, done[POWERS] = {}, dt = 0.0;
+  /* of the group, at the end of the last run or in its restart file; what happened in between is
+   * nobody's work and goes to `jumps` */
+  double elastic_then = 0.0, jumps = 0.0;
+  bool has_run = false;
+  std::vector<double> masses;
+
+  sd_sph_members group();
+  double elastic();
+  double potential(const sd_sph_members &);
+  void measure(double *);
+};
+
+}    // namespace StokesDyn
+#endif

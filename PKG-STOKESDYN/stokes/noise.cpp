@@ -1,0 +1,194 @@
+#include "noise.h"
+
+#include "callback.h"
+#include "hydrodynamics.h"
+#include "keywords.h"
+
+#include "sd_clump_noise.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+void Noise::read_temperature(Keywords &in)
+{
+  temperature = Field::parse(in);
+  if (temperature.number() < 0.0)
+    in.refuse("'" + text(temperature.number()) + "' must be >= 0");
+  seed = (uint32_t) in.integer(1);
+}
+
+void Noise::read_tolerance(Keywords &in)
+{
+  tolerance = in.positive();
+  if (!(tolerance < 0.5)) in.refuse("'" + text(tolerance) + "' must be below 0.5");
+}
+
+double Noise::memory_usage() const
+{
+  double numbers = of_clumps.capacity() + D.capacity() + w.capacity() + y.capacity();
+  for (size_t room : process.room) numbers += room;
+  return sizeof(double) * numbers;
+}
+
+double Noise::scale(double dt) const
+{
+  return sqrt(2.0 * kT * dt);
+}
+
+sd_random_key Noise::key(sd_random_purpose what) const
+{
+  return {seed, what, (uint64_t) update->ntimestep};
+}
+
+void Noise::draw(Hydrodynamics &hydro, const Take &take)
+{
+  const double T = temperature.evaluate(lmp);
+  if (!(T >= 0.0) || std::isinf(T))
+    fail(lmp, command + ": keyword temperature: '" + text(T) + "' must be >= 0, in step " +
+                  std::to_string(update->ntimestep));
+  kT = force->boltz * T;
+  last = {};
+  of_clumps.assign(6 * hydro.motion().clumps.size() + 6, 0.0);
+  if (hydro.settings.rigid.apart())
+    draw_alone(hydro, take);
+  else
+    draw_together(hydro, take);
+}
+
+/* Nobody sees anybody: each sphere by its drag, each clump by the root of its own mobility. */
+void Noise::draw_alone(const Hydrodynamics &hydro, const Take &take)
+{
+  const Velocities &motion = hydro.motion();
+  const WholeClumps &whole = hydro.scene.whole;
+  double normals[6], move[3];
+  for (int i : motion.lone) {
+    const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
+    sd_random_normals(&of_sphere, atom->tag[i], 3, normals);
+    for (int d = 0; d < 3; d++) move[d] = normals[d] / sqrt(hydro.ambient.drag(i));
+    take(i, move);
+  }
+  const sd_random_key of_body = key(SD_RANDOM_BODY);
+  for (size_t c = 0; c < motion.clumps.size(); c++) {
+    const Velocities::Clump &clump = motion.clumps[c];
+    int64_t lowest = whole.tag[motion.member_of(clump, 0)];
+    for (int k = 1; k < clump.body->n; k++)
+      lowest = std::min(lowest, (int64_t) whole.tag[motion.member_of(clump, k)]);
+    sd_random_normals(&of_body, lowest, 6, normals);
+    sd_clump_noise_draw(&clump.body->shape->noise, clump.pose, clump.eta, normals,
+                        &of_clumps[6 * c]);
+  }
+}
+
+/* M of forces alone, from that of the engine, which may have torques: nobody turns by its noise.
+ * Where the engine's M divides, the part that is not drawn at once. */
+namespace {
+  struct Forces {
+    size_t rows, width;
+    /* [3 rows] */
+    const double *D;
+    sd_mobility *engine;
+    /* nullptr: nobody sees anybody */
+    sd_apply *apply;
+    /* [width rows] */
+    std::vector<double> F, u;
+  };
+
+  sd_status apply_forces(void *ctx, const double *F, double *u)
+  {
+    Forces &m = *static_cast<Forces *>(ctx);
+    for (size_t k = 0; k < m.rows && m.apply; k++) std::copy_n(F + 3 * k, 3, &m.F[m.width * k]);
+    const sd_status status =
+        m.apply ? m.apply(m.engine, m.F.data(), m.u.data()) : SD_OK;
+    for (size_t k = 0; k < m.rows; k++)
+      for (int d = 0; d < 3; d++) u[3 * k + d] = m.u[m.width * k + d] + F[3 * k + d] / m.D[3 * k + d];
+    return status;
+  }
+}    // namespace
+
+void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
+{
+  Scene &scene = hydro.scene;
+  const size_t n = scene.size();
+  const std::vector<double> drag =
+      scene.rows(1, [&hydro](int i, double *out) { *out = hydro.ambient.drag(i); });
+  D.resize(3 * n + 3);
+  w.resize(3 * n + 3);
+  y.resize(3 * n + 3);
+  const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
+  for (size_t k = 0; k < n; k++) {
+    std::fill_n(&D[3 * k], 3, drag[k]);
+    sd_random_normals(&of_sphere, scene.tag(k), 3, &w[3 * k]);
+  }
+  const size_t width = hydro.rotation() ? 6 : 3;
+  Forces forces = {n, width, D.data(), scene.mobility(), nullptr, {}, {}};
+  forces.F.assign(width * (n + 1), 0.0);
+  forces.u.assign(width * (n + 1), 0.0);
+  divided = scene.anybody_sees() && sd_mobility_divides(forces.engine);
+  if (scene.anybody_sees()) forces.apply = divided ? sd_mobility_apply_rest : sd_mobility_apply;
+  sd_noise_matrix M = {};
+  M.n = 3 * (long) n;
+  M.apply = apply_forces;
+  M.ctx = &forces;
+  M.D = D.data();
+  M.world.ctx = &scene;
+  M.world.me = comm->me;
+  M.world.ranks = comm->nprocs;
+  M.world.sum = Scene::sum;
+  sd_status status =
+      sd_noise_velocities(&process, &M, w.data(), tolerance / 3.0, y.data(), &last);
+  if (status == SD_OK && divided) {
+    status = sd_mobility_draw(forces.engine, &of_sphere, forces.u.data());
+    for (size_t k = 0; k < n; k++)
+      for (int d = 0; d < 3; d++) y[3 * k + d] += forces.u[width * k + d];
+  }
+  if (status != SD_OK)
+    fail_by(lmp, status,
+            command + ": keyword temperature: no root of the mobility in step " +
+                std::to_string(update->ntimestep) + " (" + std::to_string(last.products) +
+                " products, error " + text(last.error) + ", noise_tolerance " + text(tolerance) +
+                "): " + sd_status_string(status));
+  scene.to_atoms(3, y.data(), take);
+}
+
+void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) const
+{
+  const double step = drag > 0.0 ? scale(update->dt) / sqrt(drag) : 0.0;
+  const double radii = step / smallest, skins = step / (0.5 * neighbor->skin);
+  if (comm->me == 0)
+    utils::logmesg(lmp, command + ": Brownian motion, kT = " + text(kT) + ", seed " +
+                            std::to_string(seed) + "; root of the mobility by " +
+                            (hydro.settings.rigid.apart()
+                                 ? "the own one of each clump"
+                                 : (divided ? "waves at once, near part by Lanczos's process, "
+                                            : "Lanczos's process, ") +
+                                     std::to_string(last.products) + " products, error " +
+                                     text(last.error)) +
+                            "; a step moves the smallest sphere by " + text(radii) +
+                            " of its radius, " + text(skins) +
+                            " of half the skin; v has no noise, and temperatures and pressures from v "
+                            "mean nothing\n");
+  if (comm->me != 0) return;
+  if (radii > 0.1)
+    error->warning(FLERR,
+                   command + ": keyword temperature: a step moves the smallest sphere by " +
+                       text(radii) + " of its radius: use a shorter time step");
+  if (skins > 1.0)
+    error->warning(FLERR,
+                   command + ": keyword temperature: a step moves spheres by " + text(skins) +
+                       " of half the skin, so that lists are made anew in every step: use a shorter "
+                       "time step or a larger skin");
+}
+
+}    // namespace StokesDyn

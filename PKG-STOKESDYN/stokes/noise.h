@@ -1,0 +1,87 @@
+/* Brownian motion for fix stokes_dynamics/overdamped: the random part of a step of all spheres and
+ * lone clumps, with the mobility that velocities follow from.
+ *
+ *   step = sqrt(2 kT dt) y,   y of covariance M
+ *
+ * Numbers are drawn where velocities are found, at the positions of that moment, and depend on atom
+ * IDs, the step and the seed alone: nothing is kept for restarts, and a second setup draws the
+ * same. */
+#ifndef SD_STOKES_NOISE_H
+#define SD_STOKES_NOISE_H
+
+#include "field.h"
+#include "pointers.h"
+#include "velocities.h"
+
+#include "sd_noise.h"
+#include "sd_random.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Fix;
+}
+
+namespace StokesDyn {
+
+class Hydrodynamics;
+class Keywords;
+
+class Noise : protected LAMMPS_NS::Pointers {
+ public:
+  Noise(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command) {}
+  ~Noise() { sd_noise_free(&process); }
+  Noise(const Noise &) = delete;
+  Noise &operator=(const Noise &) = delete;
+
+  /* The values of keywords temperature and noise_tolerance */
+  void read_temperature(Keywords &in);
+  void read_tolerance(Keywords &in);
+  /* Is there a temperature that is not always 0? Otherwise none of the rest is called. */
+  bool on() const { return temperature.is_variable() || temperature.number() > 0.0; }
+
+  /* Before a run: the variable, and how sums over images are split. Errors: a variable that is none,
+   * and whatever has a drift or no noise: settings of the pair style, other commands. */
+  void init(Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, bool adapts, bool holds);
+
+  /* y [3] of the free spheres to take(i, y); [6] of the clumps of this rank are kept, U of their centre
+   * of mobility and W. The velocities of this step have been found. Errors: a temperature below 0; a
+   * mobility without a root. */
+  using Take = std::function<void(int i, const double *y)>;
+  void draw(Hydrodynamics &hydro, const Take &take);
+  /* sqrt(2 kT dt) for a step dt from there */
+  double scale(double dt) const;
+  const double *of_clump(size_t c) const { return &of_clumps[6 * c]; }
+
+  /* Once: what has been drawn, and how far it moves the smallest sphere, 1/drag its mobility */
+  void announce(const Hydrodynamics &hydro, double smallest, double drag) const;
+  /* Of the last root: products with M (its near part, where the sum is split), e of sd_noise.h */
+  const sd_noise_report &report() const { return last; }
+  double memory_usage() const;
+
+ private:
+  std::string command;
+  Field temperature;
+  uint32_t seed = 0;
+  double tolerance = 0.01;
+
+  /* of this step */
+  double kT = 0.0;
+  sd_noise process = {};
+  sd_noise_report last = {};
+  std::vector<double> of_clumps;
+  /* by rows, three numbers each */
+  std::vector<double> D, w, y;
+  /* by a matrix in two parts (sd_mobility.h) */
+  bool divided = false;
+
+  sd_random_key key(sd_random_purpose what) const;
+  void refuse(const Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, bool adapts, bool holds) const;
+  void draw_alone(const Hydrodynamics &hydro, const Take &take);
+  void draw_together(Hydrodynamics &hydro, const Take &take);
+};
+
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,114 @@
+/* Energies, probes, the free surface: closed forms. */
+#include "sd_sph_energy.h"
+#include "sd_sph_probe.h"
+
+#include "check.h"
+
+#include <string.h>
+
+static const sd_sph_state STATES[] = {{SD_SPH_ABSOLUT, 11.0, 0.0, 0.0, 0.0},
+                                      {SD_SPH_RELATIV, 130.0, 900.0, 0.0, 40.0},
+                                      {SD_SPH_TAIT, 5e4, 900.0, 7.0, 300.0},
+                                      {SD_SPH_TAIT, 5e4, 900.0, 1.0, 300.0}};
+
+/* Central difference: the error is that of the third derivative, (step/rho)^2. */
+static void elastic_energy_is_the_work_of_pressure(void **state)
+{
+  (void) state;
+  for (int k = 0; k < 4; k++)
+    for (double rho = 700.0; rho < 1100.0; rho += 90.0) {
+      const double step = 1e-3 * rho;
+      const double slope = (sd_sph_elastic(&STATES[k], rho + step) -
+                            sd_sph_elastic(&STATES[k], rho - step)) /
+          (2.0 * step);
+      CHECK_NEAR(slope * rho * rho, sd_sph_pressure(&STATES[k], rho), 3e-5 * 5e4);
+    }
+}
+
+/* c^2 s^2 / 2 of a small strain s, which differences of powers would lose. */
+static void elastic_energy_of_a_small_strain(void **state)
+{
+  (void) state;
+  const sd_sph_state water = {SD_SPH_TAIT, 5e4, 900.0, 7.0, 0.0};
+  const double s = 1e-6, c2 = 7.0 * 5e4 / 900.0;
+  CHECK_NEAR(sd_sph_elastic(&water, 900.0 * (1.0 + s)) / (0.5 * c2 * s * s), 1.0, 2e-5);
+}
+
+static void power_of_members_and_of_others(void **state)
+{
+  (void) state;
+  const int mask[3] = {3, 1, 7};
+  const double m[3] = {2.0, 3.0, 5.0}, v[9] = {1, 2, 3, 4, 5, 6, 0, 0, 2}, b[3] = {0, 0, -2};
+  const double F[12] = {1, 1, 1, 99, 2, 0, 0, 99, 0, 0, 7, 99};
+  const sd_sph_members two = {3, mask, 2, m, v};
+  double others;
+  CHECK_NEAR(sd_sph_power(&two, F, &others), 6.0 + 14.0, 1e-15);
+  CHECK_NEAR(others, 8.0, 1e-15);
+  CHECK_NEAR(sd_sph_kinetic_energy(&two), 0.5 * (2.0 * 14.0 + 5.0 * 4.0), 1e-15);
+  CHECK_NEAR(sd_sph_along(&two, b, v), -2.0 * (2.0 * 3.0 + 5.0 * 2.0), 1e-15);
+}
+
+/* A lattice of spacing 0.1 that fills -2 < x < 2, 0 < y < 0.8, and its pressure. */
+static void at(int k, double p[2])
+{
+  p[0] = -1.95 + 0.1 * (k % 40);
+  p[1] = 0.05 + 0.1 * (k / 40);
+}
+
+static void a_probe_in_the_middle_has_the_linear_pressure(void **state)
+{
+  (void) state;
+  double sums[2] = {0.0, 0.0};
+  assert_true(sd_sph_probe_pressure(sums) == 0.0);
+  for (int k = 0; k < 320; k++) {
+    double p[2];
+    at(k, p);
+    sd_sph_probe_add(SD_SPH_WENDLAND, 2, 0.2, hypot(p[0], p[1] - 0.4), 0.01, 5.0 - 4.0 * p[1], sums);
+  }
+  CHECK_NEAR(sd_sph_probe_pressure(sums), 5.0 - 4.0 * 0.4, 1e-12);
+}
+
+/* The sum of a lattice at its edge is that of the integral to 1e-3, and of slope 1.4 / h. */
+static void height_of_the_edge_of_a_lattice(void **state)
+{
+  (void) state;
+  double fraction[60];
+  memset(fraction, 0, sizeof(fraction));
+  assert_true(sd_sph_gauge_height(fraction, 60, 0.025) == 0.0);
+  for (int k = 0; k < 320; k++) {
+    double p[2];
+    at(k, p);
+    sd_sph_gauge_add(SD_SPH_WENDLAND, 2, 0.2, fabs(p[0] - 0.013), p[1], 0.01, 0.025, 60, fraction);
+  }
+  CHECK_NEAR(sd_sph_gauge_height(fraction, 60, 0.025), 0.8, 0.005);
+}
+
+/* M = R diag R^T for a rotation by an angle about each axis in turn. */
+static void least_eigenvalue_of_turned_matrices(void **state)
+{
+  (void) state;
+  const double diagonals[4][3] = {{0.4, 0.9, 1.1}, {1, 1, 1}, {0.7, 0.7, 1.2}, {0, 0, 0}};
+  const double c = cos(0.7), s = sin(0.7), C = cos(1.9), S = sin(1.9);
+  const double R[3][3] = {{c, -s * C, s * S}, {s, c * C, -c * S}, {0, S, C}};
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  for (int k = 0; k < 4; k++) {
+    double M[6] = {0};
+    for (int e = 0; e < 6; e++)
+      for (int d = 0; d < 3; d++) M[e] += R[row[e]][d] * diagonals[k][d] * R[column[e]][d];
+    CHECK_NEAR(sd_sph_least_eigenvalue(3, M), diagonals[k][0], 1e-7);
+  }
+  const double plane[6] = {c * c * 0.3 + s * s * 0.8, s * s * 0.3 + c * c * 0.8, 0, c * s * -0.5, 0, 0};
+  CHECK_NEAR(sd_sph_least_eigenvalue(2, plane), 0.3, 1e-14);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(elastic_energy_is_the_work_of_pressure),
+      cmocka_unit_test(elastic_energy_of_a_small_strain),
+      cmocka_unit_test(power_of_members_and_of_others),
+      cmocka_unit_test(a_probe_in_the_middle_has_the_linear_pressure),
+      cmocka_unit_test(height_of_the_edge_of_a_lattice),
+      cmocka_unit_test(least_eigenvalue_of_turned_matrices)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

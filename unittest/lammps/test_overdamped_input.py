@@ -1,0 +1,80 @@
+"""fix stokes_dynamics/overdamped beside other commands: what leaves it alone, and what does not go with it."""
+import numpy as np
+import pytest
+
+from test_overdamped_clumps import doublet_and_sphere
+from without_inertia import ALL, COMM, FIX, THREE, chains, cloud, weight
+
+
+@pytest.mark.parametrize("other", ["temp/rescale 1 1 1 0.01 1", "temp/berendsen 1 1 1", "momentum 1 linear 1 1 1"])
+def test_who_writes_to_v_does_not_steer(simulation, other):
+    """v is output: thermostats and fix momentum change what is printed, not the path, and not the step of adapt."""
+    ends = []
+    for line in ("", f"fix other all {other}"):
+        sim = simulation(cloud(8), ALL, fix=False, box=[(-30.0, 30.0)] * 3, dt=0.05)
+        sim.commands(weight(THREE)).commands(line).commands(f"{FIX} adapt 1 1e-3 0.5 0.05").run(20)
+        ends.append(sim.x)
+    assert np.abs(ends[0][:, 2] - cloud(8).x[:, 2]).max() > 0.5
+    assert (ends[1] == ends[0]).all()
+
+
+def test_other_atoms_may_be_integrated_otherwise(simulation):
+    sim = simulation(THREE, "cut_off_distance inf visc 1 group slow", fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01,
+                     before_pair="group slow id 1 2\ngroup fast id 3\nvelocity fast set 1 0 0")
+    sim.commands("fix other fast nve/sphere\nfix move slow stokes_dynamics/overdamped\nfix pull slow addforce 0 0 -1").run(10)
+    assert sim.v[2] == pytest.approx((1, 0, 0)) and sim.v[0, 2] < -0.05
+
+
+@pytest.mark.parametrize("lines, message", [
+    ("fix other all nve/sphere", "fix other of style nve/sphere integrates atoms of the same group"),
+    ("fix other all nve", "fix other of style nve integrates atoms of the same group"),
+    ("fix other all nvt temp 1 1 1", "fix other of style nvt integrates atoms of the same group"),
+    ("fix other all rigid single", "fix other of style rigid integrates atoms of the same group"),
+    ("fix other all rigid/small molecule", "fix other of style rigid/small integrates atoms of the same group"),
+    ("fix other all viscous 1.0", "fix other of style viscous drags atoms of the same group"),
+    ("fix other all langevin 1 1 1 4711", "fix other of style langevin drags atoms of the same group"),
+    ("fix other all stokes_dynamics", "fix other of style stokes_dynamics cannot apply"),
+    ("fix other all stokes_dynamics apply yes", "fix other of style stokes_dynamics cannot apply"),
+    ("fix other all stokes_dynamics/overdamped", "fix other of style stokes_dynamics/overdamped integrates atoms of the same"),
+    ("pair_style stokes_dynamics cut_off_distance inf visc 1 add_force yes\npair_coeff * *", "keyword add_force .* must be no"),
+    ("pair_style stokes_dynamics cut_off_distance inf visc 1 update_every 3\npair_coeff * *", "update_every .* must be 1, not 3"),
+    ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps auto rotation yes\npair_coeff * *", "yes or no, not auto"),
+    ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps yes\npair_coeff * *", "requires rotation yes or a shell"),
+    ("pair_style none", "there is no pair_style stokes_dynamics"),
+    ("run_style respa 2 2", "respa"),
+    ("group some id 1\npair_style stokes_dynamics cut_off_distance inf visc 1 group some\npair_coeff * *",
+     "atom 2 is in its group or in the selection of pair_style stokes_dynamics"),
+    ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke/history 10 NULL 0.3 NULL 0 0 stokes_dynamics cut_off_distance inf visc 1\n"
+     "pair_coeff * * gran/hooke/history\npair_coeff * * stokes_dynamics", "pair_style gran/hooke/history damps its contacts .gamma 0.3"),
+    ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke 10 NULL 0.3 0.1 0 1 stokes_dynamics cut_off_distance inf visc 1\n"
+     "pair_coeff * * gran/hooke\npair_coeff * * stokes_dynamics", "pair_style gran/hooke damps its contacts"),
+])
+def test_what_does_not_go_with_it_is_named(simulation, lines, message):
+    sim = simulation(chains(2), ALL, fix=False, box=[(-40.0, 40.0)] * 3, dt=0.01, comm=COMM)
+    sim.commands(FIX)
+    with pytest.raises(Exception, match=message):
+        sim.commands(lines).run(1)
+
+
+def test_it_cannot_be_minimised(simulation):
+    sim = simulation(doublet_and_sphere(), ALL, fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01, comm=COMM)
+    sim.commands(FIX)
+    with pytest.raises(Exception, match="cannot be minimised|minimize cannot be used"):
+        sim.command("minimize 0 1e-3 10 10")
+
+
+@pytest.mark.parametrize("words, message", [
+    ("scheme rk4", "Fix stokes_dynamics/overdamped: keyword scheme: 'rk4'"),
+    ("scheme", "keyword scheme"),
+    ("adapt 0 1 2 3", "keyword adapt: '0' must be >= 1"),
+    ("adapt 1 -1 2 3", "keyword adapt: '-1' must be > 0"),
+    ("adapt 1 2 1 3", "keyword adapt: tmin '2' must not be above tmax '1'"),
+    ("adapt 1 2 3", "keyword adapt"),
+    ("adapt 1 1 2 nan", "keyword adapt: 'nan'"),
+    ("rigid yes", "unknown keyword 'rigid'"),
+    ("scheme ab2 scheme euler", "keyword scheme"),
+])
+def test_bad_words(simulation, words, message):
+    sim = simulation(doublet_and_sphere(), ALL, fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01, comm=COMM)
+    with pytest.raises(Exception, match=message):
+        sim.commands(f"{FIX} {words}")

@@ -1,0 +1,148 @@
+"""fix stokes_dynamics/overdamped: one run in whatever pieces and on however many ranks, and what changes between runs."""
+import os
+
+import numpy as np
+import pytest
+
+from system import Spheres, dump_lines, input_lines, lmp, read_dump
+from without_inertia import ALL, FIX, P6, THREE, contacts, mixed, weight
+
+WAYS = {"spheres": "cut_off_distance inf visc 1.1 rotation yes", "spheres by list": "cut_off_distance 9 taper wendland visc 1.1",
+        "clumps": "cut_off_distance inf visc 1.1 rotation yes rigid_clumps yes",
+        "clumps with shells": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0",
+        "clumps by list": "cut_off_distance 9 taper wendland visc 1.1 rotation yes rigid_clumps yes",
+        "close spheres": "cut_off_distance inf visc 1.1 rotation yes lubrication yes relative_tolerance 1e-12",
+        "close clumps": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0 lubrication yes "
+                        "lubrication_gap 1e-2 relative_tolerance 1e-12",
+        "shells of points": "cut_off_distance inf visc 1.1 multiblob 12 rigid_clumps yes fluid_velocity v_u 0 0 lubrication yes "
+                            "relative_tolerance 1e-12",
+        "clumps apart": "clumps_only yes visc 1.1 rotation yes rigid_clumps yes shell 12 fluid_velocity v_u 0 0"}
+
+
+def script(folder, way, runs, newton="on", options="", box=(-40.0, 40.0), boundary="p p p"):
+    boundary = "f f f" if "inf" in WAYS[way] else boundary
+    lines = input_lines(mixed(), contacts(20.0, WAYS[way]), os.path.join(str(folder), "spheres.data"), fix=False, box=[box] * 3, dt=0.3,
+                        boundary=boundary, newton=newton, comm="comm_modify vel yes cutoff 9\nneigh_modify exclude molecule/intra all",
+                        before_pair="variable u atom 0.05*z")
+    # a force on every sphere of its own, so that bodies turn
+    return lines + ["variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -6", f"{FIX} {options}"] + runs
+
+
+END = dump_lines("end.dump", every=100, columns="x y z vx vy vz omegax omegay omegaz")
+
+
+def last_frame(folder):
+    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
+
+
+def difference(a, b):
+    """Up to the box: places within 80"""
+    d = a - b
+    d[:, :3] -= 80 * np.round(d[:, :3] / 80)
+    return np.abs(d).max()
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_ranks_and_newton_do_not_matter(tmp_path, way):
+    frames = []
+    for ranks, newton in ((1, "on"), (2, "on"), (4, "off")):
+        lmp(tmp_path, script(tmp_path, way, END + ["run 100"], newton), ranks)
+        frames.append(last_frame(tmp_path))
+    assert np.abs(frames[0][:, :9]).max() > 1
+    assert max(difference(f, frames[0]) for f in frames[1:]) < 1e-10
+
+
+@pytest.mark.parametrize("way, options, ranks", [(way, "", 2) for way in WAYS] + [("clumps with shells", "adapt 3 1e-3 0.5 0.05", 1),
+                                                                                   ("spheres", "scheme euler", 1)])
+def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way, options, ranks):
+    lmp(tmp_path, script(tmp_path, way, END + ["run 100"], options=options), ranks)
+    whole = last_frame(tmp_path)
+    lmp(tmp_path, script(tmp_path, way, END + ["run 37", "run 63"], options=options), ranks)
+    assert difference(last_frame(tmp_path), whole) < 1e-10
+    lmp(tmp_path, script(tmp_path, way, ["run 37", "write_restart half.restart"], options=options), ranks)
+    again = script(tmp_path, way, END + ["run 63"], options=options)
+    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
+    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
+    lmp(tmp_path, again, ranks)
+    assert difference(last_frame(tmp_path), whole) < 1e-10
+
+
+def test_a_run_goes_on_by_the_second_order_when_nothing_has_changed(simulation):
+    """Euler's step is for changes alone: a run in ten pieces is the run in one."""
+    ends = []
+    for pieces in (1, 10):
+        sim = simulation(THREE, ALL, fix=False, box=[(-99.0, 99.0)] * 3, dt=0.5)
+        sim.commands([weight(THREE), FIX])
+        for _ in range(pieces):
+            sim.run(20 // pieces)
+        ends.append(sim.x)
+    assert np.abs(ends[1] - ends[0]).max() < 1e-13
+
+
+def test_a_sphere_moved_by_hand_starts_anew(simulation):
+    """displace_atoms between runs: what was before the move says nothing of the path after it."""
+    ends = []
+    for before in (0, 20):
+        sim = simulation(THREE, ALL, fix=False, box=[(-99.0, 99.0)] * 3, dt=0.3)
+        sim.commands([weight(THREE), FIX])
+        sim.run(before) if before else None
+        for k, x in enumerate([(-4, 0, 0), (0, 1, 0), (3, 0, 3)]):
+            sim.set("x", k + 1, x)
+        sim.run(10)
+        ends.append(sim.x)
+    assert np.abs(ends[1] - ends[0]).max() < 1e-12
+
+
+@pytest.mark.parametrize("change, after", [("unfix weight", 0.0), ("unfix weight\nfix weight all addforce 0 0 2", 2.0),
+                                           ("pair_style stokes_dynamics cut_off_distance inf visc 4\npair_coeff * *", -0.25),
+                                           ("variable u equal 0.5", -0.5), ("variable u equal 0.0", -1.0)])
+def test_a_force_that_is_taken_away_leaves_nothing(simulation, change, after):
+    """Between two runs: the first step goes by the velocity of now alone. Nothing has changed in the last case."""
+    sim = simulation(Spheres([(0, 0, 0)]), f"cut_off_distance inf visc {1 / P6!r} fluid_velocity 0 0 v_u", fix=False,
+                     box=[(-30.0, 30.0)] * 3, dt=0.1, before_pair="variable u equal 0.0")
+    sim.commands("fix weight all addforce 0 0 -1").commands(FIX).run(10)
+    assert sim.x[0, 2] == pytest.approx(-1.0, abs=1e-13)
+    after = after if "visc" not in change else -1 / (P6 * 4)
+    sim.commands(change).run(10)
+    assert sim.x[0, 2] == pytest.approx(-1.0 + after, abs=1e-13)
+
+
+@pytest.mark.parametrize("way", ["delete_atoms", "evaporate"])
+def test_the_step_after_atoms_have_gone_is_eulers(simulation, way):
+    """What is left falls more slowly at once: no part of the step is of the velocities before."""
+    spheres = Spheres([(0, 0, 0), (3, 0, 0), (0.5, 2.5, 0)])
+    sim = simulation(spheres, ALL, fix=False, box=[(-40.0, 40.0)] * 3, dt=0.3)
+    sim.commands(weight(THREE)).commands(FIX).commands("group heavy id 3")
+    if way == "evaporate":
+        sim.commands("region all block EDGE EDGE EDGE EDGE EDGE EDGE\nfix gone heavy evaporate 10 1 all 4711").run(9)
+        assert sim.n == 3
+        sim.run(1)
+    else:
+        sim.run(9).commands("delete_atoms group heavy compress no").run(0)
+    assert sim.n == 2 and sim.fix_vector("move")[1] == 0.0
+    x, v = sim.x, sim.v
+    sim.run(1)
+    assert np.abs(sim.x - x - 0.3 * v).max() < 1e-14
+
+
+def test_a_restarted_step_of_adapt_is_told_to_others(simulation, tmp_path):
+    """Whoever keeps the length of a step (another integration here, springs of friction elsewhere) has that of the run, not that which
+    a script names after read_restart."""
+    words = "pair_style stokes_dynamics cut_off_distance inf visc 1 group slow\npair_coeff * *"
+    lines = input_lines(THREE, words.splitlines(), str(tmp_path / "data"), fix=False, box=[(-40.0, 40.0)] * 3, dt=0.1,
+                        before_pair="group slow id 1 2\ngroup fast id 3\nvelocity fast set 1 0 0")
+    rest = ["fix pull slow addforce 0 0 -1", "fix other fast nve/sphere", "fix move slow stokes_dynamics/overdamped adapt 5 1e-3 0.1 10"]
+    x = simulation().commands(lines + rest).run(18).x
+    simulation().commands(lines + rest + ["run 12", f"write_restart {tmp_path}/half"])
+    again = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/half", *words.splitlines()] + rest)
+    assert np.abs(again.command("timestep 0.01") or again.run(6).x - x).max() < 1e-12
+
+
+def test_values_outlive_the_memory_of_the_pair_style(simulation):
+    """unfix of the internal fix: no number is read from where it was."""
+    sim = simulation(THREE, ALL, fix=False, box=[(-40.0, 40.0)] * 3, dt=0.3)
+    sim.commands(weight(THREE)).commands(FIX).run(3)
+    assert sim.fix_vector("move")[5] == 4
+    sim.command("unfix STOKES_DYNAMICS_STATE")
+    assert (sim.fix_vector("move")[3:7] == 0).all()
+    assert sim.run(1).fix_vector("move")[5] == 2

@@ -1,0 +1,277 @@
+"""Keyword wall: a plane no-slip wall, through LAMMPS, against closed forms, tables of another code and itself turned."""
+import numpy as np
+import pytest
+
+from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
+
+MOVE = "fix move all stokes_dynamics/overdamped"
+ETA = 1 / (6 * np.pi)                    # 6 pi eta = 1
+FT = f"cut_off_distance inf visc {ETA!r} rotation yes relative_tolerance 1e-10 wall zlo 0"
+TT = FT.replace("rotation yes ", "")
+BOX = [(-60.0, 60.0), (-60.0, 60.0), (-1.0, 119.0)]
+
+
+def pull(F, T=None):
+    """A force, and a torque, of its own on every sphere"""
+    columns = [("f", F)] + ([("t", T)] if T is not None else [])
+    names = [k + c for k, _ in columns for c in "xyz"]
+    lines = ["fix own all property/atom " + " ".join("d_" + name for name in names)]
+    for k, values in columns:
+        lines += [f"set atom {i + 1} " + " ".join(f"d_{k}{c} {value!r}" for c, value in zip("xyz", map(float, f)))
+                  for i, f in enumerate(values)]
+    lines.append("compute own all property/atom " + " ".join("d_" + name for name in names))
+    lines += [f"variable {name} atom c_own[{k + 1}]" for k, name in enumerate(names)]
+    lines.append("fix pull all addforce v_fx v_fy v_fz")
+    return lines + (["fix twist all addtorque/atom v_tx v_ty v_tz"] if T is not None else [])
+
+
+def fall(simulation, spheres, F, style=FT, steps=0, dt=1e-9, **options):
+    options.setdefault("box", BOX)
+    sim = simulation(spheres, style, fix=False, dt=dt, **options)
+    return sim.commands(pull(np.broadcast_to(np.array(F, float), spheres.x.shape)) + [MOVE]).run(steps)
+
+
+FILM = FT + " lubrication yes lubrication_gap 1e-6"
+# Times from z = 5, weight 1: the ordinary differential equation of the self mobility by another code
+@pytest.mark.parametrize("z, t, steps", [(3, 2.7806341314, 150), (2, 4.5232388997, 200), (1.1, 6.8907636319, 800)])
+def test_a_sphere_falls_to_the_wall_in_the_known_time(simulation, z, t, steps):
+    sim = fall(simulation, Spheres([(0.3, 0.2, 5)]), (0, 0, -1), TT, steps, t / steps)
+    assert sim.x[0] == pytest.approx((0.3, 0.2, z), abs=2e-5)
+
+
+@pytest.mark.parametrize("gap, U, W", [(0.1, 0.54374313, 0.06403251), (0.01, 0.50492647, 0.09009191)])
+def test_a_sphere_pushed_along_the_wall_turns(simulation, gap, U, W):
+    sim = fall(simulation, Spheres([(0, 0, 1 + gap)]), (1, 0, 0))
+    assert sim.v[0] == pytest.approx((U, 0, 0), abs=1e-8)
+    assert sim.atom("omega")[0] == pytest.approx((0, W, 0), abs=1e-8)
+
+
+def test_two_spheres_above_the_wall(simulation):
+    sim = fall(simulation, Spheres([(-1.25, 0, 1.5), (1.25, 0, 1.5)]), (0, 0, -1))
+    assert sim.v[1] == pytest.approx((0.060980414311, 0, -0.371744761226), abs=1e-11)
+    assert sim.atom("omega")[1] == pytest.approx((0, -0.040827662743, 0), abs=1e-11)
+    sim = fall(simulation, Spheres([(0, 0, 1.5), (0, 0, 4.0)]), (0, 0, -1))
+    assert sim.v[:, 2] == pytest.approx((-0.560017933077, -0.904771119966), abs=1e-11)
+
+
+# U_z, U_x, U_y of unit forces, W_y of F_x; the mean of the two spheres' velocities is that of the centre
+@pytest.mark.parametrize("x, expected", [
+    ([(-1, 0, 2), (1, 0, 2)], (0.262311482231, 0.559106259701, 0.452636696846, -0.015061872563)),
+    ([(0, 0, 2), (0, 0, 4)], (0.426443523213, 0.505854155563, 0.505854155563, 0.020420247560))])
+def test_rigid_doublet_above_the_wall(simulation, x, expected):
+    for d, U in zip((2, 0, 1), expected):
+        F = np.zeros(3)
+        F[d] = 0.5
+        sim = fall(simulation, Spheres(x, molecule=1), F, FT + " rigid_clumps yes")
+        assert sim.v.mean(axis=0)[d] == pytest.approx(U, abs=1e-9)
+        if d == 0:
+            assert sim.atom("omega")[0, 1] == pytest.approx(expected[3], abs=1e-9)
+
+
+# --- films --------------------------------------------------------------------------------------------------------------
+
+# Exact, another code; the film stops a sphere, so that the last step is not longer than the rest
+@pytest.mark.parametrize("z, t, steps", [(3, 2.7902751, 150), (1.5, 5.8482487, 300), (1.01, 10.4213978, 1500)])
+def test_a_sphere_with_a_film_falls_as_it_should(simulation, z, t, steps):
+    sim = fall(simulation, Spheres([(0.3, 0.2, 5)]), (0, 0, -1), FILM.replace("1e-10", "1e-8"), steps, t / steps)
+    assert sim.x[0] == pytest.approx((0.3, 0.2, z), abs=3e-5)
+
+
+@pytest.mark.parametrize("gap, U, W", [(0.1, 0.44304988, 0.02703135), (0.01, 0.29611765, 0.03654131), (0.001, None, 0.159055)])
+def test_a_sphere_with_a_film_rolls_as_it_should(simulation, gap, U, W):
+    sim = fall(simulation, Spheres([(0, 0, 1 + gap)]), (1, 0, 0), FILM)
+    v, w = sim.v[0], sim.atom("omega")[0]
+    if U:
+        assert v == pytest.approx((U, 0, 0), abs=3e-6)
+        assert w == pytest.approx((0, W, 0), abs=3e-6)
+    assert w[1] / v[0] == pytest.approx(W / (U or 1), abs=2e-5)
+
+
+# Goldman, Cox & Brenner's problem, computed again: U/h and 2W of a free sphere in u_x = z
+@pytest.mark.parametrize("gap, U, W", [(0.05, 0.6636, 0.6838), (0.1, 0.7389, 0.7534), (0.3, 0.864, 0.869), (1, 0.964, 0.964)])
+@pytest.mark.parametrize("model", ["rotation yes", "multiblob 12"])
+def test_a_free_sphere_in_shear(simulation, gap, U, W, model):
+    style = f"cut_off_distance inf visc 1 {model} relative_tolerance 1e-10 wall zlo 0 lubrication yes fluid_velocity v_u 0 0"
+    sim = fall(simulation, Spheres([(0, 0, 1 + gap)]), (0, 0, 0), style, before_pair="variable u atom z")
+    off = 6e-4 if model == "rotation yes" else 2e-2
+    assert sim.v[0, 0] / (1 + gap) == pytest.approx(U, abs=off)
+    assert 2 * sim.atom("omega")[0, 1] == pytest.approx(W, abs=off)
+
+
+def test_a_held_sphere_in_shear(simulation):
+    sim = simulation(Spheres([(0, 0, 1.1)]), FILM + " fluid_velocity v_u 0 0", box=BOX, before_pair="variable u atom z")
+    sim.run()
+    assert sim.drag[0] == pytest.approx((1.6325438 * 1.1, 0, 0), abs=3e-5)
+    assert sim.fix_rows()[0, 6:9] == pytest.approx((0, 0.9517912 * 2 / 3, 0), abs=2e-5)
+
+
+# --- one scene, turned and dealt out ------------------------------------------------------------------------------------
+
+def heap(n=12, seed=7):
+    """Spheres of unlike radii above z = 0, one of which cuts it; a rigid doublet among them"""
+    rng = np.random.default_rng(seed)
+    a = np.exp(rng.uniform(-0.7, 0.5, n))
+    x = rng.uniform(-4, 4, (n, 3))
+    x[:, 2] = a * rng.uniform(1.02, 4.0, n)
+    x[3, 2] = 0.9 * a[3]
+    x[1], a[1] = x[0] + (0, 0, a[0] + a[1]), a[1]
+    return Spheres(x, a, molecule=[1, 1] + [0] * (n - 2)), rng.normal(size=(n, 3))
+
+
+SIDES = {"zlo": ((0, 1, 2), 1), "zhi": ((1, 0, 2), -1), "xlo": ((1, 2, 0), 1), "xhi": ((2, 1, 0), -1), "ylo": ((2, 0, 1), 1),
+         "yhi": ((0, 2, 1), -1)}
+
+
+def turned(rows, side):
+    """The scene above z = 0 to one in front of that side: a rotation"""
+    axes, sign = SIDES[side]
+    out = np.empty_like(rows)
+    for d, axis in enumerate(axes):
+        out[:, axis] = rows[:, d] * (sign if d == 2 else 1)
+    return out
+
+
+@pytest.mark.parametrize("style", ["", "rotation yes", "rotation yes rigid_clumps yes", "rotation yes lubrication yes",
+                                   "multiblob 12 rigid_clumps yes lubrication yes"])
+def test_six_sides_are_one_scene_turned(simulation, style):
+    spheres, F = heap()
+    spheres.x[3] *= 1.3
+    answers = {}
+    for side in SIDES:
+        scene = Spheres(turned(spheres.x, side), spheres.a, molecule=spheres.molecule)
+        if "multiblob" in style and side not in ("zlo", "zhi"):
+            continue                     # the shells of free spheres do not turn with the scene
+        sim = fall(simulation, scene, turned(F, side), f"cut_off_distance inf visc 1 {style} relative_tolerance 1e-11 wall {side} 0",
+                   box=[(-60, 60)] * 3)
+        v = sim.v
+        answers[side] = np.array([v[:, axis] * (SIDES[side][1] if d == 2 else 1) for d, axis in enumerate(SIDES[side][0])])
+    for side, answer in answers.items():
+        tolerance = 0.05 if "multiblob" in style else 1e-9
+        assert np.abs(answer - answers["zlo"]).max() < tolerance * np.abs(answers["zlo"]).max(), side
+
+
+@pytest.mark.parametrize("algorithm", ["algorithm 1", "algorithm 2", "algorithm 2 precondition none", "algorithm 2 precondition clump"])
+@pytest.mark.parametrize("rotation", ["no", "yes"])
+def test_forces_for_given_velocities_are_the_inverse(simulation, rotation, algorithm):
+    spheres, F = heap()
+    style = f"cut_off_distance inf visc 1 rotation {rotation} wall zlo 0 relative_tolerance 1e-11 max_iter 300 "
+    spheres.molecule[:] = 0
+    moving = fall(simulation, spheres, F, style, box=BOX)
+    v, w = moving.v, moving.atom("omega")
+    sim = simulation(Spheres(spheres.x, spheres.a, v), style + algorithm, box=BOX)
+    for i in range(spheres.n):
+        sim.set("omega", i + 1, w[i])
+    sim.run()
+    assert sim.drag == pytest.approx(-F, abs=1e-8)
+
+
+def test_a_lone_sphere_is_not_alone_at_a_wall(simulation):
+    for style in ("cut_off_distance inf", "cut_off_distance 5", "clumps_only yes"):
+        sim = simulation(Spheres([(1, 2, 1.25)], 1.0, (0.3, 0, 0.7)), f"{style} visc {ETA!r} wall zlo 0 relative_tolerance 1e-12", box=BOX)
+        sim.run()
+        s = 0.8
+        along = 1 - 9 / 16 * s + s ** 3 / 8 - s ** 5 / 16
+        across = 1 - 9 / 8 * s + s ** 3 / 2 - s ** 5 / 8
+        assert sim.drag[0] == pytest.approx((-0.3 / along, 0, -0.7 / across), abs=1e-10), style
+
+
+def test_far_wall_is_no_wall(simulation):
+    spheres, F = heap()
+    answers = [fall(simulation, spheres, F, f"cut_off_distance inf visc 1 rotation yes relative_tolerance 1e-9 {wall}", box=BOX).v
+               for wall in ("", "wall zlo -1e8", "wall yhi 1e8")]
+    for answer in answers[1:]:
+        assert np.abs(answer - answers[0]).max() < 1e-6 * np.abs(answers[0]).max()
+
+
+def test_a_sphere_pressed_into_the_wall_moves_as_one_that_touches_it(simulation):
+    for F in ((1, 0, 0), (0, 0, 1)):
+        v = [fall(simulation, Spheres([(0, 0, z)]), F).v for z in (0.99, 1.0)]
+        assert np.abs(v[0] - v[1]).max() < 1e-12
+
+
+def test_the_edge_of_the_box_is_a_position(simulation):
+    spheres, F = heap()
+    edge, at = (fall(simulation, spheres, F, f"cut_off_distance inf visc 1 wall zlo {where}", box=[(-60, 60), (-60, 60), (-0.5, 50)]).v
+                for where in ("EDGE", "-0.5"))
+    assert (edge == at).all()
+
+
+STYLES = {"points": "rotation yes", "doublet": "rotation yes rigid_clumps yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
+          "films": "rotation yes rigid_clumps yes lubrication yes"}
+
+
+def script(folder, style, runs, newton="on", begin=None):
+    spheres, _ = heap()
+    spheres.x[3, 2] *= 1.2
+    pair = f"cut_off_distance inf visc 1 {STYLES[style]} wall zlo 0 relative_tolerance 1e-12"
+    lines = input_lines(spheres, pair, str(folder / "heap.data"), fix=False, dt=0.02, newton=newton, box=BOX)
+    if begin:                            # from a restart file in place of the data file
+        cut = [i for i, line in enumerate(lines) if line.startswith("read_data")][0]
+        lines = [line for line in lines[:cut] if "boundary" not in line] + [f"read_restart {begin}"] + lines[cut + 1:]
+        lines = [line for line in lines if not line.startswith("pair_")]
+    return lines + ["variable fx atom 0.4*sin(id)", "fix weight all addforce v_fx 0 -3", MOVE] + runs
+
+
+def end_of(folder, style, runs, ranks=1, **options):
+    lmp(folder, script(folder, style, dump_lines("end.dump", 40, "x y z vx vy vz omegax omegay omegaz") + runs, **options), ranks)
+    return read_dump(str(folder / "end.dump"))[-1][1]
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_ranks_newton_and_restart_do_not_matter(tmp_path, style):
+    whole = end_of(tmp_path, style, ["run 40"])
+    assert np.abs(whole[:, :3]).max() > 1
+    for ranks, newton in ((2, "on"), (4, "off")):
+        assert np.abs(end_of(tmp_path, style, ["run 40"], ranks, newton=newton) - whole).max() < 1e-10
+    lmp(tmp_path, script(tmp_path, style, ["run 15", "write_restart half"]))
+    assert np.abs(end_of(tmp_path, style, ["run 25"], begin="half") - whole).max() < 1e-10
+
+
+# --- what there is no answer for ----------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("words, options, message", [
+    ("wall zlo 0 wall zhi 9", {}, "keyword wall: there is one plane wall. The images of two walls, or of a corner, do not add up"),
+    ("wall zlo 0 zhi 9", {}, "there is one plane wall"),
+    ("wall zlo", {}, "keyword wall: .*missing|wall"),
+    ("wall up 0", {}, "keyword wall: 'up'"),
+    ("wall zlo 0 tensor oseen", {}, "keyword wall is not available with tensor oseen: use tensor rpy"),
+    ("wall zlo 0 far_field ewald", {}, "keyword wall is not available with far_field ewald"),
+    ("wall zlo 0 precondition waves algorithm 2", {}, "precondition waves is for periodic boxes"),
+    ("wall zlo 0 rigid_clumps yes shell 12", {}, "a shell is computed once, without the wall: use multiblob 12"),
+    ("wall zlo 0 multiblob 12 one_body yes", {}, "keyword wall: one_body yes has not been tried near a wall"),
+    ("wall zlo 0 lubrication yes", {}, "keyword lubrication: yes requires rotation yes"),
+    ("wall zlo 0", dict(boundary="p f f"), "keyword wall: it needs boundary f, s or m in all directions, and x is periodic"),
+    ("wall zlo 0", dict(boundary="p p p"), "and x is periodic"),
+    ("wall zlo EDGE", dict(boundary="f f s"), "wall: EDGE: that side of the box follows the spheres"),
+    ("wall xlo EDGE", dict(tilt=(1.0, 0, 0)), "wall: EDGE: that side of the box leans: give the position of the wall"),
+    ("wall zlo 0 fluid_velocity 0 0 0.1", {}, "nothing flows through the wall zlo at 0, and its component z is '0.1' there: give 0"),
+    ("wall zlo 2.5", {}, "step 0: keyword wall: the centre of atom 1, radius 1, is 0.5 behind the wall zlo at 2.5"),
+    ("wall zhi 0", {}, "keyword wall: the centre of atom . radius 1, is . behind the wall zhi at 0|atom"),
+    ("wall zlo 2", {}, "the centre of atom 1, radius 1, is 0 behind the wall"),
+])
+def test_what_does_not_go_with_a_wall_is_named(simulation, words, options, message):
+    spheres = Spheres([(0, 0, 2), (0, 3, 4)])
+    with pytest.raises(LammpsError, match=message):
+        simulation(spheres, f"cut_off_distance inf visc 1 {words}", box=BOX, **options).run()
+
+
+def test_tables_of_lone_clumps_know_no_wall(simulation):
+    with pytest.raises(LammpsError, match="a resistance that is computed once, without the wall: use cut_off_distance inf and multiblob 12"):
+        simulation(Spheres([(0, 0, 2), (0, 2, 2)], molecule=1), "clumps_only yes rigid_clumps yes rotation yes visc 1 wall zlo 0", box=BOX).run()
+
+
+def test_a_box_that_shrinks_takes_no_wall_along(simulation):
+    sim = simulation(Spheres([(0, 0, 2), (0, 3, 4)]), "cut_off_distance inf visc 1 wall zlo EDGE", box=BOX)
+    sim.commands("fix shrink all deform 1 z final 0 90 remap x")
+    with pytest.raises(LammpsError, match="that side of the box is at .* now and was at -1 when the run began: walls do not move"):
+        sim.run(100)
+
+
+@pytest.mark.parametrize("words, message", [
+    ("wall zlo 1.5", "1 spheres cut the wall zlo at 1.5: they move as if they touched it"),
+    ("wall zlo 0 fluid_velocity 0.1 0 0", "keyword fluid_velocity: the fluid rests at the wall zlo at 0, and its component x is '0.1' there")])
+def test_warnings(tmp_path, words, message):
+    lines = input_lines(Spheres([(0, 0, 2), (0, 3, 4)]), f"cut_off_distance inf visc 1 {words}", str(tmp_path / "two.data"), box=BOX)
+    said = lmp(tmp_path, lines + ["run 2", "run 2"]).log
+    assert said.count("WARNING: Pair style stokes_dynamics: " + ("keyword" if "fluid" in words else "keyword wall")) >= 1
+    assert message in said
