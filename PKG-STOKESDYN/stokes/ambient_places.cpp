@@ -115,7 +115,8 @@ std::vector<double> Ambient::at_places(const std::vector<double> &x)
     wrong[0] = comm->me + 1;
     std::copy_n(place, 3, wrong + 1);
   }
-  for (const auto &there : from_all(world, std::vector<std::array<double, 4>>(1, {wrong[0], wrong[1], wrong[2], wrong[3]})))
+  const std::array<double, 4> mine = {wrong[0], wrong[1], wrong[2], wrong[3]};
+  for (const auto &there : from_all(world, std::vector<std::array<double, 4>>(1, mine)))
     if (there[0] > 0.0)
       fail(lmp,
            command + ": keyword fluid_velocity: step " + std::to_string(update->ntimestep) +

@@ -69,7 +69,10 @@ Hydrodynamics &FixStokesDynamicsField::hydrodynamics() const
 
 void FixStokesDynamicsField::init()
 {
-  hydrodynamics();
+  if (hydrodynamics().settings.scene.wall.sign)
+    fail(lmp,
+         COMMAND + ": the pair style has keyword wall, whose images are not in the flow that this fix "
+                   "knows; use it without a wall");
   const int directions = domain->xperiodic + domain->yperiodic + domain->zperiodic;
   if (directions != 0 && directions != 3)
     fail(lmp,
@@ -233,7 +236,7 @@ void FixStokesDynamicsField::write(const sd_field_grid &g, const std::vector<dou
     MPI_Send(const_cast<double *>(u.data()), mpi_count((double) u.size()), MPI_DOUBLE, 0, VELOCITY,
              world);
     MPI_Send(const_cast<unsigned char *>(inside.data()), mpi_count((double) inside.size()),
-             MPI_UNSIGNED_CHAR, 0, INSIDE, world);
+             MPI_BYTE, 0, INSIDE, world);
   } else {
     const ImageFile::Grid image = {g.lo, g.step, g.n};
     ImageFile out(path, image, hydrodynamics().memory->time());
@@ -256,7 +259,7 @@ void FixStokesDynamicsField::write(const sd_field_grid &g, const std::vector<dou
     out.put(marks.data(), marks.size());
     for (int p = 1; p < comm->nprocs; p++) {
       marks.resize(plane * planes_of(p));
-      MPI_Recv(marks.data(), mpi_count((double) marks.size()), MPI_UNSIGNED_CHAR, p, INSIDE, world,
+      MPI_Recv(marks.data(), mpi_count((double) marks.size()), MPI_BYTE, p, INSIDE, world,
                MPI_STATUS_IGNORE);
       out.put(marks.data(), marks.size());
     }
@@ -265,7 +268,9 @@ void FixStokesDynamicsField::write(const sd_field_grid &g, const std::vector<dou
   }
   MPI_Bcast(&well, 1, MPI_INT, 0, world);
   if (!well)
-    fail(lmp, COMMAND + ": the file '" + path + "' could not be written; does its folder exist, and is there room?");
+    fail(lmp,
+         COMMAND + ": the file '" + path +
+             "' could not be written; does its folder exist, and is there room?");
 }
 
 double FixStokesDynamicsField::memory_usage()

@@ -10,7 +10,7 @@ PAGES = {path.name: path.read_text() for path in sorted((PACKAGE / "doc").glob("
 EVERYWHERE = "howto_trouble.md"    # messages that all styles share
 ROOMS = {    # the pages on which the messages of a folder may stand
     "stokes": ["pair_stokes_dynamics.md", "fix_stokes_dynamics.md", "fix_stokes_dynamics_overdamped.md", "flow_grid.md",
-               "compute_stokes_dynamics_stress.md"],
+               "fix_stokes_dynamics_field.md", "compute_stokes_dynamics_stress.md"],
     "sph": [name for name in PAGES if "sph" in name],
     "vans": ["fix_hydro_vans.md"],
 }
