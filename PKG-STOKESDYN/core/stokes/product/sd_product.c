@@ -78,8 +78,8 @@ static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_
   p->n = n;
   p->width = width;
   isa = sd_isa_of(isa);
-  if (law->wall.sign && law->taper != SD_TAPER_NONE) isa = SD_ISA_PLAIN; /* images in vectors have none */
-  if (!fits(p)) isa = SD_ISA_PLAIN;
+  /* images in vectors have no taper */
+  if (!fits(p) || (law->wall.sign && law->taper != SD_TAPER_NONE)) isa = SD_ISA_PLAIN;
   if (isa == SD_ISA_PLAIN) p->scale = 1.0;
   const struct sd_kernels *kernels = SD_KERNELS_OF(sd_product, plain, isa);
   p->kernel = width == 6 ? &kernels->torques : &kernels->forces;
