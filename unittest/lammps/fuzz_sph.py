@@ -111,7 +111,7 @@ def make_sph_order(case):
     case.refuse_if(tensile and float(case.settings["tensCorr"][1]) >= 2 * float(h), "deltap")
     if not (corrects or yes("shift")):
         return
-    case.refuse_if(volume or tensile or mover == "sph" or kernel == "wendland2d", *names)
+    case.refuse_if(volume and corrects or tensile or mover == "sph" or kernel == "wendland2d", *names)
     case.refuse_if(not float(case.value("delta", "0")) > 0, *names)
     case.refuse_if(kernel == "cubicspline" and not corrects, *names)
     case.refuse_if(corrects and (walled or not bulk), *names)

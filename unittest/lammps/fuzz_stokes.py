@@ -1,6 +1,6 @@
 """Scenes, grammar and rules of pair_style and fix stokes_dynamics, written from their pages (for fuzz.py)."""
-from fuzz_grammar import (BAD, COUNT, GOOD, LOUD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, Name, Number, NumberOr,
-                          delete_something)
+from fuzz_grammar import (BAD, COUNT, GOOD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, Name, Number, NumberOr,
+                          delete_something, positive)
 
 BOX = 18.0
 SPHERES = """units lj
@@ -30,6 +30,8 @@ group nobody empty
 timestep 1e-4
 thermo 100000"""
 
+WALL = NumberOr("EDGE", Number(lambda v: True, ["-8.5", "-20"], ["0", "8", "nan"], odd=lambda v: v > -8))
+
 STOKES = {
     "cut_off_distance": [Number(lambda v: v > 0, ["inf", "inf", "inf", "12", "4.5", "1e-6"], ["200", "0", "-1", "1e300", "INF"])],
     "visc": [Field(lambda v: v > 0, ["1", "0.625", "1e-3"], ["0", "-1", "1e-300", "1e300"])],
@@ -45,6 +47,8 @@ STOKES = {
     "precondition": [Choice("auto", "none", "clump", "sparse", "waves")], "far_field": [Choice("auto", "direct", "ewald")],
     "far_field_tolerance": [Number(lambda v: 1e-13 <= v <= 0.1, ["1e-3", "1e-6"], ["0", "-1", "1", "1e-14", "0.11"])],
     "warm_start": [YES_NO], "rotation": [YES_NO], "fluid_vorticity": [U, U, U], "rigid_clumps": [Choice("yes", "no", "auto")],
+    "multiblob": [Integer(lambda v: v in (1, 12, 42), ["1", "12", "42"], ["0", "2", "-1", "13", "2147483648"])],
+    "one_body": [YES_NO], "wall": [Choice("zlo", "zlo", "xlo", "ylo"), WALL],
     "shell": [Integer(lambda v: v == 1 or v >= 12, ["1", "12", "13", "42"],
                       ["0", "2", "11", "-1", "2147483647", "2147483646", "2147483648"], odd=lambda v: v > 500)],
 }
@@ -69,7 +73,8 @@ def spheres(case):
 
 def judge_stokes(case, words, how):
     """The rules of the page beyond single words."""
-    case.judge(words, STOKES)
+    if not case.judge(words, STOKES) and "wall" in words:
+        case.faults.append("wall")     # a second one is looked for before all else
     s = case.value
     cut, clumps = s("cut_off_distance"), s("clumps_only") == "yes"
     shell, rigid, rotation = int(s("shell", "1")), s("rigid_clumps", "no"), s("rotation") == "yes"
@@ -85,8 +90,20 @@ def judge_stokes(case, words, how):
                    "precondition", "tensor")
     case.refuse_if(s("precondition") == "waves" and (not everybody or how != "periodic" or s("algorithm", "1") != "2"),
                    "precondition")
-    lubricated, gap, reach = s("lubrication") == "yes", s("lubrication_gap", "1e-3"), s("lubrication_range", "2")
-    case.refuse_if(lubricated and (not everybody or not rotation and shell == 1), "lubrication")
+    lubricated, gap = s("lubrication") == "yes", s("lubrication_gap", "1e-3")
+    reach = s("lubrication_range", "1" if s("multiblob", "1") != "1" else "2")
+    blobs = int(s("multiblob", "1"))
+    turns = rotation or shell != 1 or blobs != 1
+    case.refuse_if(lubricated and (not everybody or not turns), "lubrication")
+    case.refuse_if(blobs != 1 and (not everybody or s("tensor") == "oseen" or "shell" in case.settings or s("rotation") == "no"
+                                   or "precondition" in case.settings or case.level != BAD and lubricated and float(reach) > 2),
+                   "multiblob", "lubrication_range")
+    case.refuse_if(blobs == 1 and "one_body" in case.settings, "one_body")
+    if "wall" in case.settings:
+        case.refuse_if(how == "periodic" or s("tensor") == "oseen" or far == "ewald" or s("precondition") == "waves" or shell != 1
+                       or rigid != "no" and clumps, "wall")
+        if s("fluid_velocity") or case.settings["wall"][1] == "EDGE":
+            case.says(ODD, "wall", "fluid_velocity")
     case.refuse_if(not lubricated and "lubrication_gap" in case.settings, "lubrication_gap")
     case.refuse_if(not lubricated and "lubrication_range" in case.settings, "lubrication_range")
     case.refuse_if(case.level != BAD and float(gap) >= float(reach), "lubrication_gap")
@@ -96,19 +113,18 @@ def judge_stokes(case, words, how):
     case.refuse_if(s("precondition") in ("clump", "sparse") and s("algorithm", "1") != "2" and rigid != "yes", "precondition")
     case.refuse_if(s("precondition") == "clump" and how == "no molecules", "precondition")
     case.refuse_if(rotation and s("tensor") == "oseen", "rotation", "tensor")
-    case.refuse_if(rigid != "no" and not clumps, "rigid_clumps")
-    case.refuse_if(rigid != "no" and cut not in (None, "inf"), "rigid_clumps", "cut_off_distance")
+    case.refuse_if(rigid == "auto" and not clumps or rigid != "no" and not clumps and not turns, "rigid_clumps")
+    case.refuse_if(rigid != "no" and clumps and cut not in (None, "inf"), "rigid_clumps", "cut_off_distance")
     if rigid != "no" and cut == "inf":
         case.says(ODD, "rigid_clumps", "cut_off_distance")
     case.refuse_if(rigid != "no" and s("tensor") == "oseen", "rigid_clumps", "tensor")
     case.refuse_if(shell != 1 and rigid == "no", "shell")
-    case.refuse_if("fluid_vorticity" in case.settings and not rotation and shell == 1, "fluid_vorticity")
+    case.refuse_if("fluid_vorticity" in case.settings and not turns, "fluid_vorticity")
     case.refuse_if(rigid == "yes" and (s("region") == "part" or s("group") == "half"), "region", "group")
     if cut not in (None, "inf") and float(cut) > 100 * BOX:
         case.says(ODD, "cut_off_distance")
-    if cut not in (None, "inf") and how == "periodic":
-        ratio = float(cut) / BOX
-        case.says(LOUD if ratio > 10 else ODD if ratio > 1 else GOOD, *["cut_off_distance"] * (ratio > 1))
+    if cut not in (None, "inf") and how == "periodic" and not clumps:
+        case.says(ODD if float(cut) > BOX else GOOD)
     if "precondition" in case.settings and rigid != "no" or shell == 1 and "shell" in case.settings or shell > 500 \
             or rigid == "auto" or clumps and s("precondition") == "sparse":
         case.says(ODD, "precondition", "shell")
@@ -167,3 +183,45 @@ def make_stokes_fix(case):
         case.refuse_if(applies and add == "yes" or second and (applies or add == "yes"), "apply", "add_force")
     if any(line == "atom_style bond" for line in case.lines):
         case.says(BAD, "radius")
+
+
+OVERDAMPED = {
+    "scheme": [Choice("ab2", "euler", "midpoint")], "held": [Name("g", "half", "nobody")],
+    "adapt": [COUNT, positive("1e-6", "1e-5"), positive("1e-5", "1e-4"), positive("0.01", "1")],
+    "temperature": [Field(lambda v: v >= 0, ["1", "0.2", "0"], ["-1", "1e300"], atom=False),
+                    Integer(lambda v: 0 < v < 2**31, ["1", "4711"], ["0", "-3", "2147483647", "2147483648"])],
+    "noise_tolerance": [Number(lambda v: 0 < v < 0.5, ["0.01", "0.1"], ["0", "0.5", "-1", "1e-300"], odd=lambda v: v < 1e-6)],
+}
+FLUIDS = ["", "rotation yes", "multiblob 12", "multiblob 12 lubrication yes", "rotation yes lubrication yes", "wall zlo -8.5",
+          "multiblob 12 wall zlo -8.5", "rigid_clumps yes rotation yes", "rigid_clumps yes shell 12"]
+
+
+def judge_overdamped(case, words, fluid):
+    """The rules of the page beyond single words."""
+    understood = case.judge(words, OVERDAMPED)
+    adapt = case.settings.get("adapt")
+    case.refuse_if(adapt and adapt[1] != adapt[2] and float(adapt[1]) > float(adapt[2]), "adapt")
+    if not understood:
+        return
+    given, scheme, T = case.settings, case.value("scheme", "ab2"), case.value("temperature", "0")
+    case.refuse_if("noise_tolerance" in given and "temperature" not in given, "noise_tolerance")
+    case.refuse_if(scheme == "midpoint" and "held" in given, "scheme", "held", "temperature")
+    case.refuse_if(fluid.startswith("rigid") and case.value("held") == "half", "held")     # a clump in part
+    if T in ("0", "v_zero"):
+        case.says(ODD if "temperature" in given or scheme == "midpoint" else GOOD)
+        return
+    drift = "held" in given or "lubrication" in fluid or "multiblob" in fluid or "shell" in fluid
+    case.refuse_if(drift or "adapt" in given or scheme != "midpoint" and ("wall" in fluid or "rigid" in fluid), "temperature", "scheme")
+    case.says(ODD)        # a step may be too long for such a temperature
+
+
+def make_overdamped(case):
+    case.style, fluid = "stokes_dynamics/overdamped", case.draw.choice(FLUIDS)
+    while spheres(case) in ("no radius", "no molecules"):
+        pass
+    case.lines[3] = "boundary f f f"
+    words = case.damaged(case.words_of(OVERDAMPED, few=3))
+    case.lines += [f"pair_style stokes_dynamics cut_off_distance inf visc 1 {fluid}", "pair_coeff * *", "fix weight all addforce 0 0 -1"]
+    case.tried = len(case.lines)
+    case.lines.append("fix move all stokes_dynamics/overdamped " + " ".join(words))
+    judge_overdamped(case, words, fluid)

@@ -59,7 +59,7 @@ VANS = {
     "class_radii": [Counted(32, positive("0.003", "0.002"))],
     "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
     "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED])],
-    "intensity": [Or(stress=[], file=[File("convective.txt")], otherwise=[EQUAL])],
+    "intensity": [Or(stress=[], file=[File("convective.txt")], otherwise=[Field(lambda v: v >= 0, ["0", "0.3"], ["-0.1"], atom=False)])],
     "renewal": [positive("0.1", "1e-4")], "region": [Name("zone", "part", "nowhere")],
     "average": [Name("all", "g", "nobody")], "conserve": [YES_NO], "rules": [Choice("consistent", "consistent", "yade")],
 }
