@@ -386,7 +386,7 @@ sd_status Hydrodynamics::together(sd_solve_report &report)
 {
   const bool warm = memory->history && memory->global.solutions > 0;
   if (shells.settings.on())
-    recall_points(begin_with.l);
+    recall_points(begin_with.l, memory->global.line);
   else if (warm)
     guess();
   const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};

@@ -153,7 +153,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void look_at_shells(const sd_system &system);
   void guess();
   void keep();
-  void recall_points(std::vector<double> &l);
+  void recall_points(std::vector<double> &l, double line);
   void keep_points(const std::vector<double> &l);
   std::vector<OnFluid> of_points_on_fluid();
   int algorithm() const    // of the next solve

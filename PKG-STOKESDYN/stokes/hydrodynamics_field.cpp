@@ -31,7 +31,7 @@ std::vector<OnFluid> Hydrodynamics::of_points_on_fluid()
     mobile.orient();
   }
   std::vector<double> l = begin_with.l;
-  if (memory->points > 0) recall_points(l);
+  if (memory->points > 0) recall_points(l, 0.0);
   const size_t n = scene.size(), P = shells.points();
   const sd_spheres s = scene.local();
   const sd_multiblob_spheres spheres = {s.x, s.a, shells.turns(), shells.masks(), (int) n};

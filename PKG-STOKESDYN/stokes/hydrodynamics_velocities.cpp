@@ -17,14 +17,13 @@ namespace StokesDyn {
 using State = FixStokesDynamicsState;
 static const std::string COMMAND = StokesSettings::COMMAND;
 
-/* Forces of the points of this rank's rows as the last solve left them, or on the line through the
- * last two where that was nearer the last time; 0 where there are none */
-void Hydrodynamics::recall_points(std::vector<double> &l)
+/* Forces of the points of this rank's rows as the last solve left them (line 0), or on the line
+ * through the last two (1); 0 where there are none */
+void Hydrodynamics::recall_points(std::vector<double> &l, double line)
 {
   const size_t m = 3 * (size_t) shells.points();
   l.assign(m * scene.size() + m, 0.0);
   if (memory->points == 0) return;
-  const double line = memory->global.line;
   l = scene.rows((int) m, [&](int i, double *out) {
     const double *row = memory->rows[i], *last = row + memory->of_points(),
                  *before = row + memory->of_points_before();
@@ -69,7 +68,7 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
     }
   });
   if (shells.settings.on())
-    recall_points(begin_with.l);
+    recall_points(begin_with.l, memory->global.line);
   else
     begin_with.l.assign(m * n + m, 0.0);
   begin_with.v.assign(m * n + m, 0.0);

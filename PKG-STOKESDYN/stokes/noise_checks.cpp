@@ -34,7 +34,6 @@ static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const Stoke
                             const Ambient::Settings &fluid, bool midpoint)
 {
   const std::string pair = " of pair_style stokes_dynamics";
-  if (s.scene.wall.sign) drifts(lmp, keyword, "keyword wall" + pair, "leave it out");
   if (s.shells.on()) drifts(lmp, keyword, "keyword multiblob" + pair, "leave it out");
   if (s.lubrication.on) drifts(lmp, keyword, "keyword lubrication" + pair, "use lubrication no");
   if (s.rigid.on && !s.rigid.apart() && !midpoint)

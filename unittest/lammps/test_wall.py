@@ -138,7 +138,7 @@ def test_groups_are_those_of_the_model_in_another_code(simulation):
 # Worst of the three loads, in per cent of all velocities, against the full flow, of 12 and 42 points; one point per sphere has 4 to
 # 13, 12 points without films up to 80
 WORST = {"pair_side_by_side": (0.78, 0.16), "pair_one_above": (0.80, 0.19), "pair_close": (1.97, 0.84), "pair_close_low": (2.72, 1.60),
-         "triangle": (2.75, 1.02)}
+         "triangle": (2.78, 1.02)}
 
 
 @pytest.mark.parametrize("points", [12, 42])
