@@ -57,7 +57,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   std::string held;
   int held_bit = 0, moved_bits = 0;
   /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump,
-   * was put by it; U is that of the point by which the clump is moved: when LAMMPS has made an image of it since, v_old is that of the image */
+   * was put by it; U is that of the point by which the clump is moved. When LAMMPS has made an image
+   * of it since, v_old is that of the image. */
   AtomRows before;
   /* of a member of a clump: has it such a row, and which? */
   enum { BEFORE = 10 };

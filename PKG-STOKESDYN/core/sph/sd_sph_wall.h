@@ -45,9 +45,9 @@ typedef struct {
 } sd_sph_wall;
 
 /* What the sums s of sd_sph_before_walls make of one wall particle that moves with v and sees the
- * body force b. row, in: its density. Out: the density that has the pressure of the fluid before it (0: none has), and by how much the
- * velocity that friction sees differs from v: to that of the fluid with slip, to its mirror image
- * without.
+ * body force b. row, in: its density. Out: the density that has the pressure of the fluid before it
+ * (0: none has), and by how much the velocity that friction sees differs from v: to that of the fluid
+ * with slip, to its mirror image without.
  * A wall without fluid in reach has P0, or keeps its density (absolut). Returns the pressure. */
 double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double v[3],
                             const double b[3], double row[4]);
