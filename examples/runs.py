@@ -4,6 +4,7 @@ import contextlib
 import csv
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -58,11 +59,13 @@ SILENCE = 15          # seconds
 LISTENED_TO = []      # files to which runs of LAMMPS print, the latest one last
 
 
-def last_line(path):
+def last_row(path):
+    """Of thermo output, as far as LAMMPS has written it: the latest line that begins with a step and has one more number"""
     with open(path, "rb") as file:
-        file.seek(max(0, os.path.getsize(path) - 1000))
+        file.seek(max(0, os.path.getsize(path) - 4000))
         lines = file.read().decode(errors="replace").splitlines()
-    return next((" ".join(line.split()) for line in reversed(lines) if line.strip()), "")[:100]
+    rows = [" ".join(line.split()) for line in lines if re.match(r" *\d+ +[-\d]\S*( |$)", line)]
+    return rows[-1][:100] if rows else ""
 
 
 def say_how_long(name):
@@ -71,10 +74,10 @@ def say_how_long(name):
     while True:
         time.sleep(SILENCE)
         try:
-            line = last_line(LISTENED_TO[-1])
+            row = last_row(LISTENED_TO[-1])
         except (IndexError, OSError):      # nothing runs, or it has just ended
-            line = ""
-        print(f"[{name}] {time.time() - began:.0f} s so far" + (f"; LAMMPS: {line}" if line else ""), flush=True)
+            row = ""
+        print(f"[{name}] {time.time() - began:.0f} s so far" + (f"; LAMMPS: {row}" if row else ""), flush=True)
 
 
 if pathlib.Path(sys.argv[0]).name == "run.py":
