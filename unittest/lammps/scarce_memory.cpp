@@ -1,5 +1,5 @@
-/* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more has
- * nothing to give, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none; they are
+/* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more, up to
+ * MALLOC_MOST, has nothing to give, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none; they are
  * those of rank SCARCE_RANK alone, if that is given. */
 #include <cstdlib>
 #include <cstring>
@@ -15,8 +15,8 @@ static size_t limit_of(const char *name)
 
 extern "C" void *malloc(size_t bytes)
 {
-  static size_t limit = limit_of("MALLOC_LIMIT");
-  return limit && bytes >= limit ? nullptr : __libc_malloc(bytes);
+  static size_t limit = limit_of("MALLOC_LIMIT"), most = limit_of("MALLOC_MOST");
+  return limit && bytes >= limit && (!most || bytes <= most) ? nullptr : __libc_malloc(bytes);
 }
 
 void *operator new(size_t bytes)

@@ -55,6 +55,6 @@ def test_one_rank_without_memory_for_a_shape_ends_all(tmp_path, scarce, scarce_r
     """Every rank keeps every shape: one that cannot must not leave the other waiting for it."""
     x = np.random.default_rng(3).uniform(0, 100, (20000, 3))
     lines = input_lines(Spheres(x, molecule=1), "clumps_only yes visc 1 rigid_clumps yes", str(tmp_path / "data"), fix=False)
-    scarce(MALLOC_LIMIT=450000, SCARCE_RANK=scarce_rank)
+    scarce(MALLOC_LIMIT=480000, MALLOC_MOST=480000, SCARCE_RANK=scarce_rank)    # three numbers for each sphere of a shape
     run = lmp(tmp_path, lines + ["run 0"], 2, timeout=20, succeed=False)
     assert run.code != 0 and "Pair style stokes_dynamics: keyword rigid_clumps: out of memory" in run.text, run.text[-1500:]
