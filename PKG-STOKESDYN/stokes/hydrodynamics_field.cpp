@@ -30,8 +30,9 @@ std::vector<OnFluid> Hydrodynamics::of_points_on_fluid()
     shells.free_rows(scene.size());
     mobile.orient();
   }
-  std::vector<double> l = begin_with.l;
-  if (memory->points > 0) recall_points(l, 0.0);
+  std::vector<double> recalled;
+  if (memory->points > 0) recall_points(recalled, 0.0);
+  const std::vector<double> &l = memory->points > 0 ? recalled : begin_with.l;
   const size_t n = scene.size(), P = shells.points();
   const sd_spheres s = scene.local();
   const sd_multiblob_spheres spheres = {s.x, s.a, shells.turns(), shells.masks(), (int) n};

@@ -149,7 +149,6 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_bodies assemble(int width);
   void place_shells();
   void slip_at_points(const double *slip);
-  void arrange_shells();
   /* near a wall: blocks of the bodies where they stand */
   std::vector<sd_body_shape> standing;
   void leave_wall();
