@@ -98,8 +98,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   /* [nlocal][9] d u_p / d x_q; nullptr: not asked for, or the velocity is the same everywhere,
    * namely uniform_velocity(). */
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
-  /* [nlocal][SD_FLOW_SECOND] second derivatives (sd_flow.h); nullptr: not asked for, or the velocity is
-   * linear. 0 for a sphere at the edge of a grid, which has no velocity beyond. */
+  /* [nlocal][SD_FLOW_SECOND] second derivatives (sd_flow.h); nullptr: not asked for, or the velocity
+   * is linear. 0 for a sphere at the edge of a grid, which has no velocity beyond. */
   const double *curvatures() const { return curvature.empty() ? nullptr : curvature.data(); }
   const double *uniform_velocity() const { return u_uniform; }
 

@@ -129,8 +129,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* [nlocal], or empty: of strain_power() */
   std::vector<double> films_power;
 
-  /* do the scene's rows, and what films need around them, stand as in this step? With shells, are the
-   * forces in begin_with those of this step's solve, by these rows? */
+  /* do the scene's rows, and what films need around them, stand as in this step? With shells, are
+   * the forces in begin_with those of this step's solve, by these rows? */
   bool standing = false, solved = false;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
@@ -158,8 +158,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void keep();
   void recall_points(std::vector<double> &l, double line);
   void keep_points(const std::vector<double> &l);
-  /* by rows: points of the shells as they stand now, from their centre and in space, their radii, and
-   * the forces on the fluid that the last solve found */
+  /* by rows: points of the shells as they stand now, from their centre and in space, their radii,
+   * and the forces on the fluid that the last solve found */
   struct Points {
     std::vector<double> r, x, b, l;
   };

@@ -114,8 +114,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* for the core, by rows, by clumps, by spheres of clumps */
   std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
   std::vector<int> member, whole, loner;
-  /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow, and its second
-   * derivatives or nothing */
+  /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow, and its
+   * second derivatives or nothing */
   std::vector<int> sphere;
   std::vector<double> r, slope, bend, moved_with;
   sd_multiblob_mobility of_points = {};

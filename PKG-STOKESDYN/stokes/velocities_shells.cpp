@@ -167,7 +167,7 @@ void Velocities::add_constraints(double *S) const
   }
 }
 
-/* u of spheres that the fluid passes with this slip, velocity and spin [6 n], and strains and bends */
+/* u of spheres that the fluid passes with this slip, velocity and spin [6 n], strains and bends */
 void Velocities::slip_at_points(const double *slip)
 {
   for (size_t k = 0; k < (size_t) scene.size(); k++) {

@@ -1,5 +1,5 @@
-/* Gradients of a flow, row-major: G[3 p + q] = d u_p / d x_q, and its second derivatives, H[6 p + e] =
- * d2 u_p / d x_q d x_r with qr = xx yy zz xy xz yz for e = 0 to 5. */
+/* Gradients of a flow, row-major: G[3 p + q] = d u_p / d x_q, and its second derivatives:
+ * H[6 p + e] = d2 u_p / d x_q d x_r with qr = xx yy zz xy xz yz for e = 0 to 5. */
 #ifndef SD_FLOW_H
 #define SD_FLOW_H
 
@@ -32,8 +32,8 @@ extern const double sd_flow_around[SD_FLOW_DIRECTIONS][3];
  * cubic flow, to order h^2 for others. */
 void sd_flow_curvature(const double bend[SD_FLOW_DIRECTIONS], double h, double H[6]);
 
-/* out [3] += r.H r/2 + (b^2/6) tr H: what curvature adds to the velocity with which the flow carries
- * a sphere of radius b at r from where H is (Faxen's law). */
+/* out [3] += r.H r/2 + (b^2/6) tr H: what curvature adds to the velocity with which the flow
+ * carries a sphere of radius b at r from where H is (Faxen's law). */
 void sd_flow_bend(const double H[SD_FLOW_SECOND], const double r[3], double b, double out[3]);
 
 /* The flow that takes a cell along: G = (dH/dt) H^-1, H = (xx xy xz; 0 yy yz; 0 0 zz) with the
