@@ -344,7 +344,10 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
   A.held = held.data();
   const size_t m = how.width, rows = m * scene.size();
   if (scene.shells) {
-    if (how.unstrained) std::fill(slope.begin(), slope.end(), 0.0);
+    if (how.unstrained) {
+      std::fill(slope.begin(), slope.end(), 0.0);
+      bend.clear();
+    }
     slip_at_points(slip.data());
   } else {
     std::copy_n(slip.begin(), rows, u.begin());
