@@ -200,6 +200,11 @@ void Hydrodynamics::place()
   memory->global.open_box = scene.open_box();
   if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && !looked_at_flow)
     warn_of_misfit(lmp, COMMAND, ambient.misfit());
+  if (settings.lubrication.on && !shells.settings.on() && !looked_at_flow) {
+    double spheres = scene.size();
+    Scene::sum(&scene, &spheres, 1);
+    warn_of_shared_films(lmp, COMMAND, spheres);
+  }
   looked_at_flow = true;
   if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
   if (looked_at_clumps || !how.clumps_only || std::isinf(how.cutoff) || how.taper != SD_TAPER_NONE)
