@@ -116,7 +116,6 @@ void Velocities::arrange_shells()
     body.row = &member[at];
     at += body.shape->m;
   }
-  stand_at_wall();
   V.resize(6 * shaped.size() + 6);
 }
 
