@@ -121,6 +121,7 @@ class FixHydroVans : public RowsFix {
   VansStream::Given impulses(double ratio);
   void hand_over();
   void renew_fluctuations(double time, bool first);
+  void walk_on(double time, bool first);
   uint64_t members() const;
   void count_overlaps();
 

@@ -262,6 +262,10 @@ void FixHydroVans::hand_over()
  * ID and the number of the renewal. */
 void FixHydroVans::renew_fluctuations(double time, bool first)
 {
+  if (set.fluctuation == VansSettings::LANGEVIN) {
+    walk_on(time, first);
+    return;
+  }
   const double bed = stream.bed_elevation();
   bool all = first;
   if (set.fluctuation != VansSettings::DEPTH) {
@@ -293,5 +297,25 @@ void FixHydroVans::renew_fluctuations(double time, bool first)
     if (all || !(eddy->life > 1e-9 * time))
       sd_vans_new_eddy(&set.mesh, set.fluid.eta / set.fluid.rho, &walk, atom->x[i][2],
                        (uint64_t) atom->tag[i], eddy, out.give(i) + FLUCTUATION);
+  }
+}
+
+/* A step of the Langevin walk of every grain, over the time since the last coupling. */
+void FixHydroVans::walk_on(double time, bool first)
+{
+  renewals += 1.0;
+  const std::vector<double> u_star = stream.friction_velocities(),
+                            life = stream.lagrangian_times(u_star);
+  const sd_vans_langevin walk = {set.seed, stream.bed_elevation(), u_star.data(), life.data(),
+                                 first ? HUGE_VAL : time};
+  select(groupbit);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!take[i]) {
+      if (out.has(i)) std::fill_n(out.give(i) + FLUCTUATION, 3, 0.0);
+      continue;
+    }
+    sd_vans_wander *wander = (sd_vans_wander *) (memo.give(i) + column.eddy);
+    sd_vans_langevin_step(&set.mesh, &walk, atom->x[i][2], (uint64_t) atom->tag[i], wander,
+                          out.give(i) + FLUCTUATION);
   }
 }

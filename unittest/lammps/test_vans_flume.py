@@ -191,6 +191,61 @@ def test_the_surface_follows_and_the_water_stays():
     s.close()
 
 
+def test_the_depth_follows_the_discharge():
+    """A laminar stream down a slope of given gx: the depth comes to that of q = gx H^3/(3 nu), and q to what was asked, from too little water and from
+    too much. One grain far too small to matter, since the surface moves with the averages."""
+    nu, gx, q = 1e-3, 2.0, 1e-4
+    H = (3 * nu * q / gx) ** (1 / 3)
+    for start in (0.7, 1.4):
+        s = Scene()
+        s.spheres([[0.01, 0.01, 2e-4]], np.zeros((1, 3)), 1e-5)
+        dz = H / 80
+        s.do(f"fix h all hydro/vans 1 mesh 161 {dz} 0 fluid 1000 1 gravity {gx} 0 -9.8 turbulence none discharge {q} adjust depth 0.005 surface follow {start * H} "
+             "solve 0.01 1e-3", "run 600")
+        assert abs(s.number("discharge") / q - 1) < 1e-6
+        assert abs(s.number("elevation") / H - 1) < 1e-3    # order dz^2
+        assert s.number("drive") == gx
+        s.close()
+
+
+def test_turbulence_spreads_sinking_grains_as_rouse_has_it():
+    """The stream kappa u_star z (1 - z/H), u' of the Langevin walk, grains that sink at w: their number falls with the height as
+    [(H - z)/z]^(w schmidt/(kappa u_star)). The exponent is the one for which the mean of ln((H - z)/z) between 0.1 and 0.8 H is that of the grains
+    there; its sampling error is 3 %."""
+    n, cells, H, u_star, kappa, schmidt, a = 2000, 200, 0.1, 0.05, 0.41, 0.5, 1e-4
+    rouse = 0.6
+    w = rouse * kappa * u_star / schmidt
+    edge = H / cells * np.arange(cells + 1)
+    middle = 0.5 * (edge[1:] + edge[:-1])
+    u = u_star / kappa * np.log(np.concatenate([[edge[1] / 30], middle, [H]]) / (edge[1] / 30))
+    Re = 2 * a * w / 1e-5
+    density = 1000 + 6 * np.pi * 1e-2 * a * w * (1 + 0.15 * Re ** 0.687) / (9.81 * 4 / 3 * np.pi * a ** 3)
+    s = Scene(box=(0, 1, 0, 1, -0.01, 0.2), extra=["pair_style none", "comm_modify cutoff 0.01"])
+    s.do(f"region r block 0 1 0 1 {0.02 * H} {0.98 * H}", f"create_atoms 1 random {n} 11 r", f"set group all diameter {2 * a} density {density:.10g}", "timestep 2e-4",
+         f"fix h all hydro/vans 5 mesh {cells + 1} {H / cells} 0 fluid 1000 1e-2 gravity 0.5 0 -9.81 couple none stream rest turbulence parabolic "
+         f"drag schiller_naumann fluctuation langevin 3 -1 schmidt {schmidt}", "fix_modify h profile values " + " ".join("%.8g" % v for v in u),
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", f"fix walls all wall/reflect zlo {0.02 * H} zhi {0.98 * H}", "run 200", "timestep 1e-3", "run 5000")
+    logs = []
+    for _ in range(10):
+        s.do("run 500")
+        z = s.atoms("x")[:, 2]
+        z = z[(z > 0.1 * H) & (z < 0.8 * H)]
+        logs.append(np.log((H - z) / z))
+    s.close()
+    found, z = np.concatenate(logs).mean(), np.linspace(0.1, 0.8, 2001)
+
+    def mean(exponent):
+        number = ((1 - z) / z) ** exponent
+        return (number * np.log((1 - z) / z)).sum() / number.sum()
+
+    low, high = 0.0, 5.0
+    for _ in range(50):
+        half = 0.5 * (low + high)
+        low, high = (half, high) if mean(half) < found else (low, half)
+    print("Rouse number", half)
+    assert abs(half / rouse - 1) < 0.1
+
+
 def brown_lawler(a, density, eta):
     """The speed of a lone sphere."""
     w = 0.1
