@@ -299,6 +299,7 @@ void FixHydroVans::setup(int vflag)
     average();
     stream.profile_changed();
     if (set.couple == VansSettings::TWO) check_mesh();
+    tell_waves();
   }
   if (set.fluctuates() && renewals == 0.0) {
     read_variables();

@@ -166,6 +166,21 @@ void FixHydroVans::average()
   stream.take_averages(area(), all.data(), &all[forces]);
 }
 
+/* In slices finer than its grains a bed that water holds up is unstable: a slice with a few grains
+ * more than its neighbours is lifted, and catches up with those above. */
+void FixHydroVans::tell_waves()
+{
+  double lowest = HUGE_VAL;
+  for (int n = 0; n < stream.ncell(); n++)
+    lowest = std::min(lowest, sd_vans_height(&set.mesh, n));
+  if (told_waves || !set.upflow || set.couple != VansSettings::ONE || lowest > 3.0 * mean_radius)
+    return;
+  told_waves = true;
+  set.voice.warn("keyword upflow: in slices of " + text(lowest) + " grains of diameter " +
+                 text(2.0 * mean_radius) +
+                 " break up into waves, and their bed is too high: take slices of three diameters");
+}
+
 /* What the grains got from the water since the last coupling: those of the group as booked step by
  * step; the others, which a fixed bed is made of, as the law has it now. ratio: time of the
  * water over that of the grains. */

@@ -282,6 +282,36 @@ def test_suspensions_settle_in_a_vessel_by_richardson_and_zaki(d, eta, expected,
         s.close()
 
 
+@pytest.mark.parametrize("d, eta, dt", [(2e-4, 5.8e-3, 1.2e-4), (1e-3, 4.8e-3, 1e-4), (1.85e-3, 1e-3, 1e-4)])
+def test_a_fluidised_bed_expands_by_richardson_and_zaki(d, eta, dt):
+    """Free grains on a floor, at first packed to phi 0.45, in water that rises with w_0 (1 - phi)^n, phi = 0.3: at Re 0.2, 20 and 500 their bed comes to that
+    phi within 5 % and stays there. Slices of three diameters; the highest one, in part empty, makes the bed 8 % higher than its phi."""
+    h, rng = d * (np.pi / 6 / 0.45) ** (1 / 3), np.random.default_rng(6)
+    w0 = brown_lawler(d / 2, 2650, eta)
+    Re = w0 * d * 1000 / eta
+    flux = w0 * 0.7 ** (4.65 if Re < 0.2 else 4.4 * Re ** -0.03 if Re < 1 else 4.4 * Re ** -0.1)
+    mass = 2650 * np.pi / 6 * d ** 3
+    k = 0.5 * mass * (np.pi / 25 / dt) ** 2
+    contact = f"gran/hooke/history {k} NULL {0.43 * np.sqrt(2 * k / mass)} NULL 0.1 1"
+    s = Scene(box=(0, 6 * h, 0, 6 * h, -d, 60 * d), extra=["pair_style " + contact, "pair_coeff * *", f"neighbor {0.3 * d} bin"])
+    x = h * (np.array([[i, j, l] for i in range(6) for j in range(6) for l in range(8)]) + 0.5) + rng.uniform(-0.02 * d, 0.02 * d, (288, 3))
+    s.spheres(x, np.zeros((288, 3)), d / 2, 2650)
+    s.do(f"timestep {dt}", f"fix floor all wall/{contact.replace('/hooke', ' hooke', 1)} zplane 0 NULL", "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere",
+         f"fix h all hydro/vans 5 mesh 20 {3 * d} 0 fluid 1000 {eta} gravity 0 0 -9.81 stream rest couple one drag brown_lawler upflow {flux}", f"run {int(70 * d / w0 / dt)}")
+    phi = 288 * np.pi / 6 * d ** 3 / (36 * h * h * 2 * s.atoms("x")[:, 2].mean())
+    inside = s.column("phi", 20)[:3]
+    print(Re, inside, phi)
+    assert np.abs(inside / 0.3 - 1).max() < 0.05 and np.abs(s.column("vz", 20)[:3]).max() < 1e-3 * flux
+    assert abs(phi / 0.3 - 1) < 0.1
+    s.close()
+
+
+def test_a_bed_in_slices_finer_than_its_grains_is_told_to_break_up(tmp_path):
+    script = bed_script("mesh 200 0.0003 0 fluid 1000 0.001 gravity 0 0 -9.8 stream rest couple one upflow {}")
+    assert "take slices of three diameters" in run_lmp(tmp_path, script.format(0.1) + "run 0\n").stdout
+    assert "take slices of three diameters" not in run_lmp(tmp_path, script.format("off") + "run 0\n").stdout
+
+
 def test_a_run_stops_when_its_mean_is_known():
     """A stream that shakes about its mean: fix halt on the error of the steady state; asked anew, it knows nothing."""
     s = Scene()
