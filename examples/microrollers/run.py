@@ -4,7 +4,7 @@ interactions above the floor and films (in.microrollers).
 
     run.py --out DIR       results and the picture go to DIR (default: build/examples/microrollers)
     run.py --update        also refreshes the picture in this folder
-    run.py --across 18 --seconds 2      18 x 18 spheres instead of 14 x 14, for longer
+    run.py --across 18 --seconds 2      18 x 18 spheres instead of 16 x 16, for longer
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -80,17 +80,19 @@ def draw(x, v, at, path):
             panel.add_patch(plt.Circle(p[:2], A, color=plt.cm.viridis(np.clip((p[2] - A) / (2.5 * A), 0, 1)), lw=0))
         panel.set(aspect="equal", title=f"{last * k // 3 * EVERY * DT:.1f} s", xticks=[], yticks=[])
         panel.autoscale_view()
+        for side in ("left", "bottom"):
+            panel.spines[side].set_visible(False)
     speed, height = figure.add_subplot(grid[1, :2]), figure.add_subplot(grid[1, 2:])
     late = at.shape[0] // 2
     speed.hist(v[late:, 0], bins=60, color="C0", density=True)
     speed.set(xlabel="speed along the floor, um/s", ylabel="probability")
-    height.hist2d(v[late:, 0], at[late:, 2] / A, bins=50, cmap="Blues")
-    height.set(xlabel="speed along the floor, um/s", ylabel="height over radius")
+    height.plot(v[late:, 0], at[late:, 2] / A, ".", ms=2, alpha=0.3, color="C0", lw=0)
+    height.set(xlabel="speed along the floor, um/s", ylabel="height over radius", ylim=(0.9, 6))
     save(figure, path)
 
 
 def main():
-    given = options(__file__, __doc__, across=14, seconds=1.5)
+    given = options(__file__, __doc__, across=16, seconds=2.0)
     need("lmp")
     began = time.time()
     x = roll(given.out, "driven", given.across, given.seconds, TORQUE)
