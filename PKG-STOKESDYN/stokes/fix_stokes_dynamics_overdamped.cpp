@@ -221,7 +221,8 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   find_causes(hydro, last.causes);
   last.atoms = atom->natoms;
   const bool rotates = hydro.rotation(), flat = domain->dimension == 2;
-  const Velocities::Take take = [this, &hydro, rotates, flat](int i, const double *v, const double *F) {
+  const Velocities::Take take = [this, &hydro, rotates, flat](int i, const double *v,
+                                                              const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i);
     for (int d = 0; d < 3; d++) {

@@ -1,14 +1,14 @@
-/* Of fix stokes_dynamics/overdamped: scheme midpoint, steps that have the drift kT div M of a mobility
- * that differs from place to place, without its derivatives.
+/* Of fix stokes_dynamics/overdamped: scheme midpoint, steps that have the drift kT div M of a
+ * mobility that differs from place to place, without its derivatives.
  *
  *   F* = 3/2 F - 1/2 F_old + sqrt(2 kT/dt) f,   f of covariance M(x)^-1
  *   v = V(x, F*),  x_mid = x + dt/2 v           where velocities are found: v is output
  *   x' = x + dt V(x_mid, F*)                    where positions advance
  *
- * The noise is a force, the same in both places: then the second-order term of the step has the mean
- * kT div M dt. Kept as a velocity it would have none. Whoever is held, or the plane, is so in the half
- * step too. Forces are extrapolated, so that they are found once a step.
- * Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
+ * The noise is a force, the same in both places: then the second-order term of the step has the
+ * mean kT div M dt. Kept as a velocity it would have none. Whoever is held, or the plane, is so in
+ * the half step too. Forces are extrapolated, so that they are found once a step. Source: Fixman,
+ * J. Chem. Phys. 69, 1527 (1978). */
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "hydrodynamics.h"
@@ -40,16 +40,16 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
   for (int i = 0; i < atom->nlocal; i++) moved |= is_held(i) && (atom->mask[i] & moved_bits);
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
   if (moved)
-    fail(lmp, KEYWORD + "midpoint looks at spheres between steps, where fix move does not put those of "
-                        "keyword held: let them rest");
+    fail(lmp, KEYWORD + "midpoint looks at spheres between steps, where fix move does not put those "
+                        "of keyword held: let them rest");
   for (int i = 0; i < modify->nfix; i++)
     if (utils::strmatch(modify->fix[i]->style, "^deform"))
       fail(lmp, KEYWORD + "midpoint is for boxes that stay as they are, and fix " + modify->fix[i]->id +
                     " of style " + modify->fix[i]->style + " deforms this one: use ab2");
 }
 
-/* f and torque become what pushes spheres in this step, but for noise; returned is what they were, to be
- * taken back: [6] by atom */
+/* f and torque become what pushes spheres in this step, but for noise; returned is what they were,
+ * to be taken back: [6] by atom */
 std::vector<double> FixStokesDynamicsOverdamped::push_between_steps(const Hydrodynamics &hydro)
 {
   std::vector<double> loads(6 * (size_t) atom->nlocal + 6);
@@ -62,7 +62,8 @@ std::vector<double> FixStokesDynamicsOverdamped::push_between_steps(const Hydrod
   return loads;
 }
 
-void FixStokesDynamicsOverdamped::take_back(const Hydrodynamics &hydro, const std::vector<double> &loads)
+void FixStokesDynamicsOverdamped::take_back(const Hydrodynamics &hydro,
+                                            const std::vector<double> &loads)
 {
   for (int i : hydro.ambient.who()) {
     std::copy_n(&loads[6 * (size_t) i], 3, atom->f[i]);
@@ -119,8 +120,8 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
   });
 }
 
-/* Half the step by the velocities of now, all of it by those there. Atoms keep their ranks and their
- * numbers: nobody migrates in between. */
+/* Half the step by the velocities of now, all of it by those there. Atoms keep their ranks and
+ * their numbers: nobody migrates in between. */
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
   const double dt = update->dt;

@@ -60,10 +60,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void solve();
   void drag();
 
-  /* Of all that takes part, from what is in f and torque, in any order; and forces on those that are
-   * held. A step is begin() and this.
-   * Where all interact, the forces go to rows of the memory too: the next guess. draw: random forces too,
-   * where all interact */
+  /* Of all that takes part, from what is in f and torque, in any order; and forces on those that
+   * are held. A step is begin() and this. Where all interact, the forces go to rows of the memory
+   * too: the next guess. draw: random forces too, where all interact */
   void velocities(const Velocities::Take &take, const Velocities::Held &held,
                   const Velocities::Draw *draw = nullptr);
   /* Those of rigid clumps, and who is free, since then */

@@ -52,8 +52,8 @@ void Hydrodynamics::keep_points(const std::vector<double> &l)
 }
 
 /* In one loop, which begins from the forces of the last step, with lubrication from its velocities
- * too: v' has no other use in such a run, so they are kept in its place. New random forces leave nothing
- * of either to begin from. */
+ * too: v' has no other use in such a run, so they are kept in its place. New random forces leave
+ * nothing of either to begin from. */
 sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Velocities::Draw *draw,
                                        sd_bodies_report &report)
 {

@@ -112,7 +112,8 @@ void Lubrication::add_wall(const Scene &where)
   }
 }
 
-/* Whose pair it is, whoever asks: by the lower tag, and by which of all images the two see each other */
+/* Whose pair it is, whoever asks: by the lower tag, and by which of all images the two see each
+ * other */
 struct Pairs {
   sd_random_key key;
   std::vector<double> tags;
@@ -120,8 +121,8 @@ struct Pairs {
   Lattice lattice;
 };
 
-/* By how many edges the second stands off the closest place, counted otherwise than by halves, where two
- * places of a lattice are equally close */
+/* By how many edges the second stands off the closest place, counted otherwise than by halves,
+ * where two places of a lattice are equally close */
 static void image_of(const Lattice &lattice, const double r[3], int steps[3])
 {
   const double *h = lattice.h, f2 = r[2] / h[2], f1 = (r[1] - h[3] * f2) / h[1];
@@ -147,8 +148,8 @@ static int draw_pair(void *ctx, int i, int at, double g[12])
   }
   uint32_t which = 0;
   for (int step : steps) which = 1024 * which + (uint32_t) (step + 512);
-  sd_random_normals(&pairs.key, sd_random_pair(std::min(one, other), std::max(one, other), which), 12,
-                    g);
+  const uint64_t tag = sd_random_pair(std::min(one, other), std::max(one, other), which);
+  sd_random_normals(&pairs.key, tag, 12, g);
   return first;
 }
 

@@ -38,8 +38,8 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   /* out [6 n]: forces and torques on the spheres that move with v, by rows */
   void forces(const double *v, double *out);
 
-  /* F [6 n] += random forces on the spheres, of covariance L, where they were placed so; on all ranks
-   * together. SD_OK or that of sd_lubrication_noise.h */
+  /* F [6 n] += random forces on the spheres, of covariance L, where they were placed so; on all
+   * ranks together. SD_OK or that of sd_lubrication_noise.h */
   sd_status draw(Scene &scene, const sd_random_key &key, double *F) const;
 
   double memory_usage() const;

@@ -43,7 +43,8 @@ Noise::~Noise()
 
 double Noise::memory_usage() const
 {
-  double numbers = of_clumps.capacity() + D.capacity() + w.capacity() + y.capacity() + of_bodies.room;
+  double numbers = of_clumps.capacity() + of_bodies.room;
+  for (const auto *rows : {&D, &w, &y}) numbers += rows->capacity();
   for (size_t room : process.room) numbers += room;
   for (size_t room : of_bodies.process.room) numbers += room;
   return sizeof(double) * numbers;
@@ -103,8 +104,8 @@ void Noise::draw_alone(const Hydrodynamics &hydro, const Take &take)
   }
 }
 
-/* M of three numbers a row, from that of the engine, which may have torques where nobody turns by its
- * noise. Where the engine's M divides, the part that is not drawn at once. */
+/* M of three numbers a row, from that of the engine, which may have torques where nobody turns by
+ * its noise. Where the engine's M divides, the part that is not drawn at once. */
 struct Forces {
   size_t rows, engine_width;
   /* [3 rows] */

@@ -71,8 +71,9 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
-  /* Random forces of covariance R, the resistance of all bodies with their films (sd_bodies_noise.h),
-   * times `scale`, and what becomes of them: forces and torques F [width] on atom i */
+  /* Random forces of covariance R, the resistance of all bodies with their films
+   * (sd_bodies_noise.h), times `scale`, and what becomes of them: forces and torques F [width] on
+   * atom i */
   struct Draw {
     sd_bodies_noise *noise;
     sd_random_key of_spheres, of_films;

@@ -203,15 +203,14 @@ def judge_overdamped(case, words, fluid):
     case.refuse_if(adapt and adapt[1] != adapt[2] and float(adapt[1]) > float(adapt[2]), "adapt")
     if not understood:
         return
-    given, scheme, T = case.settings, case.value("scheme", "ab2"), case.value("temperature", "0")
+    given, scheme, T = case.settings, case.value("scheme", ""), case.value("temperature", "0")
     case.refuse_if("noise_tolerance" in given and "temperature" not in given, "noise_tolerance")
-    case.refuse_if(scheme == "midpoint" and "held" in given, "scheme", "held", "temperature")
     case.refuse_if(fluid.startswith("rigid") and case.value("held") == "half", "held")     # a clump in part
     if T in ("0", "v_zero"):
         case.says(ODD if "temperature" in given or scheme == "midpoint" else GOOD)
         return
-    drift = "held" in given or "lubrication" in fluid or "multiblob" in fluid or "shell" in fluid
-    case.refuse_if(drift or "adapt" in given or scheme != "midpoint" and ("wall" in fluid or "rigid" in fluid), "temperature", "scheme")
+    drift = "held" in given or any(word in fluid for word in ("lubrication", "multiblob", "wall", "rigid"))
+    case.refuse_if("adapt" in given or drift and scheme in ("ab2", "euler"), "temperature", "scheme")
     case.says(ODD)        # a step may be too long for such a temperature
 
 

@@ -3,7 +3,7 @@ Covariance of one step against the mobility, Boltzmann's distribution, one run o
 import numpy as np
 import pytest
 
-from brownian import A, ETA, KT, SHORT, UNIT, check_covariance, check_pieces, check_ranks, in_a_plane, noise, steps_of
+from brownian import A, END, ETA, KT, SHORT, UNIT, check_covariance, check_pieces, check_ranks, end, in_a_plane, noise, script, steps_of
 from system import Spheres
 
 INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
@@ -34,8 +34,8 @@ DUMBBELLS = A * np.array([(0, 0, 0), (0, 0, 2), (2.1, 0.2, 0), (2.2, 2.2, 0)])
 CENTRES = np.kron([(0.5, 0.5, 0, 0), (0, 0, 0.5, 0.5)], np.eye(3))
 
 
-@pytest.mark.parametrize("words, count", [("multiblob 12", 1200), ("multiblob 12 lubrication yes", 1200), ("rotation yes lubrication yes", 2000),
-                                          ("multiblob 12 lubrication yes wall zlo -0.8", 800)])
+@pytest.mark.parametrize("words, count", [("multiblob 12 lubrication yes", 1000), ("rotation yes lubrication yes", 2000),
+                                          ("multiblob 12 lubrication yes wall zlo -0.8", 500)])
 def test_step_of_spheres_has_the_covariance_of_their_mobility(simulation, words, count):
     check_step(lambda: simulation(Spheres(TRIO, A), f"{INF} {words}", fix=False, dt=SHORT), 3, SPHERES, count)
 
@@ -143,12 +143,24 @@ def above_a_wall():
 
 SHARP = "cut_off_distance inf visc 1.1 relative_tolerance 1e-12 far_field_tolerance 1e-4 max_iter 400"
 CLOSE = 1e-9, 1e-8    # of places in a box of 18 and of velocities of about 5, with films as good as their solve
-WAYS = {"shells": ("f f f", close_spheres, f"{SHARP} multiblob 12", ""),
-        "shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes", ""),
+WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes", ""),
         "clumps of shells": ("p p p", in_few_clumps, f"{SHARP} rigid_clumps yes multiblob 12 lubrication yes", ""),
         "clumps with a shell": ("f f f", in_few_clumps, f"{SHARP} rigid_clumps yes shell 12", ""),
         "above a wall": ("f f f", above_a_wall, f"{SHARP} rotation yes lubrication yes wall zlo EDGE", ""),
         "films": ("p p p", close_spheres, f"{SHARP} rotation yes lubrication yes", "")}
+
+
+def test_temperature_0_is_the_run_without(tmp_path):
+    """Bit for bit"""
+    way = WAYS["shells with films"]
+    without = end(tmp_path, script(tmp_path, way, END + ["run 20"], T=None))
+    assert (end(tmp_path, script(tmp_path, way, END + ["run 20"], T="0")) == without).all()
+
+
+def test_a_step_takes_two_solves_and_a_root(simulation):
+    sim = noise(simulation(Spheres(TRIO, A), f"{INF} multiblob 12 lubrication yes", fix=False, dt=1e-3)).run(3)
+    solves, products, error = (sim.lmp.extract_fix("move", 0, 1, nrow=k) for k in (5, 9, 10))
+    assert solves == 1 + 2 * 3 and products <= 16 and error < 0.001
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)

@@ -37,8 +37,8 @@ void sd_random_bits(const uint32_t counter[4], const uint32_t key[2], uint32_t o
  * beginning of a longer one. Exact to the rounding of u = (bits + 1/2) 2^-53, so |out| < 8.7. */
 void sd_random_normals(const sd_random_key *key, uint64_t tag, int n, double *out);
 
-/* A tag for two that have tags, the lower first, and which of several pairs of them it is; of two such
- * pairs in 2^64 it is the same. */
+/* A tag for two that have tags, the lower first, and which of several pairs of them it is; of two
+ * such pairs in 2^64 it is the same. */
 uint64_t sd_random_pair(uint64_t first, uint64_t second, uint32_t which);
 
 #ifdef __cplusplus

@@ -101,8 +101,9 @@ static sd_status precondition(void *ctx, const double *r, double *z)
 static sd_status apply(void *ctx, const double *p, double *w)
 {
   loop *c = ctx;
-  const sd_status status = sd_bodies_product(c->A, c->shells, p, p + sd_bodies_rows(c->A), c->bodies,
-                                             c->on_spheres, c->rows, w);
+  const double *V = p + sd_bodies_rows(c->A);
+  const sd_status status =
+      sd_bodies_product(c->A, c->shells, p, V, c->bodies, c->on_spheres, c->rows, w);
   if (status == SD_OK) c->report->products++;
   return status;
 }

@@ -56,8 +56,9 @@ sd_status sd_body_shape_of(int m, int width, const double *x, const double *M, s
 /* A clump of spheres with forces and torques. shells: the clump of this shape with shells; NULL:
  * none. The owner frees. Status as above. */
 sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *out);
-/* Makes the root, if there is none yet: for noise. A body of more than SD_BODY_ROOT_MOST numbers does
- * without one, which would take longer than what it saves. SD_OK; SD_ENOMEMORY; SD_ENOTFINITE. */
+/* Makes the root, if there is none yet: for noise. A body of more than SD_BODY_ROOT_MOST numbers
+ * does without one, which would take longer than what it saves. SD_OK; SD_ENOMEMORY;
+ * SD_ENOTFINITE. */
 #define SD_BODY_ROOT_MOST 600
 sd_status sd_body_shape_take_root(sd_body_shape *s);
 void sd_body_shape_free(sd_body_shape *s);

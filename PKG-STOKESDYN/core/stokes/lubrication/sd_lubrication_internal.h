@@ -24,7 +24,8 @@ typedef struct {
   sd_lubrication_link film;
 } own_image;
 
-/* All of a pair, for its random forces: L_11, L_12 and L_22, d from its first sphere to the second */
+/* All of a pair, for its random forces: L_11, L_12 and L_22, d from its first sphere to the
+ * second */
 typedef struct {
   sd_pair_resistance R;
   double d[3];

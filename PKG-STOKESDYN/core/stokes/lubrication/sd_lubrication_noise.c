@@ -9,8 +9,8 @@
 
 /* Of pair k on its first sphere and its second, as they are in the pair, F [12]. An image of the
  * sphere itself is seen from both sides, and acts from one. */
-static sd_status draw_pair(const sd_lubrication *L, long k, sd_lubrication_normals *normals, void *ctx,
-                           double F[12])
+static sd_status draw_pair(const sd_lubrication *L, long k, sd_lubrication_normals *normals,
+                           void *ctx, double F[12])
 {
   const whole_pair *pair = L->work->whole + k;
   const int i = L->pair[k][0], self = L->pair[k][1] == i;

@@ -20,7 +20,8 @@ static sd_status take_root(int n, const double *A, double *root)
 }
 
 /* The numbers of X, 11 12 22, along d: from `from`[0] and [1] to F[at] of either sphere */
-static sd_status add_along(const double X[3], const double d[3], const double *from, int at, double F[12])
+static sd_status add_along(const double X[3], const double d[3], const double *from, int at,
+                           double F[12])
 {
   const double A[4] = {X[0], X[1], X[1], X[2]};
   double root[4];
@@ -32,10 +33,12 @@ static sd_status add_along(const double X[3], const double d[3], const double *f
 }
 
 /* Rows F1 F2 T1 T2 as in sd_pair_resistance.c, where torques are along e x d */
-static sd_status add_across(const sd_pair_resistance *R, const double d[3], double g[4][3], double F[12])
+static sd_status add_across(const sd_pair_resistance *R, const double d[3], double g[4][3],
+                            double F[12])
 {
-  const double A[16] = {R->YA[0], R->YA[1], R->YB[0], R->YB[2], R->YA[1], R->YA[2], R->YB[1], R->YB[3],
-                        R->YB[0], R->YB[1], R->YC[0], R->YC[1], R->YB[2], R->YB[3], R->YC[1], R->YC[2]};
+  const double *a = R->YA, *b = R->YB, *c = R->YC;
+  const double A[16] = {a[0], a[1], b[0], b[2], a[1], a[2], b[1], b[3],
+                        b[0], b[1], c[0], c[1], b[2], b[3], c[1], c[2]};
   double root[16];
   const sd_status status = take_root(4, A, root);
   for (int p = 0; p < 4 && status == SD_OK; p++) {
@@ -48,7 +51,8 @@ static sd_status add_across(const sd_pair_resistance *R, const double d[3], doub
   return status;
 }
 
-sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12], double F[12])
+sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12],
+                        double F[12])
 {
   double along[4], across[4][3];
   for (int k = 0; k < 4; k++) {

@@ -15,7 +15,8 @@ extern "C" {
  * normal numbers g [12], four vectors in space: only d and these say what comes out, no choice of axes
  * across d. SD_OK; SD_EINDEFINITE: an eigenvalue below -1e-6 of the largest; what is above is rounding
  * and counts as 0. */
-sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12], double F[12]);
+sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12],
+                        double F[12]);
 
 #ifdef __cplusplus
 }

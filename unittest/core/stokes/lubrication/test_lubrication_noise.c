@@ -1,5 +1,5 @@
-/* Random forces of films: their covariance is L, whichever end a pair is seen from and also through images,
- * without sampling. */
+/* Random forces of films: their covariance is L, whichever end a pair is seen from and also through
+ * images, without sampling. */
 #include "near_scene.h"
 
 #include "multiblob/blobs.h"
@@ -76,8 +76,8 @@ static void of_points_that_share_what_they_resist(void **state)
   near_free(&q);
 }
 
-/* Two spheres so near to images of themselves and of each other that each pair is there several times;
- * and what a wall makes spheres resist alone */
+/* Two spheres so near to images of themselves and of each other that each pair is there several
+ * times; and what a wall makes spheres resist alone */
 static void of_shells_through_all_images(void **state)
 {
   (void) state;

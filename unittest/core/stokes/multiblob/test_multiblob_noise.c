@@ -1,5 +1,5 @@
-/* Brownian forces on spheres as shells of points: that the velocities which follow from them have the
- * covariance of the mobility, without sampling. */
+/* Brownian forces on spheres as shells of points: that the velocities which follow from them have
+ * the covariance of the mobility, without sampling. */
 #include "blob_flock.h"
 
 #include "clouds.h"
@@ -9,7 +9,8 @@
 #include "sd_pose.h"
 #include "sd_random.h"
 
-/* Unit vectors in the place of normal numbers: of the points, then 12 of each pair of spheres i < j */
+/* Unit vectors in the place of normal numbers: of the points, then 12 of each pair of spheres i
+ * < j */
 typedef struct {
   int spheres, unit;
 } unit_normals;
