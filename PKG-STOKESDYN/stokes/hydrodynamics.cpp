@@ -127,7 +127,7 @@ void Hydrodynamics::clumps()
     }
   };
   std::vector<char> left_over;
-  rigid.forces(ambient, take, left_over);
+  mobile.drag(take, left_over);
   memory->global.loose = rigid.loose();
   solvers.clear();
   for (int i : ambient.who())

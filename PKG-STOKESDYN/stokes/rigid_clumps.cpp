@@ -1,4 +1,3 @@
-/* Which rigid clump has which shape, and which shapes are new. The steps: rigid_clumps_step.cpp. */
 #include "rigid_clumps.h"
 
 #include "keywords.h"
@@ -7,6 +6,7 @@
 #include "atom.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -52,9 +52,7 @@ void RigidClumps::set_loose(const std::vector<double> &ids)
 
 double RigidClumps::memory_usage() const
 {
-  return sizeof(double) *
-      ((double) known_of.capacity() + radius.capacity() + result.capacity()) +
-      sizeof(int) * (double) member.capacity() + shapes.memory_usage();
+  return sizeof(double) * (double) radius.capacity() + sizeof(int) * (double) member.capacity() + shapes.memory_usage();
 }
 
 // --- which clump has which shape ---------------------------------------------------------------------
@@ -258,6 +256,45 @@ void RigidClumps::arrange()
     for (int p : k.perm) member.push_back(clump.begin + p);
   }
   known.swap(here);
+}
+
+// --- as they stand now ------------------------------------------------------------------------------
+
+const std::vector<RigidClumps::Body> &RigidClumps::find()
+{
+  if (recognised != whole.arrangement()) recognise();
+  recognised = whole.arrangement();
+  return bodies;
+}
+
+bool RigidClumps::fits(const Body &body, const double *radii, int columns, double *pose) const
+{
+  const sd_shape &shape = body.shape->shape;
+  const double most = SD_SHAPE_TOLERANCE * shape.size;
+  std::vector<double> x;
+  for (int k = 0; k < body.n; k++) {
+    const size_t m = member[body.begin + k];
+    if (!(std::fabs(radii[columns * m] - shape.a[k]) <= most)) return false;
+    x.insert(x.end(), &whole.x[3 * m], &whole.x[3 * m] + 3);
+  }
+  return sd_shape_pose(&shape, x.data(), pose, pose + 9) <= most;
+}
+
+bool RigidClumps::settle(int64_t split, const std::vector<int64_t> &bent)
+{
+  int64_t first[2] = {split, NOBODY};
+  for (int64_t molecule : bent) first[1] = std::min(first[1], molecule);
+  MPI_Allreduce(MPI_IN_PLACE, first, 2, MPI_LMP_BIGINT, MPI_MIN, world);
+  if (first[0] != NOBODY)
+    fail(lmp,
+         command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(first[0]) +
+             " is split by the keyword group or region: all of its spheres must be selected, or "
+             "none");
+  if (first[1] == NOBODY) return false;
+  if (!settings.auto_resolve) not_rigid(first[1]);
+  loosen(from_all(world, bent));
+  arrange();
+  return true;
 }
 
 }    // namespace StokesDyn

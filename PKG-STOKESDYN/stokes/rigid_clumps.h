@@ -1,5 +1,4 @@
-/* Rigid clumps: which shape each clump of a scene has, and its forces in every step from pose and
- * motion.
+/* Rigid clumps: which shape each clump of a scene has, and whether it still stands as that says.
  *
  * A clump keeps the shape that it was given when it was first seen, whatever rank it moves to,
  * until a run begins anew or it is not rigid any more (auto: it is loose then, the solver's, until
@@ -9,12 +8,9 @@
 #ifndef SD_RIGID_CLUMPS_H
 #define SD_RIGID_CLUMPS_H
 
-#include "ambient.h"
 #include "clump_shapes.h"
 #include "pointers.h"
 #include "whole_clumps.h"
-
-#include "sd_clump_motion.h"
 
 #include <limits>
 #include <map>
@@ -50,21 +46,6 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void set_loose(const std::vector<double> &ids);
   bool any_loose() const { return !loose_molecules.empty(); }
 
-  /* Calls take(i, F, T) for every sphere i of this rank that is in a rigid clump that takes part:
-   * force [3], torque [3] (nullptr without rotation). loose[i] = 1: atom i belongs to a loose clump,
-   * or to none (molecule 0), and is the solver's. Errors: a clump whose spheres are not all
-   * selected; one that is not rigid (yes). */
-  template <class Take>
-  void forces(const Ambient &ambient, const Take &take, std::vector<char> &loose)
-  {
-    evaluate_all(ambient);
-    mark_lone(loose);
-    whole.scatter(7, result.data(), [&](int i, const double *row) {
-      if (row[0] == EVALUATED) take(i, row + 1, settings.rotation ? row + 4 : nullptr);
-      if (row[0] == LOOSE) loose[i] = 1;
-    });
-  }
-
   /* A clump of this rank's; its spheres, in the order of the shape, are begin ... begin + n - 1 of
    * members(), which are members of whole */
   struct Body {
@@ -72,7 +53,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     int64_t molecule;
     int begin, n;
   };
-  /* All of them, looked at anew if LAMMPS has re-neighboured. Errors as of forces(). */
+  /* All of them, looked at anew if LAMMPS has re-neighboured. Errors: one that is not rigid (yes). */
   const std::vector<Body> &find();
   const std::vector<int> &members() const { return member; }
   /* Do the spheres of a body stand as its shape says? radii by members of whole, `columns` apart.
@@ -90,10 +71,11 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   }
   /* Of whichever of these there is, for noise. Error: memory. */
   void take_root(const ClumpShape &shape) const { shapes.take_root(shape); }
-  /* Errors, which all ranks know: molecule IDs of a clump of which not all spheres are selected, and
-   * of one that is not rigid; NOBODY: there is none */
+  /* Molecule IDs of a clump of which not all spheres are selected, NOBODY: there is none, and of
+   * those that do not fit. Returns whether these are loose now, and the bodies others; otherwise
+   * errors. On all ranks together. */
   static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();
-  void refuse(int64_t split, int64_t bent) const;
+  bool settle(int64_t split, const std::vector<int64_t> &bent);
 
   double memory_usage() const;
 
@@ -117,21 +99,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   std::vector<Body> bodies;
   std::vector<int> member;
 
-  /* What a step finds of a clump, and finds wrong with clumps */
-  struct Step {
-    std::vector<double> x, v, omega, u, gradient, F, T;
-    int64_t split = NOBODY;    // molecule ID, the lowest
-    std::vector<int64_t> bent;
-  };
-
-  struct {
-    int eta, radius, v, omega, u, gradient, end;
-  } column = {};
   std::vector<double> radius;    // by members
-  std::vector<double> known_of;    // what a step knows of members, in columns
-  /* [7 members]: what becomes of each, force, torque */
-  enum { NOT_SELECTED, EVALUATED, LOOSE };
-  std::vector<double> result;
 
   void recognise();
   uint64_t atoms_of(const WholeClumps::Clump &clump) const;
@@ -141,13 +109,6 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void accept(const std::vector<double> &candidates);
   void drop_unused();
   void arrange();
-  void gather(const Ambient &ambient);
-  void evaluate_all(const Ambient &ambient);
-  void mark_lone(std::vector<char> &loose) const;
-  bool asks_for_spins(const Body &body) const;
-  int collect(const Body &body, bool gradients, Step &step, double &eta) const;
-  bool evaluate(const Body &body, const Ambient &ambient, Step &step) const;
-  void settle(const Step &step);
   void loosen(const std::vector<int64_t> &molecules);
   [[noreturn]] void not_rigid(int64_t molecule) const;
 };

@@ -94,6 +94,37 @@ static double far_field_tolerance(Keywords &in)
   return tolerance;
 }
 
+static Field viscosity(Keywords &in)
+{
+  const Field visc = Field::parse(in);
+  if (!visc.is_variable() && !(visc.number() > 0.0))
+    in.refuse("'" + text(visc.number()) + "' must be > 0");
+  return visc;
+}
+
+static double relative_tolerance(Keywords &in)
+{
+  const double tolerance = in.positive();
+  if (tolerance >= 1.0)
+    in.refuse("'" + text(tolerance) + "' must be < 1: no force at all satisfies 1");
+  return tolerance;
+}
+
+static int points_of_shell(Keywords &in)
+{
+  const int points = in.integer(1);
+  if (points > 1 && points < 12) in.refuse("'" + std::to_string(points) + "' must be 1 or >= 12");
+  return points;
+}
+
+static int points_of_blob(Keywords &in)
+{
+  const int points = in.integer(1);
+  if (points > 1 && !sd_multiblob_has(points))
+    in.refuse("'" + std::to_string(points) + "' must be 1, 12 or 42");
+  return points;
+}
+
 void StokesSettings::parse(Keywords &in)
 {
   in.parse({
@@ -101,19 +132,13 @@ void StokesSettings::parse(Keywords &in)
       {"update_every", [&] { update_every = in.integer(1); }},
       {"clumps_only", [&] { scene.clumps_only = in.yes_no(); }},
       {"visc", [&] {
-         if ((ambient.grid_has_visc = in.take("grid"))) return;
-         ambient.visc = Field::parse(in);
-         if (!ambient.visc.is_variable() && !(ambient.visc.number() > 0.0))
-           in.refuse("'" + text(ambient.visc.number()) + "' must be > 0");
+         ambient.grid_has_visc = in.take("grid");
+         if (!ambient.grid_has_visc) ambient.visc = viscosity(in);
        }},
       {"region", [&] { ambient.region = in.word(); }},
       {"group", [&] { ambient.group = in.word(); }},
       {"add_force", [&] { add_force = in.yes_no(); }},
-      {"relative_tolerance", [&] {
-         tolerance = in.positive();
-         if (tolerance >= 1.0)
-           in.refuse("'" + text(tolerance) + "' must be < 1: no force at all satisfies 1");
-       }},
+      {"relative_tolerance", [&] { tolerance = relative_tolerance(in); }},
       {"max_iter", [&] { max_iter = in.integer(1); }},
       {"algorithm", [&] {
          algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS;
@@ -136,16 +161,8 @@ void StokesSettings::parse(Keywords &in)
          rigid.on = choice > 0;
          rigid.auto_resolve = choice == 2;
        }},
-      {"shell", [&] {
-         rigid.shell = in.integer(1);
-         if (rigid.shell > 1 && rigid.shell < 12)
-           in.refuse("'" + std::to_string(rigid.shell) + "' must be 1 or >= 12");
-       }},
-      {"multiblob", [&] {
-         shells.points = in.integer(1);
-         if (shells.on() && !sd_multiblob_has(shells.points))
-           in.refuse("'" + std::to_string(shells.points) + "' must be 1, 12 or 42");
-       }},
+      {"shell", [&] { rigid.shell = points_of_shell(in); }},
+      {"multiblob", [&] { shells.points = points_of_blob(in); }},
       {"one_body", [&] { shells.one_body = in.yes_no(); }},
       {"lubrication", [&] { lubrication.on = in.yes_no(); }},
       {"lubrication_gap", [&] { lubrication.gap = smallest_gap(in); }},

@@ -2,14 +2,13 @@
 
 #include "keywords.h"
 
-#include "sd_clump_motion.h"
 #include "sd_linear.h"
 
 #include "atom.h"
 #include "comm.h"
 
 #include <algorithm>
-#include <cstring>
+#include <iterator>
 
 using namespace LAMMPS_NS;
 
@@ -39,95 +38,63 @@ double Velocities::memory_usage() const
 
 // --- the clumps where they stand -----------------------------------------------------------------
 
-enum { ETA = 0, RADIUS = 1, LOAD = 2, FLOW = 8, GRADIENT = 11, WITH_FLOW = 20 };
+enum { ETA = 0, RADIUS = 1 };
 
 /* What clumps must know of their spheres; velocities are those of the images side by side. */
-void Velocities::gather()
+void Velocities::gather(bool moving)
 {
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
-  columns = gradients ? WITH_FLOW : FLOW;
-  of_members = scene.whole.gather(columns, [&](int i, double *row) {
+  const bool turns = !moving || scene.settings.rotation;
+  column.flow = column.motion + (turns ? 6 : 3);
+  column.gradient = column.flow + 3;
+  column.end = gradients ? column.gradient + 9 : column.flow;
+  of_members = scene.whole.gather(column.end, [&](int i, double *row) {
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     row[RADIUS] = atom->radius[i];
-    std::copy_n(atom->f[i], 3, row + LOAD);
-    std::copy_n(atom->torque[i], 3, row + LOAD + 3);
+    std::copy_n(moving ? atom->v[i] : atom->f[i], 3, row + column.motion);
+    if (turns) std::copy_n(moving ? atom->omega[i] : atom->torque[i], 3, row + column.motion + 3);
     if (!gradients) return;
-    std::copy_n(ambient.velocity(i), 3, row + FLOW);
-    std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
+    std::copy_n(ambient.velocity(i), 3, row + column.flow);
+    std::copy_n(gradients + 9 * (size_t) i, 9, row + column.gradient);
   });
-  for (int m = 0; m < scene.whole.size() && gradients && jumps; m++)
-    Lattice::add(jumps, &scene.whole.steps[3 * (size_t) m], &of_members[columns * (size_t) m + FLOW]);
+  for (int m = 0; m < scene.whole.size() && jumps; m++) {
+    double *row = &of_members[column.end * (size_t) m];
+    if (moving) Lattice::add(jumps, &scene.whole.steps[3 * (size_t) m], row + column.motion);
+    if (gradients) Lattice::add(jumps, &scene.whole.steps[3 * (size_t) m], row + column.flow);
+  }
 }
 
-void Velocities::find()
+void Velocities::find(bool moving)
 {
   clumps.clear();
-  lone = ambient.who();
+  lone.clear();
+  const auto free = [this](int i) {
+    return !rigid.settings.on || atom->molecule[i] == 0;
+  };
+  if (!moving)    // nobody asks for them
+    std::copy_if(ambient.who().begin(), ambient.who().end(), std::back_inserter(lone), free);
   if (!rigid.settings.on) return;
   const auto &all = rigid.find();
-  const auto bound = [this](int i) {
-    return atom->molecule[i] != 0;
-  };
-  lone.erase(std::remove_if(lone.begin(), lone.end(), bound), lone.end());
-  gather();
-  int64_t split = RigidClumps::NOBODY, bent = RigidClumps::NOBODY;
+  gather(moving);
+  int64_t split = RigidClumps::NOBODY;
+  std::vector<int64_t> bent;
   for (const auto &body : all) {
     Clump clump = {&body, {}, 0.0, {}, false};
     int taking_part = 0;
     for (int k = 0; k < body.n; k++) {
       const double eta_k = known_of(clump, k)[ETA];
       taking_part += eta_k > 0.0;
-      clump.eta += eta_k / body.n;
+      clump.eta += eta_k;
     }
+    clump.eta /= body.n;
     if (taking_part == 0) continue;
     if (taking_part < body.n) split = std::min(split, body.molecule);
-    if (!rigid.fits(body, &of_members[RADIUS], columns, clump.pose))
-      bent = std::min(bent, body.molecule);
+    if (!rigid.fits(body, &of_members[RADIUS], column.end, clump.pose))
+      bent.push_back(body.molecule);
     clumps.push_back(clump);
   }
-  int64_t trouble[2] = {split, bent};
-  MPI_Allreduce(MPI_IN_PLACE, trouble, 2, MPI_LMP_BIGINT, MPI_MIN, world);
-  rigid.refuse(trouble[0], trouble[1]);
+  if (rigid.settle(split, bent)) return find(moving);
   find_held();
-}
-
-/* Velocity of the fluid at the centroid and its gradient over the clump */
-void Velocities::flow_over(const Clump &clump, double fluid[3], double G[9])
-{
-  const RigidClumps::Body &body = *clump.body;
-  const double *gradients = ambient.gradients();
-  sd_clump_motion motion = {};
-  std::copy_n(ambient.uniform_velocity(), 3, motion.u_uniform);
-  std::vector<double> x, velocity, of_velocity;
-  if (gradients) {
-    for (int k = 0; k < body.n; k++) {
-      const double *there = at(clump, k), *known = known_of(clump, k);
-      x.insert(x.end(), there, there + 3);
-      velocity.insert(velocity.end(), known + FLOW, known + FLOW + 3);
-      of_velocity.insert(of_velocity.end(), known + GRADIENT, known + GRADIENT + 9);
-    }
-    motion.x = x.data();
-    motion.u = velocity.data();
-    motion.gradient = of_velocity.data();
-  }
-  sd_clump_flow(&body.shape->shape, &motion, clump.pose, clump.pose + 9, fluid, G);
-}
-
-/* Force and torque about the centroid */
-void Velocities::load_on(const Clump &clump, double load[6]) const
-{
-  const double *c = clump.pose + 9;
-  std::fill_n(load, 6, 0.0);
-  for (int k = 0; k < clump.body->n; k++) {
-    const double *f = known_of(clump, k) + LOAD, *torque = f + 3, *x = at(clump, k);
-    const double arm[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
-    double couple[3];
-    sd_cross(arm, f, couple);
-    for (int d = 0; d < 3; d++) {
-      load[d] += f[d];
-      load[3 + d] += torque[d] + couple[d];
-    }
-  }
 }
 
 // --- rows ------------------------------------------------------------------------------------------
@@ -414,82 +381,6 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
   scene.to_atoms(2 * how.width, moved.data(),
                  [&](int i, const double *row) { take(i, row, row + m); });
   return status;
-}
-
-void Velocities::apart(int width, const Take &take)
-{
-  double move[6], by_fluid[6];
-  for (int i : lone) {
-    const double k = ambient.drag(i), k_spin = ambient.spin(i);
-    ambient.fluid(i, move);
-    for (int d = 0; d < 3; d++) {
-      move[d] += atom->f[i][d] / k;
-      by_fluid[d] = -atom->f[i][d];
-      if (width == 3) continue;
-      move[3 + d] += atom->torque[i][d] / k_spin;
-      by_fluid[3 + d] = -atom->torque[i][d];
-    }
-    double given[6];
-    if (held && held(i, given)) {
-      ambient.fluid(i, by_fluid);
-      for (int d = 0; d < width; d++) {
-        move[d] = given[d];
-        by_fluid[d] = (d < 3 ? k : k_spin) * (by_fluid[d] - given[d]);
-      }
-    }
-    take(i, move, by_fluid);
-  }
-  const WholeClumps &whole = scene.whole;
-  std::vector<double> force, torque, moved(13 * (size_t) whole.size() + 13, 0.0);
-  double back[6] = {0.0};
-  for (int d = 0; d < 6 && ambient.jumps(); d++) back[d] = -ambient.jumps()[d];
-  for (Clump &clump : clumps) {
-    const RigidClumps::Body &body = *clump.body;
-    double fluid[3], G[9], load[6], arm[3], turning[3];
-    flow_over(clump, fluid, G);
-    load_on(clump, load);
-    if (!clump.held)
-      sd_clump_free_velocity(&body.shape->clump, clump.pose, clump.eta, load, fluid, G, clump.V);
-    force.resize(3 * (size_t) body.n);
-    torque.resize(3 * (size_t) body.n);
-    drag_on(clump, fluid, G, force.data(), torque.data());
-    for (int k = 0; k < body.n; k++) {
-      double *row = &moved[13 * member_of(clump, k)];
-      sd_multiply3(clump.pose, body.shape->shape.x + 3 * (size_t) k, arm);
-      sd_cross(clump.V + 3, arm, turning);
-      row[0] = 1.0;
-      for (int d = 0; d < 3; d++) {
-        row[1 + d] = clump.V[d] + turning[d];
-        row[4 + d] = clump.V[3 + d];
-        row[7 + d] = force[3 * (size_t) k + d];
-        row[10 + d] = torque[3 * (size_t) k + d];
-      }
-      Lattice::add(back, &whole.steps[3 * member_of(clump, k)], row + 1);
-    }
-  }
-  if (!rigid.settings.on) return;
-  whole.scatter(13, moved.data(), [&](int i, const double *row) {
-    if (row[0] != 0.0) take(i, row + 1, row + 7);
-  });
-}
-
-/* Of the fluid on the spheres of a clump that moves with V */
-void Velocities::drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
-                         double *T) const
-{
-  const sd_clump *what = &clump.body->shape->clump;
-  const double *W = clump.V + 3;
-  double s[3];
-  for (int d = 0; d < 3; d++) s[d] = fluid[d] - clump.V[d];
-  if (!ambient.gradients()) {
-    const double minus_W[3] = {-W[0], -W[1], -W[2]};
-    sd_clump_forces_rigid(what, clump.pose, clump.eta, s, minus_W, F, T);
-    return;
-  }
-  const double turning[9] = {0.0, -W[2], W[1], W[2], 0.0, -W[0], -W[1], W[0], 0.0};
-  double A[9];
-  for (int d = 0; d < 9; d++) A[d] = G[d] - turning[d];
-  sd_clump_forces(what, clump.pose, clump.eta, s, A, F, T);
 }
 
 }    // namespace StokesDyn

@@ -16,6 +16,7 @@
 
 #include "sd_bodies.h"
 #include "sd_bodies_noise.h"
+#include "sd_clump_motion.h"
 #include "sd_random.h"
 #include "sd_tie.h"
 
@@ -60,8 +61,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Held held;
 
   /* Errors, on all ranks: those of RigidClumps; a clump held in part; a clump that is not rigid, or
-   * not all selected. */
-  void find();
+   * not all selected. moving: drag() is to follow, not velocities. */
+  void find(bool moving = false);
 
   /* With shells of points: those of clumps turn with them. The rows of the scene stand. */
   void orient();
@@ -71,6 +72,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
+  /* The other way round, of clumps that move as their spheres do: calls take(i, F, T) for every
+   * sphere i of this rank that is in one that takes part: force, torque (nullptr without rotation).
+   * loose[i] = 1: atom i belongs to a loose clump, or to none (molecule 0), and is the solver's.
+   * Finds them itself, with the errors of find(). */
+  using Drag = std::function<void(int i, const double *F, const double *T)>;
+  void drag(const Drag &take, std::vector<char> &loose);
   /* Random forces of covariance R, the resistance of all bodies with their films
    * (sd_bodies_noise.h), times `scale`, and what becomes of them: forces and torques F [width] on
    * atom i */
@@ -121,10 +128,19 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Lubrication &lubrication;
   sd_tie tie = {};
 
-  /* of members, columns: eta (0: takes no part), radius, force and torque, fluid velocity and its
-   * gradient */
+  /* of members, columns: eta (0: takes no part), radius, force and torque or velocity and angular
+   * velocity, fluid velocity and its gradient */
   std::vector<double> of_members;
-  int columns = 0;
+  struct {
+    int motion = 2, flow, gradient, end;
+  } column = {};
+  /* of one clump after the other, by its spheres */
+  struct Around {
+    std::vector<double> x, v, omega, u, gradient, F, T;
+    sd_clump_motion motion;
+  } around = {};
+  /* what drag() makes of members */
+  std::vector<double> result;
 
   /* for the core, by rows, by clumps, by spheres of clumps */
   std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
@@ -144,10 +160,10 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* where nobody sees anybody */
   sd_mobility_scene alone = {};
 
-  void gather();
+  void gather(bool moving);
   const double *known_of(const Clump &clump, int k) const
   {
-    return &of_members[columns * member_of(clump, k)];
+    return &of_members[column.end * member_of(clump, k)];
   }
   const double *at(const Clump &clump, int k) const
   {
@@ -157,6 +173,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   std::vector<double> given_velocities();
   void place(int width);
   void arrange();
+  const sd_clump_motion &look_at(const Clump &clump, bool moving);
   void flow_over(const Clump &clump, double u[3], double G[9]);
   void load_on(const Clump &clump, double load[6]) const;
   void drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,

@@ -22,14 +22,6 @@ void sd_bodies_collect(const sd_bodies *A, const double *rows, double *on_sphere
   sd_rigid_collect(&A->spheres, through ? on_spheres : rows, sd_bodies_count(A), f);
 }
 
-void sd_body_arms(const sd_body *b, double *arm)
-{
-  for (int k = 0; k < b->shape->m; k++, arm += 3) {
-    sd_multiply3(b->R, b->shape->x + 3 * k, arm);
-    for (int d = 0; d < 3; d++) arm[d] *= b->a;
-  }
-}
-
 /* --- a body alone --- */
 
 /* (velocity, angular velocity) of a point or body, `width` numbers, to the axes and lengths of its

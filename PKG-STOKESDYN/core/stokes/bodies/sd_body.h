@@ -78,9 +78,6 @@ static inline long sd_bodies_loads(const sd_bodies *A)
 void sd_bodies_move(const sd_bodies *A, const double *V, double *on_spheres, double *rows);
 void sd_bodies_collect(const sd_bodies *A, const double *rows, double *on_spheres, double *f);
 
-/* Arms of the points of a body, in space axes: arm [3 shape->m] = a R X_k */
-void sd_body_arms(const sd_body *b, double *arm);
-
 #ifdef __cplusplus
 }
 #endif

@@ -1,9 +1,22 @@
+#include "sd_solve.h"
+
 #include "sd_cg.h"
 #include "sd_ritz.h"
-#include "sd_system.h"
 
 #include <math.h>
 #include <string.h>
+
+/* Unknowns of a sphere */
+static inline int width_of(const sd_system *A)
+{
+  return A->spin ? 6 : 3;
+}
+
+/* D in row k of sphere i; 0: the sphere takes no part */
+static inline double diagonal(const sd_system *A, long i, int k)
+{
+  return k < 3 ? A->drag[i] : A->spin[i];
+}
 
 /* Two norms of a scaled residual z = D (s - M F), whose rows are forces and torques:
  *   plain     sum of D_F/D z^2, D_F the drag of the row's sphere: 1 for a force, and a torque is
@@ -27,7 +40,7 @@ static inline void add_squares(const sd_system *A, long i, const double *f, squa
 static sd_status sum_squares(const sd_system *A, squares mine, squares *of)
 {
   double s[2] = {mine.plain, mine.natural};
-  const sd_status status = sd_system_sum(A, s, 2);
+  const sd_status status = sd_world_sum(&A->world, s, 2);
   *of = (squares){s[0], s[1]};
   return status;
 }
@@ -35,11 +48,11 @@ static sd_status sum_squares(const sd_system *A, squares mine, squares *of)
 /* F = D slip, the drag of spheres that do not see each other, and its squares */
 static sd_status free_draining(const sd_system *A, const double *slip, double *F, squares *of)
 {
-  const int m = sd_system_width(A);
+  const int m = width_of(A);
   squares mine = {0.0, 0.0};
   for (long i = 0; i < A->n; i++) {
     for (int k = 0; k < m; k++)
-      F[m * i + k] = A->drag[i] == 0.0 ? 0.0 : sd_system_diagonal(A, i, k) * slip[m * i + k];
+      F[m * i + k] = A->drag[i] == 0.0 ? 0.0 : diagonal(A, i, k) * slip[m * i + k];
     if (A->drag[i] != 0.0) add_squares(A, i, F + m * i, &mine);
   }
   return sum_squares(A, mine, of);
@@ -49,13 +62,13 @@ static sd_status free_draining(const sd_system *A, const double *slip, double *F
 static sd_status scaled_residual(const sd_system *A, const double *slip, const double *F,
                                  double *out, squares *of)
 {
-  const int m = sd_system_width(A);
+  const int m = width_of(A);
   squares mine = {0.0, 0.0};
   for (long i = 0; i < A->n; i++) {
     for (int k = 0; k < m; k++) {
       const long j = m * i + k;
       out[j] = A->drag[i] == 0.0 ? 0.0
-                                 : sd_system_diagonal(A, i, k) * (slip[j] - out[j]) - F[j];
+                                 : diagonal(A, i, k) * (slip[j] - out[j]) - F[j];
     }
     if (A->drag[i] != 0.0) add_squares(A, i, out + m * i, &mine);
   }
@@ -75,7 +88,7 @@ static const double rounding_level = 1e-13;
 sd_status sd_solve_substitution(const sd_system *A, const double *slip, double tolerance,
                                 int max_iter, double *F, double *work, sd_solve_report *report)
 {
-  const long size = (long) sd_system_width(A) * A->n;
+  const long size = (long) width_of(A) * A->n;
   double *residual = work, last = INFINITY;
   squares rhs, now;
   *report = (sd_solve_report){0};
@@ -141,30 +154,44 @@ typedef struct {
 
 static long size_of(const gradients *g)
 {
-  return (long) sd_system_width(&g->A) * g->A.n;
+  return (long) width_of(&g->A) * g->A.n;
 }
 
+/* w = M p = Omega p + D^-1 p; 0 in the rows of spheres that take no part */
 static sd_status apply(void *ctx, const double *p, double *w)
 {
   gradients *g = ctx;
+  const int m = width_of(&g->A);
   g->report->products++;
-  return sd_system_apply(&g->A, p, w);
+  const sd_status status = g->A.apply(g->A.apply_ctx, p, w);
+  for (long i = 0; i < g->A.n && status == SD_OK; i++)
+    for (int k = 0; k < m; k++) {
+      const long j = m * i + k;
+      w[j] = g->A.drag[i] == 0.0 ? 0.0 : w[j] + p[j] / diagonal(&g->A, i, k);
+    }
+  return status;
 }
 
+/* z = P r; without preconditioner P is D. */
 static sd_status precondition(void *ctx, const double *r, double *z)
 {
-  return sd_system_precondition(&((gradients *) ctx)->A, r, z);
+  const sd_system *A = &((gradients *) ctx)->A;
+  if (A->precondition) return A->precondition(A->precondition_ctx, r, z);
+  const int m = width_of(A);
+  for (long i = 0; i < A->n; i++)
+    for (int k = 0; k < m; k++) z[m * i + k] = diagonal(A, i, k) * r[m * i + k];
+  return SD_OK;
 }
 
 /* p.D^-1 p: p.w / p.p is then a Rayleigh quotient of the mobility scaled to unit diagonal */
 static double square(void *ctx, const double *p)
 {
   const sd_system *A = &((gradients *) ctx)->A;
-  const int m = sd_system_width(A);
+  const int m = width_of(A);
   double sum = 0.0;
   for (long i = 0; i < A->n; i++)
     for (int k = 0; k < m && A->drag[i] != 0.0; k++)
-      sum += p[m * i + k] * p[m * i + k] / sd_system_diagonal(A, i, k);
+      sum += p[m * i + k] * p[m * i + k] / diagonal(A, i, k);
   return sum;
 }
 
@@ -173,11 +200,11 @@ enum { ZZ, YZ, YY };
 static void measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
 {
   const gradients *g = ctx;
-  const int m = sd_system_width(&g->A);
+  const int m = width_of(&g->A);
   for (long i = 0; i < g->A.n; i++)
     for (int k = 0; k < m && g->A.drag[i] != 0.0; k++) {
       const long j = m * i + k;
-      const double D = sd_system_diagonal(&g->A, i, k), force = g->A.drag[i] / D, y = g->y[j];
+      const double D = diagonal(&g->A, i, k), force = g->A.drag[i] / D, y = g->y[j];
       own[ZZ] += force * D * v->r[j] * D * v->r[j];
       own[YZ] += force * y * D * v->r[j];
       own[YY] += force * y * y;
@@ -187,14 +214,14 @@ static void measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
 /* F and y move towards x and D r; the residual reported is the one that y then has. */
 static void smooth(gradients *g, const double own[SD_CG_OWN])
 {
-  const int m = sd_system_width(&g->A);
+  const int m = width_of(&g->A);
   const double yy = own[YY], yz = own[YZ], zz = own[ZZ], apart = yy - 2.0 * yz + zz;
   const double theta = apart > 0.0 ? (yy - yz) / apart : 1.0;
   const double of_y = apart > 0.0 ? (yy * zz - yz * yz) / apart : zz;
   for (long i = 0; i < g->A.n; i++)
     for (int k = 0; k < m && g->A.drag[i] != 0.0; k++) {
       const long j = m * i + k;
-      g->y[j] += theta * (sd_system_diagonal(&g->A, i, k) * g->v.r[j] - g->y[j]);
+      g->y[j] += theta * (diagonal(&g->A, i, k) * g->v.r[j] - g->y[j]);
       g->F[j] += theta * (g->v.x[j] - g->F[j]);
     }
   g->report->residual = sqrt(fmax(of_y, 0.0) / g->rhs.plain);
@@ -247,7 +274,7 @@ static sd_status begin(gradients *g)
  * is rounding that the inverse of a nearly singular matrix, the preconditioner, has blown up. */
 static sd_status iterate(gradients *g)
 {
-  const int m = sd_system_width(&g->A);
+  const int m = width_of(&g->A);
   const sd_cg cg = {.size = size_of(g),
                     .paired = size_of(g),
                     .ctx = g,
@@ -262,7 +289,7 @@ static sd_status iterate(gradients *g)
   for (long i = 0; i < g->A.n; i++)
     for (int k = 0; k < m; k++) {
       const long j = m * i + k;
-      g->v.r[j] = g->A.drag[i] == 0.0 ? 0.0 : g->y[j] / sd_system_diagonal(&g->A, i, k);
+      g->v.r[j] = g->A.drag[i] == 0.0 ? 0.0 : g->y[j] / diagonal(&g->A, i, k);
     }
   g->before = g->report->iterations;
   g->stuck = 0;
@@ -297,7 +324,7 @@ static sd_status repeat(gradients *g)
 sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,
                              double *F, double *work, sd_solve_report *report)
 {
-  const long size = (long) sd_system_width(A) * A->n;
+  const long size = (long) width_of(A) * A->n;
   const size_t bytes = sizeof(double) * (size_t) size;
   sd_ritz ritz = {.count = 0};
   gradients g = {.A = *A,

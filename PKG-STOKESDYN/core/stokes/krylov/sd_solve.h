@@ -32,8 +32,6 @@ extern "C" {
 /* u = Omega F, the pair part of M: F, u [width n] of this rank's spheres. Refreshes whatever
  * ghosts it needs. */
 typedef sd_status sd_apply(void *ctx, const double *F, double *u);
-/* As in sd_world.h */
-typedef sd_status sd_sum(void *ctx, double *values, int count);
 /* z = P r, P an approximation of the inverse of M: symmetric, positive definite, the same in all
  * calls of one solve. r [width n] are velocities, z forces; 0 for spheres that take no part
  * (sd_sparse.h and sd_blocks.h have one each). */

@@ -2,6 +2,7 @@
 #ifndef FLOCK_H
 #define FLOCK_H
 
+#include "arms.h"
 #include "check.h"
 
 #include "plain.h"
@@ -101,7 +102,7 @@ static inline sd_bodies flock_place(flock *f, int width)
     f->clump[b] =
         (sd_body){.shape = &f->body, .a = 1.0, .eta = f->eta, .row = f->row + f->m * b};
     memcpy(f->clump[b].R, f->pose + 12 * b, 9 * sizeof(double));
-    sd_body_arms(f->clump + b, f->arm + 3 * f->m * b);
+    arms_of(f->clump + b, f->arm + 3 * f->m * b);
   }
   for (int k = 0; k < f->free; k++) f->loner[k] = f->m * f->clumps + k;
   f->V = f->all_V + 6 * f->free;

@@ -1,5 +1,6 @@
 /* Bodies of points, held bodies and bodies of any size: sd_bodies.h against dense solutions of its system.
  * Spheres of 12 points (an icosahedron) that know forces alone, free, held, and two that touch in a clump. */
+#include "arms.h"
 #include "check.h"
 #include "plain.h"
 
@@ -79,7 +80,7 @@ static cloud *cloud_create(void)
     *body = (sd_body){.shape = b < 6 ? &s->one : &s->two, .a = b == 1 ? 2.0 : 1.0, .eta = ETA, .row = s->row + point};
     sd_rotation(turn, body->R);
     double arms[6 * K];
-    sd_body_arms(body, arms);
+    arms_of(body, arms);
     for (int k = 0; k < body->shape->m; k++, point++) {
       if (k % K == 0) {
         const double centre[3] = {0, 0, b < 6 ? 0.0 : k ? 1.0 : -1.0};
