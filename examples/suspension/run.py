@@ -45,11 +45,10 @@ def beyond_the_box(phi):
 
 def write_places(path, phi):
     """Hard spheres at equilibrium, as a data file"""
-    x, edge = next(hard_spheres(N, phi, 1, seed=1 + int(100 * phi)))
+    x, edge = next(hard_spheres(N, phi, 1, seed=1 + int(100 * phi), melt=1000, between=100))
     path.write_text(f"hard spheres, volume fraction {phi}\n\n{N} atoms\n1 atom types\n\n" +
                     "".join(f"0 {edge!r} {c}lo {c}hi\n" for c in "xyz") + "\nAtoms\n\n" +
                     "".join(f"{i + 1} 1 2.0 1.0 {p[0]!r} {p[1]!r} {p[2]!r}\n" for i, p in enumerate((x % edge).tolist())))
-    return path
 
 
 def lammps(out, script, log, ranks=2, **variables):
@@ -104,13 +103,13 @@ def main():
         shutil.copy(HERE / name, out)
     c, speeds = Checks(), {}
     for phi in PHIS:
-        places = write_places(out / f"places.{phi}.data", phi)
-        speeds[phi] = lammps(out, "in.suspension", f"log.{phi}", places=places, dump="yes" if phi == 0.1 else "no")
+        write_places(out / f"places.{phi}.data", phi)
+        speeds[phi] = lammps(out, "in.suspension", f"log.{phi}", places=f"places.{phi}.data", dump="yes" if phi == 0.1 else "no")
         endless = np.mean(speeds[phi]) + beyond_the_box(phi)
         c.near(f"spheres, phi {phi}: settling speed, beside the theory of the model", endless, theory(phi), 0.02)
         c.near(f"spheres, phi {phi}: times the exact speed", endless / exact(phi), TOO_FAST[phi], 0.1 * (TOO_FAST[phi] - 0.7))
     for phi, (wanted, thick) in MULTIBLOB.items():
-        blob = lammps(out, "in.suspension", f"log.blob.{phi}", places=out / f"places.{phi}.data", points=12, films="yes")
+        blob = lammps(out, "in.suspension", f"log.blob.{phi}", places=f"places.{phi}.data", points=12, films="yes")
         c.near(f"spheres, phi {phi}, multiblob 12: times the exact speed", (np.mean(blob) + beyond_the_box(phi) / thick) / exact(phi), wanted, 0.03)
     fine, one, two = (lammps(out, "in.suspension", log, phi=0.1, tolerance=tolerance, ranks=ranks) for log, tolerance, ranks in
                       (("log.fine", 1e-6, 2), ("log.suspension.1", 1e-4, 1), ("log.suspension.2", 1e-4, 2)))
