@@ -3,7 +3,7 @@
 
     run.py --out DIR              results and picture go to DIR (default: build/examples/clump_suspension); half as long as the kept picture
     run.py --time 60 --update     as long as that picture, which is refreshed
-    run.py --film                 also a film of it, in DIR
+    run.py --film                 also the film, in DIR; with --update it is refreshed too
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -15,6 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 import film  # noqa: E402
+from matplotlib.collections import EllipseCollection  # noqa: E402
 from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
 RODS, LENGTH, BOX = 80, 5, np.array([28.0, 28.0, 70.0])
@@ -82,8 +83,9 @@ def rods_of(axis, frame, mean):
     x, v = frame[:, :, :3] % BOX, frame[:, :, 5].mean(axis=1)
     colours = plt.get_cmap("coolwarm_r")(0.5 + (v - mean) / 6.0)
     flat, owner = x.reshape(-1, 3), np.repeat(np.arange(len(frame)), LENGTH)
-    for k in np.argsort(-flat[:, 1]):
-        axis.add_patch(plt.Circle(flat[k, [0, 2]], 1.0, fc=colours[owner[k]], ec="black", lw=0.3))
+    near_last = np.argsort(-flat[:, 1])
+    axis.add_collection(EllipseCollection(2.0, 2.0, 0.0, units="xy", offsets=flat[near_last][:, [0, 2]], offset_transform=axis.transData,
+                                          facecolors=colours[owner[near_last]], edgecolors="black", linewidths=0.3))
     axis.set(xlim=(0, BOX[0]), ylim=(0, BOX[2]), aspect="equal", xticks=[], yticks=[])
 
 
@@ -100,7 +102,7 @@ def curves(axis, curve, until):
     axis.plot(curve["time"][:until], curve["speed"][:until] / curve["lone"], "C3-", label="mean speed / that of a lone rod at random")
     axis.plot(curve["time"][:until], curve["alignment"][:until], "C0-", label="mean $\\cos^2$ of the angle to the vertical")
     axis.axhline(1 / 3, color="C0", ls=":", lw=1)
-    axis.set(xlabel="time", xlim=(0, curve["time"][-1]), ylim=(0, 1.8))
+    axis.set(xlabel="time", xlim=(0, curve["time"][-1]), ylim=(0, 1.2))
     axis.legend(fontsize=8, loc="upper left")
     axis.spines[["top", "right"]].set_visible(False)
 
@@ -108,8 +110,8 @@ def curves(axis, curve, until):
 def moving(frames, curve, path):
     pictures = []
     for k, frame in enumerate(frames):
-        figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 4.0), dpi=80, width_ratios=[1, 1.9])
-        figure.subplots_adjust(0.01, 0.13, 0.98, 0.98, wspace=0.12)
+        figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 5.6), dpi=80, width_ratios=[1, 1.5])
+        figure.subplots_adjust(0.01, 0.1, 0.98, 0.99, wspace=0.14)
         rods_of(left, frame, curve["speed"][k] * -1)
         curves(right, curve, k + 1)
         pictures.append(film.picture(figure))
@@ -153,7 +155,8 @@ def main():
     if given.film:
         moving(frames, curve, out / "clump_suspension.gif")
     if given.update:
-        shutil.copy(out / "clump_suspension.png", HERE)
+        for name in ["clump_suspension.png"] + ["clump_suspension.gif"] * given.film:
+            shutil.copy(out / name, HERE)
     sys.exit(c.finish())
 
 

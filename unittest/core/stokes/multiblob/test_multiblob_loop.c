@@ -152,14 +152,12 @@ static const struct {
   const double *x;
 } shapes[3] = {{"doublet", 2, doublet}, {"tetrahedron", 4, tetrahedron}, {"chain5", 5, chain5}};
 
-/* Two rigid clumps, gaps 0.01 to 0.5, with films between them, against multipoles: settling
- * within 0.16 %, pushed apart within 2.3 %: their shells have one orientation, and it differs by
- * that much among orientations. */
-static void two_rigid_clumps(void **state)
+/* Of all rows of a table: the worst error of the translations with 12 and 42 points, of clumps that
+ * settle and that are pushed apart, and the mean of the latter */
+static void errors_of_two_clumps(const char *name, double worst[2][2], double mean[2])
 {
-  (void) state;
-  double worst[2][2] = {{0.0}};
-  table t = table_open("motion/near_clumps.csv");
+  int pushed[2] = {0, 0};
+  table t = table_open(name);
   while (table_next(&t)) {
     int shape = 0;
     while (strcmp(shapes[shape].name, t.column[0])) assert_true(++shape < 3);
@@ -183,18 +181,39 @@ static void two_rigid_clumps(void **state)
         off += k % 6 < 3 ? pow(f->V[k] - V[k], 2) : 0.0;
         all += k % 6 < 3 ? V[k] * V[k] : 0.0;
       }
-      double *most = &worst[points == 42][!weight];
-      *most = fmax(*most, sqrt(off / all));
+      const int p = points == 42;
+      worst[p][!weight] = fmax(worst[p][!weight], sqrt(off / all));
+      if (!weight) mean[p] += (sqrt(off / all) - mean[p]) / ++pushed[p];
       blob_flock_free(f);
     }
   }
-  print_message("two clumps, worst per cent: 12 points %.2f, apart %.2f; 42 points %.2f, %.2f\n",
-                100 * worst[0][0], 100 * worst[0][1], 100 * worst[1][0], 100 * worst[1][1]);
-  assert_true(worst[0][0] < 0.0017 && worst[0][1] < 0.023);
-  assert_true(worst[1][0] < 0.0006 && worst[1][1] < 0.0135);
+  print_message("%s, worst per cent: 12 points %.2f, apart %.2f, on average %.2f; 42 points %.2f, "
+                "%.2f, %.2f\n",
+                name, 100 * worst[0][0], 100 * worst[0][1], 100 * mean[0], 100 * worst[1][0],
+                100 * worst[1][1], 100 * mean[1]);
 }
 
-/* Translation of lone clumps against multipoles: 0.26 % at worst with 12 points, 0.05 % with 42. */
+/* Two rigid clumps, gaps 0.01 to 0.5, with films between them, against multipoles. Pushed apart
+ * they are off by 0.7 % on average in the scenes of one table and by 0.9 % in those of the other.
+ * Over 15 and 30 random orientations of the shells, of each clump or of each sphere, that is 0.5 and
+ * 0.9, and single scenes are off by 0.2 to 1.7 and by 0.1 to 3.4. What no orientation takes away are
+ * the doublets of the second table, 1.6 and 1.8 % at gaps of 0.01 and 0.1, with 42 points as well: one
+ * sphere is pushed out of the crevice between two that touch, and films are those of pairs. With films
+ * of the very shells that face each other, in place of mean ones, it would be 0.4 and 0.7. */
+static void two_rigid_clumps(void **state)
+{
+  (void) state;
+  double worst[2][2] = {{0.0}}, mean[2] = {0.0}, crevice[2][2] = {{0.0}}, mean_crevice[2] = {0.0};
+  errors_of_two_clumps("multiblob/near_clumps.csv", worst, mean);
+  assert_true(worst[0][0] < 0.0011 && worst[0][1] < 0.0135 && mean[0] < 0.0072);
+  assert_true(worst[1][0] < 0.0006 && worst[1][1] < 0.0155 && mean[1] < 0.0068);
+  errors_of_two_clumps("motion/near_clumps.csv", crevice, mean_crevice);
+  assert_true(crevice[0][0] < 0.0017 && crevice[0][1] < 0.023 && mean_crevice[0] < 0.0093);
+  assert_true(crevice[1][0] < 0.0006 && crevice[1][1] < 0.0135 && mean_crevice[1] < 0.0072);
+}
+
+/* Translation of lone clumps against multipoles: 0.26 % at worst with 12 points, 0.05 % with 42. The
+ * worst is a row of three: 0.23 % on average over orientations of its shells, 0.29 at most. */
 static void lone_clumps(void **state)
 {
   (void) state;
