@@ -232,6 +232,22 @@ def test_a_lone_sphere_is_not_alone_at_a_wall(simulation):
         assert sim.drag[0] == pytest.approx((-0.3 / along, 0, -0.7 / across), abs=1e-10), style
 
 
+@pytest.mark.parametrize("style", ["", "multiblob 12 one_body no", "multiblob 12 rigid_clumps yes"])
+@pytest.mark.parametrize("side", ["zlo", "xhi"])
+def test_ewald_sums_have_images(simulation, style, side):
+    """Against all pairs: spheres that cut the wall among them; and alone"""
+    for n in (30, 1):
+        spheres, F = heap(30)
+        x, a = spheres.x[:n], spheres.a[:n]
+        v = []
+        for how in ("direct", "ewald far_field_tolerance 1e-6"):
+            scene = Spheres(turned(x, side), a, molecule=[1, 1] + [0] * 28 if n > 1 else 0)
+            sim = fall(simulation, scene, turned(F[:n], side),
+                       f"cut_off_distance inf visc 1 {style} wall {side} 0 relative_tolerance 1e-9 far_field {how}", box=[(-60, 60)] * 3)
+            v.append(sim.v.copy())
+        assert 0 < np.abs(v[1] - v[0]).max() < 1e-5 * np.abs(v[0]).max()
+
+
 def test_far_wall_is_no_wall(simulation):
     spheres, F = heap()
     answers = [fall(simulation, spheres, F, f"cut_off_distance inf visc 1 rotation yes relative_tolerance 1e-9 {wall}", box=BOX).v
@@ -254,7 +270,8 @@ def test_the_edge_of_the_box_is_a_position(simulation):
 
 
 STYLES = {"points": "rotation yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
-          "films": "rotation yes rigid_clumps yes lubrication yes"}
+          "films": "rotation yes rigid_clumps yes lubrication yes", "ewald": "far_field ewald far_field_tolerance 1e-3",
+          "shells by ewald": "multiblob 12 lubrication yes far_field ewald far_field_tolerance 1e-3"}
 
 
 def script(folder, style, runs, newton="on", begin=None):
@@ -307,7 +324,7 @@ def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
     ("wall zlo", {}, "keyword wall: .*missing|wall"),
     ("wall up 0", {}, "keyword wall: 'up'"),
     ("wall zlo 0 tensor oseen", {}, "keyword wall is not available with tensor oseen: use tensor rpy"),
-    ("wall zlo 0 far_field ewald", {}, "keyword wall is not available with far_field ewald"),
+    ("wall zlo 0 far_field ewald rotation yes", {}, "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12"),
     ("wall zlo 0 precondition waves algorithm 2", {}, "precondition waves is for periodic boxes"),
     ("wall zlo 0 rigid_clumps yes shell 12", {}, "a shell is computed once, without the wall: use multiblob 12"),
     ("wall zlo 0 lubrication yes", {}, "keyword lubrication: yes requires rotation yes"),
