@@ -167,7 +167,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     const std::vector<double> there = x;    // the sum over an open cloud takes its origin along
     engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
     if (view() == SD_VIEW_NEAR) {
-      somebody_sees = ewald.count > (ewald.box.periodic ? 0.0 : 1.0);
+      somebody_sees = ewald.count > (ewald.box.periodic || settings.wall.sign ? 0.0 : 1.0);
       if (somebody_sees || settings.films > 0.0)
         surround(std::max(ewald.reach + 2.0 * extent() * most, settings.films * most),
                  "far_field: the largest radius, " + text(most));

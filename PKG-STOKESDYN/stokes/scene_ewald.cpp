@@ -64,8 +64,8 @@ sd_ewald_sizes Scene::sizes_of_all(double largest)
 }
 
 /* The spheres of all ranks, and the box that they are summed in: LAMMPS's if it is periodic, else
- * one around them. An open cloud takes its origin along, so that the box, and the tables made for
- * it, last while it falls. */
+ * one around them. An open cloud takes its origin along, but not towards a wall, so that the box, and
+ * the tables made for it, last while it falls. */
 sd_ewald_sizes Scene::measure(sd_ewald_box &box)
 {
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
@@ -81,10 +81,12 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
   if (periodic())
     box = periodic_box(domain);
   else if (all.all.count > 0.0) {
-    double lo[3] = {0.0, 0.0, 0.0}, hi[3];
+    double lo[3], hi[3];
     for (int d = 0; d < 3; d++) {
-      hi[d] = most[4 + d] + most[1 + d];
-      for (int k = 0; k < size(); k++) x[3 * k + d] += most[1 + d];
+      const double shift = settings.wall.sign && settings.wall.axis == d ? 0.0 : most[1 + d];
+      lo[d] = shift - most[1 + d];
+      hi[d] = shift + most[4 + d];
+      for (int k = 0; k < size(); k++) x[3 * k + d] += shift;
     }
     if (box.periodic) box = {};
     sd_ewald_box_around(&box, lo, hi, most[0]);
@@ -107,10 +109,15 @@ bool Scene::split()
   const sd_ewald_sizes sizes = measure(box);
   ewald.count = sizes.all.count;
   if (sizes.all.count == 0.0) return must;
-  const double all_pairs = sizes.all.count * sizes.all.count;
+  const sd_wall &wall = settings.wall;
+  const double all_pairs =
+      sizes.all.count * sizes.all.count * (wall.sign ? SD_PAIR_AT_WALL : 1.0);
+  const double tolerance = settings.far_field_tolerance;
   const auto choose =
       settings.positive && box.periodic ? sd_ewald_choose_positive : sd_ewald_choose;
-  const sd_status status = choose(&box, &sizes, width(), settings.far_field_tolerance, &ewald);
+  const sd_status status = wall.sign
+      ? sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald)
+      : choose(&box, &sizes, width(), tolerance, &ewald);
   ewald.box = box;
   if (status != SD_OK && must)
     fail(lmp,
@@ -142,7 +149,8 @@ void Scene::tell()
   told = true;
   const sd_ewald &e = ewald;
   std::string now = "Far field by Ewald sums of " + text(e.count) + " spheres in " +
-      (e.box.periodic ? "the periodic box" : "an open box around them") + ": " + parameters_of(e);
+      (e.box.periodic ? "the periodic box" : "an open box around them") +
+      (e.images.wall.sign ? " and their images in the wall" : "") + ": " + parameters_of(e);
   if (e.large.from > 0.0)
     now += "; " + text(e.large.count) + " spheres of radius " + text(e.large.from) +
         " and more on a second level: " + parameters_of(sd_ewald_of_large(&e));

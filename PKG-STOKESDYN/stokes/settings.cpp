@@ -53,7 +53,8 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (scene.far_field_tolerance == 0.0)
     scene.far_field_tolerance = std::max(1e-13, 0.1 * tolerance);
   // What Ewald sums have not got.
-  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE || scene.wall.sign)
+  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE ||
+      (scene.wall.sign && scene.rotation && !shells.on()))
     scene.far_field = Scene::Settings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1 || shells.on()) scene.rotation = true;
@@ -225,9 +226,9 @@ void StokesSettings::check_wall(const Keywords &in) const
   if (!scene.wall.sign) return;
   in.require(scene.tensor != SD_TENSOR_OSEEN,
              "keyword wall is not available with tensor oseen: use tensor rpy");
-  in.require(scene.far_field != Scene::Settings::EWALD,
-             "keyword wall is not available with far_field ewald, whose sums know no images in a "
-             "wall: use far_field auto, which takes all pairs");
+  in.require(scene.far_field != Scene::Settings::EWALD || !scene.rotation || shells.on(),
+             "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12 in "
+             "place of rotation yes, or far_field auto, which takes all pairs");
   in.require(precondition != Preconditioner::WAVES,
              "keyword wall: precondition waves is for periodic boxes: use precondition auto");
   in.require(!rigid.apart(),

@@ -139,17 +139,25 @@ def test_groups_are_those_of_the_model_in_another_code(simulation):
 # 13, 12 points without films up to 80
 WORST = {"pair_side_by_side": (0.78, 0.16), "pair_one_above": (0.80, 0.19), "pair_close": (1.97, 0.84), "pair_close_low": (2.72, 1.60),
          "triangle": (2.78, 1.02)}
+# The prototype measured U without W, as its column of one point per sphere shows, which the tables above give to all its digits so;
+# its shells stood otherwise and had no one-body addition: 0.5, 0.5, 1.8, 3.1, 1.7. Measured so, shells as they stand here have
+# these. Without the addition, at five other orientations, they had 0.4 to 1.1, 0.2 to 0.9, 0.9 to 2.0, 2.4 to 4.2, 1.8 to 2.9: one
+# draw is no better known than that.
+WORST_U = {"pair_side_by_side": 0.64, "pair_one_above": 0.76, "pair_close": 0.82, "pair_close_low": 2.37, "triangle": 1.95}
 
 
 @pytest.mark.parametrize("points", [12, 42])
 def test_shells_with_both_films_are_near_the_full_flow(simulation, points):
-    worst = dict.fromkeys(WORST, 0.0)
+    worst, worst_U = dict.fromkeys(WORST, 0.0), dict.fromkeys(WORST, 0.0)
     for (group, _), rows in groups("groups_exact.csv").items():
         if group in WORST:
             expected = columns(rows)
-            off = np.linalg.norm(fall_of(simulation, rows, f"multiblob {points}") - expected) / np.linalg.norm(expected)
-            worst[group] = max(worst[group], 100 * off)
+            off = fall_of(simulation, rows, f"multiblob {points}") - expected
+            worst[group] = max(worst[group], 100 * np.linalg.norm(off) / np.linalg.norm(expected))
+            worst_U[group] = max(worst_U[group], 100 * np.linalg.norm(off[:, :3]) / np.linalg.norm(expected[:, :3]))
     assert worst == {group: pytest.approx(figures[points == 42], abs=0.006) for group, figures in WORST.items()}
+    if points == 12:
+        assert worst_U == {group: pytest.approx(figure, abs=0.006) for group, figure in WORST_U.items()}
 
 
 # A sphere that touches the wall has a quarter of its mobility across it, so that a quarter of the step is stable
@@ -232,6 +240,22 @@ def test_a_lone_sphere_is_not_alone_at_a_wall(simulation):
         assert sim.drag[0] == pytest.approx((-0.3 / along, 0, -0.7 / across), abs=1e-10), style
 
 
+@pytest.mark.parametrize("style", ["", "multiblob 12 one_body no", "multiblob 12 rigid_clumps yes"])
+@pytest.mark.parametrize("side", ["zlo", "xhi"])
+def test_ewald_sums_have_images(simulation, style, side):
+    """Against all pairs: spheres that cut the wall among them; and alone"""
+    for n in (30, 1):
+        spheres, F = heap(30)
+        x, a = spheres.x[:n], spheres.a[:n]
+        v = []
+        for how in ("direct", "ewald far_field_tolerance 1e-6"):
+            scene = Spheres(turned(x, side), a, molecule=[1, 1] + [0] * 28 if n > 1 else 0)
+            sim = fall(simulation, scene, turned(F[:n], side),
+                       f"cut_off_distance inf visc 1 {style} wall {side} 0 relative_tolerance 1e-9 far_field {how}", box=[(-60, 60)] * 3)
+            v.append(sim.v.copy())
+        assert 0 < np.abs(v[1] - v[0]).max() < 1e-5 * np.abs(v[0]).max()
+
+
 def test_far_wall_is_no_wall(simulation):
     spheres, F = heap()
     answers = [fall(simulation, spheres, F, f"cut_off_distance inf visc 1 rotation yes relative_tolerance 1e-9 {wall}", box=BOX).v
@@ -254,7 +278,8 @@ def test_the_edge_of_the_box_is_a_position(simulation):
 
 
 STYLES = {"points": "rotation yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
-          "films": "rotation yes rigid_clumps yes lubrication yes"}
+          "films": "rotation yes rigid_clumps yes lubrication yes", "ewald": "far_field ewald far_field_tolerance 1e-3",
+          "shells by ewald": "multiblob 12 lubrication yes far_field ewald far_field_tolerance 1e-3"}
 
 
 def script(folder, style, runs, newton="on", begin=None):
@@ -307,7 +332,7 @@ def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
     ("wall zlo", {}, "keyword wall: .*missing|wall"),
     ("wall up 0", {}, "keyword wall: 'up'"),
     ("wall zlo 0 tensor oseen", {}, "keyword wall is not available with tensor oseen: use tensor rpy"),
-    ("wall zlo 0 far_field ewald", {}, "keyword wall is not available with far_field ewald"),
+    ("wall zlo 0 far_field ewald rotation yes", {}, "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12"),
     ("wall zlo 0 precondition waves algorithm 2", {}, "precondition waves is for periodic boxes"),
     ("wall zlo 0 rigid_clumps yes shell 12", {}, "a shell is computed once, without the wall: use multiblob 12"),
     ("wall zlo 0 lubrication yes", {}, "keyword lubrication: yes requires rotation yes"),
@@ -324,6 +349,22 @@ def test_what_does_not_go_with_a_wall_is_named(simulation, words, options, messa
     spheres = Spheres([(0, 0, 2), (0, 3, 4)])
     with pytest.raises(LammpsError, match=message):
         simulation(spheres, f"cut_off_distance inf visc 1 {words}", box=BOX, **options).run()
+
+
+def test_pressed_shells_with_the_addition_are_told_to_leave_it_out(simulation):
+    spheres, F = heap(30)
+    with pytest.raises(LammpsError, match="not positive definite with the one-body addition of multiblob: use one_body no"):
+        fall(simulation, spheres, F, "cut_off_distance inf visc 1 multiblob 12 lubrication yes wall zlo 0 relative_tolerance 1e-9")
+
+
+def test_moments_of_films_are_those_of_pairs(simulation):
+    """A film of the wall has a force and no first moment; the points that feel it in their stead have one."""
+    sim = simulation(Spheres([(0, 0, 1.1)]), "cut_off_distance inf visc 1 multiblob 12 lubrication yes wall zlo 0", box=BOX, fix=False,
+                     dt=1e-9)
+    sim.commands(pull(np.array([(0.5, 0, -1.0)])) + [MOVE, "compute S all stokes_dynamics/stress", "dump d all custom 1 /dev/null c_S[1]"])
+    sim.run()
+    rows = np.array(sim.lmp.numpy.extract_compute("S", 1, 2))[0]
+    assert np.abs(rows[:6]).max() > 1e-3 and (rows[6:] == 0).all()
 
 
 def test_tables_of_lone_clumps_know_no_wall(simulation):

@@ -262,6 +262,24 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
   return some ? one_level(out, &sizes->all, width, SD_EWALD_POSITIVE) : status;
 }
 
+/* Heights above the wall multiply what windows and near parts leave out. With a quarter of the
+ * tolerance the whole error is below it, from layers to towers 160 radii high, 1e-3 to 1e-7. */
+static const double AT_WALL = 0.25;
+
+sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
+                                  const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out)
+{
+  int some;
+  sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
+  if (!some) return status;
+  const double asked = out->tolerance;
+  out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
+  status = one_level(out, &sizes->all, 3, LARGEST);
+  out->tolerance = asked;
+  out->images = (sd_ewald_images){*wall, out->xi, out->range};
+  return status;
+}
+
 sd_ewald sd_ewald_of_large(const sd_ewald *e)
 {
   sd_ewald large = *e;

@@ -31,12 +31,24 @@ static double transforms(const sd_ewald *e, const int *n)
   return GRID_POINT * (e->box.periodic ? 1.0 : 8.0 * 7.0 / 12.0) * n[0] * n[1] * (double) n[2];
 }
 
+/* Above a wall fields go along the first direction a second time, and have twelve kernels more. */
+static const double WALL_GRID = 1.8, IMAGE_PAIR = 8.0;
+
+/* Of the ball around an image what is beyond the wall: over all heights 3/16 range of a whole one */
+static double image_pairs(const sd_ewald *e)
+{
+  const double height = fmax(e->box.edge[e->images.wall.axis], 0.5 * e->images.range);
+  return 0.1875 * e->images.range / height * pairs(e, e->count, e->count, e->images.range);
+}
+
 double sd_ewald_cost(const sd_ewald *e)
 {
   const sd_ewald_large *large = &e->large;
   const double first = e->count - large->count;
   double cost = NEAR_PAIR * pairs(e, first, first, e->range) + windows(first, e->points) +
                 transforms(e, e->grid);
+  if (e->images.wall.sign)
+    cost += (WALL_GRID - 1.0) * transforms(e, e->grid) + IMAGE_PAIR * image_pairs(e);
   if (large->from > 0.0)
     cost += LARGE_PAIR * pairs(e, e->count, large->count, large->range) +
             windows(e->count, large->points) + transforms(e, large->grid);

@@ -12,12 +12,14 @@ extern "C" {
 /* In pairs of the sum over all pairs, which costs count^2 of them: near pairs, window points and
  * grid points, each weighed as it was measured (one core, AVX-512, a pair 0.44 ns): within a third
  * for 4000 and 8000 spheres in an open box, at 1e-3 and at 1e-6. Equal radii, width 3; with torques
- * both ways of summing cost about 2.5 times as much. */
+ * both ways of summing cost about 2.5 times as much. Above a wall all pairs cost SD_PAIR_AT_WALL times
+ * as much, and here the images are in. */
 double sd_ewald_cost(const sd_ewald *e);
 
 /* With as many spheres or fewer all pairs cost less, whatever the splitting: the smallest windows, of
  * 4^3 points, cost that much a sphere. */
 enum { SD_EWALD_FEWEST = 192 };
+#define SD_PAIR_AT_WALL 2.6
 
 #ifdef __cplusplus
 }

@@ -2,6 +2,7 @@
 #ifndef SD_EWALD_INTERNAL_H
 #define SD_EWALD_INTERNAL_H
 
+#include "sd_image_kernel.h"
 #include "sd_product.h"
 #include "sd_radial.h"
 #include "sd_window.h"
@@ -58,6 +59,17 @@ typedef struct {
   long row, layer;
 } sd_spreading;
 
+/* Above a wall: rows along z at one wave across it, and at the opposite one; the same row twice if
+ * there is no other. */
+typedef struct {
+  int depth;
+  /* [2][6]: three fields, and three times the height */
+  double *row[2][6];
+  /* K of open_row, [SD_IMAGE_KERNELS][2][depth] and gamma of the first; sign of the wave along y */
+  const double *K, *images;
+  double gamma, sy;
+} sd_image_rows;
+
 /* Which rows of ranges, begin and end of each [count][2], are within a distance of a place? Their
  * numbers to list, which has room for 8 more than there are; returns how many. centre [3]:
  * coordinates, stride apart. */
@@ -74,6 +86,8 @@ struct sd_ewald_kernels {
   void (*periodic_row)(double *const *f, const double *B, const double *k, double dkz, int half);
   /* u = K f: K [6][half] xx yy zz xy xz yz, signs of kx and ky */
   void (*open_row)(double *const *f, const double *K, double sx, double sy, int half);
+  /* the same above a wall, u and u' of sd_image_kernel.h */
+  void (*image_rows)(const sd_image_rows *r);
 };
 
 SD_KERNEL_TABLES(struct sd_ewald_kernels, sd_ewald);

@@ -3,6 +3,8 @@
 #ifndef SD_EWALD_SPLIT_H
 #define SD_EWALD_SPLIT_H
 
+#include "sd_wall.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -35,6 +37,14 @@ typedef struct {
   int grid[3], points;
 } sd_ewald_large;
 
+/* Images in a plane wall, of an open box: they have a smooth part of their own on the same grid
+ * (sd_image_wave.h), and what it leaves of a pair ends at a range, from a sphere to an image. */
+typedef struct {
+  /* sign 0: there is no wall */
+  sd_wall wall;
+  double xi, range;
+} sd_ewald_images;
+
 /* What an engine is made from. Ready after sd_ewald_choose; all lengths as given. */
 typedef struct {
   sd_ewald_box box;
@@ -57,6 +67,7 @@ typedef struct {
   /* With it all that is above, but for count and a_ref, is of the smaller spheres. H of the first
    * level is then less that of the second, whose waves all spheres make. */
   sd_ewald_large large;
+  sd_ewald_images images;
 } sd_ewald;
 
 #ifdef __cplusplus

@@ -56,6 +56,20 @@ static int may_turn(const sd_ewald_box *b)
   return b->tilt[0] == 0.0 && b->tilt[1] == 0.0 && b->tilt[2] == 0.0;
 }
 
+/* Heights above a wall, of the planes of the first direction */
+static sd_status raise_grid(sd_ewald_waves *w)
+{
+  const sd_ewald *e = &w->ewald;
+  const sd_wall *wall = &e->images.wall;
+  double *height = malloc(sizeof(double) * (size_t) e->grid[0]);
+  for (int k = 0; k < e->grid[0] && height; k++)
+    height[k] = wall->sign *
+        (e->box.origin[0] + (k - 0.5 * e->points) * e->spacing - wall->at);
+  const sd_status status = height ? sd_grid_raise(&w->grid, height) : SD_ENOMEMORY;
+  free(height);
+  return status;
+}
+
 /* Grid and waves of the frame */
 static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
 {
@@ -67,14 +81,14 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   if (status == SD_OK)
     status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_SHARED_Y],
                             w->grid.own[SD_SHARED_Z]);
-  return status;
+  return status == SD_OK && e->images.wall.sign ? raise_grid(w) : status;
 }
 
 sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
                                 const struct sd_ewald_kernels *kernels, int width,
                                 const sd_world *world)
 {
-  const int turn = may_turn(&e->box) ? w->turn : 0;
+  const int turn = e->images.wall.sign ? e->images.wall.axis : may_turn(&e->box) ? w->turn : 0;
   sd_ewald_waves_free(w);
   w->ewald = *e;
   w->kernels = kernels;
@@ -159,7 +173,7 @@ sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int 
 static int better_turn(const sd_ewald_waves *w, const int *bricks)
 {
   double most = 0.0, points[3];
-  if (w->grid.ranks == 1 || !may_turn(&w->ewald.box)) return 0;
+  if (w->grid.ranks == 1 || !may_turn(&w->ewald.box) || w->ewald.images.wall.sign) return 0;
   for (int d = 0; d < 3; d++) {
     points[d] = sd_grid_at_home(&w->grid, bricks, d);
     most = fmax(most, points[d]);

@@ -8,12 +8,18 @@
 
 /* --- plans --- */
 
-static int allocate(sd_grid *g)
+/* Complex numbers of a plane at work */
+static size_t plane_numbers(const sd_grid *g)
 {
   const size_t lines = (size_t) sd_grid_own(g, SD_SHARED_LINES) * (size_t) g->half;
   const int longer = g->size[0] > g->size[1] ? g->size[0] : g->size[1];
   const size_t waves = (size_t) longer * (size_t) sd_grid_own(g, SD_SHARED_Z);
-  const size_t plane = (lines > waves ? lines : waves) + 1;
+  return (lines > waves ? lines : waves) + 1;
+}
+
+static int allocate(sd_grid *g)
+{
+  const size_t plane = plane_numbers(g);
   int ok = 1;
   for (int c = 0; c < 3; c++) {
     g->plane[c] = fftw_alloc_complex(plane);
@@ -75,7 +81,11 @@ void sd_grid_free(sd_grid *g)
                               &g->y_back,  &g->x_forth, &g->x_back};
   for (int k = 0; k < 6; k++)
     if (*plans[k]) fftw_destroy_plan(*plans[k]);
-  for (int c = 0; c < 3; c++) { fftw_free(g->plane[c]); }
+  for (int c = 0; c < 3; c++) {
+    fftw_free(g->plane[c]);
+    fftw_free(g->raised[c]);
+  }
+  free(g->height);
   fftw_free(g->beside);
   free(g->slab);
   free(g->spare);
@@ -86,6 +96,18 @@ void sd_grid_free(sd_grid *g)
   free(g->message[0]);
   free(g->message[1]);
   memset(g, 0, sizeof(*g));
+}
+
+sd_status sd_grid_raise(sd_grid *g, const double *height)
+{
+  const size_t planes = (size_t) g->occupied[0];
+  if (!sd_grow(&g->height, sizeof(double), planes)) return SD_ENOMEMORY;
+  memcpy(g->height, height, sizeof(double) * planes);
+  for (int c = 0; c < 3; c++) {
+    if (!g->raised[c]) g->raised[c] = fftw_alloc_complex(plane_numbers(g));
+    if (!g->raised[c]) return SD_ENOMEMORY;
+  }
+  return SD_OK;
 }
 
 /* --- bricks --- */
@@ -317,19 +339,43 @@ static void back_along_y(sd_grid *g, int c, int x, double *message)
   fftw_execute_dft(g->y_back, slab_row(g, c, x, 0), g->beside);
 }
 
+/* Rows of `beside` times their heights, along x to `raised` */
+static void raise_rows(sd_grid *g, int c)
+{
+  const long row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  double *beside = (double *) g->beside;
+  for (int x = 0; x < g->occupied[0]; x++)
+    for (long k = 0; k < row; k++) beside[x * row + k] *= g->height[x];
+  fftw_execute_dft(g->x_forth, g->beside, g->raised[c]);
+}
+
+/* `raised` back along x, and its product with the heights to `beside`; plane c is free. */
+static void add_raised(sd_grid *g, int c)
+{
+  const long row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  double *beside = (double *) g->beside;
+  const double *raised = (const double *) g->plane[c];
+  fftw_execute_dft(g->x_back, g->raised[c], g->plane[c]);
+  for (int x = 0; x < g->occupied[0]; x++)
+    for (long k = 0; k < row; k++) beside[x * row + k] += g->height[x] * raised[x * row + k];
+}
+
 /* One y plane: along x, the product, back along x. It stays in the cache meanwhile. */
 static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *ctx, double *message)
 {
-  double *planes[3];
+  double *planes[6];
   for (int c = 0; c < 3; c++) {
     planes[c] = (double *) g->plane[c];
+    planes[3 + c] = (double *) g->raised[c];
     copy_plane(g, c, y, message, 1);
     clear_rows(g, g->occupied[0], g->size[0]);
     fftw_execute_dft(g->x_forth, g->beside, g->plane[c]);
+    if (g->height) raise_rows(g, c);
   }
   multiply(ctx, y, planes);
   for (int c = 0; c < 3; c++) {
     fftw_execute_dft(g->x_back, g->plane[c], g->beside);
+    if (g->height) add_raised(g, c);
     copy_plane(g, c, y, message, 0);
   }
 }

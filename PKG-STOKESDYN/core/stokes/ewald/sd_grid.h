@@ -63,6 +63,9 @@ typedef struct {
   long row, layer;
   double *brick;
   size_t brick_room;
+  /* [occupied x] of each plane of x, NULL: none; three more planes at work */
+  double *height;
+  fftw_complex *raised[3];
   /* from the brick to pencils, by rank of the pencils; to ours from bricks, by rank of the brick */
   sd_piece *out, *in;
   int outs, ins;
@@ -75,11 +78,15 @@ typedef struct {
 } sd_grid;
 
 /* Multiplies the three fields at the wave vectors of one y and our z: plane [3][size x][depth]
- * complex. */
+ * complex. With heights three more, plane [6]: of each field times the height; and of what comes of
+ * these the product with the height is added to what comes of the first three. */
 typedef void sd_grid_multiply(void *ctx, int y, double *const *plane);
 
 /* Rows, columns and plans. SD_OK; SD_ENOMEMORY, also for turns of more numbers than an int counts. */
 sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const sd_world *world);
+
+/* From now on with heights, one for each plane of x [occupied x]. SD_OK or SD_ENOMEMORY. */
+sd_status sd_grid_raise(sd_grid *g, const double *height);
 
 /* Of the points of all bricks, as below, how many would be in the pencils of their own rank if the
  * first direction were d? They need no message. */

@@ -42,16 +42,17 @@ static void kernel(const sd_ewald *e, const sd_ewald *large, double r, double *v
   for (int k = 0; k < 2; k++) value[k] -= taken[k];
 }
 
-/* 1 at the offsets that are kept and a fifth of the way beyond, then smoothly to 0 at the end of n
- * points, where the transform's next period begins */
+double sd_open_kernel_taper(int beyond, int many)
+{
+  const double z = (beyond - 0.2 * many) / (0.8 * many);
+  return z <= 0.0 ? 1.0 : 0.5 * erfc(6.0 * (2.0 * z - 1.0));
+}
+
+/* Of n points, of which `kept` are wanted */
 static double *taper(int kept, int n)
 {
   double *t = malloc(sizeof(double) * (size_t) n);
-  const double many = n - 1 - kept;
-  for (int m = 0; m < n && t; m++) {
-    const double z = (m - kept - 0.2 * many) / (0.8 * many);
-    t[m] = z <= 0.0 ? 1.0 : 0.5 * erfc(6.0 * (2.0 * z - 1.0));
-  }
+  for (int m = 0; m < n && t; m++) t[m] = sd_open_kernel_taper(m - kept, n - 1 - kept);
   return t;
 }
 
@@ -89,8 +90,7 @@ static void fill_component(const sd_ewald *e, const int *n, const int *pair, con
 
 /* --- transforms --- */
 
-/* 1/w^ at the points of an octant's direction, less the last, which has no partner: 0 */
-static double *deconvolution(const sd_ewald *e, int n)
+double *sd_open_kernel_inverse(const sd_ewald *e, int n)
 {
   double *inverse = malloc(sizeof(double) * (size_t) n);
   for (int m = 0; m < n && inverse; m++)
@@ -170,22 +170,20 @@ typedef struct {
   double *taper[3], *inverse[3], *I0, *J0, *field, *kept;
 } workspace;
 
-/* Wide windows blow up more of what the taper has at short waves. With these the error is that of
- * the rest from 1e-2 to 1e-13; a quarter fewer cost one to two digits. */
-static int points_beyond(int points)
+int sd_open_kernel_beyond(int points)
 {
   return points > 5 ? 4 * points + 4 : 24;
 }
 
 static int make_room(workspace *s, const sd_ewald *e, const int *m)
 {
-  const int beyond = points_beyond(e->points);
+  const int beyond = sd_open_kernel_beyond(e->points);
   size_t large = 1, octant = 1;
   int ok = 1;
   for (int d = 0; d < 3; d++) {
     s->n[d] = sd_ewald_transformable(m[d] - 1 + beyond) + 1;
     s->taper[d] = taper(m[d] - 1, s->n[d]);
-    s->inverse[d] = deconvolution(e, s->n[d]);
+    s->inverse[d] = sd_open_kernel_inverse(e, s->n[d]);
     ok = ok && s->taper[d] && s->inverse[d];
     large *= (size_t) s->n[d];
     octant *= (size_t) m[d];

@@ -21,6 +21,19 @@ extern "C" {
  * of the octant; table [y][m 0][6][z], out: xx yy zz xy xz yz. SD_OK or SD_ENOMEMORY. */
 sd_status sd_open_kernel(const sd_ewald *e, const int *m, const int *y, const int *z, double *table);
 
+/* --- parts of it, for other kernels on padded grids --- */
+
+/* Points that the large grid has beyond the offsets wanted, each way, for windows of so many. Wide
+ * windows blow up more of what the taper has at short waves. With these the error is that of the
+ * rest from 1e-2 to 1e-13; a quarter fewer cost one to two digits. */
+int sd_open_kernel_beyond(int points);
+/* So many points beyond what is wanted, of `many`: 1 up to a fifth of the way, then smoothly to 0
+ * at the end, where the transform's next period begins */
+double sd_open_kernel_taper(int beyond, int many);
+/* [n] 1/w^ at waves 0 ... n - 1 of 2 (n - 1), less the last, which has no partner: 0. malloc'ed;
+ * NULL: out of memory */
+double *sd_open_kernel_inverse(const sd_ewald *e, int n);
+
 #ifdef __cplusplus
 }
 #endif

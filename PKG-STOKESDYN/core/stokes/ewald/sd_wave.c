@@ -6,6 +6,7 @@
 
 #include "sd_constants.h"
 #include "sd_ewald_internal.h"
+#include "sd_image_kernel.h"
 #include "sd_open_kernel.h"
 
 /* Wave number of point m of n: 0, 1 ... n/2 - 1, then from -n/2 on */
@@ -63,6 +64,18 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 
 /* --- open --- */
 
+static sd_status image_table(sd_wave *w, const sd_ewald *e, const int *m, const int *y,
+                             const int *z)
+{
+  const size_t row = 2 * SD_IMAGE_KERNELS * (size_t) m[0] * (size_t) w->depth;
+  w->images = malloc(sizeof(double) * (row * (size_t) (y[1] - y[0]) + 1));
+  w->gamma = malloc(sizeof(double) * (size_t) w->size[0]);
+  if (!w->images || !w->gamma) return SD_ENOMEMORY;
+  sd_image_slopes(e, w->size[0], w->gamma);
+  for (int x = 0; x < w->size[0]; x++) w->gamma[x] *= e->images.wall.sign;
+  return sd_image_kernel(e, m, y, z, w->images);
+}
+
 /* Of the octant the rows that this rank's planes have, by |wave number| */
 static sd_status open_table(sd_wave *w, const sd_ewald *e, int y1)
 {
@@ -79,7 +92,8 @@ static sd_status open_table(sd_wave *w, const sd_ewald *e, int y1)
   w->table = malloc(sizeof(double) * (row * (size_t) (end - w->first_row) + 1));
   if (!w->table) return SD_ENOMEMORY;
   const int y[2] = {w->first_row, end}, z[2] = {w->z0, w->z0 + w->depth};
-  return sd_open_kernel(e, m, y, z, w->table);
+  const sd_status status = sd_open_kernel(e, m, y, z, w->table);
+  return status == SD_OK && e->images.wall.sign ? image_table(w, e, m, y, z) : status;
 }
 
 /* --- both --- */
@@ -101,6 +115,8 @@ void sd_wave_free(sd_wave *w)
 {
   free(w->table);
   free(w->roots);
+  free(w->images);
+  free(w->gamma);
   memset(w, 0, sizeof(*w));
 }
 
@@ -133,9 +149,30 @@ void sd_wave_multiply_root(void *ctx, int y, double *const *plane)
   }
 }
 
+/* Rows x and -x of a plane of an open box above a wall, and what they are multiplied with */
+static sd_image_rows rows_above(const sd_wave *w, int x, int y, double *const *plane)
+{
+  const int half_x = w->size[0] / 2 + 1, my = wave_number(y, w->size[1]), depth = w->depth;
+  const long entry = (long) (abs(my) - w->first_row) * half_x + x;
+  sd_image_rows r = {.depth = depth,
+                     .K = w->table + entry * 6 * depth,
+                     .images = w->images + entry * 2 * SD_IMAGE_KERNELS * depth,
+                     .gamma = w->gamma[x],
+                     .sy = my < 0 ? -1.0 : 1.0};
+  const long at[2] = {x, (w->size[0] - x) % w->size[0]};
+  for (int side = 0; side < 2; side++)
+    for (int c = 0; c < 6; c++) r.row[side][c] = plane[c] + at[side] * 2 * depth;
+  return r;
+}
+
 void sd_wave_multiply(void *ctx, int y, double *const *plane)
 {
   const sd_wave *w = ctx;
+  for (int x = 0; x <= w->size[0] / 2 && w->images; x++) {
+    const sd_image_rows r = rows_above(w, x, y, plane);
+    w->kernels->image_rows(&r);
+  }
+  if (w->images) return;
   const int depth = w->depth, half_x = w->size[0] / 2 + 1;
   const int my = wave_number(y, w->size[1]);
   for (int x = 0; x < w->size[0]; x++) {

@@ -4,6 +4,9 @@
  *   open       u^ = K f^, K the transform of the pair's wave part in open space at the offsets of the
  *              grid, on a grid of twice the size (a convolution without neighbours)
  *
+ * Above a wall the first direction is across it, the fields are also there times the height, and an
+ * open box has the images of sd_image_kernel.h.
+ *
  * w: transform of the window, once for spreading and once for interpolation; viscosity 1. */
 #ifndef SD_WAVE_H
 #define SD_WAVE_H
@@ -30,6 +33,8 @@ typedef struct {
   double *table;
   /* periodic: [depth] */
   double *roots;
+  /* wall: rows [rows][half x][SD_IMAGE_KERNELS][2][depth], and gamma [size x]; else NULL */
+  double *images, *gamma;
 } sd_wave;
 
 /* size: points of the transform; y, z: first and end of the waves that this rank has. SD_OK or

@@ -68,3 +68,14 @@ double sd_window_transform(int points, double beta, double theta)
   if (root < 1e-6) return unit;
   return unit * (square > 0.0 ? sinh(root) : sin(root)) / root;
 }
+
+/* root < 0.1: (coth(root) - 1/root)/root by its series */
+double sd_window_slope(int points, double beta, double theta)
+{
+  const double half = 0.5 * points, square = beta * beta - half * half * theta * theta;
+  const double root = sqrt(fabs(square));
+  const double factor = root < 0.1 ? 1.0 / 3.0 - square / 45.0
+      : square > 0.0               ? (1.0 / tanh(root) - 1.0 / root) / root
+                                   : (1.0 / root - 1.0 / tan(root)) / root;
+  return -half * half * theta * factor;
+}

@@ -31,6 +31,9 @@ void sd_window_fit(int points, double beta, double tolerance, sd_window *w);
  * spacings */
 double sd_window_transform(int points, double beta, double theta);
 
+/* d/dtheta of its logarithm, for |theta| <= pi */
+double sd_window_slope(int points, double beta, double theta);
+
 #ifdef __cplusplus
 }
 #endif

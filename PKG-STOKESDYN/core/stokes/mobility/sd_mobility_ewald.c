@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_ewald_image_pairs.h"
 #include "sd_ewald_large_pairs.h"
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
@@ -20,6 +21,7 @@ typedef struct {
   sd_ewald_waves waves[2];
   sd_ewald_pairs pairs;
   sd_ewald_large_pairs large_pairs;
+  sd_ewald_image_pairs image_pairs;
   double tail[2][3];
   /* this rank's spheres with radius: [small] in order of the near part's targets, then those of the
    * second level */
@@ -28,6 +30,9 @@ typedef struct {
   /* [n_all] two levels: radii, 0 of the large ones */
   double *small_a;
   size_t small_room;
+  /* [3 n_all] wall: centres at heights of at least the radii */
+  double *stand;
+  size_t stand_room;
   /* this rank's spheres, with ghosts */
   int n, n_all;
   double *ghosts;
@@ -79,12 +84,29 @@ static int make_room(ewald *e, int n, size_t ghost_numbers)
 /* Without the large spheres, of which the first level knows nothing */
 static int hide_large(ewald *e, const sd_mobility_scene *s, sd_spheres *small)
 {
-  *small = s->spheres;
+  *small = e->spheres;
   if (e->levels == 1) return 1;
   if (!sd_reserve(&e->small_a, sizeof(double), (size_t) s->n_all, &e->small_room)) return 0;
   for (int i = 0; i < s->n_all; i++)
     e->small_a[i] = s->spheres.a[i] < e->ewald.large.from ? s->spheres.a[i] : 0.0;
   small->a = e->small_a;
+  return 1;
+}
+
+/* Above a wall the whole matrix is made with heights of at least the radii (sd_wall.h). */
+static int keep_off_wall(ewald *e, const sd_mobility_scene *s)
+{
+  const sd_wall *wall = &e->ewald.images.wall;
+  e->spheres = s->spheres;
+  if (!wall->sign) return 1;
+  if (!sd_reserve(&e->stand, 3 * sizeof(double), (size_t) s->n_all, &e->stand_room)) return 0;
+  memcpy(e->stand, s->spheres.x, 3 * sizeof(double) * (size_t) s->n_all);
+  for (int i = 0; i < s->n_all; i++) {
+    double *x = e->stand + 3L * i;
+    if (sd_wall_height(wall, x) < s->spheres.a[i])
+      x[wall->axis] = wall->at + wall->sign * s->spheres.a[i];
+  }
+  e->spheres.x = e->stand;
   return 1;
 }
 
@@ -138,7 +160,6 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   ewald *e = state;
   e->n = s->n;
   e->n_all = s->n_all;
-  e->spheres = s->spheres;
   sd_status status = SD_OK;
   if (changed(e, s)) status = make_tables(e, s);
   e->world = s->world;
@@ -147,8 +168,11 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   int brick[12] = {0};
   sd_spheres small;
   if (status == SD_OK && !all_finite(s)) status = SD_ENOTFINITE;
-  if (status == SD_OK && !hide_large(e, s, &small)) status = SD_ENOMEMORY;
+  if (status == SD_OK && (!keep_off_wall(e, s) || !hide_large(e, s, &small)))
+    status = SD_ENOMEMORY;
   if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &small, s->n, s->n_all);
+  if (status == SD_OK && e->ewald.images.wall.sign)
+    status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald, &e->spheres, s->n, s->n_all);
   if (status == SD_OK && !make_room(e, s->n, (size_t) e->width * (size_t) (s->n_all - s->n)))
     status = SD_ENOMEMORY;
   if (status == SD_OK) list_spheres(e);
@@ -222,6 +246,8 @@ static sd_status near_part(ewald *e, const double *F, double *u, double *sums)
     status = e->world.refresh(e->world.ctx, F, e->ghosts, e->width);
   if (status != SD_OK) return status;
   sd_ewald_pairs_apply(&e->pairs, e->n, F, e->ghosts, u);
+  if (e->ewald.images.wall.sign)
+    sd_ewald_image_pairs_apply(&e->image_pairs, e->n, F, e->ghosts, u);
   if (e->levels == 2)
     status = sd_ewald_large_pairs_apply(&e->large_pairs, &e->spheres, e->sphere, &e->world, F, u);
   return status;
@@ -288,9 +314,11 @@ static void release(void *state)
   ewald *e = state;
   sd_ewald_pairs_free(&e->pairs);
   sd_ewald_large_pairs_free(&e->large_pairs);
+  sd_ewald_image_pairs_free(&e->image_pairs);
   for (int l = 0; l < 2; l++) sd_ewald_waves_free(e->waves + l);
   free(e->sphere);
   free(e->small_a);
+  free(e->stand);
   free(e->ghosts);
 }
 

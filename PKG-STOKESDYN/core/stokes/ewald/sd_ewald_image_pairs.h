@@ -1,0 +1,48 @@
+/* The near part of images in a wall: what sd_wall.h says of a pair less its smooth part
+ * (sd_image_wave.h), of spheres and images up to the range, i with its own among them. Kept as c1 ...
+ * c5 of each pair. */
+#ifndef SD_EWALD_IMAGE_PAIRS_H
+#define SD_EWALD_IMAGE_PAIRS_H
+
+#include "sd_cells.h"
+#include "sd_ewald_split.h"
+#include "sd_product.h"
+#include "sd_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Zero-initialise; sd_ewald_image_pairs_free in the end. */
+typedef struct {
+  sd_ewald ewald;
+  sd_spheres spheres;
+  /* spheres that are near the wall, ours and ghosts: ours first, [near] which; in the axes of the
+   * wall [3 near], w F [3 near], sums [3 near] */
+  int near, ours, *sphere;
+  double *x, *F, *u;
+  size_t near_room, x_room;
+  /* each pair once, by one of ours: [ours + 1] first, [pairs] the other, [5 pairs] */
+  long *first;
+  size_t first_room;
+  int *other;
+  double *c;
+  long room;
+  sd_cells cells;
+} sd_ewald_image_pairs;
+
+/* The spheres s, n of ours and the ghosts after them, heights at least the radii. SD_OK or
+ * SD_ENOMEMORY. */
+sd_status sd_ewald_image_pairs_place(sd_ewald_image_pairs *p, const sd_ewald *e,
+                                     const sd_spheres *s, int n, int n_all);
+
+/* u [3n] += M F of these pairs, F [3n] of ours and ghosts [3 (n_all - n)] */
+void sd_ewald_image_pairs_apply(sd_ewald_image_pairs *p, int n, const double *F,
+                                const double *ghosts, double *u);
+
+void sd_ewald_image_pairs_free(sd_ewald_image_pairs *p);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,208 @@
+/* The engine ewald above a plane wall: the smooth part of an image against the image, and products
+ * against the sum over all pairs. */
+#include "periodic.h"
+
+#include "plain.h"
+
+#include "sd_image_wave.h"
+#include "sd_radial.h"
+#include "sd_window.h"
+
+enum { N = 150 };
+
+/* Far from each other an image is all smooth part, for any two radii, whatever a_ref is. */
+static void far_away_the_smooth_part_is_the_image(void **state)
+{
+  (void) state;
+  uint64_t seed = 3;
+  for (int k = 0; k < 200; k++) {
+    const double a = uniform(&seed, 0.1, 2.0), b = uniform(&seed, 0.1, 2.0);
+    const double xi[3] = {0.3, -0.2, uniform(&seed, 2.0, 9.0)};
+    const double xj[3] = {uniform(&seed, 4.0, 9.0), uniform(&seed, 4.0, 9.0), uniform(&seed, 2.0, 9.0)};
+    const sd_image_filter filter = {1.6, uniform(&seed, 0.0, 1.5)};
+    const sd_wall_pair whole = sd_wall_pair_of(xi, a, xj, b);
+    double c[5];
+    sd_image_wave(&filter, xi, a, xj, b, c);
+    for (int m = 0; m < 5; m++) CHECK_NEAR(c[m], whole.c[m], 3e-14 * fabs(whole.c[0]));
+  }
+}
+
+/* The reciprocal pair has R -> -mR, and c4 and c5 change places. */
+static void the_smooth_part_is_symmetric(void **state)
+{
+  (void) state;
+  uint64_t seed = 4;
+  for (int k = 0; k < 200; k++) {
+    const double a = uniform(&seed, 0.1, 2.0), b = uniform(&seed, 0.1, 2.0);
+    double x[2][3];
+    for (int s = 0; s < 2; s++)
+      for (int d = 0; d < 3; d++) x[s][d] = uniform(&seed, 2.0, 6.0);
+    const sd_image_filter filter = {uniform(&seed, 0.05, 1.0), 0.7};
+    double there[5], back[5];
+    static const int other[5] = {0, 1, 2, 4, 3};
+    sd_image_wave(&filter, x[0], a, x[1], b, there);
+    sd_image_wave(&filter, x[1], b, x[0], a, back);
+    for (int m = 0; m < 5; m++) CHECK_NEAR(there[m], back[other[m]], 1e-13 * fabs(there[0]));
+  }
+}
+
+/* G is filtered as without wall: there I and J are integrals over k. With a_ref J has L2 in it. */
+static void filters_are_those_of_the_free_sum(void **state)
+{
+  (void) state;
+  for (int with = 0; with < 2; with++)
+    for (double z = 0.05; z < 7.0; z += 0.05) {
+      const sd_ewald e = {.xi = 0.8, .a_ref = with ? 0.9 : 0.0};
+      const sd_image_filter filter = {e.xi, e.a_ref};
+      const sd_image_radial r = sd_image_radial_at(&filter, z / e.xi);
+      double D[SD_RADIALS];
+      sd_radial(&e, z / e.xi, D);
+      CHECK_NEAR(r.I, 8.0 * SD_PI * D[SD_I0], 1e-13);
+      CHECK_NEAR(r.J, 8.0 * SD_PI * D[SD_J0], 1e-13);
+      if (!with) CHECK_NEAR(r.L1, -r.J, 1e-15);
+    }
+}
+
+static void the_slope_of_a_window_is_that_of_its_transform(void **state)
+{
+  (void) state;
+  for (int points = 4; points <= 20; points += 4)
+    for (double theta = -3.0; theta <= 3.0; theta += 0.5) {
+      const double beta = 2.3 * points, d = 1e-5;
+      const double up = log(sd_window_transform(points, beta, theta + d));
+      const double down = log(sd_window_transform(points, beta, theta - d));
+      CHECK_NEAR(sd_window_slope(points, beta, theta), (up - down) / (2.0 * d), 1e-7);
+    }
+}
+
+typedef struct {
+  const char *what;
+  double edge[3], largest;
+} cloud;
+
+static const cloud clouds[] = {
+    {"equal", {20, 20, 20}, 1.0}, {"1 : 3", {30, 24, 40}, 3.0},       {"layer", {40, 40, 0.5}, 1.0},
+    {"tower", {10, 10, 160}, 1.0},
+};
+enum { CLOUDS = sizeof(clouds) / sizeof(clouds[0]) };
+
+typedef struct {
+  double x[3 * N], a[N], w[N], F[3 * N], lo[3], hi[3];
+} scene;
+
+/* The third edge is across the wall, which some of the spheres cut */
+static scene make(const cloud *c, const sd_wall *wall, uint64_t seed)
+{
+  scene s = {.lo = {INFINITY, INFINITY, INFINITY}, .hi = {-INFINITY, -INFINITY, -INFINITY}};
+  for (int i = 0; i < N; i++) {
+    s.a[i] = i == 7 ? 0.0 : c->largest == 1.0 ? 1.0 : exp(uniform(&seed, 0.0, log(c->largest)));
+    for (int d = 0; d < 3; d++) {
+      double *x = s.x + 3 * i + (d + wall->axis + 1) % 3;
+      *x = uniform(&seed, 3.0, 3.0 + c->edge[d]);
+      if (d == 2) *x = wall->at + wall->sign * (0.95 * s.a[i] + 0.01 + *x - 3.0);
+      s.F[3 * i + d] = uniform(&seed, -1, 1) * s.a[i];
+    }
+    for (int d = 0; d < 3; d++) {
+      s.lo[d] = fmin(s.lo[d], s.x[3 * i + d]);
+      s.hi[d] = fmax(s.hi[d], s.x[3 * i + d]);
+    }
+    s.w[i] = uniform(&seed, 0.6, 1.4);
+  }
+  return s;
+}
+
+static sd_ewald split_of(const scene *s, const sd_wall *wall, double largest, double tolerance)
+{
+  const sd_ewald_sizes sizes = periodic_sizes(s->a, N);
+  sd_ewald_box box = {0};
+  sd_ewald how;
+  sd_ewald_box_around(&box, s->lo, s->hi, largest);
+  assert_int_equal(sd_ewald_choose_at_wall(&box, wall, &sizes, tolerance, &how), SD_OK);
+  return how;
+}
+
+static void products(const scene *s, const sd_ewald *how, int many, const double *F, double *u)
+{
+  const sd_mobility_scene scene = {
+      .how = {.width = 3, .ewald = how}, .n = N, .n_all = N, .spheres = {s->x, s->a, s->w}};
+  sd_mobility m = {0};
+  assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
+  for (int k = 0; k < many; k++)
+    assert_int_equal(sd_mobility_apply(&m, F + 3L * N * k, u + 3L * N * k), SD_OK);
+  sd_mobility_free(&m);
+}
+
+/* Of U over rms of F/(6 pi a) */
+static double error_of(const scene *s, const double *F, const double *u, const double *expected)
+{
+  double off = 0.0, scale = 0.0;
+  for (int k = 0; k < 3 * N; k++) {
+    const int i = k / 3;
+    off += pow(u[k] - expected[k], 2);
+    if (s->a[i] > 0.0) scale += pow(s->w[i] * s->w[i] * F[k] / (6.0 * SD_PI * s->a[i]), 2);
+  }
+  return sqrt(off / scale);
+}
+
+/* Random forces; then equal ones down and along */
+static void walls_agree_with_all_pairs(void **state)
+{
+  (void) state;
+  for (int k = 0; k < CLOUDS; k++) {
+    const sd_wall wall = {(k + 2) % 3, k % 2 ? -1 : 1, 5.7};
+    const scene s = make(clouds + k, &wall, 11 + k);
+    const sd_law law = {.tensor = SD_TENSOR_RPY, .wall = wall};
+    const sd_spheres spheres = {s.x, s.a, s.w};
+    double F[3][3 * N], u[3][3 * N], expected[3 * N];
+    for (int i = 0; i < 3 * N; i++) {
+      F[0][i] = s.F[i];
+      for (int d = 1; d < 3; d++) F[d][i] = i % 3 == (wall.axis + d) % 3 ? s.a[i / 3] : 0.0;
+    }
+    for (int digits = 3; digits <= 6; digits += 3) {
+      const double tolerance = pow(10.0, -digits);
+      const sd_ewald how = split_of(&s, &wall, clouds[k].largest, tolerance);
+      products(&s, &how, 3, F[0], u[0]);
+      for (int l = 0; l < 3; l++) {
+        plain_all(&law, &spheres, N, 3, F[l], expected);
+        const double error = error_of(&s, F[l], u[l], expected);
+        if (!(error < tolerance))
+          fail_msg("%s, forces %d: %.2g at %.0g", clouds[k].what, l, error, tolerance);
+      }
+    }
+  }
+}
+
+/* F.M G = G.M F to rounding: windows err alike at both ends. */
+static void the_matrix_is_symmetric(void **state)
+{
+  (void) state;
+  const sd_wall wall = {0, -1, 2.0};
+  const scene s = make(clouds + 1, &wall, 5);
+  const sd_ewald how = split_of(&s, &wall, 3.0, 1e-2);
+  double F[2][3 * N], u[2][3 * N], there = 0.0, back = 0.0, all = 0.0;
+  for (int k = 0; k < 3 * N; k++) {
+    F[0][k] = s.F[k];
+    F[1][k] = s.F[(7 * k + 3) % (3 * N)];
+  }
+  products(&s, &how, 2, F[0], u[0]);
+  for (int k = 0; k < 3 * N; k++) {
+    if (k / 3 == 7) continue;
+    there += F[0][k] * u[1][k];
+    back += F[1][k] * u[0][k];
+    all += fabs(F[0][k] * u[1][k]);
+  }
+  CHECK_NEAR(there, back, 1e-13 * all);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(far_away_the_smooth_part_is_the_image),
+      cmocka_unit_test(the_smooth_part_is_symmetric),
+      cmocka_unit_test(filters_are_those_of_the_free_sum),
+      cmocka_unit_test(the_slope_of_a_window_is_that_of_its_transform),
+      cmocka_unit_test(walls_agree_with_all_pairs),
+      cmocka_unit_test(the_matrix_is_symmetric),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
