@@ -44,7 +44,8 @@ VANS = {
     "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church")],
     "added_mass": [Or(off=[], otherwise=[NOT_NEGATIVE])], "upflow": [Or(off=[], otherwise=[EQUAL])],
     "discharge": [Or(off=[], otherwise=[EQUAL])], "wall_roughness": [NOT_NEGATIVE], "wall_mixing": [YES_NO],
-    "area": [positive("0.0004", "0.0008")],
+    "area": [positive("0.0004", "0.0008")], "fall_diameter": [positive("0.7", "1", "1.3")], "schmidt": [positive("0.44", "1")],
+    "adjust": [Or(slope=[], depth=[positive("0.5", "20")])],
     "couple": [Choice("none", "one", "two", "fluid")], "profile": [Or(zero=[], file=[File("profile.txt")])],
     "given": [Or(averaged=[], file=[File("given.txt")])], "convective": [Or(off=[], file=[File("convective.txt")])],
     "solve": [positive("1e-3", "0.01", border=["0", "-1", "1e-6", "1e3"]), positive("1e-4", "1e-3", border=["0", "-1", "1e-9"])],
@@ -58,7 +59,8 @@ VANS = {
     "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")], "classes": [YES_NO],
     "class_radii": [Counted(32, positive("0.003", "0.002"))],
     "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
-    "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED])],
+    "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED],
+                       langevin=[SEED, BED])],
     "intensity": [Or(stress=[], file=[File("convective.txt")], otherwise=[Field(lambda v: v >= 0, ["0", "0.3"], ["-0.1"], atom=False)])],
     "renewal": [positive("0.1", "1e-4")], "region": [Name("zone", "part", "nowhere")],
     "average": [Name("all", "g", "nobody")], "conserve": [YES_NO], "rules": [Choice("consistent", "consistent", "yade")],
@@ -93,7 +95,12 @@ def judge_vans(case, words, how):
     case.refuse_if(yade and (s("drag", "yade") != "yade" or s("hindrance") in ("richardson_zaki", "di_felice")), "drag")
     case.refuse_if(s("upflow", "off") != "off" and (yade or couple in ("none", "fluid")), "upflow")
     held, walls = s("discharge", "off") != "off", s("sidewall", "off") != "off"
-    case.refuse_if(held and (yade or couple in ("none", "one") or s("surface") == "speed" or "pressure_gradient" in case.settings), "discharge")
+    deep = s("adjust") == "depth"
+    case.refuse_if(held and (yade or couple in ("none", "one") or s("surface") == "speed" or "pressure_gradient" in case.settings and not deep), "discharge")
+    case.refuse_if(deep and not (held and s("surface") == "follow"), "adjust")
+    case.refuse_if("schmidt" in case.settings and s("fluctuation") != "langevin", "schmidt")
+    case.refuse_if(yade and s("fluctuation") == "langevin", "fluctuation")
+    case.refuse_if(yade and "fall_diameter" in case.settings, "fall_diameter")
     case.refuse_if(s("surface") == "follow" and (yade or couple != "two"), "surface")
     if yade and (s("added_mass", "off") != "off" or "wall_roughness" in case.settings or s("wall_mixing") == "yes"):
         case.says(ODD, "added_mass", "wall_roughness", "wall_mixing")
