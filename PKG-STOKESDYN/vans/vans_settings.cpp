@@ -66,7 +66,7 @@ static std::vector<double> read_list(const Voice &what, const std::string &file,
   for (size_t k = 0; k < rows.size(); k++) {
     if (rows.size() > 1 && rows[k].size() > 1)
       what.fail("file '" + file + "': row " + std::to_string(k + 1) + " has " +
-                std::to_string(rows[k].size()) + " values, one a row is needed");
+                std::to_string(rows[k].size()) + " values, one per row is needed");
     list.insert(list.end(), rows[k].begin(), rows[k].end());
   }
   if (expected && list.size() != expected)

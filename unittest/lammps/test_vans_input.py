@@ -94,7 +94,7 @@ PROFILE, GIVEN = dict(profile="file rows"), dict(couple="fluid", given="file row
 @pytest.mark.parametrize("keywords, rows, message", [
     (PROFILE, ["1"] * 20, "has 20 values, ncell \\+ 1 = 21 are needed"),
     (PROFILE, ["1"] * 22, "has 22 values, ncell \\+ 1 = 21 are needed"),
-    (PROFILE, ["0 1"] * 10 + ["1"], "row 1 has 2 values, one a row is needed"),
+    (PROFILE, ["0 1"] * 10 + ["1"], "row 1 has 2 values, one per row is needed"),
     (PROFILE, ["1"] * 20 + ["nan"], "line 21: 'nan' is not a finite number"),
     (PROFILE, ["1"] * 20 + ["fast"], "line 21: 'fast' is not a finite number"),
     (GIVEN, ["0.1 0 0"] * 19, "has 19 rows, ncell = 20 are needed"),
