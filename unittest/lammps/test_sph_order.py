@@ -202,7 +202,6 @@ REFUSED = {
     "tensCorr": (SHIFT + " tensCorr 0.2 0.01", DELTA, "", "shift yes does not go with tensCorr"),
     "summation": (SHIFT, DELTA, "unfix density\nfix density all sph/density/summation", "shift yes needs fix sph/density/continuity and fix nve/sph"),
     "fix sph": (SHIFT, DELTA, "unfix move\nfix move all sph", "shift yes needs fix sph/density/continuity and fix nve/sph"),
-    "two fluids": (CORRECT, DELTA + " volume yes", "", "correction yes does not go with volume yes"),
     "wall/sph": (CORRECT, DELTA, "fix w all wall/sph xplane -1 NULL 0.001 1", "correction yes does not go with fix wall/sph"),
     "kernel of the plane": ("wendland2d 0.02 shift yes", DELTA, "", "shift yes needs the kernel of the box's dimension"),
     "two fluids and tensCorr": ("wendland 0.02 tensCorr 0.2 0.01", "volume yes", "", "does not go with tensCorr"),
