@@ -16,6 +16,7 @@
 #include "fix_property_global.h"
 #include "fix_sph_density.h"
 #include "fix_sph_energy.h"
+#include "fix_sph_opening.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_stokes_dynamics.h"
@@ -113,6 +114,8 @@ static std::vector<lammpsplugin_t> sph_styles()
           compute<ComputeSphSurface>("SPH: free surface"),
           fix<FixNveSphStationary>("SPH: density of particles at rest"),
           fix<FixWallAdamiSph>("SPH: walls of particles"),
+          fix<FixSphInlet>("SPH: a layer of particles that flows in"),
+          fix<FixSphOutlet>("SPH: a layer that takes particles out"),
           fix<FixWallSph>("SPH: repulsive planes and cylinder"),
           fix<FixWallRegionSph>("SPH: repulsive surface of a region"),
           fix<FixCheckTimestepSph>("SPH: checks the time step")};

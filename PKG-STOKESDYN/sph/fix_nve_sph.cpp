@@ -60,14 +60,15 @@ void FixNveSph::setup_pre_exchange()
  * needs the velocity at the end of the step before the force is known, vest = v + dt/2 F/m with the
  * last force. Until the force it is only the second term: fix deform with remap v has LAMMPS shift
  * v, and only v, of what crosses a face that glides, and of ghosts beyond it. With shift yes
- * particles move with v + du, du of the middle of the last step. */
+ * particles move with v + du, du of the middle of the last step. Those that stand in an open end are
+ * not pushed by forces. */
 void FixNveSph::initial_integrate(int /*vflag*/)
 {
   double **x = atom->x, **v = atom->v, **f = atom->f, **vest = atom->vest;
   const double *du = pair->shift();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double kick = dtf / Sph::mass(lmp, i);
+    const double kick = pair->is_held(i) ? 0.0 : dtf / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) {
       vest[i][d] = kick * f[i][d];
       v[i][d] += vest[i][d];
@@ -92,7 +93,7 @@ void FixNveSph::final_integrate()
   double **v = atom->v, **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double kick = dtf / Sph::mass(lmp, i);
+    const double kick = pair->is_held(i) ? 0.0 : dtf / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) v[i][d] += kick * f[i][d];
   }
 }

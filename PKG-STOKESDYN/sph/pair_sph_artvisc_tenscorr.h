@@ -18,6 +18,9 @@ class FixNveSph;
 class FixSphDensityContinuity;
 class FixSphDensityCorr;
 class FixSphDensitySummation;
+class FixSphInlet;
+class FixSphOpening;
+class FixSphOutlet;
 class FixSphPressure;
 class FixSphShift;
 class FixWallAdamiSph;
@@ -55,6 +58,8 @@ class PairSph : public LAMMPS_NS::Pair {
   void largest_approach(std::vector<double> &largest);
   /* W' for two particles of this type. */
   double dW_dr(int itype, double r) const;
+  /* Does particle i, of this rank or a ghost, stand in the layer of a fix sph/inlet or sph/outlet? */
+  bool is_held(int i) const;
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
   /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc
@@ -92,6 +97,8 @@ class PairSph : public LAMMPS_NS::Pair {
   FixSphDensitySummation *summation = nullptr;
   FixSphDensityCorr *filter = nullptr;
   FixWallAdamiSph *wall = nullptr;
+  std::vector<FixSphInlet *> inlets;
+  std::vector<FixSphOutlet *> outlets;
   FixSphShift *state = nullptr;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
   bool leapfrog = false, needs_velocity = false, measured = false;
@@ -103,6 +110,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void find_integrators();
   void choose_scheme();
   void check_groups();
+  void check_openings();
   LAMMPS_NS::bigint in_both(int bits, int more_bits);
 
   // Neighbours with their memory, as sd_sph_both.
@@ -147,6 +155,11 @@ class PairSph : public LAMMPS_NS::Pair {
   bool resumes() const;
   void sum_densities(int bit, bool shepard);
   void wall_particles();
+  void wall_row(int i, const double *sums_i, double *row);
+  void held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row);
+  [[noreturn]] void no_density(const std::string &style, int i, const std::string &asked) const;
+  bool is_wall(int i) const;
+  const FixSphPressure *state_of(int i) const;
   void pressures_of_all();
   void forces(bool rates);
   void keep_forces();

@@ -5,6 +5,7 @@
 #include "fix_property_global.h"
 #include "fix_sph_density.h"
 #include "fix_sph_energy.h"
+#include "fix_sph_opening.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_wall_adami_sph.h"
@@ -41,6 +42,7 @@ void PairSph::init_style()
   find_integrators();
   choose_scheme();
   check_groups();
+  check_openings();
 
   measured = !fixes_of(lmp, FixSphEnergy::STYLE).empty();
   needs_velocity = model.artvisc || model.friction || continuity;
@@ -81,6 +83,8 @@ void PairSph::find_fixes()
          COMMAND + ": fix sph/density/continuity and fix sph/density/summation: only one can set "
                    "the density");
   filter = only<FixSphDensityCorr>("");
+  inlets = fixes_of<FixSphInlet>(lmp);
+  outlets = fixes_of<FixSphOutlet>(lmp);
   wall = only<FixWallAdamiSph>("; put all wall particles into one group");
   std::set<std::string> properties;
   for (const auto *fix : fixes_of<FixPropertyGlobal>(lmp))
@@ -121,8 +125,6 @@ void PairSph::choose_scheme()
     if (when) fail(lmp, what + why);
   };
   if (shifts) {
-    refuse(volume && corrects,
-           "does not go with volume yes of fix sph/density/continuity: shift yes does");
     refuse(!leapfrog || !fixes_of(lmp, "sph").empty(),
            "needs fix sph/density/continuity and fix nve/sph: particles are moved in the middle of a "
            "step");
@@ -140,7 +142,8 @@ void PairSph::choose_scheme()
     fail(lmp,
          COMMAND + ": volume yes of fix sph/density/continuity needs fix nve/sph, and does not go "
                    "with tensCorr");
-  model.scheme = volume && shifts ? SD_SPH_VOLUME_SHIFT
+  model.scheme = volume && corrects ? SD_SPH_VOLUME_CORRECTION
+      : volume && shifts ? SD_SPH_VOLUME_SHIFT
       : volume          ? SD_SPH_VOLUME
       : corrects        ? SD_SPH_CORRECTION
       : shifts          ? SD_SPH_SHIFT
@@ -149,8 +152,9 @@ void PairSph::choose_scheme()
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
   // forces on ghosts, which positions times forces would need, are not summed
   no_virial_fdotr_compute = !shared;
-  comm_forward = std::max(sd_sph_columns(&model), wall ? 4 : 1);
-  comm_reverse = wall ? 8 : 6;
+  const bool walls = wall || !inlets.empty() || !outlets.empty();
+  comm_forward = std::max(sd_sph_columns(&model), walls ? 4 : 1);
+  comm_reverse = walls ? 8 : 6;
 }
 
 void PairSph::check_groups()
@@ -170,6 +174,26 @@ void PairSph::check_groups()
            "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " + std::to_string(both) +
                " of its group is also integrated by fix " + fix->id +
                ", so the wall would flow; give that fix the group of the fluid");
+}
+
+/* Open ends move and delete particles of the fluid that nve/sph integrates. */
+void PairSph::check_openings()
+{
+  std::vector<FixSphOpening *> all(inlets.begin(), inlets.end());
+  all.insert(all.end(), outlets.begin(), outlets.end());
+  for (const auto *fix : all) {
+    const std::string who = "Fix " + std::string(fix->style) + ": ";
+    if (!leapfrog) fail(lmp, who + "needs fix sph/density/continuity and fix nve/sph");
+    bigint mine = 0, other;
+    for (int i = 0; i < atom->nlocal; i++)
+      if ((atom->mask[i] & fix->groupbit) && (!(atom->mask[i] & own_vest_bits) || is_wall(i)))
+        mine = std::max(mine, (bigint) atom->tag[i]);
+    MPI_Allreduce(&mine, &other, 1, MPI_LMP_BIGINT, MPI_MAX, world);
+    if (other)
+      fail(lmp,
+           who + "atom " + std::to_string(other) +
+               " of its group is not moved by fix nve/sph: give it the group of the fluid");
+  }
 }
 
 /* The largest ID of the atoms in both of these sets of groups, 0: there are none. */

@@ -5,14 +5,12 @@
 #include "fix_sph_density.h"
 #include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
-#include "fix_wall_adami_sph.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "sd_sph_density.h"
 #include "sd_sph_order.h"
 #include "sd_sph_probe.h"
 #include "sd_sph_step.h"
-#include "sd_sph_wall.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -62,7 +60,7 @@ void PairSph::compute(int eflag, int vflag)
   if (filter && !update->setupflag && update->ntimestep % filter->every == 0)
     sum_densities(filter->groupbit, true);
   pressures_of_all();
-  if (wall) wall_particles();
+  if (wall || !inlets.empty() || !outlets.empty()) wall_particles();
   forces(continuity && !leapfrog);
 
   for (auto *fix : pressures) fix->output(P.data());
@@ -118,14 +116,14 @@ void PairSph::prepare()
   model.pair = coefficients.data();
   raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
   pairs = raw;
-  if (!wall && !state && !sd_sph_of_fluids(&model)) return;
+  if (!wall && !state && inlets.empty() && outlets.empty() && !sd_sph_of_fluids(&model)) return;
   phases.assign(n + 1, 0);
   for (int i = 0; i < n; i++) {
     if (sd_sph_of_fluids(&model))
       for (size_t k = 0; k < pressures.size(); k++)
         if (atom->mask[i] & pressures[k]->groupbit) phases[i] = (int) k;
-    const bool still = (wall && (atom->mask[i] & wall->groupbit)) ||
-        (state && !(atom->mask[i] & own_vest_bits));
+    const bool still = is_wall(i) ||
+        (state && !(atom->mask[i] & own_vest_bits)) || is_held(i);
     if (still) phases[i] = ~phases[i];
   }
   particles.phase = phases.data();
@@ -300,50 +298,6 @@ void PairSph::pressures_of_all()
   for (auto *fix : pressures)
     sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
   sd_sph_pack_pressures(&model, n, P.data(), rho, x4.data());
-}
-
-/* Wall particles take pressure and velocity from the fluid before them. Their density becomes the
- * one that has this pressure, so ghosts get it like any other density. The velocity travels as the
- * difference to v, which ghosts have. */
-void PairSph::wall_particles()
-{
-  const int n = particles.n, bit = wall->groupbit;
-  sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
-  weights.resize(8 * (size_t) (n + 1));
-  sd_sph_pack_fluid(&particles, P.data(), weights.data());
-  sums.assign(8 * (size_t) (n + 1), 0.0);
-  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), sums.data());
-  reverse(sums.data(), 8);
-
-  wall_rows.resize(4 * (size_t) (n + 1));
-  wall->find_gravity();
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit)) continue;
-    const FixSphPressure *eos = nullptr;
-    for (const auto *fix : pressures)
-      if (atom->mask[i] & fix->groupbit) eos = fix;
-    const sd_sph_wall how = {&eos->state, wall->slip};
-    double *row = &wall_rows[4 * (size_t) i];
-    row[0] = atom->rho[i];
-    const double sound = sd_sph_speed_of_sound(&eos->state, row[0]);
-    const double *b = wall->body_force(i, 2.0 * smoothing_length(atom->type[i]) / sound);
-    const double asked = sd_sph_wall_particle(&how, &sums[8 * (size_t) i], atom->v[i], b, row);
-    if (row[0] == 0.0)
-      fail_one(lmp,
-               "Fix " + std::string(FixWallAdamiSph::STYLE) + ": step " +
-                   std::to_string(update->ntimestep) + ": atom " + std::to_string(atom->tag[i]) +
-                   ": the pressure " + text(asked) + " that the fluid asks for is not above " +
-                   text(sd_sph_least_pressure(&eos->state)) + ", the least of fix " + eos->id +
-                   ": a larger B or P0 makes room for it, if gravity is right");
-  }
-  forward(wall_rows.data(), 4);
-  for (int i = 0; i < n; i++) {
-    if (!(atom->mask[i] & bit)) continue;
-    const double *row = &wall_rows[4 * (size_t) i];
-    atom->rho[i] = row[0];
-    for (int d = 0; d < 3; d++) atom->vest[i][d] = atom->v[i][d] + row[1 + d];
-  }
-  pressures_of_all();
 }
 
 void PairSph::forces(bool rates)

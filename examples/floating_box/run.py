@@ -36,7 +36,7 @@ for n, limit in CASES:
     axis.plot(t, u + NEW, label="%d particles high" % (n // 5))
 axis.plot(exact_t, exact, "k--", label="linear theory, no friction")
 axis.set(xlabel=r"$t \sqrt{g}$", ylabel="heave")
-axis.legend()
+axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
 figure.savefig(os.path.join(out, "floating_box.png"), bbox_inches="tight")
 S.keep(folder, out, "floating_box.png", table)
 sys.exit(c.finish())

@@ -1,5 +1,5 @@
 """Flows with a known solution, in two dimensions: Gresho's vortex, Taylor-Green, Poiseuille, a still tank, a dam break, a gravity
-wave, a free disk, a rotating square, two layers. Each makes the particles, runs them with lmp and returns the figures of its last
+wave, a free disk, a rotating square, two layers, Rayleigh-Taylor. Each makes the particles, runs them with lmp and returns the figures of its last
 moment. An option of the pair style or of the density is a keyword of the function `flow`:
 
     kernel wendland | cubicspline, hdx, pair "shift yes" ..., density "delta 0.1" ..., alpha (of artVisc), n (particles per unit
@@ -384,6 +384,7 @@ def layers_scene(n, ratio, o, lid=False, high=1.0):
     centre = np.cumsum(thick) - thick / 2
     row = np.clip((x[:, 1] / dx).astype(int), 0, n - 1)
     x[:, 1] = np.where(fluid, centre[row], np.where(x[:, 1] > 1, x[:, 1] - 1 + thick.sum(), x[:, 1]))
+    x[fluid] += o.get("rough", 0.0) * dx * np.random.default_rng(1).uniform(-1, 1, (fluid.sum(), 2))
     m = [ratio * dx * dx, dx * dx]
     s = dict(options(o, dx), x=x, v=0 * x, rho=rho, mass=m * 2, types=1 + light + 2 * ~fluid, lo=(0, x[:, 1].min() - dx), hi=(1, 2), c=c,
              boundary="p f p", fluid="1 2",
@@ -392,6 +393,8 @@ def layers_scene(n, ratio, o, lid=False, high=1.0):
              extra="fix g1 fluid addforce 0 v_weight 0\ngroup wall type 3 4\nfix w wall wall/adami/sph gravity 0 -1 0 slip yes")
     s["extra"] = "variable weight atom -mass*1.0\n" + s["extra"]
     s["density"] += " volume yes"
+    if s["pair"]:
+        s["coeff"] = "pair_coeff * * c %g deltap %.17g" % (c, dx)
     return s, fluid, light
 
 
@@ -431,6 +434,45 @@ def interface(n, **o):
     w = np.where(light, 1.0, ratio)[fluid][:, None]
     a = np.array([(w * np.stack([e["vx"], e["vy"]], axis=1)[fluid] * v0).sum() for e in shots[1:]]) / (w * v0**2).sum()
     return dict(oscillation(a, every * (1 + np.arange(len(a))), om, 0.0), seconds=seconds)
+
+
+def rayleigh_taylor(n, **o):
+    """A heavy fluid over a light one in a closed box, periodic in x: one wave of the interface grows from a thousandth of its length.
+    Rate over linear theory, s^2 = g k (rho_1 - rho_2) / (rho_1 coth k h_1 + rho_2 coth k h_2): slope of ln a over the last three
+    quarters, a the velocity's projection on the mode."""
+    ratio, amplitude, k, c, dx = o.get("ratio", 3.0), 0.001, 2 * np.pi, 10.0, 1 / n
+    layers = int(np.ceil(2 * o.get("hdx", 2.0)))
+    x = lattice((np.arange(n) + 0.5) * dx, (np.arange(-layers, n + layers) + 0.5) * dx)
+    heavy, fluid = x[:, 1] > 0.5, (x[:, 1] > 0) & (x[:, 1] < 1)
+    rho0 = np.where(heavy, ratio, 1.0)
+    pressure = lambda y: np.where(y > 0.5, ratio * (1 - y), 0.5 * ratio + 0.5 - y)    # g = 1
+    rho = np.where(fluid, tait(np.clip(pressure(x[:, 1]), 0, None), c, rho0), rho0)
+    rows = (np.arange(n) + 0.5) * dx
+    of_row = np.where(rows > 0.5, ratio, 1.0)
+    thick = dx * of_row / tait(pressure(rows), c, of_row)
+    row = np.clip((x[:, 1] / dx).astype(int), 0, n - 1)
+    x[:, 1] = np.where(fluid, (np.cumsum(thick) - thick / 2)[row], np.where(x[:, 1] > 1, x[:, 1] - 1 + thick.sum(), x[:, 1]))
+    high, below = thick.sum(), thick[:n // 2].sum()
+    rate = np.sqrt(k * (ratio - 1) / (ratio / np.tanh(k * (high - below)) + 1 / np.tanh(k * below)))
+    wall = np.where(heavy, high - x[:, 1], x[:, 1])    # distance from it
+    depth = np.where(heavy, high - below, below)
+    mode = np.stack([np.where(heavy, 1, -1) * np.cosh(k * wall) * np.sin(k * x[:, 0]), np.sinh(k * wall) * np.cos(k * x[:, 0])], axis=1)
+    mode *= (fluid / np.sinh(k * depth))[:, None]
+    x = x + amplitude * mode
+    m = [dx * dx, ratio * dx * dx]
+    s = dict(options(o, dx), x=x, v=amplitude * rate * mode, rho=rho, mass=m * 2, types=1 + heavy + 2 * ~fluid, c=c, boundary="p f p",
+             lo=(0, x[:, 1].min() - dx), hi=(1, x[:, 1].max() + dx), fluid="1 2",
+             eos="group light type 1 3\ngroup heavy type 2 4\nfix q light sph/pressure Tait %.17g 1 7\n"
+                 "fix p heavy sph/pressure Tait %.17g %.17g 7" % (c * c / 7, ratio * c * c / 7, ratio),
+             extra="variable weight atom -mass*1.0\nfix g1 fluid addforce 0 v_weight 0\ngroup wall type 3 4\n"
+                   "fix w wall wall/adami/sph gravity 0 -1 0 slip yes")
+    if s["pair"]:
+        s["coeff"] = "pair_coeff * * c %g deltap %.17g" % (c, dx)
+    s["density"] += " volume yes"
+    shots, seconds, every = run(s, o.get("time", 1.6) / rate, 0.25 * s["h"] / c, 40)
+    weight = rho0[fluid][:, None]
+    a = np.array([(weight * np.stack([e["vx"], e["vy"]], axis=1)[fluid] * mode[fluid]).sum() for e in shots[11:]])
+    return {"rate": np.polyfit(every * np.arange(len(a)), np.log(np.maximum(a, 1e-300)), 1)[0] / rate, "seconds": seconds}
 
 
 if __name__ == "__main__":

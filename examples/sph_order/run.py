@@ -17,7 +17,7 @@ OPTIONS = {"plain": {}, "delta": DELTA, "shift": dict(DELTA, pair="shift yes"), 
            "correction, cubic spline": dict(DELTA, pair="correction yes", kernel="cubicspline", hdx=1.3),
            "cubic spline": dict(kernel="cubicspline", hdx=1.3),
            "central": dict(DELTA, viscosity="central"), "central, shift": dict(DELTA, viscosity="central", pair="shift yes"),
-           "two fluids": DELTA}
+           "two fluids": DELTA, "two fluids, correction": dict(DELTA, pair="correction yes", hdx=1.5)}
 # flow, options, n, more; figure: at most this (size), or between two; quick
 ROWS = [
     ("gresho", "plain", 25, {}, {}, 1), ("gresho", "plain", 50, {}, {}, 0), ("gresho", "delta", 50, {}, {}, 0),
@@ -52,6 +52,9 @@ ROWS = [
     ("two_layers", "two fluids", 20, {"ratio": 1000}, {"speed": 0.01, "slope heavy": (0.98, 1.02), "slope light": (0.92, 1.08)}, 0),
     ("interface", "two fluids", 32, {"ratio": 2}, {"frequency": (0.97, 1.03)}, 0),
     ("interface", "two fluids", 32, {"ratio": 10}, {"frequency": (0.97, 1.03)}, 0),
+    ("rayleigh_taylor", "two fluids", 40, {}, {}, 0), ("rayleigh_taylor", "two fluids, correction", 20, {}, {"rate": (0.88, 0.96)}, 1),
+    ("rayleigh_taylor", "two fluids, correction", 40, {}, {"rate": (0.96, 1.01)}, 0),
+    ("rayleigh_taylor", "two fluids, correction", 80, {}, {"rate": (0.98, 1.01)}, 0),
 ]
 
 

@@ -6,8 +6,8 @@
 
 64 000 particles on a cubic lattice of 40^3, displaced by up to 5 %, support 2.4 spacings (57 neighbours, each particle counted), skin 0.2
 spacings, periodic. Every repetition runs the rival and all of ours one after the other, so that a busy machine slows all alike; the
-table has the median of the ratios. The error is the largest difference of static forces from an evaluation in numpy of the random
-scene in unittest/data/sph, over the largest force. --ranks: 1 and 2 ranks instead.
+table has the median of the ratios, of processor time on one rank. The error is the largest difference of static forces from an evaluation
+in numpy of the random scene in unittest/data/sph, over the largest force. --ranks: 1 and 2 ranks instead.
 """
 import argparse
 import os
@@ -70,10 +70,10 @@ def seconds(script, steps, ranks, folder):
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     mpi = [shutil.which("mpirun.openmpi") or "mpirun", "-np", str(ranks)] if ranks > 1 else []
     out = subprocess.run(mpi + ["lmp", "-in", path, "-log", "none", "-nocite"], cwd=folder, env=env, capture_output=True, text=True).stdout
-    times = re.findall(r"Loop time of ([0-9.e+-]+)", out)
+    times, used = re.findall(r"Loop time of ([0-9.e+-]+)", out), re.findall(r"([0-9.]+)% CPU use", out)
     if len(times) != 2:
         sys.exit("the run failed:\n" + out[-2000:])
-    return float(times[1])
+    return float(times[1]) * (float(used[1]) / 100 if ranks == 1 else 1)
 
 
 def force_error(kernel, corrections):

@@ -73,9 +73,10 @@ def law(s, kernel, scheme, mu, P):
     F = -((mm * (A[:, None] + A[None, :]))[..., None] * gd).sum(1)
     rate = (s.m[None, :] * g * vd).sum(1)
     ratio = np.ones_like(g)
-    if scheme == "correction":
+    if scheme in ("correction", "volume correction"):
         F = np.zeros_like(F)
-        F[:, :D] = -np.einsum("a,b,ab,ab,aij,abj->ai", V, V, P[None, :] - P[:, None], g, B, dD)
+        share = 2 * rho[:, None] / (rho[:, None] + rho[None, :]) if scheme == "volume correction" else np.ones_like(g)
+        F[:, :D] = -np.einsum("a,b,ab,ab,aij,abj->ai", V, V, share * (P[None, :] - P[:, None]), g, B, dD)
         F[:, :D] += s.m[:, None] * np.einsum("aij,ajk,ak->ai", G, B, du)
         rate = -rho * np.einsum("aij,aji->a", G, B) + (du * slope).sum(1)
         ratio = 0.5 * np.einsum("abi,abij,abj->ab", dD, B[:, None] + B[None, :], dD) / r**2
@@ -101,7 +102,11 @@ def close(value, expected, limit=1e-12):
 
 
 CASES = [("wendland", "shift", ""), ("wendland", "shift", "central"), ("wendland", "correction", ""), ("cubicspline", "correction", "laplacian"),
-         ("wendland", "correction", "central"), ("cubicspline", None, "central"), ("wendland", "volume", "laplacian"), ("wendland", "volume shift", "central")]
+         ("wendland", "correction", "central"), ("cubicspline", None, "central"), ("wendland", "volume", "laplacian"), ("wendland", "volume shift", "central"),
+         ("cubicspline", "volume correction", "central")]
+
+
+MOVES = "shift", "correction", "volume shift", "volume correction"
 
 
 @pytest.mark.parametrize("kernel, scheme, mu", CASES)
@@ -110,10 +115,10 @@ CASES = [("wendland", "shift", ""), ("wendland", "shift", "central"), ("wendland
 def test_forces_and_rates_are_the_formulas(kernel, scheme, mu, dim, newton, tmp_path):
     """Diffusion has its own test (test_sph_static), and is taken out here by its smallness: delta 1e-30."""
     s = Scene(dim, tmp_path / "scene.data")
-    pair = kernel + " 0.02" + (" viscosity 1 " + mu if mu else "") + (" %s yes" % scheme.split()[-1] if scheme in ("shift", "correction", "volume shift") else "")
+    pair = kernel + " 0.02" + (" viscosity 1 " + mu if mu else "") + (" %s yes" % scheme.split()[-1] if scheme in MOVES else "")
     eos, P = "fix eos all sph/pressure Tait 60000 1000 7 300", 60000 * ((s.rho / 1000) ** 7 - 1) + 300
-    density = "delta 1e-30" if scheme in ("shift", "correction", "volume shift") else ""
-    if scheme in ("volume", "volume shift"):
+    density = "delta 1e-30" if scheme in MOVES else ""
+    if scheme and scheme.startswith("volume"):
         density += " volume yes"
     lmp = start()
     try:
@@ -202,7 +207,6 @@ REFUSED = {
     "tensCorr": (SHIFT + " tensCorr 0.2 0.01", DELTA, "", "shift yes does not go with tensCorr"),
     "summation": (SHIFT, DELTA, "unfix density\nfix density all sph/density/summation", "shift yes needs fix sph/density/continuity and fix nve/sph"),
     "fix sph": (SHIFT, DELTA, "unfix move\nfix move all sph", "shift yes needs fix sph/density/continuity and fix nve/sph"),
-    "two fluids": (CORRECT, DELTA + " volume yes", "", "correction yes does not go with volume yes"),
     "wall/sph": (CORRECT, DELTA, "fix w all wall/sph xplane -1 NULL 0.001 1", "correction yes does not go with fix wall/sph"),
     "kernel of the plane": ("wendland2d 0.02 shift yes", DELTA, "", "shift yes needs the kernel of the box's dimension"),
     "two fluids and tensCorr": ("wendland 0.02 tensCorr 0.2 0.01", "volume yes", "", "does not go with tensCorr"),

@@ -50,6 +50,10 @@ CASES = {
                                   fixes="pair_coeff * * deltap 0.01\ngroup a type 1\ngroup b type 2\nunfix eos\nfix eos a sph/pressure Tait 60000 1000 7\n"
                                         "fix other b sph/pressure Tait 60000 1000 7 50\n"
                                         "fix rho all sph/density/continuity delta 0.1 volume yes\nfix move all nve/sph"),
+    "two fluids with correction": dict(TWO, kernel="cubicspline 0.012 viscosity 0.01 central correction yes",
+                                       fixes="pair_coeff * * deltap 0.01\ngroup a type 1\ngroup b type 2\nunfix eos\nfix eos a sph/pressure Tait 60000 1000 7\n"
+                                             "fix other b sph/pressure Tait 60000 1000 7 50\n"
+                                             "fix rho all sph/density/continuity delta 0.1 volume yes\nfix move all nve/sph"),
     "wall along gravity": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 viscosity 0.01",
                                fixes="group fluid type 1\ngroup wall type 2\nfix rho all sph/density/continuity\n"
                                      "fix wall wall wall/adami/sph gravity 3 -1 0\nfix rest wall nve/sph/stationary\nfix move fluid nve/sph"),
@@ -99,7 +103,7 @@ def test_layout_does_not_matter(case, steps, tmp_path):
             assert difference.max() <= 1e-12 * scale, (ranks, newton, name)
 
 
-@pytest.mark.parametrize("case", [case for case in CASES if case not in ("correction", "wall along gravity")])
+@pytest.mark.parametrize("case", [case for case in CASES if case not in ("correction", "two fluids with correction", "wall along gravity")])
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_momentum_is_kept(case, ranks, tmp_path):
     """Against the largest impulse that a particle gets in the 100 steps."""

@@ -31,6 +31,14 @@ INLINE void add_columns(const pairs_with_sums *q, sd_sph_level level, vec *sum)
     const vec gu = gV * q->u[a];
     for (int b = 0; b < 3; b++) sum[14 + 3 * a + b] -= gu * d[b];
   }
+  if (level < SD_SPH_MIXTURE) return;
+  const vec gx = gV * d[0], gy = gV * d[1];
+  sum[24] -= gx * d[0];
+  sum[25] -= gy * d[1];
+  sum[26] -= gV * d[2] * d[2];
+  sum[27] -= gx * d[1];
+  sum[28] -= gx * d[2];
+  sum[29] -= gy * d[2];
 }
 
 /* The row of a particle from the sums in lanes. */
@@ -48,14 +56,16 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
                    sd_sph_level level, int volume)
 {
   const vec zero = all(0.0), two = all(2.0);
-  const int columns = 8 + 4 * level + 4 * (level == SD_SPH_VELOCITY);
+  const int columns = level == SD_SPH_MIXTURE ? 32
+      : level == SD_SPH_VELOCITY              ? 24
+                                              : 8 + 4 * level;
   int *last = near->pool;
   for (int i = 0; i < list->n; i++) {
     const row4 xi = load4(p->x4 + 4 * (size_t) i), vi = load4(p->v4 + 4 * (size_t) i);
     const sd_sph_coefficients *row = ROW_OF(i);
     const vec mi = all(many ? p->m[i] : p->mass);
     const int phase = p->phase ? p->phase[i] : 0;
-    vec sum[24];
+    vec sum[32];
     for (int c = 0; c < columns; c++) sum[c] = zero;
     near->neighbor[i] = last;
 

@@ -16,6 +16,9 @@ typedef struct {
 /* Momentum goes along with du: of correction it is an acceleration. */
 #define CARRIES(has) ((has).scheme == SD_SPH_SHIFT || (has).scheme == SD_SPH_VOLUME_SHIFT)
 
+#define CORRECTS(has) \
+  ((has).scheme == SD_SPH_CORRECTION || (has).scheme == SD_SPH_VOLUME_CORRECTION)
+
 /* Particle i, and the pairs of it with j: d = x_i - x_j, u = v_i - v_j, A the last column of x4,
  * grad_i W = g d, m = m_i m_j. */
 typedef struct {
@@ -107,7 +110,7 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
   const int many = has.many;
   const sd_sph_coefficients *row = i->row;
   vec bracket = q->A_i + q->A_j;
-  if (has.scheme == SD_SPH_CORRECTION) bracket = all(0.0);
+  if (CORRECTS(has)) bracket = all(0.0);
   if (has.tenscorr) {
     const vec distance = smaller(root(q->r2) * q->inv_h, all(2.0));
     bracket += tension(model->epsilon, q->A_i, q->A_j, COEFFICIENT(tens) * K(has.kernel, distance));
@@ -217,7 +220,8 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
       const int *j = list->neighbor[i] + at;
       const pairs_of_one q = meet(p, &of_i, j, has);
       nearest = smaller(q.r2, nearest);
-      const vec weight = -q.m * q.inverse * (q.A_j - q.A_i) * q.g;
+      vec weight = -q.m * q.inverse * (q.A_j - q.A_i) * q.g;
+      if (has.scheme == SD_SPH_VOLUME_CORRECTION) weight *= 2.0 * q.rho_i / (q.rho_i + q.rho_j);
       vec F[3], mine[3], ratio = all(1.0);
       if (pairwise) ratio = corrected(p->order, own, j, q.d, q.r2, mine);
       opposite_forces(model, p, &of_i, j, &q, ratio, has, F);

@@ -23,7 +23,7 @@ typedef struct {
 static symmetric moment(int dimension, const double *sums)
 {
   symmetric M;
-  memcpy(M.a, sums + 4, sizeof(M.a));
+  memcpy(M.a, sums, sizeof(M.a));
   if (dimension == 2) {
     M.a[2] = 1.0;
     M.a[4] = M.a[5] = 0.0;
@@ -43,6 +43,19 @@ static symmetric cofactors(const symmetric *M)
 static double determinant(const symmetric *M, const symmetric *cofactor)
 {
   return M->a[0] * cofactor->a[0] + M->a[3] * cofactor->a[3] + M->a[4] * cofactor->a[4];
+}
+
+/* M is about half the unit matrix at a plane surface, and a quarter in two directions along an
+ * edge: det > 1/64. Below 1e-3, a tenth in each of three directions, neighbours are so few that the
+ * inverse would raise their noise tenfold: 0 then. */
+static symmetric inverse(const symmetric *M)
+{
+  const symmetric cofactor = cofactors(M);
+  const double det = determinant(M, &cofactor);
+  symmetric B = {{0.0}};
+  if (det > 1e-3)
+    for (int k = 0; k < 6; k++) B.a[k] = cofactor.a[k] / det;
+  return B;
 }
 
 static void times(const symmetric *M, const double x[3], double y[3])
@@ -106,14 +119,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     c->rate[i] = sums[0];
     if (level == SD_SPH_RATE) continue;
 
-    const symmetric M = moment(model->dimension, sums), cofactor = cofactors(&M);
-    const double det = determinant(&M, &cofactor);
-    symmetric B = {{0.0}};
-    /* M is about half the unit matrix at a plane surface, and a quarter in two directions along an
-     * edge: det > 1/64. Below 1e-3, a tenth in each of three directions, neighbours are so few that
-     * the inverse would raise their noise tenfold. */
-    if (det > 1e-3)
-      for (int k = 0; k < 6; k++) B.a[k] = cofactor.a[k] / det;
+    const symmetric M = moment(model->dimension, sums + 4), B = inverse(&M);
     double *row = c->order + (size_t) to * i;
     /* exact for a linear density: sum V_b (rho_b - rho_a) g d = M grad rho then */
     times(&B, sums + 1, row);
@@ -121,18 +127,21 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     if (level == SD_SPH_GRADIENT) continue;
 
     double *du = row + 4;
-    const int flows = (c->mask[i] & c->moving) != 0;
+    const int flows = (c->mask[i] & c->moving) && !(p->phase && p->phase[i] < 0);
     memset(du, 0, 4 * sizeof(double));
-    if (flows && above(&M, SURFACE))
+    /* what is corrected, and where its surface is, goes by all fluids */
+    const symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
+    if (flows && above(&whole, SURFACE))
       shift(sums, sd_sph_of_pair(model, p, i, i)->support, du);
-    if (level == SD_SPH_VELOCITY) {
+    if (level >= SD_SPH_VELOCITY) {
       memset(row + 8, 0, 8 * sizeof(double));
       memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));
       row[14] = !flows;
       if (!flows) continue;
-      if (!above(&M, c->least) && stops < 0) stops = i;
-      memcpy(row + 8, B.a, sizeof(B.a));
-      c->rate[i] = -row[3] * carry(sums + 14, &B, du, c->kick + 3 * (size_t) i);
+      if (!above(&whole, c->least) && stops < 0) stops = i;
+      const symmetric all = level == SD_SPH_MIXTURE ? inverse(&whole) : B;
+      memcpy(row + 8, all.a, sizeof(all.a));
+      c->rate[i] = -row[3] * carry(sums + 14, &all, du, c->kick + 3 * (size_t) i);
     }
     /* the density that the particle finds where it is moved to */
     c->rate[i] += du[0] * row[0] + du[1] * row[1] + du[2] * row[2];

@@ -18,7 +18,7 @@ typedef struct {
   int n;
   /* [sd_sph_sum_columns n] */
   const double *sums;
-  /* Those with mask & moving flow and are shifted; the others are walls. */
+  /* Those with mask & moving, and a phase that is none of a wall, flow and are shifted. */
   const int *mask;
   int moving;
   /* correction stops where the smallest eigenvalue of M is below */
@@ -33,7 +33,7 @@ typedef struct {
  * 2009 there.
  * du      - U x, x = 10 h s, of length 1 at most: the law of Michel et al. 2022 in a bounded form;
  *         0 where an eigenvalue of M is below 0.9, at a free surface and, since M is that of one
- *         fluid, at an interface; and for walls
+ *         fluid, at an interface, but for VOLUME_CORRECTION, where M is that of all; and for walls
  * Returns the first particle where correction stops, -1: there is none. */
 int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c);
 

@@ -2,13 +2,19 @@
 
 int sd_sph_of_fluids(const sd_sph_model *model)
 {
-  return model->scheme == SD_SPH_VOLUME || model->scheme == SD_SPH_VOLUME_SHIFT;
+  return model->scheme == SD_SPH_VOLUME || model->scheme == SD_SPH_VOLUME_SHIFT ||
+      model->scheme == SD_SPH_VOLUME_CORRECTION;
 }
 
 int sd_sph_shifts(const sd_sph_model *model)
 {
-  return model->scheme == SD_SPH_SHIFT || model->scheme == SD_SPH_CORRECTION ||
-      model->scheme == SD_SPH_VOLUME_SHIFT;
+  return model->scheme == SD_SPH_SHIFT || model->scheme == SD_SPH_VOLUME_SHIFT ||
+      sd_sph_corrects(model);
+}
+
+int sd_sph_corrects(const sd_sph_model *model)
+{
+  return model->scheme == SD_SPH_CORRECTION || model->scheme == SD_SPH_VOLUME_CORRECTION;
 }
 
 /* Everything about a pair of types that does not change from pair to pair. What no term of the
@@ -75,7 +81,7 @@ void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, co
 {
   /* Correction takes differences of P, volume weighs P with the other density; the plain force has
    * A. */
-  const int as_is = model->scheme == SD_SPH_CORRECTION || sd_sph_of_fluids(model);
+  const int as_is = sd_sph_corrects(model) || sd_sph_of_fluids(model);
   for (int i = 0; i < n; i++)
     x4[4 * (size_t) i + 3] = as_is ? P[i] : P[i] / (rho[i] * rho[i]);
 }

@@ -19,7 +19,11 @@
  *                the two. A wall has the B of its partner
  *   volume       F_a = - 2 V_a V_b p g d, p = (rho_b P_a + rho_a P_b) / (rho_a + rho_b): continuous
  *                where densities jump, Hu & Adams 2006. Rate: sum m_b g v.d 2 rho_a / (rho_a +
- *                rho_b), its adjoint: sum F.v = - sum V P rate / rho. VOLUME_SHIFT: with the term of shift
+ *                rho_b), its adjoint: sum F.v = - sum V P rate / rho. VOLUME_SHIFT: with the term of
+ *                shift. VOLUME_CORRECTION: F_a = - V_a V_b 2 rho_a / (rho_a + rho_b) (P_b - P_a) g
+ *                B_a d with B of all fluids: an equal pressure everywhere pushes nobody, so that
+ *                lattices have no stiffness, and at rest under gravity P_b - P_a is that of both
+ *                densities
  *
  * The loops work on four pairs at a time, without a branch: K and G vanish beyond the support, so
  * neighbours outside contribute zeros. Every particle array therefore has one row more than there
@@ -40,7 +44,8 @@ typedef enum {
   SD_SPH_SHIFT,
   SD_SPH_CORRECTION,
   SD_SPH_VOLUME,
-  SD_SPH_VOLUME_SHIFT
+  SD_SPH_VOLUME_SHIFT,
+  SD_SPH_VOLUME_CORRECTION
 } sd_sph_scheme;
 typedef enum { SD_SPH_INVISCID, SD_SPH_LAPLACIAN, SD_SPH_CENTRAL } sd_sph_friction;
 
@@ -81,10 +86,12 @@ typedef struct {
   const sd_sph_coefficients *pair;
 } sd_sph_model;
 
-/* Is its scheme one for several fluids, volume with or without shift? */
+/* Is its scheme one for several fluids? */
 int sd_sph_of_fluids(const sd_sph_model *model);
 /* Does it move particles with v + du? */
 int sd_sph_shifts(const sd_sph_model *model);
+/* Does it correct gradients? */
+int sd_sph_corrects(const sd_sph_model *model);
 
 sd_sph_coefficients sd_sph_coefficients_of(const sd_sph_model *model, const sd_sph_parameters *p);
 

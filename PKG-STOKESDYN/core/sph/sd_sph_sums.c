@@ -5,23 +5,24 @@
 #include "sd_sph_internal.h"
 
 /* Diffusion needs the gradient of the density, and M for it; shift also the disorder; correction
- * also the gradient of the velocity. */
+ * also the gradient of the velocity, and of several fluids M of them all. */
 sd_sph_level sd_sph_level_of(const sd_sph_model *model)
 {
-  if (model->scheme == SD_SPH_CORRECTION) return SD_SPH_VELOCITY;
+  if (sd_sph_corrects(model))
+    return sd_sph_of_fluids(model) ? SD_SPH_MIXTURE : SD_SPH_VELOCITY;
   if (sd_sph_shifts(model)) return SD_SPH_DISORDER;
   return model->delta > 0.0 ? SD_SPH_GRADIENT : SD_SPH_RATE;
 }
 
 int sd_sph_sum_columns(sd_sph_level level)
 {
-  static const int columns[] = {1, 12, 16, 24};
+  static const int columns[] = {1, 12, 16, 24, 32};
   return columns[level];
 }
 
 int sd_sph_columns(const sd_sph_model *model)
 {
-  static const int columns[] = {0, 4, 8, 16};
+  static const int columns[] = {0, 4, 8, 16, 16};
   return columns[sd_sph_level_of(model)];
 }
 

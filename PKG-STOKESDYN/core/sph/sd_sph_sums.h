@@ -9,10 +9,16 @@ extern "C" {
 #endif
 
 /* How much the pass in the middle of a step sums. Each level has the columns of those before it. */
-typedef enum { SD_SPH_RATE, SD_SPH_GRADIENT, SD_SPH_DISORDER, SD_SPH_VELOCITY } sd_sph_level;
+typedef enum {
+  SD_SPH_RATE,
+  SD_SPH_GRADIENT,
+  SD_SPH_DISORDER,
+  SD_SPH_VELOCITY,
+  SD_SPH_MIXTURE
+} sd_sph_level;
 sd_sph_level sd_sph_level_of(const sd_sph_model *model);
 
-/* Columns of a row of sums: 1, 12, 16, 24; and the one that is no sum but a maximum, -1: none.
+/* Columns of a row of sums: 1, 12, 16, 24, 32; and the one that is no sum but a maximum, -1: none.
  *   rate       0      sum m_b g v.d, the density rate
  *   gradient   1-3    sum V_b (rho_b - rho_a) g d
  *              4-9    M = - sum V_b g d d^T: xx yy zz xy xz yz, the unit matrix in the bulk
@@ -20,6 +26,7 @@ sd_sph_level sd_sph_level_of(const sd_sph_model *model);
  *                     2000
  *              13     U = max |v.d| / r over fluid neighbours
  *   velocity   14-22  G = - sum V_b (v_a - v_b) g d^T, by rows
+ *   mixture    24-29  M over the particles of all fluids
  * Of two fluids (volume), gradient and M are over particles of the same fluid only. */
 int sd_sph_sum_columns(sd_sph_level level);
 enum { SD_SPH_MAXIMUM = 13 };

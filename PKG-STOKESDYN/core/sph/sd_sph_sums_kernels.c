@@ -40,21 +40,23 @@ static int kernel_copy(const sd_sph_model *model)
 #define SCHEME(scheme, kernel, many)                                                              \
   FORCES(scheme##kernel##many,                                                                    \
          {kernel, many, model->artvisc, 0, 0, model->friction, scheme})
-#define SLOPES(ignored, kernel, many)                                                             \
-  static double slopes##kernel##many(const sd_sph_model *model, const sd_sph_both *list,          \
-                                     const sd_sph_particles *p, double *f4, double *each)         \
+#define SLOPES(scheme, kernel, many)                                                              \
+  static double slopes##scheme##kernel##many(                                                     \
+      const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p, double *f4,  \
+      double *each)                                                                               \
   {                                                                                               \
     return slopes(model, list, p, f4, each,                                                       \
                   (terms){kernel, many, model->artvisc, 0, 0, model->friction,                    \
-                          SD_SPH_CORRECTION});                                                    \
+                          scheme});                                                               \
   }
-#define SLOPES_ENTRY(ignored, kernel, many) slopes##kernel##many,
+#define SLOPES_ENTRY(scheme, kernel, many) slopes##scheme##kernel##many,
 #define SCHEME_ENTRY(scheme, kernel, many) scheme##kernel##many,
 BY_RATES(PLAIN)
 BY_KERNEL(SCHEME, SD_SPH_SHIFT)
 BY_KERNEL(SCHEME, SD_SPH_VOLUME)
 BY_KERNEL(SCHEME, SD_SPH_VOLUME_SHIFT)
-BY_KERNEL(SLOPES, 0)
+BY_KERNEL(SLOPES, SD_SPH_CORRECTION)
+BY_KERNEL(SLOPES, SD_SPH_VOLUME_CORRECTION)
 
 static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
                          const sd_sph_particles *p, int with_rates, double *f4, double *each)
@@ -93,8 +95,9 @@ static double all_slopes(const sd_sph_model *model, const sd_sph_both *list,
 {
   typedef double copy(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,
                       double *);
-  static copy *const copies[] = {BY_KERNEL(SLOPES_ENTRY, 0)};
-  return copies[kernel_copy(model)](model, list, p, f4, each);
+  static copy *const copies[][4] = {{BY_KERNEL(SLOPES_ENTRY, SD_SPH_CORRECTION)},
+                                    {BY_KERNEL(SLOPES_ENTRY, SD_SPH_VOLUME_CORRECTION)}};
+  return copies[sd_sph_of_fluids(model)][kernel_copy(model)](model, list, p, f4, each);
 }
 
 #define LEVEL(level, volume, kernel, many)                                                        \
@@ -105,12 +108,12 @@ static double all_slopes(const sd_sph_model *model, const sd_sph_both *list,
     middle(model, list, p, sums, near, kernel, many, level, volume);                              \
   }
 #define LEVEL_ENTRY(level, volume, kernel, many) level##volume##kernel##many,
-/* Volume has no correction. */
 BY_KERNEL(LEVEL, SD_SPH_GRADIENT, 0)
 BY_KERNEL(LEVEL, SD_SPH_GRADIENT, 1)
 BY_KERNEL(LEVEL, SD_SPH_DISORDER, 0)
 BY_KERNEL(LEVEL, SD_SPH_DISORDER, 1)
 BY_KERNEL(LEVEL, SD_SPH_VELOCITY, 0)
+BY_KERNEL(LEVEL, SD_SPH_MIXTURE, 1)
 
 static void all_middle(const sd_sph_model *model, const sd_sph_both *list,
                        const sd_sph_particles *p, double *sums, const sd_sph_near *near)
@@ -122,7 +125,8 @@ static void all_middle(const sd_sph_model *model, const sd_sph_both *list,
                            {BY_KERNEL(LEVEL_ENTRY, SD_SPH_GRADIENT, 1)}},
       [SD_SPH_DISORDER] = {{BY_KERNEL(LEVEL_ENTRY, SD_SPH_DISORDER, 0)},
                            {BY_KERNEL(LEVEL_ENTRY, SD_SPH_DISORDER, 1)}},
-      [SD_SPH_VELOCITY] = {{BY_KERNEL(LEVEL_ENTRY, SD_SPH_VELOCITY, 0)}}};
+      [SD_SPH_VELOCITY] = {{BY_KERNEL(LEVEL_ENTRY, SD_SPH_VELOCITY, 0)}},
+      [SD_SPH_MIXTURE] = {{NULL}, {BY_KERNEL(LEVEL_ENTRY, SD_SPH_MIXTURE, 1)}}};
   const int volume = sd_sph_of_fluids(model);
   copies[sd_sph_level_of(model)][volume][kernel_copy(model)](model, list, p, sums, near);
 }

@@ -119,7 +119,7 @@ static inline void forces_of(const scene *s, double *f4)
 {
   neighbours around;
   const sd_sph_both both = both_ways(s, &around, N);
-  if (s->model.scheme == SD_SPH_CORRECTION)
+  if (sd_sph_corrects(&s->model))
     sd_sph_corrected_forces(&s->model, &both, &s->p, f4, NULL);
   else
     sd_sph_forces(&s->model, &s->list, &s->p, 0, f4, NULL);

@@ -1,7 +1,7 @@
 /* Shift, correction, central friction and two fluids: what they are exact for, what they keep. */
 #include "sph_scene.h"
 
-enum { WIDE = 24, ROW = 16 };
+enum { WIDE = 32, ROW = 16 };
 
 /* What a step computes for one scene, as the glue calls it. */
 typedef struct {
@@ -120,7 +120,7 @@ static void correction_stops_at_a_free_surface(void **state)
   s.x4[4 * 7] += 1.9;    // beyond the others, still in reach
   middle_of(&s, &t, 0.6);
   double largest = 0.0;
-  for (int i = 0; i < N; i++) largest = fmax(largest, t.sums[WIDE * i + 4]);
+  for (int i = 0; i < N; i++) largest = fmax(largest, t.sums[24 * i + 4]);
   assert_true(t.stops >= 0 && largest > 0.6);
 }
 
@@ -390,6 +390,53 @@ static void two_fluids_do_not_mix(void **state)
   for (int i = 1; i < N; i += 2) CHECK_NEAR(rate[i], 0.0, 1e-12);
 }
 
+/* Two fluids with correction: the rate is exact for a linear velocity whatever the densities, and the
+ * force is the formula, - V_a sum V_b 2 rho_a / (rho_a + rho_b) (P_b - P_a) B_a g d. */
+static void two_fluids_with_correction(void **state)
+{
+  (void) state;
+  for (int dimension = 2; dimension <= 3; dimension++)
+    for (int classes = 1; classes <= 2; classes++) {
+      scene s;
+      step t;
+      wide_scene(&s, SD_SPH_VOLUME_CORRECTION, dimension, classes);
+      linear_velocity(&s, GENERAL, DRIFT);
+      for (int i = 0; i < N; i++) {
+        s.phase[i] = i % 2;
+        s.rho[i] = 1000.0;
+        if (i % 2) s.rho[i] *= 0.3;
+        s.m[i] *= s.rho[i] / 1000.0;
+      }
+      s.p.phase = s.phase;
+      middle_of(&s, &t, 0.1);
+      assert_int_equal(t.stops, -1);
+      const double divergence = GENERAL[0] + GENERAL[4] + (dimension == 3 ? GENERAL[8] : 0.0);
+      /* M of all fluids is that of one: it does not know of phases */
+      force_of(&s, &t);
+      for (int i = 0; i < N; i++) {
+        CHECK_NEAR(t.rate[i], -s.rho[i] * divergence, 1e-9);
+        const double *B = t.order + ROW * i + 8, V = mass(&s, i) / s.rho[i];
+        const double rows[3][3] = {{B[0], B[3], B[4]}, {B[3], B[1], B[5]}, {B[4], B[5], B[2]}};
+        double expected[3] = {0.0}, size = 0.0;
+        for (int j = 0; j < N; j++) {
+          if (j == i) continue;
+          double d[3], r2 = 0.0;
+          for (int c = 0; c < 3; c++) {
+            d[c] = s.x[3 * i + c] - s.x[3 * j + c];
+            r2 += d[c] * d[c];
+          }
+          const double g = sd_sph_dW_over_r(SD_SPH_WENDLAND, dimension, sqrt(r2), s.types[classes > 1 ? 2 * s.cls[i] + s.cls[j] : 0].h);
+          const double weight = -V * mass(&s, j) / s.rho[j] * 2.0 * s.rho[i] / (s.rho[i] + s.rho[j]) *
+              (s.P[j] - s.P[i]) * g;
+          for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++) expected[a] += weight * rows[a][b] * d[b];
+          size += fabs(weight) * sqrt(r2);
+        }
+        for (int c = 0; c < dimension; c++) CHECK_NEAR(t.f4[4 * i + c], expected[c], 1e-12 * size);
+      }
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(correction_is_exact_for_linear_fields),
@@ -402,6 +449,7 @@ int main(void)
                                      cmocka_unit_test(central_friction_keeps_both_momenta),
                                      cmocka_unit_test(corrected_friction),
                                      cmocka_unit_test(two_fluids_exchange_energy_exactly),
-                                     cmocka_unit_test(two_fluids_do_not_mix)};
+                                     cmocka_unit_test(two_fluids_do_not_mix),
+                                     cmocka_unit_test(two_fluids_with_correction)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,314 @@
+#include "fix_sph_opening.h"
+
+#include "keywords.h"
+#include "named_state.h"
+#include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
+#include "sph.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "domain.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+#include <tuple>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+// --- both ends ----------------------------------------------------------------------------------------
+
+FixSphOpening::FixSphOpening(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
+{
+  nevery = 1;
+  scalar_flag = 1;
+  global_freq = 1;
+  extscalar = 1;
+  restart_global = 1;
+}
+
+Keywords FixSphOpening::parse_place(int narg, char **arg)
+{
+  Keywords in(lmp, command, words(narg, arg), 3);
+  const size_t face = in.positional("FACE").choice({"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"});
+  axis = (int) face / 2;
+  side = face % 2 ? 1 : -1;
+  plane = in.positional("POSITION").number();
+  width = in.positional("WIDTH").positive();
+  return in;
+}
+
+int FixSphOpening::setmask()
+{
+  return FixConst::PRE_EXCHANGE | FixConst::END_OF_STEP;
+}
+
+/* New particles must find room in the box, and old ones must not be lost before they are deleted. */
+void FixSphOpening::init()
+{
+  SphFix::init();
+  if (domain->triclinic) fail(lmp, command + ": not in a triclinic box");
+  const double end = plane + side * width, edge = side > 0 ? domain->boxhi[axis] : domain->boxlo[axis];
+  if (domain->boundary[axis][side > 0] != 1)
+    fail(lmp,
+         command + ": the box must end beyond the layer with boundary f, along " +
+             std::string(1, (char) ('x' + axis)));
+  if (side * (end - edge) > 1e-9 * width)
+    fail(lmp,
+         command + ": the layer from " + text(plane) + " to " + text(end) +
+             " does not fit into the box, which ends at " + text(edge));
+}
+
+bool FixSphOpening::is_held(int i) const
+{
+  return (atom->mask[i] & groupbit) && holds(atom->x[i]);
+}
+
+/* Fluid at the plane sees 2 h into the layer; new particles are made up to half of the skin late, and
+ * the last row stands a spacing before the end. Spacing and half of the skin are less than h. */
+void FixSphOpening::check_width()
+{
+  double h = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) h = std::max(h, pair->smoothing_length(atom->type[i]));
+  MPI_Allreduce(MPI_IN_PLACE, &h, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double needed = 2.0 * h + std::max(h, neighbor->skin);
+  if (width < needed)
+    fail(lmp,
+         command + ": the width " + text(width) + " of the layer is too small: particles of the flow "
+                   "would see its end; it must be " + text(needed) + " or more");
+}
+
+double FixSphOpening::compute_scalar()
+{
+  double all = 0.0;
+  MPI_Allreduce(&passed, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+void FixSphOpening::write_restart(FILE *fp)
+{
+  NamedState state(style);
+  state.put("passed", compute_scalar());
+  if (comm->me == 0) state.write(fp);
+}
+
+void FixSphOpening::restart(char *buf)
+{
+  NamedState state(style);
+  if (state.read(lmp, buf) && comm->me == 0) passed = state.get("passed", 0.0);
+}
+
+// --- inlet --------------------------------------------------------------------------------------------
+
+FixSphInlet::FixSphInlet(LAMMPS *lmp, int narg, char **arg) :
+    FixSphOpening(lmp, narg, arg), marks(COLUMNS)
+{
+  Keywords in = parse_place(narg, arg);
+  in.parse({
+      {"velocity", [&] { velocity = Field::parse(in); }},
+      {"gravity", [&] { for (Field &component : gravity) component = Field::parse(in); }},
+  });
+  in.require(in.given("velocity"), "keyword velocity is required: the speed into the flow");
+  keep({&marks}, nullptr, true);
+}
+
+void FixSphInlet::init()
+{
+  FixSphOpening::init();
+  velocity.init(lmp, command + ": keyword velocity");
+  for (Field &component : gravity) {
+    component.init(lmp, command + ": keyword gravity");
+    if (component.is_atom_style())
+      fail(lmp, command + ": keyword gravity: the variable must be of equal style: one for all");
+  }
+}
+
+void FixSphInlet::find_gravity()
+{
+  for (int d = 0; d < 3; d++) g[d] = gravity[d].evaluate(lmp);
+}
+
+void FixSphInlet::find_speeds()
+{
+  speeds.resize(atom->nlocal + 1);
+  velocity.evaluate(lmp, igroup, speeds.data(), 1);
+}
+
+void FixSphInlet::move_layer()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_held(i)) continue;
+    for (int d = 0; d < 3; d++) atom->v[i][d] = d == axis ? -side * speeds[i] : 0.0;
+  }
+}
+
+/* Particles that it has not met before are its own if they stand in the layer. */
+void FixSphInlet::setup_pre_exchange()
+{
+  check_width();
+  int mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    mine += is_held(i);
+    if (!marks.has(i)) marks.give(i)[STATE] = is_held(i) ? IN_LAYER : REPLACED;
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  if (all == 0)
+    fail(lmp, command + ": its layer is empty: fill it with particles of its group (create_atoms)");
+  find_speeds();
+  move_layer();
+}
+
+/* A particle that has left is the width of the layer ahead of the one that takes its place. That one
+ * moves on with the speed of the layer until there is a new list of neighbours, and it can be made. */
+void FixSphInlet::end_of_step()
+{
+  find_speeds();
+  move_layer();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    double *mark = marks.give(i);
+    if (mark[STATE] == DUE)
+      mark[PLACE + axis] -= side * update->dt * mark[SPEED];
+    else if (mark[STATE] == IN_LAYER && !holds(atom->x[i])) {
+      mark[STATE] = DUE;
+      std::copy_n(atom->x[i], 3, mark + PLACE);
+      mark[PLACE + axis] += side * width;
+      mark[SPEED] = speeds[i];
+      mark[LEFT] = (double) update->ntimestep;
+      passed += Sph::mass(lmp, i);
+    }
+  }
+}
+
+/* All that are due on any rank, in an order that does not depend on ranks. Positions have been moved
+ * on by this step already. */
+std::vector<FixSphInlet::Newcomer> FixSphInlet::newcomers()
+{
+  std::vector<Newcomer> mine;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || marks[i][STATE] != DUE) continue;
+    double *mark = marks.give(i);
+    Newcomer next = {mark[LEFT], (double) atom->tag[i], {mark[PLACE], mark[PLACE + 1], mark[PLACE + 2]},
+                     mark[SPEED], atom->rho[i], atom->rmass ? atom->rmass[i] : 0.0,
+                     atom->type[i], atom->mask[i]};
+    next.place[axis] -= side * update->dt * next.speed;
+    mine.push_back(next);
+    mark[STATE] = REPLACED;
+  }
+  std::vector<Newcomer> all = from_all(world, mine);
+  std::sort(all.begin(), all.end(), [](const Newcomer &a, const Newcomer &b) {
+    return std::tie(a.left, a.parent) < std::tie(b.left, b.parent);
+  });
+  return all;
+}
+
+bool FixSphInlet::is_here(double *place) const
+{
+  domain->remap(place);
+  bool here = true;
+  for (int d = 0; d < domain->dimension; d++)
+    here = here && place[d] >= domain->sublo[d] && place[d] < domain->subhi[d];
+  return here;
+}
+
+void FixSphInlet::create(const Newcomer &like, tagint tag)
+{
+  double place[3];
+  std::copy_n(like.place, 3, place);
+  if (!is_here(place)) return;
+  atom->avec->create_atom(like.type, place);
+  const int i = atom->nlocal - 1;
+  atom->tag[i] = tag;
+  atom->mask[i] = like.mask;
+  atom->v[i][axis] = atom->vest[i][axis] = -side * like.speed;
+  modify->create_attribute(i);
+  atom->rho[i] = like.rho;
+  if (atom->rmass) atom->rmass[i] = like.mass;
+  marks.give(i)[STATE] = IN_LAYER;
+}
+
+void FixSphInlet::pre_exchange()
+{
+  const std::vector<Newcomer> all = newcomers();
+  if (all.empty()) return;
+  tagint last = 0;
+  for (int i = 0; i < atom->nlocal; i++) last = std::max(last, atom->tag[i]);
+  MPI_Allreduce(MPI_IN_PLACE, &last, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+
+  // new particles stand where ghosts were
+  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
+  atom->nghost = 0;
+  atom->avec->clear_bonus();
+  for (const Newcomer &next : all) create(next, ++last);
+  const bigint before = atom->natoms, mine = atom->nlocal;
+  MPI_Allreduce(&mine, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (atom->natoms != before + (bigint) all.size())
+    fail(lmp,
+         command + ": step " + std::to_string(update->ntimestep) +
+             ": a new particle would stand outside of the box: where the flow turns back, the box must "
+             "be longer than the layer");
+  if (atom->map_style != Atom::MAP_NONE) {
+    atom->map_init();
+    atom->map_set();
+  }
+}
+
+// --- outlet -------------------------------------------------------------------------------------------
+
+FixSphOutlet::FixSphOutlet(LAMMPS *lmp, int narg, char **arg) : FixSphOpening(lmp, narg, arg)
+{
+  Keywords in = parse_place(narg, arg);
+  in.parse({{"pressure", [&] { pressure = Field::parse(in); }}});
+}
+
+void FixSphOutlet::init()
+{
+  FixSphOpening::init();
+  pressure.init(lmp, command + ": keyword pressure");
+}
+
+void FixSphOutlet::setup_pre_exchange()
+{
+  check_width();
+}
+
+const double *FixSphOutlet::find_pressures()
+{
+  pressures.resize(atom->nlocal + 1);
+  pressure.evaluate(lmp, igroup, pressures.data(), 1);
+  return pressures.data();
+}
+
+void FixSphOutlet::end_of_step()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_held(i)) continue;
+    for (int d = 0; d < 3; d++)
+      if (d != axis) atom->v[i][d] = 0.0;
+  }
+}
+
+void FixSphOutlet::pre_exchange()
+{
+  bigint gone = 0;
+  for (int i = atom->nlocal - 1; i >= 0; i--) {
+    if (!(atom->mask[i] & groupbit) || beyond(atom->x[i]) < width) continue;
+    passed += Sph::mass(lmp, i);
+    atom->avec->copy(atom->nlocal - 1, i, 1);
+    atom->nlocal--;
+    gone++;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &gone, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  atom->natoms -= gone;
+  if (gone > 0 && atom->map_style != Atom::MAP_NONE) {
+    atom->nghost = 0;
+    atom->map_init();
+    atom->map_set();
+  }
+}

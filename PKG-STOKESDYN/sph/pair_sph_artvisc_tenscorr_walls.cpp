@@ -1,0 +1,116 @@
+/* Of pair_style sph/artVisc/tensCorr: particles that are no fluid, of walls and of open ends. */
+#include "pair_sph_artvisc_tenscorr.h"
+
+#include "fix_sph_opening.h"
+#include "fix_sph_pressure.h"
+#include "fix_wall_adami_sph.h"
+#include "keywords.h"
+#include "sd_sph_wall.h"
+
+#include "atom.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+bool PairSph::is_wall(int i) const
+{
+  return wall && (atom->mask[i] & wall->groupbit);
+}
+
+template <class Style> static Style *holder(const std::vector<Style *> &fixes, const Atom *atom, int i)
+{
+  for (auto *fix : fixes)
+    if ((atom->mask[i] & fix->groupbit) && fix->holds(atom->x[i])) return fix;
+  return nullptr;
+}
+
+bool PairSph::is_held(int i) const
+{
+  return holder(inlets, atom, i) || holder(outlets, atom, i);
+}
+
+const FixSphPressure *PairSph::state_of(int i) const
+{
+  for (const auto *fix : pressures)
+    if (atom->mask[i] & fix->groupbit) return fix;
+  return nullptr;    // look_at_densities has seen to it
+}
+
+/* The row of a wall particle, sd_sph_wall.h. */
+void PairSph::wall_row(int i, const double *sums_i, double *row)
+{
+  const FixSphPressure *eos = state_of(i);
+  const sd_sph_wall how = {&eos->state, wall->slip};
+  const double sound = sd_sph_speed_of_sound(&eos->state, row[0]);
+  const double *b = wall->body_force(i, 2.0 * smoothing_length(atom->type[i]) / sound);
+  const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], b, row);
+  if (row[0] == 0.0) no_density(FixWallAdamiSph::STYLE, i, text(asked) + " that the fluid asks for");
+}
+
+/* Particles of an inlet have the pressure of the fluid before them, as walls, and their own
+ * velocity; those of an outlet have the pressure that it is told. */
+void PairSph::held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row)
+{
+  const FixSphPressure *eos = state_of(i);
+  if (auto *inlet = holder(inlets, atom, i)) {
+    const sd_sph_wall how = {&eos->state, 0};
+    const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], inlet->body_force(), row);
+    std::fill_n(row + 1, 3, 0.0);
+    if (row[0] == 0.0) no_density(FixSphInlet::STYLE, i, text(asked) + " that the fluid asks for");
+    return;
+  }
+  const auto *outlet = holder(outlets, atom, i);
+  const size_t k = std::find(outlets.begin(), outlets.end(), outlet) - outlets.begin();
+  row[0] = sd_sph_density_of(&eos->state, given[k][i]);
+  std::fill_n(row + 1, 3, 0.0);
+  if (row[0] == 0.0) no_density(FixSphOutlet::STYLE, i, text(given[k][i]) + " that is asked of it");
+}
+
+void PairSph::no_density(const std::string &style, int i, const std::string &asked) const
+{
+  const FixSphPressure *eos = state_of(i);
+  fail_one(lmp,
+           "Fix " + style + ": step " + std::to_string(update->ntimestep) + ": atom " +
+               std::to_string(atom->tag[i]) + ": the pressure " + asked + " is not above " +
+               text(sd_sph_least_pressure(&eos->state)) + ", the least of fix " + eos->id +
+               ": a larger B or P0 makes room for it, if gravity is right");
+}
+
+/* What the particles of walls and open ends take from the fluid before them. Their density becomes the
+ * one that has this pressure, so ghosts get it like any other density. The velocity travels as the
+ * difference to v, which ghosts have. */
+void PairSph::wall_particles()
+{
+  const int n = particles.n;
+  sd_sph_pack_v(n, atom->vest ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  weights.resize(8 * (size_t) (n + 1));
+  sd_sph_pack_fluid(&particles, P.data(), weights.data());
+  sums.assign(8 * (size_t) (n + 1), 0.0);
+  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), sums.data());
+  reverse(sums.data(), 8);
+
+  wall_rows.resize(4 * (size_t) (n + 1));
+  if (wall) wall->find_gravity();
+  for (auto *inlet : inlets) inlet->find_gravity();
+  std::vector<const double *> given;
+  for (auto *outlet : outlets) given.push_back(outlet->find_pressures());
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *row = &wall_rows[4 * (size_t) i];
+    row[0] = atom->rho[i];
+    if (is_wall(i))
+      wall_row(i, &sums[8 * (size_t) i], row);
+    else if (is_held(i))
+      held_row(i, &sums[8 * (size_t) i], given, row);
+  }
+  forward(wall_rows.data(), 4);
+  for (int i = 0; i < n; i++) {
+    if (!is_wall(i) && !is_held(i)) continue;
+    const double *row = &wall_rows[4 * (size_t) i];
+    atom->rho[i] = row[0];
+    for (int d = 0; d < 3; d++) atom->vest[i][d] = atom->v[i][d] + row[1 + d];
+  }
+  pressures_of_all();
+}

@@ -1,0 +1,149 @@
+"""Open ends: a plug flow passes through as a lattice, mass that came in and went out is what the box has more, hydrostatic ends leave water
+at rest, and neither ranks nor restarts matter."""
+import numpy as np
+import pytest
+
+from sph_tools import by_id, fix_by_id, mpirun, run, start
+from test_sph_input import message
+
+PIPE = """
+units lj
+dimension 2
+atom_style sph
+atom_modify map array
+boundary f p p
+lattice sq 100 origin 0.5 0.5 0
+region all block -0.7 1.7 0 0.6 -0.05 0.05 units box
+create_box 1 all
+create_atoms 1 box
+mass 1 0.01
+set group all sph/rho 1
+set group all vx 1
+neighbor 0.03 bin
+neigh_modify delay 0 every 1
+pair_style sph/artVisc/tensCorr wendland 0.2 viscosity 0.05 shift yes
+pair_coeff * * c 10
+fix eos all sph/pressure Tait $(100/7) 1 7
+fix density all sph/density/continuity delta 0.1
+fix move all nve/sph
+timestep 0.005
+thermo_modify lost error
+"""
+OPEN = "fix in all sph/inlet xlo 0 0.7 velocity {}\nfix out all sph/outlet xhi 1 0.7 pressure 0\nfix flat all enforce2d\n"
+
+
+def test_plug_flow_passes_through_as_a_lattice():
+    """2.3 lengths of the flow: all particles are others, and stand as if nothing had happened."""
+    lmp = start()
+    run(lmp, PIPE + OPEN.format(1) + "run 460 post no")
+    x, v, P = by_id(lmp, "x", 3), by_id(lmp, "v", 3), fix_by_id(lmp, "eos")
+    inside = (x[:, 0] > 0) & (x[:, 0] < 1)
+    assert np.abs(v[inside] - [1, 0, 0]).max() < 1e-9 and np.abs(P[inside]).max() < 1e-7
+    assert inside.sum() == 60
+    columns = np.sort(x[:, 0])[::6]
+    assert np.abs(np.diff(columns) - 0.1).max() < 1e-9
+    assert len(np.unique(by_id(lmp, "id"))) == len(x) and by_id(lmp, "id").min() > 0
+    passed = [lmp.extract_fix(name, 0, 0) for name in ("in", "out")]
+    assert passed[0] == pytest.approx(0.01 * 6 * 23, abs=0.061)
+    assert abs(passed[0] - passed[1] - 0.01 * (len(x) - 144)) < 0.07    # a column may be on its way
+    lmp.close()
+
+
+def test_no_mass_is_made_where_the_flow_turns_back():
+    """A flow that goes back and forth across the inlet's plane: who has been replaced is not replaced again."""
+    lmp = start()
+    room = PIPE.replace("block -0.7 1.7", "block -0.9 1.9").replace("create_atoms 1 box", "region full block -0.7 1.7 INF INF INF INF units box\n"
+                                                                     "create_atoms 1 region full")
+    run(lmp, room + "variable u equal 0.5*cos(2*PI*step*dt/0.8)+0.1\nset group all vx 0.6\n" + OPEN.format("v_u") + "run 640 post no")
+    x = by_id(lmp, "x", 3)[:, 0]
+    assert len(x) <= 144 and ((x > 0) & (x < 1)).sum() <= 60
+    assert lmp.extract_fix("in", 0, 0) <= 0.01 * 6 * (0.1 * 3.2 / 0.1 + 2)
+    lmp.close()
+
+
+STILL = """
+units lj
+dimension 2
+atom_style sph
+atom_modify map array
+boundary f f p
+lattice sq 100 origin 0.5 0.5 0
+region all block -0.7 1.7 -0.4 2 -0.05 0.05 units box
+create_box 2 all
+region water block INF INF 0 1 INF INF units box
+region floor block INF INF INF 0 INF INF units box
+create_atoms 1 region water
+create_atoms 2 region floor
+mass * 0.01
+group water type 1
+group floor type 2
+variable rho atom (1+7/100*(1-y)*(y<1))^(1/7)
+set group all sph/rho v_rho
+set group water vx 0.5
+neighbor 0.03 bin
+neigh_modify delay 0 every 1
+pair_style sph/artVisc/tensCorr wendland 0.2 artVisc 0.1 0 4e-4 shift yes
+pair_coeff * * c 10
+fix eos all sph/pressure Tait $(100/7) 1 7
+fix density all sph/density/continuity delta 0.1
+fix floor floor wall/adami/sph gravity 0 -1 0 slip yes
+variable P atom 1-y
+fix in water sph/inlet xlo 0 0.7 velocity 0.5 gravity 0 -1 0
+fix out water sph/outlet xhi 1 0.7 pressure v_P
+fix move water nve/sph
+fix g water gravity 1 vector 0 -1 0
+fix flat all enforce2d
+timestep 0.005
+"""
+
+
+def test_a_river_keeps_its_depth_and_its_speed():
+    """Water with a free surface that glides over a floor without friction, hydrostatic at both ends: one length of the flow."""
+    lmp = start()
+    run(lmp, STILL + "run 400 post no")
+    x, v, kind, P = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "type"), fix_by_id(lmp, "eos")
+    inside = (x[:, 0] > 0.2) & (x[:, 0] < 0.8) & (kind == 1)
+    assert v[inside, 0].mean() == pytest.approx(0.5, rel=0.02)
+    assert x[inside, 1].max() == pytest.approx(0.95, abs=0.05)
+    deep = inside & (x[:, 1] < 0.6)
+    assert np.polyfit(x[deep, 1], P[deep], 1)[0] == pytest.approx(-1, rel=0.06)
+    lmp.close()
+
+
+def test_open_ends_on_any_number_of_ranks_and_over_restarts(tmp_path):
+    scene = PIPE + "variable u atom 0.8+0.4*sin(2*PI*y/0.6)\n" + OPEN.format("v_u")
+    dump = "dump d all custom 200 %s.dump.* x y vx vy f_eos\ndump_modify d format float %%.17g\nrun %d post no\n"
+
+    def go(name, ranks, text):
+        done = mpirun(ranks, text, tmp_path)
+        assert done.returncode == 0, done.stdout + done.stderr
+        rows = np.loadtxt(tmp_path / (name + ".dump.200"), skiprows=9)
+        rows = rows[(rows[:, 0] > 0) & (rows[:, 0] < 1)]
+        return rows[np.lexsort((rows[:, 1].round(7), rows[:, 0].round(7)))]
+    first = go("one", 1, scene + dump % ("one", 200))
+    assert np.abs(go("three", 3, scene + dump % ("three", 200)) - first).max() <= 1e-12 * np.abs(first).max()
+    done = mpirun(1, scene + "run 123\nwrite_restart half\nrun 10\nvariable a equal f_in\nprint \"in $(v_a:%.17g)\"\n", tmp_path)
+    assert done.returncode == 0, done.stdout
+    fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep", "variable")))
+    again = go("again", 2, "atom_modify map array\nread_restart half\n" + fixes + "\n" + dump % ("again", 77))
+    assert np.abs(again - first).max() <= 1e-12 * np.abs(first).max()
+
+
+@pytest.mark.parametrize("change, words", [
+    (("velocity 1", ""), "keyword velocity is required"),
+    (("xlo 0 0.7", "left 0 0.7"), "'left' is none of: xlo, xhi"),
+    (("xlo 0 0.7", "xlo 0 0.9"), "does not fit into the box, which ends at -0.7"),
+    (("xlo 0 0.7", "xlo 0 0.5"), "the width 0.5 of the layer is too small"),
+    (("xlo 0 0.7", "ylo 0.3 0.3"), "the box must end beyond the layer with boundary f, along y"),
+    (("fix move all nve/sph", "group some id 1:100\nfix move some nve/sph"), "of its group is not moved by fix nve/sph"),
+    (("pressure 0", "pressure -20"), "the pressure -20 that is asked of it is not above -14.2857"),
+    (("velocity 1", "velocity v_no"), "variable 'no' does not exist"),
+])
+def test_bad_input(change, words):
+    scene = PIPE + OPEN.format(1)
+    assert change[0] in scene
+    assert words in message(scene.replace(*change) + "run 1")
+
+
+def test_an_empty_layer_is_an_error():
+    assert "its layer is empty" in message(PIPE + "region b block -1 0 INF INF INF INF units box\ndelete_atoms region b\n" + OPEN.format(1) + "run 1")
