@@ -130,8 +130,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* [nlocal], or empty: of strain_power() */
   std::vector<double> films_power;
 
-  /* do the scene's rows, and what films need around them, stand as in this step? */
-  bool standing = false;
+  /* do the scene's rows, and what films need around them, stand as in this step? With shells, are
+   * the forces in begin_with those of this step's solve, by these rows? */
+  bool standing = false, solved = false;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
@@ -143,8 +144,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
     return shells.settings.on() ||
         (settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1);
   }
+  void stand_rows();
   void surround();
   void read_motion();
+  void place_films();
   void lubricate();
   void find_films_power();
   sd_status run(sd_solve_report &report);
@@ -156,6 +159,12 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void keep();
   void recall_points(std::vector<double> &l, double line);
   void keep_points(const std::vector<double> &l);
+  /* by rows: points of the shells as they stand now, from their centre and in space, their radii,
+   * and the forces on the fluid that the last solve found */
+  struct Points {
+    std::vector<double> r, x, b, l;
+  };
+  Points points_of_now();
   std::vector<OnFluid> of_points_on_fluid();
   int algorithm() const    // of the next solve
   {

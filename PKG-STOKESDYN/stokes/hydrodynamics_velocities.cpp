@@ -82,6 +82,7 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Veloc
                          settings.max_iter};
   how.draw = draw;
   const sd_status status = mobile.together(how, begin_with, take, report);
+  solved = true;
   films_power.clear();
   if (settings.lubrication.on && status == SD_OK) {
     read_motion();
@@ -154,9 +155,13 @@ void Hydrodynamics::turn(int i, const double R[9])
 
 void Hydrodynamics::stress(std::vector<double> &of_atoms)
 {
+  const bool films_stand = standing;
+  stand_rows();
+  if (settings.lubrication.on && !films_stand) place_films();
+  const Points now = points_of_now();
   const size_t n = scene.size();
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0), rows(12 * n + 12);
-  mobile.add_moments(begin_with.l, points.data());
+  sd_multiblob_moments(&shells.model(), (int) n, now.r.data(), now.l.data(), points.data());
   if (overdamped) mobile.add_constraints(points.data());
   if (settings.lubrication.on) {
     const double *v = overdamped ? mobile.last_velocities() : films_v.data();

@@ -206,39 +206,58 @@ void Velocities::place(int width)
   scene.drift(u.data(), width, 1.0);
 }
 
-/* The bodies as the core wants them: free spheres, then clumps */
+/* The bodies as the core wants them: free spheres, then clumps. With shells, and near a wall, where a
+ * sphere is one with its image, all of them have a shape. */
 void Velocities::arrange()
 {
-  const size_t n = scene.size();
+  const Shells *shells = scene.shells;
+  const size_t n = scene.size(), P = shells ? shells->points() : 1;
+  const bool wall = scene.settings.wall.sign && scene.settings.rotation;
+  /* rows of clumps that are not rigid are free spheres as well */
+  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
   member.clear();
   shaped.clear();
   loner.clear();
   whole.assign(n + 1, 0);
   arm.assign(3 * n + 3, 0.0);
-  const bool wall = scene.settings.wall.sign && scene.settings.rotation;
-  /* rows of clumps that are not rigid are free spheres as well */
-  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
+  const auto add_points = [&](const sd_multiblob_shape &shape, const std::vector<int> &rows) {
+    for (int k = 0; k < shape.points.m; k++)
+      member.push_back(P * rows[shape.row[k] / P] + shape.row[k] % P);
+  };
   for (int k = 0; k < free_ones; k++) {
+    const double w = scene.local().w[k], eta = 1.0 / (w * w);
     whole[k] = k;
-    if (!wall) {
+    if (shells) {
+      const sd_multiblob_shape &shape = shells->free_sphere();
+      add_points(shape, {k});
+      shaped.push_back(
+          {&shape.points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, scene.local().a[k], eta, nullptr});
+    } else if (wall) {
+      member.push_back(k);
+      shaped.push_back({nullptr, {}, 1.0, eta, nullptr});
+    } else
       loner.push_back(k);
-      continue;
-    }
-    const double w = scene.local().w[k];    // with its image it will be a body of a shape
-    member.push_back(k);
-    shaped.push_back({nullptr, {}, 1.0, 1.0 / (w * w), nullptr});
   }
-  std::vector<double> arms;
   for (const Clump &clump : clumps) {
-    sd_body body = {&rigid.blocks(*clump.body->shape), {}, 1.0, clump.eta, nullptr};
-    std::copy_n(clump.pose, 9, body.R);
-    arms.resize(3 * (size_t) clump.body->n);
-    sd_body_arms(&body, arms.data());
+    const ClumpShape &is = *clump.body->shape;
+    sd_body body = {nullptr, {}, 1.0, clump.eta, nullptr};
+    std::vector<int> rows;
     for (int k = 0; k < clump.body->n; k++) {
       const int row = scene.row_of_member((int) member_of(clump, k));
-      member.push_back(row);
+      rows.push_back(row);
       whole[row] = loner.size() + shaped.size();
-      std::copy_n(&arms[3 * (size_t) k], 3, &arm[3 * (size_t) row]);
+      sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &arm[3 * (size_t) row]);
+    }
+    if (shells) {
+      const sd_multiblob_shape &shape = rigid.points(is, shells->model());
+      double turn[9];
+      add_points(shape, rows);
+      body.shape = &shape.points;
+      sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
+    } else {
+      member.insert(member.end(), rows.begin(), rows.end());
+      body.shape = &rigid.blocks(is);
+      std::copy_n(clump.pose, 9, body.R);
     }
     shaped.push_back(body);
   }
@@ -283,15 +302,13 @@ sd_bodies Velocities::bodies(int width)
 
 sd_bodies Velocities::assemble(int width)
 {
-  if (scene.shells) {
+  if (scene.shells)
     place_shells();
-    arrange_shells();
-  } else {
+  else
     place(width);
-    arrange();
-  }
+  arrange();
   in_open_space = shaped;
-  if (scene.settings.rotation) stand_at_wall();
+  stand_at_wall();
   return scene.shells ? bodies_of_shells() : bodies(width);
 }
 
@@ -328,7 +345,10 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
   A.held = held.data();
   const size_t m = how.width, rows = m * scene.size();
   if (scene.shells) {
-    if (how.unstrained) std::fill(slope.begin(), slope.end(), 0.0);
+    if (how.unstrained) {
+      std::fill(slope.begin(), slope.end(), 0.0);
+      bend.clear();
+    }
     slip_at_points(slip.data());
   } else {
     std::copy_n(slip.begin(), rows, u.begin());

@@ -107,10 +107,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_status resist(const How &how, const std::vector<double> &slip, Guess &guess,
                    std::vector<double> &F, sd_bodies_report &report);
 
-  /* With shells, since then: S [6 rows] += first moments of the points' forces l; velocities of the
-   * rows, those of the images that they stand for */
-  void add_moments(const std::vector<double> &l, double *S) const;
-  /* Likewise of what keeps the spheres of clumps together, after velocities were found */
+  /* With shells, after velocities were found: S [6 rows] += first moments of what keeps the spheres
+   * of clumps together; velocities of the rows, those of the images that they stand for */
   void add_constraints(double *S) const;
   const double *last_velocities() const { return moved_with.data(); }
 
@@ -131,9 +129,10 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* for the core, by rows, by clumps, by spheres of clumps */
   std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
   std::vector<int> member, whole, loner;
-  /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow */
+  /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow, and its
+   * second derivatives or nothing */
   std::vector<int> sphere;
-  std::vector<double> r, slope, moved_with;
+  std::vector<double> r, slope, bend, moved_with;
   sd_multiblob_mobility of_points = {};
   sd_faces faces = {};
   std::vector<char> whole_shells;
@@ -166,7 +165,6 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_bodies assemble(int width);
   void place_shells();
   void slip_at_points(const double *slip);
-  void arrange_shells();
   /* near a wall: blocks of the bodies where they stand */
   std::vector<sd_body_shape> standing;
   void leave_wall();
@@ -174,7 +172,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_status stand_at_wall(sd_body &body, double bodies);
   std::vector<int> spheres_of(const sd_body &body) const;
   sd_bodies bodies_of_shells();
-  void flow_at_points(const double *velocity, int stride, const double *gradient, double *out) const;
+  void flow_at_points(const double *velocity, int stride, double *out) const;
   void carry(const sd_bodies &A, double *flow);
   void draw_forces(const sd_bodies &A, int width, const Draw &draw);
   sd_status solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
