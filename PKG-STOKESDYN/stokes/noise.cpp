@@ -215,8 +215,9 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
                                      text(last.error)) +
                             "; a step moves the smallest sphere by " + text(radii) +
                             " of its radius, " + text(skins) +
-                            " of half the skin; v has no noise, and temperatures and pressures from v "
-                            "mean nothing\n");
+                            " of half the skin; " +
+                            (midpoint ? "v holds the noise of a step" : "v has no noise") +
+                            ", and temperatures and pressures from v mean nothing\n");
   if (comm->me != 0) return;
   if (radii > 0.1)
     error->warning(FLERR,

@@ -88,6 +88,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   std::vector<double> D, w, y;
   /* by a matrix in two parts (sd_mobility.h) */
   bool divided = false;
+  /* noise is a force */
+  bool midpoint = false;
 
   sd_random_key key(sd_random_purpose what) const;
   void refuse(const Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, const Ways &ways) const;

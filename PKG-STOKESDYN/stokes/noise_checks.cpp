@@ -93,7 +93,8 @@ void Noise::init(Hydrodynamics &hydro, const Fix *self, const Ways &ways)
   if (temperature.is_atom_style())
     fail(lmp, keyword + ": noise has one temperature: use an equal-style variable");
   refuse(hydro, self, ways);
-  hydro.scene.settings.positive = !ways.midpoint;
+  midpoint = ways.midpoint;
+  hydro.scene.settings.positive = !midpoint;
 }
 
 }    // namespace StokesDyn

@@ -17,6 +17,7 @@ DOC = TOP / "PKG-STOKESDYN" / "doc"
 
 # page -> how far each column of its tables may be off (relative)
 HOWTOS = {
+    "brownian": {},
     "clumps": {"v_drift": 1e-2},
     "cfd": {},
     "overdamped": {},
