@@ -69,6 +69,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   {
     return shapes.points(shape, model);
   }
+  /* Of whichever of these there is, for noise. Error: memory. */
+  void take_root(const ClumpShape &shape) const { shapes.take_root(shape); }
   /* Molecule IDs of a clump of which not all spheres are selected, NOBODY: there is none, and of
    * those that do not fit. Returns whether these are loose now, and the bodies others; otherwise
    * errors. On all ranks together. */

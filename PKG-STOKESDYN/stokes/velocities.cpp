@@ -234,7 +234,6 @@ void Velocities::arrange()
     body.row = &member[at];
     at += body.shape ? body.shape->m : 1;
   }
-  stand_at_wall();
   V.resize(6 * (loner.size() + shaped.size()) + 6);
 }
 
@@ -276,6 +275,8 @@ sd_bodies Velocities::assemble(int width)
   else
     place(width);
   arrange();
+  in_open_space = shaped;
+  stand_at_wall();
   return scene.shells ? bodies_of_shells() : bodies(width);
 }
 
@@ -312,7 +313,10 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
   A.held = held.data();
   const size_t m = how.width, rows = m * scene.size();
   if (scene.shells) {
-    if (how.unstrained) std::fill(slope.begin(), slope.end(), 0.0);
+    if (how.unstrained) {
+      std::fill(slope.begin(), slope.end(), 0.0);
+      bend.clear();
+    }
     slip_at_points(slip.data());
   } else {
     std::copy_n(slip.begin(), rows, u.begin());
@@ -327,12 +331,30 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
   return status;
 }
 
+/* By the numbers of each sphere, those of its points one after the other */
+void Velocities::draw_forces(const sd_bodies &A, int width, const Draw &draw)
+{
+  const size_t n = scene.size(), m = sd_bodies_rows(&A) / std::max(n, (size_t) 1);
+  std::vector<double> w(m * n + 1), pushed(sd_bodies_loads(&A) + width);
+  for (const Clump &clump : clumps) rigid.take_root(*clump.body->shape);
+  if (scene.shells) scene.shells->take_root();
+  for (size_t k = 0; k < n; k++)
+    sd_random_normals(&draw.of_spheres, scene.tag((int) k), (int) m, &w[m * k]);
+  sd_noise_report report = {};
+  sd_status status = sd_bodies_draw(draw.noise, &A, in_open_space.data(), w.data(), draw.tolerance,
+                                    pushed.data(), &report);
+  if (status == SD_OK && A.tie) status = lubrication.draw(scene, draw.of_films, pushed.data());
+  draw.report(status, report);
+  for (size_t j = 0; j < (size_t) width * n; j++) F[j] += pushed[j] *= draw.scale;
+  scene.to_atoms(width, pushed.data(), draw.take);
+}
+
 sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
                                sd_bodies_report &report)
 {
   sd_bodies A = assemble(how.width);
   if (lubrication.settings.on) {
-    lubrication.place(scene, ambient);
+    lubrication.place(scene, ambient, how.draw != nullptr);
     tie.L = lubrication.matrix();
     A.tie = &tie;
   }
@@ -342,6 +364,7 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
     given = given_velocities();
     A.held = is_held.data();
   }
+  if (how.draw) draw_forces(A, how.width, *how.draw);
   const sd_bodies_problem problem = {u.data(), F.data(),      held ? given.data() : nullptr,
                                      how.warm, how.tolerance, how.max_iter};
   const sd_status status = solve(A, problem, guess, report);
