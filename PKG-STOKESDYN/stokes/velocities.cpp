@@ -53,7 +53,8 @@ void Velocities::gather(bool moving)
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     row[RADIUS] = atom->radius[i];
     memcpy(row + column.motion, moving ? atom->v[i] : atom->f[i], 3 * sizeof(double));
-    if (turns) memcpy(row + column.motion + 3, moving ? atom->omega[i] : atom->torque[i], 3 * sizeof(double));
+    if (turns)
+      memcpy(row + column.motion + 3, moving ? atom->omega[i] : atom->torque[i], 3 * sizeof(double));
     if (!gradients) return;
     memcpy(row + column.flow, ambient.velocity(i), 3 * sizeof(double));
     memcpy(row + column.gradient, gradients + 9 * (size_t) i, 9 * sizeof(double));

@@ -1,5 +1,5 @@
-/* Of velocities: clumps by themselves, by the tables of their shapes: velocities from forces, and forces
- * from velocities. */
+/* Of velocities: clumps by themselves, by the tables of their shapes: velocities from forces, and
+ * forces from velocities. */
 #include "velocities.h"
 
 #include "sd_linear.h"
