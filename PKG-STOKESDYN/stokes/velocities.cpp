@@ -8,6 +8,7 @@
 #include "comm.h"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 
 using namespace LAMMPS_NS;
@@ -51,11 +52,12 @@ void Velocities::gather(bool moving)
   of_members = scene.whole.gather(column.end, [&](int i, double *row) {
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     row[RADIUS] = atom->radius[i];
-    std::copy_n(moving ? atom->v[i] : atom->f[i], 3, row + column.motion);
-    if (turns) std::copy_n(moving ? atom->omega[i] : atom->torque[i], 3, row + column.motion + 3);
+    memcpy(row + column.motion, moving ? atom->v[i] : atom->f[i], 3 * sizeof(double));
+    if (turns)
+      memcpy(row + column.motion + 3, moving ? atom->omega[i] : atom->torque[i], 3 * sizeof(double));
     if (!gradients) return;
-    std::copy_n(ambient.velocity(i), 3, row + column.flow);
-    std::copy_n(gradients + 9 * (size_t) i, 9, row + column.gradient);
+    memcpy(row + column.flow, ambient.velocity(i), 3 * sizeof(double));
+    memcpy(row + column.gradient, gradients + 9 * (size_t) i, 9 * sizeof(double));
   });
   for (int m = 0; m < scene.whole.size() && jumps; m++) {
     double *row = &of_members[column.end * (size_t) m];

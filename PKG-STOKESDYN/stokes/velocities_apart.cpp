@@ -1,5 +1,5 @@
-/* Of velocities: clumps by themselves, by the tables of their shapes: velocities from forces, and forces
- * from velocities. */
+/* Of velocities: clumps by themselves, by the tables of their shapes: velocities from forces, and
+ * forces from velocities. */
 #include "velocities.h"
 
 #include "sd_linear.h"
@@ -7,6 +7,7 @@
 #include "atom.h"
 
 #include <algorithm>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -26,12 +27,12 @@ const sd_clump_motion &Velocities::look_at(const Clump &clump, bool moving)
   }
   for (int k = 0; k < body.n && (moving || strains); k++) {
     const double *known = known_of(clump, k), *motion = known + column.motion;
-    std::copy_n(at(clump, k), 3, &a.x[3 * (size_t) k]);
-    if (moving) std::copy_n(motion, 3, &a.v[3 * (size_t) k]);
-    if (spins) std::copy_n(motion + 3, 3, &a.omega[3 * (size_t) k]);
+    memcpy(&a.x[3 * (size_t) k], at(clump, k), 3 * sizeof(double));
+    if (moving) memcpy(&a.v[3 * (size_t) k], motion, 3 * sizeof(double));
+    if (spins) memcpy(&a.omega[3 * (size_t) k], motion + 3, 3 * sizeof(double));
     if (!strains) continue;
-    std::copy_n(known + column.flow, 3, &a.u[3 * (size_t) k]);
-    std::copy_n(known + column.gradient, 9, &a.gradient[9 * (size_t) k]);
+    memcpy(&a.u[3 * (size_t) k], known + column.flow, 3 * sizeof(double));
+    memcpy(&a.gradient[9 * (size_t) k], known + column.gradient, 9 * sizeof(double));
   }
   a.motion = {};
   a.motion.x = a.x.data();
@@ -160,8 +161,8 @@ void Velocities::drag(const Drag &take, std::vector<char> &loose)
     for (int k = 0; k < clump.body->n; k++) {
       double *row = &result[COLUMNS * member_of(clump, k)];
       row[0] = EVALUATED;
-      std::copy_n(&around.F[3 * (size_t) k], 3, row + 1);
-      if (turns) std::copy_n(&around.T[3 * (size_t) k], 3, row + 4);
+      memcpy(row + 1, &around.F[3 * (size_t) k], 3 * sizeof(double));
+      if (turns) memcpy(row + 4, &around.T[3 * (size_t) k], 3 * sizeof(double));
     }
   }
   loose.assign(atom->nlocal + 1, 0);

@@ -139,7 +139,8 @@ INLINE void multiply_by(const sd_waves *p, int width, const double *F, double *y
   vec lanes[DIRECTIONS][SD_WAVES_PADDED], f[6];
   int sphere[LANES];
   group g;
-  for (int c = 0; c < SD_WAVES_COLUMNS; c++) lanes[c / SD_WAVES_PADDED][c % SD_WAVES_PADDED] = all(0.0);
+  for (int c = 0; c < SD_WAVES_COLUMNS; c++)
+    lanes[c / SD_WAVES_PADDED][c % SD_WAVES_PADDED] = all(0.0);
   for (int i = 0; i < p->n; i += LANES) {
     const int count = next(p, i, sphere);
     for (int d = 0; d < width; d++) {
