@@ -62,8 +62,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   /* Of all that takes part, from what is in f and torque, in any order; and forces on those that are
    * held. A step is begin() and this.
-   * Where all interact, the forces go to rows of the memory too: the next guess. */
-  void velocities(const Velocities::Take &take, const Velocities::Held &held);
+   * Where all interact, the forces go to rows of the memory too: the next guess. draw: random forces too,
+   * where all interact */
+  void velocities(const Velocities::Take &take, const Velocities::Held &held,
+                  const Velocities::Draw *draw = nullptr);
   /* Those of rigid clumps, and who is free, since then */
   const Velocities &motion() const { return mobile; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
@@ -171,7 +173,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   }
   std::string where(int algorithm) const;
   void unconverged(sd_status status, const sd_solve_report &report);
-  sd_status move_together(const Velocities::Take &take, sd_bodies_report &report);
+  sd_status move_together(const Velocities::Take &take, const Velocities::Draw *draw,
+                          sd_bodies_report &report);
   [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
 };
 

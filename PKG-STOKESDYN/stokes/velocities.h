@@ -15,6 +15,8 @@
 #include "scene.h"
 
 #include "sd_bodies.h"
+#include "sd_bodies_noise.h"
+#include "sd_random.h"
 #include "sd_tie.h"
 
 #include <functional>
@@ -69,6 +71,16 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
+  /* Random forces of covariance R, the resistance of all bodies with their films (sd_bodies_noise.h),
+   * times `scale`, and what becomes of them: forces and torques F [width] on atom i */
+  struct Draw {
+    sd_bodies_noise *noise;
+    sd_random_key of_spheres, of_films;
+    double tolerance, scale;
+    std::function<void(int i, const double *F)> take;
+    /* the process ends so; a failure must not come back */
+    std::function<void(sd_status status, const sd_noise_report &report)> report;
+  };
   /* Where the next solve may begin: by rows, which are the atoms that take part, [width n] forces
    * on the fluid, with shells those of their points, and, with lubrication, the velocities that go
    * with them */
@@ -84,6 +96,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
     int max_iter;
     /* with shells: a fluid that does not strain, whatever the ambient one does */
     bool unstrained = false;
+    /* random forces beside the loads; nullptr: none */
+    const Draw *draw = nullptr;
   };
   sd_status together(const How &how, Guess &guess, const Take &take, sd_bodies_report &report);
 
@@ -124,6 +138,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* [bodies] of the solve */
   std::vector<char> is_held;
   std::vector<sd_body> shaped;
+  /* the same in open space, whatever wall they stand at */
+  std::vector<sd_body> in_open_space;
   /* where nobody sees anybody */
   sd_mobility_scene alone = {};
 
@@ -148,7 +164,6 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_bodies assemble(int width);
   void place_shells();
   void slip_at_points(const double *slip);
-  void arrange_shells();
   /* near a wall: blocks of the bodies where they stand */
   std::vector<sd_body_shape> standing;
   void leave_wall();
@@ -158,6 +173,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_bodies bodies_of_shells();
   void flow_at_points(const double *velocity, int stride, double *out) const;
   void carry(const sd_bodies &A, double *flow);
+  void draw_forces(const sd_bodies &A, int width, const Draw &draw);
   sd_status solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
                   sd_bodies_report &report);
 };

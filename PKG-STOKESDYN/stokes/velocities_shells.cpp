@@ -83,54 +83,6 @@ void Velocities::place_shells()
   flow_at_points(rows.data() + VELOCITY, columns, u.data());
 }
 
-/* A body for each free sphere, then the clumps */
-void Velocities::arrange_shells()
-{
-  const size_t n = scene.size(), P = scene.shells->points();
-  const sd_spheres spheres = scene.local();
-  member.clear();
-  shaped.clear();
-  loner.clear();
-  whole.assign(n + 1, 0);
-  arm.assign(3 * n + 3, 0.0);
-  const auto add_points = [&](const sd_multiblob_shape &shape, const std::vector<int> &rows) {
-    for (int k = 0; k < shape.points.m; k++)
-      member.push_back(P * rows[shape.row[k] / P] + shape.row[k] % P);
-  };
-  for (int k = 0; k < scene.lone(); k++) {
-    const double w = spheres.w[k];
-    whole[k] = shaped.size();
-    add_points(scene.shells->free_sphere(), {k});
-    shaped.push_back({&scene.shells->free_sphere().points,
-                      {1, 0, 0, 0, 1, 0, 0, 0, 1},
-                      spheres.a[k],
-                      1.0 / (w * w),
-                      nullptr});
-  }
-  for (const Clump &clump : clumps) {
-    const sd_multiblob_shape &shape = rigid.points(*clump.body->shape, scene.shells->model());
-    std::vector<int> rows;
-    for (int k = 0; k < clump.body->n; k++) {
-      rows.push_back(scene.row_of_member((int) member_of(clump, k)));
-      whole[rows.back()] = shaped.size();
-      sd_multiply3(clump.pose, clump.body->shape->shape.x + 3 * (size_t) k,
-                   &arm[3 * (size_t) rows.back()]);
-    }
-    add_points(shape, rows);
-    sd_body body = {&shape.points, {}, 1.0, clump.eta, nullptr};
-    double turn[9];
-    sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
-    shaped.push_back(body);
-  }
-  size_t at = 0;
-  for (sd_body &body : shaped) {
-    body.row = &member[at];
-    at += body.shape->m;
-  }
-  stand_at_wall();
-  V.resize(6 * shaped.size() + 6);
-}
-
 sd_bodies Velocities::bodies_of_shells()
 {
   const int n = scene.size(), all = scene.shells->points() * n;

@@ -124,15 +124,27 @@ def all_sets_over_few(phi):
     return np.mean(speed) / np.mean(speed[:CONFIGURATIONS])
 
 
-def wanted():
-    """(scene, model): the number of the page, in per cent."""
+def beside_pystokes(lammps):
+    """(scene, model): error in per cent, with its sign, where PyStokes's is known"""
+    found = {}
+    for row, case in scenes.of_pystokes():
+        scene = f"{row['scene']}, {row['distance']}"
+        found[scene, "PyStokes"], found[scene, "PyStokes, more modes"] = (100 * (float(row[key]) - 1) for key in ("pystokes", "more"))
+        for model in MODELS:
+            if model.where is FREE and model.name in ("lubrication", "multiblob 12"):
+                found[scene, model.name] = 100 * (case.measure(lammps.velocities_of(model, case)) / case.exact - 1)
+    return found
+
+
+def wanted(table="scene"):
+    """(scene, model): the number of the page, in per cent. table: what stands over the first column"""
     found, head = {}, None
     for line in PAGE.read_text().splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
         if not line.startswith("|"):
             head = None
         elif head is None:
-            head = cells if cells[0] == "scene" else [""]
+            head = cells if cells[0] == table else [""]
         elif head[0]:
             for model, cell in zip(head[1:], cells[1:]):
                 if re.match(r"[-+]?[\d.]+ %$", cell):
@@ -199,6 +211,10 @@ def main():
     for key in sorted(set(page) & set(errors)):
         slack = 3 + 0.1 * page[key] if key[0].startswith(("suspension", "viscosity")) else 0.03 * page[key] + 0.006     # places of a few hundred spheres scatter
         c.near(f"{key[0]}, {key[1]}: error, %", errors[key], page[key], slack)
+    beside, page = beside_pystokes(lammps), wanted("beside PyStokes")
+    c.holds("the page has a number for every scene that PyStokes has", set(page) == set(beside))
+    for key in sorted(set(page) & set(beside)):
+        c.near(f"{key[0]}, {key[1]}: error, %", beside[key], page[key], 0.012)
     if given.update:
         shutil.copy(given.out / "accuracy.png", HERE)
     sys.exit(c.finish())
