@@ -195,11 +195,12 @@ static void errors_of_two_clumps(const char *name, double worst[2][2], double me
 
 /* Two rigid clumps, gaps 0.01 to 0.5, with films between them, against multipoles. Pushed apart
  * they are off by 0.7 % on average in the scenes of one table and by 0.9 % in those of the other.
- * Over 15 and 30 random orientations of the shells, of each clump or of each sphere, that is 0.5 and
- * 0.9, and single scenes are off by 0.2 to 1.7 and by 0.1 to 3.4. What no orientation takes away are
- * the doublets of the second table, 1.6 and 1.8 % at gaps of 0.01 and 0.1, with 42 points as well: one
- * sphere is pushed out of the crevice between two that touch, and films are those of pairs. With films
- * of the very shells that face each other, in place of mean ones, it would be 0.4 and 0.7. */
+ * Over 15 and 30 random orientations of the shells, of each clump or of each sphere, that is 0.5
+ * and 0.9, and single scenes are off by 0.2 to 1.7 and by 0.1 to 3.4. What no orientation takes away
+ * are the doublets of the second table, 1.6 and 1.8 % at gaps of 0.01 and 0.1, with 42 points as
+ * well: one sphere is pushed out of the crevice between two that touch, and films are those of
+ * pairs. With films of the very shells that face each other, in place of mean ones, it would be 0.4
+ * and 0.7. */
 static void two_rigid_clumps(void **state)
 {
   (void) state;
@@ -212,8 +213,8 @@ static void two_rigid_clumps(void **state)
   assert_true(crevice[1][0] < 0.0006 && crevice[1][1] < 0.0135 && mean_crevice[1] < 0.0072);
 }
 
-/* Translation of lone clumps against multipoles: 0.26 % at worst with 12 points, 0.05 % with 42. The
- * worst is a row of three: 0.23 % on average over orientations of its shells, 0.29 at most. */
+/* Translation of lone clumps against multipoles: 0.26 % at worst with 12 points, 0.05 % with 42.
+ * The worst is a row of three: 0.23 % on average over orientations of its shells, 0.29 at most. */
 static void lone_clumps(void **state)
 {
   (void) state;
