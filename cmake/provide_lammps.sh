@@ -93,9 +93,10 @@ if [ ! -d "$root/src" ]; then
   mkdir "$root/download/tree"
   if compgen -G "$root/download/*.dsc" > /dev/null; then
     rmdir "$root/download/tree"
-    (cd "$root/download" && dpkg-source --no-check -x ./*.dsc tree > unpack.log 2>&1)
+    (cd "$root/download" && with_progress "LAMMPS, unpacking" unpack.log unknown dpkg-source --no-check -x ./*.dsc tree)
   else
-    tar -xf "$root"/download/lammps_*.orig.tar.* -C "$root/download/tree" 2> "$root/download/unpack.log"
+    with_progress "LAMMPS, unpacking" "$root/download/unpack.log" unknown \
+      tar -xf "$root"/download/lammps_*.orig.tar.* -C "$root/download/tree"
   fi || { tail -n 20 "$root"/download/*.log >&2; fail "the source package lammps $version could not be downloaded or unpacked"; }
   top=$(find "$root/download/tree" -maxdepth 3 -path '*/src/lammps.h' | head -n 1)
   [ -n "$top" ] || { tail -n 20 "$root"/download/*.log >&2; fail "the source package lammps $version holds no src/lammps.h"; }
@@ -108,8 +109,9 @@ export CC=gcc CXX=g++
 mpicxx=$(command -v mpicxx.openmpi || command -v mpicxx)
 mpicc=$(command -v mpicc.openmpi || command -v mpicc)
 say "configuring: $packages"
-cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" -D MPI_CXX_COMPILER="$mpicxx" -D MPI_C_COMPILER="$mpicc" \
-  -D CMAKE_INSTALL_PREFIX="$root" -D CMAKE_INSTALL_LIBDIR=lib -D CMAKE_INSTALL_RPATH="$root/lib" > "$root/configure.log" 2>&1 ||
+with_progress "LAMMPS, configuring" "$root/configure.log" unknown \
+  cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" -D MPI_CXX_COMPILER="$mpicxx" -D MPI_C_COMPILER="$mpicc" \
+  -D CMAKE_INSTALL_PREFIX="$root" -D CMAKE_INSTALL_LIBDIR=lib -D CMAKE_INSTALL_RPATH="$root/lib" ||
   { tail -n 30 "$root/configure.log" >&2; fail "LAMMPS could not be configured; whole log: $root/configure.log"; }
 jobs=$(env -u OMP_NUM_THREADS nproc)
 say "compiling on $jobs cores: about 5 minutes on two that have nothing else to do, half a GB while it goes on, 150 MB for good"

@@ -1,12 +1,16 @@
 """What the scripts of the examples share: a python with numpy and matplotlib, MPI, programs that must be there, where results go."""
 import argparse
+import contextlib
 import csv
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 
 TOP = pathlib.Path(__file__).resolve().parents[1]
 
@@ -51,15 +55,56 @@ def options(script, text, **more):
     return given
 
 
+SILENCE = 15          # seconds
+LISTENED_TO = []      # files to which runs of LAMMPS print, the latest one last
+
+
+def last_row(path):
+    """Of thermo output, as far as LAMMPS has written it: the latest line that begins with a step and has one more number"""
+    with open(path, "rb") as file:
+        file.seek(max(0, os.path.getsize(path) - 4000))
+        lines = file.read().decode(errors="replace").splitlines()
+    rows = [" ".join(line.split()) for line in lines if re.match(r" *\d+ +[-\d]\S*( |$)", line)]
+    return rows[-1][:100] if rows else ""
+
+
+def say_how_long(name):
+    """A line every SILENCE seconds, so that whoever waits sees that the example goes on."""
+    began = time.time()
+    while True:
+        time.sleep(SILENCE)
+        try:
+            row = last_row(LISTENED_TO[-1])
+        except (IndexError, OSError):      # nothing runs, or it has just ended
+            row = ""
+        print(f"[{name}] {time.time() - began:.0f} s so far" + (f"; LAMMPS: {row}" if row else ""), flush=True)
+
+
+if pathlib.Path(sys.argv[0]).name == "run.py":
+    threading.Thread(target=say_how_long, args=[pathlib.Path(sys.argv[0]).resolve().parent.name], daemon=True).start()
+
+
+@contextlib.contextmanager
+def listening(path):
+    LISTENED_TO.append(path)
+    try:
+        yield
+    finally:
+        LISTENED_TO.remove(path)
+
+
 def finished(name, command, cwd):
     """What the command printed in cwd, or the end with the last lines of that. name: of the example. Several at once would trip over
     each other in Open MPI's folder of temporary files."""
     with tempfile.TemporaryDirectory(prefix="sd") as scratch:
-        done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0 or "ERROR" in done.stdout:
-        sys.exit("\n".join(done.stdout.splitlines()[-20:]) + f"\n{name}: {' '.join(command)} failed in {cwd}")
-    return done.stdout
+        path = pathlib.Path(scratch) / "printed"
+        with path.open("w") as printed, listening(path):
+            done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL, stdout=printed,
+                                  stderr=subprocess.STDOUT)
+        said = path.read_text(errors="replace")
+    if done.returncode != 0 or "ERROR" in said:
+        sys.exit("\n".join(said.splitlines()[-20:]) + f"\n{name}: {' '.join(command)} failed in {cwd}")
+    return said
 
 
 def read_table(path):

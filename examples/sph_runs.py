@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 from checks import Checks  # noqa: F401
-from runs import np, plt, TOP
+from runs import listening, np, plt, TOP
 
 QUICK = "--quick" in sys.argv
 
@@ -21,7 +21,9 @@ def lmp(folder, name, tag, **variables):
     for key, value in variables.items():
         command += ["-var", key, str(value)]
     print("[%s] %s" % (name, " ".join("%s=%s" % item for item in variables.items())), flush=True)
-    if subprocess.run(command, cwd=out).returncode:
+    with listening(os.path.join(out, log)):
+        failed = subprocess.run(command, cwd=out).returncode
+    if failed:
         sys.exit("the run failed; see %s" % os.path.join(out, log))
     return out, thermo(os.path.join(out, log))
 

@@ -3,7 +3,7 @@ import os
 import shutil
 import subprocess
 
-from runs import np
+from runs import listening, np
 
 D = 0.006                                       # of the beads, m
 SCALE = np.sqrt(1.5 * 9.81 * D ** 3)            # q* = q/SCALE
@@ -12,8 +12,9 @@ SCALE = np.sqrt(1.5 * 9.81 * D ** 3)            # q* = q/SCALE
 def lmp(folder, given, directory, log="none", **variables):
     """Runs the input of the example in folder, in directory."""
     source = os.path.join(folder, "in." + os.path.basename(folder))
-    subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", source, "-screen", "none", "-log", log]
-                   + [word for key, value in variables.items() for word in ("-var", key, str(value))], cwd=directory, check=True)
+    with listening(os.path.join(directory, log)):
+        subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", source, "-screen", "none", "-log", log]
+                       + [word for key, value in variables.items() for word in ("-var", key, str(value))], cwd=directory, check=True)
 
 
 def keep(folder, given, *names):

@@ -38,6 +38,7 @@ core_tests() {
 say "1/5 set-up"
 cmake/setup.sh test || { broken "set-up"; finish; }
 . build/env.sh
+. cmake/progress.sh
 
 say "2/5 tests of the core"
 core_tests build
@@ -45,10 +46,12 @@ core_tests build
 say "3/5 tests of the core with sanitizers (address, undefined)"
 lammps=$(sed -n 's/^LAMMPS_SOURCE_DIR:[A-Z]*=//p' build/CMakeCache.txt)
 log=build/sanitize.log
-{ cmake -S cmake -B build/sanitize -G Ninja -D LAMMPS_SOURCE_DIR="$lammps" -D STOKESDYN_TESTS=ON \
+with_sanitizers() {
+  cmake -S cmake -B build/sanitize -G Ninja -D LAMMPS_SOURCE_DIR="$lammps" -D STOKESDYN_TESTS=ON \
     -D CMAKE_BUILD_TYPE=RelWithDebInfo -D STOKESDYN_SANITIZE=address,undefined &&
-  cmake --build build/sanitize -j "$cores" --target core_tests; } > $log 2>&1
-if [ $? = 0 ]; then
+    cmake --build build/sanitize -j "$cores" --target core_tests
+}
+if with_progress sanitizers $log ninja_percent with_sanitizers; then
   core_tests build/sanitize
 else
   tail -n 30 $log

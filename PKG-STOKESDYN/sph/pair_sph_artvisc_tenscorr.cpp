@@ -175,8 +175,8 @@ double PairSph::spacing(int itype) const
     fail(lmp,
          COMMAND + ": shift needs the initial distance of particles: pair_coeff " +
              std::to_string(itype) + " " + std::to_string(itype) +
-             " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass a type, it "
-             "is (mass/rho0)^(1/dimension))");
+             " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass per type, "
+             "it is (mass/rho0)^(1/dimension))");
   return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
 }
 

@@ -111,6 +111,7 @@ void PairSph::look_at_walls()
     error->warning(FLERR,
                    "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " +
                        std::to_string(other_mass) +
-                       " has not the mass of the fluid before it (10 %): walls need the fluid's mass "
-                       "and spacing; a light or heavy body gets its mass by fix rigid ... infile");
+                       " does not have the mass of the fluid in front of it (10 %): walls need the "
+                       "fluid's mass and spacing; a light or heavy body gets its mass by fix rigid ... "
+                       "infile");
 }

@@ -119,7 +119,7 @@ def log_of(tmp_path, text):
 @pytest.mark.parametrize("ratio, warned", [(1, False), (1.05, False), (0.8, True), (2, True)])
 def test_walls_of_another_mass_than_the_fluid_are_warned_of(tmp_path, ratio, warned):
     log = log_of(tmp_path, f"variable ratio index {ratio}\n" + FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" + REST.format(volume="no"))
-    assert ("has not the mass of the fluid before it" in log) == warned
+    assert ("does not have the mass of the fluid in front of it" in log) == warned
 
 
 def test_a_wall_that_meets_no_fluid_of_its_own_is_refused():

@@ -18,6 +18,10 @@ double sd_ewald_cost(const sd_ewald *e);
 
 #define SD_PAIR_AT_WALL 2.6
 
+/* With as many spheres or fewer all pairs cost less, whatever the splitting: the smallest windows, of
+ * 4^3 points, cost that much a sphere. */
+enum { SD_EWALD_FEWEST = 192 };
+
 #ifdef __cplusplus
 }
 #endif
