@@ -15,6 +15,8 @@ typedef struct {
   double largest, phi, tolerance;
   /* 0: radii evenly in the logarithm; so many of the largest, the others 1; -1: each octave with the same volume */
   int few;
+  /* above a plane wall, one radius below the lowest centre */
+  int wall;
 } row;
 
 static const row rows[] = {
@@ -26,6 +28,8 @@ static const row rows[] = {
     {"torques-6", 100000, 1, 6, 1.0, 0.2, 1e-6, 0},
     {"open-3", 100000, 0, 3, 1.0, 0.2, 1e-3, 0},
     {"open", 100000, 0, 3, 1.0, 0.2, 3e-7, 0},
+    {"wall-3", 100000, 0, 3, 1.0, 0.2, 1e-3, 0, 1},
+    {"wall", 100000, 0, 3, 1.0, 0.2, 3e-7, 0, 1},
     {"small", 10000, 1, 3, 1.0, 0.2, 1e-3, 0},
     {"million", 1000000, 1, 3, 1.0, 0.2, 1e-3, 0},
     {"few-10", 100000, 1, 3, 10.0, 0.2, 1e-3, 100},
@@ -67,7 +71,10 @@ static void product(const row *r, const double *x, const double *a, const double
   double *w = malloc(sizeof(double) * (size_t) r->n);
   for (int i = 0; i < r->n; i++) w[i] = 1.0;
   const sd_ewald_sizes sizes = periodic_sizes(a, r->n);
-  if (sd_ewald_choose(box, &sizes, r->width, tolerance, how) != SD_OK) exit(1);
+  const sd_wall wall = {2, 1, -1.0};
+  const sd_status chosen = r->wall ? sd_ewald_choose_at_wall(box, &wall, &sizes, tolerance, how)
+                                   : sd_ewald_choose(box, &sizes, r->width, tolerance, how);
+  if (chosen != SD_OK) exit(1);
   periodic p = {.n = r->n, .width = r->width, .ewald = *how};
   sd_mobility_scene s = {
       .how = {.law = {.tensor = SD_TENSOR_RPY}, .width = r->width, .ewald = &p.ewald},

@@ -262,9 +262,11 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
   return some ? one_level(out, &sizes->all, width, SD_EWALD_POSITIVE) : status;
 }
 
-/* Heights above the wall multiply what windows and near parts leave out. With a quarter of the
- * tolerance the whole error is below it, from layers to towers 160 radii high, 1e-3 to 1e-7. */
-static const double AT_WALL = 0.25;
+/* Heights above the wall multiply what grid and near part leave out of images. Part of the tolerance
+ * and, where the spheres reach higher than some ranges, a smoother part of the images, up to a range
+ * that is larger in proportion and a little more, keep the whole error below it. There near images
+ * are few; in a layer they are as many as near spheres. */
+static const double AT_WALL = 0.125, AT_HIGH_WALL = 0.5, HIGH = 3.0, SMOOTHER = 0.7, FARTHER = 1.5;
 
 sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out)
@@ -275,8 +277,14 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
   const double asked = out->tolerance;
   out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
   status = one_level(out, &sizes->all, 3, LARGEST);
-  out->tolerance = asked;
   out->images = (sd_ewald_images){*wall, out->xi, out->range};
+  if (status == SD_OK && box->edge[wall->axis] > HIGH * out->range) {
+    out->tolerance = fmax(TIGHTEST, AT_HIGH_WALL * asked);
+    status = one_level(out, &sizes->all, 3, LARGEST);
+    out->images = (sd_ewald_images){*wall, SMOOTHER * out->xi, FARTHER * out->range};
+  }
+  out->tolerance = asked;
+  out->reach = fmax(out->reach, out->images.range);
   return status;
 }
 
