@@ -95,6 +95,15 @@ def close_clusters(only=None):
         yield Case(rows[:, :3], downwards(len(rows)), rows[:, 3:])
 
 
+def of_pystokes():
+    """Row of pystokes.csv, and its case: two and three spheres that settle, measured by their mean speed"""
+    for row in table(HERE / "pystokes.csv"):
+        d = float(row["distance"])
+        x = {"two along their line": [(0, 0, 0), (0, 0, d)], "two side by side": [(0, 0, 0), (d, 0, 0)],
+             "a triangle": [(0, 0, 0), (d, 0, 0), (0.5 * d, 0.75**0.5 * d, 0)]}[row["scene"]]
+        yield row, Case(x, downwards(len(x)), float(row["exact"]), mean_fall)
+
+
 def one_at_a_wall(pushed):
     """A lone sphere above a wall at gaps of 0.01 to 1 radius that falls to it, or is pushed along it."""
     known = sphere_at_wall()
