@@ -2,6 +2,7 @@
 
 #include "sd_random.h"
 
+#include <float.h>
 #include <math.h>
 
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3])
@@ -51,8 +52,11 @@ void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *w
 void sd_vans_lagrangian_times(const sd_vans_mesh *mesh, double schmidt, const double *nut,
                               const double *u_star, double *life)
 {
-  for (int n = 0; n < mesh->ncell; n++)
-    life[n] = u_star[n] > 0.0 ? nut[n] / (schmidt * u_star[n] * u_star[n]) : 0.0;
+  /* next to the surface both may be next to nothing: a square that is 0, a quotient that is none */
+  for (int n = 0; n < mesh->ncell; n++) {
+    const double square = schmidt * u_star[n] * u_star[n];
+    life[n] = square > 0.0 ? fmin(nut[n] / square, DBL_MAX) : 0.0;
+  }
 }
 
 /* d sigma/dz in slice p, between the middles of its neighbours. */
@@ -75,7 +79,8 @@ void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *wal
   double *y = wander->normal, normal[3];
   sd_vans_normal3(walk->seed, id, (uint64_t) wander->count, normal);
   for (int d = 0; d < 3; d++) y[d] = kept * y[d] + noise * normal[d];
-  if (T > 0.0 && kept > 0.0) y[0] += slope_of(mesh, walk->u_star, p) * T * (1.0 - kept);
+  if (T > 0.0 && kept > 0.0)
+    y[0] -= slope_of(mesh, walk->u_star, p) * T * expm1(-walk->dt / T);
   sd_vans_fluctuation(y, sigma, 1, u);
   wander->count += 1.0;
 }

@@ -78,6 +78,22 @@ static void the_schmidt_number_is_that_of_the_spread(void **state)
     assert_true(fabs(u_star[n] * u_star[n] * life[n] - nut[n] / 0.44) < 1e-18);
 }
 
+/* Where the stream all but stands still, squares of u_star underflow: no number that is none comes of it. */
+static void next_to_no_turbulence_is_finite(void **state)
+{
+  (void) state;
+  const double edge[4] = {0, 1, 2, 3}, nut[3] = {1e-100, 1e-100, 1e200}, u_star[3] = {1e-200, 1e-300, 1e-150};
+  const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
+  double life[3], u[3];
+  sd_vans_lagrangian_times(&mesh, 1.0, nut, u_star, life);
+  const sd_vans_langevin walk = {42, -1.0, u_star, life, 0.1};
+  for (int n = 0; n < 3; n++) {
+    sd_vans_wander wander = {{1, 1, 1}, 3};
+    sd_vans_langevin_step(&mesh, &walk, n + 0.5, 5, &wander, u);
+    assert_true(isfinite(life[n]) && isfinite(wander.normal[0]) && isfinite(u[2]));
+  }
+}
+
 /* None below the bed and outside the mesh, and what the grain remembers is then new. */
 static void there_is_no_turbulence_in_the_bed(void **state)
 {
@@ -101,6 +117,7 @@ int main(void)
       cmocka_unit_test(grains_spread_by_taylors_formula),
       cmocka_unit_test(even_grains_stay_even_where_the_turbulence_is_not),
       cmocka_unit_test(the_schmidt_number_is_that_of_the_spread),
+      cmocka_unit_test(next_to_no_turbulence_is_finite),
       cmocka_unit_test(there_is_no_turbulence_in_the_bed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
