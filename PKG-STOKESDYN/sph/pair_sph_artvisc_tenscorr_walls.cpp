@@ -43,7 +43,7 @@ const FixSphPressure *PairSph::state_of(int i) const
 void PairSph::wall_row(int i, const double *sums_i, double *row)
 {
   const FixSphPressure *eos = state_of(i);
-  const sd_sph_wall how = {&eos->state, wall->slip, !wall->suction};
+  const sd_sph_wall how = {&eos->state, wall->slip};
   const double sound = sd_sph_speed_of_sound(&eos->state, row[0]);
   const double *b = wall->body_force(i, 2.0 * smoothing_length(atom->type[i]) / sound);
   const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], b, row);
@@ -56,7 +56,7 @@ void PairSph::held_row(int i, const double *sums_i, const std::vector<const doub
 {
   const FixSphPressure *eos = state_of(i);
   if (auto *inlet = holder(inlets, atom, i)) {
-    const sd_sph_wall how = {&eos->state, 0, 0};
+    const sd_sph_wall how = {&eos->state, 0};
     const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], inlet->body_force(), row);
     std::fill_n(row + 1, 3, 0.0);
     if (row[0] == 0.0) no_density(FixSphInlet::STYLE, i, text(asked) + " that the fluid asks for");

@@ -106,18 +106,5 @@ def test_a_floating_box_heaves_as_linear_theory_says(tmp_path):
     assert mine[3] - mine[0] == pytest.approx(exact[3] - exact[0], rel=0.04)
 
 
-def test_a_wall_without_suction_lets_water_go():
-    """Water leaves a floor: with suction its pressure there is negative and it is held back, without it is not."""
-    speed = {}
-    for suction in ("yes", "no"):
-        lmp = start()
-        run(lmp, FLOORS.format(own="yes suction " + suction) + "set group water vy 0.3\nunfix g\nunfix lift\nrun 8 post no")
-        P, kind = fix_by_id(lmp, "eos"), by_id(lmp, "type")
-        assert (P[kind == 2].min() < -1e-3) == (suction == "yes") and (P[kind == 2].min() >= -1e-12) == (suction == "no")
-        speed[suction] = by_id(lmp, "v", 3)[kind == 1, 1].mean()
-        lmp.close()
-    assert speed["no"] > speed["yes"] and speed["no"] <= 0.3 + 0.02
-
-
 def test_own_acceleration_maybe():
     assert "'maybe' is none of: no, yes" in message(FLOORS.format(own="maybe"))

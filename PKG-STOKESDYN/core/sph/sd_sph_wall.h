@@ -42,8 +42,6 @@ void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const s
 typedef struct {
   const sd_sph_state *state;
   int slip;
-  /* 1: it does not pull, so its pressure is P0 or more */
-  int pushes_only;
 } sd_sph_wall;
 
 /* What the sums s of sd_sph_before_walls make of one wall particle that moves with v and sees the
