@@ -469,7 +469,7 @@ def rayleigh_taylor(n, **o):
     if s["pair"]:
         s["coeff"] = "pair_coeff * * c %g deltap %.17g" % (c, dx)
     s["density"] += " volume yes"
-    shots, seconds, every = run(s, o.get("time", 1.6) / rate, 0.25 * s["h"] / c, 40)
+    shots, seconds, every = run(s, o.get("time", 2.0) / rate, 0.25 * s["h"] / c, 40)
     weight = rho0[fluid][:, None]
     a = np.array([(weight * np.stack([e["vx"], e["vy"]], axis=1)[fluid] * mode[fluid]).sum() for e in shots[11:]])
     return {"rate": np.polyfit(every * np.arange(len(a)), np.log(np.maximum(a, 1e-300)), 1)[0] / rate, "seconds": seconds}
