@@ -4,7 +4,6 @@
 #include "lammps_compat.h"
 
 #include "sd_constants.h"
-#include "sd_flow.h"
 #include "sd_linear.h"
 
 #include "atom.h"
@@ -19,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 
@@ -71,12 +71,12 @@ void Ambient::numbers(double *nine) const
   nine[8] = grid && grid->grid.axis[SD_GRID_TIME].n > 1 ? now : 0.0;
 }
 
-void Ambient::read(bool with_spins, bool with_gradients, double time)
+void Ambient::read(bool with_spins, Derivatives derivatives, double time)
 {
   spins = with_spins;
   now = time;
   select();
-  read_fluid(with_gradients);
+  read_fluid(derivatives);
   const bigint none = MAXBIGINT;
   bigint mine = none, first;
   for (int i : those)
@@ -85,10 +85,10 @@ void Ambient::read(bool with_spins, bool with_gradients, double time)
   if (first != none) complain(first);
 }
 
-void Ambient::read_fluid(bool with_gradients)
+void Ambient::read_fluid(Derivatives derivatives)
 {
   const int n = atom->nlocal;
-  const bool u_varies = varies();
+  const bool u_varies = varies(), with_gradients = derivatives >= FIRST;
   if (!numbers_only()) modify->clearstep_compute();
   motion = u_varies ? motion_of_box(lmp, command) : BoxMotion();
 
@@ -115,6 +115,9 @@ void Ambient::read_fluid(bool with_gradients)
   else if (u_varies && !w.empty())
     read_gradient();
   if (settings.has_vorticity) read_vorticity();
+  const bool curved = u_varies && !settings.box && derivatives >= SECOND;
+  curvature.assign(curved ? SD_FLOW_SECOND * ((size_t) n + 1) : 0, 0.0);
+  if (curved) read_curvature();
   find_jumps();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 }
@@ -266,6 +269,48 @@ void Ambient::read_vorticity()
     for (int i = 0; i < atom->nlocal; i++)
       sd_flow_set_vorticity(&w[3 * (size_t) i], &gradient[9 * (size_t) i]);
   for (double &value : w) value *= 0.5;
+}
+
+/* values [3 nlocal] of the fluid velocity at the atoms that take part, each displaced by a vector
+ * times its radius; what is no formula in x, y, z stays as it is. */
+void Ambient::values_around(const double by[3], std::vector<double> &values)
+{
+  Shift shift(atom, by, true);
+  for (int d = 0; d < 3; d++)
+    if (settings.velocity[d].is_atom_style())
+      settings.velocity[d].evaluate(lmp, igroup, values.data() + d, 3);
+  if (!settings.grid) return;
+  sd_flow_frame frame;
+  sd_flow_grid_frame(&settings.grid->grid, now, &frame);    // read_grid() has looked at the time
+  for (size_t i : those) {
+    double x[3], value[4];
+    in_the_box((int) i, x);
+    sd_flow_grid_at(&settings.grid->grid, &frame, 1, x, value, nullptr);
+    std::copy_n(value, 3, &values[3 * i]);
+  }
+}
+
+/* By second differences. Values stored per atom do not follow, and have none. */
+void Ambient::read_curvature()
+{
+  std::vector<double> bend(SD_FLOW_SECOND * ((size_t) atom->nlocal + 1), 0.0);
+  std::vector<double> there = u;
+  for (int e = 0; e < SD_FLOW_DIRECTIONS; e++)
+    for (const double side : {SD_FLOW_STEP, -SD_FLOW_STEP}) {
+      double by[3];
+      for (int d = 0; d < 3; d++) by[d] = side * sd_flow_around[e][d];
+      values_around(by, there);
+      for (size_t i : those)
+        for (size_t p = 0; p < 3; p++)
+          bend[SD_FLOW_SECOND * i + 6 * p + e] += there[3 * i + p] - u[3 * i + p];
+    }
+  for (size_t i : those) {
+    const double *from = &bend[SD_FLOW_SECOND * i];
+    const bool known = std::isfinite(std::accumulate(from, from + SD_FLOW_SECOND, 0.0));
+    for (int p = 0; p < 3 && known; p++)
+      sd_flow_curvature(from + 6 * p, SD_FLOW_STEP * atom->radius[i],
+                        &curvature[SD_FLOW_SECOND * i + 6 * p]);
+  }
 }
 
 /* An atom and its images are one place, and where LAMMPS keeps it depends on when it last looked.
@@ -432,7 +477,8 @@ double Ambient::memory_usage() const
   return takes_part.capacity() +
       sizeof(int) * ((double) members.capacity() + (double) those.capacity()) +
       sizeof(double) *
-      ((double) eta.capacity() + u.capacity() + w.capacity() + gradient.capacity());
+      ((double) eta.capacity() + u.capacity() + w.capacity() + gradient.capacity() +
+       curvature.capacity());
 }
 
 }    // namespace StokesDyn

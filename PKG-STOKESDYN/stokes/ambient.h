@@ -15,6 +15,7 @@
 #include "pointers.h"
 
 #include "sd_constants.h"
+#include "sd_flow.h"
 
 #include <memory>
 #include <string>
@@ -45,11 +46,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
 
   /* Looks up variables, group and region. Errors: one that does not exist. */
   void init();
-  /* The state of this step. spins: angular velocities count; gradients: that of the fluid velocity
-   * is wanted, not only its rotation; time: of this step, for a series.
+  /* The state of this step. spins: angular velocities count; derivatives of the fluid velocity that
+   * are wanted beside its rotation; time: of this step, for a series.
    * Errors, on all ranks: a number that is none, an atom far outside of a periodic box or outside
    * of the grid, with atom and step; a time outside of the series. */
-  void read(bool spins, bool gradients, double time);
+  enum Derivatives { NO_DERIVATIVES, FIRST, SECOND };
+  void read(bool spins, Derivatives derivatives, double time);
 
   /* How much the fluid velocity of this step differs between atoms and their images an edge of the
    * box away, less what the box itself does, relative to the largest velocity: 0 fits a periodic
@@ -96,6 +98,9 @@ class Ambient : protected LAMMPS_NS::Pointers {
   /* [nlocal][9] d u_p / d x_q; nullptr: not asked for, or the velocity is the same everywhere,
    * namely uniform_velocity(). */
   const double *gradients() const { return gradient.empty() ? nullptr : gradient.data(); }
+  /* [nlocal][SD_FLOW_SECOND] second derivatives (sd_flow.h); nullptr: not asked for, or the velocity
+   * is linear. 0 for a sphere at the edge of a grid, which has no velocity beyond. */
+  const double *curvatures() const { return curvature.empty() ? nullptr : curvature.data(); }
   const double *uniform_velocity() const { return u_uniform; }
 
   /* Velocity u [3n] of the fluid at places x [3n], each rank has its own; read() has been called in
@@ -134,12 +139,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
   double now = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
   BoxMotion motion;
   /* per atom, or empty. w: half the vorticity */
-  std::vector<double> eta, u, w, gradient;
+  std::vector<double> eta, u, w, gradient, curvature;
 
   std::vector<double> formulas_at(const std::vector<double> &x);
   bool group_stands() const;
   void select();
-  void read_fluid(bool gradients);
+  void read_fluid(Derivatives derivatives);
   double growth_along(const double *edge, int p, double expected, double *most);
   double growth_of_box(const double *edge, int p) const;
   void find_jumps();
@@ -147,6 +152,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   void read_box(bool gradients);
   void read_gradient();
   void read_vorticity();
+  void read_curvature();
+  void values_around(const double by[3], std::vector<double> &values);
   void read_grid();
   void in_the_box(int i, double *x) const;
   std::string outside_of_grid(const double *x) const;

@@ -65,6 +65,15 @@ void warn_of_misfit(LAMMPS *lmp, const std::string &command, double misfit)
                                 "needs a triclinic box that fix deform shears with it, and fluid_velocity box");
 }
 
+void warn_of_shared_films(LAMMPS *lmp, const std::string &command, double spheres)
+{
+  if (spheres <= 200.0 || lmp->domain->xperiodic || lmp->comm->me != 0) return;
+  lmp->error->warning(FLERR,
+                      command + ": keyword lubrication: with one point per sphere it slows down a "
+                                "cloud of " + text(spheres) + " close spheres that fall together: "
+                                "by 5 % at 200, by 26 % at 2000; use multiblob 12");
+}
+
 void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)
 {
   const Comm *comm = lmp->comm;

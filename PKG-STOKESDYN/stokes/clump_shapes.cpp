@@ -211,6 +211,13 @@ const sd_multiblob_shape &ClumpShapes::points(const ClumpShape &s, const sd_mult
   return s.points;
 }
 
+void ClumpShapes::take_root(const ClumpShape &s) const
+{
+  if (s.body.m > 0) check_blocks(lmp, command, s, sd_body_shape_take_root(&s.body));
+  if (s.points.spheres > 0)
+    check_blocks(lmp, command, s, sd_body_shape_take_root(&s.points.points));
+}
+
 void ClumpShapes::announce(const ClumpShape &s, double seconds) const
 {
   if (comm->me != 0) return;

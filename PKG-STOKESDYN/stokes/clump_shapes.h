@@ -79,6 +79,9 @@ class ClumpShapes : protected LAMMPS_NS::Pointers {
   /* The same where all spheres are shells of points */
   const sd_multiblob_shape &points(const ClumpShape &shape, const sd_multiblob &model) const;
 
+  /* Whichever of the two there is, for noise. Error: memory. */
+  void take_root(const ClumpShape &shape) const;
+
   double memory_usage() const;
 
  private:

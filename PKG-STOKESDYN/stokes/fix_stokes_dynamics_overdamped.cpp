@@ -40,6 +40,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
        [&] {
          const size_t which = in.choice({"ab2", "euler", "midpoint"});
          scheme = which == 0 ? AB2 : which == 1 ? EULER : MIDPOINT;
+         scheme_given = true;
        }},
       {"adapt",
        [&] {
@@ -94,9 +95,11 @@ void FixStokesDynamicsOverdamped::init()
     for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
   }
   refuse_inertia(lmp, COMMAND, this, hydrodynamics(), {adapt.every > 0, held_bit});
-  if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
+  if (!scheme_given)
+    scheme = noise.on() && !noise.drift(hydrodynamics(), held_bit).empty() ? MIDPOINT : AB2;
   if (noise.on())
     noise.init(hydrodynamics(), this, {adapt.every > 0, held_bit != 0, scheme == MIDPOINT});
+  if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------
@@ -217,29 +220,34 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   check_selection(hydro);
   find_causes(hydro, last.causes);
   last.atoms = atom->natoms;
-  const bool rotates = hydro.rotation();
-  hydro.velocities([this, &hydro, rotates](int i, const double *v, const double *F) {
+  const bool rotates = hydro.rotation(), flat = domain->dimension == 2;
+  const Velocities::Take take = [this, &hydro, rotates, flat](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i);
     for (int d = 0; d < 3; d++) {
-      atom->v[i][d] = v[d];
-      row[d] = v[d] - fluid[d];
+      atom->v[i][d] = flat && d == 2 ? 0.0 : v[d];
+      row[d] = atom->v[i][d] - fluid[d];
       row[3 + d] = F[d];
       if (!rotates) continue;
       atom->omega[i][d] = v[3 + d];
       row[6 + d] = F[3 + d];
     }
     std::copy_n(v, 3, motion.give(i));
-  }, held_bit ? [this](int i, double *V) { return given_velocity(i, V); } : Velocities::Held());
-  const int numbers = scheme == MIDPOINT ? 6 : 3;
-  const auto take = [this, numbers](int i, const double *y) {
-    std::copy_n(y, numbers, random.give(i));
   };
-  if (noise.on() && scheme == MIDPOINT)
-    noise.draw_forces(hydro, take);
-  else if (noise.on())
-    noise.draw(hydro, take);
+  if (scheme == MIDPOINT)
+    begin_midpoint(hydro, take);
+  else
+    hydro.velocities(take, givens());
+  if (noise.on() && scheme != MIDPOINT)
+    noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
   last.step = update->ntimestep;
+}
+
+/* For a solve: who is held */
+Velocities::Held FixStokesDynamicsOverdamped::givens() const
+{
+  if (!held_bit) return Velocities::Held();
+  return [this](int i, double *V) { return given_velocity(i, V); };
 }
 
 /* Spheres of the group that are not selected have no velocity; those selected that are not in the

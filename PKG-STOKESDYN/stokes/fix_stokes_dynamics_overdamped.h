@@ -38,7 +38,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void restart(char *) override;
 
  private:
+  /* not given: by whether the mobility has a drift that noise needs */
   enum { AB2, EULER, MIDPOINT } scheme = AB2;
+  bool scheme_given = false;
   struct {
     int every = 0;    // 0: the step is the user's
     double tmin, tmax, xmax;
@@ -49,7 +51,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
   AtomRows motion;
-  /* [6] y of a free sphere, three numbers (noise.h); scheme midpoint: f and its torque */
+  /* [6] y of a free sphere, three numbers (noise.h); scheme midpoint: random force and torque */
   AtomRows random;
   /* [6] scheme midpoint: force and torque on a sphere in the step before */
   AtomRows load;
@@ -100,7 +102,10 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void move_free(int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
-  void push(int i);
+  Velocities::Held givens() const;
+  std::vector<double> push_between_steps(const Hydrodynamics &);
+  void take_back(const Hydrodynamics &, const std::vector<double> &loads);
+  void begin_midpoint(Hydrodynamics &, const Velocities::Take &take);
   using Clumps = std::vector<Velocities::Clump>;
   void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
   void move_by_midpoint(Hydrodynamics &);

@@ -2,11 +2,12 @@
  * that differs from place to place, without its derivatives.
  *
  *   F* = 3/2 F - 1/2 F_old + sqrt(2 kT/dt) f,   f of covariance M(x)^-1
- *   x_mid = x + dt/2 V(x, F*),   x' = x + dt V(x_mid, F*)
+ *   v = V(x, F*),  x_mid = x + dt/2 v           where velocities are found: v is output
+ *   x' = x + dt V(x_mid, F*)                    where positions advance
  *
  * The noise is a force, the same in both places: then the second-order term of the step has the mean
- * kT div M dt. Kept as a velocity it would have none. In a plane nobody leaves it in the half step
- * either. Forces are extrapolated, so that they are found once a step.
+ * kT div M dt. Kept as a velocity it would have none. Whoever is held, or the plane, is so in the half
+ * step too. Forces are extrapolated, so that they are found once a step.
  * Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
 #include "fix_stokes_dynamics_overdamped.h"
 
@@ -35,29 +36,51 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
 {
   if (hydro.settings.rigid.apart())
     fail(lmp, KEYWORD + "midpoint moves what feels each other: use ab2 for clumps_only yes");
-  if (hydro.settings.rigid.on && domain->dimension == 2)
-    fail(lmp, KEYWORD + "midpoint moves no rigid clumps in two dimensions");
-  if (held_bit) fail(lmp, KEYWORD + "midpoint moves all spheres: leave held out");
+  int moved = 0;
+  for (int i = 0; i < atom->nlocal; i++) moved |= is_held(i) && (atom->mask[i] & moved_bits);
+  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
+  if (moved)
+    fail(lmp, KEYWORD + "midpoint looks at spheres between steps, where fix move does not put those of "
+                        "keyword held: let them rest");
   for (int i = 0; i < modify->nfix; i++)
     if (utils::strmatch(modify->fix[i]->style, "^deform"))
       fail(lmp, KEYWORD + "midpoint is for boxes that stay as they are, and fix " + modify->fix[i]->id +
                     " of style " + modify->fix[i]->style + " deforms this one: use ab2");
 }
 
-/* What pushes atom i in this step, in f and torque */
-void FixStokesDynamicsOverdamped::push(int i)
+/* f and torque become what pushes spheres in this step, but for noise; returned is what they were, to be
+ * taken back: [6] by atom */
+std::vector<double> FixStokesDynamicsOverdamped::push_between_steps(const Hydrodynamics &hydro)
 {
-  const double scale = noise.on() ? noise.scale(1.0 / update->dt) : 0.0;
-  const bool extrapolate = load.has(i);
-  const double *f = random[i];
-  double *old = load.give(i);
-  for (int d = 0; d < (atom->torque_flag ? 6 : 3); d++) {
-    double &now = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
-    const double mean = extrapolate ? 1.5 * now - 0.5 * old[d] : now;
-    old[d] = now;
-    now = mean + (noise.on() ? scale * f[d] : 0.0);
+  std::vector<double> loads(6 * (size_t) atom->nlocal + 6);
+  for (int i : hydro.ambient.who())
+    for (int d = 0; d < (atom->torque_flag ? 6 : 3); d++) {
+      double &now = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
+      loads[6 * (size_t) i + d] = now;
+      if (load.has(i)) now = 1.5 * now - 0.5 * load[i][d];
+    }
+  return loads;
+}
+
+void FixStokesDynamicsOverdamped::take_back(const Hydrodynamics &hydro, const std::vector<double> &loads)
+{
+  for (int i : hydro.ambient.who()) {
+    std::copy_n(&loads[6 * (size_t) i], 3, atom->f[i]);
+    if (atom->torque_flag) std::copy_n(&loads[6 * (size_t) i + 3], 3, atom->torque[i]);
   }
-  if (domain->dimension == 2) atom->f[i][2] = 0.0;
+}
+
+void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Velocities::Take &take)
+{
+  const std::vector<double> loads = push_between_steps(hydro);
+  const int width = hydro.rotation() ? 6 : 3;
+  Velocities::Draw draw;
+  if (noise.on())
+    draw = noise.forces(hydro, [this, width](int i, const double *f) {
+      std::copy_n(f, width, random.give(i));
+    });
+  hydro.velocities(take, givens(), noise.on() ? &draw : nullptr);
+  take_back(hydro, loads);
 }
 
 /* Clumps from where they stood, start, with spheres at x [3 members], by the velocities of now for dt.
@@ -70,11 +93,14 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
   const WholeClumps &whole = hydro.scene.whole;
   std::vector<double> places, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
   for (size_t c = 0; c < start.size(); c++) {
+    if (start[c].held) continue;
     const RigidClumps::Body &body = *motion.clumps[c].body;
-    double pose[12], turn[9];
+    double pose[12], turn[9], V[6];
     std::copy_n(start[c].pose, 12, pose);
+    std::copy_n(motion.clumps[c].V, 6, V);
+    if (domain->dimension == 2) V[2] = V[3] = V[4] = 0.0;
     places.resize(3 * (size_t) body.n);
-    sd_pose_advance(pose, motion.clumps[c].V, dt, body.n, body.shape->shape.x, turn, places.data());
+    sd_pose_advance(pose, V, dt, body.n, body.shape->shape.x, turn, places.data());
     for (int k = 0; k < body.n; k++) {
       const size_t m = motion.member_of(motion.clumps[c], k);
       double *row = &rows[COLUMNS * m];
@@ -86,46 +112,48 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
   const bool whole_step = dt == update->dt;
   whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
     if (row[MOVES] == 0.0) return;
-    for (int d = 0; d < 3; d++) atom->x[i][d] += row[STEP + d];
+    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += row[STEP + d];
     if (!whole_step) return;
     moves(i, sqrt(sd_dot(row + STEP, row + STEP)), 0.0);
     hydro.turn(i, row + TURN);
   });
 }
 
-/* Atoms keep their ranks and their numbers: nobody migrates in between. */
+/* Half the step by the velocities of now, all of it by those there. Atoms keep their ranks and their
+ * numbers: nobody migrates in between. */
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
-  const int n = atom->nlocal;
   const double dt = update->dt;
   const bool turns = atom->torque_flag;
   const std::vector<int> who = hydro.ambient.who(), lone = hydro.motion().lone;
   const Clumps start = hydro.motion().clumps;
   const std::vector<double> of_members = hydro.scene.whole.x;
-  std::vector<double> x(3 * (size_t) n + 3), F(6 * (size_t) n + 6), V(3 * (size_t) n + 3);
+  std::vector<double> x(3 * (size_t) atom->nlocal + 3), V(x.size());
   for (int i : who) {
     std::copy_n(atom->x[i], 3, &x[3 * (size_t) i]);
-    std::copy_n(atom->f[i], 3, &F[6 * (size_t) i]);
-    if (turns) std::copy_n(atom->torque[i], 3, &F[6 * (size_t) i + 3]);
-    push(i);
+    std::copy_n(motion[i], 3, &V[3 * (size_t) i]);
   }
-  const auto take = [&V](int i, const double *v, const double * /*force*/) {
-    std::copy_n(v, 3, &V[3 * (size_t) i]);
-  };
-  for (double part : {0.5 * dt, dt}) {
-    if (part == dt) hydro.begin();
-    hydro.velocities(take, Velocities::Held());
+  const auto place = [&](double part) {
     for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
     for (int i : lone)
-      for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += part * V[3 * (size_t) i + d];
+      for (int d = 0; d < domain->dimension && !is_held(i); d++)
+        atom->x[i][d] += part * V[3 * (size_t) i + d];
     if (hydro.settings.rigid.on) place_clumps(hydro, start, of_members, part);
-  }
-  for (int i : who) {
-    std::copy_n(&F[6 * (size_t) i], 3, atom->f[i]);
-    if (turns) std::copy_n(&F[6 * (size_t) i + 3], 3, atom->torque[i]);
-  }
+  };
+  place(0.5 * dt);
+  hydro.begin();
+  const std::vector<double> loads = push_between_steps(hydro);
+  for (int i : who)
+    for (int d = 0; d < (turns ? 6 : 3) && noise.on(); d++)
+      (d < 3 ? atom->f[i][d] : atom->torque[i][d - 3]) += random[i][d];
+  hydro.velocities([&V](int i, const double *v, const double *) {
+    std::copy_n(v, 3, &V[3 * (size_t) i]);
+  }, givens());
+  place(dt);
+  take_back(hydro, loads);
+  for (int i : who) std::copy_n(&loads[6 * (size_t) i], 6, load.give(i));
   for (int i : lone) {
     const double *v = &V[3 * (size_t) i];
-    moves(i, dt * sqrt(sd_dot(v, v)), 0.0);
+    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)), 0.0);
   }
 }

@@ -25,9 +25,6 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 static const std::string COMMAND = StokesSettings::COMMAND;
-// Steps from one look at the limit that lubrication sets to the next: each costs 30 sparse
-// products.
-static const int LOOK_AT_FILMS = 1000;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, COMMAND), shells(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND),
@@ -84,8 +81,11 @@ void Hydrodynamics::begin()
          COMMAND + ": its internal fix " + State::ID +
              " has been deleted; a run without 'pre no' makes it anew");
   if (neighbor->ago == 0) scene.lists_are_stale();
-  ambient.read(rotation(), settings.rigid.on || shells.settings.on(), memory->time());
-  standing = false;
+  const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
+      : settings.rigid.on                                  ? Ambient::FIRST
+                                                           : Ambient::NO_DERIVATIVES;
+  ambient.read(rotation(), wanted, memory->time());
+  standing = solved = false;
   if (scene.settings.whole) scene.whole.find();
   if (selection == ambient.selection()) return;
   selection = ambient.selection();
@@ -158,67 +158,6 @@ void Hydrodynamics::drag()
   if (settings.lubrication.on) lubricate();
 }
 
-/* Of the films where they stand, as the spheres move. */
-void Hydrodynamics::find_films_power()
-{
-  films_power.clear();
-  if (!ambient.varies()) return;
-  std::vector<double> power(scene.size() + 1);
-  sd_lubrication_strain_power(lubrication.matrix(), films_v.data(), power.data());
-  films_power.assign(atom->nlocal + 1, 0.0);
-  scene.to_atoms(1, power.data(), [this](int i, const double *p) { films_power[i] = *p; });
-}
-
-void Hydrodynamics::stand()
-{
-  films_power.clear();
-  if (!settings.lubrication.on || !ambient.varies()) return;
-  solvers = ambient.who();
-  if (settings.rigid.on) mobile.find();
-  surround();
-  read_motion();
-  lubrication.place(scene, ambient);
-  find_films_power();
-}
-
-void Hydrodynamics::surround()
-{
-  if (standing) return;
-  scene.stand(solvers, ambient);
-  scene.turn_shells();
-  scene.surround_films();
-}
-
-/* As the spheres move now, by rows of the scene */
-void Hydrodynamics::read_motion()
-{
-  films_v = scene.rows(6, [this](int i, double *out) {
-    std::copy_n(atom->v[i], 3, out);
-    std::copy_n(atom->omega[i], 3, out + 3);
-  });
-  scene.drift(films_v.data(), 6, 1.0);
-}
-
-/* Where the spheres stand and as they move now */
-void Hydrodynamics::lubricate()
-{
-  surround();
-  read_motion();
-  films_F.resize(films_v.size());
-  lubrication.place(scene, ambient);
-  lubrication.forces(films_v.data(), films_F.data());
-  find_films_power();
-  if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
-    guard.look_at_films(*lubrication.matrix(), scene);
-  scene.to_atoms(6, films_F.data(), [this](int i, const double *F) {
-    double *row = memory->rows.row(i);
-    for (int d = 0; d < 3; d++) {
-      row[State::FORCE + d] += F[d];
-      row[State::TORQUE + d] += F[3 + d];
-    }
-  });
-}
-
 /* v' of every sphere that is the solver's, from the forces that solve the system for the velocities
  * of now. Where nobody sees anybody there is nothing to solve. */
 void Hydrodynamics::solve()
@@ -261,6 +200,11 @@ void Hydrodynamics::place()
   memory->global.open_box = scene.open_box();
   if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && !looked_at_flow)
     warn_of_misfit(lmp, COMMAND, ambient.misfit());
+  if (settings.lubrication.on && !shells.settings.on() && !looked_at_flow) {
+    double spheres = scene.size();
+    Scene::sum(&scene, &spheres, 1);
+    warn_of_shared_films(lmp, COMMAND, spheres);
+  }
   looked_at_flow = true;
   if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
   if (looked_at_clumps || !how.clumps_only || std::isinf(how.cutoff) || how.taper != SD_TAPER_NONE)
@@ -392,6 +336,7 @@ sd_status Hydrodynamics::together(sd_solve_report &report)
   const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};
   sd_bodies_report made = {};
   const sd_status status = mobile.resist(how, slip, begin_with, solution, made);
+  solved = true;
   keep_points(begin_with.l);
   report.iterations = report.products = made.products;
   report.residual = made.residual;

@@ -62,8 +62,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   /* Of all that takes part, from what is in f and torque, in any order; and forces on those that are
    * held. A step is begin() and this.
-   * Where all interact, the forces go to rows of the memory too: the next guess. */
-  void velocities(const Velocities::Take &take, const Velocities::Held &held);
+   * Where all interact, the forces go to rows of the memory too: the next guess. draw: random forces too,
+   * where all interact */
+  void velocities(const Velocities::Take &take, const Velocities::Held &held,
+                  const Velocities::Draw *draw = nullptr);
   /* Those of rigid clumps, and who is free, since then */
   const Velocities &motion() const { return mobile; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
@@ -129,8 +131,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* [nlocal], or empty: of strain_power() */
   std::vector<double> films_power;
 
-  /* do the scene's rows, and what films need around them, stand as in this step? */
-  bool standing = false;
+  /* do the scene's rows, and what films need around them, stand as in this step? With shells, are
+   * the forces in begin_with those of this step's solve, by these rows? */
+  bool standing = false, solved = false;
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void place();
@@ -142,8 +145,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
     return shells.settings.on() ||
         (settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1);
   }
+  void stand_rows();
   void surround();
   void read_motion();
+  void place_films();
   void lubricate();
   void find_films_power();
   sd_status run(sd_solve_report &report);
@@ -155,6 +160,12 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void keep();
   void recall_points(std::vector<double> &l, double line);
   void keep_points(const std::vector<double> &l);
+  /* by rows: points of the shells as they stand now, from their centre and in space, their radii,
+   * and the forces on the fluid that the last solve found */
+  struct Points {
+    std::vector<double> r, x, b, l;
+  };
+  Points points_of_now();
   std::vector<OnFluid> of_points_on_fluid();
   int algorithm() const    // of the next solve
   {
@@ -162,7 +173,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   }
   std::string where(int algorithm) const;
   void unconverged(sd_status status, const sd_solve_report &report);
-  sd_status move_together(const Velocities::Take &take, sd_bodies_report &report);
+  sd_status move_together(const Velocities::Take &take, const Velocities::Draw *draw,
+                          sd_bodies_report &report);
   [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
 };
 

@@ -15,34 +15,40 @@ namespace StokesDyn {
 using State = FixStokesDynamicsState;
 static const std::string COMMAND = StokesSettings::COMMAND;
 
-/* Forces of points, as the last solve left them. Where no solve was needed in this step the rows of
- * the scene are those of another one. */
-std::vector<OnFluid> Hydrodynamics::of_points_on_fluid()
+/* Where no solve was needed in this step the rows of the scene may be those of another one. */
+Hydrodynamics::Points Hydrodynamics::points_of_now()
 {
-  if (memory->points == 0 && !standing)
+  if (memory->points == 0 && !solved)
     fail(lmp,
          COMMAND + ": step " + std::to_string(update->ntimestep) +
              ": the forces of the points are not kept with warm_start no; use warm_start yes");
-  if (!standing) {
-    solvers = ambient.who();
-    if (settings.rigid.on) mobile.find();
-    scene.stand(solvers, ambient);
-    shells.free_rows(scene.size());
-    mobile.orient();
-  }
-  std::vector<double> l = begin_with.l;
-  if (memory->points > 0) recall_points(l, 0.0);
-  const size_t n = scene.size(), P = shells.points();
+  stand_rows();
+  const size_t n = scene.size(), points = n * shells.points();
   const sd_spheres s = scene.local();
   const sd_multiblob_spheres spheres = {s.x, s.a, shells.turns(), shells.masks(), (int) n};
-  std::vector<double> x(3 * n * P + 3), b(n * P + 1);
-  sd_multiblob_expand(&shells.model(), &spheres, nullptr, x.data(), b.data());
+  Points now;
+  now.r.resize(3 * points + 3);
+  now.x.resize(3 * points + 3);
+  now.b.resize(points + 1);
+  sd_multiblob_expand(&shells.model(), &spheres, now.r.data(), now.x.data(), now.b.data());
+  if (solved)
+    now.l = begin_with.l;
+  else
+    recall_points(now.l, 0.0);
+  return now;
+}
+
+std::vector<OnFluid> Hydrodynamics::of_points_on_fluid()
+{
+  const Points now = points_of_now();
+  const size_t P = shells.points();
+  const double *w = scene.local().w;
   std::vector<OnFluid> all;
-  for (size_t k = 0; k < n * P; k++) {
-    if (!(b[k] > 0.0)) continue;
-    const double over_eta = s.w[k / P] * s.w[k / P];
-    OnFluid row = {{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, b[k], {}, {}};
-    for (int d = 0; d < 3; d++) row.F[d] = over_eta * l[3 * k + d];
+  for (size_t k = 0; k < scene.size() * P; k++) {
+    if (!(now.b[k] > 0.0)) continue;
+    const double over_eta = w[k / P] * w[k / P], *x = &now.x[3 * k];
+    OnFluid row = {{x[0], x[1], x[2]}, now.b[k], {}, {}};
+    for (int d = 0; d < 3; d++) row.F[d] = over_eta * now.l[3 * k + d];
     all.push_back(row);
   }
   return all;

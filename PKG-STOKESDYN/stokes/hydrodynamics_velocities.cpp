@@ -52,8 +52,10 @@ void Hydrodynamics::keep_points(const std::vector<double> &l)
 }
 
 /* In one loop, which begins from the forces of the last step, with lubrication from its velocities
- * too: v' has no other use in such a run, so they are kept in its place. */
-sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_report &report)
+ * too: v' has no other use in such a run, so they are kept in its place. New random forces leave nothing
+ * of either to begin from. */
+sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Velocities::Draw *draw,
+                                       sd_bodies_report &report)
 {
   const size_t m = width();
   place();
@@ -76,8 +78,11 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
     if (!shells.settings.on()) std::copy_n(&rows[2 * m * k], m, &begin_with.l[m * k]);
     std::copy_n(&rows[2 * m * k + m], m, &begin_with.v[m * k]);
   }
-  const Velocities::How how = {width(), settings.warm_start, settings.tolerance, settings.max_iter};
+  Velocities::How how = {width(), settings.warm_start && !draw, settings.tolerance,
+                         settings.max_iter};
+  how.draw = draw;
   const sd_status status = mobile.together(how, begin_with, take, report);
+  solved = true;
   films_power.clear();
   if (settings.lubrication.on && status == SD_OK) {
     read_motion();
@@ -101,7 +106,8 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, sd_bodies_r
   return status;
 }
 
-void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::Held &held)
+void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::Held &held,
+                               const Velocities::Draw *draw)
 {
   State::Global &global = memory->global;
   sd_bodies_report report = {};
@@ -114,7 +120,7 @@ void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::H
     for (int i : solvers)
       memory->rows.give(i);    // those that have one are known to have moved here
   } else
-    status = move_together(take, report);
+    status = move_together(take, draw, report);
   global.solves++;
   global.iterations = report.products;
   global.residual = report.residual;
@@ -149,9 +155,13 @@ void Hydrodynamics::turn(int i, const double R[9])
 
 void Hydrodynamics::stress(std::vector<double> &of_atoms)
 {
+  const bool films_stand = standing;
+  stand_rows();
+  if (settings.lubrication.on && !films_stand) place_films();
+  const Points now = points_of_now();
   const size_t n = scene.size();
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0), rows(12 * n + 12);
-  mobile.add_moments(begin_with.l, points.data());
+  sd_multiblob_moments(&shells.model(), (int) n, now.r.data(), now.l.data(), points.data());
   if (overdamped) mobile.add_constraints(points.data());
   if (settings.lubrication.on) {
     const double *v = overdamped ? mobile.last_velocities() : films_v.data();

@@ -3,10 +3,12 @@
 #include "keywords.h"
 
 #include "sd_linear.h"
+#include "sd_lubrication_noise.h"
 #include "sd_multiblob_wall.h"
 #include "sd_wall_film.h"
 
 #include "comm.h"
+#include "domain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +57,7 @@ void Lubrication::provide(double largest, double smallest)
   if (shells) check(sd_films_create(shells->points, shells->one_body, functions, &films));
 }
 
-void Lubrication::place(Scene &where, const Ambient &ambient)
+void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
 {
   if (where.largest() > 0.0) provide(where.largest(), where.smallest());
   u = where.rows(6, [&](int i, double *out) { ambient.fluid(i, out); });
@@ -71,6 +73,7 @@ void Lubrication::place(Scene &where, const Ambient &ambient)
   scene.body = where.all_molecules().data();
   scene.u = u.data();
   scene.drift = where.drift_of_copies();
+  scene.noisy = noisy;
   scene.world.ctx = &where;
   scene.world.me = comm->me;
   scene.world.ranks = comm->nprocs;
@@ -107,6 +110,59 @@ void Lubrication::add_wall(const Scene &where)
     }
     sd_lubrication_add_own(&near, (int) k, B, E);
   }
+}
+
+/* Whose pair it is, whoever asks: by the lower tag, and by which of all images the two see each other */
+struct Pairs {
+  sd_random_key key;
+  std::vector<double> tags;
+  const double *x;
+  Lattice lattice;
+};
+
+/* By how many edges the second stands off the closest place, counted otherwise than by halves, where two
+ * places of a lattice are equally close */
+static void image_of(const Lattice &lattice, const double r[3], int steps[3])
+{
+  const double *h = lattice.h, f2 = r[2] / h[2], f1 = (r[1] - h[3] * f2) / h[1];
+  const double f[3] = {(r[0] - h[5] * f1 - h[4] * f2) / h[0], f1, f2};
+  for (int d = 0; d < 3; d++) steps[d] = lattice.periodic[d] ? (int) floor(f[d] + 0.5123) : 0;
+}
+
+static int draw_pair(void *ctx, int i, int at, double g[12])
+{
+  const Pairs &pairs = *static_cast<Pairs *>(ctx);
+  const int64_t one = ubuf(pairs.tags[i]).i, other = ubuf(pairs.tags[at]).i;
+  double r[3];
+  int steps[3], first = one <= other;
+  if (first)
+    sd_minus(pairs.x + 3 * (size_t) at, pairs.x + 3 * (size_t) i, r);
+  else
+    sd_minus(pairs.x + 3 * (size_t) i, pairs.x + 3 * (size_t) at, r);
+  image_of(pairs.lattice, r, steps);
+  if (one == other) {    // an image of itself: which of the two stands higher
+    for (int d = 2; d >= 0; d--)
+      if (steps[d] != 0) first = steps[d] > 0;
+    for (int d = 0; d < 3 && !first; d++) steps[d] = -steps[d];
+  }
+  uint32_t which = 0;
+  for (int step : steps) which = 1024 * which + (uint32_t) (step + 512);
+  sd_random_normals(&pairs.key, sd_random_pair(std::min(one, other), std::max(one, other), which), 12,
+                    g);
+  return first;
+}
+
+sd_status Lubrication::draw(Scene &where, const sd_random_key &key, double *F) const
+{
+  const size_t n = where.size();
+  Pairs pairs = {key, std::vector<double>((size_t) where.size_with_copies() + 1), where.local().x,
+                 Lattice::of(domain)};
+  for (size_t k = 0; k < n; k++) pairs.tags[k] = ubuf(where.tag((int) k)).d;
+  if (near.n_all > near.n) {
+    const sd_status status = Scene::refresh(&where, pairs.tags.data(), &pairs.tags[n], 1);
+    if (status != SD_OK) return status;
+  }
+  return sd_lubrication_noise(&near, draw_pair, &pairs, F);
 }
 
 void Lubrication::forces(const double *v, double *out)

@@ -7,6 +7,7 @@
 #include "scene.h"
 
 #include "sd_lubrication.h"
+#include "sd_random.h"
 
 #include <string>
 #include <vector>
@@ -30,12 +31,16 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   Lubrication &operator=(const Lubrication &) = delete;
 
   /* The rows of the scene where they stand now, with the films' surroundings, in the fluid of this
-   * step, on all ranks. Error: radii that are too different. */
-  void place(Scene &scene, const Ambient &ambient);
+   * step, on all ranks. noisy: random forces will be drawn. Error: radii that are too different. */
+  void place(Scene &scene, const Ambient &ambient, bool noisy = false);
   /* Since then */
   sd_lubrication *matrix() { return &near; }
   /* out [6 n]: forces and torques on the spheres that move with v, by rows */
   void forces(const double *v, double *out);
+
+  /* F [6 n] += random forces on the spheres, of covariance L, where they were placed so; on all ranks
+   * together. SD_OK or that of sd_lubrication_noise.h */
+  sd_status draw(Scene &scene, const sd_random_key &key, double *F) const;
 
   double memory_usage() const;
 

@@ -8,7 +8,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "neighbor.h"
@@ -36,10 +35,17 @@ void Noise::read_tolerance(Keywords &in)
   if (!(tolerance < 0.5)) in.refuse("'" + text(tolerance) + "' must be below 0.5");
 }
 
+Noise::~Noise()
+{
+  sd_noise_free(&process);
+  sd_bodies_noise_free(&of_bodies);
+}
+
 double Noise::memory_usage() const
 {
-  double numbers = of_clumps.capacity() + D.capacity() + w.capacity() + y.capacity();
+  double numbers = of_clumps.capacity() + D.capacity() + w.capacity() + y.capacity() + of_bodies.room;
   for (size_t room : process.room) numbers += room;
+  for (size_t room : of_bodies.process.room) numbers += room;
   return sizeof(double) * numbers;
 }
 
@@ -97,11 +103,11 @@ void Noise::draw_alone(const Hydrodynamics &hydro, const Take &take)
   }
 }
 
-/* M of `width` numbers a row, from that of the engine, which may have torques where nobody turns by its
+/* M of three numbers a row, from that of the engine, which may have torques where nobody turns by its
  * noise. Where the engine's M divides, the part that is not drawn at once. */
 struct Forces {
-  size_t rows, width, engine_width;
-  /* [width rows] */
+  size_t rows, engine_width;
+  /* [3 rows] */
   const double *D;
   sd_mobility *engine;
   /* nullptr: nobody sees anybody */
@@ -113,40 +119,37 @@ struct Forces {
 static sd_status apply_forces(void *ctx, const double *F, double *u)
 {
   Forces &m = *static_cast<Forces *>(ctx);
-  const size_t width = m.width;
   for (size_t k = 0; k < m.rows && m.apply; k++)
-    std::copy_n(F + width * k, width, &m.F[m.engine_width * k]);
+    std::copy_n(F + 3 * k, 3, &m.F[m.engine_width * k]);
   const sd_status status = m.apply ? m.apply(m.engine, m.F.data(), m.u.data()) : SD_OK;
   for (size_t k = 0; k < m.rows; k++)
-    for (size_t d = 0; d < width; d++) {
-      const size_t j = width * k + d;
+    for (size_t d = 0; d < 3; d++) {
+      const size_t j = 3 * k + d;
       u[j] = m.D[j] > 0.0 ? m.u[m.engine_width * k + d] + F[j] / m.D[j] : 0.0;
     }
   return status;
 }
 
 /* The rows with their numbers w and drags D, and the matrix: whole */
-void Noise::place(Hydrodynamics &hydro, size_t width, Forces &forces, sd_noise_matrix &M)
+void Noise::place(Hydrodynamics &hydro, Forces &forces, sd_noise_matrix &M)
 {
   Scene &scene = hydro.scene;
   const size_t n = scene.size();
-  const std::vector<double> drags = scene.rows(2, [&hydro](int i, double *out) {
-    out[0] = hydro.ambient.drag(i);
-    out[1] = hydro.ambient.spin(i);
-  });
-  for (auto *rows : {&D, &w, &y}) rows->resize(width * (n + 1));
+  const std::vector<double> drags =
+      scene.rows(1, [&hydro](int i, double *out) { *out = hydro.ambient.drag(i); });
+  for (auto *rows : {&D, &w, &y}) rows->resize(3 * n + 3);
   const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
   for (size_t k = 0; k < n; k++) {
-    for (size_t d = 0; d < width; d++) D[width * k + d] = drags[2 * k + (d >= 3)];
-    sd_random_normals(&of_sphere, scene.tag(k), (int) width, &w[width * k]);
+    std::fill_n(&D[3 * k], 3, drags[k]);
+    sd_random_normals(&of_sphere, scene.tag(k), 3, &w[3 * k]);
   }
   const size_t engine_width = hydro.rotation() ? 6 : 3;
-  forces = {n, width, engine_width, D.data(), scene.mobility(), nullptr, {}, {}};
+  forces = {n, engine_width, D.data(), scene.mobility(), nullptr, {}, {}};
   forces.F.assign(engine_width * (n + 1), 0.0);
   forces.u.assign(engine_width * (n + 1), 0.0);
   if (scene.anybody_sees()) forces.apply = sd_mobility_apply;
   M = {};
-  M.n = (long) (width * n);
+  M.n = (long) (3 * n);
   M.apply = apply_forces;
   M.ctx = &forces;
   M.D = D.data();
@@ -169,7 +172,7 @@ void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
 {
   Forces forces;
   sd_noise_matrix M;
-  place(hydro, 3, forces, M);
+  place(hydro, forces, M);
   divided = forces.apply && sd_mobility_divides(forces.engine);
   if (divided) forces.apply = sd_mobility_apply_rest;
   sd_status status =
@@ -184,24 +187,16 @@ void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
 }
 
 /* Of a third of the tolerance: slow modes of forces are off by more than those of velocities. */
-void Noise::draw_forces(Hydrodynamics &hydro, const Take &take)
+Velocities::Draw Noise::forces(const Hydrodynamics &hydro, const Take &take)
 {
   find_temperature(hydro);
-  Forces forces;
-  sd_noise_matrix M;
-  const size_t width = hydro.settings.rigid.on ? 6 : 3;
-  place(hydro, width, forces, M);
   divided = false;
-  if (domain->dimension == 2)
-    for (size_t k = 0; k < forces.rows; k++) D[width * k + 2] = 0.0;
-  const sd_status status =
-      sd_noise_forces(&process, &M, w.data(), tolerance / 10.0, y.data(), &last);
-  if (status != SD_OK) no_root(status);
-  hydro.scene.to_atoms((int) width, y.data(), [&take, width](int i, const double *row) {
-    double f[6] = {0.0};
-    std::copy_n(row, width, f);
-    take(i, f);
-  });
+  const auto told = [this](sd_status status, const sd_noise_report &report) {
+    last = report;
+    if (status != SD_OK) no_root(status);
+  };
+  return {&of_bodies,       key(SD_RANDOM_SPHERE),   key(SD_RANDOM_FILM),
+          tolerance / 10.0, scale(1.0 / update->dt), take, told};
 }
 
 void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) const

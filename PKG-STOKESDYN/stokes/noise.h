@@ -1,7 +1,8 @@
 /* Brownian motion for fix stokes_dynamics/overdamped: the random part of a step of all spheres and
- * lone clumps, with the mobility that velocities follow from.
+ * lone clumps, with the mobility that velocities follow from, or random forces with the resistance.
  *
- *   step = sqrt(2 kT dt) y,   y of covariance M
+ *   step = sqrt(2 kT dt) y,     y of covariance M           where the mobility has no drift
+ *   force = sqrt(2 kT/dt) f,    f of covariance R = M^-1    scheme midpoint
  *
  * Numbers are drawn where velocities are found, at the positions of that moment, and depend on atom
  * IDs, the step and the seed alone: nothing is kept for restarts, and a second setup draws the
@@ -32,7 +33,7 @@ class Keywords;
 class Noise : protected LAMMPS_NS::Pointers {
  public:
   Noise(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command) {}
-  ~Noise() { sd_noise_free(&process); }
+  ~Noise();
   Noise(const Noise &) = delete;
   Noise &operator=(const Noise &) = delete;
 
@@ -46,6 +47,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   struct Ways {
     bool adapts, holds, midpoint;
   };
+  /* What makes a drift, as errors name it; empty: nothing does, and ab2 and euler are right */
+  std::string drift(const Hydrodynamics &hydro, bool holds) const;
   /* Before a run: the variable, and how sums over images are split. Errors: a variable that is none,
    * and whatever has a drift that is left out or no noise: settings of the pair style, other
    * commands. */
@@ -56,10 +59,9 @@ class Noise : protected LAMMPS_NS::Pointers {
    * mobility without a root. */
   using Take = std::function<void(int i, const double *y)>;
   void draw(Hydrodynamics &hydro, const Take &take);
-  /* The same of covariance M^-1, forces and torques [6] in place of velocities, of all spheres: for steps of
-   * scheme midpoint. Torques only where clumps are rigid and feel each other; nothing along what a plane
-   * holds */
-  void draw_forces(Hydrodynamics &hydro, const Take &take);
+  /* For a solve of this step, in scheme midpoint: random forces and torques on all spheres, whose
+   * covariance is the resistance of all that moves, 2 kT/dt times. Errors as of draw(). */
+  Velocities::Draw forces(const Hydrodynamics &hydro, const Take &take);
   /* sqrt(2 kT dt) for a step dt from there */
   double scale(double dt) const;
   const double *of_clump(size_t c) const { return &of_clumps[6 * c]; }
@@ -79,6 +81,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* of this step */
   double kT = 0.0;
   sd_noise process = {};
+  sd_bodies_noise of_bodies = {};
   sd_noise_report last = {};
   std::vector<double> of_clumps;
   /* by rows, three numbers each */
@@ -91,7 +94,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   void find_temperature(const Hydrodynamics &hydro);
   [[noreturn]] void no_root(sd_status status) const;
   void draw_alone(const Hydrodynamics &hydro, const Take &take);
-  void place(Hydrodynamics &hydro, size_t width, struct Forces &forces, sd_noise_matrix &M);
+  void place(Hydrodynamics &hydro, struct Forces &forces, sd_noise_matrix &M);
   void draw_together(Hydrodynamics &hydro, const Take &take);
 };
 

@@ -21,54 +21,53 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-/* what: a setting or a command; way: out */
-[[noreturn]] static void drifts(LAMMPS *lmp, const std::string &keyword, const std::string &what,
-                                const std::string &way)
+static const std::string PAIR = " of pair_style stokes_dynamics";
+
+std::string Noise::drift(const Hydrodynamics &hydro, bool holds) const
 {
-  fail(lmp, keyword + what +
-                ": the mobility has a drift, which schemes ab2 and euler leave out: " + way);
+  const StokesSettings &s = hydro.settings;
+  const Ambient::Settings &fluid = hydro.ambient.settings;
+  if (domain->dimension == 2) return "dimension 2, which holds a coordinate";
+  if (s.rigid.apart()) return "";
+  if (s.shells.on()) return "keyword multiblob" + PAIR;
+  if (s.lubrication.on) return "keyword lubrication" + PAIR;
+  if (s.rigid.on) return "keyword rigid_clumps" + PAIR + " with clumps that feel each other";
+  if (s.scene.wall.sign) return "keyword wall" + PAIR;
+  if (fluid.visc.is_atom_style() || fluid.grid_has_visc)
+    return "keyword visc" + PAIR + ", which varies in space";
+  return holds ? "keyword held" : "";
 }
 
-/* Of the pair style: a divergence of the mobility, or no noise that is known */
-static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const StokesSettings &s,
-                            const Ambient::Settings &fluid, bool midpoint)
+/* A mobility that has no root, or a drift that no scheme has */
+static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const StokesSettings &s)
 {
-  const std::string pair = " of pair_style stokes_dynamics";
-  if (s.shells.on()) drifts(lmp, keyword, "keyword multiblob" + pair, "leave it out");
-  if (s.lubrication.on) drifts(lmp, keyword, "keyword lubrication" + pair, "use lubrication no");
-  if (s.rigid.on && !s.rigid.apart() && !midpoint)
-    drifts(lmp, keyword, "keyword rigid_clumps" + pair + " with clumps that feel each other",
-           "use scheme midpoint or clumps_only yes");
-  if (s.rigid.on && !s.rigid.apart() && s.rigid.shell > 1)
-    fail(lmp, keyword + "keyword shell" + pair +
-                  ": clumps with shells that feel each other have no noise: use rotation yes "
-                  "without a shell");
-  if (s.scene.wall.sign && !midpoint)
-    drifts(lmp, keyword, "keyword wall" + pair, "use scheme midpoint");
+  if (s.rigid.apart() && lmp->domain->dimension == 2)
+    fail(lmp, keyword + "keyword clumps_only" + PAIR +
+                  ": lone clumps in a plane have a drift: use clumps_only no");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
-    fail(lmp, keyword + "keyword tensor: 'oseen'" + pair +
+    fail(lmp, keyword + "keyword tensor: 'oseen'" + PAIR +
                   " has negative mobilities, and no noise: use tensor rpy");
   if (s.scene.taper != SD_TAPER_NONE)
-    drifts(lmp, keyword, "keyword taper" + pair, "use cut_off_distance inf");
+    fail(lmp, keyword + "keyword taper" + PAIR +
+                  ": the mobility has a drift, which schemes leave out: use cut_off_distance inf");
   if (std::isfinite(s.scene.cutoff) && !s.rigid.apart())
-    drifts(lmp, keyword, "keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + pair,
-           "use inf");
-  if ((fluid.visc.is_atom_style() || fluid.grid_has_visc) && !midpoint)
-    drifts(lmp, keyword, "keyword visc" + pair + ", which varies in space",
-           "use scheme midpoint or one viscosity for all");
+    fail(lmp, keyword + "keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + PAIR +
+                  ": the mobility has a drift, which schemes leave out: use inf");
 }
 
 void Noise::refuse(const Hydrodynamics &hydro, const Fix *self, const Ways &ways) const
 {
   const std::string keyword = command + ": keyword temperature: ";
-  refuse_settings(lmp, keyword, hydro.settings, hydro.ambient.settings, ways.midpoint);
+  refuse_settings(lmp, keyword, hydro.settings);
+  const std::string what = drift(hydro, ways.holds);
+  if (!what.empty() && !ways.midpoint)
+    fail(lmp, keyword + what +
+                  ": the mobility has a drift, which schemes ab2 and euler leave out: use scheme "
+                  "midpoint");
   if (!atom->tag_enable)
     fail(lmp, keyword + "the noise of an atom goes by its ID, and there are none: atom_modify id yes");
-  if (domain->dimension == 2 && !ways.midpoint)
-    drifts(lmp, keyword, "dimension 2, which holds a coordinate", "use scheme midpoint");
   if (ways.adapts)
     fail(lmp, keyword + "averages over steps of unequal length are not those of time: leave adapt out");
-  if (ways.holds) drifts(lmp, keyword, "keyword held", "leave it out");
   for (int i = 0; i < modify->nfix; i++) {
     const Fix *fix = modify->fix[i];
     if (fix == self) continue;

@@ -153,8 +153,8 @@ sd_status Preconditioner::put()
   if (wanted == &sd_precondition_waves) c.box = &scene.splitting()->box;
   c.part = cloud ? comm->me : 0;
   c.parts = cloud ? comm->nprocs : 1;
-  c.sum = Scene::sum;
-  c.sum_ctx = &scene;
+  c.world.sum = Scene::sum;
+  c.world.ctx = &scene;
   return sd_preconditioner_make(&made, wanted, &c);
 }
 

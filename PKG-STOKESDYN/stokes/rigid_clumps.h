@@ -88,6 +88,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   {
     return shapes.points(shape, model);
   }
+  /* Of whichever of these there is, for noise. Error: memory. */
+  void take_root(const ClumpShape &shape) const { shapes.take_root(shape); }
   /* Errors, which all ranks know: molecule IDs of a clump of which not all spheres are selected, and
    * of one that is not rigid; NOBODY: there is none */
   static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();

@@ -93,13 +93,18 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
 }
 
 /* Is the sum over everybody split, and how? In an open box only if that costs less, or is asked
- * for. The same on all ranks. */
+ * for; of a few spheres it is known without a look at them. The same on all ranks. */
 bool Scene::split()
 {
   if (settings.far_field == Settings::DIRECT) return false;
+  const bool must = periodic() || settings.far_field == Settings::EWALD;
+  double points_of_all = (double) points() * size();
+  if (!must) {
+    sum(this, &points_of_all, 1);
+    if (points_of_all <= SD_EWALD_FEWEST) return false;
+  }
   sd_ewald_box box = ewald.box;
   const sd_ewald_sizes sizes = measure(box);
-  const bool must = periodic() || settings.far_field == Settings::EWALD;
   ewald.count = sizes.all.count;
   if (sizes.all.count == 0.0) return must;
   const double all_pairs = sizes.all.count * sizes.all.count;

@@ -20,6 +20,12 @@ void Shells::make()
              "': " + sd_status_string(status));
 }
 
+void Shells::take_root()
+{
+  const sd_status status = sd_body_shape_take_root(&lone.points);
+  if (status != SD_OK) fail_one(lmp, command + ": keyword multiblob: " + sd_status_string(status));
+}
+
 void Shells::free_rows(int n)
 {
   static const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -34,6 +34,8 @@ class Shells : protected LAMMPS_NS::Pointers {
   void make();
   const sd_multiblob &model() const { return blob; }
   const sd_multiblob_shape &free_sphere() const { return lone; }
+  /* Its root, for noise. Error: memory. */
+  void take_root();
   int points() const { return blob.n; }
   /* How far points reach from the centre of a unit sphere */
   double radius() const { return blob.radius; }

@@ -206,39 +206,58 @@ void Velocities::place(int width)
   scene.drift(u.data(), width, 1.0);
 }
 
-/* The bodies as the core wants them: free spheres, then clumps */
+/* The bodies as the core wants them: free spheres, then clumps. With shells, and near a wall, where a
+ * sphere is one with its image, all of them have a shape. */
 void Velocities::arrange()
 {
-  const size_t n = scene.size();
+  const Shells *shells = scene.shells;
+  const size_t n = scene.size(), P = shells ? shells->points() : 1;
+  const bool wall = scene.settings.wall.sign && scene.settings.rotation;
+  /* rows of clumps that are not rigid are free spheres as well */
+  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
   member.clear();
   shaped.clear();
   loner.clear();
   whole.assign(n + 1, 0);
   arm.assign(3 * n + 3, 0.0);
-  const bool wall = scene.settings.wall.sign && scene.settings.rotation;
-  /* rows of clumps that are not rigid are free spheres as well */
-  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
+  const auto add_points = [&](const sd_multiblob_shape &shape, const std::vector<int> &rows) {
+    for (int k = 0; k < shape.points.m; k++)
+      member.push_back(P * rows[shape.row[k] / P] + shape.row[k] % P);
+  };
   for (int k = 0; k < free_ones; k++) {
+    const double w = scene.local().w[k], eta = 1.0 / (w * w);
     whole[k] = k;
-    if (!wall) {
+    if (shells) {
+      const sd_multiblob_shape &shape = shells->free_sphere();
+      add_points(shape, {k});
+      shaped.push_back(
+          {&shape.points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, scene.local().a[k], eta, nullptr});
+    } else if (wall) {
+      member.push_back(k);
+      shaped.push_back({nullptr, {}, 1.0, eta, nullptr});
+    } else
       loner.push_back(k);
-      continue;
-    }
-    const double w = scene.local().w[k];    // with its image it is a body of a shape
-    member.push_back(k);
-    shaped.push_back({nullptr, {}, 1.0, 1.0 / (w * w), nullptr});
   }
-  std::vector<double> arms;
   for (const Clump &clump : clumps) {
-    sd_body body = {&rigid.blocks(*clump.body->shape), {}, 1.0, clump.eta, nullptr};
-    std::copy_n(clump.pose, 9, body.R);
-    arms.resize(3 * (size_t) clump.body->n);
-    sd_body_arms(&body, arms.data());
+    const ClumpShape &is = *clump.body->shape;
+    sd_body body = {nullptr, {}, 1.0, clump.eta, nullptr};
+    std::vector<int> rows;
     for (int k = 0; k < clump.body->n; k++) {
       const int row = scene.row_of_member((int) member_of(clump, k));
-      member.push_back(row);
+      rows.push_back(row);
       whole[row] = loner.size() + shaped.size();
-      std::copy_n(&arms[3 * (size_t) k], 3, &arm[3 * (size_t) row]);
+      sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &arm[3 * (size_t) row]);
+    }
+    if (shells) {
+      const sd_multiblob_shape &shape = rigid.points(is, shells->model());
+      double turn[9];
+      add_points(shape, rows);
+      body.shape = &shape.points;
+      sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
+    } else {
+      member.insert(member.end(), rows.begin(), rows.end());
+      body.shape = &rigid.blocks(is);
+      std::copy_n(clump.pose, 9, body.R);
     }
     shaped.push_back(body);
   }
@@ -247,7 +266,6 @@ void Velocities::arrange()
     body.row = &member[at];
     at += body.shape ? body.shape->m : 1;
   }
-  if (wall) stand_at_wall();
   V.resize(6 * (loner.size() + shaped.size()) + 6);
 }
 
@@ -284,14 +302,14 @@ sd_bodies Velocities::bodies(int width)
 
 sd_bodies Velocities::assemble(int width)
 {
-  if (scene.shells) {
+  if (scene.shells)
     place_shells();
-    arrange_shells();
-    return bodies_of_shells();
-  }
-  place(width);
+  else
+    place(width);
   arrange();
-  return bodies(width);
+  in_open_space = shaped;
+  stand_at_wall();
+  return scene.shells ? bodies_of_shells() : bodies(width);
 }
 
 // --- the loop --------------------------------------------------------------------------------------
@@ -327,7 +345,10 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
   A.held = held.data();
   const size_t m = how.width, rows = m * scene.size();
   if (scene.shells) {
-    if (how.unstrained) std::fill(slope.begin(), slope.end(), 0.0);
+    if (how.unstrained) {
+      std::fill(slope.begin(), slope.end(), 0.0);
+      bend.clear();
+    }
     slip_at_points(slip.data());
   } else {
     std::copy_n(slip.begin(), rows, u.begin());
@@ -342,12 +363,30 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
   return status;
 }
 
+/* By the numbers of each sphere, those of its points one after the other */
+void Velocities::draw_forces(const sd_bodies &A, int width, const Draw &draw)
+{
+  const size_t n = scene.size(), m = sd_bodies_rows(&A) / std::max(n, (size_t) 1);
+  std::vector<double> w(m * n + 1), pushed(sd_bodies_loads(&A) + width);
+  for (const Clump &clump : clumps) rigid.take_root(*clump.body->shape);
+  if (scene.shells) scene.shells->take_root();
+  for (size_t k = 0; k < n; k++)
+    sd_random_normals(&draw.of_spheres, scene.tag((int) k), (int) m, &w[m * k]);
+  sd_noise_report report = {};
+  sd_status status = sd_bodies_draw(draw.noise, &A, in_open_space.data(), w.data(), draw.tolerance,
+                                    pushed.data(), &report);
+  if (status == SD_OK && A.tie) status = lubrication.draw(scene, draw.of_films, pushed.data());
+  draw.report(status, report);
+  for (size_t j = 0; j < (size_t) width * n; j++) F[j] += pushed[j] *= draw.scale;
+  scene.to_atoms(width, pushed.data(), draw.take);
+}
+
 sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
                                sd_bodies_report &report)
 {
   sd_bodies A = assemble(how.width);
   if (lubrication.settings.on) {
-    lubrication.place(scene, ambient);
+    lubrication.place(scene, ambient, how.draw != nullptr);
     tie.L = lubrication.matrix();
     A.tie = &tie;
   }
@@ -357,6 +396,7 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
     given = given_velocities();
     A.held = is_held.data();
   }
+  if (how.draw) draw_forces(A, how.width, *how.draw);
   const sd_bodies_problem problem = {u.data(), F.data(),      held ? given.data() : nullptr,
                                      how.warm, how.tolerance, how.max_iter};
   const sd_status status = solve(A, problem, guess, report);

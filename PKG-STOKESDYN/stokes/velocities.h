@@ -15,6 +15,8 @@
 #include "scene.h"
 
 #include "sd_bodies.h"
+#include "sd_bodies_noise.h"
+#include "sd_random.h"
 #include "sd_tie.h"
 
 #include <functional>
@@ -69,6 +71,16 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
+  /* Random forces of covariance R, the resistance of all bodies with their films (sd_bodies_noise.h),
+   * times `scale`, and what becomes of them: forces and torques F [width] on atom i */
+  struct Draw {
+    sd_bodies_noise *noise;
+    sd_random_key of_spheres, of_films;
+    double tolerance, scale;
+    std::function<void(int i, const double *F)> take;
+    /* the process ends so; a failure must not come back */
+    std::function<void(sd_status status, const sd_noise_report &report)> report;
+  };
   /* Where the next solve may begin: by rows, which are the atoms that take part, [width n] forces
    * on the fluid, with shells those of their points, and, with lubrication, the velocities that go
    * with them */
@@ -84,6 +96,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
     int max_iter;
     /* with shells: a fluid that does not strain, whatever the ambient one does */
     bool unstrained = false;
+    /* random forces beside the loads; nullptr: none */
+    const Draw *draw = nullptr;
   };
   sd_status together(const How &how, Guess &guess, const Take &take, sd_bodies_report &report);
 
@@ -92,10 +106,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_status resist(const How &how, const std::vector<double> &slip, Guess &guess,
                    std::vector<double> &F, sd_bodies_report &report);
 
-  /* With shells, since then: S [6 rows] += first moments of the points' forces l; velocities of the
-   * rows, those of the images that they stand for */
-  void add_moments(const std::vector<double> &l, double *S) const;
-  /* Likewise of what keeps the spheres of clumps together, after velocities were found */
+  /* With shells, after velocities were found: S [6 rows] += first moments of what keeps the spheres
+   * of clumps together; velocities of the rows, those of the images that they stand for */
   void add_constraints(double *S) const;
   const double *last_velocities() const { return moved_with.data(); }
 
@@ -116,15 +128,18 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* for the core, by rows, by clumps, by spheres of clumps */
   std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
   std::vector<int> member, whole, loner;
-  /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow */
+  /* with shells, by points: sphere, from its centre; by spheres: gradient of the flow, and its
+   * second derivatives or nothing */
   std::vector<int> sphere;
-  std::vector<double> r, slope, moved_with;
+  std::vector<double> r, slope, bend, moved_with;
   sd_multiblob_mobility of_points = {};
   sd_faces faces = {};
   std::vector<char> whole_shells;
   /* [bodies] of the solve */
   std::vector<char> is_held;
   std::vector<sd_body> shaped;
+  /* the same in open space, whatever wall they stand at */
+  std::vector<sd_body> in_open_space;
   /* where nobody sees anybody */
   sd_mobility_scene alone = {};
 
@@ -149,7 +164,6 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_bodies assemble(int width);
   void place_shells();
   void slip_at_points(const double *slip);
-  void arrange_shells();
   /* near a wall: blocks of the bodies where they stand */
   std::vector<sd_body_shape> standing;
   void leave_wall();
@@ -157,8 +171,9 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_status stand_at_wall(sd_body &body, double bodies);
   std::vector<int> spheres_of(const sd_body &body) const;
   sd_bodies bodies_of_shells();
-  void flow_at_points(const double *velocity, int stride, const double *gradient, double *out) const;
+  void flow_at_points(const double *velocity, int stride, double *out) const;
   void carry(const sd_bodies &A, double *flow);
+  void draw_forces(const sd_bodies &A, int width, const Draw &draw);
   sd_status solve(const sd_bodies &A, const sd_bodies_problem &problem, Guess &guess,
                   sd_bodies_report &report);
 };

@@ -22,37 +22,48 @@ void Velocities::orient()
   }
 }
 
-/* out [3 points] = velocity + gradient r, by rows */
-void Velocities::flow_at_points(const double *velocity, int stride, const double *gradient,
-                                double *out) const
+/* out [3 points] = velocity + gradient r, and with a curvature as it carries the point; by rows */
+void Velocities::flow_at_points(const double *velocity, int stride, double *out) const
 {
+  const sd_multiblob_spheres &spheres = of_points.spheres;
   for (size_t k = 0; k < sphere.size(); k++) {
+    const size_t i = sphere[k];
     double change[3];
-    sd_multiply3(gradient + 9 * (size_t) sphere[k], &r[3 * k], change);
-    for (int d = 0; d < 3; d++) out[3 * k + d] = velocity[stride * (size_t) sphere[k] + d] + change[d];
+    sd_multiply3(&slope[9 * i], &r[3 * k], change);
+    if (!bend.empty())
+      sd_flow_bend(&bend[SD_FLOW_SECOND * i], &r[3 * k], of_points.model->point * spheres.a[i],
+                   change);
+    for (int d = 0; d < 3; d++) out[3 * k + d] = velocity[stride * i + d] + change[d];
   }
 }
 
 /* Points around the spheres; forces on these, the fluid at the points, their drags */
 void Velocities::place_shells()
 {
-  enum { VELOCITY = 0, SLOPE = 3, FORCE = 12, COLUMNS = 18 };
+  enum { VELOCITY = 0, SLOPE = 3, FORCE = 12, BEND = 18 };
   const size_t n = scene.size(), P = scene.shells->points();
-  const double *gradients = ambient.gradients();
+  const double *gradients = ambient.gradients(), *curvatures = ambient.curvatures();
+  const int columns = curvatures ? BEND + SD_FLOW_SECOND : BEND;
   std::vector<double> x(3 * P * n + 3), b(P * n + 1);
-  std::vector<double> rows = scene.rows(COLUMNS, [&](int i, double *out) {
-    std::fill_n(out, (int) COLUMNS, 0.0);
+  std::vector<double> rows = scene.rows(columns, [&](int i, double *out) {
+    std::fill_n(out, columns, 0.0);
     std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
     if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
     std::copy_n(atom->f[i], 3, out + FORCE);
     std::copy_n(atom->torque[i], 3, out + FORCE + 3);
+    if (curvatures)
+      std::copy_n(curvatures + SD_FLOW_SECOND * (size_t) i, (int) SD_FLOW_SECOND, out + BEND);
   });
-  scene.drift(rows.data(), COLUMNS, 1.0);
+  scene.drift(rows.data(), columns, 1.0);
   F.resize(6 * n + 6);
   slope.resize(9 * n + 9);
+  bend.resize(curvatures ? SD_FLOW_SECOND * (n + 1) : 0);
   for (size_t k = 0; k < n; k++) {
-    std::copy_n(&rows[COLUMNS * k + FORCE], 6, &F[6 * k]);
-    std::copy_n(&rows[COLUMNS * k + SLOPE], 9, &slope[9 * k]);
+    const double *row = &rows[columns * k];
+    std::copy_n(row + FORCE, 6, &F[6 * k]);
+    std::copy_n(row + SLOPE, 9, &slope[9 * k]);
+    if (curvatures)
+      std::copy_n(row + BEND, (int) SD_FLOW_SECOND, &bend[SD_FLOW_SECOND * k]);
   }
   const sd_spheres spheres = scene.local();
   of_points.model = &scene.shells->model();
@@ -69,55 +80,7 @@ void Velocities::place_shells()
     const double w = spheres.w[sphere[k]], drag = 6.0 * SD_PI * b[k] / (w * w);
     for (int d = 0; d < 3 && b[k] > 0.0; d++) D[3 * k + d] = drag;
   }
-  flow_at_points(rows.data() + VELOCITY, COLUMNS, slope.data(), u.data());
-}
-
-/* A body for each free sphere, then the clumps */
-void Velocities::arrange_shells()
-{
-  const size_t n = scene.size(), P = scene.shells->points();
-  const sd_spheres spheres = scene.local();
-  member.clear();
-  shaped.clear();
-  loner.clear();
-  whole.assign(n + 1, 0);
-  arm.assign(3 * n + 3, 0.0);
-  const auto add_points = [&](const sd_multiblob_shape &shape, const std::vector<int> &rows) {
-    for (int k = 0; k < shape.points.m; k++)
-      member.push_back(P * rows[shape.row[k] / P] + shape.row[k] % P);
-  };
-  for (int k = 0; k < scene.lone(); k++) {
-    const double w = spheres.w[k];
-    whole[k] = shaped.size();
-    add_points(scene.shells->free_sphere(), {k});
-    shaped.push_back({&scene.shells->free_sphere().points,
-                      {1, 0, 0, 0, 1, 0, 0, 0, 1},
-                      spheres.a[k],
-                      1.0 / (w * w),
-                      nullptr});
-  }
-  for (const Clump &clump : clumps) {
-    const sd_multiblob_shape &shape = rigid.points(*clump.body->shape, scene.shells->model());
-    std::vector<int> rows;
-    for (int k = 0; k < clump.body->n; k++) {
-      rows.push_back(scene.row_of_member((int) member_of(clump, k)));
-      whole[rows.back()] = shaped.size();
-      sd_multiply3(clump.pose, clump.body->shape->shape.x + 3 * (size_t) k,
-                   &arm[3 * (size_t) rows.back()]);
-    }
-    add_points(shape, rows);
-    sd_body body = {&shape.points, {}, 1.0, clump.eta, nullptr};
-    double turn[9];
-    sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
-    shaped.push_back(body);
-  }
-  size_t at = 0;
-  for (sd_body &body : shaped) {
-    body.row = &member[at];
-    at += body.shape->m;
-  }
-  stand_at_wall();
-  V.resize(6 * shaped.size() + 6);
+  flow_at_points(rows.data() + VELOCITY, columns, u.data());
 }
 
 sd_bodies Velocities::bodies_of_shells()
@@ -140,11 +103,6 @@ sd_bodies Velocities::bodies_of_shells()
   return A;
 }
 
-void Velocities::add_moments(const std::vector<double> &l, double *S) const
-{
-  sd_multiblob_moments(&scene.shells->model(), scene.size(), r.data(), l.data(), S);
-}
-
 /* What keeps member k of a clump in its place is what it exerts on the fluid less what acts on it. */
 void Velocities::add_constraints(double *S) const
 {
@@ -161,7 +119,7 @@ void Velocities::add_constraints(double *S) const
   }
 }
 
-/* u of spheres that the fluid passes with this slip, velocity and spin [6 n], and strains */
+/* u of spheres that the fluid passes with this slip, velocity and spin [6 n], strains and bends */
 void Velocities::slip_at_points(const double *slip)
 {
   for (size_t k = 0; k < (size_t) scene.size(); k++) {
@@ -179,7 +137,7 @@ void Velocities::slip_at_points(const double *slip)
                          G[8]};
     for (int d = 0; d < 9; d++) G[d] = E[d] + turning[d];
   }
-  flow_at_points(slip, 6, slope.data(), u.data());
+  flow_at_points(slip, 6, u.data());
 }
 
 }    // namespace StokesDyn

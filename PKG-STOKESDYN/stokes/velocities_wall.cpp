@@ -67,7 +67,7 @@ void Velocities::stand_at_wall()
 {
   double bodies = shaped.size();
   leave_wall();
-  if (!scene.settings.wall.sign) return;
+  if (!scene.settings.wall.sign || !scene.settings.rotation) return;
   MPI_Allreduce(MPI_IN_PLACE, &bodies, 1, MPI_DOUBLE, MPI_SUM, world);
   standing.reserve(shaped.size());
   for (sd_body &body : shaped) {

@@ -30,7 +30,9 @@ FixHydroVans::Columns::Columns(const VansSettings &set, const Resume &resume)
   all += resume.columns();
   if (set.conserve) add(account, sizeof(sd_vans_account));
   if (set.overlap_once) add(lost, sizeof(double));
-  if (set.fluctuates()) add(eddy, sizeof(sd_vans_eddy));
+  if (set.fluctuates())
+    add(eddy, set.fluctuation == VansSettings::LANGEVIN ? sizeof(sd_vans_wander)
+                                                        : sizeof(sd_vans_eddy));
   if (set.law.added_mass > 0.0) add(motion, sizeof(Motion));
 }
 
@@ -297,6 +299,7 @@ void FixHydroVans::setup(int vflag)
     average();
     stream.profile_changed();
     if (set.couple == VansSettings::TWO) check_mesh();
+    tell_waves();
   }
   if (set.fluctuates() && renewals == 0.0) {
     read_variables();

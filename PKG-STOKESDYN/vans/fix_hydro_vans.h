@@ -82,7 +82,7 @@ class FixHydroVans : public RowsFix {
     double force[3] = {0, 0, 0}, drag = 0, outside = 0;
   } local, global;
   LAMMPS_NS::bigint summed_step = -1;
-  bool told_outside = false, told_work = false, told_stiff = false;
+  bool told_outside = false, told_work = false, told_stiff = false, told_waves = false;
   /* of the last look at the grains' time step */
   LAMMPS_NS::bigint looked_step = -1;
 
@@ -99,6 +99,7 @@ class FixHydroVans : public RowsFix {
   void tell_steps();
   void tell_stiff();
   void tell_sizes();
+  void tell_waves();
   void find_classes();
   void find_names();
 
@@ -121,6 +122,7 @@ class FixHydroVans : public RowsFix {
   VansStream::Given impulses(double ratio);
   void hand_over();
   void renew_fluctuations(double time, bool first);
+  void walk_on(double time, bool first);
   uint64_t members() const;
   void count_overlaps();
 

@@ -166,6 +166,21 @@ void FixHydroVans::average()
   stream.take_averages(area(), all.data(), &all[forces]);
 }
 
+/* In slices finer than its grains a bed that water holds up is unstable: a slice with a few grains
+ * more than its neighbours is lifted, and catches up with those above. */
+void FixHydroVans::tell_waves()
+{
+  double lowest = HUGE_VAL;
+  for (int n = 0; n < stream.ncell(); n++)
+    lowest = std::min(lowest, sd_vans_height(&set.mesh, n));
+  if (told_waves || !set.upflow || set.couple != VansSettings::ONE || lowest > 3.0 * mean_radius)
+    return;
+  told_waves = true;
+  set.voice.warn("keyword upflow: in slices of " + text(lowest) + " grains of diameter " +
+                 text(2.0 * mean_radius) +
+                 " break up into waves, and their bed is too high: take slices of three diameters");
+}
+
 /* What the grains got from the water since the last coupling: those of the group as booked step by
  * step; the others, which a fixed bed is made of, as the law has it now. ratio: time of the
  * water over that of the grains. */
@@ -262,6 +277,10 @@ void FixHydroVans::hand_over()
  * ID and the number of the renewal. */
 void FixHydroVans::renew_fluctuations(double time, bool first)
 {
+  if (set.fluctuation == VansSettings::LANGEVIN) {
+    walk_on(time, first);
+    return;
+  }
   const double bed = stream.bed_elevation();
   bool all = first;
   if (set.fluctuation != VansSettings::DEPTH) {
@@ -293,5 +312,25 @@ void FixHydroVans::renew_fluctuations(double time, bool first)
     if (all || !(eddy->life > 1e-9 * time))
       sd_vans_new_eddy(&set.mesh, set.fluid.eta / set.fluid.rho, &walk, atom->x[i][2],
                        (uint64_t) atom->tag[i], eddy, out.give(i) + FLUCTUATION);
+  }
+}
+
+/* A step of the Langevin walk of every grain, over the time since the last coupling. */
+void FixHydroVans::walk_on(double time, bool first)
+{
+  renewals += 1.0;
+  const std::vector<double> u_star = stream.friction_velocities(),
+                            life = stream.lagrangian_times(u_star);
+  const sd_vans_langevin walk = {set.seed, stream.bed_elevation(), u_star.data(), life.data(),
+                                 first ? HUGE_VAL : time};
+  select(groupbit);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!take[i]) {
+      if (out.has(i)) std::fill_n(out.give(i) + FLUCTUATION, 3, 0.0);
+      continue;
+    }
+    sd_vans_wander *wander = (sd_vans_wander *) (memo.give(i) + column.eddy);
+    sd_vans_langevin_step(&set.mesh, &walk, atom->x[i][2], (uint64_t) atom->tag[i], wander,
+                          out.give(i) + FLUCTUATION);
   }
 }

@@ -168,7 +168,9 @@ int FixHydroVans::modify_param(int narg, char **arg)
 static std::vector<double> layout(const VansSettings &set)
 {
   std::vector<double> columns = {(double) set.conserve, (double) set.overlap_once,
-                                 (double) set.fluctuates()};
+                                 set.fluctuation == VansSettings::LANGEVIN
+                                     ? 2.0
+                                     : (double) set.fluctuates()};
   if (set.law.added_mass > 0.0) columns.push_back(1.0);
   return columns;
 }

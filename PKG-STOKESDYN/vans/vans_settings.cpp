@@ -166,7 +166,8 @@ void VansSettings::take_class_radii(Keywords &in)
 
 void VansSettings::take_fluctuation(Keywords &in)
 {
-  fluctuation = in.option<decltype(fluctuation)>({"none", "correlated", "uncorrelated", "depth"});
+  fluctuation = in.option<decltype(fluctuation)>(
+      {"none", "correlated", "uncorrelated", "depth", "langevin"});
   if (!fluctuates()) return;
   seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
   find_bed = in.take("auto");
@@ -230,50 +231,73 @@ void VansSettings::take_sidewall(Keywords &in)
   fluid.wall_coef = in.not_negative();
 }
 
+void VansSettings::take_adjust(Keywords &in)
+{
+  if (in.choice({"slope", "depth"}) == 1) reach = in.positive();
+}
+
+void VansSettings::take_couple(Keywords &in)
+{
+  couple = in.option<decltype(couple)>({"none", "one", "two", "fluid"});
+}
+
+void VansSettings::take_turbulence(Keywords &in)
+{
+  fluid.turbulence = in.option<sd_vans_turbulence>(
+      {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
+}
+
+void VansSettings::take_viscosity(Keywords &in)
+{
+  fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"});
+}
+
+void VansSettings::take_drag(Keywords &in)
+{
+  law.drag.law = in.option<sd_vans_drag_of_one>(
+      {"yade", "schiller_naumann", "brown_lawler", "ferguson_church"});
+}
+
+void VansSettings::take_rules(Keywords &in)
+{
+  fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"});
+}
+
+void VansSettings::take_upflow(Keywords &in)
+{
+  upflow = !in.take("off");
+  if (upflow) flux = Field::parse(in);
+}
+
 void VansSettings::read(Keywords &in)
 {
-  const auto closure = [&] {
-    fluid.turbulence = in.option<sd_vans_turbulence>(
-        {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
-  };
-  const auto viscosity = [&] {
-    fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"});
-  };
-  const auto coupling = [&] {
-    couple = in.option<decltype(couple)>({"none", "one", "two", "fluid"});
-  };
-  const auto drag = [&] {
-    law.drag.law = in.option<sd_vans_drag_of_one>(
-        {"yade", "schiller_naumann", "brown_lawler", "ferguson_church"});
-  };
-  const auto rules = [&] {
-    fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"});
-  };
   in.parse({
       {"mesh", [&] { take_mesh(in); }},
       {"fluid", [&] { take_fluid(in); }},
       {"gravity", [&] { take_gravity(in); }},
       {"area", [&] { area = in.positive(); }},
-      {"couple", coupling},
+      {"couple", [&] { take_couple(in); }},
       {"profile", [&] { profile_file = file_or(in, "zero"); }},
       {"given", [&] { given_file = file_or(in, "averaged"); }},
       {"convective", [&] { convective_file = file_or(in, "off"); }},
       {"solve", [&] { take_solve(in); }},
       {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
-      {"drag", drag},
+      {"drag", [&] { take_drag(in); }},
+      {"fall_diameter", [&] { law.drag.fall = in.positive(); }},
       {"hindrance", [&] { take_hindrance(in); }},
       {"added_mass", [&] { law.added_mass = in.take("off") ? 0.0 : in.not_negative(); }},
-      {"upflow", [&] { upflow = !in.take("off"); if (upflow) flux = Field::parse(in); }},
+      {"upflow", [&] { take_upflow(in); }},
       {"lift", [&] { law.lift = in.take("off") ? 0.0 : in.number(); }},
-      {"turbulence", closure},
+      {"turbulence", [&] { take_turbulence(in); }},
       {"kappa", [&] { fluid.kappa = in.positive(); }},
       {"phi_max", [&] { fluid.phi_max = fraction(in); }},
       {"phi_bed", [&] { fluid.phi_bed = fraction(in); }},
       {"bed_average", [&] { bed_average = (int) in.integer(1, 1000000); }},
       {"sublayer", [&] { fluid.sublayer = in.yes_no(); }},
-      {"viscosity", viscosity},
+      {"viscosity", [&] { take_viscosity(in); }},
       {"surface", [&] { take_surface(in); }},
       {"discharge", [&] { take_discharge(in); }},
+      {"adjust", [&] { take_adjust(in); }},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
       {"wall_roughness", [&] { fluid.wall_roughness = in.not_negative(); }},
@@ -286,7 +310,8 @@ void VansSettings::read(Keywords &in)
       {"fluctuation", [&] { take_fluctuation(in); }},
       {"intensity", [&] { take_intensity(in); }},
       {"renewal", [&] { renewal = in.positive(); }},
-      {"rules", rules},
+      {"schmidt", [&] { schmidt = in.positive(); }},
+      {"rules", [&] { take_rules(in); }},
       {"conserve", [&] { conserve = in.yes_no(); }},
       {"overlap", [&] { overlap_once = in.choice({"twice", "once"}) == 1; }},
       {"region", [&] { region = in.word(); }},
@@ -311,17 +336,24 @@ void VansSettings::check(const Keywords &in) const
   in.require(!in.given("intensity") || fluctuates(),
              "keyword intensity: there are no fluctuations");
   in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
+  in.require(!in.given("schmidt") || fluctuation == LANGEVIN,
+             "keyword schmidt: it is of fluctuation langevin");
+  in.require(fluctuation != LANGEVIN || !yade(),
+             "keyword fluctuation: rules yade have no langevin");
+  in.require(law.drag.fall == 0.0 || !yade(), "keyword fall_diameter: rules yade have spheres");
   in.require(!yade() || (law.drag.law == SD_VANS_DRAG_YADE &&
                          law.drag.hindrance == SD_VANS_HINDRANCE_POWER),
              "keyword drag: rules yade have drag yade and hindrance n only");
   in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass: rules yade have none");
   in.require(!upflow || (averages() && !yade()),
              "keyword upflow: it needs couple one or two, and rules consistent");
+  in.require(reach == 0.0 || (fluid.held && follows()),
+             "keyword adjust: depth needs discharge and surface follow");
   in.require(!fluid.held || (solves() && !yade()),
              "keyword discharge: it needs couple two or fluid, and rules consistent");
   in.require(!fluid.held || !fluid.driven,
              "keyword discharge: with surface speed the stream is driven already");
-  in.require(!fluid.held || !in.given("pressure_gradient"),
+  in.require(!fluid.held || reach > 0.0 || !in.given("pressure_gradient"),
              "keyword discharge: the pressure gradient follows from it, "
              "leave pressure_gradient out");
   in.require(!follows() || (couple == TWO && !yade()),
@@ -333,7 +365,7 @@ void VansSettings::check(const Keywords &in) const
              "keywords wall_roughness and wall_mixing: rules yade have smooth walls only");
   const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() &&
       dpdx.number() == 0.0 && !fluid.driven && profile_file.empty();
-  in.require(!solves() || law.rest || !stands || fluid.held,
+  in.require(!solves() || law.rest || !stands || (fluid.held && reach == 0.0),
              "nothing drives the stream: give gravity an x component (the slope), "
              "pressure_gradient, discharge, surface speed or a profile, or stream rest");
 }
@@ -399,6 +431,7 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   fluid.dpdx = dpdx.number();
   fluid.u_top = u_top.number();
   fluid.discharge = discharge.number();
+  if (reach > 0.0) fluid.held = 0;
   if (follows() && !(surface < edge[mesh.ncell - 1]))
     voice.of("keyword surface").fail("the surface at " + text(surface) +
         " has no room to rise: the water of the mesh ends at " + text(edge[mesh.ncell - 1]));

@@ -40,8 +40,10 @@ struct VansSettings {
   /* of water and grains, up through a horizontal plane; with upflow only */
   Field flux;
   bool upflow = false;
-  /* volume of water that passes per width and time, with fluid.held only */
+  /* volume of water that passes per width and time; with fluid.held what drives the stream follows
+   * from it, with a reach the depth: water that comes in and does not pass stays in this length */
   Field discharge;
+  double reach = 0.0;
   /* above z_ref where the surface begins, if it moves; 0: it stays at the top of the mesh */
   double surface = 0.0;
   /* 0: mean of the grains */
@@ -50,12 +52,14 @@ struct VansSettings {
   /* empty: those of the grains */
   std::vector<double> class_radii;
   bool point = false;
-  enum { NO_FLUCTUATION, CORRELATED, UNCORRELATED, DEPTH } fluctuation = NO_FLUCTUATION;
+  enum { NO_FLUCTUATION, CORRELATED, UNCORRELATED, DEPTH, LANGEVIN } fluctuation = NO_FLUCTUATION;
   uint64_t seed = 0;
   double bed = 0.0;
   bool find_bed = false;
   /* 0: depth over mean velocity above the bed */
   double renewal = 0.0;
+  /* turbulent Schmidt number of langevin: eddy viscosity over what spreads the grains */
+  double schmidt = 1.0;
   /* of fluctuations, the friction velocity of the grain's slice: from the stress of the stream, or
    * given, one number or [N] */
   bool intensity_given = false;
@@ -87,6 +91,12 @@ struct VansSettings {
  private:
   std::string mesh_file, profile_file, given_file, convective_file, intensity_file;
   void read(Keywords &in);
+  void take_couple(Keywords &in);
+  void take_turbulence(Keywords &in);
+  void take_viscosity(Keywords &in);
+  void take_drag(Keywords &in);
+  void take_rules(Keywords &in);
+  void take_upflow(Keywords &in);
   void take_mesh(Keywords &in);
   void take_solve(Keywords &in);
   void take_class_radii(Keywords &in);
@@ -96,6 +106,7 @@ struct VansSettings {
   void take_hindrance(Keywords &in);
   void take_surface(Keywords &in);
   void take_discharge(Keywords &in);
+  void take_adjust(Keywords &in);
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void read_mesh();

@@ -1,5 +1,7 @@
 #include "vans_stream.h"
 
+#include "sd_vans_random.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -199,6 +201,17 @@ void VansStream::fill_above()
   for (int n = M + 1; n < N; n++) b[n] = length[n] = nut[n] = stress[n] = 0.0;
 }
 
+/* With the depth adjusted: what comes into the reach in the time T and does not pass stays there,
+ * dV/dt = (q - U V)/reach per width, U the mean speed; implicit, for any T. The surface moves with
+ * the next averages. */
+void VansStream::take_inflow(double T)
+{
+  if (set.reach == 0.0 || volume < 0.0) return;
+  const double passes = sd_vans_momentum(&wet, 1.0, phi(), U.data()),
+               speed = std::max(passes / volume, 0.0);
+  volume += T * (fluid.discharge - passes) / (set.reach + T * speed);
+}
+
 /* What belongs to grains above the surface goes to the water below it. */
 void VansStream::fold_above(std::vector<double> &of_slices) const
 {
@@ -293,6 +306,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
                    ". Take a shorter time between couplings");
 
   fill_above();
+  take_inflow(T);
   drive = books.drive;
   if (fluid.held) fluid.gx = drive;    // for what else asks how strong the stream is
   for (size_t n = 0; n + 1 < std::min(rest.size(), (size_t) wet.ncell); n++)
@@ -310,6 +324,14 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   ledger.bottom += area * books.bottom;
   ledger.walls += area * books.walls;
   ledger.surface += area * books.surface;
+}
+
+std::vector<double> VansStream::lagrangian_times(const std::vector<double> &u_star) const
+{
+  std::vector<double> life(ncell(), set.renewal);
+  if (set.renewal == 0.0)
+    sd_vans_lagrangian_times(&mesh, set.schmidt, nut.data(), u_star.data(), life.data());
+  return life;
 }
 
 std::vector<double> VansStream::friction_velocities() const

@@ -95,6 +95,8 @@ class VansStream {
 
   /* [N], for the fluctuations */
   std::vector<double> friction_velocities() const;
+  /* [N] of the Langevin walk */
+  std::vector<double> lagrangian_times(const std::vector<double> &u_star) const;
   double largest_stress() const { return sd_vans_largest_stress(&mesh, stress.data()); }
   /* found, or as the user says */
   double bed_elevation() const
@@ -123,6 +125,7 @@ class VansStream {
   const double *classes() const;
   void take_upflow(bool first);
   void move_surface(double area, const std::vector<double> &phi_before);
+  void take_inflow(double T);
   void fill_above();
   void fold_above(std::vector<double> &of_slices) const;
   void find_pressure();

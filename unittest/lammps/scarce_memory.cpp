@@ -1,20 +1,22 @@
-/* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more has
- * nothing to give, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none. */
+/* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more, up to
+ * MALLOC_MOST, has nothing to give, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none; they are
+ * those of rank SCARCE_RANK alone, if that is given. */
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 extern "C" void *__libc_malloc(size_t);
 
 static size_t limit_of(const char *name)
 {
-  const char *value = getenv(name);
-  return value ? strtoul(value, nullptr, 10) : 0;
+  const char *value = getenv(name), *scarce = getenv("SCARCE_RANK"), *me = getenv("OMPI_COMM_WORLD_RANK");
+  return value && (!scarce || (me && !strcmp(me, scarce))) ? strtoul(value, nullptr, 10) : 0;
 }
 
 extern "C" void *malloc(size_t bytes)
 {
-  static size_t limit = limit_of("MALLOC_LIMIT");
-  return limit && bytes >= limit ? nullptr : __libc_malloc(bytes);
+  static size_t limit = limit_of("MALLOC_LIMIT"), most = limit_of("MALLOC_MOST");
+  return limit && bytes >= limit && (!most || bytes <= most) ? nullptr : __libc_malloc(bytes);
 }
 
 void *operator new(size_t bytes)

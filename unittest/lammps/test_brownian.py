@@ -7,46 +7,11 @@ import numpy as np
 import pytest
 
 import model
-from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
-
-P6 = 6 * np.pi
-ETA, A, KT = 1.3, 0.7, 0.8
-UNIT = P6 * ETA * A
-SHORT = 1e-11 * A**2 * UNIT / KT    # nothing moves in such a step
-
-
-def noise(sim, options="", kT=KT, seed=12345, fix="move"):
-    return sim.commands(f"fix {fix} all stokes_dynamics/overdamped temperature {kT!r} {seed} {options}")
-
-
-def steps_of(sim, steps):
-    """Displacements [steps, n, 3] of single steps"""
-    out = []
-    for k in range(steps):
-        x = sim.x
-        sim.run(1, "pre no post no" if k else "post no")
-        out.append(sim.x - x)
-    return np.array(out)
-
-
-def copies(shape, count, spacing=12.0):
-    """So many of a shape, each a molecule of its own, on a lattice"""
-    k, side = np.arange(count), int(np.ceil(count**(1 / 3)))
-    origin = spacing * np.column_stack([k % side, k // side % side, k // side**2])
-    return Spheres((origin[:, None, :] + shape).reshape(-1, 3), A, molecule=np.repeat(k + 1, len(shape)))
-
-
-def check_covariance(d, expected, dt, sigmas=4.5):
-    """Samples d [n, k] of displacements against 2 kT dt times expected"""
-    C = d.T @ d / len(d) / (2 * KT * dt)
-    sigma = np.sqrt((np.outer(np.diag(expected), np.diag(expected)) + expected**2) / len(d))
-    assert np.abs((C - expected) / sigma).max() < sigmas
-
+from brownian import (A, END, ETA, KT, L_OF_FOUR, MOVE, P6, SHORT, TRIO, UNIT, check_covariance, check_pieces, check_ranks, copies, end,
+                      in_a_plane, in_clumps, noise, scattered, script, steps_of)
+from system import LammpsError, Spheres, input_lines, lmp
 
 # --- one step -------------------------------------------------------------------------------------------------------------
-
-TRIO = A * np.array([(0, 0, 0), (2.5, 0, 0), (0.4, 2.3, 0.6)])
-
 
 @pytest.mark.parametrize("rotation", ["no", "yes"])
 def test_covariance_of_a_step_is_the_mobility(simulation, rotation):
@@ -107,7 +72,6 @@ def test_periodic_noise_has_the_covariance_of_the_products(simulation):
 # --- rigid clumps ---------------------------------------------------------------------------------------------------------
 
 CLUMPS = f"cut_off_distance inf visc {ETA} clumps_only yes rigid_clumps yes rotation yes"
-L_OF_FOUR = A * np.array([(0, 0, 0), (2, 0, 0), (4, 0, 0), (0, 2, 0)])
 ROD = A * np.array([(0, 0, 2.0 * k) for k in range(5)])
 
 
@@ -219,14 +183,6 @@ def test_bond_has_boltzmanns_length(simulation):
 
 # --- scheme midpoint: where the mobility has a drift ------------------------------------------------------------------------
 
-def in_a_plane(simulation, tmp_path, spheres, words, dt):
-    """In a plane of an unbounded fluid: z is held, and the mobility of x and y has a divergence."""
-    side = spheres.x[:, :2].max() + 20.0
-    lines = input_lines(spheres, words, os.path.join(str(tmp_path), "plane.data"), fix=False, dt=dt, boundary="f f p",
-                        box=[(-20.0, side), (-20.0, side), (-0.5, 0.5)])
-    return simulation().commands(["dimension 2"] + lines)
-
-
 def test_bond_in_a_plane_has_boltzmanns_length(simulation, tmp_path):
     """k = 4, r0 = 2.2 in units of kT and a: <r> 2.31364, variance 0.23709; without the drift the mean is 0.107 sigma short."""
     count, k = 900, 4 * KT / A**2
@@ -302,91 +258,63 @@ def test_spheres_above_a_wall_stand_as_boltzmann_says(simulation):
     assert z.var() == pytest.approx(0.04 * 1.008, rel=4 * np.sqrt(2 / n) + 0.005)
 
 
-@pytest.mark.parametrize("words, message", [("clumps_only yes rigid_clumps yes rotation yes", "midpoint moves what feels each other"),
-                                            ("rigid_clumps yes shell 12", "clumps with shells that feel each other have no noise")])
-def test_what_midpoint_cannot_move_is_an_error(simulation, words, message):
-    sim = simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), f"cut_off_distance inf visc {ETA} {words}", fix=False, dt=1e-3)
+LONE_CLUMPS = f"cut_off_distance inf visc {ETA} clumps_only yes rigid_clumps yes rotation yes"
+
+
+def test_what_midpoint_cannot_move_is_an_error(simulation, tmp_path):
+    spheres = Spheres(TRIO, A, molecule=[1, 1, 2])
+    with pytest.raises(LammpsError, match="midpoint moves what feels each other"):
+        noise(simulation(spheres, LONE_CLUMPS, fix=False, dt=1e-3), "scheme midpoint").run(0)
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA}", fix=False, dt=1e-3).commands("group some id 1\nfix go some move linear 1 0 0")
+    with pytest.raises(LammpsError, match="midpoint looks at spheres between steps, where fix move does not put"):
+        noise(sim, "held some").run(0)
+
+
+@pytest.mark.parametrize("words, options, message", [(f"cut_off_distance inf visc {ETA}", "scheme ab2",
+                                                      "dimension 2, which holds a coordinate: the mobility has a drift"),
+                                                     (LONE_CLUMPS, "", "lone clumps in a plane have a drift: use clumps_only no")])
+def test_a_plane_needs_the_midpoint(simulation, tmp_path, words, options, message):
+    sim = in_a_plane(simulation, tmp_path, Spheres([(0, 0, 0), (3, 0, 0)], A), words, 1e-3)
     with pytest.raises(LammpsError, match=message):
-        noise(sim, "scheme midpoint").run(0)
+        noise(sim, options).run(0)
 
 
-def test_a_plane_needs_the_midpoint(simulation, tmp_path):
-    sim = in_a_plane(simulation, tmp_path, Spheres([(0, 0, 0), (3, 0, 0)], A), f"cut_off_distance inf visc {ETA}", 1e-3)
-    with pytest.raises(LammpsError, match="dimension 2, which holds a coordinate: the mobility has a drift"):
-        noise(sim).run(0)
+@pytest.mark.parametrize("style, scheme", [("", "ab2"), ("wall zlo -9", "midpoint"), ("rotation yes lubrication yes", "midpoint"),
+                                           ("clumps_only yes rigid_clumps yes rotation yes", "ab2"), ("multiblob 12", "midpoint")])
+def test_the_scheme_is_midpoint_where_a_drift_exists(simulation, style, scheme):
+    ends = []
+    for options in ("", f"scheme {scheme}"):
+        sim = noise(simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), f"cut_off_distance inf visc {ETA} {style}", fix=False, dt=1e-3), options)
+        ends.append(sim.run(2).x)
+    assert (ends[0] == ends[1]).all()
 
 
 # --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------------
 
-def scattered(n=40, side=18.0, seed=4):
-    """Spheres of several sizes that do not overlap by more than a tenth, and at last three clumps of four"""
-    rng, x, a = np.random.default_rng(seed), [], []
-    while len(x) < n:
-        p, r = rng.uniform(0, side, 3), rng.uniform(0.6, 1.0)
-        if all(np.linalg.norm((p - q + side / 2) % side - side / 2) > 0.9 * (r + b) for q, b in zip(x, a)):
-            x.append(p)
-            a.append(r)
-    return Spheres(x, a)
+MIDPOINT = " scheme midpoint"
+WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes", ""),
+        "periodic": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6", ""),
+        "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes", ""),
+        "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes", ""),
+        "clumps midpoint": ("f f f", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes relative_tolerance 1e-12", MIDPOINT),
+        "midpoint": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6", MIDPOINT)}
 
 
-def in_clumps():
-    spheres = copies(L_OF_FOUR, 9, 6.0)
-    spheres.x += 3.0
-    spheres.molecule[32:] = 0
-    return spheres
-
-
-WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes"),
-        "periodic": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6"),
-        "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes"),
-        "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes"),
-        "clumps midpoint": ("f f f", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes relative_tolerance 1e-12"),
-        "midpoint": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6")}
-MOVE = "fix move all stokes_dynamics/overdamped temperature {} {}"
-
-
-def script(folder, way, runs, newton="on", T="v_T", seed=7):
-    boundary, make, words = WAYS[way]
-    lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary, newton=newton, dt=0.02,
-                        box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
-    return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2",
-                    (MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]) + " scheme midpoint" * ("midpoint" in way)] + runs
-
-
-def end(folder, lines, ranks=1):
-    lmp(folder, lines, ranks)
-    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
-
-
-END = dump_lines("end.dump", every=20, columns="xu yu zu vx vy vz")
-
-
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_ranks_and_newton_do_not_matter(tmp_path, way):
-    one = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
-    for ranks, newton in ((2, "on"), (4, "off")):
-        assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 20"], newton), ranks) - one).max() < 1e-10
-    other = end(tmp_path, script(tmp_path, way, END + ["run 20"], seed=8))
-    still = end(tmp_path, script(tmp_path, way, END + ["run 20"], T="0"))
-    assert np.abs(other - one)[:, :3].max() > 0.1 and np.abs(still - one)[:, :3].max() > 0.1
+    check_ranks(tmp_path, way)
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way):
-    whole = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
-    assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 7", "run 13"])) - whole).max() < 1e-10
-    lmp(tmp_path, script(tmp_path, way, ["run 7", "write_restart half.restart"]))
-    again = script(tmp_path, way, END + ["run 13"])
-    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
-    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
-    assert np.abs(end(tmp_path, again) - whole).max() < 1e-10
+    check_pieces(tmp_path, way)
 
 
 @pytest.mark.parametrize("way", ["open", "periodic", "clumps", "flexible"])
 def test_temperature_0_is_the_run_without(tmp_path, way):
     """Bit for bit"""
-    without = end(tmp_path, script(tmp_path, way, END + ["run 20"], T=None))
-    assert (end(tmp_path, script(tmp_path, way, END + ["run 20"], T="0")) == without).all()
+    without = end(tmp_path, script(tmp_path, WAYS[way], END + ["run 20"], T=None))
+    assert (end(tmp_path, script(tmp_path, WAYS[way], END + ["run 20"], T="0")) == without).all()
 
 
 def test_numbers_of_the_root_are_told(simulation):
@@ -424,7 +352,7 @@ INF = f"cut_off_distance inf visc {ETA}"
                                             ("temperature v_atoms 5", "noise has one temperature"),
                                             ("temperature v_minus 5", "'-2' must be >= 0, in step 0"),
                                             ("temperature 1 5 adapt 1 1e-3 1 1", "leave adapt out"),
-                                            ("temperature 1 5 held some", "keyword held: the mobility has a drift"),
+                                            ("temperature 1 5 held some scheme ab2", "keyword held: the mobility has a drift"),
                                             ("noise_tolerance 0.1", "keyword noise_tolerance requires a temperature")])
 def test_words_that_mean_nothing_are_errors(simulation, words, message):
     sim = simulation(Spheres(TRIO, A), INF, fix=False, dt=1e-3)
@@ -439,7 +367,7 @@ FIELD = "variable eta atom 1+0.1*x"
 @pytest.mark.parametrize("style, lines, message", [
     (f"{INF} rotation yes lubrication yes", "", "keyword lubrication of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} multiblob 12", "", "keyword multiblob of pair_style stokes_dynamics: the mobility has a drift"),
-    (f"{INF} rigid_clumps yes rotation yes", "", "use scheme midpoint or clumps_only yes"),
+    (f"{INF} rigid_clumps yes rotation yes", "", "with clumps that feel each other: the mobility has a drift"),
     (f"{INF} wall zlo -9", "", "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} tensor oseen", "", "use tensor rpy"),
     (f"cut_off_distance 4 visc {ETA}", "", "keyword cut_off_distance: '4' of pair_style stokes_dynamics: the mobility has a drift"),
@@ -453,7 +381,7 @@ def test_drifts_and_other_noise_are_errors(simulation, style, lines, message):
     sim = simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), style, fix=False, dt=1e-3, before_pair=FIELD)
     sim.commands(f"group none id 99\n{lines}")
     with pytest.raises(LammpsError, match=re.escape(message)):
-        noise(sim).run(0)
+        noise(sim, "scheme ab2").run(0)
 
 
 def test_friction_is_an_error(simulation):

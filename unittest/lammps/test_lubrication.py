@@ -238,3 +238,12 @@ def test_what_is_lost_in_shear_is_the_same_with_and_without_inertia(simulation):
     assert power > 0 and sim.fix_scalar() == pytest.approx(power, rel=1e-7)
     sim.run(0)      # a run that begins where the last one ended
     assert sim.fix_scalar() == pytest.approx(power, rel=1e-7)
+
+
+@pytest.mark.parametrize("n, points, warned", [(6, 1, True), (6, 12, False), (5, 1, False)])
+def test_films_of_single_points_in_a_large_cloud_are_warned_of(tmp_path, n, points, warned):
+    spheres = Spheres(3.0 * np.array([(i, j, k) for i in range(n) for j in range(n) for k in range(n)]))
+    lines = input_lines(spheres, f"cut_off_distance inf visc 1.3 rotation yes lubrication yes multiblob {points} relative_tolerance 0.1",
+                        tmp_path / "data", fix=False)
+    log = " ".join(lmp(tmp_path, lines + [FIX, "run 0"]).log.split())
+    assert (f"with one point per sphere it slows down a cloud of {n ** 3} close spheres" in log) == warned

@@ -1,12 +1,17 @@
 """multiblob: spheres as shells of points, through LAMMPS, against unittest/data/multiblob and against each other."""
 import csv
 import os
+import pathlib
+import sys
 
 import numpy as np
 import pytest
 
 import model
-from system import LammpsError, Spheres, input_lines, lmp
+from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples"))
+import flow_grid    # noqa: E402
 
 MOVE = "fix move all stokes_dynamics/overdamped"
 P6 = 6 * np.pi
@@ -59,6 +64,54 @@ def test_lone_sphere_turns_with_half_the_rate_of_a_shear(simulation):
     sim.commands(MOVE).run()
     assert np.abs(sim.v[0] - (1.6, 0, 0)).max() < 1e-10
     assert np.abs(sim.atom("omega")[0] - (0, 0, -0.4)).max() < 1e-10
+
+
+ETA, CURVED = 1.3, ("variable u atom 0.9-0.8*y*y-0.5*z*z", "variable w atom 0.3*x*y+0.2*x")
+
+
+def curved(x):
+    """The velocity of the formulas, its Laplacian and half its curl"""
+    x, y, z = x
+    return (np.array((0.9 - 0.8 * y * y - 0.5 * z * z, 0, 0.3 * x * y + 0.2 * x)), np.array((-2.6, 0, 0)),
+            0.5 * np.array((0.3 * x, -z - 0.3 * y - 0.2, 1.6 * y)))
+
+
+@pytest.mark.parametrize("points", [12, 42])
+def test_lone_sphere_in_a_curved_flow_obeys_faxen(simulation, points):
+    a, x = 0.7, (0.4, 0.6, -0.3)
+    u, bend, turn = curved(x)
+    carried = u + a * a / 6 * bend
+    style = f"cut_off_distance inf visc {ETA} multiblob {points} fluid_velocity v_u 0 v_w relative_tolerance 1e-11"
+    sim = simulation(Spheres([x], a), style, fix=False, dt=1e-9, before_pair="\n".join(CURVED))
+    sim.commands(MOVE).run()
+    assert np.abs(sim.v[0] - carried).max() < 1e-9
+    assert np.abs(sim.atom("omega")[0] - turn).max() < 1e-9
+    sim = simulation(Spheres([x], a), style, before_pair="\n".join(CURVED)).run()    # at rest
+    assert np.abs(sim.drag[0] - P6 * ETA * a * carried).max() < 1e-8
+
+
+def test_curved_flow_of_a_grid(simulation, tmp_path):
+    """Nodes half a radius apart: what is there comes out. A sphere over the edge takes the flow as linear."""
+    a, axes = 0.8, [np.linspace(-4, 4, 21)] * 3
+    z, y, x = np.meshgrid(*axes, indexing="ij")
+    flow_grid.write(tmp_path / "grid", axes, np.stack([0.9 - 0.8 * y * y - 0.5 * z * z, 0 * x, 0 * x], axis=-1))
+    for there, u, bend in (((0.4, 0.8, -1.2), 0.9 - 0.8 * 0.64 - 0.5 * 1.44, -2.6), ((0.0, 3.8, 0.0), 0.9 - 0.4 * (3.6 ** 2 + 16), 0.0)):
+        sim = simulation(Spheres([there], a), f"cut_off_distance inf visc 1 multiblob 12 fluid_velocity grid {tmp_path}/grid "
+                         "relative_tolerance 1e-11", fix=False, dt=1e-9, box=[(-4.0, 4.0)] * 3)
+        sim.commands(MOVE).run()
+        assert abs(sim.v[0, 0] - u - a * a / 6 * bend) < 1e-9
+
+
+def test_rigid_clump_feels_the_curvature_that_free_spheres_feel_in_its_place(simulation):
+    """Force and torque of a doublet at rest; its shells stand otherwise. Without the curvature of one of the two they differ by more."""
+    x = np.array([(0.2, 0.5, -0.3), (0.2 + 2 * 0.6, 0.5 - 2 * 0.64, -0.3 + 2 * 0.48)])
+    found = []
+    for style, molecule in (("", 0), ("rigid_clumps yes", 1)):
+        sim = simulation(Spheres(x, molecule=molecule), f"cut_off_distance inf visc 1 multiblob 42 fluid_velocity v_u 0 v_w {style} "
+                         "relative_tolerance 1e-9", before_pair="\n".join(CURVED)).run()
+        torque = (np.cross(x - x.mean(axis=0), sim.drag) + sim.fix_rows()[:, 6:9]).sum(axis=0)
+        found.append(np.concatenate([sim.drag.sum(axis=0), torque]))
+    assert off(*found) < 2e-3
 
 
 @pytest.mark.parametrize("case, load", [("cube8_0.1", "random"), ("unequal4_0.01", "weight_z"), ("random5_0.001", "random")])
@@ -229,6 +282,37 @@ def test_stress_of_other_forces_is_their_virial(simulation):
     assert abs(length - rest) > 0.1
     assert np.abs(whole[12:] - expected[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]).max() < 1e-12
     assert np.abs(whole[12:] - sim.compute_vector("P", 6)).max() < 1e-12
+
+
+def stressed(folder, style):
+    """Eight spheres that move"""
+    rows = rows_of("clusters_multiblob.csv", case="cube8_0.1", load="random")
+    spheres = Spheres(columns(rows, "x y z") + 0.3, 1.0, 0.1 * columns(rows, "Ux Uy Uz"))
+    lines = input_lines(spheres, f"cut_off_distance inf visc 1 multiblob 12 lubrication yes add_force yes relative_tolerance 1e-9 {style}",
+                        os.path.join(str(folder), "data"), dt=1e-10, fix=False, before_pair="variable u atom 0.7*y")
+    return lines + ["fix move all nve/sphere", STRESS]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("flow", ["0", "v_u"])
+def test_stress_of_a_first_step_without_a_solve(tmp_path, ranks, flow):
+    """A run that goes on, with its atoms in another order, and one from a restart file: the rows of the step before."""
+    again = ["atom_modify sort 1 0.5"] + dump_lines("two", columns="c_S[*]") + ["run 0", "write_restart restart", "clear",
+             "plugin load stokesdynplugin.so", "variable u atom 0.7*y", "read_restart restart", "fix move all nve/sphere", STRESS]
+    lmp(tmp_path, stressed(tmp_path, f"fluid_velocity {flow} 0 0") + dump_lines("one", columns="c_S[*]") + ["run 1", "undump out"] + again +
+        dump_lines("three", columns="c_S[*]") + ["run 0"], ranks)
+    one, two, three = (read_dump(tmp_path / name)[-1][1] for name in ("one", "two", "three"))
+    assert np.abs(one[:, :6]).max() > 0.1 and np.abs(one[:, 6:]).max() > 0.1
+    assert np.abs(two - one).max() < 1e-6 and np.abs(three - one).max() < 1e-6
+
+
+def test_stress_between_solves(tmp_path):
+    """update_every 3: forces of points are those of the last solve, films those of now."""
+    lmp(tmp_path, stressed(tmp_path, "update_every 3") + dump_lines("rows", columns="c_S[*]") + ["run 3"])
+    steps = [rows for _, rows in read_dump(tmp_path / "rows")]
+    assert np.abs(steps[0]).max() > 0.1
+    for rows in steps[1:]:
+        assert 0 < np.abs(rows - steps[0]).max() < 1e-3 * np.abs(steps[0]).max()
 
 
 def test_stress_needs_shells_of_points(simulation):

@@ -48,3 +48,13 @@ def test_memory_of_cpp_that_is_not_there_is_told(tmp_path, scarce, style, ranks)
     run = lmp(tmp_path, lines + fixes + ["run 0"], ranks, timeout=20, succeed=False)
     assert run.code != 0 and re.search(message, run.text), run.text[-1500:]
     assert "terminate called" not in run.text and "more ranks" in run.text
+
+
+@pytest.mark.parametrize("scarce_rank", [0, 1])
+def test_one_rank_without_memory_for_a_shape_ends_all(tmp_path, scarce, scarce_rank):
+    """Every rank keeps every shape: one that cannot must not leave the other waiting for it."""
+    x = np.random.default_rng(3).uniform(0, 100, (20000, 3))
+    lines = input_lines(Spheres(x, molecule=1), "clumps_only yes visc 1 rigid_clumps yes", str(tmp_path / "data"), fix=False)
+    scarce(MALLOC_LIMIT=480000, MALLOC_MOST=480000, SCARCE_RANK=scarce_rank)    # three numbers for each sphere of a shape
+    run = lmp(tmp_path, lines + ["run 0"], 2, timeout=20, succeed=False)
+    assert run.code != 0 and "Pair style stokes_dynamics: keyword rigid_clumps: out of memory" in run.text, run.text[-1500:]

@@ -13,7 +13,8 @@ def profile(tmp_path):
 
 
 @pytest.mark.parametrize("keywords", ["", "sidewall 0.03 1", "surface speed 0.7 viscosity einstein", "turbulence none pressure_gradient -300 viscosity power",
-                                      "fluctuation correlated 7 0.01 renewal 0.0004", "lift 0.2", "felt volume",
+                                      "fluctuation correlated 7 0.01 renewal 0.0004", "fluctuation langevin 7 0.01 fall_diameter 0.7", "lift 0.2",
+                                      "discharge 0.03 adjust depth 0.2 surface follow 0.045", "felt volume",
                                       "felt volume classes yes surface speed 0.7 viscosity power",
                                       "discharge 0.02", "felt volume surface follow 0.045 drag brown_lawler", "drag ferguson_church added_mass 0.4 upflow 0.002 discharge 0.02 "
                                       "surface follow 0.045 sidewall 0.03 1 wall_roughness 1e-3 wall_mixing yes", "mesh 16 0.004 0 profile zero grains point"])
@@ -59,14 +60,15 @@ def mesh_for(kind):
 def moving(kind):
     """kind: of the fluctuations, and more keywords"""
     name, _, more = kind.partition(" ")
-    return f"fluctuation {name} 4711 0.008 renewal 0.001 {more}"
+    return f"fluctuation {name} 4711 0.008 " + ("" if name == "langevin" else "renewal 0.001 ") + more
 
 
 ALL_THAT_MOVES = ("depth felt volume drag brown_lawler hindrance di_felice added_mass 0.4 upflow 0.002 discharge 0.02 surface follow 0.045 wall_roughness 1e-3 wall_mixing yes "
                   "gravity v_gx 0 -9.797 sidewall 0.03 1")
+AND_THESE = "langevin schmidt 0.44 drag schiller_naumann fall_diameter 0.7 discharge 0.03 adjust depth 0.05 surface follow 0.045 gravity v_gx 0 -9.797 sidewall 0.03 1"
 
 
-@pytest.mark.parametrize("kind", ["correlated", "depth", "depth felt volume", ALL_THAT_MOVES])
+@pytest.mark.parametrize("kind", ["correlated", "depth", "depth felt volume", ALL_THAT_MOVES, AND_THESE])
 def test_ranks_agree(tmp_path, profile, kind):
     """Positions, velocities, forces and profiles on 2 and 4 ranks as on one, to 1e-10; fluctuations on."""
     result = {}
@@ -91,7 +93,7 @@ write_dump all custom dump.{ranks} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[
         assert (np.abs(result[ranks][1] - profiles).max(axis=0) / scale).max() < 1e-5    # ave/time prints 6 digits
 
 
-@pytest.mark.parametrize("kind", ["correlated", "depth", "correlated felt volume", ALL_THAT_MOVES])
+@pytest.mark.parametrize("kind", ["correlated", "depth", "correlated felt volume", ALL_THAT_MOVES, AND_THESE])
 def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
     """Broken at a step that is no coupling step. Contacts without damping: LAMMPS's own contact forces at the first step of a run are those of the
     velocity at full step, others those at half step, so that damped contacts are not the same after any restart."""

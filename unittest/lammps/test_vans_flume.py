@@ -191,6 +191,61 @@ def test_the_surface_follows_and_the_water_stays():
     s.close()
 
 
+def test_the_depth_follows_the_discharge():
+    """A laminar stream down a slope of given gx: the depth comes to that of q = gx H^3/(3 nu), and q to what was asked, from too little water and from
+    too much. One grain far too small to matter, since the surface moves with the averages."""
+    nu, gx, q = 1e-3, 2.0, 1e-4
+    H = (3 * nu * q / gx) ** (1 / 3)
+    for start in (0.7, 1.4):
+        s = Scene()
+        s.spheres([[0.01, 0.01, 2e-4]], np.zeros((1, 3)), 1e-5)
+        dz = H / 80
+        s.do(f"fix h all hydro/vans 1 mesh 161 {dz} 0 fluid 1000 1 gravity {gx} 0 -9.8 turbulence none discharge {q} adjust depth 0.005 surface follow {start * H} "
+             "solve 0.01 1e-3", "run 600")
+        assert abs(s.number("discharge") / q - 1) < 1e-6
+        assert abs(s.number("elevation") / H - 1) < 1e-3    # order dz^2
+        assert s.number("drive") == gx
+        s.close()
+
+
+def test_turbulence_spreads_sinking_grains_as_rouse_has_it():
+    """The stream kappa u_star z (1 - z/H), u' of the Langevin walk, grains that sink at w: their number falls with the height as
+    [(H - z)/z]^(w schmidt/(kappa u_star)). The exponent is the one for which the mean of ln((H - z)/z) between 0.1 and 0.8 H is that of the grains
+    there; its sampling error is 3 %."""
+    n, cells, H, u_star, kappa, schmidt, a = 2000, 200, 0.1, 0.05, 0.41, 0.5, 1e-4
+    rouse = 0.6
+    w = rouse * kappa * u_star / schmidt
+    edge = H / cells * np.arange(cells + 1)
+    middle = 0.5 * (edge[1:] + edge[:-1])
+    u = u_star / kappa * np.log(np.concatenate([[edge[1] / 30], middle, [H]]) / (edge[1] / 30))
+    Re = 2 * a * w / 1e-5
+    density = 1000 + 6 * np.pi * 1e-2 * a * w * (1 + 0.15 * Re ** 0.687) / (9.81 * 4 / 3 * np.pi * a ** 3)
+    s = Scene(box=(0, 1, 0, 1, -0.01, 0.2), extra=["pair_style none", "comm_modify cutoff 0.01"])
+    s.do(f"region r block 0 1 0 1 {0.02 * H} {0.98 * H}", f"create_atoms 1 random {n} 11 r", f"set group all diameter {2 * a} density {density:.10g}", "timestep 2e-4",
+         f"fix h all hydro/vans 5 mesh {cells + 1} {H / cells} 0 fluid 1000 1e-2 gravity 0.5 0 -9.81 couple none stream rest turbulence parabolic "
+         f"drag schiller_naumann fluctuation langevin 3 -1 schmidt {schmidt}", "fix_modify h profile values " + " ".join("%.8g" % v for v in u),
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", f"fix walls all wall/reflect zlo {0.02 * H} zhi {0.98 * H}", "run 200", "timestep 1e-3", "run 5000")
+    logs = []
+    for _ in range(10):
+        s.do("run 500")
+        z = s.atoms("x")[:, 2]
+        z = z[(z > 0.1 * H) & (z < 0.8 * H)]
+        logs.append(np.log((H - z) / z))
+    s.close()
+    found, z = np.concatenate(logs).mean(), np.linspace(0.1, 0.8, 2001)
+
+    def mean(exponent):
+        number = ((1 - z) / z) ** exponent
+        return (number * np.log((1 - z) / z)).sum() / number.sum()
+
+    low, high = 0.0, 5.0
+    for _ in range(50):
+        half = 0.5 * (low + high)
+        low, high = (half, high) if mean(half) < found else (low, half)
+    print("Rouse number", half)
+    assert abs(half / rouse - 1) < 0.1
+
+
 def brown_lawler(a, density, eta):
     """The speed of a lone sphere."""
     w = 0.1
@@ -225,6 +280,36 @@ def test_suspensions_settle_in_a_vessel_by_richardson_and_zaki(d, eta, expected,
         weight = 1650 * 9.81 * np.pi / 6 * d ** 3 * len(x) / (9 * h * h)
         assert abs(pressure[0] / weight - 1) < 0.02
         s.close()
+
+
+@pytest.mark.parametrize("d, eta, dt", [(2e-4, 5.8e-3, 1.2e-4), (1e-3, 4.8e-3, 1e-4), (1.85e-3, 1e-3, 1e-4)])
+def test_a_fluidised_bed_expands_by_richardson_and_zaki(d, eta, dt):
+    """Free grains on a floor, at first packed to phi 0.45, in water that rises with w_0 (1 - phi)^n, phi = 0.3: at Re 0.2, 20 and 500 their bed comes to that
+    phi within 5 % and stays there. Slices of three diameters; the highest one, in part empty, makes the bed 8 % higher than its phi."""
+    h, rng = d * (np.pi / 6 / 0.45) ** (1 / 3), np.random.default_rng(6)
+    w0 = brown_lawler(d / 2, 2650, eta)
+    Re = w0 * d * 1000 / eta
+    flux = w0 * 0.7 ** (4.65 if Re < 0.2 else 4.4 * Re ** -0.03 if Re < 1 else 4.4 * Re ** -0.1)
+    mass = 2650 * np.pi / 6 * d ** 3
+    k = 0.5 * mass * (np.pi / 25 / dt) ** 2
+    contact = f"gran/hooke/history {k} NULL {0.43 * np.sqrt(2 * k / mass)} NULL 0.1 1"
+    s = Scene(box=(0, 6 * h, 0, 6 * h, -d, 60 * d), extra=["pair_style " + contact, "pair_coeff * *", f"neighbor {0.3 * d} bin"])
+    x = h * (np.array([[i, j, l] for i in range(6) for j in range(6) for l in range(8)]) + 0.5) + rng.uniform(-0.02 * d, 0.02 * d, (288, 3))
+    s.spheres(x, np.zeros((288, 3)), d / 2, 2650)
+    s.do(f"timestep {dt}", f"fix floor all wall/{contact.replace('/hooke', ' hooke', 1)} zplane 0 NULL", "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere",
+         f"fix h all hydro/vans 5 mesh 20 {3 * d} 0 fluid 1000 {eta} gravity 0 0 -9.81 stream rest couple one drag brown_lawler upflow {flux}", f"run {int(70 * d / w0 / dt)}")
+    phi = 288 * np.pi / 6 * d ** 3 / (36 * h * h * 2 * s.atoms("x")[:, 2].mean())
+    inside = s.column("phi", 20)[:3]
+    print(Re, inside, phi)
+    assert np.abs(inside / 0.3 - 1).max() < 0.05 and np.abs(s.column("vz", 20)[:3]).max() < 1e-3 * flux
+    assert abs(phi / 0.3 - 1) < 0.1
+    s.close()
+
+
+def test_a_bed_in_slices_finer_than_its_grains_is_told_to_break_up(tmp_path):
+    script = bed_script("mesh 200 0.0003 0 fluid 1000 0.001 gravity 0 0 -9.8 stream rest couple one upflow {}")
+    assert "take slices of three diameters" in run_lmp(tmp_path, script.format(0.1) + "run 0\n").stdout
+    assert "take slices of three diameters" not in run_lmp(tmp_path, script.format("off") + "run 0\n").stdout
 
 
 def test_a_run_stops_when_its_mean_is_known():

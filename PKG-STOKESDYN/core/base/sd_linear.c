@@ -10,6 +10,8 @@ void dpotrf_(const char *uplo, const int *n, double *A, const int *lda, int *inf
 void spotrf_(const char *uplo, const int *n, float *A, const int *lda, int *info, size_t);
 void dstev_(const char *job, const int *n, double *d, double *e, double *Z, const int *ldz, double *work,
             int *info, size_t);
+void dsyev_(const char *job, const char *uplo, const int *n, double *A, const int *lda, double *w,
+            double *work, const int *lwork, int *info, size_t, size_t);
 void dpotri_(const char *uplo, const int *n, double *A, const int *lda, int *info, size_t);
 void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha,
             const double *A, const int *lda, const double *beta, double *C, const int *ldc, size_t,
@@ -117,6 +119,35 @@ void sd_add_gram(int n, int rows, const double *A, const double *B, double *G)
   else
     dgemm_("N", "T", &n, &n, &rows, &one, A, &n, B, &n, &one, G, &n, 1, 1);
   threads_as_before(before);
+}
+
+/* A = Z^T diag(d) Z with eigenvectors as rows of Z: the root is Y^T Y, Y = diag(d^1/4) Z. */
+sd_status sd_symmetric_root(int n, double *A)
+{
+  const size_t square = (size_t) n * (size_t) n;
+  const int room = 34 * n;
+  double *d = malloc(sizeof(double) * (size_t) (n + room)), *Y = malloc(sizeof(double) * square);
+  int info = 0;
+  sd_status status = d && Y ? SD_OK : SD_ENOMEMORY;
+  for (size_t e = 0; e < square && status == SD_OK; e++)
+    if (!isfinite(A[e])) status = SD_ENOTFINITE;
+  if (status == SD_OK) {
+    const int before = one_thread();
+    memcpy(Y, A, sizeof(double) * square);
+    dsyev_("V", "L", &n, Y, &n, d, d + n, &room, &info, 1, 1);
+    threads_as_before(before);
+    if (info != 0) status = SD_ENOTFINITE;
+  }
+  if (status == SD_OK) {
+    for (size_t e = 0; e < square; e++) Y[e] *= sqrt(sqrt(fmax(d[e / (size_t) n], 0.0)));
+    memset(A, 0, sizeof(double) * square);
+    sd_add_gram(n, n, Y, Y, A);
+    for (size_t q = 0; q < (size_t) n; q++)
+      for (size_t p = 0; p < q; p++) A[p + (size_t) n * q] = A[q + (size_t) n * p];
+  }
+  free(d);
+  free(Y);
+  return status;
 }
 
 /* Columns are rows here. */

@@ -45,6 +45,10 @@ void sd_add_gram(int n, int rows, const double *A, const double *B, double *G);
  * X in its place. Status of sd_cholesky. */
 sd_status sd_cholesky_solve(int n, double *A, int count, double *B);
 
+/* The symmetric A^1/2 [n n] of the symmetric positive semidefinite A [n n], in its place; eigenvalues
+ * below 0 are rounding, and count as 0. SD_OK; SD_ENOMEMORY; SD_ENOTFINITE. */
+sd_status sd_symmetric_root(int n, double *A);
+
 /* Eigenvalues d [n], smallest first, and eigenvectors of the symmetric tridiagonal matrix with
  * diagonal d [n] in and e [n - 1], destroyed, beside it: row k of Z [n n], out, belongs to d[k].
  * work [2 n]. SD_OK; SD_ENOTFINITE. */

@@ -55,3 +55,13 @@ void sd_random_normals(const sd_random_key *key, uint64_t tag, int n, double *ou
     if (2 * draw + 1 < n) out[2 * draw + 1] = r * sin(angle);
   }
 }
+
+uint64_t sd_random_pair(uint64_t first, uint64_t second, uint32_t which)
+{
+  const uint32_t counter[4] = {(uint32_t) first, (uint32_t) (first >> 32), (uint32_t) second,
+                               (uint32_t) (second >> 32)};
+  const uint32_t key[2] = {which, SD_RANDOM_FILM};
+  uint32_t bits[4];
+  sd_random_bits(counter, key, bits);
+  return (uint64_t) bits[0] << 32 | bits[1];
+}

@@ -15,11 +15,12 @@ extern "C" {
 #endif
 
 /* What the numbers are for. tag: ID of the atom; lowest ID of the body; number of the row of two
- * points of a grid; ID of a grain */
+ * points of a grid; sd_random_pair() of two spheres; ID of a grain */
 typedef enum {
   SD_RANDOM_SPHERE = 1,
   SD_RANDOM_BODY,
   SD_RANDOM_GRID,
+  SD_RANDOM_FILM,
   SD_RANDOM_EDDY
 } sd_random_purpose;
 
@@ -35,6 +36,10 @@ void sd_random_bits(const uint32_t counter[4], const uint32_t key[2], uint32_t o
 /* n independent standard normal numbers out [n] for this tag, n < 2^25; a shorter sequence is the
  * beginning of a longer one. Exact to the rounding of u = (bits + 1/2) 2^-53, so |out| < 8.7. */
 void sd_random_normals(const sd_random_key *key, uint64_t tag, int n, double *out);
+
+/* A tag for two that have tags, the lower first, and which of several pairs of them it is; of two such
+ * pairs in 2^64 it is the same. */
+uint64_t sd_random_pair(uint64_t first, uint64_t second, uint32_t which);
 
 #ifdef __cplusplus
 }

@@ -48,8 +48,8 @@ static double logarithm_of_lone_speed(double Re, double log_e)
   return y;
 }
 
-double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
-                           double hindrance, double speed)
+static double drag_of_sphere(sd_vans_drag_law law, double rho, double eta, double a,
+                             double hindrance, double speed)
 {
   const double Re = 2.0 * a * rho * speed / eta, viscous = 0.25 * SD_PI * a * eta;
   switch (law.hindrance) {
@@ -66,6 +66,14 @@ double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double 
     }
   }
   return viscous * sd_vans_drag_number(law.law, Re) * hindrance;
+}
+
+double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
+                           double hindrance, double speed)
+{
+  if (law.fall == 0.0) return drag_of_sphere(law, rho, eta, a, hindrance, speed);
+  return drag_of_sphere(law, rho, eta, law.fall * a, hindrance, speed) /
+      (law.fall * law.fall * law.fall);
 }
 
 double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,

@@ -19,6 +19,8 @@
  * w_0 = w e^(1-n), and n is that of Re_0 = 2 a rho w_0/eta, as they have it but for the steps
  * between its parts: 4.4 Re_0^-0.03 below Re_0 = 1, 4.4 Re_0^-0.1 above, within 4.65 and 2.39.
  * Di Felice: beta = 3.7 - 0.65 exp(-(1.5 - log10 Re')^2/2).
+ * A grain that is no sphere falls as a sphere of its density does whose diameter is `fall` times its
+ * own: it has the drag of that sphere per volume, fall^-3 F(fall a).
  * All of F acts beside the buoyancy of the clear fluid, rho g V: what the water's own excess
  * pressure does to a grain is in h. (Di Felice's exponent is for a drag beside the buoyancy of the
  * mixture, e times as large: there it is h = e^(1-beta).)
@@ -52,6 +54,8 @@ typedef enum {
 typedef struct {
   sd_vans_drag_of_one law;
   sd_vans_drag_of_many hindrance;
+  /* fall diameter over diameter; 0: 1 */
+  double fall;
 } sd_vans_drag_law;
 
 /* N(Re), Re >= 0. */
@@ -73,7 +77,7 @@ double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double 
 static inline double sd_vans_drag_factor(sd_vans_drag_law law, double rho, double eta, double a,
                                          double hindrance, double speed)
 {
-  if (law.law == SD_VANS_DRAG_YADE && law.hindrance == SD_VANS_HINDRANCE_POWER)
+  if (law.law == SD_VANS_DRAG_YADE && law.hindrance == SD_VANS_HINDRANCE_POWER && law.fall == 0.0)
     return 0.5 * SD_PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
   return sd_vans_drag_by_law(law, rho, eta, a, hindrance, speed);
 }

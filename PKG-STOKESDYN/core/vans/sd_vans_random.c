@@ -47,3 +47,35 @@ void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *w
   eddy->count += 1.0;
   eddy->life = sd_vans_eddy_life(height, nu, u_star, walk->longest, walk->dt);
 }
+
+void sd_vans_lagrangian_times(const sd_vans_mesh *mesh, double schmidt, const double *nut,
+                              const double *u_star, double *life)
+{
+  for (int n = 0; n < mesh->ncell; n++)
+    life[n] = u_star[n] > 0.0 ? nut[n] / (schmidt * u_star[n] * u_star[n]) : 0.0;
+}
+
+/* d sigma/dz in slice p, between the middles of its neighbours. */
+static double slope_of(const sd_vans_mesh *mesh, const double *sigma, int p)
+{
+  const int low = p > 0 ? p - 1 : p, high = p < mesh->ncell - 1 ? p + 1 : p;
+  const double *edge = mesh->edge;
+  return (sigma[high] - sigma[low]) /
+      (0.5 * (edge[high] + edge[high + 1]) - 0.5 * (edge[low] + edge[low + 1]));
+}
+
+void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *walk, double z,
+                           uint64_t id, sd_vans_wander *wander, double u[3])
+{
+  const int p = sd_vans_slice_of(mesh, z);
+  const int here = p >= 0 && p < mesh->ncell && z - mesh->z_ref > walk->bed;
+  const double sigma = here ? walk->u_star[p] : 0.0, T = here ? walk->life[p] : 0.0;
+  /* over the step dt, with T as it is: y decays, the noise makes up for it, the slope adds up */
+  const double kept = T > 0.0 ? exp(-walk->dt / T) : 0.0, noise = sqrt(1.0 - kept * kept);
+  double *y = wander->normal, normal[3];
+  sd_vans_normal3(walk->seed, id, (uint64_t) wander->count, normal);
+  for (int d = 0; d < 3; d++) y[d] = kept * y[d] + noise * normal[d];
+  if (T > 0.0 && kept > 0.0) y[0] += slope_of(mesh, walk->u_star, p) * T * (1.0 - kept);
+  sd_vans_fluctuation(y, sigma, 1, u);
+  wander->count += 1.0;
+}

@@ -1,4 +1,4 @@
-/* Velocity fluctuations of the water: a discrete random walk of each grain. */
+/* Velocity fluctuations of the water: a discrete random walk of each grain, or a Langevin one. */
 #ifndef SD_VANS_RANDOM_H
 #define SD_VANS_RANDOM_H
 
@@ -49,6 +49,37 @@ typedef struct {
  * outside the mesh. */
 void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *walk, double z,
                       uint64_t id, sd_vans_eddy *eddy, double u[3]);
+
+/* The Langevin walk: the water that a grain meets forgets its velocity within the Lagrangian time
+ * T. With sigma = u_star of the grain's slice and y = (a, b, c) = the velocity over sigma,
+ *   dy = -y/T dt + sqrt(2/T) dW + (dsigma/dz, 0, 0) dt,   u' = (c - a, b, a) sigma
+ * Each of a, b, c is N(0,1), and the grains are spread by D = sigma^2 T. By the last term water that
+ * is marked evenly stays so where sigma changes with the height.
+ * Sources: Wilson, Legg & Thomson 1983 (Boundary-Layer Meteorol. 27); Thomson 1987 (JFM 180). */
+typedef struct {
+  uint64_t seed;
+  /* height above z_ref below which there is none */
+  double bed;
+  /* [N] sigma and T of each slice */
+  const double *u_star, *life;
+  /* of a step; HUGE_VAL: the walk begins */
+  double dt;
+} sd_vans_langevin;
+
+/* What a grain carries: a, b, c, and the number of its steps. */
+typedef struct {
+  double normal[3], count;
+} sd_vans_wander;
+
+/* T for which grains are spread by nut/schmidt, the turbulent Schmidt number: nut/(schmidt
+ * u_star^2); 0 where u_star is. life [N] out */
+void sd_vans_lagrangian_times(const sd_vans_mesh *mesh, double schmidt, const double *nut,
+                              const double *u_star, double *life);
+
+/* A step of the grain of this ID at the height z (LAMMPS's): u' [3] out, 0 below the bed and
+ * outside the mesh. Exact for any step where sigma and T are even. */
+void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *walk, double z,
+                           uint64_t id, sd_vans_wander *wander, double u[3]);
 
 #ifdef __cplusplus
 }

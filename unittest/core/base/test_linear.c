@@ -62,6 +62,28 @@ static void inverse_is_full_and_symmetric(void **state)
   free(A);
 }
 
+/* Of a matrix with an eigenvalue 0 too: twice it is the matrix. */
+static void root_times_itself_is_the_matrix(void **state)
+{
+  (void) state;
+  const int n = 17;
+  for (int singular = 0; singular < 2; singular++) {
+    double *A = matrix(n), *root = matrix(n);
+    for (int k = 0; k < n && singular; k++) A[k] = A[n * k] = root[k] = root[n * k] = 0.0;
+    assert_int_equal(sd_symmetric_root(n, root), SD_OK);
+    for (int p = 0; p < n; p++)
+      for (int q = 0; q < n; q++) {
+        double sum = 0.0;
+        for (int k = 0; k < n; k++) sum += root[p + n * k] * root[k + n * q];
+        CHECK_NEAR(sum, A[p + n * q], 1e-13);
+        assert_true(root[p + n * q] == root[q + n * p]);
+      }
+    root[3] = NAN;
+    assert_int_equal(sd_symmetric_root(n, root), SD_ENOTFINITE);
+    free(A), free(root);
+  }
+}
+
 static void bad_matrices_are_told_apart(void **state)
 {
   (void) state;
@@ -125,6 +147,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(factor_gives_the_matrix_back),
       cmocka_unit_test(inverse_is_full_and_symmetric),
+      cmocka_unit_test(root_times_itself_is_the_matrix),
       cmocka_unit_test(bad_matrices_are_told_apart),
 #if defined(__linux__)
       cmocka_unit_test(other_threads_rest),

@@ -67,12 +67,22 @@ static void every_part_of_the_key_counts(void **state)
   }
 }
 
+static void pairs_have_tags_of_their_own(void **state)
+{
+  (void) state;
+  const uint64_t tag = sd_random_pair(3, 5, 1);
+  assert_true(tag == sd_random_pair(3, 5, 1));
+  assert_true(tag != sd_random_pair(5, 3, 1) && tag != sd_random_pair(3, 5, 2));
+  assert_true(tag != sd_random_pair(3, 5 + (UINT64_C(1) << 40), 1));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bits_are_the_published_ones),
       cmocka_unit_test(numbers_are_normal_and_independent),
       cmocka_unit_test(every_part_of_the_key_counts),
+      cmocka_unit_test(pairs_have_tags_of_their_own),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

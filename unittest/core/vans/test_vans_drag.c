@@ -38,7 +38,7 @@ static double measured(double a, double density)
 static void spheres_fall_as_measured(void **state)
 {
   (void) state;
-  const sd_vans_drag_law brown = {SD_VANS_DRAG_BROWN_LAWLER, 0}, schiller = {SD_VANS_DRAG_SCHILLER_NAUMANN, 0};
+  const sd_vans_drag_law brown = {.law = SD_VANS_DRAG_BROWN_LAWLER}, schiller = {.law = SD_VANS_DRAG_SCHILLER_NAUMANN};
   double worst = 0.0;
   for (double d = 1e-4; d < 1.001e-2; d *= 1.2589) {
     const double w = measured(0.5 * d, 2650);
@@ -53,11 +53,25 @@ static void spheres_fall_as_measured(void **state)
 static void sand_falls_by_ferguson_and_church(void **state)
 {
   (void) state;
-  const sd_vans_drag_law law = {SD_VANS_DRAG_FERGUSON_CHURCH, 0};
+  const sd_vans_drag_law law = {.law = SD_VANS_DRAG_FERGUSON_CHURCH};
   for (double d = 5e-5; d < 1e-2; d *= 1.7) {
     const double R = 1.65 * G, w = R * d * d / (18e-6 + sqrt(0.75 * R * d * d * d));
     assert_true(fabs(terminal(law, 0.5 * d, 2650, 1.0) / w - 1.0) < 1e-12);
   }
+}
+
+/* With the fall diameter half its own a grain falls as a sphere half as large, alone and in a crowd; any law. */
+static void a_grain_falls_as_the_sphere_of_its_fall_diameter(void **state)
+{
+  (void) state;
+  for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
+    for (int many = SD_VANS_HINDRANCE_POWER; many <= SD_VANS_HINDRANCE_DI_FELICE; many++) {
+      const sd_vans_drag_law sphere = {(sd_vans_drag_of_one) law, (sd_vans_drag_of_many) many, 0.0};
+      sd_vans_drag_law grain = sphere;
+      grain.fall = 0.5;
+      const double w = terminal(sphere, 0.75e-3, 1190, 0.8);
+      assert_true(fabs(terminal(grain, 1.5e-3, 1190, 0.8) / w - 1.0) < 1e-12);
+    }
 }
 
 static void every_law_is_stokes_for_slow_spheres(void **state)
@@ -66,7 +80,7 @@ static void every_law_is_stokes_for_slow_spheres(void **state)
   const double stokes = 6 * SD_PI * ETA * 0.003;
   for (int law = SD_VANS_DRAG_SCHILLER_NAUMANN; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
     for (int many = SD_VANS_HINDRANCE_POWER; many <= SD_VANS_HINDRANCE_DI_FELICE; many++) {
-      const sd_vans_drag_law kind = {(sd_vans_drag_of_one) law, (sd_vans_drag_of_many) many};
+      const sd_vans_drag_law kind = {.law = (sd_vans_drag_of_one) law, .hindrance = (sd_vans_drag_of_many) many};
       assert_true(fabs(sd_vans_drag_factor(kind, RHO, ETA, 0.003, 1.0, 1e-16) / stokes - 1) < 1e-5);
     }
 }
@@ -76,7 +90,7 @@ static void every_law_is_stokes_for_slow_spheres(void **state)
 static void richardson_and_zaki_find_their_exponent(void **state)
 {
   (void) state;
-  const sd_vans_drag_law law = {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
+  const sd_vans_drag_law law = {.law = SD_VANS_DRAG_BROWN_LAWLER, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
   double first = 0.0, last = 0.0;
   for (double d = 3e-5; d < 0.2; d *= 3) {
     const double w0 = terminal(law, 0.5 * d, 2650, 1.0), n = sd_vans_richardson_zaki(w0 * d * 1e6);
@@ -92,8 +106,8 @@ static void richardson_and_zaki_find_their_exponent(void **state)
 static void di_felice_agrees_with_richardson_and_zaki(void **state)
 {
   (void) state;
-  const sd_vans_drag_law rz = {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_RICHARDSON_ZAKI},
-                         di_felice = {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_DI_FELICE};
+  const sd_vans_drag_law rz = {.law = SD_VANS_DRAG_BROWN_LAWLER, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI},
+                         di_felice = {.law = SD_VANS_DRAG_BROWN_LAWLER, .hindrance = SD_VANS_HINDRANCE_DI_FELICE};
   double worst[2] = {0, 0};
   for (double d = 3e-5; d < 0.05; d *= 1.5)
     for (int k = 0; k < 2; k++) {
@@ -110,7 +124,7 @@ static void slope_is_that_of_the_force(void **state)
   (void) state;
   for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
     for (double w = 1e-6; w < 10; w *= 7) {
-      const sd_vans_drag_law kind = {(sd_vans_drag_of_one) law, SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
+      const sd_vans_drag_law kind = {.law = (sd_vans_drag_of_one) law, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
       const double h = 1e-5 * w, e = 0.6, a = 0.002,
                    up = sd_vans_drag_factor(kind, RHO, ETA, a, e, w + h) * (w + h),
                    down = sd_vans_drag_factor(kind, RHO, ETA, a, e, w - h) * (w - h);
@@ -171,6 +185,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(spheres_fall_as_measured),
       cmocka_unit_test(sand_falls_by_ferguson_and_church),
+      cmocka_unit_test(a_grain_falls_as_the_sphere_of_its_fall_diameter),
       cmocka_unit_test(every_law_is_stokes_for_slow_spheres),
       cmocka_unit_test(richardson_and_zaki_find_their_exponent),
       cmocka_unit_test(di_felice_agrees_with_richardson_and_zaki),

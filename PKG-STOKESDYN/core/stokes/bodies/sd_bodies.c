@@ -101,21 +101,10 @@ static sd_status precondition(void *ctx, const double *r, double *z)
 static sd_status apply(void *ctx, const double *p, double *w)
 {
   loop *c = ctx;
-  const sd_bodies *A = c->A;
-  const double *V = p + sd_bodies_rows(A);
-  double *f = c->bodies, *less = f + motions(c);
-  const sd_status status = A->apply(A->apply_ctx, p, w);
-  if (status != SD_OK) return status;
-  c->report->products++;
-  if (c->shells) {
-    memcpy(less, V, sizeof(double) * (size_t) motions(c));
-    sd_bodies_collect(A, p, c->on_spheres, f);
-    sd_bodies_alone_shells(A, f, less);
-    V = less;
-  }
-  sd_bodies_move(A, V, c->on_spheres, c->rows);
-  for (long j = 0; j < sd_bodies_rows(A); j++) w[j] += p[j] / A->D[j] - c->rows[j];
-  return SD_OK;
+  const sd_status status = sd_bodies_product(c->A, c->shells, p, p + sd_bodies_rows(c->A), c->bodies,
+                                             c->on_spheres, c->rows, w);
+  if (status == SD_OK) c->report->products++;
+  return status;
 }
 
 /* p.D^-1 p of the forces */
@@ -418,14 +407,6 @@ static sd_status finish(loop *c, const sd_bodies_motion *motion)
   return status;
 }
 
-static int any_shells(const sd_bodies *A)
-{
-  for (int b = 0; b < A->shaped; b++)
-    for (int e = 0; e < 36; e++)
-      if (A->body[b].shape->shell[e] != 0.0) return 1;
-  return 0;
-}
-
 sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
                           const sd_bodies_motion *motion, double *work, sd_bodies_report *report)
 {
@@ -441,7 +422,7 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
       .bodies = given + 2 * bodies,
       .on_spheres = on_spheres,
       .alone = on_spheres + 12 * (long) A->spheres.n,
-      .shells = any_shells(A),
+      .shells = sd_bodies_shells(A),
       .guess_is_new = problem->warm,
       .report = report,
   };

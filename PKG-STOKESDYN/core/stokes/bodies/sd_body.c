@@ -197,6 +197,32 @@ void sd_bodies_alone_shells(const sd_bodies *A, const double *f, double *V)
   }
 }
 
+int sd_bodies_shells(const sd_bodies *A)
+{
+  for (int b = 0; b < A->shaped; b++)
+    for (int e = 0; e < 36; e++)
+      if (A->body[b].shape->shell[e] != 0.0) return 1;
+  return 0;
+}
+
+sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, const double *V,
+                            double *bodies, double *on_spheres, double *rows, double *w)
+{
+  const size_t motions = 6 * (size_t) sd_bodies_count(A);
+  double *f = bodies, *less = f + motions;
+  const sd_status status = A->apply(A->apply_ctx, l, w);
+  if (status != SD_OK) return status;
+  if (shells) {
+    memcpy(less, V, sizeof(double) * motions);
+    sd_bodies_collect(A, l, on_spheres, f);
+    sd_bodies_alone_shells(A, f, less);
+    V = less;
+  }
+  sd_bodies_move(A, V, on_spheres, rows);
+  for (long j = 0; j < sd_bodies_rows(A); j++) w[j] += l[j] / A->D[j] - rows[j];
+  return SD_OK;
+}
+
 /* Both in E and in the velocities lengths are those of the shape, a times as large: (U, W) in its
  * lengths is dE E a. */
 void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *work, double *u)

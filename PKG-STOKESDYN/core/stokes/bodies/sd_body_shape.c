@@ -157,8 +157,24 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
   return status;
 }
 
+sd_status sd_body_shape_take_root(sd_body_shape *s)
+{
+  const size_t N = (size_t) s->width * (size_t) s->m;
+  if (s->root || N > SD_BODY_ROOT_MOST) return SD_OK;
+  double *root = malloc(sizeof(double) * N * N);
+  if (!root) return SD_ENOMEMORY;
+  memcpy(root, s->inverse, sizeof(double) * N * N);
+  const sd_status status = sd_symmetric_root((int) N, root);
+  if (status == SD_OK)
+    s->root = root;
+  else
+    free(root);
+  return status;
+}
+
 void sd_body_shape_free(sd_body_shape *s)
 {
+  free(s->root);
   free(s->x);
   free(s->inverse);
   free(s->rigid);

@@ -35,6 +35,8 @@ typedef struct {
   double *x;
   /* [(width m)^2] M_b'^-1, symmetric; [(width m) 6] M_b'^-1 K, row-major */
   double *inverse, *rigid;
+  /* [(width m)^2] M_b'^-1/2, symmetric; NULL until sd_body_shape_take_root() */
+  double *root;
   /* [6 6] of the lone body: (U, W) from force and torque about the centre; and its inverse */
   double mobility[36], resistance[36];
   /* [6 6] dN, 0 without shells */
@@ -54,6 +56,10 @@ sd_status sd_body_shape_of(int m, int width, const double *x, const double *M, s
 /* A clump of spheres with forces and torques. shells: the clump of this shape with shells; NULL:
  * none. The owner frees. Status as above. */
 sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *out);
+/* Makes the root, if there is none yet: for noise. A body of more than SD_BODY_ROOT_MOST numbers does
+ * without one, which would take longer than what it saves. SD_OK; SD_ENOMEMORY; SD_ENOTFINITE. */
+#define SD_BODY_ROOT_MOST 600
+sd_status sd_body_shape_take_root(sd_body_shape *s);
 void sd_body_shape_free(sd_body_shape *s);
 
 #ifdef __cplusplus

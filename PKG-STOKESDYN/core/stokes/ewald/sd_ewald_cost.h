@@ -15,6 +15,10 @@ extern "C" {
  * both ways of summing cost about 2.5 times as much. */
 double sd_ewald_cost(const sd_ewald *e);
 
+/* With as many spheres or fewer all pairs cost less, whatever the splitting: the smallest windows, of
+ * 4^3 points, cost that much a sphere. */
+enum { SD_EWALD_FEWEST = 192 };
+
 #ifdef __cplusplus
 }
 #endif

@@ -34,6 +34,29 @@ void sd_flow_slope(int n, const double *ahead, const double *behind, const doubl
   for (int i = 0; i < n; i++) slope[i] = a[i] > 0.0 ? (ahead[i] - behind[i]) / (2.0 * a[i]) : 0.0;
 }
 
+const double sd_flow_around[SD_FLOW_DIRECTIONS][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},
+                                                       {1, 1, 0}, {1, 0, 1}, {0, 1, 1}};
+
+/* bend = h^2 d.H d, and on a diagonal d.H d = H_qq + H_rr + 2 H_qr. */
+void sd_flow_curvature(const double bend[SD_FLOW_DIRECTIONS], double h, double H[6])
+{
+  const double scale = 1.0 / (h * h);
+  for (int e = 0; e < 3; e++) H[e] = scale * bend[e];
+  H[3] = 0.5 * (scale * bend[3] - H[0] - H[1]);
+  H[4] = 0.5 * (scale * bend[4] - H[0] - H[2]);
+  H[5] = 0.5 * (scale * bend[5] - H[1] - H[2]);
+}
+
+void sd_flow_bend(const double H[SD_FLOW_SECOND], const double r[3], double b, double out[3])
+{
+  for (int p = 0; p < 3; p++) {
+    const double *K = H + 6 * p;
+    out[p] += 0.5 * (K[0] * r[0] * r[0] + K[1] * r[1] * r[1] + K[2] * r[2] * r[2]) +
+        K[3] * r[0] * r[1] + K[4] * r[0] * r[2] + K[5] * r[1] * r[2] +
+        b * b / 6.0 * (K[0] + K[1] + K[2]);
+  }
+}
+
 /* G H = dH/dt, column by column: all three are upper triangles. */
 void sd_flow_of_cell(const double h[6], const double rate[6], double G[9])
 {

@@ -1,4 +1,5 @@
-/* Gradients of a flow, row-major: G[3 p + q] = d u_p / d x_q. */
+/* Gradients of a flow, row-major: G[3 p + q] = d u_p / d x_q, and its second derivatives:
+ * H[6 p + e] = d2 u_p / d x_q d x_r with qr = xx yy zz xy xz yz for e = 0 to 5. */
 #ifndef SD_FLOW_H
 #define SD_FLOW_H
 
@@ -20,6 +21,20 @@ void sd_flow_set_vorticity(const double vorticity[3], double G[9]);
  * 0 where a = 0. All [n]. */
 void sd_flow_slope(int n, const double *ahead, const double *behind, const double *a,
                    double *slope);
+
+/* Where a flow is asked for its second derivatives: at x + h d and x - h d, d the rows of
+ * sd_flow_around, h = SD_FLOW_STEP of a radius, so that all places are inside of the sphere. */
+enum { SD_FLOW_DIRECTIONS = 6, SD_FLOW_SECOND = 18 };
+#define SD_FLOW_STEP 0.5
+extern const double sd_flow_around[SD_FLOW_DIRECTIONS][3];
+
+/* H [6] of one component, from bend [6] = u(x + h d) + u(x - h d) - 2 u(x), h > 0. Exact for a
+ * cubic flow, to order h^2 for others. */
+void sd_flow_curvature(const double bend[SD_FLOW_DIRECTIONS], double h, double H[6]);
+
+/* out [3] += r.H r/2 + (b^2/6) tr H: what curvature adds to the velocity with which the flow
+ * carries a sphere of radius b at r from where H is (Faxen's law). */
+void sd_flow_bend(const double H[SD_FLOW_SECOND], const double r[3], double b, double out[3]);
 
 /* The flow that takes a cell along: G = (dH/dt) H^-1, H = (xx xy xz; 0 yy yz; 0 0 zz) with the
  * edges as columns. h and rate [6]: xx yy zz yz xz xy of H, > 0 the first three, and of dH/dt. The

@@ -72,6 +72,20 @@ static const double *identity_of(const sd_lubrication *L, int j)
   return L->work->identity + IDENTITY * (long) (j - L->n);
 }
 
+/* Once the pairs are known */
+static sd_status reserve_noise(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  struct sd_lubrication_work *w = L->work;
+  const size_t alone = 36 * (size_t) L->n;
+  w->noisy = s->noisy;
+  if (!s->noisy) return SD_OK;
+  if (!sd_reserve(&w->whole, sizeof(*w->whole), (size_t) L->count, &w->most_whole) ||
+      !sd_reserve(&w->alone, sizeof(double), alone, &w->most_alone))
+    return SD_ENOMEMORY;
+  if (alone > 0) memset(w->alone, 0, sizeof(double) * alone);
+  return SD_OK;
+}
+
 /* The row of the sphere that stands at j: of this rank, or j itself */
 static int row_at(const sd_lubrication *L, int j)
 {
@@ -312,6 +326,8 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   const sd_status status = resistance_of(L, s, k, eta, &R, L->model + k);
   if (status != SD_OK) return status;
   sd_lubrication_link *link = L->link + k;
+  if (s->noisy && k < L->count)
+    L->work->whole[k] = (whole_pair){R, {link->d[0], link->d[1], link->d[2]}};
   if (L->work->flows && i < L->n) add_carried(L, s, k, &R);
   if (s->films && s->drift && i < L->n) sd_lubrication_drift(L, k, &R);
   if (i < L->n) add_own(&R, 0, R.YB[0], link->d, own + i);
@@ -347,6 +363,7 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   sd_status status = reserve_spheres(L, scene);
   if (status == SD_OK) status = identify(L, scene);
   if (status == SD_OK) status = find_pairs(L, scene);
+  if (status == SD_OK) status = reserve_noise(L, scene);
   if (status == SD_OK) status = count_neighbours(L, scene);
   if (status == SD_OK) status = find_flow(L, scene);
   if (status != SD_OK) return status;
@@ -364,6 +381,7 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
 void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6])
 {
   for (long e = 0; e < 36; e++) L->diagonal[36L * i + e] += B[e];
+  for (long e = 0; e < 36 && L->work->noisy; e++) L->work->alone[36L * i + e] += B[e];
   for (long k = 0; k < 6; k++) L->carried[6L * i + k] += E[k];
 }
 
@@ -446,6 +464,8 @@ void sd_lubrication_free(sd_lubrication *L)
     free(L->work->own);
     free(L->work->close);
     free(L->work->image);
+    free(L->work->whole);
+    free(L->work->alone);
     free(L->work);
   }
   free(L->pair);

@@ -59,6 +59,8 @@ typedef struct {
   const double *drift;
   /* refresh: rows of the n_all - n from those of the n, NULL: there are none */
   sd_world world;
+  /* will random forces be drawn (sd_lubrication_noise.h)? Then pairs are kept whole */
+  int noisy;
 } sd_lubrication_scene;
 
 /* L_12 of a pair by what it knows, a quarter of its numbers: d the unit vector from 1 to 2, the

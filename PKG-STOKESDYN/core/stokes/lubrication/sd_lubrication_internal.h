@@ -24,6 +24,12 @@ typedef struct {
   sd_lubrication_link film;
 } own_image;
 
+/* All of a pair, for its random forces: L_11, L_12 and L_22, d from its first sphere to the second */
+typedef struct {
+  sd_pair_resistance R;
+  double d[3];
+} whole_pair;
+
 struct sd_lubrication_work {
   sd_neighbors near;
   /* [IDENTITY (n_all - n)] */
@@ -36,6 +42,11 @@ struct sd_lubrication_work {
   own_block *own;
   /* [count] */
   closeness *close;
+  /* [count] where the scene is noisy, and [36 n] what spheres resist alone; else NULL or old */
+  whole_pair *whole;
+  double *alone;
+  size_t most_whole, most_alone;
+  int noisy;
   /* films */
   own_image *image;
   long images, most_images;

@@ -6,8 +6,9 @@
 #include "sd_linear.h"
 #include "sd_unit.h"
 
-void sd_blocks_free(sd_blocks *b)
+void sd_blocks_free(void *blocks)
 {
+  sd_blocks *b = blocks;
   free(b->first);
   free(b->member);
   free(b->lone);
@@ -80,12 +81,13 @@ static sd_status invert(sd_blocks *b, const sd_precondition_case *c, int k)
   return sd_cholesky_inverse(b->width * m, A) == SD_OK ? SD_OK : SD_EINDEFINITE;
 }
 
-sd_status sd_blocks_make(sd_blocks *b, const sd_precondition_case *c)
+sd_status sd_blocks_make(void *blocks, const sd_precondition_case *c)
 {
+  sd_blocks *b = blocks;
   sd_status status = allocate(b, c);
   if (status == SD_OK) sd_unit_roots(&c->spheres, c->n, b->root);
   for (int k = b->part; k < b->blocks && status == SD_OK; k += b->parts) status = invert(b, c, k);
-  status = sd_precondition_agree(c, status);
+  status = sd_world_agree(&c->world, status);
   if (status != SD_OK) sd_blocks_free(b);
   return status;
 }
@@ -138,3 +140,6 @@ sd_status sd_blocks_apply(void *ctx, const double *r, double *z)
   for (int k = b->part; k < b->blocks; k += b->parts) apply_block(b, k, r, z);
   return SD_OK;
 }
+
+const sd_precondition_kind sd_precondition_blocks = {sizeof(sd_blocks), sd_blocks_make,
+                                                     sd_blocks_apply, sd_blocks_free};

@@ -11,7 +11,7 @@
 #ifndef SD_BLOCKS_H
 #define SD_BLOCKS_H
 
-#include "sd_precondition_case.h"
+#include "sd_precondition.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,11 +34,12 @@ typedef struct {
   double *scratch;
 } sd_blocks;
 
-void sd_blocks_free(sd_blocks *b);
+/* blocks: an sd_blocks */
+void sd_blocks_free(void *blocks);
 
 /* As of sd_precondition_kind. Spheres at one point make a block singular: it is then made definite
  * by a small diagonal. */
-sd_status sd_blocks_make(sd_blocks *b, const sd_precondition_case *c);
+sd_status sd_blocks_make(void *blocks, const sd_precondition_case *c);
 
 /* z = P r (this part's share) in the signature of sd_precondition: ctx is an sd_blocks. */
 sd_status sd_blocks_apply(void *ctx, const double *r, double *z);

@@ -11,13 +11,36 @@
 #ifndef SD_PRECONDITION_H
 #define SD_PRECONDITION_H
 
-#include "sd_precondition_case.h"
+#include "sd_ewald.h"
+#include "sd_product.h"
+#include "sd_solve.h"
+#include "sd_world.h"
 
 #include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* What it is made of */
+typedef struct {
+  sd_law law;
+  /* [n] those with radius 0 take no part */
+  sd_spheres spheres;
+  /* Unknowns of a sphere, width: 3 (force), with rotation 6 (force and torque) */
+  int n, width;
+  /* Clump k is of the spheres member[first[k]] ... member[first[k + 1] - 1]; no sphere is in
+   * two. */
+  int clumps;
+  const long *first;
+  const int *member;
+  /* The periodic box, of the long waves (sd_waves.h) alone. NULL: open space */
+  const sd_ewald_box *box;
+  /* P is the sum of `parts` terms, and this is term `part`: what apply returns is to be summed. */
+  int part, parts;
+  /* sum: over all ranks, parts or not, so that they agree on failures */
+  sd_world world;
+} sd_precondition_case;
 
 /* A kind of preconditioner: functions on a struct of its own, `size` bytes of zeros in the
  * beginning. make is called on all ranks, and fails on all if it fails on one: SD_ENOMEMORY,

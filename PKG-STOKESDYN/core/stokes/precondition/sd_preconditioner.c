@@ -84,7 +84,7 @@ static sd_status make_diagonal(sd_preconditioner *p, sd_precondition_case alone)
   free(p->state);
   p->kind = &sd_precondition_blocks;
   p->state = calloc(1, p->kind->size);
-  const sd_status status = sd_precondition_agree(&alone, p->state ? SD_OK : SD_ENOMEMORY);
+  const sd_status status = sd_world_agree(&alone.world, p->state ? SD_OK : SD_ENOMEMORY);
   return status == SD_OK ? p->kind->make(p->state, &alone) : status;
 }
 
@@ -92,9 +92,9 @@ sd_status sd_preconditioner_make(sd_preconditioner *p, const sd_precondition_kin
                                  const sd_precondition_case *c)
 {
   double others = !made_of(p, kind, c);
-  sd_status status = c->sum ? c->sum(c->sum_ctx, &others, 1) : SD_OK;
+  sd_status status = sd_world_sum(&c->world, &others, 1);
   if (status != SD_OK || others == 0.0) return status;
-  status = sd_precondition_agree(c, copy(p, kind, c));
+  status = sd_world_agree(&c->world, copy(p, kind, c));
   if (status == SD_OK) {
     sd_precondition_case own = *c;
     own.spheres = (sd_spheres){p->x, p->x + 3 * (size_t) p->n, p->one};

@@ -6,8 +6,9 @@
 #include "sd_sparse_internal.h"
 #include "sd_unit.h"
 
-void sd_sparse_free(sd_sparse *f)
+void sd_sparse_free(void *factor)
 {
+  sd_sparse *f = factor;
   sd_rows_free(&f->rows);
   free(f->value);
   free(f->root);
@@ -140,3 +141,18 @@ sd_status sd_sparse_apply(void *ctx, const double *r, double *z)
       z[width * i + d] = f->root[2 * i + (d >= 3)] * out[step * i + d];
   return SD_OK;
 }
+
+/* Reach of the kind: 42 blocks per sphere in a compact cloud */
+static const double RHO = 3.0;
+
+static sd_status make(void *f, const sd_precondition_case *c)
+{
+  const sd_status status =
+      sd_sparse_create(f, &c->law, &c->spheres, c->n, c->width, RHO, c->part, c->parts);
+  const sd_status agreed = sd_world_agree(&c->world, status);
+  if (agreed != SD_OK) sd_sparse_free(f);
+  return agreed;
+}
+
+const sd_precondition_kind sd_precondition_sparse = {sizeof(sd_sparse), make, sd_sparse_apply,
+                                                     sd_sparse_free};

@@ -14,6 +14,7 @@
 #define SD_SPARSE_H
 
 #include "sd_order.h"
+#include "sd_precondition.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,7 +33,8 @@ typedef struct {
   double *scratch;
 } sd_sparse;
 
-void sd_sparse_free(sd_sparse *f);
+/* factor: an sd_sparse */
+void sd_sparse_free(void *factor);
 
 /* width: 3, or with rotation 6 (sd_unit.h). SD_OK; SD_ENOMEMORY; SD_EINDEFINITE: a hard cut-off in
  * the law's place; SD_ENOTFINITE. On failure f is empty. */

@@ -55,16 +55,15 @@ typedef struct {
   double *factor;
   /* [width n] */
   double *scratch;
-  sd_sum *sum;
-  void *sum_ctx;
+  sd_world world;
 } sd_waves;
 
 /* As of sd_precondition_kind, with c->box. c->n are the spheres of this rank, or with parts those
- * of all ranks on each; c->sum adds the ranks' shares of G here and of Z^T B r in every
+ * of all ranks on each; c->world adds the ranks' shares of G here and of Z^T B r in every
  * application. Clumps (c->clumps) may be none. */
-sd_status sd_waves_make(sd_waves *p, const sd_precondition_case *c);
+sd_status sd_waves_make(void *waves, const sd_precondition_case *c);
 
-void sd_waves_free(sd_waves *p);
+void sd_waves_free(void *waves);
 
 /* z = P r (this part's share) in the signature of sd_precondition: ctx is an sd_waves. */
 sd_status sd_waves_apply(void *ctx, const double *r, double *z);

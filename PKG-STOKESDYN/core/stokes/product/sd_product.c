@@ -30,10 +30,10 @@ static double *reserve(sd_packed *p, long doubles)
   return (double *) (((uintptr_t) p->memory + 63) & ~(uintptr_t) 63);
 }
 
-/* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2,
- * because the first guess of a root may be in single precision. Spheres so small or so far away
- * that their squares leave its range: plain C, not scaled. */
-static int fits(sd_packed *p)
+/* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2.
+ * Returns whether the first guess of a root may then be in single precision: squares of spheres so
+ * small or so far away that they leave its range want plain C. */
+static int find_scale(sd_packed *p)
 {
   const double *a = p->spheres.a;
   double largest = 0.0, smallest = INFINITY, far = 0.0;
@@ -50,6 +50,7 @@ static int fits(sd_packed *p)
       far = fmax(far, c);
     }
   }
+  p->scale = 1.0;
   if (!sound || !(largest > 0.0) || !(largest < INFINITY)) return 0;
   const int exponent = -ilogb(largest);
   if (abs(exponent) > 1000) return 0;
@@ -78,9 +79,7 @@ static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_
   p->n = n;
   p->width = width;
   isa = sd_isa_of(isa);
-  /* images in vectors have no taper */
-  if (!fits(p) || (law->wall.sign && law->taper != SD_TAPER_NONE)) isa = SD_ISA_PLAIN;
-  if (isa == SD_ISA_PLAIN) p->scale = 1.0;
+  if (!find_scale(p)) isa = SD_ISA_PLAIN;
   const struct sd_kernels *kernels = SD_KERNELS_OF(sd_product, plain, isa);
   p->kernel = width == 6 ? &kernels->torques : &kernels->forces;
   kernels = SD_KERNELS_OF(sd_wall, plain, isa);

@@ -59,9 +59,8 @@ typedef struct {
 
 /* --- the product ---------------------------------------------------------------------------------
  * Kernels on a copy of the spheres in the order that they read, made once per solve; the best that
- * the processor has are taken at run time (sd_isa.h). SD_ISA_PLAIN is plain C, pair by pair by the
- * formulas of sd_tensor.h: for other compilers, for lengths beyond the range of the vector kernels,
- * and to compare those with.
+ * the processor has are taken at run time (sd_isa.h). SD_ISA_PLAIN is for lengths beyond the range of
+ * vectors, whose roots begin in single precision.
  * Relative error of a pair's block: 1e-15. The order of summation is fixed: same input, same
  * instruction set, same bits.
  *

@@ -18,8 +18,7 @@ struct sd_kernels {
   struct sd_kernel forces, torques;
 };
 
-/* In vectors, and in plain C: sd_product_plain.c. sd_wall: what images add, a sphere's own among
- * them */
+/* sd_wall: what images add, a sphere's own among them */
 SD_KERNEL_TABLES(struct sd_kernels, sd_product);
 SD_KERNEL_TABLES(struct sd_kernels, sd_wall);
 

@@ -1,38 +1,6 @@
 /* Kernels of the fast product. The block of a pair (sd_tensor_lanes.h) is the same for both of its
  * spheres: the symmetric kernels compute it once. */
-#include "sd_product_internal.h"
-
-#if SD_LANES > 1 /* sd_product_plain.c has its own */
 #include "sd_product_loops.h"
-#include "sd_tensor_lanes.h"
-
-/* The law of a product. The kernels of forces have a copy for this one as a constant: a branch on
- * the law, though it always goes the same way, would cost them 4 %. */
-typedef struct {
-  sd_tensor tensor;
-  sd_taper taper;
-  vec inverse_range;
-} law;
-
-static const law rpy = {SD_TENSOR_RPY, SD_TAPER_NONE, {0.0}};
-
-INLINE law law_of(const sd_packed *p)
-{
-  return (law){p->law.tensor, p->law.taper, all(1.0 / p->law.range)};
-}
-
-static int is_rpy(const sd_packed *p)
-{
-  return p->law.tensor == rpy.tensor && p->law.taper == rpy.taper;
-}
-
-/* sd_taper_factor at the distance whose square is r2 */
-INLINE vec taper_of(const law *w, vec r2)
-{
-  const vec q = root(r2) * w->inverse_range, s = larger(all(1.0) - q, all(0.0));
-  if (w->taper == SD_TAPER_WENDLAND) return (s * s) * (s * s) * (all(1.0) + all(4.0) * q);
-  return s * s * (all(1.0) + all(0.5) * q);
-}
 
 /* f and h of the force. squares = a_i^2 + a_j^2 */
 INLINE void forces_block(const law *w, vec r2, vec ai, vec aj, vec squares, vec *f, vec *h)
@@ -64,7 +32,7 @@ INLINE void torques_block(const law *w, vec r2, vec ai, vec aj, vec squares, gra
   }
 }
 
-/* Lanes of the columns j ... j + LANES - 1 that are column i itself take no part. */
+/* The lane in which a sphere meets itself takes no part. */
 NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
 {
   const yes_no self = (vec) LANEWISE(NUMBER, 0) == all((double) lane);
@@ -72,201 +40,45 @@ NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
   *h = where(self, all(0.0), *h);
 }
 
-/* Two targets, i and i + 1, against the vectors of sources from j0 to j1: what is loaded serves
- * twice. both: the sources receive from the targets as well. */
-INLINE void tile_by(const law *w, int both, const sd_packed *p, int i, int j0, int j1)
+INLINE void add_forces(const law *w, int both, int self, const place *i, const place *j,
+                       const vec *F, const vec *G, vec *u, vec *v)
 {
-  const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
-  const double *restrict p0 = p->f[0], *restrict p1 = p->f[1], *restrict p2 = p->f[2];
-  double *restrict q0 = p->u[0], *restrict q1 = p->u[1], *restrict q2 = p->u[2];
-  vec x[2], y[2], z[2], a[2], F0[2], F1[2], F2[2], u0[2], u1[2], u2[2];
-#pragma GCC unroll 2
-  for (int t = 0; t < 2; t++) {
-    x[t] = all(px[i + t]);
-    y[t] = all(py[i + t]);
-    z[t] = all(pz[i + t]);
-    a[t] = all(pa[i + t]);
-    F0[t] = all(p0[i + t]);
-    F1[t] = all(p1[i + t]);
-    F2[t] = all(p2[i + t]);
-    u0[t] = u1[t] = u2[t] = all(0.0);
+  const vec dx = i->x - j->x, dy = i->y - j->y, dz = i->z - j->z;
+  const vec r2 = dx * dx + dy * dy + dz * dz;
+  vec f, h;
+  forces_block(w, r2, i->a, j->a, i->a * i->a + j->a * j->a, &f, &h);
+  if (self >= 0 && self < LANES) leave_out_self(self, &f, &h);
+  const vec c = h * (dx * G[0] + dy * G[1] + dz * G[2]);
+  u[0] = (u[0] + f * G[0]) + c * dx;
+  u[1] = (u[1] + f * G[1]) + c * dy;
+  u[2] = (u[2] + f * G[2]) + c * dz;
+  if (!both) return;
+  const vec e = h * (dx * F[0] + dy * F[1] + dz * F[2]);
+  v[0] = (v[0] + f * F[0]) + e * dx;
+  v[1] = (v[1] + f * F[1]) + e * dy;
+  v[2] = (v[2] + f * F[2]) + e * dz;
+}
+
+/* Seen from the source, r is -r and the two cross products change places. */
+INLINE void add_torques(const law *w, int both, int self, const place *i, const place *j,
+                        const vec *F, const vec *G, vec *u, vec *v)
+{
+  const vec dx = i->x - j->x, dy = i->y - j->y, dz = i->z - j->z;
+  const vec r2 = dx * dx + dy * dy + dz * dz;
+  grand b;
+  torques_block(w, r2, i->a, j->a, i->a * i->a + j->a * j->a, &b);
+  if (self >= 0 && self < LANES) {
+    vec f = b.f, k = b.k; /* the others are 0 or multiply r */
+    leave_out_self(self, &f, &k);
+    b.f = f;
+    b.k = k;
   }
-  for (int j = j0; j < j1; j += LANES) {
-    const vec xj = load(px + j), yj = load(py + j), zj = load(pz + j), aj = load(pa + j);
-    const vec G0 = load(p0 + j), G1 = load(p1 + j), G2 = load(p2 + j), aj2 = aj * aj;
-    vec v0, v1, v2;
-    if (both) {
-      v0 = load(q0 + j);
-      v1 = load(q1 + j);
-      v2 = load(q2 + j);
-    }
-#pragma GCC unroll 2
-    for (int t = 0; t < 2; t++) {
-      const vec dx = x[t] - xj, dy = y[t] - yj, dz = z[t] - zj;
-      const vec r2 = dx * dx + dy * dy + dz * dz;
-      vec f, h;
-      forces_block(w, r2, a[t], aj, a[t] * a[t] + aj2, &f, &h);
-      if (!both && i + t >= j && i + t < j + LANES) leave_out_self(i + t - j, &f, &h);
-      const vec c = h * (dx * G0 + dy * G1 + dz * G2);
-      u0[t] = (u0[t] + f * G0) + c * dx;
-      u1[t] = (u1[t] + f * G1) + c * dy;
-      u2[t] = (u2[t] + f * G2) + c * dz;
-      if (both) {
-        const vec e = h * (dx * F0[t] + dy * F1[t] + dz * F2[t]);
-        v0 = (v0 + f * F0[t]) + e * dx;
-        v1 = (v1 + f * F1[t]) + e * dy;
-        v2 = (v2 + f * F2[t]) + e * dz;
-      }
-    }
-    if (both) {
-      store(q0 + j, v0);
-      store(q1 + j, v1);
-      store(q2 + j, v2);
-    }
-  }
-#pragma GCC unroll 2
-  for (int t = 0; t < 2; t++) {
-    q0[i + t] += total(u0[t]);
-    q1[i + t] += total(u1[t]);
-    q2[i + t] += total(u2[t]);
-  }
+  grand_add(&b, b.cji, b.cij, dx, dy, dz, G, u);
+  if (both) grand_add(&b, -b.cij, -b.cji, dx, dy, dz, F, v);
 }
 
-INLINE void rpy_tile(int both, const sd_packed *p, int i, int j0, int j1)
-{
-  tile_by(&rpy, both, p, i, j0, j1);
-}
-
-INLINE void tile(int both, const sd_packed *p, int i, int j0, int j1)
-{
-  const law w = law_of(p);
-  tile_by(&w, both, p, i, j0, j1);
-}
-
-static void symmetric(const sd_packed *p, int part, int parts)
-{
-  if (is_rpy(p))
-    share_of_pairs(p, part, parts, CHUNK, 2, rpy_tile);
-  else
-    share_of_pairs(p, part, parts, CHUNK, 2, tile);
-}
-
-/* Row by row, LANES neighbours at a time. A neighbour has a row of its own, so its sums are its own
- * row's: nothing is written but u of the target, and no two targets meet. */
-INLINE void list_by(const law *w, const sd_packed *p, const sd_pairs *pairs)
-{
-  for (int i = 0; i < pairs->n; i++) {
-    const double *own = p->row + 8 * (long) i;
-    const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
-    const vec a2 = a * a;
-    vec u0 = all(0.0), u1 = u0, u2 = u0;
-    const long end = pairs->first[i + 1];
-    for (long k = pairs->first[i]; k < end; k += LANES) {
-      int rest[LANES];
-      const int *j = neighbors(pairs, k, end, p->n, rest);
-      vec at[4], F[4], f, h;
-      gather(p->row, 8, j, at);
-      gather(p->row + 4, 8, j, F);
-      const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
-      forces_block(w, dx * dx + dy * dy + dz * dz, a, aj, a2 + aj * aj, &f, &h);
-      const vec c = h * (dx * F[0] + dy * F[1] + dz * F[2]);
-      u0 = (u0 + f * F[0]) + c * dx;
-      u1 = (u1 + f * F[1]) + c * dy;
-      u2 = (u2 + f * F[2]) + c * dz;
-    }
-    /* w_i and the units are the caller's; there are no columns here, so the sums go to its u */
-    p->u[0][i] += total(u0);
-    p->u[1][i] += total(u1);
-    p->u[2][i] += total(u2);
-  }
-}
-
-static void list(const sd_packed *p, const sd_pairs *pairs)
-{
-  const law w = law_of(p);
-  if (is_rpy(p))
-    list_by(&rpy, p, pairs);
-  else
-    list_by(&w, p, pairs);
-}
-
-/* --- forces and torques --- */
-
-/* Target i against the vectors of sources from j0 to j1. both: the sources receive from the target
- * as well. */
-INLINE void grand_tile(int both, const sd_packed *p, int i, int j0, int j1)
-{
-  const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
-  const law w = law_of(p);
-  const vec x = all(px[i]), y = all(py[i]), z = all(pz[i]), a = all(pa[i]);
-  vec F[6], u[6];
-#pragma GCC unroll 6
-  for (int k = 0; k < 6; k++) {
-    F[k] = all(p->f[k][i]);
-    u[k] = all(0.0);
-  }
-  for (int j = j0; j < j1; j += LANES) {
-    const vec dx = x - load(px + j), dy = y - load(py + j), dz = z - load(pz + j);
-    const vec aj = load(pa + j), r2 = dx * dx + dy * dy + dz * dz;
-    vec G[6];
-    grand b;
-    torques_block(&w, r2, a, aj, a * a + aj * aj, &b);
-    if (!both && i >= j && i < j + LANES) {
-      vec f = b.f, k = b.k; /* the others are 0 or multiply r */
-      leave_out_self(i - j, &f, &k);
-      b.f = f;
-      b.k = k;
-    }
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) G[k] = load(p->f[k] + j);
-    grand_add(&b, b.cji, b.cij, dx, dy, dz, G, u);
-    if (both) {
-      vec v[6];
-#pragma GCC unroll 6
-      for (int k = 0; k < 6; k++) v[k] = load(p->u[k] + j);
-      /* seen from the source, r is -r and the two cross products change places */
-      grand_add(&b, -b.cij, -b.cji, dx, dy, dz, F, v);
-#pragma GCC unroll 6
-      for (int k = 0; k < 6; k++) store(p->u[k] + j, v[k]);
-    }
-  }
-#pragma GCC unroll 6
-  for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
-}
-
-static void grand_symmetric(const sd_packed *p, int part, int parts)
-{
-  share_of_pairs(p, part, parts, GRAND_CHUNK, 1, grand_tile);
-}
-
-static void grand_list(const sd_packed *p, const sd_pairs *pairs)
-{
-  const law w = law_of(p);
-  for (int i = 0; i < pairs->n; i++) {
-    const double *own = p->row + 8 * (long) i;
-    const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
-    const long end = pairs->first[i + 1];
-    vec u[6];
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) u[k] = all(0.0);
-    for (long k = pairs->first[i]; k < end; k += LANES) {
-      int rest[LANES];
-      const int *j = neighbors(pairs, k, end, p->n, rest);
-      vec at[4], F[7];
-      grand b;
-      gather(p->row, 8, j, at);
-      gather(p->row + 4, 8, j, F);
-      gather(p->torque_row, 4, j, F + 3);
-      const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
-      const vec r2 = dx * dx + dy * dy + dz * dz;
-      torques_block(&w, r2, a, aj, a * a + aj * aj, &b);
-      grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
-    }
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
-  }
-}
+DEFINE_LOOPS(symmetric, list, 3, MOST_TARGETS, 0, add_forces)
+DEFINE_LOOPS(grand_symmetric, grand_list, 6, 1, 0, add_torques)
 
 const struct sd_kernels SD_KERNELS(sd_product) = {{LANES, symmetric, list},
                                                   {LANES, grand_symmetric, grand_list}};
-#endif

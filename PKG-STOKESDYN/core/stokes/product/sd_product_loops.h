@@ -1,17 +1,89 @@
-/* The loops over pairs that the kernels of the product share. For sources only. */
+/* The loops over pairs that all kernels of the product share: a file of kernels says what one pair
+ * of vectors makes of forces (pair_sum), and ends in DEFINE_LOOPS for each width. For sources only. */
 #ifndef SD_PRODUCT_LOOPS_H
 #define SD_PRODUCT_LOOPS_H
 
-#include "sd_lanes.h"
 #include "sd_product_internal.h"
+#include "sd_tensor_lanes.h"
 
-/* Adds what the target i (and, for some kernels, those after it) gets from the vectors of sources
- * j0 ... j1 - 1; both: and these from it */
-typedef void tile_sum(int both, const sd_packed *p, int i, int j0, int j1);
+/* The law of a product. All loops have a copy for RPY without taper as a constant: a branch on the
+ * law, though it always goes the same way, would cost those of forces 4 %. */
+typedef struct {
+  sd_tensor tensor;
+  sd_taper taper;
+  vec inverse_range;
+} law;
 
-/* Sources are taken in chunks that stay in the first-level cache while all targets pass. With
- * torques: sixteen columns of so many spheres are 16 KiB, half of it. */
+static const law rpy = {.tensor = SD_TENSOR_RPY, .taper = SD_TAPER_NONE};
+
+static int is_rpy(const sd_packed *p)
+{
+  return p->law.tensor == rpy.tensor && p->law.taper == rpy.taper;
+}
+
+static inline law law_of(const sd_packed *p)
+{
+  return (law){p->law.tensor, p->law.taper, all(1.0 / p->law.range)};
+}
+
+/* sd_taper_factor at the distance whose square is r2 */
+INLINE vec taper_of(const law *w, vec r2)
+{
+  const vec q = root(r2) * w->inverse_range, s = larger(all(1.0) - q, all(0.0));
+  if (w->taper == SD_TAPER_WENDLAND) return (s * s) * (s * s) * (all(1.0) + all(4.0) * q);
+  return s * s * (all(1.0) + all(0.5) * q);
+}
+
+typedef struct {
+  vec x, y, z, a;
+} place;
+
+/* A target i in all lanes and a vector of sources j: u += what the target gets of their forces G;
+ * both: v += what they get of its F. self: the lane in which the source is the target, any other
+ * number: none. F, G, u, v: [width] */
+typedef void pair_sum(const law *w, int both, int self, const place *i, const place *j,
+                      const vec *F, const vec *G, vec *u, vec *v);
+
+/* Sources are taken in chunks that stay in the first-level cache while all targets pass: sixteen
+ * columns, those with torques, of so many spheres are 16 KiB, half of it. */
 enum { CHUNK = 256, GRAND_CHUNK = 128 };
+/* Targets at a time: what is loaded serves so often. With torques the registers are full with one. */
+enum { MOST_TARGETS = LANES > 1 ? 2 : 1 };
+
+/* Targets from i on against the vectors of sources from j0 to j1 */
+INLINE void tile(int width, int targets, pair_sum *add, const law *w, int both, const sd_packed *p,
+                 int i, int j0, int j1)
+{
+  const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
+  place target[MOST_TARGETS];
+  vec F[MOST_TARGETS][6], u[MOST_TARGETS][6], G[6], v[6];
+#pragma GCC unroll 2
+  for (int t = 0; t < targets; t++) {
+    target[t] = (place){all(px[i + t]), all(py[i + t]), all(pz[i + t]), all(pa[i + t])};
+#pragma GCC unroll 6
+    for (int k = 0; k < width; k++) {
+      F[t][k] = all(p->f[k][i + t]);
+      u[t][k] = all(0.0);
+    }
+  }
+  for (int j = j0; j < j1; j += LANES) {
+    const place source = {load(px + j), load(py + j), load(pz + j), load(pa + j)};
+#pragma GCC unroll 6
+    for (int k = 0; k < width; k++) {
+      G[k] = load(p->f[k] + j);
+      if (both) v[k] = load(p->u[k] + j);
+    }
+#pragma GCC unroll 2
+    for (int t = 0; t < targets; t++)
+      add(w, both, both ? -1 : i + t - j, target + t, &source, F[t], G, u[t], v);
+#pragma GCC unroll 6
+    for (int k = 0; k < width && both; k++) store(p->u[k] + j, v[k]);
+  }
+#pragma GCC unroll 2
+  for (int t = 0; t < targets; t++)
+#pragma GCC unroll 6
+    for (int k = 0; k < width; k++) p->u[k][i + t] += total(u[t][k]);
+}
 
 /* Groups of LANES columns: does the pair of a group with any later one belong to this part? In
  * turn, there and back, so that the sums of (groups - I) over a part's groups are equal. */
@@ -24,37 +96,83 @@ INLINE int mine(int group, int part, int parts)
 /* All pairs of this part, `targets` at a time. A group of LANES targets meets itself one-sidedly, as
  * its own lanes are among the sources, and every later group once for both: a block serves two
  * spheres, which is what makes this about 1.4 times as fast as a loop over all targets. */
-INLINE void share_of_pairs(const sd_packed *p, int part, int parts, int chunk, int targets,
-                           tile_sum *tile)
+INLINE void share_of_pairs(int width, int targets, pair_sum *add, const law *w, const sd_packed *p,
+                           int part, int parts)
 {
+  const int chunk = width == 6 ? GRAND_CHUNK : CHUNK;
   for (int c = 0; c < p->padded; c += chunk) {
     const int end = c + chunk < p->padded ? c + chunk : p->padded;
     for (int i = 0; i < end; i += LANES) {
       if (!mine(i / LANES, part, parts)) continue;
       const int from = i + LANES > c ? i + LANES : c;
       for (int t = i; t < i + LANES; t += targets) {
-        if (i >= c) tile(0, p, t, i, i + LANES);
-        if (from < end) tile(1, p, t, from, end);
+        if (i >= c) tile(width, targets, add, w, 0, p, t, i, i + LANES);
+        if (from < end) tile(width, targets, add, w, 1, p, t, from, end);
       }
     }
   }
 }
 
-/* The next LANES neighbours from k on; what is missing before end is the row that stands for
- * nothing. */
-INLINE const int *neighbors(const sd_pairs *pairs, long k, long end, int nothing, int *rest)
+/* LANES neighbours from k on; what is missing before end is the row that stands for nothing. From
+ * before the first: the sphere itself alone */
+INLINE const int *neighbors(const sd_pairs *pairs, int i, long k, int nothing, int *rest)
 {
-  const int *j = pairs->neighbor + k;
-  if (end - k >= LANES) return j;
-  for (int l = 0; l < LANES; l++) rest[l] = k + l < end ? j[l] : nothing;
+  const long begin = pairs->first[i], end = pairs->first[i + 1];
+  if (k >= begin && end - k >= LANES) return pairs->neighbor + k;
+  for (int l = 0; l < LANES; l++) {
+    if (k < begin)
+      rest[l] = l == 0 ? i : nothing;
+    else
+      rest[l] = k + l < end ? pairs->neighbor[k + l] : nothing;
+  }
   return rest;
 }
 
-/* One vector of nothing but the sphere itself */
-INLINE const int *itself(int i, int nothing, int *rest)
+/* Row by row, LANES neighbours at a time. A neighbour has a row of its own, so its sums are its own
+ * row's: nothing is written but u of the target, and no two targets meet. itself: a sphere meets
+ * itself too. */
+INLINE void rows_of_pairs(int width, int itself, pair_sum *add, const law *w, const sd_packed *p,
+                          const sd_pairs *pairs)
 {
-  for (int l = 0; l < LANES; l++) rest[l] = l == 0 ? i : nothing;
-  return rest;
+  for (int i = 0; i < pairs->n; i++) {
+    const double *own = p->row + 8 * (long) i;
+    const place target = {all(own[0]), all(own[1]), all(own[2]), all(own[3])};
+    const long end = pairs->first[i + 1];
+    vec u[6];
+#pragma GCC unroll 6
+    for (int k = 0; k < width; k++) u[k] = all(0.0);
+    for (long k = pairs->first[i] - (itself ? LANES : 0); k < end; k += LANES) {
+      int rest[LANES];
+      const int *j = neighbors(pairs, i, k, p->n, rest);
+      vec at[4], F[7]; /* rows have four numbers */
+      gather(p->row, 8, j, at);
+      gather(p->row + 4, 8, j, F);
+      if (width == 6) gather(p->torque_row, 4, j, F + 3);
+      const place source = {at[0], at[1], at[2], at[3]};
+      add(w, 0, -1, &target, &source, NULL, F, u, NULL);
+    }
+#pragma GCC unroll 6
+    for (int k = 0; k < width; k++) p->u[k][i] += total(u[k]);
+  }
 }
+
+/* symmetric and list of struct sd_kernel, with these names */
+#define DEFINE_LOOPS(symmetric, list, width, targets, itself, add)              \
+  static void symmetric(const sd_packed *p, int part, int parts)                \
+  {                                                                             \
+    const law w = law_of(p);                                                    \
+    if (is_rpy(p))                                                              \
+      share_of_pairs(width, targets, add, &rpy, p, part, parts);                \
+    else                                                                        \
+      share_of_pairs(width, targets, add, &w, p, part, parts);                  \
+  }                                                                             \
+  static void list(const sd_packed *p, const sd_pairs *pairs)                   \
+  {                                                                             \
+    const law w = law_of(p);                                                    \
+    if (is_rpy(p))                                                              \
+      rows_of_pairs(width, itself, add, &rpy, p, pairs);                        \
+    else                                                                        \
+      rows_of_pairs(width, itself, add, &w, p, pairs);                          \
+  }
 
 #endif

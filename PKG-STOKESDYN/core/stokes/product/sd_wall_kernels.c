@@ -2,35 +2,46 @@
  * spheres stand in the axes of the wall, at heights of at least their radii. A sphere meets its own
  * image as it meets any other, and no pair has another formula, so that there is no branch. The
  * functions of a pair serve both of its spheres, as c4 and c5, and i and j, change places. */
-#include "sd_product_internal.h"
-
-#if SD_LANES > 1 /* sd_product_plain.c has its own */
-#include "sd_lanes.h"
 #include "sd_product_loops.h"
 
-/* c1 ... c5 and what both widths share of them */
+/* c1 ... c5 and what both widths share of them; A and B: a^2/6, b^2/6 */
 typedef struct {
-  vec x, y, z, c[5], u2, u3, u5;
+  vec x, y, z, A, B, c[5], u2, u3, u5;
 } image;
 
-INLINE void image_of(vec dx, vec dy, vec g, vec h, vec A, vec B, image *m)
+/* All that is added is linear in c, u3 and u5, which so bear the taper: of the distance of the
+ * spheres. */
+INLINE void taper_image(const law *w, vec dz, image *m)
 {
+  const vec t = taper_of(w, m->x * m->x + m->y * m->y + dz * dz);
+  for (int k = 0; k < 5; k++) m->c[k] *= t;
+  m->u3 *= t;
+  m->u5 *= t;
+}
+
+INLINE void image_of(const law *w, const place *i, const place *j, image *m)
+{
+  const vec g = i->z, h = j->z, dx = i->x - j->x, dy = i->y - j->y;
+  const vec A = i->a * i->a * all(1.0 / 6.0), B = j->a * j->a * all(1.0 / 6.0);
   const vec z = g + h, u = inverse_root(dx * dx + dy * dy + z * z), u2 = u * u;
-  const vec u3 = u * u2, u5 = u3 * u2, w = A + B, q = A * B;
+  const vec u3 = u * u2, u5 = u3 * u2, sum = A + B, q = A * B;
   const vec e = all(12.0) * z * (A * h + B * g) + all(24.0) * q;
-  const vec k = all(120.0) * q * z * u2, kz = k * z, s = all(2.0) * (h * g + w); /* Q = k u^5 */
+  const vec k = all(120.0) * q * z * u2, kz = k * z, s = all(2.0) * (h * g + sum); /* Q = k u^5 */
   const vec v = all(12.0) * (B - A) * u5, two = all(2.0) * u3, Q = all(2.0) * k * u5;
   m->x = dx;
   m->y = dy;
   m->z = z;
+  m->A = A;
+  m->B = B;
   m->u2 = u2;
   m->u3 = u3;
   m->u5 = u5;
   m->c[0] = (e - kz) * u5 - (u + s * u3);
-  m->c[1] = all(2.0) * u + all(4.0) * w * u3 + all(48.0) * q * u5;
+  m->c[1] = all(2.0) * u + all(4.0) * sum * u3 + all(48.0) * q * u5;
   m->c[2] = (all(3.0) * s + u2 * (all(7.0) * kz - all(5.0) * e)) * u5 - u3;
   m->c[3] = g * (two + v) - Q;
   m->c[4] = h * (two - v) - Q;
+  if (w->taper != SD_TAPER_NONE) taper_image(w, g - h, m);
 }
 
 /* u [3] += image of F, seen from i by c4 and c5 as they are, from j with these exchanged and x, y
@@ -44,63 +55,14 @@ INLINE void image_add(const image *m, vec x, vec y, vec c4, vec c5, const vec *F
   u[2] = (u[2] + up) + (along * m->z - m->c[0] * F[2]);
 }
 
-/* Target i against the vectors of sources from j0 to j1. both: the sources receive from the target
- * as well. */
-INLINE void image_tile(int both, const sd_packed *p, int i, int j0, int j1)
+INLINE void add_images(const law *w, int both, int self, const place *i, const place *j,
+                       const vec *F, const vec *G, vec *u, vec *v)
 {
-  const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
-  const vec x = all(px[i]), y = all(py[i]), g = all(pz[i]), A = all(pa[i] * pa[i] / 6.0);
-  vec F[3], u[3];
-#pragma GCC unroll 3
-  for (int k = 0; k < 3; k++) {
-    F[k] = all(p->f[k][i]);
-    u[k] = all(0.0);
-  }
-  for (int j = j0; j < j1; j += LANES) {
-    const vec a = load(pa + j), B = a * a * all(1.0 / 6.0);
-    image m;
-    vec G[3];
-    image_of(x - load(px + j), y - load(py + j), g, load(pz + j), A, B, &m);
-#pragma GCC unroll 3
-    for (int k = 0; k < 3; k++) G[k] = load(p->f[k] + j);
-    image_add(&m, m.x, m.y, m.c[3], m.c[4], G, u);
-    if (!both) continue;
-#pragma GCC unroll 3
-    for (int k = 0; k < 3; k++) G[k] = load(p->u[k] + j);
-    image_add(&m, -m.x, -m.y, m.c[4], m.c[3], F, G);
-#pragma GCC unroll 3
-    for (int k = 0; k < 3; k++) store(p->u[k] + j, G[k]);
-  }
-#pragma GCC unroll 3
-  for (int k = 0; k < 3; k++) p->u[k][i] += total(u[k]);
-}
-
-static void symmetric(const sd_packed *p, int part, int parts)
-{
-  share_of_pairs(p, part, parts, CHUNK, 1, image_tile);
-}
-
-/* The sphere itself, then its neighbours */
-static void list(const sd_packed *p, const sd_pairs *pairs)
-{
-  for (int i = 0; i < pairs->n; i++) {
-    const double *own = p->row + 8 * (long) i;
-    const vec x = all(own[0]), y = all(own[1]), g = all(own[2]), A = all(own[3] * own[3] / 6.0);
-    const long begin = pairs->first[i], end = pairs->first[i + 1];
-    vec u[3] = {all(0.0), all(0.0), all(0.0)};
-    for (long k = begin - LANES; k < end; k += LANES) {
-      int rest[LANES];
-      const int *j = k < begin ? itself(i, p->n, rest) : neighbors(pairs, k, end, p->n, rest);
-      vec at[4], G[4];
-      image m;
-      gather(p->row, 8, j, at);
-      gather(p->row + 4, 8, j, G);
-      image_of(x - at[0], y - at[1], g, at[2], A, at[3] * at[3] * all(1.0 / 6.0), &m);
-      image_add(&m, m.x, m.y, m.c[3], m.c[4], G, u);
-    }
-#pragma GCC unroll 3
-    for (int k = 0; k < 3; k++) p->u[k][i] += total(u[k]);
-  }
+  image m;
+  (void) self;
+  image_of(w, i, j, &m);
+  image_add(&m, m.x, m.y, m.c[3], m.c[4], G, u);
+  if (both) image_add(&m, -m.x, -m.y, m.c[4], m.c[3], F, v);
 }
 
 /* --- forces and torques --- */
@@ -139,68 +101,20 @@ INLINE void image_add_grand(const image *m, const half_image *me, const half_ima
       all(0.5) * (d * F[5] + all(3.0) * m->u5 * m->z * r);
 }
 
-INLINE void grand_image_tile(int both, const sd_packed *p, int i, int j0, int j1)
+INLINE void add_grand_images(const law *w, int both, int self, const place *i, const place *j,
+                             const vec *F, const vec *G, vec *u, vec *v)
 {
-  const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
-  const vec x = all(px[i]), y = all(py[i]), g = all(pz[i]), A = all(pa[i] * pa[i] / 6.0);
-  vec F[6], u[6];
-#pragma GCC unroll 6
-  for (int k = 0; k < 6; k++) {
-    F[k] = all(p->f[k][i]);
-    u[k] = all(0.0);
-  }
-  for (int j = j0; j < j1; j += LANES) {
-    const vec a = load(pa + j), B = a * a * all(1.0 / 6.0), h = load(pz + j);
-    image m;
-    vec G[6];
-    image_of(x - load(px + j), y - load(py + j), g, h, A, B, &m);
-    const half_image of_i = half_of(&m, g - h, g, A), of_j = half_of(&m, h - g, h, B);
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) G[k] = load(p->f[k] + j);
-    image_add_grand(&m, &of_i, &of_j, m.x, m.y, m.c[3], m.c[4], G, u);
-    if (!both) continue;
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) G[k] = load(p->u[k] + j);
-    image_add_grand(&m, &of_j, &of_i, -m.x, -m.y, m.c[4], m.c[3], F, G);
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) store(p->u[k] + j, G[k]);
-  }
-#pragma GCC unroll 6
-  for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
+  image m;
+  (void) self;
+  image_of(w, i, j, &m);
+  const half_image of_i = half_of(&m, i->z - j->z, i->z, m.A);
+  const half_image of_j = half_of(&m, j->z - i->z, j->z, m.B);
+  image_add_grand(&m, &of_i, &of_j, m.x, m.y, m.c[3], m.c[4], G, u);
+  if (both) image_add_grand(&m, &of_j, &of_i, -m.x, -m.y, m.c[4], m.c[3], F, v);
 }
 
-static void grand_symmetric(const sd_packed *p, int part, int parts)
-{
-  share_of_pairs(p, part, parts, GRAND_CHUNK, 1, grand_image_tile);
-}
-
-static void grand_list(const sd_packed *p, const sd_pairs *pairs)
-{
-  for (int i = 0; i < pairs->n; i++) {
-    const double *own = p->row + 8 * (long) i;
-    const vec x = all(own[0]), y = all(own[1]), g = all(own[2]), A = all(own[3] * own[3] / 6.0);
-    const long begin = pairs->first[i], end = pairs->first[i + 1];
-    vec u[6];
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) u[k] = all(0.0);
-    for (long k = begin - LANES; k < end; k += LANES) {
-      int rest[LANES];
-      const int *j = k < begin ? itself(i, p->n, rest) : neighbors(pairs, k, end, p->n, rest);
-      vec at[4], G[7];
-      image m;
-      gather(p->row, 8, j, at);
-      gather(p->row + 4, 8, j, G);
-      gather(p->torque_row, 4, j, G + 3);
-      const vec B = at[3] * at[3] * all(1.0 / 6.0);
-      image_of(x - at[0], y - at[1], g, at[2], A, B, &m);
-      const half_image of_i = half_of(&m, g - at[2], g, A), of_j = half_of(&m, at[2] - g, at[2], B);
-      image_add_grand(&m, &of_i, &of_j, m.x, m.y, m.c[3], m.c[4], G, u);
-    }
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; k++) p->u[k][i] += total(u[k]);
-  }
-}
+DEFINE_LOOPS(symmetric, list, 3, 1, 1, add_images)
+DEFINE_LOOPS(grand_symmetric, grand_list, 6, 1, 1, add_grand_images)
 
 const struct sd_kernels SD_KERNELS(sd_wall) = {{LANES, symmetric, list},
                                                {LANES, grand_symmetric, grand_list}};
-#endif

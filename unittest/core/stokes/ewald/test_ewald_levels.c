@@ -81,6 +81,14 @@ static double error_of(const scene *s, const mixture *m, const double *u, const 
   return worst;
 }
 
+static void product(const sd_mobility_engine *engine, const sd_mobility_scene *scene, const double *F, double *u)
+{
+  sd_mobility m = {0};
+  assert_int_equal(sd_mobility_place(&m, engine, scene), SD_OK);
+  assert_int_equal(sd_mobility_apply(&m, F, u), SD_OK);
+  sd_mobility_free(&m);
+}
+
 static void open_boxes_agree_with_all_pairs(void **state)
 {
   (void) state;
@@ -89,20 +97,17 @@ static void open_boxes_agree_with_all_pairs(void **state)
     many.n *= 8; /* all pairs of few, or of spheres that are close, are cheaper than two grids */
 
     const scene s = make(m, 0, 3 + k);
-    const sd_law law = {.tensor = SD_TENSOR_RPY};
-    const sd_spheres spheres = {s.x, s.a, s.w};
     static double expected[6 * MOST], u[6 * MOST];
-    plain_all(&law, &spheres, m->n, m->width, s.F, expected);
+    const sd_law law = {.tensor = SD_TENSOR_RPY};
+    sd_mobility_scene scene = {.how = {.width = m->width, .law = law}, .n = m->n, .n_all = m->n, .spheres = {s.x, s.a, s.w}};
+    product(&sd_mobility_all_pairs, &scene, s.F, expected);
     for (int digits = 3; digits <= 9; digits += 6) {
       const sd_ewald how = choose(&s, m, pow(10.0, -digits), 2);
-      const sd_mobility_scene scene = {.how = {.width = m->width, .ewald = &how}, .n = m->n, .n_all = m->n, .spheres = spheres};
-      sd_mobility omega = {0};
-      assert_int_equal(sd_mobility_place(&omega, &sd_mobility_ewald, &scene), SD_OK);
-      assert_int_equal(sd_mobility_apply(&omega, s.F, u), SD_OK);
+      scene.how.ewald = &how;
+      product(&sd_mobility_ewald, &scene, s.F, u);
       const double error = error_of(&s, m, u, expected);
       if (getenv("STOKESDYN_SHOW")) printf("%s open 1e-%d: %.1e\n", m->what, digits, error);
       assert_true(error < 2.0 * pow(10.0, -digits));
-      sd_mobility_free(&omega);
     }
   }
 }

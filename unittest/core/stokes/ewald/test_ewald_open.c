@@ -3,6 +3,8 @@
 
 #include "plain.h"
 
+#include "sd_ewald_cost.h"
+
 enum { N = 150 };
 
 typedef struct {
@@ -87,10 +89,29 @@ static void open_boxes_agree_with_all_pairs(void **state)
   }
 }
 
+/* At any tolerance, with radii to 1 : 3 on two levels too */
+static void few_spheres_cost_more_than_all_pairs(void **state)
+{
+  (void) state;
+  const double all_pairs = (double) SD_EWALD_FEWEST * SD_EWALD_FEWEST;
+  double a[SD_EWALD_FEWEST];
+  for (int largest = 1; largest <= 3; largest += 2)
+    for (int digits = 1; digits <= 13; digits++) {
+      const double edge = 5.0 * largest;
+      const sd_ewald_box box = {.edge = {edge, edge, edge}};
+      sd_ewald how;
+      for (int i = 0; i < SD_EWALD_FEWEST; i++) a[i] = i % 20 ? 1.0 : largest;
+      const sd_ewald_sizes sizes = periodic_sizes(a, SD_EWALD_FEWEST);
+      if (sd_ewald_choose(&box, &sizes, 3, pow(10.0, -digits), &how) == SD_OK)
+        assert_true(sd_ewald_cost(&how) > all_pairs);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(open_boxes_agree_with_all_pairs),
+      cmocka_unit_test(few_spheres_cost_more_than_all_pairs),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

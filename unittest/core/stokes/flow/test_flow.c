@@ -3,6 +3,7 @@
 
 #include "sd_flow.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A fluid that turns like a rigid body, with a strain that must not show */
@@ -91,6 +92,47 @@ static void flow_of_a_cell_moves_its_edges(void **state)
   for (int k = 0; k < 9; k++) CHECK_NEAR(other[k], G[k], 1e-14);
 }
 
+/* u_p of a cubic flow about x, by its derivatives there */
+static double cubic(const double u, const double g[3], const double K[6], const double r[3])
+{
+  const double third = 0.7 * r[0] * r[0] * r[1] - 1.1 * r[0] * r[1] * r[2] + 0.4 * r[2] * r[2] * r[2];
+  return u + g[0] * r[0] + g[1] * r[1] + g[2] * r[2] +
+      0.5 * (K[0] * r[0] * r[0] + K[1] * r[1] * r[1] + K[2] * r[2] * r[2]) + K[3] * r[0] * r[1] +
+      K[4] * r[0] * r[2] + K[5] * r[1] * r[2] + third;
+}
+
+static void second_differences_of_a_cubic_flow_are_exact(void **state)
+{
+  (void) state;
+  const double g[3] = {0.3, -1.2, 0.8}, K[6] = {0.9, -0.4, 1.7, 0.6, -1.5, 0.35}, h = 0.37;
+  double bend[SD_FLOW_DIRECTIONS], H[6];
+  for (int e = 0; e < SD_FLOW_DIRECTIONS; e++) {
+    const double *d = sd_flow_around[e];
+    const double r[3] = {h * d[0], h * d[1], h * d[2]}, back[3] = {-r[0], -r[1], -r[2]};
+    bend[e] = cubic(1.3, g, K, r) + cubic(1.3, g, K, back) - 2.0 * 1.3;
+  }
+  sd_flow_curvature(bend, h, H);
+  for (int e = 0; e < 6; e++) CHECK_NEAR(H[e], K[e], 1e-13);
+}
+
+/* Faxen: the mean over a ball's surface. Of a quadratic flow it is that of the corners of a cube. */
+static void a_bent_flow_carries_a_sphere_with_its_mean(void **state)
+{
+  (void) state;
+  const double H[SD_FLOW_SECOND] = {0.9,  -0.4, 1.7, 0.6, -1.5, 0.35, 0.2, 0.8, -0.3,
+                                    -0.7, 1.2,  0.1, 1.4, -0.6, 0.5,  0.3, 0.9, -1.1};
+  const double r[3] = {0.6, -0.5, 1.1}, b = 0.8, corner = b / sqrt(3.0);
+  double out[3] = {0.5, 0.0, 0.0}, mean[3] = {0.5, 0.0, 0.0};
+  sd_flow_bend(H, r, b, out);
+  for (int k = 0; k < 8; k++) {
+    double x[3], u[3] = {0.0};
+    for (int d = 0; d < 3; d++) x[d] = r[d] + (k >> d & 1 ? corner : -corner);
+    sd_flow_bend(H, x, 0.0, u);
+    for (int d = 0; d < 3; d++) mean[d] += u[d] / 8.0;
+  }
+  for (int d = 0; d < 3; d++) CHECK_NEAR(out[d], mean[d], 1e-14);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -99,6 +141,8 @@ int main(void)
       cmocka_unit_test(given_vorticity_leaves_the_strain),
       cmocka_unit_test(slope_of_a_cubic_is_off_by_its_radius_squared),
       cmocka_unit_test(flow_of_a_cell_moves_its_edges),
+      cmocka_unit_test(second_differences_of_a_cubic_flow_are_exact),
+      cmocka_unit_test(a_bent_flow_carries_a_sphere_with_its_mean),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

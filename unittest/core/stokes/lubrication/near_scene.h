@@ -36,7 +36,8 @@ static inline sd_lubrication_scene near_where(const near_scene *q)
                                 .n_all = q->s.n,
                                 .spheres = {q->s.x, q->s.a, q->s.w},
                                 .body = q->body,
-                                .u = q->u};
+                                .u = q->u,
+                                .noisy = 1};
 }
 
 static inline void near_place(near_scene *q)

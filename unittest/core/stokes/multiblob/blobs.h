@@ -248,7 +248,8 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
       .spheres = {g->x, g->a, g->w},
       .body = s->side > 0.0 ? NULL : s->body,
       .drift = g->drift,
-      .world = {.ctx = g, .refresh = s->side > 0.0 ? blobs_refresh : NULL}};
+      .world = {.ctx = g, .refresh = s->side > 0.0 ? blobs_refresh : NULL},
+      .noisy = 1};
   assert_int_equal(sd_lubrication_place(&s->L, &scene), SD_OK);
   double *V = calloc((size_t) s->size, sizeof(double)),
          *f = malloc(sizeof(double) * (size_t) s->size);

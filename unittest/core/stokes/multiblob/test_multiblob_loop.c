@@ -1,163 +1,8 @@
 /* Suspensions of spheres and of rigid clumps as shells of points through the loop of
  * sd_bodies.h. */
-#include "blobs.h"
+#include "blob_flock.h"
 
 #include "table.h"
-
-#include "sd_bodies.h"
-#include "sd_multiblob_shape.h"
-#include "sd_tie.h"
-
-enum { MOST = 40, POINTS = 42 * MOST };
-
-/* Spheres, free or members of clumps of one shape, which come first */
-typedef struct {
-  blobs *s;
-  int clumps, m;
-  sd_shape clump;
-  sd_multiblob_shape lone, shape;
-  sd_packed packed;
-  periodic p;
-  sd_tie tie;
-  sd_multiblob_mobility M;
-  sd_faces faces;
-  char whole_shell[MOST];
-  sd_body body[MOST];
-  int whole[MOST], sphere[POINTS], row[POINTS];
-  double arm[3 * MOST], D[3 * POINTS], w[POINTS], pose[9 * MOST], centre[3 * MOST];
-  double V[6 * MOST], v[6 * MOST], exerted[6 * MOST], before[6 * MOST], l[3 * POINTS],
-      u[3 * POINTS];
-  sd_bodies_report report;
-} flock;
-
-static sd_status all_pairs(void *ctx, const double *f, double *u)
-{
-  sd_packed_share(ctx, 0, 1, f, u);
-  return SD_OK;
-}
-
-/* All free, at x */
-static flock *free_spheres(int points, int n, const double *x, const double *a)
-{
-  flock *f = calloc(1, sizeof(flock));
-  f->s = blobs_create(points, 1, n, x, a);
-  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, &f->lone), SD_OK);
-  return f;
-}
-
-static void flock_free(flock *f)
-{
-  sd_multiblob_shape_free(&f->lone);
-  sd_multiblob_shape_free(&f->shape);
-  sd_packed_free(&f->packed);
-  if (f->s->side > 0.0) periodic_free(&f->p);
-  sd_tie_free(&f->tie);
-  if (f->m) sd_shape_free(&f->clump);
-  blobs_free(f->s);
-  free(f);
-}
-
-/* Clumps of m unit spheres at X with poses R, centre [3]; free spheres none */
-static flock *clumps_at(int points, int clumps, int m, const double *X, const double *R,
-                        const double *centre)
-{
-  static const double ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
-  double x[3 * MOST], a[MOST];
-  flock *f = calloc(1, sizeof(flock));
-  assert_int_equal(sd_shape_create(m, X, ones, &f->clump), SD_OK);
-  for (int i = 0; i < clumps * m; i++) {
-    a[i] = 1.0;
-    sd_multiply3(R + 9 * (i / m), f->clump.x + 3 * (i % m), x + 3 * i);
-    for (int d = 0; d < 3; d++) x[3 * i + d] += centre[3 * (i / m) + d];
-  }
-  f->s = blobs_create(points, 1, clumps * m, x, a);
-  f->clumps = clumps, f->m = m;
-  memcpy(f->pose, R, sizeof(double) * 9 * (size_t) clumps);
-  memcpy(f->centre, centre, sizeof(double) * 3 * (size_t) clumps);
-  assert_int_equal(sd_multiblob_shape_create(&f->s->m, &f->clump, &f->shape), SD_OK);
-  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, &f->lone), SD_OK);
-  for (int i = 0; i < clumps * m; i++) {
-    f->s->mask[i] = f->shape.mask[i % m];
-    f->s->body[i] = 1 + i / m;
-    double pose[9];
-    sd_multiblob_shape_stand(&f->shape, R + 9 * (i / m), pose, f->s->turn + 9 * i);
-    memcpy(f->pose + 9 * (i / m), pose, sizeof pose);
-  }
-  return f;
-}
-
-/* The bodies for the core; tolerance: of the engine in a cube */
-static sd_bodies place(flock *f, double side, double tolerance)
-{
-  blobs *s = f->s;
-  const sd_law law = {.tensor = SD_TENSOR_RPY};
-  const int own = s->m.n, points = own * s->n;
-  for (int k = 0; k < 3 * s->n && side > 0.0; k++) s->x[k] -= side * floor(s->x[k] / side);
-  if (!s->r) blobs_expand(s);
-  f->M = (sd_multiblob_mobility){
-      .model = &s->m, .spheres = {s->x, s->a, s->turn, s->mask, s->n}, .w = s->w, .r = s->r};
-  for (int k = 0; k < points; k++) f->w[k] = 1.0;
-  if (side > 0.0) {
-    sd_ewald split;
-    const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
-    const sd_ewald_sizes sizes = periodic_sizes(s->b, points);
-    assert_int_equal(sd_ewald_choose(&box, &sizes, 3, tolerance, &split), SD_OK);
-    periodic_place(&f->p, s->at, s->b, NULL, points, 3, &split);
-    s->side = side;
-    f->M.pairs = sd_mobility_apply, f->M.pairs_ctx = &f->p.omega;
-  } else {
-    const sd_spheres spheres = {s->at, s->b, f->w};
-    assert_int_equal(sd_packed_all(&f->packed, SD_ISA_BEST, &law, &spheres, points, 3), SD_OK);
-    f->M.pairs = all_pairs, f->M.pairs_ctx = &f->packed;
-  }
-  int bodies = 0;
-  for (int i = 0; i < s->n; i += f->m ? f->m : 1, bodies++) {
-    const sd_multiblob_shape *shape = f->m ? &f->shape : &f->lone;
-    f->body[bodies] = (sd_body){
-        &shape->points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, f->m ? 1.0 : s->a[i], 1.0, f->row + own * i};
-    if (f->m) memcpy(f->body[bodies].R, f->pose + 9 * bodies, 9 * sizeof(double));
-    for (int k = 0; k < shape->points.m; k++) f->row[own * i + k] = own * i + shape->row[k];
-    for (int k = i; k < i + shape->spheres; k++) {
-      f->whole[k] = bodies;
-      for (int d = 0; d < 3 && f->m; d++)
-        f->arm[3 * k + d] = s->x[3 * k + d] - f->centre[3 * bodies + d];
-    }
-  }
-  for (int k = 0; k < points; k++) {
-    f->sphere[k] = k / own;
-    for (int d = 0; d < 3; d++) f->D[3 * k + d] = s->b[k] > 0.0 ? 6.0 * SD_PI * s->b[k] : 1.0;
-  }
-  for (int i = 0; i < s->n; i++) f->whole_shell[i] = (s->mask[i] & SD_MULTIBLOB_WHOLE) != 0;
-  f->faces = (sd_faces){own, f->lone.faces, s->turn, f->whole_shell};
-  return (sd_bodies){.shaped = bodies,
-                     .body = f->body,
-                     .spheres = {s->n, 6, f->whole, f->arm},
-                     .points = {points, 3, f->sphere, s->r},
-                     .faces = &f->faces,
-                     .D = f->D,
-                     .apply = sd_multiblob_apply,
-                     .apply_ctx = &f->M};
-}
-
-static void tie_with_films(flock *f, sd_bodies *A)
-{
-  blobs *s = f->s;
-  s->R = calloc((size_t) s->size * (size_t) s->size, sizeof(double));
-  blobs_add_films(s, 1.0, NULL);
-  f->tie.L = &s->L;
-  A->tie = &f->tie;
-}
-
-static sd_status move(flock *f, const sd_bodies *A, const double *F, int warm, double tolerance)
-{
-  const sd_bodies_problem problem = {f->u, F, NULL, warm, tolerance, 200};
-  const sd_bodies_motion motion = {f->l, f->before, f->V, f->v, f->exerted};
-  double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(A));
-  for (long j = 0; j < sd_bodies_work(A); j++) work[j] = NAN; /* nobody may read it */
-  const sd_status status = sd_bodies_solve(A, &problem, &motion, work, &f->report);
-  free(work);
-  return status;
-}
 
 static double off_by(const double *v, const double *w, int n)
 {
@@ -175,13 +20,13 @@ static void lone_sphere(void **state)
   (void) state;
   const double x[3] = {1, 2, 3}, a = 0.7, F[6] = {0.3, -1, 2, 0.2, 0.4, -0.5};
   for (int points = 12; points <= 42; points += 30) {
-    flock *f = free_spheres(points, 1, x, &a);
+    blob_flock *f = free_spheres(points, 1, x, &a);
     const sd_bodies A = place(f, 0.0, 0.0);
     assert_int_equal(move(f, &A, F, 0, 1e-10), SD_OK);
     for (int e = 0; e < 6; e++)
       CHECK_NEAR(f->V[e], F[e] / (e < 3 ? 6.0 * SD_PI * a : 8.0 * SD_PI * a * a * a), 1e-10);
     assert_true(f->report.products <= 2);
-    flock_free(f);
+    blob_flock_free(f);
   }
 }
 
@@ -209,7 +54,7 @@ static void loop_is_dense_algebra(void **state)
     for (int d = 0; d < 3; d++) x[3 * i + d] = 2.1 * (i >> d & 1);
     for (int e = 0; e < 6; e++) F[6 * i + e] = uniform(&seed, -1, 1);
   }
-  flock *f = free_spheres(12, 8, x, a);
+  blob_flock *f = free_spheres(12, 8, x, a);
   sd_bodies A = place(f, 0.0, 0.0);
   tie_with_films(f, &A);
   assert_int_equal(move(f, &A, F, 0, 1e-10), SD_OK);
@@ -223,7 +68,7 @@ static void loop_is_dense_algebra(void **state)
   CHECK_NEAR(off_by(f->V, V, 48), 0.0, 1e-8);
   for (int i = 0; i < 48; i++) CHECK_NEAR(f->exerted[i], F[i], 1e-8);
   blobs_free(s);
-  flock_free(f);
+  blob_flock_free(f);
 }
 
 /* Random spheres at a volume fraction of 0.45 to 1e-3: products under weight and unlike forces,
@@ -242,7 +87,7 @@ static void products_in_a_suspension(void **state)
           sqrt(-2.0 * log(uniform(&seed, 0, 1))) * cos(2.0 * SD_PI * uniform(&seed, 0, 1));
   }
   for (int films = 0; films < 2; films++) {
-    flock *f = free_spheres(12, n, x, NULL);
+    blob_flock *f = free_spheres(12, n, x, NULL);
     sd_bodies A = place(f, side, 1e-6);
     if (films) tie_with_films(f, &A);
     for (int load = 0; load < 2; load++) {
@@ -256,7 +101,7 @@ static void products_in_a_suspension(void **state)
       assert_true(f->report.products <= most[films][load]);
       assert_true(off < 1e-3);
     }
-    flock_free(f);
+    blob_flock_free(f);
   }
 }
 
@@ -270,7 +115,7 @@ static void warm_start_in_a_suspension(void **state)
   double x[3 * MOST], y[3 * MOST], side = 0.0, F[6 * MOST] = {0.0}, mean = 0.0, fastest = 0.0;
   const int n = positions_of(x, &side);
   for (int i = 0; i < n; i++) F[6 * i + 2] = -6.0 * SD_PI;
-  flock *f = free_spheres(12, n, x, NULL);
+  blob_flock *f = free_spheres(12, n, x, NULL);
   sd_bodies A = place(f, side, 1e-5);
   tie_with_films(f, &A);
   assert_int_equal(move(f, &A, F, 0, 1e-3), SD_OK);
@@ -281,8 +126,9 @@ static void warm_start_in_a_suspension(void **state)
   }
   for (int k = 0; k < 3; k++) {
     for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++) y[3 * i + d] = x[3 * i + d] + steps[k] / fastest * f->V[6 * i + d];
-    flock *g = free_spheres(12, n, y, NULL);
+      for (int d = 0; d < 3; d++)
+        y[3 * i + d] = x[3 * i + d] + steps[k] / fastest * f->V[6 * i + d];
+    blob_flock *g = free_spheres(12, n, y, NULL);
     sd_bodies B = place(g, side, 1e-5);
     tie_with_films(g, &B);
     memcpy(g->l, f->l, sizeof f->l);
@@ -290,9 +136,9 @@ static void warm_start_in_a_suspension(void **state)
     assert_int_equal(move(g, &B, F, 1, 1e-3), SD_OK);
     print_message("a step of %g radii: %d products\n", steps[k], g->report.products);
     assert_true(g->report.products <= most[k]);
-    flock_free(g);
+    blob_flock_free(g);
   }
-  flock_free(f);
+  blob_flock_free(f);
 }
 
 #define T 0.70710678118654752440
@@ -328,7 +174,7 @@ static void two_rigid_clumps(void **state)
       if (b == 0) assert_true(table_next(&t));
     }
     for (int points = 12; points <= 42; points += 30) {
-      flock *f = clumps_at(points, 2, m, shapes[shape].x, R, centre);
+      blob_flock *f = clumps_at(points, 2, m, shapes[shape].x, R, centre);
       sd_bodies A = place(f, 0.0, 0.0);
       tie_with_films(f, &A);
       assert_int_equal(move(f, &A, F, 0, 1e-7), SD_OK);
@@ -339,7 +185,7 @@ static void two_rigid_clumps(void **state)
       }
       double *most = &worst[points == 42][!weight];
       *most = fmax(*most, sqrt(off / all));
-      flock_free(f);
+      blob_flock_free(f);
     }
   }
   print_message("two clumps, worst per cent: 12 points %.2f, apart %.2f; 42 points %.2f, %.2f\n",

@@ -227,8 +227,8 @@ static void ranks_share_the_waves(void **state)
           c = *clumps_of(&k, RPY, (sd_spheres){s.x + 3 * begin, s.a + begin, s.w + begin}, n, width,
                          4);
           c.box = &box;
-          c.sum = tell;
-          c.sum_ctx = &t;
+          c.world.sum = tell;
+          c.world.ctx = &t;
           c.parts = parts;
           c.part = parts == 2 ? rank : 0;
           assert_int_equal(sd_waves_make(&p, &c), SD_OK);

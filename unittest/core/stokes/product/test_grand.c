@@ -4,50 +4,6 @@ enum { N = 30 };
 
 static const sd_law law = {.tensor = SD_TENSOR_RPY};
 
-static scene random_scene(uint64_t seed, double side)
-{
-  scene s = scene_create(N);
-  for (int i = 0; i < N; i++)
-    scene_set(&s, i, uniform(&seed, 0, side), uniform(&seed, 0, side), uniform(&seed, 0, side),
-              uniform(&seed, 0.2, 1.6), uniform(&seed, 0.5, 3.0));
-  s.a[7] = s.w[7] = s.drag[7] = 0.0; /* takes no part */
-  return s;
-}
-
-static void products_are_sums_of_grand_blocks(void **state)
-{
-  (void) state;
-  scene s = random_scene(4, 5.0);
-  const sd_spheres spheres = {s.x, s.a, s.w};
-  uint64_t seed = 2;
-  double F[6 * N], expected[6 * N] = {0}, all[6 * N], list[6 * N], scale = 0.0;
-  for (int i = 0; i < 6 * N; i++) F[i] = uniform(&seed, -1, 1);
-  for (int i = 0; i < N; i++)
-    for (int j = 0; j < N; j++) {
-      double r[3], M[36];
-      if (j == i || i == 7 || j == 7) continue;
-      for (int d = 0; d < 3; d++) r[d] = s.x[3 * i + d] - s.x[3 * j + d];
-      sd_tensor_grand(r, s.a[i], s.a[j], 1.0 / (s.w[i] * s.w[j]), M);
-      for (int p = 0; p < 6; p++)
-        for (int q = 0; q < 6; q++) expected[6 * i + p] += M[6 * p + q] * F[6 * j + q];
-    }
-  for (int i = 0; i < 6 * N; i++) scale = fmax(scale, fabs(expected[i]));
-  plain_all(&law, &spheres, N, 6, F, all);
-  sd_neighbors wide = {0}, close = {0};
-  assert_int_equal(sd_neighbors_cutoff(&wide, s.x, N, N, 100.0), SD_OK);
-  assert_int_equal(sd_neighbors_reserve(&close, N, wide.first[N]), SD_OK);
-  sd_pairs_within(&wide.pairs, &spheres, INFINITY, close.first, close.neighbor);
-  close.pairs.n = N;
-  plain_list(&law, &spheres, N, 6, &close.pairs, F, list);
-  for (int i = 0; i < 6 * N; i++) {
-    CHECK_NEAR(all[i], expected[i], 1e-14 * scale);
-    CHECK_NEAR(list[i], expected[i], 1e-14 * scale);
-  }
-  sd_neighbors_free(&wide);
-  sd_neighbors_free(&close);
-  scene_free(&s);
-}
-
 static sd_status apply_grand(void *ctx, const double *F, double *u)
 {
   scene *s = ctx;
@@ -110,7 +66,6 @@ static void lone_sphere(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(products_are_sums_of_grand_blocks),
       cmocka_unit_test(resistance_is_symmetric_and_dissipates),
       cmocka_unit_test(lone_sphere),
   };

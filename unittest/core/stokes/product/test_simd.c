@@ -1,4 +1,4 @@
-/* The packed product against the plain one, for every instruction set that this machine runs. */
+/* The packed product against the sum of the blocks of pairs (plain.h), for every instruction set that this machine runs. */
 #include "scene.h"
 
 #include <string.h>
@@ -69,8 +69,6 @@ static void check_width(const scene *s, double range, int m)
   for (int taper = SD_TAPER_NONE; taper <= SD_TAPER_SPHERICAL; taper++) {
     const sd_law law = {.tensor = s->kind, .taper = taper, .range = range};
     plain_all(&law, &spheres, s->n, m, F, expected);
-    plain_list(&law, &spheres, s->n, m, &list, F, u);
-    compare(s, m, F, u, expected, "plain list");
     for (size_t k = 0; k < sizeof(isas) / sizeof(isas[0]); k++) {
       char what[80];
       if (!sd_isa_supported(isas[k])) continue;
@@ -191,7 +189,7 @@ static void coincident_and_touching(void **state)
   scene_free(&s);
 }
 
-/* Micrometres in metres, kilometres, and lengths beyond single precision's range, where the plain product takes over. */
+/* Micrometres in metres, kilometres, and lengths beyond single precision's range, where plain C takes over. */
 static void any_unit_of_length(void **state)
 {
   (void) state;

@@ -1,0 +1,121 @@
+/* Brownian forces on rigid clumps and free spheres of one point each that feel each other: shells,
+ * films and all, without sampling. */
+#include "tied_flock.h"
+
+#include "sd_bodies_noise.h"
+#include "sd_lubrication_noise.h"
+
+typedef struct {
+  int spheres, unit;
+} unit_normals;
+
+static int unit_of_pair(void *ctx, int i, int at, double g[12])
+{
+  const unit_normals *u = ctx;
+  const int a = i < at ? i : at, b = i < at ? at : i, k = u->unit - 12 * (a * u->spheres + b);
+  for (int e = 0; e < 12; e++) g[e] = e == k;
+  return i < at;
+}
+
+/* Two clumps of an L and two free spheres */
+static flock *some(int shell)
+{
+  static const double X[9] = {0, 0, 0, 2, 0, 0, 0, 2, 0}, a[3] = {1, 1, 1};
+  flock *f = flock_create(3, X, a, shell, 2, 2, 1.3);
+  flock_scatter(f, 0.12, 5);
+  return f;
+}
+
+/* V [6 bodies] for forces F on the spheres */
+static void move_by(flock *f, const sd_bodies *A, const double *F, double *V)
+{
+  memcpy(f->F, F, sizeof(double) * 6 * (size_t) f->n);
+  assert_int_equal(flock_solve(f, A, 0, 1e-11, 200), SD_OK);
+  memcpy(V, f->all_V, sizeof(double) * 6 * (size_t) sd_bodies_count(A));
+}
+
+static void add_square(int size, const double *V, double *C)
+{
+  for (int p = 0; p < size; p++)
+    for (int q = 0; q < size; q++) C[size * p + q] += V[p] * V[q];
+}
+
+/* Covariance of the velocities less the mobility, by unit loads on each body, over the root of its
+ * diagonal. Rows of held bodies are 0 in both. */
+static double worst_of(flock *f, const sd_bodies *A)
+{
+  const int size = 6 * sd_bodies_count(A), n = f->n;
+  double *N = calloc((size_t) (2 * size * size), sizeof(double)), *C = N + size * size;
+  double w[6 * 8] = {0.0}, F[6 * 8], V[6 * 8], worst = 0.0;
+  sd_bodies_noise noise = {0};
+  sd_noise_report report;
+  assert_true(n <= 8);
+  for (int j = 0; j < size; j++) {
+    int first = 0;
+    while (f->whole[first] != j / 6) first++;
+    memset(F, 0, sizeof F);
+    F[6 * first + j % 6] = 1.0;
+    const double e[3] = {j % 6 == 0, j % 6 == 1, j % 6 == 2};
+    if (j % 6 < 3) sd_cross(e, f->arm + 3 * first, F + 6 * first + 3);
+    move_by(f, A, F, V);
+    for (int p = 0; p < size; p++) N[size * p + j] = V[p];
+  }
+  for (int j = 0; j < 6 * n; j++) {
+    w[j] = 1.0;
+    assert_int_equal(sd_bodies_draw(&noise, A, A->body, w, 1e-9, F, &report), SD_OK);
+    w[j] = 0.0;
+    move_by(f, A, F, V);
+    add_square(size, V, C);
+  }
+  for (unit_normals u = {n, 0}; A->tie && u.unit < 12 * n * n; u.unit++) {
+    memset(F, 0, sizeof F);
+    assert_int_equal(sd_lubrication_noise(A->tie->L, unit_of_pair, &u, F), SD_OK);
+    if (flock_distance(F, w, 1) == 0.0 && F[0] == 0.0 && F[1] == 0.0 && F[2] == 0.0) continue;
+    move_by(f, A, F, V);
+    add_square(size, V, C);
+  }
+  for (int p = 0; p < size; p++)
+    for (int q = 0; q < size; q++) {
+      const double scale = sqrt(N[(size + 1) * p] * N[(size + 1) * q]);
+      if (scale > 0.0) worst = fmax(worst, fabs(C[size * p + q] - N[size * p + q]) / scale);
+    }
+  sd_bodies_noise_free(&noise);
+  free(N);
+  return worst;
+}
+
+static void clumps_have_the_covariance_of_their_mobility(void **state)
+{
+  (void) state;
+  for (int shell = 1; shell <= 12; shell += 11)
+    for (int held = 0; held < 2; held++) {
+      flock *f = some(shell);
+      assert_int_equal(sd_body_shape_take_root(&f->body), SD_OK);
+      const sd_bodies A = flock_place(f, 6);
+      f->held[0] = f->held[3] = (char) held; /* a free sphere and a clump */
+      assert_true(worst_of(f, &A) < 1e-7);
+      flock_free(f);
+    }
+}
+
+static void films_take_their_part(void **state)
+{
+  (void) state;
+  flock *f = some(1);
+  assert_int_equal(sd_body_shape_take_root(&f->body), SD_OK);
+  tied_flock *t = tie_flock(f, 1e-3);
+  sd_bodies A = flock_place(f, 6);
+  A.tie = &t->tie;
+  assert_true(t->near.L.count > 0);
+  assert_true(worst_of(f, &A) < 1e-7);
+  untie(t);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(clumps_have_the_covariance_of_their_mobility),
+      cmocka_unit_test(films_take_their_part),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

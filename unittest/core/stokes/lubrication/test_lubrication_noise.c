@@ -1,0 +1,119 @@
+/* Random forces of films: their covariance is L, whichever end a pair is seen from and also through images,
+ * without sampling. */
+#include "near_scene.h"
+
+#include "multiblob/blobs.h"
+
+#include "sd_lubrication_noise.h"
+#include "sd_pair_noise.h"
+
+/* The first of a pair; of an image of a sphere, the one that stands higher */
+typedef struct {
+  const double *x;
+  int n_all, n, unit;
+  const int *owner;
+  double side;
+} unit_normals;
+
+/* Which pair it is: spheres a <= b and by which image they see each other; numbers of one are 1 */
+static int unit_of_pair(void *ctx, int i, int at, double g[12])
+{
+  const unit_normals *u = ctx;
+  const int j = at < u->n ? at : u->owner[at];
+  double r[3];
+  int image = 0, first = i <= j;
+  sd_minus(u->x + 3 * at, u->x + 3 * i, r);
+  for (int d = 0; d < 3 && u->side > 0.0; d++) {
+    const int step = (int) floor(r[d] / u->side + 0.5123);
+    if (i == j && step != 0) first = step > 0;
+    image = 3 * image + step;
+  }
+  if (i == j) image = abs(image);
+  if (!first) image = -image;
+  const int a = i < j ? i : j, b = i < j ? j : i;
+  const int pair = 27 * (u->n * a + b) + image + 13, k = u->unit - 12 * pair;
+  for (int e = 0; e < 12; e++) g[e] = e == k;
+  return i == at || first;
+}
+
+/* Covariance less L, over the largest of L */
+static double difference(const sd_lubrication *L, unit_normals u)
+{
+  const int N = 6 * L->n;
+  double *C = calloc((size_t) (N * N), sizeof(double)), *F = calloc(3 * (size_t) N, sizeof(double));
+  double *V = F + N, *out = V + N, off = 0.0, most = 0.0;
+  for (u.unit = 0; u.unit < 12 * 27 * u.n * u.n; u.unit++) {
+    memset(F, 0, sizeof(double) * (size_t) N);
+    assert_int_equal(sd_lubrication_noise(L, unit_of_pair, &u, F), SD_OK);
+    for (int p = 0; p < N; p++)
+      for (int q = 0; q < N && F[p] != 0.0; q++) C[N * p + q] += F[p] * F[q];
+  }
+  for (int q = 0; q < N; q++) {
+    V[q] = 1.0;
+    assert_int_equal(sd_lubrication_apply((void *) L, V, out), SD_OK);
+    V[q] = 0.0;
+    for (int p = 0; p < N; p++) {
+      off = fmax(off, fabs(C[N * p + q] - out[p]));
+      most = fmax(most, fabs(out[p]));
+    }
+  }
+  free(C), free(F);
+  return off / most;
+}
+
+static void of_points_that_share_what_they_resist(void **state)
+{
+  (void) state;
+  near_scene q = near_create(scene_create(4), 2.0, 1e-3);
+  scene_set(&q.s, 0, 0, 0, 0, 1.0, 1.3);
+  scene_set(&q.s, 1, 2.02, 0.1, 0, 1.0, 1.3);
+  scene_set(&q.s, 2, 1.0, 2.4, 0.7, 1.5, 1.3);
+  scene_set(&q.s, 3, 0.2, -0.4, 2.3, 0.9, 1.3);
+  near_place(&q);
+  const unit_normals u = {q.s.x, 4, 4, 0, NULL, 0.0};
+  assert_int_equal(q.L.count, 6);
+  assert_true(difference(&q.L, u) < 1e-7);
+  near_free(&q);
+}
+
+/* Two spheres so near to images of themselves and of each other that each pair is there several times;
+ * and what a wall makes spheres resist alone */
+static void of_shells_through_all_images(void **state)
+{
+  (void) state;
+  static const double x[6] = {0.3, 0.4, 0.5, 2.2, 1.5, 1.1}, a[2] = {1.0, 0.9};
+  blobs *s = blobs_create(12, 1, 2, x, a);
+  const double side = 3.0;
+  s->side = side;
+  s->R = calloc(144, sizeof(double));
+  blobs_add_films(s, 2.0, NULL);
+  blob_images *g = blobs_images(s, 2.0, NULL);
+  const unit_normals u = {g->x, g->count, 2, 0, g->owner, side};
+  assert_true(difference(&s->L, u) < 1e-8);
+  double B[36], E[6] = {0.0};
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) B[6 * p + q] = (p == q ? 4.0 + p : 0.0) + 0.1 * (p + q);
+  sd_lubrication_add_own(&s->L, 1, B, E);
+  assert_true(difference(&s->L, u) < 1e-8);
+  free(g);
+  blobs_free(s);
+}
+
+static void what_is_negative_has_no_root(void **state)
+{
+  (void) state;
+  const sd_pair_resistance R = {.XA = {1.0, 2.0, 1.0}};
+  const double d[3] = {0, 0, 1}, g[12] = {0, 0, 1};
+  double F[12] = {0.0};
+  assert_int_equal(sd_pair_noise(&R, d, g, F), SD_EINDEFINITE);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(of_points_that_share_what_they_resist),
+      cmocka_unit_test(of_shells_through_all_images),
+      cmocka_unit_test(what_is_negative_has_no_root),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,116 @@
+"""Scenes and runs of Brownian motion for the tests of fix stokes_dynamics/overdamped with a temperature."""
+import os
+
+import numpy as np
+
+from system import Spheres, dump_lines, input_lines, lmp, read_dump
+
+P6 = 6 * np.pi
+ETA, A, KT = 1.3, 0.7, 0.8
+UNIT = P6 * ETA * A
+SHORT = 1e-11 * A**2 * UNIT / KT    # nothing moves in such a step
+
+
+def noise(sim, options="", kT=KT, seed=12345, fix="move"):
+    return sim.commands(f"fix {fix} all stokes_dynamics/overdamped temperature {kT!r} {seed} {options}")
+
+
+def steps_of(sim, steps):
+    """Displacements [steps, n, 3] of single steps"""
+    out = []
+    for k in range(steps):
+        x = sim.x
+        sim.run(1, "pre no post no" if k else "post no")
+        out.append(sim.x - x)
+    return np.array(out)
+
+
+def copies(shape, count, spacing=12.0):
+    """So many of a shape, each a molecule of its own, on a lattice"""
+    k, side = np.arange(count), int(np.ceil(count**(1 / 3)))
+    origin = spacing * np.column_stack([k % side, k // side % side, k // side**2])
+    return Spheres((origin[:, None, :] + shape).reshape(-1, 3), A, molecule=np.repeat(k + 1, len(shape)))
+
+
+def check_covariance(d, expected, dt, sigmas=4.5):
+    """Samples d [n, k] of displacements against 2 kT dt times expected"""
+    C = d.T @ d / len(d) / (2 * KT * dt)
+    sigma = np.sqrt((np.outer(np.diag(expected), np.diag(expected)) + expected**2) / len(d))
+    assert np.abs((C - expected) / sigma).max() < sigmas
+
+
+TRIO = A * np.array([(0, 0, 0), (2.5, 0, 0), (0.4, 2.3, 0.6)])
+
+
+L_OF_FOUR = A * np.array([(0, 0, 0), (2, 0, 0), (4, 0, 0), (0, 2, 0)])
+
+
+def in_a_plane(simulation, tmp_path, spheres, words, dt):
+    """In a plane of an unbounded fluid: z is held, and the mobility of x and y has a divergence."""
+    side = spheres.x[:, :2].max() + 20.0
+    lines = input_lines(spheres, words, os.path.join(str(tmp_path), "plane.data"), fix=False, dt=dt, boundary="f f p",
+                        box=[(-20.0, side), (-20.0, side), (-0.5, 0.5)])
+    return simulation().commands(["dimension 2"] + lines)
+
+
+def scattered(n=40, side=18.0, seed=4):
+    """Spheres of several sizes that do not overlap by more than a tenth, and at last three clumps of four"""
+    rng, x, a = np.random.default_rng(seed), [], []
+    while len(x) < n:
+        p, r = rng.uniform(0, side, 3), rng.uniform(0.6, 1.0)
+        if all(np.linalg.norm((p - q + side / 2) % side - side / 2) > 0.9 * (r + b) for q, b in zip(x, a)):
+            x.append(p)
+            a.append(r)
+    return Spheres(x, a)
+
+
+def in_clumps():
+    spheres = copies(L_OF_FOUR, 9, 6.0)
+    spheres.x += 3.0
+    spheres.molecule[32:] = 0
+    return spheres
+
+
+MOVE = "fix move all stokes_dynamics/overdamped temperature {} {}"
+
+
+def script(folder, way, runs, newton="on", T="v_T", seed=7):
+    """way: boundary, scene, words of the pair style, and of the fix"""
+    boundary, make, words, options = way
+    lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary, newton=newton, dt=0.02,
+                        box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
+    return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2",
+                    (MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]) + options] + runs
+
+
+def end(folder, lines, ranks=1):
+    lmp(folder, lines, ranks)
+    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
+
+
+END = dump_lines("end.dump", every=20, columns="xu yu zu vx vy vz")
+
+
+def check_same(one, other, of_x, of_v):
+    assert np.abs(one - other)[:, :3].max() < of_x
+    assert np.abs(one - other)[:, 3:].max() < of_v
+
+
+def check_ranks(folder, way, of_x=1e-10, of_v=1e-10):
+    one = end(folder, script(folder, way, END + ["run 20"]))
+    for ranks, newton in ((2, "on"), (4, "off")):
+        check_same(end(folder, script(folder, way, END + ["run 20"], newton), ranks), one, of_x, of_v)
+    other = end(folder, script(folder, way, END + ["run 20"], seed=8))
+    still = end(folder, script(folder, way, END + ["run 20"], T="0"))
+    assert np.abs(other - one)[:, :3].max() > 0.1 and np.abs(still - one)[:, :3].max() > 0.1
+
+
+def check_pieces(folder, way, of_x=1e-10, of_v=1e-10):
+    """A run in two, and one that goes on from a restart file"""
+    whole = end(folder, script(folder, way, END + ["run 20"]))
+    check_same(end(folder, script(folder, way, END + ["run 7", "run 13"])), whole, of_x, of_v)
+    lmp(folder, script(folder, way, ["run 7", "write_restart half.restart"]))
+    again = script(folder, way, END + ["run 13"])
+    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
+    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
+    check_same(end(folder, again), whole, of_x, of_v)

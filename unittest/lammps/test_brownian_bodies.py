@@ -1,0 +1,161 @@
+"""Brownian motion of what sees each other as bodies: spheres as shells of points, clumps with shells, films, walls, held spheres.
+Covariance of one step against the mobility, Boltzmann's distribution, one run on several ranks and in pieces."""
+import numpy as np
+import pytest
+
+from brownian import A, ETA, KT, SHORT, UNIT, check_covariance, check_pieces, check_ranks, in_a_plane, noise, steps_of
+from system import Spheres
+
+INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
+TRIO = A * np.array([(0, 0, 0), (2.1, 0, 0), (0.4, 2.2, 0.6)])
+
+
+def mobility(make, count, size, share):
+    """[size, size] from velocities under unit forces; share [size, 3 n]: what of the atoms' is a number"""
+    N = np.zeros((size, size))
+    for k in range(size):
+        lines = []
+        for d in range(3):
+            parts = [f"{share[k, 3 * i + d]!r}*(id=={i + 1})" for i in range(count) if share[k, 3 * i + d]]
+            lines.append(f"variable load{d} atom {'+'.join(parts) or '0'}")
+        sim = make().commands(lines + ["fix push all addforce v_load0 v_load1 v_load2", "fix move all stokes_dynamics/overdamped"]).run(0)
+        N[:, k] = share @ sim.v.ravel()
+    return N
+
+
+def check_step(make, count, share, steps, options=""):
+    N = mobility(make, count, len(share), share)
+    d = steps_of(noise(make(), options), steps)
+    check_covariance(d.reshape(steps, -1) @ share.T, N, SHORT)
+
+
+SPHERES = np.eye(9)
+DUMBBELLS = A * np.array([(0, 0, 0), (0, 0, 2), (2.1, 0.2, 0), (2.2, 2.2, 0)])
+CENTRES = np.kron([(0.5, 0.5, 0, 0), (0, 0, 0.5, 0.5)], np.eye(3))
+
+
+@pytest.mark.parametrize("words, count", [("multiblob 12", 1200), ("multiblob 12 lubrication yes", 1200), ("rotation yes lubrication yes", 2000),
+                                          ("multiblob 12 lubrication yes wall zlo -0.8", 800)])
+def test_step_of_spheres_has_the_covariance_of_their_mobility(simulation, words, count):
+    check_step(lambda: simulation(Spheres(TRIO, A), f"{INF} {words}", fix=False, dt=SHORT), 3, SPHERES, count)
+
+
+@pytest.mark.parametrize("words", ["rigid_clumps yes shell 12", "rigid_clumps yes multiblob 12 lubrication yes"])
+def test_step_of_clumps_has_the_covariance_of_their_mobility(simulation, words):
+    check_step(lambda: simulation(Spheres(DUMBBELLS, A, molecule=[1, 1, 2, 2]), f"{INF} {words}", fix=False, dt=SHORT), 4, CENTRES, 1000)
+
+
+def test_step_in_a_periodic_box_has_the_covariance_of_the_mobility(simulation):
+    """Films through the faces of the box, too"""
+    x = TRIO + 0.1
+    make = lambda: simulation(Spheres(x % 3.2, A), f"{INF} multiblob 12 lubrication yes far_field_tolerance 1e-4", fix=False, dt=SHORT,
+                              boundary="p p p", box=[(0.0, 3.2)] * 3)
+    check_step(make, 3, SPHERES, 500)
+
+
+def test_held_spheres_stay_and_the_others_feel_it(simulation):
+    """The mobility beside spheres that are held is less than that beside free ones."""
+    make = lambda: simulation(Spheres(TRIO, A), f"{INF} multiblob 12 lubrication yes", fix=False, dt=SHORT).commands("group some id 2 3")
+    share = SPHERES[:3]
+    free = mobility(make, 3, 3, share)
+    N = np.zeros((3, 3))
+    for k in range(3):
+        sim = make().commands(["variable one atom id==1", f"fix push all addforce {' '.join('v_one' if d == k else '0' for d in range(3))}",
+                               "fix move all stokes_dynamics/overdamped held some"]).run(0)
+        N[:, k] = sim.v[0]
+    assert (np.linalg.eigvalsh(free - N) > 0.05 * free[0, 0]).all()
+    d = steps_of(noise(make(), "held some"), 1200)
+    assert (d[:, 1:] == 0).all()
+    check_covariance(d[:, 0], N, SHORT)
+
+
+def test_clumps_in_a_plane_stay_in_it(simulation, tmp_path):
+    """They turn about its normal, and their step has the covariance of their mobility in the plane."""
+    flat = DUMBBELLS[:, [0, 2, 1]] * (1, 1, 0)
+    make = lambda: in_a_plane(simulation, tmp_path, Spheres(flat, A, molecule=[1, 1, 2, 2]),
+                              f"{INF} rigid_clumps yes rotation yes", SHORT)
+    share = CENTRES[[0, 1, 3, 4]]
+    N = mobility(make, 4, 4, share)
+    d = steps_of(noise(make()), 1200)
+    assert (d[:, :, 2] == 0).all() and np.abs(d[:, 1] - d[:, 0]).max() > 0
+    check_covariance(d.reshape(len(d), -1) @ share.T, N, SHORT)
+
+
+# --- equilibrium ----------------------------------------------------------------------------------------------------------
+
+def boltzmann(k, r0):
+    """Mean and variance of a bond of energy k/2 (r - r0)^2 in units of kT"""
+    r = np.linspace(1e-3, 6, 60001)
+    p = r**2 * np.exp(-0.5 * k * (r - r0)**2)
+    mean = (p * r).sum() / p.sum()
+    return mean, (p * (r - mean)**2).sum() / p.sum()
+
+
+@pytest.mark.parametrize("words, runs", [("rotation yes lubrication yes", 400)])
+def test_bonds_between_spheres_with_films_have_boltzmanns_length(simulation, words, runs):
+    """Without the drift of the film the mean is 0.27 sigma too short."""
+    count, k = 8, 25 * KT / A**2
+    origin = np.array([(p, q, r) for p in (0, 30) for q in (0, 30) for r in (0, 30)], float)
+    x = (origin[:, None] + A * np.array([(0, 0, 0), (2.45, 0, 0)])).reshape(-1, 3)
+    spheres = Spheres(x, A, molecule=np.repeat(np.arange(count) + 1, 2)).chain_bonds()
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} {words}", fix=False, dt=0.1 * UNIT / k,
+                     box=[(-90.0, 120.0)] * 3)
+    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {2.45 * A!r}", "comm_modify cutoff 8"])
+    noise(sim).run(60)
+    lengths = []
+    for _ in range(runs):
+        sim.run(20, "pre no post no")
+        x = sim.x.reshape(-1, 2, 3)
+        lengths.append(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) / A)
+    mean, variance = boltzmann(25, 2.45)
+    r, n = np.array(lengths), runs * count * 0.6
+    assert (r.mean() - mean) / np.sqrt(variance) == pytest.approx(0, abs=4 / np.sqrt(n))
+    assert r.var() == pytest.approx(variance, rel=4 * np.sqrt(2 / n) + 0.01)
+
+
+# --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------------
+
+def close_spheres(n=14, side=18.0, seed=4):
+    """Some within the reach of films"""
+    rng, x, a = np.random.default_rng(seed), [], []
+    while len(x) < n:
+        p, r = rng.uniform(0, 7.0, 3), rng.uniform(0.7, 1.0)
+        if all(np.linalg.norm((p - q + side / 2) % side - side / 2) > 1.01 * (r + b) for q, b in zip(x, a)):
+            x.append(p)
+            a.append(r)
+    return Spheres((np.array(x) - 2.0) % side, a)
+
+
+# no two of its poses look alike, and so its shells stand the same after a restart
+CROOKED = A * np.array([(0, 0, 0), (2, 0, 0), (3, 1.74, 0), (0.3, 0.4, 1.95)])
+
+
+def in_few_clumps():
+    x = np.vstack([CROOKED, CROOKED[:, [1, 2, 0]] + (2.6, 2.6, 0), A * np.array([(-2.5, 0, 0), (-3, 2.3, 0)])])
+    return Spheres((x + (16.0, 3.0, 3.0)) % 18.0, A, molecule=[1] * 4 + [2] * 4 + [0, 0])
+
+
+def above_a_wall():
+    spheres = close_spheres(10)
+    spheres.x[:, 2] = 0.5 * spheres.x[:, 2] - 58.6
+    return spheres
+
+
+SHARP = "cut_off_distance inf visc 1.1 relative_tolerance 1e-12 far_field_tolerance 1e-4 max_iter 400"
+CLOSE = 1e-9, 1e-8    # of places in a box of 18 and of velocities of about 5, with films as good as their solve
+WAYS = {"shells": ("f f f", close_spheres, f"{SHARP} multiblob 12", ""),
+        "shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes", ""),
+        "clumps of shells": ("p p p", in_few_clumps, f"{SHARP} rigid_clumps yes multiblob 12 lubrication yes", ""),
+        "clumps with a shell": ("f f f", in_few_clumps, f"{SHARP} rigid_clumps yes shell 12", ""),
+        "above a wall": ("f f f", above_a_wall, f"{SHARP} rotation yes lubrication yes wall zlo EDGE", ""),
+        "films": ("p p p", close_spheres, f"{SHARP} rotation yes lubrication yes", "")}
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+def test_ranks_and_newton_do_not_matter(tmp_path, way):
+    check_ranks(tmp_path, way, *CLOSE)
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way):
+    check_pieces(tmp_path, way, *CLOSE)
