@@ -98,7 +98,7 @@ def main():
     speed, own = curve[at_rest, 1].mean(), lonely[at_rest, 1].mean()
     points = point_forces(together[0], own)
     v, v_exact = together[0, :, 4:], exact[0, :, 4:]
-    print(f"  speed {speed:.3f}, each alone {own:.4f}, point forces {points:.3f}; products a step {curve[:, 3].mean():.2f}")
+    print(f"  speed {speed:.3f}, each alone {own:.4f}, point forces {points:.3f}; products per step {curve[:, 3].mean():.2f}")
     print(f"picture: {out / 'falling_clumps.png'}\n")
     c = Checks()
     c.near("speed as all feel each other, in that of a lone sphere", speed, 14.55, 0.05)

@@ -83,7 +83,7 @@ def main():
     ratio = [np.interp(t, rows[1:, 1], rows[1:, 2]) / v for t, v in falling]
     with_inertia = step_inertia * end * 1e6 / 0.1
     print(f"  {len(whole[0][1])} spheres; {steps} steps, {computing:.0f} s of the processor for {end:.2f} s; it comes to the floor at {landed:.2f} s")
-    print(f"  with inertia {1e3 * step_inertia:.0f} ms a step of 0.1 us: {with_inertia / 86400:.1f} days; ratio {with_inertia / computing:.0f}")
+    print(f"  with inertia {1e3 * step_inertia:.0f} ms per step of 0.1 us: {with_inertia / 86400:.1f} days; ratio {with_inertia / computing:.0f}")
     for t, v, free in speeds:
         print(f"  {t:.2f} s: speed {np.interp(t, rows[1:, 1], rows[1:, 2]):.1f} um/s, point forces {v:.1f}, without floor {free:.1f}; lone {LONE:.3f}")
     print(f"  picture: {out / 'micron_floc.png'}\n")

@@ -9,7 +9,7 @@ Every velocity is compared with two values:
           pair_style stokes_dynamics must give
   exact   Stokes flow around the clump (no slip on its surface), data/clusters_exact.csv and data/chains_exact.csv: what the
           model approximates
-The ladder then repeats the twelve clumps with better models (torques, shells of 12, 42 and 162 points a sphere) and compares
+The ladder then repeats the twelve clumps with better models (torques, shells of 12, 42 and 162 points per sphere) and compares
 with exact, and with what the clump's own 6x6 resistance says.
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -262,7 +262,7 @@ def errors_of(level, done, ladder):
 def ladder_table(times, done, ladder):
     """Rows of text"""
     plain = next(iter(times.values()))[0]
-    rows = [["model of a sphere", "drag: worst %", "mean %", "velocity: worst %", "ns a sphere and step", "times Stokes drag",
+    rows = [["model of a sphere", "drag: worst %", "mean %", "velocity: worst %", "ns per sphere and step", "times Stokes drag",
              "solved once in"]]
     for name, (time_, solved) in times.items():
         level = name.split(",")[0].replace("shell ", "")
@@ -308,7 +308,7 @@ def draw_ladder(times, done, ladder, path):
                        textcoords="offset points", fontsize=9)
     right.set_xlim(10, 2e4)
     right.set_ylim(0.03, 30)
-    right.set_xlabel("time of the pair style, ns a sphere and step")
+    right.set_xlabel("time of the pair style, ns per sphere and step")
     right.set_ylabel("error of the drag: worst (mark) to mean, %")
     right.grid(alpha=0.3)
     right.set_title("Error against cost; filled: rigid_clumps yes")

@@ -291,7 +291,7 @@ def measure(say, name, data, exact, steps, options, wanted, ranks, boundary="f f
     good = [p for p in points if p[0] <= wanted and not p[4]]
     if good:
         best = min(good, key=lambda p: p[1])
-        say(f"  cheapest with all errors <= {wanted:g}: {best[1]:.3f} ms a step, error {best[0]:.1e}\n    {best[2]}")
+        say(f"  cheapest with all errors <= {wanted:g}: {best[1]:.3f} ms per step, error {best[0]:.1e}\n    {best[2]}")
         if ranks > 1:
             row("ranks", best[2], True, ranks)
     else:
@@ -315,7 +315,7 @@ def draw(path, results, wanted):
         axis.set(xscale="log", yscale="log", title=name, xlabel="largest of the three errors")
         axis.grid(alpha=0.3)
     for axis in axes[:, 0]:
-        axis.set_ylabel("CPU time, ms a step")
+        axis.set_ylabel("CPU time, ms per step")
     for axis in axes.flat[len(results):]:
         axis.axis("off")
     handles = [(seen[f], f) for f in FAMILY if f in seen]
@@ -445,7 +445,7 @@ def main():
             data = folder / "scene.data"
             write_data(data, x, a, v, molecule)
             kinds = list(settings(exact, molecule.any(), rigid, len(x), given.quick))
-            if len(x) > 2000:       # seconds a step: only what may be worth it
+            if len(x) > 2000:       # seconds per step: only what may be worth it
                 kinds = [k for k in kinds if k[0] == "cut-off" or not any(w in k[1] for w in
                          (" 1e-6", "warm_start no", " 40 ", "update_every 20"))]
             results.append((name, *measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))

@@ -28,7 +28,8 @@ static double all_points(const sd_field_grid *g)
  * holds as many sources as it would for a product of sqrt(n points) spheres, whose rule is known.
  * Points have radius 0 and stand for half of them, so that the rule does not take all radii for
  * equal; a_ref 0 makes a point's window a plain one. A point does not average over a sphere as a
- * sphere does, so the same splitting leaves it a larger error: 0.3 makes up for that. */
+ * sphere does, so the same splitting leaves it a larger error: 0.3 makes up for that. With torques the
+ * rule is stricter by 3, for the sake of angular velocities, which points do not have. */
 static sd_status choose(const sd_ewald_box *box, const sd_field_sources *s, const sd_field_grid *g,
                         double tolerance, sd_ewald *out)
 {
@@ -48,7 +49,8 @@ static sd_status choose(const sd_ewald_box *box, const sd_field_sources *s, cons
     all->squares = 0.5 * all->count * all->largest * all->largest;
     all->fourths = all->squares * all->largest * all->largest;
   }
-  const sd_status status = sd_ewald_choose(box, &sizes, s->T ? 6 : 3, 0.3 * tolerance, out);
+  const double tighter = s->T ? 0.9 : 0.3;
+  const sd_status status = sd_ewald_choose(box, &sizes, s->T ? 6 : 3, tighter * tolerance, out);
   out->a_ref = 0.0;
   return status;
 }
@@ -87,9 +89,11 @@ static double cost_of_split(const sd_ewald *e, const sd_field_sources *s, const 
 /* --- sources in an order, and as the kernels read them --- */
 
 /* One after the other those that are near each other, so that what they share stays in the cache: by
- * cells, along z fastest; side 0: as they come */
-static int sort_sources(sd_field *f, const sd_field_sources *s, double side)
+ * cells, along z fastest; range 0: as they come. Cells are wide across z, because the points around a
+ * column of them leave the cache before the next column comes. */
+static int sort_sources(sd_field *f, const sd_field_sources *s, double range)
 {
+  const double side[3] = {3.0 * range, 3.0 * range, 0.5 * range};
   if (!sd_reserve(&f->order, sizeof(int), 2 * (size_t) s->n, &f->order_room)) return 0;
   int *cell = f->order + s->n, cells[3];
   double lo[3], all = 1.0;
@@ -99,15 +103,15 @@ static int sort_sources(sd_field *f, const sd_field_sources *s, double side)
       lo[d] = fmin(lo[d], s->x[3 * i + d]);
       hi = fmax(hi, s->x[3 * i + d]);
     }
-    cells[d] = side > 0.0 ? 1 + (int) fmin(500.0, (hi - lo[d]) / side) : 1;
+    cells[d] = range > 0.0 ? 1 + (int) fmin(500.0, (hi - lo[d]) / side[d]) : 1;
     all *= cells[d];
   }
   int *first = calloc((size_t) all + 1, sizeof(int));
   if (!first) return 0;
   for (long i = 0; i < s->n; i++) {
     cell[i] = 0;
-    for (int d = 0; d < 3 && side > 0.0; d++) {
-      const double at = (s->x[3 * i + d] - lo[d]) / side;
+    for (int d = 0; d < 3 && range > 0.0; d++) {
+      const double at = (s->x[3 * i + d] - lo[d]) / side[d];
       cell[i] = cell[i] * cells[d] + (int) fmin(cells[d] - 1, at);
     }
     first[cell[i] + 1]++;

@@ -44,40 +44,41 @@ typedef struct {
   /* of the points of a row, made anew only where it differs from row to row */
   place *of_row;
   int oblique, made;
-  /* velocities on the waves' grid in some planes of z, and on the line of y and z:
-   * [PLANES][n0][n1][3], [n0][3] */
+  /* velocities on the waves' grid in some planes of z, and on the line of y and z; x fastest, so that
+   * sums along y are whole rows: [planes][n1][3][n0], [3][n0] */
   double *planes, *line;
 } gathering;
 
-/* So many planes at once, since their windows share points */
-enum { PLANES = 8 };
+/* So many planes at once: the columns of the waves' grid, which lie far from each other in memory, are
+ * read once for all of them. */
+enum { PLANES = 64 };
 
 static void sum_along_z(const gathering *q, const place *z, int planes)
 {
   const sd_spreading *s = &q->w->spreading;
   const int *n = q->w->grid.n, points = q->w->window.points;
   const long size = 3L * n[0] * n[1];
-  for (int i = 0; i < n[0]; i++)
-    for (int j = 0; j < n[1]; j++)
-      for (int b = 0; b < planes; b++) {
-        const double *from = s->brick + i * s->layer + j * s->row + 3L * z[b].at;
-        double sum[3] = {0.0}, *out = q->planes + b * size + 3L * ((long) i * n[1] + j);
+  for (int j = 0; j < n[1]; j++)
+    for (int i = 0; i < n[0]; i++) {
+      const double *column = s->brick + i * s->layer + j * s->row;
+      double *out = q->planes + 3L * j * n[0] + i;
+      for (int b = 0; b < planes; b++, out += size) {
+        const double *from = column + 3L * z[b].at;
+        double sum[3] = {0.0};
         for (int k = 0; k < points; k++)
           for (int c = 0; c < 3; c++) sum[c] += z[b].value[k] * from[3 * k + c];
-        for (int c = 0; c < 3; c++) out[c] = sum[c];
+        for (int c = 0; c < 3; c++) out[c * n[0]] = sum[c];
       }
+    }
 }
 
 static void sum_along_y(const gathering *q, const double *plane, const place *y)
 {
-  const int *n = q->w->grid.n, points = q->w->window.points;
-  for (int i = 0; i < n[0]; i++) {
-    const double *from = plane + 3L * ((long) i * n[1] + y->at);
-    double sum[3] = {0.0};
-    for (int k = 0; k < points; k++)
-      for (int c = 0; c < 3; c++) sum[c] += y->value[k] * from[3 * k + c];
-    for (int c = 0; c < 3; c++) q->line[3 * i + c] = sum[c];
-  }
+  const long row = 3L * q->w->grid.n[0];
+  const double *from = plane + y->at * row;
+  for (long m = 0; m < row; m++) q->line[m] = y->value[0] * from[m];
+  for (int k = 1; k < q->w->window.points; k++)
+    for (long m = 0; m < row; m++) q->line[m] += y->value[k] * from[k * row + m];
 }
 
 static void sum_along_x(gathering *q, const double *x, long stride, double *row)
@@ -91,11 +92,12 @@ static void sum_along_x(gathering *q, const double *x, long stride, double *row)
   q->made = 1;
   for (int i = 0; i < q->g->n[0]; i++) {
     const place *p = q->of_row + i;
-    const double *from = q->line + 3L * p->at;
-    double sum[3] = {0.0};
-    for (int k = 0; k < points; k++)
-      for (int c = 0; c < 3; c++) sum[c] += p->value[k] * from[3 * k + c];
-    for (int c = 0; c < 3; c++) row[c * stride + i] += q->factor * sum[c];
+    for (int c = 0; c < 3; c++) {
+      const double *from = q->line + c * q->w->grid.n[0] + p->at;
+      double sum = 0.0;
+      for (int k = 0; k < points; k++) sum += p->value[k] * from[k];
+      row[c * stride + i] += q->factor * sum;
+    }
   }
 }
 
@@ -118,7 +120,8 @@ sd_status sd_field_gather(const sd_ewald_waves *w, const sd_field_grid *g, doubl
   const double *G = w->spreading.gradient[0];
   gathering q = {.w = w, .g = g, .factor = factor, .oblique = G[1] != 0.0 || G[2] != 0.0};
   q.of_row = malloc(sizeof(place) * (size_t) g->n[0]);
-  q.planes = malloc(sizeof(double) * 3 * PLANES * (size_t) n[0] * (size_t) n[1]);
+  const int most = g->to - g->from < PLANES ? g->to - g->from : PLANES;
+  q.planes = malloc(sizeof(double) * 3 * ((size_t) most * (size_t) n[0] * (size_t) n[1] + 1));
   q.line = malloc(sizeof(double) * 3 * (size_t) n[0]);
   const int ok = q.of_row && q.planes && q.line;
   for (int k = g->from; k < g->to && ok; k += PLANES) {
