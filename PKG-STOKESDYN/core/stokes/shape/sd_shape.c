@@ -217,26 +217,33 @@ static sd_status add_symmetry(sd_shape *s, const double g[9], int *capacity, con
   return SD_OK;
 }
 
-/* Frame and symmetries. Of all candidates the frame is the one in which the clump stands highest,
- * by a height that weighs the three axes differently: frames with the same height look the same, or
- * differ by chance. Any two of them then differ by a symmetry. */
+/* How high does the clump stand in the frame? The three axes weigh differently: frames of one height
+ * look the same. */
+static double height_in(const sd_shape *s, const double E[9])
+{
+  const double weight[3] = {1.0, sqrt(2.0), sqrt(3.0)};
+  double up[3], height = 0.0;
+  sd_multiply3(E, weight, up);
+  for (int k = 0; k < s->n; k++)
+    height += (s->a[k] + s->size) * exp(sd_dot(up, s->x + 3 * k) / s->size);
+  return height;
+}
+
+/* Frame and symmetries. Of all candidates the frame is the one in which the clump stands highest. Of
+ * those that a symmetry makes as high, but for rounding, it is the first in the order of the spheres:
+ * what is built in the frame, shells of points, must stand the same when a run goes on from a restart
+ * file, with the clump turned. */
 static sd_status find_frame(sd_shape *s)
 {
   const cluster self = {s->n, s->rank, s->x, s->a};
-  const double near = IMAGE * SD_SHAPE_TOLERANCE * s->size, weight[3] = {1.0, sqrt(2.0), sqrt(3.0)};
-  double best = -1.0, E[9], Q[9];
+  const double near = IMAGE * SD_SHAPE_TOLERANCE * s->size;
+  double most = 0.0, E[9], Q[9];
   int capacity = 0;
   sd_status status = SD_OK;
   best_key(&self, near, s->pair);
-  for (walk at = {0}; next_frame(&self, s->pair, near, &at, E);) {
-    double up[3], height = 0.0;
-    sd_multiply3(E, weight, up);
-    for (int k = 0; k < s->n; k++)
-      height += (s->a[k] + s->size) * exp(sd_dot(up, s->x + 3 * k) / s->size);
-    if (height <= best) continue;
-    best = height;
-    memcpy(s->frame, E, sizeof(E));
-  }
+  for (walk at = {0}; next_frame(&self, s->pair, near, &at, E);) most = fmax(most, height_in(s, E));
+  for (walk at = {0}; next_frame(&self, s->pair, near, &at, s->frame);)
+    if (height_in(s, s->frame) >= most * (1.0 - 1e-8)) break;
   int *perm = malloc(sizeof(int) * (size_t) s->n);
   if (!perm) return SD_ENOMEMORY;
   for (walk at = {0}; status == SD_OK && next_frame(&self, s->pair, near, &at, E);) {

@@ -117,6 +117,30 @@ static void symmetries_map_the_shape_onto_itself(void **state)
 }
 
 /* Every cluster turned, moved and with its atoms in another order is the same shape; and of no other. */
+/* Symmetric ones as well, whose symmetries make several frames as good but for rounding */
+static void the_frame_turns_with_the_clump(void **state)
+{
+  (void) state;
+  uint64_t seed = 17;
+  double x[3 * MOST], a[MOST], y[3 * MOST];
+  for (int m = 0; m < N_CLUSTERS; m++)
+    for (int trial = 0; trial < 20; trial++) {
+      const int n = table_cluster(clusters[m], x, a);
+      const double shift[3] = {3.0, -17.0, 0.3 * trial};
+      double Q[9], turned[9];
+      sd_shape s, t;
+      random_rotation(&seed, Q);
+      move(n, x, Q, shift, y);
+      assert_int_equal(sd_shape_create(n, x, a, &s), SD_OK);
+      assert_int_equal(sd_shape_create(n, y, a, &t), SD_OK);
+      sd_product3(Q, s.frame, turned);
+      for (int p = 0; p < 9; p++) /* a line has its first axis only */
+        if (s.rank == 2 || p % 3 == 0) CHECK_NEAR(t.frame[p], turned[p], 1e-12);
+      sd_shape_free(&s);
+      sd_shape_free(&t);
+    }
+}
+
 static void equal_clumps_match_in_any_order(void **state)
 {
   (void) state;
@@ -308,6 +332,7 @@ int main(void)
       cmocka_unit_test(pose_survives_half_turns),
       cmocka_unit_test(deviation_tells_a_clump_that_is_not_rigid),
       cmocka_unit_test(symmetries_map_the_shape_onto_itself),
+      cmocka_unit_test(the_frame_turns_with_the_clump),
       cmocka_unit_test(equal_clumps_match_in_any_order),
       cmocka_unit_test(mirror_image_of_a_chiral_clump_is_another_shape),
       cmocka_unit_test(radii_and_spacing_tell_shapes_apart),
