@@ -1,21 +1,10 @@
 /* Brownian forces on rigid clumps and free spheres of one point each that feel each other: shells,
  * films and all, without sampling. */
 #include "tied_flock.h"
+#include "unit_normals.h"
 
 #include "sd_bodies_noise.h"
 #include "sd_lubrication_noise.h"
-
-typedef struct {
-  int spheres, unit;
-} unit_normals;
-
-static int unit_of_pair(void *ctx, int i, int at, double g[12])
-{
-  const unit_normals *u = ctx;
-  const int a = i < at ? i : at, b = i < at ? at : i, k = u->unit - 12 * (a * u->spheres + b);
-  for (int e = 0; e < 12; e++) g[e] = e == k;
-  return i < at;
-}
 
 /* Two clumps of an L and two free spheres */
 static flock *some(int shell)

@@ -3,25 +3,12 @@
 #include "blob_flock.h"
 
 #include "clouds.h"
+#include "unit_normals.h"
 
 #include "sd_bodies_noise.h"
 #include "sd_lubrication_noise.h"
 #include "sd_pose.h"
 #include "sd_random.h"
-
-/* Unit vectors in the place of normal numbers: of the points, then 12 of each pair of spheres i
- * < j */
-typedef struct {
-  int spheres, unit;
-} unit_normals;
-
-static int unit_of_pair(void *ctx, int i, int at, double g[12])
-{
-  const unit_normals *u = ctx;
-  const int a = i < at ? i : at, b = i < at ? at : i, k = u->unit - 12 * (a * u->spheres + b);
-  for (int e = 0; e < 12; e++) g[e] = e == k;
-  return i < at;
-}
 
 static void make_roots(blob_flock *f)
 {
