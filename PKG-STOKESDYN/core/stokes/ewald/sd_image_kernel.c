@@ -143,18 +143,6 @@ static void deconvolve(const workspace *s)
     }
 }
 
-/* Offsets that two points of the box have: all but the last of each direction */
-static void keep(const workspace *s)
-{
-  const int *n = s->n, *m = s->m;
-  memset(s->kept, 0, sizeof(double) * (size_t) m[0] * (size_t) m[1] * (size_t) m[2]);
-  for (int x = 0; x < m[0] - 1; x++)
-    for (int y = 0; y < m[1] - 1; y++)
-      memcpy(s->kept + ((long) x * m[1] + y) * m[2],
-             s->field + ((long) (x + s->first) * n[1] + y) * n[2],
-             sizeof(double) * (size_t) (m[2] - 1));
-}
-
 static void store(const workspace *s, int kernel, const int *y, const int *z, double *table)
 {
   const int *m = s->m, depth = z[1] - z[0], half = m[0] / 2 + 1;
@@ -192,12 +180,7 @@ static int make_room(workspace *s, const int *m)
   }
   for (int d = 1; d < 3; d++) {
     s->m[d] = m[d];
-    s->n[d] = sd_ewald_transformable(m[d] - 1 + beyond) + 1;
-    s->taper[d] = malloc(sizeof(double) * (size_t) s->n[d]);
-    s->inverse[d] = sd_open_kernel_inverse(s->e, s->n[d]);
-    ok = ok && s->taper[d] && s->inverse[d];
-    for (int l = 0; l < s->n[d] && ok; l++)
-      s->taper[d][l] = sd_open_kernel_taper(l - (m[d] - 1), s->n[d] - 1 - (m[d] - 1));
+    ok = sd_open_kernel_way(s->e, m[d], &s->n[d], &s->taper[d], &s->inverse[d]) && ok;
   }
   const size_t all = (size_t) s->n[0] * (size_t) s->n[1] * (size_t) s->n[2];
   s->radial = malloc(sizeof(sd_image_radial) * all);
@@ -222,13 +205,14 @@ sd_status sd_image_kernel(const sd_ewald *e, const int *m, const int *y, const i
 {
   workspace s = {.e = e};
   int ok = make_room(&s, m);
+  const long plane = (long) s.n[1] * s.n[2];
   if (ok) sample(&s);
   for (int c = 0; c < SD_IMAGE_KERNELS && ok; c++) {
     fill(&s, c);
     ok = transform(s.field, s.n, ODD[c], 0);
     if (ok) deconvolve(&s);
     ok = ok && transform(s.field, s.n, ODD[c], 1);
-    if (ok) keep(&s);
+    if (ok) sd_open_kernel_keep(s.field + plane * s.first, s.n, s.kept, s.m);
     ok = ok && transform(s.kept, s.m, ODD[c], 0);
     if (ok) store(&s, c, y, z, table);
   }

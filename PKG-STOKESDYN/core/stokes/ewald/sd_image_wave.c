@@ -55,14 +55,15 @@ typedef struct {
   double xi, R2, a2, L[4][MOST];
 } filtered;
 
-/* laplacians: those of L that spheres with b other than 0 take too */
-static filtered filtered_at(const sd_image_filter *filter, double R2, int laplacians)
+/* The first `terms` of L itself. laplacians: with those of L that spheres with b other than 0 take
+ * too */
+static filtered filtered_at(const sd_image_filter *filter, double R2, int terms, int laplacians)
 {
   filtered f;
   f.xi = filter->xi;
   f.R2 = R2;
   f.a2 = filter->a_ref * filter->a_ref / 3.0;
-  filtered_inverse(f.xi, R2, 5, f.L[0]);
+  filtered_inverse(f.xi, R2, terms, f.L[0]);
   filtered_delta(f.xi, R2, laplacians ? MOST : 1, f.L[1]);
   if (laplacians) {
     laplacian(R2, f.L[1], 5, f.L[2]);
@@ -93,12 +94,7 @@ static void stokeslet(const filtered *f, int s, double *I, double *J)
 
 sd_image_radial sd_image_radial_at(const sd_image_filter *filter, double R)
 {
-  filtered f;
-  f.xi = filter->xi;
-  f.R2 = R * R;
-  f.a2 = filter->a_ref * filter->a_ref / 3.0;
-  filtered_inverse(f.xi, f.R2, 3, f.L[0]);
-  filtered_delta(f.xi, f.R2, 1, f.L[1]);
+  const filtered f = filtered_at(filter, R * R, 3, 0);
   sd_image_radial r = {.L1 = f.L[0][1], .L2 = f.L[0][2]};
   stokeslet(&f, 0, &r.I, &r.J);
   return r;
@@ -112,7 +108,7 @@ void sd_image_wave(const sd_image_filter *filter, const double xi[3], double a, 
   const double A = a * a / 6.0, B = b * b / 6.0, ref = filter->a_ref * filter->a_ref / 6.0;
   const double bi = A - ref, bj = B - ref;
   const int apart = bi != 0.0 || bj != 0.0;
-  const filtered f = filtered_at(filter, x * x + y * y + z * z, apart);
+  const filtered f = filtered_at(filter, x * x + y * y + z * z, 5, apart);
   double I, J, I1, J1, I2, J2;
   stokeslet(&f, 0, &I, &J);
   if (apart) {

@@ -48,14 +48,6 @@ double sd_open_kernel_taper(int beyond, int many)
   return z <= 0.0 ? 1.0 : 0.5 * erfc(6.0 * (2.0 * z - 1.0));
 }
 
-/* Of n points, of which `kept` are wanted */
-static double *taper(int kept, int n)
-{
-  double *t = malloc(sizeof(double) * (size_t) n);
-  for (int m = 0; m < n && t; m++) t[m] = sd_open_kernel_taper(m - kept, n - 1 - kept);
-  return t;
-}
-
 /* I_0 and J_0/r^2 with their taper, on the octant of n [3] points */
 static void sample(const sd_ewald *e, const int *n, double *const *t, double *I0, double *J0)
 {
@@ -140,9 +132,7 @@ static void deconvolve(const sd_ewald *e, const int *n, double *const *inverse, 
     }
 }
 
-/* Offsets 0 ... half - 2 of the kernel go to the octant of the transform's grid; the last, which no
- * two points within the box have, stays 0. */
-static void keep_offsets(const double *from, const int *n, double *to, const int *m)
+void sd_open_kernel_keep(const double *from, const int *n, double *to, const int *m)
 {
   memset(to, 0, sizeof(double) * (size_t) m[0] * (size_t) m[1] * (size_t) m[2]);
   for (int x = 0; x < m[0] - 1; x++)
@@ -175,16 +165,22 @@ int sd_open_kernel_beyond(int points)
   return points > 5 ? 4 * points + 4 : 24;
 }
 
+int sd_open_kernel_way(const sd_ewald *e, int m, int *n, double **taper, double **inverse)
+{
+  *n = sd_ewald_transformable(m - 1 + sd_open_kernel_beyond(e->points)) + 1;
+  *taper = malloc(sizeof(double) * (size_t) *n);
+  *inverse = sd_open_kernel_inverse(e, *n);
+  for (int l = 0; l < *n && *taper; l++)
+    (*taper)[l] = sd_open_kernel_taper(l - (m - 1), *n - 1 - (m - 1));
+  return *taper && *inverse;
+}
+
 static int make_room(workspace *s, const sd_ewald *e, const int *m)
 {
-  const int beyond = sd_open_kernel_beyond(e->points);
   size_t large = 1, octant = 1;
   int ok = 1;
   for (int d = 0; d < 3; d++) {
-    s->n[d] = sd_ewald_transformable(m[d] - 1 + beyond) + 1;
-    s->taper[d] = taper(m[d] - 1, s->n[d]);
-    s->inverse[d] = sd_open_kernel_inverse(e, s->n[d]);
-    ok = ok && s->taper[d] && s->inverse[d];
+    ok = sd_open_kernel_way(e, m[d], &s->n[d], &s->taper[d], &s->inverse[d]) && ok;
     large *= (size_t) s->n[d];
     octant *= (size_t) m[d];
   }
@@ -222,7 +218,7 @@ sd_status sd_open_kernel(const sd_ewald *e, const int *m, const int *y, const in
     ok = transform_octant(s.field, s.n, odd);
     if (ok) deconvolve(e, s.n, s.inverse, s.field);
     ok = ok && transform_octant(s.field, s.n, odd);
-    if (ok) keep_offsets(s.field, s.n, s.kept, m);
+    if (ok) sd_open_kernel_keep(s.field, s.n, s.kept, m);
     ok = ok && transform_octant(s.kept, m, odd);
     if (ok) store_component(s.kept, m, y, z, c, table);
   }

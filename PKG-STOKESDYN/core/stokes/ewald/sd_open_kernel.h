@@ -33,6 +33,13 @@ double sd_open_kernel_taper(int beyond, int many);
 /* [n] 1/w^ at waves 0 ... n - 1 of 2 (n - 1), less the last, which has no partner: 0. malloc'ed;
  * NULL: out of memory */
 double *sd_open_kernel_inverse(const sd_ewald *e, int n);
+/* A direction in which the kernel is even or odd and m - 1 offsets are wanted: points n of the
+ * large grid from the first offset on, taper [n] and 1/w^ [n], malloc'ed. Returns 0 without
+ * memory. */
+int sd_open_kernel_way(const sd_ewald *e, int m, int *n, double **taper, double **inverse);
+/* Offsets 0 ... m - 2 each way of the large grid `from` [n 0][n 1][n 2] go to that of the
+ * transform, to [m 0][m 1][m 2]; the last, which no two points within the box have, stay 0. */
+void sd_open_kernel_keep(const double *from, const int *n, double *to, const int *m);
 
 #ifdef __cplusplus
 }
