@@ -3,12 +3,13 @@
 
     overdamped.py [REPEATS] [N] [CLUMPS]
     overdamped.py films [REPEATS] [SIDE]
+    overdamped.py ranks [REPEATS] [SIDE]
 
 Free spheres: a step of fix stokes_dynamics/overdamped, N spheres (4000), all pairs, in units of one product, which is half of what a
 solve of one iteration takes (max_iter 1: two products). Rigid clumps: a step of 10 000 clumps of ten with clumps_only yes, shell 42,
 against pair style and fix rigid/small. Both answers are exact: one product, one 6x6. Films: a step of SIDE^3 (22) spheres at volume
 fraction 0.3 in a periodic box, every second pulled up and the others down, with and without lubrication, to 1e-3; the fastest move
-0.01 radii a step. Medians; what is compared takes turns."""
+0.01 radii a step. Ranks: the step with lubrication of SIDE^3 (46) spheres on one rank and on two. Medians; what is compared takes turns."""
 import os
 import pathlib
 import re
@@ -17,16 +18,18 @@ import sys
 import tempfile
 
 from from_tests import np
+from system import environment
 
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-def loop_time(words, steps):
-    """Seconds a step, set-up not counted"""
+def loop_time(words, steps, ranks=1):
+    """Seconds a step by the clock, set-up not counted"""
+    start = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
     with tempfile.TemporaryDirectory() as folder:
         log = os.path.join(folder, "log")
-        subprocess.run(["lmp", "-log", log, "-screen", "none", "-nocite"] + words, check=True, cwd=HERE, stdout=subprocess.DEVNULL,
-                       env=dict(os.environ, OMP_NUM_THREADS="1"))
+        subprocess.run(start + ["lmp", "-log", log, "-screen", "none", "-nocite"] + words, check=True, cwd=HERE,
+                       stdout=subprocess.DEVNULL, env=environment())
         return float(re.findall(r"^Loop time of (\S+)", open(log).read(), re.M)[-1]) / steps
 
 
@@ -53,7 +56,7 @@ def spheres(folder, data, rotation, overdamped, steps):
     return loop_time(["-in", os.path.join(folder, "in")], steps)
 
 
-def films(folder, side, words, steps=20):
+def films(folder, side, words, steps=20, ranks=1):
     """A cubic lattice shaken by up to 0.19 radii, so that nobody overlaps"""
     spacing, rng = (4 / 3 * np.pi / 0.3)**(1 / 3), np.random.default_rng(1)
     places = np.indices((side, side, side)).reshape(3, -1).T
@@ -63,10 +66,10 @@ def films(folder, side, words, steps=20):
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
     with open(os.path.join(folder, "in"), "w") as out:
         out.write(f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {folder}/data\ntimestep 0.2\n"
-                  "comm_modify cutoff 5\npair_style stokes_dynamics cut_off_distance inf visc 1 rotation yes relative_tolerance 1e-3 "
+                  "pair_style stokes_dynamics cut_off_distance inf visc 1 rotation yes relative_tolerance 1e-3 "
                   f"{words}\npair_coeff * *\nvariable f atom 2*(id%2)-1\nfix f all addforce 0 0 v_f\nfix m all stokes_dynamics/overdamped\n"
                   f"run 5\nrun {steps}\n")
-    return loop_time(["-in", os.path.join(folder, "in")], steps)
+    return loop_time(["-in", os.path.join(folder, "in")], steps, ranks)
 
 
 def clumps(overdamped, count, steps=50):
@@ -83,6 +86,13 @@ def main():
             times = np.array([[films(folder, side, words) for words in ("", "lubrication yes")] for _ in range(repeats)])
         without, with_films = np.median(times, axis=0)
         print(f"{side**3} free spheres in a periodic box: a step {1e3 * without:.1f} ms, with lubrication {1e3 * with_films:.1f} ms")
+        return
+    if sys.argv[1:2] == ["ranks"]:
+        repeats, side = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((2, 3), (3, 46)))
+        with tempfile.TemporaryDirectory() as folder:
+            times = np.array([[films(folder, side, "lubrication yes", 5, ranks) for ranks in (1, 2)] for _ in range(repeats)])
+        print(f"{side**3} free spheres with lubrication: a step {1e3 * np.median(times[:, 0]):.0f} ms on one rank; of two ranks"
+              f" {np.median(times[:, 0] / times[:, 1]):.2f} times as fast ({', '.join('%.2f' % r for r in times[:, 0] / times[:, 1])})")
         return
     repeats, n, count = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((1, 5), (2, 4000), (3, 10000)))
     with tempfile.TemporaryDirectory() as folder:

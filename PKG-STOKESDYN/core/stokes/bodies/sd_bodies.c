@@ -133,7 +133,7 @@ typedef struct {
   double guess;
 } accuracy;
 /* Among ranks the norm of the sparse system sees less of what is lacking (sd_tie_factor.h). */
-static const accuracy alone = {0.003, 0.2, 0.3}, among_ranks = {0.001, 0.07, 0.01};
+static const accuracy alone = {0.003, 0.2, 0.3}, among_ranks = {0.002, 0.1, 0.3};
 
 static const accuracy *accuracy_of(const loop *c)
 {
