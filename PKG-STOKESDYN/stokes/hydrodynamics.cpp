@@ -26,6 +26,9 @@ namespace StokesDyn {
 using State = FixStokesDynamicsState;
 static const std::string COMMAND = StokesSettings::COMMAND;
 
+// A tolerance to which a warm start leaves an iteration or two
+static const double LOOSE = 1e-3;
+
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, COMMAND), shells(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND),
     lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}),
@@ -61,6 +64,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   rigid.forget();
   preconditioner.forget();
   preconditioner.kind = settings.precondition;
+  preconditioner.easy = settings.history() && settings.tolerance >= LOOSE;
 }
 
 void Hydrodynamics::init()

@@ -15,6 +15,10 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+/* Unknowns whose matrix is inverted as it is. A product with the inverse takes about as long as one
+ * with the matrix, making it as long as some hundred. */
+static const int FEW = 200;
+
 /* The rule, which the page has too. */
 const sd_precondition_kind *Preconditioner::suited() const
 {
@@ -24,7 +28,7 @@ const sd_precondition_kind *Preconditioner::suited() const
     if (periodic)
       that = WAVES;
     else if (scene.view() == SD_VIEW_ALL)
-      that = SPARSE;
+      that = !few() ? SPARSE : easy ? NONE : CLUMP;
     else
       that = atom->molecule ? CLUMP : NONE;
   }
@@ -38,6 +42,11 @@ const sd_precondition_kind *Preconditioner::suited() const
     default:
       return nullptr;
   }
+}
+
+bool Preconditioner::few() const
+{
+  return cloud && width * n <= FEW;
 }
 
 void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double> &its_box)
@@ -91,6 +100,18 @@ void Preconditioner::find_positions()
     x = rows;
 }
 
+/* The spheres of each block. */
+void Preconditioner::group()
+{
+  first.assign(1, 0);
+  member.clear();
+  if (kind == AUTO && few()) {
+    for (int i = 0; i < n; i++) member.push_back(i);
+    first.push_back(n);
+  } else if (wanted != &sd_precondition_sparse)
+    group_by_molecule();
+}
+
 /* Members of each molecule with two spheres or more. */
 void Preconditioner::group_by_molecule()
 {
@@ -138,9 +159,7 @@ sd_status Preconditioner::put()
 {
   refresh_places();
   find_positions();
-  first.assign(1, 0);
-  member.clear();
-  if (wanted != &sd_precondition_sparse) group_by_molecule();
+  group();
   if (!cloud) put_side_by_side();
   sd_precondition_case c = {};
   c.law = scene.law();

@@ -1,6 +1,6 @@
-/* Which preconditioner a scene gets, by a rule: the long waves in a periodic box with Ewald sums,
- * the sparse factor where the sum goes over all pairs, blocks of molecules for other sums. It
- * changes the number of iterations, never the answer.
+/* Which preconditioner a scene gets, by a rule: the long waves in a periodic box with Ewald sums;
+ * where the sum goes over all pairs the sparse factor, or, of few spheres, the inverse itself, or
+ * nothing where solves are easy; blocks of molecules for other sums. It changes the number of iterations, never the answer.
  *
  * It is made at positions that are rows of the memory, and those are taken anew where spheres have
  * moved too far since (sd_preconditioner.h), where one has none yet, and where waves are those of
@@ -25,6 +25,8 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
  public:
   enum Kind { AUTO, NONE, CLUMP, SPARSE, WAVES };
   Kind kind = AUTO;
+  /* Do solves begin near to what is good enough, from the last ones to a loose tolerance? */
+  bool easy = false;
 
   Preconditioner(LAMMPS_NS::LAMMPS *lmp, Scene &scene) : Pointers(lmp), scene(scene) {}
   ~Preconditioner() { forget(); }
@@ -56,9 +58,12 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   std::vector<int> member;
 
   const sd_precondition_kind *suited() const;
+  /* so few spheres that the inverse of the whole cloud's matrix is made, one block? */
+  bool few() const;
   sd_spheres spheres() const { return cloud ? scene.cloud() : scene.local(); }
   void refresh_places();
   void find_positions();
+  void group();
   void group_by_molecule();
   void add_lone();
   void put_side_by_side();

@@ -121,6 +121,22 @@ def test_auto_is_the_sparse_factor_from_the_first_solve_on(simulation):
     assert max(iterations) <= 18
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("rotation,few", [("no", 66), ("yes", 33)])
+def test_auto_is_the_inverse_of_200_unknowns_and_not_of_more(tmp_path, rotation, few, ranks):
+    """One iteration leaves rounding, as no approximation does. Some spheres coincide with others to a hundredth."""
+    cloud, rng = loose_lattice(5), np.random.default_rng(8)
+    iterations = {}
+    for n in (few, few + 1):
+        x = np.vstack([cloud.x[:n - 4], cloud.x[:4] + 0.01])
+        spheres = Spheres(x, rng.uniform(0.5, 1.0, n) * A, rng.normal(size=(n, 3)))
+        words = f"cut_off_distance inf rotation {rotation}"
+        drag, iterations[n] = forces_by_list(tmp_path, spheres, words, ranks, "auto", box=[(-20.0, 40.0)] * 3)
+        expected, plain = forces_by_list(tmp_path, spheres, words, ranks, "none", box=[(-20.0, 40.0)] * 3)
+        assert largest_difference(drag, expected) < 1e-9 and plain > 30
+    assert iterations[few] <= 2 and 5 < iterations[few + 1] < 30
+
+
 def turned(x, rng):
     """About their mean, by a random rotation (QR of random numbers)."""
     Q, R = np.linalg.qr(rng.normal(size=(3, 3)))
@@ -150,8 +166,8 @@ def test_what_has_moved_too_far_is_made_anew(simulation, precondition):
     assert largest_difference(drag, anew.drag) < 1e-5
 
 
-def iterations_of_a_fall(simulation, tmp_path, words, steps=60):
-    spheres, log = loose_lattice(6, v=0.3), tmp_path / "log"
+def iterations_of_a_fall(simulation, tmp_path, words, steps=60, edge=6):
+    spheres, log = loose_lattice(edge, v=0.3), tmp_path / "log"
     spheres.v += (0.0, 0.0, -1.0)
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 {words}", log=log, box=[(-40.0, 60.0)] * 3,
                      density=20.0, dt=1e-3)
@@ -168,6 +184,15 @@ def test_auto_is_the_factor_with_a_warm_start_too(simulation, tmp_path, rotation
     auto = iterations_of_a_fall(simulation, tmp_path, f"relative_tolerance 1e-6 rotation {rotation}")
     assert none[-20:].mean() > 5
     assert auto[-20:].mean() < 0.4 * none[-20:].mean()
+
+
+def test_auto_is_nothing_for_few_spheres_that_go_on_to_a_loose_tolerance(simulation, tmp_path):
+    def means(tolerance):
+        return [iterations_of_a_fall(simulation, tmp_path, f"relative_tolerance {tolerance} precondition {way}", edge=4).mean()
+                for way in ("none", "auto")]
+
+    loose, tight = means(1e-3), means(9e-4)
+    assert loose[0] == loose[1] < 2 and tight[1] < 0.9 * tight[0]
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -220,7 +245,7 @@ def going(tmp_path, name, mode, precondition, molecules, tolerance, ranks=1, new
 
 @pytest.mark.parametrize("mode,precondition,molecules,tolerance", [
     ("all", "none", 1, 1e-3), ("all", "sparse", 0, 1e-3), ("all", "clump", 1, 1e-3), ("clumps", "clump", 1, 1e-3),
-    ("periodic", "waves", 0, 1e-3),
+    ("periodic", "waves", 0, 1e-3), ("all", "auto", 0, 9e-4),        # 192 unknowns: the inverse
     # blocks of the parts of clumps that a rank owns are others on other ranks: at a loose tolerance the answer shows them
     ("periodic", "waves", 1, 1e-13), ("taper", "clump", 1, 1e-13)])
 def test_ranks_restart_and_newton_leave_the_run_as_it_is(tmp_path, mode, precondition, molecules, tolerance):

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_blocks_internal.h"
 #include "sd_linear.h"
 #include "sd_unit.h"
 
@@ -51,6 +52,7 @@ static sd_status allocate(sd_blocks *b, const sd_precondition_case *c)
   b->part = c->part;
   b->parts = c->parts;
   b->blocks = c->clumps;
+  b->kernels = SD_KERNELS_OF(sd_blocks, plain, sd_isa_of(SD_ISA_BEST));
   b->first = malloc(sizeof(long) * (blocks + 1));
   b->start = malloc(sizeof(long) * (blocks + 1));
   b->member = malloc(sizeof(int) * ((size_t) c->first[blocks] + 1));
@@ -92,8 +94,7 @@ sd_status sd_blocks_make(void *blocks, const sd_precondition_case *c)
   return status;
 }
 
-/* z = P r in the rows of block k, P = D^1/2 C^-1 D^1/2 from right to left, through the stored
- * inverse column by column */
+/* z = P r in the rows of block k, P = D^1/2 C^-1 D^1/2 from right to left */
 static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
 {
   const int *member = b->member + b->first[k], width = b->width;
@@ -103,11 +104,7 @@ static void apply_block(const sd_blocks *b, int k, const double *r, double *z)
   for (int l = 0; l < m; l++)
     for (int p = 0; p < width; p++)
       in[width * l + p] = root(b, member[l], p) * r[width * (long) member[l] + p];
-  memset(out, 0, sizeof(double) * (size_t) size);
-  for (int q = 0; q < size; q++) {
-    const double *column = A + (long) size * q, v = in[q];
-    for (int p = 0; p < size; p++) out[p] += column[p] * v;
-  }
+  b->kernels->multiply(size, A, in, out);
   for (int l = 0; l < m; l++)
     for (int p = 0; p < width; p++)
       z[width * (long) member[l] + p] = root(b, member[l], p) * out[width * l + p];

@@ -32,6 +32,7 @@ typedef struct {
   /* [2n] sd_unit_roots */
   double *root;
   double *scratch;
+  const struct sd_blocks_kernels *kernels;
 } sd_blocks;
 
 /* blocks: an sd_blocks */
