@@ -11,7 +11,7 @@ cheapest setting below the wanted error, and runs that one on more ranks.
     --large       only what Ewald sums are for: 10^4 spheres in a periodic box, 10^5 in an open one (large.png)
     --ranks       of the last run, as many as there are cores up to 4; 1: none
     --screening   only the table of what a taper leaves of the drag
-    --update      log and picture go to this folder as well
+    --update      the table, speed_error.txt or large.txt, and the picture go to this folder as well
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed; with --data there is none.
 """
@@ -451,10 +451,10 @@ def main():
             results.append((name, *measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))
         screened = screening(say, folder)
     draw(folder / f"{kept}.png", results, given.error)
-    (folder / f"log.{kept}").write_text("\n".join(say.lines) + "\n")
+    (folder / f"{kept}.txt").write_text("\n".join(say.lines) + "\n")
     say(f"\npicture: {folder / kept}.png")
     if given.update:
-        for name in (f"{kept}.png", f"log.{kept}"):
+        for name in (f"{kept}.png", f"{kept}.txt"):
             shutil.copy(folder / name, HERE)
     if given.data:
         return

@@ -32,6 +32,54 @@ def test_every_figure_of_an_example_holds(name, tmp_path):
     assert kept(EXAMPLES / name) == before
 
 
+# --- the logs that are kept beside the examples -------------------------------------------------------------------------------
+
+def commands(script):
+    """The lines of an input script that LAMMPS echoes, continued ones as one, blanks as one blank. None stands for a label: when a jump
+    goes there, LAMMPS echoes neither the label nor what it skips."""
+    text = re.sub(r"^echo\s+none$.*?^(?=echo\s+log$)", "echo none\n", re.sub(r"&[ \t]*\n", "", script), flags=re.S | re.M)
+    lines = [" ".join(line.split()) for line in text.splitlines() if line.strip()]
+    return [None if line.startswith("label ") else line for line in lines]
+
+
+def not_echoed(script, log):
+    """Commands of the script that the log lacks, but for those that a jump to a label has skipped."""
+    echoed = {" ".join(line.split()) for line in log.splitlines()}
+    missing, run = [], []
+    for line in commands(script):
+        if line is None:
+            run = []
+        elif line not in echoed:
+            run.append(line)
+        else:
+            missing += run
+            run = []
+    return missing + run
+
+
+LOGS = sorted(EXAMPLES.glob("*/log.*"))
+
+
+@pytest.mark.parametrize("log", LOGS, ids=lambda path: path.name)
+def test_logs_of_examples_are_of_this_version(log):
+    package = EXAMPLES.parent / "PKG-STOKESDYN"
+    between_releases = re.search("^## To come", (package / "CHANGELOG.md").read_text(), re.M)
+    version = (package / "VERSION").read_text().strip() + ("+" if between_releases else "")
+    text = log.read_text()
+    assert re.findall("^PKG-STOKESDYN ([^,]+), built for LAMMPS", text, re.M) == [version], "run the example's run.py --update"
+    assert not not_echoed((log.parent / f"in.{log.parent.name}").read_text(), text), "the input has changed since"
+
+
+def test_there_are_logs():
+    assert len(LOGS) >= 30
+
+
+def test_a_changed_input_is_seen():
+    log = "units lj\nfix 1 all nve   x y\njump SELF there\nrun 5\n"
+    assert not not_echoed("units lj\nfix 1 all nve &\n  x y\njump SELF there\nthermo 7\nlabel there\nrun 5\n", log)
+    assert not_echoed("units lj\nthermo 7\nrun 5\n", log) == ["thermo 7"]
+
+
 # --- checks.py --------------------------------------------------------------------------------------------------------------
 
 @pytest.fixture
