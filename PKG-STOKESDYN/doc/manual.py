@@ -224,6 +224,53 @@ document.getElementById("found").textContent = JSON.stringify(found);
 </script></body></html>"""
 
 
+# Each page in a frame as wide as a phone and as a desk: what is wider than the frame, and is in no part that scrolls for itself, is cut
+# or makes the page sway.
+FRAMES = """<!DOCTYPE html><html><body><pre id="found"></pre><script>
+function scrolls(element) {
+  for (let at = element; at && at.tagName !== "BODY"; at = at.parentElement)
+    if (["auto", "scroll"].includes(getComputedStyle(at).overflowX)) return true;
+  return false;
+}
+async function measure() {
+  const pages = PAGES, wide = [];
+  for (const width of WIDTHS) for (const page of pages) {
+    const frame = document.createElement("iframe");
+    frame.style = `width: ${width}px; height: 800px; border: 0`;
+    frame.src = page;
+    await new Promise(done => { frame.onload = done; document.body.append(frame); });
+    const root = frame.contentDocument.documentElement;
+    const out = [...root.querySelectorAll("article *")].find(e => !e.closest("svg, .katex-mathml") && !scrolls(e) &&
+      e.getBoundingClientRect().right > root.clientWidth + 1);
+    if (root.scrollWidth > root.clientWidth || out)
+      wide.push(`${page} at ${width}: ${root.scrollWidth} wide` + (out ? `, ${out.tagName} ${out.textContent.slice(0, 40)}` : ""));
+    frame.remove();
+  }
+  document.getElementById("found").textContent = JSON.stringify([pages.length, wide]);
+}
+measure();
+</script></body></html>"""
+WIDTHS = [390, 1280]
+
+
+def probed(folder, page):
+    """What the script of a page, which is put into the folder for this alone, has written."""
+    probe = folder / "probe.html"
+    probe.write_text(page)
+    seen = dom(probe.as_uri())
+    probe.unlink()
+    return json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', seen, re.S).group(1)) or "null")
+
+
+def wide_pages(folder):
+    pages = sorted(str(page.relative_to(folder)) for page in folder.rglob("*.html"))
+    for first in range(0, len(pages), 20):
+        some = pages[first:first + 20]
+        measured, wide = probed(folder, FRAMES.replace("WIDTHS", json.dumps(WIDTHS)).replace("PAGES", json.dumps(some))) or (0, [])
+        yield from wide if measured == len(some) else [f"the widths of {some[0]} and those after it could not be measured"]
+    print(f"[manual] {len(pages)} pages measured at {WIDTHS} pixels")
+
+
 def searches():
     """(query, the pages of which one must be found): keywords and first words of messages, as unittest/lammps/test_pages.py has them."""
     sys.path.insert(0, str(TOP / "unittest" / "lammps"))
@@ -255,12 +302,10 @@ def check(folder):
             wrong.append(f"formulas of {page.relative_to(folder)}: {got} of {wanted} drawn")
     print(f"[manual] {drawn} of {formulas} formulas drawn, {pictures} pictures")
 
+    wrong += [f"wider than the window: {page}" for page in wide_pages(folder)]
+
     asked = list(searches())
-    probe = folder / "search_probe.html"
-    probe.write_text(PROBE.replace("QUERIES", json.dumps(sorted({query for query, _ in asked} | set(FIRST)))))
-    seen = dom(probe.as_uri())
-    probe.unlink()
-    found = json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', seen, re.S).group(1)) or "{}")
+    found = probed(folder, PROBE.replace("QUERIES", json.dumps(sorted({query for query, _ in asked} | set(FIRST))))) or {}
     missed = [(query, pages) for query, pages in asked
               if not any(f"PKG-STOKESDYN/doc/{name[:-3]}" in found.get(query, []) for name in pages)]
     wrong += [f"search for '{query}' does not find any of {pages}" for query, pages in missed]
