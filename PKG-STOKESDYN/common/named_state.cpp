@@ -81,7 +81,7 @@ bool NamedState::read(LAMMPS *lmp, const char *buffer)
                           "Fix " + style +
                               ": the restart file was written by another version of the plugin, " +
                               printable(version_of(buffer)) + ", this is " SD_VERSION
-                              ": what it holds for this fix is not taken, the fix begins afresh");
+                              ": its data for this fix are ignored, and the fix begins anew");
     return false;
   }
   std::istringstream lines(buffer + strcspn(buffer, "\n"));

@@ -30,7 +30,7 @@ ComputeSphProbe::ComputeSphProbe(LAMMPS *lmp, int narg, char **arg) : Compute(lm
     for (double &x : probe.x) x = in.positional("point of a probe").number();
     probes.push_back(probe);
   }
-  in.require(!probes.empty(), "no probe: pressure X Y Z or height AXIS X Y Z");
+  in.require(!probes.empty(), "there is no probe: give pressure X Y Z or height AXIS X Y Z");
   vector_flag = 1;
   size_vector = (int) probes.size();
   extvector = 0;

@@ -55,7 +55,7 @@ void FixSphOpening::init()
   const double end = plane + side * width, edge = side > 0 ? domain->boxhi[axis] : domain->boxlo[axis];
   if (domain->boundary[axis][side > 0] != 1)
     fail(lmp,
-         command + ": the box must end beyond the layer with boundary f, along " +
+         command + ": the box must have boundary f beyond the layer, along " +
              std::string(1, (char) ('x' + axis)));
   if (side * (end - edge) > 1e-9 * width)
     fail(lmp,

@@ -66,7 +66,7 @@ void PairSph::look_at_sound()
     error->warning(FLERR,
                    COMMAND + ": the speed of sound of type " + std::to_string(all.type) + ", pair_coeff c " +
                        text(sound_speed(all.type)) + ", is not that of its equation of state, " +
-                       text(sound) + ": time step limits, artVisc and delta go by pair_coeff");
+                       text(sound) + ": time step limits, artVisc and delta use the one of pair_coeff");
 }
 
 /* The pressure of a pair is that of one width: where widths meet, sums of the two sides differ. */

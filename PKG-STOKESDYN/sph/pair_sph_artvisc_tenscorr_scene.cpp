@@ -52,8 +52,8 @@ void PairSph::init_style()
     fail(lmp, COMMAND + ": command neighbor: a skin of 0 is too small; a tenth of h is usual");
   if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1 && comm->me == 0)
     error->warning(FLERR,
-                   COMMAND + ": with neigh_modify check no nobody sees when the neighbour list is "
-                             "outdated");
+                   COMMAND + ": with neigh_modify check no LAMMPS does not notice when the neighbour list "
+                             "is outdated");
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me, !shared);
   around_of = -1;

@@ -75,8 +75,8 @@ void PairSph::no_density(const std::string &style, int i, const std::string &ask
   fail_one(lmp,
            "Fix " + style + ": step " + std::to_string(update->ntimestep) + ": atom " +
                std::to_string(atom->tag[i]) + ": the pressure " + asked + " is not above " +
-               text(sd_sph_least_pressure(&eos->state)) + ", the least of fix " + eos->id +
-               ": a larger B or P0 makes room for it, if gravity is right");
+               text(sd_sph_least_pressure(&eos->state)) + ", the lowest of fix " + eos->id +
+               ": use a larger B or P0, if gravity is right");
 }
 
 /* What the particles of walls and open ends take from the fluid before them. Their density becomes the

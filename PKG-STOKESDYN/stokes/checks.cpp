@@ -53,7 +53,7 @@ void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Sett
                         "not periodic");
   if (settings.far_field == Scene::Settings::DIRECT)
     fail(lmp, command + ": keywords far_field direct and precondition sparse require a box that is "
-                        "not periodic: the sum over all periodic images is one of Ewald's");
+                        "not periodic: only Ewald sums go over all periodic images");
 }
 
 void warn_of_misfit(LAMMPS *lmp, const std::string &command, double misfit)

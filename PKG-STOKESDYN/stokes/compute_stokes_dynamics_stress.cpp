@@ -58,7 +58,7 @@ void ComputeStokesDynamicsStress::find_moments()
   if (!hydro.computed_in((double) update->ntimestep))
     fail(lmp,
          COMMAND + ": step " + std::to_string(update->ntimestep) +
-             ": the forces of this step are not there; use it in a run");
+             ": the forces of this step have not been computed; use this compute in a run");
   hydro.stress(moments);
   for (int i = 0; i < atom->nlocal; i++)
     if (!(atom->mask[i] & groupbit))
@@ -83,11 +83,13 @@ void ComputeStokesDynamicsStress::compute_vector()
 {
   invoked_vector = update->ntimestep;
   if (!domain->xperiodic || !domain->yperiodic || !domain->zperiodic)
-    fail(lmp, COMMAND + ": its vector is an average over a periodic box; per-atom rows need none");
+    fail(lmp, COMMAND + ": its vector is an average over a periodic box, and this box is not periodic; "
+                        "the per-atom array needs no periodic box");
   if (update->vflag_global != invoked_vector)
     fail(lmp,
          COMMAND +
-             ": virials of other forces were not tallied in this step; ask for it in thermo_style");
+             ": the virials of other forces were not computed in this step; name this compute in "
+             "thermo_style");
   find_moments();
   double sums[18] = {0.0};
   for (int i = 0; i < atom->nlocal; i++)

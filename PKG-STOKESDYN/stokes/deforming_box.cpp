@@ -123,7 +123,7 @@ BoxMotion motion_of_box(LAMMPS *lmp, const std::string &command)
     if (set[d].style < Compat::NONE || set[d].style > Compat::VARIABLE)
       fail(lmp,
            command + ": fix " + deform->id + " of style " + deform->style +
-               " changes the box at a rate that cannot be seen from here: use fix deform, or "
+               " changes the box at a rate that the pair style does not know: use fix deform, or "
                "fluid_velocity 0 0 0");
     // by what length an erate is one: its own, or for a tilt that of the edge that it leans over
     const auto &of = set[d < 3 ? d : d == 5 ? 1 : 2];

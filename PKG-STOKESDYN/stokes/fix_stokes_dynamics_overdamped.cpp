@@ -81,7 +81,7 @@ Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
 {
   Hydrodynamics *hydro = Hydrodynamics::of(lmp);
   if (!hydro)
-    fail(lmp, COMMAND + ": there is no pair_style stokes_dynamics, which says how spheres move");
+    fail(lmp, COMMAND + ": there is no pair_style stokes_dynamics with the settings of the fluid");
   return *hydro;
 }
 
@@ -263,8 +263,8 @@ void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) co
   if (wrong == MAXTAGINT) return;
   fail(lmp,
        COMMAND + ": atom " + std::to_string(wrong) +
-           " is in its group or in the selection of pair_style stokes_dynamics (keywords group and "
-           "region, radius > 0), but not in both: they must be the same");
+           " is selected either by the group of this fix or by pair_style stokes_dynamics (keywords "
+           "group and region, radius > 0), but not by both: both must select the same atoms");
 }
 
 /* dt/(2 dt_old), what the change of the velocity counts; 0: Euler, or there is nothing before */
@@ -448,6 +448,6 @@ void FixStokesDynamicsOverdamped::watch()
   warned_growth = true;
   error->warning(FLERR,
                  COMMAND + ": step " + std::to_string(update->ntimestep) +
-                     ": velocities change more with every step, now by " + text(changed) +
-                     " radii in a step: use a shorter time step");
+                     ": the change of velocities grows from step to step, and is " + text(changed) +
+                     " radii per step now: use a shorter time step");
 }

@@ -35,7 +35,7 @@ static const std::string KEYWORD = "Fix stokes_dynamics/overdamped: keyword sche
 void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) const
 {
   if (hydro.settings.rigid.apart())
-    fail(lmp, KEYWORD + "midpoint moves what feels each other: use ab2 for clumps_only yes");
+    fail(lmp, KEYWORD + "midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
   int moved = 0;
   for (int i = 0; i < atom->nlocal; i++) moved |= is_held(i) && (atom->mask[i] & moved_bits);
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
@@ -44,7 +44,7 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
                         "of keyword held: let them rest");
   for (int i = 0; i < modify->nfix; i++)
     if (utils::strmatch(modify->fix[i]->style, "^deform"))
-      fail(lmp, KEYWORD + "midpoint is for boxes that stay as they are, and fix " + modify->fix[i]->id +
+      fail(lmp, KEYWORD + "midpoint is for boxes that do not change, and fix " + modify->fix[i]->id +
                     " of style " + modify->fix[i]->style + " deforms this one: use ab2");
 }
 

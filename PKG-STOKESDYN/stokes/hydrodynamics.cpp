@@ -83,7 +83,7 @@ void Hydrodynamics::begin()
   if (!memory)
     fail(lmp,
          COMMAND + ": its internal fix " + State::ID +
-             " has been deleted; a run without 'pre no' makes it anew");
+             " has been deleted; a run without 'pre no' creates it again");
   if (neighbor->ago == 0) scene.lists_are_stale();
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
@@ -401,7 +401,8 @@ void Hydrodynamics::unconverged(sd_status status, const sd_solve_report &report)
             where(algorithm()) + sd_status_string(status) + ": " + how_far(report) +
             ", relative_tolerance " + text(settings.tolerance) +
             (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter) : "") +
-            "; the run goes on, further ones are counted (compute pair, fix stokes_dynamics)"));
+            "; the run goes on, and counts further solves like this one (compute pair, fix "
+            "stokes_dynamics)"));
   warned_unconverged = true;
 }
 
@@ -421,11 +422,11 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
   else if (status == SD_ESINGULAR)
     why += ": equal spheres at one point with different velocities";
   else if (status == SD_EINDEFINITE && std::isinf(how.cutoff))
-    why += " to the digits that are left of it: use a larger relative_tolerance, or with Ewald sums "
+    why += " within the accuracy of the sums: use a larger relative_tolerance, or with Ewald sums "
            "a smaller far_field_tolerance";
   else if (status == SD_EINDEFINITE)
     why += " with cut_off_distance " + text(how.cutoff) +
-        ", so any answer would be noise: use cut_off_distance inf, or a taper, or clumps_only yes "
+        ", so there is no physical solution: use cut_off_distance inf, or a taper, or clumps_only yes "
         "with a cut-off larger than the clump";
   fail_by(lmp, status, where(algorithm()) + why + " (" + numbers + ")");
 }

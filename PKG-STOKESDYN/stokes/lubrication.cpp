@@ -41,15 +41,16 @@ void Lubrication::provide(double largest, double smallest)
   if (shells && ratio > SD_FILM_LARGEST_RATIO)
     fail(lmp,
          command + ": keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
-             ": with multiblob it knows pairs up to a ratio of 10; use group to select, or "
-             "lubrication no");
+             ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
+             "spheres, or lubrication no");
   if (ratio <= largest_ratio) return;
   sd_two_sphere *wider = nullptr;
   const sd_status status = sd_two_sphere_create(ratio, &wider);
   if (status == SD_EOUTSIDE)
     fail(lmp,
          command + ": keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
-             ": it knows pairs up to a ratio of 100; use group to select, or lubrication no");
+             ": lubrication is for ratios of radii up to 100; use group to select spheres, or "
+             "lubrication no");
   check(status);
   sd_two_sphere_free(functions);
   functions = wider;

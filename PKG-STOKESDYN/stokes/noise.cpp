@@ -163,8 +163,8 @@ void Noise::place(Hydrodynamics &hydro, Forces &forces, sd_noise_matrix &M)
 void Noise::no_root(sd_status status) const
 {
   fail_by(lmp, status,
-          command + ": keyword temperature: no root of the mobility in step " +
-              std::to_string(update->ntimestep) + " (" + std::to_string(last.products) +
+          command + ": keyword temperature: the root of the mobility, for the noise, was not found in "
+                    "step " + std::to_string(update->ntimestep) + " (" + std::to_string(last.products) +
               " products, error " + text(last.error) + ", noise_tolerance " + text(tolerance) +
               "): " + sd_status_string(status));
 }

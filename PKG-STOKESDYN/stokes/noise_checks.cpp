@@ -46,7 +46,7 @@ static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const Stoke
                   ": lone clumps in a plane have a drift: use clumps_only no");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
     fail(lmp, keyword + "keyword tensor: 'oseen'" + PAIR +
-                  " has negative mobilities, and no noise: use tensor rpy");
+                  " may have negative mobilities, for which there is no noise: use tensor rpy");
   if (s.scene.taper != SD_TAPER_NONE)
     fail(lmp, keyword + "keyword taper" + PAIR +
                   ": the mobility has a drift, which schemes leave out: use cut_off_distance inf");
@@ -65,9 +65,9 @@ void Noise::refuse(const Hydrodynamics &hydro, const Fix *self, const Ways &ways
                   ": the mobility has a drift, which schemes ab2 and euler leave out: use scheme "
                   "midpoint");
   if (!atom->tag_enable)
-    fail(lmp, keyword + "the noise of an atom goes by its ID, and there are none: atom_modify id yes");
+    fail(lmp, keyword + "the noise of an atom depends on its ID, and there are no IDs: atom_modify id yes");
   if (ways.adapts)
-    fail(lmp, keyword + "averages over steps of unequal length are not those of time: leave adapt out");
+    fail(lmp, keyword + "averages over steps of unequal length are not averages over time: leave out adapt");
   for (int i = 0; i < modify->nfix; i++) {
     const Fix *fix = modify->fix[i];
     if (fix == self) continue;
@@ -91,7 +91,7 @@ void Noise::init(Hydrodynamics &hydro, const Fix *self, const Ways &ways)
   check_room_of_blas(lmp, command);
   temperature.init(lmp, keyword);
   if (temperature.is_atom_style())
-    fail(lmp, keyword + ": noise has one temperature: use an equal-style variable");
+    fail(lmp, keyword + ": all atoms have one temperature: use an equal-style variable");
   refuse(hydro, self, ways);
   midpoint = ways.midpoint;
   hydro.scene.settings.positive = !midpoint;

@@ -74,7 +74,7 @@ static void refuse_settings(LAMMPS *lmp, const std::string &command, const Stoke
   if (s.add_force)
     fail(lmp,
          command + ": keyword add_force" + pair +
-             "must be no: the drag is what the velocities follow from, it is no force to add");
+             "must be no: velocities follow from the drag, which is not added as a force");
   if (s.update_every != 1)
     fail(lmp,
          command + ": keyword update_every" + pair + "must be 1, not " +
@@ -86,7 +86,8 @@ static void refuse_settings(LAMMPS *lmp, const std::string &command, const Stoke
   if (s.rigid.on && !s.scene.rotation)
     fail(lmp,
          command + ": keyword rigid_clumps" + pair +
-             "requires rotation yes or a shell: points do not tell how a clump on a line spins");
+             "requires rotation yes or a shell: without torques nothing resists the spin of a straight "
+             "clump");
 }
 
 static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self, const Fix *other,
@@ -96,7 +97,7 @@ static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self,
   if (ways.adapts && utils::strmatch(other->style, "^deform"))
     fail(lmp,
          command + ": keyword adapt: " + name +
-             " counts its rate by steps, which must have one length: leave adapt out");
+             " counts its rate per step, so that all steps must have one length: leave out adapt");
   if (strcmp(other->style, "stokes_dynamics") == 0)
     fail(lmp,
          command + ": " + name +
@@ -110,12 +111,12 @@ static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self,
   if (zeroes && overlap(lmp, self, other, ways.held_bit) && lmp->comm->me == 0)
     lmp->error->warning(FLERR,
                         command + ": " + name +
-                            " takes forces away, and without inertia that holds no sphere: keyword "
-                            "held GROUP does");
+                            " sets forces to 0, and without inertia that does not hold a sphere: use "
+                            "keyword held GROUP");
   const int but = moves_held ? ways.held_bit : 0;
   if (!(drags || other->time_integrate) || !overlap(lmp, self, other, but)) return;
   fail(lmp,
-       command + ": " + name + (other->time_integrate ? " integrates" : " drags") +
+       command + ": " + name + (other->time_integrate ? " integrates" : " adds a drag to") +
            " atoms of the same group: this fix does all of that itself" +
            (moves_held ? " (but for those of keyword held)" : ""));
 }
@@ -134,15 +135,15 @@ void refuse_inertia(LAMMPS *lmp, const std::string &command, const Fix *self,
   if (lmp->force->pair_match("^lubricate", 0, 1))
     fail(lmp,
          command +
-             ": pair_style lubricate* has a drag of its own: pair_style stokes_dynamics "
-             "stands alone");
+             ": pair_style lubricate* has a drag of its own, which would count twice: remove "
+             "it");
   const Contact contact = contact_of(lmp);
   if (contact.damping > 0.0)
     fail(lmp,
          command + ": pair_style " + contact.style + " damps its contacts (gamma " +
              text(contact.damping) +
-             "), which goes by the velocities of the step before: use gamma_n 0, gamma_t 0 (or "
-             "NULL with gamma_n 0) and dampflag 0");
+             "), which would depend on the velocities of the step before: use gamma_n 0, gamma_t 0 "
+             "(or NULL with gamma_n 0) and dampflag 0");
 }
 
 /* Is there a fix of this style? */
@@ -159,14 +160,14 @@ void refuse_friction(LAMMPS *lmp, const std::string &keyword)
   if (contact.friction > 0.0)
     fail(lmp,
          keyword + "pair_style " + contact.style + " has friction (" + text(contact.friction) +
-             "), which goes by velocities without noise: use 0");
+             "), which would depend on velocities without noise: use 0");
   const bool walls = has_fix(lmp, "^wall/gran");
   if (!walls && !lmp->force->pair_match("^granular", 0, 1)) return;
   if (lmp->comm->me == 0)
     lmp->error->warning(FLERR,
                         keyword + "contacts of " + (walls ? "fix wall/gran" : "pair_style granular") +
-                            " must have no friction, which goes by velocities without noise, and this "
-                            "cannot be seen from here");
+                            " must have no friction, which would depend on velocities without noise; this "
+                            "fix cannot check it");
 }
 
 void announce_step_limit(LAMMPS *lmp, const std::string &command, bool euler, double smallest_drag)
@@ -186,14 +187,14 @@ void announce_step_limit(LAMMPS *lmp, const std::string &command, bool euler, do
   if (linear && contact.k > 0.0 && lmp->update->dt > limit / contact.k)
     lmp->error->warning(FLERR,
                         command + ": time step " + text(lmp->update->dt) + " is above " +
-                            text(limit / contact.k) + ", which pair_style " + contact.style +
+                            text(limit / contact.k) + ", the longest that pair_style " + contact.style +
                             " with k " + text(contact.k) + " allows in dense packings");
   if (granular || walls)
     lmp->error->warning(FLERR,
                         command + ": contacts of " +
                             (granular ? "pair_style granular" : "fix wall/gran") +
-                            " must have no damping (gamma 0): it would go by the velocities of the "
-                            "step before, and this cannot be seen from here");
+                            " must have no damping (gamma 0), which would depend on the velocities of "
+                            "the step before; this fix cannot check it");
 }
 
 }    // namespace StokesDyn

@@ -48,8 +48,8 @@ void find_wall(LAMMPS *lmp, const std::string &command, Scene::Settings &setting
     fail(lmp, command + ": keyword wall: EDGE: that side of the box follows the spheres (boundary s "
                         "or m): give the position of the wall, or boundary f there");
   if (!upright(domain, wall.axis))
-    fail(lmp, command + ": keyword wall: EDGE: that side of the box leans: give the position of the "
-                        "wall");
+    fail(lmp, command + ": keyword wall: EDGE: that side of the box is tilted: give the position of "
+                        "the wall");
   wall.at = side_of_box(domain, wall);
 }
 

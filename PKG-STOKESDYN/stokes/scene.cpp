@@ -281,7 +281,7 @@ void Scene::place(int n_all_or_copies)
   const sd_status status = sd_mobility_place(&omega, engine, &scene);
   if (status != SD_OK)
     fail_by(lmp, status,
-            command + ": the spheres of a product by " + engine->name + ": " +
+            command + ": set-up of the matrix-vector product by " + engine->name + ": " +
                 sd_status_string(status));
 }
 

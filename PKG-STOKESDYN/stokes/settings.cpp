@@ -30,9 +30,9 @@ static void refuse_second_wall(LAMMPS *lmp, const std::vector<std::string> &word
   }
   if (walls > 1)
     fail(lmp, std::string(StokesSettings::COMMAND) +
-                  ": keyword wall: there is one plane wall. The images of two walls, or of a corner, "
-                  "do not add up to their flow: leave out the farther one, which at 25 radii is "
-                  "worth 3 %");
+                  ": keyword wall: only one plane wall is possible, since the images of two walls, or "
+                  "of a corner, do not add up to their flow: leave out the farther one (at 25 radii a "
+                  "wall changes velocities by 3 %)");
 }
 
 StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &words)
@@ -68,7 +68,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (tolerance > 0.1 && lmp->comm->me == 0)
     lmp->error->warning(FLERR,
                         std::string(COMMAND) + ": keyword relative_tolerance: '" + text(tolerance) +
-                            "' allows forces that are off by more than a tenth");
+                            "' allows errors of the forces of more than a tenth");
 }
 
 static double smallest_gap(Keywords &in)
@@ -91,7 +91,7 @@ static double far_field_tolerance(Keywords &in)
 {
   const double tolerance = in.positive();
   if (!(tolerance >= 1e-13 && tolerance <= 0.1))
-    in.refuse("'" + text(tolerance) + "' must be 1e-13 ... 0.1");
+    in.refuse("'" + text(tolerance) + "' must be from 1e-13 to 0.1");
   return tolerance;
 }
 
@@ -107,7 +107,7 @@ static double relative_tolerance(Keywords &in)
 {
   const double tolerance = in.positive();
   if (tolerance >= 1.0)
-    in.refuse("'" + text(tolerance) + "' must be < 1: no force at all satisfies 1");
+    in.refuse("'" + text(tolerance) + "' must be < 1: otherwise forces of 0 are a solution");
   return tolerance;
 }
 
@@ -191,8 +191,8 @@ void StokesSettings::parse(Keywords &in)
 void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) const
 {
   in.require(!lubrication.on || all_pairs,
-             "keyword lubrication: yes requires cut_off_distance inf and clumps_only no: it is what "
-             "close spheres resist more than they do in the mobility of all");
+             "keyword lubrication: yes requires cut_off_distance inf and clumps_only no, since it "
+             "corrects the mobility matrix of all spheres");
   in.require(!lubrication.on || scene.rotation || rigid.shell > 1 || shells.on(),
              "keyword lubrication: yes requires rotation yes (or a shell)");
   in.require(!shells.on() || all_pairs,
@@ -204,7 +204,7 @@ void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) con
              "keyword multiblob: the spheres of rigid clumps are shells of points already; leave "
              "out shell");
   in.require(!shells.on() || !in.given("rotation") || scene.rotation,
-             "keyword multiblob: bodies of points turn; leave out rotation no");
+             "keyword multiblob: shells of points always rotate; leave out rotation no");
   in.require(!shells.on() || !in.given("precondition"),
              "keyword multiblob has its own preconditioner; leave out precondition");
   in.require(!shells.on() || lubrication.range <= SD_FILM_LARGEST_XI,
@@ -247,7 +247,7 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!ambient.grid_has_visc || !grid_file.empty(),
              "keyword visc: 'grid' requires fluid_velocity grid FILE");
   in.require(!ambient.box || !ambient.has_vorticity,
-             "keyword fluid_vorticity: fluid_velocity box has one of its own");
+             "keyword fluid_vorticity: fluid_velocity box has a vorticity of its own");
   in.require(in.given("cut_off_distance") || scene.clumps_only,
              "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
   in.require(scene.taper == SD_TAPER_NONE || std::isfinite(scene.cutoff),
@@ -276,8 +276,8 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!rigid.auto_resolve || scene.clumps_only,
              "keyword rigid_clumps: 'auto' requires clumps_only yes");
   in.require(!rigid.on || !scene.clumps_only || std::isinf(scene.cutoff),
-             "keyword rigid_clumps: no cut_off_distance may be given with clumps_only yes, the whole "
-             "of a clump is solved");
+             "keyword rigid_clumps: no cut_off_distance may be given with clumps_only yes, since a "
+             "clump is solved as a whole");
   in.require(!rigid.on || scene.clumps_only || scene.rotation || rigid.shell > 1 || shells.on(),
              "keyword rigid_clumps: with clumps_only no, rotation yes (or a shell) is required");
   in.require(!in.given("shell") || rigid.on, "keyword shell requires rigid_clumps yes");

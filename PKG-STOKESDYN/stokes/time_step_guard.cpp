@@ -252,10 +252,10 @@ void TimeStepGuard::look_at_films(sd_lubrication &near, Scene &scene)
   const double films = 2.0 / rate;
   if (update->setupflag)
     utils::logmesg(lmp,
-                   command + ": keyword lubrication: explicit time steps of free spheres up to " +
-                       text(films) +
-                       " are stable with the gaps of now, shorter ones with smaller gaps; fix "
-                       "stokes_dynamics/overdamped has no such limit\n");
+                   command + ": keyword lubrication: with the present gaps, explicit time steps of free spheres "
+                             "are stable up to " + text(films) +
+                       "; smaller gaps need shorter steps, and fix stokes_dynamics/overdamped has no "
+                       "such limit\n");
   if (warned_of_films || update->dt <= films) return;
   warned_of_films = true;
   error->warning(

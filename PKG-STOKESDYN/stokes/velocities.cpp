@@ -128,7 +128,8 @@ void Velocities::find_held()
   MPI_Allreduce(MPI_IN_PLACE, &split, 1, MPI_LMP_BIGINT, MPI_MIN, world);
   if (split != RigidClumps::NOBODY)
     fail(lmp,
-         HELD + ": the clump of molecule " + std::to_string(split) + " is in the group in part: all of its spheres must be, or none");
+         HELD + ": the clump of molecule " + std::to_string(split) +
+             " is only partly in the group: all of its spheres must be in it, or none");
 }
 
 /* [6 bodies] velocities of those that are held, for the core; is_held tells which */

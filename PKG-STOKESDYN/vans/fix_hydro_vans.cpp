@@ -158,7 +158,7 @@ void FixHydroVans::find_names()
 void FixHydroVans::init()
 {
   if (update->whichflag == 2)
-    set.voice.fail("the force depends on velocities: it is no force for a minimisation");
+    set.voice.fail("minimize cannot be used with it: the force depends on velocities");
   if (utils::strmatch(update->integrate_style, "^respa"))
     set.voice.fail("run_style respa is not supported");
   check_box();
@@ -230,8 +230,8 @@ void FixHydroVans::tell_sizes()
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   if (all[0] * all[1] > 1.01)
     set.voice.warn("rules yade: radii from " + text(1.0 / all[1]) + " to " + text(all[0]) +
-                   " count as their mean in what the water gives to the grains, which can be "
-                   "wrong by a factor of two: take classes yes, or rules consistent");
+                   " are replaced by their mean in the forces on the grains, which can be wrong by a "
+                   "factor of two: use classes yes, or rules consistent");
 }
 
 /* Drag acts with the velocity of the step before: beyond 2/rate a step overshoots and grows. Looked

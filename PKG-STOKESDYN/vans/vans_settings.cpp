@@ -329,22 +329,22 @@ void VansSettings::check(const Keywords &in) const
   in.require(!yade() || mesh_file.empty(),
              "keyword mesh: rules yade knows slices of one height only");
   in.require(!law.felt_by_volume || !yade(),
-             "keyword felt: rules yade feel the water at the centre");
+             "keyword felt is not available with rules yade, which feel the water at the centre");
   in.require(!law.felt_by_volume || !point,
-             "keyword felt: with grains point all of a grain is at its centre");
-  in.require(!in.given("renewal") || fluctuates(), "keyword renewal: there are no fluctuations");
+             "keyword felt has no effect with grains point");
+  in.require(!in.given("renewal") || fluctuates(), "keyword renewal requires fluctuations");
   in.require(!in.given("intensity") || fluctuates(),
-             "keyword intensity: there are no fluctuations");
+             "keyword intensity requires fluctuations");
   in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
   in.require(!in.given("schmidt") || fluctuation == LANGEVIN,
-             "keyword schmidt: it is of fluctuation langevin");
+             "keyword schmidt requires fluctuation langevin");
   in.require(fluctuation != LANGEVIN || !yade(),
-             "keyword fluctuation: rules yade have no langevin");
-  in.require(law.drag.fall == 0.0 || !yade(), "keyword fall_diameter: rules yade have spheres");
+             "keyword fluctuation: langevin is not available with rules yade");
+  in.require(law.drag.fall == 0.0 || !yade(), "keyword fall_diameter is not available with rules yade");
   in.require(!yade() || (law.drag.law == SD_VANS_DRAG_YADE &&
                          law.drag.hindrance == SD_VANS_HINDRANCE_POWER),
-             "keyword drag: rules yade have drag yade and hindrance n only");
-  in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass: rules yade have none");
+             "keyword drag: with rules yade only drag yade and hindrance n are available");
+  in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass is not available with rules yade");
   in.require(!upflow || (averages() && !yade()),
              "keyword upflow: it needs couple one or two, and rules consistent");
   in.require(reach == 0.0 || (fluid.held && follows()),
@@ -359,10 +359,10 @@ void VansSettings::check(const Keywords &in) const
   in.require(!follows() || (couple == TWO && !yade()),
              "keyword surface: follow needs couple two and rules consistent");
   const bool walls = fluid.width > 0.0;
-  in.require(walls || fluid.wall_roughness == 0.0, "keyword wall_roughness: there is no sidewall");
-  in.require(walls || !fluid.narrow, "keyword wall_mixing: there is no sidewall");
+  in.require(walls || fluid.wall_roughness == 0.0, "keyword wall_roughness requires sidewall");
+  in.require(walls || !fluid.narrow, "keyword wall_mixing requires sidewall");
   in.require(!yade() || (fluid.wall_roughness == 0.0 && !fluid.narrow),
-             "keywords wall_roughness and wall_mixing: rules yade have smooth walls only");
+             "keywords wall_roughness and wall_mixing are not available with rules yade");
   const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() &&
       dpdx.number() == 0.0 && !fluid.driven && profile_file.empty();
   in.require(!solves() || law.rest || !stands || (fluid.held && reach == 0.0),

@@ -239,16 +239,16 @@ void VansStream::tell_limits(double T, double dt, const double cut[2])
     set.voice.warn("the couplings are too far apart: drag changes the water at z = " +
                    text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) +
                    ", b T = " + text(rate * T) + " for the time T = " + text(T) +
-                   " of a coupling; above 3 drag and stream drive each other up. Take a T of at "
+                   " of a coupling; above 3 drag and stream amplify each other. Use a T of at "
                    "most " + text(3.0 / rate));
   }
   const double force = std::fabs(fluid.rho * drive) * wet.edge[wet.ncell - 1];
   if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * force) {
     told_cut = true;
     set.voice.warn(text(100.0 * cut[0] / cut[1]) +
-                   " % of the drag does not reach the water: b is cut off at 1/(10 dt) = " +
-                   text(0.1 / dt) + ", drag asks for up to " + text(rate) +
-                   ". Take a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " +
+                   " % of the drag does not reach the water: b is limited to 1/(10 dt) = " +
+                   text(0.1 / dt) + ", and the drag needs up to " + text(rate) +
+                   ". Use a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " +
                    (set.yade() ? "rules consistent" : "conserve yes"));
   }
 }

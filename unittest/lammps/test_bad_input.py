@@ -76,7 +76,7 @@ AT_THE_COMMAND += [(f"{cut} visc 1.3 {words}", [expected]) for cut, words, expec
     ("cut_off_distance inf", "multiblob 12 tensor oseen", "keyword multiblob is not available with tensor oseen: use tensor rpy"),
     ("cut_off_distance inf", "multiblob 12 rigid_clumps yes shell 12",
      "keyword multiblob: the spheres of rigid clumps are shells of points already; leave out shell"),
-    ("cut_off_distance inf", "multiblob 42 rotation no", "keyword multiblob: bodies of points turn; leave out rotation no"),
+    ("cut_off_distance inf", "multiblob 42 rotation no", "keyword multiblob: shells of points always rotate; leave out rotation no"),
     ("cut_off_distance inf", "multiblob 12 algorithm 2 precondition sparse", "keyword multiblob has its own preconditioner"),
     ("cut_off_distance inf", "multiblob 12 lubrication yes lubrication_range 3",
      "keyword lubrication_range: '3' must be <= 2 with multiblob"),

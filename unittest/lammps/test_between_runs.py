@@ -100,7 +100,7 @@ def test_a_tolerance_that_no_force_at_all_satisfies_is_refused(simulation, toler
 
 def test_a_loose_tolerance_is_warned_of(tmp_path):
     lines = input_lines(four(), STYLE + " relative_tolerance 0.5", tmp_path / "data", box=[(-9, 9)] * 3)
-    assert "keyword relative_tolerance: '0.5' allows forces that are off by more than a tenth" in " ".join(lmp(tmp_path, lines).text.split())
+    assert "keyword relative_tolerance: '0.5' allows errors of the forces of more than a tenth" in " ".join(lmp(tmp_path, lines).text.split())
     lines = input_lines(four(), STYLE + " relative_tolerance 0.1", tmp_path / "data", box=[(-9, 9)] * 3)
     assert "relative_tolerance" not in lmp(tmp_path, lines).log.split("pair_coeff")[1]
 

@@ -263,7 +263,7 @@ LONE_CLUMPS = f"cut_off_distance inf visc {ETA} clumps_only yes rigid_clumps yes
 
 def test_what_midpoint_cannot_move_is_an_error(simulation, tmp_path):
     spheres = Spheres(TRIO, A, molecule=[1, 1, 2])
-    with pytest.raises(LammpsError, match="midpoint moves what feels each other"):
+    with pytest.raises(LammpsError, match="midpoint is for bodies that feel each other"):
         noise(simulation(spheres, LONE_CLUMPS, fix=False, dt=1e-3), "scheme midpoint").run(0)
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA}", fix=False, dt=1e-3).commands("group some id 1\nfix go some move linear 1 0 0")
     with pytest.raises(LammpsError, match="midpoint looks at spheres between steps, where fix move does not put"):
@@ -349,9 +349,9 @@ INF = f"cut_off_distance inf visc {ETA}"
                                             ("temperature 1 5 noise_tolerance 0.5", "'0.5' must be below 0.5"),
                                             ("temperature 1 5 noise_tolerance 0", "noise_tolerance: '0' must be > 0"),
                                             ("temperature v_none 5", "variable 'none' does not exist"),
-                                            ("temperature v_atoms 5", "noise has one temperature"),
+                                            ("temperature v_atoms 5", "all atoms have one temperature"),
                                             ("temperature v_minus 5", "'-2' must be >= 0, in step 0"),
-                                            ("temperature 1 5 adapt 1 1e-3 1 1", "leave adapt out"),
+                                            ("temperature 1 5 adapt 1 1e-3 1 1", "leave out adapt"),
                                             ("temperature 1 5 held some scheme ab2", "keyword held: the mobility has a drift"),
                                             ("noise_tolerance 0.1", "keyword noise_tolerance requires a temperature")])
 def test_words_that_mean_nothing_are_errors(simulation, words, message):

@@ -115,7 +115,7 @@ def test_a_held_run_in_pieces_is_the_run_in_one(simulation, tmp_path):
 
 @pytest.mark.parametrize("line, message", [
     (f"{FIX} held nobody", "keyword held: group 'nobody' does not exist"),
-    (f"group part id 4\n{FIX} held part", "keyword held: the clump of molecule 1 is in the group in part"),
+    (f"group part id 4\n{FIX} held part", "keyword held: the clump of molecule 1 is only partly in the group"),
     (f"{FIX}\nfix m all move linear 1 0 0", "fix m of style move integrates atoms of the same group"),
     (f"group some id 1\n{FIX} held some\nfix m all move linear 1 0 0", "fix m of style move integrates atoms of the same group"),
 ])
@@ -129,6 +129,6 @@ def test_what_cannot_be_held_is_named(simulation, line, message):
 def test_who_takes_forces_away_to_hold_spheres_is_told_how(tmp_path, style, told):
     lines = input_lines(Spheres(X), f"cut_off_distance inf visc {ETA}", str(tmp_path / "data"), fix=False, box=BOX, dt=0.01)
     log = lmp(tmp_path, lines + ["group bed id 1 2", f"fix hold bed {style}", FIX, "run 0"]).log
-    assert ("without inertia that holds no sphere: keyword held GROUP does" in log) == told
+    assert ("without inertia that does not hold a sphere: use keyword held GROUP" in log) == told
     log = lmp(tmp_path, lines + ["group bed id 1 2", f"fix hold bed {style}", f"{FIX} held bed", "run 0"]).log
-    assert "holds no sphere" not in log
+    assert "does not hold a sphere" not in log

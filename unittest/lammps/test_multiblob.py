@@ -179,7 +179,7 @@ def test_a_solve_begins_where_the_last_one_ended(simulation):
 
 def test_radii_too_different_for_films(simulation):
     sim = simulation(Spheres([(0, 0, 0), (0, 0, 13)], [1.0, 11.0]), "cut_off_distance inf visc 1 multiblob 12 lubrication yes")
-    with pytest.raises(LammpsError, match="with multiblob it knows pairs up to a ratio of 10; use group to select, or lubrication no"):
+    with pytest.raises(LammpsError, match="with multiblob lubrication is for ratios of radii up to 10; use group to select spheres, or lubrication no"):
         sim.run()
 
 
@@ -326,7 +326,7 @@ def test_stress_needs_shells_of_points(simulation):
 def test_stress_of_an_open_box_has_no_average(simulation):
     sim = simulation(Spheres([(1, 2, 3)]), "cut_off_distance inf visc 1 multiblob 12", fix=False)
     sim.commands([MOVE, STRESS, "thermo_style custom step c_S[1]"])
-    with pytest.raises(LammpsError, match="its vector is an average over a periodic box; per-atom rows need none"):
+    with pytest.raises(LammpsError, match="its vector is an average over a periodic box, and this box is not periodic"):
         sim.run()
 
 

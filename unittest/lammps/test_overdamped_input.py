@@ -31,8 +31,8 @@ def test_other_atoms_may_be_integrated_otherwise(simulation):
     ("fix other all nvt temp 1 1 1", "fix other of style nvt integrates atoms of the same group"),
     ("fix other all rigid single", "fix other of style rigid integrates atoms of the same group"),
     ("fix other all rigid/small molecule", "fix other of style rigid/small integrates atoms of the same group"),
-    ("fix other all viscous 1.0", "fix other of style viscous drags atoms of the same group"),
-    ("fix other all langevin 1 1 1 4711", "fix other of style langevin drags atoms of the same group"),
+    ("fix other all viscous 1.0", "fix other of style viscous adds a drag to atoms of the same group"),
+    ("fix other all langevin 1 1 1 4711", "fix other of style langevin adds a drag to atoms of the same group"),
     ("fix other all stokes_dynamics", "fix other of style stokes_dynamics cannot apply"),
     ("fix other all stokes_dynamics apply yes", "fix other of style stokes_dynamics cannot apply"),
     ("fix other all stokes_dynamics/overdamped", "fix other of style stokes_dynamics/overdamped integrates atoms of the same"),
@@ -43,7 +43,7 @@ def test_other_atoms_may_be_integrated_otherwise(simulation):
     ("pair_style none", "there is no pair_style stokes_dynamics"),
     ("run_style respa 2 2", "respa"),
     ("group some id 1\npair_style stokes_dynamics cut_off_distance inf visc 1 group some\npair_coeff * *",
-     "atom 2 is in its group or in the selection of pair_style stokes_dynamics"),
+     "atom 2 is selected either by the group of this fix or by pair_style stokes_dynamics"),
     ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke/history 10 NULL 0.3 NULL 0 0 stokes_dynamics cut_off_distance inf visc 1\n"
      "pair_coeff * * gran/hooke/history\npair_coeff * * stokes_dynamics", "pair_style gran/hooke/history damps its contacts .gamma 0.3"),
     ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke 10 NULL 0.3 0.1 0 1 stokes_dynamics cut_off_distance inf visc 1\n"

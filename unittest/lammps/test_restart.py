@@ -257,7 +257,7 @@ def test_memory_of_another_version_is_warned_of_once_and_the_run_begins_afresh(t
     ended = lmp(tmp_path, lines + dump_lines(tmp_path / "again", columns=COLUMNS) + ["run 0"])
     said = " ".join(ended.log.split())
     assert said.count("the restart file was written by another version of the plugin, 9") == 1
-    assert f"this is {VERSION.decode()}: what it holds for this fix is not taken" in said
+    assert f"this is {VERSION.decode()}: its data for this fix are ignored" in said
     now = read_dump(tmp_path / "again")[-1][1]
     assert np.array_equal(now[:, :6], then[:, :6])
     # velocity Verlet's half step is not known any more: the forces are those of the whole velocities

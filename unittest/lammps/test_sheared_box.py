@@ -160,7 +160,7 @@ def test_a_fluid_at_rest_allows_compression(simulation):
 
 
 def test_vorticity_of_the_box_is_not_given_twice(simulation):
-    with pytest.raises(Exception, match="keyword fluid_vorticity: fluid_velocity box has one of its own"):
+    with pytest.raises(Exception, match="keyword fluid_vorticity: fluid_velocity box has a vorticity of its own"):
         simulation(cloud(), "cut_off_distance inf visc 1 rotation yes fluid_velocity box fluid_vorticity 0 0 1", fix=False, box=BOX)
 
 

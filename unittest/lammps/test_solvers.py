@@ -93,7 +93,7 @@ def test_running_out_of_iterations_warns_and_is_counted(simulation, tmp_path, wo
     assert sim.fix_vector()[6] == sim.solves == 4
     assert sim.residual > 1e-10 and sim.iterations == iterations
     sim.close()
-    warnings = [line for line in log.read_text().splitlines() if line.startswith("WARNING") and "iterations used up" in line]
+    warnings = [line for line in log.read_text().splitlines() if line.startswith("WARNING") and "no convergence within the allowed iterations" in line]
     assert len(warnings) == 1
     for word in ("residual", f"iteration {iterations}", f"max_iter {iterations}", "relative_tolerance"):
         assert word in warnings[0]

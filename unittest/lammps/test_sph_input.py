@@ -121,10 +121,10 @@ AT_RUN = {
                          "Fix wall/adami/sph: atom 58 of its group is also integrated by fix move"),
     "wall group moves with fix sph": (PAIR + "fix move all sph\ngroup w type 2\nfix w w wall/adami/sph", "is also integrated by fix move"),
     "no such pressure": (PAIR + "group one type 1\ngroup two type 2\nfix move one nve/sph\nfix w two wall/adami/sph gravity 0 -1e7 0",
-                         "that the fluid asks for is not above -60000, the least of fix eos"),
+                         "that the fluid asks for is not above -60000, the lowest of fix eos"),
     "no such pressure of absolut": (PAIR + "unfix eos\nfix eos all sph/pressure absolut 3\ngroup one type 1\ngroup two type 2\n"
                                     "fix move one nve/sph\nfix w two wall/adami/sph gravity 0 -1e7 0",
-                                    "that the fluid asks for is not above 0, the least of fix eos"),
+                                    "that the fluid asks for is not above 0, the lowest of fix eos"),
     "stop": (PAIR.replace("* *", "* * c 20") + MOVE + "timestep 0.1\nfix c all check/timestep/sph 1 0.3 stop", "more than 0.3"),
 }
 

@@ -134,7 +134,7 @@ def test_open_ends_on_any_number_of_ranks_and_over_restarts(tmp_path):
     (("xlo 0 0.7", "left 0 0.7"), "'left' is none of: xlo, xhi"),
     (("xlo 0 0.7", "xlo 0 0.9"), "does not fit into the box, which ends at -0.7"),
     (("xlo 0 0.7", "xlo 0 0.5"), "the width 0.5 of the layer is too small"),
-    (("xlo 0 0.7", "ylo 0.3 0.3"), "the box must end beyond the layer with boundary f, along y"),
+    (("xlo 0 0.7", "ylo 0.3 0.3"), "the box must have boundary f beyond the layer, along y"),
     (("fix move all nve/sph", "group some id 1:100\nfix move some nve/sph"), "of its group is not moved by fix nve/sph"),
     (("pressure 0", "pressure -20"), "the pressure -20 that is asked of it is not above -14.2857"),
     (("velocity 1", "velocity v_no"), "variable 'no' does not exist"),

@@ -229,7 +229,7 @@ def test_ranks_and_restarts_leave_every_output_alone(scheme, tmp_path):
 
 
 ERRORS = {
-    "no probe": ("compute P all sph/probe", "no probe: pressure X Y Z or height AXIS X Y Z"),
+    "no probe": ("compute P all sph/probe", "there is no probe: give pressure X Y Z or height AXIS X Y Z"),
     "kind": ("compute P all sph/probe depth 0 0 0", "'depth' is none of: pressure, height"),
     "axis": ("compute P all sph/probe height up 0 0 0", "'up' is none of: x, y, z"),
     "short": ("compute P all sph/probe pressure 0 0", "keyword point of a probe: value missing"),

@@ -163,5 +163,5 @@ def test_bad_intensity(tmp_path, monkeypatch, words, message):
 
 
 def test_intensity_without_fluctuations():
-    with pytest.raises(Exception, match="keyword intensity: there are no fluctuations"):
+    with pytest.raises(Exception, match="keyword intensity requires fluctuations"):
         Scene().do("fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 intensity 0.1")

@@ -75,8 +75,8 @@ def test_the_water_gets_the_drag_of_grains_of_any_sizes():
 
 def test_rules_yade_with_two_sizes_are_told(tmp_path):
     vans = "mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61 rules yade"
-    assert "radii from 0.0024 to 0.003 count as their mean" in run_lmp(tmp_path, bed_script(vans) + "run 1\n").stdout
-    assert "count as their mean" not in run_lmp(tmp_path, bed_script(vans + " classes yes") + "run 1\n").stdout
+    assert "radii from 0.0024 to 0.003 are replaced by their mean" in run_lmp(tmp_path, bed_script(vans) + "run 1\n").stdout
+    assert "are replaced by their mean" not in run_lmp(tmp_path, bed_script(vans + " classes yes") + "run 1\n").stdout
 
 
 def test_a_time_step_that_is_too_long_for_the_drag_is_told(tmp_path):

@@ -41,9 +41,9 @@ BAD = [
     (dict(solve="1 1e-9"), "keyword solve: the step 1e-09 is too short for the period 1: 1e\\+09 steps of"),
     (dict(class_radii="2 0.001 0.001"), "keyword class_radii: '0.001' twice"),
     (dict(felt="surface"), "keyword felt: 'surface' is none of: centre, volume"),
-    (dict(felt="volume", rules="yade"), "keyword felt: rules yade feel the water at the centre"),
-    (dict(felt="volume", grains="point"), "keyword felt: with grains point all of a grain is at its centre"),
-    (dict(renewal="0.1"), "keyword renewal: there are no fluctuations"),
+    (dict(felt="volume", rules="yade"), "keyword felt is not available with rules yade"),
+    (dict(felt="volume", grains="point"), "keyword felt has no effect with grains point"),
+    (dict(renewal="0.1"), "keyword renewal requires fluctuations"),
     (dict(couple="fluid", fluctuation="correlated 5 0"), "keyword fluctuation: couple fluid has no grains"),
     (dict(sidewall="0 1"), "keyword sidewall: '0' must be > 0"),
     (dict(radius="-1"), "keyword radius: '-1' must be > 0"),
@@ -59,14 +59,14 @@ BAD = [
     (dict(overlap="once"), "keyword overlap: molecule IDs are needed"),
     (dict(hindrance="-1"), "keyword hindrance: '-1' must be >= 0"),
     (dict(drag="stokes"), "keyword drag: 'stokes' is none of"),
-    (dict(drag="brown_lawler", rules="yade"), "keyword drag: rules yade have drag yade and hindrance n only"),
-    (dict(hindrance="di_felice", rules="yade"), "keyword drag: rules yade have drag yade and hindrance n only"),
-    (dict(added_mass="0.5", rules="yade"), "keyword added_mass: rules yade have none"),
+    (dict(drag="brown_lawler", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
+    (dict(hindrance="di_felice", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
+    (dict(added_mass="0.5", rules="yade"), "keyword added_mass is not available with rules yade"),
     (dict(added_mass="-0.5"), "keyword added_mass: '-0.5' must be >= 0"),
     (dict(upflow="0", couple="none"), "keyword upflow: it needs couple one or two"),
-    (dict(wall_roughness="0.001"), "keyword wall_roughness: there is no sidewall"),
-    (dict(wall_mixing="yes"), "keyword wall_mixing: there is no sidewall"),
-    (dict(wall_mixing="yes", sidewall="0.1 1", rules="yade"), "wall_mixing: rules yade have smooth walls only"),
+    (dict(wall_roughness="0.001"), "keyword wall_roughness requires sidewall"),
+    (dict(wall_mixing="yes"), "keyword wall_mixing requires sidewall"),
+    (dict(wall_mixing="yes", sidewall="0.1 1", rules="yade"), "wall_mixing are not available with rules yade"),
     (dict(discharge="0.1", couple="one"), "keyword discharge: it needs couple two or fluid"),
     (dict(discharge="0.1", surface="speed 1"), "keyword discharge: with surface speed the stream is driven already"),
     (dict(discharge="0.1", pressure_gradient="1"), "keyword discharge: the pressure gradient follows from it"),
@@ -76,11 +76,11 @@ BAD = [
     (dict(adjust="depth 1", discharge="0.1"), "keyword adjust: depth needs discharge and surface follow"),
     (dict(adjust="depth 1", surface="follow 0.01"), "keyword adjust: depth needs discharge and surface follow"),
     (dict(adjust="depth 1", surface="follow 0.01", discharge="0.1", gravity="0 0 -9.8"), "nothing drives the stream"),
-    (dict(fluctuation="langevin 5 0", rules="yade"), "keyword fluctuation: rules yade have no langevin"),
-    (dict(fluctuation="correlated 5 0", schmidt="0.7"), "keyword schmidt: it is of fluctuation langevin"),
+    (dict(fluctuation="langevin 5 0", rules="yade"), "keyword fluctuation: langevin is not available with rules yade"),
+    (dict(fluctuation="correlated 5 0", schmidt="0.7"), "keyword schmidt requires fluctuation langevin"),
     (dict(fluctuation="langevin 5 0", schmidt="0"), "keyword schmidt: '0' must be > 0"),
     (dict(fall_diameter="0"), "keyword fall_diameter: '0' must be > 0"),
-    (dict(fall_diameter="0.7", rules="yade"), "keyword fall_diameter: rules yade have spheres"),
+    (dict(fall_diameter="0.7", rules="yade"), "keyword fall_diameter is not available with rules yade"),
     (dict(surface="follow 0.01", couple="fluid"), "keyword surface: follow needs couple two"),
     (dict(surface="follow 0.019"), "keyword surface: the surface at 0.019 has no room to rise"),
     (dict(surface="follow 0"), "keyword surface: '0' must be > 0"),
@@ -164,7 +164,7 @@ def test_minimisation_and_respa_are_refused():
     s = Scene()
     s.spheres([[0.01, 0.01, 0.0055]], [[0, 0, 0]], 0.001)
     s.do(line())
-    with pytest.raises(Exception, match="no force for a minimisation"):
+    with pytest.raises(Exception, match="minimize cannot be used with it"):
         s.do("minimize 0 0 1 1")
     s.close()
     s = Scene()

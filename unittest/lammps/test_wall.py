@@ -327,8 +327,8 @@ def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
 # --- what there is no answer for ----------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("words, options, message", [
-    ("wall zlo 0 wall zhi 9", {}, "keyword wall: there is one plane wall. The images of two walls, or of a corner, do not add up"),
-    ("wall zlo 0 zhi 9", {}, "there is one plane wall"),
+    ("wall zlo 0 wall zhi 9", {}, "keyword wall: only one plane wall is possible, since the images of two walls, or of a corner, do not add up"),
+    ("wall zlo 0 zhi 9", {}, "only one plane wall is possible"),
     ("wall zlo", {}, "keyword wall: .*missing|wall"),
     ("wall up 0", {}, "keyword wall: 'up'"),
     ("wall zlo 0 tensor oseen", {}, "keyword wall is not available with tensor oseen: use tensor rpy"),
@@ -339,7 +339,7 @@ def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
     ("wall zlo 0", dict(boundary="p f f"), "keyword wall: it needs boundary f, s or m in all directions, and x is periodic"),
     ("wall zlo 0", dict(boundary="p p p"), "and x is periodic"),
     ("wall zlo EDGE", dict(boundary="f f s"), "wall: EDGE: that side of the box follows the spheres"),
-    ("wall xlo EDGE", dict(tilt=(1.0, 0, 0)), "wall: EDGE: that side of the box leans: give the position of the wall"),
+    ("wall xlo EDGE", dict(tilt=(1.0, 0, 0)), "wall: EDGE: that side of the box is tilted: give the position of the wall"),
     ("wall zlo 0 fluid_velocity 0 0 0.1", {}, "nothing flows through the wall zlo at 0, and its component z is '0.1' there: give 0"),
     ("wall zlo 2.5", {}, "step 0: keyword wall: the centre of atom 1, radius 1, is 0.5 behind the wall zlo at 2.5"),
     ("wall zhi 0", {}, "keyword wall: the centre of atom . radius 1, is . behind the wall zhi at 0|atom"),

@@ -9,15 +9,15 @@ extern "C" {
 
 #define SD_STATUS_LIST(_)                                                              \
   _(SD_OK, "converged")                                                                \
-  _(SD_EMAXITER, "iterations used up")                                                 \
+  _(SD_EMAXITER, "no convergence within the allowed iterations")                       \
   _(SD_ESTAGNATED, "stopped at the accuracy of double precision, above the tolerance") \
   _(SD_EDIVERGED, "diverged")                                                          \
   _(SD_EINDEFINITE, "the mobility matrix is not positive definite")                    \
   _(SD_ESINGULAR, "the mobility matrix is singular")                                   \
   _(SD_ENOTFINITE, "met a value that is not a finite number")                          \
   _(SD_ENOMEMORY, "out of memory")                                                     \
-  _(SD_EOUTSIDE, "outside of what is given")                                             \
-  _(SD_ECALLBACK, "a function that the caller gave has failed")
+  _(SD_EOUTSIDE, "outside of the given data")                                          \
+  _(SD_ECALLBACK, "a function of the calling program has failed")
 
 typedef enum {
 #define SD_STATUS_CODE(code, text) code,
