@@ -16,11 +16,13 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixSphEnergy::FixSphEnergy(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
+FixSphEnergy::FixSphEnergy(LAMMPS *lmp, int narg, char **arg) :
+    SphFix(lmp, narg, arg), flow(COLUMNS)
 {
   nevery = 1;
   restart_global = 1;
   dynamic_group_allow = 1;
+  keep({&flow}, nullptr, false);
 }
 
 int FixSphEnergy::setmask()
@@ -32,7 +34,13 @@ sd_sph_members FixSphEnergy::group()
 {
   masses.resize(atom->nlocal + 1);
   for (int i = 0; i < atom->nlocal; i++) masses[i] = Sph::mass(lmp, i);
-  return {atom->nlocal, atom->mask, groupbit, masses.data(), atom->v ? atom->v[0] : nullptr};
+  const int *mask = atom->mask;
+  if (pair->has_ends()) {
+    masks.assign(atom->nlocal + 1, 0);
+    for (int i = 0; i < atom->nlocal; i++) masks[i] = mask[i] & ~(pair->is_held(i) ? groupbit : 0);
+    mask = masks.data();
+  }
+  return {atom->nlocal, mask, groupbit, masses.data(), atom->v ? atom->v[0] : nullptr};
 }
 
 double FixSphEnergy::elastic()
@@ -81,6 +89,72 @@ void FixSphEnergy::measure(double *out)
     }
 }
 
+void FixSphEnergy::of_particles(const sd_sph_members &members, std::vector<double> &rows)
+{
+  rows.assign(COLUMNS * (size_t) (atom->nlocal + 1), 0.0);
+  auto one = [&](int i) {
+    return sd_sph_members{1, members.mask + i, groupbit, members.m + i, members.v + 3 * (size_t) i};
+  };
+  for (const auto *fix : fixes_of<FixSphPressure>(lmp))
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & fix->groupbit) {
+        const sd_sph_members particle = one(i);
+        rows[COLUMNS * (size_t) i + STORED] =
+            sd_sph_elastic_energy(&particle, &fix->state, atom->rho + i);
+      }
+  for (auto *fix : fixes_of(lmp, "gravity")) {
+    int dim;
+    const auto *g = (const double *) fix->extract("gvec", dim);
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & fix->groupbit) {
+        double place[3];
+        domain->unmap(atom->x[i], atom->image[i], place);
+        const sd_sph_members particle = one(i);
+        rows[COLUMNS * (size_t) i + ENERGY] -= sd_sph_along(&particle, g, place);
+      }
+  }
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *row = &rows[COLUMNS * (size_t) i], nobody;
+    const sd_sph_members particle = one(i);
+    row[ENERGY] += row[STORED] + sd_sph_kinetic_energy(&particle);
+    row[POWER] = sd_sph_power(&particle, pair->own_forces() + 4 * (size_t) i, &nobody);
+  }
+}
+
+/* Who stands in a layer is not pushed by forces. So a particle that has come into the flow in this
+ * step got the second half of the step's push, and one that has left it, or is deleted, the first
+ * half: these halves are in the trapezoids of end_of_step, and not in what the particle brings. */
+void FixSphEnergy::look_at_ends(bool counts)
+{
+  if (!pair->has_ends()) return;
+  const sd_sph_members members = group();
+  std::vector<double> rows;
+  of_particles(members, rows);
+  double now[COLUMNS] = {}, gone[COLUMNS], come[COLUMNS] = {};
+  std::copy_n(in_flow, (int) COLUMNS, gone);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool was_there = flow.has(i);
+    if (!(members.mask[i] & groupbit)) {
+      if (was_there) flow.take(i);
+      continue;
+    }
+    const double *row = &rows[COLUMNS * (size_t) i];
+    double *before = flow.give(i);
+    for (int c = 0; c < COLUMNS; c++) {
+      now[c] += row[c];
+      if (was_there)
+        gone[c] -= before[c];
+      else
+        come[c] += row[c];
+      before[c] = row[c];
+    }
+  }
+  std::copy_n(now, (int) COLUMNS, in_flow);
+  if (!counts) return;
+  for (int c : {ENERGY, STORED}) brought[c] += come[c] - gone[c];
+  brought[ENERGY] -= 0.5 * dt * (come[POWER] + gone[POWER]);
+}
+
 void FixSphEnergy::setup(int /*vflag*/)
 {
   const double now = elastic();
@@ -88,6 +162,7 @@ void FixSphEnergy::setup(int /*vflag*/)
   has_run = true;
   elastic_then = now;
   measure(power);
+  look_at_ends(false);
 }
 
 /* fix dt/reset changes the step at the end of one, before or after this fix. */
@@ -106,6 +181,7 @@ void FixSphEnergy::end_of_step()
     done[k] += 0.5 * dt * (power[k] + now[k]);
     power[k] = now[k];
   }
+  look_at_ends(true);
 }
 
 void FixSphEnergy::post_run()
@@ -116,16 +192,18 @@ void FixSphEnergy::post_run()
 void FixSphEnergy::values(double *out)
 {
   const sd_sph_members members = group();
-  double mine[2 + POWERS] = {sd_sph_kinetic_energy(&members), potential(members)},
-         all[2 + POWERS];
-  std::copy_n(done, (int) POWERS, mine + 2);
-  MPI_Allreduce(mine, all, 2 + POWERS, MPI_DOUBLE, MPI_SUM, world);
-  const double *work = all + 2;
+  double mine[4 + POWERS] = {sd_sph_kinetic_energy(&members), potential(members), brought[ENERGY],
+                             brought[STORED]},
+         all[4 + POWERS];
+  std::copy_n(done, (int) POWERS, mine + 4);
+  MPI_Allreduce(mine, all, 4 + POWERS, MPI_DOUBLE, MPI_SUM, world);
+  const double *work = all + 4;
   out[KINETIC] = all[0];
   out[POTENTIAL] = all[1];
   out[ELASTIC] = elastic();
   out[WORK] = -work[ON_OTHERS];
-  const double stored = has_run ? out[ELASTIC] - jumps : 0.0;
+  out[BROUGHT] = all[2];
+  const double stored = has_run ? out[ELASTIC] - jumps - all[3] : 0.0;
   out[DISSIPATED] = out[WORK] - work[ON_GROUP] + work[SHIFTED] - stored;
   out[FRICTION] = -work[RUBS];
 }
@@ -134,8 +212,11 @@ void FixSphEnergy::write_restart(FILE *fp)
 {
   std::vector<double> sums(POWERS);
   MPI_Reduce(done, sums.data(), POWERS, MPI_DOUBLE, MPI_SUM, 0, world);
+  std::vector<double> ends(2);
+  MPI_Reduce(brought, ends.data(), 2, MPI_DOUBLE, MPI_SUM, 0, world);
   NamedState state(STYLE);
   state.put("done", sums);
+  state.put("brought", ends);
   state.put("elastic", update->whichflag == 1 ? elastic() : elastic_then);
   state.put("jumps", jumps);
   state.put("has_run", has_run);
@@ -146,7 +227,10 @@ void FixSphEnergy::restart(char *buf)
 {
   NamedState state(STYLE);
   if (!state.read(lmp, buf)) return;
-  if (comm->me == 0) state.get("done", done, POWERS);
+  if (comm->me == 0) {
+    state.get("done", done, POWERS);
+    state.get("brought", brought, 2);
+  }
   elastic_then = state.get("elastic", 0.0);
   jumps = state.get("jumps", 0.0);
   has_run = state.get("has_run", 0.0) != 0.0;

@@ -24,7 +24,7 @@ class FixSphEnergy : public SphFix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  enum Value { KINETIC, POTENTIAL, ELASTIC, DISSIPATED, FRICTION, WORK, VALUES };
+  enum Value { KINETIC, POTENTIAL, ELASTIC, DISSIPATED, FRICTION, WORK, BROUGHT, VALUES };
   /* All of the moment, the same on all ranks. */
   void values(double *out);
 
@@ -39,10 +39,21 @@ class FixSphEnergy : public SphFix {
   bool has_run = false;
   std::vector<double> masses;
 
+  /* With open ends the flow alone counts: particles in the layers push it from outside, and those
+   * that come and go bring their energy and take it along. Of a particle of the flow after the last
+   * step: all of its energy, the elastic part, the power of the pair style's force on it; the sums of
+   * all of this rank, and what has come in since the beginning, less what has gone. */
+  enum { ENERGY, STORED, POWER, COLUMNS };
+  AtomRows flow;
+  double in_flow[COLUMNS] = {}, brought[2] = {};
+  std::vector<int> masks;
+
   sd_sph_members group();
   double elastic();
   double potential(const sd_sph_members &);
   void measure(double *);
+  void of_particles(const sd_sph_members &, std::vector<double> &rows);
+  void look_at_ends(bool counts);
 };
 
 }    // namespace StokesDyn

@@ -20,6 +20,7 @@ FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) :
   in.parse({
       {"gravity", [&] { for (Field &g : gravity) g = Field::parse(in); }},
       {"slip", [&] { slip = in.yes_no(); }},
+      {"suction", [&] { suction = in.yes_no(); }},
       {"own_acceleration", [&] { own_acceleration = in.yes_no(); }},
   });
   if (own_acceleration) keep({&motion}, nullptr, true);

@@ -21,7 +21,7 @@ class FixWallAdamiSph : public WallFix {
   /* Per mass, as wall particle i sees it: gravity, with own_acceleration less that of the particle,
    * a mean over the time tau; once a step. */
   const double *body_force(int i, double tau);
-  bool slip = false;
+  bool slip = false, suction = true;
 
  private:
   Field gravity[3];

@@ -251,7 +251,7 @@ double PairSph::Neighbours::bytes() const
 
 double PairSph::memory_usage()
 {
-  double bytes = near.bytes() + around.bytes();
+  double bytes = near.bytes() + around.bytes() + of_flow.bytes();
   for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order, &own, &rubs})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows})

@@ -60,6 +60,7 @@ class PairSph : public LAMMPS_NS::Pair {
   double dW_dr(int itype, double r) const;
   /* Does particle i, of this rank or a ghost, stand in the layer of a fix sph/inlet or sph/outlet? */
   bool is_held(int i) const;
+  bool has_ends() const { return !inlets.empty() || !outlets.empty(); }
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
   /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc
@@ -109,6 +110,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void find_fixes();
   void find_integrators();
   void choose_scheme();
+  void check_stiffness();
   void check_groups();
   void check_openings();
   LAMMPS_NS::bigint in_both(int bits, int more_bits);
@@ -131,7 +133,7 @@ class PairSph : public LAMMPS_NS::Pair {
   // Do two ranks share their pairs? With sums that have many columns each has its own: no ghost
   // then gets anything, and nothing goes back.
   bool shared = true;
-  Neighbours near, around;
+  Neighbours near, around, of_flow;
   LAMMPS_NS::bigint around_of = -1;    // the step of the list that `around` is made of
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
@@ -163,6 +165,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void pressures_of_all();
   void forces(bool rates);
   void keep_forces();
+  sd_sph_list pairs_of_flow();
   void check_list();
   [[noreturn]] void coincident();
   void tally();

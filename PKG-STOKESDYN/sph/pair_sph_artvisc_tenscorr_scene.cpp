@@ -41,6 +41,7 @@ void PairSph::init_style()
   find_fixes();
   find_integrators();
   choose_scheme();
+  check_stiffness();
   check_groups();
   check_openings();
 

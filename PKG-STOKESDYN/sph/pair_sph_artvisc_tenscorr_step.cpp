@@ -336,7 +336,14 @@ void PairSph::forces(bool rates)
 void PairSph::keep_forces()
 {
   const int n = particles.n;
+  const sd_sph_list list = has_ends() ? pairs_of_flow() : pairs;
+  const sd_sph_both close = (has_ends() ? of_flow : near).both(atom->nlocal);
   own = f4;
+  if (has_ends()) std::fill(own.begin(), own.end(), 0.0);
+  if (has_ends() && corrects)
+    sd_sph_corrected_forces(&model, &close, &particles, own.data(), nullptr);
+  else if (has_ends())
+    sd_sph_forces(&model, &list, &particles, 0, own.data(), nullptr);
   reverse(own.data(), 4);
   if (corrects)
     for (int i = 0; i < atom->nlocal; i++)
@@ -348,11 +355,10 @@ void PairSph::keep_forces()
   friction.tenscorr = 0;
   if (!corrects) friction.scheme = SD_SPH_PLAIN;
   for (int i = 0; i < n; i++) x4[4 * (size_t) i + 3] = 0.0;
-  const sd_sph_both close = near.both(atom->nlocal);
   if (corrects)
     sd_sph_corrected_forces(&friction, &close, &particles, rubs.data(), nullptr);
   else
-    sd_sph_forces(&friction, &pairs, &particles, 0, rubs.data(), nullptr);
+    sd_sph_forces(&friction, &list, &particles, 0, rubs.data(), nullptr);
   reverse(rubs.data(), 4);
 }
 

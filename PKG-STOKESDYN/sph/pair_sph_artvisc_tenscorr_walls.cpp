@@ -43,7 +43,7 @@ const FixSphPressure *PairSph::state_of(int i) const
 void PairSph::wall_row(int i, const double *sums_i, double *row)
 {
   const FixSphPressure *eos = state_of(i);
-  const sd_sph_wall how = {&eos->state, wall->slip};
+  const sd_sph_wall how = {&eos->state, wall->slip, wall->suction};
   const double sound = sd_sph_speed_of_sound(&eos->state, row[0]);
   const double *b = wall->body_force(i, 2.0 * smoothing_length(atom->type[i]) / sound);
   const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], b, row);
@@ -56,7 +56,7 @@ void PairSph::held_row(int i, const double *sums_i, const std::vector<const doub
 {
   const FixSphPressure *eos = state_of(i);
   if (auto *inlet = holder(inlets, atom, i)) {
-    const sd_sph_wall how = {&eos->state, 0};
+    const sd_sph_wall how = {&eos->state, 0, 1};
     const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], inlet->body_force(), row);
     std::fill_n(row + 1, 3, 0.0);
     if (row[0] == 0.0) no_density(FixSphInlet::STYLE, i, text(asked) + " that the fluid asks for");
@@ -113,4 +113,29 @@ void PairSph::wall_particles()
     for (int d = 0; d < 3; d++) atom->vest[i][d] = atom->v[i][d] + row[1 + d];
   }
   pressures_of_all();
+}
+
+/* Of the near pairs those with one particle, or two, of the flow. Two that stand in walls and open
+ * ends do no work on it, and at the back of an open end it depends on the list of neighbours which of
+ * them are there. */
+sd_sph_list PairSph::pairs_of_flow()
+{
+  const int *count = corrects ? near.count.data() : pairs.count;
+  size_t entries = 0;
+  for (int k = 0; k < pairs.n; k++) entries += count[pairs.first[k]] + SD_SPH_LANES;
+  of_flow.resize(atom->nmax, entries);
+  int *last = of_flow.pool.data();
+  for (int k = 0; k < pairs.n; k++) {
+    const int i = pairs.first[k], *from = near.neighbor[i];
+    int *to = of_flow.neighbor[i] = last;
+    for (int m = 0; m < count[i]; m++) {
+      if (m == near.own[i]) of_flow.own[i] = (int) (last - to);
+      const int j = from[m];
+      if (j < particles.n && !(phases[i] < 0 && phases[j] < 0)) *last++ = j;
+    }
+    if (count[i] <= near.own[i]) of_flow.own[i] = (int) (last - to);
+    while (corrects && (last - to) % SD_SPH_LANES) *last++ = particles.n;
+    of_flow.count[i] = (int) (last - to);
+  }
+  return {pairs.n, ~0, pairs.first, of_flow.own.data(), of_flow.neighbor.data()};
 }

@@ -439,17 +439,18 @@ def interface(n, **o):
 def rayleigh_taylor(n, **o):
     """A heavy fluid over a light one in a closed box, periodic in x: one wave of the interface grows from a thousandth of its length.
     Rate over linear theory, s^2 = g k (rho_1 - rho_2) / (rho_1 coth k h_1 + rho_2 coth k h_2): slope of ln a over the last three
-    quarters, a the velocity's projection on the mode."""
+    quarters, a the velocity's projection on the mode. light: speed of sound of the light fluid over that of the heavy one."""
     ratio, amplitude, k, c, dx = o.get("ratio", 3.0), 0.001, 2 * np.pi, 10.0, 1 / n
     layers = int(np.ceil(2 * o.get("hdx", 2.0)))
     x = lattice((np.arange(n) + 0.5) * dx, (np.arange(-layers, n + layers) + 0.5) * dx)
     heavy, fluid = x[:, 1] > 0.5, (x[:, 1] > 0) & (x[:, 1] < 1)
     rho0 = np.where(heavy, ratio, 1.0)
     pressure = lambda y: np.where(y > 0.5, ratio * (1 - y), 0.5 * ratio + 0.5 - y)    # g = 1
-    rho = np.where(fluid, tait(np.clip(pressure(x[:, 1]), 0, None), c, rho0), rho0)
+    sound = o.get("light", 1.0) * c
+    rho = np.where(fluid, tait(np.clip(pressure(x[:, 1]), 0, None), np.where(heavy, c, sound), rho0), rho0)
     rows = (np.arange(n) + 0.5) * dx
     of_row = np.where(rows > 0.5, ratio, 1.0)
-    thick = dx * of_row / tait(pressure(rows), c, of_row)
+    thick = dx * of_row / tait(pressure(rows), np.where(rows > 0.5, c, sound), of_row)
     row = np.clip((x[:, 1] / dx).astype(int), 0, n - 1)
     x[:, 1] = np.where(fluid, (np.cumsum(thick) - thick / 2)[row], np.where(x[:, 1] > 1, x[:, 1] - 1 + thick.sum(), x[:, 1]))
     high, below = thick.sum(), thick[:n // 2].sum()
@@ -463,13 +464,15 @@ def rayleigh_taylor(n, **o):
     s = dict(options(o, dx), x=x, v=amplitude * rate * mode, rho=rho, mass=m * 2, types=1 + heavy + 2 * ~fluid, c=c, boundary="p f p",
              lo=(0, x[:, 1].min() - dx), hi=(1, x[:, 1].max() + dx), fluid="1 2",
              eos="group light type 1 3\ngroup heavy type 2 4\nfix q light sph/pressure Tait %.17g 1 7\n"
-                 "fix p heavy sph/pressure Tait %.17g %.17g 7" % (c * c / 7, ratio * c * c / 7, ratio),
+                 "fix p heavy sph/pressure Tait %.17g %.17g 7" % (sound * sound / 7, ratio * c * c / 7, ratio),
              extra="variable weight atom -mass*1.0\nfix g1 fluid addforce 0 v_weight 0\ngroup wall type 3 4\n"
                    "fix w wall wall/adami/sph gravity 0 -1 0 slip yes")
     if s["pair"]:
         s["coeff"] = "pair_coeff * * c %g deltap %.17g" % (c, dx)
+        if sound != c:
+            s["coeff"] += "".join("\npair_coeff %s c %g" % (pair, sound) for pair in ("1 1", "1 3", "3 3"))
     s["density"] += " volume yes"
-    shots, seconds, every = run(s, o.get("time", 2.0) / rate, 0.25 * s["h"] / c, 40)
+    shots, seconds, every = run(s, o.get("time", 2.0) / rate, 0.25 * s["h"] / max(c, sound), 40)
     weight = rho0[fluid][:, None]
     a = np.array([(weight * np.stack([e["vx"], e["vy"]], axis=1)[fluid] * mode[fluid]).sum() for e in shots[11:]])
     return {"rate": np.polyfit(every * np.arange(len(a)), np.log(np.maximum(a, 1e-300)), 1)[0] / rate, "seconds": seconds}

@@ -54,6 +54,8 @@ ROWS = [
     ("interface", "two fluids", 32, {"ratio": 10}, {"frequency": (0.97, 1.03)}, 0),
     ("rayleigh_taylor", "two fluids", 40, {}, {}, 0), ("rayleigh_taylor", "two fluids, correction", 20, {}, {"rate": (0.88, 0.96)}, 1),
     ("rayleigh_taylor", "two fluids, correction", 40, {}, {"rate": (0.96, 1.01)}, 0),
+    ("rayleigh_taylor", "two fluids, correction", 20, {"ratio": 1000, "light": 10}, {"rate": (0.88, 0.96)}, 0),
+    ("rayleigh_taylor", "two fluids, correction", 40, {"ratio": 1000, "light": 10}, {"rate": (0.96, 1.01)}, 0),
     ("rayleigh_taylor", "two fluids, correction", 80, {}, {"rate": (0.98, 1.01)}, 0),
 ]
 

@@ -221,7 +221,7 @@ def make_sph_wall(case):
     case.extreme |= violent(words, 1.0)     # r0, D
 
 
-ADAMI = {"gravity": [ANY, ANY, ANY], "slip": [YES_NO]}
+ADAMI = {"gravity": [ANY, ANY, ANY], "slip": [YES_NO], "suction": [YES_NO]}
 
 
 def make_sph_adami(case):

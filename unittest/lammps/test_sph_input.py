@@ -75,6 +75,7 @@ ONE_LINE = {
     "wall radius": ("fix 1 all wall/sph zcylinder -1 0.1 1", "keyword zcylinder: '-1' must be > 0"),
     "region": ("fix 1 all wall/region/sph nowhere 0.1 1", "region 'nowhere' does not exist"),
     "adami": ("fix 1 all wall/adami/sph gravity 0 0", "keyword gravity: value missing"),
+    "adami suction": ("fix 1 all wall/adami/sph suction 0", "keyword suction: '0' is none of: no, yes"),
     "adami slip": ("fix 1 all wall/adami/sph slip maybe", "keyword slip: 'maybe' is none of: no, yes"),
     "check N": ("fix 1 all check/timestep/sph 0 0.3", "keyword N: '0' must be >= 1"),
     "check fraction": ("fix 1 all check/timestep/sph 1 0", "keyword fraction: '0' must be > 0"),

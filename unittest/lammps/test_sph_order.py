@@ -325,3 +325,14 @@ def test_shift_calms_two_fluids_too():
         left.append(lmp.extract_compute("v", 0, 0))
         lmp.close()
     assert left[1] < left[0] / 1.5
+
+
+@pytest.mark.parametrize("ratio, light, refused", [(99, 10, False), (1000, 10, True), (1000, 31.7, False)])
+def test_a_fluid_that_is_too_soft_for_the_other_is_refused_with_correction(ratio, light, refused):
+    scene = TWO_FLUIDS.format(shift="correction yes", deltap="deltap 0.05").replace("$(1000/7) 10 7", f"$({ratio}*100/7) {ratio} 7")
+    scene = scene.replace("$(100/7) 1 7", f"$({light}^2/7) 1 7").replace("rho 10", f"rho {ratio}")
+    for kind in "13":
+        scene = scene.replace(f"mass {kind} 0.025", f"mass {kind} {ratio * 0.0025}")
+    got = message(scene.replace("run 800 post no", "run 0 post no"))
+    assert ("the fluid of fix q is 1000 times softer than that of fix p" in got and "a speed of sound of 31.6" in got) == refused, got
+    assert refused or got == "no error"

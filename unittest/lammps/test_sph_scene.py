@@ -1,7 +1,7 @@
 """What may be wrong with the particles of an SPH scene: it is put right, warned of or refused."""
 import pytest
 
-from sph_tools import run, start
+from sph_tools import by_id, fix_by_id, run, start
 
 SQUARE = """
 units lj
@@ -141,3 +141,23 @@ def test_widths_that_differ_are_warned_of(tmp_path, h, warned):
     log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + f"pair_coeff 2 2 c 10 h {h}\nfix p all sph/pressure Tait 14.2857 1 7" +
                  REST.format(volume="no"))
     assert ("types 1 and 2 differ in h" in log) == warned
+
+
+def test_a_wall_without_suction_pulls_half_as_much():
+    """Water that moves away from its floor, without gravity: half of the pull is the floor's, and without it no wall particle has a
+    pressure below 0."""
+    pull, least = [], []
+    for suction in ("yes", "no"):
+        lmp = start()
+        scene = FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" + REST.format(volume="no").replace("0 -1 0", "0 0 0 suction " + suction)
+        run(lmp, "variable ratio index 1\n" + scene.replace("run 1 post no", "velocity water set 0 0.025 0 units box\nrun 0 post no"))
+        forces, pressures = [], []
+        for _ in range(8):
+            run(lmp, "run 4 post no")
+            forces.append(lmp.extract_fix("w", 0, 1, 1))
+            pressures.append(fix_by_id(lmp, "p")[by_id(lmp, "type") == 2].min())
+        pull.append(max(forces))
+        least.append(min(pressures))
+        lmp.close()
+    assert pull[0] > 0.1 and pull[1] == pytest.approx(pull[0] / 2, rel=0.2)
+    assert least[0] < -0.2 and least[1] > -1e-12

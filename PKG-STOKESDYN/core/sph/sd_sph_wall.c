@@ -83,7 +83,8 @@ double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const do
   /* No slip: the wall shows the fluid the velocity that makes the mean of the two that of the wall,
    * v - (fluid - v). With slip it shows the fluid its own. */
   const int alone = s[0] == 0.0;
-  const double P = alone ? wall->state->P0 : (s[1] + dot(b, s + 2)) / s[0];
+  double P = alone ? wall->state->P0 : (s[1] + dot(b, s + 2)) / s[0];
+  if (!wall->suction && P < 0.0) P = 0.0;
   if (!alone || wall->state->kind != SD_SPH_ABSOLUT) row[0] = sd_sph_density_of(wall->state, P);
   for (int d = 0; d < 3; d++) {
     const double ahead = alone ? 0.0 : s[5 + d] / s[0] - v[d];

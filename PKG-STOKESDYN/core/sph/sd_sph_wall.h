@@ -42,6 +42,8 @@ void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const s
 typedef struct {
   const sd_sph_state *state;
   int slip;
+  /* 0: the wall does not pull, its pressure is 0 where P_w would be negative */
+  int suction;
 } sd_sph_wall;
 
 /* What the sums s of sd_sph_before_walls make of one wall particle that moves with v and sees the

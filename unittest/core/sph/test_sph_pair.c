@@ -364,7 +364,7 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
   sd_sph_pack_fluid(&s.p, s.P, weights);
   sd_sph_before_walls(&s.model, &s.list, &s.p, weights, sums);
   const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0};
-  const sd_sph_wall wall = {&water, 0};
+  const sd_sph_wall wall = {&water, 0, 1};
   int tried = 0;
   for (int i = 0; i < N; i++) {
     if (s.phase[i] == 0 || sums[8 * i] < 0.01) continue;
@@ -384,7 +384,7 @@ static void wall_particle_continues_the_fluid(void **state)
   const sd_sph_state tait = {SD_SPH_TAIT, 5e4, 990.0, 7.0, 30.0};
   const double sums[8] = {0.8, 0.8 * 2.1e3, 0.0, 0.8 * 100.0, 0.0, 0.8 * 0.3, 0.8 * -0.7, 0.0},
                v[3] = {0.1, 0.2, -0.3}, b[3] = {5.0, 3.0, 7.0};
-  const sd_sph_wall sticks = {&tait, 0}, slides = {&tait, 1};
+  const sd_sph_wall sticks = {&tait, 0, 1}, slides = {&tait, 1, 1}, lets_go = {&tait, 0, 0};
   double row[4] = {1.0}, glides[4] = {1.0};
   sd_sph_wall_particle(&sticks, sums, v, b, row);
   sd_sph_wall_particle(&slides, sums, v, b, glides);
@@ -398,6 +398,11 @@ static void wall_particle_continues_the_fluid(void **state)
   sd_sph_wall_particle(&sticks, none, v, b, row);
   CHECK_NEAR(row[0], 990.0, 1e-9);
   assert_true(row[1] == 0.0 && row[2] == 0.0 && row[3] == 0.0);
+  const double drawn[8] = {0.8, 0.8 * -2e3}, pressed[8] = {0.8, 0.8 * 2e3};
+  CHECK_NEAR(sd_sph_wall_particle(&sticks, drawn, v, b, row), -2e3, 1e-9);
+  CHECK_NEAR(sd_sph_wall_particle(&lets_go, drawn, v, b, row), 0.0, 1e-9);
+  CHECK_NEAR(sd_sph_pressure(&tait, row[0]), 0.0, 1e-8);
+  CHECK_NEAR(sd_sph_wall_particle(&lets_go, pressed, v, b, row), 2e3, 1e-9);
   const double torn[8] = {0.8, 0.8 * -5e4};
   sd_sph_wall_particle(&sticks, torn, v, b, row);
   assert_true(row[0] == 0.0);
