@@ -147,13 +147,14 @@ static double tie_tolerance(const loop *c, double power)
   return fmax(a->first, fmin(a->loosest, a->first * sqrt(c->power.spent / power)));
 }
 
-/* given.V of those that are not held */
+/* given.V of what is not known of V */
 static double spent_by_loads(const loop *c, const double *V)
 {
   double sum = 0.0;
   for (int b = 0; b < sd_bodies_count(c->A); b++)
-    for (int d = 0; d < 6 && !sd_bodies_held(c->A, b); d++)
-      sum += c->given[6 * (long) b + d] * V[6 * (long) b + d];
+    for (int d = 0; d < 6; d++)
+      if (!sd_bodies_given(c->A, b, d))
+        sum += c->given[6 * (long) b + d] * V[6 * (long) b + d];
   return sum;
 }
 
@@ -217,8 +218,8 @@ static void hold(const loop *c, double *V)
 {
   const double *given = c->problem->given;
   memset(V, 0, sizeof(double) * (size_t) motions(c));
-  for (int b = 0; given && b < sd_bodies_count(c->A); b++)
-    if (sd_bodies_held(c->A, b)) memcpy(V + 6 * (long) b, given + 6 * (long) b, 6 * sizeof(double));
+  for (long j = 0; given && j < motions(c); j++)
+    if (sd_bodies_given(c->A, (int) (j / 6), j % 6)) V[j] = given[j];
 }
 
 /* x = pre(-u, F) of bodies for themselves, and their power; z is scratch */
@@ -286,13 +287,15 @@ static void guess_motion(const loop *c, const double *before, double *V)
   hold(c, V);
   for (int i = K->n - 1; i >= 0; i--) {
     const int b = K->whole ? K->whole[i] : i;
-    if (sd_bodies_held(c->A, b)) continue;
     const double *v = before + 6 * (long) i, *arm = K->arm ? K->arm + 3 * (long) i : NULL;
-    memcpy(V + 6 * (long) b, v, 6 * sizeof(double));
+    double own[6];
+    memcpy(own, v, sizeof(own));
     for (int d = 0; d < 3 && arm; d++) {
       const int e = (d + 1) % 3, g = (d + 2) % 3;
-      V[6 * (long) b + d] -= v[3 + e] * arm[g] - v[3 + g] * arm[e];
+      own[d] -= v[3 + e] * arm[g] - v[3 + g] * arm[e];
     }
+    for (int d = 0; d < 6; d++)
+      if (!sd_bodies_given(c->A, b, d)) V[6 * (long) b + d] = own[d];
   }
 }
 
@@ -374,11 +377,14 @@ static sd_status iterate(loop *c)
 
 /* --- what comes of it --- */
 
-/* K^T l + K_s^T L K_s V = F + K_s^T L V_inf */
+/* K^T l + K_s^T L K_s V = F + K_s^T L V_inf. Torques on those that are spun are not read. */
 static void take_loads(loop *c)
 {
   const sd_bodies *A = c->A;
   sd_rigid_collect(&A->spheres, c->problem->F, sd_bodies_count(A), c->given);
+  for (int b = 0; b < sd_bodies_count(A); b++)
+    if (sd_bodies_known(A, b) == SD_BODY_SPUN)
+      memset(c->given + 6 * (long) b + 3, 0, 3 * sizeof(double));
   memcpy(c->f, c->given, sizeof(double) * (size_t) motions(c));
   if (!A->tie) return;
   sd_rigid_collect(&A->spheres, A->tie->L->carried, sd_bodies_count(A), c->bodies);

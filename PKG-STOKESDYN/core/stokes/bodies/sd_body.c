@@ -85,10 +85,25 @@ static void read_rows(const sd_body *b, const double *rows, double *y)
     to_shape(b->R, w, b->a, rows + (long) w * b->row[k], y + w * k);
 }
 
+/* U of a body whose W is given, both in motion, in the axes and lengths of its shape for eta = 1 and
+ * scaled likewise: (R V)_F = load_F, R = N^-1 */
+static void move_spun(const sd_body_shape *s, const double load[3], double motion[6])
+{
+  double R[9];
+  for (int p = 0; p < 3; p++) {
+    motion[p] = load[p];
+    for (int q = 0; q < 3; q++) {
+      R[3 * p + q] = s->resistance[6 * p + q];
+      motion[p] -= s->resistance[6 * p + 3 + q] * motion[3 + q];
+    }
+  }
+  sd_cholesky_solve(3, R, 1, motion); /* a block of a matrix that has been inverted */
+}
+
 /* pre(r, f) of body b. In the axes and lengths of the shape all matrices are constant: with s = eta a,
  * s B for M_b'^-1 and s G for M_b'^-1 K, V = N (f - s G^T y) / s, z = s (B y + G V), y = r. G^T y is
  * K^T B y without a second product, since B is symmetric. */
-static void respond(const sd_body *b, int held, const double *r, const double *f, double *scratch,
+static void respond(const sd_body *b, sd_body_known known, const double *r, const double *f, double *scratch,
                     double *l, double V[6])
 {
   const sd_body_shape *shape = b->shape;
@@ -103,11 +118,15 @@ static void respond(const sd_body *b, int held, const double *r, const double *f
     for (int j = 0; j < N; j++)
       for (int i = 0; i < N; i++) z[i] += shape->inverse[(long) j * N + i] * y[j];
   }
-  if (held)
-    to_shape(b->R, 6, b->a, V, motion);
-  else {
+  if (known == SD_BODY_FREE) {
     multiply6(shape->mobility, 1.0 / s, load, motion);
     to_space(b->R, 6, 1.0 / b->a, motion, V);
+  } else
+    to_shape(b->R, 6, b->a, V, motion);
+  if (known == SD_BODY_SPUN) {
+    for (int d = 0; d < 3; d++) load[d] /= s;
+    move_spun(shape, load, motion);
+    to_space(b->R, 3, 0.0, motion, V);
   }
   for (int i = 0; i < N; i++) {
     for (int p = 0; p < 6; p++) z[i] += shape->rigid[6 * (long) i + p] * motion[p];
@@ -125,12 +144,13 @@ void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, doubl
     for (int d = 0; d < w; d++) {
       const long j = (long) w * A->loner[e] + d, of = 6 * (long) e + d;
       const double slip = r ? r[j] : 0.0, load = f ? f[of] : 0.0;
-      l[j] = sd_bodies_held(A, e) ? A->D[j] * (slip + V[of]) : load;
-      if (!sd_bodies_held(A, e)) V[of] = load / A->D[j] - slip;
+      const int given = sd_bodies_given(A, e, d);
+      l[j] = given ? A->D[j] * (slip + V[of]) : load;
+      if (!given) V[of] = load / A->D[j] - slip;
     }
   for (int b = 0; b < A->shaped; b++) {
     const long of = 6 * (long) (A->lone + b);
-    respond(A->body + b, sd_bodies_held(A, A->lone + b), r, f ? f + of : NULL, scratch, l, V + of);
+    respond(A->body + b, sd_bodies_known(A, A->lone + b), r, f ? f + of : NULL, scratch, l, V + of);
   }
 }
 

@@ -30,6 +30,10 @@ typedef struct {
   const int *row;
 } sd_body;
 
+/* What is known of how a body moves: its load; or its velocity, while the force on it is not; or its
+ * force and angular velocity, while the torque on it is not */
+typedef enum { SD_BODY_FREE, SD_BODY_HELD, SD_BODY_SPUN } sd_body_known;
+
 typedef struct {
   /* free spheres of one point: [lone] their rows. They are bodies 0 ... lone - 1 */
   int lone;
@@ -37,7 +41,7 @@ typedef struct {
   /* bodies of a shape, of the width of the points: lone ... lone + shaped - 1 */
   int shaped;
   const sd_body *body;
-  /* [bodies] is its velocity given, and its force unknown? NULL: nobody's is */
+  /* [bodies] sd_body_known; NULL: all are free */
   const char *held;
   /* Spheres on bodies: width 6, in the model without torques 3. Points on spheres: whole NULL: the
    * spheres are the points, of equal width */
@@ -59,9 +63,15 @@ static inline int sd_bodies_count(const sd_bodies *A)
 {
   return A->lone + A->shaped;
 }
-static inline int sd_bodies_held(const sd_bodies *A, int b)
+static inline sd_body_known sd_bodies_known(const sd_bodies *A, int b)
 {
-  return A->held && A->held[b];
+  return A->held ? (sd_body_known) A->held[b] : SD_BODY_FREE;
+}
+/* Is number d of the body's velocity given, and that of its load unknown? */
+static inline int sd_bodies_given(const sd_bodies *A, int b, int d)
+{
+  const sd_body_known known = sd_bodies_known(A, b);
+  return known == SD_BODY_HELD || (known == SD_BODY_SPUN && d >= 3);
 }
 /* Numbers of rows, of spheres */
 static inline long sd_bodies_rows(const sd_bodies *A)

@@ -84,8 +84,9 @@ static sd_status bear_before(const sd_bodies *A, const double *r, int moved, con
   return status;
 }
 
-/* H V = b by H (V - V_held) = b - (L + X) K V_held: r on entry, less H_0 V, is what is borne. Held
- * bodies and those without neighbours are not the preconditioner's, and stay as they are. */
+/* H V = b by H (V - V_held) = b - H V_held: r on entry, less H_0 V, is what is borne. What is held,
+ * and bodies without neighbours, is not the preconditioner's, and stays as it is. H_0 V_held loads
+ * bodies that are spun, whose centres are free. */
 sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, double tolerance,
                        int moved, double *V, double *borne, double *share)
 {
@@ -104,14 +105,14 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
   sd_cg_state state;
   sd_status status = bear_before(A, r, moved, V, borne, share);
   if (status != SD_OK) return status;
-  for (long j = 0; j < size; j++) v.r[j] = g[j] - borne[j];
+  memset(x, 0, sizeof(double) * (size_t) size);
+  if (moved) sd_bodies_alone_resist(A, V, x);
+  for (long j = 0; j < size; j++) v.r[j] = g[j] - borne[j] - x[j];
   memset(x, 0, sizeof(double) * (size_t) size);
   if ((status = sd_cg_run(&cg, &v, &state)) != SD_OK) return status;
-  sd_bodies_alone_resist(A, x, borne);
-  for (long j = 0; j < size; j++) {
-    borne[j] = g[j] - v.r[j] - borne[j];
-    V[j] += x[j];
-  }
+  for (long j = 0; j < size; j++) V[j] += x[j];
+  sd_bodies_alone_resist(A, V, borne);
+  for (long j = 0; j < size; j++) borne[j] = g[j] - v.r[j] - borne[j];
   return sd_tie_has_springs(A) ? sd_tie_approach_share(A, r, V, share, t->vectors) : SD_OK;
 }
 

@@ -29,7 +29,7 @@ typedef struct sd_tie {
   sd_block_cholesky factor;
   int others;
   /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
-   * or it is held */
+   * or this of its velocity is given */
   double *scale;
   /* [others] the copy, among the n_all - n of L, that stands for it */
   int *copy;

@@ -99,7 +99,7 @@ static void own_block(const sd_bodies *A, int b, double H[36])
 }
 
 /* Films on spheres, by bodies, then all in units of the drags. A body that nobody is near to is
- * taken out by a scale of 0, and so is one that is held. */
+ * taken out by a scale of 0, and so is what is given of one's velocity. */
 static void find_diagonal(const sd_bodies *A, assembly *a)
 {
   const sd_tie *t = A->tie;
@@ -112,13 +112,15 @@ static void find_diagonal(const sd_bodies *A, assembly *a)
   }
   for (int b = 0; b < sd_bodies_count(A); b++) {
     double *block = a->diagonal + 36 * (long) b, *scale = t->scale + 6 * (long) b, H[36];
-    const int out = is_zero(block) || sd_bodies_held(A, b);
+    const int out = is_zero(block);
     own_block(A, b, H);
-    for (int d = 0; d < 6; d++) scale[d] = out ? 0.0 : 1.0 / sqrt(H[7 * d]);
+    for (int d = 0; d < 6; d++)
+      scale[d] = out || sd_bodies_given(A, b, d) ? 0.0 : 1.0 / sqrt(H[7 * d]);
     for (int e = 0; e < 36; e++) H[e] += block[e];
     memset(block, 0, 36 * sizeof(double));
     add_scaled(H, scale, scale, block);
-    for (int d = 0; d < 6 && out; d++) block[7 * d] = 1.0;
+    for (int d = 0; d < 6; d++)
+      if (scale[d] == 0.0) block[7 * d] = 1.0;
   }
 }
 
