@@ -32,7 +32,8 @@ using namespace StokesDyn;
 static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), motion(3), random(6), load(6), before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), spin(lmp, COMMAND), motion(3), random(6),
+    load(6), before(9), output(9)
 {
   Keywords in(lmp, COMMAND, words(narg, arg), 3);
   in.parse({
@@ -53,6 +54,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
                      "'");
        }},
       {"held", [&] { held = in.word(); }},
+      {"spin", [&] { spin.read(in); }},
       {"temperature", [&] { noise.read_temperature(in); }},
       {"noise_tolerance", [&] { noise.read_tolerance(in); }},
   });
@@ -63,17 +65,17 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   nevery = adapt.every ? adapt.every : 1;
   restart_global = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 11;
+  size_vector = 12;
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  keep({&motion, &random, &load, &before, &output}, &output, true);
+  keep({&motion, &random, &load, &before, &spin.slipping, &output}, &output, true);
 }
 
 int FixStokesDynamicsOverdamped::setmask()
 {
   using namespace FixConst;
-  return INITIAL_INTEGRATE | FINAL_INTEGRATE | (adapt.every ? END_OF_STEP : 0);
+  return INITIAL_INTEGRATE | POST_INTEGRATE | FINAL_INTEGRATE | (adapt.every ? END_OF_STEP : 0);
 }
 
 /* Looked up whenever it is needed: the pair style may be another one by now. */
@@ -95,10 +97,12 @@ void FixStokesDynamicsOverdamped::init()
     for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
   }
   refuse_inertia(lmp, COMMAND, this, hydrodynamics(), {adapt.every > 0, held_bit});
+  spin.init(hydrodynamics(), held_bit);
+  const char *holds = held_bit ? "keyword held" : spin.on() ? "keyword spin" : "";
   if (!scheme_given)
-    scheme = noise.on() && !noise.drift(hydrodynamics(), held_bit).empty() ? MIDPOINT : AB2;
+    scheme = noise.on() && !noise.drift(hydrodynamics(), holds).empty() ? MIDPOINT : AB2;
   if (noise.on())
-    noise.init(hydrodynamics(), this, {adapt.every > 0, held_bit != 0, scheme == MIDPOINT});
+    noise.init(hydrodynamics(), this, {adapt.every > 0, scheme == MIDPOINT, holds});
   if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
 }
 
@@ -128,7 +132,7 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
     if (atom->torque_flag) sd_hash_add_row(tag, atom->torque[i], 3, sums + 2);
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
-    if (given_velocity(i, given)) sd_hash_add_row(tag, given, 6, sums + 8);
+    if (given_velocity(i, given) != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
   }
   MPI_Allreduce(sums, causes, 10, MPI_DOUBLE, MPI_SUM, world);
 }
@@ -204,15 +208,14 @@ void FixStokesDynamicsOverdamped::final_integrate()
 }
 
 /* Those that fix move moves have the velocity that it gave them, others that are held have none. */
-bool FixStokesDynamicsOverdamped::given_velocity(int i, double *V) const
+sd_body_known FixStokesDynamicsOverdamped::given_velocity(int i, double *V) const
 {
-  if (!is_held(i)) return false;
-  const bool moved = atom->mask[i] & moved_bits;
-  for (int d = 0; d < 3; d++) {
-    V[d] = moved ? atom->v[i][d] : 0.0;
-    V[3 + d] = moved && atom->omega_flag ? atom->omega[i][d] : 0.0;
-  }
-  return true;
+  std::fill_n(V, 6, 0.0);
+  if (!is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
+  if (!is_moved(i)) return SD_BODY_HELD;
+  std::copy_n(dragged.v.empty() ? atom->v[i] : &dragged.v[3 * (size_t) i], 3, V);
+  if (atom->omega_flag) std::copy_n(atom->omega[i], 3, V + 3);
+  return SD_BODY_HELD;
 }
 
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
@@ -234,11 +237,14 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       row[6 + d] = F[3 + d];
     }
     std::copy_n(v, 3, motion.give(i));
+    if (rotates) spin.look(i, v + 3, F + 3);
   };
+  const std::vector<double> loads = push(hydro);
   if (scheme == MIDPOINT)
     begin_midpoint(hydro, take);
   else
     hydro.velocities(take, givens());
+  take_back(hydro, loads);
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
   last.step = update->ntimestep;
@@ -247,7 +253,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 /* For a solve: who is held */
 Velocities::Held FixStokesDynamicsOverdamped::givens() const
 {
-  if (!held_bit) return Velocities::Held();
+  if (!held_bit && !spin.on()) return Velocities::Held();
   return [this](int i, double *V) { return given_velocity(i, V); };
 }
 
@@ -267,13 +273,25 @@ void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) co
            "group and region, radius > 0), but not by both: both must select the same atoms");
 }
 
-/* dt/(2 dt_old), what the change of the velocity counts; 0: Euler, or there is nothing before */
-double FixStokesDynamicsOverdamped::weight(int i) const
+/* dt/(2 dt_old), what the change of velocities counts, of forces in scheme midpoint; 0: Euler, or it
+ * has no row of the step before */
+double FixStokesDynamicsOverdamped::weight(bool has) const
 {
-  return scheme == AB2 && before.has(i) && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
+  return scheme != EULER && has && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
 }
 
 void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
+{
+  if (scheme != MIDPOINT) advance();
+}
+
+/* Where those of fix move go is known by now, in whatever order the two fixes stand. */
+void FixStokesDynamicsOverdamped::post_integrate()
+{
+  if (scheme == MIDPOINT) advance();
+}
+
+void FixStokesDynamicsOverdamped::advance()
 {
   Hydrodynamics &hydro = hydrodynamics();
   displaced = changed = 0.0;
@@ -284,6 +302,7 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
     for (int i : hydro.motion().lone) move_free(i);
   if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
   last.dt = update->dt;
+  spin.advance();
   if (!warned_growth) watch();
 }
 
@@ -309,7 +328,7 @@ void FixStokesDynamicsOverdamped::move_free(int i)
   if (is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
   double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], change[3] = {0.0};
-  const double c = old_velocity(i, x, old) ? weight(i) : 0.0;
+  const double c = weight(old_velocity(i, x, old));
   sd_mean_velocity(3, V, old, c, mean);
   for (int d = 0; d < 3; d++) {
     x[d] += dt * mean[d];
@@ -385,7 +404,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
     const sd_shape &shape = body.shape->shape;
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
     const bool has = row[0] != 0.0;
-    const double c = scheme == AB2 && has && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
+    const double c = weight(has);
     double pose[12], now_V[6], old[6], mean[6], turn[9], change = 0.0;
     tracked_velocity(clump, now_V);
     at_image(row + 1, clump.pose + 9, old);

@@ -2,6 +2,7 @@
  * doc/fix_stokes_dynamics_overdamped.md.
  *
  *   initial_integrate   positions of the next step, from the velocities of this one and the last
+ *   (post_integrate     scheme midpoint: when fix move has moved its spheres)
  *   [lists, ghosts, forces of all styles and fixes]
  *   final_integrate     velocities, of the positions just reached; likewise in setup, last of all */
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
@@ -9,6 +10,7 @@
 
 #include "noise.h"
 #include "rows_fix.h"
+#include "spin.h"
 #include "velocities.h"
 
 namespace StokesDyn {
@@ -28,6 +30,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void init() override;
   void after_setup();
   void initial_integrate(int) override;
+  void post_integrate() override;
   void final_integrate() override;
   void end_of_step() override;
 
@@ -47,6 +50,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } adapt;
 
   Noise noise;
+  Spin spin;
 
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
@@ -58,6 +62,11 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* those whose velocity is given, empty: nobody; and the groups that fix move moves */
   std::string held;
   int held_bit = 0, moved_bits = 0;
+  /* scheme midpoint, of those that fix move moves, [3 nlocal]: where they stood when velocities were
+   * found; in the half step, while v is not empty, their velocity in it */
+  struct {
+    std::vector<double> x, v;
+  } dragged;
   /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump,
    * was put by it; U is that of the point by which the clump is moved. When LAMMPS has made an image
    * of it since, v_old is that of the image. */
@@ -94,8 +103,10 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
   bool is_held(int i) const { return atom->mask[i] & held_bit; }
-  bool given_velocity(int i, double *V) const;
-  double weight(int i) const;
+  bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
+  sd_body_known given_velocity(int i, double *V) const;
+  double weight(bool has) const;
+  void advance();
   bool old_velocity(int i, const double *place, double *V) const;
   void at_image(const double *row, const double *place, double *old) const;
   void moves(int i, double distance, double change);
@@ -103,9 +114,10 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
   Velocities::Held givens() const;
-  std::vector<double> push_between_steps(const Hydrodynamics &);
+  std::vector<double> push(const Hydrodynamics &);
   void take_back(const Hydrodynamics &, const std::vector<double> &loads);
   void begin_midpoint(Hydrodynamics &, const Velocities::Take &take);
+  void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   using Clumps = std::vector<Velocities::Clump>;
   void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
   void move_by_midpoint(Hydrodynamics &);

@@ -1,13 +1,13 @@
 /* Of fix stokes_dynamics/overdamped: scheme midpoint, steps that have the drift kT div M of a
  * mobility that differs from place to place, without its derivatives.
  *
- *   F* = 3/2 F - 1/2 F_old + sqrt(2 kT/dt) f,   f of covariance M(x)^-1
+ *   F* = F + dt/(2 dt_old) (F - F_old) + sqrt(2 kT/dt) f,   f of covariance M(x)^-1
  *   v = V(x, F*),  x_mid = x + dt/2 v           where velocities are found: v is output
  *   x' = x + dt V(x_mid, F*)                    where positions advance
  *
  * The noise is a force, the same in both places: then the second-order term of the step has the
  * mean kT div M dt. Kept as a velocity it would have none. Whoever is held, or the plane, is so in
- * the half step too. Forces are extrapolated, so that they are found once a step. Source: Fixman,
+ * the half step too; who is moved as told is half way there, by the mean velocity of the step. Forces are extrapolated, so that they are found once a step. Source: Fixman,
  * J. Chem. Phys. 69, 1527 (1978). */
 #include "fix_stokes_dynamics_overdamped.h"
 
@@ -37,28 +37,33 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
   if (hydro.settings.rigid.apart())
     fail(lmp, KEYWORD + "midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
   int moved = 0;
-  for (int i = 0; i < atom->nlocal; i++) moved |= is_held(i) && (atom->mask[i] & moved_bits);
+  for (int i = 0; i < atom->nlocal && hydro.settings.rigid.on; i++)
+    moved |= is_moved(i) && atom->molecule[i] != 0;
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
   if (moved)
-    fail(lmp, KEYWORD + "midpoint looks at spheres between steps, where fix move does not put those "
-                        "of keyword held: let them rest");
+    fail(lmp, KEYWORD + "midpoint looks at clumps in the half step, where fix move does not say how those "
+                        "of keyword held stand: let them rest, or move spheres");
   for (int i = 0; i < modify->nfix; i++)
     if (utils::strmatch(modify->fix[i]->style, "^deform"))
       fail(lmp, KEYWORD + "midpoint is for boxes that do not change, and fix " + modify->fix[i]->id +
                     " of style " + modify->fix[i]->style + " deforms this one: use ab2");
 }
 
-/* f and torque become what pushes spheres in this step, but for noise; returned is what they were,
- * to be taken back: [6] by atom */
-std::vector<double> FixStokesDynamicsOverdamped::push_between_steps(const Hydrodynamics &hydro)
+/* f and torque become what pushes spheres in this step, but for noise: extrapolated by scheme
+ * midpoint, with the torque on those that slip; returned is what they were, to be taken back: [6] by
+ * atom */
+std::vector<double> FixStokesDynamicsOverdamped::push(const Hydrodynamics &hydro)
 {
   std::vector<double> loads(6 * (size_t) atom->nlocal + 6);
-  for (int i : hydro.ambient.who())
+  for (int i : hydro.ambient.who()) {
+    const double part = scheme == MIDPOINT ? weight(load.has(i)) : 0.0;
     for (int d = 0; d < (atom->torque_flag ? 6 : 3); d++) {
       double &now = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
       loads[6 * (size_t) i + d] = now;
-      if (load.has(i)) now = 1.5 * now - 0.5 * load[i][d];
+      if (part > 0.0) now += part * (now - load[i][d]);
     }
+    if (spin.on()) spin.push(i);
+  }
   return loads;
 }
 
@@ -73,7 +78,6 @@ void FixStokesDynamicsOverdamped::take_back(const Hydrodynamics &hydro,
 
 void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Velocities::Take &take)
 {
-  const std::vector<double> loads = push_between_steps(hydro);
   const int width = hydro.rotation() ? 6 : 3;
   Velocities::Draw draw;
   if (noise.on())
@@ -81,7 +85,22 @@ void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Vel
       std::copy_n(f, width, random.give(i));
     });
   hydro.velocities(take, givens(), noise.on() ? &draw : nullptr);
-  take_back(hydro, loads);
+  dragged.x.assign(3 * (size_t) atom->nlocal + 3, 0.0);
+  for (int i : hydro.ambient.who())
+    if (is_moved(i)) std::copy_n(atom->x[i], 3, &dragged.x[3 * (size_t) i]);
+}
+
+/* Of those that fix move has moved: x [3 nlocal] becomes where they were at the start of the step, V
+ * their mean velocity in it */
+void FixStokesDynamicsOverdamped::find_half_step(const Hydrodynamics &hydro, std::vector<double> &x)
+{
+  dragged.v.assign(3 * (size_t) atom->nlocal + 3, 0.0);
+  for (int i : hydro.ambient.who())
+    for (size_t d = 0; d < 3 && is_moved(i); d++) {
+      const size_t at = 3 * (size_t) i + d;
+      dragged.v[at] = (x[at] - dragged.x[at]) / update->dt;
+      x[at] = dragged.x[at];
+    }
 }
 
 /* Clumps from where they stood, start, with spheres at x [3 members], by the velocities of now for dt.
@@ -134,16 +153,19 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
     std::copy_n(atom->x[i], 3, &x[3 * (size_t) i]);
     std::copy_n(motion[i], 3, &V[3 * (size_t) i]);
   }
+  find_half_step(hydro, x);
   const auto place = [&](double part) {
     for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
     for (int i : lone)
-      for (int d = 0; d < domain->dimension && !is_held(i); d++)
-        atom->x[i][d] += part * V[3 * (size_t) i + d];
+      for (int d = 0; d < domain->dimension; d++) {
+        const size_t at = 3 * (size_t) i + d;
+        atom->x[i][d] += is_held(i) ? part * dragged.v[at] : part * V[at];
+      }
     if (hydro.settings.rigid.on) place_clumps(hydro, start, of_members, part);
   };
   place(0.5 * dt);
   hydro.begin();
-  const std::vector<double> loads = push_between_steps(hydro);
+  const std::vector<double> loads = push(hydro);
   for (int i : who)
     for (int d = 0; d < (turns ? 6 : 3) && noise.on(); d++)
       (d < 3 ? atom->f[i][d] : atom->torque[i][d - 3]) += random[i][d];
@@ -151,6 +173,7 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
     std::copy_n(v, 3, &V[3 * (size_t) i]);
   }, givens());
   place(dt);
+  dragged.v.clear();
   take_back(hydro, loads);
   for (int i : who) std::copy_n(&loads[6 * (size_t) i], 6, load.give(i));
   for (int i : lone) {

@@ -47,7 +47,8 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
     GAP,
     STEP,
     NOISE_PRODUCTS,
-    NOISE_ERROR
+    NOISE_ERROR,
+    SLIPPING
   };
   hydrodynamics();    // an error if there is none
   const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
@@ -79,6 +80,8 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
       return noise.report().products;
     case NOISE_ERROR:
       return noise.report().error;
+    case SLIPPING:
+      return spin.slip();
   }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;

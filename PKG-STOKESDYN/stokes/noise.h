@@ -43,12 +43,14 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* Is there a temperature that is not always 0? Otherwise none of the rest is called. */
   bool on() const { return temperature.is_variable() || temperature.number() > 0.0; }
 
-  /* What else the fix does. midpoint: steps that have the drift of the mobility (forces(), below) */
+  /* What else the fix does. midpoint: steps that have the drift of the mobility (forces(), below);
+   * holds: the keyword that holds somebody, or nothing */
   struct Ways {
-    bool adapts, holds, midpoint;
+    bool adapts, midpoint;
+    std::string holds;
   };
   /* What makes a drift, as errors name it; empty: nothing does, and ab2 and euler are right */
-  std::string drift(const Hydrodynamics &hydro, bool holds) const;
+  std::string drift(const Hydrodynamics &hydro, const std::string &holds) const;
   /* Before a run: the variable, and how sums over images are split. Errors: a variable that is none,
    * and whatever has a drift that is left out or no noise: settings of the pair style, other
    * commands. */

@@ -23,7 +23,7 @@ namespace StokesDyn {
 
 static const std::string PAIR = " of pair_style stokes_dynamics";
 
-std::string Noise::drift(const Hydrodynamics &hydro, bool holds) const
+std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) const
 {
   const StokesSettings &s = hydro.settings;
   const Ambient::Settings &fluid = hydro.ambient.settings;
@@ -35,7 +35,7 @@ std::string Noise::drift(const Hydrodynamics &hydro, bool holds) const
   if (s.scene.wall.sign) return "keyword wall" + PAIR;
   if (fluid.visc.is_atom_style() || fluid.grid_has_visc)
     return "keyword visc" + PAIR + ", which varies in space";
-  return holds ? "keyword held" : "";
+  return holds;
 }
 
 /* A mobility that has no root, or a drift that no scheme has */

@@ -132,7 +132,7 @@ void Velocities::find_held()
              " is only partly in the group: all of its spheres must be in it, or none");
 }
 
-/* [6 bodies] velocities of those that are held, for the core; is_held tells which */
+/* [6 bodies] what is given of velocities, for the core; is_held tells which */
 std::vector<double> Velocities::given_velocities()
 {
   const size_t bodies = loner.size() + shaped.size();
@@ -143,11 +143,11 @@ std::vector<double> Velocities::given_velocities()
   const size_t lone_ones = bodies - clumps.size();    // whose rows come first
   for (size_t b = 0; b < lone_ones; b++) {
     const double *row = &rows[7 * b];
-    is_held[b] = row[0] != 0.0;
+    is_held[b] = (char) row[0];
     if (is_held[b]) std::copy_n(row + 1, 6, &given[6 * b]);
   }
   for (size_t c = 0, b = lone_ones; c < clumps.size(); c++, b++) {
-    is_held[b] = clumps[c].held;
+    is_held[b] = clumps[c].held ? SD_BODY_HELD : SD_BODY_FREE;
     if (is_held[b]) std::copy_n(clumps[c].V, 6, &given[6 * b]);
   }
   return given;
@@ -311,7 +311,7 @@ sd_status Velocities::resist(const How &how, const std::vector<double> &slip, Gu
                              std::vector<double> &on_spheres, sd_bodies_report &report)
 {
   sd_bodies A = assemble(how.width);
-  const std::vector<char> held(sd_bodies_count(&A) + 1, 1);
+  const std::vector<char> held(sd_bodies_count(&A) + 1, SD_BODY_HELD);
   A.held = held.data();
   const size_t m = how.width, rows = m * scene.size();
   if (scene.shells) {

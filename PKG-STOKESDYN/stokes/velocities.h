@@ -55,9 +55,9 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Velocities(const Velocities &) = delete;
   Velocities &operator=(const Velocities &) = delete;
 
-  /* Who is held: whether atom i is, and then its velocity and angular velocity [6]. Empty: nobody. A
-   * clump is held when all its spheres are. */
-  using Held = std::function<bool(int i, double *V)>;
+  /* Who is held, or spun: what is known of atom i, and that of its velocity and angular velocity [6].
+   * Empty: nobody is. A clump is held when all its spheres are. */
+  using Held = std::function<sd_body_known(int i, double *V)>;
   Held held;
 
   /* Errors, on all ranks: those of RigidClumps; a clump held in part; a clump that is not rigid, or
@@ -152,7 +152,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_multiblob_mobility of_points = {};
   sd_faces faces = {};
   std::vector<char> whole_shells;
-  /* [bodies] of the solve */
+  /* [bodies] of the solve: sd_body_known */
   std::vector<char> is_held;
   std::vector<sd_body> shaped;
   /* the same in open space, whatever wall they stand at */

@@ -217,6 +217,21 @@ def test_midpoint_is_of_second_order_in_the_forces_too(simulation):
     assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.25)
 
 
+def test_midpoint_with_steps_of_unequal_length_is_of_second_order_too(simulation):
+    """Short ones and such three times as long, in turns: what a force was counts by the length of the step before."""
+    x, ends = np.array([(0, 0, 0), (2.6, 0, 0.3), (-1.0, 3.5, 0)]), []
+    for pairs in (10, 20, 40, 400):
+        sim = simulation(Spheres(x, molecule=[1, 1, 2]).chain_bonds(), "cut_off_distance inf visc 1", fix=False, dt=1.0, box=[(-90.0, 90.0)] * 3)
+        sim.commands(["bond_style harmonic", "bond_coeff 1 4 2.2", f"fix weight all addforce 0 0 {-P6!r}",
+                      "fix move all stokes_dynamics/overdamped scheme midpoint"])
+        for k in range(2 * pairs):
+            sim.command(f"timestep {20.0 / (4 * pairs) * (1 + 2 * (k % 2))!r}")
+            sim.run(1, "pre no post no" if k else "post no")
+        ends.append(sim.x)
+    errors = [np.abs(e - ends[-1]).max() for e in ends[:-1]]
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.25)
+
+
 def two_dumbbells():
     return Spheres(A * np.array([(0, 0, 0), (0, 0, 2), (2.3, 0.2, 0), (2.4, 2.2, 0), (-1, -2.5, 0.4)]), A, molecule=[1, 1, 2, 2, 0])
 
@@ -265,8 +280,9 @@ def test_what_midpoint_cannot_move_is_an_error(simulation, tmp_path):
     spheres = Spheres(TRIO, A, molecule=[1, 1, 2])
     with pytest.raises(LammpsError, match="midpoint is for bodies that feel each other"):
         noise(simulation(spheres, LONE_CLUMPS, fix=False, dt=1e-3), "scheme midpoint").run(0)
-    sim = simulation(spheres, f"cut_off_distance inf visc {ETA}", fix=False, dt=1e-3).commands("group some id 1\nfix go some move linear 1 0 0")
-    with pytest.raises(LammpsError, match="midpoint looks at spheres between steps, where fix move does not put"):
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} rigid_clumps yes rotation yes", fix=False, dt=1e-3)
+    sim.commands("group some molecule 1\nfix go some move linear 1 0 0")
+    with pytest.raises(LammpsError, match="midpoint looks at clumps in the half step, where fix move does not say"):
         noise(sim, "held some").run(0)
 
 

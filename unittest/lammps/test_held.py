@@ -132,3 +132,72 @@ def test_who_takes_forces_away_to_hold_spheres_is_told_how(tmp_path, style, told
     assert ("without inertia that does not hold a sphere: use keyword held GROUP" in log) == told
     log = lmp(tmp_path, lines + ["group bed id 1 2", f"fix hold bed {style}", f"{FIX} held bed", "run 0"]).log
     assert "does not hold a sphere" not in log
+
+
+# --- scheme midpoint --------------------------------------------------------------------------------------------------------
+
+# and the velocity of the first moment, which fix move leaves to the user
+MOVES = {"linear": ("fix go some move linear 0.5 -0.2 0.1", (0.5, -0.2, 0.1)),
+         "rotate": (f"fix go some move rotate 1 0 0 0 0 1 9\nset group some omega 0 0 {2 * np.pi / 9!r}", (0, -2 * np.pi / 9, 0)),
+         "wiggle": ("fix go some move wiggle 0.5 -0.9 0.3 7", 2 * np.pi / 7 * np.array((0.5, -0.9, 0.3)))}
+
+
+def dragged(simulation, steps, move, words, options="scheme midpoint", order=1, t=4.0):
+    """Sphere 1 on its way through the others, which fall. order: which of the two fixes stands first"""
+    fix, v = MOVES[move]
+    sim = simulation(Spheres(X[[0, 1, 2, 5, 6]]), f"cut_off_distance inf visc {ETA} {words} relative_tolerance 1e-10", fix=False, box=BOX,
+                     dt=t / steps)
+    start = "group some id 1\nvelocity some set {!r} {!r} {!r}\n".format(*map(float, v))
+    return sim.commands(start + PULL + "\n" + "\n".join([fix, f"{FIX} held some {options}"][::order]))
+
+
+@pytest.mark.parametrize("move", MOVES)
+@pytest.mark.parametrize("words", ["rotation yes", "rotation yes lubrication yes wall zlo -4"])
+def test_a_dragged_sphere_moves_others_by_the_second_order(simulation, move, words):
+    """In whatever order the two fixes stand; the same path as by ab2"""
+    ends = [dragged(simulation, n, move, words, order=-1 if n == 50 else 1).run(n).x for n in (24, 50, 96, 1000)]
+    ends.append(dragged(simulation, 1000, move, words, "scheme ab2").run(1000).x)
+    errors = [np.abs(e - ends[3]).max() for e in ends[:3]]
+    assert np.abs(ends[4] - ends[3]).max() < 0.2 * errors[2]
+    for coarse, fine, ratio in ((0, 1, 50 / 24), (1, 2, 96 / 50)):
+        assert np.log(errors[coarse] / errors[fine]) / np.log(ratio) == pytest.approx(2, abs=0.3)
+
+
+def test_a_dragged_sphere_alone_feels_its_drag(simulation):
+    sim = simulation(Spheres(X[:1]), f"cut_off_distance inf visc {ETA} rotation yes", fix=False, box=BOX, dt=0.1)
+    sim.commands(["group some id 1", MOVES["linear"][0], f"{FIX} held some scheme midpoint"]).run(5)
+    assert sim.fix_rows("move")[0, 3:6] == pytest.approx(-6 * np.pi * ETA * np.array((0.5, -0.2, 0.1)), rel=1e-12)
+    assert sim.x[0] == pytest.approx(X[0] + 0.5 * np.array((0.5, -0.2, 0.1)), abs=1e-12)
+
+
+def test_a_dragged_sphere_among_others_feels_what_the_dense_algebra_says(simulation):
+    """Free spheres and a clump around it, in a stream"""
+    sim = simulation(Spheres(X, molecule=MOLECULE), f"cut_off_distance inf visc {ETA} rotation yes rigid_clumps yes relative_tolerance 1e-10 "
+                     f"fluid_velocity {U[0]} {U[1]} {U[2]}", fix=False, box=BOX, dt=0.05)
+    sim.commands(f"group some id 1\n{PULL}\n{MOVES['linear'][0]}\n{FIX} held some scheme midpoint").run(4)
+    v, F = exact(sim.x, MOLECULE, [0], given_by("linear", X))
+    assert np.abs(sim.v - v[:, :3]).max() < 1e-7 * np.abs(v).max()
+    assert np.abs(sim.fix_rows("move")[0, 3:9] - F[0]).max() < 1e-7 * np.abs(F).max()
+
+
+@pytest.mark.parametrize("words", ["", "rotation yes lubrication yes", "multiblob 12 lubrication yes"])
+def test_a_sphere_dragged_through_the_noise_is_one_at_rest_in_a_stream(simulation, words):
+    """Two others in traps that go along, by the same random numbers: their drift is that of the mobility beside a held sphere. Only the
+    traps and the random forces are the same; what differs is who moves."""
+    U, dt, x = np.array((0.4, -0.3, 0.2)), 0.02, X[[0, 1, 2]]
+    ends = []
+    for moves in (True, False):
+        stream = "" if moves else "fluid_velocity {!r} {!r} {!r}".format(*map(float, -U))
+        sim = simulation(Spheres(x), f"cut_off_distance inf visc {ETA} {words} {stream} relative_tolerance 1e-11 max_iter 400", fix=False,
+                         box=BOX, dt=dt)
+        for d in range(3):
+            home = "+".join(f"(id=={i + 1})*({x[i, d]!r})" for i in range(3))
+            sim.command(f"variable f{'xyz'[d]} atom -20*({'xyz'[d]}-({home})-({(moves * U[d])!r})*step*{dt})")
+        sim.command("fix trap all addforce v_fx v_fy v_fz")
+        if moves:
+            sim.commands("group some id 1\nvelocity some set {0!r} {1!r} {2!r}\nfix go some move linear {0!r} {1!r} {2!r}".format(*map(float, U)))
+        sim.commands(f"group probe id 1\n{FIX} held probe temperature 0.8 77").run(40)
+        ends.append((sim.x - moves * 40 * dt * U, sim.fix_rows("move")[:, 3:6]))
+    assert np.abs(ends[0][0] - x)[1:].max() > 0.1 and np.abs(ends[0][0] - x)[0].max() < 1e-12
+    assert np.abs(ends[0][0] - ends[1][0]).max() < 1e-8
+    assert np.abs(ends[0][1] - ends[1][1]).max() < 1e-6 * np.abs(ends[0][1]).max()

@@ -1,0 +1,104 @@
+#include "spin.h"
+
+#include "hydrodynamics.h"
+#include "keywords.h"
+
+#include "sd_linear.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "group.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+void Spin::read(Keywords &in)
+{
+  double unused;
+  group_name = in.word();
+  for (double &component : omega) component = in.number();
+  if (in.more() && is_number(in.peek(), unused)) most = in.positive();
+  std::copy_n(omega, 3, axis);
+  if (most > 0.0 && sd_dot(omega, omega) == 0.0)
+    in.refuse("a largest torque needs an axis, and the angular velocity is 0: use held, or no largest "
+              "torque");
+  if (sd_dot(omega, omega) > 0.0) sd_normalize(axis);
+}
+
+void Spin::init(const Hydrodynamics &hydro, int held_bit)
+{
+  if (!on()) return;
+  const std::string keyword = command + ": keyword spin: ", pair = " of pair_style stokes_dynamics";
+  const int igroup = group->find(group_name);
+  if (igroup < 0) fail(lmp, keyword + "group '" + group_name + "' does not exist");
+  bit = group->bitmask[igroup];
+  if (!hydro.rotation())
+    fail(lmp, keyword + "keyword rotation" + pair + " must be yes, or there a multiblob: points without "
+                        "torques do not spin");
+  if (hydro.settings.rigid.apart())
+    fail(lmp, keyword + "it is for what feels each other: use clumps_only no" + pair);
+  if (domain->dimension == 2 && (omega[0] != 0.0 || omega[1] != 0.0))
+    fail(lmp, keyword + "in two dimensions spheres spin about z alone: wx and wy must be 0");
+  tagint wrong[2] = {MAXTAGINT, MAXTAGINT};    // in clumps; held
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & bit)) continue;
+    if (hydro.settings.rigid.on && atom->molecule[i] != 0) wrong[0] = std::min(wrong[0], atom->tag[i]);
+    if (atom->mask[i] & held_bit) wrong[1] = std::min(wrong[1], atom->tag[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, wrong, 2, MPI_LMP_TAGINT, MPI_MIN, world);
+  for (int k = 0; k < 2; k++)
+    if (wrong[k] != MAXTAGINT)
+      fail(lmp, keyword + "atom " + std::to_string(wrong[k]) +
+                    (k == 0 ? " is part of a rigid clump: only free spheres spin"
+                            : " is in the group of keyword held as well: one of them must do"));
+}
+
+bool Spin::turns(int i, double W[3]) const
+{
+  if (!(atom->mask[i] & bit) || sign(i) != 0.0) return false;
+  std::copy_n(omega, 3, W);
+  return true;
+}
+
+void Spin::push(int i) const
+{
+  if (!(atom->mask[i] & bit)) return;
+  for (int d = 0; d < 3; d++) atom->torque[i][d] += sign(i) * most * axis[d];
+}
+
+/* A sphere that slips and has caught up with the field is held again. */
+void Spin::look(int i, const double *W, const double *by_fluid)
+{
+  if (!(atom->mask[i] & bit) || most == 0.0) return;
+  const double now = sign(i);
+  double next = now, needed[3];
+  for (int d = 0; d < 3; d++) needed[d] = -by_fluid[d] - atom->torque[i][d];
+  if (now == 0.0 && sd_dot(needed, needed) > most * most)
+    next = sd_dot(needed, axis) < 0.0 ? -1.0 : 1.0;
+  else if (now * (sd_dot(W, axis) - sd_dot(omega, axis)) >= 0.0)
+    next = 0.0;
+  if (next == 0.0 && now == 0.0)
+    slipping.take(i);
+  else
+    slipping.give(i)[1] = next;
+}
+
+void Spin::advance()
+{
+  for (int i = 0; i < atom->nlocal && most > 0.0; i++)
+    if (slipping.has(i)) slipping.row(i)[0] = slipping[i][1];
+}
+
+double Spin::slip() const
+{
+  double mine = 0.0, all;
+  for (int i = 0; i < atom->nlocal; i++) mine += sign(i) != 0.0;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,59 @@
+/* Spheres that a field keeps spinning, for fix stokes_dynamics/overdamped: their angular velocity is
+ * given and the torque that the field needs for it is found, up to a largest one. A sphere that
+ * would need more slips: the largest torque turns it, more slowly.
+ *
+ * Who slips is decided once a step, by the velocities and torques just found, for the step after
+ * the next move: both solves of a step (scheme midpoint) then hold the same coordinates. */
+#ifndef SD_STOKES_SPIN_H
+#define SD_STOKES_SPIN_H
+
+#include "atom_rows.h"
+#include "pointers.h"
+
+#include <string>
+
+namespace StokesDyn {
+
+class Hydrodynamics;
+class Keywords;
+
+class Spin : protected LAMMPS_NS::Pointers {
+ public:
+  /* [2] of a sphere that slips, or will: 0 or the sign of the torque along the axis, now and next */
+  AtomRows slipping;
+
+  Spin(LAMMPS_NS::LAMMPS *lmp, const std::string &command) :
+      Pointers(lmp), slipping(2), command(command)
+  {
+  }
+
+  /* GROUP wx wy wz [most] */
+  void read(Keywords &in);
+  bool on() const { return !group_name.empty(); }
+  /* Before a run. Errors: a group that does not exist; settings under which no sphere spins; spheres
+   * of it that are in clumps, or held. */
+  void init(const Hydrodynamics &hydro, int held_bit);
+
+  /* Is the angular velocity W of atom i given now? */
+  bool turns(int i, double W[3]) const;
+  /* The torque of the field on those that slip is added to theirs. */
+  void push(int i) const;
+  /* What a solve has found: W, and the torque of the fluid; that of all but the field is in
+   * atom->torque, with push() */
+  void look(int i, const double *W, const double *by_fluid);
+  /* Positions have advanced: next is now. */
+  void advance();
+  /* How many slip, on all ranks */
+  double slip() const;
+
+ private:
+  std::string command, group_name;
+  int bit = 0;
+  /* most: 0, no limit */
+  double omega[3] = {0.0}, axis[3] = {0.0}, most = 0.0;
+
+  double sign(int i) const { return slipping[i][0]; }
+};
+
+}    // namespace StokesDyn
+#endif
