@@ -10,7 +10,13 @@ momentum    sum of m v at the end of a window less that at its start, less all i
             of the impulse of the weight: LAMMPS's velocity Verlet conserves it but for rounding
 drift       forces at the end of the window against a dense solve of where the spheres are and how fast they go, in units of the
             largest: the warm start must not lead astray. The tolerance times the condition of the matrix bounds it, some hundred
-Size and velocity of the ring tell that it stays together and goes on moving."""
+Size and velocity of the ring tell that it stays together and goes on moving.
+
+    long_run.py --brownian
+
+Two multiblobs with a film, bound by a bond, each in a trap, with Brownian motion (scheme midpoint): the variance of each coordinate over
+Boltzmann's, window by window. x: along the line of the traps; sum, difference: of both spheres' places. The last lines have the means
+with their standard errors, from the spread of the windows, and the trend: the last half of the windows less the first."""
 import argparse
 import ctypes
 import tempfile
@@ -82,12 +88,65 @@ def start(folder):
                       before_pair=f"neighbor 1.0 bin\nvariable shear atom {SHEAR}*cos(1e-3*step)*(z-xcm(all,z))")
 
 
+KT, TRAP, BOND, REST, APART = 0.8, 20.0, 60.0, 2.35, 2.3     # of radius 1
+DRAG = 6 * np.pi * ETA
+
+
+def boltzmann():
+    """Means and variances of sum and difference: [6] each, x y z of the one, then of the other"""
+    g = np.linspace(-1.3, 1.3, 131)
+    x, y, z = np.meshgrid(APART + g, g, g, indexing="ij")
+    r = np.sqrt(x * x + y * y + z * z)
+    p = np.exp(-(TRAP / 4 * ((x - APART)**2 + y * y + z * z) + BOND / 2 * (r - REST)**2) / KT)
+    mean = [(p * c).sum() / p.sum() for c in (x, y, z)]
+    return np.array([APART, 0, 0] + mean), np.array([2 * KT / TRAP] * 3 + [(p * (c - m)**2).sum() / p.sum() for c, m in zip((x, y, z), mean)])
+
+
+def brownian_windows(folder, steps, count, every=10):
+    """Variances over Boltzmann's [6] and means less Boltzmann's over the deviation [6], a window each"""
+    spheres = Spheres([(0, 0, 0), (APART, 0, 0)])
+    spheres.bonds = [(1, 2)]
+    sim = Simulation(folder, spheres, f"cut_off_distance inf visc {ETA} multiblob 12 lubrication yes", fix=False,
+                     dt=0.1 * DRAG / (TRAP + 2 * BOND), box=[(-20.0, 22.0)] * 3)
+    sim.commands(["bond_style harmonic", f"bond_coeff 1 {BOND / 2} {REST}", "special_bonds lj/coul 1 1 1", "comm_modify cutoff 9",
+                  f"variable fx atom -{TRAP}*(x-{APART}*(id-1))", f"variable fy atom -{TRAP}*y", f"variable fz atom -{TRAP}*z",
+                  "fix trap all addforce v_fx v_fy v_fz", f"fix move all stokes_dynamics/overdamped temperature {KT} 4711",
+                  "thermo 1000000000"]).run(1000)
+    mean, variance = boltzmann()
+    for _ in range(count):
+        places = []
+        for _ in range(steps // count // every):
+            sim.run(every, "pre no post no")
+            x = sim.x
+            places.append(np.concatenate([x[0] + x[1], x[1] - x[0]]))
+        places = np.array(places)
+        yield ((places - mean)**2).mean(axis=0) / variance, (places.mean(axis=0) - mean) / np.sqrt(variance)
+    sim.close()
+
+
+def run_brownian(folder, steps, count):
+    print("    steps  variance over Boltzmann's: sum x      y      z  difference x      y      z", flush=True)
+    ratios, means = [], []
+    for k, (ratio, mean) in enumerate(brownian_windows(folder, steps, count)):
+        ratios.append(ratio)
+        means.append(mean)
+        print(f"{(k + 1) * (steps // count):9d}  " + " ".join(f"{v:8.3f}" for v in ratio), flush=True)
+    ratios, half = np.array(ratios), count // 2
+    for name, rows in (("variances", ratios), ("means less Boltzmann's, in deviations", np.array(means))):
+        print(f"{name}: " + ", ".join(f"{m:.3f} +- {e:.3f}" for m, e in zip(rows.mean(axis=0), rows.std(axis=0, ddof=1) / np.sqrt(count))))
+    trend = ratios[-half:].mean(axis=1) - ratios[:half].mean(axis=1)
+    print(f"trend of the mean variance: {trend.mean():.3f} +- {trend.std(ddof=1) / np.sqrt(half):.3f}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--steps", type=int, default=1000000)
     parser.add_argument("--windows", type=int, default=10)
+    parser.add_argument("--brownian", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
+        if options.brownian:
+            return run_brownian(folder, options.steps, options.windows)
         sim = start(folder)
         print("    steps  memory MB  largest residual  momentum     drift  size of the ring  velocity  unconverged")
         for w in windows(sim, options.steps, options.windows):
