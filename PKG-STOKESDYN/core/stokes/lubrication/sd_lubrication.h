@@ -18,7 +18,7 @@
  * In a flow the forces are L V - sum over pairs t w D V_inf, V_inf the motion as one rigid body in
  * which the fluid takes the pair along: with its mean velocity and angular velocity, weighted by
  * the radii. So a film resists when its spheres approach, also if the flow presses them together,
- * and does not when they are carried and turned as one; what else a strain does to a pair is left
+ * and does not when they are carried and turned as one. Other effects of a strain on a pair are left
  * out.
  *
  * Where spheres are shells of points (sd_multiblob.h) that know the common motion of a pair and of
