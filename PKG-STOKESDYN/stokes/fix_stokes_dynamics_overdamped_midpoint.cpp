@@ -7,8 +7,9 @@
  *
  * The noise is a force, the same in both places: then the second-order term of the step has the
  * mean kT div M dt. Kept as a velocity it would have none. Whoever is held, or the plane, is so in
- * the half step too; who is moved as told is half way there, by the mean velocity of the step. Forces are extrapolated, so that they are found once a step. Source: Fixman,
- * J. Chem. Phys. 69, 1527 (1978). */
+ * the half step too; who is moved as told is half way there, by the mean velocity of the step.
+ * Forces are extrapolated, so that they are found once per step.
+ * Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "hydrodynamics.h"
@@ -41,8 +42,8 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
     moved |= is_moved(i) && atom->molecule[i] != 0;
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
   if (moved)
-    fail(lmp, KEYWORD + "midpoint looks at clumps in the half step, where fix move does not say how those "
-                        "of keyword held stand: let them rest, or move spheres");
+    fail(lmp, KEYWORD + "midpoint needs the orientation of clumps in the middle of a step, where fix move "
+                        "does not give that of keyword held: let them rest, or move spheres");
   for (int i = 0; i < modify->nfix; i++)
     if (utils::strmatch(modify->fix[i]->style, "^deform"))
       fail(lmp, KEYWORD + "midpoint is for boxes that do not change, and fix " + modify->fix[i]->id +

@@ -37,10 +37,10 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
   if (igroup < 0) fail(lmp, keyword + "group '" + group_name + "' does not exist");
   bit = group->bitmask[igroup];
   if (!hydro.rotation())
-    fail(lmp, keyword + "keyword rotation" + pair + " must be yes, or there a multiblob: points without "
-                        "torques do not spin");
+    fail(lmp, keyword + "keyword rotation" + pair + " must be yes, or keyword multiblob given: points "
+                        "without torques do not spin");
   if (hydro.settings.rigid.apart())
-    fail(lmp, keyword + "it is for what feels each other: use clumps_only no" + pair);
+    fail(lmp, keyword + "it is for spheres that feel each other: use clumps_only no" + pair);
   if (domain->dimension == 2 && (omega[0] != 0.0 || omega[1] != 0.0))
     fail(lmp, keyword + "in two dimensions spheres spin about z alone: wx and wy must be 0");
   tagint wrong[2] = {MAXTAGINT, MAXTAGINT};    // in clumps; held
@@ -54,7 +54,7 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
     if (wrong[k] != MAXTAGINT)
       fail(lmp, keyword + "atom " + std::to_string(wrong[k]) +
                     (k == 0 ? " is part of a rigid clump: only free spheres spin"
-                            : " is in the group of keyword held as well: one of them must do"));
+                            : " is in the group of keyword held as well: it must be in one of them only"));
 }
 
 bool Spin::turns(int i, double W[3]) const

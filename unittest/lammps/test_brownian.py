@@ -282,7 +282,7 @@ def test_what_midpoint_cannot_move_is_an_error(simulation, tmp_path):
         noise(simulation(spheres, LONE_CLUMPS, fix=False, dt=1e-3), "scheme midpoint").run(0)
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA} rigid_clumps yes rotation yes", fix=False, dt=1e-3)
     sim.commands("group some molecule 1\nfix go some move linear 1 0 0")
-    with pytest.raises(LammpsError, match="midpoint looks at clumps in the half step, where fix move does not say"):
+    with pytest.raises(LammpsError, match="midpoint needs the orientation of clumps in the middle of a step"):
         noise(sim, "held some").run(0)
 
 

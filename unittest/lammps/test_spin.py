@@ -144,5 +144,5 @@ def test_what_cannot_spin_is_named(simulation, style, words, message):
 
 def test_lone_clumps_do_not_spin(simulation):
     sim = simulation(Spheres(X), f"clumps_only yes rigid_clumps yes visc {ETA} rotation yes", fix=False, box=BOX, dt=0.1)
-    with pytest.raises(LammpsError, match="keyword spin: it is for what feels each other: use clumps_only no"):
+    with pytest.raises(LammpsError, match="keyword spin: it is for spheres that feel each other: use clumps_only no"):
         sim.commands(f"{FIX} spin all 0 1 0").run(0)
