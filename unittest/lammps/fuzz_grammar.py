@@ -152,6 +152,21 @@ class Maybe:
         return [case.words[case.at - 1]]
 
 
+class MaybeNumber:
+    """A number of this kind, or none."""
+
+    def __init__(self, kind):
+        self.kind = kind
+
+    def write(self, draw):
+        return draw.choice([[], write(self.kind, draw)])
+
+    def read(self, case):
+        if case.at == len(case.words) or decimal(case.words[case.at]) is None:
+            return []
+        return read(self.kind, case)
+
+
 class Counted:
     """n, then n values."""
 

@@ -1,5 +1,5 @@
 """Scenes, grammar and rules of pair_style and fix stokes_dynamics, written from their pages (for fuzz.py)."""
-from fuzz_grammar import (BAD, COUNT, GOOD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, Name, Number, NumberOr,
+from fuzz_grammar import (BAD, COUNT, GOOD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, MaybeNumber, Name, Number, NumberOr,
                           delete_something, positive)
 
 BOX = 18.0
@@ -190,6 +190,7 @@ OVERDAMPED = {
     "adapt": [COUNT, positive("1e-6", "1e-5"), positive("1e-5", "1e-4"), positive("0.01", "1")],
     "temperature": [Field(lambda v: v >= 0, ["1", "0.2", "0"], ["-1", "1e300"], atom=False),
                     Integer(lambda v: 0 < v < 2**31, ["1", "4711"], ["0", "-3", "2147483647", "2147483648"])],
+    "spin": [Name("g", "half", "nobody")] + [Number(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 3 + [MaybeNumber(positive("0.1", "50"))],
     "noise_tolerance": [Number(lambda v: 0 < v < 0.5, ["0.01", "0.1"], ["0", "0.5", "-1", "1e-300"], odd=lambda v: v < 1e-6)],
 }
 FLUIDS = ["", "rotation yes", "multiblob 12", "multiblob 12 lubrication yes", "rotation yes lubrication yes", "wall zlo -8.5",
@@ -206,10 +207,16 @@ def judge_overdamped(case, words, fluid):
     given, scheme, T = case.settings, case.value("scheme", ""), case.value("temperature", "0")
     case.refuse_if("noise_tolerance" in given and "temperature" not in given, "noise_tolerance")
     case.refuse_if(fluid.startswith("rigid") and case.value("held") == "half", "held")     # a clump in part
+    if "spin" in given:
+        case.refuse_if(not any(word in fluid for word in ("rotation", "multiblob", "shell")), "spin", "rotation")
+        case.refuse_if(fluid.startswith("rigid") and case.value("spin") != "nobody", "spin")       # no free spheres there
+        case.refuse_if({case.value("held"), case.value("spin")} <= {"g", "half"}, "spin", "held")
+        case.refuse_if(len(given["spin"]) == 5 and not any(float(w) for w in given["spin"][1:4]), "spin")
+        case.says(ODD)
     if T in ("0", "v_zero"):
         case.says(ODD if "temperature" in given or scheme == "midpoint" else GOOD)
         return
-    drift = "held" in given or any(word in fluid for word in ("lubrication", "multiblob", "wall", "rigid"))
+    drift = "held" in given or "spin" in given or any(word in fluid for word in ("lubrication", "multiblob", "wall", "rigid"))
     case.refuse_if("adapt" in given or drift and scheme in ("ab2", "euler"), "temperature", "scheme")
     case.says(ODD)        # a step may be too long for such a temperature
 
