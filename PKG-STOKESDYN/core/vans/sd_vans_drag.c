@@ -34,18 +34,42 @@ void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, do
                                                              : pow(1.0 - phi[n], -exponent);
 }
 
-/* y = ln(Re_0/Re) = (1 - n(Re_0)) ln e, by Newton's method: n falls by less than 0.44 with y, so
- * that the left side less the right rises, and six steps are at rounding in any bed. */
-static double logarithm_of_lone_speed(double Re, double log_e)
+/* Lambert's W, W e^W = z > 0, to rounding: a rational function of W's series below 1, Winitzki's
+ * approximation above, each right to a few per cent or better; then steps of Fritsch, Shafer and
+ * Crowley (1973), which leave the fourth power of a relative error: one, or two from 1 on. */
+static double lambert_w(double z)
 {
-  double y = 0.0;
-  if (!(Re > 0.0)) return -3.65 * log_e;
-  for (int k = 0; k < 6; k++) {
-    const double lone = Re * exp(y), n = sd_vans_richardson_zaki(lone),
-                 slope = n == 4.65 || n == 2.39 ? 0.0 : (lone < 1.0 ? -0.03 : -0.1) * n; /* dn/dy */
-    y -= (y - (1.0 - n) * log_e) / (1.0 + slope * log_e);
+  double w;
+  if (z < 1.0)
+    w = z * (60.0 + z * (114.0 + 17.0 * z)) / (60.0 + z * (174.0 + 101.0 * z));
+  else {
+    const double L = log1p(z);
+    w = L * (1.0 - log1p(L) / (2.0 + L));
   }
-  return y;
+  for (int k = 0; k < 4; k++) {
+    const double r = log(z / w) - w, q = 2.0 * (1.0 + w) * (1.0 + w + 2.0 / 3.0 * r),
+                 e = r / (1.0 + w) * (q - r) / (q - 2.0 * r);
+    w *= 1.0 + e;
+    if (fabs(e) < 1e-4) break;
+  }
+  return w;
+}
+
+/* ln Re_0 where 4.4 Re_0^-0.03 is 4.65 and where 4.4 Re_0^-0.1 is 2.39. */
+#define SLOWEST (-1.8420892891683138)
+#define FASTEST 6.103111749807962
+
+/* y = ln(Re_0/Re), which solves y = (1 - n(Re_0)) L, L = ln e < 0. Re rises with Re_0, so that the
+ * ends of the parts of n are at ln Re = ln Re_0 + (n - 1) L. In a part n = 4.4 Re_0^-p
+ *   y = L + s,  s = -4.4 L e^(-p (ln Re + L)) e^(-p s):  p s = W(-4.4 p L e^(-p (ln Re + L))) */
+static double logarithm_of_lone_speed(double Re, double L)
+{
+  if (!(Re > 0.0)) return -3.65 * L;
+  const double x = log(Re);
+  if (x <= SLOWEST + 3.65 * L) return -3.65 * L;
+  if (x >= FASTEST + 1.39 * L) return -1.39 * L;
+  const double p = x < 3.4 * L ? 0.03 : 0.1;
+  return L + lambert_w(-4.4 * p * L * exp(-p * (x + L))) / p;
 }
 
 static double drag_of_sphere(sd_vans_drag_law law, double rho, double eta, double a,
