@@ -157,6 +157,7 @@ bool Keywords::take(const std::string &option)
 std::string Keywords::word()
 {
   if (at >= args.size()) refuse("value missing");
+  if (args[at].empty()) refuse("'' is empty");
   return args[at++];
 }
 
