@@ -294,6 +294,9 @@ void FixHydroVans::check_mesh()
 void FixHydroVans::setup(int vflag)
 {
   if (gravity_varies() || set.flux.is_variable()) read_variables();
+  if (last_step < 0 && set.has_grains() && set.dpdx.is_variable()) read_variables();
+  if (last_step < 0) feel_pressure();
+  set.law.dpdx = stream.felt;
   if (set.overlap_once && !set.averages()) count_overlaps();
   if (set.averages() && !stream.averaged) {
     average();
@@ -319,12 +322,14 @@ void FixHydroVans::post_force(int /*vflag*/)
   if (stepping) elapsed += update->dt;
   last_step = update->ntimestep;
   summed_step = -1;
+  const Sums before = local;
   local = Sums();
   if (!set.has_grains()) return;
   select(groupbit);
   if (set.law.added_mass > 0.0) find_accelerations(stepping, repeat);
   local.outside = forces(grains(), true);
   for (int i = 0; i < atom->nlocal; i++) push(i, stepping, repeat);
+  press(stepping, repeat, before);
   check_forces();
 }
 

@@ -50,7 +50,7 @@ class FixHydroVans : public RowsFix {
   enum { FORCE_X, FORCE_Y, FORCE_Z, TRANSPORT, FRICTION_VELOCITY, LARGEST_STRESS, OUTSIDE, SHIELDS,
          TOTAL_DRAG, BED, MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, DISCHARGE,
          DRIVE, ELEVATION, VOLUME, MEAN_TRANSPORT, TRANSPORT_ERROR, MEAN_STRESS, STRESS_ERROR,
-         WALL_SHARE, VECTOR_SIZE };
+         WALL_SHARE, PRESSED, VECTOR_SIZE };
 
   /* Per atom: force and velocity fluctuation; memo: what must follow the atom besides, a column
    * that no keyword asks for is not there. LOST: share of its volume that is another's too. */
@@ -77,9 +77,10 @@ class FixHydroVans : public RowsFix {
   double eddy_age = 0.0, eddy_period = 0.0, renewals = 0.0;
   double mean_radius = 0.0, mean_density = 0.0;
 
-  /* Of the last step, of this rank and of all: force x y z, drag along x, spheres outside. */
+  /* Of the last step, of this rank and of all: force x y z, drag along x, spheres outside; force of
+   * the pressure gradient, and its impulse since the first step. */
   struct Sums {
-    double force[3] = {0, 0, 0}, drag = 0, outside = 0;
+    double force[3] = {0, 0, 0}, drag = 0, outside = 0, pressure = 0, pressed = 0;
   } local, global;
   LAMMPS_NS::bigint summed_step = -1;
   bool told_outside = false, told_work = false, told_stiff = false, told_waves = false;
@@ -114,6 +115,8 @@ class FixHydroVans : public RowsFix {
   bool gravity_varies() const;
   void take_gravity();
   void read_variables();
+  void feel_pressure();
+  void press(bool stepping, bool repeat, const Sums &before);
   void find_accelerations(bool stepping, bool repeat);
   void average();
   void couple(double T, double dt);

@@ -229,12 +229,32 @@ void FixHydroVans::couple(double T, double dt)
   if (!given.back.empty()) hand_over();
 }
 
+void FixHydroVans::feel_pressure()
+{
+  stream.feel_pressure(set.law.g[0]);
+  set.law.dpdx = stream.felt;
+}
+
+/* Books what the pressure gradient gives to the grains. A run that begins where another ended has
+ * the force of that step. */
+void FixHydroVans::press(bool stepping, bool repeat, const Sums &before)
+{
+  for (int i = 0; set.law.dpdx != 0.0 && i < atom->nlocal; i++) {
+    const double a = atom->radius[i], share = set.overlap_once ? weight[i] : 1.0;
+    if (take[i]) local.pressure -= share * 4.0 / 3.0 * SD_PI * a * a * a * set.law.dpdx;
+  }
+  if (repeat) local.pressure = before.pressure;
+  local.pressed = before.pressed;
+  if (stepping) local.pressed += 0.5 * update->dt * (before.pressure + local.pressure);
+}
+
 /* The next interval begins. */
 void FixHydroVans::end_interval()
 {
   const double T = elapsed;
   elapsed = 0.0;
   if (set.fluctuates()) renew_fluctuations(T, false);
+  feel_pressure();
 }
 
 /* What a user asks for is a coupling if it moves the water on as far as one would; otherwise the

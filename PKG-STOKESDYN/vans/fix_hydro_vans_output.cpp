@@ -17,13 +17,14 @@ double FixHydroVans::compute_vector(int k)
 {
   const auto &ledger = stream.ledger;
   const double largest = stream.largest_stress();
-  if (k <= FORCE_Z || k == TOTAL_DRAG || k == OUTSIDE) sum_up();
+  if (k <= FORCE_Z || k == TOTAL_DRAG || k == OUTSIDE || k == PRESSED) sum_up();
   switch (k) {
     case FORCE_X:
     case FORCE_Y:
     case FORCE_Z: return global.force[k - FORCE_X];
     case TOTAL_DRAG: return global.drag;
     case OUTSIDE: return global.outside;
+    case PRESSED: return global.pressed;
     case TRANSPORT: return stream.transport();
     case FRICTION_VELOCITY: return std::sqrt(std::max(largest, 0.0) / set.fluid.rho);
     case LARGEST_STRESS: return largest;
@@ -177,6 +178,7 @@ static std::vector<double> layout(const VansSettings &set)
 
 void FixHydroVans::write_restart(FILE *fp)
 {
+  sum_up();
   if (comm->me != 0) return;
   NamedState state(STYLE);
   state.put("columns", layout(set));
@@ -184,6 +186,7 @@ void FixHydroVans::write_restart(FILE *fp)
   state.put("elapsed", elapsed);
   state.put("eddies", {eddy_age, eddy_period, renewals});
   state.put("mean", {mean_radius, mean_density});
+  state.put("pressed", {global.pressure, global.pressed});
   stream.save(state);
   state.write(fp);
 }
@@ -195,7 +198,7 @@ void FixHydroVans::restart(char *buf)
   stream.load(state);
   last_step = (bigint) state.get("last_step", -1.0);
   elapsed = state.get("elapsed", 0.0);
-  double eddies[3], mean[2];
+  double eddies[3], mean[2], pressed[2];
   if (state.get("eddies", eddies, 3)) {
     eddy_age = eddies[0];
     eddy_period = eddies[1];
@@ -204,6 +207,10 @@ void FixHydroVans::restart(char *buf)
   if (state.get("mean", mean, 2)) {
     mean_radius = mean[0];
     mean_density = mean[1];
+  }
+  if (state.get("pressed", pressed, 2) && comm->me == 0) {
+    local.pressure = pressed[0];
+    local.pressed = pressed[1];
   }
   if (state.get("columns") != layout(set))
     set.voice.warn("the restart file was written with other keywords (conserve, overlap or "

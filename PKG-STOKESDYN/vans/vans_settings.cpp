@@ -302,6 +302,7 @@ void VansSettings::read(Keywords &in)
       {"sidewall", [&] { take_sidewall(in); }},
       {"wall_roughness", [&] { fluid.wall_roughness = in.not_negative(); }},
       {"wall_mixing", [&] { fluid.narrow = in.yes_no(); }},
+      {"bed_mixing", [&] { fluid.bed_mixing = in.take("off") ? 0.0 : in.not_negative(); }},
       {"radius", [&] { radius = in.positive(); }},
       {"classes", [&] { classes = in.yes_no(); }},
       {"class_radii", [&] { take_class_radii(in); }},
@@ -363,6 +364,9 @@ void VansSettings::check(const Keywords &in) const
   in.require(walls || !fluid.narrow, "keyword wall_mixing requires sidewall");
   in.require(!yade() || (fluid.wall_roughness == 0.0 && !fluid.narrow),
              "keywords wall_roughness and wall_mixing are not available with rules yade");
+  in.require(fluid.bed_mixing == 0.0 || !yade(), "keyword bed_mixing is not available with rules yade");
+  in.require(fluid.bed_mixing == 0.0 || fluid.turbulence != SD_VANS_LAMINAR,
+             "keyword bed_mixing has no effect with turbulence none");
   const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() &&
       dpdx.number() == 0.0 && !fluid.driven && profile_file.empty();
   in.require(!solves() || law.rest || !stands || (fluid.held && reach == 0.0),

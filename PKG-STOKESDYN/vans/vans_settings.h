@@ -85,7 +85,7 @@ struct VansSettings {
   bool wants_pores() const
   {
     return fluid.turbulence == SD_VANS_PORE || fluid.turbulence == SD_VANS_ROUSSEAU ||
-        fluid.turbulence == SD_VANS_NI_CAPART;
+        fluid.turbulence == SD_VANS_NI_CAPART || fluid.bed_mixing > 0.0;
   }
 
  private:

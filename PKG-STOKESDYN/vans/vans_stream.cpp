@@ -20,7 +20,7 @@ VansStream::VansStream(const VansSettings &settings) :
     wet.dz = 0.0;
     wet.ncell = sd_vans_fill(&mesh, nullptr, set.surface, wet_edge.data());
   }
-  drive = fluid.gx - fluid.dpdx / fluid.rho;
+  drive = mean_drive = fluid.gx - fluid.dpdx / fluid.rho;
   if (set.profile.empty() && fluid.driven && !set.u_top.is_variable()) U[N] = fluid.u_top;
   fluid.radius = set.radius;
   intensity = set.intensity.number();
@@ -221,6 +221,11 @@ void VansStream::fold_above(std::vector<double> &of_slices) const
   }
 }
 
+void VansStream::feel_pressure(double gx)
+{
+  felt = set.yade() ? 0.0 : fluid.held ? fluid.rho * (gx - mean_drive) : fluid.dpdx;
+}
+
 void VansStream::sample()
 {
   const double now[SD_VANS_SERIES] = {transport(), largest_stress()};
@@ -308,6 +313,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   fill_above();
   take_inflow(T);
   drive = books.drive;
+  mean_drive = books.driving / (fluid.rho * T * sd_vans_volume(&wet, phi()));
   if (fluid.held) fluid.gx = drive;    // for what else asks how strong the stream is
   for (size_t n = 0; n + 1 < std::min(rest.size(), (size_t) wet.ncell); n++)
     moved[n] -= fluid.rho * sd_vans_height(&wet, (int) n) * T * rest[n];
@@ -368,6 +374,7 @@ void VansStream::save(NamedState &state)
   state.put("edge", set.edge);
   state.put("volume", volume);
   state.put("surface", {(double) wet.ncell, drive});
+  state.put("felt", felt);
   state.put("wet", wet_edge);
   const double *numbers = &series.blocks;
   state.put("series", std::vector<double>(numbers, numbers + sizeof(series) / sizeof(double)));
@@ -418,6 +425,7 @@ void VansStream::load(const NamedState &state)
   averaged = state.get("averaged", 0.0) != 0.0;
   density_known = state.get("density_known", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
+  felt = state.get("felt", felt);
   double sums[6];
   if (state.get("ledger", sums, 6)) ledger = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
   set_classes(state.get("class_radii"));

@@ -47,6 +47,10 @@ class VansStream {
   double flux = 0.0;
   /* what drives the stream, gravity and pressure gradient, an acceleration */
   double drive = 0.0;
+  /* pressure gradient along x that the grains feel until the next coupling */
+  double felt = 0.0;
+  /* the same, mean of the last solve */
+  double mean_drive = 0.0;
   /* samples of the transport rate and of the largest stress, one a coupling */
   sd_vans_series series = {};
   /* are there averages? */
@@ -90,6 +94,8 @@ class VansStream {
 
   /* The end of a coupling. */
   void sample();
+  /* What drives the water besides gravity gx is a pressure, which drives the grains in it too. */
+  void feel_pressure(double gx);
   double transport() const { return sd_vans_transport(&mesh, grain.data()); }
   double surface() const { return wet.z_ref + wet.edge[wet.ncell - 1]; }
 

@@ -44,6 +44,7 @@ VANS = {
     "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church")],
     "added_mass": [Or(off=[], otherwise=[NOT_NEGATIVE])], "upflow": [Or(off=[], otherwise=[EQUAL])],
     "discharge": [Or(off=[], otherwise=[EQUAL])], "wall_roughness": [NOT_NEGATIVE], "wall_mixing": [YES_NO],
+    "bed_mixing": [Or(off=[], otherwise=[NOT_NEGATIVE])],
     "area": [positive("0.0004", "0.0008")], "fall_diameter": [positive("0.7", "1", "1.3")], "schmidt": [positive("0.44", "1")],
     "adjust": [Or(slope=[], depth=[positive("0.5", "20")])],
     "couple": [Choice("none", "one", "two", "fluid")], "profile": [Or(zero=[], file=[File("profile.txt")])],
@@ -102,6 +103,8 @@ def judge_vans(case, words, how):
     case.refuse_if(yade and s("fluctuation") == "langevin", "fluctuation")
     case.refuse_if(yade and "fall_diameter" in case.settings, "fall_diameter")
     case.refuse_if(s("surface") == "follow" and (yade or couple != "two"), "surface")
+    mixed = decimal(s("bed_mixing", "0")) not in (0.0, None)
+    case.refuse_if(mixed and (yade or s("turbulence") == "none"), "bed_mixing")
     if yade and (s("added_mass", "off") != "off" or "wall_roughness" in case.settings or s("wall_mixing") == "yes"):
         case.says(ODD, "added_mass", "wall_roughness", "wall_mixing")
     case.refuse_if(s("wall_mixing") == "yes" and not walls, "wall_mixing")

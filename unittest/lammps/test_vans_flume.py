@@ -129,6 +129,27 @@ def test_added_mass_is_carried_along():
     s.close()
 
 
+@pytest.mark.parametrize("keywords", ["gravity 0 0 -9.81 pressure_gradient -200", "gravity 0 0 -9.81 pressure_gradient v_p", "gravity 0 0 -9.81 discharge v_q",
+                                      "gravity 0.05 0 -9.81 discharge v_q"])
+def test_a_pressure_that_drives_the_water_drives_grains_in_it_too(keywords):
+    """Grains as dense as inviscid water go with it: both gain dp/dx/rho, without any slip. Where the discharge is held what it takes beyond gravity is a
+    pressure; grains feel it from the next coupling on. What gravity does to the grains is the business of fix gravity."""
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0305], [0.005, 0.01, 0.0605], [0.01, 0.003, 0.0905]], np.zeros((3, 3)), [0.001, 0.002, 0.003], 1000)
+    acceleration = 0.2
+    s.do("timestep 1e-4", "variable p equal -100-100", f"variable q equal {acceleration}*v_water*step*dt", "variable water equal 0.1", "fix m all nve/sphere")
+    s.do(f"fix h all hydro/vans 1 mesh 101 0.001 0 fluid 1000 1e-9 turbulence none {keywords}", "run 0")
+    s.do(f"variable water equal {s.number('volume')}", "fix g all gravity 9.81 vector 0 0 -1" if "0.05" not in keywords else f"fix g all gravity {np.hypot(0.05, 9.81)} vector 0.05 0 -9.81", "run 200")
+    t = 200 * 1e-4
+    u, v = s.column("u", 101)[40], s.atoms("v")[:, 0]
+    late = 3 if "discharge" in keywords else 0
+    assert abs(u / (acceleration * t) - 1) < 1e-4
+    assert np.abs(v / (acceleration * t) - 1).max() < 1e-4 + late / 200
+    pressed = (acceleration - (0.05 if "0.05" in keywords else 0)) * t * s.atoms("rmass").sum()
+    assert abs(s.number("pressed") / pressed - 1) < 1e-9 + late / 200
+    s.close()
+
+
 # --- water ----------------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("keywords", ["couple fluid", "couple two conserve no"])

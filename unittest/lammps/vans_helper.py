@@ -13,7 +13,7 @@ TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", 
 ARRAY = ["z", "u", "phi", "vx", "vy", "vz", "drag", "b", "nut", "stress"]
 VECTOR = ["fx", "fy", "fz", "transport", "friction_velocity", "largest_stress", "outside", "shields", "drag", "bed",
           "momentum", "transit", "driving", "bottom", "walls", "surface", "others", "discharge", "drive", "elevation", "volume",
-          "mean_transport", "transport_error", "mean_stress", "stress_error", "wall_share"]
+          "mean_transport", "transport_error", "mean_stress", "stress_error", "wall_share", "pressed"]
 
 
 def table(name):
@@ -144,6 +144,7 @@ pair_coeff * *
 neighbor 0.0012 bin
 timestep 1e-5
 variable gx equal 0.4905+2*step*dt
+variable dpdx equal -200-2e5*step*dt
 fix gravity all gravity 9.81 vector 0.05 0 -0.99875
 group bed type 1
 group mobile type 2

@@ -108,6 +108,8 @@ typedef struct {
    * of U), and what water and grains exchange is symmetric slice by slice. Not with Yade's rule. */
   int felt_by_volume;
   sd_vans_rules rules;
+  /* pressure gradient along x, which pushes a grain by its volume times that */
+  double dpdx;
   /* which drag; zeros: Yade's */
   sd_vans_drag_law drag;
   /* C: -C rho V dv/dt on an accelerated grain */
@@ -120,7 +122,7 @@ typedef struct {
 /* Force of the stream on the grains that take part, 0 on the others. Of members that overlap each
  * has its share of all of it, so that the buoyancy of a clump is that of its union.
  *   hindrance  [N] of sd_vans_hindrance_of
- *   F       [n][3] out: drag, added mass, buoyancy, lift, convective
+ *   F       [n][3] out: drag, added mass, buoyancy, pressure gradient, lift, convective
  *   drag_x  [n] out or NULL: the part that the water takes back, drag and added mass along x
  * Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom)
  * values: above U[N] and the phi of the last slice, below U[0] = 0 and the phi of the first. Yade's
@@ -217,6 +219,8 @@ typedef struct {
   double width, wall_coef, wall_roughness;
   /* 1: mixing lengths are at most kappa width/2 */
   int narrow;
+  /* mixing lengths are at least this many diameters where there are grains; 0: as the law has it */
+  double bed_mixing;
   /* of the grains, in the exchange term */
   double radius;
   /* size classes of the exchange term and of the pore length; 0: one class of that radius */
@@ -230,7 +234,9 @@ typedef struct {
   sd_vans_drag_law drag;
 } sd_vans_fluid;
 
-/* Mixing length at every node, [N]; between narrow walls at most kappa width/2.
+/* Mixing length at every node, [N]; at least bed_mixing times the mean diameter of the grains in the
+ * slices on both sides of the node, but for that on the bottom; between narrow walls at most
+ * kappa width/2.
  *   U [N+1] (Rousseau only); phi [N]; phi_bed_profile [N]: the (time-averaged) phi that marks the
  *   bed for Ni & Capart; scratch [2 N]
  * kz           kappa z

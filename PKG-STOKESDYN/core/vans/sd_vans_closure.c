@@ -136,11 +136,23 @@ static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
   }
 }
 
+/* Eddies between grains that move: where a stream shears the grains themselves its mixing length was
+ * measured to be about half a diameter, at any phi (Revil-Baudard et al. 2015). */
+static void among_grains(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
+                         const double *classes, double *length, double *pore, double *D)
+{
+  pore_length(mesh, fluid, phi, classes, pore, D);
+  for (int j = 1; j < mesh->ncell; j++)
+    length[j] = fmax(length[j], fluid->bed_mixing * fmax(D[j - 1], D[j]));
+}
+
 void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
                            const double *phi, const double *classes, const double *phi_bed_profile,
                            double *length, double *scratch)
 {
   unlimited_length(mesh, fluid, U, phi, classes, phi_bed_profile, length, scratch);
+  if (fluid->bed_mixing > 0.0)
+    among_grains(mesh, fluid, phi, classes, length, scratch, scratch + mesh->ncell);
   if (!fluid->narrow) return;
   const double most = 0.5 * fluid->kappa * fluid->width;
   for (int j = 0; j < mesh->ncell; j++) length[j] = fmin(length[j], most);

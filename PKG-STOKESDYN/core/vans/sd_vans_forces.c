@@ -89,6 +89,7 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
         Fi[d] -= law->added_mass * displaced * grains->acceleration[3 * (long) i + d];
     if (drag_x) drag_x[i] = share * Fi[0];
     for (int d = 0; d < 3; d++) Fi[d] -= displaced * g[d];
+    Fi[0] -= displaced / law->rho * law->dpdx;
     if (inside && law->lift != 0.0)
       Fi[2] += lift_force(mesh, law, U, p, a, grains->v[3 * (long) i]);
     if (inside && law->convective) Fi[0] -= law->convective[p];

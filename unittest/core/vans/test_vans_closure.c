@@ -52,6 +52,42 @@ static void mixing_lengths(void **state)
   column_free(c);
 }
 
+/* With bed_mixing C no length is below C diameters at a node with grains on either side, of their mean diameter where there are two sizes; elsewhere, and on the
+ * bottom, the law stands. Between narrow walls the width has the last word. */
+static void lengths_among_grains(void **state)
+{
+  (void) state;
+  enum { N = 51 };
+  column *c = column_create(N, 0.5, 0.0);
+  const double a[2] = {0.003, 0.006};
+  sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .kappa = 0.4, .phi_max = 0.6, .radius = 0.003, .turbulence = SD_VANS_LI_SAWAMOTO};
+  double plain[N], classes[2 * SD_VANS_ROWS * N] = {0};
+  for (int n = 0; n < 20; n++) c->phi[n] = n < 15 ? 0.61 : 0.59;
+  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, plain, c->scratch);
+  fluid.bed_mixing = 0.7;
+  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  for (int j = 0; j < N; j++)
+    assert_true(fabs(c->length[j] - (j > 0 && j <= 20 ? fmax(plain[j], 0.7 * 0.006) : plain[j])) < 1e-17);
+  assert_true(plain[10] == 0.0 && c->length[10] > 0.0 && plain[20] < 0.7 * 0.006);
+  /* as many grains of either size: 6 sum V/sum S, S = 4 pi a^2 */
+  for (int n = 0; n < 15; n++) classes[n] = 0.61 * 27 / (27 + 216.0), classes[SD_VANS_ROWS * N + n] = 0.61 * 216 / (27 + 216.0);
+  fluid.nclass = 2;
+  fluid.class_radius = a;
+  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, classes, c->phi, c->length, c->scratch);
+  double V = 0, S = 0;
+  for (int k = 0; k < 2; k++) {
+    const double phi = classes[k * SD_VANS_ROWS * N];
+    V += phi * a[k] * a[k] * a[k];
+    S += phi * 3 * a[k] * a[k];
+  }
+  assert_true(fabs(c->length[10] / (0.7 * 6 * V / S) - 1) < 1e-14);
+  fluid.narrow = 1;
+  fluid.width = 0.01;
+  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  assert_true(c->length[10] == 0.5 * 0.4 * 0.01);
+  column_free(c);
+}
+
 static void effective_viscosities(void **state)
 {
   (void) state;
@@ -127,6 +163,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(mixing_lengths),
+      cmocka_unit_test(lengths_among_grains),
       cmocka_unit_test(effective_viscosities),
       cmocka_unit_test(profiles_tell_bed_transport_and_times),
       cmocka_unit_test(eddies_follow_their_slice),

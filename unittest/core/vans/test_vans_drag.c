@@ -102,6 +102,48 @@ static void richardson_and_zaki_find_their_exponent(void **state)
   assert_true(first > 4.6 && first <= 4.65 && last == 2.39);
 }
 
+/* Lambert's function gives the lone speed that halving finds in y = (1 - n(Re_0)) ln e, Re_0 = Re e^y: to rounding, in dilute and dense beds, from
+ * the slow end of n to the fast one and on both sides of its corners. */
+static void lone_speeds_solve_richardson_and_zakis_equation(void **state)
+{
+  (void) state;
+  const double a = 0.5, stokes = 0.25 * SD_PI * a;
+  double worst = 0.0;
+  for (double e = 0.02; e < 1.0; e += 0.013)
+    for (double x = -9.0; x < 12.0; x += 0.0137) { /* ln Re */
+      const double L = log(e), Re = exp(x);
+      double low = -1.3 * L, high = -3.7 * L;
+      for (int k = 0; k < 60; k++) {
+        const double middle = 0.5 * (low + high);
+        *(middle < (1.0 - sd_vans_richardson_zaki(Re * exp(middle))) * L ? &low : &high) = middle;
+      }
+      const double y = 0.5 * (low + high);
+      for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++) {
+        const sd_vans_drag_law kind = {.law = (sd_vans_drag_of_one) law, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
+        const double halved = stokes * sd_vans_drag_number(kind.law, Re * exp(y)) * exp(y);
+        worst = fmax(worst, fabs(sd_vans_drag_factor(kind, 1.0, 1.0, a, e, Re) / halved - 1.0));
+      }
+    }
+  printf("    Richardson & Zaki by Lambert's function: largest difference from halving %.1e\n", worst);
+  assert_true(worst < 1e-13); /* the rounding of y, up to 18, is one of e^y: 4e-15, and twice that in N */
+}
+
+/* A pressure gradient pushes a grain by its volume times that, its share of it if it is a member of a clump; the water does not take that back. */
+static void a_pressure_gradient_pushes_grains(void **state)
+{
+  (void) state;
+  const double edge[3] = {0, 1, 2}, U[3] = {0, 0.3, 0.3}, hindrance[2] = {1, 1}, a = 0.1, x[3] = {0, 0, 0.5}, v[3] = {0.1, 0, 0}, weight = 0.7;
+  const sd_vans_mesh mesh = {2, 0, 1, edge};
+  sd_vans_force_law law = {.rho = RHO, .eta = ETA, .g = {0.2, 0, -G}, .rest = 1};
+  const sd_vans_grains grains = {.n = 1, .x = x, .v = v, .a = &a, .weight = &weight};
+  double without[3], with[3], drag[2];
+  sd_vans_forces(&mesh, &law, U, hindrance, &grains, without, drag);
+  law.dpdx = -37.0;
+  sd_vans_forces(&mesh, &law, U, hindrance, &grains, with, drag + 1);
+  assert_true(fabs((with[0] - without[0]) / (0.7 * 4.0 / 3.0 * SD_PI * a * a * a * 37.0) - 1.0) < 1e-13);
+  assert_true(with[1] == without[1] && with[2] == without[2] && drag[0] == drag[1]);
+}
+
 /* Di Felice's drag leads to speeds within 7 % of that at phi 0.3, and 27 % at 0.5. */
 static void di_felice_agrees_with_richardson_and_zaki(void **state)
 {
@@ -188,6 +230,8 @@ int main(void)
       cmocka_unit_test(a_grain_falls_as_the_sphere_of_its_fall_diameter),
       cmocka_unit_test(every_law_is_stokes_for_slow_spheres),
       cmocka_unit_test(richardson_and_zaki_find_their_exponent),
+      cmocka_unit_test(lone_speeds_solve_richardson_and_zakis_equation),
+      cmocka_unit_test(a_pressure_gradient_pushes_grains),
       cmocka_unit_test(di_felice_agrees_with_richardson_and_zaki),
       cmocka_unit_test(slope_is_that_of_the_force),
       cmocka_unit_test(members_push_by_their_share),
