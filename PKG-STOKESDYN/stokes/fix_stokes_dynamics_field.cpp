@@ -275,5 +275,5 @@ void FixStokesDynamicsField::write(const sd_field_grid &g, const std::vector<dou
 
 double FixStokesDynamicsField::memory_usage()
 {
-  return sizeof(double) * (double) (tables.source_room + tables.column_room);
+  return sizeof(double) * (double) (tables.source_room + tables.scratch_room);
 }

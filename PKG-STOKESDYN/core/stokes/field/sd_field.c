@@ -12,8 +12,9 @@ void sd_field_free(sd_field *f)
 {
   sd_ewald_waves_free(&f->waves);
   free(f->source);
-  free(f->column);
-  free(f->order);
+  free(f->scratch);
+  free(f->cells.first);
+  free(f->cells.order);
   memset(f, 0, sizeof(*f));
 }
 
@@ -24,12 +25,29 @@ static double all_points(const sd_field_grid *g)
 
 /* --- how it is summed --- */
 
+/* Numbers of grid points are few: what the next of them is finer than asked for shortens the range. */
+static void use_grid(sd_ewald *e)
+{
+  const double y = e->xi * e->range, widest = SD_PI / (2.2 * e->xi * y);
+  double finer = 1.5 / (e->xi * e->largest);
+  for (int d = 0; d < 3; d++) {
+    const double *t = e->box.tilt;
+    const double across = d == 0 ? 0.0 : d == 1 ? t[0] : hypot(t[1], t[2]);
+    finer = fmin(finer, widest * e->grid[d] / hypot(e->box.edge[d], across));
+  }
+  if (!(finer > 1.0)) return;
+  e->xi *= finer;
+  e->range /= finer;
+  e->reach = fmax(e->range, 2.0 * e->largest);
+}
+
 /* For sources and points together: near pairs and transforms cost about the same where the range
  * holds as many sources as it would for a product of sqrt(n points) spheres, whose rule is known.
  * Points have radius 0 and stand for half of them, so that the rule does not take all radii for
  * equal; a_ref 0 makes a point's window a plain one. A point does not average over a sphere as a
- * sphere does, so the same splitting leaves it a larger error: 0.3 makes up for that. With torques the
- * rule is stricter by 3, for the sake of angular velocities, which points do not have. */
+ * sphere does, so the same splitting leaves it a larger error: 0.5 makes up for that, and 0.3 where it is
+ * small and windows count more. With torques the rule is stricter by 3, for the sake of angular
+ * velocities, which points do not have. */
 static sd_status choose(const sd_ewald_box *box, const sd_field_sources *s, const sd_field_grid *g,
                         double tolerance, sd_ewald *out)
 {
@@ -49,9 +67,10 @@ static sd_status choose(const sd_ewald_box *box, const sd_field_sources *s, cons
     all->squares = 0.5 * all->count * all->largest * all->largest;
     all->fourths = all->squares * all->largest * all->largest;
   }
-  const double tighter = s->T ? 0.9 : 0.3;
+  const double tighter = s->T ? 0.9 : tolerance > 5e-4 ? 0.5 : 0.3;
   const sd_status status = sd_ewald_choose(box, &sizes, s->T ? 6 : 3, tighter * tolerance, out);
   out->a_ref = 0.0;
+  if (status == SD_OK && box->periodic && !(out->large.from > 0.0)) use_grid(out);
   return status;
 }
 
@@ -86,41 +105,7 @@ static double cost_of_split(const sd_ewald *e, const sd_field_sources *s, const 
       grid_point * e->grid[0] * e->grid[1] * (double) e->grid[2];
 }
 
-/* --- sources in an order, and as the kernels read them --- */
-
-/* One after the other those that are near each other, so that what they share stays in the cache: by
- * cells, along z fastest; range 0: as they come. Cells are wide across z, because the points around a
- * column of them leave the cache before the next column comes. */
-static int sort_sources(sd_field *f, const sd_field_sources *s, double range)
-{
-  const double side[3] = {3.0 * range, 3.0 * range, 0.5 * range};
-  if (!sd_reserve(&f->order, sizeof(int), 2 * (size_t) s->n, &f->order_room)) return 0;
-  int *cell = f->order + s->n, cells[3];
-  double lo[3], all = 1.0;
-  for (int d = 0; d < 3; d++) {
-    double hi = lo[d] = s->x[d];
-    for (long i = 1; i < s->n; i++) {
-      lo[d] = fmin(lo[d], s->x[3 * i + d]);
-      hi = fmax(hi, s->x[3 * i + d]);
-    }
-    cells[d] = range > 0.0 ? 1 + (int) fmin(500.0, (hi - lo[d]) / side[d]) : 1;
-    all *= cells[d];
-  }
-  int *first = calloc((size_t) all + 1, sizeof(int));
-  if (!first) return 0;
-  for (long i = 0; i < s->n; i++) {
-    cell[i] = 0;
-    for (int d = 0; d < 3 && range > 0.0; d++) {
-      const double at = (s->x[3 * i + d] - lo[d]) / side[d];
-      cell[i] = cell[i] * cells[d] + (int) fmin(cells[d] - 1, at);
-    }
-    first[cell[i] + 1]++;
-  }
-  for (long k = 1; k < (long) all; k++) first[k] += first[k - 1];
-  for (int i = 0; i < s->n; i++) f->order[first[cell[i]]++] = i;
-  free(first);
-  return 1;
-}
+/* --- sources, as the kernels read them --- */
 
 typedef struct {
   sd_field *f;
@@ -163,7 +148,7 @@ static int list_sources(listing *l, const sd_ewald_box *box, int split, double r
   }
   int ok = 1;
   for (int k = 0; k < s->n && ok; k++) {
-    const long i = l->f->order[k];
+    const long i = l->f->cells.order[k];
     l->a = s->a + i;
     l->F = s->F + 3 * i;
     l->T = s->T ? s->T + 3 * i : NULL;
@@ -184,10 +169,10 @@ static double scale_of(const sd_field_sources *s, const sd_field_grid *g)
   return ldexp(1.0, -ilogb(largest));
 }
 
-static sd_field_part part_of(sd_field *f, const sd_field_sources *s, const sd_field_grid *g,
-                             double scale)
+static sd_field_part part_of(const sd_field_sources *s, const sd_field_grid *g, double scale,
+                             double *u)
 {
-  sd_field_part p = {.turns = s->T != NULL, .stride = (g->n[0] + 7L) / 8 * 8 + 8};
+  sd_field_part p = {.turns = s->T != NULL, .unit = scale / (8.0 * SD_PI), .u = u};
   for (int d = 0; d < 3; d++) {
     p.step[d] = scale * g->step[d];
     p.lo[d] = scale * g->lo[d];
@@ -195,11 +180,6 @@ static sd_field_part part_of(sd_field *f, const sd_field_sources *s, const sd_fi
   }
   p.lo[2] = scale * (g->lo[2] + g->from * g->step[2]);
   p.points[2] = g->to - g->from;
-  const size_t column = (size_t) p.stride * (size_t) p.points[1] * (size_t) p.points[2];
-  if (sd_reserve(&f->column, sizeof(double), 3 * column + 8, &f->column_room)) {
-    memset(f->column, 0, sizeof(double) * (3 * column + 8));
-    p.u = f->column;
-  }
   return p;
 }
 
@@ -243,14 +223,14 @@ static sd_status convolve(sd_field *f, const sd_field_sources *s, const sd_world
   const int me = sd_world_me(world), ranks = sd_world_ranks(world), m = f->width;
   const long begin = (long) s->n * me / ranks, end = (long) s->n * (me + 1) / ranks;
   const size_t n = (size_t) (end - begin);
-  double *w = malloc(sizeof(double) * (n + 1)), *F = malloc(sizeof(double) * (m * n + 1));
-  double *u = malloc(sizeof(double) * (m * n + 1));
-  double *x = malloc(sizeof(double) * (3 * n + 1)), *a = malloc(sizeof(double) * (n + 1));
   int *which = malloc(sizeof(int) * (n + 1)), brick[6];
+  sd_status status = SD_OK;
+  if (!which || !sd_reserve(&f->scratch, sizeof(double), (2 * (size_t) m + 5) * n, &f->scratch_room))
+    status = SD_ENOMEMORY;
+  double *x = f->scratch, *a = x + 3 * n, *w = a + n, *F = w + n, *u = F + m * n;
   const sd_spheres ours = {x, a, w};
-  sd_status status = w && F && u && x && a && which ? SD_OK : SD_ENOMEMORY;
   for (size_t i = 0; i < n && status == SD_OK; i++) {
-    const size_t j = (size_t) f->order[begin + (long) i];
+    const size_t j = (size_t) f->cells.order[begin + (long) i];
     which[i] = (int) i;
     w[i] = 1.0;
     a[i] = s->a[j];
@@ -262,11 +242,6 @@ static sd_status convolve(sd_field *f, const sd_field_sources *s, const sd_world
   if (status == SD_OK) status = sd_ewald_waves_place_whole(&f->waves);
   status = sd_world_agree(world, status);
   if (status == SD_OK) status = sd_ewald_waves_convolve(&f->waves, &ours, F, u);
-  free(w);
-  free(F);
-  free(u);
-  free(x);
-  free(a);
   free(which);
   return status;
 }
@@ -280,16 +255,6 @@ static void mean_of(const sd_field *f, const sd_field_sources *s, double *mean)
   for (long i = 0; i < s->n; i++)
     for (int d = 0; d < 3; d++)
       mean[d] += over_V * (f->tail[0] - sd_ewald_b(&f->ewald, s->a[i]) * f->tail[1]) * s->F[3 * i + d];
-}
-
-static void take(const sd_field_part *p, double unit, const double *mean, double *u)
-{
-  for (int k = 0; k < p->points[2]; k++)
-    for (int j = 0; j < p->points[1]; j++) {
-      const double *row = p->u + 3 * ((long) k * p->points[1] + j) * p->stride;
-      for (int i = 0; i < p->points[0]; i++, u += 3)
-        for (int d = 0; d < 3; d++) u[d] += unit * row[d * p->stride + i] + mean[d];
-    }
 }
 
 static int sound(const sd_field_sources *s)
@@ -331,29 +296,27 @@ sd_status sd_field_add(sd_field *f, sd_field_sum how, const sd_ewald_box *box, d
   int split;
   sd_status status = decide(f, how, box, tolerance, s, g, &split, &e);
   if (status != SD_OK) return status; /* the same on every rank */
-  if (!sort_sources(f, s, split ? e.range : 0.0)) status = SD_ENOMEMORY;
+  if (!sd_field_sort(&f->cells, s->x, 3, s->n, split ? e.range : 0.0)) status = SD_ENOMEMORY;
   status = sd_world_agree(world, status);
   if (status != SD_OK) return status;
-  double mean[3] = {0.0};
   if (split) {
     status = sd_world_agree(world, make_tables(f, &e, s->T ? 6 : 3, world));
     if (status == SD_OK) status = convolve(f, s, world);
     if (status != SD_OK) return status;
-    mean_of(f, s, mean);
   }
-  const double scale = scale_of(s, g), unit = scale / (8.0 * SD_PI);
-  sd_field_part p = part_of(f, s, g, scale);
+  const double scale = scale_of(s, g);
+  sd_field_part p = part_of(s, g, scale, u);
   listing l = {.f = f, .scale = scale};
-  if (!p.u || !list_sources(&l, box, split, split ? e.range : 0.0, s, g)) return SD_ENOMEMORY;
+  if (!list_sources(&l, box, split, split ? e.range : 0.0, s, g)) return SD_ENOMEMORY;
   p.n = l.n;
   p.source = f->source;
   const struct sd_field_kernels *kernels = SD_KERNELS_OF(sd_field, plain, sd_isa_of(SD_ISA_BEST));
-  if (split) {
-    range_of(f, scale, &p);
-    kernels->near(&p);
-    status = sd_field_gather(&f->waves, g, 1.0 / unit, p.stride, p.u);
-  } else
+  if (!split) {
     kernels->direct(&p);
-  if (status == SD_OK) take(&p, unit, mean, u);
-  return status;
+    return SD_OK;
+  }
+  range_of(f, scale, &p);
+  mean_of(f, s, p.mean);
+  status = sd_field_near(f, &p, kernels);
+  return status == SD_OK ? sd_field_gather(f, g, kernels, u) : status;
 }

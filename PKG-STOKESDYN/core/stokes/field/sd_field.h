@@ -8,7 +8,7 @@
  * jumps. What flows without the spheres is not in it.
  *
  * Points are a grid, because then a window is interpolated one direction after the other and the
- * near part of a sphere is a few whole rows: 10^6 points cost less than three products of 10^5
+ * near part goes by blocks of points: 10^6 points cost as much as three to four products of 10^5
  * spheres.
  *
  * Every rank knows all sources and has the points of some planes; the transforms are shared. */
@@ -50,6 +50,13 @@ typedef struct {
 /* AUTO: in an open box all pairs or a split sum, whichever costs less, counted */
 typedef enum { SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT } sd_field_sum;
 
+/* Places in cells: cell k of n [3] has order [first [k]] ... order [first [k + 1] - 1] */
+typedef struct {
+  double lo[3], inverse;
+  int n[3], *first, *order;
+  size_t first_room, order_room;
+} sd_field_cells;
+
 /* What is kept between two fields: tables of the split sum and memory. Zero-initialise;
  * sd_field_free in the end. */
 typedef struct {
@@ -60,10 +67,10 @@ typedef struct {
   int degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS], tail[3];
   sd_ewald_box around;
-  /* sources and their images as the kernels read them; columns u x, u y, u z of our points */
-  double *source, *column;
-  int *order;
-  size_t source_room, column_room, order_room;
+  /* sources and their images as the kernels read them */
+  double *source, *scratch;
+  size_t source_room, scratch_room;
+  sd_field_cells cells;
 } sd_field;
 
 /* The flow u [3 sd_field_points], x fastest, added to what is there.

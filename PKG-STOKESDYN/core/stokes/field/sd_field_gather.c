@@ -7,11 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* First point of a window and its values */
-typedef struct {
-  int at;
-  double value[SD_WINDOW_COLUMNS];
-} place;
+#include "sd_room.h"
 
 /* Grid coordinate d of a point */
 static double coordinate(const sd_ewald_waves *w, int d, const double *x)
@@ -22,7 +18,7 @@ static double coordinate(const sd_ewald_waves *w, int d, const double *x)
   return s;
 }
 
-static void place_window(const sd_ewald_waves *w, int d, double s, place *p)
+static void place_window(const sd_ewald_waves *w, int d, double s, sd_field_place *p)
 {
   const sd_window *window = &w->window;
   const double half = 0.5 * window->points, first = floor(s - half);
@@ -40,103 +36,89 @@ static void place_window(const sd_ewald_waves *w, int d, double s, place *p)
 typedef struct {
   const sd_ewald_waves *w;
   const sd_field_grid *g;
-  double factor;
+  const struct sd_field_kernels *kernels;
   /* of the points of a row, made anew only where it differs from row to row */
-  place *of_row;
+  sd_field_place *of_row;
   int oblique, made;
-  /* velocities on the waves' grid in some planes of z, and on the line of y and z; x fastest, so that
-   * sums along y are whole rows: [planes][n1][3][n0], [3][n0] */
-  double *planes, *line;
+  /* velocities on the waves' grid in some planes of z, on the line of y and z, and at the points of a
+   * row: three numbers and a free one each, x fastest: [planes][n1][n0], [n0], [points] */
+  double *planes, *line, *row;
 } gathering;
 
-/* So many planes at once: the columns of the waves' grid, which lie far from each other in memory, are
- * read once for all of them. */
-enum { PLANES = 64 };
+/* So many planes at once: of the columns of the waves' grid, which lie far from each other in memory,
+ * whole lines of the cache are read, and the planes stay in the last level of it. */
+enum { PLANES = 16 };
 
-static void sum_along_z(const gathering *q, const place *z, int planes)
+static void sum_along_z(const gathering *q, const sd_field_place *z, int planes)
 {
   const sd_spreading *s = &q->w->spreading;
-  const int *n = q->w->grid.n, points = q->w->window.points;
-  const long size = 3L * n[0] * n[1];
-  for (int j = 0; j < n[1]; j++)
-    for (int i = 0; i < n[0]; i++) {
-      const double *column = s->brick + i * s->layer + j * s->row;
-      double *out = q->planes + 3L * j * n[0] + i;
-      for (int b = 0; b < planes; b++, out += size) {
-        const double *from = column + 3L * z[b].at;
-        double sum[3] = {0.0};
-        for (int k = 0; k < points; k++)
-          for (int c = 0; c < 3; c++) sum[c] += z[b].value[k] * from[3 * k + c];
-        for (int c = 0; c < 3; c++) out[c * n[0]] = sum[c];
-      }
-    }
+  const int *n = q->w->grid.n;
+  const long size = 4L * n[0] * n[1];
+  for (int pair = 0; pair < n[0]; pair += 2) /* two share a line of the cache in the planes */
+    for (int j = 0; j < n[1]; j++)
+      for (int i = pair; i < pair + 2 && i < n[0]; i++)
+        q->kernels->windows(z, planes, q->w->window.points, s->brick + i * s->layer + j * s->row, 3,
+                            s->row, q->planes + 4L * (j * (long) n[0] + i), size);
 }
 
-static void sum_along_y(const gathering *q, const double *plane, const place *y)
+static void sum_along_y(const gathering *q, const double *plane, const sd_field_place *y)
 {
-  const long row = 3L * q->w->grid.n[0];
-  const double *from = plane + y->at * row;
-  for (long m = 0; m < row; m++) q->line[m] = y->value[0] * from[m];
-  for (int k = 1; k < q->w->window.points; k++)
-    for (long m = 0; m < row; m++) q->line[m] += y->value[k] * from[k * row + m];
+  const long row = 4L * q->w->grid.n[0];
+  q->kernels->rows(y->value, q->w->window.points, plane + y->at * row, row, q->line);
 }
 
-static void sum_along_x(gathering *q, const double *x, long stride, double *row)
+static void sum_along_x(gathering *q, const double *x, double *u)
 {
-  const int points = q->w->window.points;
+  const int points = q->g->n[0];
   if (!q->made || q->oblique)
-    for (int i = 0; i < q->g->n[0]; i++) {
+    for (int i = 0; i < points; i++) {
       const double at[3] = {q->g->lo[0] + i * q->g->step[0], x[1], x[2]};
       place_window(q->w, 0, coordinate(q->w, 0, at), q->of_row + i);
     }
   q->made = 1;
-  for (int i = 0; i < q->g->n[0]; i++) {
-    const place *p = q->of_row + i;
-    for (int c = 0; c < 3; c++) {
-      const double *from = q->line + c * q->w->grid.n[0] + p->at;
-      double sum = 0.0;
-      for (int k = 0; k < points; k++) sum += p->value[k] * from[k];
-      row[c * stride + i] += q->factor * sum;
-    }
-  }
+  q->kernels->windows(q->of_row, points, q->w->window.points, q->line, 4, 0, q->row,
+                      4);
+  for (int i = 0; i < points; i++)
+    for (int d = 0; d < 3; d++) u[3 * i + d] += q->row[4 * i + d];
 }
 
-static void gather_plane(gathering *q, int k, const double *plane, long stride, double *u)
+static void gather_plane(gathering *q, int k, const double *plane, double *u)
 {
   const sd_field_grid *g = q->g;
   for (int j = 0; j < g->n[1]; j++) {
     const double x[3] = {0.0, g->lo[1] + j * g->step[1], g->lo[2] + k * g->step[2]};
-    place y;
+    sd_field_place y;
     place_window(q->w, 1, coordinate(q->w, 1, x), &y);
     sum_along_y(q, plane, &y);
-    sum_along_x(q, x, stride, u + 3 * ((long) (k - g->from) * g->n[1] + j) * stride);
+    sum_along_x(q, x, u + 3 * ((long) (k - g->from) * g->n[1] + j) * g->n[0]);
   }
 }
 
-sd_status sd_field_gather(const sd_ewald_waves *w, const sd_field_grid *g, double factor,
-                          long stride, double *u)
+sd_status sd_field_gather(sd_field *f, const sd_field_grid *g,
+                          const struct sd_field_kernels *kernels, double *u)
 {
-  const int *n = w->grid.n;
+  const sd_ewald_waves *w = &f->waves;
   const double *G = w->spreading.gradient[0];
-  gathering q = {.w = w, .g = g, .factor = factor, .oblique = G[1] != 0.0 || G[2] != 0.0};
-  q.of_row = malloc(sizeof(place) * (size_t) g->n[0]);
   const int most = g->to - g->from < PLANES ? g->to - g->from : PLANES;
-  q.planes = malloc(sizeof(double) * 3 * ((size_t) most * (size_t) n[0] * (size_t) n[1] + 1));
-  q.line = malloc(sizeof(double) * 3 * (size_t) n[0]);
-  const int ok = q.of_row && q.planes && q.line;
+  const size_t plane = 4 * (size_t) w->grid.n[0] * (size_t) w->grid.n[1];
+  const size_t line = 4 * (size_t) w->grid.n[0], row = 4 * (size_t) g->n[0];
+  gathering q = {.w = w, .g = g, .kernels = kernels, .oblique = G[1] != 0.0 || G[2] != 0.0};
+  q.of_row = malloc(sizeof(sd_field_place) * (size_t) g->n[0]);
+  const int ok = q.of_row && sd_reserve(&f->scratch, sizeof(double),
+                                        (size_t) most * plane + line + row, &f->scratch_room);
+  q.planes = f->scratch;
+  q.line = q.planes + (size_t) most * plane;
+  q.row = q.line + line;
   for (int k = g->from; k < g->to && ok; k += PLANES) {
     const int planes = g->to - k < PLANES ? g->to - k : PLANES;
-    place z[PLANES];
+    sd_field_place z[PLANES];
     for (int b = 0; b < planes; b++) {
       const double x[3] = {0.0, 0.0, g->lo[2] + (k + b) * g->step[2]};
       place_window(w, 2, coordinate(w, 2, x), z + b);
     }
     sum_along_z(&q, z, planes);
-    for (int b = 0; b < planes; b++)
-      gather_plane(&q, k + b, q.planes + 3L * b * n[0] * n[1], stride, u);
+    for (int b = 0; b < planes; b++) gather_plane(&q, k + b, q.planes + (size_t) b * plane, u);
   }
   free(q.of_row);
-  free(q.planes);
-  free(q.line);
   return ok ? SD_OK : SD_ENOMEMORY;
 }

@@ -8,31 +8,73 @@
 /* A row of a source: x y z a, F, T, and two numbers that are free */
 enum { SD_FIELD_ROW = 12 };
 
-/* Our points in rows along x: three columns, u x, u y, u z, each `stride` long, which is more than a
- * vector longer than the row; lengths scaled as in sd_packed, sums times 8 pi.
- *   source [n]   rows, images among them
- *   range        only points nearer than this get something; not read by `direct`
- *   I0 J0 I1 J1 K0   of sd_radial.h, so scaled, of a degree that there is a kernel for */
+/* Sources and our points; lengths scaled as in sd_packed.
+ *   source [n]       rows, images among them
+ *   range            only points nearer than this get something; not read by `direct`
+ *   I0 J0 I1 J1 K0   of sd_radial.h, so scaled and times 8 pi, of a degree with a kernel
+ *   u                [3 points], x fastest: grows by unit times the sum times 8 pi, and by mean */
 typedef struct {
   int n, turns;
   const double *source;
   double lo[3], step[3];
   int points[3];
-  long stride;
   double range;
   int degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS];
-  double *u;
+  double unit, mean[3], *u;
 } sd_field_part;
+
+/* The near part goes by blocks of 8 x 8 x 8 points, in 4 x 4 x 4 bricks of 2 x 2 x 2. A brick is a
+ * vector, and fewer of its points are beyond the range of a source than of a piece of a row; the sums
+ * of a block stay in the first-level cache for all sources near it. x is fastest everywhere. */
+enum { SD_FIELD_BRICKS = 4, SD_FIELD_BLOCK = 8 };
+
+/*   u [4 4 4][3][8]   out: three components at the points of a brick
+ *   lo [3]            first point
+ *   bricks [3]        those with points that are asked for
+ *   source [n]        those that may be near a point */
+typedef struct {
+  double u[SD_FIELD_BRICKS * SD_FIELD_BRICKS * SD_FIELD_BRICKS][3][8];
+  double lo[3];
+  int bricks[3], n;
+  const int *source;
+} sd_field_block;
+
+/* Floats are enough from this tolerance on, and up to the last of these degrees. */
+#define SD_FIELD_FLOAT_DEGREES(_) _(8) _(11) _(14)
+#define SD_FIELD_FLOAT_MOST 14
+#define SD_FIELD_FLOAT_TOLERANCE 1e-4
+
+/* A window along one direction: its first point and its values */
+typedef struct {
+  int at;
+  double value[SD_WINDOW_COLUMNS];
+} sd_field_place;
 
 struct sd_field_kernels {
   /* every source with every point */
   void (*direct)(const sd_field_part *p);
-  /* the tensor less its wave part in open space, within the range */
-  void (*near)(const sd_field_part *p);
+  /* the tensor less its wave part in open space, within the range; u of the part is not read. Floats:
+   * 3e-6 of F/(6 pi eta a), degrees of SD_FIELD_FLOAT_DEGREES */
+  void (*near)(const sd_field_part *p, sd_field_block *b);
+  void (*near_floats)(const sd_field_part *p, sd_field_block *b);
+  /* out [apart l + 0 ... 3] = sum_k value_k from [columns (at + k) + 0 ... 3] at n places; with rows of
+   * three the fourth number means nothing. next: from here to what the next call reads */
+  void (*windows)(const sd_field_place *place, int n, int points, const double *from, int columns,
+                  long next, double *out, long apart);
+  /* out [n] = sum_k value_k from [n k + 0 ... n - 1] */
+  void (*rows)(const double *value, int points, const double *from, long n, double *out);
 };
 
 SD_KERNEL_TABLES(struct sd_field_kernels, sd_field);
+
+/* Places x [stride i], i < n, in an order of cells, along z fastest. side: of the cells, at least;
+ * 0: there is one cell. 1, or 0: out of memory. */
+int sd_field_sort(sd_field_cells *c, const double *x, long stride, int n, double side);
+
+/* u of the part += the near part. SD_OK or SD_ENOMEMORY. */
+sd_status sd_field_near(sd_field *f, const sd_field_part *p,
+                        const struct sd_field_kernels *kernels);
 
 /* Calls visit for each image of the place x within lo ... hi [3], steps [3] edges away; where the
  * box is not periodic, for x itself. 0 as soon as visit returns 0, else 1. */
@@ -40,8 +82,8 @@ typedef int sd_field_visit(void *ctx, const double *image, const int *steps);
 int sd_field_images(const sd_ewald_box *box, const double *lo, const double *hi, const double *x,
                     sd_field_visit *visit, void *ctx);
 
-/* u, as above, += factor times what the convolved grid of the waves has at our points */
-sd_status sd_field_gather(const sd_ewald_waves *w, const sd_field_grid *g, double factor,
-                          long stride, double *u);
+/* u [3 sd_field_points] += what the convolved grid of the waves has at our points */
+sd_status sd_field_gather(sd_field *f, const sd_field_grid *g,
+                          const struct sd_field_kernels *kernels, double *u);
 
 #endif

@@ -1,44 +1,127 @@
-/* Kernels of a field: a sphere and the points of a row, which are neighbours in memory and along x.
+/* Kernels of a field: a sphere and the points of a row or of a brick, which are neighbours in memory.
  * With y = 1/R and everything times 8 pi the tensor of a sphere of radius a and a point is
  *
  *   outside   f = y + a^2 y^3/3,  h = y^3 - a^2 y^5,  c = y^3      u = f F + h r (r.F) + c T x r
- *   inside    f = 4/(3a),         h = 0,              c = 1/a^3 */
+ *   inside    f = 4/(3a),         h = 0,              c = 1/a^3
+ *
+ * where inside is what the formulas of outside give for R = a. A point force counts as a sphere of
+ * radius 1e-12. */
 #include "sd_field_internal.h"
-#include "sd_lanes.h"
+#include "sd_float_lanes.h"
 
-/* What does not depend on the point */
+/* --- which bricks are near --- */
+
+enum { BRICKS = SD_FIELD_BRICKS * SD_FIELD_BRICKS * SD_FIELD_BRICKS };
+
+/* Middles of bricks from the first point of a block: along x for 2 x 4 of a plane, along y for the
+ * first 2 x 4 and the second, along z; far away where no point is asked for. Half of a brick, and the
+ * range, a little more for what floats lose. */
 typedef struct {
-  double a2, inside_f, inside_c;
-} constants;
+  float x[8], y[2][8], z[SD_FIELD_BRICKS], half[3], range2;
+} brick_middles;
 
-INLINE constants constants_of(const double *s)
+static brick_middles middles_of(const sd_field_part *p, const sd_field_block *b)
 {
-  const double a = s[3], ia = a > 0.0 ? 1.0 / a : 0.0;
-  return (constants){a * a, 4.0 / 3.0 * ia, ia * ia * ia};
+  const float far_away = 1e15f;
+  brick_middles m = {.range2 = (float) (p->range * p->range * (1.0 + 1e-5))};
+  float middle[3][SD_FIELD_BRICKS];
+  for (int d = 0; d < 3; d++) {
+    m.half[d] = (float) (0.5 * p->step[d]);
+    for (int k = 0; k < SD_FIELD_BRICKS; k++)
+      middle[d][k] = k < b->bricks[d] ? (float) ((2 * k + 0.5) * p->step[d]) : far_away;
+  }
+  for (int l = 0; l < 8; l++) {
+    m.x[l] = middle[0][l % 4];
+    m.y[0][l] = middle[1][l / 4];
+    m.y[1][l] = middle[1][2 + l / 4];
+  }
+  memcpy(m.z, middle[2], sizeof(middle[2]));
+  return m;
 }
 
-INLINE void point_block(vec r2, const constants *k, vec *f, vec *h, vec *c)
+/* Squared distance from a place to bricks in one direction */
+INLINE floats gap(const float *middle, float x, float half)
 {
-  const vec a2 = all(k->a2), y = inverse_root(r2), y2 = y * y, y3 = y * y2, q = a2 * y2;
-  const yes_no inside = r2 <= a2;
-  *f = where(inside, all(k->inside_f), y + y * q * all(1.0 / 3.0));
-  *h = where(inside, all(0.0), y3 - y3 * q);
-  *c = where(inside, all(k->inside_c), y3);
+  const floats d = load_floats(middle) - all_floats(x);
+  const floats beyond = larger_floats(larger_floats(d, -d) - all_floats(half), all_floats(0.0f));
+  return beyond * beyond;
 }
 
-INLINE void add_flow(int turns, const double *s, vec f, vec h, vec c, vec dx, vec dy, vec dz, vec *u)
+/* Which bricks may have a point within the range of a source? How many */
+INLINE int bricks_near(const brick_middles *m, const sd_field_block *b, const double *s, int *list)
 {
-  const vec F0 = all(s[4]), F1 = all(s[5]), F2 = all(s[6]);
-  const vec e = h * (dx * F0 + dy * F1 + dz * F2);
-  u[0] = (u[0] + f * F0) + e * dx;
-  u[1] = (u[1] + f * F1) + e * dy;
-  u[2] = (u[2] + f * F2) + e * dz;
-  if (!turns) return;
-  const vec T0 = all(s[7]), T1 = all(s[8]), T2 = all(s[9]);
-  u[0] += c * (T1 * dz - T2 * dy);
-  u[1] += c * (T2 * dx - T0 * dz);
-  u[2] += c * (T0 * dy - T1 * dx);
+  enum { VECTORS = 8 / FLOATS, PIECE = LANES < FLOATS ? LANES : FLOATS };
+  const float x = (float) (s[0] - b->lo[0]), y = (float) (s[1] - b->lo[1]);
+  const float z = (float) (s[2] - b->lo[2]);
+  floats across[2][VECTORS];
+  int many = 0;
+  for (int l = 0; l < VECTORS; l++) {
+    const floats along_x = gap(m->x + FLOATS * l, x, m->half[0]);
+    for (int k = 0; k < 2; k++)
+      across[k][l] = along_x + gap(m->y[k] + FLOATS * l, y, m->half[1]);
+  }
+  for (int j = 0; j < b->bricks[2]; j++) {
+    const float beyond = fabsf(m->z[j] - z) - m->half[2], least = beyond > 0.0f ? beyond : 0.0f;
+    const floats left = all_floats(m->range2 - least * least);
+    for (int k = 0; k < 2; k++)
+      for (int l = 0; l < VECTORS; l++) {
+        const unsigned hits = float_hits(across[k][l], left);
+        for (int part = 0; part < FLOATS; part += PIECE)
+          many += keep_next(list + many, 16 * j + 8 * k + FLOATS * l + part,
+                            hits >> part & ((1u << PIECE) - 1));
+      }
+  }
+  return many;
 }
+
+/* --- within the range --- */
+
+/* A source is fetched so many before it is its turn. */
+enum { AHEAD = 6 };
+
+INLINE void soon(const double *p)
+{
+#if LANES > 1
+  __builtin_prefetch(p);
+#else
+  (void) p;
+#endif
+}
+
+INLINE vec within(vec a, vec most, vec x)
+{
+  return where(a <= most, x, all(0.0));
+}
+
+#define REAL double
+#define REALS vec
+#define WIDTH LANES
+#define OF(name) name##_double
+#define ALL all
+#define LOAD load_any
+#define STORE store_any
+#define LARGER larger
+#define SMALLER smaller
+#define WITHIN within
+#define INVERSE_ROOT inverse_root
+#define NEAR_DEGREES SD_NEAR_DEGREES
+#include "sd_field_near_kernel.h"
+
+#define REAL float
+#define REALS floats
+#define WIDTH FLOATS
+#define OF(name) name##_float
+#define ALL all_floats
+#define LOAD load_floats
+#define STORE store_floats
+#define LARGER larger_floats
+#define SMALLER smaller_floats
+#define WITHIN floats_within
+#define INVERSE_ROOT inverse_root_floats
+#define NEAR_DEGREES SD_FIELD_FLOAT_DEGREES
+#include "sd_field_near_kernel.h"
+
+/* --- all pairs --- */
 
 /* x of the points i ... i + LANES - 1 of every row */
 INLINE vec along(const sd_field_part *p, int i)
@@ -46,29 +129,25 @@ INLINE vec along(const sd_field_part *p, int i)
   return all(p->lo[0]) + (all((double) i) + (vec) LANEWISE(NUMBER, 0)) * all(p->step[0]);
 }
 
-/* --- all pairs --- */
-
 INLINE void direct_with(int turns, const sd_field_part *p)
 {
   for (int k = 0; k < p->points[2]; k++)
     for (int j = 0; j < p->points[1]; j++) {
       const vec y = all(p->lo[1] + j * p->step[1]), z = all(p->lo[2] + k * p->step[2]);
-      double *row = p->u + 3 * ((long) k * p->points[1] + j) * p->stride;
+      double *row = p->u + 3 * ((long) k * p->points[1] + j) * p->points[0];
       for (int i = 0; i < p->points[0]; i += LANES) {
         const vec x = along(p, i);
         vec u[3] = {all(0.0), all(0.0), all(0.0)};
         for (int m = 0; m < p->n; m++) {
           const double *s = p->source + (long) SD_FIELD_ROW * m;
-          const constants of = constants_of(s);
           const vec dx = x - all(s[0]), dy = y - all(s[1]), dz = z - all(s[2]);
-          vec f, h, c;
-          point_block(dx * dx + dy * dy + dz * dz, &of, &f, &h, &c);
-          add_flow(turns, s, f, h, c, dx, dy, dz, u);
+          vec f, h, c, G[6];
+          for (int d = 0; d < 6; d++) G[d] = all(s[4 + d]);
+          point_block_double(dx * dx + dy * dy + dz * dz, all(s[3] > 1e-12 ? s[3] * s[3] : 1e-24), &f, &h, &c);
+          add_flow_double(turns, G, f, h, c, dx, dy, dz, u);
         }
-        for (int d = 0; d < 3; d++) {
-          double *out = row + d * p->stride + i;
-          store_any(out, load_any(out) + u[d]);
-        }
+        for (int l = 0; l < LANES && i + l < p->points[0]; l++)
+          for (int d = 0; d < 3; d++) row[3 * (i + l) + d] += p->unit * LANE(u[d], l);
       }
     }
 }
@@ -81,154 +160,44 @@ static void direct(const sd_field_part *p)
     direct_with(0, p);
 }
 
-/* --- within the range --- */
+/* --- from the waves' grid --- */
 
-/* Without a branch */
-INLINE double smaller1(double a, double b)
+static void windows(const sd_field_place *place, int n, int points, const double *from, int columns,
+                    long next, double *out, long apart)
 {
-  return a < b ? a : b;
-}
-
-INLINE double larger1(double a, double b)
-{
-  return a > b ? a : b;
-}
-
-/* The points of a direction nearer than `half` to x, first and end; perhaps one more at the start */
-INLINE int points_near(const sd_field_part *p, int d, double x, double half, double inverse, int *end)
-{
-  const double middle = (x - p->lo[d]) * inverse, width = half * inverse, most = p->points[d];
-  const double from = smaller1(larger1(middle - width, 0.0), most);
-  const double to = smaller1(larger1(middle + width + 1.0, 0.0), most);
-  *end = (int) to;
-  return (int) from;
-}
-
-/* value[f] of three polynomials of one degree */
-INLINE void horner3(int count, int degree, const double (*c)[SD_RADIAL_TERMS], vec t, vec *value)
-{
-#pragma GCC unroll 3
-  for (int f = 0; f < count; f++) value[f] = all(c[f][degree]);
-#pragma GCC unroll 40
-  for (int k = degree - 1; k >= 0; k--)
-#pragma GCC unroll 3
-    for (int f = 0; f < count; f++) value[f] = value[f] * t + all(c[f][k]);
-}
-
-/* A point has b = 0 and a sphere b = a^2/6, since a_ref is 0. */
-INLINE void polynomials_of_source(const sd_field_part *p, double a2, int degree,
-                                  double (*c)[SD_RADIAL_TERMS])
-{
-  const double b = a2 / 6.0;
-  for (int k = 0; k <= degree; k++) {
-    c[0][k] = p->coefficient[SD_I0][k] - b * p->coefficient[SD_I1][k];
-    c[1][k] = p->coefficient[SD_J0][k] - b * p->coefficient[SD_J1][k];
-    c[2][k] = p->coefficient[SD_K0][k];
-  }
-}
-
-/* LANES points of a row: the first one's place in the columns, and from the sphere to it */
-typedef struct {
-  long at;
-  double dx, dy, dz;
-} piece;
-
-/* So many wait for their sum while their memory is on its way: rows are short, and a loop over rows
- * of some points each would spend its time in starting anew and in waiting. */
-enum { PIECES = 128 };
-
-INLINE void soon(const double *p)
-{
-#if LANES > 1
-  __builtin_prefetch(p, 1);
+  for (int l = 0; l < n; l++) {
+    const double *at = from + columns * (long) place[l].at, *value = place[l].value;
+    double *to = out + apart * l;
+    soon(at + next);
+#if LANES >= 4
+    row4 sum = value[0] * load4(at);
+    for (int k = 1; k < points; k++) sum += value[k] * load4(at + columns * k);
+    store4(to, sum);
 #else
-  (void) p;
-#endif
-}
-
-/* Lanes beyond the range get nothing; those beyond the end of a row nobody reads. */
-INLINE void near_pieces(int turns, int degree, const sd_field_part *p, const double *s,
-                        const double (*c)[SD_RADIAL_TERMS], const piece *list, int count)
-{
-  const constants of = constants_of(s);
-  const double range2 = p->range * p->range;
-  const vec most = all(range2), twice = all(2.0 / range2), one = all(1.0), zero = all(0.0);
-  const vec steps = (vec) LANEWISE(NUMBER, 0) * all(p->step[0]);
-  double *u0 = p->u, *u1 = u0 + p->stride, *u2 = u1 + p->stride;
-  for (int k = 0; k < count; k++) {
-    const long at = list[k].at;
-    const vec dx = all(list[k].dx) + steps, dy = all(list[k].dy), dz = all(list[k].dz);
-    const vec r2 = dx * dx + dy * dy + dz * dz;
-    const yes_no far = r2 > most;
-    vec f, h, g, D[3], u[3] = {load_any(u0 + at), load_any(u1 + at), load_any(u2 + at)};
-    point_block(r2, &of, &f, &h, &g);
-    horner3(turns ? 3 : 2, degree, c, smaller(r2, most) * twice - one, D);
-    f = where(far, zero, f - D[0]);
-    h = where(far, zero, h - D[1]);
-    if (turns) g = where(far, zero, g - D[2]);
-    add_flow(turns, s, f, h, g, dx, dy, dz, u);
-    store_any(u0 + at, u[0]);
-    store_any(u1 + at, u[1]);
-    store_any(u2 + at, u[2]);
-  }
-}
-
-INLINE void near_with(int turns, int degree, const sd_field_part *p)
-{
-  const double range2 = p->range * p->range;
-  const double inverse[3] = {1.0 / p->step[0], 1.0 / p->step[1], 1.0 / p->step[2]};
-  piece list[PIECES];
-  for (int m = 0; m < p->n; m++) {
-    const double *s = p->source + (long) SD_FIELD_ROW * m;
-    double mixed[3][SD_RADIAL_TERMS];
-    const double (*c)[SD_RADIAL_TERMS] = (const double (*)[SD_RADIAL_TERMS]) mixed;
-    polynomials_of_source(p, s[3] * s[3], degree, mixed);
-    int end_z, end_y, end_x, count = 0;
-    for (int k = points_near(p, 2, s[2], p->range, inverse[2], &end_z); k < end_z; k++) {
-      const double dz = p->lo[2] + k * p->step[2] - s[2], left = range2 - dz * dz;
-      if (!(left > 0.0)) continue;
-      for (int j = points_near(p, 1, s[1], sqrt(left), inverse[1], &end_y); j < end_y; j++) {
-        const double dy = p->lo[1] + j * p->step[1] - s[1], rest = left - dy * dy;
-        if (!(rest > 0.0)) continue;
-        const long row = 3 * ((long) k * p->points[1] + j) * p->stride;
-        for (int i = points_near(p, 0, s[0], sqrt(rest), inverse[0], &end_x); i < end_x; i += LANES) {
-          list[count++] = (piece){row + i, p->lo[0] + i * p->step[0] - s[0], dy, dz};
-          for (int d = 0; d < 3; d++) soon(p->u + row + d * p->stride + i);
-          if (count < PIECES) continue;
-          near_pieces(turns, degree, p, s, c, list, count);
-          count = 0;
-        }
-      }
+    for (int d = 0; d < 4; d++) {
+      to[d] = value[0] * at[d];
+      for (int k = 1; k < points; k++) to[d] += value[k] * at[columns * k + d];
     }
-    near_pieces(turns, degree, p, s, c, list, count);
+#endif
   }
 }
 
-/* A copy for each degree, as in sd_ewald_near_kernel.h */
-#define OF_DEGREE(d)                                   \
-  static void near_forces_##d(const sd_field_part *p)  \
-  {                                                    \
-    near_with(0, d, p);                                \
-  }                                                    \
-  static void near_torques_##d(const sd_field_part *p) \
-  {                                                    \
-    near_with(1, d, p);                                \
-  }
-SD_NEAR_DEGREES(OF_DEGREE)
-#undef OF_DEGREE
-
-static void near_part(const sd_field_part *p)
+/* n: a multiple of 4 */
+static void rows(const double *value, int points, const double *from, long n, double *out)
 {
-#define OF_DEGREE(d)       \
-  if (p->degree == (d)) {  \
-    if (p->turns)          \
-      near_torques_##d(p); \
-    else                   \
-      near_forces_##d(p);  \
-    return;                \
+  enum { STEP = LANES < 4 ? LANES : 4 };
+  for (long m = 0; m < n; m += STEP) {
+#if LANES >= 4
+    row4 sum = value[0] * load4(from + m);
+    for (int k = 1; k < points; k++) sum += value[k] * load4(from + n * k + m);
+    store4(out + m, sum);
+#else
+    vec sum = all(value[0]) * load_any(from + m);
+    for (int k = 1; k < points; k++) sum += all(value[k]) * load_any(from + n * k + m);
+    store_any(out + m, sum);
+#endif
   }
-  SD_NEAR_DEGREES(OF_DEGREE)
-#undef OF_DEGREE
 }
 
-const struct sd_field_kernels SD_KERNELS(sd_field) = {direct, near_part};
+const struct sd_field_kernels SD_KERNELS(sd_field) = {direct, near_part_double, near_part_float,
+                                                        windows, rows};

@@ -149,6 +149,25 @@ static void error_of_a_split_sum_is_below_the_tolerance(void **state)
     }
 }
 
+static void far_from_the_origin_single_precision_keeps_its_digits(void **state)
+{
+  (void) state;
+  scene c;
+  double here[3 * POINTS], far_away[3 * POINTS];
+  sd_field f = {0};
+  make(&c, 1, 1, 0.0);
+  flow(&f, SD_FIELD_AUTO, &c, 1e-3, here);
+  for (int d = 0; d < 3; d++) {
+    const double shift = (d + 1) * 1e5;
+    c.box.origin[d] += shift;
+    c.g.lo[d] += shift;
+    for (int i = 0; i < SPHERES; i++) c.x[3 * i + d] += shift;
+  }
+  flow(&f, SD_FIELD_AUTO, &c, 1e-3, far_away);
+  CHECK_NEAR(off(far_away, here, 3 * POINTS), 0.0, 1e-6);
+  sd_field_free(&f);
+}
+
 /* Stokes: u = F/(6 pi a) on the sphere, in front of it U (3a/2r - a^3/2r^3), beside it U (3a/4r + a^3/4r^3) */
 static void lone_sphere_has_the_flow_of_stokes(void **state)
 {
@@ -329,6 +348,7 @@ int main(void)
       cmocka_unit_test(open_flow_is_the_sum_over_all_spheres),
       cmocka_unit_test(periodic_flow_is_that_of_a_tiny_sphere),
       cmocka_unit_test(error_of_a_split_sum_is_below_the_tolerance),
+      cmocka_unit_test(far_from_the_origin_single_precision_keeps_its_digits),
       cmocka_unit_test(lone_sphere_has_the_flow_of_stokes),
       cmocka_unit_test(between_points_the_error_is_of_second_order),
       cmocka_unit_test(planes_of_several_ranks_are_those_of_one),
