@@ -55,7 +55,7 @@ def options(script, text, **more):
     return given
 
 
-SILENCE = 15          # seconds
+SILENCE = 6          # seconds; on a busy machine a line may come three times as late
 LISTENED_TO = []      # files to which runs of LAMMPS print, the latest one last
 
 

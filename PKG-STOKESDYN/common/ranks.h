@@ -72,7 +72,8 @@ class Post {
   void address(const std::vector<int> &to)
   {
     std::vector<int> from(to);
-    if (ranks > 1) MPI_Alltoall(to.data(), 1, MPI_INT, from.data(), 1, MPI_INT, world);
+    // LAMMPS without MPI has stubs that take what is sent without const.
+    if (ranks > 1) MPI_Alltoall(const_cast<int *>(to.data()), 1, MPI_INT, from.data(), 1, MPI_INT, world);
     partners.clear();
     for (int p = 0; p < ranks; p++)
       if (to[p] || from[p]) partners.push_back({p, to[p], from[p]});
