@@ -1,6 +1,6 @@
 """Scenes, grammar and rules of pair_style sph/artVisc/tensCorr and its fixes, written from their pages (for fuzz.py)."""
-from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, YES_NO, Choice, Maybe, Name, Number, NumberOr, decimal, positive,
-                          write)
+from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, VARIABLES, YES_NO, Choice, Field, Maybe, Name, Number, NumberOr,
+                          decimal, positive, write)
 
 WATER = """units si
 atom_style sph
@@ -111,7 +111,7 @@ def make_sph_order(case):
     case.refuse_if(tensile and float(case.settings["tensCorr"][1]) >= 2 * float(h), "deltap")
     if not (corrects or yes("shift")):
         return
-    case.refuse_if(volume and corrects or tensile or mover == "sph" or kernel == "wendland2d", *names)
+    case.refuse_if(tensile or mover == "sph" or kernel == "wendland2d", *names)
     case.refuse_if(not float(case.value("delta", "0")) > 0, *names)
     case.refuse_if(kernel == "cubicspline" and not corrects, *names)
     case.refuse_if(corrects and (walled or not bulk), *names)
@@ -233,6 +233,38 @@ def make_sph_adami(case):
     if group != "wall":
         case.says(ODD, "")
     case.extreme |= violent(words)
+
+
+# Particles stand at 0 to 0.03, the box ends at -0.05 and 0.08.
+FACES = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"]
+OPENING = [("FACE", Choice(*FACES)), ("POSITION", Number(lambda v: True, ["0.005", "0.025", "0.015"], ["0.06", "-0.03", "-2"])),
+           ("WIDTH", positive("0.04", "0.041", border=["0", "-1", "0.03", "0.07"]))]
+SPEED = Field(lambda v: True, ["1", "0", "0.3"])
+ENDS = {"inlet": {"velocity": [SPEED], "gravity": [Field(lambda v: True, ["0", "-9.81"], atom=False)] * 3},
+        "outlet": {"pressure": [Field(lambda v: True, ["0", "100", "-3"])]}}
+
+
+def make_sph_opening(case):
+    draw, end = case.draw, case.draw.choice(list(ENDS))
+    case.style, grammar = "sph/" + end, ENDS[end]
+    face = draw.choice(FACES)
+    place = draw.choice(["0.005", "0.015"] if face.endswith("lo") else ["0.025", "0.015"])
+    words = [face, place] if draw.random() < 0.8 else [w for _, kind in OPENING[:2] for w in write(kind, draw)]
+    words = case.damaged(words + write(OPENING[2][1], draw) + case.words_of(grammar, ["velocity"] if end == "inlet" else [], few=1))
+    group = draw.choice(["all"] * 6 + ["fluid", "nobody"])
+    water(case, WATER.replace("variable eta equal 1.5", VARIABLES), opening=f"fix end {group} sph/{end} " + " ".join(words))
+    case.extreme |= violent(words)
+    if not case.judge(words, grammar, OPENING):
+        case.faults += ["FACE", "POSITION", "WIDTH"]
+        return
+    case.refuse_if(end == "inlet" and "velocity" not in case.settings, "velocity")
+    face, plane, width = (case.value(name) for name, _ in OPENING)
+    plane, width, side = float(plane), float(width), -1 if face.endswith("lo") else 1
+    case.refuse_if(plane + width > 0.08 if side > 0 else plane - width < -0.05, "layer")
+    spheres = {"all": (0.0, 0.03), "fluid": (0.01 if face == "zlo" else 0.0, 0.03), "nobody": None}[group]
+    case.refuse_if(spheres and width < 0.039 or width < 0.003, "width")
+    empty = not spheres or (spheres[0] > plane if side < 0 else spheres[1] < plane)
+    case.refuse_if(end == "inlet" and empty, "layer")
 
 
 def make_sph_check(case):

@@ -1,6 +1,6 @@
 """Scenes, grammar and rules of pair_style and fix stokes_dynamics, written from their pages (for fuzz.py)."""
 from fuzz_grammar import (BAD, COUNT, GOOD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, MaybeNumber, Name, Number, NumberOr,
-                          delete_something, positive)
+                          Or, delete_something, positive)
 
 BOX = 18.0
 SPHERES = """units lj
@@ -40,7 +40,7 @@ STOKES = {
     "relative_tolerance": [Number(lambda v: 0 < v < 1, ["1e-3", "1e-8", "1e-2"], ["0", "-1", "1", "2", "0.5", "1e-300", "0.1"],
                                   odd=lambda v: v == 0.1, loud=lambda v: v > 0.1)],
     "max_iter": [Integer(lambda v: v >= 1, ["100", "1", "1000"], ["0", "-5", "2147483647"], odd=lambda v: v == 0)],
-    "algorithm": [Choice("1", "2", "2", "2")], "fluid_velocity": [U, U, U], "tensor": [Choice("rpy", "rpy", "rpy", "oseen")],
+    "algorithm": [Choice("1", "2", "2", "2")], "fluid_velocity": [Or([U, U, U], box=[])], "tensor": [Choice("rpy", "rpy", "rpy", "oseen")],
     "taper": [Choice("none", "wendland", "spherical")], "lubrication": [YES_NO],
     "lubrication_gap": [Number(lambda v: v >= 1e-6, ["1e-3", "0.01"], ["0", "-1", "1e-7"])],
     "lubrication_range": [Number(lambda v: 0 < v <= 8, ["2", "1", "8"], ["0", "-1", "9", "1e-3"], odd=lambda v: v == 1e-3)],
@@ -100,8 +100,8 @@ def judge_stokes(case, words, how):
                    "multiblob", "lubrication_range")
     case.refuse_if(blobs == 1 and "one_body" in case.settings, "one_body")
     if "wall" in case.settings:
-        case.refuse_if(how == "periodic" or s("tensor") == "oseen" or far == "ewald" or s("precondition") == "waves" or shell != 1
-                       or rigid != "no" and clumps, "wall")
+        case.refuse_if(how == "periodic" or s("tensor") == "oseen" or far == "ewald" and turns and blobs == 1
+                       or s("precondition") == "waves" or shell != 1 or rigid != "no" and clumps, "wall")
         if s("fluid_velocity") or case.settings["wall"][1] == "EDGE":
             case.says(ODD, "wall", "fluid_velocity")
     case.refuse_if(not lubricated and "lubrication_gap" in case.settings, "lubrication_gap")
@@ -113,13 +113,14 @@ def judge_stokes(case, words, how):
     case.refuse_if(s("precondition") in ("clump", "sparse") and s("algorithm", "1") != "2" and rigid != "yes", "precondition")
     case.refuse_if(s("precondition") == "clump" and how == "no molecules", "precondition")
     case.refuse_if(rotation and s("tensor") == "oseen", "rotation", "tensor")
+    case.refuse_if(rigid != "no" and how in ("no molecules", "no radius"), "rigid_clumps", "molecule", "radius")
     case.refuse_if(rigid == "auto" and not clumps or rigid != "no" and not clumps and not turns, "rigid_clumps")
     case.refuse_if(rigid != "no" and clumps and cut not in (None, "inf"), "rigid_clumps", "cut_off_distance")
     if rigid != "no" and cut == "inf":
         case.says(ODD, "rigid_clumps", "cut_off_distance")
     case.refuse_if(rigid != "no" and s("tensor") == "oseen", "rigid_clumps", "tensor")
     case.refuse_if(shell != 1 and rigid == "no", "shell")
-    case.refuse_if("fluid_vorticity" in case.settings and not turns, "fluid_vorticity")
+    case.refuse_if("fluid_vorticity" in case.settings and (not turns or s("fluid_velocity") == "box"), "fluid_vorticity")
     case.refuse_if(rigid == "yes" and (s("region") == "part" or s("group") == "half"), "region", "group")
     if cut not in (None, "inf") and float(cut) > 100 * BOX:
         case.says(ODD, "cut_off_distance")
@@ -128,6 +129,25 @@ def judge_stokes(case, words, how):
     if "precondition" in case.settings and rigid != "no" or shell == 1 and "shell" in case.settings or shell > 500 \
             or rigid == "auto" or clumps and s("precondition") == "sparse":
         case.says(ODD, "precondition", "shell")
+
+
+# A periodic box that deforms
+DEFORMS = ["x erate 0.2", "z vel -0.3", "x final -8 9 z volume", "xy erate 0.5", "yz wiggle 0.3 1e-3", "y erate 0.1 xz erate -0.3"]
+
+
+def deform(case):
+    """Adds fix deform, and what the page says of how it moves atoms: remap x, v, none."""
+    how, remap = case.draw.choice(DEFORMS), case.draw.choice(["v"] * 6 + ["x", "none"])
+    if any(tilt in how for tilt in ("xy", "yz", "xz")):
+        case.lines.append("change_box all triclinic")
+    case.lines.append(f"fix shear all deform 1 {how} remap {remap}")
+    return remap
+
+
+def judge_deform(case, remap):
+    fluid = case.settings.get("fluid_velocity", ["0"])
+    moves, clumps = fluid[0] == "box" or "v_place" in fluid, case.value("rigid_clumps", "no") != "no"
+    case.refuse_if(moves and remap != "v" or clumps and remap == "x", "remap")
 
 
 def forgive_unselected(case):
@@ -143,9 +163,12 @@ def make_stokes(case):
     words = case.damaged(case.words_of(STOKES, required))
     if how == "periodic":       # 55 boxes take LAMMPS half a minute; 11 are warned of as well
         words = ["200" if w == "1e3" else w for w in words]
+    remap = deform(case) if how == "periodic" and case.draw.random() < 0.5 else None
     case.tried = len(case.lines)
     case.lines += ["pair_style stokes_dynamics " + " ".join(words), "pair_coeff * *"]
     judge_stokes(case, words, how)
+    if remap:
+        judge_deform(case, remap)
     forgive_unselected(case)
     if case.draw.random() < 0.5:
         case.lines.append("fix drag all stokes_dynamics")
@@ -194,7 +217,10 @@ OVERDAMPED = {
     "noise_tolerance": [Number(lambda v: 0 < v < 0.5, ["0.01", "0.1"], ["0", "0.5", "-1", "1e-300"], odd=lambda v: v < 1e-6)],
 }
 FLUIDS = ["", "rotation yes", "multiblob 12", "multiblob 12 lubrication yes", "rotation yes lubrication yes", "wall zlo -8.5",
-          "multiblob 12 wall zlo -8.5", "rigid_clumps yes rotation yes", "rigid_clumps yes shell 12"]
+          "multiblob 12 wall zlo -8.5", "rigid_clumps yes rotation yes", "rigid_clumps yes shell 12",
+          "wall zlo -8.5 far_field ewald", "multiblob 12 wall zlo -8.5 far_field ewald"]
+# in a periodic box that deforms
+CARRIED = ["fluid_velocity box" + more for more in ("", " rotation yes lubrication yes", " multiblob 12", " rigid_clumps yes rotation yes")]
 
 
 def judge_overdamped(case, words, fluid):
@@ -222,12 +248,17 @@ def judge_overdamped(case, words, fluid):
 
 
 def make_overdamped(case):
-    case.style, fluid = "stokes_dynamics/overdamped", case.draw.choice(FLUIDS)
+    case.style, fluid = "stokes_dynamics/overdamped", case.draw.choice(FLUIDS + CARRIED)
     while spheres(case) in ("no radius", "no molecules"):
         pass
-    case.lines[3] = "boundary f f f"
+    case.lines[3] = "boundary p p p" if fluid in CARRIED else "boundary f f f"
+    remap = deform(case) if fluid in CARRIED else "v"
     words = case.damaged(case.words_of(OVERDAMPED, few=3))
     case.lines += [f"pair_style stokes_dynamics cut_off_distance inf visc 1 {fluid}", "pair_coeff * *", "fix weight all addforce 0 0 -1"]
     case.tried = len(case.lines)
     case.lines.append("fix move all stokes_dynamics/overdamped " + " ".join(words))
     judge_overdamped(case, words, fluid)
+    case.refuse_if(remap == "x", "remap")
+    case.refuse_if(fluid in CARRIED and "adapt" in case.settings, "adapt")
+    if remap == "none":
+        case.says(ODD)
