@@ -207,13 +207,13 @@ void PairStokesDynamics::require_atoms()
          COMMAND +
              ": keyword rotation: yes requires an atom style with angular velocity and torque, "
              "such as sphere");
-  if (settings.precondition == Preconditioner::CLUMP && !atom->molecule_flag)
+  if (atom->molecule_flag) return;
+  const std::string ways = " (atom_style hybrid sphere bond, or fix property/atom mol)";
+  if (settings.precondition == Preconditioner::CLUMP)
     fail(lmp, COMMAND + ": keyword precondition: 'clump' requires molecule IDs");
-  if (settings.scene.clumps_only && !atom->molecule_flag)
-    fail(lmp,
-         COMMAND +
-             ": keyword clumps_only: yes requires molecule IDs (atom_style hybrid sphere bond, or "
-             "fix property/atom mol)");
+  if (settings.scene.clumps_only)
+    fail(lmp, COMMAND + ": keyword clumps_only: yes requires molecule IDs" + ways);
+  if (settings.rigid.on) fail(lmp, COMMAND + ": keyword rigid_clumps requires molecule IDs" + ways);
 }
 
 void PairStokesDynamics::look_for_fixes()

@@ -53,6 +53,8 @@ AT_THE_COMMAND = [
     ("cut_off_distance inf visc 1.3 add_force on", ["keyword add_force: 'on' is none of: no, yes"]),
     ("cut_off_distance inf visc 1.3 viscosity 2", ["unknown keyword 'viscosity'"]),
     ("cut_off_distance inf visc 1.3 2.0", ["unknown keyword '2.0'"]),
+    ('cut_off_distance inf visc 1.3 region ""', ["keyword region: '' is empty"]),
+    ('cut_off_distance inf visc 1.3 group ""', ["keyword group: '' is empty"]),
     ("cut_off_distance inf visc 1.3 fluid_velocity 1 2", ["keyword fluid_velocity: value missing"]),
     ("cut_off_distance inf visc 1.3 fluid_velocity 1 nan 3", ["keyword fluid_velocity: 'nan' is not a finite number"]),
     ("cut_off_distance inf visc 1.3 fluid_velocity 1 up 3", ["keyword fluid_velocity: 'up' is not a number"]),
@@ -197,12 +199,15 @@ def test_atom_style_without_radius(simulation):
         sim.run()
 
 
-def test_clumps_only_without_molecule_ids(simulation):
+@pytest.mark.parametrize("words, keyword", [
+    ("clumps_only yes", "clumps_only: yes"), ("cut_off_distance inf rotation yes rigid_clumps yes", "rigid_clumps"),
+    ("cut_off_distance inf multiblob 12 rigid_clumps yes", "rigid_clumps")])
+def test_clumps_without_molecule_ids(simulation, words, keyword):
     sim = simulation().commands(["atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so",
                                  "region b block -9 9 -9 9 -9 9",
                                  "create_box 1 b", "create_atoms 1 single 0 0 0",
-                                 "pair_style stokes_dynamics clumps_only yes visc 1.3", "pair_coeff * *"])
-    with pytest.raises(LammpsError, match=f"{PAIR}: keyword clumps_only: yes requires molecule IDs"):
+                                 f"pair_style stokes_dynamics {words} visc 1.3", "pair_coeff * *"])
+    with pytest.raises(LammpsError, match=f"{PAIR}: keyword {keyword} requires molecule IDs"):
         sim.run()
 
 
