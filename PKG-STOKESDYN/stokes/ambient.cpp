@@ -38,7 +38,6 @@ void Ambient::init()
   if (igroup < 0)
     fail(lmp, command + ": keyword group: group '" + settings.group + "' does not exist");
   groupbit = group->bitmask[igroup];
-  looked_in = -1;
   settings.visc.init(lmp, command + ": keyword visc");
   for (auto &field : settings.velocity) field.init(lmp, command + ": keyword fluid_velocity");
   for (auto &field : settings.vorticity) field.init(lmp, command + ": keyword fluid_vorticity");
@@ -364,7 +363,7 @@ void Ambient::read_grid()
  * when it re-neighbours, users change groups between runs (also before one with 'pre no'). */
 bool Ambient::group_stands() const
 {
-  return looked_in == update->firststep && neighbor->ago > 0 && !group->dynamic[igroup] &&
+  return members_found.is(epochs.groups) && !group->dynamic[igroup] &&
       takes_part.size() == (size_t) atom->nlocal;
 }
 
@@ -375,7 +374,7 @@ void Ambient::select()
   const bool stands = group_stands();
   if (stands && !region) return;
   if (!stands) {
-    looked_in = update->firststep;
+    members_found.take(epochs.groups);
     members.clear();
     for (int i = 0; i < atom->nlocal; i++)
       if (atom->mask[i] & groupbit) members.push_back(i);
@@ -392,7 +391,7 @@ void Ambient::select()
   those.swap(chosen);
   takes_part.assign(atom->nlocal, 0);
   for (int i : those) takes_part[i] = 1;
-  selections++;
+  epochs.selection.advance();
 }
 
 enum Fault { NONE, POSITION, FAR_OUT, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY, FLUID_VORTICITY };

@@ -9,6 +9,7 @@
 #define SD_AMBIENT_H
 
 #include "deforming_box.h"
+#include "epochs.h"
 #include "field.h"
 #include "flow_file.h"
 #include "atom.h"
@@ -42,7 +43,10 @@ class Ambient : protected LAMMPS_NS::Pointers {
     std::string group = "all";
   } settings;
 
-  Ambient(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command) {}
+  Ambient(LAMMPS_NS::LAMMPS *lmp, const std::string &command, Epochs &epochs) :
+      Pointers(lmp), command(command), epochs(epochs)
+  {
+  }
 
   /* Looks up variables, group and region. Errors: one that does not exist. */
   void init();
@@ -65,11 +69,9 @@ class Ambient : protected LAMMPS_NS::Pointers {
   const double *jumps() const { return jumping ? jump : nullptr; }
 
   const std::vector<char> &active() const { return takes_part; }
-  /* The atoms of this rank that take part, in their order. */
+  /* The atoms of this rank that take part, in their order. While Epochs::selection stands, nobody
+   * need look at the others. */
   const std::vector<int> &who() const { return those; }
-  /* Counts the selections: another number than before, and atoms may have come or gone, or have
-   * other indices. With the same number, nobody need look at those that take no part. */
-  long selection() const { return selections; }
 
   double viscosity(int i) const { return eta.empty() ? eta_uniform : eta[i]; }
   const double *velocity(int i) const { return u.empty() ? u_uniform : &u[3 * (size_t) i]; }
@@ -124,6 +126,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
 
  private:
   std::string command;
+  Epochs &epochs;
   LAMMPS_NS::Region *region = nullptr;
   int igroup = 0, groupbit = 0;
   bool spins = false;
@@ -131,9 +134,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   std::vector<char> takes_part;
   /* of the group, and those of them that are in the region */
   std::vector<int> members, those;
-  long selections = 0;
-  /* the run, by its first step, in which the group was last looked at; -1: in none */
-  LAMMPS_NS::bigint looked_in = -1;
+  Since members_found;
   double jump[6] = {0.0};
   bool jumping = false;
   double now = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};

@@ -95,10 +95,9 @@ void FixStokesDynamics::post_force(int /*vflag*/)
          COMMAND + ": the pair style was not computed in this step (pair_modify compute no?)");
   for (double &t : total) t = 0.0;
   const Ambient &ambient = hydro.ambient;
-  if (selection != ambient.selection())
+  if (cleared.first_in(hydro.scene.since().selection))
     for (int i = 0; i < atom->nlocal; i++)
       if (!ambient.active()[i]) rows.take(i);
-  selection = ambient.selection();
   for (int i : ambient.who()) {
     if (!(atom->mask[i] & groupbit)) {
       rows.take(i);

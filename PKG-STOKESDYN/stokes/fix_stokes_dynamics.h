@@ -4,6 +4,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_H
 #define SD_FIX_STOKES_DYNAMICS_H
 
+#include "epochs.h"
 #include "rows_fix.h"
 
 namespace StokesDyn {
@@ -30,8 +31,8 @@ class FixStokesDynamics : public RowsFix {
   bool applies = false;
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
   AtomArray rows;
-  /* of the pair style, whose others have zeros (Ambient::selection) */
-  long selection = -1;
+  /* others than those of the pair style have zeros (Epochs::selection) */
+  Since cleared;
   /* F and dissipation of the group, this rank */
   double total[4];
 

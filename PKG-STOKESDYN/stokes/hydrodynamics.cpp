@@ -30,7 +30,8 @@ static const std::string COMMAND = StokesSettings::COMMAND;
 static const double LOOSE = 1e-3;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
-    Pointers(lmp), ambient(lmp, COMMAND), scene(lmp, COMMAND), shells(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND),
+    Pointers(lmp), ambient(lmp, COMMAND, epochs), scene(lmp, COMMAND, epochs),
+    shells(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND, epochs),
     lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}),
     preconditioner(lmp, scene), guard(lmp, COMMAND)
 {
@@ -60,7 +61,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   scene.orient = [this] {
     mobile.orient();
   };
-  scene.init();
+  advance();
   rigid.forget();
   preconditioner.forget();
   preconditioner.kind = settings.precondition;
@@ -71,10 +72,15 @@ void Hydrodynamics::init()
 {
   ambient.init();
   scene.settings.positive = false;
-  scene.init();
+  advance();
   find_wall(lmp, COMMAND, scene.settings);
   check_stream_at_wall(lmp, COMMAND, scene.settings.wall, ambient.settings);
-  warned_unconverged = warned_cut = looked_at_clumps = looked_at_flow = false;
+}
+
+/* Other settings, or a run that LAMMPS prepares */
+void Hydrodynamics::advance()
+{
+  for (Epoch *epoch : {&epochs.run, &epochs.lists, &epochs.groups}) epoch->advance();
 }
 
 void Hydrodynamics::begin()
@@ -84,15 +90,16 @@ void Hydrodynamics::begin()
     fail(lmp,
          COMMAND + ": its internal fix " + State::ID +
              " has been deleted; a run without 'pre no' creates it again");
-  if (neighbor->ago == 0) scene.lists_are_stale();
+  epochs.step.advance();
+  if (neighbor->ago == 0) epochs.lists.advance();
+  if (neighbor->ago == 0 || began != update->firststep) epochs.groups.advance();
+  began = update->firststep;
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
                                                            : Ambient::NO_DERIVATIVES;
   ambient.read(rotation(), wanted, memory->time());
-  standing = solved = false;
   if (scene.settings.whole) scene.whole.find();
-  if (selection == ambient.selection()) return;
-  selection = ambient.selection();
+  if (!cleared.first_in(epochs.selection)) return;
   for (int i = 0; i < atom->nlocal; i++)
     if (!ambient.active()[i]) {
       memory->rows.take(i);
@@ -185,8 +192,7 @@ void Hydrodynamics::look_at_wall()
 {
   if (!settings.scene.wall.sign) return;
   const double cut = spheres_cut_by_wall(lmp, COMMAND, scene);
-  if (cut == 0.0 || warned_cut) return;
-  warned_cut = true;
+  if (cut == 0.0 || !warned_cut.first_in(epochs.run)) return;
   if (comm->me == 0)
     error->warning(FLERR,
                    COMMAND + ": keyword wall: " + text(cut) + " spheres cut the wall " +
@@ -199,22 +205,20 @@ void Hydrodynamics::place()
   const Scene::Settings &how = settings.scene;
   scene.set_open_box(memory->global.open_box);
   scene.update(solvers, ambient);
-  standing = true;
+  rows_stand.take(epochs.step);
   look_at_wall();
   memory->global.open_box = scene.open_box();
-  if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && !looked_at_flow)
+  const bool first = looked.first_in(epochs.run);
+  if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && first)
     warn_of_misfit(lmp, COMMAND, ambient.misfit());
-  if (settings.lubrication.on && !shells.settings.on() && !looked_at_flow) {
+  if (settings.lubrication.on && !shells.settings.on() && first) {
     double spheres = scene.size();
     Scene::sum(&scene, &spheres, 1);
     warn_of_shared_films(lmp, COMMAND, spheres);
   }
-  looked_at_flow = true;
   if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
-  if (looked_at_clumps || !how.clumps_only || std::isinf(how.cutoff) || how.taper != SD_TAPER_NONE)
-    return;
-  looked_at_clumps = true;
-  warn_of_short_cutoff(lmp, COMMAND, scene);
+  if (first && how.clumps_only && std::isfinite(how.cutoff) && how.taper == SD_TAPER_NONE)
+    warn_of_short_cutoff(lmp, COMMAND, scene);
 }
 
 /* The linear system of this step, by the rows of the scene. */
@@ -340,7 +344,7 @@ sd_status Hydrodynamics::together(sd_solve_report &report)
   const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};
   sd_bodies_report made = {};
   const sd_status status = mobile.resist(how, slip, begin_with, solution, made);
-  solved = true;
+  forces_found.take(epochs.step);
   keep_points(begin_with.l);
   report.iterations = report.products = made.products;
   report.residual = made.residual;
@@ -394,7 +398,7 @@ void Hydrodynamics::keep()
 void Hydrodynamics::unconverged(sd_status status, const sd_solve_report &report)
 {
   memory->global.unconverged++;
-  if (!warned_unconverged && comm->me == 0)
+  if (warned_unconverged.first_in(epochs.run) && comm->me == 0)
     error->warning(
         FLERR,
         std::string(
@@ -403,7 +407,6 @@ void Hydrodynamics::unconverged(sd_status status, const sd_solve_report &report)
             (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter) : "") +
             "; the run goes on, and counts further solves like this one (compute pair, fix "
             "stokes_dynamics)"));
-  warned_unconverged = true;
 }
 
 /* Ends the run. */

@@ -36,6 +36,7 @@ struct OnFluid {
 class Hydrodynamics : protected LAMMPS_NS::Pointers {
  public:
   StokesSettings settings;
+  Epochs epochs;
   Ambient ambient;
   Scene scene;
   /* does a fix report v'? It is not made for rigid clumps unless somebody wants it */
@@ -112,9 +113,12 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Velocities mobile;
   Preconditioner preconditioner;
   TimeStepGuard guard;
-  bool warned_unconverged = false, warned_cut = false, looked_at_clumps = false, looked_at_flow = false;
-  /* those whose rows are here (Ambient::selection) */
-  long selection = -1;
+  /* in a run: what is looked at or said once */
+  Since looked, warned_unconverged, warned_cut;
+  /* rows of those that take no part (Epochs::selection) */
+  Since cleared;
+  /* first step of the run that the last step was of */
+  LAMMPS_NS::bigint began = -1;
 
   /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps. Rows of
    * a solve are those that the scene makes of them */
@@ -132,9 +136,12 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   /* do the scene's rows, and what films need around them, stand as in this step? With shells, are
    * the forces in begin_with those of this step's solve, by these rows? */
-  bool standing = false, solved = false;
+  Since rows_stand, forces_found;
+  bool standing() const { return rows_stand.is(epochs.step); }
+  bool solved() const { return forces_found.is(epochs.step); }
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
+  void advance();
   void place();
   void look_at_wall();
   sd_system gather();

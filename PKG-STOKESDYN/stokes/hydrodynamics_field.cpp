@@ -18,7 +18,7 @@ static const std::string COMMAND = StokesSettings::COMMAND;
 /* Where no solve was needed in this step the rows of the scene may be those of another one. */
 Hydrodynamics::Points Hydrodynamics::points_of_now()
 {
-  if (memory->points == 0 && !solved)
+  if (memory->points == 0 && !solved())
     fail(lmp,
          COMMAND + ": step " + std::to_string(update->ntimestep) +
              ": the forces of the points are not kept with warm_start no; use warm_start yes");
@@ -31,7 +31,7 @@ Hydrodynamics::Points Hydrodynamics::points_of_now()
   now.x.resize(3 * points + 3);
   now.b.resize(points + 1);
   sd_multiblob_expand(&shells.model(), &spheres, now.r.data(), now.x.data(), now.b.data());
-  if (solved)
+  if (solved())
     now.l = begin_with.l;
   else
     recall_points(now.l, 0.0);

@@ -37,7 +37,7 @@ void Hydrodynamics::stand()
 /* Where nothing was solved in this step */
 void Hydrodynamics::stand_rows()
 {
-  if (standing) return;
+  if (standing()) return;
   solvers = ambient.who();
   if (settings.rigid.on) mobile.find();
   surround();
@@ -45,11 +45,11 @@ void Hydrodynamics::stand_rows()
 
 void Hydrodynamics::surround()
 {
-  if (standing) return;
+  if (standing()) return;
   scene.stand(solvers, ambient);
   scene.turn_shells();
   if (settings.lubrication.on) scene.surround_films();
-  standing = true;
+  rows_stand.take(epochs.step);
 }
 
 /* As the spheres move now, by rows of the scene */

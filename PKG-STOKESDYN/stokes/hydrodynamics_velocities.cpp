@@ -82,7 +82,7 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Veloc
                          settings.max_iter};
   how.draw = draw;
   const sd_status status = mobile.together(how, begin_with, take, report);
-  solved = true;
+  forces_found.take(epochs.step);
   films_power.clear();
   if (settings.lubrication.on && status == SD_OK) {
     read_motion();
@@ -155,7 +155,7 @@ void Hydrodynamics::turn(int i, const double R[9])
 
 void Hydrodynamics::stress(std::vector<double> &of_atoms)
 {
-  const bool films_stand = standing;
+  const bool films_stand = standing();
   stand_rows();
   if (settings.lubrication.on && !films_stand) place_films();
   const Points now = points_of_now();

@@ -54,7 +54,7 @@ void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double>
   cloud = scene.view() == SD_VIEW_ALL;
   n = cloud ? scene.cloud_size() : scene.size();
   width = system.spin ? 6 : 3;
-  ready = false;
+  put_in.never();
   places = &at;
   box = &its_box;
   wanted = suited();
@@ -182,10 +182,10 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
   return callback([=] {
     const size_t width = p->width, own = width * p->scene.size();
-    if (!p->ready) {
+    if (!p->put_in.is(p->scene.since().step)) {
       const sd_status status = p->put();
       if (status != SD_OK) return status;
-      p->ready = true;
+      p->put_in.take(p->scene.since().step);
     }
     p->in.resize(width * p->n + 1);
     p->out.resize(width * p->n + 1);

@@ -49,7 +49,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   // of this solve
   bool cloud = false;
   int n = 0, width = 3;
-  bool ready = false;
+  Since put_in;
   AtomRows *places = nullptr;
   std::vector<double> *box = nullptr;
 

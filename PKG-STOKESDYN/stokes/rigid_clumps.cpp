@@ -13,8 +13,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-RigidClumps::RigidClumps(LAMMPS *lmp, WholeClumps &whole, const std::string &command) :
-    Pointers(lmp), whole(whole), command(command), shapes(lmp, command)
+RigidClumps::RigidClumps(LAMMPS *lmp, WholeClumps &whole, const std::string &command,
+                         const Epochs &epochs) :
+    Pointers(lmp), whole(whole), command(command), epochs(epochs), shapes(lmp, command)
 {
 }
 
@@ -29,7 +30,7 @@ void RigidClumps::new_run()
 {
   known.clear();
   loose_molecules.clear();
-  recognised = -1;
+  recognised.never();
 }
 
 std::vector<double> RigidClumps::loose() const
@@ -47,7 +48,7 @@ void RigidClumps::set_loose(const std::vector<double> &ids)
   loose_molecules.clear();
   for (size_t k = 0; k + 1 < ids.size(); k += 2)
     loose_molecules.insert((int64_t) ids[k] * 4294967296 + (int64_t) ids[k + 1]);
-  recognised = -1;
+  recognised.never();
 }
 
 double RigidClumps::memory_usage() const
@@ -262,8 +263,8 @@ void RigidClumps::arrange()
 
 const std::vector<RigidClumps::Body> &RigidClumps::find()
 {
-  if (recognised != whole.arrangement()) recognise();
-  recognised = whole.arrangement();
+  if (!recognised.is(epochs.members)) recognise();
+  recognised.take(epochs.members);
   return bodies;
 }
 

@@ -30,7 +30,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     bool apart() const { return on && clumps_only; }
   } settings;
 
-  RigidClumps(LAMMPS_NS::LAMMPS *lmp, WholeClumps &whole, const std::string &command);
+  RigidClumps(LAMMPS_NS::LAMMPS *lmp, WholeClumps &whole, const std::string &command,
+              const Epochs &epochs);
   RigidClumps(const RigidClumps &) = delete;
   RigidClumps &operator=(const RigidClumps &) = delete;
 
@@ -82,6 +83,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
  private:
   WholeClumps &whole;
   std::string command;
+  const Epochs &epochs;
 
   ClumpShapes shapes;
 
@@ -92,8 +94,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   };
   std::map<int64_t, Known> known;    // by molecule ID: clumps that this rank owns
   std::set<int64_t> loose_molecules;
-  /* the arrangement of whole for which they have been; -1: none */
-  long recognised = -1;
+  /* the members for which they have been (Epochs::members) */
+  Since recognised;
 
   /* since the last re-neighbouring */
   std::vector<Body> bodies;

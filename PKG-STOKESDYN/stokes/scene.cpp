@@ -15,9 +15,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Scene::Scene(LAMMPS *lmp, const std::string &command) :
-    Pointers(lmp), whole(lmp, command), command(command), halo(lmp->world), candidates(), pairs(),
-    omega()
+Scene::Scene(LAMMPS *lmp, const std::string &command, Epochs &epochs) :
+    Pointers(lmp), whole(lmp, command, epochs), command(command), epochs(epochs), halo(lmp->world),
+    candidates(), pairs(), omega()
 {
 }
 
@@ -26,18 +26,6 @@ Scene::~Scene()
   sd_neighbors_free(&candidates);
   sd_neighbors_free(&pairs);
   sd_mobility_free(&omega);
-}
-
-void Scene::init()
-{
-  lists_are_stale();
-  told = false;
-}
-
-void Scene::lists_are_stale()
-{
-  stale = true;
-  whole.lost();
 }
 
 void Scene::out_of_memory()
@@ -75,7 +63,7 @@ void Scene::find_rows()
 
 void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
 {
-  double measured[3] = {stale || who != own ? 1.0 : 0.0, 0.0, -INFINITY};
+  double measured[3] = {!rows_found.is(epochs.lists) || who != own ? 1.0 : 0.0, 0.0, -INFINITY};
   for (int i : who) {
     measured[1] = std::max(measured[1], atom->radius[i]);
     measured[2] = std::max(measured[2], -atom->radius[i]);
@@ -85,10 +73,10 @@ void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
   most = measured[1];
   least = -measured[2];
   if (measured[0] != 0.0) {
-    others = true;
+    epochs.rows.advance();
     find_rows();
   }
-  stale = false;
+  rows_found.take(epochs.lists);
   jumping = ambient.jumps();
   if (jumping) std::copy_n(ambient.jumps(), 6, jumps);
   const size_t n = tags.size();
@@ -184,14 +172,13 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     return;
   }
   engine = &sd_mobility_list;
-  if (others)
+  if (!pairs_found.is(epochs.rows))
     find_pairs();
   else if (!somebody_sees)
     return;    // nobody will ask where the spheres are
   else
     halo.extend(Lattice::of(domain).h, x, {&a, &w});
-  filtered = std::isfinite(settings.cutoff);
-  if (filtered) {
+  if (has_cutoff()) {
     const sd_spheres spheres = local();
     if (sd_neighbors_reserve(&pairs, size(), candidates.first[size()]) != SD_OK) out_of_memory();
     sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
@@ -231,7 +218,7 @@ void Scene::find_pairs()
   int sees = candidates.first[n] > 0 || (settings.wall.sign && n > 0), any;
   MPI_Allreduce(&sees, &any, 1, MPI_INT, MPI_MAX, world);
   somebody_sees = any;
-  others = false;
+  pairs_found.take(epochs.rows);
 }
 
 /* The spheres where they stand, and what their engine may ask. */

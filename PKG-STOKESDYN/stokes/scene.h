@@ -51,17 +51,15 @@ class Scene : protected LAMMPS_NS::Pointers {
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
   } settings;
 
-  Scene(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  Scene(LAMMPS_NS::LAMMPS *lmp, const std::string &command, Epochs &epochs);
   ~Scene();
   Scene(const Scene &) = delete;
   Scene &operator=(const Scene &) = delete;
 
-  /* Other settings, or a new run. */
-  void init();
-  /* LAMMPS has re-neighboured. */
-  void lists_are_stale();
   /* Which spheres of which ranks the engine sees, since the last update(). */
   sd_view view() const { return engine->view; }
+  /* Since when all of this is as it is */
+  const Epochs &since() const { return epochs; }
   WholeClumps whole;
   /* Spheres are shells of points, which are what the engine sees; nullptr: they are points */
   Shells *shells = nullptr;
@@ -138,7 +136,7 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   // --- who sees whom, since the last update()
 
-  const sd_pairs &list() const { return filtered ? pairs.pairs : candidates.pairs; }
+  const sd_pairs &list() const { return has_cutoff() ? pairs.pairs : candidates.pairs; }
   /* Does one sphere see another, or an image of itself, on any rank? Does that of row k see
    * nobody? Near a wall every sphere sees itself. */
   bool anybody_sees() const { return somebody_sees; }
@@ -175,12 +173,9 @@ class Scene : protected LAMMPS_NS::Pointers {
 
  private:
   std::string command;
+  Epochs &epochs;
 
-  bool stale = true;
-  /* have the rows changed, on any rank, since the lists were made? */
-  bool others = true;
-  /* does pairs differ from candidates? */
-  bool filtered = false;
+  Since rows_found, pairs_found;
   bool somebody_sees = false;
   /* atoms that take part; those whose rows are the first here; rows of the members of whole */
   std::vector<int> own, loose, row_of;
@@ -207,7 +202,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_ewald ewald = {};
   /* its parameters, as they were last told */
   std::string said;
-  bool told = false;
+  Since told;
 
   const sd_mobility_engine *engine = &sd_mobility_list;
   sd_mobility omega;
@@ -217,6 +212,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   double extent() const { return shells ? shells->radius() : 0.0; }
   double grain() const { return shells ? shells->point() : 1.0; }
   int points() const { return shells ? shells->points() : 1; }
+  bool has_cutoff() const { return std::isfinite(settings.cutoff); }
   bool periodic() const;
   bool split();
   sd_ewald_sizes sizes_of_all(double largest);

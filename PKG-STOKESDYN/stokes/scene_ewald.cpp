@@ -145,8 +145,7 @@ static std::string parameters_of(const sd_ewald &e)
 /* The parameters, once a run and when they are others than those told last. */
 void Scene::tell()
 {
-  if (told) return;
-  told = true;
+  if (!told.first_in(epochs.run)) return;
   const sd_ewald &e = ewald;
   std::string now = "Far field by Ewald sums of " + text(e.count) + " spheres in " +
       (e.box.periodic ? "the periodic box" : "an open box around them") +

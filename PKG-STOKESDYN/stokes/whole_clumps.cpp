@@ -16,8 +16,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-WholeClumps::WholeClumps(LAMMPS *lmp, const std::string &command) :
-    Pointers(lmp), command(command), post(lmp->world)
+WholeClumps::WholeClumps(LAMMPS *lmp, const std::string &command, Epochs &epochs) :
+    Pointers(lmp), command(command), epochs(epochs), post(lmp->world)
 {
 }
 
@@ -107,15 +107,15 @@ void WholeClumps::arrange()
 
 void WholeClumps::find()
 {
-  const bool again = stale;
+  const bool again = !found.is(epochs.lists);
   if (again) {
     std::vector<int> bound;
     for (int i = 0; i < atom->nlocal; i++)
       if (atom->molecule[i] != 0) bound.push_back(i);
     route(bound);
     arrange();
-    arrangements++;
-    stale = false;
+    epochs.members.advance();
+    found.take(epochs.lists);
   }
   stand();
   if (again) check_widths();

@@ -8,6 +8,7 @@
 #ifndef SD_WHOLE_CLUMPS_H
 #define SD_WHOLE_CLUMPS_H
 
+#include "epochs.h"
 #include "halo.h"
 #include "pointers.h"
 #include "ranks.h"
@@ -20,7 +21,7 @@ namespace StokesDyn {
 
 class WholeClumps : protected LAMMPS_NS::Pointers {
  public:
-  WholeClumps(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  WholeClumps(LAMMPS_NS::LAMMPS *lmp, const std::string &command, Epochs &epochs);
 
   /* Those that this rank owns, in order of molecule ID; lone spheres (molecule 0) are none. */
   struct Clump {
@@ -31,14 +32,10 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   std::vector<int64_t> tag;    // of each member
   int size() const { return (int) tag.size(); }
 
-  /* LAMMPS has re-neighboured, or another run begins. */
-  void lost() { stale = true; }
-  /* Finds them if they are lost, and where the members stand now: x [3 size()], and by how many
+  /* Finds them if LAMMPS has re-neighboured, and where the members stand now: x [3 size()], and by how many
    * edges each has been moved; with the box of now, which is kept. On all ranks together. Error: a
    * clump wider than half the periodic box. */
   void find();
-  /* another number: they are others, or in another order */
-  long arrangement() const { return arrangements; }
   std::vector<double> x;
   std::vector<int> steps;
   double h[6] = {0.0};
@@ -72,8 +69,8 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
 
  private:
   std::string command;
-  bool stale = true;
-  long arrangements = 0;
+  Epochs &epochs;
+  Since found;
   Post post;
   /* atoms of this rank in its own clumps, and in those of its partners, one after the other */
   std::vector<int> at_home, away;

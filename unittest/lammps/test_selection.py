@@ -226,6 +226,15 @@ def test_rigid_clump_that_leaves_the_region_keeps_nothing(simulation):
     assert np.abs(sim.fix_rows()).max() == 0.0
 
 
+def test_another_pair_style_with_another_group_clears_the_rows(simulation):
+    """Both have made one selection: the second one's is not taken for the first one's."""
+    sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT}", before_pair="group part id 1:2").run()
+    assert np.abs(sim.fix_rows()[:, 2]).min() > 0.0
+    sim.commands(["pair_style none", f"pair_style stokes_dynamics cut_off_distance inf {EXACT} group part", "pair_coeff * *"]).run()
+    assert np.abs(sim.fix_rows()[2:]).max() == 0.0
+    assert -sim.fix_rows()[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[2], rel=1e-9)
+
+
 @pytest.mark.parametrize("mode", MODES)
 def test_region_that_moves(simulation, mode):
     spheres = row_of_five()
