@@ -87,6 +87,26 @@ static void clumps_have_the_covariance_of_their_mobility(void **state)
     }
 }
 
+/* The blocks by which the process goes are roots: any others would give the same noise in more products. */
+static void roots_are_roots(void **state)
+{
+  (void) state;
+  flock *f = some(12);
+  assert_int_equal(sd_body_shape_take_root(&f->body), SD_OK);
+  const int N = f->body.width * f->body.m;
+  double largest = 0.0, worst = 0.0;
+  for (int p = 0; p < N; p++)
+    for (int q = 0; q < N; q++) {
+      double square = 0.0;
+      for (int k = 0; k < N; k++) square += f->body.root[p * N + k] * f->body.root[k * N + q];
+      largest = fmax(largest, fabs(f->body.inverse[p * N + q]));
+      worst = fmax(worst, fabs(square - f->body.inverse[p * N + q]));
+      CHECK_NEAR(f->body.root[p * N + q], f->body.root[q * N + p], 1e-12 * largest);
+    }
+  assert_true(worst < 1e-12 * largest);
+  flock_free(f);
+}
+
 static void films_take_their_part(void **state)
 {
   (void) state;
@@ -106,6 +126,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(clumps_have_the_covariance_of_their_mobility),
+      cmocka_unit_test(roots_are_roots),
       cmocka_unit_test(films_take_their_part),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,7 +7,7 @@
 
 static const double P6 = 6.0 * SD_PI;
 static const double doublet[6] = {0, 0, -1, 0, 0, 1};
-static const double ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+static const double ones[8] = {1, 1, 1, 1, 1, 1, 1, 1}, unequal[2] = {1, 0.6};
 
 /* Clumps and free spheres pushed together until gaps are small: towards the middle, as far as they
  * go */
@@ -69,12 +69,12 @@ static void multiply_dense(const tied_flock *t, const double *l, double *out)
 
 /* The system (3) line by line, from its definition: free spheres and doublets in a shear flow, loads at
  * random; then a sphere and a doublet are held and move as they are told, in the end they are spun and
- * do so about their centres alone. */
+ * do so about their centres alone, which their turning loads where spheres are unequal. */
 static void both_lines_hold(void **state)
 {
   (void) state;
   for (int e = 0; e < 4; e++) {
-    flock *f = flock_create(2, doublet, ones, 1, e ? 5 : 0, 12, 1.3);
+    flock *f = flock_create(2, doublet, e == 3 ? unequal : ones, 1, e ? 5 : 0, 12, 1.3);
     crowd(f, 0.2, 5 + e);
     const int N = 6 * f->n, bodies = f->clumps + f->free;
     uint64_t seed = 7;
