@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Cost of Brownian motion, inside LAMMPS on one core.
 
-    brownian.py [N] [STEPS] [PHI]
+    brownian.py [N] [STEPS] [PHI] [MODEL]
 
 A step of N spheres (100 000) in a periodic box at volume fraction PHI (0.2) to 1e-3, with a temperature and without, in one process:
-processor time, products of the near part and their ratio. noise_tolerance 0.01."""
+processor time, products of the near part and their ratio. noise_tolerance 0.01. MODEL: words of the pair style, "multiblob 12 lubrication
+yes": then a step has two solves and the root of all bodies (scheme midpoint)."""
 import resource
 import sys
 import tempfile
@@ -21,27 +22,28 @@ def lattice(n, phi):
     return x + np.random.default_rng(1).uniform(-0.3, 0.3, x.shape) * max(0.0, edge / m - 2), edge
 
 
-def seconds(n, steps, phi, words):
+def seconds(n, steps, phi, words, model=""):
     """Processor time of a step; products of the root"""
     x, edge = lattice(n, phi)
     with tempfile.TemporaryDirectory() as folder:
-        sim = Simulation(folder, Spheres(x), "cut_off_distance inf visc 1 far_field_tolerance 1e-3", fix=False, dt=1e-5, boundary="p p p",
+        sim = Simulation(folder, Spheres(x), f"cut_off_distance inf visc 1 far_field_tolerance 1e-3 {model}", fix=False, dt=1e-5, boundary="p p p",
                          box=[(0.0, edge)] * 3)
         sim.commands(f"neighbor 0.6 bin\nfix w all addforce 0 0 -1\nfix move all stokes_dynamics/overdamped {words}").run(1)
         before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
         sim.run(steps, "pre no post no")
         spent = (resource.getrusage(resource.RUSAGE_SELF).ru_utime - before) / steps
-        products = sim.lmp.extract_fix("move", 0, 1, nrow=9)
+        products = [sim.lmp.extract_fix("move", 0, 1, nrow=k) for k in (9, 3)]
         sim.close()
     return spent, products
 
 
 def main():
-    n, steps, phi = (kind(word) for kind, word in zip((int, int, float), sys.argv[1:] + ["100000", "3", "0.2"][len(sys.argv) - 1:]))
-    still, _ = seconds(n, steps, phi, "")
-    moving, products = seconds(n, steps, phi, "temperature 1 7")
+    given = sys.argv[1:] + ["100000", "3", "0.2", ""][len(sys.argv) - 1:]
+    n, steps, phi, model = (kind(word) for kind, word in zip((int, int, float, str), given))
+    still, (_, alone) = seconds(n, steps, phi, "", model)
+    moving, (products, solve) = seconds(n, steps, phi, "temperature 1 7", model)
     print(f"{n} spheres, phi {phi}: {still:.4f} s a step, with Brownian motion {moving:.4f} s, {moving / still:.2f} times as much; "
-          f"{products:.0f} products of the near part")
+          f"{products:.0f} products of the {'root, and the second solve' if model else 'near part; the solve'} {solve:.0f} ({alone:.0f} without)")
 
 
 if __name__ == "__main__":
