@@ -246,7 +246,8 @@ void FixSphInlet::pre_exchange()
   atom->nghost = 0;
   atom->avec->clear_bonus();
   for (const Newcomer &next : all) create(next, ++last);
-  const bigint before = atom->natoms, mine = atom->nlocal;
+  const bigint before = atom->natoms;
+  bigint mine = atom->nlocal;    // without const: LAMMPS's stubs of MPI take what is sent so
   MPI_Allreduce(&mine, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (atom->natoms != before + (bigint) all.size())
     fail(lmp,

@@ -470,17 +470,13 @@ def main():
             for k, case in enumerate(pool.map(lambda c: c.run(out), todo)):
                 done.append(case)
                 print(f"[{k + 1:2d}/{len(todo)}] " + show(row(case)), flush=True)
-            print("\nthe ladder: the twelve clumps with torques and shells ", end="", flush=True)
-            for case in pool.map(lambda c: c.run(out), ladder_cases()):
-                ladder.append(case)
-                print(".", end="", flush=True)
-            for name, R in zip(GEOMETRY, pool.map(lambda name: own_resistance(out, name), GEOMETRY)):
-                own[name] = R
-                print(".", end="", flush=True)
+            print("\nthe ladder: the twelve clumps with torques and shells", flush=True)
+            ladder.extend(pool.map(lambda c: c.run(out), ladder_cases()))
+            own.update(zip(GEOMETRY, pool.map(lambda name: own_resistance(out, name), GEOMETRY)))
+            print("[sedimentation] times of the models", flush=True)
             for _ in range(3):          # one at a time, in turns, so that a loaded machine slows all; the least counts
                 for name, words in TIMED.items():
                     times[name] = min(times.get(name, (np.inf, 0.0)), measure(out, words))
-                    print(".", end="", flush=True)
         except SystemExit:
             pool.shutdown(cancel_futures=True)
             raise

@@ -9,14 +9,13 @@ Ends with a line ok or MISSED for each figure of the README, and exits with 1 wh
 import io
 import pathlib
 import shutil
-import subprocess
 import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, dumped, need, options, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, values  # noqa: E402
 from PIL import Image  # noqa: E402
 
 # As in in.settling_cloud. Lengths are in radii of a sphere, speeds in those of a lone sphere, forces in its weight.
@@ -66,22 +65,14 @@ def formula(n, R):
 # --- runs ---------------------------------------------------------------------------------------------------------
 
 
-def lammps(out, ranks, log, variables, show=True):
+def lammps(out, ranks, log, variables):
     (out / "out").mkdir(parents=True, exist_ok=True)
     for name in ("in.settling_cloud", "tetrahedron.mol"):
         shutil.copy(HERE / name, out)
     command = ["mpirun", "-np", str(ranks), "lmp", "-in", "in.settling_cloud", "-log", log] + values(variables)
     start = time.time()
-    print(f"[{log}, {ranks} rank{'s' if ranks > 1 else ''}] ", end="", flush=True)
-    run = subprocess.Popen(command, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    lines = []
-    for line in run.stdout:
-        lines.append(line)
-        if len(line.split()) == 8 and line.split()[0].isdigit():        # a line of thermo output
-            print(".", end="", flush=True)
-    print(f" {time.time() - start:.0f} s", flush=True)
-    if run.wait() != 0:
-        sys.exit("".join(lines[-20:]) + f"settling_cloud: {' '.join(command)} failed in {out}")
+    finished("settling_cloud", command, out)
+    print(f"[{log}, {ranks} rank{'s' if ranks > 1 else ''}] {time.time() - start:.0f} s", flush=True)
 
 
 def curve(out, name):
