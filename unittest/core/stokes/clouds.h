@@ -93,6 +93,53 @@ static inline scene cloud_flocs(int flocs, int m, double spread, double side, in
   return s;
 }
 
+/* Equal spheres in a periodic cube, in cells that are at least as wide as two radii: who touches whom */
+typedef struct {
+  int n, *first, *next;
+  double side;
+} cloud_cells;
+
+static inline int *cloud_cell(const cloud_cells *c, const double *x, const int *step)
+{
+  int at = 0;
+  for (int d = 0; d < 3; d++) {
+    const int k = (int) fmin(c->n - 1, x[d] / c->side * c->n);
+    at = at * c->n + (k + (step ? step[d] : 0) + c->n) % c->n;
+  }
+  return c->first + at;
+}
+
+static inline void cloud_put(const cloud_cells *c, const double *x, int i)
+{
+  int *first = cloud_cell(c, x, NULL);
+  c->next[i] = *first;
+  *first = i;
+}
+
+static inline void cloud_take(const cloud_cells *c, const double *x, int i)
+{
+  int *at = cloud_cell(c, x, NULL);
+  while (*at != i) at = c->next + *at;
+  *at = c->next[i];
+}
+
+static inline int cloud_apart(const cloud_cells *c, const double *all, const double *x, double a)
+{
+  int step[3];
+  for (step[0] = -1; step[0] <= 1; step[0]++)
+    for (step[1] = -1; step[1] <= 1; step[1]++)
+      for (step[2] = -1; step[2] <= 1; step[2]++)
+        for (int j = *cloud_cell(c, x, step); j >= 0; j = c->next[j]) {
+          double sq = 0.0;
+          for (int d = 0; d < 3; d++) {
+            const double r = fabs(x[d] - all[3 * j + d]), image = fmin(r, c->side - r);
+            sq += image * image;
+          }
+          if (sq < 4.0 * a * a) return 0;
+        }
+  return 1;
+}
+
 /* m^3 equal spheres in a periodic cube, phi up to 0.5: from a simple cubic lattice by random moves of one after the other that keep
  * them apart. */
 static inline scene cloud_periodic(int m, double phi, double a, double eta, int sweeps, double *side)
@@ -101,24 +148,24 @@ static inline scene cloud_periodic(int m, double phi, double a, double eta, int 
   scene s = scene_lattice(m, m, m, spacing / a, a, eta);
   uint64_t seed = 5;
   *side = m * spacing;
+  cloud_cells c = {.n = (int) (*side / (2.0 * a)), .side = *side};
+  c.first = malloc(sizeof(int) * (size_t) (c.n * c.n * c.n));
+  c.next = malloc(sizeof(int) * (size_t) s.n);
+  for (int k = 0; k < c.n * c.n * c.n; k++) c.first[k] = -1;
+  for (int i = 0; i < s.n; i++) cloud_put(&c, s.x + 3 * i, i);
   for (int sweep = 0; sweep < sweeps; sweep++)
     for (int i = 0; i < s.n; i++) {
       double x[3];
-      int apart = 1;
       for (int d = 0; d < 3; d++) {
         x[d] = s.x[3 * i + d] + uniform(&seed, -step, step);
         x[d] -= *side * floor(x[d] / *side);
       }
-      for (int j = 0; j < s.n && apart; j++) {
-        double sq = 0.0;
-        for (int d = 0; d < 3; d++) {
-          const double r = fabs(x[d] - s.x[3 * j + d]), image = fmin(r, *side - r);
-          sq += image * image;
-        }
-        apart = j == i || sq >= 4.0 * a * a;
-      }
-      for (int d = 0; d < 3 && apart; d++) s.x[3 * i + d] = x[d];
+      cloud_take(&c, s.x + 3 * i, i);
+      if (cloud_apart(&c, s.x, x, a)) memcpy(s.x + 3 * i, x, sizeof(x));
+      cloud_put(&c, s.x + 3 * i, i);
     }
+  free(c.first);
+  free(c.next);
   return s;
 }
 
