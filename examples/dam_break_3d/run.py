@@ -89,8 +89,8 @@ for n in sizes:
             loads(curves, 0, 0.08)[0] / loads(fast, 0, 0.08)[0], end, loads(curves, 0.08, end)[0] / loads(fast, 0.08, end)[0]))
     heights = {name: rms(name, curves, IMPACT) for name in ("H2", "H4")}
     whole = "%.3f, %.3f" % tuple(rms(name, curves, 6) for name in heights) if curves["t"][-1] > 5.9 else ""
-    table += "| %d | %s | %.3f, %.3f | %s | %.0f |\n" % (n, " | ".join("%+.1f %%" % (100 * x) if k == 0 else "%+.0f %%" % (100 * x) for k, x in enumerate(off)),
-                                                      heights["H2"], heights["H4"], whole, minutes)
+    table += "| %d | %s | %.3f, %.3f | %s | %s |\n" % (n, " | ".join("%+.1f %%" % (100 * x) if k == 0 else "%+.0f %%" % (100 * x) for k, x in enumerate(off)),
+                                                      heights["H2"], heights["H4"], whole, "%.0f" % minutes if minutes > 0 else "")
     limits = FINE if n >= 30 else COARSE
     c.below("%d over the depth: arrival at the box, off by" % n, abs(off[0]), limits["arrival"])
     c.below("%d over the depth: mean of P1 in %.2f s from there, off by" % (n, end), abs(off[1]), limits["load"])
