@@ -2,6 +2,8 @@
 #ifndef CLOUDS_H
 #define CLOUDS_H
 
+#include <string.h>
+
 #include "scene.h"
 
 /* A random direction times length */
