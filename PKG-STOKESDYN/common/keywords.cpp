@@ -62,6 +62,11 @@ void fail_one(LAMMPS *lmp, const std::string &message)
   abort();    // error->one does not return
 }
 
+void warn(LAMMPS *lmp, const std::string &message)
+{
+  if (lmp->comm->me == 0) lmp->error->warning(FLERR, printable(message));
+}
+
 void Voice::fail(const std::string &what) const
 {
   StokesDyn::fail(lmp, command + ": " + what);
@@ -74,7 +79,7 @@ void Voice::fail_one(const std::string &what) const
 
 void Voice::warn(const std::string &what) const
 {
-  if (lmp->comm->me == 0) lmp->error->warning(FLERR, printable(command + ": " + what));
+  StokesDyn::warn(lmp, command + ": " + what);
 }
 
 void Voice::tell(const std::string &what) const

@@ -20,8 +20,11 @@ namespace StokesDyn {
 /* The same where only this rank knows. */
 [[noreturn]] void fail_one(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
 
+/* A warning, by the first rank, whichever rank asks for it. */
+void warn(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
+
 /* Text of a file or a script as it can be printed: bytes that are no UTF-8, and controls, as \xNN.
- * Every message of fail, fail_one and Voice goes through it. */
+ * Every message of fail, fail_one, warn and Voice goes through it. */
 std::string printable(const std::string &text);
 
 /* A number as a user would write it: 6 digits. */

@@ -6,7 +6,6 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
-#include "error.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -58,20 +57,19 @@ void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Sett
 
 void warn_of_misfit(LAMMPS *lmp, const std::string &command, double misfit)
 {
-  if (misfit < 1e-9 || lmp->comm->me != 0) return;
-  lmp->error->warning(FLERR,
-                      command + ": keyword fluid_velocity: the formula does not have the period of "
-                                "the box, and spheres near its faces feel the jump; a shear flow "
-                                "needs a triclinic box that fix deform shears with it, and fluid_velocity box");
+  if (misfit < 1e-9) return;
+  warn(lmp, command + ": keyword fluid_velocity: the formula does not have the period of the "
+       "box, and spheres near its faces feel the jump; a shear flow needs a triclinic box that "
+       "fix deform shears with it, and fluid_velocity box");
 }
 
 void warn_of_shared_films(LAMMPS *lmp, const std::string &command, double spheres)
 {
-  if (spheres <= 200.0 || lmp->domain->xperiodic || lmp->comm->me != 0) return;
-  lmp->error->warning(FLERR,
-                      command + ": keyword lubrication: with one point per sphere it slows down a "
-                                "cloud of " + text(spheres) + " close spheres that fall together: "
-                                "by 5 % at 200, by 26 % at 2000; use multiblob 12");
+  if (spheres <= 200.0 || lmp->domain->xperiodic) return;
+  warn(lmp, command +
+       ": keyword lubrication: with one point per sphere it slows down a cloud of " +
+       text(spheres) + " close spheres that fall together: by 5 % at 200, by 26 % at 2000; use "
+       "multiblob 12");
 }
 
 void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)
@@ -129,13 +127,11 @@ void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &
   for (const auto &clump : clumps) {
     const bigint n = clump.second.spheres, left_out = n * (n - 1) - clump.second.seen;
     if (left_out == 0) continue;
-    lmp->error->warning(
-        FLERR,
-        std::string(command + ": cut_off_distance " + text(scene.settings.cutoff) +
-                    " is shorter than the clump of molecule " + std::to_string(clump.first) + ": " +
-                    std::to_string(left_out / 2) + " of its " + std::to_string(n * (n - 1) / 2) +
-                    " pairs do not see each other, so its drag is too large; clumps_only yes needs "
-                    "no cut_off_distance"));
+    warn(lmp, command + ": cut_off_distance " + text(scene.settings.cutoff) + " is shorter than "
+         "the clump of molecule " + std::to_string(clump.first) + ": " +
+         std::to_string(left_out / 2) + " of its " + std::to_string(n * (n - 1) / 2) + " pairs "
+         "do not see each other, so its drag is too large; clumps_only yes needs no "
+         "cut_off_distance");
     return;
   }
 }

@@ -13,9 +13,7 @@
 #include "sd_pose.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
-#include "error.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
@@ -465,8 +463,7 @@ void FixStokesDynamicsOverdamped::watch()
   changed_before = changed;
   if (doublings < 3) return;
   warned_growth = true;
-  error->warning(FLERR,
-                 COMMAND + ": step " + std::to_string(update->ntimestep) +
-                     ": the change of velocities grows from step to step, and is " + text(changed) +
-                     " radii per step now: use a shorter time step");
+  warn(lmp, COMMAND + ": step " + std::to_string(update->ntimestep) + ": the change of "
+       "velocities grows from step to step, and is " + text(changed) + " radii per step now: use "
+       "a shorter time step");
 }

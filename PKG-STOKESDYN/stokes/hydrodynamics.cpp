@@ -8,9 +8,7 @@
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
-#include "error.h"
 #include "force.h"
 #include "neighbor.h"
 #include "pair.h"
@@ -193,10 +191,8 @@ void Hydrodynamics::look_at_wall()
   if (!settings.scene.wall.sign) return;
   const double cut = spheres_cut_by_wall(lmp, COMMAND, scene);
   if (cut == 0.0 || !warned_cut.first_in(epochs.run)) return;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   COMMAND + ": keyword wall: " + text(cut) + " spheres cut the wall " +
-                       wall_name(scene.settings.wall) + ": they move as if they touched it");
+  warn(lmp, COMMAND + ": keyword wall: " + text(cut) + " spheres cut the wall " +
+       wall_name(scene.settings.wall) + ": they move as if they touched it");
 }
 
 /* The spheres of this solve, and what may be wrong with how they stand. */
@@ -284,10 +280,8 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
       return status;
     }
     memory->global.diverged = 1;
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     where(StokesSettings::SUBSTITUTION) + "diverged: " + how_far(report) +
-                         "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
+    warn(lmp, where(StokesSettings::SUBSTITUTION) + "diverged: " + how_far(report) + "; the run "
+         "goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
   const sd_status status = joined() ? together(report) : gradients(system, report);
   if (!shells.settings.on() || status == SD_OK)
@@ -398,15 +392,12 @@ void Hydrodynamics::keep()
 void Hydrodynamics::unconverged(sd_status status, const sd_solve_report &report)
 {
   memory->global.unconverged++;
-  if (warned_unconverged.first_in(epochs.run) && comm->me == 0)
-    error->warning(
-        FLERR,
-        std::string(
-            where(algorithm()) + sd_status_string(status) + ": " + how_far(report) +
-            ", relative_tolerance " + text(settings.tolerance) +
-            (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter) : "") +
-            "; the run goes on, and counts further solves like this one (compute pair, fix "
-            "stokes_dynamics)"));
+  if (warned_unconverged.first_in(epochs.run))
+    warn(lmp, where(algorithm()) + sd_status_string(status) + ": " + how_far(report) +
+         ", relative_tolerance " + text(settings.tolerance) +
+         (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter) : "") +
+         "; the run goes on, and counts further solves like this one (compute pair, fix "
+         "stokes_dynamics)");
 }
 
 /* Ends the run. */

@@ -8,7 +8,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "error.h"
 #include "force.h"
 #include "neighbor.h"
 #include "update.h"
@@ -220,14 +219,12 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
                             ", and temperatures and pressures from v mean nothing\n");
   if (comm->me != 0) return;
   if (radii > 0.1)
-    error->warning(FLERR,
-                   command + ": keyword temperature: a step moves the smallest sphere by " +
-                       text(radii) + " of its radius: use a shorter time step");
+    warn(lmp, command + ": keyword temperature: a step moves the smallest sphere by " +
+         text(radii) + " of its radius: use a shorter time step");
   if (skins > 1.0)
-    error->warning(FLERR,
-                   command + ": keyword temperature: a step moves spheres by " + text(skins) +
-                       " of half the skin, so that lists are made anew in every step: use a shorter "
-                       "time step or a larger skin");
+    warn(lmp, command + ": keyword temperature: a step moves spheres by " + text(skins) + " of "
+         "half the skin, so that lists are made anew in every step: use a shorter time step or a "
+         "larger skin");
 }
 
 }    // namespace StokesDyn

@@ -5,7 +5,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
@@ -108,11 +107,9 @@ static void refuse_fix(LAMMPS *lmp, const std::string &command, const Fix *self,
     drags = drags || utils::strmatch(other->style, style);
   const bool moves_held = strcmp(other->style, "move") == 0;
   const bool zeroes = strcmp(other->style, "setforce") == 0 || strcmp(other->style, "freeze") == 0;
-  if (zeroes && overlap(lmp, self, other, ways.held_bit) && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        command + ": " + name +
-                            " sets forces to 0, and without inertia that does not hold a sphere: use "
-                            "keyword held GROUP");
+  if (zeroes && overlap(lmp, self, other, ways.held_bit))
+    warn(lmp, command + ": " + name + " sets forces to 0, and without inertia that does not hold "
+         "a sphere: use keyword held GROUP");
   const int but = moves_held ? ways.held_bit : 0;
   if (!(drags || other->time_integrate) || !overlap(lmp, self, other, but)) return;
   fail(lmp,
@@ -163,11 +160,9 @@ void refuse_friction(LAMMPS *lmp, const std::string &keyword)
              "), which would depend on velocities without noise: use 0");
   const bool walls = has_fix(lmp, "^wall/gran");
   if (!walls && !lmp->force->pair_match("^granular", 0, 1)) return;
-  if (lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        keyword + "contacts of " + (walls ? "fix wall/gran" : "pair_style granular") +
-                            " must have no friction, which would depend on velocities without noise; this "
-                            "fix cannot check it");
+  warn(lmp, keyword + "contacts of " + (walls ? "fix wall/gran" : "pair_style granular") +
+       " must have no friction, which would depend on velocities without noise; this fix cannot "
+       "check it");
 }
 
 void announce_step_limit(LAMMPS *lmp, const std::string &command, bool euler, double smallest_drag)
@@ -185,16 +180,13 @@ void announce_step_limit(LAMMPS *lmp, const std::string &command, bool euler, do
                      text(part) + " 6 pi eta a / k = " + text(limit) + " / k\n");
   const bool linear = contact.style && !utils::strmatch(contact.style, "hertz");
   if (linear && contact.k > 0.0 && lmp->update->dt > limit / contact.k)
-    lmp->error->warning(FLERR,
-                        command + ": time step " + text(lmp->update->dt) + " is above " +
-                            text(limit / contact.k) + ", the longest that pair_style " + contact.style +
-                            " with k " + text(contact.k) + " allows in dense packings");
+    warn(lmp, command + ": time step " + text(lmp->update->dt) + " is above " +
+         text(limit / contact.k) + ", the longest that pair_style " + contact.style + " with k " +
+         text(contact.k) + " allows in dense packings");
   if (granular || walls)
-    lmp->error->warning(FLERR,
-                        command + ": contacts of " +
-                            (granular ? "pair_style granular" : "fix wall/gran") +
-                            " must have no damping (gamma 0), which would depend on the velocities of "
-                            "the step before; this fix cannot check it");
+    warn(lmp, command + ": contacts of " + (granular ? "pair_style granular" : "fix wall/gran") +
+         " must have no damping (gamma 0), which would depend on the velocities of the step "
+         "before; this fix cannot check it");
 }
 
 }    // namespace StokesDyn

@@ -9,7 +9,6 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
-#include "error.h"
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
@@ -229,11 +228,8 @@ void PairStokesDynamics::look_for_fixes()
   }
   if (applied || hydro.overdamped || warned_nobody_applies) return;
   warned_nobody_applies = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   COMMAND +
-                       ": nothing applies the force: add_force is no and no fix stokes_dynamics "
-                       "applies it");
+  warn(lmp, COMMAND + ": nothing applies the force: add_force is no and no fix stokes_dynamics "
+       "applies it");
 }
 
 /* This style needs no ghosts (halo.h). A length is given to LAMMPS all the same, since it warns of

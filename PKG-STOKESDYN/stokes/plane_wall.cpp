@@ -2,9 +2,7 @@
 
 #include "keywords.h"
 
-#include "comm.h"
 #include "domain.h"
-#include "error.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
@@ -66,9 +64,8 @@ void check_stream_at_wall(LAMMPS *lmp, const std::string &command, const sd_wall
     if (k == 3)
       fail(lmp, command + ": keyword fluid_velocity: nothing flows through the wall " + there +
                     "give 0, or a variable that is 0 at the wall");
-    if (lmp->comm->me == 0)
-      lmp->error->warning(FLERR, command + ": keyword fluid_velocity: the fluid rests at the wall " +
-                                     there + "a shear flow is a variable, such as RATE*(z-zlo)");
+    warn(lmp, command + ": keyword fluid_velocity: the fluid rests at the wall " + there +
+         "a shear flow is a variable, such as RATE*(z-zlo)");
   }
 }
 

@@ -2,8 +2,6 @@
 
 #include "keywords.h"
 
-#include "comm.h"
-#include "error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,10 +63,9 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
              "rotate");
   in.require(!in.given("fluid_vorticity") || scene.rotation,
              "keyword fluid_vorticity has no effect without rotation yes or a shell");
-  if (tolerance > 0.1 && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        std::string(COMMAND) + ": keyword relative_tolerance: '" + text(tolerance) +
-                            "' allows errors of the forces of more than a tenth");
+  if (tolerance > 0.1)
+    warn(lmp, std::string(COMMAND) + ": keyword relative_tolerance: '" + text(tolerance) + "' "
+         "allows errors of the forces of more than a tenth");
 }
 
 static double smallest_gap(Keywords &in)

@@ -5,7 +5,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
@@ -116,17 +115,14 @@ double TimeStepGuard::compute(const sd_system &A, Scene &scene)
   return sound && report.ritz_smallest > 0.0 ? report.ritz_smallest : INFINITY;
 }
 
-void TimeStepGuard::warn(double of_velocity)
+void TimeStepGuard::compare(double of_velocity)
 {
   if (warned || !(state.limit > 0.0 && update->dt > state.limit)) return;
   warned = true;
-  if (comm->me != 0) return;
-  error->warning(FLERR,
-                 std::string(command + ": the time step " + text(update->dt) + " is above " +
-                             text(state.limit) +
-                             ", the limit 2 m lambda/(6 pi eta a) of explicit steps of free "
-                             "spheres under this drag (smallest m/(6 pi eta a) " +
-                             text(of_velocity) + ", lambda " + text(state.lambda_min) + ")"));
+  warn(lmp, command + ": the time step " + text(update->dt) + " is above " + text(state.limit) +
+       ", the limit 2 m lambda/(6 pi eta a) of explicit steps of free spheres under this drag "
+       "(smallest m/(6 pi eta a) " + text(of_velocity) + ", lambda " + text(state.lambda_min) +
+       ")");
 }
 
 /* p.Mp / p.D^-1 p of the lone sphere that the wall takes most from, p across the wall; 1: no wall */
@@ -183,7 +179,7 @@ void TimeStepGuard::take(double mu, bool computed, double of_velocity)
 {
   if (computed || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
   state.lambda_min = 0.5 * state.limit / of_velocity;
-  warn(of_velocity);
+  compare(of_velocity);
 }
 
 /* The largest eigenvalue of W^-1 R is 1/mu: by power iteration from random numbers, whose Rayleigh
@@ -258,12 +254,9 @@ void TimeStepGuard::look_at_films(sd_lubrication &near, Scene &scene)
                        "such limit\n");
   if (warned_of_films || update->dt <= films) return;
   warned_of_films = true;
-  error->warning(
-      FLERR,
-      std::string(command + ": keyword lubrication: the time step " + text(update->dt) +
-                  " is above " + text(films) +
-                  ", the limit of explicit steps of free spheres with films between them: "
-                  "use fix stokes_dynamics/overdamped, or a larger lubrication_gap"));
+  warn(lmp, command + ": keyword lubrication: the time step " + text(update->dt) + " is above " +
+       text(films) + ", the limit of explicit steps of free spheres with films between them: use "
+       "fix stokes_dynamics/overdamped, or a larger lubrication_gap");
 }
 
 }    // namespace StokesDyn

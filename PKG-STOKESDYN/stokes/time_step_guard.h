@@ -80,7 +80,7 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   double compute(const sd_system &system, Scene &scene);
   double compute_of_shells(const sd_system &system, const Resist &resist, Scene &scene);
   void take(double mu, bool computed, double of_velocity);
-  void warn(double of_velocity);
+  void compare(double of_velocity);
 };
 
 }    // namespace StokesDyn
