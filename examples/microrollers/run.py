@@ -20,6 +20,7 @@ from runs import np, plt, listening, need, options, save, values  # noqa: E402
 
 A, KT, WEIGHT, FRACTION, LENGTH, DEEPEST = 1.0155, 0.004075, 0.0303, 0.4, 0.0406, -0.0406
 DT, PIECE = 0.01, 25                # speeds are those over a piece of so many steps
+SINCE, UNTIL = 1.0, 3.0             # s: when layers have formed, and before the crowd has spread
 
 
 def scatter(path, n):
@@ -88,12 +89,12 @@ def roll(out, name, n, seconds, spins=True):
     return frames, L
 
 
-def samples(frames, L, since):
+def samples(frames, L):
     """Speeds along the floor, and heights, in the inner half of the window (0.7 of its sides)"""
     v, z = [], []
     for t, centre, before, after, _ in frames:
         inside = np.abs(before[:, :2] - centre).max(axis=1) < 0.35 * L
-        if t >= since:
+        if SINCE <= t < UNTIL:
             v.append(((after - before)[inside] / (PIECE * DT))[:, 0])
             z.append(0.5 * (before + after)[inside, 2])
     return np.concatenate(v), np.concatenate(z)
@@ -150,13 +151,13 @@ def main():
     frames, L = roll(given.out, "driven", n, seconds)
     took = time.process_time() - began
     rest, _ = roll(given.out, "rest", 36, 4.0, spins=False)
-    v, z = samples(frames, L, seconds / 2)
+    v, z = samples(frames, L)
     np.savez(given.out / f"speeds_{n}.npz", v=v, z=z)
     draw(frames, L, v, z, given.out / "microrollers.png")
     if given.update:
         shutil.copy(given.out / "microrollers.png", HERE)
     low, high = z < 1.5 * A, z > 2.0 * A
-    slip = np.mean([f[4] for f in frames[len(frames) // 2:]])
+    slip = np.mean([f[4] for f in frames if SINCE <= f[0] < UNTIL])
     print(f"{n} spheres for {seconds} s in {took:.0f} s of processor time: {v.mean():.2f} um/s in the mean; {v[low].mean():.2f} of the "
           f"{low.mean():.0%} below 1.5 radii, {v[high].mean():.2f} of the {high.mean():.0%} above 2; {slip:.0%} slip")
     found = peaks(v, 2.0)
