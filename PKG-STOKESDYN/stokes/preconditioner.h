@@ -1,6 +1,7 @@
 /* Which preconditioner a scene gets, by a rule: the long waves in a periodic box with Ewald sums;
  * where the sum goes over all pairs the sparse factor, or, of few spheres, the inverse itself, or
- * nothing where solves are easy; blocks of molecules for other sums. It changes the number of iterations, never the answer.
+ * nothing where solves are easy; blocks of molecules for other sums. It changes the number of
+ * iterations, never the answer.
  *
  * It is made at positions that are rows of the memory, and those are taken anew where spheres have
  * moved too far since (sd_preconditioner.h), where one has none yet, and where waves are those of
