@@ -3,7 +3,7 @@
 interactions above the floor and films (in.microrollers). A window moves along with them: who leaves it in front comes in again behind.
 
     run.py --out DIR       results and the picture go to DIR (default: build/examples/microrollers)
-    run.py --full          the published size, 2048 spheres for 6 s, where otherwise 256 move for 2 s
+    run.py --full          the published size, 2048 spheres for 3 s, where otherwise 256 move for 2 s
     run.py --update        also refreshes the picture in this folder
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
@@ -50,7 +50,7 @@ def tabulate(path):
 
 
 def put_back(x, centre, L, rng):
-    """Those outside of the window come in on the other side, at their height, where there is room"""
+    """Those outside of the window come in on the other side where there is room, each as low as it was or higher"""
     for i in np.nonzero(np.abs(x[:, :2] - centre).max(axis=1) > L / 2)[0]:
         place, others = x[i].copy(), np.delete(x, i, axis=0)
         place[:2] -= L * np.round((place[:2] - centre) / L)
@@ -58,6 +58,7 @@ def put_back(x, centre, L, rng):
             if np.linalg.norm(others - place, axis=1).min() > 2.05 * A:
                 break
             place[1] = centre[1] + rng.uniform(-L / 2, L / 2)
+            place[2] += 0.03 * A
         x[i] = place
 
 
@@ -146,7 +147,7 @@ def draw(frames, L, v, z, path):
 def main():
     given = options(__file__, __doc__, full=False)
     need("lmp")
-    n, seconds = (2048, 6.0) if given.full else (256, 2.0)
+    n, seconds = (2048, 3.0) if given.full else (256, 2.0)
     began = time.process_time()
     frames, L = roll(given.out, "driven", n, seconds)
     took = time.process_time() - began
