@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import model
-from brownian import (A, END, ETA, KT, L_OF_FOUR, MOVE, P6, SHORT, TRIO, UNIT, check_covariance, check_pieces, check_ranks, copies, end,
-                      in_a_plane, in_clumps, noise, scattered, script, steps_of)
+from brownian import (A, END, ETA, KT, L_OF_FOUR, MOVE, P6, SHORT, TRIO, UNIT, check_covariance, check_heights, check_pieces, check_ranks, copies,
+                      end, in_a_plane, in_clumps, noise, scattered, script, steps_of)
 from system import LammpsError, Spheres, input_lines, lmp
 
 # --- one step -------------------------------------------------------------------------------------------------------------
@@ -256,21 +256,7 @@ def test_clumps_that_feel_each_other_move_with_their_common_mobility(simulation)
 
 
 def test_spheres_above_a_wall_stand_as_boltzmann_says(simulation):
-    """A trap of 25 kT/a^2 at 1.9 a and a weight of 0.5 kT/a: mean height 1.88 a, sigma 0.2 a; without the drift 0.11 sigma lower."""
-    count, K = 64, 25 * KT / A**2
-    k = np.arange(count)
-    x = np.column_stack([25.0 * A * (k % 8), 25.0 * A * (k // 8), 0 * k + 1.88 * A])
-    sim = simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} wall zlo 0", fix=False, dt=0.12 * UNIT / K,
-                     box=[(-40.0, 170.0), (-40.0, 170.0), (-1.0, 60.0)])
-    sim.commands(f"variable fz atom {K!r}*({1.9 * A!r}-z)-{0.5 * KT / A!r}\nfix trap all addforce 0 0 v_fz")
-    noise(sim, "scheme midpoint").run(60)
-    z = []
-    for _ in range(60):
-        sim.run(20, "pre no post no")
-        z.append(sim.x[:, 2] / A)
-    z, n = np.array(z), 60 * count * 0.8
-    assert (z.mean() - 1.88) / 0.2 == pytest.approx(0, abs=4 / np.sqrt(n) + 0.003)
-    assert z.var() == pytest.approx(0.04 * 1.008, rel=4 * np.sqrt(2 / n) + 0.005)
+    check_heights(simulation, 8, "", "scheme midpoint")
 
 
 LONE_CLUMPS = f"cut_off_distance inf visc {ETA} clumps_only yes rigid_clumps yes rotation yes"

@@ -4,7 +4,7 @@ import re
 import numpy as np
 import pytest
 
-from brownian import A, END, ETA, KT, check_pieces, check_ranks, end, noise, script
+from brownian import A, END, ETA, KT, check_heights, check_pieces, check_ranks, end, noise, script
 from system import LammpsError, Spheres
 
 FIX = "fix move all stokes_dynamics/overdamped"
@@ -76,22 +76,9 @@ def test_above_the_largest_torque_a_sphere_slips(simulation):
 
 
 def test_spun_spheres_diffuse_as_boltzmann_says(simulation):
-    """Held from turning they have another mobility, and its drift: mean height above a floor 1.88, sigma 0.2 (test_brownian.py)."""
-    count, K = 36, 25 * KT / A**2
-    k = np.arange(count)
-    x = np.column_stack([25.0 * A * (k % 6), 25.0 * A * (k // 6), 0 * k + 1.88 * A])
-    sim = simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} rotation yes wall zlo 0", fix=False, dt=0.12 * 6 * np.pi * ETA * A / K,
-                     box=[(-40.0, 170.0), (-40.0, 170.0), (-1.0, 60.0)])
-    sim.commands(f"variable fz atom {K!r}*({1.9 * A!r}-z)-{0.5 * KT / A!r}\nfix trap all addforce 0 0 v_fz")
-    noise(sim, "spin all 0 0 0").run(60)
-    z = []
-    for _ in range(60):
-        sim.run(20, "pre no post no")
-        z.append(sim.x[:, 2] / A)
-    z, n = np.array(z), 60 * count * 0.8
+    """Held from turning they have another mobility, and its drift."""
+    sim = check_heights(simulation, 6, "rotation yes", "spin all 0 0 0")
     assert np.abs(sim.atom("omega")).max() == 0.0
-    assert (z.mean() - 1.88) / 0.2 == pytest.approx(0, abs=4 / np.sqrt(n) + 0.003)
-    assert z.var() == pytest.approx(0.04 * 1.008, rel=4 * np.sqrt(2 / n) + 0.005)
 
 
 # --- ranks, pieces ------------------------------------------------------------------------------------------------------------
