@@ -9,7 +9,8 @@ Free spheres: a step of fix stokes_dynamics/overdamped, N spheres (4000), all pa
 solve of one iteration takes (max_iter 1: two products). Rigid clumps: a step of 10 000 clumps of ten with clumps_only yes, shell 42,
 against pair style and fix rigid/small. Both answers are exact: one product, one 6x6. Films: a step of SIDE^3 (22) spheres at volume
 fraction 0.3 in a periodic box, every second pulled up and the others down, with and without lubrication, to 1e-3; the fastest move
-0.01 radii a step. Ranks: the step with lubrication of SIDE^3 (46) spheres on one rank and on two. Medians; what is compared takes turns."""
+0.01 radii a step. Ranks: the step with lubrication of SIDE^3 (46) spheres on one rank and on two; steps of one product and of two
+alternate, not in the same order on one rank and on two, so that their number is even. Medians; what is compared takes turns."""
 import os
 import pathlib
 import re
@@ -90,7 +91,7 @@ def main():
     if sys.argv[1:2] == ["ranks"]:
         repeats, side = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((2, 3), (3, 46)))
         with tempfile.TemporaryDirectory() as folder:
-            times = np.array([[films(folder, side, "lubrication yes", 5, ranks) for ranks in (1, 2)] for _ in range(repeats)])
+            times = np.array([[films(folder, side, "lubrication yes", 10, ranks) for ranks in (1, 2)] for _ in range(repeats)])
         print(f"{side**3} free spheres with lubrication: a step {1e3 * np.median(times[:, 0]):.0f} ms on one rank; of two ranks"
               f" {np.median(times[:, 0] / times[:, 1]):.2f} times as fast ({', '.join('%.2f' % r for r in times[:, 0] / times[:, 1])})")
         return

@@ -3,12 +3,14 @@
  * Each rank has the factor of its own bodies and of those of other ranks whose spheres are within
  * the range of films of its own (additive Schwarz):
  *
- *   P^-1 = sum over ranks  R^T H_R^-1 R,   H_R: the rows and columns of H of these bodies
+ *   P^-1 = W [ sum over ranks  R^T H_R^-1 R ] W,   H_R: the rows and columns of H of these bodies
  *
  * Stiff pairs chain bodies together, and a factor that ends at the last body of a rank would not
- * know how they move as one: products with L would have no end. With the layer beyond it they are
- * twice as many as with one factor of all, on four ranks of 100 spheres each at a volume fraction of
- * 0.5, and half as many more on two (test_tie_ranks.c).
+ * know how they move as one: products with L would have no end. With W = 1 a body that m ranks have
+ * counts m times, which makes products twice as many as with one factor of all, on four ranks of
+ * 100 spheres each, and half as many more on two (test_tie_ranks.c). W = 1/sqrt(m) takes that out,
+ * and as many products are left as on one rank or a few more. But bodies of different W move against
+ * each other where they should move as one, so that bodies with a stiff pair keep W = 1.
  * Memory and messages are those of a rank's bodies and its surface. */
 #ifndef SD_TIE_FACTOR_H
 #define SD_TIE_FACTOR_H
