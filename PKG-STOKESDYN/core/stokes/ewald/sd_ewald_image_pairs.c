@@ -54,7 +54,7 @@ static int room_for_pairs(sd_ewald_image_pairs *p, long many)
 
 static void keep_pair(sd_ewald_image_pairs *p, int i, int j, long at)
 {
-  const sd_image_filter filter = {p->ewald.images.xi, p->ewald.a_ref};
+  const sd_filter filter = {p->ewald.images.xi, p->ewald.a_ref};
   const double *xi = p->x + 3L * i, *xj = p->x + 3L * j;
   const double a = p->spheres.a[p->sphere[i]], b = p->spheres.a[p->sphere[j]];
   const sd_wall_pair whole = sd_wall_pair_of(xi, a, xj, b);

@@ -39,10 +39,8 @@ enum {
   SD_IMAGE_KERNELS
 };
 
-/* In the frame of the grid: m [3], y, z as in sd_open_kernel; size: points of the transform across
- * the wall, waves 0 ... size/2 of it; table [y][size/2 + 1][SD_IMAGE_KERNELS][re, im][z], out.
- * SD_OK or SD_ENOMEMORY. */
-sd_status sd_image_kernel(const sd_ewald *e, const int *m, const int *y, const int *z,
+/* In the frame of the grid; size, y, z, table and status as of sd_padded_table, across. */
+sd_status sd_image_kernel(const sd_ewald *e, const int *size, const int *y, const int *z,
                           double *table);
 
 /* gamma [size]: with it z f of the windows is freed of what they do to it,

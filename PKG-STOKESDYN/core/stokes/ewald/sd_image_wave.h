@@ -18,25 +18,15 @@
 #ifndef SD_IMAGE_WAVE_H
 #define SD_IMAGE_WAVE_H
 
+#include "sd_radial.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* A filter: 1/length, length */
-typedef struct {
-  double xi, a_ref;
-} sd_image_filter;
-
-/* I, J of G = I 1 + J R R; (1/R d/dR)^n L, n = 1, 2: what (1) is made of, at a distance R */
-typedef struct {
-  double I, J, L1, L2;
-} sd_image_radial;
-
-sd_image_radial sd_image_radial_at(const sd_image_filter *filter, double R);
-
 /* The smooth part of a pair in the form of sd_wall.h, c1 ... c5 out. xi, xj: in the axes of the wall,
  * heights at least the radii a, b */
-void sd_image_wave(const sd_image_filter *filter, const double xi[3], double a, const double xj[3],
+void sd_image_wave(const sd_filter *filter, const double xi[3], double a, const double xj[3],
                    double b, double c[5]);
 
 #ifdef __cplusplus

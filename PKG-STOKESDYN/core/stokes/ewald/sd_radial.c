@@ -3,17 +3,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "sd_chebyshev.h"
 #include "sd_constants.h"
 
 static double screen(double xi, double a_ref, double k2)
 {
   const double x = k2 / (4.0 * xi * xi);
   return (1.0 + x - a_ref * a_ref * k2 / 3.0) * exp(-x);
-}
-
-double sd_ewald_screen(const sd_ewald *e, double k2)
-{
-  return screen(e->xi, e->a_ref, k2);
 }
 
 /* H grows with xi as long as xi a_ref < sqrt(3)/2, so the difference is never negative. */
@@ -28,68 +24,93 @@ double sd_ewald_b(const sd_ewald *e, double a)
   return (a - e->a_ref) * (a + e->a_ref) / 6.0;
 }
 
-/* j_l(x)/x^l for l = 0, 1, 2. Below 1.5 the closed forms cancel; the series
- *   sum_k (-x^2/2)^k / (k! (2l + 2k + 1)!!)
- * then needs a dozen terms. */
-static void bessel(double x, double *j)
+/* Laplacian: lap f = 3 f[1] + R^2 f[2], and (1/R d/dR)^n (R^2 g) = R^2 g[n] + 2n g[n - 1] */
+static void laplacian(double R2, const double *f, int terms, double *lap)
 {
-  if (x < 1.5) {
-    for (int l = 0; l < 3; l++) {
-      double term = l == 0 ? 1.0 : l == 1 ? 1.0 / 3.0 : 1.0 / 15.0, sum = term;
-      for (int k = 1; k < 16; k++) {
-        term *= -0.5 * x * x / (k * (2.0 * l + 2.0 * k + 1.0));
-        sum += term;
-      }
-      j[l] = sum;
-    }
+  for (int n = 0; n < terms; n++) lap[n] = (3.0 + 2.0 * n) * f[n + 1] + R2 * f[n + 2];
+}
+
+/* erf(xi R)/R, the first `terms`. With E = 2 xi/sqrt(pi) exp(-q), q = (xi R)^2,
+ *   R^2 L[n + 1] = (-2 xi^2)^n E - (2n + 1) L[n],
+ * which cancels where q is small. There downwards, from the series of the last,
+ *   L[n] = (-2 xi^2)^n E sum_k (2q)^k/((2n + 1) (2n + 3) ... (2n + 2k + 1)) */
+static void filtered_inverse(double xi, double R2, int terms, double *L)
+{
+  const double q = xi * xi * R2, root = sqrt(R2), step = -2.0 * xi * xi;
+  double unit = q > 42.0 ? 0.0 : 2.0 * xi / sqrt(SD_PI) * exp(-q);
+  if (q > 2.5) {
+    L[0] = (q > 42.0 ? 1.0 : erf(xi * root)) / root;
+    for (int n = 0; n + 1 < terms; n++, unit *= step)
+      L[n + 1] = (unit - (2.0 * n + 1.0) * L[n]) / R2;
     return;
   }
-  j[0] = sin(x) / x;
-  j[1] = (j[0] - cos(x)) / (x * x);
-  j[2] = (3.0 * j[1] - j[0]) / (x * x);
-}
-
-/* The integrands are smooth, even in k and fall like exp(-k^2/4 xi^2): equal steps (trapezoidal
- * rule) converge faster than any power. With the step dk the functions repeat with period 2 pi/dk
- * in r, so dk keeps the next copy, screened beyond 6.8/xi, away from r. The largest k makes
- * exp(-x) = 1e-20. */
-void sd_radial(const sd_ewald *e, double r, double *value)
-{
-  const double most = 2.0 * e->xi * sqrt(46.0);
-  const int steps = (int) ceil(most * (r + 8.0 / e->xi) / SD_PI);
-  const double dk = most / steps;
-  for (int f = 0; f < SD_RADIALS; f++) value[f] = 0.0;
-  for (int s = 0; s <= steps; s++) {
-    const double k = s * dk, k2 = k * k, weight = (s == 0 ? 0.5 : 1.0) * dk / (2.0 * SD_PI * SD_PI);
-    const double H = weight * sd_ewald_screen(e, k2);
-    double j[3];
-    bessel(k * r, j);
-    const double across = H * (j[0] - j[1]), along = H * k2 * j[2], turn = 0.5 * H * k2 * j[1];
-    value[SD_I0] += across;
-    value[SD_I1] += across * k2;
-    value[SD_I2] += across * k2 * k2;
-    value[SD_J0] += along;
-    value[SD_J1] += along * k2;
-    value[SD_J2] += along * k2 * k2;
-    value[SD_K0] += turn;
-    value[SD_K1] += turn * k2;
+  const int last = terms - 1;
+  double term = 1.0 / (2.0 * last + 1.0), sum = term;
+  for (int k = 1; k < 200 && term > 1e-17 * sum; k++) {
+    term *= 2.0 * q / (2.0 * (last + k) + 1.0);
+    sum += term;
+  }
+  for (int n = 0; n < last; n++) unit *= step;
+  L[last] = unit * sum;
+  for (int n = last - 1; n >= 0; n--) {
+    unit /= step;
+    L[n] = (unit - R2 * L[n + 1]) / (2.0 * n + 1.0);
   }
 }
 
-/* From Chebyshev series to powers: T_0 = 1, T_1 = t, T_k = 2 t T_k-1 - T_k-2. */
-static void powers(const double *series, int degree, double *coefficient)
+/* Its Laplacian, -4 pi times a Gaussian */
+static void filtered_delta(double xi, double R2, int terms, double *g)
 {
-  double before[SD_RADIAL_TERMS] = {1.0}, now[SD_RADIAL_TERMS] = {0.0, 1.0};
-  memset(coefficient, 0, sizeof(double) * SD_RADIAL_TERMS);
-  for (int k = 0; k <= degree; k++) {
-    const double *T = k == 0 ? before : now;
-    for (int m = 0; m <= k; m++) coefficient[m] += series[k] * T[m];
-    if (k == 0) continue;
-    double next[SD_RADIAL_TERMS] = {0.0};
-    for (int m = 0; m <= k && m + 1 < SD_RADIAL_TERMS; m++) next[m + 1] = 2.0 * now[m];
-    for (int m = 0; m < k; m++) next[m] -= before[m];
-    memcpy(before, now, sizeof(now));
-    memcpy(now, next, sizeof(next));
+  const double q = xi * xi * R2;
+  g[0] = q > 42.0 ? 0.0 : -4.0 * xi * xi * xi / sqrt(SD_PI) * exp(-q);
+  for (int n = 1; n < terms; n++) g[n] = -2.0 * xi * xi * g[n - 1];
+}
+
+sd_filtered sd_filtered_at(const sd_filter *filter, double R2, int terms, int laplacians)
+{
+  sd_filtered f = {.filter = *filter, .R2 = R2};
+  filtered_inverse(filter->xi, R2, terms, f.L[0]);
+  filtered_delta(filter->xi, R2, laplacians ? SD_FILTERED_TERMS : 1, f.L[1]);
+  if (laplacians) {
+    laplacian(R2, f.L[1], 5, f.L[2]);
+    laplacian(R2, f.L[2], 3, f.L[3]);
+  }
+  return f;
+}
+
+/* The biharmonic function whose gradient is R L has H = (1 + x) exp(-x), and the Laplacian 2 L_H,
+ * L_H = L - lap L/(4 xi^2): G = (2 L + R^2 L[1]) 1 - L[1] R R. From then on, and for the part of
+ * a_ref, lap (2 L 1 - ...) = 2 (lap L 1 - grad grad L). */
+void sd_filtered_stokeslet(const sd_filtered *f, int s, double *I, double *J)
+{
+  const double x = 0.25 / (f->filter.xi * f->filter.xi);
+  const double ref = f->filter.a_ref * f->filter.a_ref / 3.0;
+  const double *here = f->L[s], *above = f->L[s + 1];
+  if (s == 0) {
+    *I = 2.0 * here[0] + f->R2 * here[1];
+    *J = -here[1];
+  } else {
+    const double *below = f->L[s - 1];
+    *I = 2.0 * (here[0] - x * above[0] - below[1] + x * here[1]);
+    *J = -2.0 * (below[2] - x * here[2]);
+  }
+  *I += 2.0 * ref * (above[0] - here[1]);
+  *J -= 2.0 * ref * here[2];
+}
+
+/* I_n and J_n are of (-lap)^n G; K_n is half the curl of it, -grad (L_H + a_ref^2/3 lap L). */
+void sd_radial(const sd_ewald *e, double r, double *value)
+{
+  const double unit = 1.0 / (8.0 * SD_PI);
+  const double curl = e->a_ref * e->a_ref / 3.0 - 0.25 / (e->xi * e->xi);
+  const sd_filtered f = sd_filtered_at(&(sd_filter){e->xi, e->a_ref}, r * r, 3, 1);
+  for (int n = 0; n < 3; n++) {
+    const double sign = n == 1 ? -unit : unit;
+    double I, J;
+    sd_filtered_stokeslet(&f, n, &I, &J);
+    value[SD_I0 + 2 * n] = sign * I;
+    value[SD_J0 + 2 * n] = sign * J;
+    if (n < 2) value[SD_K0 + n] = -sign * (f.L[n][1] + curl * f.L[n + 1][1]);
   }
 }
 
@@ -112,51 +133,36 @@ static void weights(const sd_ewald *e, int width, double *weight)
 
 int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
 {
-  enum { NODES = 64 };
-  double sample[NODES][SD_RADIALS], series[SD_RADIALS][NODES], weight[SD_RADIALS], bare[SD_RADIALS];
+  enum { NODES = SD_CHEBYSHEV_MOST };
+  long double sample[SD_RADIALS][NODES], series[SD_RADIALS][NODES];
+  double weight[SD_RADIALS], D[SD_RADIALS];
+  for (int s = 0; s < NODES; s++) {
+    const double t = (double) sd_chebyshev_node(s, NODES);
+    sd_radial(e, e->range * sqrt(0.5 * (1.0 + t)), D);
+    for (int f = 0; f < SD_RADIALS; f++) sample[f][s] = D[f];
+  }
   weights(e, width, weight);
-  sd_radial(e, 0.0, bare);
-  for (int s = 0; s < NODES; s++)
-    sd_radial(e, e->range * sqrt(0.5 * (1.0 + cos(SD_PI * (s + 0.5) / NODES))), sample[s]);
+  sd_radial(e, 0.0, D);
   int degree = 1;
   for (int f = 0; f < SD_RADIALS; f++) {
-    for (int k = 0; k < NODES; k++) {
-      double sum = 0.0;
-      for (int s = 0; s < NODES; s++) sum += sample[s][f] * cos(SD_PI * k * (s + 0.5) / NODES);
-      series[f][k] = sum * (k == 0 ? 1.0 : 2.0) / NODES;
-    }
+    sd_chebyshev_series(sample[f], NODES, series[f]);
     double rest = 0.0;
     int k = NODES - 1;
     for (; k > degree; k--) {
-      rest += weight[f] * fabs(series[f][k]);
-      if (rest > 0.1 * e->tolerance * bare[SD_I0]) break;
+      rest += weight[f] * fabs((double) series[f][k]);
+      if (rest > 0.1 * e->tolerance * D[SD_I0]) break;
     }
-    if (k > degree) degree = k;
+    degree = k;
   }
   if (degree > SD_RADIAL_TERMS - 1) degree = SD_RADIAL_TERMS - 1;
+  memset(coefficient, 0, SD_RADIALS * SD_RADIAL_TERMS * sizeof(double));
   for (int f = 0; f < SD_RADIALS; f++)
-    powers(series[f], degree, coefficient + f * SD_RADIAL_TERMS);
+    sd_chebyshev_powers(series[f], degree, coefficient + f * SD_RADIAL_TERMS);
   return degree;
 }
 
-/* I_n + J_n/3 = 1/(3 pi^2) int k^2n H j_0 dk, in closed form with q = xi^2 r^2, E = exp(-q),
- * z = xi^3 E/pi^1.5, c = a_ref^2/3:
- *   n = 0   1/(6 pi) [ erf(xi r)/r + xi E/sqrt(pi) - 4 c xi^3 E/sqrt(pi) ]
- *   n = 1   z/3 [ 5 - 2q ] - c xi^2 z (4 - 8q/3)
- *   n = 2   xi^2 z (14 - 16q + 8q^2/3) - c xi^4 z (40 - 160q/3 + 32q^2/3)
- * and the pair's tensor has 1/(6 pi r), whatever the radii. Integrated over 4 pi r^2 from the range
- * on, by Simpson's rule: there is nothing beyond 8/xi more. */
-static void remainder_at(const sd_ewald *e, double r, double *f)
-{
-  const double xi = e->xi, q = xi * xi * r * r, E = exp(-q), c = e->a_ref * e->a_ref / 3.0;
-  const double root = sqrt(SD_PI), z = xi * xi * xi * E / (SD_PI * root);
-  f[0] = (erfc(xi * r) / r - xi * E / root * (1.0 - 4.0 * c * xi * xi)) / (6.0 * SD_PI);
-  f[1] = -(z / 3.0 * (5.0 - 2.0 * q) - c * xi * xi * z * (4.0 - 8.0 * q / 3.0));
-  f[2] = -xi * xi * z *
-         (14.0 - 16.0 * q + 8.0 * q * q / 3.0 -
-          c * xi * xi * (40.0 - 160.0 * q / 3.0 + 32.0 * q * q / 3.0));
-}
-
+/* The pair's tensor has the mean 1/(6 pi r) over all directions, whatever the radii, less I_n + J_n/3.
+ * Integrated over 4 pi r^2 from the range on, by Simpson's rule: there is nothing beyond 8/xi more. */
 void sd_radial_tail(const sd_ewald *e, double *tail)
 {
   enum { STEPS = 400 };
@@ -165,8 +171,11 @@ void sd_radial_tail(const sd_ewald *e, double *tail)
   for (int s = 0; s <= STEPS; s++) {
     const double r = e->range + s * dr;
     const double weight = (s == 0 || s == STEPS ? 1.0 : s % 2 ? 4.0 : 2.0) * dr / 3.0;
-    double f[3];
-    remainder_at(e, r, f);
-    for (int n = 0; n < 3; n++) tail[n] += weight * 4.0 * SD_PI * r * r * f[n];
+    double D[SD_RADIALS];
+    sd_radial(e, r, D);
+    for (int n = 0; n < 3; n++) {
+      const double mean = D[SD_I0 + 2 * n] + r * r / 3.0 * D[SD_J0 + 2 * n];
+      tail[n] += weight * 4.0 * SD_PI * r * r * ((n == 0 ? 1.0 / (6.0 * SD_PI * r) : 0.0) - mean);
+    }
   }
 }

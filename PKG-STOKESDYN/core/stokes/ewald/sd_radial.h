@@ -1,5 +1,6 @@
-/* The wave part of one pair in open space, which the near part takes away from the pair's tensor.
- * With the directions of k averaged, everything follows from eight functions of the distance:
+/* The wave part of one pair in open space, which the near part takes away from the pair's tensor,
+ * in closed form. With the directions of k averaged, everything follows from eight functions of the
+ * distance:
  *
  *   I_n = 1/(2 pi^2) int k^2n H (j_0 - j_1/(kr)) dk,   J_n = 1/(2 pi^2) int k^2n H j_2 dk,
  *   K_n = 1/(4 pi^2) int k^(2n+1) H j_1 dk                                      n = 0, 1, 2
@@ -24,13 +25,33 @@ enum { SD_I0, SD_J0, SD_I1, SD_J1, SD_I2, SD_J2, SD_K0, SD_K1, SD_RADIALS };
 /* Terms of the longest polynomial that stands for one of them */
 enum { SD_RADIAL_TERMS = 40 };
 
-/* H(k^2) of the near part, that of the wave part, which another level may have taken from it, and b
- * of a radius */
-double sd_ewald_screen(const sd_ewald *e, double k2);
+/* H(k^2) of the wave part, of which another level may have taken some, and b of a radius */
 double sd_ewald_wave_screen(const sd_ewald *e, double k2);
 double sd_ewald_b(const sd_ewald *e, double a);
 
-/* value [SD_RADIALS] at distance r >= 0, by quadrature over k: 1e-15 of their values at r = 0. */
+/* A filter: 1/length, length */
+typedef struct {
+  double xi, a_ref;
+} sd_filter;
+
+/* lap^s L, s = 0 ... 3, L = erf(xi R)/R: 1/R filtered with exp(-x). Radial functions are lists here,
+ * f[n] = (1/R d/dR)^n f, so that derivatives along directions are
+ *   d_k f = f[1] R_k,   d_k d_l f = f[1] delta_kl + f[2] R_k R_l   and so on. */
+enum { SD_FILTERED_TERMS = 8 };
+typedef struct {
+  sd_filter filter;
+  double R2, L[4][SD_FILTERED_TERMS];
+} sd_filtered;
+
+/* At R^2, the first `terms` of L itself; laplacians: those of its Laplacians too, as many as below
+ * need. */
+sd_filtered sd_filtered_at(const sd_filter *filter, double R2, int terms, int laplacians);
+
+/* I and J of lap^s G = I 1 + J R R, s = 0, 1, 2: 8 pi times the wave part of two point forces, to
+ * 1e-15 of what it is at R = 0. s > 0 has Laplacians. */
+void sd_filtered_stokeslet(const sd_filtered *f, int s, double *I, double *J);
+
+/* value [SD_RADIALS] at distance r >= 0 */
 void sd_radial(const sd_ewald *e, double r, double *value);
 
 /* Polynomials on [0, range] in t = 2 (r/range)^2 - 1:

@@ -7,23 +7,14 @@
 #include "sd_constants.h"
 #include "sd_ewald_internal.h"
 #include "sd_image_kernel.h"
-#include "sd_open_kernel.h"
+#include "sd_padded.h"
+#include "sd_radial.h"
+#include "sd_window.h"
 
 /* Wave number of point m of n: 0, 1 ... n/2 - 1, then from -n/2 on */
 static int wave_number(int m, int n)
 {
   return m < (n + 1) / 2 ? m : m - n;
-}
-
-/* 1/w^ at each point of a direction, less the one without partner: 0 */
-static double *deconvolution(const sd_ewald *e, int n)
-{
-  double *inverse = malloc(sizeof(double) * (size_t) n);
-  for (int m = 0; m < n && inverse; m++) {
-    const double theta = 2.0 * SD_PI * wave_number(m, n) / n;
-    inverse[m] = 2 * m == n ? 0.0 : 1.0 / sd_window_transform(e->points, e->beta, theta);
-  }
-  return inverse;
 }
 
 /* --- periodic --- */
@@ -45,7 +36,7 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 {
   sd_ewald_reciprocal(&e->box, w->k);
   double *inverse[3];
-  for (int d = 0; d < 3; d++) inverse[d] = deconvolution(e, w->size[d]);
+  for (int d = 0; d < 3; d++) inverse[d] = sd_window_inverse(e->points, e->beta, w->size[d] / 2 + 1);
   const size_t row = (size_t) w->depth, rows = (size_t) (y1 - w->y0) * (size_t) w->size[0];
   w->table = malloc(sizeof(double) * (row * rows + 1));
   w->roots = malloc(sizeof(double) * (row + 1));
@@ -56,7 +47,7 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
       double start[3];
       const int mx = wave_number(x, w->size[0]), my = wave_number(y, w->size[1]);
       for (int c = 0; c < 3; c++) start[c] = mx * w->k[0][c] + my * w->k[1][c];
-      periodic_entries(w, e, start, inverse[0][x] * inverse[1][y], inverse[2], next);
+      periodic_entries(w, e, start, inverse[0][abs(mx)] * inverse[1][abs(my)], inverse[2], next);
     }
   for (int d = 0; d < 3; d++) free(inverse[d]);
   return ok ? SD_OK : SD_ENOMEMORY;
@@ -64,36 +55,64 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 
 /* --- open --- */
 
-static sd_status image_table(sd_wave *w, const sd_ewald *e, const int *m, const int *y,
-                             const int *z)
+/* I_0, J_0/r^2 of sd_radial.h, of a level less what another has taken from it */
+static void numbers(const sd_ewald *e, double distance, double *number)
 {
-  const size_t row = 2 * SD_IMAGE_KERNELS * (size_t) m[0] * (size_t) w->depth;
+  const sd_filter filter[2] = {{e->xi, e->a_ref}, {e->large.xi, e->a_ref}};
+  for (int l = 0; l < (e->large.from > 0.0 ? 2 : 1); l++) {
+    const sd_filtered f = sd_filtered_at(filter + l, distance * distance, 3, 0);
+    double I, J;
+    sd_filtered_stokeslet(&f, 0, &I, &J);
+    number[0] += (l == 0 ? I : -I) / (8.0 * SD_PI);
+    number[1] += (l == 0 ? J : -J) / (8.0 * SD_PI);
+  }
+}
+
+/* xx yy zz xy xz yz of I_0 1 + J_0 hh */
+static double value(const sd_ewald *e, int kernel, const double *number, const double *R)
+{
+  static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  (void) e;
+  const double along = number[1] * R[pair[kernel][0]] * R[pair[kernel][1]];
+  return kernel < 3 ? number[0] + along : -along;
+}
+
+static sd_padded open_kernel(const sd_ewald *e)
+{
+  static const int odd[6][3] = {[3] = {1, 1, 0}, [4] = {1, 0, 1}, [5] = {0, 1, 1}};
+  return (sd_padded){
+      .ewald = e, .xi = e->xi, .kernels = 6, .numbers = numbers, .value = value, .odd = odd};
+}
+
+static sd_status image_table(sd_wave *w, const sd_ewald *e, const int *y, const int *z)
+{
+  const size_t row = SD_IMAGE_KERNELS * (size_t) (w->size[0] + 2) * (size_t) w->depth;
   w->images = malloc(sizeof(double) * (row * (size_t) (y[1] - y[0]) + 1));
   w->gamma = malloc(sizeof(double) * (size_t) w->size[0]);
   if (!w->images || !w->gamma) return SD_ENOMEMORY;
   sd_image_slopes(e, w->size[0], w->gamma);
   for (int x = 0; x < w->size[0]; x++) w->gamma[x] *= e->images.wall.sign;
-  return sd_image_kernel(e, m, y, z, w->images);
+  return sd_image_kernel(e, w->size, y, z, w->images);
 }
 
 /* Of the octant the rows that this rank's planes have, by |wave number| */
 static sd_status open_table(sd_wave *w, const sd_ewald *e, int y1)
 {
-  int m[3], end = 0;
-  for (int d = 0; d < 3; d++) m[d] = w->size[d] / 2 + 1;
-  w->first_row = m[1];
+  int end = 0;
+  w->first_row = w->size[1];
   for (int y = w->y0; y < y1; y++) {
     const int row = abs(wave_number(y, w->size[1]));
     if (row < w->first_row) w->first_row = row;
     if (row + 1 > end) end = row + 1;
   }
   if (end == 0) w->first_row = 0;
-  const size_t row = 6 * (size_t) m[0] * (size_t) w->depth;
+  const size_t row = 6 * (size_t) (w->size[0] / 2 + 1) * (size_t) w->depth;
   w->table = malloc(sizeof(double) * (row * (size_t) (end - w->first_row) + 1));
   if (!w->table) return SD_ENOMEMORY;
   const int y[2] = {w->first_row, end}, z[2] = {w->z0, w->z0 + w->depth};
-  const sd_status status = sd_open_kernel(e, m, y, z, w->table);
-  return status == SD_OK && e->images.wall.sign ? image_table(w, e, m, y, z) : status;
+  const sd_padded kernel = open_kernel(e);
+  const sd_status status = sd_padded_table(&kernel, w->size, y, z, w->table);
+  return status == SD_OK && e->images.wall.sign ? image_table(w, e, y, z) : status;
 }
 
 /* --- both --- */

@@ -1,8 +1,8 @@
 /* What the wave part multiplies the transformed forces with: of a periodic box, or of an open one.
  *
  *   periodic   u^ = H/(k^2 V w^2) (1 - kk/k^2) f^,   0 at k = 0 and where k has no partner (Nyquist)
- *   open       u^ = K f^, K the transform of the pair's wave part in open space at the offsets of the
- *              grid, on a grid of twice the size (a convolution without neighbours)
+ *   open       u^ = K f^, K the transform of the pair's wave part in open space (sd_radial.h) at the
+ *              offsets of the grid, on a grid of twice the size (a convolution without neighbours)
  *
  * Above a wall the first direction is across it, the fields are also there times the height, and an
  * open box has the images of sd_image_kernel.h.

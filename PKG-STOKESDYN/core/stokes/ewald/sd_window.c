@@ -1,8 +1,10 @@
 #include "sd_window.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "sd_chebyshev.h"
 #include "sd_constants.h"
 
 /* I_0, the modified Bessel function, by its power series: all terms are positive. */
@@ -23,41 +25,28 @@ static long double window_at(int points, double beta, int k, long double v)
   return bessel_i0(beta * sqrtl(fmaxl(0.0L, 1.0L - tau * tau)));
 }
 
-/* long double: a second derivative multiplies the rounding of the highest terms by the fourth power
- * of the degree. */
+/* Up to the highest degree that any point needs: beyond it all are below a part of the tolerance, which
+ * second derivatives leave small. */
 void sd_window_fit(int points, double beta, double tolerance, sd_window *w)
 {
   enum { NODES = SD_WINDOW_TERMS + 8 };
-  const long double unit = 1.0L / bessel_i0(beta), pi = acosl(-1.0L);
-  long double node[NODES], series[SD_EWALD_MOST_POINTS][NODES];
+  const long double unit = 1.0L / bessel_i0(beta);
+  long double series[SD_EWALD_MOST_POINTS][NODES];
   memset(w, 0, sizeof(*w));
   w->points = points;
-  for (int s = 0; s < NODES; s++) node[s] = cosl(pi * (s + 0.5L) / NODES);
   for (int k = 0; k < points; k++) {
     long double sample[NODES];
-    for (int s = 0; s < NODES; s++) sample[s] = unit * window_at(points, beta, k, node[s]);
-    for (int m = 0; m < NODES; m++) {
-      long double sum = 0.0L;
-      for (int s = 0; s < NODES; s++) sum += sample[s] * cosl(pi * m * (s + 0.5L) / NODES);
-      series[k][m] = sum * (m == 0 ? 1.0L : 2.0L) / NODES;
-      if (m < SD_WINDOW_TERMS && m > w->degree && fabsl(series[k][m]) > 1e-4L * tolerance)
-        w->degree = m;
-    }
+    for (int s = 0; s < NODES; s++)
+      sample[s] = unit * window_at(points, beta, k, sd_chebyshev_node(s, NODES));
+    sd_chebyshev_series(sample, NODES, series[k]);
+    for (int m = w->degree + 1; m < SD_WINDOW_TERMS; m++)
+      if (fabsl(series[k][m]) > 1e-4L * tolerance) w->degree = m;
   }
-  /* Chebyshev's T_m in powers of v */
-  long double before[SD_WINDOW_TERMS] = {0.0L}, now[SD_WINDOW_TERMS] = {1.0L};
-  long double power[SD_WINDOW_TERMS][SD_EWALD_MOST_POINTS] = {{0.0L}};
-  for (int m = 0; m <= w->degree; m++) {
-    for (int p = 0; p <= m; p++)
-      for (int k = 0; k < points; k++) power[p][k] += series[k][m] * now[p];
-    long double next[SD_WINDOW_TERMS] = {0.0L};
-    for (int p = 0; p < SD_WINDOW_TERMS - 1; p++) next[p + 1] = (m == 0 ? 1.0L : 2.0L) * now[p];
-    for (int p = 0; p < SD_WINDOW_TERMS; p++) next[p] -= before[p];
-    memcpy(before, now, sizeof(now));
-    memcpy(now, next, sizeof(next));
+  for (int k = 0; k < points; k++) {
+    double power[SD_WINDOW_TERMS];
+    sd_chebyshev_powers(series[k], w->degree, power);
+    for (int m = 0; m <= w->degree; m++) w->coefficient[m][k] = power[m];
   }
-  for (int m = 0; m <= w->degree; m++)
-    for (int k = 0; k < points; k++) w->coefficient[m][k] = (double) power[m][k];
 }
 
 /* P sinh(root)/(I_0(beta) root), root^2 = beta^2 - (theta P/2)^2 */
@@ -67,6 +56,14 @@ double sd_window_transform(int points, double beta, double theta)
   const double root = sqrt(fabs(square)), unit = points / (double) bessel_i0(beta);
   if (root < 1e-6) return unit;
   return unit * (square > 0.0 ? sinh(root) : sin(root)) / root;
+}
+
+double *sd_window_inverse(int points, double beta, int n)
+{
+  double *inverse = malloc(sizeof(double) * (size_t) n);
+  for (int m = 0; m < n && inverse; m++)
+    inverse[m] = m == n - 1 ? 0.0 : 1.0 / sd_window_transform(points, beta, SD_PI * m / (n - 1));
+  return inverse;
 }
 
 /* root < 0.1: (coth(root) - 1/root)/root by its series */

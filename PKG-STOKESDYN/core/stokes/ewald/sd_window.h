@@ -31,6 +31,10 @@ void sd_window_fit(int points, double beta, double tolerance, sd_window *w);
  * spacings */
 double sd_window_transform(int points, double beta, double theta);
 
+/* [n] 1 over it at waves 0 ... n - 1 of 2 (n - 1), less the last, which has no partner: 0. malloc'ed;
+ * NULL: out of memory */
+double *sd_window_inverse(int points, double beta, int n);
+
 /* d/dtheta of its logarithm, for |theta| <= pi */
 double sd_window_slope(int points, double beta, double theta);
 
