@@ -157,7 +157,7 @@ static void apply(const sd_block_cholesky *f)
   }
   for (long k = f->n - 1; k >= 0; k--) {
     float *at = v + ROW * (long) f->order[k], sums[SD_BLOCK] = {0.0f}, x[SD_BLOCK] = {0.0f};
-    for (long e = f->first[k]; e < f->first[k + 1]; e++)
+    for (long e = f->first[k + 1] - 1; e >= f->first[k]; e--)
       backward(f->column + SD_BLOCK * e, v + ROW * (long) f->row[e], sums);
     for (int c = 0; c < 6; c++) at[c] -= six_of(sums + ROW * c);
     backward(f->inverse + SD_BLOCK * k, at, x);
