@@ -30,10 +30,9 @@ static sd_status resist(const sd_bodies *A, const double *V, double *out)
   sd_tie *t = A->tie;
   double *v = t->rows, *f = v + 6 * (long) t->L->n;
   sd_rigid_move(&A->spheres, V, v);
-  const sd_status status = sd_lubrication_apply(t->L, v, f);
+  const sd_status status = sd_lubrication_apply_both(t->L, t->stiff, t->spring, v, f);
   t->products++;
   if (status != SD_OK) return status;
-  sd_tie_approach_add(A, v, f);
   sd_rigid_collect(&A->spheres, f, sd_bodies_count(A), out);
   return SD_OK;
 }

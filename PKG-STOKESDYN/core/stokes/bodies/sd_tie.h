@@ -33,10 +33,9 @@ typedef struct sd_tie {
   double *scale;
   /* [others] the copy, among the n_all - n of L, that stands for it */
   int *copy;
-  /* X by pairs of L and those beyond: root of c, times d; by spheres, L_ii and that of K^T X K
-   * together; what springs see of faces and do to them [2 9 spheres], [9 others] */
-  float (*spring)[3];
-  double *stiff, *face, *faces_there;
+  /* X by pairs of L and those beyond, c; by spheres, L_ii and that of K^T X K together; what springs
+   * see of faces and do to them [2 9 spheres], [9 others] */
+  double *spring, *stiff, *face, *faces_there;
   /* scratch: by bodies, by bodies and others, by spheres, by copies */
   double *vectors, *all, *rows, *copies;
   size_t most_scales, most_copies, most_springs, most_stiff, most_vectors, most_all, most_rows,

@@ -1,6 +1,5 @@
 #include "sd_tie_approach.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "sd_faces.h"
@@ -10,11 +9,11 @@
  * 0.60 from contact to a gap of 1; between 0.6 and 0.9 the products do not notice. */
 static const double of_strain = 0.75;
 
-/* B += s s^T, on translations */
-static void add_square(const float s[3], double B[36])
+/* B += c d d^T, on translations */
+static void add_square(double c, const double d[3], double B[36])
 {
   for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) B[6 * p + q] += (double) s[p] * s[q];
+    for (int q = 0; q < 3; q++) B[6 * p + q] += c * d[p] * d[q];
 }
 
 /* known [n_all]: does the sphere take part? others: room for those of other ranks */
@@ -58,25 +57,23 @@ sd_status sd_tie_approach_make(const sd_bodies *A)
   for (long k = 0; k < L->count + L->beyond; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
     if (j == i || !takes_part(L, t->rows, i) || !takes_part(L, t->rows, j)) continue;
-    for (int e = 0; e < 3; e++) t->spring[k][e] = (float) (sqrt(L->model[k]) * L->link[k].d[e]);
-    if (i < L->n) add_square(t->spring[k], t->stiff + 36 * (long) i);
-    if (j < L->n) add_square(t->spring[k], t->stiff + 36 * (long) j);
+    t->spring[k] = L->model[k];
+    if (i < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 36 * (long) i);
+    if (j < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 36 * (long) j);
   }
   return SD_OK;
 }
 
-/* s s s: weights of e and of the moments that go with it, over the length of s */
-static void strain_of(const float s[3], double w[6])
+/* b d d: weights of e and of the moments that go with it */
+static void strain_of(const double d[3], double w[6])
 {
-  const double square = (double) s[0] * s[0] + (double) s[1] * s[1] + (double) s[2] * s[2];
-  const double b = square > 0.0 ? of_strain / sqrt(square) : 0.0;
-  for (int e = 0; e < 3; e++) w[e] = b * s[e] * s[e];
-  w[3] = 2.0 * b * s[0] * s[1];
-  w[4] = 2.0 * b * s[0] * s[2];
-  w[5] = 2.0 * b * s[1] * s[2];
+  for (int e = 0; e < 3; e++) w[e] = of_strain * d[e] * d[e];
+  w[3] = 2.0 * of_strain * d[0] * d[1];
+  w[4] = 2.0 * of_strain * d[0] * d[2];
+  w[5] = 2.0 * of_strain * d[1] * d[2];
 }
 
-/* out += s s^T v by spheres, of this many numbers each: with 9 the last 6 are strains */
+/* out += c s s^T v by spheres, of this many numbers each: with 9 the last 6 are strains */
 static void add_springs(const sd_bodies *A, int width, const double *v, const double *others,
                         double *out)
 {
@@ -84,25 +81,21 @@ static void add_springs(const sd_bodies *A, int width, const double *v, const do
   const int strains = width == SD_FACES_WIDTH ? 6 : 0;
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    const float *s = A->tie->spring[k];
+    const double *d = L->link[k].d;
     const double *vi = v + width * (long) i;
     const double *vj = j < L->n ? v + width * (long) j : others + width * (long) (j - L->n);
     double *on_i = out + width * (long) i, *on_j = j < L->n ? out + width * (long) j : NULL;
     double approach = 0.0, w[6];
-    for (int e = 0; e < 3; e++) approach += s[e] * (vi[e] - vj[e]);
-    if (strains) strain_of(s, w);
+    for (int e = 0; e < 3; e++) approach += d[e] * (vi[e] - vj[e]);
+    if (strains) strain_of(d, w);
     for (int e = 0; e < strains; e++) approach += w[e] * (vi[3 + e] + vj[3 + e]);
-    for (int e = 0; e < 3; e++) on_i[e] += approach * s[e];
+    approach *= A->tie->spring[k];
+    for (int e = 0; e < 3; e++) on_i[e] += approach * d[e];
     for (int e = 0; e < strains; e++) on_i[3 + e] += approach * w[e];
     if (!on_j) continue;
-    for (int e = 0; e < 3; e++) on_j[e] -= approach * s[e];
+    for (int e = 0; e < 3; e++) on_j[e] -= approach * d[e];
     for (int e = 0; e < strains; e++) on_j[3 + e] += approach * w[e];
   }
-}
-
-void sd_tie_approach_add(const sd_bodies *A, const double *v, double *out)
-{
-  if (sd_tie_has_springs(A)) add_springs(A, 6, v, A->tie->L->others, out);
 }
 
 /* What of r + K V the springs see, by spheres; on_spheres: scratch [6 spheres] */

@@ -34,18 +34,10 @@ extern "C" {
 
 /* Where A->tie->L stands now. On all ranks together. SD_OK; SD_ENOMEMORY; that of refresh. */
 sd_status sd_tie_approach_make(const sd_bodies *A);
-/* out += K^T X K v on spheres, v and out [6 spheres]; those of other ranks are in A->tie->L->others */
-void sd_tie_approach_add(const sd_bodies *A, const double *v, double *out);
 /* share (rows) = X (r + K V), and f [6 bodies] = K^T of that; r (rows, NULL: 0), V [6 bodies, NULL:
  * 0]. SD_OK or that of refresh. */
 sd_status sd_tie_approach_share(const sd_bodies *A, const double *r, const double *V, double *share,
                                 double *f);
-/* c of a pair: (K^T X K)_12 is -c d d^T */
-static inline double sd_tie_approach_of(const sd_tie *t, long pair)
-{
-  const float *s = t->spring[pair];
-  return (double) s[0] * s[0] + (double) s[1] * s[1] + (double) s[2] * s[2];
-}
 
 #ifdef __cplusplus
 }

@@ -239,7 +239,7 @@ static sd_status add_block(const sd_bodies *A, assembly *a, long k)
   const int arms = has_arm(rp) || has_arm(rq);
   sd_lubrication_link both = L->link[k];
   double of_p[2], of_q[2], B[36], scaled[36] = {0.0}, sum = 0.0;
-  both.XA -= sd_tie_approach_of(t, k); /* L_12 + X_12 */
+  both.XA -= t->spring[k]; /* L_12 + X_12 */
   largest_scales(sp, of_p);
   largest_scales(sq, of_q);
   if (!arms && strength(&both, of_p, of_q) < weak * weak) return SD_OK;

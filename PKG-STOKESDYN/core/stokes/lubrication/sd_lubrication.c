@@ -399,6 +399,12 @@ void sd_lubrication_block(const sd_lubrication_link *l, double B[36])
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
 {
   const sd_lubrication *L = ctx;
+  return sd_lubrication_apply_both(L, L->diagonal, NULL, V, out);
+}
+
+sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diagonal, const double *c,
+                                    const double *V, double *out)
+{
   if (L->world.refresh && L->world.ranks > 1) {
     const sd_status status = L->world.refresh(L->world.ctx, V, L->others, 6);
     if (status != SD_OK) return status;
@@ -406,15 +412,16 @@ sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
   for (long i = 0; i < L->n; i++)
     for (int p = 0; p < 6; p++) {
       double sum = 0.0;
-      for (int q = 0; q < 6; q++) sum += L->diagonal[36 * i + 6 * p + q] * V[6 * i + q];
+      for (int q = 0; q < 6; q++) sum += diagonal[36 * i + 6 * p + q] * V[6 * i + q];
       out[6 * i + p] = sum;
     }
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    const sd_lubrication_link *l = L->link + k;
     const double *Vj = j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
-    add_product(l, l->YB12, l->YB21, Vj, out + 6 * (long) i);
-    if (j < L->n) add_product(l, l->YB21, l->YB12, V + 6 * (long) i, out + 6 * (long) j);
+    sd_lubrication_link l = L->link[k];
+    if (c) l.XA -= c[k];
+    add_product(&l, l.YB12, l.YB21, Vj, out + 6 * (long) i);
+    if (j < L->n) add_product(&l, l.YB21, l.YB12, V + 6 * (long) i, out + 6 * (long) j);
   }
   return SD_OK;
 }

@@ -230,14 +230,14 @@ static void model_resists_approach_alone(void **state)
   sd_bodies A = flock_place(f, 6);
   A.tie = &t->tie;
   enum { N = 48 };
-  double X[N][N] = {{0.0}}, together[N] = {0.0}, out[N] = {0.0};
+  double X[N][N], together[N] = {0.0}, out[N], on_bodies[N];
   for (int j = 0; j < N; j++) {
     double unit[N] = {0.0};
     unit[j] = 1.0;
-    sd_tie_approach_add(&A, unit, X[j]);
+    assert_int_equal(sd_tie_approach_share(&A, unit, NULL, X[j], on_bodies), SD_OK);
     if (j % 6 == 1) together[j] = 1.0;
   }
-  sd_tie_approach_add(&A, together, out);
+  assert_int_equal(sd_tie_approach_share(&A, together, NULL, out, on_bodies), SD_OK);
   double largest = 0.0;
   for (int p = 0; p < N; p++)
     for (int q = 0; q < N; q++) {
@@ -252,9 +252,9 @@ static void model_resists_approach_alone(void **state)
   for (int j = 0; j < N; j++) CHECK_NEAR(out[j], 0.0, 1e-14 * largest);
   uint64_t seed = 3;
   for (int k = 0; k < 100; k++) {
-    double v[N], w[N] = {0.0}, power = 0.0;
+    double v[N], w[N], power = 0.0;
     for (int j = 0; j < N; j++) v[j] = uniform(&seed, -1, 1);
-    sd_tie_approach_add(&A, v, w);
+    assert_int_equal(sd_tie_approach_share(&A, v, NULL, w, on_bodies), SD_OK);
     for (int j = 0; j < N; j++) power += v[j] * w[j];
     assert_true(power > 0.0);
   }
