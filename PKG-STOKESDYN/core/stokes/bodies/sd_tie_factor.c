@@ -238,12 +238,12 @@ static sd_status add_block(const sd_bodies *A, assembly *a, long k)
   const double *sp = t->scale + 6 * (long) p, *sq = t->scale + 6 * (long) q;
   const int arms = has_arm(rp) || has_arm(rq);
   sd_lubrication_link both = L->link[k];
-  double of_p[2], of_q[2], B[36], scaled[36] = {0.0}, sum = 0.0;
+  double of_p[2], of_q[2], B[36] = {0.0}, scaled[36] = {0.0}, sum = 0.0;
   both.XA -= t->spring[k]; /* L_12 + X_12 */
   largest_scales(sp, of_p);
   largest_scales(sq, of_q);
   if (!arms && strength(&both, of_p, of_q) < weak * weak) return SD_OK;
-  sd_lubrication_block(&both, B);
+  sd_lubrication_add_block(&both, B);
   if (arms) move_to_centres(rp, rq, B);
   add_scaled(B, sp, sq, scaled);
   for (int e = 0; e < 36; e++) sum += scaled[e] * scaled[e];

@@ -9,31 +9,20 @@
 #include "sd_room.h"
 #include "sd_tensor.h"
 
-/* Which sphere an image is of: its rank, its row there, its body */
-enum { RANK, ROW, BODY, IDENTITY };
-
 static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   struct sd_lubrication_work *w = L->work;
-  const size_t all = (size_t) s->n_all, others = (size_t) (s->n_all - s->n);
-  if (s->n_all >= w->most_spheres) {
-    if (!sd_grow(&w->neighbours, sizeof(double), all) ||
-        !sd_grow(&w->flow, 6 * sizeof(double), all) || !sd_grow(&w->own, sizeof(*w->own), all) ||
-        !sd_grow(&L->diagonal, 36 * sizeof(double), all) ||
-        !sd_grow(&L->carried, 6 * sizeof(double), all) ||
-        !sd_grow(&L->strain, 7 * sizeof(double), all))
-      return SD_ENOMEMORY;
-    w->most_spheres = s->n_all + 1;
-  }
-  if ((long) others >= w->most_others) {
-    if (!sd_grow(&w->identity, IDENTITY * sizeof(double), others) ||
-        !sd_grow(&L->others, 6 * sizeof(double), others))
-      return SD_ENOMEMORY;
-    w->most_others = (long) others + 1;
-  }
+  const size_t all = (size_t) s->n_all, number = sizeof(double);
   L->n = s->n;
   L->n_all = s->n_all;
   L->world = s->world;
+  if (s->n_all < w->most_spheres) return SD_OK;
+  if (!sd_grow(&w->identity, sizeof(*w->identity), all) || !sd_grow(&w->neighbours, number, all) ||
+      !sd_grow(&w->flow, 6 * number, all) || !sd_grow(&L->diagonal, 36 * number, all) ||
+      !sd_grow(&L->carried, 6 * number, all) || !sd_grow(&L->strain, 7 * number, all) ||
+      !sd_grow(&L->others, 6 * number, all))
+    return SD_ENOMEMORY;
+  w->most_spheres = s->n_all + 1;
   return SD_OK;
 }
 
@@ -54,22 +43,11 @@ static sd_status reserve_pairs(sd_lubrication *L, long count)
 
 static sd_status identify(sd_lubrication *L, const sd_lubrication_scene *s)
 {
+  identity *who = L->work->identity;
+  for (int i = 0; i < s->n; i++)
+    who[i] = (identity){s->world.me, i, s->body ? (double) s->body[i] : 0.0};
   if (!s->world.refresh) return SD_OK;
-  double *mine = malloc(sizeof(double) * IDENTITY * ((size_t) s->n + 1));
-  if (!mine) return SD_ENOMEMORY;
-  for (int i = 0; i < s->n; i++) {
-    mine[IDENTITY * i + RANK] = s->world.me;
-    mine[IDENTITY * i + ROW] = i;
-    mine[IDENTITY * i + BODY] = s->body ? (double) s->body[i] : 0.0;
-  }
-  const sd_status status = s->world.refresh(s->world.ctx, mine, L->work->identity, IDENTITY);
-  free(mine);
-  return status;
-}
-
-static const double *identity_of(const sd_lubrication *L, int j)
-{
-  return L->work->identity + IDENTITY * (long) (j - L->n);
+  return s->world.refresh(s->world.ctx, &who->rank, &who[s->n].rank, sizeof(identity) / sizeof(double));
 }
 
 /* Once the pairs are known */
@@ -89,16 +67,14 @@ static sd_status reserve_noise(sd_lubrication *L, const sd_lubrication_scene *s)
 /* The row of the sphere that stands at j: of this rank, or j itself */
 static int row_at(const sd_lubrication *L, int j)
 {
-  if (j < L->n || identity_of(L, j)[RANK] != L->world.me) return j;
-  return (int) identity_of(L, j)[ROW];
+  const identity *who = L->work->identity + j;
+  return j < L->n || who->rank != L->world.me ? j : (int) who->row;
 }
 
-static int one_body(const sd_lubrication_scene *s, const sd_lubrication *L, int i, int j)
+static int one_body(const sd_lubrication *L, int i, int j)
 {
-  if (!s->body) return 0;
-  const double own = i < L->n ? (double) s->body[i] : identity_of(L, i)[BODY];
-  if (own == 0.0) return 0;
-  return (j < L->n ? (double) s->body[j] : identity_of(L, j)[BODY]) == own;
+  const identity *who = L->work->identity;
+  return who[i].body != 0.0 && who[i].body == who[j].body;
 }
 
 /* What there is to know of a pair where it stands; d from sphere i to j */
@@ -123,7 +99,7 @@ static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
 static void keep_pair(sd_lubrication *L, const sd_lubrication_scene *s, long *count, int i, int j,
                       int at)
 {
-  if (one_body(s, L, i, at)) return;
+  if (one_body(L, i, at)) return;
   const closeness close = look(s, i, at, L->link[*count].d);
   if (!(close.t > 0.0)) return;
   L->pair[*count][0] = i;
@@ -210,18 +186,24 @@ static void rigid_part(const double *const x[2], const double a[2], const double
   }
 }
 
-/* What the flow does to sphere i of a pair, from its own block and that with the other: V_inf, and e */
-static void carry(sd_lubrication *L, long i, const sd_lubrication_link *own,
-                  const sd_lubrication_link *with, const double V[2][6], const double e[2][6])
+/* Of the two spheres of a pair, as one rigid body: V_inf, and e */
+typedef struct {
+  double V[2][6], e[2][6];
+} carriage;
+
+/* What the flow does to sphere i, the first or the second of a pair, from its own block and that with
+ * the other */
+static void carry(sd_lubrication *L, long i, int second, sd_lubrication_link own,
+                  sd_lubrication_link with, const carriage *c)
 {
   double force[6] = {0.0}, *strain = L->strain + 7 * i;
-  add_product(own, own->YB12, own->YB21, V[0], force);
-  add_product(with, with->YB12, with->YB21, V[1], force);
-  add_product(own, own->YB12, own->YB21, e[0], strain);
-  add_product(with, with->YB12, with->YB21, e[1], strain);
+  add_product(&own, c->V[second], force);
+  add_product(&with, c->V[!second], force);
+  add_product(&own, c->e[second], strain);
+  add_product(&with, c->e[!second], strain);
   for (int k = 0; k < 6; k++) {
     L->carried[6 * i + k] += force[k];
-    strain[6] += e[0][k] * force[k];
+    strain[6] += c->e[second][k] * force[k];
   }
 }
 
@@ -233,46 +215,15 @@ static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k
   const sd_spheres *p = &s->spheres;
   const double *flow = L->work->flow, *d = L->link[k].d;
   const double *u[2] = {flow + 6 * (long) i, flow + 6 * (long) at};
-  const sd_lubrication_link B11 = block_of(R, 0, d), B12 = block_of(R, 1, d),
-                            B22 = block_of(R, 2, d);
-  double V[2][6], e[2][6];
+  const sd_lubrication_link B12 = block_of(R, 1, d);
+  carriage c;
   rigid_part((const double *const[]){p->x + 3 * (long) i, p->x + 3 * (long) at},
-             (const double[]){p->a[i], p->a[at]}, u, V);
-  for (int q = 0; q < 12; q++) e[q / 6][q % 6] = V[q / 6][q % 6] - u[q / 6][q % 6];
+             (const double[]){p->a[i], p->a[at]}, u, c.V);
+  for (int q = 0; q < 12; q++) c.e[q / 6][q % 6] = c.V[q / 6][q % 6] - u[q / 6][q % 6];
   /* L V is of velocities without the drift: what that makes of V_inf is left */
-  for (int q = 0; s->drift && at >= s->n && q < 3; q++) V[1][q] -= s->drift[3 * (at - s->n) + q];
-  carry(L, i, &B11, &B12, V, e);
-  if (j >= L->n || j == i) return;
-  sd_lubrication_link B21 = B12;
-  B21.YB12 = B12.YB21;
-  B21.YB21 = B12.YB12;
-  double V2[2][6], e2[2][6];
-  for (int q = 0; q < 12; q++) {
-    V2[q / 6][q % 6] = V[1 - q / 6][q % 6];
-    e2[q / 6][q % 6] = e[1 - q / 6][q % 6];
-  }
-  carry(L, j, &B22, &B21, V2, e2);
-}
-
-/* out += along dd + across (1 - dd) */
-static inline void add_symmetric(double along, double across, const double d[3], double out[6])
-{
-  const double v[3] = {(along - across) * d[0], (along - across) * d[1], (along - across) * d[2]};
-  out[0] += v[0] * d[0] + across;
-  out[1] += v[0] * d[1];
-  out[2] += v[0] * d[2];
-  out[3] += v[1] * d[1] + across;
-  out[4] += v[1] * d[2];
-  out[5] += v[2] * d[2] + across;
-}
-
-/* Block b of the pair, of which UW and WU are YB [d]x and its transpose */
-static inline void add_own(const sd_pair_resistance *R, int b, double YB, const double d[3],
-                           own_block *sum)
-{
-  add_symmetric(R->XA[b], R->YA[b], d, sum->UU);
-  add_symmetric(R->XC[b], R->YC[b], d, sum->WW);
-  for (int e = 0; e < 3; e++) sum->UW[e] += YB * d[e];
+  for (int q = 0; s->drift && at >= s->n && q < 3; q++) c.V[1][q] -= s->drift[3 * (at - s->n) + q];
+  carry(L, i, 0, block_of(R, 0, d), B12, &c);
+  if (j < L->n && j != i) carry(L, j, 1, block_of(R, 2, d), exchanged(B12), &c);
 }
 
 /* x^1.2, 0 < x <= 1; pow() would take a good part of all. x^-0.2 by Newton's steps from a guess,
@@ -320,40 +271,27 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   const int i = L->pair[k][0], j = L->pair[k][1];
   const closeness *c = L->work->close + k;
   const double *w = s->spheres.w;
-  own_block *own = L->work->own;
   const double eta = 0.5 * (1.0 / (w[i] * w[i]) + 1.0 / (w[c->at] * w[c->at]));
   sd_pair_resistance R;
   const sd_status status = resistance_of(L, s, k, eta, &R, L->model + k);
   if (status != SD_OK) return status;
-  sd_lubrication_link *link = L->link + k;
+  sd_lubrication_link *link = L->link + k, own = block_of(&R, 0, link->d);
   if (s->noisy && k < L->count)
     L->work->whole[k] = (whole_pair){R, {link->d[0], link->d[1], link->d[2]}};
   if (L->work->flows && i < L->n) add_carried(L, s, k, &R);
   if (s->films && s->drift && i < L->n) sd_lubrication_drift(L, k, &R);
-  if (i < L->n) add_own(&R, 0, R.YB[0], link->d, own + i);
+  if (i < L->n) sd_lubrication_add_block(&own, L->diagonal + 36 * (long) i);
+  *link = block_of(&R, 1, link->d);
   if (j == i) { /* an image on either side: what their 12 and 21 have in UW and WU cancels */
-    add_own(&R, 1, 0.0, link->d, own + i);
+    link->YB12 = link->YB21 = 0.0;
+    sd_lubrication_add_block(link, L->diagonal + 36 * (long) i);
     if (s->films && !sd_lubrication_remember(L, k, &R)) return SD_ENOMEMORY;
     *link = (sd_lubrication_link){.XA = 0.0};
-  } else {
-    *link = block_of(&R, 1, link->d);
-    if (j < L->n) add_own(&R, 2, R.YB[3], link->d, own + j);
+  } else if (j < L->n) {
+    own = block_of(&R, 2, link->d);
+    sd_lubrication_add_block(&own, L->diagonal + 36 * (long) j);
   }
   return SD_OK;
-}
-
-/* out [36] row-major */
-static void spread_own(const own_block *own, double *out)
-{
-  static const int at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-  const double *v = own->UW, cross[9] = {0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0};
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) {
-      out[6 * p + q] = own->UU[at[3 * p + q]];
-      out[6 * p + q + 3] = cross[3 * p + q];
-      out[6 * (p + 3) + q] = -cross[3 * p + q];
-      out[6 * (p + 3) + q + 3] = own->WW[at[3 * p + q]];
-    }
 }
 
 sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene)
@@ -367,14 +305,13 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   if (status == SD_OK) status = count_neighbours(L, scene);
   if (status == SD_OK) status = find_flow(L, scene);
   if (status != SD_OK) return status;
-  memset(L->work->own, 0, sizeof(own_block) * (size_t) L->n);
+  memset(L->diagonal, 0, sizeof(double) * 36 * (size_t) L->n);
   const long pairs = L->count + L->beyond;
   for (long k = 0; k < pairs && status == SD_OK; k++) {
     /* the second sphere of a pair may be anywhere in memory */
-    __builtin_prefetch(L->work->own + L->pair[k + 6 < pairs ? k + 6 : k][1], 1);
+    __builtin_prefetch(L->diagonal + 36 * (long) L->pair[k + 6 < pairs ? k + 6 : k][1], 1);
     status = add_pair(L, scene, k);
   }
-  for (long i = 0; i < L->n; i++) spread_own(L->work->own + i, L->diagonal + 36 * i);
   return status;
 }
 
@@ -385,15 +322,23 @@ void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const 
   for (long k = 0; k < 6; k++) L->carried[6L * i + k] += E[k];
 }
 
-void sd_lubrication_block(const sd_lubrication_link *l, double B[36])
+void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36])
 {
-  const sd_pair_resistance R = {{0.0, l->XA, 0.0},
-                                {0.0, l->YA, 0.0},
-                                {0.0, l->YB12, l->YB21, 0.0},
-                                {0.0, l->XC, 0.0},
-                                {0.0, l->YC, 0.0}};
-  double B11[36], B22[36];
-  sd_pair_resistance_blocks(&R, l->d, B11, B, B22);
+  const double *d = l->d;
+  for (int p = 0; p < 3; p++) { /* q, r: the next two, (d x v)_p = d_q v_r - d_r v_q */
+    const int q = (p + 1) % 3, r = (p + 2) % 3;
+    double *F = B + 6 * p, *T = F + 18;
+    for (int e = 0; e < 3; e++) {
+      F[e] += (l->XA - l->YA) * d[p] * d[e];
+      T[3 + e] += (l->XC - l->YC) * d[p] * d[e];
+    }
+    F[p] += l->YA;
+    T[3 + p] += l->YC;
+    F[3 + r] += l->YB21 * d[q];
+    F[3 + q] -= l->YB21 * d[r];
+    T[r] -= l->YB12 * d[q];
+    T[q] += l->YB12 * d[r];
+  }
 }
 
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
@@ -405,10 +350,8 @@ sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
 sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diagonal, const double *c,
                                     const double *V, double *out)
 {
-  if (L->world.refresh && L->world.ranks > 1) {
-    const sd_status status = L->world.refresh(L->world.ctx, V, L->others, 6);
-    if (status != SD_OK) return status;
-  }
+  const sd_status status = fetch(L, V);
+  if (status != SD_OK) return status;
   for (long i = 0; i < L->n; i++)
     for (int p = 0; p < 6; p++) {
       double sum = 0.0;
@@ -417,11 +360,12 @@ sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diago
     }
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    const double *Vj = j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
-    sd_lubrication_link l = L->link[k];
-    if (c) l.XA -= c[k];
-    add_product(&l, l.YB12, l.YB21, Vj, out + 6 * (long) i);
-    if (j < L->n) add_product(&l, l.YB21, l.YB12, V + 6 * (long) i, out + 6 * (long) j);
+    sd_lubrication_link B12 = L->link[k];
+    if (c) B12.XA -= c[k];
+    add_product(&B12, motion_at(L, V, j), out + 6 * (long) i);
+    if (j >= L->n) continue;
+    const sd_lubrication_link B21 = exchanged(B12);
+    add_product(&B21, V + 6 * (long) i, out + 6 * (long) j);
   }
   return SD_OK;
 }
@@ -468,7 +412,6 @@ void sd_lubrication_free(sd_lubrication *L)
     free(L->work->identity);
     free(L->work->neighbours);
     free(L->work->flow);
-    free(L->work->own);
     free(L->work->close);
     free(L->work->image);
     free(L->work->whole);

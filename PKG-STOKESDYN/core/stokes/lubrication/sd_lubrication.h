@@ -101,8 +101,8 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
 /* What sphere i < n resists alone, as a wall makes it: L_ii += B [36], carried += E [6]. After place,
  * which forgets it. */
 void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6]);
-/* L_ij of a pair, row-major, rows F T, columns U W */
-void sd_lubrication_block(const sd_lubrication_link *l, double B[36]);
+/* B += L_ij of a pair, row-major, rows F T, columns U W */
+void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
 /* out = (L + X) V, X_ij = -c d d^T of each pair, c [count]; diagonal [36 n]: L_ii + X_ii */

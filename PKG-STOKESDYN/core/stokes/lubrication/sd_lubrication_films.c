@@ -7,8 +7,8 @@ void sd_lubrication_drift(sd_lubrication *L, long k, const sd_pair_resistance *R
   const double *d = L->link[k].d, *drift = L->work->close[k].drift;
   const sd_lubrication_link B12 = block_of(R, 1, d), B22 = block_of(R, 2, d);
   const double V[6] = {-drift[0], -drift[1], -drift[2], 0.0, 0.0, 0.0};
-  add_product(&B12, B12.YB12, B12.YB21, V, L->carried + 6 * (long) i);
-  if (j < L->n && j != i) add_product(&B22, B22.YB12, B22.YB21, V, L->carried + 6 * (long) j);
+  add_product(&B12, V, L->carried + 6 * (long) i);
+  if (j < L->n && j != i) add_product(&B22, V, L->carried + 6 * (long) j);
 }
 
 int sd_lubrication_remember(sd_lubrication *L, long k, const sd_pair_resistance *R)
@@ -51,15 +51,12 @@ static void add_moment(const sd_lubrication *L, long k, const sd_lubrication_lin
 
 sd_status sd_lubrication_stress(const sd_lubrication *L, const double *V, double *S)
 {
-  if (L->world.refresh && L->world.ranks > 1) {
-    const sd_status status = L->world.refresh(L->world.ctx, V, L->others, 6);
-    if (status != SD_OK) return status;
-  }
+  const sd_status status = fetch(L, V);
+  if (status != SD_OK) return status;
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
     if (j == i) continue;
-    const double *Vj = j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
-    add_moment(L, k, L->link + k, V + 6 * (long) i, Vj, S);
+    add_moment(L, k, L->link + k, V + 6 * (long) i, motion_at(L, V, j), S);
   }
   for (long e = 0; e < L->work->images; e++) {
     const own_image *image = L->work->image + e;

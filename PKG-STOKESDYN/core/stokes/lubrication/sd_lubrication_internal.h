@@ -12,11 +12,10 @@ typedef struct {
   int at;
 } closeness;
 
-/* A symmetric sum of blocks of one sphere with itself: (UU, [UW]x; -[UW]x, WW), rows F T; of UU and
- * WW xx xy xz yy yz zz */
+/* Which sphere stands here: its rank, its row there, its body. Numbers, as others send them */
 typedef struct {
-  double UU[6], UW[3], WW[6];
-} own_block;
+  double rank, row, body;
+} identity;
 
 /* The film of a sphere with its own image: pair k, and its block 12 */
 typedef struct {
@@ -33,14 +32,11 @@ typedef struct {
 
 struct sd_lubrication_work {
   sd_neighbors near;
-  /* [IDENTITY (n_all - n)] */
-  double *identity;
-  /* [n_all] n_i; [6 n_all] u */
+  /* [n_all] whose each is; n_i; u [6] */
+  identity *identity;
   double *neighbours, *flow;
   /* some u is not 0 */
   int flows;
-  /* [n] */
-  own_block *own;
   /* [count] */
   closeness *close;
   /* [count] where the scene is noisy, and [36 n] what spheres resist alone; else NULL or old */
@@ -51,22 +47,29 @@ struct sd_lubrication_work {
   /* films */
   own_image *image;
   long images, most_images;
-  long most_spheres, most_others, most_pairs;
+  long most_spheres, most_pairs;
 };
 
-/* out += B V for a block of a pair. That of 21 is that of 12 with YB12 and YB21 exchanged: d turns
- * round, and so do their signs. */
-static inline void add_product(const sd_lubrication_link *B, double YB12, double YB21,
-                               const double *V, double *out)
+/* out += B V for a block of a pair */
+static inline void add_product(const sd_lubrication_link *B, const double *V, double *out)
 {
   double dU[3], dW[3];
   sd_cross(B->d, V, dU);
   sd_cross(B->d, V + 3, dW);
   const double F = (B->XA - B->YA) * sd_dot(B->d, V), T = (B->XC - B->YC) * sd_dot(B->d, V + 3);
   for (int e = 0; e < 3; e++) {
-    out[e] += B->YA * V[e] + F * B->d[e] + YB21 * dW[e];
-    out[3 + e] += B->YC * V[3 + e] + T * B->d[e] - YB12 * dU[e];
+    out[e] += B->YA * V[e] + F * B->d[e] + B->YB21 * dW[e];
+    out[3 + e] += B->YC * V[3 + e] + T * B->d[e] - B->YB12 * dU[e];
   }
+}
+
+/* Block 21 of a pair from its block 12: d turns round, and so do the signs of YB. */
+static inline sd_lubrication_link exchanged(sd_lubrication_link B)
+{
+  const double YB12 = B.YB12;
+  B.YB12 = B.YB21;
+  B.YB21 = YB12;
+  return B;
 }
 
 /* Block 11, 12 or 22 of a pair: b = 0, 1, 2 */
@@ -75,6 +78,19 @@ static inline sd_lubrication_link block_of(const sd_pair_resistance *R, int b, c
   static const int YB12[3] = {0, 1, 3}, YB21[3] = {0, 2, 3};
   return (sd_lubrication_link){{d[0], d[1], d[2]}, R->XA[b], R->YA[b], R->YB[YB12[b]],
                                R->YB[YB21[b]],     R->XC[b], R->YC[b]};
+}
+
+/* Velocities of what stands at j, V [6 n] those of this rank */
+static inline const double *motion_at(const sd_lubrication *L, const double *V, int j)
+{
+  return j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
+}
+
+/* The others' V, which no rank needs that is alone */
+static inline sd_status fetch(const sd_lubrication *L, const double *V)
+{
+  const sd_world *world = &L->world;
+  return world->refresh && world->ranks > 1 ? world->refresh(world->ctx, V, L->others, 6) : SD_OK;
 }
 
 /* Films: forces are L V - carried; the drift of pair k, R its film, goes into `carried`. */
