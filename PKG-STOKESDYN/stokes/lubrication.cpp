@@ -34,7 +34,8 @@ void Lubrication::check(sd_status status) const
     fail_one(lmp, command + ": keyword lubrication: " + sd_status_string(status));
 }
 
-/* Functions for all pairs that there are, made anew when radii become more different. */
+/* Functions for all pairs that there are, made anew when radii become more different, and films of
+ * the shells that spheres are now: another pair_style may have come in between. */
 void Lubrication::provide(double largest, double smallest)
 {
   const double ratio = largest / smallest;
@@ -43,18 +44,20 @@ void Lubrication::provide(double largest, double smallest)
          command + ": keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
              ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
              "spheres, or lubrication no");
-  if (ratio <= largest_ratio) return;
-  sd_two_sphere *wider = nullptr;
-  const sd_status status = sd_two_sphere_create(ratio, &wider);
-  if (status == SD_EOUTSIDE)
-    fail(lmp,
-         command + ": keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
-             ": lubrication is for ratios of radii up to 100; use group to select spheres, or "
-             "lubrication no");
-  check(status);
-  sd_two_sphere_free(functions);
-  functions = wider;
-  largest_ratio = ratio;
+  if (ratio > largest_ratio) {
+    sd_two_sphere *wider = nullptr;
+    const sd_status status = sd_two_sphere_create(ratio, &wider);
+    if (status == SD_EOUTSIDE)
+      fail(lmp,
+           command + ": keyword lubrication: radii from " + text(smallest) + " to " +
+               text(largest) +
+               ": lubrication is for ratios of radii up to 100; use group to select spheres, or "
+               "lubrication no");
+    check(status);
+    sd_two_sphere_free(functions);
+    functions = wider;
+    largest_ratio = ratio;
+  }
   if (shells) check(sd_films_create(shells->points, shells->one_body, functions, &films));
 }
 
