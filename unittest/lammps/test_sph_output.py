@@ -233,11 +233,11 @@ def test_energy_that_comes_and_goes_on_any_number_of_ranks_and_over_restarts(tmp
     short = JET.replace("block -1.4", "block -0.4").replace("yhi 1 0.4", "yhi 0.6 0.4").replace("ylo -1 0.4", "ylo -0.6 0.4")
     first = go(1, short + "run 500 post no\n" + row)
     assert first[6] > 0.1 and first[3] > 0.01
-    assert np.abs(go(3, short + "run 500 post no\n" + row) - first).max() <= 1e-11 * np.abs(first).max()
+    assert np.abs(go(3, short + "run 500 post no\n" + row) - first).max() <= 1e-12 * np.abs(first).max()
     go(1, short + "restart 300 half\nrun 310 post no\n" + row)
     fixes = "\n".join(line for line in short.splitlines() if line.startswith(("fix", "neigh", "timestep", "compute", "thermo", "variable")))
     again = go(2, "atom_modify map array\nread_restart half.300\n" + fixes + "\nrun 200 post no\n" + row)
-    assert np.abs(again - first).max() <= 1e-11 * np.abs(first).max()
+    assert np.abs(again - first).max() <= 1e-12 * np.abs(first).max()
 
 
 def test_the_work_of_a_piston_is_that_of_its_force():
