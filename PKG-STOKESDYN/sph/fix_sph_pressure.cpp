@@ -21,10 +21,12 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
     state.B = in.positive();
     state.rho0 = in.positive();
     if (state.kind == SD_SPH_TAIT) state.gamma = in.positive();
-    if (in.more()) state.P0 = in.number();
+    if (in.more() && in.peek() != "tension") state.P0 = in.number();
   } else
     in.unknown();
-  in.parse({});
+  in.parse({{"tension", [&] { state.no_tension = !in.yes_no(); }}});
+  if (state.no_tension && state.kind == SD_SPH_ABSOLUT)
+    fail(lmp, command + ": keyword tension: absolut has no negative pressure; leave it out");
   begin();
 }
 

@@ -159,13 +159,16 @@ def make_sph_coeff(case):
 def make_sph_pressure(case):
     case.style = "sph/pressure"
     name, kinds = case.draw.choice(PRESSURES)
-    words = case.damaged([name] + [w for kind in kinds for w in write(kind, case.draw)])
+    tension = case.draw.choice([[], [], ["tension", "yes"], ["tension", "no"]])
+    words = case.damaged([name] + [w for kind in kinds for w in write(kind, case.draw)] + tension)
     group = case.draw.choice(["all"] * 6 + ["fluid", "nobody"])
     water(case, eos=f"fix eos {group} sph/pressure " + " ".join(words))
     ways = [kinds for name, kinds in PRESSURES if words[:1] == [name]] or [[B]]
-    kinds = max((k for k in ways if len(k) < len(words)), key=len, default=ways[0])
+    numbers = words[:words.index("tension")] if "tension" in words else words
+    kinds = max((k for k in ways if len(k) < len(numbers)), key=len, default=ways[0])
     first = words[0] if words else ""
-    case.judge(words, {}, [("equation of state", Choice("absolut", "relativ", "Tait"))] + [(first, k) for k in kinds])
+    case.judge(words, {"tension": [YES_NO]}, [("equation of state", Choice("absolut", "relativ", "Tait"))] + [(first, k) for k in kinds])
+    case.refuse_if(first == "absolut" and case.value("tension", "yes") == "no", "tension")
     if case.level == BAD:
         case.faults += words[:1] + ["equation of state"]
     elif group != "all":

@@ -51,6 +51,8 @@ ONE_LINE = {
     "state rho0": ("fix 1 all sph/pressure relativ 10 -1", "keyword relativ: '-1' must be > 0"),
     "state gamma": ("fix 1 all sph/pressure Tait 10 1000", "keyword Tait: value missing"),
     "state P0": ("fix 1 all sph/pressure Tait 10 1000 7 x", "keyword Tait: 'x' is not a number"),
+    "state tension": ("fix 1 all sph/pressure Tait 10 1000 7 tension maybe", "keyword tension: 'maybe' is none of: no, yes"),
+    "state tension absolut": ("fix 1 all sph/pressure absolut 10 tension no", "absolut has no negative pressure"),
     "state more": ("fix 1 all sph/pressure Tait 10 1000 7 0 5", "unknown keyword '5'"),
     "delta": ("fix 1 all sph/density/continuity delta -1", "keyword delta: '-1' must be >= 0"),
     "delta twice": ("fix 1 all sph/density/continuity delta 0.1 delta 0.1", "keyword delta: given twice"),

@@ -14,6 +14,7 @@ double sd_sph_elastic(const sd_sph_state *state, double rho)
 {
   if (state->kind == SD_SPH_ABSOLUT) return state->B * state->B * log(rho);
   const double s = log(rho / state->rho0), inverse = integral(-1.0, s) / state->rho0;
+  if (state->no_tension && s < 0.0) return state->P0 * inverse;
   if (state->kind == SD_SPH_RELATIV)
     return state->B * (s - state->rho0 * inverse) + state->P0 * inverse;
   return state->B * (integral(state->gamma - 1.0, s) / state->rho0 - inverse) + state->P0 * inverse;

@@ -13,7 +13,8 @@ extern "C" {
  * and E(k) = (e^(k s) - 1) / k
  *   Tait      [B E(gamma - 1) - (B - P0) E(-1)] / rho0
  *   relativ   B s - (B - P0 / rho0) E(-1)
- *   absolut   B^2 ln rho */
+ *   absolut   B^2 ln rho
+ * Without tension - P0 / rho0 E(-1) below rho0. */
 double sd_sph_elastic(const sd_sph_state *state, double rho);
 
 /* Those with mask & members == members take part. */

@@ -15,6 +15,7 @@ static double power(double x, double gamma)
 
 double sd_sph_pressure(const sd_sph_state *s, double rho)
 {
+  if (s->no_tension && rho < s->rho0) return s->P0;
   switch (s->kind) {
     case SD_SPH_ABSOLUT:
       return s->B * s->B * rho;
@@ -30,6 +31,7 @@ double sd_sph_pressure(const sd_sph_state *s, double rho)
 double sd_sph_density_of(const sd_sph_state *s, double P)
 {
   double rho;
+  if (s->no_tension && P < s->P0) return s->rho0;
   switch (s->kind) {
     case SD_SPH_ABSOLUT:
       rho = P / (s->B * s->B);

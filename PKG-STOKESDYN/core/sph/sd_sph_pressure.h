@@ -3,7 +3,9 @@
  *   relativ   P = B (rho - rho0) + P0
  *   Tait      P = B ((rho / rho0)^gamma - 1) + P0
  * B: velocity (absolut), velocity^2 (relativ), pressure (Tait: c^2 rho0 / gamma for a speed of
- * sound c). */
+ * sound c).
+ * Without tension P is P0 below rho0: a fluid in open air comes apart and leaves a gap there, in
+ * place of pulling. */
 #ifndef SD_SPH_PRESSURE_H
 #define SD_SPH_PRESSURE_H
 
@@ -16,12 +18,14 @@ typedef enum { SD_SPH_ABSOLUT, SD_SPH_RELATIV, SD_SPH_TAIT } sd_sph_state_kind;
 typedef struct {
   sd_sph_state_kind kind;
   double B, rho0, gamma, P0;
+  /* 1: P is P0 below rho0; not for absolut */
+  int no_tension;
 } sd_sph_state;
 
 /* P of a density > 0. */
 double sd_sph_pressure(const sd_sph_state *state, double rho);
 
-/* The density > 0 that has the pressure P; 0 if there is none. */
+/* The density > 0 that has the pressure P; 0 if there is none. Without tension rho0 of all P below P0. */
 double sd_sph_density_of(const sd_sph_state *state, double P);
 
 /* sqrt(dP / drho) of a density > 0. */

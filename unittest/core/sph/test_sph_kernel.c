@@ -74,10 +74,10 @@ static void norms(void **state)
 static void states_and_their_inverses(void **state)
 {
   (void) state;
-  const sd_sph_state states[] = {{SD_SPH_ABSOLUT, 7.5, 0, 0, 0},
-                                 {SD_SPH_RELATIV, 130.0, 900.0, 0, 45.0},
-                                 {SD_SPH_TAIT, 6e4, 900.0, 7.0, 45.0},
-                                 {SD_SPH_TAIT, 6e4, 900.0, 1.4, -45.0}};
+  const sd_sph_state states[] = {{SD_SPH_ABSOLUT, 7.5, 0, 0, 0, 0},
+                                 {SD_SPH_RELATIV, 130.0, 900.0, 0, 45.0, 0},
+                                 {SD_SPH_TAIT, 6e4, 900.0, 7.0, 45.0, 0},
+                                 {SD_SPH_TAIT, 6e4, 900.0, 1.4, -45.0, 0}};
   CHECK_NEAR(sd_sph_pressure(&states[0], 950.0), 7.5 * 7.5 * 950.0, 1e-9);
   CHECK_NEAR(sd_sph_pressure(&states[1], 950.0), 130.0 * 50.0 + 45.0, 1e-9);
   CHECK_NEAR(sd_sph_pressure(&states[2], 950.0), 6e4 * (pow(950.0 / 900.0, 7.0) - 1.0) + 45.0,
@@ -88,6 +88,23 @@ static void states_and_their_inverses(void **state)
     for (double rho = 850.0; rho < 1000.0; rho += 37.0)
       CHECK_NEAR(sd_sph_density_of(&states[k], sd_sph_pressure(&states[k], rho)), rho, 1e-10 * rho);
   assert_true(sd_sph_density_of(&states[2], -1e6) == 0.0);
+}
+
+/* Below rho0 the pressure is P0, above it is that of the same law. */
+static void states_without_tension(void **state)
+{
+  (void) state;
+  const sd_sph_state states[] = {{SD_SPH_RELATIV, 130.0, 900.0, 0, 45.0, 0},
+                                 {SD_SPH_TAIT, 6e4, 900.0, 7.0, -45.0, 0}};
+  for (int k = 0; k < 2; k++) {
+    sd_sph_state slack = states[k];
+    slack.no_tension = 1;
+    assert_true(sd_sph_pressure(&slack, 850.0) == slack.P0);
+    assert_true(sd_sph_pressure(&slack, 950.0) == sd_sph_pressure(&states[k], 950.0));
+    assert_true(sd_sph_density_of(&slack, -1e9) == 900.0);
+    CHECK_NEAR(sd_sph_density_of(&slack, sd_sph_pressure(&slack, 950.0)), 950.0, 1e-7);
+    assert_true(sd_sph_least_pressure(&slack) == slack.P0);
+  }
 }
 
 static void repulsion(void **state)
@@ -113,6 +130,7 @@ int main(void)
                                      cmocka_unit_test(kernels_vanish_at_the_support),
                                      cmocka_unit_test(norms),
                                      cmocka_unit_test(states_and_their_inverses),
+                                     cmocka_unit_test(states_without_tension),
                                      cmocka_unit_test(repulsion),
                                      cmocka_unit_test(time_step_limits)};
   return cmocka_run_group_tests(tests, NULL, NULL);

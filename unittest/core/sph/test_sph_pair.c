@@ -363,7 +363,7 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
   double sums[8 * (N + 1)] = {0}, weights[8 * (N + 1)];
   sd_sph_pack_fluid(&s.p, s.P, weights);
   sd_sph_before_walls(&s.model, &s.list, &s.p, weights, sums);
-  const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0};
+  const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0, 0};
   const sd_sph_wall wall = {&water, 0, 1};
   int tried = 0;
   for (int i = 0; i < N; i++) {
@@ -381,7 +381,7 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
 static void wall_particle_continues_the_fluid(void **state)
 {
   (void) state;
-  const sd_sph_state tait = {SD_SPH_TAIT, 5e4, 990.0, 7.0, 30.0};
+  const sd_sph_state tait = {SD_SPH_TAIT, 5e4, 990.0, 7.0, 30.0, 0};
   const double sums[8] = {0.8, 0.8 * 2.1e3, 0.0, 0.8 * 100.0, 0.0, 0.8 * 0.3, 0.8 * -0.7, 0.0},
                v[3] = {0.1, 0.2, -0.3}, b[3] = {5.0, 3.0, 7.0};
   const sd_sph_wall sticks = {&tait, 0, 1}, slides = {&tait, 1, 1}, lets_go = {&tait, 0, 0};
