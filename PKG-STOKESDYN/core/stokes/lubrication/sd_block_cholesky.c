@@ -13,6 +13,17 @@ typedef struct {
   int node, block, turned;
 } end_of_edge;
 
+typedef struct {
+  /* where its list of ends is, how long it is and may become */
+  int list, degree, room;
+  /* neighbours in the queue of its degree; -1: none */
+  int before, after;
+  /* where it is in the list of the node that is looked at, if stamp says so */
+  int seen, stamp;
+  /* the norms of the fill that it has lost */
+  float lost;
+} node;
+
 struct sd_elimination {
   const struct sd_block_kernels *kernels;
   /* lists of ends, with room behind each */
@@ -22,17 +33,11 @@ struct sd_elimination {
   int blocks, most_blocks, free_blocks;
   float *block;
   int *free_block;
-  /* by node: its block; where its list is, how long it is and may become; neighbours in the queue
-   * of its degree (-1: none) */
+  /* by node, and its block; by degree: the first node of the queue */
   int nodes;
+  node *node;
   float *pivot;
-  /* by node: the norms of the fill that it has lost */
-  float *lost;
-  int *list, *degree, *room, *before, *after;
-  /* by degree: the first node of the queue */
   int *queue;
-  /* by node: where it is in the list of the node that is looked at, if stamp says so */
-  int *seen, *stamp;
   /* room for columns; of one column: where products go, and which block that is */
   long entries, most_entries;
   size_t most_targets, most_target_blocks;
@@ -48,17 +53,14 @@ static int reserve_nodes(sd_block_cholesky *f, int n)
   struct sd_elimination *w = f->work;
   if (n < w->nodes) return 1;
   const size_t room = (size_t) n + (size_t) n / 8 + 1;
-  int **const numbers[] = {&w->list,  &w->degree, &w->room,  &w->before, &w->after,
-                           &w->queue, &w->seen,   &w->stamp, &f->order};
-  int there = sd_grow(&f->first, sizeof(long), room) &&
-      sd_grow(&w->pivot, sizeof(float) * SD_BLOCK, room) &&
-      sd_grow(&w->lost, sizeof(float), room) &&
-      sd_grow(&f->inverse, sizeof(float) * SD_BLOCK, room) &&
-      sd_grow(&f->vector, sizeof(float) * SD_BLOCK_LANES, room);
-  for (size_t k = 0; k < sizeof(numbers) / sizeof(numbers[0]); k++)
-    there = there && sd_grow(numbers[k], sizeof(int), room);
-  if (there) w->nodes = (int) room;
-  return there;
+  if (!sd_grow(&w->node, sizeof(node), room) || !sd_grow(&w->queue, sizeof(int), room) ||
+      !sd_grow(&w->pivot, sizeof(float) * SD_BLOCK, room) ||
+      !sd_grow(&f->first, sizeof(long), room) || !sd_grow(&f->order, sizeof(int), room) ||
+      !sd_grow(&f->inverse, sizeof(float) * SD_BLOCK, room) ||
+      !sd_grow(&f->vector, sizeof(float) * SD_BLOCK_LANES, room))
+    return 0;
+  w->nodes = (int) room;
+  return 1;
 }
 
 /* Room for so many more blocks */
@@ -123,20 +125,21 @@ static void give_back(struct sd_elimination *w, int b)
 
 static void leave_queue(struct sd_elimination *w, int p)
 {
-  if (w->before[p] >= 0)
-    w->after[w->before[p]] = w->after[p];
+  const node *this = w->node + p;
+  if (this->before >= 0)
+    w->node[this->before].after = this->after;
   else
-    w->queue[w->degree[p]] = w->after[p];
-  if (w->after[p] >= 0) w->before[w->after[p]] = w->before[p];
+    w->queue[this->degree] = this->after;
+  if (this->after >= 0) w->node[this->after].before = this->before;
 }
 
 static void join_queue(struct sd_elimination *w, int p)
 {
-  const int first = w->queue[w->degree[p]];
-  w->before[p] = -1;
-  w->after[p] = first;
-  if (first >= 0) w->before[first] = p;
-  w->queue[w->degree[p]] = p;
+  int *first = w->queue + w->node[p].degree;
+  w->node[p].before = -1;
+  w->node[p].after = *first;
+  if (*first >= 0) w->node[*first].before = p;
+  *first = p;
 }
 
 /* --- the graph --- */
@@ -144,15 +147,16 @@ static void join_queue(struct sd_elimination *w, int p)
 /* 0: no memory */
 static int put_end(struct sd_elimination *w, int at, end_of_edge e)
 {
-  if (w->degree[at] == w->room[at]) { /* to the end of all lists, with twice the room */
-    const int room = 2 * w->room[at] + 4;
+  node *this = w->node + at;
+  if (this->degree == this->room) { /* to the end of all lists, with twice the room */
+    const int room = 2 * this->room + 4;
     if (!reserve_ends(w, room)) return 0;
-    memcpy(w->end + w->ends, w->end + w->list[at], sizeof(e) * (size_t) w->degree[at]);
-    w->list[at] = w->ends;
-    w->room[at] = room;
+    memcpy(w->end + w->ends, w->end + this->list, sizeof(e) * (size_t) this->degree);
+    this->list = w->ends;
+    this->room = room;
     w->ends += room;
   }
-  w->end[w->list[at] + w->degree[at]++] = e;
+  w->end[this->list + this->degree++] = e;
   return 1;
 }
 
@@ -165,11 +169,11 @@ static int connect(struct sd_elimination *w, int p, int q, int block)
 /* Marks who is next to p, and takes `gone` out of its list. */
 static void look_around(struct sd_elimination *w, int p, int gone)
 {
-  end_of_edge *list = w->end + w->list[p];
-  for (int k = 0; k < w->degree[p]; k++) {
-    if (list[k].node == gone) list[k] = list[--w->degree[p]];
-    w->seen[list[k].node] = k;
-    w->stamp[list[k].node] = p;
+  end_of_edge *list = w->end + w->node[p].list;
+  for (int k = 0; k < w->node[p].degree; k++) {
+    if (list[k].node == gone) list[k] = list[--w->node[p].degree];
+    w->node[list[k].node].seen = k;
+    w->node[list[k].node].stamp = p;
   }
 }
 
@@ -186,21 +190,11 @@ sd_status sd_block_cholesky_begin(sd_block_cholesky *f, int n)
   w->ends = w->blocks = w->free_blocks = 0;
   w->entries = 0;
   for (int p = 0; p < n; p++) {
-    w->list[p] = w->degree[p] = w->room[p] = 0;
-    w->queue[p] = w->stamp[p] = -1;
-    w->lost[p] = 0.0f;
+    w->node[p] = (node){.stamp = -1};
+    w->queue[p] = -1;
   }
   memset(w->pivot, 0, sizeof(float) * SD_BLOCK * (size_t) n);
   return SD_OK;
-}
-
-/* out = A, zeros behind each row */
-static void put(const double A[36], float *out)
-{
-  for (int r = 0; r < 6; r++, out += SD_BLOCK_LANES) {
-    for (int c = 0; c < 6; c++) out[c] = (float) A[6 * r + c];
-    out[6] = out[7] = 0.0f;
-  }
 }
 
 /* out += A or its transpose */
@@ -218,15 +212,16 @@ sd_status sd_block_cholesky_add(sd_block_cholesky *f, int p, int q, const double
     add(A, 0, pivot_of(w, p));
     return SD_OK;
   }
-  const end_of_edge *list = w->end + w->list[p];
-  for (int e = 0; e < w->degree[p]; e++)
+  const end_of_edge *list = w->end + w->node[p].list;
+  for (int e = 0; e < w->node[p].degree; e++)
     if (list[e].node == q) {
       add(A, list[e].turned, block_of(w, list[e].block));
       return SD_OK;
     }
   if (!reserve_blocks(w, 1)) return SD_ENOMEMORY;
   const int b = take_block(w);
-  put(A, block_of(w, b));
+  memset(block_of(w, b), 0, sizeof(float) * SD_BLOCK);
+  add(A, 0, block_of(w, b));
   return connect(w, p, q, b) ? SD_OK : SD_ENOMEMORY;
 }
 
@@ -244,9 +239,9 @@ static void transpose(const float *A, float *out)
 static int take_column(sd_block_cholesky *f, int p)
 {
   struct sd_elimination *w = f->work;
-  const int m = w->degree[p];
+  const int m = w->node[p].degree;
   if (!reserve_entries(f, m)) return -1;
-  const end_of_edge *list = w->end + w->list[p];
+  const end_of_edge *list = w->end + w->node[p].list;
   for (int k = 0; k < m; k++) {
     const end_of_edge e = list[k];
     float *A = f->column + SD_BLOCK * (w->entries + k);
@@ -272,8 +267,8 @@ static sd_status keep_or_drop(struct sd_elimination *w, int q, int count, const 
       continue;
     }
     give_back(w, w->target_block[t]);
-    w->lost[q] += norm;
-    w->lost[r[t]] += norm;
+    w->node[q].lost += norm;
+    w->node[r[t]].lost += norm;
   }
   return SD_OK;
 }
@@ -285,9 +280,10 @@ static sd_status couple(struct sd_elimination *w, int p, int q, int count, const
 {
   if (!reserve_blocks(w, count)) return SD_ENOMEMORY;
   look_around(w, q, p);
-  const end_of_edge *list = w->end + w->list[q];
+  const end_of_edge *list = w->end + w->node[q].list;
   for (int t = 0; t < count; t++) {
-    const end_of_edge *e = w->stamp[r[t]] == q ? list + w->seen[r[t]] : NULL;
+    const node *other = w->node + r[t];
+    const end_of_edge *e = other->stamp == q ? list + other->seen : NULL;
     const int b = e ? e->block : take_block(w);
     w->target_block[t] = b;
     w->target[t].to = block_of(w, b);
@@ -308,7 +304,7 @@ static sd_status eliminate(sd_block_cholesky *f, int k, int p, float drop)
   f->order[k] = p;
   f->first[k + 1] = w->entries;
   float *pivot = pivot_of(w, p), *column = f->column + SD_BLOCK * begin;
-  for (int d = 0; d < 6; d++) pivot[(SD_BLOCK_LANES + 1) * d] += w->lost[p];
+  for (int d = 0; d < 6; d++) pivot[(SD_BLOCK_LANES + 1) * d] += w->node[p].lost;
   if (!w->kernels->divide(pivot, f->inverse + SD_BLOCK * (long) k, m, column)) {
     float sum = 0.0f;
     for (int e = 0; e < SD_BLOCK; e++) sum += pivot[e];
@@ -358,14 +354,9 @@ void sd_block_cholesky_free(sd_block_cholesky *f)
 {
   struct sd_elimination *w = f->work;
   if (w) {
-    int *const arrays[] = {w->list,  w->degree, w->room,  w->before,     w->after,
-                           w->queue, w->seen,   w->stamp, w->free_block, w->target_block};
+    void *const arrays[] = {w->end,   w->block, w->free_block, w->node,
+                            w->pivot, w->queue, w->target,     w->target_block};
     for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
-    free(w->end);
-    free(w->block);
-    free(w->pivot);
-    free(w->lost);
-    free(w->target);
     free(w);
   }
   free(f->order);
