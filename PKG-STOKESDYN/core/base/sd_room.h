@@ -1,5 +1,5 @@
 /* Arrays that grow. array is the address of a pointer of any type, NULL or from malloc; size is
- * that of an element in bytes. Both return 1, or 0: out of memory. */
+ * that of an element in bytes. All return 1, or 0: out of memory. */
 #ifndef SD_ROOM_H
 #define SD_ROOM_H
 
@@ -12,9 +12,16 @@ extern "C" {
 /* Room for count elements behind *array, which keeps those it has; out of memory: as before. */
 int sd_grow(void *array, size_t size, size_t count);
 
+/* The same where elements are added bit by bit: *room is the number of elements that there is room for,
+ * and grows by a quarter at least. */
+int sd_extend(void *array, size_t size, size_t count, size_t *room);
+
 /* Room for count elements whose values do not matter: nothing happens where *room, the number of
  * elements that there is room for, is enough. Out of memory: *array is NULL, *room 0. */
 int sd_reserve(void *array, size_t size, size_t count, size_t *room);
+
+/* The same of doubles that begin on a border of cache lines, NULL: out of memory. *block is for free(). */
+double *sd_reserve_lines(double **block, size_t count, size_t *room);
 
 #ifdef __cplusplus
 }

@@ -35,6 +35,28 @@ static void array_without_memory_to_grow_is_as_before(void **state)
   free(array);
 }
 
+static void extended_array_keeps_what_it_holds_and_grows_by_a_quarter(void **state)
+{
+  (void) state;
+  int *array = NULL;
+  size_t room = 0, moves = 0;
+  for (int n = 0; n < 100000; n++) {
+    const size_t before = room;
+    assert_true(sd_extend(&array, sizeof(int), (size_t) n + 1, &room));
+    assert_true(room > (size_t) n && (room == before || room >= before + before / 4));
+    moves += room != before;
+    array[n] = n;
+  }
+  for (int n = 0; n < 100000; n++) assert_int_equal(array[n], n);
+  assert_true(moves < 35);
+  int *const before = array;
+  const size_t there = room;
+  assert_false(sd_extend(&array, sizeof(int), SIZE_MAX / 8, &room));
+  assert_ptr_equal(array, before);
+  assert_int_equal(room, there);
+  free(array);
+}
+
 static void reserved_array_moves_only_when_it_must(void **state)
 {
   (void) state;
@@ -69,6 +91,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(grown_array_keeps_what_it_holds),
       cmocka_unit_test(array_without_memory_to_grow_is_as_before),
+      cmocka_unit_test(extended_array_keeps_what_it_holds_and_grows_by_a_quarter),
       cmocka_unit_test(reserved_array_moves_only_when_it_must),
       cmocka_unit_test(nothing_is_an_array_too),
   };

@@ -100,8 +100,8 @@ static int window_points(double t)
   return points < 4 ? 4 : points > SD_EWALD_MOST_POINTS ? SD_EWALD_MOST_POINTS : points;
 }
 
-/* xi, a_ref, range and the window. What is lost tightens the tolerance, which in turn moves xi. most: of
- * xi times the largest radius */
+/* xi, a_ref, range and the window. What is lost tightens the tolerance, which in turn moves xi. Spheres
+ * that overlap are within the range. most: of xi times the largest radius */
 static void split(sd_ewald *e, const sd_ewald_class *s, int width, double most, double *y)
 {
   const double rms = six_digits(sqrt(s->squares / s->count)), largest = s->largest;
@@ -111,7 +111,7 @@ static void split(sd_ewald *e, const sd_ewald_class *s, int width, double most, 
   for (int k = 0; k < 6; k++) {
     *y = root_of_log(&e->box, t);
     e->range = fmax(natural_range(&e->box, s->count, log10(1.0 / t)),
-                    *y * fmax(ref / 0.8, largest / most));
+                    fmax(*y * fmax(ref / 0.8, largest / most), 2.0 * largest));
     e->xi = *y / e->range;
     if (k < 5) t = tightened(e->tolerance, width, equal ? 0.0 : e->xi * *y * largest);
   }
@@ -120,14 +120,15 @@ static void split(sd_ewald *e, const sd_ewald_class *s, int width, double most, 
   /* where windows are differentiated, their jump at the ends must be smaller */
   e->beta = (equal && width == 3 ? 2.25 : 2.42) * e->points;
   e->largest = largest;
-  e->reach = fmax(e->range, 2.0 * largest);
+  e->reach = e->range;
 }
 
 /* Of the tolerance, for the second level: all spheres are so many more than the large ones that their
  * rms says nothing of those, whose velocities shall be as good. */
 static const double LARGE_TOO = 0.12;
 
-/* The second level has no range of its own: `times` is xi times the largest sphere. */
+/* The second level has no range of its own: `times` is xi times the largest sphere, or less where two of
+ * these that overlap would be beyond the range. */
 static void split_large(sd_ewald *e, const sd_ewald_class *s, int width, double times, double *y)
 {
   double t = LARGE_TOO * e->tolerance;
@@ -135,6 +136,7 @@ static void split_large(sd_ewald *e, const sd_ewald_class *s, int width, double 
   for (int k = 0; k < 6; k++) {
     t = tightened(LARGE_TOO * e->tolerance, width, times * *y);
     *y = root_of_log(&e->box, t);
+    times = fmin(times, 0.5 * *y);
   }
   e->large.count = s->count;
   e->large.largest = s->largest;
@@ -295,7 +297,7 @@ sd_ewald sd_ewald_of_large(const sd_ewald *e)
   large.xi = from->xi;
   large.range = from->range;
   large.largest = from->largest;
-  large.reach = fmax(from->range, 2.0 * from->largest);
+  large.reach = from->range;
   large.spacing = from->spacing;
   large.beta = from->beta;
   large.points = from->points;

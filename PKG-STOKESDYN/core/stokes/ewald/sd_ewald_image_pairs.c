@@ -13,8 +13,7 @@ void sd_ewald_image_pairs_free(sd_ewald_image_pairs *p)
   free(p->sphere);
   free(p->x);
   free(p->first);
-  free(p->other);
-  free(p->c);
+  free(p->pair);
   sd_cells_free(&p->cells);
   memset(p, 0, sizeof(*p));
 }
@@ -41,27 +40,16 @@ static sd_status find_near(sd_ewald_image_pairs *p, int n, int n_all)
   return SD_OK;
 }
 
-static int room_for_pairs(sd_ewald_image_pairs *p, long many)
-{
-  if (many <= p->room && p->c) return 1;
-  const long room = many + many / 2 + 64;
-  if (!sd_grow(&p->other, sizeof(int), (size_t) room) ||
-      !sd_grow(&p->c, 5 * sizeof(double), (size_t) room))
-    return 0;
-  p->room = room;
-  return 1;
-}
-
-static void keep_pair(sd_ewald_image_pairs *p, int i, int j, long at)
+static sd_image_pair pair_of(const sd_ewald_image_pairs *p, int i, int j)
 {
   const sd_filter filter = {p->ewald.images.xi, p->ewald.a_ref};
   const double *xi = p->x + 3L * i, *xj = p->x + 3L * j;
   const double a = p->spheres.a[p->sphere[i]], b = p->spheres.a[p->sphere[j]];
   const sd_wall_pair whole = sd_wall_pair_of(xi, a, xj, b);
-  double *c = p->c + 5 * at;
-  sd_image_wave(&filter, xi, a, xj, b, c);
-  for (int k = 0; k < 5; k++) c[k] = whole.c[k] - c[k];
-  p->other[at] = j;
+  sd_image_pair pair = {.other = j};
+  sd_image_wave(&filter, xi, a, xj, b, pair.c);
+  for (int k = 0; k < 5; k++) pair.c[k] = whole.c[k] - pair.c[k];
+  return pair;
 }
 
 /* Images within the range of sphere i of ours; those of ours that come earlier have the pair. Returns
@@ -75,8 +63,8 @@ static long pairs_of(sd_ewald_image_pairs *p, int i, long many)
       const double *y = p->x + 3L * j;
       const double dx = x[0] - y[0], dy = x[1] - y[1], z = x[2] + y[2];
       if (j < i || dx * dx + dy * dy + z * z > range * range) continue;
-      if (!room_for_pairs(p, many + 1)) return -1;
-      keep_pair(p, i, j, many++);
+      if (!sd_extend(&p->pair, sizeof(sd_image_pair), (size_t) many + 1, &p->room)) return -1;
+      p->pair[many++] = pair_of(p, i, j);
     }
   return many;
 }
@@ -129,8 +117,8 @@ void sd_ewald_image_pairs_apply(sd_ewald_image_pairs *p, int n, const double *F,
   memset(p->u, 0, 3 * sizeof(double) * (size_t) p->near);
   for (int i = 0; i < p->ours; i++)
     for (long k = p->first[i]; k < p->first[i + 1]; k++) {
-      const int j = p->other[k];
-      const double *xi = p->x + 3L * i, *xj = p->x + 3L * j, *c = p->c + 5 * k;
+      const int j = p->pair[k].other;
+      const double *xi = p->x + 3L * i, *xj = p->x + 3L * j, *c = p->pair[k].c;
       const double R[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] + xj[2]};
       const double back[3] = {-R[0], -R[1], R[2]};
       add_image(c, c[3], c[4], R, p->F + 3L * j, p->u + 3L * i);

@@ -1,6 +1,5 @@
 /* The near part of images in a wall: what sd_wall.h says of a pair less its smooth part
- * (sd_image_wave.h), of spheres and images up to the range, i with its own among them. Kept as c1 ...
- * c5 of each pair. */
+ * (sd_image_wave.h), of spheres and images up to the range, i with its own among them. */
 #ifndef SD_EWALD_IMAGE_PAIRS_H
 #define SD_EWALD_IMAGE_PAIRS_H
 
@@ -13,6 +12,12 @@
 extern "C" {
 #endif
 
+/* The other of a pair, and c1 ... c5 */
+typedef struct {
+  int other;
+  double c[5];
+} sd_image_pair;
+
 /* Zero-initialise; sd_ewald_image_pairs_free in the end. */
 typedef struct {
   sd_ewald ewald;
@@ -22,12 +27,10 @@ typedef struct {
   int near, ours, *sphere;
   double *x, *F, *u;
   size_t near_room, x_room;
-  /* each pair once, by one of ours: [ours + 1] first, [pairs] the other, [5 pairs] */
+  /* each pair once, by one of ours: [ours + 1] first */
   long *first;
-  size_t first_room;
-  int *other;
-  double *c;
-  long room;
+  sd_image_pair *pair;
+  size_t first_room, room;
   sd_cells cells;
 } sd_ewald_image_pairs;
 

@@ -16,7 +16,6 @@ static int numbers(const sd_ewald_large_pairs *p)
 
 void sd_ewald_large_pairs_create(sd_ewald_large_pairs *p, const sd_ewald *e, int width)
 {
-  if (width != p->width) sd_ewald_large_pairs_free(p); /* tensors are longer */
   p->ewald = sd_ewald_of_large(e);
   p->from = e->large.from;
   p->width = width;
@@ -31,7 +30,6 @@ void sd_ewald_large_pairs_free(sd_ewald_large_pairs *p)
   free(p->F);
   free(p->image);
   free(p->image_of);
-  free(p->image_itself);
   free(p->begin);
   free(p->other);
   free(p->tensor);
@@ -41,23 +39,6 @@ void sd_ewald_large_pairs_free(sd_ewald_large_pairs *p)
 
 /* --- the large spheres of all ranks --- */
 
-static sd_status sum(const sd_world *world, double *values, int count)
-{
-  return world->sum ? world->sum(world->ctx, values, count) : SD_OK;
-}
-
-static int room_for_larges(sd_ewald_large_pairs *p, int many)
-{
-  const int room = many + many / 8 + 8;
-  if (many <= p->large_room && p->large) return 1;
-  if (!sd_grow(&p->sphere, sizeof(int), (size_t) room) ||
-      !sd_grow(&p->large, sizeof(sd_large_sphere), (size_t) room) ||
-      !sd_grow(&p->F, 12 * sizeof(double), (size_t) room))
-    return 0;
-  p->large_room = room;
-  return 1;
-}
-
 /* How many each rank has, and then who they are: sums, to which each rank adds its own. */
 static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list, int n,
                               const sd_world *world)
@@ -66,7 +47,7 @@ static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, cons
   double *counts = calloc((size_t) ranks, sizeof(double));
   if (!counts) return SD_ENOMEMORY;
   for (int i = 0; i < n; i++) counts[me] += s->a[list[i]] >= p->from;
-  const sd_status status = sum(world, counts, ranks);
+  const sd_status status = sd_world_sum(world, counts, ranks);
   p->larges = p->first = 0;
   p->ours = (int) counts[me];
   for (int r = 0; r < ranks; r++) {
@@ -75,8 +56,13 @@ static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, cons
   }
   free(counts);
   if (status != SD_OK) return status;
-  if (p->larges > INT_MAX / 6 || !room_for_larges(p, p->larges)) return SD_ENOMEMORY;
-  p->u = p->F + 6 * (long) p->large_room;
+  const size_t larges = (size_t) p->larges;
+  if (p->larges > INT_MAX / 6 ||
+      !sd_reserve(&p->sphere, sizeof(int), larges, &p->sphere_room) ||
+      !sd_reserve(&p->large, sizeof(sd_large_sphere), larges, &p->large_room) ||
+      !sd_reserve(&p->F, 12 * sizeof(double), larges, &p->F_room))
+    return SD_ENOMEMORY;
+  p->u = p->F + 6 * larges;
   memset(p->large, 0, sizeof(sd_large_sphere) * (size_t) p->larges);
   int next = 0;
   for (int i = 0; i < n; i++) {
@@ -88,24 +74,22 @@ static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, cons
     l->w = s->w[j];
     p->sphere[next++] = j;
   }
-  return sum(world, (double *) p->large, 5 * p->larges);
+  return sd_world_sum(world, (double *) p->large, 5 * p->larges);
 }
 
 /* --- their images --- */
 
-static int add_image(sd_ewald_large_pairs *p, int large, const double *x, int itself)
+static int add_image(sd_ewald_large_pairs *p, int large, double x, double y, double z)
 {
-  if (p->images == p->image_room || !p->image) {
-    const size_t room = 2 * (size_t) p->images + 64;
-    if (!sd_grow(&p->image, 3 * sizeof(double), room) ||
-        !sd_grow(&p->image_of, sizeof(int), room) ||
-        !sd_grow(&p->image_itself, sizeof(int), room))
-      return 0;
-    p->image_room = (int) room;
-  }
-  memcpy(p->image + 3 * (long) p->images, x, 3 * sizeof(double));
-  p->image_of[p->images] = large;
-  p->image_itself[p->images++] = itself;
+  const size_t many = (size_t) p->images + 1;
+  if (!sd_extend(&p->image, 3 * sizeof(double), many, &p->image_room) ||
+      !sd_extend(&p->image_of, sizeof(int), many, &p->image_of_room))
+    return 0;
+  double *at = p->image + 3 * (long) p->images;
+  at[0] = x;
+  at[1] = y;
+  at[2] = z;
+  p->image_of[p->images++] = large;
   return 1;
 }
 
@@ -119,15 +103,15 @@ static void steps_into(const sd_ewald_box *b, int d, double x, double lo, double
   *to = (int) floor((hi - x) / b->edge[d]);
 }
 
-/* Those that may see one of our spheres: in the box around these, wider by the reach. */
+/* Those that may see one of our spheres: in the box around these, wider by the range. */
 static sd_status find_images(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list, int n)
 {
   const sd_ewald_box *b = &p->ewald.box;
   double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (int i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
-      lo[d] = fmin(lo[d], s->x[3 * (long) list[i] + d] - p->ewald.reach);
-      hi[d] = fmax(hi[d], s->x[3 * (long) list[i] + d] + p->ewald.reach);
+      lo[d] = fmin(lo[d], s->x[3 * (long) list[i] + d] - p->ewald.range);
+      hi[d] = fmax(hi[d], s->x[3 * (long) list[i] + d] + p->ewald.range);
     }
   p->images = 0;
   for (int l = 0; l < p->larges && n > 0; l++) {
@@ -141,15 +125,13 @@ static sd_status find_images(sd_ewald_large_pairs *p, const sd_spheres *s, const
         const double y = y0 + m[1] * b->edge[1];
         const double x0 = x[0] + m[2] * b->tilt[1] + m[1] * b->tilt[0];
         steps_into(b, 0, x0, lo[0], hi[0], from, to);
-        for (m[0] = from[0]; m[0] <= to[0]; m[0]++) {
-          const double at[3] = {x0 + m[0] * b->edge[0], y, z};
-          if (!add_image(p, l, at, m[0] == 0 && m[1] == 0 && m[2] == 0)) return SD_ENOMEMORY;
-        }
+        for (m[0] = from[0]; m[0] <= to[0]; m[0]++)
+          if (!add_image(p, l, x0 + m[0] * b->edge[0], y, z)) return SD_ENOMEMORY;
       }
     }
   }
   sd_cells_free(&p->cells);
-  return sd_cells_fill(&p->cells, p->image, p->images, 0.5 * p->ewald.reach);
+  return sd_cells_fill(&p->cells, p->image, p->images, 0.5 * p->ewald.range);
 }
 
 /* --- pairs --- */
@@ -161,19 +143,6 @@ static double polynomial(const sd_ewald_large_pairs *p, int f, double t)
   return value;
 }
 
-/* Beyond the range D is what the tensor would be if the two did not overlap. */
-static void far_radials(double R, double *D)
-{
-  const double y = 1.0 / (8.0 * SD_PI * R), y3 = y / (R * R);
-  D[SD_I0] = y;
-  D[SD_J0] = y3;
-  D[SD_I1] = -2.0 * y3;
-  D[SD_J1] = 6.0 * y3 / (R * R);
-  D[SD_I2] = D[SD_J2] = 0.0;
-  D[SD_K0] = y3;
-  D[SD_K1] = 0.0;
-}
-
 static void tensor_of(const sd_ewald_large_pairs *p, const double *r, double ai, double aj,
                       double *out)
 {
@@ -181,11 +150,9 @@ static void tensor_of(const sd_ewald_large_pairs *p, const double *r, double ai,
   const double bi = sd_ewald_b(&p->ewald, ai), bj = sd_ewald_b(&p->ewald, aj);
   const double over_r = R > 0.0 ? 1.0 / R : 0.0, forces = 1.0 / (6.0 * SD_PI);
   const double torques = 1.0 / (8.0 * SD_PI);
+  const int radials = p->width == 6 ? SD_RADIALS : SD_K0;
   double D[SD_RADIALS], f, g;
-  if (R <= range)
-    for (int k = 0; k < SD_RADIALS; k++) D[k] = polynomial(p, k, 2.0 * R2 / (range * range) - 1.0);
-  else
-    far_radials(R, D);
+  for (int k = 0; k < radials; k++) D[k] = polynomial(p, k, 2.0 * R2 / (range * range) - 1.0);
   sd_rpy_radial(R, ai, aj, &f, &g);
   memcpy(out, r, 3 * sizeof(double));
   out[3] = forces * f - (D[SD_I0] - (bi + bj) * D[SD_I1] + bi * bj * D[SD_I2]);
@@ -200,13 +167,10 @@ static void tensor_of(const sd_ewald_large_pairs *p, const double *r, double ai,
 
 static int add_pair(sd_ewald_large_pairs *p, int other, const double *r, double ai, double aj)
 {
-  if (p->pairs == p->room || !p->other) {
-    const size_t room = 2 * (size_t) p->pairs + 256;
-    if (!sd_grow(&p->other, sizeof(int), room) ||
-        !sd_grow(&p->tensor, sizeof(double) * (size_t) numbers(p), room))
-      return 0;
-    p->room = (long) room;
-  }
+  const size_t many = (size_t) p->pairs + 1, doubles = (size_t) numbers(p);
+  if (!sd_extend(&p->other, sizeof(int), many, &p->other_room) ||
+      !sd_extend(&p->tensor, sizeof(double), many * doubles, &p->tensor_room))
+    return 0;
   p->other[p->pairs] = other;
   tensor_of(p, r, ai, aj, p->tensor + numbers(p) * p->pairs++);
   return 1;
@@ -216,14 +180,12 @@ static int add_pair(sd_ewald_large_pairs *p, int other, const double *r, double 
 static int pairs_of(sd_ewald_large_pairs *p, const double *x, double a, int mine)
 {
   const double range2 = p->ewald.range * p->ewald.range;
-  for (sd_cells_walk w = sd_cells_near(&p->cells, x, p->ewald.reach); sd_cells_step(&p->cells, &w);)
+  for (sd_cells_walk w = sd_cells_near(&p->cells, x, p->ewald.range); sd_cells_step(&p->cells, &w);)
     for (int k = w.first; k >= 0; k = p->cells.next[k]) {
       const double *y = p->image + 3 * (long) k, r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       const double R2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
-      const int l = p->image_of[k];
-      const double touch = a + p->large[l].a;
-      if (R2 > range2 && R2 > touch * touch) continue;
-      if (mine >= 0 && l == p->first + mine && p->image_itself[k]) continue;
+      const int l = p->image_of[k], itself = mine >= 0 && l == p->first + mine && R2 == 0.0;
+      if (R2 > range2 || itself) continue;
       if (!add_pair(p, l, r, a, p->large[l].a)) return 0;
     }
   return 1;
@@ -281,7 +243,7 @@ static sd_status load(sd_ewald_large_pairs *p, const sd_world *world, const doub
   for (int l = 0; l < p->ours; l++)
     for (int d = 0; d < m; d++)
       p->F[6L * (p->first + l) + d] = p->large[p->first + l].w * F[m * p->sphere[l] + d];
-  return sum(world, p->F, 6 * p->larges);
+  return sd_world_sum(world, p->F, 6 * p->larges);
 }
 
 sd_status sd_ewald_large_pairs_apply(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list,
@@ -302,7 +264,7 @@ sd_status sd_ewald_large_pairs_apply(sd_ewald_large_pairs *p, const sd_spheres *
     }
     for (int d = 0; d < m; d++) u[m * j + d] += s->w[j] * felt[d];
   }
-  status = sum(world, p->u, 6 * p->larges);
+  status = sd_world_sum(world, p->u, 6 * p->larges);
   for (int l = 0; l < p->ours && status == SD_OK; l++) {
     const long j = p->sphere[l];
     const double w = s->w[j], b = sd_ewald_b(&p->ewald, s->a[j]), *D = p->origin;

@@ -36,20 +36,22 @@ typedef struct {
   int width, degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS], origin[SD_RADIALS];
   /* [larges] of all ranks; ours from `first` on, [ours] which spheres; their rows of 6 numbers */
-  int larges, first, ours, large_room, *sphere;
+  int larges, first, ours, *sphere;
   sd_large_sphere *large;
   double *F, *u;
-  /* images within reach of our spheres: [3 images] where, [images] of which; 1: not an image but
-   * the sphere itself */
-  int images, image_room, *image_of, *image_itself;
+  size_t sphere_room, large_room, F_room;
+  /* images within range of our spheres, they themselves among them: [3 images] where, [images] of
+   * which */
+  int images, *image_of;
   double *image;
+  size_t image_room, image_of_room;
   sd_cells cells;
   /* pairs of our spheres in their order: [n + 1] first, [pairs] the other, [pairs] tensors */
   int n;
-  size_t begin_room;
-  long pairs, room, *begin;
+  long pairs, *begin;
   int *other;
   double *tensor;
+  size_t begin_room, other_room, tensor_room;
 } sd_ewald_large_pairs;
 
 /* Polynomials for a splitting of two levels */

@@ -13,7 +13,6 @@ enum { FULL = 8 };
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
                            const struct sd_ewald_kernels *kernels, int width)
 {
-  if (width != p->width) sd_ewald_pairs_free(p); /* rows are wider */
   p->kernels = kernels;
   p->ewald = *e;
   p->width = width;
@@ -32,8 +31,7 @@ void sd_ewald_pairs_free(sd_ewald_pairs *p)
   free(p->target);
   free(p->first);
   free(p->neighbor);
-  free(p->wide);
-  free(p->row);
+  free(p->memory);
   free(p->cell_first);
   free(p->column);
   free(p->range);
@@ -42,23 +40,15 @@ void sd_ewald_pairs_free(sd_ewald_pairs *p)
 
 /* --- rows in order of cells --- */
 
-/* Doubles on a border of cache lines, for rows of eight; free() takes the pointer. */
-static double *lines(size_t doubles)
-{
-  return aligned_alloc(64, (sizeof(double) * doubles + 63) / 64 * 64);
-}
-
+/* The last centres are read in whole vectors. */
 static int make_room(sd_ewald_pairs *p, int n)
 {
-  if (n <= p->room && p->row) return 1;
-  const size_t many = (size_t) n + (size_t) n / 8 + 8, rows = many + 1;
-  p->room = 0;
-  free(p->row);
-  p->row = lines((p->width == 6 ? 20 : 12) * rows);
-  if (!p->row || !sd_grow(&p->sphere, sizeof(int), many) ||
-      !sd_grow(&p->target, sizeof(int), many) || !sd_grow(&p->first, sizeof(long), rows))
+  const size_t rows = (size_t) n + 1, doubles = (p->width == 6 ? 20 : 12) * rows + FULL;
+  p->row = sd_reserve_lines(&p->memory, doubles, &p->room);
+  if (!p->row || !sd_reserve(&p->sphere, sizeof(int), rows, &p->sphere_room) ||
+      !sd_reserve(&p->target, sizeof(int), rows, &p->target_room) ||
+      !sd_reserve(&p->first, sizeof(long), rows, &p->first_room))
     return 0;
-  p->room = (int) many;
   p->u = p->row + 8 * rows;
   p->torque_row = p->width == 6 ? p->u + 8 * rows : NULL;
   return 1;
@@ -145,7 +135,7 @@ static void fill_rows(sd_ewald_pairs *p)
     double *row = p->row + 8 * (long) k;
     for (int d = 0; d < 3; d++) {
       row[d] = p->spheres.x[3 * i + d] * p->scale;
-      p->u[(long) d * p->room + k] = p->spheres.x[3 * i + d];
+      p->u[(long) d * p->rows + k] = p->spheres.x[3 * i + d];
     }
     row[3] = p->spheres.a[i] * p->scale;
     p->equal = p->equal && p->spheres.a[i] == p->ewald.a_ref;
@@ -157,37 +147,12 @@ static void fill_rows(sd_ewald_pairs *p)
 
 /* --- neighbours --- */
 
-static int room_for_neighbors(sd_ewald_pairs *p, long many)
-{
-  if (many <= p->neighbor_room && p->neighbor) return 1;
-  const long room = many + many / 4;
-  if (!sd_grow(&p->neighbor, sizeof(int), (size_t) room)) return 0;
-  p->neighbor_room = room;
-  return 1;
-}
-
-static int add_wide(sd_ewald_pairs *p, int row, int other)
-{
-  if (p->wides == p->wide_room) {
-    const int room = 2 * p->wide_room + 64;
-    if (!sd_grow(&p->wide, 2 * sizeof(int), (size_t) room)) return 0;
-    p->wide_room = room;
-  }
-  p->wide[2 * (long) p->wides] = row;
-  p->wide[2 * (long) p->wides + 1] = other;
-  p->wides++;
-  return 1;
-}
-
 static int add_column(sd_ewald_pairs *p, int x, int y, int z)
 {
-  if (p->columns == p->column_room) {
-    const int room = 2 * p->column_room + 32;
-    if (!sd_grow(&p->column, 3 * sizeof(int), (size_t) room) ||
-        !sd_grow(&p->range, 2 * sizeof(int), (size_t) room))
-      return 0;
-    p->column_room = room;
-  }
+  const size_t many = (size_t) p->columns + 1;
+  if (!sd_extend(&p->column, 3 * sizeof(int), many, &p->column_room) ||
+      !sd_extend(&p->range, 2 * sizeof(int), many, &p->range_room))
+    return 0;
   int *column = p->column + 3 * p->columns++;
   column[0] = x;
   column[1] = y;
@@ -197,8 +162,9 @@ static int add_column(sd_ewald_pairs *p, int x, int y, int z)
 
 /* Which columns of cells, along z, may hold neighbours that come later in the order of cells; the
  * first is that of the cell itself. */
-static int find_columns(sd_ewald_pairs *p, const cells *c, double reach)
+static int find_columns(sd_ewald_pairs *p, const cells *c)
 {
+  const double reach = p->ewald.range;
   int steps[2], ok = 1;
   for (int d = 0; d < 2; d++) steps[d] = (int) fmin(ceil(reach / c->side), c->n[d] - 1);
   p->columns = 0;
@@ -241,27 +207,13 @@ static int is_ghost(const sd_ewald_pairs *p, int row, int n)
   return p->sphere[row] >= n;
 }
 
-static int wide_pairs(sd_ewald_pairs *p, int row, int n, int ranges)
-{
-  const double *x = p->u, *y = x + p->room, *z = y + p->room;
-  const double own = p->spheres.a[p->sphere[row]], range2 = p->ewald.range * p->ewald.range;
-  for (int k = 0; k < ranges; k++)
-    for (int j = p->range[2 * k]; j < p->range[2 * k + 1]; j++) {
-      const double dx = x[j] - x[row], dy = y[j] - y[row], dz = z[j] - z[row];
-      const double r2 = dx * dx + dy * dy + dz * dz, sum = own + p->spheres.a[p->sphere[j]];
-      if (!(r2 > range2 && r2 < sum * sum) || (is_ghost(p, row, n) && is_ghost(p, j, n))) continue;
-      if (!add_wide(p, row, j)) return 0;
-    }
-  return 1;
-}
-
 /* Neighbours of a row, after the first `many` of all; returns how many there are then */
 static long neighbors_of(sd_ewald_pairs *p, int row, int n, int ranges, long many)
 {
   const double range2 = p->ewald.range * p->ewald.range, *centre = p->u + row;
-  const double x[3] = {centre[0], centre[p->room], centre[2 * (long) p->room]};
+  const double x[3] = {centre[0], centre[p->rows], centre[2 * (long) p->rows]};
   int *list = p->neighbor + many;
-  long found = p->kernels->search(p->u, p->room, p->range, ranges, x, range2, list);
+  long found = p->kernels->search(p->u, p->rows, p->range, ranges, x, range2, list);
   if (is_ghost(p, row, n)) {
     long ours = 0;
     for (long k = 0; k < found; k++)
@@ -272,13 +224,11 @@ static long neighbors_of(sd_ewald_pairs *p, int row, int n, int ranges, long man
   return many + found;
 }
 
-static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, int n, double reach)
+static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, int n)
 {
-  const int wide = reach > p->ewald.range;
   long many = 0, rows;
   int cell[3], next = 0;
-  p->wides = 0;
-  if (!find_columns(p, c, reach)) return SD_ENOMEMORY;
+  if (!find_columns(p, c)) return SD_ENOMEMORY;
   for (cell[0] = 0; cell[0] < c->n[0]; cell[0]++)
     for (cell[1] = 0; cell[1] < c->n[1]; cell[1]++)
       for (cell[2] = 0; cell[2] < c->n[2]; cell[2]++) {
@@ -288,9 +238,9 @@ static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, int n, double rea
         for (; next < end; next++) {
           p->range[0] = next + 1;
           p->first[next] = many;
-          if (!room_for_neighbors(p, many + rows + 2 * FULL)) return SD_ENOMEMORY;
+          const size_t most = (size_t) (many + rows + 2 * FULL);
+          if (!sd_extend(&p->neighbor, sizeof(int), most, &p->neighbor_room)) return SD_ENOMEMORY;
           many = neighbors_of(p, next, n, ranges, many);
-          if (wide && !wide_pairs(p, next, n, ranges)) return SD_ENOMEMORY;
         }
       }
   p->first[p->rows] = many;
@@ -305,9 +255,7 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, int n, in
   sd_status status = sort(p, &c, n, n_all);
   if (status != SD_OK) return status;
   fill_rows(p);
-  double largest = 0.0;
-  for (int k = 0; k < p->rows; k++) largest = fmax(largest, s->a[p->sphere[k]]);
-  return find_pairs(p, &c, n, fmax(p->ewald.range, 2.0 * largest));
+  return find_pairs(p, &c, n);
 }
 
 /* --- product --- */
@@ -347,44 +295,6 @@ static sd_near_part near_part_of(sd_ewald_pairs *p)
   return k;
 }
 
-/* Row u += M f, or its transpose, times 8 pi */
-static void add_block(const sd_ewald_pairs *p, const double *M, int transposed, int from, int to)
-{
-  double G[6];
-  memcpy(G, p->row + 8 * (long) from + 4, 3 * sizeof(double));
-  if (p->width == 6) memcpy(G + 3, p->torque_row + 4 * (long) from, 3 * sizeof(double));
-  double *u = p->u + (p->width == 6 ? 8 : 4) * (long) to;
-  for (int a = 0; a < p->width; a++)
-    for (int b = 0; b < p->width; b++)
-      u[a < 3 ? a : a + 1] += 8.0 * SD_PI * M[transposed ? 6 * b + a : 6 * a + b] * G[b];
-}
-
-/* Beyond the range D is what the tensor would be if the two did not overlap. */
-static void add_wide_pairs(sd_ewald_pairs *p)
-{
-  for (long l = 0; l < p->wides; l++) {
-    const int i = p->wide[2 * l], j = p->wide[2 * l + 1];
-    const double *own = p->row + 8 * (long) i, *other = p->row + 8 * (long) j;
-    const double r[3] = {own[0] - other[0], own[1] - other[1], own[2] - other[2]};
-    const double R2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], y = 1.0 / sqrt(R2);
-    const double ai = own[3], aj = other[3], m = (ai * ai + aj * aj) * y * y;
-    double M[36];
-    sd_tensor_grand(r, ai, aj, 1.0, M);
-    for (int a = 0; a < 3; a++)
-      for (int b = 0; b < 3; b++) {
-        const double hh = r[a] * r[b] * y * y, same = a == b;
-        /* e_abc r_c: F x r of component a from F_b */
-        const double cross = a == b ? 0.0 : ((b - a + 3) % 3 == 1 ? 1.0 : -1.0) * r[3 - a - b];
-        M[6 * a + b] -= y * ((1.0 + m / 3.0) * same + (1.0 - m) * hh) / (8.0 * SD_PI);
-        M[6 * a + b + 3] -= y * y * y * cross / (8.0 * SD_PI);
-        M[6 * (a + 3) + b] -= y * y * y * cross / (8.0 * SD_PI);
-        M[6 * (a + 3) + b + 3] -= y * y * y * (1.5 * hh - 0.5 * same) / (8.0 * SD_PI);
-      }
-    add_block(p, M, 0, j, i);
-    add_block(p, M, 1, i, j);
-  }
-}
-
 void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
                           double *u)
 {
@@ -394,7 +304,6 @@ void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const doubl
   const long step = m == 6 ? 8 : 4;
   memset(p->u, 0, sizeof(double) * (size_t) (step * (p->rows + 1)));
   p->kernels->near_part(&k);
-  add_wide_pairs(p);
   memset(u, 0, sizeof(double) * (size_t) m * (size_t) n);
   for (int i = 0; i < p->n; i++) {
     const long j = p->sphere[p->target[i]];

@@ -2,8 +2,7 @@
  * open space (sd_radial.h), and what that wave part is at no distance, for the sphere itself.
  *
  *   u_i = sum_j [ RPY_ij(r) - D_ij(r) ] F_j - D_ii(0) F_i         all spheres j within range of i,
- *                                                                images among them
- * Pairs that overlap beyond the range count too. */
+ *                                                                images among them */
 #ifndef SD_EWALD_PAIRS_H
 #define SD_EWALD_PAIRS_H
 
@@ -30,18 +29,14 @@ typedef struct {
   /* each pair once, by the row that comes first, and no two ghosts: [rows + 1] neighbours of a row */
   long *first;
   int *neighbor;
-  /* pairs of rows that overlap beyond the range: [2 wides] */
-  int wides, *wide;
-  /* sd_near_part's, in one block; before the products u holds the centres [3][room] */
-  double *row, *torque_row, *u;
-  /* capacities: spheres, neighbours, wide pairs */
-  int room, wide_room;
-  long neighbor_room;
+  /* sd_near_part's, in one block; before the products u holds the centres [3][rows] */
+  double *row, *torque_row, *u, *memory;
+  size_t room, sphere_room, target_room, first_room, neighbor_room;
   /* cells: [cells + 1] first row of each. Columns of cells near a cell: [3 columns] steps of x, of y,
    * and along z to either side; begin and end of the rows in them, [2 columns] */
   int *cell_first;
-  size_t cell_room;
-  int columns, column_room, *column, *range;
+  int columns, *column, *range;
+  size_t cell_room, column_room, range_room;
 } sd_ewald_pairs;
 
 /* Polynomials for a splitting. */

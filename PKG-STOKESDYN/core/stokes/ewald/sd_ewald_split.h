@@ -53,7 +53,7 @@ typedef struct {
   /* splitting, 1/length; its reference radius; where the near part ends, centre to centre; the
    * largest sphere */
   double xi, a_ref, range, largest;
-  /* how far ghosts must reach: range, or two of the largest spheres that overlap */
+  /* how far ghosts must reach: range, or that of images */
   double reach;
   /* grid points of the box each way; those of an open box are an eighth of the grid, which is
    * twice as large; no spacing is larger than this one, which an open box has */

@@ -1,6 +1,5 @@
 #include "sd_product.h"
 
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,13 +20,6 @@ void sd_packed_free(sd_packed *p)
 {
   free(p->memory);
   memset(p, 0, sizeof(*p));
-}
-
-/* Room for doubles on a cache line's border. */
-static double *reserve(sd_packed *p, long doubles)
-{
-  if (!sd_reserve(&p->memory, sizeof(double), (size_t) doubles + 8, &p->room)) return NULL;
-  return (double *) (((uintptr_t) p->memory + 63) & ~(uintptr_t) 63);
 }
 
 /* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2.
@@ -103,7 +95,7 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
   const int lanes = p->kernel->lanes;
   p->padded = (p->active + lanes - 1) / lanes * lanes;
   const long column = (p->padded + 7) / 8 * 8; /* whole cache lines */
-  double *next = reserve(p, (5 + 2 * width) * column);
+  double *next = sd_reserve_lines(&p->memory, (size_t) ((5 + 2 * width) * column), &p->room);
   if (!next) return SD_ENOMEMORY;
   double **columns[] = {&p->x, &p->y, &p->z, &p->a};
   for (int k = 0; k < 4; k++, next += column) *columns[k] = next;
@@ -139,9 +131,9 @@ sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_s
 {
   begin_packing(p, isa, law, s, n, width);
   const long rows = n + 1;
-  double *m = reserve(p, (width == 6 ? 18 : 11) * rows), *next = m + 8 * rows;
-  if (!m) return SD_ENOMEMORY;
-  p->row = m;
+  p->row = sd_reserve_lines(&p->memory, (size_t) ((width == 6 ? 18 : 11) * rows), &p->room);
+  if (!p->row) return SD_ENOMEMORY;
+  double *next = p->row + 8 * rows;
   if (width == 6) {
     p->torque_row = next;
     next += 4 * rows;

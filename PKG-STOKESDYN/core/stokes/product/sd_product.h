@@ -97,7 +97,7 @@ typedef struct {
   /* rows [8 (n+1)] x y z a, then w F, and [4 (n+1)] w T; the last takes the place of missing
    * neighbours */
   double *row, *torque_row;
-  void *memory;
+  double *memory;
   size_t room;
 } sd_packed;
 
