@@ -52,9 +52,10 @@ INLINE void store_columns(double *row, int columns, vec *sum)
 }
 
 INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
-                   double *sums, const sd_sph_near *near, sd_sph_kernel kernel, int many,
-                   sd_sph_level level, int volume)
+                   double *sums, const sd_sph_near *near, sd_sph_level level, sd_sph_kernel kernel,
+                   int many)
 {
+  const int volume = sd_sph_of_fluids(model);
   const vec zero = all(0.0), two = all(2.0);
   const int columns = level == SD_SPH_MIXTURE ? 32
       : level == SD_SPH_VELOCITY              ? 24
@@ -72,18 +73,16 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
     for (int at = 0; at < list->count[i]; at += LANES) {
       const int *j = list->neighbor[i] + at;
       if (at == list->own[i]) near->own[i] = (int) (last - near->neighbor[i]);
-      vec b[4], u[4];
-      gather(p->x4, 4, j, b);
+      const places x = from(p->x4, j, xi);
+      vec u[4], vd = zero;
       gather(p->v4, 4, j, u);
-      pairs_with_sums q = {.V = b[3], .rho_i = all(vi[3]), .rho_j = u[3]};
-      vec r2 = zero, vd = zero;
+      pairs_with_sums q = {.V = x.last, .rho_i = all(vi[3]), .rho_j = u[3]};
       for (int c = 0; c < 3; c++) {
-        q.d[c] = xi[c] - b[c];
+        q.d[c] = x.d[c];
         q.u[c] = vi[c] - u[c];
-        r2 += q.d[c] * q.d[c];
         vd += q.d[c] * q.u[c];
       }
-      const vec inv_h = COEFFICIENT(inv_h), r = root(r2), distance = smaller(r * inv_h, two);
+      const vec inv_h = COEFFICIENT(inv_h), r = root(x.r2), distance = smaller(r * inv_h, two);
       last += keep(last, j, bits(r * inv_h < two + near->margin * inv_h));
       q.g = COEFFICIENT(grad) * G(kernel, distance);
       vec w = MASSES * q.g * vd;
@@ -127,17 +126,12 @@ INLINE void diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
 
     for (int at = 0; at < list->count[i]; at += LANES) {
       const int *j = list->neighbor[i] + at;
-      vec b[4], gj[4];
-      gather(p->x4, 4, j, b);
+      const places x = from(p->x4, j, xi);
+      vec gj[4], along = zero;
       gather(p->order, columns, j, gj);
-      vec r2 = zero, along = zero;
-      for (int c = 0; c < 3; c++) {
-        const vec d = xi[c] - b[c];
-        r2 += d * d;
-        along += (gi[c] + gj[c]) * d;
-      }
-      const vec q = smaller(root(r2) * COEFFICIENT(inv_h), two);
-      vec g = COEFFICIENT(grad) * G(kernel, q) * b[3];
+      for (int c = 0; c < 3; c++) along += (gi[c] + gj[c]) * x.d[c];
+      const vec q = smaller(root(x.r2) * COEFFICIENT(inv_h), two);
+      vec g = COEFFICIENT(grad) * G(kernel, q) * x.last;
       if (p->phase) g = where(phases(p->phase, j) == same(phase), g, zero);
       sum -= COEFFICIENT(diffusion) * g * (2.0 * (gj[3] - gi[3]) + along);
     }

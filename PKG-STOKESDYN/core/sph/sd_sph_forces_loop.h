@@ -4,8 +4,8 @@
 
 #include "sd_sph_neighbours.h"
 
-/* What a scene asks for. In copies of a loop for the plain scheme all are constants; the others
- * branch on the terms of the force, the same way for every pair. many: classes. */
+/* What a scene asks for. Kernel, many (classes) and scheme are constants in a copy of a loop; on the
+ * terms of the force it branches, the same way for every pair. */
 typedef struct {
   sd_sph_kernel kernel;
   int many, artvisc, tenscorr, rates;
@@ -49,19 +49,15 @@ INLINE pairs_of_one meet(const sd_sph_particles *p, const particle *i, const int
   const int many = has.many;
   const sd_sph_coefficients *row = i->row;
   const vec mi = i->m;
-  pairs_of_one q = {.A_i = all(i->x[3]), .rho_i = all(i->v[3]), .masses = MASSES};
-  vec b[4];
-  gather(p->x4, 4, j, b);
-  for (int c = 0; c < 3; c++) {
-    q.d[c] = i->x[c] - b[c];
-    q.r2 += q.d[c] * q.d[c];
-  }
-  q.A_j = b[3];
+  const places x = from(p->x4, j, i->x);
+  pairs_of_one q = {.d = {x.d[0], x.d[1], x.d[2]}, .r2 = x.r2, .A_i = all(i->x[3]), .A_j = x.last,
+                    .rho_i = all(i->v[3]), .masses = MASSES};
   /* K and G end at q = 2 with the value 0: beyond, q = 2 will do. */
   q.inv_h = COEFFICIENT(inv_h);
   q.g = COEFFICIENT(grad) * G(has.kernel, smaller(root(q.r2) * q.inv_h, all(2.0)));
   q.m = mi * q.masses;
   if (has.artvisc || has.friction || has.rates || has.scheme != SD_SPH_PLAIN) {
+    vec b[4];
     gather(p->v4, 4, j, b);
     for (int c = 0; c < 3; c++) {
       q.v_j[c] = b[c];
@@ -141,10 +137,21 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
   }
 }
 
-/* Over a half list: what i gets is taken from j. */
-INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                     double *f4, double *each, terms has)
+/* The forces on i for the caller, `count` lanes of them. */
+INLINE double *hand_out(const vec F[3], int count, double *each)
 {
+  for (int k = 0; k < LANES && k < count; k++)
+    for (int c = 0; c < 3; c++) *each++ = F[c][k];
+  return each;
+}
+
+/* Over a half list: what i gets is taken from j. bare: there are no terms. */
+INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                     int rates, double *f4, double *each, int bare, sd_sph_scheme scheme,
+                     sd_sph_kernel kernel, int many)
+{
+  const terms has = {kernel, many, !bare && model->artvisc, !bare && model->tenscorr, rates,
+                     bare ? SD_SPH_INVISCID : model->friction, scheme};
   vec nearest = all(HUGE_VAL);
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
@@ -164,13 +171,10 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
         sum[3] += q.masses * w;
         F[3] = -of_i.m * w;
       }
-      if (each)
-        for (int k = 0; k < LANES && at + k < count; k++)
-          for (int c = 0; c < 3; c++) *each++ = F[c][k];
+      if (each) each = hand_out(F, count - at, each);
       take_from(f4, j, F);
     }
-    double *fi = f4 + 4 * (size_t) i;
-    store4(fi, load4(fi) + over_lanes(sum));
+    add4(f4 + 4 * (size_t) i, over_lanes(sum));
   }
   return least_of(nearest);
 }
@@ -205,8 +209,9 @@ INLINE vec corrected(const double *order, const vec own[8], const int j[LANES], 
 /* With correction, over a list both ways. Between fluid particles without friction B_j is not
  * needed, and B_i stands before the sum. */
 INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
-                     double *f4, double *each, terms has)
+                     double *f4, double *each, sd_sph_scheme scheme, sd_sph_kernel kernel, int many)
 {
+  const terms has = {kernel, many, model->artvisc, 0, 0, model->friction, scheme};
   vec nearest = all(HUGE_VAL);
   for (int i = 0; i < list->n; i++) {
     const particle of_i = particle_of(model, p, i, has);
@@ -232,9 +237,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
           slope[c] += weight * q.d[c];
         sum[c] += F[c];
       }
-      if (each)
-        for (int k = 0; k < LANES; k++)
-          for (int c = 0; c < 3; c++) *each++ = F[c][k];
+      if (each) each = hand_out(F, LANES, each);
     }
     vec turned[3];
     turn(own, slope, turned);

@@ -6,7 +6,7 @@
 
 /* The density rate of the plain scheme and of two fluids. The list of near pairs comes with it. */
 INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                  double *rate, const sd_sph_near *near, sd_sph_kernel kernel, int many, int volume)
+                  double *rate, const sd_sph_near *near, int volume, sd_sph_kernel kernel, int many)
 {
   const vec two = all(2.0);
   int *last = near->pool;
@@ -22,16 +22,11 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
     for (int at = 0; at < count; at += LANES) {
       int j[LANES];
       next(neighbor + at, count - at, list->mask, p->n, j);
-      vec b[4], u[4];
-      gather(p->x4, 4, j, b);
+      const places x = from(p->x4, j, xi);
+      vec u[4], vd = all(0.0);
       gather(p->v4, 4, j, u);
-      vec r2 = all(0.0), vd = all(0.0);
-      for (int c = 0; c < 3; c++) {
-        const vec d = xi[c] - b[c];
-        r2 += d * d;
-        vd += d * (vi[c] - u[c]);
-      }
-      const vec inv_h = COEFFICIENT(inv_h), distance = root(r2) * inv_h;
+      for (int c = 0; c < 3; c++) vd += x.d[c] * (vi[c] - u[c]);
+      const vec inv_h = COEFFICIENT(inv_h), distance = root(x.r2) * inv_h;
       vec w = COEFFICIENT(grad) * G(kernel, smaller(distance, two)) * vd;
       vec masses = MASSES, mine = mi;
       /* m_b w 2 rho_a / (rho_a + rho_b): the common part in w, the density in the factors. */
@@ -64,20 +59,14 @@ INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
     for (int at = 0; at < count; at += LANES) {
       int j[LANES];
       next(neighbor + at, count - at, list->mask, p->n, j);
-      vec b[4], qj[4];
-      gather(p->x4, 4, j, b);
+      vec qj[4];
       gather(q, 4, j, qj);
-      const vec dx = xi[0] - b[0], dy = xi[1] - b[1], dz = xi[2] - b[2];
-      const vec distance = smaller(root(dx * dx + dy * dy + dz * dz) * COEFFICIENT(inv_h), two);
-      const vec W = COEFFICIENT(weight) * K(kernel, distance);
+      const vec r = root(from(p->x4, j, xi).r2);
+      const vec W = COEFFICIENT(weight) * K(kernel, smaller(r * COEFFICIENT(inv_h), two));
       for (int c = 0; c < 4; c++) sum[c] += W * qj[c];
-      for (int k = 0; k < LANES; k++) {
-        double *row_j = sums + 4 * (size_t) j[k];
-        store4(row_j, load4(row_j) + W[k] * qi);
-      }
+      for (int k = 0; k < LANES; k++) add4(sums + 4 * (size_t) j[k], W[k] * qi);
     }
-    double *row_i = sums + 4 * (size_t) i;
-    store4(row_i, load4(row_i) + over_lanes(sum));
+    add4(sums + 4 * (size_t) i, over_lanes(sum));
   }
 }
 
@@ -102,13 +91,8 @@ INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
       next(neighbor + at, count - at, list->mask, p->n, j);
       const yes_no counts = phases(p->phase, j) == same(~p->phase[i]);
       if (!any(counts)) continue;
-      vec b[4], d[3], r2 = zero;
-      gather(p->x4, 4, j, b);
-      for (int c = 0; c < 3; c++) {
-        d[c] = xi[c] - b[c];
-        r2 += d[c] * d[c];
-      }
-      const vec distance = smaller(root(r2) * COEFFICIENT(inv_h), two);
+      const places x = from(p->x4, j, xi);
+      const vec distance = smaller(root(x.r2) * COEFFICIENT(inv_h), two);
       const vec W = where(counts, COEFFICIENT(weight) * K(kernel, distance), zero);
       if (is_wall) {
         vec qj[8];
@@ -116,7 +100,7 @@ INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
         gather(q + 4, 8, j, qj + 4);
         for (int c = 0; c < 2; c++) sum[c] += W * qj[c];
         for (int c = 0; c < 3; c++) {
-          sum[2 + c] += W * qj[2] * d[c];
+          sum[2 + c] += W * qj[2] * x.d[c];
           sum[5 + c] += W * qj[4 + c];
         }
       } else
@@ -125,15 +109,14 @@ INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
           double *row_j = sums + 8 * (size_t) j[k];
           for (int c = 0; c < 2; c++) row_j[c] += W[k] * qi[c];
           for (int c = 0; c < 3; c++) {
-            row_j[2 + c] -= W[k] * qi[2] * d[c][k];
+            row_j[2 + c] -= W[k] * qi[2] * x.d[c][k];
             row_j[5 + c] += W[k] * qi[4 + c];
           }
         }
     }
     if (!is_wall) continue;
-    double *row_i = sums + 8 * (size_t) i;
-    store4(row_i, load4(row_i) + over_lanes(sum));
-    store4(row_i + 4, load4(row_i + 4) + over_lanes(sum + 4));
+    add4(sums + 8 * (size_t) i, over_lanes(sum));
+    add4(sums + 8 * (size_t) i + 4, over_lanes(sum + 4));
   }
 }
 

@@ -30,6 +30,28 @@ INLINE void next(const int *neighbor, int left, int mask, int filler, int j[LANE
   for (int k = 0; k < LANES; k++) j[k] = k < left ? neighbor[k] & mask : filler;
 }
 
+/* From the neighbours j to the row x4 of i: d, its square, and their last column. */
+typedef struct {
+  vec d[3], r2, last;
+} places;
+INLINE places from(const double *x4, const int j[LANES], row4 xi)
+{
+  places at = {.r2 = all(0.0)};
+  vec b[4];
+  gather(x4, 4, j, b);
+  for (int c = 0; c < 3; c++) {
+    at.d[c] = xi[c] - b[c];
+    at.r2 += at.d[c] * at.d[c];
+  }
+  at.last = b[3];
+  return at;
+}
+
+INLINE void add4(double *row, row4 more)
+{
+  store4(row, load4(row) + more);
+}
+
 #define PHASE_OF(k, phase) phase[j[k]]
 INLINE yes_no phases(const int *phase, const int j[LANES])
 {
