@@ -223,7 +223,11 @@ size_t Keywords::choice(std::initializer_list<const char *> options)
 
 void Keywords::unknown() const
 {
-  fail("unknown keyword '" + key + "'");
+  // most often a value too many
+  const std::string after = seen.size() < 2
+      ? ""
+      : ": keyword " + seen[seen.size() - 2] + " before it has all of its values";
+  fail("unknown keyword '" + key + "'" + after);
 }
 
 void Keywords::refuse(const std::string &why) const

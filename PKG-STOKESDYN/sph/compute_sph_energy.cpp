@@ -1,7 +1,6 @@
 #include "compute_sph_energy.h"
 
 #include "fix_sph_energy.h"
-#include "keywords.h"
 #include "lammps_compat.h"
 #include "sph.h"
 
@@ -14,14 +13,13 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = "Compute sph/energy";
-
 ComputeSphEnergy::ComputeSphEnergy(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), memory_id(std::string(id) + "_SPH_ENERGY")
+    Compute(lmp, narg, arg), voice(lmp, "Compute sph/energy"),
+    memory_id(std::string(id) + "_SPH_ENERGY")
 {
-  Keywords(lmp, COMMAND, words(narg, arg), 3).parse({});
+  Keywords(lmp, voice.command, words(narg, arg), 3).parse({});
   if (Compat::fix(modify, memory_id))
-    fail(lmp, COMMAND + ": the fix ID " + memory_id + " is taken; give that fix another ID");
+    voice.fail("the fix ID " + memory_id + " is taken; give that fix another ID");
   modify->add_fix(memory_id + " " + group->names[igroup] + " " + FixSphEnergy::STYLE);
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
@@ -37,14 +35,14 @@ ComputeSphEnergy::~ComputeSphEnergy()
 
 void ComputeSphEnergy::init()
 {
-  Sph::require_pair(lmp, COMMAND);
+  Sph::require_pair(voice);
 }
 
 void ComputeSphEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
   Fix *fix = Compat::fix(modify, memory_id);
-  if (!fix) fail(lmp, COMMAND + ": the fix " + memory_id + " has been deleted; it is this compute's");
+  if (!fix) voice.fail("the fix " + memory_id + " has been deleted; it is this compute's");
   static_cast<FixSphEnergy *>(fix)->values(vector);
 }
 

@@ -3,9 +3,9 @@
 #ifndef SD_COMPUTE_SPH_ENERGY_H
 #define SD_COMPUTE_SPH_ENERGY_H
 
-#include "compute.h"
+#include "keywords.h"
 
-#include <string>
+#include "compute.h"
 
 namespace StokesDyn {
 
@@ -20,6 +20,7 @@ class ComputeSphEnergy : public LAMMPS_NS::Compute {
   void compute_vector() override;
 
  private:
+  const Voice voice;
   /* the fix that follows the run */
   const std::string memory_id;
 };

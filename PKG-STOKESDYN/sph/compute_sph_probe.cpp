@@ -2,7 +2,6 @@
 
 #include "fix_sph_pressure.h"
 #include "fixes.h"
-#include "keywords.h"
 #include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "sd_sph_probe.h"
@@ -17,12 +16,11 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string PROBE = "Compute sph/probe", SURFACE = "Compute sph/surface/atom";
-
-ComputeSphProbe::ComputeSphProbe(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
+ComputeSphProbe::ComputeSphProbe(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), voice(lmp, "Compute sph/probe")
 {
-  Sph::require_scene(lmp, PROBE);
-  Keywords in(lmp, PROBE, words(narg, arg), 3);
+  Sph::require_scene(voice);
+  Keywords in(lmp, voice.command, words(narg, arg), 3);
   while (in.more()) {
     Probe probe = {-1, {0.0, 0.0, 0.0}};
     if (in.positional("probe").choice({"pressure", "height"}) == 1)
@@ -44,7 +42,7 @@ ComputeSphProbe::~ComputeSphProbe()
 
 void ComputeSphProbe::init()
 {
-  pair = Sph::require_pair(lmp, PROBE);
+  pair = Sph::require_pair(voice);
 }
 
 double ComputeSphProbe::volume(int i) const
@@ -120,24 +118,25 @@ void ComputeSphProbe::compute_vector()
 
 // --- the free surface ---------------------------------------------------------------------------
 
-ComputeSphSurface::ComputeSphSurface(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
+ComputeSphSurface::ComputeSphSurface(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), voice(lmp, "Compute sph/surface/atom")
 {
-  Sph::require_scene(lmp, SURFACE);
-  Keywords(lmp, SURFACE, words(narg, arg), 3).parse({});
+  Sph::require_scene(voice);
+  Keywords(lmp, voice.command, words(narg, arg), 3).parse({});
   peratom_flag = 1;
   size_peratom_cols = 2;
 }
 
 void ComputeSphSurface::init()
 {
-  pair = Sph::require_pair(lmp, SURFACE);
+  pair = Sph::require_pair(voice);
 }
 
 void ComputeSphSurface::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
   if (!pair->moments(moments))
-    fail(lmp, SURFACE + ": there is no neighbour list yet; use it in a run, or after 'run 0'");
+    voice.fail("there is no neighbour list yet; use it in a run, or after 'run 0'");
   values.assign(2 * (size_t) (atom->nlocal + 1), 0.0);
   rows.resize(atom->nlocal + 1);
   for (int i = 0; i < atom->nlocal; i++) {

@@ -3,6 +3,8 @@
 #ifndef SD_COMPUTE_SPH_PROBE_H
 #define SD_COMPUTE_SPH_PROBE_H
 
+#include "keywords.h"
+
 #include "compute.h"
 
 #include <vector>
@@ -26,6 +28,7 @@ class ComputeSphProbe : public LAMMPS_NS::Compute {
     int axis;
     double x[3];
   };
+  const Voice voice;
   std::vector<Probe> probes;
   PairSph *pair = nullptr;
 
@@ -46,6 +49,7 @@ class ComputeSphSurface : public LAMMPS_NS::Compute {
   double memory_usage() override;
 
  private:
+  const Voice voice;
   PairSph *pair = nullptr;
   std::vector<double> moments, values;
   /* LAMMPS reads rows through these */

@@ -5,8 +5,6 @@
 #include "sd_sph_step.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
 #include "update.h"
 
 #include <algorithm>
@@ -18,8 +16,8 @@ using namespace StokesDyn;
 FixCheckTimestepSph::FixCheckTimestepSph(LAMMPS *lmp, int narg, char **arg) :
     SphFix(lmp, narg, arg)
 {
-  if (narg < 5) fail(lmp, command + ": the form is: check/timestep/sph N fraction [warn|stop]");
-  Keywords in(lmp, command, words(narg, arg), 3);
+  if (narg < 5) voice.fail("the form is: check/timestep/sph N fraction [warn|stop]");
+  Keywords in = keywords(narg, arg);
   nevery = in.positional("N").integer(1);
   fraction = in.positional("fraction").positive();
   stop = in.take("stop");
@@ -52,9 +50,8 @@ void FixCheckTimestepSph::end_of_step()
     if (!(atom->mask[i] & groupbit)) continue;
     const int type = atom->type[i];
     if (!pair->has_sound_speed(type))
-      fail_one(lmp,
-               command + ": type " + std::to_string(type) + " has no speed of sound: pair_coeff " +
-                   std::to_string(type) + " " + std::to_string(type) + " c VALUE");
+      voice.fail_one("type " + std::to_string(type) + " has no speed of sound: pair_coeff " +
+                     std::to_string(type) + " " + std::to_string(type) + " c VALUE");
     const double here = sd_sph_step_limit(pair->smoothing_length(type), pair->sound_speed(type),
                                           largest[i], pair->viscosity(type), atom->rho[i]);
     if (here < mine || (here == mine && atom->tag[i] < who)) {
@@ -72,9 +69,9 @@ void FixCheckTimestepSph::end_of_step()
   worst = (double) first;
   ratio = update->dt / limit;
   if (ratio <= fraction) return;
-  const std::string message = command + ": step " + std::to_string(update->ntimestep) +
-      ": the time step " + text(update->dt) + " is " + text(ratio) + " of the limit " +
-      text(limit) + " of atom " + std::to_string(first) + ", more than " + text(fraction);
-  if (stop) fail(lmp, message);
-  if (comm->me == 0) error->warning(FLERR, message);
+  const std::string message = "step " + std::to_string(update->ntimestep) + ": the time step " +
+      text(update->dt) + " is " + text(ratio) + " of the limit " + text(limit) + " of atom " +
+      std::to_string(first) + ", more than " + text(fraction);
+  if (stop) voice.fail(message);
+  voice.warn(message);
 }

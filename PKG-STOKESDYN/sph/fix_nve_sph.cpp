@@ -18,7 +18,7 @@ using namespace StokesDyn;
 
 FixNveSph::FixNveSph(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
 {
-  Keywords(lmp, command, words(narg, arg), 3).parse({});
+  keywords(narg, arg).parse({});
   time_integrate = 1;
   dynamic_group_allow = 1;
   restart_global = 1;
@@ -142,7 +142,7 @@ void FixNveSph::restart(char *buf)
 FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) :
     SphFix(lmp, narg, arg)
 {
-  Keywords(lmp, command, words(narg, arg), 3).parse({});
+  keywords(narg, arg).parse({});
   time_integrate = 1;
   dynamic_group_allow = 1;
 }

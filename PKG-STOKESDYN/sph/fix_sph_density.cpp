@@ -8,7 +8,7 @@ using namespace StokesDyn;
 FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **arg) :
     SphOutputFix(lmp, narg, arg)
 {
-  Keywords in(lmp, command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   in.parse({
       {"delta", [&] { delta = in.not_negative(); }},
       {"volume", [&] { volume = in.yes_no(); }},
@@ -19,16 +19,14 @@ FixSphDensityContinuity::FixSphDensityContinuity(LAMMPS *lmp, int narg, char **a
 FixSphDensitySummation::FixSphDensitySummation(LAMMPS *lmp, int narg, char **arg) :
     SphFix(lmp, narg, arg)
 {
-  Keywords(lmp, command, words(narg, arg), 3).parse({});
+  keywords(narg, arg).parse({});
 }
 
 FixSphDensityCorr::FixSphDensityCorr(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
 {
-  Keywords in(lmp, command, words(narg, arg), 3);
-  if (!in.next() || !in.is("shepard"))
-    fail(lmp, command + ": the form is: sph/density/corr shepard every N");
-  if (!in.next() || !in.is("every"))
-    fail(lmp, command + ": keyword every is missing: shepard every N");
+  Keywords in = keywords(narg, arg);
+  if (!in.next() || !in.is("shepard")) voice.fail("the form is: sph/density/corr shepard every N");
+  if (!in.next() || !in.is("every")) voice.fail("keyword every is missing: shepard every N");
   every = in.integer(1);
   in.parse({});
 }

@@ -33,7 +33,7 @@ FixSphOpening::FixSphOpening(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, na
 
 Keywords FixSphOpening::parse_place(int narg, char **arg)
 {
-  Keywords in(lmp, command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   const size_t face = in.positional("FACE").choice({"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"});
   axis = (int) face / 2;
   side = face % 2 ? 1 : -1;
@@ -51,16 +51,14 @@ int FixSphOpening::setmask()
 void FixSphOpening::init()
 {
   SphFix::init();
-  if (domain->triclinic) fail(lmp, command + ": not in a triclinic box");
+  if (domain->triclinic) voice.fail("not in a triclinic box");
   const double end = plane + side * width, edge = side > 0 ? domain->boxhi[axis] : domain->boxlo[axis];
   if (domain->boundary[axis][side > 0] != 1)
-    fail(lmp,
-         command + ": the box must have boundary f beyond the layer, along " +
-             std::string(1, (char) ('x' + axis)));
+    voice.fail("the box must have boundary f beyond the layer, along " +
+               std::string(1, (char) ('x' + axis)));
   if (side * (end - edge) > 1e-9 * width)
-    fail(lmp,
-         command + ": the layer from " + text(plane) + " to " + text(end) +
-             " does not fit into the box, which ends at " + text(edge));
+    voice.fail("the layer from " + text(plane) + " to " + text(end) +
+               " does not fit into the box, which ends at " + text(edge));
 }
 
 bool FixSphOpening::is_held(int i) const
@@ -78,9 +76,9 @@ void FixSphOpening::check_width()
   MPI_Allreduce(MPI_IN_PLACE, &h, 1, MPI_DOUBLE, MPI_MAX, world);
   const double needed = 2.0 * h + std::max(h, neighbor->skin);
   if (width < needed)
-    fail(lmp,
-         command + ": the width " + text(width) + " of the layer is too small: particles of the flow "
-                   "would see its end; it must be " + text(needed) + " or more");
+    voice.fail("the width " + text(width) +
+               " of the layer is too small: particles of the flow would see its end; it must be " +
+               text(needed) + " or more");
 }
 
 double FixSphOpening::compute_scalar()
@@ -110,8 +108,14 @@ FixSphInlet::FixSphInlet(LAMMPS *lmp, int narg, char **arg) :
 {
   Keywords in = parse_place(narg, arg);
   in.parse({
-      {"velocity", [&] { velocity = Field::parse(in); }},
-      {"gravity", [&] { for (Field &component : gravity) component = Field::parse(in); }},
+      {"velocity",
+       [&] {
+         velocity = Field::parse(in);
+       }},
+      {"gravity",
+       [&] {
+         gravity.parse(in);
+       }},
   });
   in.require(in.given("velocity"), "keyword velocity is required: the speed into the flow");
   keep({&marks}, nullptr, true);
@@ -120,17 +124,8 @@ FixSphInlet::FixSphInlet(LAMMPS *lmp, int narg, char **arg) :
 void FixSphInlet::init()
 {
   FixSphOpening::init();
-  velocity.init(lmp, command + ": keyword velocity");
-  for (Field &component : gravity) {
-    component.init(lmp, command + ": keyword gravity");
-    if (component.is_atom_style())
-      fail(lmp, command + ": keyword gravity: the variable must be of equal style: one for all");
-  }
-}
-
-void FixSphInlet::find_gravity()
-{
-  for (int d = 0; d < 3; d++) g[d] = gravity[d].evaluate(lmp);
+  velocity.init(lmp, voice.of("keyword velocity").command);
+  gravity.init(voice.of("keyword gravity"));
 }
 
 void FixSphInlet::find_speeds()
@@ -159,7 +154,7 @@ void FixSphInlet::setup_pre_exchange()
   }
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   if (all == 0)
-    fail(lmp, command + ": its layer is empty: fill it with particles of its group (create_atoms)");
+    voice.fail("its layer is empty: fill it with particles of its group (create_atoms)");
   find_speeds();
   move_layer();
 }
@@ -250,10 +245,9 @@ void FixSphInlet::pre_exchange()
   bigint mine = atom->nlocal;    // without const: LAMMPS's stubs of MPI take what is sent so
   MPI_Allreduce(&mine, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (atom->natoms != before + (bigint) all.size())
-    fail(lmp,
-         command + ": step " + std::to_string(update->ntimestep) +
-             ": a new particle would stand outside of the box: where the flow turns back, the box must "
-             "be longer than the layer");
+    voice.fail("step " + std::to_string(update->ntimestep) +
+               ": a new particle would stand outside of the box: where the flow turns back, the "
+               "box must be longer than the layer");
   if (atom->map_style != Atom::MAP_NONE) {
     atom->map_init();
     atom->map_set();
@@ -271,7 +265,7 @@ FixSphOutlet::FixSphOutlet(LAMMPS *lmp, int narg, char **arg) : FixSphOpening(lm
 void FixSphOutlet::init()
 {
   FixSphOpening::init();
-  pressure.init(lmp, command + ": keyword pressure");
+  pressure.init(lmp, voice.of("keyword pressure").command);
 }
 
 void FixSphOutlet::setup_pre_exchange()

@@ -4,7 +4,6 @@
 #ifndef SD_FIX_SPH_OPENING_H
 #define SD_FIX_SPH_OPENING_H
 
-#include "field.h"
 #include "sph_fix.h"
 
 #include <vector>
@@ -51,14 +50,10 @@ class FixSphInlet : public FixSphOpening {
   void pre_exchange() override;
   void end_of_step() override;
 
-  /* Of this step; all ranks. */
-  void find_gravity();
-  /* per mass */
-  const double *body_force() const { return g; }
+  BodyForce gravity;
 
  private:
-  Field velocity, gravity[3];
-  double g[3] = {0.0, 0.0, 0.0};
+  Field velocity;
   std::vector<double> speeds;
   /* state, place of the new particle, its speed, the step in which the old one left. A particle that
    * comes back into the layer from the flow has been replaced and stays so. */

@@ -10,9 +10,8 @@ using namespace StokesDyn;
 FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
     SphOutputFix(lmp, narg, arg)
 {
-  Keywords in(lmp, command, words(narg, arg), 3);
-  if (!in.next())
-    fail(lmp, command + ": the equation of state is missing: absolut, relativ or Tait");
+  Keywords in = keywords(narg, arg);
+  if (!in.next()) voice.fail("the equation of state is missing: absolut, relativ or Tait");
   if (in.is("absolut")) {
     state.kind = SD_SPH_ABSOLUT;
     state.B = in.positive();
@@ -26,7 +25,7 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
     in.unknown();
   in.parse({{"tension", [&] { state.no_tension = !in.yes_no(); }}});
   if (state.no_tension && state.kind == SD_SPH_ABSOLUT)
-    fail(lmp, command + ": keyword tension: absolut has no negative pressure; leave it out");
+    voice.fail("keyword tension: absolut has no negative pressure; leave it out");
   begin();
 }
 

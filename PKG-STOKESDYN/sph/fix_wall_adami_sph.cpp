@@ -15,40 +15,43 @@ using namespace StokesDyn;
 FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) :
     WallFix(lmp, narg, arg), motion(6)
 {
-  Sph::require_scene(lmp, command);
-  Keywords in(lmp, command, words(narg, arg), 3);
+  Sph::require_scene(voice);
+  Keywords in = keywords(narg, arg);
   in.parse({
-      {"gravity", [&] { for (Field &g : gravity) g = Field::parse(in); }},
-      {"slip", [&] { slip = in.yes_no(); }},
-      {"suction", [&] { suction = in.yes_no(); }},
-      {"own_acceleration", [&] { own_acceleration = in.yes_no(); }},
+      {"gravity",
+       [&] {
+         gravity.parse(in);
+       }},
+      {"slip",
+       [&] {
+         slip = in.yes_no();
+       }},
+      {"suction",
+       [&] {
+         suction = in.yes_no();
+       }},
+      {"own_acceleration",
+       [&] {
+         own_acceleration = in.yes_no();
+       }},
   });
   if (own_acceleration) keep({&motion}, nullptr, true);
 }
 
 void FixWallAdamiSph::init()
 {
-  Sph::require_pair(lmp, command);
-  for (Field &g : gravity) {
-    g.init(lmp, command + ": keyword gravity");
-    if (g.is_atom_style())
-      fail(lmp, command + ": keyword gravity: the variable must be of equal style: one for all");
-  }
-}
-
-void FixWallAdamiSph::find_gravity()
-{
-  for (int d = 0; d < 3; d++) g[d] = gravity[d].evaluate(lmp);
+  Sph::require_pair(voice);
+  gravity.init(voice.of("keyword gravity"));
 }
 
 const double *FixWallAdamiSph::body_force(int i, double tau)
 {
-  if (!own_acceleration) return g;
+  if (!own_acceleration) return gravity.now();
   const bool is_new = !motion.has(i);
   double *row = motion.give(i);
   if (is_new) std::copy_n(atom->v[i], 3, row);
   if (!update->setupflag) sd_sph_wall_acceleration(atom->v[i], update->dt, tau, row, row + 3);
-  for (int d = 0; d < 3; d++) b[d] = g[d] - row[3 + d];
+  for (int d = 0; d < 3; d++) b[d] = gravity.now()[d] - row[3 + d];
   return b;
 }
 

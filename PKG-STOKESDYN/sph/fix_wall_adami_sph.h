@@ -3,7 +3,6 @@
 #ifndef SD_FIX_WALL_ADAMI_SPH_H
 #define SD_FIX_WALL_ADAMI_SPH_H
 
-#include "field.h"
 #include "sph_fix.h"
 
 namespace StokesDyn {
@@ -16,17 +15,15 @@ class FixWallAdamiSph : public WallFix {
   void init() override;
   void post_force(int) override;
 
-  /* Of this step; all ranks. */
-  void find_gravity();
   /* Per mass, as wall particle i sees it: gravity, with own_acceleration less that of the particle,
    * a mean over the time tau; once a step. */
   const double *body_force(int i, double tau);
   bool slip = false, suction = true;
+  BodyForce gravity;
 
  private:
-  Field gravity[3];
   bool own_acceleration = false;
-  double g[3] = {0.0, 0.0, 0.0}, b[3] = {0.0, 0.0, 0.0};
+  double b[3] = {0.0, 0.0, 0.0};
   /* velocity at the last force, acceleration */
   AtomArray motion;
 };

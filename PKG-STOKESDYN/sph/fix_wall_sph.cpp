@@ -31,18 +31,17 @@ void FixRepulsiveWall::push(int i, const double normal[3], double r, double more
 void FixRepulsiveWall::outside(int i)
 {
   const double *x = atom->x[i];
-  fail_one(lmp,
-           command + ": step " + std::to_string(update->ntimestep) + ": atom " +
-               std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
-               text(x[2]) + " is on or behind the wall");
+  voice.fail_one("step " + std::to_string(update->ntimestep) + ": atom " +
+                 std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
+                 text(x[2]) + " is on or behind the wall");
 }
 
 // --- planes and the cylinder --------------------------------------------------------------------
 
 FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp, narg, arg)
 {
-  Keywords in(lmp, command, words(narg, arg), 3);
-  if (!in.next()) fail(lmp, command + ": the wall is missing: xplane, yplane, zplane or zcylinder");
+  Keywords in = keywords(narg, arg);
+  if (!in.next()) voice.fail("the wall is missing: xplane, yplane, zplane or zcylinder");
   if (in.is("zcylinder"))
     radius = in.positive();
   else if (in.is("xplane") || in.is("yplane") || in.is("zplane")) {
@@ -66,17 +65,15 @@ void FixWallSph::init()
 {
   const std::string kind = axis < 0 ? "zcylinder" : std::string(1, "xyz"[axis]) + "plane";
   if (axis >= 0 && domain->periodicity[axis])
-    fail(lmp,
-         command + ": keyword " + kind + ": the box is periodic in this direction; see: boundary");
+    voice.fail("keyword " + kind + ": the box is periodic in this direction; see: boundary");
   if (axis >= 0) return;
   const double apart = force->pair ? 0.5 * force->pair->cutforce : 0.0;
   for (int d = 0; d < 2; d++)
     if (domain->periodicity[d] &&
         (-radius - apart < domain->boxlo[d] || radius + apart > domain->boxhi[d]))
-      fail(lmp,
-           command + ": keyword " + kind + ": radius " + text(radius) +
-               " reaches through the periodic boundary in " + std::string(1, "xyz"[d]) +
-               ": it must stay half a support, " + text(apart) + ", away from it");
+      voice.fail("keyword " + kind + ": radius " + text(radius) +
+                 " reaches through the periodic boundary in " + std::string(1, "xyz"[d]) +
+                 ": it must stay half a support, " + text(apart) + ", away from it");
 }
 
 void FixWallSph::post_force(int /*vflag*/)
@@ -108,11 +105,10 @@ void FixWallSph::post_force(int /*vflag*/)
 FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
     FixRepulsiveWall(lmp, narg, arg)
 {
-  if (narg < 4) fail(lmp, command + ": the region is missing");
+  if (narg < 4) voice.fail("the region is missing");
   region_id = arg[3];
-  if (!Compat::region(domain, region_id))
-    fail(lmp, command + ": region '" + region_id + "' does not exist");
-  Keywords in(lmp, command, words(narg, arg), 3);
+  if (!Compat::region(domain, region_id)) voice.fail("region '" + region_id + "' does not exist");
+  Keywords in = keywords(narg, arg);
   in.next();
   r0 = in.positive();
   D = in.not_negative();
@@ -121,9 +117,9 @@ FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
 
 void FixWallRegionSph::init()
 {
-  pair = Sph::require_pair(lmp, command);
+  pair = Sph::require_pair(voice);
   region = Compat::region(domain, region_id);
-  if (!region) fail(lmp, command + ": region '" + region_id + "' does not exist");
+  if (!region) voice.fail("region '" + region_id + "' does not exist");
 }
 
 /* Repulsion, and the pressure of a mirror particle at the wall. */

@@ -5,7 +5,6 @@
 #include "fix_sph_shift.h"
 #include "fixes.h"
 #include "ghosts.h"
-#include "keywords.h"
 #include "restart_words.h"
 
 #include "atom.h"
@@ -23,11 +22,11 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-const std::string PairSph::COMMAND = "Pair style " + std::string(STYLE);
 const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
                                                        "beta", "deltap", "mu"};
 
-PairSph::PairSph(LAMMPS *lmp) : Pair(lmp), moved_box(lmp)
+PairSph::PairSph(LAMMPS *lmp) :
+    Pair(lmp), voice(lmp, "Pair style " + std::string(STYLE)), moved_box(lmp)
 {
   single_enable = 0;
   respa_enable = 0;
@@ -60,8 +59,8 @@ void PairSph::parse()
   for (double &value : defaults) value = NAN;
   model = sd_sph_model();
   shifts = corrects = false;
-  Keywords in(lmp, COMMAND, args);
-  if (!in.next()) fail(lmp, COMMAND + ": the kernel is missing: cubicspline or wendland, then h");
+  Keywords in(lmp, voice.command, args);
+  if (!in.next()) voice.fail("the kernel is missing: cubicspline or wendland, then h");
   const bool flat = in.is("cubicspline2d") || in.is("wendland2d");
   model.dimension = flat ? 2 : domain->dimension;
   if (in.is("cubicspline") || in.is("cubicspline2d"))
@@ -69,9 +68,8 @@ void PairSph::parse()
   else if (in.is("wendland") || in.is("wendland2d"))
     model.kernel = SD_SPH_WENDLAND;
   else
-    fail(lmp,
-         COMMAND + ": unknown kernel '" + args[0] +
-             "': it must be one of cubicspline, wendland, cubicspline2d, wendland2d");
+    voice.fail("unknown kernel '" + args[0] +
+               "': it must be one of cubicspline, wendland, cubicspline2d, wendland2d");
   defaults[H] = in.positive();
   in.parse({
       {"artVisc",
@@ -120,8 +118,8 @@ void PairSph::allocate()
 
 void PairSph::coeff(int narg, char **arg)
 {
-  const std::string command = "Pair_coeff of " + std::string(STYLE);
-  if (narg < 2) fail(lmp, command + ": the two atom types are missing");
+  const Voice of_coeff(lmp, "Pair_coeff of " + std::string(STYLE));
+  if (narg < 2) of_coeff.fail("the two atom types are missing");
   if (!allocated) allocate();
   int ilo, ihi, jlo, jhi;
   utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
@@ -129,7 +127,7 @@ void PairSph::coeff(int narg, char **arg)
 
   double values[NPARAMETERS];
   for (double &value : values) value = NAN;
-  Keywords in(lmp, command, words(narg, arg), 2);
+  Keywords in(lmp, of_coeff.command, words(narg, arg), 2);
   while (in.next()) {
     int k = 0;
     while (k < NPARAMETERS && !in.is(PARAMETER[k])) k++;
@@ -149,9 +147,8 @@ void PairSph::coeff(int narg, char **arg)
       count++;
     }
   if (count == 0)
-    fail(lmp,
-         command + ": no pair of types '" + arg[0] + " " + arg[1] +
-             "' (the first must not be larger than the second)");
+    of_coeff.fail(std::string("no pair of types '") + arg[0] + " " + arg[1] +
+                  "' (the first must not be larger than the second)");
 }
 
 double PairSph::mixed(int k, int i, int j) const
@@ -172,49 +169,43 @@ double PairSph::spacing(int itype) const
 {
   const double rho0 = pressures.size() == 1 ? pressures[0]->state.rho0 : 0.0;
   if (!(rho0 > 0.0) || atom->rmass)
-    fail(lmp,
-         COMMAND + ": shift needs the initial distance of particles: pair_coeff " +
-             std::to_string(itype) + " " + std::to_string(itype) +
-             " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass per type, "
-             "it is (mass/rho0)^(1/dimension))");
+    voice.fail("shift needs the initial distance of particles: pair_coeff " +
+               std::to_string(itype) + " " + std::to_string(itype) +
+               " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass per "
+               "type, it is (mass/rho0)^(1/dimension))");
   return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
 }
 
 double PairSph::init_one(int i, int j)
 {
-  const std::string who =
-      COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) + ": ";
+  const std::string types = "types " + std::to_string(i) + " and " + std::to_string(j);
+  const Voice of = voice.of(types);
   for (int k = 0; k < NPARAMETERS; k++) table[k][i][j] = table[k][j][i] = mixed(k, i, j);
   // the commands have seen to this; fix adapt has not
-  auto require = [&](bool holds, const std::string &what, double value, const char *rule) {
-    if (!holds) fail(lmp, what + "'" + text(value) + "' must be " + rule);
+  auto require = [&](bool holds, const Voice &who, const std::string &what, double value,
+                     const char *rule) {
+    if (!holds) who.fail("keyword " + what + "'" + text(value) + "' must be " + rule);
   };
-  if (model.artvisc)
-    require(model.eta >= 0.0, COMMAND + ": keyword artVisc: eta ", model.eta, ">= 0");
+  if (model.artvisc) require(model.eta >= 0.0, voice, "artVisc: eta ", model.eta, ">= 0");
   if (model.tenscorr)
-    require(model.epsilon >= 0.0, COMMAND + ": keyword tensCorr: epsilon ", model.epsilon, ">= 0");
-  if (model.friction)
-    require(defaults[MU] > 0.0, COMMAND + ": keyword viscosity: ", defaults[MU], "> 0");
+    require(model.epsilon >= 0.0, voice, "tensCorr: epsilon ", model.epsilon, ">= 0");
+  if (model.friction) require(defaults[MU] > 0.0, voice, "viscosity: ", defaults[MU], "> 0");
   for (int k = 0; k < NPARAMETERS; k++) {
     const double value = table[k][i][j];
     const bool may_vanish = k == ALPHA || k == BETA;
-    require(std::isnan(value) || value > 0.0 || (may_vanish && value == 0.0),
-            who + "keyword " + PARAMETER[k] + ": ", value, may_vanish ? ">= 0" : "> 0");
+    require(std::isnan(value) || value > 0.0 || (may_vanish && value == 0.0), of,
+            std::string(PARAMETER[k]) + ": ", value, may_vanish ? ">= 0" : "> 0");
   }
   const double support = 2.0 * table[H][i][j];
-  refuse_endless_ghosts(lmp, who + "the support 2 h = " + text(support), support);
+  refuse_endless_ghosts(lmp, of.command + ": the support 2 h = " + text(support), support);
+  const std::string cure = std::to_string(i) + " " + std::to_string(i) + " c VALUE";
   if (model.artvisc && std::isnan(table[C][i][j]))
-    fail(lmp,
-         who + "keyword artVisc needs the speed of sound: pair_coeff " + std::to_string(i) + " " +
-             std::to_string(i) + " c VALUE");
+    of.fail("keyword artVisc needs the speed of sound: pair_coeff " + cure);
   if (model.delta > 0.0 && std::isnan(table[C][i][j]))
-    fail(lmp,
-         who + "delta of fix sph/density/continuity needs the speed of sound: pair_coeff " +
-             std::to_string(i) + " " + std::to_string(i) + " c VALUE");
+    of.fail("delta of fix sph/density/continuity needs the speed of sound: pair_coeff " + cure);
   if ((model.tenscorr || shifts) && !(table[DELTAP][i][j] < support))
-    fail(lmp,
-         who + "deltap " + text(table[DELTAP][i][j]) +
-             " must be smaller than the support 2 h = " + text(support));
+    of.fail("deltap " + text(table[DELTAP][i][j]) +
+            " must be smaller than the support 2 h = " + text(support));
   return support;
 }
 
@@ -311,6 +302,6 @@ void PairSph::write_restart_settings(FILE *fp)
 
 void PairSph::read_restart_settings(FILE *fp)
 {
-  args = read_words(lmp, fp, COMMAND);
+  args = read_words(lmp, fp, voice.command);
   parse();
 }

@@ -77,7 +77,7 @@ class PairSph : public LAMMPS_NS::Pair {
  private:
   enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, NPARAMETERS };
   static const char *const PARAMETER[NPARAMETERS];
-  static const std::string COMMAND;    // for errors
+  const Voice voice;
 
   // settings
   std::vector<std::string> args;    // of pair_style, for restart files
@@ -159,8 +159,9 @@ class PairSph : public LAMMPS_NS::Pair {
   void wall_particles();
   void wall_row(int i, const double *sums_i, double *row);
   void held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row);
-  [[noreturn]] void no_density(const std::string &style, int i, const std::string &asked) const;
+  [[noreturn]] void no_density(const Voice &of, int i, const std::string &asked) const;
   bool is_wall(int i) const;
+  bool has_walls() const { return wall || has_ends(); }
   const FixSphPressure *state_of(int i) const;
   void pressures_of_all();
   void forces(bool rates);

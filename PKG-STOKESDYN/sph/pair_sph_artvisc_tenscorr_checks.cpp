@@ -27,12 +27,12 @@ void PairSph::look_at_densities(int n)
     if (!used(atom->type[i])) continue;
     const std::string who = at_step() + "atom " + std::to_string(atom->tag[i]);
     if (!(atom->mask[i] & pressure_bits))
-      fail_one(lmp, who + " is in the group of no fix sph/pressure");
+      voice.fail_one(who + " is in the group of no fix sph/pressure");
     const char *cure = update->setupflag ? " (set it with: set ... sph/rho)"
         : rho[i] == 0.0                  ? " (new? fix sph/pressure relativ and Tait give new atoms of "
                                            "their group the density rho0)"
                                          : " (a smaller time step?)";
-    fail_one(lmp, who + " has the density " + text(rho[i]) + "; it must be a number > 0" + cure);
+    voice.fail_one(who + " has the density " + text(rho[i]) + "; it must be a number > 0" + cure);
   }
 }
 
@@ -62,11 +62,9 @@ void PairSph::look_at_sound()
   if (all.type == 0) return;
   if (worst.type != all.type || worst.off != all.off) sound = 0.0;
   MPI_Allreduce(MPI_IN_PLACE, &sound, 1, MPI_DOUBLE, MPI_MAX, world);
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   COMMAND + ": the speed of sound of type " + std::to_string(all.type) + ", pair_coeff c " +
-                       text(sound_speed(all.type)) + ", is not that of its equation of state, " +
-                       text(sound) + ": time step limits, artVisc and delta use the one of pair_coeff");
+  voice.warn("the speed of sound of type " + std::to_string(all.type) + ", pair_coeff c " +
+             text(sound_speed(all.type)) + ", is not that of its equation of state, " +
+             text(sound) + ": time step limits, artVisc and delta use the one of pair_coeff");
 }
 
 /* Two fluids share a pressure at their interface, that for which the stiffer one is made. One that is
@@ -88,25 +86,22 @@ void PairSph::check_stiffness()
     if (!stiff || stiffness(fix) > stiffness(stiff)) stiff = fix;
   }
   if (!soft || stiffness(stiff) <= MOST * (1.0 + 1e-9) * stiffness(soft)) return;
-  fail(lmp,
-       COMMAND + ": correction yes with volume yes: the fluid of fix " + soft->id + " is " +
-           text(stiffness(stiff) / stiffness(soft)) + " times softer than that of fix " + stiff->id +
-           " (rho0 c^2 of their fixes sph/pressure); beyond " + text(MOST) +
-           " times it is torn: give it a larger B, for a speed of sound of " +
-           text(sqrt(stiffness(stiff) / MOST / soft->state.rho0)) + " or more");
+  voice.fail(std::string("correction yes with volume yes: the fluid of fix ") + soft->id + " is " +
+             text(stiffness(stiff) / stiffness(soft)) + " times softer than that of fix " +
+             stiff->id + " (rho0 c^2 of their fixes sph/pressure); beyond " + text(MOST) +
+             " times it is torn: give it a larger B, for a speed of sound of " +
+             text(sqrt(stiffness(stiff) / MOST / soft->state.rho0)) + " or more");
 }
 
 /* The pressure of a pair is that of one width: where widths meet, sums of the two sides differ. */
 void PairSph::look_at_widths()
 {
-  if (comm->me != 0) return;
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i + 1; j <= atom->ntypes; j++) {
       const double one = table[H][i][i], other = table[H][j][j];
       if (!(one > 0.0 && other > 0.0 && fabs(log(one / other)) > log(1.2))) continue;
-      error->warning(FLERR,
-                     COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) +
-                         " differ in h: where they meet, particles do not stay at rest");
+      voice.warn("types " + std::to_string(i) + " and " + std::to_string(j) +
+                 " differ in h: where they meet, particles do not stay at rest");
       return;
     }
 }
@@ -126,19 +121,17 @@ void PairSph::look_at_walls()
     const double *row = &likeness[2 * (size_t) i];
     if (!(atom->mask[i] & wall->groupbit) || row[1] == NOBODY) continue;
     if (row[1] == 0.0)
-      fail_one(lmp,
-               "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " +
-                   std::to_string(atom->tag[i]) +
-                   " meets no fluid of its own fix sph/pressure, so with volume yes it has no "
-                   "pressure; put the wall into the group of the fix sph/pressure of its fluid");
+      wall->voice.fail_one(
+          "atom " + std::to_string(atom->tag[i]) +
+          " meets no fluid of its own fix sph/pressure, so with volume yes it has no "
+          "pressure; put the wall into the group of the fix sph/pressure of its fluid");
     if (row[0] < -log(1.1)) other_mass = std::min(other_mass, atom->tag[i]);
   }
   MPI_Allreduce(MPI_IN_PLACE, &other_mass, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  if (other_mass < MAXTAGINT && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " +
-                       std::to_string(other_mass) +
-                       " does not have the mass of the fluid in front of it (10 %): walls need the "
-                       "fluid's mass and spacing; a light or heavy body gets its mass by fix rigid ... "
-                       "infile");
+  if (other_mass < MAXTAGINT)
+    wall->voice.warn(
+        "atom " + std::to_string(other_mass) +
+        " does not have the mass of the fluid in front of it (10 %): walls need the "
+        "fluid's mass and spacing; a light or heavy body gets its mass by fix rigid ... "
+        "infile");
 }

@@ -30,14 +30,14 @@ using namespace StokesDyn;
 
 void PairSph::init_style()
 {
-  Sph::require_scene(lmp, COMMAND);
+  Sph::require_scene(voice);
   if (update->whichflag == 2)
-    fail(lmp, COMMAND + " cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
+    voice.fail("cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
   if (strncmp(update->integrate_style, "respa", 5) == 0)
-    fail(lmp, COMMAND + " cannot be used with run_style respa");
+    voice.fail("cannot be used with run_style respa");
   if (force->pair_match(STYLE, 1) != this)
-    fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
-  if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
+    voice.fail("may appear only once in a hybrid pair style");
+  if (atom->tag_enable == 0) voice.fail("requires atom IDs");
   find_fixes();
   find_integrators();
   choose_scheme();
@@ -50,11 +50,10 @@ void PairSph::init_style()
   // As comm_modify vel yes: each pair must see the same velocities on both sides.
   if (needs_velocity && !comm->ghost_velocity) comm->ghost_velocity = asked_for_velocities = 1;
   if (neighbor->skin <= 0.0)
-    fail(lmp, COMMAND + ": command neighbor: a skin of 0 is too small; a tenth of h is usual");
-  if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1 && comm->me == 0)
-    error->warning(FLERR,
-                   COMMAND + ": with neigh_modify check no LAMMPS does not notice when the neighbour list "
-                             "is outdated");
+    voice.fail("command neighbor: a skin of 0 is too small; a tenth of h is usual");
+  if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1)
+    voice.warn(
+        "with neigh_modify check no LAMMPS does not notice when the neighbour list is outdated");
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me, !shared);
   around_of = -1;
@@ -63,8 +62,7 @@ void PairSph::init_style()
 template <class Style> Style *PairSph::only(const char *otherwise)
 {
   const auto found = fixes_of<Style>(lmp);
-  if (found.size() > 1)
-    fail(lmp, COMMAND + ": more than one fix " + Style::STYLE + otherwise);
+  if (found.size() > 1) voice.fail(std::string("more than one fix ") + Style::STYLE + otherwise);
   return found.empty() ? nullptr : found[0];
 }
 
@@ -72,17 +70,15 @@ void PairSph::find_fixes()
 {
   pressures = fixes_of<FixSphPressure>(lmp);
   if (pressures.empty())
-    fail(lmp, COMMAND + ": no fix sph/pressure: it sets the pressure that belongs to a density");
+    voice.fail("no fix sph/pressure: it sets the pressure that belongs to a density");
   continuity = only<FixSphDensityContinuity>(": only one can set the density");
   summation = only<FixSphDensitySummation>(": only one can set the density");
   if (!continuity && !summation)
-    fail(lmp,
-         COMMAND + ": no fix sph/density/continuity or sph/density/summation: one of them sets "
-                   "the density");
+    voice.fail(
+        "no fix sph/density/continuity or sph/density/summation: one of them sets the density");
   if (continuity && summation)
-    fail(lmp,
-         COMMAND + ": fix sph/density/continuity and fix sph/density/summation: only one can set "
-                   "the density");
+    voice.fail(
+        "fix sph/density/continuity and fix sph/density/summation: only one can set the density");
   filter = only<FixSphDensityCorr>("");
   inlets = fixes_of<FixSphInlet>(lmp);
   outlets = fixes_of<FixSphOutlet>(lmp);
@@ -90,7 +86,7 @@ void PairSph::find_fixes()
   std::set<std::string> properties;
   for (const auto *fix : fixes_of<FixPropertyGlobal>(lmp))
     if (!properties.insert(fix->property).second)
-      fail(lmp, COMMAND + ": more than one fix property/global gives " + fix->property);
+      voice.fail("more than one fix property/global gives " + fix->property);
 }
 
 /* Who advances the density, and who sets vest. */
@@ -103,14 +99,11 @@ void PairSph::find_integrators()
   const bool ours = !moving.empty() || !stationary.empty(),
              others = !theirs.empty() || !their_stationary.empty();
   if (ours && others)
-    fail(lmp,
-         COMMAND + ": fix nve/sph and fix " + (theirs.empty() ? "sph/stationary" : "sph") +
-             " cannot be mixed: they advance the density at different times; use nve/sph and "
-             "nve/sph/stationary");
+    voice.fail(std::string("fix nve/sph and fix ") + (theirs.empty() ? "sph/stationary" : "sph") +
+               " cannot be mixed: they advance the density at different times; use nve/sph and "
+               "nve/sph/stationary");
   if (continuity && !ours && !others && update->whichflag == 1 && update->nsteps > 0)
-    fail(lmp,
-         "Fix " + std::string(FixSphDensityContinuity::STYLE) +
-             ": nothing advances the density; use fix nve/sph");
+    continuity->voice.fail("nothing advances the density; use fix nve/sph");
   leapfrog = continuity && ours;
   leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
   own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
@@ -121,9 +114,9 @@ void PairSph::choose_scheme()
 {
   model.delta = continuity && leapfrog ? continuity->delta : 0.0;
   const bool volume = continuity && continuity->volume;
-  const std::string what = COMMAND + ": " + (corrects ? "correction" : "shift") + " yes ";
+  const std::string what = std::string(corrects ? "correction" : "shift") + " yes ";
   auto refuse = [&](bool when, const std::string &why) {
-    if (when) fail(lmp, what + why);
+    if (when) voice.fail(what + why);
   };
   if (shifts) {
     refuse(!leapfrog || !fixes_of(lmp, "sph").empty(),
@@ -140,9 +133,8 @@ void PairSph::choose_scheme()
            "fix wall/adami/sph or shift yes");
   }
   if (volume && (!leapfrog || model.tenscorr))
-    fail(lmp,
-         COMMAND + ": volume yes of fix sph/density/continuity needs fix nve/sph, and does not go "
-                   "with tensCorr");
+    voice.fail("volume yes of fix sph/density/continuity needs fix nve/sph, and does not go with "
+               "tensCorr");
   model.scheme = volume && corrects ? SD_SPH_VOLUME_CORRECTION
       : volume && shifts ? SD_SPH_VOLUME_SHIFT
       : volume          ? SD_SPH_VOLUME
@@ -153,9 +145,8 @@ void PairSph::choose_scheme()
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
   // forces on ghosts, which positions times forces would need, are not summed
   no_virial_fdotr_compute = !shared;
-  const bool walls = wall || !inlets.empty() || !outlets.empty();
-  comm_forward = std::max(sd_sph_columns(&model), walls ? 4 : 1);
-  comm_reverse = walls ? 8 : 6;
+  comm_forward = std::max(sd_sph_columns(&model), has_walls() ? 4 : 1);
+  comm_reverse = has_walls() ? 8 : 6;
 }
 
 void PairSph::check_groups()
@@ -163,18 +154,14 @@ void PairSph::check_groups()
   pressure_bits = 0;
   for (const auto *fix : pressures) {
     if (const bigint both = in_both(pressure_bits, fix->groupbit))
-      fail(lmp,
-           COMMAND + ": atom " + std::to_string(both) +
-               " is in the groups of two fixes sph/pressure");
+      voice.fail("atom " + std::to_string(both) + " is in the groups of two fixes sph/pressure");
     pressure_bits |= fix->groupbit;
   }
   if (!wall) return;
   for (const auto *fix : Sph::integrators(lmp))
     if (const bigint both = in_both(wall->groupbit, fix->groupbit))
-      fail(lmp,
-           "Fix " + std::string(FixWallAdamiSph::STYLE) + ": atom " + std::to_string(both) +
-               " of its group is also integrated by fix " + fix->id +
-               ", so the wall would flow; give that fix the group of the fluid");
+      wall->voice.fail("atom " + std::to_string(both) + " of its group is also integrated by fix " +
+                       fix->id + ", so the wall would flow; give that fix the group of the fluid");
 }
 
 /* Open ends move and delete particles of the fluid that nve/sph integrates. */
@@ -183,17 +170,15 @@ void PairSph::check_openings()
   std::vector<FixSphOpening *> all(inlets.begin(), inlets.end());
   all.insert(all.end(), outlets.begin(), outlets.end());
   for (const auto *fix : all) {
-    const std::string who = "Fix " + std::string(fix->style) + ": ";
-    if (!leapfrog) fail(lmp, who + "needs fix sph/density/continuity and fix nve/sph");
+    if (!leapfrog) fix->voice.fail("needs fix sph/density/continuity and fix nve/sph");
     bigint mine = 0, other;
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & fix->groupbit) && (!(atom->mask[i] & own_vest_bits) || is_wall(i)))
         mine = std::max(mine, (bigint) atom->tag[i]);
     MPI_Allreduce(&mine, &other, 1, MPI_LMP_BIGINT, MPI_MAX, world);
     if (other)
-      fail(lmp,
-           who + "atom " + std::to_string(other) +
-               " of its group is not moved by fix nve/sph: give it the group of the fluid");
+      fix->voice.fail("atom " + std::to_string(other) +
+                      " of its group is not moved by fix nve/sph: give it the group of the fluid");
   }
 }
 
@@ -212,11 +197,9 @@ bigint PairSph::in_both(int bits, int more_bits)
 void PairSph::setup()
 {
   if (needs_velocity && domain->deform_vremap && !fixes_of(lmp, "sph").empty())
-    fail(lmp,
-         COMMAND + ": fix deform with remap v: fix sph extrapolates velocities before they are "
-                   "shifted at the faces that glide; use fix nve/sph");
+    voice.fail("fix deform with remap v: fix sph extrapolates velocities before they are shifted "
+               "at the faces that glide; use fix nve/sph");
   if (domain->deform_vremap && (model.scheme == SD_SPH_SHIFT || model.scheme == SD_SPH_VOLUME_SHIFT))
-    fail(lmp,
-         COMMAND + ": fix deform with remap v: the momentum that shift carries is not the same on "
-                   "both sides of a face that glides; use correction yes");
+    voice.fail("fix deform with remap v: the momentum that shift carries is not the same on both "
+               "sides of a face that glides; use correction yes");
 }

@@ -34,17 +34,16 @@ static double *rows(double **array)
 
 std::string PairSph::at_step() const
 {
-  return COMMAND + ": step " + std::to_string(update->ntimestep) + ": ";
+  return "step " + std::to_string(update->ntimestep) + ": ";
 }
 
 void PairSph::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   check_list();
-  if (continuity && !moved_box.follow(atom->rho) && comm->me == 0)
-    error->warning(FLERR,
-                   COMMAND + ": the box has changed since the last run and the particles were moved "
-                             "otherwise: their densities are left as they are (set ... sph/rho)");
+  if (continuity && !moved_box.follow(atom->rho))
+    voice.warn("the box has changed since the last run and the particles were moved otherwise: "
+               "their densities are left as they are (set ... sph/rho)");
   look_at_densities(atom->nlocal);
   prepare();
   if (update->setupflag) {
@@ -60,7 +59,7 @@ void PairSph::compute(int eflag, int vflag)
   if (filter && !update->setupflag && update->ntimestep % filter->every == 0)
     sum_densities(filter->groupbit, true);
   pressures_of_all();
-  if (wall || !inlets.empty() || !outlets.empty()) wall_particles();
+  if (has_walls()) wall_particles();
   forces(continuity && !leapfrog);
 
   for (auto *fix : pressures) fix->output(P.data());
@@ -79,10 +78,10 @@ void PairSph::check_list()
   if (neighbor->ago != 0 || neighbor->ndanger == dangerous_builds) return;
   dangerous_builds = neighbor->ndanger;
   if (std::max(neighbor->every, neighbor->delay) <= 1) return;
-  fail(lmp,
-       at_step() + "particles moved more than half the neighbour skin " + text(neighbor->skin) +
-           " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, or a "
-           "larger skin");
+  voice.fail(at_step() + "particles moved more than half the neighbour skin " +
+             text(neighbor->skin) +
+             " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, or a "
+             "larger skin");
 }
 
 /* Model, list and particles for the core. */
@@ -116,7 +115,7 @@ void PairSph::prepare()
   model.pair = coefficients.data();
   raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
   pairs = raw;
-  if (!wall && !state && inlets.empty() && outlets.empty() && !sd_sph_of_fluids(&model)) return;
+  if (!has_walls() && !state && !sd_sph_of_fluids(&model)) return;
   phases.assign(n + 1, 0);
   for (int i = 0; i < n; i++) {
     if (sd_sph_of_fluids(&model))
@@ -146,9 +145,8 @@ bool PairSph::types_are_alike()
       sd_sph_coefficients &c = coefficients[(size_t) (i - 1) * ntypes + j - 1];
       c = sd_sph_coefficients_of(&model, &given_values);
       if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
-        fail(lmp,
-             COMMAND + ": types " + std::to_string(i) + " and " + std::to_string(j) +
-                 ": h has grown beyond the neighbour list");
+        voice.fail("types " + std::to_string(i) + " and " + std::to_string(j) +
+                   ": h has grown beyond the neighbour list");
       if (!first) {
         first = &c;
         particles.mass = atom->rmass ? 0.0 : atom->mass[i];
@@ -245,13 +243,13 @@ void PairSph::close_sums()
                                   least,        rate.data(), order.data(), kick.data()};
   const int stops = sd_sph_close(&model, &particles, &closing);
   if (stops >= 0)
-    fail_one(lmp,
-             at_step() + "keyword correction: atom " + std::to_string(atom->tag[stops]) +
-                 " is at a free surface: the smallest eigenvalue of its matrix is below " +
-                 text(least) + "; use shift yes, which is for free surfaces" +
-                 (update->setupflag ? "" : "; inside the fluid: start from a lattice disturbed by "
-                                           "displace_atoms, since from an exact one rows are drawn "
-                                           "apart"));
+    voice.fail_one(at_step() + "keyword correction: atom " + std::to_string(atom->tag[stops]) +
+                   " is at a free surface: the smallest eigenvalue of its matrix is below " +
+                   text(least) + "; use shift yes, which is for free surfaces" +
+                   (update->setupflag
+                        ? ""
+                        : "; inside the fluid: start from a lattice disturbed by displace_atoms, "
+                          "since from an exact one rows are drawn apart"));
   if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
   forward(order.data(), columns);
   std::fill_n(&order[columns * (size_t) n], columns, 0.0);
@@ -395,12 +393,11 @@ void PairSph::coincident()
     for (int m = 0; m < pairs.count[i]; m++) {
       const int j = pairs.neighbor[i][m] & pairs.mask;
       if (memcmp(atom->x[i], atom->x[j], 3 * sizeof(double)) == 0)
-        fail_one(lmp,
-                 at_step() + "atoms " + std::to_string(atom->tag[i]) + " and " +
-                     std::to_string(atom->tag[j]) + " are at one place");
+        voice.fail_one(at_step() + "atoms " + std::to_string(atom->tag[i]) + " and " +
+                       std::to_string(atom->tag[j]) + " are at one place");
     }
   }
-  fail_one(lmp, at_step() + "two atoms are at one place");
+  voice.fail_one(at_step() + "two atoms are at one place");
 }
 
 // --- for other fixes ----------------------------------------------------------------------------

@@ -47,7 +47,7 @@ void PairSph::wall_row(int i, const double *sums_i, double *row)
   const double sound = sd_sph_speed_of_sound(&eos->state, row[0]);
   const double *b = wall->body_force(i, 2.0 * smoothing_length(atom->type[i]) / sound);
   const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], b, row);
-  if (row[0] == 0.0) no_density(FixWallAdamiSph::STYLE, i, text(asked) + " that the fluid asks for");
+  if (row[0] == 0.0) no_density(wall->voice, i, text(asked) + " that the fluid asks for");
 }
 
 /* Particles of an inlet have the pressure of the fluid before them, as walls, and their own
@@ -57,26 +57,24 @@ void PairSph::held_row(int i, const double *sums_i, const std::vector<const doub
   const FixSphPressure *eos = state_of(i);
   if (auto *inlet = holder(inlets, atom, i)) {
     const sd_sph_wall how = {&eos->state, 0, 1};
-    const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], inlet->body_force(), row);
+    const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], inlet->gravity.now(), row);
     std::fill_n(row + 1, 3, 0.0);
-    if (row[0] == 0.0) no_density(FixSphInlet::STYLE, i, text(asked) + " that the fluid asks for");
+    if (row[0] == 0.0) no_density(inlet->voice, i, text(asked) + " that the fluid asks for");
     return;
   }
   const auto *outlet = holder(outlets, atom, i);
   const size_t k = std::find(outlets.begin(), outlets.end(), outlet) - outlets.begin();
   row[0] = sd_sph_density_of(&eos->state, given[k][i]);
   std::fill_n(row + 1, 3, 0.0);
-  if (row[0] == 0.0) no_density(FixSphOutlet::STYLE, i, text(given[k][i]) + " that is asked of it");
+  if (row[0] == 0.0) no_density(outlet->voice, i, text(given[k][i]) + " that is asked of it");
 }
 
-void PairSph::no_density(const std::string &style, int i, const std::string &asked) const
+void PairSph::no_density(const Voice &of, int i, const std::string &asked) const
 {
   const FixSphPressure *eos = state_of(i);
-  fail_one(lmp,
-           "Fix " + style + ": step " + std::to_string(update->ntimestep) + ": atom " +
-               std::to_string(atom->tag[i]) + ": the pressure " + asked + " is not above " +
-               text(sd_sph_least_pressure(&eos->state)) + ", the lowest of fix " + eos->id +
-               ": use a larger B or P0, if gravity is right");
+  of.fail_one(at_step() + "atom " + std::to_string(atom->tag[i]) + ": the pressure " + asked +
+              " is not above " + text(sd_sph_least_pressure(&eos->state)) + ", the lowest of fix " +
+              eos->id + ": use a larger B or P0, if gravity is right");
 }
 
 /* What the particles of walls and open ends take from the fluid before them. Their density becomes the
@@ -93,8 +91,8 @@ void PairSph::wall_particles()
   reverse(sums.data(), 8);
 
   wall_rows.resize(4 * (size_t) (n + 1));
-  if (wall) wall->find_gravity();
-  for (auto *inlet : inlets) inlet->find_gravity();
+  if (wall) wall->gravity.find(lmp);
+  for (auto *inlet : inlets) inlet->gravity.find(lmp);
   std::vector<const double *> given;
   for (auto *outlet : outlets) given.push_back(outlet->find_pressures());
   for (int i = 0; i < atom->nlocal; i++) {

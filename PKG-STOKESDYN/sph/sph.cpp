@@ -1,6 +1,5 @@
 #include "sph.h"
 
-#include "keywords.h"
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "atom.h"
@@ -15,27 +14,24 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 namespace Sph {
 
-  void require_scene(LAMMPS *lmp, const std::string &command)
+  void require_scene(const Voice &voice)
   {
+    const LAMMPS *lmp = voice.lmp;
     if (!lmp->atom->rho_flag || !lmp->atom->vest_flag)
-      fail(lmp,
-           command +
-               ": the atom style has no density; use atom_style sph, which needs a LAMMPS with the "
-               "SPH package");
+      voice.fail("the atom style has no density; use atom_style sph, which needs a LAMMPS with the "
+                 "SPH package");
     if (lmp->force->ftm2v != 1.0)
-      fail(lmp,
-           command + ": units " + lmp->update->unit_style +
-               ": force is not mass x acceleration there, and pressure and density have units of "
-               "their own; use units lj, si, cgs, micro or nano");
+      voice.fail(std::string("units ") + lmp->update->unit_style +
+                 ": force is not mass x acceleration there, and pressure and density have units of "
+                 "their own; use units lj, si, cgs, micro or nano");
   }
 
-  PairSph *require_pair(LAMMPS *lmp, const std::string &command)
+  PairSph *require_pair(const Voice &voice)
   {
-    auto *pair = lmp->force->pair
-        ? static_cast<PairSph *>(lmp->force->pair_match(PairSph::STYLE, 1))
-        : nullptr;
-    if (!pair) fail(lmp, command + ": there is no pair_style " + PairSph::STYLE);
-    return pair;
+    Pair *found = voice.lmp->force->pair ? voice.lmp->force->pair_match(PairSph::STYLE, 1)
+                                         : nullptr;
+    if (!found) voice.fail("there is no pair_style " + std::string(PairSph::STYLE));
+    return static_cast<PairSph *>(found);
   }
 
   std::vector<Fix *> integrators(LAMMPS *lmp)

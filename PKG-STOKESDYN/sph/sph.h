@@ -2,11 +2,11 @@
 #ifndef SD_SPH_H
 #define SD_SPH_H
 
+#include "keywords.h"
+
 #include "fix.h"
-#include "lammps.h"
 
 #include <new>
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
@@ -33,10 +33,10 @@ namespace Sph {
   /* Fails unless the atom style has the density and the velocity that SPH works with, and force is
    * mass times acceleration in the units of the scene, pressure mass / (length time^2) and density
    * mass / length^3. */
-  void require_scene(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  void require_scene(const Voice &voice);
 
   /* The pair style of the scene; fails without one. */
-  PairSph *require_pair(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  PairSph *require_pair(const Voice &voice);
 
   /* Those that move particles by forces: all that integrate in time but fix move and rigid
    * bodies. */

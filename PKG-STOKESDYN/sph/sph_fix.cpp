@@ -8,14 +8,19 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), command("Fix " + std::string(style))
+    RowsFix(lmp, narg, arg), voice(lmp, "Fix " + std::string(style))
 {
-  Sph::require_scene(lmp, command);
+  Sph::require_scene(voice);
 }
 
 void SphFix::init()
 {
-  pair = Sph::require_pair(lmp, command);
+  pair = Sph::require_pair(voice);
+}
+
+Keywords SphFix::keywords(int narg, char **arg) const
+{
+  return Keywords(lmp, voice.command, words(narg, arg), 3);
 }
 
 void SphOutputFix::begin()
@@ -38,8 +43,26 @@ void SphOutputFix::output(const double *numbers)
   for (int i = 0; i < atom->nlocal; i++) *values.give(i) = numbers[i];
 }
 
+void BodyForce::parse(Keywords &in)
+{
+  for (Field &part : parts) part = Field::parse(in);
+}
+
+void BodyForce::init(const Voice &of)
+{
+  for (Field &part : parts) {
+    part.init(of.lmp, of.command);
+    if (part.is_atom_style()) of.fail("the variable must be of equal style: one for all");
+  }
+}
+
+void BodyForce::find(LAMMPS *lmp)
+{
+  for (int d = 0; d < 3; d++) g[d] = parts[d].evaluate(lmp);
+}
+
 WallFix::WallFix(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), command("Fix " + std::string(style))
+    RowsFix(lmp, narg, arg), voice(lmp, "Fix " + std::string(style))
 {
   dynamic_group_allow = 1;
   vector_flag = 1;
@@ -51,6 +74,11 @@ WallFix::WallFix(LAMMPS *lmp, int narg, char **arg) :
 int WallFix::setmask()
 {
   return FixConst::POST_FORCE;
+}
+
+Keywords WallFix::keywords(int narg, char **arg) const
+{
+  return Keywords(lmp, voice.command, words(narg, arg), 3);
 }
 
 double WallFix::compute_vector(int k)

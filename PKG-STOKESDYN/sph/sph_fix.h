@@ -2,9 +2,8 @@
 #ifndef SD_SPH_FIX_H
 #define SD_SPH_FIX_H
 
+#include "field.h"
 #include "rows_fix.h"
-
-#include <string>
 
 namespace StokesDyn {
 
@@ -17,8 +16,11 @@ class SphFix : public RowsFix {
   int setmask() override { return 0; }
   void init() override;
 
+  const Voice voice;
+
  protected:
-  std::string command;
+  Keywords keywords(int narg, char **arg) const;
+
   PairSph *pair = nullptr;
 };
 
@@ -40,6 +42,21 @@ class SphOutputFix : public SphFix {
   AtomArray values;
 };
 
+/* A force per mass on all: x y z, each a number or a variable of equal style. */
+class BodyForce {
+ public:
+  void parse(Keywords &in);
+  /* of: the keyword that gives it */
+  void init(const Voice &of);
+  /* Of this step; all ranks. */
+  void find(LAMMPS_NS::LAMMPS *lmp);
+  const double *now() const { return g; }
+
+ private:
+  Field parts[3];
+  double g[3] = {0.0, 0.0, 0.0};
+};
+
 /* A wall: sums up the force of the fluid on it, global vector x y z. */
 class WallFix : public RowsFix {
  public:
@@ -48,8 +65,11 @@ class WallFix : public RowsFix {
   void setup(int vflag) override { post_force(vflag); }
   double compute_vector(int) override;
 
+  const Voice voice;
+
  protected:
-  std::string command;
+  Keywords keywords(int narg, char **arg) const;
+
   double on_wall[3] = {0.0, 0.0, 0.0};
 };
 

@@ -82,6 +82,8 @@ ONE_LINE = {
     "check N": ("fix 1 all check/timestep/sph 0 0.3", "keyword N: '0' must be >= 1"),
     "check fraction": ("fix 1 all check/timestep/sph 1 0", "keyword fraction: '0' must be > 0"),
     "check short": ("fix 1 all check/timestep/sph 1", "check/timestep/sph N fraction"),
+    "wall gravity of four": ("variable text string 0\nfix 1 all wall/adami/sph gravity v_text 0 -2.5 0",
+                             "wall/adami/sph: unknown keyword '0': keyword gravity before it has all of its values"),
     "check word": ("fix 1 all check/timestep/sph 1 0.3 crash", "unknown keyword 'crash'"),
 }
 
