@@ -407,7 +407,7 @@ void FixHydroVans::take_gravity()
   for (int d = 0; d < 3; d++) set.law.g[d] = set.gravity[d].number();
   if (stream.fluid.held) return;
   stream.fluid.gx = set.law.g[0];
-  stream.drive = stream.fluid.gx - stream.fluid.dpdx / stream.fluid.rho;
+  stream.drive = sd_vans_drive(&stream.fluid);
 }
 
 void FixHydroVans::read_variables()

@@ -189,7 +189,6 @@ VansStream::Given FixHydroVans::impulses(double ratio)
   const size_t N = stream.ncell();
   const int n = atom->nlocal;
   std::vector<double> mine(N + 2, 0.0), all(N + 2), rest(n + 1, 0.0);
-  work.resize(N);
   take.assign(n, 0);
   for (int i = 0; i < n; i++) {
     if (!memo.has(i)) continue;
@@ -200,7 +199,7 @@ VansStream::Given FixHydroVans::impulses(double ratio)
     books->impulse = 0.0;
   }
   sd_vans_grains some = grains();
-  sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data(), work.data());
+  sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data());
   select(average_bit, true);
   if (std::find(take.begin(), take.end(), 1) != take.end()) {
     some = grains();
@@ -210,7 +209,7 @@ VansStream::Given FixHydroVans::impulses(double ratio)
       rest[i] = account(i)->foreseen - ratio * elapsed * drag_x[i];
       mine[N + 1] += elapsed * (drag_x[i] + account(i)->shear);
     }
-    sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data(), work.data());
+    sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data());
   }
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
   VansStream::Given given;
@@ -279,11 +278,8 @@ void FixHydroVans::hand_over()
   select(average_bit | groupbit);
   const sd_vans_grains all = grains();
   std::vector<double> shear(n + 1), foreseen(n + 1);
-  const auto gather = [&](const std::vector<double> &density, std::vector<double> &of_grains) {
-    sd_vans_gather(&set.mesh, set.point, &all, density.data(), of_grains.data(), work.data());
-  };
-  gather(stream.shear_density, shear);
-  gather(stream.foreseen_density, foreseen);
+  sd_vans_gather(&set.mesh, set.point, &all, stream.shear_density.data(), shear.data());
+  sd_vans_gather(&set.mesh, set.point, &all, stream.foreseen_density.data(), foreseen.data());
   for (int i = 0; i < n; i++) {
     if (!take[i] && !memo.has(i)) continue;
     sd_vans_account *books = account(i);

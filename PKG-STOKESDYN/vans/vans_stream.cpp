@@ -20,7 +20,7 @@ VansStream::VansStream(const VansSettings &settings) :
     wet.dz = 0.0;
     wet.ncell = sd_vans_fill(&mesh, nullptr, set.surface, wet_edge.data());
   }
-  drive = mean_drive = fluid.gx - fluid.dpdx / fluid.rho;
+  drive = mean_drive = sd_vans_drive(&fluid);
   if (set.profile.empty() && fluid.driven && !set.u_top.is_variable()) U[N] = fluid.u_top;
   fluid.radius = set.radius;
   intensity = set.intensity.number();
@@ -157,7 +157,7 @@ void VansStream::take_averages(double area, const double *sums, const double *fo
     move_surface(area, before);
   else if (set.conserve && averaged)
     ledger.surface +=
-        area * sd_vans_displace(&mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
+        area * sd_vans_displace(&mesh, &mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
   for (size_t k = 0; k < 2 * N; k++)
     drag_density[k] = forces[k] / (area * sd_vans_height(&mesh, (int) (k % N)));
   density_known = true;
@@ -187,8 +187,8 @@ void VansStream::move_surface(double area, const std::vector<double> &before)
         .fail("the water rises above the mesh, which ends at z = " +
               text(mesh.z_ref + mesh.edge[ncell() - 1]) + ": give the mesh more slices");
   if (set.conserve)
-    ledger.surface += area * sd_vans_displace_to(&old, &wet, fluid.rho, before.data(), phi(),
-                                                 U.data(), scratch.data());
+    ledger.surface += area * sd_vans_displace(&old, &wet, fluid.rho, before.data(), phi(), U.data(),
+                                              scratch.data());
   fill_above();
 }
 
@@ -283,7 +283,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   const int N = ncell();
   const int64_t steps = sd_vans_steps(fluid.rules, T, &dt);
   std::vector<double> rest;
-  if (!fluid.held) drive = fluid.gx - fluid.dpdx / fluid.rho;
+  if (!fluid.held) drive = sd_vans_drive(&fluid);
   exchange(T, dt, rest);
   mixing_length();
 

@@ -75,11 +75,8 @@ typedef struct {
   const double *acceleration;
 } sd_vans_grains;
 
-/* Volume of a sphere of radius a between the heights lo <= hi above its centre; any lo, hi.
- * Differences of one primitive, so that the slices of any cut sum to 4/3 pi a^3 up to rounding. */
-double sd_vans_slice_volume(double a, double lo, double hi);
-
-/* Volume of a sphere in each slice that it reaches.
+/* Volume of a sphere in each slice that it reaches: differences of one primitive, so that the parts
+ * of any cut sum to 4/3 pi a^3 up to rounding.
  *   z       height of its centre (not above z_ref: as LAMMPS has it)
  *   first   out, lowest slice that it reaches, >= 0
  *   V       out, V[k] is the volume in slice first + k
@@ -170,14 +167,14 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
 
 /* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value.
  * What belongs to the part of a sphere outside the mesh goes to the lowest or the highest slice, so
- * that the sum over slices grows by the sum over spheres. V [N] scratch. */
+ * that the sum over slices grows by the sum over spheres. */
 void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
-                    const double *value, double *out, double *V);
+                    const double *value, double *out);
 
 /* The integral of a density per volume of grains over each sphere: out [n] = sum over slices of V_k
- * density_k, times weight (or 1). V [N] scratch. */
+ * density_k, times weight (or 1). */
 void sd_vans_gather(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
-                    const double *density, double *out, double *V);
+                    const double *density, double *out);
 
 /* Share of sphere i's volume that counts when n spheres that overlap are one body: its part of the
  * union, cut off from the others by their radical planes, over its volume. The sum over the spheres
@@ -233,6 +230,9 @@ typedef struct {
   /* of the grains, for what the exchange foresees; zeros: Yade's */
   sd_vans_drag_law drag;
 } sd_vans_fluid;
+
+/* What drives the stream, an acceleration: gx - dpdx/rho. Yade's rule: |gx| for gx. */
+double sd_vans_drive(const sd_vans_fluid *fluid);
 
 /* Mixing length at every node, [N]; at least bed_mixing times the mean diameter of the grains in the
  * slices on both sides of the node, but for that on the bottom; between narrow walls at most
@@ -408,15 +408,10 @@ int sd_vans_fill(const sd_vans_mesh *mesh, const double *phi, double volume, dou
 
 /* The grains have moved: phi_old became phi_new. They displace water, which keeps its order over
  * the height and takes its momentum along. Changes U [N+1] (not U[0], U[N]) so that the momentum is
- * conserved but for what passes the surface; returns that, per area, gained by the water. scratch
- * [2 (N+1)] */
-double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
-                        const double *phi_new, double *U, double *scratch);
-
-/* The same where the surface has moved: from one mesh of sd_vans_fill to another. */
-double sd_vans_displace_to(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
-                           const double *phi_old, const double *phi_new, double *U,
-                           double *scratch);
+ * conserved but for what passes the surface; returns that, per area, gained by the water. from, to:
+ * one mesh, or two of sd_vans_fill where the surface has moved. scratch [2 (N+1)] */
+double sd_vans_displace(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
+                        const double *phi_old, const double *phi_new, double *U, double *scratch);
 
 /* ---- what the profiles tell ------------------------------------------------------------------ */
 

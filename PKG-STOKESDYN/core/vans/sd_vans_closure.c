@@ -1,5 +1,5 @@
 #include "sd_constants.h"
-#include "sd_vans_yade.h"
+#include "sd_vans.h"
 
 #include <math.h>
 
@@ -39,15 +39,13 @@ static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
 static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
                         double *length)
 {
-  if (fluid->rules == SD_VANS_YADE) {
-    sd_vans_yade_li_sawamoto(mesh, fluid, phi, length);
-    return;
-  }
+  /* Yade: a slice that exceeds phi_max takes length away */
+  const double most = fluid->rules == SD_VANS_YADE ? HUGE_VAL : fluid->phi_max;
   int packed = mesh->ncell - 1; /* the highest slice that reaches phi_max; -1: none */
   while (packed >= 0 && phi[packed] < fluid->phi_max) packed--;
   length[0] = 0.0;
   for (int j = 1; j < mesh->ncell; j++) {
-    const double p = j - 1 < packed ? fluid->phi_max : fmin(phi[j - 1], fluid->phi_max);
+    const double p = j - 1 < packed ? fluid->phi_max : fmin(phi[j - 1], most);
     length[j] = length[j - 1] +
         fluid->kappa * sd_vans_height(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
   }

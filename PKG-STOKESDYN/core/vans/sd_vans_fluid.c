@@ -13,6 +13,12 @@ int64_t sd_vans_steps(sd_vans_rules rules, double T, double *dt)
   return n;
 }
 
+double sd_vans_drive(const sd_vans_fluid *fluid)
+{
+  const double gx = fluid->rules == SD_VANS_YADE ? fabs(fluid->gx) : fluid->gx;
+  return gx - fluid->dpdx / fluid->rho;
+}
+
 /* ---- momentum -------------------------------------------------------------------------------- */
 
 /* Per node j: A_j viscous conductance nu/h, T_j = eN nut/h. Per slice j the row (times dz), x_j =
@@ -112,8 +118,7 @@ static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
   /* z u_star/nu below which the law of the wall is linear, u_star of the whole depth */
   if (fluid->sublayer) {
     const double nu = fluid->eta / fluid->rho, H = mesh->edge[mesh->ncell - 1];
-    const double drive = fluid->rules == SD_VANS_YADE ? fluid->gx
-                                                      : fluid->gx - fluid->dpdx / fluid->rho;
+    const double drive = fluid->rules == SD_VANS_YADE ? fluid->gx : sd_vans_drive(fluid);
     if (mesh->edge[j] * sqrt(fabs(drive) * H) / nu < 11.3) return 0.0;
   }
   return length[j] * length[j] / gap_of(mesh, j);
@@ -161,20 +166,20 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
 }
 
 /* Side walls: half of the friction on U', half on U, both with the f and |U| of U. That is
- * stable however strong it is. */
-static void wall_rows(sd_vans_solver *s, int M, const double *U)
+ * stable however strong it is. Yade: U^2 in both halves, in that on U without its sign. */
+static void wall_rows(sd_vans_solver *s, sd_vans_rules rules, int M, const double *U)
 {
+  const int yade = rules == SD_VANS_YADE;
   const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
   double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
   for (int j = 0; j < M; j++) {
     const double u = U[j + 1], size = fabs(u),
                  speed = size > s->least_speed ? size : s->least_speed,
-                 f = sd_vans_wall_friction(SD_VANS_CONSISTENT, speed * s->Re_factor,
-                                           &s->friction[j]);
-    const double K = scale[j] * f * speed;
+                 f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->friction[j]);
+    const double K = scale[j] * f * (yade ? speed * speed : speed);
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
-    wall_cr[j] = cr[j] - K * u;
+    wall_cr[j] = cr[j] - (yade ? K : K * u);
   }
 }
 
@@ -187,9 +192,7 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
   const sd_vans_mesh *mesh = s->mesh;
   const double *phi = column->phi, *vx = column->vx, *b = column->b;
   const int N = mesh->ncell, M = N - 1;
-  s->drive = fluid->rules == SD_VANS_YADE ? sd_vans_yade_drive(fluid)
-                                          : fluid->gx - fluid->dpdx / fluid->rho;
-  if (fluid->held) s->drive = 0.0;
+  s->drive = fluid->held ? 0.0 : sd_vans_drive(fluid);
   s->drive_sum = 0.0;
   for (int j = 0; j < N; j++) {
     s->mix[j] = mixing_at_node(mesh, fluid, column->length, j);
@@ -260,16 +263,9 @@ static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int k
     s->cr[M - 1] = s->cr_top + (s->cu_top + T_top) * fluid->u_top;
   else
     s->T[M] = 0.0;
-  if (s->walls) {
-    const int yade = fluid->rules == SD_VANS_YADE;
-    if (yade)
-      sd_vans_yade_walls(M, s->Re_factor, s->wall_scale, U, s->cd, s->cr, s->friction, s->wall,
-                         s->wall_cd, s->wall_cr);
-    else
-      wall_rows(s, M, U);
-    if (keep)
-      for (int j = 0; j < M; j++) s->wall_sum += s->wall[j] * (yade ? 1.0 : U[j + 1]);
-  }
+  if (s->walls) wall_rows(s, fluid->rules, M, U);
+  for (int j = 0; s->walls && keep && j < M; j++)
+    s->wall_sum += s->wall[j] * (fluid->rules == SD_VANS_YADE ? 1.0 : U[j + 1]);
 
   const double *cd = s->walls ? s->wall_cd : s->cd;
   solve_rows(s, M, cd, s->walls ? s->wall_cr : s->cr, U);

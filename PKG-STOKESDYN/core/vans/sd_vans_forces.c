@@ -7,28 +7,11 @@ static void drag_by_volume(const sd_vans_mesh *mesh, const sd_vans_force_law *la
                            const double *hindrance, const sd_vans_grains *grains, int i,
                            double F[3])
 {
-  const int N = mesh->ncell;
-  const double a = grains->a[i], z = grains->x[3 * (long) i + 2], height = z - mesh->z_ref,
-               whole = 2.0 * primitive(a * a, a);
-  double below = -0.5 * whole; /* primitive at the lower end of the slice */
-  int n = sd_vans_slice_of(mesh, z - a);
-  F[0] = F[1] = F[2] = 0.0;
-  /* what is under the bottom sees water at rest */
-  if (n < 0) {
-    const double here = primitive(a * a, fmin(-height, a));
-    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, -1),
-                     (here - below) / whole, F);
-    below = here;
-    n = 0;
-  }
-  for (; n < N && mesh->edge[n] - height < a; n++) {
-    const double here = primitive(a * a, fmin(mesh->edge[n + 1] - height, a));
-    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, n),
-                     (here - below) / whole, F);
-    below = here;
-  }
-  sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, N),
-                   0.5 - below / whole, F);
+  const double a = grains->a[i], z = grains->x[3 * (long) i + 2], whole = 2.0 * primitive(a * a, a);
+  sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
+  while (sd_vans_next_part(mesh, a, &part))
+    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, part.n),
+                     part.V / whole, F);
 }
 
 /* Drag on grain i, centre in slice p. */

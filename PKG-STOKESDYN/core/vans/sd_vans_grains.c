@@ -24,37 +24,17 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
   return lo;
 }
 
-double sd_vans_slice_volume(double a, double lo, double hi)
-{
-  const double s0 = fmin(fmax(lo, -a), a), s1 = fmin(fmax(hi, -a), a);
-  return primitive(a * a, s1) - primitive(a * a, s0);
-}
-
 int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
                    double *V, int max)
 {
   if (rules == SD_VANS_YADE) return sd_vans_yade_slices(mesh, z, a, first, V, max);
-  const int N = mesh->ncell;
-  const double height = z - mesh->z_ref, a2 = a * a;
-  int n = sd_vans_slice_of(mesh, z - a);
-  if (n >= N || !(height + a > 0.0)) return 0;
-  double below; /* primitive at the lower end of the slice */
-  if (n < 0) {
-    n = 0;
-    below = primitive(a2, fmax(-height, -a));
-  } else
-    below = primitive(a2, -a);
-  *first = n;
   int count = 0;
-  while (n < N && count < max) {
-    const double top = mesh->edge[n + 1] - height;
-    const double value = primitive(a2, top < a ? top : a),
-                 here = value > below ? value : below; /* rounding must not make V < 0 */
-    V[count++] = here - below;
-    below = here;
-    if (top >= a) break;
-    n++;
-  }
+  sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
+  int more = sd_vans_next_part(mesh, a, &part);
+  if (part.n < 0) more = sd_vans_next_part(mesh, a, &part);
+  *first = part.n;
+  for (; more && part.n < mesh->ncell && count < max; more = sd_vans_next_part(mesh, a, &part))
+    V[count++] = part.V;
   return count;
 }
 
@@ -174,43 +154,44 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
   }
 }
 
+/* A sphere as sd_vans_next_part cuts it, or, with point, in one piece where its centre is. */
+static int next_piece(const sd_vans_mesh *mesh, int point, double z, double a, sd_vans_part *part)
+{
+  if (!point) return sd_vans_next_part(mesh, a, part);
+  if (!(part->top < a)) return 0;
+  *part = (sd_vans_part){sd_vans_slice_of(mesh, z), 4.0 / 3.0 * SD_PI * a * a * a, a, 0.0, 0.0};
+  return 1;
+}
+
 /* The last of the shares is what is left of the value, so that none is lost to rounding. */
 void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
-                    const double *value, double *out, double *V)
+                    const double *value, double *out)
 {
   const int N = mesh->ncell;
   for (int i = 0; i < grains->n; i++) {
     if (grains->take && !grains->take[i]) continue;
-    const double z = grains->x[3 * (long) i + 2], ai = grains->a[i], height = z - mesh->z_ref,
-                 all = 4.0 / 3.0 * SD_PI * ai * ai * ai;
-    int first = 0;
-    const int count = slices_of(mesh, SD_VANS_CONSISTENT, point, z, ai, &first, V);
-    double inside = 0.0, rest = value[i];
-    for (int k = 0; k < count; k++) inside += V[k];
-    /* what is neither in the slices nor below them is above the mesh */
-    const double below = point ? (height < 0.0 ? all : 0.0)
-                               : sd_vans_slice_volume(ai, -ai, -height);
-    for (int k = 0; k < count; k++) {
-      const double part = value[i] * (V[k] / all);
-      out[first + k] += part;
-      rest -= part;
+    const double z = grains->x[3 * (long) i + 2], a = grains->a[i],
+                 whole = 4.0 / 3.0 * SD_PI * a * a * a;
+    sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
+    double rest = value[i];
+    while (next_piece(mesh, point, z, a, &part)) {
+      const double share = part.top < a ? value[i] * (part.V / whole) : rest;
+      out[part.n < 0 ? 0 : part.n < N ? part.n : N - 1] += share;
+      rest -= share;
     }
-    const double part = inside + below >= all * (1.0 - 1e-12) ? rest : value[i] * (below / all);
-    out[0] += part;
-    out[N - 1] += rest - part;
   }
 }
 
 void sd_vans_gather(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
-                    const double *density, double *out, double *V)
+                    const double *density, double *out)
 {
   for (int i = 0; i < grains->n; i++) {
     out[i] = 0.0;
     if (grains->take && !grains->take[i]) continue;
-    int first = 0;
-    const int count = slices_of(mesh, SD_VANS_CONSISTENT, point, grains->x[3 * (long) i + 2],
-                                grains->a[i], &first, V);
-    for (int k = 0; k < count; k++) out[i] += V[k] * density[first + k];
+    const double z = grains->x[3 * (long) i + 2], a = grains->a[i];
+    sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
+    while (next_piece(mesh, point, z, a, &part))
+      if (part.n >= 0 && part.n < mesh->ncell) out[i] += part.V * density[part.n];
     if (grains->weight) out[i] *= grains->weight[i];
   }
 }

@@ -13,6 +13,34 @@ static inline double primitive(double a2, double s)
   return SD_PI * s * (a2 - s * s / 3.0);
 }
 
+/* A sphere cut by the slices, part by part from its lowest point up. */
+typedef struct {
+  /* slice of the part, -1: below the mesh, N: above it; its volume */
+  int n;
+  double V;
+  /* its upper end above the centre, and the primitive there; height of the centre above z_ref */
+  double top, sum, height;
+} sd_vans_part;
+
+/* The part in which the lowest point is has no volume yet: sd_vans_next_part gives it. */
+static inline sd_vans_part sd_vans_lowest_part(const sd_vans_mesh *mesh, double z, double a)
+{
+  return (sd_vans_part){sd_vans_slice_of(mesh, z - a) - 1, 0.0, -a, primitive(a * a, -a),
+                        z - mesh->z_ref};
+}
+
+/* 0: that was the last one. */
+static inline int sd_vans_next_part(const sd_vans_mesh *mesh, double a, sd_vans_part *part)
+{
+  if (!(part->top < a)) return 0;
+  part->n++;
+  part->top = part->n < mesh->ncell ? mesh->edge[part->n + 1] - part->height : a;
+  const double sum = primitive(a * a, part->top < a ? part->top : a);
+  part->V = sum > part->sum ? sum - part->sum : 0.0; /* rounding must not make it < 0 */
+  part->sum = sum > part->sum ? sum : part->sum;
+  return 1;
+}
+
 /* The water at a height: velocity along x and z, hindrance. */
 typedef struct {
   double u, w, hindrance;

@@ -1,4 +1,5 @@
 #include "sd_constants.h"
+#include "sd_linear.h"
 #include "sd_vans.h"
 
 #include <math.h>
@@ -13,11 +14,6 @@ typedef struct {
 typedef struct {
   double (*m)[2], *c, *from, *to;
 } lines;
-
-static double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* What the other lines leave of the chord k, from -t to t along (-m_y, m_x): its length. */
 static double chord_left(double r, int count, const lines *line, int k)
@@ -78,8 +74,8 @@ static int lines_in(double r, double z, const double axis[3], const double side[
 {
   int found = 0;
   for (int k = 1; k < count; k++) {
-    const double mx = dot(cuts[k].n, side), my = dot(cuts[k].n, up),
-                 c = cuts[k].h - dot(cuts[k].n, axis) * z, size = hypot(mx, my);
+    const double mx = sd_dot(cuts[k].n, side), my = sd_dot(cuts[k].n, up),
+                 c = cuts[k].h - sd_dot(cuts[k].n, axis) * z, size = hypot(mx, my);
     if (size < 1e-14 ? c < 0.0 : c <= -r * size) return -1;
     if (size < 1e-14 || c >= r * size) continue;
     line->m[found][0] = mx / size;
@@ -99,14 +95,10 @@ static double integrate(double a, int count, const cut *cuts, const lines *line)
                                  0.9602898564975363};
   static const double gauss[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                   0.1012285362903763};
-  double axis[3], side[3], up[3], volume = 0.0; /* an orthonormal frame */
-  for (int d = 0; d < 3; d++) axis[d] = cuts[0].n[d];
-  const double helper[3] = {fabs(axis[0]) < 0.6 ? 1.0 : 0.0, fabs(axis[0]) < 0.6 ? 0.0 : 1.0, 0.0};
-  for (int d = 0; d < 3; d++) side[d] = helper[d] - dot(helper, axis) * axis[d];
-  const double size = sqrt(dot(side, side));
-  for (int d = 0; d < 3; d++) side[d] /= size;
-  for (int d = 0; d < 3; d++)
-    up[d] = axis[(d + 1) % 3] * side[(d + 2) % 3] - axis[(d + 2) % 3] * side[(d + 1) % 3];
+  const double *axis = cuts[0].n;
+  double side[3], up[3], volume = 0.0; /* with axis an orthonormal frame */
+  sd_across(axis, side);
+  sd_cross(axis, side, up);
   const double end = asin(fmax(-1.0, fmin(1.0, cuts[0].h / a)));
   enum { PANELS = 200 };
   const double width = (end + SD_PI / 2) / PANELS;
@@ -130,7 +122,7 @@ static int cuts_of(int n, const double *x, const double *a, int i, cut *cuts)
     if (j == i) continue;
     double r[3];
     for (int d = 0; d < 3; d++) r[d] = x[3 * j + d] - x[3 * i + d];
-    const double distance = sqrt(dot(r, r));
+    const double distance = sqrt(sd_dot(r, r));
     if (distance >= ai + a[j]) continue;
     if (distance <= 1e-12 * ai) { /* concentric: the larger counts, of equal ones the first */
       if (a[j] > ai || (a[j] == ai && j < i)) return -1;
@@ -152,7 +144,7 @@ static int caps_are_apart(double a, int count, const cut *cuts)
 {
   for (int k = 0; k < count; k++)
     for (int j = 0; j < k; j++) {
-      const double between = acos(fmax(-1.0, fmin(1.0, dot(cuts[j].n, cuts[k].n))));
+      const double between = acos(fmax(-1.0, fmin(1.0, sd_dot(cuts[j].n, cuts[k].n))));
       if (between < acos(cuts[j].h / a) + acos(cuts[k].h / a)) return 0;
     }
   return 1;

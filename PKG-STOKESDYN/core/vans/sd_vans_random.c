@@ -31,7 +31,7 @@ double sd_vans_longest_life(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid
 {
   if (fluid->rules == SD_VANS_YADE) return fluid->longest_life;
   const double H = mesh->edge[mesh->ncell - 1];
-  const double drive = fabs(fluid->gx - fluid->dpdx / fluid->rho) * H;
+  const double drive = fabs(sd_vans_drive(fluid)) * H;
   const double u_star = sqrt(fmax(drive, sd_vans_largest_stress(mesh, stress) / fluid->rho));
   return u_star > 0.0 ? 30.0 * H / u_star : HUGE_VAL;
 }

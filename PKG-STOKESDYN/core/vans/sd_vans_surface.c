@@ -14,8 +14,8 @@ double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi,
 /* In the coordinate "volume of water below" the old and the new slices are two cuts of one column,
  * in which U stays: a new slice has the mean over the pieces of old ones that it covers. Volume and
  * momentum are those of the column, so that only what passes its upper end is gained or lost. */
-double sd_vans_displace_to(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
-                           const double *phi_old, const double *phi_new, double *U, double *scratch)
+double sd_vans_displace(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
+                        const double *phi_old, const double *phi_new, double *U, double *scratch)
 {
   const int M = from->ncell - 1, M_new = to->ncell - 1;
   double *below = scratch, *old = scratch + M + 1;
@@ -46,12 +46,6 @@ double sd_vans_displace_to(const sd_vans_mesh *from, const sd_vans_mesh *to, dou
     through -= old[source] * (below[source + 1] - start);
   }
   return rho * through;
-}
-
-double sd_vans_displace(const sd_vans_mesh *mesh, double rho, const double *phi_old,
-                        const double *phi_new, double *U, double *scratch)
-{
-  return sd_vans_displace_to(mesh, mesh, rho, phi_old, phi_new, U, scratch);
 }
 
 double sd_vans_volume(const sd_vans_mesh *mesh, const double *phi)

@@ -80,34 +80,3 @@ void sd_vans_yade_friction(double Re, sd_vans_friction *near)
   }
   memset(near->f, 0, sizeof near->f);
 }
-
-void sd_vans_yade_walls(int M, double Re_factor, const double *scale, const double *U,
-                        const double *cd, const double *cr, sd_vans_friction *friction,
-                        double *wall, double *wall_cd, double *wall_cr)
-{
-  for (int j = 0; j < M; j++) {
-    const double speed = fabs(U[j + 1]),
-                 f = sd_vans_wall_friction(SD_VANS_YADE, speed * Re_factor, &friction[j]);
-    wall[j] = scale[j] * f * (speed * speed);
-    wall_cd[j] = cd[j] + wall[j];
-    wall_cr[j] = cr[j] - wall[j];
-  }
-}
-
-double sd_vans_yade_drive(const sd_vans_fluid *fluid)
-{
-  return fabs(fluid->gx) - fluid->dpdx / fluid->rho;
-}
-
-void sd_vans_yade_li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                              const double *phi, double *length)
-{
-  int packed = mesh->ncell - 1;
-  while (packed >= 0 && phi[packed] < fluid->phi_max) packed--;
-  length[0] = 0.0;
-  for (int j = 1; j < mesh->ncell; j++) {
-    const double p = j - 1 < packed ? fluid->phi_max : phi[j - 1];
-    length[j] = length[j - 1] +
-        fluid->kappa * sd_vans_height(mesh, j - 1) * (fluid->phi_max - p) / fluid->phi_max;
-  }
-}

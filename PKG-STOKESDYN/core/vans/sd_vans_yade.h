@@ -26,17 +26,4 @@ double sd_vans_yade_coefficient(const sd_vans_fluid *fluid, int n, double drag, 
  * than 1 %; after 100 steps 0. */
 void sd_vans_yade_friction(double Re, sd_vans_friction *near);
 
-/* Rows with side walls: U^2 in the implicit and in the explicit half, the latter without U's
- * sign. */
-void sd_vans_yade_walls(int M, double Re_factor, const double *scale, const double *U,
-                        const double *cd, const double *cr, sd_vans_friction *friction,
-                        double *wall, double *wall_cd, double *wall_cr);
-
-/* Gravity along x drives by its size. */
-double sd_vans_yade_drive(const sd_vans_fluid *fluid);
-
-/* The slice that exceeds phi_max takes length away. */
-void sd_vans_yade_li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                              const double *phi, double *length);
-
 #endif
