@@ -431,7 +431,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
     if (row[MOVES] == 0.0) return;
     for (int d = 0; d < 3; d++) atom->x[i][d] += row[STEP + d];
-    std::copy_n(row + V, 6, before.give(i));
+    std::copy_n(row + V, 9, before.give(i));
     moves(i, sqrt(sd_dot(row + STEP, row + STEP)), row[CHANGE]);
     hydro.turn(i, row + TURN);
   });

@@ -94,6 +94,19 @@ def test_ab2_is_of_second_order_through_sheared_faces(simulation, style):
     assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.25)
 
 
+def test_a_clump_without_load_goes_with_the_sheared_flow(simulation):
+    """A dumbbell along the axis of the vorticity keeps its height: in every step its centroid goes with the fluid there, also where
+    that is far from the origin and the clump has crossed faces. ab2 then adds nothing to the velocity of now."""
+    dt, rate, steps = 0.1, 0.4, 60
+    x = np.array([(4.5, 8.0, 0.0), (4.5, 8.0, 2.0)])
+    sim = simulation(Spheres(x, molecule=1), "clumps_only yes visc 1 rigid_clumps yes rotation yes fluid_velocity box", fix=False, box=BOX,
+                     tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=dt, comm="comm_modify vel yes")
+    sim.commands(f"{FIX}\nfix d all deform 1 xy erate {rate} remap v flip yes").run(steps)
+    carried = x + np.array([rate * (8.0 - 1.0) * dt * steps, 0.0, 0.0])
+    assert carried[0, 0] > BOX[0][1] + 10.0
+    assert np.abs(up_to_images(sim.x - carried, edges(sim)[0])).max() < 1e-9
+
+
 def test_box_and_formula_and_either_remap_are_one_flow(simulation):
     sim = path(simulation, "box", 0.05)
     first = sim.x, sim.v
