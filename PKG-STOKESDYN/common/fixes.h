@@ -5,11 +5,26 @@
 #include "fix.h"
 #include "lammps.h"
 #include "modify.h"
+#include "utils.h"
 
 #include <string>
 #include <vector>
 
 namespace StokesDyn {
+
+/* "fix ID of style STYLE", as errors name it */
+inline std::string name_of(const LAMMPS_NS::Fix *fix)
+{
+  return "fix " + std::string(fix->id) + " of style " + fix->style;
+}
+
+/* The first whose style this pattern matches (utils::strmatch), nullptr: there is none */
+inline LAMMPS_NS::Fix *fix_like(LAMMPS_NS::LAMMPS *lmp, const std::string &pattern)
+{
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    if (LAMMPS_NS::utils::strmatch(lmp->modify->fix[i]->style, pattern)) return lmp->modify->fix[i];
+  return nullptr;
+}
 
 /* All of this style, in the order of the input. */
 inline std::vector<LAMMPS_NS::Fix *> fixes_of(LAMMPS_NS::LAMMPS *lmp, const std::string &style)

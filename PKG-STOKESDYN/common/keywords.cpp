@@ -2,6 +2,7 @@
 
 #include "comm.h"
 #include "error.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cctype>
@@ -80,6 +81,11 @@ void Voice::fail_one(const std::string &what) const
 void Voice::warn(const std::string &what) const
 {
   StokesDyn::warn(lmp, command + ": " + what);
+}
+
+Voice Voice::at_step() const
+{
+  return of("step " + std::to_string(lmp->update->ntimestep));
 }
 
 void Voice::tell(const std::string &what) const
@@ -170,22 +176,22 @@ double Keywords::number()
 {
   const std::string w = word();
   double value = 0.0;
-  if (!is_number(w, value)) refuse("'" + w + "' is not a number");
-  if (!std::isfinite(value)) refuse("'" + w + "' is not a finite number");
+  check(is_number(w, value), "is not a number");
+  check(std::isfinite(value), "is not a finite number");
   return value;
 }
 
 double Keywords::positive()
 {
   const double value = number();
-  if (!(value > 0.0)) refuse("'" + args[at - 1] + "' must be > 0");
+  check(value > 0.0, "must be > 0");
   return value;
 }
 
 double Keywords::not_negative()
 {
   const double value = number();
-  if (!(value >= 0.0)) refuse("'" + args[at - 1] + "' must be >= 0");
+  check(value >= 0.0, "must be >= 0");
   return value;
 }
 
@@ -195,12 +201,10 @@ bigint Keywords::integer(bigint lowest, bigint highest)
   char *end;
   errno = 0;
   const long long value = strtoll(w.c_str(), &end, 10);    // which skips space
-  if (w.empty() || isspace((unsigned char) w[0]) || *end != '\0')
-    refuse("'" + w + "' is not an integer");
+  check(!isspace((unsigned char) w[0]) && *end == '\0', "is not an integer");
   const bool clipped = errno == ERANGE;    // then value is the lowest or the highest there is
-  if (value < lowest || (clipped && value < 0))
-    refuse("'" + w + "' must be >= " + std::to_string(lowest));
-  if (value > highest || clipped) refuse("'" + w + "' must be <= " + std::to_string(highest));
+  check(value >= lowest && !(clipped && value < 0), "must be >= " + std::to_string(lowest));
+  check(value <= highest && !clipped, "must be <= " + std::to_string(highest));
   return value;
 }
 
@@ -219,6 +223,11 @@ size_t Keywords::choice(std::initializer_list<const char *> options)
     list += (i++ ? ", " : "") + std::string(option);
   }
   refuse("'" + w + "' is none of: " + list);
+}
+
+void Keywords::check(bool condition, const std::string &rule) const
+{
+  if (!condition) refuse("'" + args[at - 1] + "' " + rule);
 }
 
 void Keywords::unknown() const

@@ -44,8 +44,9 @@ class Voice {
   /* a warning, or a line of the log; by the first rank, whichever rank asks for it */
   void warn(const std::string &what) const;
   void tell(const std::string &what) const;
-  /* the voice of a part of the command: "<command>: <part>: <what>" */
+  /* the voice of a part of the command: "<command>: <part>: <what>"; of this step */
   Voice of(const std::string &part) const { return Voice(lmp, command + ": " + part); }
+  Voice at_step() const;
 };
 
 /* A keyword of a command, and what reads the values that follow it. */
@@ -94,6 +95,9 @@ class Keywords : private Voice {
   {
     return (Enum) choice(options);
   }
+  /* Unless the condition holds, an error about the last word taken: "<command>: keyword <key>:
+   * '<word>' <rule>" */
+  void check(bool condition, const std::string &rule) const;
   /* Takes the next word if it is this one: for "off", "inf" and the like in place of a number. */
   bool take(const std::string &option);
   bool more() const { return at < args.size(); }

@@ -3,16 +3,13 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 
-#include "sd_constants.h"
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
-#include "neighbor.h"
 #include "region.h"
 #include "update.h"
 
@@ -33,14 +30,15 @@ void Ambient::init()
 {
   region = nullptr;
   if (!settings.region.empty() && !(region = Compat::region(domain, settings.region)))
-    fail(lmp, command + ": keyword region: region '" + settings.region + "' does not exist");
+    voice.fail("keyword region: region '" + settings.region + "' does not exist");
   igroup = group->find(settings.group);
   if (igroup < 0)
-    fail(lmp, command + ": keyword group: group '" + settings.group + "' does not exist");
+    voice.fail("keyword group: group '" + settings.group + "' does not exist");
   groupbit = group->bitmask[igroup];
-  settings.visc.init(lmp, command + ": keyword visc");
-  for (auto &field : settings.velocity) field.init(lmp, command + ": keyword fluid_velocity");
-  for (auto &field : settings.vorticity) field.init(lmp, command + ": keyword fluid_vorticity");
+  const std::string keyword = voice.command + ": keyword ";
+  settings.visc.init(lmp, keyword + "visc");
+  for (auto &field : settings.velocity) field.init(lmp, keyword + "fluid_velocity");
+  for (auto &field : settings.vorticity) field.init(lmp, keyword + "fluid_vorticity");
 }
 
 bool Ambient::numbers_only() const
@@ -89,7 +87,7 @@ void Ambient::read_fluid(Derivatives derivatives)
   const int n = atom->nlocal;
   const bool u_varies = varies(), with_gradients = derivatives >= FIRST;
   if (!numbers_only()) modify->clearstep_compute();
-  motion = u_varies ? motion_of_box(lmp, command) : BoxMotion();
+  motion = u_varies ? motion_of_box(voice) : BoxMotion();
 
   eta.resize(settings.visc.is_atom_style() || settings.grid_has_visc ? n + 1 : 0);
   settings.visc.evaluate(lmp, igroup, eta.empty() ? nullptr : eta.data(), 1);
@@ -122,28 +120,6 @@ void Ambient::read_fluid(Derivatives derivatives)
 }
 
 namespace {
-  /* Holds the atoms' positions shifted, each by a vector times its radius or one that is the same
-   * for all, and puts them back whatever happens. */
-  class Shift {
-   public:
-    Shift(Atom *atom, const double *by, bool in_radii) : atom(atom), x(3 * (size_t) atom->nlocal)
-    {
-      for (size_t i = 0; i < x.size() / 3; i++)
-        for (int d = 0; d < 3; d++) {
-          x[3 * i + d] = atom->x[i][d];
-          atom->x[i][d] += by[d] * (in_radii ? atom->radius[i] : 1.0);
-        }
-    }
-    ~Shift()
-    {
-      for (size_t i = 0; i < x.size() / 3; i++) std::copy_n(&x[3 * i], 3, atom->x[i]);
-    }
-
-   private:
-    Atom *atom;
-    std::vector<double> x;
-  };
-
   struct Edges {
     double edge[3][3];
     explicit Edges(const Domain *domain) :
@@ -173,7 +149,9 @@ void Ambient::read_box(bool with_gradients)
 double Ambient::growth_along(const double *edge, int p, double expected, double *most)
 {
   std::vector<double> there(atom->nlocal + 1);
-  Shift shift(atom, edge, false);
+  const Places kept(atom);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) atom->x[i][d] += edge[d];
   settings.velocity[p].evaluate(lmp, igroup, there.data(), 1);
   double sum = 0.0;
   for (int i : those) {
@@ -238,8 +216,8 @@ void Ambient::slope_of(int p, int q, std::vector<double> &slope)
   const int n = atom->nlocal;
   std::vector<double> ahead(n + 1), behind(n + 1);
   for (const double side : {1.0, -1.0}) {
-    const double by[3] = {q == 0 ? side : 0.0, q == 1 ? side : 0.0, q == 2 ? side : 0.0};
-    Shift shift(atom, by, true);
+    const Places kept(atom);
+    for (int i = 0; i < n; i++) atom->x[i][q] += side * atom->radius[i];
     settings.velocity[p].evaluate(lmp, igroup, (side > 0.0 ? ahead : behind).data(), 1);
   }
   slope.resize(n + 1);
@@ -274,7 +252,9 @@ void Ambient::read_vorticity()
  * times its radius; what is no formula in x, y, z stays as it is. */
 void Ambient::values_around(const double by[3], std::vector<double> &values)
 {
-  Shift shift(atom, by, true);
+  const Places kept(atom);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) atom->x[i][d] += by[d] * atom->radius[i];
   for (int d = 0; d < 3; d++)
     if (settings.velocity[d].is_atom_style())
       settings.velocity[d].evaluate(lmp, igroup, values.data() + d, 3);
@@ -334,11 +314,10 @@ void Ambient::read_grid()
   sd_flow_frame frame;
   if (sd_flow_grid_frame(&grid, now, &frame) != SD_OK) {
     const sd_grid_axis &axis = grid.axis[SD_GRID_TIME];
-    fail(lmp,
-         command + ": keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
-             ": the time " + text(now) + " is outside of the series in '" + settings.grid->path +
-             "', which goes from " + text(axis.at[0]) + " to " + text(axis.at[axis.n - 1]) +
-             "; end the line of its axis with clamp or periodic to go on");
+    voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
+               ": the time " + text(now) + " is outside of the series in '" + settings.grid->path +
+               "', which goes from " + text(axis.at[0]) + " to " + text(axis.at[axis.n - 1]) +
+               "; end the line of its axis with clamp or periodic to go on");
   }
   // so many at once that memory keeps up, and few enough for the stack
   constexpr size_t BLOCK = 64;
@@ -467,8 +446,8 @@ void Ambient::complain(long long first) const
       "keyword visc: its viscosity " + text(sum[VALUE]) + " must be > 0",
       "keyword fluid_velocity: " + outside_of_grid(sum + PLACE),
       "keyword fluid_vorticity: the vorticity of the fluid there is not a finite number"};
-  fail(lmp, command + ": step " + std::to_string(update->ntimestep) + ", atom " +
-                std::to_string(first / 16) + ": " + why[fault]);
+  voice.fail("step " + std::to_string(update->ntimestep) + ", atom " + std::to_string(first / 16) +
+             ": " + why[fault]);
 }
 
 double Ambient::memory_usage() const

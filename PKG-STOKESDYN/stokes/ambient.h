@@ -18,6 +18,7 @@
 #include "sd_constants.h"
 #include "sd_flow.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,8 +44,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
     std::string group = "all";
   } settings;
 
-  Ambient(LAMMPS_NS::LAMMPS *lmp, const std::string &command, Epochs &epochs) :
-      Pointers(lmp), command(command), epochs(epochs)
+  Ambient(const Voice &voice, Epochs &epochs) :
+      Pointers(voice.lmp), voice(voice), epochs(epochs)
   {
   }
 
@@ -82,6 +83,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
     const double a = atom->radius[i];
     return 8.0 * SD_PI * viscosity(i) * a * a * a;
   }
+  /* Of component d of a row: drag, or of those that turn spin */
+  double resistance(int i, size_t d) const { return d < 3 ? drag(i) : spin(i); }
   /* Of the fluid: velocity [3], with spins angular velocity [3]. */
   void fluid(int i, double *s) const
   {
@@ -125,7 +128,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  std::string command;
+  const Voice voice;
   Epochs &epochs;
   LAMMPS_NS::Region *region = nullptr;
   int igroup = 0, groupbit = 0;
@@ -141,6 +144,23 @@ class Ambient : protected LAMMPS_NS::Pointers {
   BoxMotion motion;
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient, curvature;
+
+  /* The places of all atoms, which others may take meanwhile: they are put back whatever happens. */
+  class Places {
+   public:
+    explicit Places(LAMMPS_NS::Atom *atom) : atom(atom)
+    {
+      for (int i = 0; i < atom->nlocal; i++) x.insert(x.end(), atom->x[i], atom->x[i] + 3);
+    }
+    ~Places()
+    {
+      for (size_t i = 0; i < x.size() / 3; i++) std::copy_n(&x[3 * i], 3, atom->x[i]);
+    }
+
+   private:
+    LAMMPS_NS::Atom *atom;
+    std::vector<double> x;
+  };
 
   std::vector<double> formulas_at(const std::vector<double> &x);
   bool group_stands() const;

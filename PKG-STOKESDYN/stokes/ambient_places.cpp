@@ -17,26 +17,6 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-namespace {
-  /* Holds the positions of the atoms that are moved, and puts them back whatever happens. */
-  class Elsewhere {
-   public:
-    Elsewhere(Atom *atom, const std::vector<int> &who) : atom(atom), who(who), x(3 * who.size())
-    {
-      for (size_t k = 0; k < who.size(); k++) std::copy_n(atom->x[who[k]], 3, &x[3 * k]);
-    }
-    ~Elsewhere()
-    {
-      for (size_t k = 0; k < who.size(); k++) std::copy_n(&x[3 * k], 3, atom->x[who[k]]);
-    }
-
-   private:
-    Atom *atom;
-    const std::vector<int> &who;
-    std::vector<double> x;
-  };
-}    // namespace
-
 /* As many places at a time as there are atoms on all ranks. In the first round all atoms are at the
  * first place: a velocity that still differs among them is not that of a place. */
 std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
@@ -52,7 +32,7 @@ std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
   }
   std::vector<double> u(x.size() + 1, 0.0), value(atom->nlocal + 1);
   const size_t places = x.size() / 3;
-  Elsewhere elsewhere(atom, those);
+  const Places kept(atom);
   double extremes[6];
   std::fill_n(extremes, 6, -INFINITY);
   modify->clearstep_compute();
@@ -79,12 +59,10 @@ std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
   MPI_Allreduce(MPI_IN_PLACE, extremes, 6, MPI_DOUBLE, MPI_MAX, world);
   for (int d = 0; d < 3; d++)
     if (extremes[d] + extremes[3 + d] > 1e-12 * std::fabs(extremes[d]))
-      fail(lmp,
-           command + ": keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
-               ": the velocity belongs to atoms (" + text(-extremes[3 + d]) + " to " +
-               text(extremes[d]) +
-               " at one place), so that it is not known between them; use formulas in x, y, z, or "
-               "grid FILE, or box");
+      voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
+                 ": the velocity belongs to atoms (" + text(-extremes[3 + d]) + " to " +
+                 text(extremes[d]) + " at one place), so that it is not known between them; use "
+                 "formulas in x, y, z, or grid FILE, or box");
   MPI_Allreduce(MPI_IN_PLACE, u.data(), mpi_count((double) x.size()), MPI_DOUBLE, MPI_SUM, world);
   return std::vector<double>(u.begin() + begin_of_mine, u.begin() + begin_of_mine + mine.size());
 }
@@ -118,9 +96,8 @@ std::vector<double> Ambient::at_places(const std::vector<double> &x)
   const std::array<double, 4> mine = {wrong[0], wrong[1], wrong[2], wrong[3]};
   for (const auto &there : from_all(world, std::vector<std::array<double, 4>>(1, mine)))
     if (there[0] > 0.0)
-      fail(lmp,
-           command + ": keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
-               ": a point of fix stokes_dynamics/field: " + outside_of_grid(&there[1]));
+      voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
+                 ": a point of fix stokes_dynamics/field: " + outside_of_grid(&there[1]));
   return out;
 }
 

@@ -8,15 +8,18 @@
 #include "sd_status.h"
 
 #include <new>
+#include <type_traits>
 
 namespace StokesDyn {
 
-/* The body of a function that the core calls. An exception ends there, as a status that the core
- * hands back to its caller; LAMMPS has printed the text of its own by then. */
+/* The body of a function that the core calls: SD_OK, or what it returns. An exception ends there, as
+ * a status that the core hands back to its caller; LAMMPS has printed the text of its own by then. */
 template <class Body> sd_status callback(const Body &body) noexcept
 {
   try {
-    return body();
+    if constexpr (!std::is_void_v<decltype(body())>) return body();
+    body();
+    return SD_OK;
   } catch (const std::bad_alloc &) {
     return SD_ENOMEMORY;
   } catch (...) {
@@ -26,11 +29,14 @@ template <class Body> sd_status callback(const Body &body) noexcept
 
 /* Ends the run for a status of the core. Memory and callbacks fail on one rank, while the others
  * wait for it; everything else is the same on all. */
-[[noreturn]] inline void fail_by(LAMMPS_NS::LAMMPS *lmp, sd_status status,
-                                 const std::string &message)
+[[noreturn]] inline void fail_by(const Voice &voice, sd_status status, const std::string &what)
 {
-  if (status == SD_ENOMEMORY || status == SD_ECALLBACK) fail_one(lmp, message);
-  fail(lmp, message);
+  if (status == SD_ENOMEMORY || status == SD_ECALLBACK) voice.fail_one(what);
+  voice.fail(what);
+}
+[[noreturn]] inline void fail_by(const Voice &voice, sd_status status)
+{
+  fail_by(voice, status, sd_status_string(status));
 }
 
 }    // namespace StokesDyn

@@ -7,7 +7,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "neighbor.h"
-#include "update.h"
 
 #include "sd_linear.h"
 #include "sd_neighbor.h"
@@ -20,61 +19,57 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-void check_room_of_blas(LAMMPS *lmp, const std::string &command)
+void check_room_of_blas(const Voice &voice)
 {
   static bool there = false;    // of the process, as BLAS's memory is
   if (!there && sd_linear_room() != SD_OK)
-    fail_one(lmp,
-             command + ": out of memory: linear algebra (BLAS) needs 0.14 GB of address space at "
-                       "once on each rank; is there a limit (ulimit -v)? With precondition none and "
-                       "without rigid_clumps none is needed");
+    voice.fail_one("out of memory: linear algebra (BLAS) needs 0.14 GB of address space at once on "
+                   "each rank; is there a limit (ulimit -v)? With precondition none and without "
+                   "rigid_clumps none is needed");
   there = true;
 }
 
-void check_boundaries(LAMMPS *lmp, const std::string &command, const Scene::Settings &settings)
+void check_boundaries(const Voice &voice, const Scene::Settings &settings)
 {
-  const Domain *domain = lmp->domain;
+  const Domain *domain = voice.lmp->domain;
   int periodic = 0;
   for (int d = 0; d < domain->dimension; d++) periodic += domain->periodicity[d] != 0;
   if (periodic == 0) return;
   if (domain->dimension == 2)
-    fail(lmp, command + ": keyword cut_off_distance: 'inf' in two dimensions requires boundary f f p "
-                        "(or s, m in x and y): there are no sums over periodic images of a plane");
+    voice.fail("keyword cut_off_distance: 'inf' in two dimensions requires boundary f f p (or s, m "
+               "in x and y): there are no sums over periodic images of a plane");
   if (periodic < 3)
-    fail(lmp,
-         command +
-             ": keyword cut_off_distance: 'inf' requires a box that is periodic in all three "
-             "directions (boundary p p p) or in none: with others the flow far from a net force is "
-             "not determined. Use boundary p p p with the open directions long enough, or no "
-             "periodic direction, or clumps_only yes");
+    voice.fail("keyword cut_off_distance: 'inf' requires a box that is periodic in all three "
+               "directions (boundary p p p) or in none: with others the flow far from a net force "
+               "is not determined. Use boundary p p p with the open directions long enough, or no "
+               "periodic direction, or clumps_only yes");
   if (settings.tensor == SD_TENSOR_OSEEN)
-    fail(lmp, command + ": keyword tensor: 'oseen' with cut_off_distance inf requires a box that is "
-                        "not periodic");
+    voice.fail("keyword tensor: 'oseen' with cut_off_distance inf requires a box that is not "
+               "periodic");
   if (settings.far_field == Scene::Settings::DIRECT)
-    fail(lmp, command + ": keywords far_field direct and precondition sparse require a box that is "
-                        "not periodic: only Ewald sums go over all periodic images");
+    voice.fail("keywords far_field direct and precondition sparse require a box that is not "
+               "periodic: only Ewald sums go over all periodic images");
 }
 
-void warn_of_misfit(LAMMPS *lmp, const std::string &command, double misfit)
+void warn_of_misfit(const Voice &voice, double misfit)
 {
   if (misfit < 1e-9) return;
-  warn(lmp, command + ": keyword fluid_velocity: the formula does not have the period of the "
-       "box, and spheres near its faces feel the jump; a shear flow needs a triclinic box that "
-       "fix deform shears with it, and fluid_velocity box");
+  voice.warn("keyword fluid_velocity: the formula does not have the period of the box, and spheres "
+             "near its faces feel the jump; a shear flow needs a triclinic box that fix deform "
+             "shears with it, and fluid_velocity box");
 }
 
-void warn_of_shared_films(LAMMPS *lmp, const std::string &command, double spheres)
+void warn_of_shared_films(const Voice &voice, double spheres)
 {
-  if (spheres <= 200.0 || lmp->domain->xperiodic) return;
-  warn(lmp, command +
-       ": keyword lubrication: with one point per sphere it slows down a cloud of " +
-       text(spheres) + " close spheres that fall together: by 5 % at 200, by 26 % at 2000; use "
-       "multiblob 12");
+  if (spheres <= 200.0 || voice.lmp->domain->xperiodic) return;
+  voice.warn("keyword lubrication: with one point per sphere it slows down a cloud of " +
+             text(spheres) + " close spheres that fall together: by 5 % at 200, by 26 % at 2000; "
+             "use multiblob 12");
 }
 
-void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &scene)
+void refuse_close_oseen(const Voice &voice, const Scene &scene)
 {
-  const Comm *comm = lmp->comm;
+  const Comm *comm = voice.lmp->comm;
   const sd_law law = scene.law();
   double mine, largest;
   sd_status status;
@@ -89,19 +84,16 @@ void refuse_close_oseen(LAMMPS *lmp, const std::string &command, const Scene &sc
     status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_copies(), 0, scene.size(),
                                &mine);
   }
-  if (status != SD_OK) fail_one(lmp, command + ": " + sd_status_string(status));
-  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
+  if (status != SD_OK) voice.fail_one(sd_status_string(status));
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, voice.lmp->world);
   if (largest >= 1.0 - 1e-12)
-    fail(lmp,
-         command + ": step " + std::to_string(lmp->update->ntimestep) +
-             ": the mobility matrix is not positive definite with tensor oseen: two spheres are "
-             "too close for it, 1.5 "
-             "sqrt(a_i a_j)/R" +
-             (law.taper == SD_TAPER_NONE ? "" : " times the taper") + " is " + text(largest) +
-             " and must be below 1; use tensor rpy");
+    voice.at_step().fail("the mobility matrix is not positive definite with tensor oseen: two "
+                         "spheres are too close for it, 1.5 sqrt(a_i a_j)/R" +
+                         std::string(law.taper == SD_TAPER_NONE ?"" : " times the taper") +
+                         " is " + text(largest) + " and must be below 1; use tensor rpy");
 }
 
-void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &scene)
+void warn_of_short_cutoff(const Voice &voice, const Scene &scene)
 {
   struct Sight {
     tagint molecule;
@@ -121,17 +113,15 @@ void warn_of_short_cutoff(LAMMPS *lmp, const std::string &command, const Scene &
   std::vector<Sight> mine;
   for (const auto &clump : clumps) mine.push_back(clump.second);
   clumps.clear();
-  for (const Sight &part : from_all(lmp->world, mine)) add(part);
+  for (const Sight &part : from_all(voice.lmp->world, mine)) add(part);
 
-  if (lmp->comm->me != 0) return;
   for (const auto &clump : clumps) {
     const bigint n = clump.second.spheres, left_out = n * (n - 1) - clump.second.seen;
     if (left_out == 0) continue;
-    warn(lmp, command + ": cut_off_distance " + text(scene.settings.cutoff) + " is shorter than "
-         "the clump of molecule " + std::to_string(clump.first) + ": " +
-         std::to_string(left_out / 2) + " of its " + std::to_string(n * (n - 1) / 2) + " pairs "
-         "do not see each other, so its drag is too large; clumps_only yes needs no "
-         "cut_off_distance");
+    voice.warn("cut_off_distance " + text(scene.settings.cutoff) + " is shorter than the clump of "
+               "molecule " + std::to_string(clump.first) + ": " + std::to_string(left_out / 2) +
+               " of its " + std::to_string(n * (n - 1) / 2) + " pairs do not see each other, so "
+               "its drag is too large; clumps_only yes needs no cut_off_distance");
     return;
   }
 }

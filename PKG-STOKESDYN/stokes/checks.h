@@ -5,35 +5,33 @@
 
 #include "scene.h"
 
-#include <string>
-#include <vector>
 
 namespace StokesDyn {
 
 /* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
-void check_room_of_blas(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+void check_room_of_blas(const Voice &voice);
 
 /* Without a cut-off the box is periodic in all directions or in none; what Ewald sums have not got
  * needs an open one. */
-void check_boundaries(LAMMPS_NS::LAMMPS *lmp, const std::string &command,
+void check_boundaries(const Voice &voice,
                       const Scene::Settings &settings);
 
 /* A shear flow, say, does not fit a periodic box, unless that is sheared with it. */
-void warn_of_misfit(LAMMPS_NS::LAMMPS *lmp, const std::string &command, double misfit);
+void warn_of_misfit(const Voice &voice, double misfit);
 
 /* Films of single points share what close pairs resist of their common motion, and resist it
  * against a fluid at rest: 5 % too much for 200 spheres that fall together, 26 % for 2000, whose
  * fluid falls with them. */
-void warn_of_shared_films(LAMMPS_NS::LAMMPS *lmp, const std::string &command, double spheres);
+void warn_of_shared_films(const Voice &voice, double spheres);
 
 /* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10
  * % for a chain of ten touching spheres that see each other up to 10.5 a. Tells of the clump with
  * the lowest molecule ID. */
-void warn_of_short_cutoff(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const Scene &scene);
+void warn_of_short_cutoff(const Voice &voice, const Scene &scene);
 
 /* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and
  * none of them means anything. */
-void refuse_close_oseen(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const Scene &scene);
+void refuse_close_oseen(const Voice &voice, const Scene &scene);
 
 /* LAMMPS sorts its atoms into bins of half the cut-off, which is small where a style has none. In
  * an open box that is mostly empty the bins would take most of the memory, or be too many: then

@@ -24,8 +24,7 @@ ClumpShape::~ClumpShape()
   sd_body_shape_free(&body);
 }
 
-ClumpShapes::ClumpShapes(LAMMPS *lmp, const std::string &command) :
-    Pointers(lmp), command(command), shells()
+ClumpShapes::ClumpShapes(const Voice &voice) : Pointers(voice.lmp), voice(voice), shells()
 {
 }
 
@@ -125,16 +124,15 @@ namespace {
 void ClumpShapes::cannot_be_solved(int64_t molecule, int spheres, const ClumpModel &model,
                                    sd_status status, double need) const
 {
-  const std::string who = command + ": keyword rigid_clumps: the clump of molecule " +
-      std::to_string(molecule) + ", " + std::to_string(spheres) + " spheres, shell " +
-      std::to_string(model.shell) + ": ";
+  const Voice who = voice.of("keyword rigid_clumps: the clump of molecule " +
+                             std::to_string(molecule) + ", " + std::to_string(spheres) +
+                             " spheres, shell " + std::to_string(model.shell));
   if (status == SD_ENOMEMORY)
-    fail(lmp,
-         who + "its resistance needs " + text(need / 1e9) + " GB, more than " +
+    who.fail("its resistance needs " + text(need / 1e9) + " GB, more than " +
              text(SOLVE_MEMORY / 1e9) + "; use a smaller shell");
   if (status == SD_ESINGULAR)
-    fail(lmp, who + "two of its spheres of equal radius are at one point");
-  fail(lmp, who + sd_status_string(status));
+    who.fail("two of its spheres of equal radius are at one point");
+  who.fail(sd_status_string(status));
 }
 
 /* Resistances of the new shapes, shared out among the ranks. */
@@ -176,7 +174,7 @@ void ClumpShapes::solve(const ClumpModel &model)
     MPI_Bcast(&clump, sizeof(clump), MPI_BYTE, root, world);
     const int size = 72 * s.shape.n;
     clump.table = comm->me == root ? s.clump.table : (double *) malloc(sizeof(double) * size);
-    if (!clump.table) fail_one(lmp, command + ": keyword rigid_clumps: out of memory");
+    if (!clump.table) voice.fail_one("keyword rigid_clumps: out of memory");
     s.clump = clump;
     MPI_Bcast(s.clump.table, size, MPI_DOUBLE, root, world);
     sd_clump_noise_of(&s.clump, &s.noise);
@@ -186,20 +184,17 @@ void ClumpShapes::solve(const ClumpModel &model)
 }
 
 /* What may fail where a shape is first needed */
-static void check_blocks(LAMMPS *lmp, const std::string &command, const ClumpShape &s,
-                         sd_status status)
+static void check_blocks(const Voice &voice, const ClumpShape &s, sd_status status)
 {
   if (status != SD_OK)
-    fail_one(lmp,
-             command + ": keyword rigid_clumps: the clump of molecule " +
-                 std::to_string(s.molecule) + ", " + std::to_string(s.shape.n) +
-                 " spheres: " + sd_status_string(status));
+    voice.fail_one("keyword rigid_clumps: the clump of molecule " + std::to_string(s.molecule) +
+                   ", " + std::to_string(s.shape.n) + " spheres: " + sd_status_string(status));
 }
 
 const sd_body_shape &ClumpShapes::blocks(const ClumpShape &s, const ClumpModel &model) const
 {
   if (s.body.m == 0)
-    check_blocks(lmp, command, s,
+    check_blocks(voice, s,
                  sd_body_shape_create(&s.shape, model.shell > 1 ? &s.clump : nullptr, &s.body));
   return s.body;
 }
@@ -207,15 +202,15 @@ const sd_body_shape &ClumpShapes::blocks(const ClumpShape &s, const ClumpModel &
 const sd_multiblob_shape &ClumpShapes::points(const ClumpShape &s, const sd_multiblob &model) const
 {
   if (s.points.spheres == 0)
-    check_blocks(lmp, command, s, sd_multiblob_shape_create(&model, &s.shape, &s.points));
+    check_blocks(voice, s, sd_multiblob_shape_create(&model, &s.shape, &s.points));
   return s.points;
 }
 
 void ClumpShapes::take_root(const ClumpShape &s) const
 {
-  if (s.body.m > 0) check_blocks(lmp, command, s, sd_body_shape_take_root(&s.body));
+  if (s.body.m > 0) check_blocks(voice, s, sd_body_shape_take_root(&s.body));
   if (s.points.spheres > 0)
-    check_blocks(lmp, command, s, sd_body_shape_take_root(&s.points.points));
+    check_blocks(voice, s, sd_body_shape_take_root(&s.points.points));
 }
 
 void ClumpShapes::announce(const ClumpShape &s, double seconds) const

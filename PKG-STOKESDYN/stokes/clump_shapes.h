@@ -3,6 +3,7 @@
 #ifndef SD_CLUMP_SHAPES_H
 #define SD_CLUMP_SHAPES_H
 
+#include "keywords.h"
 #include "pointers.h"
 
 #include "sd_body_shape.h"
@@ -14,7 +15,6 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
@@ -49,7 +49,7 @@ struct ClumpGeometry {
 
 class ClumpShapes : protected LAMMPS_NS::Pointers {
  public:
-  ClumpShapes(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  explicit ClumpShapes(const Voice &voice);
   ~ClumpShapes();
   ClumpShapes(const ClumpShapes &) = delete;
   ClumpShapes &operator=(const ClumpShapes &) = delete;
@@ -85,7 +85,7 @@ class ClumpShapes : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  std::string command;
+  const Voice voice;
   std::map<int, std::unique_ptr<ClumpShape>> shapes;    // by number
   std::multimap<double, const ClumpShape *> by_size;
   int solved = 0;    // shapes up to this number have been

@@ -18,12 +18,10 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = "Compute stokes_dynamics/stress";
-
 ComputeStokesDynamicsStress::ComputeStokesDynamicsStress(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg)
+    Compute(lmp, narg, arg), voice(lmp, "Compute stokes_dynamics/stress")
 {
-  if (narg != 3) fail(lmp, COMMAND + ": it has no keywords, but there is '" + arg[3] + "'");
+  if (narg != 3) voice.fail("it has no keywords, but there is '" + std::string(arg[3]) + "'");
   vector_flag = 1;
   size_vector = 18;
   extvector = 0;
@@ -43,7 +41,7 @@ Hydrodynamics &ComputeStokesDynamicsStress::hydrodynamics() const
 {
   Hydrodynamics *hydro = Hydrodynamics::of(lmp);
   if (!hydro || !hydro->settings.shells.on())
-    fail(lmp, COMMAND + ": it requires pair_style stokes_dynamics with multiblob 12 or 42");
+    voice.fail("it requires pair_style stokes_dynamics with multiblob 12 or 42");
   return *hydro;
 }
 
@@ -56,9 +54,8 @@ void ComputeStokesDynamicsStress::find_moments()
 {
   Hydrodynamics &hydro = hydrodynamics();
   if (!hydro.computed_in((double) update->ntimestep))
-    fail(lmp,
-         COMMAND + ": step " + std::to_string(update->ntimestep) +
-             ": the forces of this step have not been computed; use this compute in a run");
+    voice.at_step().fail("the forces of this step have not been computed; use this compute in a "
+                         "run");
   hydro.stress(moments);
   for (int i = 0; i < atom->nlocal; i++)
     if (!(atom->mask[i] & groupbit))
@@ -83,13 +80,11 @@ void ComputeStokesDynamicsStress::compute_vector()
 {
   invoked_vector = update->ntimestep;
   if (!domain->xperiodic || !domain->yperiodic || !domain->zperiodic)
-    fail(lmp, COMMAND + ": its vector is an average over a periodic box, and this box is not periodic; "
-                        "the per-atom array needs no periodic box");
+    voice.fail("its vector is an average over a periodic box, and this box is not periodic; the "
+               "per-atom array needs no periodic box");
   if (update->vflag_global != invoked_vector)
-    fail(lmp,
-         COMMAND +
-             ": the virials of other forces were not computed in this step; name this compute in "
-             "thermo_style");
+    voice.fail("the virials of other forces were not computed in this step; name this compute in "
+               "thermo_style");
   find_moments();
   double sums[18] = {0.0};
   for (int i = 0; i < atom->nlocal; i++)

@@ -5,6 +5,8 @@
 
 #include "compute.h"
 
+#include "keywords.h"
+
 #include <vector>
 
 namespace StokesDyn {
@@ -23,6 +25,7 @@ class ComputeStokesDynamicsStress : public LAMMPS_NS::Compute {
   double memory_usage() override;
 
  private:
+  const Voice voice;
   enum { COLUMNS = 12 };
   std::vector<double> moments;
   /* LAMMPS reads rows through these */

@@ -9,7 +9,6 @@
 #include "domain.h"
 #include "input.h"
 #include "update.h"
-#include "utils.h"
 #include "variable.h"
 
 #include <cmath>
@@ -22,10 +21,7 @@ static const double TWO_PI = 6.283185307179586477;
 
 static FixDeform *deform_of(LAMMPS *lmp)
 {
-  for (int i = 0; i < lmp->modify->nfix; i++)
-    if (utils::strmatch(lmp->modify->fix[i]->style, "^deform"))
-      return static_cast<FixDeform *>(lmp->modify->fix[i]);
-  return nullptr;
+  return static_cast<FixDeform *>(fix_like(lmp, "^deform"));
 }
 
 namespace {
@@ -107,9 +103,10 @@ template <class Set> static Edge volume_edge(const Set &set, int d, const Edge *
   return {now, rate * now};
 }
 
-BoxMotion motion_of_box(LAMMPS *lmp, const std::string &command)
+BoxMotion motion_of_box(const Voice &voice)
 {
   BoxMotion motion;
+  LAMMPS *lmp = voice.lmp;
   FixDeform *deform = deform_of(lmp);
   if (!deform) return motion;
   motion.deforms = true;
@@ -121,10 +118,9 @@ BoxMotion motion_of_box(LAMMPS *lmp, const std::string &command)
     edge[d] = {d < 3 || domain->triclinic ? domain->h[d] : 0.0, 0.0};
     if (set[d].style == Compat::NONE || set[d].style == Compat::VOLUME) continue;
     if (set[d].style < Compat::NONE || set[d].style > Compat::VARIABLE)
-      fail(lmp,
-           command + ": fix " + deform->id + " of style " + deform->style +
-               " changes the box at a rate that the pair style does not know: use fix deform, or "
-               "fluid_velocity 0 0 0");
+      voice.fail("fix " + std::string(deform->id) + " of style " + deform->style +
+                 " changes the box at a rate that the pair style does not know: use fix deform, or "
+                 "fluid_velocity 0 0 0");
     // by what length an erate is one: its own, or for a tilt that of the edge that it leans over
     const auto &of = set[d < 3 ? d : d == 5 ? 1 : 2];
     const double length = of.hi_start - of.lo_start;
@@ -147,24 +143,21 @@ BoxMotion motion_of_box(LAMMPS *lmp, const std::string &command)
   return motion;
 }
 
-void check_deform(LAMMPS *lmp, const std::string &command, bool inertia, bool moving, bool clumps)
+void check_deform(const Voice &voice, bool inertia, bool moving, bool clumps)
 {
-  const FixDeform *deform = deform_of(lmp);
+  const FixDeform *deform = deform_of(voice.lmp);
   if (!deform) return;
-  const std::string name = command + ": fix " + deform->id + " of style " + deform->style + ": ";
+  const Voice name = voice.of(name_of(deform));
   const bool x = deform->remapflag == Domain::X_REMAP, v = deform->remapflag == Domain::V_REMAP;
   if (x && moving)
-    fail(lmp,
-         name + "remap x moves the spheres with the box, and the fluid carries them as well (keyword "
-                "fluid_velocity): they would move twice; use remap v");
+    name.fail("remap x moves the spheres with the box, and the fluid carries them as well (keyword "
+              "fluid_velocity): they would move twice; use remap v");
   if (x && clumps)
-    fail(lmp,
-         name + "remap x moves the spheres of a rigid clump apart: use remap v and fluid_velocity "
-                "box");
+    name.fail("remap x moves the spheres of a rigid clump apart: use remap v and fluid_velocity "
+              "box");
   if (inertia && moving && !v)
-    fail(lmp,
-         name + "a sphere that crosses a face of the box needs the velocity of its image, since the "
-                "fluid moves with the box (keyword fluid_velocity): use remap v");
+    name.fail("a sphere that crosses a face of the box needs the velocity of its image, since the "
+              "fluid moves with the box (keyword fluid_velocity): use remap v");
 }
 
 void bring_box_to_this_step(LAMMPS *lmp)

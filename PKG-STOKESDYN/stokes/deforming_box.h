@@ -5,9 +5,7 @@
 #ifndef SD_DEFORMING_BOX_H
 #define SD_DEFORMING_BOX_H
 
-#include "lammps.h"
-
-#include <string>
+#include "keywords.h"
 
 namespace StokesDyn {
 
@@ -30,13 +28,13 @@ struct BoxMotion {
 };
 
 /* Of this step. Error: a style of fix deform that says no rate (deform/pressure). */
-BoxMotion motion_of_box(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+BoxMotion motion_of_box(const Voice &voice);
 
 /* Does fix deform change the box as the fluid and the spheres need it? Errors that name it:
  *   remap x      moves the spheres with the box; where the fluid carries them they would move twice
  *   remap none   a sphere with inertia that crosses a face keeps the velocity of the other side
  * inertia: velocities are LAMMPS's; moving: the fluid does not rest; clumps: rigid ones */
-void check_deform(LAMMPS_NS::LAMMPS *lmp, const std::string &command, bool inertia, bool moving,
+void check_deform(const Voice &voice, bool inertia, bool moving,
                   bool clumps);
 
 /* LAMMPS brings the box to a step at the end of it, and until then forces know that of the step

@@ -13,12 +13,11 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = "Fix stokes_dynamics";
 
 FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), rows(9), total()
+    RowsFix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics"), rows(9), total()
 {
-  Keywords in(lmp, COMMAND, words(narg, arg), 3);
+  Keywords in(lmp, voice.command, words(narg, arg), 3);
   in.parse({{"apply", [&] { apply = in.yes_no() ? YES : NO; }}});
   scalar_flag = 1;
   vector_flag = 1;
@@ -40,14 +39,10 @@ int FixStokesDynamics::setmask()
   return FixConst::POST_FORCE;
 }
 
-/* Looked up whenever it is needed: the pair style may be another one by now. */
 Hydrodynamics &FixStokesDynamics::hydrodynamics() const
 {
-  Hydrodynamics *hydro = Hydrodynamics::of(lmp);
-  if (!hydro)
-    fail(lmp,
-         COMMAND + ": there is no pair_style stokes_dynamics whose force it could apply or report");
-  return *hydro;
+  return Hydrodynamics::of(
+      voice, "there is no pair_style stokes_dynamics whose force it could apply or report");
 }
 
 void *FixStokesDynamics::extract(const char *name, int &dim)
@@ -68,17 +63,14 @@ void FixStokesDynamics::init()
   const Hydrodynamics &hydro = hydrodynamics();
   find_whether_it_applies(hydro);
   if (apply == YES && hydro.settings.add_force)
-    fail(lmp,
-         COMMAND +
-             ": keyword apply: 'yes' together with add_force yes of pair_style stokes_dynamics "
-             "would count the force twice");
+    voice.fail("keyword apply: 'yes' together with add_force yes of pair_style stokes_dynamics "
+               "would count the force twice");
   if (!applies) return;
   for (Fix *other : fixes_of(lmp, STYLE)) {
     int dim;
     if (other != this && *(bool *) other->extract("applies", dim))
-      fail(lmp,
-           COMMAND + ": keyword apply: the fixes " + std::string(id) + " and " + other->id +
-               " both apply the force, which would count twice; give one of them apply no");
+      voice.fail("keyword apply: the fixes " + std::string(id) + " and " + other->id +
+                 " both apply the force, which would count twice; give one of them apply no");
   }
 }
 
@@ -91,8 +83,7 @@ void FixStokesDynamics::post_force(int /*vflag*/)
 {
   const Hydrodynamics &hydro = hydrodynamics();
   if (!hydro.computed_in(update->ntimestep))
-    fail(lmp,
-         COMMAND + ": the pair style was not computed in this step (pair_modify compute no?)");
+    voice.fail("the pair style was not computed in this step (pair_modify compute no?)");
   for (double &t : total) t = 0.0;
   const Ambient &ambient = hydro.ambient;
   if (cleared.first_in(hydro.scene.since().selection))

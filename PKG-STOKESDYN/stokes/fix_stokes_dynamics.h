@@ -5,6 +5,7 @@
 #define SD_FIX_STOKES_DYNAMICS_H
 
 #include "epochs.h"
+#include "keywords.h"
 #include "rows_fix.h"
 
 namespace StokesDyn {
@@ -27,6 +28,7 @@ class FixStokesDynamics : public RowsFix {
   void *extract(const char *, int &) override;
 
  private:
+  const Voice voice;
   enum { NO, YES, UNSAID } apply = UNSAID;
   bool applies = false;
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */

@@ -1,7 +1,6 @@
 #include "fix_stokes_dynamics_field.h"
 
 #include "callback.h"
-#include "fixes.h"
 #include "hydrodynamics.h"
 #include "image_file.h"
 #include "keywords.h"
@@ -13,19 +12,16 @@
 #include "update.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = "Fix stokes_dynamics/field";
 static const double MOST_POINTS = 2147483647.0 / 3.0;
 
 FixStokesDynamicsField::FixStokesDynamicsField(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg)
+    Fix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics/field")
 {
-  Keywords in(lmp, COMMAND, words(narg, arg), 3);
+  Keywords in(lmp, voice.command, words(narg, arg), 3);
   nevery = (int) in.positional("N").integer(1);
   file = in.positional("FILE").word();
   in.require(file.find('*') != std::string::npos,
@@ -62,22 +58,19 @@ int FixStokesDynamicsField::setmask()
 
 Hydrodynamics &FixStokesDynamicsField::hydrodynamics() const
 {
-  Hydrodynamics *hydro = Hydrodynamics::of(lmp);
-  if (!hydro) fail(lmp, COMMAND + ": there is no pair_style stokes_dynamics whose flow it could write");
-  return *hydro;
+  return Hydrodynamics::of(
+      voice, "there is no pair_style stokes_dynamics whose flow it could write");
 }
 
 void FixStokesDynamicsField::init()
 {
   if (hydrodynamics().settings.scene.wall.sign)
-    fail(lmp,
-         COMMAND + ": the pair style has keyword wall, whose images are not in the flow that this fix "
-                   "knows; use it without a wall");
+    voice.fail("the pair style has keyword wall, whose images are not in the flow that this fix "
+               "knows; use it without a wall");
   const int directions = domain->xperiodic + domain->yperiodic + domain->zperiodic;
   if (directions != 0 && directions != 3)
-    fail(lmp,
-         COMMAND + ": the box is periodic in " + std::to_string(directions) +
-             " of 3 directions: the flow is known for a box that is periodic in all or in none");
+    voice.fail("the box is periodic in " + std::to_string(directions) + " of 3 directions: the "
+               "flow is known for a box that is periodic in all or in none");
 }
 
 /* Without inertia velocities are found when the setup of all fixes is done, and then this is called
@@ -85,6 +78,12 @@ void FixStokesDynamicsField::init()
 void FixStokesDynamicsField::setup(int /*vflag*/)
 {
   if (!hydrodynamics().overdamped) end_of_step();
+}
+
+/* Planes of the grid that rank p and those before it have */
+int FixStokesDynamicsField::end_of_share(int planes, int p) const
+{
+  return (int) ((bigint) planes * (p + 1) / comm->nprocs);
 }
 
 /* nx ny nz points from corner to corner; a single one is in the middle. */
@@ -99,24 +98,12 @@ sd_field_grid FixStokesDynamicsField::grid() const
     g.lo[d] = points[d] == 1 ? from[d] + 0.5 * length : from[d];
     g.step[d] = points[d] > 1 ? length / (points[d] - 1) : length > 0.0 ? length : 1.0;
     if (!(g.step[d] > 0.0))
-      fail(lmp,
-           COMMAND + ": step " + std::to_string(update->ntimestep) + ": the box from " +
-               text(from[d]) + " to " + text(to[d]) + " leaves no room for the grid");
+      voice.at_step().fail("the box from " + text(from[d]) + " to " + text(to[d]) +
+                           " leaves no room for the grid");
   }
-  g.from = (int) ((bigint) g.n[2] * comm->me / comm->nprocs);
-  g.to = (int) ((bigint) g.n[2] * (comm->me + 1) / comm->nprocs);
+  g.from = end_of_share(g.n[2], comm->me - 1);
+  g.to = end_of_share(g.n[2], comm->me);
   return g;
-}
-
-static sd_ewald_box box_of(const Domain *domain)
-{
-  sd_ewald_box box = {};
-  const StokesDyn::Lattice lattice = StokesDyn::Lattice::of(domain);
-  box.periodic = domain->xperiodic;
-  std::copy_n(lattice.origin, 3, box.origin);
-  std::copy_n(lattice.h, 3, box.edge);
-  for (int d = 0; d < 3; d++) box.tilt[d] = lattice.h[5 - d];    // xy xz yz
-  return box;
 }
 
 static std::vector<double> places_of(const sd_field_grid &g)
@@ -135,43 +122,23 @@ static std::vector<double> places_of(const sd_field_grid &g)
 void FixStokesDynamicsField::add_flow(Hydrodynamics &hydro, const sd_ewald_box &box,
                                       const sd_field_grid &g, double *u)
 {
-  const std::vector<OnFluid> all = from_all(world, hydro.on_fluid());
+  const std::vector<double> all = from_all(world, hydro.on_fluid());
+  const size_t n = all.size() / 10;
   std::vector<double> x, a, F, T;
-  for (const OnFluid &s : all) {
-    x.insert(x.end(), s.x, s.x + 3);
-    a.push_back(s.a);
-    F.insert(F.end(), s.F, s.F + 3);
-    T.insert(T.end(), s.T, s.T + 3);
-  }
+  take_apart(all, n, {{&x, 3}, {&a, 1}, {&F, 3}, {&T, 3}});
   const bool turns = std::any_of(T.begin(), T.end(), [](double t) { return t != 0.0; });
-  const sd_field_sources sources = {(int) all.size(), x.data(), a.data(), F.data(),
+  const sd_field_sources sources = {(int) n, x.data(), a.data(), F.data(),
                                     turns ? T.data() : nullptr};
   static const sd_field_sum SUMS[] = {SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT};
   const Scene::Settings &scene = hydro.settings.scene;
-  sd_world ranks = {};
-  ranks.ctx = this;
-  ranks.me = comm->me;
-  ranks.ranks = comm->nprocs;
-  ranks.sum = [](void *ctx, double *values, int count) {
-    MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM,
-                  static_cast<FixStokesDynamicsField *>(ctx)->world);
-    return SD_OK;
-  };
-  ranks.exchange = [](void *ctx, const double *send, const int *to, double *receive,
-                      const int *from) {
-    return callback([=] {
-      exchange_numbers(static_cast<FixStokesDynamicsField *>(ctx)->world, send, to, receive, from);
-      return SD_OK;
-    });
-  };
+  const sd_world ranks = hydro.scene.ranks();
   const sd_status status = sd_field_add(&tables, SUMS[scene.far_field], &box,
                                         scene.far_field_tolerance, &sources, &g, &ranks, u);
   if (status != SD_OK)
-    fail_by(lmp, status,
-            COMMAND + ": step " + std::to_string(update->ntimestep) + ": the flow of " +
-                std::to_string(all.size()) + " spheres or points at " + std::to_string(g.n[0]) +
-                " x " + std::to_string(g.n[1]) + " x " + std::to_string(g.n[2]) +
-                " points: " + sd_status_string(status));
+    fail_by(voice.at_step(), status, "the flow of " + std::to_string(n) +
+                                     " spheres or points at " + std::to_string(g.n[0]) + " x " +
+                                     std::to_string(g.n[1]) + " x " + std::to_string(g.n[2]) +
+                                     " points: " + sd_status_string(status));
 }
 
 /* In a box that deforms with the fluid an image moves with the flow there. */
@@ -180,17 +147,15 @@ std::vector<unsigned char> FixStokesDynamicsField::put_spheres(const Hydrodynami
                                                                const sd_field_grid &g,
                                                                double *u) const
 {
-  std::vector<std::array<double, 10>> mine;
+  std::vector<double> mine, x, a, V;
   for (int i : hydro.ambient.who()) {
-    const double *y = atom->x[i], *v = atom->v[i], *w = atom->omega[i];
-    mine.push_back({y[0], y[1], y[2], atom->radius[i], v[0], v[1], v[2], w[0], w[1], w[2]});
+    mine.insert(mine.end(), atom->x[i], atom->x[i] + 3);
+    mine.push_back(atom->radius[i]);
+    mine.insert(mine.end(), atom->v[i], atom->v[i] + 3);
+    mine.insert(mine.end(), atom->omega[i], atom->omega[i] + 3);
   }
-  std::vector<double> x, a, V;
-  for (const auto &s : from_all(world, mine)) {
-    x.insert(x.end(), &s[0], &s[3]);
-    a.push_back(s[3]);
-    V.insert(V.end(), &s[4], &s[4] + 6);
-  }
+  const std::vector<double> all = from_all(world, mine);
+  take_apart(all, all.size() / 10, {{&x, 3}, {&a, 1}, {&V, 6}});
   const double *j = hydro.ambient.jumps();    // xx yy zz yz xz xy, velocity and edge
   double jump[9] = {0.0};
   if (j) {
@@ -200,7 +165,7 @@ std::vector<unsigned char> FixStokesDynamicsField::put_spheres(const Hydrodynami
   const sd_field_bodies spheres = {(int) a.size(), x.data(), a.data(), V.data(), j ? jump : nullptr};
   std::vector<unsigned char> inside(sd_field_points(&g) + 1);
   const sd_status status = sd_field_inside(&spheres, &box, &g, u, inside.data());
-  if (status != SD_OK) fail_one(lmp, COMMAND + ": " + sd_status_string(status));
+  if (status != SD_OK) voice.fail_one(sd_status_string(status));
   inside.resize(sd_field_points(&g));
   return inside;
 }
@@ -210,11 +175,9 @@ void FixStokesDynamicsField::end_of_step()
   if (update->ntimestep % nevery) return;
   Hydrodynamics &hydro = hydrodynamics();
   if (!hydro.computed_in((double) update->ntimestep))
-    fail(lmp,
-         COMMAND + ": step " + std::to_string(update->ntimestep) +
-             ": the pair style was not computed in this step (pair_modify compute no?)");
+    voice.at_step().fail("the pair style was not computed in this step (pair_modify compute no?)");
   const sd_field_grid g = grid();
-  const sd_ewald_box box = box_of(domain);
+  const sd_ewald_box box = Scene::box_of(domain);
   std::vector<double> u = hydro.ambient.at_places(places_of(g));
   u.resize(3 * sd_field_points(&g) + 1);
   add_flow(hydro, box, g, u.data());
@@ -227,50 +190,38 @@ void FixStokesDynamicsField::end_of_step()
 void FixStokesDynamicsField::write(const sd_field_grid &g, const std::vector<double> &u,
                                    const std::vector<unsigned char> &inside) const
 {
-  enum { VELOCITY = 11, INSIDE = 12 };
   const size_t star = file.find('*');
   const std::string path =
       file.substr(0, star) + std::to_string(update->ntimestep) + file.substr(star + 1);
   int well = 1;
   if (comm->me != 0) {
-    MPI_Send(const_cast<double *>(u.data()), mpi_count((double) u.size()), MPI_DOUBLE, 0, VELOCITY,
-             world);
+    MPI_Send(const_cast<double *>(u.data()), mpi_count((double) u.size()), MPI_DOUBLE, 0, 0, world);
     MPI_Send(const_cast<unsigned char *>(inside.data()), mpi_count((double) inside.size()),
-             MPI_BYTE, 0, INSIDE, world);
+             MPI_BYTE, 0, 0, world);
   } else {
     const ImageFile::Grid image = {g.lo, g.step, g.n};
     ImageFile out(path, image, hydrodynamics().memory->time());
-    std::vector<double> rows(u);
-    std::vector<unsigned char> marks(inside);
-    const size_t plane = (size_t) g.n[0] * g.n[1];
-    const auto planes_of = [&](int p) {
-      return (size_t) ((bigint) g.n[2] * (p + 1) / comm->nprocs - (bigint) g.n[2] * p / comm->nprocs);
+    const auto put = [&](auto numbers, MPI_Datatype type, size_t of_point) {
+      const size_t of_plane = of_point * g.n[0] * g.n[1];
+      for (int p = 0; p < comm->nprocs; p++) {
+        numbers.resize(of_plane * (end_of_share(g.n[2], p) - end_of_share(g.n[2], p - 1)));
+        if (p > 0)
+          MPI_Recv(numbers.data(), mpi_count((double) numbers.size()), type, p, 0, world,
+                   MPI_STATUS_IGNORE);
+        out.put(numbers.data(), sizeof(numbers[0]) * numbers.size());
+      }
+      out.end();
     };
     out.begin("velocity", "Float64", 3, sizeof(double));
-    out.put(rows.data(), sizeof(double) * rows.size());
-    for (int p = 1; p < comm->nprocs; p++) {
-      rows.resize(3 * plane * planes_of(p));
-      MPI_Recv(rows.data(), mpi_count((double) rows.size()), MPI_DOUBLE, p, VELOCITY, world,
-               MPI_STATUS_IGNORE);
-      out.put(rows.data(), sizeof(double) * rows.size());
-    }
-    out.end();
+    put(u, MPI_DOUBLE, 3);
     out.begin("inside", "UInt8", 1, 1);
-    out.put(marks.data(), marks.size());
-    for (int p = 1; p < comm->nprocs; p++) {
-      marks.resize(plane * planes_of(p));
-      MPI_Recv(marks.data(), mpi_count((double) marks.size()), MPI_BYTE, p, INSIDE, world,
-               MPI_STATUS_IGNORE);
-      out.put(marks.data(), marks.size());
-    }
-    out.end();
+    put(inside, MPI_BYTE, 1);
     well = out.finish();
   }
   MPI_Bcast(&well, 1, MPI_INT, 0, world);
   if (!well)
-    fail(lmp,
-         COMMAND + ": the file '" + path +
-             "' could not be written; does its folder exist, and is there room?");
+    voice.fail("the file '" + path + "' could not be written; does its folder exist, and is there "
+               "room?");
 }
 
 double FixStokesDynamicsField::memory_usage()

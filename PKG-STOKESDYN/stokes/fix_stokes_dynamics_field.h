@@ -5,6 +5,8 @@
 
 #include "fix.h"
 
+#include "keywords.h"
+
 #include "sd_field.h"
 
 #include <string>
@@ -27,6 +29,7 @@ class FixStokesDynamicsField : public LAMMPS_NS::Fix {
   double memory_usage() override;
 
  private:
+  const Voice voice;
   std::string file;
   int points[3];
   /* corners of the grid, where they are given; else those of the box */
@@ -36,6 +39,7 @@ class FixStokesDynamicsField : public LAMMPS_NS::Fix {
 
   Hydrodynamics &hydrodynamics() const;
   sd_field_grid grid() const;
+  int end_of_share(int planes, int p) const;
   void add_flow(Hydrodynamics &, const sd_ewald_box &, const sd_field_grid &, double *u);
   std::vector<unsigned char> put_spheres(const Hydrodynamics &, const sd_ewald_box &,
                                          const sd_field_grid &, double *u) const;

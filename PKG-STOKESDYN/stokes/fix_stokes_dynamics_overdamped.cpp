@@ -27,13 +27,12 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(lmp, COMMAND), spin(lmp, COMMAND), motion(3), random(6),
-    load(6), before(9), output(9)
+    RowsFix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics/overdamped"), adapt(), noise(voice),
+    spin(voice), motion(3), random(6), load(6), before(9), output(9)
 {
-  Keywords in(lmp, COMMAND, words(narg, arg), 3);
+  Keywords in(lmp, voice.command, words(narg, arg), 3);
   in.parse({
       {"scheme",
        [&] {
@@ -48,8 +47,8 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
          adapt.tmax = in.positive();
          adapt.xmax = in.positive();
          if (adapt.tmin > adapt.tmax)
-           in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" + text(adapt.tmax) +
-                     "'");
+           in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" +
+                     text(adapt.tmax) + "'");
        }},
       {"held", [&] { held = in.word(); }},
       {"spin", [&] { spin.read(in); }},
@@ -76,13 +75,10 @@ int FixStokesDynamicsOverdamped::setmask()
   return INITIAL_INTEGRATE | POST_INTEGRATE | FINAL_INTEGRATE | (adapt.every ? END_OF_STEP : 0);
 }
 
-/* Looked up whenever it is needed: the pair style may be another one by now. */
 Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
 {
-  Hydrodynamics *hydro = Hydrodynamics::of(lmp);
-  if (!hydro)
-    fail(lmp, COMMAND + ": there is no pair_style stokes_dynamics with the settings of the fluid");
-  return *hydro;
+  return Hydrodynamics::of(
+      voice, "there is no pair_style stokes_dynamics with the settings of the fluid");
 }
 
 void FixStokesDynamicsOverdamped::init()
@@ -90,17 +86,17 @@ void FixStokesDynamicsOverdamped::init()
   held_bit = moved_bits = 0;
   if (!held.empty()) {
     const int igroup_held = group->find(held);
-    if (igroup_held < 0) fail(lmp, COMMAND + ": keyword held: group '" + held + "' does not exist");
+    if (igroup_held < 0) voice.fail("keyword held: group '" + held + "' does not exist");
     held_bit = group->bitmask[igroup_held];
     for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
   }
-  refuse_inertia(lmp, COMMAND, this, hydrodynamics(), {adapt.every > 0, held_bit});
+  refuse_inertia(voice, this, hydrodynamics(), {adapt.every > 0, held_bit});
   spin.init(hydrodynamics(), held_bit);
   const char *holds = held_bit ? "keyword held" : spin.on() ? "keyword spin" : "";
   if (!scheme_given)
     scheme = noise.on() && !noise.drift(hydrodynamics(), holds).empty() ? MIDPOINT : AB2;
   if (noise.on())
-    noise.init(hydrodynamics(), this, {adapt.every > 0, scheme == MIDPOINT, holds});
+    noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, holds});
   if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
 }
 
@@ -189,7 +185,7 @@ void FixStokesDynamicsOverdamped::announce()
     least[1] = std::min(least[1], atom->radius[i]);
   }
   MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_DOUBLE, MPI_MIN, world);
-  announce_step_limit(lmp, COMMAND, scheme == EULER, least[0]);
+  announce_step_limit(voice, scheme == EULER, least[0]);
   if (noise.on()) noise.announce(hydrodynamics(), least[1], least[0]);
   announced = true;
 }
@@ -265,10 +261,9 @@ void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) co
     if (!(atom->mask[i] & groupbit) != !active[i]) wrong = std::min(wrong, atom->tag[i]);
   MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPI_LMP_TAGINT, MPI_MIN, world);
   if (wrong == MAXTAGINT) return;
-  fail(lmp,
-       COMMAND + ": atom " + std::to_string(wrong) +
-           " is selected either by the group of this fix or by pair_style stokes_dynamics (keywords "
-           "group and region, radius > 0), but not by both: both must select the same atoms");
+  voice.fail("atom " + std::to_string(wrong) + " is selected either by the group of this fix or by "
+             "pair_style stokes_dynamics (keywords group and region, radius > 0), but not by both: "
+             "both must select the same atoms");
 }
 
 /* dt/(2 dt_old), what the change of velocities counts, of forces in scheme midpoint; 0: Euler, or it
@@ -382,58 +377,78 @@ void FixStokesDynamicsOverdamped::tracked_velocity(const Velocities::Clump &clum
   for (int d = 0; d < 3; d++) V[d] += turning[d];
 }
 
-/* Positions are those of images side by side: an atom moves as its image does, less what the edges
- * of the box between them have moved since. */
-void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
+/* Clumps from where they stood, start, with spheres at x [3 members]; how each goes is what step(c) says.
+ * take(i, row) for each of their atoms, which have been moved. Positions are those of images side by
+ * side: an atom moves as its image does, less what the edges of the box between them have moved
+ * since. */
+void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps &start,
+                                              const std::vector<double> &x, const Step &step,
+                                              const std::function<void(int, const double *)> &take)
 {
-  enum { MOVES, CHANGE, STEP, V = STEP + 3, PLACE = V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
-  const Velocities &motion = hydro.motion();
   const WholeClumps &whole = hydro.scene.whole;
   const Lattice now = Lattice::of(domain);
-  const std::vector<double> all_before = velocities_before();
-  std::vector<double> x, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
+  std::vector<double> places, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
   double box[6];
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
-  const double scale = noise.on() ? noise.scale(update->dt) : 0.0;
-  for (size_t number = 0; number < motion.clumps.size(); number++) {
-    const Velocities::Clump &clump = motion.clumps[number];
-    if (clump.held) continue;
-    const RigidClumps::Body &body = *clump.body;
-    const sd_shape &shape = body.shape->shape;
-    const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
-    const bool has = row[0] != 0.0;
-    const double c = weight(has);
-    double pose[12], now_V[6], old[6], mean[6], turn[9], change = 0.0;
-    tracked_velocity(clump, now_V);
-    at_image(row + 1, clump.pose + 9, old);
-    x.resize(3 * (size_t) body.n);
-    std::copy_n(clump.pose, 12, pose);
-    sd_mean_velocity(6, now_V, old, c, mean);
-    for (int d = 0; d < 3 && has; d++)
-      change += fabs(now_V[d] - old[d]) + shape.size * fabs(now_V[3 + d] - old[3 + d]);
-    for (int d = 0; d < 6; d++) {
-      mean[d] *= update->dt;
-      if (noise.on()) mean[d] += scale * noise.of_clump(number)[d];
-    }
-    sd_pose_step(pose, tracked(clump), mean, body.n, shape.x, turn, x.data());
+  for (size_t c = 0; c < start.size(); c++) {
+    if (start[c].held) continue;
+    const RigidClumps::Body &body = *hydro.motion().clumps[c].body;
+    const ClumpStep goes = step(c);
+    double pose[12], turn[9];
+    std::copy_n(start[c].pose, 12, pose);
+    places.resize(3 * (size_t) body.n);
+    sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, turn, places.data());
     for (int k = 0; k < body.n; k++) {
-      const size_t m = motion.member_of(clump, k);
+      const size_t m = hydro.motion().member_of(hydro.motion().clumps[c], k);
       double *row = &rows[COLUMNS * m];
       row[MOVES] = 1.0;
-      row[CHANGE] = change;
-      for (int d = 0; d < 3; d++) row[STEP + d] = x[3 * (size_t) k + d] - whole.x[3 * m + d];
+      row[CHANGE] = goes.change;
+      sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
       Lattice::add(box, &whole.steps[3 * m], row + STEP);
-      std::copy_n(now_V, 6, row + V);
+      std::copy_n(goes.V, 6, row + BEFORE_V);
       std::copy_n(pose + 9, 3, row + PLACE);
       std::copy_n(turn, 9, row + TURN);
     }
   }
   whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
     if (row[MOVES] == 0.0) return;
-    for (int d = 0; d < 3; d++) atom->x[i][d] += row[STEP + d];
-    std::copy_n(row + V, 9, before.give(i));
-    moves(i, sqrt(sd_dot(row + STEP, row + STEP)), row[CHANGE]);
-    hydro.turn(i, row + TURN);
+    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += row[STEP + d];
+    take(i, row);
+  });
+}
+
+/* A whole step has been made. */
+void FixStokesDynamicsOverdamped::clump_moves(Hydrodynamics &hydro, int i, const double *row)
+{
+  moves(i, sqrt(sd_dot(row + STEP, row + STEP)), row[CHANGE]);
+  hydro.turn(i, row + TURN);
+}
+
+void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
+{
+  const Velocities &motion = hydro.motion();
+  const std::vector<double> all_before = velocities_before();
+  const auto step = [&](size_t number) {
+    const Velocities::Clump &clump = motion.clumps[number];
+    const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
+    const double size = clump.body->shape->shape.size;
+    const bool has = row[0] != 0.0;
+    double old[6], mean[6];
+    ClumpStep s = {tracked(clump), {}, {}, 0.0};
+    tracked_velocity(clump, s.V);
+    at_image(row + 1, clump.pose + 9, old);
+    sd_mean_velocity(6, s.V, old, weight(has), mean);
+    for (int d = 0; d < 3 && has; d++)
+      s.change += fabs(s.V[d] - old[d]) + size * fabs(s.V[3 + d] - old[3 + d]);
+    for (int d = 0; d < 6; d++) {
+      s.move[d] = update->dt * mean[d];
+      if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
+    }
+    return s;
+  };
+  step_clumps(hydro, motion.clumps, hydro.scene.whole.x, step, [&](int i, const double *row) {
+    std::copy_n(row + BEFORE_V, 9, before.give(i));
+    clump_moves(hydro, i, row);
   });
 }
 
@@ -463,7 +478,6 @@ void FixStokesDynamicsOverdamped::watch()
   changed_before = changed;
   if (doublings < 3) return;
   warned_growth = true;
-  warn(lmp, COMMAND + ": step " + std::to_string(update->ntimestep) + ": the change of "
-       "velocities grows from step to step, and is " + text(changed) + " radii per step now: use "
-       "a shorter time step");
+  voice.at_step().warn("the change of velocities grows from step to step, and is " + text(changed) +
+                       " radii per step now: use a shorter time step");
 }

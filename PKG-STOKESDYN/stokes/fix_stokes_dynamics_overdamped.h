@@ -13,6 +13,8 @@
 #include "spin.h"
 #include "velocities.h"
 
+#include <functional>
+
 namespace StokesDyn {
 
 class Hydrodynamics;
@@ -41,6 +43,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void restart(char *) override;
 
  private:
+  const Voice voice;
   /* not given: by whether the mobility has a drift that noise needs */
   enum { AB2, EULER, MIDPOINT } scheme = AB2;
   bool scheme_given = false;
@@ -119,6 +122,18 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void begin_midpoint(Hydrodynamics &, const Velocities::Take &take);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   using Clumps = std::vector<Velocities::Clump>;
+  /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; its
+   * velocity and that of the turn, and the change of these, for whoever keeps them */
+  struct ClumpStep {
+    const double *centre;
+    double move[6], V[6], change;
+  };
+  using Step = std::function<ClumpStep(size_t c)>;
+  /* rows of their atoms; V and the place of the centroid stand side by side, as in `before` */
+  enum { MOVES, CHANGE, STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
+  void step_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x,
+                   const Step &step, const std::function<void(int i, const double *row)> &take);
+  void clump_moves(Hydrodynamics &, int i, const double *row);
   void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
   void move_by_midpoint(Hydrodynamics &);
   std::vector<double> velocities_before() const;

@@ -12,18 +12,16 @@
  * Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
 #include "fix_stokes_dynamics_overdamped.h"
 
+#include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
 
 #include "sd_linear.h"
-#include "sd_pose.h"
 
 #include "atom.h"
 #include "domain.h"
 #include "fix.h"
-#include "modify.h"
 #include "update.h"
-#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,23 +29,21 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string KEYWORD = "Fix stokes_dynamics/overdamped: keyword scheme: ";
-
 void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) const
 {
+  const Voice keyword = voice.of("keyword scheme");
   if (hydro.settings.rigid.apart())
-    fail(lmp, KEYWORD + "midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
+    keyword.fail("midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
   int moved = 0;
   for (int i = 0; i < atom->nlocal && hydro.settings.rigid.on; i++)
     moved |= is_moved(i) && atom->molecule[i] != 0;
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
   if (moved)
-    fail(lmp, KEYWORD + "midpoint needs the orientation of clumps in the middle of a step, where fix move "
-                        "does not give that of keyword held: let them rest, or move spheres");
-  for (int i = 0; i < modify->nfix; i++)
-    if (utils::strmatch(modify->fix[i]->style, "^deform"))
-      fail(lmp, KEYWORD + "midpoint is for boxes that do not change, and fix " + modify->fix[i]->id +
-                    " of style " + modify->fix[i]->style + " deforms this one: use ab2");
+    keyword.fail("midpoint needs the orientation of clumps in the middle of a step, where fix move "
+                 "does not give that of keyword held: let them rest, or move spheres");
+  if (const Fix *deform = fix_like(lmp, "^deform"))
+    keyword.fail("midpoint is for boxes that do not change, and " + name_of(deform) +
+                 " deforms this one: use ab2");
 }
 
 /* f and torque become what pushes spheres in this step, but for noise: extrapolated by scheme
@@ -104,39 +100,21 @@ void FixStokesDynamicsOverdamped::find_half_step(const Hydrodynamics &hydro, std
     }
 }
 
-/* Clumps from where they stood, start, with spheres at x [3 members], by the velocities of now for dt.
- * Positions of atoms are those of the start. */
+/* By the velocities of now, for dt. Positions of atoms are those of the start. */
 void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clumps &start,
                                                const std::vector<double> &x, double dt)
 {
-  enum { MOVES, STEP, TURN = STEP + 3, COLUMNS = TURN + 9 };
-  const Velocities &motion = hydro.motion();
-  const WholeClumps &whole = hydro.scene.whole;
-  std::vector<double> places, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
-  for (size_t c = 0; c < start.size(); c++) {
-    if (start[c].held) continue;
-    const RigidClumps::Body &body = *motion.clumps[c].body;
-    double pose[12], turn[9], V[6];
-    std::copy_n(start[c].pose, 12, pose);
-    std::copy_n(motion.clumps[c].V, 6, V);
-    if (domain->dimension == 2) V[2] = V[3] = V[4] = 0.0;
-    places.resize(3 * (size_t) body.n);
-    sd_pose_advance(pose, V, dt, body.n, body.shape->shape.x, turn, places.data());
-    for (int k = 0; k < body.n; k++) {
-      const size_t m = motion.member_of(motion.clumps[c], k);
-      double *row = &rows[COLUMNS * m];
-      row[MOVES] = 1.0;
-      for (int d = 0; d < 3; d++) row[STEP + d] = places[3 * (size_t) k + d] - x[3 * m + d];
-      std::copy_n(turn, 9, row + TURN);
+  static const double CENTROID[3] = {0.0, 0.0, 0.0};
+  const auto step = [&](size_t c) {
+    ClumpStep s = {CENTROID, {}, {}, 0.0};
+    for (int d = 0; d < 6; d++) {
+      const bool in_plane = d < 2 || d == 5;
+      s.move[d] = domain->dimension == 3 || in_plane ? dt * hydro.motion().clumps[c].V[d] : 0.0;
     }
-  }
-  const bool whole_step = dt == update->dt;
-  whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
-    if (row[MOVES] == 0.0) return;
-    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += row[STEP + d];
-    if (!whole_step) return;
-    moves(i, sqrt(sd_dot(row + STEP, row + STEP)), 0.0);
-    hydro.turn(i, row + TURN);
+    return s;
+  };
+  step_clumps(hydro, start, x, step, [&](int i, const double *row) {
+    if (dt == update->dt) clump_moves(hydro, i, row);
   });
 }
 

@@ -19,8 +19,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = "Fix stokes_dynamics/overdamped";
-
 /* Power that the spheres lose to the fluid */
 double FixStokesDynamicsOverdamped::compute_scalar()
 {
@@ -36,55 +34,27 @@ double FixStokesDynamicsOverdamped::compute_scalar()
 
 double FixStokesDynamicsOverdamped::compute_vector(int k)
 {
-  enum {
-    SPEED,
-    ERROR,
-    DISPLACEMENT,
-    PRODUCTS,
-    RESIDUAL,
-    SOLVES,
-    UNCONVERGED,
-    GAP,
-    STEP,
-    NOISE_PRODUCTS,
-    NOISE_ERROR,
-    SLIPPING
-  };
   hydrodynamics();    // an error if there is none
   const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
   if (!memory) return 0.0;
-  const auto &solver = memory->global;
-  double mine = 0.0, all;
-  switch (k) {
-    case SPEED:
-      return fastest();
-    case ERROR:
-      mine = error_figure();
-      break;
-    case DISPLACEMENT:
-      mine = displaced;
-      break;
-    case PRODUCTS:
-      return solver.iterations;
-    case RESIDUAL:
-      return solver.residual;
-    case SOLVES:
-      return solver.solves;
-    case UNCONVERGED:
-      return solver.unconverged;
-    case GAP:
-      return smallest_gap();
-    case STEP:
-      return update->dt;
-    case NOISE_PRODUCTS:
-      return noise.report().products;
-    case NOISE_ERROR:
-      return noise.report().error;
-    case SLIPPING:
-      return spin.slip();
-  }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return all;
+  const auto largest = [this](double mine) {
+    double all;
+    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+    return all;
+  };
+  const std::function<double()> values[] = {[&] { return fastest(); },
+                                            [&] { return largest(error_figure()); },
+                                            [&] { return largest(displaced); },
+                                            [&] { return memory->global.iterations; },
+                                            [&] { return memory->global.residual; },
+                                            [&] { return memory->global.solves; },
+                                            [&] { return memory->global.unconverged; },
+                                            [&] { return smallest_gap(); },
+                                            [&] { return update->dt; },
+                                            [&] { return (double) noise.report().products; },
+                                            [&] { return noise.report().error; },
+                                            [&] { return spin.slip(); }};
+  return values[k]();
 }
 
 /* By the velocity of the fluid and that beyond it: nobody else writes to those. */
@@ -152,14 +122,13 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   const Lattice lattice = Lattice::of(domain);
   Halo halo(world);
   if (!halo.find(lattice, reach, x))
-    fail_one(lmp, COMMAND + ": the smallest gap: the largest radius, " + text(largest) +
-                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other "
-                      "units?");
+    voice.fail_one("the smallest gap: the largest radius, " + text(largest) + ", reaches more than "
+                   "1000 images of each sphere and 1e7 in all; is it in other units?");
   halo.extend(lattice.h, x, {&a, &bodies});
   const std::vector<int64_t> body(bodies.begin(), bodies.end());
   double gap = INFINITY, all;
   if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, a.size(), reach, &gap) != SD_OK)
-    fail_one(lmp, COMMAND + ": out of memory for the smallest gap");
+    voice.fail_one("out of memory for the smallest gap");
   MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
   return all;
 }

@@ -10,26 +10,19 @@
 #include "modify.h"
 #include "update.h"
 
+#include <cstdlib>
 #include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static bool says(int narg, char **arg, const char *word)
-{
-  for (int k = 3; k < narg; k++)
-    if (strcmp(arg[k], word) == 0) return true;
-  return false;
-}
-
 FixStokesDynamicsState *FixStokesDynamicsState::find(LAMMPS *lmp)
 {
   Fix *fix = Compat::fix(lmp->modify, ID);
   if (fix && strcmp(fix->style, STYLE) != 0)
-    fail(lmp,
-         "Pair style stokes_dynamics: the fix ID " + std::string(ID) +
-             " is taken by a fix of style " + fix->style +
-             ", and the pair style needs it for itself; give that fix another ID");
+    fail(lmp, "Pair style stokes_dynamics: the fix ID " + std::string(ID) +
+                  " is taken by a fix of style " + fix->style +
+                  ", and the pair style needs it for itself; give that fix another ID");
   return static_cast<FixStokesDynamicsState *>(fix);
 }
 
@@ -40,29 +33,21 @@ FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotati
   if (fix && fix->rotation == rotation && fix->history == history && fix->points == points)
     return fix;
   if (fix) lmp->modify->delete_fix(ID);
-  lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (rotation ? " rotation" : "") +
-                       (history ? " history" : "") +
-                       (points ? " points " + std::to_string(points) : ""));
+  lmp->modify->add_fix(std::string(ID) + " all " + STYLE + " " + std::to_string(rotation) + " " +
+                       std::to_string(history) + " " + std::to_string(points));
   return find(lmp);
 }
 
-static int points_of(int narg, char **arg)
+static int number(int narg, char **arg, int k)
 {
-  return narg > 3 && says(narg, arg, "points") ? std::stoi(arg[narg - 1]) : 0;
-}
-
-static int columns_of(bool rotation, bool history, int points)
-{
-  using State = FixStokesDynamicsState;
-  const int of_points = points > 0 ? 6 * points + 6 : 0;
-  if (rotation) return State::WITH_ROTATION + (history ? 6 : 0) + of_points;
-  return State::WITHOUT_ROTATION + (history ? 3 : 0) + of_points;
+  return narg > k ? atoi(arg[k]) : 0;
 }
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), rotation(says(narg, arg, "rotation")), history(says(narg, arg, "history")),
-    points(points_of(narg, arg)), rows(columns_of(rotation, history, points)), places(3),
-    resume(lmp, rotation), left(resume.columns())
+    RowsFix(lmp, narg, arg), rotation(number(narg, arg, 3)), history(number(narg, arg, 4)),
+    points(number(narg, arg, 5)),
+    rows(points > 0 ? of_motion_before() + 6 : of_points()), places(3), resume(lmp, rotation),
+    left(resume.columns())
 {
   restart_global = 1;
   keep({&rows, &places, &left}, nullptr, true);

@@ -39,6 +39,8 @@ class FixStokesDynamicsState : public RowsFix {
   /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is
    * kept. */
   enum { FORCE = 0, VPRIME = 3, WITHOUT_ROTATION = 6, TORQUE = 6, WPRIME = 9, WITH_ROTATION = 12 };
+  /* Place in a row of component d of the six that begin with FORCE or VPRIME */
+  static size_t at(int first, size_t d) { return first + (d < 3 ? d : d + 3); }
   const bool rotation, history;
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
   /* of each sphere, whose forces on the fluid are behind that: 3 columns each; 0: none. Then those of

@@ -292,9 +292,9 @@ void FlowFile::share(MPI_Comm world)
   fingerprint = sd_hash_unit(hash);
 }
 
-std::shared_ptr<const FlowFile> FlowFile::read(LAMMPS *lmp, const std::string &path,
-                                               const std::string &what)
+std::shared_ptr<const FlowFile> FlowFile::read(const Voice &voice, const std::string &path)
 {
+  LAMMPS *lmp = voice.lmp;
   std::shared_ptr<FlowFile> flow(new FlowFile);
   flow->path = path;
   std::string fault;
@@ -309,7 +309,7 @@ std::shared_ptr<const FlowFile> FlowFile::read(LAMMPS *lmp, const std::string &p
   MPI_Bcast(&length, 1, MPI_INT, 0, lmp->world);
   fault.resize(length);
   MPI_Bcast(&fault[0], length, MPI_CHAR, 0, lmp->world);
-  if (length) fail(lmp, what + ": grid file '" + path + "' " + fault);
+  if (length) voice.fail("grid file '" + path + "' " + fault);
   flow->share(lmp->world);
   return flow;
 }

@@ -6,7 +6,7 @@
 #ifndef SD_FLOW_FILE_H
 #define SD_FLOW_FILE_H
 
-#include "lammps.h"
+#include "keywords.h"
 
 #include "sd_flow_grid.h"
 
@@ -18,9 +18,8 @@ namespace StokesDyn {
 
 class FlowFile {
  public:
-  /* On all ranks. what: "Pair style x: keyword y", for errors, which name file and line. */
-  static std::shared_ptr<const FlowFile> read(LAMMPS_NS::LAMMPS *lmp, const std::string &path,
-                                              const std::string &what);
+  /* On all ranks. Errors name file and line. */
+  static std::shared_ptr<const FlowFile> read(const Voice &voice, const std::string &path);
 
   FlowFile(const FlowFile &) = delete;
   FlowFile &operator=(const FlowFile &) = delete;
@@ -32,7 +31,6 @@ class FlowFile {
   double fingerprint = 0.0;
 
   bool has_viscosity() const { return grid.columns > 3; }
-  double memory_usage() const { return sizeof(double) * (double) values.capacity(); }
 
  private:
   friend class FlowReader;

@@ -5,7 +5,6 @@
 #include "keywords.h"
 #include "plane_wall.h"
 
-#include "sd_linear.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -22,16 +21,14 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
-static const std::string COMMAND = StokesSettings::COMMAND;
 
 // A tolerance to which a warm start leaves an iteration or two
 static const double LOOSE = 1e-3;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
-    Pointers(lmp), ambient(lmp, COMMAND, epochs), scene(lmp, COMMAND, epochs),
-    shells(lmp, COMMAND), rigid(lmp, scene.whole, COMMAND, epochs),
-    lubrication(lmp, COMMAND), mobile(lmp, {scene, ambient, rigid, lubrication}),
-    preconditioner(lmp, scene), guard(lmp, COMMAND)
+    Pointers(lmp), voice(lmp, StokesSettings::COMMAND), ambient(voice, epochs),
+    scene(voice, epochs), shells(voice), rigid(voice, scene.whole, epochs), lubrication(voice),
+    mobile(lmp, {scene, ambient, rigid, lubrication}), preconditioner(lmp, scene), guard(voice)
 {
 }
 
@@ -40,6 +37,13 @@ Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
   Pair *pair = lmp->force->pair ? lmp->force->pair_match("stokes_dynamics", 1) : nullptr;
   int dim;
   return pair ? static_cast<Hydrodynamics *>(pair->extract("hydrodynamics", dim)) : nullptr;
+}
+
+Hydrodynamics &Hydrodynamics::of(const Voice &voice, const std::string &lack)
+{
+  Hydrodynamics *hydro = of(voice.lmp);
+  if (!hydro) voice.fail(lack);
+  return *hydro;
 }
 
 void Hydrodynamics::set(const std::vector<std::string> &words)
@@ -71,8 +75,8 @@ void Hydrodynamics::init()
   ambient.init();
   scene.settings.positive = false;
   advance();
-  find_wall(lmp, COMMAND, scene.settings);
-  check_stream_at_wall(lmp, COMMAND, scene.settings.wall, ambient.settings);
+  find_wall(voice, scene.settings);
+  check_stream_at_wall(voice, scene.settings.wall, ambient.settings);
 }
 
 /* Other settings, or a run that LAMMPS prepares */
@@ -85,9 +89,8 @@ void Hydrodynamics::begin()
 {
   memory = State::find(lmp);
   if (!memory)
-    fail(lmp,
-         COMMAND + ": its internal fix " + State::ID +
-             " has been deleted; a run without 'pre no' creates it again");
+    voice.fail("its internal fix " + std::string(State::ID) + " has been deleted; a run without "
+               "'pre no' creates it again");
   epochs.step.advance();
   if (neighbor->ago == 0) epochs.lists.advance();
   if (neighbor->ago == 0 || began != update->firststep) epochs.groups.advance();
@@ -123,17 +126,14 @@ void Hydrodynamics::clumps()
     return;
   }
   const bool wants_perturbation = reported || settings.rigid.auto_resolve;
-  auto take = [this, wants_perturbation](int i, const double *F, const double *T) {
-    double *row = memory->rows.give(i), s[6] = {0.0};
-    std::copy_n(F, 3, row + State::FORCE);
-    if (T) std::copy_n(T, 3, row + State::TORQUE);
+  const size_t m = width();
+  const auto take = [this, wants_perturbation, m](int i, const double *F) {
+    double *row = memory->rows.give(i), s[6];
+    for (size_t d = 0; d < m; d++) row[State::at(State::FORCE, d)] = F[d];
     if (!wants_perturbation) return;
     ambient.slip(i, s);
-    const double k = 1.0 / ambient.drag(i), k_spin = T ? 1.0 / ambient.spin(i) : 0.0;
-    for (int d = 0; d < 3; d++) {
-      row[State::VPRIME + d] = F[d] * k - s[d];
-      if (T) row[State::WPRIME + d] = T[d] * k_spin - s[3 + d];
-    }
+    for (size_t d = 0; d < m; d++)
+      row[State::at(State::VPRIME, d)] = F[d] / ambient.resistance(i, d) - s[d];
   };
   std::vector<char> left_over;
   mobile.drag(take, left_over);
@@ -144,8 +144,7 @@ void Hydrodynamics::clumps()
   if (rigid.any_loose()) return;
   for (int i : solvers) {    // lone spheres: nobody disturbs the fluid there
     double *row = memory->rows.give(i);
-    std::fill_n(row + State::VPRIME, 3, 0.0);
-    if (rotation()) std::fill_n(row + State::WPRIME, 3, 0.0);
+    for (size_t d = 0; d < m; d++) row[State::at(State::VPRIME, d)] = 0.0;
   }
 }
 
@@ -153,16 +152,13 @@ void Hydrodynamics::clumps()
  * clumps; and lubrication. */
 void Hydrodynamics::drag()
 {
-  const bool rotates = rotation();
+  const size_t m = width();
   for (int i : solvers) {
-    double *row = memory->rows.give(i), s[6] = {0.0};
+    double *row = memory->rows.give(i), s[6];
     ambient.slip(i, s);
-    const double k = ambient.drag(i);
-    for (int d = 0; d < 3; d++) row[State::FORCE + d] = k * (s[d] + row[State::VPRIME + d]);
-    if (!rotates) continue;
-    const double k_spin = ambient.spin(i);
-    for (int d = 0; d < 3; d++)
-      row[State::TORQUE + d] = k_spin * (s[3 + d] + row[State::WPRIME + d]);
+    for (size_t d = 0; d < m; d++)
+      row[State::at(State::FORCE, d)] =
+          ambient.resistance(i, d) * (s[d] + row[State::at(State::VPRIME, d)]);
   }
   if (settings.lubrication.on) lubricate();
 }
@@ -189,10 +185,10 @@ void Hydrodynamics::solve()
 void Hydrodynamics::look_at_wall()
 {
   if (!settings.scene.wall.sign) return;
-  const double cut = spheres_cut_by_wall(lmp, COMMAND, scene);
+  const double cut = spheres_cut_by_wall(voice, scene);
   if (cut == 0.0 || !warned_cut.first_in(epochs.run)) return;
-  warn(lmp, COMMAND + ": keyword wall: " + text(cut) + " spheres cut the wall " +
-       wall_name(scene.settings.wall) + ": they move as if they touched it");
+  voice.warn("keyword wall: " + text(cut) + " spheres cut the wall " +
+             wall_name(scene.settings.wall) + ": they move as if they touched it");
 }
 
 /* The spheres of this solve, and what may be wrong with how they stand. */
@@ -206,15 +202,15 @@ void Hydrodynamics::place()
   memory->global.open_box = scene.open_box();
   const bool first = looked.first_in(epochs.run);
   if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && first)
-    warn_of_misfit(lmp, COMMAND, ambient.misfit());
+    warn_of_misfit(voice, ambient.misfit());
   if (settings.lubrication.on && !shells.settings.on() && first) {
     double spheres = scene.size();
     Scene::sum(&scene, &spheres, 1);
-    warn_of_shared_films(lmp, COMMAND, spheres);
+    warn_of_shared_films(voice, spheres);
   }
-  if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(lmp, COMMAND, scene);
+  if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(voice, scene);
   if (first && how.clumps_only && std::isfinite(how.cutoff) && how.taper == SD_TAPER_NONE)
-    warn_of_short_cutoff(lmp, COMMAND, scene);
+    warn_of_short_cutoff(voice, scene);
 }
 
 /* The linear system of this step, by the rows of the scene. */
@@ -229,35 +225,26 @@ sd_system Hydrodynamics::gather()
     work.reset(new double[scratch]);
     work_room = scratch;
   }
-  slip.resize(m * n + m);
-  resistance.resize(n + 1);
-  spin.resize(rotation() ? n + 1 : 0);
-  const std::vector<double> rows = scene.rows(8, [this](int i, double *out) {
+  const std::vector<double> rows = scene.rows((int) m + 2, [this, m](int i, double *out) {
     ambient.slip(i, out);
-    out[6] = ambient.drag(i);
-    out[7] = ambient.spin(i);
+    out[m] = ambient.drag(i);
+    out[m + 1] = ambient.spin(i);
   });
-  for (int k = 0; k < n; k++) {
-    std::copy_n(&rows[8 * (size_t) k], m, &slip[m * k]);
-    resistance[k] = rows[8 * (size_t) k + 6];
-    if (rotation()) spin[k] = rows[8 * (size_t) k + 7];
-  }
+  take_apart(rows, n, {{&slip, m}, {&resistance, 1}, {&spin, 1}});
   sd_system system = {};
   system.n = n;
   system.drag = resistance.data();
   system.spin = rotation() ? spin.data() : nullptr;
   system.apply = sd_mobility_apply;
   system.apply_ctx = scene.mobility();
-  system.world.ctx = &scene;
-  system.world.sum = Scene::sum;
+  system.world = scene.ranks();
   return system;
 }
 
-std::string Hydrodynamics::where(int algorithm) const
+Voice Hydrodynamics::where(int algorithm) const
 {
-  return COMMAND + ": step " + std::to_string(update->ntimestep) +
-      (overdamped ? ": velocities from forces: "
-                  : ": algorithm " + std::to_string(algorithm) + ": ");
+  return voice.at_step().of(overdamped ? "velocities from forces"
+                                       : "algorithm " + std::to_string(algorithm));
 }
 
 static std::string how_far(const sd_solve_report &report)
@@ -280,8 +267,9 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
       return status;
     }
     memory->global.diverged = 1;
-    warn(lmp, where(StokesSettings::SUBSTITUTION) + "diverged: " + how_far(report) + "; the run "
-         "goes on with algorithm 2 ('algorithm 1 strict' stops)");
+    where(StokesSettings::SUBSTITUTION)
+        .warn("diverged: " + how_far(report) +
+              "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
   const sd_status status = joined() ? together(report) : gradients(system, report);
   if (!shells.settings.on() || status == SD_OK)
@@ -356,7 +344,7 @@ void Hydrodynamics::guess()
   solution = scene.rows(width(), [&](int i, double *out) {
     const double *row = memory->rows[i], *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
-      const double last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      const double last = row[State::at(State::VPRIME, d)];
       out[d] = line ? 2.0 * last - before[d] : last;
     }
   });
@@ -380,7 +368,7 @@ void Hydrodynamics::keep()
   scene.to_atoms(width(), found.data(), [&](int i, const double *v) {
     double *row = memory->rows.give(i), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
-      double &last = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+      double &last = row[State::at(State::VPRIME, d)];
       if (memory->history) before[d] = last;
       last = v[d];
     }
@@ -393,11 +381,12 @@ void Hydrodynamics::unconverged(sd_status status, const sd_solve_report &report)
 {
   memory->global.unconverged++;
   if (warned_unconverged.first_in(epochs.run))
-    warn(lmp, where(algorithm()) + sd_status_string(status) + ": " + how_far(report) +
-         ", relative_tolerance " + text(settings.tolerance) +
-         (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter) : "") +
-         "; the run goes on, and counts further solves like this one (compute pair, fix "
-         "stokes_dynamics)");
+    where(algorithm())
+        .warn(sd_status_string(status) + (": " + how_far(report)) + ", relative_tolerance " +
+              text(settings.tolerance) +
+              (status == SD_EMAXITER ? ", max_iter " + std::to_string(settings.max_iter) : "") +
+              "; the run goes on, and counts further solves like this one (compute pair, fix "
+              "stokes_dynamics)");
 }
 
 /* Ends the run. */
@@ -422,7 +411,7 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
     why += " with cut_off_distance " + text(how.cutoff) +
         ", so there is no physical solution: use cut_off_distance inf, or a taper, or clumps_only yes "
         "with a cut-off larger than the clump";
-  fail_by(lmp, status, where(algorithm()) + why + " (" + numbers + ")");
+  fail_by(where(algorithm()), status, why + " (" + numbers + ")");
 }
 
 double Hydrodynamics::dissipation(int i) const
@@ -440,7 +429,8 @@ double Hydrodynamics::memory_usage() const
 {
   const size_t numbers = slip.capacity() + resistance.capacity() +
       spin.capacity() + solution.capacity() + films_v.capacity() + films_F.capacity() + work_room;
-  return ambient.memory_usage() + scene.memory_usage() + rigid.memory_usage() +
+  return ambient.memory_usage() + scene.memory_usage() + shells.memory_usage() +
+      rigid.memory_usage() +
       lubrication.memory_usage() + mobile.memory_usage() + preconditioner.memory_usage() +
       sizeof(double) * (double) numbers;
 }

@@ -28,13 +28,9 @@
 
 namespace StokesDyn {
 
-/* Force and torque on the fluid, over its viscosity, of a sphere or of a point of its shell */
-struct OnFluid {
-  double x[3], a, F[3], T[3];
-};
-
 class Hydrodynamics : protected LAMMPS_NS::Pointers {
  public:
+  const Voice voice;
   StokesSettings settings;
   Epochs epochs;
   Ambient ambient;
@@ -47,8 +43,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   FixStokesDynamicsState *memory = nullptr;
 
   explicit Hydrodynamics(LAMMPS_NS::LAMMPS *lmp);
-  /* That of the pair style; nullptr: there is no pair style stokes_dynamics. */
+  /* That of the pair style, nullptr: there is no pair style stokes_dynamics. Fixes look it up whenever
+   * they need it, as the pair style may be another one by then; lack: the error. */
   static Hydrodynamics *of(LAMMPS_NS::LAMMPS *lmp);
+  static Hydrodynamics &of(const Voice &voice, const std::string &lack);
 
   void set(const std::vector<std::string> &words);
   void init();
@@ -77,9 +75,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
    * their sphere; without inertia also what keeps clumps together. On all ranks together. */
   void stress(std::vector<double> &of_atoms);
 
-  /* In a step that was computed, until its end: what makes the flow, of this rank. On all ranks
-   * together. */
-  std::vector<OnFluid> on_fluid();
+  /* In a step that was computed, until its end: what makes the flow, of this rank. [10 n]: place,
+   * radius, and force and torque on the fluid, over its viscosity, of each sphere or point of its
+   * shell. On all ranks together. */
+  std::vector<double> on_fluid();
 
   bool rotation() const { return settings.scene.rotation; }
   /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
@@ -172,12 +171,12 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
     std::vector<double> r, x, b, l;
   };
   Points points_of_now();
-  std::vector<OnFluid> of_points_on_fluid();
+  std::vector<double> of_points_on_fluid();
   int algorithm() const    // of the next solve
   {
     return memory->global.diverged != 0.0 ? StokesSettings::GRADIENTS : settings.algorithm;
   }
-  std::string where(int algorithm) const;
+  Voice where(int algorithm) const;
   void unconverged(sd_status status, const sd_solve_report &report);
   sd_status move_together(const Velocities::Take &take, const Velocities::Draw *draw,
                           sd_bodies_report &report);

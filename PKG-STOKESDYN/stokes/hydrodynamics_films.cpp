@@ -80,10 +80,7 @@ void Hydrodynamics::lubricate()
     guard.look_at_films(*lubrication.matrix(), scene);
   scene.to_atoms(6, films_F.data(), [this](int i, const double *F) {
     double *row = memory->rows.row(i);
-    for (int d = 0; d < 3; d++) {
-      row[State::FORCE + d] += F[d];
-      row[State::TORQUE + d] += F[3 + d];
-    }
+    for (int d = 0; d < 6; d++) row[State::at(State::FORCE, d)] += F[d];
   });
 }
 

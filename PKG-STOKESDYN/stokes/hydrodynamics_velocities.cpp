@@ -1,4 +1,5 @@
-/* Of hydrodynamics: velocities from forces, what the next step begins from, and the stress. */
+/* Of hydrodynamics: velocities from forces, what the next step begins from, and what follows from the
+ * forces on the fluid: the stress, and the flow. */
 #include "hydrodynamics.h"
 
 #include "callback.h"
@@ -15,7 +16,6 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
-static const std::string COMMAND = StokesSettings::COMMAND;
 
 /* Forces of the points of this rank's rows as the last solve left them (line 0), or on the line
  * through the last two (1); 0 where there are none */
@@ -59,27 +59,22 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Veloc
 {
   const size_t m = width();
   place();
-  const size_t n = scene.size();
-  const double line = shells.settings.on() ? memory->global.line : 0.0;
-  std::vector<double> rows = scene.rows(2 * width(), [&](int i, double *out) {
+  const bool as_shells = shells.settings.on(), on = settings.warm_start;
+  const double line = as_shells ? memory->global.line : 0.0;
+  if (as_shells)
+    recall_points(begin_with.l, line);
+  else
+    begin_with.l = scene.rows(width(), [&](int i, double *out) {
+      for (size_t d = 0; d < m && on; d++) out[d] = -memory->rows[i][State::at(State::FORCE, d)];
+    });
+  begin_with.v = scene.rows(width(), [&](int i, double *out) {
     const double *row = memory->rows[i], *before = row + memory->of_motion_before();
-    for (size_t d = 0; d < m && settings.warm_start; d++) {
-      out[d] = -row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3];
-      out[m + d] = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
-      if (line != 0.0) out[m + d] += line * (out[m + d] - before[d]);
+    for (size_t d = 0; d < m && on; d++) {
+      out[d] = row[State::at(State::VPRIME, d)];
+      if (line != 0.0) out[d] += line * (out[d] - before[d]);
     }
   });
-  if (shells.settings.on())
-    recall_points(begin_with.l, memory->global.line);
-  else
-    begin_with.l.assign(m * n + m, 0.0);
-  begin_with.v.assign(m * n + m, 0.0);
-  for (size_t k = 0; k < n; k++) {
-    if (!shells.settings.on()) std::copy_n(&rows[2 * m * k], m, &begin_with.l[m * k]);
-    std::copy_n(&rows[2 * m * k + m], m, &begin_with.v[m * k]);
-  }
-  Velocities::How how = {width(), settings.warm_start && !draw, settings.tolerance,
-                         settings.max_iter};
+  Velocities::How how = {width(), on && !draw, settings.tolerance, settings.max_iter};
   how.draw = draw;
   const sd_status status = mobile.together(how, begin_with, take, report);
   forces_found.take(epochs.step);
@@ -88,21 +83,20 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Veloc
     read_motion();
     find_films_power();
   }
-  for (size_t k = 0; k < n; k++) {
-    if (!shells.settings.on()) std::copy_n(&begin_with.l[m * k], m, &rows[2 * m * k]);
-    std::copy_n(&begin_with.v[m * k], m, &rows[2 * m * k + m]);
-  }
-  if (shells.settings.on()) keep_points(begin_with.l);
-  scene.to_atoms(2 * width(), rows.data(), [&](int i, const double *from) {
+  scene.to_atoms(width(), begin_with.v.data(), [&](int i, const double *now) {
     double *row = memory->rows.give(i);
-    for (size_t d = 0; d < m; d++) {
-      row[d < 3 ? State::FORCE + d : State::TORQUE + d - 3] = -from[d];
-      if (!settings.lubrication.on) continue;
-      double &v = row[d < 3 ? State::VPRIME + d : State::WPRIME + d - 3];
+    for (size_t d = 0; d < m && settings.lubrication.on; d++) {
+      double &v = row[State::at(State::VPRIME, d)];
       if (memory->points > 0) row[memory->of_motion_before() + (int) d] = v;
-      v = from[m + d];
+      v = now[d];
     }
   });
+  if (as_shells)
+    keep_points(begin_with.l);
+  else
+    scene.to_atoms(width(), begin_with.l.data(), [&](int i, const double *l) {
+      for (size_t d = 0; d < m; d++) memory->rows.row(i)[State::at(State::FORCE, d)] = -l[d];
+    });
   return status;
 }
 
@@ -140,17 +134,14 @@ void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::H
 void Hydrodynamics::turn(int i, const double R[9])
 {
   if (settings.rigid.apart()) return;    // no guess is made there
-  double *row = memory->rows.row(i), turned[3];
-  for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) {
-    sd_multiply3(R, row + first, turned);
-    std::copy_n(turned, 3, row + first);
-  }
-  const int behind = memory->points > 0 ? 2 * memory->points + 2 : 0;
-  for (int p = 0; p < behind; p++) { /* of both solves, and the motion before */
-    double *of_point = row + memory->of_points() + 3 * p;
-    sd_multiply3(R, of_point, turned);
-    std::copy_n(turned, 3, of_point);
-  }
+  double *row = memory->rows.row(i);
+  const auto turn = [R](double *v) {
+    const double was[3] = {v[0], v[1], v[2]};
+    sd_multiply3(R, was, v);
+  };
+  for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) turn(row + first);
+  const int behind = memory->points > 0 ? 2 * memory->points + 2 : 0;    // both solves, last motion
+  for (int p = 0; p < behind; p++) turn(row + memory->of_points() + 3 * p);
 }
 
 void Hydrodynamics::stress(std::vector<double> &of_atoms)
@@ -167,7 +158,7 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
     const double *v = overdamped ? mobile.last_velocities() : films_v.data();
     const sd_status status = sd_lubrication_stress(lubrication.matrix(), v, films.data());
     if (status != SD_OK)
-      fail_by(lmp, status, COMMAND + ": stress of films: " + sd_status_string(status));
+      fail_by(voice.of("stress of films"), status);
   }
   for (size_t k = 0; k < n; k++) {
     std::copy_n(&points[6 * k], 6, &rows[12 * k]);
@@ -177,6 +168,78 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   scene.to_atoms(12, rows.data(), [&](int i, const double *row) {
     std::copy_n(row, 12, &of_atoms[12 * (size_t) i]);
   });
+}
+
+// --- the forces on the fluid, for the flow that they make -----------------------------------------
+
+
+/* Where no solve was needed in this step the rows of the scene may be those of another one. */
+Hydrodynamics::Points Hydrodynamics::points_of_now()
+{
+  if (memory->points == 0 && !solved())
+    voice.at_step().fail("the forces of the points are not kept with warm_start no; use warm_start "
+                         "yes");
+  stand_rows();
+  const size_t n = scene.size(), points = n * shells.points();
+  const sd_spheres s = scene.local();
+  const sd_multiblob_spheres spheres = {s.x, s.a, shells.turns(), shells.masks(), (int) n};
+  Points now;
+  now.r.resize(3 * points + 3);
+  now.x.resize(3 * points + 3);
+  now.b.resize(points + 1);
+  sd_multiblob_expand(&shells.model(), &spheres, now.r.data(), now.x.data(), now.b.data());
+  if (solved())
+    now.l = begin_with.l;
+  else
+    recall_points(now.l, 0.0);
+  return now;
+}
+
+std::vector<double> Hydrodynamics::of_points_on_fluid()
+{
+  const Points now = points_of_now();
+  const size_t P = shells.points();
+  const double *w = scene.local().w;
+  std::vector<double> all;
+  for (size_t k = 0; k < scene.size() * P; k++) {
+    if (!(now.b[k] > 0.0)) continue;
+    all.insert(all.end(), &now.x[3 * k], &now.x[3 * k] + 3);
+    all.push_back(now.b[k]);
+    for (int d = 0; d < 6; d++)
+      all.push_back(d < 3 ? w[k / P] * w[k / P] * now.l[3 * k + d] : 0.0);
+  }
+  return all;
+}
+
+/* F is what the mobility knows: without films, which act between two spheres and not on the fluid
+ * far from them. */
+std::vector<double> Hydrodynamics::on_fluid()
+{
+  if (shells.settings.on()) return of_points_on_fluid();
+  const bool without_films = settings.lubrication.on && !overdamped;
+  const int m = width();
+  std::vector<double> all;
+  const auto add = [&](int i, const double *F) {
+    const bool point = settings.scene.tensor == SD_TENSOR_OSEEN;
+    all.insert(all.end(), atom->x[i], atom->x[i] + 3);
+    all.push_back(point ? 0.0 : atom->radius[i]);
+    for (int d = 0; d < 6; d++) all.push_back(d < m ? -F[d] / ambient.viscosity(i) : 0.0);
+  };
+  if (overdamped && settings.rigid.apart()) {    // these are not kept
+    mobile.find();
+    mobile.apart(width(), [&](int i, const double *, const double *F) { add(i, F); });
+    return all;
+  }
+  for (int i : ambient.who()) {
+    const double *row = memory->rows[i];
+    double F[6] = {0.0}, s[6] = {0.0};
+    ambient.slip(i, s);
+    for (int d = 0; d < m; d++)
+      F[d] = without_films ? ambient.resistance(i, d) * (s[d] + row[State::at(State::VPRIME, d)])
+                           : row[State::at(State::FORCE, d)];
+    add(i, F);
+  }
+  return all;
 }
 
 }    // namespace StokesDyn

@@ -7,7 +7,6 @@
 #include "sd_multiblob_wall.h"
 #include "sd_wall_film.h"
 
-#include "comm.h"
 #include "domain.h"
 
 #include <algorithm>
@@ -16,10 +15,6 @@
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
-
-Lubrication::Lubrication(LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command)
-{
-}
 
 Lubrication::~Lubrication()
 {
@@ -31,7 +26,7 @@ Lubrication::~Lubrication()
 void Lubrication::check(sd_status status) const
 {
   if (status != SD_OK)
-    fail_one(lmp, command + ": keyword lubrication: " + sd_status_string(status));
+    voice.of("keyword lubrication").fail_one(sd_status_string(status));
 }
 
 /* Functions for all pairs that there are, made anew when radii become more different, and films of
@@ -40,19 +35,16 @@ void Lubrication::provide(double largest, double smallest)
 {
   const double ratio = largest / smallest;
   if (shells && ratio > SD_FILM_LARGEST_RATIO)
-    fail(lmp,
-         command + ": keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
-             ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
-             "spheres, or lubrication no");
+    voice.fail("keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
+               ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
+               "spheres, or lubrication no");
   if (ratio > largest_ratio) {
     sd_two_sphere *wider = nullptr;
     const sd_status status = sd_two_sphere_create(ratio, &wider);
     if (status == SD_EOUTSIDE)
-      fail(lmp,
-           command + ": keyword lubrication: radii from " + text(smallest) + " to " +
-               text(largest) +
-               ": lubrication is for ratios of radii up to 100; use group to select spheres, or "
-               "lubrication no");
+      voice.fail("keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
+                 ": lubrication is for ratios of radii up to 100; use group to select spheres, or "
+                 "lubrication no");
     check(status);
     sd_two_sphere_free(functions);
     functions = wider;
@@ -78,12 +70,7 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
   scene.u = u.data();
   scene.drift = where.drift_of_copies();
   scene.noisy = noisy;
-  scene.world.ctx = &where;
-  scene.world.me = comm->me;
-  scene.world.ranks = comm->nprocs;
-  scene.world.refresh = Scene::refresh;
-  scene.world.reduce = Scene::reduce;
-  scene.world.sum = Scene::sum;
+  scene.world = where.ranks();
   check(sd_lubrication_place(&near, &scene));
   if (where.settings.wall.sign) add_wall(where);
 }

@@ -9,7 +9,6 @@
 #include "sd_lubrication.h"
 #include "sd_random.h"
 
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
@@ -25,7 +24,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   /* spheres are shells of points: films are of what these do not know; nullptr: they are points */
   const Shells::Settings *shells = nullptr;
 
-  Lubrication(LAMMPS_NS::LAMMPS *lmp, const std::string &command);
+  explicit Lubrication(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
   ~Lubrication();
   Lubrication(const Lubrication &) = delete;
   Lubrication &operator=(const Lubrication &) = delete;
@@ -45,7 +44,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  std::string command;
+  const Voice voice;
   sd_lubrication near = {};
   sd_two_sphere *functions = nullptr;
   double largest_ratio = 0.0;

@@ -7,11 +7,9 @@
 #include "sd_clump_noise.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "force.h"
 #include "neighbor.h"
 #include "update.h"
-#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,30 +21,20 @@ namespace StokesDyn {
 void Noise::read_temperature(Keywords &in)
 {
   temperature = Field::parse(in);
-  if (temperature.number() < 0.0)
-    in.refuse("'" + text(temperature.number()) + "' must be >= 0");
+  in.check(temperature.number() >= 0.0, "must be >= 0");
   seed = (uint32_t) in.integer(1);
 }
 
 void Noise::read_tolerance(Keywords &in)
 {
   tolerance = in.positive();
-  if (!(tolerance < 0.5)) in.refuse("'" + text(tolerance) + "' must be below 0.5");
+  in.check(tolerance < 0.5, "must be below 0.5");
 }
 
 Noise::~Noise()
 {
   sd_noise_free(&process);
   sd_bodies_noise_free(&of_bodies);
-}
-
-double Noise::memory_usage() const
-{
-  double numbers = of_clumps.capacity() + of_bodies.room;
-  for (const auto *rows : {&D, &w, &y}) numbers += rows->capacity();
-  for (size_t room : process.room) numbers += room;
-  for (size_t room : of_bodies.process.room) numbers += room;
-  return sizeof(double) * numbers;
 }
 
 double Noise::scale(double dt) const
@@ -63,8 +51,8 @@ void Noise::find_temperature(const Hydrodynamics &hydro)
 {
   const double T = temperature.evaluate(lmp);
   if (!(T >= 0.0) || std::isinf(T))
-    fail(lmp, command + ": keyword temperature: '" + text(T) + "' must be >= 0, in step " +
-                  std::to_string(update->ntimestep));
+    voice.fail("keyword temperature: '" + text(T) + "' must be >= 0, in step " +
+               std::to_string(update->ntimestep));
   kT = force->boltz * T;
   last = {};
   of_clumps.assign(6 * hydro.motion().clumps.size() + 6, 0.0);
@@ -153,19 +141,15 @@ void Noise::place(Hydrodynamics &hydro, Forces &forces, sd_noise_matrix &M)
   M.apply = apply_forces;
   M.ctx = &forces;
   M.D = D.data();
-  M.world.ctx = &scene;
-  M.world.me = comm->me;
-  M.world.ranks = comm->nprocs;
-  M.world.sum = Scene::sum;
+  M.world = scene.ranks();
 }
 
 void Noise::no_root(sd_status status) const
 {
-  fail_by(lmp, status,
-          command + ": keyword temperature: the root of the mobility, for the noise, was not found in "
-                    "step " + std::to_string(update->ntimestep) + " (" + std::to_string(last.products) +
-              " products, error " + text(last.error) + ", noise_tolerance " + text(tolerance) +
-              "): " + sd_status_string(status));
+  fail_by(voice, status, "keyword temperature: the root of the mobility, for the noise, was not "
+                         "found in step " + std::to_string(update->ntimestep) + " (" +
+                         std::to_string(last.products) + " products, error " + text(last.error) +
+                         ", noise_tolerance " + text(tolerance) + "): " + sd_status_string(status));
 }
 
 void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
@@ -203,28 +187,22 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
 {
   const double step = drag > 0.0 ? scale(update->dt) / sqrt(drag) : 0.0;
   const double radii = step / smallest, skins = step / (0.5 * neighbor->skin);
-  if (comm->me == 0)
-    utils::logmesg(lmp, command + ": Brownian motion, kT = " + text(kT) + ", seed " +
-                            std::to_string(seed) + "; root of the mobility by " +
-                            (hydro.settings.rigid.apart()
-                                 ? "the own one of each clump"
-                                 : (divided ? "waves at once, near part by Lanczos's process, "
-                                            : "Lanczos's process, ") +
-                                     std::to_string(last.products) + " products, error " +
-                                     text(last.error)) +
-                            "; a step moves the smallest sphere by " + text(radii) +
-                            " of its radius, " + text(skins) +
-                            " of half the skin; " +
-                            (midpoint ? "v holds the noise of a step" : "v has no noise") +
-                            ", and temperatures and pressures from v mean nothing\n");
-  if (comm->me != 0) return;
+  const std::string root = hydro.settings.rigid.apart()
+      ? "the own one of each clump"
+      : (divided ? "waves at once, near part by Lanczos's process, " : "Lanczos's process, ") +
+          std::to_string(last.products) + " products, error " + text(last.error);
+  voice.tell("Brownian motion, kT = " + text(kT) + ", seed " + std::to_string(seed) +
+             "; root of the mobility by " + root + "; a step moves the smallest sphere by " +
+             text(radii) + " of its radius, " + text(skins) + " of half the skin; " + (midpoint
+             ? "v holds the noise of a step" : "v has no noise") + ", and temperatures and "
+             "pressures from v mean nothing");
   if (radii > 0.1)
-    warn(lmp, command + ": keyword temperature: a step moves the smallest sphere by " +
-         text(radii) + " of its radius: use a shorter time step");
+    voice.warn("keyword temperature: a step moves the smallest sphere by " + text(radii) +
+               " of its radius: use a shorter time step");
   if (skins > 1.0)
-    warn(lmp, command + ": keyword temperature: a step moves spheres by " + text(skins) + " of "
-         "half the skin, so that lists are made anew in every step: use a shorter time step or a "
-         "larger skin");
+    voice.warn("keyword temperature: a step moves spheres by " + text(skins) + " of half the skin, "
+               "so that lists are made anew in every step: use a shorter time step or a larger "
+               "skin");
 }
 
 }    // namespace StokesDyn

@@ -21,18 +21,13 @@
 #include <string>
 #include <vector>
 
-namespace LAMMPS_NS {
-class Fix;
-}
-
 namespace StokesDyn {
 
 class Hydrodynamics;
-class Keywords;
 
 class Noise : protected LAMMPS_NS::Pointers {
  public:
-  Noise(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command) {}
+  explicit Noise(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
   ~Noise();
   Noise(const Noise &) = delete;
   Noise &operator=(const Noise &) = delete;
@@ -54,7 +49,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* Before a run: the variable, and how sums over images are split. Errors: a variable that is none,
    * and whatever has a drift that is left out or no noise: settings of the pair style, other
    * commands. */
-  void init(Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, const Ways &ways);
+  void init(Hydrodynamics &hydro, const Ways &ways);
 
   /* y [3] of the free spheres to take(i, y); [6] of the clumps of this rank are kept, U of their centre
    * of mobility and W. The velocities of this step have been found. Errors: a temperature below 0; a
@@ -72,10 +67,9 @@ class Noise : protected LAMMPS_NS::Pointers {
   void announce(const Hydrodynamics &hydro, double smallest, double drag) const;
   /* Of the last root: products with M (its near part, where the sum is split), e of sd_noise.h */
   const sd_noise_report &report() const { return last; }
-  double memory_usage() const;
 
  private:
-  std::string command;
+  const Voice voice;
   Field temperature;
   uint32_t seed = 0;
   double tolerance = 0.01;
@@ -94,7 +88,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   bool midpoint = false;
 
   sd_random_key key(sd_random_purpose what) const;
-  void refuse(const Hydrodynamics &hydro, const LAMMPS_NS::Fix *self, const Ways &ways) const;
+  void refuse(const Hydrodynamics &hydro, const Ways &ways) const;
   void find_temperature(const Hydrodynamics &hydro);
   [[noreturn]] void no_root(sd_status status) const;
   void draw_alone(const Hydrodynamics &hydro, const Take &take);

@@ -2,6 +2,7 @@
 #include "noise.h"
 
 #include "checks.h"
+#include "fixes.h"
 #include "fix_stokes_dynamics_overdamped.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
@@ -11,9 +12,6 @@
 #include "domain.h"
 #include "fix.h"
 #include "force.h"
-#include "modify.h"
-#include "pair.h"
-#include "utils.h"
 
 #include <cmath>
 
@@ -39,60 +37,55 @@ std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) c
 }
 
 /* A mobility that has no root, or a drift that no scheme has */
-static void refuse_settings(LAMMPS *lmp, const std::string &keyword, const StokesSettings &s)
+static void refuse_settings(const Voice &keyword, const StokesSettings &s)
 {
-  if (s.rigid.apart() && lmp->domain->dimension == 2)
-    fail(lmp, keyword + "keyword clumps_only" + PAIR +
-                  ": lone clumps in a plane have a drift: use clumps_only no");
+  if (s.rigid.apart() && keyword.lmp->domain->dimension == 2)
+    keyword.fail("keyword clumps_only" + PAIR + ": lone clumps in a plane have a drift: use "
+                 "clumps_only no");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
-    fail(lmp, keyword + "keyword tensor: 'oseen'" + PAIR +
-                  " may have negative mobilities, for which there is no noise: use tensor rpy");
+    keyword.fail("keyword tensor: 'oseen'" + PAIR + " may have negative mobilities, for which "
+                 "there is no noise: use tensor rpy");
   if (s.scene.taper != SD_TAPER_NONE)
-    fail(lmp, keyword + "keyword taper" + PAIR +
-                  ": the mobility has a drift, which schemes leave out: use cut_off_distance inf");
+    keyword.fail("keyword taper" + PAIR + ": the mobility has a drift, which schemes leave out: "
+                 "use cut_off_distance inf");
   if (std::isfinite(s.scene.cutoff) && !s.rigid.apart())
-    fail(lmp, keyword + "keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + PAIR +
-                  ": the mobility has a drift, which schemes leave out: use inf");
+    keyword.fail("keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + PAIR +
+                 ": the mobility has a drift, which schemes leave out: use inf");
 }
 
-void Noise::refuse(const Hydrodynamics &hydro, const Fix *self, const Ways &ways) const
+void Noise::refuse(const Hydrodynamics &hydro, const Ways &ways) const
 {
-  const std::string keyword = command + ": keyword temperature: ";
-  refuse_settings(lmp, keyword, hydro.settings);
+  const Voice keyword = voice.of("keyword temperature");
+  refuse_settings(keyword, hydro.settings);
   const std::string what = drift(hydro, ways.holds);
   if (!what.empty() && !ways.midpoint)
-    fail(lmp, keyword + what +
-                  ": the mobility has a drift, which schemes ab2 and euler leave out: use scheme "
-                  "midpoint");
+    keyword.fail(what + ": the mobility has a drift, which schemes ab2 and euler leave out: use "
+                 "scheme midpoint");
   if (!atom->tag_enable)
-    fail(lmp, keyword + "the noise of an atom depends on its ID, and there are no IDs: atom_modify id yes");
+    keyword.fail("the noise of an atom depends on its ID, and there are no IDs: atom_modify id "
+                 "yes");
   if (ways.adapts)
-    fail(lmp, keyword + "averages over steps of unequal length are not averages over time: leave out adapt");
-  for (int i = 0; i < modify->nfix; i++) {
-    const Fix *fix = modify->fix[i];
-    if (fix == self) continue;
-    const std::string name = "fix " + std::string(fix->id) + " of style " + fix->style;
-    if (utils::strmatch(fix->style, "^dt/reset"))
-      fail(lmp, keyword + name +
-                    " makes steps of unequal length, whose averages are not those of time: take it "
-                    "away");
-    for (const char *style : {"^viscous", "^langevin", "^brownian"})
-      if (utils::strmatch(fix->style, style))
-        fail(lmp, keyword + name + " has noise or a drag of its own: take it away");
-  }
+    keyword.fail("averages over steps of unequal length are not averages over time: leave out "
+                 "adapt");
+  if (const Fix *fix = fix_like(lmp, "^dt/reset"))
+    keyword.fail(name_of(fix) + " makes steps of unequal length, whose averages are not those of "
+                 "time: take it away");
+  for (const char *style : {"^viscous", "^langevin", "^brownian"})
+    if (const Fix *fix = fix_like(lmp, style))
+      keyword.fail(name_of(fix) + " has noise or a drag of its own: take it away");
   if (force->pair_match("^brownian", 0, 1))
-    fail(lmp, keyword + "pair_style brownian* has noise of its own: take it away");
-  refuse_friction(lmp, keyword);
+    keyword.fail("pair_style brownian* has noise of its own: take it away");
+  refuse_friction(keyword);
 }
 
-void Noise::init(Hydrodynamics &hydro, const Fix *self, const Ways &ways)
+void Noise::init(Hydrodynamics &hydro, const Ways &ways)
 {
-  const std::string keyword = command + ": keyword temperature";
-  check_room_of_blas(lmp, command);
-  temperature.init(lmp, keyword);
+  const Voice keyword = voice.of("keyword temperature");
+  check_room_of_blas(voice);
+  temperature.init(lmp, keyword.command);
   if (temperature.is_atom_style())
-    fail(lmp, keyword + ": all atoms have one temperature: use an equal-style variable");
-  refuse(hydro, self, ways);
+    keyword.fail("all atoms have one temperature: use an equal-style variable");
+  refuse(hydro, ways);
   midpoint = ways.midpoint;
   hydro.scene.settings.positive = !midpoint;
 }

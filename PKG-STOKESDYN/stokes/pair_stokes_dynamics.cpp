@@ -22,7 +22,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const std::string COMMAND = StokesSettings::COMMAND;
 using State = FixStokesDynamicsState;
 
 PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp), sorting_bins(lmp)
@@ -141,44 +140,42 @@ void PairStokesDynamics::settings(int narg, char **arg)
 void PairStokesDynamics::coeff(int narg, char **arg)
 {
   if (narg != 2 || strcmp(arg[0], "*") != 0 || strcmp(arg[1], "*") != 0)
-    fail(lmp,
-         COMMAND +
-             ": the only form of pair_coeff is: pair_coeff * * (use the keywords group and region "
-             "to select spheres)");
-  if (!allocated) allocate();
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) setflag[i][j] = 1;
+    voice.fail("the only form of pair_coeff is: pair_coeff * * (use the keywords group and region "
+               "to select spheres)");
+  accept_all_types();
 }
 
-void PairStokesDynamics::allocate()
+void PairStokesDynamics::accept_all_types()
 {
-  allocated = 1;
   const int n = atom->ntypes;
-  memory->create(setflag, n + 1, n + 1, "pair:setflag");
-  memory->create(cutsq, n + 1, n + 1, "pair:cutsq");
+  if (!allocated) {
+    memory->create(setflag, n + 1, n + 1, "pair:setflag");
+    memory->create(cutsq, n + 1, n + 1, "pair:cutsq");
+  }
+  allocated = 1;
   for (int i = 1; i <= n; i++)
-    for (int j = i; j <= n; j++) setflag[i][j] = 0;
+    for (int j = i; j <= n; j++) setflag[i][j] = 1;
 }
 
 void PairStokesDynamics::init_style()
 {
   if (update->whichflag == 2)
     fail(lmp,
-         COMMAND +
+         voice.command +
              " cannot be minimised: a drag depends on velocities and has no energy; use "
              "'pair_style none' meanwhile");
   if (utils::strmatch(update->integrate_style, "^respa"))
-    fail(lmp, COMMAND + " does not support run_style respa");
+    fail(lmp, voice.command + " does not support run_style respa");
   if (force->pair_match(STYLE, 1) != this)
-    fail(lmp, COMMAND + " may appear only once in a hybrid pair style");
+    fail(lmp, voice.command + " may appear only once in a hybrid pair style");
   require_atoms();
   const Scene::Settings &scene = hydro.settings.scene;
-  if (scene.everybody() && !scene.wall.sign) check_boundaries(lmp, COMMAND, scene);
+  if (scene.everybody() && !scene.wall.sign) check_boundaries(voice, scene);
   if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
-    fail(lmp, COMMAND + ": keyword precondition: 'waves' requires a periodic box");
+    voice.fail("keyword precondition: 'waves' requires a periodic box");
   const bool may_precondition = hydro.settings.algorithm == StokesSettings::GRADIENTS &&
       hydro.settings.precondition != Preconditioner::NONE;
-  if (hydro.settings.rigid.on || may_precondition) check_room_of_blas(lmp, COMMAND);
+  if (hydro.settings.rigid.on || may_precondition) check_room_of_blas(voice);
 
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
@@ -191,7 +188,7 @@ void PairStokesDynamics::init_style()
   const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
   State::provide(lmp, scene.rotation, hydro.settings.history(), points)->settings_are(args);
   look_for_fixes();
-  check_deform(lmp, COMMAND, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
+  check_deform(voice, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
   sorting_bins.limit(range());
 }
 
@@ -199,20 +196,18 @@ void PairStokesDynamics::require_atoms()
 {
   const StokesSettings &settings = hydro.settings;
   if (!atom->radius_flag)
-    fail(lmp, COMMAND + " requires an atom style with radius, such as sphere");
-  if (atom->tag_enable == 0) fail(lmp, COMMAND + " requires atom IDs");
+    fail(lmp, voice.command + " requires an atom style with radius, such as sphere");
+  if (atom->tag_enable == 0) fail(lmp, voice.command + " requires atom IDs");
   if (settings.scene.rotation && (!atom->omega_flag || !atom->torque_flag))
-    fail(lmp,
-         COMMAND +
-             ": keyword rotation: yes requires an atom style with angular velocity and torque, "
-             "such as sphere");
+    voice.fail("keyword rotation: yes requires an atom style with angular velocity and torque, "
+               "such as sphere");
   if (atom->molecule_flag) return;
   const std::string ways = " (atom_style hybrid sphere bond, or fix property/atom mol)";
   if (settings.precondition == Preconditioner::CLUMP)
-    fail(lmp, COMMAND + ": keyword precondition: 'clump' requires molecule IDs");
+    voice.fail("keyword precondition: 'clump' requires molecule IDs");
   if (settings.scene.clumps_only)
-    fail(lmp, COMMAND + ": keyword clumps_only: yes requires molecule IDs" + ways);
-  if (settings.rigid.on) fail(lmp, COMMAND + ": keyword rigid_clumps requires molecule IDs" + ways);
+    voice.fail("keyword clumps_only: yes requires molecule IDs" + ways);
+  if (settings.rigid.on) voice.fail("keyword rigid_clumps requires molecule IDs" + ways);
 }
 
 void PairStokesDynamics::look_for_fixes()
@@ -228,8 +223,7 @@ void PairStokesDynamics::look_for_fixes()
   }
   if (applied || hydro.overdamped || warned_nobody_applies) return;
   warned_nobody_applies = true;
-  warn(lmp, COMMAND + ": nothing applies the force: add_force is no and no fix stokes_dynamics "
-       "applies it");
+  voice.warn("nothing applies the force: add_force is no and no fix stokes_dynamics applies it");
 }
 
 /* This style needs no ghosts (halo.h). A length is given to LAMMPS all the same, since it warns of
@@ -245,7 +239,7 @@ double PairStokesDynamics::range() const
 
 double PairStokesDynamics::init_one(int i, int j)
 {
-  if (setflag[i][j] == 0) fail(lmp, COMMAND + ": pair_coeff * * is missing");
+  if (setflag[i][j] == 0) voice.fail("pair_coeff * * is missing");
   return range();
 }
 
@@ -275,9 +269,7 @@ void PairStokesDynamics::write_restart(FILE *fp)
 void PairStokesDynamics::read_restart(FILE *fp)
 {
   read_restart_settings(fp);
-  allocate();
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) setflag[i][j] = 1;
+  accept_all_types();
 }
 
 void PairStokesDynamics::write_restart_settings(FILE *fp)
@@ -289,7 +281,7 @@ void PairStokesDynamics::write_restart_settings(FILE *fp)
 
 void PairStokesDynamics::read_restart_settings(FILE *fp)
 {
-  args = read_words(lmp, fp, COMMAND);
+  args = read_words(lmp, fp, voice.command);
   double eta_then = 0.0;
   if (comm->me == 0) utils::sfread(FLERR, &eta_then, sizeof(double), 1, fp, nullptr, error);
   MPI_Bcast(&eta_then, 1, MPI_DOUBLE, 0, world);

@@ -35,6 +35,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
  private:
   std::vector<std::string> args;
   Hydrodynamics hydro;
+  const Voice &voice = hydro.voice;
   SortingBins sorting_bins;
   double largest_diameter = 0.0;
   bool warned_nobody_applies = false;
@@ -49,7 +50,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   void add();
   void report();
 
-  void allocate();
+  void accept_all_types();
   void require_atoms();
   void look_for_fixes();
   double range() const;    // what LAMMPS is told

@@ -3,7 +3,6 @@
 #include "keywords.h"
 
 #include "domain.h"
-#include "update.h"
 
 using namespace LAMMPS_NS;
 
@@ -31,27 +30,26 @@ static bool upright(const Domain *domain, int axis)
   return axis == 1 ? domain->yz == 0.0 : domain->xy == 0.0 && domain->xz == 0.0;
 }
 
-void find_wall(LAMMPS *lmp, const std::string &command, Scene::Settings &settings)
+void find_wall(const Voice &voice, Scene::Settings &settings)
 {
-  const Domain *domain = lmp->domain;
+  const Domain *domain = voice.lmp->domain;
   sd_wall &wall = settings.wall;
   if (!wall.sign) return;
   for (int d = 0; d < 3; d++)
     if (domain->periodicity[d])
-      fail(lmp,
-           command + ": keyword wall: it needs boundary f, s or m in all directions, and " +
-               "xyz"[d] + " is periodic: periodic images above a wall are not summed");
+      voice.fail("keyword wall: it needs boundary f, s or m in all directions, and " +
+                 std::string(1, "xyz"[d]) + " is periodic: periodic images above a wall are not "
+                 "summed");
   if (!settings.at_edge) return;
   if (domain->boundary[wall.axis][wall.sign < 0] != 1)
-    fail(lmp, command + ": keyword wall: EDGE: that side of the box follows the spheres (boundary s "
-                        "or m): give the position of the wall, or boundary f there");
+    voice.fail("keyword wall: EDGE: that side of the box follows the spheres (boundary s or m): "
+               "give the position of the wall, or boundary f there");
   if (!upright(domain, wall.axis))
-    fail(lmp, command + ": keyword wall: EDGE: that side of the box is tilted: give the position of "
-                        "the wall");
+    voice.fail("keyword wall: EDGE: that side of the box is tilted: give the position of the wall");
   wall.at = side_of_box(domain, wall);
 }
 
-void check_stream_at_wall(LAMMPS *lmp, const std::string &command, const sd_wall &wall,
+void check_stream_at_wall(const Voice &voice, const sd_wall &wall,
                           const Ambient::Settings &fluid)
 {
   if (!wall.sign || fluid.grid || fluid.box) return;
@@ -62,36 +60,34 @@ void check_stream_at_wall(LAMMPS *lmp, const std::string &command, const sd_wall
     const std::string there = wall_name(wall) + ", and its component " + "xyz"[d] + " is '" +
         text(u.number()) + "' there: ";
     if (k == 3)
-      fail(lmp, command + ": keyword fluid_velocity: nothing flows through the wall " + there +
-                    "give 0, or a variable that is 0 at the wall");
-    warn(lmp, command + ": keyword fluid_velocity: the fluid rests at the wall " + there +
-         "a shear flow is a variable, such as RATE*(z-zlo)");
+      voice.fail("keyword fluid_velocity: nothing flows through the wall " + there +
+                 "give 0, or a variable that is 0 at the wall");
+    voice.warn("keyword fluid_velocity: the fluid rests at the wall " + there + "a shear flow is a "
+               "variable, such as RATE*(z-zlo)");
   }
 }
 
-double spheres_cut_by_wall(LAMMPS *lmp, const std::string &command, const Scene &scene)
+double spheres_cut_by_wall(const Voice &voice, const Scene &scene)
 {
   const sd_wall &wall = scene.settings.wall;
   const sd_spheres spheres = scene.local();
+  const Domain *domain = voice.lmp->domain;
   double cut = 0.0;
-  const std::string step = command + ": step " + std::to_string(lmp->update->ntimestep) + ": ";
-  if (scene.settings.at_edge && wall.at != side_of_box(lmp->domain, wall))
-    fail(lmp,
-         step + "keyword wall: EDGE: that side of the box is at " +
-             text(side_of_box(lmp->domain, wall)) + " now and was at " + text(wall.at) +
-             " when the run began: walls do not move; give its position");
+  if (scene.settings.at_edge && wall.at != side_of_box(domain, wall))
+    voice.at_step().fail("keyword wall: EDGE: that side of the box is at " +
+                         text(side_of_box(domain, wall)) + " now and was at " + text(wall.at) +
+                         " when the run began: walls do not move; give its position");
   for (int k = 0; k < scene.size(); k++) {
     const double height = sd_wall_height(&wall, spheres.x + 3 * (size_t) k);
     cut += height < spheres.a[k];
     if (height > 0.0) continue;
-    fail_one(lmp,
-             step + "keyword wall: the centre of atom " + std::to_string(scene.tag(k)) +
-                 ", radius " + text(spheres.a[k]) + ", is " + text(0.0 - height) +
-                 " behind the wall " + wall_name(wall) +
-                 ": spheres must stand in front of it; is it on the right side? A contact "
-                 "(fix wall/gran) or a shorter time step keeps them there");
+    voice.at_step().fail_one("keyword wall: the centre of atom " + std::to_string(scene.tag(k)) +
+                             ", radius " + text(spheres.a[k]) + ", is " + text(0.0 - height) +
+                             " behind the wall " + wall_name(wall) + ": spheres must stand in "
+                             "front of it; is it on the right side? A contact (fix wall/gran) or a "
+                             "shorter time step keeps them there");
   }
-  MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_SUM, voice.lmp->world);
   return cut;
 }
 

@@ -15,16 +15,16 @@ std::string wall_name(const sd_wall &wall);
 
 /* Before a run: puts a wall at the side of the box where that is now. Errors: a periodic direction;
  * a side that moves or leans. */
-void find_wall(LAMMPS_NS::LAMMPS *lmp, const std::string &command, Scene::Settings &settings);
+void find_wall(const Voice &voice, Scene::Settings &settings);
 
 /* The stream must rest where the wall is. Error: a number for its velocity across the wall; warning:
  * numbers along it. */
-void check_stream_at_wall(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const sd_wall &wall,
+void check_stream_at_wall(const Voice &voice, const sd_wall &wall,
                           const Ambient::Settings &fluid);
 
 /* Where the rows of the scene stand. Errors: the side of the box has left the wall; a centre that is
  * not in front of it. Returns how many spheres cut it, on all ranks. */
-double spheres_cut_by_wall(LAMMPS_NS::LAMMPS *lmp, const std::string &command, const Scene &scene);
+double spheres_cut_by_wall(const Voice &voice, const Scene &scene);
 
 }    // namespace StokesDyn
 #endif

@@ -8,7 +8,6 @@
 #include "domain.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 using namespace LAMMPS_NS;
@@ -172,8 +171,7 @@ sd_status Preconditioner::put()
   if (wanted == &sd_precondition_waves) c.box = &scene.splitting()->box;
   c.part = cloud ? comm->me : 0;
   c.parts = cloud ? comm->nprocs : 1;
-  c.world.sum = Scene::sum;
-  c.world.ctx = &scene;
+  c.world = scene.ranks();
   return sd_preconditioner_make(&made, wanted, &c);
 }
 

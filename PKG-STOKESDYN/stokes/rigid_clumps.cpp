@@ -13,9 +13,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-RigidClumps::RigidClumps(LAMMPS *lmp, WholeClumps &whole, const std::string &command,
-                         const Epochs &epochs) :
-    Pointers(lmp), whole(whole), command(command), epochs(epochs), shapes(lmp, command)
+RigidClumps::RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &epochs) :
+    Pointers(voice.lmp), shapes(voice), whole(whole), voice(voice), epochs(epochs)
 {
 }
 
@@ -79,10 +78,9 @@ static uint64_t hash_of(const int64_t *tags, int n)
 
 void RigidClumps::not_rigid(int64_t molecule) const
 {
-  fail(lmp,
-       command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(molecule) +
-           " is not rigid: its shape has changed by more than " + text(SD_SHAPE_TOLERANCE) +
-           " of its size (rigid_clumps auto solves such clumps anew)");
+  voice.fail("keyword rigid_clumps: the clump of molecule " + std::to_string(molecule) +
+             " is not rigid: its shape has changed by more than " + text(SD_SHAPE_TOLERANCE) +
+             " of its size (rigid_clumps auto solves such clumps anew)");
 }
 
 /* From now on the solver has them. The same on all ranks. */
@@ -114,11 +112,10 @@ void RigidClumps::recognise()
   if (count[1]) {
     changed = from_all(world, changed);
     if (!settings.auto_resolve)
-      fail(lmp,
-           command + ": keyword rigid_clumps: the clump of molecule " +
-               std::to_string(*std::min_element(changed.begin(), changed.end())) +
-               " has gained or lost atoms, so it is not rigid (rigid_clumps auto solves such "
-               "clumps anew)");
+      voice.fail("keyword rigid_clumps: the clump of molecule " +
+                 std::to_string(*std::min_element(changed.begin(), changed.end())) +
+                 " has gained or lost atoms, so it is not rigid (rigid_clumps auto solves such "
+                 "clumps anew)");
     loosen(changed);
   }
   if (count[0]) {
@@ -190,7 +187,7 @@ void RigidClumps::find_shapes(std::vector<size_t> unknown)
   while (true) {
     std::vector<size_t> without;
     std::vector<double> candidates;
-    ClumpShapes mine(lmp, command);
+    ClumpShapes mine(voice);
     for (size_t c : unknown) {
       const auto &clump = whole.clumps[c];
       const ClumpGeometry g = geometry(clump);
@@ -228,7 +225,7 @@ void RigidClumps::accept(const std::vector<double> &candidates)
     if (shapes.find(g, perm)) return;
     const sd_status status = shapes.add(candidate.first, g);
     if (status == SD_ENOMEMORY)    // of this rank alone
-      fail_one(lmp, command + ": keyword rigid_clumps: out of memory");
+      voice.fail_one("keyword rigid_clumps: out of memory");
     if (status != SD_OK) shapes.cannot_be_solved(candidate.first, g.n(), settings, status);
   }
 }
@@ -268,14 +265,14 @@ const std::vector<RigidClumps::Body> &RigidClumps::find()
   return bodies;
 }
 
-bool RigidClumps::fits(const Body &body, const double *radii, int columns, double *pose) const
+bool RigidClumps::fits(const Body &body, const double *radii, double *pose) const
 {
   const sd_shape &shape = body.shape->shape;
   const double most = SD_SHAPE_TOLERANCE * shape.size;
   std::vector<double> x;
   for (int k = 0; k < body.n; k++) {
     const size_t m = member[body.begin + k];
-    if (!(std::fabs(radii[columns * m] - shape.a[k]) <= most)) return false;
+    if (!(std::fabs(radii[k] - shape.a[k]) <= most)) return false;
     x.insert(x.end(), &whole.x[3 * m], &whole.x[3 * m] + 3);
   }
   return sd_shape_pose(&shape, x.data(), pose, pose + 9) <= most;
@@ -287,10 +284,9 @@ bool RigidClumps::settle(int64_t split, const std::vector<int64_t> &bent)
   for (int64_t molecule : bent) first[1] = std::min(first[1], molecule);
   MPI_Allreduce(MPI_IN_PLACE, first, 2, MPI_LMP_BIGINT, MPI_MIN, world);
   if (first[0] != NOBODY)
-    fail(lmp,
-         command + ": keyword rigid_clumps: the clump of molecule " + std::to_string(first[0]) +
-             " is split by the keyword group or region: all of its spheres must be selected, or "
-             "none");
+    voice.fail("keyword rigid_clumps: the clump of molecule " + std::to_string(first[0]) +
+               " is split by the keyword group or region: all of its spheres must be selected, or "
+               "none");
   if (first[1] == NOBODY) return false;
   if (!settings.auto_resolve) not_rigid(first[1]);
   loosen(from_all(world, bent));

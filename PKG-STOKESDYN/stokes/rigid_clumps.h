@@ -15,7 +15,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
@@ -30,8 +29,9 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     bool apart() const { return on && clumps_only; }
   } settings;
 
-  RigidClumps(LAMMPS_NS::LAMMPS *lmp, WholeClumps &whole, const std::string &command,
-              const Epochs &epochs);
+  ClumpShapes shapes;
+
+  RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &epochs);
   RigidClumps(const RigidClumps &) = delete;
   RigidClumps &operator=(const RigidClumps &) = delete;
 
@@ -57,21 +57,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   /* All of them, looked at anew if LAMMPS has re-neighboured. Errors: one that is not rigid (yes). */
   const std::vector<Body> &find();
   const std::vector<int> &members() const { return member; }
-  /* Do the spheres of a body stand as its shape says? radii by members of whole, `columns` apart.
-   * pose [12] out */
-  bool fits(const Body &body, const double *radii, int columns, double *pose) const;
-  /* The shape in a cloud with others. Error: memory. */
-  const sd_body_shape &blocks(const ClumpShape &shape) const
-  {
-    return shapes.blocks(shape, settings);
-  }
-  /* The same where all spheres are shells of points */
-  const sd_multiblob_shape &points(const ClumpShape &shape, const sd_multiblob &model) const
-  {
-    return shapes.points(shape, model);
-  }
-  /* Of whichever of these there is, for noise. Error: memory. */
-  void take_root(const ClumpShape &shape) const { shapes.take_root(shape); }
+  /* Do the spheres of a body, with these radii in its order, stand as its shape says? pose [12] out */
+  bool fits(const Body &body, const double *radii, double *pose) const;
   /* Molecule IDs of a clump of which not all spheres are selected, NOBODY: there is none, and of
    * those that do not fit. Returns whether these are loose now, and the bodies others; otherwise
    * errors. On all ranks together. */
@@ -82,10 +69,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
 
  private:
   WholeClumps &whole;
-  std::string command;
+  const Voice voice;
   const Epochs &epochs;
-
-  ClumpShapes shapes;
 
   struct Known {
     const ClumpShape *shape = nullptr;

@@ -2,7 +2,6 @@
 
 #include "callback.h"
 #include "keywords.h"
-#include "lammps_compat.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -15,8 +14,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Scene::Scene(LAMMPS *lmp, const std::string &command, Epochs &epochs) :
-    Pointers(lmp), whole(lmp, command, epochs), command(command), epochs(epochs), halo(lmp->world),
+Scene::Scene(const Voice &voice, Epochs &epochs) :
+    Pointers(voice.lmp), whole(voice, epochs), voice(voice), epochs(epochs), halo(world),
     candidates(), pairs(), omega()
 {
 }
@@ -30,7 +29,7 @@ Scene::~Scene()
 
 void Scene::out_of_memory()
 {
-  fail_one(lmp, command + ": out of memory for the list of pairs");
+  voice.fail_one("out of memory for the list of pairs");
 }
 
 // --- rows ----------------------------------------------------------------------------------------
@@ -85,14 +84,7 @@ void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
     out[3] = atom->radius[i];
     out[4] = 1.0 / sqrt(ambient.viscosity(i));
   });
-  x.resize(3 * n);
-  a.resize(n);
-  w.resize(n);
-  for (size_t k = 0; k < n; k++) {
-    std::copy_n(&known[5 * k], 3, &x[3 * k]);
-    a[k] = known[5 * k + 3];
-    w[k] = known[5 * k + 4];
-  }
+  take_apart(known, n, {{&x, 3}, {&a, 1}, {&w, 1}});
   for (size_t m = 0; m < row_of.size(); m++)
     if (row_of[m] >= 0) std::copy_n(&whole.x[3 * m], 3, &x[3 * (size_t) row_of[m]]);
 }
@@ -116,27 +108,20 @@ const double *Scene::drift_of_copies()
 
 sd_status Scene::refresh(void *ctx, const double *rows, double *copies, int width)
 {
-  return callback([=] {
-    static_cast<Scene *>(ctx)->halo.refresh(rows, copies, width);
-    return SD_OK;
-  });
+  return callback([=] { static_cast<Scene *>(ctx)->halo.refresh(rows, copies, width); });
 }
 
 sd_status Scene::reduce(void *ctx, const double *copies, double *rows, int width)
 {
-  return callback([=] {
-    static_cast<Scene *>(ctx)->halo.reduce(copies, rows, width);
-    return SD_OK;
-  });
+  return callback([=] { static_cast<Scene *>(ctx)->halo.reduce(copies, rows, width); });
 }
 
 void Scene::surround(double reach, const std::string &keyword)
 {
   const Lattice lattice = Lattice::of(domain);
   if (!halo.find(lattice, reach, x))
-    fail_one(lmp, command + ": keyword " + keyword +
-                      ", reaches more than 1000 images of each sphere and 1e7 in all; is it in "
-                      "other units?");
+    voice.fail_one("keyword " + keyword + ", reaches more than 1000 images of each sphere and 1e7 "
+                   "in all; is it in other units?");
   halo.extend(lattice.h, x, {&a, &w});
 }
 
@@ -237,10 +222,7 @@ void Scene::place(int n_all_or_copies)
   scene.n_all = points() * n_all_or_copies;
   scene.spheres = shells ? shells->all() : cloud ? this->cloud() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
-  scene.world.ctx = this;
-  scene.world.me = comm->me;
-  scene.world.ranks = comm->nprocs;
-  scene.world.sum = sum;
+  scene.world = ranks();
   scene.world.refresh = [](void *ctx, const double *rows, double *copies, int width) {
     return refresh(ctx, rows, copies, width * static_cast<Scene *>(ctx)->points());
   };
@@ -248,28 +230,17 @@ void Scene::place(int n_all_or_copies)
     return callback([=] {
       Scene *self = static_cast<Scene *>(ctx);
       self->to_cloud(rows, all, width * self->points());
-      return SD_OK;
     });
   };
   scene.world.collect = [](void *ctx, const double *all, double *rows, int width) {
     return callback([=] {
       Scene *self = static_cast<Scene *>(ctx);
       self->from_cloud(all, rows, width * self->points());
-      return SD_OK;
-    });
-  };
-  scene.world.exchange = [](void *ctx, const double *send, const int *to, double *receive,
-                            const int *from) {
-    return callback([=] {
-      exchange_numbers(static_cast<Scene *>(ctx)->world, send, to, receive, from);
-      return SD_OK;
     });
   };
   const sd_status status = sd_mobility_place(&omega, engine, &scene);
   if (status != SD_OK)
-    fail_by(lmp, status,
-            command + ": set-up of the matrix-vector product by " + engine->name + ": " +
-                sd_status_string(status));
+    fail_by(voice.of("set-up of the matrix-vector product by " + std::string(engine->name)), status);
 }
 
 /* The cloud: the spheres of all ranks, sorted by tag. */
@@ -341,6 +312,23 @@ void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width)
   std::vector<int> counts, displs;
   shares(width, counts, displs);
   MPI_Reduce_scatter(in_order_of_rank.data(), own_rows, counts.data(), MPI_DOUBLE, MPI_SUM, world);
+}
+
+sd_world Scene::ranks()
+{
+  sd_world all = {};
+  all.ctx = this;
+  all.me = comm->me;
+  all.ranks = comm->nprocs;
+  all.sum = sum;
+  all.refresh = refresh;
+  all.reduce = reduce;
+  all.exchange = [](void *ctx, const double *send, const int *to, double *receive, const int *from) {
+    return callback([=] {
+      exchange_numbers(static_cast<Scene *>(ctx)->world, send, to, receive, from);
+    });
+  };
+  return all;
 }
 
 sd_status Scene::sum(void *ctx, double *values, int count)

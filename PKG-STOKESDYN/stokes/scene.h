@@ -21,10 +21,30 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 namespace StokesDyn {
+
+/* Rows of numbers [width n] taken apart: so many columns of each, from the first one on, to a vector of
+ * their own [count n] */
+struct Columns {
+  std::vector<double> *to;
+  size_t count;
+};
+inline void take_apart(const std::vector<double> &rows, size_t n, std::initializer_list<Columns> all)
+{
+  size_t width = 0, at = 0;
+  for (const Columns &columns : all) width += columns.count;
+  for (const Columns &columns : all) {
+    columns.to->reserve(columns.count * (n + 1));    // data() is a place even where there are no rows
+    columns.to->resize(columns.count * n);
+    for (size_t k = 0; k < n; k++)
+      std::copy_n(rows.data() + width * k + at, columns.count, columns.to->data() + columns.count * k);
+    at += columns.count;
+  }
+}
 
 class Scene : protected LAMMPS_NS::Pointers {
  public:
@@ -51,7 +71,7 @@ class Scene : protected LAMMPS_NS::Pointers {
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
   } settings;
 
-  Scene(LAMMPS_NS::LAMMPS *lmp, const std::string &command, Epochs &epochs);
+  Scene(const Voice &voice, Epochs &epochs);
   ~Scene();
   Scene(const Scene &) = delete;
   Scene &operator=(const Scene &) = delete;
@@ -145,6 +165,8 @@ class Scene : protected LAMMPS_NS::Pointers {
     if (settings.wall.sign) return false;
     return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
+  /* LAMMPS's, which is periodic in all directions or in none */
+  static sd_ewald_box box_of(const LAMMPS_NS::Domain *domain);
   /* View NEAR; else nullptr */
   const sd_ewald *splitting() const { return view() == SD_VIEW_NEAR ? &ewald : nullptr; }
   /* The box around an open cloud whose sum is split: six numbers to keep, as the next box depends
@@ -166,13 +188,14 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   /* u = Omega F since the last update(): context of sd_mobility_apply. */
   sd_mobility *mobility() { return &omega; }
-  /* Sum over all ranks, in the core's signature: ctx is a Scene. */
+  /* What the core may ask of the other ranks; refresh and reduce are of the rows of spheres */
+  sd_world ranks();
   static sd_status sum(void *ctx, double *values, int count);
 
   double memory_usage() const;
 
  private:
-  std::string command;
+  const Voice voice;
   Epochs &epochs;
 
   Since rows_found, pairs_found;

@@ -2,11 +2,9 @@
 #include "scene.h"
 
 #include "keywords.h"
-#include "lammps_compat.h"
 
 #include "sd_ewald_cost.h"
 
-#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "utils.h"
@@ -21,11 +19,11 @@ namespace StokesDyn {
 // Of spheres near those of a rank: 10 GB.
 static const double MOST_IMAGES = 1e8;
 
-static sd_ewald_box periodic_box(const Domain *domain)
+sd_ewald_box Scene::box_of(const Domain *domain)
 {
   const Lattice lattice = Lattice::of(domain);
   sd_ewald_box box = {};
-  box.periodic = 1;
+  box.periodic = domain->xperiodic;
   std::copy_n(lattice.origin, 3, box.origin);
   std::copy_n(lattice.h, 3, box.edge);
   for (int d = 0; d < 3; d++) box.tilt[d] = lattice.h[5 - d];    // xy xz yz
@@ -79,7 +77,7 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
   MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
   const sd_ewald_sizes all = sizes_of_all(most[0]);
   if (periodic())
-    box = periodic_box(domain);
+    box = box_of(domain);
   else if (all.all.count > 0.0) {
     double lo[3], hi[3];
     for (int d = 0; d < 3; d++) {
@@ -120,18 +118,16 @@ bool Scene::split()
       : choose(&box, &sizes, width(), tolerance, &ewald);
   ewald.box = box;
   if (status != SD_OK && must)
-    fail(lmp,
-         command + ": keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
-             " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
-             text(box.edge[2]) + " at far_field_tolerance " + text(settings.far_field_tolerance) +
-             ": " + sd_status_string(status));
+    voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
+               " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
+               text(box.edge[2]) + " at far_field_tolerance " + text(settings.far_field_tolerance) +
+               ": " + sd_status_string(status));
   const double seen = std::max(pow(ewald.reach, 3), ewald.large.count * pow(ewald.large.range, 3));
   const double images = 8.0 * sizes.all.count * seen / sd_ewald_volume(&box);
   if (box.periodic && !(images < MOST_IMAGES))
-    fail(lmp,
-         command + ": keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
-             ", is so large for the periodic box that it would see " + text(images) +
-             " images; is it in other units?");
+    voice.fail("keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
+               ", is so large for the periodic box that it would see " + text(images) +
+               " images; is it in other units?");
   return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
 }
 

@@ -2,7 +2,6 @@
 
 #include "keywords.h"
 
-
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +17,7 @@ static bool names_a_side(const std::string &word)
   return false;
 }
 
-static void refuse_second_wall(LAMMPS *lmp, const std::vector<std::string> &words)
+static void refuse_second_wall(const Keywords &in, const std::vector<std::string> &words)
 {
   int walls = 0;
   for (size_t k = 0; k + 1 < words.size(); k++) {
@@ -26,24 +25,22 @@ static void refuse_second_wall(LAMMPS *lmp, const std::vector<std::string> &word
     walls += k > 2 && words[k - 3] == "wall" && names_a_side(words[k - 2]) &&
         names_a_side(words[k]);
   }
-  if (walls > 1)
-    fail(lmp, std::string(StokesSettings::COMMAND) +
-                  ": keyword wall: only one plane wall is possible, since the images of two walls, or "
-                  "of a corner, do not add up to their flow: leave out the farther one (at 25 radii a "
-                  "wall changes velocities by 3 %)");
+  in.require(walls <= 1,
+             "keyword wall: only one plane wall is possible, since the images of two walls, or of a "
+             "corner, do not add up to their flow: leave out the farther one (at 25 radii a wall "
+             "changes velocities by 3 %)");
 }
 
 StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &words)
 {
   Keywords in(lmp, COMMAND, words);
-  refuse_second_wall(lmp, words);
+  refuse_second_wall(in, words);
   parse(in);
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   rigid.clumps_only = scene.clumps_only;
   check(in);
   if (!grid_file.empty()) {
-    ambient.grid =
-        FlowFile::read(lmp, grid_file, std::string(COMMAND) + ": keyword fluid_velocity");
+    ambient.grid = FlowFile::read(Voice(lmp, COMMAND).of("keyword fluid_velocity"), grid_file);
     in.require(!ambient.grid_has_visc || ambient.grid->has_viscosity(),
                "keyword visc: 'grid': the file '" + grid_file +
                    "' has no viscosity: its columns would be ux uy uz eta");
@@ -64,63 +61,9 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   in.require(!in.given("fluid_vorticity") || scene.rotation,
              "keyword fluid_vorticity has no effect without rotation yes or a shell");
   if (tolerance > 0.1)
-    warn(lmp, std::string(COMMAND) + ": keyword relative_tolerance: '" + text(tolerance) + "' "
-         "allows errors of the forces of more than a tenth");
-}
-
-static double smallest_gap(Keywords &in)
-{
-  const double gap = in.positive();
-  if (gap < 1e-6) in.refuse("'" + text(gap) + "' must be >= 1e-6, in mean radii of a pair");
-  return gap;
-}
-
-/* Of the films that lubrication knows. */
-static double largest_gap(Keywords &in)
-{
-  const double gap = in.positive();
-  if (gap > SD_TWO_SPHERE_LARGEST_XI)
-    in.refuse("'" + text(gap) + "' must be <= 8, in mean radii of a pair");
-  return gap;
-}
-
-static double far_field_tolerance(Keywords &in)
-{
-  const double tolerance = in.positive();
-  if (!(tolerance >= 1e-13 && tolerance <= 0.1))
-    in.refuse("'" + text(tolerance) + "' must be from 1e-13 to 0.1");
-  return tolerance;
-}
-
-static Field viscosity(Keywords &in)
-{
-  const Field visc = Field::parse(in);
-  if (!visc.is_variable() && !(visc.number() > 0.0))
-    in.refuse("'" + text(visc.number()) + "' must be > 0");
-  return visc;
-}
-
-static double relative_tolerance(Keywords &in)
-{
-  const double tolerance = in.positive();
-  if (tolerance >= 1.0)
-    in.refuse("'" + text(tolerance) + "' must be < 1: otherwise forces of 0 are a solution");
-  return tolerance;
-}
-
-static int points_of_shell(Keywords &in)
-{
-  const int points = in.integer(1);
-  if (points > 1 && points < 12) in.refuse("'" + std::to_string(points) + "' must be 1 or >= 12");
-  return points;
-}
-
-static int points_of_blob(Keywords &in)
-{
-  const int points = in.integer(1);
-  if (points > 1 && !sd_multiblob_has(points))
-    in.refuse("'" + std::to_string(points) + "' must be 1, 12 or 42");
-  return points;
+    Voice(lmp, COMMAND)
+        .warn("keyword relative_tolerance: '" + text(tolerance) +
+              "' allows errors of the forces of more than a tenth");
 }
 
 void StokesSettings::parse(Keywords &in)
@@ -131,12 +74,17 @@ void StokesSettings::parse(Keywords &in)
       {"clumps_only", [&] { scene.clumps_only = in.yes_no(); }},
       {"visc", [&] {
          ambient.grid_has_visc = in.take("grid");
-         if (!ambient.grid_has_visc) ambient.visc = viscosity(in);
+         if (ambient.grid_has_visc) return;
+         ambient.visc = Field::parse(in);
+         in.check(ambient.visc.is_variable() || ambient.visc.number() > 0.0, "must be > 0");
        }},
       {"region", [&] { ambient.region = in.word(); }},
       {"group", [&] { ambient.group = in.word(); }},
       {"add_force", [&] { add_force = in.yes_no(); }},
-      {"relative_tolerance", [&] { tolerance = relative_tolerance(in); }},
+      {"relative_tolerance", [&] {
+         tolerance = in.positive();
+         in.check(tolerance < 1.0, "must be < 1: otherwise forces of 0 are a solution");
+       }},
       {"max_iter", [&] { max_iter = in.integer(1); }},
       {"algorithm", [&] {
          algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS;
@@ -159,12 +107,25 @@ void StokesSettings::parse(Keywords &in)
          rigid.on = choice > 0;
          rigid.auto_resolve = choice == 2;
        }},
-      {"shell", [&] { rigid.shell = points_of_shell(in); }},
-      {"multiblob", [&] { shells.points = points_of_blob(in); }},
+      {"shell", [&] {
+         rigid.shell = in.integer(1);
+         in.check(rigid.shell == 1 || rigid.shell >= 12, "must be 1 or >= 12");
+       }},
+      {"multiblob", [&] {
+         shells.points = in.integer(1);
+         in.check(!shells.on() || sd_multiblob_has(shells.points), "must be 1, 12 or 42");
+       }},
       {"one_body", [&] { shells.one_body = in.yes_no(); }},
       {"lubrication", [&] { lubrication.on = in.yes_no(); }},
-      {"lubrication_gap", [&] { lubrication.gap = smallest_gap(in); }},
-      {"lubrication_range", [&] { lubrication.range = largest_gap(in); }},
+      {"lubrication_gap", [&] {
+         lubrication.gap = in.positive();
+         in.check(lubrication.gap >= 1e-6, "must be >= 1e-6, in mean radii of a pair");
+       }},
+      {"lubrication_range", [&] {
+         lubrication.range = in.positive();
+         in.check(lubrication.range <= SD_TWO_SPHERE_LARGEST_XI,    // of the films that it knows
+                  "must be <= 8, in mean radii of a pair");
+       }},
       {"wall", [&] {
          const size_t side = in.choice({"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"});
          scene.wall = {(int) side / 2, side % 2 ? -1 : 1, 0.0};
@@ -174,7 +135,9 @@ void StokesSettings::parse(Keywords &in)
       {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
       {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
       {"far_field_tolerance", [&] {
-         if (!in.take("auto")) scene.far_field_tolerance = far_field_tolerance(in);
+         if (in.take("auto")) return;
+         const double tolerance = scene.far_field_tolerance = in.positive();
+         in.check(tolerance >= 1e-13 && tolerance <= 0.1, "must be from 1e-13 to 0.1");
        }},
       {"precondition", [&] {
          precondition =

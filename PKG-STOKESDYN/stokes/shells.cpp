@@ -15,15 +15,14 @@ void Shells::make()
   sd_status status = sd_multiblob_create(settings.points, settings.one_body, &blob);
   if (status == SD_OK) status = sd_multiblob_shape_create(&blob, nullptr, &lone);
   if (status != SD_OK)
-    fail(lmp,
-         command + ": keyword multiblob: '" + std::to_string(settings.points) +
-             "': " + sd_status_string(status));
+    voice.fail("keyword multiblob: '" + std::to_string(settings.points) + "': " +
+               sd_status_string(status));
 }
 
 void Shells::take_root()
 {
   const sd_status status = sd_body_shape_take_root(&lone.points);
-  if (status != SD_OK) fail_one(lmp, command + ": keyword multiblob: " + sd_status_string(status));
+  if (status != SD_OK) voice.of("keyword multiblob").fail_one(sd_status_string(status));
 }
 
 void Shells::free_rows(int n)

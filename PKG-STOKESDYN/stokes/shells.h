@@ -5,13 +5,13 @@
 #define SD_SHELLS_H
 
 #include "halo.h"
+#include "keywords.h"
 #include "pointers.h"
 
 #include "sd_film.h"
 #include "sd_multiblob_shape.h"
 #include "sd_product.h"
 
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
@@ -25,7 +25,7 @@ class Shells : protected LAMMPS_NS::Pointers {
     bool on() const { return points > 1; }
   } settings;
 
-  Shells(LAMMPS_NS::LAMMPS *lmp, const std::string &command) : Pointers(lmp), command(command) {}
+  explicit Shells(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
   ~Shells() { sd_multiblob_shape_free(&lone); }
   Shells(const Shells &) = delete;
   Shells &operator=(const Shells &) = delete;
@@ -59,7 +59,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  std::string command;
+  const Voice voice;
   sd_multiblob blob = {};
   sd_multiblob_shape lone = {};
   std::vector<double> turn;

@@ -10,7 +10,6 @@
 #include "group.h"
 
 #include <algorithm>
-#include <cmath>
 
 using namespace LAMMPS_NS;
 
@@ -32,17 +31,18 @@ void Spin::read(Keywords &in)
 void Spin::init(const Hydrodynamics &hydro, int held_bit)
 {
   if (!on()) return;
-  const std::string keyword = command + ": keyword spin: ", pair = " of pair_style stokes_dynamics";
+  const std::string pair = " of pair_style stokes_dynamics";
+  const Voice keyword = voice.of("keyword spin");
   const int igroup = group->find(group_name);
-  if (igroup < 0) fail(lmp, keyword + "group '" + group_name + "' does not exist");
+  if (igroup < 0) keyword.fail("group '" + group_name + "' does not exist");
   bit = group->bitmask[igroup];
   if (!hydro.rotation())
-    fail(lmp, keyword + "keyword rotation" + pair + " must be yes, or keyword multiblob given: points "
-                        "without torques do not spin");
+    keyword.fail("keyword rotation" + pair + " must be yes, or keyword multiblob given: points "
+                 "without torques do not spin");
   if (hydro.settings.rigid.apart())
-    fail(lmp, keyword + "it is for spheres that feel each other: use clumps_only no" + pair);
+    keyword.fail("it is for spheres that feel each other: use clumps_only no" + pair);
   if (domain->dimension == 2 && (omega[0] != 0.0 || omega[1] != 0.0))
-    fail(lmp, keyword + "in two dimensions spheres spin about z alone: wx and wy must be 0");
+    keyword.fail("in two dimensions spheres spin about z alone: wx and wy must be 0");
   tagint wrong[2] = {MAXTAGINT, MAXTAGINT};    // in clumps; held
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & bit)) continue;
@@ -52,9 +52,9 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
   MPI_Allreduce(MPI_IN_PLACE, wrong, 2, MPI_LMP_TAGINT, MPI_MIN, world);
   for (int k = 0; k < 2; k++)
     if (wrong[k] != MAXTAGINT)
-      fail(lmp, keyword + "atom " + std::to_string(wrong[k]) +
-                    (k == 0 ? " is part of a rigid clump: only free spheres spin"
-                            : " is in the group of keyword held as well: it must be in one of them only"));
+      keyword.fail("atom " + std::to_string(wrong[k]) + (k == 0 ? " is part of a rigid clump: only "
+                   "free spheres spin" : " is in the group of keyword held as well: it must be in "
+                   "one of them only"));
 }
 
 bool Spin::turns(int i, double W[3]) const

@@ -8,6 +8,7 @@
 #define SD_STOKES_SPIN_H
 
 #include "atom_rows.h"
+#include "keywords.h"
 #include "pointers.h"
 
 #include <string>
@@ -15,17 +16,13 @@
 namespace StokesDyn {
 
 class Hydrodynamics;
-class Keywords;
 
 class Spin : protected LAMMPS_NS::Pointers {
  public:
   /* [2] of a sphere that slips, or will: 0 or the sign of the torque along the axis, now and next */
   AtomRows slipping;
 
-  Spin(LAMMPS_NS::LAMMPS *lmp, const std::string &command) :
-      Pointers(lmp), slipping(2), command(command)
-  {
-  }
+  explicit Spin(const Voice &voice) : Pointers(voice.lmp), slipping(2), voice(voice) {}
 
   /* GROUP wx wy wz [most] */
   void read(Keywords &in);
@@ -47,7 +44,8 @@ class Spin : protected LAMMPS_NS::Pointers {
   double slip() const;
 
  private:
-  std::string command, group_name;
+  const Voice voice;
+  std::string group_name;
   int bit = 0;
   /* most: 0, no limit */
   double omega[3] = {0.0}, axis[3] = {0.0}, most = 0.0;

@@ -4,7 +4,6 @@
 #include "keywords.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
@@ -86,6 +85,13 @@ static sd_status weighed(void *ctx, const double *r, double *z)
   return SD_OK;
 }
 
+/* Component d of the sphere of row k: a random number that depends on the sphere alone */
+static double random_number(const Scene &scene, size_t k, size_t d)
+{
+  const uint64_t tag = scene.tag((int) k);
+  return sd_hash_unit(sd_hash_mix((8 * tag + d) * SD_HASH_STEP)) - 0.5;
+}
+
 /* mu in units of the shortest time; INFINITY: it could not be had. Conjugate gradients that are
  * preconditioned by W have the eigenvalues of W M as their Ritz values, and a slip of random
  * numbers, with a share of every eigenvector, shows the smallest. The numbers depend on the sphere
@@ -96,12 +102,8 @@ double TimeStepGuard::compute(const sd_system &A, Scene &scene)
   std::vector<double> weight;
   weigh(A, scene, &weight);
   std::vector<double> slip(m * A.n + 1), F(m * A.n + 1), work(SD_SOLVE_WORK(A.n, m) + 1);
-  for (int k = 0; k < A.n; k++) {
-    const uint64_t tag = scene.tag(k);
-    for (size_t d = 0; d < m; d++)
-      slip[m * k + d] = (sd_hash_unit(sd_hash_mix((8 * tag + d) * SD_HASH_STEP)) - 0.5) /
-          std::sqrt(weight[m * k + d]);
-  }
+  for (size_t j = 0; j < m * A.n; j++)
+    slip[j] = random_number(scene, j / m, j % m) / std::sqrt(weight[j]);
   sd_system system = A;
   system.precondition = weighed;
   system.precondition_ctx = &weight;
@@ -110,7 +112,7 @@ double TimeStepGuard::compute(const sd_system &A, Scene &scene)
   const sd_status status = sd_solve_gradients(&system, slip.data(), RESIDUAL, PRODUCTS, F.data(),
                                               work.data(), &report);
   if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
-    fail_by(lmp, status, command + ": limit of the time step: " + sd_status_string(status));
+    fail_by(voice.of("limit of the time step"), status);
   const bool sound = status == SD_OK || status == SD_EMAXITER || status == SD_ESTAGNATED;
   return sound && report.ritz_smallest > 0.0 ? report.ritz_smallest : INFINITY;
 }
@@ -119,10 +121,10 @@ void TimeStepGuard::compare(double of_velocity)
 {
   if (warned || !(state.limit > 0.0 && update->dt > state.limit)) return;
   warned = true;
-  warn(lmp, command + ": the time step " + text(update->dt) + " is above " + text(state.limit) +
-       ", the limit 2 m lambda/(6 pi eta a) of explicit steps of free spheres under this drag "
-       "(smallest m/(6 pi eta a) " + text(of_velocity) + ", lambda " + text(state.lambda_min) +
-       ")");
+  voice.warn("the time step " + text(update->dt) + " is above " + text(state.limit) +
+             ", the limit 2 m lambda/(6 pi eta a) of explicit steps of free spheres under this "
+             "drag (smallest m/(6 pi eta a) " + text(of_velocity) + ", lambda " +
+             text(state.lambda_min) + ")");
 }
 
 /* p.Mp / p.D^-1 p of the lone sphere that the wall takes most from, p across the wall; 1: no wall */
@@ -157,29 +159,29 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
     lambda = std::min(lambda, report.ritz_smallest);
   if (scene.settings.wall.sign) lambda = std::min(lambda > 0.0 ? lambda : 1.0, lone_at_wall(scene));
   if (!(lambda > 0.0)) return;
-  const bool due = solves >= state.due;
-  if (!due && state.limit > 0.0 && lambda >= state.lambda_min) return;
+  if (solves < state.due && state.limit > 0.0 && lambda >= state.lambda_min) return;
+  settle(system, scene, lambda, solves, [&] { return compute(system, scene); });
+}
 
+/* By the bounds from lambda, and mu in units of the shortest time where it may be near */
+void TimeStepGuard::settle(const sd_system &system, Scene &scene, double lambda, double solves,
+                           const std::function<double()> &compute_mu)
+{
   const Times tau = weigh(system, scene, nullptr);
   if (std::isinf(tau.shortest)) {
     state.limit = 0.0;
     return;
   }
   double mu = std::min(tau.shortest, lambda * tau.longest);
-  const bool near = NEAR * update->dt > 2.0 * lambda * tau.shortest;
-  if (due && near) {
-    mu = std::min(mu, tau.shortest * compute(system, scene));
+  const bool computed = solves >= state.due && NEAR * update->dt > 2.0 * lambda * tau.shortest;
+  if (computed) {
+    mu = std::min(mu, tau.shortest * compute_mu());
     state.due = solves + PERIOD;
   }
-  take(mu, due && near, tau.of_velocity);
-}
-
-/* A limit that was computed replaces the last one, a bound only a larger one. */
-void TimeStepGuard::take(double mu, bool computed, double of_velocity)
-{
+  // one that was computed replaces the last one, a bound only a larger one
   if (computed || state.limit == 0.0 || 2.0 * mu < state.limit) state.limit = 2.0 * mu;
-  state.lambda_min = 0.5 * state.limit / of_velocity;
-  compare(of_velocity);
+  state.lambda_min = 0.5 * state.limit / tau.of_velocity;
+  compare(tau.of_velocity);
 }
 
 /* The largest eigenvalue of W^-1 R is 1/mu: by power iteration from random numbers, whose Rayleigh
@@ -189,15 +191,13 @@ double TimeStepGuard::compute_of_shells(const sd_system &A, const Resist &resist
   const size_t m = 6 * (size_t) A.n;
   std::vector<double> weight, v(m + 6), Rv(m + 6);
   weigh(A, scene, &weight);
-  for (size_t j = 0; j < m; j++)
-    v[j] = sd_hash_unit(sd_hash_mix((8 * (uint64_t) scene.tag((int) (j / 6)) + j % 6) *
-                                    SD_HASH_STEP)) - 0.5;
+  for (size_t j = 0; j < m; j++) v[j] = random_number(scene, j / 6, j % 6);
   double rate = 0.0;
   for (int k = 0; k < SOLVES; k++) {
     double sums[2] = {0.0, 0.0};
     const sd_status status = resist(v, Rv);
     if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
-      fail_by(lmp, status, command + ": limit of the time step: " + sd_status_string(status));
+      fail_by(voice.of("limit of the time step"), status);
     if (status != SD_OK && status != SD_EMAXITER) return INFINITY;
     for (size_t j = 0; j < m; j++) {
       sums[0] += v[j] * Rv[j];
@@ -213,20 +213,8 @@ double TimeStepGuard::compute_of_shells(const sd_system &A, const Resist &resist
 void TimeStepGuard::look_at_shells(const sd_system &system, const Resist &resist, Scene &scene,
                                    double solves)
 {
-  const bool due = solves >= state.due;
-  if (!due && state.limit > 0.0) return;
-  const Times tau = weigh(system, scene, nullptr);
-  if (std::isinf(tau.shortest)) {
-    state.limit = 0.0;
-    return;
-  }
-  const bool near = NEAR * update->dt > 2.0 * tau.shortest;
-  double mu = tau.shortest;
-  if (due && near) {
-    mu *= std::min(1.0, compute_of_shells(system, resist, scene));
-    state.due = solves + PERIOD;
-  }
-  take(mu, due && near, tau.of_velocity);
+  if (solves < state.due && state.limit > 0.0) return;
+  settle(system, scene, 1.0, solves, [&] { return compute_of_shells(system, resist, scene); });
 }
 
 /* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */
@@ -234,29 +222,25 @@ void TimeStepGuard::look_at_films(sd_lubrication &near, Scene &scene)
 {
   const std::vector<double> of_rows = inertia(scene);
   std::vector<double> W(6 * (size_t) near.n + 6), v(W.size()), work(W.size());
-  for (int k = 0; k < near.n; k++)
-    for (size_t d = 0; d < 6; d++) {
-      W[6 * k + d] = of_rows[3 * (size_t) k + (d < 3 ? 0 : 1)];
-      v[6 * k + d] =
-          sd_hash_unit(sd_hash_mix((8 * (uint64_t) scene.tag(k) + d) * SD_HASH_STEP)) - 0.5;
-    }
+  for (size_t j = 0; j < 6 * (size_t) near.n; j++) {
+    W[j] = of_rows[3 * (j / 6) + (j % 6 < 3 ? 0 : 1)];
+    v[j] = random_number(scene, j / 6, j % 6);
+  }
   double rate;
   const sd_status status = sd_lubrication_rate(&near, W.data(), v.data(), work.data(), &rate);
   if (status != SD_OK && status != SD_ENOTFINITE)
-    fail_by(lmp, status, command + ": limit of the time step: " + sd_status_string(status));
-  if (status != SD_OK || !(rate > 0.0) || comm->me != 0) return;
+    fail_by(voice.of("limit of the time step"), status);
+  if (status != SD_OK || !(rate > 0.0)) return;
   const double films = 2.0 / rate;
   if (update->setupflag)
-    utils::logmesg(lmp,
-                   command + ": keyword lubrication: with the present gaps, explicit time steps of free spheres "
-                             "are stable up to " + text(films) +
-                       "; smaller gaps need shorter steps, and fix stokes_dynamics/overdamped has no "
-                       "such limit\n");
+    voice.tell("keyword lubrication: with the present gaps, explicit time steps of free spheres "
+               "are stable up to " + text(films) + "; smaller gaps need shorter steps, and fix "
+               "stokes_dynamics/overdamped has no such limit");
   if (warned_of_films || update->dt <= films) return;
   warned_of_films = true;
-  warn(lmp, command + ": keyword lubrication: the time step " + text(update->dt) + " is above " +
-       text(films) + ", the limit of explicit steps of free spheres with films between them: use "
-       "fix stokes_dynamics/overdamped, or a larger lubrication_gap");
+  voice.warn("keyword lubrication: the time step " + text(update->dt) + " is above " + text(films) +
+             ", the limit of explicit steps of free spheres with films between them: use fix "
+             "stokes_dynamics/overdamped, or a larger lubrication_gap");
 }
 
 }    // namespace StokesDyn

@@ -24,17 +24,13 @@
 #include "sd_solve.h"
 
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
 
 class TimeStepGuard : protected LAMMPS_NS::Pointers {
  public:
-  TimeStepGuard(LAMMPS_NS::LAMMPS *lmp, const std::string &command) :
-      Pointers(lmp), command(command)
-  {
-  }
+  explicit TimeStepGuard(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
 
   /* Kept from run to run, the same on all ranks. */
   struct State {
@@ -62,7 +58,7 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   void look_at_films(sd_lubrication &near, Scene &scene);
 
  private:
-  std::string command;
+  const Voice voice;
   bool warned = false, warned_of_films = false;
 
   /* W D^-1, the times in which spheres alone lose their velocity or spin: the shortest and the
@@ -79,7 +75,8 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   double lone_at_wall(const Scene &scene) const;
   double compute(const sd_system &system, Scene &scene);
   double compute_of_shells(const sd_system &system, const Resist &resist, Scene &scene);
-  void take(double mu, bool computed, double of_velocity);
+  void settle(const sd_system &system, Scene &scene, double lambda, double solves,
+              const std::function<double()> &compute_mu);
   void compare(double of_velocity);
 };
 

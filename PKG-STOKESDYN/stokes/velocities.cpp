@@ -1,21 +1,19 @@
 #include "velocities.h"
 
 #include "keywords.h"
+#include "settings.h"
 
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "comm.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <iterator>
 
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
-
-static const std::string HELD = "Fix stokes_dynamics/overdamped: keyword held";
 
 Velocities::Velocities(LAMMPS *lmp, const Parts &parts) :
     Pointers(lmp), scene(parts.scene), ambient(parts.ambient), rigid(parts.rigid),
@@ -31,7 +29,7 @@ Velocities::~Velocities()
 
 double Velocities::memory_usage() const
 {
-  double numbers = of_members.capacity();
+  double numbers = 24.0 * spheres.eta.capacity();
   for (const auto *array : {&F, &u, &v, &exerted, &D, &arm, &V, &work, &gradient})
     numbers += array->capacity();
   return sizeof(double) * numbers;
@@ -39,31 +37,39 @@ double Velocities::memory_usage() const
 
 // --- the clumps where they stand -----------------------------------------------------------------
 
-enum { ETA = 0, RADIUS = 1 };
-
 /* What clumps must know of their spheres; velocities are those of the images side by side. */
 void Velocities::gather(bool moving)
 {
+  enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   const bool turns = !moving || scene.settings.rotation;
-  column.flow = column.motion + (turns ? 6 : 3);
-  column.gradient = column.flow + 3;
-  column.end = gradients ? column.gradient + 9 : column.flow;
-  of_members = scene.whole.gather(column.end, [&](int i, double *row) {
+  const int columns = gradients ? GRADIENT + 9 : FLOW;
+  std::vector<double> rows = scene.whole.gather(columns, [&](int i, double *row) {
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     row[RADIUS] = atom->radius[i];
-    memcpy(row + column.motion, moving ? atom->v[i] : atom->f[i], 3 * sizeof(double));
-    if (turns)
-      memcpy(row + column.motion + 3, moving ? atom->omega[i] : atom->torque[i], 3 * sizeof(double));
+    std::copy_n(moving ? atom->v[i] : atom->f[i], 3, row + MOTION);
+    if (turns) std::copy_n(moving ? atom->omega[i] : atom->torque[i], 3, row + TURNING);
     if (!gradients) return;
-    memcpy(row + column.flow, ambient.velocity(i), 3 * sizeof(double));
-    memcpy(row + column.gradient, gradients + 9 * (size_t) i, 9 * sizeof(double));
+    std::copy_n(ambient.velocity(i), 3, row + FLOW);
+    std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
   });
-  for (int m = 0; m < scene.whole.size() && jumps; m++) {
-    double *row = &of_members[column.end * (size_t) m];
-    if (moving) Lattice::add(jumps, &scene.whole.steps[3 * (size_t) m], row + column.motion);
-    if (gradients) Lattice::add(jumps, &scene.whole.steps[3 * (size_t) m], row + column.flow);
+  std::vector<double> in_order;
+  spheres.x.clear();
+  for (size_t m : rigid.members()) {
+    double *row = &rows[columns * m];
+    const int *steps = &scene.whole.steps[3 * m];
+    if (jumps && moving) Lattice::add(jumps, steps, row + MOTION);
+    if (jumps && gradients) Lattice::add(jumps, steps, row + FLOW);
+    in_order.insert(in_order.end(), row, row + columns);
+    spheres.x.insert(spheres.x.end(), &scene.whole.x[3 * m], &scene.whole.x[3 * m] + 3);
   }
+  take_apart(in_order, rigid.members().size(),
+             {{&spheres.eta, 1},
+              {&spheres.radius, 1},
+              {&spheres.motion, 3},
+              {&spheres.turning, 3},
+              {&spheres.flow, gradients ? 3u : 0u},
+              {&spheres.gradient, gradients ? 9u : 0u}});
 }
 
 void Velocities::find(bool moving)
@@ -84,14 +90,14 @@ void Velocities::find(bool moving)
     Clump clump = {&body, {}, 0.0, {}, false};
     int taking_part = 0;
     for (int k = 0; k < body.n; k++) {
-      const double eta_k = known_of(clump, k)[ETA];
+      const double eta_k = spheres.eta[body.begin + k];
       taking_part += eta_k > 0.0;
       clump.eta += eta_k;
     }
     clump.eta /= body.n;
     if (taking_part == 0) continue;
     if (taking_part < body.n) split = std::min(split, body.molecule);
-    if (!rigid.fits(body, &of_members[RADIUS], column.end, clump.pose))
+    if (!rigid.fits(body, &spheres.radius[body.begin], clump.pose))
       bent.push_back(body.molecule);
     clumps.push_back(clump);
   }
@@ -121,15 +127,15 @@ void Velocities::find_held()
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
       Lattice::add(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
-    for (int d = 0; d < 3; d++) arm[d] = clump.pose[9 + d] - at(clump, 0)[d];
+    sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) clump.body->begin], arm);
     sd_cross(clump.V + 3, arm, turning);
     for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
   }
   MPI_Allreduce(MPI_IN_PLACE, &split, 1, MPI_LMP_BIGINT, MPI_MIN, world);
   if (split != RigidClumps::NOBODY)
-    fail(lmp,
-         HELD + ": the clump of molecule " + std::to_string(split) +
-             " is only partly in the group: all of its spheres must be in it, or none");
+    Voice(lmp, "Fix stokes_dynamics/overdamped")
+        .fail("keyword held: the clump of molecule " + std::to_string(split) +
+              " is only partly in the group: all of its spheres must be in it, or none");
 }
 
 /* [6 bodies] what is given of velocities, for the core; is_held tells which */
@@ -156,23 +162,15 @@ std::vector<double> Velocities::given_velocities()
 /* Forces on the spheres, the fluid at them, their drags */
 void Velocities::place(int width)
 {
-  const size_t m = width, n = scene.size(), most = 14;
-  const std::vector<double> rows = scene.rows(most, [&](int i, double *out) {
-    std::copy_n(atom->f[i], 3, out);
-    if (width == 6) std::copy_n(atom->torque[i], 3, out + 3);
-    ambient.fluid(i, out + 6);
-    out[12] = ambient.drag(i);
-    out[13] = ambient.spin(i);
+  const size_t m = width;
+  const std::vector<double> rows = scene.rows(3 * width, [&](int i, double *out) {
+    for (size_t d = 0; d < m; d++) {
+      out[d] = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
+      out[2 * m + d] = ambient.resistance(i, d);
+    }
+    ambient.fluid(i, out + m);
   });
-  F.resize(m * n + m);
-  u.resize(m * n + m);
-  D.resize(m * n + m);
-  for (size_t k = 0; k < n; k++) {
-    const double *row = &rows[most * k];
-    std::copy_n(row, m, &F[m * k]);
-    std::copy_n(row + 6, m, &u[m * k]);
-    for (size_t d = 0; d < m; d++) D[m * k + d] = row[d < 3 ? 12 : 13];
-  }
+  take_apart(rows, scene.size(), {{&F, m}, {&u, m}, {&D, m}});
   scene.drift(u.data(), width, 1.0);
 }
 
@@ -219,14 +217,14 @@ void Velocities::arrange()
       sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &arm[3 * (size_t) row]);
     }
     if (shells) {
-      const sd_multiblob_shape &shape = rigid.points(is, shells->model());
+      const sd_multiblob_shape &shape = rigid.shapes.points(is, shells->model());
       double turn[9];
       add_points(shape, rows);
       body.shape = &shape.points;
       sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
     } else {
       member.insert(member.end(), rows.begin(), rows.end());
-      body.shape = &rigid.blocks(is);
+      body.shape = &rigid.shapes.blocks(is, rigid.settings);
       std::copy_n(clump.pose, 9, body.R);
     }
     shaped.push_back(body);
@@ -263,10 +261,7 @@ sd_bodies Velocities::bodies(int width)
   const bool sees = scene.anybody_sees();
   A.apply = sees ? sd_mobility_apply : nobody;
   A.apply_ctx = sees ? (void *) scene.mobility() : &alone;
-  A.world.ctx = &scene;
-  A.world.me = comm->me;
-  A.world.ranks = comm->nprocs;
-  A.world.sum = Scene::sum;
+  A.world = scene.ranks();
   return A;
 }
 
@@ -280,6 +275,73 @@ sd_bodies Velocities::assemble(int width)
   in_open_space = shaped;
   stand_at_wall();
   return scene.shells ? bodies_of_shells() : bodies(width);
+}
+
+// --- near a wall ---------------------------------------------------------------------------------
+
+void Velocities::leave_wall()
+{
+  for (sd_body_shape &shape : standing) sd_body_shape_free(&shape);
+  standing.clear();
+}
+
+/* Spheres of a body, in the order of its shape */
+std::vector<int> Velocities::spheres_of(const sd_body &body) const
+{
+  const int points = scene.shells ? scene.shells->points() : 1;
+  std::vector<int> rows;
+  for (int k = 0; k < (body.shape ? body.shape->m : 1); k++)
+    if (rows.empty() || rows.back() != body.row[k] / points) rows.push_back(body.row[k] / points);
+  return rows;
+}
+
+sd_status Velocities::stand_at_wall(sd_body &body, double bodies)
+{
+  const sd_wall &wall = scene.settings.wall;
+  const sd_spheres spheres = scene.local();
+  const std::vector<int> rows = spheres_of(body);
+  std::vector<double> x, a, turn;
+  std::vector<sd_multiblob_mask> mask;
+  double centre[3], extent = 0.0;
+  sd_minus(spheres.x + 3 * (size_t) rows[0], &arm[3 * (size_t) rows[0]], centre);
+  for (size_t k : rows) {
+    x.insert(x.end(), spheres.x + 3 * k, spheres.x + 3 * k + 3);
+    a.push_back(spheres.a[k]);
+    extent = std::max(extent, std::sqrt(sd_dot(&arm[3 * k], &arm[3 * k])) + spheres.a[k]);
+    if (!scene.shells) continue;
+    turn.insert(turn.end(), scene.shells->turns() + 9 * k, scene.shells->turns() + 9 * k + 9);
+    mask.push_back(scene.shells->masks()[k]);
+  }
+  const double height = sd_wall_height(&wall, centre);
+  if (body.shape && !sd_body_wall_pays(body.shape->m, (int) bodies, height, extent)) return SD_OK;
+  sd_body_shape shape;
+  const sd_multiblob_spheres shells = {x.data(), a.data(), turn.data(), mask.data(),
+                                       (int) rows.size()};
+  const sd_status status = scene.shells
+      ? sd_multiblob_wall_shape(&scene.shells->model(), &wall, &shells, centre, &shape)
+      : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, &shape);
+  if (status == SD_ESINGULAR && body.shape) return SD_OK;    // those of open space will do
+  if (status != SD_OK) return status;
+  standing.push_back(shape);
+  body = {&standing.back(), {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1.0, body.eta, body.row};
+  return SD_OK;
+}
+
+/* The bodies have been arranged. */
+void Velocities::stand_at_wall()
+{
+  double bodies = shaped.size();
+  leave_wall();
+  if (!scene.settings.wall.sign || !scene.settings.rotation) return;
+  MPI_Allreduce(MPI_IN_PLACE, &bodies, 1, MPI_DOUBLE, MPI_SUM, world);
+  standing.reserve(shaped.size());
+  for (sd_body &body : shaped) {
+    const sd_status status = stand_at_wall(body, bodies);
+    if (status != SD_OK)
+      Voice(lmp, StokesSettings::COMMAND)
+          .of("keyword wall: blocks of a body")
+          .fail_one(sd_status_string(status));
+  }
 }
 
 // --- the loop --------------------------------------------------------------------------------------
@@ -338,7 +400,7 @@ void Velocities::draw_forces(const sd_bodies &A, int width, const Draw &draw)
 {
   const size_t n = scene.size(), m = sd_bodies_rows(&A) / std::max(n, (size_t) 1);
   std::vector<double> w(m * n + 1), pushed(sd_bodies_loads(&A) + width);
-  for (const Clump &clump : clumps) rigid.take_root(*clump.body->shape);
+  for (const Clump &clump : clumps) rigid.shapes.take_root(*clump.body->shape);
   if (scene.shells) scene.shells->take_root();
   for (size_t k = 0; k < n; k++)
     sd_random_normals(&draw.of_spheres, scene.tag((int) k), (int) m, &w[m * k]);

@@ -72,11 +72,11 @@ class Velocities : protected LAMMPS_NS::Pointers {
   using Take = std::function<void(int i, const double *v, const double *F)>;
   /* Each clump alone in the flow, and the free spheres */
   void apart(int width, const Take &take);
-  /* The other way round, of clumps that move as their spheres do: calls take(i, F, T) for every
-   * sphere i of this rank that is in one that takes part: force, torque (nullptr without rotation).
+  /* The other way round, of clumps that move as their spheres do: calls take(i, F) for every sphere i
+   * of this rank that is in one that takes part: force, with rotation torque.
    * loose[i] = 1: atom i belongs to a loose clump, or to none (molecule 0), and is the solver's.
    * Finds them itself, with the errors of find(). */
-  using Drag = std::function<void(int i, const double *F, const double *T)>;
+  using Drag = std::function<void(int i, const double *F)>;
   void drag(const Drag &take, std::vector<char> &loose);
   /* Random forces of covariance R, the resistance of all bodies with their films
    * (sd_bodies_noise.h), times `scale`, and what becomes of them: forces and torques F [width] on
@@ -128,19 +128,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Lubrication &lubrication;
   sd_tie tie = {};
 
-  /* of members, columns: eta (0: takes no part), radius, force and torque or velocity and angular
-   * velocity, fluid velocity and its gradient */
-  std::vector<double> of_members;
+  /* of the spheres of one clump after the other, in the order of its shape: eta (0: takes no part),
+   * radius, place, force and torque or velocity and angular velocity, fluid velocity and its
+   * gradient (empty: uniform) */
   struct {
-    int motion = 2, flow, gradient, end;
-  } column = {};
-  /* of one clump after the other, by its spheres */
-  struct Around {
-    std::vector<double> x, v, omega, u, gradient, F, T;
-    sd_clump_motion motion;
-  } around = {};
-  /* what drag() makes of members */
-  std::vector<double> result;
+    std::vector<double> eta, radius, x, motion, turning, flow, gradient;
+  } spheres;
 
   /* for the core, by rows, by clumps, by spheres of clumps */
   std::vector<double> F, u, v, exerted, D, arm, V, work, gradient;
@@ -161,20 +154,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
   sd_mobility_scene alone = {};
 
   void gather(bool moving);
-  const double *known_of(const Clump &clump, int k) const
-  {
-    return &of_members[column.end * member_of(clump, k)];
-  }
-  const double *at(const Clump &clump, int k) const
-  {
-    return &scene.whole.x[3 * member_of(clump, k)];
-  }
   void find_held();
   std::vector<double> given_velocities();
   void place(int width);
   void arrange();
-  const sd_clump_motion &look_at(const Clump &clump, bool moving);
-  void flow_over(const Clump &clump, double u[3], double G[9]);
+  sd_clump_motion look_at(const Clump &clump) const;
+  void flow_over(const Clump &clump, double u[3], double G[9]) const;
   void load_on(const Clump &clump, double load[6]) const;
   void drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
                double *T) const;

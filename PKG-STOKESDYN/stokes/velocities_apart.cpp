@@ -7,87 +7,60 @@
 #include "atom.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-/* What the spheres of a clump and the fluid at them do, in the order of its shape. The angular
- * velocities of spheres that are not on a line say nothing that their velocities do not. */
-const sd_clump_motion &Velocities::look_at(const Clump &clump, bool moving)
+/* What the spheres of a clump and the fluid at them do. The angular velocities of spheres that are
+ * not on a line say nothing that their velocities do not. */
+sd_clump_motion Velocities::look_at(const Clump &clump) const
 {
-  const RigidClumps::Body &body = *clump.body;
-  const bool strains = ambient.gradients() != nullptr;
-  const bool spins = moving && scene.settings.rotation && body.shape->shape.rank < 2;
-  Around &a = around;
-  if (a.x.size() < 3 * (size_t) body.n) {
-    for (auto *rows : {&a.x, &a.v, &a.omega, &a.u, &a.F, &a.T}) rows->resize(3 * (size_t) body.n);
-    a.gradient.resize(9 * (size_t) body.n);
-  }
-  for (int k = 0; k < body.n && (moving || strains); k++) {
-    const double *known = known_of(clump, k), *motion = known + column.motion;
-    memcpy(&a.x[3 * (size_t) k], at(clump, k), 3 * sizeof(double));
-    if (moving) memcpy(&a.v[3 * (size_t) k], motion, 3 * sizeof(double));
-    if (spins) memcpy(&a.omega[3 * (size_t) k], motion + 3, 3 * sizeof(double));
-    if (!strains) continue;
-    memcpy(&a.u[3 * (size_t) k], known + column.flow, 3 * sizeof(double));
-    memcpy(&a.gradient[9 * (size_t) k], known + column.gradient, 9 * sizeof(double));
-  }
-  a.motion = {};
-  a.motion.x = a.x.data();
-  a.motion.v = a.v.data();
-  a.motion.omega = spins ? a.omega.data() : nullptr;
-  std::copy_n(ambient.uniform_velocity(), 3, a.motion.u_uniform);
-  a.motion.u = strains ? a.u.data() : nullptr;
-  a.motion.gradient = strains ? a.gradient.data() : nullptr;
-  return a.motion;
+  const bool strains = ambient.gradients(), spins = scene.settings.rotation;
+  const size_t at = 3 * (size_t) clump.body->begin;
+  sd_clump_motion m = {};
+  m.x = &spheres.x[at];
+  m.v = &spheres.motion[at];
+  m.omega = spins && clump.body->shape->shape.rank < 2 ? &spheres.turning[at] : nullptr;
+  std::copy_n(ambient.uniform_velocity(), 3, m.u_uniform);
+  m.u = strains ? &spheres.flow[at] : nullptr;
+  m.gradient = strains ? &spheres.gradient[3 * at] : nullptr;
+  return m;
 }
 
 /* Velocity of the fluid at the centroid and its gradient over the clump */
-void Velocities::flow_over(const Clump &clump, double fluid[3], double G[9])
+void Velocities::flow_over(const Clump &clump, double fluid[3], double G[9]) const
 {
-  sd_clump_flow(&clump.body->shape->shape, &look_at(clump, false), clump.pose, clump.pose + 9, fluid,
-                G);
+  const sd_clump_motion motion = look_at(clump);
+  sd_clump_flow(&clump.body->shape->shape, &motion, clump.pose, clump.pose + 9, fluid, G);
 }
 
 /* Force and torque about the centroid */
 void Velocities::load_on(const Clump &clump, double load[6]) const
 {
-  const double *c = clump.pose + 9;
   std::fill_n(load, 6, 0.0);
-  for (int k = 0; k < clump.body->n; k++) {
-    const double *f = known_of(clump, k) + column.motion, *torque = f + 3, *x = at(clump, k);
-    const double arm[3] = {x[0] - c[0], x[1] - c[1], x[2] - c[2]};
-    double couple[3];
+  for (size_t k = clump.body->begin; k < (size_t) clump.body->begin + clump.body->n; k++) {
+    const double *f = &spheres.motion[3 * k];
+    double arm[3], couple[3];
+    sd_minus(&spheres.x[3 * k], clump.pose + 9, arm);
     sd_cross(arm, f, couple);
     for (int d = 0; d < 3; d++) {
       load[d] += f[d];
-      load[3 + d] += torque[d] + couple[d];
+      load[3 + d] += spheres.turning[3 * k + d] + couple[d];
     }
   }
 }
 
 void Velocities::apart(int width, const Take &take)
 {
-  double move[6], by_fluid[6];
+  double fluid_there[6], given[6], move[6], by_fluid[6];
   for (int i : lone) {
-    const double k = ambient.drag(i), k_spin = ambient.spin(i);
-    ambient.fluid(i, move);
-    for (int d = 0; d < 3; d++) {
-      move[d] += atom->f[i][d] / k;
-      by_fluid[d] = -atom->f[i][d];
-      if (width == 3) continue;
-      move[3 + d] += atom->torque[i][d] / k_spin;
-      by_fluid[3 + d] = -atom->torque[i][d];
-    }
-    double given[6];
-    if (held && held(i, given)) {
-      ambient.fluid(i, by_fluid);
-      for (int d = 0; d < width; d++) {
-        move[d] = given[d];
-        by_fluid[d] = (d < 3 ? k : k_spin) * (by_fluid[d] - given[d]);
-      }
+    const bool known = held && held(i, given);
+    ambient.fluid(i, fluid_there);
+    for (int d = 0; d < width; d++) {
+      const double k = ambient.resistance(i, d), load = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
+      move[d] = known ? given[d] : fluid_there[d] + load / k;
+      by_fluid[d] = known ? k * (fluid_there[d] - given[d]) : -load;
     }
     take(i, move, by_fluid);
   }
@@ -150,25 +123,27 @@ void Velocities::drag(const Drag &take, std::vector<char> &loose)
   find(true);
   const WholeClumps &members = scene.whole;
   const bool turns = scene.settings.rotation;
-  result.assign(COLUMNS * (size_t) members.size() + COLUMNS, 0.0);
+  std::vector<double> F, T, result(COLUMNS * (size_t) members.size() + COLUMNS, 0.0);
   for (size_t m = 0; m < (size_t) members.size(); m++) result[COLUMNS * m] = LOOSE;
   for (int m : rigid.members()) result[COLUMNS * (size_t) m] = NOT_SELECTED;
   for (const Clump &clump : clumps) {
     const ClumpShape &is = *clump.body->shape;
-    const sd_clump_motion &motion = look_at(clump, true);
-    sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, around.F.data(),
-                  turns ? around.T.data() : nullptr);
-    for (int k = 0; k < clump.body->n; k++) {
-      double *row = &result[COLUMNS * member_of(clump, k)];
+    const sd_clump_motion motion = look_at(clump);
+    F.resize(3 * (size_t) clump.body->n);
+    T.resize(3 * (size_t) clump.body->n);
+    sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, F.data(),
+                  turns ? T.data() : nullptr);
+    for (size_t k = 0; k < (size_t) clump.body->n; k++) {
+      double *row = &result[COLUMNS * member_of(clump, (int) k)];
       row[0] = EVALUATED;
-      memcpy(row + 1, &around.F[3 * (size_t) k], 3 * sizeof(double));
-      if (turns) memcpy(row + 4, &around.T[3 * (size_t) k], 3 * sizeof(double));
+      std::copy_n(&F[3 * k], 3, row + 1);
+      if (turns) std::copy_n(&T[3 * k], 3, row + 4);
     }
   }
   loose.assign(atom->nlocal + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) loose[i] = atom->molecule[i] == 0;
   members.scatter(COLUMNS, result.data(), [&](int i, const double *row) {
-    if (row[0] == EVALUATED) take(i, row + 1, turns ? row + 4 : nullptr);
+    if (row[0] == EVALUATED) take(i, row + 1);
     if (row[0] == LOOSE) loose[i] = 1;
   });
 }

@@ -14,7 +14,8 @@ namespace StokesDyn {
 void Velocities::orient()
 {
   for (const Clump &clump : clumps) {
-    const sd_multiblob_shape &shape = rigid.points(*clump.body->shape, scene.shells->model());
+    const sd_multiblob_shape &shape =
+        rigid.shapes.points(*clump.body->shape, scene.shells->model());
     double pose[9], turn[9];
     sd_multiblob_shape_stand(&shape, clump.pose, pose, turn);
     for (int k = 0; k < clump.body->n; k++)
@@ -43,28 +44,17 @@ void Velocities::place_shells()
   enum { VELOCITY = 0, SLOPE = 3, FORCE = 12, BEND = 18 };
   const size_t n = scene.size(), P = scene.shells->points();
   const double *gradients = ambient.gradients(), *curvatures = ambient.curvatures();
-  const int columns = curvatures ? BEND + SD_FLOW_SECOND : BEND;
-  std::vector<double> x(3 * P * n + 3), b(P * n + 1);
-  std::vector<double> rows = scene.rows(columns, [&](int i, double *out) {
-    std::fill_n(out, columns, 0.0);
+  const size_t bends = curvatures ? SD_FLOW_SECOND : 0;
+  std::vector<double> x(3 * P * n + 3), b(P * n + 1), velocity;
+  std::vector<double> rows = scene.rows(BEND + (int) bends, [&](int i, double *out) {
     std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
     if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
     std::copy_n(atom->f[i], 3, out + FORCE);
     std::copy_n(atom->torque[i], 3, out + FORCE + 3);
-    if (curvatures)
-      std::copy_n(curvatures + SD_FLOW_SECOND * (size_t) i, (int) SD_FLOW_SECOND, out + BEND);
+    if (curvatures) std::copy_n(curvatures + bends * (size_t) i, bends, out + BEND);
   });
-  scene.drift(rows.data(), columns, 1.0);
-  F.resize(6 * n + 6);
-  slope.resize(9 * n + 9);
-  bend.resize(curvatures ? SD_FLOW_SECOND * (n + 1) : 0);
-  for (size_t k = 0; k < n; k++) {
-    const double *row = &rows[columns * k];
-    std::copy_n(row + FORCE, 6, &F[6 * k]);
-    std::copy_n(row + SLOPE, 9, &slope[9 * k]);
-    if (curvatures)
-      std::copy_n(row + BEND, (int) SD_FLOW_SECOND, &bend[SD_FLOW_SECOND * k]);
-  }
+  scene.drift(rows.data(), BEND + (int) bends, 1.0);
+  take_apart(rows, n, {{&velocity, 3}, {&slope, 9}, {&F, 6}, {&bend, bends}});
   const sd_spheres spheres = scene.local();
   of_points.model = &scene.shells->model();
   of_points.spheres = {spheres.x, spheres.a, scene.shells->turns(), scene.shells->masks(), (int) n};
@@ -80,7 +70,7 @@ void Velocities::place_shells()
     const double w = spheres.w[sphere[k]], drag = 6.0 * SD_PI * b[k] / (w * w);
     for (int d = 0; d < 3 && b[k] > 0.0; d++) D[3 * k + d] = drag;
   }
-  flow_at_points(rows.data() + VELOCITY, columns, u.data());
+  flow_at_points(velocity.data(), 3, u.data());
 }
 
 sd_bodies Velocities::bodies_of_shells()

@@ -1,7 +1,6 @@
 #include "whole_clumps.h"
 
 #include "keywords.h"
-#include "lammps_compat.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -16,8 +15,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-WholeClumps::WholeClumps(LAMMPS *lmp, const std::string &command, Epochs &epochs) :
-    Pointers(lmp), command(command), epochs(epochs), post(lmp->world)
+WholeClumps::WholeClumps(const Voice &voice, Epochs &epochs) :
+    Pointers(voice.lmp), voice(voice), epochs(epochs), post(world)
 {
 }
 
@@ -154,10 +153,9 @@ void WholeClumps::check_widths() const
     }
   MPI_Allreduce(MPI_IN_PLACE, &widest, 1, MPI_LMP_BIGINT, MPI_MIN, world);
   if (widest == std::numeric_limits<int64_t>::max()) return;
-  fail(lmp,
-       command + ": the clump of molecule " + std::to_string(widest) +
-           " is wider than half of the periodic box, so which image of a sphere it sees is "
-           "ambiguous; use a larger box or a cut_off_distance below half of it");
+  voice.fail("the clump of molecule " + std::to_string(widest) + " is wider than half of the "
+             "periodic box, so which image of a sphere it sees is ambiguous; use a larger box or a "
+             "cut_off_distance below half of it");
 }
 
 double WholeClumps::memory_usage() const

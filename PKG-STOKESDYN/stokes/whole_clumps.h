@@ -10,18 +10,18 @@
 
 #include "epochs.h"
 #include "halo.h"
+#include "keywords.h"
 #include "pointers.h"
 #include "ranks.h"
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
 
 class WholeClumps : protected LAMMPS_NS::Pointers {
  public:
-  WholeClumps(LAMMPS_NS::LAMMPS *lmp, const std::string &command, Epochs &epochs);
+  WholeClumps(const Voice &voice, Epochs &epochs);
 
   /* Those that this rank owns, in order of molecule ID; lone spheres (molecule 0) are none. */
   struct Clump {
@@ -68,7 +68,7 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  std::string command;
+  const Voice voice;
   Epochs &epochs;
   Since found;
   Post post;

@@ -86,7 +86,7 @@ AT_THE_COMMAND += [(f"{cut} visc 1.3 {words}", [expected]) for cut, words, expec
     ("cut_off_distance inf", "lubrication on", "keyword lubrication: 'on' is none of: no, yes"),
     ("cut_off_distance inf", "rotation yes lubrication_gap 1e-3", "keyword lubrication_gap requires lubrication yes"),
     ("cut_off_distance inf", "rotation yes lubrication no lubrication_range 1", "keyword lubrication_range requires lubrication yes"),
-    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 1e-7", "keyword lubrication_gap: '1e-07' must be >= 1e-6"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 1e-7", "keyword lubrication_gap: '1e-7' must be >= 1e-6"),
     ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 0", "keyword lubrication_gap: '0' must be > 0"),
     ("cut_off_distance inf", "rotation yes lubrication yes lubrication_range 8.5", "keyword lubrication_range: '8.5' must be <= 8"),
     ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 0.1 lubrication_range 0.1",

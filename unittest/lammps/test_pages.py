@@ -18,7 +18,7 @@ STYLES = [name for name in PAGES if name.startswith(("pair_", "fix_", "compute_"
 
 TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
 EITHER = re.compile(r"\?\s*((?:\"[^\"]*\"\s*)+):\s*((?:\"[^\"]*\"\s*)+)")    # condition ? "one" : "other"
-CALL = re.compile(r"\b(?:fail|fail_one|fail_by|require|refuse|all|one|warning|warn)\s*\(")
+CALL = re.compile(r"\b(?:fail|fail_one|fail_by|require|refuse|check|all|one|warning|warn)\s*\(")
 HOLE = "\0"
 
 
