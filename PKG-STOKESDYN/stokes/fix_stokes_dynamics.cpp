@@ -8,7 +8,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -45,33 +44,22 @@ Hydrodynamics &FixStokesDynamics::hydrodynamics() const
       voice, "there is no pair_style stokes_dynamics whose force it could apply or report");
 }
 
-void *FixStokesDynamics::extract(const char *name, int &dim)
+bool FixStokesDynamics::applies() const
 {
-  dim = 0;
-  if (strcmp(name, "applies") != 0) return nullptr;
-  find_whether_it_applies(hydrodynamics());
-  return &applies;
-}
-
-void FixStokesDynamics::find_whether_it_applies(const Hydrodynamics &hydro)
-{
-  applies = apply == YES || (apply == UNSAID && !hydro.settings.add_force);
+  return apply == YES || (apply == UNSAID && !hydrodynamics().settings.add_force);
 }
 
 void FixStokesDynamics::init()
 {
   const Hydrodynamics &hydro = hydrodynamics();
-  find_whether_it_applies(hydro);
   if (apply == YES && hydro.settings.add_force)
     voice.fail("keyword apply: 'yes' together with add_force yes of pair_style stokes_dynamics "
                "would count the force twice");
-  if (!applies) return;
-  for (Fix *other : fixes_of(lmp, STYLE)) {
-    int dim;
-    if (other != this && *(bool *) other->extract("applies", dim))
+  if (!applies()) return;
+  for (const auto *other : fixes_of<FixStokesDynamics>(lmp))
+    if (other != this && other->applies())
       voice.fail("keyword apply: the fixes " + std::string(id) + " and " + other->id +
                  " both apply the force, which would count twice; give one of them apply no");
-  }
 }
 
 void FixStokesDynamics::setup(int vflag)
@@ -84,6 +72,7 @@ void FixStokesDynamics::post_force(int /*vflag*/)
   const Hydrodynamics &hydro = hydrodynamics();
   if (!hydro.computed_in(update->ntimestep))
     voice.fail("the pair style was not computed in this step (pair_modify compute no?)");
+  const bool adds = applies();
   for (double &t : total) t = 0.0;
   const Ambient &ambient = hydro.ambient;
   if (cleared.first_in(hydro.scene.since().selection))
@@ -101,8 +90,8 @@ void FixStokesDynamics::post_force(int /*vflag*/)
     if (torque) std::copy_n(torque, 3, row + 6);
     for (int d = 0; d < 3; d++) {
       total[d] += F[d];
-      if (applies) atom->f[i][d] += F[d];
-      if (applies && torque) atom->torque[i][d] += torque[d];
+      if (adds) atom->f[i][d] += F[d];
+      if (adds && torque) atom->torque[i][d] += torque[d];
     }
     total[3] += hydro.dissipation(i);
   }

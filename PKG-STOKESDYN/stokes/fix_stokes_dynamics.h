@@ -24,13 +24,12 @@ class FixStokesDynamics : public RowsFix {
   void post_force(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
-  /* "applies": does this fix add the force? A bool, as things stand now. */
-  void *extract(const char *, int &) override;
+  /* Does this fix add the force, as things stand now? */
+  bool applies() const;
 
  private:
   const Voice voice;
   enum { NO, YES, UNSAID } apply = UNSAID;
-  bool applies = false;
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
   AtomArray rows;
   /* others than those of the pair style have zeros (Epochs::selection) */
@@ -39,7 +38,6 @@ class FixStokesDynamics : public RowsFix {
   double total[4];
 
   Hydrodynamics &hydrodynamics() const;
-  void find_whether_it_applies(const Hydrodynamics &);
 };
 
 }    // namespace StokesDyn

@@ -320,27 +320,19 @@ void FixStokesDynamicsOverdamped::move_free(int i)
 {
   if (is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
-  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], change[3] = {0.0};
+  const double scale = noise.on() ? noise.scale(dt) : 0.0;
+  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], step[3], change[3];
   const double c = weight(old_velocity(i, x, old));
   sd_mean_velocity(3, V, old, c, mean);
+  sd_minus(V, old, change);
   for (int d = 0; d < 3; d++) {
-    x[d] += dt * mean[d];
-    change[d] = V[d] - old[d];
-  }
-  double distance = dt * sqrt(sd_dot(mean, mean));
-  if (noise.on()) {
-    const double scale = noise.scale(dt), *y = random[i];
-    double step[3];
-    for (int d = 0; d < 3; d++) {
-      x[d] += scale * y[d];
-      step[d] = dt * mean[d] + scale * y[d];
-    }
-    distance = sqrt(sd_dot(step, step));
+    step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
+    x[d] += step[d];
   }
   double *row = before.give(i);
   std::copy_n(V, 3, row);
   std::copy_n(x, 3, row + 6);
-  moves(i, distance, sqrt(sd_dot(change, change)));
+  moves(i, sqrt(sd_dot(step, step)), sqrt(sd_dot(change, change)));
 }
 
 void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)

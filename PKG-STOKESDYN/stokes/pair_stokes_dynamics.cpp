@@ -1,5 +1,6 @@
 #include "pair_stokes_dynamics.h"
 
+#include "fix_stokes_dynamics.h"
 #include "fix_stokes_dynamics_overdamped.h"
 #include "fixes.h"
 #include "keywords.h"
@@ -212,15 +213,11 @@ void PairStokesDynamics::require_atoms()
 
 void PairStokesDynamics::look_for_fixes()
 {
+  const auto fixes = fixes_of<FixStokesDynamics>(lmp);
   bool applied = hydro.settings.add_force;
-  hydro.reported = false;
+  for (const auto *fix : fixes) applied = applied || fix->applies();
+  hydro.reported = !fixes.empty();
   hydro.overdamped = FixStokesDynamicsOverdamped::prepare(lmp);
-  for (Fix *fix : fixes_of(lmp, "stokes_dynamics")) {
-    int dim;
-    const bool *applies = (const bool *) fix->extract("applies", dim);
-    applied = applied || (applies && *applies);
-    hydro.reported = true;
-  }
   if (applied || hydro.overdamped || warned_nobody_applies) return;
   warned_nobody_applies = true;
   voice.warn("nothing applies the force: add_force is no and no fix stokes_dynamics applies it");

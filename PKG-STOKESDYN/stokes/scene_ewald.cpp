@@ -42,22 +42,13 @@ sd_ewald_sizes Scene::sizes_of_all(double largest)
   s.all.largest = largest;
   for (int k = 0; k < size(); k++)
     for (int p = 0; p < points(); p++) sd_ewald_count(&s, grain() * a[k]);
-  std::vector<double> sums, most;
-  const auto classes = [&](auto &&each) {
-    each(s.all);
-    for (auto &octave : s.octave) each(octave);
-  };
-  classes([&](sd_ewald_class &c) {
-    sums.insert(sums.end(), {c.count, c.squares, c.fourths});
-    most.push_back(c.largest);
-  });
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, world);
-  MPI_Allreduce(MPI_IN_PLACE, most.data(), most.size(), MPI_DOUBLE, MPI_MAX, world);
-  size_t k = 0;
-  classes([&](sd_ewald_class &c) {
-    c = {sums[3 * k], sums[3 * k + 1], sums[3 * k + 2], most[k]};
-    k++;
-  });
+  static_assert(sizeof(s) == (1 + SD_EWALD_OCTAVES) * 4 * sizeof(double), "numbers alone");
+  const int numbers = sizeof(s) / sizeof(double);
+  sd_ewald_sizes most = s;
+  MPI_Allreduce(MPI_IN_PLACE, &s, numbers, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, &most, numbers, MPI_DOUBLE, MPI_MAX, world);
+  s.all.largest = most.all.largest;
+  for (int k = 0; k < SD_EWALD_OCTAVES; k++) s.octave[k].largest = most.octave[k].largest;
   return s;
 }
 
