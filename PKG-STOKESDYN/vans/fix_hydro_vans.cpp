@@ -304,7 +304,7 @@ void FixHydroVans::setup(int vflag)
     if (set.couple == VansSettings::TWO) check_mesh();
     tell_waves();
   }
-  if (set.fluctuates() && renewals == 0.0) {
+  if (set.fluctuates() && eddies.renewals == 0.0) {
     read_variables();
     renew_fluctuations(0.0, true);
   }

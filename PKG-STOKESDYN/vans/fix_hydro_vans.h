@@ -74,8 +74,13 @@ class FixHydroVans : public RowsFix {
    * since the last coupling; eddies: the random walk of all grains at once. */
   LAMMPS_NS::bigint last_step = -1;
   double elapsed = 0.0;
-  double eddy_age = 0.0, eddy_period = 0.0, renewals = 0.0;
-  double mean_radius = 0.0, mean_density = 0.0;
+  struct {
+    double age = 0.0, period = 0.0, renewals = 0.0;
+  } eddies;
+  struct {
+    double radius = 0.0, density = 0.0;
+  } mean;
+  std::vector<SavedNumbers> saved();
 
   /* Of the last step, of this rank and of all: force x y z, drag along x, spheres outside; force of
    * the pressure gradient, and its impulse since the first step. */
@@ -125,7 +130,9 @@ class FixHydroVans : public RowsFix {
   VansStream::Given impulses(double ratio);
   void hand_over();
   void renew_fluctuations(double time, bool first);
+  void renew_eddies(double time, bool first);
   void walk_on(double time, bool first);
+  template <class Renew> void fluctuate(const Renew &renew);
   uint64_t members() const;
   void count_overlaps();
 

@@ -159,10 +159,10 @@ void FixHydroVans::average()
   }
   MPI_Allreduce(sums.data(), all.data(), (int) sums.size(), MPI_DOUBLE, MPI_SUM, world);
   if (means[COUNT] > 0.0) {
-    mean_radius = means[RADIUS] / means[COUNT];
-    mean_density = means[MASS] / means[VOLUME];
+    mean.radius = means[RADIUS] / means[COUNT];
+    mean.density = means[MASS] / means[VOLUME];
   }
-  if (set.radius == 0.0) stream.fluid.radius = mean_radius;
+  if (set.radius == 0.0) stream.fluid.radius = mean.radius;
   stream.take_averages(area(), all.data(), &all[forces]);
 }
 
@@ -173,11 +173,11 @@ void FixHydroVans::tell_waves()
   double lowest = HUGE_VAL;
   for (int n = 0; n < stream.ncell(); n++)
     lowest = std::min(lowest, sd_vans_height(&set.mesh, n));
-  if (told_waves || !set.upflow || set.couple != VansSettings::ONE || lowest > 3.0 * mean_radius)
+  if (told_waves || !set.upflow || set.couple != VansSettings::ONE || lowest > 3.0 * mean.radius)
     return;
   told_waves = true;
   set.voice.warn("keyword upflow: in slices of " + text(lowest) + " grains of diameter " +
-                 text(2.0 * mean_radius) +
+                 text(2.0 * mean.radius) +
                  " break up into waves, and their bed is too high: take slices of three diameters");
 }
 
@@ -293,22 +293,37 @@ void FixHydroVans::hand_over()
  * ID and the number of the renewal. */
 void FixHydroVans::renew_fluctuations(double time, bool first)
 {
-  if (set.fluctuation == VansSettings::LANGEVIN) {
+  if (set.fluctuation == VansSettings::LANGEVIN)
     walk_on(time, first);
-    return;
-  }
+  else
+    renew_eddies(time, first);
+}
+
+/* renew(i, what the grain carries, its fluctuation) for every grain; the others have none. */
+template <class Renew> void FixHydroVans::fluctuate(const Renew &renew)
+{
+  eddies.renewals += 1.0;
+  select(groupbit);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (take[i])
+      renew(i, memo.give(i) + column.eddy, out.give(i) + FLUCTUATION);
+    else if (out.has(i))
+      std::fill_n(out.give(i) + FLUCTUATION, 3, 0.0);
+}
+
+void FixHydroVans::renew_eddies(double time, bool first)
+{
   const double bed = stream.bed_elevation();
   bool all = first;
   if (set.fluctuation != VansSettings::DEPTH) {
-    eddy_age += time;
-    if (!first && eddy_age < eddy_period * (1.0 - 1e-9)) return;
+    eddies.age += time;
+    if (!first && eddies.age < eddies.period * (1.0 - 1e-9)) return;
     all = true;
-    eddy_age = 0.0;
-    eddy_period = set.renewal > 0.0
+    eddies.age = 0.0;
+    eddies.period = set.renewal > 0.0
         ? set.renewal
         : sd_vans_depth_over_velocity(&stream.wet, stream.U.data(), bed);
   }
-  renewals += 1.0;
   const std::vector<double> u_star = stream.friction_velocities();
   const sd_vans_walk walk = {
       set.seed,
@@ -317,36 +332,24 @@ void FixHydroVans::renew_fluctuations(double time, bool first)
       u_star.data(),
       sd_vans_longest_life(&stream.wet, &stream.fluid, stream.stress.data()),
       nevery * update->dt};
-  select(groupbit);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!take[i]) {
-      if (out.has(i)) std::fill_n(out.give(i) + FLUCTUATION, 3, 0.0);
-      continue;
-    }
-    sd_vans_eddy *eddy = (sd_vans_eddy *) (memo.give(i) + column.eddy);
+  fluctuate([&](int i, double *carried, double *fluctuation) {
+    sd_vans_eddy *eddy = (sd_vans_eddy *) carried;
     eddy->life -= time;
     if (all || !(eddy->life > 1e-9 * time))
       sd_vans_new_eddy(&set.mesh, set.fluid.eta / set.fluid.rho, &walk, atom->x[i][2],
-                       (uint64_t) atom->tag[i], eddy, out.give(i) + FLUCTUATION);
-  }
+                       (uint64_t) atom->tag[i], eddy, fluctuation);
+  });
 }
 
 /* A step of the Langevin walk of every grain, over the time since the last coupling. */
 void FixHydroVans::walk_on(double time, bool first)
 {
-  renewals += 1.0;
   const std::vector<double> u_star = stream.friction_velocities(),
                             life = stream.lagrangian_times(u_star);
   const sd_vans_langevin walk = {set.seed, stream.bed_elevation(), u_star.data(), life.data(),
                                  first ? HUGE_VAL : time};
-  select(groupbit);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!take[i]) {
-      if (out.has(i)) std::fill_n(out.give(i) + FLUCTUATION, 3, 0.0);
-      continue;
-    }
-    sd_vans_wander *wander = (sd_vans_wander *) (memo.give(i) + column.eddy);
-    sd_vans_langevin_step(&set.mesh, &walk, atom->x[i][2], (uint64_t) atom->tag[i], wander,
-                          out.give(i) + FLUCTUATION);
-  }
+  fluctuate([&](int i, double *carried, double *fluctuation) {
+    sd_vans_langevin_step(&set.mesh, &walk, atom->x[i][2], (uint64_t) atom->tag[i],
+                          (sd_vans_wander *) carried, fluctuation);
+  });
 }

@@ -30,7 +30,7 @@ double FixHydroVans::compute_vector(int k)
     case LARGEST_STRESS: return largest;
     case SHIELDS: {
       const double *g = set.law.g, size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]),
-                   scale = (mean_density - set.fluid.rho) * size * 2.0 * mean_radius;
+                   scale = (mean.density - set.fluid.rho) * size * 2.0 * mean.radius;
       return scale > 0.0 ? largest / scale : 0.0;
     }
     case BED: return stream.bed_elevation();
@@ -176,6 +176,11 @@ static std::vector<double> layout(const VansSettings &set)
   return columns;
 }
 
+std::vector<SavedNumbers> FixHydroVans::saved()
+{
+  return {{"elapsed", &elapsed, 1}, {"eddies", &eddies.age, 3}, {"mean", &mean.radius, 2}};
+}
+
 void FixHydroVans::write_restart(FILE *fp)
 {
   sum_up();
@@ -183,9 +188,7 @@ void FixHydroVans::write_restart(FILE *fp)
   NamedState state(STYLE);
   state.put("columns", layout(set));
   state.put("last_step", (double) last_step);
-  state.put("elapsed", elapsed);
-  state.put("eddies", {eddy_age, eddy_period, renewals});
-  state.put("mean", {mean_radius, mean_density});
+  put(state, saved());
   state.put("pressed", {global.pressure, global.pressed});
   stream.save(state);
   state.write(fp);
@@ -197,17 +200,8 @@ void FixHydroVans::restart(char *buf)
   if (!state.read(lmp, buf)) return;
   stream.load(state);
   last_step = (bigint) state.get("last_step", -1.0);
-  elapsed = state.get("elapsed", 0.0);
-  double eddies[3], mean[2], pressed[2];
-  if (state.get("eddies", eddies, 3)) {
-    eddy_age = eddies[0];
-    eddy_period = eddies[1];
-    renewals = eddies[2];
-  }
-  if (state.get("mean", mean, 2)) {
-    mean_radius = mean[0];
-    mean_density = mean[1];
-  }
+  get(state, saved());
+  double pressed[2];
   if (state.get("pressed", pressed, 2) && comm->me == 0) {
     local.pressure = pressed[0];
     local.pressed = pressed[1];

@@ -138,12 +138,6 @@ void VansSettings::take_mesh(Keywords &in)
   for (size_t k = 0; k < edge.size(); k++) edge[k] = (double) k * mesh.dz;
 }
 
-void VansSettings::take_solve(Keywords &in)
-{
-  period = in.positive();
-  dt = in.positive();
-}
-
 void VansSettings::check_solve(const Voice &what, double T, double step) const
 {
   if (step > T * (1.0 + 1e-9))
@@ -217,56 +211,11 @@ void VansSettings::take_surface(Keywords &in)
   if (kind == 2) surface = in.positive();
 }
 
-void VansSettings::take_discharge(Keywords &in)
-{
-  if (in.take("off")) return;
-  fluid.held = 1;
-  discharge = Field::parse(in);
-}
-
 void VansSettings::take_sidewall(Keywords &in)
 {
   if (in.take("off")) return;
   fluid.width = in.positive();
   fluid.wall_coef = in.not_negative();
-}
-
-void VansSettings::take_adjust(Keywords &in)
-{
-  if (in.choice({"slope", "depth"}) == 1) reach = in.positive();
-}
-
-void VansSettings::take_couple(Keywords &in)
-{
-  couple = in.option<decltype(couple)>({"none", "one", "two", "fluid"});
-}
-
-void VansSettings::take_turbulence(Keywords &in)
-{
-  fluid.turbulence = in.option<sd_vans_turbulence>(
-      {"none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"});
-}
-
-void VansSettings::take_viscosity(Keywords &in)
-{
-  fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"});
-}
-
-void VansSettings::take_drag(Keywords &in)
-{
-  law.drag.law = in.option<sd_vans_drag_of_one>(
-      {"yade", "schiller_naumann", "brown_lawler", "ferguson_church"});
-}
-
-void VansSettings::take_rules(Keywords &in)
-{
-  fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"});
-}
-
-void VansSettings::take_upflow(Keywords &in)
-{
-  upflow = !in.take("off");
-  if (upflow) flux = Field::parse(in);
 }
 
 void VansSettings::read(Keywords &in)
@@ -276,28 +225,37 @@ void VansSettings::read(Keywords &in)
       {"fluid", [&] { take_fluid(in); }},
       {"gravity", [&] { take_gravity(in); }},
       {"area", [&] { area = in.positive(); }},
-      {"couple", [&] { take_couple(in); }},
+      {"couple", [&] { couple = in.option<decltype(couple)>({"none", "one", "two", "fluid"}); }},
       {"profile", [&] { profile_file = file_or(in, "zero"); }},
       {"given", [&] { given_file = file_or(in, "averaged"); }},
       {"convective", [&] { convective_file = file_or(in, "off"); }},
-      {"solve", [&] { take_solve(in); }},
+      {"solve", [&] { period = in.positive(), dt = in.positive(); }},
       {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
-      {"drag", [&] { take_drag(in); }},
+      {"drag",
+       [&] {
+         law.drag.law = in.option<sd_vans_drag_of_one>(
+             {"yade", "schiller_naumann", "brown_lawler", "ferguson_church"});
+       }},
       {"fall_diameter", [&] { law.drag.fall = in.positive(); }},
       {"hindrance", [&] { take_hindrance(in); }},
       {"added_mass", [&] { law.added_mass = in.take("off") ? 0.0 : in.not_negative(); }},
-      {"upflow", [&] { take_upflow(in); }},
+      {"upflow", [&] { if ((upflow = !in.take("off"))) flux = Field::parse(in); }},
       {"lift", [&] { law.lift = in.take("off") ? 0.0 : in.number(); }},
-      {"turbulence", [&] { take_turbulence(in); }},
+      {"turbulence",
+       [&] {
+         fluid.turbulence = in.option<sd_vans_turbulence>({"none", "kz", "parabolic", "li_sawamoto", "pore",
+                                                           "rousseau", "ni_capart", "pipe"});
+       }},
       {"kappa", [&] { fluid.kappa = in.positive(); }},
       {"phi_max", [&] { fluid.phi_max = fraction(in); }},
       {"phi_bed", [&] { fluid.phi_bed = fraction(in); }},
       {"bed_average", [&] { bed_average = (int) in.integer(1, 1000000); }},
       {"sublayer", [&] { fluid.sublayer = in.yes_no(); }},
-      {"viscosity", [&] { take_viscosity(in); }},
+      {"viscosity",
+       [&] { fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"}); }},
       {"surface", [&] { take_surface(in); }},
-      {"discharge", [&] { take_discharge(in); }},
-      {"adjust", [&] { take_adjust(in); }},
+      {"discharge", [&] { if ((fluid.held = !in.take("off"))) discharge = Field::parse(in); }},
+      {"adjust", [&] { reach = in.choice({"slope", "depth"}) == 1 ? in.positive() : 0.0; }},
       {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
       {"wall_roughness", [&] { fluid.wall_roughness = in.not_negative(); }},
@@ -312,7 +270,8 @@ void VansSettings::read(Keywords &in)
       {"intensity", [&] { take_intensity(in); }},
       {"renewal", [&] { renewal = in.positive(); }},
       {"schmidt", [&] { schmidt = in.positive(); }},
-      {"rules", [&] { take_rules(in); }},
+      {"rules",
+       [&] { fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"}); }},
       {"conserve", [&] { conserve = in.yes_no(); }},
       {"overlap", [&] { overlap_once = in.choice({"twice", "once"}) == 1; }},
       {"region", [&] { region = in.word(); }},

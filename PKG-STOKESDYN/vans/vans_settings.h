@@ -91,22 +91,13 @@ struct VansSettings {
  private:
   std::string mesh_file, profile_file, given_file, convective_file, intensity_file;
   void read(Keywords &in);
-  void take_couple(Keywords &in);
-  void take_turbulence(Keywords &in);
-  void take_viscosity(Keywords &in);
-  void take_drag(Keywords &in);
-  void take_rules(Keywords &in);
-  void take_upflow(Keywords &in);
   void take_mesh(Keywords &in);
-  void take_solve(Keywords &in);
   void take_class_radii(Keywords &in);
   void take_fluctuation(Keywords &in);
   void take_intensity(Keywords &in);
   void take_fluid(Keywords &in);
   void take_hindrance(Keywords &in);
   void take_surface(Keywords &in);
-  void take_discharge(Keywords &in);
-  void take_adjust(Keywords &in);
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void read_mesh();

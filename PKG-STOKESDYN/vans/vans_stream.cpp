@@ -351,21 +351,44 @@ std::vector<double> VansStream::friction_velocities() const
 
 /* ---- restart -------------------------------------------------------------------------------- */
 
-std::vector<VansStream::Saved> VansStream::saved()
+namespace StokesDyn {
+
+void put(NamedState &state, const std::vector<SavedNumbers> &all)
 {
-  return {{"U", &U},
-          {"grain", &grain},
-          {"class_grain", &class_grain},
-          {"b", &b},
-          {"length", &length},
-          {"nut", &nut},
-          {"stress", &stress},
-          {"shear", &shear_density},
-          {"foreseen", &foreseen_density},
-          {"outstanding", &outstanding},
-          {"drag_density", &drag_density},
-          {"upward", &upward},
-          {"pressure", &pressure}};
+  for (const SavedNumbers &each : all)
+    state.put(each.name, std::vector<double>(each.numbers, each.numbers + each.count));
+}
+
+void get(const NamedState &state, const std::vector<SavedNumbers> &all)
+{
+  for (const SavedNumbers &each : all) state.get(each.name, each.numbers, each.count);
+}
+
+}    // namespace StokesDyn
+
+std::vector<SavedNumbers> VansStream::saved()
+{
+  std::vector<SavedNumbers> all = {{"felt", &felt, 1},
+                                   {"ledger", &ledger.transit, sizeof(ledger) / sizeof(double)},
+                                   {"series", &series.blocks, sizeof(series) / sizeof(double)}};
+  const struct {
+    const char *name;
+    std::vector<double> &values;
+  } arrays[] = {{"U", U},
+                {"grain", grain},
+                {"class_grain", class_grain},
+                {"b", b},
+                {"length", length},
+                {"nut", nut},
+                {"stress", stress},
+                {"shear", shear_density},
+                {"foreseen", foreseen_density},
+                {"outstanding", outstanding},
+                {"drag_density", drag_density},
+                {"upward", upward},
+                {"pressure", pressure}};
+  for (const auto &array : arrays) all.push_back({array.name, array.values.data(), array.values.size()});
+  return all;
 }
 
 void VansStream::save(NamedState &state)
@@ -374,17 +397,12 @@ void VansStream::save(NamedState &state)
   state.put("edge", set.edge);
   state.put("volume", volume);
   state.put("surface", {(double) wet.ncell, drive});
-  state.put("felt", felt);
   state.put("wet", wet_edge);
-  const double *numbers = &series.blocks;
-  state.put("series", std::vector<double>(numbers, numbers + sizeof(series) / sizeof(double)));
   state.put("averaged", averaged);
   state.put("density_known", density_known);
   state.put("radius", fluid.radius);
-  state.put("ledger", {ledger.transit, ledger.driving, ledger.bottom, ledger.walls, ledger.surface,
-                       ledger.others});
   state.put("class_radii", class_radii);
-  for (const Saved &array : saved()) state.put(array.name, *array.values);
+  put(state, saved());
   std::vector<double> history;
   for (const auto &profile : phi_history)
     history.insert(history.end(), profile.begin(), profile.end());
@@ -408,7 +426,6 @@ void VansStream::check_mesh(const NamedState &state) const
 
 void VansStream::load_surface(const NamedState &state)
 {
-  state.get("series", &series.blocks, sizeof(series) / sizeof(double));
   double now[2];
   if (!state.get("surface", now, 2)) return;
   drive = now[1];
@@ -425,12 +442,8 @@ void VansStream::load(const NamedState &state)
   averaged = state.get("averaged", 0.0) != 0.0;
   density_known = state.get("density_known", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
-  felt = state.get("felt", felt);
-  double sums[6];
-  if (state.get("ledger", sums, 6)) ledger = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
   set_classes(state.get("class_radii"));
-  for (const Saved &array : saved())
-    state.get(array.name, array.values->data(), array.values->size());
+  get(state, saved());
   load_surface(state);
   const size_t N = ncell();
   const auto history = state.get("phi_history");

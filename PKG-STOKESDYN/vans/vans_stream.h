@@ -13,6 +13,15 @@
 
 namespace StokesDyn {
 
+/* Numbers of a restart file, by name. Those that the file has not stay as they are. */
+struct SavedNumbers {
+  const char *name;
+  double *numbers;
+  size_t count;
+};
+void put(NamedState &state, const std::vector<SavedNumbers> &all);
+void get(const NamedState &state, const std::vector<SavedNumbers> &all);
+
 class VansStream {
  public:
   explicit VansStream(const VansSettings &settings);
@@ -58,7 +67,7 @@ class VansStream {
 
   /* Numbers that grow: momentum along x, from the first step on. */
   struct Ledger {
-    /* the water has given it, the grains have not got it yet */
+    /* the water has given it, the grains have not got it yet; six numbers of a restart file */
     double transit = 0;
     /* the water got it from outside */
     double driving = 0, bottom = 0, walls = 0, surface = 0;
@@ -141,11 +150,7 @@ class VansStream {
   [[noreturn]] void no_average(int n, double area);
   void check_mesh(const NamedState &state) const;
   void load_surface(const NamedState &state);
-  struct Saved {
-    const char *name;
-    std::vector<double> *values;
-  };
-  std::vector<Saved> saved();
+  std::vector<SavedNumbers> saved();
 };
 
 }    // namespace StokesDyn
