@@ -32,6 +32,8 @@ int FixSphEnergy::setmask()
 
 sd_sph_members FixSphEnergy::group()
 {
+  states = fixes_of<FixSphPressure>(lmp);
+  gravities = fixes_of(lmp, "gravity");
   masses.resize(atom->nlocal + 1);
   for (int i = 0; i < atom->nlocal; i++) masses[i] = Sph::mass(lmp, i);
   const int *mask = atom->mask;
@@ -43,33 +45,41 @@ sd_sph_members FixSphEnergy::group()
   return {atom->nlocal, mask, groupbit, masses.data(), atom->v ? atom->v[0] : nullptr};
 }
 
+double FixSphEnergy::elastic_of(sd_sph_members g, const double *rho) const
+{
+  double sum = 0.0;
+  for (const auto *fix : states) {
+    g.members = groupbit | fix->groupbit;
+    sum += sd_sph_elastic_energy(&g, &fix->state, rho);
+  }
+  return sum;
+}
+
+/* sum m g.y over those whom fix gravity pulls; its vector is the one of this step. */
+double FixSphEnergy::along_gravity(sd_sph_members g, const double *y) const
+{
+  double sum = 0.0;
+  for (auto *fix : gravities) {
+    int dim;
+    g.members = groupbit | fix->groupbit;
+    sum += sd_sph_along(&g, (const double *) fix->extract("gvec", dim), y);
+  }
+  return sum;
+}
+
 double FixSphEnergy::elastic()
 {
-  double mine = 0.0, all;
-  for (const auto *fix : fixes_of<FixSphPressure>(lmp)) {
-    sd_sph_members of_fluid = group();
-    of_fluid.members |= fix->groupbit;
-    mine += sd_sph_elastic_energy(&of_fluid, &fix->state, atom->rho);
-  }
+  double mine = elastic_of(group(), atom->rho), all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
-/* Of all fix gravity, whose vector is the one of this step; positions go on through the faces of a
- * periodic box. */
-double FixSphEnergy::potential(const sd_sph_members &members)
+/* Positions go on through the faces of a periodic box. */
+std::vector<double> FixSphEnergy::places() const
 {
-  std::vector<double> places(3 * (size_t) atom->nlocal + 3);
-  for (int i = 0; i < atom->nlocal; i++)
-    domain->unmap(atom->x[i], atom->image[i], &places[3 * (size_t) i]);
-  double sum = 0.0;
-  for (auto *fix : fixes_of(lmp, "gravity")) {
-    int dim;
-    sd_sph_members pulled = members;
-    pulled.members |= fix->groupbit;
-    sum -= sd_sph_along(&pulled, (const double *) fix->extract("gvec", dim), places.data());
-  }
-  return sum;
+  std::vector<double> x(3 * (size_t) atom->nlocal + 3);
+  for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], &x[3 * (size_t) i]);
+  return x;
 }
 
 void FixSphEnergy::measure(double *out)
@@ -79,45 +89,19 @@ void FixSphEnergy::measure(double *out)
   out[ON_GROUP] = sd_sph_power(&members, pair->own_forces(), &out[ON_OTHERS]);
   out[RUBS] = sd_sph_power(&members, pair->own_friction(), &others);
   out[RUBS] += others;
-  out[SHIFTED] = 0.0;
-  if (const double *du = pair->shift())
-    for (auto *fix : fixes_of(lmp, "gravity")) {
-      int dim;
-      sd_sph_members pulled = members;
-      pulled.members |= fix->groupbit;
-      out[SHIFTED] += sd_sph_along(&pulled, (const double *) fix->extract("gvec", dim), du);
-    }
+  out[SHIFTED] = pair->shift() ? along_gravity(members, pair->shift()) : 0.0;
 }
 
-void FixSphEnergy::of_particles(const sd_sph_members &members, std::vector<double> &rows)
+void FixSphEnergy::of_particles(const sd_sph_members &members, std::vector<double> &rows) const
 {
   rows.assign(COLUMNS * (size_t) (atom->nlocal + 1), 0.0);
-  auto one = [&](int i) {
-    return sd_sph_members{1, members.mask + i, groupbit, members.m + i, members.v + 3 * (size_t) i};
-  };
-  for (const auto *fix : fixes_of<FixSphPressure>(lmp))
-    for (int i = 0; i < atom->nlocal; i++)
-      if (atom->mask[i] & fix->groupbit) {
-        const sd_sph_members particle = one(i);
-        rows[COLUMNS * (size_t) i + STORED] =
-            sd_sph_elastic_energy(&particle, &fix->state, atom->rho + i);
-      }
-  for (auto *fix : fixes_of(lmp, "gravity")) {
-    int dim;
-    const auto *g = (const double *) fix->extract("gvec", dim);
-    for (int i = 0; i < atom->nlocal; i++)
-      if (atom->mask[i] & fix->groupbit) {
-        double place[3];
-        domain->unmap(atom->x[i], atom->image[i], place);
-        const sd_sph_members particle = one(i);
-        rows[COLUMNS * (size_t) i + ENERGY] -= sd_sph_along(&particle, g, place);
-      }
-  }
-  for (int i = 0; i < atom->nlocal; i++) {
-    double *row = &rows[COLUMNS * (size_t) i], nobody;
-    const sd_sph_members particle = one(i);
-    row[ENERGY] += row[STORED] + sd_sph_kinetic_energy(&particle);
-    row[POWER] = sd_sph_power(&particle, pair->own_forces() + 4 * (size_t) i, &nobody);
+  const std::vector<double> x = places();
+  for (size_t i = 0; i < (size_t) atom->nlocal; i++) {
+    const sd_sph_members one = {1, members.mask + i, groupbit, members.m + i, members.v + 3 * i};
+    double *row = &rows[COLUMNS * i], nobody;
+    row[STORED] = elastic_of(one, atom->rho + i);
+    row[ENERGY] = row[STORED] + sd_sph_kinetic_energy(&one) - along_gravity(one, &x[3 * i]);
+    row[POWER] = sd_sph_power(&one, pair->own_forces() + 4 * i, &nobody);
   }
 }
 
@@ -192,7 +176,7 @@ void FixSphEnergy::post_run()
 void FixSphEnergy::values(double *out)
 {
   const sd_sph_members members = group();
-  double mine[4 + POWERS] = {sd_sph_kinetic_energy(&members), potential(members), brought[ENERGY],
+  double mine[4 + POWERS] = {sd_sph_kinetic_energy(&members), -along_gravity(members, places().data()), brought[ENERGY],
                              brought[STORED]},
          all[4 + POWERS];
   std::copy_n(done, (int) POWERS, mine + 4);

@@ -11,6 +11,8 @@
 
 namespace StokesDyn {
 
+class FixSphPressure;
+
 class FixSphEnergy : public SphFix {
  public:
   static constexpr const char *STYLE = "SPH/ENERGY";
@@ -38,6 +40,8 @@ class FixSphEnergy : public SphFix {
   double elastic_then = 0.0, jumps = 0.0;
   bool has_run = false;
   std::vector<double> masses;
+  std::vector<FixSphPressure *> states;
+  std::vector<LAMMPS_NS::Fix *> gravities;
 
   /* With open ends the flow alone counts: particles in the layers push it from outside, and those
    * that come and go bring their energy and take it along. Of a particle of the flow after the last
@@ -48,11 +52,14 @@ class FixSphEnergy : public SphFix {
   double in_flow[COLUMNS] = {}, brought[2] = {};
   std::vector<int> masks;
 
+  /* and the fixes of this moment */
   sd_sph_members group();
+  double elastic_of(sd_sph_members, const double *rho) const;
+  double along_gravity(sd_sph_members, const double *y) const;
   double elastic();
-  double potential(const sd_sph_members &);
+  std::vector<double> places() const;
   void measure(double *);
-  void of_particles(const sd_sph_members &, std::vector<double> &rows);
+  void of_particles(const sd_sph_members &, std::vector<double> &rows) const;
   void look_at_ends(bool counts);
 };
 

@@ -165,6 +165,9 @@ class PairSph : public LAMMPS_NS::Pair {
   const FixSphPressure *state_of(int i) const;
   void pressures_of_all();
   void forces(bool rates);
+  double sum_forces(const sd_sph_model &of, Neighbours &both, const sd_sph_list &half, bool rates, Rows &F,
+                    double *of_pairs);
+  void add_kicks(Rows &F) const;
   void keep_forces();
   sd_sph_list pairs_of_flow();
   void check_list();

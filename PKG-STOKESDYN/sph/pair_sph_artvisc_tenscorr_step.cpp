@@ -311,18 +311,13 @@ void PairSph::forces(bool rates)
     for (int k = 0; k < pairs.n; k++) entries += count[pairs.first[k]];
     each.resize(3 * entries + 1);
   }
-  double *of_pairs = pairwise ? each.data() : nullptr;
-  const sd_sph_both close = near.both(atom->nlocal);
-  const double nearest = corrects
-      ? sd_sph_corrected_forces(&model, &close, &particles, f4.data(), of_pairs)
-      : sd_sph_forces(&model, &pairs, &particles, rates, f4.data(), of_pairs);
+  const double nearest =
+      sum_forces(model, near, pairs, rates, f4, pairwise ? each.data() : nullptr);
   if (nearest == 0.0) coincident();
 
+  if (corrects) add_kicks(f4);
   for (int i = 0; i < receivers; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] += f4[4 * (size_t) i + d];
-  if (corrects)
-    for (int i = 0; i < atom->nlocal; i++)
-      for (int d = 0; d < 3; d++) atom->f[i][d] += Sph::mass(lmp, i) * kick[3 * (size_t) i + d];
   if (rates)
     for (int i = 0; i < receivers; i++)
       if (atom->mask[i] & continuity->groupbit) atom->drho[i] += f4[4 * (size_t) i + 3];
@@ -330,33 +325,42 @@ void PairSph::forces(bool rates)
   if (measured) keep_forces();
 }
 
+/* Over the list of these neighbours both ways, or over the half list; the square of the shortest
+ * distance. */
+double PairSph::sum_forces(const sd_sph_model &of, Neighbours &both, const sd_sph_list &half, bool rates,
+                           Rows &F, double *of_pairs)
+{
+  const sd_sph_both list = both.both(atom->nlocal);
+  return corrects ? sd_sph_corrected_forces(&of, &list, &particles, F.data(), of_pairs)
+                  : sd_sph_forces(&of, &half, &particles, rates, F.data(), of_pairs);
+}
+
+/* With correction, the momentum that particles take along as they are shifted. */
+void PairSph::add_kicks(Rows &F) const
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) F[4 * (size_t) i + d] += Sph::mass(lmp, i) * kick[3 * (size_t) i + d];
+}
+
 /* The forces as their owners have them, and friction: the same loop without pressure. */
 void PairSph::keep_forces()
 {
-  const int n = particles.n;
   const sd_sph_list list = has_ends() ? pairs_of_flow() : pairs;
-  const sd_sph_both close = (has_ends() ? of_flow : near).both(atom->nlocal);
-  own = f4;
-  if (has_ends()) std::fill(own.begin(), own.end(), 0.0);
-  if (has_ends() && corrects)
-    sd_sph_corrected_forces(&model, &close, &particles, own.data(), nullptr);
-  else if (has_ends())
-    sd_sph_forces(&model, &list, &particles, 0, own.data(), nullptr);
+  Neighbours &close = has_ends() ? of_flow : near;
+  own = f4;    // with the kicks
+  if (has_ends()) {
+    std::fill(own.begin(), own.end(), 0.0);
+    sum_forces(model, close, list, false, own, nullptr);
+    if (corrects) add_kicks(own);
+  }
   reverse(own.data(), 4);
-  if (corrects)
-    for (int i = 0; i < atom->nlocal; i++)
-      for (int d = 0; d < 3; d++)
-        own[4 * (size_t) i + d] += Sph::mass(lmp, i) * kick[3 * (size_t) i + d];
   rubs.assign(f4.size(), 0.0);
   if (!model.artvisc && !model.friction) return;
   sd_sph_model friction = model;
   friction.tenscorr = 0;
   if (!corrects) friction.scheme = SD_SPH_PLAIN;
-  for (int i = 0; i < n; i++) x4[4 * (size_t) i + 3] = 0.0;
-  if (corrects)
-    sd_sph_corrected_forces(&friction, &close, &particles, rubs.data(), nullptr);
-  else
-    sd_sph_forces(&friction, &list, &particles, 0, rubs.data(), nullptr);
+  for (int i = 0; i < particles.n; i++) x4[4 * (size_t) i + 3] = 0.0;
+  sum_forces(friction, close, list, false, rubs, nullptr);
   reverse(rubs.data(), 4);
 }
 

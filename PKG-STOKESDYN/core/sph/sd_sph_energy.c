@@ -1,5 +1,7 @@
 #include "sd_sph_energy.h"
 
+#include "sd_linear.h"
+
 #include <math.h>
 #include <stddef.h>
 
@@ -25,16 +27,11 @@ static int member(const sd_sph_members *g, int i)
   return (g->mask[i] & g->members) == g->members;
 }
 
-static double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 double sd_sph_kinetic_energy(const sd_sph_members *g)
 {
   double sum = 0.0;
   for (int i = 0; i < g->n; i++)
-    if (member(g, i)) sum += 0.5 * g->m[i] * dot(g->v + 3 * (size_t) i, g->v + 3 * (size_t) i);
+    if (member(g, i)) sum += 0.5 * g->m[i] * sd_dot(g->v + 3 * (size_t) i, g->v + 3 * (size_t) i);
   return sum;
 }
 
@@ -51,7 +48,7 @@ double sd_sph_power(const sd_sph_members *g, const double *F, double *others)
   double sum = 0.0;
   *others = 0.0;
   for (int i = 0; i < g->n; i++)
-    *(member(g, i) ? &sum : others) += dot(F + 4 * (size_t) i, g->v + 3 * (size_t) i);
+    *(member(g, i) ? &sum : others) += sd_dot(F + 4 * (size_t) i, g->v + 3 * (size_t) i);
   return sum;
 }
 
@@ -59,6 +56,6 @@ double sd_sph_along(const sd_sph_members *g, const double b[3], const double *y)
 {
   double sum = 0.0;
   for (int i = 0; i < g->n; i++)
-    if (member(g, i)) sum += g->m[i] * dot(b, y + 3 * (size_t) i);
+    if (member(g, i)) sum += g->m[i] * sd_dot(b, y + 3 * (size_t) i);
   return sum;
 }

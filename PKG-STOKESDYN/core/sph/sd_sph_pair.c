@@ -1,4 +1,5 @@
-#include "sd_sph_pair.h"
+#include "sd_sph_class.h"
+#include "sd_linear.h"
 
 int sd_sph_of_fluids(const sd_sph_model *model)
 {
@@ -84,4 +85,19 @@ void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, co
   const int as_is = sd_sph_corrects(model) || sd_sph_of_fluids(model);
   for (int i = 0; i < n; i++)
     x4[4 * (size_t) i + 3] = as_is ? P[i] : P[i] / (rho[i] * rho[i]);
+}
+
+void sd_sph_each_pair(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      sd_sph_meet *meet, double *out)
+{
+  for (int k = 0; k < list->n; k++) {
+    const int i = list->first[k];
+    for (int m = 0; m < list->count[i]; m++) {
+      sd_sph_two two = {.i = i, .j = list->neighbor[i][m] & list->mask};
+      sd_minus(p->x4 + 4 * (size_t) i, p->x4 + 4 * (size_t) two.j, two.d);
+      two.r2 = sd_dot(two.d, two.d);
+      two.pair = sd_sph_of_pair(model, p, i, two.j);
+      if (two.r2 < two.pair->support * two.pair->support) meet(model, p, &two, out);
+    }
+  }
 }

@@ -39,29 +39,23 @@ double sd_sph_gauge_height(const double *fraction, int count, double step)
   return 0.0;
 }
 
-/* Once every few steps, for output, so one pair after the other will do. */
+static void add_moments(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_two *two,
+                        double *M)
+{
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  const double g =
+      -two->pair->grad * sd_sph_G(model->kernel, sqrt(two->r2) * two->pair->inv_h);
+  for (int c = 0; c < 6; c++) {
+    const double dd = g * two->d[row[c]] * two->d[column[c]];
+    M[6 * (size_t) two->i + c] += p->x4[4 * (size_t) two->j + 3] * dd;
+    M[6 * (size_t) two->j + c] += p->x4[4 * (size_t) two->i + 3] * dd;
+  }
+}
+
 void sd_sph_moments(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                     double *M)
 {
-  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
-  for (int k = 0; k < list->n; k++) {
-    const int i = list->first[k];
-    const double *xi = p->x4 + 4 * (size_t) i;
-    for (int m = 0; m < list->count[i]; m++) {
-      const int j = list->neighbor[i][m] & list->mask;
-      const double *xj = p->x4 + 4 * (size_t) j;
-      const sd_sph_coefficients *pair = sd_sph_of_pair(model, p, i, j);
-      const double d[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
-      const double q = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * pair->inv_h;
-      if (!(q < 2.0)) continue;
-      const double g = -pair->grad * sd_sph_G(model->kernel, q);
-      for (int c = 0; c < 6; c++) {
-        const double dd = g * d[row[c]] * d[column[c]];
-        M[6 * (size_t) i + c] += xj[3] * dd;
-        M[6 * (size_t) j + c] += xi[3] * dd;
-      }
-    }
-  }
+  sd_sph_each_pair(model, list, p, add_moments, M);
 }
 
 /* Two dimensions: mean less radius of Mohr's circle. Three: roots of the characteristic polynomial

@@ -1,37 +1,26 @@
 #include "sd_sph_step.h"
 
+#include "sd_linear.h"
 #include "sd_sph_class.h"
 
 #include <math.h>
 
-/* |h v.d / (r^2 + eta)| of two particles: the same for both, since v.d does not change sign and h
- * is that of the pair. 0 beyond the support. */
-static double approach(const sd_sph_model *model, const sd_sph_particles *p, int i, int j)
+/* |h v.d / (r^2 + eta)| is the same for both, since v.d does not change sign and h is that of the
+ * pair. */
+static void approach(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_two *two,
+                     double *largest)
 {
-  const sd_sph_coefficients *pair = sd_sph_of_pair(model, p, i, j);
-  double r2 = 0.0, vd = 0.0;
-  for (int c = 0; c < 3; c++) {
-    const double d = p->x4[4 * (size_t) i + c] - p->x4[4 * (size_t) j + c];
-    r2 += d * d;
-    vd += d * (p->v4[4 * (size_t) i + c] - p->v4[4 * (size_t) j + c]);
-  }
-  if (!(r2 < pair->support * pair->support)) return 0.0;
-  return fabs(vd) / (pair->inv_h * (r2 + model->eta));
+  double v[3];
+  sd_minus(p->v4 + 4 * (size_t) two->i, p->v4 + 4 * (size_t) two->j, v);
+  const double s = fabs(sd_dot(v, two->d)) / (two->pair->inv_h * (two->r2 + model->eta));
+  largest[two->i] = fmax(largest[two->i], s);
+  largest[two->j] = fmax(largest[two->j], s);
 }
 
-/* Once every few steps for check/timestep, so one pair after the other will do. */
 void sd_sph_approach(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *largest)
 {
-  for (int k = 0; k < list->n; k++) {
-    const int i = list->first[k];
-    for (int m = 0; m < list->count[i]; m++) {
-      const int j = list->neighbor[i][m] & list->mask;
-      const double s = approach(model, p, i, j);
-      if (s > largest[i]) largest[i] = s;
-      if (s > largest[j]) largest[j] = s;
-    }
-  }
+  sd_sph_each_pair(model, list, p, approach, largest);
 }
 
 /* Squares are compared; one root at the end. */
@@ -39,7 +28,7 @@ double sd_sph_fastest(int n, const double *v)
 {
   double square = 0.0;
   for (int i = 0; i < n; i++, v += 3) {
-    const double here = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    const double here = sd_dot(v, v);
     if (here > square) square = here;
   }
   return sqrt(square);

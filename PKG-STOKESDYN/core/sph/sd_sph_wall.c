@@ -1,5 +1,6 @@
 #include "sd_sph_wall.h"
 
+#include "sd_linear.h"
 #include "sd_sph_class.h"
 
 #include <math.h>
@@ -19,11 +20,6 @@ double sd_sph_repulsion(double D, double r0, double r)
 double sd_sph_mirror(double m, double P, double rho, double dW)
 {
   return -m * m * 2.0 * P / (rho * rho) * dW;
-}
-
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, double *q)
@@ -49,10 +45,14 @@ void sd_sph_wall_acceleration(const double v[3], double dt, double tau, double b
   }
 }
 
-static void compare(const sd_sph_model *model, const sd_sph_particles *p, int wall, int fluid,
-                    double *row)
+static void compare(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_two *two,
+                    double *likeness)
 {
+  if ((p->phase[two->i] < 0) == (p->phase[two->j] < 0)) return;
+  const int i_is_wall = p->phase[two->i] < 0, wall = i_is_wall ? two->i : two->j,
+            fluid = i_is_wall ? two->j : two->i;
   const double ratio = sd_sph_mass(model, p, wall) / sd_sph_mass(model, p, fluid);
+  double *row = likeness + 2 * (size_t) wall;
   row[0] = fmax(row[0], -fabs(log(ratio)));
   row[1] = fmax(row[1], ~p->phase[wall] == p->phase[fluid] ? 1.0 : 0.0);
 }
@@ -60,19 +60,7 @@ static void compare(const sd_sph_model *model, const sd_sph_particles *p, int wa
 void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *likeness)
 {
-  for (int k = 0; k < list->n; k++) {
-    const int i = list->first[k];
-    for (int m = 0; m < list->count[i]; m++) {
-      const int j = list->neighbor[i][m] & list->mask;
-      if ((p->phase[i] < 0) == (p->phase[j] < 0)) continue;
-      const double *xi = p->x4 + 4 * (size_t) i, *xj = p->x4 + 4 * (size_t) j;
-      const double d[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
-      const double support = sd_sph_of_pair(model, p, i, j)->support;
-      if (!(dot(d, d) < support * support)) continue;
-      const int wall = p->phase[i] < 0 ? i : j, fluid = p->phase[i] < 0 ? j : i;
-      compare(model, p, wall, fluid, likeness + 2 * (size_t) wall);
-    }
-  }
+  sd_sph_each_pair(model, list, p, compare, likeness);
 }
 
 /* The density is what carries the pressure on: ghosts of the wall get it as that of any particle,
@@ -83,7 +71,7 @@ double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const do
   /* No slip: the wall shows the fluid the velocity that makes the mean of the two that of the wall,
    * v - (fluid - v). With slip it shows the fluid its own. */
   const int alone = s[0] == 0.0;
-  double P = alone ? wall->state->P0 : (s[1] + dot(b, s + 2)) / s[0];
+  double P = alone ? wall->state->P0 : (s[1] + sd_dot(b, s + 2)) / s[0];
   if (!wall->suction && P < 0.0) P = 0.0;
   if (!alone || wall->state->kind != SD_SPH_ABSOLUT) row[0] = sd_sph_density_of(wall->state, P);
   for (int d = 0; d < 3; d++) {
