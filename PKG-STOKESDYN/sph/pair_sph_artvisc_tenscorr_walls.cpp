@@ -113,27 +113,15 @@ void PairSph::wall_particles()
   pressures_of_all();
 }
 
-/* Of the near pairs those with one particle, or two, of the flow. Two that stand in walls and open
- * ends do no work on it, and at the back of an open end it depends on the list of neighbours which of
- * them are there. */
+/* Two particles that stand in walls and open ends do no work on the flow, and at the back of an open
+ * end it depends on the list of neighbours which of them are there. */
 sd_sph_list PairSph::pairs_of_flow()
 {
   const int *count = corrects ? near.count.data() : pairs.count;
   size_t entries = 0;
   for (int k = 0; k < pairs.n; k++) entries += count[pairs.first[k]] + SD_SPH_LANES;
   of_flow.resize(atom->nmax, entries);
-  int *last = of_flow.pool.data();
-  for (int k = 0; k < pairs.n; k++) {
-    const int i = pairs.first[k], *from = near.neighbor[i];
-    int *to = of_flow.neighbor[i] = last;
-    for (int m = 0; m < count[i]; m++) {
-      if (m == near.own[i]) of_flow.own[i] = (int) (last - to);
-      const int j = from[m];
-      if (j < particles.n && !(phases[i] < 0 && phases[j] < 0)) *last++ = j;
-    }
-    if (count[i] <= near.own[i]) of_flow.own[i] = (int) (last - to);
-    while (corrects && (last - to) % SD_SPH_LANES) *last++ = particles.n;
-    of_flow.count[i] = (int) (last - to);
-  }
+  const sd_sph_near all = near.room(0.0), flow = of_flow.room(0.0);
+  sd_sph_pairs_of_flow(&particles, &pairs, &all, corrects, &flow);
   return {pairs.n, ~0, pairs.first, of_flow.own.data(), of_flow.neighbor.data()};
 }

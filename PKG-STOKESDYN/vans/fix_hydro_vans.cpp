@@ -101,25 +101,23 @@ void FixHydroVans::find_classes()
     };
     const int found = group->find(set.average.c_str()),
               bit = found < 0 ? 1 : group->bitmask[found];
-    std::map<double, tagint> first;
-    const auto meet = [&first](double radius, tagint tag) {
-      const auto at = first.emplace(radius, tag).first;
-      at->second = std::min(at->second, tag);
-    };
-    for (int i = 0; i < atom->nlocal && first.size() <= MAX_CLASSES; i++)
-      if ((atom->mask[i] & bit) && atom->radius[i] > 0.0) meet(atom->radius[i], atom->tag[i]);
+    std::map<double, tagint> mine;
+    for (int i = 0; i < atom->nlocal && mine.size() <= MAX_CLASSES; i++) {
+      if (!(atom->mask[i] & bit) || !(atom->radius[i] > 0.0)) continue;
+      tagint &lowest = mine.emplace(atom->radius[i], atom->tag[i]).first->second;
+      lowest = std::min(lowest, atom->tag[i]);
+    }
     std::vector<First> all;
-    for (const auto &entry : first) all.push_back({entry.first, entry.second});
-    for (const First &entry : from_all(world, all)) meet(entry.radius, entry.tag);
-    if (first.size() > MAX_CLASSES && set.classes)
-      set.voice.fail("keyword classes: the grains have more than " + std::to_string(MAX_CLASSES) +
-                     " different radii; a class is one radius exactly");
-    if (first.size() > MAX_CLASSES) first.clear();    // pores: one class of the mean radius
-    all.clear();
-    for (const auto &entry : first) all.push_back({entry.first, entry.second});
+    for (const auto &entry : mine) all.push_back({entry.first, entry.second});
+    all = from_all(world, all);
     std::sort(all.begin(), all.end(), [](const First &p, const First &q) { return p.tag < q.tag; });
     std::vector<double> radii;
-    for (const First &entry : all) radii.push_back(entry.radius);
+    for (const First &each : all)
+      if (std::find(radii.begin(), radii.end(), each.radius) == radii.end()) radii.push_back(each.radius);
+    if (radii.size() > MAX_CLASSES && set.classes)
+      set.voice.fail("keyword classes: the grains have more than " + std::to_string(MAX_CLASSES) +
+                     " different radii; a class is one radius exactly");
+    if (radii.size() > MAX_CLASSES) radii.clear();    // pores: one class of the mean radius
     if (!radii.empty()) stream.set_classes(radii);
   }
   size_array_cols = ARRAY_COLUMNS + (set.upflow ? 2 : 0);

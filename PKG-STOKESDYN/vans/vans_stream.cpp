@@ -120,30 +120,6 @@ void VansStream::no_average(int n, double area)
                             : " right, or do members of clumps overlap (overlap once)?"));
 }
 
-/* Water and grains together rise with the flux q, e w + phi v = q: w = q + phi (w - v). With the w
- * of before on the right this is the solution after a few couplings, whose mean v lags behind the
- * grains: where grains follow the water at once, phi/e times their last velocity would swing. */
-void VansStream::take_upflow(bool first)
-{
-  const double *vz = row(SD_VANS_VZ), *of = phi();
-  for (int n = 0; n < ncell(); n++)
-    upward[n] = first ? (flux - of[n] * vz[n]) / (1.0 - of[n])
-                      : flux + of[n] * (upward[n] - vz[n]);
-}
-
-/* dp/dz = -(force of the drag on the grains), from the surface down. */
-void VansStream::find_pressure()
-{
-  const int N = ncell();
-  const double *up = &drag_density[N];
-  double above = 0.0;
-  for (int n = N - 1; n >= 0; n--) {
-    const double here = up[n] * sd_vans_height(&mesh, n);
-    pressure[n] = above + 0.5 * here;
-    above += here;
-  }
-}
-
 void VansStream::take_averages(double area, const double *sums, const double *forces)
 {
   const size_t N = ncell(), profile = SD_VANS_ROWS * N;
@@ -162,8 +138,8 @@ void VansStream::take_averages(double area, const double *sums, const double *fo
     drag_density[k] = forces[k] / (area * sd_vans_height(&mesh, (int) (k % N)));
   density_known = true;
   if (set.upflow) {
-    take_upflow(!averaged);
-    find_pressure();
+    sd_vans_rise(&mesh, grain.data(), flux, !averaged, upward.data());
+    sd_vans_borne(&mesh, &drag_density[N], pressure.data());
   }
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();

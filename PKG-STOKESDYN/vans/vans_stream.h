@@ -138,12 +138,10 @@ class VansStream {
   bool told_far = false, told_cut = false;
 
   const double *classes() const;
-  void take_upflow(bool first);
   void move_surface(double area, const std::vector<double> &phi_before);
   void take_inflow(double T);
   void fill_above();
   void fold_above(std::vector<double> &of_slices) const;
-  void find_pressure();
   void mixing_length();
   void exchange(double T, double dt, std::vector<double> &rest);
   void tell_limits(double T, double dt, const double cut[2]);

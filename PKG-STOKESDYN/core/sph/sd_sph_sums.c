@@ -72,6 +72,24 @@ void sd_sph_both_ways(const sd_sph_list *half, int filler, int *pool, sd_sph_bot
   for (int i = 0; i < n; i++) out->count[i] = filled_up(out->count[i]);
 }
 
+void sd_sph_pairs_of_flow(const sd_sph_particles *p, const sd_sph_list *half, const sd_sph_near *in,
+                          int fill, const sd_sph_near *out)
+{
+  int *last = out->pool;
+  for (int k = 0; k < half->n; k++) {
+    const int i = half->first[k], *from = in->neighbor[i], own = in->own[i],
+              count = fill ? in->count[i] : own;
+    int *to = out->neighbor[i] = last;
+    for (int m = 0; m < count; m++) {
+      if (m == own) out->own[i] = (int) (last - to);
+      if (from[m] < p->n && !(p->phase[i] < 0 && p->phase[from[m]] < 0)) *last++ = from[m];
+    }
+    if (count == own) out->own[i] = (int) (last - to);
+    while (fill && (last - to) % SD_SPH_LANES) *last++ = p->n;
+    out->count[i] = (int) (last - to);
+  }
+}
+
 /* --- the sums, in the widest vectors that this processor has -------------------------------------- */
 
 static const sd_sph_loops *loops(void)

@@ -57,6 +57,12 @@ typedef struct {
   int *pool, **neighbor, *own, *count;
 } sd_sph_near;
 
+/* Of such pairs, found over the half list `half` or both ways, those with one particle or two of the
+ * flow (phase >= 0). fill: rows are filled up with the far-away particle, as of a list both ways.
+ * Room in the pool of out: as many entries as in, and SD_SPH_LANES more a particle. */
+void sd_sph_pairs_of_flow(const sd_sph_particles *p, const sd_sph_list *half, const sd_sph_near *in,
+                          int fill, const sd_sph_near *out);
+
 /* Adds to rate [n+1] over a half list, for SD_SPH_RATE, and finds the near pairs. */
 void sd_sph_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   double *rate, const sd_sph_near *near);

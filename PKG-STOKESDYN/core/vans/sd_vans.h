@@ -413,6 +413,17 @@ int sd_vans_fill(const sd_vans_mesh *mesh, const double *phi, double volume, dou
 double sd_vans_displace(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
                         const double *phi_old, const double *phi_new, double *U, double *scratch);
 
+/* Water and grains together rise with the flux q, e w + phi v = q: w = q + phi (w - v), upward [N] in
+ * and out. With the w of before on the right this is the solution after a few couplings, whose mean v
+ * lags behind the grains: where grains follow the water at once, phi/e times their last velocity
+ * would swing. first: there is no w of before, and the equation is solved. */
+void sd_vans_rise(const sd_vans_mesh *mesh, const double *profile, double flux, int first,
+                  double *upward);
+
+/* What the water bears besides its own weight, in the middle of the slices: dp/dz = -force [N] per
+ * volume of mixture on the grains, from the surface down. pressure [N] out */
+void sd_vans_borne(const sd_vans_mesh *mesh, const double *force, double *pressure);
+
 /* ---- what the profiles tell ------------------------------------------------------------------ */
 
 /* Volume of grains that passes a line across the stream, per width and time: sum phi vx dz. */

@@ -78,3 +78,22 @@ int sd_vans_fill(const sd_vans_mesh *mesh, const double *phi, double volume, dou
   edge[top + 2] = edge[top + 1] + sd_vans_height(mesh, top);
   return top + 2;
 }
+
+void sd_vans_rise(const sd_vans_mesh *mesh, const double *profile, double flux, int first,
+                  double *upward)
+{
+  const double *phi = profile, *vz = profile + (long) SD_VANS_VZ * mesh->ncell;
+  for (int n = 0; n < mesh->ncell; n++)
+    upward[n] = first ? (flux - phi[n] * vz[n]) / (1.0 - phi[n])
+                      : flux + phi[n] * (upward[n] - vz[n]);
+}
+
+void sd_vans_borne(const sd_vans_mesh *mesh, const double *force, double *pressure)
+{
+  double above = 0.0;
+  for (int n = mesh->ncell - 1; n >= 0; n--) {
+    const double here = force[n] * sd_vans_height(mesh, n);
+    pressure[n] = above + 0.5 * here;
+    above += here;
+  }
+}
