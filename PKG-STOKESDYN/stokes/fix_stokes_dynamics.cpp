@@ -85,9 +85,7 @@ void FixStokesDynamics::post_force(int /*vflag*/)
     }
     double *row = rows.give(i);
     const double *F = hydro.force(i), *torque = hydro.torque(i);
-    std::copy_n(F, 3, row);
-    std::copy_n(hydro.perturbation(i), 3, row + 3);
-    if (torque) std::copy_n(torque, 3, row + 6);
+    std::copy_n(F, torque ? 9 : 6, row);
     for (int d = 0; d < 3; d++) {
       total[d] += F[d];
       if (adds) atom->f[i][d] += F[d];

@@ -154,11 +154,11 @@ void Hydrodynamics::drag()
 {
   const size_t m = width();
   for (int i : solvers) {
+    const double k[2] = {ambient.drag(i), ambient.spin(i)};
     double *row = memory->rows.give(i), s[6];
     ambient.slip(i, s);
     for (size_t d = 0; d < m; d++)
-      row[State::at(State::FORCE, d)] =
-          ambient.resistance(i, d) * (s[d] + row[State::at(State::VPRIME, d)]);
+      row[State::at(State::FORCE, d)] = k[d >= 3] * (s[d] + row[State::at(State::VPRIME, d)]);
   }
   if (settings.lubrication.on) lubricate();
 }

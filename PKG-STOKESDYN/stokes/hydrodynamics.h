@@ -86,11 +86,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   {
     return memory && memory == FixStokesDynamicsState::find(lmp) && memory->global.last_step == step;
   }
+  /* Force; behind it stand v' and the torque */
   const double *force(int i) const { return memory->rows[i] + FixStokesDynamicsState::FORCE; }
-  const double *perturbation(int i) const
-  {
-    return memory->rows[i] + FixStokesDynamicsState::VPRIME;
-  }
   /* nullptr without rotation */
   const double *torque(int i) const
   {

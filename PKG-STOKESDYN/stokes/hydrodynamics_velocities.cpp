@@ -151,7 +151,7 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   if (settings.lubrication.on && !films_stand) place_films();
   const Points now = points_of_now();
   const size_t n = scene.size();
-  std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0), rows(12 * n + 12);
+  std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0);
   sd_multiblob_moments(&shells.model(), (int) n, now.r.data(), now.l.data(), points.data());
   if (overdamped) mobile.add_constraints(points.data());
   if (settings.lubrication.on) {
@@ -160,14 +160,11 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
     if (status != SD_OK)
       fail_by(voice.of("stress of films"), status);
   }
-  for (size_t k = 0; k < n; k++) {
-    std::copy_n(&points[6 * k], 6, &rows[12 * k]);
-    std::copy_n(&films[6 * k], 6, &rows[12 * k + 6]);
-  }
   of_atoms.assign(12 * (size_t) atom->nlocal + 12, 0.0);
-  scene.to_atoms(12, rows.data(), [&](int i, const double *row) {
-    std::copy_n(row, 12, &of_atoms[12 * (size_t) i]);
-  });
+  for (const auto *part : {&points, &films})
+    scene.to_atoms(6, part->data(), [&](int i, const double *row) {
+      std::copy_n(row, 6, &of_atoms[12 * (size_t) i + (part == &films ? 6 : 0)]);
+    });
 }
 
 // --- the forces on the fluid, for the flow that they make -----------------------------------------

@@ -53,23 +53,26 @@ void Velocities::gather(bool moving)
     std::copy_n(ambient.velocity(i), 3, row + FLOW);
     std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
   });
-  std::vector<double> in_order;
-  spheres.x.clear();
-  for (size_t m : rigid.members()) {
+  const size_t n = rigid.members().size();
+  for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n);
+  for (auto *vectors : {&spheres.x, &spheres.motion, &spheres.turning}) vectors->resize(3 * n);
+  spheres.flow.resize(gradients ? 3 * n : 0);
+  spheres.gradient.resize(gradients ? 9 * n : 0);
+  for (size_t k = 0; k < n; k++) {
+    const size_t m = rigid.members()[k];
     double *row = &rows[columns * m];
     const int *steps = &scene.whole.steps[3 * m];
     if (jumps && moving) Lattice::add(jumps, steps, row + MOTION);
     if (jumps && gradients) Lattice::add(jumps, steps, row + FLOW);
-    in_order.insert(in_order.end(), row, row + columns);
-    spheres.x.insert(spheres.x.end(), &scene.whole.x[3 * m], &scene.whole.x[3 * m] + 3);
+    spheres.eta[k] = row[ETA];
+    spheres.radius[k] = row[RADIUS];
+    std::copy_n(&scene.whole.x[3 * m], 3, &spheres.x[3 * k]);
+    std::copy_n(row + MOTION, 3, &spheres.motion[3 * k]);
+    std::copy_n(row + TURNING, 3, &spheres.turning[3 * k]);
+    if (!gradients) continue;
+    std::copy_n(row + FLOW, 3, &spheres.flow[3 * k]);
+    std::copy_n(row + GRADIENT, 9, &spheres.gradient[9 * k]);
   }
-  take_apart(in_order, rigid.members().size(),
-             {{&spheres.eta, 1},
-              {&spheres.radius, 1},
-              {&spheres.motion, 3},
-              {&spheres.turning, 3},
-              {&spheres.flow, gradients ? 3u : 0u},
-              {&spheres.gradient, gradients ? 9u : 0u}});
 }
 
 void Velocities::find(bool moving)
