@@ -291,7 +291,9 @@ void PairSph::sum_densities(int bit, bool shepard)
 void PairSph::pressures_of_all()
 {
   const int n = particles.n;
-  const double *rho = atom->rho;
+  double *rho = atom->rho;
+  for (auto *fix : pressures)
+    sd_sph_keep_size(&fix->state, n, rho, atom->mask, fix->groupbit);
   look_at_densities(n);
   for (auto *fix : pressures)
     sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());

@@ -319,11 +319,13 @@ def test_water_without_tension_comes_apart(tension):
     """Two halves of a slab that fly away from each other, in the plain scheme: nothing but tension takes from their energy."""
     text = SLAB.format(end=36).replace("slab block 3", "slab block 30").replace("1 7\n", "1 7 tension %s\n" % tension)
     lmp = start()
-    run(lmp, text.replace(" delta 0.1", "").replace(" shift yes", "") + "variable apart atom (x>33)*2-1\nset group water vx v_apart\nrun 100")
+    run(lmp, text.replace(" delta 0.1", "").replace(" shift yes", "") + "variable apart atom (x>33)*2-1\nset group water vx v_apart\n"
+        "compute rho water sph/rho/atom\ncompute least water reduce min c_rho\nthermo_style custom step c_least\nrun 100")
     v = np.array(lmp.numpy.extract_atom("v"))[:lmp.extract_global("nlocal")]
     kinetic = (v ** 2).sum() / 72
     if tension == "no":
         assert kinetic == pytest.approx(1, abs=1e-4)
+        assert 0.95 - 1e-12 <= lmp.extract_compute("least", 0, 0) < 0.96
     else:
         assert kinetic < 0.95
     lmp.close()

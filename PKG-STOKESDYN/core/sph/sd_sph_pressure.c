@@ -65,6 +65,14 @@ double sd_sph_least_pressure(const sd_sph_state *s)
   return sd_sph_pressure(s, 0.0);
 }
 
+void sd_sph_keep_size(const sd_sph_state *state, int n, double *rho, const int *mask, int bit)
+{
+  if (!state->no_tension) return;
+  const double least = SD_SPH_THINNEST * state->rho0;
+  for (int i = 0; i < n; i++)
+    if ((mask[i] & bit) && rho[i] < least) rho[i] = least;
+}
+
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
                       double *P)
 {

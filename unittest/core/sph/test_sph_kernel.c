@@ -105,6 +105,15 @@ static void states_without_tension(void **state)
     CHECK_NEAR(sd_sph_density_of(&slack, sd_sph_pressure(&slack, 950.0)), 950.0, 1e-7);
     assert_true(sd_sph_least_pressure(&slack) == slack.P0);
   }
+  const int mask[4] = {2, 2, 2, 1};
+  double rho[4] = {-3.0, 880.0, 950.0, -3.0}, kept[4] = {-3.0, 880.0, 950.0, -3.0};
+  sd_sph_state slack = states[1];
+  sd_sph_keep_size(&slack, 4, kept, mask, 2);
+  for (int i = 0; i < 4; i++) assert_true(kept[i] == rho[i]);
+  slack.no_tension = 1;
+  rho[0] = 855.0;
+  sd_sph_keep_size(&slack, 4, kept, mask, 2);
+  for (int i = 0; i < 4; i++) CHECK_NEAR(kept[i], rho[i], 1e-12);
 }
 
 static void repulsion(void **state)
