@@ -4,7 +4,7 @@
     run.py [--quick] [--reuse] [--update] [N ...]
 
 N: particles over the depth, 10 if none is given. Up to 10 the run has 6 s, finer ones 0.72 s, which is the impact; --quick: 0.72 s for
-all. --reuse: takes the logs of earlier runs in build/examples/dam_break_3d where there are some, also of one that is not finished.
+all. Multiples of 10: the patches that measure the load are 0.055 m high, a whole number of spacings. --reuse: takes the logs of earlier runs in build/examples/dam_break_3d where there are some, also of one that is not finished.
 """
 import os
 import re
@@ -19,7 +19,12 @@ c, plt = S.Checks(), S.pyplot()
 sizes = [int(word) for word in sys.argv[1:] if word.isdigit()] or [10]
 IMPACT, WINDOW = 0.72, 0.3
 # Largest errors: of a coarse run, and from 30 particles over the depth on
-COARSE, FINE = {"arrival": 0.04, "load": 0.35, "H2": 0.06, "H4": 0.03}, {"arrival": 0.03, "load": 0.15, "H2": 0.05, "H4": 0.05}
+COARSE = {"arrival": 0.05, "load": 0.15, "face": 0.3, "H2": 0.06, "H4": 0.03}
+FINE = {"arrival": 0.03, "load": 0.15, "face": 0.3, "H2": 0.05, "H4": 0.05}
+# The sensors that each patch of the box's front is compared with
+SENSORS = ("P1", "P2", "P3", "P4")
+PATCHES = {"L1": ("P1",), "L2": ("P2", "P3"), "L3": ("P4",)}
+PATCH_OF = {sensor: patch for patch, sensors in PATCHES.items() for sensor in sensors}
 OUT = os.path.join(TOP, "build", "examples", "dam_break_3d")
 
 
@@ -41,6 +46,7 @@ def run(n):
     found = [re.findall(word, text) for word in (r"Loop time of ([\d.]+)", r"([\d.]+)% CPU use")]
     minutes = float(found[0][-1]) * float(found[1][-1]) / 6000 if all(found) else float("nan")
     names = {"c_%s[%s]" % (kind, k): kind + k for kind in "HP" for k in "1234"}
+    names.update({"f_L[%s]" % k: "L" + k for k in "123"})
     return dict({"t": table["Time"]}, **{names[name]: table[name] for name in names}), minutes
 
 
@@ -50,27 +56,38 @@ def first(t, value, limit):
     return t[k - 1] + (t[k] - t[k - 1]) * (limit - value[k - 1]) / (value[k] - value[k - 1])
 
 
-def arrival(curves):
-    """When P1 passes 500 Pa."""
-    return first(curves["t"], curves["P1"], 500)
+def arrival(curves, name="P1"):
+    """When P1, or what is taken for it, passes 500 Pa."""
+    return first(curves["t"], curves[name], 500)
 
 
-def loads(curves, begin, end):
-    """Means of P1 to P4 between two times after the arrival."""
-    fine = arrival(curves) + np.linspace(begin, end, 3001)
-    return np.array([np.interp(fine, curves["t"], curves["P" + k]).mean() for k in "1234"])
+def means(curves, names, begin, end):
+    """Means of curves between two times after the first of them has passed 500 Pa."""
+    fine = arrival(curves, names[0]) + np.linspace(begin, end, 3001)
+    return np.array([np.interp(fine, curves["t"], curves[name]).mean() for name in names])
 
 
-def rms(name, curves, end):
-    """Difference of a height over the largest that was measured, up to a time."""
+def loads(begin, end):
+    """What the sensors that belong to each patch measured."""
+    of_sensor = dict(zip(SENSORS, means(fast, SENSORS, begin, end)))
+    return np.array([np.mean([of_sensor[name] for name in sensors]) for sensors in PATCHES.values()])
+
+
+def differences(name, curves, end):
+    """Of a height, over the largest that was measured, up to a time."""
     t = slow["t"][slow["t"] <= min(end, curves["t"][-1])]
-    return np.sqrt(np.mean((np.interp(t, curves["t"], curves[name]) - slow[name][:len(t)]) ** 2)) / slow[name].max()
+    return (np.interp(t, curves["t"], curves[name]) - slow[name][:len(t)]) / slow[name].max()
 
 
-table = "| particles over the depth | arrival at the box | P1 | P2 | P3 | P4 | mean of the four | H2, H4 to 0.72 s | H2, H4 to 6 s | processor, min |\n" \
-        "|---|---|---|---|---|---|---|---|---|---|\n"
-at_box, measured = arrival(fast), loads(fast, 0, WINDOW)
-table += "| experiment | %.3f s | %.0f Pa | %.0f Pa | %.0f Pa | %.0f Pa | %.0f Pa | | | |\n" % (at_box, *measured, measured.mean())
+def percent(values):
+    return " | ".join("%+.0f %%" % (100 * value) for value in values)
+
+
+table = "| particles over the depth | arrival at the box | load, 0 to 0.055 m | 0.055 to 0.11 m | 0.11 to 0.165 m | all three " \
+        "| probe at P1 | P2 | P3 | P4 | H2, H4 to 0.72 s | H2, H4 to 6 s | processor, min |\n" + "|---" * 13 + "|\n"
+at_box = arrival(fast)
+table += "| experiment | %.3f s | %s | | | |\n" % (
+    at_box, " | ".join("%.0f Pa" % value for value in (*loads(0, WINDOW), loads(0, WINDOW).mean(), *means(fast, SENSORS, 0, WINDOW))))
 figure, axes = plt.subplots(2, 3, figsize=(12, 6))
 for axis, name in zip(axes.flat, ("H2", "P1", "P2", "H4", "P3", "P4")):
     curves = slow if name[0] == "H" else fast
@@ -81,25 +98,33 @@ for axis, name in zip(axes.flat, ("H2", "P1", "P2", "H4", "P3", "P4")):
         axis.set(xlim=(0.36, IMPACT), ylim=(-6, 16))
 for n in sizes:
     curves, minutes = run(n)
-    end = min(WINDOW, curves["t"][-1] - arrival(curves))
-    load, known = loads(curves, 0, end), loads(fast, 0, end)
-    off = (arrival(curves) / at_box - 1, *(load / known - 1), load.mean() / known.mean() - 1)
-    if end > 0.1:
-        print("[dam_break_3d] P1 over the measured one, from 0 to 0.08 s after the arrival: %.2f, from there to %.2f s: %.2f" % (
-            loads(curves, 0, 0.08)[0] / loads(fast, 0, 0.08)[0], end, loads(curves, 0.08, end)[0] / loads(fast, 0.08, end)[0]))
-    heights = {name: rms(name, curves, IMPACT) for name in ("H2", "H4")}
-    whole = "%.3f, %.3f" % tuple(rms(name, curves, 6) for name in heights) if curves["t"][-1] > 5.9 else ""
-    table += "| %d | %s | %.3f, %.3f | %s | %s |\n" % (n, " | ".join("%+.1f %%" % (100 * x) if k == 0 else "%+.0f %%" % (100 * x) for k, x in enumerate(off)),
-                                                      heights["H2"], heights["H4"], whole, "%.0f" % minutes if minutes > 0 else "")
+    end = min(WINDOW, curves["t"][-1] - arrival(curves, "L1"))
+    late = arrival(curves) / at_box - 1
+    load = means(curves, list(PATCHES), 0, end) / loads(0, end) - 1
+    face = means(curves, list(PATCHES), 0, end).mean() / loads(0, end).mean() - 1
+    probe = means(curves, SENSORS, 0, end) / means(fast, SENSORS, 0, end) - 1
+    early, later = (means(curves, ["L1"], *window)[0] / loads(*window)[0] for window in ((0, 0.08), (0.08, end)))
+    print("[dam_break_3d] load on the lowest patch over P1, from 0 to 0.08 s after the arrival: %.2f, from there to %.2f s: %.2f; "
+          "arrival by this load: %+.1f %%" % (early, end, later, 100 * (arrival(curves, "L1") / at_box - 1)))
+    heights = {name: np.sqrt(np.mean(differences(name, curves, IMPACT) ** 2)) for name in ("H2", "H4")}
+    whole = "%.3f, %.3f" % tuple(abs(differences(name, curves, 6)).mean() for name in heights) if curves["t"][-1] > 5.9 else ""
+    table += "| %d | %+.1f %% | %s | %s | %.3f, %.3f | %s | %s |\n" % (
+        n, 100 * late, percent([*load, face]), percent(probe), heights["H2"], heights["H4"], whole, "%.0f" % minutes if minutes > 0 else "")
     limits = FINE if n >= 30 else COARSE
-    c.below("%d over the depth: arrival at the box, off by" % n, abs(off[0]), limits["arrival"])
-    c.below("%d over the depth: mean of P1 in %.2f s from there, off by" % (n, end), abs(off[1]), limits["load"])
+    c.below("%d over the depth: arrival at the box, off by" % n, abs(late), limits["arrival"])
+    c.below("%d over the depth: mean load on the lowest patch in %.2f s from there, off P1 by" % (n, end), abs(load[0]), limits["load"])
+    c.below("%d over the depth: mean load on all three patches, off by" % n, abs(face), limits["face"])
     for name, value in heights.items():
         c.below("%d over the depth: %s in the first 0.72 s, rms difference over the largest" % (n, name), value, limits[name])
     for axis, name in zip(axes.flat, ("H2", "P1", "P2", "H4", "P3", "P4")):
-        # pressures as means over 4 ms, over the noise of sound
-        value = curves[name] if name[0] == "H" else np.convolve(curves[name] / 1000, np.full(3, 1 / 3), "same")
-        axis.plot(curves["t"], value, lw=1, label="%d particles over the depth" % n)
+        label = "%d particles over the depth" % n
+        if name[0] == "H":
+            axis.plot(curves["t"], curves[name], lw=1, label=label)
+            continue
+        # loads and, pale, probes as means over 6 ms, over the noise of sound
+        calm = {key: np.convolve(curves[key] / 1000, np.full(3, 1 / 3), "same") for key in (name, PATCH_OF[name])}
+        line = axis.plot(curves["t"], calm[PATCH_OF[name]], lw=1, label=label)[0]
+        axis.plot(curves["t"], calm[name], lw=1, alpha=0.3, color=line.get_color())
 axes[0, 0].legend(fontsize=8)
 figure.tight_layout()
 figure.savefig(os.path.join(OUT, "dam_break_3d.png"), bbox_inches="tight")
