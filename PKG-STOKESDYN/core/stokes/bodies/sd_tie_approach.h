@@ -28,10 +28,6 @@
 
 #include "sd_tie.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Where A->tie->L stands now. On all ranks together. SD_OK; SD_ENOMEMORY; that of refresh. */
 sd_status sd_tie_approach_make(const sd_bodies *A);
 /* share (rows) = X (r + K V), and f [6 bodies] = K^T of that; r (rows, NULL: 0), V [6 bodies, NULL:
@@ -39,7 +35,4 @@ sd_status sd_tie_approach_make(const sd_bodies *A);
 sd_status sd_tie_approach_share(const sd_bodies *A, const double *r, const double *V, double *share,
                                 double *f);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

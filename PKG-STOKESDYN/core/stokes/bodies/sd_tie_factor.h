@@ -17,17 +17,10 @@
 
 #include "sd_tie.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Where A->tie->L stands. On all ranks together, which agree on failures. Status as of sd_tie_make. */
 sd_status sd_tie_factor(const sd_bodies *A);
 /* z = P^-1 r, by bodies; 0 for those that nobody is near to, and held ones. SD_OK; that of a
  * function of sd_world */
 sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -13,10 +13,6 @@
 
 #include "sd_precondition.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct {
   int n, width;
   int part, parts;
@@ -48,7 +44,4 @@ sd_status sd_blocks_apply(void *ctx, const double *r, double *z);
 /* out = P in, in the rows of block k: [width m][count] numbers each */
 void sd_blocks_multiply(const sd_blocks *b, int k, int count, const double *in, double *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

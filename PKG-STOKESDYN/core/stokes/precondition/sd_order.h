@@ -5,10 +5,6 @@
 #include "sd_product.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Spheres in order, each the one farthest from all before it; ties: the smaller index first. Rows
  * of each: sphere k of the order (k % parts == part) itself, then those before it and nearer than
  * rho times its distance from them. Spheres with radius 0 take no part. */
@@ -25,7 +21,4 @@ typedef struct {
 sd_status sd_rows_find(sd_rows *rows, const sd_spheres *s, int n, double rho, int part, int parts);
 void sd_rows_free(sd_rows *rows);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -16,10 +16,6 @@
 #include "sd_order.h"
 #include "sd_precondition.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct {
   int n, width;
   int part, parts;
@@ -44,7 +40,4 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
 /* z = P r (this part's share), in the signature of sd_precondition: ctx is an sd_sparse. */
 sd_status sd_sparse_apply(void *ctx, const double *r, double *z);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,10 +4,6 @@
 
 #include "sd_ewald.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { SD_WAVES_MOST = 61, SD_WAVES_PADDED = 64, SD_WAVES_COLUMNS = 4 * SD_WAVES_PADDED };
 
 /* A pair of waves each; those that only fill the arrays up have no strength. */
@@ -22,7 +18,4 @@ typedef struct {
  * SD_WAVES_MOST; -1: out of memory. */
 int sd_wave_list_of(const sd_ewald_box *box, sd_wave_list *list);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

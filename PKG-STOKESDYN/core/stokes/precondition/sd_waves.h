@@ -37,10 +37,6 @@
 #include "sd_blocks.h"
 #include "sd_wave_list.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct {
   int n, width;
   sd_wave_list list;
@@ -68,7 +64,4 @@ void sd_waves_free(void *waves);
 /* z = P r (this part's share) in the signature of sd_precondition: ctx is an sd_waves. */
 sd_status sd_waves_apply(void *ctx, const double *r, double *z);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

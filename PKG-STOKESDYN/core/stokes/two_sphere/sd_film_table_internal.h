@@ -6,10 +6,6 @@
 
 #include "sd_film.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { SD_FILM_KINDS = 4, SD_FILM_SCALARS = 5 };
 
 /* 12 points, 12 with the addition, 42, 42 with it: by kind, nodes of the ratio, of the gap, and
@@ -27,7 +23,4 @@ void sd_film_scales(double a1, double a2, double scale[SD_FILM_SCALARS]);
  * m m^T with m along its eigenvector, or nothing. */
 void sd_film_clip(double *p, double *q, double *r);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,10 +7,6 @@
 #include "sd_pair_resistance.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* F [12] += forces and torques on the first sphere, then on the second, of covariance R from standard
  * normal numbers g [12], four vectors in space: only d and these say what comes out, no choice of axes
  * across d. SD_OK; SD_EINDEFINITE: an eigenvalue below -1e-6 of the largest; what is above is rounding
@@ -18,7 +14,4 @@ extern "C" {
 sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12],
                         double F[12]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

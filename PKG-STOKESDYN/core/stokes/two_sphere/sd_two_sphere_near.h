@@ -4,10 +4,6 @@
 
 #include "sd_pair_resistance.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* a1, a2 > 0; xi > 0, gap over the mean radius. With l = a2/a1, p = 1 + l, L = ln(1 + 1/xi), over
  * 6 pi a1 (XA, YA), 4 pi a1^2 (YB) and 8 pi a1^3 (XC, YC):
  *
@@ -25,7 +21,4 @@ extern "C" {
  * Source: Jeffrey & Onishi 1984; YC12 and XC are theirs with other scales. */
 sd_pair_resistance sd_two_sphere_near(double a1, double a2, double xi);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -11,10 +11,6 @@
 #include "sd_pair_resistance.h"
 #include "sd_two_sphere.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum {
   /* Chebyshev nodes in ln l and in mu over its largest value; functions in the order of
    * sd_pair_resistance */
@@ -45,7 +41,4 @@ void sd_two_sphere_scales(double a1, double a2, double scale[SD_TWO_SPHERE_FUNCT
 /* Stokes drags of both, by themselves */
 sd_pair_resistance sd_two_sphere_alone(double a1, double a2);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

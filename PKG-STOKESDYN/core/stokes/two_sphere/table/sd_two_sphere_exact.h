@@ -5,10 +5,6 @@
 
 #include "sd_pair_resistance.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* a1, a2 > 0; gap = centre distance - a1 - a2 > 0. Never fails; needs no memory. Where long double
  * has 64 bits: 1e-10 of each function (or of 1e-3 of its scale) for gaps from 1e-4 of the smaller
  * radius on and 1e-8 below, ratios to 100. Symmetry is not put in: asymmetry, if not NULL, is the
@@ -16,7 +12,4 @@ extern "C" {
  * of its kind. */
 sd_pair_resistance sd_two_sphere_exact(double a1, double a2, double gap, double *asymmetry);
 
-#ifdef __cplusplus
-}
-#endif
 #endif
