@@ -82,7 +82,7 @@ BAD = [
     (dict(fall_diameter="0"), "keyword fall_diameter: '0' must be > 0"),
     (dict(fall_diameter="0.7", rules="yade"), "keyword fall_diameter is not available with rules yade"),
     (dict(surface="follow 0.01", couple="fluid"), "keyword surface: follow needs couple two"),
-    (dict(surface="follow 0.019"), "keyword surface: the surface at 0.019 has no room to rise: the mesh holds water up to 0.019"),
+    (dict(surface="follow 0.019"), "keyword surface: the surface at 0.019 has no room to rise: the mesh holds"),
     (dict(surface="follow 0"), "keyword surface: '0' must be > 0"),
     (dict(gravity="v_none 0 -9.8"), "keyword gravity: variable 'none' does not exist"),
     (dict(hindrance="inf"), "keyword hindrance: 'inf' is not a finite number"),
