@@ -206,12 +206,13 @@ void FixHydroVans::tell_steps()
   else if (std::fabs(steps * dt - T) > 1e-9 * T)
     set.voice.tell("rules yade: " + as_made + " for the period " + text(T));
   if (set.couple == VansSettings::TWO && std::fabs(T / of_grains - 1.0) > 1e-9)
-    set.voice.tell("the water moves on by " + text(T) + " while the grains move on by " +
-                   text(of_grains));
+    set.voice.tell("every coupling solves the stream over the time " + text(T) +
+                   ", but the grains move for " + text(of_grains) + " between couplings");
   if (steps * N > 1e9 && !told_work) {
     told_work = true;
     set.voice.warn("keyword solve: " + text((double) steps) + " steps of " + text(N) +
-                   " slices in every coupling, about " + text(5e-9 * steps * N) + " seconds each");
+                   " slices in every coupling take about " + text(5e-9 * steps * N) +
+                   " seconds each time");
   }
 }
 
@@ -228,7 +229,7 @@ void FixHydroVans::tell_sizes()
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   if (all[0] * all[1] > 1.01)
     set.voice.warn("rules yade: radii from " + text(1.0 / all[1]) + " to " + text(all[0]) +
-                   " are replaced by their mean in the forces on the grains, which can be wrong by a "
+                   " are replaced by their mean in the drag on the water, which can be wrong by a "
                    "factor of two: use classes yes, or rules consistent");
 }
 
@@ -271,7 +272,7 @@ void FixHydroVans::check_mesh()
   if (stream.phi()[top] > 0.5 * set.fluid.phi_max)
     what.fail("the bed reaches the surface of the water: phi = " + text(stream.phi()[top]) +
               " in the slice below z = " + text(stream.surface()) +
-              "; the mesh must hold bed and flow depth");
+              "; the mesh must be high enough for the bed and the water above it");
   select(average_bit);
   double volume[2] = {0, 0}, all[2];
   for (int i = 0; i < atom->nlocal; i++) {
@@ -372,8 +373,8 @@ void FixHydroVans::check_forces() const
     for (int d = 0; d < 3; d++)
       if (take[i] && !std::isfinite(out[i][FORCE + d]))
         set.voice.fail_one("the force on atom " + std::to_string(atom->tag[i]) +
-                           " is not finite: its position, velocity or radius is not, or the stream "
-                           "there");
+                           " is not finite, because its position, velocity or radius, or the "
+                           "velocity of the water there, is not finite");
 }
 
 /* What a velocity of half a step ago became. A run begins with that of its step, half a step before
@@ -479,6 +480,8 @@ void FixHydroVans::tell_outside()
   sum_up();
   if (!(global.outside > 0.0)) return;
   told_outside = true;
-  set.voice.warn(text(global.outside) + " grains are outside the mesh; they " +
-                 (set.yade() ? "feel nothing" : "feel the velocity of its end"));
+  set.voice.warn(text(global.outside) + " grains are outside the mesh: " +
+                 (set.yade() ? "no force acts on them"
+                             : "those above it feel the velocity of the surface, those below it "
+                               "feel water at rest"));
 }

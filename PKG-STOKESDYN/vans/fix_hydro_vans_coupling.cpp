@@ -147,7 +147,7 @@ void FixHydroVans::average()
   if (odd >= 0)
     set.voice.fail_one("atom " + std::to_string(atom->tag[odd]) + " has radius " +
                        text(atom->radius[odd]) +
-                       ", which is no size class; name all of them with class_radii");
+                       ", which is no size class; give all radii with class_radii");
   double *mine = &sums[total], *means = &all[total];
   for (int i = 0; i < grains.n; i++) {
     if (!take[i]) continue;
@@ -176,9 +176,9 @@ void FixHydroVans::tell_waves()
   if (told_waves || !set.upflow || set.couple != VansSettings::ONE || lowest > 3.0 * mean.radius)
     return;
   told_waves = true;
-  set.voice.warn("keyword upflow: in slices of " + text(lowest) + " grains of diameter " +
+  set.voice.warn("keyword upflow: in slices of " + text(lowest) + " a bed of grains of diameter " +
                  text(2.0 * mean.radius) +
-                 " break up into waves, and their bed is too high: take slices of three diameters");
+                 " breaks up into waves and becomes too high: use slices of three diameters");
 }
 
 /* What the grains got from the water since the last coupling: those of the group as booked step by

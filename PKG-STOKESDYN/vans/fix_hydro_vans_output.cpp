@@ -207,7 +207,7 @@ void FixHydroVans::restart(char *buf)
     local.pressed = pressed[1];
   }
   if (state.get("columns") != layout(set))
-    set.voice.warn("the restart file was written with other keywords (conserve, overlap or "
-                   "fluctuation): what each grain carried is not taken, momentum on its way and "
-                   "fluctuations begin anew");
+    set.voice.warn("the restart file was written with other keywords (conserve, overlap, "
+                   "fluctuation or added_mass): what each grain carried is dropped, and its "
+                   "outstanding momentum, fluctuation and acceleration begin anew");
 }

@@ -145,7 +145,7 @@ void VansSettings::check_solve(const Voice &what, double T, double step) const
   if (!(T / step * ncell() <= MOST_WORK))
     what.fail("the step " + text(step) + " is too short for the period " + text(T) + ": " +
               text(T / step) + " steps of " + std::to_string(ncell()) +
-              " slices in every coupling, most of a minute");
+              " slices in every coupling would take most of a minute");
 }
 
 void VansSettings::take_class_radii(Keywords &in)
@@ -154,7 +154,7 @@ void VansSettings::take_class_radii(Keywords &in)
   for (size_t c = 0; c < class_radii.size(); c++) {
     class_radii[c] = in.positive();
     if (std::count(class_radii.begin(), class_radii.begin() + c, class_radii[c]))
-      in.refuse("'" + text(class_radii[c]) + "' twice");
+      in.refuse("'" + text(class_radii[c]) + "' is given twice");
   }
 }
 
@@ -287,15 +287,16 @@ void VansSettings::check(const Keywords &in) const
   in.require(in.given("gravity"),
              "keyword gravity (gx gy gz) is required; its x component is the slope");
   in.require(!yade() || mesh_file.empty(),
-             "keyword mesh: rules yade knows slices of one height only");
+             "keyword mesh: rules yade needs slices of equal height, mesh ncell dz zref");
   in.require(!law.felt_by_volume || !yade(),
-             "keyword felt is not available with rules yade, which feel the water at the centre");
+             "keyword felt is not available with rules yade: grains feel the water at their centre");
   in.require(!law.felt_by_volume || !point,
              "keyword felt has no effect with grains point");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal requires fluctuations");
   in.require(!in.given("intensity") || fluctuates(),
              "keyword intensity requires fluctuations");
-  in.require(!fluctuates() || has_grains(), "keyword fluctuation: couple fluid has no grains");
+  in.require(!fluctuates() || has_grains(),
+             "keyword fluctuation: with couple fluid there are no grains that could feel it");
   in.require(!in.given("schmidt") || fluctuation == LANGEVIN,
              "keyword schmidt requires fluctuation langevin");
   in.require(fluctuation != LANGEVIN || !yade(),
@@ -312,7 +313,8 @@ void VansSettings::check(const Keywords &in) const
   in.require(!fluid.held || (solves() && !yade()),
              "keyword discharge: it needs couple two or fluid, and rules consistent");
   in.require(!fluid.held || !fluid.driven,
-             "keyword discharge: with surface speed the stream is driven already");
+             "keyword discharge: with surface speed the stream is driven already, "
+             "leave one of the two out");
   in.require(!fluid.held || reach > 0.0 || !in.given("pressure_gradient"),
              "keyword discharge: the pressure gradient follows from it, "
              "leave pressure_gradient out");
@@ -397,7 +399,8 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   if (reach > 0.0) fluid.held = 0;
   if (follows() && !(surface < edge[mesh.ncell - 1]))
     voice.of("keyword surface").fail("the surface at " + text(surface) +
-        " has no room to rise: the water of the mesh ends at " + text(edge[mesh.ncell - 1]));
+        " has no room to rise: the mesh holds water up to " + text(edge[mesh.ncell - 1]) +
+        ", give it more slices");
   if (period > 0.0) check_solve(voice.of("keyword solve"), period, dt);
 }
 

@@ -220,15 +220,17 @@ void VansStream::tell_limits(double T, double dt, const double cut[2])
     set.voice.warn("the couplings are too far apart: drag changes the water at z = " +
                    text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) +
                    ", b T = " + text(rate * T) + " for the time T = " + text(T) +
-                   " of a coupling; above 3 drag and stream amplify each other. Use a T of at "
-                   "most " + text(3.0 / rate));
+                   " of one solve. Above 3 the drag overshoots, more with every coupling. Use a T "
+                   "of at most " + text(3.0 / rate) +
+                   " (fewer steps N, or a shorter period of keyword solve)");
   }
   const double force = std::fabs(fluid.rho * drive) * wet.edge[wet.ncell - 1];
   if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * force) {
     told_cut = true;
     set.voice.warn(text(100.0 * cut[0] / cut[1]) +
-                   " % of the drag does not reach the water: b is limited to 1/(10 dt) = " +
-                   text(0.1 / dt) + ", and the drag needs up to " + text(rate) +
+                   " % of the drag does not reach the water: the exchange coefficient b is at "
+                   "most 1/(10 dt) = " +
+                   text(0.1 / dt) + ", and this drag needs a b of up to " + text(rate) +
                    ". Use a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " +
                    (set.yade() ? "rules consistent" : "conserve yes"));
   }
@@ -396,8 +398,8 @@ void VansStream::check_mesh(const NamedState &state) const
   double shift = std::fabs(state.get("z_ref", 0.0) - mesh.z_ref);
   for (size_t n = 0; n <= N; n++) shift = std::max(shift, std::fabs(edge[n] - mesh.edge[n]));
   if (!(shift <= 1e-9 * mesh.edge[N]))
-    what.fail("the restart file has another mesh: edges up to " + text(shift) +
-              " away from those of this fix");
+    what.fail("the restart file has another mesh: its edges differ by up to " + text(shift) +
+              " from those of this fix");
 }
 
 void VansStream::load_surface(const NamedState &state)

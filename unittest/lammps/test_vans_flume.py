@@ -75,7 +75,7 @@ def test_the_water_gets_the_drag_of_grains_of_any_sizes():
 
 def test_rules_yade_with_two_sizes_are_told(tmp_path):
     vans = "mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61 rules yade"
-    assert "radii from 0.0024 to 0.003 are replaced by their mean" in run_lmp(tmp_path, bed_script(vans) + "run 1\n").stdout
+    assert "radii from 0.0024 to 0.003 are replaced by their mean in the drag on the water" in run_lmp(tmp_path, bed_script(vans) + "run 1\n").stdout
     assert "are replaced by their mean" not in run_lmp(tmp_path, bed_script(vans + " classes yes") + "run 1\n").stdout
 
 
@@ -329,8 +329,8 @@ def test_a_fluidised_bed_expands_by_richardson_and_zaki(d, eta, dt):
 
 def test_a_bed_in_slices_finer_than_its_grains_is_told_to_break_up(tmp_path):
     script = bed_script("mesh 200 0.0003 0 fluid 1000 0.001 gravity 0 0 -9.8 stream rest couple one upflow {}")
-    assert "take slices of three diameters" in run_lmp(tmp_path, script.format(0.1) + "run 0\n").stdout
-    assert "take slices of three diameters" not in run_lmp(tmp_path, script.format("off") + "run 0\n").stdout
+    assert "use slices of three diameters" in run_lmp(tmp_path, script.format(0.1) + "run 0\n").stdout
+    assert "use slices of three diameters" not in run_lmp(tmp_path, script.format("off") + "run 0\n").stdout
 
 
 def test_a_run_stops_when_its_mean_is_known():
