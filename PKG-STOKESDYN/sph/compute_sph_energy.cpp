@@ -42,7 +42,7 @@ void ComputeSphEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
   Fix *fix = Compat::fix(modify, memory_id);
-  if (!fix) voice.fail("the fix " + memory_id + " has been deleted; it is this compute's");
+  if (!fix) voice.fail("the fix " + memory_id + " has been deleted, but this compute needs it");
   static_cast<FixSphEnergy *>(fix)->values(vector);
 }
 

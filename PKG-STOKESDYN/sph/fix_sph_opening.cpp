@@ -51,7 +51,7 @@ int FixSphOpening::setmask()
 void FixSphOpening::init()
 {
   SphFix::init();
-  if (domain->triclinic) voice.fail("not in a triclinic box");
+  if (domain->triclinic) voice.fail("the box must not be triclinic");
   const double end = plane + side * width, edge = side > 0 ? domain->boxhi[axis] : domain->boxlo[axis];
   if (domain->boundary[axis][side > 0] != 1)
     voice.fail("the box must have boundary f beyond the layer, along " +

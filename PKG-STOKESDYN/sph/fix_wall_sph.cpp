@@ -65,7 +65,7 @@ void FixWallSph::init()
 {
   const std::string kind = axis < 0 ? "zcylinder" : std::string(1, "xyz"[axis]) + "plane";
   if (axis >= 0 && domain->periodicity[axis])
-    voice.fail("keyword " + kind + ": the box is periodic in this direction; see: boundary");
+    voice.fail("keyword " + kind + ": the box is periodic in this direction; use 'boundary f' there");
   if (axis >= 0) return;
   const double apart = force->pair ? 0.5 * force->pair->cutforce : 0.0;
   for (int d = 0; d < 2; d++)

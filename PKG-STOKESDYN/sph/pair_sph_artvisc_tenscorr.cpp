@@ -60,7 +60,7 @@ void PairSph::parse()
   model = sd_sph_model();
   shifts = corrects = false;
   Keywords in(lmp, voice.command, args);
-  if (!in.next()) voice.fail("the kernel is missing: cubicspline or wendland, then h");
+  if (!in.next()) voice.fail("the kernel is missing: give cubicspline or wendland, then the smoothing length h");
   const bool flat = in.is("cubicspline2d") || in.is("wendland2d");
   model.dimension = flat ? 2 : domain->dimension;
   if (in.is("cubicspline") || in.is("cubicspline2d"))
@@ -95,7 +95,7 @@ void PairSph::parse()
       {"correction", [&] { corrects = in.yes_no(); }},
   });
   in.require(shifts || !corrects || !in.given("shift"),
-             "correction yes switches shift on: shift no does not go with it");
+             "correction yes switches shift on: leave shift no out");
   shifts = shifts || corrects;
 }
 
@@ -147,8 +147,8 @@ void PairSph::coeff(int narg, char **arg)
       count++;
     }
   if (count == 0)
-    of_coeff.fail(std::string("no pair of types '") + arg[0] + " " + arg[1] +
-                  "' (the first must not be larger than the second)");
+    of_coeff.fail(std::string("there is no pair of types '") + arg[0] + " " + arg[1] +
+                  "': the first type must not be larger than the second");
 }
 
 double PairSph::mixed(int k, int i, int j) const
@@ -169,10 +169,10 @@ double PairSph::spacing(int itype) const
 {
   const double rho0 = pressures.size() == 1 ? pressures[0]->state.rho0 : 0.0;
   if (!(rho0 > 0.0) || atom->rmass)
-    voice.fail("shift needs the initial distance of particles: pair_coeff " +
+    voice.fail("shift needs the initial distance of particles: give it by pair_coeff " +
                std::to_string(itype) + " " + std::to_string(itype) +
-               " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass per "
-               "type, it is (mass/rho0)^(1/dimension))");
+               " deltap VALUE; the style itself computes it, as (mass/rho0)^(1/dimension), only where "
+               "there is one fix sph/pressure with a rho0 and one mass per type");
   return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
 }
 

@@ -28,10 +28,10 @@ void PairSph::look_at_densities(int n)
     const std::string who = at_step() + "atom " + std::to_string(atom->tag[i]);
     if (!(atom->mask[i] & pressure_bits))
       voice.fail_one(who + " is in the group of no fix sph/pressure");
-    const char *cure = update->setupflag ? " (set it with: set ... sph/rho)"
-        : rho[i] == 0.0                  ? " (new? fix sph/pressure relativ and Tait give new atoms of "
-                                           "their group the density rho0)"
-                                         : " (a smaller time step?)";
+    const char *cure = update->setupflag ? "; give it one by the command set ... sph/rho"
+        : rho[i] == 0.0 ? "; if it was created in this run: fix sph/pressure relativ and Tait give "
+                          "new atoms of their group the density rho0"
+                        : "; the time step may be too long";
     voice.fail_one(who + " has the density " + text(rho[i]) + "; it must be a number > 0" + cure);
   }
 }
@@ -62,9 +62,10 @@ void PairSph::look_at_sound()
   if (all.type == 0) return;
   if (worst.type != all.type || worst.off != all.off) sound = 0.0;
   MPI_Allreduce(MPI_IN_PLACE, &sound, 1, MPI_DOUBLE, MPI_MAX, world);
-  voice.warn("the speed of sound of type " + std::to_string(all.type) + ", pair_coeff c " +
-             text(sound_speed(all.type)) + ", is not that of its equation of state, " +
-             text(sound) + ": time step limits, artVisc and delta use the one of pair_coeff");
+  voice.warn("type " + std::to_string(all.type) + " has the speed of sound " +
+             text(sound_speed(all.type)) + " by pair_coeff c, and " + text(sound) +
+             " by its fix sph/pressure: limits of the time step, artVisc and delta use that of "
+             "pair_coeff, the fluid has that of fix sph/pressure");
 }
 
 /* Two fluids share a pressure at their interface, that for which the stiffer one is made. One that is
@@ -88,8 +89,8 @@ void PairSph::check_stiffness()
   if (!soft || stiffness(stiff) <= MOST * (1.0 + 1e-9) * stiffness(soft)) return;
   voice.fail(std::string("correction yes with volume yes: the fluid of fix ") + soft->id + " is " +
              text(stiffness(stiff) / stiffness(soft)) + " times softer than that of fix " +
-             stiff->id + " (rho0 c^2 of their fixes sph/pressure); beyond " + text(MOST) +
-             " times it is torn: give it a larger B, for a speed of sound of " +
+             stiff->id + " (by rho0 c^2 of these fixes); a fluid that is more than " + text(MOST) +
+             " times softer would be torn: give it a larger B, which makes a speed of sound of " +
              text(sqrt(stiffness(stiff) / MOST / soft->state.rho0)) + " or more");
 }
 
@@ -123,15 +124,15 @@ void PairSph::look_at_walls()
     if (row[1] == 0.0)
       wall->voice.fail_one(
           "atom " + std::to_string(atom->tag[i]) +
-          " meets no fluid of its own fix sph/pressure, so with volume yes it has no "
-          "pressure; put the wall into the group of the fix sph/pressure of its fluid");
+          " meets no fluid of its own fix sph/pressure, so with volume yes it has no pressure; "
+          "put the wall and the fluid in front of it into the group of one fix sph/pressure");
     if (row[0] < -log(1.1)) other_mass = std::min(other_mass, atom->tag[i]);
   }
   MPI_Allreduce(MPI_IN_PLACE, &other_mass, 1, MPI_LMP_TAGINT, MPI_MIN, world);
   if (other_mass < MAXTAGINT)
     wall->voice.warn(
-        "atom " + std::to_string(other_mass) +
-        " does not have the mass of the fluid in front of it (10 %): walls need the "
-        "fluid's mass and spacing; a light or heavy body gets its mass by fix rigid ... "
-        "infile");
+        "the mass of atom " + std::to_string(other_mass) +
+        " and the mass of the fluid particles in front of it differ by more than 10 %: wall "
+        "particles need the mass and the spacing of the fluid; give a light or heavy body its "
+        "true mass by fix rigid ... infile");
 }

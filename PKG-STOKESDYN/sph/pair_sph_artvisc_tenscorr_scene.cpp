@@ -32,7 +32,7 @@ void PairSph::init_style()
 {
   Sph::require_scene(voice);
   if (update->whichflag == 2)
-    voice.fail("cannot be minimised: it has no energy; use 'pair_style none' meanwhile");
+    voice.fail("cannot be minimised: it has no energy; use 'pair_style none' while minimising");
   if (strncmp(update->integrate_style, "respa", 5) == 0)
     voice.fail("cannot be used with run_style respa");
   if (force->pair_match(STYLE, 1) != this)
@@ -53,7 +53,7 @@ void PairSph::init_style()
     voice.fail("command neighbor: a skin of 0 is too small; a tenth of h is usual");
   if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1)
     voice.warn(
-        "with neigh_modify check no LAMMPS does not notice when the neighbour list is outdated");
+        "with neigh_modify check no, LAMMPS does not notice when the neighbour list is outdated");
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me, !shared);
   around_of = -1;
@@ -105,6 +105,8 @@ void PairSph::find_integrators()
   if (continuity && !ours && !others && update->whichflag == 1 && update->nsteps > 0)
     continuity->voice.fail("nothing advances the density; use fix nve/sph");
   leapfrog = continuity && ours;
+  if (continuity && others && continuity->delta > 0.0)
+    voice.warn("delta of fix sph/density/continuity has no effect with fix sph; use fix nve/sph");
   leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
   own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
 }
@@ -120,17 +122,17 @@ void PairSph::choose_scheme()
   };
   if (shifts) {
     refuse(!leapfrog || !fixes_of(lmp, "sph").empty(),
-           "needs fix sph/density/continuity and fix nve/sph: particles are moved in the middle of a "
-           "step");
+           "needs fix sph/density/continuity and fix nve/sph: the shift is computed together with "
+           "the rate of the density");
     refuse(!(model.delta > 0.0), "needs fix sph/density/continuity with delta, usually 0.1");
-    refuse(model.tenscorr, "does not go with tensCorr: it has its own force against pairing");
-    refuse(model.dimension != domain->dimension, "needs the kernel of the box's dimension");
+    refuse(model.tenscorr, "does not go with tensCorr: both keep particles apart; leave tensCorr out");
+    refuse(model.dimension != domain->dimension, "needs the kernel of the box's dimension: write its name without 2d");
     refuse(!corrects && model.kernel == SD_SPH_CUBICSPLINE,
-           "needs kernel wendland: the cubic spline lets particles pair");
+           "needs kernel wendland: with the cubic spline particles form pairs");
     refuse(corrects && (!fixes_of(lmp, "wall/sph").empty() ||
                         !fixes_of(lmp, "wall/region/sph").empty()),
-           "does not go with fix wall/sph and wall/region/sph: the support is empty behind them; use "
-           "fix wall/adami/sph or shift yes");
+           "does not go with fix wall/sph and wall/region/sph: there are no particles behind such a "
+           "wall; use fix wall/adami/sph or shift yes");
   }
   if (volume && (!leapfrog || model.tenscorr))
     voice.fail("volume yes of fix sph/density/continuity needs fix nve/sph, and does not go with "
@@ -178,7 +180,8 @@ void PairSph::check_openings()
     MPI_Allreduce(&mine, &other, 1, MPI_LMP_BIGINT, MPI_MAX, world);
     if (other)
       fix->voice.fail("atom " + std::to_string(other) +
-                      " of its group is not moved by fix nve/sph: give it the group of the fluid");
+                      " of its group is not moved by fix nve/sph: the group must be that of the fluid, "
+                      "without walls");
   }
 }
 
@@ -197,9 +200,9 @@ bigint PairSph::in_both(int bits, int more_bits)
 void PairSph::setup()
 {
   if (needs_velocity && domain->deform_vremap && !fixes_of(lmp, "sph").empty())
-    voice.fail("fix deform with remap v: fix sph extrapolates velocities before they are shifted "
-               "at the faces that glide; use fix nve/sph");
+    voice.fail("fix deform with remap v: fix sph extrapolates velocities too early, before LAMMPS "
+               "adds the jump at the faces that glide; use fix nve/sph");
   if (domain->deform_vremap && (model.scheme == SD_SPH_SHIFT || model.scheme == SD_SPH_VOLUME_SHIFT))
-    voice.fail("fix deform with remap v: the momentum that shift carries is not the same on both "
+    voice.fail("fix deform with remap v: the momentum that shift carries would differ on the two "
                "sides of a face that glides; use correction yes");
 }

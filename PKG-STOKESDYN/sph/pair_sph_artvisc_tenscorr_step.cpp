@@ -42,8 +42,8 @@ void PairSph::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   check_list();
   if (continuity && !moved_box.follow(atom->rho))
-    voice.warn("the box has changed since the last run and the particles were moved otherwise: "
-               "their densities are left as they are (set ... sph/rho)");
+    voice.warn("the box has changed since the last run, but the particles have not moved with it: "
+               "their densities stay as they are; if these are wrong, use set ... sph/rho");
   look_at_densities(atom->nlocal);
   prepare();
   if (update->setupflag) {
@@ -146,7 +146,7 @@ bool PairSph::types_are_alike()
       c = sd_sph_coefficients_of(&model, &given_values);
       if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
         voice.fail("types " + std::to_string(i) + " and " + std::to_string(j) +
-                   ": h has grown beyond the neighbour list");
+                   ": h has grown beyond the neighbour list; use a larger skin (command neighbor)");
       if (!first) {
         first = &c;
         particles.mass = atom->rmass ? 0.0 : atom->mass[i];
@@ -244,12 +244,13 @@ void PairSph::close_sums()
   const int stops = sd_sph_close(&model, &particles, &closing);
   if (stops >= 0)
     voice.fail_one(at_step() + "keyword correction: atom " + std::to_string(atom->tag[stops]) +
-                   " is at a free surface: the smallest eigenvalue of its matrix is below " +
-                   text(least) + "; use shift yes, which is for free surfaces" +
+                   " is at a free surface: the smallest eigenvalue of the matrix of its neighbours "
+                   "is below " +
+                   text(least) + "; use shift yes where there is a free surface" +
                    (update->setupflag
                         ? ""
-                        : "; inside the fluid: start from a lattice disturbed by displace_atoms, "
-                          "since from an exact one rows are drawn apart"));
+                        : "; if the atom is inside the fluid: start from a lattice disturbed by "
+                          "displace_atoms, since the flow draws the rows of an exact lattice apart"));
   if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
   forward(order.data(), columns);
   std::fill_n(&order[columns * (size_t) n], columns, 0.0);

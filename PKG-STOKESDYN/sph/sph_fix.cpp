@@ -52,7 +52,7 @@ void BodyForce::init(const Voice &of)
 {
   for (Field &part : parts) {
     part.init(of.lmp, of.command);
-    if (part.is_atom_style()) of.fail("the variable must be of equal style: one for all");
+    if (part.is_atom_style()) of.fail("the variable must be of equal style: one value for all particles");
   }
 }
 

@@ -79,15 +79,23 @@ def differences(name, curves, end):
     return (np.interp(t, curves["t"], curves[name]) - slow[name][:len(t)]) / slow[name].max()
 
 
-def percent(values):
-    return " | ".join("%+.0f %%" % (100 * value) for value in values)
+def heading(*columns):
+    return "| particles over the depth | " + " | ".join(columns) + " |\n" + "|---" * (len(columns) + 1) + "|\n"
 
 
-table = "| particles over the depth | arrival at the box | load, 0 to 0.055 m | 0.055 to 0.11 m | 0.11 to 0.165 m | all three " \
-        "| probe at P1 | P2 | P3 | P4 | H2, H4 to 0.72 s | H2, H4 to 6 s | processor, min |\n" + "|---" * 13 + "|\n"
+def percent(name, values):
+    return "| %s | %s |\n" % (name, " | ".join("%+.0f %%" % (100 * value) for value in values))
+
+
+def pascals(values):
+    return "| experiment | %s |\n" % " | ".join("%.0f Pa" % value for value in values)
+
+
 at_box = arrival(fast)
-table += "| experiment | %.3f s | %s | | | |\n" % (
-    at_box, " | ".join("%.0f Pa" % value for value in (*loads(0, WINDOW), loads(0, WINDOW).mean(), *means(fast, SENSORS, 0, WINDOW))))
+times = heading("arrival at the box", "H2 to 0.72 s", "H4 to 0.72 s", "H2 to 6 s", "H4 to 6 s", "processor, min")
+times += "| experiment | %.3f s | | | | | |\n" % at_box
+patches = heading("0 to 0.055 m", "0.055 to 0.11 m", "0.11 to 0.165 m", "all three") + pascals([*loads(0, WINDOW), loads(0, WINDOW).mean()])
+probes = heading(*SENSORS) + pascals(means(fast, SENSORS, 0, WINDOW))
 figure, axes = plt.subplots(2, 3, figsize=(12, 6))
 for axis, name in zip(axes.flat, ("H2", "P1", "P2", "H4", "P3", "P4")):
     curves = slow if name[0] == "H" else fast
@@ -107,9 +115,11 @@ for n in sizes:
     print("[dam_break_3d] load on the lowest patch over P1, from 0 to 0.08 s after the arrival: %.2f, from there to %.2f s: %.2f; "
           "arrival by this load: %+.1f %%" % (early, end, later, 100 * (arrival(curves, "L1") / at_box - 1)))
     heights = {name: np.sqrt(np.mean(differences(name, curves, IMPACT) ** 2)) for name in ("H2", "H4")}
-    whole = "%.3f, %.3f" % tuple(abs(differences(name, curves, 6)).mean() for name in heights) if curves["t"][-1] > 5.9 else ""
-    table += "| %d | %+.1f %% | %s | %s | %.3f, %.3f | %s | %s |\n" % (
-        n, 100 * late, percent([*load, face]), percent(probe), heights["H2"], heights["H4"], whole, "%.0f" % minutes if minutes > 0 else "")
+    whole = ["%.3f" % abs(differences(name, curves, 6)).mean() if curves["t"][-1] > 5.9 else "" for name in heights]
+    times += "| %d | %+.1f %% | %.3f | %.3f | %s | %s | %s |\n" % (
+        n, 100 * late, heights["H2"], heights["H4"], *whole, "%.0f" % minutes if minutes > 0 else "")
+    patches += percent(n, [*load, face])
+    probes += percent(n, probe)
     limits = FINE if n >= 30 else COARSE
     c.below("%d over the depth: arrival at the box, off by" % n, abs(late), limits["arrival"])
     c.below("%d over the depth: mean load on the lowest patch in %.2f s from there, off P1 by" % (n, end), abs(load[0]), limits["load"])
@@ -128,5 +138,5 @@ for n in sizes:
 axes[0, 0].legend(fontsize=8)
 figure.tight_layout()
 figure.savefig(os.path.join(OUT, "dam_break_3d.png"), bbox_inches="tight")
-S.keep(folder, OUT, "dam_break_3d.png", table)
+S.keep(folder, OUT, "dam_break_3d.png", "\n".join((times, patches, probes)))
 sys.exit(c.finish())

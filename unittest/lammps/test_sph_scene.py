@@ -70,7 +70,7 @@ def test_a_particle_made_in_a_run_has_the_density_of_its_equation_of_state():
 
 def test_a_particle_without_density_is_named_before_its_neighbours():
     lmp = start()
-    with pytest.raises(Exception, match=r"step [12]: atom 145 has the density 0; it must be a number > 0 \(new\?"):
+    with pytest.raises(Exception, match=r"step [12]: atom 145 has the density 0; it must be a number > 0; if it was created in this run"):
         run(lmp, SQUARE.replace("fix p all sph/pressure Tait $(100*1.1/7) 1.1 7", "fix p all sph/pressure absolut 10") +
             "region r block 0.3 0.7 0.3 0.7 0 0 units box\nfix in all deposit 1 1 1 77 region r near 0.03\nrun 3 post no\n")
     lmp.close()
@@ -119,7 +119,7 @@ def log_of(tmp_path, text):
 @pytest.mark.parametrize("ratio, warned", [(1, False), (1.05, False), (0.8, True), (2, True)])
 def test_walls_of_another_mass_than_the_fluid_are_warned_of(tmp_path, ratio, warned):
     log = log_of(tmp_path, f"variable ratio index {ratio}\n" + FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" + REST.format(volume="no"))
-    assert ("does not have the mass of the fluid in front of it" in log) == warned
+    assert ("and the mass of the fluid particles in front of it differ by more than 10 %" in log) == warned
 
 
 def test_a_wall_that_meets_no_fluid_of_its_own_is_refused():
@@ -133,7 +133,13 @@ def test_a_wall_that_meets_no_fluid_of_its_own_is_refused():
 @pytest.mark.parametrize("c, warned", [(10, False), (9.2, False), (5, True), (12, True)])
 def test_a_speed_of_sound_that_is_not_the_fluids_is_warned_of(tmp_path, c, warned):
     log = log_of(tmp_path, SQUARE.replace("c 10", f"c {c}") + "run 0 post no\n")
-    assert (f"pair_coeff c {c}, is not that of its equation of state, 10" in log) == warned
+    assert (f"has the speed of sound {c} by pair_coeff c, and 10 by its fix sph/pressure" in log) == warned
+
+
+@pytest.mark.parametrize("integrator, delta, warned", [("nve/sph", 0.1, False), ("sph", 0, False), ("sph", 0.1, True)])
+def test_delta_that_fix_sph_leaves_without_effect_is_warned_of(tmp_path, integrator, delta, warned):
+    scene = SQUARE.replace("fix m all nve/sph", f"fix m all {integrator}").replace("continuity", f"continuity delta {delta}")
+    assert ("delta of fix sph/density/continuity has no effect with fix sph" in log_of(tmp_path, scene + "run 0 post no\n")) == warned
 
 
 @pytest.mark.parametrize("h, warned", [(0.1, False), (0.2, True)])
