@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* Volume and surface of all grains in slice n over the volume of the slice, but for a factor common
- * to both: phi_c / V_c each grain. */
+/* Volume and surface of all grains in slice n over the volume of the slice: phi_c/V_c grains of
+ * class c. For one class the ratio is the same whatever their number. */
 static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
                                const double *phi, const double *classes, int n, double *VA,
                                double *SA)
@@ -13,9 +13,12 @@ static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fl
   *VA = *SA = 0.0;
   for (int c = 0; c < (classes ? fluid->nclass : 1); c++) {
     const double a = classes ? fluid->class_radius[c] : fluid->radius,
-                 share = classes ? classes[c * profile + n] : phi[n];
-    *VA += share * 4.0 / 3.0 * SD_PI * a * a * a;
-    *SA += share * 4.0 * SD_PI * a * a;
+                 share = classes ? classes[c * profile + n] : phi[n],
+                 V = 4.0 / 3.0 * SD_PI * a * a * a;
+    /* Yade takes phi for the number of grains, which is so for one size alone. */
+    const double number = fluid->rules == SD_VANS_YADE ? share : share / V;
+    *VA += number * V;
+    *SA += number * 4.0 * SD_PI * a * a;
   }
 }
 

@@ -69,18 +69,16 @@ static void lengths_among_grains(void **state)
   for (int j = 0; j < N; j++)
     assert_true(fabs(c->length[j] - (j > 0 && j <= 20 ? fmax(plain[j], 0.7 * 0.006) : plain[j])) < 1e-17);
   assert_true(plain[10] == 0.0 && c->length[10] > 0.0 && plain[20] < 0.7 * 0.006);
-  /* as many grains of either size: 6 sum V/sum S, S = 4 pi a^2 */
+  /* as many grains of either size: 6 sum V/sum S. Yade weights both sums with phi. */
   for (int n = 0; n < 15; n++) classes[n] = 0.61 * 27 / (27 + 216.0), classes[SD_VANS_ROWS * N + n] = 0.61 * 216 / (27 + 216.0);
   fluid.nclass = 2;
   fluid.class_radius = a;
   sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, classes, c->phi, c->length, c->scratch);
-  double V = 0, S = 0;
-  for (int k = 0; k < 2; k++) {
-    const double phi = classes[k * SD_VANS_ROWS * N];
-    V += phi * a[k] * a[k] * a[k];
-    S += phi * 3 * a[k] * a[k];
-  }
-  assert_true(fabs(c->length[10] / (0.7 * 6 * V / S) - 1) < 1e-14);
+  assert_true(fabs(c->length[10] / (0.7 * 2 * (27 + 216) / (9 + 36.0) * 0.001) - 1) < 1e-14);
+  fluid.rules = SD_VANS_YADE;
+  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, classes, c->phi, c->length, c->scratch);
+  assert_true(fabs(c->length[10] / (0.7 * 2 * (27 * 27 + 216 * 216) / (27 * 9 + 216 * 36.0) * 0.001) - 1) < 1e-14);
+  fluid.rules = SD_VANS_CONSISTENT;
   fluid.narrow = 1;
   fluid.width = 0.01;
   sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
