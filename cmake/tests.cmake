@@ -30,6 +30,9 @@ function(core_test name model file)
   target_link_libraries(${name} PRIVATE ${ARGN} ${tested}_${model} ${cmocka_library})
   add_test(NAME ${name} COMMAND ${name})
   add_dependencies(core_tests ${name})
+  if(STOKESDYN_SANITIZE) # By default 256 MB of freed memory wait for late readers, and new pages take as long as the tests.
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=quarantine_size_mb=16)
+  endif()
 endfunction()
 
 foreach(model base ${models})
