@@ -35,8 +35,9 @@ struct StokesSettings {
   Lubrication::Settings lubrication;
   Shells::Settings shells;
 
-  /* Are solutions kept, from which the next solve begins? */
-  bool history() const { return algorithm == GRADIENTS && warm_start; }
+  /* Are solutions kept, from which the next solve begins? Substitution begins from 0, but it hands over to
+   * gradients. */
+  bool history() const { return warm_start && !strict; }
 
  private:
   std::string grid_file;
