@@ -54,11 +54,3 @@ const double *FixWallAdamiSph::body_force(int i, double tau)
   for (int d = 0; d < 3; d++) b[d] = gravity.now()[d] - row[3 + d];
   return b;
 }
-
-void FixWallAdamiSph::post_force(int /*vflag*/)
-{
-  for (double &f : on_wall) f = 0.0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit)
-      for (int d = 0; d < 3; d++) on_wall[d] += atom->f[i][d];
-}
