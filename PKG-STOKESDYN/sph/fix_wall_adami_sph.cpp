@@ -46,8 +46,9 @@ void FixWallAdamiSph::init()
 
 const double *FixWallAdamiSph::body_force(int i, double tau)
 {
-  if (!own_acceleration) return gravity.now();
-  const bool is_new = !motion.has(i);
+  const bool is_new = own_acceleration && !motion.has(i);
+  // fix rigid and fix move give it its velocity after the setup
+  if (!own_acceleration || (is_new && update->setupflag)) return gravity.now();
   double *row = motion.give(i);
   if (is_new) std::copy_n(atom->v[i], 3, row);
   if (!update->setupflag) sd_sph_wall_acceleration(atom->v[i], update->dt, tau, row, row + 3);

@@ -417,7 +417,6 @@ def test_surface_particles_of_a_list_that_is_gone_are_refused():
     """Asked by python between two runs, after half of the atoms have been deleted: the list of neighbours is that of the others."""
     lmp = start()
     run(lmp, PERIODIC.format(pair="", density="", background="") + "compute S all sph/surface/atom\nrun 1")
-    region = "region half block INF 0.5 INF INF INF INF units box\ndelete_atoms region half compress no\n"
     lmp.extract_compute("S", 1, 2)
     run(lmp, "region half block INF 0.5 INF INF INF INF units box\ndelete_atoms region half compress no\nreset_timestep 7")
     with pytest.raises(Exception, match="there is no neighbour list yet"):
