@@ -41,10 +41,11 @@ Keywords FixSphOpening::parse_place(int narg, char **arg)
   return in;
 }
 
-/* Velocities of the layers stand before the end of a step, when others measure. */
+/* The layers have the velocity of this step before their ghosts and the force see it, as at the
+ * beginning of a run. */
 int FixSphOpening::setmask()
 {
-  return FixConst::PRE_EXCHANGE | FixConst::FINAL_INTEGRATE;
+  return FixConst::PRE_EXCHANGE | FixConst::POST_INTEGRATE;
 }
 
 /* New particles must find room in the box, and old ones must not be lost before they are deleted. */
@@ -172,7 +173,7 @@ void FixSphInlet::setup_pre_exchange()
 
 /* A particle that has left is the width of the layer ahead of the one that takes its place. That one
  * moves on with the speed of the layer until there is a new list of neighbours, and it can be made. */
-void FixSphInlet::final_integrate()
+void FixSphInlet::post_integrate()
 {
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
@@ -191,8 +192,7 @@ void FixSphInlet::final_integrate()
   move_layer();
 }
 
-/* All that are due on any rank, in an order that does not depend on ranks. Positions have been moved
- * on by this step already. */
+/* All that are due on any rank, in an order that does not depend on ranks. */
 std::vector<FixSphInlet::Newcomer> FixSphInlet::newcomers()
 {
   std::vector<Newcomer> mine;
@@ -202,7 +202,6 @@ std::vector<FixSphInlet::Newcomer> FixSphInlet::newcomers()
     Newcomer next = {mark[LEFT], (double) atom->tag[i], {mark[PLACE], mark[PLACE + 1], mark[PLACE + 2]},
                      mark[SPEED], atom->rho[i], atom->rmass ? atom->rmass[i] : 0.0,
                      atom->radius ? atom->radius[i] : 0.0, atom->type[i], atom->mask[i]};
-    next.place[axis] -= side * update->dt * next.speed;
     mine.push_back(next);
     mark[STATE] = REPLACED;
   }
@@ -291,7 +290,7 @@ const double *FixSphOutlet::find_pressures()
   return pressures.data();
 }
 
-void FixSphOutlet::final_integrate()
+void FixSphOutlet::post_integrate()
 {
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_held(i)) continue;

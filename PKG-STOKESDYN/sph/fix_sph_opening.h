@@ -48,7 +48,7 @@ class FixSphInlet : public FixSphOpening {
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
-  void final_integrate() override;
+  void post_integrate() override;
 
   BodyForce gravity;
 
@@ -83,7 +83,7 @@ class FixSphOutlet : public FixSphOpening {
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
-  void final_integrate() override;
+  void post_integrate() override;
 
   /* [nlocal] Of this step; all ranks. */
   const double *find_pressures();
