@@ -50,12 +50,28 @@ double ComputeSphProbe::volume(int i) const
   return Sph::mass(lmp, i) / atom->rho[i];
 }
 
-void ComputeSphProbe::offset(const Probe &probe, int i, double d[3]) const
+template <class Use> void ComputeSphProbe::each_image(const Probe &probe, int i, const Use &use) const
 {
+  const double reach = 2.0 * pair->smoothing_length(atom->type[i]);
+  double d[3];
   for (int k = 0; k < 3; k++) d[k] = atom->x[i][k] - probe.x[k];
   const double up = probe.axis < 0 ? 0.0 : d[probe.axis];
   Compat::minimum_image(domain, d);
   if (probe.axis >= 0) d[probe.axis] = up;
+  int more[3];    // periods to each side; a tilted box is narrower than its edges are long
+  for (int k = 0; k < 3; k++) {
+    const bool repeats = domain->periodicity[k] && k != probe.axis && k < domain->dimension;
+    const double width = domain->prd[k] * (domain->triclinic ? 0.5 : 1.0);
+    more[k] = repeats && reach > 0.5 * width ? (int) ceil(reach / width) : 0;
+  }
+  const double *h = domain->h;
+  for (int a = -more[0]; a <= more[0]; a++)
+    for (int b = -more[1]; b <= more[1]; b++)
+      for (int c = -more[2]; c <= more[2]; c++) {
+        const double image[3] = {d[0] + a * h[0] + b * h[5] + c * h[4], d[1] + b * h[1] + c * h[3],
+                                 d[2] + c * h[2]};
+        use(image);
+      }
 }
 
 /* From the densities, as the force has it. */
@@ -65,12 +81,13 @@ double ComputeSphProbe::pressure(const Probe &probe) const
   for (const auto *fix : fixes_of<FixSphPressure>(lmp))
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(atom->mask[i] & groupbit) || !(atom->mask[i] & fix->groupbit)) continue;
-      double d[3];
-      offset(probe, i, d);
-      const double h = pair->smoothing_length(atom->type[i]), r = std::hypot(d[0], d[1], d[2]);
-      if (r < 2.0 * h)
-        sd_sph_probe_add(pair->kernel(), pair->dimension(), h, r, volume(i),
-                         sd_sph_pressure(&fix->state, atom->rho[i]), mine);
+      const double h = pair->smoothing_length(atom->type[i]);
+      each_image(probe, i, [&](const double d[3]) {
+        const double r = std::hypot(d[0], d[1], d[2]);
+        if (r < 2.0 * h)
+          sd_sph_probe_add(pair->kernel(), pair->dimension(), h, r, volume(i),
+                           sd_sph_pressure(&fix->state, atom->rho[i]), mine);
+      });
     }
   MPI_Allreduce(mine, sums, 2, MPI_DOUBLE, MPI_SUM, world);
   return sd_sph_probe_pressure(sums);
@@ -87,15 +104,15 @@ double ComputeSphProbe::height(const Probe &probe) const
   double mine[2] = {0.0, -HUGE_VAL}, ends[2];    // the highest, - the smallest h
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    double d[3];
-    offset(probe, i, d);
-    const double z = d[probe.axis], h = pair->smoothing_length(atom->type[i]);
-    d[probe.axis] = 0.0;
-    const double across = std::hypot(d[0], d[1], d[2]);
-    if (!(across < 2.0 * h)) continue;
-    near.push_back({i, across, z, h});
-    mine[0] = std::max(mine[0], z + 2.0 * h);
-    mine[1] = std::max(mine[1], -h);
+    const double h = pair->smoothing_length(atom->type[i]);
+    each_image(probe, i, [&](const double d[3]) {
+      const double z = d[probe.axis],
+                   across = std::hypot(d[(probe.axis + 1) % 3], d[(probe.axis + 2) % 3]);
+      if (!(across < 2.0 * h)) return;
+      near.push_back({i, across, z, h});
+      mine[0] = std::max(mine[0], z + 2.0 * h);
+      mine[1] = std::max(mine[1], -h);
+    });
   }
   MPI_Allreduce(mine, ends, 2, MPI_DOUBLE, MPI_MAX, world);
   if (!(ends[0] > 0.0)) return 0.0;
@@ -136,7 +153,7 @@ void ComputeSphSurface::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
   if (!pair->moments(moments))
-    voice.fail("there is no neighbour list yet; use it in a run, or after 'run 0'");
+    voice.fail("there is no neighbour list yet of these atoms; use it in a run, or after 'run 0'");
   values.assign(2 * (size_t) (atom->nlocal + 1), 0.0);
   rows.resize(atom->nlocal + 1);
   for (int i = 0; i < atom->nlocal; i++) {

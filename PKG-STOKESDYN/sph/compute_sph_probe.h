@@ -35,8 +35,9 @@ class ComputeSphProbe : public LAMMPS_NS::Compute {
   double pressure(const Probe &) const;
   double height(const Probe &) const;
   double volume(int i) const;
-  /* from the probe to particle i, to its nearest image across `axis` only */
-  void offset(const Probe &, int i, double d[3]) const;
+  /* use(d) with d from the probe to particle i and to those of its images that may be within 2 h;
+   * along `axis` there are none */
+  template <class Use> void each_image(const Probe &, int i, const Use &use) const;
 };
 
 class ComputeSphSurface : public LAMMPS_NS::Compute {

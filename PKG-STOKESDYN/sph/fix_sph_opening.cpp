@@ -24,7 +24,6 @@ using namespace StokesDyn;
 
 FixSphOpening::FixSphOpening(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
 {
-  nevery = 1;
   scalar_flag = 1;
   global_freq = 1;
   extscalar = 1;
@@ -42,9 +41,11 @@ Keywords FixSphOpening::parse_place(int narg, char **arg)
   return in;
 }
 
+/* The layers have the velocity of this step before their ghosts and the force see it, as at the
+ * beginning of a run. */
 int FixSphOpening::setmask()
 {
-  return FixConst::PRE_EXCHANGE | FixConst::END_OF_STEP;
+  return FixConst::PRE_EXCHANGE | FixConst::POST_INTEGRATE;
 }
 
 /* New particles must find room in the box, and old ones must not be lost before they are deleted. */
@@ -128,10 +129,21 @@ void FixSphInlet::init()
   gravity.init(voice.of("keyword gravity"));
 }
 
+/* Of all in the layer, and of those that are due, where they are due: a variable may depend on place
+ * and time. */
 void FixSphInlet::find_speeds()
 {
+  const auto stand_in = [this] {
+    for (int i = 0; i < atom->nlocal; i++)
+      if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE)
+        std::swap_ranges(atom->x[i], atom->x[i] + 3, marks.give(i) + PLACE);
+  };
   speeds.resize(atom->nlocal + 1);
+  stand_in();
   velocity.evaluate(lmp, igroup, speeds.data(), 1);
+  stand_in();
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE) marks.give(i)[SPEED] = speeds[i];
 }
 
 void FixSphInlet::move_layer()
@@ -161,10 +173,8 @@ void FixSphInlet::setup_pre_exchange()
 
 /* A particle that has left is the width of the layer ahead of the one that takes its place. That one
  * moves on with the speed of the layer until there is a new list of neighbours, and it can be made. */
-void FixSphInlet::end_of_step()
+void FixSphInlet::post_integrate()
 {
-  find_speeds();
-  move_layer();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     double *mark = marks.give(i);
@@ -174,15 +184,15 @@ void FixSphInlet::end_of_step()
       mark[STATE] = DUE;
       std::copy_n(atom->x[i], 3, mark + PLACE);
       mark[PLACE + axis] += side * width;
-      mark[SPEED] = speeds[i];
       mark[LEFT] = (double) update->ntimestep;
       passed += Sph::mass(lmp, i);
     }
   }
+  find_speeds();
+  move_layer();
 }
 
-/* All that are due on any rank, in an order that does not depend on ranks. Positions have been moved
- * on by this step already. */
+/* All that are due on any rank, in an order that does not depend on ranks. */
 std::vector<FixSphInlet::Newcomer> FixSphInlet::newcomers()
 {
   std::vector<Newcomer> mine;
@@ -191,8 +201,7 @@ std::vector<FixSphInlet::Newcomer> FixSphInlet::newcomers()
     double *mark = marks.give(i);
     Newcomer next = {mark[LEFT], (double) atom->tag[i], {mark[PLACE], mark[PLACE + 1], mark[PLACE + 2]},
                      mark[SPEED], atom->rho[i], atom->rmass ? atom->rmass[i] : 0.0,
-                     atom->type[i], atom->mask[i]};
-    next.place[axis] -= side * update->dt * next.speed;
+                     atom->radius ? atom->radius[i] : 0.0, atom->type[i], atom->mask[i]};
     mine.push_back(next);
     mark[STATE] = REPLACED;
   }
@@ -225,6 +234,7 @@ void FixSphInlet::create(const Newcomer &like, tagint tag)
   modify->create_attribute(i);
   atom->rho[i] = like.rho;
   if (atom->rmass) atom->rmass[i] = like.mass;
+  if (atom->radius) atom->radius[i] = like.radius;
   marks.give(i)[STATE] = IN_LAYER;
 }
 
@@ -280,7 +290,7 @@ const double *FixSphOutlet::find_pressures()
   return pressures.data();
 }
 
-void FixSphOutlet::end_of_step()
+void FixSphOutlet::post_integrate()
 {
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_held(i)) continue;

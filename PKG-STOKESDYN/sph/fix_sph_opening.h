@@ -48,7 +48,7 @@ class FixSphInlet : public FixSphOpening {
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
-  void end_of_step() override;
+  void post_integrate() override;
 
   BodyForce gravity;
 
@@ -63,7 +63,7 @@ class FixSphInlet : public FixSphOpening {
 
   /* A particle that is to be made. */
   struct Newcomer {
-    double left, parent, place[3], speed, rho, mass;
+    double left, parent, place[3], speed, rho, mass, radius;
     int type, mask;
   };
   void find_speeds();
@@ -83,7 +83,7 @@ class FixSphOutlet : public FixSphOpening {
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
-  void end_of_step() override;
+  void post_integrate() override;
 
   /* [nlocal] Of this step; all ranks. */
   const double *find_pressures();

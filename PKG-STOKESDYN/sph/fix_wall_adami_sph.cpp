@@ -46,19 +46,12 @@ void FixWallAdamiSph::init()
 
 const double *FixWallAdamiSph::body_force(int i, double tau)
 {
-  if (!own_acceleration) return gravity.now();
-  const bool is_new = !motion.has(i);
+  const bool is_new = own_acceleration && !motion.has(i);
+  // fix rigid and fix move give it its velocity after the setup
+  if (!own_acceleration || (is_new && update->setupflag)) return gravity.now();
   double *row = motion.give(i);
   if (is_new) std::copy_n(atom->v[i], 3, row);
   if (!update->setupflag) sd_sph_wall_acceleration(atom->v[i], update->dt, tau, row, row + 3);
   for (int d = 0; d < 3; d++) b[d] = gravity.now()[d] - row[3 + d];
   return b;
-}
-
-void FixWallAdamiSph::post_force(int /*vflag*/)
-{
-  for (double &f : on_wall) f = 0.0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit)
-      for (int d = 0; d < 3; d++) on_wall[d] += atom->f[i][d];
 }

@@ -5,6 +5,8 @@
 
 #include "sph_fix.h"
 
+#include <algorithm>
+
 namespace StokesDyn {
 
 class FixWallAdamiSph : public WallFix {
@@ -12,8 +14,11 @@ class FixWallAdamiSph : public WallFix {
   static constexpr const char *STYLE = "wall/adami/sph";
 
   FixWallAdamiSph(LAMMPS_NS::LAMMPS *, int, char **);
+  int setmask() override { return 0; }
   void init() override;
-  void post_force(int) override;
+
+  /* Of this step and rank: the force of the fluid on the wall particles, from the pair style. */
+  void bears(const double F[3]) { std::copy_n(F, 3, on_wall); }
 
   /* Per mass, as wall particle i sees it: gravity, with own_acceleration less that of the particle,
    * a mean over the time tau; once a step. */

@@ -10,6 +10,7 @@
 #include "sph.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace StokesDyn {
@@ -68,7 +69,7 @@ class PairSph : public LAMMPS_NS::Pair {
   const double *own_forces() const { return own.data(); }
   const double *own_friction() const { return rubs.data(); }
   /* [6 n] of each owned particle: sd_sph_moments. Not inside compute; false: no force has been
-   * computed yet. */
+   * computed yet for these atoms, so there is no list of them. */
   bool moments(std::vector<double> &M);
   /* the kernel, for any place */
   sd_sph_kernel kernel() const { return model.kernel; }
@@ -135,6 +136,7 @@ class PairSph : public LAMMPS_NS::Pair {
   bool shared = true;
   Neighbours near, around, of_flow;
   LAMMPS_NS::bigint around_of = -1;    // the step of the list that `around` is made of
+  std::pair<int, int> listed = {-1, -1};    // atoms and ghosts of the latest force
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   MovedBox moved_box;
@@ -161,6 +163,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row);
   [[noreturn]] void no_density(const Voice &of, int i, const std::string &asked) const;
   bool is_wall(int i) const;
+  void load_wall(int receivers);
   bool has_walls() const { return wall || has_ends(); }
   const FixSphPressure *state_of(int i) const;
   void pressures_of_all();

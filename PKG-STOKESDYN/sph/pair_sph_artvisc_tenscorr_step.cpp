@@ -40,6 +40,7 @@ std::string PairSph::at_step() const
 void PairSph::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
+  listed = {atom->nlocal, atom->nghost};
   check_list();
   if (continuity && !moved_box.follow(atom->rho))
     voice.warn("the box has changed since the last run, but the particles have not moved with it: "
@@ -321,6 +322,7 @@ void PairSph::forces(bool rates)
   if (corrects) add_kicks(f4);
   for (int i = 0; i < receivers; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] += f4[4 * (size_t) i + d];
+  if (wall) load_wall(receivers);
   if (rates)
     for (int i = 0; i < receivers; i++)
       if (atom->mask[i] & continuity->groupbit) atom->drho[i] += f4[4 * (size_t) i + 3];
@@ -421,7 +423,9 @@ void PairSph::largest_approach(std::vector<double> &largest)
 
 bool PairSph::moments(std::vector<double> &M)
 {
-  if (x4.empty()) return false;
+  int current = listed == std::make_pair(atom->nlocal, atom->nghost);
+  MPI_Allreduce(MPI_IN_PLACE, &current, 1, MPI_INT, MPI_MIN, world);
+  if (!current) return false;
   prepare();
   sd_sph_pack_x(particles.n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
   sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());

@@ -20,6 +20,16 @@ bool PairSph::is_wall(int i) const
   return wall && (atom->mask[i] & wall->groupbit);
 }
 
+/* Of this style alone: atom->f has what other styles and fixes do as well. What ghosts got is added on
+ * the rank that computed it. */
+void PairSph::load_wall(int receivers)
+{
+  double F[3] = {0.0, 0.0, 0.0};
+  for (int i = 0; i < receivers; i++)
+    for (int d = 0; is_wall(i) && d < 3; d++) F[d] += f4[4 * (size_t) i + d];
+  wall->bears(F);
+}
+
 template <class Style> static Style *holder(const std::vector<Style *> &fixes, const Atom *atom, int i)
 {
   for (auto *fix : fixes)

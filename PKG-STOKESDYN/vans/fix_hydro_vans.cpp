@@ -292,8 +292,8 @@ void FixHydroVans::check_mesh()
 
 void FixHydroVans::setup(int vflag)
 {
-  if (gravity_varies() || set.flux.is_variable()) read_variables();
-  if (last_step < 0 && set.has_grains() && set.dpdx.is_variable()) read_variables();
+  // those of the last coupling stand, in a run that goes on as in one that is not interrupted
+  if ((last_step < 0 || !variables_known) && variables_matter()) read_variables();
   if (last_step < 0) feel_pressure();
   set.law.dpdx = stream.felt;
   if (set.overlap_once && !set.averages()) count_overlaps();
@@ -395,10 +395,12 @@ void FixHydroVans::find_accelerations(bool stepping, bool repeat)
   }
 }
 
-bool FixHydroVans::gravity_varies() const
+/* To the grains, before the first coupling. */
+bool FixHydroVans::variables_matter() const
 {
-  return std::any_of(std::begin(set.gravity), std::end(set.gravity),
-                     [](const Field &component) { return component.is_variable(); });
+  return set.flux.is_variable() || (set.has_grains() && set.dpdx.is_variable()) ||
+      std::any_of(std::begin(set.gravity), std::end(set.gravity),
+                  [](const Field &component) { return component.is_variable(); });
 }
 
 void FixHydroVans::take_gravity()
@@ -439,6 +441,7 @@ void FixHydroVans::read_variables()
   modify->addstep_compute(update->ntimestep + nevery);
   take_gravity();
   set.law.flux = stream.flux;
+  variables_known = true;
 }
 
 void FixHydroVans::end_of_step()

@@ -88,6 +88,8 @@ class FixHydroVans : public RowsFix {
     double force[3] = {0, 0, 0}, drag = 0, outside = 0, pressure = 0, pressed = 0;
   } local, global;
   LAMMPS_NS::bigint summed_step = -1;
+  /* have they been read, in this run or in one whose restart file has them? */
+  bool variables_known = false;
   bool told_outside = false, told_work = false, told_stiff = false, told_waves = false;
   /* of the last look at the grains' time step */
   LAMMPS_NS::bigint looked_step = -1;
@@ -117,9 +119,10 @@ class FixHydroVans : public RowsFix {
   void sum_up();
   void tell_outside();
 
-  bool gravity_varies() const;
+  bool variables_matter() const;
   void take_gravity();
   void read_variables();
+  void take_variables(const std::vector<double> &last);
   void feel_pressure();
   void press(bool stepping, bool repeat, const Sums &before);
   void find_accelerations(bool stepping, bool repeat);

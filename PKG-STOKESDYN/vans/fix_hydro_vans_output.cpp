@@ -26,7 +26,7 @@ double FixHydroVans::compute_vector(int k)
     case OUTSIDE: return global.outside;
     case PRESSED: return global.pressed;
     case TRANSPORT: return stream.transport();
-    case FRICTION_VELOCITY: return std::sqrt(std::max(largest, 0.0) / set.fluid.rho);
+    case FRICTION_VELOCITY: return std::sqrt(std::fabs(largest) / set.fluid.rho);
     case LARGEST_STRESS: return largest;
     case SHIELDS: {
       const double *g = set.law.g, size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]),
@@ -190,8 +190,19 @@ void FixHydroVans::write_restart(FILE *fp)
   state.put("last_step", (double) last_step);
   put(state, saved());
   state.put("pressed", {global.pressure, global.pressed});
+  if (variables_known) state.put("variables", {set.law.g[0], set.law.g[1], set.law.g[2], set.law.flux});
   stream.save(state);
   state.write(fp);
+}
+
+/* Of the last coupling, where this fix has variables as well. */
+void FixHydroVans::take_variables(const std::vector<double> &last)
+{
+  variables_known = last.size() == 4;
+  if (!variables_known) return;
+  for (int d = 0; d < 3; d++)
+    if (set.gravity[d].is_variable()) set.law.g[d] = last[d];
+  if (set.flux.is_variable()) set.law.flux = stream.flux = last[3];
 }
 
 void FixHydroVans::restart(char *buf)
@@ -206,6 +217,7 @@ void FixHydroVans::restart(char *buf)
     local.pressure = pressed[0];
     local.pressed = pressed[1];
   }
+  take_variables(state.get("variables"));
   if (state.get("columns") != layout(set))
     set.voice.warn("the restart file was written with other keywords (conserve, overlap, "
                    "fluctuation or added_mass): what each grain carried is dropped, and its "

@@ -178,14 +178,15 @@ void VansStream::fill_above()
 }
 
 /* With the depth adjusted: what comes into the reach in the time T and does not pass stays there,
- * dV/dt = (q - U V)/reach per width, U the mean speed; implicit, for any T. The surface moves with
- * the next averages. */
+ * dV/dt = (q - U V)/reach per width, U the mean speed; implicit, for any T. A stream along -x comes
+ * in at the other end. The surface moves with the next averages. */
 void VansStream::take_inflow(double T)
 {
   if (set.reach == 0.0 || volume < 0.0) return;
-  const double passes = sd_vans_momentum(&wet, 1.0, phi(), U.data()),
+  const double along = std::copysign(1.0, fluid.discharge),
+               passes = along * sd_vans_momentum(&wet, 1.0, phi(), U.data()),
                speed = std::max(passes / volume, 0.0);
-  volume += T * (fluid.discharge - passes) / (set.reach + T * speed);
+  volume += T * (along * fluid.discharge - passes) / (set.reach + T * speed);
 }
 
 /* What belongs to grains above the surface goes to the water below it. */
@@ -323,7 +324,10 @@ std::vector<double> VansStream::friction_velocities() const
   if (!set.intensities.empty()) return set.intensities;
   std::vector<double> u_star(ncell(), intensity);
   if (set.intensity_given) return u_star;
-  for (int n = 0; n < ncell(); n++) u_star[n] = std::sqrt(std::max(stress[n], 0.0) / fluid.rho);
+  for (int n = 0; n < ncell(); n++) {
+    const double size = set.yade() ? std::max(stress[n], 0.0) : std::fabs(stress[n]);
+    u_star[n] = std::copysign(std::sqrt(size / fluid.rho), stress[n]);
+  }
   return u_star;
 }
 

@@ -108,7 +108,7 @@ class VansStream {
   double transport() const { return sd_vans_transport(&mesh, grain.data()); }
   double surface() const { return wet.z_ref + wet.edge[wet.ncell - 1]; }
 
-  /* [N], for the fluctuations */
+  /* [N] with the sign of the stress, for the fluctuations */
   std::vector<double> friction_velocities() const;
   /* [N] of the Langevin walk */
   std::vector<double> lagrangian_times(const std::vector<double> &u_star) const;

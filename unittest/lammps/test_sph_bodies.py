@@ -106,5 +106,22 @@ def test_a_floating_box_heaves_as_linear_theory_says(tmp_path):
     assert mine[3] - mine[0] == pytest.approx(exact[3] - exact[0], rel=0.04)
 
 
+def test_a_body_that_begins_with_the_speed_of_the_water_keeps_it(tmp_path):
+    """Tank, water and body move at one speed; that of the body stands in the infile of fix rigid, and its particles get it after the setup. No
+    acceleration: plain scheme, walls that slip, so that nothing but a wrong pressure could take speed along x from the body."""
+    changes = [("index 40", "index 20"), (" shift yes", ""), ("block $(-v_layers) $(1+v_layers)", "block $(-v_layers) $(2+v_layers)"),
+               ("tank  block 0 1 0 1 INF INF units box side out", "outer block $(-v_layers) $(1+v_layers) INF INF INF INF units box\n"
+                "region inner block 0 1 0 1 INF INF units box side out\nregion tank intersect 2 outer inner"),
+               ("neighbor      ", "set type 1*2 vx 0.3\nneighbor "), ("0.13/12) 0 0 0 0 0", "0.13/12) 0 0 0 0.3 0"),
+               ("fix           flat", "group tank type 2\nfix drive tank move linear 0.3 0 0 units box\nfix flat")]
+    text = open(os.path.join(EXAMPLE, "in.floating_box")).read()
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    done = mpirun(1, text[:text.index("dump ")] + "run 100\nprint \"speed $(f_float[1][4]:%.17g)\"\n", tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert float(re.search(r"\nspeed (\S+)", done.stdout).group(1)) == pytest.approx(0.3, abs=1e-10)
+
+
 def test_own_acceleration_maybe():
     assert "'maybe' is none of: no, yes" in message(FLOORS.format(own="maybe"))

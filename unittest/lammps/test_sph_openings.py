@@ -129,6 +129,32 @@ def test_open_ends_on_any_number_of_ranks_and_over_restarts(tmp_path):
     assert np.abs(again - first).max() <= 1e-12 * np.abs(first).max()
 
 
+@pytest.mark.parametrize("speed", ["equal 0.8+0.3*sin(step*0.07)", "atom 0.8+0.3*sin(step*0.07)*sin(2*PI*y/0.6)"])
+def test_a_speed_that_changes_in_time_asks_nothing_of_lists_and_runs(speed):
+    """New particles are made when there is a new list: with a skin of a third of a spacing ten steps later than with a small one, at the same places.
+    And a run in pieces is the run in one."""
+    rows = []
+    for skin, runs in (("0.004", "run 200 post no"), ("0.06", "run 200 post no"), ("0.03", "run 77 post no\nrun 123 post no")):
+        lmp = start()
+        run(lmp, PIPE.replace("neighbor 0.03", "neighbor " + skin).replace("viscosity 0.05", "artVisc 0.2 0 4e-4 viscosity 0.05") + "variable u %s\n" % speed +
+            OPEN.format("v_u") + runs)
+        x, v = by_id(lmp, "x", 3), by_id(lmp, "v", 3)
+        inside = (x[:, 0] > -0.5) & (x[:, 0] < 1)
+        rows.append(np.hstack([x[inside], v[inside]])[np.lexsort((x[inside, 1].round(7), x[inside, 0].round(7)))])
+        assert lmp.extract_fix("in", 0, 0) > 0.05
+        lmp.close()
+    assert max(np.abs(rows[0] - other).max() for other in rows[1:]) < 1e-11
+
+
+def test_new_particles_have_the_size_of_those_that_they_replace():
+    lmp = start()
+    run(lmp, PIPE.replace("atom_style sph", "atom_style hybrid sph sphere").replace("mass 1 0.01", "set type 1 diameter 0.08\nset type 1 mass 0.01")
+        .replace("pair_coeff * * c 10", "pair_coeff * * c 10 deltap 0.1") + OPEN.format(1) + "run 100 post no")
+    assert lmp.extract_fix("in", 0, 0) > 0.1
+    assert np.ptp(by_id(lmp, "radius")) == 0 and np.ptp(by_id(lmp, "rmass")) == 0
+    lmp.close()
+
+
 @pytest.mark.parametrize("change, words", [
     (("velocity 1", ""), "keyword velocity is required"),
     (("xlo 0 0.7", "left 0 0.7"), "'left' is none of: xlo, xhi"),

@@ -272,6 +272,55 @@ def test_an_exact_lattice_that_is_stretched_stops_with_the_way_out():
     assert message(STRETCH % "displace_atoms all random 0.0004 0.0004 0 7 units box") == "no error"
 
 
+FULL = """
+units lj
+dimension 2
+atom_style sph
+atom_modify map array
+boundary p f p
+lattice sq 400 origin 0.5 0.5 0
+region all block 0 1 -0.2 1.2 -0.025 0.025 units box
+create_box 3 all
+region water block INF INF 0 1 INF INF units box
+region body block 0.35 0.65 0.3 0.5 INF INF units box
+create_atoms 2 box
+set region water type 1
+set region body type 3
+mass * 0.0025
+group water type 1
+group body type 3
+group walls type 2 3
+variable rho atom (1+7/400*(1-y))^(1/7)
+set group all sph/rho 1
+set group water sph/rho v_rho
+displace_atoms water random 0.0005 0.0005 0 7 units box
+neighbor 0.015 bin
+neigh_modify delay 0 every 1
+pair_style sph/artVisc/tensCorr {}
+pair_coeff * * c 20 deltap 0.05
+fix eos all sph/pressure Tait $(400/7) 1 7 3
+fix density all sph/density/continuity delta 0.1 volume {}
+fix w walls wall/adami/sph gravity 0 -1 0
+fix move water nve/sph
+fix g water gravity 1 vector 0 -1 0
+variable lift equal fcm(body,y)
+thermo_style custom step v_lift
+run 0
+"""
+
+
+@pytest.mark.parametrize("kernel", ["wendland 0.075", "cubicspline 0.065"])
+@pytest.mark.parametrize("volume", ["no", "yes"])
+def test_walls_bear_the_water_with_correction_too(kernel, volume):
+    """A full tank, a body in it, and a pressure of 3 at the lid: what all walls bear is the weight of the water, and the body has its buoyancy,
+    within 1 % of the forces of pressure on one side, 4 on the floor and 1.1 under the body."""
+    lmp = start()
+    run(lmp, FULL.format(kernel + " correction yes", volume))
+    assert lmp.extract_fix("w", 0, 1, 1) == pytest.approx(-0.94, abs=0.04)
+    assert lmp.extract_variable("lift", None, 0) == pytest.approx(0.06, abs=0.01)
+    lmp.close()
+
+
 TWO_FLUIDS = """
 units lj
 dimension 2

@@ -223,6 +223,21 @@ def test_the_balance_of_a_jet_on_a_plate_closes():
     lmp.close()
 
 
+def test_energy_asks_nothing_of_the_order_of_the_input():
+    """The compute before the open ends and after them, in a jet whose layers change their velocities."""
+    text = JET.replace("block -1.4", "block -0.4").replace("yhi 1 0.4", "yhi 0.6 0.4").replace("ylo -1 0.4", "ylo -0.6 0.4")
+    text = text.replace("velocity 1", "velocity v_u").replace("fix plate", "variable u equal 1+0.1*sin(0.05*step)\nfix plate")
+    compute = "compute E water sph/energy\n"
+    seen = []
+    for scene in (text, text.replace(compute, "").replace("fix plate", compute + "fix plate")):
+        lmp = start()
+        run(lmp, scene + "run 450 post no")
+        seen.append(energy(lmp).copy())
+        assert min(lmp.extract_fix(name, 0, 0) for name in ("in", "up", "down")) > 0
+        lmp.close()
+    assert np.abs(seen[0] - seen[1]).max() < 1e-12 * np.abs(seen[0]).max()
+
+
 def test_energy_that_comes_and_goes_on_any_number_of_ranks_and_over_restarts(tmp_path):
     row = "print \"out " + " ".join("$(c_E[%d]:%%.17g)" % k for k in range(1, 8)) + "\"\n"
 
@@ -268,6 +283,18 @@ def test_the_load_on_patches_of_a_wall_at_rest():
     assert lmp.extract_variable("low", None, 0) == pytest.approx(0.85, rel=0.03)
     assert lmp.extract_variable("high", None, 0) == pytest.approx(0.55, rel=0.03)
     lmp.close()
+
+
+@pytest.mark.parametrize("more", ["", "fix weight all gravity 3 vector 0.6 -0.8 0\n", "fix push tank addforce 5 6 0\n"])
+def test_the_load_of_a_wall_is_that_of_the_fluid_alone(more):
+    """Forces of other fixes on the wall particles, given before fix wall/adami/sph or after it, are no load."""
+    still = COLUMN.replace("2.4 -0.4", "1.4 -0.4").replace("tank block 0 2", "tank block 0 1")
+    for text in (FLOW.format(**SHIFT).replace("fix tank", more + "fix tank"), FLOW.format(**SHIFT) + more):
+        lmp = start()
+        run(lmp, still + text + "thermo_style custom step f_tank[1] f_tank[2]\nrun 0 post no")
+        load = [lmp.extract_fix("tank", 0, 1, k) for k in (0, 1)]
+        assert load[1] == pytest.approx(-1, rel=0.03) and abs(load[0]) < 1e-9
+        lmp.close()
 
 
 SLAB = BEGIN + """
@@ -346,6 +373,56 @@ def test_probes_of_water_at_rest():
     y = np.array(lmp.numpy.extract_atom("x", nelem=len(rows), dim=3))[:len(rows), 1]
     assert (rows[types == 2] == 0).all()
     assert rows[(types == 1) & (y < 0.6), 0] == pytest.approx(1.0, abs=0.03)
+    lmp.close()
+
+
+NARROW = """
+units lj
+atom_style sph
+boundary f p f
+lattice sc 1000 origin 0.5 0.5 0.5
+region all block 0 0.8 0 {} 0 1.5 units box
+create_box 1 all
+region water block INF INF INF INF 0 1 units box
+create_atoms 1 region water
+mass 1 0.001
+variable rho atom 1+0.01*z
+set group all sph/rho v_rho
+neighbor 0.03 bin
+pair_style sph/artVisc/tensCorr wendland 0.2
+pair_coeff * * c 20
+fix eos all sph/pressure Tait $(400/7) 1 7
+fix density all sph/density/continuity
+fix move all nve/sph
+compute P all sph/probe pressure 0.4 0.07 0.97 height z 0.4 0.07 0
+thermo_style custom step c_P[1] c_P[2]
+run 0
+"""
+
+
+@pytest.mark.parametrize("width", [0.1, 0.2, 0.3, 0.5, 0.8])
+def test_probes_in_a_box_narrower_than_the_support(width):
+    """One to eight particles across, periodic: every width has the water of a wide box, all images of a particle count."""
+    lmp = start()
+    run(lmp, NARROW.format(1.2))
+    wide = probes(lmp).copy()
+    lmp.close()
+    lmp = start()
+    run(lmp, NARROW.format(width))
+    assert wide[1] == pytest.approx(1, abs=0.01) and probes(lmp) == pytest.approx(wide, rel=1e-12)
+    lmp.close()
+
+
+def test_surface_particles_of_a_list_that_is_gone_are_refused():
+    """Asked by python between two runs, after half of the atoms have been deleted: the list of neighbours is that of the others."""
+    lmp = start()
+    run(lmp, PERIODIC.format(pair="", density="", background="") + "compute S all sph/surface/atom\nrun 1")
+    lmp.extract_compute("S", 1, 2)
+    run(lmp, "region half block INF 0.5 INF INF INF INF units box\ndelete_atoms region half compress no\nreset_timestep 7")
+    with pytest.raises(Exception, match="there is no neighbour list yet"):
+        lmp.extract_compute("S", 1, 2)
+    run(lmp, "run 0")
+    lmp.extract_compute("S", 1, 2)
     lmp.close()
 
 

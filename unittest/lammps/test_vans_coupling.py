@@ -1,4 +1,6 @@
 """fix hydro/vans in runs: momentum, ranks, restart, fluctuations."""
+import re
+
 import numpy as np
 import pytest
 from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
@@ -111,6 +113,44 @@ def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
     for name in ("split", "again"):
         other = dump_rows(tmp_path / f"dump.{name}")
         assert (np.abs(other - whole).max(axis=0) / (np.abs(whole).max(axis=0) + 1e-300)).max() < 1e-10, name
+
+
+@pytest.mark.parametrize("keywords", ["gravity v_gx 0 v_gz stream rest", "gravity 0.4905 0 v_gz stream rest couple one upflow v_up"])
+def test_gravity_in_a_run_in_pieces_is_that_of_the_last_coupling(tmp_path, profile, keywords):
+    """A variable is read at every coupling: broken between two of them, a run goes on with what it had, from memory and from a restart file."""
+    variables = "variable gz equal -9.8*(1+100*step*dt)\nvariable up equal 0.01*(1+300*step*dt)\nfix vans"
+    script = bed_script(f"mesh {N} 0.0003 0 fluid 1000 0.001 phi_max 0.61 profile file {profile} {keywords}", layers=2).replace("fix vans", variables)
+    output = "write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] modify format float %.17g\n"
+    runs = {"whole": script + "run 70\n", "split": script + "run 33\nwrite_restart half\nrun 37\n",
+            "again": script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):] + "run 37\n"}
+    for name, text in runs.items():
+        done = run_lmp(tmp_path, text + output.format(name), name="in." + name)
+        assert done.returncode == 0, done.stdout[-2000:]
+    whole = dump_rows(tmp_path / "dump.whole")
+    for name in ("split", "again"):
+        other = dump_rows(tmp_path / f"dump.{name}")
+        assert (np.abs(other - whole).max(axis=0) / (np.abs(whole).max(axis=0) + 1e-300)).max() < 1e-10, name
+
+
+@pytest.mark.parametrize("keywords", ["fluctuation langevin 7 0.01", "fluctuation correlated 7 0.01", "fluctuation depth 7 0.01", "discharge {}0.02 surface follow 0.045",
+                                      "discharge {}0.03 adjust depth 0.2 surface follow 0.045"])
+def test_a_stream_along_minus_x_is_the_mirror_image(tmp_path, keywords):
+    rows = []
+    for sign in (1, -1):
+        u = write_columns(tmp_path / "u.txt", sign * np.concatenate([[0], 0.6 * np.arange(1, N + 1) / N]))
+        script = bed_script(f"mesh {N} 0.0003 0 fluid 1000 0.001 gravity {sign * 0.4905} 0 -9.797 phi_max 0.61 profile file {u} " + keywords.format("-" if sign < 0 else ""),
+                            layers=2).replace("vector 0.05", f"vector {sign * 0.05}")
+        if sign < 0:    # grains too
+            script = re.sub(r"single (\S+)", lambda m: f"single {0.03 - float(m.group(1)):.17g}", re.sub(r" vx (\S+)", lambda m: f" vx {-float(m.group(1)):.17g}", script))
+        s = Scene.of(script)
+        s.do("run 100")
+        rows.append([s.atoms("v"), s.atoms("f_vans"), s.column("u", N, "vans"), [s.number(k, "vans") for k in ("friction_velocity", "shields", "largest_stress", "transport")]])
+        s.close()
+    mirror = [[-1, 1, 1], [-1, 1, 1, -1, 1, 1], -1, [1, -1, -1, -1]]
+    for one, other, sign in zip(*rows, mirror):
+        one, other = np.array(one), np.array(other) * sign
+        assert (np.abs(one - other).max(axis=0) / (np.abs(one).max(axis=0) + 1e-300)).max() < 1e-9
+    assert rows[0][3][0] > 0.01 and ("fluct" not in keywords or np.abs(rows[0][1][:, 3:]).max() > 0.005)
 
 
 def cloud(n, box, z, diameter, seed=2):

@@ -206,6 +206,16 @@ INLINE vec corrected(const double *order, const vec own[8], const int j[LANES], 
   return 0.5 * product / r2;
 }
 
+/* What the pressures of a pair do to i with correction, but for - V_i V_j g: to fluid by their difference,
+ * since it is the gradient that is corrected. What a wall bears no difference tells: it gets the force
+ * of the scheme without correction, along d. */
+INLINE vec pressures_on(int wall, const pairs_of_one *q, sd_sph_scheme scheme)
+{
+  const vec of_i = scheme == SD_SPH_VOLUME_CORRECTION ? 2.0 * q->rho_j / (q->rho_i + q->rho_j) : all(1.0);
+  const vec of_j = scheme == SD_SPH_VOLUME_CORRECTION ? 2.0 * q->rho_i / (q->rho_i + q->rho_j) : all(1.0);
+  return wall ? of_i * q->A_i + of_j * q->A_j : of_j * (q->A_j - q->A_i);
+}
+
 /* With correction, over a list both ways. Between fluid particles without friction B_j is not
  * needed, and B_i stands before the sum. */
 INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
@@ -216,7 +226,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
   for (int i = 0; i < list->n; i++) {
     const particle of_i = particle_of(model, p, i, has);
     const double *B = p->order + 16 * (size_t) i + 8;
-    const int pairwise = has.friction || B[6] > 0.5 || each;
+    const int wall = B[6] > 0.5, pairwise = has.friction || wall || each;
     vec own[8], sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
     vec slope[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
     for (int c = 0; c < 8; c++) own[c] = all(B[c]);
@@ -225,14 +235,13 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
       const int *j = list->neighbor[i] + at;
       const pairs_of_one q = meet(p, &of_i, j, has);
       nearest = smaller(q.r2, nearest);
-      vec weight = -q.m * q.inverse * (q.A_j - q.A_i) * q.g;
-      if (has.scheme == SD_SPH_VOLUME_CORRECTION) weight *= 2.0 * q.rho_i / (q.rho_i + q.rho_j);
+      const vec weight = -q.m * q.inverse * q.g * pressures_on(wall, &q, scheme);
       vec F[3], mine[3], ratio = all(1.0);
       if (pairwise) ratio = corrected(p->order, own, j, q.d, q.r2, mine);
       opposite_forces(model, p, &of_i, j, &q, ratio, has, F);
       for (int c = 0; c < 3; c++) {
         if (pairwise)
-          F[c] += weight * mine[c];
+          F[c] += weight * (wall ? q.d[c] : mine[c]);
         else
           slope[c] += weight * q.d[c];
         sum[c] += F[c];

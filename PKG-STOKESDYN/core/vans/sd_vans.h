@@ -429,6 +429,7 @@ void sd_vans_borne(const sd_vans_mesh *mesh, const double *force, double *pressu
 /* Volume of grains that passes a line across the stream, per width and time: sum phi vx dz. */
 double sd_vans_transport(const sd_vans_mesh *mesh, const double *profile);
 
+/* The one of the largest size, with its sign. */
 double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress);
 
 /* Elevation of the bed: middle of the highest slice under water where phi has a maximum above 0.5;
@@ -443,7 +444,7 @@ double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi);
 double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
                           const double *U, double drive);
 
-/* Depth of the water above the bed over its mean velocity there; 0 unless that is positive. */
+/* Depth of the water above the bed over the size of its mean velocity there; 0 at rest. */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed);
 
 #ifdef __cplusplus

@@ -32,14 +32,16 @@ static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
                          int p, double a, double vx)
 {
   int upper, lower;
+  /* a radius of a whole number of slices must not fall short of it by rounding */
+  const double reach = law->rules == SD_VANS_YADE ? a : a * (1.0 + 1e-9);
   if (mesh->dz > 0.0) {
-    const double k = floor(a / mesh->dz);
+    const double k = floor(reach / mesh->dz);
     if (k > mesh->ncell) return 0.0;
     upper = p + (int) k;
     lower = p - (int) k;
   } else {
-    upper = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p] + a);
-    lower = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p + 1] - a);
+    upper = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p] + reach);
+    lower = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p + 1] - reach);
   }
   if (upper >= mesh->ncell || lower <= 0) return 0.0;
   const double over = U[upper + 1] - vx, under = U[lower + 1] - vx;

@@ -18,8 +18,9 @@ double sd_vans_transport(const sd_vans_mesh *mesh, const double *profile)
 
 double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress)
 {
-  double largest = stress[0]; /* may be negative: a stream that flows the other way */
-  for (int n = 1; n < mesh->ncell; n++) largest = fmax(largest, stress[n]);
+  double largest = stress[0]; /* negative in a stream that flows the other way */
+  for (int n = 1; n < mesh->ncell; n++)
+    if (fabs(stress[n]) > fabs(largest)) largest = stress[n];
   return largest;
 }
 
@@ -62,5 +63,5 @@ double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, do
     flux += U[n + 1] * sd_vans_height(mesh, n);
     depth += sd_vans_height(mesh, n);
   }
-  return flux > 0.0 ? depth * depth / flux : 0.0;
+  return flux != 0.0 ? depth * depth / fabs(flux) : 0.0;
 }

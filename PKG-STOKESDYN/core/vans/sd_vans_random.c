@@ -15,8 +15,8 @@ void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, 
 {
   /* -a in u'x with a in u'z: fast water comes from above, <u'x u'z> = -u_star^2 */
   u[0] = (correlated ? normal[2] - normal[0] : normal[2]) * u_star;
-  u[1] = normal[1] * u_star;
-  u[2] = normal[0] * u_star;
+  u[1] = normal[1] * fabs(u_star);
+  u[2] = normal[0] * fabs(u_star);
 }
 
 double sd_vans_eddy_life(double z_above_bed, double nu, double u_star, double longest, double dt)
@@ -32,7 +32,7 @@ double sd_vans_longest_life(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid
   if (fluid->rules == SD_VANS_YADE) return fluid->longest_life;
   const double H = mesh->edge[mesh->ncell - 1];
   const double drive = fabs(sd_vans_drive(fluid)) * H;
-  const double u_star = sqrt(fmax(drive, sd_vans_largest_stress(mesh, stress) / fluid->rho));
+  const double u_star = sqrt(fmax(drive, fabs(sd_vans_largest_stress(mesh, stress)) / fluid->rho));
   return u_star > 0.0 ? 30.0 * H / u_star : HUGE_VAL;
 }
 
@@ -46,7 +46,7 @@ void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *w
   sd_vans_normal3(walk->seed, id, (uint64_t) eddy->count, normal);
   sd_vans_fluctuation(normal, u_star, walk->correlated, u);
   eddy->count += 1.0;
-  eddy->life = sd_vans_eddy_life(height, nu, u_star, walk->longest, walk->dt);
+  eddy->life = sd_vans_eddy_life(height, nu, fabs(u_star), walk->longest, walk->dt);
 }
 
 void sd_vans_lagrangian_times(const sd_vans_mesh *mesh, double schmidt, const double *nut,
@@ -59,12 +59,12 @@ void sd_vans_lagrangian_times(const sd_vans_mesh *mesh, double schmidt, const do
   }
 }
 
-/* d sigma/dz in slice p, between the middles of its neighbours. */
-static double slope_of(const sd_vans_mesh *mesh, const double *sigma, int p)
+/* d |u_star|/dz in slice p, between the middles of its neighbours. */
+static double slope_of(const sd_vans_mesh *mesh, const double *u_star, int p)
 {
   const int low = p > 0 ? p - 1 : p, high = p < mesh->ncell - 1 ? p + 1 : p;
   const double *edge = mesh->edge;
-  return (sigma[high] - sigma[low]) /
+  return (fabs(u_star[high]) - fabs(u_star[low])) /
       (0.5 * (edge[high] + edge[high + 1]) - 0.5 * (edge[low] + edge[low + 1]));
 }
 
@@ -73,7 +73,7 @@ void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *wal
 {
   const int p = sd_vans_slice_of(mesh, z);
   const int here = p >= 0 && p < mesh->ncell && z - mesh->z_ref > walk->bed;
-  const double sigma = here ? walk->u_star[p] : 0.0, T = here ? walk->life[p] : 0.0;
+  const double u_star = here ? walk->u_star[p] : 0.0, T = here ? walk->life[p] : 0.0;
   /* over the step dt, with T as it is: y decays, the noise makes up for it, the slope adds up */
   const double kept = T > 0.0 ? exp(-walk->dt / T) : 0.0, noise = sqrt(1.0 - kept * kept);
   double *y = wander->normal, normal[3];
@@ -81,6 +81,6 @@ void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *wal
   for (int d = 0; d < 3; d++) y[d] = kept * y[d] + noise * normal[d];
   if (T > 0.0 && kept > 0.0)
     y[0] -= slope_of(mesh, walk->u_star, p) * T * expm1(-walk->dt / T);
-  sd_vans_fluctuation(y, sigma, 1, u);
+  sd_vans_fluctuation(y, u_star, 1, u);
   wander->count += 1.0;
 }

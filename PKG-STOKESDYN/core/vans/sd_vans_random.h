@@ -15,7 +15,9 @@ extern "C" {
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
 
 /* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):
- * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2; uncorrelated: (c, b, a) u_star. */
+ * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2; uncorrelated: (c, b, a) u_star.
+ * Where the stress is negative, as in a stream along -x, u_star is -sqrt(-stress/rho): u'x then
+ * changes its sign, and with it the correlation. */
 void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3]);
 
 /* Life of an eddy at the height z above the bed: 0.33 * 0.41 max(z, 11.6 nu/u_star)/u_star, at most
@@ -34,7 +36,7 @@ typedef struct {
   int correlated;
   /* height above z_ref below which there is none */
   double bed;
-  /* [N] friction velocity of each slice */
+  /* [N] friction velocity of each slice, with the sign of the stress */
   const double *u_star;
   /* of an eddy; time step of the walk */
   double longest, dt;
@@ -51,7 +53,7 @@ void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *w
                       uint64_t id, sd_vans_eddy *eddy, double u[3]);
 
 /* The Langevin walk: the water that a grain meets forgets its velocity within the Lagrangian time
- * T. With sigma = u_star of the grain's slice and y = (a, b, c) = the velocity over sigma,
+ * T. With sigma = |u_star| of the grain's slice and y = (a, b, c) = the velocity over sigma,
  *   dy = -y/T dt + sqrt(2/T) dW + (dsigma/dz, 0, 0) dt,   u' = (c - a, b, a) sigma
  * Each of a, b, c is N(0,1), and the grains are spread by D = sigma^2 T. By the last term water that
  * is marked evenly stays so where sigma changes with the height.
@@ -60,7 +62,7 @@ typedef struct {
   uint64_t seed;
   /* height above z_ref below which there is none */
   double bed;
-  /* [N] sigma and T of each slice */
+  /* [N] friction velocity of each slice, with the sign of the stress, and T */
   const double *u_star, *life;
   /* of a step; HUGE_VAL: the walk begins */
   double dt;

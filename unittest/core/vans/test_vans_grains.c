@@ -143,7 +143,7 @@ static void hindrance_has_its_exponent(void **state)
 }
 
 /* 1/2 rho pi a^2 C_l [(U_top - v)^2 - (U_bottom - v)^2], top and bottom floor(a/dz) slices from the centre's; also with
- * edges from a list. */
+ * edges from a list. 0.6 is three slices of 0.2, though 0.6/0.2 is less than 3 in doubles. */
 static void lift_sees_both_ends_of_the_grain(void **state)
 {
   (void) state;
@@ -151,14 +151,16 @@ static void lift_sees_both_ends_of_the_grain(void **state)
   double edge[N + 1], U[N + 1], hindrance[N];
   for (int n = 0; n <= N; n++) edge[n] = n * 0.2, U[n] = 0.7 * n + 0.05 * n * n;
   for (int n = 0; n < N; n++) hindrance[n] = 1.0;
-  const double x[3] = {0, 0, 1.09}, v[3] = {0.4, 0, 0}, a = 0.53;
+  const double x[3] = {0, 0, 1.09}, v[3] = {0.4, 0, 0}, radii[2] = {0.53, 0.6};
   const sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .lift = 0.27};
-  for (int even = 0; even < 2; even++) {
-    const sd_vans_mesh mesh = {N, 0.0, even ? 0.2 : 0.0, edge};
+  for (int k = 0; k < 4; k++) {
+    const sd_vans_mesh mesh = {N, 0.0, k % 2 ? 0.2 : 0.0, edge};
+    const double a = radii[k / 2];
+    const int slices = 2 + k / 2;
     double F[3];
     sd_vans_forces(&mesh, &law, U, hindrance,
                  &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
-    const double over = U[5 + 1 + 2] - 0.4, under = U[5 + 1 - 2] - 0.4;
+    const double over = U[5 + 1 + slices] - 0.4, under = U[5 + 1 - slices] - 0.4;
     assert_true(fabs(F[2] - 0.5 * 1.3 * SD_PI * a * a * 0.27 * (over * over - under * under)) < 1e-13);
   }
 }

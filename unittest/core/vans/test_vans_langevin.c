@@ -94,6 +94,30 @@ static void next_to_no_turbulence_is_finite(void **state)
   }
 }
 
+/* Where the stress is negative: u'x with the other sign, all else as in the mirror. */
+static void a_stream_that_flows_back_is_the_mirror_image(void **state)
+{
+  (void) state;
+  const double edge[4] = {0, 1, 2, 3}, there[3] = {0.2, 0.3, 0.5}, back[3] = {-0.2, -0.3, -0.5}, life[3] = {1, 2, 1};
+  const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
+  const double stress[3] = {-30.0, -20.0, 0.1};
+  assert_true(sd_vans_largest_stress(&mesh, stress) == -30.0);
+  const sd_vans_langevin walk = {42, -1.0, there, life, 0.1}, mirror = {42, -1.0, back, life, 0.1};
+  const sd_vans_walk eddies = {42, 1, -1.0, there, 9.0, 0.1}, mirrored = {42, 1, -1.0, back, 9.0, 0.1};
+  for (int i = 0; i < 20; i++) {
+    sd_vans_wander one = {{0.3, -1.1, 0.7}, 3}, other = one;
+    sd_vans_eddy eddy = {0.0, 2.0}, eddy_back = eddy;
+    double u[3], w[3];
+    sd_vans_langevin_step(&mesh, &walk, 1.5, i, &one, u);
+    sd_vans_langevin_step(&mesh, &mirror, 1.5, i, &other, w);
+    assert_true(u[0] == -w[0] && u[1] == w[1] && u[2] == w[2] && fabs(u[2]) > 0.0);
+    sd_vans_new_eddy(&mesh, 1e-6, &eddies, 1.5, i, &eddy, u);
+    sd_vans_new_eddy(&mesh, 1e-6, &mirrored, 1.5, i, &eddy_back, w);
+    assert_true(u[0] == -w[0] && u[1] == w[1] && u[2] == w[2] && fabs(u[2]) > 0.0);
+    assert_true(eddy.life == eddy_back.life);
+  }
+}
+
 /* None below the bed and outside the mesh, and what the grain remembers is then new. */
 static void there_is_no_turbulence_in_the_bed(void **state)
 {
@@ -118,6 +142,7 @@ int main(void)
       cmocka_unit_test(even_grains_stay_even_where_the_turbulence_is_not),
       cmocka_unit_test(the_schmidt_number_is_that_of_the_spread),
       cmocka_unit_test(next_to_no_turbulence_is_finite),
+      cmocka_unit_test(a_stream_that_flows_back_is_the_mirror_image),
       cmocka_unit_test(there_is_no_turbulence_in_the_bed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
