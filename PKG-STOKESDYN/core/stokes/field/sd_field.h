@@ -64,7 +64,7 @@ typedef struct {
   sd_ewald ewald;
   int ready, width;
   sd_ewald_waves waves;
-  int degree;
+  int degree, floats;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS], tail[3];
   sd_ewald_box around;
   /* sources and their images as the kernels read them */
