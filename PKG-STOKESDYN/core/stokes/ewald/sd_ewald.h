@@ -66,6 +66,12 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
 sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out);
 
+/* The flow at points of a periodic box, which have no size: one level, whose waves end at `band`, for a
+ * shorter range on a coarser grid. points: how many; only `all` of the sizes is read, and all radii may
+ * be 0. */
+sd_status sd_ewald_choose_at_points(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
+                                    double points, double tolerance, sd_ewald *out);
+
 /* An open box for spheres with centres within lo [3] ... hi [3] (of all ranks): the present one if
  * it holds them and no edge is more than 1.5 times what they need, else one with a twentieth of
  * their extent to spare on each side, so that it lasts while they move. A box with edge[0] = 0 is

@@ -53,6 +53,8 @@ typedef struct {
   /* splitting, 1/length; its reference radius; where the near part ends, centre to centre; the
    * largest sphere */
   double xi, a_ref, range, largest;
+  /* of the flow at points, else 0: waves end here, 1/length (sd_radial.h); a_ref is of the spheres alone */
+  double band;
   /* how far ghosts must reach: range, or that of images */
   double reach;
   /* grid points of the box each way; those of an open box are an eighth of the grid, which is

@@ -12,9 +12,19 @@ static double screen(double xi, double a_ref, double k2)
   return (1.0 + x - a_ref * a_ref * k2 / 3.0) * exp(-x);
 }
 
+/* x without the difference of large numbers */
+static double screen_of_band(const sd_ewald *e, double k2)
+{
+  const double left = e->band * e->band - k2;
+  if (!(left > 0.0)) return 0.0;
+  const double x = e->range * k2 / (e->band + sqrt(left));
+  return (1.0 + x - e->a_ref * e->a_ref * k2 / 6.0) * exp(-x);
+}
+
 /* H grows with xi as long as xi a_ref < sqrt(3)/2, so the difference is never negative. */
 double sd_ewald_wave_screen(const sd_ewald *e, double k2)
 {
+  if (e->band > 0.0) return screen_of_band(e, k2);
   const double H = screen(e->xi, e->a_ref, k2);
   return e->large.from > 0.0 ? H - screen(e->large.xi, e->a_ref, k2) : H;
 }
@@ -98,9 +108,79 @@ void sd_filtered_stokeslet(const sd_filtered *f, int s, double *I, double *J)
   *J -= 2.0 * ref * here[2];
 }
 
+/* --- waves that end at a band --- */
+
+/* j_l(x)/x^l for l = 0, 1, 2. Below 1.5 the closed forms cancel; the series
+ *   sum_k (-x^2/2)^k / (k! (2l + 2k + 1)!!)
+ * then needs a dozen terms. */
+static void bessel(double x, double *j)
+{
+  if (x < 1.5) {
+    for (int l = 0; l < 3; l++) {
+      double term = l == 0 ? 1.0 : l == 1 ? 1.0 / 3.0 : 1.0 / 15.0;
+      j[l] = term;
+      for (int k = 1; k < 16; k++) {
+        term *= -0.5 * x * x / (k * (2.0 * l + 2.0 * k + 1.0));
+        j[l] += term;
+      }
+    }
+    return;
+  }
+  j[0] = sin(x) / x;
+  j[1] = (j[0] - cos(x)) / (x * x);
+  j[2] = (3.0 * j[1] - j[0]) / (x * x);
+}
+
+/* Waves in the middles of equal steps. H is even and smooth, so that the sum converges faster than any
+ * power, but for its end, where it is about exp(-K R) and falls to 0. */
+enum { WAVES = 256 };
+
+static double wave_of_band(const sd_ewald *e, int s)
+{
+  return (s + 0.5) * e->band / WAVES;
+}
+
+static void radial_of_band(const sd_ewald *e, double r, double *value)
+{
+  const double unit = e->band / WAVES / (2.0 * SD_PI * SD_PI);
+  for (int f = 0; f < SD_RADIALS; f++) value[f] = 0.0;
+  for (int s = 0; s < WAVES; s++) {
+    const double k = wave_of_band(e, s), k2 = k * k;
+    double power = unit * screen_of_band(e, k2), j[3];
+    bessel(k * r, j);
+    for (int n = 0; n < 3; n++, power *= k2) {
+      value[SD_I0 + 2 * n] += power * (j[0] - j[1]);
+      value[SD_J0 + 2 * n] += power * k2 * j[2];
+      if (n < 2) value[SD_K0 + n] += 0.5 * power * k2 * j[1];
+    }
+  }
+}
+
+/* Over all distances 1/(6 pi r) - I_0 - J_0/3 is a_ref^2/9 and I_1 + J_1/3 is 2/3; up to the range
+ *   int 4 pi r^2 (I_n + J_n/3) dr = 4 R^2/(3 pi) int k^(2n - 1) H j_1(kR) dk */
+static void tail_of_band(const sd_ewald *e, double *tail)
+{
+  const double R2 = e->range * e->range, unit = 4.0 / (3.0 * SD_PI) * R2 * e->range * e->band / WAVES;
+  tail[0] = e->a_ref * e->a_ref / 9.0 - R2 / 3.0;
+  tail[1] = -2.0 / 3.0;
+  tail[2] = 0.0;
+  for (int s = 0; s < WAVES; s++) {
+    const double k = wave_of_band(e, s), k2 = k * k;
+    double power = unit * screen_of_band(e, k2), j[3];
+    bessel(k * e->range, j);
+    for (int n = 0; n < 3; n++, power *= k2) tail[n] += power * j[1];
+  }
+}
+
+/* --- functions of the distance --- */
+
 /* I_n and J_n are of (-lap)^n G; K_n is half the curl of it, -grad (L_H + a_ref^2/3 lap L). */
 void sd_radial(const sd_ewald *e, double r, double *value)
 {
+  if (e->band > 0.0) {
+    radial_of_band(e, r, value);
+    return;
+  }
   const double unit = 1.0 / (8.0 * SD_PI);
   const double curl = e->a_ref * e->a_ref / 3.0 - 0.25 / (e->xi * e->xi);
   const sd_filtered f = sd_filtered_at(&(sd_filter){e->xi, e->a_ref}, r * r, 3, 1);
@@ -166,6 +246,10 @@ int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
 void sd_radial_tail(const sd_ewald *e, double *tail)
 {
   enum { STEPS = 400 };
+  if (e->band > 0.0) {
+    tail_of_band(e, tail);
+    return;
+  }
   const double dr = 8.0 / e->xi / STEPS;
   for (int n = 0; n < 3; n++) tail[n] = 0.0;
   for (int s = 0; s <= STEPS; s++) {

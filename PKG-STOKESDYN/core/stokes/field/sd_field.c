@@ -25,53 +25,46 @@ static double all_points(const sd_field_grid *g)
 
 /* --- how it is summed --- */
 
-/* Numbers of grid points are few: what the next of them is finer than asked for shortens the range. */
-static void use_grid(sd_ewald *e)
-{
-  const double y = e->xi * e->range, widest = SD_PI / (2.2 * e->xi * y);
-  double finer = 1.5 / (e->xi * e->largest);
-  for (int d = 0; d < 3; d++) {
-    const double *t = e->box.tilt;
-    const double across = d == 0 ? 0.0 : d == 1 ? t[0] : hypot(t[1], t[2]);
-    finer = fmin(finer, widest * e->grid[d] / hypot(e->box.edge[d], across));
-  }
-  if (!(finer > 1.0)) return;
-  e->xi *= finer;
-  e->range /= finer;
-  e->reach = fmax(e->range, 2.0 * e->largest);
-}
-
-/* For sources and points together: near pairs and transforms cost about the same where the range
- * holds as many sources as it would for a product of sqrt(n points) spheres, whose rule is known.
- * Points have radius 0 and stand for half of them, so that the rule does not take all radii for
+/* In an open box near pairs and transforms of sources and points together cost about the same where
+ * the range holds as many sources as it would for a product of sqrt(n points) spheres, whose rule is
+ * known. Points have radius 0 and stand for half of them, so that the rule does not take all radii for
  * equal; a_ref 0 makes a point's window a plain one. A point does not average over a sphere as a
  * sphere does, so the same splitting leaves it a larger error: 0.5 makes up for that, and 0.3 where it is
  * small and windows count more. With torques the rule is stricter by 3, for the sake of angular
  * velocities, which points do not have. */
-static sd_status choose(const sd_ewald_box *box, const sd_field_sources *s, const sd_field_grid *g,
-                        double tolerance, sd_ewald *out)
+static sd_status choose_open(const sd_ewald_box *box, const sd_ewald_sizes *those, int width,
+                             double points, double tolerance, sd_ewald *out)
 {
-  sd_ewald_sizes sizes = {0};
+  sd_ewald_sizes sizes = *those;
   sd_ewald_class *all = &sizes.all;
-  for (int i = 0; i < s->n; i++) {
-    const double a2 = s->a[i] * s->a[i];
-    all->squares += a2;
-    all->fourths += a2 * a2;
-    all->largest = fmax(all->largest, s->a[i]);
-  }
-  all->count = fmax(1.0, sqrt(s->n * all_points(g)));
-  all->squares *= 0.5 * all->count / s->n;
-  all->fourths *= 0.5 * all->count / s->n;
+  const double n = all->count;
+  all->count = fmax(1.0, sqrt(n * points));
+  all->squares *= 0.5 * all->count / n;
+  all->fourths *= 0.5 * all->count / n;
   if (!(all->largest > 0.0)) { /* point forces: the rule wants a size, and this one is none */
     all->largest = 1e-3 * cbrt(sd_ewald_volume(box) / all->count);
     all->squares = 0.5 * all->count * all->largest * all->largest;
     all->fourths = all->squares * all->largest * all->largest;
   }
-  const double tighter = s->T ? 0.9 : tolerance > 5e-4 ? 0.5 : 0.3;
-  const sd_status status = sd_ewald_choose(box, &sizes, s->T ? 6 : 3, tighter * tolerance, out);
+  const double tighter = width == 6 ? 0.9 : tolerance > 5e-4 ? 0.5 : 0.3;
+  const sd_status status = sd_ewald_choose(box, &sizes, width, tighter * tolerance, out);
   out->a_ref = 0.0;
-  if (status == SD_OK && box->periodic && !(out->large.from > 0.0)) use_grid(out);
   return status;
+}
+
+static sd_status choose(const sd_ewald_box *box, const sd_field_sources *s, const sd_field_grid *g,
+                        double tolerance, sd_ewald *out)
+{
+  const int width = s->T ? 6 : 3;
+  sd_ewald_sizes sizes = {.all = {.count = s->n}};
+  for (int i = 0; i < s->n; i++) {
+    const double a2 = s->a[i] * s->a[i];
+    sizes.all.squares += a2;
+    sizes.all.fourths += a2 * a2;
+    sizes.all.largest = fmax(sizes.all.largest, s->a[i]);
+  }
+  if (!box->periodic) return choose_open(box, &sizes, width, all_points(g), tolerance, out);
+  return sd_ewald_choose_at_points(box, &sizes, width, all_points(g), tolerance, out);
 }
 
 /* The open box that holds sources and grid: it lasts while they move a little. */
@@ -187,6 +180,7 @@ static void range_of(const sd_field *f, double scale, sd_field_part *p)
 {
   static const int power[SD_RADIALS] = {1, 3, 3, 5, 5, 7, 3, 5};
   p->range = scale * f->ewald.range;
+  p->ref = scale * f->ewald.a_ref;
   p->degree = f->degree;
   for (int k = 0; k < SD_RADIALS; k++) {
     const double unit = 8.0 * SD_PI / pow(scale, power[k]);
@@ -195,7 +189,8 @@ static void range_of(const sd_field *f, double scale, sd_field_part *p)
 }
 
 /* Of this splitting, unless they are there */
-static sd_status make_tables(sd_field *f, const sd_ewald *e, int width, const sd_world *world)
+static sd_status make_tables(sd_field *f, const sd_ewald *e, int width, double tolerance,
+                             const sd_world *world)
 {
   const struct sd_ewald_kernels *kernels = SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
   if (f->ready && f->width == width && !memcmp(&f->ewald, e, sizeof(*e))) {
@@ -209,7 +204,12 @@ static sd_status make_tables(sd_field *f, const sd_ewald *e, int width, const sd
   f->degree = SD_RADIAL_TERMS - 1;
 #define OF_DEGREE(d) \
   if ((d) >= least && (d) < f->degree) f->degree = d;
-  SD_NEAR_DEGREES(OF_DEGREE)
+  f->floats = tolerance >= SD_FIELD_FLOAT_TOLERANCE && least <= SD_FIELD_FLOAT_MOST;
+  if (f->floats) {
+    SD_FIELD_FLOAT_DEGREES(OF_DEGREE)
+  } else {
+    SD_NEAR_DEGREES(OF_DEGREE)
+  }
 #undef OF_DEGREE
   sd_radial_tail(e, f->tail);
   const sd_status status = sd_ewald_waves_create(&f->waves, e, kernels, width, world);
@@ -300,7 +300,7 @@ sd_status sd_field_add(sd_field *f, sd_field_sum how, const sd_ewald_box *box, d
   status = sd_world_agree(world, status);
   if (status != SD_OK) return status;
   if (split) {
-    status = sd_world_agree(world, make_tables(f, &e, s->T ? 6 : 3, world));
+    status = sd_world_agree(world, make_tables(f, &e, s->T ? 6 : 3, tolerance, world));
     if (status == SD_OK) status = convolve(f, s, world);
     if (status != SD_OK) return status;
   }

@@ -8,8 +8,7 @@
  * jumps. What flows without the spheres is not in it.
  *
  * Points are a grid, because then a window is interpolated one direction after the other and the
- * near part goes by blocks of points: 10^6 points cost as much as three to four products of 10^5
- * spheres.
+ * near part goes by blocks of points: 10^6 points cost as much as two products of 10^5 spheres.
  *
  * Every rank knows all sources and has the points of some planes; the transforms are shared. */
 #ifndef SD_FLOW_FIELD_H
@@ -64,7 +63,7 @@ typedef struct {
   sd_ewald ewald;
   int ready, width;
   sd_ewald_waves waves;
-  int degree;
+  int degree, floats;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS], tail[3];
   sd_ewald_box around;
   /* sources and their images as the kernels read them */

@@ -10,7 +10,7 @@ enum { SD_FIELD_ROW = 12 };
 
 /* Sources and our points; lengths scaled as in sd_packed.
  *   source [n]       rows, images among them
- *   range            only points nearer than this get something; not read by `direct`
+ *   range, ref       only points nearer than this get something; a_ref; not read by `direct`
  *   I0 J0 I1 J1 K0   of sd_radial.h, so scaled and times 8 pi, of a degree with a kernel
  *   u                [3 points], x fastest: grows by unit times the sum times 8 pi, and by mean */
 typedef struct {
@@ -18,7 +18,7 @@ typedef struct {
   const double *source;
   double lo[3], step[3];
   int points[3];
-  double range;
+  double range, ref;
   int degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS];
   double unit, mean[3], *u;
@@ -41,9 +41,9 @@ typedef struct {
 } sd_field_block;
 
 /* Floats are enough from this tolerance on, and up to the last of these degrees. */
-#define SD_FIELD_FLOAT_DEGREES(_) _(8) _(11) _(14)
+#define SD_FIELD_FLOAT_DEGREES(_) _(6) _(8) _(11) _(14)
 #define SD_FIELD_FLOAT_MOST 14
-#define SD_FIELD_FLOAT_TOLERANCE 1e-4
+#define SD_FIELD_FLOAT_TOLERANCE 4e-4
 
 /* A window along one direction: its first point and its values */
 typedef struct {

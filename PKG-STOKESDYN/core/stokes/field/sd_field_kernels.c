@@ -7,6 +7,9 @@
  * where inside is what the formulas of outside give for R = a. A point force counts as a sphere of
  * radius 1e-12. */
 #include "sd_field_internal.h"
+
+#include <stdint.h>
+
 #include "sd_float_lanes.h"
 
 /* --- which bricks are near --- */
@@ -47,14 +50,14 @@ INLINE floats gap(const float *middle, float x, float half)
   return beyond * beyond;
 }
 
-/* Which bricks may have a point within the range of a source? How many */
-INLINE int bricks_near(const brick_middles *m, const sd_field_block *b, const double *s, int *list)
+/* Which bricks may have a point within the range of a source? Brick k in bit k */
+INLINE uint64_t bricks_near(const brick_middles *m, const sd_field_block *b, const double *s)
 {
-  enum { VECTORS = 8 / FLOATS, PIECE = LANES < FLOATS ? LANES : FLOATS };
+  enum { VECTORS = 8 / FLOATS };
   const float x = (float) (s[0] - b->lo[0]), y = (float) (s[1] - b->lo[1]);
   const float z = (float) (s[2] - b->lo[2]);
   floats across[2][VECTORS];
-  int many = 0;
+  uint64_t near = 0;
   for (int l = 0; l < VECTORS; l++) {
     const floats along_x = gap(m->x + FLOATS * l, x, m->half[0]);
     for (int k = 0; k < 2; k++)
@@ -64,14 +67,22 @@ INLINE int bricks_near(const brick_middles *m, const sd_field_block *b, const do
     const float beyond = fabsf(m->z[j] - z) - m->half[2], least = beyond > 0.0f ? beyond : 0.0f;
     const floats left = all_floats(m->range2 - least * least);
     for (int k = 0; k < 2; k++)
-      for (int l = 0; l < VECTORS; l++) {
-        const unsigned hits = float_hits(across[k][l], left);
-        for (int part = 0; part < FLOATS; part += PIECE)
-          many += keep_next(list + many, 16 * j + 8 * k + FLOATS * l + part,
-                            hits >> part & ((1u << PIECE) - 1));
-      }
+      for (int l = 0; l < VECTORS; l++)
+        near |= (uint64_t) float_hits(across[k][l], left) << (16 * j + 8 * k + FLOATS * l);
   }
-  return many;
+  return near;
+}
+
+/* The lowest of the bits, which are not 0 */
+INLINE unsigned lowest(uint64_t bits)
+{
+#ifdef SD_HAS_VECTORS
+  return (unsigned) __builtin_ctzll(bits);
+#else
+  unsigned k = 0;
+  while (!(bits >> k & 1)) k++;
+  return k;
+#endif
 }
 
 /* --- within the range --- */

@@ -153,9 +153,8 @@ sd_status sd_field_near(sd_field *f, const sd_field_part *p, const struct sd_fie
 {
   if (!sd_field_sort(&f->cells, p->source, SD_FIELD_ROW, p->n, p->range)) return SD_ENOMEMORY;
   const struct sd_ewald_kernels *ewald = SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
-  const int loose = f->ewald.tolerance >= SD_FIELD_FLOAT_TOLERANCE && p->degree <= SD_FIELD_FLOAT_MOST;
   blocks q = {.c = &f->cells, .p = p, .search = ewald->search};
-  q.kernel = loose ? kernels->near_floats : kernels->near;
+  q.kernel = f->floats ? kernels->near_floats : kernels->near;
   const int ok = make_room(f, &q);
   int first[3];
   for (first[2] = 0; first[2] < p->points[2] && ok; first[2] += SD_FIELD_BLOCK)

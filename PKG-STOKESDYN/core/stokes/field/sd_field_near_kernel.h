@@ -11,9 +11,9 @@
 /* Tensor of a source and a point in the vectors of this copy */
 INLINE void OF(point_block)(REALS r2, REALS a2, REALS *f, REALS *h, REALS *c)
 {
-  const REALS y = INVERSE_ROOT(LARGER(r2, a2)), y2 = y * y, y3 = y * y2, q = a2 * y2;
-  *f = y + y * q * ALL((REAL) (1.0 / 3.0));
-  *h = y3 - y3 * q;
+  const REALS y = INVERSE_ROOT(LARGER(r2, a2)), y2 = y * y, y3 = y * y2;
+  *f = y + a2 * ALL((REAL) (1.0 / 3.0)) * y3;
+  *h = y3 - a2 * y2 * y3;
   *c = y3;
 }
 
@@ -42,11 +42,11 @@ INLINE void OF(horner)(int count, int degree, REALS (*c)[SD_RADIAL_TERMS], REALS
     for (int f = 0; f < count; f++) value[f] = value[f] * t + c[f][k];
 }
 
-/* A point has b = 0 and a sphere b = a^2/6, since a_ref is 0. */
-INLINE void OF(polynomials)(const sd_field_part *p, double a2, int degree,
+/* Of a sphere; a point has b = 0. */
+INLINE void OF(polynomials)(const sd_field_part *p, double a, int degree,
                             REALS (*c)[SD_RADIAL_TERMS])
 {
-  const double b = a2 / 6.0;
+  const double b = (a - p->ref) * (a + p->ref) / 6.0;
   for (int k = 0; k <= degree; k++) {
     c[0][k] = ALL((REAL) (p->coefficient[SD_I0][k] - b * p->coefficient[SD_I1][k]));
     c[1][k] = ALL((REAL) (p->coefficient[SD_J0][k] - b * p->coefficient[SD_J1][k]));
@@ -54,10 +54,11 @@ INLINE void OF(polynomials)(const sd_field_part *p, double a2, int degree,
   }
 }
 
-/* What a source does to the points of bricks: place [3][4][8] along each direction, u [64][3][8] */
+/* What a source does to the points of the bricks near it: place [3][4][8] along each direction, u
+ * [64][3][8] */
 INLINE void OF(add_to_bricks)(int turns, int degree, const sd_field_part *p, const double *s,
                               const double *lo, REALS (*c)[SD_RADIAL_TERMS],
-                              const REAL (*place)[SD_FIELD_BRICKS][8], const int *list, int count,
+                              const REAL (*place)[SD_FIELD_BRICKS][8], uint64_t near,
                               REAL (*u)[3][8])
 {
   const double range2 = p->range * p->range;
@@ -66,8 +67,8 @@ INLINE void OF(add_to_bricks)(int turns, int degree, const sd_field_part *p, con
   const REALS z = ALL((REAL) (s[2] - lo[2])), a2 = ALL((REAL) (s[3] > 1e-12 ? s[3] * s[3] : 1e-24));
   REALS G[6];
   for (int d = 0; d < 6; d++) G[d] = ALL((REAL) s[4 + d]);
-  for (int k = 0; k < count; k++) {
-    const unsigned brick = (unsigned) list[k];
+  for (; near; near &= near - 1) {
+    const unsigned brick = lowest(near);
     const REAL *along_x = place[0][brick % 4], *along_y = place[1][brick / 4 % 4];
     const REAL *along_z = place[2][brick / 16];
     for (int l = 0; l < 8; l += WIDTH) {
@@ -93,7 +94,6 @@ INLINE void OF(near_with)(int turns, int degree, const sd_field_part *p, sd_fiel
   REALS c[3][SD_RADIAL_TERMS];
   REAL u[BRICKS][3][8] = {{{0}}}, place[3][SD_FIELD_BRICKS][8];
   double a = 0.0;
-  int list[BRICKS + 8];
   for (int d = 0; d < 3; d++)
     for (int k = 0; k < SD_FIELD_BRICKS; k++)
       for (int l = 0; l < 8; l++) place[d][k][l] = (REAL) ((2 * k + (l >> d) % 2) * p->step[d]);
@@ -102,11 +102,10 @@ INLINE void OF(near_with)(int turns, int degree, const sd_field_part *p, sd_fiel
     if (m + AHEAD < b->n)
       for (int k = 0; k < SD_FIELD_ROW; k += 8)
         soon(p->source + (long) SD_FIELD_ROW * b->source[m + AHEAD] + k);
-    const int count = bricks_near(&middles, b, s, list);
-    if (m == 0 || s[3] != a) OF(polynomials)(p, s[3] * s[3], degree, c);
+    if (m == 0 || s[3] != a) OF(polynomials)(p, s[3], degree, c);
     a = s[3];
-    OF(add_to_bricks)(turns, degree, p, s, b->lo, c, (const REAL(*)[SD_FIELD_BRICKS][8]) place, list,
-                      count, u);
+    OF(add_to_bricks)(turns, degree, p, s, b->lo, c, (const REAL(*)[SD_FIELD_BRICKS][8]) place,
+                      bricks_near(&middles, b, s), u);
   }
   for (int k = 0; k < BRICKS; k++)
     for (int d = 0; d < 3; d++)

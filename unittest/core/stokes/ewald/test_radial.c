@@ -77,11 +77,86 @@ static void nothing_is_left_out_of_a_wide_range(void **state)
   }
 }
 
+/* A splitting of so many digits at points (sd_ewald_choose_at_points), for spheres of radius 0.7 */
+static sd_ewald at_points(double digits)
+{
+  sd_ewald e = {.range = 2.3, .a_ref = 0.7};
+  e.band = 0.95 * SD_PI * (digits - 0.5) / e.range;
+  return e;
+}
+
+/* The near part of a sphere and a point, which stops at the range */
+static void a_band_leaves_little_beyond_the_range(void **state)
+{
+  (void) state;
+  for (double digits = 3.0; digits < 13.0; digits++) {
+    const sd_ewald e = at_points(digits);
+    for (double r = e.range; r < 4.0 * e.range; r += 0.03) {
+      const double unit = 1.0 / (8.0 * SD_PI * r), q = e.a_ref * e.a_ref / (r * r);
+      double D[SD_RADIALS];
+      sd_radial(&e, r, D);
+      const double off = 40.0 * pow(10.0, -digits) / (8.0 * SD_PI * e.range);
+      CHECK_NEAR(D[SD_I0], unit * (1.0 + q / 3.0), off);
+      CHECK_NEAR(D[SD_J0] * r * r, unit * (1.0 - q), off);
+    }
+    CHECK_NEAR(sd_ewald_wave_screen(&e, 1e-6), 1.0 - e.a_ref * e.a_ref * 1e-6 / 6.0, 1e-12);
+    CHECK_NEAR(sd_ewald_wave_screen(&e, e.band * e.band), 0.0, 0.0);
+  }
+}
+
+/* With k = K sin(angle) H is smooth at its end too. */
+static void functions_of_a_band_are_the_integrals(void **state)
+{
+  (void) state;
+  enum { STEPS = 4000 };
+  const sd_ewald e = at_points(7.0);
+  for (double r = 0.0; r < 1.2 * e.range; r += 0.1) {
+    double D[SD_RADIALS], expected[SD_RADIALS] = {0.0}, there[SD_RADIALS], j[3];
+    for (int s = 0; s < STEPS; s++) {
+      const double angle = (s + 0.5) * 0.5 * SD_PI / STEPS, k = e.band * sin(angle), k2 = k * k;
+      const double weight = e.band * cos(angle) * 0.5 * SD_PI / STEPS / (2.0 * SD_PI * SD_PI);
+      bessel(k * r, j);
+      for (int n = 0; n < 3; n++) {
+        const double power = weight * sd_ewald_wave_screen(&e, k2) * pow(k2, n);
+        expected[SD_I0 + 2 * n] += power * (j[0] - j[1]);
+        expected[SD_J0 + 2 * n] += power * k2 * j[2];
+        if (n < 2) expected[SD_K0 + n] += 0.5 * power * k2 * j[1];
+      }
+    }
+    sd_radial(&e, r, there);
+    sd_radial(&e, 0.0, D);
+    for (int f = 0; f < SD_RADIALS; f++) CHECK_NEAR(there[f], expected[f], 1e-7 * fabs(D[f])); /* 10^-digits */
+  }
+}
+
+/* What is within the range and what is beyond it add up to what the longest waves say. */
+static void tail_of_a_band_is_the_rest_of_the_mean(void **state)
+{
+  (void) state;
+  enum { STEPS = 400 };
+  const sd_ewald e = at_points(7.0);
+  double tail[3], within[3] = {0.0};
+  for (int s = 0; s <= STEPS; s++) {
+    const double r = s * e.range / STEPS, weight = (s == 0 || s == STEPS ? 1.0 : s % 2 ? 4.0 : 2.0) / 3.0 * e.range / STEPS;
+    double D[SD_RADIALS];
+    sd_radial(&e, r, D);
+    for (int n = 0; n < 3; n++)
+      within[n] += weight * 4.0 * SD_PI * r * ((n == 0 ? 1.0 / (6.0 * SD_PI) : 0.0) - r * D[SD_I0 + 2 * n] - pow(r, 3) / 3.0 * D[SD_J0 + 2 * n]);
+  }
+  sd_radial_tail(&e, tail);
+  CHECK_NEAR(tail[0] + within[0], e.a_ref * e.a_ref / 9.0, 1e-8);
+  CHECK_NEAR(tail[1] + within[1], -2.0 / 3.0, 1e-8);
+  CHECK_NEAR(tail[2] + within[2], 0.0, 1e-7);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(closed_forms_are_the_integrals),
       cmocka_unit_test(nothing_is_left_out_of_a_wide_range),
+      cmocka_unit_test(a_band_leaves_little_beyond_the_range),
+      cmocka_unit_test(functions_of_a_band_are_the_integrals),
+      cmocka_unit_test(tail_of_a_band_is_the_rest_of_the_mean),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,38 +92,63 @@ static void open_flow_is_the_sum_over_all_spheres(void **state)
     }
 }
 
+static void all_equal(scene *c, double a)
+{
+  for (int i = 0; i < SPHERES; i++) c->a[i] = a;
+}
+
 /* The product of sd_mobility.h, whose sphere of radius 1e-7 moves with the fluid, to its square */
+static void check_against_tiny_spheres(scene *c)
+{
+  enum { ALL = SPHERES + POINTS };
+  sd_field f = {0};
+  const int m = c->s.T ? 6 : 3;
+  double u[3 * POINTS], expected[3 * POINTS], x[3 * ALL], a[ALL], F[6 * ALL] = {0}, v[6 * ALL];
+  flow(&f, SD_FIELD_AUTO, c, 1e-12, u);
+  for (int i = 0; i < ALL; i++) {
+    a[i] = i < SPHERES ? c->a[i] : 1e-7;
+    if (i >= SPHERES) point_of(&c->g, i - SPHERES, x + 3 * i);
+    for (int d = 0; d < 3 && i < SPHERES; d++) {
+      x[3 * i + d] = c->x[3 * i + d];
+      F[m * i + d] = c->F[3 * i + d];
+      if (m == 6) F[m * i + 3 + d] = c->T[3 * i + d];
+    }
+  }
+  periodic p;
+  const sd_ewald how = periodic_choose(&c->box, a, SPHERES, m, 1e-13);
+  periodic_place(&p, x, a, NULL, ALL, m, &how);
+  assert_int_equal(sd_mobility_apply(&p.omega, F, v), SD_OK);
+  for (int k = 0; k < POINTS; k++)
+    for (int d = 0; d < 3; d++) expected[3 * k + d] = v[m * (SPHERES + k) + d];
+  CHECK_NEAR(off(u, expected, 3 * POINTS), 0.0, 1e-10);
+  periodic_free(&p);
+  sd_field_free(&f);
+}
+
 static void periodic_flow_is_that_of_a_tiny_sphere(void **state)
 {
   (void) state;
   for (int turns = 0; turns < 2; turns++)
-    for (int oblique = 0; oblique < 2; oblique++) {
-      enum { ALL = SPHERES + POINTS };
-      scene c;
-      sd_field f = {0};
-      const int m = turns ? 6 : 3;
-      double u[3 * POINTS], expected[3 * POINTS], x[3 * ALL], a[ALL], F[6 * ALL] = {0}, v[6 * ALL];
-      make(&c, 1, turns, oblique ? 2.1 : 0.0);
-      flow(&f, SD_FIELD_AUTO, &c, 1e-12, u);
-      for (int i = 0; i < ALL; i++) {
-        a[i] = i < SPHERES ? c.a[i] : 1e-7;
-        if (i >= SPHERES) point_of(&c.g, i - SPHERES, x + 3 * i);
-        for (int d = 0; d < 3 && i < SPHERES; d++) {
-          x[3 * i + d] = c.x[3 * i + d];
-          F[m * i + d] = c.F[3 * i + d];
-          if (turns) F[m * i + 3 + d] = c.T[3 * i + d];
-        }
+    for (int oblique = 0; oblique < 2; oblique++)
+      for (int equal = 0; equal < 2; equal++) {
+        scene c;
+        make(&c, 1, turns, oblique ? 2.1 : 0.0);
+        if (equal) all_equal(&c, 0.9);
+        check_against_tiny_spheres(&c);
       }
-      periodic p;
-      const sd_ewald how = periodic_choose(&c.box, a, SPHERES, m, 1e-13);
-      periodic_place(&p, x, a, NULL, ALL, m, &how);
-      assert_int_equal(sd_mobility_apply(&p.omega, F, v), SD_OK);
-      for (int k = 0; k < POINTS; k++)
-        for (int d = 0; d < 3; d++) expected[3 * k + d] = v[m * (SPHERES + k) + d];
-      CHECK_NEAR(off(u, expected, 3 * POINTS), 0.0, 1e-10);
-      periodic_free(&p);
-      sd_field_free(&f);
-    }
+}
+
+/* Points that are closer to each other than those of the waves' grid, beside them in each direction, in a few spheres and around */
+static void flow_in_a_part_of_the_box_is_that_of_a_tiny_sphere(void **state)
+{
+  (void) state;
+  for (int equal = 0; equal < 2; equal++) {
+    scene c;
+    make(&c, 1, equal, -1.3);
+    if (equal) all_equal(&c, 0.7);
+    c.g = (sd_field_grid){{2.17, 3.31, 4.07}, {0.213, 0.171, 0.237}, {N0, N1, N2}, 0, N2};
+    check_against_tiny_spheres(&c);
+  }
 }
 
 static void error_of_a_split_sum_is_below_the_tolerance(void **state)
@@ -131,19 +156,20 @@ static void error_of_a_split_sum_is_below_the_tolerance(void **state)
   (void) state;
   static const double tolerance[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8};
   for (int periodic = 0; periodic < 2; periodic++)
-    for (int turns = 0; turns < 2; turns++) {
+    for (int k = 0; k < 4; k++) {
       scene c;
       double u[3 * POINTS], exact[3 * POINTS], rms = 0.0;
-      make(&c, periodic, turns, 0.0);
+      make(&c, periodic, k % 2, 0.0);
+      if (k > 1) all_equal(&c, 0.9);
       for (int i = 0; i < SPHERES; i++)
         for (int d = 0; d < 3; d++) rms += pow(c.F[3 * i + d] / (6 * SD_PI * c.a[i]), 2) / SPHERES;
       sd_field f = {0};
       flow(&f, SD_FIELD_SPLIT, &c, 1e-12, exact);
-      for (int k = 0; k < 5; k++) {
+      for (int l = 0; l < 5; l++) {
         double sum = 0.0;
-        flow(&f, SD_FIELD_SPLIT, &c, tolerance[k], u);
+        flow(&f, SD_FIELD_SPLIT, &c, tolerance[l], u);
         for (int p = 0; p < 3 * POINTS; p++) sum += pow(u[p] - exact[p], 2) / POINTS;
-        CHECK_NEAR(sqrt(sum / rms), 0.0, tolerance[k]);
+        CHECK_NEAR(sqrt(sum / rms), 0.0, tolerance[l]);
       }
       sd_field_free(&f);
     }
@@ -347,6 +373,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(open_flow_is_the_sum_over_all_spheres),
       cmocka_unit_test(periodic_flow_is_that_of_a_tiny_sphere),
+      cmocka_unit_test(flow_in_a_part_of_the_box_is_that_of_a_tiny_sphere),
       cmocka_unit_test(error_of_a_split_sum_is_below_the_tolerance),
       cmocka_unit_test(far_from_the_origin_single_precision_keeps_its_digits),
       cmocka_unit_test(lone_sphere_has_the_flow_of_stokes),
