@@ -25,11 +25,6 @@ typedef struct {
   double XC[3], YC[3];
 } sd_pair_resistance;
 
-/* The 6x6 blocks of two spheres, row-major: rows F T, columns U W, d [3] a unit vector from 1 to 2.
- * Block 21 is the transpose of 12. */
-void sd_pair_resistance_blocks(const sd_pair_resistance *R, const double d[3], double B11[36],
-                               double B12[36], double B22[36]);
-
 /* The same pair with sphere 2 called 1. */
 sd_pair_resistance sd_pair_resistance_exchanged(const sd_pair_resistance *R);
 
