@@ -27,16 +27,23 @@ static void strain_at(const double X[3], int c, double v[3])
 
 /* Each pair of points, and 1/(6 pi a), 1/(8 pi a^3) on the diagonal (r = 0); forces are the first
  * three rows and columns of a block with torques. */
-void sd_body_shape_matrix(int m, int width, const double *x, const double *a, double *M)
+void sd_body_shape_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
+                          double *M)
 {
+  static const sd_wall none = {.sign = 0};
   const size_t w = (size_t) width, N = w * (size_t) m;
-  for (int i = 0; i < m; i++)
-    for (int j = 0; j < m; j++) {
-      double r[3], block[36];
-      sd_minus(x + 3 * (size_t) i, x + 3 * (size_t) j, r);
+  if (!wall) wall = &none;
+  for (size_t i = 0; i < (size_t) m; i++)
+    for (size_t j = 0; j < (size_t) m; j++) {
+      double xi[3], xj[3], r[3], block[36], image[36] = {0.0};
+      sd_wall_keep_off(wall, x + 3 * i, a[i], xi);
+      sd_wall_keep_off(wall, x + 3 * j, a[j], xj);
+      sd_minus(xi, xj, r);
       sd_tensor_grand(r, a[i], a[j], 1.0, block);
+      if (wall->sign) sd_wall_block(wall, width, xi, a[i], xj, a[j], 1.0, image);
       for (size_t p = 0; p < w; p++)
-        memcpy(M + (w * (size_t) i + p) * N + w * (size_t) j, block + 6 * p, w * sizeof(double));
+        for (size_t q = 0; q < w; q++)
+          M[(w * i + p) * N + w * j + q] = block[6 * p + q] + image[w * p + q];
     }
 }
 
@@ -144,7 +151,7 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
   double *M = malloc(sizeof(double) * N * N);
   *s = (sd_body_shape){0};
   if (!M) return SD_ENOMEMORY;
-  sd_body_shape_matrix(shape->n, 6, shape->x, shape->a, M);
+  sd_body_shape_matrix(NULL, shape->n, 6, shape->x, shape->a, M);
   sd_status status = sd_body_shape_of(shape->n, 6, shape->x, M, s);
   /* Now N_spheres and M_b^-1 K are known, which M_b' is made of; then once more with it. */
   if (status == SD_OK && shells) {
@@ -155,6 +162,25 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
   }
   free(M);
   return status;
+}
+
+sd_status sd_body_wall_shape(const sd_wall *wall, int m, int width, const double *x,
+                             const double *a, const double centre[3], sd_body_shape *out)
+{
+  const size_t N = (size_t) width * (size_t) m;
+  double *M = malloc(sizeof(double) * (N * N + 3 * (size_t) m)), *arm = M + N * N;
+  *out = (sd_body_shape){0};
+  if (!M) return SD_ENOMEMORY;
+  sd_body_shape_matrix(wall, m, width, x, a, M);
+  for (size_t k = 0; k < (size_t) m; k++) sd_minus(x + 3 * k, centre, arm + 3 * k);
+  const sd_status status = sd_body_shape_of(m, width, arm, M, out);
+  free(M);
+  return status;
+}
+
+int sd_body_wall_pays(int m, int bodies, double height, double extent)
+{
+  return height < 10.0 * extent && (m <= SD_BODY_WALL_SMALL || m <= 3.0 * bodies);
 }
 
 sd_status sd_body_shape_take_root(sd_body_shape *s)

@@ -6,7 +6,7 @@
 #ifndef SD_MULTIBLOB_SHAPE_H
 #define SD_MULTIBLOB_SHAPE_H
 
-#include "sd_body_wall.h"
+#include "sd_body_shape.h"
 #include "sd_faces.h"
 #include "sd_multiblob_points.h"
 #include "sd_solve.h"
@@ -36,7 +36,7 @@ typedef struct {
 sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
                                     sd_multiblob_shape *out);
 /* The shape, in axes of space, of the points that there are of spheres s in space, above a wall
- * (sd_body_wall.h); their order is that of the body's own shape. The owner frees. Status as above. */
+ * (sd_body_shape.h); their order is that of the body's own shape. The owner frees. Status as above. */
 sd_status sd_multiblob_wall_shape(const sd_multiblob *m, const sd_wall *wall,
                                   const sd_multiblob_spheres *s, const double centre[3],
                                   sd_body_shape *out);

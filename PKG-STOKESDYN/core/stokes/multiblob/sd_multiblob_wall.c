@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "sd_body_wall.h"
+#include "sd_body_shape.h"
 #include "sd_linear.h"
 #include "sd_wall_film.h"
 
@@ -126,7 +126,7 @@ sd_status sd_multiblob_wall_film(const sd_multiblob *m, const sd_wall *wall, con
   memcpy(along, u ? u : rest, sizeof along);
   along[wall->axis] = 0.0;
   place(&s, r, a, along);
-  sd_body_wall_matrix(&s.wall, m->n, 3, s.x, s.b, s.M);
+  sd_body_shape_matrix(&s.wall, m->n, 3, s.x, s.b, s.M);
   if (one_body) add_one_body(&s);
   const sd_wall_film exact = sd_wall_film_exact(1.0, s.height, floor);
   sd_wall_film_matrix(&exact, s.e, 1.0, B);

@@ -13,15 +13,6 @@ void sd_unit_roots(const sd_spheres *s, int n, double *root)
   }
 }
 
-/* Where the matrix has a sphere that cuts the wall */
-static void stand(const sd_law *law, const sd_spheres *s, long i, double x[3])
-{
-  const sd_wall *wall = &law->wall;
-  memcpy(x, s->x + 3 * i, 3 * sizeof(double));
-  if (wall->sign)
-    x[wall->axis] = wall->at + wall->sign * fmax(sd_wall_height(wall, x), s->a[i]);
-}
-
 /* B [width width], row-major, of M becomes that of C, times the taper: the roots of the diagonal are
  * (6 pi a)^1/2, and in rows of torques (8 pi a^3)^1/2 = (6 pi a)^1/2 a sqrt(4/3). */
 static inline void scale(double ai, double aj, double taper, int width, double *B)
@@ -38,8 +29,8 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
 {
   const double ai = s->a[i], aj = s->a[j];
   double xi[3], xj[3], r[3], image[36];
-  stand(law, s, i, xi);
-  stand(law, s, j, xj);
+  sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, ai, xi);
+  sd_wall_keep_off(&law->wall, s->x + 3 * (long) j, aj, xj);
   sd_minus(xi, xj, r);
   if (width == 6)
     sd_tensor_grand(r, ai, aj, 1.0, B);
@@ -57,12 +48,11 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
 static inline void own_block(const sd_law *law, const sd_spheres *s, int i, int width, double extra,
                              double *B)
 {
-  double x[3];
+  const double *x = s->x + 3 * (long) i, a = s->a[i];
   memset(B, 0, 36 * sizeof(double));
   if (law->wall.sign) {
-    stand(law, s, i, x);
-    sd_wall_block(&law->wall, width, x, s->a[i], x, s->a[i], 1.0, B);
-    scale(s->a[i], s->a[i], 1.0, width, B);
+    sd_wall_block(&law->wall, width, x, a, x, a, 1.0, B);
+    scale(a, a, 1.0, width, B);
   }
   for (int p = 0; p < width; p++) B[(width + 1) * p] += 1.0 + extra;
 }

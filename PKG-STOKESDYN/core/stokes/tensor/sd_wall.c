@@ -1,6 +1,7 @@
 #include "sd_wall.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "sd_constants.h"
 
@@ -20,6 +21,12 @@ void sd_wall_stand(const sd_wall *wall, const double x[3], double a, double out[
   sd_wall_axes(wall, axis);
   for (int d = 0; d < 3; d++) out[d] = x[axis[d]];
   if (wall->sign) out[2] = fmax(sd_wall_height(wall, x), a);
+}
+
+void sd_wall_keep_off(const sd_wall *wall, const double x[3], double a, double out[3])
+{
+  memcpy(out, x, 3 * sizeof(double));
+  if (wall->sign && sd_wall_height(wall, x) < a) out[wall->axis] = wall->at + wall->sign * a;
 }
 
 sd_wall_pair sd_wall_pair_of(const double xi[3], double a, const double xj[3], double b)

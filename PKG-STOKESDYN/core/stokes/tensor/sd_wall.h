@@ -51,6 +51,8 @@ static inline double sd_wall_height(const sd_wall *wall, const double x[3])
 void sd_wall_axes(const sd_wall *wall, int axis[3]);
 /* x in these axes, z the height, or a where that is larger. Without wall x itself. */
 void sd_wall_stand(const sd_wall *wall, const double x[3], double a, double out[3]);
+/* The same place in axes of space */
+void sd_wall_keep_off(const sd_wall *wall, const double x[3], double a, double out[3]);
 
 /* The functions of a pair. of_i: k_ji l_ji n_i; of_j: k_ij l_ij n_j */
 typedef struct {

@@ -104,7 +104,7 @@ static void add_resistance(shells *s, sd_pair_resistance *sum)
 {
   const int N = 6 * s->m->n;
   double R[12][12];
-  sd_body_shape_matrix(2 * s->m->n, 3, s->x, s->b, s->M);
+  sd_body_shape_matrix(NULL, 2 * s->m->n, 3, s->x, s->b, s->M);
   if (s->m->delta != 0.0) add_one_body(s);
   set_motions(s);
   memcpy(s->f, s->v, sizeof(double) * 12 * (size_t) N);
