@@ -149,3 +149,15 @@ void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const do
     for (int d = 0; d < 3; d++) u[3 * k + d] += even[d] + g[d] + strain[d];
   }
 }
+
+void sd_multiblob_one_body_matrix(const sd_multiblob *m, double a, const double *r, size_t size,
+                                  double *M)
+{
+  const size_t N = 3 * (size_t) m->n;
+  for (size_t j = 0; j < N; j++) {
+    double f[3 * SD_MULTIBLOB_MOST] = {0.0}, u[3 * SD_MULTIBLOB_MOST] = {0.0};
+    f[j] = 1.0;
+    sd_multiblob_one_body(m, a, 1.0, r, f, u);
+    for (size_t i = 0; i < N; i++) M[i * size + j] += u[i];
+  }
+}

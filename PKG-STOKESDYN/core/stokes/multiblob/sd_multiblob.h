@@ -31,6 +31,8 @@
 #ifndef SD_MULTIBLOB_H
 #define SD_MULTIBLOB_H
 
+#include <stddef.h>
+
 #include "sd_status.h"
 
 #ifdef __cplusplus
@@ -67,6 +69,10 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *out);
  * as it may be. No aliasing. Costs about 60 n multiplications. */
 void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const double *r,
                            const double *f, double *u);
+/* The same as a matrix, of a viscosity of 1: added to the rows and columns of these points in a matrix
+ * of `size` columns; M: the first of these numbers */
+void sd_multiblob_one_body_matrix(const sd_multiblob *m, double a, const double *r, size_t size,
+                                  double *M);
 
 #ifdef __cplusplus
 }

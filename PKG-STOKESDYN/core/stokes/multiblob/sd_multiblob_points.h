@@ -40,6 +40,12 @@ typedef struct {
   int n;
 } sd_multiblob_spheres;
 
+/* Has sphere i the one-body addition? */
+static inline int sd_multiblob_is_whole(const sd_multiblob_spheres *s, long i)
+{
+  return s->a[i] > 0.0 && (!s->mask || s->mask[i] & SD_MULTIBLOB_WHOLE);
+}
+
 /* Points of all of them: r [3 m->n n] from the centre of their sphere (NULL: not wanted), x where
  * they are, b [m->n n] radii */
 void sd_multiblob_expand(const sd_multiblob *m, const sd_multiblob_spheres *s, double *r, double *x,

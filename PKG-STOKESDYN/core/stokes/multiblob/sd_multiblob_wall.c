@@ -46,19 +46,6 @@ static void place(lone_shell *s, const double *r, double a, const double u[3])
   }
 }
 
-/* f is not needed yet: forces and velocities of one number at a time */
-static void add_one_body(lone_shell *s)
-{
-  const size_t N = 3 * (size_t) s->m->n;
-  double *f = s->f, *u = s->f + N;
-  for (size_t j = 0; j < N; j++) {
-    memset(f, 0, sizeof(double) * 2 * N);
-    f[j] = 1.0;
-    sd_multiblob_one_body(s->m, 1.0, 1.0, s->r, f, u);
-    for (size_t i = 0; i < N; i++) s->M[i * N + j] += u[i];
-  }
-}
-
 /* B, E -= the points' */
 static sd_status take_off_points(lone_shell *s, double B[36], double E[6])
 {
@@ -127,7 +114,7 @@ sd_status sd_multiblob_wall_film(const sd_multiblob *m, const sd_wall *wall, con
   along[wall->axis] = 0.0;
   place(&s, r, a, along);
   sd_body_shape_matrix(&s.wall, m->n, 3, s.x, s.b, s.M);
-  if (one_body) add_one_body(&s);
+  if (one_body) sd_multiblob_one_body_matrix(m, 1.0, s.r, N, s.M);
   const sd_wall_film exact = sd_wall_film_exact(1.0, s.height, floor);
   sd_wall_film_matrix(&exact, s.e, 1.0, B);
   sd_wall_film_flow(&exact, s.e, 1.0, along, E);
