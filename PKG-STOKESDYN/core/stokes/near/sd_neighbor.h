@@ -20,9 +20,7 @@ typedef struct {
   sd_pairs pairs;
   long *first;
   int *neighbor;
-  /* room of neighbor; that of first, less one */
-  long capacity;
-  int rows;
+  size_t first_room, room;
 } sd_neighbors;
 
 void sd_neighbors_free(sd_neighbors *list);
