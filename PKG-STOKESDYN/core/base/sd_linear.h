@@ -51,7 +51,7 @@ sd_status sd_symmetric_root(int n, double *A);
 
 /* Eigenvalues d [n], smallest first, and eigenvectors of the symmetric tridiagonal matrix with
  * diagonal d [n] in and e [n - 1], destroyed, beside it: row k of Z [n n], out, belongs to d[k].
- * work [2 n]. SD_OK; SD_ENOTFINITE. */
+ * work [2 n]. Z, work NULL: values alone. SD_OK; SD_ENOTFINITE. */
 sd_status sd_tridiagonal_eigen(int n, double *d, double *e, double *Z, double *work);
 
 /* y = A x; y = A^T x; C = A B. 3x3 row-major, no aliasing. */
