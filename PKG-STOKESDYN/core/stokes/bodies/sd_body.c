@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "sd_clump_motion.h"
 #include "sd_linear.h"
 
 /* --- K --- */

@@ -16,15 +16,6 @@ static void rigid_row(const double X[3], int p, double row[6])
   sd_cross(X, e, row + 3);
 }
 
-/* Velocity at X in the unit strain number c: E_xx E_yy E_zz E_yz E_xz E_xy */
-static void strain_at(const double X[3], int c, double v[3])
-{
-  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
-  memset(v, 0, 3 * sizeof(double));
-  v[row[c]] = X[col[c]];
-  v[col[c]] = X[row[c]];
-}
-
 /* Each pair of points, and 1/(6 pi a), 1/(8 pi a^3) on the diagonal (r = 0); forces are the first
  * three rows and columns of a block with torques. */
 void sd_body_shape_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
@@ -91,7 +82,7 @@ static void add_shells(sd_body_shape *s, const sd_clump *shells, const double *r
     if (i % 6 >= 3) continue; /* spheres do not turn with a strain */
     for (int c = 0; c < 6; c++) {
       double v[3];
-      strain_at(s->x + 3 * (i / 6), c, v);
+      sd_clump_unit_strain(c, s->x + 3 * (i / 6), v);
       for (int p = 0; p < 6; p++) C[6 * p + c] += rigid[6 * i + p] * v[i % 6];
     }
   }

@@ -60,18 +60,14 @@ sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *o, sd_cl
  * once). */
 static void unit_slip(int column, const double y[3], double s[3], double w[3])
 {
-  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
   for (int d = 0; d < 3; d++) s[d] = w[d] = 0.0;
   if (column < 3)
     s[column] = 1.0;
   else if (column < 6) {
     w[column - 3] = 1.0;
     sd_cross(w, y, s);
-  } else {
-    const int p = row[column - 6], q = col[column - 6];
-    s[p] = y[q];
-    s[q] = y[p];
-  }
+  } else
+    sd_clump_unit_strain(column - 6, y, s);
 }
 
 /* M of all points, upper triangle by rows, and its Cholesky factor for all twelve columns at once.
