@@ -5,9 +5,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Eigenvalues w [n], largest first, and eigenvectors, the columns of V [n n] row-major, of the
  * symmetric A [n n]; n <= 6. Jacobi's rotations. */
@@ -96,7 +94,5 @@ void sd_normalize(double v[3]);
 /* Some unit vector across e, which is not 0 */
 void sd_across(const double e[3], double f[3]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -32,9 +32,7 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef enum { SD_VANS_CONSISTENT, SD_VANS_YADE } sd_vans_rules;
 
@@ -446,7 +444,5 @@ double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, 
 /* Depth of the water above the bed over its mean velocity there; 0 unless that is positive. */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -32,10 +32,9 @@
 #define SD_VANS_DRAG_H
 
 #include "sd_constants.h"
+#include "sd_extern_c.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef enum {
   SD_VANS_DRAG_YADE,
@@ -86,7 +85,5 @@ static inline double sd_vans_drag_factor(sd_vans_drag_law law, double rho, doubl
 double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,
                           double speed);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

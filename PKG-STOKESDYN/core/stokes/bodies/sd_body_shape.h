@@ -25,9 +25,7 @@
 #include "sd_clump.h"
 #include "sd_wall.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* points, and numbers of each: 3 or 6 */
@@ -79,7 +77,5 @@ int sd_body_wall_pays(int m, int bodies, double height, double extent);
 sd_status sd_body_shape_take_root(sd_body_shape *s);
 void sd_body_shape_free(sd_body_shape *s);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

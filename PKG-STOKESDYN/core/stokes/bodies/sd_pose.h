@@ -8,9 +8,9 @@
 #ifndef SD_POSE_H
 #define SD_POSE_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* out [n] = v + c (v - v_old). Aliases are allowed. */
 void sd_mean_velocity(int n, const double *v, const double *v_old, double c, double *out);
@@ -29,7 +29,5 @@ void sd_pose_step(double pose[12], const double centre[3], const double step[6],
  * tmax. fastest 0: as long as allowed. */
 double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -28,9 +28,7 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* spheres, and points of the surface (n for shell 1) */
@@ -122,7 +120,5 @@ void sd_clump_unit_strain(int c, const double y[3], double v[3]);
 /* 6x6 resistance about the point at d from the one that R is about. */
 void sd_resistance_shift(const double R[36], const double d[3], double out[36]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

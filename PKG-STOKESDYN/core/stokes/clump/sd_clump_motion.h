@@ -7,9 +7,7 @@
 
 #include "sd_clump.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* What the n spheres and the fluid at their centres do */
 typedef struct {
@@ -47,7 +45,5 @@ void sd_clump_free_velocity(const sd_clump *clump, const double R[9], double eta
                             const double load[6], const double u[3], const double G[9],
                             double V[6]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -18,9 +18,7 @@
 #include "sd_ewald_split.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* See sd_ewald_choose_positive */
 #define SD_EWALD_POSITIVE 0.6
@@ -75,7 +73,5 @@ int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, d
 /* The next number whose only prime factors are 2, 3, 5 and 7: fast to transform */
 int sd_ewald_transformable(double at_least);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

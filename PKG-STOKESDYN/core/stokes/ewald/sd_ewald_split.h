@@ -5,9 +5,7 @@
 
 #include "sd_wall.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* The box with edges (lx 0 0), (xy ly 0), (xz yz lz). Spheres may stand outside of a periodic one;
  * an open one holds the centres of all and has no tilt: nothing is beyond it but fluid.
@@ -70,7 +68,5 @@ typedef struct {
   sd_ewald_images images;
 } sd_ewald;
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

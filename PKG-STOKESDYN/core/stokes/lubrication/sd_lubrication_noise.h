@@ -6,9 +6,7 @@
 
 #include "sd_lubrication.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Twelve standard normal numbers g of the pair of sphere i < n and what stands at `at` < n_all, the
  * same from wherever the pair is seen; `at` = i: what sphere i resists alone. The pair must be the
@@ -21,7 +19,5 @@ typedef int sd_lubrication_normals(void *ctx, int i, int at, double g[12]);
 sd_status sd_lubrication_noise(const sd_lubrication *L, sd_lubrication_normals *normals, void *ctx,
                                double *F);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -35,9 +35,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 enum { SD_MULTIBLOB_MOST = 42 };
 
@@ -74,7 +72,5 @@ void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const do
 void sd_multiblob_one_body_matrix(const sd_multiblob *m, double a, const double *r, size_t size,
                                   double *M);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

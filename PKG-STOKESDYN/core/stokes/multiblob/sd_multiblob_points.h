@@ -10,9 +10,7 @@
 #include "sd_multiblob.h"
 #include "sd_shape.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* What there is of a sphere's shell: bit k is set if point k is there, and SD_MULTIBLOB_WHOLE if
  * the sphere has the one-body addition. Exact as a double, too. */
@@ -61,7 +59,5 @@ void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, cons
 void sd_multiblob_moments(const sd_multiblob *m, int spheres, const double *r, const double *f,
                           double *S);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

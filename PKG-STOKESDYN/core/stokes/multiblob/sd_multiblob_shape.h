@@ -11,9 +11,7 @@
 #include "sd_multiblob_points.h"
 #include "sd_solve.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* [spheres] */
@@ -63,7 +61,5 @@ typedef struct {
 /* u = M f; ctx is an sd_multiblob_mobility. SD_OK or that of pairs. */
 sd_status sd_multiblob_apply(void *ctx, const double *f, double *u);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -22,9 +22,7 @@
 #include "sd_multiblob.h"
 #include "sd_wall.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Gap in radii of the sphere from which on there is no film */
 #define SD_MULTIBLOB_WALL_END 2.0
@@ -42,7 +40,5 @@ sd_status sd_multiblob_wall_film(const sd_multiblob *m, const sd_wall *wall, con
                                  double a, const double *r, int one_body, double floor, double eta,
                                  const double u[3], double B[36], double E[6], double *work);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

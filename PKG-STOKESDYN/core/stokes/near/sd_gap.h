@@ -6,9 +6,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* xi = 2 (R - a_i - a_j) / (a_i + a_j), the least over i < n and j < n_all whose centres are within
  * reach; negative for spheres that overlap, INFINITY: there are none so near.
@@ -17,7 +15,5 @@ extern "C" {
 sd_status sd_smallest_gap(const double *x, const double *a, const int64_t *body, int n, int n_all,
                           double reach, double *gap);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

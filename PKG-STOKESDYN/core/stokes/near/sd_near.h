@@ -4,9 +4,7 @@
 
 #include "sd_neighbor.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Pairs with R <= reach (a_i + a_j)/2, each once: in row i < n its partners j > i among spheres
  * 0 ... n_all - 1, the n of this rank and their ghosts. reach is in units of the mean radius of the
@@ -15,7 +13,5 @@ extern "C" {
  * or SD_ENOMEMORY. */
 sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all, double reach);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

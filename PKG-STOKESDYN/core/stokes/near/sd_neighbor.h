@@ -11,9 +11,7 @@
 #include "sd_product.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Pairs with their memory; zero-initialise, sd_neighbors_free in the end. */
 typedef struct {
@@ -60,7 +58,5 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const sd_named *s, int n, int n
 sd_status sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
                             int n_all, int begin, int n, double *coupling);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

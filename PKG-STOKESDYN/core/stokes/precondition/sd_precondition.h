@@ -18,9 +18,7 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* What it is made of */
 typedef struct {
@@ -62,7 +60,5 @@ extern const sd_precondition_kind
      * (sd_waves.h) */
     sd_precondition_waves;
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -13,9 +13,7 @@
 
 #include "sd_precondition.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* what was asked for, and what there is */
@@ -49,7 +47,5 @@ void sd_moved_add(double sums[SD_MOVED], const double d[3], double a);
  * factor needs 21 iterations to 1e-6 instead of 17. */
 int sd_moved_too_far(const double sums[SD_MOVED]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -30,9 +30,9 @@
 #ifndef SD_WALL_H
 #define SD_WALL_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* The fluid is where sign (x[axis] - at) > 0. sign 1 or -1; 0: there is no wall. */
 typedef struct {
@@ -68,7 +68,5 @@ void sd_wall_pair_add(const sd_wall_pair *w, int width, const double *FT, double
 void sd_wall_block(const sd_wall *wall, int width, const double xi[3], double a, const double xj[3],
                    double b, double eta, double *M);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

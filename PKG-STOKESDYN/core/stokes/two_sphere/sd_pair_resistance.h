@@ -11,9 +11,9 @@
 #ifndef SD_PAIR_RESISTANCE_H
 #define SD_PAIR_RESISTANCE_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* For a viscosity of 1: whoever has another multiplies. */
 typedef struct {
@@ -43,7 +43,5 @@ sd_pair_resistance sd_pair_resistance_relative(const sd_pair_resistance *D, doub
 sd_pair_resistance sd_pair_resistance_sum(double p, const sd_pair_resistance *A, double q,
                                           const sd_pair_resistance *B);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif
