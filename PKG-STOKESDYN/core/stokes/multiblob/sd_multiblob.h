@@ -39,11 +39,6 @@ SD_BEGIN_C
 
 enum { SD_MULTIBLOB_MOST = 42 };
 
-/* What a lone shell has over exact */
-typedef struct {
-  double drag, rotation, stresslet, faxen, pressure_gradient;
-} sd_multiblob_lone;
-
 typedef struct {
   /* points */
   int n;
@@ -51,8 +46,7 @@ typedef struct {
   double radius, point;
   /* [3n] r_k of a free sphere of radius 1 */
   double r[3 * SD_MULTIBLOB_MOST];
-  /* of the points alone, and the constants that repair it: all 0 without the addition */
-  sd_multiblob_lone lone;
+  /* the constants of the addition: all 0 without it */
   double alpha, beta, delta, strain;
 } sd_multiblob;
 
