@@ -1,4 +1,4 @@
-#include "sd_unit.h"
+#include "sd_precondition_internal.h"
 
 #include <string.h>
 

@@ -11,7 +11,7 @@
 #ifndef SD_PAIR_RESISTANCE_H
 #define SD_PAIR_RESISTANCE_H
 
-#include "sd_extern_c.h"
+#include "sd_status.h"
 
 SD_BEGIN_C
 
@@ -42,6 +42,15 @@ sd_pair_resistance sd_pair_resistance_relative(const sd_pair_resistance *D, doub
 /* p A + q B */
 sd_pair_resistance sd_pair_resistance_sum(double p, const sd_pair_resistance *A, double q,
                                           const sd_pair_resistance *B);
+
+/* Random forces and torques of two spheres whose covariance is a resistance of the pair, in closed
+ * form: it falls into forces along d (2x2), torques along d (2x2) and, across d, forces along e with
+ * torques along e x d (4x4), the same for both directions e. F [12] += forces and torques on the first
+ * sphere, then on the second, of covariance R from standard normal numbers g [12], four vectors in
+ * space: only d and these say what comes out, no choice of axes across d. SD_OK; SD_EINDEFINITE: an
+ * eigenvalue below -1e-6 of the largest; what is above is rounding and counts as 0. */
+sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12],
+                        double F[12]);
 
 SD_END_C
 #endif
