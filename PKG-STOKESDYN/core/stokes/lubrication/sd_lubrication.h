@@ -33,7 +33,7 @@
 #include <stdint.h>
 
 #include "sd_film.h"
-#include "sd_near.h"
+#include "sd_neighbor.h"
 #include "sd_world.h"
 
 SD_BEGIN_C

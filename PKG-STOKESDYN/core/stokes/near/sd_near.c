@@ -1,4 +1,4 @@
-#include "sd_near.h"
+#include "sd_neighbor.h"
 
 #include <limits.h>
 #include <math.h>
