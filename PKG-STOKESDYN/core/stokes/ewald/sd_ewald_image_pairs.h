@@ -4,7 +4,7 @@
 #define SD_EWALD_IMAGE_PAIRS_H
 
 #include "sd_cells.h"
-#include "sd_ewald_split.h"
+#include "sd_ewald.h"
 #include "sd_product.h"
 #include "sd_status.h"
 
