@@ -16,8 +16,8 @@ static void rigid_row(const double X[3], int p, double row[6])
   sd_cross(X, e, row + 3);
 }
 
-/* Each pair of points, and 1/(6 pi a), 1/(8 pi a^3) on the diagonal (r = 0); forces are the first
- * three rows and columns of a block with torques. */
+/* Each pair of points, whose blocks are the transposed ones of each other, and 1/(6 pi a),
+ * 1/(8 pi a^3) on the diagonal (r = 0). */
 void sd_body_shape_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
                           double *M)
 {
@@ -25,16 +25,20 @@ void sd_body_shape_matrix(const sd_wall *wall, int m, int width, const double *x
   const size_t w = (size_t) width, N = w * (size_t) m;
   if (!wall) wall = &none;
   for (size_t i = 0; i < (size_t) m; i++)
-    for (size_t j = 0; j < (size_t) m; j++) {
+    for (size_t j = i; j < (size_t) m; j++) {
       double xi[3], xj[3], r[3], block[36], image[36] = {0.0};
       sd_wall_keep_off(wall, x + 3 * i, a[i], xi);
       sd_wall_keep_off(wall, x + 3 * j, a[j], xj);
       sd_minus(xi, xj, r);
-      sd_tensor_grand(r, a[i], a[j], 1.0, block);
+      if (width == 6)
+        sd_tensor_grand(r, a[i], a[j], 1.0, block);
+      else
+        sd_tensor_uf(SD_TENSOR_RPY, r, a[i], a[j], 1.0, block);
       if (wall->sign) sd_wall_block(wall, width, xi, a[i], xj, a[j], 1.0, image);
       for (size_t p = 0; p < w; p++)
         for (size_t q = 0; q < w; q++)
-          M[(w * i + p) * N + w * j + q] = block[6 * p + q] + image[w * p + q];
+          M[(w * i + p) * N + w * j + q] = M[(w * j + q) * N + w * i + p] =
+              block[w * p + q] + image[w * p + q];
     }
 }
 
