@@ -1,7 +1,6 @@
 #include "sd_body_shape.h"
 
 #include "sd_linear.h"
-#include "sd_tensor.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,32 +13,6 @@ static void rigid_row(const double X[3], int p, double row[6])
   if (p >= 3) return;
   const double e[3] = {p == 0, p == 1, p == 2};
   sd_cross(X, e, row + 3);
-}
-
-/* Each pair of points, whose blocks are the transposed ones of each other, and 1/(6 pi a),
- * 1/(8 pi a^3) on the diagonal (r = 0). */
-void sd_body_shape_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
-                          double *M)
-{
-  static const sd_wall none = {.sign = 0};
-  const size_t w = (size_t) width, N = w * (size_t) m;
-  if (!wall) wall = &none;
-  for (size_t i = 0; i < (size_t) m; i++)
-    for (size_t j = i; j < (size_t) m; j++) {
-      double xi[3], xj[3], r[3], block[36], image[36] = {0.0};
-      sd_wall_keep_off(wall, x + 3 * i, a[i], xi);
-      sd_wall_keep_off(wall, x + 3 * j, a[j], xj);
-      sd_minus(xi, xj, r);
-      if (width == 6)
-        sd_tensor_grand(r, a[i], a[j], 1.0, block);
-      else
-        sd_tensor_uf(SD_TENSOR_RPY, r, a[i], a[j], 1.0, block);
-      if (wall->sign) sd_wall_block(wall, width, xi, a[i], xj, a[j], 1.0, image);
-      for (size_t p = 0; p < w; p++)
-        for (size_t q = 0; q < w; q++)
-          M[(w * i + p) * N + w * j + q] = M[(w * j + q) * N + w * i + p] =
-              block[w * p + q] + image[w * p + q];
-    }
 }
 
 /* rigid = inverse K, and its part that works on the body as a whole, R = K^T rigid */
@@ -146,7 +119,7 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
   double *M = malloc(sizeof(double) * N * N);
   *s = (sd_body_shape){0};
   if (!M) return SD_ENOMEMORY;
-  sd_body_shape_matrix(NULL, shape->n, 6, shape->x, shape->a, M);
+  sd_wall_matrix(NULL, shape->n, 6, shape->x, shape->a, M);
   sd_status status = sd_body_shape_of(shape->n, 6, shape->x, M, s);
   /* Now N_spheres and M_b^-1 K are known, which M_b' is made of; then once more with it. */
   if (status == SD_OK && shells) {
@@ -166,7 +139,7 @@ sd_status sd_body_wall_shape(const sd_wall *wall, int m, int width, const double
   double *M = malloc(sizeof(double) * (N * N + 3 * (size_t) m)), *arm = M + N * N;
   *out = (sd_body_shape){0};
   if (!M) return SD_ENOMEMORY;
-  sd_body_shape_matrix(wall, m, width, x, a, M);
+  sd_wall_matrix(wall, m, width, x, a, M);
   for (size_t k = 0; k < (size_t) m; k++) sd_minus(x + 3 * k, centre, arm + 3 * k);
   const sd_status status = sd_body_shape_of(m, width, arm, M, out);
   free(M);

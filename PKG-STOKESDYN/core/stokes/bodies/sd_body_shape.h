@@ -44,11 +44,7 @@ typedef struct {
   double carried[36];
 } sd_body_shape;
 
-/* M [(width m)^2], row-major: RPY between m points x [3m] of radii a [m] in a fluid of viscosity 1,
- * with torques for width 6. wall: with their images in it, in axes of space; NULL: there is none */
-void sd_body_shape_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
-                          double *M);
-/* The shape of points x [3m] whose matrix is M [(width m)^2]: that of sd_body_shape_matrix,
+/* The shape of points x [3m] whose matrix is M [(width m)^2]: that of sd_wall_matrix,
  * or with what a model adds for each body alone. The owner frees.
  * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: M is not positive definite (points of equal radii at one
  * place); SD_ENOTFINITE. */

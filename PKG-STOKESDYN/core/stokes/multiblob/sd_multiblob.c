@@ -53,7 +53,7 @@ static sd_status resistance_of_lone(const sd_multiblob *m, double R[MODES][MODES
     motions_at(m, m->r + 3 * k, motion);
     for (size_t e = 0; e < MODES; e++) memcpy(v + e * N + 3 * k, motion[e], sizeof motion[e]);
   }
-  sd_body_shape_matrix(NULL, m->n, 3, m->r, b, M);
+  sd_wall_matrix(NULL, m->n, 3, m->r, b, M);
   memcpy(f, v, sizeof(double) * MODES * N);
   const sd_status status = sd_cholesky_solve((int) N, M, MODES, f);
   for (size_t e = 0; e < MODES; e++)

@@ -44,7 +44,7 @@ static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall,
   }
   double *M = malloc(sizeof(double) * 9 * (size_t) count * (size_t) count);
   if (!M) return SD_ENOMEMORY;
-  sd_body_shape_matrix(wall, count, 3, x, b, M);
+  sd_wall_matrix(wall, count, 3, x, b, M);
   add_one_body(m, s, r, row, count, M);
   for (int k = 0; k < 3 * count; k++) x[k] -= centre[k % 3];
   const sd_status status = sd_body_shape_of(count, 3, x, M, out);

@@ -21,7 +21,7 @@ static sd_status lone_shell(const sd_multiblob *m, const sd_wall *wall, double h
     x[3 * k + wall->axis] += wall->sign * height;
     b[k] = m->point;
   }
-  sd_body_shape_matrix(wall, m->n, 3, x, b, M);
+  sd_wall_matrix(wall, m->n, 3, x, b, M);
   if (one_body) sd_multiblob_one_body_matrix(m, 1.0, r, N, M);
   const sd_status status = sd_body_shape_of(m->n, 3, r, M, out);
   free(M);

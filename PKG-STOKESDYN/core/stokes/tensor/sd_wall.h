@@ -68,5 +68,10 @@ void sd_wall_pair_add(const sd_wall_pair *w, int width, const double *FT, double
 void sd_wall_block(const sd_wall *wall, int width, const double xi[3], double a, const double xj[3],
                    double b, double eta, double *M);
 
+/* M [(width m)^2], row-major: RPY between m points x [3m] of radii a [m] in a fluid of viscosity 1,
+ * with torques for width 6. wall: with their images in it, in axes of space; NULL: there is none */
+void sd_wall_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
+                    double *M);
+
 SD_END_C
 #endif

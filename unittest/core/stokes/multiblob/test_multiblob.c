@@ -24,7 +24,7 @@ static lone_numbers numbers_of(int n, int one_body, double a, double eta, int e)
   assert_int_equal(sd_multiblob_create(n, one_body, &m), SD_OK);
   const int N = 3 * n, p = (e + 1) % 3;
   for (int k = 0; k < N; k++) r[k] = a * m.r[k], b[k / 3] = a * m.point;
-  sd_body_shape_matrix(NULL, n, 3, r, b, M);
+  sd_wall_matrix(NULL, n, 3, r, b, M);
   for (int k = 0; k < N * N; k++) M[k] /= eta;
   for (int j = 0; j < N; j++) {
     for (int k = 0; k < N; k++) unit[k] = k == j, column[k] = 0.0;

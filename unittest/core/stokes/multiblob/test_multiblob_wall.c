@@ -22,7 +22,7 @@ static blobs *above_wall(int points, int one_body, int n, const double *x, const
   for (int i = 0; turn && i < n; i++) memcpy(s->turn + 9 * i, turn, 9 * sizeof(double));
   blobs_expand(s);
   for (int k = 0; k < s->N / 3; k++) s->at[3 * k + 2] = fmax(s->at[3 * k + 2], s->b[k]);
-  sd_body_shape_matrix(NULL, s->N / 3, 3, s->at, s->b, s->M);
+  sd_wall_matrix(NULL, s->N / 3, 3, s->at, s->b, s->M);
   for (int i = 0; i < s->N / 3; i++)
     for (int j = 0; j < s->N / 3; j++) {
       sd_wall_block(&ground, 3, s->at + 3 * i, s->b[i], s->at + 3 * j, s->b[j], 1.0, block);

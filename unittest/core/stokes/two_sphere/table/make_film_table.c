@@ -91,7 +91,7 @@ static void add_resistance(shells *s, sd_pair_resistance *sum)
 {
   const int N = 6 * s->m->n;
   double R[12][12];
-  sd_body_shape_matrix(NULL, 2 * s->m->n, 3, s->x, s->b, s->M);
+  sd_wall_matrix(NULL, 2 * s->m->n, 3, s->x, s->b, s->M);
   for (int q = 0; q < 2 && s->m->delta != 0.0; q++)
     sd_multiblob_one_body_matrix(s->m, s->a[q], s->r + N / 2 * q, (size_t) N, s->M + N / 2 * q * (N + 1));
   set_motions(s);
