@@ -1,8 +1,6 @@
 #include "sd_vans_internal.h"
 #include "sd_vans_yade.h"
 
-#include <math.h>
-
 int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
 {
   const int N = mesh->ncell;

@@ -1,6 +1,5 @@
 #include "sd_multiblob_points.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "sd_linear.h"

@@ -1,7 +1,6 @@
 #include "sd_neighbor.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

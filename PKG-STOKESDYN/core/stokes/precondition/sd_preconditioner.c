@@ -1,6 +1,5 @@
 #include "sd_preconditioner.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
