@@ -60,9 +60,6 @@ typedef struct {
 /* N(Re), Re >= 0. */
 double sd_vans_drag_number(sd_vans_drag_of_one law, double Re);
 
-/* n(Re), Re that of a lone grain. */
-double sd_vans_richardson_zaki(double Re);
-
 /* What a slice does to the drag of the grains in it: e^-exponent where the hindrance is a power,
  * otherwise e = 1 - phi itself. Once per profile instead of once per grain. [ncell] */
 void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,

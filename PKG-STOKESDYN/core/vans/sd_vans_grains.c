@@ -31,9 +31,8 @@ static int next_piece(const sd_vans_mesh *mesh, int point, double z, double a, s
   return 1;
 }
 
-/* Its slices, and how many there are; Yade has its own. */
-static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
-                     int *first, double *V, int max)
+int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
+                   int *first, double *V, int max)
 {
   if (rules == SD_VANS_YADE && !point) return sd_vans_yade_slices(mesh, z, a, first, V, max);
   int count = 0;
@@ -44,12 +43,6 @@ static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, d
     V[count++] = part.V;
   }
   return count;
-}
-
-int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
-                   double *V, int max)
-{
-  return slices_of(mesh, rules, 0, z, a, first, V, max);
 }
 
 /* Exactly, since radii are names here: a grain that has grown belongs to no class. */
@@ -121,7 +114,7 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     if (grains->take && !grains->take[i]) continue;
     const double z = grains->x[3 * (long) i + 2], *v = grains->v + 3 * (long) i, a = grains->a[i];
     int slices[2] = {0, 0}; /* the first, how many */
-    slices[1] = slices_of(mesh, law->rules, how->point, z, a, &slices[0], V, N);
+    slices[1] = sd_vans_slices(mesh, law->rules, how->point, z, a, &slices[0], V, N);
     const int first = slices[0], count = slices[1];
     /* a share of the sphere is that share of each of its slices */
     if (grains->weight)

@@ -68,7 +68,6 @@ typedef struct {
   int count;
   sd_shell *shell;
 } sd_shells;
-sd_status sd_shells_get(sd_shells *cache, int n, const sd_shell **shell);
 void sd_shells_free(sd_shells *cache);
 
 typedef struct {
