@@ -87,12 +87,17 @@ sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *me
                            int width, double *A)
 {
   static const double extra[] = {0.0, 1e-12, 1e-9, 1e-6};
+  /* Pivots below this are rounding, as those of equal spheres at one point are. */
+  const double lost = 1e-7;
+  const long size = width * (long) m;
   for (int k = 0; k < 4; k++) {
     if (width == 3)
       fill(law, s, member, m, 3, extra[k], A, 0);
     else
       fill(law, s, member, m, 6, extra[k], A, 0);
-    const sd_status status = sd_cholesky(width * m, A);
+    sd_status status = sd_cholesky((int) size, A);
+    for (long p = 0; p < size && status == SD_OK; p++)
+      if (!(A[p * (size + 1)] > lost)) status = SD_ESINGULAR;
     if (status != SD_ESINGULAR) return status;
   }
   return SD_EINDEFINITE;
