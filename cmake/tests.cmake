@@ -68,9 +68,9 @@ if(NOT STOKESDYN_SANITIZE)
   endforeach()
 endif()
 
-# Two spheres exactly, which the plugin has as a table: what makes the shipped one (core/stokes/two_sphere/table), and is
-# tested. Made anew at some nodes, it is the same.
-set(table ${source}/core/stokes/two_sphere/table)
+# Two spheres exactly, which the plugin has as a table: what makes the shipped one, and is tested. Made anew at some nodes,
+# it is the same.
+set(table ${tests}/stokes/two_sphere/table)
 file(GLOB exact_sources CONFIGURE_DEPENDS ${table}/sd_*.c)
 add_library(two_sphere_exact STATIC ${exact_sources})
 target_include_directories(two_sphere_exact PUBLIC ${table})

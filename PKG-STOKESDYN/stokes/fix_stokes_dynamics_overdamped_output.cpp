@@ -5,8 +5,8 @@
 #include "keywords.h"
 #include "named_state.h"
 
-#include "sd_gap.h"
 #include "sd_linear.h"
+#include "sd_neighbor.h"
 
 #include "atom.h"
 #include "comm.h"

@@ -81,7 +81,7 @@ void Lubrication::add_wall(const Scene &where)
   const sd_wall &wall = where.settings.wall;
   const sd_spheres s = where.local();
   const sd_multiblob *model = shells ? &where.shells->model() : nullptr;
-  std::vector<double> r(model ? 3 * model->n : 0), work(model ? sd_multiblob_wall_work(model) : 0);
+  std::vector<double> r(model ? 3 * model->n : 0);
   double normal[3] = {0.0};
   normal[wall.axis] = wall.sign;
   for (size_t k = 0; k < (size_t) where.size(); k++) {
@@ -93,7 +93,7 @@ void Lubrication::add_wall(const Scene &where)
         for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];
       }
       check(sd_multiblob_wall_film(model, &wall, x, s.a[k], r.data(), shells->one_body, settings.gap,
-                                   eta, flow, B, E, work.data()));
+                                   eta, flow, B, E));
     } else {
       const sd_wall_film film = sd_wall_film_at(s.a[k], sd_wall_height(&wall, x), settings.gap);
       sd_wall_film_matrix(&film, normal, eta, B);

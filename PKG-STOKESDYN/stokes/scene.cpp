@@ -339,7 +339,7 @@ sd_status Scene::sum(void *ctx, double *values, int count)
 
 double Scene::memory_usage() const
 {
-  return sizeof(int) * ((double) candidates.capacity + pairs.capacity + row_of.capacity()) +
+  return sizeof(int) * ((double) candidates.room + pairs.room + row_of.capacity()) +
       sizeof(double) *
       (x.capacity() + a.capacity() + w.capacity() + of_copies.capacity() + 5.0 * n_all) +
       2.0 * sizeof(int64_t) * (double) tags.capacity() + halo.memory_usage() +

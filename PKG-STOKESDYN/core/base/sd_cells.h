@@ -10,9 +10,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* A cell by its number, and its first point; -1: this slot of the table is empty */
 typedef struct {
@@ -105,7 +103,5 @@ static inline int sd_cells_step(const sd_cells *c, sd_cells_walk *w)
   return 1;
 }
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

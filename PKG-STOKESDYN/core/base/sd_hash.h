@@ -4,10 +4,6 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* 2^64 over the golden ratio: its multiples spread keys that follow one another evenly. */
 #define SD_HASH_STEP UINT64_C(0x9e3779b97f4a7c15)
 
@@ -38,7 +34,4 @@ static inline void sd_hash_add_row(uint64_t tag, const double *v, int n, double 
   }
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

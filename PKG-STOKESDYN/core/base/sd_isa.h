@@ -11,9 +11,9 @@
 #ifndef SD_ISA_H
 #define SD_ISA_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* BEST: the widest that build and processor have. From plain on each is faster than the one
  * before, on every processor that has both. */
@@ -57,7 +57,5 @@ int sd_isa_supported(sd_isa isa);
 #define SD_KERNELS_OF(name, least, isa) ((void) (isa), &name##_##least)
 #endif
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

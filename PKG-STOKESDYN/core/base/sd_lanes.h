@@ -195,18 +195,9 @@ INLINE int keep(int *list, const int j[LANES], unsigned hits)
 /* Of the numbers j, j + 1 ... in the same way */
 INLINE int keep_next(int *list, int j, unsigned hits)
 {
-#ifdef SD_AVX512
   int next[LANES];
   for (int k = 0; k < LANES; k++) next[k] = j + k;
   return keep(list, next, hits);
-#else
-  int many = 0;
-  for (int k = 0; k < LANES; k++) {
-    list[many] = j + k;
-    many += hits >> k & 1;
-  }
-  return many;
-#endif
 }
 
 /* --- roots --- */

@@ -157,7 +157,7 @@ sd_status sd_tridiagonal_eigen(int n, double *d, double *e, double *Z, double *w
     if (!isfinite(d[k]) || (k + 1 < n && !isfinite(e[k]))) return SD_ENOTFINITE;
   const int before = one_thread();
   int info;
-  dstev_("V", &n, d, e, Z, &n, work, &info, 1);
+  dstev_(Z ? "V" : "N", &n, d, e, Z, &n, work, &info, 1);
   threads_as_before(before);
   return info == 0 ? SD_OK : SD_ENOTFINITE;
 }

@@ -5,9 +5,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Eigenvalues w [n], largest first, and eigenvectors, the columns of V [n n] row-major, of the
  * symmetric A [n n]; n <= 6. Jacobi's rotations. */
@@ -51,7 +49,7 @@ sd_status sd_symmetric_root(int n, double *A);
 
 /* Eigenvalues d [n], smallest first, and eigenvectors of the symmetric tridiagonal matrix with
  * diagonal d [n] in and e [n - 1], destroyed, beside it: row k of Z [n n], out, belongs to d[k].
- * work [2 n]. SD_OK; SD_ENOTFINITE. */
+ * work [2 n]. Z, work NULL: values alone. SD_OK; SD_ENOTFINITE. */
 sd_status sd_tridiagonal_eigen(int n, double *d, double *e, double *Z, double *work);
 
 /* y = A x; y = A^T x; C = A B. 3x3 row-major, no aliasing. */
@@ -96,7 +94,5 @@ void sd_normalize(double v[3]);
 /* Some unit vector across e, which is not 0 */
 void sd_across(const double e[3], double f[3]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

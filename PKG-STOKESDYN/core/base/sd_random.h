@@ -10,9 +10,9 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* What the numbers are for. tag: ID of the atom; lowest ID of the body; number of the row of two
  * points of a grid; sd_random_pair() of two spheres; ID of a grain */
@@ -41,7 +41,5 @@ void sd_random_normals(const sd_random_key *key, uint64_t tag, int n, double *ou
  * such pairs in 2^64 it is the same. */
 uint64_t sd_random_pair(uint64_t first, uint64_t second, uint32_t which);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -5,9 +5,9 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* Room for count elements behind *array, which keeps those it has; out of memory: as before. */
 int sd_grow(void *array, size_t size, size_t count);
@@ -23,7 +23,5 @@ int sd_reserve(void *array, size_t size, size_t count, size_t *room);
 /* The same of doubles that begin on a border of cache lines, NULL: out of memory. *block is for free(). */
 double *sd_reserve_lines(double **block, size_t count, size_t *room);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

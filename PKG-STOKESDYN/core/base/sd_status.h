@@ -3,9 +3,9 @@
 #ifndef SD_STATUS_H
 #define SD_STATUS_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 #define SD_STATUS_LIST(_)                                                              \
   _(SD_OK, "converged")                                                                \
@@ -27,7 +27,5 @@ typedef enum {
 
 const char *sd_status_string(sd_status status);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -4,10 +4,6 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What an engine of sd_mobility.h may ask of its caller. Rows have `width` numbers; each function
  * returns SD_OK or why it failed, and all ranks call it together. NULL: one rank, in open space,
  * where the answer is what was asked with. */
@@ -61,7 +57,4 @@ static inline int sd_world_me(const sd_world *world)
   return world->ranks > 0 ? world->me : 0;
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

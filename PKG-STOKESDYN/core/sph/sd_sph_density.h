@@ -4,9 +4,7 @@
 
 #include "sd_sph_sums.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* q [4 (n+1)] for sd_sph_weigh: m, m / rho, 0, 0. */
 void sd_sph_pack_masses(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
@@ -23,7 +21,5 @@ typedef struct {
 void sd_sph_sum_densities(const sd_sph_model *model, const sd_sph_particles *p,
                           const sd_sph_densities *how, double *rho);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

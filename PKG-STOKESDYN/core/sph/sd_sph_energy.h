@@ -4,9 +4,7 @@
 
 #include "sd_sph_pressure.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Energy per mass that is stored in a fluid of density rho > 0, e = int P / rho^2 drho from rho0 to
  * rho (absolut: from 1). With s = ln(rho / rho0)
@@ -39,7 +37,5 @@ double sd_sph_power(const sd_sph_members *g, const double *F, double *others);
 /* sum m b.y of rows y [3 n], for one vector b */
 double sd_sph_along(const sd_sph_members *g, const double b[3], const double *y);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

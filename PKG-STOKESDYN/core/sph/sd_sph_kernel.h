@@ -13,9 +13,9 @@
 #ifndef SD_SPH_KERNEL_H
 #define SD_SPH_KERNEL_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 typedef enum { SD_SPH_CUBICSPLINE, SD_SPH_WENDLAND } sd_sph_kernel;
 
@@ -28,7 +28,5 @@ double sd_sph_G(sd_sph_kernel kernel, double q);
 double sd_sph_W(sd_sph_kernel kernel, int dimension, double r, double h);
 double sd_sph_dW_over_r(sd_sph_kernel kernel, int dimension, double r, double h);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

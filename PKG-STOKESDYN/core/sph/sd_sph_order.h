@@ -5,9 +5,7 @@
 
 #include "sd_sph_sums.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Fills the last column of x4 with V = m / rho, and that of row n with 0. */
 void sd_sph_pack_volumes(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
@@ -37,7 +35,5 @@ typedef struct {
  * Returns the first particle where correction stops, -1: there is none. */
 int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

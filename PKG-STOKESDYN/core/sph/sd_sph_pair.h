@@ -35,9 +35,7 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef enum {
   SD_SPH_PLAIN,
@@ -139,7 +137,5 @@ void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, co
 double sd_sph_forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      int rates, double *f4, double *each);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

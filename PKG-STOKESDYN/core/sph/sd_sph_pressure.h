@@ -9,9 +9,9 @@
 #ifndef SD_SPH_PRESSURE_H
 #define SD_SPH_PRESSURE_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 typedef enum { SD_SPH_ABSOLUT, SD_SPH_RELATIV, SD_SPH_TAIT } sd_sph_state_kind;
 
@@ -44,7 +44,5 @@ void sd_sph_keep_size(const sd_sph_state *state, int n, double *rho, const int *
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
                       double *P);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -5,9 +5,7 @@
 
 #include "sd_sph_pair.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Pressure at a point, Shepard's mean P = sum V P W / sum V W over the particles in reach: adds a
  * particle of volume V at the distance r to the two sums. */
@@ -38,7 +36,5 @@ void sd_sph_moments(const sd_sph_model *model, const sd_sph_list *list, const sd
 static const double SD_SPH_SURFACE = 0.65;
 double sd_sph_least_eigenvalue(int dimension, const double M[6]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -4,9 +4,7 @@
 
 #include "sd_sph_pair.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* largest [n+1]: the largest |h v.d / (r^2 + eta)| over the neighbours, taken as maximum with what
  * is there. */
@@ -20,7 +18,5 @@ double sd_sph_fastest(int n, const double *v);
  * (Morris et al. 1997); the smaller. */
 double sd_sph_step_limit(double h, double c, double approach, double mu, double rho);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

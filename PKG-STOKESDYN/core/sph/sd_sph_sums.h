@@ -4,9 +4,7 @@
 
 #include "sd_sph_pair.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* How much the pass in the middle of a step sums. Each level has the columns of those before it. */
 typedef enum {
@@ -93,7 +91,5 @@ void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 void sd_sph_before_walls(const sd_sph_model *model, const sd_sph_list *list,
                          const sd_sph_particles *p, const double *q, double *sums);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -5,9 +5,7 @@
 #include "sd_sph_pressure.h"
 #include "sd_sph_sums.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Force of a mirror particle behind the wall, m^2 2 P / rho^2 |W'(r)|; dW = W'(r) < 0. */
 double sd_sph_mirror(double m, double P, double rho, double dW);
@@ -54,7 +52,5 @@ typedef struct {
 double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double v[3],
                             const double b[3], double row[4]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -32,9 +32,7 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef enum { SD_VANS_CONSISTENT, SD_VANS_YADE } sd_vans_rules;
 
@@ -77,14 +75,15 @@ typedef struct {
 
 /* Volume of a sphere in each slice that it reaches: differences of one primitive, so that the parts
  * of any cut sum to 4/3 pi a^3 up to rounding.
+ *   point   1: all of it is where its centre is
  *   z       height of its centre (not above z_ref: as LAMMPS has it)
  *   first   out, lowest slice that it reaches, >= 0
  *   V       out, V[k] is the volume in slice first + k
  * Returns how many; 0 if it reaches none; never more than max (a caller gives N). What lies outside
  * the mesh is not in V. Yade's rule mirrors the slices at that of the centre and cuts each only on
  * its far side: for a/dz < 5 the volume is not conserved. */
-int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
-                   double *V, int max);
+int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
+                   int *first, double *V, int max);
 
 typedef struct {
   /* density and dynamic viscosity of the fluid, > 0 */
@@ -252,10 +251,6 @@ double sd_vans_drive(const sd_vans_fluid *fluid);
 void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
                            const double *phi, const double *classes, const double *phi_bed_profile,
                            double *length, double *scratch);
-
-/* Height of the top of the bed: lower edge of the highest slice with phi above phi_bed; 0 if there
- * is none. */
-double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed);
 
 /* Effective kinematic viscosity at a node of solid fraction phi: eta/rho times 1 (constant),
  * 1 + 2.5 phi (Einstein), (1 - phi)^-2.8 (power: Krieger & Dougherty's form). Yade's rule has
@@ -447,7 +442,5 @@ double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, 
 /* Depth of the water above the bed over the size of its mean velocity there; 0 at rest. */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

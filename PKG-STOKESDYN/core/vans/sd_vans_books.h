@@ -4,9 +4,7 @@
 
 #include "sd_vans.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* A solve takes `moved` from the water for the grains. Its viscous part is handed to them as a
  * force until the next solve. Its drag is what the exchange coefficient foresees. When the next
@@ -58,7 +56,5 @@ double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, co
 void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
                        const sd_vans_books *books, double *shear, double *foreseen);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

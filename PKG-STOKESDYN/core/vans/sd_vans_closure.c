@@ -54,8 +54,9 @@ static void li_sawamoto(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
   }
 }
 
-/* From the top down: what lies below the highest slice of bed is bed. */
-double sd_vans_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed)
+/* Height of the top of the bed: lower edge of the highest slice with phi above phi_bed; 0 if there
+ * is none. What lies below that slice is bed. */
+static double top_of_bed(const sd_vans_mesh *mesh, const double *phi, double phi_bed)
 {
   int n = mesh->ncell - 1;
   while (n > 0 && !(phi[n] > phi_bed)) n--;
@@ -129,7 +130,7 @@ static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
     case SD_VANS_NI_CAPART: {
       pore_length(mesh, fluid, phi, classes, pore, D);
       /* in the bed the pores set the length, above it the distance from its top */
-      const double bed = sd_vans_bed(mesh, phi_bed_profile, fluid->phi_bed);
+      const double bed = top_of_bed(mesh, phi_bed_profile, fluid->phi_bed);
       for (int j = 0; j < N; j++)
         length[j] = fmax(fmin(0.5 * pore[j], 0.2 * D[j]), kappa * (z[j] - bed));
       break;

@@ -20,11 +20,6 @@ double sd_vans_drag_number(sd_vans_drag_of_one law, double Re)
   return 0.0;
 }
 
-double sd_vans_richardson_zaki(double Re)
-{
-  return fmin(fmax(4.4 * pow(Re, Re < 1.0 ? -0.03 : -0.1), 2.39), 4.65);
-}
-
 void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
                           double *hindrance)
 {

@@ -32,10 +32,9 @@
 #define SD_VANS_DRAG_H
 
 #include "sd_constants.h"
+#include "sd_extern_c.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef enum {
   SD_VANS_DRAG_YADE,
@@ -61,9 +60,6 @@ typedef struct {
 /* N(Re), Re >= 0. */
 double sd_vans_drag_number(sd_vans_drag_of_one law, double Re);
 
-/* n(Re), Re that of a lone grain. */
-double sd_vans_richardson_zaki(double Re);
-
 /* What a slice does to the drag of the grains in it: e^-exponent where the hindrance is a power,
  * otherwise e = 1 - phi itself. Once per profile instead of once per grain. [ncell] */
 void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
@@ -86,7 +82,5 @@ static inline double sd_vans_drag_factor(sd_vans_drag_law law, double rho, doubl
 double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,
                           double speed);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,8 +1,6 @@
 #include "sd_vans_internal.h"
 #include "sd_vans_yade.h"
 
-#include <math.h>
-
 int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
 {
   const int N = mesh->ncell;
@@ -24,17 +22,26 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
   return lo;
 }
 
-int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, double z, double a, int *first,
-                   double *V, int max)
+/* A sphere as sd_vans_next_part cuts it, or, with point, in one piece where its centre is. */
+static int next_piece(const sd_vans_mesh *mesh, int point, double z, double a, sd_vans_part *part)
 {
-  if (rules == SD_VANS_YADE) return sd_vans_yade_slices(mesh, z, a, first, V, max);
+  if (!point) return sd_vans_next_part(mesh, a, part);
+  if (!(part->top < a)) return 0;
+  *part = (sd_vans_part){sd_vans_slice_of(mesh, z), 4.0 / 3.0 * SD_PI * a * a * a, a, 0.0, 0.0};
+  return 1;
+}
+
+int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
+                   int *first, double *V, int max)
+{
+  if (rules == SD_VANS_YADE && !point) return sd_vans_yade_slices(mesh, z, a, first, V, max);
   int count = 0;
   sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
-  int more = sd_vans_next_part(mesh, a, &part);
-  if (part.n < 0) more = sd_vans_next_part(mesh, a, &part);
-  *first = part.n;
-  for (; more && part.n < mesh->ncell && count < max; more = sd_vans_next_part(mesh, a, &part))
+  while (next_piece(mesh, point, z, a, &part)) {
+    if (part.n < 0 || part.n >= mesh->ncell || count == max) continue;
+    if (count == 0) *first = part.n;
     V[count++] = part.V;
+  }
   return count;
 }
 
@@ -62,18 +69,6 @@ static void add_slices(double *sums, int first, int count, const double *V, cons
 {
   double *sum = sums + (long) first * SD_VANS_ROWS;
   for (int k = 0; k < count; k++) add(sum + k * SD_VANS_ROWS, V[k], v, drag[k]);
-}
-
-/* The slices of a grain, or the one of its centre with all of its volume. */
-static int slices_of(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
-                     int *first, double *V)
-{
-  if (!point) return sd_vans_slices(mesh, rules, z, a, first, V, mesh->ncell);
-  const int p = sd_vans_slice_of(mesh, z);
-  if (p < 0 || p >= mesh->ncell) return 0;
-  *first = p;
-  V[0] = 4.0 / 3.0 * SD_PI * a * a * a;
-  return 1;
 }
 
 /* Drag on grain i along x (and z), were all of it in the slice: in each that it reaches, or, if it
@@ -119,7 +114,7 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     if (grains->take && !grains->take[i]) continue;
     const double z = grains->x[3 * (long) i + 2], *v = grains->v + 3 * (long) i, a = grains->a[i];
     int slices[2] = {0, 0}; /* the first, how many */
-    slices[1] = slices_of(mesh, law->rules, how->point, z, a, &slices[0], V);
+    slices[1] = sd_vans_slices(mesh, law->rules, how->point, z, a, &slices[0], V, N);
     const int first = slices[0], count = slices[1];
     /* a share of the sphere is that share of each of its slices */
     if (grains->weight)
@@ -152,15 +147,6 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
     for (int k = SD_VANS_VX; k < SD_VANS_ROWS; k++)
       profile[(long) k * N + n] = V != 0.0 ? sum[k] / V : 0.0;
   }
-}
-
-/* A sphere as sd_vans_next_part cuts it, or, with point, in one piece where its centre is. */
-static int next_piece(const sd_vans_mesh *mesh, int point, double z, double a, sd_vans_part *part)
-{
-  if (!point) return sd_vans_next_part(mesh, a, part);
-  if (!(part->top < a)) return 0;
-  *part = (sd_vans_part){sd_vans_slice_of(mesh, z), 4.0 / 3.0 * SD_PI * a * a * a, a, 0.0, 0.0};
-  return 1;
 }
 
 /* The last of the shares is what is left of the value, so that none is lost to rounding. */

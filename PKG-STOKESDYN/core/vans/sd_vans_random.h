@@ -6,9 +6,7 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Three independent standard normal numbers that depend on nothing but the three keys: the same on
  * any number of ranks (sd_random.h, of which the seed has the lower 32 bits). */
@@ -83,7 +81,5 @@ void sd_vans_lagrangian_times(const sd_vans_mesh *mesh, double schmidt, const do
 void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *walk, double z,
                            uint64_t id, sd_vans_wander *wander, double u[3]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -13,9 +13,9 @@
 #ifndef SD_VANS_STEADY_H
 #define SD_VANS_STEADY_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 enum { SD_VANS_BLOCKS = 128, SD_VANS_SERIES = 2 };
 
@@ -32,7 +32,5 @@ void sd_vans_series_add(sd_vans_series *series, const double sample[SD_VANS_SERI
 /* Of one of the numbers; returns whether it is steady. No full block: 0 and 0. */
 int sd_vans_series_mean(const sd_vans_series *series, int which, double *mean, double *error);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,7 +1,5 @@
 #include "sd_vans.h"
 
-#include <math.h>
-
 /* Of the water: the highest slice is above it. */
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U)
 {

@@ -85,6 +85,12 @@ static void every_law_is_stokes_for_slow_spheres(void **state)
     }
 }
 
+/* n of Richardson & Zaki, Re that of a lone grain */
+static double exponent_of(double Re)
+{
+  return fmin(fmax(4.4 * pow(Re, Re < 1.0 ? -0.03 : -0.1), 2.39), 4.65);
+}
+
 /* Grains that fall past water at the slip w have the flux e w through the water: w_0 e^n, n of the
  * lone grain; from Stokes' law to Newton's. */
 static void richardson_and_zaki_find_their_exponent(void **state)
@@ -93,7 +99,7 @@ static void richardson_and_zaki_find_their_exponent(void **state)
   const sd_vans_drag_law law = {.law = SD_VANS_DRAG_BROWN_LAWLER, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
   double first = 0.0, last = 0.0;
   for (double d = 3e-5; d < 0.2; d *= 3) {
-    const double w0 = terminal(law, 0.5 * d, 2650, 1.0), n = sd_vans_richardson_zaki(w0 * d * 1e6);
+    const double w0 = terminal(law, 0.5 * d, 2650, 1.0), n = exponent_of(w0 * d * 1e6);
     for (double e = 0.4; e < 1.0; e += 0.1)
       assert_true(fabs(e * terminal(law, 0.5 * d, 2650, e) / (w0 * pow(e, n)) - 1.0) < 1e-9);
     if (first == 0.0) first = n;
@@ -115,7 +121,7 @@ static void lone_speeds_solve_richardson_and_zakis_equation(void **state)
       double low = -1.3 * L, high = -3.7 * L;
       for (int k = 0; k < 60; k++) {
         const double middle = 0.5 * (low + high);
-        *(middle < (1.0 - sd_vans_richardson_zaki(Re * exp(middle))) * L ? &low : &high) = middle;
+        *(middle < (1.0 - exponent_of(Re * exp(middle))) * L ? &low : &high) = middle;
       }
       const double y = 0.5 * (low + high);
       for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++) {

@@ -23,7 +23,7 @@ static void slices_sum_to_the_sphere(void **state)
       const double a = ratios[r] * dz,
                    z = z_ref + (1040 + k / 20.0) * dz; /* also on the borders and in the middles */
       int first;
-      const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first, V, N);
+      const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, &first, V, N);
       double sum = 0.0;
       for (int i = 0; i < count; i++) {
         assert_true(V[i] >= 0.0);
@@ -44,7 +44,7 @@ static void slices_of_uneven_mesh_sum_to_the_sphere(void **state)
   for (int k = 0; k < 200; k++) {
     const double a = 0.0031, z = 0.02 + a + k * 0.0006;
     int first;
-    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first, V, N);
+    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, &first, V, N);
     double sum = 0.0;
     for (int i = 0; i < count; i++) sum += V[i];
     assert_true(fabs(sum - 4.0 / 3.0 * SD_PI * a * a * a) <= 1e-13 * 4.2 * a * a * a);
@@ -63,13 +63,13 @@ static void slices_end_at_the_mesh(void **state)
   const double a = 0.7, ends[2] = {5.0, 5.0 + edge[N]};
   int first;
   for (int k = 0; k < 2; k++) {
-    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, ends[k], a, &first, V, N);
+    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, ends[k], a, &first, V, N);
     double sum = 0.0;
     for (int i = 0; i < count; i++) sum += V[i];
     assert_true(fabs(sum - 2.0 / 3.0 * SD_PI * a * a * a) <= 1e-13);
   }
-  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 4.2, a, &first, V, N), 0);
-  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 8.8, a, &first, V, N), 0);
+  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, 4.2, a, &first, V, N), 0);
+  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, 8.8, a, &first, V, N), 0);
 }
 
 /* Yade's slice n holds what belongs to slice 2p - n: seen where the sphere is large enough for its other defect, the
@@ -83,8 +83,8 @@ static void yade_mirrors_the_slices(void **state)
   const sd_vans_mesh mesh = {N, 0.0, 0.25, edge};
   const double z = 20.3 * 0.25, a = 12.3 * 0.25; /* centre in slice 20; whole slices 9..31 */
   int first_right, first_mirrored;
-  const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, z, a, &first_right, right, N);
-  sd_vans_slices(&mesh, SD_VANS_YADE, z, a, &first_mirrored, mirrored, N);
+  const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, &first_right, right, N);
+  sd_vans_slices(&mesh, SD_VANS_YADE, 0, z, a, &first_mirrored, mirrored, N);
   for (int n = 10; n <= 30; n++)
     assert_true(fabs(mirrored[n - first_mirrored] - right[2 * 20 - n - first_right]) < 1e-13);
   assert_true(count > 20);
@@ -242,7 +242,7 @@ static void a_slice_gives_what_its_grain_gets(void **state)
     const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL, NULL};
     const sd_vans_averaging how = {0, 0, NULL, NULL};
     int first;
-    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, x[2], a, &first, V, N);
+    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, x[2], a, &first, V, N);
     for (int moves = 0; moves < N; moves++) {
       double U[N + 1], F[3], drag, sums[N * SD_VANS_ROWS] = {0}, whole_drag[3];
       for (int n = 0; n <= N; n++) U[n] = v[0];

@@ -46,9 +46,7 @@
 
 #include "sd_body.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* [points] velocity, for width 6 and angular velocity, of the undisturbed fluid at the points */
@@ -101,7 +99,5 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
  * work [6 bodies + 6 spheres + rows]. */
 void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *work, double *u);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

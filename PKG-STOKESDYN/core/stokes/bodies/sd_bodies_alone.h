@@ -13,16 +13,13 @@ void sd_bodies_alone_bear(const sd_bodies *A, const double *r, double *scratch, 
 /* f = N^-1 V; V = N f */
 void sd_bodies_alone_resist(const sd_bodies *A, const double *V, double *f);
 void sd_bodies_alone_move(const sd_bodies *A, const double *f, double *V);
-/* V -= dN f */
-void sd_bodies_alone_shells(const sd_bodies *A, const double *f, double *V);
 /* Has any body a dN? */
 int sd_bodies_shells(const sd_bodies *A);
 /* w = M' l - K V; shells: sd_bodies_shells(). Scratch: bodies [12 bodies], on_spheres [6 spheres],
  * rows. SD_OK or that of A->apply. */
 sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, const double *V,
                             double *bodies, double *on_spheres, double *rows, double *w);
-/* Those of the preconditioner of one body */
+/* That of one body */
 void sd_body_resistance(const sd_body *b, const double V[6], double f[6]);
-void sd_body_mobility(const sd_body *b, const double f[6], double V[6]);
 
 #endif

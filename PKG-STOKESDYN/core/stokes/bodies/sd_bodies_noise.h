@@ -17,9 +17,7 @@
 #include "sd_body.h"
 #include "sd_noise.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Keeps its memory from one draw to the next. Zero-initialise; sd_bodies_noise_free in the end. */
 typedef struct {
@@ -38,7 +36,5 @@ sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_body *
 
 void sd_bodies_noise_free(sd_bodies_noise *s);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

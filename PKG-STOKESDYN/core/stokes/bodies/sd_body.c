@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "sd_clump_motion.h"
 #include "sd_linear.h"
 
 /* --- K --- */
@@ -59,11 +58,6 @@ static void turned6(const sd_body *b, const double A[36], double scale, double f
   to_shape(b->R, 6, scale, x, in);
   multiply6(A, factor, in, y);
   to_space(b->R, 6, scale, y, out);
-}
-
-void sd_body_mobility(const sd_body *b, const double f[6], double V[6])
-{
-  turned6(b, b->shape->mobility, 1.0 / b->a, 1.0 / (b->eta * b->a), f, V);
 }
 
 void sd_body_resistance(const sd_body *b, const double V[6], double f[6])
@@ -192,13 +186,17 @@ void sd_bodies_alone_move(const sd_bodies *A, const double *f, double *V)
       const long of = 6 * (long) e + d;
       V[of] = d < w ? f[of] / A->D[(long) w * A->loner[e] + d] : 0.0;
     }
-  for (int b = 0; b < A->shaped; b++)
-    sd_body_mobility(A->body + b, f + 6 * (long) (A->lone + b), V + 6 * (long) (A->lone + b));
+  for (int b = 0; b < A->shaped; b++) {
+    const sd_body *body = A->body + b;
+    const long of = 6 * (long) (A->lone + b);
+    turned6(body, body->shape->mobility, 1.0 / body->a, 1.0 / (body->eta * body->a), f + of, V + of);
+  }
 }
 
 /* --- shells --- */
 
-void sd_bodies_alone_shells(const sd_bodies *A, const double *f, double *V)
+/* V -= dN f */
+static void take_off_shells(const sd_bodies *A, const double *f, double *V)
 {
   for (int b = 0; b < A->shaped; b++) {
     const sd_body *body = A->body + b;
@@ -227,7 +225,7 @@ sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, con
   if (shells) {
     memcpy(less, V, sizeof(double) * motions);
     sd_bodies_collect(A, l, on_spheres, f);
-    sd_bodies_alone_shells(A, f, less);
+    take_off_shells(A, f, less);
     V = less;
   }
   sd_bodies_move(A, V, on_spheres, rows);

@@ -16,9 +16,7 @@
 #include "sd_solve.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 struct sd_tie;
 
@@ -88,7 +86,5 @@ static inline long sd_bodies_loads(const sd_bodies *A)
 void sd_bodies_move(const sd_bodies *A, const double *V, double *on_spheres, double *rows);
 void sd_bodies_collect(const sd_bodies *A, const double *rows, double *on_spheres, double *f);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

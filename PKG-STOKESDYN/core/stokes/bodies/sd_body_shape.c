@@ -1,7 +1,6 @@
 #include "sd_body_shape.h"
 
 #include "sd_linear.h"
-#include "sd_tensor.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,30 +13,6 @@ static void rigid_row(const double X[3], int p, double row[6])
   if (p >= 3) return;
   const double e[3] = {p == 0, p == 1, p == 2};
   sd_cross(X, e, row + 3);
-}
-
-/* Velocity at X in the unit strain number c: E_xx E_yy E_zz E_yz E_xz E_xy */
-static void strain_at(const double X[3], int c, double v[3])
-{
-  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
-  memset(v, 0, 3 * sizeof(double));
-  v[row[c]] = X[col[c]];
-  v[col[c]] = X[row[c]];
-}
-
-/* Each pair of points, and 1/(6 pi a), 1/(8 pi a^3) on the diagonal (r = 0); forces are the first
- * three rows and columns of a block with torques. */
-void sd_body_shape_matrix(int m, int width, const double *x, const double *a, double *M)
-{
-  const size_t w = (size_t) width, N = w * (size_t) m;
-  for (int i = 0; i < m; i++)
-    for (int j = 0; j < m; j++) {
-      double r[3], block[36];
-      sd_minus(x + 3 * (size_t) i, x + 3 * (size_t) j, r);
-      sd_tensor_grand(r, a[i], a[j], 1.0, block);
-      for (size_t p = 0; p < w; p++)
-        memcpy(M + (w * (size_t) i + p) * N + w * (size_t) j, block + 6 * p, w * sizeof(double));
-    }
 }
 
 /* rigid = inverse K, and its part that works on the body as a whole, R = K^T rigid */
@@ -84,7 +59,7 @@ static void add_shells(sd_body_shape *s, const sd_clump *shells, const double *r
     if (i % 6 >= 3) continue; /* spheres do not turn with a strain */
     for (int c = 0; c < 6; c++) {
       double v[3];
-      strain_at(s->x + 3 * (i / 6), c, v);
+      sd_clump_unit_strain(c, s->x + 3 * (i / 6), v);
       for (int p = 0; p < 6; p++) C[6 * p + c] += rigid[6 * i + p] * v[i % 6];
     }
   }
@@ -144,7 +119,7 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
   double *M = malloc(sizeof(double) * N * N);
   *s = (sd_body_shape){0};
   if (!M) return SD_ENOMEMORY;
-  sd_body_shape_matrix(shape->n, 6, shape->x, shape->a, M);
+  sd_wall_matrix(NULL, shape->n, 6, shape->x, shape->a, M);
   sd_status status = sd_body_shape_of(shape->n, 6, shape->x, M, s);
   /* Now N_spheres and M_b^-1 K are known, which M_b' is made of; then once more with it. */
   if (status == SD_OK && shells) {
@@ -155,6 +130,25 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
   }
   free(M);
   return status;
+}
+
+sd_status sd_body_wall_shape(const sd_wall *wall, int m, int width, const double *x,
+                             const double *a, const double centre[3], sd_body_shape *out)
+{
+  const size_t N = (size_t) width * (size_t) m;
+  double *M = malloc(sizeof(double) * (N * N + 3 * (size_t) m)), *arm = M + N * N;
+  *out = (sd_body_shape){0};
+  if (!M) return SD_ENOMEMORY;
+  sd_wall_matrix(wall, m, width, x, a, M);
+  for (size_t k = 0; k < (size_t) m; k++) sd_minus(x + 3 * k, centre, arm + 3 * k);
+  const sd_status status = sd_body_shape_of(m, width, arm, M, out);
+  free(M);
+  return status;
+}
+
+int sd_body_wall_pays(int m, int bodies, double height, double extent)
+{
+  return height < 10.0 * extent && (m <= SD_BODY_WALL_SMALL || m <= 3.0 * bodies);
 }
 
 sd_status sd_body_shape_take_root(sd_body_shape *s)

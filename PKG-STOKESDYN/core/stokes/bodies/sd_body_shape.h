@@ -23,10 +23,9 @@
 #define SD_BODY_SHAPE_H
 
 #include "sd_clump.h"
+#include "sd_wall.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* points, and numbers of each: 3 or 6 */
@@ -45,10 +44,7 @@ typedef struct {
   double carried[36];
 } sd_body_shape;
 
-/* M [(width m)^2], row-major: RPY between m points x [3m] of radii a [m] in a fluid of viscosity 1,
- * with torques for width 6 */
-void sd_body_shape_matrix(int m, int width, const double *x, const double *a, double *M);
-/* The shape of points x [3m] whose matrix is M [(width m)^2]: that of sd_body_shape_matrix,
+/* The shape of points x [3m] whose matrix is M [(width m)^2]: that of sd_wall_matrix,
  * or with what a model adds for each body alone. The owner frees.
  * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: M is not positive definite (points of equal radii at one
  * place); SD_ENOTFINITE. */
@@ -56,6 +52,20 @@ sd_status sd_body_shape_of(int m, int width, const double *x, const double *M, s
 /* A clump of spheres with forces and torques. shells: the clump of this shape with shells; NULL:
  * none. The owner frees. Status as above. */
 sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *out);
+
+/* A body above a wall, alone: its matrix has the images of its points, and depends on where it
+ * stands. Its blocks are made anew where it has moved, for sd_bodies.h: beside the wall those of open
+ * space are up to seven times too mobile, and the loop would take twice as many products. The shape,
+ * in axes of space, of points x [3m] of a body whose centre is there. The owner frees. Status as
+ * above. */
+sd_status sd_body_wall_shape(const sd_wall *wall, int m, int width, const double *x,
+                             const double *a, const double centre[3], sd_body_shape *out);
+/* Is it worth a body's own blocks? Making them costs about as much as 2 m^3 pairs of points, so that
+ * a body of m points wants about m/3 of `bodies`, and one of at most SD_BODY_WALL_SMALL none. From a
+ * height of ten times its extent on the wall is worth a tenth of its mobility. */
+enum { SD_BODY_WALL_SMALL = 42 };
+int sd_body_wall_pays(int m, int bodies, double height, double extent);
+
 /* Makes the root, if there is none yet: for noise. A body of more than SD_BODY_ROOT_MOST numbers
  * does without one, which would take longer than what it saves. SD_OK; SD_ENOMEMORY;
  * SD_ENOTFINITE. */
@@ -63,7 +73,5 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
 sd_status sd_body_shape_take_root(sd_body_shape *s);
 void sd_body_shape_free(sd_body_shape *s);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

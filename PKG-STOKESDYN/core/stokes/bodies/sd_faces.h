@@ -14,9 +14,9 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 enum { SD_FACES_WIDTH = 9 };
 
@@ -37,7 +37,5 @@ void sd_faces_read(const sd_faces *faces, int spheres, const double *u, double *
  * dz dz, 2 dx dy, 2 dx dz, 2 dy dz) */
 void sd_faces_push(const sd_faces *faces, int spheres, const double *f, double *l);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

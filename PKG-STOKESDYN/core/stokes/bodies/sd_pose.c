@@ -46,15 +46,6 @@ void sd_pose_step(double pose[12], const double centre[3], const double step[6],
   }
 }
 
-void sd_pose_advance(double pose[12], const double V[6], double dt, int n, const double *X,
-                     double turn[9], double *x)
-{
-  static const double CENTROID[3] = {0.0, 0.0, 0.0};
-  double step[6];
-  for (int k = 0; k < 6; k++) step[k] = dt * V[k];
-  sd_pose_step(pose, CENTROID, step, n, X, turn, x);
-}
-
 double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax)
 {
   double dt = fastest > 0.0 ? xmax / fastest : tmax;

@@ -8,9 +8,9 @@
 #ifndef SD_POSE_H
 #define SD_POSE_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* out [n] = v + c (v - v_old). Aliases are allowed. */
 void sd_mean_velocity(int n, const double *v, const double *v_old, double c, double *out);
@@ -19,13 +19,9 @@ void sd_mean_velocity(int n, const double *v, const double *v_old, double c, dou
  * quaternion (cos |w|/2, sin(|w|/2) w/|w|), so that R is a rotation to rounding for any w. */
 void sd_rotation(const double w[3], double R[9]);
 
-/* pose [12]: R, then c; moves with (U, W) = V [6] for dt. turn [9]: out, that of space in the step;
- * x [3n] = c + R X, X [3n] */
-void sd_pose_advance(double pose[12], const double V[6], double dt, int n, const double *X,
-                     double turn[9], double *x);
-
-/* The same by a displacement and a turn, step [6], of the point at centre [3] in the axes of the body,
- * from c: what moves it is known there (sd_clump_noise.h). */
+/* pose [12]: R, then c; moved by a displacement and a turn, step [6], of the point at centre [3] in the
+ * axes of the body, from c: what moves it is known there (0, or sd_clump_noise.h). turn [9]: out, that
+ * of space in the step; x [3n] = c + R X, X [3n] */
 void sd_pose_step(double pose[12], const double centre[3], const double step[6], int n,
                   const double *X, double turn[9], double *x);
 
@@ -33,7 +29,5 @@ void sd_pose_step(double pose[12], const double centre[3], const double step[6],
  * tmax. fastest 0: as long as allowed. */
 double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

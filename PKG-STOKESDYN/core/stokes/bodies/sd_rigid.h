@@ -7,9 +7,9 @@
 #ifndef SD_RIGID_H
 #define SD_RIGID_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 typedef struct {
   /* parts; numbers of each: 3 (v or f), 6 (v w, or f t: the torque about the part's own centre) */
@@ -25,7 +25,5 @@ void sd_rigid_move(const sd_rigid *K, const double *V, double *v);
 /* f [6 wholes] = K^T of parts [width n] */
 void sd_rigid_collect(const sd_rigid *K, const double *parts, int wholes, double *f);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

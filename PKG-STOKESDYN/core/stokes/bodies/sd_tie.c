@@ -1,6 +1,5 @@
 #include "sd_tie.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

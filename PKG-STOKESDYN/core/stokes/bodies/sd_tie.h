@@ -16,9 +16,7 @@
 #include "sd_body.h"
 #include "sd_lubrication.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Zero-initialise, set L, whose rows are the spheres; sd_tie_free in the end. */
 typedef struct sd_tie {
@@ -65,7 +63,5 @@ static inline int sd_tie_binds(const sd_bodies *A, int b)
 }
 void sd_tie_free(sd_tie *t);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -19,32 +19,31 @@ static void respond(const double *table, const double in[SD_CLUMP_COLUMNS], doub
     for (int p = 0; p < 6; p++) out[p] += table[6 * c + p] * in[c];
 }
 
-/* Columns of the symmetric part of A: xx yy zz yz xz xy; and the matrix of columns */
-static void to_columns(const double A[9], double E[6])
+/* Rows and columns of E_xx E_yy E_zz E_yz E_xz E_xy */
+static const int row_of[6] = {0, 1, 2, 1, 0, 0}, column_of[6] = {0, 1, 2, 2, 2, 1};
+
+void sd_clump_unit_strain(int c, const double y[3], double v[3])
 {
-  E[0] = A[0];
-  E[1] = A[4];
-  E[2] = A[8];
-  E[3] = 0.5 * (A[5] + A[7]);
-  E[4] = 0.5 * (A[2] + A[6]);
-  E[5] = 0.5 * (A[1] + A[3]);
-}
-static void from_columns(const double E[6], double A[9])
-{
-  A[0] = E[0];
-  A[4] = E[1];
-  A[8] = E[2];
-  A[5] = A[7] = E[3];
-  A[2] = A[6] = E[4];
-  A[1] = A[3] = E[5];
+  for (int d = 0; d < 3; d++) v[d] = 0.0;
+  v[row_of[c]] = y[column_of[c]];
+  v[column_of[c]] = y[row_of[c]];
 }
 
-/* g A g^T */
-static void turn(const double g[9], const double A[9], double out[9])
+void sd_clump_split_gradient(const double R[9], const double G[9], double W[3], double E[6])
 {
-  double Agt[9];
-  for (int p = 0; p < 3; p++) sd_multiply3(g, A + 3 * p, Agt + 3 * p);
-  sd_product3(g, Agt, out);
+  double GR[9], S[9];
+  sd_product3(G, R, GR);
+  for (int q = 0; q < 3; q++) {
+    const double column[3] = {GR[q], GR[3 + q], GR[6 + q]};
+    double turned[3];
+    sd_multiply3t(R, column, turned);
+    for (int p = 0; p < 3; p++) S[3 * p + q] = turned[p];
+  }
+  for (int e = 0; e < 6; e++)
+    E[e] = 0.5 * (S[3 * row_of[e] + column_of[e]] + S[3 * column_of[e] + row_of[e]]);
+  W[0] = 0.5 * (G[7] - G[5]);
+  W[1] = 0.5 * (G[2] - G[6]);
+  W[2] = 0.5 * (G[3] - G[1]);
 }
 
 static double determinant(const double g[9])
@@ -65,15 +64,16 @@ static sd_status symmetrize(const sd_shape *s, double *table)
   memset(table, 0, size);
   for (int m = 0; m < s->symmetries; m++) {
     const double *g = s->g + 9 * m, hand = determinant(g) < 0.0 ? -1.0 : 1.0;
+    const double back_g[9] = {g[0], g[3], g[6], g[1], g[4], g[7], g[2], g[5], g[8]};
     for (int c = 0; c < SD_CLUMP_COLUMNS; c++) {
-      double in[SD_CLUMP_COLUMNS] = {0.0}, turned[SD_CLUMP_COLUMNS], E[9], gE[9];
+      double in[SD_CLUMP_COLUMNS] = {0.0}, turned[SD_CLUMP_COLUMNS], E[9] = {0.0}, W[3];
       in[c] = 1.0;
       sd_multiply3(g, in, turned);
       sd_multiply3(g, in + 3, turned + 3);
       for (int d = 3; d < 6; d++) turned[d] *= hand;
-      from_columns(in + 6, E);
-      turn(g, E, gE);
-      to_columns(gE, turned + 6);
+      for (int e = 0; e < 6; e++)
+        E[3 * row_of[e] + column_of[e]] = E[3 * column_of[e] + row_of[e]] = in[6 + e];
+      sd_clump_split_gradient(back_g, E, W, turned + 6);
       for (int k = 0; k < s->n; k++) {
         double out[6], back[6];
         respond(old + 6 * SD_CLUMP_COLUMNS * (size_t) s->perm[(size_t) s->n * m + k], turned, out);
@@ -202,7 +202,7 @@ static void derive(const sd_shape *s, sd_clump *clump)
   /* Mobility about another point at d: velocity there is U + W x d, so tt - [d] (rotation rows,
    * translation columns) + ... ; the trace is least at the centre of mobility. With rr the rotation
    * block: tr = tr tt - v.d + d.(tr rr - rr) d, v = 2 vec. */
-  double rr[9], d[3];
+  double rr[9], *d = clump->mobility_centre;
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++) {
       rr[3 * p + q] = clump->mobility[6 * (p + 3) + q + 3];
@@ -334,17 +334,12 @@ void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta,
   evaluate(clump, R, in, RIGID, F, T);
 }
 
-/* Slip s0 + A x into the axes of the shape: A is the angular velocity W of its antisymmetric part
- * and the strain E of the rest. */
+/* Slip s0 + A x into the axes of the shape */
 void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
                      const double A[9], double *F, double *T)
 {
-  const double W[3] = {0.5 * (A[7] - A[5]), 0.5 * (A[2] - A[6]), 0.5 * (A[3] - A[1])};
-  double in[SD_CLUMP_COLUMNS], Rt[9], E[9];
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) Rt[3 * p + q] = R[3 * q + p];
-  turn(Rt, A, E);
-  to_columns(E, in + 6);
+  double W[3], in[SD_CLUMP_COLUMNS];
+  sd_clump_split_gradient(R, A, W, in + 6);
   sd_multiply3t(R, s0, in);
   sd_multiply3t(R, W, in + 3);
   for (int c = 0; c < SD_CLUMP_COLUMNS; c++) in[c] *= eta;

@@ -28,9 +28,7 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* spheres, and points of the surface (n for shell 1) */
@@ -50,6 +48,8 @@ typedef struct {
   /* resistance about it, and its pseudo-inverse: velocity of the centre and angular velocity from
    * force and torque about it */
   double R_centre[36], mobility[36];
+  /* of mobility, from there: about it the mobility's coupling block is symmetric (sd_clump_noise.h) */
+  double mobility_centre[3];
   /* hydrodynamic: 1/(6 pi eta) over the mean translational mobility at the centre of mobility */
   double radius;
 } sd_clump;
@@ -68,7 +68,6 @@ typedef struct {
   int count;
   sd_shell *shell;
 } sd_shells;
-sd_status sd_shells_get(sd_shells *cache, int n, const sd_shell **shell);
 void sd_shells_free(sd_shells *cache);
 
 typedef struct {
@@ -112,10 +111,13 @@ void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta,
 void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
                      const double A[9], double *F, double *T);
 
+/* A gradient of the fluid velocity, G y = W x y + E y: W [3] in space, E_xx E_yy E_zz E_yz E_xz E_xy
+ * in the axes of the shape in pose R; and v = E y for the unit number c of these. */
+void sd_clump_split_gradient(const double R[9], const double G[9], double W[3], double E[6]);
+void sd_clump_unit_strain(int c, const double y[3], double v[3]);
+
 /* 6x6 resistance about the point at d from the one that R is about. */
 void sd_resistance_shift(const double R[36], const double d[3], double out[36]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

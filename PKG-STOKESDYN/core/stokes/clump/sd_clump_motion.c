@@ -105,23 +105,6 @@ void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_moti
   sd_clump_forces(clump, R, eta, slip, G, F, T);
 }
 
-void sd_clump_split_gradient(const double R[9], const double G[9], double W[3], double E[6])
-{
-  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
-  double GR[9], S[9];
-  sd_product3(G, R, GR);
-  for (int q = 0; q < 3; q++) {
-    const double column[3] = {GR[q], GR[3 + q], GR[6 + q]};
-    double turned[3];
-    sd_multiply3t(R, column, turned);
-    for (int p = 0; p < 3; p++) S[3 * p + q] = turned[p];
-  }
-  for (int e = 0; e < 6; e++) E[e] = 0.5 * (S[3 * row[e] + col[e]] + S[3 * col[e] + row[e]]);
-  W[0] = 0.5 * (G[7] - G[5]);
-  W[1] = 0.5 * (G[2] - G[6]);
-  W[2] = 0.5 * (G[3] - G[1]);
-}
-
 void sd_clump_free_velocity(const sd_clump *clump, const double R[9], double eta,
                             const double load[6], const double u[3], const double G[9], double V[6])
 {

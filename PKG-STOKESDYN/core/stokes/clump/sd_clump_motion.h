@@ -7,9 +7,7 @@
 
 #include "sd_clump.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* What the n spheres and the fluid at their centres do */
 typedef struct {
@@ -38,10 +36,6 @@ void sd_clump_flow(const sd_shape *shape, const sd_clump_motion *m, const double
 void sd_clump_drag(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
                    const double pose[12], double eta, double *F, double *T);
 
-/* A gradient of the fluid velocity, G y = W x y + E y: W [3] in space, E_xx E_yy E_zz E_yz E_xz
- * E_xy in the axes of the shape in pose R. */
-void sd_clump_split_gradient(const double R[9], const double G[9], double W[3], double E[6]);
-
 /* V [6], U of the centroid and W, of a clump without inertia that no other disturbs, in pose R:
  * carried by the flow with velocity u at its centroid and gradient G (sd_clump_flow), driven by
  * load [6], force and torque about the centroid,
@@ -51,7 +45,5 @@ void sd_clump_free_velocity(const sd_clump *clump, const double R[9], double eta
                             const double load[6], const double u[3], const double G[9],
                             double V[6]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

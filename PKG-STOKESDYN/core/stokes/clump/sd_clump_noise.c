@@ -21,21 +21,6 @@ static void shift_mobility(const double N[36], const double d[3], double out[36]
       for (int k = 0; k < 3; k++) out[6 * p + q] += half[6 * p + 3 + k] * cross[3 * q + k];
 }
 
-/* From the point that N is about; 0 where nothing turns */
-static void centre_of_mobility(const double N[36], double o[3])
-{
-  const double *D[3] = {N + 21, N + 27, N + 33};
-  const double trace = D[0][0] + D[1][1] + D[2][2];
-  double A[9];
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) A[3 * p + q] = (p == q ? trace : 0.0) - D[p][q];
-  for (int p = 0; p < 3; p++) { /* B_pq is N[6 p + 3 + q] */
-    const int y = (p + 1) % 3, z = (p + 2) % 3;
-    o[p] = N[6 * z + 3 + y] - N[6 * y + 3 + z];
-  }
-  if (sd_cholesky_solve(3, A, 1, o) != SD_OK) memset(o, 0, 3 * sizeof(double));
-}
-
 /* With S = diag(1, 1, 1, l, l, l), l^2 = tr TT / tr RR, the matrix S N S has one unit, and L = S^-1 (S N
  * S)^1/2. Eigenvalues below 0 are rounding. */
 static void take_root(const double N[36], double L[36])
@@ -56,8 +41,8 @@ static void take_root(const double N[36], double L[36])
 
 void sd_clump_noise_of(const sd_clump *clump, sd_clump_noise *out)
 {
-  double o[3], N[36];
-  centre_of_mobility(clump->mobility, o);
+  const double *o = clump->mobility_centre;
+  double N[36];
   shift_mobility(clump->mobility, o, N);
   for (int d = 0; d < 3; d++) out->centre[d] = clump->centre[d] + o[d];
   take_root(N, out->root);

@@ -13,9 +13,7 @@
 
 #include "sd_clump.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* For eta = 1, in the axes of the shape */
 typedef struct {
@@ -35,7 +33,5 @@ void sd_clump_noise_of(const sd_clump *clump, sd_clump_noise *out);
 void sd_clump_noise_draw(const sd_clump_noise *n, const double R[9], double eta, const double w[6],
                          double y[6]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

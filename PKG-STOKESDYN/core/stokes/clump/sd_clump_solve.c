@@ -4,7 +4,7 @@
 #include "sd_product.h"
 #include "sd_solve.h"
 #include "sd_sparse.h"
-#include "sd_tensor.h"
+#include "sd_wall.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,38 +60,24 @@ sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *o, sd_cl
  * once). */
 static void unit_slip(int column, const double y[3], double s[3], double w[3])
 {
-  static const int row[6] = {0, 1, 2, 1, 0, 0}, col[6] = {0, 1, 2, 2, 2, 1};
   for (int d = 0; d < 3; d++) s[d] = w[d] = 0.0;
   if (column < 3)
     s[column] = 1.0;
   else if (column < 6) {
     w[column - 3] = 1.0;
     sd_cross(w, y, s);
-  } else {
-    const int p = row[column - 6], q = col[column - 6];
-    s[p] = y[q];
-    s[q] = y[p];
-  }
+  } else
+    sd_clump_unit_strain(column - 6, y, s);
 }
 
-/* M of all points, upper triangle by rows, and its Cholesky factor for all twelve columns at once.
- * Viscosity 1: the resistance is proportional to it. */
+/* The matrix of all points and its Cholesky factor for all twelve columns at once. Viscosity 1: the
+ * resistance is proportional to it. */
 static sd_status solve_dense(const sd_surface *s, int m, double *B)
 {
   const size_t N = (size_t) m * s->n;
   double *A = malloc(sizeof(double) * N * N);
   if (!A) return SD_ENOMEMORY;
-  for (int i = 0; i < s->n; i++)
-    for (int j = i; j < s->n; j++) {
-      double r[3], M[36];
-      sd_minus(s->x + 3 * (size_t) i, s->x + 3 * (size_t) j, r);
-      if (m == 6)
-        sd_tensor_grand(r, s->a[i], s->a[j], 1.0, M);
-      else
-        sd_tensor_uf(SD_TENSOR_RPY, r, s->a[i], s->a[j], 1.0, M);
-      for (int p = 0; p < m; p++)
-        memcpy(A + (m * (size_t) i + p) * N + m * (size_t) j, M + m * p, sizeof(double) * m);
-    }
+  sd_wall_matrix(NULL, s->n, m, s->x, s->a, A);
   const sd_status status = sd_cholesky_solve((int) N, A, SD_CLUMP_COLUMNS, B);
   free(A);
   return status;

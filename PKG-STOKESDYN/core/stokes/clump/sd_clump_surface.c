@@ -9,7 +9,7 @@
 
 /* --- shells ----------------------------------------------------------------------------------- */
 
-sd_status sd_shells_get(sd_shells *cache, int n, const sd_shell **shell)
+static sd_status get_shell(sd_shells *cache, int n, const sd_shell **shell)
 {
   const int size = sd_shell_size(n);
   for (int i = 0; i < cache->count; i++)
@@ -83,7 +83,7 @@ sd_status sd_surface_exposed(const sd_shape *s, sd_shells *cache, double *fracti
     }
     fraction[i] = 1.0;
     if (!overlaps) continue;
-    status = sd_shells_get(cache, FINE, &fine);
+    status = get_shell(cache, FINE, &fine);
     for (int m = 0; m < FINE && status == SD_OK; m++) {
       double e[3], p[3];
       sd_multiply3(s->frame, fine->p + 3 * m, e);
@@ -171,7 +171,7 @@ sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_sh
   double *deep = malloc(sizeof(double) * (size_t) s->n);
   if (!deep) return SD_ENOMEMORY;
   for (int i = 0; i < s->n && status == SD_OK; i++) {
-    status = sd_shells_get(cache, count[i], &shell);
+    status = get_shell(cache, count[i], &shell);
     if (status != SD_OK) break;
     surface_of(shell, &radius, &point);
     deep[i] = (radius - seam * point) * s->a[i];
@@ -181,7 +181,7 @@ sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_sh
   orientation(k, Q);
   sd_product3(s->frame, Q, G);
   for (int i = 0; i < s->n && status == SD_OK; i++) {
-    status = sd_shells_get(cache, count[i], &shell);
+    status = get_shell(cache, count[i], &shell);
     surface_of(shell, &radius, &point);
     for (int m = 0; m < shell->n; m++) {
       double e[3], *p = out->x + 3 * (size_t) out->n;

@@ -252,17 +252,13 @@ static sd_status shell_resistance(const double *octant, int m, double kappa, int
         }
         if (!image) continue;
         const double chi = rotation ? sign[0] * sign[1] : sign[0];
-        double f, g;
-        const double R = sqrt(sd_dot(r, r)), inv = R > 0.0 ? 1.0 / R : 0.0;
-        sd_rpy_radial(R, kappa, kappa, &f, &g);
-        for (int c = 0; c < 3; c++)
-          for (int e = 0; e < 3; e++)
-            block[3 * c + e] +=
-                chi * sign[e] * (g * (r[c] * inv) * (r[e] * inv) + (c == e ? f : 0.0));
+        double M[9];
+        sd_tensor_uf(SD_TENSOR_RPY, r, kappa, kappa, 1.0, M);
+        for (int e = 0; e < 9; e++) block[e] += chi * sign[e % 3] * M[e];
       }
       for (int c = 0; c < 3; c++)
         for (int e = 0; e < 3; e++)
-          A[(size_t) (3 * i + c) * n + 3 * j + e] = size * block[3 * c + e] / (6.0 * SD_PI);
+          A[(size_t) (3 * i + c) * n + 3 * j + e] = size * block[3 * c + e];
     }
     for (int c = 0; c < 3; c++) {
       if (!zero[c]) continue;
@@ -293,32 +289,9 @@ static sd_status mismatch(const double *octant, int m, double kappa, double *A, 
   return status;
 }
 
-/* Two values of kappa between which the mismatch vanishes: < 0 at lo, >= 0 at hi.
- * It rises with kappa through its first root near kappa = 1.1/sqrt(n), where the points do not
- * overlap yet, and falls through a second one, which is the icosahedron's (sd_shell.h). */
-static sd_status bracket(const double *octant, int m, int n, double *A, double *b, double *lo,
-                         double *glo, double *hi, double *ghi)
-{
-  double T, step = 1.2;
-  *lo = 0.5 / sqrt(n);
-  if (n == SD_SHELL_FAT) {
-    *lo = 1.0;
-    step = 1.0 / step;
-  }
-  *hi = *lo;
-  sd_status status = mismatch(octant, m, *lo, A, b, &T, glo);
-  *ghi = *glo;
-  while (status == SD_OK && *ghi < 0.0) {
-    *lo = *hi;
-    *glo = *ghi;
-    *hi *= step;
-    status = fabs(log(*hi * sqrt(n))) > 1.4 ? SD_ESINGULAR
-                                            : mismatch(octant, m, *hi, A, b, &T, ghi);
-  }
-  return status == SD_OK && *glo >= 0.0 ? SD_ESINGULAR : status;
-}
-
-/* Regula falsi (Illinois) */
+/* By secants. The mismatch rises with kappa through its first root near kappa = 1.1/sqrt(n), where the
+ * points do not overlap yet, and falls through a second one, which is the icosahedron's
+ * (sd_shell.h). */
 static sd_status calibrate(sd_shell *shell)
 {
   const int n = shell->n;
@@ -334,23 +307,19 @@ static sd_status calibrate(sd_shell *shell)
     free(octant);
     return SD_ENOMEMORY;
   }
-  double *b = A + 9 * (size_t) m * m, T = 0.0;
-  double lo, hi, glo, ghi;
-  sd_status status = bracket(octant, m, n, A, b, &lo, &glo, &hi, &ghi);
-  double kappa = hi, g = ghi;
-  for (int k = 0; k < 60 && status == SD_OK && fabs(g) > 1e-14 && fabs(hi - lo) > 1e-15 * hi; k++) {
-    kappa = (lo * ghi - hi * glo) / (ghi - glo);
+  double *b = A + 9 * (size_t) m * m, T = 0.0, g = 0.0, last_g = 0.0;
+  double kappa = n == SD_SHELL_FAT ? 0.86 : 1.1 / sqrt(n), last = 1.02 * kappa;
+  sd_status status = mismatch(octant, m, last, A, b, &T, &last_g);
+  if (status == SD_OK) status = mismatch(octant, m, kappa, A, b, &T, &g);
+  for (int k = 0; k < 30 && status == SD_OK && g != last_g && fabs(kappa - last) > 1e-13 * kappa;
+       k++) {
+    const double step = -g * (kappa - last) / (g - last_g);
+    last = kappa;
+    last_g = g;
+    kappa += step;
     status = mismatch(octant, m, kappa, A, b, &T, &g);
-    if (g < 0.0) {
-      lo = kappa;
-      glo = g;
-      ghi *= 0.5;
-    } else {
-      hi = kappa;
-      ghi = g;
-      glo *= 0.5;
-    }
   }
+  if (status == SD_OK && !(fabs(g) < 1e-10)) status = SD_ESINGULAR;
   shell->radius = 6.0 * SD_PI / T;
   shell->point = kappa * shell->radius;
   free(A);

@@ -20,9 +20,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 enum { SD_SHELL_FAT = 12 };
 
@@ -47,7 +45,5 @@ int sd_shell_size(int n);
 sd_status sd_shell_create(int n, sd_shell *shell);
 void sd_shell_free(sd_shell *shell);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -3,9 +3,9 @@
 #ifndef SD_CHEBYSHEV_H
 #define SD_CHEBYSHEV_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 enum { SD_CHEBYSHEV_MOST = 64 };
 
@@ -18,7 +18,5 @@ void sd_chebyshev_series(const long double *sample, int n, long double *series);
 /* The same up to a degree in powers: coefficient [degree + 1], of 1, t, t^2 ... */
 void sd_chebyshev_powers(const long double *series, int degree, double *coefficient);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,7 +1,6 @@
 #include "sd_ewald.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "sd_constants.h"

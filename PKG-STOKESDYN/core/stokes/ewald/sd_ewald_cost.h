@@ -3,11 +3,9 @@
 #ifndef SD_EWALD_COST_H
 #define SD_EWALD_COST_H
 
-#include "sd_ewald_split.h"
+#include "sd_ewald.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* In pairs of the sum over all pairs, which costs count^2 of them: near pairs, window points and
  * grid points, each weighed as it was measured (one core, AVX-512, a pair 0.44 ns): within a third
@@ -21,7 +19,5 @@ double sd_ewald_cost(const sd_ewald *e);
 enum { SD_EWALD_FEWEST = 192 };
 #define SD_PAIR_AT_WALL 2.6
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

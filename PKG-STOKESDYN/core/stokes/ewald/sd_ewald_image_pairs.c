@@ -1,6 +1,5 @@
 #include "sd_ewald_image_pairs.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -4,13 +4,11 @@
 #define SD_EWALD_IMAGE_PAIRS_H
 
 #include "sd_cells.h"
-#include "sd_ewald_split.h"
+#include "sd_ewald.h"
 #include "sd_product.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* The other of a pair, and c1 ... c5 */
 typedef struct {
@@ -45,7 +43,5 @@ void sd_ewald_image_pairs_apply(sd_ewald_image_pairs *p, int n, const double *F,
 
 void sd_ewald_image_pairs_free(sd_ewald_image_pairs *p);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -16,9 +16,7 @@
 #include "sd_status.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* r, f, h, and with torques cij, cji, k, e */
 enum { SD_LARGE_PAIR = 5, SD_LARGE_PAIR_TORQUES = 9 };
@@ -68,7 +66,5 @@ sd_status sd_ewald_large_pairs_apply(sd_ewald_large_pairs *p, const sd_spheres *
 
 void sd_ewald_large_pairs_free(sd_ewald_large_pairs *p);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -9,9 +9,7 @@
 #include "sd_ewald_internal.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Zero-initialise; sd_ewald_pairs_free in the end. */
 typedef struct {
@@ -52,7 +50,5 @@ void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const doubl
 
 void sd_ewald_pairs_free(sd_ewald_pairs *p);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

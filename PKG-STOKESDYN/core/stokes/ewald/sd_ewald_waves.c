@@ -4,25 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_constants.h"
 #include "sd_room.h"
 
 /* Gradients of the grid's coordinates, and their products */
 static void metric(sd_ewald_waves *w)
 {
   const sd_ewald_box *b = &w->ewald.box;
-  const double lx = b->edge[0], ly = b->edge[1], lz = b->edge[2];
-  const double xy = b->tilt[0], xz = b->tilt[1], yz = b->tilt[2];
-  double G[3][3] = {{1.0 / lx, -xy / (lx * ly), (xy * yz - ly * xz) / (lx * ly * lz)},
-                    {0.0, 1.0 / ly, -yz / (ly * lz)},
-                    {0.0, 0.0, 1.0 / lz}};
+  double (*G)[3] = w->spreading.gradient, wave[3][3];
+  sd_ewald_reciprocal(b, wave);
   for (int d = 0; d < 3; d++)
-    for (int c = 0; c < 3; c++) {
-      if (b->periodic)
-        G[d][c] *= w->ewald.grid[d];
-      else
-        G[d][c] = d == c ? 1.0 / w->ewald.spacing : 0.0;
-      w->spreading.gradient[d][c] = G[d][c];
-    }
+    for (int c = 0; c < 3; c++)
+      G[d][c] = b->periodic ? wave[d][c] / (2.0 * SD_PI) * w->ewald.grid[d]
+          : d == c          ? 1.0 / w->ewald.spacing
+                            : 0.0;
   static const int of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 6; k++) {
     const double *g = G[of[k][0]], *h = G[of[k][1]];

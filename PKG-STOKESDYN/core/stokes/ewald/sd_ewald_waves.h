@@ -17,9 +17,7 @@
 #include "sd_wave.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Zero-initialise; sd_ewald_waves_free in the end. */
 typedef struct {
@@ -71,7 +69,5 @@ sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, doubl
 
 void sd_ewald_waves_free(sd_ewald_waves *w);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

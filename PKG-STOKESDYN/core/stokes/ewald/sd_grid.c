@@ -185,7 +185,7 @@ static void copy_pieces(const sd_grid *g, double *message, int to_brick)
   }
 }
 
-static void add_row(const sd_grid *g, long at, const double *row, int n)
+static void add_row(const sd_grid *g, long at, double *row, int n)
 {
   double *restrict f0 = (double *) g->plane[0] + at, *restrict f1 = (double *) g->plane[1] + at;
   double *restrict f2 = (double *) g->plane[2] + at;
@@ -196,7 +196,7 @@ static void add_row(const sd_grid *g, long at, const double *row, int n)
   }
 }
 
-static void take_row(const sd_grid *g, long at, double *restrict row, int n)
+static void take_row(const sd_grid *g, long at, double *row, int n)
 {
   const double *f0 = (double *) g->plane[0] + at, *f1 = (double *) g->plane[1] + at;
   const double *f2 = (double *) g->plane[2] + at;
@@ -207,33 +207,27 @@ static void take_row(const sd_grid *g, long at, double *restrict row, int n)
   }
 }
 
-/* Points of our lines of plane x: added from what of the pieces lies in it, or given to them. Our own
- * are in the brick, others in the message. */
+/* Points of our lines of plane x, row by row of the pieces: added from them, or given to them. Our
+ * own are in the brick, others in the message. */
+static inline void each_row(const sd_grid *g, int x, double *message,
+                            void (*visit)(const sd_grid *g, long at, double *row, int n))
+{
+  for (int k = 0; k < g->ins; k++) {
+    const sd_piece *p = g->in + k;
+    const int i = x - p->to[0];
+    if (i < 0 || i >= p->n[0]) continue;
+    for (int j = 0; j < p->n[1]; j++)
+      visit(g, 2L * g->half * (p->to[1] - g->own[SD_SHARED_LINES][0] + j) + p->to[2],
+            p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
+  }
+}
+
 static void fill_plane(const sd_grid *g, int x, double *message)
 {
   for (int c = 0; c < 3; c++)
     memset(g->plane[c], 0,
            sizeof(fftw_complex) * (size_t) sd_grid_own(g, SD_SHARED_LINES) * (size_t) g->half);
-  for (int k = 0; k < g->ins; k++) {
-    const sd_piece *p = g->in + k;
-    const int i = x - p->to[0];
-    if (i < 0 || i >= p->n[0]) continue;
-    for (int j = 0; j < p->n[1]; j++)
-      add_row(g, 2L * g->half * (p->to[1] - g->own[SD_SHARED_LINES][0] + j) + p->to[2],
-              p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
-  }
-}
-
-static void empty_plane(const sd_grid *g, int x, double *message)
-{
-  for (int k = 0; k < g->ins; k++) {
-    const sd_piece *p = g->in + k;
-    const int i = x - p->to[0];
-    if (i < 0 || i >= p->n[0]) continue;
-    for (int j = 0; j < p->n[1]; j++)
-      take_row(g, 2L * g->half * (p->to[1] - g->own[SD_SHARED_LINES][0] + j) + p->to[2],
-               p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
-  }
+  each_row(g, x, message, add_row);
 }
 
 /* --- transforms --- */
@@ -439,7 +433,7 @@ static sd_status back(sd_grid *g)
         copy_lines(g, c, k, first, 1);
       fftw_execute_dft_c2r(g->z_back, g->beside, (double *) g->plane[c]);
     }
-    empty_plane(g, k, second);
+    each_row(g, k, second, take_row);
   }
   return status;
 }

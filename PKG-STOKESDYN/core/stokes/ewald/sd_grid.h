@@ -26,9 +26,7 @@
 #include "sd_status.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* A box of a brick and its place in the pencils of a rank; where it begins in a message */
 typedef struct {
@@ -110,7 +108,5 @@ sd_status sd_grid_convolve_values(sd_grid *g, sd_grid_fill *fill, void *fill_ctx
 
 void sd_grid_free(sd_grid *g);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,5 +1,4 @@
 #include <limits.h>
-#include <string.h>
 
 #include "sd_grid_internal.h"
 

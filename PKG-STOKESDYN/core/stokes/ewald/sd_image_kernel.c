@@ -1,7 +1,5 @@
 #include "sd_image_kernel.h"
 
-#include <math.h>
-
 #include "sd_constants.h"
 #include "sd_padded.h"
 #include "sd_radial.h"

@@ -17,9 +17,7 @@
 #include "sd_ewald.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Directions 1 and 2 of the grid are along the wall. Without a factor -i for each of them in which
  * a kernel is odd */
@@ -47,7 +45,5 @@ sd_status sd_image_kernel(const sd_ewald *e, const int *size, const int *y, cons
  *   z f - i gamma f,   u + i gamma u',     gamma = d ln w^/dk + a_ref^2 k/3                     */
 void sd_image_slopes(const sd_ewald *e, int size, double *gamma);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

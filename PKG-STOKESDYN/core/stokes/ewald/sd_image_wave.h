@@ -20,16 +20,12 @@
 
 #include "sd_radial.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* The smooth part of a pair in the form of sd_wall.h, c1 ... c5 out. xi, xj: in the axes of the wall,
  * heights at least the radii a, b */
 void sd_image_wave(const sd_filter *filter, const double xi[3], double a, const double xj[3],
                    double b, double c[5]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -13,9 +13,7 @@
 #include "sd_ewald.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* The most numbers that the kernels of an offset are made from */
 enum { SD_PADDED_NUMBERS = 4 };
@@ -44,7 +42,5 @@ typedef struct {
 sd_status sd_padded_table(const sd_padded *k, const int *size, const int *y, const int *z,
                           double *table);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

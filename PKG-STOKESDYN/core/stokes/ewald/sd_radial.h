@@ -24,9 +24,7 @@
 
 #include "sd_ewald.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* In this order everywhere; J over r^2 and K over r: smooth and even in r, as all of them are here */
 enum { SD_I0, SD_J0, SD_I1, SD_J1, SD_I2, SD_J2, SD_K0, SD_K1, SD_RADIALS };
@@ -76,7 +74,5 @@ int sd_radial_fit(const sd_ewald *e, int width, double *coefficient);
  * Forces that are equal add it up, so that it would be far larger than the error of random ones. */
 void sd_radial_tail(const sd_ewald *e, double *tail);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

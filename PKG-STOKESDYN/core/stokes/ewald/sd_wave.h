@@ -14,9 +14,7 @@
 #include "sd_ewald.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 struct sd_ewald_kernels;
 
@@ -52,7 +50,5 @@ void sd_wave_multiply_root(void *ctx, int y, double *const *plane);
 
 void sd_wave_free(sd_wave *w);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -9,9 +9,7 @@
 
 #include "sd_ewald.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* of the longest polynomial; columns: points up to whole vectors */
 enum { SD_WINDOW_TERMS = 24, SD_WINDOW_COLUMNS = (SD_EWALD_MOST_POINTS + 7) / 8 * 8 };
@@ -38,7 +36,5 @@ double *sd_window_inverse(int points, double beta, int n);
 /* d/dtheta of its logarithm, for |theta| <= pi */
 double sd_window_slope(int points, double beta, double theta);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -3,9 +3,9 @@
 #ifndef SD_FLOW_H
 #define SD_FLOW_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* Angular velocity of a fluid element, half the vorticity: w_d = (d u_f/d x_e - d u_e/d x_f) / 2
  * for d, e, f in cyclic order. */
@@ -41,7 +41,5 @@ void sd_flow_bend(const double H[SD_FLOW_SECOND], const double r[3], double b, d
  * same for every choice of the edges of one lattice, as long as h and rate are of one choice. */
 void sd_flow_of_cell(const double h[6], const double rate[6], double G[9]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -16,9 +16,7 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Beyond the first and the last node: there is no value; that of the end; or all over again, with
  * the period from the first node to the last, which are one and the same place. */
@@ -76,7 +74,5 @@ sd_status sd_flow_grid_frame(const sd_flow_grid *grid, double time, sd_flow_fram
 void sd_flow_grid_at(const sd_flow_grid *grid, const sd_flow_frame *frame, int n, const double *x,
                      double *value, double *gradient);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

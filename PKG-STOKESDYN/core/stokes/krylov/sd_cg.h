@@ -17,9 +17,7 @@
 #include "sd_status.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* x, z, p have `size` numbers. The first `paired` of them meet r and w [paired] in inner products;
  * the others are what belongs to these (velocities, to forces) and goes along by the same steps. */
@@ -62,7 +60,5 @@ typedef struct {
  * this step; SD_ENOTFINITE; that of a function. */
 sd_status sd_cg_run(const sd_cg *A, const sd_cg_vectors *v, sd_cg_state *state);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -23,9 +23,7 @@
 
 #include "sd_solve.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Products beyond which the process gives up */
 enum { SD_NOISE_MOST = 100 };
@@ -74,7 +72,5 @@ sd_status sd_noise_forces(sd_noise *s, const sd_noise_matrix *M, const double *w
 
 void sd_noise_free(sd_noise *s);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,7 +1,7 @@
 #include "sd_solve.h"
 
 #include "sd_cg.h"
-#include "sd_ritz.h"
+#include "sd_linear.h"
 
 #include <math.h>
 #include <string.h>
@@ -134,6 +134,33 @@ static const double asked_for = 1e-9;
  * others. */
 static const double worth_a_restart = 0.5;
 
+/* Step lengths alpha_k and beta_k, from direction k to k + 1, of the first iterations. Beyond KEPT of
+ * them the extreme Ritz values hardly change. */
+enum { KEPT = 128 };
+typedef struct {
+  int count;
+  double alpha[KEPT], beta[KEPT];
+} steps;
+
+/* Conjugate gradients are Lanczos's process on the same vectors: the matrix, seen from the span of
+ * the first residuals normalised, is tridiagonal (Golub & Van Loan, Matrix Computations),
+ *
+ *   T_kk = 1/alpha_k + beta_(k-1)/alpha_(k-1),   T_k,k+1 = sqrt(beta_k)/alpha_k
+ *
+ * and its eigenvalues are the Ritz values. All are positive: 1e-14 of the largest is rounding. */
+static void find_ritz_values(const steps *s, sd_solve_report *report)
+{
+  const int n = s->count;
+  double d[KEPT], e[KEPT];
+  for (int k = 0; k < n; k++) {
+    d[k] = 1.0 / s->alpha[k] + (k > 0 ? s->beta[k - 1] / s->alpha[k - 1] : 0.0);
+    e[k] = sqrt(s->beta[k]) / s->alpha[k];
+  }
+  if (n == 0 || sd_tridiagonal_eigen(n, d, e, NULL, NULL) != SD_OK) return;
+  report->ritz_smallest = fmax(d[0], 1e-14 * d[n - 1]);
+  report->ritz_largest = d[n - 1];
+}
+
 typedef struct {
   /* its preconditioner may be dropped on the way */
   sd_system A;
@@ -145,10 +172,11 @@ typedef struct {
   double *F, *y;
   /* squares of D s, and of y computed from its definition */
   squares rhs, start;
-  /* iterations before this run of the loop; the steps of the first run; the last direction could not
-   * be moved along, and nobody had asked for it */
+  /* iterations before this run of the loop; the last direction could not be moved along, and nobody
+   * had asked for it */
   int before, stuck;
-  sd_ritz *ritz;
+  /* of the first run of the loop; NULL later */
+  steps *steps;
   sd_solve_report *report;
 } gradients;
 
@@ -233,7 +261,10 @@ static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
   sd_solve_report *report = g->report;
   if (now->steps > 0) {
     report->curvature = fmin(report->curvature, now->pw / now->pp);
-    if (g->ritz) sd_ritz_add(g->ritz, now->alpha, fmax(now->beta, 0.0));
+    if (g->steps && g->steps->count < KEPT) {
+      g->steps->alpha[g->steps->count] = now->alpha;
+      g->steps->beta[g->steps->count++] = fmax(now->beta, 0.0);
+    }
     smooth(g, now->own);
     report->iterations = g->before + now->steps;
   }
@@ -307,7 +338,7 @@ static sd_status repeat(gradients *g)
 {
   sd_solve_report *report = g->report;
   double verified = INFINITY;
-  for (;; g->ritz = NULL) {
+  for (;; g->steps = NULL) {
     sd_status status = iterate(g);
     if (status == SD_OK) status = verify(g);
     if (status == SD_OK && !isfinite(report->residual)) status = SD_ENOTFINITE;
@@ -326,7 +357,7 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
 {
   const long size = (long) width_of(A) * A->n;
   const size_t bytes = sizeof(double) * (size_t) size;
-  sd_ritz ritz = {.count = 0};
+  steps first = {.count = 0};
   gradients g = {.A = *A,
                  .slip = slip,
                  .tolerance = tolerance,
@@ -334,7 +365,7 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
                  .v = {work, work + size, work + 2 * size, work + 3 * size, work + 4 * size},
                  .F = F,
                  .y = work + 5 * size,
-                 .ritz = &ritz,
+                 .steps = &first,
                  .report = report};
   *report = (sd_solve_report){.curvature = 1.0};
   if (!A->warm) memset(F, 0, bytes);
@@ -348,6 +379,6 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
   status = begin(&g);
   if (status != SD_OK || report->residual <= tolerance) return status;
   status = repeat(&g);
-  sd_ritz_extremes(&ritz, &report->ritz_smallest, &report->ritz_largest);
+  find_ritz_values(&first, report);
   return status;
 }

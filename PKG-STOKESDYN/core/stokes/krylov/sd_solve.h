@@ -21,9 +21,7 @@
 #include "sd_status.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* The caller's functions return SD_OK or why they failed, and never throw: a solver that gets
  * another status returns it at once and calls no other of them. One that fails on a single rank
@@ -108,7 +106,5 @@ sd_status sd_solve_substitution(const sd_system *A, const double *slip, double t
 sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tolerance, int max_iter,
                              double *F, double *work, sd_solve_report *report);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -27,20 +27,22 @@ typedef struct {
 struct sd_elimination {
   const struct sd_block_kernels *kernels;
   /* lists of ends, with room behind each */
-  int ends, most_ends;
+  int ends;
   end_of_edge *end;
   /* blocks between nodes: those in use are below `blocks`, less those that are free again */
-  int blocks, most_blocks, free_blocks;
+  int blocks, free_blocks;
   float *block;
   int *free_block;
+  size_t end_room, block_room, free_room;
   /* by node, and its block; by degree: the first node of the queue */
   int nodes;
   node *node;
   float *pivot;
   int *queue;
-  /* room for columns; of one column: where products go, and which block that is */
-  long entries, most_entries;
-  size_t most_targets, most_target_blocks;
+  /* entries of columns, and room for them; of one column: where products go, and which block that
+   * is */
+  long entries;
+  size_t row_room, column_room, most_targets, most_target_blocks;
   sd_block_target *target;
   int *target_block;
 };
@@ -66,37 +68,19 @@ static int reserve_nodes(sd_block_cholesky *f, int n)
 /* Room for so many more blocks */
 static int reserve_blocks(struct sd_elimination *w, int more)
 {
-  if (w->blocks + more <= w->most_blocks) return 1;
-  const size_t room = (size_t) (w->blocks + more + w->blocks / 2);
-  if (!sd_grow(&w->block, sizeof(float) * SD_BLOCK, room) ||
-      !sd_grow(&w->free_block, sizeof(int), room))
-    return 0;
-  w->most_blocks = (int) room;
-  return 1;
-}
-
-/* Room for so many more ends */
-static int reserve_ends(struct sd_elimination *w, int more)
-{
-  if (w->ends + more <= w->most_ends) return 1;
-  const size_t room = (size_t) (w->ends + more + w->ends / 2);
-  if (!sd_grow(&w->end, sizeof(end_of_edge), room)) return 0;
-  w->most_ends = (int) room;
-  return 1;
+  const size_t blocks = (size_t) (w->blocks + more);
+  return sd_extend(&w->block, sizeof(float) * SD_BLOCK, blocks, &w->block_room) &&
+      sd_extend(&w->free_block, sizeof(int), blocks, &w->free_room);
 }
 
 /* Room for so many more entries of columns, all of one */
 static int reserve_entries(sd_block_cholesky *f, int more)
 {
   struct sd_elimination *w = f->work;
-  if (!f->column || w->entries + more > w->most_entries) {
-    const long room = w->entries + more + w->entries / 2;
-    if (!sd_grow(&f->row, sizeof(int), (size_t) room) ||
-        !sd_grow(&f->column, sizeof(float) * SD_BLOCK, (size_t) room))
-      return 0;
-    w->most_entries = room;
-  }
-  return sd_reserve(&w->target, sizeof(*w->target), (size_t) more, &w->most_targets) &&
+  const size_t entries = (size_t) (w->entries + more) + 1;
+  return sd_extend(&f->row, sizeof(int), entries, &w->row_room) &&
+      sd_extend(&f->column, sizeof(float) * SD_BLOCK, entries, &w->column_room) &&
+      sd_reserve(&w->target, sizeof(*w->target), (size_t) more, &w->most_targets) &&
       sd_reserve(&w->target_block, sizeof(int), (size_t) more, &w->most_target_blocks);
 }
 
@@ -150,7 +134,7 @@ static int put_end(struct sd_elimination *w, int at, end_of_edge e)
   node *this = w->node + at;
   if (this->degree == this->room) { /* to the end of all lists, with twice the room */
     const int room = 2 * this->room + 4;
-    if (!reserve_ends(w, room)) return 0;
+    if (!sd_extend(&w->end, sizeof(e), (size_t) (w->ends + room), &w->end_room)) return 0;
     memcpy(w->end + w->ends, w->end + this->list, sizeof(e) * (size_t) this->degree);
     this->list = w->ends;
     this->room = room;
@@ -184,7 +168,9 @@ sd_status sd_block_cholesky_begin(sd_block_cholesky *f, int n)
   if (!f->work) f->work = calloc(1, sizeof(*f->work));
   struct sd_elimination *w = f->work;
   f->n = 0;
-  if (!w || !reserve_nodes(f, n) || !reserve_ends(w, 4 * n)) return SD_ENOMEMORY;
+  if (!w || !reserve_nodes(f, n) ||
+      !sd_extend(&w->end, sizeof(end_of_edge), 4 * (size_t) n, &w->end_room))
+    return SD_ENOMEMORY;
   f->n = n;
   w->kernels = SD_KERNELS_OF(sd_block, plain, sd_isa_of(SD_ISA_BEST));
   w->ends = w->blocks = w->free_blocks = 0;

@@ -15,9 +15,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 enum { SD_BLOCK_LANES = 8 };
 
@@ -46,7 +44,5 @@ sd_status sd_block_cholesky_factor(sd_block_cholesky *f, double drop);
 void sd_block_cholesky_apply(const sd_block_cholesky *f, double *x);
 void sd_block_cholesky_free(sd_block_cholesky *f);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -33,12 +33,10 @@
 #include <stdint.h>
 
 #include "sd_film.h"
-#include "sd_near.h"
+#include "sd_neighbor.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   const sd_two_sphere *functions;
@@ -130,7 +128,5 @@ sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, dou
                               double *rate);
 void sd_lubrication_free(sd_lubrication *L);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -14,11 +14,7 @@ void sd_lubrication_drift(sd_lubrication *L, long k, const sd_pair_resistance *R
 int sd_lubrication_remember(sd_lubrication *L, long k, const sd_pair_resistance *R)
 {
   struct sd_lubrication_work *w = L->work;
-  if (w->images == w->most_images) {
-    const long room = 2 * w->most_images + 16;
-    if (!sd_grow(&w->image, sizeof(*w->image), (size_t) room)) return 0;
-    w->most_images = room;
-  }
+  if (!sd_extend(&w->image, sizeof(*w->image), (size_t) w->images + 1, &w->image_room)) return 0;
   w->image[w->images++] = (own_image){k, block_of(R, 1, L->link[k].d)};
   return 1;
 }

@@ -46,7 +46,8 @@ struct sd_lubrication_work {
   int noisy;
   /* films */
   own_image *image;
-  long images, most_images;
+  long images;
+  size_t image_room;
   long most_spheres, most_pairs;
 };
 

@@ -5,7 +5,6 @@
 
 #include "sd_linear.h"
 #include "sd_lubrication_internal.h"
-#include "sd_pair_noise.h"
 
 /* Of pair k on its first sphere and its second, as they are in the pair, F [12]. An image of the
  * sphere itself is seen from both sides, and acts from one. */

@@ -18,9 +18,7 @@
 #include "sd_status.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Which spheres an engine sees:
  *   LIST   this rank's n, then the ghosts around them; pairs within the engine's reach, one row for
@@ -100,7 +98,5 @@ sd_status sd_mobility_draw(sd_mobility *m, const sd_random_key *key, double *u);
 
 void sd_mobility_free(sd_mobility *m);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -100,12 +100,8 @@ static int keep_off_wall(ewald *e, const sd_mobility_scene *s)
   e->spheres = s->spheres;
   if (!wall->sign) return 1;
   if (!sd_reserve(&e->stand, 3 * sizeof(double), (size_t) s->n_all, &e->stand_room)) return 0;
-  memcpy(e->stand, s->spheres.x, 3 * sizeof(double) * (size_t) s->n_all);
-  for (int i = 0; i < s->n_all; i++) {
-    double *x = e->stand + 3L * i;
-    if (sd_wall_height(wall, x) < s->spheres.a[i])
-      x[wall->axis] = wall->at + wall->sign * s->spheres.a[i];
-  }
+  for (long i = 0; i < s->n_all; i++)
+    sd_wall_keep_off(wall, s->spheres.x + 3 * i, s->spheres.a[i], e->stand + 3 * i);
   e->spheres.x = e->stand;
   return 1;
 }

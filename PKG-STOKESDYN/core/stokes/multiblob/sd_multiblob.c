@@ -24,17 +24,16 @@ static void pressure_mode(const sd_multiblob *m, const double r[3], const double
 
 /* --- the lone sphere -------------------------------------------------------------------------- */
 
-enum { UNIFORM, PRESSURE, TURN, STRAIN, MODES };
+enum { UNIFORM, PRESSURE, STRAIN, MODES };
 
-/* Velocity of a point of the unit sphere in each of the motions whose resistance the five numbers
- * are. By the symmetry of the icosahedron one direction of each stands for all, and only the first
- * two know each other. */
+/* Velocity of a point of the unit sphere in each of the motions that the addition repairs. By the
+ * symmetry of the icosahedron one direction of each stands for all, and only the first two know each
+ * other. */
 static void motions_at(const sd_multiblob *m, const double r[3], double v[MODES][3])
 {
-  const double x[3] = {1.0, 0.0, 0.0}, z[3] = {0.0, 0.0, 1.0};
+  const double x[3] = {1.0, 0.0, 0.0};
   memcpy(v[UNIFORM], x, sizeof x);
   pressure_mode(m, r, x, v[PRESSURE]);
-  sd_cross(z, r, v[TURN]);
   v[STRAIN][0] = r[1];
   v[STRAIN][1] = r[0];
   v[STRAIN][2] = 0.0;
@@ -54,7 +53,7 @@ static sd_status resistance_of_lone(const sd_multiblob *m, double R[MODES][MODES
     motions_at(m, m->r + 3 * k, motion);
     for (size_t e = 0; e < MODES; e++) memcpy(v + e * N + 3 * k, motion[e], sizeof motion[e]);
   }
-  sd_body_shape_matrix(m->n, 3, m->r, b, M);
+  sd_wall_matrix(NULL, m->n, 3, m->r, b, M);
   memcpy(f, v, sizeof(double) * MODES * N);
   const sd_status status = sd_cholesky_solve((int) N, M, MODES, f);
   for (size_t e = 0; e < MODES; e++)
@@ -66,20 +65,6 @@ static sd_status resistance_of_lone(const sd_multiblob *m, double R[MODES][MODES
   return status;
 }
 
-/* With the forces of the motion g_k V, which is the pressure mode as it passes a sphere that moves
- * with the exact Faxen velocity: a free one moves at -R_01/R_00 more. */
-static sd_multiblob_lone over_exact(double R[MODES][MODES])
-{
-  const double moves = R[UNIFORM][PRESSURE] / R[UNIFORM][UNIFORM];
-  return (sd_multiblob_lone){
-      .drag = R[UNIFORM][UNIFORM] / (6.0 * SD_PI),
-      .rotation = R[TURN][TURN] / (8.0 * SD_PI),
-      .stresslet = R[STRAIN][STRAIN] / (40.0 / 3.0 * SD_PI), /* S:E = 20 pi/3 E:E, E:E = 2 */
-      .faxen = 1.0 + 6.0 * moves,
-      .pressure_gradient =
-          (R[PRESSURE][PRESSURE] - moves * R[UNIFORM][PRESSURE]) / (2.0 / 15.0 * SD_PI)};
-}
-
 static void find_addition(double R[MODES][MODES], sd_multiblob *m)
 {
   const double p = R[UNIFORM][UNIFORM] / (6.0 * SD_PI), q = R[UNIFORM][PRESSURE] / (6.0 * SD_PI),
@@ -87,7 +72,8 @@ static void find_addition(double R[MODES][MODES], sd_multiblob *m)
   m->alpha = 1.0 - s / det;
   m->beta = q / det;
   m->delta = 45.0 - p / det;
-  m->strain = 0.9 * (1.0 - 1.0 / m->lone.stresslet);
+  /* S:E = 20 pi/3 E:E of a sphere, E:E = 2 */
+  m->strain = 0.9 * (1.0 - 40.0 / 3.0 * SD_PI / R[STRAIN][STRAIN]);
 }
 
 sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
@@ -109,11 +95,10 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
     for (int d = 0; d < 3; d++) m->r[3 * k + d] = m->radius * e[d];
   }
   sd_shell_free(&shell);
+  if (!one_body) return SD_OK;
   status = resistance_of_lone(m, R);
-  if (status != SD_OK) return status;
-  m->lone = over_exact(R);
-  if (one_body) find_addition(R, m);
-  return SD_OK;
+  if (status == SD_OK) find_addition(R, m);
+  return status;
 }
 
 /* --- the addition ----------------------------------------------------------------------------- */
@@ -147,5 +132,17 @@ void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const do
     pressure_mode(m, e, odd, g);
     sd_multiply3(S, e, strain);
     for (int d = 0; d < 3; d++) u[3 * k + d] += even[d] + g[d] + strain[d];
+  }
+}
+
+void sd_multiblob_one_body_matrix(const sd_multiblob *m, double a, const double *r, size_t size,
+                                  double *M)
+{
+  const size_t N = 3 * (size_t) m->n;
+  for (size_t j = 0; j < N; j++) {
+    double f[3 * SD_MULTIBLOB_MOST] = {0.0}, u[3 * SD_MULTIBLOB_MOST] = {0.0};
+    f[j] = 1.0;
+    sd_multiblob_one_body(m, a, 1.0, r, f, u);
+    for (size_t i = 0; i < N; i++) M[i * size + j] += u[i];
   }
 }

@@ -31,18 +31,13 @@
 #ifndef SD_MULTIBLOB_H
 #define SD_MULTIBLOB_H
 
+#include <stddef.h>
+
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 enum { SD_MULTIBLOB_MOST = 42 };
-
-/* What a lone shell has over exact */
-typedef struct {
-  double drag, rotation, stresslet, faxen, pressure_gradient;
-} sd_multiblob_lone;
 
 typedef struct {
   /* points */
@@ -51,8 +46,7 @@ typedef struct {
   double radius, point;
   /* [3n] r_k of a free sphere of radius 1 */
   double r[3 * SD_MULTIBLOB_MOST];
-  /* of the points alone, and the constants that repair it: all 0 without the addition */
-  sd_multiblob_lone lone;
+  /* the constants of the addition: all 0 without it */
   double alpha, beta, delta, strain;
 } sd_multiblob;
 
@@ -67,8 +61,10 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *out);
  * as it may be. No aliasing. Costs about 60 n multiplications. */
 void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const double *r,
                            const double *f, double *u);
+/* The same as a matrix, of a viscosity of 1: added to the rows and columns of these points in a matrix
+ * of `size` columns; M: the first of these numbers */
+void sd_multiblob_one_body_matrix(const sd_multiblob *m, double a, const double *r, size_t size,
+                                  double *M);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,6 +1,5 @@
 #include "sd_multiblob_points.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "sd_linear.h"
@@ -60,7 +59,7 @@ void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, cons
   if (m->delta == 0.0) return;
   for (int i = 0; i < s->n; i++) {
     const long row = 3L * m->n * i;
-    if (!(s->a[i] > 0.0) || (s->mask && !(s->mask[i] & SD_MULTIBLOB_WHOLE))) continue;
+    if (!sd_multiblob_is_whole(s, i)) continue;
     sd_multiblob_one_body(m, s->a[i], 1.0 / (w[i] * w[i]), r + row, f + row, u + row);
   }
 }

@@ -10,9 +10,7 @@
 #include "sd_multiblob.h"
 #include "sd_shape.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* What there is of a sphere's shell: bit k is set if point k is there, and SD_MULTIBLOB_WHOLE if
  * the sphere has the one-body addition. Exact as a double, too. */
@@ -40,6 +38,12 @@ typedef struct {
   int n;
 } sd_multiblob_spheres;
 
+/* Has sphere i the one-body addition? */
+static inline int sd_multiblob_is_whole(const sd_multiblob_spheres *s, long i)
+{
+  return s->a[i] > 0.0 && (!s->mask || s->mask[i] & SD_MULTIBLOB_WHOLE);
+}
+
 /* Points of all of them: r [3 m->n n] from the centre of their sphere (NULL: not wanted), x where
  * they are, b [m->n n] radii */
 void sd_multiblob_expand(const sd_multiblob *m, const sd_multiblob_spheres *s, double *r, double *x,
@@ -55,7 +59,5 @@ void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, cons
 void sd_multiblob_moments(const sd_multiblob *m, int spheres, const double *r, const double *f,
                           double *S);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

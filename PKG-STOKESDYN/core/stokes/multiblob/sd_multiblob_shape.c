@@ -6,33 +6,24 @@
 #include "sd_constants.h"
 #include "sd_linear.h"
 
-/* M [(3 count)^2] += the addition of each sphere; row [count]: which points these are; f, u:
- * scratch */
+/* M [(3 count)^2] += the addition of each sphere that has it, and so all of its points, one after the
+ * other; row [count]: which points these are, r [3 all] from the centres of their spheres */
 static void add_one_body(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *r,
-                         const int *row, int count, double *M, double *f, double *u)
+                         const int *row, int count, double *M)
 {
-  const double w[1] = {1.0};
-  for (int i = 0; i < s->n; i++) {
-    const sd_multiblob_spheres one = {s->x + 3 * (long) i, s->a + i, NULL, s->mask + i, 1};
-    const int first = m->n * i;
-    for (int p = 0; p < count; p++)
-      for (int e = 0; e < 3 && row[p] >= first && row[p] < first + m->n; e++) {
-        memset(f, 0, sizeof(double) * 3 * (size_t) m->n);
-        memset(u, 0, sizeof(double) * 3 * (size_t) m->n);
-        f[3 * (row[p] - first) + e] = 1.0;
-        sd_multiblob_add(m, &one, w, r + 3 * (long) first, f, u);
-        for (int q = 0; q < count; q++)
-          for (int d = 0; d < 3 && row[q] >= first && row[q] < first + m->n; d++)
-            M[(3 * (size_t) q + d) * 3 * (size_t) count + 3 * (size_t) p + e] +=
-                u[3 * (row[q] - first) + d];
-      }
+  const size_t N = 3 * (size_t) count;
+  for (int p = 0; p < count && m->delta != 0.0; p++) {
+    const int i = row[p] / m->n, first = row[p] == m->n * i;
+    if (first && sd_multiblob_is_whole(s, i))
+      sd_multiblob_one_body_matrix(m, s->a[i], r + 3 * (long) row[p], N,
+                                   M + 3 * (size_t) p * (N + 1));
   }
 }
 
 /* Doubles of make_shape's scratch */
 static size_t scratch_of(const sd_multiblob *m, int spheres)
 {
-  return 7 * (size_t) m->n * (size_t) spheres + 6 * (size_t) m->n;
+  return 7 * (size_t) m->n * (size_t) spheres;
 }
 
 /* r, x [3 all] and b [all] of the body's points; those that are there, and in row [all], become the
@@ -42,7 +33,7 @@ static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall,
                             int *row, sd_body_shape *out)
 {
   const size_t all = (size_t) m->n * (size_t) s->n;
-  double *x = r + 3 * all, *b = x + 3 * all, *f = b + all, *u = f + 3 * (size_t) m->n;
+  double *x = r + 3 * all, *b = x + 3 * all;
   int count = 0;
   sd_multiblob_expand(m, s, r, x, b);
   for (size_t k = 0; k < all; k++) {
@@ -53,11 +44,8 @@ static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall,
   }
   double *M = malloc(sizeof(double) * 9 * (size_t) count * (size_t) count);
   if (!M) return SD_ENOMEMORY;
-  if (wall)
-    sd_body_wall_matrix(wall, count, 3, x, b, M);
-  else
-    sd_body_shape_matrix(count, 3, x, b, M);
-  add_one_body(m, s, r, row, count, M, f, u);
+  sd_wall_matrix(wall, count, 3, x, b, M);
+  add_one_body(m, s, r, row, count, M);
   for (int k = 0; k < 3 * count; k++) x[k] -= centre[k % 3];
   const sd_status status = sd_body_shape_of(count, 3, x, M, out);
   free(M);

@@ -6,14 +6,12 @@
 #ifndef SD_MULTIBLOB_SHAPE_H
 #define SD_MULTIBLOB_SHAPE_H
 
-#include "sd_body_wall.h"
+#include "sd_body_shape.h"
 #include "sd_faces.h"
 #include "sd_multiblob_points.h"
 #include "sd_solve.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* [spheres] */
@@ -36,7 +34,7 @@ typedef struct {
 sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
                                     sd_multiblob_shape *out);
 /* The shape, in axes of space, of the points that there are of spheres s in space, above a wall
- * (sd_body_wall.h); their order is that of the body's own shape. The owner frees. Status as above. */
+ * (sd_body_shape.h); their order is that of the body's own shape. The owner frees. Status as above. */
 sd_status sd_multiblob_wall_shape(const sd_multiblob *m, const sd_wall *wall,
                                   const sd_multiblob_spheres *s, const double centre[3],
                                   sd_body_shape *out);
@@ -63,7 +61,5 @@ typedef struct {
 /* u = M f; ctx is an sd_multiblob_mobility. SD_OK or that of pairs. */
 sd_status sd_multiblob_apply(void *ctx, const double *f, double *u);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,7 +1,6 @@
-#include "sd_near.h"
+#include "sd_neighbor.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,7 +32,8 @@ typedef struct {
   sphere *sorted;
   /* in the order in which they are found, each once */
   int (*pair)[2];
-  long count, capacity;
+  long count;
+  size_t room;
 } search;
 
 static sd_status create(search *q)
@@ -42,7 +42,8 @@ static sd_status create(search *q)
   q->cell = malloc(sizeof(cell) * room);
   q->sorted = malloc(sizeof(sphere) * room);
   const sd_status status = sd_cells_create(&q->hash, q->n_all);
-  return q->cell && q->sorted ? status : SD_ENOMEMORY;
+  const int pairs = sd_extend(&q->pair, sizeof(*q->pair), 8 * room, &q->room);
+  return q->cell && q->sorted && pairs ? status : SD_ENOMEMORY;
 }
 
 static void release(search *q)
@@ -53,21 +54,12 @@ static void release(search *q)
   free(q->pair);
 }
 
-static sd_status reserve(search *q, long more)
-{
-  if (q->count + more <= q->capacity) return SD_OK;
-  const long capacity = 2 * q->capacity + more + 8 * (long) q->n_all;
-  if (!sd_grow(&q->pair, sizeof(*q->pair), (size_t) capacity)) return SD_ENOMEMORY;
-  q->capacity = capacity;
-  return SD_OK;
-}
-
 /* One sphere against some of the sorted ones. Most are too far away, which a processor cannot
  * foresee: every pair is written, and those that count stay. */
 static sd_status look_at(search *q, const sphere *one, int begin, int end)
 {
-  const sd_status status = reserve(q, end - begin);
-  if (status != SD_OK) return status;
+  const size_t most = (size_t) (q->count + (end - begin));
+  if (most > q->room && !sd_extend(&q->pair, sizeof(*q->pair), most, &q->room)) return SD_ENOMEMORY;
   const int is_target = one->index < q->n;
   const double half = 0.5 * q->reach;
   long count = q->count;

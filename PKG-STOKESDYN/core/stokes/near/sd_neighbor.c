@@ -14,20 +14,12 @@ void sd_neighbors_free(sd_neighbors *list)
   *list = (sd_neighbors){0};
 }
 
-/* Both arrays grow apart, and only when they must: a list is made again at every re-neighbouring,
- * with about as many pairs as before. */
+/* A list is made again at every re-neighbouring, with about as many pairs as before. */
 sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count)
 {
-  if (rows > list->rows || !list->first) {
-    if (!sd_grow(&list->first, sizeof(long), (size_t) rows + 1)) return SD_ENOMEMORY;
-    list->rows = rows;
-  }
-  /* a quarter more than is asked for: a list that grows pair by pair is copied a few times only */
-  if (count > list->capacity) {
-    const long capacity = count + count / 4 + 64;
-    if (!sd_grow(&list->neighbor, sizeof(int), (size_t) capacity)) return SD_ENOMEMORY;
-    list->capacity = capacity;
-  }
+  if (!sd_extend(&list->first, sizeof(long), (size_t) rows + 1, &list->first_room) ||
+      !sd_extend(&list->neighbor, sizeof(int), (size_t) count, &list->room))
+    return SD_ENOMEMORY;
   list->pairs.first = list->first;
   list->pairs.neighbor = list->neighbor;
   return SD_OK;
@@ -36,7 +28,7 @@ sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count)
 /* One more source in the row that is being written */
 static inline sd_status append(sd_neighbors *list, int rows, long *count, int j)
 {
-  if (*count == list->capacity) {
+  if ((size_t) *count == list->room) {
     const sd_status status = sd_neighbors_reserve(list, rows, *count + 1);
     if (status != SD_OK) return status;
   }
@@ -65,6 +57,23 @@ sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_
   }
   list->first[n] = count;
   sd_cells_free(&c);
+  return status;
+}
+
+sd_status sd_smallest_gap(const double *x, const double *a, const int64_t *body, int n, int n_all,
+                          double reach, double *gap)
+{
+  sd_neighbors list = {0};
+  const sd_status status = sd_neighbors_cutoff(&list, x, n, n_all, reach);
+  *gap = INFINITY;
+  for (int i = 0; i < n && status == SD_OK; i++)
+    for (long k = list.pairs.first[i]; k < list.pairs.first[i + 1]; k++) {
+      const int j = list.pairs.neighbor[k];
+      if (body && body[i] != 0 && body[i] == body[j]) continue;
+      const double R = sqrt(sd_distance_squared(x + 3 * (long) i, x + 3 * (long) j));
+      *gap = fmin(*gap, 2.0 * (R / (a[i] + a[j]) - 1.0));
+    }
+  sd_neighbors_free(&list);
   return status;
 }
 

@@ -11,18 +11,14 @@
 #include "sd_product.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Pairs with their memory; zero-initialise, sd_neighbors_free in the end. */
 typedef struct {
   sd_pairs pairs;
   long *first;
   int *neighbor;
-  /* room of neighbor; that of first, less one */
-  long capacity;
-  int rows;
+  size_t first_room, room;
 } sd_neighbors;
 
 void sd_neighbors_free(sd_neighbors *list);
@@ -35,6 +31,21 @@ sd_status sd_neighbors_reserve(sd_neighbors *list, int rows, long count);
  *   x [3 n_all], cutoff finite > 0. By cells of side cutoff: O(n_all + pairs).
  * SD_OK or SD_ENOMEMORY. */
 sd_status sd_neighbors_cutoff(sd_neighbors *list, const double *x, int n, int n_all, double cutoff);
+
+/* The smallest gap between spheres that are not of one body:
+ * xi = 2 (R - a_i - a_j) / (a_i + a_j), the least over i < n and j < n_all whose centres are within
+ * reach; negative for spheres that overlap, INFINITY: there are none so near.
+ *   x [3 n_all], a [n_all]; body [n_all]: spheres of one body, not 0, have no gap. NULL: all free
+ * SD_OK or SD_ENOMEMORY. */
+sd_status sd_smallest_gap(const double *x, const double *a, const int64_t *body, int n, int n_all,
+                          double reach, double *gap);
+
+/* The close pairs, for lubrication: those with R <= reach (a_i + a_j)/2, each once: in row i < n its partners j > i among spheres
+ * 0 ... n_all - 1, the n of this rank and their ghosts. reach is in units of the mean radius of the
+ * pair, 2 at contact, and lubrication up to a gap of xi mean radii wants 2 + xi. Radius 0: takes no
+ * part. O(n_all + pairs) for each power of two between the smallest and the largest radius. SD_OK
+ * or SD_ENOMEMORY. */
+sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all, double reach);
 
 /* Spheres and who they are: x [3 n_all], tag [n_all], molecule [n_all] */
 typedef struct {
@@ -62,7 +73,5 @@ sd_status sd_neighbors_clump(sd_neighbors *list, const sd_named *s, int n, int n
 sd_status sd_oseen_coupling(const sd_law *law, const sd_spheres *s, const sd_pairs *pairs,
                             int n_all, int begin, int n, double *coupling);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

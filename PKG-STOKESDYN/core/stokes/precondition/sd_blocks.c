@@ -3,9 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_blocks_internal.h"
 #include "sd_linear.h"
-#include "sd_unit.h"
+#include "sd_precondition_internal.h"
 
 void sd_blocks_free(void *blocks)
 {

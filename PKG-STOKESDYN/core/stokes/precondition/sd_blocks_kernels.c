@@ -1,5 +1,5 @@
 /* The product with a full matrix. */
-#include "sd_blocks_internal.h"
+#include "sd_precondition_internal.h"
 
 #include "sd_lanes.h"
 

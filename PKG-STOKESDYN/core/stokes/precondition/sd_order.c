@@ -127,16 +127,6 @@ static int farthest_first(const sd_spheres *s, int n, int *order, double *distan
   return count;
 }
 
-/* Room for so many rows. The number of rows is not known before they are found: twice as many as
- * are wanted now, so that what is copied in the end is no more than all of them. */
-static sd_status grow(sd_rows *rows, long *capacity, long wanted)
-{
-  if (wanted <= *capacity) return SD_OK;
-  if (!sd_grow(&rows->row, sizeof(int), 2 * (size_t) wanted)) return SD_ENOMEMORY;
-  *capacity = 2 * wanted;
-  return SD_OK;
-}
-
 typedef struct {
   const double *x, *distance;
   const int *order;
@@ -150,8 +140,8 @@ static sd_status find_rows(sd_rows *rows, const ordered *o, double rho, int part
                            sd_cells *c)
 {
   const double *x = o->x, extent = o->count > 1 ? o->distance[1] : 0.0;
-  long capacity = 0, used = 0;
-  sd_status status = SD_OK;
+  size_t room = 0;
+  long used = 0;
   for (int k = 0; k < o->count; k++) {
     const int i = o->order[k];
     const double *xi = x + 3 * (long) i;
@@ -161,7 +151,7 @@ static sd_status find_rows(sd_rows *rows, const ordered *o, double rho, int part
     if (k % parts == part) {
       const long begin = used;
       rows->first[rows->columns++] = begin;
-      if ((status = grow(rows, &capacity, used + k + 1)) != SD_OK) return status;
+      if (!sd_extend(&rows->row, sizeof(int), (size_t) (used + k + 1), &room)) return SD_ENOMEMORY;
       rows->row[used++] = i;
       if (k > 0)
         for (sd_cells_walk w = sd_cells_near(c, xi, reach); sd_cells_step(c, &w);)

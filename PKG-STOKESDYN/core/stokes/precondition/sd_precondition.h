@@ -1,7 +1,7 @@
 /* Preconditioners of conjugate gradients: approximations P of the inverse of the mobility matrix M.
  * None at all is P = D, the diagonal, which solvers take by themselves.
  *
- * All are made of the matrix with unit diagonal, C = D^1/2 M D^1/2 (sd_unit.h), whose blocks depend
+ * All are made of the matrix with unit diagonal, C = D^1/2 M D^1/2, whose blocks depend
  * on positions, radii and the law only: P = D^1/2 (approximation of C^-1) D^1/2. A preconditioner
  * changes the number of iterations, never the answer.
  *
@@ -18,9 +18,7 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* What it is made of */
 typedef struct {
@@ -62,7 +60,5 @@ extern const sd_precondition_kind
      * (sd_waves.h) */
     sd_precondition_waves;
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

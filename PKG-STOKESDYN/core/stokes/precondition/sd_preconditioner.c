@@ -1,86 +1,68 @@
 #include "sd_preconditioner.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_hash.h"
+
 static const double FAR = 0.5;
 
-static void drop(sd_preconditioner *p)
-{
-  if (p->state) p->kind->free(p->state);
-  free(p->state);
-  p->state = NULL;
-}
+static const long nobody[1] = {0};
 
 void sd_preconditioner_free(sd_preconditioner *p)
 {
-  drop(p);
-  free(p->x);
-  free(p->first);
-  free(p->member);
-  free(p->one);
+  if (p->state) p->kind->free(p->state);
+  free(p->state);
   free(p->scratch);
   memset(p, 0, sizeof(*p));
 }
 
-/* What waves are made of; 0: no box */
-static void edges_of(const sd_precondition_case *c, double edges[6])
+/* Eight bytes at a time, each of them with all before it */
+static uint64_t hash(uint64_t before, const void *from, size_t bytes)
 {
-  memset(edges, 0, 6 * sizeof(double));
-  if (!c->box) return;
-  memcpy(edges, c->box->edge, 3 * sizeof(double));
-  memcpy(edges + 3, c->box->tilt, 3 * sizeof(double));
+  for (size_t at = 0; at < bytes; at += 8) {
+    uint64_t word = 0;
+    memcpy(&word, (const char *) from + at, bytes - at < 8 ? bytes - at : 8);
+    before = sd_hash_mix(before + SD_HASH_STEP) ^ word;
+  }
+  return sd_hash_mix(before);
 }
 
-static int made_of(const sd_preconditioner *p, const sd_precondition_kind *kind,
-                   const sd_precondition_case *c)
+/* Two cases of one hash are the same but for one in 2^64. */
+static uint64_t fingerprint(const sd_precondition_case *c)
 {
   const size_t n = (size_t) c->n, clumps = (size_t) c->clumps;
-  double edges[6];
-  edges_of(c, edges);
-  return p->state && p->wanted == kind && p->n == c->n && p->width == c->width &&
-      p->clumps == c->clumps && !memcmp(p->edges, edges, sizeof(edges)) &&
-      (n == 0 || (!memcmp(p->x, c->spheres.x, 3 * n * sizeof(double)) &&
-                  !memcmp(p->x + 3 * n, c->spheres.a, n * sizeof(double)))) &&
-      (clumps == 0 ||
-       (!memcmp(p->first, c->first, (clumps + 1) * sizeof(long)) &&
-        !memcmp(p->member, c->member, (size_t) c->first[clumps] * sizeof(int))));
+  const int sizes[3] = {c->n, c->width, c->clumps};
+  uint64_t h = hash(0, sizes, sizeof(sizes));
+  h = hash(h, c->spheres.x, 3 * n * sizeof(double));
+  h = hash(h, c->spheres.a, n * sizeof(double));
+  if (c->box) h = hash(h, c->box->edge, sizeof(c->box->edge));
+  if (c->box) h = hash(h, c->box->tilt, sizeof(c->box->tilt));
+  if (clumps == 0) return h;
+  h = hash(h, c->first, (clumps + 1) * sizeof(long));
+  return hash(h, c->member, (size_t) c->first[clumps] * sizeof(int));
 }
 
-static sd_status copy(sd_preconditioner *p, const sd_precondition_kind *kind,
-                      const sd_precondition_case *c)
+static sd_status begin(sd_preconditioner *p, const sd_precondition_kind *kind,
+                       const sd_precondition_case *c, uint64_t made_of)
 {
-  const size_t n = (size_t) c->n, clumps = (size_t) c->clumps;
-  const size_t members = clumps ? (size_t) c->first[clumps] : 0;
   sd_preconditioner_free(p);
-  p->kind = p->wanted = kind;
-  p->n = c->n;
-  p->width = c->width;
-  p->clumps = c->clumps;
-  edges_of(c, p->edges);
-  p->x = malloc(sizeof(double) * (4 * n + 1));
-  p->first = calloc(clumps + 1, sizeof(long));
-  p->member = malloc(sizeof(int) * (members + 1));
-  p->one = malloc(sizeof(double) * (n + 1));
-  p->scratch = malloc(sizeof(double) * ((size_t) c->width * n + 1));
-  p->state = calloc(1, kind->size);
-  if (!p->x || !p->first || !p->member || !p->one || !p->scratch || !p->state) return SD_ENOMEMORY;
-  if (n) memcpy(p->x, c->spheres.x, 3 * n * sizeof(double));
-  if (n) memcpy(p->x + 3 * n, c->spheres.a, n * sizeof(double));
-  if (clumps) memcpy(p->first, c->first, (clumps + 1) * sizeof(long));
-  if (clumps) memcpy(p->member, c->member, members * sizeof(int));
-  for (size_t i = 0; i < n; i++) p->one[i] = 1.0;
-  return SD_OK;
+  *p = (sd_preconditioner){.wanted = kind,
+                           .kind = kind,
+                           .state = calloc(1, kind->size),
+                           .made_of = made_of,
+                           .n = c->n,
+                           .width = c->width};
+  p->scratch = malloc(sizeof(double) * ((size_t) c->width * (size_t) c->n + 1));
+  return p->state && p->scratch ? SD_OK : SD_ENOMEMORY;
 }
 
 /* D: blocks without a clump. It stands in the place of what could not be made, and is tried again
  * only when that would be made of something else. */
 static sd_status make_diagonal(sd_preconditioner *p, sd_precondition_case alone)
 {
-  static const long first[1] = {0};
   alone.clumps = 0;
-  alone.first = first;
+  alone.first = nobody;
   free(p->state);
   p->kind = &sd_precondition_blocks;
   p->state = calloc(1, p->kind->size);
@@ -88,18 +70,20 @@ static sd_status make_diagonal(sd_preconditioner *p, sd_precondition_case alone)
   return status == SD_OK ? p->kind->make(p->state, &alone) : status;
 }
 
+/* Of viscosity 1: w of all spheres is 1, for which the scratch is free. */
 sd_status sd_preconditioner_make(sd_preconditioner *p, const sd_precondition_kind *kind,
                                  const sd_precondition_case *c)
 {
-  double others = !made_of(p, kind, c);
+  const uint64_t made_of = fingerprint(c);
+  double others = !(p->state && p->wanted == kind && p->made_of == made_of);
   sd_status status = sd_world_sum(&c->world, &others, 1);
   if (status != SD_OK || others == 0.0) return status;
-  status = sd_world_agree(&c->world, copy(p, kind, c));
+  status = sd_world_agree(&c->world, begin(p, kind, c, made_of));
   if (status == SD_OK) {
     sd_precondition_case own = *c;
-    own.spheres = (sd_spheres){p->x, p->x + 3 * (size_t) p->n, p->one};
-    own.first = p->first;
-    own.member = p->member;
+    for (int i = 0; i < c->n; i++) p->scratch[i] = 1.0;
+    own.spheres.w = p->scratch;
+    if (c->clumps == 0) own.first = nobody;
     status = kind->make(p->state, &own);
     if (status != SD_OK) status = make_diagonal(p, own);
   }

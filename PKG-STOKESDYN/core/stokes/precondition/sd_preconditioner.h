@@ -9,23 +9,21 @@
 #ifndef SD_PRECONDITIONER_H
 #define SD_PRECONDITIONER_H
 
+#include <stdint.h>
+
 #include "sd_precondition.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef struct {
   /* what was asked for, and what there is */
   const sd_precondition_kind *wanted, *kind;
   void *state;
-  /* what it is made of, our own copy; x and a behind one another in x */
-  int n, width, clumps;
-  double *x, edges[6];
-  long *first;
-  int *member;
-  /* [n] 1; [width n] */
-  double *one, *scratch;
+  /* a hash of all that it is made of */
+  uint64_t made_of;
+  int n, width;
+  /* [width n] */
+  double *scratch;
 } sd_preconditioner;
 
 void sd_preconditioner_free(sd_preconditioner *p);
@@ -49,7 +47,5 @@ void sd_moved_add(double sums[SD_MOVED], const double d[3], double a);
  * factor needs 21 iterations to 1e-6 instead of 17. */
 int sd_moved_too_far(const double sums[SD_MOVED]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -3,8 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_sparse_internal.h"
-#include "sd_unit.h"
+#include "sd_precondition_internal.h"
 
 void sd_sparse_free(void *factor)
 {

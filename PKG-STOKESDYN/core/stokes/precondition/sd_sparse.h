@@ -32,7 +32,7 @@ typedef struct {
 /* factor: an sd_sparse */
 void sd_sparse_free(void *factor);
 
-/* width: 3, or with rotation 6 (sd_unit.h). SD_OK; SD_ENOMEMORY; SD_EINDEFINITE: a hard cut-off in
+/* width: 3, or with rotation 6. SD_OK; SD_ENOMEMORY; SD_EINDEFINITE: a hard cut-off in
  * the law's place; SD_ENOTFINITE. On failure f is empty. */
 sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
                            double rho, int part, int parts);

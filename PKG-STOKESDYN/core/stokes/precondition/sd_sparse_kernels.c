@@ -1,5 +1,5 @@
 /* Kernels of the sparse factor. */
-#include "sd_sparse_internal.h"
+#include "sd_precondition_internal.h"
 
 #if SD_LANES > 1
 #define LEAST_LANES 4

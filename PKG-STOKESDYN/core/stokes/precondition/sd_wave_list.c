@@ -1,4 +1,4 @@
-#include "sd_wave_list.h"
+#include "sd_waves.h"
 
 #include <math.h>
 #include <stdlib.h>

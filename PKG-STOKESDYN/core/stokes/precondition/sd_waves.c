@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "sd_linear.h"
-#include "sd_waves_internal.h"
+#include "sd_precondition_internal.h"
 
 /* Part of the diagonal that is left when the long waves are taken out of it: 0.5 to 0.7 need about
  * the same iterations from phi 0.01 to 0.45. */

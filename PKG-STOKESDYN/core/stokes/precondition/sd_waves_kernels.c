@@ -3,7 +3,7 @@
  *   s = 1 - q + 3/10 q^2 - ... ~ 1/(1 + q + 7/10 q^2)
  *   p = 1 - 3/5 q + 9/70 q^2 - ... ~ 1/(1 + 3/5 q + 81/350 q^2)
  * which, unlike the series, stay between 0 and 1 for spheres as large as the wave. */
-#include "sd_waves_internal.h"
+#include "sd_precondition_internal.h"
 
 #include "sd_lanes.h"
 

@@ -17,9 +17,7 @@
 #include "sd_tensor.h"
 #include "sd_wall.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Taper: a factor t(q), q = R/range, on every pair's block, 0 for q >= 1.
  *   wendland   (1-q)^4 (1+4q)          spherical   1 - 3q/2 + q^3/2
@@ -126,7 +124,5 @@ void sd_packed_pairs(sd_packed *p, const sd_pairs *pairs, const double *F, const
 void sd_pairs_within(const sd_pairs *candidates, const sd_spheres *s, double cutoff, long *first,
                      int *neighbor);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

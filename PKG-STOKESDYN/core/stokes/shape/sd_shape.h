@@ -6,9 +6,7 @@
 
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Lengths that differ by less than this part of the size (the largest distance of a sphere's
  * surface from the centroid) are one and the same: for "is this the same shape", "is it still
@@ -78,7 +76,5 @@ int sd_shape_match(const sd_shape *shape, int n, const double *x, const double *
  * clump, and for one that is not the deviation says so. */
 double sd_shape_pose(const sd_shape *shape, const double *x, double R[9], double c[3]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

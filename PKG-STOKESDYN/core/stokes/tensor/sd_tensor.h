@@ -13,10 +13,9 @@
 #include <math.h>
 
 #include "sd_constants.h"
+#include "sd_extern_c.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 typedef enum { SD_TENSOR_RPY, SD_TENSOR_OSEEN } sd_tensor;
 
@@ -135,7 +134,5 @@ void sd_tensor_uf(sd_tensor kind, const double r[3], double ai, double aj, doubl
  * positive semidefinite for every configuration. Never fails. */
 void sd_tensor_grand(const double r[3], double ai, double aj, double eta, double M[36]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,8 +1,10 @@
 #include "sd_wall.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "sd_constants.h"
+#include "sd_tensor.h"
 
 /* Below a wall that looks down the other two axes change places: a rotation, so that torques turn as
  * forces do */
@@ -20,6 +22,12 @@ void sd_wall_stand(const sd_wall *wall, const double x[3], double a, double out[
   sd_wall_axes(wall, axis);
   for (int d = 0; d < 3; d++) out[d] = x[axis[d]];
   if (wall->sign) out[2] = fmax(sd_wall_height(wall, x), a);
+}
+
+void sd_wall_keep_off(const sd_wall *wall, const double x[3], double a, double out[3])
+{
+  memcpy(out, x, 3 * sizeof(double));
+  if (wall->sign && sd_wall_height(wall, x) < a) out[wall->axis] = wall->at + wall->sign * a;
 }
 
 sd_wall_pair sd_wall_pair_of(const double xi[3], double a, const double xj[3], double b)
@@ -84,4 +92,30 @@ void sd_wall_block(const sd_wall *wall, int width, const double xi[3], double a,
     for (int p = 0; p < width; p++)
       M[width * (p - p % 3 + axis[p % 3]) + column] = p % 3 == 2 ? wall->sign * UW[p] : UW[p];
   }
+}
+
+/* Each pair of points, whose blocks are the transposed ones of each other, and 1/(6 pi a),
+ * 1/(8 pi a^3) on the diagonal (r = 0). */
+void sd_wall_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
+                    double *M)
+{
+  static const sd_wall none = {.sign = 0};
+  const size_t w = (size_t) width, N = w * (size_t) m;
+  if (!wall) wall = &none;
+  for (size_t i = 0; i < (size_t) m; i++)
+    for (size_t j = i; j < (size_t) m; j++) {
+      double xi[3], xj[3], block[36], image[36] = {0.0};
+      sd_wall_keep_off(wall, x + 3 * i, a[i], xi);
+      sd_wall_keep_off(wall, x + 3 * j, a[j], xj);
+      const double r[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+      if (width == 6)
+        sd_tensor_grand(r, a[i], a[j], 1.0, block);
+      else
+        sd_tensor_uf(SD_TENSOR_RPY, r, a[i], a[j], 1.0, block);
+      if (wall->sign) sd_wall_block(wall, width, xi, a[i], xj, a[j], 1.0, image);
+      for (size_t p = 0; p < w; p++)
+        for (size_t q = 0; q < w; q++)
+          M[(w * i + p) * N + w * j + q] = M[(w * j + q) * N + w * i + p] =
+              block[w * p + q] + image[w * p + q];
+    }
 }

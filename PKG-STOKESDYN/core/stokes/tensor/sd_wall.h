@@ -30,9 +30,9 @@
 #ifndef SD_WALL_H
 #define SD_WALL_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* The fluid is where sign (x[axis] - at) > 0. sign 1 or -1; 0: there is no wall. */
 typedef struct {
@@ -51,6 +51,8 @@ static inline double sd_wall_height(const sd_wall *wall, const double x[3])
 void sd_wall_axes(const sd_wall *wall, int axis[3]);
 /* x in these axes, z the height, or a where that is larger. Without wall x itself. */
 void sd_wall_stand(const sd_wall *wall, const double x[3], double a, double out[3]);
+/* The same place in axes of space */
+void sd_wall_keep_off(const sd_wall *wall, const double x[3], double a, double out[3]);
 
 /* The functions of a pair. of_i: k_ji l_ji n_i; of_j: k_ij l_ij n_j */
 typedef struct {
@@ -66,7 +68,10 @@ void sd_wall_pair_add(const sd_wall_pair *w, int width, const double *FT, double
 void sd_wall_block(const sd_wall *wall, int width, const double xi[3], double a, const double xj[3],
                    double b, double eta, double *M);
 
-#ifdef __cplusplus
-}
-#endif
+/* M [(width m)^2], row-major: RPY between m points x [3m] of radii a [m] in a fluid of viscosity 1,
+ * with torques for width 6. wall: with their images in it, in axes of space; NULL: there is none */
+void sd_wall_matrix(const sd_wall *wall, int m, int width, const double *x, const double *a,
+                    double *M);
+
+SD_END_C
 #endif

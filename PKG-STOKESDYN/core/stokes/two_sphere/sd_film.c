@@ -8,6 +8,10 @@
 #include "sd_tensor.h"
 #include "sd_two_sphere_table_internal.h"
 
+const double sd_film_table[SD_FILM_KINDS][SD_FILM_RATIOS][SD_FILM_GAPS][SD_FILM_SCALARS] = {
+#include "sd_film_table.inc"
+};
+
 enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
 
 static double node_of_ratio(double ratio)

@@ -22,9 +22,7 @@
 
 #include "sd_two_sphere.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Of two radii; and of the gap */
 #define SD_FILM_LARGEST_RATIO 10.0
@@ -61,7 +59,5 @@ sd_status sd_film_at(const sd_films *films, double a1, double a2, double xi, sd_
  * rigid motion of the pair, to rounding. */
 sd_pair_resistance sd_film_resistance(const sd_film *film, double distance, double scale);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -1,4 +1,4 @@
-#include "sd_pair_noise.h"
+#include "sd_pair_resistance.h"
 
 #include <math.h>
 

@@ -11,9 +11,9 @@
 #ifndef SD_PAIR_RESISTANCE_H
 #define SD_PAIR_RESISTANCE_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_status.h"
+
+SD_BEGIN_C
 
 /* For a viscosity of 1: whoever has another multiplies. */
 typedef struct {
@@ -24,11 +24,6 @@ typedef struct {
   /* 11 12 22, length^3 */
   double XC[3], YC[3];
 } sd_pair_resistance;
-
-/* The 6x6 blocks of two spheres, row-major: rows F T, columns U W, d [3] a unit vector from 1 to 2.
- * Block 21 is the transpose of 12. */
-void sd_pair_resistance_blocks(const sd_pair_resistance *R, const double d[3], double B11[36],
-                               double B12[36], double B22[36]);
 
 /* The same pair with sphere 2 called 1. */
 sd_pair_resistance sd_pair_resistance_exchanged(const sd_pair_resistance *R);
@@ -48,7 +43,14 @@ sd_pair_resistance sd_pair_resistance_relative(const sd_pair_resistance *D, doub
 sd_pair_resistance sd_pair_resistance_sum(double p, const sd_pair_resistance *A, double q,
                                           const sd_pair_resistance *B);
 
-#ifdef __cplusplus
-}
-#endif
+/* Random forces and torques of two spheres whose covariance is a resistance of the pair, in closed
+ * form: it falls into forces along d (2x2), torques along d (2x2) and, across d, forces along e with
+ * torques along e x d (4x4), the same for both directions e. F [12] += forces and torques on the first
+ * sphere, then on the second, of covariance R from standard normal numbers g [12], four vectors in
+ * space: only d and these say what comes out, no choice of axes across d. SD_OK; SD_EINDEFINITE: an
+ * eigenvalue below -1e-6 of the largest; what is above is rounding and counts as 0. */
+sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12],
+                        double F[12]);
+
+SD_END_C
 #endif

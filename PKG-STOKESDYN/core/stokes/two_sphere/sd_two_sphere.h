@@ -5,9 +5,7 @@
 #include "sd_pair_resistance.h"
 #include "sd_status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Largest ratio of two radii, and xi = gap over the mean radius: the smallest is below all
  * roughness, at the largest the centres are five mean diameters apart, and a pair is within a few
@@ -38,7 +36,5 @@ void sd_two_sphere_free(sd_two_sphere *t);
 sd_status sd_two_sphere_correction(const sd_two_sphere *t, double a1, double a2, double xi,
                                    double p, double q, sd_pair_resistance *R);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

@@ -4,6 +4,11 @@
 #include "sd_constants.h"
 #include "sd_two_sphere_table_internal.h"
 
+const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS]
+                                [SD_TWO_SPHERE_FUNCTIONS] = {
+#include "sd_two_sphere_table.inc"
+};
+
 double sd_two_sphere_node(int n, int k)
 {
   return 0.5 + 0.5 * cos(SD_PI * (k + 0.5) / n);

@@ -39,9 +39,9 @@
 #ifndef SD_WALL_FILM_H
 #define SD_WALL_FILM_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "sd_extern_c.h"
+
+SD_BEGIN_C
 
 /* Resistances of one sphere, for a viscosity of 1 */
 typedef struct {
@@ -65,7 +65,5 @@ void sd_wall_film_matrix(const sd_wall_film *film, const double e[3], double eta
 void sd_wall_film_flow(const sd_wall_film *film, const double e[3], double eta, const double u[3],
                        double E[6]);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif

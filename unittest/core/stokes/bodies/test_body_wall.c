@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "sd_body_wall.h"
+#include "sd_body_shape.h"
 #include "sd_constants.h"
 #include "sd_linear.h"
 #include "sd_product.h"
@@ -24,7 +24,7 @@ static void matrix_is_that_of_the_product(void **state)
     const double w[M] = {1, 1, 1, 1, 1};
     double A[SIZE * SIZE], F[SIZE], u[SIZE];
     sd_packed p = {0};
-    sd_body_wall_matrix(&ground, M, width, x, a, A);
+    sd_wall_matrix(&ground, M, width, x, a, A);
     assert_int_equal(sd_packed_all(&p, SD_ISA_BEST, &law, &(sd_spheres){x, a, w}, M, width), SD_OK);
     for (int q = 0; q < n; q++) {
       memset(F, 0, sizeof F);
@@ -62,7 +62,7 @@ static void blocks_are_made_where_they_pay(void **state)
   for (int k = 0; k < 3 * M; k++) far[k] = x[k] + middle[k % 3];
   double A[SIZE * SIZE];
   assert_int_equal(sd_body_wall_shape(&ground, M, 6, far, a, middle, &here), SD_OK);
-  sd_body_shape_matrix(M, 6, x, a, A);
+  sd_wall_matrix(NULL, M, 6, x, a, A);
   assert_int_equal(sd_body_shape_of(M, 6, x, A, &open), SD_OK);
   for (int e = 0; e < 36; e++) CHECK_NEAR(here.resistance[e], open.resistance[e], 1e-5);
   sd_body_shape_free(&here);

@@ -2,6 +2,7 @@
  * sd_lubrication.h against exact velocities, beside it the same model without lubrication and with
  * the classical sum of D over all pairs. */
 #include "near_scene.h"
+#include "pair_blocks.h"
 
 #include "table.h"
 
@@ -65,7 +66,7 @@ static void add_classical(const near_scene *q, double *R)
       sd_pair_resistance D;
       assert_int_equal(
           sd_two_sphere_correction(q->functions, q->s.a[j], q->s.a[i], gap, 1.0, 0.0, &D), SD_OK);
-      sd_pair_resistance_blocks(&D, d, B[0], B[1], B[2]);
+      pair_blocks(&D, d, B[0], B[1], B[2]);
       for (int p = 0; p < 6; p++)
         for (int e = 0; e < 6; e++) {
           R[(6 * j + p) * N + 6 * j + e] += B[0][6 * p + e];

@@ -1,6 +1,7 @@
 /* Lubrication: sd_lubrication.h. What a pair alone must be, where the sum must be continuous, that it
  * is positive whatever the packing, and that images count as spheres do. */
 #include "near_scene.h"
+#include "pair_blocks.h"
 
 #include "sd_constants.h"
 #include "sd_linear.h"
@@ -31,7 +32,7 @@ static void a_pair_alone_is_exact(void **state)
       double *R = dense_mobility(&q.s), *L = near_dense(&q), exact[4][36];
       const sd_pair_resistance e = sd_two_sphere_exact(1.0, a2, gap, NULL);
       const double d[3] = {0.48, -0.6, 0.64};
-      sd_pair_resistance_blocks(&e, d, exact[0], exact[1], exact[3]);
+      pair_blocks(&e, d, exact[0], exact[1], exact[3]);
       for (int p = 0; p < 6; p++)
         for (int c = 0; c < 6; c++) exact[2][6 * c + p] = exact[1][6 * p + c];
       assert_int_equal(sd_cholesky(12, R), SD_OK);
@@ -135,7 +136,7 @@ static double *dense_of_any_shares(const near_scene *q, uint64_t *seed)
     sd_normalize(d);
     sd_pair_resistance R;
     assert_int_equal(sd_two_sphere_correction(q->functions, ai, aj, xi, t * p, t * (1.0 - p), &R), SD_OK);
-    sd_pair_resistance_blocks(&R, d, B[0], B[1], B[2]);
+    pair_blocks(&R, d, B[0], B[1], B[2]);
     for (int r = 0; r < 6; r++)
       for (int c = 0; c < 6; c++) {
         L[(6 * i + r) * N + 6 * i + c] += B[0][6 * r + c];

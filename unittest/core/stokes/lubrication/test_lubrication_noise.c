@@ -5,7 +5,7 @@
 #include "multiblob/blobs.h"
 
 #include "sd_lubrication_noise.h"
-#include "sd_pair_noise.h"
+#include "sd_pair_resistance.h"
 
 /* The first of a pair; of an image of a sphere, the one that stands higher */
 typedef struct {

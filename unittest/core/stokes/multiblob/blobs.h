@@ -104,7 +104,7 @@ static inline void blobs_leave_out(blobs *s)
 static inline void blobs_open(blobs *s)
 {
   blobs_expand(s);
-  sd_body_shape_matrix(s->N / 3, 3, s->at, s->b, s->M);
+  sd_wall_matrix(NULL, s->N / 3, 3, s->at, s->b, s->M);
   blobs_leave_out(s);
   blobs_add_one_body(s);
 }

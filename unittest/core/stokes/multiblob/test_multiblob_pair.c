@@ -1,6 +1,7 @@
 /* Two spheres alone as shells of points with films between them, against the exact two: under every
  * load, and in a strain. The shells stand in the laboratory, the pair in any direction. */
 #include "blobs.h"
+#include "pair_blocks.h"
 
 #include "sd_two_sphere.h"
 #include "sd_two_sphere_exact.h"
@@ -44,7 +45,7 @@ static void move_exactly(const sd_pair_resistance *exact, const double d[3], con
                          double V[12])
 {
   double B[3][36], R[144];
-  sd_pair_resistance_blocks(exact, d, B[0], B[1], B[2]);
+  pair_blocks(exact, d, B[0], B[1], B[2]);
   for (int p = 0; p < 6; p++)
     for (int q = 0; q < 6; q++) {
       R[12 * p + q] = B[0][6 * p + q];

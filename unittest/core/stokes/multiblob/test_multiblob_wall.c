@@ -22,7 +22,7 @@ static blobs *above_wall(int points, int one_body, int n, const double *x, const
   for (int i = 0; turn && i < n; i++) memcpy(s->turn + 9 * i, turn, 9 * sizeof(double));
   blobs_expand(s);
   for (int k = 0; k < s->N / 3; k++) s->at[3 * k + 2] = fmax(s->at[3 * k + 2], s->b[k]);
-  sd_body_shape_matrix(s->N / 3, 3, s->at, s->b, s->M);
+  sd_wall_matrix(NULL, s->N / 3, 3, s->at, s->b, s->M);
   for (int i = 0; i < s->N / 3; i++)
     for (int j = 0; j < s->N / 3; j++) {
       sd_wall_block(&ground, 3, s->at + 3 * i, s->b[i], s->at + 3 * j, s->b[j], 1.0, block);
@@ -34,12 +34,10 @@ static blobs *above_wall(int points, int one_body, int n, const double *x, const
 
 static void wall_film(const blobs *s, int i, const double *u, double B[36], double E[6])
 {
-  double *work = malloc(sizeof(double) * (size_t) sd_multiblob_wall_work(&s->m));
   assert_int_equal(sd_multiblob_wall_film(&s->m, &ground, s->x + 3 * i, s->a[i],
                                           s->r + 3 * s->m.n * i, s->m.delta != 0.0, floor_gap, 1.0,
-                                          u, B, E, work),
+                                          u, B, E),
                    SD_OK);
-  free(work);
 }
 
 static void add_wall_films(blobs *s)
@@ -141,7 +139,7 @@ static void any_side(void **state)
   (void) state;
   sd_multiblob m;
   assert_int_equal(sd_multiblob_create(12, 1, &m), SD_OK);
-  double *work = malloc(sizeof(double) * (size_t) sd_multiblob_wall_work(&m)), r[36];
+  double r[36];
   for (int side = 0; side < 6; side++) {
     const sd_wall wall = {.axis = side / 2, .sign = side % 2 ? 1 : -1, .at = 0.7};
     double x[3] = {0.1, 0.2, 0.3}, B[36], C[36], E[6], G[6], Q[9] = {0.0}, turned[3];
@@ -152,9 +150,9 @@ static void any_side(void **state)
     x[wall.axis] = wall.at + wall.sign * 1.15;
     for (int k = 0; k < m.n; k++) sd_multiply3(Q, m.r + 3 * k, r + 3 * k);
     sd_multiply3(Q, u, turned);
-    assert_int_equal(sd_multiblob_wall_film(&m, &ground, at, 1.0, m.r, 1, 1e-3, 1.3, u, B, E, work),
+    assert_int_equal(sd_multiblob_wall_film(&m, &ground, at, 1.0, m.r, 1, 1e-3, 1.3, u, B, E),
                      SD_OK);
-    assert_int_equal(sd_multiblob_wall_film(&m, &wall, x, 1.0, r, 1, 1e-3, 1.3, turned, C, G, work),
+    assert_int_equal(sd_multiblob_wall_film(&m, &wall, x, 1.0, r, 1, 1e-3, 1.3, turned, C, G),
                      SD_OK);
     for (int p = 0; p < 6; p++) {
       const int pp = p - p % 3 + axis[p % 3];
@@ -165,7 +163,6 @@ static void any_side(void **state)
                    sign * (q % 3 == 2 ? wall.sign : 1.0) * B[6 * p + q], 1e-10);
     }
   }
-  free(work);
 }
 
 typedef struct {

@@ -1,6 +1,6 @@
 #include "scene.h"
 
-#include "sd_near.h"
+#include "sd_neighbor.h"
 
 #include <string.h>
 

@@ -1,5 +1,6 @@
 /* Films between spheres that are shells of points. */
 #include "table.h"
+#include "pair_blocks.h"
 
 #include "sd_constants.h"
 #include "sd_film_of.h"
@@ -94,7 +95,7 @@ static void rigid_motion_is_free(void **state)
     sd_normalize(d);
     const sd_film film = film_at(trial % 2 ? 12 : 42, trial % 3 != 0, a1, a2, xi);
     const sd_pair_resistance R = sd_film_resistance(&film, distance, 1.3);
-    sd_pair_resistance_blocks(&R, d, B[0], B[1], B[2]);
+    pair_blocks(&R, d, B[0], B[1], B[2]);
     for (int rigid = 0; rigid < 2; rigid++) {
       for (int e = 0; e < 12; e++) V[e] = uniform(&seed, -1, 1);
       if (rigid)

@@ -1,5 +1,6 @@
 /* sd_pair_resistance.h: blocks in space, the RPY pair, the relative motion. */
 #include "check.h"
+#include "pair_blocks.h"
 #include "table.h"
 
 #include "sd_constants.h"
@@ -11,7 +12,7 @@
 static void whole(const sd_pair_resistance *R, const double d[3], double M[144])
 {
   double B[3][36];
-  sd_pair_resistance_blocks(R, d, B[0], B[1], B[2]);
+  pair_blocks(R, d, B[0], B[1], B[2]);
   for (int p = 0; p < 6; p++)
     for (int q = 0; q < 6; q++) {
       M[12 * p + q] = B[0][6 * p + q];

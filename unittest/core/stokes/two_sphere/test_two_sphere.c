@@ -1,5 +1,6 @@
 /* sd_two_sphere.h: the table against the solver that it is made by, definiteness, continuity. */
 #include "check.h"
+#include "pair_blocks.h"
 #include "table.h"
 
 #include "sd_constants.h"
@@ -110,7 +111,7 @@ static void extremes(const sd_pair_resistance *D, double a1, double a2, double *
 {
   const double d[3] = {0.0, 0.0, 1.0}, a[2] = {a1, a2};
   double B[3][36], s[12];
-  sd_pair_resistance_blocks(D, d, B[0], B[1], B[2]);
+  pair_blocks(D, d, B[0], B[1], B[2]);
   for (int p = 0; p < 12; p++)
     s[p] = p % 6 < 3 ? 1.0 / sqrt(6.0 * SD_PI * a[p / 6])
                      : 1.0 / sqrt(8.0 * SD_PI * pow(a[p / 6], 3));

@@ -56,8 +56,8 @@ typedef struct {
   double a[2], distance;
   /* [6n] from their own centres, [6n] where they are; [2n] radii */
   double *r, *x, *b;
-  /* [(6n)^2]; [12][6n] velocities and forces of the motions U1 W1 U2 W2; [6n] */
-  double *M, *v, *f, *unit;
+  /* [(6n)^2]; [12][6n] velocities and forces of the motions U1 W1 U2 W2 */
+  double *M, *v, *f;
 } shells;
 
 static void turn_shells(shells *s, int k)
@@ -71,19 +71,6 @@ static void turn_shells(shells *s, int k)
     s->x[3 * i + 2] += i < n ? 0.0 : s->distance;
     s->b[i] = s->a[i / n] * s->m->point;
   }
-}
-
-static void add_one_body(shells *s)
-{
-  const int n = s->m->n, N = 6 * n;
-  for (int q = 0; q < 2; q++)
-    for (int j = 0; j < 3 * n; j++) {
-      memset(s->unit, 0, sizeof(double) * (size_t) N);
-      s->unit[j] = 1.0;
-      sd_multiblob_one_body(s->m, s->a[q], 1.0, s->r + 3 * n * q, s->unit, s->unit + 3 * n);
-      for (int i = 0; i < 3 * n; i++)
-        s->M[(size_t) (3 * n * q + i) * N + 3 * n * q + j] += s->unit[3 * n + i];
-    }
 }
 
 static void set_motions(shells *s)
@@ -104,8 +91,9 @@ static void add_resistance(shells *s, sd_pair_resistance *sum)
 {
   const int N = 6 * s->m->n;
   double R[12][12];
-  sd_body_shape_matrix(2 * s->m->n, 3, s->x, s->b, s->M);
-  if (s->m->delta != 0.0) add_one_body(s);
+  sd_wall_matrix(NULL, 2 * s->m->n, 3, s->x, s->b, s->M);
+  for (int q = 0; q < 2 && s->m->delta != 0.0; q++)
+    sd_multiblob_one_body_matrix(s->m, s->a[q], s->r + N / 2 * q, (size_t) N, s->M + N / 2 * q * (N + 1));
   set_motions(s);
   memcpy(s->f, s->v, sizeof(double) * 12 * (size_t) N);
   if (sd_cholesky_solve(N, s->M, 12, s->f) != SD_OK) exit(EXIT_FAILURE);
@@ -136,13 +124,12 @@ static void at_node(int kind, int i, int j, double value[SCALARS])
   sd_multiblob m;
   if (sd_multiblob_create(n, kind % 2, &m) != SD_OK) exit(EXIT_FAILURE);
   shells s = {.m = &m, .a = {1.0, ratio}, .distance = (1.0 + ratio) * (1.0 + 0.5 * xi)};
-  double *memory = malloc(sizeof(double) * (size_t) N * (size_t) (N + 28));
+  double *memory = malloc(sizeof(double) * (size_t) N * (size_t) (N + 27));
   if (!memory) exit(EXIT_FAILURE);
   s.M = memory;
   s.v = s.M + N * N;
   s.f = s.v + 12 * N;
-  s.unit = s.f + 12 * N;
-  s.r = s.unit + N;
+  s.r = s.f + 12 * N;
   s.x = s.r + N;
   s.b = s.x + N;
   sd_pair_resistance sum = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
