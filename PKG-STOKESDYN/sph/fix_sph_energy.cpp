@@ -5,6 +5,7 @@
 #include "keywords.h"
 #include "named_state.h"
 #include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -69,9 +70,7 @@ double FixSphEnergy::along_gravity(sd_sph_members g, const double *y) const
 
 double FixSphEnergy::elastic()
 {
-  double mine = elastic_of(group(), atom->rho), all;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of_all(world, elastic_of(group(), atom->rho));
 }
 
 /* Positions go on through the faces of a periodic box. */

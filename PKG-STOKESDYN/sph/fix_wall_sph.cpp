@@ -31,9 +31,8 @@ void FixRepulsiveWall::push(int i, const double normal[3], double r, double more
 void FixRepulsiveWall::outside(int i)
 {
   const double *x = atom->x[i];
-  voice.fail_one("step " + std::to_string(update->ntimestep) + ": atom " +
-                 std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
-                 text(x[2]) + " is on or behind the wall");
+  voice.at_step().fail_one("atom " + std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " +
+                           text(x[1]) + " " + text(x[2]) + " is on or behind the wall");
 }
 
 // --- planes and the cylinder --------------------------------------------------------------------

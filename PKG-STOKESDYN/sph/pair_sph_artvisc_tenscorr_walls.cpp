@@ -72,9 +72,10 @@ void PairSph::held_row(int i, const double *sums_i, const std::vector<const doub
 void PairSph::no_density(const Voice &of, int i, const std::string &asked) const
 {
   const FixSphPressure *eos = state_of(i);
-  of.fail_one(at_step() + "atom " + std::to_string(atom->tag[i]) + ": the pressure " + asked +
-              " is not above " + text(sd_sph_least_pressure(&eos->state)) + ", the lowest of fix " +
-              eos->id + ": use a larger B or P0, if gravity is right");
+  of.at_step().fail_one("atom " + std::to_string(atom->tag[i]) + ": the pressure " + asked +
+                        " is not above " + text(sd_sph_least_pressure(&eos->state)) +
+                        ", the lowest of fix " + eos->id +
+                        ": use a larger B or P0, if gravity is right");
 }
 
 /* What the particles of walls and open ends take from the fluid before them. Their density becomes the

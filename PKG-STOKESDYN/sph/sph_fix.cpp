@@ -1,5 +1,6 @@
 #include "sph_fix.h"
 
+#include "ranks.h"
 #include "sph.h"
 
 #include "atom.h"
@@ -83,7 +84,5 @@ Keywords WallFix::keywords(int narg, char **arg) const
 
 double WallFix::compute_vector(int k)
 {
-  double all;
-  MPI_Allreduce(&on_wall[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of_all(world, on_wall[k]);
 }

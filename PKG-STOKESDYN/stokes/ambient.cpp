@@ -75,10 +75,10 @@ void Ambient::read(bool with_spins, Derivatives derivatives, double time)
   select();
   read_fluid(derivatives);
   const bigint none = MAXBIGINT;
-  bigint mine = none, first;
+  bigint mine = none;
   for (int i : those)
     if (const int f = fault(i)) mine = std::min(mine, (bigint) atom->tag[i] * 16 + f);
-  MPI_Allreduce(&mine, &first, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  const bigint first = smallest_of_all(world, mine);
   if (first != none) complain(first);
 }
 
@@ -314,10 +314,11 @@ void Ambient::read_grid()
   sd_flow_frame frame;
   if (sd_flow_grid_frame(&grid, now, &frame) != SD_OK) {
     const sd_grid_axis &axis = grid.axis[SD_GRID_TIME];
-    voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
-               ": the time " + text(now) + " is outside of the series in '" + settings.grid->path +
-               "', which goes from " + text(axis.at[0]) + " to " + text(axis.at[axis.n - 1]) +
-               "; end the line of its axis with clamp or periodic to go on");
+    voice.of("keyword fluid_velocity")
+        .at_step()
+        .fail("the time " + text(now) + " is outside of the series in '" + settings.grid->path +
+              "', which goes from " + text(axis.at[0]) + " to " + text(axis.at[axis.n - 1]) +
+              "; end the line of its axis with clamp or periodic to go on");
   }
   // so many at once that memory keeps up, and few enough for the stack
   constexpr size_t BLOCK = 64;

@@ -71,7 +71,7 @@ void refuse_close_oseen(const Voice &voice, const Scene &scene)
 {
   const Comm *comm = voice.lmp->comm;
   const sd_law law = scene.law();
-  double mine, largest;
+  double mine;
   sd_status status;
   if (scene.view() == SD_VIEW_ALL) {
     const sd_spheres spheres = scene.cloud();
@@ -85,7 +85,7 @@ void refuse_close_oseen(const Voice &voice, const Scene &scene)
                                &mine);
   }
   if (status != SD_OK) voice.fail_one(sd_status_string(status));
-  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, voice.lmp->world);
+  const double largest = largest_of_all(voice.lmp->world, mine);
   if (largest >= 1.0 - 1e-12)
     voice.at_step().fail("the mobility matrix is not positive definite with tensor oseen: two "
                          "spheres are too close for it, 1.5 sqrt(a_i a_j)/R" +

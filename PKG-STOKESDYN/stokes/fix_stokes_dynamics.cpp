@@ -3,6 +3,7 @@
 #include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "update.h"
@@ -98,20 +99,14 @@ void FixStokesDynamics::post_force(int /*vflag*/)
 /* Dissipation rate: the power that the spheres of the group lose to the fluid. */
 double FixStokesDynamics::compute_scalar()
 {
-  double all;
-  MPI_Allreduce(&total[3], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of_all(world, total[3]);
 }
 
 /* Total force x y z; iterations and residual of the last solve, solves, unconverged solves;
  * smallest eigenvalue met, time step limit. */
 double FixStokesDynamics::compute_vector(int k)
 {
-  if (k < 3) {
-    double all;
-    MPI_Allreduce(&total[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-    return all;
-  }
+  if (k < 3) return sum_of_all(world, total[k]);
   hydrodynamics();    // an error if there is none
   const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
   if (!memory) return 0.0;

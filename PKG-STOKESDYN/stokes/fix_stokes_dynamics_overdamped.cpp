@@ -108,8 +108,7 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
   int moved = last.step != update->ntimestep || !hydro.memory->box_left_as_is();
   for (int i : hydro.ambient.who())
     if (!hydro.memory->placed_as_left(i)) moved = 1;
-  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
-  return !moved;
+  return !largest_of_all(world, moved);
 }
 
 /* Fingerprints of force, torque, fluid and viscosity: where spheres stand as they did, their velocities
@@ -256,14 +255,12 @@ Velocities::Held FixStokesDynamicsOverdamped::givens() const
 void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) const
 {
   const std::vector<char> &active = hydro.ambient.active();
-  tagint wrong = MAXTAGINT;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & groupbit) != !active[i]) wrong = std::min(wrong, atom->tag[i]);
-  MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  if (wrong == MAXTAGINT) return;
-  voice.fail("atom " + std::to_string(wrong) + " is selected either by the group of this fix or by "
-             "pair_style stokes_dynamics (keywords group and region, radius > 0), but not by both: "
-             "both must select the same atoms");
+  if (const tagint wrong = first_atom(lmp, [&](int i) {
+        return !(atom->mask[i] & groupbit) != !active[i];
+      }))
+    voice.fail("atom " + std::to_string(wrong) + " is selected either by the group of this fix or by "
+               "pair_style stokes_dynamics (keywords group and region, radius > 0), but not by both: "
+               "both must select the same atoms");
 }
 
 /* dt/(2 dt_old), what the change of velocities counts, of forces in scheme midpoint; 0: Euler, or it

@@ -34,11 +34,8 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
   const Voice keyword = voice.of("keyword scheme");
   if (hydro.settings.rigid.apart())
     keyword.fail("midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
-  int moved = 0;
-  for (int i = 0; i < atom->nlocal && hydro.settings.rigid.on; i++)
-    moved |= is_moved(i) && atom->molecule[i] != 0;
-  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
-  if (moved)
+  if (hydro.settings.rigid.on &&
+      first_atom(lmp, [this](int i) { return is_moved(i) && atom->molecule[i] != 0; }))
     keyword.fail("midpoint needs the orientation of clumps in the middle of a step, where fix move "
                  "does not give that of keyword held: let them rest, or move spheres");
   if (const Fix *deform = fix_like(lmp, "^deform"))

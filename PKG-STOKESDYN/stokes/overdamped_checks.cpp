@@ -3,8 +3,8 @@
 #include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
+#include "ranks.h"
 
-#include "atom.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
@@ -23,13 +23,10 @@ namespace StokesDyn {
 /* Do the groups of two fixes share an atom that is in none of the groups of `but`? */
 static bool overlap(LAMMPS *lmp, const Fix *one, const Fix *other, int but)
 {
-  const Atom *atom = lmp->atom;
-  int any = 0;
-  for (int i = 0; i < atom->nlocal && !any; i++)
-    any = (atom->mask[i] & one->groupbit) && (atom->mask[i] & other->groupbit) &&
-        !(atom->mask[i] & but);
-  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, lmp->world);
-  return any;
+  const int *mask = lmp->atom->mask;
+  return first_atom(lmp, [=](int i) {
+    return (mask[i] & one->groupbit) && (mask[i] & other->groupbit) && !(mask[i] & but);
+  });
 }
 
 /* Stiffness and damping of a contact style of package GRANULAR, which tells nobody but a restart

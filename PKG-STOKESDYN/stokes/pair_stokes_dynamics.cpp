@@ -181,7 +181,7 @@ void PairStokesDynamics::init_style()
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
     if (std::isfinite(atom->radius[i])) largest = std::max(largest, 2.0 * atom->radius[i]);
-  MPI_Allreduce(&largest, &largest_diameter, 1, MPI_DOUBLE, MPI_MAX, world);
+  largest_diameter = largest_of_all(world, largest);
 
   hydro.init();
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.

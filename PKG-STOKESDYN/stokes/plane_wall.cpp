@@ -1,6 +1,7 @@
 #include "plane_wall.h"
 
 #include "keywords.h"
+#include "ranks.h"
 
 #include "domain.h"
 
@@ -87,8 +88,7 @@ double spheres_cut_by_wall(const Voice &voice, const Scene &scene)
                              "front of it; is it on the right side? A contact (fix wall/gran) or a "
                              "shorter time step keeps them there");
   }
-  MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_SUM, voice.lmp->world);
-  return cut;
+  return sum_of_all(voice.lmp->world, cut);
 }
 
 }    // namespace StokesDyn

@@ -200,9 +200,8 @@ void Scene::find_pairs()
   } else
     status = sd_neighbors_cutoff(&candidates, x.data(), n, n_all, reach);
   if (status != SD_OK) out_of_memory();
-  int sees = candidates.first[n] > 0 || (settings.wall.sign && n > 0), any;
-  MPI_Allreduce(&sees, &any, 1, MPI_INT, MPI_MAX, world);
-  somebody_sees = any;
+  const int sees = candidates.first[n] > 0 || (settings.wall.sign && n > 0);
+  somebody_sees = largest_of_all(world, sees);
   pairs_found.take(epochs.rows);
 }
 

@@ -43,18 +43,16 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
     keyword.fail("it is for spheres that feel each other: use clumps_only no" + pair);
   if (domain->dimension == 2 && (omega[0] != 0.0 || omega[1] != 0.0))
     keyword.fail("in two dimensions spheres spin about z alone: wx and wy must be 0");
-  tagint wrong[2] = {MAXTAGINT, MAXTAGINT};    // in clumps; held
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit)) continue;
-    if (hydro.settings.rigid.on && atom->molecule[i] != 0) wrong[0] = std::min(wrong[0], atom->tag[i]);
-    if (atom->mask[i] & held_bit) wrong[1] = std::min(wrong[1], atom->tag[i]);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, wrong, 2, MPI_LMP_TAGINT, MPI_MIN, world);
-  for (int k = 0; k < 2; k++)
-    if (wrong[k] != MAXTAGINT)
-      keyword.fail("atom " + std::to_string(wrong[k]) + (k == 0 ? " is part of a rigid clump: only "
-                   "free spheres spin" : " is in the group of keyword held as well: it must be in "
-                   "one of them only"));
+  const bool clumps = hydro.settings.rigid.on;
+  if (const tagint bound = first_atom(lmp, [&](int i) {
+        return clumps && (atom->mask[i] & bit) && atom->molecule[i] != 0;
+      }))
+    keyword.fail("atom " + std::to_string(bound) + " is part of a rigid clump: only free spheres spin");
+  if (const tagint both = first_atom(lmp, [&](int i) {
+        return (atom->mask[i] & bit) && (atom->mask[i] & held_bit);
+      }))
+    keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held as well: it must "
+                 "be in one of them only");
 }
 
 bool Spin::turns(int i, double W[3]) const
@@ -95,10 +93,9 @@ void Spin::advance()
 
 double Spin::slip() const
 {
-  double mine = 0.0, all;
+  double mine = 0.0;
   for (int i = 0; i < atom->nlocal; i++) mine += sign(i) != 0.0;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of_all(world, mine);
 }
 
 }    // namespace StokesDyn

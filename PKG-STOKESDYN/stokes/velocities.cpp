@@ -134,7 +134,7 @@ void Velocities::find_held()
     sd_cross(clump.V + 3, arm, turning);
     for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
   }
-  MPI_Allreduce(MPI_IN_PLACE, &split, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  split = smallest_of_all(world, split);
   if (split != RigidClumps::NOBODY)
     Voice(lmp, "Fix stokes_dynamics/overdamped")
         .fail("keyword held: the clump of molecule " + std::to_string(split) +
@@ -333,10 +333,9 @@ sd_status Velocities::stand_at_wall(sd_body &body, double bodies)
 /* The bodies have been arranged. */
 void Velocities::stand_at_wall()
 {
-  double bodies = shaped.size();
   leave_wall();
   if (!scene.settings.wall.sign || !scene.settings.rotation) return;
-  MPI_Allreduce(MPI_IN_PLACE, &bodies, 1, MPI_DOUBLE, MPI_SUM, world);
+  const double bodies = sum_of_all(world, (double) shaped.size());
   standing.reserve(shaped.size());
   for (sd_body &body : shaped) {
     const sd_status status = stand_at_wall(body, bodies);

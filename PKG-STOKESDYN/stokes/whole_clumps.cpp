@@ -151,7 +151,7 @@ void WholeClumps::check_widths() const
       if (domain->periodicity[d] && hi - lo > 0.5 * domain->prd[d] * (1.0 + 1e-9))
         widest = std::min(widest, clump.molecule);
     }
-  MPI_Allreduce(MPI_IN_PLACE, &widest, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  widest = smallest_of_all(world, widest);
   if (widest == std::numeric_limits<int64_t>::max()) return;
   voice.fail("the clump of molecule " + std::to_string(widest) + " is wider than half of the "
              "periodic box, so which image of a sphere it sees is ambiguous; use a larger box or a "
