@@ -1,6 +1,6 @@
 #include "compute_sph_probe.h"
 
-#include "fix_sph_pressure.h"
+#include "fix_sph_settings.h"
 #include "fixes.h"
 #include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"

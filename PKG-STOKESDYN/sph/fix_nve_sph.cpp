@@ -1,13 +1,11 @@
 #include "fix_nve_sph.h"
 
 #include "keywords.h"
-#include "named_state.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sph.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "force.h"
 #include "update.h"
 
@@ -123,20 +121,17 @@ FixNveSph::End FixNveSph::end_now() const
   return {(double) update->ntimestep, sum};
 }
 
-void FixNveSph::write_restart(FILE *fp)
+void FixNveSph::write_state(NamedState &state)
 {
   // In mid-run, or after a run, there is a state that a run can go on from; before any there is none.
   const End now = update->whichflag == 1 ? end_now() : end;
-  NamedState state(STYLE);
   state.put("step", now.step);
   state.put_bits("velocities", now.velocities);
-  if (comm->me == 0) state.write(fp);
 }
 
-void FixNveSph::restart(char *buf)
+void FixNveSph::read_state(const NamedState &state)
 {
-  NamedState state(STYLE);
-  if (state.read(lmp, buf)) end = {state.get("step", -1.0), state.get_bits("velocities", 0)};
+  end = {state.get("step", -1.0), state.get_bits("velocities", 0)};
 }
 
 FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) :

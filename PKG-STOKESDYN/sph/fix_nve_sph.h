@@ -3,7 +3,7 @@
 #ifndef SD_FIX_NVE_SPH_H
 #define SD_FIX_NVE_SPH_H
 
-#include "sph_fix.h"
+#include "sph.h"
 
 #include <cstdint>
 
@@ -23,8 +23,6 @@ class FixNveSph : public SphFix {
   void final_integrate() override;
   void post_run() override;
   void reset_dt() override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
   /* Has this run gone on from the end of the last one, with nothing changed? */
   bool resumes() const { return goes_on; }
@@ -41,6 +39,8 @@ class FixNveSph : public SphFix {
     uint64_t velocities;
   } end = {-1.0, 0};
   End end_now() const;
+  void write_state(NamedState &) override;
+  void read_state(const NamedState &) override;
 };
 
 class FixNveSphStationary : public SphFix {

@@ -1,7 +1,6 @@
 #include "fix_sph_opening.h"
 
 #include "keywords.h"
-#include "named_state.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sph.h"
@@ -84,19 +83,6 @@ void FixSphOpening::check_width()
 double FixSphOpening::compute_scalar()
 {
   return sum_of_all(world, passed);
-}
-
-void FixSphOpening::write_restart(FILE *fp)
-{
-  NamedState state(style);
-  state.put("passed", compute_scalar());
-  if (comm->me == 0) state.write(fp);
-}
-
-void FixSphOpening::restart(char *buf)
-{
-  NamedState state(style);
-  if (state.read(lmp, buf) && comm->me == 0) passed = state.get("passed", 0.0);
 }
 
 // --- inlet --------------------------------------------------------------------------------------------

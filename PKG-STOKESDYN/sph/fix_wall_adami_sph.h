@@ -3,7 +3,7 @@
 #ifndef SD_FIX_WALL_ADAMI_SPH_H
 #define SD_FIX_WALL_ADAMI_SPH_H
 
-#include "sph_fix.h"
+#include "sph.h"
 
 namespace StokesDyn {
 

@@ -1,11 +1,9 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
-#include "fix_property_global.h"
-#include "fix_sph_pressure.h"
+#include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "fixes.h"
-#include "ghosts.h"
-#include "restart_words.h"
+#include "restart.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -13,6 +11,7 @@
 #include "error.h"
 #include "memory.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -174,6 +173,34 @@ double PairSph::spacing(int itype) const
                " deltap VALUE (only with one fix sph/pressure that has a rho0, and one mass per "
                "type, it is (mass/rho0)^(1/dimension))");
   return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
+}
+
+/* A cut-off (the skin is added) for which LAMMPS would make ghosts without end: no counter of its own
+ * may overflow, and where the length is more than ten periodic boxes ten million atoms in all images
+ * are enough. */
+static void refuse_endless_ghosts(LAMMPS *lmp, const std::string &what, double length)
+{
+  const Domain *domain = lmp->domain;
+  const double cut = length + lmp->neighbor->skin;
+  double boxes = 0.0, periodic_boxes = 0.0, atoms = lmp->atom->natoms, swaps = 0.0;
+  for (int d = 0; d < domain->dimension; d++) {
+    double row = 1.0 / domain->prd[d];    // one over the distance of opposite faces
+    if (domain->triclinic && d < 2) {
+      const double *inv = domain->h_inv;
+      row = d == 0 ? sqrt(inv[0] * inv[0] + inv[5] * inv[5] + inv[4] * inv[4])
+                   : sqrt(inv[1] * inv[1] + inv[3] * inv[3]);
+    }
+    boxes = std::max(boxes, cut * row);
+    swaps = std::max(swaps, cut * row * lmp->comm->procgrid[d]);
+    if (!domain->periodicity[d]) continue;
+    atoms *= 2.0 * cut * row + 1.0;
+    periodic_boxes = std::max(periodic_boxes, cut * row);
+  }
+  const double most = periodic_boxes > 10.0 ? 1e7 : (double) MAXSMALLINT;
+  if (atoms < most && swaps < MAXSMALLINT) return;
+  fail(lmp,
+       what + " is " + text(boxes) +
+           " times the box, which is more than LAMMPS can make ghost atoms for: is it in other units?");
 }
 
 double PairSph::init_one(int i, int j)

@@ -1,7 +1,7 @@
 /* Of pair_style sph/artVisc/tensCorr: what may be wrong with the particles of a scene. */
 #include "pair_sph_artvisc_tenscorr.h"
 
-#include "fix_sph_pressure.h"
+#include "fix_sph_settings.h"
 #include "fix_wall_adami_sph.h"
 #include "keywords.h"
 #include "ranks.h"

@@ -2,11 +2,9 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
-#include "fix_property_global.h"
-#include "fix_sph_density.h"
-#include "fix_sph_energy.h"
+#include "fix_sph_settings.h"
+#include "compute_sph_energy.h"
 #include "fix_sph_opening.h"
-#include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
 #include "fix_wall_adami_sph.h"
 #include "fixes.h"

@@ -2,8 +2,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
-#include "fix_sph_density.h"
-#include "fix_sph_pressure.h"
+#include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "keywords.h"
 #include "lammps_compat.h"

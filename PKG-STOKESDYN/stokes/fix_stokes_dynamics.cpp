@@ -15,9 +15,9 @@ using namespace StokesDyn;
 
 
 FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics"), rows(9), total()
+    RowsFix(lmp, narg, arg), rows(9), total()
 {
-  Keywords in(lmp, voice.command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   in.parse({{"apply", [&] { apply = in.yes_no() ? YES : NO; }}});
   scalar_flag = 1;
   vector_flag = 1;

@@ -5,7 +5,6 @@
 #define SD_FIX_STOKES_DYNAMICS_H
 
 #include "epochs.h"
-#include "keywords.h"
 #include "rows_fix.h"
 
 namespace StokesDyn {
@@ -28,7 +27,6 @@ class FixStokesDynamics : public RowsFix {
   bool applies() const;
 
  private:
-  const Voice voice;
   enum { NO, YES, UNSAID } apply = UNSAID;
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
   AtomArray rows;

@@ -19,9 +19,9 @@ using namespace StokesDyn;
 static const double MOST_POINTS = 2147483647.0 / 3.0;
 
 FixStokesDynamicsField::FixStokesDynamicsField(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics/field")
+    RowsFix(lmp, narg, arg)
 {
-  Keywords in(lmp, voice.command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   nevery = (int) in.positional("N").integer(1);
   file = in.positional("FILE").word();
   in.require(file.find('*') != std::string::npos,

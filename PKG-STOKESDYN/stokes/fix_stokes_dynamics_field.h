@@ -3,9 +3,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_FIELD_H
 #define SD_FIX_STOKES_DYNAMICS_FIELD_H
 
-#include "fix.h"
-
-#include "keywords.h"
+#include "rows_fix.h"
 
 #include "sd_field.h"
 
@@ -16,7 +14,7 @@ namespace StokesDyn {
 
 class Hydrodynamics;
 
-class FixStokesDynamicsField : public LAMMPS_NS::Fix {
+class FixStokesDynamicsField : public RowsFix {
  public:
   static constexpr const char *STYLE = "stokes_dynamics/field";
 
@@ -29,7 +27,6 @@ class FixStokesDynamicsField : public LAMMPS_NS::Fix {
   double memory_usage() override;
 
  private:
-  const Voice voice;
   std::string file;
   int points[3];
   /* corners of the grid, where they are given; else those of the box */

@@ -29,10 +29,10 @@ using namespace StokesDyn;
 
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics/overdamped"), adapt(), noise(voice),
-    spin(voice), motion(3), random(6), load(6), before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), motion(3), random(6), load(6),
+    before(9), output(9)
 {
-  Keywords in(lmp, voice.command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   in.parse({
       {"scheme",
        [&] {

@@ -39,11 +39,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double compute_scalar() override;
   double compute_vector(int) override;
 
-  void write_restart(FILE *) override;
-  void restart(char *) override;
-
  private:
-  const Voice voice;
   /* not given: by whether the mobility has a drift that noise needs */
   enum { AB2, EULER, MIDPOINT } scheme = AB2;
   bool scheme_given = false;
@@ -95,6 +91,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool warned_growth = false, announced = false;
 
   bool restored() const override { return last.step >= 0; }
+  std::vector<SavedNumbers> saved() override;
+  void read_state(const NamedState &) override { from_file = true; }
   Hydrodynamics &hydrodynamics() const;
   bool goes_on(const Hydrodynamics &) const;
   void find_causes(const Hydrodynamics &, double *causes) const;

@@ -3,13 +3,11 @@
 
 #include "hydrodynamics.h"
 #include "keywords.h"
-#include "named_state.h"
 
 #include "sd_gap.h"
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "update.h"
 
@@ -127,26 +125,11 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
 
 // --- restart -------------------------------------------------------------------------------------------------
 
-void FixStokesDynamicsOverdamped::write_restart(FILE *fp)
+std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
 {
-  if (comm->me != 0) return;
-  NamedState out(STYLE);
-  out.put("step", last.step);
-  out.put("dt", last.dt);
-  out.put("next_dt", last.next_dt);
-  out.put("atoms", last.atoms);
-  out.put("causes", std::vector<double>(last.causes, last.causes + 10));
-  out.write(fp);
-}
-
-void FixStokesDynamicsOverdamped::restart(char *buf)
-{
-  NamedState in(STYLE);
-  if (!in.read(lmp, buf)) return;
-  last.step = in.get("step", -1.0);
-  last.dt = in.get("dt", 0.0);
-  last.next_dt = in.get("next_dt", 0.0);
-  last.atoms = in.get("atoms", 0.0);
-  in.get("causes", last.causes, 10);
-  from_file = true;
+  return {{"step", &last.step},
+          {"dt", &last.dt},
+          {"next_dt", &last.next_dt},
+          {"atoms", &last.atoms},
+          {"causes", last.causes, 10}};
 }

@@ -5,7 +5,7 @@
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
-#include "restart_words.h"
+#include "restart.h"
 
 #include "atom.h"
 #include "comm.h"

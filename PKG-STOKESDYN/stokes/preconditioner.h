@@ -12,7 +12,7 @@
 #ifndef SD_PRECONDITIONER_GLUE_H
 #define SD_PRECONDITIONER_GLUE_H
 
-#include "atom_rows.h"
+#include "rows_fix.h"
 #include "pointers.h"
 #include "scene.h"
 

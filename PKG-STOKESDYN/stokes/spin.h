@@ -7,7 +7,7 @@
 #ifndef SD_STOKES_SPIN_H
 #define SD_STOKES_SPIN_H
 
-#include "atom_rows.h"
+#include "rows_fix.h"
 #include "keywords.h"
 #include "pointers.h"
 

@@ -34,8 +34,6 @@ class FixHydroVans : public RowsFix {
   int modify_param(int, char **) override;
   void *extract(const char *, int &) override;
   double memory_usage() override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
  private:
   VansSettings set;
@@ -80,7 +78,9 @@ class FixHydroVans : public RowsFix {
   struct {
     double radius = 0.0, density = 0.0;
   } mean;
-  std::vector<SavedNumbers> saved();
+  std::vector<SavedNumbers> saved() override;
+  void write_state(NamedState &) override;
+  void read_state(const NamedState &) override;
 
   /* Of the last step, of this rank and of all: force x y z, drag along x, spheres outside; force of
    * the pressure gradient, and its impulse since the first step. */

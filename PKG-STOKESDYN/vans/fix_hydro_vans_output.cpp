@@ -1,7 +1,6 @@
 #include "fix_hydro_vans.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "update.h"
 
 #include <algorithm>
@@ -178,34 +177,23 @@ static std::vector<double> layout(const VansSettings &set)
 
 std::vector<SavedNumbers> FixHydroVans::saved()
 {
-  return {{"elapsed", &elapsed, 1}, {"eddies", &eddies.age, 3}, {"mean", &mean.radius, 2}};
+  return {{"elapsed", &elapsed},
+          {"eddies", &eddies.age, 3},
+          {"mean", &mean.radius, 2},
+          {"pressed", &local.pressure, 2, true}};
 }
 
-void FixHydroVans::write_restart(FILE *fp)
+void FixHydroVans::write_state(NamedState &state)
 {
-  sum_up();
-  if (comm->me != 0) return;
-  NamedState state(STYLE);
   state.put("columns", layout(set));
   state.put("last_step", (double) last_step);
-  put(state, saved());
-  state.put("pressed", {global.pressure, global.pressed});
   stream.save(state);
-  state.write(fp);
 }
 
-void FixHydroVans::restart(char *buf)
+void FixHydroVans::read_state(const NamedState &state)
 {
-  NamedState state(STYLE);
-  if (!state.read(lmp, buf)) return;
   stream.load(state);
   last_step = (bigint) state.get("last_step", -1.0);
-  get(state, saved());
-  double pressed[2];
-  if (state.get("pressed", pressed, 2) && comm->me == 0) {
-    local.pressure = pressed[0];
-    local.pressed = pressed[1];
-  }
   if (state.get("columns") != layout(set))
     set.voice.warn("the restart file was written with other keywords (conserve, overlap or "
                    "fluctuation): what each grain carried is not taken, momentum on its way and "

@@ -327,21 +327,6 @@ std::vector<double> VansStream::friction_velocities() const
 
 /* ---- restart -------------------------------------------------------------------------------- */
 
-namespace StokesDyn {
-
-void put(NamedState &state, const std::vector<SavedNumbers> &all)
-{
-  for (const SavedNumbers &each : all)
-    state.put(each.name, std::vector<double>(each.numbers, each.numbers + each.count));
-}
-
-void get(const NamedState &state, const std::vector<SavedNumbers> &all)
-{
-  for (const SavedNumbers &each : all) state.get(each.name, each.numbers, each.count);
-}
-
-}    // namespace StokesDyn
-
 std::vector<SavedNumbers> VansStream::saved()
 {
   std::vector<SavedNumbers> all = {{"felt", &felt, 1},
@@ -378,7 +363,7 @@ void VansStream::save(NamedState &state)
   state.put("density_known", density_known);
   state.put("radius", fluid.radius);
   state.put("class_radii", class_radii);
-  put(state, saved());
+  state.put(set.voice.lmp->world, saved());
   std::vector<double> history;
   for (const auto &profile : phi_history)
     history.insert(history.end(), profile.begin(), profile.end());
@@ -419,7 +404,7 @@ void VansStream::load(const NamedState &state)
   density_known = state.get("density_known", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
   set_classes(state.get("class_radii"));
-  get(state, saved());
+  state.get(set.voice.lmp->world, saved());
   load_surface(state);
   const size_t N = ncell();
   const auto history = state.get("phi_history");

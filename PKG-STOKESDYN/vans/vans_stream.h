@@ -3,7 +3,7 @@
 #ifndef SD_VANS_STREAM_H
 #define SD_VANS_STREAM_H
 
-#include "named_state.h"
+#include "restart.h"
 #include "sd_vans_books.h"
 #include "sd_vans_steady.h"
 #include "vans_settings.h"
@@ -12,15 +12,6 @@
 #include <vector>
 
 namespace StokesDyn {
-
-/* Numbers of a restart file, by name. Those that the file has not stay as they are. */
-struct SavedNumbers {
-  const char *name;
-  double *numbers;
-  size_t count;
-};
-void put(NamedState &state, const std::vector<SavedNumbers> &all);
-void get(const NamedState &state, const std::vector<SavedNumbers> &all);
 
 class VansStream {
  public:
