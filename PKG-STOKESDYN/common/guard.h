@@ -7,9 +7,6 @@
 
 #include "keywords.h"
 
-#include "fix.h"
-#include "pair.h"
-
 #include <new>
 #include <string>
 

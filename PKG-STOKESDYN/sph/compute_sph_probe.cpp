@@ -7,7 +7,6 @@
 #include "sd_sph_probe.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "update.h"
 
 #include <algorithm>

@@ -8,7 +8,6 @@
 #include "atom.h"
 #include "update.h"
 
-#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;

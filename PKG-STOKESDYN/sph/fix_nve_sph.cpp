@@ -1,6 +1,5 @@
 #include "fix_nve_sph.h"
 
-#include "keywords.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sph.h"

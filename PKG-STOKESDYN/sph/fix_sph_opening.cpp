@@ -7,7 +7,6 @@
 
 #include "atom.h"
 #include "atom_vec.h"
-#include "comm.h"
 #include "domain.h"
 #include "modify.h"
 #include "neighbor.h"

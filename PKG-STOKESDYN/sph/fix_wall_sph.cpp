@@ -11,7 +11,6 @@
 #include "force.h"
 #include "pair.h"
 #include "region.h"
-#include "update.h"
 
 #include <cmath>
 

@@ -8,8 +8,6 @@
 #include "sd_sph_wall.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
 #include "update.h"
 
 #include <algorithm>

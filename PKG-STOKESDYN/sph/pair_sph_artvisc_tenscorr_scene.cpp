@@ -15,7 +15,6 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
-#include "error.h"
 #include "force.h"
 #include "neighbor.h"
 #include "update.h"

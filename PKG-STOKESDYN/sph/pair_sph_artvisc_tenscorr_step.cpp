@@ -12,15 +12,12 @@
 #include "sd_sph_step.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
 #include "force.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;

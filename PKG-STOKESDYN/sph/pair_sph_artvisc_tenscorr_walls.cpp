@@ -8,7 +8,6 @@
 #include "sd_sph_wall.h"
 
 #include "atom.h"
-#include "update.h"
 
 #include <algorithm>
 

@@ -8,7 +8,6 @@
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "update.h"
 
 #include <algorithm>

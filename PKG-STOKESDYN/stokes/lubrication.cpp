@@ -7,8 +7,6 @@
 #include "sd_multiblob_wall.h"
 #include "sd_wall_film.h"
 
-#include "domain.h"
-
 #include <algorithm>
 #include <cmath>
 

@@ -4,7 +4,6 @@
 #include "keywords.h"
 
 #include "comm.h"
-#include "domain.h"
 #include "neighbor.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "whole_clumps.h"
 
+#include "halo.h"
 #include "keywords.h"
 
 #include "atom.h"

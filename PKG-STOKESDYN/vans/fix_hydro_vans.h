@@ -9,8 +9,6 @@
 #include "sd_vans_random.h"
 #include "vans_stream.h"
 
-#include <memory>
-
 namespace LAMMPS_NS {
 class Region;
 }

@@ -1,8 +1,5 @@
 #include "fix_hydro_vans.h"
 
-#include "atom.h"
-#include "update.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
