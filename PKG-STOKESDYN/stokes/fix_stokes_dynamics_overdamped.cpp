@@ -168,7 +168,7 @@ void FixStokesDynamicsOverdamped::after_setup()
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
-  displaced = changed_before = 0.0;
+  displaced = error_before = 0.0;
   doublings = 0;
   find_velocities(hydro);
   if (!announced) announce();
@@ -284,7 +284,8 @@ void FixStokesDynamicsOverdamped::post_integrate()
 void FixStokesDynamicsOverdamped::advance()
 {
   Hydrodynamics &hydro = hydrodynamics();
-  displaced = changed = 0.0;
+  displaced = 0.0;
+  if (scheme != MIDPOINT && !warned_growth) watch();
   bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
   if (scheme == MIDPOINT)
     move_by_midpoint(hydro);
@@ -293,7 +294,6 @@ void FixStokesDynamicsOverdamped::advance()
   if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
   last.dt = update->dt;
   spin.advance();
-  if (!warned_growth) watch();
 }
 
 /* old [6] of the step before (a row of `before`) for a body whose place is now another image */
@@ -318,10 +318,9 @@ void FixStokesDynamicsOverdamped::move_free(int i)
   if (is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
   const double scale = noise.on() ? noise.scale(dt) : 0.0;
-  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], step[3], change[3];
+  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], step[3];
   const double c = weight(old_velocity(i, x, old));
   sd_mean_velocity(3, V, old, c, mean);
-  sd_minus(V, old, change);
   for (int d = 0; d < 3; d++) {
     step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
     x[d] += step[d];
@@ -329,13 +328,12 @@ void FixStokesDynamicsOverdamped::move_free(int i)
   double *row = before.give(i);
   std::copy_n(V, 3, row);
   std::copy_n(x, 3, row + 6);
-  moves(i, sqrt(sd_dot(step, step)), sqrt(sd_dot(change, change)));
+  moves(i, sqrt(sd_dot(step, step)));
 }
 
-void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
+void FixStokesDynamicsOverdamped::moves(int i, double distance)
 {
   displaced = std::max(displaced, distance / atom->radius[i]);
-  changed = std::max(changed, 0.5 * update->dt * change / atom->radius[i]);
 }
 
 /* By members of clumps: has it a velocity of before? Its row then, of its clump */
@@ -391,7 +389,6 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
       const size_t m = hydro.motion().member_of(hydro.motion().clumps[c], k);
       double *row = &rows[COLUMNS * m];
       row[MOVES] = 1.0;
-      row[CHANGE] = goes.change;
       sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
       Lattice::add(box, &whole.steps[3 * m], row + STEP);
       std::copy_n(goes.V, 6, row + BEFORE_V);
@@ -409,7 +406,7 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
 /* A whole step has been made. */
 void FixStokesDynamicsOverdamped::clump_moves(Hydrodynamics &hydro, int i, const double *row)
 {
-  moves(i, sqrt(sd_dot(row + STEP, row + STEP)), row[CHANGE]);
+  moves(i, sqrt(sd_dot(row + STEP, row + STEP)));
   hydro.turn(i, row + TURN);
 }
 
@@ -420,15 +417,11 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   const auto step = [&](size_t number) {
     const Velocities::Clump &clump = motion.clumps[number];
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
-    const double size = clump.body->shape->shape.size;
-    const bool has = row[0] != 0.0;
     double old[6], mean[6];
-    ClumpStep s = {tracked(clump), {}, {}, 0.0};
+    ClumpStep s = {tracked(clump), {}, {}};
     tracked_velocity(clump, s.V);
     at_image(row + 1, clump.pose + 9, old);
-    sd_mean_velocity(6, s.V, old, weight(has), mean);
-    for (int d = 0; d < 3 && has; d++)
-      s.change += fabs(s.V[d] - old[d]) + size * fabs(s.V[3 + d] - old[3 + d]);
+    sd_mean_velocity(6, s.V, old, weight(row[0] != 0.0), mean);
     for (int d = 0; d < 6; d++) {
       s.move[d] = update->dt * mean[d];
       if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
@@ -463,10 +456,11 @@ void FixStokesDynamicsOverdamped::set_step(double dt)
 /* A step that is too long for contacts shows as velocities that flip, and grow, with every step. */
 void FixStokesDynamicsOverdamped::watch()
 {
-  doublings = changed > 0.1 && changed > 2.0 * changed_before ? doublings + 1 : 0;
-  changed_before = changed;
+  const double error = largest_of_all(world, error_figure());
+  doublings = error > 0.1 && error > 2.0 * error_before ? doublings + 1 : 0;
+  error_before = error;
   if (doublings < 3) return;
   warned_growth = true;
-  voice.at_step().warn("the change of velocities grows from step to step, and is " + text(changed) +
+  voice.at_step().warn("the change of velocities grows from step to step, and is " + text(error) +
                        " radii per step now: use a shorter time step");
 }

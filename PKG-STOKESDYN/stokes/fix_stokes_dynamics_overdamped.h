@@ -84,9 +84,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } last;
   bool from_file = false;
 
-  /* of this rank: largest displacement over radius in the last step, and the largest change of
-   * velocity by it; in the step before */
-  double displaced = 0.0, changed = 0.0, changed_before = 0.0;
+  /* in the last step: the largest displacement over radius, of this rank; error_figure() of all */
+  double displaced = 0.0, error_before = 0.0;
   int doublings = 0;
   bool warned_growth = false, announced = false;
 
@@ -110,7 +109,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void advance();
   bool old_velocity(int i, const double *place, double *V) const;
   void at_image(const double *row, const double *place, double *old) const;
-  void moves(int i, double distance, double change);
+  void moves(int i, double distance);
   void move_free(int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
@@ -121,14 +120,14 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   using Clumps = std::vector<Velocities::Clump>;
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; its
-   * velocity and that of the turn, and the change of these, for whoever keeps them */
+   * velocity and that of the turn, for whoever keeps them */
   struct ClumpStep {
     const double *centre;
-    double move[6], V[6], change;
+    double move[6], V[6];
   };
   using Step = std::function<ClumpStep(size_t c)>;
   /* rows of their atoms; V and the place of the centroid stand side by side, as in `before` */
-  enum { MOVES, CHANGE, STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
+  enum { MOVES, STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
   void step_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x,
                    const Step &step, const std::function<void(int i, const double *row)> &take);
   void clump_moves(Hydrodynamics &, int i, const double *row);

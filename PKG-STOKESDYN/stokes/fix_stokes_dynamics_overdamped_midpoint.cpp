@@ -103,7 +103,7 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto step = [&](size_t c) {
-    ClumpStep s = {CENTROID, {}, {}, 0.0};
+    ClumpStep s = {CENTROID, {}, {}};
     for (int d = 0; d < 6; d++) {
       const bool in_plane = d < 2 || d == 5;
       s.move[d] = domain->dimension == 3 || in_plane ? dt * hydro.motion().clumps[c].V[d] : 0.0;
@@ -154,6 +154,6 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   for (int i : who) std::copy_n(&loads[6 * (size_t) i], 6, load.give(i));
   for (int i : lone) {
     const double *v = &V[3 * (size_t) i];
-    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)), 0.0);
+    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)));
   }
 }
