@@ -152,7 +152,7 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   const Points now = points_of_now();
   const size_t n = scene.size();
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0);
-  sd_multiblob_moments(&shells.model(), (int) n, now.r.data(), now.l.data(), points.data());
+  sd_multiblob_moments(shells.points(), (int) n, now.r.data(), now.l.data(), points.data());
   if (overdamped) mobile.add_constraints(points.data());
   if (settings.lubrication.on) {
     const double *v = overdamped ? mobile.last_velocities() : films_v.data();

@@ -354,7 +354,11 @@ void Velocities::carry(const sd_bodies &A, double *flow)
   if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.wall.sign) return;
   gradient.resize(9 * clumps.size());
   double centre[3];
-  for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
+  for (size_t c = 0; c < clumps.size(); c++) {
+    const sd_clump_motion motion = look_at(clumps[c]);
+    const double *pose = clumps[c].pose;
+    sd_clump_flow(&clumps[c].body->shape->shape, &motion, pose, pose + 9, centre, &gradient[9 * c]);
+  }
   work.resize(sd_bodies_work(&A));
   sd_bodies_carry(&A, gradient.data(), work.data(), flow);
 }

@@ -159,10 +159,6 @@ class Velocities : protected LAMMPS_NS::Pointers {
   void place(int width);
   void arrange();
   sd_clump_motion look_at(const Clump &clump) const;
-  void flow_over(const Clump &clump, double u[3], double G[9]) const;
-  void load_on(const Clump &clump, double load[6]) const;
-  void drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
-               double *T) const;
   sd_bodies bodies(int width);
   sd_bodies assemble(int width);
   void place_shells();
