@@ -210,12 +210,16 @@ void Scene::place(int n_all_or_copies)
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
   scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr};
-  if (shells && cloud) {
-    std::vector<double> rows(10 * (size_t) n_all + 10);
-    to_cloud(shells->sent(size()).data(), rows.data(), 10);
-    shells->expand_cloud(n_all, rows.data(), this->cloud());
-  } else if (shells)
-    shells->expand(halo, size_with_copies(), local());
+  if (shells) {
+    std::vector<double> rows = shells->sent(size()), all(10 * (size_t) n_all_or_copies + 10);
+    if (cloud)
+      to_cloud(rows.data(), all.data(), 10);
+    else {
+      std::copy_n(rows.begin(), 10 * (size_t) size(), all.begin());
+      halo.refresh(rows.data(), &all[10 * (size_t) size()], 10);
+    }
+    shells->expand(n_all_or_copies, all, cloud ? this->cloud() : local());
+  }
   scene.n = points() * size();
   scene.n_all = points() * n_all_or_copies;
   scene.spheres = shells ? shells->all() : cloud ? this->cloud() : local();

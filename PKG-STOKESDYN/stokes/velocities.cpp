@@ -40,11 +40,11 @@ double Velocities::memory_usage() const
 /* What clumps must know of their spheres; velocities are those of the images side by side. */
 void Velocities::gather(bool moving)
 {
-  enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
+  enum { ETA, RADIUS, X, MOTION = X + 3, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   const bool turns = !moving || scene.settings.rotation;
-  const int columns = gradients ? GRADIENT + 9 : FLOW;
-  std::vector<double> rows = scene.whole.gather(columns, [&](int i, double *row) {
+  const size_t columns = gradients ? GRADIENT + 9 : FLOW, n = rigid.members().size();
+  const std::vector<double> rows = scene.whole.gather((int) columns, [&](int i, double *row) {
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     row[RADIUS] = atom->radius[i];
     std::copy_n(moving ? atom->v[i] : atom->f[i], 3, row + MOTION);
@@ -53,26 +53,19 @@ void Velocities::gather(bool moving)
     std::copy_n(ambient.velocity(i), 3, row + FLOW);
     std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
   });
-  const size_t n = rigid.members().size();
-  for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n);
-  for (auto *vectors : {&spheres.x, &spheres.motion, &spheres.turning}) vectors->resize(3 * n);
-  spheres.flow.resize(gradients ? 3 * n : 0);
-  spheres.gradient.resize(gradients ? 9 * n : 0);
+  std::vector<double> ordered(columns * n + 1);
   for (size_t k = 0; k < n; k++) {
     const size_t m = rigid.members()[k];
-    double *row = &rows[columns * m];
     const int *steps = &scene.whole.steps[3 * m];
+    double *row = &ordered[columns * k];
+    std::copy_n(&rows[columns * m], columns, row);
+    std::copy_n(&scene.whole.x[3 * m], 3, row + X);
     if (jumps && moving) Lattice::add(jumps, steps, row + MOTION);
     if (jumps && gradients) Lattice::add(jumps, steps, row + FLOW);
-    spheres.eta[k] = row[ETA];
-    spheres.radius[k] = row[RADIUS];
-    std::copy_n(&scene.whole.x[3 * m], 3, &spheres.x[3 * k]);
-    std::copy_n(row + MOTION, 3, &spheres.motion[3 * k]);
-    std::copy_n(row + TURNING, 3, &spheres.turning[3 * k]);
-    if (!gradients) continue;
-    std::copy_n(row + FLOW, 3, &spheres.flow[3 * k]);
-    std::copy_n(row + GRADIENT, 9, &spheres.gradient[9 * k]);
   }
+  const size_t flows = gradients ? 3 : 0;
+  take_apart(ordered, n, {{&spheres.eta, 1}, {&spheres.radius, 1}, {&spheres.x, 3}, {&spheres.motion, 3},
+                          {&spheres.turning, 3}, {&spheres.flow, flows}, {&spheres.gradient, 3 * flows}});
 }
 
 void Velocities::find(bool moving)
