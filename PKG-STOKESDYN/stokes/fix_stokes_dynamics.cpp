@@ -1,7 +1,6 @@
 #include "fix_stokes_dynamics.h"
 
 #include "fixes.h"
-#include "hydrodynamics.h"
 #include "keywords.h"
 #include "ranks.h"
 
@@ -37,12 +36,6 @@ FixStokesDynamics::~FixStokesDynamics()
 int FixStokesDynamics::setmask()
 {
   return FixConst::POST_FORCE;
-}
-
-Hydrodynamics &FixStokesDynamics::hydrodynamics() const
-{
-  return Hydrodynamics::of(
-      voice, "there is no pair_style stokes_dynamics whose force it could apply or report");
 }
 
 bool FixStokesDynamics::applies() const

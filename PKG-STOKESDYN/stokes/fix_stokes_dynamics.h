@@ -4,12 +4,10 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_H
 #define SD_FIX_STOKES_DYNAMICS_H
 
-#include "epochs.h"
+#include "hydrodynamics.h"
 #include "rows_fix.h"
 
 namespace StokesDyn {
-
-class Hydrodynamics;
 
 class FixStokesDynamics : public RowsFix {
  public:
@@ -35,7 +33,8 @@ class FixStokesDynamics : public RowsFix {
   /* F and dissipation of the group, this rank */
   double total[4];
 
-  Hydrodynamics &hydrodynamics() const;
+  const HydrodynamicsOf hydrodynamics{
+      voice, "there is no pair_style stokes_dynamics whose force it could apply or report"};
 };
 
 }    // namespace StokesDyn

@@ -1,7 +1,6 @@
 #include "fix_stokes_dynamics_field.h"
 
 #include "callback.h"
-#include "hydrodynamics.h"
 #include "image_file.h"
 #include "keywords.h"
 #include "ranks.h"
@@ -54,12 +53,6 @@ FixStokesDynamicsField::~FixStokesDynamicsField()
 int FixStokesDynamicsField::setmask()
 {
   return FixConst::END_OF_STEP;
-}
-
-Hydrodynamics &FixStokesDynamicsField::hydrodynamics() const
-{
-  return Hydrodynamics::of(
-      voice, "there is no pair_style stokes_dynamics whose flow it could write");
 }
 
 void FixStokesDynamicsField::init()

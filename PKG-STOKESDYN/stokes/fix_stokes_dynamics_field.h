@@ -3,6 +3,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_FIELD_H
 #define SD_FIX_STOKES_DYNAMICS_FIELD_H
 
+#include "hydrodynamics.h"
 #include "rows_fix.h"
 
 #include "sd_field.h"
@@ -11,8 +12,6 @@
 #include <vector>
 
 namespace StokesDyn {
-
-class Hydrodynamics;
 
 class FixStokesDynamicsField : public RowsFix {
  public:
@@ -34,7 +33,8 @@ class FixStokesDynamicsField : public RowsFix {
   double lo[3], hi[3];
   sd_field tables = {};
 
-  Hydrodynamics &hydrodynamics() const;
+  const HydrodynamicsOf hydrodynamics{
+      voice, "there is no pair_style stokes_dynamics whose flow it could write"};
   sd_field_grid grid() const;
   int end_of_share(int planes, int p) const;
   void add_flow(Hydrodynamics &, const sd_ewald_box &, const sd_field_grid &, double *u);

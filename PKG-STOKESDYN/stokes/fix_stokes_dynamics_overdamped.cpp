@@ -2,7 +2,6 @@
 
 #include "fix_stokes_dynamics_field.h"
 #include "fixes.h"
-#include "hydrodynamics.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "deforming_box.h"
@@ -73,12 +72,6 @@ int FixStokesDynamicsOverdamped::setmask()
 {
   using namespace FixConst;
   return INITIAL_INTEGRATE | POST_INTEGRATE | FINAL_INTEGRATE | (adapt.every ? END_OF_STEP : 0);
-}
-
-Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
-{
-  return Hydrodynamics::of(
-      voice, "there is no pair_style stokes_dynamics with the settings of the fluid");
 }
 
 void FixStokesDynamicsOverdamped::init()

@@ -8,16 +8,14 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
+#include "hydrodynamics.h"
 #include "noise.h"
 #include "rows_fix.h"
 #include "spin.h"
-#include "velocities.h"
 
 #include <functional>
 
 namespace StokesDyn {
-
-class Hydrodynamics;
 
 class FixStokesDynamicsOverdamped : public RowsFix {
  public:
@@ -92,7 +90,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool restored() const override { return last.step >= 0; }
   std::vector<SavedNumbers> saved() override;
   void read_state(const NamedState &) override { from_file = true; }
-  Hydrodynamics &hydrodynamics() const;
+  const HydrodynamicsOf hydrodynamics{
+      voice, "there is no pair_style stokes_dynamics with the settings of the fluid"};
   bool goes_on(const Hydrodynamics &) const;
   void find_causes(const Hydrodynamics &, double *causes) const;
   bool causes_stand(const Hydrodynamics &) const;

@@ -13,7 +13,6 @@
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "fixes.h"
-#include "hydrodynamics.h"
 #include "keywords.h"
 
 #include "sd_linear.h"

@@ -1,7 +1,6 @@
 /* Of fix stokes_dynamics/overdamped: what it reports, and its restart files. */
 #include "fix_stokes_dynamics_overdamped.h"
 
-#include "hydrodynamics.h"
 #include "keywords.h"
 
 #include "sd_gap.h"

@@ -39,13 +39,6 @@ Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
   return pair ? static_cast<Hydrodynamics *>(pair->extract("hydrodynamics", dim)) : nullptr;
 }
 
-Hydrodynamics &Hydrodynamics::of(const Voice &voice, const std::string &lack)
-{
-  Hydrodynamics *hydro = of(voice.lmp);
-  if (!hydro) voice.fail(lack);
-  return *hydro;
-}
-
 void Hydrodynamics::set(const std::vector<std::string> &words)
 {
   settings = StokesSettings(lmp, words);

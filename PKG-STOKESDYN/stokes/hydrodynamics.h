@@ -44,9 +44,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   explicit Hydrodynamics(LAMMPS_NS::LAMMPS *lmp);
   /* That of the pair style, nullptr: there is no pair style stokes_dynamics. Fixes look it up whenever
-   * they need it, as the pair style may be another one by then; lack: the error. */
+   * they need it, as the pair style may be another one by then. */
   static Hydrodynamics *of(LAMMPS_NS::LAMMPS *lmp);
-  static Hydrodynamics &of(const Voice &voice, const std::string &lack);
 
   void set(const std::vector<std::string> &words);
   void init();
@@ -178,6 +177,23 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   sd_status move_together(const Velocities::Take &take, const Velocities::Draw *draw,
                           sd_bodies_report &report);
   [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
+};
+
+/* That of the pair style for a fix, looked up at each call, which ends the run with `lack` if there is
+ * none. */
+class HydrodynamicsOf {
+ public:
+  HydrodynamicsOf(const Voice &voice, const char *lack) : voice(voice), lack(lack) {}
+  Hydrodynamics &operator()() const
+  {
+    Hydrodynamics *hydro = Hydrodynamics::of(voice.lmp);
+    if (!hydro) voice.fail(lack);
+    return *hydro;
+  }
+
+ private:
+  const Voice voice;
+  const char *const lack;
 };
 
 }    // namespace StokesDyn
