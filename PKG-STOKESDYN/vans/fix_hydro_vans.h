@@ -135,6 +135,14 @@ class FixHydroVans : public RowsFix {
   void count_overlaps();
 
   double steady(int k) const;
+  /* What keywords give as numbers or variables of equal style, where the values go, their limits */
+  struct Given {
+    Field &field;
+    double &value;
+    double least;
+    const char *keyword, *part;
+  };
+  std::vector<Given> givens();
   void modify_profile(Keywords &in, const Voice &what);
 
   void record(int i) override;
