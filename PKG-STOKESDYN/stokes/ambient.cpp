@@ -159,7 +159,7 @@ static void edge_of_box(const Domain *domain, int q, double edge[3])
 {
   const int step[3] = {q == 0, q == 1, q == 2};
   std::fill_n(edge, 3, 0.0);
-  Lattice::add(domain->h, step, edge);
+  sd_add_edges(domain->h, step, edge);
 }
 
 /* Of the components that are formulas: sums [3] of what they grow by along an edge, over this rank's

@@ -383,7 +383,7 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
       double *row = &rows[COLUMNS * m];
       row[MOVES] = 1.0;
       sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
-      Lattice::add(box, &whole.steps[3 * m], row + STEP);
+      sd_add_edges(box, &whole.steps[3 * m], row + STEP);
       std::copy_n(goes.V, 6, row + BEFORE_V);
       std::copy_n(pose + 9, 3, row + PLACE);
       std::copy_n(turn, 9, row + TURN);

@@ -2,7 +2,7 @@
 
 #include "domain.h"
 
-#include "sd_lattice.h"
+#include "sd_linear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,31 +20,6 @@ Lattice Lattice::of(const LAMMPS_NS::Domain *domain)
   return l;
 }
 
-void Lattice::fractions(const double x[3], double f[3]) const
-{
-  f[2] = (x[2] - origin[2]) / h[2];
-  f[1] = (x[1] - origin[1] - h[3] * f[2]) / h[1];
-  f[0] = (x[0] - origin[0] - h[5] * f[1] - h[4] * f[2]) / h[0];
-}
-
-double Lattice::across(int d, double length) const
-{
-  const double xy = h[5], xz = h[4], yz = h[3], s = xy * yz / h[1] - xz;
-  if (d == 2) return length / h[2];
-  if (d == 1) return length / h[1] * std::hypot(1.0, yz / h[2]);
-  return length / h[0] * std::hypot(1.0, std::hypot(xy / h[1], s / h[2]));
-}
-
-void Lattice::closest(double d[3], int steps[3]) const
-{
-  double moved[3] = {d[0], d[1], d[2]};
-  sd_closest_image(h, periodic, d);
-  for (int e = 0; e < 3; e++) moved[e] = d[e] - moved[e];
-  const double z = moved[2] / h[2], y = (moved[1] - z * h[3]) / h[1];
-  const double exact[3] = {(moved[0] - y * h[5] - z * h[4]) / h[0], y, z};
-  for (int e = 0; e < 3; e++) steps[e] = std::fabs(exact[e]) < 1e9 ? (int) std::lround(exact[e]) : 0;
-}
-
 /* Fractions of this rank's rows, sorted into cells of its block, so that a search in a part of the
  * block looks at that part alone. */
 struct Halo::Sorted {
@@ -58,7 +33,9 @@ struct Halo::Sorted {
     std::fill_n(lo, 3, INFINITY);
     std::fill_n(hi, 3, -INFINITY);
     for (size_t i = 0; i < x.size(); i += 3) {
-      lattice.fractions(&x[i], &f[i]);
+      double from_origin[3];
+      sd_minus(&x[i], lattice.origin, from_origin);
+      sd_in_edges(lattice.h, from_origin, &f[i]);
       for (int d = 0; d < 3; d++) {
         lo[d] = std::min(lo[d], f[i + d]);
         hi[d] = std::max(hi[d], f[i + d]);
@@ -172,7 +149,7 @@ bool Halo::find(const Lattice &lattice, double reach, const std::vector<double> 
   MPI_Allgather(mine, 6, MPI_DOUBLE, block.data(), 6, MPI_DOUBLE, post.world);
   wide = block;
   for (size_t k = 0; k < wide.size(); k++)    // a pair at the reach itself is not lost by rounding
-    wide[k] += (k % 6 < 3 ? -1.0 : 1.0) * lattice.across(k % 3, reach * (1.0 + 1e-9));
+    wide[k] += (k % 6 < 3 ? -1.0 : 1.0) * sd_across_faces(lattice.h, k % 3, reach * (1.0 + 1e-9));
   clear();
   for (int p = 0; p < post.ranks; p++) {
     const double *theirs = &block[6 * (size_t) p], *wider = &wide[6 * (size_t) p];
@@ -208,7 +185,7 @@ void Halo::place(const double h[6], const double *x, double *out) const
   outbox.assign(3 * sphere.size() + 1, 0.0);
   for (size_t k = 0; k < sphere.size(); k++) {
     if (x) std::copy_n(x + 3 * (size_t) sphere[k], 3, &outbox[3 * k]);
-    Lattice::add(h, &steps[3 * k], &outbox[3 * k]);
+    sd_add_edges(h, &steps[3 * k], &outbox[3 * k]);
   }
   post.carry(outbox.data(), out, 3);
 }

@@ -114,8 +114,8 @@ struct Pairs {
  * where two places of a lattice are equally close */
 static void image_of(const Lattice &lattice, const double r[3], int steps[3])
 {
-  const double *h = lattice.h, f2 = r[2] / h[2], f1 = (r[1] - h[3] * f2) / h[1];
-  const double f[3] = {(r[0] - h[5] * f1 - h[4] * f2) / h[0], f1, f2};
+  double f[3];
+  sd_in_edges(lattice.h, r, f);
   for (int d = 0; d < 3; d++) steps[d] = lattice.periodic[d] ? (int) floor(f[d] + 0.5123) : 0;
 }
 

@@ -145,12 +145,9 @@ void Preconditioner::put_side_by_side()
   const Lattice lattice = Lattice::of(domain);
   for (size_t k = 0; k + 1 < first.size(); k++)
     for (long m = first[k] + 1; m < first[k + 1]; m++) {
-      const double *begin = &x[3 * (size_t) member[first[k]]];
-      double *there = &x[3 * (size_t) member[m]];
-      double d[3] = {there[0] - begin[0], there[1] - begin[1], there[2] - begin[2]};
       int steps[3];
-      lattice.closest(d, steps);
-      for (int c = 0; c < 3; c++) there[c] = begin[c] + d[c];
+      sd_bring_close(lattice.h, lattice.periodic, &x[3 * (size_t) member[first[k]]],
+                     &x[3 * (size_t) member[m]], steps);
     }
 }
 

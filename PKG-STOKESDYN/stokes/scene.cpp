@@ -94,7 +94,7 @@ void Scene::drift(double *rows, int width, double sign) const
   for (int d = 0; d < 6; d++) signed_jumps[d] = sign * jumps[d];
   for (size_t m = 0; m < row_of.size() && jumping; m++)
     if (row_of[m] >= 0)
-      Lattice::add(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
+      sd_add_edges(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
 }
 
 const double *Scene::drift_of_copies()

@@ -60,8 +60,8 @@ void Velocities::gather(bool moving)
     double *row = &ordered[columns * k];
     std::copy_n(&rows[columns * m], columns, row);
     std::copy_n(&scene.whole.x[3 * m], 3, row + X);
-    if (jumps && moving) Lattice::add(jumps, steps, row + MOTION);
-    if (jumps && gradients) Lattice::add(jumps, steps, row + FLOW);
+    if (jumps && moving) sd_add_edges(jumps, steps, row + MOTION);
+    if (jumps && gradients) sd_add_edges(jumps, steps, row + FLOW);
   }
   const size_t flows = gradients ? 3 : 0;
   take_apart(ordered, n, {{&spheres.eta, 1}, {&spheres.radius, 1}, {&spheres.x, 3}, {&spheres.motion, 3},
@@ -122,7 +122,7 @@ void Velocities::find_held()
     double arm[3], turning[3];
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
-      Lattice::add(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
+      sd_add_edges(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
     sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) clump.body->begin], arm);
     sd_cross(clump.V + 3, arm, turning);
     for (int d = 0; d < 3; d++) clump.V[d] += turning[d];

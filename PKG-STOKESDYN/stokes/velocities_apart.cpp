@@ -58,7 +58,7 @@ void Velocities::apart(int width, const Take &take)
       std::copy_n(&v[6 * k], 6, row + 1);
       std::copy_n(&force[3 * k], 3, row + 7);
       std::copy_n(&torque[3 * k], 3, row + 10);
-      Lattice::add(back, &whole.steps[3 * member_of(clump, (int) k)], row + 1);
+      sd_add_edges(back, &whole.steps[3 * member_of(clump, (int) k)], row + 1);
     }
   }
   if (!rigid.settings.on) return;

@@ -128,13 +128,9 @@ void WholeClumps::stand()
   x = gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); });
   steps.assign(3 * tag.size() + 3, 0);
   for (const Clump &clump : clumps)
-    for (int k = clump.begin + 1; k < clump.end; k++) {
-      const double *first = &x[3 * (size_t) clump.begin];
-      double *there = &x[3 * (size_t) k];
-      double d[3] = {there[0] - first[0], there[1] - first[1], there[2] - first[2]};
-      lattice.closest(d, &steps[3 * (size_t) k]);
-      for (int e = 0; e < 3; e++) there[e] = first[e] + d[e];
-    }
+    for (int k = clump.begin + 1; k < clump.end; k++)
+      sd_bring_close(lattice.h, lattice.periodic, &x[3 * (size_t) clump.begin], &x[3 * (size_t) k],
+                     &steps[3 * (size_t) k]);
 }
 
 /* How far a clump reaches in x, y, z: beyond half of a periodic box the image next to the first
