@@ -1,10 +1,10 @@
-/* Settings that LAMMPS or the solver would do something foolish with. Free functions, each called
- * with the name of the command that the user is told. */
+/* Settings that LAMMPS or the solver would do something foolish with, and the plane of keyword wall:
+ * where it stands, and what does not go with it. Free functions, each called with the name of the
+ * command that the user is told. */
 #ifndef SD_CHECKS_H
 #define SD_CHECKS_H
 
 #include "scene.h"
-
 
 namespace StokesDyn {
 
@@ -32,6 +32,22 @@ void warn_of_short_cutoff(const Voice &voice, const Scene &scene);
 /* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and
  * none of them means anything. */
 void refuse_close_oseen(const Voice &voice, const Scene &scene);
+
+/* "zlo at 0.5", as a user would say it */
+std::string wall_name(const sd_wall &wall);
+
+/* Before a run: puts a wall at the side of the box where that is now. Errors: a periodic direction;
+ * a side that moves or leans. */
+void find_wall(const Voice &voice, Scene::Settings &settings);
+
+/* The stream must rest where the wall is. Error: a number for its velocity across the wall; warning:
+ * numbers along it. */
+void check_stream_at_wall(const Voice &voice, const sd_wall &wall,
+                          const Ambient::Settings &fluid);
+
+/* Where the rows of the scene stand. Errors: the side of the box has left the wall; a centre that is
+ * not in front of it. Returns how many spheres cut it, on all ranks. */
+double spheres_cut_by_wall(const Voice &voice, const Scene &scene);
 
 /* LAMMPS sorts its atoms into bins of half the cut-off, which is small where a style has none. In
  * an open box that is mostly empty the bins would take most of the memory, or be too many: then

@@ -3,8 +3,6 @@
 #include "callback.h"
 #include "checks.h"
 #include "keywords.h"
-#include "plane_wall.h"
-
 
 #include "atom.h"
 #include "domain.h"
