@@ -45,11 +45,6 @@ FixStokesDynamicsField::FixStokesDynamicsField(LAMMPS *lmp, int narg, char **arg
                "keyword hi: '" + text(hi[d]) + "' must be above lo, " + text(lo[d]));
 }
 
-FixStokesDynamicsField::~FixStokesDynamicsField()
-{
-  sd_field_free(&tables);
-}
-
 int FixStokesDynamicsField::setmask()
 {
   return FixConst::END_OF_STEP;

@@ -3,6 +3,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_FIELD_H
 #define SD_FIX_STOKES_DYNAMICS_FIELD_H
 
+#include "callback.h"
 #include "hydrodynamics.h"
 #include "rows_fix.h"
 
@@ -18,7 +19,6 @@ class FixStokesDynamicsField : public RowsFix {
   static constexpr const char *STYLE = "stokes_dynamics/field";
 
   FixStokesDynamicsField(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixStokesDynamicsField() override;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -31,7 +31,7 @@ class FixStokesDynamicsField : public RowsFix {
   /* corners of the grid, where they are given; else those of the box */
   bool has_lo = false, has_hi = false;
   double lo[3], hi[3];
-  sd_field tables = {};
+  Owned<sd_field, sd_field_free> tables;
 
   const HydrodynamicsOf hydrodynamics{
       voice, "there is no pair_style stokes_dynamics whose flow it could write"};

@@ -14,12 +14,6 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Lubrication::~Lubrication()
-{
-  sd_lubrication_free(&near);
-  sd_two_sphere_free(functions);
-}
-
 /* What may fail on one rank alone */
 void Lubrication::check(sd_status status) const
 {
@@ -44,11 +38,10 @@ void Lubrication::provide(double largest, double smallest)
                  ": lubrication is for ratios of radii up to 100; use group to select spheres, or "
                  "lubrication no");
     check(status);
-    sd_two_sphere_free(functions);
-    functions = wider;
+    functions.reset(wider);
     largest_ratio = ratio;
   }
-  if (shells) check(sd_films_create(shells->points, shells->one_body, functions, &films));
+  if (shells) check(sd_films_create(shells->points, shells->one_body, functions.get(), &films));
 }
 
 void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
@@ -57,7 +50,7 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
   u = where.rows(6, [&](int i, double *out) { ambient.fluid(i, out); });
   where.drift(u.data(), 6, 1.0);
   sd_lubrication_scene scene = {};
-  scene.functions = functions;
+  scene.functions = functions.get();
   scene.films = shells ? &films : nullptr;
   scene.gap = settings.gap;
   scene.range = settings.range;

@@ -31,12 +31,6 @@ void Noise::read_tolerance(Keywords &in)
   in.check(tolerance < 0.5, "must be below 0.5");
 }
 
-Noise::~Noise()
-{
-  sd_noise_free(&process);
-  sd_bodies_noise_free(&of_bodies);
-}
-
 double Noise::scale(double dt) const
 {
   return sqrt(2.0 * kT * dt);

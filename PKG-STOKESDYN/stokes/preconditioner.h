@@ -30,9 +30,6 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   bool easy = false;
 
   Preconditioner(LAMMPS_NS::LAMMPS *lmp, Scene &scene) : Pointers(lmp), scene(scene) {}
-  ~Preconditioner() { forget(); }
-  Preconditioner(const Preconditioner &) = delete;
-  Preconditioner &operator=(const Preconditioner &) = delete;
 
   void forget() { sd_preconditioner_free(&made); }
   /* Before a solve, after Scene::update(): puts the one that suits the scene into the system. It is
@@ -45,7 +42,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
  private:
   Scene &scene;
   const sd_precondition_kind *wanted = nullptr;    // nullptr: none
-  sd_preconditioner made = {};
+  Owned<sd_preconditioner, sd_preconditioner_free> made;
 
   // of this solve
   bool cloud = false;

@@ -32,8 +32,6 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   ClumpShapes shapes;
 
   RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &epochs);
-  RigidClumps(const RigidClumps &) = delete;
-  RigidClumps &operator=(const RigidClumps &) = delete;
 
   /* Other settings: no shape stands. */
   void forget();

@@ -14,16 +14,8 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 Scene::Scene(const Voice &voice, Epochs &epochs) :
-    Pointers(voice.lmp), whole(voice, epochs), voice(voice), epochs(epochs), halo(world),
-    candidates(), pairs(), omega()
+    Pointers(voice.lmp), whole(voice, epochs), voice(voice), epochs(epochs), halo(world)
 {
-}
-
-Scene::~Scene()
-{
-  sd_neighbors_free(&candidates);
-  sd_neighbors_free(&pairs);
-  sd_mobility_free(&omega);
 }
 
 void Scene::out_of_memory()

@@ -4,6 +4,7 @@
 #ifndef SD_SHELLS_H
 #define SD_SHELLS_H
 
+#include "callback.h"
 #include "keywords.h"
 #include "pointers.h"
 
@@ -25,9 +26,6 @@ class Shells : protected LAMMPS_NS::Pointers {
   } settings;
 
   explicit Shells(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
-  ~Shells() { sd_multiblob_shape_free(&lone); }
-  Shells(const Shells &) = delete;
-  Shells &operator=(const Shells &) = delete;
 
   /* The settings are new. */
   void make();
@@ -58,7 +56,7 @@ class Shells : protected LAMMPS_NS::Pointers {
  private:
   const Voice voice;
   sd_multiblob blob = {};
-  sd_multiblob_shape lone = {};
+  Owned<sd_multiblob_shape, sd_multiblob_shape_free> lone;
   std::vector<double> turn;
   std::vector<sd_multiblob_mask> mask;
   std::vector<double> x, b, w;

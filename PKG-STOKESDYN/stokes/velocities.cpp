@@ -21,12 +21,6 @@ Velocities::Velocities(LAMMPS *lmp, const Parts &parts) :
 {
 }
 
-Velocities::~Velocities()
-{
-  sd_tie_free(&tie);
-  leave_wall();
-}
-
 double Velocities::memory_usage() const
 {
   double numbers = 24.0 * spheres.eta.capacity();
@@ -275,12 +269,6 @@ sd_bodies Velocities::assemble(int width)
 
 // --- near a wall ---------------------------------------------------------------------------------
 
-void Velocities::leave_wall()
-{
-  for (sd_body_shape &shape : standing) sd_body_shape_free(&shape);
-  standing.clear();
-}
-
 /* Spheres of a body, in the order of its shape */
 std::vector<int> Velocities::spheres_of(const sd_body &body) const
 {
@@ -310,26 +298,25 @@ sd_status Velocities::stand_at_wall(sd_body &body, double bodies)
   }
   const double height = sd_wall_height(&wall, centre);
   if (body.shape && !sd_body_wall_pays(body.shape->m, (int) bodies, height, extent)) return SD_OK;
-  sd_body_shape shape;
+  standing.emplace_back();
+  sd_body_shape *shape = &standing.back();
   const sd_multiblob_spheres shells = {x.data(), a.data(), turn.data(), mask.data(),
                                        (int) rows.size()};
   const sd_status status = scene.shells
-      ? sd_multiblob_wall_shape(&scene.shells->model(), &wall, &shells, centre, &shape)
-      : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, &shape);
+      ? sd_multiblob_wall_shape(&scene.shells->model(), &wall, &shells, centre, shape)
+      : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, shape);
   if (status == SD_ESINGULAR && body.shape) return SD_OK;    // those of open space will do
   if (status != SD_OK) return status;
-  standing.push_back(shape);
-  body = {&standing.back(), {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1.0, body.eta, body.row};
+  body = {shape, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1.0, body.eta, body.row};
   return SD_OK;
 }
 
 /* The bodies have been arranged. */
 void Velocities::stand_at_wall()
 {
-  leave_wall();
+  standing.clear();
   if (!scene.settings.wall.sign || !scene.settings.rotation) return;
   const double bodies = sum_of_all(world, (double) shaped.size());
-  standing.reserve(shaped.size());
   for (sd_body &body : shaped) {
     const sd_status status = stand_at_wall(body, bodies);
     if (status != SD_OK)

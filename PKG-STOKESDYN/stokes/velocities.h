@@ -20,6 +20,7 @@
 #include "sd_random.h"
 #include "sd_tie.h"
 
+#include <deque>
 #include <functional>
 #include <vector>
 
@@ -51,9 +52,6 @@ class Velocities : protected LAMMPS_NS::Pointers {
     Lubrication &lubrication;
   };
   Velocities(LAMMPS_NS::LAMMPS *lmp, const Parts &parts);
-  ~Velocities();
-  Velocities(const Velocities &) = delete;
-  Velocities &operator=(const Velocities &) = delete;
 
   /* Who is held, or spun: what is known of atom i, and that of its velocity and angular velocity [6].
    * Empty: nobody is. A clump is held when all its spheres are. */
@@ -126,7 +124,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Ambient &ambient;
   RigidClumps &rigid;
   Lubrication &lubrication;
-  sd_tie tie = {};
+  Owned<sd_tie, sd_tie_free> tie;
 
   /* of the spheres of one clump after the other, in the order of its shape: eta (0: takes no part),
    * radius, place, force and torque or velocity and angular velocity, fluid velocity and its
@@ -164,8 +162,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   void place_shells();
   void slip_at_points(const double *slip);
   /* near a wall: blocks of the bodies where they stand */
-  std::vector<sd_body_shape> standing;
-  void leave_wall();
+  std::deque<Owned<sd_body_shape, sd_body_shape_free>> standing;
   void stand_at_wall();
   sd_status stand_at_wall(sd_body &body, double bodies);
   std::vector<int> spheres_of(const sd_body &body) const;

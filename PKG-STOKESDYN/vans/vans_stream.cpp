@@ -10,7 +10,7 @@ using namespace StokesDyn;
 
 VansStream::VansStream(const VansSettings &settings) :
     set(settings), mesh(set.mesh), wet(set.mesh), fluid(set.fluid), U(set.profile),
-    wet_edge(set.edge), solver(sd_vans_solver_create(&wet))
+    wet_edge(set.edge), solver(sd_vans_solver_create(&wet), sd_vans_solver_free)
 {
   const int N = ncell();
   if (!solver) set.voice.fail("out of memory for " + std::to_string(N) + " slices");
@@ -33,11 +33,6 @@ VansStream::VansStream(const VansSettings &settings) :
   scratch.resize(2 * (size_t) N + 2);
   set_classes(set.class_radii);
   take_given(set.given);
-}
-
-VansStream::~VansStream()
-{
-  sd_vans_solver_free(solver);
 }
 
 void VansStream::set_classes(const std::vector<double> &radii)
@@ -280,7 +275,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0, 0};
   const sd_status status =
-      sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, &books);
+      sd_vans_solve(solver.get(), &fluid, &column, steps, dt, &flow, &books);
   if (status != SD_OK)
     set.voice.fail("the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
                    " steps: " + sd_status_string(status) +

@@ -9,6 +9,7 @@
 #include "vans_settings.h"
 
 #include <deque>
+#include <memory>
 #include <vector>
 
 namespace StokesDyn {
@@ -16,9 +17,6 @@ namespace StokesDyn {
 class VansStream {
  public:
   explicit VansStream(const VansSettings &settings);
-  ~VansStream();
-  VansStream(const VansStream &) = delete;
-  VansStream &operator=(const VansStream &) = delete;
 
   const VansSettings &set;
   const sd_vans_mesh &mesh;
@@ -117,7 +115,7 @@ class VansStream {
   std::vector<double> wet_edge, wet_before;
   /* of water per area, which stays when the surface moves; < 0: not known yet */
   double volume = -1.0;
-  sd_vans_solver *solver;
+  const std::unique_ptr<sd_vans_solver, void (*)(sd_vans_solver *)> solver;
   std::vector<std::vector<double>> given;
   /* [N] momentum that is to go back to the water */
   std::vector<double> outstanding;
