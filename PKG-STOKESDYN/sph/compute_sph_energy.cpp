@@ -218,13 +218,12 @@ ComputeSphEnergy::ComputeSphEnergy(LAMMPS *lmp, int narg, char **arg) :
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
   size_vector = FixSphEnergy::VALUES;
-  vector = new double[FixSphEnergy::VALUES]();
+  vector = of_moment;
 }
 
 ComputeSphEnergy::~ComputeSphEnergy()
 {
   if (modify->nfix && Compat::fix(modify, memory_id)) modify->delete_fix(memory_id);
-  delete[] vector;
 }
 
 void ComputeSphEnergy::init()

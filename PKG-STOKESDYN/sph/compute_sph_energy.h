@@ -79,6 +79,7 @@ class ComputeSphEnergy : public LAMMPS_NS::Compute {
 
  private:
   const Voice voice;
+  double of_moment[FixSphEnergy::VALUES] = {0.0};
   /* the fix that follows the run */
   const std::string memory_id;
 };

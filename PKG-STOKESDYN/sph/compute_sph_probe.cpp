@@ -31,12 +31,8 @@ ComputeSphProbe::ComputeSphProbe(LAMMPS *lmp, int narg, char **arg) :
   vector_flag = 1;
   size_vector = (int) probes.size();
   extvector = 0;
-  vector = new double[probes.size()]();
-}
-
-ComputeSphProbe::~ComputeSphProbe()
-{
-  delete[] vector;
+  values.assign(probes.size(), 0.0);
+  vector = values.data();
 }
 
 void ComputeSphProbe::init()

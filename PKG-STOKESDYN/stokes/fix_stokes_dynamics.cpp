@@ -24,13 +24,8 @@ FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extscalar = 1;
   extvector = -1;
-  extlist = new int[size_vector]{1, 1, 1, 0, 0, 0, 0, 0, 0};
+  extlist = extensive;
   keep({&rows}, &rows, false);
-}
-
-FixStokesDynamics::~FixStokesDynamics()
-{
-  delete[] extlist;
 }
 
 int FixStokesDynamics::setmask()

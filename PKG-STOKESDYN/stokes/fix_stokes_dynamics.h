@@ -14,7 +14,6 @@ class FixStokesDynamics : public RowsFix {
   static constexpr const char *STYLE = "stokes_dynamics";
 
   FixStokesDynamics(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixStokesDynamics() override;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -30,6 +29,8 @@ class FixStokesDynamics : public RowsFix {
   AtomArray rows;
   /* others than those of the pair style have zeros (Epochs::selection) */
   Since cleared;
+  /* of the global vector: the total force is a sum over the spheres */
+  int extensive[9] = {1, 1, 1, 0, 0, 0, 0, 0, 0};
   /* F and dissipation of the group, this rank */
   double total[4];
 

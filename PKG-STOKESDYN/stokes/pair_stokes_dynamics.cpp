@@ -33,16 +33,14 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp), sor
   one_coeff = 1;
   restartinfo = 1;
   no_virial_fdotr_compute = 1;    // drag is between sphere and fluid: its x.F depends on the origin
-  nextra = 4;    // compute pair: iterations, residual, unconverged solves, dissipation
-  pvector = new double[nextra];
-  for (int k = 0; k < nextra; k++) pvector[k] = 0.0;
+  nextra = 4;
+  pvector = reported;
 }
 
 PairStokesDynamics::~PairStokesDynamics()
 {
   Fix *memory_fix = Compat::fix(modify, State::ID);
   if (memory_fix && strcmp(memory_fix->style, State::STYLE) == 0) modify->delete_fix(State::ID);
-  delete[] pvector;
   if (allocated) {
     memory->destroy(setflag);
     memory->destroy(cutsq);
