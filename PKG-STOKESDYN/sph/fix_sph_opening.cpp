@@ -107,8 +107,8 @@ FixSphInlet::FixSphInlet(LAMMPS *lmp, int narg, char **arg) :
 void FixSphInlet::init()
 {
   FixSphOpening::init();
-  velocity.init(lmp, voice.of("keyword velocity").command);
-  gravity.init(voice.of("keyword gravity"));
+  velocity.init(lmp);
+  gravity.init(lmp);
 }
 
 void FixSphInlet::find_speeds()
@@ -245,7 +245,7 @@ FixSphOutlet::FixSphOutlet(LAMMPS *lmp, int narg, char **arg) : FixSphOpening(lm
 void FixSphOutlet::init()
 {
   FixSphOpening::init();
-  pressure.init(lmp, voice.of("keyword pressure").command);
+  pressure.init(lmp);
 }
 
 void FixSphOutlet::setup_pre_exchange()

@@ -41,7 +41,7 @@ FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) :
 void FixWallAdamiSph::init()
 {
   Sph::require_pair(voice);
-  gravity.init(voice.of("keyword gravity"));
+  gravity.init(lmp);
 }
 
 const double *FixWallAdamiSph::body_force(int i, double tau)

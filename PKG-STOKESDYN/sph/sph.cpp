@@ -95,15 +95,12 @@ void SphOutputFix::output(const double *numbers)
 
 void BodyForce::parse(Keywords &in)
 {
-  for (Field &part : parts) part = Field::parse(in);
+  for (Field &part : parts) part = Field::parse(in, Field::ONE_FOR_ALL);
 }
 
-void BodyForce::init(const Voice &of)
+void BodyForce::init(LAMMPS *lmp)
 {
-  for (Field &part : parts) {
-    part.init(of.lmp, of.command);
-    if (part.is_atom_style()) of.fail("the variable must be of equal style: one for all");
-  }
+  for (Field &part : parts) part.init(lmp);
 }
 
 void BodyForce::find(LAMMPS *lmp)

@@ -83,8 +83,7 @@ class SphOutputFix : public SphFix {
 class BodyForce {
  public:
   void parse(Keywords &in);
-  /* of: the keyword that gives it */
-  void init(const Voice &of);
+  void init(LAMMPS_NS::LAMMPS *lmp);
   /* Of this step; all ranks. */
   void find(LAMMPS_NS::LAMMPS *lmp);
   const double *now() const { return g; }

@@ -36,10 +36,9 @@ void Ambient::init()
   if (igroup < 0)
     voice.fail("keyword group: group '" + settings.group + "' does not exist");
   groupbit = group->bitmask[igroup];
-  const std::string keyword = voice.command + ": keyword ";
-  settings.visc.init(lmp, keyword + "visc");
-  for (auto &field : settings.velocity) field.init(lmp, keyword + "fluid_velocity");
-  for (auto &field : settings.vorticity) field.init(lmp, keyword + "fluid_vorticity");
+  settings.visc.init(lmp);
+  for (Field &field : settings.velocity) field.init(lmp);
+  for (Field &field : settings.vorticity) field.init(lmp);
 }
 
 bool Ambient::numbers_only() const

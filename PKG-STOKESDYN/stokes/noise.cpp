@@ -20,7 +20,7 @@ namespace StokesDyn {
 
 void Noise::read_temperature(Keywords &in)
 {
-  temperature = Field::parse(in);
+  temperature = Field::parse(in, Field::ONE_FOR_ALL);
   in.check(temperature.number() >= 0.0, "must be >= 0");
   seed = (uint32_t) in.integer(1);
 }

@@ -80,11 +80,8 @@ void Noise::refuse(const Hydrodynamics &hydro, const Ways &ways) const
 
 void Noise::init(Hydrodynamics &hydro, const Ways &ways)
 {
-  const Voice keyword = voice.of("keyword temperature");
   check_room_of_blas(voice);
-  temperature.init(lmp, keyword.command);
-  if (temperature.is_atom_style())
-    keyword.fail("all atoms have one temperature: use an equal-style variable");
+  temperature.init(lmp);
   refuse(hydro, ways);
   midpoint = ways.midpoint;
   hydro.scene.settings.positive = !midpoint;

@@ -135,11 +135,7 @@ void FixHydroVans::find_names()
   if (average_group < 0)
     set.voice.fail("keyword average: group '" + set.average + "' does not exist");
   average_bit = group->bitmask[average_group];
-  for (const Given &each : givens()) {
-    const Voice what = set.voice.of(std::string("keyword ") + each.keyword);
-    each.field.init(lmp, what.command);
-    if (each.field.is_atom_style()) what.fail("an equal-style variable is needed");
-  }
+  for (const Given &each : givens()) each.field.init(lmp);
   if (set.overlap_once && !atom->molecule)
     set.voice.fail("keyword overlap: molecule IDs are needed to know the clumps");
   find_classes();

@@ -135,7 +135,7 @@ int FixHydroVans::modify_param(int narg, char **arg)
     last_step = -1;
   } else if (key == "gravity") {
     set.take_gravity(in);
-    for (Field &component : set.gravity) component.init(lmp, what.command);
+    for (Field &component : set.gravity) component.init(lmp);
     take_gravity();
     last_step = -1;
   } else if (key == "steady") {
