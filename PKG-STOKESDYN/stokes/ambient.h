@@ -42,10 +42,10 @@ class Ambient : protected LAMMPS_NS::Pointers {
     /* empty: the whole box */
     std::string region;
     std::string group = "all";
-  } settings;
+  } &settings;
 
-  Ambient(const Voice &voice, Epochs &epochs) :
-      Pointers(voice.lmp), voice(voice), epochs(epochs)
+  Ambient(const Voice &voice, Epochs &epochs, Settings &settings) :
+      Pointers(voice.lmp), settings(settings), voice(voice), epochs(epochs)
   {
   }
 

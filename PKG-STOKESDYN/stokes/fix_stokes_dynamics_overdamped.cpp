@@ -299,21 +299,14 @@ void FixStokesDynamicsOverdamped::at_image(const double *row, const double *plac
   for (int d = 0; d < 3; d++) old[d] += jump[d];
 }
 
-/* V [6] of the free sphere i in the step before, if there was one. place: where it is now. */
-bool FixStokesDynamicsOverdamped::old_velocity(int i, const double *place, double *V) const
-{
-  if (before.has(i)) at_image(before[i], place, V);
-  return before.has(i);
-}
-
 void FixStokesDynamicsOverdamped::move_free(int i)
 {
   if (is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
   const double scale = noise.on() ? noise.scale(dt) : 0.0;
   double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], step[3];
-  const double c = weight(old_velocity(i, x, old));
-  sd_mean_velocity(3, V, old, c, mean);
+  if (before.has(i)) at_image(before[i], x, old);
+  sd_mean_velocity(3, V, old, weight(before.has(i)), mean);
   for (int d = 0; d < 3; d++) {
     step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
     x[d] += step[d];

@@ -106,7 +106,6 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   sd_body_known given_velocity(int i, double *V) const;
   double weight(bool has) const;
   void advance();
-  bool old_velocity(int i, const double *place, double *V) const;
   void at_image(const double *row, const double *place, double *old) const;
   void moves(int i, double distance);
   void move_free(int i);

@@ -66,7 +66,8 @@ double FixStokesDynamicsOverdamped::error_figure() const
   const Velocities &moving = hydro.motion();
   double most = 0.0, old[6];
   for (int i : moving.lone) {
-    if (!old_velocity(i, atom->x[i], old)) continue;
+    if (!before.has(i)) continue;
+    at_image(before[i], atom->x[i], old);
     for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
     most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
   }

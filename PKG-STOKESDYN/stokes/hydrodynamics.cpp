@@ -24,8 +24,10 @@ using State = FixStokesDynamicsState;
 static const double LOOSE = 1e-3;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
-    Pointers(lmp), voice(lmp, StokesSettings::COMMAND), ambient(voice, epochs),
-    scene(voice, epochs), shells(voice), rigid(voice, scene.whole, epochs), lubrication(voice),
+    Pointers(lmp), voice(lmp, StokesSettings::COMMAND), ambient(voice, epochs, settings.ambient),
+    scene(voice, epochs, settings.scene), shells(voice, settings.shells),
+    rigid(voice, scene.whole, epochs, settings.rigid),
+    lubrication(voice, settings.lubrication, settings.shells),
     mobile(lmp, {scene, ambient, rigid, lubrication}), preconditioner(lmp, scene), guard(voice)
 {
 }
@@ -40,17 +42,8 @@ Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
 void Hydrodynamics::set(const std::vector<std::string> &words)
 {
   settings = StokesSettings(lmp, words);
-  ambient.settings = settings.ambient;
-  scene.settings = settings.scene;
-  scene.settings.whole =
-      settings.rigid.on || (settings.scene.clumps_only && std::isinf(settings.scene.cutoff));
-  if (settings.lubrication.on) scene.settings.films = 2.0 + settings.lubrication.range;
-  rigid.settings = settings.rigid;
-  lubrication.settings = settings.lubrication;
-  shells.settings = settings.shells;
   shells.make();
-  scene.shells = shells.settings.on() ? &shells : nullptr;
-  lubrication.shells = shells.settings.on() ? &shells.settings : nullptr;
+  scene.shells = settings.shells.on() ? &shells : nullptr;
   scene.orient = [this] {
     mobile.orient();
   };

@@ -26,7 +26,7 @@ void Lubrication::check(sd_status status) const
 void Lubrication::provide(double largest, double smallest)
 {
   const double ratio = largest / smallest;
-  if (shells && ratio > SD_FILM_LARGEST_RATIO)
+  if (shells.on() && ratio > SD_FILM_LARGEST_RATIO)
     voice.fail("keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
                ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
                "spheres, or lubrication no");
@@ -41,7 +41,7 @@ void Lubrication::provide(double largest, double smallest)
     functions.reset(wider);
     largest_ratio = ratio;
   }
-  if (shells) check(sd_films_create(shells->points, shells->one_body, functions.get(), &films));
+  if (shells.on()) check(sd_films_create(shells.points, shells.one_body, functions.get(), &films));
 }
 
 void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
@@ -51,7 +51,7 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
   where.drift(u.data(), 6, 1.0);
   sd_lubrication_scene scene = {};
   scene.functions = functions.get();
-  scene.films = shells ? &films : nullptr;
+  scene.films = shells.on() ? &films : nullptr;
   scene.gap = settings.gap;
   scene.range = settings.range;
   scene.n = where.size();
@@ -71,7 +71,7 @@ void Lubrication::add_wall(const Scene &where)
 {
   const sd_wall &wall = where.settings.wall;
   const sd_spheres s = where.local();
-  const sd_multiblob *model = shells ? &where.shells->model() : nullptr;
+  const sd_multiblob *model = shells.on() ? &where.shells->model() : nullptr;
   std::vector<double> r(model ? 3 * model->n : 0), work(model ? sd_multiblob_wall_work(model) : 0);
   double normal[3] = {0.0};
   normal[wall.axis] = wall.sign;
@@ -83,7 +83,7 @@ void Lubrication::add_wall(const Scene &where)
         sd_multiply3(where.shells->turns() + 9 * k, model->r + 3 * p, &r[3 * p]);
         for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];
       }
-      check(sd_multiblob_wall_film(model, &wall, x, s.a[k], r.data(), shells->one_body, settings.gap,
+      check(sd_multiblob_wall_film(model, &wall, x, s.a[k], r.data(), shells.one_body, settings.gap,
                                    eta, flow, B, E, work.data()));
     } else {
       const sd_wall_film film = sd_wall_film_at(s.a[k], sd_wall_height(&wall, x), settings.gap);

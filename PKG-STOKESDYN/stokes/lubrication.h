@@ -21,12 +21,15 @@ class Lubrication : protected LAMMPS_NS::Pointers {
     bool on = false;
     /* over the mean radius of a pair: the floor of gaps, and where it ends */
     double gap = 1e-3, range = 2.0;
-  } settings;
+  };
+  const Settings &settings;
+  /* where spheres are shells of points, films are of what these do not know */
+  const Shells::Settings &shells;
 
-  /* spheres are shells of points: films are of what these do not know; nullptr: they are points */
-  const Shells::Settings *shells = nullptr;
-
-  explicit Lubrication(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
+  Lubrication(const Voice &voice, const Settings &settings, const Shells::Settings &shells) :
+      Pointers(voice.lmp), settings(settings), shells(shells), voice(voice)
+  {
+  }
 
   /* The rows of the scene where they stand now, with the films' surroundings, in the fluid of this
    * step, on all ranks. noisy: random forces will be drawn. Error: radii that are too different. */

@@ -88,15 +88,13 @@ void Preconditioner::refresh_places()
 /* x: where the spheres stood, in the order of the preconditioner's rows */
 void Preconditioner::find_positions()
 {
-  const auto row = [this](int i, double *out) {
-    std::copy_n((*places)[i], 3, out);
-  };
-  rows = scene.rows(3, row);
+  std::vector<double> rows =
+      scene.rows(3, [this](int i, double *out) { std::copy_n((*places)[i], 3, out); });
   x.resize(3 * (size_t) n + 3);
   if (cloud)
     scene.to_cloud(rows.data(), x.data(), 3);
   else
-    x = rows;
+    x.swap(rows);
 }
 
 /* The spheres of each block. */
@@ -200,8 +198,7 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
 
 double Preconditioner::memory_usage() const
 {
-  return sizeof(double) *
-      (double) (rows.capacity() + x.capacity() + in.capacity() + out.capacity());
+  return sizeof(double) * (double) (x.capacity() + in.capacity() + out.capacity());
 }
 
 }    // namespace StokesDyn

@@ -51,7 +51,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   AtomRows *places = nullptr;
   std::vector<double> *box = nullptr;
 
-  std::vector<double> rows, x, in, out;
+  std::vector<double> x, in, out;
   std::vector<long> first;
   std::vector<int> member;
 

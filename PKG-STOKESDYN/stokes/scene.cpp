@@ -13,8 +13,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Scene::Scene(const Voice &voice, Epochs &epochs) :
-    Pointers(voice.lmp), whole(voice, epochs), voice(voice), epochs(epochs), halo(world)
+Scene::Scene(const Voice &voice, Epochs &epochs, Settings &settings) :
+    Pointers(voice.lmp), settings(settings), whole(voice, epochs), voice(voice), epochs(epochs),
+    halo(world)
 {
 }
 

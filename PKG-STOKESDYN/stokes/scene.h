@@ -69,9 +69,9 @@ class Scene : protected LAMMPS_NS::Pointers {
     /* periodic sums are split into two positive parts, for noise */
     bool positive = false;
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
-  } settings;
+  } &settings;
 
-  Scene(const Voice &voice, Epochs &epochs);
+  Scene(const Voice &voice, Epochs &epochs, Settings &settings);
 
   /* Which spheres of which ranks the engine sees, since the last update(). */
   sd_view view() const { return engine->view; }

@@ -23,9 +23,13 @@ class Shells : protected LAMMPS_NS::Pointers {
     int points = 1;
     bool one_body = true;
     bool on() const { return points > 1; }
-  } settings;
+  };
+  const Settings &settings;
 
-  explicit Shells(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
+  Shells(const Voice &voice, const Settings &settings) :
+      Pointers(voice.lmp), settings(settings), voice(voice)
+  {
+  }
 
   /* The settings are new. */
   void make();
