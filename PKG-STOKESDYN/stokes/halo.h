@@ -62,8 +62,8 @@ class Halo {
   std::vector<int> sphere, steps;
   mutable std::vector<double> outbox;
 
-  struct Sorted;
-  bool send_to(int p, const double *lo, const double *hi, const Lattice &lattice, const Sorted &s);
+  bool send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
+               const double into[6]);
 };
 
 }    // namespace StokesDyn
