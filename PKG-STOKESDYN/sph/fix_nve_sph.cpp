@@ -5,7 +5,6 @@
 #include "sph.h"
 
 #include "atom.h"
-#include "force.h"
 #include "update.h"
 
 #include <cstring>
@@ -25,18 +24,6 @@ int FixNveSph::setmask()
 {
   return FixConst::PRE_EXCHANGE | FixConst::INITIAL_INTEGRATE | FixConst::PRE_FORCE |
       FixConst::FINAL_INTEGRATE | FixConst::POST_RUN;
-}
-
-void FixNveSph::init()
-{
-  SphFix::init();
-  reset_dt();
-}
-
-void FixNveSph::reset_dt()
-{
-  dtv = update->dt;
-  dtf = 0.5 * update->dt * force->ftm2v;
 }
 
 /* The estimate that the last run left, if nobody has changed a velocity since: that of the unbroken
@@ -62,14 +49,14 @@ void FixNveSph::setup_pre_exchange()
 void FixNveSph::initial_integrate(int /*vflag*/)
 {
   double **x = atom->x, **v = atom->v, **f = atom->f, **vest = atom->vest;
-  const double *du = pair->shift();
+  const double *du = pair->shift(), dt = update->dt;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double kick = pair->is_held(i) ? 0.0 : dtf / Sph::mass(lmp, i);
+    const double kick = pair->is_held(i) ? 0.0 : 0.5 * dt / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) {
       vest[i][d] = kick * f[i][d];
       v[i][d] += vest[i][d];
-      x[i][d] += dtv * (du ? v[i][d] + du[3 * (size_t) i + d] : v[i][d]);
+      x[i][d] += dt * (du ? v[i][d] + du[3 * (size_t) i + d] : v[i][d]);
     }
   }
   relative = true;
@@ -90,7 +77,7 @@ void FixNveSph::final_integrate()
   double **v = atom->v, **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double kick = pair->is_held(i) ? 0.0 : dtf / Sph::mass(lmp, i);
+    const double kick = pair->is_held(i) ? 0.0 : 0.5 * update->dt / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) v[i][d] += kick * f[i][d];
   }
 }

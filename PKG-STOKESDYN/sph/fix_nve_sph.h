@@ -15,20 +15,17 @@ class FixNveSph : public SphFix {
 
   FixNveSph(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;
-  void init() override;
   void setup_pre_exchange() override;
   void setup_pre_force(int vflag) override { pre_force(vflag); }
   void initial_integrate(int) override;
   void pre_force(int) override;
   void final_integrate() override;
   void post_run() override;
-  void reset_dt() override;
 
   /* Has this run gone on from the end of the last one, with nothing changed? */
   bool resumes() const { return goes_on; }
 
  private:
-  double dtv = 0.0, dtf = 0.0;
   bool goes_on = false;
   /* of the atoms and their ghosts: vest is the difference to v, not yet the estimate itself */
   bool relative = false;
