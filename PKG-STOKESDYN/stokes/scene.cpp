@@ -271,29 +271,12 @@ void Scene::gather()
   }
 }
 
-/* Numbers that each rank has, and where they begin when they stand one rank after the other */
-void Scene::shares(int width, std::vector<int> &counts, std::vector<int> &displs) const
-{
-  int n = 0;
-  for (int k : spheres_of_rank) {
-    counts.push_back(mpi_count((double) width * k));
-    displs.push_back(mpi_count((double) width * n));
-    n += k;
-  }
-}
-
 void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width)
 {
   const size_t m = width;
-  const double *from = own_rows;
-  if (comm->nprocs > 1) {
-    std::vector<int> counts, displs;
-    shares(width, counts, displs);
-    in_order_of_rank.resize(m * n_all + 1);
-    MPI_Allgatherv(const_cast<double *>(own_rows), counts[comm->me], MPI_DOUBLE,
-                   in_order_of_rank.data(), counts.data(), displs.data(), MPI_DOUBLE, world);
-    from = in_order_of_rank.data();
-  }
+  std::vector<double> all;
+  if (comm->nprocs > 1) all = from_all(world, std::vector<double>(own_rows, own_rows + m * size()));
+  const double *from = comm->nprocs > 1 ? all.data() : own_rows;
   for (int j = 0; j < n_all; j++) std::copy_n(from + m * j, m, cloud_rows + m * place_of[j]);
 }
 
@@ -304,8 +287,8 @@ void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width)
   double *to = comm->nprocs > 1 ? in_order_of_rank.data() : own_rows;
   for (int j = 0; j < n_all; j++) std::copy_n(cloud_rows + m * place_of[j], m, to + m * j);
   if (comm->nprocs == 1) return;
-  std::vector<int> counts, displs;
-  shares(width, counts, displs);
+  std::vector<int> counts;
+  for (int spheres : spheres_of_rank) counts.push_back(mpi_count((double) width * spheres));
   MPI_Reduce_scatter(in_order_of_rank.data(), own_rows, counts.data(), MPI_DOUBLE, MPI_SUM, world);
 }
 

@@ -242,7 +242,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   void surround(double reach, const std::string &keyword);
   void find_pairs();
   void gather();
-  void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;
   void place(int n_all_or_copies);
   [[noreturn]] void out_of_memory();
 };
