@@ -210,8 +210,8 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   find_causes(hydro, last.causes);
   last.atoms = atom->natoms;
   const bool rotates = hydro.rotation(), flat = domain->dimension == 2;
-  const Velocities::Take take = [this, &hydro, rotates, flat](int i, const double *v,
-                                                              const double *F) {
+  const std::vector<double> pushed = loads(hydro);
+  const Velocities::Take take = [&, rotates, flat](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i);
     for (int d = 0; d < 3; d++) {
@@ -223,20 +223,25 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       row[6 + d] = F[3 + d];
     }
     std::copy_n(v, 3, motion.give(i));
-    if (rotates) spin.look(i, v + 3, F + 3);
+    if (rotates) spin.look(i, v + 3, F + 3, &pushed[6 * (size_t) i + 3]);
   };
-  const std::vector<double> loads = push(hydro);
   if (scheme == MIDPOINT)
-    begin_midpoint(hydro, take);
+    begin_midpoint(hydro, take, pushed);
   else
-    hydro.velocities(take, givens());
-  take_back(hydro, loads);
+    hydro.velocities(take, givens(), pushed);
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
   last.step = update->ntimestep;
 }
 
-/* For a solve: who is held */
+/* For a solve: force and torque on atom i, but for noise, and who is held */
+void FixStokesDynamicsOverdamped::load_on(int i, double *FT) const
+{
+  std::fill_n(FT, 6, 0.0);
+  std::copy_n(atom->f[i], 3, FT);
+  if (atom->torque_flag) std::copy_n(atom->torque[i], 3, FT + 3);
+}
+
 Velocities::Held FixStokesDynamicsOverdamped::givens() const
 {
   if (!held_bit && !spin.on()) return Velocities::Held();

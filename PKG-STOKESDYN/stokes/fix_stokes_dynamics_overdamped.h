@@ -104,6 +104,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool is_held(int i) const { return atom->mask[i] & held_bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
+  void load_on(int i, double *FT) const;
   double weight(bool has) const;
   void advance();
   void at_image(const double *row, const double *place, double *old) const;
@@ -112,9 +113,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
   Velocities::Held givens() const;
-  std::vector<double> push(const Hydrodynamics &);
-  void take_back(const Hydrodynamics &, const std::vector<double> &loads);
-  void begin_midpoint(Hydrodynamics &, const Velocities::Take &take);
+  std::vector<double> loads(const Hydrodynamics &) const;
+  void begin_midpoint(Hydrodynamics &, const Velocities::Take &take, const std::vector<double> &loads);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   using Clumps = std::vector<Velocities::Clump>;
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; its

@@ -79,6 +79,7 @@ void Hydrodynamics::begin()
   if (neighbor->ago == 0) epochs.lists.advance();
   if (neighbor->ago == 0 || began != update->firststep) epochs.groups.advance();
   began = update->firststep;
+  mobile.loads.clear();
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
                                                            : Ambient::NO_DERIVATIVES;

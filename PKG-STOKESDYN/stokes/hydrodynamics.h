@@ -58,11 +58,11 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void solve();
   void drag();
 
-  /* Of all that takes part, from what is in f and torque, in any order; and forces on those that
-   * are held. A step is begin() and this. Where all interact, the forces go to rows of the memory
-   * too: the next guess. draw: random forces too, where all interact */
+  /* Of all that takes part, from loads [6 nlocal], the force and torque on each atom, in any order; and
+   * forces on those that are held. A step is begin() and this. Where all interact, the forces go to
+   * rows of the memory too: the next guess. draw: random forces too, where all interact */
   void velocities(const Velocities::Take &take, const Velocities::Held &held,
-                  const Velocities::Draw *draw = nullptr);
+                  const std::vector<double> &loads, const Velocities::Draw *draw = nullptr);
   /* Those of rigid clumps, and who is free, since then */
   const Velocities &motion() const { return mobile; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from

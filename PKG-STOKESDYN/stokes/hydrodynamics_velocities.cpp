@@ -101,13 +101,14 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Veloc
 }
 
 void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::Held &held,
-                               const Velocities::Draw *draw)
+                               const std::vector<double> &loads, const Velocities::Draw *draw)
 {
   State::Global &global = memory->global;
   sd_bodies_report report = {};
   sd_status status = SD_OK;
   solvers = ambient.who();
   mobile.held = held;
+  mobile.loads = loads;
   mobile.find();
   if (settings.rigid.apart()) {
     mobile.apart(width(), take);

@@ -62,19 +62,19 @@ bool Spin::turns(int i, double W[3]) const
   return true;
 }
 
-void Spin::push(int i) const
+void Spin::push(int i, double *torque) const
 {
   if (!(atom->mask[i] & bit)) return;
-  for (int d = 0; d < 3; d++) atom->torque[i][d] += sign(i) * most * axis[d];
+  for (int d = 0; d < 3; d++) torque[d] += sign(i) * most * axis[d];
 }
 
 /* A sphere that slips and has caught up with the field is held again. */
-void Spin::look(int i, const double *W, const double *by_fluid)
+void Spin::look(int i, const double *W, const double *by_fluid, const double *torque)
 {
   if (!(atom->mask[i] & bit) || most == 0.0) return;
   const double now = sign(i);
   double next = now, needed[3];
-  for (int d = 0; d < 3; d++) needed[d] = -by_fluid[d] - atom->torque[i][d];
+  for (int d = 0; d < 3; d++) needed[d] = -by_fluid[d] - torque[d];
   if (now == 0.0 && sd_dot(needed, needed) > most * most)
     next = sd_dot(needed, axis) < 0.0 ? -1.0 : 1.0;
   else if (now * (sd_dot(W, axis) - sd_dot(omega, axis)) >= 0.0)

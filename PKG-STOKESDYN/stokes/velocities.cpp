@@ -41,8 +41,10 @@ void Velocities::gather(bool moving)
   const std::vector<double> rows = scene.whole.gather((int) columns, [&](int i, double *row) {
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     row[RADIUS] = atom->radius[i];
-    std::copy_n(moving ? atom->v[i] : atom->f[i], 3, row + MOTION);
-    if (turns) std::copy_n(moving ? atom->omega[i] : atom->torque[i], 3, row + TURNING);
+    for (size_t d = 0; d < 3; d++) {
+      row[MOTION + d] = moving ? atom->v[i][d] : load(i, d);
+      if (turns) row[TURNING + d] = moving ? atom->omega[i][d] : load(i, 3 + d);
+    }
     if (!gradients) return;
     std::copy_n(ambient.velocity(i), 3, row + FLOW);
     std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
@@ -155,7 +157,7 @@ void Velocities::place(int width)
   const size_t m = width;
   const std::vector<double> rows = scene.rows(3 * width, [&](int i, double *out) {
     for (size_t d = 0; d < m; d++) {
-      out[d] = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
+      out[d] = load(i, d);
       out[2 * m + d] = ambient.resistance(i, d);
     }
     ambient.fluid(i, out + m);

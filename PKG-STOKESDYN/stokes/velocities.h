@@ -57,6 +57,8 @@ class Velocities : protected LAMMPS_NS::Pointers {
    * Empty: nobody is. A clump is held when all its spheres are. */
   using Held = std::function<sd_body_known(int i, double *V)>;
   Held held;
+  /* [6 nlocal] force and torque on each atom, from which velocities follow; empty: all are 0 */
+  std::vector<double> loads;
 
   /* Errors, on all ranks: those of RigidClumps; a clump held in part; a clump that is not rigid, or
    * not all selected. moving: drag() is to follow, not velocities. */
@@ -151,6 +153,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* where nobody sees anybody */
   sd_mobility_scene alone = {};
 
+  double load(int i, size_t d) const { return loads.empty() ? 0.0 : loads[6 * (size_t) i + d]; }
   void gather(bool moving);
   void find_held();
   std::vector<double> given_velocities();

@@ -33,9 +33,9 @@ void Velocities::apart(int width, const Take &take)
     const bool known = held && held(i, given);
     ambient.fluid(i, fluid_there);
     for (int d = 0; d < width; d++) {
-      const double k = ambient.resistance(i, d), load = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
-      move[d] = known ? given[d] : fluid_there[d] + load / k;
-      by_fluid[d] = known ? k * (fluid_there[d] - given[d]) : -load;
+      const double k = ambient.resistance(i, d), f = load(i, d);
+      move[d] = known ? given[d] : fluid_there[d] + f / k;
+      by_fluid[d] = known ? k * (fluid_there[d] - given[d]) : -f;
     }
     take(i, move, by_fluid);
   }

@@ -49,8 +49,7 @@ void Velocities::place_shells()
   std::vector<double> rows = scene.rows(BEND + (int) bends, [&](int i, double *out) {
     std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
     if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
-    std::copy_n(atom->f[i], 3, out + FORCE);
-    std::copy_n(atom->torque[i], 3, out + FORCE + 3);
+    for (size_t d = 0; d < 6; d++) out[FORCE + d] = load(i, d);
     if (curvatures) std::copy_n(curvatures + bends * (size_t) i, bends, out + BEND);
   });
   scene.drift(rows.data(), BEND + (int) bends, 1.0);
