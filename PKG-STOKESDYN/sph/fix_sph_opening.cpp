@@ -111,14 +111,10 @@ void FixSphInlet::init()
   gravity.init(lmp);
 }
 
-void FixSphInlet::find_speeds()
+void FixSphInlet::move_layer()
 {
   speeds.resize(atom->nlocal + 1);
   velocity.evaluate(lmp, igroup, speeds.data(), 1);
-}
-
-void FixSphInlet::move_layer()
-{
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_held(i)) continue;
     for (int d = 0; d < 3; d++) atom->v[i][d] = d == axis ? -side * speeds[i] : 0.0;
@@ -137,7 +133,6 @@ void FixSphInlet::setup_pre_exchange()
   }
   if (largest_of_all(world, mine) == 0)
     voice.fail("its layer is empty: fill it with particles of its group (create_atoms)");
-  find_speeds();
   move_layer();
 }
 
@@ -145,7 +140,6 @@ void FixSphInlet::setup_pre_exchange()
  * moves on with the speed of the layer until there is a new list of neighbours, and it can be made. */
 void FixSphInlet::end_of_step()
 {
-  find_speeds();
   move_layer();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;

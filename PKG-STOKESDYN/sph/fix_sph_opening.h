@@ -65,7 +65,6 @@ class FixSphInlet : public FixSphOpening {
     double left, parent, place[3], speed, rho, mass;
     int type, mask;
   };
-  void find_speeds();
   void move_layer();
   std::vector<Newcomer> newcomers();
   bool is_here(double *place) const;
