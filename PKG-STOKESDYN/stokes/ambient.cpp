@@ -132,15 +132,15 @@ void Ambient::read_box(bool with_gradients)
 }
 
 /* Fluid velocity [3 nlocal] at the atoms displaced by a vector, in radii of each or as it is. What is no
- * formula in x, y, z, or a number stored per atom, stays as it is. */
-std::vector<double> Ambient::velocity_at(const double by[3], bool in_radii)
+ * formula in x, y, z, or a number stored per atom, stays as it is; so does component `but`. */
+std::vector<double> Ambient::velocity_at(const double by[3], bool in_radii, int but)
 {
   std::vector<double> values = u;
   const Places kept(atom);
   for (int i = 0; i < atom->nlocal; i++)
     for (int d = 0; d < 3; d++) atom->x[i][d] += by[d] * (in_radii ? atom->radius[i] : 1.0);
   for (int d = 0; d < 3; d++)
-    if (settings.velocity[d].is_atom_style())
+    if (settings.velocity[d].is_atom_style() && d != but)
       settings.velocity[d].evaluate(lmp, igroup, values.data() + d, 3);
   if (!settings.grid) return values;
   sd_flow_frame frame;
@@ -220,25 +220,28 @@ void Ambient::find_jumps()
 }
 
 /* By central differences over one radius to either side. Values stored per atom do not follow, and
- * their gradient comes out as 0. A vorticity that is given needs none of this. */
+ * their gradient comes out as 0. A vorticity that is given needs none of this, and a rotation no
+ * component along its own direction. */
 void Ambient::read_gradient()
 {
   if (gradient.empty() && settings.has_vorticity) return;
-  std::vector<double> ahead[3], behind[3];
-  for (int q = 0; q < 3; q++) {
+  for (size_t q = 0; q < 3; q++) {
+    const int but = gradient.empty() ? (int) q : -1;
     double by[3] = {0.0, 0.0, 0.0};
     by[q] = 1.0;
-    ahead[q] = velocity_at(by, true);
+    const std::vector<double> ahead = velocity_at(by, true, but);
     by[q] = -1.0;
-    behind[q] = velocity_at(by, true);
-  }
-  for (size_t i = 0; i < (size_t) atom->nlocal; i++) {
-    double G[9];
-    for (size_t p = 0; p < 3; p++)
-      for (size_t q = 0; q < 3; q++)
-        G[3 * p + q] = sd_flow_slope(ahead[q][3 * i + p], behind[q][3 * i + p], atom->radius[i]);
-    sd_flow_rotation(G, &w[3 * i]);
-    if (!gradient.empty()) std::copy_n(G, 9, &gradient[9 * i]);
+    const std::vector<double> behind = velocity_at(by, true, but);
+    for (size_t i = 0; i < (size_t) atom->nlocal; i++) {
+      double G[9] = {0.0}, rotation[3];
+      for (size_t p = 0; p < 3; p++)
+        G[3 * p + q] = sd_flow_slope(ahead[3 * i + p], behind[3 * i + p], atom->radius[i]);
+      sd_flow_rotation(G, rotation);
+      for (size_t p = 0; p < 3; p++) {
+        w[3 * i + p] += rotation[p];
+        if (!gradient.empty()) gradient[9 * i + 3 * p + q] = G[3 * p + q];
+      }
+    }
   }
 }
 

@@ -166,7 +166,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   bool group_stands() const;
   void select();
   void read_fluid(Derivatives derivatives);
-  std::vector<double> velocity_at(const double by[3], bool in_radii);
+  std::vector<double> velocity_at(const double by[3], bool in_radii, int but = -1);
   void growth_along(const double edge[3], const double expected[3], double sums[3], double most[2]);
   void find_jumps();
   void read_box(bool gradients);
