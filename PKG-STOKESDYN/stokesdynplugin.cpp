@@ -20,7 +20,6 @@
 #include "fix_stokes_dynamics_field.h"
 #include "fix_stokes_dynamics_overdamped.h"
 #include "fix_stokes_dynamics_state.h"
-#include "fix_wall_adami_sph.h"
 #include "fix_wall_sph.h"
 #include "guard.h"
 #include "pair_sph_artvisc_tenscorr.h"

@@ -1,4 +1,5 @@
-/* fix wall/sph and fix wall/region/sph: walls that repel SPH particles. See doc/fix_wall_sph.md. */
+/* Walls: fix wall/sph and fix wall/region/sph, that repel SPH particles, and fix wall/adami/sph. See
+ * doc/fix_wall_sph.md, doc/fix_wall_adami_sph.md. */
 #ifndef SD_FIX_WALL_SPH_H
 #define SD_FIX_WALL_SPH_H
 
@@ -47,6 +48,28 @@ class FixWallRegionSph : public FixRepulsiveWall {
   std::string region_id;
   LAMMPS_NS::Region *region = nullptr;
   PairSph *pair = nullptr;
+};
+
+/* Fixed particles that carry the pressure of the fluid before them, with or without slip. */
+class FixWallAdamiSph : public WallFix {
+ public:
+  static constexpr const char *STYLE = "wall/adami/sph";
+
+  FixWallAdamiSph(LAMMPS_NS::LAMMPS *, int, char **);
+  void init() override;
+  void post_force(int) override;
+
+  /* Per mass, as wall particle i sees it: gravity, with own_acceleration less that of the particle,
+   * a mean over the time tau; once a step. */
+  const double *body_force(int i, double tau);
+  bool slip = false, suction = true;
+  BodyForce gravity;
+
+ private:
+  bool own_acceleration = false;
+  double b[3] = {0.0, 0.0, 0.0};
+  /* velocity at the last force, acceleration */
+  AtomArray motion;
 };
 
 }    // namespace StokesDyn

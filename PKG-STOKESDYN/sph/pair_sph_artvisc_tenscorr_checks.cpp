@@ -2,7 +2,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_sph_settings.h"
-#include "fix_wall_adami_sph.h"
+#include "fix_wall_sph.h"
 #include "keywords.h"
 #include "ranks.h"
 #include "sd_sph_wall.h"

@@ -6,7 +6,7 @@
 #include "compute_sph_energy.h"
 #include "fix_sph_opening.h"
 #include "fix_sph_shift.h"
-#include "fix_wall_adami_sph.h"
+#include "fix_wall_sph.h"
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"

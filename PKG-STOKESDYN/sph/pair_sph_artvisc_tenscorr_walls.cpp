@@ -3,7 +3,7 @@
 
 #include "fix_sph_opening.h"
 #include "fix_sph_settings.h"
-#include "fix_wall_adami_sph.h"
+#include "fix_wall_sph.h"
 #include "keywords.h"
 #include "sd_sph_wall.h"
 
