@@ -5,7 +5,7 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "deforming_box.h"
-#include "overdamped_checks.h"
+#include "checks.h"
 
 #include "sd_hash.h"
 #include "sd_linear.h"

@@ -5,7 +5,6 @@
 #include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
-#include "overdamped_checks.h"
 
 #include "sd_clump_noise.h"
 
