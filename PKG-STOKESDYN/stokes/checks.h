@@ -1,6 +1,6 @@
-/* Settings that LAMMPS or the solver would do something foolish with; the plane of keyword wall, where it
- * stands and what does not go with it; what does not go with motion without inertia. Free functions, each called with the name of the
- * command that the user is told. */
+/* Settings that LAMMPS or the solver would do something foolish with; the plane of keyword wall, where
+ * it stands and what does not go with it; what does not go with motion without inertia. Free
+ * functions, each called with the name of the command that the user is told. */
 #ifndef SD_CHECKS_H
 #define SD_CHECKS_H
 
