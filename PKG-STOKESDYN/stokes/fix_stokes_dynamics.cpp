@@ -12,7 +12,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-
 FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), rows(9), total()
 {

@@ -26,7 +26,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), motion(3), random(6), load(6),
     before(9), output(9)
