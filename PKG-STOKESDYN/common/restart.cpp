@@ -33,12 +33,12 @@ std::vector<std::string> read_words(LAMMPS *lmp, FILE *fp, const std::string &co
   int head[2] = {0, 0};
   if (root) utils::sfread(FLERR, head, sizeof(int), 2, fp, nullptr, lmp->error);
   MPI_Bcast(head, 2, MPI_INT, 0, lmp->world);
-  const std::string another = "the restart file was written by another version of the plugin",
-                    cure = "let that version read it and write a data file (write_data)",
+  const std::string cure = "let that version read it and write a data file (write_data)",
                     ours = ", which reads " + std::to_string(FORMAT);
   const Voice voice(lmp, command);
   if (head[0] < WITHOUT_VERSION || head[1] < 0)
-    voice.fail(another + " (format " + std::to_string(head[0]) + ", this is version " SD_VERSION + ours +
+    voice.fail("the restart file was written by another version of the plugin (format " +
+               std::to_string(head[0]) + ", this is version " SD_VERSION + ours +
                "); " + cure);
   std::string all(head[1], '\0');
   if (root && !all.empty())
@@ -51,7 +51,8 @@ std::vector<std::string> read_words(LAMMPS *lmp, FILE *fp, const std::string &co
   if (head[0] == WITHOUT_VERSION) return words;
   const std::string version = words.empty() ? "" : words.front();
   if (head[0] != FORMAT)
-    voice.fail(another + ", " + version + ", in format " + std::to_string(head[0]) +
+    voice.fail("the restart file was written by another version of the plugin, " + version +
+               ", in format " + std::to_string(head[0]) +
                "; this is version " SD_VERSION + ours + "; " + cure);
   words.erase(words.begin());
   return words;
