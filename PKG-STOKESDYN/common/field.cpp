@@ -8,9 +8,11 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Field Field::parse(Keywords &in)
+Field Field::parse(Keywords &in, Kind kind)
 {
   Field field;
+  field.kind = kind;
+  field.keyword = in.present();
   if (in.more() && in.peek().compare(0, 2, "v_") == 0) {
     field.name = in.word().substr(2);
     if (field.name.empty()) in.refuse("'v_' lacks the name of a variable");
@@ -24,15 +26,18 @@ int Field::index(LAMMPS *lmp) const
   return lmp->input->variable->find(const_cast<char *>(name.c_str()));    // char * in older versions
 }
 
-void Field::init(LAMMPS *lmp, const std::string &what)
+void Field::init(LAMMPS *lmp)
 {
   if (!is_variable()) return;
   Variable *variable = lmp->input->variable;
   const int i = index(lmp);
-  if (i < 0) fail(lmp, what + ": variable '" + name + "' does not exist");
+  const Voice what(lmp, keyword);
+  if (i < 0) what.fail("variable '" + name + "' does not exist");
   atom_style = variable->atomstyle(i);
   if (!atom_style && !variable->equalstyle(i))
-    fail(lmp, what + ": variable '" + name + "' is neither equal nor atom style");
+    what.fail("variable '" + name + "' is neither equal nor atom style");
+  if (atom_style && kind == ONE_FOR_ALL)
+    what.fail("the variable must be of equal style: one value for all");
 }
 
 double Field::evaluate(LAMMPS *lmp)

@@ -12,8 +12,9 @@ class Field {
   Field() = default;
   explicit Field(double number) : value(number) {}
 
-  /* The next word of a keyword. */
-  static Field parse(Keywords &in);
+  /* The next word of a keyword, ONE_FOR_ALL: no variable of atom style. */
+  enum Kind { ANY, ONE_FOR_ALL };
+  static Field parse(Keywords &in, Kind kind = ANY);
 
   bool is_variable() const { return !name.empty(); }
   bool is_atom_style() const { return atom_style; }
@@ -21,9 +22,8 @@ class Field {
   double number() const { return value; }
   double *address() { return &value; }
 
-  /* Find the variable; what: "Pair style x: keyword visc", for the error if it is missing or of
-   * another style. */
-  void init(LAMMPS_NS::LAMMPS *lmp, const std::string &what);
+  /* Find the variable. Errors, which name command and keyword: it is missing, or of another style. */
+  void init(LAMMPS_NS::LAMMPS *lmp);
   /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms
    * outside the group. nullptr, if not of atom style: only number() is brought up to date. */
   void evaluate(LAMMPS_NS::LAMMPS *lmp, int igroup, double *out, int stride);
@@ -32,7 +32,8 @@ class Field {
 
  private:
   double value = 0.0;
-  std::string name;
+  std::string name, keyword;
+  Kind kind = ANY;
   bool atom_style = false;
 
   /* LAMMPS's index of the variable. */

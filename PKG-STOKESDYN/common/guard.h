@@ -7,9 +7,6 @@
 
 #include "keywords.h"
 
-#include "fix.h"
-#include "pair.h"
-
 #include <new>
 #include <string>
 
@@ -35,12 +32,10 @@ template <class Style> class GuardedFix final : public Style {
   void init() override { guard([&] { Style::init(); }); }
   void setup(int flag) override { guard([&] { Style::setup(flag); }); }
   void setup_pre_exchange() override { guard([&] { Style::setup_pre_exchange(); }); }
-  void setup_pre_neighbor() override { guard([&] { Style::setup_pre_neighbor(); }); }
   void setup_pre_force(int flag) override { guard([&] { Style::setup_pre_force(flag); }); }
   void initial_integrate(int flag) override { guard([&] { Style::initial_integrate(flag); }); }
   void post_integrate() override { guard([&] { Style::post_integrate(); }); }
   void pre_exchange() override { guard([&] { Style::pre_exchange(); }); }
-  void pre_neighbor() override { guard([&] { Style::pre_neighbor(); }); }
   void pre_force(int flag) override { guard([&] { Style::pre_force(flag); }); }
   void post_force(int flag) override { guard([&] { Style::post_force(flag); }); }
   void final_integrate() override { guard([&] { Style::final_integrate(); }); }

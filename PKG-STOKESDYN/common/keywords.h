@@ -80,6 +80,8 @@ class Keywords : private Voice {
   /* The same by hand: to the next keyword (false at the end), and which it is. */
   bool next();
   bool is(const std::string &name) const { return name == key; }
+  /* "<command>: keyword <key>" */
+  std::string present() const { return command + ": keyword " + key; }
 
   /* The values of the present keyword, one call each. */
   std::string word();

@@ -1,8 +1,11 @@
-/* What ranks tell each other: gathers of a varying number of things, questions to those who know,
- * and rows for a few partners. */
+/* What ranks tell each other: one number of each, gathers of a varying number of things, questions to
+ * those who know, and rows for a few partners. */
 #ifndef SD_RANKS_H
 #define SD_RANKS_H
 
+#include "atom.h"
+#include "lammps.h"
+#include "lmptype.h"
 #include <mpi.h>
 
 #include <algorithm>
@@ -19,6 +22,32 @@ inline int mpi_count(double count)
 {
   if (!(count <= INT_MAX)) throw std::bad_alloc();
   return (int) count;
+}
+
+inline MPI_Datatype type_of(double) { return MPI_DOUBLE; }
+inline MPI_Datatype type_of(int) { return MPI_INT; }
+inline MPI_Datatype type_of(LAMMPS_NS::bigint) { return MPI_LMP_BIGINT; }
+
+/* One number of each rank; the same answer on all of them. */
+template <class T> T among_all(MPI_Comm world, T mine, MPI_Op op)
+{
+  T all;
+  MPI_Allreduce(&mine, &all, 1, type_of(mine), op, world);
+  return all;
+}
+template <class T> T sum_of_all(MPI_Comm world, T mine) { return among_all(world, mine, MPI_SUM); }
+template <class T> T largest_of_all(MPI_Comm world, T mine) { return among_all(world, mine, MPI_MAX); }
+template <class T> T smallest_of_all(MPI_Comm world, T mine) { return among_all(world, mine, MPI_MIN); }
+
+/* The lowest ID of the atoms for which this holds, 0: there is none; the same on all ranks. */
+template <class Test> LAMMPS_NS::tagint first_atom(LAMMPS_NS::LAMMPS *lmp, const Test &test)
+{
+  const LAMMPS_NS::Atom *atom = lmp->atom;
+  LAMMPS_NS::tagint mine = MAXTAGINT;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (test(i)) mine = std::min(mine, atom->tag[i]);
+  const LAMMPS_NS::tagint first = smallest_of_all(lmp->world, mine);
+  return first == MAXTAGINT ? 0 : first;
 }
 
 /* What the ranks have, one rank after the other: the same vector on all of them. T travels by its

@@ -1,17 +1,106 @@
-/* A fix that keeps rows of numbers with its atoms: LAMMPS's callbacks, handed on to all of them. */
+/* Rows of numbers that follow their atoms, which migrate, are sorted, created and deleted, and the fix
+ * that keeps them, with what restart files hold of it. */
 #ifndef SD_ROWS_FIX_H
 #define SD_ROWS_FIX_H
 
 #include "fix.h"
 
-#include "atom_rows.h"
+#include "keywords.h"
+#include "restart.h"
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
 
 namespace StokesDyn {
 
+class RowsOfAtoms {
+ public:
+  explicit RowsOfAtoms(int columns) : width(columns) {}
+  virtual ~RowsOfAtoms() = default;
+
+  int columns() const { return width; }
+  virtual bool has(int i) const = 0;
+  /* To read: zeros for an atom that has none. */
+  virtual const double *operator[](int i) const = 0;
+  /* To write: made of zeros if the atom has none. */
+  virtual double *give(int i) = 0;
+  virtual void take(int i) = 0;
+  virtual void grow(int nmax) = 0;
+  virtual double bytes() const = 0;
+
+  /* As copy_arrays, pack_exchange, unpack_exchange of a fix. */
+  void copy(int i, int j);
+  int pack(int i, double *buffer) const;
+  int unpack(int i, const double *buffer);
+  int most_packed() const { return width + 1; }
+
+ protected:
+  const int width;
+};
+
+/* For those atoms that have some. Every atom has a pointer, eight bytes; only the few that need one
+ * have a row. */
+class AtomRows final : public RowsOfAtoms {
+ public:
+  explicit AtomRows(int columns) : RowsOfAtoms(columns), nothing(columns, 0.0) {}
+
+  bool has(int i) const override { return rows[i] != nothing.data(); }
+  const double *operator[](int i) const override { return rows[i]; }
+  /* To write: of an atom that has one. */
+  double *row(int i) { return rows[i]; }
+  double *give(int i) override;
+  void take(int i) override;
+  void clear();
+  void grow(int nmax) override { rows.resize(nmax, nothing.data()); }
+  double bytes() const override;
+
+ private:
+  enum { ROWS_OF_A_BLOCK = 1024 };
+  /* the row of those that have none; its address never changes */
+  std::vector<double> nothing;
+  /* [nmax] */
+  std::vector<double *> rows;
+  std::vector<std::unique_ptr<double[]>> blocks;
+  /* the next one last */
+  std::vector<double *> spare;
+};
+
+/* An array for LAMMPS, fix->array_atom: one block, since its libraries read it as such, so that
+ * every atom has a row. Rows of zeros that nobody writes to are memory that the system has promised
+ * and not yet given. */
+class AtomArray final : public RowsOfAtoms {
+ public:
+  explicit AtomArray(int columns) : RowsOfAtoms(columns) {}
+
+  /* array[i][column]; it moves when grow() is called */
+  double **array() { return rows.data(); }
+  bool has(int i) const override { return written[i]; }
+  const double *operator[](int i) const override { return rows[i]; }
+  double *give(int i) override;
+  void take(int i) override;
+  void grow(int nmax) override;
+  double bytes() const override { return (double) rows.capacity() * (sizeof(double) * width + 9); }
+
+ private:
+  struct Free {
+    void operator()(double *p) const { free(p); }
+  };
+  std::unique_ptr<double[], Free> block;
+  std::vector<double *> rows;    // [nmax]
+  std::vector<char> written;     // not zeros
+};
+
+/* A fix that keeps such rows: LAMMPS's callbacks, handed on to all of them. */
 class RowsFix : public LAMMPS_NS::Fix {
  public:
-  RowsFix(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg) {}
+  RowsFix(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) :
+      Fix(lmp, narg, arg), voice(lmp, "Fix " + std::string(style))
+  {
+  }
   ~RowsFix() override;
+
+  const Voice voice;
 
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
@@ -23,8 +112,15 @@ class RowsFix : public LAMMPS_NS::Fix {
   int size_restart(int) override { return maxsize_restart(); }
   int maxsize_restart() override;
   double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
 
  protected:
+  /* The words of the fix command from the fourth on */
+  Keywords keywords(int narg, char **arg) const
+  {
+    return Keywords(lmp, voice.command, words(narg, arg), 3);
+  }
   /* Once, in the constructor: what it keeps, with restarts also in their files. output, one of all
    * or nullptr, becomes array_atom. */
   void keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts);
@@ -32,6 +128,11 @@ class RowsFix : public LAMMPS_NS::Fix {
   virtual void record(int /*i*/) {}
   /* Do the rows of a restart file stand? */
   virtual bool restored() const { return true; }
+  /* What else restart files hold: numbers, and whatever these two add before and after. The numbers are
+   * in their places when read_state() is called, and asked for after write_state(); on all ranks together. */
+  virtual std::vector<SavedNumbers> saved() { return {}; }
+  virtual void write_state(NamedState &) {}
+  virtual void read_state(const NamedState &) {}
 
  private:
   std::vector<RowsOfAtoms *> kept;

@@ -1,17 +1,211 @@
 #include "compute_sph_energy.h"
 
-#include "fix_sph_energy.h"
+#include "fix_sph_settings.h"
+#include "fixes.h"
 #include "lammps_compat.h"
-#include "sph.h"
+#include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
 
+#include "atom.h"
+#include "domain.h"
 #include "group.h"
 #include "modify.h"
 #include "update.h"
 
-#include <cstring>
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
+
+FixSphEnergy::FixSphEnergy(LAMMPS *lmp, int narg, char **arg) :
+    SphFix(lmp, narg, arg), flow(COLUMNS)
+{
+  nevery = 1;
+  restart_global = 1;
+  dynamic_group_allow = 1;
+  keep({&flow}, nullptr, false);
+}
+
+int FixSphEnergy::setmask()
+{
+  return FixConst::INITIAL_INTEGRATE | FixConst::END_OF_STEP | FixConst::POST_RUN;
+}
+
+sd_sph_members FixSphEnergy::group()
+{
+  states = fixes_of<FixSphPressure>(lmp);
+  gravities = fixes_of(lmp, "gravity");
+  masses.resize(atom->nlocal + 1);
+  for (int i = 0; i < atom->nlocal; i++) masses[i] = Sph::mass(lmp, i);
+  const int *mask = atom->mask;
+  if (pair->has_ends()) {
+    masks.assign(atom->nlocal + 1, 0);
+    for (int i = 0; i < atom->nlocal; i++) masks[i] = mask[i] & ~(pair->is_held(i) ? groupbit : 0);
+    mask = masks.data();
+  }
+  return {atom->nlocal, mask, groupbit, masses.data(), atom->v ? atom->v[0] : nullptr};
+}
+
+double FixSphEnergy::elastic_of(sd_sph_members g, const double *rho) const
+{
+  double sum = 0.0;
+  for (const auto *fix : states) {
+    g.members = groupbit | fix->groupbit;
+    sum += sd_sph_elastic_energy(&g, &fix->state, rho);
+  }
+  return sum;
+}
+
+/* sum m g.y over those whom fix gravity pulls; its vector is the one of this step. */
+double FixSphEnergy::along_gravity(sd_sph_members g, const double *y) const
+{
+  double sum = 0.0;
+  for (auto *fix : gravities) {
+    int dim;
+    g.members = groupbit | fix->groupbit;
+    sum += sd_sph_along(&g, (const double *) fix->extract("gvec", dim), y);
+  }
+  return sum;
+}
+
+double FixSphEnergy::elastic()
+{
+  return sum_of_all(world, elastic_of(group(), atom->rho));
+}
+
+/* Positions go on through the faces of a periodic box. */
+std::vector<double> FixSphEnergy::places() const
+{
+  std::vector<double> x(3 * (size_t) atom->nlocal + 3);
+  for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], &x[3 * (size_t) i]);
+  return x;
+}
+
+void FixSphEnergy::measure(double *out)
+{
+  const sd_sph_members members = group();
+  double others;
+  out[ON_GROUP] = sd_sph_power(&members, pair->own_forces(), &out[ON_OTHERS]);
+  out[RUBS] = sd_sph_power(&members, pair->own_friction(), &others);
+  out[RUBS] += others;
+  out[SHIFTED] = pair->shift() ? along_gravity(members, pair->shift()) : 0.0;
+}
+
+void FixSphEnergy::of_particles(const sd_sph_members &members, std::vector<double> &rows) const
+{
+  rows.assign(COLUMNS * (size_t) (atom->nlocal + 1), 0.0);
+  const std::vector<double> x = places();
+  for (size_t i = 0; i < (size_t) atom->nlocal; i++) {
+    const sd_sph_members one = {1, members.mask + i, groupbit, members.m + i, members.v + 3 * i};
+    double *row = &rows[COLUMNS * i], nobody;
+    row[STORED] = elastic_of(one, atom->rho + i);
+    row[ENERGY] = row[STORED] + sd_sph_kinetic_energy(&one) - along_gravity(one, &x[3 * i]);
+    row[POWER] = sd_sph_power(&one, pair->own_forces() + 4 * i, &nobody);
+  }
+}
+
+/* Who stands in a layer is not pushed by forces. So a particle that has come into the flow in this
+ * step got the second half of the step's push, and one that has left it, or is deleted, the first
+ * half: these halves are in the trapezoids of end_of_step, and not in what the particle brings. */
+void FixSphEnergy::look_at_ends(bool counts)
+{
+  if (!pair->has_ends()) return;
+  const sd_sph_members members = group();
+  std::vector<double> rows;
+  of_particles(members, rows);
+  double now[COLUMNS] = {}, gone[COLUMNS], come[COLUMNS] = {};
+  std::copy_n(in_flow, (int) COLUMNS, gone);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool was_there = flow.has(i);
+    if (!(members.mask[i] & groupbit)) {
+      if (was_there) flow.take(i);
+      continue;
+    }
+    const double *row = &rows[COLUMNS * (size_t) i];
+    double *before = flow.give(i);
+    for (int c = 0; c < COLUMNS; c++) {
+      now[c] += row[c];
+      if (was_there)
+        gone[c] -= before[c];
+      else
+        come[c] += row[c];
+      before[c] = row[c];
+    }
+  }
+  std::copy_n(now, (int) COLUMNS, in_flow);
+  if (!counts) return;
+  for (int c : {ENERGY, STORED}) brought[c] += come[c] - gone[c];
+  brought[ENERGY] -= 0.5 * dt * (come[POWER] + gone[POWER]);
+}
+
+void FixSphEnergy::setup(int /*vflag*/)
+{
+  const double now = elastic();
+  jumps += now - (has_run != 0.0 ? elastic_then : 0.0);
+  has_run = 1.0;
+  elastic_then = now;
+  measure(power);
+  look_at_ends(false);
+}
+
+/* fix dt/reset changes the step at the end of one, before or after this fix. */
+void FixSphEnergy::initial_integrate(int /*vflag*/)
+{
+  dt = update->dt;
+}
+
+/* The leapfrog's v at full steps: F.v there, times dt, is all that v^2 / 2 gains in the two halves
+ * around it, but for the first and last half step of a run. */
+void FixSphEnergy::end_of_step()
+{
+  double now[POWERS];
+  measure(now);
+  for (int k = 0; k < POWERS; k++) {
+    done[k] += 0.5 * dt * (power[k] + now[k]);
+    power[k] = now[k];
+  }
+  look_at_ends(true);
+}
+
+void FixSphEnergy::post_run()
+{
+  elastic_then = elastic();
+}
+
+void FixSphEnergy::values(double *out)
+{
+  const sd_sph_members members = group();
+  double mine[4 + POWERS] = {sd_sph_kinetic_energy(&members), -along_gravity(members, places().data()), brought[ENERGY],
+                             brought[STORED]},
+         all[4 + POWERS];
+  std::copy_n(done, (int) POWERS, mine + 4);
+  MPI_Allreduce(mine, all, 4 + POWERS, MPI_DOUBLE, MPI_SUM, world);
+  const double *work = all + 4;
+  out[KINETIC] = all[0];
+  out[POTENTIAL] = all[1];
+  out[ELASTIC] = elastic();
+  out[WORK] = -work[ON_OTHERS];
+  out[BROUGHT] = all[2];
+  const double stored = has_run != 0.0 ? out[ELASTIC] - jumps - all[3] : 0.0;
+  out[DISSIPATED] = out[WORK] - work[ON_GROUP] + work[SHIFTED] - stored;
+  out[FRICTION] = -work[RUBS];
+}
+
+void FixSphEnergy::write_state(NamedState &)
+{
+  if (update->whichflag == 1) elastic_then = elastic();
+}
+
+std::vector<SavedNumbers> FixSphEnergy::saved()
+{
+  return {{"done", done, POWERS, true},
+          {"brought", brought, 2, true},
+          {"elastic", &elastic_then},
+          {"jumps", &jumps},
+          {"has_run", &has_run}};
+}
+
+// --- the compute ---------------------------------------------------------------------------------
 
 ComputeSphEnergy::ComputeSphEnergy(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), voice(lmp, "Compute sph/energy"),
@@ -24,13 +218,12 @@ ComputeSphEnergy::ComputeSphEnergy(LAMMPS *lmp, int narg, char **arg) :
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
   size_vector = FixSphEnergy::VALUES;
-  vector = new double[FixSphEnergy::VALUES]();
+  vector = of_moment;
 }
 
 ComputeSphEnergy::~ComputeSphEnergy()
 {
   if (modify->nfix && Compat::fix(modify, memory_id)) modify->delete_fix(memory_id);
-  delete[] vector;
 }
 
 void ComputeSphEnergy::init()

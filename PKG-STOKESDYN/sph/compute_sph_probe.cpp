@@ -1,13 +1,12 @@
 #include "compute_sph_probe.h"
 
-#include "fix_sph_pressure.h"
+#include "fix_sph_settings.h"
 #include "fixes.h"
 #include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "sd_sph_probe.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "update.h"
 
 #include <algorithm>
@@ -32,12 +31,8 @@ ComputeSphProbe::ComputeSphProbe(LAMMPS *lmp, int narg, char **arg) :
   vector_flag = 1;
   size_vector = (int) probes.size();
   extvector = 0;
-  vector = new double[probes.size()]();
-}
-
-ComputeSphProbe::~ComputeSphProbe()
-{
-  delete[] vector;
+  values.assign(probes.size(), 0.0);
+  vector = values.data();
 }
 
 void ComputeSphProbe::init()

@@ -18,7 +18,6 @@ class ComputeSphProbe : public LAMMPS_NS::Compute {
   static constexpr const char *STYLE = "sph/probe";
 
   ComputeSphProbe(LAMMPS_NS::LAMMPS *, int, char **);
-  ~ComputeSphProbe() override;
   void init() override;
   void compute_vector() override;
 
@@ -30,6 +29,7 @@ class ComputeSphProbe : public LAMMPS_NS::Compute {
   };
   const Voice voice;
   std::vector<Probe> probes;
+  std::vector<double> values;
   PairSph *pair = nullptr;
 
   double pressure(const Probe &) const;

@@ -2,12 +2,12 @@
 
 #include "keywords.h"
 #include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
 #include "sd_sph_step.h"
 
 #include "atom.h"
 #include "update.h"
 
-#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -45,7 +45,7 @@ void FixCheckTimestepSph::end_of_step()
 {
   pair->largest_approach(largest);
   double mine = HUGE_VAL;
-  tagint who = MAXTAGINT, first;
+  tagint who = MAXTAGINT;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const int type = atom->type[i];
@@ -59,9 +59,8 @@ void FixCheckTimestepSph::end_of_step()
       who = atom->tag[i];
     }
   }
-  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
-  if (mine != limit) who = MAXTAGINT;
-  MPI_Allreduce(&who, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  limit = smallest_of_all(world, mine);
+  const tagint first = smallest_of_all(world, mine == limit ? who : MAXTAGINT);
   if (!std::isfinite(limit)) {    // nobody in the group
     limit = worst = ratio = 0.0;
     return;
@@ -69,9 +68,9 @@ void FixCheckTimestepSph::end_of_step()
   worst = (double) first;
   ratio = update->dt / limit;
   if (ratio <= fraction) return;
-  const std::string message = "step " + std::to_string(update->ntimestep) + ": the time step " +
-      text(update->dt) + " is " + text(ratio) + " of the limit " + text(limit) + " of atom " +
-      std::to_string(first) + ", more than " + text(fraction);
-  if (stop) voice.fail(message);
-  voice.warn(message);
+  const std::string message = "the time step " + text(update->dt) + " is " + text(ratio) +
+      " of the limit " + text(limit) + " of atom " + std::to_string(first) + ", more than " +
+      text(fraction);
+  if (stop) voice.at_step().fail(message);
+  voice.at_step().warn(message);
 }

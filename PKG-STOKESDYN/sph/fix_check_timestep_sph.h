@@ -2,7 +2,7 @@
 #ifndef SD_FIX_CHECK_TIMESTEP_SPH_H
 #define SD_FIX_CHECK_TIMESTEP_SPH_H
 
-#include "sph_fix.h"
+#include "sph.h"
 
 #include <vector>
 

@@ -1,14 +1,10 @@
 #include "fix_nve_sph.h"
 
-#include "keywords.h"
-#include "named_state.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sph.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "force.h"
 #include "update.h"
 
 #include <cstring>
@@ -28,18 +24,6 @@ int FixNveSph::setmask()
 {
   return FixConst::PRE_EXCHANGE | FixConst::INITIAL_INTEGRATE | FixConst::PRE_FORCE |
       FixConst::FINAL_INTEGRATE | FixConst::POST_RUN;
-}
-
-void FixNveSph::init()
-{
-  SphFix::init();
-  reset_dt();
-}
-
-void FixNveSph::reset_dt()
-{
-  dtv = update->dt;
-  dtf = 0.5 * update->dt * force->ftm2v;
 }
 
 /* The estimate that the last run left, if nobody has changed a velocity since: that of the unbroken
@@ -65,14 +49,14 @@ void FixNveSph::setup_pre_exchange()
 void FixNveSph::initial_integrate(int /*vflag*/)
 {
   double **x = atom->x, **v = atom->v, **f = atom->f, **vest = atom->vest;
-  const double *du = pair->shift();
+  const double *du = pair->shift(), dt = update->dt;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double kick = pair->is_held(i) ? 0.0 : dtf / Sph::mass(lmp, i);
+    const double kick = pair->is_held(i) ? 0.0 : 0.5 * dt / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) {
       vest[i][d] = kick * f[i][d];
       v[i][d] += vest[i][d];
-      x[i][d] += dtv * (du ? v[i][d] + du[3 * (size_t) i + d] : v[i][d]);
+      x[i][d] += dt * (du ? v[i][d] + du[3 * (size_t) i + d] : v[i][d]);
     }
   }
   relative = true;
@@ -93,7 +77,7 @@ void FixNveSph::final_integrate()
   double **v = atom->v, **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double kick = pair->is_held(i) ? 0.0 : dtf / Sph::mass(lmp, i);
+    const double kick = pair->is_held(i) ? 0.0 : 0.5 * update->dt / Sph::mass(lmp, i);
     for (int d = 0; d < 3; d++) v[i][d] += kick * f[i][d];
   }
 }
@@ -123,20 +107,17 @@ FixNveSph::End FixNveSph::end_now() const
   return {(double) update->ntimestep, sum};
 }
 
-void FixNveSph::write_restart(FILE *fp)
+void FixNveSph::write_state(NamedState &state)
 {
   // In mid-run, or after a run, there is a state that a run can go on from; before any there is none.
   const End now = update->whichflag == 1 ? end_now() : end;
-  NamedState state(STYLE);
   state.put("step", now.step);
   state.put_bits("velocities", now.velocities);
-  if (comm->me == 0) state.write(fp);
 }
 
-void FixNveSph::restart(char *buf)
+void FixNveSph::read_state(const NamedState &state)
 {
-  NamedState state(STYLE);
-  if (state.read(lmp, buf)) end = {state.get("step", -1.0), state.get_bits("velocities", 0)};
+  end = {state.get("step", -1.0), state.get_bits("velocities", 0)};
 }
 
 FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) :

@@ -3,7 +3,7 @@
 #ifndef SD_FIX_NVE_SPH_H
 #define SD_FIX_NVE_SPH_H
 
-#include "sph_fix.h"
+#include "sph.h"
 
 #include <cstdint>
 
@@ -15,22 +15,17 @@ class FixNveSph : public SphFix {
 
   FixNveSph(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;
-  void init() override;
   void setup_pre_exchange() override;
   void setup_pre_force(int vflag) override { pre_force(vflag); }
   void initial_integrate(int) override;
   void pre_force(int) override;
   void final_integrate() override;
   void post_run() override;
-  void reset_dt() override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
   /* Has this run gone on from the end of the last one, with nothing changed? */
   bool resumes() const { return goes_on; }
 
  private:
-  double dtv = 0.0, dtf = 0.0;
   bool goes_on = false;
   /* of the atoms and their ghosts: vest is the difference to v, not yet the estimate itself */
   bool relative = false;
@@ -41,6 +36,8 @@ class FixNveSph : public SphFix {
     uint64_t velocities;
   } end = {-1.0, 0};
   End end_now() const;
+  void write_state(NamedState &) override;
+  void read_state(const NamedState &) override;
 };
 
 class FixNveSphStationary : public SphFix {

@@ -1,14 +1,12 @@
 #include "fix_sph_opening.h"
 
 #include "keywords.h"
-#include "named_state.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sph.h"
 
 #include "atom.h"
 #include "atom_vec.h"
-#include "comm.h"
 #include "domain.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -71,10 +69,10 @@ bool FixSphOpening::is_held(int i) const
  * the last row stands a spacing before the end. Spacing and half of the skin are less than h. */
 void FixSphOpening::check_width()
 {
-  double h = 0.0;
+  double mine = 0.0;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit) h = std::max(h, pair->smoothing_length(atom->type[i]));
-  MPI_Allreduce(MPI_IN_PLACE, &h, 1, MPI_DOUBLE, MPI_MAX, world);
+    if (atom->mask[i] & groupbit) mine = std::max(mine, pair->smoothing_length(atom->type[i]));
+  const double h = largest_of_all(world, mine);
   const double needed = 2.0 * h + std::max(h, neighbor->skin);
   if (width < needed)
     voice.fail("the width " + text(width) +
@@ -84,22 +82,7 @@ void FixSphOpening::check_width()
 
 double FixSphOpening::compute_scalar()
 {
-  double all = 0.0;
-  MPI_Allreduce(&passed, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
-void FixSphOpening::write_restart(FILE *fp)
-{
-  NamedState state(style);
-  state.put("passed", compute_scalar());
-  if (comm->me == 0) state.write(fp);
-}
-
-void FixSphOpening::restart(char *buf)
-{
-  NamedState state(style);
-  if (state.read(lmp, buf) && comm->me == 0) passed = state.get("passed", 0.0);
+  return sum_of_all(world, passed);
 }
 
 // --- inlet --------------------------------------------------------------------------------------------
@@ -125,8 +108,8 @@ FixSphInlet::FixSphInlet(LAMMPS *lmp, int narg, char **arg) :
 void FixSphInlet::init()
 {
   FixSphOpening::init();
-  velocity.init(lmp, voice.of("keyword velocity").command);
-  gravity.init(voice.of("keyword gravity"));
+  velocity.init(lmp);
+  gravity.init(lmp);
 }
 
 /* Of all in the layer, and of those that are due, where they are due: a variable may depend on place
@@ -158,14 +141,13 @@ void FixSphInlet::move_layer()
 void FixSphInlet::setup_pre_exchange()
 {
   check_width();
-  int mine = 0, all;
+  int mine = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     mine += is_held(i);
     if (!marks.has(i)) marks.give(i)[STATE] = is_held(i) ? IN_LAYER : REPLACED;
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  if (all == 0)
+  if (largest_of_all(world, mine) == 0)
     voice.fail("its layer is empty: fill it with particles of its group (create_atoms)");
   find_speeds();
   move_layer();
@@ -244,7 +226,7 @@ void FixSphInlet::pre_exchange()
   if (all.empty()) return;
   tagint last = 0;
   for (int i = 0; i < atom->nlocal; i++) last = std::max(last, atom->tag[i]);
-  MPI_Allreduce(MPI_IN_PLACE, &last, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  last = largest_of_all(world, last);
 
   // new particles stand where ghosts were
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
@@ -252,12 +234,10 @@ void FixSphInlet::pre_exchange()
   atom->avec->clear_bonus();
   for (const Newcomer &next : all) create(next, ++last);
   const bigint before = atom->natoms;
-  bigint mine = atom->nlocal;    // without const: LAMMPS's stubs of MPI take what is sent so
-  MPI_Allreduce(&mine, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  atom->natoms = sum_of_all(world, (bigint) atom->nlocal);
   if (atom->natoms != before + (bigint) all.size())
-    voice.fail("step " + std::to_string(update->ntimestep) +
-               ": a new particle would stand outside of the box: where the flow turns back, the "
-               "box must be longer than the layer");
+    voice.at_step().fail("a new particle would stand outside of the box: where the flow turns back, "
+                         "the box must be longer than the layer");
   if (atom->map_style != Atom::MAP_NONE) {
     atom->map_init();
     atom->map_set();
@@ -275,7 +255,7 @@ FixSphOutlet::FixSphOutlet(LAMMPS *lmp, int narg, char **arg) : FixSphOpening(lm
 void FixSphOutlet::init()
 {
   FixSphOpening::init();
-  pressure.init(lmp, voice.of("keyword pressure").command);
+  pressure.init(lmp);
 }
 
 void FixSphOutlet::setup_pre_exchange()
@@ -309,7 +289,7 @@ void FixSphOutlet::pre_exchange()
     atom->nlocal--;
     gone++;
   }
-  MPI_Allreduce(MPI_IN_PLACE, &gone, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  gone = sum_of_all(world, gone);
   atom->natoms -= gone;
   if (gone > 0 && atom->map_style != Atom::MAP_NONE) {
     atom->nghost = 0;

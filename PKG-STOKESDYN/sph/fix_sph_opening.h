@@ -4,7 +4,7 @@
 #ifndef SD_FIX_SPH_OPENING_H
 #define SD_FIX_SPH_OPENING_H
 
-#include "sph_fix.h"
+#include "sph.h"
 
 #include <vector>
 
@@ -16,13 +16,12 @@ class FixSphOpening : public SphFix {
   int setmask() override;
   void init() override;
   double compute_scalar() override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
   /* Of a particle of the group at x: does it stand in the layer? */
   bool holds(const double *x) const { return beyond(x) > 0.0; }
 
  protected:
+  std::vector<SavedNumbers> saved() override { return {{"passed", &passed, 1, true}}; }
   /* the words FACE POSITION WIDTH, which come first */
   Keywords parse_place(int narg, char **arg);
   /* For a setup of a run: the layer hides the empty space beyond it. */

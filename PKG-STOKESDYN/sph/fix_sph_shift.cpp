@@ -2,10 +2,8 @@
 
 #include "keywords.h"
 #include "lammps_compat.h"
-#include "named_state.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "modify.h"
 
 #include <algorithm>
@@ -39,11 +37,9 @@ FixSphShift::FixSphShift(LAMMPS *lmp, int narg, char **arg) :
 {
   restart_global = 1;
   comm_border = DU;
-  maxexchange = shifts.most_packed() + rest.most_packed();
-  if (correction)
-    keep({&shifts, &rest}, nullptr, true);
-  else
-    keep({&shifts}, nullptr, true);
+  std::vector<RowsOfAtoms *> all = {&shifts};
+  if (correction) all.push_back(&rest);
+  keep(all, nullptr, true);
   atom->add_callback(Atom::BORDER);
 }
 
@@ -64,25 +60,11 @@ int FixSphShift::unpack_border(int n, int first, double *buf)
   return DU * n;
 }
 
-void FixSphShift::write_restart(FILE *fp)
-{
-  if (comm->me != 0) return;
-  NamedState state(STYLE);
-  state.put("filled", has_rows);
-  state.write(fp);
-}
-
-void FixSphShift::restart(char *buf)
-{
-  NamedState state(STYLE);
-  has_rows = state.read(lmp, buf) && state.get("filled", 0.0) != 0.0;
-}
-
 void FixSphShift::keep_rows(int n, const double *order, const double *kick)
 {
   const size_t columns = correction ? 16 : 8;
   for (int i = 0; i < n; i++) std::copy_n(order + columns * i + 4, DU, shifts.give(i));
-  has_rows = true;
+  has_rows = 1.0;
   if (!correction) return;
   for (int i = 0; i < atom->nlocal; i++) {
     double *row = rest.give(i);

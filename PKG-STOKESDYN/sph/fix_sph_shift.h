@@ -21,24 +21,23 @@ class FixSphShift : public RowsFix {
   int setmask() override { return 0; }
   int pack_border(int, int *, double *) override;
   int unpack_border(int, int, double *) override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
   /* [3 n] of particles and ghosts */
   const double *du() { return shifts.array()[0]; }
   /* Has there been a step? */
-  bool filled() const { return has_rows; }
+  bool filled() const { return has_rows != 0.0; }
   /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with correction B and
    * kick of this rank's. */
   void keep_rows(int n, const double *order, const double *kick);
   void put_back(double *order, double *kick) const;
 
  protected:
-  bool restored() const override { return has_rows; }
+  bool restored() const override { return filled(); }
+  std::vector<SavedNumbers> saved() override { return {{"filled", &has_rows}}; }
 
  private:
   const bool correction;
-  bool has_rows = false;
+  double has_rows = 0.0;
   // du; B and kick
   AtomArray shifts, rest;
 };

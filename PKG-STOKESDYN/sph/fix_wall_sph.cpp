@@ -13,6 +13,7 @@
 #include "region.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -31,9 +32,8 @@ void FixRepulsiveWall::push(int i, const double normal[3], double r, double more
 void FixRepulsiveWall::outside(int i)
 {
   const double *x = atom->x[i];
-  voice.fail_one("step " + std::to_string(update->ntimestep) + ": atom " +
-                 std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " + text(x[1]) + " " +
-                 text(x[2]) + " is on or behind the wall");
+  voice.at_step().fail_one("atom " + std::to_string(atom->tag[i]) + " at " + text(x[0]) + " " +
+                           text(x[1]) + " " + text(x[2]) + " is on or behind the wall");
 }
 
 // --- planes and the cylinder --------------------------------------------------------------------
@@ -143,4 +143,50 @@ void FixWallRegionSph::post_force(int /*vflag*/)
       push(i, normal, r, mirror);
     }
   }
+}
+
+// --- walls of particles -------------------------------------------------------------------------
+
+FixWallAdamiSph::FixWallAdamiSph(LAMMPS *lmp, int narg, char **arg) :
+    WallFix(lmp, narg, arg), motion(6)
+{
+  Sph::require_scene(voice);
+  Keywords in = keywords(narg, arg);
+  in.parse({
+      {"gravity",
+       [&] {
+         gravity.parse(in);
+       }},
+      {"slip",
+       [&] {
+         slip = in.yes_no();
+       }},
+      {"suction",
+       [&] {
+         suction = in.yes_no();
+       }},
+      {"own_acceleration",
+       [&] {
+         own_acceleration = in.yes_no();
+       }},
+  });
+  if (own_acceleration) keep({&motion}, nullptr, true);
+}
+
+void FixWallAdamiSph::init()
+{
+  Sph::require_pair(voice);
+  gravity.init(lmp);
+}
+
+const double *FixWallAdamiSph::body_force(int i, double tau)
+{
+  const bool is_new = own_acceleration && !motion.has(i);
+  // fix rigid and fix move give it its velocity after the setup
+  if (!own_acceleration || (is_new && update->setupflag)) return gravity.now();
+  double *row = motion.give(i);
+  if (is_new) std::copy_n(atom->v[i], 3, row);
+  if (!update->setupflag) sd_sph_wall_acceleration(atom->v[i], update->dt, tau, row, row + 3);
+  for (int d = 0; d < 3; d++) b[d] = gravity.now()[d] - row[3 + d];
+  return b;
 }

@@ -1,8 +1,11 @@
-/* fix wall/sph and fix wall/region/sph: walls that repel SPH particles. See doc/fix_wall_sph.md. */
+/* Walls: fix wall/sph and fix wall/region/sph, that repel SPH particles, and fix wall/adami/sph. See
+ * doc/fix_wall_sph.md, doc/fix_wall_adami_sph.md. */
 #ifndef SD_FIX_WALL_SPH_H
 #define SD_FIX_WALL_SPH_H
 
-#include "sph_fix.h"
+#include "sph.h"
+
+#include <algorithm>
 
 namespace LAMMPS_NS {
 class Region;
@@ -47,6 +50,31 @@ class FixWallRegionSph : public FixRepulsiveWall {
   std::string region_id;
   LAMMPS_NS::Region *region = nullptr;
   PairSph *pair = nullptr;
+};
+
+/* Fixed particles that carry the pressure of the fluid before them, with or without slip. */
+class FixWallAdamiSph : public WallFix {
+ public:
+  static constexpr const char *STYLE = "wall/adami/sph";
+
+  FixWallAdamiSph(LAMMPS_NS::LAMMPS *, int, char **);
+  int setmask() override { return 0; }
+  void init() override;
+
+  /* Of this step and rank: the force of the fluid on the wall particles, from the pair style. */
+  void bears(const double F[3]) { std::copy_n(F, 3, on_wall); }
+
+  /* Per mass, as wall particle i sees it: gravity, with own_acceleration less that of the particle,
+   * a mean over the time tau; once a step. */
+  const double *body_force(int i, double tau);
+  bool slip = false, suction = true;
+  BodyForce gravity;
+
+ private:
+  bool own_acceleration = false;
+  double b[3] = {0.0, 0.0, 0.0};
+  /* velocity at the last force, acceleration */
+  AtomArray motion;
 };
 
 }    // namespace StokesDyn

@@ -1,11 +1,11 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
-#include "fix_property_global.h"
-#include "fix_sph_pressure.h"
+#include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "fixes.h"
-#include "ghosts.h"
-#include "restart_words.h"
+#include "restart.h"
+
+#include "sd_lattice.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -13,6 +13,7 @@
 #include "error.h"
 #include "memory.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -174,6 +175,29 @@ double PairSph::spacing(int itype) const
                " deltap VALUE; the style itself computes it, as (mass/rho0)^(1/dimension), only where "
                "there is one fix sph/pressure with a rho0 and one mass per type");
   return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
+}
+
+/* A cut-off (the skin is added) for which LAMMPS would make ghosts without end: no counter of its own
+ * may overflow, and where the length is more than ten periodic boxes ten million atoms in all images
+ * are enough. */
+static void refuse_endless_ghosts(LAMMPS *lmp, const std::string &what, double length)
+{
+  const Domain *domain = lmp->domain;
+  const double cut = length + lmp->neighbor->skin;
+  double boxes = 0.0, periodic_boxes = 0.0, atoms = lmp->atom->natoms, swaps = 0.0;
+  for (int d = 0; d < domain->dimension; d++) {
+    const double across = sd_across_faces(domain->h, d, cut);
+    boxes = std::max(boxes, across);
+    swaps = std::max(swaps, across * lmp->comm->procgrid[d]);
+    if (!domain->periodicity[d]) continue;
+    atoms *= 2.0 * across + 1.0;
+    periodic_boxes = std::max(periodic_boxes, across);
+  }
+  const double most = periodic_boxes > 10.0 ? 1e7 : (double) MAXSMALLINT;
+  if (atoms < most && swaps < MAXSMALLINT) return;
+  fail(lmp,
+       what + " is " + text(boxes) +
+           " times the box, which is more than LAMMPS can make ghost atoms for: is it in other units?");
 }
 
 double PairSph::init_one(int i, int j)

@@ -114,7 +114,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void check_stiffness();
   void check_groups();
   void check_openings();
-  LAMMPS_NS::bigint in_both(int bits, int more_bits);
+  LAMMPS_NS::tagint in_both(int bits, int more_bits) const;
 
   // Neighbours with their memory, as sd_sph_both.
   struct Neighbours {
@@ -144,7 +144,6 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<double> P, masses, rate, each, kick, wall_rows;
   std::vector<int> classes, phases;
   bool used(int itype) const;
-  std::string at_step() const;
   void look_at_densities(int n);
   void look_at_walls();
   void look_at_sound();

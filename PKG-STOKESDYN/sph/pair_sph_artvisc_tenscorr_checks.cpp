@@ -1,14 +1,13 @@
 /* Of pair_style sph/artVisc/tensCorr: what may be wrong with the particles of a scene. */
 #include "pair_sph_artvisc_tenscorr.h"
 
-#include "fix_sph_pressure.h"
-#include "fix_wall_adami_sph.h"
+#include "fix_sph_settings.h"
+#include "fix_wall_sph.h"
 #include "keywords.h"
+#include "ranks.h"
 #include "sd_sph_wall.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
 #include "update.h"
 
 #include <algorithm>
@@ -25,14 +24,15 @@ void PairSph::look_at_densities(int n)
   for (int i = 0; i < n; i++) {
     if (rho[i] > 0.0 && std::isfinite(rho[i]) && (atom->mask[i] & pressure_bits)) continue;
     if (!used(atom->type[i])) continue;
-    const std::string who = at_step() + "atom " + std::to_string(atom->tag[i]);
+    const Voice now = voice.at_step();
+    const std::string who = "atom " + std::to_string(atom->tag[i]);
     if (!(atom->mask[i] & pressure_bits))
-      voice.fail_one(who + " is in the group of no fix sph/pressure");
+      now.fail_one(who + " is in the group of no fix sph/pressure");
     const char *cure = update->setupflag ? "; give it one by the command set ... sph/rho"
         : rho[i] == 0.0 ? "; if it was created in this run: fix sph/pressure relativ and Tait give "
                           "new atoms of their group the density rho0"
                         : "; the time step may be too long";
-    voice.fail_one(who + " has the density " + text(rho[i]) + "; it must be a number > 0" + cure);
+    now.fail_one(who + " has the density " + text(rho[i]) + "; it must be a number > 0" + cure);
   }
 }
 
@@ -61,7 +61,7 @@ void PairSph::look_at_sound()
   MPI_Allreduce(&worst, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   if (all.type == 0) return;
   if (worst.type != all.type || worst.off != all.off) sound = 0.0;
-  MPI_Allreduce(MPI_IN_PLACE, &sound, 1, MPI_DOUBLE, MPI_MAX, world);
+  sound = largest_of_all(world, sound);
   voice.warn("type " + std::to_string(all.type) + " has the speed of sound " +
              text(sound_speed(all.type)) + " by pair_coeff c, and " + text(sound) +
              " by its fix sph/pressure: limits of the time step, artVisc and delta use that of "
@@ -128,7 +128,7 @@ void PairSph::look_at_walls()
           "put the wall and the fluid in front of it into the group of one fix sph/pressure");
     if (row[0] < -log(1.1)) other_mass = std::min(other_mass, atom->tag[i]);
   }
-  MPI_Allreduce(MPI_IN_PLACE, &other_mass, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  other_mass = smallest_of_all(world, other_mass);
   if (other_mass < MAXTAGINT)
     wall->voice.warn(
         "the mass of atom " + std::to_string(other_mass) +

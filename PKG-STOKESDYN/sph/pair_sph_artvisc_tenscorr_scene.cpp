@@ -2,21 +2,19 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
-#include "fix_property_global.h"
-#include "fix_sph_density.h"
-#include "fix_sph_energy.h"
+#include "fix_sph_settings.h"
+#include "compute_sph_energy.h"
 #include "fix_sph_opening.h"
-#include "fix_sph_pressure.h"
 #include "fix_sph_shift.h"
-#include "fix_wall_adami_sph.h"
+#include "fix_wall_sph.h"
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
-#include "error.h"
 #include "force.h"
 #include "neighbor.h"
 #include "update.h"
@@ -155,13 +153,13 @@ void PairSph::check_groups()
 {
   pressure_bits = 0;
   for (const auto *fix : pressures) {
-    if (const bigint both = in_both(pressure_bits, fix->groupbit))
+    if (const tagint both = in_both(pressure_bits, fix->groupbit))
       voice.fail("atom " + std::to_string(both) + " is in the groups of two fixes sph/pressure");
     pressure_bits |= fix->groupbit;
   }
   if (!wall) return;
   for (const auto *fix : Sph::integrators(lmp))
-    if (const bigint both = in_both(wall->groupbit, fix->groupbit))
+    if (const tagint both = in_both(wall->groupbit, fix->groupbit))
       wall->voice.fail("atom " + std::to_string(both) + " of its group is also integrated by fix " +
                        fix->id + ", so the wall would flow; give that fix the group of the fluid");
 }
@@ -173,27 +171,19 @@ void PairSph::check_openings()
   all.insert(all.end(), outlets.begin(), outlets.end());
   for (const auto *fix : all) {
     if (!leapfrog) fix->voice.fail("needs fix sph/density/continuity and fix nve/sph");
-    bigint mine = 0, other;
-    for (int i = 0; i < atom->nlocal; i++)
-      if ((atom->mask[i] & fix->groupbit) && (!(atom->mask[i] & own_vest_bits) || is_wall(i)))
-        mine = std::max(mine, (bigint) atom->tag[i]);
-    MPI_Allreduce(&mine, &other, 1, MPI_LMP_BIGINT, MPI_MAX, world);
-    if (other)
+    if (const tagint other = first_atom(lmp, [&](int i) {
+          return (atom->mask[i] & fix->groupbit) && (!(atom->mask[i] & own_vest_bits) || is_wall(i));
+        }))
       fix->voice.fail("atom " + std::to_string(other) +
                       " of its group is not moved by fix nve/sph: the group must be that of the fluid, "
                       "without walls");
   }
 }
 
-/* The largest ID of the atoms in both of these sets of groups, 0: there are none. */
-bigint PairSph::in_both(int bits, int more_bits)
+/* The first atom in both of these sets of groups, 0: there is none. */
+tagint PairSph::in_both(int bits, int more_bits) const
 {
-  bigint mine = 0, all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & bits) && (atom->mask[i] & more_bits))
-      mine = std::max(mine, (bigint) atom->tag[i]);
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_MAX, world);
-  return all;
+  return first_atom(lmp, [=](int i) { return (atom->mask[i] & bits) && (atom->mask[i] & more_bits); });
 }
 
 /* Here and not in init_style, since the domain learns of fix deform after that. */

@@ -2,8 +2,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
-#include "fix_sph_density.h"
-#include "fix_sph_pressure.h"
+#include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "keywords.h"
 #include "lammps_compat.h"
@@ -13,15 +12,12 @@
 #include "sd_sph_step.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
 #include "force.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -30,11 +26,6 @@ using namespace StokesDyn;
 static double *rows(double **array)
 {
   return array ? array[0] : nullptr;
-}
-
-std::string PairSph::at_step() const
-{
-  return "step " + std::to_string(update->ntimestep) + ": ";
 }
 
 void PairSph::compute(int eflag, int vflag)
@@ -79,10 +70,9 @@ void PairSph::check_list()
   if (neighbor->ago != 0 || neighbor->ndanger == dangerous_builds) return;
   dangerous_builds = neighbor->ndanger;
   if (std::max(neighbor->every, neighbor->delay) <= 1) return;
-  voice.fail(at_step() + "particles moved more than half the neighbour skin " +
-             text(neighbor->skin) +
-             " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, or a "
-             "larger skin");
+  voice.at_step().fail("particles moved more than half the neighbour skin " + text(neighbor->skin) +
+                       " before the neighbour list could be rebuilt; use neigh_modify delay 0 every 1, "
+                       "or a larger skin");
 }
 
 /* Model, list and particles for the core. */
@@ -244,14 +234,14 @@ void PairSph::close_sums()
                                   least,        rate.data(), order.data(), kick.data()};
   const int stops = sd_sph_close(&model, &particles, &closing);
   if (stops >= 0)
-    voice.fail_one(at_step() + "keyword correction: atom " + std::to_string(atom->tag[stops]) +
-                   " is at a free surface: the smallest eigenvalue of the matrix of its neighbours "
-                   "is below " +
-                   text(least) + "; use shift yes where there is a free surface" +
-                   (update->setupflag
-                        ? ""
-                        : "; if the atom is inside the fluid: start from a lattice disturbed by "
-                          "displace_atoms, since the flow draws the rows of an exact lattice apart"));
+    voice.at_step().fail_one("keyword correction: atom " + std::to_string(atom->tag[stops]) +
+                             " is at a free surface: the smallest eigenvalue of the matrix of its neighbours "
+                             "is below " +
+                             text(least) + "; use shift yes where there is a free surface" +
+                             (update->setupflag
+                                  ? ""
+                                  : "; if the atom is inside the fluid: start from a lattice disturbed by "
+                                    "displace_atoms, since the flow draws the rows of an exact lattice apart"));
   if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
   forward(order.data(), columns);
   std::fill_n(&order[columns * (size_t) n], columns, 0.0);
@@ -402,11 +392,11 @@ void PairSph::coincident()
     for (int m = 0; m < pairs.count[i]; m++) {
       const int j = pairs.neighbor[i][m] & pairs.mask;
       if (memcmp(atom->x[i], atom->x[j], 3 * sizeof(double)) == 0)
-        voice.fail_one(at_step() + "atoms " + std::to_string(atom->tag[i]) + " and " +
-                       std::to_string(atom->tag[j]) + " are at one place");
+        voice.at_step().fail_one("atoms " + std::to_string(atom->tag[i]) + " and " +
+                                 std::to_string(atom->tag[j]) + " are at one place");
     }
   }
-  voice.fail_one(at_step() + "two atoms are at one place");
+  voice.at_step().fail_one("two atoms are at one place");
 }
 
 // --- for other fixes ----------------------------------------------------------------------------

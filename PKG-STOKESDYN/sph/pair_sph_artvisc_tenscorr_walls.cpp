@@ -2,13 +2,12 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_sph_opening.h"
-#include "fix_sph_pressure.h"
-#include "fix_wall_adami_sph.h"
+#include "fix_sph_settings.h"
+#include "fix_wall_sph.h"
 #include "keywords.h"
 #include "sd_sph_wall.h"
 
 #include "atom.h"
-#include "update.h"
 
 #include <algorithm>
 
@@ -82,7 +81,7 @@ void PairSph::held_row(int i, const double *sums_i, const std::vector<const doub
 void PairSph::no_density(const Voice &of, int i, const std::string &asked) const
 {
   const FixSphPressure *eos = state_of(i);
-  of.fail_one(at_step() + "atom " + std::to_string(atom->tag[i]) + ": the pressure " + asked +
+  of.at_step().fail_one("atom " + std::to_string(atom->tag[i]) + ": the pressure " + asked +
               " is not above " + text(sd_sph_least_pressure(&eos->state)) + ", the lowest of fix " +
               eos->id + ": if gravity has the right sign, use a larger B or P0");
 }

@@ -1,6 +1,7 @@
 #include "sph.h"
 
 #include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "force.h"
@@ -60,4 +61,70 @@ namespace Sph {
   }
 
 }    // namespace Sph
+
+// --- fixes ---------------------------------------------------------------------------------------
+
+SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) : RowsFix(lmp, narg, arg)
+{
+  Sph::require_scene(voice);
+}
+
+void SphFix::init()
+{
+  pair = Sph::require_pair(voice);
+}
+
+void SphOutputFix::begin()
+{
+  keep({&values}, nullptr, false);
+  peratom_flag = 1;
+  size_peratom_cols = 0;
+  peratom_freq = 1;
+}
+
+void SphOutputFix::grow_arrays(int nmax)
+{
+  RowsFix::grow_arrays(nmax);
+  vector_atom = values.array()[0];
+}
+
+void SphOutputFix::output(const double *numbers)
+{
+  for (int i = 0; i < atom->nlocal; i++) *values.give(i) = numbers[i];
+}
+
+void BodyForce::parse(Keywords &in)
+{
+  for (Field &part : parts) part = Field::parse(in, Field::ONE_FOR_ALL);
+}
+
+void BodyForce::init(LAMMPS *lmp)
+{
+  for (Field &part : parts) part.init(lmp);
+}
+
+void BodyForce::find(LAMMPS *lmp)
+{
+  for (int d = 0; d < 3; d++) g[d] = parts[d].evaluate(lmp);
+}
+
+WallFix::WallFix(LAMMPS *lmp, int narg, char **arg) : RowsFix(lmp, narg, arg)
+{
+  dynamic_group_allow = 1;
+  vector_flag = 1;
+  size_vector = 3;
+  global_freq = 1;
+  extvector = 1;
+}
+
+int WallFix::setmask()
+{
+  return FixConst::POST_FORCE;
+}
+
+double WallFix::compute_vector(int k)
+{
+  return sum_of_all(world, on_wall[k]);
+}
+
 }    // namespace StokesDyn

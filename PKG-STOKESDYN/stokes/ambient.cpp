@@ -1,5 +1,6 @@
 #include "ambient.h"
 
+#include "halo.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 
@@ -35,10 +36,9 @@ void Ambient::init()
   if (igroup < 0)
     voice.fail("keyword group: group '" + settings.group + "' does not exist");
   groupbit = group->bitmask[igroup];
-  const std::string keyword = voice.command + ": keyword ";
-  settings.visc.init(lmp, keyword + "visc");
-  for (auto &field : settings.velocity) field.init(lmp, keyword + "fluid_velocity");
-  for (auto &field : settings.vorticity) field.init(lmp, keyword + "fluid_vorticity");
+  settings.visc.init(lmp);
+  for (Field &field : settings.velocity) field.init(lmp);
+  for (Field &field : settings.vorticity) field.init(lmp);
 }
 
 bool Ambient::numbers_only() const
@@ -75,10 +75,10 @@ void Ambient::read(bool with_spins, Derivatives derivatives, double time)
   select();
   read_fluid(derivatives);
   const bigint none = MAXBIGINT;
-  bigint mine = none, first;
+  bigint mine = none;
   for (int i : those)
     if (const int f = fault(i)) mine = std::min(mine, (bigint) atom->tag[i] * 16 + f);
-  MPI_Allreduce(&mine, &first, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  const bigint first = smallest_of_all(world, mine);
   if (first != none) complain(first);
 }
 
@@ -119,18 +119,6 @@ void Ambient::read_fluid(Derivatives derivatives)
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
 }
 
-namespace {
-  struct Edges {
-    double edge[3][3];
-    explicit Edges(const Domain *domain) :
-        edge{{domain->xprd, 0.0, 0.0},
-             {domain->h[5], domain->yprd, 0.0},
-             {domain->h[4], domain->h[3], domain->zprd}}
-    {
-    }
-  };
-}    // namespace
-
 /* The same gradient everywhere */
 void Ambient::read_box(bool with_gradients)
 {
@@ -143,42 +131,64 @@ void Ambient::read_box(bool with_gradients)
   }
 }
 
-/* Sum over this rank's spheres of what velocity p grows by along an edge; most [2]: the largest
- * growth beyond the one expected, and velocity. By formulas in x, y, z; a velocity stored per atom
- * does not follow. */
-double Ambient::growth_along(const double *edge, int p, double expected, double *most)
+/* Fluid velocity [3 nlocal] at the atoms displaced by a vector, in radii of each or as it is. What is no
+ * formula in x, y, z, or a number stored per atom, stays as it is; so does component `but`. */
+std::vector<double> Ambient::velocity_at(const double by[3], bool in_radii, int but)
 {
-  std::vector<double> there(atom->nlocal + 1);
+  std::vector<double> values = u;
   const Places kept(atom);
   for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) atom->x[i][d] += edge[d];
-  settings.velocity[p].evaluate(lmp, igroup, there.data(), 1);
-  double sum = 0.0;
-  for (int i : those) {
-    const double growth = there[i] - u[3 * (size_t) i + p];
-    most[0] = std::max(most[0], std::fabs(growth - expected));
-    most[1] = std::max(most[1], std::fabs(u[3 * (size_t) i + p]));
-    sum += growth;
+    for (int d = 0; d < 3; d++) atom->x[i][d] += by[d] * (in_radii ? atom->radius[i] : 1.0);
+  for (int d = 0; d < 3; d++)
+    if (settings.velocity[d].is_atom_style() && d != but)
+      settings.velocity[d].evaluate(lmp, igroup, values.data() + d, 3);
+  if (!settings.grid) return values;
+  sd_flow_frame frame;
+  sd_flow_grid_frame(&settings.grid->grid, now, &frame);    // read_grid() has looked at the time
+  for (size_t i : those) {
+    double x[3], value[4];
+    in_the_box((int) i, x);
+    sd_flow_grid_at(&settings.grid->grid, &frame, 1, x, value, nullptr);
+    std::copy_n(value, 3, &values[3 * i]);
   }
-  return sum;
+  return values;
 }
 
-/* By how much velocity p of the box's own flow grows along an edge */
-double Ambient::growth_of_box(const double *edge, int p) const
+static void edge_of_box(const Domain *domain, int q, double edge[3])
 {
-  return sd_dot(motion.gradient + 3 * p, edge);
+  const int step[3] = {q == 0, q == 1, q == 2};
+  std::fill_n(edge, 3, 0.0);
+  sd_add_edges(domain->h, step, edge);
+}
+
+/* Of the components that are formulas: sums [3] of what they grow by along an edge, over this rank's
+ * spheres; most [2] the largest growth beyond the one expected [3], and velocity. */
+void Ambient::growth_along(const double edge[3], const double expected[3], double sums[3],
+                           double most[2])
+{
+  const std::vector<double> there = velocity_at(edge, false);
+  for (size_t i : those)
+    for (size_t p = 0; p < 3; p++) {
+      if (!settings.velocity[p].is_atom_style()) continue;
+      const double here = u[3 * i + p], growth = there[3 * i + p] - here;
+      most[0] = std::max(most[0], std::fabs(growth - expected[p]));
+      most[1] = std::max(most[1], std::fabs(here));
+      sums[p] += growth;
+    }
 }
 
 /* In a run of no steps fix deform has no rate for some of its styles. */
 double Ambient::misfit()
 {
-  if (u.empty() || (motion.deforms && update->endstep == update->beginstep)) return 0.0;
-  const Edges edges(domain);
-  double most[2] = {0.0, 0.0};
+  const bool no_rate = motion.deforms && update->endstep == update->beginstep;
+  if (u.empty() || settings.grid || settings.box || no_rate) return 0.0;
+  double most[2] = {0.0, 0.0}, sums[3] = {0.0}, edge[3], of_box[3];
   modify->clearstep_compute();
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3 && settings.velocity[p].is_atom_style(); q++)
-      growth_along(edges.edge[q], p, growth_of_box(edges.edge[q], p), most);
+  for (int q = 0; q < 3; q++) {
+    edge_of_box(domain, q, edge);
+    sd_multiply3(motion.gradient, edge, of_box);
+    growth_along(edge, of_box, sums, most);
+  }
   modify->addstep_compute(update->ntimestep + 1);
   MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
   return most[0] > 0.0 ? most[0] / std::max(most[0], most[1]) : 0.0;
@@ -189,54 +199,50 @@ double Ambient::misfit()
 void Ambient::find_jumps()
 {
   static const int OF[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};    // velocity, edge
+  static const double NOTHING[3] = {0.0, 0.0, 0.0};
   jumping = false;
   if (!domain->deform_flag || u.empty() || settings.grid) return;
-  const Edges edges(domain);
-  double sums[7] = {0.0}, most[2] = {0.0, 0.0};
-  if (settings.box) {
-    jumping = true;
-    for (int k = 0; k < 6; k++) jump[k] = growth_of_box(edges.edge[OF[k][1]], OF[k][0]);
-    return;
+  double sums[3][3] = {{0.0}}, most[2] = {0.0, 0.0}, count = 1.0, edge[3];
+  for (int q = 0; q < 3; q++) {
+    edge_of_box(domain, q, edge);
+    if (settings.box)
+      sd_multiply3(motion.gradient, edge, sums[q]);
+    else if (domain->periodicity[q])
+      growth_along(edge, NOTHING, sums[q], most);
   }
-  for (int k = 0; k < 6; k++)
-    if (settings.velocity[OF[k][0]].is_atom_style() && domain->periodicity[OF[k][1]])
-      sums[k] = growth_along(edges.edge[OF[k][1]], OF[k][0], 0.0, most);
-  sums[6] = those.size();
-  MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, world);
-  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
-  jumping = most[0] > 1e-9 * most[1];
-  for (int k = 0; k < 6; k++) jump[k] = jumping ? sums[k] / sums[6] : 0.0;
+  if (!settings.box) {
+    MPI_Allreduce(MPI_IN_PLACE, sums, 9, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
+    count = sum_of_all(world, (double) those.size());
+  }
+  jumping = settings.box || most[0] > 1e-9 * most[1];
+  for (int k = 0; k < 6; k++) jump[k] = jumping ? sums[OF[k][1]][OF[k][0]] / count : 0.0;
 }
 
-/* slope [nlocal] = d u_p / d x_q, by central differences over one radius to either side. For a field
- * given by variables that are formulas in x, y, z; values stored per atom do not follow, and their
- * gradient comes out as 0. */
-void Ambient::slope_of(int p, int q, std::vector<double> &slope)
-{
-  const int n = atom->nlocal;
-  std::vector<double> ahead(n + 1), behind(n + 1);
-  for (const double side : {1.0, -1.0}) {
-    const Places kept(atom);
-    for (int i = 0; i < n; i++) atom->x[i][q] += side * atom->radius[i];
-    settings.velocity[p].evaluate(lmp, igroup, (side > 0.0 ? ahead : behind).data(), 1);
-  }
-  slope.resize(n + 1);
-  sd_flow_slope(n, ahead.data(), behind.data(), atom->radius, slope.data());
-}
-
-/* From the formulas of the fluid velocity, as much as is wanted of it: a vorticity that is given
- * needs none of them. */
+/* By central differences over one radius to either side. Values stored per atom do not follow, and
+ * their gradient comes out as 0. A vorticity that is given needs none of this, and a rotation no
+ * component along its own direction. */
 void Ambient::read_gradient()
 {
   if (gradient.empty() && settings.has_vorticity) return;
-  std::vector<double> slope;
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) {
-      if (!settings.velocity[p].is_atom_style() || (p == q && gradient.empty())) continue;
-      slope_of(p, q, slope);
-      if (p != q) sd_flow_add_rotation(atom->nlocal, p, q, slope.data(), w.data());
-      for (size_t i = 0; 9 * i + 9 < gradient.size(); i++) gradient[9 * i + 3 * p + q] = slope[i];
+  for (size_t q = 0; q < 3; q++) {
+    const int but = gradient.empty() ? (int) q : -1;
+    double by[3] = {0.0, 0.0, 0.0};
+    by[q] = 1.0;
+    const std::vector<double> ahead = velocity_at(by, true, but);
+    by[q] = -1.0;
+    const std::vector<double> behind = velocity_at(by, true, but);
+    for (size_t i = 0; i < (size_t) atom->nlocal; i++) {
+      double G[9] = {0.0}, rotation[3];
+      for (size_t p = 0; p < 3; p++)
+        G[3 * p + q] = sd_flow_slope(ahead[3 * i + p], behind[3 * i + p], atom->radius[i]);
+      sd_flow_rotation(G, rotation);
+      for (size_t p = 0; p < 3; p++) {
+        w[3 * i + p] += rotation[p];
+        if (!gradient.empty()) gradient[9 * i + 3 * p + q] = G[3 * p + q];
+      }
     }
+  }
 }
 
 void Ambient::read_vorticity()
@@ -248,37 +254,15 @@ void Ambient::read_vorticity()
   for (double &value : w) value *= 0.5;
 }
 
-/* values [3 nlocal] of the fluid velocity at the atoms that take part, each displaced by a vector
- * times its radius; what is no formula in x, y, z stays as it is. */
-void Ambient::values_around(const double by[3], std::vector<double> &values)
-{
-  const Places kept(atom);
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) atom->x[i][d] += by[d] * atom->radius[i];
-  for (int d = 0; d < 3; d++)
-    if (settings.velocity[d].is_atom_style())
-      settings.velocity[d].evaluate(lmp, igroup, values.data() + d, 3);
-  if (!settings.grid) return;
-  sd_flow_frame frame;
-  sd_flow_grid_frame(&settings.grid->grid, now, &frame);    // read_grid() has looked at the time
-  for (size_t i : those) {
-    double x[3], value[4];
-    in_the_box((int) i, x);
-    sd_flow_grid_at(&settings.grid->grid, &frame, 1, x, value, nullptr);
-    std::copy_n(value, 3, &values[3 * i]);
-  }
-}
-
 /* By second differences. Values stored per atom do not follow, and have none. */
 void Ambient::read_curvature()
 {
   std::vector<double> bend(SD_FLOW_SECOND * ((size_t) atom->nlocal + 1), 0.0);
-  std::vector<double> there = u;
   for (int e = 0; e < SD_FLOW_DIRECTIONS; e++)
     for (const double side : {SD_FLOW_STEP, -SD_FLOW_STEP}) {
       double by[3];
       for (int d = 0; d < 3; d++) by[d] = side * sd_flow_around[e][d];
-      values_around(by, there);
+      const std::vector<double> there = velocity_at(by, true);
       for (size_t i : those)
         for (size_t p = 0; p < 3; p++)
           bend[SD_FLOW_SECOND * i + 6 * p + e] += there[3 * i + p] - u[3 * i + p];
@@ -314,10 +298,11 @@ void Ambient::read_grid()
   sd_flow_frame frame;
   if (sd_flow_grid_frame(&grid, now, &frame) != SD_OK) {
     const sd_grid_axis &axis = grid.axis[SD_GRID_TIME];
-    voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
-               ": the time " + text(now) + " is outside of the series in '" + settings.grid->path +
-               "', which goes from " + text(axis.at[0]) + " to " + text(axis.at[axis.n - 1]) +
-               "; end the line of its axis with clamp or periodic to go on");
+    voice.of("keyword fluid_velocity")
+        .at_step()
+        .fail("the time " + text(now) + " is outside of the series in '" + settings.grid->path +
+              "', which goes from " + text(axis.at[0]) + " to " + text(axis.at[axis.n - 1]) +
+              "; end the line of its axis with clamp or periodic to go on");
   }
   // so many at once that memory keeps up, and few enough for the stack
   constexpr size_t BLOCK = 64;

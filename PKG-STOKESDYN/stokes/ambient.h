@@ -42,10 +42,10 @@ class Ambient : protected LAMMPS_NS::Pointers {
     /* empty: the whole box */
     std::string region;
     std::string group = "all";
-  } settings;
+  } &settings;
 
-  Ambient(const Voice &voice, Epochs &epochs) :
-      Pointers(voice.lmp), voice(voice), epochs(epochs)
+  Ambient(const Voice &voice, Epochs &epochs, Settings &settings) :
+      Pointers(voice.lmp), settings(settings), voice(voice), epochs(epochs)
   {
   }
 
@@ -166,15 +166,13 @@ class Ambient : protected LAMMPS_NS::Pointers {
   bool group_stands() const;
   void select();
   void read_fluid(Derivatives derivatives);
-  double growth_along(const double *edge, int p, double expected, double *most);
-  double growth_of_box(const double *edge, int p) const;
+  std::vector<double> velocity_at(const double by[3], bool in_radii, int but = -1);
+  void growth_along(const double edge[3], const double expected[3], double sums[3], double most[2]);
   void find_jumps();
-  void slope_of(int p, int q, std::vector<double> &slope);
   void read_box(bool gradients);
   void read_gradient();
   void read_vorticity();
   void read_curvature();
-  void values_around(const double by[3], std::vector<double> &values);
   void read_grid();
   void in_the_box(int i, double *x) const;
   std::string outside_of_grid(const double *x) const;

@@ -1,5 +1,5 @@
-/* Between the core and LAMMPS: exceptions become statuses, and statuses errors. What the core calls
- * must not throw: its frames are C. */
+/* Between the core and LAMMPS: exceptions become statuses, statuses errors, and objects of the core have
+ * owners. What the core calls must not throw: its frames are C. */
 #ifndef SD_CALLBACK_H
 #define SD_CALLBACK_H
 
@@ -11,6 +11,14 @@
 #include <type_traits>
 
 namespace StokesDyn {
+
+/* An object of the core, zeros in the beginning, that frees what it holds when it goes */
+template <class T, void (*release)(T *)> struct Owned : T {
+  Owned() : T() {}
+  ~Owned() { release(this); }
+  Owned(const Owned &) = delete;
+  Owned &operator=(const Owned &) = delete;
+};
 
 /* The body of a function that the core calls: SD_OK, or what it returns. An exception ends there, as
  * a status that the core hands back to its caller; LAMMPS has printed the text of its own by then. */

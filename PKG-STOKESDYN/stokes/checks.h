@@ -1,12 +1,18 @@
-/* Settings that LAMMPS or the solver would do something foolish with. Free functions, each called
- * with the name of the command that the user is told. */
+/* Settings that LAMMPS or the solver would do something foolish with; the plane of keyword wall, where
+ * it stands and what does not go with it; what does not go with motion without inertia. Free
+ * functions, each called with the name of the command that the user is told. */
 #ifndef SD_CHECKS_H
 #define SD_CHECKS_H
 
 #include "scene.h"
 
+namespace LAMMPS_NS {
+class Fix;
+}
 
 namespace StokesDyn {
+
+class Hydrodynamics;
 
 /* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
 void check_room_of_blas(const Voice &voice);
@@ -32,6 +38,45 @@ void warn_of_short_cutoff(const Voice &voice, const Scene &scene);
 /* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and
  * none of them means anything. */
 void refuse_close_oseen(const Voice &voice, const Scene &scene);
+
+/* "zlo at 0.5", as a user would say it */
+std::string wall_name(const sd_wall &wall);
+
+/* Before a run: puts a wall at the side of the box where that is now. Errors: a periodic direction;
+ * a side that moves or leans. */
+void find_wall(const Voice &voice, Scene::Settings &settings);
+
+/* The stream must rest where the wall is. Error: a number for its velocity across the wall; warning:
+ * numbers along it. */
+void check_stream_at_wall(const Voice &voice, const sd_wall &wall,
+                          const Ambient::Settings &fluid);
+
+/* Where the rows of the scene stand. Errors: the side of the box has left the wall; a centre that is
+ * not in front of it. Returns how many spheres cut it, on all ranks. */
+double spheres_cut_by_wall(const Voice &voice, const Scene &scene);
+
+// --- motion without inertia: errors, that name the other command, and limits of the time step ----
+
+/* Does the time step adapt? Group bit of those that are held, 0: nobody is. */
+struct OverdampedWays {
+  bool adapts;
+  int held_bit;
+};
+
+/* The settings of the pair style, other fixes and pair styles, the kind of run. On all ranks. */
+void refuse_inertia(const Voice &voice, const LAMMPS_NS::Fix *self,
+                    const Hydrodynamics &hydro, const OverdampedWays &ways);
+
+/* With Brownian motion: contacts with friction, whose damping has no noise; keyword begins the message. A
+ * warning for contacts that do not tell. */
+void refuse_friction(const Voice &keyword);
+
+/* Once a run, when something besides the pair style acts on the spheres: how long a step contacts
+ * and bonds allow. A contact of stiffness k relaxes at the rate lambda k/(6 pi eta a), lambda up to
+ * 2.6 in dense packings, and a scheme is stable while that times the step is below 1 (ab2) or 2
+ * (euler). smallest_drag: 6 pi eta a */
+void announce_step_limit(const Voice &voice, bool euler,
+                         double smallest_drag);
 
 /* LAMMPS sorts its atoms into bins of half the cut-off, which is small where a style has none. In
  * an open box that is mostly empty the bins would take most of the memory, or be too many: then

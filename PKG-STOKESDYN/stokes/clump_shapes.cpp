@@ -16,23 +16,6 @@ namespace StokesDyn {
 
 static const double SOLVE_MEMORY = 4e9;    // bytes that the solve of a shape may take
 
-ClumpShape::~ClumpShape()
-{
-  sd_shape_free(&shape);
-  sd_clump_free(&clump);
-  sd_multiblob_shape_free(&points);
-  sd_body_shape_free(&body);
-}
-
-ClumpShapes::ClumpShapes(const Voice &voice) : Pointers(voice.lmp), voice(voice), shells()
-{
-}
-
-ClumpShapes::~ClumpShapes()
-{
-  sd_shells_free(&shells);
-}
-
 void ClumpShapes::clear()
 {
   by_size.clear();
@@ -175,7 +158,7 @@ void ClumpShapes::solve(const ClumpModel &model)
     const int size = 72 * s.shape.n;
     clump.table = comm->me == root ? s.clump.table : (double *) malloc(sizeof(double) * size);
     if (!clump.table) voice.fail_one("keyword rigid_clumps: out of memory");
-    s.clump = clump;
+    static_cast<sd_clump &>(s.clump) = clump;
     MPI_Bcast(s.clump.table, size, MPI_DOUBLE, root, world);
     sd_clump_noise_of(&s.clump, &s.noise);
     announce(s, r.seconds);

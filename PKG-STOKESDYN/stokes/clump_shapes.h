@@ -3,6 +3,7 @@
 #ifndef SD_CLUMP_SHAPES_H
 #define SD_CLUMP_SHAPES_H
 
+#include "callback.h"
 #include "keywords.h"
 #include "pointers.h"
 
@@ -29,16 +30,14 @@ struct ClumpModel {
 struct ClumpShape {
   int number;
   int64_t molecule;    // of the first of its kind
-  sd_shape shape = {};
-  sd_clump clump = {};
+  Owned<sd_shape, sd_shape_free> shape;
+  Owned<sd_clump, sd_clump_free> clump;
   sd_clump_noise noise = {};
   /* made by ClumpShapes::blocks() */
-  mutable sd_body_shape body = {};
+  mutable Owned<sd_body_shape, sd_body_shape_free> body;
   /* made by ClumpShapes::points() */
-  mutable sd_multiblob_shape points = {};
+  mutable Owned<sd_multiblob_shape, sd_multiblob_shape_free> points;
   ClumpShape(int number, int64_t molecule) : number(number), molecule(molecule) {}
-  ~ClumpShape();
-  ClumpShape(const ClumpShape &) = delete;
 };
 
 /* Centres [3n] and radii [n] of the spheres of a clump, in order of ID */
@@ -49,10 +48,7 @@ struct ClumpGeometry {
 
 class ClumpShapes : protected LAMMPS_NS::Pointers {
  public:
-  explicit ClumpShapes(const Voice &voice);
-  ~ClumpShapes();
-  ClumpShapes(const ClumpShapes &) = delete;
-  ClumpShapes &operator=(const ClumpShapes &) = delete;
+  explicit ClumpShapes(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
 
   void clear();
   /* What is left of a solve that ended in an error, perhaps not on all ranks. */
@@ -89,7 +85,7 @@ class ClumpShapes : protected LAMMPS_NS::Pointers {
   std::map<int, std::unique_ptr<ClumpShape>> shapes;    // by number
   std::multimap<double, const ClumpShape *> by_size;
   int solved = 0;    // shapes up to this number have been
-  sd_shells shells;
+  Owned<sd_shells, sd_shells_free> shells;
 
   void announce(const ClumpShape &s, double seconds) const;
 };

@@ -25,16 +25,11 @@ ComputeStokesDynamicsStress::ComputeStokesDynamicsStress(LAMMPS *lmp, int narg, 
   vector_flag = 1;
   size_vector = 18;
   extvector = 0;
-  vector = new double[18];
+  vector = sums;
   peratom_flag = 1;
   size_peratom_cols = COLUMNS;
   // virials of pairs, bonds and fixes are wanted in the steps in which this is asked for
   pressflag = timeflag = 1;
-}
-
-ComputeStokesDynamicsStress::~ComputeStokesDynamicsStress()
-{
-  delete[] vector;
 }
 
 Hydrodynamics &ComputeStokesDynamicsStress::hydrodynamics() const
@@ -86,13 +81,13 @@ void ComputeStokesDynamicsStress::compute_vector()
     voice.fail("the virials of other forces were not computed in this step; name this compute in "
                "thermo_style");
   find_moments();
-  double sums[18] = {0.0};
+  double mine[18] = {0.0};
   for (int i = 0; i < atom->nlocal; i++)
-    for (int k = 0; k < COLUMNS; k++) sums[k] += moments[COLUMNS * (size_t) i + k];
-  add_others(sums + COLUMNS);
-  MPI_Allreduce(sums, vector, 18, MPI_DOUBLE, MPI_SUM, world);
+    for (int k = 0; k < COLUMNS; k++) mine[k] += moments[COLUMNS * (size_t) i + k];
+  add_others(mine + COLUMNS);
+  MPI_Allreduce(mine, sums, 18, MPI_DOUBLE, MPI_SUM, world);
   const double unit = force->nktv2p / (domain->xprd * domain->yprd * domain->zprd);
-  for (int k = 0; k < 18; k++) vector[k] *= unit;
+  for (int k = 0; k < 18; k++) sums[k] *= unit;
 }
 
 void ComputeStokesDynamicsStress::compute_peratom()

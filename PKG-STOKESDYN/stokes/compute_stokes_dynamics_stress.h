@@ -18,7 +18,6 @@ class ComputeStokesDynamicsStress : public LAMMPS_NS::Compute {
   static constexpr const char *STYLE = "stokes_dynamics/stress";
 
   ComputeStokesDynamicsStress(LAMMPS_NS::LAMMPS *, int, char **);
-  ~ComputeStokesDynamicsStress() override;
   void init() override;
   void compute_vector() override;
   void compute_peratom() override;
@@ -27,6 +26,7 @@ class ComputeStokesDynamicsStress : public LAMMPS_NS::Compute {
  private:
   const Voice voice;
   enum { COLUMNS = 12 };
+  double sums[18] = {0.0};
   std::vector<double> moments;
   /* LAMMPS reads rows through these */
   std::vector<double *> rows;

@@ -1,8 +1,8 @@
 #include "fix_stokes_dynamics.h"
 
 #include "fixes.h"
-#include "hydrodynamics.h"
 #include "keywords.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "update.h"
@@ -12,11 +12,10 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-
 FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics"), rows(9), total()
+    RowsFix(lmp, narg, arg), rows(9), total()
 {
-  Keywords in(lmp, voice.command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   in.parse({{"apply", [&] { apply = in.yes_no() ? YES : NO; }}});
   scalar_flag = 1;
   vector_flag = 1;
@@ -24,24 +23,13 @@ FixStokesDynamics::FixStokesDynamics(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extscalar = 1;
   extvector = -1;
-  extlist = new int[size_vector]{1, 1, 1, 0, 0, 0, 0, 0, 0};
+  extlist = extensive;
   keep({&rows}, &rows, false);
-}
-
-FixStokesDynamics::~FixStokesDynamics()
-{
-  delete[] extlist;
 }
 
 int FixStokesDynamics::setmask()
 {
   return FixConst::POST_FORCE;
-}
-
-Hydrodynamics &FixStokesDynamics::hydrodynamics() const
-{
-  return Hydrodynamics::of(
-      voice, "there is no pair_style stokes_dynamics whose force it could apply or report");
 }
 
 bool FixStokesDynamics::applies() const
@@ -98,20 +86,14 @@ void FixStokesDynamics::post_force(int /*vflag*/)
 /* Dissipation rate: the power that the spheres of the group lose to the fluid. */
 double FixStokesDynamics::compute_scalar()
 {
-  double all;
-  MPI_Allreduce(&total[3], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of_all(world, total[3]);
 }
 
 /* Total force x y z; iterations and residual of the last solve, solves, unconverged solves;
  * smallest eigenvalue met, time step limit. */
 double FixStokesDynamics::compute_vector(int k)
 {
-  if (k < 3) {
-    double all;
-    MPI_Allreduce(&total[k], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-    return all;
-  }
+  if (k < 3) return sum_of_all(world, total[k]);
   hydrodynamics();    // an error if there is none
   const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
   if (!memory) return 0.0;

@@ -4,20 +4,16 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_H
 #define SD_FIX_STOKES_DYNAMICS_H
 
-#include "epochs.h"
-#include "keywords.h"
+#include "hydrodynamics.h"
 #include "rows_fix.h"
 
 namespace StokesDyn {
-
-class Hydrodynamics;
 
 class FixStokesDynamics : public RowsFix {
  public:
   static constexpr const char *STYLE = "stokes_dynamics";
 
   FixStokesDynamics(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixStokesDynamics() override;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -28,16 +24,18 @@ class FixStokesDynamics : public RowsFix {
   bool applies() const;
 
  private:
-  const Voice voice;
   enum { NO, YES, UNSAID } apply = UNSAID;
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
   AtomArray rows;
   /* others than those of the pair style have zeros (Epochs::selection) */
   Since cleared;
+  /* of the global vector: the total force is a sum over the spheres */
+  int extensive[9] = {1, 1, 1, 0, 0, 0, 0, 0, 0};
   /* F and dissipation of the group, this rank */
   double total[4];
 
-  Hydrodynamics &hydrodynamics() const;
+  const HydrodynamicsOf hydrodynamics{
+      voice, "there is no pair_style stokes_dynamics whose force it could apply or report"};
 };
 
 }    // namespace StokesDyn

@@ -1,7 +1,6 @@
 #include "fix_stokes_dynamics_field.h"
 
 #include "callback.h"
-#include "hydrodynamics.h"
 #include "image_file.h"
 #include "keywords.h"
 #include "ranks.h"
@@ -19,9 +18,9 @@ using namespace StokesDyn;
 static const double MOST_POINTS = 2147483647.0 / 3.0;
 
 FixStokesDynamicsField::FixStokesDynamicsField(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics/field")
+    RowsFix(lmp, narg, arg)
 {
-  Keywords in(lmp, voice.command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   nevery = (int) in.positional("N").integer(1);
   file = in.positional("FILE").word();
   in.require(file.find('*') != std::string::npos,
@@ -46,20 +45,9 @@ FixStokesDynamicsField::FixStokesDynamicsField(LAMMPS *lmp, int narg, char **arg
                "keyword hi: '" + text(hi[d]) + "' must be above lo, " + text(lo[d]));
 }
 
-FixStokesDynamicsField::~FixStokesDynamicsField()
-{
-  sd_field_free(&tables);
-}
-
 int FixStokesDynamicsField::setmask()
 {
   return FixConst::END_OF_STEP;
-}
-
-Hydrodynamics &FixStokesDynamicsField::hydrodynamics() const
-{
-  return Hydrodynamics::of(
-      voice, "there is no pair_style stokes_dynamics whose flow it could write");
 }
 
 void FixStokesDynamicsField::init()

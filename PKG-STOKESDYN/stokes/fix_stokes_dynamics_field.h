@@ -3,9 +3,9 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_FIELD_H
 #define SD_FIX_STOKES_DYNAMICS_FIELD_H
 
-#include "fix.h"
-
-#include "keywords.h"
+#include "callback.h"
+#include "hydrodynamics.h"
+#include "rows_fix.h"
 
 #include "sd_field.h"
 
@@ -14,14 +14,11 @@
 
 namespace StokesDyn {
 
-class Hydrodynamics;
-
-class FixStokesDynamicsField : public LAMMPS_NS::Fix {
+class FixStokesDynamicsField : public RowsFix {
  public:
   static constexpr const char *STYLE = "stokes_dynamics/field";
 
   FixStokesDynamicsField(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixStokesDynamicsField() override;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -29,15 +26,15 @@ class FixStokesDynamicsField : public LAMMPS_NS::Fix {
   double memory_usage() override;
 
  private:
-  const Voice voice;
   std::string file;
   int points[3];
   /* corners of the grid, where they are given; else those of the box */
   bool has_lo = false, has_hi = false;
   double lo[3], hi[3];
-  sd_field tables = {};
+  Owned<sd_field, sd_field_free> tables;
 
-  Hydrodynamics &hydrodynamics() const;
+  const HydrodynamicsOf hydrodynamics{
+      voice, "there is no pair_style stokes_dynamics whose flow it could write"};
   sd_field_grid grid() const;
   int end_of_share(int planes, int p) const;
   void add_flow(Hydrodynamics &, const sd_ewald_box &, const sd_field_grid &, double *u);

@@ -2,11 +2,10 @@
 
 #include "fix_stokes_dynamics_field.h"
 #include "fixes.h"
-#include "hydrodynamics.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "deforming_box.h"
-#include "overdamped_checks.h"
+#include "checks.h"
 
 #include "sd_hash.h"
 #include "sd_linear.h"
@@ -27,12 +26,11 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), voice(lmp, "Fix stokes_dynamics/overdamped"), adapt(), noise(voice),
-    spin(voice), motion(3), random(6), load(6), before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), motion(3), random(6), load(6),
+    before(9), output(9)
 {
-  Keywords in(lmp, voice.command, words(narg, arg), 3);
+  Keywords in = keywords(narg, arg);
   in.parse({
       {"scheme",
        [&] {
@@ -75,12 +73,6 @@ int FixStokesDynamicsOverdamped::setmask()
   return INITIAL_INTEGRATE | POST_INTEGRATE | FINAL_INTEGRATE | (adapt.every ? END_OF_STEP : 0);
 }
 
-Hydrodynamics &FixStokesDynamicsOverdamped::hydrodynamics() const
-{
-  return Hydrodynamics::of(
-      voice, "there is no pair_style stokes_dynamics with the settings of the fluid");
-}
-
 void FixStokesDynamicsOverdamped::init()
 {
   held_bit = moved_bits = 0;
@@ -108,8 +100,7 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
   int moved = last.step != update->ntimestep || !hydro.memory->box_left_as_is();
   for (int i : hydro.ambient.who())
     if (!hydro.memory->placed_as_left(i)) moved = 1;
-  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
-  return !moved;
+  return !largest_of_all(world, moved);
 }
 
 /* Fingerprints of force, torque, fluid and viscosity: where spheres stand as they did, their velocities
@@ -169,7 +160,7 @@ void FixStokesDynamicsOverdamped::after_setup()
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
-  displaced = changed_before = 0.0;
+  displaced = error_before = 0.0;
   doublings = 0;
   find_velocities(hydro);
   if (!announced) announce();
@@ -218,8 +209,8 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   find_causes(hydro, last.causes);
   last.atoms = atom->natoms;
   const bool rotates = hydro.rotation(), flat = domain->dimension == 2;
-  const Velocities::Take take = [this, &hydro, rotates, flat](int i, const double *v,
-                                                              const double *F) {
+  const std::vector<double> pushed = loads(hydro);
+  const Velocities::Take take = [&, rotates, flat](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i);
     for (int d = 0; d < 3; d++) {
@@ -231,20 +222,25 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       row[6 + d] = F[3 + d];
     }
     std::copy_n(v, 3, motion.give(i));
-    if (rotates) spin.look(i, v + 3, F + 3);
+    if (rotates) spin.look(i, v + 3, F + 3, &pushed[6 * (size_t) i + 3]);
   };
-  const std::vector<double> loads = push(hydro);
   if (scheme == MIDPOINT)
-    begin_midpoint(hydro, take);
+    begin_midpoint(hydro, take, pushed);
   else
-    hydro.velocities(take, givens());
-  take_back(hydro, loads);
+    hydro.velocities(take, givens(), pushed);
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
   last.step = update->ntimestep;
 }
 
-/* For a solve: who is held */
+/* For a solve: force and torque on atom i, but for noise, and who is held */
+void FixStokesDynamicsOverdamped::load_on(int i, double *FT) const
+{
+  std::fill_n(FT, 6, 0.0);
+  std::copy_n(atom->f[i], 3, FT);
+  if (atom->torque_flag) std::copy_n(atom->torque[i], 3, FT + 3);
+}
+
 Velocities::Held FixStokesDynamicsOverdamped::givens() const
 {
   if (!held_bit && !spin.on()) return Velocities::Held();
@@ -256,14 +252,12 @@ Velocities::Held FixStokesDynamicsOverdamped::givens() const
 void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) const
 {
   const std::vector<char> &active = hydro.ambient.active();
-  tagint wrong = MAXTAGINT;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & groupbit) != !active[i]) wrong = std::min(wrong, atom->tag[i]);
-  MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  if (wrong == MAXTAGINT) return;
-  voice.fail("atom " + std::to_string(wrong) + " is selected either by the group of this fix or by "
-             "pair_style stokes_dynamics (keywords group and region, radius > 0), but not by both: "
-             "both must select the same atoms");
+  if (const tagint wrong = first_atom(lmp, [&](int i) {
+        return !(atom->mask[i] & groupbit) != !active[i];
+      }))
+    voice.fail("atom " + std::to_string(wrong) + " is selected either by the group of this fix or by "
+               "pair_style stokes_dynamics (keywords group and region, radius > 0), but not by both: "
+               "both must select the same atoms");
 }
 
 /* dt/(2 dt_old), what the change of velocities counts, of forces in scheme midpoint; 0: Euler, or it
@@ -287,7 +281,8 @@ void FixStokesDynamicsOverdamped::post_integrate()
 void FixStokesDynamicsOverdamped::advance()
 {
   Hydrodynamics &hydro = hydrodynamics();
-  displaced = changed = 0.0;
+  displaced = 0.0;
+  if (scheme != MIDPOINT && !warned_growth) watch();
   bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
   if (scheme == MIDPOINT)
     move_by_midpoint(hydro);
@@ -296,7 +291,6 @@ void FixStokesDynamicsOverdamped::advance()
   if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
   last.dt = update->dt;
   spin.advance();
-  if (!warned_growth) watch();
 }
 
 /* old [6] of the step before (a row of `before`) for a body whose place is now another image */
@@ -309,22 +303,14 @@ void FixStokesDynamicsOverdamped::at_image(const double *row, const double *plac
   for (int d = 0; d < 3; d++) old[d] += jump[d];
 }
 
-/* V [6] of the free sphere i in the step before, if there was one. place: where it is now. */
-bool FixStokesDynamicsOverdamped::old_velocity(int i, const double *place, double *V) const
-{
-  if (before.has(i)) at_image(before[i], place, V);
-  return before.has(i);
-}
-
 void FixStokesDynamicsOverdamped::move_free(int i)
 {
   if (is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
   const double scale = noise.on() ? noise.scale(dt) : 0.0;
-  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], step[3], change[3];
-  const double c = weight(old_velocity(i, x, old));
-  sd_mean_velocity(3, V, old, c, mean);
-  sd_minus(V, old, change);
+  double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], step[3];
+  if (before.has(i)) at_image(before[i], x, old);
+  sd_mean_velocity(3, V, old, weight(before.has(i)), mean);
   for (int d = 0; d < 3; d++) {
     step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
     x[d] += step[d];
@@ -332,13 +318,12 @@ void FixStokesDynamicsOverdamped::move_free(int i)
   double *row = before.give(i);
   std::copy_n(V, 3, row);
   std::copy_n(x, 3, row + 6);
-  moves(i, sqrt(sd_dot(step, step)), sqrt(sd_dot(change, change)));
+  moves(i, sqrt(sd_dot(step, step)));
 }
 
-void FixStokesDynamicsOverdamped::moves(int i, double distance, double change)
+void FixStokesDynamicsOverdamped::moves(int i, double distance)
 {
   displaced = std::max(displaced, distance / atom->radius[i]);
-  changed = std::max(changed, 0.5 * update->dt * change / atom->radius[i]);
 }
 
 /* By members of clumps: has it a velocity of before? Its row then, of its clump */
@@ -394,9 +379,8 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
       const size_t m = hydro.motion().member_of(hydro.motion().clumps[c], k);
       double *row = &rows[COLUMNS * m];
       row[MOVES] = 1.0;
-      row[CHANGE] = goes.change;
       sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
-      Lattice::add(box, &whole.steps[3 * m], row + STEP);
+      sd_add_edges(box, &whole.steps[3 * m], row + STEP);
       std::copy_n(goes.V, 6, row + BEFORE_V);
       std::copy_n(pose + 9, 3, row + PLACE);
       std::copy_n(turn, 9, row + TURN);
@@ -412,7 +396,7 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
 /* A whole step has been made. */
 void FixStokesDynamicsOverdamped::clump_moves(Hydrodynamics &hydro, int i, const double *row)
 {
-  moves(i, sqrt(sd_dot(row + STEP, row + STEP)), row[CHANGE]);
+  moves(i, sqrt(sd_dot(row + STEP, row + STEP)));
   hydro.turn(i, row + TURN);
 }
 
@@ -423,15 +407,11 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   const auto step = [&](size_t number) {
     const Velocities::Clump &clump = motion.clumps[number];
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
-    const double size = clump.body->shape->shape.size;
-    const bool has = row[0] != 0.0;
     double old[6], mean[6];
-    ClumpStep s = {tracked(clump), {}, {}, 0.0};
+    ClumpStep s = {tracked(clump), {}, {}};
     tracked_velocity(clump, s.V);
     at_image(row + 1, clump.pose + 9, old);
-    sd_mean_velocity(6, s.V, old, weight(has), mean);
-    for (int d = 0; d < 3 && has; d++)
-      s.change += fabs(s.V[d] - old[d]) + size * fabs(s.V[3 + d] - old[3 + d]);
+    sd_mean_velocity(6, s.V, old, weight(row[0] != 0.0), mean);
     for (int d = 0; d < 6; d++) {
       s.move[d] = update->dt * mean[d];
       if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
@@ -466,10 +446,11 @@ void FixStokesDynamicsOverdamped::set_step(double dt)
 /* A step that is too long for contacts shows as velocities that flip, and grow, with every step. */
 void FixStokesDynamicsOverdamped::watch()
 {
-  doublings = changed > 0.1 && changed > 2.0 * changed_before ? doublings + 1 : 0;
-  changed_before = changed;
+  const double error = largest_of_all(world, error_figure());
+  doublings = error > 0.1 && error > 2.0 * error_before ? doublings + 1 : 0;
+  error_before = error;
   if (doublings < 3) return;
   warned_growth = true;
-  voice.at_step().warn("the change of velocities grows from step to step, and is " + text(changed) +
+  voice.at_step().warn("the change of velocities grows from step to step, and is " + text(error) +
                        " radii per step now: use a shorter time step");
 }

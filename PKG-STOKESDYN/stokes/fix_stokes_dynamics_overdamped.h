@@ -8,16 +8,14 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
+#include "hydrodynamics.h"
 #include "noise.h"
 #include "rows_fix.h"
 #include "spin.h"
-#include "velocities.h"
 
 #include <functional>
 
 namespace StokesDyn {
-
-class Hydrodynamics;
 
 class FixStokesDynamicsOverdamped : public RowsFix {
  public:
@@ -39,11 +37,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double compute_scalar() override;
   double compute_vector(int) override;
 
-  void write_restart(FILE *) override;
-  void restart(char *) override;
-
  private:
-  const Voice voice;
   /* not given: by whether the mobility has a drift that noise needs */
   enum { AB2, EULER, MIDPOINT } scheme = AB2;
   bool scheme_given = false;
@@ -88,14 +82,16 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } last;
   bool from_file = false;
 
-  /* of this rank: largest displacement over radius in the last step, and the largest change of
-   * velocity by it; in the step before */
-  double displaced = 0.0, changed = 0.0, changed_before = 0.0;
+  /* in the last step: the largest displacement over radius, of this rank; error_figure() of all */
+  double displaced = 0.0, error_before = 0.0;
   int doublings = 0;
   bool warned_growth = false, announced = false;
 
   bool restored() const override { return last.step >= 0; }
-  Hydrodynamics &hydrodynamics() const;
+  std::vector<SavedNumbers> saved() override;
+  void read_state(const NamedState &) override { from_file = true; }
+  const HydrodynamicsOf hydrodynamics{
+      voice, "there is no pair_style stokes_dynamics with the settings of the fluid"};
   bool goes_on(const Hydrodynamics &) const;
   void find_causes(const Hydrodynamics &, double *causes) const;
   bool causes_stand(const Hydrodynamics &) const;
@@ -108,29 +104,28 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool is_held(int i) const { return atom->mask[i] & held_bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
+  void load_on(int i, double *FT) const;
   double weight(bool has) const;
   void advance();
-  bool old_velocity(int i, const double *place, double *V) const;
   void at_image(const double *row, const double *place, double *old) const;
-  void moves(int i, double distance, double change);
+  void moves(int i, double distance);
   void move_free(int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
   Velocities::Held givens() const;
-  std::vector<double> push(const Hydrodynamics &);
-  void take_back(const Hydrodynamics &, const std::vector<double> &loads);
-  void begin_midpoint(Hydrodynamics &, const Velocities::Take &take);
+  std::vector<double> loads(const Hydrodynamics &) const;
+  void begin_midpoint(Hydrodynamics &, const Velocities::Take &take, const std::vector<double> &loads);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   using Clumps = std::vector<Velocities::Clump>;
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; its
-   * velocity and that of the turn, and the change of these, for whoever keeps them */
+   * velocity and that of the turn, for whoever keeps them */
   struct ClumpStep {
     const double *centre;
-    double move[6], V[6], change;
+    double move[6], V[6];
   };
   using Step = std::function<ClumpStep(size_t c)>;
   /* rows of their atoms; V and the place of the centroid stand side by side, as in `before` */
-  enum { MOVES, CHANGE, STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
+  enum { MOVES, STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
   void step_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x,
                    const Step &step, const std::function<void(int i, const double *row)> &take);
   void clump_moves(Hydrodynamics &, int i, const double *row);

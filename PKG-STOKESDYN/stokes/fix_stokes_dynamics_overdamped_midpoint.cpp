@@ -13,7 +13,6 @@
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "fixes.h"
-#include "hydrodynamics.h"
 #include "keywords.h"
 
 #include "sd_linear.h"
@@ -34,11 +33,8 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
   const Voice keyword = voice.of("keyword scheme");
   if (hydro.settings.rigid.apart())
     keyword.fail("midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
-  int moved = 0;
-  for (int i = 0; i < atom->nlocal && hydro.settings.rigid.on; i++)
-    moved |= is_moved(i) && atom->molecule[i] != 0;
-  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
-  if (moved)
+  if (hydro.settings.rigid.on &&
+      first_atom(lmp, [this](int i) { return is_moved(i) && atom->molecule[i] != 0; }))
     keyword.fail("midpoint needs the orientation of clumps in the middle of a step, where fix move "
                  "does not give that of keyword held: let them rest, or move spheres");
   if (const Fix *deform = fix_like(lmp, "^deform"))
@@ -46,34 +42,23 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
                  " deforms this one: use ab2");
 }
 
-/* f and torque become what pushes spheres in this step, but for noise: extrapolated by scheme
- * midpoint, with the torque on those that slip; returned is what they were, to be taken back: [6] by
- * atom */
-std::vector<double> FixStokesDynamicsOverdamped::push(const Hydrodynamics &hydro)
+/* [6 nlocal] what pushes spheres in this step, but for noise: extrapolated by scheme midpoint, with the
+ * torque on those that slip */
+std::vector<double> FixStokesDynamicsOverdamped::loads(const Hydrodynamics &hydro) const
 {
-  std::vector<double> loads(6 * (size_t) atom->nlocal + 6);
+  std::vector<double> all(6 * (size_t) atom->nlocal + 6);
   for (int i : hydro.ambient.who()) {
+    double *now = &all[6 * (size_t) i];
+    load_on(i, now);
     const double part = scheme == MIDPOINT ? weight(load.has(i)) : 0.0;
-    for (int d = 0; d < (atom->torque_flag ? 6 : 3); d++) {
-      double &now = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
-      loads[6 * (size_t) i + d] = now;
-      if (part > 0.0) now += part * (now - load[i][d]);
-    }
-    if (spin.on()) spin.push(i);
+    for (int d = 0; d < 6 && part > 0.0; d++) now[d] += part * (now[d] - load[i][d]);
+    if (spin.on()) spin.push(i, now + 3);
   }
-  return loads;
+  return all;
 }
 
-void FixStokesDynamicsOverdamped::take_back(const Hydrodynamics &hydro,
-                                            const std::vector<double> &loads)
-{
-  for (int i : hydro.ambient.who()) {
-    std::copy_n(&loads[6 * (size_t) i], 3, atom->f[i]);
-    if (atom->torque_flag) std::copy_n(&loads[6 * (size_t) i + 3], 3, atom->torque[i]);
-  }
-}
-
-void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Velocities::Take &take)
+void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Velocities::Take &take,
+                                                 const std::vector<double> &pushed)
 {
   const int width = hydro.rotation() ? 6 : 3;
   Velocities::Draw draw;
@@ -81,7 +66,7 @@ void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Vel
     draw = noise.forces(hydro, [this, width](int i, const double *f) {
       std::copy_n(f, width, random.give(i));
     });
-  hydro.velocities(take, givens(), noise.on() ? &draw : nullptr);
+  hydro.velocities(take, givens(), pushed, noise.on() ? &draw : nullptr);
   dragged.x.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (int i : hydro.ambient.who())
     if (is_moved(i)) std::copy_n(atom->x[i], 3, &dragged.x[3 * (size_t) i]);
@@ -106,7 +91,7 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto step = [&](size_t c) {
-    ClumpStep s = {CENTROID, {}, {}, 0.0};
+    ClumpStep s = {CENTROID, {}, {}};
     for (int d = 0; d < 6; d++) {
       const bool in_plane = d < 2 || d == 5;
       s.move[d] = domain->dimension == 3 || in_plane ? dt * hydro.motion().clumps[c].V[d] : 0.0;
@@ -123,7 +108,6 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
   const double dt = update->dt;
-  const bool turns = atom->torque_flag;
   const std::vector<int> who = hydro.ambient.who(), lone = hydro.motion().lone;
   const Clumps start = hydro.motion().clumps;
   const std::vector<double> of_members = hydro.scene.whole.x;
@@ -144,19 +128,17 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   };
   place(0.5 * dt);
   hydro.begin();
-  const std::vector<double> loads = push(hydro);
-  for (int i : who)
-    for (int d = 0; d < (turns ? 6 : 3) && noise.on(); d++)
-      (d < 3 ? atom->f[i][d] : atom->torque[i][d - 3]) += random[i][d];
+  std::vector<double> pushed = loads(hydro);
+  for (size_t i : who)
+    for (size_t d = 0; d < 6 && noise.on(); d++) pushed[6 * i + d] += random[i][d];
   hydro.velocities([&V](int i, const double *v, const double *) {
     std::copy_n(v, 3, &V[3 * (size_t) i]);
-  }, givens());
+  }, givens(), pushed);
   place(dt);
   dragged.v.clear();
-  take_back(hydro, loads);
-  for (int i : who) std::copy_n(&loads[6 * (size_t) i], 6, load.give(i));
+  for (int i : who) load_on(i, load.give(i));
   for (int i : lone) {
     const double *v = &V[3 * (size_t) i];
-    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)), 0.0);
+    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)));
   }
 }

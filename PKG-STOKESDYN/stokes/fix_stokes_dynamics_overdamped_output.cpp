@@ -1,16 +1,12 @@
 /* Of fix stokes_dynamics/overdamped: what it reports, and its restart files. */
 #include "fix_stokes_dynamics_overdamped.h"
 
-#include "hydrodynamics.h"
 #include "keywords.h"
-#include "named_state.h"
 
 #include "sd_linear.h"
 #include "sd_neighbor.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "domain.h"
 #include "update.h"
 
 #include <algorithm>
@@ -23,13 +19,12 @@ using namespace StokesDyn;
 double FixStokesDynamicsOverdamped::compute_scalar()
 {
   const Hydrodynamics &hydro = hydrodynamics();
-  double mine = 0.0, all, s[6] = {0.0};
+  double mine = 0.0, s[6] = {0.0};
   for (int i : hydro.ambient.who()) {
     hydro.ambient.slip(i, s);
     mine += sd_dot(s + 3, output[i] + 6) - sd_dot(output[i], output[i] + 3) + hydro.strain_power(i);
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of_all(world, mine);
 }
 
 double FixStokesDynamicsOverdamped::compute_vector(int k)
@@ -37,14 +32,9 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
   hydrodynamics();    // an error if there is none
   const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
   if (!memory) return 0.0;
-  const auto largest = [this](double mine) {
-    double all;
-    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-    return all;
-  };
   const std::function<double()> values[] = {[&] { return fastest(); },
-                                            [&] { return largest(error_figure()); },
-                                            [&] { return largest(displaced); },
+                                            [&] { return largest_of_all(world, error_figure()); },
+                                            [&] { return largest_of_all(world, displaced); },
                                             [&] { return memory->global.iterations; },
                                             [&] { return memory->global.residual; },
                                             [&] { return memory->global.solves; },
@@ -61,13 +51,12 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
 double FixStokesDynamicsOverdamped::fastest() const
 {
   const Ambient &ambient = hydrodynamics().ambient;
-  double mine = 0.0, all, v[3];
+  double mine = 0.0, v[3];
   for (int i : ambient.who()) {
     for (int d = 0; d < 3; d++) v[d] = output[i][d] + ambient.velocity(i)[d];
     mine = std::max(mine, sd_dot(v, v));
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return sqrt(all);
+  return sqrt(largest_of_all(world, mine));
 }
 
 /* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
@@ -77,7 +66,8 @@ double FixStokesDynamicsOverdamped::error_figure() const
   const Velocities &moving = hydro.motion();
   double most = 0.0, old[6];
   for (int i : moving.lone) {
-    if (!old_velocity(i, atom->x[i], old)) continue;
+    if (!before.has(i)) continue;
+    at_image(before[i], atom->x[i], old);
     for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
     most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
   }
@@ -109,14 +99,14 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   const bool bound = hydro.settings.rigid.on;
   const int n = (int) who.size();
   std::vector<double> x, a, bodies;
-  double mine = 0.0, largest;
+  double mine = 0.0;
   for (int i : who) {
     x.insert(x.end(), atom->x[i], atom->x[i] + 3);
     a.push_back(atom->radius[i]);
     bodies.push_back(bound ? atom->molecule[i] : 0);
     mine = std::max(mine, atom->radius[i]);
   }
-  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double largest = largest_of_all(world, mine);
   if (largest == 0.0) return INFINITY;
   const double reach = 4.0 * largest;
   const Lattice lattice = Lattice::of(domain);
@@ -126,35 +116,19 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
                    "1000 images of each sphere and 1e7 in all; is it in other units?");
   halo.extend(lattice.h, x, {&a, &bodies});
   const std::vector<int64_t> body(bodies.begin(), bodies.end());
-  double gap = INFINITY, all;
+  double gap = INFINITY;
   if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, a.size(), reach, &gap) != SD_OK)
     voice.fail_one("out of memory for the smallest gap");
-  MPI_Allreduce(&gap, &all, 1, MPI_DOUBLE, MPI_MIN, world);
-  return all;
+  return smallest_of_all(world, gap);
 }
 
 // --- restart -------------------------------------------------------------------------------------------------
 
-void FixStokesDynamicsOverdamped::write_restart(FILE *fp)
+std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
 {
-  if (comm->me != 0) return;
-  NamedState out(STYLE);
-  out.put("step", last.step);
-  out.put("dt", last.dt);
-  out.put("next_dt", last.next_dt);
-  out.put("atoms", last.atoms);
-  out.put("causes", std::vector<double>(last.causes, last.causes + 10));
-  out.write(fp);
-}
-
-void FixStokesDynamicsOverdamped::restart(char *buf)
-{
-  NamedState in(STYLE);
-  if (!in.read(lmp, buf)) return;
-  last.step = in.get("step", -1.0);
-  last.dt = in.get("dt", 0.0);
-  last.next_dt = in.get("next_dt", 0.0);
-  last.atoms = in.get("atoms", 0.0);
-  in.get("causes", last.causes, 10);
-  from_file = true;
+  return {{"step", &last.step},
+          {"dt", &last.dt},
+          {"next_dt", &last.next_dt},
+          {"atoms", &last.atoms},
+          {"causes", last.causes, 10}};
 }

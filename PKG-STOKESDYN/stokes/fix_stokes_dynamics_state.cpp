@@ -2,10 +2,8 @@
 
 #include "keywords.h"
 #include "lammps_compat.h"
-#include "named_state.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "modify.h"
 #include "update.h"
@@ -124,49 +122,40 @@ void FixStokesDynamicsState::post_run()
 
 // --- restart ---------------------------------------------------------------------------------
 
-/* What restart files hold of the numbers, by name. */
-template <class Global, class Visit> static void each_number(Global &g, const Visit &visit)
+std::vector<SavedNumbers> FixStokesDynamicsState::saved()
 {
-  visit("last_step", g.last_step);
-  visit("last_solve", g.last_solve);
-  visit("reported", g.reported);
-  visit("spheres", g.spheres);
-  visit("solves", g.solves);
-  visit("unconverged", g.unconverged);
-  visit("diverged", g.diverged);
-  visit("iterations", g.iterations);
-  visit("residual", g.residual);
-  visit("solutions", g.solutions);
-  visit("line", g.line);
-  visit("lambda_min", g.guard.lambda_min);
-  visit("guard_due", g.guard.due);
-  visit("dt_limit", g.guard.limit);
+  Global &g = global;
+  return {{"last_step", &g.last_step},
+          {"last_solve", &g.last_solve},
+          {"reported", &g.reported},
+          {"spheres", &g.spheres},
+          {"solves", &g.solves},
+          {"unconverged", &g.unconverged},
+          {"diverged", &g.diverged},
+          {"iterations", &g.iterations},
+          {"residual", &g.residual},
+          {"solutions", &g.solutions},
+          {"line", &g.line},
+          {"lambda_min", &g.guard.lambda_min},
+          {"guard_due", &g.guard.due},
+          {"dt_limit", &g.guard.limit},
+          {"numbers", g.numbers, Ambient::NUMBERS},
+          {"box", g.box, 6}};
 }
 
-void FixStokesDynamicsState::write_restart(FILE *fp)
+void FixStokesDynamicsState::write_state(NamedState &out)
 {
   present_box(global.box);
-  if (comm->me != 0) return;
-  NamedState out(STYLE);
-  each_number(global, [&out](const char *name, double value) { out.put(name, value); });
-  out.put("numbers", std::vector<double>(global.numbers, global.numbers + Ambient::NUMBERS));
   out.put("time", time());
-  out.put("box", std::vector<double>(global.box, global.box + 6));
   out.put("places_box", global.places_box);
   out.put("loose", global.loose);
   out.put("open_box", global.open_box);
   out.put_bits("settings", global.settings);
-  out.write(fp);
 }
 
-void FixStokesDynamicsState::restart(char *buf)
+void FixStokesDynamicsState::read_state(const NamedState &in)
 {
-  NamedState in(STYLE);
-  if (!in.read(lmp, buf)) return;
-  each_number(global, [&in](const char *name, double &value) { value = in.get(name, value); });
-  in.get("numbers", global.numbers, Ambient::NUMBERS);
   global.time_before = in.get("time", time()) - lammps_time(update);
-  in.get("box", global.box, 6);
   global.places_box = in.get("places_box");
   global.loose = in.get("loose");
   global.open_box = in.get("open_box");

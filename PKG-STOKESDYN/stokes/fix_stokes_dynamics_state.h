@@ -33,9 +33,6 @@ class FixStokesDynamicsState : public RowsFix {
   int setmask() override { return 0; }
   void post_run() override;
 
-  void write_restart(FILE *) override;
-  void restart(char *) override;
-
   /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is
    * kept. */
   enum { FORCE = 0, VPRIME = 3, WITHOUT_ROTATION = 6, TORQUE = 6, WPRIME = 9, WITH_ROTATION = 12 };
@@ -98,6 +95,9 @@ class FixStokesDynamicsState : public RowsFix {
 
   void forget();
   void record(int i) override;
+  std::vector<SavedNumbers> saved() override;
+  void write_state(NamedState &) override;
+  void read_state(const NamedState &) override;
   /* Rows of another length: the pair style has been given with or without rotation since. */
   bool restored() const override { return global.last_step >= 0; }
   void present_box(double *box) const;

@@ -2,7 +2,7 @@
 
 #include "domain.h"
 
-#include "sd_lattice.h"
+#include "sd_linear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,70 +19,6 @@ Lattice Lattice::of(const LAMMPS_NS::Domain *domain)
   for (int d = 0; d < 3; d++) l.periodic[d] = domain->periodicity[d] && d < domain->dimension;
   return l;
 }
-
-void Lattice::fractions(const double x[3], double f[3]) const
-{
-  f[2] = (x[2] - origin[2]) / h[2];
-  f[1] = (x[1] - origin[1] - h[3] * f[2]) / h[1];
-  f[0] = (x[0] - origin[0] - h[5] * f[1] - h[4] * f[2]) / h[0];
-}
-
-double Lattice::across(int d, double length) const
-{
-  const double xy = h[5], xz = h[4], yz = h[3], s = xy * yz / h[1] - xz;
-  if (d == 2) return length / h[2];
-  if (d == 1) return length / h[1] * std::hypot(1.0, yz / h[2]);
-  return length / h[0] * std::hypot(1.0, std::hypot(xy / h[1], s / h[2]));
-}
-
-void Lattice::closest(double d[3], int steps[3]) const
-{
-  double moved[3] = {d[0], d[1], d[2]};
-  sd_closest_image(h, periodic, d);
-  for (int e = 0; e < 3; e++) moved[e] = d[e] - moved[e];
-  const double z = moved[2] / h[2], y = (moved[1] - z * h[3]) / h[1];
-  const double exact[3] = {(moved[0] - y * h[5] - z * h[4]) / h[0], y, z};
-  for (int e = 0; e < 3; e++) steps[e] = std::fabs(exact[e]) < 1e9 ? (int) std::lround(exact[e]) : 0;
-}
-
-/* Fractions of this rank's rows, sorted into cells of its block, so that a search in a part of the
- * block looks at that part alone. */
-struct Halo::Sorted {
-  int n, cells;
-  double lo[3], hi[3];
-  std::vector<double> f;
-  std::vector<int> first, order;
-
-  Sorted(const Lattice &lattice, const std::vector<double> &x) : n((int) (x.size() / 3)), f(x.size())
-  {
-    std::fill_n(lo, 3, INFINITY);
-    std::fill_n(hi, 3, -INFINITY);
-    for (size_t i = 0; i < x.size(); i += 3) {
-      lattice.fractions(&x[i], &f[i]);
-      for (int d = 0; d < 3; d++) {
-        lo[d] = std::min(lo[d], f[i + d]);
-        hi[d] = std::max(hi[d], f[i + d]);
-      }
-    }
-    cells = std::max(1, std::min(64, (int) std::cbrt(n / 4.0)));
-    first.assign((size_t) cells * cells * cells + 1, 0);
-    order.resize(n);
-    std::vector<int> cell_of(n);
-    for (int i = 0; i < n; i++) {
-      const double *fi = &f[3 * (size_t) i];
-      cell_of[i] = (along(2, fi[2]) * cells + along(1, fi[1])) * cells + along(0, fi[0]);
-      first[cell_of[i] + 1]++;
-    }
-    for (size_t c = 1; c < first.size(); c++) first[c] += first[c - 1];
-    std::vector<int> next(first.begin(), first.end() - 1);
-    for (int i = 0; i < n; i++) order[next[cell_of[i]]++] = i;
-  }
-  int along(int d, double f) const
-  {
-    const double q = cells * (f - lo[d]) / (hi[d] - lo[d]);
-    return q >= cells ? cells - 1 : q > 0.0 ? (int) q : 0;    // not a number: 0
-  }
-};
 
 /* The first and last step along d that brings something of one block into another; none where the
  * last is before the first. The same on the rank that sends and on the one that receives. */
@@ -111,46 +47,34 @@ static bool meets(const Lattice &lattice, const double from[6], const double int
 
 static const double MOST_COPIES = 1e7, MOST_PER_SPHERE = 1000.0;
 
-/* What of this rank goes to the block lo ... hi of rank p, by any step. */
-bool Halo::send_to(int p, const double *lo, const double *hi, const Lattice &lattice,
-                   const Sorted &s)
+/* What of this rank, at f [3 n] in units of the edges, goes to the block `into` of rank p: each sphere by
+ * the steps that take it there. */
+bool Halo::send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
+                   const double into[6])
 {
-  const double most = std::max(MOST_COPIES, MOST_PER_SPHERE * s.n);
-  const double from[6] = {s.lo[0], s.lo[1], s.lo[2], s.hi[0], s.hi[1], s.hi[2]};
-  const double into[6] = {lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]};
+  const double most = std::max(MOST_COPIES, MOST_PER_SPHERE * (double) (f.size() / 3));
   double first[3], last[3], shifts = 1.0;
   for (int d = 0; d < 3; d++) {
     range_of_steps(lattice, d, from, into, first + d, last + d);
     shifts *= last[d] - first[d] + 1.0;
   }
   if (shifts > most) return false;
-  int t[3];
-  for (t[0] = (int) first[0]; t[0] <= last[0]; t[0]++)
-    for (t[1] = (int) first[1]; t[1] <= last[1]; t[1]++)
-      for (t[2] = (int) first[2]; t[2] <= last[2]; t[2]++) {
-        if (p == post.me && t[0] == 0 && t[1] == 0 && t[2] == 0) continue;
-        int c0[3], c1[3];
-        double a[3], b[3];
-        for (int d = 0; d < 3; d++) {
-          a[d] = lo[d] - t[d];
-          b[d] = hi[d] - t[d];
-          c0[d] = s.along(d, a[d]);
-          c1[d] = s.along(d, b[d]);
+  for (size_t i = 0; i < f.size(); i += 3) {
+    double begin[3], end[3];
+    for (int d = 0; d < 3; d++) {
+      begin[d] = std::max(first[d], std::ceil(into[d] - f[i + d]));
+      end[d] = std::floor(into[3 + d] - f[i + d]);    // not a number where f is none: no step
+      if (end[d] > last[d]) end[d] = last[d];
+    }
+    for (double t = begin[0]; t <= end[0]; t++)
+      for (double u = begin[1]; u <= end[1]; u++)
+        for (double v = begin[2]; v <= end[2]; v++) {
+          if (p == post.me && t == 0.0 && u == 0.0 && v == 0.0) continue;
+          sphere.push_back((int) (i / 3));
+          steps.insert(steps.end(), {(int) t, (int) u, (int) v});
         }
-        for (int k = c0[2]; k <= c1[2]; k++)
-          for (int j = c0[1]; j <= c1[1]; j++) {
-            const int row = (k * s.cells + j) * s.cells;
-            for (int m = s.first[row + c0[0]]; m < s.first[row + c1[0] + 1]; m++) {
-              const double *f = &s.f[3 * (size_t) s.order[m]];
-              if (!(f[0] >= a[0] && f[0] <= b[0] && f[1] >= a[1] && f[1] <= b[1] && f[2] >= a[2] &&
-                    f[2] <= b[2]))
-                continue;
-              sphere.push_back(s.order[m]);
-              steps.insert(steps.end(), t, t + 3);
-            }
-          }
-        if ((double) sphere.size() > most) return false;
-      }
+    if ((double) sphere.size() > most) return false;
+  }
   return true;
 }
 
@@ -164,22 +88,28 @@ void Halo::clear()
 
 bool Halo::find(const Lattice &lattice, double reach, const std::vector<double> &x)
 {
-  const Sorted sorted(lattice, x);
-  double mine[6];
-  std::copy_n(sorted.lo, 3, mine);
-  std::copy_n(sorted.hi, 3, mine + 3);
+  std::vector<double> f(x.size());
+  double mine[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, from_origin[3];
+  for (size_t i = 0; i < x.size(); i += 3) {
+    sd_minus(&x[i], lattice.origin, from_origin);
+    sd_in_edges(lattice.h, from_origin, &f[i]);
+    for (int d = 0; d < 3; d++) {
+      mine[d] = std::min(mine[d], f[i + d]);
+      mine[3 + d] = std::max(mine[3 + d], f[i + d]);
+    }
+  }
   std::vector<double> block(6 * (size_t) post.ranks), wide;
   MPI_Allgather(mine, 6, MPI_DOUBLE, block.data(), 6, MPI_DOUBLE, post.world);
   wide = block;
   for (size_t k = 0; k < wide.size(); k++)    // a pair at the reach itself is not lost by rounding
-    wide[k] += (k % 6 < 3 ? -1.0 : 1.0) * lattice.across(k % 3, reach * (1.0 + 1e-9));
+    wide[k] += (k % 6 < 3 ? -1.0 : 1.0) * sd_across_faces(lattice.h, k % 3, reach * (1.0 + 1e-9));
   clear();
   for (int p = 0; p < post.ranks; p++) {
     const double *theirs = &block[6 * (size_t) p], *wider = &wide[6 * (size_t) p];
     const bool out = meets(lattice, mine, wider);
     if (!out && !meets(lattice, theirs, &wide[6 * (size_t) post.me])) continue;
     const size_t before = sphere.size();
-    if (out && !send_to(p, wider, wider + 3, lattice, sorted)) return false;
+    if (out && !send_to(p, lattice, f, mine, wider)) return false;
     post.partners.push_back({p, (int) (sphere.size() - before), 0});
   }
   post.tell();
@@ -208,7 +138,7 @@ void Halo::place(const double h[6], const double *x, double *out) const
   outbox.assign(3 * sphere.size() + 1, 0.0);
   for (size_t k = 0; k < sphere.size(); k++) {
     if (x) std::copy_n(x + 3 * (size_t) sphere[k], 3, &outbox[3 * k]);
-    Lattice::add(h, &steps[3 * k], &outbox[3 * k]);
+    sd_add_edges(h, &steps[3 * k], &outbox[3 * k]);
   }
   post.carry(outbox.data(), out, 3);
 }

@@ -9,6 +9,8 @@
 
 #include "ranks.h"
 
+#include "sd_lattice.h"
+
 #include <initializer_list>
 #include <vector>
 
@@ -26,19 +28,6 @@ struct Lattice {
   int periodic[3];
 
   static Lattice of(const LAMMPS_NS::Domain *domain);
-  /* out [3] += steps edges; h: those of another time, or their rates */
-  static void add(const double h[6], const int steps[3], double out[3])
-  {
-    out[0] += steps[0] * h[0] + steps[1] * h[5] + steps[2] * h[4];
-    out[1] += steps[1] * h[1] + steps[2] * h[3];
-    out[2] += steps[2] * h[2];
-  }
-  /* Of the separation d [3] the shortest image; steps: by how many edges it has been moved */
-  void closest(double d[3], int steps[3]) const;
-  /* Positions in units of the edges, so that faces are planes of equal coordinates */
-  void fractions(const double x[3], double f[3]) const;
-  /* A length across the faces of edge d, which are volume / (their area) apart */
-  double across(int d, double length) const;
 };
 
 class Halo {
@@ -73,8 +62,8 @@ class Halo {
   std::vector<int> sphere, steps;
   mutable std::vector<double> outbox;
 
-  struct Sorted;
-  bool send_to(int p, const double *lo, const double *hi, const Lattice &lattice, const Sorted &s);
+  bool send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
+               const double into[6]);
 };
 
 }    // namespace StokesDyn

@@ -3,8 +3,6 @@
 #include "callback.h"
 #include "checks.h"
 #include "keywords.h"
-#include "plane_wall.h"
-
 
 #include "atom.h"
 #include "domain.h"
@@ -26,8 +24,10 @@ using State = FixStokesDynamicsState;
 static const double LOOSE = 1e-3;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
-    Pointers(lmp), voice(lmp, StokesSettings::COMMAND), ambient(voice, epochs),
-    scene(voice, epochs), shells(voice), rigid(voice, scene.whole, epochs), lubrication(voice),
+    Pointers(lmp), voice(lmp, StokesSettings::COMMAND), ambient(voice, epochs, settings.ambient),
+    scene(voice, epochs, settings.scene), shells(voice, settings.shells),
+    rigid(voice, scene.whole, epochs, settings.rigid),
+    lubrication(voice, settings.lubrication, settings.shells),
     mobile(lmp, {scene, ambient, rigid, lubrication}), preconditioner(lmp, scene), guard(voice)
 {
 }
@@ -39,27 +39,11 @@ Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
   return pair ? static_cast<Hydrodynamics *>(pair->extract("hydrodynamics", dim)) : nullptr;
 }
 
-Hydrodynamics &Hydrodynamics::of(const Voice &voice, const std::string &lack)
-{
-  Hydrodynamics *hydro = of(voice.lmp);
-  if (!hydro) voice.fail(lack);
-  return *hydro;
-}
-
 void Hydrodynamics::set(const std::vector<std::string> &words)
 {
   settings = StokesSettings(lmp, words);
-  ambient.settings = settings.ambient;
-  scene.settings = settings.scene;
-  scene.settings.whole =
-      settings.rigid.on || (settings.scene.clumps_only && std::isinf(settings.scene.cutoff));
-  if (settings.lubrication.on) scene.settings.films = 2.0 + settings.lubrication.range;
-  rigid.settings = settings.rigid;
-  lubrication.settings = settings.lubrication;
-  shells.settings = settings.shells;
   shells.make();
-  scene.shells = shells.settings.on() ? &shells : nullptr;
-  lubrication.shells = shells.settings.on() ? &shells.settings : nullptr;
+  scene.shells = settings.shells.on() ? &shells : nullptr;
   scene.orient = [this] {
     mobile.orient();
   };
@@ -95,6 +79,7 @@ void Hydrodynamics::begin()
   if (neighbor->ago == 0) epochs.lists.advance();
   if (neighbor->ago == 0 || began != update->firststep) epochs.groups.advance();
   began = update->firststep;
+  mobile.loads.clear();
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
                                                            : Ambient::NO_DERIVATIVES;

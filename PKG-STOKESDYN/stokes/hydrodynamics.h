@@ -44,9 +44,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   explicit Hydrodynamics(LAMMPS_NS::LAMMPS *lmp);
   /* That of the pair style, nullptr: there is no pair style stokes_dynamics. Fixes look it up whenever
-   * they need it, as the pair style may be another one by then; lack: the error. */
+   * they need it, as the pair style may be another one by then. */
   static Hydrodynamics *of(LAMMPS_NS::LAMMPS *lmp);
-  static Hydrodynamics &of(const Voice &voice, const std::string &lack);
 
   void set(const std::vector<std::string> &words);
   void init();
@@ -59,11 +58,11 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void solve();
   void drag();
 
-  /* Of all that takes part, from what is in f and torque, in any order; and forces on those that
-   * are held. A step is begin() and this. Where all interact, the forces go to rows of the memory
-   * too: the next guess. draw: random forces too, where all interact */
+  /* Of all that takes part, from loads [6 nlocal], the force and torque on each atom, in any order; and
+   * forces on those that are held. A step is begin() and this. Where all interact, the forces go to
+   * rows of the memory too: the next guess. draw: random forces too, where all interact */
   void velocities(const Velocities::Take &take, const Velocities::Held &held,
-                  const Velocities::Draw *draw = nullptr);
+                  const std::vector<double> &loads, const Velocities::Draw *draw = nullptr);
   /* Those of rigid clumps, and who is free, since then */
   const Velocities &motion() const { return mobile; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
@@ -178,6 +177,23 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   sd_status move_together(const Velocities::Take &take, const Velocities::Draw *draw,
                           sd_bodies_report &report);
   [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
+};
+
+/* That of the pair style for a fix, looked up at each call, which ends the run with `lack` if there is
+ * none. */
+class HydrodynamicsOf {
+ public:
+  HydrodynamicsOf(const Voice &voice, const char *lack) : voice(voice), lack(lack) {}
+  Hydrodynamics &operator()() const
+  {
+    Hydrodynamics *hydro = Hydrodynamics::of(voice.lmp);
+    if (!hydro) voice.fail(lack);
+    return *hydro;
+  }
+
+ private:
+  const Voice voice;
+  const char *const lack;
 };
 
 }    // namespace StokesDyn

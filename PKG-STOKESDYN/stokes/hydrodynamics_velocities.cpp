@@ -1,5 +1,5 @@
-/* Of hydrodynamics: velocities from forces, what the next step begins from, and what follows from the
- * forces on the fluid: the stress, and the flow. */
+/* Of hydrodynamics: velocities from forces, and what the next step begins from; films where velocities
+ * are known; and what follows from the forces on the fluid: the stress, and the flow. */
 #include "hydrodynamics.h"
 
 #include "callback.h"
@@ -101,13 +101,14 @@ sd_status Hydrodynamics::move_together(const Velocities::Take &take, const Veloc
 }
 
 void Hydrodynamics::velocities(const Velocities::Take &take, const Velocities::Held &held,
-                               const Velocities::Draw *draw)
+                               const std::vector<double> &loads, const Velocities::Draw *draw)
 {
   State::Global &global = memory->global;
   sd_bodies_report report = {};
   sd_status status = SD_OK;
   solvers = ambient.who();
   mobile.held = held;
+  mobile.loads = loads;
   mobile.find();
   if (settings.rigid.apart()) {
     mobile.apart(width(), take);
@@ -144,6 +145,84 @@ void Hydrodynamics::turn(int i, const double R[9])
   for (int p = 0; p < behind; p++) turn(row + memory->of_points() + 3 * p);
 }
 
+// --- films between close spheres, and the rows that stand for these in a step without a solve ------
+
+// Steps from one look at the limit that lubrication sets to the next: each costs 30 sparse
+// products.
+static const int LOOK_AT_FILMS = 1000;
+
+/* Of the films where they stand, as the spheres move. */
+void Hydrodynamics::find_films_power()
+{
+  films_power.clear();
+  if (!ambient.varies()) return;
+  std::vector<double> power(scene.size() + 1);
+  sd_lubrication_strain_power(lubrication.matrix(), films_v.data(), power.data());
+  films_power.assign(atom->nlocal + 1, 0.0);
+  scene.to_atoms(1, power.data(), [this](int i, const double *p) { films_power[i] = *p; });
+}
+
+void Hydrodynamics::stand()
+{
+  films_power.clear();
+  if (!settings.lubrication.on || !ambient.varies()) return;
+  stand_rows();
+  place_films();
+  find_films_power();
+}
+
+/* Where nothing was solved in this step */
+void Hydrodynamics::stand_rows()
+{
+  if (standing()) return;
+  solvers = ambient.who();
+  if (settings.rigid.on) mobile.find();
+  surround();
+}
+
+void Hydrodynamics::surround()
+{
+  if (standing()) return;
+  scene.stand(solvers, ambient);
+  scene.turn_shells();
+  if (settings.lubrication.on) scene.surround_films();
+  rows_stand.take(epochs.step);
+}
+
+/* As the spheres move now, by rows of the scene */
+void Hydrodynamics::read_motion()
+{
+  films_v = scene.rows(6, [this](int i, double *out) {
+    std::copy_n(atom->v[i], 3, out);
+    std::copy_n(atom->omega[i], 3, out + 3);
+  });
+  scene.drift(films_v.data(), 6, 1.0);
+}
+
+/* Where the spheres stand and as they move now */
+void Hydrodynamics::place_films()
+{
+  surround();
+  read_motion();
+  lubrication.place(scene, ambient);
+}
+
+void Hydrodynamics::lubricate()
+{
+  place_films();
+  films_F.resize(films_v.size());
+  lubrication.forces(films_v.data(), films_F.data());
+  find_films_power();
+  if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
+    guard.look_at_films(*lubrication.matrix(), scene);
+  scene.to_atoms(6, films_F.data(), [this](int i, const double *F) {
+    double *row = memory->rows.row(i);
+    for (int d = 0; d < 6; d++) row[State::at(State::FORCE, d)] += F[d];
+  });
+}
+
+// --- the forces on the fluid: the stress, and the flow that they make -----------------------------
+
 void Hydrodynamics::stress(std::vector<double> &of_atoms)
 {
   const bool films_stand = standing();
@@ -152,7 +231,7 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   const Points now = points_of_now();
   const size_t n = scene.size();
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0);
-  sd_multiblob_moments(&shells.model(), (int) n, now.r.data(), now.l.data(), points.data());
+  sd_multiblob_moments(shells.points(), (int) n, now.r.data(), now.l.data(), points.data());
   if (overdamped) mobile.add_constraints(points.data());
   if (settings.lubrication.on) {
     const double *v = overdamped ? mobile.last_velocities() : films_v.data();
@@ -166,9 +245,6 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
       std::copy_n(row, 6, &of_atoms[12 * (size_t) i + (part == &films ? 6 : 0)]);
     });
 }
-
-// --- the forces on the fluid, for the flow that they make -----------------------------------------
-
 
 /* Where no solve was needed in this step the rows of the scene may be those of another one. */
 Hydrodynamics::Points Hydrodynamics::points_of_now()

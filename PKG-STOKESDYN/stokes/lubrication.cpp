@@ -7,20 +7,12 @@
 #include "sd_multiblob_wall.h"
 #include "sd_wall_film.h"
 
-#include "domain.h"
-
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
-
-Lubrication::~Lubrication()
-{
-  sd_lubrication_free(&near);
-  sd_two_sphere_free(functions);
-}
 
 /* What may fail on one rank alone */
 void Lubrication::check(sd_status status) const
@@ -34,7 +26,7 @@ void Lubrication::check(sd_status status) const
 void Lubrication::provide(double largest, double smallest)
 {
   const double ratio = largest / smallest;
-  if (shells && ratio > SD_FILM_LARGEST_RATIO)
+  if (shells.on() && ratio > SD_FILM_LARGEST_RATIO)
     voice.fail("keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
                ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
                "spheres, or lubrication no");
@@ -46,11 +38,10 @@ void Lubrication::provide(double largest, double smallest)
                  ": lubrication is for ratios of radii up to 100; use group to select spheres, or "
                  "lubrication no");
     check(status);
-    sd_two_sphere_free(functions);
-    functions = wider;
+    functions.reset(wider);
     largest_ratio = ratio;
   }
-  if (shells) check(sd_films_create(shells->points, shells->one_body, functions, &films));
+  if (shells.on()) check(sd_films_create(shells.points, shells.one_body, functions.get(), &films));
 }
 
 void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
@@ -59,8 +50,8 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
   u = where.rows(6, [&](int i, double *out) { ambient.fluid(i, out); });
   where.drift(u.data(), 6, 1.0);
   sd_lubrication_scene scene = {};
-  scene.functions = functions;
-  scene.films = shells ? &films : nullptr;
+  scene.functions = functions.get();
+  scene.films = shells.on() ? &films : nullptr;
   scene.gap = settings.gap;
   scene.range = settings.range;
   scene.n = where.size();
@@ -80,7 +71,7 @@ void Lubrication::add_wall(const Scene &where)
 {
   const sd_wall &wall = where.settings.wall;
   const sd_spheres s = where.local();
-  const sd_multiblob *model = shells ? &where.shells->model() : nullptr;
+  const sd_multiblob *model = shells.on() ? &where.shells->model() : nullptr;
   std::vector<double> r(model ? 3 * model->n : 0);
   double normal[3] = {0.0};
   normal[wall.axis] = wall.sign;
@@ -92,7 +83,7 @@ void Lubrication::add_wall(const Scene &where)
         sd_multiply3(where.shells->turns() + 9 * k, model->r + 3 * p, &r[3 * p]);
         for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];
       }
-      check(sd_multiblob_wall_film(model, &wall, x, s.a[k], r.data(), shells->one_body, settings.gap,
+      check(sd_multiblob_wall_film(model, &wall, x, s.a[k], r.data(), shells.one_body, settings.gap,
                                    eta, flow, B, E));
     } else {
       const sd_wall_film film = sd_wall_film_at(s.a[k], sd_wall_height(&wall, x), settings.gap);
@@ -116,8 +107,8 @@ struct Pairs {
  * where two places of a lattice are equally close */
 static void image_of(const Lattice &lattice, const double r[3], int steps[3])
 {
-  const double *h = lattice.h, f2 = r[2] / h[2], f1 = (r[1] - h[3] * f2) / h[1];
-  const double f[3] = {(r[0] - h[5] * f1 - h[4] * f2) / h[0], f1, f2};
+  double f[3];
+  sd_in_edges(lattice.h, r, f);
   for (int d = 0; d < 3; d++) steps[d] = lattice.periodic[d] ? (int) floor(f[d] + 0.5123) : 0;
 }
 

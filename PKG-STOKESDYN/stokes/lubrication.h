@@ -3,12 +3,14 @@
 #ifndef SD_STOKES_LUBRICATION_H
 #define SD_STOKES_LUBRICATION_H
 
+#include "callback.h"
 #include "pointers.h"
 #include "scene.h"
 
 #include "sd_lubrication.h"
 #include "sd_random.h"
 
+#include <memory>
 #include <vector>
 
 namespace StokesDyn {
@@ -19,15 +21,15 @@ class Lubrication : protected LAMMPS_NS::Pointers {
     bool on = false;
     /* over the mean radius of a pair: the floor of gaps, and where it ends */
     double gap = 1e-3, range = 2.0;
-  } settings;
+  };
+  const Settings &settings;
+  /* where spheres are shells of points, films are of what these do not know */
+  const Shells::Settings &shells;
 
-  /* spheres are shells of points: films are of what these do not know; nullptr: they are points */
-  const Shells::Settings *shells = nullptr;
-
-  explicit Lubrication(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
-  ~Lubrication();
-  Lubrication(const Lubrication &) = delete;
-  Lubrication &operator=(const Lubrication &) = delete;
+  Lubrication(const Voice &voice, const Settings &settings, const Shells::Settings &shells) :
+      Pointers(voice.lmp), settings(settings), shells(shells), voice(voice)
+  {
+  }
 
   /* The rows of the scene where they stand now, with the films' surroundings, in the fluid of this
    * step, on all ranks. noisy: random forces will be drawn. Error: radii that are too different. */
@@ -45,8 +47,8 @@ class Lubrication : protected LAMMPS_NS::Pointers {
 
  private:
   const Voice voice;
-  sd_lubrication near = {};
-  sd_two_sphere *functions = nullptr;
+  Owned<sd_lubrication, sd_lubrication_free> near;
+  std::unique_ptr<sd_two_sphere, void (*)(sd_two_sphere *)> functions{nullptr, sd_two_sphere_free};
   double largest_ratio = 0.0;
   sd_films films = {};
   std::vector<double> u;

@@ -1,12 +1,15 @@
 #include "noise.h"
 
 #include "callback.h"
+#include "checks.h"
+#include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
 
 #include "sd_clump_noise.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "force.h"
 #include "neighbor.h"
 #include "update.h"
@@ -20,7 +23,7 @@ namespace StokesDyn {
 
 void Noise::read_temperature(Keywords &in)
 {
-  temperature = Field::parse(in);
+  temperature = Field::parse(in, Field::ONE_FOR_ALL);
   in.check(temperature.number() >= 0.0, "must be >= 0");
   seed = (uint32_t) in.integer(1);
 }
@@ -29,12 +32,6 @@ void Noise::read_tolerance(Keywords &in)
 {
   tolerance = in.positive();
   in.check(tolerance < 0.5, "must be below 0.5");
-}
-
-Noise::~Noise()
-{
-  sd_noise_free(&process);
-  sd_bodies_noise_free(&of_bodies);
 }
 
 double Noise::scale(double dt) const
@@ -203,6 +200,76 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
     voice.warn("keyword temperature: a step moves spheres by " + text(skins) + " of half the skin, "
                "so that lists are made anew in every step: use a shorter time step or a larger "
                "skin");
+}
+
+// --- what has a drift that the schemes leave out, or noise of its own or none ---------------------
+
+static const std::string PAIR = " of pair_style stokes_dynamics";
+
+std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) const
+{
+  const StokesSettings &s = hydro.settings;
+  const Ambient::Settings &fluid = hydro.ambient.settings;
+  if (domain->dimension == 2) return "dimension 2, which holds a coordinate";
+  if (s.rigid.apart()) return "";
+  if (s.shells.on()) return "keyword multiblob" + PAIR;
+  if (s.lubrication.on) return "keyword lubrication" + PAIR;
+  if (s.rigid.on) return "keyword rigid_clumps" + PAIR + " with clumps that feel each other";
+  if (s.scene.wall.sign) return "keyword wall" + PAIR;
+  if (fluid.visc.is_atom_style() || fluid.grid_has_visc)
+    return "keyword visc" + PAIR + ", which varies in space";
+  return holds;
+}
+
+/* A mobility that has no root, or a drift that no scheme has */
+static void refuse_settings(const Voice &keyword, const StokesSettings &s)
+{
+  if (s.rigid.apart() && keyword.lmp->domain->dimension == 2)
+    keyword.fail("keyword clumps_only" + PAIR + ": lone clumps in a plane have a drift: use "
+                 "clumps_only no");
+  if (s.scene.tensor == SD_TENSOR_OSEEN)
+    keyword.fail("keyword tensor: 'oseen'" + PAIR + " may have negative mobilities, for which "
+                 "there is no noise: use tensor rpy");
+  if (s.scene.taper != SD_TAPER_NONE)
+    keyword.fail("keyword taper" + PAIR + ": the mobility has a drift, which schemes leave out: "
+                 "use cut_off_distance inf");
+  if (std::isfinite(s.scene.cutoff) && !s.rigid.apart())
+    keyword.fail("keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + PAIR +
+                 ": the mobility has a drift, which schemes leave out: use inf");
+}
+
+void Noise::refuse(const Hydrodynamics &hydro, const Ways &ways) const
+{
+  const Voice keyword = voice.of("keyword temperature");
+  refuse_settings(keyword, hydro.settings);
+  const std::string what = drift(hydro, ways.holds);
+  if (!what.empty() && !ways.midpoint)
+    keyword.fail(what + ": the mobility has a drift, which schemes ab2 and euler leave out: use "
+                 "scheme midpoint");
+  if (!atom->tag_enable)
+    keyword.fail("the noise of an atom depends on its ID, and there are no IDs: atom_modify id "
+                 "yes");
+  if (ways.adapts)
+    keyword.fail("averages over steps of unequal length are not averages over time: leave out "
+                 "adapt");
+  if (const Fix *fix = fix_like(lmp, "^dt/reset"))
+    keyword.fail(name_of(fix) + " makes steps of unequal length, whose averages are not those of "
+                 "time: take it away");
+  for (const char *style : {"^viscous", "^langevin", "^brownian"})
+    if (const Fix *fix = fix_like(lmp, style))
+      keyword.fail(name_of(fix) + " has noise or a drag of its own: take it away");
+  if (force->pair_match("^brownian", 0, 1))
+    keyword.fail("pair_style brownian* has noise of its own: take it away");
+  refuse_friction(keyword);
+}
+
+void Noise::init(Hydrodynamics &hydro, const Ways &ways)
+{
+  check_room_of_blas(voice);
+  temperature.init(lmp);
+  refuse(hydro, ways);
+  midpoint = ways.midpoint;
+  hydro.scene.settings.positive = !midpoint;
 }
 
 }    // namespace StokesDyn

@@ -28,9 +28,6 @@ class Hydrodynamics;
 class Noise : protected LAMMPS_NS::Pointers {
  public:
   explicit Noise(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
-  ~Noise();
-  Noise(const Noise &) = delete;
-  Noise &operator=(const Noise &) = delete;
 
   /* The values of keywords temperature and noise_tolerance */
   void read_temperature(Keywords &in);
@@ -76,8 +73,8 @@ class Noise : protected LAMMPS_NS::Pointers {
 
   /* of this step */
   double kT = 0.0;
-  sd_noise process = {};
-  sd_bodies_noise of_bodies = {};
+  Owned<sd_noise, sd_noise_free> process;
+  Owned<sd_bodies_noise, sd_bodies_noise_free> of_bodies;
   sd_noise_report last = {};
   std::vector<double> of_clumps;
   /* by rows, three numbers each */

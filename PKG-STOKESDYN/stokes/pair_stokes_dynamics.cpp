@@ -5,7 +5,7 @@
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
-#include "restart_words.h"
+#include "restart.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -33,16 +33,14 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp), sor
   one_coeff = 1;
   restartinfo = 1;
   no_virial_fdotr_compute = 1;    // drag is between sphere and fluid: its x.F depends on the origin
-  nextra = 4;    // compute pair: iterations, residual, unconverged solves, dissipation
-  pvector = new double[nextra];
-  for (int k = 0; k < nextra; k++) pvector[k] = 0.0;
+  nextra = 4;
+  pvector = reported;
 }
 
 PairStokesDynamics::~PairStokesDynamics()
 {
   Fix *memory_fix = Compat::fix(modify, State::ID);
   if (memory_fix && strcmp(memory_fix->style, State::STYLE) == 0) modify->delete_fix(State::ID);
-  delete[] pvector;
   if (allocated) {
     memory->destroy(setflag);
     memory->destroy(cutsq);
@@ -181,7 +179,7 @@ void PairStokesDynamics::init_style()
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)    // compute() complains of those that are not finite
     if (std::isfinite(atom->radius[i])) largest = std::max(largest, 2.0 * atom->radius[i]);
-  MPI_Allreduce(&largest, &largest_diameter, 1, MPI_DOUBLE, MPI_MAX, world);
+  largest_diameter = largest_of_all(world, largest);
 
   hydro.init();
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.

@@ -38,6 +38,8 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   const Voice &voice = hydro.voice;
   SortingBins sorting_bins;
   double largest_diameter = 0.0;
+  /* for compute pair: iterations, residual, unconverged solves, dissipation */
+  double reported[4] = {0.0};
   bool warned_nobody_applies = false;
 
   /* What the force of a step needs. */

@@ -88,15 +88,13 @@ void Preconditioner::refresh_places()
 /* x: where the spheres stood, in the order of the preconditioner's rows */
 void Preconditioner::find_positions()
 {
-  const auto row = [this](int i, double *out) {
-    std::copy_n((*places)[i], 3, out);
-  };
-  rows = scene.rows(3, row);
+  std::vector<double> rows =
+      scene.rows(3, [this](int i, double *out) { std::copy_n((*places)[i], 3, out); });
   x.resize(3 * (size_t) n + 3);
   if (cloud)
     scene.to_cloud(rows.data(), x.data(), 3);
   else
-    x = rows;
+    x.swap(rows);
 }
 
 /* The spheres of each block. */
@@ -145,12 +143,9 @@ void Preconditioner::put_side_by_side()
   const Lattice lattice = Lattice::of(domain);
   for (size_t k = 0; k + 1 < first.size(); k++)
     for (long m = first[k] + 1; m < first[k + 1]; m++) {
-      const double *begin = &x[3 * (size_t) member[first[k]]];
-      double *there = &x[3 * (size_t) member[m]];
-      double d[3] = {there[0] - begin[0], there[1] - begin[1], there[2] - begin[2]};
       int steps[3];
-      lattice.closest(d, steps);
-      for (int c = 0; c < 3; c++) there[c] = begin[c] + d[c];
+      sd_bring_close(lattice.h, lattice.periodic, &x[3 * (size_t) member[first[k]]],
+                     &x[3 * (size_t) member[m]], steps);
     }
 }
 
@@ -203,8 +198,7 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
 
 double Preconditioner::memory_usage() const
 {
-  return sizeof(double) *
-      (double) (rows.capacity() + x.capacity() + in.capacity() + out.capacity());
+  return sizeof(double) * (double) (x.capacity() + in.capacity() + out.capacity());
 }
 
 }    // namespace StokesDyn

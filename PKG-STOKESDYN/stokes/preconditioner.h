@@ -12,7 +12,7 @@
 #ifndef SD_PRECONDITIONER_GLUE_H
 #define SD_PRECONDITIONER_GLUE_H
 
-#include "atom_rows.h"
+#include "rows_fix.h"
 #include "pointers.h"
 #include "scene.h"
 
@@ -30,9 +30,6 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   bool easy = false;
 
   Preconditioner(LAMMPS_NS::LAMMPS *lmp, Scene &scene) : Pointers(lmp), scene(scene) {}
-  ~Preconditioner() { forget(); }
-  Preconditioner(const Preconditioner &) = delete;
-  Preconditioner &operator=(const Preconditioner &) = delete;
 
   void forget() { sd_preconditioner_free(&made); }
   /* Before a solve, after Scene::update(): puts the one that suits the scene into the system. It is
@@ -45,7 +42,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
  private:
   Scene &scene;
   const sd_precondition_kind *wanted = nullptr;    // nullptr: none
-  sd_preconditioner made = {};
+  Owned<sd_preconditioner, sd_preconditioner_free> made;
 
   // of this solve
   bool cloud = false;
@@ -54,7 +51,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   AtomRows *places = nullptr;
   std::vector<double> *box = nullptr;
 
-  std::vector<double> rows, x, in, out;
+  std::vector<double> x, in, out;
   std::vector<long> first;
   std::vector<int> member;
 

@@ -13,8 +13,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-RigidClumps::RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &epochs) :
-    Pointers(voice.lmp), shapes(voice), whole(whole), voice(voice), epochs(epochs)
+RigidClumps::RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &epochs,
+                         const Settings &settings) :
+    Pointers(voice.lmp), settings(settings), shapes(voice), whole(whole), voice(voice), epochs(epochs)
 {
 }
 

@@ -27,13 +27,12 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     /* clumps_only: no clump feels another, and each has a table of its own forces */
     bool clumps_only = false;
     bool apart() const { return on && clumps_only; }
-  } settings;
+  };
+  const Settings &settings;
 
   ClumpShapes shapes;
 
-  RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &epochs);
-  RigidClumps(const RigidClumps &) = delete;
-  RigidClumps &operator=(const RigidClumps &) = delete;
+  RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &epochs, const Settings &settings);
 
   /* Other settings: no shape stands. */
   void forget();

@@ -4,7 +4,6 @@
 #include "keywords.h"
 
 #include "comm.h"
-#include "domain.h"
 #include "neighbor.h"
 
 #include <algorithm>
@@ -14,17 +13,10 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Scene::Scene(const Voice &voice, Epochs &epochs) :
-    Pointers(voice.lmp), whole(voice, epochs), voice(voice), epochs(epochs), halo(world),
-    candidates(), pairs(), omega()
+Scene::Scene(const Voice &voice, Epochs &epochs, Settings &settings) :
+    Pointers(voice.lmp), settings(settings), whole(voice, epochs), voice(voice), epochs(epochs),
+    halo(world)
 {
-}
-
-Scene::~Scene()
-{
-  sd_neighbors_free(&candidates);
-  sd_neighbors_free(&pairs);
-  sd_mobility_free(&omega);
 }
 
 void Scene::out_of_memory()
@@ -95,7 +87,7 @@ void Scene::drift(double *rows, int width, double sign) const
   for (int d = 0; d < 6; d++) signed_jumps[d] = sign * jumps[d];
   for (size_t m = 0; m < row_of.size() && jumping; m++)
     if (row_of[m] >= 0)
-      Lattice::add(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
+      sd_add_edges(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
 }
 
 const double *Scene::drift_of_copies()
@@ -200,9 +192,8 @@ void Scene::find_pairs()
   } else
     status = sd_neighbors_cutoff(&candidates, x.data(), n, n_all, reach);
   if (status != SD_OK) out_of_memory();
-  int sees = candidates.first[n] > 0 || (settings.wall.sign && n > 0), any;
-  MPI_Allreduce(&sees, &any, 1, MPI_INT, MPI_MAX, world);
-  somebody_sees = any;
+  const int sees = candidates.first[n] > 0 || (settings.wall.sign && n > 0);
+  somebody_sees = largest_of_all(world, sees);
   pairs_found.take(epochs.rows);
 }
 
@@ -212,12 +203,16 @@ void Scene::place(int n_all_or_copies)
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
   scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr};
-  if (shells && cloud) {
-    std::vector<double> rows(10 * (size_t) n_all + 10);
-    to_cloud(shells->sent(size()).data(), rows.data(), 10);
-    shells->expand_cloud(n_all, rows.data(), this->cloud());
-  } else if (shells)
-    shells->expand(halo, size_with_copies(), local());
+  if (shells) {
+    std::vector<double> rows = shells->sent(size()), all(10 * (size_t) n_all_or_copies + 10);
+    if (cloud)
+      to_cloud(rows.data(), all.data(), 10);
+    else {
+      std::copy_n(rows.begin(), 10 * (size_t) size(), all.begin());
+      halo.refresh(rows.data(), &all[10 * (size_t) size()], 10);
+    }
+    shells->expand(n_all_or_copies, all, cloud ? this->cloud() : local());
+  }
   scene.n = points() * size();
   scene.n_all = points() * n_all_or_copies;
   scene.spheres = shells ? shells->all() : cloud ? this->cloud() : local();
@@ -276,29 +271,12 @@ void Scene::gather()
   }
 }
 
-/* Numbers that each rank has, and where they begin when they stand one rank after the other */
-void Scene::shares(int width, std::vector<int> &counts, std::vector<int> &displs) const
-{
-  int n = 0;
-  for (int k : spheres_of_rank) {
-    counts.push_back(mpi_count((double) width * k));
-    displs.push_back(mpi_count((double) width * n));
-    n += k;
-  }
-}
-
 void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width)
 {
   const size_t m = width;
-  const double *from = own_rows;
-  if (comm->nprocs > 1) {
-    std::vector<int> counts, displs;
-    shares(width, counts, displs);
-    in_order_of_rank.resize(m * n_all + 1);
-    MPI_Allgatherv(const_cast<double *>(own_rows), counts[comm->me], MPI_DOUBLE,
-                   in_order_of_rank.data(), counts.data(), displs.data(), MPI_DOUBLE, world);
-    from = in_order_of_rank.data();
-  }
+  std::vector<double> all;
+  if (comm->nprocs > 1) all = from_all(world, std::vector<double>(own_rows, own_rows + m * size()));
+  const double *from = comm->nprocs > 1 ? all.data() : own_rows;
   for (int j = 0; j < n_all; j++) std::copy_n(from + m * j, m, cloud_rows + m * place_of[j]);
 }
 
@@ -309,8 +287,8 @@ void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width)
   double *to = comm->nprocs > 1 ? in_order_of_rank.data() : own_rows;
   for (int j = 0; j < n_all; j++) std::copy_n(cloud_rows + m * place_of[j], m, to + m * j);
   if (comm->nprocs == 1) return;
-  std::vector<int> counts, displs;
-  shares(width, counts, displs);
+  std::vector<int> counts;
+  for (int spheres : spheres_of_rank) counts.push_back(mpi_count((double) width * spheres));
   MPI_Reduce_scatter(in_order_of_rank.data(), own_rows, counts.data(), MPI_DOUBLE, MPI_SUM, world);
 }
 

@@ -69,12 +69,9 @@ class Scene : protected LAMMPS_NS::Pointers {
     /* periodic sums are split into two positive parts, for noise */
     bool positive = false;
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
-  } settings;
+  } &settings;
 
-  Scene(const Voice &voice, Epochs &epochs);
-  ~Scene();
-  Scene(const Scene &) = delete;
-  Scene &operator=(const Scene &) = delete;
+  Scene(const Voice &voice, Epochs &epochs, Settings &settings);
 
   /* Which spheres of which ranks the engine sees, since the last update(). */
   sd_view view() const { return engine->view; }
@@ -211,7 +208,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool jumping = false;
   std::vector<double> of_copies;
   Halo halo;
-  sd_neighbors candidates, pairs;
+  Owned<sd_neighbors, sd_neighbors_free> candidates, pairs;
 
   // view ALL: the spheres of all ranks in order of tag: nothing depends on the decomposition
   /* [n_all] place of each sphere, the ranks' spheres one after the other */
@@ -228,7 +225,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   Since told;
 
   const sd_mobility_engine *engine = &sd_mobility_list;
-  sd_mobility omega;
+  Owned<sd_mobility, sd_mobility_free> omega;
 
   int width() const { return settings.rotation && !shells ? 6 : 3; }
   /* how far a sphere's points are from its centre, over its radius; their radius likewise */
@@ -245,7 +242,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   void surround(double reach, const std::string &keyword);
   void find_pairs();
   void gather();
-  void shares(int width, std::vector<int> &counts, std::vector<int> &displs) const;
   void place(int n_all_or_copies);
   [[noreturn]] void out_of_memory();
 };

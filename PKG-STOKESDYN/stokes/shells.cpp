@@ -49,44 +49,21 @@ std::vector<double> Shells::sent(int n) const
   return rows;
 }
 
-void Shells::put(int n, const sd_spheres &spheres)
+void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &spheres)
 {
   const size_t points = (size_t) n * blob.n;
-  const sd_multiblob_spheres s = {spheres.x, spheres.a, turn.data(), mask.data(), n};
+  std::vector<double> turns(9 * (size_t) n + 9);
+  std::vector<sd_multiblob_mask> whole(n + 1);
+  for (size_t k = 0; k < (size_t) n; k++) {
+    std::copy_n(&rows[10 * k], 9, &turns[9 * k]);
+    whole[k] = (sd_multiblob_mask) rows[10 * k + 9];
+  }
+  const sd_multiblob_spheres s = {spheres.x, spheres.a, turns.data(), whole.data(), n};
   x.resize(3 * points + 3);
   b.resize(points + 1);
   w.resize(points + 1);
   sd_multiblob_expand(&blob, &s, nullptr, x.data(), b.data());
   for (size_t k = 0; k < points; k++) w[k] = spheres.w[k / blob.n];
-}
-
-void Shells::expand(const Halo &halo, int n_all, const sd_spheres &spheres)
-{
-  const int n = n_all - halo.count();
-  if (n_all > n) {
-    const std::vector<double> rows = sent(n);
-    std::vector<double> copies(10 * (size_t) (n_all - n) + 10);
-    halo.refresh(rows.data(), copies.data(), 10);
-    turn.resize(9 * (size_t) n_all + 9);
-    mask.resize(n_all + 1);
-    for (int k = n; k < n_all; k++)
-      turn_row(k, &copies[10 * (size_t) (k - n)],
-               (sd_multiblob_mask) copies[10 * (size_t) (k - n) + 9]);
-  }
-  put(n_all, spheres);
-}
-
-void Shells::expand_cloud(int n, const double *rows, const sd_spheres &spheres)
-{
-  const std::vector<double> own_turn = turn;
-  const std::vector<sd_multiblob_mask> own_mask = mask;
-  turn.resize(9 * (size_t) n + 9);
-  mask.resize(n + 1);
-  for (int k = 0; k < n; k++)
-    turn_row(k, rows + 10 * (size_t) k, (sd_multiblob_mask) rows[10 * (size_t) k + 9]);
-  put(n, spheres);
-  turn = own_turn;
-  mask = own_mask;
 }
 
 double Shells::memory_usage() const

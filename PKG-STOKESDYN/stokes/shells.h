@@ -4,7 +4,7 @@
 #ifndef SD_SHELLS_H
 #define SD_SHELLS_H
 
-#include "halo.h"
+#include "callback.h"
 #include "keywords.h"
 #include "pointers.h"
 
@@ -23,12 +23,13 @@ class Shells : protected LAMMPS_NS::Pointers {
     int points = 1;
     bool one_body = true;
     bool on() const { return points > 1; }
-  } settings;
+  };
+  const Settings &settings;
 
-  explicit Shells(const Voice &voice) : Pointers(voice.lmp), voice(voice) {}
-  ~Shells() { sd_multiblob_shape_free(&lone); }
-  Shells(const Shells &) = delete;
-  Shells &operator=(const Shells &) = delete;
+  Shells(const Voice &voice, const Settings &settings) :
+      Pointers(voice.lmp), settings(settings), voice(voice)
+  {
+  }
 
   /* The settings are new. */
   void make();
@@ -44,10 +45,8 @@ class Shells : protected LAMMPS_NS::Pointers {
   /* n rows of this rank, all of them free; then those of clumps are turned. */
   void free_rows(int n);
   void turn_row(int k, const double turn[9], sd_multiblob_mask mask);
-  /* Rows and copies have been surrounded: points of all [n_all], x, a, w as in Scene::local() */
-  void expand(const Halo &halo, int n_all, const sd_spheres &spheres);
-  /* The same of a cloud whose rows, [10 n] as they are sent, are given */
-  void expand_cloud(int n, const double *rows, const sd_spheres &spheres);
+  /* Points of n spheres, rows and copies or a cloud, whose rows [10 n] are given as they are sent */
+  void expand(int n, const std::vector<double> &rows, const sd_spheres &spheres);
 
   /* Points of rows and copies, or of the cloud */
   sd_spheres all() const { return {x.data(), b.data(), w.data()}; }
@@ -61,12 +60,10 @@ class Shells : protected LAMMPS_NS::Pointers {
  private:
   const Voice voice;
   sd_multiblob blob = {};
-  sd_multiblob_shape lone = {};
+  Owned<sd_multiblob_shape, sd_multiblob_shape_free> lone;
   std::vector<double> turn;
   std::vector<sd_multiblob_mask> mask;
   std::vector<double> x, b, w;
-
-  void put(int n, const sd_spheres &spheres);
 };
 
 }    // namespace StokesDyn

@@ -43,18 +43,16 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
     keyword.fail("it is for spheres that feel each other: use clumps_only no" + pair);
   if (domain->dimension == 2 && (omega[0] != 0.0 || omega[1] != 0.0))
     keyword.fail("in two dimensions spheres spin about z alone: wx and wy must be 0");
-  tagint wrong[2] = {MAXTAGINT, MAXTAGINT};    // in clumps; held
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit)) continue;
-    if (hydro.settings.rigid.on && atom->molecule[i] != 0) wrong[0] = std::min(wrong[0], atom->tag[i]);
-    if (atom->mask[i] & held_bit) wrong[1] = std::min(wrong[1], atom->tag[i]);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, wrong, 2, MPI_LMP_TAGINT, MPI_MIN, world);
-  for (int k = 0; k < 2; k++)
-    if (wrong[k] != MAXTAGINT)
-      keyword.fail("atom " + std::to_string(wrong[k]) + (k == 0 ? " is part of a rigid clump: only "
-                   "free spheres spin" : " is in the group of keyword held as well: it must be in "
-                   "one of them only"));
+  const bool clumps = hydro.settings.rigid.on;
+  if (const tagint bound = first_atom(lmp, [&](int i) {
+        return clumps && (atom->mask[i] & bit) && atom->molecule[i] != 0;
+      }))
+    keyword.fail("atom " + std::to_string(bound) + " is part of a rigid clump: only free spheres spin");
+  if (const tagint both = first_atom(lmp, [&](int i) {
+        return (atom->mask[i] & bit) && (atom->mask[i] & held_bit);
+      }))
+    keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held as well: it must "
+                 "be in one of them only");
 }
 
 bool Spin::turns(int i, double W[3]) const
@@ -64,19 +62,19 @@ bool Spin::turns(int i, double W[3]) const
   return true;
 }
 
-void Spin::push(int i) const
+void Spin::push(int i, double *torque) const
 {
   if (!(atom->mask[i] & bit)) return;
-  for (int d = 0; d < 3; d++) atom->torque[i][d] += sign(i) * most * axis[d];
+  for (int d = 0; d < 3; d++) torque[d] += sign(i) * most * axis[d];
 }
 
 /* A sphere that slips and has caught up with the field is held again. */
-void Spin::look(int i, const double *W, const double *by_fluid)
+void Spin::look(int i, const double *W, const double *by_fluid, const double *torque)
 {
   if (!(atom->mask[i] & bit) || most == 0.0) return;
   const double now = sign(i);
   double next = now, needed[3];
-  for (int d = 0; d < 3; d++) needed[d] = -by_fluid[d] - atom->torque[i][d];
+  for (int d = 0; d < 3; d++) needed[d] = -by_fluid[d] - torque[d];
   if (now == 0.0 && sd_dot(needed, needed) > most * most)
     next = sd_dot(needed, axis) < 0.0 ? -1.0 : 1.0;
   else if (now * (sd_dot(W, axis) - sd_dot(omega, axis)) >= 0.0)
@@ -95,10 +93,9 @@ void Spin::advance()
 
 double Spin::slip() const
 {
-  double mine = 0.0, all;
+  double mine = 0.0;
   for (int i = 0; i < atom->nlocal; i++) mine += sign(i) != 0.0;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of_all(world, mine);
 }
 
 }    // namespace StokesDyn

@@ -7,7 +7,7 @@
 #ifndef SD_STOKES_SPIN_H
 #define SD_STOKES_SPIN_H
 
-#include "atom_rows.h"
+#include "rows_fix.h"
 #include "keywords.h"
 #include "pointers.h"
 
@@ -34,10 +34,10 @@ class Spin : protected LAMMPS_NS::Pointers {
   /* Is the angular velocity W of atom i given now? */
   bool turns(int i, double W[3]) const;
   /* The torque of the field on those that slip is added to theirs. */
-  void push(int i) const;
-  /* What a solve has found: W, and the torque of the fluid; that of all but the field is in
-   * atom->torque, with push() */
-  void look(int i, const double *W, const double *by_fluid);
+  void push(int i, double *torque) const;
+  /* What a solve has found: W, and the torque of the fluid. torque: of all but the field, with
+   * push() */
+  void look(int i, const double *W, const double *by_fluid, const double *torque);
   /* Positions have advanced: next is now. */
   void advance();
   /* How many slip, on all ranks */

@@ -140,8 +140,7 @@ double TimeStepGuard::lone_at_wall(const Scene &scene) const
     sd_wall_block(&wall, 3, x, a, x, a, 1.0, image);
     least = std::min(least, 1.0 + 6.0 * SD_PI * a * image[4 * wall.axis]);
   }
-  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, world);
-  return least;
+  return smallest_of_all(world, least);
 }
 
 /* Two bounds of mu from above cost nothing: the shortest time of a sphere alone, and that by the

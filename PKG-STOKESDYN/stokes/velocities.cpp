@@ -21,12 +21,6 @@ Velocities::Velocities(LAMMPS *lmp, const Parts &parts) :
 {
 }
 
-Velocities::~Velocities()
-{
-  sd_tie_free(&tie);
-  leave_wall();
-}
-
 double Velocities::memory_usage() const
 {
   double numbers = 24.0 * spheres.eta.capacity();
@@ -40,39 +34,34 @@ double Velocities::memory_usage() const
 /* What clumps must know of their spheres; velocities are those of the images side by side. */
 void Velocities::gather(bool moving)
 {
-  enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
+  enum { ETA, RADIUS, X, MOTION = X + 3, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   const bool turns = !moving || scene.settings.rotation;
-  const int columns = gradients ? GRADIENT + 9 : FLOW;
-  std::vector<double> rows = scene.whole.gather(columns, [&](int i, double *row) {
+  const size_t columns = gradients ? GRADIENT + 9 : FLOW, n = rigid.members().size();
+  const std::vector<double> rows = scene.whole.gather((int) columns, [&](int i, double *row) {
     row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     row[RADIUS] = atom->radius[i];
-    std::copy_n(moving ? atom->v[i] : atom->f[i], 3, row + MOTION);
-    if (turns) std::copy_n(moving ? atom->omega[i] : atom->torque[i], 3, row + TURNING);
+    for (size_t d = 0; d < 3; d++) {
+      row[MOTION + d] = moving ? atom->v[i][d] : load(i, d);
+      if (turns) row[TURNING + d] = moving ? atom->omega[i][d] : load(i, 3 + d);
+    }
     if (!gradients) return;
     std::copy_n(ambient.velocity(i), 3, row + FLOW);
     std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
   });
-  const size_t n = rigid.members().size();
-  for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n);
-  for (auto *vectors : {&spheres.x, &spheres.motion, &spheres.turning}) vectors->resize(3 * n);
-  spheres.flow.resize(gradients ? 3 * n : 0);
-  spheres.gradient.resize(gradients ? 9 * n : 0);
+  std::vector<double> ordered(columns * n + 1);
   for (size_t k = 0; k < n; k++) {
     const size_t m = rigid.members()[k];
-    double *row = &rows[columns * m];
     const int *steps = &scene.whole.steps[3 * m];
-    if (jumps && moving) Lattice::add(jumps, steps, row + MOTION);
-    if (jumps && gradients) Lattice::add(jumps, steps, row + FLOW);
-    spheres.eta[k] = row[ETA];
-    spheres.radius[k] = row[RADIUS];
-    std::copy_n(&scene.whole.x[3 * m], 3, &spheres.x[3 * k]);
-    std::copy_n(row + MOTION, 3, &spheres.motion[3 * k]);
-    std::copy_n(row + TURNING, 3, &spheres.turning[3 * k]);
-    if (!gradients) continue;
-    std::copy_n(row + FLOW, 3, &spheres.flow[3 * k]);
-    std::copy_n(row + GRADIENT, 9, &spheres.gradient[9 * k]);
+    double *row = &ordered[columns * k];
+    std::copy_n(&rows[columns * m], columns, row);
+    std::copy_n(&scene.whole.x[3 * m], 3, row + X);
+    if (jumps && moving) sd_add_edges(jumps, steps, row + MOTION);
+    if (jumps && gradients) sd_add_edges(jumps, steps, row + FLOW);
   }
+  const size_t flows = gradients ? 3 : 0;
+  take_apart(ordered, n, {{&spheres.eta, 1}, {&spheres.radius, 1}, {&spheres.x, 3}, {&spheres.motion, 3},
+                          {&spheres.turning, 3}, {&spheres.flow, flows}, {&spheres.gradient, 3 * flows}});
 }
 
 void Velocities::find(bool moving)
@@ -129,12 +118,12 @@ void Velocities::find_held()
     double arm[3], turning[3];
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
-      Lattice::add(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
+      sd_add_edges(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
     sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) clump.body->begin], arm);
     sd_cross(clump.V + 3, arm, turning);
     for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
   }
-  MPI_Allreduce(MPI_IN_PLACE, &split, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  split = smallest_of_all(world, split);
   if (split != RigidClumps::NOBODY)
     Voice(lmp, "Fix stokes_dynamics/overdamped")
         .fail("keyword held: the clump of molecule " + std::to_string(split) +
@@ -168,7 +157,7 @@ void Velocities::place(int width)
   const size_t m = width;
   const std::vector<double> rows = scene.rows(3 * width, [&](int i, double *out) {
     for (size_t d = 0; d < m; d++) {
-      out[d] = d < 3 ? atom->f[i][d] : atom->torque[i][d - 3];
+      out[d] = load(i, d);
       out[2 * m + d] = ambient.resistance(i, d);
     }
     ambient.fluid(i, out + m);
@@ -282,12 +271,6 @@ sd_bodies Velocities::assemble(int width)
 
 // --- near a wall ---------------------------------------------------------------------------------
 
-void Velocities::leave_wall()
-{
-  for (sd_body_shape &shape : standing) sd_body_shape_free(&shape);
-  standing.clear();
-}
-
 /* Spheres of a body, in the order of its shape */
 std::vector<int> Velocities::spheres_of(const sd_body &body) const
 {
@@ -317,27 +300,25 @@ sd_status Velocities::stand_at_wall(sd_body &body, double bodies)
   }
   const double height = sd_wall_height(&wall, centre);
   if (body.shape && !sd_body_wall_pays(body.shape->m, (int) bodies, height, extent)) return SD_OK;
-  sd_body_shape shape;
+  standing.emplace_back();
+  sd_body_shape *shape = &standing.back();
   const sd_multiblob_spheres shells = {x.data(), a.data(), turn.data(), mask.data(),
                                        (int) rows.size()};
   const sd_status status = scene.shells
-      ? sd_multiblob_wall_shape(&scene.shells->model(), &wall, &shells, centre, &shape)
-      : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, &shape);
+      ? sd_multiblob_wall_shape(&scene.shells->model(), &wall, &shells, centre, shape)
+      : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, shape);
   if (status == SD_ESINGULAR && body.shape) return SD_OK;    // those of open space will do
   if (status != SD_OK) return status;
-  standing.push_back(shape);
-  body = {&standing.back(), {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1.0, body.eta, body.row};
+  body = {shape, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1.0, body.eta, body.row};
   return SD_OK;
 }
 
 /* The bodies have been arranged. */
 void Velocities::stand_at_wall()
 {
-  double bodies = shaped.size();
-  leave_wall();
+  standing.clear();
   if (!scene.settings.wall.sign || !scene.settings.rotation) return;
-  MPI_Allreduce(MPI_IN_PLACE, &bodies, 1, MPI_DOUBLE, MPI_SUM, world);
-  standing.reserve(shaped.size());
+  const double bodies = sum_of_all(world, (double) shaped.size());
   for (sd_body &body : shaped) {
     const sd_status status = stand_at_wall(body, bodies);
     if (status != SD_OK)
@@ -355,7 +336,11 @@ void Velocities::carry(const sd_bodies &A, double *flow)
   if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.wall.sign) return;
   gradient.resize(9 * clumps.size());
   double centre[3];
-  for (size_t c = 0; c < clumps.size(); c++) flow_over(clumps[c], centre, &gradient[9 * c]);
+  for (size_t c = 0; c < clumps.size(); c++) {
+    const sd_clump_motion motion = look_at(clumps[c]);
+    const double *pose = clumps[c].pose;
+    sd_clump_flow(&clumps[c].body->shape->shape, &motion, pose, pose + 9, centre, &gradient[9 * c]);
+  }
   work.resize(sd_bodies_work(&A));
   sd_bodies_carry(&A, gradient.data(), work.data(), flow);
 }

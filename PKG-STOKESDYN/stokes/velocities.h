@@ -20,6 +20,7 @@
 #include "sd_random.h"
 #include "sd_tie.h"
 
+#include <deque>
 #include <functional>
 #include <vector>
 
@@ -51,14 +52,13 @@ class Velocities : protected LAMMPS_NS::Pointers {
     Lubrication &lubrication;
   };
   Velocities(LAMMPS_NS::LAMMPS *lmp, const Parts &parts);
-  ~Velocities();
-  Velocities(const Velocities &) = delete;
-  Velocities &operator=(const Velocities &) = delete;
 
   /* Who is held, or spun: what is known of atom i, and that of its velocity and angular velocity [6].
    * Empty: nobody is. A clump is held when all its spheres are. */
   using Held = std::function<sd_body_known(int i, double *V)>;
   Held held;
+  /* [6 nlocal] force and torque on each atom, from which velocities follow; empty: all are 0 */
+  std::vector<double> loads;
 
   /* Errors, on all ranks: those of RigidClumps; a clump held in part; a clump that is not rigid, or
    * not all selected. moving: drag() is to follow, not velocities. */
@@ -126,7 +126,7 @@ class Velocities : protected LAMMPS_NS::Pointers {
   Ambient &ambient;
   RigidClumps &rigid;
   Lubrication &lubrication;
-  sd_tie tie = {};
+  Owned<sd_tie, sd_tie_free> tie;
 
   /* of the spheres of one clump after the other, in the order of its shape: eta (0: takes no part),
    * radius, place, force and torque or velocity and angular velocity, fluid velocity and its
@@ -153,23 +153,19 @@ class Velocities : protected LAMMPS_NS::Pointers {
   /* where nobody sees anybody */
   sd_mobility_scene alone = {};
 
+  double load(int i, size_t d) const { return loads.empty() ? 0.0 : loads[6 * (size_t) i + d]; }
   void gather(bool moving);
   void find_held();
   std::vector<double> given_velocities();
   void place(int width);
   void arrange();
   sd_clump_motion look_at(const Clump &clump) const;
-  void flow_over(const Clump &clump, double u[3], double G[9]) const;
-  void load_on(const Clump &clump, double load[6]) const;
-  void drag_on(const Clump &clump, const double fluid[3], const double G[9], double *F,
-               double *T) const;
   sd_bodies bodies(int width);
   sd_bodies assemble(int width);
   void place_shells();
   void slip_at_points(const double *slip);
   /* near a wall: blocks of the bodies where they stand */
-  std::vector<sd_body_shape> standing;
-  void leave_wall();
+  std::deque<Owned<sd_body_shape, sd_body_shape_free>> standing;
   void stand_at_wall();
   sd_status stand_at_wall(sd_body &body, double bodies);
   std::vector<int> spheres_of(const sd_body &body) const;

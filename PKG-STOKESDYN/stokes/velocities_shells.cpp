@@ -49,8 +49,7 @@ void Velocities::place_shells()
   std::vector<double> rows = scene.rows(BEND + (int) bends, [&](int i, double *out) {
     std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
     if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
-    std::copy_n(atom->f[i], 3, out + FORCE);
-    std::copy_n(atom->torque[i], 3, out + FORCE + 3);
+    for (size_t d = 0; d < 6; d++) out[FORCE + d] = load(i, d);
     if (curvatures) std::copy_n(curvatures + bends * (size_t) i, bends, out + BEND);
   });
   scene.drift(rows.data(), BEND + (int) bends, 1.0);
@@ -96,36 +95,19 @@ sd_bodies Velocities::bodies_of_shells()
 /* What keeps member k of a clump in its place is what it exerts on the fluid less what acts on it. */
 void Velocities::add_constraints(double *S) const
 {
-  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
-  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++) {
-    const double *x = &arm[3 * k];
-    double f[3];
-    sd_minus(&exerted[6 * k], &F[6 * k], f);
-    const double trace = sd_dot(x, f) / 3.0;
-    for (int e = 0; e < 6; e++) {
-      const int p = row[e], q = column[e];
-      S[6 * k + e] += 0.5 * (x[p] * f[q] + x[q] * f[p]) - (p == q ? trace : 0.0);
-    }
-  }
+  const size_t first = scene.lone(), n = scene.size() - first;
+  std::vector<double> f(3 * n + 3);
+  for (size_t k = 0; k < n; k++)
+    sd_minus(&exerted[6 * (first + k)], &F[6 * (first + k)], &f[3 * k]);
+  sd_multiblob_moments(1, (int) n, &arm[3 * first], f.data(), S + 6 * first);
 }
 
 /* u of spheres that the fluid passes with this slip, velocity and spin [6 n], strains and bends */
 void Velocities::slip_at_points(const double *slip)
 {
   for (size_t k = 0; k < (size_t) scene.size(); k++) {
-    double *G = &slope[9 * k];
-    const double *w = slip + 6 * k + 3;
-    const double turning[9] = {0.0, -w[2], w[1], w[2], 0.0, -w[0], -w[1], w[0], 0.0};
-    const double E[9] = {G[0],
-                         0.5 * (G[1] + G[3]),
-                         0.5 * (G[2] + G[6]),
-                         0.5 * (G[1] + G[3]),
-                         G[4],
-                         0.5 * (G[5] + G[7]),
-                         0.5 * (G[2] + G[6]),
-                         0.5 * (G[5] + G[7]),
-                         G[8]};
-    for (int d = 0; d < 9; d++) G[d] = E[d] + turning[d];
+    const double *w = slip + 6 * k + 3, vorticity[3] = {2.0 * w[0], 2.0 * w[1], 2.0 * w[2]};
+    sd_flow_set_vorticity(vorticity, &slope[9 * k]);
   }
   flow_at_points(slip, 6, u.data());
 }

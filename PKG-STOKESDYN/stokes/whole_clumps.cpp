@@ -1,5 +1,6 @@
 #include "whole_clumps.h"
 
+#include "halo.h"
 #include "keywords.h"
 
 #include "atom.h"
@@ -127,13 +128,9 @@ void WholeClumps::stand()
   x = gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); });
   steps.assign(3 * tag.size() + 3, 0);
   for (const Clump &clump : clumps)
-    for (int k = clump.begin + 1; k < clump.end; k++) {
-      const double *first = &x[3 * (size_t) clump.begin];
-      double *there = &x[3 * (size_t) k];
-      double d[3] = {there[0] - first[0], there[1] - first[1], there[2] - first[2]};
-      lattice.closest(d, &steps[3 * (size_t) k]);
-      for (int e = 0; e < 3; e++) there[e] = first[e] + d[e];
-    }
+    for (int k = clump.begin + 1; k < clump.end; k++)
+      sd_bring_close(lattice.h, lattice.periodic, &x[3 * (size_t) clump.begin], &x[3 * (size_t) k],
+                     &steps[3 * (size_t) k]);
 }
 
 /* How far a clump reaches in x, y, z: beyond half of a periodic box the image next to the first
@@ -151,7 +148,7 @@ void WholeClumps::check_widths() const
       if (domain->periodicity[d] && hi - lo > 0.5 * domain->prd[d] * (1.0 + 1e-9))
         widest = std::min(widest, clump.molecule);
     }
-  MPI_Allreduce(MPI_IN_PLACE, &widest, 1, MPI_LMP_BIGINT, MPI_MIN, world);
+  widest = smallest_of_all(world, widest);
   if (widest == std::numeric_limits<int64_t>::max()) return;
   voice.fail("the clump of molecule " + std::to_string(widest) + " is wider than half of the "
              "periodic box, so which image of a sphere it sees is ambiguous; use a larger box or a "

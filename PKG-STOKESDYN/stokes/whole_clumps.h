@@ -9,7 +9,6 @@
 #define SD_WHOLE_CLUMPS_H
 
 #include "epochs.h"
-#include "halo.h"
 #include "keywords.h"
 #include "pointers.h"
 #include "ranks.h"

@@ -124,13 +124,6 @@ void FixHydroVans::find_classes()
   if (set.classes) size_array_cols += SD_VANS_ROWS * (int) stream.class_radii.size();
 }
 
-static void equal_style(const Voice &voice, Field &field, const std::string &name)
-{
-  const Voice what = voice.of("keyword " + name);
-  field.init(voice.lmp, what.command);
-  if (field.is_atom_style()) what.fail("an equal-style variable is needed");
-}
-
 /* What the keywords name must still be there. */
 void FixHydroVans::find_names()
 {
@@ -142,12 +135,7 @@ void FixHydroVans::find_names()
   if (average_group < 0)
     set.voice.fail("keyword average: group '" + set.average + "' does not exist");
   average_bit = group->bitmask[average_group];
-  equal_style(set.voice, set.dpdx, "pressure_gradient");
-  equal_style(set.voice, set.u_top, "surface");
-  equal_style(set.voice, set.intensity, "intensity");
-  equal_style(set.voice, set.flux, "upflow");
-  equal_style(set.voice, set.discharge, "discharge");
-  for (Field &component : set.gravity) equal_style(set.voice, component, "gravity");
+  for (const Given &each : givens()) each.field.init(lmp);
   if (set.overlap_once && !atom->molecule)
     set.voice.fail("keyword overlap: molecule IDs are needed to know the clumps");
   find_classes();
@@ -411,32 +399,31 @@ void FixHydroVans::take_gravity()
   stream.drive = sd_vans_drive(&stream.fluid);
 }
 
+std::vector<FixHydroVans::Given> FixHydroVans::givens()
+{
+  return {{set.dpdx, stream.fluid.dpdx, -HUGE_VAL, "pressure_gradient", ""},
+          {set.u_top, stream.fluid.u_top, -HUGE_VAL, "surface", "speed "},
+          {set.intensity, stream.intensity, 0.0, "intensity", ""},
+          {set.flux, stream.flux, -HUGE_VAL, "upflow", ""},
+          {set.discharge, stream.fluid.discharge, -HUGE_VAL, "discharge", ""},
+          {set.gravity[0], set.law.g[0], -HUGE_VAL, "gravity", "gx "},
+          {set.gravity[1], set.law.g[1], -HUGE_VAL, "gravity", "gy "},
+          {set.gravity[2], set.law.g[2], -HUGE_VAL, "gravity", "gz "}};
+}
+
 void FixHydroVans::read_variables()
 {
-  struct {
-    Field &field;
-    double &value;
-    double least;
-    const char *name;
-  } const all[] = {{set.dpdx, stream.fluid.dpdx, -HUGE_VAL, "pressure_gradient: "},
-                   {set.u_top, stream.fluid.u_top, -HUGE_VAL, "surface: speed "},
-                   {set.intensity, stream.intensity, 0.0, "intensity: "},
-                   {set.flux, stream.flux, -HUGE_VAL, "upflow: "},
-                   {set.discharge, stream.fluid.discharge, -HUGE_VAL, "discharge: "},
-                   {set.gravity[0], set.law.g[0], -HUGE_VAL, "gravity: gx "},
-                   {set.gravity[1], set.law.g[1], -HUGE_VAL, "gravity: gy "},
-                   {set.gravity[2], set.law.g[2], -HUGE_VAL, "gravity: gz "}};
-  if (std::none_of(std::begin(all), std::end(all),
-                   [](const auto &each) { return each.field.is_variable(); }))
+  const std::vector<Given> all = givens();
+  if (std::none_of(all.begin(), all.end(), [](const Given &each) { return each.field.is_variable(); }))
     return;
   modify->clearstep_compute();
-  for (const auto &each : all) {
+  for (const Given &each : all) {
     if (!each.field.is_variable()) continue;
     each.value = each.field.evaluate(lmp);
-    const std::string what = "step " + std::to_string(update->ntimestep) + ": keyword " +
-        each.name + text(each.value);
-    if (!std::isfinite(each.value)) set.voice.fail(what + " is not a finite number");
-    if (each.value < each.least) set.voice.fail(what + " must be >= 0");
+    const Voice what = set.voice.at_step().of(std::string("keyword ") + each.keyword);
+    const std::string now = each.part + text(each.value);
+    if (!std::isfinite(each.value)) what.fail(now + " is not a finite number");
+    if (each.value < each.least) what.fail(now + " must be >= 0");
   }
   modify->addstep_compute(update->ntimestep + nevery);
   take_gravity();

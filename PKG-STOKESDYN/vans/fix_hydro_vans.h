@@ -9,8 +9,6 @@
 #include "sd_vans_random.h"
 #include "vans_stream.h"
 
-#include <memory>
-
 namespace LAMMPS_NS {
 class Region;
 }
@@ -34,8 +32,6 @@ class FixHydroVans : public RowsFix {
   int modify_param(int, char **) override;
   void *extract(const char *, int &) override;
   double memory_usage() override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
  private:
   VansSettings set;
@@ -80,7 +76,9 @@ class FixHydroVans : public RowsFix {
   struct {
     double radius = 0.0, density = 0.0;
   } mean;
-  std::vector<SavedNumbers> saved();
+  std::vector<SavedNumbers> saved() override;
+  void write_state(NamedState &) override;
+  void read_state(const NamedState &) override;
 
   /* Of the last step, of this rank and of all: force x y z, drag along x, spheres outside; force of
    * the pressure gradient, and its impulse since the first step. */
@@ -140,6 +138,14 @@ class FixHydroVans : public RowsFix {
   void count_overlaps();
 
   double steady(int k) const;
+  /* What keywords give as numbers or variables of equal style, where the values go, their limits */
+  struct Given {
+    Field &field;
+    double &value;
+    double least;
+    const char *keyword, *part;
+  };
+  std::vector<Given> givens();
   void modify_profile(Keywords &in, const Voice &what);
 
   void record(int i) override;

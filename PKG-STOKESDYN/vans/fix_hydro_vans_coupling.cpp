@@ -6,7 +6,6 @@
 #include "sd_hash.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "update.h"
 
 #include <algorithm>

@@ -1,9 +1,5 @@
 #include "fix_hydro_vans.h"
 
-#include "atom.h"
-#include "comm.h"
-#include "update.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -139,7 +135,7 @@ int FixHydroVans::modify_param(int narg, char **arg)
     last_step = -1;
   } else if (key == "gravity") {
     set.take_gravity(in);
-    for (Field &component : set.gravity) component.init(lmp, what.command);
+    for (Field &component : set.gravity) component.init(lmp);
     take_gravity();
     last_step = -1;
   } else if (key == "steady") {
@@ -178,21 +174,18 @@ static std::vector<double> layout(const VansSettings &set)
 
 std::vector<SavedNumbers> FixHydroVans::saved()
 {
-  return {{"elapsed", &elapsed, 1}, {"eddies", &eddies.age, 3}, {"mean", &mean.radius, 2}};
+  return {{"elapsed", &elapsed},
+          {"eddies", &eddies.age, 3},
+          {"mean", &mean.radius, 2},
+          {"pressed", &local.pressure, 2, true}};
 }
 
-void FixHydroVans::write_restart(FILE *fp)
+void FixHydroVans::write_state(NamedState &state)
 {
-  sum_up();
-  if (comm->me != 0) return;
-  NamedState state(STYLE);
   state.put("columns", layout(set));
   state.put("last_step", (double) last_step);
-  put(state, saved());
-  state.put("pressed", {global.pressure, global.pressed});
   if (variables_known) state.put("variables", {set.law.g[0], set.law.g[1], set.law.g[2], set.law.flux});
   stream.save(state);
-  state.write(fp);
 }
 
 /* Of the last coupling, where this fix has variables as well. */
@@ -205,18 +198,10 @@ void FixHydroVans::take_variables(const std::vector<double> &last)
   if (set.flux.is_variable()) set.law.flux = stream.flux = last[3];
 }
 
-void FixHydroVans::restart(char *buf)
+void FixHydroVans::read_state(const NamedState &state)
 {
-  NamedState state(STYLE);
-  if (!state.read(lmp, buf)) return;
   stream.load(state);
   last_step = (bigint) state.get("last_step", -1.0);
-  get(state, saved());
-  double pressed[2];
-  if (state.get("pressed", pressed, 2) && comm->me == 0) {
-    local.pressure = pressed[0];
-    local.pressed = pressed[1];
-  }
   take_variables(state.get("variables"));
   if (state.get("columns") != layout(set))
     set.voice.warn("the restart file was written with other keywords (conserve, overlap, "

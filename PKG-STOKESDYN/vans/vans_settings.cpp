@@ -119,6 +119,11 @@ static std::string file_or(Keywords &in, const char *none)
   return in.take(none) ? std::string() : file_name(in);
 }
 
+static Field one_for_all(Keywords &in)
+{
+  return Field::parse(in, Field::ONE_FOR_ALL);
+}
+
 static double fraction(Keywords &in)
 {
   const double value = in.positive();
@@ -175,7 +180,7 @@ void VansSettings::take_intensity(Keywords &in)
   if (in.more() && in.peek() == "file")
     intensity_file = file_name(in);
   else
-    intensity = Field::parse(in);
+    intensity = one_for_all(in);
   if (intensity.number() < 0.0) in.refuse("'" + text(intensity.number()) + "' must be >= 0");
 }
 
@@ -188,7 +193,7 @@ void VansSettings::take_fluid(Keywords &in)
 void VansSettings::take_gravity(Keywords &in)
 {
   for (int d = 0; d < 3; d++) {
-    gravity[d] = Field::parse(in);
+    gravity[d] = one_for_all(in);
     law.g[d] = gravity[d].number();
   }
 }
@@ -207,7 +212,7 @@ void VansSettings::take_surface(Keywords &in)
 {
   const size_t kind = in.choice({"free", "speed", "follow"});
   fluid.driven = kind == 1;
-  if (kind == 1) u_top = Field::parse(in);
+  if (kind == 1) u_top = one_for_all(in);
   if (kind == 2) surface = in.positive();
 }
 
@@ -239,7 +244,7 @@ void VansSettings::read(Keywords &in)
       {"fall_diameter", [&] { law.drag.fall = in.positive(); }},
       {"hindrance", [&] { take_hindrance(in); }},
       {"added_mass", [&] { law.added_mass = in.take("off") ? 0.0 : in.not_negative(); }},
-      {"upflow", [&] { if ((upflow = !in.take("off"))) flux = Field::parse(in); }},
+      {"upflow", [&] { if ((upflow = !in.take("off"))) flux = one_for_all(in); }},
       {"lift", [&] { law.lift = in.take("off") ? 0.0 : in.number(); }},
       {"turbulence",
        [&] {
@@ -254,9 +259,9 @@ void VansSettings::read(Keywords &in)
       {"viscosity",
        [&] { fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"}); }},
       {"surface", [&] { take_surface(in); }},
-      {"discharge", [&] { if ((fluid.held = !in.take("off"))) discharge = Field::parse(in); }},
+      {"discharge", [&] { if ((fluid.held = !in.take("off"))) discharge = one_for_all(in); }},
       {"adjust", [&] { reach = in.choice({"slope", "depth"}) == 1 ? in.positive() : 0.0; }},
-      {"pressure_gradient", [&] { dpdx = Field::parse(in); }},
+      {"pressure_gradient", [&] { dpdx = one_for_all(in); }},
       {"sidewall", [&] { take_sidewall(in); }},
       {"wall_roughness", [&] { fluid.wall_roughness = in.not_negative(); }},
       {"wall_mixing", [&] { fluid.narrow = in.yes_no(); }},

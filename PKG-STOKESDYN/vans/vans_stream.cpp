@@ -10,7 +10,7 @@ using namespace StokesDyn;
 
 VansStream::VansStream(const VansSettings &settings) :
     set(settings), mesh(set.mesh), wet(set.mesh), fluid(set.fluid), U(set.profile),
-    wet_edge(set.edge), solver(sd_vans_solver_create(&wet))
+    wet_edge(set.edge), solver(sd_vans_solver_create(&wet), sd_vans_solver_free)
 {
   const int N = ncell();
   if (!solver) set.voice.fail("out of memory for " + std::to_string(N) + " slices");
@@ -33,11 +33,6 @@ VansStream::VansStream(const VansSettings &settings) :
   scratch.resize(2 * (size_t) N + 2);
   set_classes(set.class_radii);
   take_given(set.given);
-}
-
-VansStream::~VansStream()
-{
-  sd_vans_solver_free(solver);
 }
 
 void VansStream::set_classes(const std::vector<double> &radii)
@@ -283,7 +278,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0, 0};
   const sd_status status =
-      sd_vans_solve(solver, &fluid, &column, steps, dt, &flow, &books);
+      sd_vans_solve(solver.get(), &fluid, &column, steps, dt, &flow, &books);
   if (status != SD_OK)
     set.voice.fail("the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
                    " steps: " + sd_status_string(status) +
@@ -333,21 +328,6 @@ std::vector<double> VansStream::friction_velocities() const
 
 /* ---- restart -------------------------------------------------------------------------------- */
 
-namespace StokesDyn {
-
-void put(NamedState &state, const std::vector<SavedNumbers> &all)
-{
-  for (const SavedNumbers &each : all)
-    state.put(each.name, std::vector<double>(each.numbers, each.numbers + each.count));
-}
-
-void get(const NamedState &state, const std::vector<SavedNumbers> &all)
-{
-  for (const SavedNumbers &each : all) state.get(each.name, each.numbers, each.count);
-}
-
-}    // namespace StokesDyn
-
 std::vector<SavedNumbers> VansStream::saved()
 {
   std::vector<SavedNumbers> all = {{"felt", &felt, 1},
@@ -384,7 +364,7 @@ void VansStream::save(NamedState &state)
   state.put("density_known", density_known);
   state.put("radius", fluid.radius);
   state.put("class_radii", class_radii);
-  put(state, saved());
+  state.put(set.voice.lmp->world, saved());
   std::vector<double> history;
   for (const auto &profile : phi_history)
     history.insert(history.end(), profile.begin(), profile.end());
@@ -425,7 +405,7 @@ void VansStream::load(const NamedState &state)
   density_known = state.get("density_known", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
   set_classes(state.get("class_radii"));
-  get(state, saved());
+  state.get(set.voice.lmp->world, saved());
   load_surface(state);
   const size_t N = ncell();
   const auto history = state.get("phi_history");

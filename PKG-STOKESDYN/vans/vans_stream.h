@@ -3,31 +3,20 @@
 #ifndef SD_VANS_STREAM_H
 #define SD_VANS_STREAM_H
 
-#include "named_state.h"
+#include "restart.h"
 #include "sd_vans_books.h"
 #include "sd_vans_steady.h"
 #include "vans_settings.h"
 
 #include <deque>
+#include <memory>
 #include <vector>
 
 namespace StokesDyn {
 
-/* Numbers of a restart file, by name. Those that the file has not stay as they are. */
-struct SavedNumbers {
-  const char *name;
-  double *numbers;
-  size_t count;
-};
-void put(NamedState &state, const std::vector<SavedNumbers> &all);
-void get(const NamedState &state, const std::vector<SavedNumbers> &all);
-
 class VansStream {
  public:
   explicit VansStream(const VansSettings &settings);
-  ~VansStream();
-  VansStream(const VansStream &) = delete;
-  VansStream &operator=(const VansStream &) = delete;
 
   const VansSettings &set;
   const sd_vans_mesh &mesh;
@@ -126,7 +115,7 @@ class VansStream {
   std::vector<double> wet_edge, wet_before;
   /* of water per area, which stays when the surface moves; < 0: not known yet */
   double volume = -1.0;
-  sd_vans_solver *solver;
+  const std::unique_ptr<sd_vans_solver, void (*)(sd_vans_solver *)> solver;
   std::vector<std::vector<double>> given;
   /* [N] momentum that is to go back to the water */
   std::vector<double> outstanding;

@@ -351,7 +351,7 @@ INF = f"cut_off_distance inf visc {ETA}"
                                             ("temperature 1 5 noise_tolerance 0.5", "'0.5' must be below 0.5"),
                                             ("temperature 1 5 noise_tolerance 0", "noise_tolerance: '0' must be > 0"),
                                             ("temperature v_none 5", "variable 'none' does not exist"),
-                                            ("temperature v_atoms 5", "all atoms have one temperature"),
+                                            ("temperature v_atoms 5", "keyword temperature: the variable must be of equal style: one value for all"),
                                             ("temperature v_minus 5", "'-2' must be >= 0, in step 0"),
                                             ("temperature 1 5 adapt 1 1e-3 1 1", "leave out adapt"),
                                             ("temperature 1 5 held some scheme ab2", "keyword held: the mobility has a drift"),

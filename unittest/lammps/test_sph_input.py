@@ -103,7 +103,7 @@ AT_RUN = {
     "two speeds of sound": (PAIR + MOVE + "fix a all property/global speedOfSound peratomtype 20 20\n"
                             "fix h all property/global sl peratomtype 0.012 0.012\nfix b all property/global speedOfSound peratomtype 30 20",
                             "more than one fix property/global gives speedOfSound"),
-    "two pressures": (PAIR + MOVE + "fix more all sph/pressure absolut 3", "atom 60 is in the groups of two fixes sph/pressure"),
+    "two pressures": (PAIR + MOVE + "fix more all sph/pressure absolut 3", "atom 1 is in the groups of two fixes sph/pressure"),
     "pressure for a part": (PAIR + MOVE + "unfix eos\ngroup one type 1\nfix eos one sph/pressure absolut 3", "is in the group of no fix"),
     "no pair style": (MOVE, "Fix sph/pressure: there is no pair_style sph/artVisc/tensCorr"),
     "nobody advances the density": (PAIR + "fix move all nve", "nothing advances the density; use fix nve/sph"),
@@ -123,7 +123,7 @@ AT_RUN = {
     "respa": (PAIR + MOVE + "run_style respa 2 2 pair 1", "respa"),
     "respa with fix sph": (PAIR + "fix move all sph\nrun_style respa 2 2 pair 1", "run_style respa"),
     "wall group moves": (PAIR + MOVE + "group w type 2\nfix w w wall/adami/sph",
-                         "Fix wall/adami/sph: atom 58 of its group is also integrated by fix move"),
+                         "Fix wall/adami/sph: atom 1 of its group is also integrated by fix move"),
     "wall group moves with fix sph": (PAIR + "fix move all sph\ngroup w type 2\nfix w w wall/adami/sph", "is also integrated by fix move"),
     "no such pressure": (PAIR + "group one type 1\ngroup two type 2\nfix move one nve/sph\nfix w two wall/adami/sph gravity 0 -1e7 0",
                          "that the fluid asks for is not above -60000, the lowest of fix eos"),

@@ -105,6 +105,7 @@ BAD = [
     ("given full", "two", "keyword given: file 'full': phi = 1.2 in slice 4"),
     ("profile", "two", "keyword profile: value missing"),
     ("profile values 1 2", "two", "keyword profile: 2 values, ncell \\+ 1 = 21 are needed"),
+    ("gravity v_atoms 0 -9.8", "two", "keyword gravity: the variable must be of equal style: one value for all"),
     ("profile upward 1", "two", "keyword profile: 'upward' is none of: file, values"),
 ]
 
@@ -116,7 +117,7 @@ def test_bad_input(tmp_path, monkeypatch, words, couple, message):
     (tmp_path / "full").write_text("0.1 0 0\n" * 3 + "1.2 0 0\n" + "0.1 0 0\n" * 16)
     s = Scene()
     s.spheres([[0.01, 0.01, 0.0055]], np.zeros((1, 3)), 0.001)
-    s.do(f"fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple {couple}", "run 0")
+    s.do("variable atoms atom x", f"fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple {couple}", "run 0")
     with pytest.raises(Exception, match="fix_modify h: " + message):
         s.do("fix_modify h " + words)
 

@@ -57,3 +57,25 @@ void sd_closest_image(const double h[6], const int periodic[3], double d[3])
   }
   memcpy(d, shortest, sizeof(shortest));
 }
+
+void sd_bring_close(const double h[6], const int periodic[3], const double to[3], double x[3],
+                    int steps[3])
+{
+  double before[3], d[3], moved[3], exact[3];
+  for (int k = 0; k < 3; k++) before[k] = d[k] = x[k] - to[k];
+  sd_closest_image(h, periodic, d);
+  for (int k = 0; k < 3; k++) {
+    x[k] = to[k] + d[k];
+    moved[k] = d[k] - before[k];
+  }
+  sd_in_edges(h, moved, exact);
+  for (int k = 0; k < 3; k++) steps[k] = fabs(exact[k]) < 1e9 ? (int) lround(exact[k]) : 0;
+}
+
+double sd_across_faces(const double h[6], int d, double length)
+{
+  const double xy = h[5], xz = h[4], yz = h[3], s = xy * yz / h[1] - xz;
+  if (d == 2) return length / h[2];
+  if (d == 1) return length / h[1] * hypot(1.0, yz / h[2]);
+  return length / h[0] * hypot(1.0, hypot(xy / h[1], s / h[2]));
+}

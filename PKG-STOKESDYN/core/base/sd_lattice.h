@@ -1,4 +1,5 @@
-/* Images of a periodic box. */
+/* Images of a periodic box, with the edges (h0 0 0), (h5 h1 0), (h4 h3 h2): h in the order of LAMMPS, xx
+ * yy zz yz xz xy. */
 #ifndef SD_LATTICE_H
 #define SD_LATTICE_H
 
@@ -6,11 +7,34 @@
 
 SD_BEGIN_C
 
-/* Makes the separation d the shortest of its images in a box with the edges (h0 0 0), (h5 h1 0),
- * (h4 h3 h2) (the order of LAMMPS: xx yy zz yz xz xy), of which those with periodic = 1 repeat. In
- * a skew box this need not be LAMMPS's minimum image. Whatever d is, 1e300 or not a number, it
- * comes back at once. */
+/* Makes the separation d the shortest of its images in a box of which the edges with periodic = 1
+ * repeat. In a skew box this need not be LAMMPS's minimum image. Whatever d is, 1e300 or not a
+ * number, it comes back at once. */
 void sd_closest_image(const double h[6], const int periodic[3], double d[3]);
+
+/* Moves x to its image that is closest to `to`; steps: by how many edges, 0 where that is no number
+ * below 1e9. */
+void sd_bring_close(const double h[6], const int periodic[3], const double to[3], double x[3],
+                    int steps[3]);
+
+/* x += steps edges; h: those of another time, or their rates */
+static inline void sd_add_edges(const double h[6], const int steps[3], double x[3])
+{
+  x[0] += steps[0] * h[0] + steps[1] * h[5] + steps[2] * h[4];
+  x[1] += steps[1] * h[1] + steps[2] * h[3];
+  x[2] += steps[2] * h[2];
+}
+
+/* A vector in units of the edges, so that faces are planes of equal coordinates */
+static inline void sd_in_edges(const double h[6], const double r[3], double f[3])
+{
+  f[2] = r[2] / h[2];
+  f[1] = (r[1] - h[3] * f[2]) / h[1];
+  f[0] = (r[0] - h[5] * f[1] - h[4] * f[2]) / h[0];
+}
+
+/* A length across the faces of edge d, which are volume / (their area) apart, in units of that */
+double sd_across_faces(const double h[6], int d, double length);
 
 SD_END_C
 #endif

@@ -60,11 +60,49 @@ static void far_away_is_no_loop(void **state)
   assert_true(open[0] == 1e300 && open[2] == -7.0);
 }
 
+/* A place that is brought close is its image so many edges away, and edges are 1 in units of edges. */
+static void steps_and_edges_agree(void **state)
+{
+  (void) state;
+  const double h[6] = {4.0, 5.0, 6.0, 1.1, -0.7, 1.9}, to[3] = {0.3, -0.2, 0.9};
+  uint64_t seed = 89;
+  for (int trial = 0; trial < 100; trial++) {
+    double x[3], was[3], f[3];
+    int steps[3];
+    for (int d = 0; d < 3; d++) was[d] = x[d] = uniform(&seed, -30.0, 30.0);
+    sd_bring_close(h, all, to, x, steps);
+    assert_true(square((double[3]){x[0] - to[0], x[1] - to[1], x[2] - to[2]}) < 30.0);
+    sd_add_edges(h, steps, was);
+    for (int d = 0; d < 3; d++) CHECK_NEAR(x[d], was[d], 1e-12);
+    sd_in_edges(h, (double[3]){3 * h[0] - 2 * h[5] + h[4], -2 * h[1] + h[3], h[2]}, f);
+    CHECK_NEAR(f[0], 3.0, 1e-14);
+    CHECK_NEAR(f[1], -2.0, 1e-14);
+    CHECK_NEAR(f[2], 1.0, 1e-14);
+  }
+}
+
+/* Faces are as far apart as the volume is large for their area. */
+static void faces_are_volume_over_area_apart(void **state)
+{
+  (void) state;
+  const double h[6] = {4.0, 5.0, 6.0, 1.1, -0.7, 1.9}, V = h[0] * h[1] * h[2];
+  const double a[3] = {h[0], 0.0, 0.0}, b[3] = {h[5], h[1], 0.0}, c[3] = {h[4], h[3], h[2]};
+  const double *other[3][2] = {{b, c}, {c, a}, {a, b}};
+  for (int d = 0; d < 3; d++) {
+    const double *p = other[d][0], *q = other[d][1];
+    const double normal[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
+                              p[0] * q[1] - p[1] * q[0]};
+    CHECK_NEAR(sd_across_faces(h, d, 2.0), 2.0 * sqrt(square(normal)) / V, 1e-14);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(image_is_the_closest),
       cmocka_unit_test(far_away_is_no_loop),
+      cmocka_unit_test(steps_and_edges_agree),
+      cmocka_unit_test(faces_are_volume_over_area_apart),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

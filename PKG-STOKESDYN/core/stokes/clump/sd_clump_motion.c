@@ -82,31 +82,50 @@ void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9
   }
 }
 
-/* Slip of the fluid against the rigid motion: u - U at the centroid, and G less the antisymmetric
- * matrix of w, whose product with r is w x r. */
+/* Slip of the fluid, which has u at the centroid and the gradient G, against the rigid motion: u - U
+ * there, and G less the antisymmetric matrix of w, whose product with r is w x r. */
+static void drag_of_slip(const sd_clump *clump, const sd_clump_motion *m, const double R[9],
+                         double eta, const double u[3], const double G[9], const double U[3],
+                         const double w[3], double *F, double *T)
+{
+  const double minus_w[3] = {-w[0], -w[1], -w[2]};
+  const double spin[9] = {0.0, -w[2], w[1], w[2], 0.0, -w[0], -w[1], w[0], 0.0};
+  double slip[3], A[9];
+  sd_minus(u, U, slip);
+  for (int d = 0; d < 9; d++) A[d] = G[d] - spin[d];
+  if (m->u)
+    sd_clump_forces(clump, R, eta, slip, A, F, T);
+  else
+    sd_clump_forces_rigid(clump, R, eta, slip, minus_w, F, T);
+}
+
 void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
                    const double pose[12], double eta, double *F, double *T)
 {
-  const double *R = pose, *c = pose + 9;
-  double U[3], w[3], u[3], G[9], slip[3], W[3];
-  sd_clump_velocity(s, m, R, c, U, w);
-  if (!m->u) {
-    for (int d = 0; d < 3; d++) {
-      slip[d] = m->u_uniform[d] - U[d];
-      W[d] = -w[d];
-    }
-    sd_clump_forces_rigid(clump, R, eta, slip, W, F, T);
-    return;
-  }
-  sd_clump_flow(s, m, R, c, u, G);
-  const double spin[9] = {0.0, -w[2], w[1], w[2], 0.0, -w[0], -w[1], w[0], 0.0};
-  for (int d = 0; d < 3; d++) slip[d] = u[d] - U[d];
-  for (int d = 0; d < 9; d++) G[d] -= spin[d];
-  sd_clump_forces(clump, R, eta, slip, G, F, T);
+  double U[3], w[3], u[3], G[9];
+  sd_clump_velocity(s, m, pose, pose + 9, U, w);
+  sd_clump_flow(s, m, pose, pose + 9, u, G);
+  drag_of_slip(clump, m, pose, eta, u, G, U, w, F, T);
 }
 
-void sd_clump_free_velocity(const sd_clump *clump, const double R[9], double eta,
-                            const double load[6], const double u[3], const double G[9], double V[6])
+/* Force and torque about the centroid c of forces f and torques t on the spheres */
+static void load_of(const sd_shape *s, const sd_clump_motion *m, const double c[3], const double *f,
+                    const double *t, double load[6])
+{
+  memset(load, 0, 6 * sizeof(double));
+  for (int k = 0; k < 3 * s->n; k += 3) {
+    double arm[3], couple[3];
+    sd_minus(m->x + k, c, arm);
+    sd_cross(arm, f + k, couple);
+    for (int d = 0; d < 3; d++) {
+      load[d] += f[k + d];
+      load[3 + d] += t[k + d] + couple[d];
+    }
+  }
+}
+
+static void free_velocity(const sd_clump *clump, const double R[9], double eta, const double load[6],
+                          const double u[3], const double G[9], double V[6])
 {
   double E[6], f[6], v[6], shift[3];
   sd_clump_split_gradient(R, G, V + 3, E);
@@ -133,4 +152,24 @@ void sd_clump_free_velocity(const sd_clump *clump, const double R[9], double eta
     V[d] += U[d];
     V[3 + d] += W[d];
   }
+}
+
+void sd_clump_settle(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
+                     const double pose[12], double eta, const double *f, const double *t, int held,
+                     double V[6], double *v, double *F, double *T)
+{
+  double u[3], G[9], load[6];
+  sd_clump_flow(s, m, pose, pose + 9, u, G);
+  load_of(s, m, pose + 9, f, t, load);
+  if (!held) free_velocity(clump, pose, eta, load, u, G, V);
+  for (int k = 0; k < s->n; k++) {
+    double arm[3], turning[3];
+    sd_multiply3(pose, s->x + 3 * k, arm);
+    sd_cross(V + 3, arm, turning);
+    for (int d = 0; d < 3; d++) {
+      v[6 * k + d] = V[d] + turning[d];
+      v[6 * k + 3 + d] = V[3 + d];
+    }
+  }
+  drag_of_slip(clump, m, pose, eta, u, G, V, V + 3, F, T);
 }

@@ -36,14 +36,15 @@ void sd_clump_flow(const sd_shape *shape, const sd_clump_motion *m, const double
 void sd_clump_drag(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
                    const double pose[12], double eta, double *F, double *T);
 
-/* V [6], U of the centroid and W, of a clump without inertia that no other disturbs, in pose R:
- * carried by the flow with velocity u at its centroid and gradient G (sd_clump_flow), driven by
- * load [6], force and torque about the centroid,
+/* A clump without inertia that no other disturbs, in pose R, c: under forces f and torques t [3n] on its
+ * spheres it moves with V [6], U of the centroid and W, unless V is given (held):
  *   (U, W) = (u, curl u / 2) + N (load + eta C : E) / eta
- * N its mobility, C its force from the strain E for eta = 1. */
-void sd_clump_free_velocity(const sd_clump *clump, const double R[9], double eta,
-                            const double load[6], const double u[3], const double G[9],
-                            double V[6]);
+ * u the flow at its centroid (sd_clump_flow) and E the strain there, N its mobility, C its force from
+ * the strain for eta = 1, load: force and torque about the centroid. v [6n]: velocity and angular
+ * velocity of its spheres; F, T [3n]: force and torque of the fluid on them. No allocation. */
+void sd_clump_settle(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
+                     const double pose[12], double eta, const double *f, const double *t, int held,
+                     double V[6], double *v, double *F, double *T);
 
 SD_END_C
 #endif

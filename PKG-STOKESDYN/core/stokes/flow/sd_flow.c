@@ -8,13 +8,6 @@ void sd_flow_rotation(const double G[9], double w[3])
   }
 }
 
-void sd_flow_add_rotation(int n, int p, int q, const double *slope, double *w)
-{
-  const int d = 3 - p - q; /* the third axis */
-  const double half = (d + 1) % 3 == q ? 0.5 : -0.5;
-  for (int i = 0; i < n; i++) w[3 * (long) i + d] += half * slope[i];
-}
-
 /* G is the rate of strain, which is symmetric, plus an antisymmetric part whose three numbers are
  * half the vorticity. */
 void sd_flow_set_vorticity(const double vorticity[3], double G[9])
@@ -28,10 +21,9 @@ void sd_flow_set_vorticity(const double vorticity[3], double G[9])
 }
 
 /* (u(x + a) - u(x - a))/(2 a): the scale on which a sphere feels a gradient is its own. */
-void sd_flow_slope(int n, const double *ahead, const double *behind, const double *a,
-                   double *slope)
+double sd_flow_slope(double ahead, double behind, double a)
 {
-  for (int i = 0; i < n; i++) slope[i] = a[i] > 0.0 ? (ahead[i] - behind[i]) / (2.0 * a[i]) : 0.0;
+  return a > 0.0 ? (ahead - behind) / (2.0 * a) : 0.0;
 }
 
 const double sd_flow_around[SD_FLOW_DIRECTIONS][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},

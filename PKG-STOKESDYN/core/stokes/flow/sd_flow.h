@@ -11,16 +11,12 @@ SD_BEGIN_C
  * for d, e, f in cyclic order. */
 void sd_flow_rotation(const double G[9], double w[3]);
 
-/* The same piece by piece: adds to w [3n] what is due to slope [n] = d u_p / d x_q, p != q. */
-void sd_flow_add_rotation(int n, int p, int q, const double *slope, double *w);
-
 /* Puts the given vorticity (2 w) in place of that of G; the rate of strain stays. */
 void sd_flow_set_vorticity(const double vorticity[3], double G[9]);
 
 /* Central difference of one component over +-a: exact for a linear field, to order a^2 for others.
- * 0 where a = 0. All [n]. */
-void sd_flow_slope(int n, const double *ahead, const double *behind, const double *a,
-                   double *slope);
+ * 0 where a = 0. */
+double sd_flow_slope(double ahead, double behind, double a);
 
 /* Where a flow is asked for its second derivatives: at x + h d and x - h d, d the rows of
  * sd_flow_around, h = SD_FLOW_STEP of a radius, so that all places are inside of the sphere. */

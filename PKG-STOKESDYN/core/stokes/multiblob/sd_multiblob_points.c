@@ -64,13 +64,12 @@ void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, cons
   }
 }
 
-void sd_multiblob_moments(const sd_multiblob *m, int spheres, const double *r, const double *f,
-                          double *S)
+void sd_multiblob_moments(int points, int spheres, const double *r, const double *f, double *S)
 {
   static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
   for (long i = 0; i < spheres; i++) {
     double *sum = S + 6 * i;
-    for (long k = m->n * i; k < m->n * (i + 1); k++) {
+    for (long k = points * i; k < points * (i + 1); k++) {
       const double *arm = r + 3 * k, *force = f + 3 * k, trace = sd_dot(arm, force) / 3.0;
       for (int e = 0; e < 6; e++) {
         const int p = row[e], q = column[e];

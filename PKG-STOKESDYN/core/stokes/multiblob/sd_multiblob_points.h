@@ -53,11 +53,10 @@ void sd_multiblob_expand(const sd_multiblob *m, const sd_multiblob_spheres *s, d
 void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *w,
                       const double *r, const double *f, double *u);
 
-/* First moments of the forces f of the points of each sphere about its centre, symmetric and
- * traceless, xx yy zz xy xz yz: S [6 spheres] += dev sym sum r_k f_k. f acts on the fluid; the
- * stress of the suspension is 2 eta E - (sum of S)/V. */
-void sd_multiblob_moments(const sd_multiblob *m, int spheres, const double *r, const double *f,
-                          double *S);
+/* First moments of the forces f of the points of each sphere, so many a sphere, about its centre,
+ * symmetric and traceless, xx yy zz xy xz yz: S [6 spheres] += dev sym sum r_k f_k. f acts on the fluid;
+ * the stress of the suspension is 2 eta E - (sum of S)/V. */
+void sd_multiblob_moments(int points, int spheres, const double *r, const double *f, double *S);
 
 SD_END_C
 #endif

@@ -288,7 +288,7 @@ static inline void blobs_move(const blobs *s, const double *F, const double *G, 
       l[k] += s->forces[(size_t) j * (size_t) s->N + (size_t) k] * V[j];
   if (S) {
     memset(S, 0, sizeof(double) * (size_t) s->size);
-    sd_multiblob_moments(&s->m, s->n, s->r, l, S);
+    sd_multiblob_moments(s->m.n, s->n, s->r, l, S);
     if (s->L.count) assert_int_equal(sd_lubrication_stress(&s->L, V, S), SD_OK);
   }
   for (int i = 0; G && i < s->n; i++) {
