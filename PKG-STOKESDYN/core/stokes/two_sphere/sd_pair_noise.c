@@ -32,11 +32,17 @@ static sd_status add_along(const double X[3], const double d[3], const double *f
   return status;
 }
 
-/* Rows F1 F2 T1 T2 as in sd_pair_resistance.c, where torques are along e x d */
+/* Rows F1 F2 T1 T2 as in sd_pair_resistance.c, where torques are along e x d. Over a length of the pair
+ * they are comparable to forces: else they may be rounding beside these, in units in which the spheres
+ * are small. */
 static sd_status add_across(const sd_pair_resistance *R, const double d[3], double g[4][3],
                             double F[12])
 {
-  const double *a = R->YA, *b = R->YB, *c = R->YC;
+  const double *a = R->YA, forces = a[0] + a[2], torques = R->YC[0] + R->YC[2];
+  const double length = forces > 0.0 && torques > 0.0 ? sqrt(torques / forces) : 1.0;
+  double b[4], c[3];
+  for (int k = 0; k < 4; k++) b[k] = R->YB[k] / length;
+  for (int k = 0; k < 3; k++) c[k] = R->YC[k] / (length * length);
   const double A[16] = {a[0], a[1], b[0], b[2], a[1], a[2], b[1], b[3],
                         b[0], b[1], c[0], c[1], b[2], b[3], c[1], c[2]};
   double root[16];
@@ -46,7 +52,7 @@ static sd_status add_across(const sd_pair_resistance *R, const double d[3], doub
     for (int k = 0; k < 4; k++)
       for (int e = 0; e < 3; e++) sum[e] += root[4 * p + k] * g[k][e];
     sd_cross(sum, d, turned);
-    for (int e = 0; e < 3; e++) to[e] += p < 2 ? sum[e] : turned[e];
+    for (int e = 0; e < 3; e++) to[e] += p < 2 ? sum[e] : length * turned[e];
   }
   return status;
 }

@@ -99,6 +99,23 @@ static void of_shells_through_all_images(void **state)
   blobs_free(s);
 }
 
+/* Spheres of nanometres in metres: forces go like the root of a length, torques like that of its cube. */
+static void units_of_length_do_not_matter(void **state)
+{
+  (void) state;
+  const double d[3] = {0.6, 0.0, 0.8}, unit = 1e-9;
+  const sd_pair_resistance R = sd_pair_resistance_rpy(1.0, 1.5, 2.6),
+                           S = sd_pair_resistance_rpy(unit, 1.5 * unit, 2.6 * unit);
+  double g[12], F[12] = {0.0}, small[12] = {0.0};
+  for (int k = 0; k < 12; k++) g[k] = cos(3.0 * k);
+  assert_int_equal(sd_pair_noise(&R, d, g, F), SD_OK);
+  assert_int_equal(sd_pair_noise(&S, d, g, small), SD_OK);
+  for (int k = 0; k < 12; k++) {
+    const double scale = sqrt(k % 6 < 3 ? unit : unit * unit * unit);
+    assert_true(fabs(small[k] / scale - F[k]) < 1e-10);
+  }
+}
+
 static void what_is_negative_has_no_root(void **state)
 {
   (void) state;
@@ -113,6 +130,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(of_points_that_share_what_they_resist),
       cmocka_unit_test(of_shells_through_all_images),
+      cmocka_unit_test(units_of_length_do_not_matter),
       cmocka_unit_test(what_is_negative_has_no_root),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
