@@ -108,6 +108,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool is_held(int i) const { return atom->mask[i] & held_bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
+  void keep_in_plane(double *V, size_t width) const;
   double weight(bool has) const;
   void advance();
   bool old_velocity(int i, const double *place, double *V) const;

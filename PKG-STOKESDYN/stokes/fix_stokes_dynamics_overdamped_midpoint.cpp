@@ -107,10 +107,8 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto step = [&](size_t c) {
     ClumpStep s = {CENTROID, {}, {}, 0.0};
-    for (int d = 0; d < 6; d++) {
-      const bool in_plane = d < 2 || d == 5;
-      s.move[d] = domain->dimension == 3 || in_plane ? dt * hydro.motion().clumps[c].V[d] : 0.0;
-    }
+    for (int d = 0; d < 6; d++) s.move[d] = dt * hydro.motion().clumps[c].V[d];
+    keep_in_plane(s.move, 6);
     return s;
   };
   step_clumps(hydro, start, x, step, [&](int i, const double *row) {
@@ -136,7 +134,7 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   const auto place = [&](double part) {
     for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
     for (int i : lone)
-      for (int d = 0; d < domain->dimension; d++) {
+      for (size_t d = 0; d < 3; d++) {
         const size_t at = 3 * (size_t) i + d;
         atom->x[i][d] += is_held(i) ? part * dragged.v[at] : part * V[at];
       }
@@ -148,8 +146,9 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   for (int i : who)
     for (int d = 0; d < (turns ? 6 : 3) && noise.on(); d++)
       (d < 3 ? atom->f[i][d] : atom->torque[i][d - 3]) += random[i][d];
-  hydro.velocities([&V](int i, const double *v, const double *) {
+  hydro.velocities([this, &V](int i, const double *v, const double *) {
     std::copy_n(v, 3, &V[3 * (size_t) i]);
+    keep_in_plane(&V[3 * (size_t) i], 3);
   }, givens());
   place(dt);
   dragged.v.clear();
