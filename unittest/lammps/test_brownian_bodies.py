@@ -81,6 +81,23 @@ def test_clumps_in_a_plane_stay_in_it(simulation, tmp_path):
     check_covariance(d.reshape(len(d), -1) @ share.T, N, SHORT)
 
 
+LENGTH = 1e-8
+
+
+@pytest.mark.parametrize("words, molecule", [("rotation yes lubrication yes wall zlo {}", 0), ("multiblob 12 lubrication yes", 0),
+                                             ("rotation yes rigid_clumps yes", [1, 1, 2, 2]), ("rigid_clumps yes shell 12 lubrication yes", [1, 1, 2, 2])])
+def test_steps_do_not_depend_on_the_unit_of_length(simulation, words, molecule):
+    """Spheres of nanometres in metres take the steps that they take in nanometres, by the same random numbers."""
+    ends = []
+    for unit in (1.0, LENGTH):
+        sim = simulation(Spheres(unit * DUMBBELLS, unit * A, molecule=molecule), f"{INF} {words.format(-0.8 * unit)}", fix=False,
+                         dt=0.003 * unit**3, box=[(-40.0 * unit, 40.0 * unit)] * 3, before_pair=f"neighbor {0.3 * unit!r} bin")
+        noise(sim).run(3)
+        ends.append(sim.x / unit)
+    assert np.abs(ends[0] - DUMBBELLS).max() > 0.01
+    assert np.abs(ends[1] - ends[0]).max() < 1e-7
+
+
 # --- equilibrium ----------------------------------------------------------------------------------------------------------
 
 def boltzmann(k, r0):
