@@ -45,7 +45,10 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
     keyword.fail("in two dimensions spheres spin about z alone: wx and wy must be 0");
   tagint wrong[2] = {MAXTAGINT, MAXTAGINT};    // in clumps; held
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit)) continue;
+    if (!(atom->mask[i] & bit)) {
+      slipping.take(i);    // it may have been in the group before
+      continue;
+    }
     if (hydro.settings.rigid.on && atom->molecule[i] != 0) wrong[0] = std::min(wrong[0], atom->tag[i]);
     if (atom->mask[i] & held_bit) wrong[1] = std::min(wrong[1], atom->tag[i]);
   }
