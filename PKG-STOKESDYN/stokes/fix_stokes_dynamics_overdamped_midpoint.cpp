@@ -43,7 +43,8 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
                  "does not give that of keyword held: let them rest, or move spheres");
   if (const Fix *deform = fix_like(lmp, "^deform"))
     keyword.fail("midpoint is for boxes that do not change, and " + name_of(deform) +
-                 " deforms this one: use ab2");
+                 " deforms this one: " + (noise.on() ? "take it away, since ab2 leaves out a drift "
+                 "that Brownian motion may have here" : "use ab2"));
 }
 
 /* f and torque become what pushes spheres in this step, but for noise: extrapolated by scheme
