@@ -19,7 +19,6 @@
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "fix.h"
 #include "update.h"
 

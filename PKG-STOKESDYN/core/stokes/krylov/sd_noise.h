@@ -1,8 +1,8 @@
 /* Random numbers whose covariance is a symmetric positive definite matrix M, from products with M
- * alone: Lanczos's process on A = P M P, P = D^1/2 or blocks, begun from standard normal numbers w.
+ * alone: Lanczos's process on A = P^T M P, P = D^1/2 or blocks, begun from standard normal numbers w.
  *
  *   A V = V T + ...,  V [m] orthonormal, the first w/|w|;  T tridiagonal;  p = T^1/2 e1,  c = T^-1/2 e1
- *   y = |w| P^-1 V p      covariance M          velocities sqrt(2 kT/dt) y
+ *   y = |w| P^-T V p      covariance M          velocities sqrt(2 kT/dt) y
  *   f = |w| P V c         covariance M^-1       forces sqrt(2 kT/dt) f
  *
  * After m products the covariance is diagonal in the eigenvectors of A, as M's own is, so that only
