@@ -6,9 +6,13 @@
 #include "angle.h"
 #include "atom.h"
 #include "bond.h"
+#include "comm.h"
+#include "dihedral.h"
 #include "domain.h"
 #include "fix.h"
 #include "force.h"
+#include "improper.h"
+#include "kspace.h"
 #include "modify.h"
 #include "pair.h"
 #include "update.h"
@@ -57,7 +61,8 @@ void ComputeStokesDynamicsStress::find_moments()
       std::fill_n(&moments[COLUMNS * (size_t) i], (int) COLUMNS, 0.0);
 }
 
-/* Virials of all other forces, as compute pressure sums them: of this rank */
+/* Virials of all other forces, as compute pressure sums them: of this rank, but for that of kspace,
+ * which every rank has whole */
 void ComputeStokesDynamicsStress::add_others(double *virial) const
 {
   const auto add = [virial](const double *of) {
@@ -66,6 +71,9 @@ void ComputeStokesDynamicsStress::add_others(double *virial) const
   if (force->pair) add(force->pair->virial);
   if (force->bond) add(force->bond->virial);
   if (force->angle) add(force->angle->virial);
+  if (force->dihedral) add(force->dihedral->virial);
+  if (force->improper) add(force->improper->virial);
+  if (force->kspace && comm->me == 0) add(force->kspace->virial);
   for (int k = 0; k < modify->nfix; k++)
     if (modify->fix[k]->virial_global_flag && modify->fix[k]->thermo_virial)
       add(modify->fix[k]->virial);

@@ -203,26 +203,36 @@ sd_body_known FixStokesDynamicsOverdamped::given_velocity(int i, double *V) cons
   return SD_BODY_HELD;
 }
 
+/* In two dimensions nobody leaves the plane, or turns but about its normal. V: velocity, with width 6
+ * angular velocity; or a move. */
+void FixStokesDynamicsOverdamped::keep_in_plane(double *V, size_t width) const
+{
+  if (domain->dimension == 3) return;
+  for (size_t d = 2; d < std::min(width, (size_t) 5); d++) V[d] = 0.0;
+}
+
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
   find_causes(hydro, last.causes);
   last.atoms = atom->natoms;
-  const bool rotates = hydro.rotation(), flat = domain->dimension == 2;
   const std::vector<double> pushed = loads(hydro);
-  const Velocities::Take take = [&, rotates, flat](int i, const double *v, const double *F) {
+  const size_t width = hydro.rotation() ? 6 : 3;
+  const Velocities::Take take = [&, width](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
-    double *row = output.give(i);
-    for (int d = 0; d < 3; d++) {
-      atom->v[i][d] = flat && d == 2 ? 0.0 : v[d];
-      row[d] = atom->v[i][d] - fluid[d];
+    double *row = output.give(i), V[6];
+    std::copy_n(v, width, V);
+    keep_in_plane(V, width);
+    for (size_t d = 0; d < 3; d++) {
+      atom->v[i][d] = V[d];
+      row[d] = V[d] - fluid[d];
       row[3 + d] = F[d];
-      if (!rotates) continue;
-      atom->omega[i][d] = v[3 + d];
+      if (width == 3) continue;
+      atom->omega[i][d] = V[3 + d];
       row[6 + d] = F[3 + d];
     }
-    std::copy_n(v, 3, motion.give(i));
-    if (rotates) spin.look(i, v + 3, F + 3, &pushed[6 * (size_t) i + 3]);
+    std::copy_n(V, 3, motion.give(i));
+    if (width == 6) spin.look(i, V + 3, F + 3, &pushed[6 * (size_t) i + 3]);
   };
   if (scheme == MIDPOINT)
     begin_midpoint(hydro, take, pushed);
@@ -416,6 +426,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
       s.move[d] = update->dt * mean[d];
       if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
     }
+    keep_in_plane(s.move, 6);
     return s;
   };
   step_clumps(hydro, motion.clumps, hydro.scene.whole.x, step, [&](int i, const double *row) {

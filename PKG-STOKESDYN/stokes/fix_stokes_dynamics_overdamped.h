@@ -105,6 +105,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
   void load_on(int i, double *FT) const;
+  void keep_in_plane(double *V, size_t width) const;
   double weight(bool has) const;
   void advance();
   void at_image(const double *row, const double *place, double *old) const;

@@ -18,7 +18,6 @@
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "fix.h"
 #include "update.h"
 
@@ -39,7 +38,8 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
                  "does not give that of keyword held: let them rest, or move spheres");
   if (const Fix *deform = fix_like(lmp, "^deform"))
     keyword.fail("midpoint is for boxes that do not change, and " + name_of(deform) +
-                 " deforms this one: use ab2");
+                 " deforms this one: " + (noise.on() ? "take it away, since ab2 leaves out a drift "
+                 "that Brownian motion may have here" : "use ab2"));
 }
 
 /* [6 nlocal] what pushes spheres in this step, but for noise: extrapolated by scheme midpoint, with the
@@ -92,10 +92,8 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto step = [&](size_t c) {
     ClumpStep s = {CENTROID, {}, {}};
-    for (int d = 0; d < 6; d++) {
-      const bool in_plane = d < 2 || d == 5;
-      s.move[d] = domain->dimension == 3 || in_plane ? dt * hydro.motion().clumps[c].V[d] : 0.0;
-    }
+    for (int d = 0; d < 6; d++) s.move[d] = dt * hydro.motion().clumps[c].V[d];
+    keep_in_plane(s.move, 6);
     return s;
   };
   step_clumps(hydro, start, x, step, [&](int i, const double *row) {
@@ -120,7 +118,7 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   const auto place = [&](double part) {
     for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
     for (int i : lone)
-      for (int d = 0; d < domain->dimension; d++) {
+      for (size_t d = 0; d < 3; d++) {
         const size_t at = 3 * (size_t) i + d;
         atom->x[i][d] += is_held(i) ? part * dragged.v[at] : part * V[at];
       }
@@ -131,8 +129,9 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   std::vector<double> pushed = loads(hydro);
   for (size_t i : who)
     for (size_t d = 0; d < 6 && noise.on(); d++) pushed[6 * i + d] += random[i][d];
-  hydro.velocities([&V](int i, const double *v, const double *) {
+  hydro.velocities([this, &V](int i, const double *v, const double *) {
     std::copy_n(v, 3, &V[3 * (size_t) i]);
+    keep_in_plane(&V[3 * (size_t) i], 3);
   }, givens(), pushed);
   place(dt);
   dragged.v.clear();

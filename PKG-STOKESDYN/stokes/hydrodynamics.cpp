@@ -58,6 +58,7 @@ void Hydrodynamics::init()
 {
   ambient.init();
   scene.settings.positive = false;
+  mobile.held = nullptr;    // it asks a fix that may be gone
   advance();
   find_wall(voice, scene.settings);
   check_stream_at_wall(voice, scene.settings.wall, ambient.settings);

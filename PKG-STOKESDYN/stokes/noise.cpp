@@ -206,6 +206,12 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
 
 static const std::string PAIR = " of pair_style stokes_dynamics";
 
+/* Does the viscosity differ from place to place? */
+static bool varies(const Ambient::Settings &fluid)
+{
+  return fluid.visc.is_atom_style() || fluid.grid_has_visc;
+}
+
 std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) const
 {
   const StokesSettings &s = hydro.settings;
@@ -216,17 +222,20 @@ std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) c
   if (s.lubrication.on) return "keyword lubrication" + PAIR;
   if (s.rigid.on) return "keyword rigid_clumps" + PAIR + " with clumps that feel each other";
   if (s.scene.wall.sign) return "keyword wall" + PAIR;
-  if (fluid.visc.is_atom_style() || fluid.grid_has_visc)
-    return "keyword visc" + PAIR + ", which varies in space";
+  if (varies(fluid)) return "keyword visc" + PAIR + ", which varies in space";
   return holds;
 }
 
 /* A mobility that has no root, or a drift that no scheme has */
-static void refuse_settings(const Voice &keyword, const StokesSettings &s)
+static void refuse_settings(const Voice &keyword, const StokesSettings &s,
+                            const Ambient::Settings &fluid)
 {
   if (s.rigid.apart() && keyword.lmp->domain->dimension == 2)
     keyword.fail("keyword clumps_only" + PAIR + ": lone clumps in a plane have a drift: use "
                  "clumps_only no");
+  if (s.rigid.apart() && varies(fluid))
+    keyword.fail("keyword clumps_only" + PAIR + ": lone clumps in a viscosity that varies in space "
+                 "have a drift: use clumps_only no, or a number for visc");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
     keyword.fail("keyword tensor: 'oseen'" + PAIR + " may have negative mobilities, for which "
                  "there is no noise: use tensor rpy");
@@ -241,7 +250,7 @@ static void refuse_settings(const Voice &keyword, const StokesSettings &s)
 void Noise::refuse(const Hydrodynamics &hydro, const Ways &ways) const
 {
   const Voice keyword = voice.of("keyword temperature");
-  refuse_settings(keyword, hydro.settings);
+  refuse_settings(keyword, hydro.settings, hydro.ambient.settings);
   const std::string what = drift(hydro, ways.holds);
   if (!what.empty() && !ways.midpoint)
     keyword.fail(what + ": the mobility has a drift, which schemes ab2 and euler leave out: use "

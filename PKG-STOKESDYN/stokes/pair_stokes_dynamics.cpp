@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -66,7 +67,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
 }
 
 /* v' is due every update_every steps, and at once when the spheres are not those of the last solve:
- * none lacks a v', none has gone, and nobody has displaced them between two runs. */
+ * none lacks a v', none has gone, and nobody has displaced them between two runs. Whether they were is
+ * known of a run that begins in the step in which the last one ended: others solve. */
 PairStokesDynamics::Verdict PairStokesDynamics::judge()
 {
   const State *memory = hydro.memory;
@@ -96,7 +98,8 @@ PairStokesDynamics::Verdict PairStokesDynamics::judge()
   global.last_step = step;
   if (continued && same_fluid && same_spheres && count[DISPLACED] + count[PUSHED] == 0.0)
     return STANDS;
-  if (same_spheres && count[DISPLACED] == 0.0 && std::fmod(step, period) != 0.0 &&
+  const bool known = continued || !update->setupflag;
+  if (known && same_spheres && count[DISPLACED] == 0.0 && std::fmod(step, period) != 0.0 &&
       step >= global.last_solve &&
       std::floor(step / period) == std::floor(global.last_solve / period))
     return OLD_PERTURBATION;
@@ -185,10 +188,21 @@ void PairStokesDynamics::init_style()
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   const Shells::Settings &shells = hydro.settings.shells;
   const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
-  State::provide(lmp, scene.rotation, hydro.settings.history(), points)->settings_are(args);
+  State::provide(lmp, scene.rotation, hydro.settings.history(), points)->settings_are(words_of_now());
   look_for_fixes();
   check_deform(voice, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
   sorting_bins.limit(range());
+}
+
+/* Those of the command, and where a wall at the side of the box stands: that may have changed */
+std::vector<std::string> PairStokesDynamics::words_of_now() const
+{
+  std::vector<std::string> now = args;
+  if (!hydro.scene.settings.at_edge) return now;
+  char position[40];
+  snprintf(position, sizeof(position), "%.17g", hydro.scene.settings.wall.at);
+  now.push_back(position);
+  return now;
 }
 
 void PairStokesDynamics::require_atoms()

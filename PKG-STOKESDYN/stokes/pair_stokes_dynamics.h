@@ -53,6 +53,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   void report();
 
   void accept_all_types();
+  std::vector<std::string> words_of_now() const;
   void require_atoms();
   void look_for_fixes();
   double range() const;    // what LAMMPS is told

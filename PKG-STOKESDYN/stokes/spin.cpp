@@ -53,6 +53,8 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
       }))
     keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held as well: it must "
                  "be in one of them only");
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(atom->mask[i] & bit)) slipping.take(i);    // it may have been in the group before
 }
 
 bool Spin::turns(int i, double W[3]) const

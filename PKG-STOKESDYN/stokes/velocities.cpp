@@ -136,13 +136,13 @@ std::vector<double> Velocities::given_velocities()
   const size_t bodies = loner.size() + shaped.size();
   std::vector<double> given(6 * bodies + 6, 0.0);
   is_held.assign(bodies + 1, 0);
-  const std::vector<double> rows =
-      scene.rows(7, [this](int i, double *out) { out[0] = held(i, out + 1); });
+  std::vector<double> rows = scene.rows(7, [this](int i, double *out) { out[6] = held(i, out); });
+  scene.drift(rows.data(), 7, 1.0);
   const size_t lone_ones = bodies - clumps.size();    // whose rows come first
   for (size_t b = 0; b < lone_ones; b++) {
     const double *row = &rows[7 * b];
-    is_held[b] = (char) row[0];
-    if (is_held[b]) std::copy_n(row + 1, 6, &given[6 * b]);
+    is_held[b] = (char) row[6];
+    if (is_held[b]) std::copy_n(row, 6, &given[6 * b]);
   }
   for (size_t c = 0, b = lone_ones; c < clumps.size(); c++, b++) {
     is_held[b] = clumps[c].held ? SD_BODY_HELD : SD_BODY_FREE;

@@ -376,6 +376,7 @@ FIELD = "variable eta atom 1+0.1*x"
     (f"cut_off_distance inf wall zlo -99 visc {ETA}", "", "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
     (f"cut_off_distance 4 taper wendland visc {ETA}", "", "keyword taper of pair_style stokes_dynamics: the mobility has a drift"),
     ("cut_off_distance inf visc v_eta", "", "keyword visc of pair_style stokes_dynamics, which varies in space"),
+    ("clumps_only yes rigid_clumps yes shell 12 visc v_eta", "", "lone clumps in a viscosity that varies in space have a drift"),
     (INF, "fix step all dt/reset 10 NULL 0.1 0.1", "of style dt/reset makes steps of unequal length"),
     (INF, "fix bath none langevin 1 1 1 77", "of style langevin has noise or a drag of its own"),
     (INF, "fix bath none viscous 1", "of style viscous has noise or a drag of its own")])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brownian import A, END, ETA, KT, SHORT, UNIT, check_covariance, check_pieces, check_ranks, end, in_a_plane, noise, script, steps_of
-from system import Spheres
+from system import LammpsError, Spheres
 
 INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
 TRIO = A * np.array([(0, 0, 0), (2.1, 0, 0), (0.4, 2.2, 0.6)])
@@ -79,6 +79,31 @@ def test_clumps_in_a_plane_stay_in_it(simulation, tmp_path):
     d = steps_of(noise(make()), 1200)
     assert (d[:, :, 2] == 0).all() and np.abs(d[:, 1] - d[:, 0]).max() > 0
     check_covariance(d.reshape(len(d), -1) @ share.T, N, SHORT)
+
+
+LENGTH = 1e-8
+
+
+@pytest.mark.parametrize("words, molecule", [("rotation yes lubrication yes wall zlo {}", 0), ("multiblob 12 lubrication yes", 0),
+                                             ("rotation yes rigid_clumps yes", [1, 1, 2, 2]), ("rigid_clumps yes shell 12 lubrication yes", [1, 1, 2, 2])])
+def test_steps_do_not_depend_on_the_unit_of_length(simulation, words, molecule):
+    """Spheres of nanometres in metres take the steps that they take in nanometres, by the same random numbers."""
+    ends = []
+    for unit in (1.0, LENGTH):
+        sim = simulation(Spheres(unit * DUMBBELLS, unit * A, molecule=molecule), f"{INF} {words.format(-0.8 * unit)}", fix=False,
+                         dt=0.003 * unit**3, box=[(-40.0 * unit, 40.0 * unit)] * 3, before_pair=f"neighbor {0.3 * unit!r} bin")
+        noise(sim).run(3)
+        ends.append(sim.x / unit)
+    assert np.abs(ends[0] - DUMBBELLS).max() > 0.01
+    assert np.abs(ends[1] - ends[0]).max() < 1e-7
+
+
+@pytest.mark.parametrize("temperature, way_out", [(" temperature 1 77", "take it away, since ab2 leaves out a drift"), (" scheme midpoint", "use ab2")])
+def test_a_box_that_deforms_has_no_midpoint(simulation, temperature, way_out):
+    sim = simulation(Spheres(TRIO, A), f"{INF} multiblob 12 fluid_velocity box", fix=False, dt=1e-3, boundary="p p p", box=[(-4.0, 4.0)] * 3,
+                     tilt=(0.0, 0.0, 0.0))
+    with pytest.raises(LammpsError, match=f"midpoint is for boxes that do not change, and fix shear of style deform deforms this one: {way_out}"):
+        sim.commands(f"fix shear all deform 1 xy erate 0.1 remap v\nfix move all stokes_dynamics/overdamped{temperature}").run(0)
 
 
 # --- equilibrium ----------------------------------------------------------------------------------------------------------

@@ -201,3 +201,34 @@ def test_a_sphere_dragged_through_the_noise_is_one_at_rest_in_a_stream(simulatio
     assert np.abs(ends[0][0] - x)[1:].max() > 0.1 and np.abs(ends[0][0] - x)[0].max() < 1e-12
     assert np.abs(ends[0][0] - ends[1][0]).max() < 1e-8
     assert np.abs(ends[0][1] - ends[1][1]).max() < 1e-6 * np.abs(ends[0][1]).max()
+
+
+def test_a_held_sphere_of_a_flexible_clump_across_a_sheared_face(simulation):
+    """Clumps that do not feel each other, in a box that shears: the clump across the face moves as in the middle of the box."""
+    rate, side, answers = 0.4, 10.0, []
+    for lower in (0.0, 4.0):
+        x = np.array([(5, 9.4, 5), (5.2, 11.2, 5.1), (6.5, 10.4, 6.0)]) - (0, lower, 0)
+        x[:, 1] %= side
+        go = "{!r} 0.1 -0.3 units box".format(float(rate * x[1, 1] + 0.2))    # the same beside the fluid there
+        sim = simulation(Spheres(x, molecule=1), f"clumps_only yes visc {ETA} rotation yes fluid_velocity box relative_tolerance 1e-10", fix=False,
+                         boundary="p p p", box=[(0.0, side)] * 3, tilt=(0.0, 0.0, 0.0), dt=1e-9)
+        sim.commands([f"fix d all deform 1 xy erate {rate} remap v", "fix weight all addforce 0 1 -3", "group one id 2", f"velocity one set {go}",
+                      f"fix go one move linear {go}", f"{FIX} held one"]).run(0)
+        v = sim.v - rate * np.outer(x[:, 1], (1, 0, 0))
+        answers.append(np.hstack([v, sim.fix_rows("move")[:, 3:9]]))
+    assert np.abs(answers[0] - answers[1]).max() < 1e-6 * np.abs(answers[1]).max()
+
+
+def test_forces_when_the_fix_that_held_spheres_is_gone(simulation):
+    """The pair style asks nobody then who is held."""
+    words = f"cut_off_distance inf visc {ETA} rotation yes rigid_clumps yes lubrication yes relative_tolerance 1e-10"
+    sim = simulation(Spheres(X, molecule=MOLECULE), words, fix=False, box=BOX, dt=0.01)
+    sim.commands(f"group still id 1 4 5\n{PULL}\n{FIX} held still").run(2)
+    x, v, omega = sim.x, sim.v, sim.atom("omega")
+    sim.commands("unfix move\ngroup still clear\ngroup still id 4\nfix drag all stokes_dynamics apply no").run(0)
+    found = sim.fix_rows()
+    sim = simulation(Spheres(x, v=v, molecule=MOLECULE), words, box=BOX)
+    for i in range(len(x)):
+        sim.set("omega", i + 1, omega[i])
+    sim.run(0)
+    assert np.abs(found - sim.fix_rows()).max() < 1e-7 * np.abs(found).max()

@@ -364,3 +364,22 @@ def test_intrinsic_viscosity_of_a_rigid_row(simulation, n, exact):
     basis += [np.outer(a, b) + np.outer(b, a) for a, b in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0))]
     found = 2.5 / n * np.mean([strained(simulation, spheres, E, "rigid_clumps yes")[1] for E in basis])
     assert abs(found / exact - 1) < (1e-6 if n == 1 else 6e-3)
+
+
+def test_stress_of_dihedrals_and_impropers_is_among_the_others(simulation, tmp_path):
+    """Columns 13 to 18: as compute pressure has them"""
+    side, x = 14.0, np.array([(4, 4, 4), (6.3, 4, 4), (6.5, 6.2, 4.3), (8.6, 6.4, 5.5)])
+    spheres = Spheres(x, bonds=[(1, 2), (2, 3), (3, 4)], molecule=1)
+    path = spheres.write_data(str(tmp_path / "data"), [(0.0, side)] * 3)
+    text = open(path).read().replace("1 bond types", "1 bond types\n1 dihedrals\n1 dihedral types\n1 impropers\n1 improper types")
+    with open(path, "w") as data:
+        data.write(text + "\nDihedrals\n\n1 1 1 2 3 4\n\nImpropers\n\n1 1 1 2 3 4\n")
+    sim = simulation().commands([
+        "units lj", "atom_style hybrid sphere molecular", "boundary p p p", "atom_modify map array", "plugin load stokesdynplugin.so",
+        f"read_data {path}", "bond_style zero", "bond_coeff *", "dihedral_style harmonic", "dihedral_coeff 1 5.0 1 2", "improper_style harmonic",
+        "improper_coeff 1 3.0 10", "comm_modify cutoff 6", "pair_style stokes_dynamics cut_off_distance inf visc 1.3 multiblob 12",
+        "pair_coeff * *", "timestep 1e-9", MOVE, STRESS, "compute D all pressure NULL dihedral", "compute I all pressure NULL improper",
+        "thermo_style custom step c_S[13] c_D[1] c_I[1]"]).run()
+    parts = [sim.compute_vector(name, 6) for name in "DI"]
+    assert min(np.abs(part).max() for part in parts) > 1e-4
+    assert np.abs(sim.compute_vector("S", 18)[12:] - sum(parts)).max() < 1e-12

@@ -168,6 +168,23 @@ def test_smallest_gap_in_a_plane(tmp_path):
     assert float((tmp_path / "gap").read_text()) == pytest.approx(0.8, rel=1e-12)
 
 
+PLANE = dict(boundary="f f p", box=[(-20.0, 20.0), (-20.0, 20.0), (-0.5, 0.5)])
+
+
+@pytest.mark.parametrize("scheme", ["ab2", "midpoint"])
+@pytest.mark.parametrize("style, molecule", [("fluid_velocity 0.1 0 0.3", 0), ("rotation yes fluid_velocity 0.1 0 0.3", 0), ("multiblob 12", 0),
+                                             ("multiblob 12 rigid_clumps yes", [1, 1, 1, 0])])
+def test_nobody_leaves_a_plane(simulation, tmp_path, style, molecule, scheme):
+    """Nor turns but about its normal: neither a stream across it carries spheres off, nor shells of points that stand askew to it."""
+    lines = input_lines(Spheres([(0, 0, 0), (2, 0, 0), (2.3, 2.1, 0), (-2, -1.5, 0)], molecule=molecule), f"{ALL} {style}",
+                        str(tmp_path / "data"), fix=False, dt=0.05, **PLANE)
+    sim = simulation().commands(["dimension 2"] + lines)
+    sim.commands(["variable fx atom 9*sin(id)", "variable fy atom -8*cos(id)", "fix pull all addforce v_fx v_fy 0",
+                  f"{FIX} scheme {scheme}"]).run(20)
+    assert (sim.x[:, 2] == 0).all() and (sim.v[:, 2] == 0).all() and (sim.atom("omega")[:, :2] == 0).all()
+    assert np.abs(sim.x[0, :2]).max() > 0.1
+
+
 def test_contacts_allow_a_step_that_is_told(tmp_path):
     spheres = Spheres([(0, 0, 0), (1.99, 0, 0)])
     lines = input_lines(spheres, contacts(50.0, ALL), os.path.join(str(tmp_path), "spheres.data"), fix=False, box=[(-9.0, 9.0)] * 3, dt=0.3,

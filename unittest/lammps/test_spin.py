@@ -61,7 +61,7 @@ def test_above_the_largest_torque_a_sphere_slips(simulation):
     def run(most, steps=4):
         sim = simulation(Spheres(x), f"cut_off_distance inf visc {ETA} rotation yes lubrication yes wall zlo 0 relative_tolerance 1e-9", fix=False,
                          box=[(-30.0, 40.0), (-30.0, 30.0), (-1.0, 30.0)], dt=1e-4)
-        return sim.commands(f"{FIX} spin all 0 {w} 0 {most}").run(steps)
+        return sim.commands(f"group tops id 1 2\n{FIX} spin tops 0 {w} 0 {most}").run(steps)
     free = run("")
     need = -free.fix_rows("move")[:, 7]
     assert need[0] > 1.8 * far * w and need[1] == pytest.approx(far * w, rel=0.01)
@@ -73,6 +73,10 @@ def test_above_the_largest_torque_a_sphere_slips(simulation):
     cut.commands("displace_atoms all move 0 0 3").run(4)    # up there it needs less, and is as fast as told
     assert cut.lmp.extract_fix("move", 0, 1, nrow=11) == 0 and cut.atom("omega")[0, 1] == pytest.approx(w, rel=1e-12)
     assert run(repr(2 * need[0])).lmp.extract_fix("move", 0, 1, nrow=11) == 0
+    left = run(repr(1.5 * far * w))    # who leaves the group does not slip
+    assert left.lmp.extract_fix("move", 0, 1, nrow=11) == 1
+    left.commands("group tops clear\ngroup tops id 2").run(0)
+    assert left.lmp.extract_fix("move", 0, 1, nrow=11) == 0
 
 
 def test_spun_spheres_diffuse_as_boltzmann_says(simulation):

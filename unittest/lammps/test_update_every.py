@@ -92,3 +92,11 @@ def test_perturbation_follows_its_sphere_to_another_rank(tmp_path):
     for (step, a), (_, b) in zip(one, two):
         assert largest_difference(b[:, 6:9], a[:, 6:9]) < 1e-10, step
         assert largest_difference(b[:, 9:12], a[:, 9:12]) < 1e-10, step
+
+
+@pytest.mark.parametrize("moved", [True, False])
+def test_a_run_at_another_step_solves_first(simulation, moved):
+    """Also when the step that reset_timestep sets is in the interval of the last solve: spheres may have been displaced meanwhile."""
+    sim = simulation(three(), f"cut_off_distance inf visc {ETA} update_every 10 {EXACT}", dt=1e-9).run(13)
+    sim.commands((["displace_atoms all random 0.3 0.3 0.3 77"] if moved else []) + ["reset_timestep 17"]).run(0)
+    assert largest_difference(sim.drag, model.forces(Spheres(sim.x, A, three().v), ETA)) < 1e-10

@@ -277,6 +277,16 @@ def test_the_edge_of_the_box_is_a_position(simulation):
     assert (edge == at).all()
 
 
+@pytest.mark.parametrize("style", ["", "update_every 10", "rotation yes lubrication yes", "multiblob 12"])
+def test_the_edge_of_a_box_that_is_changed_between_runs(simulation, style):
+    """No sphere moves, but the wall does: forces are those at the new wall."""
+    scene = Spheres([(0, 0, 2), (2.5, 0, 3)], v=[(0.1, 0.2, -1), (0.3, 0, 0.5)])
+    box = [(-60, 60), (-60, 60), (-0.5, 50)]
+    words = f"cut_off_distance inf visc 1 {style} relative_tolerance 1e-10 wall zlo"
+    moved = simulation(scene, f"{words} EDGE", box=box).run(3).commands("change_box all z final 0.5 50").run().drag
+    assert moved == pytest.approx(simulation(scene, f"{words} 0.5", box=box).run().drag, abs=1e-8 * np.abs(moved).max())
+
+
 STYLES = {"points": "rotation yes", "shells": "multiblob 12 rigid_clumps yes lubrication yes",
           "films": "rotation yes rigid_clumps yes lubrication yes", "ewald": "far_field ewald far_field_tolerance 1e-3",
           "shells by ewald": "multiblob 12 lubrication yes far_field ewald far_field_tolerance 1e-3"}

@@ -38,6 +38,13 @@ static void turn(const double R[9], int back, int width, const double *x, double
   for (int at = 0; at < width; at += 3) (back ? sd_multiply3t : sd_multiply3)(R, x + at, y + at);
 }
 
+/* Torques of a body of m points in rows, or angular velocities, times its length */
+static void stretch(const sd_body *b, double *rows)
+{
+  for (int k = 0; k < b->shape->m && b->shape->width > 3; k++)
+    for (int d = 3; d < 6; d++) rows[6 * (long) b->row[k] + d] *= b->shape->length;
+}
+
 /* sqrt(eta a) R root R^T of one body, in place */
 static void take_root(const sd_body *b, double *own, double *rows)
 {
@@ -57,14 +64,28 @@ static int has_root(const sd_body *b)
   return b->shape && b->shape->root;
 }
 
-static sd_status half(void *ctx, const double *v, double *out)
+/* out = P v, back: P^T v */
+static sd_status multiply(const draw *d, int back, const double *v, double *out)
 {
-  const draw *d = ctx;
   if (out != v) memcpy(out, v, sizeof(double) * (size_t) sd_bodies_rows(d->A));
-  for (int b = 0; b < d->A->shaped; b++)
-    if (has_root(d->block + b)) take_root(d->block + b, d->own, out);
+  for (int b = 0; b < d->A->shaped; b++) {
+    if (!has_root(d->block + b)) continue;
+    if (back) stretch(d->block + b, out);
+    take_root(d->block + b, d->own, out);
+    if (!back) stretch(d->block + b, out);
+  }
   for (long j = 0; j < sd_bodies_rows(d->A); j++) out[j] *= d->diagonal[j];
   return SD_OK;
+}
+
+static sd_status half(void *ctx, const double *v, double *out)
+{
+  return multiply(ctx, 0, v, out);
+}
+
+static sd_status half_back(void *ctx, const double *v, double *out)
+{
+  return multiply(ctx, 1, v, out);
 }
 
 static void fill_diagonal(const draw *d)
@@ -108,6 +129,7 @@ sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_body *
                              .ctx = &d,
                              .D = diagonal,
                              .half = half,
+                             .half_back = half_back,
                              .half_ctx = &d,
                              .world = A->world};
   const sd_status status = sd_noise_forces(&s->process, &M, w, tolerance, f, report);

@@ -4,10 +4,11 @@
  *   f of covariance M'^-1 on the points,  K^T f of covariance K^T M'^-1 K = R
  *   V = R^-1 K^T f sqrt(2 kT/dt) then has the covariance 2 kT/dt R^-1
  *
- * by Lanczos's process (sd_noise.h) on P M' P, where P is made of blocks M_b'^-1/2, in which every
+ * by Lanczos's process (sd_noise.h) on P^T M' P, where P is made of roots of M_b'^-1, in which every
  * body is for itself: what is stiff within bodies is no part of the process. Any P will do for the
- * covariance, so that blocks of open space serve above a wall. P is symmetric and turns with the
- * body: numbers of points in axes of space give the same forces in whatever axes the shape is kept.
+ * covariance, so that blocks of open space serve above a wall. P is symmetric, but for the length that
+ * makes torques comparable to forces (sd_body_shape.h), and turns with the body: numbers of points in
+ * axes of space give the same forces in whatever axes the shape is kept.
  *
  * With a tie the films' own random forces (sd_lubrication_noise.h) come on top: R + K^T L K.
  * Source: reference of the project, brownian.md 2; the blocks are our own choice. */

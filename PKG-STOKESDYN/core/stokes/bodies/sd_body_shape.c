@@ -2,6 +2,7 @@
 
 #include "sd_linear.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -151,13 +152,26 @@ int sd_body_wall_pays(int m, int bodies, double height, double extent)
   return height < 10.0 * extent && (m <= SD_BODY_WALL_SMALL || m <= 3.0 * bodies);
 }
 
+/* Of the torques of M_b'^-1, beside its forces */
+static double length_of(const sd_body_shape *s)
+{
+  const size_t N = (size_t) s->width * (size_t) s->m;
+  double sum[2] = {0.0, 0.0};
+  for (size_t j = 0; j < N; j++) sum[j % (size_t) s->width > 2] += s->inverse[(N + 1) * j];
+  return s->width > 3 ? sqrt(sum[1] / sum[0]) : 1.0;
+}
+
 sd_status sd_body_shape_take_root(sd_body_shape *s)
 {
   const size_t N = (size_t) s->width * (size_t) s->m;
   if (s->root || N > SD_BODY_ROOT_MOST) return SD_OK;
   double *root = malloc(sizeof(double) * N * N);
   if (!root) return SD_ENOMEMORY;
-  memcpy(root, s->inverse, sizeof(double) * N * N);
+  const size_t width = (size_t) s->width;
+  s->length = length_of(s);
+  for (size_t e = 0; e < N * N; e++)
+    root[e] = s->inverse[e] / (e / N % width > 2 ? s->length : 1.0) /
+        (e % N % width > 2 ? s->length : 1.0);
   const sd_status status = sd_symmetric_root((int) N, root);
   if (status == SD_OK)
     s->root = root;

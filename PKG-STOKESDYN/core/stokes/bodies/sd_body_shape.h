@@ -34,8 +34,9 @@ typedef struct {
   double *x;
   /* [(width m)^2] M_b'^-1, symmetric; [(width m) 6] M_b'^-1 K, row-major */
   double *inverse, *rigid;
-  /* [(width m)^2] M_b'^-1/2, symmetric; NULL until sd_body_shape_take_root() */
-  double *root;
+  /* [(width m)^2] the root of M_b'^-1 with torques over a length, symmetric; NULL until
+   * sd_body_shape_take_root(); and that length, over which torques are comparable to forces */
+  double *root, length;
   /* [6 6] of the lone body: (U, W) from force and torque about the centre; and its inverse */
   double mobility[36], resistance[36];
   /* [6 6] dN, 0 without shells */

@@ -39,22 +39,22 @@ static void divide(long n, double *v, double by)
 
 /* --- a product --- */
 
-/* out = P v, also in its place */
-static sd_status take_half(const sd_noise_matrix *M, const double *v, double *out)
+/* out = P v, back: P^T v, also in its place */
+static sd_status take_half(const sd_noise_matrix *M, int back, const double *v, double *out)
 {
-  if (M->half) return M->half(M->half_ctx, v, out);
+  if (M->half) return (back ? M->half_back : M->half)(M->half_ctx, v, out);
   for (long j = 0; j < M->n; j++) out[j] = M->D[j] > 0.0 ? sqrt(M->D[j]) * v[j] : 0.0;
   return SD_OK;
 }
 
-/* out = A v = P M P v */
+/* out = A v = P^T M P v */
 static sd_status apply(const process *q, const double *v, double *out)
 {
   const sd_noise_matrix *M = q->M;
   double *force = q->s->work;
-  sd_status status = take_half(M, v, force);
+  sd_status status = take_half(M, 0, v, force);
   if (status == SD_OK) status = M->apply(M->ctx, force, out);
-  return status == SD_OK ? take_half(M, out, out) : status;
+  return status == SD_OK ? take_half(M, 1, out, out) : status;
 }
 
 /* u less its components along the first `count` vectors, which are added to h; square: that of u
@@ -204,6 +204,6 @@ sd_status sd_noise_forces(sd_noise *s, const sd_noise_matrix *M, const double *w
   const sd_status status = iterate(&q, w, tolerance, report);
   if (status != SD_OK && status != SD_EMAXITER) return status;
   combine(&q, q.c, f);
-  const sd_status last = take_half(M, f, f);
+  const sd_status last = take_half(M, 0, f, f);
   return last == SD_OK ? status : last;
 }

@@ -1,8 +1,8 @@
 /* Random numbers whose covariance is a symmetric positive definite matrix M, from products with M
- * alone: Lanczos's process on A = P M P, P = D^1/2 or blocks, begun from standard normal numbers w.
+ * alone: Lanczos's process on A = P^T M P, P = D^1/2 or blocks, begun from standard normal numbers w.
  *
  *   A V = V T + ...,  V [m] orthonormal, the first w/|w|;  T tridiagonal;  p = T^1/2 e1,  c = T^-1/2 e1
- *   y = |w| P^-1 V p      covariance M          velocities sqrt(2 kT/dt) y
+ *   y = |w| P^-T V p      covariance M          velocities sqrt(2 kT/dt) y
  *   f = |w| P V c         covariance M^-1       forces sqrt(2 kT/dt) f
  *
  * After m products the covariance is diagonal in the eigenvectors of A, as M's own is, so that only
@@ -36,10 +36,10 @@ typedef struct {
   void *ctx;
   /* [n] D, about the inverse of M's diagonal; 0: M has no such row, y and f are 0 there */
   const double *D;
-  /* out = P v, also in its place, for a better P, which is symmetric too: P^2 about the inverse of
-   * M. D then only tells which rows there are. Not for sd_noise_velocities, which wants the inverse
-   * of P. NULL: P = D^1/2 */
-  sd_apply *half;
+  /* out = P v, also in its place, for a better P: P P^T about the inverse of M. D then only tells which
+   * rows there are. Not for sd_noise_velocities, which wants the inverse of P. NULL: P = D^1/2.
+   * half_back: out = P^T v likewise */
+  sd_apply *half, *half_back;
   void *half_ctx;
   /* sum */
   sd_world world;

@@ -277,7 +277,8 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
   if (status != SD_OK) return status;
   sd_lubrication_link *link = L->link + k, own = block_of(&R, 0, link->d);
   if (s->noisy && k < L->count)
-    L->work->whole[k] = (whole_pair){R, {link->d[0], link->d[1], link->d[2]}};
+    L->work->whole[k] = (whole_pair){
+        R, {link->d[0], link->d[1], link->d[2]}, 0.5 * (s->spheres.a[i] + s->spheres.a[c->at])};
   if (L->work->flows && i < L->n) add_carried(L, s, k, &R);
   if (s->films && s->drift && i < L->n) sd_lubrication_drift(L, k, &R);
   if (i < L->n) sd_lubrication_add_block(&own, L->diagonal + 36 * (long) i);

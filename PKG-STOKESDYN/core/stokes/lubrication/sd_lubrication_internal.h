@@ -24,10 +24,10 @@ typedef struct {
 } own_image;
 
 /* All of a pair, for its random forces: L_11, L_12 and L_22, d from its first sphere to the
- * second */
+ * second, its mean radius */
 typedef struct {
   sd_pair_resistance R;
-  double d[3];
+  double d[3], a;
 } whole_pair;
 
 struct sd_lubrication_work {

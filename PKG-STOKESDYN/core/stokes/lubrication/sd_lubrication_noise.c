@@ -16,11 +16,11 @@ static sd_status draw_pair(const sd_lubrication *L, long k, sd_lubrication_norma
   double g[12], E[12] = {0.0};
   memset(F, 0, 12 * sizeof(double));
   const int first = normals(ctx, i, L->work->close[k].at, g);
-  if (first) return sd_pair_noise(&pair->R, pair->d, g, F);
+  if (first) return sd_pair_noise(&pair->R, pair->d, pair->a, g, F);
   if (self) return SD_OK;
   const sd_pair_resistance R = sd_pair_resistance_exchanged(&pair->R);
   const double d[3] = {-pair->d[0], -pair->d[1], -pair->d[2]};
-  const sd_status status = sd_pair_noise(&R, d, g, E);
+  const sd_status status = sd_pair_noise(&R, d, pair->a, g, E);
   memcpy(F, E + 6, 6 * sizeof(double));
   memcpy(F + 6, E, 6 * sizeof(double));
   return status;

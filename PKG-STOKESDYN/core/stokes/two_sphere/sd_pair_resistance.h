@@ -47,10 +47,12 @@ sd_pair_resistance sd_pair_resistance_sum(double p, const sd_pair_resistance *A,
  * form: it falls into forces along d (2x2), torques along d (2x2) and, across d, forces along e with
  * torques along e x d (4x4), the same for both directions e. F [12] += forces and torques on the first
  * sphere, then on the second, of covariance R from standard normal numbers g [12], four vectors in
- * space: only d and these say what comes out, no choice of axes across d. SD_OK; SD_EINDEFINITE: an
- * eigenvalue below -1e-6 of the largest; what is above is rounding and counts as 0. */
-sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], const double g[12],
-                        double F[12]);
+ * space: only d and these say what comes out, no choice of axes across d, and no unit of length.
+ * length: of the pair, such as its mean radius, over which torques are comparable to forces. SD_OK;
+ * SD_EINDEFINITE: an eigenvalue below -1e-6 of the largest number of the pair; what is above is
+ * rounding and counts as 0. */
+sd_status sd_pair_noise(const sd_pair_resistance *R, const double d[3], double length,
+                        const double g[12], double F[12]);
 
 SD_END_C
 #endif

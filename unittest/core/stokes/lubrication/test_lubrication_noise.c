@@ -99,13 +99,46 @@ static void of_shells_through_all_images(void **state)
   blobs_free(s);
 }
 
+/* Spheres of nanometres in metres: forces go like the root of a length, torques like that of its cube. */
+static void units_of_length_do_not_matter(void **state)
+{
+  (void) state;
+  const double d[3] = {0.6, 0.0, 0.8}, unit = 1e-9;
+  const sd_pair_resistance R = sd_pair_resistance_rpy(1.0, 1.5, 2.6),
+                           S = sd_pair_resistance_rpy(unit, 1.5 * unit, 2.6 * unit);
+  double g[12], F[12] = {0.0}, small[12] = {0.0};
+  for (int k = 0; k < 12; k++) g[k] = cos(3.0 * k);
+  assert_int_equal(sd_pair_noise(&R, d, 1.25, g, F), SD_OK);
+  assert_int_equal(sd_pair_noise(&S, d, 1.25 * unit, g, small), SD_OK);
+  for (int k = 0; k < 12; k++) {
+    const double scale = sqrt(k % 6 < 3 ? unit : unit * unit * unit);
+    assert_true(fabs(small[k] / scale - F[k]) < 1e-10);
+  }
+}
+
+/* A film of shells at the end of its range resists little more than that they roll against each other:
+ * what it resists of sliding is rounding, of either sign. */
+static void rounding_of_a_part_that_is_not_there_is_no_failure(void **state)
+{
+  (void) state;
+  const double d[3] = {0.6, 0.0, 0.8}, a = 3e-6, slide = -2.5e-25 * a, roll = 3e-14 * a * a * a;
+  const sd_pair_resistance R = {.YA = {slide, -slide, slide}, .YC = {roll, -roll, roll}, .XC = {slide * a * a}};
+  double g[12], F[12] = {0.0};
+  for (int k = 0; k < 12; k++) g[k] = cos(3.0 * k);
+  assert_int_equal(sd_pair_noise(&R, d, a, g, F), SD_OK);
+  for (int e = 0; e < 3; e++) {
+    assert_true(F[e] == 0.0 && fabs(F[3 + e] + F[9 + e]) < 1e-12 * sqrt(roll));
+  }
+  assert_true(fabs(F[4]) > 0.1 * sqrt(roll));
+}
+
 static void what_is_negative_has_no_root(void **state)
 {
   (void) state;
   const sd_pair_resistance R = {.XA = {1.0, 2.0, 1.0}};
   const double d[3] = {0, 0, 1}, g[12] = {0, 0, 1};
   double F[12] = {0.0};
-  assert_int_equal(sd_pair_noise(&R, d, g, F), SD_EINDEFINITE);
+  assert_int_equal(sd_pair_noise(&R, d, 1.0, g, F), SD_EINDEFINITE);
 }
 
 int main(void)
@@ -113,6 +146,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(of_points_that_share_what_they_resist),
       cmocka_unit_test(of_shells_through_all_images),
+      cmocka_unit_test(units_of_length_do_not_matter),
+      cmocka_unit_test(rounding_of_a_part_that_is_not_there_is_no_failure),
       cmocka_unit_test(what_is_negative_has_no_root),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
