@@ -13,48 +13,79 @@ void sd_unit_roots(const sd_spheres *s, int n, double *root)
   }
 }
 
-/* B [width width], row-major, of M becomes that of C, times the taper: the roots of the diagonal are
- * (6 pi a)^1/2, and in rows of torques (8 pi a^3)^1/2 = (6 pi a)^1/2 a sqrt(4/3). */
-static inline void scale(double ai, double aj, double taper, int width, double *B)
+/* B [6 x 6], column-major: c [f I + g h h^T] in three rows and columns from B on */
+static inline void put_isotropic(double c, double f, double g, const double h[3], double *B)
 {
-  const double force = 6.0 * SD_PI * sqrt(ai * aj) * taper, torque = 1.15470053837925152902;
-  const double of_i[2] = {force, force * torque * ai}, of_j[2] = {1.0, torque * aj};
-  for (int p = 0; p < width; p++)
-    for (int q = 0; q < width; q++) B[width * p + q] *= of_i[p / 3] * of_j[q / 3];
+  for (int q = 0; q < 3; q++)
+    for (int p = 0; p < 3; p++) B[p + 6 * q] = c * (g * h[p] * h[q] + (p == q ? f : 0.0));
 }
 
-/* Block of C of two spheres */
+/* The matrix of v -> c v x h */
+static inline void put_cross(double c, const double h[3], double *B)
+{
+  for (int q = 0; q < 3; q++) {
+    const int e = (q + 1) % 3, f = (q + 2) % 3;
+    B[q + 6 * q] = 0.0;
+    B[e + 6 * q] = -c * h[f];
+    B[f + 6 * q] = c * h[e];
+  }
+}
+
+/* What the wall adds to the block of spheres at xi and xj */
+static void add_image(const sd_law *law, const double xi[3], double ai, const double xj[3],
+                      double aj, double taper, int width, double B[36])
+{
+  const double root_i[2] = {sqrt(6.0 * SD_PI * ai), sqrt(8.0 * SD_PI * ai) * ai};
+  const double root_j[2] = {sqrt(6.0 * SD_PI * aj), sqrt(8.0 * SD_PI * aj) * aj};
+  double M[36];
+  sd_wall_block(&law->wall, width, xi, ai, xj, aj, 1.0, M);
+  for (int p = 0; p < width; p++)
+    for (int q = 0; q < width; q++)
+      B[p + 6 * q] += taper * root_i[p / 3] * root_j[q / 3] * M[width * p + q];
+}
+
+/* Block of C into B [6 x 6], column-major, of which width 3 uses a corner. The pair tensors of
+ * sd_tensor.h, times the roots of the diagonal:
+ *   U F   1/(6 pi) times 6 pi sqrt(a_i a_j)            U T   1/(8 pi) times sqrt(6 a_i 8 a_j^3) pi = sqrt(3)/2 sqrt(a_i a_j^3)
+ *   W T   1/(8 pi) times 8 pi sqrt(a_i^3 a_j^3)        W F   sqrt(3)/2 sqrt(a_i^3 a_j) */
 static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int j, int width,
-                              double *B)
+                              double B[36])
 {
   const double ai = s->a[i], aj = s->a[j];
-  double xi[3], xj[3], r[3], image[36];
+  double xi[3], xj[3], r[3];
   sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, ai, xi);
   sd_wall_keep_off(&law->wall, s->x + 3 * (long) j, aj, xj);
   sd_minus(xi, xj, r);
-  if (width == 6)
-    sd_tensor_grand(r, ai, aj, 1.0, B);
+  const double R = sqrt(sd_dot(r, r)), inv = R > 0.0 ? 1.0 / R : 0.0;
+  const double h[3] = {r[0] * inv, r[1] * inv, r[2] * inv};
+  double f, g;
+  if (law->tensor == SD_TENSOR_OSEEN)
+    sd_oseen_radial(R, &f, &g);
   else
-    sd_tensor_uf(law->tensor, r, ai, aj, 1.0, B);
-  if (law->wall.sign) {
-    sd_wall_block(&law->wall, width, xi, ai, xj, aj, 1.0, image);
-    for (int e = 0; e < width * width; e++) B[e] += image[e];
+    sd_rpy_radial(R, ai, aj, &f, &g);
+  const double taper = law->taper == SD_TAPER_NONE ? 1.0 : sd_taper_factor(law, R);
+  const double c = sqrt(ai * aj) * taper;
+  put_isotropic(c, f, g, h, B);
+  if (width == 6) {
+    const double half_root_3 = 0.86602540378443864676;
+    sd_rpy_radial_wt(R, ai, aj, &f, &g);
+    put_isotropic(c * ai * aj, f, g, h, B + 3 + 6 * 3);
+    put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, B + 6 * 3);
+    put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
   }
-  const int tapered = law->taper != SD_TAPER_NONE;
-  scale(ai, aj, tapered ? sd_taper_factor(law, sqrt(sd_dot(r, r))) : 1.0, width, B);
+  if (law->wall.sign) add_image(law, xi, ai, xj, aj, taper, width, B);
 }
 
 /* That of a sphere with itself, and a little on the diagonal */
 static inline void own_block(const sd_law *law, const sd_spheres *s, int i, int width, double extra,
-                             double *B)
+                             double B[36])
 {
-  const double *x = s->x + 3 * (long) i, a = s->a[i];
+  double x[3];
   memset(B, 0, 36 * sizeof(double));
-  if (law->wall.sign) {
-    sd_wall_block(&law->wall, width, x, a, x, a, 1.0, B);
-    scale(a, a, 1.0, width, B);
-  }
-  for (int p = 0; p < width; p++) B[(width + 1) * p] += 1.0 + extra;
+  for (int p = 0; p < width; p++) B[7 * p] = 1.0 + extra;
+  if (!law->wall.sign) return;
+  sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, s->a[i], x);
+  add_image(law, x, s->a[i], x, s->a[i], 1.0, width, B);
 }
 
 /* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of
@@ -74,9 +105,9 @@ static inline void fill(const sd_law *law, const sd_spheres *s, const int *membe
       for (int q = 0; q < width; q++)
         for (int p = 0; p < width; p++)
           if (A)
-            A[at + p + lda * q] = B[width * p + q];
+            A[at + p + lda * q] = B[p + 6 * q];
           else
-            A_single[at + p + lda * q] = (float) B[width * p + q];
+            A_single[at + p + lda * q] = (float) B[p + 6 * q];
     }
 }
 
@@ -87,17 +118,12 @@ sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *me
                            int width, double *A)
 {
   static const double extra[] = {0.0, 1e-12, 1e-9, 1e-6};
-  /* Pivots below this are rounding, as those of equal spheres at one point are. */
-  const double lost = 1e-7;
-  const long size = width * (long) m;
   for (int k = 0; k < 4; k++) {
     if (width == 3)
       fill(law, s, member, m, 3, extra[k], A, 0);
     else
       fill(law, s, member, m, 6, extra[k], A, 0);
-    sd_status status = sd_cholesky((int) size, A);
-    for (long p = 0; p < size && status == SD_OK; p++)
-      if (!(A[p * (size + 1)] > lost)) status = SD_ESINGULAR;
+    const sd_status status = sd_cholesky(width * m, A);
     if (status != SD_ESINGULAR) return status;
   }
   return SD_EINDEFINITE;
