@@ -1,7 +1,9 @@
-"""An independent model of one solve of the stream with side walls (numpy, dense matrices), for the table fluid_turb_lm2_wall.consistent.csv:
-    python3 fluid_turb_lm2_wall.py > fluid_turb_lm2_wall.consistent.csv
-The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection, with Re on the hydraulic radius, half the width, or the
-laminar 24/Re where that is the larger (below Re 0.02 the law of turbulent streams would be larger again: it does not count there)."""
+"""An independent model of one solve of the stream (numpy, dense matrices), for two tables:
+    python3 independent_stream.py fluid_turb_lm2_wall > fluid_turb_lm2_wall.consistent.csv
+    python3 independent_stream.py fluid_turb_lm5 > fluid_turb_lm5.consistent.csv
+fluid_turb_lm2_wall has side walls. The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection, with Re on the
+hydraulic radius, half the width, or the laminar 24/Re where that is the larger (below Re 0.02 the law of turbulent streams would be larger again:
+it does not count there). fluid_turb_lm5 has grains of two radii; pores and the mean diameter 6 V/S are of as many grains of either as there are."""
 import os
 import sys
 
@@ -34,34 +36,59 @@ def friction(Re):
     return np.where(Re < 1, 24 / Re, np.maximum(10 ** (2 * low), 24 / Re))
 
 
-def solve(header, c, friction=friction):
+def sums_of_grains(header, c):
+    """Volume and surface of the grains in a slice over its volume"""
+    a = np.array(header["radiusParts"])[:, None]
+    phi = np.array([c["phi_c0"], c["phi_c1"]])
+    return phi.sum(0), (phi * 3 / a).sum(0)
+
+
+def lengths(header, c, sums=sums_of_grains):
+    key = lambda name: header[name][0]
+    dz, kappa, phi_max, phi = key("deltaZ"), key("kappa"), key("phiMax"), c["phi"]
+    if key("ilm") == 5:
+        V, S = sums(header, c)
+        some = S > 0
+        S = np.where(some, S, 1)
+        pore = (1 - phi) / np.maximum(phi, 1e-3) * np.where(some, V / S, 1)
+        z, bed = edges(header), edges(header)[np.flatnonzero(phi > key("phiBed"))[-1]]
+        return np.maximum(np.minimum(pore / 2, 0.2 * np.where(some, 6 * V / S, 0)), kappa * (z - bed))
+    assert key("ilm") == 2
+    packed = np.flatnonzero(phi >= phi_max)
+    p = np.minimum(phi, phi_max)
+    if len(packed):
+        p[:packed[-1]] = phi_max
+    return np.concatenate([[0], np.cumsum(kappa * dz * (phi_max - p) / phi_max)[:-1]])
+
+
+def edges(header):
+    return header["deltaZ"][0] * np.arange(int(header["nCell"][0]))
+
+
+def solve(header, c, friction=friction, sums=sums_of_grains):
     key = lambda name: header[name][0]
     N, dz, rho, nu = int(key("nCell")), key("deltaZ"), key("densFluid"), key("viscoDyn") / key("densFluid")
-    M, kappa, phi_max, phi, v, U = N - 1, key("kappa"), key("phiMax"), c["phi"], c["vx"], c["u_in"].copy()
+    M, phi, v, U = N - 1, c["phi"], c["vx"], c["u_in"].copy()
     steps = round(key("t_end") / key("dt"))
     dt, width, coef = key("t_end") / steps, key("channelWidth"), key("fluidFrictionCoef")
     slip = U[1:] - v
     with np.errstate(divide="ignore", invalid="ignore"):
         b = phi / (4 / 3 * np.pi * key("radiusPart") ** 3) * c["drag"] / slip / rho
     b = np.minimum(np.where(b > 0, b, 0), 0.1 / dt)
-    packed = np.flatnonzero(phi >= phi_max)
-    p = np.minimum(phi, phi_max)
-    if len(packed):
-        p[:packed[-1]] = phi_max
-    l = np.concatenate([[0], np.cumsum(kappa * dz * (phi_max - p) / phi_max)[:-1]])
+    l = lengths(header, c, sums)
     h = np.full(N, dz)
     h[0] = h[M] = dz / 2
     e = 1 - phi
     node = np.concatenate([[phi[0]], 0.5 * (phi[1:] + phi[:-1])])
     e_node = 1 - node
     e_node[M] = e[M - 1]
-    assert key("irheolf") == 0 and key("iusl") == 1 and key("ilm") == 2 and key("viscousSubLayer") == 0
+    assert key("irheolf") == 0 and key("iusl") == 1 and key("viscousSubLayer") == 0
     drive = header["gravity"][0] - key("dpdx") / rho
     q = phi * v
     for _ in range(steps):
         nut = l ** 2 * np.abs(U[1:] - U[:-1]) / h
         speed = np.maximum(np.abs(U[1:N]), 1e-10 * nu / (0.5 * width))
-        wall = e[:M] * 2 / width * coef * friction(np.maximum(speed * 0.5 * width / nu, 1e-10)) / 8 * speed / 2
+        wall = key("fluidWallFriction") * e[:M] * 2 / width * coef * friction(np.maximum(speed * 0.5 * width / nu, 1e-10)) / 8 * speed / 2
         A, r = np.zeros((M, M)), np.zeros(M)
         for j in range(M):                                     # the row of slice j, unknown U'[j + 1]
             A[j, j] += e[j] / dt + b[j] + wall[j]
@@ -81,8 +108,9 @@ def solve(header, c, friction=friction):
 
 
 if __name__ == "__main__":
-    U, b, nut, stress = solve(*read(os.path.join(HERE, "fluid_turb_lm2_wall.csv")))
-    print("# inputs and parameters: the same case: fluid_turb_lm2_wall")
+    case = sys.argv[1]
+    U, b, nut, stress = solve(*read(os.path.join(HERE, case + ".csv")))
+    print("# inputs and parameters: the same case: " + case)
     print("u_out,taufsi,nut,stress")
     for k in range(len(U)):
         print(",".join("%.17g" % a[k] if k < len(a) else "" for a in (U, b, nut, stress)))
