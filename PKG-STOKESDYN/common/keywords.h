@@ -20,7 +20,7 @@ namespace StokesDyn {
 /* The same where only this rank knows. */
 [[noreturn]] void fail_one(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
 
-/* A warning, by the first rank, whichever rank asks for it. */
+/* A warning that all ranks ask for, printed by the first. */
 void warn(LAMMPS_NS::LAMMPS *lmp, const std::string &message);
 
 /* Text of a file or a script as it can be printed: bytes that are no UTF-8, and controls, as \xNN.
@@ -41,7 +41,7 @@ class Voice {
   /* as `fail` and `fail_one` */
   [[noreturn]] void fail(const std::string &what) const;
   [[noreturn]] void fail_one(const std::string &what) const;
-  /* a warning, or a line of the log; by the first rank, whichever rank asks for it */
+  /* a warning, or a line of the log, that all ranks ask for; printed by the first */
   void warn(const std::string &what) const;
   void tell(const std::string &what) const;
   /* the voice of a part of the command: "<command>: <part>: <what>"; of this step */

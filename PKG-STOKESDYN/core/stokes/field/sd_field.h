@@ -19,9 +19,7 @@
 #include "sd_status.h"
 #include "sd_world.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+SD_BEGIN_C
 
 /* Point (i, j, k) at lo + (i, j, k) step; ours are those of the planes from <= k < to.
  *   lo [3], step [3]   length, step > 0 */
@@ -98,7 +96,5 @@ typedef struct {
 sd_status sd_field_inside(const sd_field_bodies *b, const sd_ewald_box *box, const sd_field_grid *g,
                           double *u, unsigned char *inside);
 
-#ifdef __cplusplus
-}
-#endif
+SD_END_C
 #endif
