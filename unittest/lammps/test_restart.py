@@ -107,18 +107,19 @@ def test_restart_file_written_within_a_run_continues(simulation, unbroken, tmp_p
 
 
 @pytest.mark.parametrize("restart", [False, True])
-def test_a_run_goes_on_with_algorithm_2_though_algorithm_1_would_converge_by_now(simulation, tmp_path, restart):
+@pytest.mark.parametrize("warm", ["no", "yes"])
+def test_a_run_goes_on_with_algorithm_2_though_algorithm_1_would_converge_by_now(simulation, tmp_path, warm, restart):
     """Three touching spheres, where it diverges, come apart. A loose tolerance shows which algorithm the later forces are of."""
     apart = Spheres(chain(3, 2 * A).x, A, [(0, 0, -0.5), (0.2, 0, 0.4), (0, 0, 1.3)])
-    lines = input_lines(apart, f"cut_off_distance inf visc {ETA} relative_tolerance 0.05", tmp_path / "data", box=BOX, fix=False,
-                        dt=0.1) + ["fix drag all stokes_dynamics apply no", "fix move all nve"]
+    lines = input_lines(apart, f"cut_off_distance inf visc {ETA} relative_tolerance 0.05 warm_start {warm}", tmp_path / "data", box=BOX,
+                        fix=False, dt=0.1) + ["fix drag all stokes_dynamics apply no", "fix move all nve"]
     whole = last(simulation().commands(lines).run(40))
     sim = simulation().commands(lines).run(20)
     if restart:
         sim.command(f"write_restart {tmp_path}/mid")
         sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.1"] + lines[-2:])
     assert np.abs(last(sim.run(20)) - whole).max() < LIMIT
-    other = simulation().commands([line.replace("relative", "algorithm 2 warm_start no relative") for line in lines]).run(40)
+    other = simulation().commands([line.replace("relative", "algorithm 2 relative") for line in lines]).run(40)
     assert np.abs(last(other)[:, 6:] - whole[:, 6:]).max() < LIMIT
     first = simulation(Spheres(whole[:, :3], A, whole[:, 3:6]), f"cut_off_distance inf visc {ETA} relative_tolerance 0.05").run()
     assert first.iterations > 0 and np.abs(first.drag - whole[:, 6:9]).max() > 1e3 * LIMIT
