@@ -24,8 +24,10 @@ bool PairSph::is_wall(int i) const
 void PairSph::load_wall(int receivers)
 {
   double F[3] = {0.0, 0.0, 0.0};
-  for (int i = 0; i < receivers; i++)
-    for (int d = 0; is_wall(i) && d < 3; d++) F[d] += f4[4 * (size_t) i + d];
+  for (int i = 0; i < receivers; i++) {
+    if (!is_wall(i)) continue;
+    for (int d = 0; d < 3; d++) F[d] += f4[4 * (size_t) i + d];
+  }
   wall->bears(F);
 }
 
