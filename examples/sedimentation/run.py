@@ -379,13 +379,14 @@ def draw(done, path):
     plt.close(figure)
 
 
-def contact_sheet(done, path):
+def contact_sheet(done, ladder, path):
     shown = [c for c in done if c.picture]
+    shell = {(c.clump, c.angle): c.drag for c in ladder if c.level == "42"}
     figure, axes = plt.subplots(2, 6, figsize=(12, 4.7), constrained_layout=True)
     for c, ax in zip(shown, axes.flat):
         ax.imshow(plt.imread(c.image))
         ax.set_axis_off()
-        ax.set_title(f"{c.label.replace('_', ' ')}\ndrag {c.drag:.3f}, exact {c.drag_exact:.3f}", fontsize=9.5)
+        ax.set_title(f"{c.label.replace('_', ' ')}\ndrag {shell[c.clump, c.angle]:.3f}, exact {c.drag_exact:.3f}", fontsize=9.5)
     scale = plt.matplotlib.cm.ScalarMappable(plt.matplotlib.colors.Normalize(0, 0.7), "viridis")
     bar = figure.colorbar(scale, ax=axes, shrink=0.85, pad=0.01, extend="both")
     bar.set_label("drag of a sphere / drag of a lone sphere\nat the same velocity", fontsize=9.5)
@@ -486,7 +487,7 @@ def main():
     units = "velocities (downwards) in micrometres per second, drags in units of a lone sphere's, angles in degrees"
     (out / "table.md").write_text(units.capitalize() + ".\n\n" + table([HEAD] + [row(c) for c in done]))
     draw(done, out / "sedimentation.png")
-    contact_sheet(done, out / "clumps.png")
+    contact_sheet(done, ladder, out / "clumps.png")
     draw_ladder(times, done, ladder, out / "ladder.png")
     (out / "ladder.md").write_text(table(ladder_rows))
     if given.update:
