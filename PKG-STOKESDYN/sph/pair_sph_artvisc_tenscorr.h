@@ -146,6 +146,8 @@ class PairSph : public LAMMPS_NS::Pair {
   bool used(int itype) const;
   void look_at_densities(int n);
   void look_at_walls();
+  bool looks_at_turning() const;
+  void look_at_turning();
   void look_at_sound();
   void look_at_widths();
   void prepare();

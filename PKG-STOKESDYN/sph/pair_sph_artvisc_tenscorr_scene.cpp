@@ -11,6 +11,7 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "ranks.h"
+#include "sd_sph_wall.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -146,7 +147,7 @@ void PairSph::choose_scheme()
   // forces on ghosts, which positions times forces would need, are not summed
   no_virial_fdotr_compute = !shared;
   comm_forward = std::max(sd_sph_columns(&model), has_walls() ? 4 : 1);
-  comm_reverse = has_walls() ? 8 : 6;
+  comm_reverse = has_walls() ? SD_SPH_MOTION : 6;
 }
 
 void PairSph::check_groups()

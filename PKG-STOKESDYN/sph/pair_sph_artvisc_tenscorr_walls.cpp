@@ -95,6 +95,7 @@ void PairSph::wall_particles()
 {
   const int n = particles.n;
   sd_sph_pack_v(n, atom->vest ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  if (looks_at_turning()) look_at_turning();
   weights.resize(8 * (size_t) (n + 1));
   sd_sph_pack_fluid(&particles, P.data(), weights.data());
   sums.assign(8 * (size_t) (n + 1), 0.0);

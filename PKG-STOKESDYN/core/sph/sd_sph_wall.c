@@ -63,6 +63,67 @@ void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const s
   sd_sph_each_pair(model, list, p, compare, likeness);
 }
 
+static void add_motion(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_two *two,
+                       double *sums)
+{
+  (void) model;
+  if ((p->phase[two->i] < 0) == (p->phase[two->j] < 0)) return;
+  const int i_is_wall = p->phase[two->i] < 0, wall = i_is_wall ? two->i : two->j,
+            fluid = i_is_wall ? two->j : two->i;
+  const double sign = i_is_wall ? 1.0 : -1.0;
+  const double d[3] = {sign * two->d[0], sign * two->d[1], sign * two->d[2]};
+  double u[3], across[3];
+  sd_minus(p->v4 + 4 * (size_t) wall, p->v4 + 4 * (size_t) fluid, u);
+  sd_cross(d, u, across);
+  double *row = sums + SD_SPH_MOTION * (size_t) fluid;
+  row[0] += 1.0;
+  for (int c = 0; c < 3; c++) {
+    row[1 + c] += d[c];
+    row[4 + c] += u[c];
+    row[7 + c] += across[c];
+    row[10 + c] += d[c] * d[c];
+  }
+  row[13] += d[0] * d[1];
+  row[14] += d[0] * d[2];
+  row[15] += d[1] * d[2];
+  row[16] += sd_dot(u, u);
+}
+
+void sd_sph_motion_of_walls(const sd_sph_model *model, const sd_sph_list *list,
+                            const sd_sph_particles *p, double *sums)
+{
+  sd_sph_each_pair(model, list, p, add_motion, sums);
+}
+
+/* Least squares: u - <u> = w x (d - <d>) gives J w = L with the moments about the mean place, and what
+ * is left of the squares of u - <u> is their sum - w.L. */
+double sd_sph_turning(const double sums[SD_SPH_MOTION], double *shear)
+{
+  const double n = sums[0], *d = sums + 1, *u = sums + 4, *dd = sums + 10;
+  *shear = 0.0;
+  if (n < 6.0) return 0.0; /* fewer may be of two walls and fit a rotation by chance */
+  double of_means[3], L[3], w[3] = {0.0, 0.0, 0.0};
+  sd_cross(d, u, of_means);
+  for (int c = 0; c < 3; c++) L[c] = sums[7 + c] - of_means[c] / n;
+  const double xx = dd[0] - d[0] * d[0] / n, yy = dd[1] - d[1] * d[1] / n,
+               zz = dd[2] - d[2] * d[2] / n, xy = dd[3] - d[0] * d[1] / n,
+               xz = dd[4] - d[0] * d[2] / n, yz = dd[5] - d[1] * d[2] / n;
+  const double J[9] = {yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy};
+  double values[3], axes[9];
+  sd_eigen(3, J, values, axes);
+  for (int k = 0; k < 3; k++) {
+    if (!(values[k] > 1e-9 * values[0])) continue; /* a row of particles does not tell */
+    const double along = (axes[k] * L[0] + axes[3 + k] * L[1] + axes[6 + k] * L[2]) / values[k];
+    for (int c = 0; c < 3; c++) w[c] += along * axes[3 * c + k];
+  }
+  double at_fluid[3], slip[3];
+  sd_cross(w, d, at_fluid);
+  sd_minus(u, at_fluid, slip);
+  *shear = sqrt(sd_dot(slip, slip) / (n * (dd[0] + dd[1] + dd[2])));
+  const double squares = sums[16] - sd_dot(u, u) / n;
+  return squares - sd_dot(w, L) < 1e-6 * squares ? sqrt(sd_dot(w, w)) : 0.0;
+}
+
 /* The density is what carries the pressure on: ghosts of the wall get it as that of any particle,
  * and the equation of state makes the same pressure of it on every rank. */
 double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double v[3],

@@ -37,6 +37,20 @@ void sd_sph_wall_acceleration(const double v[3], double dt, double tau, double b
 void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *likeness);
 
+/* How the wall particles w around each fluid particle f move: adds to the rows of fluid particles, sums
+ * [SD_SPH_MOTION (n+1)], with d = x_w - x_f, u = v_w - v_f
+ *   0 their number   1-3 d   4-6 u   7-9 d x u   10-15 d d^T, xx yy zz xy xz yz   16 u.u
+ * x4 and v4 must be packed. */
+enum { SD_SPH_MOTION = 17 };
+void sd_sph_motion_of_walls(const sd_sph_model *model, const sd_sph_list *list,
+                            const sd_sph_particles *p, double *sums);
+
+/* If these wall particles move as one rigid body that turns: its |angular velocity| w, otherwise 0; and
+ * about the shear rate before it, |<u - w x d>| / <d.d>^(1/2), means over the wall particles: at least a
+ * quarter of it. Walls that slide past each other within one support are not one body, and less than six
+ * particles do not tell. */
+double sd_sph_turning(const double sums[SD_SPH_MOTION], double *shear);
+
 typedef struct {
   const sd_sph_state *state;
   int slip;

@@ -1,6 +1,7 @@
-/* Energies, probes, the free surface: closed forms. */
+/* Energies, probes, the free surface, walls that turn: closed forms. */
 #include "sd_sph_energy.h"
 #include "sd_sph_probe.h"
+#include "sd_sph_wall.h"
 
 #include "check.h"
 
@@ -102,6 +103,65 @@ static void least_eigenvalue_of_turned_matrices(void **state)
   CHECK_NEAR(sd_sph_least_eigenvalue(2, plane), 0.3, 1e-14);
 }
 
+/* Adds a wall particle at d with the velocity u, both from the fluid particle. */
+static void see(double *sums, const double d[3], const double u[3])
+{
+  const double row[SD_SPH_MOTION] = {1.0,
+                                     d[0],
+                                     d[1],
+                                     d[2],
+                                     u[0],
+                                     u[1],
+                                     u[2],
+                                     d[1] * u[2] - d[2] * u[1],
+                                     d[2] * u[0] - d[0] * u[2],
+                                     d[0] * u[1] - d[1] * u[0],
+                                     d[0] * d[0],
+                                     d[1] * d[1],
+                                     d[2] * d[2],
+                                     d[0] * d[1],
+                                     d[0] * d[2],
+                                     d[1] * d[2],
+                                     u[0] * u[0] + u[1] * u[1] + u[2] * u[2]};
+  for (int c = 0; c < SD_SPH_MOTION; c++) sums[c] += row[c];
+}
+
+/* A block of wall particles below the fluid particle: u = V + w x d. Of a row along x that part of w
+ * which is along the row is not seen. */
+static void angular_velocity_of_a_rigid_wall(void **state)
+{
+  (void) state;
+  const double V[3] = {0.3, -0.2, 0.1}, w[3] = {0.4, 0.5, -0.7};
+  const int sizes[3][2] = {{3, 3}, {3, 1}, {1, 1}}; /* a block, a plane of rows, a row */
+  const double seen[3] = {sqrt(0.16 + 0.25 + 0.49), sqrt(0.16 + 0.25 + 0.49), sqrt(0.25 + 0.49)};
+  for (int k = 0; k < 3; k++) {
+    double sums[SD_SPH_MOTION] = {0.0}, shear;
+    for (int a = 0; a < 7 * sizes[k][0] * sizes[k][1]; a++) {
+      const double d[3] = {0.1 * (a % 7) - 0.3, 0.1 * (a / 7 % sizes[k][0]), -0.1 * (1 + a / 21)};
+      const double u[3] = {V[0] + w[1] * d[2] - w[2] * d[1], V[1] + w[2] * d[0] - w[0] * d[2],
+                           V[2] + w[0] * d[1] - w[1] * d[0]};
+      see(sums, d, u);
+    }
+    CHECK_NEAR(sd_sph_turning(sums, &shear), seen[k], 1e-12);
+  }
+}
+
+/* Water at rest 0.2 over a wall that slides by, and half of the wall at rest: across the row, as a row that
+ * turns, or along it. */
+static void a_wall_that_slides_does_not_turn(void **state)
+{
+  (void) state;
+  for (int both = 0; both < 3; both++) {
+    double sums[SD_SPH_MOTION] = {0.0}, shear;
+    for (int a = 0; a < 7; a++) {
+      const double d[3] = {0.1 * a - 0.3, -0.2, 0.0}, v = 0.5 * (!both || a < 3);
+      see(sums, d, (const double[3]){both < 2 ? v : 0.0, 0.0, both < 2 ? 0.0 : v});
+    }
+    CHECK_NEAR(sd_sph_turning(sums, &shear), 0.0, 1e-12);
+    if (!both) CHECK_NEAR(shear, 0.5 / sqrt(0.04 + 0.04), 1e-12);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -110,6 +170,8 @@ int main(void)
       cmocka_unit_test(power_of_members_and_of_others),
       cmocka_unit_test(a_probe_in_the_middle_has_the_linear_pressure),
       cmocka_unit_test(height_of_the_edge_of_a_lattice),
-      cmocka_unit_test(least_eigenvalue_of_turned_matrices)};
+      cmocka_unit_test(least_eigenvalue_of_turned_matrices),
+      cmocka_unit_test(angular_velocity_of_a_rigid_wall),
+      cmocka_unit_test(a_wall_that_slides_does_not_turn)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
