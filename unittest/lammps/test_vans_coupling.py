@@ -63,7 +63,7 @@ def mesh_for(kind):
 def moving(kind):
     """kind: of the fluctuations, and more keywords"""
     name, _, more = kind.partition(" ")
-    return f"fluctuation {name} 4711 0.008 " + ("" if name == "langevin" else "renewal 0.001 ") + more
+    return f"fluctuation {name} 4711 0.008 " + ("" if name in ("langevin", "depth") else "renewal 0.001 ") + more
 
 
 ALL_THAT_MOVES = ("depth felt volume drag brown_lawler hindrance di_felice added_mass 0.4 upflow 0.002 discharge 0.02 surface follow 0.045 wall_roughness 1e-3 wall_mixing yes "
