@@ -234,6 +234,14 @@ def test_water_that_moves_on_alone_is_not_too_far_apart(tmp_path):
     assert "couplings are too far apart" not in done.stdout
 
 
+@pytest.mark.parametrize("model, wall, told", [("langevin", "reflect", True), ("langevin", "lj126", False), ("correlated", "reflect", False)])
+def test_a_wall_that_mirrors_grains_is_told(tmp_path, model, wall, told):
+    end = "zhi 0.004" if wall == "reflect" else "zhi 0.004 1e-12 1e-6 2e-6"
+    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10, f"fluctuation {model} 3 -1").replace("run 1", f"fix top all wall/{wall} {end}\nrun 1\nrun 1"))
+    assert done.returncode == 0, done.stdout[-1000:]
+    assert done.stdout.count("fix top turns grains back, but not the fluctuation") == told
+
+
 @pytest.mark.parametrize("keywords, told", [("conserve no", True), ("rules yade", True), ("conserve yes", False), ("conserve no solve 1e-4 1e-7", False)])
 def test_exchange_that_is_cut_off_is_told(tmp_path, keywords, told):
     """Grains of 0.05 mm every 0.1 ms, with fluid steps of 10 us: b is above 1/(10 dt), and the water too fast unless the books are kept."""
