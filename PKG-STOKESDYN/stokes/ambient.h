@@ -162,6 +162,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
     std::vector<double> x;
   };
 
+  class Carrier;
   std::vector<double> formulas_at(const std::vector<double> &x);
   bool group_stands() const;
   void select();

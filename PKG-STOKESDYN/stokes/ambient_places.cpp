@@ -4,6 +4,7 @@
 #include "keywords.h"
 #include "ranks.h"
 
+#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "modify.h"
@@ -17,10 +18,51 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+/* LAMMPS evaluates formulas for atoms only. If no sphere takes part, one atom of the lowest rank
+ * that has any is asked in their place, as one of the group; if there are no atoms at all, one that
+ * is taken away again. */
+class Ambient::Carrier {
+ public:
+  Carrier(Atom *atom, MPI_Comm world, const std::vector<int> &those, int groupbit) : atom(atom)
+  {
+    who = those;
+    const auto parts = from_all(world, std::vector<int>{(int) those.size(), atom->nlocal});
+    int rank, lender = -1;
+    MPI_Comm_rank(world, &rank);
+    for (size_t p = 0; p < parts.size(); p += 2) {
+      if (parts[p] > 0) return;
+      if (lender < 0 && parts[p + 1] > 0) lender = (int) p / 2;
+    }
+    if (rank != std::max(lender, 0)) return;
+    if (lender < 0) {
+      double origin[3] = {0.0, 0.0, 0.0};
+      atom->avec->create_atom(1, origin);
+      made = true;
+    }
+    mask = atom->mask[0];
+    atom->mask[0] |= groupbit;
+    lent = true;
+    who.assign(1, 0);
+  }
+  ~Carrier()
+  {
+    if (lent) atom->mask[0] = mask;
+    if (made) atom->nlocal--;
+  }
+  std::vector<int> who;
+
+ private:
+  Atom *atom;
+  int mask = 0;
+  bool lent = false, made = false;
+};
+
 /* As many places at a time as there are atoms on all ranks. In the first round all atoms are at the
  * first place: a velocity that still differs among them is not that of a place. */
 std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
 {
+  const Carrier carrier(atom, world, those, groupbit);
+  const std::vector<int> &those = carrier.who;
   const std::vector<double> x = from_all(world, mine);
   const std::vector<int> atoms = from_all(world, std::vector<int>(1, (int) those.size()));
   const std::vector<int> numbers = from_all(world, std::vector<int>(1, (int) mine.size()));

@@ -1,6 +1,7 @@
 /* Spheres that a field keeps spinning, for fix stokes_dynamics/overdamped: their angular velocity is
  * given and the torque that the field needs for it is found, up to a largest one. A sphere that
- * would need more slips: the largest torque turns it, more slowly.
+ * would need more slips: the largest torque drives it, and it is slower than the field, or brakes
+ * it, and it is faster.
  *
  * Who slips is decided once a step, by the velocities and torques just found, for the step after
  * the next move: both solves of a step (scheme midpoint) then hold the same coordinates. */

@@ -153,6 +153,19 @@ void FixHydroVans::init()
   if (set.solves()) tell_steps();
   if (set.couple == VansSettings::TWO) tell_sizes();
   check_others();
+  tell_mirrors();
+}
+
+/* A wall that turns a grain back leaves u' as it is. */
+void FixHydroVans::tell_mirrors()
+{
+  const Fix *mirror = fix_like(lmp, "^wall/reflect");
+  if (told_mirror || !mirror || set.fluctuation != VansSettings::LANGEVIN) return;
+  told_mirror = true;
+  set.voice.warn("fix " + std::string(mirror->id) +
+                 " turns grains back, but not the fluctuation that carries them to its wall: light "
+                 "grains gather there. Let no wall/reflect stand in the water or at its surface, where "
+                 "this fix turns the fluctuation itself");
 }
 
 /* A solve with a drag that is given. */

@@ -88,7 +88,8 @@ class FixHydroVans : public RowsFix {
   LAMMPS_NS::bigint summed_step = -1;
   /* have they been read, in this run or in one whose restart file has them? */
   bool variables_known = false;
-  bool told_outside = false, told_work = false, told_stiff = false, told_waves = false;
+  bool told_outside = false, told_work = false, told_stiff = false, told_waves = false,
+       told_mirror = false;
   /* of the last look at the grains' time step */
   LAMMPS_NS::bigint looked_step = -1;
 
@@ -101,6 +102,7 @@ class FixHydroVans : public RowsFix {
   void check_box() const;
   void check_radius();
   void check_others() const;
+  void tell_mirrors();
   void check_mesh();
   void tell_steps();
   void tell_stiff();

@@ -346,7 +346,7 @@ void FixHydroVans::walk_on(double time, bool first)
   const std::vector<double> u_star = stream.friction_velocities(),
                             life = stream.lagrangian_times(u_star);
   const sd_vans_langevin walk = {set.seed, stream.bed_elevation(), u_star.data(), life.data(),
-                                 first ? HUGE_VAL : time};
+                                 first ? HUGE_VAL : time, stream.wet.ncell - 1};
   fluctuate([&](int i, double *carried, double *fluctuation) {
     sd_vans_langevin_step(&set.mesh, &walk, atom->x[i][2], (uint64_t) atom->tag[i],
                           (sd_vans_wander *) carried, fluctuation);

@@ -298,6 +298,8 @@ void VansSettings::check(const Keywords &in) const
   in.require(!law.felt_by_volume || !point,
              "keyword felt has no effect with grains point");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal requires fluctuations");
+  in.require(!in.given("renewal") || fluctuation != DEPTH,
+             "keyword renewal has no effect with fluctuation depth: each grain has a time of its own");
   in.require(!in.given("intensity") || fluctuates(),
              "keyword intensity requires fluctuations");
   in.require(!fluctuates() || has_grains(),

@@ -204,21 +204,25 @@ void VansStream::sample()
   sd_vans_series_add(&series, now);
 }
 
-/* Once each: couplings that are longer than the drag allows, and drag that the limits of b keep
- * from the water; with conserve yes the books bring that back. */
-void VansStream::tell_limits(double T, double dt, const double cut[2])
+/* Once each: a solve that covers more time than the drag allows, and drag that the limits of b keep
+ * from the water; with conserve yes the books bring that back. The time of the solve counts,
+ * however long the grains have moved since the last one: the water loses b T of its slip before it
+ * knows what drag the grains felt. Past grains that are held it need not know. */
+void VansStream::tell_limits(double T, double dt, bool held, const double cut[2])
 {
   int slice = 0;
   const double rate = sd_vans_drag_rate(&mesh, &fluid, U.data(), hindrance.data(), grain.data(),
                                         &slice);
-  if (set.couple == VansSettings::TWO && !told_far && rate * T > 3.0) {
+  if (set.couple == VansSettings::TWO && !held && !told_far && rate * T > 3.0) {
     told_far = true;
     set.voice.warn("the couplings are too far apart: drag changes the water at z = " +
                    text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) +
                    ", b T = " + text(rate * T) + " for the time T = " + text(T) +
                    " of one solve. Above 3 the drag overshoots, more with every coupling. Use a T "
                    "of at most " + text(3.0 / rate) +
-                   " (fewer steps N, or a shorter period of keyword solve)");
+                   (set.period > 0.0
+                        ? ": a shorter period of keyword solve, and N steps that take as long"
+                        : ": fewer steps N"));
   }
   const double force = std::fabs(fluid.rho * drive) * wet.edge[wet.ncell - 1];
   if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * force) {
@@ -233,7 +237,7 @@ void VansStream::tell_limits(double T, double dt, const double cut[2])
 }
 
 /* b, and what it has too much at the start as a source. */
-void VansStream::exchange(double T, double dt, std::vector<double> &rest)
+void VansStream::exchange(double T, double dt, bool held, std::vector<double> &rest)
 {
   const double *of_classes = set.classes ? classes() : nullptr;
   /* exact for any sizes, unless the user has a radius of his own or the grains are given */
@@ -246,7 +250,7 @@ void VansStream::exchange(double T, double dt, std::vector<double> &rest)
                             density, b.data(), rest.data());
   } else
     sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, density, b.data(), cut);
-  tell_limits(T, dt, cut);
+  tell_limits(T, dt, held, cut);
   /* grains above the surface have no water */
   std::fill(b.begin() + wet.ncell, b.end(), 0.0);
   if (!rest.empty()) std::fill(rest.begin() + wet.ncell, rest.end(), 0.0);
@@ -258,7 +262,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   const int64_t steps = sd_vans_steps(fluid.rules, T, &dt);
   std::vector<double> rest;
   if (!fluid.held) drive = sd_vans_drive(&fluid);
-  exchange(T, dt, rest);
+  exchange(T, dt, given.held, rest);
   mixing_length();
 
   const bool settle = !given.back.empty();

@@ -132,8 +132,8 @@ class VansStream {
   void fill_above();
   void fold_above(std::vector<double> &of_slices) const;
   void mixing_length();
-  void exchange(double T, double dt, std::vector<double> &rest);
-  void tell_limits(double T, double dt, const double cut[2]);
+  void exchange(double T, double dt, bool held, std::vector<double> &rest);
+  void tell_limits(double T, double dt, bool held, const double cut[2]);
   [[noreturn]] void no_average(int n, double area);
   void check_mesh(const NamedState &state) const;
   void load_surface(const NamedState &state);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drag of cubic arrays of spheres with in.fixed_bed, one point a sphere and shells of points, beside exact values.
+"""Drag of cubic arrays of spheres with in.fixed_bed, one point per sphere and shells of points, beside exact values.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/fixed_bed)
     run.py --update     also refreshes the log and the picture in this folder
@@ -21,7 +21,7 @@ from runs import np, plt, need, options  # noqa: E402
 EXACT = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292, 0.216: 7.442, 0.343: 15.4}
 BASIS = {"simple": [(0, 0, 0)], "body-centred": [(0, 0, 0), (0.5, 0.5, 0.5)],
          "face-centred": [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)]}
-# 1/K = 1 - c phi^(1/3) + phi of the model with one point a sphere, as long as spheres do not overlap: Hasimoto's constants
+# 1/K = 1 - c phi^(1/3) + phi of the model with one point per sphere, as long as spheres do not overlap: Hasimoto's constants
 HASIMOTO = {"simple": 1.7601189, "body-centred": 1.7918585, "face-centred": 1.7917472}
 POINTS, MULTIBLOBS = (100, 400), (12, 42)
 # of K with multiblobs
@@ -64,7 +64,7 @@ def main():
         for phi in phis:
             L = float((4 / 3 * np.pi * len(basis) / phi)**(1 / 3))
             K[lattice].append(drag(out, "point", L * (np.array(basis) + 0.25), 1.0, L) / len(basis))
-            c.near(f"one point a sphere, {lattice}, phi {phi}: K", K[lattice][-1],
+            c.near(f"one point per sphere, {lattice}, phi {phi}: K", K[lattice][-1],
                    1 / (1 - HASIMOTO[lattice] * phi**(1 / 3) + phi), 1e-6 * K[lattice][-1])
     for points in MULTIBLOBS:
         name, K[f"multiblob {points}"] = f"multiblob {points}", []
@@ -91,7 +91,7 @@ def main():
 
     fig, ax = plt.subplots(figsize=(6.4, 4.0), dpi=90, layout="constrained")
     ax.plot(phis, [EXACT[p] for p in phis], "k-", lw=1, label="exact, simple cubic (Zick & Homsy 1982)")
-    ax.plot(phis, K["simple"], "s--", color="C1", ms=5, label="one point a sphere")
+    ax.plot(phis, K["simple"], "s--", color="C1", ms=5, label="one point per sphere")
     ax.plot(phis, K[POINTS[-1]], "o", color="C0", ms=6, label=f"shell of {POINTS[-1]} points")
     ax.plot(phis, K["multiblob 12"], "*", color="C2", ms=9, label="multiblob 12")
     ax.plot(phis, K["multiblob 42"], ".", color="C3", ms=7, label="multiblob 42")

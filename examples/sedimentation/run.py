@@ -215,7 +215,7 @@ def own_errors(case, R):
 
 
 def measure(out, words):
-    """Processor time of the pair style a sphere and step, ns; time of the solve of the shape, s."""
+    """Processor time of the pair style per sphere and step, ns; time of the solve of the shape, s."""
     log = out / "timing.log"
     execute(["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", TIMED_CLUMP,
              "-var", "angle", "45", "-var", "copies", str(COPIES), "-var", "steps", str(TIMED_STEPS), "-var", "model", words,
@@ -281,7 +281,7 @@ def draw_ladder(times, done, ladder, path):
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), gridspec_kw={"width_ratios": [1.25, 1]},
                                          constrained_layout=True)
     names = list(GEOMETRY)
-    styles = {"1": ("o", "C3", "one point a sphere"), "torque": ("s", "C1", "point with torque"), "12": ("^", "C0", "shell 12"),
+    styles = {"1": ("o", "C3", "one point per sphere"), "torque": ("s", "C1", "point with torque"), "12": ("^", "C0", "shell 12"),
               "42": ("D", "C2", "shell 42"), "162": ("v", "C4", "shell 162")}
     for level, (marker, colour, label) in styles.items():
         errors, _ = errors_of(level, done, ladder)

@@ -58,7 +58,7 @@ def main():
         series = np.loadtxt(os.path.join(directory, f"series.{name}"))
         t = series[:, 0] * 4e-5
         begin = min(begin, t[-1] / 2)
-        for what, column, factor, peer in (("q*", 1, 1 / SCALE, yade[0]), ("Shields number", 2, 1, yade[1]), ("surface velocity [m/s]", 5, 1, yade[2])):
+        for what, column, factor, peer in (("q*", 1, 1 / SCALE, yade[0]), ("Shields number", 2, 1, yade[1]), ("surface velocity [m/s]", 4, 1, yade[2])):
             mean, scatter, spread = blocks(t, series[:, column] * factor, begin)
             print(f"  slope {slope}: {what:24s} {mean:.4f} +- {spread:.4f} (scatter in time {scatter:.4f});  Yade {peer[0]} +- {peer[1]}")
             c.near(f"slope {slope}: {what}", mean, FOUND[name][what], TOLERANCE[what])

@@ -89,6 +89,7 @@ def judge_vans(case, words, how):
     case.refuse_if(how == "no molecules" and s("overlap") == "once", "overlap")
     for name in ("renewal", "intensity"):
         case.refuse_if(name in case.settings and s("fluctuation", "none") == "none", name)
+    case.refuse_if("renewal" in case.settings and s("fluctuation") == "depth", "renewal")
     case.refuse_if(s("fluctuation", "none") != "none" and s("couple") == "fluid", "fluctuation")
     case.refuse_if(s("felt") == "volume" and "yade" == s("rules"), "felt")
     case.refuse_if(s("felt") == "volume" and s("grains") == "point", "felt")

@@ -125,6 +125,27 @@ def test_sphere_of_points_in_shear(tmp_path):
     assert np.abs(disturbance - u).max() < 0.1 * np.abs(u).max() and np.abs((disturbance - u)[far]).max() < 0.03 * np.abs(u[far]).max()
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("who", ["nobody", "another group", "outside"])
+def test_the_undisturbed_flow_without_spheres(tmp_path, who, ranks):
+    """Formulas where no sphere takes part: LAMMPS evaluates them for atoms only. A later sphere is as if nothing had been."""
+    spheres, style = Spheres([(1.0, 0.5, 0.3)], v=(0.4, 0, 0)), "cut_off_distance inf visc 1.3 fluid_velocity v_ux 0.2 v_uz"
+    style += {"nobody": "", "another group": " group some", "outside": " region far"}[who]
+    before = SHEAR + "\nvariable uz atom 0.1*x*(y+1)\ngroup some id 7\nregion far block 3 4 3 4 3 4"
+    lines = input_lines(spheres, style, str(tmp_path / "data"), before_pair=before, fix=False)
+    lines += ["group all_of_it id 1", "delete_atoms group all_of_it"] if who == "nobody" else []
+    lines += ["fix move all nve/sphere", f"fix field all stokes_dynamics/field 1 {tmp_path}/flow.*.vti 5 4 3 lo -2 -2 -2 hi 2 2 2", "run 2"]
+    lines += ["create_atoms 1 single 0.1 0.2 0.3 units box", "set group all diameter 1 density 1", "run 1"] if who == "nobody" else []
+    lmp(tmp_path, lines + dump_lines(tmp_path / "out", columns="id x y z vx") + ["run 0"], ranks)
+    for step in (0, 1):
+        field = Image(tmp_path / f"flow.{step}.vti")
+        x = field.points()
+        u = np.stack([0.3 * x[..., 2] - 0.1 * x[..., 1], 0.2 + 0 * x[..., 0], 0.1 * x[..., 0] * (x[..., 1] + 1)], axis=-1)
+        assert np.abs(field["velocity"] - u).max() < 1e-14 and not field["inside"][np.linalg.norm(x - (1, 0.5, 0.3), axis=-1) > 1.1].any()
+    rows = read_dump(str(tmp_path / "out"))[-1][1]
+    assert len(rows) == 1 and (who == "nobody" or rows[0, 4] == 0.4)
+
+
 # --- ways of the pair style -----------------------------------------------------------------------------------------
 
 

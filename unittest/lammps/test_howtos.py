@@ -107,3 +107,11 @@ def test_commands_begin_where_a_shell_stands_in_the_clone(path):
             del lines[0]
         assert lines[0] == ". build/env.sh", block
         assert re.match(r"cd examples/|examples/|mkdir -p try; cd try", lines[1]), block
+
+
+def test_the_time_step_of_howto_sph_is_one_that_it_advises():
+    page = (DOC / "howto_sph.md").read_text()
+    low, high = map(float, re.search(r"c dt/h is ([\d.]+) to ([\d.]+)", page).groups())
+    h, c, dt = (float(re.search(pattern, blocks("sph")[0], re.M).group(1))
+                for pattern in (r"tensCorr wendland (\S+)", r"^pair_coeff .* c (\S+)", r"^timestep +(\S+)"))
+    assert low <= c * dt / h <= high

@@ -123,7 +123,7 @@ STORED = ("fix u all property/atom d_ux d_uy d_uz\n" + "\n".join(f"set group all
 
 @pytest.mark.parametrize("name", ["doublet", "trimer_line", "square", "tetrahedron", "helix4_chiral"])
 def test_linear_flow_is_exact(simulation, name):
-    """With one point a sphere: the same as the ordinary solve in the same flow, clumps in rigid motion."""
+    """With one point per sphere: the same as the ordinary solve in the same flow, clumps in rigid motion."""
     spheres, omega = many(name, 2)
     flow = "fluid_velocity v_gx v_gy v_gz"
     sim = simulation(spheres, f"clumps_only yes visc 1.3 {SOLVED} {flow}", before_pair=FORMULAS, comm=WIDE)

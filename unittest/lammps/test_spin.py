@@ -79,6 +79,16 @@ def test_above_the_largest_torque_a_sphere_slips(simulation):
     assert left.lmp.extract_fix("move", 0, 1, nrow=11) == 0
 
 
+@pytest.mark.parametrize("of_others, turns", [(5.0, 4.0), (1.0, 2.0), (-5.0, -4.0), (2.5, 3.0), (3.5, 3.0)])
+def test_a_sphere_that_slips_is_driven_or_braked(simulation, of_others, turns):
+    """Angular velocities about y, of a lone sphere and a field of 3: other torques alone would give the first, the field's largest torque gives 1."""
+    sim = simulation(Spheres([(0, 0, 0)], A), f"cut_off_distance inf visc {ETA} rotation yes", fix=False, box=BOX, dt=1e-4)
+    unit = 8 * np.pi * ETA * A**3
+    twist(sim.commands(f"{FIX} spin all 0 3 0 {unit}"), np.array([(0, of_others * unit, 0)])).run(3)
+    assert sim.atom("omega")[0] == pytest.approx((0, turns, 0), abs=1e-9)
+    assert sim.lmp.extract_fix("move", 0, 1, nrow=11) == (turns != 3.0)
+
+
 def test_spun_spheres_diffuse_as_boltzmann_says(simulation):
     """Held from turning they have another mobility, and its drift."""
     sim = check_heights(simulation, 6, "rotation yes", "spin all 0 0 0")

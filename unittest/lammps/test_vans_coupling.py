@@ -63,7 +63,7 @@ def mesh_for(kind):
 def moving(kind):
     """kind: of the fluctuations, and more keywords"""
     name, _, more = kind.partition(" ")
-    return f"fluctuation {name} 4711 0.008 " + ("" if name == "langevin" else "renewal 0.001 ") + more
+    return f"fluctuation {name} 4711 0.008 " + ("" if name in ("langevin", "depth") else "renewal 0.001 ") + more
 
 
 ALL_THAT_MOVES = ("depth felt volume drag brown_lawler hindrance di_felice added_mass 0.4 upflow 0.002 discharge 0.02 surface follow 0.045 wall_roughness 1e-3 wall_mixing yes "
@@ -194,12 +194,16 @@ run 1
 """
 
 
-def coupled(tmp_path, d, every, keywords=""):
-    """A bed of phi 0.4, 12 diameters deep under 28 of water, for three couplings with time steps of 1e-5. What LAMMPS prints."""
+def bed_of_specks(d, every, keywords=""):
+    """A bed of phi 0.4, 12 diameters deep under 28 of water, with time steps of 1e-5."""
     w = 6 * d
     grains = cloud(int(0.4 * 6 * 6 * 12 / (np.pi / 6)), (w, w), (0.5 * d, 12 * d), d)
-    script = COUPLED.format(d=d, w=w, low=-d, high=45 * d, dz=d, dt=1e-5, every=every, grains="\n".join(grains), keywords=keywords + " area %g" % (w * w))
-    done = run_lmp(tmp_path, script.replace("run 1", f"run {3 * every}"))
+    return COUPLED.format(d=d, w=w, low=-d, high=45 * d, dz=d, dt=1e-5, every=every, grains="\n".join(grains), keywords=keywords + " area %g" % (w * w))
+
+
+def coupled(tmp_path, d, every, keywords=""):
+    """Three couplings of that bed. What LAMMPS prints."""
+    done = run_lmp(tmp_path, bed_of_specks(d, every, keywords).replace("run 1", f"run {3 * every}"))
     assert done.returncode == 0, done.stdout[-1000:]
     return done.stdout
 
@@ -208,6 +212,34 @@ def coupled(tmp_path, d, every, keywords=""):
 def test_coupling_time_that_is_too_long_is_told(tmp_path, d, every, told):
     """b T of grains of 6 mm is 0.2 at couplings of 10 ms, that of grains of 0.1 mm more than 50."""
     assert ("couplings are too far apart" in coupled(tmp_path, d, every)) == told
+
+
+@pytest.mark.parametrize("every, solve, told", [(100, "", True), (10, "solve 1e-3 1e-4", True), (10, "", False), (100, "solve 1e-4 1e-5", False)])
+def test_it_is_the_time_of_a_solve_that_counts(tmp_path, every, solve, told):
+    """1 ms or 0.1 ms of water, after 1 ms or 0.1 ms of the grains, which are fixed: b T is 8 or 0.8. Where that is told, the water of the first solve is
+    three times as fast as in the end, whatever N; the advice says what is to be changed."""
+    script = bed_of_specks(1e-4, every, solve).replace("run 1", f"variable u equal f_h[6][2]\nfix u all ave/time {every} 1 {every} v_u file u\nrun {12 * every}")
+    done = run_lmp(tmp_path, script)
+    assert done.returncode == 0, done.stdout[-1000:]
+    advice = ": a shorter period of keyword solve, and N steps that take as long" if solve else ": fewer steps N"
+    assert ("couplings are too far apart" in done.stdout) == told and (advice in done.stdout) == told
+    u = np.loadtxt(tmp_path / "u")[1:, 1]
+    assert (u[0] > 2 * u[-1]) == told and (told or u[0] < u[-1])
+
+
+def test_water_that_moves_on_alone_is_not_too_far_apart(tmp_path):
+    """fix_modify solve past grains that are held: a stream that develops over a bed at rest, b T is 10^4."""
+    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10).replace("run 1", "run 0\nfix_modify h solve 1 1e-3\nrun 10"))
+    assert done.returncode == 0, done.stdout[-1000:]
+    assert "couplings are too far apart" not in done.stdout
+
+
+@pytest.mark.parametrize("model, wall, told", [("langevin", "reflect", True), ("langevin", "lj126", False), ("correlated", "reflect", False)])
+def test_a_wall_that_mirrors_grains_is_told(tmp_path, model, wall, told):
+    end = "zhi 0.004" if wall == "reflect" else "zhi 0.004 1e-12 1e-6 2e-6"
+    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10, f"fluctuation {model} 3 -1").replace("run 1", f"fix top all wall/{wall} {end}\nrun 1\nrun 1"))
+    assert done.returncode == 0, done.stdout[-1000:]
+    assert done.stdout.count("fix top turns grains back, but not the fluctuation") == told
 
 
 @pytest.mark.parametrize("keywords, told", [("conserve no", True), ("rules yade", True), ("conserve yes", False), ("conserve no solve 1e-4 1e-7", False)])

@@ -267,6 +267,23 @@ def test_turbulence_spreads_sinking_grains_as_rouse_has_it():
     assert abs(half / rouse - 1) < 0.1
 
 
+def test_light_grains_return_from_the_surface():
+    """Grains without weight in that stream, which mix over its depth within 1 s. Above the surface are only those that have just passed it; without
+    u' that turns there a quarter of them would be, for good."""
+    n, cells, H, u_star, kappa, a = 300, 50, 0.1, 0.22, 0.41, 2e-4
+    z = H / cells * (np.arange(cells) + 0.5)
+    u = u_star / kappa * np.log(np.concatenate([[1e-4], z, [H]]) / 1e-4)
+    s = Scene(box=(0, 1, 0, 1, -0.01, 0.2), extra=["pair_style none", "comm_modify cutoff 0.01"])
+    s.do(f"region r block 0 1 0 1 {0.1 * H} {0.9 * H}", f"create_atoms 1 random {n} 11 r", f"set group all diameter {2 * a} density 1000", "timestep 2e-4",
+         f"fix h all hydro/vans 5 mesh {cells + 1} {H / cells} 0 fluid 1000 1e-3 gravity 0.5 0 -9.81 couple none stream rest turbulence parabolic "
+         "drag schiller_naumann fluctuation langevin 3 -1", "fix_modify h profile values " + " ".join("%.8g" % v for v in u),
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", f"fix floor all wall/reflect zlo {0.02 * H}", "run 200", "timestep 5e-4", "run 8000")
+    z = s.atoms("x")[:, 2]
+    s.close()
+    assert (z > 0.8 * H).sum() > 0.05 * n    # they come there
+    assert (z > H + 2e-3).sum() < 0.02 * n and (z > H).sum() < 0.06 * n
+
+
 def brown_lawler(a, density, eta):
     """The speed of a lone sphere."""
     w = 0.1

@@ -44,6 +44,7 @@ BAD = [
     (dict(felt="volume", rules="yade"), "keyword felt is not available with rules yade"),
     (dict(felt="volume", grains="point"), "keyword felt has no effect with grains point"),
     (dict(renewal="0.1"), "keyword renewal requires fluctuations"),
+    (dict(fluctuation="depth 5 0", renewal="0.1"), "keyword renewal has no effect with fluctuation depth"),
     (dict(couple="fluid", fluctuation="correlated 5 0"), "keyword fluctuation: with couple fluid there are no grains"),
     (dict(sidewall="0 1"), "keyword sidewall: '0' must be > 0"),
     (dict(radius="-1"), "keyword radius: '-1' must be > 0"),

@@ -71,7 +71,8 @@ static double slope_of(const sd_vans_mesh *mesh, const double *u_star, int p)
 void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *walk, double z,
                            uint64_t id, sd_vans_wander *wander, double u[3])
 {
-  const int p = sd_vans_slice_of(mesh, z);
+  const int slice = sd_vans_slice_of(mesh, z), above = walk->water > 0 && slice >= walk->water,
+            p = above ? walk->water - 1 : slice;
   const int here = p >= 0 && p < mesh->ncell && z - mesh->z_ref > walk->bed;
   const double u_star = here ? walk->u_star[p] : 0.0, T = here ? walk->life[p] : 0.0;
   /* over the step dt, with T as it is: y decays, the noise makes up for it, the slope adds up */
@@ -81,6 +82,7 @@ void sd_vans_langevin_step(const sd_vans_mesh *mesh, const sd_vans_langevin *wal
   for (int d = 0; d < 3; d++) y[d] = kept * y[d] + noise * normal[d];
   if (T > 0.0 && kept > 0.0)
     y[0] -= slope_of(mesh, walk->u_star, p) * T * expm1(-walk->dt / T);
+  if (above) y[0] = -fabs(y[0]);
   sd_vans_fluctuation(y, u_star, 1, u);
   wander->count += 1.0;
 }

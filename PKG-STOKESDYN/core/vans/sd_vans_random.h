@@ -54,8 +54,11 @@ void sd_vans_new_eddy(const sd_vans_mesh *mesh, double nu, const sd_vans_walk *w
  * T. With sigma = |u_star| of the grain's slice and y = (a, b, c) = the velocity over sigma,
  *   dy = -y/T dt + sqrt(2/T) dW + (dsigma/dz, 0, 0) dt,   u' = (c - a, b, a) sigma
  * Each of a, b, c is N(0,1), and the grains are spread by D = sigma^2 T. By the last term water that
- * is marked evenly stays so where sigma changes with the height.
- * Sources: Wilson, Legg & Thomson 1983 (Boundary-Layer Meteorol. 27); Thomson 1987 (JFM 180). */
+ * is marked evenly stays so where sigma changes with the height. At the surface water turns back: a
+ * grain above it meets that of the highest slice, with a = -|a|. Whoever mirrors a grain at a wall
+ * of his own and leaves a as it is makes grains gather there, in a layer of about sigma T.
+ * Sources: Wilson, Legg & Thomson 1983 (Boundary-Layer Meteorol. 27); Thomson 1987 (JFM 180);
+ * Thomson & Montgomery 1994 (Atmos. Environ. 28; why the velocity is mirrored with the place). */
 typedef struct {
   uint64_t seed;
   /* height above z_ref below which there is none */
@@ -64,6 +67,8 @@ typedef struct {
   const double *u_star, *life;
   /* of a step; HUGE_VAL: the walk begins */
   double dt;
+  /* slices below the surface; 0: there is none */
+  int water;
 } sd_vans_langevin;
 
 /* What a grain carries: a, b, c, and the number of its steps. */

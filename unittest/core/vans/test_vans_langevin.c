@@ -66,6 +66,43 @@ static void even_grains_stay_even_where_the_turbulence_is_not(void **state)
     assert_true(fabs(bins[b] * (double) BINS / GRAINS - 1.0) < 5 * sqrt((double) BINS / GRAINS));
 }
 
+/* Even turbulence from a bottom that mirrors up to the surface, whose water turns back by itself: grains without weight stay
+ * evenly spread up to it, and those that pass it return within a few steps. */
+static void light_grains_do_not_gather_at_the_surface(void **state)
+{
+  (void) state;
+  enum { N = 21, WATER = 20, GRAINS = 5000, STEPS = 400, BINS = 10 };
+  const double dt = 0.02;
+  double edge[N + 1], u_star[N], life[N];
+  int bins[BINS] = {0}, above = 0;
+  for (int n = 0; n <= N; n++) edge[n] = (double) n / WATER;
+  for (int n = 0; n < N; n++) {
+    u_star[n] = n < WATER ? 0.2 : 0.0;
+    life[n] = n < WATER ? 0.5 : 0.0;
+  }
+  const sd_vans_mesh mesh = {N, 0.0, 1.0 / WATER, edge};
+  for (int i = 0; i < GRAINS; i++) {
+    sd_vans_wander wander = {{0, 0, 0}, 0};
+    double z = (i + 0.5) / GRAINS, u[3];
+    for (int k = 0; k < STEPS; k++) {
+      const sd_vans_langevin walk = {7, -1.0, u_star, life, k ? dt : HUGE_VAL, WATER};
+      sd_vans_langevin_step(&mesh, &walk, z, i, &wander, u);
+      z += u[2] * dt;
+      if (z < 0.0) {
+        z = -z;
+        for (int d = 0; d < 3; d++) wander.normal[d] = -wander.normal[d];
+      }
+    }
+    if (z < 1.0)
+      bins[(int) (z * BINS)]++;
+    else
+      above++;
+  }
+  assert_true(above < GRAINS * 4 * 0.2 * dt);    /* sigma dt is how far they get */
+  const double even = (double) (GRAINS - above) / BINS;
+  for (int b = 0; b < BINS; b++) assert_true(fabs(bins[b] / even - 1.0) < 5 / sqrt(even));
+}
+
 /* D = sigma^2 T is the eddy viscosity over the Schmidt number. */
 static void the_schmidt_number_is_that_of_the_spread(void **state)
 {
@@ -140,6 +177,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(grains_spread_by_taylors_formula),
       cmocka_unit_test(even_grains_stay_even_where_the_turbulence_is_not),
+      cmocka_unit_test(light_grains_do_not_gather_at_the_surface),
       cmocka_unit_test(the_schmidt_number_is_that_of_the_spread),
       cmocka_unit_test(next_to_no_turbulence_is_finite),
       cmocka_unit_test(a_stream_that_flows_back_is_the_mirror_image),
