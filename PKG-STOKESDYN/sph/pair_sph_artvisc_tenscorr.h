@@ -148,6 +148,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void look_at_walls();
   void look_at_sound();
   void look_at_widths();
+  void look_at_fluids();
   void prepare();
   bool types_are_alike();
   void estimate_velocities();

@@ -107,6 +107,23 @@ void PairSph::look_at_widths()
     }
 }
 
+/* Without volume yes a particle takes the mass of a neighbour for that of its own fluid. */
+void PairSph::look_at_fluids()
+{
+  if (!continuity || continuity->volume) return;
+  const FixSphPressure *light = nullptr, *heavy = nullptr;
+  for (const auto *fix : pressures) {
+    if (!(fix->state.rho0 > 0.0)) continue;
+    if (!light || fix->state.rho0 < light->state.rho0) light = fix;
+    if (!heavy || fix->state.rho0 > heavy->state.rho0) heavy = fix;
+  }
+  if (!light || heavy->state.rho0 <= 1.1 * light->state.rho0) return;
+  voice.warn(std::string("fix ") + heavy->id + " has rho0 = " + text(heavy->state.rho0) + ", fix " +
+             light->id + " has rho0 = " + text(light->state.rho0) +
+             ": where these fluids meet, densities are wrong; use volume yes of fix "
+             "sph/density/continuity");
+}
+
 /* Wall particles stand for fluid: they push with its mass and, with volume yes, by the pressure of
  * their own fluid alone. */
 void PairSph::look_at_walls()

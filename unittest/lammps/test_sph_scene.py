@@ -149,6 +149,14 @@ def test_widths_that_differ_are_warned_of(tmp_path, h, warned):
     assert ("types 1 and 2 differ in h" in log) == warned
 
 
+@pytest.mark.parametrize("rho0, volume, warned", [(1.05, "no", False), (1.2, "no", True), (1.2, "yes", False)])
+def test_two_fluids_without_their_volume_are_warned_of(tmp_path, rho0, volume, warned):
+    states = f"fix p high sph/pressure Tait 14.2857 1 7\nfix q low sph/pressure Tait 14.2857 {rho0} 7"
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + "region deep block INF INF INF 0.2 INF INF units box\ngroup low region deep\n"
+                 "group high subtract all low\n" + states + REST.format(volume=volume))
+    assert (f"fix q has rho0 = {rho0}, fix p has rho0 = 1: where these fluids meet" in log) == warned
+
+
 def test_a_wall_without_suction_pulls_half_as_much():
     """Water that moves away from its floor, without gravity: half of the pull is the floor's, and without it no wall particle has a
     pressure below 0."""
