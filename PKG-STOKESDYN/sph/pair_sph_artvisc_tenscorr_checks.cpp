@@ -124,27 +124,19 @@ void PairSph::look_at_fluids()
              "sph/density/continuity");
 }
 
-/* Wall particles stand for fluid: they push with its mass and, with volume yes, by the pressure of
- * their own fluid alone. */
+/* Wall particles stand for fluid: they push with its mass. */
 void PairSph::look_at_walls()
 {
   constexpr double NOBODY = -1e300;
   const int n = particles.n;
-  std::vector<double> likeness(2 * (size_t) (n + 1), NOBODY);
+  std::vector<double> likeness(n + 1, NOBODY);
   sd_sph_pack_x(n, atom->x ? atom->x[0] : nullptr, nullptr, nullptr, 0.0, x4.data());
   sd_sph_likeness(&model, &raw, &particles, likeness.data());
-  reverse(likeness.data(), 2, true);
+  reverse(likeness.data(), 1, true);
   tagint other_mass = MAXTAGINT;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *row = &likeness[2 * (size_t) i];
-    if (!(atom->mask[i] & wall->groupbit) || row[1] == NOBODY) continue;
-    if (row[1] == 0.0)
-      wall->voice.fail_one(
-          "atom " + std::to_string(atom->tag[i]) +
-          " meets no fluid of its own fix sph/pressure, so with volume yes it has no pressure; "
-          "put the wall and the fluid in front of it into the group of one fix sph/pressure");
-    if (row[0] < -log(1.1)) other_mass = std::min(other_mass, atom->tag[i]);
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & wall->groupbit) && likeness[i] != NOBODY && likeness[i] < -log(1.1))
+      other_mass = std::min(other_mass, atom->tag[i]);
   other_mass = smallest_of_all(world, other_mass);
   if (other_mass < MAXTAGINT)
     wall->voice.warn(
