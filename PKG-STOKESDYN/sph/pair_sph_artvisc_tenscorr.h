@@ -150,6 +150,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void look_at_turning();
   void look_at_sound();
   void look_at_widths();
+  void look_at_fluids();
   void prepare();
   bool types_are_alike();
   void estimate_velocities();
@@ -160,6 +161,7 @@ class PairSph : public LAMMPS_NS::Pair {
   bool resumes() const;
   void sum_densities(int bit, bool shepard);
   void wall_particles();
+  void sums_of_other_fluids();
   void wall_row(int i, const double *sums_i, double *row);
   void held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row);
   [[noreturn]] void no_density(const Voice &of, int i, const std::string &asked) const;

@@ -108,27 +108,36 @@ void PairSph::look_at_widths()
     }
 }
 
-/* Wall particles stand for fluid: they push with its mass and, with volume yes, by the pressure of
- * their own fluid alone. */
+/* Without volume yes a particle takes the mass of a neighbour for that of its own fluid. */
+void PairSph::look_at_fluids()
+{
+  if (!continuity || continuity->volume) return;
+  const FixSphPressure *light = nullptr, *heavy = nullptr;
+  for (const auto *fix : pressures) {
+    if (!(fix->state.rho0 > 0.0)) continue;
+    if (!light || fix->state.rho0 < light->state.rho0) light = fix;
+    if (!heavy || fix->state.rho0 > heavy->state.rho0) heavy = fix;
+  }
+  if (!light || heavy->state.rho0 <= 1.1 * light->state.rho0) return;
+  voice.warn(std::string("fix ") + heavy->id + " has rho0 = " + text(heavy->state.rho0) + ", fix " +
+             light->id + " has rho0 = " + text(light->state.rho0) +
+             ": where these fluids meet, densities are wrong; use volume yes of fix "
+             "sph/density/continuity");
+}
+
+/* Wall particles stand for fluid: they push with its mass. */
 void PairSph::look_at_walls()
 {
   constexpr double NOBODY = -1e300;
   const int n = particles.n;
-  std::vector<double> likeness(2 * (size_t) (n + 1), NOBODY);
+  std::vector<double> likeness(n + 1, NOBODY);
   sd_sph_pack_x(n, atom->x ? atom->x[0] : nullptr, nullptr, nullptr, 0.0, x4.data());
   sd_sph_likeness(&model, &raw, &particles, likeness.data());
-  reverse(likeness.data(), 2, true);
+  reverse(likeness.data(), 1, true);
   tagint other_mass = MAXTAGINT;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *row = &likeness[2 * (size_t) i];
-    if (!(atom->mask[i] & wall->groupbit) || row[1] == NOBODY) continue;
-    if (row[1] == 0.0)
-      wall->voice.fail_one(
-          "atom " + std::to_string(atom->tag[i]) +
-          " meets no fluid of its own fix sph/pressure, so with volume yes it has no pressure; "
-          "put the wall and the fluid in front of it into the group of one fix sph/pressure");
-    if (row[0] < -log(1.1)) other_mass = std::min(other_mass, atom->tag[i]);
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & wall->groupbit) && likeness[i] != NOBODY && likeness[i] < -log(1.1))
+      other_mass = std::min(other_mass, atom->tag[i]);
   other_mass = smallest_of_all(world, other_mass);
   if (other_mass < MAXTAGINT)
     wall->voice.warn(

@@ -41,6 +41,7 @@ void PairSph::compute(int eflag, int vflag)
   if (update->setupflag) {
     look_at_sound();
     look_at_widths();
+    look_at_fluids();
     if (wall) look_at_walls();
   }
   if (needs_velocity) estimate_velocities();

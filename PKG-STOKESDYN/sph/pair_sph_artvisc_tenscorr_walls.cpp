@@ -88,6 +88,33 @@ void PairSph::no_density(const Voice &of, int i, const std::string &asked) const
               eos->id + ": if gravity has the right sign, use a larger B or P0");
 }
 
+/* A pressure has no jump where two fluids meet: a particle before which none of its own fluid is takes
+ * that of the other, if its own state can have it. The same sums with all fluids as one, where its own
+ * are empty. */
+void PairSph::sums_of_other_fluids()
+{
+  const Rows mine = sums;
+  int alone = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((is_wall(i) || is_held(i)) && mine[8 * (size_t) i] == 0.0) alone = 1;
+  MPI_Allreduce(MPI_IN_PLACE, &alone, 1, MPI_INT, MPI_MAX, world);
+  if (!alone) return;
+
+  std::vector<int> kinds(phases);
+  for (int &kind : kinds) kind = kind < 0 ? ~0 : 0;
+  particles.phase = kinds.data();
+  sums.assign(8 * (size_t) (particles.n + 1), 0.0);
+  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), sums.data());
+  reverse(sums.data(), 8);
+  particles.phase = phases.data();
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *row = &sums[8 * (size_t) i];
+    const bool own_fluid = mine[8 * (size_t) i] != 0.0;
+    if (own_fluid || !(row[1] > row[0] * sd_sph_least_pressure(&state_of(i)->state)))
+      std::copy_n(&mine[8 * (size_t) i], 8, row);
+  }
+}
+
 /* What the particles of walls and open ends take from the fluid before them. Their density becomes the
  * one that has this pressure, so ghosts get it like any other density. The velocity travels as the
  * difference to v, which ghosts have. */
@@ -101,6 +128,7 @@ void PairSph::wall_particles()
   sums.assign(8 * (size_t) (n + 1), 0.0);
   sd_sph_before_walls(&model, &pairs, &particles, weights.data(), sums.data());
   reverse(sums.data(), 8);
+  if (sd_sph_of_fluids(&model)) sums_of_other_fluids();
 
   wall_rows.resize(4 * (size_t) (n + 1));
   if (wall) wall->gravity.find(lmp);

@@ -68,6 +68,17 @@ def test_each_wall_has_the_pressure_of_its_own_acceleration():
 
 
 
+def test_water_stays_in_its_plane_beside_walls_that_do_not():
+    """Two dimensions: fix rigid turns its particles out of the plane by 1e-17. With shift the water followed, and z grew four times in every
+    200 steps of calm water, and in every 2 of an impact."""
+    lmp = start()
+    scene = FLOORS.replace("wendland 0.1 artVisc 1 0 1e-4", "wendland 0.1 viscosity 0.01 central shift yes").format(own="yes")
+    run(lmp, scene + "displace_atoms walls move 0 0 1e-9 units box\nvelocity water create 1e-4 4711\nrun 100 post no")
+    z, water = by_id(lmp, "x", 3)[:, 2], by_id(lmp, "type") == 1
+    assert np.abs(z[~water]).max() > 0 and np.abs(z[water]).max() == 0
+    lmp.close()
+
+
 def test_moving_walls_on_any_number_of_ranks_and_over_restarts(tmp_path):
     scene = FLOORS.format(own="yes") + "fix swing under move wiggle 0.02 0.01 0 0.3 units box\ncompute E water sph/energy\n"
     scene = re.sub("variable [oyv] .*\n|fix lift .*\n", "", scene)

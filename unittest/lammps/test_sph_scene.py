@@ -122,12 +122,18 @@ def test_walls_of_another_mass_than_the_fluid_are_warned_of(tmp_path, ratio, war
     assert ("and the mass of the fluid particles in front of it differ by more than 10 %" in log) == warned
 
 
-def test_a_wall_that_meets_no_fluid_of_its_own_is_refused():
-    lmp = start()
-    own = "fix p water sph/pressure Tait 14.2857 1 7\nfix q floor sph/pressure Tait 14.2857 1 7"
-    with pytest.raises(Exception, match="meets no fluid of its own fix sph/pressure"):
-        run(lmp, "variable ratio index 1\n" + FLOOR + own + REST.format(volume="yes"))
-    lmp.close()
+def test_a_wall_takes_the_pressure_of_another_fluid_where_its_own_is_not():
+    """volume yes, and the floor in the group of a second fix sph/pressure: it bears the water as the floor of the water's own fix does. In a
+    tank that sloshes, fluids come to stand before the walls of each other."""
+    loads = []
+    for states in ("fix p all sph/pressure Tait 14.2857 1 7",
+                   "fix p water sph/pressure Tait 14.2857 1 7\nfix q floor sph/pressure Tait 14.2857 1 7"):
+        lmp = start()
+        run(lmp, "variable ratio index 1\n" + FLOOR + states + "\nfix g water gravity 1 vector 0 -1 0" +
+            REST.format(volume="yes").replace("run 1", "run 100"))
+        loads.append([lmp.extract_fix("w", 0, 1, 1), fix_by_id(lmp, "p")[by_id(lmp, "type") == 1].sum()])
+        lmp.close()
+    assert loads[0][0] < -0.1 and loads[1] == pytest.approx(loads[0], rel=1e-10)
 
 
 @pytest.mark.parametrize("c, warned", [(10, False), (9.2, False), (5, True), (12, True)])
@@ -147,6 +153,14 @@ def test_widths_that_differ_are_warned_of(tmp_path, h, warned):
     log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + f"pair_coeff 2 2 c 10 h {h}\nfix p all sph/pressure Tait 14.2857 1 7" +
                  REST.format(volume="no"))
     assert ("types 1 and 2 differ in h" in log) == warned
+
+
+@pytest.mark.parametrize("rho0, volume, warned", [(1.05, "no", False), (1.2, "no", True), (1.2, "yes", False)])
+def test_two_fluids_without_their_volume_are_warned_of(tmp_path, rho0, volume, warned):
+    states = f"fix p high sph/pressure Tait 14.2857 1 7\nfix q low sph/pressure Tait 14.2857 {rho0} 7"
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + "region deep block INF INF INF 0.2 INF INF units box\ngroup low region deep\n"
+                 "group high subtract all low\n" + states + REST.format(volume=volume))
+    assert (f"fix q has rho0 = {rho0}, fix p has rho0 = 1: where these fluids meet" in log) == warned
 
 
 def test_a_wall_without_suction_pulls_half_as_much():

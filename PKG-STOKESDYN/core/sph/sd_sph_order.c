@@ -82,10 +82,12 @@ static const double SURFACE = 0.9;
 
 /* du = - U x with x = 5 R s, R = 2 h the support. s points to where particles are many, in units
  * of 1 / length; R makes it a number, and 5 is where more changes no result (1 to 16 tried).
- * Bounded by the length 1, nobody is moved faster than its neighbours come and go. */
-static void shift(const double *sums, double support, double du[3])
+ * Bounded by the length 1, nobody is moved faster than its neighbours come and go. In two
+ * dimensions nobody leaves the plane: beside a body that is 1e-17 off it, z would grow. */
+static void shift(int dimension, const double *sums, double support, double du[3])
 {
-  const double *s = sums + 10, U = sums[SD_SPH_MAXIMUM];
+  const double s[3] = {sums[10], sums[11], dimension == 2 ? 0.0 : sums[12]};
+  const double U = sums[SD_SPH_MAXIMUM];
   const double length = 5.0 * support * sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
   const double scale = -U * 5.0 * support / (length > 1.0 ? length : 1.0);
   for (int d = 0; d < 3; d++) du[d] = scale * s[d];
@@ -132,7 +134,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     /* what is corrected, and where its surface is, goes by all fluids */
     const symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
     if (flows && above(&whole, SURFACE))
-      shift(sums, sd_sph_of_pair(model, p, i, i)->support, du);
+      shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level >= SD_SPH_VELOCITY) {
       memset(row + 8, 0, 8 * sizeof(double));
       memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));

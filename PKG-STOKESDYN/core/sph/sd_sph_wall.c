@@ -51,10 +51,9 @@ static void compare(const sd_sph_model *model, const sd_sph_particles *p, const 
   if ((p->phase[two->i] < 0) == (p->phase[two->j] < 0)) return;
   const int i_is_wall = p->phase[two->i] < 0, wall = i_is_wall ? two->i : two->j,
             fluid = i_is_wall ? two->j : two->i;
+  if (~p->phase[wall] != p->phase[fluid]) return;
   const double ratio = sd_sph_mass(model, p, wall) / sd_sph_mass(model, p, fluid);
-  double *row = likeness + 2 * (size_t) wall;
-  row[0] = fmax(row[0], -fabs(log(ratio)));
-  row[1] = fmax(row[1], ~p->phase[wall] == p->phase[fluid] ? 1.0 : 0.0);
+  likeness[wall] = fmax(likeness[wall], -fabs(log(ratio)));
 }
 
 void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,

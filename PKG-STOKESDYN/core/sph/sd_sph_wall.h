@@ -29,11 +29,9 @@ void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, double
 void sd_sph_wall_acceleration(const double v[3], double dt, double tau, double before[3],
                               double a[3]);
 
-/* How well each wall particle fits the fluid in its support: likeness [2 (n+1)], taken as maximum
- * with what is there, of
- *   -|ln(m_w / m_f)| over all fluid particles f in its support, 0: one has its mass
- *   1 if one of them is of the wall's own fluid (phase), else 0
- * Rows without fluid in reach are left alone. x4 of the particles must be packed. */
+/* How well each wall particle fits the fluid in its support: likeness [n+1], taken as maximum with
+ * what is there, of -|ln(m_w / m_f)| over the particles f of its own fluid (phase) in its support; 0:
+ * one has its mass. Where none is in reach it is left alone. x4 must be packed. */
 void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *likeness);
 
