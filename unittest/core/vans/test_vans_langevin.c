@@ -17,7 +17,7 @@ static void grains_spread_by_taylors_formula(void **state)
     sd_vans_wander wander = {{0, 0, 0}, 0};
     double z = 900.0, u[3];
     for (int k = 0; k < STEPS; k++) {
-      const sd_vans_langevin walk = {42, 0.0, u_star, life, k ? dt : HUGE_VAL};
+      const sd_vans_langevin walk = {42, 0.0, u_star, life, k ? dt : HUGE_VAL, 0};
       sd_vans_langevin_step(&mesh, &walk, z, i, &wander, u);
       z += u[2] * dt;
       if (k == 9) squares[0] += (z - 900.0) * (z - 900.0) / GRAINS;
@@ -52,7 +52,7 @@ static void even_grains_stay_even_where_the_turbulence_is_not(void **state)
     sd_vans_wander wander = {{0, 0, 0}, 0};
     double z = (i + 0.5) / GRAINS, u[3];
     for (int k = 0; k < STEPS; k++) {
-      const sd_vans_langevin walk = {7, -1.0, u_star, life, k ? 0.02 : HUGE_VAL};
+      const sd_vans_langevin walk = {7, -1.0, u_star, life, k ? 0.02 : HUGE_VAL, 0};
       sd_vans_langevin_step(&mesh, &walk, z, i, &wander, u);
       z += u[2] * 0.02;
       if (z < 0.0 || z > 1.0) {
@@ -123,7 +123,7 @@ static void next_to_no_turbulence_is_finite(void **state)
   const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
   double life[3], u[3];
   sd_vans_lagrangian_times(&mesh, 1.0, nut, u_star, life);
-  const sd_vans_langevin walk = {42, -1.0, u_star, life, 0.1};
+  const sd_vans_langevin walk = {42, -1.0, u_star, life, 0.1, 0};
   for (int n = 0; n < 3; n++) {
     sd_vans_wander wander = {{1, 1, 1}, 3};
     sd_vans_langevin_step(&mesh, &walk, n + 0.5, 5, &wander, u);
@@ -139,7 +139,7 @@ static void a_stream_that_flows_back_is_the_mirror_image(void **state)
   const sd_vans_mesh mesh = {3, 0.0, 1.0, edge};
   const double stress[3] = {-30.0, -20.0, 0.1};
   assert_true(sd_vans_largest_stress(&mesh, stress) == -30.0);
-  const sd_vans_langevin walk = {42, -1.0, there, life, 0.1}, mirror = {42, -1.0, back, life, 0.1};
+  const sd_vans_langevin walk = {42, -1.0, there, life, 0.1, 0}, mirror = {42, -1.0, back, life, 0.1, 0};
   const sd_vans_walk eddies = {42, 1, -1.0, there, 9.0, 0.1}, mirrored = {42, 1, -1.0, back, 9.0, 0.1};
   for (int i = 0; i < 20; i++) {
     sd_vans_wander one = {{0.3, -1.1, 0.7}, 3}, other = one;
@@ -161,7 +161,7 @@ static void there_is_no_turbulence_in_the_bed(void **state)
   (void) state;
   const double edge[3] = {0, 1, 2}, u_star[2] = {0.3, 0.3}, life[2] = {1, 1}, z[4] = {-0.1, 0.3, 0.5, 2.1};
   const sd_vans_mesh mesh = {2, 0.0, 1.0, edge};
-  const sd_vans_langevin walk = {42, 0.4, u_star, life, 0.1};
+  const sd_vans_langevin walk = {42, 0.4, u_star, life, 0.1, 0};
   for (int k = 0; k < 4; k++) {
     sd_vans_wander wander = {{9, 9, 9}, 3};
     double u[3];
