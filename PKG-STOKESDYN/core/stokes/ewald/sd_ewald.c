@@ -68,29 +68,91 @@ static int sound(const sd_ewald_box *b, const sd_ewald_class *s, double toleranc
   return ok && isfinite(sd_ewald_volume(b)) && sd_ewald_volume(b) > 0.0;
 }
 
+/* How H falls: as a Gaussian, or to 0 at a band (sd_radial.h). For the same error a band needs less than
+ * half of the grid. The functions of a Gaussian are known in closed form, which an open box, a second level
+ * and the tightest tolerances want. */
+typedef enum { GAUSSIAN, BAND } fall;
+
+/* xi times the largest radius where the parts need not be positive */
+static const double LARGEST = 1.5;
+
+static fall fall_for(const sd_ewald *e)
+{
+  return e->box.periodic && e->tolerance >= 1e-10 ? BAND : GAUSSIAN;
+}
+
+/* What a splitting must know of the spheres and of what is asked */
+typedef struct {
+  fall fall;
+  sd_ewald_class spheres;
+  /* all radii are alike; windows are differentiated, for unlike radii and for torques */
+  int width, equal, slopes;
+  /* of xi times the largest radius */
+  double most;
+} splitting;
+
+static splitting splitting_for(fall how, const sd_ewald_class *s, int width, double most)
+{
+  const double rms = six_digits(sqrt(s->squares / s->count));
+  const int equal = fabs(rms / s->largest - 1.0) < 1e-5;
+  return (splitting){how, *s, width, equal, !equal || width == 6, most};
+}
+
 /* Range of the near part that costs least, as measured: 86 spheres within it at 1e-3, and more at
  * tight tolerances, since the grid gets finer while a near pair costs about the same; in an open box
  * with its padded grid 2.5 times as many. It need not reach the first images, nor beyond an open
  * box. (A range that is just an edge would by rounding hold one image of a sphere and not the
  * opposite one.) */
-static double natural_range(const sd_ewald_box *box, double count, double digits)
+static double natural_range(const sd_ewald_box *box, const splitting *by, double digits)
 {
-  const double many = fmax(86.0, 86.0 * pow(digits / 3.0, 1.6)) * (box->periodic ? 1.0 : 2.5);
-  const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * count));
+  const double more = pow(digits / 3.0, by->fall == BAND ? 1.0 : 1.6);
+  const double many = 86.0 * fmax(1.0, more) * (box->periodic ? 1.0 : 2.5);
+  const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
   if (box->periodic) return fmin(range, 0.97 * narrowest(box));
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
 
 /* The tolerance after what large spheres lose: those larger than 1/xi have large wave and near parts
- * that cancel. y = sqrt(ln 1/t), xi = y/range. */
-static double tightened(double tolerance, int width, double xi_y_a)
+ * that cancel. y = xi range, which is smaller for a band, and its windows mistake more. */
+static double tightened(const splitting *by, double tolerance, double xi_y)
 {
-  return tolerance / fmax(1.0, 0.05 * pow(2.0 * xi_y_a, 3.0)) / (width == 6 ? 3.0 : 1.0);
+  const double part = by->fall == BAND ? 0.1 : 0.05;
+  const double loss = by->equal ? 0.0 : part * pow(2.0 * xi_y * by->spheres.largest, 3.0);
+  return tolerance / fmax(1.0, loss) / (by->width == 6 ? 3.0 : 1.0);
 }
 
-static double root_of_log(const sd_ewald_box *box, double t)
+/* y of a Gaussian, whose near part falls as exp(-y^2) */
+static double gaussian_y(const sd_ewald_box *box, double t)
 {
   return sqrt(log(1.0 / (box->periodic ? t : 0.7 * t))); /* no mean makes up for the cut-off */
+}
+
+/* The largest spacing of its waves */
+static double gaussian_spacing(double xi, double y)
+{
+  return SD_PI / (2.2 * xi * y);
+}
+
+/* The range of a band in spacings, and its waves over the shortest of the grid. From errors that were
+ * measured over ranges, bands and windows: those of a Gaussian with windows of as many points, whose range
+ * is 1.61 spacings times the digits. Windows that are differentiated mistake more, and torques leave more
+ * beyond the range. */
+static double band_spacings(const splitting *by, double t)
+{
+  const double digits = log10(1.0 / t), more = by->slopes ? 0.18 + 0.1 * digits : 0.0;
+  return 0.94 + (0.9 + 0.007 * digits) * digits + more;
+}
+
+static double band_over_shortest(const splitting *by, double t)
+{
+  return (by->slopes ? 0.98 : 0.96) - 0.01 * log10(1.0 / t);
+}
+
+/* H is like that of a Gaussian for long waves: y^2 is half of band times range. */
+static double y_of(const sd_ewald_box *box, const splitting *by, double t)
+{
+  if (by->fall == GAUSSIAN) return gaussian_y(box, t);
+  return sqrt(0.5 * SD_PI * band_over_shortest(by, t) * band_spacings(by, t));
 }
 
 static int window_points(double t)
@@ -99,27 +161,31 @@ static int window_points(double t)
   return points < 4 ? 4 : points > SD_EWALD_MOST_POINTS ? SD_EWALD_MOST_POINTS : points;
 }
 
-/* xi, a_ref, range and the window. What is lost tightens the tolerance, which in turn moves xi. Spheres
- * that overlap are within the range. most: of xi times the largest radius */
-static void split(sd_ewald *e, const sd_ewald_class *s, int width, double most, double *y)
+/* Spheres that overlap are within the range. */
+static double least_range(const sd_ewald *e, const splitting *by, double y)
 {
-  const double rms = six_digits(sqrt(s->squares / s->count)), largest = s->largest;
-  const int equal = fabs(rms / largest - 1.0) < 1e-5;
-  const double ref = equal ? largest : rms;
-  double t = tightened(e->tolerance, width, 0.0);
+  return fmax(y * fmax(e->a_ref / 0.8, e->largest / by->most), 2.0 * e->largest);
+}
+
+/* xi, a_ref, range, the window, and the largest spacing of the grid. What is lost tightens the tolerance,
+ * which in turn moves xi. */
+static void split(sd_ewald *e, const splitting *by, double *y)
+{
+  const sd_ewald_class *s = &by->spheres;
+  e->largest = s->largest;
+  e->a_ref = by->equal ? s->largest : six_digits(sqrt(s->squares / s->count));
+  double t = tightened(by, e->tolerance, 0.0);
   for (int k = 0; k < 6; k++) {
-    *y = root_of_log(&e->box, t);
-    e->range = fmax(natural_range(&e->box, s->count, log10(1.0 / t)),
-                    fmax(*y * fmax(ref / 0.8, largest / most), 2.0 * largest));
+    *y = y_of(&e->box, by, t);
+    e->range = fmax(natural_range(&e->box, by, log10(1.0 / t)), least_range(e, by, *y));
     e->xi = *y / e->range;
-    if (k < 5) t = tightened(e->tolerance, width, equal ? 0.0 : e->xi * *y * largest);
+    if (k < 5) t = tightened(by, e->tolerance, e->xi * *y);
   }
-  e->a_ref = fmin(ref, 0.8 / e->xi);
   e->points = window_points(t);
-  /* where windows are differentiated, their jump at the ends must be smaller */
-  e->beta = (equal && width == 3 ? 2.25 : 2.42) * e->points;
-  e->largest = largest;
+  /* where windows are differentiated, their jump at the ends must be smaller; twice for unlike radii */
+  e->beta = (by->fall == BAND ? by->equal : !by->slopes) ? 2.25 * e->points : 2.42 * e->points;
   e->reach = e->range;
+  e->spacing = by->fall == BAND ? e->range / band_spacings(by, t) : gaussian_spacing(e->xi, *y);
 }
 
 /* Of the tolerance, for the second level: all spheres are so many more than the large ones that their
@@ -130,11 +196,13 @@ static const double LARGE_TOO = 0.12;
  * these that overlap would be beyond the range. */
 static void split_large(sd_ewald *e, const sd_ewald_class *s, int width, double times, double *y)
 {
+  splitting by = splitting_for(GAUSSIAN, s, width, LARGEST);
+  by.equal = 0; /* also if they are: all others are there */
   double t = LARGE_TOO * e->tolerance;
-  *y = root_of_log(&e->box, t);
+  *y = gaussian_y(&e->box, t);
   for (int k = 0; k < 6; k++) {
-    t = tightened(LARGE_TOO * e->tolerance, width, times * *y);
-    *y = root_of_log(&e->box, t);
+    t = tightened(&by, LARGE_TOO * e->tolerance, times / s->largest * *y);
+    *y = gaussian_y(&e->box, t);
     times = fmin(times, 0.5 * *y);
   }
   e->large.count = s->count;
@@ -143,12 +211,6 @@ static void split_large(sd_ewald *e, const sd_ewald_class *s, int width, double 
   e->large.range = *y / e->large.xi;
   e->large.points = window_points(t);
   e->large.beta = 2.42 * e->large.points;
-}
-
-/* The largest spacing of a Gaussian's waves */
-static double gaussian_spacing(double xi, double y)
-{
-  return SD_PI / (2.2 * xi * y);
 }
 
 /* Spacing at most h. An open box has room for the windows of spheres at its faces; the grid around it
@@ -178,21 +240,33 @@ static void start(sd_ewald *e, const sd_ewald_box *box, double count, double tol
   e->tolerance = tolerance;
 }
 
-/* xi times the largest radius where the parts need not be positive */
-static const double LARGEST = 1.5;
-
-static sd_status one_level(sd_ewald *e, const sd_ewald_class *s, int width, double most)
+/* Numbers of grid points are few: what the next of them is finer than asked for shortens the range. */
+static void end_at_band(sd_ewald *e, const splitting *by, double y)
 {
+  double h = 0.0;
+  for (int d = 0; d < 3; d++) h = fmax(h, edge_length(&e->box, d) / e->grid[d]);
+  e->range = fmax(fmin(1.0, h / e->spacing) * e->range, least_range(e, by, y));
+  e->reach = e->range;
+  e->xi = y / e->range;
+  e->band = 2.0 * e->xi * y;
+  e->sized = 1;
+}
+
+static sd_status one_level(sd_ewald *e, fall how, const sd_ewald_class *s, int width, double most)
+{
+  const splitting by = splitting_for(how, s, width, most);
   double y;
-  split(e, s, width, most, &y);
-  return lay_grid(&e->box, gaussian_spacing(e->xi, y), e->points, &e->spacing, e->grid);
+  split(e, &by, &y);
+  const sd_status status = lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
+  if (status == SD_OK && how == BAND) end_at_band(e, &by, y);
+  return status;
 }
 
 static sd_status two_levels(sd_ewald *e, const sd_ewald_class *small, const sd_ewald_class *large,
                             int width, double times)
 {
   double y;
-  const sd_status status = one_level(e, small, width, LARGEST);
+  const sd_status status = one_level(e, GAUSSIAN, small, width, LARGEST);
   split_large(e, large, width, times, &y);
   if (status != SD_OK || e->large.xi >= e->xi) return SD_ENOMEMORY;
   return lay_grid(&e->box, gaussian_spacing(e->large.xi, y), e->large.points, &e->large.spacing,
@@ -250,14 +324,20 @@ static sd_status prepare(const sd_ewald_box *box, const sd_ewald_class *all, dou
   return SD_OK;
 }
 
+/* One level and two are compared as Gaussians, whose costs are known well; two also sum the velocities of the
+ * few large spheres as well as those of all. */
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                           double tolerance, sd_ewald *out)
 {
   int some;
   sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
-  status = one_level(out, &sizes->all, width, LARGEST);
-  return try_two_levels(sizes, width, out, status);
+  status = one_level(out, GAUSSIAN, &sizes->all, width, LARGEST);
+  status = try_two_levels(sizes, width, out, status);
+  if (fall_for(out) == GAUSSIAN || out->large.from > 0.0) return status;
+  const sd_ewald_box own = out->box;
+  start(out, &own, out->count, out->tolerance);
+  return one_level(out, BAND, &sizes->all, width, LARGEST);
 }
 
 sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
@@ -265,7 +345,7 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
 {
   int some;
   const sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
-  return some ? one_level(out, &sizes->all, width, SD_EWALD_POSITIVE) : status;
+  return some ? one_level(out, fall_for(out), &sizes->all, width, SD_EWALD_POSITIVE) : status;
 }
 
 /* Heights above the wall multiply what grid and near part leave out of images. Part of the tolerance
@@ -282,11 +362,11 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
   if (!some) return status;
   const double asked = out->tolerance;
   out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
-  status = one_level(out, &sizes->all, 3, LARGEST);
+  status = one_level(out, GAUSSIAN, &sizes->all, 3, LARGEST);
   out->images = (sd_ewald_images){*wall, out->xi, out->range};
   if (status == SD_OK && box->edge[wall->axis] > HIGH * out->range) {
     out->tolerance = fmax(TIGHTEST, AT_HIGH_WALL * asked);
-    status = one_level(out, &sizes->all, 3, LARGEST);
+    status = one_level(out, GAUSSIAN, &sizes->all, 3, LARGEST);
     out->images = (sd_ewald_images){*wall, SMOOTHER * out->xi, FARTHER * out->range};
   }
   out->tolerance = asked;

@@ -6,6 +6,10 @@
  *   wave part = 1/V sum_{k != 0} exp(ik.r) H(k)/(eta k^2) (I - kk/k^2) g_i g_j
  *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = k^2/(4 xi^2),   g_i = 1 - (a_i^2 - a_ref^2) k^2/6
  *
+ * In a periodic box of one level x grows faster than that, so that H ends at a wave (sd_radial.h), which needs
+ * less than half of the grid. H is >= 0 with either, and draws noise; and the larger x is, the more
+ * positive is the near part.
+ *
  * D is the wave part of one pair in open space, so near pairs keep the Rotne-Prager-Yamakawa tensor
  * as it is: any radii, any overlap, also of a sphere with its own image. The wave part goes by FFT
  * on a grid. Torques: (i/2) k x instead of g.
@@ -66,8 +70,10 @@ typedef struct {
   /* splitting, 1/length; its reference radius; where the near part ends, centre to centre; the
    * largest sphere */
   double xi, a_ref, range, largest;
-  /* of the flow at points, else 0: waves end here, 1/length (sd_radial.h); a_ref is of the spheres alone */
+  /* 0: H is a Gaussian's; else waves end here, 1/length (sd_radial.h), and velocities are wanted of spheres
+   * (sized) or at points, where a_ref is of the sources alone */
   double band;
+  int sized;
   /* how far ghosts must reach: range, or that of images */
   double reach;
   /* grid points of the box each way; those of an open box are an eighth of the grid, which is
@@ -115,6 +121,7 @@ sd_ewald sd_ewald_of_large(const sd_ewald *e);
 /* The rule, for a box and its spheres. Two levels where they cost less (sd_ewald_cost.h).
  *   width       3, or 6 with torques
  *   tolerance   1e-13 ... 1e-1; outside of it the nearest of these is taken
+ * Waves end at a band in a periodic box of one level, at 1e-10 and looser tolerances.
  * SD_OK, SD_ENOTFINITE for a box without volume, numbers that are not finite or a tolerance that
  * is not > 0, SD_ENOMEMORY for a grid of more than 2^31 points. */
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,

@@ -28,7 +28,7 @@ typedef struct {
 } sd_near_part;
 
 /* Degrees that there are kernels for: the polynomial is filled up with zeros. */
-#define SD_NEAR_DEGREES(_) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
+#define SD_NEAR_DEGREES(_) _(6) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
 
 /* What windows need of a sphere: its first point on the grid, v of sd_window.h each way, b of
  * sd_radial.h */

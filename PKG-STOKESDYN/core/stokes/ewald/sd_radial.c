@@ -12,13 +12,19 @@ static double screen(double xi, double a_ref, double k2)
   return (1.0 + x - a_ref * a_ref * k2 / 3.0) * exp(-x);
 }
 
+/* H = 1 - this k^2 + ... */
+static double bend_of_band(const sd_ewald *e)
+{
+  return (e->sized ? 2.0 : 1.0) * e->a_ref * e->a_ref / 6.0;
+}
+
 /* x without the difference of large numbers */
 static double screen_of_band(const sd_ewald *e, double k2)
 {
   const double left = e->band * e->band - k2;
   if (!(left > 0.0)) return 0.0;
   const double x = e->range * k2 / (e->band + sqrt(left));
-  return (1.0 + x - e->a_ref * e->a_ref * k2 / 6.0) * exp(-x);
+  return (1.0 + x - bend_of_band(e) * k2) * exp(-x);
 }
 
 /* H grows with xi as long as xi a_ref < sqrt(3)/2, so the difference is never negative. */
@@ -156,12 +162,12 @@ static void radial_of_band(const sd_ewald *e, double r, double *value)
   }
 }
 
-/* Over all distances 1/(6 pi r) - I_0 - J_0/3 is a_ref^2/9 and I_1 + J_1/3 is 2/3; up to the range
+/* Over all distances 1/(6 pi r) - I_0 - J_0/3 is 2/3 of that bend and I_1 + J_1/3 is 2/3; up to the range
  *   int 4 pi r^2 (I_n + J_n/3) dr = 4 R^2/(3 pi) int k^(2n - 1) H j_1(kR) dk */
 static void tail_of_band(const sd_ewald *e, double *tail)
 {
   const double R2 = e->range * e->range, unit = 4.0 / (3.0 * SD_PI) * R2 * e->range * e->band / WAVES;
-  tail[0] = e->a_ref * e->a_ref / 9.0 - R2 / 3.0;
+  tail[0] = 2.0 / 3.0 * bend_of_band(e) - R2 / 3.0;
   tail[1] = -2.0 / 3.0;
   tail[2] = 0.0;
   for (int s = 0; s < WAVES; s++) {

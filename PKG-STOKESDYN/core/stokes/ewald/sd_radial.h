@@ -11,13 +11,14 @@
  *
  * all over eta; h = r/R, b = (a^2 - a_ref^2)/6, j_l spherical Bessel functions.
  *
- * The flow at points, whose waves end at a band K, has the integrals themselves, with
+ * Waves that end at a band K, of periodic boxes, have the integrals themselves, with
  *
- *   H = (1 + x - a_ref^2 k^2/6) exp(-x),   x = R (K - sqrt(K^2 - k^2)),   0 from K on
+ *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = R (K - sqrt(K^2 - k^2)),   0 from K on
  *
  * R: the range. A Gaussian has x = k^2/(4 xi^2), which this is for long waves; but of all functions that
  * end at K it leaves nearly the least beyond R, and K R is a little more than half of what it is where
- * a Gaussian is cut. Points have b = 0, and a_ref is of the spheres alone, which is why it is k^2/6.
+ * a Gaussian is cut. The flow at points has b = 0 there, and a_ref is of the spheres alone, which is why
+ * it has k^2/6.
  * Source: our own; the exponential is the window of Barnett, Magland & af Klinteberg 2019. */
 #ifndef SD_RADIAL_H
 #define SD_RADIAL_H

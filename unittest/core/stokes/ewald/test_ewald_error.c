@@ -61,6 +61,59 @@ static void the_predicted_error_is_the_measured_one(void **state)
   assert_true(largest < 1.0);
 }
 
+/* Velocities and spins of forces and torques, which are as large as F a */
+static void velocities(const scene *s, int width, double tolerance, sd_ewald *how, double *u)
+{
+  periodic p;
+  double F[6 * N];
+  for (int i = 0; i < width * N; i++) F[i] = s->F[i % (3 * N)] * (i % width < 3 ? 1.0 : s->a[i / width]);
+  *how = periodic_choose(&s->box, s->a, N, width, tolerance);
+  periodic_place(&p, s->x, s->a, NULL, N, width, how);
+  periodic_apply(&p, F, u);
+  periodic_free(&p);
+}
+
+/* The tightest tolerances have a Gaussian, with functions of their own, and the sum is the same. */
+static void waves_that_end_at_a_band_have_the_sum_of_a_gaussian(void **state)
+{
+  (void) state;
+  uint64_t seed = 77;
+  for (int k = 0; k < 8; k++) {
+    const scene s = make(&seed, k);
+    for (int width = 3; width <= 6; width += 3)
+      for (int digits = 3; digits <= 9; digits += 3) {
+        const double tolerance = pow(10.0, -digits);
+        sd_ewald band, gaussian;
+        double u[6 * N], v[6 * N], off = 0.0, scale = 0.0;
+        velocities(&s, width, tolerance, &band, u);
+        velocities(&s, width, 2e-12, &gaussian, v);
+        assert_true(band.band > 0.0 && band.sized && gaussian.band == 0.0);
+        for (int i = 0; i < width * N; i++) {
+          const double a = s.a[i / width], length = i % width < 3 ? 1.0 : a;
+          off += pow(length * (u[i] - v[i]), 2) / N;
+          scale += pow(s.F[i % (3 * N)] / (i % width < 3 ? 6.0 * SD_PI * a : 8.0 * SD_PI * a), 2) / N;
+        }
+        assert_true(sqrt(off / scale) < tolerance);
+      }
+  }
+}
+
+/* 10^5 spheres at a volume fraction of 0.2: what a product takes grows with points of the grid, points of a window and near
+ * spheres. Gaussians had grids of 84 and 168 points a side with as wide windows. */
+static void waves_that_end_at_a_band_need_half_the_grid(void **state)
+{
+  (void) state;
+  const double n = 1e5, edge = cbrt(n * 4.0 / 3.0 * SD_PI / 0.2);
+  const sd_ewald_box box = {.periodic = 1, .edge = {edge, edge, edge}};
+  const sd_ewald_sizes sizes = {.all = {n, n, n, 1.0}};
+  const double most[2] = {0.5 * pow(84, 3), 0.5 * pow(126, 3)}, range[2] = {7.6, 10.1};
+  for (int k = 0; k < 2; k++) {
+    sd_ewald how;
+    assert_int_equal(sd_ewald_choose(&box, &sizes, 3, k ? 1e-6 : 1e-3, &how), SD_OK);
+    assert_true(pow(how.grid[0], 3) < most[k] && how.range < range[k] && how.points <= (k ? 8 : 5));
+  }
+}
+
 /* Equal forces add up what the range cuts off; its mean is put back. Without that the error is three times the tolerance. */
 static void equal_forces_are_no_worse(void **state)
 {
@@ -86,6 +139,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_predicted_error_is_the_measured_one),
+      cmocka_unit_test(waves_that_end_at_a_band_have_the_sum_of_a_gaussian),
+      cmocka_unit_test(waves_that_end_at_a_band_need_half_the_grid),
       cmocka_unit_test(equal_forces_are_no_worse),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
