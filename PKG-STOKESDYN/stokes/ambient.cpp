@@ -49,6 +49,16 @@ bool Ambient::numbers_only() const
   return plain;
 }
 
+static bool is_series(const FlowFile *grid)
+{
+  return grid && grid->grid.axis[SD_GRID_TIME].n > 1;
+}
+
+bool Ambient::steady() const
+{
+  return numbers_only() && !is_series(settings.grid.get());
+}
+
 bool Ambient::varies() const
 {
   bool varies = settings.grid || settings.box;
@@ -65,15 +75,21 @@ void Ambient::numbers(double *nine) const
   }
   const FlowFile *grid = settings.grid.get();
   nine[7] = grid ? grid->fingerprint : 0.0;
-  nine[8] = grid && grid->grid.axis[SD_GRID_TIME].n > 1 ? now : 0.0;
+  nine[8] = is_series(grid) ? now : 0.0;
 }
 
 void Ambient::read(bool with_spins, Derivatives derivatives, double time)
 {
   spins = with_spins;
+  wanted = derivatives;
   now = time;
   select();
   read_fluid(derivatives);
+  check();
+}
+
+void Ambient::check() const
+{
   const bigint none = MAXBIGINT;
   bigint mine = none;
   for (int i : those)
@@ -117,6 +133,41 @@ void Ambient::read_fluid(Derivatives derivatives)
   if (curved) read_curvature();
   find_jumps();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
+}
+
+/* All that read_fluid() finds */
+std::vector<double> Ambient::values() const
+{
+  std::vector<double> all(u_uniform, u_uniform + 3);
+  all.push_back(eta_uniform);
+  for (const auto *part : {&eta, &u, &w, &gradient, &curvature})
+    all.insert(all.end(), part->begin(), part->end());
+  return all;
+}
+
+void Ambient::look_ahead(double time)
+{
+  change.clear();
+  if (steady()) return;
+  const std::vector<double> then = values();
+  now = time;
+  read_fluid(wanted);
+  check();
+  change = values();
+  for (size_t k = 0; k < change.size(); k++) change[k] -= then[k];
+}
+
+void Ambient::half_a_step_back()
+{
+  if (change.empty()) return;
+  const double *of = change.data();
+  const auto back = [&of](double &value) { value -= 0.5 * *of++; };
+  for (double &value : u_uniform) back(value);
+  back(eta_uniform);
+  for (auto *part : {&eta, &u, &w, &gradient, &curvature})
+    for (double &value : *part) back(value);
+  change.clear();
+  check();
 }
 
 /* The same gradient everywhere */
