@@ -8,6 +8,7 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "fix.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
@@ -133,41 +134,6 @@ void Ambient::read_fluid(Derivatives derivatives)
   if (curved) read_curvature();
   find_jumps();
   if (!numbers_only()) modify->addstep_compute(update->ntimestep + 1);
-}
-
-/* All that read_fluid() finds */
-std::vector<double> Ambient::values() const
-{
-  std::vector<double> all(u_uniform, u_uniform + 3);
-  all.push_back(eta_uniform);
-  for (const auto *part : {&eta, &u, &w, &gradient, &curvature})
-    all.insert(all.end(), part->begin(), part->end());
-  return all;
-}
-
-void Ambient::look_ahead(double time)
-{
-  change.clear();
-  if (steady()) return;
-  const std::vector<double> then = values();
-  now = time;
-  read_fluid(wanted);
-  check();
-  change = values();
-  for (size_t k = 0; k < change.size(); k++) change[k] -= then[k];
-}
-
-void Ambient::half_a_step_back()
-{
-  if (change.empty()) return;
-  const double *of = change.data();
-  const auto back = [&of](double &value) { value -= 0.5 * *of++; };
-  for (double &value : u_uniform) back(value);
-  back(eta_uniform);
-  for (auto *part : {&eta, &u, &w, &gradient, &curvature})
-    for (double &value : *part) back(value);
-  change.clear();
-  check();
 }
 
 /* The same gradient everywhere */
@@ -386,6 +352,9 @@ bool Ambient::group_stands() const
  * or leave the region in any step. */
 void Ambient::select()
 {
+  // LAMMPS finds the atoms of a dynamic group only after the first forces of a run.
+  if (group->dynamic[igroup] && update->setupflag)
+    if (Fix *finder = Compat::fix(modify, "GROUP_" + settings.group)) finder->setup(0);
   const bool stands = group_stands();
   if (stands && !region) return;
   if (!stands) {
