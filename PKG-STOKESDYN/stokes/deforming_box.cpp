@@ -3,14 +3,17 @@
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "ranks.h"
 
 #include "sd_flow.h"
 
+#include "atom.h"
 #include "domain.h"
 #include "input.h"
 #include "update.h"
 #include "variable.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -158,6 +161,36 @@ void check_deform(const Voice &voice, bool inertia, bool moving, bool clumps)
   if (inertia && moving && !v)
     name.fail("a sphere that crosses a face of the box needs the velocity of its image, since the "
               "fluid moves with the box (keyword fluid_velocity): use remap v");
+}
+
+void check_rigid_bodies(const Voice &voice, const double jump[6])
+{
+  static const int EDGE_OF[6] = {0, 1, 2, 2, 2, 1};
+  bool moves[3] = {false, false, false};
+  double largest = 0.0;
+  for (int k = 0; k < 6; k++) largest = std::max(largest, fabs(jump[k]));
+  for (int k = 0; k < 6; k++) moves[EDGE_OF[k]] |= fabs(jump[k]) > 1e-9 * largest;
+  LAMMPS *lmp = voice.lmp;
+  const imageint *image = lmp->atom->image;
+  for (int f = 0; f < lmp->modify->nfix; f++) {
+    Fix *rigid = lmp->modify->fix[f];
+    int dim = 0;
+    const int *body = utils::strmatch(rigid->style, "^rigid") ? (int *) rigid->extract("body", dim)
+                                                              : nullptr;
+    if (!body) continue;
+    const tagint first = first_atom(lmp, [&](int i) {
+      const imageint at[3] = {(image[i] & IMGMASK) - IMGMAX, (image[i] >> IMGBITS & IMGMASK) - IMGMAX,
+                              (image[i] >> IMG2BITS) - IMGMAX};
+      bool elsewhere = false;
+      for (int q = 0; q < 3; q++) elsewhere |= moves[q] && at[q] != 0;
+      return body[i] >= 0 && elsewhere;
+    });
+    if (first != 0)
+      voice.of(name_of(rigid)).at_step().fail(
+          "atom " + std::to_string(first) + " has crossed a face of the box (its image flags are not "
+          "0) whose images move with the fluid (fix deform). LAMMPS's rigid bodies keep their "
+          "velocity there, which is not that of the image: use fix stokes_dynamics/overdamped");
+  }
 }
 
 void bring_box_to_this_step(LAMMPS *lmp)
