@@ -186,6 +186,20 @@ def test_rigid_bodies_with_inertia_do_not_cross_faces_that_are_sheared(simulatio
             dumbbell(1, x, v).run(20)
 
 
+@pytest.mark.parametrize("motion", [FIX + " held one", "fix drag all stokes_dynamics"])
+def test_a_sphere_that_fix_move_moves_does_not_cross_faces_that_are_sheared(simulation, motion):
+    """Its velocity stays that of the first image, while its place becomes that of another one."""
+    for axis, crosses in (("0 30 0", True), ("30 0 0", False)):
+        sim = simulation(Spheres([(6.9, 10.9, 0.0), (2.0, 3.0, 1.0)]), "cut_off_distance inf visc 1 fluid_velocity box", fix=False, box=BOX,
+                         tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=1e-2, comm="comm_modify vel yes\nneigh_modify delay 0 every 1 check no")
+        sim.commands(["group one id 1", f"velocity one set {axis}", f"fix go one move linear {axis}", motion, f"{SHEAR} v"])
+        if not crosses:
+            sim.run(5)
+            continue
+        with pytest.raises(Exception, match="fix go of style move: step [1-5]: atom 1 has crossed a face of the box"):
+            sim.run(5)
+
+
 def test_a_fluid_at_rest_allows_compression(simulation):
     """remap x with fluid_velocity 0 packs spheres; the box alone takes them along."""
     sim = simulation(cloud(), "cut_off_distance inf visc 1", fix=False, box=BOX, boundary="p p p", dt=0.01)
