@@ -8,6 +8,7 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "fix.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
@@ -49,6 +50,16 @@ bool Ambient::numbers_only() const
   return plain;
 }
 
+static bool is_series(const FlowFile *grid)
+{
+  return grid && grid->grid.axis[SD_GRID_TIME].n > 1;
+}
+
+bool Ambient::steady() const
+{
+  return numbers_only() && !is_series(settings.grid.get());
+}
+
 bool Ambient::varies() const
 {
   bool varies = settings.grid || settings.box;
@@ -65,15 +76,21 @@ void Ambient::numbers(double *nine) const
   }
   const FlowFile *grid = settings.grid.get();
   nine[7] = grid ? grid->fingerprint : 0.0;
-  nine[8] = grid && grid->grid.axis[SD_GRID_TIME].n > 1 ? now : 0.0;
+  nine[8] = is_series(grid) ? now : 0.0;
 }
 
 void Ambient::read(bool with_spins, Derivatives derivatives, double time)
 {
   spins = with_spins;
+  wanted = derivatives;
   now = time;
   select();
   read_fluid(derivatives);
+  check();
+}
+
+void Ambient::check() const
+{
   const bigint none = MAXBIGINT;
   bigint mine = none;
   for (int i : those)
@@ -335,6 +352,9 @@ bool Ambient::group_stands() const
  * or leave the region in any step. */
 void Ambient::select()
 {
+  // LAMMPS finds the atoms of a dynamic group only after the first forces of a run.
+  if (group->dynamic[igroup] && update->setupflag)
+    if (Fix *finder = Compat::fix(modify, "GROUP_" + settings.group)) finder->setup(0);
   const bool stands = group_stands();
   if (stands && !region) return;
   if (!stands) {

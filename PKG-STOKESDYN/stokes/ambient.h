@@ -58,6 +58,14 @@ class Ambient : protected LAMMPS_NS::Pointers {
   enum Derivatives { NO_DERIVATIVES, FIRST, SECOND };
   void read(bool spins, Derivatives derivatives, double time);
 
+  /* For steps that need the fluid in their middle, while LAMMPS's clock shows their end. look_ahead():
+   * the last read() was for the start, and atoms stand there still; reads again, and keeps what time
+   * has changed. half_a_step_back(): after a read() for the end, elsewhere; takes half of that change
+   * back. So the error falls with the square of the step. Both are nothing where all are numbers.
+   * Errors: those of read(). */
+  void look_ahead(double time);
+  void half_a_step_back();
+
   /* How much the fluid velocity of this step differs between atoms and their images an edge of the
    * box away, less what the box itself does, relative to the largest velocity: 0 fits a periodic
    * box. On all ranks together. */
@@ -124,6 +132,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
    * vorticity, which grid, and in a series the time that was read. */
   enum { NUMBERS = 9 };
   bool numbers_only() const;
+  bool steady() const;
   void numbers(double *nine) const;
   double memory_usage() const;
 
@@ -133,6 +142,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   LAMMPS_NS::Region *region = nullptr;
   int igroup = 0, groupbit = 0;
   bool spins = false;
+  /* that the last read() wanted */
+  Derivatives wanted = NO_DERIVATIVES;
 
   std::vector<char> takes_part;
   /* of the group, and those of them that are in the region */
@@ -144,6 +155,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   BoxMotion motion;
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient, curvature;
+  /* of look_ahead(): by how much values() have changed, or empty */
+  std::vector<double> change;
 
   /* The places of all atoms, which others may take meanwhile: they are put back whatever happens. */
   class Places {
@@ -167,6 +180,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   bool group_stands() const;
   void select();
   void read_fluid(Derivatives derivatives);
+  std::vector<double> values() const;
+  void check() const;
   std::vector<double> velocity_at(const double by[3], bool in_radii, int but = -1);
   void growth_along(const double edge[3], const double expected[3], double sums[3], double most[2]);
   void find_jumps();

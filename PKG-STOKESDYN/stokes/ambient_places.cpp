@@ -1,4 +1,5 @@
-/* Of ambient: the fluid velocity at places where there is no sphere. */
+/* Of ambient: the fluid velocity at places where there is no sphere, and the fluid in the middle of a
+ * step. */
 #include "ambient.h"
 
 #include "keywords.h"
@@ -141,6 +142,41 @@ std::vector<double> Ambient::at_places(const std::vector<double> &x)
       voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
                  ": a point of fix stokes_dynamics/field: " + outside_of_grid(&there[1]));
   return out;
+}
+
+/* All that read_fluid() finds */
+std::vector<double> Ambient::values() const
+{
+  std::vector<double> all(u_uniform, u_uniform + 3);
+  all.push_back(eta_uniform);
+  for (const auto *part : {&eta, &u, &w, &gradient, &curvature})
+    all.insert(all.end(), part->begin(), part->end());
+  return all;
+}
+
+void Ambient::look_ahead(double time)
+{
+  change.clear();
+  if (steady()) return;
+  const std::vector<double> then = values();
+  now = time;
+  read_fluid(wanted);
+  check();
+  change = values();
+  for (size_t k = 0; k < change.size(); k++) change[k] -= then[k];
+}
+
+void Ambient::half_a_step_back()
+{
+  if (change.empty()) return;
+  const double *of = change.data();
+  const auto back = [&of](double &value) { value -= 0.5 * *of++; };
+  for (double &value : u_uniform) back(value);
+  back(eta_uniform);
+  for (auto *part : {&eta, &u, &w, &gradient, &curvature})
+    for (double &value : *part) back(value);
+  change.clear();
+  check();
 }
 
 }    // namespace StokesDyn

@@ -16,6 +16,7 @@
 #include "modify.h"
 #include "pair.h"
 #include "update.h"
+#include "utils.h"
 
 #include <algorithm>
 
@@ -61,6 +62,23 @@ void ComputeStokesDynamicsStress::find_moments()
       std::fill_n(&moments[COLUMNS * (size_t) i], (int) COLUMNS, 0.0);
 }
 
+/* LAMMPS's rigid bodies sum the virial x F_y, not (x F_y + y F_x)/2, of the forces that hold their
+ * atoms. The moment of these forces, the sum of x F_y - y F_x, is the torque T_z on the atoms, but for
+ * the inertia of their spins: half of it is what the sum has too much. */
+static void symmetrise(const Atom *atom, Fix *rigid, double *virial)
+{
+  int dim = 0;
+  const int *body = (const int *) rigid->extract("body", dim);
+  if (!body || dim != 1 || !atom->torque_flag) return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (body[i] < 0) continue;
+    const double *T = atom->torque[i];
+    virial[3] -= 0.5 * T[2];
+    virial[4] += 0.5 * T[1];
+    virial[5] -= 0.5 * T[0];
+  }
+}
+
 /* Virials of all other forces, as compute pressure sums them: of this rank, but for that of kspace,
  * which every rank has whole */
 void ComputeStokesDynamicsStress::add_others(double *virial) const
@@ -74,9 +92,12 @@ void ComputeStokesDynamicsStress::add_others(double *virial) const
   if (force->dihedral) add(force->dihedral->virial);
   if (force->improper) add(force->improper->virial);
   if (force->kspace && comm->me == 0) add(force->kspace->virial);
-  for (int k = 0; k < modify->nfix; k++)
-    if (modify->fix[k]->virial_global_flag && modify->fix[k]->thermo_virial)
-      add(modify->fix[k]->virial);
+  for (int k = 0; k < modify->nfix; k++) {
+    Fix *fix = modify->fix[k];
+    if (!fix->virial_global_flag || !fix->thermo_virial) continue;
+    add(fix->virial);
+    if (utils::strmatch(fix->style, "^rigid")) symmetrise(atom, fix, virial);
+  }
 }
 
 void ComputeStokesDynamicsStress::compute_vector()

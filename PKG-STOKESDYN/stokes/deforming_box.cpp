@@ -3,14 +3,17 @@
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "ranks.h"
 
 #include "sd_flow.h"
 
+#include "atom.h"
 #include "domain.h"
 #include "input.h"
 #include "update.h"
 #include "variable.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -158,6 +161,40 @@ void check_deform(const Voice &voice, bool inertia, bool moving, bool clumps)
   if (inertia && moving && !v)
     name.fail("a sphere that crosses a face of the box needs the velocity of its image, since the "
               "fluid moves with the box (keyword fluid_velocity): use remap v");
+}
+
+void check_images(const Voice &voice, const double *jump)
+{
+  if (!jump) return;
+  static const int EDGE_OF[6] = {0, 1, 2, 2, 2, 1};
+  bool moves[3] = {false, false, false};
+  double largest = 0.0;
+  for (int k = 0; k < 6; k++) largest = std::max(largest, fabs(jump[k]));
+  for (int k = 0; k < 6; k++) moves[EDGE_OF[k]] |= fabs(jump[k]) > 1e-9 * largest;
+  LAMMPS *lmp = voice.lmp;
+  const Atom *atom = lmp->atom;
+  const auto elsewhere = [&](int i) {
+    const imageint image = atom->image[i];
+    return (moves[0] && (image & IMGMASK) != IMGMAX) ||
+        (moves[1] && (image >> IMGBITS & IMGMASK) != IMGMAX) ||
+        (moves[2] && image >> IMG2BITS != IMGMAX);
+  };
+  for (int f = 0; f < lmp->modify->nfix; f++) {
+    Fix *fix = lmp->modify->fix[f];
+    const bool rigid = utils::strmatch(fix->style, "^rigid");
+    if (!rigid && !utils::strmatch(fix->style, "^move")) continue;
+    int dim = 0;
+    const int *body = rigid ? (const int *) fix->extract("body", dim) : nullptr;
+    const tagint first = first_atom(lmp, [&](int i) {
+      return (body ? body[i] >= 0 : (atom->mask[i] & fix->groupbit) != 0) && elsewhere(i);
+    });
+    if (first != 0)
+      voice.of(name_of(fix)).at_step().fail(
+          "atom " + std::to_string(first) + " has crossed a face of the box (its image flags are not "
+          "0) whose images move with the fluid (fix deform). This fix keeps the velocity of the atom "
+          "there, which is not that of the image: " +
+          (rigid ? "use fix stokes_dynamics/overdamped" : "let the atom stay on its side of the face"));
+  }
 }
 
 void bring_box_to_this_step(LAMMPS *lmp)

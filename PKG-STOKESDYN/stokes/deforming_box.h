@@ -37,6 +37,13 @@ BoxMotion motion_of_box(const Voice &voice);
 void check_deform(const Voice &voice, bool inertia, bool moving,
                   bool clumps);
 
+/* Fixes that go on with the velocity of an atom when it crosses a face of the box: fix move, and fix
+ * rigid*, whose atoms all have the velocity that belongs to one image of the body. So no atom of theirs
+ * may be in another image along an edge whose images move with the fluid. jump: that of
+ * Ambient::jumps(), nullptr: there is no such edge. Error, on all ranks: an atom that is, with fix and
+ * step. */
+void check_images(const Voice &voice, const double *jump);
+
 /* LAMMPS brings the box to a step at the end of it, and until then forces know that of the step
  * before. This does it now, so that positions, box and forces are of one moment; LAMMPS's own turn
  * then finds it done. On all ranks. */

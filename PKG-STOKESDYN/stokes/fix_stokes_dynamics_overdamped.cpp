@@ -214,6 +214,7 @@ void FixStokesDynamicsOverdamped::keep_in_plane(double *V, size_t width) const
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
+  check_images(voice, hydro.ambient.jumps());
   find_causes(hydro, last.causes);
   last.atoms = atom->natoms;
   const std::vector<double> pushed = loads(hydro);

@@ -7,7 +7,8 @@
  *
  * The noise is a force, the same in both places: then the second-order term of the step has the
  * mean kT div M dt. Kept as a velocity it would have none. Whoever is held, or the plane, is so in
- * the half step too; who is moved as told is half way there, by the mean velocity of the step.
+ * the half step too; who is moved as told is half way there, by the mean velocity of the step. The
+ * fluid at x_mid is that of the middle of the step.
  * Forces are extrapolated, so that they are found once per step.
  * Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
 #include "fix_stokes_dynamics_overdamped.h"
@@ -124,8 +125,11 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
       }
     if (hydro.settings.rigid.on) place_clumps(hydro, start, of_members, part);
   };
+  for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
+  hydro.look_ahead();
   place(0.5 * dt);
   hydro.begin();
+  hydro.ambient.half_a_step_back();
   std::vector<double> pushed = loads(hydro);
   for (size_t i : who)
     for (size_t d = 0; d < 6 && noise.on(); d++) pushed[6 * i + d] += random[i][d];

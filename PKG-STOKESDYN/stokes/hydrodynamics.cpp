@@ -94,6 +94,11 @@ void Hydrodynamics::begin()
     }
 }
 
+void Hydrodynamics::look_ahead()
+{
+  ambient.look_ahead(memory->time());
+}
+
 void Hydrodynamics::new_run(bool as_left)
 {
   if (as_left)

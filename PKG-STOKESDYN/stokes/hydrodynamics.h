@@ -51,6 +51,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void init();
   /* Reads the fluid and finds the memory. Errors: Ambient::read; a memory that has been deleted. */
   void begin();
+  /* For a step that is computed in its middle: Ambient::look_ahead */
+  void look_ahead();
   /* In the first step of a run: do the spheres stand as the last run left them? */
   void new_run(bool as_left);
 

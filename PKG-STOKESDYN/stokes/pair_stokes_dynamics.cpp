@@ -55,6 +55,7 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   if (hydro.overdamped) return;
   hydro.begin();
+  check_images(voice, hydro.ambient.jumps());
   const Verdict verdict = judge();
   if (verdict != STANDS) {
     hydro.clumps();

@@ -232,6 +232,31 @@ def test_midpoint_with_steps_of_unequal_length_is_of_second_order_too(simulation
     assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.25)
 
 
+FLOWS = {"velocity": ("fluid_velocity v_ux v_uy 0", ""), "viscosity": ("fluid_velocity 0 0 0.2", " visc v_eta"),
+         "series": ("fluid_velocity grid flow", "")}
+
+
+@pytest.mark.parametrize("what", FLOWS)
+@pytest.mark.parametrize("model", ["rotation yes", "multiblob 12", "rotation yes rigid_clumps yes"])
+def test_midpoint_is_of_second_order_in_a_flow_that_changes_in_time(simulation, tmp_path, what, model):
+    """Formulas of time and place, and a series of grids: the fluid at x_mid is that of the middle of the step."""
+    x, ends, (words, visc) = A * np.array([(0, 0, 0), (2.6, 0, 0.3), (-1.0, 3.5, 0)]), [], FLOWS[what]
+    t = np.linspace(0, 2.0, 401)
+    rows = "\n".join(f"{0.3 * np.cos(3 * s)!r} {0.2 * np.sin(3 * s)!r} 0.1" for s in t.tolist())
+    (tmp_path / "flow").write_text("stokesdyn_grid 1\nx 1 0.0\ny 1 0.0\nz 1 0.0\ntime 401 0.0 2.0 clamp\n"
+                                   f"columns ux uy uz\nrows text\n{rows}\n")
+    for steps in (10, 20, 400):
+        sim = simulation(Spheres(x, A, molecule=[1, 1, 2]), [
+            "variable t equal step*dt", "variable eta equal 1.3+0.6*sin(3*v_t)",
+            "variable ux atom 0.3*cos(3*v_t)+0.02*y*sin(3*v_t)", "variable uy atom 0.2*sin(3*v_t)+0.01*z*cos(3*v_t)",
+            f"pair_style stokes_dynamics cut_off_distance inf {words.replace('grid flow', f'grid {tmp_path}/flow')}{visc or f' visc {ETA}'} "
+            f"{model} relative_tolerance 1e-10", "pair_coeff * *"], fix=False, dt=2.0 / steps, box=[(-90.0, 90.0)] * 3)
+        sim.commands([f"fix weight all addforce 0 0 {-P6!r}", "fix move all stokes_dynamics/overdamped scheme midpoint"]).run(steps)
+        ends.append(sim.x)
+    errors = [np.abs(e - ends[-1]).max() for e in ends[:-1]]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.25)
+
+
 def two_dumbbells():
     return Spheres(A * np.array([(0, 0, 0), (0, 0, 2), (2.3, 0.2, 0), (2.4, 2.2, 0), (-1, -2.5, 0.4)]), A, molecule=[1, 1, 2, 2, 0])
 

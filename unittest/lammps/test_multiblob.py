@@ -284,6 +284,31 @@ def test_stress_of_other_forces_is_their_virial(simulation):
     assert np.abs(whole[12:] - sim.compute_vector("P", 6)).max() < 1e-12
 
 
+@pytest.mark.parametrize("rigid", ["rigid/small", "rigid"])
+def test_stress_of_rigid_bodies_does_not_depend_on_who_moves_them(simulation, rigid):
+    """Two clumps in a sheared box, one of them across a face: with hardly any inertia, LAMMPS's rigid bodies, whose forces of
+    constraint are among the other forces, against motion without inertia, where they belong to the points."""
+    x = np.array([(3.0, 3.0, 3.0), (4.9, 3.3, 3.2), (5.2, 5.1, 3.7), (8.3, 7.0, 5.6), (9.6, 8.1, 6.7)]) % 9.0
+    side, rate, who = 9.0, 0.8, [1, 1, 1, 2, 2]
+    style = "cut_off_distance inf visc 1.3 multiblob 12 rigid_clumps yes relative_tolerance 1e-8 fluid_velocity box "
+    box = dict(boundary="p p p", box=[(0.0, side)] * 3, tilt=(0, 0, 0), fix=False, density=1e-5)
+    thermo = [STRESS, "thermo_style custom step " + " ".join(f"c_S[{k}]" for k in range(1, 19))]
+
+    def total(sim):
+        P = sim.compute_vector("S", 18).reshape(3, 6).sum(axis=0)
+        return P - P[:3].mean() * np.array((1, 1, 1, 0, 0, 0))
+
+    sim = simulation(Spheres(x, 0.97, molecule=who), style, dt=1e-9, **box)
+    sim.commands([f"fix shear all deform 1 xz erate {rate} remap none", MOVE] + thermo).run()
+    spheres, omega, expected = Spheres(x, 0.97, sim.v.copy(), who), sim.atom("omega").copy(), total(sim)
+    sim.close()
+    sim = simulation(spheres, style + "add_force yes", dt=1e-15, **box)
+    sim.commands([f"set atom {i + 1} omega {w[0]!r} {w[1]!r} {w[2]!r}" for i, w in enumerate(omega.tolist())])
+    sim.commands(["set atom 5 image 1 0 0", f"fix bodies all {rigid} molecule", f"fix shear all deform 1 xz erate {rate} remap v"] + thermo).run(2)
+    assert np.abs(sim.compute_vector("S", 18)[12:]).max() > 0.1 * np.abs(expected).max()
+    assert np.abs(total(sim) - expected).max() < 1e-5 * np.abs(expected).max()
+
+
 def stressed(folder, style):
     """Eight spheres that move"""
     rows = rows_of("clusters_multiblob.csv", case="cube8_0.1", load="random")

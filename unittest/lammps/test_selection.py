@@ -118,6 +118,18 @@ def test_a_group_that_changes_between_runs(simulation, mode, options):
 
 
 @pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("group", ["region part", "var low"])
+def test_a_dynamic_group_is_found_before_the_first_force(simulation, mode, group):
+    """LAMMPS itself finds it after the first forces of a run; so do those of the next run after spheres were moved."""
+    before = f"{lower(3)}\nvariable low atom z<{2 * A * 2.5}\ngroup part dynamic all {group} every 1"
+    sim = simulation(row_of_five(), f"{MODES[mode]} {EXACT} group part", comm="comm_modify cutoff 12", before_pair=before).run(0)
+    for k in (3, 4):
+        assert np.abs(sim.fix_rows()[k:]).max() == 0.0
+        assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[k], rel=1e-9)
+        sim.commands([f"displace_atoms all move 0 0 {-2 * A}"]).run(0)
+
+
+@pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("update_every", [1, 10])
 @pytest.mark.parametrize("selected", ["region slab", "group inside"])
 def test_spheres_enter_and_leave_the_region_during_a_run(simulation, mode, update_every, selected):

@@ -163,6 +163,43 @@ def test_what_a_box_that_moves_does_not_go_with_is_named(simulation, fluid, moti
         sim.commands(motion).commands(line).run(1)
 
 
+@pytest.mark.parametrize("rigid", ["rigid/small", "rigid"])
+@pytest.mark.parametrize("style", ["rigid_clumps yes rotation yes", "multiblob 12"])
+def test_rigid_bodies_with_inertia_do_not_cross_faces_that_are_sheared(simulation, style, rigid):
+    """LAMMPS gives a body one velocity, also on the other side of a face. Across a face whose images do not move it is right."""
+    def dumbbell(edge, x, v=0.0):
+        places = np.array([(1.5, 2.5, 3.5), (1.5, 2.5, 3.5)])
+        places[:, edge] = (x, x + 1.9)
+        lo, hi = np.array(BOX).T
+        images = np.floor((places - lo) / (hi - lo)).astype(int)
+        spheres = Spheres(places - images * (hi - lo), v=[v * (edge == d) for d in range(3)], molecule=1)
+        sim = simulation(spheres, f"cut_off_distance inf visc 1 fluid_velocity box add_force yes {style}", fix=False, box=BOX,
+                         tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=1e-3, comm="comm_modify vel yes cutoff 5\nneigh_modify delay 0 every 1 check no")
+        sim.commands([f"set atom {i + 1} image {a} {b} {c}" for i, (a, b, c) in enumerate(images)])
+        return sim.commands(["thermo_style custom step", f"fix bodies all {rigid} molecule", f"{SHEAR} v"])
+
+    hi = [edge[1] for edge in BOX]
+    lying = dumbbell(0, hi[0] - 1.0).run(2).f
+    assert np.abs(dumbbell(0, hi[0] - 4.0).run(2).f - lying).max() < 1e-2 * np.abs(lying).max()
+    for x, v, step in ((hi[1] - 1.0, 0.0, "0"), (hi[1] - 1.92, 30.0, "[1-9]")):
+        with pytest.raises(Exception, match=f"fix bodies of style {rigid}: step {step}: atom 2 has crossed a face of the box"):
+            dumbbell(1, x, v).run(20)
+
+
+@pytest.mark.parametrize("motion", [FIX + " held one", "fix drag all stokes_dynamics"])
+def test_a_sphere_that_fix_move_moves_does_not_cross_faces_that_are_sheared(simulation, motion):
+    """Its velocity stays that of the first image, while its place becomes that of another one."""
+    for axis, crosses in (("0 30 0", True), ("30 0 0", False)):
+        sim = simulation(Spheres([(6.9, 10.9, 0.0), (2.0, 3.0, 1.0)]), "cut_off_distance inf visc 1 fluid_velocity box", fix=False, box=BOX,
+                         tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=1e-2, comm="comm_modify vel yes\nneigh_modify delay 0 every 1 check no")
+        sim.commands(["group one id 1", f"velocity one set {axis}", f"fix go one move linear {axis}", motion, f"{SHEAR} v"])
+        if not crosses:
+            sim.run(5)
+            continue
+        with pytest.raises(Exception, match="fix go of style move: step [1-5]: atom 1 has crossed a face of the box"):
+            sim.run(5)
+
+
 def test_a_fluid_at_rest_allows_compression(simulation):
     """remap x with fluid_velocity 0 packs spheres; the box alone takes them along."""
     sim = simulation(cloud(), "cut_off_distance inf visc 1", fix=False, box=BOX, boundary="p p p", dt=0.01)
