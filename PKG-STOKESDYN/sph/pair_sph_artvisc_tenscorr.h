@@ -140,14 +140,13 @@ class PairSph : public LAMMPS_NS::Pair {
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   MovedBox moved_box;
-  Rows x4, v4, f4, sums, weights, order, own, rubs;
+  Rows x4, v4, f4, sums, weights, spins, order, own, rubs;
   std::vector<double> P, masses, rate, each, kick, wall_rows;
   std::vector<int> classes, phases;
   bool used(int itype) const;
   void look_at_densities(int n);
   void look_at_walls();
-  bool looks_at_turning() const;
-  void look_at_turning();
+  void check_turning(const double w2_shear2[2]);
   void look_at_sound();
   void look_at_widths();
   void look_at_fluids();
@@ -161,7 +160,8 @@ class PairSph : public LAMMPS_NS::Pair {
   bool resumes() const;
   void sum_densities(int bit, bool shepard);
   void wall_particles();
-  void sums_of_other_fluids();
+  const double *spins_of_walls();
+  void sums_of_other_fluids(const double *spins_of_walls);
   void wall_row(int i, const double *sums_i, double *row);
   void held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row);
   [[noreturn]] void no_density(const Voice &of, int i, const std::string &asked) const;

@@ -149,32 +149,17 @@ void PairSph::look_at_walls()
 
 // --- in a run --------------------------------------------------------------------------------------
 
-/* Fixes give walls their velocity in the first step of a run; later on they may begin to turn. */
-bool PairSph::looks_at_turning() const
-{
-  return wall && !wall->slip && model.friction == SD_SPH_LAPLACIAN && !update->setupflag &&
-      (neighbor->ago == 0 || update->ntimestep == update->firststep + 1);
-}
-
 /* On a wall that turns by w, laplacian lacks the traction mu grad(u).n, of the size mu w beside mu
- * times the shear rate. x4 and v4 are packed. */
-void PairSph::look_at_turning()
+ * times the shear rate. The squares of both of this rank. Fixes give walls their velocity in the first
+ * step of a run; later on they may begin to turn. */
+void PairSph::check_turning(const double w2_shear2[2])
 {
-  constexpr double MOST = 0.02, SLOWEST = 1e-6;    // of the stress; of the speed of sound
-  std::vector<double> motion(SD_SPH_MOTION * (size_t) (particles.n + 1), 0.0);
-  sd_sph_motion_of_walls(&model, &pairs, &particles, motion.data());
-  reverse(motion.data(), SD_SPH_MOTION);
-  double mine[2] = {0.0, 0.0}, all[2];    // squares of w and of shear, where the wall turns
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (particles.phase[i] < 0 || !used(atom->type[i])) continue;
-    double shear;
-    const double turning = sd_sph_turning(&motion[SD_SPH_MOTION * (size_t) i], &shear);
-    const double sound = sd_sph_speed_of_sound(&state_of(i)->state, atom->rho[i]);
-    if (turning * smoothing_length(atom->type[i]) < SLOWEST * sound) continue;
-    mine[0] += turning * turning;
-    mine[1] += shear * shear;
-  }
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  constexpr double MOST = 0.02;    // of the stress
+  const bool now = !update->setupflag &&
+      (neighbor->ago == 0 || update->ntimestep == update->firststep + 1);
+  if (model.friction != SD_SPH_LAPLACIAN || !now) return;
+  double all[2];
+  MPI_Allreduce(w2_shear2, all, 2, MPI_DOUBLE, MPI_SUM, world);
   if (all[0] <= MOST * MOST * all[1]) return;
   wall->voice.at_step().fail("the wall turns: beside it, 'viscosity mu laplacian' of pair_style " +
                              std::string(STYLE) + " makes a wrong torque; use 'viscosity mu central'");

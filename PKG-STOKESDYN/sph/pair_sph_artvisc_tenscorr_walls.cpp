@@ -5,6 +5,7 @@
 #include "fix_sph_settings.h"
 #include "fix_wall_sph.h"
 #include "keywords.h"
+#include "ranks.h"
 #include "sd_sph_wall.h"
 
 #include "atom.h"
@@ -88,10 +89,43 @@ void PairSph::no_density(const Voice &of, int i, const std::string &asked) const
               eos->id + ": if gravity has the right sign, use a larger B or P0");
 }
 
+/* The angular velocity of the wall before each fluid particle, for friction [4 (n+1)]; nullptr: no wall
+ * moves, or none rubs. x4 and v4 are packed. */
+const double *PairSph::spins_of_walls()
+{
+  constexpr double SLOWEST = 1e-6;    // of the speed of sound; less is rounding
+  if (!wall || wall->slip || !(model.friction || model.artvisc)) return nullptr;
+  int moves = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *v = atom->v[i];
+    if (is_wall(i) && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)) moves = 1;
+  }
+  if (!largest_of_all(world, moves)) return nullptr;
+
+  Rows motion(SD_SPH_MOTION * (size_t) (particles.n + 1), 0.0);
+  sd_sph_motion_of_walls(&model, &pairs, &particles, motion.data());
+  reverse(motion.data(), SD_SPH_MOTION);
+  spins.assign(4 * (size_t) (particles.n + 1), 0.0);
+  double w2_shear2[2] = {0.0, 0.0};
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (particles.phase[i] < 0 || !used(atom->type[i])) continue;
+    double w[3], shear;
+    const double speed = sd_sph_spin(&motion[SD_SPH_MOTION * (size_t) i], w, &shear);
+    const double sound = sd_sph_speed_of_sound(&state_of(i)->state, atom->rho[i]);
+    if (speed == 0.0 || speed * smoothing_length(atom->type[i]) < SLOWEST * sound) continue;
+    std::copy_n(w, 3, &spins[4 * (size_t) i]);
+    w2_shear2[0] += speed * speed;
+    w2_shear2[1] += shear * shear;
+  }
+  check_turning(w2_shear2);
+  forward(spins.data(), 4);
+  return spins.data();
+}
+
 /* A pressure has no jump where two fluids meet: a particle before which none of its own fluid is takes
  * that of the other, if its own state can have it. The same sums with all fluids as one, where its own
  * are empty. */
-void PairSph::sums_of_other_fluids()
+void PairSph::sums_of_other_fluids(const double *spins_of_walls)
 {
   const Rows mine = sums;
   int alone = 0;
@@ -104,7 +138,7 @@ void PairSph::sums_of_other_fluids()
   for (int &kind : kinds) kind = kind < 0 ? ~0 : 0;
   particles.phase = kinds.data();
   sums.assign(8 * (size_t) (particles.n + 1), 0.0);
-  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), sums.data());
+  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), spins_of_walls, sums.data());
   reverse(sums.data(), 8);
   particles.phase = phases.data();
   for (int i = 0; i < atom->nlocal; i++) {
@@ -122,13 +156,13 @@ void PairSph::wall_particles()
 {
   const int n = particles.n;
   sd_sph_pack_v(n, atom->vest ? atom->vest[0] : nullptr, atom->rho, v4.data());
-  if (looks_at_turning()) look_at_turning();
+  const double *w = spins_of_walls();
   weights.resize(8 * (size_t) (n + 1));
   sd_sph_pack_fluid(&particles, P.data(), weights.data());
   sums.assign(8 * (size_t) (n + 1), 0.0);
-  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), sums.data());
+  sd_sph_before_walls(&model, &pairs, &particles, weights.data(), w, sums.data());
   reverse(sums.data(), 8);
-  if (sd_sph_of_fluids(&model)) sums_of_other_fluids();
+  if (sd_sph_of_fluids(&model)) sums_of_other_fluids(w);
 
   wall_rows.resize(4 * (size_t) (n + 1));
   if (wall) wall->gravity.find(lmp);

@@ -1,8 +1,9 @@
-"""Walls that turn: with viscosity laplacian the torque on them is wrong, so it is refused beside them; with central it is right."""
+"""Walls that turn: water turns with its vessel; with viscosity laplacian the torque on walls is wrong, so it is refused beside them; with
+central it is right."""
 import numpy as np
 import pytest
 
-from sph_tools import by_id, mpirun, run, start
+from sph_tools import by_id, mpirun, read_dump, run, start
 from test_sph_input import message
 
 # Taylor-Couette flow between radii 1 and 2, the shaft has the angular velocity 1; n particles over the gap.
@@ -119,3 +120,69 @@ run 1000 post no""")
     lmp.close()
     assert shaft == pytest.approx(-1, abs=0.025)
     assert case == pytest.approx(1, abs=0.025)
+
+
+VESSEL = """
+units lj
+dimension 2
+atom_style sph
+atom_modify map array
+boundary f f p
+lattice sq 400 origin 0.5 0.5 0
+region all block -1 1 -1 1 -0.025 0.025 units box
+create_box 2 all
+region inside cylinder z 0 0 0.5 INF INF units box
+region outside cylinder z 0 0 0.5 INF INF units box side out
+region rim cylinder z 0 0 0.7 INF INF units box
+region ring intersect 2 outside rim
+create_atoms 1 region inside
+create_atoms 2 region ring
+group water type 1
+group ring type 2
+mass * 0.0025
+variable rho atom 1+0.005*(x*x+y*y)
+set group water sph/rho v_rho
+set group ring sph/rho 1
+neighbor 0.015 bin
+neigh_modify delay 0 every 1 exclude type 2 2
+pair_style sph/artVisc/tensCorr wendland 0.1 {friction} shift yes
+pair_coeff * * c 10
+fix eos all sph/pressure Tait $(100/7) 1 7
+fix density all sph/density/continuity delta 0.1
+fix move water nve/sph
+fix wall ring wall/adami/sph own_acceleration yes
+fix turn ring move rotate 0 0 0 0 0 1 $(2*PI)
+variable vx atom -y
+variable vy atom x
+velocity water set v_vx v_vy 0
+fix flat all enforce2d
+timestep 0.0025
+"""
+
+
+@pytest.mark.parametrize("friction", ["viscosity 0.05 central", "artVisc 0.1 0 1e-4"])
+def test_water_turns_with_its_vessel(friction):
+    """A round vessel, 10 particles over the radius. When friction took the velocity of the water for that in the depth of the wall, the water came
+    to turn 6 % faster than the vessel."""
+    lmp = start()
+    run(lmp, VESSEL.format(friction=friction) + "run 800")
+    x, v, water = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "type") == 1
+    lmp.close()
+    speed = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])[water].sum() / (x[water, :2] ** 2).sum()
+    assert speed == pytest.approx(1, abs=0.004)
+
+
+def test_a_turning_wall_on_any_number_of_ranks_and_in_pieces(tmp_path):
+    def go(name, ranks, runs):
+        text = scene(TURNS, "central shift yes", n=6) + runs
+        out = mpirun(ranks, text + f"\nwrite_dump all custom {name} id x y vx vy modify format float %.17g", tmp_path)
+        assert out.returncode == 0, out.stdout[-1000:]
+        rows = read_dump(tmp_path / name)
+        return np.stack([rows[c] for c in ("x", "y", "vx", "vy")], axis=1)
+
+    whole = go("whole", 1, "run 60")
+    for name, ranks, runs in (("ranks", 4, "run 60"), ("pieces", 1, "run 23\nrun 37")):
+        rows = go(name, ranks, runs)
+        # create_atoms numbers atoms by ranks: who is at the same place
+        same = np.linalg.norm(rows[:, None, :2] - whole[None, :, :2], axis=-1).argmin(axis=1)
+        assert len(set(same)) == len(whole) and np.abs(rows - whole[same]).max() < 1e-11

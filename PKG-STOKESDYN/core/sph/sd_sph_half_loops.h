@@ -70,18 +70,29 @@ INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
   }
 }
 
+/* Adds w x d with the rows w of the particles j. */
+INLINE void add_turned(const double *spins, const int j[LANES], const vec d[3], vec v[3])
+{
+  vec w[4];
+  gather(spins, 4, j, w);
+  for (int c = 0; c < 3; c++) {
+    const int a = (c + 1) % 3, b = (c + 2) % 3;
+    v[c] += w[a] * d[b] - w[b] * d[a];
+  }
+}
+
 /* What wall particles take from the fluid before them. A pair counts for its wall particle alone,
  * and neighbours of the same kind as i, most of them, cost no kernel. */
 INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
-                         const sd_sph_particles *p, const double *q, double *sums,
-                         sd_sph_kernel kernel, int many)
+                         const sd_sph_particles *p, const double *q, const double *spins,
+                         double *sums, sd_sph_kernel kernel, int many)
 {
   const vec zero = all(0.0), two = all(2.0);
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i], is_wall = p->phase[i] < 0;
     const int *neighbor = list->neighbor[i];
     const row4 xi = load4(p->x4 + 4 * (size_t) i);
-    const double *qi = q + 8 * (size_t) i;
+    const double *qi = q + 8 * (size_t) i, *wi = spins ? spins + 4 * (size_t) i : NULL;
     const sd_sph_coefficients *row = ROW_OF(i);
     vec sum[8];
     for (int c = 0; c < 8; c++) sum[c] = zero;
@@ -98,6 +109,7 @@ INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
         vec qj[8];
         gather(q, 8, j, qj);
         gather(q + 4, 8, j, qj + 4);
+        if (spins) add_turned(spins, j, x.d, qj + 4);
         for (int c = 0; c < 2; c++) sum[c] += W * qj[c];
         for (int c = 0; c < 3; c++) {
           sum[2 + c] += W * qj[2] * x.d[c];
@@ -111,6 +123,9 @@ INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
           for (int c = 0; c < 3; c++) {
             row_j[2 + c] -= W[k] * qi[2] * x.d[c][k];
             row_j[5 + c] += W[k] * qi[4 + c];
+            /* w x d with the d of the wall, - x.d */
+            const int a = (c + 1) % 3, b = (c + 2) % 3;
+            if (wi) row_j[5 + c] -= W[k] * (wi[a] * x.d[b][k] - wi[b] * x.d[a][k]);
           }
         }
     }

@@ -19,7 +19,7 @@ typedef struct {
   void (*weigh)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, const double *,
                 double *);
   void (*before_walls)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *,
-                       const double *, double *);
+                       const double *, const double *, double *);
 } sd_sph_loops;
 SD_KERNEL_TABLES(sd_sph_loops, sd_sph_loops);
 

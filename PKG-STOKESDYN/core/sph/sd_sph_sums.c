@@ -134,7 +134,8 @@ void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 }
 
 void sd_sph_before_walls(const sd_sph_model *model, const sd_sph_list *list,
-                         const sd_sph_particles *p, const double *q, double *sums)
+                         const sd_sph_particles *p, const double *q, const double *spins,
+                         double *sums)
 {
-  loops()->before_walls(model, list, p, q, sums);
+  loops()->before_walls(model, list, p, q, spins, sums);
 }

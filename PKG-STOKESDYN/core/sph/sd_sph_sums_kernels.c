@@ -78,9 +78,10 @@ static void all_weigh(const sd_sph_model *model, const sd_sph_list *list, const 
 }
 
 static void all_before_walls(const sd_sph_model *model, const sd_sph_list *list,
-                             const sd_sph_particles *p, const double *q, double *sums)
+                             const sd_sph_particles *p, const double *q, const double *spins,
+                             double *sums)
 {
-  BY_KERNEL(before_walls, model, list, p, q, sums);
+  BY_KERNEL(before_walls, model, list, p, q, spins, sums);
 }
 
 const sd_sph_loops SD_KERNELS(sd_sph_loops) = {all_forces, all_slopes,    all_rates,

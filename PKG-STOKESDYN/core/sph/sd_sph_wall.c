@@ -45,12 +45,34 @@ void sd_sph_wall_acceleration(const double v[3], double dt, double tau, double b
   }
 }
 
-static void compare(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_two *two,
+/* A wall particle and a fluid particle within the support: d = x_w - x_f. */
+typedef struct {
+  int wall, fluid;
+  double d[3];
+} meeting;
+typedef void with_meeting(const sd_sph_model *model, const sd_sph_particles *p, const meeting *two,
+                          double *out);
+
+static void each_meeting(const sd_sph_model *model, const sd_sph_list *list,
+                         const sd_sph_particles *p, with_meeting *meet, double *out)
+{
+  for (int k = 0; k < list->n; k++) {
+    const int i = list->first[k], i_is_wall = p->phase[i] < 0;
+    for (int m = 0; m < list->count[i]; m++) {
+      const int j = list->neighbor[i][m] & list->mask;
+      if ((p->phase[j] < 0) == i_is_wall) continue;
+      meeting two = {.wall = i_is_wall ? i : j, .fluid = i_is_wall ? j : i};
+      sd_minus(p->x4 + 4 * (size_t) two.wall, p->x4 + 4 * (size_t) two.fluid, two.d);
+      const double support = sd_sph_of_pair(model, p, i, j)->support;
+      if (sd_dot(two.d, two.d) < support * support) meet(model, p, &two, out);
+    }
+  }
+}
+
+static void compare(const sd_sph_model *model, const sd_sph_particles *p, const meeting *two,
                     double *likeness)
 {
-  if ((p->phase[two->i] < 0) == (p->phase[two->j] < 0)) return;
-  const int i_is_wall = p->phase[two->i] < 0, wall = i_is_wall ? two->i : two->j,
-            fluid = i_is_wall ? two->j : two->i;
+  const int wall = two->wall, fluid = two->fluid;
   if (~p->phase[wall] != p->phase[fluid]) return;
   const double ratio = sd_sph_mass(model, p, wall) / sd_sph_mass(model, p, fluid);
   likeness[wall] = fmax(likeness[wall], -fabs(log(ratio)));
@@ -59,22 +81,17 @@ static void compare(const sd_sph_model *model, const sd_sph_particles *p, const 
 void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *likeness)
 {
-  sd_sph_each_pair(model, list, p, compare, likeness);
+  each_meeting(model, list, p, compare, likeness);
 }
 
-static void add_motion(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_two *two,
+static void add_motion(const sd_sph_model *model, const sd_sph_particles *p, const meeting *two,
                        double *sums)
 {
   (void) model;
-  if ((p->phase[two->i] < 0) == (p->phase[two->j] < 0)) return;
-  const int i_is_wall = p->phase[two->i] < 0, wall = i_is_wall ? two->i : two->j,
-            fluid = i_is_wall ? two->j : two->i;
-  const double sign = i_is_wall ? 1.0 : -1.0;
-  const double d[3] = {sign * two->d[0], sign * two->d[1], sign * two->d[2]};
-  double u[3], across[3];
-  sd_minus(p->v4 + 4 * (size_t) wall, p->v4 + 4 * (size_t) fluid, u);
+  const double *d = two->d;
+  double u[3], across[3], *row = sums + SD_SPH_MOTION * (size_t) two->fluid;
+  sd_minus(p->v4 + 4 * (size_t) two->wall, p->v4 + 4 * (size_t) two->fluid, u);
   sd_cross(d, u, across);
-  double *row = sums + SD_SPH_MOTION * (size_t) fluid;
   row[0] += 1.0;
   for (int c = 0; c < 3; c++) {
     row[1 + c] += d[c];
@@ -91,17 +108,17 @@ static void add_motion(const sd_sph_model *model, const sd_sph_particles *p, con
 void sd_sph_motion_of_walls(const sd_sph_model *model, const sd_sph_list *list,
                             const sd_sph_particles *p, double *sums)
 {
-  sd_sph_each_pair(model, list, p, add_motion, sums);
+  each_meeting(model, list, p, add_motion, sums);
 }
 
 /* Least squares: u - <u> = w x (d - <d>) gives J w = L with the moments about the mean place, and what
  * is left of the squares of u - <u> is their sum - w.L. */
-double sd_sph_turning(const double sums[SD_SPH_MOTION], double *shear)
+double sd_sph_spin(const double sums[SD_SPH_MOTION], double w[3], double *shear)
 {
   const double n = sums[0], *d = sums + 1, *u = sums + 4, *dd = sums + 10;
-  *shear = 0.0;
+  *shear = w[0] = w[1] = w[2] = 0.0;
   if (n < 6.0) return 0.0; /* fewer may be of two walls and fit a rotation by chance */
-  double of_means[3], L[3], w[3] = {0.0, 0.0, 0.0};
+  double of_means[3], L[3];
   sd_cross(d, u, of_means);
   for (int c = 0; c < 3; c++) L[c] = sums[7 + c] - of_means[c] / n;
   const double xx = dd[0] - d[0] * d[0] / n, yy = dd[1] - d[1] * d[1] / n,
@@ -120,7 +137,8 @@ double sd_sph_turning(const double sums[SD_SPH_MOTION], double *shear)
   sd_minus(u, at_fluid, slip);
   *shear = sqrt(sd_dot(slip, slip) / (n * (dd[0] + dd[1] + dd[2])));
   const double squares = sums[16] - sd_dot(u, u) / n;
-  return squares - sd_dot(w, L) < 1e-6 * squares ? sqrt(sd_dot(w, w)) : 0.0;
+  if (!(squares - sd_dot(w, L) < 1e-6 * squares)) w[0] = w[1] = w[2] = 0.0;
+  return sqrt(sd_dot(w, w));
 }
 
 /* The density is what carries the pressure on: ghosts of the wall get it as that of any particle,

@@ -16,8 +16,10 @@ double sd_sph_repulsion(double D, double r0, double r);
 
 /* Adami, Hu & Adams 2012: a wall particle w takes pressure and velocity from the fluid particles f
  * in its support,
- *   P_w = sum [P_f + rho_f b.(x_w - x_f)] W / sum W,   <v> = sum v_f W / sum W
- * with b = g - a_w, the body force per mass as the wall particle sees it. q [8 (n+1)] for
+ *   P_w = sum [P_f + rho_f b.(x_w - x_f)] W / sum W,   <v> = sum [v_f + w x (x_w - x_f)] W / sum W
+ * with b = g - a_w, the body force per mass as the wall particle sees it, and w the angular velocity of
+ * the wall: fluid that turns with the wall does not slip on it, however deep the wall particle is (of
+ * our own; with w = 0 as published). q [8 (n+1)] for
  * sd_sph_before_walls: 1, P, rho, 0, v, 0 of the fluid and 0 of walls. v4 must be packed. */
 void sd_sph_pack_fluid(const sd_sph_particles *p, const double *pressure, double *q);
 
@@ -43,11 +45,11 @@ enum { SD_SPH_MOTION = 17 };
 void sd_sph_motion_of_walls(const sd_sph_model *model, const sd_sph_list *list,
                             const sd_sph_particles *p, double *sums);
 
-/* If these wall particles move as one rigid body that turns: its |angular velocity| w, otherwise 0; and
- * about the shear rate before it, |<u - w x d>| / <d.d>^(1/2), means over the wall particles: at least a
- * quarter of it. Walls that slide past each other within one support are not one body, and less than six
- * particles do not tell. */
-double sd_sph_turning(const double sums[SD_SPH_MOTION], double *shear);
+/* If these wall particles move as one rigid body that turns: its angular velocity w, otherwise w = 0;
+ * returns |w|. shear: about the shear rate before it, |<u - w x d>| / <d.d>^(1/2), means over the wall
+ * particles: at least a quarter of it. Walls that slide past each other within one support are not one
+ * body, and less than six particles do not tell. */
+double sd_sph_spin(const double sums[SD_SPH_MOTION], double w[3], double *shear);
 
 typedef struct {
   const sd_sph_state *state;

@@ -135,14 +135,15 @@ static void angular_velocity_of_a_rigid_wall(void **state)
   const int sizes[3][2] = {{3, 3}, {3, 1}, {1, 1}}; /* a block, a plane of rows, a row */
   const double seen[3] = {sqrt(0.16 + 0.25 + 0.49), sqrt(0.16 + 0.25 + 0.49), sqrt(0.25 + 0.49)};
   for (int k = 0; k < 3; k++) {
-    double sums[SD_SPH_MOTION] = {0.0}, shear;
+    double sums[SD_SPH_MOTION] = {0.0}, shear, found[3];
     for (int a = 0; a < 7 * sizes[k][0] * sizes[k][1]; a++) {
       const double d[3] = {0.1 * (a % 7) - 0.3, 0.1 * (a / 7 % sizes[k][0]), -0.1 * (1 + a / 21)};
       const double u[3] = {V[0] + w[1] * d[2] - w[2] * d[1], V[1] + w[2] * d[0] - w[0] * d[2],
                            V[2] + w[0] * d[1] - w[1] * d[0]};
       see(sums, d, u);
     }
-    CHECK_NEAR(sd_sph_turning(sums, &shear), seen[k], 1e-12);
+    CHECK_NEAR(sd_sph_spin(sums, found, &shear), seen[k], 1e-12);
+    for (int c = k < 2 ? 0 : 1; c < 3; c++) CHECK_NEAR(found[c], w[c], 1e-12);
   }
 }
 
@@ -152,12 +153,12 @@ static void a_wall_that_slides_does_not_turn(void **state)
 {
   (void) state;
   for (int both = 0; both < 3; both++) {
-    double sums[SD_SPH_MOTION] = {0.0}, shear;
+    double sums[SD_SPH_MOTION] = {0.0}, shear, found[3];
     for (int a = 0; a < 7; a++) {
       const double d[3] = {0.1 * a - 0.3, -0.2, 0.0}, v = 0.5 * (!both || a < 3);
       see(sums, d, (const double[3]){both < 2 ? v : 0.0, 0.0, both < 2 ? 0.0 : v});
     }
-    CHECK_NEAR(sd_sph_turning(sums, &shear), 0.0, 1e-12);
+    CHECK_NEAR(sd_sph_spin(sums, found, &shear), 0.0, 1e-12);
     if (!both) CHECK_NEAR(shear, 0.5 / sqrt(0.04 + 0.04), 1e-12);
   }
 }

@@ -362,7 +362,7 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
   s.p.phase = s.phase;
   double sums[8 * (N + 1)] = {0}, weights[8 * (N + 1)];
   sd_sph_pack_fluid(&s.p, s.P, weights);
-  sd_sph_before_walls(&s.model, &s.list, &s.p, weights, sums);
+  sd_sph_before_walls(&s.model, &s.list, &s.p, weights, NULL, sums);
   const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0, 0};
   const sd_sph_wall wall = {&water, 0, 1};
   int tried = 0;
@@ -371,6 +371,50 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
     double row[4];
     const double P = sd_sph_wall_particle(&wall, sums + 8 * i, s.v + 3 * i, g, row);
     CHECK_NEAR(P, s.P[i], 1e-9 * s.P[i]);
+    tried++;
+  }
+  assert_true(tried > 2);
+}
+
+/* Fluid that turns with its wall does not slip on it, at any depth of the wall particle. */
+static void fluid_that_turns_with_its_wall_does_not_slip(void **state)
+{
+  (void) state;
+  scene s;
+  build(&s, SD_SPH_WENDLAND, 2, 1, 0, 0, 0);
+  const double w = 0.7, b[3] = {0.0, 0.0, 0.0};
+  for (int i = 0; i < N; i++) {
+    s.rho[i] = 1000.0;
+    s.v[3 * i] = 0.3 - w * s.x[3 * i + 1];
+    s.v[3 * i + 1] = w * s.x[3 * i];
+    s.v[3 * i + 2] = 0.0;
+    s.phase[i] = s.x[3 * i + 1] < 0.5 ? -1 : 0;
+  }
+  sd_sph_pack_v(N, s.v, s.rho, s.v4);
+  s.p.phase = s.phase;
+  double motion[SD_SPH_MOTION * (N + 1)] = {0}, spins[4 * (N + 1)] = {0};
+  double sums[8 * (N + 1)] = {0}, weights[8 * (N + 1)];
+  sd_sph_motion_of_walls(&s.model, &s.list, &s.p, motion);
+  for (int i = 0; i < N; i++) {
+    double shear;
+    if (s.phase[i] == 0) sd_sph_spin(motion + SD_SPH_MOTION * i, spins + 4 * i, &shear);
+  }
+  sd_sph_pack_fluid(&s.p, s.P, weights);
+  sd_sph_before_walls(&s.model, &s.list, &s.p, weights, spins, sums);
+  const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0, 0};
+  const sd_sph_wall wall = {&water, 0, 1};
+  int tried = 0;
+  for (int i = 0; i < N; i++) {
+    if (s.phase[i] == 0 || sums[8 * i] < 0.01) continue;
+    double row[4];
+    int all = 1;
+    for (int j = 0; j < N; j++)
+      if (s.phase[j] == 0 && motion[SD_SPH_MOTION * j] < 6.0 &&
+          hypot(s.x[3 * i] - s.x[3 * j], s.x[3 * i + 1] - s.x[3 * j + 1]) < s.pair[0].support)
+        all = 0;
+    if (!all) continue; /* one of the fluid sees too little of the wall */
+    sd_sph_wall_particle(&wall, sums + 8 * i, s.v + 3 * i, b, row);
+    for (int c = 1; c < 4; c++) CHECK_NEAR(row[c], 0.0, 1e-12);
     tried++;
   }
   assert_true(tried > 2);
@@ -438,6 +482,7 @@ int main(void)
                                      cmocka_unit_test(sums_over_neighbours),
                                      cmocka_unit_test(linear_density_does_not_diffuse),
                                      cmocka_unit_test(wall_continues_the_hydrostatic_pressure),
+      cmocka_unit_test(fluid_that_turns_with_its_wall_does_not_slip),
                                      cmocka_unit_test(wall_particle_continues_the_fluid),
                                      cmocka_unit_test(walls_know_their_acceleration)};
   return cmocka_run_group_tests(tests, NULL, NULL);
