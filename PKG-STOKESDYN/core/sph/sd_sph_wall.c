@@ -111,6 +111,28 @@ void sd_sph_motion_of_walls(const sd_sph_model *model, const sd_sph_list *list,
   each_meeting(model, list, p, add_motion, sums);
 }
 
+/* J w = L for the moments of inertia of the wall particles. Those of one row, about which J is singular,
+ * do not tell the part of w along it: it is 0. */
+static void least_squares(const double J[9], const double L[3], double w[3])
+{
+  double columns[3][3];
+  for (int c = 0; c < 3; c++) sd_cross(J + 3 * ((c + 1) % 3), J + 3 * ((c + 2) % 3), columns[c]);
+  const double det = sd_dot(J, columns[0]), mean = (J[0] + J[4] + J[8]) / 3.0;
+  if (det > 1e-9 * mean * mean * mean) {
+    for (int c = 0; c < 3; c++)
+      w[c] = (columns[0][c] * L[0] + columns[1][c] * L[1] + columns[2][c] * L[2]) / det;
+    return;
+  }
+  double values[3], axes[9];
+  sd_eigen(3, J, values, axes);
+  w[0] = w[1] = w[2] = 0.0;
+  for (int k = 0; k < 3; k++) {
+    if (!(values[k] > 1e-9 * values[0])) continue;
+    const double along = (axes[k] * L[0] + axes[3 + k] * L[1] + axes[6 + k] * L[2]) / values[k];
+    for (int c = 0; c < 3; c++) w[c] += along * axes[3 * c + k];
+  }
+}
+
 /* Least squares: u - <u> = w x (d - <d>) gives J w = L with the moments about the mean place, and what
  * is left of the squares of u - <u> is their sum - w.L. */
 double sd_sph_spin(const double sums[SD_SPH_MOTION], double w[3], double *shear)
@@ -118,6 +140,8 @@ double sd_sph_spin(const double sums[SD_SPH_MOTION], double w[3], double *shear)
   const double n = sums[0], *d = sums + 1, *u = sums + 4, *dd = sums + 10;
   *shear = w[0] = w[1] = w[2] = 0.0;
   if (n < 6.0) return 0.0; /* fewer may be of two walls and fit a rotation by chance */
+  const double squares = sums[16] - sd_dot(u, u) / n;
+  if (squares < 1e-26 * sums[16]) return 0.0; /* one velocity, and rounding */
   double of_means[3], L[3];
   sd_cross(d, u, of_means);
   for (int c = 0; c < 3; c++) L[c] = sums[7 + c] - of_means[c] / n;
@@ -125,20 +149,14 @@ double sd_sph_spin(const double sums[SD_SPH_MOTION], double w[3], double *shear)
                zz = dd[2] - d[2] * d[2] / n, xy = dd[3] - d[0] * d[1] / n,
                xz = dd[4] - d[0] * d[2] / n, yz = dd[5] - d[1] * d[2] / n;
   const double J[9] = {yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy};
-  double values[3], axes[9];
-  sd_eigen(3, J, values, axes);
-  for (int k = 0; k < 3; k++) {
-    if (!(values[k] > 1e-9 * values[0])) continue; /* a row of particles does not tell */
-    const double along = (axes[k] * L[0] + axes[3 + k] * L[1] + axes[6 + k] * L[2]) / values[k];
-    for (int c = 0; c < 3; c++) w[c] += along * axes[3 * c + k];
-  }
+  least_squares(J, L, w);
   double at_fluid[3], slip[3];
   sd_cross(w, d, at_fluid);
   sd_minus(u, at_fluid, slip);
   *shear = sqrt(sd_dot(slip, slip) / (n * (dd[0] + dd[1] + dd[2])));
-  const double squares = sums[16] - sd_dot(u, u) / n;
-  if (!(squares - sd_dot(w, L) < 1e-6 * squares)) w[0] = w[1] = w[2] = 0.0;
-  return sqrt(sd_dot(w, w));
+  if (squares - sd_dot(w, L) < 1e-6 * squares) return sqrt(sd_dot(w, w));
+  *shear = w[0] = w[1] = w[2] = 0.0;
+  return 0.0;
 }
 
 /* The density is what carries the pressure on: ghosts of the wall get it as that of any particle,

@@ -45,10 +45,10 @@ enum { SD_SPH_MOTION = 17 };
 void sd_sph_motion_of_walls(const sd_sph_model *model, const sd_sph_list *list,
                             const sd_sph_particles *p, double *sums);
 
-/* If these wall particles move as one rigid body that turns: its angular velocity w, otherwise w = 0;
- * returns |w|. shear: about the shear rate before it, |<u - w x d>| / <d.d>^(1/2), means over the wall
- * particles: at least a quarter of it. Walls that slide past each other within one support are not one
- * body, and less than six particles do not tell. */
+/* If these wall particles move as one rigid body that turns: its angular velocity w, otherwise w = 0 and
+ * shear = 0; returns |w|. shear: about the shear rate before it, |<u - w x d>| / <d.d>^(1/2), means over
+ * the wall particles: at least a quarter of it. Walls that slide past each other within one support are
+ * not one body, and less than six particles do not tell. */
 double sd_sph_spin(const double sums[SD_SPH_MOTION], double w[3], double *shear);
 
 typedef struct {
