@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -69,6 +70,20 @@ void PairSph::look_at_sound()
              "pair_coeff, the fluid has that of fix sph/pressure");
 }
 
+/* Among the equations of state with a density rho0; nullptr: there is none. */
+template <class Value>
+static std::pair<const FixSphPressure *, const FixSphPressure *>
+least_and_most(const std::vector<FixSphPressure *> &fixes, const Value &value)
+{
+  const FixSphPressure *least = nullptr, *most = nullptr;
+  for (const auto *fix : fixes) {
+    if (!(fix->state.rho0 > 0.0)) continue;
+    if (!least || value(fix) < value(least)) least = fix;
+    if (!most || value(fix) > value(most)) most = fix;
+  }
+  return {least, most};
+}
+
 /* Two fluids share a pressure at their interface, that for which the stiffer one is made. One that is
  * much softer is compressed by it beyond what weakly compressible means, and with correction, which
  * holds no particle by a pressure that is the same everywhere, it is torn: Rayleigh-Taylor at a ratio
@@ -77,16 +92,12 @@ void PairSph::check_stiffness()
 {
   constexpr double MOST = 100.0;
   if (model.scheme != SD_SPH_VOLUME_CORRECTION) return;
-  const FixSphPressure *soft = nullptr, *stiff = nullptr;
+  const FixSphPressure *soft, *stiff;
   auto stiffness = [](const FixSphPressure *fix) {
     const double c = sd_sph_speed_of_sound(&fix->state, fix->state.rho0);
     return fix->state.rho0 * c * c;
   };
-  for (const auto *fix : pressures) {
-    if (!(fix->state.rho0 > 0.0)) continue;
-    if (!soft || stiffness(fix) < stiffness(soft)) soft = fix;
-    if (!stiff || stiffness(fix) > stiffness(stiff)) stiff = fix;
-  }
+  std::tie(soft, stiff) = least_and_most(pressures, stiffness);
   if (!soft || stiffness(stiff) <= MOST * (1.0 + 1e-9) * stiffness(soft)) return;
   voice.fail(std::string("correction yes with volume yes: the fluid of fix ") + soft->id + " is " +
              text(stiffness(stiff) / stiffness(soft)) + " times softer than that of fix " +
@@ -112,12 +123,9 @@ void PairSph::look_at_widths()
 void PairSph::look_at_fluids()
 {
   if (!continuity || continuity->volume) return;
-  const FixSphPressure *light = nullptr, *heavy = nullptr;
-  for (const auto *fix : pressures) {
-    if (!(fix->state.rho0 > 0.0)) continue;
-    if (!light || fix->state.rho0 < light->state.rho0) light = fix;
-    if (!heavy || fix->state.rho0 > heavy->state.rho0) heavy = fix;
-  }
+  const FixSphPressure *light, *heavy;
+  std::tie(light, heavy) =
+      least_and_most(pressures, [](const FixSphPressure *fix) { return fix->state.rho0; });
   if (!light || heavy->state.rho0 <= 1.1 * light->state.rho0) return;
   voice.warn(std::string("fix ") + heavy->id + " has rho0 = " + text(heavy->state.rho0) + ", fix " +
              light->id + " has rho0 = " + text(light->state.rho0) +
@@ -136,7 +144,7 @@ void PairSph::look_at_walls()
   reverse(likeness.data(), 1, true);
   tagint other_mass = MAXTAGINT;
   for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & wall->groupbit) && likeness[i] != NOBODY && likeness[i] < -log(1.1))
+    if (is_wall(i) && likeness[i] != NOBODY && likeness[i] < -log(1.1))
       other_mass = std::min(other_mass, atom->tag[i]);
   other_mass = smallest_of_all(world, other_mass);
   if (other_mass < MAXTAGINT)

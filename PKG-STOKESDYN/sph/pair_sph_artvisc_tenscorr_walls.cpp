@@ -102,17 +102,18 @@ const double *PairSph::spins_of_walls()
   }
   if (!largest_of_all(world, moves)) return nullptr;
 
-  Rows motion(SD_SPH_MOTION * (size_t) (particles.n + 1), 0.0);
-  sd_sph_motion_of_walls(&model, &pairs, &particles, motion.data());
-  reverse(motion.data(), SD_SPH_MOTION);
+  sums.assign(SD_SPH_MOTION * (size_t) (particles.n + 1), 0.0);
+  sd_sph_motion_of_walls(&model, &pairs, &particles, sums.data());
+  reverse(sums.data(), SD_SPH_MOTION);
   spins.assign(4 * (size_t) (particles.n + 1), 0.0);
   double w2_shear2[2] = {0.0, 0.0};
   for (int i = 0; i < atom->nlocal; i++) {
     if (particles.phase[i] < 0 || !used(atom->type[i])) continue;
     double w[3], shear;
-    const double speed = sd_sph_spin(&motion[SD_SPH_MOTION * (size_t) i], w, &shear);
+    const double speed = sd_sph_spin(&sums[SD_SPH_MOTION * (size_t) i], w, &shear);
+    if (speed == 0.0) continue;
     const double sound = sd_sph_speed_of_sound(&state_of(i)->state, atom->rho[i]);
-    if (speed == 0.0 || speed * smoothing_length(atom->type[i]) < SLOWEST * sound) continue;
+    if (speed * smoothing_length(atom->type[i]) < SLOWEST * sound) continue;
     std::copy_n(w, 3, &spins[4 * (size_t) i]);
     w2_shear2[0] += speed * speed;
     w2_shear2[1] += shear * shear;
@@ -127,13 +128,12 @@ const double *PairSph::spins_of_walls()
  * are empty. */
 void PairSph::sums_of_other_fluids(const double *spins_of_walls)
 {
-  const Rows mine = sums;
   int alone = 0;
   for (int i = 0; i < atom->nlocal; i++)
-    if ((is_wall(i) || is_held(i)) && mine[8 * (size_t) i] == 0.0) alone = 1;
-  MPI_Allreduce(MPI_IN_PLACE, &alone, 1, MPI_INT, MPI_MAX, world);
-  if (!alone) return;
+    if ((is_wall(i) || is_held(i)) && sums[8 * (size_t) i] == 0.0) alone = 1;
+  if (!largest_of_all(world, alone)) return;
 
+  const Rows mine = sums;
   std::vector<int> kinds(phases);
   for (int &kind : kinds) kind = kind < 0 ? ~0 : 0;
   particles.phase = kinds.data();

@@ -88,7 +88,7 @@ void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 /* Adds to the rows of wall particles w, sums [8 (n+1)], over the particles f of their fluid, as
  * phase says, with d = x_w - x_f and rows 1, P, rho, 0, v, 0 of q [8 (n+1)], row n of which is 0:
  *   0 sum W    1 sum W P_f    2-4 sum W rho_f d    5-7 sum W (v_f + w_f x d)
- * spins [4 (n+1)]: rows w, 0 of sd_sph_spins; null: all 0. */
+ * spins [4 (n+1)]: rows w, 0 of sd_sph_spin (sd_sph_wall.h); null: all 0. */
 void sd_sph_before_walls(const sd_sph_model *model, const sd_sph_list *list,
                          const sd_sph_particles *p, const double *q, const double *spins,
                          double *sums);

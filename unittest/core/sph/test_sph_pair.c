@@ -346,6 +346,17 @@ static void linear_density_does_not_diffuse(void **state)
   }
 }
 
+/* What wall particles see of the fluid of a scene, [8 (N + 1)]. */
+static void look_from_walls(scene *s, const double *spins, double *sums)
+{
+  double weights[8 * (N + 1)];
+  sd_sph_pack_fluid(&s->p, s->P, weights);
+  sd_sph_before_walls(&s->model, &s->list, &s->p, weights, spins, sums);
+}
+
+static const sd_sph_state WATER = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0, 0};
+static const sd_sph_wall WALL = {&WATER, 0, 1};
+
 /* A wall before a fluid at rest with hydrostatic pressure continues that pressure exactly. */
 static void wall_continues_the_hydrostatic_pressure(void **state)
 {
@@ -360,16 +371,13 @@ static void wall_continues_the_hydrostatic_pressure(void **state)
   }
   sd_sph_pack_v(N, s.v, s.rho, s.v4);
   s.p.phase = s.phase;
-  double sums[8 * (N + 1)] = {0}, weights[8 * (N + 1)];
-  sd_sph_pack_fluid(&s.p, s.P, weights);
-  sd_sph_before_walls(&s.model, &s.list, &s.p, weights, NULL, sums);
-  const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0, 0};
-  const sd_sph_wall wall = {&water, 0, 1};
+  double sums[8 * (N + 1)] = {0};
+  look_from_walls(&s, NULL, sums);
   int tried = 0;
   for (int i = 0; i < N; i++) {
     if (s.phase[i] == 0 || sums[8 * i] < 0.01) continue;
     double row[4];
-    const double P = sd_sph_wall_particle(&wall, sums + 8 * i, s.v + 3 * i, g, row);
+    const double P = sd_sph_wall_particle(&WALL, sums + 8 * i, s.v + 3 * i, g, row);
     CHECK_NEAR(P, s.P[i], 1e-9 * s.P[i]);
     tried++;
   }
@@ -393,16 +401,13 @@ static void fluid_that_turns_with_its_wall_does_not_slip(void **state)
   sd_sph_pack_v(N, s.v, s.rho, s.v4);
   s.p.phase = s.phase;
   double motion[SD_SPH_MOTION * (N + 1)] = {0}, spins[4 * (N + 1)] = {0};
-  double sums[8 * (N + 1)] = {0}, weights[8 * (N + 1)];
+  double sums[8 * (N + 1)] = {0};
   sd_sph_motion_of_walls(&s.model, &s.list, &s.p, motion);
   for (int i = 0; i < N; i++) {
     double shear;
     if (s.phase[i] == 0) sd_sph_spin(motion + SD_SPH_MOTION * i, spins + 4 * i, &shear);
   }
-  sd_sph_pack_fluid(&s.p, s.P, weights);
-  sd_sph_before_walls(&s.model, &s.list, &s.p, weights, spins, sums);
-  const sd_sph_state water = {SD_SPH_RELATIV, 400.0, 1000.0, 0.0, 0.0, 0};
-  const sd_sph_wall wall = {&water, 0, 1};
+  look_from_walls(&s, spins, sums);
   int tried = 0;
   for (int i = 0; i < N; i++) {
     if (s.phase[i] == 0 || sums[8 * i] < 0.01) continue;
@@ -413,7 +418,7 @@ static void fluid_that_turns_with_its_wall_does_not_slip(void **state)
           hypot(s.x[3 * i] - s.x[3 * j], s.x[3 * i + 1] - s.x[3 * j + 1]) < s.pair[0].support)
         all = 0;
     if (!all) continue; /* one of the fluid sees too little of the wall */
-    sd_sph_wall_particle(&wall, sums + 8 * i, s.v + 3 * i, b, row);
+    sd_sph_wall_particle(&WALL, sums + 8 * i, s.v + 3 * i, b, row);
     for (int c = 1; c < 4; c++) CHECK_NEAR(row[c], 0.0, 1e-12);
     tried++;
   }

@@ -87,15 +87,16 @@ typedef struct {
   sd_ewald_class spheres;
   /* all radii are alike; windows are differentiated, for unlike radii and for torques */
   int width, equal, slopes;
-  /* of xi times the largest radius */
-  double most;
+  /* that of H; of xi times the largest radius */
+  double a_ref, most;
 } splitting;
 
 static splitting splitting_for(fall how, const sd_ewald_class *s, int width, double most)
 {
   const double rms = six_digits(sqrt(s->squares / s->count));
   const int equal = fabs(rms / s->largest - 1.0) < 1e-5;
-  return (splitting){how, *s, width, equal, !equal || width == 6, most};
+  return (splitting){.fall = how, .spheres = *s, .width = width, .equal = equal,
+                     .slopes = !equal || width == 6, .a_ref = equal ? s->largest : rms, .most = most};
 }
 
 /* Range of the near part that costs least, as measured: 86 spheres within it at 1e-3, and more at
@@ -171,9 +172,8 @@ static double least_range(const sd_ewald *e, const splitting *by, double y)
  * which in turn moves xi. */
 static void split(sd_ewald *e, const splitting *by, double *y)
 {
-  const sd_ewald_class *s = &by->spheres;
-  e->largest = s->largest;
-  e->a_ref = by->equal ? s->largest : six_digits(sqrt(s->squares / s->count));
+  e->largest = by->spheres.largest;
+  e->a_ref = by->a_ref;
   double t = tightened(by, e->tolerance, 0.0);
   for (int k = 0; k < 6; k++) {
     *y = y_of(&e->box, by, t);

@@ -6,9 +6,9 @@
  *   wave part = 1/V sum_{k != 0} exp(ik.r) H(k)/(eta k^2) (I - kk/k^2) g_i g_j
  *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = k^2/(4 xi^2),   g_i = 1 - (a_i^2 - a_ref^2) k^2/6
  *
- * In a periodic box of one level x grows faster than that, so that H ends at a wave (sd_radial.h), which needs
- * less than half of the grid. H is >= 0 with either, and draws noise; and the larger x is, the more
- * positive is the near part.
+ * In a periodic box of one level x grows faster than that, so that H ends at a wave (sd_radial.h), which
+ * needs less than half of the grid. H is >= 0 with either, and draws noise; and the larger x is, the
+ * more positive is the near part.
  *
  * D is the wave part of one pair in open space, so near pairs keep the Rotne-Prager-Yamakawa tensor
  * as it is: any radii, any overlap, also of a sphere with its own image. The wave part goes by FFT
