@@ -64,9 +64,9 @@ class FixWallAdamiSph : public WallFix {
   /* Of this step and rank: the force of the fluid on the wall particles, from the pair style. */
   void bears(const double F[3]) { std::copy_n(F, 3, on_wall); }
 
-  /* Per mass, as wall particle i sees it: gravity, with own_acceleration less that of the particle,
-   * a mean over the time tau; once a step. */
-  const double *body_force(int i, double tau);
+  /* Per mass, as wall particle i sees it, which changes its place with the velocity v: gravity, with
+   * own_acceleration less that of the particle, a mean over the time tau; once a step. */
+  const double *body_force(int i, const double v[3], double tau);
   bool slip = false, suction = true;
   BodyForce gravity;
 

@@ -269,7 +269,7 @@ double PairSph::memory_usage()
   double bytes = near.bytes() + around.bytes() + of_flow.bytes();
   for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order, &own, &rubs})
     bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows})
+  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows, &displacing})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&classes, &phases})
     bytes += v->capacity() * sizeof(int);

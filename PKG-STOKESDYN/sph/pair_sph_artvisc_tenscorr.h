@@ -103,6 +103,8 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<FixSphOutlet *> outlets;
   FixSphShift *state = nullptr;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
+  // groups of all fixes that displace particles
+  int displaced_bits = 0;
   bool leapfrog = false, needs_velocity = false, measured = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
   // comm_modify vel was no
@@ -141,11 +143,12 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<sd_sph_coefficients> coefficients;
   MovedBox moved_box;
   Rows x4, v4, f4, sums, weights, spins, order, own, rubs;
-  std::vector<double> P, masses, rate, each, kick, wall_rows;
+  std::vector<double> P, masses, rate, each, kick, wall_rows, displacing;
   std::vector<int> classes, phases;
   bool used(int itype) const;
   void look_at_densities(int n);
   void look_at_walls();
+  void tell_of_belts();
   void check_turning(const double w2_shear2[2]);
   void look_at_sound();
   void look_at_widths();
@@ -153,6 +156,8 @@ class PairSph : public LAMMPS_NS::Pair {
   void prepare();
   bool types_are_alike();
   void estimate_velocities();
+  bool stands(int i) const;
+  const double *displacement_rates();
   void density_step();
   void sum_rates(double margin);
   void sum_middle(double margin);

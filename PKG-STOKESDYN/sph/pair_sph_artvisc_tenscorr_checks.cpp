@@ -155,6 +155,21 @@ void PairSph::look_at_walls()
         "true mass by fix rigid ... infile");
 }
 
+/* A lid is given by its velocity alone. Who has taken fix move from a wall and forgotten its velocity
+ * has one as well. */
+void PairSph::tell_of_belts()
+{
+  double belts = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *v = atom->v[i];
+    belts += is_wall(i) && stands(i) && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
+  }
+  belts = sum_of_all(world, belts);
+  if (belts > 0.0)
+    wall->voice.tell(text(belts) + " particles of the wall have a velocity, and no fix moves them: they "
+                     "stay where they are and rub as a lid or a belt does");
+}
+
 // --- in a run --------------------------------------------------------------------------------------
 
 /* On a wall that turns by w, laplacian lacks the traction mu grad(u).n, of the size mu w beside mu

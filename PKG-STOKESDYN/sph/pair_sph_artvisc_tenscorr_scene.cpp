@@ -17,6 +17,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "force.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -108,6 +109,11 @@ void PairSph::find_integrators()
     voice.warn("delta of fix sph/density/continuity has no effect with fix sph; use fix nve/sph");
   leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
   own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
+  displaced_bits = 0;
+  for (int k = 0; k < lmp->modify->nfix; k++) {
+    const Fix *fix = lmp->modify->fix[k];
+    if (fix->time_integrate && !strstr(fix->style, "stationary")) displaced_bits |= fix->groupbit;
+  }
 }
 
 /* What the options make of rate and force, and what does not go with them. */

@@ -43,6 +43,7 @@ void PairSph::compute(int eflag, int vflag)
     look_at_widths();
     look_at_fluids();
     if (wall) look_at_walls();
+    if (wall) tell_of_belts();
   }
   if (needs_velocity) estimate_velocities();
 
@@ -160,6 +161,28 @@ void PairSph::estimate_velocities()
     if (!(atom->mask[i] & bits)) memcpy(atom->vest[i], atom->v[i], 3 * sizeof(double));
 }
 
+/* Does particle i, of this rank or a ghost, keep its place whatever its velocity is? */
+bool PairSph::stands(int i) const
+{
+  return !(atom->mask[i] & displaced_bits) && used(atom->type[i]);
+}
+
+/* [3 n] the velocity with which each particle changes its place. Those of a lid or a belt have a
+ * velocity for friction and stand: if the density took them to move, one end of a lid would be a
+ * source of fluid and the other a sink. */
+const double *PairSph::displacement_rates()
+{
+  constexpr double REST[3] = {0.0, 0.0, 0.0};
+  const double *v = rows(atom->v);
+  displacing.clear();
+  for (int i = 0; i < particles.n; i++) {
+    if (!stands(i) || std::equal(REST, REST + 3, v + 3 * (size_t) i)) continue;
+    if (displacing.empty()) displacing.assign(v, v + 3 * (size_t) particles.n);
+    std::fill_n(&displacing[3 * (size_t) i], 3, 0.0);
+  }
+  return displacing.empty() ? v : displacing.data();
+}
+
 /* Leapfrog: the rate of density of the half step, from positions and velocities at its middle,
  * moves the density by a whole step. At the start of a run the rate is that of the moment, and
  * nothing moves. Leaves the near pairs in the list for the force. */
@@ -167,7 +190,7 @@ void PairSph::density_step()
 {
   const int n = particles.n, nlocal = atom->nlocal;
   const double dt = update->setupflag ? 0.0 : update->dt;
-  const double *v = rows(atom->v), *du = shift();
+  const double *v = displacement_rates(), *du = shift();
   // The distance of two particles changes by less than dt times the largest speed in half a step.
   double margin = 0.0;
   if (dt > 0.0) {

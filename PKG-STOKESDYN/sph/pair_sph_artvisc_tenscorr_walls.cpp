@@ -57,7 +57,8 @@ void PairSph::wall_row(int i, const double *sums_i, double *row)
   const FixSphPressure *eos = state_of(i);
   const sd_sph_wall how = {&eos->state, wall->slip, wall->suction};
   const double sound = sd_sph_speed_of_sound(&eos->state, row[0]);
-  const double *b = wall->body_force(i, 2.0 * smoothing_length(atom->type[i]) / sound);
+  const double rest[3] = {0.0, 0.0, 0.0}, *displaced = stands(i) ? rest : atom->v[i];
+  const double *b = wall->body_force(i, displaced, 2.0 * smoothing_length(atom->type[i]) / sound);
   const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], b, row);
   if (row[0] == 0.0) no_density(wall->voice, i, text(asked) + " that the fluid asks for");
 }
