@@ -88,7 +88,7 @@ for (const button of document.querySelectorAll(".theme-toggle"))
 
 # What a user looks for is on the pages of the styles and in the howtos; headers of the core come last.
 SCORER = """
-const weights = [[/^PKG-STOKESDYN\\/doc\\//, 80], [/\\/doc\\/howto_/, 20], [/\\/doc\\/(pair|fix|compute)_/, 40], [/\\/doc\\/pair_/, 5], [/^README$/, 60], [/^examples\\//, 30], [/^PKG-STOKESDYN\\/core\\//, -100]];
+const weights = [[/^PKG-STOKESDYN\\/doc\\//, 80], [/\\/doc\\/howto_/, 20], [/\\/doc\\/messages_/, 20], [/\\/doc\\/(pair|fix|compute)_/, 40], [/\\/doc\\/pair_/, 5], [/^README$/, 60], [/^examples\\//, 30], [/^PKG-STOKESDYN\\/core\\//, -100]];
 var Scorer = {
   score: ([page, title, anchor, description, score, file]) => score + weights.filter(([name]) => name.test(page)).reduce((sum, [, w]) => sum + w, 0),
   objNameMatch: 11, objPartialMatch: 6, objPrio: {0: 15, 1: 5, 2: -5}, objPrioDefault: 0, title: 15, partialTitle: 7, term: 5, partialTerm: 2,
@@ -282,7 +282,7 @@ def searches():
 
 
 # what people look for, and how the page begins that must come first
-FIRST = {"no grid for Ewald": "PKG-STOKESDYN/doc/pair_stokes_dynamics", "uninstall": "PKG-STOKESDYN/doc/howto_build",
+FIRST = {"no grid for Ewald": "PKG-STOKESDYN/doc/messages_stokes_dynamics", "uninstall": "PKG-STOKESDYN/doc/howto_build",
          "OVITO": "PKG-STOKESDYN/doc/", "Brownian": "PKG-STOKESDYN/doc/"}
 
 

@@ -9,12 +9,13 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN"
 PAGES = {path.name: path.read_text() for path in sorted((PACKAGE / "doc").glob("*.md"))}
 EVERYWHERE = "howto_trouble.md"    # messages that all styles share
 ROOMS = {    # the pages on which the messages of a folder may stand
-    "stokes": ["pair_stokes_dynamics.md", "fix_stokes_dynamics.md", "fix_stokes_dynamics_overdamped.md", "flow_grid.md",
-               "fix_stokes_dynamics_field.md", "compute_stokes_dynamics_stress.md"],
+    "stokes": ["pair_stokes_dynamics.md", "messages_stokes_dynamics.md", "fix_stokes_dynamics.md", "fix_stokes_dynamics_overdamped.md",
+               "messages_overdamped.md", "flow_grid.md", "fix_stokes_dynamics_field.md", "compute_stokes_dynamics_stress.md"],
     "sph": [name for name in PAGES if "sph" in name],
-    "vans": ["fix_hydro_vans.md"],
+    "vans": ["fix_hydro_vans.md", "messages_hydro_vans.md"],
 }
 STYLES = [name for name in PAGES if name.startswith(("pair_", "fix_", "compute_"))]
+MESSAGES = [name for name in PAGES if name.startswith("messages_")]    # tables of messages that are too long for the style's page
 
 TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
 EITHER = re.compile(r"\?\s*((?:\"[^\"]*\"\s*)+):\s*((?:\"[^\"]*\"\s*)+)")    # condition ? "one" : "other"
@@ -116,13 +117,26 @@ def test_there_are_messages():
     assert ("common", "keywords.cpp", "must be > 0") in ALL
 
 
-@pytest.mark.parametrize("name", STYLES)
+@pytest.mark.parametrize("name", STYLES + MESSAGES)
 def test_no_page_has_a_message_that_no_source_has(name):
     sources = HOLE.join(joined(without_comments(path.read_text())) for path in PACKAGE.rglob("*.*") if path.suffix in (".cpp", ".c", ".h"))
     for row in rows(name):
         for piece in BEFORE.sub("", row).split("..."):
             piece = piece.strip(" :;,'()`")
             assert piece in sources or piece.replace("\\", "") in sources, f"{name}: '{piece}' of row '{row}' is in no source"
+
+
+@pytest.mark.parametrize("name", STYLES)
+def test_a_page_has_its_messages_or_a_link_to_them(name):
+    section = PAGES[name][PAGES[name].index("Messages and what to do"):]
+    linked = [page for page in re.findall(r"\]\((\w+\.md)", section) if page in MESSAGES]
+    assert rows(name) or linked and rows(linked[0])
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_messages_lead_back_to_the_page_of_their_style(name):
+    linked = set(re.findall(r"\]\((\w+\.md)", PAGES[name]))
+    assert rows(name) and any(f"]({name})" in PAGES[style] for style in linked & set(STYLES))
 
 
 KEYWORDS = sorted({(path.parent.name, keyword) for path in PACKAGE.rglob("*.cpp")
@@ -152,6 +166,12 @@ def test_pages_have_the_order_of_a_manual_page(name):
              "Related commands", "Default", "Messages and what to do"]
     marks = re.findall(r"^(?:## |> \*\*|\*\*)(" + "|".join(order) + r")\b", PAGES[name], re.M)
     assert marks == order
+
+
+@pytest.mark.parametrize("name", STYLES)
+def test_the_page_of_a_style_is_read_in_ten_minutes(name):
+    """What is longer stands on a page of its own, to which the style's page links."""
+    assert len(PAGES[name].split()) <= 4000
 
 
 @pytest.mark.parametrize("name", PAGES)
