@@ -174,6 +174,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void load_wall(int receivers);
   bool has_walls() const { return wall || has_ends(); }
   const FixSphPressure *state_of(int i) const;
+  double background() const;
   void pressures_of_all();
   void forces(bool rates);
   double sum_forces(const sd_sph_model &of, Neighbours &both, const sd_sph_list &half, bool rates, Rows &F,

@@ -18,6 +18,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -302,6 +303,14 @@ void PairSph::sum_densities(int bit, bool shepard)
   forward(atom->rho, 1);
 }
 
+/* The P0 of all fluids; the lowest one where they differ. */
+double PairSph::background() const
+{
+  double least = HUGE_VAL;
+  for (const auto *fix : pressures) least = std::min(least, fix->state.P0);
+  return least;
+}
+
 /* P of owned and ghost particles from the densities they carry, so both sides of a
  * pair see the same. */
 void PairSph::pressures_of_all()
@@ -313,7 +322,7 @@ void PairSph::pressures_of_all()
   look_at_densities(n);
   for (auto *fix : pressures)
     sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
-  sd_sph_pack_pressures(&model, n, P.data(), rho, x4.data());
+  sd_sph_pack_pressures(&model, n, P.data(), background(), rho, x4.data());
 }
 
 void PairSph::forces(bool rates)

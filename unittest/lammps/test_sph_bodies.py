@@ -136,3 +136,52 @@ def test_a_body_that_begins_with_the_speed_of_the_water_keeps_it(tmp_path):
 
 def test_own_acceleration_maybe():
     assert "'maybe' is none of: no, yes" in message(FLOORS.format(own="maybe"))
+
+
+SHAKEN = """
+units lj
+dimension 2
+atom_style sph
+atom_modify map array
+boundary f f p
+lattice sq 256 origin 0.5 0.5 0
+region box block -0.25 1.25 -0.75 0.75 -0.03125 0.03125 units box
+create_box 3 box
+create_atoms 2 box
+region in block 0 1 -0.5 0.5 INF INF units box
+set region in type 1
+region disk cylinder z 0.5 0 0.2 INF INF units box
+set region disk type 3
+mass * 0.00390625
+group water type 1
+group walls type 2 3
+group disk type 3
+set group all sph/rho 1
+displace_atoms water random 0.0006 0.0006 0 4711 units box
+pair_style sph/artVisc/tensCorr wendland 0.125 viscosity 1e-3 central correction yes
+pair_coeff * * c 10
+fix eos all sph/pressure Tait $(100/7) 1 7 {background}
+fix density all sph/density/continuity delta 0.1
+fix wall walls wall/adami/sph own_acceleration yes slip yes
+fix move water nve/sph
+variable z equal 0
+variable y equal 0.01*(1-cos(4*PI*step*dt))
+variable v equal 0.04*PI*sin(4*PI*step*dt)
+fix go disk move variable v_z v_y NULL v_z v_v NULL
+fix flat all enforce2d
+neighbor 0.02 bin
+neigh_modify delay 0 every 1 exclude type 2 2 exclude type 3 3 exclude type 2 3
+timestep 3e-3
+"""
+
+
+def test_with_correction_a_body_does_not_feel_the_background_pressure():
+    """It took a part of the added mass that grew with P0: 11 % at P0 = 50 rho a R, 24 % at 100."""
+    loads = []
+    for background in (0.0, 2.0):
+        lmp = start()
+        run(lmp, SHAKEN.format(background=background) + "run 30 post no")
+        F, disk = by_id(lmp, "f", 3), by_id(lmp, "type") == 3
+        loads.append(F[disk, 1].sum())
+        lmp.close()
+    assert abs(loads[0]) > 0.01 and loads[1] == pytest.approx(loads[0], rel=1e-7)

@@ -125,9 +125,12 @@ typedef struct {
 void sd_sph_pack_x(int n, const double *x, const double *v, const double *du, double shift,
                    double *x4);
 void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4);
-/* The last column of x4 for forces, from P and rho [n]. */
-void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, const double *rho,
-                           double *x4);
+/* The last column of x4 for forces, from P and rho [n]. With correction fluid feels differences of
+ * pressure alone, so that it does not know a background P0, and a wall bears sums: there P - P0 stands.
+ * The sum of 2 P0 V_a V_b g d over a body is 0 only while the fluid is spread evenly around it: of a
+ * body that accelerates it took a fifth of the added mass at P0 = 50 rho a R. */
+void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, double P0,
+                           const double *rho, double *x4);
 
 /* Adds to f4 [4 (n+1)], rows Fx Fy Fz drho, the last column only with rates (then the scheme is
  * plain). Not with correction: sd_sph_corrected_forces. each, if not null: F_a of each pair, 3

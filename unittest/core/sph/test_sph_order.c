@@ -24,7 +24,7 @@ static void middle_of(scene *s, step *t, double least)
 
 static void force_of(scene *s, step *t)
 {
-  sd_sph_pack_pressures(&s->model, N, s->P, s->rho, s->x4);
+  sd_sph_pack_pressures(&s->model, N, s->P, 0.0, s->rho, s->x4);
   memset(t->f4, 0, sizeof(t->f4));
   forces_of(s, t->f4);
 }
@@ -437,6 +437,32 @@ static void two_fluids_with_correction(void **state)
     }
 }
 
+/* With correction nobody feels a background P0: the fluid by itself, a wall since P0 is taken off. */
+static void correction_has_no_background(void **state)
+{
+  (void) state;
+  const double P0 = 1.7e4;
+  for (int scheme = SD_SPH_CORRECTION; scheme <= SD_SPH_VOLUME_CORRECTION;
+       scheme += SD_SPH_VOLUME_CORRECTION - SD_SPH_CORRECTION) {
+    scene s;
+    step t;
+    wide_scene(&s, (sd_sph_scheme) scheme, 3, 2);
+    for (int i = 0; i < N; i++) s.phase[i] = i % 4 == 0 ? -1 : 0;
+    s.p.phase = s.phase;
+    middle_of(&s, &t, 0.0);
+    force_of(&s, &t);
+    double more[4 * (N + 1)] = {0}, size = 0.0;
+    for (int i = 0; i < N; i++) {
+      s.P[i] += P0;
+      size = fmax(size, fabs(t.f4[4 * i]));
+    }
+    sd_sph_pack_pressures(&s.model, N, s.P, P0, s.rho, s.x4);
+    forces_of(&s, more);
+    for (int i = 0; i < N; i++)
+      for (int d = 0; d < 3; d++) CHECK_NEAR(more[4 * i + d], t.f4[4 * i + d], 1e-10 * size);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(correction_is_exact_for_linear_fields),
@@ -450,6 +476,7 @@ int main(void)
                                      cmocka_unit_test(corrected_friction),
                                      cmocka_unit_test(two_fluids_exchange_energy_exactly),
                                      cmocka_unit_test(two_fluids_do_not_mix),
-                                     cmocka_unit_test(two_fluids_with_correction)};
+                                     cmocka_unit_test(two_fluids_with_correction),
+                                     cmocka_unit_test(correction_has_no_background)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
