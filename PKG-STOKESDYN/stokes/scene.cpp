@@ -129,7 +129,6 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
   stand(who, ambient);
   turn_shells();
   if (settings.everybody()) {
-    const std::vector<double> there = x;    // the sum over an open cloud takes its origin along
     engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
     if (view() == SD_VIEW_NEAR) {
       somebody_sees = ewald.count > (ewald.box.periodic || settings.wall.sign ? 0.0 : 1.0);
@@ -140,7 +139,6 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
       tell();
       place(size_with_copies());
     } else {
-      x = there;
       gather();
       somebody_sees = n_all * points() > (settings.wall.sign ? 0 : 1);
       if (settings.films > 0.0) surround_films();

@@ -235,8 +235,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool has_cutoff() const { return std::isfinite(settings.cutoff); }
   bool periodic() const;
   bool split();
-  sd_ewald_sizes sizes_of_all(double largest);
-  sd_ewald_sizes measure(sd_ewald_box &box);
+  sd_ewald_sizes sizes_of_all(double largest) const;
+  sd_ewald_sizes measure(sd_ewald_box &box) const;
   void tell();
   void find_rows();
   void surround(double reach, const std::string &keyword);

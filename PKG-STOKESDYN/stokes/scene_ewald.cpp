@@ -36,7 +36,7 @@ bool Scene::periodic() const
 }
 
 /* How many of which size there are on all ranks. */
-sd_ewald_sizes Scene::sizes_of_all(double largest)
+sd_ewald_sizes Scene::sizes_of_all(double largest) const
 {
   sd_ewald_sizes s = {};
   s.all.largest = largest;
@@ -53,9 +53,8 @@ sd_ewald_sizes Scene::sizes_of_all(double largest)
 }
 
 /* The spheres of all ranks, and the box that they are summed in: LAMMPS's if it is periodic, else
- * one around them. An open cloud takes its origin along, but not towards a wall, so that the box, and
- * the tables made for it, last while it falls. */
-sd_ewald_sizes Scene::measure(sd_ewald_box &box)
+ * one around them, which goes along with them. */
+sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
 {
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
   for (int k = 0; k < size(); k++) {
@@ -72,13 +71,11 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box)
   else if (all.all.count > 0.0) {
     double lo[3], hi[3];
     for (int d = 0; d < 3; d++) {
-      const double shift = settings.wall.sign && settings.wall.axis == d ? 0.0 : most[1 + d];
-      lo[d] = shift - most[1 + d];
-      hi[d] = shift + most[4 + d];
-      for (int k = 0; k < size(); k++) x[3 * k + d] += shift;
+      lo[d] = -most[1 + d];
+      hi[d] = most[4 + d];
     }
     if (box.periodic) box = {};
-    sd_ewald_box_around(&box, lo, hi, most[0]);
+    sd_ewald_box_around(&box, settings.wall.sign ? settings.wall.axis : -1, lo, hi, most[0]);
   }
   return all;
 }

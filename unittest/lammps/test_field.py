@@ -247,6 +247,35 @@ def test_sheared_box(tmp_path):
     assert np.abs(growth - (4.0, 0, 0)).max() < 1e-6 and fine["inside"].sum() > 5
 
 
+@pytest.mark.parametrize("n, how, split, rtol", [(3, "relative_tolerance 1e-8", "far_field ewald far_field_tolerance 1e-8", 1e-6),
+                                                 (7, "", "", 1e-2)])
+def test_points_of_an_open_cloud_stand_where_the_spheres_are(tmp_path, n, how, split, rtol):
+    """The flow of shells by Ewald sums, in a box around the cloud, is that of all pairs, wherever the input stands. The tolerance is
+    that of the solves; 343 spheres take Ewald sums by themselves."""
+    random = np.random.default_rng(3)
+    x = 3.0 * np.stack(np.meshgrid(*3 * [np.arange(n)]), axis=-1).reshape(-1, 3) + random.uniform(-0.3, 0.3, (n**3, 3))
+    pull = ["variable fz atom -5-0.2*id", "fix pull all addforce 0 0 v_fz", OVERDAMPED]
+    flows = []
+    for far_field, by in (("far_field direct", (10.0, -4.0, 2.0)), (split, (10.0, -4.0, 2.0)), (split, (-35.0, 7.0, 300.0))):
+        folder = tmp_path / str(len(flows))
+        folder.mkdir()
+        lo, hi = np.array(by) - 4, np.array(by) + 10
+        style = f"cut_off_distance inf visc 1.3 multiblob 12 {how} {far_field}"
+        flows.append(run(folder, Spheres(x + by), style, pull, "9 9 9 lo {} {} {} hi {} {} {}".format(*lo, *hi))[0]["velocity"])
+    assert np.abs(flows[1:] - flows[0]).max() < rtol * np.abs(flows[0]).max()
+
+
+def test_points_of_an_open_cloud_between_two_solves(tmp_path):
+    """With inertia and update_every 2: the file of a step with a solve and that of a step without one are alike."""
+    random = np.random.default_rng(3)
+    x = 3.0 * np.stack(np.meshgrid(*3 * [np.arange(3)]), axis=-1).reshape(-1, 3) + (10.0, -4.0, 2.0)
+    spheres = Spheres(x, v=random.normal(size=(27, 3)))
+    run(tmp_path, spheres, "cut_off_distance inf visc 1.3 multiblob 12 far_field ewald update_every 2",
+        ["fix move all nve/sphere", "timestep 1e-9"], "9 9 9 lo 6 -8 -2 hi 20 6 12", steps=3)
+    flows = [Image(tmp_path / f"flow.{step}.vti")["velocity"] for step in range(4)]
+    assert all(np.abs(u - flows[0]).max() < 1e-4 * np.abs(flows[0]).max() for u in flows[1:])
+
+
 # --- messages ---------------------------------------------------------------------------------------------------------
 
 

@@ -466,20 +466,30 @@ void sd_ewald_count(sd_ewald_sizes *s, double a)
   add_class(s->octave + octave_of(s->all.largest, a), &one);
 }
 
-int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, double largest)
+int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const double *hi,
+                        double largest)
 {
   int holds = !box->periodic && box->edge[0] > 0.0;
   double spare[3];
   for (int d = 0; d < 3; d++) {
+    const double from = d == still ? box->origin[d] : lo[d], edge = box->edge[d];
     spare[d] = fmax(0.05 * (hi[d] - lo[d]), largest);
-    holds = holds && lo[d] >= box->origin[d] && hi[d] <= box->origin[d] + box->edge[d] &&
-            box->edge[d] <= 1.5 * (hi[d] - lo[d] + 2.0 * spare[d]);
+    holds = holds && lo[d] >= from && hi[d] <= from + edge &&
+            edge <= 1.5 * (hi[d] - lo[d] + 2.0 * spare[d]);
   }
-  if (holds) return 0;
-  *box = (sd_ewald_box){0};
+  if (!holds) *box = (sd_ewald_box){0};
   for (int d = 0; d < 3; d++) {
-    box->origin[d] = lo[d] - spare[d];
-    box->edge[d] = hi[d] - lo[d] + 2.0 * spare[d];
+    if (!holds) box->edge[d] = hi[d] - lo[d] + 2.0 * spare[d];
+    if (!holds || d != still) box->origin[d] = 0.5 * (lo[d] + hi[d] - box->edge[d]);
   }
-  return 1;
+  return !holds;
+}
+
+int sd_ewald_same_tables(const sd_ewald *made, const sd_ewald *wanted)
+{
+  sd_ewald there = *made;
+  for (int d = 0; d < 3 && !made->box.periodic; d++)
+    if (!made->images.wall.sign || made->images.wall.axis != d)
+      there.box.origin[d] = wanted->box.origin[d];
+  return !memcmp(&there, wanted, sizeof(there));
 }

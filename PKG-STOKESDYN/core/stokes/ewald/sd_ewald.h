@@ -145,10 +145,16 @@ sd_status sd_ewald_choose_at_points(const sd_ewald_box *box, const sd_ewald_size
                                     double points, double tolerance, sd_ewald *out);
 
 /* An open box for spheres with centres within lo [3] ... hi [3] (of all ranks): the present one if
- * it holds them and no edge is more than 1.5 times what they need, else one with a twentieth of
- * their extent to spare on each side, so that it lasts while they move. A box with edge[0] = 0 is
- * none. Returns 1 if the box is a new one. */
-int sd_ewald_box_around(sd_ewald_box *box, const double *lo, const double *hi, double largest);
+ * it can hold them and no edge is more than 1.5 times what they need, else one with a twentieth of
+ * their extent to spare on each side, so that it lasts while they move. It stands around their
+ * middle and goes along with them, but not along the direction `still`, that of a wall (-1: there is
+ * none). A box with edge[0] = 0 is none. Returns 1 if the edges are new ones. */
+int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const double *hi,
+                        double largest);
+
+/* Do tables made for one splitting serve the other? An open box may stand elsewhere, but not nearer
+ * to a wall. */
+int sd_ewald_same_tables(const sd_ewald *made, const sd_ewald *wanted);
 
 /* The next number whose only prime factors are 2, 3, 5 and 7: fast to transform */
 int sd_ewald_transformable(double at_least);

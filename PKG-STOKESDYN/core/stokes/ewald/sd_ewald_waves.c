@@ -101,7 +101,13 @@ void sd_ewald_waves_free(sd_ewald_waves *w)
   memset(w, 0, sizeof(*w));
 }
 
-/* --- where the spheres stand on the grid --- */
+/* --- where the box and the spheres stand on the grid --- */
+
+void sd_ewald_waves_stand(sd_ewald_waves *w, const sd_ewald_box *box)
+{
+  memcpy(w->ewald.box.origin, box->origin, sizeof(box->origin));
+  turn_numbers(w->ewald.box.origin, w->turn);
+}
 
 /* Coordinates in grid spacings, P/2 beyond the first point of an open box */
 static void on_grid(const sd_ewald_waves *w, const double *x, double *s)

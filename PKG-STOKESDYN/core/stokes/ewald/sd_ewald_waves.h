@@ -41,6 +41,9 @@ sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
                                 const struct sd_ewald_kernels *kernels, int width,
                                 const sd_world *world);
 
+/* The box of the same tables may stand elsewhere now (sd_ewald_same_tables). */
+void sd_ewald_waves_stand(sd_ewald_waves *w, const sd_ewald_box *box);
+
 /* Where n of the spheres s stand on the grid: sphere [n] their numbers, which outlive the products;
  * brick [6], out: the points that they reach, for sd_grid_place, which is next. SD_OK,
  * SD_ENOMEMORY, or SD_ENOTFINITE if one is outside of an open box, or nowhere. */

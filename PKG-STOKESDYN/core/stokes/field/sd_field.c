@@ -84,7 +84,7 @@ static void box_around(sd_ewald_box *box, const sd_field_sources *s, const sd_fi
   }
   for (int d = 0; d < 3; d++) /* one sphere and one point make no box */
     if (!(hi[d] > lo[d])) largest = fmax(largest, g->step[d]);
-  sd_ewald_box_around(box, lo, hi, largest);
+  sd_ewald_box_around(box, -1, lo, hi, largest);
 }
 
 /* In pairs of the sum over all of them, as sd_ewald_cost.h weighs those of a product: a near pair
@@ -193,8 +193,10 @@ static sd_status make_tables(sd_field *f, const sd_ewald *e, int width, double t
                              const sd_world *world)
 {
   const struct sd_ewald_kernels *kernels = SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
-  if (f->ready && f->width == width && !memcmp(&f->ewald, e, sizeof(*e))) {
+  if (f->ready && f->width == width && sd_ewald_same_tables(&f->ewald, e)) {
+    f->ewald = *e;
     f->waves.grid.world = *world;
+    sd_ewald_waves_stand(&f->waves, &e->box);
     return SD_OK;
   }
   f->ready = 0;

@@ -70,7 +70,7 @@ static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
 /* Is there a splitting for which the tables are not? */
 static int changed(const ewald *e, const sd_mobility_scene *s)
 {
-  return !e->ready || e->width != s->how.width || memcmp(&e->ewald, s->how.ewald, sizeof(sd_ewald));
+  return !e->ready || e->width != s->how.width || !sd_ewald_same_tables(&e->ewald, s->how.ewald);
 }
 
 /* --- where the spheres stand --- */
@@ -159,7 +159,11 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   sd_status status = SD_OK;
   if (changed(e, s)) status = make_tables(e, s);
   e->world = s->world;
-  for (int l = 0; l < 2; l++) e->waves[l].grid.world = s->world;
+  e->ewald.box = s->how.ewald->box;
+  for (int l = 0; l < 2; l++) {
+    e->waves[l].grid.world = s->world;
+    sd_ewald_waves_stand(e->waves + l, &e->ewald.box);
+  }
   if (!(e->ewald.count > 0.0)) return status;
   int brick[12] = {0};
   sd_spheres small;

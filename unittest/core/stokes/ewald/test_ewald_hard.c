@@ -48,7 +48,7 @@ static void one_sphere_in_an_open_box_feels_nothing(void **state)
   (void) state;
   const double x[3] = {4, 4, 4}, a = 0.7, w = 1.0, F[3] = {1, 2, 3};
   sd_ewald_box box = {0};
-  sd_ewald_box_around(&box, x, x, a);
+  sd_ewald_box_around(&box, -1, x, x, a);
   const sd_ewald_sizes sizes = periodic_sizes(&a, 1);
   sd_ewald how;
   assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-9, &how), SD_OK);
@@ -126,7 +126,7 @@ static void a_cloud_in_a_corner(void **state)
     a[i] = w[i] = 1.0;
   }
   sd_ewald_box box = {0};
-  sd_ewald_box_around(&box, lo, hi, 1.0);
+  sd_ewald_box_around(&box, -1, lo, hi, 1.0);
   const sd_ewald_sizes sizes = periodic_sizes(a, MOST);
   const sd_law law = {.tensor = SD_TENSOR_RPY};
   const sd_spheres spheres = {x, a, w};

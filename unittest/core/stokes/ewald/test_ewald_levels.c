@@ -45,7 +45,7 @@ static scene make(const mixture *m, int periodic, uint64_t seed)
   memcpy(s.box.edge, m->edge, sizeof(s.box.edge));
   if (!periodic) {
     s.box = (sd_ewald_box){0};
-    sd_ewald_box_around(&s.box, lo, hi, m->ratio);
+    sd_ewald_box_around(&s.box, -1, lo, hi, m->ratio);
   }
   return s;
 }

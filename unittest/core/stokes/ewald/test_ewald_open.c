@@ -42,8 +42,8 @@ static scene make(const cloud *c, uint64_t seed)
     for (int d = 0; d < c->width; d++)
       s.F[c->width * i + d] = uniform(&seed, -1, 1) * (d < 3 ? s.a[i] : s.a[i] * s.a[i]);
   }
-  assert_int_equal(sd_ewald_box_around(&s.box, lo, hi, c->largest), 1);
-  assert_int_equal(sd_ewald_box_around(&s.box, lo, hi, c->largest), 0);
+  assert_int_equal(sd_ewald_box_around(&s.box, -1, lo, hi, c->largest), 1);
+  assert_int_equal(sd_ewald_box_around(&s.box, -1, lo, hi, c->largest), 0);
   return s;
 }
 
@@ -89,6 +89,55 @@ static void open_boxes_agree_with_all_pairs(void **state)
   }
 }
 
+/* The box goes along, its tables stay, and so does the answer, but for rounding. */
+static void a_cloud_that_moves_as_a_whole_keeps_its_tables(void **state)
+{
+  (void) state;
+  const cloud *c = clouds + 3;
+  scene s = make(c, 7);
+  const double by[3] = {-310.7, 0.0, 1234.5};
+  const sd_ewald_sizes sizes = periodic_sizes(s.a, N);
+  double u[2][6 * N], lo[3], hi[3];
+  sd_ewald how[2];
+  sd_mobility m = {0};
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(sd_ewald_choose(&s.box, &sizes, c->width, 1e-5, how + k), SD_OK);
+    const sd_mobility_scene scene = {.how = {.width = c->width, .ewald = how + k}, .n = N, .n_all = N, .spheres = {s.x, s.a, s.w}};
+    assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
+    assert_int_equal(sd_mobility_apply(&m, s.F, u[k]), SD_OK);
+    for (int d = 0; d < 3; d++) lo[d] = INFINITY, hi[d] = -INFINITY;
+    for (int i = 0; i < 3 * N; i++) {
+      s.x[i] += by[i % 3];
+      lo[i % 3] = fmin(lo[i % 3], s.x[i]);
+      hi[i % 3] = fmax(hi[i % 3], s.x[i]);
+    }
+    assert_int_equal(sd_ewald_box_around(&s.box, -1, lo, hi, c->largest), 0);
+  }
+  assert_true(sd_ewald_same_tables(how, how + 1));
+  assert_true(error_of(&s, c->width, u[1], u[0]) < 1e-11);
+  sd_mobility_free(&m);
+}
+
+/* The wall does not go along: the box stays at its height as long as it holds the cloud. */
+static void a_box_above_a_wall_goes_along_it_alone(void **state)
+{
+  (void) state;
+  sd_ewald_box box = {0};
+  const double lo[2][3] = {{0, 0, 2}, {30, -7, 2.5}}, hi[2][3] = {{10, 8, 9}, {40, 1, 9.5}};
+  assert_int_equal(sd_ewald_box_around(&box, 2, lo[0], hi[0], 1.0), 1);
+  const sd_ewald_box first = box;
+  assert_int_equal(sd_ewald_box_around(&box, 2, lo[1], hi[1], 1.0), 0);
+  assert_true(fabs(box.origin[0] - first.origin[0] - 30.0) < 1e-12 && fabs(box.origin[1] - first.origin[1] + 7.0) < 1e-12);
+  assert_true(box.origin[2] == first.origin[2]);
+  sd_ewald how[3] = {{.box = first, .images.wall = {.sign = 1, .axis = 2}}, {.box = box, .images.wall = {.sign = 1, .axis = 2}}};
+  assert_true(sd_ewald_same_tables(how, how + 1));
+  how[2] = how[1];
+  how[2].box.origin[2] += 0.1;
+  assert_false(sd_ewald_same_tables(how, how + 2));
+  const double high[3] = {40, 1, 30};
+  assert_int_equal(sd_ewald_box_around(&box, 2, lo[1], high, 1.0), 1);
+}
+
 /* At any tolerance, with radii to 1 : 3 on two levels too */
 static void few_spheres_cost_more_than_all_pairs(void **state)
 {
@@ -111,6 +160,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(open_boxes_agree_with_all_pairs),
+      cmocka_unit_test(a_cloud_that_moves_as_a_whole_keeps_its_tables),
+      cmocka_unit_test(a_box_above_a_wall_goes_along_it_alone),
       cmocka_unit_test(few_spheres_cost_more_than_all_pairs),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

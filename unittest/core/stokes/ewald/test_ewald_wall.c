@@ -97,7 +97,7 @@ static sd_ewald split_of(const scene *s, const sd_wall *wall, double largest, do
   const sd_ewald_sizes sizes = periodic_sizes(s->a, N);
   sd_ewald_box box = {0};
   sd_ewald how;
-  sd_ewald_box_around(&box, s->lo, s->hi, largest);
+  sd_ewald_box_around(&box, wall->axis, s->lo, s->hi, largest);
   assert_int_equal(sd_ewald_choose_at_wall(&box, wall, &sizes, tolerance, &how), SD_OK);
   return how;
 }
