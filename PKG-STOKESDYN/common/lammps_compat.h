@@ -3,18 +3,22 @@
 #ifndef SD_LAMMPS_COMPAT_H
 #define SD_LAMMPS_COMPAT_H
 
+#include "bond_hybrid.h"
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
 #include "fix_deform.h"
+#include "force.h"
 #include "modify.h"
 #include "neigh_request.h"
 #include "neighbor.h"
 #include "output.h"
-#include "pair.h"
+#include "pair_hybrid.h"
 #include "region.h"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace StokesDyn {
 namespace Compat {
@@ -87,6 +91,44 @@ namespace Compat {
    public:
     static auto of(LAMMPS_NS::FixDeform *deform) { return deform->*&DeformSettings::set; }
   };
+
+  /* Names and styles: a hybrid (hybrid/overlay, hybrid/scaled), and behind it those below it */
+  using PairStyles = std::vector<std::pair<std::string, LAMMPS_NS::Pair *>>;
+  using BondStyles = std::vector<std::pair<std::string, LAMMPS_NS::Bond *>>;
+
+  /* It tells its derived classes only. */
+  class PairHybridParts : private LAMMPS_NS::PairHybrid {
+   public:
+    static PairStyles of(LAMMPS_NS::PairHybrid *hybrid)
+    {
+      PairStyles parts;
+      for (int m = 0; m < hybrid->*&PairHybridParts::nstyles; m++)
+        parts.emplace_back((hybrid->*&PairHybridParts::keywords)[m],
+                           (hybrid->*&PairHybridParts::styles)[m]);
+      return parts;
+    }
+  };
+
+  inline PairStyles pair_styles(LAMMPS_NS::Force *force)
+  {
+    PairStyles all;
+    if (!force->pair) return all;
+    all.emplace_back(force->pair_style, force->pair);
+    if (auto *hybrid = dynamic_cast<LAMMPS_NS::PairHybrid *>(force->pair))
+      for (auto &part : PairHybridParts::of(hybrid)) all.push_back(part);
+    return all;
+  }
+
+  inline BondStyles bond_styles(LAMMPS_NS::Force *force)
+  {
+    BondStyles all;
+    if (!force->bond) return all;
+    all.emplace_back(force->bond_style, force->bond);
+    if (auto *hybrid = dynamic_cast<LAMMPS_NS::BondHybrid *>(force->bond))
+      for (int m = 0; m < hybrid->nstyles; m++)
+        all.emplace_back(hybrid->keywords[m], hybrid->styles[m]);
+    return all;
+  }
 
   inline void minimum_image(LAMMPS_NS::Domain *domain, double *d)
   {

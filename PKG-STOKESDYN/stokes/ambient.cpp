@@ -378,6 +378,17 @@ void Ambient::select()
   epochs.selection.advance();
 }
 
+std::vector<char> Ambient::chosen_now() const
+{
+  std::vector<char> chosen(atom->nlocal + 1, 0);
+  if (region) region->prematch();
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *x = atom->x[i];
+    chosen[i] = (atom->mask[i] & groupbit) && (!region || region->match(x[0], x[1], x[2]));
+  }
+  return chosen;
+}
+
 enum Fault { NONE, POSITION, FAR_OUT, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY, FLUID_VORTICITY };
 
 /* More than one length of a periodic box outside of it: LAMMPS wraps an atom by one length, and

@@ -77,6 +77,9 @@ class Ambient : protected LAMMPS_NS::Pointers {
    * box, or is no formula. */
   const double *jumps() const { return jumping ? jump : nullptr; }
 
+  /* Before a run, since init(): [nlocal] who would take part where the atoms are now */
+  std::vector<char> chosen_now() const;
+
   const std::vector<char> &active() const { return takes_part; }
   /* The atoms of this rank that take part, in their order. While Epochs::selection stands, nobody
    * need look at the others. */

@@ -6,10 +6,6 @@
 
 #include "scene.h"
 
-namespace LAMMPS_NS {
-class Fix;
-}
-
 namespace StokesDyn {
 
 class Hydrodynamics;
@@ -57,19 +53,8 @@ double spheres_cut_by_wall(const Voice &voice, const Scene &scene);
 
 // --- motion without inertia: errors, that name the other command, and limits of the time step ----
 
-/* Does the time step adapt? Group bit of those that are held, 0: nobody is. */
-struct OverdampedWays {
-  bool adapts;
-  int held_bit;
-};
-
-/* The settings of the pair style, other fixes and pair styles, the kind of run. On all ranks. */
-void refuse_inertia(const Voice &voice, const LAMMPS_NS::Fix *self,
-                    const Hydrodynamics &hydro, const OverdampedWays &ways);
-
-/* With Brownian motion: contacts with friction, whose damping has no noise; keyword begins the message. A
- * warning for contacts that do not tell. */
-void refuse_friction(const Voice &keyword);
+/* The settings of the pair style, fix stokes_dynamics, the kind of run. On all ranks. */
+void refuse_inertia(const Voice &voice, const Hydrodynamics &hydro);
 
 /* Once a run, when something besides the pair style acts on the spheres: how long a step contacts
  * and bonds allow. A contact of stiffness k relaxes at the rate lambda k/(6 pi eta a), lambda up to

@@ -82,7 +82,8 @@ void FixStokesDynamicsOverdamped::init()
     held_bit = group->bitmask[igroup_held];
     for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
   }
-  refuse_inertia(voice, this, hydrodynamics(), {adapt.every > 0, held_bit});
+  refuse_inertia(voice, hydrodynamics());
+  look_at_neighbours();
   spin.init(hydrodynamics(), held_bit);
   const char *holds = held_bit ? "keyword held" : spin.on() ? "keyword spin" : "";
   if (!scheme_given)
@@ -90,6 +91,16 @@ void FixStokesDynamicsOverdamped::init()
   if (noise.on())
     noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, holds});
   if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
+}
+
+void FixStokesDynamicsOverdamped::look_at_neighbours()
+{
+  const unsigned facts = OVERDAMPED | fact(NOISE, noise.on()) | fact(ADAPTING, adapt.every > 0) |
+      fact(TURNING, hydrodynamics().rotation());
+  neighbourhood.look(voice, stokes_neighbours(), facts, [this](int i) {
+    if (!(atom->mask[i] & groupbit)) return 0u;
+    return (unsigned) (is_held(i) ? HELD : FREE);
+  }, this);
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------

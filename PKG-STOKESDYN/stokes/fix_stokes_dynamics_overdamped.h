@@ -9,6 +9,7 @@
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
 #include "hydrodynamics.h"
+#include "neighbours_stokes.h"
 #include "noise.h"
 #include "rows_fix.h"
 #include "spin.h"
@@ -101,6 +102,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void tracked_velocity(const Velocities::Clump &clump, double V[6]) const;
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
+  Neighbourhood neighbourhood;
+  void look_at_neighbours();
   bool is_held(int i) const { return atom->mask[i] & held_bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;

@@ -2,7 +2,6 @@
 
 #include "callback.h"
 #include "checks.h"
-#include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
 
@@ -261,15 +260,6 @@ void Noise::refuse(const Hydrodynamics &hydro, const Ways &ways) const
   if (ways.adapts)
     keyword.fail("averages over steps of unequal length are not averages over time: leave out "
                  "adapt");
-  if (const Fix *fix = fix_like(lmp, "^dt/reset"))
-    keyword.fail(name_of(fix) + " makes steps of unequal length, whose averages are not those of "
-                 "time: take it away");
-  for (const char *style : {"^viscous", "^langevin", "^brownian"})
-    if (const Fix *fix = fix_like(lmp, style))
-      keyword.fail(name_of(fix) + " has noise or a drag of its own: take it away");
-  if (force->pair_match("^brownian", 0, 1))
-    keyword.fail("pair_style brownian* has noise of its own: take it away");
-  refuse_friction(keyword);
 }
 
 void Noise::init(Hydrodynamics &hydro, const Ways &ways)

@@ -403,11 +403,11 @@ FIELD = "variable eta atom 1+0.1*x"
     ("cut_off_distance inf visc v_eta", "", "keyword visc of pair_style stokes_dynamics, which varies in space"),
     ("clumps_only yes rigid_clumps yes shell 12 visc v_eta", "", "lone clumps in a viscosity that varies in space have a drift"),
     (INF, "fix step all dt/reset 10 NULL 0.1 0.1", "of style dt/reset makes steps of unequal length"),
-    (INF, "fix bath none langevin 1 1 1 77", "of style langevin has noise or a drag of its own"),
-    (INF, "fix bath none viscous 1", "of style viscous has noise or a drag of its own")])
+    (INF, "fix bath all langevin 1 1 1 77", "of style langevin adds a drag to spheres"),
+    (INF, "fix bath all viscous 1", "of style viscous adds a drag to spheres")])
 def test_drifts_and_other_noise_are_errors(simulation, style, lines, message):
     sim = simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), style, fix=False, dt=1e-3, before_pair=FIELD)
-    sim.commands(f"group none id 99\n{lines}")
+    sim.commands(lines)
     with pytest.raises(LammpsError, match=re.escape(message)):
         noise(sim, "scheme ab2").run(0)
 

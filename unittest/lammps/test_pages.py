@@ -5,6 +5,8 @@ import re
 
 import pytest
 
+import neighbour_tables
+
 PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN"
 PAGES = {path.name: path.read_text() for path in sorted((PACKAGE / "doc").glob("*.md"))}
 EVERYWHERE = "howto_trouble.md"    # messages that all styles share
@@ -215,3 +217,16 @@ def test_the_readme_is_short_and_the_other_texts_are_narrow():
     assert len((PACKAGE.parent / "README.md").read_text().splitlines()) < 120
     for path in (PACKAGE.parent / "README.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md", PACKAGE.parent / "examples" / "README.md"):
         assert max(len(line) for line in path.read_text().splitlines()) <= 120, path
+
+
+# --- which LAMMPS commands go with ours -----------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("room", neighbour_tables.HEADINGS)
+def test_the_page_shows_the_table_of_neighbours_row_by_row(room):
+    assert neighbour_tables.rows_of_page(room) == neighbour_tables.rows_of_code(room)
+
+
+def test_there_are_neighbours():
+    assert len(neighbour_tables.rows_of_code("stokes")) > 10
+    source = "".join(path.read_text() for path in (PACKAGE / "stokes").glob("neighbours*.cpp"))
+    assert len(neighbour_tables.rows_of_code("stokes")) == source.count("{N::")

@@ -154,7 +154,7 @@ SHEAR = "fix d all deform 1 xy erate 0.1 remap"
     ("box", "fix drag all stokes_dynamics\nfix move all nve/sphere", f"{SHEAR} none", "needs the velocity of its image"),
     ("v_ux 0 0", "fix drag all stokes_dynamics\nfix move all nve/sphere", f"{SHEAR} none", "use remap v"),
     ("0 0 0 rigid_clumps yes rotation yes", FIX, f"{SHEAR} x", "remap x moves the spheres of a rigid clump apart"),
-    ("box", FIX + " adapt 1 1e-3 1 0.1", f"{SHEAR} v", "keyword adapt: fix d of style deform counts its rate"),
+    ("box", FIX + " adapt 1 1e-3 1 0.1", f"{SHEAR} v", "fix d of style deform counts its rate"),
 ])
 def test_what_a_box_that_moves_does_not_go_with_is_named(simulation, fluid, motion, line, message):
     sim = simulation(cloud(), f"cut_off_distance inf visc 1 fluid_velocity {fluid}", fix=False, box=BOX, tilt=(0.0, 0.0, 0.0),

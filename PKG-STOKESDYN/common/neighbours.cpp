@@ -1,0 +1,220 @@
+#include "neighbours.h"
+
+#include "fixes.h"
+#include "lammps_compat.h"
+#include "ranks.h"
+
+#include "atom.h"
+#include "bond.h"
+#include "compute.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
+#include "pair.h"
+
+#include <cstdio>
+#include <memory>
+#include <sstream>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+// --- names ---------------------------------------------------------------------------------------
+
+static bool fits_one(const char *pattern, const char *name)
+{
+  if (*pattern == '*') {
+    for (const char *rest = name;; rest++) {
+      if (fits_one(pattern + 1, rest)) return true;
+      if (*rest == '\0') return false;
+    }
+  }
+  return *pattern == *name && (*pattern == '\0' || fits_one(pattern + 1, name + 1));
+}
+
+static std::vector<std::string> words_of(const std::string &styles)
+{
+  std::istringstream in(styles);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+bool fits(const std::string &styles, const std::string &style)
+{
+  for (const std::string &word : words_of(styles))
+    if (fits_one(word.c_str(), style.c_str())) return true;
+  return false;
+}
+
+// --- who is there --------------------------------------------------------------------------------
+
+static std::vector<Guest> fixes(LAMMPS *lmp)
+{
+  std::vector<Guest> guests;
+  for (int i = 0; i < lmp->modify->nfix; i++) {
+    Fix *fix = lmp->modify->fix[i];
+    guests.push_back({lmp, fix->style, name_of(fix)});
+    guests.back().fix = fix;
+  }
+  return guests;
+}
+
+static std::vector<Guest> computes(LAMMPS *lmp)
+{
+  std::vector<Guest> guests;
+  for (int i = 0; i < lmp->modify->ncompute; i++) {
+    Compute *compute = lmp->modify->compute[i];
+    guests.push_back({lmp, compute->style,
+                      "compute " + std::string(compute->id) + " of style " + compute->style});
+    guests.back().compute = compute;
+  }
+  return guests;
+}
+
+/* The style itself, then those below a hybrid */
+static std::vector<Guest> pairs(LAMMPS *lmp)
+{
+  std::vector<Guest> guests;
+  for (const auto &each : Compat::pair_styles(lmp->force)) {
+    guests.push_back({lmp, each.first, "pair_style " + each.first});
+    guests.back().pair = each.second;
+  }
+  return guests;
+}
+
+static std::vector<Guest> bonds(LAMMPS *lmp)
+{
+  std::vector<Guest> guests;
+  for (const auto &each : Compat::bond_styles(lmp->force)) {
+    guests.push_back({lmp, each.first, "bond_style " + each.first});
+    guests.back().bond = each.second;
+  }
+  return guests;
+}
+
+static std::vector<Guest> atom_styles(LAMMPS *lmp, const std::string &styles)
+{
+  std::vector<Guest> guests;
+  for (const std::string &style : words_of(styles))
+    if (lmp->atom->style_match(style.c_str())) guests.push_back({lmp, style, "atom_style " + style});
+  return guests;
+}
+
+static std::vector<Guest> guests_of(LAMMPS *lmp, const Neighbour &row)
+{
+  std::vector<Guest> all, found;
+  switch (row.kind) {
+    case Neighbour::FIX: all = fixes(lmp); break;
+    case Neighbour::PAIR: all = pairs(lmp); break;
+    case Neighbour::BOND: all = bonds(lmp); break;
+    case Neighbour::COMPUTE: all = computes(lmp); break;
+    case Neighbour::ATOM: return atom_styles(lmp, row.styles);
+  }
+  for (const Guest &guest : all)
+    if (fits(row.styles, guest.style)) found.push_back(guest);
+  return found;
+}
+
+// --- does it act on atoms of ours? ---------------------------------------------------------------
+
+using Ours = std::function<bool(int)>;
+
+/* Through pairs of types that it has coefficients for, one of them of ours */
+static bool acts_by_types(const Guest &guest, const Ours &ours)
+{
+  const Atom *atom = guest.lmp->atom;
+  int **set = guest.pair->setflag;
+  if (!set) return true;    // a hybrid, or it has none
+  const int n = atom->ntypes;
+  std::vector<int> there(2 * (size_t) n + 2, 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    there[atom->type[i]] = 1;
+    if (ours(i)) there[n + atom->type[i]] = 1;
+  }
+  std::vector<int> all(there.size());
+  MPI_Allreduce(there.data(), all.data(), (int) all.size(), MPI_INT, MPI_MAX, guest.lmp->world);
+  for (int i = 1; i <= n; i++)
+    for (int j = i; j <= n; j++)
+      if (set[i][j] && all[i] && all[j] && (all[n + i] || all[n + j])) return true;
+  return false;
+}
+
+/* Through a bond of one of its types; who is at the other end is known where that atom is near. */
+static bool acts_by_bonds(const Guest &guest, const Ours &ours)
+{
+  Atom *atom = guest.lmp->atom;
+  const int *set = guest.bond->setflag;
+  const bool listed = atom->molecular == Atom::MOLECULAR && set;
+  return first_atom(guest.lmp, [&](int i) {
+    if (!listed) return ours(i);
+    for (int m = 0; m < atom->num_bond[i]; m++) {
+      const int type = abs(atom->bond_type[i][m]);
+      if (type < 1 || type > atom->nbondtypes || !set[type]) continue;
+      const int other = atom->map_style ? atom->map(atom->bond_atom[i][m]) : -1;
+      if (ours(i) || (other >= 0 && other < atom->nlocal && ours(other))) return true;
+    }
+    return false;
+  }) != 0;
+}
+
+static bool acts(const Guest &guest, const Ours &ours)
+{
+  const int *mask = guest.lmp->atom->mask;
+  if (guest.pair) return acts_by_types(guest, ours);
+  if (guest.bond) return acts_by_bonds(guest, ours);
+  const int bit = guest.fix ? guest.fix->groupbit : ~0;
+  return first_atom(guest.lmp, [&](int i) { return (mask[i] & bit) && ours(i); }) != 0;
+}
+
+// --- the walker ----------------------------------------------------------------------------------
+
+static std::string filled(const std::string &text, const std::string &with)
+{
+  const size_t hole = text.find("{}");
+  return hole == std::string::npos ? text : text.substr(0, hole) + with + text.substr(hole + 2);
+}
+
+void Neighbourhood::look(const Voice &voice, const std::vector<Neighbour> &table, unsigned facts,
+                         const std::function<unsigned(int)> &sort, const Fix *self)
+{
+  for (const Neighbour &row : table) {
+    if (row.verdict == Neighbour::FINE || (facts & row.where) != row.where) continue;
+    for (const Guest &guest : guests_of(voice.lmp, row)) {
+      std::string says;
+      if (self && guest.fix == self) continue;
+      if (row.matters && !row.matters(guest, says)) continue;
+      if (row.sorts != Neighbour::ANYWHERE &&
+          !acts(guest, [&](int i) { return (sort(i) & row.sorts) != 0; }))
+        continue;
+      const std::string message = guest.name + " " + filled(row.why, says);
+      if (row.verdict == Neighbour::ERROR) voice.fail(message);
+      if (warned.insert(message).second) voice.warn(message);
+    }
+  }
+}
+
+// --- coefficients --------------------------------------------------------------------------------
+
+std::vector<std::vector<double>> coefficients(const Guest &guest)
+{
+  std::vector<std::vector<double>> lines;
+  std::unique_ptr<FILE, int (*)(FILE *)> file(tmpfile(), fclose);
+  if (!file) return lines;
+  if (guest.pair) guest.pair->write_data_all(file.get());
+  if (guest.bond) guest.bond->write_data(file.get());
+  rewind(file.get());
+  char line[1000];
+  while (fgets(line, sizeof(line), file.get())) {
+    std::istringstream in(line);
+    std::vector<double> numbers;
+    for (double number; in >> number;) numbers.push_back(number);
+    if (numbers.size() < 2) continue;
+    const int i = (int) numbers[0], j = (int) numbers[1];
+    if (guest.pair ? guest.pair->setflag[i][j] : guest.bond->setflag[i]) lines.push_back(numbers);
+  }
+  return lines;
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,81 @@
+/* Which commands of LAMMPS go with a style of ours, as data. Each model has a table of rows in its
+ * room; at the beginning of a run it asks this one walker, which looks whether what a row names is
+ * there and acts on atoms of ours. doc/howto_trouble.md shows the tables row by row. */
+#ifndef SD_NEIGHBOURS_H
+#define SD_NEIGHBOURS_H
+
+#include "keywords.h"
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Bond;
+class Compute;
+class Fix;
+class Pair;
+}
+
+namespace StokesDyn {
+
+/* A command of LAMMPS that stands beside a style of ours; of the pointers one is set, none for an atom
+ * style. */
+struct Guest {
+  LAMMPS_NS::LAMMPS *lmp;
+  std::string style;
+  /* as messages name it: "fix ID of style STYLE", "pair_style STYLE" */
+  std::string name;
+  LAMMPS_NS::Fix *fix = nullptr;
+  LAMMPS_NS::Pair *pair = nullptr;
+  LAMMPS_NS::Bond *bond = nullptr;
+  LAMMPS_NS::Compute *compute = nullptr;
+};
+
+struct Neighbour {
+  enum Kind { FIX, PAIR, BOND, COMPUTE, ATOM };
+  /* FINE: a row for the page, of what one might doubt */
+  enum Verdict { FINE, WARNING, ERROR };
+  enum : unsigned { ANYWHERE = 0 };
+
+  Kind kind;
+  /* names of styles, with blanks between them; * stands for any letters (but for ATOM) */
+  const char *styles;
+  /* bits that the room defines: all of them must be facts of this run; 0: always */
+  unsigned where;
+  Verdict verdict;
+  /* what happens and the way out, behind the name of the guest; {}: what `matters` says */
+  const char *why;
+  /* of guests whose name alone does not tell; the same on all ranks. nullptr: always */
+  bool (*matters)(const Guest &guest, std::string &says) = nullptr;
+  /* bits that the room defines: the sorts of its atoms that count; ANYWHERE: on whatever atoms it acts */
+  unsigned sorts = ~0u;
+};
+
+/* The walker. Each warning is given once in the life of its owner. */
+class Neighbourhood {
+ public:
+  /* Errors and warnings of the rows that hold: "<command of voice>: <name of the guest> <why>". facts:
+   * bits of this run. sort(i): bits of owned atom i, 0: it is none of ours. A fix acts on the atoms of
+   * its group, a pair style on those of the types of its pair_coeff, a bond style on those that it
+   * binds, all others on all. self: a fix that is not looked at. On all ranks together, when LAMMPS
+   * has initialised its pair styles (Fix::init, Pair::setup), or before for rows that do not look at
+   * coefficients. */
+  void look(const Voice &voice, const std::vector<Neighbour> &table, unsigned facts,
+            const std::function<unsigned(int)> &sort, const LAMMPS_NS::Fix *self = nullptr);
+
+ private:
+  std::set<std::string> warned;
+};
+
+/* Does one of these names (Neighbour::styles) fit? */
+bool fits(const std::string &styles, const std::string &style);
+
+/* What this pair or bond style would write into data files: lines of numbers, of a pair style i j and
+ * the coefficients of these types, of a bond style the type and its coefficients; empty: it writes
+ * none. Of types that have some; all ranks. */
+std::vector<std::vector<double>> coefficients(const Guest &guest);
+
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,37 @@
+/* Which commands of LAMMPS go with pair_style stokes_dynamics and its fixes. */
+#ifndef SD_NEIGHBOURS_STOKES_H
+#define SD_NEIGHBOURS_STOKES_H
+
+#include "neighbours.h"
+
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+/* Facts of a run; the page says them in the words that stand here. */
+enum StokesFact : unsigned {
+  FORCE = 1 << 0,         // with inertia
+  OVERDAMPED = 1 << 1,    // without inertia
+  NOISE = 1 << 2,         // with temperature
+  ADAPTING = 1 << 3,      // with adapt
+  TURNING = 1 << 4,       // spheres turn
+};
+
+inline unsigned fact(StokesFact which, bool holds) { return holds ? (unsigned) which : 0u; }
+
+/* Sorts of spheres: held are those of keyword held. */
+enum StokesSort : unsigned { FREE = 1 << 0, HELD = 1 << 1 };
+
+const std::vector<Neighbour> &stokes_neighbours();
+
+/* Stiffness and damping of a contact style of package GRANULAR, which tells nobody but a restart
+ * file: k_n k_t gamma_n gamma_t friction. Without a style: there is none. */
+struct Contact {
+  std::string style;
+  double k = 0.0, damping = 0.0, friction = 0.0;
+};
+Contact contact_of(LAMMPS_NS::LAMMPS *lmp);
+
+}    // namespace StokesDyn
+#endif

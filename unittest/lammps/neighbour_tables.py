@@ -1,0 +1,56 @@
+"""The tables of neighbours (common/neighbours.h), read off the sources of a model's room and off the page, where a row is an entry
+of a list. Called by hand it prints the entries for the page."""
+import pathlib
+import re
+import textwrap
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN"
+PAGE = PACKAGE / "doc" / "howto_trouble.md"
+KINDS = {"FIX": "fix", "PAIR": "pair_style", "BOND": "bond_style", "COMPUTE": "compute", "ATOM": "atom_style"}
+VERDICTS = {"FINE": "fine", "WARNING": "warning", "ERROR": "error"}
+# the heading of the page above the list of each room
+HEADINGS = {"stokes": "### Beside pair_style stokes_dynamics and its fixes", "sph": "### Beside the SPH styles",
+            "vans": "### Beside fix hydro/vans"}
+
+STRINGS = r"(?:\"(?:[^\"\\]|\\.)*\"\s*)+"
+ROW = re.compile(rf"\{{N::(?P<kind>\w+),\s*(?P<styles>{STRINGS}),\s*(?P<where>[\w\s|]+?),\s*N::(?P<verdict>\w+),\s*(?P<why>{STRINGS})")
+
+
+def joined(strings):
+    return "".join(re.findall(r"\"((?:[^\"\\]|\\.)*)\"", strings))
+
+
+def facts(room):
+    """Of the enum StokesFact and its like: what the page says of each, which is the comment behind it."""
+    words = {}
+    for header in sorted((PACKAGE / room).glob("neighbours*.h")):
+        for enum in re.findall(r"enum \w+Fact\b[^{]*\{(.*?)\};", header.read_text(), re.S):
+            words.update(re.findall(r"(\w+) = 1 << \d+,\s*// (.*)", enum))
+    return words
+
+
+def rows_of_code(room):
+    """Every row, in its order and in the words of the page."""
+    words, rows = facts(room), []
+    for path in sorted((PACKAGE / room).glob("neighbours*.cpp")):
+        for row in ROW.finditer(path.read_text()):
+            where = [] if row["where"] == "0" else [words[name.strip()] for name in row["where"].split("|")]
+            styles = " ".join(f"`{style}`" for style in joined(row["styles"]).split())
+            what = ", ".join([f"{KINDS[row['kind']]} {styles}"] + where)
+            rows.append(f"**{VERDICTS[row['verdict']]}**: {what}: {joined(row['why']).replace('{}', '...')}")
+    return rows
+
+
+def rows_of_page(room):
+    text = PAGE.read_text()
+    if HEADINGS[room] + "\n" not in text:
+        return []
+    part = re.split(r"^#+ ", text.split(HEADINGS[room] + "\n", 1)[1], maxsplit=1, flags=re.M)[0]
+    return [" ".join(row.split()) for row in re.findall(r"^\* (\*\*.*?)(?=^\* |\n\n|\Z)", part, re.S | re.M)]
+
+
+if __name__ == "__main__":
+    for room, heading in HEADINGS.items():
+        print(f"\n{heading}\n")
+        for row in rows_of_code(room):
+            print("\n".join(textwrap.wrap("* " + row, 120, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)))
