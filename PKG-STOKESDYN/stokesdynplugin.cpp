@@ -3,9 +3,7 @@
  * compiled for. */
 #include "comm.h"
 #include "lammps.h"
-#include "lammpsplugin.h"
 #include "library.h"
-#include "version.h"
 
 #include "compute_sph_energy.h"
 #include "compute_sph_probe.h"
@@ -22,6 +20,7 @@
 #include "fix_stokes_dynamics_state.h"
 #include "fix_wall_sph.h"
 #include "guard.h"
+#include "lammps_plugin_interface.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "pair_stokes_dynamics.h"
 
@@ -50,10 +49,10 @@ template <class Style> static void *make_compute(LAMMPS *lmp, int narg, char **a
                  [=] { return static_cast<Compute *>(new Style(lmp, narg, arg)); });
 }
 
-static lammpsplugin_t entry(const char *kind, const char *name, const char *info)
+static PluginStyle entry(const char *kind, const char *name, const char *info)
 {
-  lammpsplugin_t plugin = {};
-  plugin.version = LAMMPS_VERSION;
+  PluginStyle plugin = {};
+  plugin.version = SD_LAMMPS_VERSION;
   plugin.author = "the PKG-STOKESDYN developers";
   plugin.style = kind;
   plugin.name = name;
@@ -61,28 +60,28 @@ static lammpsplugin_t entry(const char *kind, const char *name, const char *info
   return plugin;
 }
 
-template <class Style> static lammpsplugin_t pair(const char *info)
+template <class Style> static PluginStyle pair(const char *info)
 {
-  lammpsplugin_t plugin = entry("pair", Style::STYLE, info);
-  plugin.creator.v1 = (lammpsplugin_factory1 *) &make_pair<Style>;
+  PluginStyle plugin = entry("pair", Style::STYLE, info);
+  plugin.creator.of_pair = &make_pair<Style>;
   return plugin;
 }
 
-template <class Style> static lammpsplugin_t fix(const char *info)
+template <class Style> static PluginStyle fix(const char *info)
 {
-  lammpsplugin_t plugin = entry("fix", Style::STYLE, info);
-  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_fix<Style>;
+  PluginStyle plugin = entry("fix", Style::STYLE, info);
+  plugin.creator.of_command = &make_fix<Style>;
   return plugin;
 }
 
-template <class Style> static lammpsplugin_t compute(const char *info)
+template <class Style> static PluginStyle compute(const char *info)
 {
-  lammpsplugin_t plugin = entry("compute", Style::STYLE, info);
-  plugin.creator.v2 = (lammpsplugin_factory2 *) &make_compute<Style>;
+  PluginStyle plugin = entry("compute", Style::STYLE, info);
+  plugin.creator.of_command = &make_compute<Style>;
   return plugin;
 }
 
-static std::vector<lammpsplugin_t> styles()
+static std::vector<PluginStyle> styles()
 {
   return {pair<PairStokesDynamics>("Stokes drag with hydrodynamic interactions"),
           fix<FixStokesDynamics>("applies or reports the force of pair_style stokes_dynamics"),
@@ -94,7 +93,7 @@ static std::vector<lammpsplugin_t> styles()
           fix<FixHydroVans>("one-dimensional turbulent stream over a granular bed")};
 }
 
-static std::vector<lammpsplugin_t> sph_styles()
+static std::vector<PluginStyle> sph_styles()
 {
   return {pair<PairSph>("weakly compressible SPH"),
           fix<FixSphPressure>("SPH: equation of state"),
@@ -142,7 +141,7 @@ class OneLine {
 };
 
 /* Is this style on the list of plugins, which all LAMMPS of a process share? */
-static bool listed(const lammpsplugin_t &wanted)
+static bool listed(const PluginStyle &wanted)
 {
   char kind[64] = "", name[64] = "";
   for (int k = 0; k < lammps_plugin_count(); k++)
@@ -157,7 +156,7 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
 {
   const OneLine out(static_cast<LAMMPS *>(lmp));
   const bool sph = lammps_has_style(lmp, "atom", "sph");
-  std::vector<lammpsplugin_t> all = styles();
+  std::vector<PluginStyle> all = styles();
   if (sph) {
     const auto more = sph_styles();
     all.insert(all.end(), more.begin(), more.end());
@@ -171,14 +170,14 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
                 "styles");
     return;
   }
-  for (lammpsplugin_t &plugin : all) {
+  for (PluginStyle &plugin : all) {
     if (lammps_has_style(lmp, plugin.style, plugin.name))
       out.print(std::string("WARNING: the plugin takes the place of ") + plugin.style + " style " +
                 plugin.name + " of LAMMPS");
     plugin.handle = handle;
-    ((lammpsplugin_regfunc) regfunc)(&plugin, lmp);
+    ((PluginRegister *) regfunc)(&plugin, lmp);
   }
-  out.print(version + ", built for LAMMPS " LAMMPS_VERSION ": stokes_dynamics, hydro/vans" +
+  out.print(version + ", built for LAMMPS " SD_LAMMPS_VERSION ": stokes_dynamics, hydro/vans" +
             (sph ? ", sph" : ""));
   if (!sph)
     out.print("stokesdynplugin.so: this LAMMPS has no atom_style sph, so the SPH styles are not "

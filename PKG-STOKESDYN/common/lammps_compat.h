@@ -3,22 +3,36 @@
 #ifndef SD_LAMMPS_COMPAT_H
 #define SD_LAMMPS_COMPAT_H
 
-#include "bond_hybrid.h"
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
-#include "fix_deform.h"
 #include "force.h"
 #include "modify.h"
-#include "neigh_request.h"
 #include "neighbor.h"
 #include "output.h"
-#include "pair_hybrid.h"
 #include "region.h"
+
+#if !SD_HAVE_ADD_REQUEST
+#include "neigh_request.h"
+#endif
 
 #include <string>
 #include <utility>
 #include <vector>
+
+/* What installed headers leave out. Of AtomVec two functions, which no atom style replaces and which
+ * the library exports. */
+#if SD_HAVE_ATOM_VEC_H
+#include "atom_vec.h"
+#else
+namespace LAMMPS_NS {
+class AtomVec {
+ public:
+  void create_atom(int type, double *x);
+  void copy(int from, int to, int forget);
+};
+}    // namespace LAMMPS_NS
+#endif
 
 namespace StokesDyn {
 namespace Compat {
@@ -84,38 +98,26 @@ namespace Compat {
     return i < 0 ? nullptr : modify->fix[i];
   }
 
-  /* Its settings of x y z yz xz xy, by index 0 ... 5: fields as in fix_deform.h, styles as below. It
-   * tells its derived classes only. */
-  enum DeformStyle { NONE, FINAL, DELTA, SCALE, VEL, ERATE, TRATE, VOLUME, WIGGLE, VARIABLE };
-  class DeformSettings : private LAMMPS_NS::FixDeform {
-   public:
-    static auto of(LAMMPS_NS::FixDeform *deform) { return deform->*&DeformSettings::set; }
-  };
-
-  /* Names and styles: a hybrid (hybrid/overlay, hybrid/scaled), and behind it those below it */
+  /* Names and styles: a hybrid (hybrid/overlay, hybrid/scaled), and behind it those below it. The headers
+   * of hybrids are not installed; Force finds what is below them by name. */
   using PairStyles = std::vector<std::pair<std::string, LAMMPS_NS::Pair *>>;
   using BondStyles = std::vector<std::pair<std::string, LAMMPS_NS::Bond *>>;
-
-  /* It tells its derived classes only. */
-  class PairHybridParts : private LAMMPS_NS::PairHybrid {
-   public:
-    static PairStyles of(LAMMPS_NS::PairHybrid *hybrid)
-    {
-      PairStyles parts;
-      for (int m = 0; m < hybrid->*&PairHybridParts::nstyles; m++)
-        parts.emplace_back((hybrid->*&PairHybridParts::keywords)[m],
-                           (hybrid->*&PairHybridParts::styles)[m]);
-      return parts;
-    }
-  };
 
   inline PairStyles pair_styles(LAMMPS_NS::Force *force)
   {
     PairStyles all;
     if (!force->pair) return all;
     all.emplace_back(force->pair_style, force->pair);
-    if (auto *hybrid = dynamic_cast<LAMMPS_NS::PairHybrid *>(force->pair))
-      for (auto &part : PairHybridParts::of(hybrid)) all.push_back(part);
+    if (all[0].first.compare(0, 6, "hybrid") != 0) return all;
+    for (const auto &style : *force->pair_map) {
+      LAMMPS_NS::Pair *last = nullptr;
+      for (int n = 1;; n++) {    // a hybrid may have a style several times; its only one answers to each n
+        LAMMPS_NS::Pair *part = force->pair_match(style.first, 1, n);
+        if (!part || part == last) break;
+        all.emplace_back(style.first, part);
+        last = part;
+      }
+    }
     return all;
   }
 
@@ -124,9 +126,9 @@ namespace Compat {
     BondStyles all;
     if (!force->bond) return all;
     all.emplace_back(force->bond_style, force->bond);
-    if (auto *hybrid = dynamic_cast<LAMMPS_NS::BondHybrid *>(force->bond))
-      for (int m = 0; m < hybrid->nstyles; m++)
-        all.emplace_back(hybrid->keywords[m], hybrid->styles[m]);
+    if (all[0].first.compare(0, 6, "hybrid") != 0) return all;
+    for (const auto &style : *force->bond_map)
+      if (LAMMPS_NS::Bond *part = force->bond_match(style.first)) all.emplace_back(style.first, part);
     return all;
   }
 

@@ -1,12 +1,12 @@
 #include "fix_sph_opening.h"
 
 #include "keywords.h"
+#include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sph.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "domain.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -231,7 +231,6 @@ void FixSphInlet::pre_exchange()
   // new particles stand where ghosts were
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
   atom->nghost = 0;
-  atom->avec->clear_bonus();
   for (const Newcomer &next : all) create(next, ++last);
   const bigint before = atom->natoms;
   atom->natoms = sum_of_all(world, (bigint) atom->nlocal);

@@ -1,10 +1,10 @@
 #include "moved_box.h"
 
+#include "deform_settings.h"
 #include "ranks.h"
 
 #include "atom.h"
 #include "domain.h"
-#include "fix_deform.h"
 #include "modify.h"
 #include "update.h"
 
@@ -35,7 +35,7 @@ int MovedBox::moved_by_fixes() const
     if (!(fix->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE))) continue;
     if (strncmp(fix->style, "deform", 6) != 0)
       bits |= 1;
-    else if (static_cast<FixDeform *>(fix)->remapflag == Domain::X_REMAP)
+    else if (DeformSettings::remap(fix) == Domain::X_REMAP)
       bits |= fix->groupbit;
   }
   return bits;

@@ -3,9 +3,9 @@
 #include "ambient.h"
 
 #include "keywords.h"
+#include "lammps_compat.h"
 #include "ranks.h"
 
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "modify.h"

@@ -1,8 +1,8 @@
 #include "deforming_box.h"
 
+#include "deform_settings.h"
 #include "fixes.h"
 #include "keywords.h"
-#include "lammps_compat.h"
 #include "ranks.h"
 
 #include "sd_flow.h"
@@ -22,9 +22,9 @@ namespace StokesDyn {
 
 static const double TWO_PI = 6.283185307179586477;
 
-static FixDeform *deform_of(LAMMPS *lmp)
+static Fix *deform_of(LAMMPS *lmp)
 {
-  return static_cast<FixDeform *>(fix_like(lmp, "^deform"));
+  return fix_like(lmp, "^deform");
 }
 
 namespace {
@@ -55,20 +55,20 @@ static Edge edge_of(LAMMPS *lmp, const Set &set, double start, double stop, doub
 {
   const double now = start + clock.part * (stop - start);
   switch (set.style) {
-    case Compat::ERATE:
+    case DeformSettings::ERATE:
       return {now, set.rate * length};
-    case Compat::VEL:
+    case DeformSettings::VEL:
       return {now, set.vel};
-    case Compat::TRATE: {
+    case DeformSettings::TRATE: {
       const double grown = start * exp(set.rate * clock.time);
       return {grown, set.rate * grown};
     }
-    case Compat::WIGGLE: {
+    case DeformSettings::WIGGLE: {
       const double turns = TWO_PI / set.tperiod;
       return {start + set.amplitude * sin(turns * clock.time),
               set.amplitude * turns * cos(turns * clock.time)};
     }
-    case Compat::VARIABLE: {
+    case DeformSettings::VARIABLE: {
       Variable *variable = lmp->input->variable;
       return {start + variable->compute_equal(set.hvar), variable->compute_equal(set.hratevar)};
     }
@@ -80,7 +80,7 @@ static Edge edge_of(LAMMPS *lmp, const Set &set, double start, double stop, doub
 /* The lower end of an edge along an axis: most styles keep its middle. */
 template <class Set> static Edge corner_of(const Set &set, const Edge &edge, const Clock &clock)
 {
-  if (set.style == Compat::FINAL || set.style == Compat::DELTA || set.style == Compat::SCALE) {
+  if (set.style == DeformSettings::FINAL || set.style == DeformSettings::DELTA || set.style == DeformSettings::SCALE) {
     const double rate = clock.length > 0.0 ? (set.lo_stop - set.lo_start) / clock.length : 0.0;
     return {set.lo_start + rate * clock.time, rate};
   }
@@ -91,14 +91,13 @@ template <class Set> static Edge corner_of(const Set &set, const Edge &edge, con
  * do not. */
 template <class Set> static Edge volume_edge(const Set &set, int d, const Edge *edge)
 {
-  enum { ONE_FROM_ONE, ONE_FROM_TWO, TWO_FROM_ONE };
   const auto start = [&](int e) { return set[e].hi_start - set[e].lo_start; };
   const int one = set[d].dynamic1, two = set[d].dynamic2;
   double shrunk = start(one) / edge[one].now, rate = -edge[one].rate / edge[one].now;
-  if (set[d].substyle == ONE_FROM_TWO) {
+  if (set[d].substyle == DeformSettings::ONE_FROM_TWO) {
     shrunk *= start(two) / edge[two].now;
     rate -= edge[two].rate / edge[two].now;
-  } else if (set[d].substyle == TWO_FROM_ONE) {
+  } else if (set[d].substyle == DeformSettings::TWO_FROM_ONE) {
     shrunk = sqrt(shrunk);
     rate *= 0.5;
   }
@@ -110,17 +109,18 @@ BoxMotion motion_of_box(const Voice &voice)
 {
   BoxMotion motion;
   LAMMPS *lmp = voice.lmp;
-  FixDeform *deform = deform_of(lmp);
+  Fix *deform = deform_of(lmp);
   if (!deform) return motion;
   motion.deforms = true;
+  if (lmp->update->setupflag) DeformSettings::check(lmp, deform);
   const Domain *domain = lmp->domain;
-  const auto set = Compat::DeformSettings::of(deform);
+  const auto set = DeformSettings::of(deform);
   const Clock clock(lmp->update);
   Edge edge[6];
   for (int d = 0; d < 6; d++) {
     edge[d] = {d < 3 || domain->triclinic ? domain->h[d] : 0.0, 0.0};
-    if (set[d].style == Compat::NONE || set[d].style == Compat::VOLUME) continue;
-    if (set[d].style < Compat::NONE || set[d].style > Compat::VARIABLE)
+    if (set[d].style == DeformSettings::NONE || set[d].style == DeformSettings::VOLUME) continue;
+    if (set[d].style < DeformSettings::NONE || set[d].style > DeformSettings::VARIABLE)
       voice.fail("fix " + std::string(deform->id) + " of style " + deform->style +
                  " changes the box at a rate that the pair style does not know: use fix deform, or "
                  "fluid_velocity 0 0 0");
@@ -131,7 +131,7 @@ BoxMotion motion_of_box(const Voice &voice)
                     : edge_of(lmp, set[d], set[d].tilt_start, set[d].tilt_stop, length, clock);
   }
   for (int d = 0; d < 3; d++)
-    if (set[d].style == Compat::VOLUME) edge[d] = volume_edge(set, d, edge);
+    if (set[d].style == DeformSettings::VOLUME) edge[d] = volume_edge(set, d, edge);
   double h[6], rate[6];
   for (int d = 0; d < 6; d++) {
     h[d] = edge[d].now;
@@ -140,7 +140,7 @@ BoxMotion motion_of_box(const Voice &voice)
   sd_flow_of_cell(h, rate, motion.gradient);
   for (int d = 0; d < 3; d++) {
     const Edge corner = corner_of(set[d], edge[d], clock);
-    motion.corner[d] = set[d].style == Compat::NONE ? domain->boxlo[d] : corner.now;
+    motion.corner[d] = set[d].style == DeformSettings::NONE ? domain->boxlo[d] : corner.now;
     motion.corner_velocity[d] = corner.rate;
   }
   return motion;
@@ -148,10 +148,11 @@ BoxMotion motion_of_box(const Voice &voice)
 
 void check_deform(const Voice &voice, bool inertia, bool moving, bool clumps)
 {
-  const FixDeform *deform = deform_of(voice.lmp);
+  Fix *deform = deform_of(voice.lmp);
   if (!deform) return;
   const Voice name = voice.of(name_of(deform));
-  const bool x = deform->remapflag == Domain::X_REMAP, v = deform->remapflag == Domain::V_REMAP;
+  const int remap = DeformSettings::remap(deform);
+  const bool x = remap == Domain::X_REMAP, v = remap == Domain::V_REMAP;
   if (x && moving)
     name.fail("remap x moves the spheres with the box, and the fluid carries them as well (keyword "
               "fluid_velocity): they would move twice; use remap v");
@@ -199,7 +200,7 @@ void check_images(const Voice &voice, const double *jump)
 
 void bring_box_to_this_step(LAMMPS *lmp)
 {
-  FixDeform *deform = deform_of(lmp);
+  Fix *deform = deform_of(lmp);
   if (deform && lmp->update->ntimestep % deform->nevery == 0) deform->end_of_step();
 }
 

