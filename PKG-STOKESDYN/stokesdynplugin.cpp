@@ -2,8 +2,10 @@
  * stokesdynloader.c opens when it has made sure that this is the LAMMPS that the styles were
  * compiled for. */
 #include "comm.h"
+#include "force.h"
 #include "lammps.h"
 #include "library.h"
+#include "modify.h"
 
 #include "compute_sph_energy.h"
 #include "compute_sph_probe.h"
@@ -140,7 +142,26 @@ class OneLine {
   }
 };
 
-/* Is this style on the list of plugins, which all LAMMPS of a process share? */
+/* Calls use(table, creator) for the table where this LAMMPS looks up styles of this kind, with our own
+ * creator in the type of that table. */
+template <class Use> static bool in_table(LAMMPS *lmp, const PluginStyle &plugin, const Use &use)
+{
+  const std::string kind = plugin.style;
+  if (kind == "pair") return use(*lmp->force->pair_map, (Force::PairCreator) plugin.creator.of_pair);
+  if (kind == "fix") return use(*lmp->modify->fix_map, (Modify::FixCreator) plugin.creator.of_command);
+  return use(*lmp->modify->compute_map, (Modify::ComputeCreator) plugin.creator.of_command);
+}
+
+/* Is this the style that this LAMMPS makes? */
+static bool has(LAMMPS *lmp, const PluginStyle &plugin)
+{
+  return in_table(lmp, plugin, [&](const auto &table, auto ours) {
+    const auto found = table.find(plugin.name);
+    return found != table.end() && found->second == ours;
+  });
+}
+
+/* Is a style of this name on the list of plugins, which all LAMMPS of a process share? */
 static bool listed(const PluginStyle &wanted)
 {
   char kind[64] = "", name[64] = "";
@@ -151,31 +172,42 @@ static bool listed(const PluginStyle &wanted)
   return false;
 }
 
-extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle,
+/* LAMMPS takes no style in that is on the list, although it is another LAMMPS that has it: it then gets
+ * ours here, in its own table. The creators stay: stokesdynstyles.so is never closed. */
+static void give(LAMMPS *lmp, PluginStyle plugin, void *handle, PluginRegister *take_in)
+{
+  if (listed(plugin)) {
+    in_table(lmp, plugin, [&](auto &table, auto ours) { return (table[plugin.name] = ours) != nullptr; });
+    return;
+  }
+  plugin.handle = handle;
+  take_in(&plugin, lmp);
+}
+
+extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *host, void *handle,
                                                                          void *regfunc)
 {
-  const OneLine out(static_cast<LAMMPS *>(lmp));
+  LAMMPS *lmp = static_cast<LAMMPS *>(host);
+  const OneLine out(lmp);
   const bool sph = lammps_has_style(lmp, "atom", "sph");
   std::vector<PluginStyle> all = styles();
   if (sph) {
     const auto more = sph_styles();
     all.insert(all.end(), more.begin(), more.end());
   }
-  const std::string version = "PKG-STOKESDYN " SD_VERSION;
-  if (listed(all.front())) {
-    if (lammps_has_style(lmp, all.front().style, all.front().name))
-      out.print(version + " is loaded already");
-    else
-      out.print("WARNING: another LAMMPS of this process has the plugin, so this one does not get its "
-                "styles");
-    return;
-  }
-  for (PluginStyle &plugin : all) {
+  bool complete = true;
+  for (const PluginStyle &plugin : all) {
+    if (has(lmp, plugin)) continue;
+    complete = false;
     if (lammps_has_style(lmp, plugin.style, plugin.name))
       out.print(std::string("WARNING: the plugin takes the place of ") + plugin.style + " style " +
                 plugin.name + " of LAMMPS");
-    plugin.handle = handle;
-    ((PluginRegister *) regfunc)(&plugin, lmp);
+    give(lmp, plugin, handle, (PluginRegister *) regfunc);
+  }
+  const std::string version = "PKG-STOKESDYN " SD_VERSION;
+  if (complete) {
+    out.print(version + " is loaded already");
+    return;
   }
   out.print(version + ", built for LAMMPS " SD_LAMMPS_VERSION ": stokes_dynamics, hydro/vans" +
             (sph ? ", sph" : ""));

@@ -22,8 +22,8 @@ from system import Simulation  # noqa: E402
 
 @pytest.fixture
 def simulation(tmp_path):
-    """Makes LAMMPS instances: simulation(spheres, "visc 1 ...", boundary=...). A new one ends the one before, since LAMMPS of
-    2021 keeps one list of plugins for all instances of a process: while one lives, a second cannot load the plugin."""
+    """Makes LAMMPS instances: simulation(spheres, "visc 1 ...", boundary=...). A new one ends the one before;
+    test_instances.py has several at a time."""
     made = []
 
     def make(spheres=None, style=None, **options):
