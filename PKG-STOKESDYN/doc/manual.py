@@ -19,8 +19,8 @@ VERSION = (PACKAGE / "VERSION").read_text().strip()
 CONF = f"""
 import pathlib
 import sphinx.search.en
-# The stem of "its" is too short for the index, and a search for it would find nothing.
-sphinx.search.en.english_stopwords.add("its")
+# The stems of "its" and "has" are too short for the index, and a search for them would find nothing.
+sphinx.search.en.english_stopwords.update(["its", "has"])
 project = "PKG-STOKESDYN"
 version = release = "{VERSION}"
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_copybutton"]
@@ -59,8 +59,12 @@ article p, article li { overflow-wrap: break-word; }
 article div.highlight pre { font-size: 0.8em; }
 article blockquote { border-left: 4px solid #5a9a5a; font-style: normal; padding: 4px 14px; overflow-x: auto; }
 article h1, article h2, article h3 { overflow-wrap: anywhere; }
+article h2 { font-size: 1.6em; }
+article h3 { font-size: 1.25em; }
 @media (max-width: 46em) {
   article h1 { font-size: 1.7em; }
+  article h2 { font-size: 1.4em; }
+  article h3 { font-size: 1.15em; }
   article table { font-size: 0.75em; }
   article td, article th { padding: 2px 4px; }
   article td code, article td a { overflow-wrap: anywhere; }
@@ -86,13 +90,26 @@ for (const button of document.querySelectorAll(".theme-toggle"))
   });
 """
 
-# What a user looks for is on the pages of the styles and in the howtos; headers of the core come last.
+# What a user looks for is on the pages of the styles and in the howtos; headers of the core come last. A message that is pasted into
+# the search leads to the page whose table has it: MESSAGES has the pieces of its rows between the places that differ from run to run.
 SCORER = """
-const weights = [[/^PKG-STOKESDYN\\/doc\\//, 80], [/\\/doc\\/howto_/, 20], [/\\/doc\\/messages_/, 20], [/\\/doc\\/(pair|fix|compute)_/, 40], [/\\/doc\\/pair_/, 5], [/^README$/, 60], [/^examples\\//, 30], [/^PKG-STOKESDYN\\/core\\//, -100]];
-var Scorer = {
-  score: ([page, title, anchor, description, score, file]) => score + weights.filter(([name]) => name.test(page)).reduce((sum, [, w]) => sum + w, 0),
+var Scorer = (() => {
+const weights = [[/^PKG-STOKESDYN\\/doc\\//, 80], [/\\/doc\\/(howto|messages)_/, 20], [/\\/doc\\/(stokes|sph|vans)_/, 30],
+  [/\\/doc\\/(pair|fix|compute)_/, 40], [/\\/doc\\/(pair_|fix_hydro_vans|fix_stokes_dynamics_over)/, 5],
+  [/^README$/, 60], [/^examples\\//, 30], [/^PKG-STOKESDYN\\/core\\//, -100]];
+const messages = MESSAGES;
+function likeMessage(page) {
+  const asked = window.asked || new URLSearchParams(window.location.search).get("q") || "";
+  const words = asked.toLowerCase().split(/[\\s:;,.'`()\\[\\]=]+/).filter(word => word);
+  const text = " " + words.join(" ") + " ", pieces = words.length > 2 && messages[page] || [];
+  return pieces.some(piece => piece.includes(text)) ? 100 : pieces.some(piece => text.includes(piece)) ? 50 : 0;
+}
+return {
+  score: ([page, title, anchor, description, score, file]) => score + weights.filter(([name]) => name.test(page)).reduce((sum, [, w]) => sum + w, 0)
+    + likeMessage(page),
   objNameMatch: 11, objPartialMatch: 6, objPrio: {0: 15, 1: 5, 2: -5}, objPrioDefault: 0, title: 15, partialTitle: 7, term: 5, partialTerm: 2,
 };
+})();
 """
 
 
@@ -137,6 +154,24 @@ def menu_of_examples():
         yield f"{title} ({name}) <examples/{name}/README>"
 
 
+def plain(text):
+    """The words of a text without punctuation, and a blank before and after each, as likeMessage of SCORER has them."""
+    words = re.split(r"[\s:;,.'`()\[\]=]+", text.lower())
+    return " " + " ".join(word for word in words if word) + " "
+
+
+def pieces_of_messages():
+    """Of each page: what its tables of messages list, as words without punctuation: each row whole, and cut where a message differs from
+    run to run."""
+    for path in sorted((PACKAGE / "doc").glob("*.md")):
+        rows = [row[1:].split(" | ")[0] for table in re.findall(r"^\| message \|.*\n\|---.*\n((?:\|.*\n)+)", path.read_text(), re.M)
+                for row in table.splitlines()]
+        for beside in re.findall(r"^\* \*\*(?:error|warning)\*\*: (.+(?:\n  .+)*)", path.read_text(), re.M):    # other commands of LAMMPS
+            rows += beside.split(":")[1:]
+        pieces = {plain(piece) for row in rows for piece in [row.replace("...", " "), *row.split("...")]}
+        yield f"PKG-STOKESDYN/doc/{path.stem}", sorted(piece for piece in pieces if len(piece.split()) > 2)
+
+
 def source(folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -172,7 +207,7 @@ def source(folder):
     (folder / "headers.rst").write_text(contents_page("Headers of the core", "Each is the manual of its functions.", names(headers)))
     (folder / "index.rst").write_text(contents(chapters))
     (folder / "conf.py").write_text(CONF)
-    for name, text in (("manual.css", CSS + dark_when_asked()), ("page.js", SCRIPT), ("scorer.js", SCORER)):
+    for name, text in (("manual.css", CSS + dark_when_asked()), ("page.js", SCRIPT), ("scorer.js", SCORER.replace("MESSAGES", json.dumps(dict(pieces_of_messages()))))):
         (folder / name).write_text(text)
 
 
@@ -217,6 +252,7 @@ Search.performTermsSearch = (...words) => { answer = terms(...words); return [];
 for (const name of ["out", "title", "dots", "status", "output"]) Search[name] = document.createElement("p");
 for (const query of QUERIES) {
   answer = [];
+  window.asked = query;
   Search.query(query);
   found[query] = answer.sort((a, b) => Scorer.score(b) - Scorer.score(a)).map(result => result[0]);
 }
@@ -282,8 +318,50 @@ def searches():
 
 
 # what people look for, and how the page begins that must come first
-FIRST = {"no grid for Ewald": "PKG-STOKESDYN/doc/messages_stokes_dynamics", "uninstall": "PKG-STOKESDYN/doc/howto_build",
-         "OVITO": "PKG-STOKESDYN/doc/", "Brownian": "PKG-STOKESDYN/doc/"}
+FIRST = {"adds a drag to spheres that": "PKG-STOKESDYN/doc/howto_trouble", "no grid for Ewald": "PKG-STOKESDYN/doc/messages_stokes_dynamics",
+         "uninstall": "PKG-STOKESDYN/doc/howto_build", "OVITO": "PKG-STOKESDYN/doc/", "Brownian": "PKG-STOKESDYN/doc/"}
+
+
+# what a stranger types who has a question, and words of the answer: they must be on one of the first two pages
+QUESTIONS = {
+    "sand falls too fast": "`drag ferguson_church`",
+    "narrow flume side walls": "a fifth of this friction",
+    "steady state transport rate error": "the errors of these means",
+    "suspension settles too fast": "2.9 times the right speed",
+    "periodic box net flux": "no net flux of volume",
+    "sphere touches wall too fast": "add `lubrication yes`",
+    "rotational diffusion temperature": "no rotational diffusion",
+    "clump drag too small": "is 3 to 9 % too small",
+    "water at rest swells": "`artVisc 0.05 0 ETA`",
+    "two fluids speed of sound": "100 to 1",
+}
+
+
+def wrong_answers(folder):
+    """Of the search: what it does not find, or not among the first pages."""
+    asked, rows = list(searches()), dict(pieces_of_messages())
+    found = probed(folder, PROBE.replace("QUERIES", json.dumps(sorted({query for query, _ in asked} | set(FIRST) | set(QUESTIONS))))) or {}
+    missed = [(query, pages) for query, pages in asked
+              if not any(f"PKG-STOKESDYN/doc/{name[:-3]}" in found.get(query, []) for name in pages)]
+    yield from (f"search for '{query}' does not find any of {pages}" for query, pages in missed)
+    print(f"[manual] search finds {len(asked) - len(missed)} of {len(asked)} keywords and messages")
+
+    def first_pages(query):
+        return found.get(query, [])[:2]
+    for query, page in FIRST.items():
+        if not (found.get(query) or [""])[0].startswith(page):
+            yield f"search for '{query}' begins with {first_pages(query)}, not with {page}"
+    query, page = next(iter(FIRST.items()))
+    if f'href="{page}.html' not in dom(f"{(folder / 'search.html').as_uri()}?q={query.replace(' ', '+')}"):
+        yield f"the page of the search does not show {page} for '{query}'"
+    messages = {query for query, _ in asked if len(query.split()) > 2}
+    late = [query for query in messages if not any(plain(query) in piece for page in first_pages(query) for piece in rows.get(page, []))]
+    yield from (f"search for '{query}' begins with {first_pages(query)}, whose tables do not have this message" for query in late)
+    print(f"[manual] search shows {len(messages) - len(late)} of {len(messages)} messages on the first two pages")
+    silent = [query for query, answer in QUESTIONS.items()
+              if not any(answer in " ".join((folder.parent / "source" / f"{page}.md").read_text().split()) for page in first_pages(query))]
+    yield from (f"search for '{query}' begins with {first_pages(query)}, which do not say {QUESTIONS[query]}" for query in silent)
+    print(f"[manual] search answers {len(QUESTIONS) - len(silent)} of {len(QUESTIONS)} questions on the first two pages")
 
 
 def check(folder):
@@ -304,15 +382,7 @@ def check(folder):
 
     wrong += [f"wider than the window: {page}" for page in wide_pages(folder)]
 
-    asked = list(searches())
-    found = probed(folder, PROBE.replace("QUERIES", json.dumps(sorted({query for query, _ in asked} | set(FIRST))))) or {}
-    missed = [(query, pages) for query, pages in asked
-              if not any(f"PKG-STOKESDYN/doc/{name[:-3]}" in found.get(query, []) for name in pages)]
-    wrong += [f"search for '{query}' does not find any of {pages}" for query, pages in missed]
-    wrong += [f"search for '{query}' begins with {found.get(query, [])[:3]}, not with {page}" for query, page in FIRST.items()
-              if not (found.get(query) or [""])[0].startswith(page)]
-    print(f"[manual] search finds {len(asked) - len(missed)} of {len(asked)} keywords and messages")
-
+    wrong += wrong_answers(folder)
     print("\n".join(wrong))
     return 1 if wrong else 0
 
