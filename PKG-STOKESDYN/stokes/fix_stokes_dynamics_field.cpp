@@ -1,6 +1,7 @@
 #include "fix_stokes_dynamics_field.h"
 
 #include "callback.h"
+#include "halo.h"
 #include "image_file.h"
 #include "keywords.h"
 #include "ranks.h"
@@ -11,6 +12,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -106,24 +108,118 @@ static std::vector<double> places_of(const sd_field_grid &g)
   return x;
 }
 
-/* Every rank knows all forces, and takes its share of planes. */
-void FixStokesDynamicsField::add_flow(Hydrodynamics &hydro, const sd_ewald_box &box,
-                                      const sd_field_grid &g, double *u)
+/* Rows of ten numbers that begin with a place -> those of all ranks within reach of the planes of
+ * this one, each periodic image as a row of its own; jumps: by how much the velocity of an image,
+ * behind the fourth number, grows with each edge */
+std::vector<double> FixStokesDynamicsField::near_planes(const sd_field_grid &g, double reach,
+                                                        const std::vector<double> &rows,
+                                                        const double *jumps) const
 {
-  const std::vector<double> all = from_all(world, hydro.on_fluid());
-  const size_t n = all.size() / 10;
+  Lattice lattice = Lattice::of(domain);
+  std::fill_n(lattice.periodic, 3, domain->xperiodic);    // in two dimensions, too
+  std::vector<double> x;
+  for (size_t k = 0; k < rows.size(); k += 10) x.insert(x.end(), &rows[k], &rows[k] + 3);
+  double lo[3], hi[3];
+  for (int d = 0; d < 3; d++) {
+    lo[d] = g.lo[d] + (d == 2 ? g.from : 0) * g.step[d];
+    hi[d] = g.lo[d] + ((d == 2 ? g.to : g.n[d]) - 1) * g.step[d];
+  }
+  if (g.from == g.to) lo[2] = INFINITY;
+  Halo halo(world);
+  if (!halo.find_around(lattice, reach, x, lo, hi))
+    voice.at_step().fail_one("keywords lo and hi: the grid, at z from " + text(lo[2]) + " to " +
+                             text(hi[2]) + ", sees more than 1000 images of each sphere and 1e7 in "
+                             "all; is it in other units than the box?");
+  const size_t n = halo.count();
+  std::vector<double> near(10 * n + 10), places(3 * n + 3), faster(3 * n + 3, 0.0);
+  halo.refresh(rows.data(), near.data(), 10);
+  halo.place(lattice.h, x.data(), places.data());
+  if (jumps) halo.place(jumps, nullptr, faster.data());
+  for (size_t k = 0; k < n; k++) {
+    std::copy_n(&places[3 * k], 3, &near[10 * k]);
+    for (int d = 0; d < 3; d++) near[10 * k + 4 + d] += faster[3 * k + d];
+  }
+  near.resize(10 * n);
+  return near;
+}
+
+namespace {
+/* Rows as they come from hydrodynamics, as the core reads them */
+struct Sources {
   std::vector<double> x, a, F, T;
-  take_apart(all, n, {{&x, 3}, {&a, 1}, {&F, 3}, {&T, 3}});
-  const bool turns = std::any_of(T.begin(), T.end(), [](double t) { return t != 0.0; });
-  const sd_field_sources sources = {(int) n, x.data(), a.data(), F.data(),
-                                    turns ? T.data() : nullptr};
+  sd_field_sources as;
+
+  explicit Sources(const std::vector<double> &rows)
+  {
+    const size_t n = rows.size() / 10;
+    take_apart(rows, n, {{&x, 3}, {&a, 1}, {&F, 3}, {&T, 3}});
+    as = {(int) n, x.data(), a.data(), F.data(), T.data()};
+  }
+};
+}    // namespace
+
+static sd_field_cloud measure_all(MPI_Comm world, const std::vector<double> &rows)
+{
+  const Sources mine(rows);
+  sd_field_cloud c;
+  sd_field_measure(&mine.as, &c);
+  double sums[] = {c.all.count, c.all.squares, c.all.fourths, c.torque, c.check};
+  double most[] = {c.all.largest, -c.lo[0], -c.lo[1], -c.lo[2], c.hi[0], c.hi[1], c.hi[2]};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
+  c.all = {sums[0], sums[1], sums[2], most[0]};
+  c.torque = sums[3];
+  c.check = sums[4];
+  for (int d = 0; d < 3; d++) {
+    c.lo[d] = -most[1 + d];
+    c.hi[d] = most[4 + d];
+  }
+  return c;
+}
+
+/* The sources of all ranks go round, so many at a time. */
+sd_status FixStokesDynamicsField::add_all_pairs(const std::vector<double> &rows,
+                                                const sd_field_grid &g, double *u)
+{
+  const size_t at_once = 10 * 100000;
+  sd_status status = SD_OK;
+  for (int p = 0; p < comm->nprocs; p++) {
+    bigint count = (bigint) rows.size();
+    MPI_Bcast(&count, 1, MPI_LMP_BIGINT, p, world);
+    for (size_t from = 0; from < (size_t) count; from += at_once) {
+      std::vector<double> some(std::min(at_once, (size_t) count - from));
+      if (p == comm->me) std::copy_n(&rows[from], some.size(), some.data());
+      MPI_Bcast(some.data(), (int) some.size(), MPI_DOUBLE, p, world);
+      const Sources theirs(some);
+      if (status == SD_OK) status = sd_field_add_all(&tables, &theirs.as, &g, u);
+    }
+  }
+  return status;
+}
+
+sd_status FixStokesDynamicsField::add_split(Hydrodynamics &hydro, const std::vector<double> &rows,
+                                            double range, const sd_field_grid &g, double *u)
+{
+  const sd_world ranks = hydro.scene.ranks();
+  const Sources ours(rows), near(near_planes(g, range, rows, nullptr));
+  return sd_field_add_split(&tables, &ours.as, &near.as, &g, &ranks, u);
+}
+
+/* Every rank takes its share of planes, and knows the sources near to these. */
+void FixStokesDynamicsField::add_flow(Hydrodynamics &hydro, const sd_field_grid &g, double *u)
+{
+  const std::vector<double> rows = hydro.on_fluid();
+  const sd_field_cloud all = measure_all(world, rows);
   static const sd_field_sum SUMS[] = {SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT};
   const Scene::Settings &scene = hydro.settings.scene;
-  const sd_world ranks = hydro.scene.ranks();
-  const sd_status status = sd_field_add(&tables, SUMS[scene.far_field], &box,
-                                        scene.far_field_tolerance, &sources, &g, &ranks, u);
+  const sd_ewald_box box = Scene::box_of(domain);
+  double range;
+  sd_status status = sd_field_plan(&tables, SUMS[scene.far_field], &box, scene.far_field_tolerance,
+                                   &all, &g, &range);
+  if (status == SD_OK)
+    status = std::isinf(range) ? add_all_pairs(rows, g, u) : add_split(hydro, rows, range, g, u);
   if (status != SD_OK)
-    fail_by(voice.at_step(), status, "the flow of " + std::to_string(n) +
+    fail_by(voice.at_step(), status, "the flow of " + text(all.all.count) +
                                      " spheres or points at " + std::to_string(g.n[0]) + " x " +
                                      std::to_string(g.n[1]) + " x " + std::to_string(g.n[2]) +
                                      " points: " + sd_status_string(status));
@@ -131,28 +227,25 @@ void FixStokesDynamicsField::add_flow(Hydrodynamics &hydro, const sd_ewald_box &
 
 /* In a box that deforms with the fluid an image moves with the flow there. */
 std::vector<unsigned char> FixStokesDynamicsField::put_spheres(const Hydrodynamics &hydro,
-                                                               const sd_ewald_box &box,
                                                                const sd_field_grid &g,
                                                                double *u) const
 {
   std::vector<double> mine, x, a, V;
+  double largest = 0.0;
   for (int i : hydro.ambient.who()) {
     mine.insert(mine.end(), atom->x[i], atom->x[i] + 3);
     mine.push_back(atom->radius[i]);
     mine.insert(mine.end(), atom->v[i], atom->v[i] + 3);
     mine.insert(mine.end(), atom->omega[i], atom->omega[i] + 3);
+    largest = std::max(largest, atom->radius[i]);
   }
-  const std::vector<double> all = from_all(world, mine);
-  take_apart(all, all.size() / 10, {{&x, 3}, {&a, 1}, {&V, 6}});
-  const double *j = hydro.ambient.jumps();    // xx yy zz yz xz xy, velocity and edge
-  double jump[9] = {0.0};
-  if (j) {
-    const double rows[9] = {j[0], 0.0, 0.0, j[5], j[1], 0.0, j[4], j[3], j[2]};
-    std::copy_n(rows, 9, jump);
-  }
-  const sd_field_bodies spheres = {(int) a.size(), x.data(), a.data(), V.data(), j ? jump : nullptr};
+  largest = among_all(world, largest, MPI_MAX);
+  const std::vector<double> near = near_planes(g, largest, mine, hydro.ambient.jumps());
+  const size_t n = near.size() / 10;
+  take_apart(near, n, {{&x, 3}, {&a, 1}, {&V, 6}});
+  const sd_field_bodies spheres = {(int) n, x.data(), a.data(), V.data()};
   std::vector<unsigned char> inside(sd_field_points(&g) + 1);
-  const sd_status status = sd_field_inside(&spheres, &box, &g, u, inside.data());
+  const sd_status status = sd_field_inside(&spheres, &g, u, inside.data());
   if (status != SD_OK) voice.fail_one(sd_status_string(status));
   inside.resize(sd_field_points(&g));
   return inside;
@@ -165,11 +258,10 @@ void FixStokesDynamicsField::end_of_step()
   if (!hydro.computed_in((double) update->ntimestep))
     voice.at_step().fail("the pair style was not computed in this step (pair_modify compute no?)");
   const sd_field_grid g = grid();
-  const sd_ewald_box box = Scene::box_of(domain);
   std::vector<double> u = hydro.ambient.at_places(places_of(g));
   u.resize(3 * sd_field_points(&g) + 1);
-  add_flow(hydro, box, g, u.data());
-  const std::vector<unsigned char> inside = put_spheres(hydro, box, g, u.data());
+  add_flow(hydro, g, u.data());
+  const std::vector<unsigned char> inside = put_spheres(hydro, g, u.data());
   u.resize(3 * sd_field_points(&g));
   write(g, u, inside);
 }

@@ -47,10 +47,10 @@ static bool meets(const Lattice &lattice, const double from[6], const double int
 
 static const double MOST_COPIES = 1e7, MOST_PER_SPHERE = 1000.0;
 
-/* What of this rank, at f [3 n] in units of the edges, goes to the block `into` of rank p: each sphere by
- * the steps that take it there. */
+/* What of this rank, at f [3 n] in units of the edges, goes to the block `into` of rank p: each
+ * sphere by the steps that take it there. itself: one that need not move goes to its own rank, too */
 bool Halo::send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
-                   const double into[6])
+                   const double into[6], bool itself)
 {
   const double most = std::max(MOST_COPIES, MOST_PER_SPHERE * (double) (f.size() / 3));
   double first[3], last[3], shifts = 1.0;
@@ -69,7 +69,7 @@ bool Halo::send_to(int p, const Lattice &lattice, const std::vector<double> &f, 
     for (double t = begin[0]; t <= end[0]; t++)
       for (double u = begin[1]; u <= end[1]; u++)
         for (double v = begin[2]; v <= end[2]; v++) {
-          if (p == post.me && t == 0.0 && u == 0.0 && v == 0.0) continue;
+          if (!itself && p == post.me && t == 0.0 && u == 0.0 && v == 0.0) continue;
           sphere.push_back((int) (i / 3));
           steps.insert(steps.end(), {(int) t, (int) u, (int) v});
         }
@@ -86,30 +86,62 @@ void Halo::clear()
   copies = 0;
 }
 
-bool Halo::find(const Lattice &lattice, double reach, const std::vector<double> &x)
+/* f: the places in units of the edges */
+Halo::Block Halo::around(const Lattice &lattice, const std::vector<double> &x,
+                         std::vector<double> &f)
 {
-  std::vector<double> f(x.size());
-  double mine[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, from_origin[3];
+  Block block = {{INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}};
+  double *face = block.face, from_origin[3];
+  f.resize(x.size());
   for (size_t i = 0; i < x.size(); i += 3) {
     sd_minus(&x[i], lattice.origin, from_origin);
     sd_in_edges(lattice.h, from_origin, &f[i]);
     for (int d = 0; d < 3; d++) {
-      mine[d] = std::min(mine[d], f[i + d]);
-      mine[3 + d] = std::max(mine[3 + d], f[i + d]);
+      face[d] = std::min(face[d], f[i + d]);
+      face[3 + d] = std::max(face[3 + d], f[i + d]);
     }
   }
-  std::vector<double> block(6 * (size_t) post.ranks), wide;
-  MPI_Allgather(mine, 6, MPI_DOUBLE, block.data(), 6, MPI_DOUBLE, post.world);
-  wide = block;
-  for (size_t k = 0; k < wide.size(); k++)    // a pair at the reach itself is not lost by rounding
-    wide[k] += (k % 6 < 3 ? -1.0 : 1.0) * sd_across_faces(lattice.h, k % 3, reach * (1.0 + 1e-9));
+  return block;
+}
+
+bool Halo::find(const Lattice &lattice, double reach, const std::vector<double> &x)
+{
+  std::vector<double> f;
+  const Block rows = around(lattice, x, f);
+  return find(lattice, reach, rows, rows, f, false);
+}
+
+bool Halo::find_around(const Lattice &lattice, double reach, const std::vector<double> &x,
+                       const double lo[3], const double hi[3])
+{
+  std::vector<double> f, corners, of_corners;
+  for (int k = 0; k < 8 && lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]; k++)
+    for (int d = 0; d < 3; d++) corners.push_back(k >> d & 1 ? hi[d] : lo[d]);
+  const Block rows = around(lattice, x, f), wanted = around(lattice, corners, of_corners);
+  return find(lattice, reach, rows, wanted, f, true);
+}
+
+bool Halo::find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
+                const std::vector<double> &f, bool itself)
+{
+  const Block mine[2] = {rows, wanted};
+  std::vector<Block> all(2 * (size_t) post.ranks);    // of each rank
+  MPI_Allgather(const_cast<Block *>(mine), 12, MPI_DOUBLE, all.data(), 12, MPI_DOUBLE, post.world);
+  for (int p = 0; p < post.ranks; p++)
+    for (int d = 0; d < 3; d++) {    // a pair at the reach itself is not lost by rounding
+      double *wide = all[2 * (size_t) p + 1].face;
+      const double more = sd_across_faces(lattice.h, d, reach * (1.0 + 1e-9));
+      wide[d] -= more;
+      wide[3 + d] += more;
+    }
+  const double *here = all[2 * (size_t) post.me + 1].face;
   clear();
   for (int p = 0; p < post.ranks; p++) {
-    const double *theirs = &block[6 * (size_t) p], *wider = &wide[6 * (size_t) p];
-    const bool out = meets(lattice, mine, wider);
-    if (!out && !meets(lattice, theirs, &wide[6 * (size_t) post.me])) continue;
+    const double *theirs = all[2 * (size_t) p].face, *there = all[2 * (size_t) p + 1].face;
+    const bool out = meets(lattice, rows.face, there);
+    if (!out && !meets(lattice, theirs, here)) continue;
     const size_t before = sphere.size();
-    if (out && !send_to(p, lattice, f, mine, wider)) return false;
+    if (out && !send_to(p, lattice, f, rows.face, there, itself)) return false;
     post.partners.push_back({p, (int) (sphere.size() - before), 0});
   }
   post.tell();

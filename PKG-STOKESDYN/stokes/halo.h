@@ -1,4 +1,5 @@
-/* Spheres that are near those of this rank: of other ranks, and periodic images, also of its own.
+/* Spheres that are near those of this rank, or near a block of space that it asks about: of other
+ * ranks, and periodic images, also of its own.
  *
  * They are found from where the rows of the ranks stand, and not among LAMMPS's ghosts: a long
  * reach needs no comm_modify and costs other styles nothing, any decomposition will do, and the
@@ -38,6 +39,10 @@ class Halo {
    * them, that holds this rank's rows x [3n]. On all ranks together. false: more copies of this
    * rank's spheres than 1e7 and than 1000 for each. */
   bool find(const Lattice &lattice, double reach, const std::vector<double> &x);
+  /* The same within `reach` of what is from lo [3] to hi [3], other on each rank and nothing where
+   * lo > hi; this rank's own spheres are among them. */
+  bool find_around(const Lattice &lattice, double reach, const std::vector<double> &x,
+                   const double lo[3], const double hi[3]);
   void clear();
   int count() const { return copies; }
   /* Since then, in one order: rows [width n] -> those of the copies [width count()] */
@@ -62,8 +67,15 @@ class Halo {
   std::vector<int> sphere, steps;
   mutable std::vector<double> outbox;
 
+  /* the smallest parallelepiped that holds something: lower and upper faces, in units of the edges */
+  struct Block {
+    double face[6];
+  };
+  static Block around(const Lattice &lattice, const std::vector<double> &x, std::vector<double> &f);
+  bool find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
+            const std::vector<double> &f, bool itself);
   bool send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
-               const double into[6]);
+               const double into[6], bool itself);
 };
 
 }    // namespace StokesDyn

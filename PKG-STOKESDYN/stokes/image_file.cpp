@@ -26,7 +26,7 @@ static const char *byte_order()
 }
 
 ImageFile::ImageFile(const std::string &path, const Grid &grid, double time) :
-    out(fopen(path.c_str(), "wb")), points((double) grid.n[0] * grid.n[1] * grid.n[2])
+    path(path), out(fopen(path.c_str(), "wb")), points((double) grid.n[0] * grid.n[1] * grid.n[2])
 {
   std::string extent;
   for (int d = 0; d < 3; d++) extent += (d ? " 0 " : "0 ") + std::to_string(grid.n[d] - 1);
@@ -43,7 +43,17 @@ ImageFile::ImageFile(const std::string &path, const Grid &grid, double time) :
 
 ImageFile::~ImageFile()
 {
-  if (out) fclose(out);
+  close(false);
+}
+
+bool ImageFile::close(bool whole)
+{
+  if (!out) return false;
+  const bool well = !ferror(out);
+  const bool kept = fclose(out) == 0 && well && whole;
+  out = nullptr;
+  if (!kept) remove(path.c_str());
+  return kept;
 }
 
 void ImageFile::print(const std::string &line)
@@ -91,9 +101,7 @@ void ImageFile::end()
 bool ImageFile::finish()
 {
   print("</PointData>\n</Piece>\n</ImageData>\n</VTKFile>");
-  const bool well = out && !ferror(out) && fclose(out) == 0;
-  out = nullptr;
-  return well;
+  return close(true);
 }
 
 }    // namespace StokesDyn

@@ -25,10 +25,11 @@ class ImageFile {
   void begin(const std::string &name, const std::string &type, int components, int bytes);
   void put(const void *data, size_t bytes);
   void end();
-  /* Has all been written? */
+  /* Has all been written? A file that did not fit, or has no end, is removed. */
   bool finish();
 
  private:
+  const std::string path;
   FILE *out;
   double points;
   /* bytes that have no group of three yet */
@@ -37,6 +38,7 @@ class ImageFile {
 
   void print(const std::string &line);
   void group();
+  bool close(bool whole);
 };
 
 }    // namespace StokesDyn

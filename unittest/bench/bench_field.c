@@ -3,9 +3,8 @@
  *   bench_field [TOLERANCE [WIDTH]] */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/ewald/periodic.h"
+#include "../core/stokes/field/around.h"
 #include "cpu.h"
-
-#include "sd_field.h"
 
 enum { SPHERES = 100000, EDGE = 100, RUNS = 9 };
 
@@ -13,10 +12,9 @@ static double flow(sd_field *f, const sd_ewald_box *box, const sd_field_sources 
 {
   const double h = box->edge[0] / EDGE;
   const sd_field_grid g = {{0, 0, 0}, {h, h, h}, {EDGE, EDGE, EDGE}, 0, EDGE};
-  const sd_world alone = {0};
   memset(u, 0, 24 * sd_field_points(&g));
   const double t = cpu();
-  if (sd_field_add(f, SD_FIELD_AUTO, box, tolerance, s, &g, &alone, u) != SD_OK) exit(1);
+  if (add_flow(f, SD_FIELD_AUTO, box, tolerance, s, &g, u) != SD_OK) exit(1);
   return cpu() - t;
 }
 

@@ -292,6 +292,21 @@ def test_bad_input_is_named(tmp_path, why):
     assert "ERROR: Fix stokes_dynamics/field" in done.text and why in done.text, done.text[-600:]
 
 
+@pytest.mark.parametrize("hi", ["5 1e9 5", "5 1e20 5", "1e9 1e9 1e9"])
+def test_a_grid_far_beyond_a_periodic_box_is_refused(tmp_path, hi):
+    """It would go through all images of the spheres."""
+    lines = input_lines(cloud(low=-3.9, high=4.9), "cut_off_distance inf visc 1.3", str(tmp_path / "data"), fix=False, boundary="p p p", box=BOX)
+    done = lmp(tmp_path, lines + [f"fix field all stokes_dynamics/field 1 {tmp_path}/f.*.vti 3 4 5 hi {hi}", "run 0"], succeed=False)
+    assert "sees more than 1000 images of each sphere" in done.text and "lo and hi" in done.text, done.text[-600:]
+
+
+def test_a_file_that_does_not_fit_is_removed(tmp_path):
+    os.symlink("/dev/full", tmp_path / "flow.0.vti")
+    lines = input_lines(cloud(), "cut_off_distance inf visc 1.3", str(tmp_path / "data"), fix=False)
+    done = lmp(tmp_path, lines + [f"fix field all stokes_dynamics/field 1 {tmp_path}/flow.*.vti 20 20 20", "run 0"], succeed=False)
+    assert "flow.0.vti' could not be written" in done.text and not os.path.lexists(tmp_path / "flow.0.vti"), done.text[-600:]
+
+
 def test_what_it_needs(tmp_path):
     field = f"fix field all stokes_dynamics/field 1 {tmp_path}/f.*.vti 3 3 3"
     start = input_lines(cloud(), ["pair_style zero 1", "pair_coeff * *"], str(tmp_path / "data"), fix=False)

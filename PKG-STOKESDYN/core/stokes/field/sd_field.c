@@ -52,120 +52,119 @@ static sd_status choose_open(const sd_ewald_box *box, const sd_ewald_sizes *thos
   return status;
 }
 
-static sd_status choose(const sd_ewald_box *box, const sd_field_sources *s, const sd_field_grid *g,
-                        double tolerance, sd_ewald *out)
+static sd_status choose(const sd_ewald_box *box, const sd_field_cloud *c, int width,
+                        double points, double tolerance, sd_ewald *out)
 {
-  const int width = s->T ? 6 : 3;
-  sd_ewald_sizes sizes = {.all = {.count = s->n}};
-  for (int i = 0; i < s->n; i++) {
-    const double a2 = s->a[i] * s->a[i];
-    sizes.all.squares += a2;
-    sizes.all.fourths += a2 * a2;
-    sizes.all.largest = fmax(sizes.all.largest, s->a[i]);
-  }
-  if (!box->periodic) return choose_open(box, &sizes, width, all_points(g), tolerance, out);
-  return sd_ewald_choose_at_points(box, &sizes, width, all_points(g), tolerance, out);
+  const sd_ewald_sizes sizes = {.all = c->all};
+  if (!box->periodic) return choose_open(box, &sizes, width, points, tolerance, out);
+  return sd_ewald_choose_at_points(box, &sizes, width, points, tolerance, out);
 }
 
 /* The open box that holds sources and grid: it lasts while they move a little. */
-static void box_around(sd_ewald_box *box, const sd_field_sources *s, const sd_field_grid *g)
+static void box_around(sd_ewald_box *box, const sd_field_cloud *c, const sd_field_grid *g)
 {
-  double lo[3], hi[3], largest = 0.0;
+  double lo[3], hi[3], largest = c->all.largest;
   for (int d = 0; d < 3; d++) {
-    lo[d] = g->lo[d];
-    hi[d] = g->lo[d] + (g->n[d] - 1) * g->step[d];
+    lo[d] = fmin(c->lo[d], g->lo[d]);
+    hi[d] = fmax(c->hi[d], g->lo[d] + (g->n[d] - 1) * g->step[d]);
+    if (!(hi[d] > lo[d])) /* one sphere and one point make no box */
+      largest = fmax(largest, g->step[d]);
   }
-  for (int i = 0; i < s->n; i++) {
-    largest = fmax(largest, s->a[i]);
-    for (int d = 0; d < 3; d++) {
-      lo[d] = fmin(lo[d], s->x[3 * (long) i + d]);
-      hi[d] = fmax(hi[d], s->x[3 * (long) i + d]);
-    }
-  }
-  for (int d = 0; d < 3; d++) /* one sphere and one point make no box */
-    if (!(hi[d] > lo[d])) largest = fmax(largest, g->step[d]);
   sd_ewald_box_around(box, -1, lo, hi, largest);
 }
 
 /* In pairs of the sum over all of them, as sd_ewald_cost.h weighs those of a product: a near pair
  * has polynomials to evaluate, a grid point goes through six transforms, padded in an open box. */
-static double cost_of_split(const sd_ewald *e, const sd_field_sources *s, const sd_field_grid *g)
+static double cost_of_split(const sd_ewald *e, double sources, double points)
 {
   const double near_pair = 2.5, window_point = 1.5, grid_point = 40.0 * 8.0 * 7.0 / 12.0;
   const double ball = 4.0 / 3.0 * SD_PI * e->range * e->range * e->range;
   const double share = fmin(1.0, ball / sd_ewald_volume(&e->box));
-  return near_pair * share * s->n * all_points(g) + window_point * s->n * pow(e->points, 3) +
+  return near_pair * share * sources * points + window_point * sources * pow(e->points, 3) +
       grid_point * e->grid[0] * e->grid[1] * (double) e->grid[2];
+}
+
+void sd_field_measure(const sd_field_sources *s, sd_field_cloud *out)
+{
+  *out = (sd_field_cloud){.all.count = s->n};
+  for (int d = 0; d < 3; d++) {
+    out->lo[d] = INFINITY;
+    out->hi[d] = -INFINITY;
+  }
+  for (long i = 0; i < s->n; i++) {
+    const double a2 = s->a[i] * s->a[i];
+    out->all.squares += a2;
+    out->all.fourths += a2 * a2;
+    out->all.largest = fmax(out->all.largest, s->a[i]);
+    out->check += s->a[i];
+    for (int d = 0; d < 3; d++) {
+      const double x = s->x[3 * i + d], T = s->T ? s->T[3 * i + d] : 0.0;
+      out->torque += fabs(T);
+      out->check += x + s->F[3 * i + d] + T;
+      out->lo[d] = fmin(out->lo[d], x);
+      out->hi[d] = fmax(out->hi[d], x);
+    }
+  }
+}
+
+/* The largest radius becomes 1 ... 2; without radii the spacing does. */
+static double scale_of(const sd_field_cloud *c, const sd_field_grid *g)
+{
+  return ldexp(1.0, -ilogb(c->all.largest > 0.0 ? c->all.largest : g->step[0]));
+}
+
+sd_status sd_field_plan(sd_field *f, sd_field_sum how, const sd_ewald_box *box, double tolerance,
+                        const sd_field_cloud *all, const sd_field_grid *g, double *range)
+{
+  const double n = all->all.count, points = all_points(g);
+  *range = INFINITY;
+  f->how = (sd_field_how){.width = all->torque > 0.0 ? 6 : 3, .tolerance = tolerance, .scale = 1.0};
+  if (n == 0.0) return SD_OK;
+  if (!isfinite(all->check)) return SD_ENOTFINITE;
+  f->how.scale = scale_of(all, g);
+  if (!box->periodic && how == SD_FIELD_DIRECT) return SD_OK;
+  sd_ewald_box open = f->around;
+  if (!box->periodic) box_around(&open, all, g);
+  sd_ewald *e = &f->how.ewald;
+  const sd_status status =
+      choose(box->periodic ? box : &open, all, f->how.width, points, tolerance, e);
+  const int must = box->periodic || how == SD_FIELD_SPLIT;
+  if (must && status != SD_OK) return status;
+  f->how.split = must || (status == SD_OK && cost_of_split(e, n, points) < n * points);
+  if (!f->how.split) return SD_OK;
+  f->around = open;
+  *range = e->range;
+  return SD_OK;
 }
 
 /* --- sources, as the kernels read them --- */
 
-typedef struct {
-  sd_field *f;
-  int n;
-  double scale;
-  /* the sphere of which an image is added */
-  const double *a, *F, *T;
-} listing;
-
-static int add_image(void *ctx, const double *x, const int *steps)
+/* In the order that is given */
+static int list_sources(sd_field *f, const sd_field_sources *s, const int *order)
 {
-  listing *l = ctx;
-  (void) steps;
-  const size_t numbers = (size_t) SD_FIELD_ROW * (size_t) l->n, room = l->f->source_room;
-  if (numbers + SD_FIELD_ROW > room) {
-    if (!sd_grow(&l->f->source, sizeof(double), 2 * room + 64 * SD_FIELD_ROW)) return 0;
-    l->f->source_room = 2 * room + 64 * SD_FIELD_ROW;
+  const size_t n = (size_t) s->n;
+  const double scale = f->how.scale;
+  if (!sd_reserve(&f->source, sizeof(double), SD_FIELD_ROW * n, &f->source_room)) return 0;
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = order ? (size_t) order[k] : k;
+    double *row = f->source + SD_FIELD_ROW * k;
+    for (int d = 0; d < 3; d++) {
+      row[d] = scale * s->x[3 * i + d];
+      row[4 + d] = s->F[3 * i + d];
+      row[7 + d] = s->T ? scale * s->T[3 * i + d] : 0.0;
+    }
+    row[3] = scale * s->a[i];
   }
-  double *row = l->f->source + numbers;
-  for (int d = 0; d < 3; d++) {
-    row[d] = l->scale * x[d];
-    row[4 + d] = l->F[d];
-    row[7 + d] = l->T ? l->scale * l->T[d] : 0.0;
-  }
-  row[3] = l->scale * *l->a;
-  l->n++;
   return 1;
-}
-
-/* Those that are within the range of our points, with all images; split 0: the spheres themselves */
-static int list_sources(listing *l, const sd_ewald_box *box, int split, double range,
-                        const sd_field_sources *s, const sd_field_grid *g)
-{
-  static const int none[3] = {0, 0, 0};
-  double lo[3], hi[3];
-  for (int d = 0; d < 3; d++) {
-    const int from = d == 2 ? g->from : 0, last = d == 2 ? g->to - 1 : g->n[d] - 1;
-    lo[d] = g->lo[d] + from * g->step[d] - range;
-    hi[d] = g->lo[d] + last * g->step[d] + range;
-  }
-  int ok = 1;
-  for (int k = 0; k < s->n && ok; k++) {
-    const long i = l->f->cells.order[k];
-    l->a = s->a + i;
-    l->F = s->F + 3 * i;
-    l->T = s->T ? s->T + 3 * i : NULL;
-    ok = split ? sd_field_images(box, lo, hi, s->x + 3 * i, add_image, l)
-               : add_image(l, s->x + 3 * i, none);
-  }
-  return ok;
 }
 
 /* --- the parts of a sum --- */
 
-/* The largest radius becomes 1 ... 2; without radii the spacing does */
-static double scale_of(const sd_field_sources *s, const sd_field_grid *g)
+static sd_field_part part_of(const sd_field *f, int n, const sd_field_grid *g, double *u)
 {
-  double largest = 0.0;
-  for (int i = 0; i < s->n; i++) largest = fmax(largest, s->a[i]);
-  if (!(largest > 0.0)) largest = g->step[0];
-  return ldexp(1.0, -ilogb(largest));
-}
-
-static sd_field_part part_of(const sd_field_sources *s, const sd_field_grid *g, double scale,
-                             double *u)
-{
-  sd_field_part p = {.turns = s->T != NULL, .unit = scale / (8.0 * SD_PI), .u = u};
+  const double scale = f->how.scale;
+  sd_field_part p = {.n = n, .source = f->source, .turns = f->how.width == 6,
+                     .unit = scale / (8.0 * SD_PI), .u = u};
   for (int d = 0; d < 3; d++) {
     p.step[d] = scale * g->step[d];
     p.lo[d] = scale * g->lo[d];
@@ -176,8 +175,9 @@ static sd_field_part part_of(const sd_field_sources *s, const sd_field_grid *g, 
   return p;
 }
 
-static void range_of(const sd_field *f, double scale, sd_field_part *p)
+static void range_of(const sd_field *f, sd_field_part *p)
 {
+  const double scale = f->how.scale;
   static const int power[SD_RADIALS] = {1, 3, 3, 5, 5, 7, 3, 5};
   p->range = scale * f->ewald.range;
   p->ref = scale * f->ewald.a_ref;
@@ -189,10 +189,11 @@ static void range_of(const sd_field *f, double scale, sd_field_part *p)
 }
 
 /* Of this splitting, unless they are there */
-static sd_status make_tables(sd_field *f, const sd_ewald *e, int width, double tolerance,
-                             const sd_world *world)
+static sd_status make_tables(sd_field *f, const sd_world *world)
 {
   const struct sd_ewald_kernels *kernels = SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
+  const sd_ewald *e = &f->how.ewald;
+  const int width = f->how.width;
   if (f->ready && f->width == width && sd_ewald_same_tables(&f->ewald, e)) {
     f->ewald = *e;
     f->waves.grid.world = *world;
@@ -206,7 +207,7 @@ static sd_status make_tables(sd_field *f, const sd_ewald *e, int width, double t
   f->degree = SD_RADIAL_TERMS - 1;
 #define OF_DEGREE(d) \
   if ((d) >= least && (d) < f->degree) f->degree = d;
-  f->floats = tolerance >= SD_FIELD_FLOAT_TOLERANCE && least <= SD_FIELD_FLOAT_MOST;
+  f->floats = f->how.tolerance >= SD_FIELD_FLOAT_TOLERANCE && least <= SD_FIELD_FLOAT_MOST;
   if (f->floats) {
     SD_FIELD_FLOAT_DEGREES(OF_DEGREE)
   } else {
@@ -219,26 +220,26 @@ static sd_status make_tables(sd_field *f, const sd_ewald *e, int width, double t
   return status;
 }
 
-/* Velocities on the waves' grid, from a share of the sources */
+/* Velocities on the waves' grid */
 static sd_status convolve(sd_field *f, const sd_field_sources *s, const sd_world *world)
 {
-  const int me = sd_world_me(world), ranks = sd_world_ranks(world), m = f->width;
-  const long begin = (long) s->n * me / ranks, end = (long) s->n * (me + 1) / ranks;
-  const size_t n = (size_t) (end - begin);
+  const int m = f->width;
+  const size_t n = (size_t) s->n;
   int *which = malloc(sizeof(int) * (n + 1)), brick[6];
   sd_status status = SD_OK;
-  if (!which || !sd_reserve(&f->scratch, sizeof(double), (2 * (size_t) m + 5) * n, &f->scratch_room))
+  const size_t numbers = (2 * (size_t) m + 5) * n;
+  if (!which || !sd_reserve(&f->scratch, sizeof(double), numbers, &f->scratch_room))
     status = SD_ENOMEMORY;
   double *x = f->scratch, *a = x + 3 * n, *w = a + n, *F = w + n, *u = F + m * n;
   const sd_spheres ours = {x, a, w};
   for (size_t i = 0; i < n && status == SD_OK; i++) {
-    const size_t j = (size_t) f->cells.order[begin + (long) i];
+    const size_t j = (size_t) f->cells.order[i];
     which[i] = (int) i;
     w[i] = 1.0;
     a[i] = s->a[j];
     memcpy(x + 3 * i, s->x + 3 * j, 3 * sizeof(double));
-    memcpy(F + m * i, s->F + 3 * j, 3 * sizeof(double));
-    if (m == 6) memcpy(F + m * i + 3, s->T + 3 * j, 3 * sizeof(double));
+    memcpy(F + (size_t) m * i, s->F + 3 * j, 3 * sizeof(double));
+    for (size_t d = 0; d < 3 && m == 6; d++) F[6 * i + 3 + d] = s->T ? s->T[3 * j + d] : 0.0;
   }
   if (status == SD_OK) status = sd_ewald_waves_find(&f->waves, &ours, which, (int) n, brick);
   if (status == SD_OK) status = sd_ewald_waves_place_whole(&f->waves);
@@ -248,77 +249,49 @@ static sd_status convolve(sd_field *f, const sd_field_sources *s, const sd_world
   return status;
 }
 
-/* What is beyond the range is felt as a mean; a point has b = 0. */
-static void mean_of(const sd_field *f, const sd_field_sources *s, double *mean)
+/* What is beyond the range is felt as a mean, of the sources of all ranks; a point has b = 0. */
+static sd_status mean_of(const sd_field *f, const sd_field_sources *s, const sd_world *world,
+                         double *mean)
 {
   for (int d = 0; d < 3; d++) mean[d] = 0.0;
-  if (!f->ewald.box.periodic) return;
+  if (!f->ewald.box.periodic) return SD_OK;
   const double over_V = 1.0 / sd_ewald_volume(&f->ewald.box);
-  for (long i = 0; i < s->n; i++)
-    for (int d = 0; d < 3; d++)
-      mean[d] += over_V * (f->tail[0] - sd_ewald_b(&f->ewald, s->a[i]) * f->tail[1]) * s->F[3 * i + d];
-}
-
-static int sound(const sd_field_sources *s)
-{
-  double sum = 0.0;
   for (long i = 0; i < s->n; i++) {
-    sum += s->a[i];
+    const double b = sd_ewald_b(&f->ewald, s->a[i]);
     for (int d = 0; d < 3; d++)
-      sum += s->x[3 * i + d] + s->F[3 * i + d] + (s->T ? s->T[3 * i + d] : 0.0);
+      mean[d] += over_V * (f->tail[0] - b * f->tail[1]) * s->F[3 * i + d];
   }
-  return isfinite(sum);
+  return sd_world_sum(world, mean, 3);
 }
 
-/* Which sum, and its splitting in e */
-static sd_status decide(sd_field *f, sd_field_sum how, const sd_ewald_box *box, double tolerance,
-                        const sd_field_sources *s, const sd_field_grid *g, int *split, sd_ewald *e)
+sd_status sd_field_add_all(sd_field *f, const sd_field_sources *some, const sd_field_grid *g,
+                           double *u)
 {
-  *split = box->periodic || how != SD_FIELD_DIRECT;
-  if (!*split) return SD_OK;
-  sd_ewald_box open = f->around;
-  if (!box->periodic) box_around(&open, s, g);
-  const sd_status status = choose(box->periodic ? box : &open, s, g, tolerance, e);
-  if (box->periodic || how == SD_FIELD_SPLIT) {
-    f->around = open;
-    return status;
-  }
-  *split = status == SD_OK && cost_of_split(e, s, g) < s->n * all_points(g);
-  if (*split) f->around = open;
+  if (!list_sources(f, some, NULL)) return SD_ENOMEMORY;
+  const sd_field_part p = part_of(f, some->n, g, u);
+  SD_KERNELS_OF(sd_field, plain, sd_isa_of(SD_ISA_BEST))->direct(&p);
   return SD_OK;
 }
 
-sd_status sd_field_add(sd_field *f, sd_field_sum how, const sd_ewald_box *box, double tolerance,
-                       const sd_field_sources *s, const sd_field_grid *g, const sd_world *world,
-                       double *u)
+sd_status sd_field_add_split(sd_field *f, const sd_field_sources *ours,
+                             const sd_field_sources *near, const sd_field_grid *g,
+                             const sd_world *world, double *u)
 {
-  if (s->n == 0) return SD_OK;
-  if (!sound(s)) return SD_ENOTFINITE;
-  sd_ewald e;
-  int split;
-  sd_status status = decide(f, how, box, tolerance, s, g, &split, &e);
-  if (status != SD_OK) return status; /* the same on every rank */
-  if (!sd_field_sort(&f->cells, s->x, 3, s->n, split ? e.range : 0.0)) status = SD_ENOMEMORY;
-  status = sd_world_agree(world, status);
-  if (status != SD_OK) return status;
-  if (split) {
-    status = sd_world_agree(world, make_tables(f, &e, s->T ? 6 : 3, tolerance, world));
-    if (status == SD_OK) status = convolve(f, s, world);
-    if (status != SD_OK) return status;
-  }
-  const double scale = scale_of(s, g);
-  sd_field_part p = part_of(s, g, scale, u);
-  listing l = {.f = f, .scale = scale};
-  if (!list_sources(&l, box, split, split ? e.range : 0.0, s, g)) return SD_ENOMEMORY;
-  p.n = l.n;
-  p.source = f->source;
   const struct sd_field_kernels *kernels = SD_KERNELS_OF(sd_field, plain, sd_isa_of(SD_ISA_BEST));
-  if (!split) {
-    kernels->direct(&p);
-    return SD_OK;
-  }
-  range_of(f, scale, &p);
-  mean_of(f, s, p.mean);
+  const double range = f->how.ewald.range;
+  double mean[3];
+  sd_status status = make_tables(f, world);
+  if (!sd_field_sort(&f->cells, ours->x, 3, ours->n, range)) status = SD_ENOMEMORY;
+  status = sd_world_agree(world, status);
+  if (status == SD_OK) status = mean_of(f, ours, world, mean);
+  if (status == SD_OK) status = convolve(f, ours, world);
+  if (status != SD_OK) return status;
+  if (!sd_field_sort(&f->cells, near->x, 3, near->n, range) ||
+      !list_sources(f, near, f->cells.order))
+    return SD_ENOMEMORY;
+  sd_field_part p = part_of(f, near->n, g, u);
+  range_of(f, &p);
+  memcpy(p.mean, mean, sizeof(mean));
   status = sd_field_near(f, &p, kernels);
   return status == SD_OK ? sd_field_gather(f, g, kernels, u) : status;
 }

@@ -4,13 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_field_internal.h"
-
 typedef struct {
   const sd_field_grid *g;
-  const sd_field_bodies *b;
-  /* the sphere whose image is visited */
-  long sphere;
   /* of our points: squared distance over radius of the nearest sphere */
   double *nearest;
   double *u;
@@ -26,14 +21,6 @@ static int points_near(const filling *q, int d, double x, double a, int *end)
   return (int) fmin(to, fmax(from, ceil((x - a - lo) / step)));
 }
 
-/* V of the image */
-static void velocity_of(const filling *q, const int *steps, double *V)
-{
-  memcpy(V, q->b->V + 6 * q->sphere, 6 * sizeof(double));
-  for (int e = 0; e < 3 && q->b->jump; e++)
-    for (int d = 0; d < 3; d++) V[d] += steps[e] * q->b->jump[3 * e + d];
-}
-
 static void move_with(filling *q, size_t point, const double *V, const double *r, double share)
 {
   if (share > 1.0 || share >= q->nearest[point]) return;
@@ -46,14 +33,10 @@ static void move_with(filling *q, size_t point, const double *V, const double *r
   }
 }
 
-static int fill_image(void *ctx, const double *x, const int *steps)
+static void fill_sphere(filling *q, const double *x, double a, const double *V)
 {
-  filling *q = ctx;
-  const double a = q->b->a[q->sphere];
   const sd_field_grid *g = q->g;
-  double V[6];
   int end[3], from[3];
-  velocity_of(q, steps, V);
   for (int d = 0; d < 3; d++) from[d] = points_near(q, d, x[d], a, end + d);
   for (int k = from[2]; k < end[2]; k++)
     for (int j = from[1]; j < end[1]; j++)
@@ -64,28 +47,18 @@ static int fill_image(void *ctx, const double *x, const int *steps)
         move_with(q, ((size_t) (k - g->from) * (size_t) g->n[1] + (size_t) j) * (size_t) g->n[0] +
                          (size_t) i, V, r, share);
       }
-  return 1;
 }
 
-sd_status sd_field_inside(const sd_field_bodies *b, const sd_ewald_box *box, const sd_field_grid *g,
-                          double *u, unsigned char *inside)
+sd_status sd_field_inside(const sd_field_bodies *b, const sd_field_grid *g, double *u,
+                          unsigned char *inside)
 {
   const size_t points = sd_field_points(g);
-  filling q = {.g = g, .b = b, .u = u, .inside = inside};
+  filling q = {.g = g, .u = u, .inside = inside};
   q.nearest = malloc(sizeof(double) * (points + 1));
   if (!q.nearest) return SD_ENOMEMORY;
   memset(inside, 0, points);
   for (size_t k = 0; k < points; k++) q.nearest[k] = INFINITY;
-  for (q.sphere = 0; q.sphere < b->n; q.sphere++) {
-    const double a = b->a[q.sphere];
-    double lo[3], hi[3];
-    for (int d = 0; d < 3; d++) {
-      const int from = d == 2 ? g->from : 0, last = d == 2 ? g->to - 1 : g->n[d] - 1;
-      lo[d] = g->lo[d] + from * g->step[d] - a;
-      hi[d] = g->lo[d] + last * g->step[d] + a;
-    }
-    sd_field_images(box, lo, hi, b->x + 3 * q.sphere, fill_image, &q);
-  }
+  for (long i = 0; i < b->n; i++) fill_sphere(&q, b->x + 3 * i, b->a[i], b->V + 6 * i);
   free(q.nearest);
   return SD_OK;
 }

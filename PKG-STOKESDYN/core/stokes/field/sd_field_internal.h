@@ -76,12 +76,6 @@ int sd_field_sort(sd_field_cells *c, const double *x, long stride, int n, double
 sd_status sd_field_near(sd_field *f, const sd_field_part *p,
                         const struct sd_field_kernels *kernels);
 
-/* Calls visit for each image of the place x within lo ... hi [3], steps [3] edges away; where the
- * box is not periodic, for x itself. 0 as soon as visit returns 0, else 1. */
-typedef int sd_field_visit(void *ctx, const double *image, const int *steps);
-int sd_field_images(const sd_ewald_box *box, const double *lo, const double *hi, const double *x,
-                    sd_field_visit *visit, void *ctx);
-
 /* u [3 sd_field_points] += what the convolved grid of the waves has at our points */
 sd_status sd_field_gather(sd_field *f, const sd_field_grid *g,
                           const struct sd_field_kernels *kernels, double *u);

@@ -1,7 +1,8 @@
 /* The flow around spheres on a grid: against sums over all spheres, closed forms, and what a sphere of no size would do. */
 #include "../ewald/periodic.h"
 
-#include "sd_field.h"
+#include "around.h"
+
 #include "sd_linear.h"
 
 enum { SPHERES = 30, N0 = 9, N1 = 7, N2 = 6, POINTS = N0 * N1 * N2 };
@@ -39,9 +40,8 @@ static void point_of(const sd_field_grid *g, int k, double *x)
 
 static void flow(sd_field *f, sd_field_sum how, const scene *c, double tolerance, double *u)
 {
-  const sd_world alone = {0};
   memset(u, 0, 3 * sizeof(double) * sd_field_points(&c->g));
-  assert_int_equal(sd_field_add(f, how, &c->box, tolerance, &c->s, &c->g, &alone, u), SD_OK);
+  assert_int_equal(add_flow(f, how, &c->box, tolerance, &c->s, &c->g, u), SD_OK);
 }
 
 /* Largest difference over the largest value */
@@ -202,10 +202,9 @@ static void lone_sphere_has_the_flow_of_stokes(void **state)
   const sd_field_sources s = {1, x, &a, F, NULL};
   const sd_field_grid g = {{0.1, 0.2, 0.3}, {1.0, 0.8, 0.8}, {1, 21, 21}, 0, 21};
   const sd_ewald_box open = {0};
-  const sd_world alone = {0};
   double u[3 * 441] = {0.0};
   sd_field f = {0};
-  assert_int_equal(sd_field_add(&f, SD_FIELD_AUTO, &open, 1e-3, &s, &g, &alone, u), SD_OK);
+  assert_int_equal(add_flow(&f, SD_FIELD_AUTO, &open, 1e-3, &s, &g, u), SD_OK);
   CHECK_NEAR(u[2], U, 1e-15);
   for (int k = 1; k < 21; k++) {
     const double r = k, *beside = u + 3 * k, *ahead = u + 3 * 21 * k;
@@ -282,19 +281,26 @@ static void tables_are_made_anew_where_the_box_is_another(void **state)
   sd_field_free(&other);
 }
 
-/* One sphere at a corner of the box, with its images in a box that is sheared: their velocity is larger by the jump */
+/* A lattice of spheres, as a sphere in a tilted box has it, each layer faster than the one below */
 static void within_a_sphere_the_flow_is_that_of_the_sphere(void **state)
 {
   (void) state;
-  const double x[3] = {0.0, 0.0, 0.0}, a = 1.3, V[6] = {0.3, -0.2, 0.5, 0.7, -0.4, 0.9};
-  const double jump[9] = {0, 0, 0, 0, 0, 0, 2.5, 0, 0};
-  const sd_ewald_box box = {.periodic = 1, .edge = {10, 10, 10}, .tilt = {0, 3.0, 0}};
+  const double a = 1.3, V[6] = {0.3, -0.2, 0.5, 0.7, -0.4, 0.9};
   const sd_field_grid g = {{-10, -10, -10}, {0.5, 0.5, 0.5}, {41, 41, 41}, 0, 41};
-  const sd_field_bodies b = {1, x, &a, V, jump};
+  double x[3 * 75], radius[75], v[6 * 75];
+  for (int i = 0; i < 75; i++) {
+    const int up = i / 25 - 1;
+    x[3 * i] = 10 * (i % 5 - 2) + 3.0 * up;
+    x[3 * i + 1] = 10 * (i / 5 % 5 - 2);
+    x[3 * i + 2] = 10 * up;
+    radius[i] = a;
+    for (int d = 0; d < 6; d++) v[6 * i + d] = V[d] + (d == 0 ? 2.5 * up : 0.0);
+  }
+  const sd_field_bodies b = {75, x, radius, v};
   double *u = malloc(sizeof(double) * 3 * sd_field_points(&g));
   unsigned char *inside = malloc(sd_field_points(&g));
   for (size_t k = 0; k < 3 * sd_field_points(&g); k++) u[k] = 77.0;
-  assert_int_equal(sd_field_inside(&b, &box, &g, u, inside), SD_OK);
+  assert_int_equal(sd_field_inside(&b, &g, u, inside), SD_OK);
   for (int p = 0; p < (int) sd_field_points(&g); p++) {
     double at[3];
     point_of(&g, p, at);
@@ -316,12 +322,11 @@ static void where_spheres_overlap_the_nearer_one_has_the_point(void **state)
 {
   (void) state;
   const double x[6] = {0, 0, 0, 1, 0, 0}, a[2] = {1.0, 0.5}, V[12] = {1, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0};
-  const sd_ewald_box open = {0};
   const sd_field_grid g = {{0, 0, 0}, {0.1, 1, 1}, {21, 1, 1}, 0, 1};
-  const sd_field_bodies b = {2, x, a, V, NULL};
+  const sd_field_bodies b = {2, x, a, V};
   double u[3 * 21] = {0.0};
   unsigned char inside[21];
-  assert_int_equal(sd_field_inside(&b, &open, &g, u, inside), SD_OK);
+  assert_int_equal(sd_field_inside(&b, &g, u, inside), SD_OK);
   for (int i = 0; i < 21; i++) {
     assert_int_equal(inside[i], i <= 15);
     CHECK_NEAR(u[3 * i], i <= 6 ? 1.0 : i <= 15 ? 2.0 : 0.0, 0.0); /* x < |x - 1|/0.5 up to 2/3 */
@@ -333,20 +338,50 @@ static void a_flow_is_added(void **state)
 {
   (void) state;
   scene c;
-  const sd_world alone = {0};
   double u[3 * POINTS], twice[3 * POINTS];
   sd_field f = {0};
   make(&c, 0, 1, 0.0);
   flow(&f, SD_FIELD_DIRECT, &c, 1e-3, u);
   flow(&f, SD_FIELD_DIRECT, &c, 1e-3, twice);
-  assert_int_equal(sd_field_add(&f, SD_FIELD_DIRECT, &c.box, 1e-3, &c.s, &c.g, &alone, twice), SD_OK);
+  assert_int_equal(add_flow(&f, SD_FIELD_DIRECT, &c.box, 1e-3, &c.s, &c.g, twice), SD_OK);
   for (int k = 0; k < 3 * POINTS; k++) CHECK_NEAR(twice[k], 2.0 * u[k], 1e-14);
   c.s.n = 0;
   flow(&f, SD_FIELD_AUTO, &c, 1e-3, u);
   for (int k = 0; k < 3 * POINTS; k++) CHECK_NEAR(u[k], 0.0, 0.0);
   make(&c, 0, 0, 0.0);
   c.F[4] = NAN;
-  assert_int_equal(sd_field_add(&f, SD_FIELD_AUTO, &c.box, 1e-3, &c.s, &c.g, &alone, u), SD_ENOTFINITE);
+  assert_int_equal(add_flow(&f, SD_FIELD_AUTO, &c.box, 1e-3, &c.s, &c.g, u), SD_ENOTFINITE);
+  sd_field_free(&f);
+}
+
+/* Every rank has some of the sources: what each knows of its own adds up, and so do the flows. */
+static void sources_in_pieces_make_the_flow_of_all(void **state)
+{
+  (void) state;
+  scene c;
+  sd_field f = {0};
+  double u[3 * POINTS], parts[3 * POINTS] = {0.0}, range;
+  sd_field_cloud all, some;
+  make(&c, 0, 1, 0.0);
+  flow(&f, SD_FIELD_DIRECT, &c, 1e-3, u);
+  sd_field_measure(&c.s, &all);
+  assert_int_equal(sd_field_plan(&f, SD_FIELD_DIRECT, &c.box, 1e-3, &all, &c.g, &range), SD_OK);
+  assert_true(isinf(range));
+  double count = 0.0, squares = 0.0, torque = 0.0;
+  for (int from = 0; from < SPHERES; from += 7) {
+    const int n = from + 7 < SPHERES ? 7 : SPHERES - from;
+    const sd_field_sources piece = {n, c.x + 3 * from, c.a + from, c.F + 3 * from, c.T + 3 * from};
+    sd_field_measure(&piece, &some);
+    count += some.all.count;
+    squares += some.all.squares;
+    torque += some.torque;
+    for (int d = 0; d < 3; d++) assert_true(some.lo[d] >= all.lo[d] && some.hi[d] <= all.hi[d]);
+    assert_int_equal(sd_field_add_all(&f, &piece, &c.g, parts), SD_OK);
+  }
+  CHECK_NEAR(off(parts, u, 3 * POINTS), 0.0, 1e-14);
+  CHECK_NEAR(count, SPHERES, 0.0);
+  CHECK_NEAR(squares, all.all.squares, 1e-12);
+  CHECK_NEAR(torque, all.torque, 1e-12);
   sd_field_free(&f);
 }
 
@@ -383,6 +418,7 @@ int main(void)
       cmocka_unit_test(within_a_sphere_the_flow_is_that_of_the_sphere),
       cmocka_unit_test(where_spheres_overlap_the_nearer_one_has_the_point),
       cmocka_unit_test(a_flow_is_added),
+      cmocka_unit_test(sources_in_pieces_make_the_flow_of_all),
       cmocka_unit_test(a_source_without_radius_is_a_point_force),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
