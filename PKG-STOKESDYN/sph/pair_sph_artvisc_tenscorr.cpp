@@ -6,6 +6,7 @@
 #include "restart.h"
 
 #include "sd_lattice.h"
+#include "sd_sph_wall.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -26,12 +27,18 @@ using namespace StokesDyn;
 const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
                                                        "beta", "deltap", "mu"};
 
+/* pair_style hybrid copies all of this when it has read its own line, before init_style: rows of every
+ * scheme have to fit, and the virial is summed pair by pair, as shift and correction put no force on
+ * ghosts. */
 PairSph::PairSph(LAMMPS *lmp) :
     Pair(lmp), voice(lmp, "Pair style " + std::string(STYLE)), moved_box(lmp)
 {
   single_enable = 0;
   respa_enable = 0;
   restartinfo = 1;
+  no_virial_fdotr_compute = 1;
+  comm_forward = SD_SPH_MOST_COLUMNS;
+  comm_reverse = SD_SPH_MOTION;
 }
 
 PairSph::~PairSph()

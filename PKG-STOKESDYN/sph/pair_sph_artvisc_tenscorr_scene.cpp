@@ -11,7 +11,6 @@
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "ranks.h"
-#include "sd_sph_wall.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -150,10 +149,6 @@ void PairSph::choose_scheme()
                         : SD_SPH_PLAIN;
   state = FixSphShift::provide(lmp, shifts, corrects);
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
-  // forces on ghosts, which positions times forces would need, are not summed
-  no_virial_fdotr_compute = !shared;
-  comm_forward = std::max(sd_sph_columns(&model), has_walls() ? 4 : 1);
-  comm_reverse = has_walls() ? SD_SPH_MOTION : 6;
 }
 
 void PairSph::check_groups()

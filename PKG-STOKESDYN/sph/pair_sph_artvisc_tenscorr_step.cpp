@@ -18,6 +18,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -59,7 +60,6 @@ void PairSph::compute(int eflag, int vflag)
 
   for (auto *fix : pressures) fix->output(P.data());
   if (continuity) continuity->output(atom->drho);
-  if (vflag_fdotr) virial_fdotr_compute();
 }
 
 /* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build
@@ -328,7 +328,7 @@ void PairSph::pressures_of_all()
 void PairSph::forces(bool rates)
 {
   const int n = particles.n, receivers = shared && force->newton_pair ? n : atom->nlocal;
-  const bool pairwise = evflag && (vflag_atom || (vflag_either && !vflag_fdotr));
+  const bool pairwise = evflag && vflag_either;
   if (model.artvisc || model.friction || rates || model.scheme != SD_SPH_PLAIN)
     sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
   std::fill(f4.begin(), f4.end(), 0.0);
@@ -467,6 +467,7 @@ double PairSph::dW_dr(int itype, double r) const
 
 void PairSph::forward(double *array, int columns)
 {
+  assert(columns <= comm_forward);
   comm_array = array;
   comm_columns = columns;
   Compat::forward_comm(comm, this);
@@ -474,6 +475,7 @@ void PairSph::forward(double *array, int columns)
 
 void PairSph::reverse(double *array, int columns, bool largest)
 {
+  assert(columns <= comm_reverse);
   if (!shared || !force->newton_pair) return;    // ghosts got nothing
   comm_array = array;
   comm_columns = columns;

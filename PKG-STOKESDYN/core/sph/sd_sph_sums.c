@@ -22,7 +22,7 @@ int sd_sph_sum_columns(sd_sph_level level)
 
 int sd_sph_columns(const sd_sph_model *model)
 {
-  static const int columns[] = {0, 4, 8, 16, 16};
+  static const int columns[] = {0, 4, 8, SD_SPH_MOST_COLUMNS, SD_SPH_MOST_COLUMNS};
   return columns[sd_sph_level_of(model)];
 }
 

@@ -31,6 +31,7 @@ enum { SD_SPH_MAXIMUM = 13 };
 
 /* Columns of a row of order: 4 with delta, 8 with shift, 16 with correction. */
 int sd_sph_columns(const sd_sph_model *model);
+enum { SD_SPH_MOST_COLUMNS = 16 };
 
 /* Neighbours both ways, each pair from both its sides: those of particle i < n are neighbor[i][0 ..
  * count[i] - 1], and the first own[i] of them are those that the half list gives to i. count, and
