@@ -48,7 +48,7 @@ template <class Style> static void *make_fix(LAMMPS *lmp, int narg, char **arg)
 template <class Style> static void *make_compute(LAMMPS *lmp, int narg, char **arg)
 {
   return guarded(lmp, "Compute", Style::STYLE,
-                 [=] { return static_cast<Compute *>(new Style(lmp, narg, arg)); });
+                 [=] { return static_cast<Compute *>(new GuardedCompute<Style>(lmp, narg, arg)); });
 }
 
 static PluginStyle entry(const char *kind, const char *name, const char *info)

@@ -6,9 +6,11 @@
 #define SD_GUARD_H
 
 #include "keywords.h"
+#include "rows_fix.h"
 
 #include <new>
 #include <string>
+#include <type_traits>
 
 namespace StokesDyn {
 
@@ -27,7 +29,10 @@ auto guarded(LAMMPS_NS::LAMMPS *lmp, const char *kind, const char *style, const 
 
 template <class Style> class GuardedFix final : public Style {
  public:
-  GuardedFix(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) : Style(lmp, narg, arg) {}
+  GuardedFix(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) : Style(lmp, narg, arg)
+  {
+    if constexpr (std::is_base_of_v<RowsFix, Style>) this->listen();
+  }
 
   void init() override { guard([&] { Style::init(); }); }
   void setup(int flag) override { guard([&] { Style::setup(flag); }); }
@@ -66,6 +71,27 @@ template <class Style> class GuardedFix final : public Style {
   template <class Body> auto guard(const Body &body)
   {
     return guarded(this->lmp, "Fix", Style::STYLE, body);
+  }
+};
+
+template <class Style> class GuardedCompute final : public Style {
+ public:
+  GuardedCompute(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) : Style(lmp, narg, arg) {}
+
+  void init() override { guard([&] { Style::init(); }); }
+  void setup() override { guard([&] { Style::setup(); }); }
+  double compute_scalar() override
+  {
+    return guard([&] { return Style::compute_scalar(); });
+  }
+  void compute_vector() override { guard([&] { Style::compute_vector(); }); }
+  void compute_array() override { guard([&] { Style::compute_array(); }); }
+  void compute_peratom() override { guard([&] { Style::compute_peratom(); }); }
+
+ private:
+  template <class Body> auto guard(const Body &body)
+  {
+    return guarded(this->lmp, "Compute", Style::STYLE, body);
   }
 };
 

@@ -97,7 +97,8 @@ void AtomArray::grow(int nmax)
 
 // --- the fix ---------------------------------------------------------------------------------
 
-void RowsFix::keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts)
+void RowsFix::keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts,
+                   Borders borders)
 {
   kept = all;
   shown = output;
@@ -112,15 +113,20 @@ void RowsFix::keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, boo
   for (const RowsOfAtoms *rows : kept) maxexchange += rows->most_packed();
   restart_peratom = restarts;
   grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  if (restarts) atom->add_callback(Atom::RESTART);
+  wanted = {Atom::GROW};
+  if (restarts) wanted.push_back(Atom::RESTART);
+  if (borders == WITH_BORDERS) wanted.push_back(Atom::BORDER);
+}
+
+void RowsFix::listen()
+{
+  for (int kind : wanted) atom->add_callback(kind);
+  added.swap(wanted);
 }
 
 RowsFix::~RowsFix()
 {
-  if (kept.empty()) return;
-  atom->delete_callback(id, Atom::GROW);
-  if (restart_peratom) atom->delete_callback(id, Atom::RESTART);
+  for (int kind : added) atom->delete_callback(id, kind);
 }
 
 void RowsFix::grow_arrays(int nmax)

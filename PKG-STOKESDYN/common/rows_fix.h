@@ -102,6 +102,10 @@ class RowsFix : public LAMMPS_NS::Fix {
 
   const Voice voice;
 
+  /* Has LAMMPS call back, when the constructor of the style is through: LAMMPS finds a callback by the
+   * place of its fix in the list, where one whose constructor fails never stands, so none of its could
+   * be taken back. */
+  void listen();
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
@@ -122,8 +126,10 @@ class RowsFix : public LAMMPS_NS::Fix {
     return Keywords(lmp, voice.command, words(narg, arg), 3);
   }
   /* Once, in the constructor: what it keeps, with restarts also in their files. output, one of all
-   * or nullptr, becomes array_atom. */
-  void keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts);
+   * or nullptr, becomes array_atom. With borders ghosts have rows, by pack_border. */
+  enum Borders { NO_BORDERS, WITH_BORDERS };
+  void keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts,
+            Borders borders = NO_BORDERS);
   /* Before the rows of an atom are written to a restart file. */
   virtual void record(int /*i*/) {}
   /* Do the rows of a restart file stand? */
@@ -137,6 +143,8 @@ class RowsFix : public LAMMPS_NS::Fix {
  private:
   std::vector<RowsOfAtoms *> kept;
   AtomArray *shown = nullptr;
+  /* of LAMMPS's callbacks: which it wants, and which it has */
+  std::vector<int> wanted, added;
 };
 
 }    // namespace StokesDyn

@@ -13,6 +13,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -223,7 +224,8 @@ ComputeSphEnergy::ComputeSphEnergy(LAMMPS *lmp, int narg, char **arg) :
 
 ComputeSphEnergy::~ComputeSphEnergy()
 {
-  if (modify->nfix && Compat::fix(modify, memory_id)) modify->delete_fix(memory_id);
+  const Fix *fix = modify->nfix > 0 ? Compat::fix(modify, memory_id) : nullptr;
+  if (fix && strcmp(fix->style, FixSphEnergy::STYLE) == 0) modify->delete_fix(memory_id);
 }
 
 void ComputeSphEnergy::init()
@@ -235,7 +237,8 @@ void ComputeSphEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
   Fix *fix = Compat::fix(modify, memory_id);
-  if (!fix) voice.fail("the fix " + memory_id + " has been deleted, but this compute needs it");
+  if (!fix || strcmp(fix->style, FixSphEnergy::STYLE) != 0)
+    voice.fail("the fix " + memory_id + " has been deleted, but this compute needs it");
   static_cast<FixSphEnergy *>(fix)->values(vector);
 }
 

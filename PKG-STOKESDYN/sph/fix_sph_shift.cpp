@@ -15,20 +15,24 @@ using namespace StokesDyn;
 static const char *const ID = "SPH_SHIFT_STATE";
 static constexpr int DU = 3, REST = 9;    // columns
 
+void FixSphShift::take_away(LAMMPS *lmp)
+{
+  const Fix *fix = lmp->modify->nfix > 0 ? Compat::fix(lmp->modify, ID) : nullptr;
+  if (fix && strcmp(fix->style, STYLE) == 0) lmp->modify->delete_fix(ID);
+}
+
 FixSphShift *FixSphShift::provide(LAMMPS *lmp, bool wanted, bool correction)
 {
-  Fix *fix = Compat::fix(lmp->modify, ID);
+  const Fix *fix = Compat::fix(lmp->modify, ID);
   if (fix && strcmp(fix->style, STYLE) != 0)
     fail(lmp,
          "Pair style sph/artVisc/tensCorr: the fix ID " + std::string(ID) +
              " is taken; give that fix another ID");
-  auto *found = static_cast<FixSphShift *>(fix);
-  if (found && (!wanted || found->correction != correction)) {
-    lmp->modify->delete_fix(ID);
-    found = nullptr;
-  }
-  if (found || !wanted) return found;
-  lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (correction ? " correction" : ""));
+  if (!wanted || (fix && static_cast<const FixSphShift *>(fix)->correction != correction))
+    take_away(lmp);
+  if (!wanted) return nullptr;
+  if (!Compat::fix(lmp->modify, ID))
+    lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (correction ? " correction" : ""));
   return static_cast<FixSphShift *>(Compat::fix(lmp->modify, ID));
 }
 
@@ -39,13 +43,7 @@ FixSphShift::FixSphShift(LAMMPS *lmp, int narg, char **arg) :
   comm_border = DU;
   std::vector<RowsOfAtoms *> all = {&shifts};
   if (correction) all.push_back(&rest);
-  keep(all, nullptr, true);
-  atom->add_callback(Atom::BORDER);
-}
-
-FixSphShift::~FixSphShift()
-{
-  atom->delete_callback(id, Atom::BORDER);
+  keep(all, nullptr, true, WITH_BORDERS);
 }
 
 int FixSphShift::pack_border(int n, int *list, double *buf)

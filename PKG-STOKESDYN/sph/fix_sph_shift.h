@@ -15,9 +15,10 @@ class FixSphShift : public RowsFix {
   /* That of this LAMMPS, made anew unless it is of this kind; wanted false: nullptr, and none is
    * left. */
   static FixSphShift *provide(LAMMPS_NS::LAMMPS *lmp, bool wanted, bool correction);
+  /* For a destructor: none is left, and a fix of the user's with its ID stays. */
+  static void take_away(LAMMPS_NS::LAMMPS *lmp);
 
   FixSphShift(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixSphShift() override;
   int setmask() override { return 0; }
   int pack_border(int, int *, double *) override;
   int unpack_border(int, int, double *) override;

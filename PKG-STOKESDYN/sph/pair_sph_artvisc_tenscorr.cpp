@@ -44,7 +44,7 @@ PairSph::PairSph(LAMMPS *lmp) :
 PairSph::~PairSph()
 {
   if (asked_for_velocities) comm->ghost_velocity = 0;    // as it was
-  if (modify->nfix) FixSphShift::provide(lmp, false, false);
+  FixSphShift::take_away(lmp);
   if (!allocated) return;
   memory->destroy(setflag);
   memory->destroy(cutsq);

@@ -72,7 +72,7 @@ class SphOutputFix : public SphFix {
   void output(const double *numbers);
 
  protected:
-  /* For the end of the constructor: LAMMPS cannot take back a callback of a fix that failed. */
+  /* Once, in the constructor. */
   void begin();
 
  private:

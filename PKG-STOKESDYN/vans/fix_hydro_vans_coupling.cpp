@@ -115,7 +115,7 @@ void FixHydroVans::count_overlaps()
       }
       const double part = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
       if (part < 0.0)
-        set.voice.fail("keyword overlap: out of memory for a clump of " + std::to_string(n) +
+        set.voice.fail_one("keyword overlap: out of memory for a clump of " + std::to_string(n) +
                        " members");
       share[all[begin + k].tag] = part;
     }

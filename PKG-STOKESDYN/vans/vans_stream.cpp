@@ -13,7 +13,7 @@ VansStream::VansStream(const VansSettings &settings) :
     wet_edge(set.edge), solver(sd_vans_solver_create(&wet), sd_vans_solver_free)
 {
   const int N = ncell();
-  if (!solver) set.voice.fail("out of memory for " + std::to_string(N) + " slices");
+  if (!solver) set.voice.fail_one("out of memory for " + std::to_string(N) + " slices");
   U.resize(N + 1, 0.0);
   wet.edge = wet_edge.data();
   if (set.follows()) {

@@ -1,11 +1,12 @@
 /* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more, up to
- * MALLOC_MOST, has nothing to give, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none; they are
+ * MALLOC_MOST, has nothing to give, calloc likewise, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none; they are
  * those of rank SCARCE_RANK alone, if that is given. */
 #include <cstdlib>
 #include <cstring>
 #include <new>
 
 extern "C" void *__libc_malloc(size_t);
+extern "C" void *__libc_calloc(size_t, size_t);
 
 static size_t limit_of(const char *name)
 {
@@ -17,6 +18,13 @@ extern "C" void *malloc(size_t bytes)
 {
   static size_t limit = limit_of("MALLOC_LIMIT"), most = limit_of("MALLOC_MOST");
   return limit && bytes >= limit && (!most || bytes <= most) ? nullptr : __libc_malloc(bytes);
+}
+
+extern "C" void *calloc(size_t count, size_t each)
+{
+  static size_t limit = limit_of("CALLOC_LIMIT"), most = limit_of("CALLOC_MOST");
+  const size_t bytes = count * each;
+  return limit && bytes >= limit && (!most || bytes <= most) ? nullptr : __libc_calloc(count, each);
 }
 
 void *operator new(size_t bytes)

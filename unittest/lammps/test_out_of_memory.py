@@ -58,3 +58,52 @@ def test_one_rank_without_memory_for_a_shape_ends_all(tmp_path, scarce, scarce_r
     scarce(MALLOC_LIMIT=480000, MALLOC_MOST=480000, SCARCE_RANK=scarce_rank)    # three numbers for each sphere of a shape
     run = lmp(tmp_path, lines + ["run 0"], 2, timeout=20, succeed=False)
     assert run.code != 0 and "Pair style stokes_dynamics: keyword rigid_clumps: out of memory" in run.text, run.text[-1500:]
+
+
+# Cells of SPH particles that are alone: no list of pairs is as long as what a compute asks for.
+ALONE = """units lj
+atom_style sph
+atom_modify map array
+boundary f f f
+plugin load stokesdynplugin.so
+lattice sc 1.0
+region box block -0.5 {n}.5 -0.5 {n}.5 -0.5 {n}.5
+create_box 1 box
+create_atoms 1 box
+mass * 1.0
+set group all sph/rho 1.0
+pair_style sph/artVisc/tensCorr wendland 0.3
+pair_coeff * *
+neighbor 0.1 bin
+fix density all sph/density/summation
+fix move all nve/sph
+""".splitlines()
+
+
+def test_a_compute_without_memory_tells_it(tmp_path, scarce):
+    """Six numbers for each particle are more than any array before."""
+    lines = [line.format(n=19) for line in ALONE] + ["fix eos all sph/pressure Tait 14.3 1 7", "compute s all sph/surface/atom", "run 0",
+                                                    "compute most all reduce max c_s[1]", "thermo_style custom step c_most", "run 0"]
+    scarce(NEW_LIMIT=40 * 20**3)
+    run = lmp(tmp_path, lines, timeout=30, succeed=False)
+    assert run.code != 0 and "Compute sph/surface/atom: out of memory on this rank" in run.text, run.text[-1500:]
+    assert "terminate called" not in run.text
+
+
+@pytest.mark.parametrize("scarce_rank", [0, 1])
+def test_one_rank_without_memory_for_a_fix_ends_all(tmp_path, scarce, scarce_rank):
+    """The constructor fails in its first rows, before LAMMPS has been told of them."""
+    scarce(CALLOC_LIMIT=8 * 16385, CALLOC_MOST=8 * 16385, SCARCE_RANK=scarce_rank)    # a number for each atom that LAMMPS has room for
+    run = lmp(tmp_path, [line.format(n=3) for line in ALONE] + ["fix eos all sph/pressure Tait 14.3 1 7", "run 0"], 2, timeout=30, succeed=False)
+    assert run.code != 0 and "Fix sph/pressure: out of memory on this rank" in run.text, run.text[-1500:]
+    assert "terminate called" not in run.text
+
+
+@pytest.mark.parametrize("scarce_rank", [0, 1])
+def test_one_rank_without_memory_for_a_stream_ends_all(tmp_path, scarce, scarce_rank):
+    slices = 20000
+    scarce(CALLOC_LIMIT=18 * 8 * slices, CALLOC_MOST=18 * 8 * (slices + 2), SCARCE_RANK=scarce_rank)
+    lines = ["units si", "atom_style sphere", "plugin load stokesdynplugin.so", "region box block 0 1 0 1 0 1", "create_box 1 box",
+             f"fix h all hydro/vans 1 mesh {slices} 1e-4 0 fluid 1000 0.001 gravity 0.5 0 -9.8"]
+    run = lmp(tmp_path, lines, 2, timeout=30, succeed=False)
+    assert run.code != 0 and f"Fix hydro/vans: out of memory for {slices} slices" in run.text, run.text[-1500:]

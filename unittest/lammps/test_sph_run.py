@@ -78,6 +78,12 @@ def test_restart_without_pair_style(how, unbroken, tmp_path):
     same(trajectory(again + FIXES + "run 50"), unbroken)
 
 
+def test_a_fix_with_the_id_of_the_memory_stays_when_the_pair_style_goes(tmp_path):
+    done = mpirun(1, random_scene() + pair_commands("wendland", 1, 1) + "\nfix SPH_SHIFT_STATE all nve\npair_style none\nunfix SPH_SHIFT_STATE\nclear\nprint ended",
+                  tmp_path)
+    assert done.returncode == 0 and "ended" in done.stdout, done.stdout[-1000:]
+
+
 def test_restart_without_fixes_is_an_error(tmp_path):
     path = str(tmp_path / "restart")
     trajectory(scene("run 5\nwrite_restart " + path))

@@ -260,6 +260,19 @@ def test_unit_systems(units):
     assert np.allclose(s.atoms("f")[0], [drag, 0, 9.8 * 1000 * 4 / 3 * np.pi * 1e-9], rtol=1e-12)
 
 
+@pytest.mark.parametrize("radii", [32, 33])
+def test_more_classes_than_there_may_be(radii):
+    s = Scene()
+    a = 0.001 * (1.0 + 0.01 * np.arange(radii))
+    s.spheres([[0.01, 0.01, 0.004 * k] for k in range(radii)], np.zeros((radii, 3)), a)
+    if radii <= 32:
+        s.do(line(mesh="80 0.002 0", classes="yes"))
+        return
+    with pytest.raises(Exception, match="keyword classes: the grains have more than 32 different radii"):
+        s.do(line(mesh="80 0.002 0", classes="yes"))
+    s.do(line(mesh="80 0.002 0"), "run 0")    # nothing is left of the one that failed
+
+
 def test_two_dimensions_are_refused():
     s = Scene.of("plugin load stokesdynplugin.so\nunits si\natom_style sphere\ndimension 2\nregion b block 0 1 0 1 -0.1 0.1\ncreate_box 1 b")
     with pytest.raises(Exception, match="dimension 2: the stream needs three dimensions"):
