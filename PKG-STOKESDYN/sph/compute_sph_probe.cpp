@@ -2,11 +2,13 @@
 
 #include "fix_sph_settings.h"
 #include "fixes.h"
-#include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
+#include "sd_lattice.h"
 #include "sd_sph_probe.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "update.h"
 
 #include <algorithm>
@@ -48,18 +50,16 @@ double ComputeSphProbe::volume(int i) const
 template <class Use> void ComputeSphProbe::each_image(const Probe &probe, int i, const Use &use) const
 {
   const double reach = 2.0 * pair->smoothing_length(atom->type[i]);
-  double d[3];
-  for (int k = 0; k < 3; k++) d[k] = atom->x[i][k] - probe.x[k];
-  const double up = probe.axis < 0 ? 0.0 : d[probe.axis];
-  Compat::minimum_image(domain, d);
-  if (probe.axis >= 0) d[probe.axis] = up;
-  int more[3];    // periods to each side; a tilted box is narrower than its edges are long
-  for (int k = 0; k < 3; k++) {
-    const bool repeats = domain->periodicity[k] && k != probe.axis && k < domain->dimension;
-    const double width = domain->prd[k] * (domain->triclinic ? 0.5 : 1.0);
-    more[k] = repeats && reach > 0.5 * width ? (int) ceil(reach / width) : 0;
-  }
   const double *h = domain->h;
+  double d[3];
+  int repeats[3], more[3];    // periods to each side; a tilted box is narrower than its edges are long
+  for (int k = 0; k < 3; k++) {
+    d[k] = atom->x[i][k] - probe.x[k];
+    repeats[k] = domain->periodicity[k] && k != probe.axis && k < domain->dimension;
+    const double width = domain->prd[k] * (domain->triclinic ? 0.5 : 1.0);
+    more[k] = repeats[k] && reach > 0.5 * width ? (int) ceil(reach / width) : 0;
+  }
+  sd_closest_image(h, repeats, d);
   for (int a = -more[0]; a <= more[0]; a++)
     for (int b = -more[1]; b <= more[1]; b++)
       for (int c = -more[2]; c <= more[2]; c++) {
@@ -88,37 +88,57 @@ double ComputeSphProbe::pressure(const Probe &probe) const
   return sd_sph_probe_pressure(sums);
 }
 
-/* Samples are an eighth of h apart, up to the end of the highest support that the line crosses. */
-double ComputeSphProbe::height(const Probe &probe) const
+/* Of this rank: particles whose support the line upwards from the probe crosses. One farther away than
+ * 1e12 h, where an eighth of h is no longer told apart, has blown up. */
+std::vector<ComputeSphProbe::Near> ComputeSphProbe::along(const Probe &probe) const
 {
-  struct Near {
-    int i;
-    double across, z, h;
-  };
   std::vector<Near> near;
-  double mine[2] = {0.0, -HUGE_VAL}, ends[2];    // the highest, - the smallest h
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const double h = pair->smoothing_length(atom->type[i]);
     each_image(probe, i, [&](const double d[3]) {
       const double z = d[probe.axis],
                    across = std::hypot(d[(probe.axis + 1) % 3], d[(probe.axis + 2) % 3]);
-      if (!(across < 2.0 * h)) return;
-      near.push_back({i, across, z, h});
-      mine[0] = std::max(mine[0], z + 2.0 * h);
-      mine[1] = std::max(mine[1], -h);
+      if (across < 2.0 * h && z > -2.0 * h && z < 1e12 * h) near.push_back({i, across, z, h});
     });
   }
+  return near;
+}
+
+/* Samples are an eighth of h apart, in stretches from the end of the highest support downwards. Heights
+ * that no support reaches are left out, however many they are. */
+double ComputeSphProbe::height(const Probe &probe) const
+{
+  constexpr double SAMPLES = 4096.0;
+  const std::vector<Near> near = along(probe);
+  double mine[2] = {0.0, -HUGE_VAL}, ends[2];    // the highest, - the smallest h
+  for (const Near &at : near) {
+    mine[0] = std::max(mine[0], at.z + 2.0 * at.h);
+    mine[1] = std::max(mine[1], -at.h);
+  }
   MPI_Allreduce(mine, ends, 2, MPI_DOUBLE, MPI_MAX, world);
-  if (!(ends[0] > 0.0)) return 0.0;
   const double step = -ends[1] / 8.0;
-  const int count = 2 + (int) ceil(ends[0] / step);
-  std::vector<double> part(count, 0.0), fraction(count);
-  for (const Near &at : near)
-    sd_sph_gauge_add(pair->kernel(), pair->dimension(), at.h, at.across, at.z, volume(at.i), step,
-                     count, part.data());
-  MPI_Allreduce(part.data(), fraction.data(), count, MPI_DOUBLE, MPI_SUM, world);
-  return sd_sph_gauge_height(fraction.data(), count, step);
+  std::vector<double> part, fraction;
+  for (double top = ends[0], above = HUGE_VAL; top > 0.0;) {
+    const double last = std::min(ceil(top / step) + 1.0, above),
+                 first = std::max(0.0, last - SAMPLES + 1.0);
+    const sd_sph_stretch at = {first, step, (int) (last - first) + 1};
+    part.assign(at.count, 0.0);
+    fraction.resize(at.count);
+    for (const Near &p : near)
+      sd_sph_gauge_add(pair->kernel(), pair->dimension(), p.h, p.across, p.z, volume(p.i), &at,
+                       part.data());
+    MPI_Allreduce(part.data(), fraction.data(), at.count, MPI_DOUBLE, MPI_SUM, world);
+    const double found = sd_sph_gauge_height(&at, fraction.data());
+    if (found > 0.0 || first == 0.0) return found;
+    double next = 0.0;
+    for (const Near &p : near)
+      if (p.z - 2.0 * p.h < first * step)
+        next = std::max(next, std::min(p.z + 2.0 * p.h, first * step));
+    top = largest_of_all(world, next);
+    above = first;
+  }
+  return 0.0;
 }
 
 void ComputeSphProbe::compute_vector()

@@ -27,6 +27,11 @@ class ComputeSphProbe : public LAMMPS_NS::Compute {
     int axis;
     double x[3];
   };
+  /* a particle as the line upwards from a probe passes it */
+  struct Near {
+    int i;
+    double across, z, h;
+  };
   const Voice voice;
   std::vector<Probe> probes;
   std::vector<double> values;
@@ -34,6 +39,7 @@ class ComputeSphProbe : public LAMMPS_NS::Compute {
 
   double pressure(const Probe &) const;
   double height(const Probe &) const;
+  std::vector<Near> along(const Probe &) const;
   double volume(int i) const;
   /* use(d) with d from the probe to particle i and to those of its images that may be within 2 h;
    * along `axis` there are none */

@@ -1,11 +1,13 @@
 #include "fix_hydro_vans.h"
 
-#include "lammps_compat.h"
 #include "ranks.h"
 #include "sd_constants.h"
 #include "sd_hash.h"
+#include "sd_lattice.h"
 
 #include "atom.h"
+#include "domain.h"
+#include "region.h"
 #include "update.h"
 
 #include <algorithm>
@@ -110,7 +112,7 @@ void FixHydroVans::count_overlaps()
     for (size_t k = 0; k < n; k++) {
       for (size_t j = 0; j < n; j++) {
         for (int d = 0; d < 3; d++) x[3 * j + d] = all[begin + j].x[d] - all[begin + k].x[d];
-        Compat::minimum_image(domain, &x[3 * j]);
+        sd_closest_image(domain->h, domain->periodicity, &x[3 * j]);
         a[j] = all[begin + j].a;
       }
       const double part = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);

@@ -35,7 +35,9 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
         masses *= vi[3];
         mine *= u[3];
       }
-      last += keep(last, j, bits(distance < two + near->margin * inv_h));
+      /* for particles that fly apart the margin may reach beyond the filler */
+      const unsigned closer = bits(distance < two + near->margin * inv_h);
+      last += keep(last, j, closer & neighbours_of(count - at));
       sum += w * masses;
       for (int k = 0; k < LANES; k++) rate[j[k]] += mine[k] * w[k];
     }

@@ -30,6 +30,12 @@ INLINE void next(const int *neighbor, int left, int mask, int filler, int j[LANE
   for (int k = 0; k < LANES; k++) j[k] = k < left ? neighbor[k] & mask : filler;
 }
 
+/* Of the next of `left` neighbours: those that are none of these fillers, as bits. */
+INLINE unsigned neighbours_of(int left)
+{
+  return left < LANES ? (1u << left) - 1u : ~0u;
+}
+
 /* From the neighbours j to the row x4 of i: d, its square, and their last column. */
 typedef struct {
   vec d[3], r2, last;

@@ -20,21 +20,23 @@ double sd_sph_probe_pressure(const double sums[2])
 
 /* The line crosses the support of a particle from z - reach to z + reach. */
 void sd_sph_gauge_add(sd_sph_kernel kernel, int dimension, double h, double across, double z,
-                      double V, double step, int count, double *fraction)
+                      double V, const sd_sph_stretch *at, double *fraction)
 {
   if (!(across < 2.0 * h)) return;
-  const double reach = sqrt(4.0 * h * h - across * across);
-  const double first = fmax(0.0, ceil((z - reach) / step));
-  const double last = fmin(count - 1.0, floor((z + reach) / step));
+  const double reach = sqrt(4.0 * h * h - across * across), step = at->step;
+  const double first = fmax(0.0, ceil((z - reach) / step) - at->first);
+  const double last = fmin(at->count - 1.0, floor((z + reach) / step) - at->first);
+  if (!(first <= last)) return;    /* out of the stretch, perhaps by more than an int holds */
   for (int k = (int) first; k <= last; k++)
-    fraction[k] += V * sd_sph_W(kernel, dimension, hypot(across, z - k * step), h);
+    fraction[k] += V * sd_sph_W(kernel, dimension, hypot(across, z - (at->first + k) * step), h);
 }
 
-double sd_sph_gauge_height(const double *fraction, int count, double step)
+double sd_sph_gauge_height(const sd_sph_stretch *at, const double *fraction)
 {
-  for (int k = count - 2; k >= 0; k--) {
+  for (int k = at->count - 2; k >= 0; k--) {
     const double below = fraction[k], above = fraction[k + 1];
-    if (below >= 0.5 && above < 0.5) return step * (k + (below - 0.5) / (below - above));
+    if (below >= 0.5 && above < 0.5)
+      return at->step * (at->first + k + (below - 0.5) / (below - above));
   }
   return 0.0;
 }

@@ -17,13 +17,18 @@ double sd_sph_probe_pressure(const double sums[2]);
 
 /* Free surface over a point: the fraction of space that is filled, sum V W, is 1 in the fluid and
  * 1/2 at a plane surface. Adds a particle of volume V at the height z over the point and the
- * distance across from the line upwards to fraction [count], samples at k * step. */
+ * distance across from the line upwards to the fraction of a stretch of this line. */
+typedef struct {
+  /* heights (first + k) step, k < count; first is a whole number */
+  double first, step;
+  int count;
+} sd_sph_stretch;
 void sd_sph_gauge_add(sd_sph_kernel kernel, int dimension, double h, double across, double z,
-                      double V, double step, int count, double *fraction);
+                      double V, const sd_sph_stretch *at, double *fraction);
 
-/* The uppermost height at which the fraction falls through 1/2, linear between samples; 0: there is
- * none. */
-double sd_sph_gauge_height(const double *fraction, int count, double step);
+/* The uppermost height of the stretch at which the fraction [at->count] falls through 1/2, linear
+ * between samples; 0: there is none. */
+double sd_sph_gauge_height(const sd_sph_stretch *at, const double *fraction);
 
 /* Adds to M [6 n + 6], rows xx yy zz xy xz yz of - sum V_b g d d^T, the unit matrix in the bulk. x4
  * holds V. */

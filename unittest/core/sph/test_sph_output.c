@@ -70,19 +70,27 @@ static void a_probe_in_the_middle_has_the_linear_pressure(void **state)
   CHECK_NEAR(sd_sph_probe_pressure(sums), 5.0 - 4.0 * 0.4, 1e-12);
 }
 
-/* The sum of a lattice at its edge is that of the integral to 1e-3, and of slope 1.4 / h. */
+/* The sum of a lattice at its edge is that of the integral to 1e-3, and of slope 1.4 / h. The stretch of
+ * the line may begin anywhere below the edge. */
 static void height_of_the_edge_of_a_lattice(void **state)
 {
   (void) state;
-  double fraction[60];
-  memset(fraction, 0, sizeof(fraction));
-  assert_true(sd_sph_gauge_height(fraction, 60, 0.025) == 0.0);
-  for (int k = 0; k < 320; k++) {
-    double p[2];
-    at(k, p);
-    sd_sph_gauge_add(SD_SPH_WENDLAND, 2, 0.2, fabs(p[0] - 0.013), p[1], 0.01, 0.025, 60, fraction);
+  double found[2];
+  for (int part = 0; part < 2; part++) {
+    const sd_sph_stretch at_line = {part ? 20.0 : 0.0, 0.025, part ? 40 : 60};
+    double fraction[60] = {0.0};
+    for (double z = -1e12; z < 1e13; z += 2e12)
+      sd_sph_gauge_add(SD_SPH_WENDLAND, 2, 0.2, 0.0, z, 1.0, &at_line, fraction);
+    assert_true(sd_sph_gauge_height(&at_line, fraction) == 0.0);
+    for (int k = 0; k < 320; k++) {
+      double p[2];
+      at(k, p);
+      sd_sph_gauge_add(SD_SPH_WENDLAND, 2, 0.2, fabs(p[0] - 0.013), p[1], 0.01, &at_line, fraction);
+    }
+    found[part] = sd_sph_gauge_height(&at_line, fraction);
+    CHECK_NEAR(found[part], 0.8, 0.005);
   }
-  CHECK_NEAR(sd_sph_gauge_height(fraction, 60, 0.025), 0.8, 0.005);
+  CHECK_NEAR(found[1], found[0], 1e-14);
 }
 
 /* M = R diag R^T for a rotation by an angle about each axis in turn. */

@@ -121,6 +121,27 @@ static void every_combination(const sd_sph_loops *loops)
   }
 }
 
+/* The margin is the way of a step: in a run that blows up it may be longer than the filler is away. */
+static void nobody_but_listed_neighbours_is_near(const sd_sph_loops *loops)
+{
+  const uint64_t before = seed;
+  for (double margin = 0.0; margin < 1e210; margin = margin == 0.0 ? 1e90 : margin * 1e20) {
+    scene s;
+    build(&s, SD_SPH_WENDLAND, 3, 1, 1, 0, SD_SPH_INVISCID);
+    double rate[N + 1] = {0};
+    neighbours close;
+    sd_sph_near found = near_in(&close);
+    found.margin = margin;
+    loops->rates(&s.model, &s.list, &s.p, rate, &found);
+    for (int i = 0; i < N; i++) {
+      assert_true(close.own[i] <= s.count[i]);
+      for (int m = 0; m < close.own[i]; m++) assert_true(close.neighbor[i][m] < N);
+      assert_true(margin == 0.0 || close.own[i] == s.count[i]);
+    }
+  }
+  seed = before;    /* the other tests have their scenes */
+}
+
 /* The columns of sd_sph_sums.h, one pair after the other. */
 static void columns_by_the_book(const scene *s, int i, int columns, double *sums)
 {
@@ -205,6 +226,7 @@ static void every_loop(sd_isa isa)
   const sd_sph_loops *loops = SD_KERNELS_OF(sd_sph_loops, baseline, isa);
   every_combination(loops);
   every_column(loops);
+  nobody_but_listed_neighbours_is_near(loops);
 }
 
 static void loops_for_any_processor(void **state)
