@@ -34,6 +34,7 @@ int FixSphEnergy::setmask()
 
 sd_sph_members FixSphEnergy::group()
 {
+  pair = Sph::prepared_pair(voice);
   states = fixes_of<FixSphPressure>(lmp);
   gravities = fixes_of(lmp, "gravity");
   masses.resize(atom->nlocal + 1);

@@ -143,6 +143,7 @@ double ComputeSphProbe::height(const Probe &probe) const
 
 void ComputeSphProbe::compute_vector()
 {
+  pair = Sph::prepared_pair(voice);
   invoked_vector = update->ntimestep;
   for (size_t k = 0; k < probes.size(); k++)
     vector[k] = probes[k].axis < 0 ? pressure(probes[k]) : height(probes[k]);
@@ -166,6 +167,7 @@ void ComputeSphSurface::init()
 
 void ComputeSphSurface::compute_peratom()
 {
+  pair = Sph::prepared_pair(voice);
   invoked_peratom = update->ntimestep;
   if (!pair->moments(moments))
     voice.fail("there is no neighbour list yet of these atoms; use it in a run, or after 'run 0'");

@@ -55,6 +55,10 @@ void FixSphOpening::init()
   if (domain->boundary[axis][side > 0] != 1)
     voice.fail("the box must have boundary f beyond the layer, along " +
                std::string(1, (char) ('x' + axis)));
+  if (plane < domain->boxlo[axis] || plane > domain->boxhi[axis])
+    voice.fail("POSITION " + text(plane) + " is outside of the box, which goes from " +
+               text(domain->boxlo[axis]) + " to " + text(domain->boxhi[axis]) +
+               ": is it in other units?");
   if (side * (end - edge) > 1e-9 * width)
     voice.fail("the layer from " + text(plane) + " to " + text(end) +
                " does not fit into the box, which ends at " + text(edge));
@@ -78,6 +82,22 @@ void FixSphOpening::check_width()
     voice.fail("the width " + text(width) +
                " of the layer is too small: particles of the flow would see its end; it must be " +
                text(needed) + " or more");
+}
+
+void FixSphOpening::check_side() const
+{
+  bigint mine[2] = {0, 0}, all[2];    // all, and those behind the layer
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    mine[0]++;
+    mine[1] += beyond(atom->x[i]) > width;
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] > 0 && all[1] == all[0])
+    voice.fail("all particles of its group stand behind the layer, which reaches from " + text(plane) +
+               " to " + text(plane + side * width) + ": FACE " + std::string(1, (char) ('x' + axis)) +
+               (side > 0 ? "hi" : "lo") + " is the end of the flow at which the layer stands, and " +
+               "POSITION must lie between them and it");
 }
 
 double FixSphOpening::compute_scalar()
@@ -141,6 +161,7 @@ void FixSphInlet::move_layer()
 void FixSphInlet::setup_pre_exchange()
 {
   check_width();
+  check_side();
   int mine = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
@@ -227,6 +248,11 @@ void FixSphInlet::pre_exchange()
   tagint last = 0;
   for (int i = 0; i < atom->nlocal; i++) last = std::max(last, atom->tag[i]);
   last = largest_of_all(world, last);
+  if ((bigint) last > (bigint) MAXTAGINT - (bigint) all.size())
+    voice.at_step().fail("there is no atom ID left for " + std::to_string(all.size()) +
+                         " new particles: the largest is " + std::to_string(last) +
+                         "; 'reset_atom_ids' (in newer LAMMPS 'reset_atoms id') between two runs "
+                         "numbers the atoms anew");
 
   // new particles stand where ghosts were
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
@@ -260,6 +286,7 @@ void FixSphOutlet::init()
 void FixSphOutlet::setup_pre_exchange()
 {
   check_width();
+  check_side();
 }
 
 const double *FixSphOutlet::find_pressures()

@@ -24,8 +24,9 @@ class FixSphOpening : public SphFix {
   std::vector<SavedNumbers> saved() override { return {{"passed", &passed, 1, true}}; }
   /* the words FACE POSITION WIDTH, which come first */
   Keywords parse_place(int narg, char **arg);
-  /* For a setup of a run: the layer hides the empty space beyond it. */
+  /* For a setup of a run: the layer hides the empty space beyond it, and the fluid is not behind it. */
   void check_width();
+  void check_side() const;
   double beyond(const double *x) const { return side * (x[axis] - plane); }
   bool is_held(int i) const;
 

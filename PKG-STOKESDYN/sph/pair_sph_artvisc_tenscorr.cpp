@@ -59,6 +59,7 @@ PairSph::~PairSph()
 void PairSph::settings(int narg, char **arg)
 {
   args = words(narg, arg);
+  members.clear();    // other settings want a run that is prepared
   parse();
 }
 

@@ -49,6 +49,11 @@ class PairSph : public LAMMPS_NS::Pair {
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
 
+  /* Fails unless the last run that LAMMPS prepared was one of this style, with all fixes that took part
+   * still there: for everybody who asks something below, and may be asked himself between runs, or after
+   * 'run ... pre no', before which LAMMPS prepares nothing. */
+  void require_prepared() const;
+
   /* For the SPH fixes. Pressures are those of the latest force. */
   double pressure(int i) const { return P[i]; }
   double smoothing_length(int itype) const { return table[H][itype][itype]; }
@@ -102,6 +107,8 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<FixSphInlet *> inlets;
   std::vector<FixSphOutlet *> outlets;
   FixSphShift *state = nullptr;
+  // all of these, as errors name them when they are gone
+  std::vector<std::pair<const LAMMPS_NS::Fix *, std::string>> members;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
   // groups of all fixes that displace particles
   int displaced_bits = 0;
@@ -112,6 +119,7 @@ class PairSph : public LAMMPS_NS::Pair {
   template <class Style> Style *only(const char *otherwise);
   void find_fixes();
   void find_integrators();
+  void remember_members();
   void choose_scheme();
   void check_stiffness();
   void check_groups();

@@ -40,6 +40,7 @@ void PairSph::init_style()
   find_fixes();
   find_integrators();
   choose_scheme();
+  remember_members();
   check_stiffness();
   check_groups();
   check_openings();
@@ -149,6 +150,34 @@ void PairSph::choose_scheme()
                         : SD_SPH_PLAIN;
   state = FixSphShift::provide(lmp, shifts, corrects);
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
+}
+
+void PairSph::remember_members()
+{
+  members.clear();
+  const auto join = [this](const Fix *fix) {
+    if (fix) members.push_back({fix, name_of(fix)});
+  };
+  for (const auto *fix : pressures) join(fix);
+  for (const auto *fix : integrators) join(fix);
+  for (const auto *fix : inlets) join(fix);
+  for (const auto *fix : outlets) join(fix);
+  join(continuity);
+  join(summation);
+  join(filter);
+  join(wall);
+  join(state);
+}
+
+void PairSph::require_prepared() const
+{
+  if (members.empty())
+    voice.fail("no run has prepared it yet: use 'run 0' before, or a run without 'pre no'");
+  Fix **begin = modify->fix, **end = begin + modify->nfix;
+  for (const auto &member : members)
+    if (std::find(begin, end, member.first) == end)
+      voice.fail(member.second + " has been deleted since the last run, which it took part in; a run "
+                 "without 'pre no' finds out who takes part now");
 }
 
 void PairSph::check_groups()

@@ -32,6 +32,7 @@ static double *rows(double **array)
 
 void PairSph::compute(int eflag, int vflag)
 {
+  require_prepared();
   ev_init(eflag, vflag);
   listed = {atom->nlocal, atom->nghost};
   check_list();

@@ -35,6 +35,13 @@ namespace Sph {
     return static_cast<PairSph *>(found);
   }
 
+  PairSph *prepared_pair(const Voice &voice)
+  {
+    PairSph *pair = require_pair(voice);
+    pair->require_prepared();
+    return pair;
+  }
+
   std::vector<Fix *> integrators(LAMMPS *lmp)
   {
     std::vector<Fix *> found;

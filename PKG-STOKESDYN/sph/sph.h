@@ -37,6 +37,9 @@ namespace Sph {
   /* The pair style of the scene; fails without one. */
   PairSph *require_pair(const Voice &voice);
 
+  /* The same, as a run has prepared it (require_prepared of the pair style). */
+  PairSph *prepared_pair(const Voice &voice);
+
   /* Those that move particles by forces: all that integrate in time but fix move and rigid
    * bodies. */
   std::vector<LAMMPS_NS::Fix *> integrators(LAMMPS_NS::LAMMPS *lmp);

@@ -26,6 +26,9 @@ void FixHydroVans::select(int bit, bool not_in_group)
   take.resize(n);
   if (region) region->prematch();
   for (int i = 0; i < n; i++) {
+    if ((atom->mask[i] & bit) && !(atom->radius[i] >= 0.0 && std::isfinite(atom->radius[i])))
+      set.voice.fail_one("atom " + std::to_string(atom->tag[i]) + " has the radius " +
+                         text(atom->radius[i]) + "; it must be a number > 0, or 0 for what is no grain");
     take[i] = (atom->mask[i] & bit) && atom->radius[i] > 0.0 &&
         !(not_in_group && (atom->mask[i] & groupbit));
     if (take[i] && region)

@@ -159,6 +159,8 @@ def test_new_particles_have_the_size_of_those_that_they_replace():
     (("velocity 1", ""), "keyword velocity is required"),
     (("xlo 0 0.7", "left 0 0.7"), "'left' is none of: xlo, xhi"),
     (("xlo 0 0.7", "xlo 0 0.9"), "does not fit into the box, which ends at -0.7"),
+    (("xlo 0 0.7", "xlo 8 0.7"), "POSITION 8 is outside of the box, which goes from -0.7 to 1.7"),
+    (("xhi 1 0.7", "xhi -3 0.7"), "POSITION -3 is outside of the box"),
     (("xlo 0 0.7", "xlo 0 0.5"), "the width 0.5 of the layer is too small"),
     (("xlo 0 0.7", "ylo 0.3 0.3"), "the box must have boundary f beyond the layer, along y"),
     (("fix move all nve/sph", "group some id 1:100\nfix move some nve/sph"), "of its group is not moved by fix nve/sph"),
@@ -173,3 +175,21 @@ def test_bad_input(change, words):
 
 def test_an_empty_layer_is_an_error():
     assert "its layer is empty" in message(PIPE + "region b block -1 0 INF INF INF INF units box\ndelete_atoms region b\n" + OPEN.format(1) + "run 1")
+
+
+@pytest.mark.parametrize("change", [("xlo 0 0.7", "xlo 1.6 0.7"), ("xhi 1 0.7", "xhi -0.6 0.7")])
+def test_a_layer_with_all_of_the_flow_behind_it_is_an_error(change):
+    """Nobody comes in or goes out at a layer on the other side of the fluid."""
+    part = "INF 0.1" if change[0].startswith("xhi") else "0.8 INF"
+    gone = f"region b block {part} INF INF INF INF units box\ndelete_atoms region b\n"
+    text = message(PIPE + gone + "\n".join(line for line in OPEN.format(1).replace(*change).splitlines() if change[1] in line or "flat" in line) + "\nrun 1")
+    assert "all particles of its group stand behind the layer" in text and f"FACE {change[1][:3]} is the end of the flow" in text
+
+
+def test_new_particles_find_no_atom_id():
+    lmp = start()
+    run(lmp, PIPE.replace("map array", "map hash") + OPEN.format(1))
+    lmp.numpy.extract_atom("id")[0] = 2**31 - 4
+    with pytest.raises(RuntimeError, match="there is no atom ID left for 6 new particles: the largest is 2147483644"):
+        run(lmp, "run 100")
+    lmp.close()

@@ -78,6 +78,33 @@ def test_restart_without_pair_style(how, unbroken, tmp_path):
     same(trajectory(again + FIXES + "run 50"), unbroken)
 
 
+@pytest.mark.parametrize("gone", ["density", "eos", "filter", "SPH_SHIFT_STATE", "wall"])
+def test_a_run_that_is_not_prepared_misses_a_fix_that_is_gone(gone):
+    lines = scene().replace("tensCorr", "#") if gone == "SPH_SHIFT_STATE" else scene()
+    if gone == "SPH_SHIFT_STATE":
+        lines = (MOVING.replace("fix eos", "#").replace("fix density", "#") + "pair_style sph/artVisc/tensCorr wendland 0.012 shift yes\n"
+                 "pair_coeff * * c 20 deltap 0.01\n" + FIXES)
+    if gone == "wall":
+        lines = lines.replace("fix move all", "group w id 1:9\ngroup fluid subtract all w\nfix wall w wall/adami/sph\nfix move fluid")
+    lmp = start()
+    try:
+        run(lmp, lines + f"run 1\nunfix {gone}")
+        with pytest.raises(RuntimeError, match=f"fix {gone} of style .* has been deleted since the last run"):
+            run(lmp, "run 1 pre no")
+    finally:
+        lmp.close()
+
+
+def test_a_run_that_is_not_prepared_misses_a_pair_style_that_is_new():
+    lmp = start()
+    try:
+        run(lmp, scene("run 1\n") + pair_commands("wendland", 1, 1))
+        with pytest.raises(RuntimeError, match="no run has prepared it yet"):
+            run(lmp, "run 1 pre no")
+    finally:
+        lmp.close()
+
+
 def test_a_fix_with_the_id_of_the_memory_stays_when_the_pair_style_goes(tmp_path):
     done = mpirun(1, random_scene() + pair_commands("wendland", 1, 1) + "\nfix SPH_SHIFT_STATE all nve\npair_style none\nunfix SPH_SHIFT_STATE\nclear\nprint ended",
                   tmp_path)

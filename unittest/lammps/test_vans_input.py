@@ -196,6 +196,17 @@ def test_nan_in_a_run():
         s.do("run 0")
 
 
+@pytest.mark.parametrize("radius", [np.nan, np.inf, -np.inf, -0.001])
+def test_a_radius_that_is_none(radius):
+    """0 is that of an atom that is no grain; LAMMPS's commands make no other, programs may."""
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0055], [0.005, 0.01, 0.0055]], np.zeros((2, 3)), 0.001)
+    s.do(line(couple="none"), "run 0")
+    s.lmp.numpy.extract_atom("radius")[1] = radius
+    with pytest.raises(Exception, match="atom [12] has the radius .*; it must be a number > 0"):
+        s.do("run 0")
+
+
 @pytest.mark.parametrize("keyword, message", [
     ("pressure_gradient v_p", "step 1: keyword pressure_gradient: -?nan is not a finite number"),
     ("surface speed v_p", "step 1: keyword surface: speed -?nan is not a finite number"),
