@@ -239,7 +239,8 @@ void VansSettings::read(Keywords &in)
       {"drag",
        [&] {
          law.drag.law = in.option<sd_vans_drag_of_one>(
-             {"yade", "schiller_naumann", "brown_lawler", "ferguson_church"});
+             {"yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun", "gidaspow", "beetstra",
+              "koch_hill"});
        }},
       {"fall_diameter", [&] { law.drag.fall = in.positive(); }},
       {"hindrance", [&] { take_hindrance(in); }},
@@ -312,6 +313,9 @@ void VansSettings::check(const Keywords &in) const
   in.require(!yade() || (law.drag.law == SD_VANS_DRAG_YADE &&
                          law.drag.hindrance == SD_VANS_HINDRANCE_POWER),
              "keyword drag: with rules yade only drag yade and hindrance n are available");
+  in.require(!in.given("hindrance") || !sd_vans_drag_of_bed(law.drag.law),
+             "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have the neighbours of a grain in them: "
+             "leave hindrance out");
   in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass is not available with rules yade");
   in.require(!upflow || (averages() && !yade()),
              "keyword upflow: it needs couple one or two, and rules consistent");
@@ -393,6 +397,7 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   /* a law other than Yade's is one for lone grains, without Yade's exponent */
   if (!in.given("hindrance") && law.drag.law != SD_VANS_DRAG_YADE)
     law.drag.hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI;
+  if (sd_vans_drag_of_bed(law.drag.law)) law.drag.hindrance = SD_VANS_HINDRANCE_OWN;
   fluid.drag = law.drag;
   if (yade() || couple != TWO) conserve = false;
   if (!mesh_file.empty()) read_mesh();

@@ -41,7 +41,7 @@ VANS = {
     "fluid": [positive("1000"), positive("0.001")],
     "gravity": [Field(lambda v: True, ["0.5", "0", "-0.3"], atom=False), Field(lambda v: True, ["0"], atom=False),
                 Field(lambda v: True, ["-9.81", "9.81"], atom=False)],
-    "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church")],
+    "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun", "gidaspow", "beetstra", "koch_hill")],
     "added_mass": [Or(off=[], otherwise=[NOT_NEGATIVE])], "upflow": [Or(off=[], otherwise=[EQUAL])],
     "discharge": [Or(off=[], otherwise=[EQUAL])], "wall_roughness": [NOT_NEGATIVE], "wall_mixing": [YES_NO],
     "bed_mixing": [Or(off=[], otherwise=[NOT_NEGATIVE])],
@@ -95,6 +95,7 @@ def judge_vans(case, words, how):
     case.refuse_if(s("felt") == "volume" and s("grains") == "point", "felt")
     yade, couple = s("rules") == "yade", s("couple", "two")
     case.refuse_if(yade and (s("drag", "yade") != "yade" or s("hindrance") in ("richardson_zaki", "di_felice")), "drag")
+    case.refuse_if(s("drag") in ("ergun", "gidaspow", "beetstra", "koch_hill") and "hindrance" in case.settings, "hindrance")
     case.refuse_if(s("upflow", "off") != "off" and (yade or couple in ("none", "fluid")), "upflow")
     held, walls = s("discharge", "off") != "off", s("sidewall", "off") != "off"
     deep = s("adjust") == "depth"

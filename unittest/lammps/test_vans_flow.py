@@ -12,13 +12,13 @@ def terminal_velocity(a, hindrance=1.0, rho=1030.0, eta=0.0017, density=2570.0, 
     return (-B + np.sqrt(B * B + 4 * 0.44 * C)) / 0.88
 
 
-def settle(tmp_path, phi, n=3.1):
+def settle(tmp_path, phi, drag="hindrance 3.1"):
     """Speed that one grain reaches in water at rest with a given phi."""
     a = 0.0011
     given = write_columns(tmp_path / "given", np.full(40, phi), np.zeros(40), np.zeros(40))
     s = Scene(box=(0, 0.02, 0, 0.02, 0, 4))
     s.spheres([[0.01, 0.01, 3.9]], [[0, 0, 0]], a, density=2570)
-    s.do("timestep 2e-4", f"fix h all hydro/vans 1 mesh 40 0.1 0 {WATER} couple none given file {given} hindrance {n} stream rest", "fix g all gravity 9.7 vector 0 0 -1",
+    s.do("timestep 2e-4", f"fix h all hydro/vans 1 mesh 40 0.1 0 {WATER} couple none given file {given} {drag} stream rest", "fix g all gravity 9.7 vector 0 0 -1",
          "fix m all nve/sphere", "run 10000")
     v = -s.atoms("v")[0, 2]
     s.close()
@@ -38,6 +38,15 @@ def test_hindered_settling(tmp_path, phi):
     free = terminal_velocity(0.0011)
     exponent = np.log((0.44 * v + B) * v / ((0.44 * free + B) * free)) / np.log(1 - phi)
     assert abs(exponent / 3.1 - 1) < 0.01
+
+
+@pytest.mark.parametrize("law, phi", [("ergun", 0.55), ("gidaspow", 0.4)])
+def test_settling_in_a_bed_by_ergun(tmp_path, law, phi):
+    """6 pi a eta w (150 phi/(18 e^2) + 1.75 Re/(18 e)) is the submerged weight."""
+    e, a, eta, rho = 1 - phi, 0.0011, 0.0017, 1030.0
+    A, B, C = 1.75 * 2 * a * rho / eta / (18 * e), 150 * phi / (18 * e**2), 2 / 9 * a * a * (2570 - rho) * 9.7 / eta
+    w = (-B + np.sqrt(B * B + 4 * A * C)) / (2 * A)
+    assert abs(settle(tmp_path, phi, "drag " + law) / w - 1) < 1e-6
 
 
 def test_poiseuille():

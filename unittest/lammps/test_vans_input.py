@@ -62,6 +62,8 @@ BAD = [
     (dict(drag="stokes"), "keyword drag: 'stokes' is none of"),
     (dict(drag="brown_lawler", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
     (dict(hindrance="di_felice", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
+    (dict(drag="beetstra", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
+    (dict(drag="gidaspow", hindrance="3.1"), "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have"),
     (dict(added_mass="0.5", rules="yade"), "keyword added_mass is not available with rules yade"),
     (dict(added_mass="-0.5"), "keyword added_mass: '-0.5' must be >= 0"),
     (dict(upflow="0", couple="none"), "keyword upflow: it needs couple one or two"),

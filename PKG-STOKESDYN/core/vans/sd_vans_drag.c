@@ -16,8 +16,55 @@ double sd_vans_drag_number(sd_vans_drag_of_one law, double Re)
       const double root = 0.5 * (sqrt(Re) + sqrt(Re + 96.0));
       return root * root;
     }
+    case SD_VANS_DRAG_ERGUN:
+    case SD_VANS_DRAG_GIDASPOW:
+    case SD_VANS_DRAG_BEETSTRA:
+    case SD_VANS_DRAG_KOCH_HILL: break;
   }
   return 0.0;
+}
+
+// --- beds: F/(6 pi a eta w) ------------------------------------------------------------------------
+
+static double ergun(double Re, double e)
+{
+  return 150.0 * (1.0 - e) / (18.0 * e * e) + 1.75 * Re / (18.0 * e);
+}
+
+static double gidaspow(double Re, double e)
+{
+  if (e <= 0.8) return ergun(Re, e);
+  return sd_vans_drag_number(SD_VANS_DRAG_SCHILLER_NAUMANN, e * Re) / 24.0 * pow(e, -3.65);
+}
+
+static double beetstra(double Re, double e)
+{
+  const double phi = 1.0 - e, Re_s = e * Re,
+               slow = 10.0 * phi / (e * e) + e * e * (1.0 + 1.5 * sqrt(phi));
+  if (!(Re_s > 0.0)) return slow;
+  const double above = 1.0 / e + 3.0 * phi * e + 8.4 * pow(Re_s, -0.343),
+               below = 1.0 + pow(10.0, 3.0 * phi) * pow(Re_s, -0.5 * (1.0 + 4.0 * phi));
+  return slow + 0.413 * Re_s / (24.0 * e * e) * above / below;
+}
+
+static double koch_hill(double Re, double e)
+{
+  const double phi = 1.0 - e, logarithm = phi > 0.0 ? phi * log(phi) : 0.0,
+               dilute = (1.0 + 3.0 * sqrt(0.5 * phi) + 135.0 / 64.0 * logarithm + 16.14 * phi) /
+      (1.0 + phi * (0.681 + phi * (-8.48 + phi * 8.16))),
+               F_0 = phi < 0.4 ? dilute : 10.0 * phi / (e * e * e),
+               F_3 = 0.0673 + 0.212 * phi + 0.0232 / pow(e, 5.0);
+  return e * (F_0 + 0.5 * F_3 * e * Re);
+}
+
+static double of_bed(sd_vans_drag_of_one law, double Re, double e)
+{
+  switch (law) {
+    case SD_VANS_DRAG_ERGUN: return ergun(Re, e);
+    case SD_VANS_DRAG_GIDASPOW: return gidaspow(Re, e);
+    case SD_VANS_DRAG_BEETSTRA: return beetstra(Re, e);
+    default: return koch_hill(Re, e);
+  }
 }
 
 void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
@@ -73,6 +120,7 @@ static double drag_of_sphere(sd_vans_drag_law law, double rho, double eta, doubl
   const double Re = 2.0 * a * rho * speed / eta, viscous = 0.25 * SD_PI * a * eta;
   switch (law.hindrance) {
     case SD_VANS_HINDRANCE_POWER: break;
+    case SD_VANS_HINDRANCE_OWN: return 24.0 * viscous * of_bed(law.law, Re, hindrance);
     case SD_VANS_HINDRANCE_RICHARDSON_ZAKI: {
       if (hindrance == 1.0) return viscous * sd_vans_drag_number(law.law, Re);
       const double more = exp(logarithm_of_lone_speed(Re, log(hindrance)));

@@ -10,6 +10,17 @@
  *   brown_lawler      24 (1 + 0.15 Re^0.681) + 0.407 Re/(1 + 8710/Re)  spheres, Re to 2e5
  *   ferguson_church   (sqrt(Re) + sqrt(Re + 96))^2/4                   natural sand (C_1 18, C_2 1)
  *
+ * Laws of beds have their neighbours in them: F = 6 pi a eta f w, with e = 1 - phi, Re_s = e Re
+ *   ergun       150 phi/(18 e^2) + 1.75 Re/(18 e)                    packed beds; no drag of lone grains
+ *   gidaspow    ergun for e <= 0.8, else (N(Re_s)/24) e^-3.65, N of schiller_naumann (Wen & Yu)
+ *   beetstra    10 phi/e^2 + e^2 (1 + 1.5 phi^(1/2)) + 0.413 Re_s/(24 e^2)
+ *                 (1/e + 3 phi e + 8.4 Re_s^-0.343)/(1 + 10^(3 phi) Re_s^(-(1 + 4 phi)/2))
+ *   koch_hill   e (F_0 + F_3 Re_s/2),  F_3 = 0.0673 + 0.212 phi + 0.0232/e^5, F_0 = 10 phi/e^3 for
+ *                 phi >= 0.4, else (1 + 3 (phi/2)^(1/2) + 135/64 phi ln phi + 16.14 phi)
+ *                                  /(1 + 0.681 phi - 8.48 phi^2 + 8.16 phi^3)
+ * They are published for the drag without the pressure gradient of the flow itself, e F, or, Ergun's,
+ * for the pressure drop of a fixed bed, F phi/V.
+ *
  * Hindrance, e = 1 - phi       Re'                  h
  *   power                      Re                   e^-n, n given
  *   richardson_zaki            Re_0: Re e^(1-n(Re_0))   e^(1-n(Re_0))
@@ -27,7 +38,9 @@
  *
  * Sources: Dallavalle 1948; Schiller & Naumann 1933; Brown & Lawler 2003 (J. Environ. Eng. 129);
  * Ferguson & Church 2004 (J. Sediment. Res. 74); Richardson & Zaki 1954 (Trans. Inst. Chem. Eng.
- * 32); Di Felice 1994 (Int. J. Multiphase Flow 20). */
+ * 32); Di Felice 1994 (Int. J. Multiphase Flow 20); Ergun 1952 (Chem. Eng. Prog. 48); Wen & Yu 1966;
+ * Gidaspow 1994 (Multiphase flow and fluidization); Hill, Koch & Ladd 2001 (J. Fluid Mech. 448);
+ * Beetstra, van der Hoef & Kuipers 2007 (AIChE J. 53). */
 #ifndef SD_VANS_DRAG_H
 #define SD_VANS_DRAG_H
 
@@ -40,13 +53,19 @@ typedef enum {
   SD_VANS_DRAG_YADE,
   SD_VANS_DRAG_SCHILLER_NAUMANN,
   SD_VANS_DRAG_BROWN_LAWLER,
-  SD_VANS_DRAG_FERGUSON_CHURCH
+  SD_VANS_DRAG_FERGUSON_CHURCH,
+  SD_VANS_DRAG_ERGUN,
+  SD_VANS_DRAG_GIDASPOW,
+  SD_VANS_DRAG_BEETSTRA,
+  SD_VANS_DRAG_KOCH_HILL
 } sd_vans_drag_of_one;
 
 typedef enum {
   SD_VANS_HINDRANCE_POWER,
   SD_VANS_HINDRANCE_RICHARDSON_ZAKI,
-  SD_VANS_HINDRANCE_DI_FELICE
+  SD_VANS_HINDRANCE_DI_FELICE,
+  /* of the laws of beds, and of these alone */
+  SD_VANS_HINDRANCE_OWN
 } sd_vans_drag_of_many;
 
 /* Zeros: Yade's law with a power of the porosity. */
@@ -57,7 +76,13 @@ typedef struct {
   double fall;
 } sd_vans_drag_law;
 
-/* N(Re), Re >= 0. */
+/* Is it a law of beds? */
+static inline int sd_vans_drag_of_bed(sd_vans_drag_of_one law)
+{
+  return law >= SD_VANS_DRAG_ERGUN;
+}
+
+/* N(Re), Re >= 0, of a law of lone grains. */
 double sd_vans_drag_number(sd_vans_drag_of_one law, double Re);
 
 /* What a slice does to the drag of the grains in it: e^-exponent where the hindrance is a power,
