@@ -252,6 +252,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     hydro.velocities(take, givens(), pushed);
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
+  velocity_change = change_of_velocities();
   last.step = update->ntimestep;
 }
 
@@ -303,13 +304,14 @@ void FixStokesDynamicsOverdamped::post_integrate()
 void FixStokesDynamicsOverdamped::advance()
 {
   Hydrodynamics &hydro = hydrodynamics();
+  hydro.check_prepared();
   displaced = 0.0;
   if (scheme != MIDPOINT && !warned_growth) watch();
   bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
   if (scheme == MIDPOINT)
     move_by_midpoint(hydro);
   else
-    for (int i : hydro.motion().lone) move_free(i);
+    for (int i : hydro.motion().lone()) move_free(i);
   if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
   last.dt = update->dt;
   spin.advance();
@@ -362,7 +364,7 @@ std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
 const double *FixStokesDynamicsOverdamped::tracked(const Velocities::Clump &clump) const
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
-  return noise.on() ? clump.body->shape->noise.centre : CENTROID;
+  return noise.on() ? hydrodynamics().motion().shape(clump).noise.centre : CENTROID;
 }
 
 /* V [6] of that point and W */
@@ -391,14 +393,15 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
   for (size_t c = 0; c < start.size(); c++) {
     if (start[c].held) continue;
-    const RigidClumps::Body &body = *hydro.motion().clumps[c].body;
+    const Velocities::Clump &clump = hydro.motion().clumps()[c];
+    const RigidClumps::Body &body = hydro.motion().body(clump);
     const ClumpStep goes = step(c);
     double pose[12], turn[9];
     std::copy_n(start[c].pose, 12, pose);
     places.resize(3 * (size_t) body.n);
     sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, turn, places.data());
     for (int k = 0; k < body.n; k++) {
-      const size_t m = hydro.motion().member_of(hydro.motion().clumps[c], k);
+      const size_t m = hydro.motion().member_of(clump, k);
       double *row = &rows[COLUMNS * m];
       row[MOVES] = 1.0;
       sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
@@ -427,7 +430,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   const Velocities &motion = hydro.motion();
   const std::vector<double> all_before = velocities_before();
   const auto step = [&](size_t number) {
-    const Velocities::Clump &clump = motion.clumps[number];
+    const Velocities::Clump &clump = motion.clumps()[number];
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
     double old[6], mean[6];
     ClumpStep s = {tracked(clump), {}, {}};
@@ -441,7 +444,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
     keep_in_plane(s.move, 6);
     return s;
   };
-  step_clumps(hydro, motion.clumps, hydro.scene.whole.x, step, [&](int i, const double *row) {
+  step_clumps(hydro, motion.clumps(), hydro.scene.whole.x, step, [&](int i, const double *row) {
     std::copy_n(row + BEFORE_V, 9, before.give(i));
     clump_moves(hydro, i, row);
   });

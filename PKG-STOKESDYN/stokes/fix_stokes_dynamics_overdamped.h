@@ -83,8 +83,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } last;
   bool from_file = false;
 
-  /* in the last step: the largest displacement over radius, of this rank; error_figure() of all */
-  double displaced = 0.0, error_before = 0.0;
+  /* in the last step, of this rank: the largest displacement over radius; change_of_velocities();
+   * error_figure() of all ranks */
+  double displaced = 0.0, velocity_change = 0.0, error_before = 0.0;
   int doublings = 0;
   bool warned_growth = false, announced = false;
 
@@ -138,6 +139,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   std::vector<double> velocities_before() const;
   void watch();
   double fastest() const;
+  double change_of_velocities() const;
   double error_figure() const;
   double smallest_gap() const;
 };

@@ -93,7 +93,7 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto step = [&](size_t c) {
     ClumpStep s = {CENTROID, {}, {}};
-    for (int d = 0; d < 6; d++) s.move[d] = dt * hydro.motion().clumps[c].V[d];
+    for (int d = 0; d < 6; d++) s.move[d] = dt * hydro.motion().clumps()[c].V[d];
     keep_in_plane(s.move, 6);
     return s;
   };
@@ -107,8 +107,8 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
   const double dt = update->dt;
-  const std::vector<int> who = hydro.ambient.who(), lone = hydro.motion().lone;
-  const Clumps start = hydro.motion().clumps;
+  const std::vector<int> who = hydro.ambient.who(), lone = hydro.motion().lone();
+  const Clumps start = hydro.motion().clumps();
   const std::vector<double> of_members = hydro.scene.whole.x;
   std::vector<double> x(3 * (size_t) atom->nlocal + 3), V(x.size());
   for (int i : who) {

@@ -59,13 +59,13 @@ double FixStokesDynamicsOverdamped::fastest() const
   return sqrt(largest_of_all(world, mine));
 }
 
-/* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
-double FixStokesDynamicsOverdamped::error_figure() const
+/* Largest |v - v_old| / a of this rank, where velocities have just been found */
+double FixStokesDynamicsOverdamped::change_of_velocities() const
 {
   const Hydrodynamics &hydro = hydrodynamics();
   const Velocities &moving = hydro.motion();
   double most = 0.0, old[6];
-  for (int i : moving.lone) {
+  for (int i : moving.lone()) {
     if (!before.has(i)) continue;
     at_image(before[i], atom->x[i], old);
     for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
@@ -73,9 +73,9 @@ double FixStokesDynamicsOverdamped::error_figure() const
   }
   const std::vector<double> all_before =
       hydro.settings.rigid.on ? velocities_before() : std::vector<double>();
-  for (const auto &clump : moving.clumps)
-    for (int k = 0; k < clump.body->n; k++) {
-      const sd_shape &shape = clump.body->shape->shape;
+  for (const auto &clump : moving.clumps()) {
+    const sd_shape &shape = moving.shape(clump).shape;
+    for (int k = 0; k < shape.n; k++) {
       const double *row = &all_before[BEFORE * moving.member_of(clump, k)];
       double now_V[6], from[3], arm[3], change[3];
       if (row[0] == 0.0) continue;
@@ -88,7 +88,14 @@ double FixStokesDynamicsOverdamped::error_figure() const
       for (int d = 0; d < 3; d++) change[d] += old[d];
       most = std::max(most, sqrt(sd_dot(change, change)) / shape.a[k]);
     }
-  return 0.5 * update->dt * most;
+  }
+  return most;
+}
+
+/* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */
+double FixStokesDynamicsOverdamped::error_figure() const
+{
+  return 0.5 * update->dt * velocity_change;
 }
 
 /* Between spheres whose centres are within four times the largest radius */
@@ -96,7 +103,7 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
 {
   const Hydrodynamics &hydro = hydrodynamics();
   const std::vector<int> &who = hydro.ambient.who();
-  const bool bound = hydro.settings.rigid.on;
+  const bool bound = hydro.settings.rigid.on && atom->molecule_flag;
   const int n = (int) who.size();
   std::vector<double> x, a, bodies;
   double mine = 0.0;

@@ -60,6 +60,7 @@ void Hydrodynamics::init()
   scene.settings.positive = false;
   mobile.held = nullptr;    // it asks a fix that may be gone
   advance();
+  prepared.take(epochs.run);
   find_wall(voice, scene.settings);
   check_stream_at_wall(voice, scene.settings.wall, ambient.settings);
 }
@@ -70,8 +71,16 @@ void Hydrodynamics::advance()
   for (Epoch *epoch : {&epochs.run, &epochs.lists, &epochs.groups}) epoch->advance();
 }
 
+void Hydrodynamics::check_prepared() const
+{
+  if (!prepared.is(epochs.run))
+    voice.fail("the command has been given again since the last run, which must be prepared for: leave "
+               "out 'pre no' of the run command");
+}
+
 void Hydrodynamics::begin()
 {
+  check_prepared();
   memory = State::find(lmp);
   if (!memory)
     voice.fail("its internal fix " + std::string(State::ID) + " has been deleted; a run without "

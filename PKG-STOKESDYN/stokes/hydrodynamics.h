@@ -49,7 +49,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   void set(const std::vector<std::string> &words);
   void init();
-  /* Reads the fluid and finds the memory. Errors: Ambient::read; a memory that has been deleted. */
+  /* Error: other settings than those of init() ('run' with 'pre no' behind pair_style) */
+  void check_prepared() const;
+  /* Reads the fluid and finds the memory. Errors: Ambient::read; check_prepared(); a memory that has been
+   * deleted. */
   void begin();
   /* For a step that is computed in its middle: Ambient::look_ahead */
   void look_ahead();
@@ -111,7 +114,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Preconditioner preconditioner;
   TimeStepGuard guard;
   /* in a run: what is looked at or said once */
-  Since looked, warned_unconverged, warned_cut;
+  Since prepared, looked, warned_unconverged, warned_cut;
   /* rows of those that take no part (Epochs::selection) */
   Since cleared;
   /* first step of the run that the last step was of */

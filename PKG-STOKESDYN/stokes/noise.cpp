@@ -51,7 +51,7 @@ void Noise::find_temperature(const Hydrodynamics &hydro)
                std::to_string(update->ntimestep));
   kT = force->boltz * T;
   last = {};
-  of_clumps.assign(6 * hydro.motion().clumps.size() + 6, 0.0);
+  of_clumps.assign(6 * hydro.motion().clumps().size() + 6, 0.0);
 }
 
 void Noise::draw(Hydrodynamics &hydro, const Take &take)
@@ -69,20 +69,20 @@ void Noise::draw_alone(const Hydrodynamics &hydro, const Take &take)
   const Velocities &motion = hydro.motion();
   const WholeClumps &whole = hydro.scene.whole;
   double normals[6], move[3];
-  for (int i : motion.lone) {
+  for (int i : motion.lone()) {
     const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
     sd_random_normals(&of_sphere, atom->tag[i], 3, normals);
     for (int d = 0; d < 3; d++) move[d] = normals[d] / sqrt(hydro.ambient.drag(i));
     take(i, move);
   }
   const sd_random_key of_body = key(SD_RANDOM_BODY);
-  for (size_t c = 0; c < motion.clumps.size(); c++) {
-    const Velocities::Clump &clump = motion.clumps[c];
+  for (size_t c = 0; c < motion.clumps().size(); c++) {
+    const Velocities::Clump &clump = motion.clumps()[c];
     int64_t lowest = whole.tag[motion.member_of(clump, 0)];
-    for (int k = 1; k < clump.body->n; k++)
+    for (int k = 1; k < motion.body(clump).n; k++)
       lowest = std::min(lowest, (int64_t) whole.tag[motion.member_of(clump, k)]);
     sd_random_normals(&of_body, lowest, 6, normals);
-    sd_clump_noise_draw(&clump.body->shape->noise, clump.pose, clump.eta, normals,
+    sd_clump_noise_draw(&motion.shape(clump).noise, clump.pose, clump.eta, normals,
                         &of_clumps[6 * c]);
   }
 }

@@ -55,6 +55,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   };
   /* All of them, looked at anew if LAMMPS has re-neighboured. Errors: one that is not rigid (yes). */
   const std::vector<Body> &find();
+  /* One of them, by its place there, until they are looked at anew or forgotten */
+  const Body &body(int number) const { return bodies[number]; }
   const std::vector<int> &members() const { return member; }
   /* Do the spheres of a body, with these radii in its order, stand as its shape says? pose [12] out */
   bool fits(const Body &body, const double *radii, double *pose) const;

@@ -66,20 +66,22 @@ void Velocities::gather(bool moving)
 
 void Velocities::find(bool moving)
 {
-  clumps.clear();
-  lone.clear();
+  found.take(scene.since().lists);
+  all_clumps.clear();
+  all_lone.clear();
   const auto free = [this](int i) {
     return !rigid.settings.on || atom->molecule[i] == 0;
   };
   if (!moving)    // nobody asks for them
-    std::copy_if(ambient.who().begin(), ambient.who().end(), std::back_inserter(lone), free);
+    std::copy_if(ambient.who().begin(), ambient.who().end(), std::back_inserter(all_lone), free);
   if (!rigid.settings.on) return;
   const auto &all = rigid.find();
   gather(moving);
   int64_t split = RigidClumps::NOBODY;
   std::vector<int64_t> bent;
-  for (const auto &body : all) {
-    Clump clump = {&body, {}, 0.0, {}, false};
+  for (size_t b = 0; b < all.size(); b++) {
+    const RigidClumps::Body &body = all[b];
+    Clump clump = {(int) b, {}, 0.0, {}, false};
     int taking_part = 0;
     for (int k = 0; k < body.n; k++) {
       const double eta_k = spheres.eta[body.begin + k];
@@ -91,7 +93,7 @@ void Velocities::find(bool moving)
     if (taking_part < body.n) split = std::min(split, body.molecule);
     if (!rigid.fits(body, &spheres.radius[body.begin], clump.pose))
       bent.push_back(body.molecule);
-    clumps.push_back(clump);
+    all_clumps.push_back(clump);
   }
   if (rigid.settle(split, bent)) return find(moving);
   find_held();
@@ -102,24 +104,24 @@ void Velocities::find(bool moving)
 /* Clumps whose velocity is given: by that of their first sphere, on its image. */
 void Velocities::find_held()
 {
-  for (Clump &clump : clumps) clump.held = false;
+  for (Clump &clump : all_clumps) clump.held = false;
   if (!held || !rigid.settings.on) return;
   const std::vector<double> of_member = scene.whole.gather(7, [this](int i, double *out) {
     out[0] = held(i, out + 1);
   });
   int64_t split = RigidClumps::NOBODY;
-  for (Clump &clump : clumps) {
+  for (Clump &clump : all_clumps) {
     const double *first = &of_member[7 * member_of(clump, 0)];
     clump.held = first[0] != 0.0;
-    for (int k = 1; k < clump.body->n; k++)
+    for (int k = 1; k < body(clump).n; k++)
       if ((of_member[7 * member_of(clump, k)] != 0.0) != clump.held)
-        split = std::min(split, clump.body->molecule);
+        split = std::min(split, body(clump).molecule);
     if (!clump.held) continue;
     double arm[3], turning[3];
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
       sd_add_edges(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
-    sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) clump.body->begin], arm);
+    sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) body(clump).begin], arm);
     sd_cross(clump.V + 3, arm, turning);
     for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
   }
@@ -138,15 +140,15 @@ std::vector<double> Velocities::given_velocities()
   is_held.assign(bodies + 1, 0);
   std::vector<double> rows = scene.rows(7, [this](int i, double *out) { out[6] = held(i, out); });
   scene.drift(rows.data(), 7, 1.0);
-  const size_t lone_ones = bodies - clumps.size();    // whose rows come first
+  const size_t lone_ones = bodies - clumps().size();    // whose rows come first
   for (size_t b = 0; b < lone_ones; b++) {
     const double *row = &rows[7 * b];
     is_held[b] = (char) row[6];
     if (is_held[b]) std::copy_n(row, 6, &given[6 * b]);
   }
-  for (size_t c = 0, b = lone_ones; c < clumps.size(); c++, b++) {
-    is_held[b] = clumps[c].held ? SD_BODY_HELD : SD_BODY_FREE;
-    if (is_held[b]) std::copy_n(clumps[c].V, 6, &given[6 * b]);
+  for (size_t c = 0, b = lone_ones; c < clumps().size(); c++, b++) {
+    is_held[b] = clumps()[c].held ? SD_BODY_HELD : SD_BODY_FREE;
+    if (is_held[b]) std::copy_n(clumps()[c].V, 6, &given[6 * b]);
   }
   return given;
 }
@@ -198,11 +200,11 @@ void Velocities::arrange()
     } else
       loner.push_back(k);
   }
-  for (const Clump &clump : clumps) {
-    const ClumpShape &is = *clump.body->shape;
+  for (const Clump &clump : clumps()) {
+    const ClumpShape &is = shape(clump);
     sd_body body = {nullptr, {}, 1.0, clump.eta, nullptr};
     std::vector<int> rows;
-    for (int k = 0; k < clump.body->n; k++) {
+    for (int k = 0; k < is.shape.n; k++) {
       const int row = scene.row_of_member((int) member_of(clump, k));
       rows.push_back(row);
       whole[row] = loner.size() + shaped.size();
@@ -333,13 +335,13 @@ void Velocities::stand_at_wall()
 /* A strain carries clumps as their shells say. */
 void Velocities::carry(const sd_bodies &A, double *flow)
 {
-  if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.wall.sign) return;
-  gradient.resize(9 * clumps.size());
+  if (!ambient.gradients() || clumps().empty() || scene.shells || scene.settings.wall.sign) return;
+  gradient.resize(9 * clumps().size());
   double centre[3];
-  for (size_t c = 0; c < clumps.size(); c++) {
-    const sd_clump_motion motion = look_at(clumps[c]);
-    const double *pose = clumps[c].pose;
-    sd_clump_flow(&clumps[c].body->shape->shape, &motion, pose, pose + 9, centre, &gradient[9 * c]);
+  for (size_t c = 0; c < clumps().size(); c++) {
+    const sd_clump_motion motion = look_at(clumps()[c]);
+    const double *pose = clumps()[c].pose;
+    sd_clump_flow(&shape(clumps()[c]).shape, &motion, pose, pose + 9, centre, &gradient[9 * c]);
   }
   work.resize(sd_bodies_work(&A));
   sd_bodies_carry(&A, gradient.data(), work.data(), flow);
@@ -388,7 +390,7 @@ void Velocities::draw_forces(const sd_bodies &A, int width, const Draw &draw)
 {
   const size_t n = scene.size(), m = sd_bodies_rows(&A) / std::max(n, (size_t) 1);
   std::vector<double> w(m * n + 1), pushed(sd_bodies_loads(&A) + width);
-  for (const Clump &clump : clumps) rigid.shapes.take_root(*clump.body->shape);
+  for (const Clump &clump : clumps()) rigid.shapes.take_root(shape(clump));
   if (scene.shells) scene.shells->take_root();
   for (size_t k = 0; k < n; k++)
     sd_random_normals(&draw.of_spheres, scene.tag((int) k), (int) m, &w[m * k]);
@@ -420,8 +422,8 @@ sd_status Velocities::together(const How &how, Guess &guess, const Take &take,
   const sd_bodies_problem problem = {u.data(), F.data(),      held ? given.data() : nullptr,
                                      how.warm, how.tolerance, how.max_iter};
   const sd_status status = solve(A, problem, guess, report);
-  for (size_t c = 0; c < clumps.size(); c++)
-    std::copy_n(&V[6 * (sd_bodies_count(&A) - clumps.size() + c)], 6, clumps[c].V);
+  for (size_t c = 0; c < clumps().size(); c++)
+    std::copy_n(&V[6 * (sd_bodies_count(&A) - clumps().size() + c)], 6, all_clumps[c].V);
   const size_t m = how.width, n = scene.size();
   std::vector<double> moved(2 * m * n + 2 * m);
   if (scene.shells) moved_with = v;

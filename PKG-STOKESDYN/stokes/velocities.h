@@ -29,7 +29,8 @@ namespace StokesDyn {
 class Velocities : protected LAMMPS_NS::Pointers {
  public:
   struct Clump {
-    const RigidClumps::Body *body;
+    /* which body of rigid: nobody keeps where that is, as other settings free it */
+    int number;
     /* R and the centroid c, of images side by side: x = c + R X */
     double pose[12];
     double eta;
@@ -38,12 +39,18 @@ class Velocities : protected LAMMPS_NS::Pointers {
     /* is V given, and the force on it unknown? */
     bool held;
   };
-  /* that this rank owns, since the last find() */
-  std::vector<Clump> clumps;
-  /* atoms that are free spheres */
-  std::vector<int> lone;
+  /* That this rank owns, and atoms that are free spheres. They are those of the last find(), and none
+   * as soon as Epochs::lists is another one: settings are new, a run begins, atoms have other indices */
+  const std::vector<Clump> &clumps() const { return stands() ? all_clumps : no_clumps; }
+  const std::vector<int> &lone() const { return stands() ? all_lone : nobody_lone; }
+  bool stands() const { return found.is(scene.since().lists); }
+  const RigidClumps::Body &body(const Clump &clump) const { return rigid.body(clump.number); }
+  const ClumpShape &shape(const Clump &clump) const { return *body(clump).shape; }
   /* Sphere k of a clump, in the order of its shape: its number among the members of whole */
-  size_t member_of(const Clump &clump, int k) const { return rigid.members()[clump.body->begin + k]; }
+  size_t member_of(const Clump &clump, int k) const
+  {
+    return rigid.members()[body(clump).begin + k];
+  }
 
   struct Parts {
     Scene &scene;
@@ -127,6 +134,12 @@ class Velocities : protected LAMMPS_NS::Pointers {
   RigidClumps &rigid;
   Lubrication &lubrication;
   Owned<sd_tie, sd_tie_free> tie;
+
+  Since found;
+  std::vector<Clump> all_clumps;
+  std::vector<int> all_lone;
+  const std::vector<Clump> no_clumps;
+  const std::vector<int> nobody_lone;
 
   /* of the spheres of one clump after the other, in the order of its shape: eta (0: takes no part),
    * radius, place, force and torque or velocity and angular velocity, fluid velocity and its

@@ -15,11 +15,11 @@ namespace StokesDyn {
 sd_clump_motion Velocities::look_at(const Clump &clump) const
 {
   const bool strains = ambient.gradients(), spins = scene.settings.rotation;
-  const size_t at = 3 * (size_t) clump.body->begin;
+  const size_t at = 3 * (size_t) body(clump).begin;
   sd_clump_motion m = {};
   m.x = &spheres.x[at];
   m.v = &spheres.motion[at];
-  m.omega = spins && clump.body->shape->shape.rank < 2 ? &spheres.turning[at] : nullptr;
+  m.omega = spins && shape(clump).shape.rank < 2 ? &spheres.turning[at] : nullptr;
   std::copy_n(ambient.uniform_velocity(), 3, m.u_uniform);
   m.u = strains ? &spheres.flow[at] : nullptr;
   m.gradient = strains ? &spheres.gradient[3 * at] : nullptr;
@@ -29,7 +29,7 @@ sd_clump_motion Velocities::look_at(const Clump &clump) const
 void Velocities::apart(int width, const Take &take)
 {
   double fluid_there[6], given[6], move[6], by_fluid[6];
-  for (int i : lone) {
+  for (int i : lone()) {
     const bool known = held && held(i, given);
     ambient.fluid(i, fluid_there);
     for (int d = 0; d < width; d++) {
@@ -43,9 +43,9 @@ void Velocities::apart(int width, const Take &take)
   std::vector<double> v, force, torque, moved(13 * (size_t) whole.size() + 13, 0.0);
   double back[6] = {0.0};
   for (int d = 0; d < 6 && ambient.jumps(); d++) back[d] = -ambient.jumps()[d];
-  for (Clump &clump : clumps) {
-    const ClumpShape &is = *clump.body->shape;
-    const size_t n = clump.body->n, at = 3 * (size_t) clump.body->begin;
+  for (Clump &clump : all_clumps) {
+    const ClumpShape &is = shape(clump);
+    const size_t n = body(clump).n, at = 3 * (size_t) body(clump).begin;
     const sd_clump_motion motion = look_at(clump);
     v.resize(6 * n);
     force.resize(3 * n);
@@ -76,14 +76,14 @@ void Velocities::drag(const Drag &take, std::vector<char> &loose)
   std::vector<double> F, T, result(COLUMNS * (size_t) members.size() + COLUMNS, 0.0);
   for (size_t m = 0; m < (size_t) members.size(); m++) result[COLUMNS * m] = LOOSE;
   for (int m : rigid.members()) result[COLUMNS * (size_t) m] = NOT_SELECTED;
-  for (const Clump &clump : clumps) {
-    const ClumpShape &is = *clump.body->shape;
+  for (const Clump &clump : clumps()) {
+    const ClumpShape &is = shape(clump);
     const sd_clump_motion motion = look_at(clump);
-    F.resize(3 * (size_t) clump.body->n);
-    T.resize(3 * (size_t) clump.body->n);
+    F.resize(3 * (size_t) body(clump).n);
+    T.resize(3 * (size_t) body(clump).n);
     sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, F.data(),
                   turns ? T.data() : nullptr);
-    for (size_t k = 0; k < (size_t) clump.body->n; k++) {
+    for (size_t k = 0; k < (size_t) body(clump).n; k++) {
       double *row = &result[COLUMNS * member_of(clump, (int) k)];
       row[0] = EVALUATED;
       std::copy_n(&F[3 * k], 3, row + 1);

@@ -13,13 +13,13 @@ namespace StokesDyn {
 
 void Velocities::orient()
 {
-  for (const Clump &clump : clumps) {
-    const sd_multiblob_shape &shape =
-        rigid.shapes.points(*clump.body->shape, scene.shells->model());
+  for (const Clump &clump : clumps()) {
+    const sd_multiblob_shape &points =
+        rigid.shapes.points(shape(clump), scene.shells->model());
     double pose[9], turn[9];
-    sd_multiblob_shape_stand(&shape, clump.pose, pose, turn);
-    for (int k = 0; k < clump.body->n; k++)
-      scene.shells->turn_row(scene.row_of_member((int) member_of(clump, k)), turn, shape.mask[k]);
+    sd_multiblob_shape_stand(&points, clump.pose, pose, turn);
+    for (int k = 0; k < body(clump).n; k++)
+      scene.shells->turn_row(scene.row_of_member((int) member_of(clump, k)), turn, points.mask[k]);
   }
 }
 
