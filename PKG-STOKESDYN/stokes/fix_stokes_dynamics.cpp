@@ -5,6 +5,7 @@
 #include "ranks.h"
 
 #include "atom.h"
+#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -44,10 +45,29 @@ void FixStokesDynamics::init()
     voice.fail("keyword apply: 'yes' together with add_force yes of pair_style stokes_dynamics "
                "would count the force twice");
   if (!applies()) return;
+  check_order();
   for (const auto *other : fixes_of<FixStokesDynamics>(lmp))
     if (other != this && other->applies())
       voice.fail("keyword apply: the fixes " + std::string(id) + " and " + other->id +
                  " both apply the force, which would count twice; give one of them apply no");
+}
+
+/* These read forces in their setup (rigid bodies) or in every step (constraints) at their own place in
+ * the order of the input. */
+void FixStokesDynamics::check_order() const
+{
+  const int *mask = atom->mask;
+  for (int k = 0; k < modify->nfix && modify->fix[k] != this; k++) {
+    const Fix *other = modify->fix[k];
+    bool reads = false;
+    for (const char *style : {"^rigid", "^poems", "^shake", "^rattle"})
+      reads = reads || utils::strmatch(other->style, style);
+    const int both[2] = {groupbit, other->groupbit};
+    if (reads && first_atom(lmp, [&](int i) { return (mask[i] & both[0]) && (mask[i] & both[1]); }))
+      voice.fail(name_of(other) + " stands before this fix in the input, so it reads the forces before "
+                 "the drag is added, and every run begins with a kick: define fix " + std::string(id) +
+                 " first");
+  }
 }
 
 void FixStokesDynamics::setup(int vflag)

@@ -24,6 +24,8 @@ class FixStokesDynamics : public RowsFix {
   bool applies() const;
 
  private:
+  /* Error: a fix that reads forces before this one adds the drag */
+  void check_order() const;
   enum { NO, YES, UNSAID } apply = UNSAID;
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
   AtomArray rows;

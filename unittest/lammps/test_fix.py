@@ -198,3 +198,22 @@ def test_rows_of_many_fixes_migrate(tmp_path):
         ends.append(read_dump(tmp_path / "end")[-1][1])
     assert (ends[0][:, 0] > 0).sum() > (spheres.x[:, 0] > 0).sum()
     assert np.abs(ends[1] - ends[0]).max() < 1e-12
+
+
+def two_dumbbells():
+    return Spheres([(0, 0, 0), (2, 0, 0), (8, 0, 0), (8, 2, 0)], 0.9, (0.3, 0.1, -0.4), molecule=[1, 1, 2, 2])
+
+
+RIGID = ["fix bodies some rigid molecule", "fix bodies some rigid/small molecule", "fix bodies some rigid/nve single"]
+
+
+@pytest.mark.parametrize("rigid", RIGID)
+def test_fix_that_reads_forces_before_the_drag_is_there_is_an_error(simulation, rigid):
+    """It would begin every run with a kick without drag, and a run in two pieces would not be that in one."""
+    style = "cut_off_distance inf visc 1.3 algorithm 2"
+    sim = simulation(two_dumbbells(), style, fix=False).commands(["group some id 1 2", rigid, "fix drag all stokes_dynamics"])
+    with pytest.raises(LammpsError, match="stands before this fix in the input.*define fix drag first"):
+        sim.run()
+    sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no"]).run(1)
+    sim.commands(["unfix drag", "group others id 3 4", "fix drag others stokes_dynamics"]).run(1)
+    sim.commands(["unfix drag", "unfix bodies", "fix drag all stokes_dynamics", rigid]).run(1)
