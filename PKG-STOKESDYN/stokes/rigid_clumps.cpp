@@ -1,9 +1,11 @@
 #include "rigid_clumps.h"
 
+#include "fixes.h"
 #include "keywords.h"
 #include "ranks.h"
 
 #include "atom.h"
+#include "domain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +83,35 @@ void RigidClumps::not_rigid(int64_t molecule) const
 {
   voice.fail("keyword rigid_clumps: the clump of molecule " + std::to_string(molecule) +
              " is not rigid: its shape has changed by more than " + text(SD_SHAPE_TOLERANCE) +
-             " of its size (rigid_clumps auto solves such clumps anew)");
+             " of its size (" +
+             (must_stay_rigid() ? "fix stokes_dynamics/overdamped keeps clumps rigid, so another command "
+                                  "moves their atoms or changes radii: take it away"
+                                : "rigid_clumps auto solves such clumps anew") + ")");
+}
+
+/* LAMMPS deletes atoms that it finds outside of a box with fixed faces, and looks for lost ones only
+ * when it writes thermo output. */
+void RigidClumps::other_atoms(int64_t molecule) const
+{
+  const bigint lost = atom->natoms - sum_of_all(world, (bigint) atom->nlocal);
+  const bool fixed = std::count(&domain->boundary[0][0], &domain->boundary[0][0] + 6, 1) > 0;
+  if (lost > 0 && fixed)
+    voice.fail("keyword rigid_clumps: the clump of molecule " + std::to_string(molecule) +
+               " has lost atoms that left the box: use boundary m or s, whose faces follow the atoms, "
+               "in place of f, or a larger box");
+  if (lost > 0)
+    voice.fail("keyword rigid_clumps: the clump of molecule " + std::to_string(molecule) +
+               " has lost atoms: they have moved too far in a step; is the time step too long?");
+  voice.fail("keyword rigid_clumps: the clump of molecule " + std::to_string(molecule) +
+             " has gained or lost atoms, so it is not rigid (" +
+             (must_stay_rigid() ? "delete and add atoms by whole molecules"
+                                : "rigid_clumps auto solves such clumps anew") + ")");
+}
+
+/* Then the solver cannot have clumps that are not. */
+bool RigidClumps::must_stay_rigid() const
+{
+  return fix_like(lmp, "^stokes_dynamics/overdamped$");
 }
 
 /* From now on the solver has them. The same on all ranks. */
@@ -112,11 +142,7 @@ void RigidClumps::recognise()
   MPI_Allreduce(MPI_IN_PLACE, count, 3, MPI_LMP_BIGINT, MPI_MAX, world);
   if (count[1]) {
     changed = from_all(world, changed);
-    if (!settings.auto_resolve)
-      voice.fail("keyword rigid_clumps: the clump of molecule " +
-                 std::to_string(*std::min_element(changed.begin(), changed.end())) +
-                 " has gained or lost atoms, so it is not rigid (rigid_clumps auto solves such "
-                 "clumps anew)");
+    if (!settings.auto_resolve) other_atoms(*std::min_element(changed.begin(), changed.end()));
     loosen(changed);
   }
   if (count[0]) {

@@ -99,6 +99,8 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   void arrange();
   void loosen(const std::vector<int64_t> &molecules);
   [[noreturn]] void not_rigid(int64_t molecule) const;
+  [[noreturn]] void other_atoms(int64_t molecule) const;
+  bool must_stay_rigid() const;
 };
 
 }    // namespace StokesDyn

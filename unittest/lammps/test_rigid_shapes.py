@@ -203,6 +203,36 @@ def test_lost_atom_is_an_error(simulation):
         sim.run(5)
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("fix", ["fix nve all nve/sphere", "fix move all stokes_dynamics/overdamped"])
+def test_a_clump_that_leaves_a_box_with_fixed_faces_is_told_to_have_left_it(tmp_path, fix, ranks):
+    """One sphere is outside, and LAMMPS has deleted it; it looks for lost atoms only when it writes thermo output."""
+    spheres = Spheres([(0, 3, 0), (2, 3, 0)], 1.0, (3.0, 0.0, 0.0), molecule=1)
+    drag = ["fix drag all stokes_dynamics"] if "nve" in fix else []
+    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 42 visc 1e-3 fluid_velocity 3 0 0", tmp_path / "data",
+                        box=[(-10, 10)] * 3, fix=False, dt=0.05)
+    ended = lmp(tmp_path, lines + drag + [fix, "thermo 100", "run 100"], ranks, succeed=False)
+    text = " ".join(ended.text.split())
+    assert ended.code != 0 and "the clump of molecule 1 has lost atoms that left the box: use boundary m or s" in text
+    assert "rigid_clumps auto" not in text
+
+
+def test_no_error_offers_auto_to_motion_without_inertia(simulation):
+    """Which refuses it."""
+    spheres, _ = many("square", 2)
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes rotation yes visc 1.3", comm=WIDE, fix=False)
+    sim.commands(LOSE.format(*spheres.x[2])).commands("unfix nve\nfix move all stokes_dynamics/overdamped")
+    with pytest.raises(Exception, match="molecule 3 has gained or lost atoms.*by whole molecules") as told:
+        sim.run(5)
+    assert "auto" not in str(told.value)
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes rotation yes visc 1.3", comm=WIDE, fix=False, dt=0.01)
+    sim.commands("fix move all stokes_dynamics/overdamped").run(1)
+    sim.raw("radius")[0] *= 1.1
+    with pytest.raises(Exception, match="is not rigid.*another command moves their atoms") as told:
+        sim.run(1, "pre no")
+    assert "auto" not in str(told.value)
+
+
 @pytest.mark.hard_case("rigid_clumps auto: clump that loses an atom")
 def test_auto_goes_on_after_a_lost_atom(simulation):
     spheres, _ = many("square", 2)
