@@ -84,7 +84,6 @@ void Ambient::read(bool with_spins, Derivatives derivatives, double time)
   spins = with_spins;
   wanted = derivatives;
   now = time;
-  select();
   read_fluid(derivatives);
   check();
 }
@@ -348,13 +347,22 @@ bool Ambient::group_stands() const
       takes_part.size() == (size_t) atom->nlocal;
 }
 
+/* LAMMPS finds the atoms of a dynamic group in setup() of a fix of its own after the first forces of a
+ * run, and in steps before the forces (2022) or after them (2025). Asked here, it has those of this
+ * step in any version. */
+void Ambient::fill_group()
+{
+  if (!group->dynamic[igroup]) return;
+  Fix *finder = Compat::fix(modify, "GROUP_" + settings.group);
+  if (finder && (update->setupflag || update->ntimestep % finder->nevery == 0)) finder->setup(0);
+}
+
 /* A group that stands costs nothing, however many atoms are not in it. Of those in it each may enter
- * or leave the region in any step. */
+ * or leave the region in any step: by its place in the box, as LAMMPS wraps it only when it
+ * re-neighbours. */
 void Ambient::select()
 {
-  // LAMMPS finds the atoms of a dynamic group only after the first forces of a run.
-  if (group->dynamic[igroup] && update->setupflag)
-    if (Fix *finder = Compat::fix(modify, "GROUP_" + settings.group)) finder->setup(0);
+  fill_group();
   const bool stands = group_stands();
   if (stands && !region) return;
   if (!stands) {
@@ -366,7 +374,8 @@ void Ambient::select()
   std::vector<int> chosen;
   if (region) region->prematch();
   for (int i : members) {
-    const double *x = atom->x[i];
+    double x[3];
+    if (region) in_the_box(i, x);
     // A position that is no number is in no region: it takes part, so that the fault is seen.
     if (!region || !std::isfinite(x[0] + x[1] + x[2]) || region->match(x[0], x[1], x[2]))
       chosen.push_back(i);

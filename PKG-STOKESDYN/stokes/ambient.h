@@ -51,8 +51,11 @@ class Ambient : protected LAMMPS_NS::Pointers {
 
   /* Looks up variables, group and region. Errors: one that does not exist. */
   void init();
-  /* The state of this step. spins: angular velocities count; derivatives of the fluid velocity that
-   * are wanted beside its rotation; time: of this step, for a series.
+  /* Who takes part in this step, by group and region. Not for the middle of a step: nobody enters or
+   * leaves there. */
+  void select();
+  /* The fluid of this step, or of its middle. spins: angular velocities count; derivatives of the fluid
+   * velocity that are wanted beside its rotation; time: of this step, for a series.
    * Errors, on all ranks: a number that is none, an atom far outside of a periodic box or outside
    * of the grid, with atom and step; a time outside of the series. */
   enum Derivatives { NO_DERIVATIVES, FIRST, SECOND };
@@ -181,7 +184,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   class Carrier;
   std::vector<double> formulas_at(const std::vector<double> &x);
   bool group_stands() const;
-  void select();
+  void fill_group();
   void read_fluid(Derivatives derivatives);
   std::vector<double> values() const;
   void check() const;

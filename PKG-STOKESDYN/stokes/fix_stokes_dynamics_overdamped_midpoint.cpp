@@ -128,7 +128,7 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
   hydro.look_ahead();
   place(0.5 * dt);
-  hydro.begin();
+  hydro.begin(Hydrodynamics::MIDDLE);
   hydro.ambient.half_a_step_back();
   std::vector<double> pushed = loads(hydro);
   for (size_t i : who)

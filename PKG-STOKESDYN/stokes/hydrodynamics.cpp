@@ -78,7 +78,7 @@ void Hydrodynamics::check_prepared() const
                "out 'pre no' of the run command");
 }
 
-void Hydrodynamics::begin()
+void Hydrodynamics::begin(Moment moment)
 {
   check_prepared();
   memory = State::find(lmp);
@@ -86,9 +86,12 @@ void Hydrodynamics::begin()
     voice.fail("its internal fix " + std::string(State::ID) + " has been deleted; a run without "
                "'pre no' creates it again");
   epochs.step.advance();
-  if (neighbor->ago == 0) epochs.lists.advance();
-  if (neighbor->ago == 0 || began != update->firststep) epochs.groups.advance();
-  began = update->firststep;
+  if (moment == STEP) {
+    if (neighbor->ago == 0) epochs.lists.advance();
+    if (neighbor->ago == 0 || began != update->firststep) epochs.groups.advance();
+    began = update->firststep;
+    ambient.select();
+  }
   mobile.loads.clear();
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST

@@ -51,9 +51,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void init();
   /* Error: other settings than those of init() ('run' with 'pre no' behind pair_style) */
   void check_prepared() const;
-  /* Reads the fluid and finds the memory. Errors: Ambient::read; check_prepared(); a memory that has been
-   * deleted. */
-  void begin();
+  /* Reads the fluid and finds the memory; in a step, who takes part too. In its middle that, and all
+   * lists, stand as they are. Errors: Ambient::read; check_prepared(); a memory that has been deleted. */
+  enum Moment { STEP, MIDDLE };
+  void begin(Moment moment = STEP);
   /* For a step that is computed in its middle: Ambient::look_ahead */
   void look_ahead();
   /* In the first step of a run: do the spheres stand as the last run left them? */

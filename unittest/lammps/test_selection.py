@@ -266,3 +266,49 @@ def test_region_that_moves(simulation, mode):
         if inside.any():
             assert largest_difference(sim.drag, selected_forces(spheres.x, spheres.v, inside)) < 1e-10
     assert counts == {1, 2, 3}
+
+
+# --- where LAMMPS keeps an atom, and when it looks ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_sphere_beyond_a_periodic_face_is_where_its_image_is(simulation, mode):
+    """LAMMPS wraps it when it re-neighbours, which is not in this run."""
+    far = MODES[mode].replace("inf", "4.5")    # sums over a periodic box are not what this is about
+    spheres = Spheres([(9.95, 3, 5), (5.0, 5, 2), (0.05, 6, 5)], A, [(1, 0, 0), (0, 1, 0), (-1, 0, 0)])
+    sim = simulation(spheres, f"{far} {EXACT} region left", boundary="p p p", box=[(0.0, 10.0)] * 3, dt=0.1, comm="comm_modify cutoff 5",
+                     before_pair="region left block 0 5.5 INF INF INF INF\nneighbor 2 bin\nneigh_modify delay 1000 every 1000 check no")
+    sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"])
+    for step, inside in ((0, [1, 2]), (1, [0, 1])):
+        sim.run(step)
+        taking_part = np.abs(sim.drag).max(axis=1) > 0.0
+        assert list(np.nonzero(taking_part)[0]) == inside, step
+
+
+def grouped(simulation, runs, every=1, steps="1"):
+    """A sphere goes down across z = 6 in step 3; fz of every step, by the group that LAMMPS itself fills"""
+    sim = simulation(Spheres([(6, 6, 6.025), (8, 6, 3)], A, (0, 0, -1)), f"cut_off_distance inf {EXACT} group low", box=[(0, 12)] * 3, dt=0.01,
+                     before_pair=f"region low block INF INF INF INF INF 6\ngroup low dynamic all region low every {every}")
+    sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix down all move linear 0 0 -1"])
+    forces = []
+    for n in runs:
+        for k in range(n):
+            sim.run(1, "post no" if k == 0 else "pre no post no")
+            forces.append(sim.drag[0, 2])
+    return forces
+
+
+@pytest.mark.parametrize("runs", [(6,), (3, 3), (1, 1, 4)])
+def test_a_dynamic_group_is_that_of_the_step(simulation, runs):
+    """Also where LAMMPS fills it only after the pair styles; and a run in pieces is the run in one."""
+    forces = np.array(grouped(simulation, runs))
+    assert np.all(forces[:2] == 0.0) and np.all(forces[2:] > 0.5 * STOKES)
+
+
+def test_a_dynamic_group_has_those_that_a_periodic_face_brings(simulation):
+    """In the step in which LAMMPS wraps it, a sphere is in the region at the other side."""
+    sim = simulation(Spheres([(3, 3, 9.995)], A, (0, 0, 1)), f"clumps_only yes {EXACT} group bottom", boundary="p p p", box=[(0.0, 10.0)] * 3,
+                     dt=0.01, before_pair="neigh_modify delay 0 every 1 check no\nregion bottom block INF INF INF INF 0 1\n"
+                                          "group bottom dynamic all region bottom every 1")
+    sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"]).run(1)
+    assert sim.x[0, 2] < 0.01 and sim.drag[0, 2] == pytest.approx(-STOKES, rel=1e-9)
