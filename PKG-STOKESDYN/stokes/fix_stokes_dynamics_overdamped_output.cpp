@@ -110,7 +110,7 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   for (int i : who) {
     x.insert(x.end(), atom->x[i], atom->x[i] + 3);
     a.push_back(atom->radius[i]);
-    bodies.push_back(bound ? atom->molecule[i] : 0);
+    bodies.push_back(ubuf(bound ? (int64_t) atom->molecule[i] : (int64_t) 0).d);
     mine = std::max(mine, atom->radius[i]);
   }
   const double largest = largest_of_all(world, mine);
@@ -122,7 +122,8 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
     voice.fail_one("the smallest gap: the largest radius, " + text(largest) + ", reaches more than "
                    "1000 images of each sphere and 1e7 in all; is it in other units?");
   halo.extend(lattice.h, x, {&a, &bodies});
-  const std::vector<int64_t> body(bodies.begin(), bodies.end());
+  std::vector<int64_t> body;
+  for (double bits : bodies) body.push_back(ubuf(bits).i);
   double gap = INFINITY;
   if (n > 0 && sd_smallest_gap(x.data(), a.data(), body.data(), n, a.size(), reach, &gap) != SD_OK)
     voice.fail_one("out of memory for the smallest gap");

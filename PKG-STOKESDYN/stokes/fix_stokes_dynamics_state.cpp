@@ -150,6 +150,7 @@ void FixStokesDynamicsState::write_state(NamedState &out)
   out.put("places_box", global.places_box);
   out.put("loose", global.loose);
   out.put("open_box", global.open_box);
+  out.put("in_axes_of_shells", 1.0);
   out.put_bits("settings", global.settings);
 }
 
@@ -160,4 +161,6 @@ void FixStokesDynamicsState::read_state(const NamedState &in)
   global.loose = in.get("loose");
   global.open_box = in.get("open_box");
   global.settings = in.get_bits("settings", 0);
+  if (points > 0 && in.get("in_axes_of_shells", 0.0) == 0.0)
+    global.last_step = -1;    // of a version that kept forces of points in space
 }

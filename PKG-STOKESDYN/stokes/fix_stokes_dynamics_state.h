@@ -40,8 +40,8 @@ class FixStokesDynamicsState : public RowsFix {
   static size_t at(int first, size_t d) { return first + (d < 3 ? d : d + 3); }
   const bool rotation, history;
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
-  /* of each sphere, whose forces on the fluid are behind that: 3 columns each; 0: none. Then those of
-   * the solve before, and the velocities that went with them */
+  /* of each sphere, whose forces on the fluid are behind that, in the axes of its shell: 3 columns each;
+   * 0: none. Then those of the solve before, and the velocities that went with them */
   const int points;
   int of_points() const { return before() + (history ? (rotation ? 6 : 3) : 0); }
   int of_points_before() const { return of_points() + 3 * points; }

@@ -166,7 +166,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void guess();
   void keep();
   void recall_points(std::vector<double> &l, double line);
-  void keep_points(const std::vector<double> &l);
+  void keep_points(std::vector<double> l);
+  void turn_points(std::vector<double> &l, bool back) const;
   /* by rows: points of the shells as they stand now, from their centre and in space, their radii,
    * and the forces on the fluid that the last solve found */
   struct Points {

@@ -17,8 +17,21 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
+/* l [3 points] of this rank's rows, in space, from those in the axes of the shells, or back: spheres that
+ * are free do not turn */
+void Hydrodynamics::turn_points(std::vector<double> &l, bool back) const
+{
+  const size_t P = shells.points();
+  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++)
+    for (size_t p = P * k; p < P * (k + 1); p++) {
+      const double was[3] = {l[3 * p], l[3 * p + 1], l[3 * p + 2]};
+      (back ? sd_multiply3t : sd_multiply3)(shells.turns() + 9 * k, was, &l[3 * p]);
+    }
+}
+
 /* Forces of the points of this rank's rows as the last solve left them (line 0), or on the line
- * through the last two (1); 0 where there are none */
+ * through the last two (1); 0 where there are none. Rows of the memory are in the axes of the shells,
+ * so that they turn with them, whoever turns these and whenever the next solve is. */
 void Hydrodynamics::recall_points(std::vector<double> &l, double line)
 {
   const size_t m = 3 * (size_t) shells.points();
@@ -29,12 +42,14 @@ void Hydrodynamics::recall_points(std::vector<double> &l, double line)
                  *before = row + memory->of_points_before();
     for (size_t d = 0; d < m; d++) out[d] = last[d] + line * (last[d] - before[d]);
   });
+  turn_points(l, false);
 }
 
-void Hydrodynamics::keep_points(const std::vector<double> &l)
+void Hydrodynamics::keep_points(std::vector<double> l)
 {
   const size_t m = 3 * (size_t) memory->points;
   if (m == 0) return;
+  turn_points(l, true);
   double off[2] = {0.0, 0.0};    // from the last, from the line
   scene.to_atoms((int) m, l.data(), [&](int i, const double *row) {
     double *last = memory->rows.give(i) + memory->of_points();
@@ -141,8 +156,8 @@ void Hydrodynamics::turn(int i, const double R[9])
     sd_multiply3(R, was, v);
   };
   for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) turn(row + first);
-  const int behind = memory->points > 0 ? 2 * memory->points + 2 : 0;    // both solves, last motion
-  for (int p = 0; p < behind; p++) turn(row + memory->of_points() + 3 * p);
+  for (int half : {0, 3})
+    if (memory->points > 0) turn(row + memory->of_motion_before() + half);
 }
 
 // --- films between close spheres, and the rows that stand for these in a step without a solve ------

@@ -45,7 +45,9 @@ sd_random_key Noise::key(sd_random_purpose what) const
 
 void Noise::find_temperature(const Hydrodynamics &hydro)
 {
+  if (temperature.is_variable()) modify->clearstep_compute();
   const double T = temperature.evaluate(lmp);
+  if (temperature.is_variable()) modify->addstep_compute(update->ntimestep + 1);
   if (!(T >= 0.0) || std::isinf(T))
     voice.fail("keyword temperature: '" + text(T) + "' must be >= 0, in step " +
                std::to_string(update->ntimestep));

@@ -427,3 +427,14 @@ def test_steps_that_are_too_long_are_warned_of(tmp_path):
     quiet = [line.replace("timestep 3.0", "timestep 1e-4") for line in lines]
     text = lmp(tmp_path, quiet + [MOVE.format(1.0, 3), "run 1"]).text
     assert "of its radius: use" not in text and "Brownian motion, kT = 1, seed 3" in text
+
+
+def test_a_temperature_that_follows_a_compute_is_that_of_the_step(simulation):
+    """Whenever thermo output is written; the sphere in front goes fast, and the temperature with it."""
+    ends = []
+    for thermo in (1, 1000):
+        sim = simulation(Spheres(TRIO, A), f"cut_off_distance inf visc {ETA}", fix=False, dt=0.01)
+        sim.commands(["compute front all reduce max x", "variable T equal 1e-3*(1+c_front)", "fix pull all addforce 50 0 0", f"thermo {thermo}",
+                      "fix move all stokes_dynamics/overdamped temperature v_T 4711"]).run(20)
+        ends.append(sim.x)
+    assert np.ptp(ends[0][:, 0]) > 0.0 and np.array_equal(*ends)

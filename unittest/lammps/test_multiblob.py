@@ -340,6 +340,20 @@ def test_stress_between_solves(tmp_path):
         assert 0 < np.abs(rows - steps[0]).max() < 1e-3 * np.abs(steps[0]).max()
 
 
+def test_stress_between_solves_turns_with_the_clump(simulation):
+    """A heavy triangle that spins by 0.3 in nine steps: its moments are those of the first step, turned, solved or not."""
+    rate, found = 0.7, []
+    x = np.array([(-1.4, -0.7, 0), (1.4, -0.7, 0), (0, 1.4, 0)])
+    spheres = Spheres(x, 1.0, np.cross((0, 0, rate), x), molecule=1)
+    for every in (1, 10):
+        sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob 12 rigid_clumps yes relative_tolerance 1e-10 update_every {every}",
+                         density=1e9, dt=0.3 / 9 / rate)
+        sim.commands([f"set atom * omega 0 0 {rate!r}", "fix bodies all rigid single", STRESS, "dump d all custom 1 /dev/null c_S[1]",
+                      "thermo_style custom step"]).run(9)
+        found.append(sum(moments(sim)))
+    assert np.abs(found[1] - found[0]).max() < 1e-6 * np.abs(found[0]).max()
+
+
 def test_stress_needs_shells_of_points(simulation):
     sim = simulation(Spheres([(1, 2, 3)]), "cut_off_distance inf visc 1", fix=False)
     with pytest.raises(LammpsError, match="Compute stokes_dynamics/stress: it requires pair_style stokes_dynamics with multiblob 12 or 42"):

@@ -45,7 +45,7 @@ static sd_status identify(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   identity *who = L->work->identity;
   for (int i = 0; i < s->n; i++)
-    who[i] = (identity){s->world.me, i, s->body ? (double) s->body[i] : 0.0};
+    who[i] = (identity){s->world.me, i, s->body ? s->body[i] : 0};
   if (!s->world.refresh) return SD_OK;
   return s->world.refresh(s->world.ctx, &who->rank, &who[s->n].rank, sizeof(identity) / sizeof(double));
 }
@@ -74,7 +74,7 @@ static int row_at(const sd_lubrication *L, int j)
 static int one_body(const sd_lubrication *L, int i, int j)
 {
   const identity *who = L->work->identity;
-  return who[i].body != 0.0 && who[i].body == who[j].body;
+  return who[i].body != 0 && who[i].body == who[j].body;
 }
 
 /* What there is to know of a pair where it stands; d from sphere i to j */

@@ -12,9 +12,11 @@ typedef struct {
   int at;
 } closeness;
 
-/* Which sphere stands here: its rank, its row there, its body. Numbers, as others send them */
+/* Which sphere stands here: its rank, its row there, its body. As long as three numbers, as which others
+ * send it: they copy bits, and IDs above 2^53 stay what they are */
 typedef struct {
-  double rank, row, body;
+  double rank, row;
+  int64_t body;
 } identity;
 
 /* The film of a sphere with its own image: pair k, and its block 12 */

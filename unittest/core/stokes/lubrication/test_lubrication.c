@@ -178,6 +178,10 @@ static void none_within_a_body(void **state)
   q.body[0] = q.body[1] = 0;
   near_place(&q);
   assert_int_equal(q.L.count, 1);
+  q.body[0] = 1LL << 53; /* a double rounds both to the same number */
+  q.body[1] = q.body[0] + 1;
+  near_place(&q);
+  assert_int_equal(q.L.count, 1);
   near_free(&q);
 }
 
