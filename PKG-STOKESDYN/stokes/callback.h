@@ -46,6 +46,12 @@ template <class Body> sd_status callback(const Body &body) noexcept
 {
   fail_by(voice, status, sd_status_string(status));
 }
+/* Right behind a function of the core in which ranks speak with each other: what this rank alone has
+ * not ends the run before the others, who wait in there, are asked for anything else. */
+inline void fail_if_alone(const Voice &voice, sd_status status)
+{
+  if (status == SD_ENOMEMORY || status == SD_ECALLBACK) fail_by(voice, status);
+}
 
 }    // namespace StokesDyn
 #endif

@@ -36,7 +36,7 @@ void check_room_of_blas(const Voice &voice)
   if (!there && sd_linear_room() != SD_OK)
     voice.fail_one("out of memory: linear algebra (BLAS) needs 0.14 GB of address space at once on "
                    "each rank; is there a limit (ulimit -v)? With precondition none and without "
-                   "rigid_clumps none is needed");
+                   "rigid_clumps and multiblob none is needed");
   there = true;
 }
 

@@ -42,6 +42,7 @@ Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
 void Hydrodynamics::set(const std::vector<std::string> &words)
 {
   settings = StokesSettings(lmp, words);
+  if (settings.shells.on()) check_room_of_blas(voice);
   shells.make();
   scene.shells = settings.shells.on() ? &shells : nullptr;
   scene.orient = [this] {
@@ -265,6 +266,7 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
     const sd_status status =
         sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
                               solution.data(), work.get(), &report);
+    fail_if_alone(where(StokesSettings::SUBSTITUTION), status);
     if (status != SD_EDIVERGED || settings.strict) {
       if (settings.scene.wall.sign) look_at_step(system, report, false);
       return status;
@@ -313,8 +315,10 @@ sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
   system.warm = memory->history && global.solutions > 0;
   if (system.warm) guess();
   preconditioner.attach(system, memory->places, global.places_box);
-  return sd_solve_gradients(&system, slip.data(), settings.tolerance, settings.max_iter,
-                            solution.data(), work.get(), &report);
+  const sd_status status = sd_solve_gradients(&system, slip.data(), settings.tolerance,
+                                              settings.max_iter, solution.data(), work.get(), &report);
+  fail_if_alone(where(StokesSettings::GRADIENTS), status);
+  return status;
 }
 
 /* Clumps with shells: bodies that are held in the slip, by the loop that moves them without

@@ -15,8 +15,7 @@ void Shells::make()
   sd_status status = sd_multiblob_create(settings.points, settings.one_body, &blob);
   if (status == SD_OK) status = sd_multiblob_shape_create(&blob, nullptr, &lone);
   if (status != SD_OK)
-    voice.fail("keyword multiblob: '" + std::to_string(settings.points) + "': " +
-               sd_status_string(status));
+    fail_by(voice.of("keyword multiblob: '" + std::to_string(settings.points) + "'"), status);
 }
 
 void Shells::take_root()

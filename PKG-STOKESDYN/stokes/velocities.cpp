@@ -1,5 +1,6 @@
 #include "velocities.h"
 
+#include "callback.h"
 #include "keywords.h"
 #include "settings.h"
 
@@ -355,7 +356,9 @@ sd_status Velocities::solve(const sd_bodies &A, const sd_bodies_problem &problem
   work.resize(sd_bodies_work(&A));
   const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
                                    exerted.data()};
-  return sd_bodies_solve(&A, &problem, &motion, work.data(), &report);
+  const sd_status status = sd_bodies_solve(&A, &problem, &motion, work.data(), &report);
+  fail_if_alone(Voice(lmp, StokesSettings::COMMAND).at_step(), status);
+  return status;
 }
 
 /* Everybody is held, at rest in a fluid that moves with the slip. */

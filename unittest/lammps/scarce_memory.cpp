@@ -1,6 +1,6 @@
 /* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more, up to
- * MALLOC_MOST, has nothing to give, calloc likewise, and new of NEW_LIMIT and more throws. Limits from the environment, 0: none; they are
- * those of rank SCARCE_RANK alone, if that is given. */
+ * MALLOC_MOST, has nothing to give, calloc likewise, and new of NEW_LIMIT and more, up to NEW_MOST, throws. Limits from the
+ * environment, 0: none; they are those of rank SCARCE_RANK alone, if that is given. */
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -29,8 +29,9 @@ extern "C" void *calloc(size_t count, size_t each)
 
 void *operator new(size_t bytes)
 {
-  static size_t limit = limit_of("NEW_LIMIT");
-  void *memory = limit && bytes >= limit ? nullptr : __libc_malloc(bytes ? bytes : 1);
+  static size_t limit = limit_of("NEW_LIMIT"), most = limit_of("NEW_MOST");
+  const bool scarce = limit && bytes >= limit && (!most || bytes <= most);
+  void *memory = scarce ? nullptr : __libc_malloc(bytes ? bytes : 1);
   if (!memory) throw std::bad_alloc();
   return memory;
 }

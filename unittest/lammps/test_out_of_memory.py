@@ -107,3 +107,33 @@ def test_one_rank_without_memory_for_a_stream_ends_all(tmp_path, scarce, scarce_
              f"fix h all hydro/vans 1 mesh {slices} 1e-4 0 fluid 1000 0.001 gravity 0.5 0 -9.8"]
     run = lmp(tmp_path, lines, 2, timeout=30, succeed=False)
     assert run.code != 0 and f"Fix hydro/vans: out of memory for {slices} slices" in run.text, run.text[-1500:]
+
+
+@pytest.mark.parametrize("scarce_rank", [0, 1])
+def test_one_rank_without_memory_for_a_shell_ends_all(tmp_path, scarce, scarce_rank):
+    """Every rank makes the shell of a sphere for itself."""
+    lines = input_lines(Spheres([(0, 0, 0), (0, 0, 3)]), "cut_off_distance inf visc 1 multiblob 42", str(tmp_path / "data"))
+    size = 8 * (3 * 42)**2    # the inverse mobility of its points
+    scarce(MALLOC_LIMIT=size, MALLOC_MOST=size, SCARCE_RANK=scarce_rank)
+    run = lmp(tmp_path, lines + ["run 0"], 2, timeout=40, succeed=False)
+    assert run.code != 0 and "keyword multiblob: '42': out of memory" in run.text, run.text[-1500:]
+
+
+@pytest.mark.parametrize("scarce_rank", [0, 1])
+@pytest.mark.parametrize("fix", ["fix drag all stokes_dynamics", "fix move all stokes_dynamics/overdamped"])
+def test_one_rank_without_memory_within_a_solve_ends_all(tmp_path, scarce, fix, scarce_rank):
+    """A product asks for the numbers of all ranks, and one has no room for them."""
+    n = 31
+    x = 3.0 * np.stack(np.meshgrid(*3 * [np.arange(4)]), axis=-1).reshape(-1, 3)[:n]
+    lines = input_lines(Spheres(x, v=(0, 0, 1)), "cut_off_distance inf far_field direct visc 1 multiblob 12", str(tmp_path / "data"), fix=False)
+    scarce(NEW_LIMIT=8 * 36 * n, NEW_MOST=8 * 36 * n, SCARCE_RANK=scarce_rank)
+    run = lmp(tmp_path, lines + ["fix down all addforce 0 0 -1", fix, "run 0"], 2, timeout=40, succeed=False)
+    assert run.code != 0 and re.search("Pair style stokes_dynamics: step 0: .*out of memory", run.text), run.text[-1500:]
+
+
+def test_multiblob_asks_for_the_room_of_blas_first(tmp_path, scarce):
+    """At the command, which makes the shell by linear algebra; there OpenBLAS tried for ever."""
+    lines = input_lines(Spheres([(0, 0, 0)]), "cut_off_distance inf visc 1 multiblob 12", str(tmp_path / "data"), fix=False)
+    scarce(MALLOC_LIMIT=130000000)
+    run = lmp(tmp_path, lines, timeout=40, succeed=False)
+    assert run.code != 0 and "linear algebra (BLAS) needs 0.14 GB" in run.text

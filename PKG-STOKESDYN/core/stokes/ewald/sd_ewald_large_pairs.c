@@ -39,15 +39,20 @@ void sd_ewald_large_pairs_free(sd_ewald_large_pairs *p)
 
 /* --- the large spheres of all ranks --- */
 
-/* How many each rank has, and then who they are: sums, to which each rank adds its own. */
+/* How many each rank has, and then who they are: sums, to which each rank adds its own. None goes to
+ * a sum before all have the room for it. */
 static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list, int n,
                               const sd_world *world)
 {
   const int ranks = sd_world_ranks(world), me = sd_world_me(world);
   double *counts = calloc((size_t) ranks, sizeof(double));
-  if (!counts) return SD_ENOMEMORY;
-  for (int i = 0; i < n; i++) counts[me] += s->a[list[i]] >= p->from;
-  const sd_status status = sd_world_sum(world, counts, ranks);
+  sd_status status = sd_world_agree(world, counts ? SD_OK : SD_ENOMEMORY);
+  for (int i = 0; i < n && status == SD_OK; i++) counts[me] += s->a[list[i]] >= p->from;
+  if (status == SD_OK) status = sd_world_sum(world, counts, ranks);
+  if (status != SD_OK) {
+    free(counts);
+    return status;
+  }
   p->larges = p->first = 0;
   p->ours = (int) counts[me];
   for (int r = 0; r < ranks; r++) {
@@ -55,13 +60,13 @@ static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, cons
     p->larges += (int) counts[r];
   }
   free(counts);
-  if (status != SD_OK) return status;
   const size_t larges = (size_t) p->larges;
-  if (p->larges > INT_MAX / 6 ||
-      !sd_reserve(&p->sphere, sizeof(int), larges, &p->sphere_room) ||
-      !sd_reserve(&p->large, sizeof(sd_large_sphere), larges, &p->large_room) ||
-      !sd_reserve(&p->F, 12 * sizeof(double), larges, &p->F_room))
-    return SD_ENOMEMORY;
+  const int room = p->larges <= INT_MAX / 6 &&
+      sd_reserve(&p->sphere, sizeof(int), larges, &p->sphere_room) &&
+      sd_reserve(&p->large, sizeof(sd_large_sphere), larges, &p->large_room) &&
+      sd_reserve(&p->F, 12 * sizeof(double), larges, &p->F_room);
+  status = sd_world_agree(world, room ? SD_OK : SD_ENOMEMORY);
+  if (status != SD_OK) return status;
   p->u = p->F + 6 * larges;
   memset(p->large, 0, sizeof(sd_large_sphere) * (size_t) p->larges);
   int next = 0;

@@ -3,6 +3,7 @@
 #include "predicted.h"
 
 #include "plain.h"
+#include "sd_ewald_large_pairs.h"
 #include "sd_linear.h"
 
 enum { MOST = 9600 };
@@ -204,6 +205,32 @@ static void the_predicted_error_is_the_measured_one(void **state)
   assert_true(least > 0.5 && most < 2.0);
 }
 
+/* One of two ranks, and what the other says: it has found no room for the list of large spheres. */
+static sd_status sum_with_a_rank_without_room(void *ctx, double *values, int count)
+{
+  int *agreed = ctx;
+  if (count == SD_ECALLBACK + 1 && ++*agreed == 2) values[SD_ENOMEMORY] += 1.0;
+  assert_true(*agreed < 3 && (*agreed < 2 || count == SD_ECALLBACK + 1)); /* nobody answers another sum */
+  return SD_OK;
+}
+
+static void a_rank_without_room_is_told_before_the_next_sum(void **state)
+{
+  (void) state;
+  const mixture m = mixtures[0];
+  scene s = make(&m, 1, 4);
+  const sd_ewald how = choose(&s, &m, 1e-4, 2);
+  sd_ewald_large_pairs p = {0};
+  int list[MOST], agreed = 0;
+  for (int i = 0; i < m.n; i++) list[i] = i;
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  const sd_world world = {.ctx = &agreed, .me = 0, .ranks = 2, .sum = sum_with_a_rank_without_room};
+  sd_ewald_large_pairs_create(&p, &how, m.width);
+  assert_int_equal(sd_ewald_large_pairs_place(&p, &spheres, list, m.n, &world), SD_ENOMEMORY);
+  assert_int_equal(agreed, 2);
+  sd_ewald_large_pairs_free(&p);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -211,6 +238,7 @@ int main(void)
       cmocka_unit_test(periodic_boxes_agree_with_one_level),
       cmocka_unit_test(the_matrix_is_symmetric_and_positive),
       cmocka_unit_test(the_predicted_error_is_the_measured_one),
+      cmocka_unit_test(a_rank_without_room_is_told_before_the_next_sum),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
