@@ -13,6 +13,7 @@
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 
@@ -54,6 +55,10 @@ void PairStokesDynamics::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   if (hydro.overdamped) return;
+  if (asked_again()) {
+    if (hydro.settings.add_force) add();
+    return;
+  }
   hydro.begin();
   check_images(voice, hydro.ambient.jumps());
   const Verdict verdict = judge();
@@ -65,6 +70,18 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     hydro.stand();
   if (hydro.settings.add_force) add();
   report();
+  asked = {update->ntimestep, neighbor->ncalls};
+  asked_in.take(hydro.epochs.run);
+}
+
+/* Some commands try what forces and energies would be if atoms stood elsewhere (fix numdiff, compute
+ * born/matrix numdiff), or look at them at the end of a step, when velocities are others. The forces of
+ * this step stand all the while: the next run may go on with them. Fixes that create or swap atoms try
+ * before LAMMPS re-neighbours for the step. */
+bool PairStokesDynamics::asked_again() const
+{
+  return asked_in.is(hydro.epochs.run) && asked.step == update->ntimestep &&
+      asked.builds == neighbor->ncalls && hydro.computed_in(update->ntimestep);
 }
 
 /* v' is due every update_every steps, and at once when the spheres are not those of the last solve:

@@ -41,6 +41,11 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   /* for compute pair: iterations, residual, unconverged solves, dissipation */
   double reported[4] = {0.0};
   bool warned_nobody_applies = false;
+  /* by whom forces were last found: the step, the lists that LAMMPS had made in this run, the run */
+  struct {
+    LAMMPS_NS::bigint step, builds;
+  } asked = {-1, -1};
+  Since asked_in;
 
   /* What the force of a step needs. */
   enum Verdict {
@@ -48,6 +53,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
     OLD_PERTURBATION,    // the velocities of now, with the v' of the last solve
     SOLVE
   };
+  bool asked_again() const;
   Verdict judge();
   void add();
   void report();

@@ -217,3 +217,19 @@ def test_fix_that_reads_forces_before_the_drag_is_there_is_an_error(simulation, 
     sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no"]).run(1)
     sim.commands(["unfix drag", "group others id 3 4", "fix drag others stokes_dynamics"]).run(1)
     sim.commands(["unfix drag", "unfix bodies", "fix drag all stokes_dynamics", rigid]).run(1)
+
+
+# --- commands that ask the pair style for forces once more ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("add_force", ["yes", "no"])
+def test_fix_numdiff_changes_nothing(simulation, add_force):
+    """It computes the pair style for displaced atoms in every step; energies have nothing of a drag, and the forces of the step stay."""
+    style = f"cut_off_distance inf visc 1.3 algorithm 2 update_every 3 add_force {add_force}"
+    ends = []
+    for numdiff in ([], ["fix shifted all numdiff 1 0.01", "thermo 1"]):
+        sim = simulation(five(), style, dt=0.01).commands(["fix move all nve/sphere", *numdiff]).run(5).run(5)
+        ends.append((sim.x, sim.v, sim.f, sim.fix_rows(), sim.fix_vector()))
+    assert ends[0][4][5] < 8    # solves
+    for one, other in zip(*ends):
+        assert np.array_equal(one, other)
