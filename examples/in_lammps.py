@@ -20,9 +20,9 @@ class InLammps:
         molecule: a number, or one for each"""
         self.n = len(x)
         lo, hi = (0.0, edge) if edge else (x.min() - 5, x.max() + 5)
-        rows = "".join(f"{i + 1} 1 {p[0]!r} {p[1]!r} {p[2]!r} 2.0 1.0 {m}\n"
+        rows = "".join(f"{i + 1} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g} 2.0 1.0 {m}\n"
                        for i, (p, m) in enumerate(zip(x.tolist(), np.broadcast_to(molecule, self.n))))
-        self.data.write_text(f"spheres\n\n{self.n} atoms\n1 atom types\n\n" + "".join(f"{lo!r} {hi!r} {c}lo {c}hi\n" for c in "xyz") +
+        self.data.write_text(f"spheres\n\n{self.n} atoms\n1 atom types\n\n" + "".join(f"{lo:.17g} {hi:.17g} {c}lo {c}hi\n" for c in "xyz") +
                              ("0 0 0 xy xz yz\n" if edge else "") + "\nAtoms\n\n" + rows)
         self.commands(f"""
             clear
@@ -34,7 +34,7 @@ class InLammps:
             fix load all property/atom d_fx d_fy d_fz
             read_data {self.data}
             mass 1 1
-            pair_style stokes_dynamics visc {1 / (6 * np.pi)!r} algorithm 2 relative_tolerance {tolerance} {keywords}
+            pair_style stokes_dynamics visc {1 / (6 * np.pi):.17g} algorithm 2 relative_tolerance {tolerance} {keywords}
             pair_coeff * *
             compute load all property/atom d_fx d_fy d_fz
             variable ux atom 0
@@ -76,7 +76,7 @@ class InLammps:
 
     def flow(self, G):
         for name, row in zip("xyz", np.asarray(G).tolist()):
-            self.lmp.command(f"variable u{name} atom " + "+".join(f"({g!r})*{c}" for g, c in zip(row, "xyz")))
+            self.lmp.command(f"variable u{name} atom " + "+".join(f"({g:.17g})*{c}" for g, c in zip(row, "xyz")))
 
     def slip(self, G):
         order = self.order()

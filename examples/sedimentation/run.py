@@ -140,7 +140,7 @@ class Case:
         self.tag += "" if level == "1" else f"_{level}"
 
     def run(self, out):
-        self.image, state, log = out / f"{self.tag}.png", out / f"{self.tag}.state", out / f"{self.tag}.log"
+        self.image, state, log = out / f"{self.tag}.ppm", out / f"{self.tag}.state", out / f"{self.tag}.log"
         # stdbuf: an error message must leave LAMMPS before it aborts.
         command = ["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", self.clump,
                    "-var", "angle", f"{self.angle:.17g}", "-var", "n", str(self.n if self.clump == "chain" else 10),

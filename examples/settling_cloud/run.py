@@ -111,10 +111,10 @@ def save(fig, path):
 def montage(out, path):
     rows = ("all", "clump")
     fig, axes = plt.subplots(len(rows), len(SHOWN), figsize=(11.0, 6.4), dpi=100, layout="constrained")
-    last = plt.imread(sorted((out / "out").glob("all.*.png"))[-1])[:, :, :3]
-    floor = np.flatnonzero(last.min(axis=(1, 2)) < 0.9).max() + 1       # the row of pixels that the spheres rest on
+    last = plt.imread(sorted((out / "out").glob("all.*.ppm"))[-1])
+    floor = np.flatnonzero(last.min(axis=(1, 2)) < 230).max() + 1       # the row of pixels that the spheres rest on
     for row, name in zip(axes, rows):
-        images = sorted((out / "out").glob(f"{name}.*.png"))
+        images = sorted((out / "out").glob(f"{name}.*.ppm"))
         for ax, t in zip(row, SHOWN):
             ax.imshow(plt.imread(images[round(t / FRAME)])[:floor])
             ax.set(xticks=[], yticks=[])

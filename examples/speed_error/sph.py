@@ -40,7 +40,8 @@ def measure():
                 more = SPLINE if name == "poiseuille" and option != "shift" else {}
                 try:
                     got = getattr(flows, name)(n, **OPTIONS[option], **more)
-                except RuntimeError:
+                except flows.BlownUp as why:
+                    print("[speed_error] blown up: %s" % why, flush=True)
                     got = None
                 rows.append((name, option, n, *((error(got, n), got["seconds"]) if got else (float("nan"),) * 2)))
     return rows

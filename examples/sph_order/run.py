@@ -70,7 +70,8 @@ def main():
         print("[sph_order] " + what, flush=True)
         try:
             got = getattr(flows, name)(n, **dict(OPTIONS[option], **more))
-        except RuntimeError:
+        except flows.BlownUp as why:
+            print("[sph_order] blown up: %s" % why, flush=True)
             got = {"blown up": 1, "seconds": 0}
         for figure, limit in figures.items():
             value = float(got.get(figure, "nan"))

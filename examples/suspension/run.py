@@ -50,9 +50,9 @@ def places(phi, k=0):
 def write_places(out, phi):
     """Sets of hard spheres at equilibrium, as data files"""
     for k, (x, edge) in enumerate(hard_spheres(N, phi, SETS, seed=1 + int(100 * phi), melt=1000, between=200)):
-        rows = "".join(f"{i + 1} 1 2.0 1.0 {p[0]!r} {p[1]!r} {p[2]!r}\n" for i, p in enumerate((x % edge).tolist()))
+        rows = "".join(f"{i + 1} 1 2.0 1.0 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n" for i, p in enumerate((x % edge).tolist()))
         (out / places(phi, k)).write_text(f"hard spheres, volume fraction {phi}\n\n{N} atoms\n1 atom types\n\n" +
-                                          "".join(f"0 {edge!r} {c}lo {c}hi\n" for c in "xyz") + "\nAtoms\n\n" + rows)
+                                          "".join(f"0 {edge:.17g} {c}lo {c}hi\n" for c in "xyz") + "\nAtoms\n\n" + rows)
 
 
 def lammps(out, script, log, ranks=2, **variables):

@@ -104,7 +104,7 @@ def draw(done, out, path):
     axis.grid(alpha=0.3)
     axis.legend(fontsize=9, loc="upper left")
     axis.set_title("Straight chains of touching spheres in simple shear: long near the flow direction, quick across it")
-    images = sorted(out.glob("chain5_0_42_1.*.png"))[:9]
+    images = sorted(out.glob("chain5_0_42_1.*.ppm"))[:9]
     for k, image in enumerate(images):
         cell = figure.add_subplot(grid[1, k])
         cell.imshow(plt.imread(image))
@@ -145,7 +145,7 @@ def main():
     given = options(__file__, __doc__)
     out = given.out
     need("lmp", "mpirun")
-    for image in out.glob("chain*.png"):
+    for image in out.glob("chain*.ppm"):
         image.unlink()
 
     start = time.time()

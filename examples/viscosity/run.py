@@ -90,8 +90,8 @@ def zarraga(phi):
 
 
 def write_data(path, x, edge):
-    path.write_text(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {edge!r} {c}lo {c}hi\n" for c in "xyz") +
-                    "0 0 0 xy xz yz\n\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {a!r} {b!r} {c!r}\n" for i, (a, b, c) in enumerate(x.tolist())))
+    path.write_text(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {edge:.17g} {c}lo {c}hi\n" for c in "xyz") +
+                    "0 0 0 xy xz yz\n\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {a:.17g} {b:.17g} {c:.17g}\n" for i, (a, b, c) in enumerate(x.tolist())))
 
 
 def sheared(out, tag, phi, n, **variables):
