@@ -42,7 +42,7 @@ def write(folder, edge):
     n, side = edge**3, edge * step
     x = step * (np.indices((edge, edge, edge)).reshape(3, -1).T + 0.5) + rng.uniform(-0.35, 0.35, (n, 3))
     with open(os.path.join(folder, "data"), "w") as out:
-        out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n" + "".join(f"0 {side!r} {c}lo {c}hi\n" for c in "xyz"))
+        out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n" + "".join(f"0 {side:.17g} {c}lo {c}hi\n" for c in "xyz"))
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
     with open(os.path.join(folder, "in"), "w") as out:
         out.write(f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {folder}/data\n"

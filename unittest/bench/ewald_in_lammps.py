@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 from from_tests import np
-from system import environment
+from host import environment, mpirun
 
 REPEATS, MORE, ROUNDS = 3, 4, 5
 SCENES = [  # name, N, boundary, tolerance, radii 1 : ratio, rotation
@@ -60,7 +60,7 @@ def write(folder, n, boundary, ratio):
     side = (4 / 3 * np.pi * (a**3).sum() / 0.2)**(1 / 3)
     x, v = rng.uniform(0, side, (n, 3)), rng.normal(size=(n, 3))
     with open(os.path.join(folder, "data"), "w") as out:
-        out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n" + "".join(f"0 {side!r} {c}lo {c}hi\n" for c in "xyz"))
+        out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n" + "".join(f"0 {side:.17g} {c}lo {c}hi\n" for c in "xyz"))
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 {2 * a[i]} 1.0 {x[i][0]} {x[i][1]} {x[i][2]}\n" for i in range(n)))
         out.write("\nVelocities\n\n" + "".join(f"{i + 1} {v[i][0]} {v[i][1]} {v[i][2]} 0 0 0\n" for i in range(n)))
     with open(os.path.join(folder, "in"), "w") as out:
@@ -73,7 +73,7 @@ def measure(n, boundary, words, ratio=1, rotation="no", ranks=1, clock="process_
     with tempfile.TemporaryDirectory() as folder:
         write(folder, n, boundary, ratio)
         style = (f"cut_off_distance inf visc 1 algorithm 2 relative_tolerance 1e-15 warm_start no precondition none rotation {rotation} {words}")
-        run = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
+        run = mpirun(ranks)
         out = subprocess.run(run + [sys.executable, "-c", PROGRAM, f"{folder}/in", style, f"1,{1 + MORE}", clock, str(REPEATS)],
                              check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment() | {
                                  "LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()

@@ -29,7 +29,7 @@ atom_style sphere
 boundary p p p
 comm_modify vel yes
 plugin load stokesdynplugin.so
-lattice sc {SPACING**-3!r}
+lattice sc {SPACING**-3:.17g}
 region box block 0 {N} 0 {N} 0 {N}
 create_box 1 box
 create_atoms 1 box

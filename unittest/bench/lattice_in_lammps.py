@@ -28,15 +28,15 @@ def run(folder, side, ranks, precondition):
 atom_style sphere
 boundary f f f
 plugin load stokesdynplugin.so
-lattice sc {1 / spacing**3!r}
+lattice sc {1 / spacing**3:.17g}
 region box block {-end} {2 * end} {-end} {2 * end} {-end} {2 * end} units box
 create_box 1 box
 region grid block {-0.1 * A} {end - A} {-0.1 * A} {end - A} {-0.1 * A} {end - A} units box
 create_atoms 1 region grid
-set group all diameter {2 * A!r} density 1
-velocity all set {U!r} 0 0 units box
+set group all diameter {2 * A:.17g} density 1
+velocity all set {U:.17g} 0 0 units box
 timestep 1e-12
-pair_style stokes_dynamics cut_off_distance inf visc {ETA!r} algorithm 2 relative_tolerance 1e-6 max_iter 1000 &
+pair_style stokes_dynamics cut_off_distance inf visc {ETA:.17g} algorithm 2 relative_tolerance 1e-6 max_iter 1000 &
            warm_start no precondition {precondition}
 pair_coeff * *
 fix drag all stokes_dynamics apply no

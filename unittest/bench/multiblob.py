@@ -17,7 +17,7 @@ import tempfile
 
 from from_tests import np
 from ewald_in_lammps import measure
-from system import environment
+from host import environment, mpirun
 
 MORE, STEPS, ROUNDS = 3, 5, 3
 
@@ -45,7 +45,7 @@ unfix heat
 velocity all set 0 0 0
 """
 
-STYLE = "pair_style stokes_dynamics cut_off_distance inf visc {eta!r} algorithm 2 multiblob 12 lubrication yes {words}"
+STYLE = "pair_style stokes_dynamics cut_off_distance inf visc {eta:.17g} algorithm 2 multiblob 12 lubrication yes {words}"
 
 PROGRAM = """
 import sys, time, resource
@@ -112,7 +112,7 @@ def settle(cells, ranks=1, clock="process_time", error=True):
         with open(os.path.join(folder, "in"), "w") as out:
             out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells, melt=3000 if cells < 20 else 600))
         style = STYLE.format(eta=1 / (6 * np.pi), words="").split(maxsplit=1)[1]
-        run = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
+        run = mpirun(ranks)
         words = [f"{folder}/in", style, clock, str(STEPS), str(MORE), "error" if error else "none"]
         out = subprocess.run(run + [sys.executable, "-c", PROGRAM] + words, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                              env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()

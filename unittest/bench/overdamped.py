@@ -41,7 +41,7 @@ def cloud(folder, n):
     data = os.path.join(folder, "data")
     with open(data, "w") as out:
         out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n")
-        out.write("".join(f"{-side!r} {2 * side!r} {c}lo {c}hi\n" for c in "xyz"))
+        out.write("".join(f"{-side:.17g} {2 * side:.17g} {c}lo {c}hi\n" for c in "xyz"))
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
     return data
 
@@ -63,7 +63,7 @@ def films(folder, side, words, steps=20, ranks=1):
     places = np.indices((side, side, side)).reshape(3, -1).T
     x = spacing * (places + 0.5) + rng.uniform(-0.19, 0.19, places.shape)
     with open(os.path.join(folder, "data"), "w") as out:
-        out.write(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {side * spacing!r} {c}lo {c}hi\n" for c in "xyz"))
+        out.write(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {side * spacing:.17g} {c}lo {c}hi\n" for c in "xyz"))
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
     with open(os.path.join(folder, "in"), "w") as out:
         out.write(f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {folder}/data\ntimestep 0.2\n"

@@ -33,7 +33,7 @@ def pair_time(folder, ranks, rotation):
     data, log = os.path.join(folder, "data"), os.path.join(folder, "log")
     with open(data, "w") as out:
         out.write(f"spheres\n\n{N} atoms\n1 atom types\n\n")
-        out.write("".join(f"0 {side!r} {c}lo {c}hi\n" for c in "xyz"))
+        out.write("".join(f"0 {side:.17g} {c}lo {c}hi\n" for c in "xyz"))
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 {2 * a[i]} 1.0 {x[i][0]} {x[i][1]} {x[i][2]}\n" for i in range(N)))
         out.write("\nVelocities\n\n" + "".join(f"{i + 1} {v[i][0]} {v[i][1]} {v[i][2]} 0 0 0\n" for i in range(N)))
     with open(os.path.join(folder, "in"), "w") as out:

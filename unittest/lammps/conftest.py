@@ -4,7 +4,6 @@ With --table only the hard cases are run (tests with the mark hard_case), and a 
 reported, nothing else."""
 import os
 import re
-import subprocess
 import sys
 
 import pytest
@@ -12,10 +11,11 @@ import pytest
 sys.path.insert(0, os.path.dirname(__file__))
 
 try:
-    import lammps
+    import lammps  # noqa: F401
 except ImportError:
     raise pytest.UsageError("the python module of LAMMPS is not there: source build/env.sh first, or run unittest/run.sh")
 
+import host  # noqa: E402
 import system  # noqa: E402
 from system import Simulation  # noqa: E402
 
@@ -37,18 +37,65 @@ def simulation(tmp_path):
         made.pop().close()
 
 
-# --- a LAMMPS without MPI --------------------------------------------------------------------------------------------------
+# --- several ranks, and what some LAMMPS has nothing of ---------------------------------------------------------------------
 
-def without_mpi():
-    """A test of several ranks has nothing to test: it is skipped."""
-    start = subprocess.Popen.__init__
+def names(code):
+    """All names that a function and the functions within it use, those of arguments that it gives included"""
+    found = {*code.co_names, *code.co_varnames, *code.co_freevars, *code.co_cellvars}
+    for value in code.co_consts:
+        if hasattr(value, "co_code"):
+            found |= names(value)
+        elif isinstance(value, tuple):
+            found |= {word for word in value if isinstance(word, str)}
+    return found
 
-    def on_one_rank(self, words, *args, **options):
-        if words[0] == "mpirun":
-            pytest.skip("this LAMMPS has no MPI")
-        start(self, words, *args, **options)
 
-    subprocess.Popen.__init__ = on_one_rank
+def ranks_of(item):
+    """How many ranks a test needs: what its mark or its parameter `ranks` says, 2 where its code has any name with "ranks" in it. A test
+    that uses several and says so nowhere fails (host.mpirun)."""
+    mark, parameters = item.get_closest_marker("ranks"), item.callspec.params if hasattr(item, "callspec") else {}
+    if mark:
+        return mark.args[0]
+    return parameters["ranks"] if "ranks" in parameters else 2 if any("ranks" in name for name in names(item.function.__code__)) else 1
+
+
+def left_out(item):
+    """Why there is nothing to test here, or None"""
+    for mark in item.iter_markers("nothing_to_test_if"):
+        condition, reason = mark.args
+        if condition:
+            return reason
+    most = host.most()
+    return None if ranks_of(item) <= most else f"more ranks than this LAMMPS may have here ({host.family() or 'no MPI'}: {most})"
+
+
+LEFT_OUT = {}      # reason: tests
+
+
+def leave_out(config, items):
+    kept, out = [], []
+    for item in items:
+        if ranks_of(item) > 1 and not item.get_closest_marker("ranks"):
+            item.add_marker(pytest.mark.ranks(ranks_of(item)))
+        reason = left_out(item)
+        (out if reason else kept).append(item)
+        if reason:
+            LEFT_OUT[reason] = LEFT_OUT.get(reason, 0) + 1
+    items[:] = kept
+    config.hook.pytest_deselected(items=out)
+    if hasattr(config, "workeroutput"):
+        config.workeroutput["left_out"] = LEFT_OUT
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    """Of pytest-xdist: every worker has collected the same"""
+    LEFT_OUT.update(getattr(node, "workeroutput", {}).get("left_out", {}))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    host.undeclared = not item.get_closest_marker("ranks")
 
 
 # --- the table of hard cases ---------------------------------------------------------------------------------------------
@@ -58,20 +105,19 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "hard_case(name): a case of the table that --table prints; several tests may share one")
-    if config.getoption("numprocesses", default=None):
-        return    # this process hands the tests out (pytest-xdist): its workers must not inherit the traces of its MPI
-    probe = lammps.lammps(cmdargs=system.quiet_arguments())
-    if not probe.has_mpi_support:
-        without_mpi()
-    probe.close()
+    for line in ("hard_case(name): a case of the table that --table prints; several tests may share one",
+                 "ranks(n): needs n ranks; set for all whose code names them (ranks_of)", "loader: of stokesdynplugin.so itself",
+                 "nothing_to_test_if(condition, reason): is left out, and the reason told, where the condition holds"):
+        config.addinivalue_line("markers", line)
 
 
 # Files that take long and come late in the alphabet: they begin first, so that no core waits for them in the end.
 LONG = ["test_wall", "test_vans_coupling"]
 
 
+@pytest.hookimpl(tryfirst=True)      # before -m looks at the marks
 def pytest_collection_modifyitems(config, items):
+    leave_out(config, items)
     items.sort(key=lambda item: item.path.stem not in LONG)      # a stable sort
     if config.getoption("--table"):
         others = [item for item in items if not item.get_closest_marker("hard_case")]
@@ -97,8 +143,13 @@ def in_short(message):
 
 
 def pytest_terminal_summary(terminalreporter, config):
-    if not config.getoption("--table"):
-        return
+    for reason, tests in LEFT_OUT.items():
+        terminalreporter.write_line(f"{tests} left out: {reason}")
+    if config.getoption("--table"):
+        table_of_hard_cases(terminalreporter)
+
+
+def table_of_hard_cases(terminalreporter):
     cases = {}
     for outcome in ("passed", "failed", "error"):
         for report in terminalreporter.stats.get(outcome, []):

@@ -29,7 +29,7 @@ import time
 from fuzz_grammar import BAD, GOOD, LOUD, ODD
 from fuzz_styles import draw
 from fuzz_vans import files
-from system import environment, mpirun
+from host import environment, mpirun
 
 # --- running ------------------------------------------------------------------------------------------------------------
 

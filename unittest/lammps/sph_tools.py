@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 
-import system
+import host
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "sph")
 
@@ -189,8 +189,8 @@ def mpirun(ranks, script, directory, name="in.test"):
     path = os.path.join(str(directory), name)
     with open(path, "w") as f:
         f.write("plugin load stokesdynplugin.so\n" + "\n".join(line.strip() for line in script.strip().splitlines()) + "\n")
-    command = system.mpirun(ranks) + ["lmp", "-in", path, "-log", "none", "-nocite"]
-    return subprocess.run(command, cwd=str(directory), env=system.environment(), capture_output=True, text=True, timeout=300)
+    command = host.mpirun(ranks) + ["lmp", "-in", path, "-log", "none", "-nocite"]
+    return subprocess.run(command, cwd=str(directory), env=host.environment(), capture_output=True, text=True, timeout=300)
 
 
 def read_dump(path):

@@ -9,6 +9,8 @@ import subprocess
 
 import numpy as np
 
+from host import environment, mpirun
+
 DENSITY = 1.7
 PLUGIN = "stokesdynplugin.so"
 
@@ -211,24 +213,6 @@ class Simulation:
 
 
 # --- lmp as a program of its own ---------------------------------------------------------------------------------
-
-def environment():
-    """Ours, less what an MPI library may have put there, and leave for root to use mpirun. No LAMMPS_PLUGIN_PATH: newer LAMMPS
-    would load the plugin by itself, and the tests want to see it loaded by command. Several tests run at a time: no rank is
-    bound to a core that another one's rank is bound to as well, those that wait leave their core to others, and none spends
-    half of its start looking for the networks of clusters (ob1: memory that ranks share, or TCP)."""
-    env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_", "LAMMPS_PLUGIN"))}
-    if os.getuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    env.update(OMP_NUM_THREADS="1", OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1",
-               OMPI_MCA_pml="ob1")
-    return env
-
-
-def mpirun(ranks):
-    """The words before a program that runs on so many ranks, perhaps more than there are cores."""
-    return ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
-
 
 class Finished:
     def __init__(self, code, text, log):

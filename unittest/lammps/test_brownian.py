@@ -115,9 +115,9 @@ def test_rod_turns_as_its_diffusivity_says(simulation):
 def home(count, centre, spacing=12.0):
     """Variables hx hy hz: how far an atom is from where the centroid of its clump of four was when copies() put it there"""
     side = int(np.ceil(count**(1 / 3)))
-    return [f"variable hx atom x-({centre[0]!r})-{spacing}*((mol-1)%{side})",
-            f"variable hy atom y-({centre[1]!r})-{spacing}*(floor((mol-1)/{side})%{side})",
-            f"variable hz atom z-({centre[2]!r})-{spacing}*floor((mol-1)/{side * side})"]
+    return [f"variable hx atom x-({centre[0]:.17g})-{spacing}*((mol-1)%{side})",
+            f"variable hy atom y-({centre[1]:.17g})-{spacing}*(floor((mol-1)/{side})%{side})",
+            f"variable hz atom z-({centre[2]:.17g})-{spacing}*floor((mol-1)/{side * side})"]
 
 
 def test_boltzmann_of_a_clump_in_a_field_and_a_trap(simulation):
@@ -242,7 +242,7 @@ def test_midpoint_is_of_second_order_in_a_flow_that_changes_in_time(simulation, 
     """Formulas of time and place, and a series of grids: the fluid at x_mid is that of the middle of the step."""
     x, ends, (words, visc) = A * np.array([(0, 0, 0), (2.6, 0, 0.3), (-1.0, 3.5, 0)]), [], FLOWS[what]
     t = np.linspace(0, 2.0, 401)
-    rows = "\n".join(f"{0.3 * np.cos(3 * s)!r} {0.2 * np.sin(3 * s)!r} 0.1" for s in t.tolist())
+    rows = "\n".join(f"{0.3 * np.cos(3 * s):.17g} {0.2 * np.sin(3 * s):.17g} 0.1" for s in t.tolist())
     (tmp_path / "flow").write_text("stokesdyn_grid 1\nx 1 0.0\ny 1 0.0\nz 1 0.0\ntime 401 0.0 2.0 clamp\n"
                                    f"columns ux uy uz\nrows text\n{rows}\n")
     for steps in (10, 20, 400):
@@ -268,7 +268,7 @@ def test_clumps_that_feel_each_other_move_with_their_common_mobility(simulation)
     N = np.zeros((9, 9))
     for k in range(9):
         sim = simulation(two_dumbbells(), style, fix=False, dt=SHORT)
-        load = [f"{part!r}*(id=={i + 1})" for i, part in enumerate(share[k, k % 3::3]) if part]
+        load = [f"{part:.17g}*(id=={i + 1})" for i, part in enumerate(share[k, k % 3::3]) if part]
         force = ["v_load" if d == k % 3 else "0" for d in range(3)]
         sim.commands([f"variable load atom {'+'.join(load)}", f"fix push all addforce {' '.join(force)}",
                       "fix move all stokes_dynamics/overdamped"]).run(0)

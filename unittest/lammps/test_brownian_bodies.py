@@ -16,7 +16,7 @@ def mobility(make, count, size, share):
     for k in range(size):
         lines = []
         for d in range(3):
-            parts = [f"{share[k, 3 * i + d]!r}*(id=={i + 1})" for i in range(count) if share[k, 3 * i + d]]
+            parts = [f"{share[k, 3 * i + d]:.17g}*(id=={i + 1})" for i in range(count) if share[k, 3 * i + d]]
             lines.append(f"variable load{d} atom {'+'.join(parts) or '0'}")
         sim = make().commands(lines + ["fix push all addforce v_load0 v_load1 v_load2", "fix move all stokes_dynamics/overdamped"]).run(0)
         N[:, k] = share @ sim.v.ravel()

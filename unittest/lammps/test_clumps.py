@@ -49,6 +49,7 @@ def test_clump_across_borders_of_ranks_and_box(tmp_path, newton, tilt):
         assert largest_difference(read_dump(tmp_path / f"{place}.dump")[0][1], model.forces(tetrahedron(), ETA)) < 1e-10, place
 
 
+@pytest.mark.ranks(4)
 def test_triclinic_clump_on_four_ranks(tmp_path):
     lines = input_lines(tetrahedron(PLACES["corner"]), f"clumps_only yes {EXACT}", tmp_path / "data", boundary="p p p", box=BOX,
                         tilt=TILT,

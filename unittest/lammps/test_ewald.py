@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 
+from host import allowed
 from system import LammpsError, Spheres, dump_lines, input_lines, lmp, note, read_dump
 
 DATA = pathlib.Path(__file__).resolve().parents[1] / "data" / "ewald"
@@ -92,7 +93,7 @@ def test_one_two_three_and_four_ranks_are_one(tmp_path, name):
     lines = input_lines(spheres, words + " relative_tolerance 1e-12 far_field_tolerance 1e-12", tmp_path / "data", **where)
     lines = ["box tilt large"] + lines + spins + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"]
     first = None
-    for ranks in (1, 2, 3, 4):
+    for ranks in allowed(1, 2, 3, 4):
         lmp(tmp_path, lines, ranks=ranks)
         rows = read_dump(tmp_path / "dump")[0][1][:, 6:]
         first = rows if first is None else first
@@ -207,6 +208,7 @@ def test_few_large_spheres_in_an_open_cloud_have_the_forces_of_all_pairs(simulat
     assert re.search("; 3 spheres of radius [0-9.]+ and more on a second level: grid", said(log)[0])
 
 
+@pytest.mark.ranks(3)
 def test_two_levels_on_three_ranks(tmp_path):
     spheres = wide(np.random.default_rng(6).uniform(0, 24.0, (250, 3)))
     lines = input_lines(spheres, f"{ALL} visc 1.3 rotation no relative_tolerance 1e-11 far_field_tolerance 1e-6", tmp_path / "data",
@@ -293,6 +295,7 @@ def test_waves_take_off_iterations_and_leave_the_answer(simulation, scene, gain,
 
 
 @pytest.mark.parametrize("rotation", ["no", "yes"])
+@pytest.mark.ranks(3)
 def test_waves_on_three_ranks(tmp_path, rotation):
     spheres, side = doublets(5, 0.3)
     lines = input_lines(spheres, f"{ALL} visc 1.3 warm_start no relative_tolerance 1e-10 far_field_tolerance 1e-11 precondition waves "

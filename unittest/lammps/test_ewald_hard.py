@@ -78,6 +78,7 @@ def test_a_cloud_in_one_corner(tmp_path):
 
 @pytest.mark.hard_case("far field: bricks of unequal size, tiled communication, newton off, a wide skin")
 @pytest.mark.parametrize("where", [PERIODIC, {}], ids=["periodic", "open"])
+@pytest.mark.ranks(3)
 def test_any_decomposition(tmp_path, where):
     rng = np.random.default_rng(2)
     spheres = Spheres(9 * rng.uniform(0, 1, (80, 3))**2, 0.7, rng.normal(size=(80, 3)))

@@ -261,7 +261,7 @@ def hard_scene():
     return Spheres(x, a, v, molecule=1)
 
 
-@pytest.fixture(scope="module", params=[1, 2], ids=["1 rank", "2 ranks"])
+@pytest.fixture(scope="module", params=[1, pytest.param(2, marks=pytest.mark.ranks(2))], ids=["1 rank", "2 ranks"])
 def hard_scene_forces(request, tmp_path_factory):
     """Of every way, in one run of lmp."""
     folder, lines = tmp_path_factory.mktemp("hard"), []

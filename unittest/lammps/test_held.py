@@ -191,8 +191,8 @@ def test_a_sphere_dragged_through_the_noise_is_one_at_rest_in_a_stream(simulatio
         sim = simulation(Spheres(x), f"cut_off_distance inf visc {ETA} {words} {stream} relative_tolerance 1e-11 max_iter 400", fix=False,
                          box=BOX, dt=dt)
         for d in range(3):
-            home = "+".join(f"(id=={i + 1})*({x[i, d]!r})" for i in range(3))
-            sim.command(f"variable f{'xyz'[d]} atom -20*({'xyz'[d]}-({home})-({(moves * U[d])!r})*step*{dt})")
+            home = "+".join(f"(id=={i + 1})*({x[i, d]:.17g})" for i in range(3))
+            sim.command(f"variable f{'xyz'[d]} atom -20*({'xyz'[d]}-({home})-({moves * U[d]:.17g})*step*{dt})")
         sim.command("fix trap all addforce v_fx v_fy v_fz")
         if moves:
             sim.commands("group some id 1\nvelocity some set {0!r} {1!r} {2!r}\nfix go some move linear {0!r} {1!r} {2!r}".format(*map(float, U)))

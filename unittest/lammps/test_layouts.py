@@ -30,7 +30,7 @@ def block(folder, name, mode, newton, comm, exclusion):
     return lines + dump_lines(folder / (key + ".dump"), columns="f_drag[1] f_drag[2] f_drag[3]") + ["run 0 post no", "clear"]
 
 
-@pytest.fixture(scope="module", params=[1, 2, 4], ids=lambda n: f"{n}ranks")
+@pytest.fixture(scope="module", params=[1, *(pytest.param(n, marks=pytest.mark.ranks(n)) for n in (2, 4))], ids=lambda n: f"{n}ranks")
 def forces(request, tmp_path_factory):
     """Forces of every case, mode and layout on 1, 2 or 4 ranks."""
     folder = tmp_path_factory.mktemp("layouts")

@@ -194,6 +194,7 @@ def test_rerun_in_a_new_instance_gives_the_forces_of_its_frames(simulation):
         assert largest_difference(again[:, 6:9], model.forces(Spheres(before[:, 0:3], radii, before[:, 3:6]), ETA)) < 1e-9, step
 
 
+@pytest.mark.loader
 def test_clear_and_load_again(simulation):
     sim = simulation()
     drags = []
@@ -204,6 +205,7 @@ def test_clear_and_load_again(simulation):
     assert np.array_equal(drags[0], drags[1]) and np.array_equal(drags[0], drags[2])
 
 
+@pytest.mark.loader
 def test_many_instances_in_one_process(simulation):
     drags = [simulation(five(), f"cut_off_distance inf {EXACT}", box=BOX).run(2).drag for _ in range(3)]
     assert np.array_equal(drags[0], drags[1]) and np.array_equal(drags[0], drags[2])
@@ -218,6 +220,7 @@ def test_pair_style_may_be_exchanged_and_come_back(simulation):
     assert largest_difference(sim.f, first) < 1e-14
 
 
+@pytest.mark.loader
 def test_plugin_may_be_unloaded_after_use(simulation):
     sim = simulation(five(), f"cut_off_distance inf {EXACT} add_force yes", box=BOX, fix=False).run()
     sim.commands("plugin unload pair stokes_dynamics\npair_style zero 3.0\npair_coeff * *").run()

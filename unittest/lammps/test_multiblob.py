@@ -239,7 +239,7 @@ def test_moment_of_a_lone_sphere_in_a_shear(simulation):
 def sheared(simulation, style="", clump=0):
     """Two radii at a volume fraction of 0.3 in a box that shears with the fluid: half of the rate of shear is a strain."""
     rows = rows_of("bidisperse.csv", load="E_xy")
-    side, rate = float(rows[0]["box"]), np.sqrt(2)
+    side, rate = float(rows[0]["box"]), 2**0.5
     spheres = Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0])
     sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob 12 lubrication yes relative_tolerance 1e-6 fluid_velocity v_u 0 0 "
                               f"{style}", boundary="p p p", box=[(0.0, side)] * 3, tilt=(0, 0, 0), fix=False, dt=1e-9,

@@ -50,13 +50,14 @@ def test_memory_of_cpp_that_is_not_there_is_told(tmp_path, scarce, style, ranks)
     assert "terminate called" not in run.text and "more ranks" in run.text
 
 
+@pytest.mark.ranks(2)
 @pytest.mark.parametrize("scarce_rank", [0, 1])
 def test_one_rank_without_memory_for_a_shape_ends_all(tmp_path, scarce, scarce_rank):
     """Every rank keeps every shape: one that cannot must not leave the other waiting for it."""
     x = np.random.default_rng(3).uniform(0, 100, (20000, 3))
     lines = input_lines(Spheres(x, molecule=1), "clumps_only yes visc 1 rigid_clumps yes", str(tmp_path / "data"), fix=False)
     scarce(MALLOC_LIMIT=480000, MALLOC_MOST=480000, SCARCE_RANK=scarce_rank)    # three numbers for each sphere of a shape
-    run = lmp(tmp_path, lines + ["run 0"], 2, timeout=20, succeed=False)
+    run = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=20, succeed=False)
     assert run.code != 0 and "Pair style stokes_dynamics: keyword rigid_clumps: out of memory" in run.text, run.text[-1500:]
 
 
@@ -90,6 +91,7 @@ def test_a_compute_without_memory_tells_it(tmp_path, scarce):
     assert "terminate called" not in run.text
 
 
+@pytest.mark.ranks(2)
 @pytest.mark.parametrize("scarce_rank", [0, 1])
 def test_one_rank_without_memory_for_a_fix_ends_all(tmp_path, scarce, scarce_rank):
     """The constructor fails in its first rows, before LAMMPS has been told of them."""
@@ -99,6 +101,7 @@ def test_one_rank_without_memory_for_a_fix_ends_all(tmp_path, scarce, scarce_ran
     assert "terminate called" not in run.text
 
 
+@pytest.mark.ranks(2)
 @pytest.mark.parametrize("scarce_rank", [0, 1])
 def test_one_rank_without_memory_for_a_stream_ends_all(tmp_path, scarce, scarce_rank):
     slices = 20000
@@ -109,6 +112,7 @@ def test_one_rank_without_memory_for_a_stream_ends_all(tmp_path, scarce, scarce_
     assert run.code != 0 and f"Fix hydro/vans: out of memory for {slices} slices" in run.text, run.text[-1500:]
 
 
+@pytest.mark.ranks(2)
 @pytest.mark.parametrize("scarce_rank", [0, 1])
 def test_one_rank_without_memory_for_a_shell_ends_all(tmp_path, scarce, scarce_rank):
     """Every rank makes the shell of a sphere for itself."""
@@ -119,6 +123,7 @@ def test_one_rank_without_memory_for_a_shell_ends_all(tmp_path, scarce, scarce_r
     assert run.code != 0 and "keyword multiblob: '42': out of memory" in run.text, run.text[-1500:]
 
 
+@pytest.mark.ranks(2)
 @pytest.mark.parametrize("scarce_rank", [0, 1])
 @pytest.mark.parametrize("fix", ["fix drag all stokes_dynamics", "fix move all stokes_dynamics/overdamped"])
 def test_one_rank_without_memory_within_a_solve_ends_all(tmp_path, scarce, fix, scarce_rank):

@@ -114,6 +114,7 @@ def test_a_bad_file_is_an_exception(tmp_path, text, said):
         stokesdyn.read(tmp_path / "nowhere")
 
 
+@pytest.mark.loader
 def test_an_installation_works_wherever_it_is_moved(tmp_path):
     subprocess.run(["cmake", "--install", BUILD, "--prefix", tmp_path / "there"], check=True, stdout=subprocess.DEVNULL)
     shutil.move(tmp_path / "there", tmp_path / "moved")
@@ -147,6 +148,7 @@ clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.m
     assert subprocess.run([tmp_path / "use"]).returncode == 0
 
 
+@pytest.mark.loader
 def test_uninstall_leaves_what_is_not_its_own(tmp_path):
     there = tmp_path / "a b"
     (there / "lib").mkdir(parents=True)

@@ -143,19 +143,18 @@ def test_negative_molecule_is_a_molecule(simulation, molecule):
     """As for fix rigid/small and neigh_modify exclude molecule: only 0 is none. All checks see it."""
     spheres, _ = many("square", 2)
     expected = fresh(simulation, spheres, "clumps_only yes rigid_clumps yes visc 1")
-    spheres.molecule[:4] = 7
-    set_it = f"set atom 1*4 mol {molecule}"
-    sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1", comm=WIDE, before_pair=set_it, dt=1e-3).run(0)
+    spheres.molecule[:4] = molecule
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1", comm=WIDE, dt=1e-3).run(0)
     assert np.abs(sim.drag - expected).max() < 1e-12
     sim.commands("fix nve all nve/sphere\nvelocity all create 1.0 4711\nvelocity all set NULL NULL 0")
     sim.commands("group other id 5:8\nvelocity other set 0 0 0")
     with pytest.raises(Exception, match=f"molecule {molecule} is not rigid"):
         sim.run(200)
     sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1 group some", comm=WIDE,
-                     before_pair=set_it + "\ngroup some id 1:2 5:8")
+                     before_pair="group some id 1:2 5:8")
     with pytest.raises(Exception, match=f"molecule {molecule} is split"):
         sim.run(0)
-    sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1", comm=WIDE, before_pair=set_it)
+    sim = simulation(spheres, "clumps_only yes rigid_clumps yes visc 1", comm=WIDE)
     sim.commands(LOSE.format(*spheres.x[2]))
     with pytest.raises(Exception, match=f"molecule {molecule} has gained or lost atoms"):
         sim.run(5)

@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 
+from host import at_most
 from sph_tools import by_id, fix_by_id, mpirun, run, start
 from test_sph_input import message
 
@@ -73,7 +74,11 @@ def test_water_stays_in_its_plane_beside_walls_that_do_not():
     200 steps of calm water, and in every 2 of an impact."""
     lmp = start()
     scene = FLOORS.replace("wendland 0.1 artVisc 1 0 1e-4", "wendland 0.1 viscosity 0.01 central shift yes").format(own="yes")
-    run(lmp, scene + "displace_atoms walls move 0 0 1e-9 units box\nvelocity water create 1e-4 4711\nrun 100 post no")
+    run(lmp, scene + "velocity water create 1e-4 4711\nrun 0 post no")
+    n = lmp.extract_global("nlocal")
+    x, wall = lmp.numpy.extract_atom("x", nelem=n, dim=3)[:n], np.ravel(lmp.numpy.extract_atom("type", nelem=n))[:n] != 1
+    x[wall, 2] = 1e-9           # a command that moves atoms keeps them in the plane since 2024
+    run(lmp, "run 100 post no")
     z, water = by_id(lmp, "x", 3)[:, 2], by_id(lmp, "type") == 1
     assert np.abs(z[~water]).max() > 0 and np.abs(z[water]).max() == 0
     lmp.close()
@@ -90,7 +95,7 @@ def test_moving_walls_on_any_number_of_ranks_and_over_restarts(tmp_path):
         rows = np.loadtxt(tmp_path / (name + ".dump.100"), skiprows=9)
         return rows[np.lexsort((rows[:, 1].round(7), rows[:, 0].round(7)))]
     first = go("one", 1, scene + dump % ("one", 100))
-    assert np.abs(go("three", 3, scene + dump % ("three", 100)) - first).max() <= 1e-12 * np.abs(first).max()
+    assert np.abs(go("three", at_most(3), scene + dump % ("three", 100)) - first).max() <= 1e-12 * np.abs(first).max()
     done = mpirun(1, scene + "run 60\nwrite_restart half\nrun 10\n", tmp_path)
     assert done.returncode == 0, done.stdout
     fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep", "compute")))

@@ -63,6 +63,7 @@ def dam(way, motion, ranks, folder):
     return read_dump(folder / "dump")
 
 
+@pytest.mark.ranks(2)
 @pytest.mark.parametrize("motion", sorted(MOTION))
 def test_sums_at_walls_have_room_on_two_ranks(motion, tmp_path):
     """A sum at a wall has 8 columns, with walls that move 17, of each ghost; the atom style would have LAMMPS make room for 5."""

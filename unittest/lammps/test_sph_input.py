@@ -6,7 +6,7 @@ import pytest
 
 import sph_tools as T
 from sph_tools import random_scene, run, start
-from system import environment, mpirun
+from host import environment, mpirun
 
 PAIR = "pair_style sph/artVisc/tensCorr wendland 0.012\npair_coeff * *\n"
 MOVE = "fix move all nve/sph\n"

@@ -2,6 +2,7 @@
 import numpy as np
 import pytest
 
+from host import at_most
 from sph_tools import mpirun, read_dump, run, start
 from test_sph_input import message
 
@@ -248,7 +249,7 @@ def test_energy_that_comes_and_goes_on_any_number_of_ranks_and_over_restarts(tmp
     short = JET.replace("block -1.4", "block -0.4").replace("yhi 1 0.4", "yhi 0.6 0.4").replace("ylo -1 0.4", "ylo -0.6 0.4")
     first = go(1, short + "run 500 post no\n" + row)
     assert first[6] > 0.1 and first[3] > 0.01
-    assert np.abs(go(3, short + "run 500 post no\n" + row) - first).max() <= 1e-12 * np.abs(first).max()
+    assert np.abs(go(at_most(3), short + "run 500 post no\n" + row) - first).max() <= 1e-12 * np.abs(first).max()
     go(1, short + "restart 300 half\nrun 310 post no\n" + row)
     fixes = "\n".join(line for line in short.splitlines() if line.startswith(("fix", "neigh", "timestep", "compute", "thermo", "variable")))
     again = go(2, "atom_modify map array\nread_restart half.300\n" + fixes + "\nrun 200 post no\n" + row)
@@ -447,7 +448,7 @@ def test_ranks_and_restarts_leave_every_output_alone(scheme, tmp_path):
 
     first, dump = go(1, begin + end, "one")
     assert (np.abs(first[[0, 1, 2, 3, 4, 5, 6, 8]]) > 0).all()
-    other, other_dump = go(3, begin + end, "three")
+    other, other_dump = go(at_most(3), begin + end, "three")
     assert np.abs(other - first).max() <= 1e-12 * np.abs(first).max()
     assert np.abs(dump - other_dump).max() <= 1e-12
     go(2, begin + end.replace("run 120", "restart 60 half\nrun 70"), "half")
@@ -463,7 +464,7 @@ ERRORS = {
     "short": ("compute P all sph/probe pressure 0 0", "keyword point of a probe: value missing"),
     "energy": ("compute E all sph/energy potential", "unknown keyword 'potential'"),
     "surface": ("compute S all sph/surface/atom 3", "unknown keyword '3'"),
-    "no list": ("compute S all sph/surface/atom\nwrite_dump all custom none.dump c_S[1]", "no neighbour list yet|not current"),
+    "no list": ("compute S all sph/surface/atom\nwrite_dump all custom none.dump c_S[1]", "no neighbour list yet|not current|before initialization by a run"),    # the last is LAMMPS's, of 2025
     "no pair": ("pair_style none\ncompute P all sph/probe pressure 0 0 0\nrun 0", "there is no pair_style sph/artVisc/tensCorr"),
     "fix taken": ("fix E_SPH_ENERGY all enforce2d\ncompute E all sph/energy", "the fix ID E_SPH_ENERGY is taken"),
     "fix gone": ("compute E all sph/energy\nthermo_style custom c_E\nunfix E_SPH_ENERGY\nrun 0", "has been deleted"),

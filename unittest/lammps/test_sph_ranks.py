@@ -2,6 +2,7 @@
 import numpy as np
 import pytest
 
+from host import allowed
 from sph_tools import jittered_lattice, mpirun, read_dump, write_data
 
 SCENE = """
@@ -91,7 +92,7 @@ def one(case, steps, ranks, newton, directory):
 @pytest.mark.parametrize("steps", [0, 1, 100])
 def test_layout_does_not_matter(case, steps, tmp_path):
     first = one(case, steps, 1, "on", tmp_path / "1on")
-    for ranks, newton in ((1, "off"), (2, "on"), (2, "off"), (4, "on"), (4, "off")):
+    for ranks, newton in allowed((1, "off"), (2, "on"), (2, "off"), (4, "on"), (4, "off")):
         other = one(case, steps, ranks, newton, tmp_path / ("%d%s" % (ranks, newton)))
         for name in COLUMNS:
             group = [c for c in COLUMNS if c[0] == name[0]]

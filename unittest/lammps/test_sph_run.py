@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import sph_tools as T
+from host import allowed
 from sph_tools import by_id, evaluate, mpirun, pair_commands, random_scene, run, start, tait
 from sph_wave import wave
 
@@ -118,6 +119,7 @@ def test_restart_without_fixes_is_an_error(tmp_path):
         trajectory("read_restart %s\nrun 5" % path)
 
 
+@pytest.mark.ranks(2)
 def test_restart_file_of_another_version_is_said_once_and_not_read(tmp_path):
     """The run then starts from the velocities as they are, like any first run."""
     path = tmp_path / "restart"
@@ -325,7 +327,7 @@ def test_step_limit_is_that_of_the_worst_particle(mu):
 
 def test_step_limit_on_any_number_of_ranks(tmp_path):
     lines = set()
-    for ranks in (1, 2, 4):
+    for ranks in allowed(1, 2, 4):
         for newton in ("on", "off"):
             done = mpirun(ranks, random_scene(newton) + pair_commands("wendland", 1, 0) +
                           "\nfix move all nve/sph\ntimestep 1e-4\nfix c all check/timestep/sph 10 0.1 warn\nthermo 10\n"

@@ -66,6 +66,7 @@ def test_stress_of_artificial_viscosity():
         lmp.close()
 
 
+@pytest.mark.ranks(2)
 def test_run_in_pieces_is_one_run(tmp_path):
     """LAMMPS moves the box after the force of a step, so the first force of the next run sees ghosts one step farther: 4e-8 of the forces here."""
     ends = []

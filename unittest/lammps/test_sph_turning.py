@@ -3,6 +3,7 @@ central it is right."""
 import numpy as np
 import pytest
 
+from host import at_most
 from sph_tools import by_id, mpirun, read_dump, run, start
 from test_sph_input import message
 
@@ -67,8 +68,9 @@ def test_laplacian_is_refused_beside_a_wall_that_turns(form, exclude):
     assert REFUSED % 1 in message(scene(TURNS, form, exclude=exclude) + "run 2")
 
 
+@pytest.mark.ranks(2)
 def test_it_is_refused_on_every_rank(tmp_path):
-    out = mpirun(3, scene(TURNS) + "run 2", tmp_path)
+    out = mpirun(at_most(3), scene(TURNS) + "run 2", tmp_path)
     assert out.returncode and REFUSED % 1 in out.stdout + out.stderr
 
 
@@ -181,7 +183,7 @@ def test_a_turning_wall_on_any_number_of_ranks_and_in_pieces(tmp_path):
         return np.stack([rows[c] for c in ("x", "y", "vx", "vy")], axis=1)
 
     whole = go("whole", 1, "run 60")
-    for name, ranks, runs in (("ranks", 4, "run 60"), ("pieces", 1, "run 23\nrun 37")):
+    for name, ranks, runs in (("ranks", at_most(4), "run 60"), ("pieces", 1, "run 23\nrun 37")):
         rows = go(name, ranks, runs)
         # create_atoms numbers atoms by ranks: who is at the same place
         same = np.linalg.norm(rows[:, None, :2] - whole[None, :, :2], axis=-1).argmin(axis=1)

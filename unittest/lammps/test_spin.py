@@ -66,14 +66,14 @@ def test_above_the_largest_torque_a_sphere_slips(simulation):
     need = -free.fix_rows("move")[:, 7]
     assert need[0] > 1.8 * far * w and need[1] == pytest.approx(far * w, rel=0.01)
     assert free.lmp.extract_fix("move", 0, 1, nrow=11) == 0
-    cut = run(repr(1.5 * far * w))
+    cut = run(1.5 * far * w)
     assert cut.lmp.extract_fix("move", 0, 1, nrow=11) == 1
     assert cut.fix_rows("move")[0, 6:9] == pytest.approx((0, -1.5 * far * w, 0), abs=1e-6 * far * w)
     assert cut.atom("omega")[1, 1] == pytest.approx(w, rel=1e-12) and 0.3 * w < cut.atom("omega")[0, 1] < 0.9 * w
     cut.commands("displace_atoms all move 0 0 3").run(4)    # up there it needs less, and is as fast as told
     assert cut.lmp.extract_fix("move", 0, 1, nrow=11) == 0 and cut.atom("omega")[0, 1] == pytest.approx(w, rel=1e-12)
-    assert run(repr(2 * need[0])).lmp.extract_fix("move", 0, 1, nrow=11) == 0
-    left = run(repr(1.5 * far * w))    # who leaves the group does not slip
+    assert run(2 * need[0]).lmp.extract_fix("move", 0, 1, nrow=11) == 0
+    left = run(1.5 * far * w)    # who leaves the group does not slip
     assert left.lmp.extract_fix("move", 0, 1, nrow=11) == 1
     left.commands("group tops clear\ngroup tops id 2").run(0)
     assert left.lmp.extract_fix("move", 0, 1, nrow=11) == 0

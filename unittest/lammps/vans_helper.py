@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lammps import LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_VECTOR, lammps
 
-from system import environment, mpirun
+from host import environment, mpirun
 
 TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "vans")
 ARRAY = ["z", "u", "phi", "vx", "vy", "vz", "drag", "b", "nut", "stress"]
@@ -102,6 +102,11 @@ class Scene:
         else:
             values = self.lmp.numpy.extract_atom(name)
         return np.array(values[:n])[order]
+
+    def molecule(self, ids, value):
+        """As the command set does, which takes no negative one since 2025"""
+        rows = np.isin(self.lmp.numpy.extract_atom("id")[:int(self.lmp.get_natoms())], ids)
+        self.lmp.numpy.extract_atom("molecule")[:len(rows)][rows] = value
 
     def close(self):
         OPEN.remove(self.lmp)

@@ -1,0 +1,85 @@
+"""The one door to several ranks: whose mpirun belongs to the LAMMPS that the tests run through, with which words, and how many ranks
+a test may ask for.
+
+With Open MPI that is any number: ranks that wait leave their core to others. Those of MPICH spin, so that on more ranks than there are
+cores a scene of a second takes minutes: there are as many as cores at most, and a LAMMPS without MPI has one."""
+import functools
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+# Of an MPI library its name in `lmp -h`, names of its mpirun, what that says of itself, and words for more ranks than cores
+FAMILIES = {"Open MPI": (["mpirun.openmpi", "mpirun"], "Open MPI|OpenRTE", ["--oversubscribe"]),
+            "MPICH": (["mpirun.mpich", "mpiexec.hydra", "mpirun"], "HYDRA|MPICH", [])}
+
+# True while a test runs that nobody knows to use several ranks (conftest.py): it would be missing where these are selected
+undeclared = False
+
+
+def environment():
+    """Ours, less what an MPI library may have put there, and leave for root to use mpirun. No LAMMPS_PLUGIN_PATH: newer LAMMPS
+    would load the plugin by itself, and the tests want to see it loaded by command. Several tests run at a time: no rank is
+    bound to a core that another one's rank is bound to as well, those that wait leave their core to others, and none spends
+    half of its start looking for the networks of clusters (ob1: memory that ranks share, or TCP)."""
+    env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_", "LAMMPS_PLUGIN"))}
+    if os.getuid() == 0:
+        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    env.update(OMP_NUM_THREADS="1", OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1",
+               OMPI_MCA_pml="ob1")
+    return env
+
+
+def said(*words):
+    done = subprocess.run(words, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    return done.stdout.decode(errors="replace")
+
+
+@functools.lru_cache(maxsize=None)
+def family():
+    """Whose MPI LAMMPS was built with: a name of FAMILIES, or "" for none"""
+    line = re.search("^MPI v.*(\n.*)?", said("lmp", "-h"), re.M).group()
+    if "STUBS" in line:
+        return ""
+    found = [name for name in FAMILIES if name in line]
+    assert found, f"host.py does not know the MPI of this LAMMPS: {line}"
+    return found[0]
+
+
+def launcher_of(family, folders):
+    """The first mpirun in one of the folders that says it is of that family, and its words"""
+    names, itself, words = FAMILIES[family]
+    for program in filter(None, (shutil.which(name, path=folder) for folder in folders for name in names)):
+        if re.search(itself, said(program, "--version")):
+            return [program] + words
+    raise AssertionError(f"no mpirun of {family}, with which this LAMMPS was built, is on the PATH")
+
+
+@functools.lru_cache(maxsize=None)
+def launcher():
+    """Beside this python (a virtual environment has its own), or on the PATH"""
+    return launcher_of(family(), [os.path.dirname(sys.executable), *os.environ["PATH"].split(os.pathsep)])
+
+
+def most():
+    """As many ranks as a test may ask for"""
+    return {"": 1, "Open MPI": 64, "MPICH": len(os.sched_getaffinity(0))}[family()]
+
+
+def at_most(ranks):
+    return min(ranks, most())
+
+
+def allowed(*layouts):
+    """Those with as many ranks as may be asked for; layouts: numbers, or tuples that begin with the number of ranks"""
+    return [layout for layout in layouts if (layout if isinstance(layout, int) else layout[0]) <= most()]
+
+
+def mpirun(ranks):
+    """The words before a program that runs on so many ranks"""
+    if ranks == 1:
+        return []
+    assert ranks <= most(), f"{ranks} ranks where there may be {most()}: use allowed(...) or at_most(...), or mark the test: ranks({ranks})"
+    assert not undeclared, f"this test uses {ranks} ranks, and neither a name in its code nor a mark says so: @pytest.mark.ranks({ranks})"
+    return launcher() + ["-np", str(ranks)]

@@ -1,0 +1,53 @@
+"""The one door to several ranks (host.py), and who is known to go through it (conftest.py)."""
+import os
+
+import pytest
+
+import host
+from conftest import names
+
+
+@pytest.fixture
+def mpich(monkeypatch):
+    monkeypatch.setattr(host, "family", lambda: "MPICH")
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 1})
+
+
+def test_mpich_has_as_many_as_cores(mpich):
+    assert host.allowed(1, 2, 4) == [1, 2] and host.allowed((2, "on"), (4, "off")) == [(2, "on")] and host.at_most(3) == 2
+    with pytest.raises(AssertionError, match="3 ranks where there may be 2"):
+        host.mpirun(3)
+
+
+def test_without_mpi_there_is_one(monkeypatch):
+    monkeypatch.setattr(host, "family", lambda: "")
+    assert host.allowed(1, 2) == [1] and host.at_most(4) == 1 and host.mpirun(1) == []
+
+
+def test_a_test_that_does_not_say_so_may_have_one(mpich):
+    """This one: nothing in it has such a name."""
+    assert host.undeclared and host.mpirun(1) == []
+    with pytest.raises(AssertionError, match="mark says so"):
+        host.mpirun(2)
+
+
+def test_mpirun_is_that_of_lammps(tmp_path):
+    for family, words in (("MPICH", "HYDRA build details:"), ("Open MPI", "mpirun (Open MPI) 4.1.4")):
+        folder = tmp_path / family
+        folder.mkdir()
+        (folder / "mpirun").write_text(f"#!/bin/sh\necho '{words}'\n")
+        (folder / "mpirun").chmod(0o755)
+    folders = [str(tmp_path / name) for name in host.FAMILIES]
+    for family in host.FAMILIES:
+        assert host.launcher_of(family, folders)[0] == str(tmp_path / family / "mpirun")
+    with pytest.raises(AssertionError, match="no mpirun of MPICH"):
+        host.launcher_of("MPICH", [str(tmp_path / "Open MPI")])
+
+
+def test_names_are_found_where_a_function_uses_them():
+    def outer():
+        def inner(number):
+            return print(number, ranks_within=1)
+        for ranks in (1, 2):
+            inner(ranks)
+    assert {"ranks", "inner", "number", "ranks_within"} <= names(outer.__code__)
