@@ -134,7 +134,11 @@ void Keywords::parse(std::initializer_list<Keyword> table)
   while (next()) {
     const auto entry = std::find_if(table.begin(), table.end(),
                                     [&](const Keyword &keyword) { return is(keyword.name); });
-    if (entry == table.end()) unknown();
+    if (entry == table.end()) {
+      std::vector<std::string> names;
+      for (const Keyword &keyword : table) names.push_back(keyword.name);
+      unknown(names);
+    }
     entry->read();
   }
 }
@@ -230,13 +234,25 @@ void Keywords::check(bool condition, const std::string &rule) const
   if (!condition) refuse("'" + args[at - 1] + "' " + rule);
 }
 
-void Keywords::unknown() const
+Keywords &Keywords::elsewhere(const std::string &names, const std::string &command)
 {
+  others.emplace_back(" " + names + " ", command);
+  return *this;
+}
+
+void Keywords::unknown(const std::vector<std::string> &names) const
+{
+  for (const auto &other : others)
+    if (other.first.find(" " + key + " ") != std::string::npos)
+      fail("unknown keyword '" + key + "': it is a keyword of " + other.second);
   // most often a value too many
   const std::string after = seen.size() < 2
       ? ""
       : ": keyword " + seen[seen.size() - 2] + " before it has all of its values";
-  fail("unknown keyword '" + key + "'" + after);
+  std::string there;
+  for (const std::string &name : names) there += (there.empty() ? "" : ", ") + name;
+  fail("unknown keyword '" + key + "'" + after +
+       (there.empty() ? "; nothing may follow here" : "; those that there are: " + there));
 }
 
 void Keywords::refuse(const std::string &why) const

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace StokesDyn {
@@ -106,14 +107,18 @@ class Keywords : private Voice {
   size_t left() const { return args.size() - at; }
   const std::string &peek() const { return args[at]; }
 
-  /* "<command>: unknown keyword <key>" */
-  [[noreturn]] void unknown() const;
+  /* "<command>: unknown keyword <key>", with those that there are */
+  [[noreturn]] void unknown(const std::vector<std::string> &names) const;
+  /* Keywords, with blanks between them, that belong to another command, as one might have thought: an
+   * error that is given for them names it. */
+  Keywords &elsewhere(const std::string &names, const std::string &command);
   /* "<command>: keyword <key>: <why>" */
   [[noreturn]] void refuse(const std::string &why) const;
 
  private:
   std::string key;
   std::vector<std::string> args, seen;
+  std::vector<std::pair<std::string, std::string>> others;
   size_t at;
 };
 

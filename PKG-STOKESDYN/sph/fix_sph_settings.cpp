@@ -20,7 +20,7 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
     if (state.kind == SD_SPH_TAIT) state.gamma = in.positive();
     if (in.more() && in.peek() != "tension") state.P0 = in.number();
   } else
-    in.unknown();
+    in.unknown({"absolut", "relativ", "Tait"});
   in.parse({{"tension", [&] { state.no_tension = !in.yes_no(); }}});
   if (state.no_tension && state.kind == SD_SPH_ABSOLUT)
     voice.fail("keyword tension: absolut has no negative pressure; leave it out");

@@ -54,7 +54,7 @@ FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp
     if (has[0] && has[1] && !(at[0] < at[1]))
       in.refuse("lo " + text(at[0]) + " must be smaller than hi " + text(at[1]));
   } else
-    in.unknown();
+    in.unknown({"xplane", "yplane", "zplane", "zcylinder"});
   r0 = in.positive();
   D = in.not_negative();
   in.parse({});

@@ -140,7 +140,7 @@ void PairSph::coeff(int narg, char **arg)
   while (in.next()) {
     int k = 0;
     while (k < NPARAMETERS && !in.is(PARAMETER[k])) k++;
-    if (k == NPARAMETERS) in.unknown();
+    if (k == NPARAMETERS) in.unknown({PARAMETER, PARAMETER + NPARAMETERS});
     if ((k == ALPHA || k == BETA) && !model.artvisc) in.refuse("the pair_style has no artVisc");
     if (k == DELTAP && !model.tenscorr && !shifts) in.refuse("the pair_style has no tensCorr");
     if (k == MU && !model.friction) in.refuse("the pair_style has no viscosity");

@@ -31,6 +31,8 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
     before(9), output(9)
 {
   Keywords in = keywords(narg, arg);
+  in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
+               "pair_style stokes_dynamics");
   in.parse({
       {"scheme",
        [&] {

@@ -34,6 +34,8 @@ static void refuse_second_wall(const Keywords &in, const std::vector<std::string
 StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &words)
 {
   Keywords in(lmp, COMMAND, words);
+  in.elsewhere("temperature noise_tolerance held spin scheme adapt", "fix stokes_dynamics/overdamped")
+      .elsewhere("apply", "fix stokes_dynamics");
   refuse_second_wall(in, words);
   parse(in);
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
