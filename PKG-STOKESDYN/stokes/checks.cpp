@@ -235,6 +235,10 @@ static void refuse_settings(const Voice &voice, const StokesSettings &s)
   if (s.rigid.auto_resolve)
     voice.fail("keyword rigid_clumps" + pair + "must be yes or no, not auto: this fix keeps clumps "
                "rigid");
+  if (std::isfinite(s.scene.cutoff) && s.scene.taper == SD_TAPER_NONE && !s.scene.clumps_only)
+    voice.fail("keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + pair + "leaves out flows "
+               "that spheres feel at any distance, and in a suspension velocities would be wrong many "
+               "times over: use inf, or taper wendland with a length, or clumps_only yes");
   if (s.rigid.on && !s.scene.rotation)
     voice.fail("keyword rigid_clumps" + pair + "requires rotation yes or a shell: without torques "
                "nothing resists the spin of a straight clump");

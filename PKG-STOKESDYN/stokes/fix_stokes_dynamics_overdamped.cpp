@@ -9,7 +9,6 @@
 
 #include "sd_hash.h"
 #include "sd_linear.h"
-#include "sd_pose.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -173,8 +172,8 @@ void FixStokesDynamicsOverdamped::after_setup()
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
-  displaced = error_before = 0.0;
-  doublings = 0;
+  displaced = 0.0;
+  growth = {};
   find_velocities(hydro);
   if (!announced) announce();
   if (adapt.every && !same_run) end_of_step();
@@ -475,10 +474,8 @@ void FixStokesDynamicsOverdamped::set_step(double dt)
 void FixStokesDynamicsOverdamped::watch()
 {
   const double error = largest_of_all(world, error_figure());
-  doublings = error > 0.1 && error > 2.0 * error_before ? doublings + 1 : 0;
-  error_before = error;
-  if (doublings < 3) return;
+  if (!sd_grows(&growth, error)) return;
   warned_growth = true;
-  voice.at_step().warn("the change of velocities grows from step to step, and is " + text(error) +
-                       " radii per step now: use a shorter time step");
+  voice.at_step().warn("the change of velocities grows from step to step, or stays large, and is " +
+                       text(error) + " radii per step now: use a shorter time step");
 }

@@ -14,6 +14,8 @@
 #include "rows_fix.h"
 #include "spin.h"
 
+#include "sd_pose.h"
+
 #include <functional>
 
 namespace StokesDyn {
@@ -83,10 +85,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } last;
   bool from_file = false;
 
-  /* in the last step, of this rank: the largest displacement over radius; change_of_velocities();
-   * error_figure() of all ranks */
-  double displaced = 0.0, velocity_change = 0.0, error_before = 0.0;
-  int doublings = 0;
+  /* in the last step, of this rank: the largest displacement over radius; change_of_velocities() */
+  double displaced = 0.0, velocity_change = 0.0;
+  sd_growth growth = {};    // of error_figure() of all
   bool warned_growth = false, announced = false;
 
   bool restored() const override { return last.step >= 0; }

@@ -149,7 +149,7 @@ def test_adapt_follows_the_fastest(simulation):
 
 @pytest.mark.parametrize("boundary, style, gap", [("p p p", "cut_off_distance inf", 2 * (np.hypot(1.2, 0.3) - 1)),
                                                   ("f f f", "cut_off_distance inf", 1.2),
-                                                  ("f s p", "cut_off_distance 3", 2 * (np.hypot(1.2, 0.3) - 1)),
+                                                  ("f s p", "cut_off_distance 3 taper wendland", 2 * (np.hypot(1.2, 0.3) - 1)),
                                                   ("f p f", "cut_off_distance 1.1 taper wendland", 1.2)])
 @pytest.mark.parametrize("ranks", [1, 3])
 def test_smallest_gap_needs_no_ghosts(tmp_path, boundary, style, gap, ranks):

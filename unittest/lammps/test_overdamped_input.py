@@ -40,6 +40,7 @@ def test_other_atoms_may_be_integrated_otherwise(simulation):
     ("pair_style stokes_dynamics cut_off_distance inf visc 1 update_every 3\npair_coeff * *", "update_every .* must be 1, not 3"),
     ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps auto rotation yes\npair_coeff * *", "yes or no, not auto"),
     ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps yes\npair_coeff * *", "requires rotation yes or a shell"),
+    ("pair_style stokes_dynamics cut_off_distance 8 visc 1\npair_coeff * *", "cut_off_distance: '8' of pair_style .* leaves out flows"),
     ("pair_style none", "there is no pair_style stokes_dynamics"),
     ("run_style respa 2 2", "respa"),
     ("group some id 1\npair_style stokes_dynamics cut_off_distance inf visc 1 group some\npair_coeff * *",
@@ -79,3 +80,31 @@ def test_bad_words(simulation, words, message):
     sim = simulation(doublet_and_sphere(), ALL, fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01, comm=COMM)
     with pytest.raises(Exception, match=message):
         sim.commands(f"{FIX} {words}")
+
+
+@pytest.mark.parametrize("k, told", [(11000, True), (90000, True), (2000, False)])
+def test_steps_that_are_too_long_are_told_before_an_atom_is_lost(simulation, tmp_path, k, told):
+    """A sphere at a spring k: in a step of dt k/(6 pi eta a) = 1.17 its displacement grows by 1.2 in every step, with 9.5 by 14; it
+    must be told while the sphere is still in the box. With 0.21 it comes to rest."""
+    log = tmp_path / "log"
+    sim = simulation(log=log).commands([
+        "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region box block 0 12 0 12 0 12", "create_box 1 box",
+        "create_atoms 1 single 6 6 6", "set group all diameter 1", f"pair_style stokes_dynamics {ALL}", "pair_coeff * *", "timestep 0.001",
+        FIX, f"fix spring all spring/self {k}", "run 0", "displace_atoms all move 1e-6 0 0", "thermo 1"])
+    try:
+        sim.run(100)
+    except Exception as lost:
+        assert told and "Lost atoms" in str(lost)
+    sim.command("log none")
+    assert ("the change of velocities grows from step to step" in log.read_text()) == told
+
+
+def test_springs_with_a_largest_force_do_not_hide_long_steps(simulation, tmp_path):
+    """A force of constant size towards x = 6 throws a sphere from side to side: the change of its velocity does not grow."""
+    log = tmp_path / "log"
+    sim = simulation(log=log).commands([
+        "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region box block 0 12 0 12 0 12", "create_box 1 box",
+        "create_atoms 1 single 6 6 6", "set group all diameter 1", f"pair_style stokes_dynamics {ALL}", "pair_coeff * *", "timestep 0.001",
+        FIX, "variable f atom 4000*(x<6)-4000*(x>6)", "fix spring all addforce v_f 0 0", "displace_atoms all move 0.01 0 0"])
+    sim.run(60).command("log none")
+    assert "or stays large" in log.read_text()

@@ -52,3 +52,18 @@ double sd_next_step(double last, double fastest, double tmin, double tmax, doubl
   dt = fmin(dt, 2.0 * last);
   return fmin(fmax(dt, tmin), tmax);
 }
+
+int sd_grows(sd_growth *state, double error)
+{
+  const double LARGE = 0.1, MANY = 8.0;
+  if (state->last > 0.0 && error > state->last)
+    state->grows++;
+  else {
+    state->grows = 0;
+    state->first = error;
+  }
+  state->large = error > LARGE ? state->large + 1 : 0;
+  state->last = error;
+  return error > LARGE &&
+      ((state->grows >= 3 && error > MANY * state->first) || state->large >= 20);
+}

@@ -29,5 +29,17 @@ void sd_pose_step(double pose[12], const double centre[3], const double step[6],
  * tmax. fastest 0: as long as allowed. */
 double sd_next_step(double last, double fastest, double tmin, double tmax, double xmax);
 
+/* Are steps too long? Then the change of velocities from step to step, as a part `error` of a radius,
+ * grows by some factor in every step, or it has stopped to grow as forces have a largest value. 1:
+ * it is above a tenth, and has grown eightfold in three or more steps without a pause, or was above a
+ * tenth in twenty steps. To be called in every step. State: all 0 in the first. */
+typedef struct {
+  /* the last error, and that with which the growth began */
+  double last, first;
+  /* for how many steps it has grown, and was above a tenth */
+  int grows, large;
+} sd_growth;
+int sd_grows(sd_growth *state, double error);
+
 SD_END_C
 #endif

@@ -85,6 +85,39 @@ static void next_step_follows_the_fastest(void **state)
   CHECK_NEAR(sd_next_step(5.0, 0.0, 1e-3, 1.0, 0.3), 1.0, 1e-16);
 }
 
+/* In which step it is said that steps are too long, of a figure that begins with `first`, is multiplied
+ * by `factor` in every step and never above `most`; 0: in none of n */
+static int said_in(double first, double factor, double most, int n)
+{
+  sd_growth state = {0};
+  double error = first;
+  for (int k = 1; k <= n; k++, error = fmin(factor * error, most))
+    if (sd_grows(&state, error)) return k;
+  return 0;
+}
+
+static void growth_is_seen_whatever_its_factor(void **state)
+{
+  (void) state;
+  assert_int_equal(said_in(0.003, 10.0, 1e300, 99), 4);    // 3 in the fourth: before an atom is lost
+  assert_int_equal(said_in(0.03, 2.1, 1e300, 99), 4);
+  const int slow = said_in(1e-6, 1.2, 1e300, 999);    // when it passes a tenth
+  assert_true(slow > log(0.1 / 1e-6) / log(1.2) && slow < 2 + log(0.1 / 1e-6) / log(1.2) + 1);
+  assert_int_equal(said_in(0.15, 1.0, 0.15, 99), 20);
+}
+
+static void a_jump_and_small_changes_are_no_growth(void **state)
+{
+  (void) state;
+  sd_growth growth = {0};
+  for (int k = 0; k < 99; k++) assert_false(sd_grows(&growth, k % 10 ? 0.01 : 5.0));
+  growth = (sd_growth){0};
+  assert_false(sd_grows(&growth, 0.0));
+  for (int k = 1; k < 10; k++) assert_false(sd_grows(&growth, 0.1 + 0.01 * k));
+  assert_int_equal(said_in(1e-9, 1.5, 0.09, 999), 0);
+  assert_int_equal(said_in(0.5, 0.8, 1.0, 999), 0);
+}
+
 /* n steps of a flock under its forces to time t; first step Euler */
 static void fall(flock *f, int width, double t, int n, int ab2)
 {
@@ -237,6 +270,8 @@ int main(void)
       cmocka_unit_test(steady_turn_is_exact),
       cmocka_unit_test(changing_steps_stay_second_order),
       cmocka_unit_test(next_step_follows_the_fastest),
+      cmocka_unit_test(growth_is_seen_whatever_its_factor),
+      cmocka_unit_test(a_jump_and_small_changes_are_no_growth),
       cmocka_unit_test(spheres_fall_along_the_known_path),
       cmocka_unit_test(clumps_fall_along_the_known_path),
       cmocka_unit_test(three_chains_have_order_two),
