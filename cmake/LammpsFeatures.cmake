@@ -68,7 +68,7 @@ else()
 endif()
 
 # What only a source tree has, and what it needs
-foreach(header atom_vec fix_deform)
+foreach(header atom_vec fix_deform fix_gravity thermo)
   string(TOUPPER SD_HAVE_${header}_H have)
   if(EXISTS ${lammps_src}/${header}.h)
     set(${have} 1)
@@ -109,6 +109,7 @@ target_compile_definitions(lammps_headers INTERFACE
   SD_HAVE_ADD_REQUEST=${SD_HAVE_ADD_REQUEST} SD_HAVE_COMM_THIS=${SD_HAVE_COMM_THIS}
   SD_HAVE_REGION_PTR=${SD_HAVE_REGION_PTR} SD_HAVE_OUTPUT_RESET_DT=${SD_HAVE_OUTPUT_RESET_DT} SD_MINIMG_FLERR=${SD_MINIMG_FLERR}
   SD_HAVE_ATOM_VEC_H=${SD_HAVE_ATOM_VEC_H} SD_HAVE_FIX_DEFORM_H=${SD_HAVE_FIX_DEFORM_H}
+  SD_HAVE_FIX_GRAVITY_H=${SD_HAVE_FIX_GRAVITY_H} SD_HAVE_THERMO_H=${SD_HAVE_THERMO_H}
   SD_LAMMPS_VERSION="${SD_LAMMPS_VERSION}")
 string(TOUPPER ${LAMMPS_SIZES} sizes)
 target_compile_definitions(lammps_headers INTERFACE LAMMPS_${sizes})

@@ -118,10 +118,17 @@ target_compile_options(bench_product PRIVATE -O3 $<$<BOOL:${STOKESDYN_MARCH_NATI
 
 # A plugin that believes to be built for another LAMMPS, and styles whose symbols this LAMMPS has not, to see the guard refuse them.
 # In a folder of its own, since newer LAMMPS loads every plugin in LAMMPS_PLUGIN_PATH.
-add_loader(wrongversionplugin 19990101)
-add_plugin_file(wrongstyles ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/lammps/wrong_styles.c)
-set_target_properties(wrongstyles PROPERTIES OUTPUT_NAME stokesdynstyles)
-set_target_properties(wrongversionplugin wrongstyles PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/wrong)
+if(STOKESDYN_PLUGIN)
+  add_loader(wrongversionplugin 19990101)
+  add_plugin_file(wrongstyles ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/lammps/wrong_styles.c)
+  set_target_properties(wrongstyles PROPERTIES OUTPUT_NAME stokesdynstyles)
+  # Styles by the names of those that this LAMMPS lacks, to see that ours know them (test_neighbours.py).
+  add_plugin_file(stylesoftoday ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/lammps/styles_of_today.cpp)
+  target_include_directories(stylesoftoday PRIVATE ${source}/common)
+  target_link_libraries(stylesoftoday PRIVATE lammps_headers)
+  set_target_properties(wrongversionplugin wrongstyles stylesoftoday PROPERTIES
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/wrong)
+endif()
 
 # The example that needs no LAMMPS checks its own numbers. Not under sanitizers: those runs build the core tests alone.
 if(NOT STOKESDYN_SANITIZE)

@@ -15,7 +15,14 @@
 #if !SD_HAVE_ADD_REQUEST
 #include "neigh_request.h"
 #endif
+#if SD_HAVE_FIX_GRAVITY_H
+#include "fix_gravity.h"
+#endif
+#if SD_HAVE_THERMO_H
+#include "thermo.h"
+#endif
 
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -130,6 +137,32 @@ namespace Compat {
     for (const auto &style : *force->bond_map)
       if (LAMMPS_NS::Bond *part = force->bond_match(style.first)) all.emplace_back(style.first, part);
     return all;
+  }
+
+  /* Is a fix gravity there for fix rigid only (its option disable)? */
+#if SD_HAVE_FIX_GRAVITY_H
+  class GravitySettings : private LAMMPS_NS::FixGravity {
+   public:
+    static bool disabled(LAMMPS_NS::Fix *fix)
+    {
+      return static_cast<LAMMPS_NS::FixGravity *>(fix)->*&GravitySettings::disable;
+    }
+  };
+#else
+  struct GravitySettings {
+    static bool disabled(LAMMPS_NS::Fix *) { return false; }    // installed headers do not tell
+  };
+#endif
+
+  /* Are the lines of thermo output the user's own? */
+  inline bool prints_custom_lines(const LAMMPS_NS::Output *output)
+  {
+#if SD_HAVE_THERMO_H
+    return output->thermo && strcmp(output->thermo->style, "custom") == 0;
+#else
+    (void) output;
+    return false;    // installed headers do not tell
+#endif
   }
 
   inline void minimum_image(LAMMPS_NS::Domain *domain, double *d)

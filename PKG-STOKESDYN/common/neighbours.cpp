@@ -12,7 +12,9 @@
 #include "modify.h"
 #include "pair.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <sstream>
 
@@ -98,7 +100,8 @@ static std::vector<Guest> atom_styles(LAMMPS *lmp, const std::string &styles)
 {
   std::vector<Guest> guests;
   for (const std::string &style : words_of(styles))
-    if (lmp->atom->style_match(style.c_str())) guests.push_back({lmp, style, "atom_style " + style});
+    if (lmp->atom->style_match(style.c_str()))
+      guests.push_back({lmp, style, "atom_style " + style});
   return guests;
 }
 
@@ -119,53 +122,78 @@ static std::vector<Guest> guests_of(LAMMPS *lmp, const Neighbour &row)
 
 // --- does it act on atoms of ours? ---------------------------------------------------------------
 
-using Ours = std::function<bool(int)>;
-
-/* Through pairs of types that it has coefficients for, one of them of ours */
-static bool acts_by_types(const Guest &guest, const Ours &ours)
+/* In each place that is set on any rank */
+static void gather(const LAMMPS *lmp, std::vector<int> &set)
 {
-  const Atom *atom = guest.lmp->atom;
-  int **set = guest.pair->setflag;
-  if (!set) return true;    // a hybrid, or it has none
-  const int n = atom->ntypes;
-  std::vector<int> there(2 * (size_t) n + 2, 0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    there[atom->type[i]] = 1;
-    if (ours(i)) there[n + atom->type[i]] = 1;
-  }
-  std::vector<int> all(there.size());
-  MPI_Allreduce(there.data(), all.data(), (int) all.size(), MPI_INT, MPI_MAX, guest.lmp->world);
-  for (int i = 1; i <= n; i++)
-    for (int j = i; j <= n; j++)
-      if (set[i][j] && all[i] && all[j] && (all[n + i] || all[n + j])) return true;
-  return false;
+  std::vector<int> mine = set;
+  MPI_Allreduce(mine.data(), set.data(), (int) set.size(), MPI_INT, MPI_MAX, lmp->world);
 }
 
-/* Through a bond of one of its types; who is at the other end is known where that atom is near. */
-static bool acts_by_bonds(const Guest &guest, const Ours &ours)
+/* Which types of atoms there are, and which of ours: [2 (n + 1)] */
+static std::vector<int> types_there(const Guest &guest)
+{
+  const Atom *atom = guest.lmp->atom;
+  std::vector<int> there(2 * ((size_t) atom->ntypes + 1), 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    there[atom->type[i]] = 1;
+    if (guest.ours(i)) there[atom->ntypes + 1 + atom->type[i]] = 1;
+  }
+  gather(guest.lmp, there);
+  return there;
+}
+
+/* Do types i <= j meet through this pair style, one of them of ours? */
+static bool meet(const Guest &guest, const std::vector<int> &there, int i, int j)
+{
+  const int *ours = &there[guest.lmp->atom->ntypes + 1];
+  int **set = guest.pair->setflag;
+  return (!set || set[i][j]) && there[i] && there[j] && (ours[i] || ours[j]);
+}
+
+/* Which types of bonds of this style bind one of ours: [nbondtypes + 1]. Who is at the other end of
+ * a bond is known where that atom is on the same rank. */
+static std::vector<int> bonds_there(const Guest &guest)
 {
   Atom *atom = guest.lmp->atom;
   const int *set = guest.bond->setflag;
-  const bool listed = atom->molecular == Atom::MOLECULAR && set;
-  return first_atom(guest.lmp, [&](int i) {
-    if (!listed) return ours(i);
+  std::vector<int> there((size_t) atom->nbondtypes + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool ours = guest.ours(i);
+    if (atom->molecular != Atom::MOLECULAR) {    // bonds of templates
+      if (ours) there.assign(there.size(), 1);
+      continue;
+    }
     for (int m = 0; m < atom->num_bond[i]; m++) {
       const int type = abs(atom->bond_type[i][m]);
-      if (type < 1 || type > atom->nbondtypes || !set[type]) continue;
       const int other = atom->map_style ? atom->map(atom->bond_atom[i][m]) : -1;
-      if (ours(i) || (other >= 0 && other < atom->nlocal && ours(other))) return true;
+      if (type >= 1 && type <= atom->nbondtypes && (!set || set[type]) &&
+          (ours || (other >= 0 && other < atom->nlocal && guest.ours(other))))
+        there[type] = 1;
     }
-    return false;
-  }) != 0;
+  }
+  gather(guest.lmp, there);
+  return there;
 }
 
-static bool acts(const Guest &guest, const Ours &ours)
+static bool acts_by_types(const Guest &guest)
+{
+  const std::vector<int> there = types_there(guest);
+  for (int i = 1; i <= guest.lmp->atom->ntypes; i++)
+    for (int j = i; j <= guest.lmp->atom->ntypes; j++)
+      if (meet(guest, there, i, j)) return true;
+  return false;
+}
+
+static bool acts(const Guest &guest)
 {
   const int *mask = guest.lmp->atom->mask;
-  if (guest.pair) return acts_by_types(guest, ours);
-  if (guest.bond) return acts_by_bonds(guest, ours);
+  if (guest.pair) return acts_by_types(guest);
+  if (guest.bond) {
+    const std::vector<int> there = bonds_there(guest);
+    return std::count(there.begin(), there.end(), 1) > 0;
+  }
   const int bit = guest.fix ? guest.fix->groupbit : ~0;
-  return first_atom(guest.lmp, [&](int i) { return (mask[i] & bit) && ours(i); }) != 0;
+  return first_atom(guest.lmp, [&](int i) { return (mask[i] & bit) && guest.ours(i); }) != 0;
 }
 
 // --- the walker ----------------------------------------------------------------------------------
@@ -181,13 +209,12 @@ void Neighbourhood::look(const Voice &voice, const std::vector<Neighbour> &table
 {
   for (const Neighbour &row : table) {
     if (row.verdict == Neighbour::FINE || (facts & row.where) != row.where) continue;
-    for (const Guest &guest : guests_of(voice.lmp, row)) {
+    for (Guest &guest : guests_of(voice.lmp, row)) {
       std::string says;
       if (self && guest.fix == self) continue;
+      guest.ours = [&](int i) { return (sort(i) & row.sorts) != 0; };
+      if (row.sorts != Neighbour::ANYWHERE && !acts(guest)) continue;
       if (row.matters && !row.matters(guest, says)) continue;
-      if (row.sorts != Neighbour::ANYWHERE &&
-          !acts(guest, [&](int i) { return (sort(i) & row.sorts) != 0; }))
-        continue;
       const std::string message = guest.name + " " + filled(row.why, says);
       if (row.verdict == Neighbour::ERROR) voice.fail(message);
       if (warned.insert(message).second) voice.warn(message);
@@ -200,6 +227,7 @@ void Neighbourhood::look(const Voice &voice, const std::vector<Neighbour> &table
 std::vector<std::vector<double>> coefficients(const Guest &guest)
 {
   std::vector<std::vector<double>> lines;
+  const std::vector<int> there = guest.pair ? types_there(guest) : bonds_there(guest);
   std::unique_ptr<FILE, int (*)(FILE *)> file(tmpfile(), fclose);
   if (!file) return lines;
   if (guest.pair) guest.pair->write_data_all(file.get());
@@ -212,7 +240,7 @@ std::vector<std::vector<double>> coefficients(const Guest &guest)
     for (double number; in >> number;) numbers.push_back(number);
     if (numbers.size() < 2) continue;
     const int i = (int) numbers[0], j = (int) numbers[1];
-    if (guest.pair ? guest.pair->setflag[i][j] : guest.bond->setflag[i]) lines.push_back(numbers);
+    if (guest.pair ? meet(guest, there, i, j) : there[i]) lines.push_back(numbers);
   }
   return lines;
 }

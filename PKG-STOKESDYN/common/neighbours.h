@@ -20,8 +20,8 @@ class Pair;
 
 namespace StokesDyn {
 
-/* A command of LAMMPS that stands beside a style of ours; of the pointers one is set, none for an atom
- * style. */
+/* A command of LAMMPS that stands beside a style of ours; of the pointers one is set, none for an
+ * atom style. */
 struct Guest {
   LAMMPS_NS::LAMMPS *lmp;
   std::string style;
@@ -31,6 +31,8 @@ struct Guest {
   LAMMPS_NS::Pair *pair = nullptr;
   LAMMPS_NS::Bond *bond = nullptr;
   LAMMPS_NS::Compute *compute = nullptr;
+  /* is owned atom i one of ours that the row speaks of? */
+  std::function<bool(int)> ours = nullptr;
 };
 
 struct Neighbour {
@@ -49,19 +51,20 @@ struct Neighbour {
   const char *why;
   /* of guests whose name alone does not tell; the same on all ranks. nullptr: always */
   bool (*matters)(const Guest &guest, std::string &says) = nullptr;
-  /* bits that the room defines: the sorts of its atoms that count; ANYWHERE: on whatever atoms it acts */
+  /* bits that the room defines: the sorts of its atoms that count; ANYWHERE: it counts whatever it
+   * acts on */
   unsigned sorts = ~0u;
 };
 
 /* The walker. Each warning is given once in the life of its owner. */
 class Neighbourhood {
  public:
-  /* Errors and warnings of the rows that hold: "<command of voice>: <name of the guest> <why>". facts:
-   * bits of this run. sort(i): bits of owned atom i, 0: it is none of ours. A fix acts on the atoms of
-   * its group, a pair style on those of the types of its pair_coeff, a bond style on those that it
-   * binds, all others on all. self: a fix that is not looked at. On all ranks together, when LAMMPS
-   * has initialised its pair styles (Fix::init, Pair::setup), or before for rows that do not look at
-   * coefficients. */
+  /* Errors and warnings of the rows that hold: "<command of voice>: <name of the guest> <why>".
+   * facts: bits of this run. sort(i): bits of owned atom i, 0: it is none of ours. A fix acts on
+   * the atoms of its group, a pair style on those of the types of its pair_coeff, a bond style on
+   * those that it binds, all others on all. self: a fix that is not looked at. On all ranks
+   * together, when LAMMPS has initialised its pair styles (Fix::init, Pair::setup), or before for
+   * rows that do not look at coefficients. */
   void look(const Voice &voice, const std::vector<Neighbour> &table, unsigned facts,
             const std::function<unsigned(int)> &sort, const LAMMPS_NS::Fix *self = nullptr);
 
@@ -72,9 +75,9 @@ class Neighbourhood {
 /* Does one of these names (Neighbour::styles) fit? */
 bool fits(const std::string &styles, const std::string &style);
 
-/* What this pair or bond style would write into data files: lines of numbers, of a pair style i j and
- * the coefficients of these types, of a bond style the type and its coefficients; empty: it writes
- * none. Of types that have some; all ranks. */
+/* What this pair or bond style would write into data files, as far as it acts on atoms of ours:
+ * lines of numbers, of a pair style i j and the coefficients of these types, of a bond style the
+ * type and its coefficients; empty: it writes none. On all ranks together. */
 std::vector<std::vector<double>> coefficients(const Guest &guest);
 
 }    // namespace StokesDyn

@@ -31,7 +31,8 @@ void PairSph::init_style()
 {
   Sph::require_scene(voice);
   if (update->whichflag == 2)
-    voice.fail("cannot be minimised: it has no energy; use 'pair_style none' while minimising");
+    voice.fail("cannot be minimised: it has no energy; define the pair styles without it meanwhile "
+               "('pair_style none' if there are no others)");
   if (strncmp(update->integrate_style, "respa", 5) == 0)
     voice.fail("cannot be used with run_style respa");
   if (force->pair_match(STYLE, 1) != this)

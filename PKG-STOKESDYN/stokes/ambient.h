@@ -42,6 +42,13 @@ class Ambient : protected LAMMPS_NS::Pointers {
     /* empty: the whole box */
     std::string region;
     std::string group = "all";
+
+    bool rests() const
+    {
+      const auto is_0 = [](const Field &f) { return !f.is_variable() && f.number() == 0.0; };
+      return !grid && !box && std::all_of(velocity, velocity + 3, is_0) &&
+          (!has_vorticity || std::all_of(vorticity, vorticity + 3, is_0));
+    }
   } &settings;
 
   Ambient(const Voice &voice, Epochs &epochs, Settings &settings) :

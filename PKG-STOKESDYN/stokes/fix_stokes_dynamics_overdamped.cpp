@@ -96,12 +96,15 @@ void FixStokesDynamicsOverdamped::init()
 
 void FixStokesDynamicsOverdamped::look_at_neighbours()
 {
-  const unsigned facts = OVERDAMPED | fact(NOISE, noise.on()) | fact(ADAPTING, adapt.every > 0) |
-      fact(TURNING, hydrodynamics().rotation());
-  neighbourhood.look(voice, stokes_neighbours(), facts, [this](int i) {
-    if (!(atom->mask[i] & groupbit)) return 0u;
-    return (unsigned) (is_held(i) ? HELD : FREE);
-  }, this);
+  const Hydrodynamics &hydro = hydrodynamics();
+  neighbourhood.look(voice, stokes_neighbours,
+                     OVERDAMPED | fact(NOISE, noise.on()) | fact(ADAPTING, adapt.every > 0) |
+                         fact(TURNING, hydro.rotation()) |
+                         fact(RESTING, hydro.ambient.settings.rests()),
+                     [this](int i) {
+                       if (!(atom->mask[i] & groupbit)) return 0u;
+                       return (unsigned) (is_held(i) ? HELD : FREE);
+                     }, this);
 }
 
 // --- a step ------------------------------------------------------------------------------------------------------
@@ -196,6 +199,8 @@ void FixStokesDynamicsOverdamped::announce()
 void FixStokesDynamicsOverdamped::final_integrate()
 {
   Hydrodynamics &hydro = hydrodynamics();
+  // LAMMPS has printed the first step by now: does the user ask for the pressure?
+  if (update->ntimestep == update->firststep + 1) look_at_neighbours();
   hydro.begin();
   if (last.atoms != atom->natoms) {    // those that are left move as they did not before
     before.clear();

@@ -37,10 +37,15 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
       first_atom(lmp, [this](int i) { return is_moved(i) && atom->molecule[i] != 0; }))
     keyword.fail("midpoint needs the orientation of clumps in the middle of a step, where fix move "
                  "does not give that of keyword held: let them rest, or move spheres");
-  if (const Fix *deform = fix_like(lmp, "^deform"))
+  const Fix *deform = fix_like(lmp, "^deform");
+  if (deform && noise.on())
+    voice.of("keyword temperature")
+        .fail("Brownian motion of films, multiblobs, clumps that feel each other and whatever else needs "
+              "scheme midpoint is for boxes that do not change: take " + name_of(deform) + " away, or "
+              "use single points");
+  if (deform)
     keyword.fail("midpoint is for boxes that do not change, and " + name_of(deform) +
-                 " deforms this one: " + (noise.on() ? "take it away, since ab2 leaves out a drift "
-                 "that Brownian motion may have here" : "use ab2"));
+                 " deforms this one: use ab2");
 }
 
 /* [6 nlocal] what pushes spheres in this step, but for noise: extrapolated by scheme midpoint, with the

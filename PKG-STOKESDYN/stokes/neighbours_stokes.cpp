@@ -1,11 +1,22 @@
 #include "neighbours_stokes.h"
 
+#include "deform_settings.h"
 #include "fixes.h"
+#include "lammps_compat.h"
+#include "ranks.h"
 
+#include "atom.h"
+#include "compute.h"
 #include "force.h"
+#include "group.h"
+#include "output.h"
+#include "modify.h"
 #include "pair.h"
 
+#include "sd_linear.h"
+
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -57,60 +68,346 @@ static bool contact_rubs(const Guest &guest, std::string &says)
   return contact.friction > 0.0;
 }
 
+/* Friction of bonds and of pairs by the relative velocity: which of the numbers that the style
+ * writes into data files, behind those of the types */
+struct Friction {
+  const char *styles;
+  size_t first, count;
+};
+static const Friction PAIR_FRICTION[] = {{"bpm/spring", 2, 1},    {"dpd", 1, 1},
+                                         {"dpd/tstat", 0, 1},     {"dpd/ext", 1, 2},
+                                         {"dpd/ext/tstat", 0, 2}, {"mdpd", 2, 1}};
+static const Friction BOND_FRICTION[] = {{"bpm/spring", 2, 1}, {"bpm/rotational", 8, 4}};
+
+/* The largest; -1: the style does not tell */
+static double friction_of(const Guest &guest)
+{
+  const size_t types = guest.pair ? 2 : 1;
+  const auto largest = [&](const Friction &which) {
+    double gamma = -1.0;
+    for (const auto &line : coefficients(guest))
+      for (size_t k = types + which.first; k < types + which.first + which.count; k++)
+        if (k < line.size()) gamma = std::max(gamma, line[k]);
+    return gamma;
+  };
+  if (guest.pair)
+    for (const Friction &which : PAIR_FRICTION)
+      if (guest.style == which.styles) return largest(which);
+  if (guest.bond)
+    for (const Friction &which : BOND_FRICTION)
+      if (guest.style == which.styles) return largest(which);
+  return -1.0;
+}
+
+static bool damps(const Guest &guest, std::string &says)
+{
+  const double gamma = friction_of(guest);
+  says = text(gamma);
+  return gamma > 0.0;
+}
+
+static bool may_damp(const Guest &guest, std::string &)
+{
+  return friction_of(guest) < 0.0;
+}
+
 /* fix move has a row of its own */
 static bool integrates(const Guest &guest, std::string &)
 {
   return guest.fix->time_integrate && guest.style != "move";
 }
 
+/* fix rigid with its keyword langevin: only then it has something to do after forces */
+static bool has_bath(const Guest &guest, std::string &)
+{
+  return guest.fix->setmask() & FixConst::POST_FORCE;
+}
+
+static bool remaps_v(const Guest &guest, std::string &)
+{
+  return DeformSettings::remap(guest.fix) == Domain::V_REMAP;
+}
+
+static bool has_one_atom(const Guest &guest, std::string &)
+{
+  return guest.lmp->group->count(guest.fix->igroup) == 1;
+}
+
+/* LAMMPS always has a compute thermo_press, and its own thermo styles print it unasked, but not its
+ * components. Whether lines of the user's do is known when they have been printed. */
+static bool is_asked_for(const Guest &guest, std::string &)
+{
+  if (strcmp(guest.compute->id, "thermo_press") != 0) return true;
+  return guest.compute->invoked_vector >= 0 ||
+      (guest.compute->invoked_scalar >= 0 && Compat::prints_custom_lines(guest.lmp->output));
+}
+
+// --- hybrid/scaled, which tells its factors to restart files only --------------------------------
+
+/* A number of a restart file; 0 behind its end */
+template <class T> static T number_at(const std::string &bytes, size_t at)
+{
+  T value = 0;
+  if (at + sizeof(T) <= bytes.size()) memcpy(&value, &bytes[at], sizeof(T));
+  return value;
+}
+
+/* A name of a restart file: its length with the 0 at its end, and itself */
+static std::string as_written(const std::string &name)
+{
+  const int length = (int) name.size() + 1;
+  return std::string((const char *) &length, sizeof(int)) + name + '\0';
+}
+
+/* The variables that stand from `at` to the end: how many, and their names; false: none do */
+static bool read_variables(const std::string &bytes, size_t at, std::vector<std::string> &names)
+{
+  const int n = number_at<int>(bytes, at);
+  at += sizeof(int);
+  names.clear();
+  for (int k = 0; k < n && at < bytes.size(); k++) {
+    const int length = number_at<int>(bytes, at);
+    at += sizeof(int);
+    if (length < 1 || at + length > bytes.size() || bytes[at + length - 1] != '\0') return false;
+    names.push_back(bytes.substr(at, length - 1));
+    at += length;
+  }
+  return n >= 0 && (int) names.size() == n && at == bytes.size();
+}
+
+/* The file: number of styles, ..., their names and settings, [n] factors, [n] -1 or which variable,
+ * the variables. */
+static bool scales_us(const Guest &guest, std::string &says)
+{
+  std::unique_ptr<FILE, int (*)(FILE *)> file(tmpfile(), fclose);
+  if (!file) return false;
+  guest.pair->write_restart(file.get());
+  std::string bytes(ftell(file.get()), '\0');
+  rewind(file.get());
+  if (fread(&bytes[0], 1, bytes.size(), file.get()) != bytes.size()) return false;
+
+  const size_t n = number_at<int>(bytes, 0), mine = bytes.find(as_written("stokes_dynamics"));
+  size_t before = 0;
+  for (const auto &style : Compat::pair_styles(guest.lmp->force))
+    before += bytes.find(as_written(style.first)) < mine;
+  std::vector<std::string> variables;
+  size_t at = mine;
+  while (at < bytes.size() &&
+         !read_variables(bytes, at + n * (sizeof(double) + sizeof(int)), variables))
+    at++;
+  if (at >= bytes.size()) return false;
+  const double factor = number_at<double>(bytes, at + before * sizeof(double));
+  const int which = number_at<int>(bytes, at + n * sizeof(double) + before * sizeof(int));
+  const bool varies = which >= 0 && which < (int) variables.size();
+  says = varies ? "v_" + variables[which] : text(factor);
+  return varies || factor != 1.0;
+}
+
+/* Of atom styles that have shapes: compute property/atom tells them. */
+static bool is_no_sphere(const Guest &guest, std::string &says)
+{
+  LAMMPS *lmp = guest.lmp;
+  const char *ID = "STOKES_DYNAMICS_SHAPES";
+  lmp->modify->add_compute(std::string(ID) + " all property/atom shapex shapey shapez");
+  Compute *shapes = lmp->modify->compute[lmp->modify->find_compute(ID)];
+  shapes->compute_peratom();
+  const Atom *atom = lmp->atom;
+  const tagint first = first_atom(lmp, [&](int i) {
+    double off = 0.0;    // diameters; 0: a point
+    for (int d = 0; d < 3; d++)
+      off = std::max(off, fabs(shapes->array_atom[i][d] - 2.0 * atom->radius[i]));
+    return guest.ours(i) && shapes->array_atom[i][0] > 0.0 && off > 1e-6 * atom->radius[i];
+  });
+  lmp->modify->delete_compute(ID);
+  says = std::to_string(first);
+  return first != 0;
+}
+
+static bool has_moments(const Guest &guest, std::string &says)
+{
+  const Atom *atom = guest.lmp->atom;
+  const tagint first =
+      first_atom(guest.lmp, [&](int i) { return guest.ours(i) && atom->mu[i][3] > 0.0; });
+  says = std::to_string(first);
+  return first != 0;
+}
+
+// --- clumps whose spheres overlap ----------------------------------------------------------------
+
+struct Member {
+  double molecule, x[3], a, overlaps;
+};
+
+/* Of one clump, from `from` to `to`, by images side by side */
+static bool overlap(const Domain *domain, const Member *from, const Member *to)
+{
+  constexpr double DEEP = 0.9;    // at 0.9 (a + b) two equal spheres share 0.7 % of their volume
+  for (const Member *p = from; p < to; p++)
+    for (const Member *q = p + 1; q < to; q++) {
+      double r[3];
+      sd_minus(p->x, q->x, r);
+      Compat::minimum_image(const_cast<Domain *>(domain), r);
+      if (sd_dot(r, r) < DEEP * DEEP * (p->a + q->a) * (p->a + q->a)) return true;
+    }
+  return false;
+}
+
+/* Members of a molecule meet on the rank that its number names. */
+static bool pulls_on_overlaps(const Guest &guest, std::string &says)
+{
+  const Atom *atom = guest.lmp->atom;
+  if (!atom->molecule || Compat::GravitySettings::disabled(guest.fix))
+    return false;
+  std::vector<Member> mine;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->molecule[i] > 0 && guest.ours(i) && (atom->mask[i] & guest.fix->groupbit))
+      mine.push_back({(double) atom->molecule[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]},
+                      atom->radius[i], 0.0});
+  const int ranks = guest.lmp->comm->nprocs;
+  ask_homes(
+      guest.lmp->world, mine, [=](const Member &m) { return (int) ((bigint) m.molecule % ranks); },
+      [&](std::vector<Member> &all) {
+        std::vector<Member> sorted = all;
+        std::stable_sort(sorted.begin(), sorted.end(), [](const Member &p, const Member &q) {
+          return p.molecule < q.molecule;
+        });
+        double first = 0.0;
+        for (size_t from = 0, to; from < sorted.size() && first == 0.0; from = to) {
+          for (to = from; to < sorted.size() && sorted[to].molecule == sorted[from].molecule;) to++;
+          if (overlap(guest.lmp->domain, &sorted[from], &sorted[from] + (to - from)))
+            first = sorted[from].molecule;
+        }
+        for (Member &m : all) m.overlaps = first;
+      });
+  double first = INFINITY;
+  for (const Member &m : mine)
+    if (m.overlaps > 0.0) first = std::min(first, m.overlaps);
+  first = smallest_of_all(guest.lmp->world, first);
+  says = text(first);
+  return std::isfinite(first);
+}
+
 // --- the table -----------------------------------------------------------------------------------
 
-const std::vector<Neighbour> &stokes_neighbours()
-{
-  using N = Neighbour;
-  static const std::vector<Neighbour> table = {
-      // another drag, other noise
-      {N::FIX, "viscous* langevin*", OVERDAMPED, N::ERROR,
-       "adds a drag to spheres that the fluid drags already: take it out; noise is the keyword "
-       "temperature of fix stokes_dynamics/overdamped"},
-      {N::PAIR, "lubricate*", OVERDAMPED, N::ERROR,
-       "has a drag of its own, which would count twice: take it out"},
-      {N::PAIR, "brownian*", OVERDAMPED | NOISE, N::ERROR, "has noise of its own: take it out"},
-      {N::FIX, "dt/reset", OVERDAMPED | NOISE, N::ERROR,
-       "makes steps of unequal length, whose averages are not those of time: take it out", nullptr,
-       N::ANYWHERE},
-      // another motion
-      {N::FIX, "move", OVERDAMPED, N::ERROR,
-       "integrates spheres that fix stokes_dynamics/overdamped moves: name its group by keyword "
-       "held of that fix, or take it out", nullptr, FREE},
-      {N::FIX, "*", OVERDAMPED, N::ERROR,
-       "integrates spheres that fix stokes_dynamics/overdamped moves: take it out", integrates},
-      {N::FIX, "setforce freeze", OVERDAMPED, N::WARNING,
-       "sets forces to 0, and without inertia that does not hold a sphere: use keyword held GROUP",
-       nullptr, FREE},
-      {N::FIX, "deform*", OVERDAMPED | ADAPTING, N::ERROR,
-       "counts its rate per step, so that all steps must have one length: leave out adapt", nullptr,
-       N::ANYWHERE},
-      // forces by the velocities of the step before
-      {N::PAIR, "gran/hooke gran/hooke/history gran/hertz/history", OVERDAMPED, N::ERROR,
-       "damps its contacts (gamma {}), which would depend on the velocities of the step before: use "
-       "gamma_n 0, gamma_t 0 (or NULL with gamma_n 0) and dampflag 0", contact_damps},
-      {N::PAIR, "gran/hooke gran/hooke/history gran/hertz/history", OVERDAMPED | NOISE, N::ERROR,
-       "has friction ({}), which would depend on velocities without noise: use 0", contact_rubs},
-      {N::PAIR, "granular", OVERDAMPED, N::WARNING,
-       "must have no damping (gamma 0), which would depend on the velocities of the step before; "
-       "this cannot be checked"},
-      {N::FIX, "wall/gran*", OVERDAMPED, N::WARNING,
-       "must have no damping (gamma 0), which would depend on the velocities of the step before; "
-       "this cannot be checked"},
-      {N::PAIR, "granular", OVERDAMPED | NOISE, N::WARNING,
-       "must have no friction, which would depend on velocities without noise; this cannot be "
-       "checked"},
-      {N::FIX, "wall/gran*", OVERDAMPED | NOISE, N::WARNING,
-       "must have no friction, which would depend on velocities without noise; this cannot be "
-       "checked"},
-  };
-  return table;
-}
+using N = Neighbour;
+
+const std::vector<Neighbour> stokes_neighbours = {
+    // another drag, other noise
+    {N::FIX, "viscous viscous/kk langevin*", FORCE, N::ERROR,
+     "adds a drag to spheres that the fluid drags as well, so that drag counts twice: take out "
+     "this fix or the pair style; for noise that goes with the fluid use fix "
+     "stokes_dynamics/overdamped with temperature"},
+    {N::FIX, "viscous viscous/kk langevin*", OVERDAMPED, N::ERROR,
+     "adds a drag to spheres that the fluid drags as well: take it out; noise is the keyword "
+     "temperature of fix stokes_dynamics/overdamped"},
+    {N::FIX, "viscous/sphere", TURNING, N::ERROR,
+     "damps spins that the fluid damps as well: take it out, or use rotation no"},
+    {N::FIX, "rigid*", FORCE, N::ERROR,
+     "has a drag of its own (keyword langevin) on spheres that the fluid drags as well, so that "
+     "drag counts twice: leave langevin out, or the pair style; for noise that goes with the fluid "
+     "use fix stokes_dynamics/overdamped with temperature, which moves rigid clumps too", has_bath},
+    {N::FIX, "brownian*", FORCE, N::ERROR,
+     "moves spheres by a drag of its own, and the fluid drags them as well: take it out and use "
+     "fix stokes_dynamics/overdamped, with temperature for the noise, or take out the pair style"},
+    {N::PAIR, "lubricate* brownian*", FORCE, N::ERROR,
+     "has a drag of its own, and the fluid drags the spheres as well: take out one of the two; "
+     "films are the keyword lubrication, noise is the keyword temperature of fix "
+     "stokes_dynamics/overdamped"},
+    {N::PAIR, "lubricate* brownian*", OVERDAMPED, N::ERROR,
+     "has a drag or noise of its own, which would count twice: take it out; films are the keyword "
+     "lubrication of the pair style, noise is the keyword temperature of fix "
+     "stokes_dynamics/overdamped"},
+    {N::FIX, "dt/reset", OVERDAMPED | NOISE, N::ERROR,
+     "makes steps of unequal length, whose averages are not those of time: take it out", nullptr,
+     N::ANYWHERE},
+
+    // another motion
+    {N::FIX, "move", OVERDAMPED, N::ERROR,
+     "integrates spheres that fix stokes_dynamics/overdamped moves: name its group by keyword held "
+     "of that fix, or take it out", nullptr, FREE},
+    {N::FIX, "*", OVERDAMPED, N::ERROR,
+     "integrates spheres that fix stokes_dynamics/overdamped moves: take it out", integrates},
+    {N::FIX, "*/asphere*", FORCE | TURNING, N::WARNING,
+     "turns spheres by angular momenta, of which the fluid knows nothing, so that it does not damp "
+     "their spin: use fix nve/sphere or its like"},
+    {N::FIX, "setforce freeze", OVERDAMPED, N::WARNING,
+     "sets forces to 0, and without inertia that does not hold a sphere: use keyword held GROUP; "
+     "fix spring/self pins a sphere and lets it turn", nullptr, FREE},
+    {N::FIX, "addtorque", TURNING, N::WARNING,
+     "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "
+     "to a single sphere: a torque on spheres is the keyword spin of fix "
+     "stokes_dynamics/overdamped, with tmax", has_one_atom},
+
+    // boxes that change
+    {N::FIX, "deform*", OVERDAMPED | ADAPTING, N::ERROR,
+     "counts its rate per step, so that all steps must have one length: leave out adapt", nullptr,
+     N::ANYWHERE},
+    {N::FIX, "deform*", RESTING, N::WARNING,
+     "deforms the box with remap v, but the fluid rests, so that it holds the spheres back: use "
+     "fluid_velocity box if the fluid is to be sheared", remaps_v, N::ANYWHERE},
+
+    // forces by the velocities of the step before
+    {N::PAIR, "gran/hooke gran/hooke/history gran/hertz/history", OVERDAMPED, N::ERROR,
+     "damps its contacts (gamma {}), which would depend on the velocities of the step before: use "
+     "gamma_n 0, gamma_t 0 (or NULL with gamma_n 0) and dampflag 0", contact_damps},
+    {N::PAIR, "gran/hooke gran/hooke/history gran/hertz/history", OVERDAMPED | NOISE, N::ERROR,
+     "has friction ({}), which would depend on velocities without noise: use 0", contact_rubs},
+    {N::PAIR, "granular", OVERDAMPED, N::WARNING,
+     "must have no damping (gamma 0), which would depend on the velocities of the step before; "
+     "this cannot be checked"},
+    {N::FIX, "wall/gran*", OVERDAMPED, N::WARNING,
+     "must have no damping (gamma 0), which would depend on the velocities of the step before; "
+     "this cannot be checked"},
+    {N::PAIR, "granular", OVERDAMPED | NOISE, N::WARNING,
+     "must have no friction, which would depend on velocities without noise; this cannot be "
+     "checked"},
+    {N::FIX, "wall/gran*", OVERDAMPED | NOISE, N::WARNING,
+     "must have no friction, which would depend on velocities without noise; this cannot be "
+     "checked"},
+    {N::FIX, "damping/cundall", OVERDAMPED, N::ERROR,
+     "makes forces smaller by the velocities of the step before: take it out"},
+    {N::PAIR, "*dpd* bpm/spring", OVERDAMPED, N::ERROR,
+     "has friction between spheres (gamma {}), which would depend on the velocities of the step "
+     "before, and has no place beside the friction of the fluid: use gamma 0", damps},
+    {N::PAIR, "*dpd*", OVERDAMPED, N::ERROR,
+     "has friction or noise of its own between spheres: take it out; noise is the keyword "
+     "temperature of fix stokes_dynamics/overdamped", may_damp},
+    {N::BOND, "bpm/*", OVERDAMPED, N::ERROR,
+     "damps its bonds (gamma {}), which would depend on the velocities of the step before: use "
+     "gamma 0", damps},
+    {N::BOND, "bpm/*", OVERDAMPED, N::WARNING,
+     "must have no damping (gamma 0), which would depend on the velocities of the step before; "
+     "this cannot be checked", may_damp},
+
+    // directions and shapes
+    {N::ATOM, "dipole", OVERDAMPED | TURNING, N::ERROR,
+     "has directions (the dipole of atom {}), and fix stokes_dynamics/overdamped does not turn "
+     "them with the spheres: use rotation no if others set them, or with inertia fix nve/sphere "
+     "update dipole; a torque on spheres is the keyword spin of that fix, with tmax",
+     has_moments, FREE},
+    {N::BOND, "bpm/rotational", OVERDAMPED, N::ERROR,
+     "needs orientations of atoms, which fix stokes_dynamics/overdamped does not turn: use "
+     "bpm/spring"},
+    {N::ATOM, "ellipsoid", 0, N::WARNING,
+     "gives atom {} a shape that is not that of its sphere, and the fluid sees the sphere "
+     "(diameter) only: fill an ellipsoid with the spheres of a rigid clump", is_no_sphere},
+
+    // weights and stresses
+    {N::FIX, "gravity", 0, N::WARNING,
+     "pulls on the mass of each sphere, and in the clump of molecule {} spheres overlap, so that "
+     "what they share weighs twice: lower their density until the masses add up to that of the "
+     "clump, or give it its weight by fix addforce", pulls_on_overlaps},
+    {N::COMPUTE, "pressure*", 0, N::WARNING,
+     "knows nothing of the forces between spheres and fluid, which have no virial: the stress of "
+     "the suspension is compute stokes_dynamics/stress", is_asked_for},
+    {N::PAIR, "hybrid/scaled*", 0, N::ERROR,
+     "scales forces of stokes_dynamics by {}, which not all that follows from them would feel: use "
+     "the factor 1.0", scales_us, N::ANYWHERE},
+
+    // what goes together
+    {N::FIX, "move setforce freeze", OVERDAMPED, N::FINE, "go with spheres of keyword held"},
+    {N::FIX, "temp/* momentum", OVERDAMPED, N::FINE,
+     "change the velocities that are printed, not the path"},
+};
 
 }    // namespace StokesDyn

@@ -16,6 +16,7 @@ enum StokesFact : unsigned {
   NOISE = 1 << 2,         // with temperature
   ADAPTING = 1 << 3,      // with adapt
   TURNING = 1 << 4,       // spheres turn
+  RESTING = 1 << 5,       // the fluid rests
 };
 
 inline unsigned fact(StokesFact which, bool holds) { return holds ? (unsigned) which : 0u; }
@@ -23,7 +24,7 @@ inline unsigned fact(StokesFact which, bool holds) { return holds ? (unsigned) w
 /* Sorts of spheres: held are those of keyword held. */
 enum StokesSort : unsigned { FREE = 1 << 0, HELD = 1 << 1 };
 
-const std::vector<Neighbour> &stokes_neighbours();
+extern const std::vector<Neighbour> stokes_neighbours;
 
 /* Stiffness and damping of a contact style of package GRANULAR, which tells nobody but a restart
  * file: k_n k_t gamma_n gamma_t friction. Without a style: there is none. */

@@ -32,7 +32,6 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp), sor
   single_enable = 0;
   respa_enable = 0;
   manybody_flag = 1;
-  one_coeff = 1;
   restartinfo = 1;
   no_virial_fdotr_compute = 1;    // drag is between sphere and fluid: its x.F depends on the origin
   nextra = 4;
@@ -59,6 +58,8 @@ void PairStokesDynamics::compute(int eflag, int vflag)
     if (hydro.settings.add_force) add();
     return;
   }
+  // LAMMPS has printed the first step by now: does the user ask for the pressure?
+  if (update->ntimestep == update->firststep + 1) look_at_neighbours();
   hydro.begin();
   check_images(voice, hydro.ambient.jumps());
   const Verdict verdict = judge();
@@ -182,8 +183,8 @@ void PairStokesDynamics::init_style()
   if (update->whichflag == 2)
     fail(lmp,
          voice.command +
-             " cannot be minimised: a drag depends on velocities and has no energy; use "
-             "'pair_style none' meanwhile");
+             " cannot be minimised: a drag depends on velocities and has no energy; define the pair "
+             "styles without it meanwhile ('pair_style none' if there are no others)");
   if (utils::strmatch(update->integrate_style, "^respa"))
     fail(lmp, voice.command + " does not support run_style respa");
   if (force->pair_match(STYLE, 1) != this)
@@ -210,6 +211,20 @@ void PairStokesDynamics::init_style()
   look_for_fixes();
   check_deform(voice, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
   sorting_bins.limit(range());
+  if (!hydro.overdamped) look_at_neighbours();    // the fix does so that moves them
+}
+
+/* Spheres of a fix stokes_dynamics that applies the force, or all that are selected */
+void PairStokesDynamics::look_at_neighbours()
+{
+  int bits = hydro.settings.add_force ? ~0 : 0;
+  for (const auto *fix : fixes_of<FixStokesDynamics>(lmp))
+    if (fix->applies()) bits |= fix->groupbit;
+  const std::vector<char> chosen = hydro.ambient.chosen_now();
+  neighbourhood.look(voice, stokes_neighbours,
+                     fact(FORCE, bits != 0) | fact(TURNING, hydro.rotation()) |
+                         fact(RESTING, hydro.ambient.settings.rests()),
+                     [&](int i) { return chosen[i] && (atom->mask[i] & bits) ? FREE : 0u; });
 }
 
 /* Those of the command, and where a wall at the side of the box stands: that may have changed */

@@ -7,6 +7,7 @@
 
 #include "checks.h"
 #include "hydrodynamics.h"
+#include "neighbours_stokes.h"
 
 #include <string>
 #include <vector>
@@ -46,6 +47,8 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
     LAMMPS_NS::bigint step, builds;
   } asked = {-1, -1};
   Since asked_in;
+  Neighbourhood neighbourhood;
+  void look_at_neighbours();
 
   /* What the force of a step needs. */
   enum Verdict {

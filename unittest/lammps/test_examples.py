@@ -15,6 +15,14 @@ QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "first_look", "fi
          "tumbling", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
 
 
+# how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)
+NEIGHBOUR = re.compile(r"WARNING: (?:Pair style|Fix) [\w/]+: (?:(?:fix|compute) \S+ of style|\w+_style \S+ \w).*")
+
+
+def neighbours_warned_of(*logs):
+    return [warning for log in logs for warning in NEIGHBOUR.findall(log.read_text(errors="replace"))]
+
+
 def kept(folder):
     """Of every file below the folder its content, in short."""
     return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(folder.rglob("*")) if path.is_file()}
@@ -30,6 +38,7 @@ def test_every_figure_of_an_example_holds(name, tmp_path):
     assert not re.search("^MISSED", run.stdout, re.M), run.stdout[-3000:]
     assert len(re.findall("^ok  ", run.stdout, re.M)) >= 5, run.stdout[-3000:]
     assert kept(EXAMPLES / name) == before
+    assert not neighbours_warned_of(*(path for path in (tmp_path / "out").rglob("*") if path.is_file() and "log" in path.name))
 
 
 # --- the logs that are kept beside the examples -------------------------------------------------------------------------------
@@ -72,6 +81,13 @@ def test_logs_of_examples_are_of_this_version(log):
 
 def test_there_are_logs():
     assert len(LOGS) >= 30
+
+
+def test_no_log_has_a_warning_of_a_command_beside_ours(tmp_path):
+    assert not neighbours_warned_of(*LOGS)
+    (tmp_path / "log").write_text("WARNING: Pair style stokes_dynamics: compute P of style pressure knows nothing (x.cpp:9)\n"
+                                  "WARNING: Fix stokes_dynamics/overdamped: pair_style granular must have no damping\n")
+    assert len(neighbours_warned_of(tmp_path / "log")) == 2
 
 
 def test_a_changed_input_is_seen():
