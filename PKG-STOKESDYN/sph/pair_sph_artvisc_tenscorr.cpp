@@ -33,7 +33,7 @@ const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
 PairSph::PairSph(LAMMPS *lmp) :
     Pair(lmp), voice(lmp, "Pair style " + std::string(STYLE)), moved_box(lmp)
 {
-  single_enable = 0;
+  single_enable = 1;
   respa_enable = 0;
   restartinfo = 1;
   no_virial_fdotr_compute = 1;

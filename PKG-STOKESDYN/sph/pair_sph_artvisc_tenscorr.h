@@ -38,6 +38,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void setup() override;
   double init_one(int, int) override;
   void compute(int, int) override;
+  double single(int, int, int, int, double, double, double, double &) override;
   void *extract(const char *, int &) override;
   double memory_usage() override;
   int pack_forward_comm(int, int *, double *, int, int *) override;

@@ -38,6 +38,7 @@ void PairSph::init_style()
   if (force->pair_match(STYLE, 1) != this)
     voice.fail("may appear only once in a hybrid pair style");
   if (atom->tag_enable == 0) voice.fail("requires atom IDs");
+  single_enable = force->pair != this;    // alone it would say that there are no forces
   find_fixes();
   find_integrators();
   choose_scheme();

@@ -5,7 +5,6 @@
 #include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "keywords.h"
-#include "lammps_compat.h"
 #include "sd_sph_density.h"
 #include "sd_sph_order.h"
 #include "sd_sph_probe.h"
@@ -18,7 +17,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -61,6 +59,14 @@ void PairSph::compute(int eflag, int vflag)
 
   for (auto *fix : pressures) fix->output(P.data());
   if (continuity) continuity->output(atom->drho);
+}
+
+/* For compute pair/local and its like below a hybrid, which ask all styles of it: the forces of this one
+ * need more than a pair, so its share is 0. Alone it has no answer (init_style). */
+double PairSph::single(int, int, int, int, double, double, double, double &fforce)
+{
+  fforce = 0.0;
+  return 0.0;
 }
 
 /* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build
@@ -462,51 +468,4 @@ bool PairSph::moments(std::vector<double> &M)
 double PairSph::dW_dr(int itype, double r) const
 {
   return r * sd_sph_dW_over_r(model.kernel, model.dimension, r, table[H][itype][itype]);
-}
-
-// --- communication ------------------------------------------------------------------------------
-
-void PairSph::forward(double *array, int columns)
-{
-  assert(columns <= comm_forward);
-  comm_array = array;
-  comm_columns = columns;
-  Compat::forward_comm(comm, this);
-}
-
-void PairSph::reverse(double *array, int columns, bool largest)
-{
-  assert(columns <= comm_reverse);
-  if (!shared || !force->newton_pair) return;    // ghosts got nothing
-  comm_array = array;
-  comm_columns = columns;
-  comm_largest = largest;
-  Compat::reverse_comm(comm, this);
-}
-
-int PairSph::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
-{
-  for (int k = 0; k < n; k++)
-    for (int c = 0; c < comm_columns; c++) *buf++ = comm_array[(size_t) list[k] * comm_columns + c];
-  return n * comm_columns;
-}
-
-void PairSph::unpack_forward_comm(int n, int first, double *buf)
-{
-  memcpy(comm_array + (size_t) first * comm_columns, buf, sizeof(double) * n * comm_columns);
-}
-
-int PairSph::pack_reverse_comm(int n, int first, double *buf)
-{
-  memcpy(buf, comm_array + (size_t) first * comm_columns, sizeof(double) * n * comm_columns);
-  return n * comm_columns;
-}
-
-void PairSph::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  for (int k = 0; k < n; k++)
-    for (int c = 0; c < comm_columns; c++, buf++) {
-      double &mine = comm_array[(size_t) list[k] * comm_columns + c];
-      mine = comm_largest ? std::max(mine, *buf) : mine + *buf;
-    }
 }

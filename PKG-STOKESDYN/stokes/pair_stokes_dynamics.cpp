@@ -29,7 +29,7 @@ using State = FixStokesDynamicsState;
 
 PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp), sorting_bins(lmp)
 {
-  single_enable = 0;
+  single_enable = 1;
   respa_enable = 0;
   manybody_flag = 1;
   restartinfo = 1;
@@ -83,6 +83,14 @@ bool PairStokesDynamics::asked_again() const
 {
   return asked_in.is(hydro.epochs.run) && asked.step == update->ntimestep &&
       asked.builds == neighbor->ncalls && hydro.computed_in(update->ntimestep);
+}
+
+/* For compute pair/local and its like below a hybrid, which ask all styles of it: drag is no force of a
+ * pair, so its share is 0. Alone it has no answer (init_style). */
+double PairStokesDynamics::single(int, int, int, int, double, double, double, double &fforce)
+{
+  fforce = 0.0;
+  return 0.0;
 }
 
 /* v' is due every update_every steps, and at once when the spheres are not those of the last solve:
@@ -190,6 +198,7 @@ void PairStokesDynamics::init_style()
   if (force->pair_match(STYLE, 1) != this)
     fail(lmp, voice.command + " may appear only once in a hybrid pair style");
   require_atoms();
+  single_enable = force->pair != this;    // alone it would say that there are no forces
   const Scene::Settings &scene = hydro.settings.scene;
   if (scene.everybody() && !scene.wall.sign) check_boundaries(voice, scene);
   if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)

@@ -21,6 +21,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   PairStokesDynamics(LAMMPS_NS::LAMMPS *);
   ~PairStokesDynamics() override;
   void compute(int, int) override;
+  double single(int, int, int, int, double, double, double, double &) override;
   void settings(int, char **) override;
   void coeff(int, char **) override;
   void init_style() override;
