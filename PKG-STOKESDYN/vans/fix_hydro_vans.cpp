@@ -153,19 +153,8 @@ void FixHydroVans::init()
   if (set.solves()) tell_steps();
   if (set.couple == VansSettings::TWO) tell_sizes();
   check_others();
-  tell_mirrors();
-}
-
-/* A wall that turns a grain back leaves u' as it is. */
-void FixHydroVans::tell_mirrors()
-{
-  const Fix *mirror = fix_like(lmp, "^wall/reflect");
-  if (told_mirror || !mirror || set.fluctuation != VansSettings::LANGEVIN) return;
-  told_mirror = true;
-  set.voice.warn("fix " + std::string(mirror->id) +
-                 " turns grains back, but not the fluctuation that carries them to its wall: light "
-                 "grains gather there. Let no wall/reflect stand in the water or at its surface, where "
-                 "this fix turns the fluctuation itself");
+  look_at_neighbours();
+  tell_fall();
 }
 
 /* A solve with a drag that is given. */
@@ -191,76 +180,6 @@ void FixHydroVans::check_others() const
       set.voice.warn(std::to_string(all) + " atoms are in the groups of fix " + other->id +
                      " and of fix " + id + ": they feel drag and buoyancy twice");
   }
-}
-
-/* What a coupling does, where it is not what the keywords seem to say, or takes seconds. */
-void FixHydroVans::tell_steps()
-{
-  const double of_grains = nevery * update->dt, T = set.period > 0.0 ? set.period : of_grains,
-               wanted = set.period > 0.0 ? set.dt : 0.1 * T, N = set.ncell();
-  double dt = wanted;
-  const auto steps = sd_vans_steps(set.law.rules, T, &dt);
-  const std::string as_made = std::to_string(steps) + " steps of " + text(dt) + " are used";
-  if (std::fabs(dt - wanted) > 1e-9 * wanted)
-    set.voice.tell("the step " + text(wanted) + " of keyword solve is no fraction of " + text(T) +
-                   ": " + as_made);
-  else if (std::fabs(steps * dt - T) > 1e-9 * T)
-    set.voice.tell("rules yade: " + as_made + " for the period " + text(T));
-  if (set.couple == VansSettings::TWO && std::fabs(T / of_grains - 1.0) > 1e-9)
-    set.voice.tell("every coupling solves the stream over the time " + text(T) +
-                   ", but the grains move for " + text(of_grains) + " between couplings");
-  if (steps * N > 1e9 && !told_work) {
-    told_work = true;
-    set.voice.warn("keyword solve: " + text((double) steps) + " steps of " + text(N) +
-                   " slices in every coupling take about " + text(5e-9 * steps * N) +
-                   " seconds each time");
-  }
-}
-
-/* The exchange of rules yade knows one size or classes. */
-void FixHydroVans::tell_sizes()
-{
-  if (!set.yade() || set.classes) return;
-  double mine[2] = {0.0, 0.0}, all[2];    // the largest radius and the largest inverse
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & average_bit) && atom->radius[i] > 0.0) {
-      mine[0] = std::max(mine[0], atom->radius[i]);
-      mine[1] = std::max(mine[1], 1.0 / atom->radius[i]);
-    }
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
-  if (all[0] * all[1] > 1.01)
-    set.voice.warn("rules yade: radii from " + text(1.0 / all[1]) + " to " + text(all[0]) +
-                   " are replaced by their mean in the drag on the water, which can be wrong by a "
-                   "factor of two: use classes yes, or rules consistent");
-}
-
-/* Drag acts with the velocity of the step before: beyond 2/rate a step overshoots and grows. Looked
- * at when a run begins and then every 100 steps at most. */
-void FixHydroVans::tell_stiff()
-{
-  if (told_stiff || !set.has_grains()) return;
-  if (looked_step >= 0 && update->ntimestep < looked_step + 100) return;
-  looked_step = update->ntimestep;
-  select(groupbit);
-  std::vector<double> mass(atom->nlocal + 1);
-  for (int i = 0; i < atom->nlocal; i++)
-    mass[i] = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-  const sd_vans_grains all = grains();
-  int stiffest = -1;
-  struct {
-    double rate;
-    int rank;
-  } mine = {sd_vans_stiffest(&set.mesh, &set.law, stream.U.data(), stream.hindrance.data(), &all,
-                             mass.data(), &stiffest), comm->me}, largest;
-  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  if (!(largest.rate * update->dt > 1.0)) return;
-  double tag = stiffest < 0 ? 0.0 : (double) atom->tag[stiffest];
-  MPI_Bcast(&tag, 1, MPI_DOUBLE, largest.rank, world);
-  told_stiff = true;
-  set.voice.warn("the time step " + text(update->dt) + " is too long for the drag on atom " +
-                 std::to_string((bigint) tag) + ", which changes its velocity at the rate " + text(largest.rate) +
-                 ": take at most " + text(1.0 / largest.rate) + "; beyond " +
-                 text(2.0 / largest.rate) + " the velocity grows without bound");
 }
 
 /* A bed up to the surface, or a mesh that misses most of the grains, is a mistake in the mesh and

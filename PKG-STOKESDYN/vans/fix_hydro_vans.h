@@ -4,6 +4,7 @@
 #ifndef SD_FIX_HYDRO_VANS_H
 #define SD_FIX_HYDRO_VANS_H
 
+#include "neighbours.h"
 #include "resume.h"
 #include "rows_fix.h"
 #include "sd_vans_random.h"
@@ -89,7 +90,8 @@ class FixHydroVans : public RowsFix {
   /* have they been read, in this run or in one whose restart file has them? */
   bool variables_known = false;
   bool told_outside = false, told_work = false, told_stiff = false, told_waves = false,
-       told_mirror = false;
+       told_fall = false;
+  Neighbourhood neighbourhood;
   /* of the last look at the grains' time step */
   LAMMPS_NS::bigint looked_step = -1;
 
@@ -102,7 +104,8 @@ class FixHydroVans : public RowsFix {
   void check_box() const;
   void check_radius();
   void check_others() const;
-  void tell_mirrors();
+  void look_at_neighbours();
+  void tell_fall();
   void check_mesh();
   void tell_steps();
   void tell_stiff();

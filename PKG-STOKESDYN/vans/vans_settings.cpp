@@ -238,6 +238,7 @@ void VansSettings::read(Keywords &in)
       {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
       {"drag",
        [&] {
+         drag_given = true;
          law.drag.law = in.option<sd_vans_drag_of_one>(
              {"yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun", "gidaspow", "beetstra",
               "koch_hill"});

@@ -25,6 +25,8 @@ struct VansSettings {
   /* what the core wants to know, radii apart */
   sd_vans_fluid fluid = {};
   sd_vans_force_law law = {};
+  /* by the keyword, and not by default */
+  bool drag_given = false;
   /* 0: the box */
   double area = 0.0;
   enum { NONE, ONE, TWO, FLUID } couple = TWO;

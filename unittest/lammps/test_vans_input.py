@@ -340,3 +340,34 @@ def test_a_solve_of_many_seconds_is_told(tmp_path):
     assert "10000000 steps of 20 slices in every coupling" not in done.stdout
     done = run_lmp(tmp_path, script + line(couple="fluid", solve="1 1e-8") + "\nrun 0\n")
     assert "1e+08 steps of 20 slices in every coupling" in done.stdout and done.returncode == 0
+
+
+# radius, density, fluid, words; is it said, and the Reynolds number of the fall. The first four are ten Cate's spheres in oil.
+FALLS = [(0.0075, 1120, "970 0.373", "", "1.5"), (0.0075, 1120, "965 0.212", "", "4.3"), (0.0075, 1120, "962 0.113", "", "12"),
+         (0.0075, 1120, "960 0.058", "", "32"), (0.0075, 1120, "960 0.058", "drag yade", None), (0.0075, 1120, "960 0.058", "drag brown_lawler", None),
+         (0.0075, 1120, "960 0.058", "rules yade", None), (0.003, 2500, "1000 0.001", "", None), (0.00025, 2650, "1000 0.001", "", "3"),
+         (0.000002, 2650, "1000 0.001", "", None), (0.0075, 960, "960 0.058", "", None)]
+
+
+@pytest.mark.parametrize("radius, density, fluid, words, Re", FALLS)
+def test_the_default_drag_is_warned_of_by_the_reynolds_number_of_the_fall(tmp_path, radius, density, fluid, words, Re):
+    script = f"""plugin load stokesdynplugin.so
+units si
+atom_style sphere
+boundary p p f
+region box block 0 0.1 0 0.1 -1 1 units box
+create_box 1 box
+create_atoms 1 single 0.05 0.05 0.9
+create_atoms 1 single 0.05 0.05 0.5
+set group all diameter {2 * radius!r} density {density}
+set atom 2 density {fluid.split()[0]}
+pair_style zero 0.01
+pair_coeff * *
+fix s all hydro/vans 1 mesh 100 0.02 -1 fluid {fluid} gravity 0 0 -9.81 couple none stream rest {words}
+timestep 1e-9
+run 0
+run 0
+"""
+    text = run_lmp(tmp_path, script).stdout
+    assert text.count("keyword drag: by its default, yade, a lone grain of radius") == (Re is not None), text
+    assert Re is None or f"(Re = {Re}" in text, text

@@ -152,3 +152,16 @@ double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a
   if (!(speed > 0.0)) return sd_vans_drag_factor(law, rho, eta, a, hindrance, 0.0);
   return (sd_vans_drag_factor(law, rho, eta, a, hindrance, more) * more - F) / (more - speed);
 }
+
+/* A lone grain has hindrance 1 by any law. F(w) is convex and no less than the drag at rest times w: by
+ * Newton's steps w falls from where that would balance the force. */
+double sd_vans_fall_speed(sd_vans_drag_law law, double rho, double eta, double a, double force)
+{
+  double w = force / sd_vans_drag_factor(law, rho, eta, a, 1.0, 0.0);
+  for (int k = 0; k < 100; k++) {
+    const double excess = sd_vans_drag_factor(law, rho, eta, a, 1.0, w) * w - force;
+    if (!(excess > 1e-12 * force)) break;
+    w -= excess / sd_vans_drag_slope(law, rho, eta, a, 1.0, w);
+  }
+  return w;
+}

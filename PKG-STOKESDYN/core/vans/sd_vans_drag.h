@@ -107,5 +107,9 @@ static inline double sd_vans_drag_factor(sd_vans_drag_law law, double rho, doubl
 double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,
                           double speed);
 
+/* The speed at which a lone grain falls or rises: the drag balances the force >= 0 on it, its weight less
+ * that of the water in its place. Not by ergun, which has no drag of lone grains. */
+double sd_vans_fall_speed(sd_vans_drag_law law, double rho, double eta, double a, double force);
+
 SD_END_C
 #endif

@@ -228,6 +228,20 @@ static void rising_water_lifts_a_grain(void **state)
   assert_true(rising[2] > 0.0 && fabs(rising[2] / fallen[2] - 1.0) < 1e-15);
 }
 
+/* Where bisection finds it, from sand in glycerine to pebbles in water; without a weight it rests. */
+static void fall_speed_balances_weight_and_drag(void **state)
+{
+  (void) state;
+  for (int name = SD_VANS_DRAG_YADE; name <= SD_VANS_DRAG_FERGUSON_CHURCH; name++)
+    for (double a = 1e-6; a < 0.1; a *= 3.1)
+      for (int fall = 0; fall < 2; fall++) {
+        const sd_vans_drag_law law = {(sd_vans_drag_of_one) name, SD_VANS_HINDRANCE_RICHARDSON_ZAKI, 0.7 * fall};
+        const double weight = 4.0 / 3.0 * SD_PI * a * a * a * (2650 - RHO) * G;
+        CHECK_NEAR(sd_vans_fall_speed(law, RHO, ETA, a, weight) / terminal(law, a, 2650, 1.0), 1.0, 1e-10);
+        assert_true(sd_vans_fall_speed(law, RHO, ETA, a, 0.0) == 0.0);
+      }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -243,6 +257,7 @@ int main(void)
       cmocka_unit_test(members_push_by_their_share),
       cmocka_unit_test(a_core_may_have_any_number_of_neighbours),
       cmocka_unit_test(rising_water_lifts_a_grain),
+      cmocka_unit_test(fall_speed_balances_weight_and_drag),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,129 @@
+/* Of fix hydro/vans: what a run may not do as one thinks, said once. */
+#include "fix_hydro_vans.h"
+
+#include "neighbours_vans.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+void FixHydroVans::look_at_neighbours()
+{
+  neighbourhood.look(set.voice, vans_neighbours(), set.fluctuation == VansSettings::LANGEVIN ? LANGEVIN : 0u,
+                     [this](int i) { return (unsigned) ((atom->mask[i] & groupbit) != 0); }, this);
+}
+
+/* The law that holds unless one is chosen is made for beads of some millimetres in water. Where grains
+ * fall at a Reynolds number of 1 to some hundreds it gives up to 1.4 times the speed of spheres: the
+ * worst grain of all. Each size once. */
+void FixHydroVans::tell_fall()
+{
+  if (told_fall || set.drag_given || set.yade() || !set.has_grains()) return;
+  const double g = std::sqrt(set.law.g[0] * set.law.g[0] + set.law.g[1] * set.law.g[1] +
+                             set.law.g[2] * set.law.g[2]), rho = set.law.rho, eta = set.law.eta;
+  sd_vans_drag_law alone = set.law.drag, sphere = alone;
+  sphere.law = SD_VANS_DRAG_BROWN_LAWLER;
+  select(groupbit);
+  struct {
+    double ratio;
+    int rank;
+  } mine = {1.1, comm->me}, worst;
+  double found[4] = {0.0, 0.0, 0.0, 0.0};    // radius, its two speeds, Re
+  std::map<std::pair<double, double>, bool> seen;
+  for (int i = 0; i < atom->nlocal && seen.size() < 1000; i++) {
+    const double a = atom->radius[i], m = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]],
+                 weight = g * std::fabs(m - 4.0 / 3.0 * SD_PI * a * a * a * rho);
+    if (!take[i] || !(weight > 0.0) || !seen.emplace(std::make_pair(a, m), true).second) continue;
+    const double w = sd_vans_fall_speed(alone, rho, eta, a, weight),
+                 right = sd_vans_fall_speed(sphere, rho, eta, a, weight);
+    if (!(w > mine.ratio * right)) continue;
+    mine.ratio = w / right;
+    const double here[4] = {a, w, right, 2.0 * a * rho * right / eta};
+    std::copy_n(here, 4, found);
+  }
+  MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  if (!(worst.ratio > 1.1)) return;
+  MPI_Bcast(found, 4, MPI_DOUBLE, worst.rank, world);
+  told_fall = true;
+  set.voice.warn("keyword drag: by its default, yade, a lone grain of radius " + text(found[0]) +
+                 " falls at " + text(found[1]) + ", a sphere in fact at " + text(found[2]) +
+                 " (Re = " + text(found[3]) + "): use drag brown_lawler for spheres, ferguson_church for "
+                 "sand, or write drag yade if you want that law");
+}
+
+/* What a coupling does, where it is not what the keywords seem to say, or takes seconds. */
+void FixHydroVans::tell_steps()
+{
+  const double of_grains = nevery * update->dt, T = set.period > 0.0 ? set.period : of_grains,
+               wanted = set.period > 0.0 ? set.dt : 0.1 * T, N = set.ncell();
+  double dt = wanted;
+  const auto steps = sd_vans_steps(set.law.rules, T, &dt);
+  const std::string as_made = std::to_string(steps) + " steps of " + text(dt) + " are used";
+  if (std::fabs(dt - wanted) > 1e-9 * wanted)
+    set.voice.tell("the step " + text(wanted) + " of keyword solve is no fraction of " + text(T) +
+                   ": " + as_made);
+  else if (std::fabs(steps * dt - T) > 1e-9 * T)
+    set.voice.tell("rules yade: " + as_made + " for the period " + text(T));
+  if (set.couple == VansSettings::TWO && std::fabs(T / of_grains - 1.0) > 1e-9)
+    set.voice.tell("every coupling solves the stream over the time " + text(T) +
+                   ", but the grains move for " + text(of_grains) + " between couplings");
+  if (steps * N > 1e9 && !told_work) {
+    told_work = true;
+    set.voice.warn("keyword solve: " + text((double) steps) + " steps of " + text(N) +
+                   " slices in every coupling take about " + text(5e-9 * steps * N) +
+                   " seconds each time");
+  }
+}
+
+/* The exchange of rules yade knows one size or classes. */
+void FixHydroVans::tell_sizes()
+{
+  if (!set.yade() || set.classes) return;
+  double mine[2] = {0.0, 0.0}, all[2];    // the largest radius and the largest inverse
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & average_bit) && atom->radius[i] > 0.0) {
+      mine[0] = std::max(mine[0], atom->radius[i]);
+      mine[1] = std::max(mine[1], 1.0 / atom->radius[i]);
+    }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (all[0] * all[1] > 1.01)
+    set.voice.warn("rules yade: radii from " + text(1.0 / all[1]) + " to " + text(all[0]) +
+                   " are replaced by their mean in the drag on the water, which can be wrong by a "
+                   "factor of two: use classes yes, or rules consistent");
+}
+
+/* Drag acts with the velocity of the step before: beyond 2/rate a step overshoots and grows. Looked
+ * at when a run begins and then every 100 steps at most. */
+void FixHydroVans::tell_stiff()
+{
+  if (told_stiff || !set.has_grains()) return;
+  if (looked_step >= 0 && update->ntimestep < looked_step + 100) return;
+  looked_step = update->ntimestep;
+  select(groupbit);
+  std::vector<double> mass(atom->nlocal + 1);
+  for (int i = 0; i < atom->nlocal; i++)
+    mass[i] = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  const sd_vans_grains all = grains();
+  int stiffest = -1;
+  struct {
+    double rate;
+    int rank;
+  } mine = {sd_vans_stiffest(&set.mesh, &set.law, stream.U.data(), stream.hindrance.data(), &all,
+                             mass.data(), &stiffest), comm->me}, largest;
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  if (!(largest.rate * update->dt > 1.0)) return;
+  double tag = stiffest < 0 ? 0.0 : (double) atom->tag[stiffest];
+  MPI_Bcast(&tag, 1, MPI_DOUBLE, largest.rank, world);
+  told_stiff = true;
+  set.voice.warn("the time step " + text(update->dt) + " is too long for the drag on atom " +
+                 std::to_string((bigint) tag) + ", which changes its velocity at the rate " + text(largest.rate) +
+                 ": take at most " + text(1.0 / largest.rate) + "; beyond " +
+                 text(2.0 / largest.rate) + " the velocity grows without bound");
+}
