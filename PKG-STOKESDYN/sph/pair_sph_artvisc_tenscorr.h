@@ -5,6 +5,7 @@
 #define SD_PAIR_SPH_ARTVISC_TENSCORR_H
 
 #include "moved_box.h"
+#include "neighbours.h"
 #include "pair.h"
 #include "sd_sph_sums.h"
 #include "sph.h"
@@ -63,6 +64,8 @@ class PairSph : public LAMMPS_NS::Pair {
   bool has_sound_speed(int itype) const;
   /* Of each owned particle: |h v.d / (r^2 + eta)|. Not inside compute. */
   void largest_approach(std::vector<double> &largest);
+  /* The smallest sd_sph_growth_limit of particles of these groups that are none of a wall. */
+  double growth_limit(int bits) const;
   /* W' for two particles of this type. */
   double dW_dr(int itype, double r) const;
   /* Does particle i, of this rank or a ghost, stand in the layer of a fix sph/inlet or sph/outlet? */
@@ -115,10 +118,12 @@ class PairSph : public LAMMPS_NS::Pair {
   int displaced_bits = 0;
   bool leapfrog = false, needs_velocity = false, measured = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
+  Neighbourhood neighbourhood;
   // comm_modify vel was no
   bool asked_for_velocities = false;
   template <class Style> Style *only(const char *otherwise);
   void find_fixes();
+  std::vector<LAMMPS_NS::Fix *> of_ours(std::vector<LAMMPS_NS::Fix *> fixes) const;
   void find_integrators();
   void remember_members();
   void choose_scheme();

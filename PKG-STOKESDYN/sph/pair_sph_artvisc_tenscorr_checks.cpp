@@ -5,6 +5,7 @@
 #include "fix_wall_sph.h"
 #include "keywords.h"
 #include "ranks.h"
+#include "sd_sph_step.h"
 #include "sd_sph_wall.h"
 
 #include "atom.h"
@@ -68,6 +69,21 @@ void PairSph::look_at_sound()
              text(sound_speed(all.type)) + " by pair_coeff c, and " + text(sound) +
              " by its fix sph/pressure: limits of the time step, artVisc and delta use that of "
              "pair_coeff, the fluid has that of fix sph/pressure");
+}
+
+double PairSph::growth_limit(int bits) const
+{
+  double mine = HUGE_VAL;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int t = atom->type[i];
+    const FixSphPressure *eos = state_of(i);
+    if (!(atom->mask[i] & bits) || is_wall(i) || !used(t) || !eos || !(atom->rho[i] > 0.0)) continue;
+    const double sound = sd_sph_speed_of_sound(&eos->state, atom->rho[i]);
+    const sd_sph_parameters p = {table[H][t][t], sound, table[ALPHA][t][t], table[BETA][t][t],
+                                 table[DELTAP][t][t], table[MU][t][t]};
+    mine = std::min(mine, sd_sph_growth_limit(&model, &p, atom->rho[i]));
+  }
+  return smallest_of_all(world, mine);
 }
 
 /* Among the equations of state with a density rho0; nullptr: there is none. */

@@ -10,6 +10,7 @@
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "neighbours_sph.h"
 #include "ranks.h"
 
 #include "atom.h"
@@ -91,13 +92,26 @@ void PairSph::find_fixes()
       voice.fail("more than one fix property/global gives " + fix->property);
 }
 
+/* Those with a particle of this style in their group. */
+std::vector<Fix *> PairSph::of_ours(std::vector<Fix *> fixes) const
+{
+  const auto others = [this](const Fix *fix) {
+    return first_atom(lmp, [this, fix](int i) {
+             return (atom->mask[i] & fix->groupbit) && used(atom->type[i]);
+           }) == 0;
+  };
+  fixes.erase(std::remove_if(fixes.begin(), fixes.end(), others), fixes.end());
+  return fixes;
+}
+
 /* Who advances the density, and who sets vest. */
 void PairSph::find_integrators()
 {
   integrators = fixes_of<FixNveSph>(lmp);
   const auto moving = fixes_of(lmp, FixNveSph::STYLE);
   const auto stationary = fixes_of(lmp, FixNveSphStationary::STYLE);
-  const auto theirs = fixes_of(lmp, "sph"), their_stationary = fixes_of(lmp, "sph/stationary");
+  const auto theirs = of_ours(fixes_of(lmp, "sph")),
+             their_stationary = of_ours(fixes_of(lmp, "sph/stationary"));
   const bool ours = !moving.empty() || !stationary.empty(),
              others = !theirs.empty() || !their_stationary.empty();
   if (ours && others)
@@ -194,7 +208,8 @@ void PairSph::check_groups()
   for (const auto *fix : Sph::integrators(lmp))
     if (const tagint both = in_both(wall->groupbit, fix->groupbit))
       wall->voice.fail("atom " + std::to_string(both) + " of its group is also integrated by fix " +
-                       fix->id + ", so the wall would flow; give that fix the group of the fluid");
+                       fix->id + ", so the wall would flow: let that fix move the fluid alone; a body "
+                       "is moved by fix rigid or fix move, and one that bends cannot be a wall");
 }
 
 /* Open ends move and delete particles of the fluid that nve/sph integrates. */
@@ -219,9 +234,14 @@ tagint PairSph::in_both(int bits, int more_bits) const
   return first_atom(lmp, [=](int i) { return (atom->mask[i] & bits) && (atom->mask[i] & more_bits); });
 }
 
-/* Here and not in init_style, since the domain learns of fix deform after that. */
+/* Here and not in init_style, since the domain learns of fix deform after that, and pair styles below a
+ * hybrid of their types. */
 void PairSph::setup()
 {
+  neighbourhood.look(voice, sph_neighbours(), continuity ? CONTINUITY : 0u, [this](int i) {
+    if (!used(atom->type[i])) return 0u;
+    return (unsigned) (is_wall(i) ? WALL : WATER);
+  });
   if (needs_velocity && domain->deform_vremap && !fixes_of(lmp, "sph").empty())
     voice.fail("fix deform with remap v: fix sph extrapolates velocities too early, before LAMMPS "
                "adds the jump at the faces that glide; use fix nve/sph");

@@ -41,3 +41,12 @@ double sd_sph_step_limit(double h, double c, double approach, double mu, double 
   const double courant = h / (c + approach);
   return mu > 0.0 ? fmin(courant, h * h * rho / (8.0 * mu)) : courant;
 }
+
+double sd_sph_growth_limit(const sd_sph_model *model, const sd_sph_parameters *p, double rho)
+{
+  const double of_alpha = model->dimension == 2 ? 1.0 / 16.0 : 1.0 / 20.0;
+  double nu = 0.0;
+  if (model->artvisc) nu += 3.0 * of_alpha * p->alpha * p->h * p->c;
+  if (model->friction) nu += (model->friction == SD_SPH_CENTRAL ? 3.0 : 1.0) * p->mu / rho;
+  return 2.0 * nu / (p->c * p->c);
+}

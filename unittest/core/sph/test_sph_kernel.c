@@ -124,6 +124,25 @@ static void repulsion(void **state)
   assert_true(sd_sph_repulsion(3.0, 0.2, 0.3) == 0.0);
 }
 
+/* artVisc of fix sph, the rule of thumb 3 alpha h/(8 c) in two dimensions */
+static void sound_grows_above_what_viscosity_damps(void **state)
+{
+  (void) state;
+  sd_sph_model model = {.dimension = 2, .artvisc = 1};
+  const sd_sph_parameters p = {.h = 0.02, .c = 30.0, .alpha = 0.07, .mu = 0.4};
+  const double flat = 3.0 * 0.07 * 0.02 / (8.0 * 30.0), of_mu = 2.0 * 0.4 / 900.0 / (30.0 * 30.0);
+  CHECK_NEAR(sd_sph_growth_limit(&model, &p, 900.0) / flat, 1.0, 1e-14);
+  model.dimension = 3;
+  CHECK_NEAR(sd_sph_growth_limit(&model, &p, 900.0) / flat, 16.0 / 20.0, 1e-14);
+  model.friction = SD_SPH_CENTRAL;
+  CHECK_NEAR(sd_sph_growth_limit(&model, &p, 900.0), 0.8 * flat + 3.0 * of_mu, 1e-18);
+  model.friction = SD_SPH_LAPLACIAN;
+  model.artvisc = 0;
+  CHECK_NEAR(sd_sph_growth_limit(&model, &p, 900.0), of_mu, 1e-18);
+  model.friction = SD_SPH_INVISCID;
+  assert_true(sd_sph_growth_limit(&model, &p, 900.0) == 0.0);
+}
+
 static void time_step_limits(void **state)
 {
   (void) state;
@@ -141,6 +160,7 @@ int main(void)
                                      cmocka_unit_test(states_and_their_inverses),
                                      cmocka_unit_test(states_without_tension),
                                      cmocka_unit_test(repulsion),
-                                     cmocka_unit_test(time_step_limits)};
+                                     cmocka_unit_test(time_step_limits),
+                                     cmocka_unit_test(sound_grows_above_what_viscosity_damps)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,66 @@
+#include "neighbours_sph.h"
+
+#include "pair_sph_artvisc_tenscorr.h"
+
+#include "fix.h"
+#include "force.h"
+#include "group.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+// --- what the name of a style does not tell ------------------------------------------------------
+
+static bool lets_sound_grow(const Guest &guest, std::string &says)
+{
+  const auto *pair = static_cast<const PairSph *>(guest.lmp->force->pair_match(PairSph::STYLE, 1));
+  const double limit = pair->growth_limit(guest.fix->groupbit);
+  says = text(limit);
+  return guest.lmp->update->dt > limit * (1.0 + 1e-9);
+}
+
+static bool is_dynamic(const Guest &guest, std::string &says)
+{
+  const Group *group = guest.lmp->group;
+  says = group->names[guest.fix->igroup];
+  return group->dynamic[guest.fix->igroup] != 0;
+}
+
+// --- the table -----------------------------------------------------------------------------------
+
+const std::vector<Neighbour> &sph_neighbours()
+{
+  using N = Neighbour;
+  static const std::vector<Neighbour> table = {
+      // another density, another pressure
+      {N::PAIR, "sph/rhosum sph/taitwater* sph/idealgas sph/lj rheo*", 0, N::ERROR,
+       "sets the density or adds the pressure of particles for which pair_style sph/artVisc/tensCorr "
+       "does that: take one of the two out, or give them other types"},
+      {N::FIX, "rheo*", 0, N::ERROR,
+       "moves particles and advances their density, which is the task of fix nve/sph here: take it "
+       "out, or use pair_style rheo"},
+      // another motion
+      {N::FIX, "sph", CONTINUITY, N::WARNING,
+       "lets sound grow at time steps above {} (3 alpha h/(8 c) in two dimensions, less in three), "
+       "until the water boils: use fix nve/sph", lets_sound_grow, WATER},
+      {N::FIX, "nve/sph nve/sph/stationary wall/adami/sph", 0, N::ERROR,
+       "has the dynamic group {}, which is empty when the first forces are computed, and in some LAMMPS "
+       "is always that of the step before: use a group of fixed members, made anew between runs",
+       is_dynamic, N::ANYWHERE},
+      // walls
+      {N::FIX, "wall/reflect* wall/lj* wall/harmonic* wall/morse wall/table wall/lepton wall/colloid "
+               "wall/region wall/gran*", 0, N::WARNING,
+       "is no wall for water: there is nothing behind it that has a pressure, so that the water boils "
+       "beside it: use particles of a wall (fix wall/adami/sph)", nullptr, WATER},
+      // what goes together
+      {N::PAIR, "sph/heatconduction", 0, N::FINE, "changes the energy of particles alone"},
+      {N::PAIR, "gran/* granular lj/* zero", 0, N::FINE,
+       "acts between bodies of wall particles below hybrid or hybrid/overlay"},
+      {N::FIX, "wall/*", 0, N::FINE, "goes with bodies of particles of a wall"},
+  };
+  return table;
+}
+
+}    // namespace StokesDyn
