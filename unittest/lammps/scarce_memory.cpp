@@ -11,6 +11,7 @@ extern "C" void *__libc_calloc(size_t, size_t);
 static size_t limit_of(const char *name)
 {
   const char *value = getenv(name), *scarce = getenv("SCARCE_RANK"), *me = getenv("OMPI_COMM_WORLD_RANK");
+  if (!me) me = getenv("PMI_RANK");    // MPICH
   return value && (!scarce || (me && !strcmp(me, scarce))) ? strtoul(value, nullptr, 10) : 0;
 }
 

@@ -96,7 +96,8 @@ def test_a_compute_without_memory_tells_it(tmp_path, scarce):
 def test_one_rank_without_memory_for_a_fix_ends_all(tmp_path, scarce, scarce_rank):
     """The constructor fails in its first rows, before LAMMPS has been told of them."""
     scarce(CALLOC_LIMIT=8 * 16385, CALLOC_MOST=8 * 16385, SCARCE_RANK=scarce_rank)    # a number for each atom that LAMMPS has room for
-    run = lmp(tmp_path, [line.format(n=3) for line in ALONE] + ["fix eos all sph/pressure Tait 14.3 1 7", "run 0"], 2, timeout=30, succeed=False)
+    lines = [line.format(n=3) for line in ALONE] + ["fix eos all sph/pressure Tait 14.3 1 7", "run 0"]
+    run = lmp(tmp_path, lines, ranks=2, timeout=30, succeed=False)
     assert run.code != 0 and "Fix sph/pressure: out of memory on this rank" in run.text, run.text[-1500:]
     assert "terminate called" not in run.text
 
@@ -108,7 +109,7 @@ def test_one_rank_without_memory_for_a_stream_ends_all(tmp_path, scarce, scarce_
     scarce(CALLOC_LIMIT=18 * 8 * slices, CALLOC_MOST=18 * 8 * (slices + 2), SCARCE_RANK=scarce_rank)
     lines = ["units si", "atom_style sphere", "plugin load stokesdynplugin.so", "region box block 0 1 0 1 0 1", "create_box 1 box",
              f"fix h all hydro/vans 1 mesh {slices} 1e-4 0 fluid 1000 0.001 gravity 0.5 0 -9.8"]
-    run = lmp(tmp_path, lines, 2, timeout=30, succeed=False)
+    run = lmp(tmp_path, lines, ranks=2, timeout=30, succeed=False)
     assert run.code != 0 and f"Fix hydro/vans: out of memory for {slices} slices" in run.text, run.text[-1500:]
 
 
@@ -119,7 +120,7 @@ def test_one_rank_without_memory_for_a_shell_ends_all(tmp_path, scarce, scarce_r
     lines = input_lines(Spheres([(0, 0, 0), (0, 0, 3)]), "cut_off_distance inf visc 1 multiblob 42", str(tmp_path / "data"))
     size = 8 * (3 * 42)**2    # the inverse mobility of its points
     scarce(MALLOC_LIMIT=size, MALLOC_MOST=size, SCARCE_RANK=scarce_rank)
-    run = lmp(tmp_path, lines + ["run 0"], 2, timeout=40, succeed=False)
+    run = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=40, succeed=False)
     assert run.code != 0 and "keyword multiblob: '42': out of memory" in run.text, run.text[-1500:]
 
 
@@ -132,7 +133,7 @@ def test_one_rank_without_memory_within_a_solve_ends_all(tmp_path, scarce, fix, 
     x = 3.0 * np.stack(np.meshgrid(*3 * [np.arange(4)]), axis=-1).reshape(-1, 3)[:n]
     lines = input_lines(Spheres(x, v=(0, 0, 1)), "cut_off_distance inf far_field direct visc 1 multiblob 12", str(tmp_path / "data"), fix=False)
     scarce(NEW_LIMIT=8 * 36 * n, NEW_MOST=8 * 36 * n, SCARCE_RANK=scarce_rank)
-    run = lmp(tmp_path, lines + ["fix down all addforce 0 0 -1", fix, "run 0"], 2, timeout=40, succeed=False)
+    run = lmp(tmp_path, lines + ["fix down all addforce 0 0 -1", fix, "run 0"], ranks=2, timeout=40, succeed=False)
     assert run.code != 0 and re.search("Pair style stokes_dynamics: step 0: .*out of memory", run.text), run.text[-1500:]
 
 
