@@ -109,6 +109,17 @@ CASES = {
         b = new(); b.close()
         do(a, "run 2", LOAD)
         assert right(a)""",
+    "several processes of a fork, and then this one": """
+        import os
+        children = []
+        for k in range(2):
+            children.append(os.fork())
+            if children[-1] == 0:
+                a = new(); go(a)
+                os._exit(0 if right(a) else 1)
+        assert [os.waitpid(child, 0)[1] for child in children] == [0, 0]
+        a = new(); go(a)
+        assert right(a)""",
     "each style unloaded and loaded again": """
         a = new(); go(a)
         for kind, name in (("fix", "stokes_dynamics"), ("compute", "sph/energy"), ("fix", "hydro/vans"), ("pair", "stokes_dynamics")):
