@@ -93,7 +93,8 @@ void FixStokesDynamics::post_force(int /*vflag*/)
     }
     double *row = rows.give(i);
     const double *F = hydro.force(i), *torque = hydro.torque(i);
-    std::copy_n(F, torque ? 9 : 6, row);
+    std::copy_n(F, 6, row);
+    for (int d = 0; d < 3; d++) row[6 + d] = torque ? torque[d] : 0.0;
     for (int d = 0; d < 3; d++) {
       total[d] += F[d];
       if (adds) atom->f[i][d] += F[d];

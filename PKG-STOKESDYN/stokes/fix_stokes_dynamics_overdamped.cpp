@@ -245,9 +245,8 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       atom->v[i][d] = V[d];
       row[d] = V[d] - fluid[d];
       row[3 + d] = F[d];
-      if (width == 3) continue;
-      atom->omega[i][d] = V[3 + d];
-      row[6 + d] = F[3 + d];
+      row[6 + d] = width == 6 ? F[3 + d] : 0.0;
+      if (width == 6) atom->omega[i][d] = V[3 + d];
     }
     std::copy_n(V, 3, motion.give(i));
     if (width == 6) spin.look(i, V + 3, F + 3, &pushed[6 * (size_t) i + 3]);

@@ -74,6 +74,16 @@ def test_outputs_between_another_pair_style_and_the_next_run(simulation):
     sim.run(2)
 
 
+@pytest.mark.parametrize("fix", ["fix drag all stokes_dynamics", "fix move all stokes_dynamics/overdamped held some"])
+def test_torques_of_a_pair_style_before_are_gone_where_the_next_has_none(simulation, fix):
+    name = fix.split()[1]
+    sim = simulation(cluster(), style_of("rotation yes"), fix=False, dt=1e-9, box=[(0.0, 40.0)] * 3)
+    sim.commands(["group some id 1 2", "set group all omega 0.1 0.2 0.3", "fix push all addforce 1 0 0", fix]).run()
+    assert np.abs(sim.fix_rows(name)[:, 6:9]).max() > 1e-2
+    sim.commands([f"pair_style stokes_dynamics {style_of('')}", "pair_coeff * *"]).run()
+    assert np.array_equal(sim.fix_rows(name)[:, 6:9], np.zeros((6, 3)))
+
+
 @pytest.mark.parametrize("fix", ["fix drag all stokes_dynamics", "fix move all stokes_dynamics/overdamped"])
 def test_a_run_without_its_preparation_after_another_pair_style_is_an_error(simulation, fix):
     sim = simulation(mixed(), CLUMPS, fix=False, dt=0.01).commands(fix).run(2)
