@@ -112,7 +112,7 @@ def pytest_configure(config):
 
 
 # Files that take long and come late in the alphabet: they begin first, so that no core waits for them in the end.
-LONG = ["test_wall", "test_vans_coupling"]
+LONG = ["test_relations", "test_wall", "test_vans_coupling"]
 
 
 @pytest.hookimpl(tryfirst=True)      # before -m looks at the marks

@@ -66,17 +66,19 @@ def work(seed, begin, end, folder):
 
 
 class Worker:
-    """The results of cases begin to end - 1, one by one; a worker that dies or hangs is followed by a new one."""
+    """The results of cases begin to end - 1, one by one; a worker that dies or hangs is followed by a new one. program: a script
+    that does as --work of this one; variables: of its environment."""
 
-    def __init__(self, seed, end, ranks, timeout, folder):
+    def __init__(self, seed, end, ranks, timeout, folder, program=None, variables=()):
         self.seed, self.end, self.ranks, self.timeout, self.folder = seed, end, ranks, timeout, folder
+        self.program, self.variables = program, dict(variables)
 
     def results(self, begin):
         while begin < self.end:
-            command = mpirun(self.ranks) + [sys.executable, os.path.abspath(__file__), "--work", str(self.seed), str(begin),
-                                            str(self.end), self.folder]
-            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment(),
-                                       start_new_session=True)
+            command = mpirun(self.ranks) + [sys.executable, os.path.abspath(self.program or __file__), "--work", str(self.seed),
+                                            str(begin), str(self.end), self.folder]
+            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True,
+                                       env=dict(environment(), **self.variables))
             end, pending, aborted = "crash", b"", False
             while begin < self.end:
                 # The first case of a worker bears its start.

@@ -1,0 +1,149 @@
+"""Changes of an input that must not matter (for relations.py), and which of them cannot hold where, with the reason.
+
+A change is a dictionary that joins others: entries of `how` say how LAMMPS is run (relations.commands), `frame` is a Frame that
+moves the whole input, `options` are options of the scene that make the same physics in another way. loose: by how much the
+tolerance of the scene is too small for it."""
+import random
+
+import numpy as np
+
+from relations_frame import Frame, turned
+
+def change(frame=None, loose=1.0, options=None, **how):
+    return {"how": how, "frame": frame, "options": options, "loose": loose}
+
+
+LAYOUT = {
+    "ranks 2": change(ranks=2), "ranks 3": change(ranks=3),
+    "newton off": change(newton="off"),
+    "grid 1 1 2": change(ranks=2, grid="1 1 *"), "grid 3 1 1": change(ranks=3, grid="* 1 1"),
+    "tiled": change(ranks=2, tiled=True),
+    "skin": change(skin=0.11), "unsorted": change(sort="0 0"),
+}
+PIECES = {
+    "two runs": change(pieces="two"), "runs of 1": change(pieces="ones"), "run 0 before": change(pieces="zero"),
+    "restart": change(pieces="restart"), "restart on 2": change(pieces="restart", again=2),
+    "restart from 2 on 1": change(pieces="restart", ranks=2, again=1),
+    "restart from 2 on 3": change(pieces="restart", ranks=2, again=3),
+}
+STYLES = {
+    "hybrid": change(hybrid="hybrid"), "overlay before": change(hybrid="before"), "overlay after": change(hybrid="after"),
+    "pair style twice": change(twice="same"), "another pair style before": change(twice="other"),
+}
+FRAMES = {
+    "shift": change(frame=lambda s: Frame(shift=s.spacing * np.array((3.3, -5.1, 0.0 if s.model == "sph 2-D" else 7.7)))),
+    "turn": change(frame=lambda s: Frame(R=turned("y", "-x", "z") if s.model == "sph 2-D" else turned("y", "z", "x"))),
+    "turn back": change(frame=lambda s: Frame(R=turned("-y", "x", "z") if s.model == "sph 2-D" else turned("x", "-z", "y"))),
+    "mirror": change(frame=lambda s: Frame(R=turned("x", "-y", "z"))),
+    "mirror at the wall": change(frame=lambda s: Frame(R=turned("x", "-y", "z") if s.model == "sph 2-D" else turned("x", "y", "-z"))),
+    "renumbered": change(frame=lambda s: Frame(order=shuffled(s, lambda a: 0))),
+    "members": change(frame=lambda s: Frame(order=members(s))),
+    "units": change(frame=lambda s: Frame(scale=(1000.0, 40.0, 0.3))),
+    "small units": change(frame=lambda s: Frame(scale=(1e-3, 0.02, 1e-4))),
+}
+ENGINES = {"direct": change(options={"far": "direct"}, loose=10.0), "ewald": change(options={"far": "ewald"}, loose=10.0)}
+CHANGES = {**LAYOUT, **PIECES, **STYLES, **FRAMES, **ENGINES}
+KINDS = (LAYOUT, PIECES, STYLES, FRAMES, ENGINES)
+
+
+def shuffled(scene, key):
+    order = list(range(1, len(scene.atoms) + 1))
+    random.Random(f"order {scene.seed}").shuffle(order)
+    return order
+
+
+def members(scene):
+    """Each clump's IDs among themselves in the opposite order"""
+    order = list(range(1, len(scene.atoms) + 1))
+    for m in {a.get("molecule") for a in scene.atoms} - {0, None}:
+        ids = [k + 1 for k, a in enumerate(scene.atoms) if a["molecule"] == m]
+        for new, old in zip(ids, reversed(ids)):
+            order[new - 1] = old
+    return order
+
+
+def triclinic(o):
+    return o.get("space") in ("tilt", "deform")
+
+
+TURNS = ("turn", "turn back", "mirror", "mirror at the wall")
+CUTS = tuple(PIECES)
+RESTARTS = tuple(name for name in PIECES if name.startswith("restart"))
+# (changes, where they cannot hold, why)
+EXCEPTIONS = [
+    (TURNS, triclinic, "LAMMPS has triclinic boxes of one orientation only"),
+    (TURNS + ("renumbered", "members"), lambda o: o.get("noise") == "yes", "random numbers belong to atom IDs and to the axes x, y, z"),
+    (("renumbered",), lambda o: o.get("fluctuation", "none") != "none", "random numbers belong to atom IDs"),
+    (TURNS, lambda o: o["model of"] == "vans", "the stream runs along x, and z is up"),
+    (("grid 1 1 2",), lambda o: o.get("dim") == 2, "two dimensions"),
+    (TURNS, lambda o: o.get("look") == "virial" and (o["viscosity"] == "laplacian" or o["scheme"] in ("shift", "correction")),
+     "forces that are not along the line of centres: of their virial LAMMPS has six numbers of nine"),
+    (TURNS, lambda o: o.get("look") == "height", "a height is measured along +AXIS"),
+    (("members",), lambda o: not o.get("clumps"), "no clumps"),
+    (CUTS + ("pair style twice",), lambda o: o.get("space") == "body", "fix rigid ... gravity of LAMMPS begins each run with half a step without weight"),
+    (CUTS, lambda o: "forces" in o.get("motion", "") and (o["flow"] in ("shear", "time", "box") or o["visc"] == "formula"),
+     "LAMMPS's Verlet has other velocities in the first step of a run; the page asks for numbers"),
+    (("direct", "ewald"), lambda o: o["model of"] != "stokes" or o["pairs"] != "inf", "no sum over all pairs"),
+    (("direct",), lambda o: o.get("space") in ("periodic", "tilt", "deform") or o.get("far") == "direct",
+     "periodic boxes have Ewald sums only"),
+    (("ewald",), lambda o: o.get("far") == "ewald" or o.get("space") == "wall" and not o["model"].startswith("multiblob"),
+     "there already, or refused above a wall with one point per sphere that turns"),
+    (("direct", "ewald"), lambda o: o.get("noise") == "yes", "each engine draws its own numbers"),
+    (("another pair style before",), lambda o: o["model of"] != "stokes", "SPH keeps rates in its fixes; the stream has no pair style"),
+    (("pair style twice", "another pair style before"), lambda o: o.get("adapt") == "yes", "adapt goes on from the time step that it has chosen"),
+    (("pair style twice",), lambda o: o["model of"] == "vans", "the stream has no pair style"),
+    (("newton off", "tiled"), lambda o: o["model of"] == "vans", "pair gran with history does not go with it"),
+    (("hybrid", "overlay before", "overlay after"), lambda o: o.get("contacts") == "yes", "a hybrid already"),
+]
+
+
+# (changes, others, where, why): what does not go together
+CLASHES = [(RESTARTS, tuple(STYLES), lambda o: o["model of"] == "vans",
+            "LAMMPS's pair_style hybrid loses the history of contacts in a restart file"),
+           (("pair style twice",), ("hybrid", "overlay before", "overlay after"), lambda o: o.get("scheme") in ("shift", "correction"),
+            "hybrid makes the style anew, and in the first set-up of all walls have their densities only after the rates")]
+
+# (changes, where, tolerance, why): what matters, but not much
+COARSE = [
+    (TURNS + ("renumbered", "members"), lambda o: o.get("model", "").startswith("multiblob") or o.get("rigid") == "shell", 0.2,
+     "the points of a shell stand in the axes x, y, z, or in those of the clump that had its shape first"),
+]
+
+
+def coarse(names, options):
+    """The tolerance of what the changes may do by right, or 0"""
+    return max([tolerance for which, where, tolerance, _ in COARSE if set(which) & set(names) and where(options)], default=0.0)
+
+
+def reason(name, options):
+    """Why this change cannot hold in a scene of these options, or None."""
+    for names, where, why in EXCEPTIONS:
+        if name in names and where(options):
+            return why
+    return None
+
+
+def possible(options, most):
+    return [name for name, c in CHANGES.items()
+            if max(c["how"].get("ranks", 1), c["how"].get("again", 1)) <= most and not reason(name, options)]
+
+
+def draw(R, options, most):
+    """One to three changes that go together."""
+    names = possible(options, most)
+    chosen = []
+    for _ in range(R.choice([1, 1, 2, 2, 3])):
+        kind = R.choice([k for k in KINDS if any(n in names for n in k)])
+        name = R.choice([n for n in kind if n in names])
+        clash = any(where(options) and {name, n} & set(some) and {name, n} & set(others) for n in chosen
+                    for some, others, where, _ in CLASHES)
+        if not clash and together([CHANGES[n] for n in chosen + [name]]):
+            chosen.append(name)
+    return chosen
+
+
+def together(changes):
+    """No two say the same thing, and at most one moves the input."""
+    keys = [k for c in changes for k in c["how"]]
+    return len(keys) == len(set(keys)) and sum(c["frame"] is not None for c in changes) < 2 \
+        and sum(c["options"] is not None for c in changes) < 2

@@ -1,0 +1,182 @@
+"""Scenes of pair_style sph/artVisc/tensCorr for relations.py: full boxes, tanks, columns that fall, channels, open ends, bodies."""
+import random
+from itertools import product
+
+from relations_scene import Scene
+
+OPTIONS = {
+    "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "tank", "tank", "column", "channel", "ends", "body"],
+    "scheme": ["plain", "delta", "shift", "correction", "summation"], "volume": ["no", "no", "yes"], "fluids": [1, 1, 2],
+    "kernel": ["wendland", "cubicspline"], "artVisc": ["no", "yes"], "tensCorr": ["no", "no", "yes"],
+    "viscosity": ["no", "central", "laplacian"], "filter": ["no", "no", "yes"],
+    "state": ["Tait", "Tait", "tension no", "relativ", "absolut"],
+    "wall": ["at rest", "slip", "suction no", "moving", "own"], "plane": ["no", "no", "plane", "region"], "gravity": ["no", "yes"],
+    "look": ["nothing", "energy", "probe", "virial", "height"], "skin": [0.3, 0.15], "steps": [2, 5, 9],
+}
+WALLED = ("tank", "column", "channel", "body")
+
+
+def lawful(o):
+    """What does not go together, by the pages."""
+    o, was = dict(o), None
+    while o != was:
+        was = dict(o)
+
+        def no(condition, **instead):
+            if condition:
+                o.update(instead)
+
+        no(o["space"] in ("ends", "body"), dim=2)
+        no(o["dim"] == 2, wide=1)
+        no(o["scheme"] == "correction" and o["space"] not in ("full", "channel"), space="channel")
+        no(o["scheme"] == "correction", plane="no")
+        no(o["scheme"] == "summation" and o["space"] in ("ends", "body"), scheme="plain")
+        no(o["scheme"] == "summation", volume="no", filter="no")
+        no(o["scheme"] in ("shift", "correction"), tensCorr="no", filter="no")
+        no(o["scheme"] == "shift", kernel="wendland")
+        no(o["volume"] == "yes", tensCorr="no", filter="no")
+        no(o["fluids"] == 2, volume="yes" if o["scheme"] != "summation" else "no", filter="no")
+        no(o["fluids"] == 2 and (o["scheme"] == "summation" or o["space"] in ("ends", "body")), fluids=1)
+        no(o["state"] == "absolut" and o["fluids"] == 2, state="Tait")
+        no(o["space"] not in WALLED, wall="at rest")
+        no(o["space"] == "body", wall="own")
+        no(o["space"] != "body" and o["wall"] == "own" and o["scheme"] == "summation", wall="at rest")
+        no(o["space"] in ("full", "ends", "channel", "body"), plane="no")
+        no(o["viscosity"] == "laplacian" and o["wall"] in ("moving", "own"), viscosity="central")
+        no(o["look"] == "height" and (o["space"] not in ("tank", "column") or o["gravity"] == "no"), look="probe")
+        no(o["space"] == "body", gravity="yes")
+        no(o["space"] == "body" and o["look"] == "virial", look="energy")     # that of fix rigid depends on where the origin is
+    return o
+
+
+# number of cells along x, y, z in two and three dimensions; which sides are periodic
+# (y twice as large with wide 2: so many ghosts that buffers are not large by chance)
+SIZES = {"full": ((20, 10, 1), (10, 8, 8)), "tank": ((20, 10, 1), (9, 8, 6)), "column": ((24, 10, 1), (12, 8, 7)),
+         "channel": ((20, 8, 1), (9, 8, 6)), "ends": ((16, 8, 1), None), "body": ((14, 9, 1), None)}
+OPEN_X = ("column", "ends")
+BODY = [(x, y) for x in (5, 6, 7, 8) for y in (5, 6, 7)]
+
+
+def size_of(o):
+    nx, ny, nz = SIZES[o["space"]][o["dim"] - 2]
+    return (nx, ny * o["wide"] if o["dim"] == 3 else ny, nz)
+
+
+def kinds_of_cells(o):
+    """{cell: type} of the scene: 1 and 4 fluid, 2 walls, 3 a body"""
+    size = size_of(o)
+    up = o["dim"] - 1
+    begin, end = [0, 0, 0], list(size)
+    if o["space"] == "column":
+        end[0] //= 2
+    if o["space"] == "ends":
+        begin[0], end[0] = -4, 20
+    cells = {c: 3 if o["space"] == "body" and c[:2] in BODY else 4 if o["fluids"] == 2 and c[up] >= size[up] // 2 else 1
+             for c in product(*map(range, begin, end))}
+    walls = [(-3, 0)] * (o["space"] in WALLED) + [(size[up], size[up] + 3)] * (o["space"] == "channel")
+    for first, last in walls:
+        begin, end = [0, 0, 0], list(size)
+        begin[up], end[up] = first, last
+        cells.update({c: 2 for c in product(*map(range, begin, end))})
+    return cells
+
+
+def box_of(o):
+    size, up = size_of(o), o["dim"] - 1
+    lo, hi, each = [0.0, 0.0, 0.0], [float(n) for n in size], ["p", "p", "p"]
+    if o["space"] in WALLED:
+        lo[up], hi[up], each[up] = -3.5, hi[up] + 3.5, "f"
+    if o["space"] == "ends":
+        lo[0], hi[0] = -6.0, 21.0
+    if o["space"] in OPEN_X:
+        lo[0], each[0] = min(lo[0], -1.0), "f"
+    if o["dim"] == 2:
+        lo[2], hi[2] = -0.5, 0.5
+    return lo, hi, each
+
+
+def build(options, seed):
+    o = lawful(options)
+    flat, R = o["dim"] == 2, random.Random(f"water {seed}")
+    s = Scene("sph 2-D" if flat else "sph", o, seed)
+    ends = o["space"] == "ends"
+    for cell, kind in kinds_of_cells(o).items():
+        fluid = kind in (1, 4)
+        jitter = 0.0 if not fluid else 0.04 if ends else 0.1
+        x = [c + (0.05 if ends and k == 0 else 0.5) + R.uniform(-jitter, jitter) for k, c in enumerate(cell)]
+        v = [R.uniform(-0.05, 0.05) * fluid + 4.0 * (ends and k == 0) for k in range(3)]
+        if flat:
+            x[2] = v[2] = 0.0
+        s.atom(x, v, kind, rho=1.0 + R.uniform(-0.005, 0.005) * fluid, kind="rho2" if flat else "rho")
+    commands(s, o, "2" if flat else "", 1 if flat else 2, *box_of(o))
+    return s
+
+
+def commands(s, o, d, up, lo, hi, each):
+    flat, walled = bool(d), o["space"] in WALLED
+    s.head = ["units lj", f"dimension {o['dim']}", "atom_style sph"]
+    spans = " ".join(f"{a!r} {b!r}" for a, b in zip(lo, hi))
+    s.make = [f"boundary <each {' '.join(each)}>", f"region box block <block {spans}>", "create_box 4 box"]
+    s.after = ["mass * <m 1.0>"]
+    s.groups = ["group fluid type 1 4", "group wall type 2 3", "group first type 1 2 3", "group second type 4"]
+    s.define = [f"neighbor <L {o['skin']}> bin", "neigh_modify delay 0 every 1 check yes"]
+    shifts = o["scheme"] in ("shift", "correction")
+    words = f"{o['kernel']} <L 1.3>" + " artVisc 0.1 0.0 <area 0.01>" * (o["artVisc"] == "yes")
+    words += " tensCorr 0.2 <L 1.0>" * (o["tensCorr"] == "yes")
+    words += f" viscosity <eta{d} 0.05> {o['viscosity']}" * (o["viscosity"] != "no")
+    words += {"shift": " shift yes", "correction": " correction yes"}.get(o["scheme"], "")
+    s.pair = [("sph/artVisc/tensCorr", words, "c <V 10>" + " deltap <L 1.0>" * shifts)]
+    state = {"Tait": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7", "relativ": f"relativ <V2 100> <rho{d} 1.0>", "absolut": "absolut <V 10>",
+             "tension no": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7 tension no"}[o["state"]]
+    pull = [0.0, 0.0, 0.0]
+    pull[up] = -0.1 if o["gravity"] == "yes" else 0.0
+    weight = "<A {} {} {}>".format(*pull)
+    direction = "<1 {} {} {}>".format(*[p / 0.1 for p in pull])
+    s.fixes = [f"fix p {'first' if o['fluids'] == 2 else 'all'} sph/pressure {state}"]
+    if o["fluids"] == 2:
+        s.fixes.append(f"fix p2 second sph/pressure {state}")
+    rate = "" if o["scheme"] == "plain" else " delta 0.1"
+    s.fixes.append("fix d all sph/density/summation" if o["scheme"] == "summation" else
+                   "fix d all sph/density/continuity" + rate + " volume yes" * (o["volume"] == "yes"))
+    s.fixes += ["fix filter fluid sph/density/corr shepard every 2"] * (o["filter"] == "yes")
+    s.fixes += [f"fix g fluid gravity <A 0.1> vector {direction}"] * (o["gravity"] == "yes")
+    if walled:
+        s.fixes.append("fix w wall wall/adami/sph" + f" gravity {weight}" * (o["gravity"] == "yes")
+                       + {"slip": " slip yes", "suction no": " suction no", "own": " own_acceleration yes"}.get(o["wall"], ""))
+        if o["wall"] in ("moving", "own"):
+            s.groups.append("group tank type 2")
+            s.fixes.append("fix tug tank move wiggle <L 0.3 0.0 0.0> <t 2.0>")
+    if o["space"] == "body":
+        s.groups.append("group box type 3")
+        s.fixes.append("fix float box rigid single gravity g force * on on off torque * off off on")
+    if o["space"] == "ends":
+        s.fixes += ["fix in fluid sph/inlet <side xlo 0> <L 4.0> velocity <V 4.0>",
+                    f"fix out fluid sph/outlet <side xhi 16> <L 4.0> pressure <P{d} 0.1>"]
+    if o["plane"] == "plane":
+        s.fixes.append(f"fix plane fluid wall/sph <planes {'y' if flat else 'z'} -0.6 NULL> <L 0.6> <F 1.0>")
+    if o["plane"] == "region":
+        s.define.append(f"region room block <block INF INF {'-0.6 INF INF INF' if flat else 'INF INF -0.6 INF'}>")
+        s.fixes.append("fix plane fluid wall/region/sph room <L 0.6> <F 1.0>")
+    s.fixes.append("fix move fluid nve/sph")
+    s.fixes += ["fix flat all enforce2d"] * flat
+    s.fixes.append("compute rho all sph/rho/atom")
+    look(s, o, d, up)
+    s.columns = [("p", "xu yu zu"), ("V", "vx vy vz"), ("rho" + d, "c_rho"), ("P" + d, "f_p")]
+    s.columns += [("drho" + d, "f_d")] * (o["scheme"] != "summation")
+    s.unsettled = "atoms: f_d"      # in the first set-up of all, walls have their densities only after the rates
+    s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-8
+
+
+def look(s, o, d, up):
+    if o["look"] == "energy":
+        s.fixes.append("compute en fluid sph/energy")
+        s.globals += [("E", f"c_en[{k}]") for k in (1, 3, 4, 5, 6)]
+    elif o["look"] == "virial":
+        s.fixes.append("compute vir all pressure NULL virial")
+        s.globals += [("P" + d, "c_vir"), ("stress" + d, " ".join(f"c_vir[{k}]" for k in range(1, 7)))]
+    elif o["look"] in ("probe", "height"):
+        probe = f"pressure <p 3.2 3.1 {'0' if up == 1 else '2.7'}>"
+        if o["look"] == "height":
+            probe += f" height <axis {'xyz'[up]}> <p 3.2 {'0' if up == 1 else '3.1'} 0>"
+        s.fixes.append(f"compute probe all sph/probe {probe}")
+        s.globals += [("P" + d, "c_probe[1]")] + [("L", "c_probe[2]")] * (o["look"] == "height")
