@@ -26,8 +26,8 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), motion(3), random(6), load(6),
-    before(9), output(9)
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), motion(3), random(6),
+    load(6), before(9), output(9)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
@@ -65,7 +65,9 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  keep({&motion, &random, &load, &before, &spin.slipping, &output}, &output, true);
+  std::vector<RowsOfAtoms *> rows = {&motion, &random, &load, &before, &spin.slipping, &output};
+  if (directions.on()) rows.push_back(&directions.turning);
+  keep(rows, &output, true);
 }
 
 int FixStokesDynamicsOverdamped::setmask()
@@ -99,7 +101,7 @@ void FixStokesDynamicsOverdamped::look_at_neighbours()
   const Hydrodynamics &hydro = hydrodynamics();
   neighbourhood.look(voice, stokes_neighbours,
                      OVERDAMPED | fact(NOISE, noise.on()) | fact(ADAPTING, adapt.every > 0) |
-                         fact(TURNING, hydro.rotation()) |
+                         fact(hydro.rotation() ? TURNING : UPRIGHT, true) |
                          fact(RESTING, hydro.ambient.settings.rests()),
                      [this](int i) {
                        if (!(atom->mask[i] & groupbit)) return 0u;
@@ -235,7 +237,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   find_causes(hydro, last.causes);
   last.atoms = atom->natoms;
   const std::vector<double> pushed = loads(hydro);
-  const size_t width = hydro.rotation() ? 6 : 3;
+  const size_t width = hydro.rotation() ? 6 : 3, turns = directions.on() ? width : 3;
   const Velocities::Take take = [&, width](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i), V[6];
@@ -249,14 +251,18 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       if (width == 6) atom->omega[i][d] = V[3 + d];
     }
     std::copy_n(V, 3, motion.give(i));
-    if (width == 6) spin.look(i, V + 3, F + 3, &pushed[6 * (size_t) i + 3]);
+    if (width == 3) return;
+    directions.look(i, V + 3);
+    spin.look(i, V + 3, F + 3, &pushed[6 * (size_t) i + 3]);
   };
   if (scheme == MIDPOINT)
     begin_midpoint(hydro, take, pushed);
   else
     hydro.velocities(take, givens(), pushed);
   if (noise.on() && scheme != MIDPOINT)
-    noise.draw(hydro, [this](int i, const double *y) { std::copy_n(y, 3, random.give(i)); });
+    noise.draw(hydro, turns, [this, turns](int i, const double *y) {
+      std::copy_n(y, turns, random.give(i));
+    });
   velocity_change = change_of_velocities();
   last.step = update->ntimestep;
 }
@@ -304,6 +310,9 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 void FixStokesDynamicsOverdamped::post_integrate()
 {
   if (scheme == MIDPOINT) advance();
+  if (!moved_bits || !directions.on() || !atom->omega_flag) return;
+  for (int i : hydrodynamics().ambient.who())
+    if (is_moved(i)) directions.turn(i, atom->omega[i], update->dt);
 }
 
 void FixStokesDynamicsOverdamped::advance()
@@ -344,6 +353,7 @@ void FixStokesDynamicsOverdamped::move_free(int i)
     step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
     x[d] += step[d];
   }
+  directions.step(i, dt, weight(before.has(i)), scale, random[i] + 3);
   double *row = before.give(i);
   std::copy_n(V, 3, row);
   std::copy_n(x, 3, row + 6);
@@ -419,6 +429,7 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
   whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
     if (row[MOVES] == 0.0) return;
     for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += row[STEP + d];
+    directions.turn(i, row + TURN);
     take(i, row);
   });
 }

@@ -8,6 +8,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
+#include "directions.h"
 #include "hydrodynamics.h"
 #include "neighbours_stokes.h"
 #include "noise.h"
@@ -51,11 +52,12 @@ class FixStokesDynamicsOverdamped : public RowsFix {
 
   Noise noise;
   Spin spin;
+  Directions directions;
 
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
   AtomRows motion;
-  /* [6] y of a free sphere, three numbers (noise.h); scheme midpoint: random force and torque */
+  /* [6] y of a free sphere (noise.h), of its turn only where it has a direction; scheme midpoint: random force and torque */
   AtomRows random;
   /* [6] scheme midpoint: force and torque on a sphere in the step before */
   AtomRows load;

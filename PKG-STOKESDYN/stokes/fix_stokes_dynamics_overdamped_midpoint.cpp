@@ -115,19 +115,23 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   const std::vector<int> who = hydro.ambient.who(), lone = hydro.motion().lone();
   const Clumps start = hydro.motion().clumps();
   const std::vector<double> of_members = hydro.scene.whole.x;
-  std::vector<double> x(3 * (size_t) atom->nlocal + 3), V(x.size());
+  const std::vector<double> mu = directions.all();
+  const size_t width = hydro.rotation() ? 6 : 3;
+  std::vector<double> x(3 * (size_t) atom->nlocal + 3), V(2 * x.size());
   for (int i : who) {
     std::copy_n(atom->x[i], 3, &x[3 * (size_t) i]);
-    std::copy_n(motion[i], 3, &V[3 * (size_t) i]);
+    std::copy_n(motion[i], 3, &V[6 * (size_t) i]);
+    if (directions.on()) std::copy_n(directions.turning[i], 3, &V[6 * (size_t) i + 3]);
   }
   find_half_step(hydro, x);
   const auto place = [&](double part) {
     for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
-    for (int i : lone)
-      for (size_t d = 0; d < 3; d++) {
-        const size_t at = 3 * (size_t) i + d;
-        atom->x[i][d] += is_held(i) ? part * dragged.v[at] : part * V[at];
-      }
+    directions.restore(mu);
+    for (size_t i : lone) {
+      const double *v = is_held((int) i) ? &dragged.v[3 * i] : &V[6 * i];
+      for (size_t d = 0; d < 3; d++) atom->x[i][d] += part * v[d];
+      if (!is_held((int) i)) directions.turn((int) i, v + 3, part);
+    }
     if (hydro.settings.rigid.on) place_clumps(hydro, start, of_members, part);
   };
   for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
@@ -138,15 +142,15 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   std::vector<double> pushed = loads(hydro);
   for (size_t i : who)
     for (size_t d = 0; d < 6 && noise.on(); d++) pushed[6 * i + d] += random[i][d];
-  hydro.velocities([this, &V](int i, const double *v, const double *) {
-    std::copy_n(v, 3, &V[3 * (size_t) i]);
-    keep_in_plane(&V[3 * (size_t) i], 3);
+  hydro.velocities([this, &V, width](int i, const double *v, const double *) {
+    std::copy_n(v, width, &V[6 * (size_t) i]);
+    keep_in_plane(&V[6 * (size_t) i], 6);
   }, givens(), pushed);
   place(dt);
   dragged.v.clear();
   for (int i : who) load_on(i, load.give(i));
   for (int i : lone) {
-    const double *v = &V[3 * (size_t) i];
+    const double *v = &V[6 * (size_t) i];
     if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)));
   }
 }

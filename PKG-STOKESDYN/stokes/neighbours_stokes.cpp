@@ -380,10 +380,9 @@ const std::vector<Neighbour> stokes_neighbours = {
      "this cannot be checked", may_damp},
 
     // directions and shapes
-    {N::ATOM, "dipole", OVERDAMPED | TURNING, N::ERROR,
-     "has directions (the dipole of atom {}), and fix stokes_dynamics/overdamped does not turn "
-     "them with the spheres: use rotation no if others set them, or with inertia fix nve/sphere "
-     "update dipole; a torque on spheres is the keyword spin of that fix, with tmax",
+    {N::ATOM, "dipole", OVERDAMPED | UPRIGHT, N::ERROR,
+     "has directions (the dipole of atom {}), which turn with their spheres, and with rotation no "
+     "spheres do not turn: use rotation yes or multiblob, or set dipoles that mean nothing to 0 0 0",
      has_moments, FREE},
     {N::BOND, "bpm/rotational", OVERDAMPED, N::ERROR,
      "needs orientations of atoms, which fix stokes_dynamics/overdamped does not turn: use "

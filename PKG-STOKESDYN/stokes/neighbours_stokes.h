@@ -17,6 +17,7 @@ enum StokesFact : unsigned {
   ADAPTING = 1 << 3,      // with adapt
   TURNING = 1 << 4,       // spheres turn
   RESTING = 1 << 5,       // the fluid rests
+  UPRIGHT = 1 << 6,       // spheres do not turn
 };
 
 inline unsigned fact(StokesFact which, bool holds) { return holds ? (unsigned) which : 0u; }

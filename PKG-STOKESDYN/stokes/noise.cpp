@@ -56,25 +56,26 @@ void Noise::find_temperature(const Hydrodynamics &hydro)
   of_clumps.assign(6 * hydro.motion().clumps().size() + 6, 0.0);
 }
 
-void Noise::draw(Hydrodynamics &hydro, const Take &take)
+void Noise::draw(Hydrodynamics &hydro, size_t width, const Take &take)
 {
   find_temperature(hydro);
   if (hydro.settings.rigid.apart())
-    draw_alone(hydro, take);
+    draw_alone(hydro, width, take);
   else
-    draw_together(hydro, take);
+    draw_together(hydro, width, take);
 }
 
 /* Nobody sees anybody: each sphere by its drag, each clump by the root of its own mobility. */
-void Noise::draw_alone(const Hydrodynamics &hydro, const Take &take)
+void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const Take &take)
 {
   const Velocities &motion = hydro.motion();
   const WholeClumps &whole = hydro.scene.whole;
-  double normals[6], move[3];
+  double normals[6], move[6];
   for (int i : motion.lone()) {
     const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
-    sd_random_normals(&of_sphere, atom->tag[i], 3, normals);
-    for (int d = 0; d < 3; d++) move[d] = normals[d] / sqrt(hydro.ambient.drag(i));
+    sd_random_normals(&of_sphere, atom->tag[i], (int) width, normals);
+    for (size_t d = 0; d < width; d++)
+      move[d] = normals[d] / sqrt(hydro.ambient.resistance(i, d));
     take(i, move);
   }
   const sd_random_key of_body = key(SD_RANDOM_BODY);
@@ -89,11 +90,11 @@ void Noise::draw_alone(const Hydrodynamics &hydro, const Take &take)
   }
 }
 
-/* M of three numbers a row, from that of the engine, which may have torques where nobody turns by
+/* M of width numbers a row, from that of the engine, which may have torques where nobody turns by
  * its noise. Where the engine's M divides, the part that is not drawn at once. */
 struct Forces {
-  size_t rows, engine_width;
-  /* [3 rows] */
+  size_t rows, width, engine_width;
+  /* [width rows] */
   const double *D;
   sd_mobility *engine;
   /* nullptr: nobody sees anybody */
@@ -106,36 +107,35 @@ static sd_status apply_forces(void *ctx, const double *F, double *u)
 {
   Forces &m = *static_cast<Forces *>(ctx);
   for (size_t k = 0; k < m.rows && m.apply; k++)
-    std::copy_n(F + 3 * k, 3, &m.F[m.engine_width * k]);
+    std::copy_n(F + m.width * k, m.width, &m.F[m.engine_width * k]);
   const sd_status status = m.apply ? m.apply(m.engine, m.F.data(), m.u.data()) : SD_OK;
   for (size_t k = 0; k < m.rows; k++)
-    for (size_t d = 0; d < 3; d++) {
-      const size_t j = 3 * k + d;
+    for (size_t d = 0; d < m.width; d++) {
+      const size_t j = m.width * k + d;
       u[j] = m.D[j] > 0.0 ? m.u[m.engine_width * k + d] + F[j] / m.D[j] : 0.0;
     }
   return status;
 }
 
 /* The rows with their numbers w and drags D, and the matrix: whole */
-void Noise::place(Hydrodynamics &hydro, Forces &forces, sd_noise_matrix &M)
+void Noise::place(Hydrodynamics &hydro, size_t width, Forces &forces, sd_noise_matrix &M)
 {
   Scene &scene = hydro.scene;
   const size_t n = scene.size();
-  const std::vector<double> drags =
-      scene.rows(1, [&hydro](int i, double *out) { *out = hydro.ambient.drag(i); });
-  for (auto *rows : {&D, &w, &y}) rows->resize(3 * n + 3);
+  D = scene.rows((int) width, [&hydro, width](int i, double *out) {
+    for (size_t d = 0; d < width; d++) out[d] = hydro.ambient.resistance(i, d);
+  });
+  for (auto *rows : {&w, &y}) rows->resize(width * (n + 1));
   const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
-  for (size_t k = 0; k < n; k++) {
-    std::fill_n(&D[3 * k], 3, drags[k]);
-    sd_random_normals(&of_sphere, scene.tag(k), 3, &w[3 * k]);
-  }
+  for (size_t k = 0; k < n; k++)
+    sd_random_normals(&of_sphere, scene.tag(k), (int) width, &w[width * k]);
   const size_t engine_width = hydro.rotation() ? 6 : 3;
-  forces = {n, engine_width, D.data(), scene.mobility(), nullptr, {}, {}};
+  forces = {n, width, engine_width, D.data(), scene.mobility(), nullptr, {}, {}};
   forces.F.assign(engine_width * (n + 1), 0.0);
   forces.u.assign(engine_width * (n + 1), 0.0);
   if (scene.anybody_sees()) forces.apply = sd_mobility_apply;
   M = {};
-  M.n = (long) (3 * n);
+  M.n = (long) (width * n);
   M.apply = apply_forces;
   M.ctx = &forces;
   M.D = D.data();
@@ -150,11 +150,11 @@ void Noise::no_root(sd_status status) const
                          ", noise_tolerance " + text(tolerance) + "): " + sd_status_string(status));
 }
 
-void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
+void Noise::draw_together(Hydrodynamics &hydro, size_t width, const Take &take)
 {
   Forces forces;
   sd_noise_matrix M;
-  place(hydro, forces, M);
+  place(hydro, width, forces, M);
   divided = forces.apply && sd_mobility_divides(forces.engine);
   if (divided) forces.apply = sd_mobility_apply_rest;
   sd_status status =
@@ -164,8 +164,8 @@ void Noise::draw_together(Hydrodynamics &hydro, const Take &take)
     status = sd_mobility_draw(forces.engine, &of_waves, forces.u.data());
   if (status != SD_OK) no_root(status);
   for (size_t k = 0; k < forces.rows && divided; k++)
-    for (int d = 0; d < 3; d++) y[3 * k + d] += forces.u[forces.engine_width * k + d];
-  hydro.scene.to_atoms(3, y.data(), take);
+    for (size_t d = 0; d < width; d++) y[width * k + d] += forces.u[forces.engine_width * k + d];
+  hydro.scene.to_atoms((int) width, y.data(), take);
 }
 
 /* Of a third of the tolerance: slow modes of forces are off by more than those of velocities. */

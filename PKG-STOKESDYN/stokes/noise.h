@@ -48,11 +48,11 @@ class Noise : protected LAMMPS_NS::Pointers {
    * commands. */
   void init(Hydrodynamics &hydro, const Ways &ways);
 
-  /* y [3] of the free spheres to take(i, y); [6] of the clumps of this rank are kept, U of their centre
-   * of mobility and W. The velocities of this step have been found. Errors: a temperature below 0; a
+  /* y [width] of the free spheres to take(i, y), with width 6 of their turn as well, where the model has
+   * torques; [6] of the clumps of this rank are kept, U of their centre of mobility and W. The velocities of this step have been found. Errors: a temperature below 0; a
    * mobility without a root. */
   using Take = std::function<void(int i, const double *y)>;
-  void draw(Hydrodynamics &hydro, const Take &take);
+  void draw(Hydrodynamics &hydro, size_t width, const Take &take);
   /* For a solve of this step, in scheme midpoint: random forces and torques on all spheres, whose
    * covariance is the resistance of all that moves, 2 kT/dt times. Errors as of draw(). */
   Velocities::Draw forces(const Hydrodynamics &hydro, const Take &take);
@@ -77,7 +77,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   Owned<sd_bodies_noise, sd_bodies_noise_free> of_bodies;
   sd_noise_report last = {};
   std::vector<double> of_clumps;
-  /* by rows, three numbers each */
+  /* by rows, width numbers each */
   std::vector<double> D, w, y;
   /* by a matrix in two parts (sd_mobility.h) */
   bool divided = false;
@@ -88,9 +88,9 @@ class Noise : protected LAMMPS_NS::Pointers {
   void refuse(const Hydrodynamics &hydro, const Ways &ways) const;
   void find_temperature(const Hydrodynamics &hydro);
   [[noreturn]] void no_root(sd_status status) const;
-  void draw_alone(const Hydrodynamics &hydro, const Take &take);
-  void place(Hydrodynamics &hydro, struct Forces &forces, sd_noise_matrix &M);
-  void draw_together(Hydrodynamics &hydro, const Take &take);
+  void draw_alone(const Hydrodynamics &hydro, size_t width, const Take &take);
+  void place(Hydrodynamics &hydro, size_t width, struct Forces &forces, sd_noise_matrix &M);
+  void draw_together(Hydrodynamics &hydro, size_t width, const Take &take);
 };
 
 }    // namespace StokesDyn

@@ -30,6 +30,14 @@ void sd_rotation(const double w[3], double R[9])
   R[8] = 1.0 - 2.0 * (x * x + y * y);
 }
 
+void sd_turn_direction(const double R[9], double length, double v[3])
+{
+  double turned[3];
+  sd_multiply3(R, v, turned);
+  const double norm = sqrt(sd_dot(turned, turned));
+  for (int d = 0; d < 3; d++) v[d] = norm > 0.0 ? turned[d] * (length / norm) : turned[d];
+}
+
 void sd_pose_step(double pose[12], const double centre[3], const double step[6], int n,
                   const double *X, double turn[9], double *x)
 {

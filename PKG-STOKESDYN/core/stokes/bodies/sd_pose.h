@@ -19,6 +19,10 @@ void sd_mean_velocity(int n, const double *v, const double *v_old, double c, dou
  * quaternion (cos |w|/2, sin(|w|/2) w/|w|), so that R is a rotation to rounding for any w. */
 void sd_rotation(const double w[3], double R[9]);
 
+/* v [3] = R v, a direction of that length, which rounding then does not change however often it turns;
+ * R [9] a rotation. The direction 0 stays 0. */
+void sd_turn_direction(const double R[9], double length, double v[3]);
+
 /* pose [12]: R, then c; moved by a displacement and a turn, step [6], of the point at centre [3] in the
  * axes of the body, from c: what moves it is known there (0, or sd_clump_noise.h). turn [9]: out, that
  * of space in the step; x [3n] = c + R X, X [3n] */

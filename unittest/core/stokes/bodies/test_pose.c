@@ -57,6 +57,27 @@ static void steady_turn_is_exact(void **state)
       CHECK_NEAR(x[3 * k + d], 10.0 * V[d] + R[3 * d + 2] * chain5[3 * k + 2], 1e-13);
 }
 
+/* A direction that turns by a million small rotations is where one large one takes it, and is as long. */
+static void directions_keep_their_length(void **state)
+{
+  (void) state;
+  const double w[3] = {1e-3, -2e-3, 0.5e-3}, length = 1.7e-19;
+  const double all[3] = {1e3, -2e3, 0.5e3};
+  double R[9], v[3] = {0.6 * length, 0.0, 0.8 * length}, start[3], expected[3];
+  double nothing[3] = {0.0, 0.0, 0.0};
+  memcpy(start, v, sizeof(start));
+  sd_rotation(w, R);
+  for (int k = 0; k < 1000000; k++) {
+    sd_turn_direction(R, length, v);
+    sd_turn_direction(R, length, nothing);
+  }
+  CHECK_NEAR(sqrt(sd_dot(v, v)) / length, 1.0, 4e-16);
+  CHECK_NEAR(sd_dot(nothing, nothing), 0.0, 0.0);
+  sd_rotation(all, R);
+  sd_multiply3(R, start, expected);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(v[d] / length, expected[d] / length, 1e-9);
+}
+
 /* Adams and Bashforth's step is exact for velocities linear in time, with steps that change. */
 static void changing_steps_stay_second_order(void **state)
 {
@@ -268,6 +289,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rotations_are_rotations),
       cmocka_unit_test(steady_turn_is_exact),
+      cmocka_unit_test(directions_keep_their_length),
       cmocka_unit_test(changing_steps_stay_second_order),
       cmocka_unit_test(next_step_follows_the_fastest),
       cmocka_unit_test(growth_is_seen_whatever_its_factor),

@@ -1,0 +1,301 @@
+"""Directions (mu of atom_style dipole) turn with their spheres and clumps in fix stokes_dynamics/overdamped: closed forms, orders, noise,
+clumps, one run on several ranks and in pieces, and what is refused."""
+import functools
+import os
+
+import numpy as np
+import pytest
+
+import model
+from brownian import A, ETA, KT, L_OF_FOUR, SHORT, TRIO, copies, check_covariance
+from system import LammpsError, dump_lines, lmp, read_dump
+
+SPIN = 8 * np.pi * ETA * A**3
+OPEN = [(-40.0, 40.0)] * 3
+CENTRE = [(0.0, 0.0, 0.0)]
+MOVE = "fix move all stokes_dynamics/overdamped"
+POINTS, SHELLS = f"cut_off_distance inf visc {ETA} rotation yes", f"cut_off_distance inf visc {ETA} multiblob 12"
+CLUMPS = f"{POINTS} rigid_clumps yes relative_tolerance 1e-10"
+
+
+def dipole_lines(folder, x, mu, words, dt, molecule=0, boundary="f f f", box=None, tilt=None):
+    """Everything up to pair_coeff and the time step"""
+    x, n = np.asarray(x, float), len(x)
+    mu, molecule = np.broadcast_to(np.asarray(mu, float), (n, 3)), np.broadcast_to(molecule, (n,))
+    lines = ["dipoles", "", f"{n} atoms", "1 atom types"]
+    lines += [f"{float(lo)!r} {float(hi)!r} {c}lo {c}hi" for (lo, hi), c in zip(box or OPEN, "xyz")]
+    lines += [f"{tilt} 0.0 0.0 xy xz yz"] if tilt is not None else []
+    lines += ["", "Atoms", ""]
+    for i in range(n):
+        place, direction = (" ".join(repr(float(c)) for c in row) for row in (x[i], mu[i]))
+        lines.append(f"{i + 1} 1 {place} {2 * A!r} 1.0 0.0 {direction} {molecule[i]}")
+    data = os.path.join(str(folder), "dipoles.data")
+    with open(data, "w") as out:
+        out.write("\n".join(lines) + "\n")
+    return ["units lj", "atom_style hybrid sphere dipole molecular", f"boundary {boundary}", "atom_modify map array", "newton on",
+            "plugin load stokesdynplugin.so", f"read_data {data}", f"pair_style stokes_dynamics {words}", "pair_coeff * *",
+            "neigh_modify every 1 delay 0", f"timestep {float(dt)!r}"]
+
+
+def dipoles(simulation, tmp_path, *arguments, **options):
+    return simulation().commands(dipole_lines(tmp_path, *arguments, **options))
+
+
+def directions(sim):
+    rows = np.array(sim.lmp.numpy.extract_atom("mu", nelem=sim.n, dim=4))    # its own guess is two columns
+    return rows[np.argsort(sim.ids()), :3]
+
+
+def turned(e, w):
+    """e [n,3] by the rotation vectors w [n,3]"""
+    angle = np.linalg.norm(w, axis=-1, keepdims=True)
+    axis = np.divide(w, angle, out=np.zeros_like(w), where=angle > 0)
+    return (e * np.cos(angle) + np.cross(axis, e) * np.sin(angle)
+            + axis * (axis * e).sum(axis=-1, keepdims=True) * (1 - np.cos(angle)))
+
+
+# --- one sphere, where the answer is known ---------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("scheme", ["euler", "ab2", "midpoint"])
+@pytest.mark.parametrize("words", [POINTS, SHELLS])
+def test_a_shear_turns_by_half_its_rate_and_keeps_the_length(simulation, tmp_path, words, scheme):
+    """However long the step; a dipole of length 0 stays."""
+    rate, steps, dt = 0.8, 50, 0.3
+    x, mu = [(0, 0, 0), (3000, 0, 0)], 1.7 * np.array([(0.6, 0.0, 0.8), (0, 0, 0)])
+    sim = dipoles(simulation, tmp_path, x, mu, f"{words} relative_tolerance 1e-10 fluid_velocity v_u 0 0", dt,
+                  box=[(-4000.0, 4000.0)] * 3)
+    sim.commands(f"variable u atom {rate}*z\n{MOVE} scheme {scheme}").run(steps)
+    expected = turned(mu, np.array([(0, rate / 2 * steps * dt, 0)] * 2))
+    assert np.abs(directions(sim) - expected).max() < 1e-9
+    assert np.linalg.norm(directions(sim)[0]) == pytest.approx(1.7, rel=1e-14)
+    assert not directions(sim)[1].any()
+
+
+@functools.lru_cache(maxsize=None)
+def in_field_and_shear(t):
+    """e(t) of a dipole (1, 0, 0) in a field along y and a flow that turns by 0.3 about x, by Runge and Kutta's method"""
+    e, n = np.array((1.0, 0, 0)), 500
+    def rate(e):
+        return np.cross(np.array((0.3, 0, 0)) + np.cross(e, (0, 1.0, 0)), e)
+    for _ in range(n):
+        k1 = rate(e)
+        k2 = rate(e + 0.5 * t / n * k1)
+        k3 = rate(e + 0.5 * t / n * k2)
+        e = e + t / n * (k1 + 2 * k2 + 2 * k3 + rate(e + t / n * k3)) / 6
+    return e
+
+
+@pytest.mark.parametrize("words, scheme, order", [(POINTS, "euler", 1), (POINTS, "ab2", 2), (POINTS, "midpoint", 2), (SHELLS, "ab2", 2),
+                                                  (SHELLS, "midpoint", 2)])
+def test_order_in_a_field_and_a_shear(simulation, tmp_path, words, scheme, order):
+    errors = []
+    for steps in (20, 40, 80):
+        sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0), f"{words} relative_tolerance 1e-11 fluid_velocity 0 v_u 0", 2.0 / steps)
+        sim.commands(f"variable u atom -0.6*z\nfix field all efield 0 {SPIN!r} 0\n{MOVE} scheme {scheme}").run(steps)
+        errors.append(np.abs(directions(sim)[0] - in_field_and_shear(2.0)).max())
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.2)
+    assert errors[2] < (2e-2 if order == 1 else 1e-3)
+
+
+def test_a_dipole_turns_into_the_field_as_its_law_says(simulation, tmp_path):
+    """mu_y = tanh(t mu E/(8 pi eta a^3)), and the torque is that of the moment as it stands"""
+    sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0), POINTS, 1e-3)
+    sim.commands(f"fix field all efield 0 {SPIN!r} 0\n{MOVE}").run(1000)
+    assert directions(sim)[0] == pytest.approx([1 / np.cosh(1), np.tanh(1), 0], abs=1e-6)
+    assert sim.atom("omega")[0, 2] == pytest.approx(1 / np.cosh(1), abs=1e-6)
+
+
+def test_length_stays_in_a_long_run(simulation, tmp_path):
+    sim = dipoles(simulation, tmp_path, CENTRE, (0.3, -0.2, 1.1), f"{POINTS} fluid_velocity v_u 0 0", 0.01, box=[(-4000.0, 4000.0)] * 3)
+    sim.commands(f"variable u atom z\nfix field all efield 0 0.3 {SPIN!r}\n{MOVE} temperature 0.1 5\nthermo 0").run(20000)
+    assert np.linalg.norm(directions(sim)[0]) == pytest.approx(np.sqrt(0.09 + 0.04 + 1.21), rel=4e-16 * 4)
+
+
+def test_in_a_box_that_shears(simulation, tmp_path):
+    """A sphere that falls through a face that moves, and comes in at another place; its images do not turn it."""
+    mu = np.array([(1.0, 0.3, 0.5)])
+    sim = dipoles(simulation, tmp_path, CENTRE, mu, f"{POINTS} fluid_velocity box far_field_tolerance 1e-9", 0.02, boundary="p p p",
+                  box=[(0.0, 12.0)] * 3, tilt=0.0)
+    sim.commands(f"fix shear all deform 1 xy erate 0.5 remap v flip no\n{MOVE}\nfix fall all addforce 0 -90 0").run(40)
+    assert 5 < sim.x[0, 1] < 11
+    assert np.abs(directions(sim) - turned(mu, np.array([(0, 0, -0.25 * 0.8)]))).max() < 1e-8
+
+
+@pytest.mark.parametrize("scheme", ["ab2", "midpoint"])
+def test_held_and_spun_spheres_turn_as_told(simulation, tmp_path, scheme):
+    """One is held and rests, fix move turns one, keyword spin turns another one; a neighbour pulls."""
+    x, mu, dt = [(0, 0, 0), (3, 0, 0), (6, 0, 0), (9, 1, 0)], [(1, 0, 0.5)] * 4, 0.02
+    sim = dipoles(simulation, tmp_path, x, mu, POINTS, dt)
+    sim.commands("group one id 1\ngroup two id 2\ngroup fixed id 1 2\ngroup field id 3\nset group two omega 0 0 0.5\n"
+                 f"fix turn two move rotate 3 0 0 0 0 1 {4 * np.pi!r}\n"
+                 f"{MOVE} scheme {scheme} held fixed spin field 0.4 0 -1.1\nfix pull all addforce 0 3 0").run(30)
+    w = np.array([(0, 0, 0), (0, 0, 0.5), (0.4, 0, -1.1)])
+    assert np.abs(directions(sim)[:3] - turned(np.array(mu[:3]), 30 * dt * w)).max() < 1e-12
+    assert np.abs(directions(sim)[3] - mu[3]).max() > 1e-3
+
+
+# --- rigid clumps ----------------------------------------------------------------------------------------------------------
+
+def rotation_between(before, after):
+    """Of clumps [n, m, 3] by their spheres (Kabsch)"""
+    P, Q = (x - x.mean(axis=1, keepdims=True) for x in (before, after))
+    U, _, V = np.linalg.svd(np.einsum("nmi,nmj->nij", Q, P))
+    U[:, :, 2] *= np.linalg.det(U @ V)[:, None]
+    return U @ V
+
+
+@pytest.mark.parametrize("words, options", [(CLUMPS, "scheme euler"), (CLUMPS, "scheme ab2"), (CLUMPS, "scheme midpoint"),
+                                            (CLUMPS + " clumps_only yes", f"temperature {KT} 7"), (CLUMPS, f"temperature {KT} 7"),
+                                            (f"{SHELLS} rigid_clumps yes", f"temperature {KT} 7"),
+                                            (f"{SHELLS} rigid_clumps yes", "")])
+def test_directions_of_a_clump_turn_with_it(simulation, tmp_path, words, options):
+    clumps = copies(L_OF_FOUR, 3, 6.0)
+    mu = np.random.default_rng(3).normal(size=(12, 3))
+    sim = dipoles(simulation, tmp_path, clumps.x, mu, f"{words} fluid_velocity v_u 0 0", 0.05, molecule=clumps.molecule)
+    before = sim.x.reshape(3, 4, 3)
+    sim.commands(f"variable u atom z\n{MOVE} {options}\nfix field all efield 0 2 0\nfix pull all addforce 0 -3 0").run(60)
+    R = rotation_between(before, sim.x.reshape(3, 4, 3))
+    assert np.abs(R - np.eye(3)).max() > 0.3
+    assert np.abs(directions(sim) - np.einsum("nij,nmj->nmi", R, mu.reshape(3, 4, 3)).reshape(-1, 3)).max() < 1e-12
+
+
+# --- noise -----------------------------------------------------------------------------------------------------------------
+
+def steps_and_turns(sim, steps):
+    """Displacements and changes of direction [steps, n, 6] of single steps"""
+    out = []
+    for k in range(steps):
+        before = np.hstack([sim.x, directions(sim)])
+        sim.run(1, "pre no post no" if k else "post no")
+        out.append(np.hstack([sim.x, directions(sim)]) - before)
+    return np.array(out)
+
+
+@pytest.mark.parametrize("scene, words", [("open", ""), ("alone", "clumps_only yes"), ("periodic", "far_field_tolerance 1e-5")])
+def test_translation_and_rotation_are_drawn_together(simulation, tmp_path, scene, words):
+    """Covariance of steps d and turns w x e of three near spheres against their mobility, in a box by unit loads"""
+    e = np.array([(1.0, 0, 0), (0, 1.0, 0), (0.6, 0, 0.8)])
+    K = np.zeros((18, 18))
+    for i in range(3):
+        at = 6 * i
+        K[at:at + 3, at:at + 3] = np.eye(3)
+        K[at + 3:at + 6, at + 3:at + 6] = np.cross(np.eye(3), e[i]).T
+    box = dict(boundary="p p p", box=[(-2.0, 3.5)] * 3) if scene == "periodic" else {}
+    def begin(options, dt):
+        return dipoles(simulation, tmp_path, TRIO, e, f"{POINTS} {words}", dt, **box).commands(f"{MOVE} {options}")
+    if scene == "alone":
+        M = np.diag(([1 / (6 * np.pi * ETA * A)] * 3 + [1 / SPIN] * 3) * 3)
+    elif scene == "open":
+        M = model.mobility(TRIO, np.full(3, A), ETA, rotation=True)
+    else:
+        M = np.zeros((18, 18))
+        sim = begin("", 1e-9)
+        sim.command("fix load all external pf/callback 1 1")
+        for k in range(18):
+            def add(_lmp, _step, n, tag, _x, f, k=k):
+                rows = np.asarray(tag).ravel()[:n] == k // 6 + 1
+                f[:] = 0
+                if k % 6 < 3:
+                    f[rows, k % 6] = 1
+                else:
+                    sim.raw("torque")[:n][rows, k % 6 - 3] += 1
+            sim.lmp.set_fix_external_callback("load", add)
+            sim.run(0)
+            M[:, k] = np.hstack([sim.v, sim.atom("omega")]).ravel()
+        assert np.abs(M - M.T).max() < 1e-4 * M.max()
+    d = steps_and_turns(begin(f"temperature {KT} 12345", SHORT), 1500).reshape(-1, 18)
+    d -= d.mean(axis=0)
+    expected = K @ M @ K.T
+    seen = np.diag(expected) > 1e-12 * expected.max()
+    check_covariance(d[:, seen], expected[np.ix_(seen, seen)], SHORT)
+
+
+def test_memory_of_a_direction_decays_as_debye_says(simulation, tmp_path):
+    """<e(0).e(t)> = exp(-2 D t) of 4000 points, each alone; the steps are seen as D dt/6, 0.4 % here."""
+    D, n, steps = KT / SPIN, 4000, 20
+    mu = np.random.default_rng(5).normal(size=(n, 3))
+    mu /= np.linalg.norm(mu, axis=1)[:, None]
+    x = copies(np.zeros((1, 3)), n, 4.0).x
+    sim = dipoles(simulation, tmp_path, x, mu, f"{POINTS} clumps_only yes", 0.5 / D / steps, box=[(-60.0, 120.0)] * 3)
+    sim.commands(f"{MOVE} temperature {KT} 4711").run(steps)
+    assert (directions(sim) * mu).sum(axis=1).mean() == pytest.approx(np.exp(-1), abs=4 * 0.48 / np.sqrt(n) + 3e-3)
+
+
+@pytest.mark.parametrize("words", [POINTS, SHELLS])
+def test_active_particles_far_apart_turn_as_free_ones(simulation, tmp_path, words):
+    """fix propel/self pushes along the direction. Squares of the steps of e, 2 (1 - exp(-2 D dt)) each."""
+    D, push, n, steps = KT / SPIN, 2.0, 27, 60
+    tau = 0.005
+    mu = np.random.default_rng(6).normal(size=(n, 3))
+    mu /= np.linalg.norm(mu, axis=1)[:, None]
+    x = copies(np.zeros((1, 3)), n, 14.0).x - 14.0
+    sim = dipoles(simulation, tmp_path, x, mu, words, tau / D)
+    sim.commands(f"fix push all propel/self dipole {push}\n{MOVE} temperature {KT} 4711").run(0)
+    assert np.abs(sim.f - push * mu).max() < 1e-12
+    d = steps_and_turns(sim, steps)[:, :, 3:]
+    assert (d**2).sum(axis=2).mean() == pytest.approx(2 * (1 - np.exp(-2 * tau)), rel=4.5 / np.sqrt(n * steps) + 0.01)
+
+
+def test_langevin_of_dipoles_in_a_field(simulation, tmp_path):
+    """<cos> = coth 2 - 1/2 where mu E is 2 kT"""
+    n, D = 2000, KT / SPIN
+    x = copies(np.zeros((1, 3)), n, 4.0).x
+    mu = np.random.default_rng(8).normal(size=(n, 3))
+    mu /= np.linalg.norm(mu, axis=1)[:, None]
+    sim = dipoles(simulation, tmp_path, x, mu, f"{POINTS} clumps_only yes", 0.02 / D, box=[(-60.0, 120.0)] * 3)
+    sim.commands(f"fix field all efield 0 0 {2 * KT!r}\n{MOVE} temperature {KT} 99").run(120)
+    assert directions(sim)[:, 2].mean() == pytest.approx(1 / np.tanh(2) - 0.5, abs=4 * 0.43 / np.sqrt(n))
+
+
+# --- one run, however it is made -------------------------------------------------------------------------------------------
+
+END = dump_lines("end.dump", every=20, columns="xu yu zu mux muy muz")
+WAYS = {"noise in shear": ("p p p", f"{POINTS} fluid_velocity box", "temperature 1.5 7", 0,
+                           ["fix shear all deform 1 xy erate 0.5 remap v"]),
+        "shells with noise": ("f f f", SHELLS, "temperature 1.5 7", 0, []),
+        "clumps": ("f f f", CLUMPS, "scheme ab2", [1, 1, 1, 1, 2, 2, 2, 2, 0, 0, 0, 0], [])}
+
+
+def script(folder, way, runs):
+    boundary, words, options, molecule, more = WAYS[way]
+    x = copies(L_OF_FOUR, 3, 5.0).x + 1.0
+    mu = np.random.default_rng(9).normal(size=(12, 3))
+    box = [(0.0, 12.0)] * 3 if boundary[0] == "p" else None
+    lines = dipole_lines(folder, x, mu, words, 0.02, molecule=molecule, boundary=boundary, box=box, tilt=0.0 if box else None)
+    return lines + ["fix field all efield 0 4 1", "fix push all propel/self dipole 2.0", *more, f"{MOVE} {options}"] + runs
+
+
+def end(folder, lines, ranks=1):
+    lmp(folder, lines, ranks)
+    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
+
+
+@pytest.mark.ranks(2)
+@pytest.mark.parametrize("way", WAYS)
+def test_ranks_agree(tmp_path, way):
+    one = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
+    two = end(tmp_path, script(tmp_path, way, END + ["run 20"]), 2)
+    start = np.random.default_rng(9).normal(size=(12, 3))
+    assert np.abs(one[:, 3:] - start).max() > 0.1
+    assert np.abs(one - two).max() < 1e-12
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_run_in_pieces_is_the_whole_run(tmp_path, way):
+    whole = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
+    assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 7", "run 13"])) - whole).max() < 1e-12
+    lmp(tmp_path, script(tmp_path, way, ["run 7", "write_restart half.restart"]))
+    again = script(tmp_path, way, END + ["run 13"])
+    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
+    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
+    assert np.abs(end(tmp_path, again) - whole).max() < 1e-12
+
+
+# --- what is refused -------------------------------------------------------------------------------------------------------
+
+def test_directions_of_spheres_that_do_not_turn_are_refused(simulation, tmp_path):
+    sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0), f"cut_off_distance inf visc {ETA}", 0.1)
+    with pytest.raises(LammpsError, match="has directions .the dipole of atom 1.*with rotation no spheres do not turn: use"):
+        sim.commands(MOVE).run(0)
+    sim = dipoles(simulation, tmp_path, CENTRE, (0, 0, 0), f"cut_off_distance inf visc {ETA}", 0.1)
+    sim.commands(MOVE).run(1)
