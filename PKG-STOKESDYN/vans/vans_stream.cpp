@@ -152,11 +152,14 @@ void VansStream::move_surface(double area, const std::vector<double> &before)
   wet_before = wet_edge;
   sd_vans_mesh old = wet;
   old.edge = wet_before.data();
-  wet.ncell = sd_vans_fill(&mesh, phi(), volume, wet_edge.data());
-  if (wet.ncell == 0)
+  const int cells = sd_vans_fill(&mesh, phi(), volume, wet_edge.data());
+  if (cells == 0) {
+    wet_edge = wet_before;      // whoever catches the error may go on
     set.voice.of("keyword surface")
         .fail("the water rises above the mesh, which ends at z = " +
               text(mesh.z_ref + mesh.edge[ncell() - 1]) + ": give the mesh more slices");
+  }
+  wet.ncell = cells;
   if (set.conserve)
     ledger.surface += area * sd_vans_displace(&old, &wet, fluid.rho, before.data(), phi(), U.data(),
                                               scratch.data());
