@@ -170,6 +170,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void prepare();
   bool types_are_alike();
   void estimate_velocities();
+  void settle_walls();
   bool stands(int i) const;
   const double *displacement_rates();
   void density_step();

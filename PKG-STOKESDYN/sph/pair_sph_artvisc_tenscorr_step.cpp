@@ -47,6 +47,7 @@ void PairSph::compute(int eflag, int vflag)
     if (wall) tell_of_belts();
   }
   if (needs_velocity) estimate_velocities();
+  if (leapfrog && update->setupflag && has_walls()) settle_walls();
 
   if (leapfrog) density_step();
   sd_sph_pack_x(particles.n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
@@ -189,6 +190,16 @@ const double *PairSph::displacement_rates()
     std::fill_n(&displacing[3 * (size_t) i], 3, 0.0);
   }
   return displacing.empty() ? v : displacing.data();
+}
+
+/* At the start of a run, before any rate sees the densities that walls have in the input. Velocities are
+ * then again those of estimate_velocities(). */
+void PairSph::settle_walls()
+{
+  sd_sph_pack_x(particles.n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
+  pressures_of_all();
+  wall_particles();
+  if (needs_velocity) estimate_velocities();
 }
 
 /* Leapfrog: the rate of density of the half step, from positions and velocities at its middle,

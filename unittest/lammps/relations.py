@@ -127,8 +127,6 @@ def differences(scene, a, b):
     """[(difference in units of the largest value of its kind, what)], largest first"""
     found = []
     for key in a.values.keys() & b.values.keys():
-        if key[0] == scene.unsettled and key[2] == 0:
-            continue
         x, y = a.values[key], b.values[key]
         if x.shape != y.shape:
             found.append((np.inf, f"{key[0]}: {x.shape} and {y.shape}"))

@@ -99,9 +99,7 @@ EXCEPTIONS = [
 
 # (changes, others, where, why): what does not go together
 CLASHES = [(RESTARTS, tuple(STYLES), lambda o: o["model of"] == "vans",
-            "LAMMPS's pair_style hybrid loses the history of contacts in a restart file"),
-           (("pair style twice",), ("hybrid", "overlay before", "overlay after"), lambda o: o.get("scheme") in ("shift", "correction"),
-            "hybrid makes the style anew, and in the first set-up of all walls have their densities only after the rates")]
+            "LAMMPS's pair_style hybrid loses the history of contacts in a restart file")]
 
 # (changes, where, tolerance, why): what matters, but not much
 COARSE = [

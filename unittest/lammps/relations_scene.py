@@ -11,7 +11,6 @@ class Scene:
         self.output_between = ""                        # a number of ours that is asked for between two pair styles
         self.spacing = 1.0                              # of the order of the distances of neighbours
         self.length = 1.0                               # that differences of places are measured in
-        self.unsettled = ""                             # a column that is not compared in step 0
         self.grid = None                                # nodes, lo, hi of fix stokes_dynamics/field
         self.dt, self.steps, self.tolerance = 1.0, 2, 1e-8
         self.floor = 1e-2                             # what is smaller than this, in units of the scene, counts as this

@@ -163,7 +163,6 @@ def commands(s, o, d, up, lo, hi, each):
     look(s, o, d, up)
     s.columns = [("p", "xu yu zu"), ("V", "vx vy vz"), ("rho" + d, "c_rho"), ("P" + d, "f_p")]
     s.columns += [("drho" + d, "f_d")] * (o["scheme"] != "summation")
-    s.unsettled = "atoms: f_d"      # in the first set-up of all, walls have their densities only after the rates
     s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-8
 
 
