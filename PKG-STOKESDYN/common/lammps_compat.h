@@ -12,6 +12,10 @@
 #include "output.h"
 #include "region.h"
 
+#if !SD_HAVE_THERMO_H
+#include "library.h"
+#endif
+
 #if !SD_HAVE_ADD_REQUEST
 #include "neigh_request.h"
 #endif
@@ -154,14 +158,20 @@ namespace Compat {
   };
 #endif
 
-  /* Are the lines of thermo output the user's own? */
-  inline bool prints_custom_lines(const LAMMPS_NS::Output *output)
+  /* Are the lines of thermo output, which have been printed, the user's own? Where installed headers do
+   * not tell the style, the first columns do: they are those of LAMMPS's styles one and multi or not. */
+  inline bool prints_custom_lines(LAMMPS_NS::LAMMPS *lmp)
   {
 #if SD_HAVE_THERMO_H
-    return output->thermo && strcmp(output->thermo->style, "custom") == 0;
+    return lmp->output->thermo && strcmp(lmp->output->thermo->style, "custom") == 0;
 #else
-    (void) output;
-    return false;    // installed headers do not tell
+    const int *n = static_cast<const int *>(lammps_last_thermo(lmp, "num", 0));
+    std::string first;
+    for (int k = 0; n && k < *n && k < 4; k++) {
+      const void *column = lammps_last_thermo(lmp, "keyword", k);
+      first += std::string(static_cast<const char *>(column)) + " ";
+    }
+    return n && *n > 0 && first != "Step Temp E_pair E_mol " && first != "Step TotEng KinEng Temp ";
 #endif
   }
 

@@ -139,7 +139,7 @@ static bool is_asked_for(const Guest &guest, std::string &)
 {
   if (strcmp(guest.compute->id, "thermo_press") != 0) return true;
   return guest.compute->invoked_vector >= 0 ||
-      (guest.compute->invoked_scalar >= 0 && Compat::prints_custom_lines(guest.lmp->output));
+      (guest.compute->invoked_scalar >= 0 && Compat::prints_custom_lines(guest.lmp));
 }
 
 // --- hybrid/scaled, which tells its factors to restart files only --------------------------------
@@ -175,8 +175,34 @@ static bool read_variables(const std::string &bytes, size_t at, std::vector<std:
   return n >= 0 && (int) names.size() == n && at == bytes.size();
 }
 
-/* The file: number of styles, ..., their names and settings, [n] factors, [n] -1 or which variable,
- * the variables. */
+/* What stands at the end of the file: [n] factors, [n] -1 or which variable, since 2025 the same for
+ * variables of atom style, the variables. lists: how many lists of variables; false: it is not so. */
+struct Scales {
+  std::vector<double> factors;
+  std::vector<int> which;
+  std::vector<std::string> variables;
+};
+static bool read_scales(const std::string &bytes, size_t from, size_t n, size_t lists, Scales &scales)
+{
+  const size_t width = n * (sizeof(double) + lists * sizeof(int));
+  size_t at = from;
+  while (at < bytes.size() && !read_variables(bytes, at + width, scales.variables)) at++;
+  if (at >= bytes.size()) return false;
+  scales.factors.clear();
+  scales.which.assign(n, -1);
+  for (size_t k = 0; k < n; k++) {
+    scales.factors.push_back(number_at<double>(bytes, at + k * sizeof(double)));
+    if (!std::isfinite(scales.factors[k])) return false;
+    for (size_t list = 0; list < lists; list++) {
+      const int which = number_at<int>(bytes, at + n * sizeof(double) + (list * n + k) * sizeof(int));
+      if (which < -1 || which >= (int) scales.variables.size()) return false;
+      scales.which[k] = std::max(scales.which[k], which);
+    }
+  }
+  return true;
+}
+
+/* The file: number of styles, ..., their names and settings, and Scales. */
 static bool scales_us(const Guest &guest, std::string &says)
 {
   std::unique_ptr<FILE, int (*)(FILE *)> file(tmpfile(), fclose);
@@ -190,17 +216,11 @@ static bool scales_us(const Guest &guest, std::string &says)
   size_t before = 0;
   for (const auto &style : Compat::pair_styles(guest.lmp->force))
     before += bytes.find(as_written(style.first)) < mine;
-  std::vector<std::string> variables;
-  size_t at = mine;
-  while (at < bytes.size() &&
-         !read_variables(bytes, at + n * (sizeof(double) + sizeof(int)), variables))
-    at++;
-  if (at >= bytes.size()) return false;
-  const double factor = number_at<double>(bytes, at + before * sizeof(double));
-  const int which = number_at<int>(bytes, at + n * sizeof(double) + before * sizeof(int));
-  const bool varies = which >= 0 && which < (int) variables.size();
-  says = varies ? "v_" + variables[which] : text(factor);
-  return varies || factor != 1.0;
+  Scales scales;
+  if (!read_scales(bytes, mine, n, 2, scales) && !read_scales(bytes, mine, n, 1, scales)) return false;
+  const int which = scales.which[before];
+  says = which >= 0 ? "v_" + scales.variables[which] : text(scales.factors[before]);
+  return which >= 0 || scales.factors[before] != 1.0;
 }
 
 /* Of atom styles that have shapes: compute property/atom tells them. */

@@ -91,6 +91,8 @@ EXCEPTIONS = [
     (("direct", "ewald"), lambda o: o.get("noise") == "yes", "each engine draws its own numbers"),
     (("another pair style before",), lambda o: o["model of"] != "stokes", "SPH keeps rates in its fixes; the stream has no pair style"),
     (("pair style twice", "another pair style before"), lambda o: o.get("adapt") == "yes", "adapt goes on from the time step that it has chosen"),
+    (RESTARTS, lambda o: o.get("adapt") == "yes" and o["flow"] == "time",
+     "the restarted input gives its time step anew, and a formula of step*dt is then that of another time"),
     (("pair style twice",), lambda o: o["model of"] == "vans", "the stream has no pair style"),
     (("newton off", "tiled"), lambda o: o["model of"] == "vans", "pair gran with history does not go with it"),
     (("hybrid", "overlay before", "overlay after"), lambda o: o.get("contacts") == "yes", "a hybrid already"),

@@ -7,6 +7,7 @@ import pytest
 
 from neighbour_tables import KINDS, PACKAGE, ROW, joined
 from system import LammpsError, lmp
+from test_loading import lammps_source
 
 OVERDAMPED = "fix move ours stokes_dynamics/overdamped"
 NOISY = f"{OVERDAMPED} temperature 1 4711"
@@ -160,7 +161,8 @@ def test_a_row_speaks_of_atoms_of_ours(simulation, tmp_path, case, ours):
     row, facts, lines, message = case
     verdicts = {verdict for r, where, verdict in rows() if (r, where) == (row, facts)}
     assert verdicts
-    error, warnings = said(simulation, tmp_path, lines(ours))
+    steps = 0 if row == "FIX addtorque" else 2    # LAMMPS of today divides by the moment of inertia of one atom, 0
+    error, warnings = said(simulation, tmp_path, lines(ours), steps)
     if ours or case in ANYWHERE:
         assert message in error if error else message in warnings, (error, warnings)
         assert ("ERROR" if error else "WARNING") in verdicts
@@ -212,7 +214,6 @@ FINE = {
     "dipoles of length 0": scene(atoms="hybrid sphere dipole") + [OVERDAMPED],
     "an ellipsoid that is a sphere": scene(atoms=ELLIPSOID, before=ROUND) + [OVERDAMPED],
     "clumps that touch": scene(before="set atom 1*2 mol 1\nset atom 2 x -4.05") + ["fix b all gravity 1 vector 0 0 -1", OVERDAMPED],
-    "gravity that only fix rigid knows": scene(before=OVERLAP) + ["fix b all gravity 1 vector 0 0 -1 disable", OVERDAMPED],
 }
 
 
@@ -221,6 +222,12 @@ def test_what_goes_together_has_no_word(simulation, tmp_path, what):
     error, warnings = said(simulation, tmp_path, FINE[what])
     assert not error
     assert not re.findall("^.*(?:Fix|Pair style) stokes_dynamics.*: (?:fix|pair_style|atom_style|compute) .*", warnings, re.M)
+
+
+@pytest.mark.nothing_to_test_if(not lammps_source(), "installed headers do not tell what fix gravity disable is, so that it is warned of")
+def test_gravity_that_only_fix_rigid_knows_has_no_word(simulation, tmp_path):
+    _, warnings = said(simulation, tmp_path, scene(before=OVERLAP) + ["fix b all gravity 1 vector 0 0 -1 disable", OVERDAMPED])
+    assert "gravity pulls" not in warnings
 
 
 def test_a_warning_is_given_once(simulation, tmp_path):
