@@ -102,7 +102,7 @@ def finished(name, command, cwd):
             done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL, stdout=printed,
                                   stderr=subprocess.STDOUT)
         said = path.read_text(errors="replace")
-    if done.returncode != 0 or "ERROR" in said:
+    if done.returncode != 0 or re.search("^ERROR", said, re.M):    # at the beginning of a line: so LAMMPS speaks, MPI does otherwise
         sys.exit("\n".join(said.splitlines()[-20:]) + f"\n{name}: {' '.join(command)} failed in {cwd}")
     return said
 
