@@ -57,7 +57,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
   AtomRows motion;
-  /* [6] y of a free sphere (noise.h), of its turn only where it has a direction; scheme midpoint: random force and torque */
+  /* [6] y of a free sphere (noise.h), of its turn only where it has a direction; scheme midpoint:
+   * random force and torque */
   AtomRows random;
   /* [6] scheme midpoint: force and torque on a sphere in the step before */
   AtomRows load;

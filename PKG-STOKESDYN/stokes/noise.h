@@ -49,7 +49,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   void init(Hydrodynamics &hydro, const Ways &ways);
 
   /* y [width] of the free spheres to take(i, y), with width 6 of their turn as well, where the model has
-   * torques; [6] of the clumps of this rank are kept, U of their centre of mobility and W. The velocities of this step have been found. Errors: a temperature below 0; a
+   * torques; [6] of the clumps of this rank are kept, U of their centre of mobility and W. The
+   * velocities of this step have been found. Errors: a temperature below 0; a
    * mobility without a root. */
   using Take = std::function<void(int i, const double *y)>;
   void draw(Hydrodynamics &hydro, size_t width, const Take &take);
