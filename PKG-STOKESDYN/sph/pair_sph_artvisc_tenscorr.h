@@ -172,6 +172,7 @@ class PairSph : public LAMMPS_NS::Pair {
   void estimate_velocities();
   void settle_walls();
   bool stands(int i) const;
+  bool has_velocity(int i) const;
   const double *displacement_rates();
   void density_step();
   void sum_rates(double margin);

@@ -176,10 +176,7 @@ void PairSph::look_at_walls()
 void PairSph::tell_of_belts()
 {
   double belts = 0.0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *v = atom->v[i];
-    belts += is_wall(i) && stands(i) && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
-  }
+  for (int i = 0; i < atom->nlocal; i++) belts += is_wall(i) && stands(i) && has_velocity(i);
   belts = sum_of_all(world, belts);
   if (belts > 0.0)
     wall->voice.tell(text(belts) + " particles of the wall have a velocity, and no fix moves them: they "

@@ -176,16 +176,21 @@ bool PairSph::stands(int i) const
   return !(atom->mask[i] & displaced_bits) && used(atom->type[i]);
 }
 
+bool PairSph::has_velocity(int i) const
+{
+  const double *v = atom->v[i];
+  return v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
+}
+
 /* [3 n] the velocity with which each particle changes its place. Those of a lid or a belt have a
  * velocity for friction and stand: if the density took them to move, one end of a lid would be a
  * source of fluid and the other a sink. */
 const double *PairSph::displacement_rates()
 {
-  constexpr double REST[3] = {0.0, 0.0, 0.0};
   const double *v = rows(atom->v);
   displacing.clear();
   for (int i = 0; i < particles.n; i++) {
-    if (!stands(i) || std::equal(REST, REST + 3, v + 3 * (size_t) i)) continue;
+    if (!stands(i) || !has_velocity(i)) continue;
     if (displacing.empty()) displacing.assign(v, v + 3 * (size_t) particles.n);
     std::fill_n(&displacing[3 * (size_t) i], 3, 0.0);
   }

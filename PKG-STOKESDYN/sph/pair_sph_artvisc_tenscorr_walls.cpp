@@ -97,10 +97,8 @@ const double *PairSph::spins_of_walls()
   constexpr double SLOWEST = 1e-6;    // of the speed of sound; less is rounding
   if (!wall || wall->slip || !(model.friction || model.artvisc)) return nullptr;
   int moves = 0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *v = atom->v[i];
-    if (is_wall(i) && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)) moves = 1;
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_wall(i) && has_velocity(i)) moves = 1;
   if (!largest_of_all(world, moves)) return nullptr;
 
   sums.assign(SD_SPH_MOTION * (size_t) (particles.n + 1), 0.0);
