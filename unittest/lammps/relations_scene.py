@@ -1,6 +1,23 @@
 """A scene of relations.py: atoms, and the lines of an input with marks (relations_frame.py), by what a restart needs of them."""
 
 
+def until_settled(rules):
+    """lawful(o) of rules(o, no): a copy of the options o, changed by no(condition, option=value ...) until nothing changes any more."""
+    def lawful(o):
+        o, was = dict(o), None
+
+        def no(condition, **instead):
+            if condition:
+                o.update(instead)
+
+        while o != was:
+            was = dict(o)
+            rules(o, no)
+        return o
+
+    return lawful
+
+
 class Scene:
     def __init__(self, model, options, seed):
         self.model, self.options, self.seed = model, options, seed

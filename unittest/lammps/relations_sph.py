@@ -2,7 +2,7 @@
 import random
 from itertools import product
 
-from relations_scene import Scene
+from relations_scene import Scene, until_settled
 
 OPTIONS = {
     "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "tank", "tank", "column", "channel", "ends", "body"],
@@ -16,37 +16,29 @@ OPTIONS = {
 WALLED = ("tank", "column", "channel", "body")
 
 
-def lawful(o):
+@until_settled
+def lawful(o, no):
     """What does not go together, by the pages."""
-    o, was = dict(o), None
-    while o != was:
-        was = dict(o)
-
-        def no(condition, **instead):
-            if condition:
-                o.update(instead)
-
-        no(o["space"] in ("ends", "body"), dim=2)
-        no(o["dim"] == 2, wide=1)
-        no(o["scheme"] == "correction" and o["space"] not in ("full", "channel"), space="channel")
-        no(o["scheme"] == "correction", plane="no")
-        no(o["scheme"] == "summation" and o["space"] in ("ends", "body"), scheme="plain")
-        no(o["scheme"] == "summation", volume="no", filter="no")
-        no(o["scheme"] in ("shift", "correction"), tensCorr="no", filter="no")
-        no(o["scheme"] == "shift", kernel="wendland")
-        no(o["volume"] == "yes", tensCorr="no", filter="no")
-        no(o["fluids"] == 2, volume="yes" if o["scheme"] != "summation" else "no", filter="no")
-        no(o["fluids"] == 2 and (o["scheme"] == "summation" or o["space"] in ("ends", "body")), fluids=1)
-        no(o["state"] == "absolut" and o["fluids"] == 2, state="Tait")
-        no(o["space"] not in WALLED, wall="at rest")
-        no(o["space"] == "body", wall="own")
-        no(o["space"] != "body" and o["wall"] == "own" and o["scheme"] == "summation", wall="at rest")
-        no(o["space"] in ("full", "ends", "channel", "body"), plane="no")
-        no(o["viscosity"] == "laplacian" and o["wall"] in ("moving", "own"), viscosity="central")
-        no(o["look"] == "height" and (o["space"] not in ("tank", "column") or o["gravity"] == "no"), look="probe")
-        no(o["space"] == "body", gravity="yes")
-        no(o["space"] == "body" and o["look"] == "virial", look="energy")     # that of fix rigid depends on where the origin is
-    return o
+    no(o["space"] in ("ends", "body"), dim=2)
+    no(o["dim"] == 2, wide=1)
+    no(o["scheme"] == "correction" and o["space"] not in ("full", "channel"), space="channel")
+    no(o["scheme"] == "correction", plane="no")
+    no(o["scheme"] == "summation" and o["space"] in ("ends", "body"), scheme="plain")
+    no(o["scheme"] == "summation", volume="no", filter="no")
+    no(o["scheme"] in ("shift", "correction"), tensCorr="no", filter="no")
+    no(o["scheme"] == "shift", kernel="wendland")
+    no(o["volume"] == "yes", tensCorr="no", filter="no")
+    no(o["fluids"] == 2, volume="yes" if o["scheme"] != "summation" else "no", filter="no")
+    no(o["fluids"] == 2 and (o["scheme"] == "summation" or o["space"] in ("ends", "body")), fluids=1)
+    no(o["state"] == "absolut" and o["fluids"] == 2, state="Tait")
+    no(o["space"] not in WALLED, wall="at rest")
+    no(o["space"] == "body", wall="own")
+    no(o["space"] != "body" and o["wall"] == "own" and o["scheme"] == "summation", wall="at rest")
+    no(o["space"] in ("full", "ends", "channel", "body"), plane="no")
+    no(o["viscosity"] == "laplacian" and o["wall"] in ("moving", "own"), viscosity="central")
+    no(o["look"] == "height" and (o["space"] not in ("tank", "column") or o["gravity"] == "no"), look="probe")
+    no(o["space"] == "body", gravity="yes")
+    no(o["space"] == "body" and o["look"] == "virial", look="energy")     # that of fix rigid depends on where the origin is
 
 
 # number of cells along x, y, z in two and three dimensions; which sides are periodic

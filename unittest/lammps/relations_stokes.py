@@ -3,7 +3,7 @@ import random
 
 import numpy as np
 
-from relations_scene import Scene
+from relations_scene import Scene, until_settled
 
 # The first value of an option is the simplest one: to it a failing case goes back, one option after the other.
 OPTIONS = {
@@ -22,56 +22,48 @@ OPTIONS = {
 CLOSED = ("periodic", "tilt", "deform")
 
 
-def lawful(o):
+@until_settled
+def lawful(o, no):
     """What does not go together, by the pages: the later option gives way."""
-    o, was = dict(o), None
-    while o != was:
-        was = dict(o)
-        overdamped = o["motion"] in ("ab2", "euler", "midpoint")
-        blobs = o["model"].startswith("multiblob")
-
-        def no(condition, **instead):
-            if condition:
-                o.update(instead)
-
-        no(o["pairs"] != "inf", films="no", far="auto", look="nothing", model="rotation yes" if blobs else o["model"])
-        no(o["pairs"] != "inf" and o["space"] in ("wall", "deform"), space="open")
-        no(o["clumps"] == 0, rigid="no")
-        no(o["rigid"] == "auto" and (o["pairs"] != "clumps_only" or overdamped), rigid="yes")
-        no(o["rigid"] != "no" and o["pairs"] in ("taper", "list"), rigid="no")
-        no(o["rigid"] == "shell" and (blobs or o["space"] == "wall"), rigid="yes")
-        no(o["rigid"] != "no" and o["model"] == "", model="rotation yes")
-        no(o["films"] == "yes" and o["model"] == "", model="rotation yes")
-        no(o["pairs"] == "list", films="no", rigid="no", clumps=0, motion=o["motion"] if not overdamped else "forces")
-        no(o["pairs"] == "clumps_only" and overdamped and o["rigid"] == "no" and o["noise"] == "no", rigid="yes" if o["clumps"] else "no")
-        no(o["pairs"] == "clumps_only" and o["motion"] == "midpoint", motion="ab2")
-        no(not overdamped, noise="no", held="no", spin="no", adapt="no")
-        no(overdamped, every=1)
-        no(o["look"] != "nothing" and blobs, guess="warm")      # else the forces of points are not kept
-        no(o["noise"] == "yes", adapt="no", contacts="no", held="still" if o["held"] == "moved" and o["clumps"] else o["held"])
-        no(o["noise"] == "yes" and (o["pairs"] != "inf" or o["space"] == "deform"), noise="no")
-        no(o["noise"] == "yes" and o["motion"] in ("ab2", "euler") and (
-            o["films"] == "yes" or blobs or o["space"] == "wall" or o["rigid"] != "no" or o["held"] != "no" or o["spin"] != "no"
-            or o["visc"] == "formula"), motion="midpoint")
-        no(o["held"] == "moved", adapt="no")      # fix move wants one time step
-        no(o["held"] == "moved" and o["motion"] == "midpoint" and o["rigid"] != "no", held="still")
-        no(o["spin"] != "no" and (o["model"] == "" or o["rigid"] != "no"), spin="no")
-        no(o["space"] == "deform" and o["motion"] == "midpoint", motion="ab2", noise="no")
-        no(o["space"] == "deform", flow="box", adapt="no", held="no", contacts="no")
-        no(o["space"] != "deform" and o["flow"] == "box", flow="rest")
-        no(o["space"] == "wall" and o["flow"] == "uniform", flow="shear")
-        no(o["space"] in CLOSED and o["far"] == "direct", far="auto")
-        no(o["space"] in CLOSED and o["far"] == "auto" and o["pairs"] == "inf", far="ewald")
-        no(o["space"] in CLOSED and o["flow"] == "shear", flow="uniform")
-        no(o["space"] == "wall" and o["far"] == "ewald" and o["model"] == "rotation yes", far="auto")
-        no(o["space"] == "wall" and o["model"] == "" and o["far"] == "ewald", far="auto")
-        no(o["select"] != "all" and (o["clumps"] or overdamped), select="all")
-        no(o["look"] == "stress" and not (blobs and o["space"] in CLOSED), look="nothing")
-        no(o["look"] == "field" and o["space"] == "wall", look="nothing")
-        no(o["model"] == "multiblob 42", spheres=min(o["spheres"], 5), clumps=min(o["clumps"], 1))
-        no(o["space"] in CLOSED and o["visc"] == "formula" and o["noise"] == "yes", visc="number")
-        no(o["contacts"] == "yes" and o["space"] in CLOSED and o["films"] == "yes", contacts="no")
-    return o
+    overdamped = o["motion"] in ("ab2", "euler", "midpoint")
+    blobs = o["model"].startswith("multiblob")
+    no(o["pairs"] != "inf", films="no", far="auto", look="nothing", model="rotation yes" if blobs else o["model"])
+    no(o["pairs"] != "inf" and o["space"] in ("wall", "deform"), space="open")
+    no(o["clumps"] == 0, rigid="no")
+    no(o["rigid"] == "auto" and (o["pairs"] != "clumps_only" or overdamped), rigid="yes")
+    no(o["rigid"] != "no" and o["pairs"] in ("taper", "list"), rigid="no")
+    no(o["rigid"] == "shell" and (blobs or o["space"] == "wall"), rigid="yes")
+    no(o["rigid"] != "no" and o["model"] == "", model="rotation yes")
+    no(o["films"] == "yes" and o["model"] == "", model="rotation yes")
+    no(o["pairs"] == "list", films="no", rigid="no", clumps=0, motion=o["motion"] if not overdamped else "forces")
+    no(o["pairs"] == "clumps_only" and overdamped and o["rigid"] == "no" and o["noise"] == "no", rigid="yes" if o["clumps"] else "no")
+    no(o["pairs"] == "clumps_only" and o["motion"] == "midpoint", motion="ab2")
+    no(not overdamped, noise="no", held="no", spin="no", adapt="no")
+    no(overdamped, every=1)
+    no(o["look"] != "nothing" and blobs, guess="warm")      # else the forces of points are not kept
+    no(o["noise"] == "yes", adapt="no", contacts="no", held="still" if o["held"] == "moved" and o["clumps"] else o["held"])
+    no(o["noise"] == "yes" and (o["pairs"] != "inf" or o["space"] == "deform"), noise="no")
+    no(o["noise"] == "yes" and o["motion"] in ("ab2", "euler") and (
+        o["films"] == "yes" or blobs or o["space"] == "wall" or o["rigid"] != "no" or o["held"] != "no" or o["spin"] != "no"
+        or o["visc"] == "formula"), motion="midpoint")
+    no(o["held"] == "moved", adapt="no")      # fix move wants one time step
+    no(o["held"] == "moved" and o["motion"] == "midpoint" and o["rigid"] != "no", held="still")
+    no(o["spin"] != "no" and (o["model"] == "" or o["rigid"] != "no"), spin="no")
+    no(o["space"] == "deform" and o["motion"] == "midpoint", motion="ab2", noise="no")
+    no(o["space"] == "deform", flow="box", adapt="no", held="no", contacts="no")
+    no(o["space"] != "deform" and o["flow"] == "box", flow="rest")
+    no(o["space"] == "wall" and o["flow"] == "uniform", flow="shear")
+    no(o["space"] in CLOSED and o["far"] == "direct", far="auto")
+    no(o["space"] in CLOSED and o["far"] == "auto" and o["pairs"] == "inf", far="ewald")
+    no(o["space"] in CLOSED and o["flow"] == "shear", flow="uniform")
+    no(o["space"] == "wall" and o["far"] == "ewald" and o["model"] == "rotation yes", far="auto")
+    no(o["space"] == "wall" and o["model"] == "" and o["far"] == "ewald", far="auto")
+    no(o["select"] != "all" and (o["clumps"] or overdamped), select="all")
+    no(o["look"] == "stress" and not (blobs and o["space"] in CLOSED), look="nothing")
+    no(o["look"] == "field" and o["space"] == "wall", look="nothing")
+    no(o["model"] == "multiblob 42", spheres=min(o["spheres"], 5), clumps=min(o["clumps"], 1))
+    no(o["space"] in CLOSED and o["visc"] == "formula" and o["noise"] == "yes", visc="number")
+    no(o["contacts"] == "yes" and o["space"] in CLOSED and o["films"] == "yes", contacts="no")
 
 
 def places(o, seed):

@@ -1,7 +1,7 @@
 """Scenes of fix hydro/vans for relations.py: a bed of fixed and loose grains below a stream."""
 import random
 
-from relations_scene import Scene
+from relations_scene import Scene, until_settled
 
 OPTIONS = {
     "couple": ["two", "two", "one", "none"], "layers": [1, 2, 3],
@@ -16,26 +16,18 @@ OPTIONS = {
 }
 
 
-def lawful(o):
+@until_settled
+def lawful(o, no):
     """What does not go together, by the page."""
-    o, was = dict(o), None
-    while o != was:
-        was = dict(o)
-
-        def no(condition, **instead):
-            if condition:
-                o.update(instead)
-
-        alone = o["couple"] in ("none", "one")
-        no(alone, surface="free", drive="slope" if o["drive"] != "pressure" else "pressure", bed_mixing="off")
-        no(o["drive"] in ("discharge", "depth") and o["surface"] == "speed", surface="follow")
-        no(o["drive"] == "depth", surface="follow")
-        no(o["turbulence"] == "none", bed_mixing="off")
-        no(o["couple"] == "none", upflow="off", classes="no")
-        no(o["couple"] == "none" and o["fluctuation"] in ("depth", "langevin"), fluctuation="correlated")
-        no(o["fluctuation"] != "none" and o["upflow"] != "off", upflow="off")
-        no(o["upflow"] != "off", added_mass="off")
-    return o
+    alone = o["couple"] in ("none", "one")
+    no(alone, surface="free", drive="slope" if o["drive"] != "pressure" else "pressure", bed_mixing="off")
+    no(o["drive"] in ("discharge", "depth") and o["surface"] == "speed", surface="follow")
+    no(o["drive"] == "depth", surface="follow")
+    no(o["turbulence"] == "none", bed_mixing="off")
+    no(o["couple"] == "none", upflow="off", classes="no")
+    no(o["couple"] == "none" and o["fluctuation"] in ("depth", "langevin"), fluctuation="correlated")
+    no(o["fluctuation"] != "none" and o["upflow"] != "off", upflow="off")
+    no(o["upflow"] != "off", added_mass="off")
 
 
 def words_of(o):
