@@ -16,12 +16,11 @@ void Directions::look(int i, const double W[3])
 void Directions::step(int i, double dt, double weight, double scale, const double *noise)
 {
   if (!on() || !turning.has(i)) return;
-  double *row = turning.row(i), w[3], R[9];
+  double *row = turning.row(i), w[3];
   sd_mean_velocity(3, row, row + 3, weight, w);
   for (int d = 0; d < 3; d++) w[d] = dt * w[d] + (scale > 0.0 ? scale * noise[d] : 0.0);
   std::copy_n(row, 3, row + 3);
-  sd_rotation(w, R);
-  turn(i, R);
+  turn(i, w, 1.0);
 }
 
 void Directions::turn(int i, const double W[3], double dt)
