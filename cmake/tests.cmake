@@ -39,7 +39,9 @@ endforeach()
 # Kernels, and the look-up in a grid, as processors other than x86-64 have them, and as compilers without vector types: these
 # rooms once more, before the library that has them too.
 if(NOT STOKESDYN_SANITIZE)
-  set(kernel_rooms base stokes/tensor stokes/product stokes/ewald stokes/lubrication stokes/precondition stokes/flow)
+  set(kernel_rooms tensor product ${ewald_rooms} lubrication precondition flow)
+  list(TRANSFORM kernel_rooms PREPEND stokes/)
+  list(APPEND kernel_rooms base)
   list(TRANSFORM kernel_rooms PREPEND ${source}/core/)
   foreach(variant portable no)
     string(TOUPPER SD_${variant}_KERNELS definition)
