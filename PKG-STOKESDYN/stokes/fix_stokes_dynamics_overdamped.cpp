@@ -238,7 +238,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   last.atoms = atom->natoms;
   const std::vector<double> pushed = loads(hydro);
   const size_t width = hydro.rotation() ? 6 : 3, turns = directions.on() ? width : 3;
-  const Velocities::Take take = [&, width](int i, const double *v, const double *F) {
+  const Solve::Take take = [&, width](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i), V[6];
     std::copy_n(v, width, V);
@@ -275,9 +275,9 @@ void FixStokesDynamicsOverdamped::load_on(int i, double *FT) const
   if (atom->torque_flag) std::copy_n(atom->torque[i], 3, FT + 3);
 }
 
-Velocities::Held FixStokesDynamicsOverdamped::givens() const
+Given::Held FixStokesDynamicsOverdamped::givens() const
 {
-  if (!held_bit && !spin.on()) return Velocities::Held();
+  if (!held_bit && !spin.on()) return Given::Held();
   return [this](int i, double *V) { return given_velocity(i, V); };
 }
 
@@ -376,14 +376,14 @@ std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
 
 /* The point by which a clump is moved, from its centroid in the axes of its shape: with noise the centre
  * of mobility, where there is no drift. */
-const double *FixStokesDynamicsOverdamped::tracked(const Velocities::Clump &clump) const
+const double *FixStokesDynamicsOverdamped::tracked(const ClumpPoses::Clump &clump) const
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   return noise.on() ? hydrodynamics().motion().shape(clump).noise.centre : CENTROID;
 }
 
 /* V [6] of that point and W */
-void FixStokesDynamicsOverdamped::tracked_velocity(const Velocities::Clump &clump,
+void FixStokesDynamicsOverdamped::tracked_velocity(const ClumpPoses::Clump &clump,
                                                    double V[6]) const
 {
   double arm[3], turning[3];
@@ -408,7 +408,7 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
   for (size_t c = 0; c < start.size(); c++) {
     if (start[c].held) continue;
-    const Velocities::Clump &clump = hydro.motion().clumps()[c];
+    const ClumpPoses::Clump &clump = hydro.motion().clumps()[c];
     const RigidClumps::Body &body = hydro.motion().body(clump);
     const ClumpStep goes = step(c);
     double pose[12], turn[9];
@@ -443,10 +443,10 @@ void FixStokesDynamicsOverdamped::clump_moves(Hydrodynamics &hydro, int i, const
 
 void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
 {
-  const Velocities &motion = hydro.motion();
+  const ClumpPoses &motion = hydro.motion();
   const std::vector<double> all_before = velocities_before();
   const auto step = [&](size_t number) {
-    const Velocities::Clump &clump = motion.clumps()[number];
+    const ClumpPoses::Clump &clump = motion.clumps()[number];
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
     double old[6], mean[6];
     ClumpStep s = {tracked(clump), {}, {}};

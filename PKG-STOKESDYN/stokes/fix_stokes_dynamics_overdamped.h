@@ -103,8 +103,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool causes_stand(const Hydrodynamics &) const;
   void set_step(double dt);
   void announce();
-  const double *tracked(const Velocities::Clump &clump) const;
-  void tracked_velocity(const Velocities::Clump &clump, double V[6]) const;
+  const double *tracked(const ClumpPoses::Clump &clump) const;
+  void tracked_velocity(const ClumpPoses::Clump &clump, double V[6]) const;
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
   Neighbourhood neighbourhood;
@@ -121,11 +121,11 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void move_free(int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
-  Velocities::Held givens() const;
+  Given::Held givens() const;
   std::vector<double> loads(const Hydrodynamics &) const;
-  void begin_midpoint(Hydrodynamics &, const Velocities::Take &take, const std::vector<double> &loads);
+  void begin_midpoint(Hydrodynamics &, const Solve::Take &take, const std::vector<double> &loads);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
-  using Clumps = std::vector<Velocities::Clump>;
+  using Clumps = std::vector<ClumpPoses::Clump>;
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; its
    * velocity and that of the turn, for whoever keeps them */
   struct ClumpStep {

@@ -63,11 +63,11 @@ std::vector<double> FixStokesDynamicsOverdamped::loads(const Hydrodynamics &hydr
   return all;
 }
 
-void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Velocities::Take &take,
+void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take,
                                                  const std::vector<double> &pushed)
 {
   const int width = hydro.rotation() ? 6 : 3;
-  Velocities::Draw draw;
+  Solve::Draw draw;
   if (noise.on())
     draw = noise.forces(hydro, [this, width](int i, const double *f) {
       std::copy_n(f, width, random.give(i));

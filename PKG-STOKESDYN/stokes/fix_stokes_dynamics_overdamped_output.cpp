@@ -63,7 +63,7 @@ double FixStokesDynamicsOverdamped::fastest() const
 double FixStokesDynamicsOverdamped::change_of_velocities() const
 {
   const Hydrodynamics &hydro = hydrodynamics();
-  const Velocities &moving = hydro.motion();
+  const ClumpPoses &moving = hydro.motion();
   double most = 0.0, old[6];
   for (int i : moving.lone()) {
     if (!before.has(i)) continue;

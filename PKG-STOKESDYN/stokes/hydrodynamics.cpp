@@ -28,7 +28,9 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     scene(voice, epochs, settings.scene), shells(voice, settings.shells),
     rigid(voice, scene.whole, epochs, settings.rigid),
     lubrication(voice, settings.lubrication, settings.shells),
-    mobile(lmp, {scene, ambient, rigid, lubrication}), preconditioner(lmp, scene), guard(voice)
+    poses(lmp, scene, ambient, rigid, given), bodies(lmp, scene, ambient, rigid, poses, given),
+    guess(lmp, scene, shells, settings, epochs),
+    solver(lmp, scene, bodies, lubrication), guard(voice)
 {
 }
 
@@ -46,20 +48,20 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   shells.make();
   scene.shells = settings.shells.on() ? &shells : nullptr;
   scene.orient = [this] {
-    mobile.orient();
+    bodies.orient();
   };
   advance();
   rigid.forget();
-  preconditioner.forget();
-  preconditioner.kind = settings.precondition;
-  preconditioner.easy = settings.history() && settings.tolerance >= LOOSE;
+  solver.preconditioner.forget();
+  solver.preconditioner.kind = settings.precondition;
+  solver.preconditioner.easy = settings.history() && settings.tolerance >= LOOSE;
 }
 
 void Hydrodynamics::init()
 {
   ambient.init();
   scene.settings.positive = false;
-  mobile.held = nullptr;    // it asks a fix that may be gone
+  given = {};    // it asks a fix that may be gone
   advance();
   prepared.take(epochs.run);
   find_wall(voice, scene.settings);
@@ -82,7 +84,7 @@ void Hydrodynamics::check_prepared() const
 void Hydrodynamics::begin(Moment moment)
 {
   check_prepared();
-  memory = State::find(lmp);
+  guess.memory = memory = State::find(lmp);
   if (!memory)
     voice.fail("its internal fix " + std::string(State::ID) + " has been deleted; a run without "
                "'pre no' creates it again");
@@ -93,7 +95,8 @@ void Hydrodynamics::begin(Moment moment)
     began = update->firststep;
     ambient.select();
   }
-  mobile.loads.clear();
+  given = {};
+  given.velocities = !overdamped;
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
                                                            : Ambient::NO_DERIVATIVES;
@@ -126,7 +129,7 @@ void Hydrodynamics::clumps()
 {
   if (!settings.rigid.apart()) {
     solvers = ambient.who();
-    if (settings.rigid.on) mobile.find();    // are they whole and rigid?
+    if (settings.rigid.on) poses.find();    // are they whole and rigid?
     return;
   }
   const bool wants_perturbation = reported || settings.rigid.auto_resolve;
@@ -140,7 +143,8 @@ void Hydrodynamics::clumps()
       row[State::at(State::VPRIME, d)] = F[d] / ambient.resistance(i, d) - s[d];
   };
   std::vector<char> left_over;
-  mobile.drag(take, left_over);
+  poses.find();
+  poses.drag(take, left_over);
   memory->global.loose = rigid.loose();
   solvers.clear();
   for (int i : ambient.who())
@@ -173,17 +177,33 @@ void Hydrodynamics::solve()
 {
   if (settings.rigid.apart() && !rigid.any_loose()) return;
   place();
+  bodies.place(width());
+  sd_solve_report report = {};
+  const sd_status status = scene.anybody_sees() ? find_forces(report) : SD_OK;
+  judge(status, report);
+  guess.keep(bodies, given, solver.exerted);
+}
+
+void Hydrodynamics::velocities(const Solve::Take &take, const Given::Held &held,
+                               const std::vector<double> &loads, const Solve::Draw *draw)
+{
   State::Global &global = memory->global;
   sd_solve_report report = {};
-  const sd_status status = scene.anybody_sees() ? run(report) : SD_OK;
-  global.solves++;
-  global.iterations = report.iterations;
-  global.residual = report.residual;
-  if (status == SD_EMAXITER || status == SD_ESTAGNATED)
-    unconverged(status, report);
-  else if (status != SD_OK)
-    failed(status, report);
-  keep();
+  sd_status status = SD_OK;
+  solvers = ambient.who();
+  given = {false, loads, held};
+  poses.find();
+  if (settings.rigid.apart()) {
+    poses.velocities(width(), take);
+    for (int i : solvers)
+      memory->rows.give(i);    // those that have one are known to have moved here
+  } else
+    status = find_motions(take, draw, report);
+  // v' is none of this: a solve for forces begins from nothing.
+  global.last_step = update->ntimestep;
+  global.last_solve = -1;
+  global.reported = global.solutions = 0;
+  judge(status, report);
 }
 
 void Hydrodynamics::look_at_wall()
@@ -217,34 +237,6 @@ void Hydrodynamics::place()
     warn_of_short_cutoff(voice, scene);
 }
 
-/* The linear system of this step, by the rows of the scene. */
-sd_system Hydrodynamics::gather()
-{
-  const int n = scene.size();
-  const size_t m = width();
-  solution.resize(m * n + m);
-  const size_t scratch = SD_SOLVE_WORK(n, width()) + 1;
-  if (scratch > work_room) {
-    work.reset();
-    work.reset(new double[scratch]);
-    work_room = scratch;
-  }
-  const std::vector<double> rows = scene.rows((int) m + 2, [this, m](int i, double *out) {
-    ambient.slip(i, out);
-    out[m] = ambient.drag(i);
-    out[m + 1] = ambient.spin(i);
-  });
-  take_apart(rows, n, {{&slip, m}, {&resistance, 1}, {&spin, 1}});
-  sd_system system = {};
-  system.n = n;
-  system.drag = resistance.data();
-  system.spin = rotation() ? spin.data() : nullptr;
-  system.apply = sd_mobility_apply;
-  system.apply_ctx = scene.mobility();
-  system.world = scene.ranks();
-  return system;
-}
-
 Voice Hydrodynamics::where(int algorithm) const
 {
   return voice.at_step().of(overdamped ? "velocities from forces"
@@ -259,16 +251,14 @@ static std::string how_far(const sd_solve_report &report)
 
 /* Algorithm 1 converges for pairs and small clumps only. Where it cannot, 2 goes on, in this solve
  * and from now on: a run is not stranded by its default. */
-sd_status Hydrodynamics::run(sd_solve_report &report)
+sd_status Hydrodynamics::find_forces(sd_solve_report &report)
 {
-  sd_system system = gather();
-  if (!joined() && algorithm() == StokesSettings::SUBSTITUTION) {
-    const sd_status status =
-        sd_solve_substitution(&system, slip.data(), settings.tolerance, settings.max_iter,
-                              solution.data(), work.get(), &report);
+  Solve::How how = {false, settings.tolerance, settings.max_iter};
+  if (!bodies.joined() && algorithm() == StokesSettings::SUBSTITUTION) {
+    const sd_status status = solver.substitution(how, report);
     fail_if_alone(where(StokesSettings::SUBSTITUTION), status);
     if (status != SD_EDIVERGED || settings.strict) {
-      if (settings.scene.wall.sign) look_at_step(system, report, false);
+      if (settings.scene.wall.sign) look_at_step(report, false);
       return status;
     }
     memory->global.diverged = 1;
@@ -276,15 +266,45 @@ sd_status Hydrodynamics::run(sd_solve_report &report)
         .warn("diverged: " + how_far(report) +
               "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
-  const sd_status status = joined() ? together(report) : gradients(system, report);
+  how.warm = guess.recall(bodies, given);
+  if (bodies.joined()) bodies.assemble();
+  const sd_status status = bodies.joined() ? solver.run(how, guess, report)
+                                           : solver.gradients(how, guess, report);
+  fail_if_alone(where(StokesSettings::GRADIENTS), status);
   if (!shells.settings.on() || status == SD_OK)
-    look_at_step(system, report, joined() || preconditioner.attached());
+    look_at_step(report, bodies.joined() || solver.preconditioner.attached());
   return status;
 }
 
-void Hydrodynamics::look_at_step(const sd_system &system, const sd_solve_report &report,
-                                 bool preconditioned)
+/* In one loop, with lubrication in it. New random forces leave nothing to begin from. */
+sd_status Hydrodynamics::find_motions(const Solve::Take &take, const Solve::Draw *draw,
+                                      sd_solve_report &report)
 {
+  place();
+  bodies.place(width());
+  bodies.assemble();
+  if (settings.lubrication.on) {
+    lubrication.place(scene, ambient, draw != nullptr);
+    solver.tie_films();
+  }
+  if (draw) solver.draw(*draw);
+  const bool warm = guess.recall(bodies, given) && !draw;
+  const sd_status status =
+      solver.run({warm, settings.tolerance, settings.max_iter}, guess, report);
+  poses.moves(&solver.V[6 * bodies.first_clump()]);
+  solver.hand_out(take);
+  films_power.clear();
+  if (settings.lubrication.on && status == SD_OK) {
+    read_motion();
+    find_films_power();
+  }
+  guess.keep(bodies, given, solver.exerted);
+  return status;
+}
+
+void Hydrodynamics::look_at_step(const sd_solve_report &report, bool preconditioned)
+{
+  const sd_system system = solver.system();
   guard.state = memory->global.guard;
   if (shells.settings.on())
     look_at_shells(system);
@@ -296,91 +316,34 @@ void Hydrodynamics::look_at_step(const sd_system &system, const sd_solve_report 
 /* A hundredth of the forces is enough there. */
 void Hydrodynamics::look_at_shells(const sd_system &system)
 {
-  const Velocities::How how = {width(), false, 1e-2, settings.max_iter, true};
-  Velocities::Guess none;
+  const Solve::How how = {false, 1e-2, settings.max_iter};
+  Guess none(lmp, scene, shells, settings, epochs);
   none.l.resize(3 * (size_t) shells.points() * scene.size() + 3);
   none.v.resize(6 * (size_t) scene.size() + 6);
-  sd_bodies_report made = {};
+  sd_solve_report made = {};
+  const std::vector<double> found = solver.exerted;
   guard.look_at_shells(
       system,
       [&](const std::vector<double> &v, std::vector<double> &Rv) {
-        return mobile.resist(how, v, none, Rv, made);
+        bodies.pass(v, false);
+        const sd_status status = solver.run(how, none, made);
+        for (size_t j = 0; j < 6 * (size_t) scene.size(); j++) Rv[j] = -solver.exerted[j];
+        return status;
       },
       scene, memory->global.solves);
+  solver.exerted = found;
 }
 
-sd_status Hydrodynamics::gradients(sd_system &system, sd_solve_report &report)
+void Hydrodynamics::judge(sd_status status, const sd_solve_report &report)
 {
   State::Global &global = memory->global;
-  system.warm = memory->history && global.solutions > 0;
-  if (system.warm) guess();
-  preconditioner.attach(system, memory->places, global.places_box);
-  const sd_status status = sd_solve_gradients(&system, slip.data(), settings.tolerance,
-                                              settings.max_iter, solution.data(), work.get(), &report);
-  fail_if_alone(where(StokesSettings::GRADIENTS), status);
-  return status;
-}
-
-/* Clumps with shells: bodies that are held in the slip, by the loop that moves them without
- * inertia. */
-sd_status Hydrodynamics::together(sd_solve_report &report)
-{
-  const bool warm = memory->history && memory->global.solutions > 0;
-  if (shells.settings.on())
-    recall_points(begin_with.l, memory->global.line);
-  else if (warm)
-    guess();
-  const Velocities::How how = {width(), warm, settings.tolerance, settings.max_iter};
-  sd_bodies_report made = {};
-  const sd_status status = mobile.resist(how, slip, begin_with, solution, made);
-  forces_found.take(epochs.step);
-  keep_points(begin_with.l);
-  report.iterations = report.products = made.products;
-  report.residual = made.residual;
-  report.curvature = made.curvature;
-  return status;
-}
-
-/* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
- * and not from F, the guess has the slip of now: it is exact for spheres that nobody disturbs, at
- * any tolerance. */
-void Hydrodynamics::guess()
-{
-  const size_t m = width();
-  const bool line = memory->global.solutions > 1;
-  solution = scene.rows(width(), [&](int i, double *out) {
-    const double *row = memory->rows[i], *before = row + memory->before();
-    for (size_t d = 0; d < m; d++) {
-      const double last = row[State::at(State::VPRIME, d)];
-      out[d] = line ? 2.0 * last - before[d] : last;
-    }
-  });
-  for (size_t k = 0; k < (size_t) scene.size(); k++)
-    for (size_t d = 0; d < m; d++) {
-      double &F = solution[m * k + d];
-      F = (d < 3 ? resistance[k] : spin[k]) * (slip[m * k + d] + F);
-    }
-}
-
-/* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have
- * none: not what the tolerance of a solve from zero has left of theirs either. */
-void Hydrodynamics::keep()
-{
-  const size_t m = width();
-  State::Global &global = memory->global;
-  std::vector<double> found(m * scene.size() + m, 0.0);
-  for (size_t k = 0; k < (size_t) scene.size(); k++)
-    for (size_t d = 0; d < m && !scene.alone((int) k); d++)
-      found[m * k + d] = solution[m * k + d] / (d < 3 ? resistance[k] : spin[k]) - slip[m * k + d];
-  scene.to_atoms(width(), found.data(), [&](int i, const double *v) {
-    double *row = memory->rows.give(i), *before = row + memory->before();
-    for (size_t d = 0; d < m; d++) {
-      double &last = row[State::at(State::VPRIME, d)];
-      if (memory->history) before[d] = last;
-      last = v[d];
-    }
-  });
-  global.solutions = std::min(2.0, global.solutions + 1.0);
+  global.solves++;
+  global.iterations = report.iterations;
+  global.residual = report.residual;
+  if (status == SD_EMAXITER || status == SD_ESTAGNATED)
+    unconverged(status, report);
+  else if (status != SD_OK)
+    failed(status, report);
 }
 
 /* An answer that may still be used, if not what was asked for. */
@@ -434,12 +397,10 @@ double Hydrodynamics::dissipation(int i) const
 
 double Hydrodynamics::memory_usage() const
 {
-  const size_t numbers = slip.capacity() + resistance.capacity() +
-      spin.capacity() + solution.capacity() + films_v.capacity() + films_F.capacity() + work_room;
+  const double films = films_v.capacity() + films_F.capacity() + films_power.capacity();
   return ambient.memory_usage() + scene.memory_usage() + shells.memory_usage() +
-      rigid.memory_usage() +
-      lubrication.memory_usage() + mobile.memory_usage() + preconditioner.memory_usage() +
-      sizeof(double) * (double) numbers;
+      rigid.memory_usage() + lubrication.memory_usage() + poses.memory_usage() +
+      bodies.memory_usage() + solver.memory_usage() + sizeof(double) * films;
 }
 
 }    // namespace StokesDyn

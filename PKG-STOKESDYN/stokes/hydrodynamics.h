@@ -5,24 +5,25 @@
  *
  * A step:   begin()                        the fluid, who takes part
  *           clumps(), solve(), drag()      forces, of rigid clumps and of all others
- * Between solves v' stands, and drag() alone gives the force for the velocity of now. Forces and v'
- * are rows of the memory. */
+ *           velocities()                   or motions, without inertia
+ * Who is a body, where it stands and what is given is in `bodies`, what the next solve begins from in
+ * `guess`, and `solver` finds the rest. Between solves v' stands, and drag() alone gives the force for
+ * the velocity of now. Forces and v' are rows of the memory. */
 #ifndef SD_HYDRODYNAMICS_H
 #define SD_HYDRODYNAMICS_H
 
 #include "ambient.h"
+#include "body_scene.h"
+#include "clump_poses.h"
 #include "fix_stokes_dynamics_state.h"
+#include "guess.h"
 #include "lubrication.h"
-#include "preconditioner.h"
 #include "rigid_clumps.h"
 #include "scene.h"
 #include "settings.h"
+#include "solve.h"
 #include "time_step_guard.h"
-#include "velocities.h"
 
-#include "sd_solve.h"
-
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -67,13 +68,13 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* Of all that takes part, from loads [6 nlocal], the force and torque on each atom, in any order; and
    * forces on those that are held. A step is begin() and this. Where all interact, the forces go to
    * rows of the memory too: the next guess. draw: random forces too, where all interact */
-  void velocities(const Velocities::Take &take, const Velocities::Held &held,
-                  const std::vector<double> &loads, const Velocities::Draw *draw = nullptr);
+  void velocities(const Solve::Take &take, const Given::Held &held, const std::vector<double> &loads,
+                  const Solve::Draw *draw = nullptr);
   /* Those of rigid clumps, and who is free, since then */
-  const Velocities &motion() const { return mobile; }
+  const ClumpPoses &motion() const { return poses; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
    * which the next solve begins. */
-  void turn(int i, const double R[9]);
+  void turn(int i, const double R[9]) { guess.turn(i, R); }
 
   /* With shells, since the last step: first moments of the forces on the fluid, of the spheres'
    * points and of their films, [12 nlocal]: xx yy zz xy xz yz of each. Points about the centre of
@@ -108,11 +109,14 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
+  Given given;
   Shells shells;
   RigidClumps rigid;
   Lubrication lubrication;
-  Velocities mobile;
-  Preconditioner preconditioner;
+  ClumpPoses poses;
+  BodyScene bodies;
+  Guess guess;
+  Solve solver;
   TimeStepGuard guard;
   /* in a run: what is looked at or said once */
   Since prepared, looked, warned_unconverged, warned_cut;
@@ -124,56 +128,37 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps. Rows of
    * a solve are those that the scene makes of them */
   std::vector<int> solvers;
-  std::vector<double> slip, resistance, spin, solution;
-  /* scratch of the solver, not filled: parts that it does not need take no memory */
-  std::unique_ptr<double[]> work;
-  size_t work_room = 0;
-  /* where velocities from forces begin */
-  Velocities::Guess begin_with;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
   /* [nlocal], or empty: of strain_power() */
   std::vector<double> films_power;
 
-  /* do the scene's rows, and what films need around them, stand as in this step? With shells, are
-   * the forces in begin_with those of this step's solve, by these rows? */
-  Since rows_stand, forces_found;
+  /* do the scene's rows, and what films need around them, stand as in this step? */
+  Since rows_stand;
   bool standing() const { return rows_stand.is(epochs.step); }
-  bool solved() const { return forces_found.is(epochs.step); }
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void advance();
   void place();
   void look_at_wall();
-  sd_system gather();
-  // spheres as shells of points, or clumps with shells that interact
-  bool joined() const
-  {
-    return shells.settings.on() ||
-        (settings.rigid.on && !settings.rigid.apart() && settings.rigid.shell > 1);
-  }
   void stand_rows();
   void surround();
   void read_motion();
   void place_films();
   void lubricate();
   void find_films_power();
-  sd_status run(sd_solve_report &report);
-  void look_at_step(const sd_system &system, const sd_solve_report &report, bool preconditioned);
-  sd_status gradients(sd_system &system, sd_solve_report &report);
-  sd_status together(sd_solve_report &report);
+  sd_status find_forces(sd_solve_report &report);
+  sd_status find_motions(const Solve::Take &take, const Solve::Draw *draw, sd_solve_report &report);
+  void look_at_step(const sd_solve_report &report, bool preconditioned);
   void look_at_shells(const sd_system &system);
-  void guess();
-  void keep();
-  void recall_points(std::vector<double> &l, double line);
-  void keep_points(std::vector<double> l);
-  void turn_points(std::vector<double> &l, bool back) const;
+  void judge(sd_status status, const sd_solve_report &report);
   /* by rows: points of the shells as they stand now, from their centre and in space, their radii,
    * and the forces on the fluid that the last solve found */
   struct Points {
     std::vector<double> r, x, b, l;
   };
   Points points_of_now();
+  void add_constraints(double *S) const;
   std::vector<double> of_points_on_fluid();
   int algorithm() const    // of the next solve
   {
@@ -181,8 +166,6 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   }
   Voice where(int algorithm) const;
   void unconverged(sd_status status, const sd_solve_report &report);
-  sd_status move_together(const Velocities::Take &take, const Velocities::Draw *draw,
-                          sd_bodies_report &report);
   [[noreturn]] void failed(sd_status status, const sd_solve_report &report) const;
 };
 

@@ -68,7 +68,7 @@ void Noise::draw(Hydrodynamics &hydro, size_t width, const Take &take)
 /* Nobody sees anybody: each sphere by its drag, each clump by the root of its own mobility. */
 void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const Take &take)
 {
-  const Velocities &motion = hydro.motion();
+  const ClumpPoses &motion = hydro.motion();
   const WholeClumps &whole = hydro.scene.whole;
   double normals[6], move[6];
   for (int i : motion.lone()) {
@@ -80,7 +80,7 @@ void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const Take &tak
   }
   const sd_random_key of_body = key(SD_RANDOM_BODY);
   for (size_t c = 0; c < motion.clumps().size(); c++) {
-    const Velocities::Clump &clump = motion.clumps()[c];
+    const ClumpPoses::Clump &clump = motion.clumps()[c];
     int64_t lowest = whole.tag[motion.member_of(clump, 0)];
     for (int k = 1; k < motion.body(clump).n; k++)
       lowest = std::min(lowest, (int64_t) whole.tag[motion.member_of(clump, k)]);
@@ -169,7 +169,7 @@ void Noise::draw_together(Hydrodynamics &hydro, size_t width, const Take &take)
 }
 
 /* Of a third of the tolerance: slow modes of forces are off by more than those of velocities. */
-Velocities::Draw Noise::forces(const Hydrodynamics &hydro, const Take &take)
+Solve::Draw Noise::forces(const Hydrodynamics &hydro, const Take &take)
 {
   find_temperature(hydro);
   divided = false;

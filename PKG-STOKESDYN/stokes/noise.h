@@ -12,7 +12,7 @@
 
 #include "field.h"
 #include "pointers.h"
-#include "velocities.h"
+#include "solve.h"
 
 #include "sd_noise.h"
 #include "sd_random.h"
@@ -56,7 +56,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   void draw(Hydrodynamics &hydro, size_t width, const Take &take);
   /* For a solve of this step, in scheme midpoint: random forces and torques on all spheres, whose
    * covariance is the resistance of all that moves, 2 kT/dt times. Errors as of draw(). */
-  Velocities::Draw forces(const Hydrodynamics &hydro, const Take &take);
+  Solve::Draw forces(const Hydrodynamics &hydro, const Take &take);
   /* sqrt(2 kT dt) for a step dt from there */
   double scale(double dt) const;
   const double *of_clump(size_t c) const { return &of_clumps[6 * c]; }

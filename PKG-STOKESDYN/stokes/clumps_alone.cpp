@@ -1,6 +1,8 @@
-/* Of velocities: clumps by themselves, by the tables of their shapes: velocities from forces, and
- * forces from velocities. */
-#include "velocities.h"
+/* Of clump_poses: clumps by themselves, by the tables of their shapes: velocities from forces, and forces
+ * from velocities. A closed form for each, so there is nothing to solve. */
+#include "clump_poses.h"
+
+#include "sd_linear.h"
 
 #include "atom.h"
 
@@ -12,7 +14,7 @@ namespace StokesDyn {
 
 /* What the spheres of a clump and the fluid at them do. The angular velocities of spheres that are
  * not on a line say nothing that their velocities do not. */
-sd_clump_motion Velocities::look_at(const Clump &clump) const
+sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
 {
   const bool strains = ambient.gradients(), spins = scene.settings.rotation;
   const size_t at = 3 * (size_t) body(clump).begin;
@@ -26,16 +28,16 @@ sd_clump_motion Velocities::look_at(const Clump &clump) const
   return m;
 }
 
-void Velocities::apart(int width, const Take &take)
+void ClumpPoses::velocities(int width, const Take &take)
 {
-  double fluid_there[6], given[6], move[6], by_fluid[6];
+  double fluid_there[6], V[6], move[6], by_fluid[6];
   for (int i : lone()) {
-    const bool known = held && held(i, given);
+    const bool known = given.held && given.held(i, V);
     ambient.fluid(i, fluid_there);
     for (int d = 0; d < width; d++) {
-      const double k = ambient.resistance(i, d), f = load(i, d);
-      move[d] = known ? given[d] : fluid_there[d] + f / k;
-      by_fluid[d] = known ? k * (fluid_there[d] - given[d]) : -f;
+      const double k = ambient.resistance(i, d), f = given.load(i, d);
+      move[d] = known ? V[d] : fluid_there[d] + f / k;
+      by_fluid[d] = known ? k * (fluid_there[d] - V[d]) : -f;
     }
     take(i, move, by_fluid);
   }
@@ -67,10 +69,9 @@ void Velocities::apart(int width, const Take &take)
   });
 }
 
-void Velocities::drag(const Drag &take, std::vector<char> &loose)
+void ClumpPoses::drag(const Drag &take, std::vector<char> &loose)
 {
   enum { NOT_SELECTED, EVALUATED, LOOSE, COLUMNS = 7 };
-  find(true);
   const WholeClumps &members = scene.whole;
   const bool turns = scene.settings.rotation;
   std::vector<double> F, T, result(COLUMNS * (size_t) members.size() + COLUMNS, 0.0);

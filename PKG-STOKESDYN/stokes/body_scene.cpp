@@ -1,0 +1,278 @@
+#include "body_scene.h"
+
+#include "keywords.h"
+#include "settings.h"
+
+#include "sd_linear.h"
+
+#include "atom.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+BodyScene::BodyScene(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidClumps &rigid,
+                     const ClumpPoses &poses, const Given &given) :
+    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid), poses(poses), given(given)
+{
+}
+
+double BodyScene::memory_usage() const
+{
+  double numbers = 0.0;
+  for (const auto *array : {&F, &flow, &resistance, &u, &velocities, &arm, &D, &r, &slope, &bend})
+    numbers += (double) array->capacity();
+  return sizeof(double) * numbers;
+}
+
+void BodyScene::place(int numbers)
+{
+  width = numbers;
+  const size_t m = width;
+  const std::vector<double> rows = scene.rows(3 * width, [&](int i, double *out) {
+    for (size_t d = 0; d < m; d++) {
+      out[d] = given.load(i, d);
+      out[2 * m + d] = ambient.resistance(i, d);
+    }
+    if (given.velocities)
+      ambient.slip(i, out + m);
+    else
+      ambient.fluid(i, out + m);
+  });
+  take_apart(rows, scene.size(), {{&F, m}, {&flow, m}, {&resistance, m}});
+  if (!given.velocities) scene.drift(flow.data(), width, 1.0);
+}
+
+void BodyScene::assemble()
+{
+  if (scene.shells) place_points();
+  arrange();
+  open = shaped;
+  stand_at_wall();
+  put_together();
+  find_known();
+  if (given.velocities) return pass(flow);
+  if (scene.shells)
+    flow_at_points(velocity.data(), 3);
+  else
+    u = flow;
+  carry();
+}
+
+void BodyScene::pass(const std::vector<double> &slip, bool strained)
+{
+  if (scene.shells)
+    slip_at_points(slip, strained);
+  else
+    u = slip;
+  carry();
+}
+
+// --- who belongs to whom ---------------------------------------------------------------------------
+
+/* The bodies as the core wants them: free spheres, then clumps. With shells, and near a wall, where a
+ * sphere is one with its image, all of them have a shape. */
+void BodyScene::arrange()
+{
+  const size_t n = scene.size();
+  /* rows of clumps that are not rigid are free spheres as well */
+  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
+  member.clear();
+  shaped.clear();
+  loner.clear();
+  whole.assign(n + 1, 0);
+  arm.assign(3 * n + 3, 0.0);
+  for (int k = 0; k < free_ones; k++) add_free(k);
+  for (const ClumpPoses::Clump &clump : poses.clumps()) add(clump);
+  size_t at = 0;
+  for (sd_body &body : shaped) {
+    body.row = &member[at];
+    at += body.shape ? body.shape->m : 1;
+  }
+}
+
+void BodyScene::add_points(const sd_multiblob_shape &shape, const std::vector<int> &rows)
+{
+  const size_t P = scene.shells->points();
+  for (int k = 0; k < shape.points.m; k++)
+    member.push_back(P * rows[shape.row[k] / P] + shape.row[k] % P);
+}
+
+void BodyScene::add_free(int k)
+{
+  const double w = scene.local().w[k], eta = 1.0 / (w * w);
+  whole[k] = k;
+  if (scene.shells) {
+    const sd_multiblob_shape &shape = scene.shells->free_sphere();
+    add_points(shape, {k});
+    shaped.push_back({&shape.points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, scene.local().a[k], eta, nullptr});
+  } else if (scene.settings.wall.sign && scene.settings.rotation) {
+    member.push_back(k);
+    shaped.push_back({nullptr, {}, 1.0, eta, nullptr});
+  } else
+    loner.push_back(k);
+}
+
+void BodyScene::add(const ClumpPoses::Clump &clump)
+{
+  const ClumpShape &is = poses.shape(clump);
+  sd_body body = {nullptr, {}, 1.0, clump.eta, nullptr};
+  std::vector<int> rows;
+  for (int k = 0; k < is.shape.n; k++) {
+    const int row = scene.row_of_member((int) poses.member_of(clump, k));
+    rows.push_back(row);
+    whole[row] = loner.size() + shaped.size();
+    sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &arm[3 * (size_t) row]);
+  }
+  if (scene.shells) {
+    const sd_multiblob_shape &shape = rigid.shapes.points(is, scene.shells->model());
+    double turn[9];
+    add_points(shape, rows);
+    body.shape = &shape.points;
+    sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
+  } else {
+    member.insert(member.end(), rows.begin(), rows.end());
+    body.shape = &rigid.shapes.blocks(is, rigid.settings);
+    std::copy_n(clump.pose, 9, body.R);
+  }
+  shaped.push_back(body);
+}
+
+void BodyScene::take_roots()
+{
+  for (const auto &clump : poses.clumps()) rigid.shapes.take_root(poses.shape(clump));
+  if (scene.shells) scene.shells->take_root();
+}
+
+/* u = 0: nobody sees anybody */
+static sd_status nobody(void *ctx, const double * /*F*/, double *out)
+{
+  const sd_mobility_scene *scene = static_cast<sd_mobility_scene *>(ctx);
+  std::fill_n(out, (size_t) scene->how.width * scene->n, 0.0);
+  return SD_OK;
+}
+
+void BodyScene::put_together()
+{
+  const int n = scene.size();
+  const bool sees = scene.anybody_sees();
+  alone.how.width = scene.shells ? 3 : width;
+  alone.n = n;
+  bodies = {};
+  bodies.lone = loner.size();
+  bodies.loner = loner.data();
+  bodies.shaped = shaped.size();
+  bodies.body = shaped.data();
+  bodies.spheres = {n, width, whole.data(), arm.data()};
+  bodies.points = {n, width, nullptr, nullptr};
+  bodies.D = resistance.data();
+  bodies.apply = sees ? sd_mobility_apply : nobody;
+  bodies.apply_ctx = sees ? (void *) scene.mobility() : &alone;
+  bodies.world = scene.ranks();
+  if (scene.shells) put_points();
+}
+
+// --- what is given ---------------------------------------------------------------------------------
+
+/* Bodies whose velocity is known: all of them, at rest; or those that are held or spun */
+void BodyScene::find_known()
+{
+  const size_t count = loner.size() + shaped.size();
+  known.assign(count + 1, given.velocities ? SD_BODY_HELD : SD_BODY_FREE);
+  velocities.clear();
+  if (given.velocities || given.held) bodies.held = known.data();
+  if (given.velocities || !given.held) return;
+  velocities.assign(6 * count + 6, 0.0);
+  std::vector<double> rows = scene.rows(7, [this](int i, double *out) { out[6] = given.held(i, out); });
+  scene.drift(rows.data(), 7, 1.0);
+  const size_t lone_ones = first_clump();
+  for (size_t b = 0; b < lone_ones; b++) {    // their rows come first
+    const double *row = &rows[7 * b];
+    known[b] = (char) row[6];
+    if (known[b]) std::copy_n(row, 6, &velocities[6 * b]);
+  }
+  for (size_t c = 0, b = lone_ones; c < poses.clumps().size(); c++, b++) {
+    const ClumpPoses::Clump &clump = poses.clumps()[c];
+    known[b] = clump.held ? SD_BODY_HELD : SD_BODY_FREE;
+    if (clump.held) std::copy_n(clump.V, 6, &velocities[6 * b]);
+  }
+}
+
+// --- near a wall ---------------------------------------------------------------------------------
+
+/* Spheres of a body, in the order of its shape */
+std::vector<int> BodyScene::spheres_of(const sd_body &body) const
+{
+  const int points = scene.shells ? scene.shells->points() : 1;
+  std::vector<int> rows;
+  for (int k = 0; k < (body.shape ? body.shape->m : 1); k++)
+    if (rows.empty() || rows.back() != body.row[k] / points) rows.push_back(body.row[k] / points);
+  return rows;
+}
+
+sd_status BodyScene::stand_at_wall(sd_body &body, double count)
+{
+  const sd_wall &wall = scene.settings.wall;
+  const sd_spheres spheres = scene.local();
+  const std::vector<int> rows = spheres_of(body);
+  std::vector<double> x, a, turn;
+  std::vector<sd_multiblob_mask> mask;
+  double centre[3], extent = 0.0;
+  sd_minus(spheres.x + 3 * (size_t) rows[0], &arm[3 * (size_t) rows[0]], centre);
+  for (size_t k : rows) {
+    x.insert(x.end(), spheres.x + 3 * k, spheres.x + 3 * k + 3);
+    a.push_back(spheres.a[k]);
+    extent = std::max(extent, std::sqrt(sd_dot(&arm[3 * k], &arm[3 * k])) + spheres.a[k]);
+    if (!scene.shells) continue;
+    turn.insert(turn.end(), scene.shells->turns() + 9 * k, scene.shells->turns() + 9 * k + 9);
+    mask.push_back(scene.shells->masks()[k]);
+  }
+  const double height = sd_wall_height(&wall, centre);
+  if (body.shape && !sd_body_wall_pays(body.shape->m, (int) count, height, extent)) return SD_OK;
+  standing.emplace_back();
+  sd_body_shape *shape = &standing.back();
+  const sd_multiblob_spheres shells = {x.data(), a.data(), turn.data(), mask.data(),
+                                       (int) rows.size()};
+  const sd_status status = scene.shells
+      ? sd_multiblob_wall_shape(&scene.shells->model(), &wall, &shells, centre, shape)
+      : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, shape);
+  if (status == SD_ESINGULAR && body.shape) return SD_OK;    // those of open space will do
+  if (status != SD_OK) return status;
+  body = {shape, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1.0, body.eta, body.row};
+  return SD_OK;
+}
+
+/* The bodies have been arranged. */
+void BodyScene::stand_at_wall()
+{
+  standing.clear();
+  if (!scene.settings.wall.sign || !scene.settings.rotation) return;
+  const double count = sum_of_all(world, (double) shaped.size());
+  for (sd_body &body : shaped) {
+    const sd_status status = stand_at_wall(body, count);
+    if (status != SD_OK)
+      Voice(lmp, StokesSettings::COMMAND)
+          .of("keyword wall: blocks of a body")
+          .fail_one(sd_status_string(status));
+  }
+}
+
+/* A strain carries clumps as their shells say. */
+void BodyScene::carry()
+{
+  const auto &clumps = poses.clumps();
+  if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.wall.sign) return;
+  std::vector<double> gradient(9 * clumps.size()), work(sd_bodies_work(&bodies));
+  double centre[3];
+  for (size_t c = 0; c < clumps.size(); c++) {
+    const sd_clump_motion motion = poses.look_at(clumps[c]);
+    const double *pose = clumps[c].pose;
+    sd_clump_flow(&poses.shape(clumps[c]).shape, &motion, pose, pose + 9, centre, &gradient[9 * c]);
+  }
+  sd_bodies_carry(&bodies, gradient.data(), work.data(), u.data());
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,108 @@
+/* The problem of a step as the core solves it (sd_bodies.h): who belongs to whom, where the points stand,
+ * and what is given. Bodies are lone spheres and rigid clumps; spheres are points, or shells of points
+ * (keyword multiblob); near a wall each body is one with its image. Nobody else asks which.
+ *
+ *   place()      by spheres: what is given of them, and the fluid there
+ *   assemble()   and as bodies
+ *   pass()       where velocities are given: the same bodies in another slip */
+#ifndef SD_BODY_SCENE_H
+#define SD_BODY_SCENE_H
+
+#include "ambient.h"
+#include "callback.h"
+#include "clump_poses.h"
+#include "pointers.h"
+#include "rigid_clumps.h"
+#include "scene.h"
+
+#include "sd_bodies.h"
+
+#include <deque>
+#include <vector>
+
+namespace StokesDyn {
+
+class BodyScene : protected LAMMPS_NS::Pointers {
+ public:
+  BodyScene(LAMMPS_NS::LAMMPS *lmp, Scene &, const Ambient &, RigidClumps &, const ClumpPoses &,
+            const Given &);
+
+  /* Vectors have that many numbers of a sphere. The scene has been updated, and the clumps found. */
+  void place(int width);
+  void assemble();
+  /* Everybody rests in a fluid that moves with this slip [width spheres]; strained: and varies around each
+   * sphere as the ambient one does. The bodies have been assembled. */
+  void pass(const std::vector<double> &slip, bool strained = true);
+
+  /* With shells of points: those of clumps turn with them. The rows of the scene stand. */
+  void orient();
+
+  /* Where velocities are given: is there more to it than points, each for itself? Shells of points, or
+   * clumps with shells that interact */
+  bool joined() const
+  {
+    return scene.shells || (rigid.settings.on && !rigid.settings.apart() && rigid.settings.shell > 1);
+  }
+
+  /* By spheres, width numbers each: loads; velocity of the fluid, where velocities are given less
+   * that of the sphere; 6 pi eta a and 8 pi eta a^3 */
+  int width = 3;
+  std::vector<double> F, flow, resistance;
+
+  /* The bodies, and the fluid at their points. velocities: [6 bodies] of those that are known,
+   * empty: nobody's are, or all rest */
+  sd_bodies bodies = {};
+  std::vector<double> u, velocities;
+  /* The shapes of the bodies in open space, whatever wall they stand at; for noise, with their roots */
+  const std::vector<sd_body> &in_open_space() const { return open; }
+  void take_roots();
+  /* [3 spheres] from the centre of their body */
+  const std::vector<double> &arms() const { return arm; }
+  /* Those of clumps are the last ones */
+  size_t first_clump() const { return sd_bodies_count(&bodies) - poses.clumps().size(); }
+
+  double memory_usage() const;
+
+ private:
+  Scene &scene;
+  const Ambient &ambient;
+  RigidClumps &rigid;
+  const ClumpPoses &poses;
+  const Given &given;
+
+  /* for the core, by spheres, by points */
+  std::vector<double> arm, D;
+  std::vector<int> member, whole, loner;
+  std::vector<sd_body> shaped, open;
+  /* [bodies] sd_body_known */
+  std::vector<char> known;
+  /* near a wall: blocks of the bodies where they stand */
+  std::deque<Owned<sd_body_shape, sd_body_shape_free>> standing;
+  /* where nobody sees anybody */
+  sd_mobility_scene alone = {};
+  /* with shells, by points: sphere, from its centre; by spheres: velocity of the fluid, its gradient,
+   * and its second derivatives or nothing */
+  std::vector<int> sphere;
+  std::vector<double> r, velocity, slope, bend;
+  sd_multiblob_mobility of_points = {};
+  sd_faces faces = {};
+  std::vector<char> whole_shells;
+
+  void arrange();
+  void add_free(int row);
+  void add(const ClumpPoses::Clump &clump);
+  void add_points(const sd_multiblob_shape &shape, const std::vector<int> &rows);
+  void stand_at_wall();
+  sd_status stand_at_wall(sd_body &body, double count);
+  std::vector<int> spheres_of(const sd_body &body) const;
+  void put_together();
+  void put_points();
+  void find_known();
+  void carry();
+  void place_points();
+  void flow_at_points(const double *velocity, int stride);
+  void slip_at_points(const std::vector<double> &slip, bool strained);
+};
+
+}    // namespace StokesDyn
+#endif

@@ -1,0 +1,131 @@
+#include "clump_poses.h"
+
+#include "keywords.h"
+
+#include "sd_linear.h"
+
+#include "atom.h"
+
+#include <algorithm>
+#include <iterator>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+ClumpPoses::ClumpPoses(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidClumps &rigid,
+                       const Given &given) :
+    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid), given(given)
+{
+}
+
+/* What clumps must know of their spheres; velocities are those of the images side by side. */
+void ClumpPoses::gather()
+{
+  enum { ETA, RADIUS, X, MOTION = X + 3, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
+  const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
+  const bool moving = given.velocities, turns = !moving || scene.settings.rotation;
+  const size_t columns = gradients ? GRADIENT + 9 : FLOW, n = rigid.members().size();
+  const std::vector<double> rows = scene.whole.gather((int) columns, [&](int i, double *row) {
+    row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+    row[RADIUS] = atom->radius[i];
+    for (size_t d = 0; d < 3; d++) {
+      row[MOTION + d] = moving ? atom->v[i][d] : given.load(i, d);
+      if (turns) row[TURNING + d] = moving ? atom->omega[i][d] : given.load(i, 3 + d);
+    }
+    if (!gradients) return;
+    std::copy_n(ambient.velocity(i), 3, row + FLOW);
+    std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
+  });
+  std::vector<double> ordered(columns * n + 1);
+  for (size_t k = 0; k < n; k++) {
+    const size_t m = rigid.members()[k];
+    const int *steps = &scene.whole.steps[3 * m];
+    double *row = &ordered[columns * k];
+    std::copy_n(&rows[columns * m], columns, row);
+    std::copy_n(&scene.whole.x[3 * m], 3, row + X);
+    if (jumps && moving) sd_add_edges(jumps, steps, row + MOTION);
+    if (jumps && gradients) sd_add_edges(jumps, steps, row + FLOW);
+  }
+  const size_t flows = gradients ? 3 : 0;
+  take_apart(ordered, n, {{&spheres.eta, 1}, {&spheres.radius, 1}, {&spheres.x, 3}, {&spheres.motion, 3},
+                          {&spheres.turning, 3}, {&spheres.flow, flows}, {&spheres.gradient, 3 * flows}});
+}
+
+void ClumpPoses::find()
+{
+  found.take(scene.since().lists);
+  all_clumps.clear();
+  find_lone();
+  if (!rigid.settings.on) return;
+  const auto &all = rigid.find();
+  gather();
+  int64_t split = RigidClumps::NOBODY;
+  std::vector<int64_t> bent;
+  for (size_t b = 0; b < all.size(); b++) {
+    const RigidClumps::Body &body = all[b];
+    Clump clump = {(int) b, {}, 0.0, {}, false};
+    int taking_part = 0;
+    for (int k = 0; k < body.n; k++) {
+      const double eta_k = spheres.eta[body.begin + k];
+      taking_part += eta_k > 0.0;
+      clump.eta += eta_k;
+    }
+    clump.eta /= body.n;
+    if (taking_part == 0) continue;
+    if (taking_part < body.n) split = std::min(split, body.molecule);
+    if (!rigid.fits(body, &spheres.radius[body.begin], clump.pose))
+      bent.push_back(body.molecule);
+    all_clumps.push_back(clump);
+  }
+  if (rigid.settle(split, bent)) return find();
+  find_held();
+}
+
+void ClumpPoses::find_lone()
+{
+  all_lone.clear();
+  const auto free = [this](int i) {
+    return !rigid.settings.on || atom->molecule[i] == 0;
+  };
+  if (!given.velocities)    // nobody asks for them
+    std::copy_if(ambient.who().begin(), ambient.who().end(), std::back_inserter(all_lone), free);
+}
+
+/* Clumps whose velocity is given: by that of their first sphere, on its image. */
+void ClumpPoses::find_held()
+{
+  for (Clump &clump : all_clumps) clump.held = false;
+  if (!given.held || !rigid.settings.on) return;
+  const std::vector<double> of_member = scene.whole.gather(7, [this](int i, double *out) {
+    out[0] = given.held(i, out + 1);
+  });
+  int64_t split = RigidClumps::NOBODY;
+  for (Clump &clump : all_clumps) {
+    const double *first = &of_member[7 * member_of(clump, 0)];
+    clump.held = first[0] != 0.0;
+    for (int k = 1; k < body(clump).n; k++)
+      if ((of_member[7 * member_of(clump, k)] != 0.0) != clump.held)
+        split = std::min(split, body(clump).molecule);
+    if (!clump.held) continue;
+    double arm[3], turning[3];
+    std::copy_n(first + 1, 6, clump.V);
+    if (ambient.jumps())
+      sd_add_edges(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
+    sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) body(clump).begin], arm);
+    sd_cross(clump.V + 3, arm, turning);
+    for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
+  }
+  split = smallest_of_all(world, split);
+  if (split != RigidClumps::NOBODY)
+    Voice(lmp, "Fix stokes_dynamics/overdamped")
+        .fail("keyword held: the clump of molecule " + std::to_string(split) +
+              " is only partly in the group: all of its spheres must be in it, or none");
+}
+
+void ClumpPoses::moves(const double *V)
+{
+  for (size_t c = 0; c < clumps().size(); c++) std::copy_n(V + 6 * c, 6, all_clumps[c].V);
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,111 @@
+/* Rigid clumps as they stand in a step, and who is free: poses, what is given of the clumps and the
+ * fluid at their spheres; and how each moves by itself, alone in the flow.
+ *
+ * A clump is moved by the rank that owns it (whole_clumps.h). */
+#ifndef SD_CLUMP_POSES_H
+#define SD_CLUMP_POSES_H
+
+#include "ambient.h"
+#include "pointers.h"
+#include "rigid_clumps.h"
+#include "scene.h"
+
+#include "sd_body.h"
+#include "sd_clump_motion.h"
+
+#include <functional>
+#include <vector>
+
+namespace StokesDyn {
+
+/* What is known of the spheres of a step, and so what is asked: of all spheres the velocity, which
+ * atoms have, and forces are asked; or the load, of some the velocity (held, spun), and motions are. */
+struct Given {
+  bool velocities = false;
+  /* [6 nlocal] force and torque on each atom; empty: all are 0 */
+  std::vector<double> loads;
+  /* Who is held, or spun: what is known of atom i, and that of its velocity and angular velocity [6].
+   * Empty: nobody is. A clump is held when all its spheres are. */
+  using Held = std::function<sd_body_known(int i, double *V)>;
+  Held held;
+
+  double load(int i, size_t d) const { return loads.empty() ? 0.0 : loads[6 * (size_t) i + d]; }
+};
+
+class ClumpPoses : protected LAMMPS_NS::Pointers {
+ public:
+  struct Clump {
+    /* which body of rigid: nobody keeps where that is, as other settings free it */
+    int number;
+    /* R and the centroid c, of images side by side: x = c + R X */
+    double pose[12];
+    double eta;
+    /* U of the centroid, W */
+    double V[6];
+    /* is V given, and the force on it unknown? */
+    bool held;
+  };
+
+  ClumpPoses(LAMMPS_NS::LAMMPS *lmp, Scene &, const Ambient &, RigidClumps &, const Given &);
+
+  /* Those of this step, by what is given. Errors, on all ranks: those of RigidClumps; a clump held in
+   * part; a clump that is not rigid, or not all selected. */
+  void find();
+  /* That this rank owns, and atoms that are free spheres, the latter where loads are given. They are
+   * those of the last find(), and none as soon as Epochs::lists is another one: settings are new, a run
+   * begins, atoms have other indices */
+  const std::vector<Clump> &clumps() const { return stands() ? all_clumps : no_clumps; }
+  const std::vector<int> &lone() const { return stands() ? all_lone : nobody_lone; }
+  bool stands() const { return found.is(scene.since().lists); }
+  const RigidClumps::Body &body(const Clump &clump) const { return rigid.body(clump.number); }
+  const ClumpShape &shape(const Clump &clump) const { return *body(clump).shape; }
+  /* Sphere k of a clump, in the order of its shape: its number among the members of whole */
+  size_t member_of(const Clump &clump, int k) const
+  {
+    return rigid.members()[body(clump).begin + k];
+  }
+  /* What the spheres of a clump and the fluid at them do */
+  sd_clump_motion look_at(const Clump &clump) const;
+  /* [6 clumps] velocities that a solve has found */
+  void moves(const double *V);
+
+  // --- each clump by itself, by the tables of its shape (clumps_alone.cpp)
+
+  /* From loads, what becomes of atom i, of clumps and of free spheres: velocity, and force of the
+   * fluid on it, [width] each */
+  using Take = std::function<void(int i, const double *v, const double *F)>;
+  void velocities(int width, const Take &take);
+  /* From velocities, of clumps that move as their spheres do: calls take(i, F) for every sphere i of
+   * this rank that is in one that takes part: force, with rotation torque. loose[i] = 1: atom i belongs
+   * to a loose clump, or to none (molecule 0), and is the solver's. */
+  using Drag = std::function<void(int i, const double *F)>;
+  void drag(const Drag &take, std::vector<char> &loose);
+
+  double memory_usage() const { return 24.0 * sizeof(double) * (double) spheres.eta.capacity(); }
+
+ private:
+  Scene &scene;
+  const Ambient &ambient;
+  RigidClumps &rigid;
+  const Given &given;
+
+  Since found;
+  std::vector<Clump> all_clumps;
+  std::vector<int> all_lone;
+  const std::vector<Clump> no_clumps;
+  const std::vector<int> nobody_lone;
+
+  /* of the spheres of one clump after the other, in the order of its shape: eta (0: takes no part),
+   * radius, place, force and torque or velocity and angular velocity, fluid velocity and its
+   * gradient (empty: uniform) */
+  struct {
+    std::vector<double> eta, radius, x, motion, turning, flow, gradient;
+  } spheres;
+
+  void gather();
+  void find_lone();
+  void find_held();
+};
+
+}    // namespace StokesDyn
+#endif

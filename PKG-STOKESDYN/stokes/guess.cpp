@@ -1,0 +1,190 @@
+#include "guess.h"
+
+#include "ranks.h"
+
+#include "sd_linear.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+using State = FixStokesDynamicsState;
+
+Guess::Guess(LAMMPS *lmp, Scene &scene, const Shells &shells, const StokesSettings &settings,
+             const Epochs &epochs) :
+    Pointers(lmp), scene(scene), shells(shells), settings(settings), epochs(epochs)
+{
+}
+
+bool Guess::recall(const BodyScene &bodies, const Given &given)
+{
+  const bool warm = given.velocities ? memory->history && memory->global.solutions > 0.0
+                                     : settings.warm_start;
+  if (shells.settings.on())
+    l = recall_points(memory->global.line);
+  else if (given.velocities && warm)
+    recall_forces(bodies);
+  else if (given.velocities)
+    l.assign(width() * (scene.size() + 1), 0.0);
+  else
+    l = scene.rows((int) width(), [&](int i, double *out) {
+      for (size_t d = 0; d < width() && warm; d++)
+        out[d] = -memory->rows[i][State::at(State::FORCE, d)];
+    });
+  if (!given.velocities) recall_motions();
+  return warm;
+}
+
+void Guess::keep(const BodyScene &bodies, const Given &given, const std::vector<double> &exerted)
+{
+  found.take(epochs.step);
+  if (given.velocities)
+    keep_perturbation(bodies, exerted);
+  else
+    keep_motions();
+  if (shells.settings.on() && scene.anybody_sees())
+    keep_points();
+  else if (!shells.settings.on() && !given.velocities)
+    scene.to_atoms((int) width(), l.data(), [&](int i, const double *row) {
+      for (size_t d = 0; d < width(); d++)
+        memory->rows.row(i)[State::at(State::FORCE, d)] = -row[d];
+    });
+}
+
+// --- where velocities are given --------------------------------------------------------------------
+
+/* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
+ * and not from F, the guess has the slip of now: it is exact for spheres that nobody disturbs, at
+ * any tolerance. */
+void Guess::recall_forces(const BodyScene &bodies)
+{
+  const size_t m = width();
+  const bool line = memory->global.solutions > 1;
+  l = scene.rows((int) m, [&](int i, double *out) {
+    const double *row = memory->rows[i], *before = row + memory->before();
+    for (size_t d = 0; d < m; d++) {
+      const double last = row[State::at(State::VPRIME, d)];
+      out[d] = line ? 2.0 * last - before[d] : last;
+    }
+  });
+  for (size_t j = 0; j < m * scene.size(); j++)
+    l[j] = -(bodies.resistance[j] * (bodies.flow[j] + l[j]));
+}
+
+/* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have
+ * none: not what the tolerance of a solve from zero has left of theirs either. */
+void Guess::keep_perturbation(const BodyScene &bodies, const std::vector<double> &exerted)
+{
+  const size_t m = width();
+  State::Global &global = memory->global;
+  std::vector<double> perturbed(m * scene.size() + m, 0.0);
+  for (size_t k = 0; k < (size_t) scene.size(); k++)
+    for (size_t j = m * k; j < m * (k + 1) && !scene.alone((int) k); j++)
+      perturbed[j] = -exerted[j] / bodies.resistance[j] - bodies.flow[j];
+  scene.to_atoms((int) m, perturbed.data(), [&](int i, const double *now) {
+    double *row = memory->rows.give(i), *before = row + memory->before();
+    for (size_t d = 0; d < m; d++) {
+      double &last = row[State::at(State::VPRIME, d)];
+      if (memory->history) before[d] = last;
+      last = now[d];
+    }
+  });
+  global.solutions = std::min(2.0, global.solutions + 1.0);
+}
+
+// --- where loads are given -------------------------------------------------------------------------
+
+/* Velocities stand in the place of v', which has no other use in such a run. */
+void Guess::recall_motions()
+{
+  const size_t m = width();
+  const double line = shells.settings.on() ? memory->global.line : 0.0;
+  v = scene.rows((int) m, [&](int i, double *out) {
+    const double *row = memory->rows[i], *before = row + memory->of_motion_before();
+    for (size_t d = 0; d < m && settings.warm_start; d++) {
+      out[d] = row[State::at(State::VPRIME, d)];
+      if (line != 0.0) out[d] += line * (out[d] - before[d]);
+    }
+  });
+}
+
+void Guess::keep_motions()
+{
+  const size_t m = width();
+  scene.to_atoms((int) m, v.data(), [&](int i, const double *now) {
+    double *row = memory->rows.give(i);
+    for (size_t d = 0; d < m && settings.lubrication.on; d++) {
+      double &last = row[State::at(State::VPRIME, d)];
+      if (memory->points > 0) row[memory->of_motion_before() + (int) d] = last;
+      last = now[d];
+    }
+  });
+}
+
+void Guess::turn(int i, const double R[9])
+{
+  if (settings.rigid.apart()) return;    // no guess is made there
+  double *row = memory->rows.row(i);
+  const auto turn = [R](double *v) {
+    const double was[3] = {v[0], v[1], v[2]};
+    sd_multiply3(R, was, v);
+  };
+  for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) turn(row + first);
+  for (int half : {0, 3})
+    if (memory->points > 0) turn(row + memory->of_motion_before() + half);
+}
+
+// --- of shells, forces of their points ---------------------------------------------------------------
+
+/* l [3 points] of this rank's rows, in space, from those in the axes of the shells, or back: spheres that
+ * are free do not turn */
+void Guess::turn_points(std::vector<double> &of_points, bool back) const
+{
+  const size_t P = shells.points();
+  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++)
+    for (size_t p = P * k; p < P * (k + 1); p++) {
+      const double was[3] = {of_points[3 * p], of_points[3 * p + 1], of_points[3 * p + 2]};
+      (back ? sd_multiply3t : sd_multiply3)(shells.turns() + 9 * k, was, &of_points[3 * p]);
+    }
+}
+
+/* As the last solve left them (line 0), or on the line through the last two (1); 0 where there are
+ * none. */
+std::vector<double> Guess::recall_points(double line) const
+{
+  const size_t m = 3 * (size_t) shells.points();
+  if (memory->points == 0) return std::vector<double>(m * scene.size() + m, 0.0);
+  std::vector<double> found_then = scene.rows((int) m, [&](int i, double *out) {
+    const double *row = memory->rows[i], *last = row + memory->of_points(),
+                 *before = row + memory->of_points_before();
+    for (size_t d = 0; d < m; d++) out[d] = last[d] + line * (last[d] - before[d]);
+  });
+  turn_points(found_then, false);
+  return found_then;
+}
+
+void Guess::keep_points()
+{
+  const size_t m = 3 * (size_t) memory->points;
+  if (m == 0) return;
+  std::vector<double> of_points = l;
+  turn_points(of_points, true);
+  double off[2] = {0.0, 0.0};    // from the last, from the line
+  scene.to_atoms((int) m, of_points.data(), [&](int i, const double *row) {
+    double *last = memory->rows.give(i) + memory->of_points();
+    double *before = memory->rows.give(i) + memory->of_points_before();
+    for (size_t d = 0; d < m; d++) {
+      const double change = row[d] - last[d], bend = change - (last[d] - before[d]);
+      off[0] += change * change;
+      off[1] += bend * bend;
+      before[d] = last[d];
+      last[d] = row[d];
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, off, 2, MPI_DOUBLE, MPI_SUM, world);
+  memory->global.line = off[1] < off[0];
+}
+
+}    // namespace StokesDyn

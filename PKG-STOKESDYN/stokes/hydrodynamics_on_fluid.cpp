@@ -1,0 +1,118 @@
+/* Of hydrodynamics: what follows from the forces on the fluid, the stress and the flow that they make. */
+#include "hydrodynamics.h"
+
+#include "callback.h"
+
+#include "sd_linear.h"
+
+#include "atom.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+using State = FixStokesDynamicsState;
+
+void Hydrodynamics::stress(std::vector<double> &of_atoms)
+{
+  const bool films_stand = standing();
+  stand_rows();
+  if (settings.lubrication.on && !films_stand) place_films();
+  const Points now = points_of_now();
+  const size_t n = scene.size();
+  std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0);
+  sd_multiblob_moments(shells.points(), (int) n, now.r.data(), now.l.data(), points.data());
+  if (overdamped) add_constraints(points.data());
+  if (settings.lubrication.on) {
+    const double *v = overdamped ? solver.v.data() : films_v.data();
+    const sd_status status = sd_lubrication_stress(lubrication.matrix(), v, films.data());
+    if (status != SD_OK)
+      fail_by(voice.of("stress of films"), status);
+  }
+  of_atoms.assign(12 * (size_t) atom->nlocal + 12, 0.0);
+  for (const auto *part : {&points, &films})
+    scene.to_atoms(6, part->data(), [&](int i, const double *row) {
+      std::copy_n(row, 6, &of_atoms[12 * (size_t) i + (part == &films ? 6 : 0)]);
+    });
+}
+
+/* What keeps member k of a clump in its place is what it exerts on the fluid less what acts on it.
+ * S [6 rows] += first moments of that */
+void Hydrodynamics::add_constraints(double *S) const
+{
+  const size_t first = scene.lone(), n = scene.size() - first;
+  std::vector<double> f(3 * n + 3);
+  for (size_t k = 0; k < n; k++)
+    sd_minus(&solver.exerted[6 * (first + k)], &bodies.F[6 * (first + k)], &f[3 * k]);
+  sd_multiblob_moments(1, (int) n, &bodies.arms()[3 * first], f.data(), S + 6 * first);
+}
+
+/* Where no solve was needed in this step the rows of the scene may be those of another one. */
+Hydrodynamics::Points Hydrodynamics::points_of_now()
+{
+  if (memory->points == 0 && !guess.found_now())
+    voice.at_step().fail("the forces of the points are not kept with warm_start no; use warm_start "
+                         "yes");
+  stand_rows();
+  const size_t n = scene.size(), points = n * shells.points();
+  const sd_spheres s = scene.local();
+  const sd_multiblob_spheres spheres = {s.x, s.a, shells.turns(), shells.masks(), (int) n};
+  Points now;
+  now.r.resize(3 * points + 3);
+  now.x.resize(3 * points + 3);
+  now.b.resize(points + 1);
+  sd_multiblob_expand(&shells.model(), &spheres, now.r.data(), now.x.data(), now.b.data());
+  now.l = guess.points_now();
+  return now;
+}
+
+std::vector<double> Hydrodynamics::of_points_on_fluid()
+{
+  const Points now = points_of_now();
+  const size_t P = shells.points();
+  const double *w = scene.local().w;
+  std::vector<double> all;
+  for (size_t k = 0; k < scene.size() * P; k++) {
+    if (!(now.b[k] > 0.0)) continue;
+    all.insert(all.end(), &now.x[3 * k], &now.x[3 * k] + 3);
+    all.push_back(now.b[k]);
+    for (int d = 0; d < 6; d++)
+      all.push_back(d < 3 ? w[k / P] * w[k / P] * now.l[3 * k + d] : 0.0);
+  }
+  return all;
+}
+
+/* F is what the mobility knows: without films, which act between two spheres and not on the fluid
+ * far from them. */
+std::vector<double> Hydrodynamics::on_fluid()
+{
+  if (shells.settings.on()) return of_points_on_fluid();
+  const bool without_films = settings.lubrication.on && !overdamped;
+  const int m = width();
+  std::vector<double> all;
+  const auto add = [&](int i, const double *F) {
+    const bool point = settings.scene.tensor == SD_TENSOR_OSEEN;
+    all.insert(all.end(), atom->x[i], atom->x[i] + 3);
+    all.push_back(point ? 0.0 : atom->radius[i]);
+    for (int d = 0; d < 6; d++) all.push_back(d < m ? -F[d] / ambient.viscosity(i) : 0.0);
+  };
+  if (overdamped && settings.rigid.apart()) {    // these are not kept
+    poses.find();
+    poses.velocities(width(), [&](int i, const double *, const double *F) { add(i, F); });
+    return all;
+  }
+  for (int i : ambient.who()) {
+    const double *row = memory->rows[i];
+    double F[6] = {0.0}, s[6] = {0.0};
+    ambient.slip(i, s);
+    for (int d = 0; d < m; d++)
+      F[d] = without_films ? ambient.resistance(i, d) * (s[d] + row[State::at(State::VPRIME, d)])
+                           : row[State::at(State::FORCE, d)];
+    add(i, F);
+  }
+  return all;
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,148 @@
+#include "solve.h"
+
+#include "keywords.h"
+#include "settings.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, Lubrication &lubrication) :
+    Pointers(lmp), preconditioner(lmp, scene), scene(scene), bodies(bodies), lubrication(lubrication)
+{
+}
+
+double Solve::memory_usage() const
+{
+  double numbers = (double) room;
+  for (const auto *array : {&exerted, &v, &V, &F, &drag, &spin, &work})
+    numbers += (double) array->capacity();
+  return sizeof(double) * numbers + preconditioner.memory_usage();
+}
+
+// --- bodies ----------------------------------------------------------------------------------------
+
+sd_status Solve::run(const How &how, Guess &guess, sd_solve_report &report)
+{
+  const sd_bodies &A = bodies.bodies;
+  V.resize(6 * sd_bodies_count(&A) + 6);
+  v.resize(sd_bodies_loads(&A) + 6);
+  exerted.resize(sd_bodies_loads(&A) + 6);
+  work.resize(sd_bodies_work(&A));
+  const double *given = bodies.velocities.empty() ? nullptr : bodies.velocities.data();
+  const sd_bodies_problem problem = {bodies.u.data(), bodies.F.data(), given,
+                                     how.warm,        how.tolerance,   how.max_iter};
+  const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
+                                   exerted.data()};
+  sd_bodies_report made = {};
+  const sd_status status = sd_bodies_solve(&A, &problem, &motion, work.data(), &made);
+  fail_if_alone(Voice(lmp, StokesSettings::COMMAND).at_step(), status);
+  report = {};
+  report.iterations = report.products = made.products;
+  report.residual = made.residual;
+  report.curvature = made.curvature;
+  return status;
+}
+
+void Solve::hand_out(const Take &take) const
+{
+  const size_t m = bodies.width, n = scene.size();
+  std::vector<double> atoms_v = v, moved(2 * m * n + 2 * m);
+  scene.drift(atoms_v.data(), bodies.width, -1.0);    // not those of the image next to its clump
+  for (size_t k = 0; k < n; k++) {
+    double *row = &moved[2 * m * k];
+    std::copy_n(&atoms_v[m * k], m, row);
+    for (size_t d = 0; d < m; d++) row[m + d] = -exerted[m * k + d];
+  }
+  scene.to_atoms(2 * bodies.width, moved.data(),
+                 [&](int i, const double *row) { take(i, row, row + m); });
+}
+
+void Solve::tie_films()
+{
+  tie.L = lubrication.matrix();
+  bodies.bodies.tie = &tie;
+}
+
+/* By the numbers of each sphere, those of its points one after the other */
+void Solve::draw(const Draw &draw)
+{
+  const sd_bodies &A = bodies.bodies;
+  const size_t n = scene.size(), m = sd_bodies_rows(&A) / std::max(n, (size_t) 1);
+  std::vector<double> w(m * n + 1), pushed(sd_bodies_loads(&A) + bodies.width);
+  bodies.take_roots();
+  for (size_t k = 0; k < n; k++)
+    sd_random_normals(&draw.of_spheres, scene.tag((int) k), (int) m, &w[m * k]);
+  sd_noise_report report = {};
+  sd_status status = sd_bodies_draw(draw.noise, &A, bodies.in_open_space().data(), w.data(),
+                                    draw.tolerance, pushed.data(), &report);
+  if (status == SD_OK && A.tie) status = lubrication.draw(scene, draw.of_films, pushed.data());
+  draw.report(status, report);
+  for (size_t j = 0; j < (size_t) bodies.width * n; j++) bodies.F[j] += pushed[j] *= draw.scale;
+  scene.to_atoms(bodies.width, pushed.data(), draw.take);
+}
+
+// --- points whose velocities are given -------------------------------------------------------------
+
+sd_system Solve::system()
+{
+  const size_t n = scene.size(), m = bodies.width;
+  drag.resize(n + 1);
+  spin.resize(n + 1);
+  for (size_t k = 0; k < n; k++) {
+    drag[k] = bodies.resistance[m * k];
+    if (m == 6) spin[k] = bodies.resistance[m * k + 3];
+  }
+  sd_system system = {};
+  system.n = (int) n;
+  system.drag = drag.data();
+  system.spin = m == 6 ? spin.data() : nullptr;
+  system.apply = sd_mobility_apply;
+  system.apply_ctx = scene.mobility();
+  system.world = scene.ranks();
+  return system;
+}
+
+double *Solve::make_room()
+{
+  const size_t needed = SD_SOLVE_WORK(scene.size(), bodies.width) + 1;
+  if (needed > room) {
+    scratch.reset();
+    scratch.reset(new double[needed]);
+    room = needed;
+  }
+  return scratch.get();
+}
+
+sd_status Solve::substitution(const How &how, sd_solve_report &report)
+{
+  const sd_system A = system();
+  F.resize(bodies.flow.size() + bodies.width);
+  const sd_status status = sd_solve_substitution(&A, bodies.flow.data(), how.tolerance, how.max_iter,
+                                                 F.data(), make_room(), &report);
+  take_forces();
+  return status;
+}
+
+sd_status Solve::gradients(const How &how, Guess &guess, sd_solve_report &report)
+{
+  sd_system A = system();
+  F.resize(bodies.flow.size() + bodies.width);
+  A.warm = how.warm;
+  for (size_t j = 0; j < bodies.flow.size() && how.warm; j++) F[j] = -guess.l[j];
+  preconditioner.attach(A, guess.memory->places, guess.memory->global.places_box);
+  const sd_status status = sd_solve_gradients(&A, bodies.flow.data(), how.tolerance, how.max_iter,
+                                              F.data(), make_room(), &report);
+  take_forces();
+  return status;
+}
+
+void Solve::take_forces()
+{
+  exerted.resize(F.size());
+  for (size_t j = 0; j < bodies.flow.size(); j++) exerted[j] = -F[j];
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,91 @@
+/* The solve of a step: bodies, an engine, films and a preconditioner, and from a guess loads and motions.
+ *
+ *   bodies          what is known of each: its load, its velocity, or of one that is spun some of both
+ *                   (sd_bodies.h)
+ *   substitution    algorithm 1 of the page, of points whose velocities are given (sd_solve.h)
+ *   gradients       algorithm 2 of the same: bodies all held, each of one point; the one case in which a
+ *                   preconditioner knows more than single bodies */
+#ifndef SD_STOKES_SOLVE_H
+#define SD_STOKES_SOLVE_H
+
+#include "body_scene.h"
+#include "callback.h"
+#include "guess.h"
+#include "lubrication.h"
+#include "pointers.h"
+#include "preconditioner.h"
+#include "scene.h"
+
+#include "sd_bodies_noise.h"
+#include "sd_random.h"
+#include "sd_solve.h"
+#include "sd_tie.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace StokesDyn {
+
+class Solve : protected LAMMPS_NS::Pointers {
+ public:
+  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, Lubrication &);
+  Preconditioner preconditioner;
+
+  struct How {
+    bool warm;
+    double tolerance;
+    int max_iter;
+  };
+  /* The bodies have been placed; for bodies() assembled too, with their films. From a guess, which holds
+   * afterwards what was found. SD_OK or the core's. */
+  sd_status run(const How &how, Guess &guess, sd_solve_report &report);
+  sd_status substitution(const How &how, sd_solve_report &report);
+  sd_status gradients(const How &how, Guess &guess, sd_solve_report &report);
+
+  /* What was found: [width spheres] forces on the fluid, films included; velocities of the spheres (of
+   * the images that the rows stand for), and [6 bodies] */
+  std::vector<double> exerted, v, V;
+  /* What becomes of atom i: velocity, with torques angular velocity, and force of the fluid on it,
+   * with torque: v and F [width] */
+  using Take = ClumpPoses::Take;
+  void hand_out(const Take &take) const;
+
+  /* Lubrication, which has been placed, in the loop */
+  void tie_films();
+  /* Random forces of covariance R, the resistance of all bodies with their films
+   * (sd_bodies_noise.h), times `scale`, and what becomes of them: forces and torques F [width] on
+   * atom i */
+  struct Draw {
+    sd_bodies_noise *noise;
+    sd_random_key of_spheres, of_films;
+    double tolerance, scale;
+    std::function<void(int i, const double *F)> take;
+    /* the process ends so; a failure must not come back */
+    std::function<void(sd_status status, const sd_noise_report &report)> report;
+  };
+  void draw(const Draw &draw);
+
+  /* The rows of spheres that are points, for the solvers of these; of shells their drags alone count */
+  sd_system system();
+
+  double memory_usage() const;
+
+ private:
+  Scene &scene;
+  BodyScene &bodies;
+  Lubrication &lubrication;
+  Owned<sd_tie, sd_tie_free> tie;
+
+  /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */
+  std::vector<double> F, drag, spin, work;
+  /* scratch of sd_solve, not filled: parts that it does not need take no memory */
+  std::unique_ptr<double[]> scratch;
+  size_t room = 0;
+
+  double *make_room();
+  void take_forces();
+};
+
+}    // namespace StokesDyn
+#endif
