@@ -89,6 +89,8 @@ typedef struct {
   int width, equal, slopes;
   /* that of H; of xi times the largest radius */
   double a_ref, most;
+  /* in a slab, else 0: the longest range that saves anything; gap of sd_ewald_choose_in_slab */
+  double farthest, gap;
 } splitting;
 
 static splitting splitting_for(fall how, const sd_ewald_class *s, int width, double most)
@@ -109,6 +111,7 @@ static double natural_range(const sd_ewald_box *box, const splitting *by, double
   const double more = pow(digits / 3.0, by->fall == BAND ? 1.0 : 1.6);
   const double many = 86.0 * fmax(1.0, more) * (box->periodic ? 1.0 : 2.5);
   const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
+  if (by->farthest > 0.0) return fmin(range, by->farthest);
   if (box->periodic) return fmin(range, 0.97 * narrowest(box));
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
@@ -168,6 +171,15 @@ static double least_range(const sd_ewald *e, const splitting *by, double y)
   return fmax(y * fmax(e->a_ref / 0.8, e->largest / by->most), 2.0 * e->largest);
 }
 
+/* What two walls do to a wave together falls like exp(-k gap), and the grid must have the waves where that
+ * is not small. Found by errors in narrow slits, where without it they were 5 times the tolerance. */
+static double range_in_gap(const splitting *by, double t, double y)
+{
+  const double spacing = 3.0 * by->gap / (log(1.0 / t) + 3.0);
+  const double range = by->fall == BAND ? band_spacings(by, t) * spacing : 1.4 * by->gap;
+  return fmax(range, fmax(y * by->spheres.largest / by->most, 2.0 * by->spheres.largest));
+}
+
 /* xi, a_ref, range, the window, and the largest spacing of the grid. What is lost tightens the tolerance,
  * which in turn moves xi. */
 static void split(sd_ewald *e, const splitting *by, double *y)
@@ -178,6 +190,7 @@ static void split(sd_ewald *e, const splitting *by, double *y)
   for (int k = 0; k < 6; k++) {
     *y = y_of(&e->box, by, t);
     e->range = fmax(natural_range(&e->box, by, log10(1.0 / t)), least_range(e, by, *y));
+    if (by->gap > 0.0) e->range = fmin(e->range, range_in_gap(by, t, *y));
     e->xi = *y / e->range;
     if (k < 5) t = tightened(by, e->tolerance, e->xi * *y);
   }
@@ -371,6 +384,66 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
   }
   out->tolerance = asked;
   out->reach = fmax(out->reach, out->images.range);
+  return status;
+}
+
+/* Where the gap keeps the range short H needs a smaller reference radius, and windows are differentiated
+ * also for equal spheres. *y is that of a Gaussian with the tolerance that is left. */
+static sd_status level_in_slab(sd_ewald *e, splitting *by, double *y)
+{
+  double y_of_fall;
+  split(e, by, &y_of_fall);
+  if (e->range < (1.0 - 1e-9) * y_of_fall * by->a_ref / 0.8) {
+    by->slopes = 1;
+    by->a_ref = six_digits(0.8 * e->range / y_of_fall);
+    split(e, by, &y_of_fall);
+  }
+  *y = sqrt(log(1.0 / tightened(by, e->tolerance, e->xi * y_of_fall)));
+  const sd_status status = lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
+  if (status == SD_OK && by->fall == BAND) end_at_band(e, by, y_of_fall);
+  return status;
+}
+
+/* Across the slab as fine as along it. Windows reach half their width beyond the centres at either end,
+ * rounded up, and the first copy of the spheres is beyond the range. */
+static sd_status lay_planes(sd_ewald *e, int across, double span)
+{
+  double h = 0.0, all = 1.0;
+  for (int d = 0; d < 3; d++)
+    if (d != across) h = fmax(h, edge_length(&e->box, d) / e->grid[d]);
+  const double cells = (span + fmax(e->range, (e->points + 3) * h)) / h;
+  if (!(cells < 1e6)) return SD_ENOMEMORY;
+  e->grid[across] = 2 * sd_ewald_transformable(0.5 * cells);
+  e->box.edge[across] = h * e->grid[across];
+  e->spacing = h;
+  e->slab = (sd_ewald_slab){across, (int) ceil(span / h + e->points) + 2};
+  for (int d = 0; d < 3; d++) all *= e->grid[d];
+  return all < 2147483648.0 ? SD_OK : SD_ENOMEMORY;
+}
+
+/* Images are smoother than the free part and farther in sight: their waves must end with the grid for any
+ * window, since nothing makes up for what the range cuts off. Found by errors; see sd_slab.h. */
+static const double IMAGE_SMOOTHER = 0.85, IMAGE_FARTHER = 1.15;
+
+sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double span, double gap,
+                                  const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out)
+{
+  sd_ewald_box tall = *box;
+  int some;
+  tall.periodic = 1;
+  tall.edge[across] = span + 2.0 * sizes->all.largest;
+  if (!(tall.edge[across] > 0.0)) tall.edge[across] = 1.0; /* no spheres */
+  sd_status status = prepare(&tall, &sizes->all, tolerance, out, &some);
+  if (!some) return status;
+  splitting by = splitting_for(fall_for(out), &sizes->all, 3, LARGEST);
+  by.farthest = 0.97 * fmin(tall.edge[(across + 1) % 3], tall.edge[(across + 2) % 3]);
+  by.gap = isfinite(gap) ? gap : 0.0;
+  double y;
+  status = level_in_slab(out, &by, &y);
+  if (status == SD_OK) status = lay_planes(out, across, span);
+  out->images.xi = IMAGE_SMOOTHER * SD_PI / (2.2 * out->spacing * y);
+  out->images.range = IMAGE_FARTHER * y / out->images.xi;
+  out->reach = fmax(out->range, out->images.range);
   return status;
 }
 

@@ -62,6 +62,13 @@ typedef struct {
   double xi, range;
 } sd_ewald_images;
 
+/* A box that is periodic in two directions alone (sd_slab.h), as a periodic one that is taller: the
+ * direction that is not, and how many planes of the grid across it hold something; 0: all, and there is
+ * no such direction */
+typedef struct {
+  int across, planes;
+} sd_ewald_slab;
+
 /* What an engine is made from. Ready after sd_ewald_choose; all lengths as given. */
 typedef struct {
   sd_ewald_box box;
@@ -89,6 +96,7 @@ typedef struct {
    * level is then less that of the second, whose waves all spheres make. */
   sd_ewald_large large;
   sd_ewald_images images;
+  sd_ewald_slab slab;
 } sd_ewald;
 
 /* --- the choice --- */
@@ -136,6 +144,15 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
 /* The same for spheres in an open box above a wall, with their images (sd_image_kernel.h); forces
  * alone, and one level. */
 sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
+                                  const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out);
+
+/* The same for spheres in a box that is not periodic in the direction `across`, where their centres span
+ * so much: a periodic box is made of it whose edge there has room for them, for windows at both ends and
+ * for the range beside them. Forces alone, one level, and no tilt.
+ *   box    origin and edges along the other two directions
+ *   gap    between two walls, their distance and twice the smallest radius; INFINITY: there are no two
+ * out->images has the splitting of images in a wall, and no wall. */
+sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double span, double gap,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out);
 
 /* The flow at points of a periodic box, which have no size: one level, whose waves end at `band`, for a

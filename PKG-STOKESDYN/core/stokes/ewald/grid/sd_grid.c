@@ -98,16 +98,28 @@ void sd_grid_free(sd_grid *g)
   memset(g, 0, sizeof(*g));
 }
 
-sd_status sd_grid_raise(sd_grid *g, const double *height)
+static sd_status three_more_planes(sd_grid *g)
 {
-  const size_t planes = (size_t) g->occupied[0];
-  if (!sd_grow(&g->height, sizeof(double), planes)) return SD_ENOMEMORY;
-  memcpy(g->height, height, sizeof(double) * planes);
   for (int c = 0; c < 3; c++) {
     if (!g->raised[c]) g->raised[c] = fftw_alloc_complex(plane_numbers(g));
     if (!g->raised[c]) return SD_ENOMEMORY;
   }
   return SD_OK;
+}
+
+sd_status sd_grid_raise(sd_grid *g, const double *height)
+{
+  const size_t planes = (size_t) g->occupied[0];
+  if (!sd_grow(&g->height, sizeof(double), planes)) return SD_ENOMEMORY;
+  memcpy(g->height, height, sizeof(double) * planes);
+  return three_more_planes(g);
+}
+
+sd_status sd_grid_add_sweep(sd_grid *g, sd_grid_sweep *sweep, void *ctx)
+{
+  g->sweep = sweep;
+  g->sweep_ctx = ctx;
+  return three_more_planes(g);
 }
 
 /* --- bricks --- */
@@ -354,6 +366,21 @@ static void add_raised(sd_grid *g, int c)
     for (long k = 0; k < row; k++) beside[x * row + k] += g->height[x] * raised[x * row + k];
 }
 
+/* What a sweep starts from, as long as it is there, and what they make of it */
+static void keep_for_sweep(sd_grid *g, int c)
+{
+  const size_t row = 2 * (size_t) sd_grid_own(g, SD_SHARED_Z);
+  memcpy(g->raised[c], g->beside, sizeof(double) * row * (size_t) g->occupied[0]);
+}
+
+static void add_sweep(sd_grid *g, int c)
+{
+  const long numbers = 2L * sd_grid_own(g, SD_SHARED_Z) * g->occupied[0];
+  double *restrict beside = (double *) g->beside;
+  const double *restrict swept = (const double *) g->raised[c];
+  for (long k = 0; k < numbers; k++) beside[k] += swept[k];
+}
+
 /* One y plane: along x, the product, back along x. It stays in the cache meanwhile. */
 static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *ctx, double *message)
 {
@@ -365,11 +392,14 @@ static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *c
     clear_rows(g, g->occupied[0], g->size[0]);
     fftw_execute_dft(g->x_forth, g->beside, g->plane[c]);
     if (g->height) raise_rows(g, c);
+    if (g->sweep) keep_for_sweep(g, c);
   }
   multiply(ctx, y, planes);
+  if (g->sweep) g->sweep(g->sweep_ctx, y, planes + 3);
   for (int c = 0; c < 3; c++) {
     fftw_execute_dft(g->x_back, g->plane[c], g->beside);
     if (g->height) add_raised(g, c);
+    if (g->sweep) add_sweep(g, c);
     copy_plane(g, c, y, message, 0);
   }
 }

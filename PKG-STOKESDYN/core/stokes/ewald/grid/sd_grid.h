@@ -38,6 +38,11 @@ typedef struct {
  * numbers of z. */
 typedef enum { SD_SHARED_X, SD_SHARED_LINES, SD_SHARED_Y, SD_SHARED_Z } sd_grid_part;
 
+/* The lines of one y and our z along x, where y and z are wave numbers and x is a point still: forces
+ * fields [3][occupied x][depth] complex -> velocities, in place, which are added to what the product at
+ * each wave vector makes of the same forces. */
+typedef void sd_grid_sweep(void *ctx, int y, double *const *fields);
+
 /* Zero-initialise; sd_grid_free in the end. */
 typedef struct {
   sd_world world;
@@ -64,6 +69,9 @@ typedef struct {
   /* [occupied x] of each plane of x, NULL: none; three more planes at work */
   double *height;
   fftw_complex *raised[3];
+  /* NULL: nothing but the product at each wave vector */
+  sd_grid_sweep *sweep;
+  void *sweep_ctx;
   /* from the brick to pencils, by rank of the pencils; to ours from bricks, by rank of the brick */
   sd_piece *out, *in;
   int outs, ins;
@@ -85,6 +93,9 @@ sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const
 
 /* From now on with heights, one for each plane of x [occupied x]. SD_OK or SD_ENOMEMORY. */
 sd_status sd_grid_raise(sd_grid *g, const double *height);
+
+/* From now on with a sweep. SD_OK or SD_ENOMEMORY. */
+sd_status sd_grid_add_sweep(sd_grid *g, sd_grid_sweep *sweep, void *ctx);
 
 /* Of the points of all bricks, as below, how many would be in the pencils of their own rank if the
  * first direction were d? They need no message. */

@@ -71,8 +71,9 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   const sd_ewald *e = &w->ewald;
   metric(w);
   int size[3];
+  const int occupied[3] = {e->slab.planes > 0 ? e->slab.planes : e->grid[0], e->grid[1], e->grid[2]};
   for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
-  sd_status status = sd_grid_create(&w->grid, size, e->grid, world);
+  sd_status status = sd_grid_create(&w->grid, size, occupied, world);
   if (status == SD_OK)
     status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_SHARED_Y],
                             w->grid.own[SD_SHARED_Z]);
@@ -83,7 +84,10 @@ sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
                                 const struct sd_ewald_kernels *kernels, int width,
                                 const sd_world *world)
 {
-  const int turn = e->images.wall.sign ? e->images.wall.axis : may_turn(&e->box) ? w->turn : 0;
+  const int turn = e->images.wall.sign ? e->images.wall.axis
+      : e->slab.planes > 0             ? e->slab.across
+      : may_turn(&e->box)              ? w->turn
+                                       : 0;
   sd_ewald_waves_free(w);
   w->ewald = *e;
   w->kernels = kernels;
@@ -174,7 +178,9 @@ sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int 
 static int better_turn(const sd_ewald_waves *w, const int *bricks)
 {
   double most = 0.0, points[3];
-  if (w->grid.ranks == 1 || !may_turn(&w->ewald.box) || w->ewald.images.wall.sign) return 0;
+  if (w->grid.ranks == 1 || !may_turn(&w->ewald.box) || w->ewald.images.wall.sign ||
+      w->ewald.slab.planes > 0)
+    return 0;
   for (int d = 0; d < 3; d++) {
     points[d] = sd_grid_at_home(&w->grid, bricks, d);
     most = fmax(most, points[d]);
