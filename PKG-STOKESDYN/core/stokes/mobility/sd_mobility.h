@@ -15,6 +15,7 @@
 #include "sd_ewald.h"
 #include "sd_product.h"
 #include "sd_random.h"
+#include "sd_slab.h"
 #include "sd_status.h"
 #include "sd_world.h"
 
@@ -29,12 +30,13 @@ SD_BEGIN_C
 typedef enum { SD_VIEW_LIST, SD_VIEW_NEAR, SD_VIEW_ALL } sd_view;
 
 /* How the spheres interact: what is known before they are placed. law.range: of the taper. width 3
- * or 6 as in sd_product.h. ewald: of the engine that splits the sum, which has no other law than RPY
- * without taper. */
+ * or 6 as in sd_product.h. ewald, slab: of the engines that split the sum, which have no other law than
+ * RPY without taper, and walls of their own. */
 typedef struct {
   sd_law law;
   int width;
   const sd_ewald *ewald;
+  const sd_slab *slab;
 } sd_mobility_how;
 
 /* The spheres of one solve. All that it points to outlives the solve. */
@@ -77,6 +79,10 @@ extern const sd_mobility_engine sd_mobility_list;
  * when that has changed, and otherwise only reads positions; SD_ENOTFINITE on all ranks if a sphere
  * is nowhere, or outside of an open box. */
 extern const sd_mobility_engine sd_mobility_ewald;
+/* The same in a box that is periodic in two directions, above a floor, in a slit or with nothing beyond:
+ * how.slab, width 3; SD_ENOTFINITE on all ranks if a sphere is nowhere, or at a height that how.slab has no
+ * room for. */
+extern const sd_mobility_engine sd_mobility_slab;
 
 /* An engine with its state. Zero-initialise; sd_mobility_free in the end. */
 typedef struct {
