@@ -61,6 +61,7 @@ lammps_has(old_comm comm.h "forward_comm_pair")                                 
 lammps_has(SD_HAVE_REGION_PTR domain.h "get_region_by_id")                       # since 14Dec2021
 lammps_has(SD_HAVE_OUTPUT_RESET_DT output.h "reset_dt")                          # since 24Mar2022
 lammps_has(SD_MINIMG_FLERR domain.h "minimum_image\\(const std::string")         # since 12Jun2025
+lammps_has(SD_HAVE_QUAT atom.h "quat_flag")                                      # since 24Mar2022
 if(old_comm)
   set(SD_HAVE_COMM_THIS 0)
 else()
@@ -108,6 +109,7 @@ target_include_directories(lammps_headers SYSTEM INTERFACE ${lammps_src})
 target_compile_definitions(lammps_headers INTERFACE
   SD_HAVE_ADD_REQUEST=${SD_HAVE_ADD_REQUEST} SD_HAVE_COMM_THIS=${SD_HAVE_COMM_THIS}
   SD_HAVE_REGION_PTR=${SD_HAVE_REGION_PTR} SD_HAVE_OUTPUT_RESET_DT=${SD_HAVE_OUTPUT_RESET_DT} SD_MINIMG_FLERR=${SD_MINIMG_FLERR}
+  SD_HAVE_QUAT=${SD_HAVE_QUAT}
   SD_HAVE_ATOM_VEC_H=${SD_HAVE_ATOM_VEC_H} SD_HAVE_FIX_DEFORM_H=${SD_HAVE_FIX_DEFORM_H}
   SD_HAVE_FIX_GRAVITY_H=${SD_HAVE_FIX_GRAVITY_H} SD_HAVE_THERMO_H=${SD_HAVE_THERMO_H}
   SD_LAMMPS_VERSION="${SD_LAMMPS_VERSION}")

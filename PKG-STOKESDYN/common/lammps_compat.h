@@ -3,6 +3,7 @@
 #ifndef SD_LAMMPS_COMPAT_H
 #define SD_LAMMPS_COMPAT_H
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
@@ -45,8 +46,45 @@ class AtomVec {
 }    // namespace LAMMPS_NS
 #endif
 
+/* Nor is the header of atom_style ellipsoid installed. Two functions that the library exports, by which
+ * LAMMPS tells ranks of quaternions, read and write those of one atom. */
+namespace LAMMPS_NS {
+class AtomVecEllipsoid {
+ public:
+  int pack_comm_bonus(int n, int *list, double *quaternions);
+  void unpack_comm_bonus(int n, int first, double *quaternions);
+};
+}    // namespace LAMMPS_NS
+
 namespace StokesDyn {
 namespace Compat {
+
+  /* of atom_style ellipsoid, alone or in a hybrid; nullptr: there is none */
+  inline LAMMPS_NS::AtomVecEllipsoid *ellipsoids(LAMMPS_NS::Atom *atom)
+  {
+    return reinterpret_cast<LAMMPS_NS::AtomVecEllipsoid *>(atom->style_match("ellipsoid"));
+  }
+
+  /* a quaternion for each atom (atom_style bpm/sphere) */
+  inline bool has_quat(const LAMMPS_NS::Atom *atom)
+  {
+#if SD_HAVE_QUAT
+    return atom->quat_flag && atom->quat;
+#else
+    (void) atom;
+    return false;
+#endif
+  }
+
+  inline double **quat(LAMMPS_NS::Atom *atom)
+  {
+#if SD_HAVE_QUAT
+    return atom->quat;
+#else
+    (void) atom;
+    return nullptr;
+#endif
+  }
 
   inline void forward_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Pair *pair)
   {

@@ -1,5 +1,8 @@
 #include "directions.h"
 
+#include "lammps_compat.h"
+
+#include "sd_linear.h"
 #include "sd_pose.h"
 
 #include <algorithm>
@@ -8,9 +11,53 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+bool Directions::on() const
+{
+  return atom->mu_flag || atom->ellipsoid_flag || Compat::has_quat(atom);
+}
+
+bool Directions::quaternion(int i, double q[4]) const
+{
+  if (Compat::has_quat(atom)) {
+    std::copy_n(Compat::quat(atom)[i], 4, q);
+    return true;
+  }
+  if (!atom->ellipsoid_flag || atom->ellipsoid[i] < 0) return false;
+  Compat::ellipsoids(atom)->pack_comm_bonus(1, &i, q);
+  return true;
+}
+
+void Directions::set_quaternion(int i, const double q[4])
+{
+  if (Compat::has_quat(atom)) {
+    std::copy_n(q, 4, Compat::quat(atom)[i]);
+    return;
+  }
+  double buffer[4];
+  std::copy_n(q, 4, buffer);
+  Compat::ellipsoids(atom)->unpack_comm_bonus(1, i, buffer);
+}
+
+bool Directions::direction(int i, double e[3]) const
+{
+  double q[4], R[9];
+  if (has_moment(i)) {
+    std::copy_n(atom->mu[i], 3, e);
+    sd_normalize(e);
+    return true;
+  }
+  if (!quaternion(i, q)) return false;
+  sd_quaternion_rotation(q, R);
+  for (int d = 0; d < 3; d++) e[d] = R[3 * d + 2];
+  return true;
+}
+
 void Directions::look(int i, const double W[3])
 {
-  if (on()) std::copy_n(W, 3, turning.give(i));
+  if (!on()) return;
+  double *row = turning.give(i);
+  std::copy_n(W, 3, row);
+  quaternion(i, row + 6);
 }
 
 void Directions::step(int i, double dt, double weight, double scale, const double *noise)
@@ -25,7 +72,7 @@ void Directions::step(int i, double dt, double weight, double scale, const doubl
 
 void Directions::turn(int i, const double W[3], double dt)
 {
-  if (!has(i)) return;
+  if (!on()) return;
   double w[3], R[9];
   for (int d = 0; d < 3; d++) w[d] = dt * W[d];
   sd_rotation(w, R);
@@ -34,20 +81,40 @@ void Directions::turn(int i, const double W[3], double dt)
 
 void Directions::turn(int i, const double R[9])
 {
-  if (has(i)) sd_turn_direction(R, atom->mu[i][3], atom->mu[i]);
+  double q[4];
+  if (has_moment(i)) sd_turn_direction(R, atom->mu[i][3], atom->mu[i]);
+  if (!quaternion(i, q)) return;
+  sd_turn_quaternion(R, q);
+  set_quaternion(i, q);
+}
+
+void Directions::turn_moved(int i, const double W[3], double dt)
+{
+  double q[4];
+  if (on() && turning.has(i) && quaternion(i, q)) set_quaternion(i, turning[i] + 6);
+  turn(i, W, dt);
 }
 
 std::vector<double> Directions::all() const
 {
   std::vector<double> out;
-  for (int i = 0; i < atom->nlocal && on(); i++)
-    out.insert(out.end(), atom->mu[i], atom->mu[i] + 3);
+  for (int i = 0; i < atom->nlocal && on(); i++) {
+    double row[7] = {0.0};
+    if (atom->mu_flag) std::copy_n(atom->mu[i], 3, row);
+    quaternion(i, row + 3);
+    out.insert(out.end(), row, row + 7);
+  }
   return out;
 }
 
 void Directions::restore(const std::vector<double> &from)
 {
-  for (size_t i = 0; 3 * i < from.size(); i++) std::copy_n(&from[3 * i], 3, atom->mu[i]);
+  for (int i = 0; 7 * (size_t) i < from.size(); i++) {
+    const double *row = &from[7 * (size_t) i];
+    double q[4];
+    if (atom->mu_flag) std::copy_n(row, 3, atom->mu[i]);
+    if (quaternion(i, q)) set_quaternion(i, row + 3);
+  }
 }
 
 }    // namespace StokesDyn

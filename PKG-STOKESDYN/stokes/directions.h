@@ -1,7 +1,8 @@
-/* Directions of spheres, mu of atom_style dipole, for fix stokes_dynamics/overdamped: they turn with
+/* Directions of spheres for fix stokes_dynamics/overdamped: mu of atom_style dipole, the quaternion of
+ * atom_style ellipsoid, and quat of atom styles that have one for each atom (bpm/sphere). They turn with
  * their spheres, by the rotation of the vector dt W (sd_pose.h), W as the scheme takes velocities, or
- * with their clumps. Its length is mu[3], as LAMMPS keeps it. They are turned where positions
- * advance, before LAMMPS tells other ranks of them. Without mu nothing is done. */
+ * with their clumps. The length of mu is mu[3], as LAMMPS keeps it, that of a quaternion 1. They are
+ * turned where positions advance, before LAMMPS tells other ranks of them. Without any nothing is done. */
 #ifndef SD_STOKES_DIRECTIONS_H
 #define SD_STOKES_DIRECTIONS_H
 
@@ -16,13 +17,18 @@ namespace StokesDyn {
 
 class Directions : protected LAMMPS_NS::Pointers {
  public:
-  /* [6] of a sphere: W now, and that of the step before */
+  /* [10] of a sphere: W now, and that of the step before; its quaternion as it was when W was found */
   AtomRows turning;
 
-  explicit Directions(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp), turning(6) {}
+  explicit Directions(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp), turning(10) {}
 
   /* Does the atom style have any? */
-  bool on() const { return atom->mu_flag; }
+  bool on() const;
+
+  /* The quaternion of atom i, which turns its axes to those of space. false: it has none */
+  bool quaternion(int i, double q[4]) const;
+  /* Its direction, of length 1: mu, or without one the z axis of the quaternion. false: none */
+  bool direction(int i, double e[3]) const;
 
   /* What a solve has found */
   void look(int i, const double W[3]);
@@ -32,13 +38,17 @@ class Directions : protected LAMMPS_NS::Pointers {
   /* By the vector dt W; by a rotation R */
   void turn(int i, const double W[3], double dt);
   void turn(int i, const double R[9]);
+  /* The same by W, of a sphere that fix move has moved: its option rotate has turned the quaternion of an
+   * ellipsoid by now, other options have not. */
+  void turn_moved(int i, const double W[3], double dt);
 
   /* Those of the atoms of this rank, and back: nobody migrates in between. */
   std::vector<double> all() const;
   void restore(const std::vector<double> &from);
 
  private:
-  bool has(int i) const { return on() && atom->mu[i][3] > 0.0; }
+  bool has_moment(int i) const { return atom->mu_flag && atom->mu[i][3] > 0.0; }
+  void set_quaternion(int i, const double q[4]);
 };
 
 }    // namespace StokesDyn

@@ -27,7 +27,7 @@ using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), motion(3), random(6),
-    load(6), before(9), output(9)
+    load(6), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
@@ -250,6 +250,10 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       row[6 + d] = width == 6 ? F[3 + d] : 0.0;
       if (width == 6) atom->omega[i][d] = V[3 + d];
     }
+    if (!in_clump(hydro, i))
+      std::fill_n(row + TURNED, 4, 0.0);
+    else if (row[TURNED] == 0.0 && sd_dot(row + TURNED + 1, row + TURNED + 1) == 0.0)
+      row[TURNED] = 1.0;
     std::copy_n(V, 3, motion.give(i));
     if (width == 3) return;
     directions.look(i, V + 3);
@@ -310,9 +314,21 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 void FixStokesDynamicsOverdamped::post_integrate()
 {
   if (scheme == MIDPOINT) advance();
-  if (!moved_bits || !directions.on() || !atom->omega_flag) return;
-  for (int i : hydrodynamics().ambient.who())
-    if (is_moved(i)) directions.turn(i, atom->omega[i], update->dt);
+  if (!moved_bits || !atom->omega_flag) return;
+  const Hydrodynamics &hydro = hydrodynamics();
+  for (int i : hydro.ambient.who()) {
+    if (!is_moved(i)) continue;
+    double w[3], R[9];
+    directions.turn_moved(i, atom->omega[i], update->dt);
+    for (int d = 0; d < 3; d++) w[d] = update->dt * atom->omega[i][d];
+    sd_rotation(w, R);
+    if (in_clump(hydro, i)) sd_turn_quaternion(R, output.give(i) + TURNED);
+  }
+}
+
+bool FixStokesDynamicsOverdamped::in_clump(const Hydrodynamics &hydro, int i) const
+{
+  return hydro.settings.rigid.on && atom->molecule[i] != 0;
 }
 
 void FixStokesDynamicsOverdamped::advance()
@@ -439,6 +455,7 @@ void FixStokesDynamicsOverdamped::clump_moves(Hydrodynamics &hydro, int i, const
 {
   moves(i, sqrt(sd_dot(row + STEP, row + STEP)));
   hydro.turn(i, row + TURN);
+  sd_turn_quaternion(row + TURN, output.give(i) + TURNED);
 }
 
 void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)

@@ -76,7 +76,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   AtomRows before;
   /* of a member of a clump: has it such a row, and which? */
   enum { BEFORE = 10 };
-  /* v less that of the fluid, force, torque */
+  /* v less that of the fluid, force, torque; of a sphere of a rigid clump the quaternion by which that has
+   * turned since the fix was given: these four are state, from step to step and in restart files */
+  enum { TURNED = 9, OUTPUTS = 13 };
   AtomArray output;
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
    * adapt wants next; atoms there are */
@@ -113,6 +115,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
   void load_on(int i, double *FT) const;
+  bool in_clump(const Hydrodynamics &, int i) const;
   void keep_in_plane(double *V, size_t width) const;
   double weight(bool has) const;
   void advance();

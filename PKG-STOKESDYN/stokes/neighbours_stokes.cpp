@@ -404,8 +404,8 @@ const std::vector<Neighbour> stokes_neighbours = {
      "has directions (the dipole of atom {}), which turn with their spheres, and with rotation no "
      "spheres do not turn: use rotation yes or multiblob, or set dipoles that mean nothing to 0 0 0",
      has_moments, FREE},
-    {N::BOND, "bpm/rotational", OVERDAMPED, N::ERROR,
-     "needs orientations of atoms, which fix stokes_dynamics/overdamped does not turn: use "
+    {N::BOND, "bpm/rotational", OVERDAMPED | UPRIGHT, N::ERROR,
+     "needs spheres that turn, and with rotation no they do not: use rotation yes or multiblob, or "
      "bpm/spring"},
     {N::ATOM, "ellipsoid", 0, N::WARNING,
      "gives atom {} a shape that is not that of its sphere, and the fluid sees the sphere "

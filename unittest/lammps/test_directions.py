@@ -1,5 +1,5 @@
-"""Directions (mu of atom_style dipole) turn with their spheres and clumps in fix stokes_dynamics/overdamped: closed forms, orders, noise,
-clumps, one run on several ranks and in pieces, and what is refused."""
+"""Directions (mu of atom_style dipole, quaternions of atom_style ellipsoid, turns of clumps) turn with their spheres and clumps in fix
+stokes_dynamics/overdamped: closed forms, orders, noise, clumps, one run on several ranks and in pieces, and what is refused."""
 import functools
 import os
 
@@ -18,8 +18,8 @@ POINTS, SHELLS = f"cut_off_distance inf visc {ETA} rotation yes", f"cut_off_dist
 CLUMPS = f"{POINTS} rigid_clumps yes relative_tolerance 1e-10"
 
 
-def dipole_lines(folder, x, mu, words, dt, molecule=0, boundary="f f f", box=None, tilt=None):
-    """Everything up to pair_coeff and the time step"""
+def dipole_lines(folder, x, mu, words, dt, molecule=0, boundary="f f f", box=None, tilt=None, quaternions=None):
+    """Everything up to pair_coeff and the time step; quaternions [n,4] or none"""
     x, n = np.asarray(x, float), len(x)
     mu, molecule = np.broadcast_to(np.asarray(mu, float), (n, 3)), np.broadcast_to(molecule, (n,))
     lines = ["dipoles", "", f"{n} atoms", "1 atom types"]
@@ -28,11 +28,17 @@ def dipole_lines(folder, x, mu, words, dt, molecule=0, boundary="f f f", box=Non
     lines += ["", "Atoms", ""]
     for i in range(n):
         place, direction = (" ".join(repr(float(c)) for c in row) for row in (x[i], mu[i]))
-        lines.append(f"{i + 1} 1 {place} {2 * A!r} 1.0 0.0 {direction} {molecule[i]}")
+        lines.append(f"{i + 1} 1 {place} {2 * A!r} 1.0 0.0 {direction} {molecule[i]}"
+                     + (" 1" if quaternions is not None else ""))
+    if quaternions is not None:
+        lines[2:2] = [f"{n} ellipsoids"]
+        lines += ["", "Ellipsoids", ""] + [f"{i + 1} {2 * A!r} {2 * A!r} {2 * A!r} " + " ".join(repr(float(c)) for c in q)
+                                           for i, q in enumerate(quaternions)]
     data = os.path.join(str(folder), "dipoles.data")
     with open(data, "w") as out:
         out.write("\n".join(lines) + "\n")
-    return ["units lj", "atom_style hybrid sphere dipole molecular", f"boundary {boundary}", "atom_modify map array", "newton on",
+    style = "hybrid sphere dipole molecular" + (" ellipsoid" if quaternions is not None else "")
+    return ["units lj", f"atom_style {style}", f"boundary {boundary}", "atom_modify map array", "newton on",
             "plugin load stokesdynplugin.so", f"read_data {data}", f"pair_style stokes_dynamics {words}", "pair_coeff * *",
             "neigh_modify every 1 delay 0", f"timestep {float(dt)!r}"]
 
@@ -159,6 +165,74 @@ def test_directions_of_a_clump_turn_with_it(simulation, tmp_path, words, options
     assert np.abs(directions(sim) - np.einsum("nij,nmj->nmi", R, mu.reshape(3, 4, 3)).reshape(-1, 3)).max() < 1e-12
 
 
+# --- quaternions, and the turn of a clump ----------------------------------------------------------------------------------
+
+QUATERNIONS = "compute q all property/atom quatw quati quatj quatk"
+
+
+def quaternions(sim):
+    rows = np.array(sim.lmp.numpy.extract_compute("q", 1, 2))[:sim.n]
+    return rows[np.argsort(sim.ids())]
+
+
+def rotation(q):
+    """Matrices [n,3,3] of unit quaternions [n,4]"""
+    w, v = q[:, :1, None], q[:, 1:]
+    cross = np.zeros((len(q), 3, 3))
+    for k in range(3):
+        cross[:, :, k] = np.cross(v, np.eye(3)[k])
+    return (2 * w**2 - 1) * np.eye(3) + 2 * w * cross + 2 * v[:, :, None] * v[:, None, :]
+
+
+def some_quaternions(n, seed=21):
+    q = np.random.default_rng(seed).normal(size=(n, 4))
+    return q / np.linalg.norm(q, axis=1)[:, None]
+
+
+QUAT_WAYS = {"euler": (POINTS, "scheme euler", 0, ""), "ab2": (POINTS, "scheme ab2", 0, ""), "midpoint": (SHELLS, "", 0, ""),
+             "noise": (POINTS, f"temperature {KT} 7", 0, ""), "shells with noise": (SHELLS, f"temperature {KT} 7", 0, ""),
+             "spin": (POINTS, "spin all 0.4 0 -1.1", 0, ""),
+             "held": (POINTS, "held all", 0, "fix turn all move rotate 3 0 0 0 0.6 0.8 {:.17g}"),
+             "held with midpoint": (POINTS, "scheme midpoint held all", 0, "fix turn all move rotate 3 0 0 0 0.6 0.8 {:.17g}"),
+             "clumps": (CLUMPS, "", [1, 1, 1, 1, 2, 2, 2, 2, 0, 0, 0, 0], ""),
+             "held clumps": (CLUMPS, "held all", [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3],
+                             "fix turn all move rotate 3 0 0 0 0.6 0.8 {:.17g}")}
+
+
+@pytest.mark.parametrize("way", QUAT_WAYS)
+def test_quaternions_turn_as_dipoles_do(simulation, tmp_path, way):
+    """Dipoles in any direction are fixed in the axes that quaternions say, and these keep their length."""
+    words, options, molecule, more = QUAT_WAYS[way]
+    x, mu, q = copies(L_OF_FOUR, 3, 6.0).x, np.random.default_rng(3).normal(size=(12, 3)), some_quaternions(12)
+    sim = dipoles(simulation, tmp_path, x, mu, f"{words} fluid_velocity v_u 0 0", 0.05, molecule=molecule, quaternions=q)
+    period = 4.0
+    sim.commands(f"variable u atom z\n{more.format(period)}\nset group all omega 0 {0.6 * 2 * np.pi / period!r} {0.8 * 2 * np.pi / period!r}\n"
+                 f"{MOVE} {options}\nfix field all efield 0 2 0\nfix pull all addforce 0 -3 0\n{QUATERNIONS}\n"
+                 "fix read all ave/atom 1 1 1 c_q[*]").run(60)
+    now = quaternions(sim)
+    turn = rotation(now) @ rotation(q).transpose(0, 2, 1)
+    assert np.abs(turn - np.eye(3)).max(axis=(1, 2)).min() > 0.3
+    assert np.abs(directions(sim) - np.einsum("nij,nj->ni", turn, mu)).max() < 2e-12
+    assert np.abs(np.linalg.norm(now, axis=1) - 1).max() < 1e-15
+
+
+@pytest.mark.parametrize("words, options", [(CLUMPS, ""), (CLUMPS, "scheme midpoint"), (CLUMPS + " clumps_only yes", f"temperature {KT} 7"),
+                                            (f"{SHELLS} rigid_clumps yes", f"temperature {KT} 7")])
+def test_the_fix_tells_how_a_clump_has_turned(simulation, tmp_path, words, options):
+    """Columns 10 to 13: by the same quaternion as its spheres; 1 before the first step; 0 of free spheres"""
+    x = copies(L_OF_FOUR, 3, 6.0).x
+    sim = dipoles(simulation, tmp_path, x, (0, 0, 1), f"{words} fluid_velocity v_u 0 0", 0.05, molecule=[1, 1, 1, 1, 2, 2, 2, 2, 0, 0, 0, 0])
+    sim.commands(f"variable u atom z\n{MOVE} {options}\nfix pull all addforce 0 -3 0").run(0)
+    assert (sim.fix_rows("move")[:, 9:13] == [[1, 0, 0, 0]] * 8 + [[0, 0, 0, 0]] * 4).all()
+    before = sim.x[:8].reshape(2, 4, 3)
+    sim.run(40).run(20)
+    turned_by = sim.fix_rows("move")[:, 9:13]
+    R = rotation_between(before, sim.x[:8].reshape(2, 4, 3))
+    assert np.abs(R - np.eye(3)).max() > 0.3
+    assert np.abs(rotation(turned_by[:8]).reshape(2, 4, 3, 3) - R[:, None]).max() < 1e-12
+    assert not turned_by[8:].any()
+
+
 # --- noise -----------------------------------------------------------------------------------------------------------------
 
 def steps_and_turns(sim, steps):
@@ -249,7 +323,8 @@ def test_langevin_of_dipoles_in_a_field(simulation, tmp_path):
 
 # --- one run, however it is made -------------------------------------------------------------------------------------------
 
-END = dump_lines("end.dump", every=20, columns="xu yu zu mux muy muz")
+COLUMNS = "xu yu zu mux muy muz " + " ".join(f"c_q[{k}]" for k in range(1, 5)) + " " + " ".join(f"f_move[{k}]" for k in range(10, 14))
+END = [QUATERNIONS] + dump_lines("end.dump", every=20, columns=COLUMNS)
 WAYS = {"noise in shear": ("p p p", f"{POINTS} fluid_velocity box", "temperature 1.5 7", 0,
                            ["fix shear all deform 1 xy erate 0.5 remap v"]),
         "shells with noise": ("f f f", SHELLS, "temperature 1.5 7", 0, []),
@@ -261,7 +336,8 @@ def script(folder, way, runs):
     x = copies(L_OF_FOUR, 3, 5.0).x + 1.0
     mu = np.random.default_rng(9).normal(size=(12, 3))
     box = [(0.0, 12.0)] * 3 if boundary[0] == "p" else None
-    lines = dipole_lines(folder, x, mu, words, 0.02, molecule=molecule, boundary=boundary, box=box, tilt=0.0 if box else None)
+    lines = dipole_lines(folder, x, mu, words, 0.02, molecule=molecule, boundary=boundary, box=box, tilt=0.0 if box else None,
+                         quaternions=some_quaternions(12))
     return lines + ["fix field all efield 0 4 1", "fix push all propel/self dipole 2.0", *more, f"{MOVE} {options}"] + runs
 
 
@@ -276,7 +352,8 @@ def test_ranks_agree(tmp_path, way):
     one = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
     two = end(tmp_path, script(tmp_path, way, END + ["run 20"]), 2)
     start = np.random.default_rng(9).normal(size=(12, 3))
-    assert np.abs(one[:, 3:] - start).max() > 0.1
+    assert np.abs(one[:, 3:6] - start).max() > 0.1
+    assert np.abs(one[:, 6:10] - some_quaternions(12)).max() > 0.05
     assert np.abs(one - two).max() < 1e-12
 
 

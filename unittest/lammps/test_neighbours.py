@@ -110,7 +110,7 @@ CASES = [
     ("BOND bpm/*", "OVERDAMPED", bonded("bpm/spring", 15), "bond_style bpm/spring damps its bonds (gamma 15)"),
     ("BOND bpm/*", "OVERDAMPED", bonded("bpm/rotational", 15), "bond_style bpm/rotational damps its bonds (gamma 15)"),
     ("BOND bpm/*", "OVERDAMPED", bonded("bpm/spring/plastic", 15), "bond_style bpm/spring/plastic must have no damping"),
-    ("BOND bpm/rotational", "OVERDAMPED", bonded("bpm/rotational", 0), "bond_style bpm/rotational needs orientations"),
+    ("BOND bpm/rotational", "OVERDAMPED | UPRIGHT", bonded("bpm/rotational", 0), "bond_style bpm/rotational needs spheres that turn"),
     ("ATOM dipole", "OVERDAMPED | UPRIGHT", prepared("set group GROUP dipole 1 0 0", atoms="hybrid sphere dipole"),
      "atom_style dipole has directions (the dipole of atom 1)"),
  

@@ -15,10 +15,15 @@ void sd_rotation(const double w[3], double R[9])
   const double angle = sqrt(sd_dot(w, w));
   /* sin(a/2)/a, which is 1/2 - a^2/48 + ... near 0 */
   const double s = angle > 1e-4 ? sin(0.5 * angle) / angle : 0.5 - angle * angle / 48.0;
-  double q[4] = {cos(0.5 * angle), s * w[0], s * w[1], s * w[2]};
-  const double norm = 1.0 / sqrt(q[0] * q[0] + sd_dot(q + 1, q + 1));
-  for (int k = 0; k < 4; k++) q[k] *= norm;
-  const double a = q[0], x = q[1], y = q[2], z = q[3];
+  const double q[4] = {cos(0.5 * angle), s * w[0], s * w[1], s * w[2]};
+  sd_quaternion_rotation(q, R);
+}
+
+void sd_quaternion_rotation(const double q[4], double R[9])
+{
+  const double square = q[0] * q[0] + sd_dot(q + 1, q + 1);
+  const double norm = square > 0.0 ? 1.0 / sqrt(square) : 0.0;
+  const double a = norm * q[0], x = norm * q[1], y = norm * q[2], z = norm * q[3];
   R[0] = 1.0 - 2.0 * (y * y + z * z);
   R[1] = 2.0 * (x * y - a * z);
   R[2] = 2.0 * (x * z + a * y);
@@ -36,6 +41,41 @@ void sd_turn_direction(const double R[9], double length, double v[3])
   sd_multiply3(R, v, turned);
   const double norm = sqrt(sd_dot(turned, turned));
   for (int d = 0; d < 3; d++) v[d] = norm > 0.0 ? turned[d] * (length / norm) : turned[d];
+}
+
+/* Unit quaternion of a rotation, by the largest of its four numbers, so that nothing cancels:
+ * 4 a^2 = 1 + tr R and the like, products of two of them from sums and differences of entries of R.
+ * Source: Shepperd, J. Guidance Control 1, 223 (1978). */
+static void quaternion_of(const double R[9], double q[4])
+{
+  const double trace = R[0] + R[4] + R[8];
+  int most = 0;
+  for (int d = 1; d < 4; d++)
+    if (R[4 * (d - 1)] > (most ? R[4 * (most - 1)] : trace)) most = d;
+  if (most == 0) {
+    q[0] = 1.0 + trace;
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      q[d + 1] = R[3 * f + e] - R[3 * e + f];
+    }
+    return;
+  }
+  const int d = most - 1, e = (d + 1) % 3, f = (d + 2) % 3;
+  q[0] = R[3 * f + e] - R[3 * e + f];
+  q[d + 1] = 1.0 + 2.0 * R[4 * d] - trace;
+  q[e + 1] = R[3 * d + e] + R[3 * e + d];
+  q[f + 1] = R[3 * d + f] + R[3 * f + d];
+}
+
+void sd_turn_quaternion(const double R[9], double q[4])
+{
+  double p[4], out[4], cross[3];
+  quaternion_of(R, p);
+  sd_cross(p + 1, q + 1, cross);
+  out[0] = p[0] * q[0] - sd_dot(p + 1, q + 1);
+  for (int d = 1; d < 4; d++) out[d] = p[0] * q[d] + q[0] * p[d] + cross[d - 1];
+  const double norm = sqrt(out[0] * out[0] + sd_dot(out + 1, out + 1));
+  for (int k = 0; k < 4; k++) q[k] = norm > 0.0 ? out[k] / norm : 0.0;
 }
 
 void sd_pose_step(double pose[12], const double centre[3], const double step[6], int n,

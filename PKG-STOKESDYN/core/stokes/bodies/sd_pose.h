@@ -23,6 +23,12 @@ void sd_rotation(const double w[3], double R[9]);
  * R [9] a rotation. The direction 0 stays 0. */
 void sd_turn_direction(const double R[9], double length, double v[3]);
 
+/* q [4], a unit quaternion (real part first, the rotation of body axes to space), becomes that of R after
+ * it, with a length of 1 to rounding; R [9] a rotation by any angle. q = 0 stays 0. */
+void sd_turn_quaternion(const double R[9], double q[4]);
+/* Rotation matrix R [9] of q [4], not 0, of whatever length; that of 0 is 1. */
+void sd_quaternion_rotation(const double q[4], double R[9]);
+
 /* pose [12]: R, then c; moved by a displacement and a turn, step [6], of the point at centre [3] in the
  * axes of the body, from c: what moves it is known there (0, or sd_clump_noise.h). turn [9]: out, that
  * of space in the step; x [3n] = c + R X, X [3n] */

@@ -78,6 +78,29 @@ static void directions_keep_their_length(void **state)
   for (int d = 0; d < 3; d++) CHECK_NEAR(v[d] / length, expected[d] / length, 1e-9);
 }
 
+/* A quaternion that turns is that of the product of the rotations, by any angle about any axis, has length 1
+ * to rounding, and turns its body axes as the matrices do; none stays none. */
+static void quaternions_turn_as_matrices_do(void **state)
+{
+  (void) state;
+  const double axes[4][3] = {{0.6, 0.0, 0.8}, {-0.36, 0.48, -0.8}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}};
+  const double angles[6] = {1e-9, 0.3, 2.0, 3.1415926, SD_PI, 5.5};
+  double q[4] = {1.0, 0.0, 0.0, 0.0}, none[4] = {0.0}, all[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (int k = 0; k < 24; k++) {
+    double w[3], R[9], before[9], seen[9];
+    for (int d = 0; d < 3; d++) w[d] = angles[k % 6] * axes[k / 6][d];
+    sd_rotation(w, R);
+    memcpy(before, all, sizeof(all));
+    sd_product3(R, before, all);
+    sd_turn_quaternion(R, q);
+    sd_turn_quaternion(R, none);
+    sd_quaternion_rotation(q, seen);
+    for (int d = 0; d < 9; d++) CHECK_NEAR(seen[d], all[d], 2e-14);
+    CHECK_NEAR(q[0] * q[0] + sd_dot(q + 1, q + 1), 1.0, 1e-15);
+    CHECK_NEAR(none[0] * none[0] + sd_dot(none + 1, none + 1), 0.0, 0.0);
+  }
+}
+
 /* Adams and Bashforth's step is exact for velocities linear in time, with steps that change. */
 static void changing_steps_stay_second_order(void **state)
 {
@@ -290,6 +313,7 @@ int main(void)
       cmocka_unit_test(rotations_are_rotations),
       cmocka_unit_test(steady_turn_is_exact),
       cmocka_unit_test(directions_keep_their_length),
+      cmocka_unit_test(quaternions_turn_as_matrices_do),
       cmocka_unit_test(changing_steps_stay_second_order),
       cmocka_unit_test(next_step_follows_the_fastest),
       cmocka_unit_test(growth_is_seen_whatever_its_factor),
