@@ -377,14 +377,17 @@ static sd_status iterate(loop *c)
 
 /* --- what comes of it --- */
 
-/* K^T l + K_s^T L K_s V = F + K_s^T L V_inf. Torques on those that are spun are not read. */
+/* K^T l + K_s^T L K_s V = F + K_s^T L V_inf. Torques on those that are spun are not read, nor forces on
+ * those that are pinned. */
 static void take_loads(loop *c)
 {
   const sd_bodies *A = c->A;
   sd_rigid_collect(&A->spheres, c->problem->F, sd_bodies_count(A), c->given);
-  for (int b = 0; b < sd_bodies_count(A); b++)
-    if (sd_bodies_known(A, b) == SD_BODY_SPUN)
-      memset(c->given + 6 * (long) b + 3, 0, 3 * sizeof(double));
+  for (int b = 0; b < sd_bodies_count(A); b++) {
+    const sd_body_known known = sd_bodies_known(A, b);
+    if (known == SD_BODY_SPUN || known == SD_BODY_PINNED)
+      memset(c->given + 6 * (long) b + (known == SD_BODY_SPUN ? 3 : 0), 0, 3 * sizeof(double));
+  }
   memcpy(c->f, c->given, sizeof(double) * (size_t) motions(c));
   if (!A->tie) return;
   sd_rigid_collect(&A->spheres, A->tie->L->carried, sd_bodies_count(A), c->bodies);

@@ -8,13 +8,15 @@
  * and then V = u + M F. dN: sd_body_shape.h. It is the stationary point of l.M' l / 2 + l.u under
  * the second line, and has one solution, as M' > 0. Held bodies have a given V, and no second line:
  * their F is part of the answer. All held, this is the resistance problem M' l = K V - u. Bodies that
- * are spun have a given W, and of the second line the forces alone: their torque is part of it.
+ * are spun have a given W, and of the second line the forces alone: their torque is part of it. Those
+ * that are pinned have a given U, and the torques alone.
  *
  * Solved by conjugate gradients inside the constraint. The preconditioner is the same system with
  * M' replaced by the blocks M_b' of the bodies alone, in which every body is for itself:
  *
  *   pre(r, f):  z = M_b'^-1 r,   V = N (f - K^T z),   l = z + M_b'^-1 K V,   N = (K^T M_b'^-1 K)^-1
- *               held: V as given, in the loop 0; spun: W, and U from R_UU U = (f - K^T z)_F - R_UW W
+ *               held: V as given, in the loop 0; spun: W, and U from R_UU U = (f - K^T z)_F - R_UW W;
+ *               pinned: likewise W from U
  *   start:      (l, V) = pre(-u, F),   r = K V - u - M' l
  *   repeat:     (z, dV) = pre(r, 0);   stop when sqrt(r.z / e) < tolerance
  *               p = z + beta p,  q = dV + beta q,  w = M' p - K q,  alpha = r.p / p.w
@@ -52,9 +54,10 @@ typedef struct {
   /* [points] velocity, for width 6 and angular velocity, of the undisturbed fluid at the points */
   const double *u;
   /* [spheres] forces, for width 6 and torques, on the spheres, each about its own centre. Those of
-   * held bodies are not read, nor torques on those that are spun */
+   * held bodies are not read, nor torques on those that are spun, nor forces on those pinned */
   const double *F;
-  /* [6 bodies] velocities of those held, W of those spun; others' are not read. NULL: they rest */
+  /* [6 bodies] velocities of those held, W of those spun, U of those pinned; others' are not read.
+   * NULL: they rest */
   const double *given;
   /* does l (with a tie, and before) hold a guess? Any will do: what it lacks of F is made up */
   int warm;

@@ -79,19 +79,21 @@ static void read_rows(const sd_body *b, const double *rows, double *y)
     to_shape(b->R, w, b->a, rows + (long) w * b->row[k], y + w * k);
 }
 
-/* U of a body whose W is given, both in motion, in the axes and lengths of its shape for eta = 1 and
- * scaled likewise: (R V)_F = load_F, R = N^-1 */
-static void move_spun(const sd_body_shape *s, const double load[3], double motion[6])
+/* U of a body whose W is given (at = 0), or W of one whose U is (at = 3), both in motion, in the axes
+ * and lengths of its shape for eta = 1 and scaled likewise: (R V)_F = load_F or (R V)_T = load_T, R =
+ * N^-1 */
+static void move_in_part(const sd_body_shape *s, int at, const double load[6], double motion[6])
 {
   double R[9];
   for (int p = 0; p < 3; p++) {
-    motion[p] = load[p];
+    const double *row = s->resistance + 6 * (at + p);
+    motion[at + p] = load[at + p];
     for (int q = 0; q < 3; q++) {
-      R[3 * p + q] = s->resistance[6 * p + q];
-      motion[p] -= s->resistance[6 * p + 3 + q] * motion[3 + q];
+      R[3 * p + q] = row[at + q];
+      motion[at + p] -= row[3 - at + q] * motion[3 - at + q];
     }
   }
-  sd_cholesky_solve(3, R, 1, motion); /* a block of a matrix that has been inverted */
+  sd_cholesky_solve(3, R, 1, motion + at); /* a block of a matrix that has been inverted */
 }
 
 /* pre(r, f) of body b. In the axes and lengths of the shape all matrices are constant: with s = eta a,
@@ -117,10 +119,12 @@ static void respond(const sd_body *b, sd_body_known known, const double *r, cons
     to_space(b->R, 6, 1.0 / b->a, motion, V);
   } else
     to_shape(b->R, 6, b->a, V, motion);
-  if (known == SD_BODY_SPUN) {
-    for (int d = 0; d < 3; d++) load[d] /= s;
-    move_spun(shape, load, motion);
-    to_space(b->R, 3, 0.0, motion, V);
+  if (known == SD_BODY_SPUN || known == SD_BODY_PINNED) {
+    const int at = known == SD_BODY_SPUN ? 0 : 3;
+    for (int d = 0; d < 6; d++) load[d] /= s;
+    move_in_part(shape, at, load, motion);
+    sd_multiply3(b->R, motion + at, V + at);
+    for (int d = at; d < 6 && at == 3; d++) V[d] /= b->a;
   }
   for (int i = 0; i < N; i++) {
     for (int p = 0; p < 6; p++) z[i] += shape->rigid[6 * (long) i + p] * motion[p];

@@ -29,8 +29,9 @@ typedef struct {
 } sd_body;
 
 /* What is known of how a body moves: its load; or its velocity, while the force on it is not; or its
- * force and angular velocity, while the torque on it is not */
-typedef enum { SD_BODY_FREE, SD_BODY_HELD, SD_BODY_SPUN } sd_body_known;
+ * force and angular velocity, while the torque on it is not; or its torque and the velocity of its
+ * centre, while the force on it is not */
+typedef enum { SD_BODY_FREE, SD_BODY_HELD, SD_BODY_SPUN, SD_BODY_PINNED } sd_body_known;
 
 typedef struct {
   /* free spheres of one point: [lone] their rows. They are bodies 0 ... lone - 1 */
@@ -69,7 +70,8 @@ static inline sd_body_known sd_bodies_known(const sd_bodies *A, int b)
 static inline int sd_bodies_given(const sd_bodies *A, int b, int d)
 {
   const sd_body_known known = sd_bodies_known(A, b);
-  return known == SD_BODY_HELD || (known == SD_BODY_SPUN && d >= 3);
+  return known == SD_BODY_HELD || (known == SD_BODY_SPUN && d >= 3) ||
+      (known == SD_BODY_PINNED && d < 3);
 }
 /* Numbers of rows, of spheres */
 static inline long sd_bodies_rows(const sd_bodies *A)

@@ -59,7 +59,8 @@ static inline int sd_tie_has_springs(const sd_bodies *A)
 /* Is V of body b that of sd_tie_solve? */
 static inline int sd_tie_binds(const sd_bodies *A, int b)
 {
-  return A->tie->scale[6 * (long) b] != 0.0;
+  const double *scale = A->tie->scale + 6 * (long) b; /* of a pinned one that of W alone is not 0 */
+  return scale[0] != 0.0 || scale[3] != 0.0;
 }
 void sd_tie_free(sd_tie *t);
 

@@ -221,7 +221,7 @@ static void largest_scales(const double s[6], double of[2])
 static int number_of(const sd_bodies *A, const assembly *a, int sphere)
 {
   const int n = A->spheres.n, b = sphere < n ? body_of(A, sphere) : a->body[sphere - n];
-  return b >= 0 && A->tie->scale[6 * (long) b] != 0.0 ? b : -1;
+  return b >= 0 && sd_tie_binds(A, b) ? b : -1;
 }
 
 /* The block of pair k, scaled, if it is not weak. Pairs beyond are those of spheres that stand for

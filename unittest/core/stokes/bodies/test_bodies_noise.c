@@ -77,7 +77,7 @@ static void clumps_have_the_covariance_of_their_mobility(void **state)
 {
   (void) state;
   for (int shell = 1; shell <= 12; shell += 11)
-    for (int held = SD_BODY_FREE; held <= SD_BODY_SPUN; held++) {
+    for (int held = SD_BODY_FREE; held <= SD_BODY_PINNED; held++) {
       flock *f = some(shell);
       assert_int_equal(sd_body_shape_take_root(&f->body), SD_OK);
       const sd_bodies A = flock_place(f, 6);
@@ -118,8 +118,10 @@ static void films_take_their_part(void **state)
   A.tie = &t->tie;
   assert_true(t->near.L.count > 0);
   assert_true(worst_of(f, &A) < 1e-7);
-  f->held[1] = f->held[2] = SD_BODY_SPUN; /* a free sphere and a clump */
-  assert_true(worst_of(f, &A) < 1e-7);
+  for (int held = SD_BODY_SPUN; held <= SD_BODY_PINNED; held++) {
+    f->held[1] = f->held[2] = (char) held; /* a free sphere and a clump */
+    assert_true(worst_of(f, &A) < 1e-7);
+  }
   untie(t);
 }
 

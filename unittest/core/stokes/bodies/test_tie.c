@@ -68,13 +68,14 @@ static void multiply_dense(const tied_flock *t, const double *l, double *out)
 }
 
 /* The system (3) line by line, from its definition: free spheres and doublets in a shear flow, loads at
- * random; then a sphere and a doublet are held and move as they are told, in the end they are spun and
- * do so about their centres alone, which their turning loads where spheres are unequal. */
+ * random; then a sphere and a doublet are held and move as they are told, then they are spun and
+ * do so about their centres alone, which their turning loads where spheres are unequal, in the end they
+ * are pinned and turn as they like. */
 static void both_lines_hold(void **state)
 {
   (void) state;
-  for (int e = 0; e < 4; e++) {
-    flock *f = flock_create(2, doublet, e == 3 ? unequal : ones, 1, e ? 5 : 0, 12, 1.3);
+  for (int e = 0; e < 5; e++) {
+    flock *f = flock_create(2, doublet, e >= 3 ? unequal : ones, 1, e ? 5 : 0, 12, 1.3);
     crowd(f, 0.2, 5 + e);
     const int N = 6 * f->n, bodies = f->clumps + f->free;
     uint64_t seed = 7;
@@ -84,8 +85,9 @@ static void both_lines_hold(void **state)
       f->u[6 * i + 5] = -0.15;
     }
     const int clump = 1, sphere = 3;
-    const int given = e == 2 ? 0 : e == 3 ? 3 : 6; /* from here on */
-    f->held[f->free + clump] = f->held[sphere] = e == 2 ? SD_BODY_HELD : e == 3 ? SD_BODY_SPUN : SD_BODY_FREE;
+    const sd_body_known known[5] = {SD_BODY_FREE, SD_BODY_FREE, SD_BODY_HELD, SD_BODY_SPUN, SD_BODY_PINNED};
+    const int first = e == 3 ? 3 : e < 2 ? 6 : 0, last = e == 4 ? 3 : 6; /* of what is given */
+    f->held[f->free + clump] = f->held[sphere] = (char) known[e];
     for (int j = 0; j < 6 * bodies; j++) f->given[j] = uniform(&seed, -1, 1);
     tied_flock *t = tie_flock(f, 1e-4);
     assert_int_equal(tied_move(t, 0, 1e-12, 400), SD_OK);
@@ -101,9 +103,9 @@ static void both_lines_hold(void **state)
     onto_bodies(f, f->F, want);
     for (int j = 0; j < 6 * bodies; j++) {
       const int one = j / 6 == clump || j / 6 == f->clumps + sphere;
-      if (!one || j % 6 < given) CHECK_NEAR(got[j], want[j], 1e-7);
+      if (!one || j % 6 < first || j % 6 >= last) CHECK_NEAR(got[j], want[j], 1e-7);
     }
-    for (int j = given; j < 6; j++) {
+    for (int j = first; j < last; j++) {
       assert_true(f->V[6 * clump + j] == f->given[6 * (f->free + clump) + j]);
       assert_true(f->all_V[6 * sphere + j] == f->given[6 * sphere + j]);
     }
