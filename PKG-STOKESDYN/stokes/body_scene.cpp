@@ -196,8 +196,8 @@ void BodyScene::find_known()
   }
   for (size_t c = 0, b = lone_ones; c < poses.clumps().size(); c++, b++) {
     const ClumpPoses::Clump &clump = poses.clumps()[c];
-    known[b] = clump.held ? SD_BODY_HELD : SD_BODY_FREE;
-    if (clump.held) std::copy_n(clump.V, 6, &velocities[6 * b]);
+    known[b] = (char) clump.known;
+    if (clump.known) std::copy_n(clump.V, 6, &velocities[6 * b]);
   }
 }
 

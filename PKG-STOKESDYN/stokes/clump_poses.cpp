@@ -64,7 +64,7 @@ void ClumpPoses::find()
   std::vector<int64_t> bent;
   for (size_t b = 0; b < all.size(); b++) {
     const RigidClumps::Body &body = all[b];
-    Clump clump = {(int) b, {}, 0.0, {}, false};
+    Clump clump = {(int) b, {}, 0.0, {}, SD_BODY_FREE};
     int taking_part = 0;
     for (int k = 0; k < body.n; k++) {
       const double eta_k = spheres.eta[body.begin + k];
@@ -95,19 +95,21 @@ void ClumpPoses::find_lone()
 /* Clumps whose velocity is given: by that of their first sphere, on its image. */
 void ClumpPoses::find_held()
 {
-  for (Clump &clump : all_clumps) clump.held = false;
+  for (Clump &clump : all_clumps) clump.known = SD_BODY_FREE;
   if (!given.held || !rigid.settings.on) return;
   const std::vector<double> of_member = scene.whole.gather(7, [this](int i, double *out) {
     out[0] = given.held(i, out + 1);
   });
-  int64_t split = RigidClumps::NOBODY;
+  int64_t split[2] = {RigidClumps::NOBODY, RigidClumps::NOBODY};    // by held, by pin
   for (Clump &clump : all_clumps) {
     const double *first = &of_member[7 * member_of(clump, 0)];
-    clump.held = first[0] != 0.0;
-    for (int k = 1; k < body(clump).n; k++)
-      if ((of_member[7 * member_of(clump, k)] != 0.0) != clump.held)
-        split = std::min(split, body(clump).molecule);
-    if (!clump.held) continue;
+    clump.known = (sd_body_known) first[0];
+    for (int k = 1; k < body(clump).n; k++) {
+      const double known = of_member[7 * member_of(clump, k)];
+      int64_t &least = split[known == SD_BODY_PINNED || clump.known == SD_BODY_PINNED];
+      if (known != first[0]) least = std::min(least, body(clump).molecule);
+    }
+    if (clump.known != SD_BODY_HELD) continue;
     double arm[3], turning[3];
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
@@ -116,11 +118,14 @@ void ClumpPoses::find_held()
     sd_cross(clump.V + 3, arm, turning);
     for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
   }
-  split = smallest_of_all(world, split);
-  if (split != RigidClumps::NOBODY)
+  for (int pin = 0; pin < 2; pin++) {
+    const int64_t molecule = smallest_of_all(world, split[pin]);
+    if (molecule == RigidClumps::NOBODY) continue;
     Voice(lmp, "Fix stokes_dynamics/overdamped")
-        .fail("keyword held: the clump of molecule " + std::to_string(split) +
+        .fail(std::string("keyword ") + (pin ? "pin" : "held") + ": the clump of molecule " +
+              std::to_string(molecule) +
               " is only partly in the group: all of its spheres must be in it, or none");
+  }
 }
 
 void ClumpPoses::moves(const double *V)

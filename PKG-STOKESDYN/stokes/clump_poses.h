@@ -19,13 +19,14 @@
 namespace StokesDyn {
 
 /* What is known of the spheres of a step, and so what is asked: of all spheres the velocity, which
- * atoms have, and forces are asked; or the load, of some the velocity (held, spun), and motions are. */
+ * atoms have, and forces are asked; or the load, of some the velocity (held, pinned, spun), and motions are. */
 struct Given {
   bool velocities = false;
   /* [6 nlocal] force and torque on each atom; empty: all are 0 */
   std::vector<double> loads;
-  /* Who is held, or spun: what is known of atom i, and that of its velocity and angular velocity [6].
-   * Empty: nobody is. A clump is held when all its spheres are. */
+  /* Who is held, pinned or spun: what is known of atom i, and that of its velocity and angular
+   * velocity [6]. Empty: nobody is. A clump is held, or pinned at its centroid, when all its spheres
+   * are. */
   using Held = std::function<sd_body_known(int i, double *V)>;
   Held held;
 
@@ -42,14 +43,14 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
     double eta;
     /* U of the centroid, W */
     double V[6];
-    /* is V given, and the force on it unknown? */
-    bool held;
+    /* what is given: V, U alone, or neither */
+    sd_body_known known;
   };
 
   ClumpPoses(LAMMPS_NS::LAMMPS *lmp, Scene &, const Ambient &, RigidClumps &, const Given &);
 
-  /* Those of this step, by what is given. Errors, on all ranks: those of RigidClumps; a clump held in
-   * part; a clump that is not rigid, or not all selected. */
+  /* Those of this step, by what is given. Errors, on all ranks: those of RigidClumps; a clump held
+   * or pinned in part; a clump that is not rigid, or not all selected. */
   void find();
   /* That this rank owns, and atoms that are free spheres, the latter where loads are given. They are
    * those of the last find(), and none as soon as Epochs::lists is another one: settings are new, a run

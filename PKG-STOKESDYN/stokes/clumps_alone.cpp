@@ -53,7 +53,7 @@ void ClumpPoses::velocities(int width, const Take &take)
     force.resize(3 * n);
     torque.resize(3 * n);
     sd_clump_settle(&is.shape, &is.clump, &motion, clump.pose, clump.eta, &spheres.motion[at],
-                    &spheres.turning[at], clump.held, clump.V, v.data(), force.data(), torque.data());
+                    &spheres.turning[at], clump.known == SD_BODY_HELD, clump.V, v.data(), force.data(), torque.data());
     for (size_t k = 0; k < n; k++) {
       double *row = &moved[13 * member_of(clump, (int) k)];
       row[0] = 1.0;

@@ -26,8 +26,8 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), motion(3), random(6),
-    load(6), before(9), output(OUTPUTS)
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), torques(voice),
+    motion(3), random(6), load(6), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
@@ -50,7 +50,9 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
                      text(adapt.tmax) + "'");
        }},
       {"held", [&] { held = in.word(); }},
+      {"pin", [&] { pinned = in.word(); }},
       {"spin", [&] { spin.read(in); }},
+      {"torque", [&] { torques.read(in); }},
       {"temperature", [&] { noise.read_temperature(in); }},
       {"noise_tolerance", [&] { noise.read_tolerance(in); }},
   });
@@ -78,22 +80,52 @@ int FixStokesDynamicsOverdamped::setmask()
 
 void FixStokesDynamicsOverdamped::init()
 {
-  held_bit = moved_bits = 0;
-  if (!held.empty()) {
-    const int igroup_held = group->find(held);
-    if (igroup_held < 0) voice.fail("keyword held: group '" + held + "' does not exist");
-    held_bit = group->bitmask[igroup_held];
-    for (const Fix *fix : fixes_of(lmp, "move")) moved_bits |= fix->groupbit;
-  }
+  find_groups();
   refuse_inertia(voice, hydrodynamics());
   look_at_neighbours();
-  spin.init(hydrodynamics(), held_bit);
-  const char *holds = held_bit ? "keyword held" : spin.on() ? "keyword spin" : "";
+  spin.init(hydrodynamics(), held_bit | pinned_bit);
+  torques.init(hydrodynamics(), groupbit, held_bit);
+  const char *holds = held_bit ? "keyword held"
+      : pinned_bit             ? "keyword pin"
+      : spin.on()              ? "keyword spin"
+                               : "";
   if (!scheme_given)
     scheme = noise.on() && !noise.drift(hydrodynamics(), holds).empty() ? MIDPOINT : AB2;
   if (noise.on())
     noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, holds});
   if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
+}
+
+void FixStokesDynamicsOverdamped::find_groups()
+{
+  const auto bit_of = [this](const char *keyword, const std::string &name) {
+    if (name.empty()) return 0;
+    const int which = group->find(name);
+    if (which < 0) voice.of(keyword).fail("group '" + name + "' does not exist");
+    return group->bitmask[which];
+  };
+  held_bit = bit_of("keyword held", held);
+  pinned_bit = bit_of("keyword pin", pinned);
+  moved_bits = 0;
+  for (const Fix *fix : fixes_of(lmp, "move"))
+    if (held_bit) moved_bits |= fix->groupbit;
+  if (!pinned_bit) return;
+  if (const tagint both = first_atom(lmp, [this](int i) {
+        return is_held(i) && (atom->mask[i] & pinned_bit);
+      }))
+    voice.fail("keyword pin: atom " + std::to_string(both) + " is in the group of keyword held as well: "
+               "it must be in one of them only");
+  const Hydrodynamics &hydro = hydrodynamics();
+  if (hydro.settings.rigid.apart())
+    voice.fail("keyword pin: it is for spheres and clumps that feel each other: use clumps_only no of "
+               "pair_style stokes_dynamics");
+}
+
+void FixStokesDynamicsOverdamped::find_torques(const Hydrodynamics &hydro)
+{
+  torques.find(directions, [&](int i) {
+    return in_clump(hydro, i) ? output[i] + TURNED : (const double *) nullptr;
+  });
 }
 
 void FixStokesDynamicsOverdamped::look_at_neighbours()
@@ -125,13 +157,14 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
 void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
 {
   const int width = hydro.rotation() ? 6 : 3;
-  double sums[10] = {0.0}, fluid[6], given[6];
+  double sums[10] = {0.0}, fluid[6], given[6], pushed[6];
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
     const double eta = hydro.ambient.viscosity(i);
     hydro.ambient.fluid(i, fluid);
-    sd_hash_add_row(tag, atom->f[i], 3, sums);
-    if (atom->torque_flag) sd_hash_add_row(tag, atom->torque[i], 3, sums + 2);
+    load_on(i, pushed);
+    sd_hash_add_row(tag, pushed, 3, sums);
+    if (atom->torque_flag) sd_hash_add_row(tag, pushed + 3, 3, sums + 2);
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
     if (given_velocity(i, given) != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
@@ -169,6 +202,7 @@ void FixStokesDynamicsOverdamped::after_setup()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
+  find_torques(hydro);
   const bool same_run = goes_on(hydro);
   if (!same_run || !causes_stand(hydro)) {
     before.clear();
@@ -204,6 +238,7 @@ void FixStokesDynamicsOverdamped::final_integrate()
   // LAMMPS has printed the first step by now: does the user ask for the pressure?
   if (update->ntimestep == update->firststep + 1) look_at_neighbours();
   hydro.begin();
+  find_torques(hydro);
   if (last.atoms != atom->natoms) {    // those that are left move as they did not before
     before.clear();
     load.clear();
@@ -215,6 +250,7 @@ void FixStokesDynamicsOverdamped::final_integrate()
 sd_body_known FixStokesDynamicsOverdamped::given_velocity(int i, double *V) const
 {
   std::fill_n(V, 6, 0.0);
+  if (atom->mask[i] & pinned_bit) return SD_BODY_PINNED;
   if (!is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
   if (!is_moved(i)) return SD_BODY_HELD;
   std::copy_n(dragged.v.empty() ? atom->v[i] : &dragged.v[3 * (size_t) i], 3, V);
@@ -277,11 +313,12 @@ void FixStokesDynamicsOverdamped::load_on(int i, double *FT) const
   std::fill_n(FT, 6, 0.0);
   std::copy_n(atom->f[i], 3, FT);
   if (atom->torque_flag) std::copy_n(atom->torque[i], 3, FT + 3);
+  torques.add(i, FT + 3);
 }
 
 Given::Held FixStokesDynamicsOverdamped::givens() const
 {
-  if (!held_bit && !spin.on()) return Given::Held();
+  if (!held_bit && !pinned_bit && !spin.on()) return Given::Held();
   return [this](int i, double *V) { return given_velocity(i, V); };
 }
 
@@ -423,7 +460,7 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
   double box[6];
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
   for (size_t c = 0; c < start.size(); c++) {
-    if (start[c].held) continue;
+    if (start[c].known == SD_BODY_HELD) continue;
     const ClumpPoses::Clump &clump = hydro.motion().clumps()[c];
     const RigidClumps::Body &body = hydro.motion().body(clump);
     const ClumpStep goes = step(c);

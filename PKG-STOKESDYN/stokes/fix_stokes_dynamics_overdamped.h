@@ -14,6 +14,7 @@
 #include "noise.h"
 #include "rows_fix.h"
 #include "spin.h"
+#include "torques.h"
 
 #include "sd_pose.h"
 
@@ -53,6 +54,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   Noise noise;
   Spin spin;
   Directions directions;
+  Torques torques;
 
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
@@ -62,9 +64,10 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   AtomRows random;
   /* [6] scheme midpoint: force and torque on a sphere in the step before */
   AtomRows load;
-  /* those whose velocity is given, empty: nobody; and the groups that fix move moves */
-  std::string held;
-  int held_bit = 0, moved_bits = 0;
+  /* those whose velocity is given, and those whose place is, empty: nobody; and the groups that fix move
+   * moves */
+  std::string held, pinned;
+  int held_bit = 0, pinned_bit = 0, moved_bits = 0;
   /* scheme midpoint, of those that fix move moves, [3 nlocal]: where they stood when velocities were
    * found; in the half step, while v is not empty, their velocity in it */
   struct {
@@ -111,6 +114,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void check_selection(const Hydrodynamics &) const;
   Neighbourhood neighbourhood;
   void look_at_neighbours();
+  void find_groups();
+  void find_torques(const Hydrodynamics &);
   bool is_held(int i) const { return atom->mask[i] & held_bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;

@@ -351,12 +351,12 @@ const std::vector<Neighbour> stokes_neighbours = {
      "turns spheres by angular momenta, of which the fluid knows nothing, so that it does not damp "
      "their spin: use fix nve/sphere or its like"},
     {N::FIX, "setforce freeze", OVERDAMPED, N::WARNING,
-     "sets forces to 0, and without inertia that does not hold a sphere: use keyword held GROUP; "
-     "fix spring/self pins a sphere and lets it turn", nullptr, FREE},
+     "sets forces to 0, and without inertia that does not hold a sphere: use keyword held GROUP, or pin "
+     "GROUP for spheres that turn in their place", nullptr, FREE},
     {N::FIX, "addtorque", TURNING, N::WARNING,
      "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "
-     "to a single sphere: a torque on spheres is the keyword spin of fix "
-     "stokes_dynamics/overdamped, with tmax", has_one_atom},
+     "to a single sphere: a torque on spheres is the keyword torque of fix "
+     "stokes_dynamics/overdamped", has_one_atom},
 
     // boxes that change
     {N::FIX, "deform*", OVERDAMPED | ADAPTING, N::ERROR,

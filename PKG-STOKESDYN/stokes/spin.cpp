@@ -51,7 +51,7 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
   if (const tagint both = first_atom(lmp, [&](int i) {
         return (atom->mask[i] & bit) && (atom->mask[i] & held_bit);
       }))
-    keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held as well: it must "
+    keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held or pin as well: it must "
                  "be in one of them only");
   for (int i = 0; i < atom->nlocal; i++)
     if (!(atom->mask[i] & bit)) slipping.take(i);    // it may have been in the group before

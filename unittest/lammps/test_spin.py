@@ -136,7 +136,7 @@ def test_the_largest_torque_matters_there(tmp_path):
     ("rotation yes", "spin nobody 0 1 0", "keyword spin: group 'nobody' does not exist"),
     ("", "spin some 0 1 0", "keyword spin: keyword rotation of pair_style stokes_dynamics must be yes"),
     ("rotation yes rigid_clumps yes", "spin some 0 1 0", "keyword spin: atom 3 is part of a rigid clump"),
-    ("rotation yes", "held some spin some 0 1 0", "keyword spin: atom 1 is in the group of keyword held as well"),
+    ("rotation yes", "held some spin some 0 1 0", "keyword spin: atom 1 is in the group of keyword held or pin as well"),
     ("rotation yes", "spin some 0 1 0 temperature 1 5 scheme ab2", "keyword spin: the mobility has a drift")])
 def test_what_cannot_spin_is_named(simulation, style, words, message):
     with pytest.raises(LammpsError, match=re.escape(message)):
