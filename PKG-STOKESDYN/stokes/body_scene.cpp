@@ -59,6 +59,7 @@ void BodyScene::assemble()
     flow_at_points(velocity.data(), 3);
   else
     u = flow;
+  if (given.swims) slip_of_swimmers();
   carry();
 }
 

@@ -102,6 +102,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   void place_points();
   void flow_at_points(const double *velocity, int stride);
   void slip_at_points(const std::vector<double> &slip, bool strained);
+  void slip_of_swimmers();
 };
 
 }    // namespace StokesDyn

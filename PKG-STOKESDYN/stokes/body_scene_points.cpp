@@ -105,4 +105,26 @@ void BodyScene::put_points()
   bodies.apply_ctx = &of_points;
 }
 
+/* u at the points less the slip there */
+void BodyScene::slip_of_swimmers()
+{
+  enum { B1 = 3, B2, BETA, COLUMNS };
+  const size_t P = scene.shells->points();
+  const std::vector<double> rows = scene.rows(COLUMNS, [this](int i, double *out) {
+    sd_squirmer_stroke stroke = {};
+    if (!given.swims(i, stroke)) return;
+    std::copy_n(stroke.e, 3, out);
+    out[B1] = stroke.B1;
+    out[B2] = stroke.B2;
+    out[BETA] = stroke.beta;
+  });
+  for (size_t k = 0; k < (size_t) scene.size(); k++) {
+    const double *row = &rows[COLUMNS * k];
+    if (sd_dot(row, row) == 0.0) continue;
+    const sd_squirmer_stroke stroke = {{row[0], row[1], row[2]}, row[B1], row[B2], row[BETA]};
+    sd_squirmer_slip(&scene.shells->model(), &scene.shells->squirmer(), &stroke,
+                     of_points.spheres.a[k], &r[3 * P * k], &u[3 * P * k]);
+  }
+}
+
 }    // namespace StokesDyn

@@ -12,6 +12,7 @@
 
 #include "sd_body.h"
 #include "sd_clump_motion.h"
+#include "sd_squirmer.h"
 
 #include <functional>
 #include <vector>
@@ -29,6 +30,10 @@ struct Given {
    * are. */
   using Held = std::function<sd_body_known(int i, double *V)>;
   Held held;
+  /* With shells of points, where loads are given: does atom i swim by a slip of its surface, and how?
+   * Empty: nobody does */
+  using Swims = std::function<bool(int i, sd_squirmer_stroke &stroke)>;
+  Swims swims;
 
   double load(int i, size_t d) const { return loads.empty() ? 0.0 : loads[6 * (size_t) i + d]; }
 };

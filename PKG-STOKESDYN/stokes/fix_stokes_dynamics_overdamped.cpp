@@ -27,7 +27,7 @@ using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), torques(voice),
-    motion(3), random(6), load(6), before(9), output(OUTPUTS)
+    squirmers(voice, directions), motion(3), random(6), load(6), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
@@ -52,6 +52,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
       {"held", [&] { held = in.word(); }},
       {"pin", [&] { pinned = in.word(); }},
       {"spin", [&] { spin.read(in); }},
+      {"squirm", [&] { squirmers.read(in); }},
       {"torque", [&] { torques.read(in); }},
       {"temperature", [&] { noise.read_temperature(in); }},
       {"noise_tolerance", [&] { noise.read_tolerance(in); }},
@@ -85,6 +86,7 @@ void FixStokesDynamicsOverdamped::init()
   look_at_neighbours();
   spin.init(hydrodynamics(), held_bit | pinned_bit);
   torques.init(hydrodynamics(), groupbit, held_bit);
+  squirmers.init(hydrodynamics(), groupbit);
   const char *holds = held_bit ? "keyword held"
       : pinned_bit             ? "keyword pin"
       : spin.on()              ? "keyword spin"
@@ -121,8 +123,10 @@ void FixStokesDynamicsOverdamped::find_groups()
                "pair_style stokes_dynamics");
 }
 
-void FixStokesDynamicsOverdamped::find_torques(const Hydrodynamics &hydro)
+/* What torques and strokes are in this step */
+void FixStokesDynamicsOverdamped::find_drives(const Hydrodynamics &hydro)
 {
+  squirmers.find();
   torques.find(directions, [&](int i) {
     return in_clump(hydro, i) ? output[i] + TURNED : (const double *) nullptr;
   });
@@ -158,6 +162,7 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
 {
   const int width = hydro.rotation() ? 6 : 3;
   double sums[10] = {0.0}, fluid[6], given[6], pushed[6];
+  sd_squirmer_stroke stroke;
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
     const double eta = hydro.ambient.viscosity(i);
@@ -168,6 +173,10 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
     if (given_velocity(i, given) != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
+    if (squirmers.stroke(i, stroke)) {
+      const double row[6] = {stroke.e[0], stroke.e[1], stroke.e[2], stroke.B1, stroke.B2, stroke.beta};
+      sd_hash_add_row(tag, row, 6, sums + 8);
+    }
   }
   MPI_Allreduce(sums, causes, 10, MPI_DOUBLE, MPI_SUM, world);
 }
@@ -202,7 +211,7 @@ void FixStokesDynamicsOverdamped::after_setup()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
-  find_torques(hydro);
+  find_drives(hydro);
   const bool same_run = goes_on(hydro);
   if (!same_run || !causes_stand(hydro)) {
     before.clear();
@@ -238,7 +247,7 @@ void FixStokesDynamicsOverdamped::final_integrate()
   // LAMMPS has printed the first step by now: does the user ask for the pressure?
   if (update->ntimestep == update->firststep + 1) look_at_neighbours();
   hydro.begin();
-  find_torques(hydro);
+  find_drives(hydro);
   if (last.atoms != atom->natoms) {    // those that are left move as they did not before
     before.clear();
     load.clear();
@@ -298,7 +307,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   if (scheme == MIDPOINT)
     begin_midpoint(hydro, take, pushed);
   else
-    hydro.velocities(take, givens(), pushed);
+    hydro.velocities(take, given(pushed));
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, turns, [this, turns](int i, const double *y) {
       std::copy_n(y, turns, random.give(i));
@@ -316,10 +325,15 @@ void FixStokesDynamicsOverdamped::load_on(int i, double *FT) const
   torques.add(i, FT + 3);
 }
 
-Given::Held FixStokesDynamicsOverdamped::givens() const
+Given FixStokesDynamicsOverdamped::given(const std::vector<double> &of_atoms) const
 {
-  if (!held_bit && !pinned_bit && !spin.on()) return Given::Held();
-  return [this](int i, double *V) { return given_velocity(i, V); };
+  Given known;
+  known.loads = of_atoms;
+  if (held_bit || pinned_bit || spin.on())
+    known.held = [this](int i, double *V) { return given_velocity(i, V); };
+  if (squirmers.on())
+    known.swims = [this](int i, sd_squirmer_stroke &stroke) { return squirmers.stroke(i, stroke); };
+  return known;
 }
 
 /* Spheres of the group that are not selected have no velocity; those selected that are not in the

@@ -14,6 +14,7 @@
 #include "noise.h"
 #include "rows_fix.h"
 #include "spin.h"
+#include "squirmers.h"
 #include "torques.h"
 
 #include "sd_pose.h"
@@ -55,6 +56,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   Spin spin;
   Directions directions;
   Torques torques;
+  Squirmers squirmers;
 
   /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
    * write to it */
@@ -115,7 +117,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   Neighbourhood neighbourhood;
   void look_at_neighbours();
   void find_groups();
-  void find_torques(const Hydrodynamics &);
+  void find_drives(const Hydrodynamics &);
   bool is_held(int i) const { return atom->mask[i] & held_bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
@@ -129,7 +131,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void move_free(int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
-  Given::Held givens() const;
+  Given given(const std::vector<double> &loads) const;
   std::vector<double> loads(const Hydrodynamics &) const;
   void begin_midpoint(Hydrodynamics &, const Solve::Take &take, const std::vector<double> &loads);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);

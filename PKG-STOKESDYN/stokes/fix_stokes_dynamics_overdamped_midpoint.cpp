@@ -72,7 +72,7 @@ void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Sol
     draw = noise.forces(hydro, [this, width](int i, const double *f) {
       std::copy_n(f, width, random.give(i));
     });
-  hydro.velocities(take, givens(), pushed, noise.on() ? &draw : nullptr);
+  hydro.velocities(take, given(pushed), noise.on() ? &draw : nullptr);
   dragged.x.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (int i : hydro.ambient.who())
     if (is_moved(i)) std::copy_n(atom->x[i], 3, &dragged.x[3 * (size_t) i]);
@@ -145,7 +145,7 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
     std::copy_n(v, width, &V[6 * (size_t) i]);
     keep_in_plane(&V[6 * (size_t) i], 6);
-  }, givens(), pushed);
+  }, given(pushed));
   place(dt);
   dragged.v.clear();
   for (int i : who) load_on(i, load.give(i));

@@ -184,14 +184,13 @@ void Hydrodynamics::solve()
   guess.keep(bodies, given, solver.exerted);
 }
 
-void Hydrodynamics::velocities(const Solve::Take &take, const Given::Held &held,
-                               const std::vector<double> &loads, const Solve::Draw *draw)
+void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, const Solve::Draw *draw)
 {
   State::Global &global = memory->global;
   sd_solve_report report = {};
   sd_status status = SD_OK;
   solvers = ambient.who();
-  given = {false, loads, held};
+  given = known;
   poses.find();
   if (settings.rigid.apart()) {
     poses.velocities(width(), take);

@@ -65,11 +65,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void solve();
   void drag();
 
-  /* Of all that takes part, from loads [6 nlocal], the force and torque on each atom, in any order; and
-   * forces on those that are held. A step is begin() and this. Where all interact, the forces go to
-   * rows of the memory too: the next guess. draw: random forces too, where all interact */
-  void velocities(const Solve::Take &take, const Given::Held &held, const std::vector<double> &loads,
-                  const Solve::Draw *draw = nullptr);
+  /* Of all that takes part, from its loads, in any order; and forces on those that are held. A step is
+   * begin() and this. Where all interact, the forces go to rows of the memory too: the next guess.
+   * draw: random forces too, where all interact */
+  void velocities(const Solve::Take &take, const Given &known, const Solve::Draw *draw = nullptr);
   /* Those of rigid clumps, and who is free, since then */
   const ClumpPoses &motion() const { return poses; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from

@@ -16,6 +16,7 @@ void Shells::make()
   if (status == SD_OK) status = sd_multiblob_shape_create(&blob, nullptr, &lone);
   if (status != SD_OK)
     fail_by(voice.of("keyword multiblob: '" + std::to_string(settings.points) + "'"), status);
+  sd_squirmer_create(&blob, lone.points.inverse, &swimmer);
 }
 
 void Shells::take_root()

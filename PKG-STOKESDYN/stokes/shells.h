@@ -11,6 +11,7 @@
 #include "sd_film.h"
 #include "sd_multiblob_shape.h"
 #include "sd_product.h"
+#include "sd_squirmer.h"
 
 #include <vector>
 
@@ -35,6 +36,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   void make();
   const sd_multiblob &model() const { return blob; }
   const sd_multiblob_shape &free_sphere() const { return lone; }
+  const sd_squirmer &squirmer() const { return swimmer; }
   /* Its root, for noise. Error: memory. */
   void take_root();
   int points() const { return blob.n; }
@@ -61,6 +63,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   const Voice voice;
   sd_multiblob blob = {};
   Owned<sd_multiblob_shape, sd_multiblob_shape_free> lone;
+  sd_squirmer swimmer = {};
   std::vector<double> turn;
   std::vector<sd_multiblob_mask> mask;
   std::vector<double> x, b, w;

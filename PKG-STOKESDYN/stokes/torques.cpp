@@ -12,6 +12,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 
@@ -67,6 +68,9 @@ void Torques::find(const Directions &directions, const Turned &turned)
       std::fill_n(row, 3, 0.0);
     else if (of_body)
       turn(i, directions, turned(i));
+    if (!std::isfinite(row[0] + row[1] + row[2]))
+      voice.at_step().fail_one("the torque on atom " + std::to_string(atom->tag[i]) +
+                               " is not a finite number");
   }
 }
 

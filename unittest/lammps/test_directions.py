@@ -9,6 +9,7 @@ import pytest
 import model
 from brownian import A, ETA, KT, L_OF_FOUR, SHORT, TRIO, copies, check_covariance
 from system import LammpsError, dump_lines, lmp, read_dump
+from test_loading import lammps_source
 
 SPIN = 8 * np.pi * ETA * A**3
 OPEN = [(-40.0, 40.0)] * 3
@@ -231,6 +232,28 @@ def test_the_fix_tells_how_a_clump_has_turned(simulation, tmp_path, words, optio
     assert np.abs(R - np.eye(3)).max() > 0.3
     assert np.abs(rotation(turned_by[:8]).reshape(2, 4, 3, 3) - R[:, None]).max() < 1e-12
     assert not turned_by[8:].any()
+
+
+@pytest.mark.nothing_to_test_if(lammps_source(), "LAMMPS of 2021 has no atom style with a quaternion for each atom")
+def test_quaternions_of_bonded_particles_turn_and_drive_their_bonds(simulation, tmp_path):
+    """atom_style bpm/sphere: steadily under a torque along its own axes; and bpm/rotational pulls back two that have turned apart."""
+    def two(bonds, options):
+        sim = simulation().commands(
+            "units lj\natom_style bpm/sphere\nboundary f f f\natom_modify map array\nnewton on off\nplugin load stokesdynplugin.so\n"
+            "special_bonds lj 0 1 1 coul 1 1 1\nregion box block -20 20 -20 20 -20 20\n"
+            "create_box 1 box bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4\n"
+            f"create_atoms 1 single 0 0 0\ncreate_atoms 1 single {2 * A!r} 0 0\nset group all diameter {2 * A!r} density 1\n"
+            f"comm_modify vel yes cutoff 6\npair_style stokes_dynamics {POINTS}\npair_coeff * *\n{bonds}\ntimestep 1e-3\n"
+            f"group first id 1\n{QUATERNIONS}\nfix read all ave/atom 1 1 1 c_q[*]\n{MOVE} {options}")
+        return sim
+    sim = two("", f"torque first 0 0 {SPIN!r} body yes")
+    sim.run(500)
+    q = quaternions(sim)
+    assert q[0] == pytest.approx([np.cos(0.25), 0, 0, np.sin(0.25)], abs=1e-3) and abs(q[1, 3]) > 1e-3    # the other one in its flow
+    bonds = "bond_style bpm/rotational smooth no\nbond_coeff 1 20 20 20 20 1e6 1e6 1e6 1e6 0 0 0 0\ncreate_bonds single/bond 1 1 2"
+    free = two("", "torque first 0 0 1").run(200).atom("omega")[0, 2]
+    bound = two(bonds, "torque first 0 0 1").run(2000).atom("omega")
+    assert abs(bound[0, 2]) < 0.5 * free and bound[0, 2] == pytest.approx(bound[1, 2], rel=0.05)
 
 
 # --- noise -----------------------------------------------------------------------------------------------------------------

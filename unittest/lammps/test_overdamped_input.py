@@ -72,7 +72,7 @@ def test_it_cannot_be_minimised(simulation):
     ("adapt 1 2 1 3", "keyword adapt: tmin '2' must not be above tmax '1'"),
     ("adapt 1 2 3", "keyword adapt"),
     ("adapt 1 1 2 nan", "keyword adapt: 'nan'"),
-    ("rigid yes", "unknown keyword 'rigid'; those that there are: scheme, adapt, held, spin, temperature, noise_tolerance"),
+    ("rigid yes", "unknown keyword 'rigid'; those that there are: scheme, adapt, held, pin, spin, squirm, torque, temperature, noise_tolerance"),
     ("visc 1", "unknown keyword 'visc': it is a keyword of pair_style stokes_dynamics"),
     ("scheme ab2 scheme euler", "keyword scheme"),
 ])

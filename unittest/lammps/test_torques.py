@@ -90,6 +90,7 @@ def test_axes_of_a_sphere_are_its_quaternion_or_its_dipole(simulation, tmp_path)
     (POINTS, f"{MOVE} torque all 1 0 x", "keyword torque: 'x'"),
     (POINTS, f"{MOVE} torque all 1 0 v_x", "keyword torque: variable 'x' does not exist"),
     (POINTS, f"{MOVE} torque all 1 0 0 body maybe", "keyword torque: 'maybe'"),
+    (POINTS, f"variable bad atom 1e308*1e3*id\n{MOVE} torque all 1 0 v_bad", "keyword torque: step 0: the torque on atom 1 is not a finite"),
     (POINTS + " group one", f"fix move one stokes_dynamics/overdamped torque all 1 0 0",
      "keyword torque: atom 2 is not in the group of this fix, which does not move it"),
     (POINTS, f"{MOVE} held one torque all 1 0 0", "keyword torque: atom 1 is in the group of keyword held as well.*use keyword pin"),
