@@ -27,7 +27,7 @@ function(core_test name model file)
   endif()
 endfunction()
 
-foreach(model base ${models})
+foreach(model base drag ${models})
   file(GLOB_RECURSE test_sources CONFIGURE_DEPENDS ${tests}/${model}/test_*.c)
   list(FILTER test_sources EXCLUDE REGEX /test_two_sphere_exact.c$)
   foreach(file ${test_sources})

@@ -28,8 +28,8 @@ void FixHydroVans::tell_fall()
   if (told_fall || set.drag_given || set.yade() || !set.has_grains()) return;
   const double g = std::sqrt(set.law.g[0] * set.law.g[0] + set.law.g[1] * set.law.g[1] +
                              set.law.g[2] * set.law.g[2]), rho = set.law.rho, eta = set.law.eta;
-  sd_vans_drag_law alone = set.law.drag, sphere = alone;
-  sphere.law = SD_VANS_DRAG_BROWN_LAWLER;
+  sd_drag_law alone = set.law.drag, sphere = alone;
+  sphere.law = SD_DRAG_BROWN_LAWLER;
   select(groupbit);
   struct {
     double ratio;
@@ -41,8 +41,8 @@ void FixHydroVans::tell_fall()
     const double a = atom->radius[i], m = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]],
                  weight = g * std::fabs(m - 4.0 / 3.0 * SD_PI * a * a * a * rho);
     if (!take[i] || !(weight > 0.0) || !seen.emplace(std::make_pair(a, m), true).second) continue;
-    const double w = sd_vans_fall_speed(alone, rho, eta, a, weight),
-                 right = sd_vans_fall_speed(sphere, rho, eta, a, weight);
+    const double w = sd_fall_speed(alone, rho, eta, a, weight),
+                 right = sd_fall_speed(sphere, rho, eta, a, weight);
     if (!(w > mine.ratio * right)) continue;
     mine.ratio = w / right;
     const double here[4] = {a, w, right, 2.0 * a * rho * right / eta};

@@ -201,9 +201,9 @@ void VansSettings::take_gravity(Keywords &in)
 void VansSettings::take_hindrance(Keywords &in)
 {
   if (in.take("richardson_zaki"))
-    law.drag.hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI;
+    law.drag.hindrance = SD_HINDRANCE_RICHARDSON_ZAKI;
   else if (in.take("di_felice"))
-    law.drag.hindrance = SD_VANS_HINDRANCE_DI_FELICE;
+    law.drag.hindrance = SD_HINDRANCE_DI_FELICE;
   else
     law.exponent = in.not_negative();
 }
@@ -239,7 +239,7 @@ void VansSettings::read(Keywords &in)
       {"drag",
        [&] {
          drag_given = true;
-         law.drag.law = in.option<sd_vans_drag_of_one>(
+         law.drag.law = in.option<sd_drag_of_one>(
              {"yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun", "gidaspow", "beetstra",
               "koch_hill"});
        }},
@@ -311,10 +311,10 @@ void VansSettings::check(const Keywords &in) const
   in.require(fluctuation != LANGEVIN || !yade(),
              "keyword fluctuation: langevin is not available with rules yade");
   in.require(law.drag.fall == 0.0 || !yade(), "keyword fall_diameter is not available with rules yade");
-  in.require(!yade() || (law.drag.law == SD_VANS_DRAG_YADE &&
-                         law.drag.hindrance == SD_VANS_HINDRANCE_POWER),
+  in.require(!yade() || (law.drag.law == SD_DRAG_YADE &&
+                         law.drag.hindrance == SD_HINDRANCE_POWER),
              "keyword drag: with rules yade only drag yade and hindrance n are available");
-  in.require(!in.given("hindrance") || !sd_vans_drag_of_bed(law.drag.law),
+  in.require(!in.given("hindrance") || !sd_drag_of_bed(law.drag.law),
              "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have the neighbours of a grain in them: "
              "leave hindrance out");
   in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass is not available with rules yade");
@@ -396,9 +396,9 @@ VansSettings::VansSettings(LAMMPS *lmp, const std::vector<std::string> &args) :
   read(in);
   check(in);
   /* a law other than Yade's is one for lone grains, without Yade's exponent */
-  if (!in.given("hindrance") && law.drag.law != SD_VANS_DRAG_YADE)
-    law.drag.hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI;
-  if (sd_vans_drag_of_bed(law.drag.law)) law.drag.hindrance = SD_VANS_HINDRANCE_OWN;
+  if (!in.given("hindrance") && law.drag.law != SD_DRAG_YADE)
+    law.drag.hindrance = SD_HINDRANCE_RICHARDSON_ZAKI;
+  if (sd_drag_of_bed(law.drag.law)) law.drag.hindrance = SD_HINDRANCE_OWN;
   fluid.drag = law.drag;
   if (yade() || couple != TWO) conserve = false;
   if (!mesh_file.empty()) read_mesh();

@@ -95,7 +95,7 @@ void VansStream::mixing_length()
 
 void VansStream::profile_changed()
 {
-  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
   mixing_length();
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_stress(&wet, &fluid, phi(), length.data(), &flow);
@@ -139,7 +139,7 @@ void VansStream::take_averages(double area, const double *sums, const double *fo
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();
   averaged = true;
-  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
 }
 
 /* The surface goes where the water that there is fills the mesh between the grains. */
@@ -419,5 +419,5 @@ void VansStream::load(const NamedState &state)
   phi_history.clear();
   for (size_t at = 0; at + N <= history.size(); at += N)
     phi_history.emplace_back(history.begin() + at, history.begin() + at + N);
-  sd_vans_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
+  sd_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
 }

@@ -60,7 +60,7 @@ static double fluid(int N, sd_vans_rules rules, double width, int account)
   return median(times, RUNS);
 }
 
-static void grains(double ratio, int n, int felt_by_volume, sd_vans_drag_law drag_law, double *average, double *force)
+static void grains(double ratio, int n, int felt_by_volume, sd_drag_law drag_law, double *average, double *force)
 {
   const int N = 900;
   const double a = 0.003, dz = a / ratio;
@@ -84,7 +84,7 @@ static void grains(double ratio, int n, int felt_by_volume, sd_vans_drag_law dra
   for (int r = -1; r < RUNS; r++) {
     double t = cpu();
     for (int k = 0; k < repeat; k++) {
-      sd_vans_hindrance_of(drag_law, N, phi, 3.1, hindrance);
+      sd_hindrance_of(drag_law, N, phi, 3.1, hindrance);
       memset(sums, 0, N * SD_VANS_ROWS * sizeof(double));
       sd_vans_average(&mesh, &law, &how, U, hindrance, &grains, sums, V);
     }
@@ -121,16 +121,16 @@ int main(void)
   for (int k = 0; k < 2; k++)
     for (int m = 0; m < 2; m++) {
       double average, force;
-      grains(ratios[k], counts[m], 0, (sd_vans_drag_law){0}, &average, &force);
+      grains(ratios[k], counts[m], 0, (sd_drag_law){0}, &average, &force);
       printf("  a/dz = %4.1f, %6d grains                 %6.1f          %6.1f\n", ratios[k],
              counts[m], average, force);
     }
   static const struct {
     const char *name;
-    sd_vans_drag_law law;
+    sd_drag_law law;
   } laws[] = {{"yade, n", {0}},
-              {"brown_lawler, richardson_zaki", {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_RICHARDSON_ZAKI, 0.0}},
-              {"brown_lawler, di_felice", {SD_VANS_DRAG_BROWN_LAWLER, SD_VANS_HINDRANCE_DI_FELICE, 0.0}}};
+              {"brown_lawler, richardson_zaki", {SD_DRAG_BROWN_LAWLER, SD_HINDRANCE_RICHARDSON_ZAKI, 0.0}},
+              {"brown_lawler, di_felice", {SD_DRAG_BROWN_LAWLER, SD_HINDRANCE_DI_FELICE, 0.0}}};
   for (size_t k = 0; k < sizeof laws / sizeof *laws; k++)
     for (int felt = 0; felt < 2; felt++) {
       double average, force;

@@ -9,14 +9,15 @@ import pytest
 BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
 
 # a header of each room, and of the libraries
-OF = {"base": "sd_status.h", "stokes": "sd_tensor.h", "sph": "sd_sph_kernel.h", "vans": "sd_vans.h", "LAMMPS": "lammps.h", "MPI": "mpi.h",
+OF = {"base": "sd_status.h", "drag": "sd_drag.h", "stokes": "sd_tensor.h", "sph": "sd_sph_kernel.h", "vans": "sd_vans.h", "LAMMPS": "lammps.h", "MPI": "mpi.h",
       "common": "keywords.h", "glue of stokes": "pair_stokes_dynamics.h", "glue of sph": "sph.h", "glue of vans": "vans_settings.h"}
 SEES = {
-    "stokesdyn_base": {"base"}, "stokesdyn_stokes": {"base", "stokes"}, "stokesdyn_sph": {"base", "sph"}, "stokesdyn_vans": {"base", "vans"},
+    "stokesdyn_base": {"base"}, "stokesdyn_drag": {"base", "drag"}, "stokesdyn_stokes": {"base", "stokes"},
+    "stokesdyn_sph": {"base", "drag", "sph"}, "stokesdyn_vans": {"base", "drag", "vans"},
     "styles_common": {"LAMMPS", "MPI", "common"},
     "styles_stokes": {"LAMMPS", "MPI", "common", "base", "stokes", "glue of stokes"},
-    "styles_sph": {"LAMMPS", "MPI", "common", "base", "sph", "glue of sph"},
-    "styles_vans": {"LAMMPS", "MPI", "common", "base", "vans", "glue of vans"},
+    "styles_sph": {"LAMMPS", "MPI", "common", "base", "drag", "sph", "glue of sph"},
+    "styles_vans": {"LAMMPS", "MPI", "common", "base", "drag", "vans", "glue of vans"},
 }
 
 

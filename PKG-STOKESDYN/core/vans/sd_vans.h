@@ -27,8 +27,8 @@
 #ifndef SD_VANS_H
 #define SD_VANS_H
 
+#include "sd_drag.h"
 #include "sd_status.h"
-#include "sd_vans_drag.h"
 
 #include <stdint.h>
 
@@ -107,7 +107,7 @@ typedef struct {
   /* pressure gradient along x, which pushes a grain by its volume times that */
   double dpdx;
   /* which drag; zeros: Yade's */
-  sd_vans_drag_law drag;
+  sd_drag_law drag;
   /* C: -C rho V dv/dt on an accelerated grain */
   double added_mass;
   /* velocity of the water along z: [N] of the slices, and outside the mesh; NULL: none */
@@ -117,7 +117,7 @@ typedef struct {
 
 /* Force of the stream on the grains that take part, 0 on the others. Of members that overlap each
  * has its share of all of it, so that the buoyancy of a clump is that of its union.
- *   hindrance  [N] of sd_vans_hindrance_of
+ *   hindrance  [N] of sd_hindrance_of
  *   F       [n][3] out: drag, added mass, buoyancy, pressure gradient, lift, convective
  *   drag_x  [n] out or NULL: the part that the water takes back, drag and added mass along x
  * Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom)
@@ -227,7 +227,7 @@ typedef struct {
   double least_slip, longest_life;
   sd_vans_rules rules;
   /* of the grains, for what the exchange foresees; zeros: Yade's */
-  sd_vans_drag_law drag;
+  sd_drag_law drag;
 } sd_vans_fluid;
 
 /* What drives the stream, an acceleration: gx - dpdx/rho. Yade's rule: |gx| for gx. */

@@ -54,7 +54,7 @@ static double rate_of(const sd_vans_fluid *fluid, double a, double phi, double s
                       double hindrance)
 {
   const double factor =
-      sd_vans_drag_factor(fluid->drag, fluid->rho, fluid->eta, a, hindrance, fabs(slip));
+      sd_drag_factor(fluid->drag, fluid->rho, fluid->eta, a, hindrance, fabs(slip));
   return phi / sphere(a) * factor / fluid->rho;
 }
 

@@ -96,7 +96,7 @@ double sd_vans_stiffest(const sd_vans_mesh *mesh, const sd_vans_force_law *law, 
     const double speed = velocity_past(grains, i, water, w),
                  share = grains->weight ? grains->weight[i] : 1.0;
     const double rate = share / mass[i] *
-        sd_vans_drag_slope(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
+        sd_drag_slope(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
     if (rate > largest) {
       largest = rate;
       *stiffest = i;

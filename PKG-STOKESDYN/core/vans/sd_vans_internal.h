@@ -81,7 +81,7 @@ static inline void sd_vans_add_drag(const sd_vans_force_law *law, const sd_vans_
   double w[3];
   const double speed = velocity_past(grains, i, water, w);
   const double factor =
-      sd_vans_drag_factor(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
+      sd_drag_factor(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
   for (int d = 0; d < 3; d++) F[d] += share * factor * w[d];
 }
 

@@ -13,13 +13,13 @@ static double clift_gauvin(double Re)
 }
 
 /* Speed at which the drag of a law is the submerged weight, by bisection. */
-static double terminal(sd_vans_drag_law law, double a, double density, double hindrance)
+static double terminal(sd_drag_law law, double a, double density, double hindrance)
 {
   const double weight = 4.0 / 3.0 * SD_PI * a * a * a * (density - RHO) * G;
   double low = 0.0, high = 100.0;
   for (int k = 0; k < 200; k++) {
     const double w = 0.5 * (low + high);
-    *(sd_vans_drag_factor(law, RHO, ETA, a, hindrance, w) * w < weight ? &low : &high) = w;
+    *(sd_drag_factor(law, RHO, ETA, a, hindrance, w) * w < weight ? &low : &high) = w;
   }
   return low;
 }
@@ -38,7 +38,7 @@ static double measured(double a, double density)
 static void spheres_fall_as_measured(void **state)
 {
   (void) state;
-  const sd_vans_drag_law brown = {.law = SD_VANS_DRAG_BROWN_LAWLER}, schiller = {.law = SD_VANS_DRAG_SCHILLER_NAUMANN};
+  const sd_drag_law brown = {.law = SD_DRAG_BROWN_LAWLER}, schiller = {.law = SD_DRAG_SCHILLER_NAUMANN};
   double worst = 0.0;
   for (double d = 1e-4; d < 1.001e-2; d *= 1.2589) {
     const double w = measured(0.5 * d, 2650);
@@ -53,7 +53,7 @@ static void spheres_fall_as_measured(void **state)
 static void sand_falls_by_ferguson_and_church(void **state)
 {
   (void) state;
-  const sd_vans_drag_law law = {.law = SD_VANS_DRAG_FERGUSON_CHURCH};
+  const sd_drag_law law = {.law = SD_DRAG_FERGUSON_CHURCH};
   for (double d = 5e-5; d < 1e-2; d *= 1.7) {
     const double R = 1.65 * G, w = R * d * d / (18e-6 + sqrt(0.75 * R * d * d * d));
     assert_true(fabs(terminal(law, 0.5 * d, 2650, 1.0) / w - 1.0) < 1e-12);
@@ -64,10 +64,10 @@ static void sand_falls_by_ferguson_and_church(void **state)
 static void a_grain_falls_as_the_sphere_of_its_fall_diameter(void **state)
 {
   (void) state;
-  for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
-    for (int many = SD_VANS_HINDRANCE_POWER; many <= SD_VANS_HINDRANCE_DI_FELICE; many++) {
-      const sd_vans_drag_law sphere = {(sd_vans_drag_of_one) law, (sd_vans_drag_of_many) many, 0.0};
-      sd_vans_drag_law grain = sphere;
+  for (int law = SD_DRAG_YADE; law <= SD_DRAG_FERGUSON_CHURCH; law++)
+    for (int many = SD_HINDRANCE_POWER; many <= SD_HINDRANCE_DI_FELICE; many++) {
+      const sd_drag_law sphere = {(sd_drag_of_one) law, (sd_drag_of_many) many, 0.0};
+      sd_drag_law grain = sphere;
       grain.fall = 0.5;
       const double w = terminal(sphere, 0.75e-3, 1190, 0.8);
       assert_true(fabs(terminal(grain, 1.5e-3, 1190, 0.8) / w - 1.0) < 1e-12);
@@ -78,10 +78,10 @@ static void every_law_is_stokes_for_slow_spheres(void **state)
 {
   (void) state;
   const double stokes = 6 * SD_PI * ETA * 0.003;
-  for (int law = SD_VANS_DRAG_SCHILLER_NAUMANN; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
-    for (int many = SD_VANS_HINDRANCE_POWER; many <= SD_VANS_HINDRANCE_DI_FELICE; many++) {
-      const sd_vans_drag_law kind = {.law = (sd_vans_drag_of_one) law, .hindrance = (sd_vans_drag_of_many) many};
-      assert_true(fabs(sd_vans_drag_factor(kind, RHO, ETA, 0.003, 1.0, 1e-16) / stokes - 1) < 1e-5);
+  for (int law = SD_DRAG_SCHILLER_NAUMANN; law <= SD_DRAG_FERGUSON_CHURCH; law++)
+    for (int many = SD_HINDRANCE_POWER; many <= SD_HINDRANCE_DI_FELICE; many++) {
+      const sd_drag_law kind = {.law = (sd_drag_of_one) law, .hindrance = (sd_drag_of_many) many};
+      assert_true(fabs(sd_drag_factor(kind, RHO, ETA, 0.003, 1.0, 1e-16) / stokes - 1) < 1e-5);
     }
 }
 
@@ -96,7 +96,7 @@ static double exponent_of(double Re)
 static void richardson_and_zaki_find_their_exponent(void **state)
 {
   (void) state;
-  const sd_vans_drag_law law = {.law = SD_VANS_DRAG_BROWN_LAWLER, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
+  const sd_drag_law law = {.law = SD_DRAG_BROWN_LAWLER, .hindrance = SD_HINDRANCE_RICHARDSON_ZAKI};
   double first = 0.0, last = 0.0;
   for (double d = 3e-5; d < 0.2; d *= 3) {
     const double w0 = terminal(law, 0.5 * d, 2650, 1.0), n = exponent_of(w0 * d * 1e6);
@@ -124,10 +124,10 @@ static void lone_speeds_solve_richardson_and_zakis_equation(void **state)
         *(middle < (1.0 - exponent_of(Re * exp(middle))) * L ? &low : &high) = middle;
       }
       const double y = 0.5 * (low + high);
-      for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++) {
-        const sd_vans_drag_law kind = {.law = (sd_vans_drag_of_one) law, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
-        const double halved = stokes * sd_vans_drag_number(kind.law, Re * exp(y)) * exp(y);
-        worst = fmax(worst, fabs(sd_vans_drag_factor(kind, 1.0, 1.0, a, e, Re) / halved - 1.0));
+      for (int law = SD_DRAG_YADE; law <= SD_DRAG_FERGUSON_CHURCH; law++) {
+        const sd_drag_law kind = {.law = (sd_drag_of_one) law, .hindrance = SD_HINDRANCE_RICHARDSON_ZAKI};
+        const double halved = stokes * sd_drag_number(kind.law, Re * exp(y)) * exp(y);
+        worst = fmax(worst, fabs(sd_drag_factor(kind, 1.0, 1.0, a, e, Re) / halved - 1.0));
       }
     }
   printf("    Richardson & Zaki by Lambert's function: largest difference from halving %.1e\n", worst);
@@ -154,8 +154,8 @@ static void a_pressure_gradient_pushes_grains(void **state)
 static void di_felice_agrees_with_richardson_and_zaki(void **state)
 {
   (void) state;
-  const sd_vans_drag_law rz = {.law = SD_VANS_DRAG_BROWN_LAWLER, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI},
-                         di_felice = {.law = SD_VANS_DRAG_BROWN_LAWLER, .hindrance = SD_VANS_HINDRANCE_DI_FELICE};
+  const sd_drag_law rz = {.law = SD_DRAG_BROWN_LAWLER, .hindrance = SD_HINDRANCE_RICHARDSON_ZAKI},
+                         di_felice = {.law = SD_DRAG_BROWN_LAWLER, .hindrance = SD_HINDRANCE_DI_FELICE};
   double worst[2] = {0, 0};
   for (double d = 3e-5; d < 0.05; d *= 1.5)
     for (int k = 0; k < 2; k++) {
@@ -170,13 +170,13 @@ static void di_felice_agrees_with_richardson_and_zaki(void **state)
 static void slope_is_that_of_the_force(void **state)
 {
   (void) state;
-  for (int law = SD_VANS_DRAG_YADE; law <= SD_VANS_DRAG_FERGUSON_CHURCH; law++)
+  for (int law = SD_DRAG_YADE; law <= SD_DRAG_FERGUSON_CHURCH; law++)
     for (double w = 1e-6; w < 10; w *= 7) {
-      const sd_vans_drag_law kind = {.law = (sd_vans_drag_of_one) law, .hindrance = SD_VANS_HINDRANCE_RICHARDSON_ZAKI};
+      const sd_drag_law kind = {.law = (sd_drag_of_one) law, .hindrance = SD_HINDRANCE_RICHARDSON_ZAKI};
       const double h = 1e-5 * w, e = 0.6, a = 0.002,
-                   up = sd_vans_drag_factor(kind, RHO, ETA, a, e, w + h) * (w + h),
-                   down = sd_vans_drag_factor(kind, RHO, ETA, a, e, w - h) * (w - h);
-      assert_true(fabs(sd_vans_drag_slope(kind, RHO, ETA, a, e, w) / ((up - down) / (2 * h)) - 1) < 2e-3);
+                   up = sd_drag_factor(kind, RHO, ETA, a, e, w + h) * (w + h),
+                   down = sd_drag_factor(kind, RHO, ETA, a, e, w - h) * (w - h);
+      assert_true(fabs(sd_drag_slope(kind, RHO, ETA, a, e, w) / ((up - down) / (2 * h)) - 1) < 2e-3);
     }
 }
 
@@ -232,13 +232,13 @@ static void rising_water_lifts_a_grain(void **state)
 static void fall_speed_balances_weight_and_drag(void **state)
 {
   (void) state;
-  for (int name = SD_VANS_DRAG_YADE; name <= SD_VANS_DRAG_FERGUSON_CHURCH; name++)
+  for (int name = SD_DRAG_YADE; name <= SD_DRAG_FERGUSON_CHURCH; name++)
     for (double a = 1e-6; a < 0.1; a *= 3.1)
       for (int fall = 0; fall < 2; fall++) {
-        const sd_vans_drag_law law = {(sd_vans_drag_of_one) name, SD_VANS_HINDRANCE_RICHARDSON_ZAKI, 0.7 * fall};
+        const sd_drag_law law = {(sd_drag_of_one) name, SD_HINDRANCE_RICHARDSON_ZAKI, 0.7 * fall};
         const double weight = 4.0 / 3.0 * SD_PI * a * a * a * (2650 - RHO) * G;
-        CHECK_NEAR(sd_vans_fall_speed(law, RHO, ETA, a, weight) / terminal(law, a, 2650, 1.0), 1.0, 1e-10);
-        assert_true(sd_vans_fall_speed(law, RHO, ETA, a, 0.0) == 0.0);
+        CHECK_NEAR(sd_fall_speed(law, RHO, ETA, a, weight) / terminal(law, a, 2650, 1.0), 1.0, 1e-10);
+        assert_true(sd_fall_speed(law, RHO, ETA, a, 0.0) == 0.0);
       }
 }
 

@@ -1,25 +1,25 @@
-#include "sd_vans_drag.h"
+#include "sd_drag.h"
 
 #include <math.h>
 
-double sd_vans_drag_number(sd_vans_drag_of_one law, double Re)
+double sd_drag_number(sd_drag_of_one law, double Re)
 {
   switch (law) {
-    case SD_VANS_DRAG_YADE: return 24.4 + 0.44 * Re;
-    case SD_VANS_DRAG_SCHILLER_NAUMANN:
+    case SD_DRAG_YADE: return 24.4 + 0.44 * Re;
+    case SD_DRAG_SCHILLER_NAUMANN:
       return fmax(24.0 * (1.0 + 0.15 * pow(Re, 0.687)), 0.44 * Re);
-    case SD_VANS_DRAG_BROWN_LAWLER:
+    case SD_DRAG_BROWN_LAWLER:
       return 24.0 * (1.0 + 0.15 * pow(Re, 0.681)) + 0.407 * Re * Re / (Re + 8710.0);
-    case SD_VANS_DRAG_FERGUSON_CHURCH: {
+    case SD_DRAG_FERGUSON_CHURCH: {
       /* w (18 nu + sqrt(3/4 C_2 R g d^3)/w ...) solved for the drag: with C = C_d,
        * C - sqrt(C_2 C) - 24/Re = 0, C_2 = 1 */
       const double root = 0.5 * (sqrt(Re) + sqrt(Re + 96.0));
       return root * root;
     }
-    case SD_VANS_DRAG_ERGUN:
-    case SD_VANS_DRAG_GIDASPOW:
-    case SD_VANS_DRAG_BEETSTRA:
-    case SD_VANS_DRAG_KOCH_HILL: break;
+    case SD_DRAG_ERGUN:
+    case SD_DRAG_GIDASPOW:
+    case SD_DRAG_BEETSTRA:
+    case SD_DRAG_KOCH_HILL: break;
   }
   return 0.0;
 }
@@ -34,7 +34,7 @@ static double ergun(double Re, double e)
 static double gidaspow(double Re, double e)
 {
   if (e <= 0.8) return ergun(Re, e);
-  return sd_vans_drag_number(SD_VANS_DRAG_SCHILLER_NAUMANN, e * Re) / 24.0 * pow(e, -3.65);
+  return sd_drag_number(SD_DRAG_SCHILLER_NAUMANN, e * Re) / 24.0 * pow(e, -3.65);
 }
 
 static double beetstra(double Re, double e)
@@ -57,23 +57,22 @@ static double koch_hill(double Re, double e)
   return e * (F_0 + 0.5 * F_3 * e * Re);
 }
 
-static double of_bed(sd_vans_drag_of_one law, double Re, double e)
+static double of_bed(sd_drag_of_one law, double Re, double e)
 {
   switch (law) {
-    case SD_VANS_DRAG_ERGUN: return ergun(Re, e);
-    case SD_VANS_DRAG_GIDASPOW: return gidaspow(Re, e);
-    case SD_VANS_DRAG_BEETSTRA: return beetstra(Re, e);
+    case SD_DRAG_ERGUN: return ergun(Re, e);
+    case SD_DRAG_GIDASPOW: return gidaspow(Re, e);
+    case SD_DRAG_BEETSTRA: return beetstra(Re, e);
     default: return koch_hill(Re, e);
   }
 }
 
-void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
-                          double *hindrance)
+void sd_hindrance_of(sd_drag_law law, int n, const double *phi, double exponent, double *hindrance)
 {
-  for (int n = 0; n < ncell; n++)
-    hindrance[n] = law.hindrance != SD_VANS_HINDRANCE_POWER ? 1.0 - phi[n]
-        : phi[n] == 0.0                                      ? 1.0
-                                                             : pow(1.0 - phi[n], -exponent);
+  for (int k = 0; k < n; k++)
+    hindrance[k] = law.hindrance != SD_HINDRANCE_POWER ? 1.0 - phi[k]
+        : phi[k] == 0.0                                 ? 1.0
+                                                        : pow(1.0 - phi[k], -exponent);
 }
 
 /* Lambert's W, W e^W = z > 0, to rounding: a rational function of W's series below 1, Winitzki's
@@ -114,54 +113,54 @@ static double logarithm_of_lone_speed(double Re, double L)
   return L + lambert_w(-4.4 * p * L * exp(-p * (x + L))) / p;
 }
 
-static double drag_of_sphere(sd_vans_drag_law law, double rho, double eta, double a,
+static double drag_of_sphere(sd_drag_law law, double rho, double eta, double a,
                              double hindrance, double speed)
 {
   const double Re = 2.0 * a * rho * speed / eta, viscous = 0.25 * SD_PI * a * eta;
   switch (law.hindrance) {
-    case SD_VANS_HINDRANCE_POWER: break;
-    case SD_VANS_HINDRANCE_OWN: return 24.0 * viscous * of_bed(law.law, Re, hindrance);
-    case SD_VANS_HINDRANCE_RICHARDSON_ZAKI: {
-      if (hindrance == 1.0) return viscous * sd_vans_drag_number(law.law, Re);
+    case SD_HINDRANCE_POWER: break;
+    case SD_HINDRANCE_OWN: return 24.0 * viscous * of_bed(law.law, Re, hindrance);
+    case SD_HINDRANCE_RICHARDSON_ZAKI: {
+      if (hindrance == 1.0) return viscous * sd_drag_number(law.law, Re);
       const double more = exp(logarithm_of_lone_speed(Re, log(hindrance)));
-      return viscous * sd_vans_drag_number(law.law, Re * more) * more;
+      return viscous * sd_drag_number(law.law, Re * more) * more;
     }
-    case SD_VANS_HINDRANCE_DI_FELICE: {
+    case SD_HINDRANCE_DI_FELICE: {
       const double through = hindrance * Re, x = 1.5 - log10(fmax(through, 1e-30)),
                    beta = 3.7 - 0.65 * exp(-0.5 * x * x);
-      return viscous * sd_vans_drag_number(law.law, through) * pow(hindrance, -beta);
+      return viscous * sd_drag_number(law.law, through) * pow(hindrance, -beta);
     }
   }
-  return viscous * sd_vans_drag_number(law.law, Re) * hindrance;
+  return viscous * sd_drag_number(law.law, Re) * hindrance;
 }
 
-double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
-                           double hindrance, double speed)
+double sd_drag_by_law(sd_drag_law law, double rho, double eta, double a, double hindrance,
+                      double speed)
 {
   if (law.fall == 0.0) return drag_of_sphere(law, rho, eta, a, hindrance, speed);
   return drag_of_sphere(law, rho, eta, law.fall * a, hindrance, speed) /
       (law.fall * law.fall * law.fall);
 }
 
-double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,
-                          double speed)
+double sd_drag_slope(sd_drag_law law, double rho, double eta, double a, double hindrance,
+                     double speed)
 {
   /* a step of 1e-3 of the speed, for a derivative that needs two digits */
   const double more = 1.001 * speed,
-               F = sd_vans_drag_factor(law, rho, eta, a, hindrance, speed) * speed;
-  if (!(speed > 0.0)) return sd_vans_drag_factor(law, rho, eta, a, hindrance, 0.0);
-  return (sd_vans_drag_factor(law, rho, eta, a, hindrance, more) * more - F) / (more - speed);
+               F = sd_drag_factor(law, rho, eta, a, hindrance, speed) * speed;
+  if (!(speed > 0.0)) return sd_drag_factor(law, rho, eta, a, hindrance, 0.0);
+  return (sd_drag_factor(law, rho, eta, a, hindrance, more) * more - F) / (more - speed);
 }
 
 /* A lone grain has hindrance 1 by any law. F(w) is convex and no less than the drag at rest times w: by
  * Newton's steps w falls from where that would balance the force. */
-double sd_vans_fall_speed(sd_vans_drag_law law, double rho, double eta, double a, double force)
+double sd_fall_speed(sd_drag_law law, double rho, double eta, double a, double force)
 {
-  double w = force / sd_vans_drag_factor(law, rho, eta, a, 1.0, 0.0);
+  double w = force / sd_drag_factor(law, rho, eta, a, 1.0, 0.0);
   for (int k = 0; k < 100; k++) {
-    const double excess = sd_vans_drag_factor(law, rho, eta, a, 1.0, w) * w - force;
+    const double excess = sd_drag_factor(law, rho, eta, a, 1.0, w) * w - force;
     if (!(excess > 1e-12 * force)) break;
-    w -= excess / sd_vans_drag_slope(law, rho, eta, a, 1.0, w);
+    w -= excess / sd_drag_slope(law, rho, eta, a, 1.0, w);
   }
   return w;
 }

@@ -1,4 +1,4 @@
-/* The drag of the stream on a lone sphere or grain, and what its neighbours add to it.
+/* The drag of water on a lone sphere or grain, and what its neighbours add to it.
  *
  * With w the velocity of the water past the grain (between the grains), a its radius and
  * Re = 2 a rho |w|/eta,
@@ -41,8 +41,8 @@
  * 32); Di Felice 1994 (Int. J. Multiphase Flow 20); Ergun 1952 (Chem. Eng. Prog. 48); Wen & Yu 1966;
  * Gidaspow 1994 (Multiphase flow and fluidization); Hill, Koch & Ladd 2001 (J. Fluid Mech. 448);
  * Beetstra, van der Hoef & Kuipers 2007 (AIChE J. 53). */
-#ifndef SD_VANS_DRAG_H
-#define SD_VANS_DRAG_H
+#ifndef SD_DRAG_H
+#define SD_DRAG_H
 
 #include "sd_constants.h"
 #include "sd_extern_c.h"
@@ -50,66 +50,65 @@
 SD_BEGIN_C
 
 typedef enum {
-  SD_VANS_DRAG_YADE,
-  SD_VANS_DRAG_SCHILLER_NAUMANN,
-  SD_VANS_DRAG_BROWN_LAWLER,
-  SD_VANS_DRAG_FERGUSON_CHURCH,
-  SD_VANS_DRAG_ERGUN,
-  SD_VANS_DRAG_GIDASPOW,
-  SD_VANS_DRAG_BEETSTRA,
-  SD_VANS_DRAG_KOCH_HILL
-} sd_vans_drag_of_one;
+  SD_DRAG_YADE,
+  SD_DRAG_SCHILLER_NAUMANN,
+  SD_DRAG_BROWN_LAWLER,
+  SD_DRAG_FERGUSON_CHURCH,
+  SD_DRAG_ERGUN,
+  SD_DRAG_GIDASPOW,
+  SD_DRAG_BEETSTRA,
+  SD_DRAG_KOCH_HILL
+} sd_drag_of_one;
 
 typedef enum {
-  SD_VANS_HINDRANCE_POWER,
-  SD_VANS_HINDRANCE_RICHARDSON_ZAKI,
-  SD_VANS_HINDRANCE_DI_FELICE,
+  SD_HINDRANCE_POWER,
+  SD_HINDRANCE_RICHARDSON_ZAKI,
+  SD_HINDRANCE_DI_FELICE,
   /* of the laws of beds, and of these alone */
-  SD_VANS_HINDRANCE_OWN
-} sd_vans_drag_of_many;
+  SD_HINDRANCE_OWN
+} sd_drag_of_many;
 
 /* Zeros: Yade's law with a power of the porosity. */
 typedef struct {
-  sd_vans_drag_of_one law;
-  sd_vans_drag_of_many hindrance;
+  sd_drag_of_one law;
+  sd_drag_of_many hindrance;
   /* fall diameter over diameter; 0: 1 */
   double fall;
-} sd_vans_drag_law;
+} sd_drag_law;
 
 /* Is it a law of beds? */
-static inline int sd_vans_drag_of_bed(sd_vans_drag_of_one law)
+static inline int sd_drag_of_bed(sd_drag_of_one law)
 {
-  return law >= SD_VANS_DRAG_ERGUN;
+  return law >= SD_DRAG_ERGUN;
 }
 
 /* N(Re), Re >= 0, of a law of lone grains. */
-double sd_vans_drag_number(sd_vans_drag_of_one law, double Re);
+double sd_drag_number(sd_drag_of_one law, double Re);
 
-/* What a slice does to the drag of the grains in it: e^-exponent where the hindrance is a power,
- * otherwise e = 1 - phi itself. Once per profile instead of once per grain. [ncell] */
-void sd_vans_hindrance_of(sd_vans_drag_law law, int ncell, const double *phi, double exponent,
-                          double *hindrance);
+/* What the places with these phi do to the drag of the grains there: e^-exponent where the hindrance is a
+ * power, otherwise e = 1 - phi itself. Once per place instead of once per grain. phi, hindrance [n] */
+void sd_hindrance_of(sd_drag_law law, int n, const double *phi, double exponent, double *hindrance);
 
-/* F/w of a grain of radius a for the speed |w|, of any law; hindrance: that of its slice. */
-double sd_vans_drag_by_law(sd_vans_drag_law law, double rho, double eta, double a,
-                           double hindrance, double speed);
+/* F/w of a grain of radius a for the speed |w|, of any law; hindrance: that of its place. */
+double sd_drag_by_law(sd_drag_law law, double rho, double eta, double a, double hindrance,
+                      double speed);
 
 /* The same; Yade's law with a power on the spot. */
-static inline double sd_vans_drag_factor(sd_vans_drag_law law, double rho, double eta, double a,
-                                         double hindrance, double speed)
+static inline double sd_drag_factor(sd_drag_law law, double rho, double eta, double a,
+                                    double hindrance, double speed)
 {
-  if (law.law == SD_VANS_DRAG_YADE && law.hindrance == SD_VANS_HINDRANCE_POWER && law.fall == 0.0)
+  if (law.law == SD_DRAG_YADE && law.hindrance == SD_HINDRANCE_POWER && law.fall == 0.0)
     return 0.5 * SD_PI * a * (0.44 * rho * a * speed + 12.2 * eta) * hindrance;
-  return sd_vans_drag_by_law(law, rho, eta, a, hindrance, speed);
+  return sd_drag_by_law(law, rho, eta, a, hindrance, speed);
 }
 
 /* dF/dw of the same: between F/w and twice that. */
-double sd_vans_drag_slope(sd_vans_drag_law law, double rho, double eta, double a, double hindrance,
-                          double speed);
+double sd_drag_slope(sd_drag_law law, double rho, double eta, double a, double hindrance,
+                     double speed);
 
 /* The speed at which a lone grain falls or rises: the drag balances the force >= 0 on it, its weight less
  * that of the water in its place. Not by ergun, which has no drag of lone grains. */
-double sd_vans_fall_speed(sd_vans_drag_law law, double rho, double eta, double a, double force);
+double sd_fall_speed(sd_drag_law law, double rho, double eta, double a, double force);
 
 SD_END_C
 #endif
