@@ -25,7 +25,13 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
-                                                       "beta", "deltap", "mu"};
+                                                       "beta", "deltap", "mu", "tau",
+                                                       "n",    "mumax",  "lambda"};
+
+bool PairSph::may_vanish(int parameter)
+{
+  return parameter == ALPHA || parameter == BETA || parameter == TAU;
+}
 
 /* pair_style hybrid copies all of this when it has read its own line, before init_style: rows of every
  * scheme have to fit, and the virial is summed pair by pair, as shift and correction put no force on
@@ -68,6 +74,7 @@ void PairSph::parse()
   for (double &value : defaults) value = NAN;
   model = sd_sph_model();
   shifts = corrects = false;
+  law = SD_SPH_NEWTON;
   Keywords in(lmp, voice.command, args);
   if (!in.next()) voice.fail("the kernel is missing: give cubicspline or wendland, then the smoothing length h");
   const bool flat = in.is("cubicspline2d") || in.is("wendland2d");
@@ -100,12 +107,45 @@ void PairSph::parse()
          model.friction = in.take("central") ? SD_SPH_CENTRAL : SD_SPH_LAPLACIAN;
          if (model.friction == SD_SPH_LAPLACIAN) in.take("laplacian");
        }},
+      {"rheology", [&] { read_law(in); }},
       {"shift", [&] { shifts = in.yes_no(); }},
       {"correction", [&] { corrects = in.yes_no(); }},
   });
   in.require(shifts || !corrects || !in.given("shift"),
              "correction yes switches shift on: leave shift no out");
   shifts = shifts || corrects;
+  in.require(law == SD_SPH_NEWTON || model.friction,
+             "keyword rheology needs keyword viscosity, whose number is mu of the law");
+}
+
+/* A law of viscosity. What it does not ask for has the value with which it does nothing. */
+void PairSph::read_law(Keywords &in)
+{
+  enum { POWER_LAW, BINGHAM, HERSCHEL_BULKLEY, CARREAU };
+  const size_t kind = in.choice({"power_law", "bingham", "herschel_bulkley", "carreau"});
+  law = kind == CARREAU ? SD_SPH_CARREAU : SD_SPH_HERSCHEL_BULKLEY;
+  defaults[TAU] = kind == BINGHAM || kind == HERSCHEL_BULKLEY ? in.not_negative() : 0.0;
+  defaults[LAMBDA] = kind == CARREAU ? in.positive() : 1.0;
+  defaults[N] = kind == BINGHAM ? 1.0 : in.positive();
+  defaults[MU_MAX] = in.positive();
+}
+
+sd_sph_rheology PairSph::rheology(int t) const
+{
+  return {law, table[MU][t][t], table[TAU][t][t], table[N][t][t], table[MU_MAX][t][t], table[LAMBDA][t][t]};
+}
+
+/* What the commands have not seen together, and what fix adapt sets. */
+void PairSph::check_law(int t) const
+{
+  const sd_sph_rheology fluid = rheology(t);
+  const Voice of = voice.of("keyword rheology: type " + std::to_string(t));
+  if (fluid.law == SD_SPH_CARREAU && fluid.n > 1.0)
+    of.fail("n = " + text(fluid.n) + " must be at most 1 with carreau");
+  if ((fluid.law == SD_SPH_CARREAU || fluid.n == 1.0) && fluid.mu_max < fluid.mu)
+    of.fail("mumax = " + text(fluid.mu_max) + " must not be smaller than mu = " + text(fluid.mu) +
+            ", the viscosity in fast shear: pair_coeff " + std::to_string(t) + " " + std::to_string(t) +
+            " mumax VALUE");
 }
 
 void PairSph::allocate()
@@ -144,7 +184,11 @@ void PairSph::coeff(int narg, char **arg)
     if ((k == ALPHA || k == BETA) && !model.artvisc) in.refuse("the pair_style has no artVisc");
     if (k == DELTAP && !model.tenscorr && !shifts) in.refuse("the pair_style has no tensCorr");
     if (k == MU && !model.friction) in.refuse("the pair_style has no viscosity");
-    values[k] = k == ALPHA || k == BETA ? in.not_negative() : in.positive();
+    if (k > MU && law == SD_SPH_NEWTON) in.refuse("the pair_style has no rheology");
+    if (k >= MU && law != SD_SPH_NEWTON && ihi < jlo)
+      in.refuse("with rheology each particle has the viscosity of its own type, and a pair their harmonic "
+                "mean: give it by pair_coeff I I");
+    values[k] = may_vanish(k) ? in.not_negative() : in.positive();
   }
 
   int count = 0;
@@ -224,10 +268,10 @@ double PairSph::init_one(int i, int j)
   if (model.friction) require(defaults[MU] > 0.0, voice, "viscosity: ", defaults[MU], "> 0");
   for (int k = 0; k < NPARAMETERS; k++) {
     const double value = table[k][i][j];
-    const bool may_vanish = k == ALPHA || k == BETA;
-    require(std::isnan(value) || value > 0.0 || (may_vanish && value == 0.0), of,
-            std::string(PARAMETER[k]) + ": ", value, may_vanish ? ">= 0" : "> 0");
+    require(std::isnan(value) || value > 0.0 || (may_vanish(k) && value == 0.0), of,
+            std::string(PARAMETER[k]) + ": ", value, may_vanish(k) ? ">= 0" : "> 0");
   }
+  if (law != SD_SPH_NEWTON && i == j) check_law(i);
   const double support = 2.0 * table[H][i][j];
   refuse_endless_ghosts(lmp, of.command + ": the support 2 h = " + text(support), support);
   const std::string cure = std::to_string(i) + " " + std::to_string(i) + " c VALUE";
@@ -239,6 +283,13 @@ double PairSph::init_one(int i, int j)
     of.fail("deltap " + text(table[DELTAP][i][j]) +
             " must be smaller than the support 2 h = " + text(support));
   return support;
+}
+
+double PairSph::viscosity(int i) const
+{
+  if (law != SD_SPH_NEWTON) return is_wall(i) ? 0.0 : viscosities[i];
+  const int t = atom->type[i];
+  return model.friction ? table[MU][t][t] : 0.0;
 }
 
 bool PairSph::has_sound_speed(int itype) const
@@ -277,7 +328,7 @@ double PairSph::memory_usage()
   double bytes = near.bytes() + around.bytes() + of_flow.bytes();
   for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order, &own, &rubs})
     bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows, &displacing})
+  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows, &displacing, &viscosities})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&classes, &phases})
     bytes += v->capacity() * sizeof(int);
@@ -293,7 +344,8 @@ bool PairSph::used(int itype) const
 
 // --- restart ------------------------------------------------------------------------------------
 // The words of the pair_style command and the values of pair_coeff. Each pair begins with its setflag,
-// 0 or 1, plus twice the number of its values; files from before mu have the flag alone, and five.
+// 0 or 1, plus twice the number of its values, which has grown from version to version; files from before
+// mu have the flag alone, and five.
 
 static const int BEFORE_MU = 5;
 
@@ -318,7 +370,8 @@ void PairSph::read_restart(FILE *fp)
       for (int k = 0; k < NPARAMETERS; k++) row[1 + k] = NAN;
       if (comm->me == 0) {
         utils::sfread(FLERR, row, sizeof(double), 1, fp, nullptr, error);
-        const int count = row[0] < 2.0 ? BEFORE_MU : NPARAMETERS;
+        const int count = row[0] < 2.0 ? BEFORE_MU : (int) row[0] / 2;
+        if (count > NPARAMETERS) voice.fail_one("the restart file is of a later version of this plugin");
         utils::sfread(FLERR, row + 1, sizeof(double), count, fp, nullptr, error);
       }
       MPI_Bcast(row, 1 + NPARAMETERS, MPI_DOUBLE, 0, world);

@@ -7,7 +7,7 @@
 #include "moved_box.h"
 #include "neighbours.h"
 #include "pair.h"
-#include "sd_sph_sums.h"
+#include "sd_sph_rheology.h"
 #include "sph.h"
 
 #include <string>
@@ -60,7 +60,8 @@ class PairSph : public LAMMPS_NS::Pair {
   double pressure(int i) const { return P[i]; }
   double smoothing_length(int itype) const { return table[H][itype][itype]; }
   double sound_speed(int itype) const { return table[C][itype][itype]; }
-  double viscosity(int itype) const { return model.friction ? table[MU][itype][itype] : 0.0; }
+  /* Of particle i, of this rank, in the latest force; with a law of viscosity 0 for walls. */
+  double viscosity(int i) const;
   bool has_sound_speed(int itype) const;
   /* Of each owned particle: |h v.d / (r^2 + eta)|. Not inside compute. */
   void largest_approach(std::vector<double> &largest);
@@ -85,18 +86,23 @@ class PairSph : public LAMMPS_NS::Pair {
   int dimension() const { return model.dimension; }
 
  private:
-  enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, NPARAMETERS };
+  enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, TAU, N, MU_MAX, LAMBDA, NPARAMETERS };
   static const char *const PARAMETER[NPARAMETERS];
   const Voice voice;
 
   // settings
   std::vector<std::string> args;    // of pair_style, for restart files
   bool shifts = false, corrects = false;
+  sd_sph_law law = SD_SPH_NEWTON;
   double defaults[NPARAMETERS];
   // by pair_coeff (NaN: not given), and in use
   double **given[NPARAMETERS] = {}, **table[NPARAMETERS] = {};
   sd_sph_model model = {};
   void parse();
+  void read_law(Keywords &in);
+  static bool may_vanish(int parameter);
+  void check_law(int itype) const;
+  sd_sph_rheology rheology(int itype) const;
   void allocate();
   double spacing(int itype) const;
   double mixed(int parameter, int i, int j) const;
@@ -157,7 +163,7 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<sd_sph_coefficients> coefficients;
   MovedBox moved_box;
   Rows x4, v4, f4, sums, weights, spins, order, own, rubs;
-  std::vector<double> P, masses, rate, each, kick, wall_rows, displacing;
+  std::vector<double> P, masses, rate, each, kick, wall_rows, displacing, viscosities;
   std::vector<int> classes, phases;
   bool used(int itype) const;
   void look_at_densities(int n);
@@ -192,6 +198,8 @@ class PairSph : public LAMMPS_NS::Pair {
   const FixSphPressure *state_of(int i) const;
   double background() const;
   void pressures_of_all();
+  void find_viscosities();
+  void look_at_friction();
   void forces(bool rates);
   double sum_forces(const sd_sph_model &of, Neighbours &both, const sd_sph_list &half, bool rates, Rows &F,
                     double *of_pairs);

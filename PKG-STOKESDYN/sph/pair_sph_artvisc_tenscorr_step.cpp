@@ -45,6 +45,7 @@ void PairSph::compute(int eflag, int vflag)
     look_at_fluids();
     if (wall) look_at_walls();
     if (wall) tell_of_belts();
+    if (law != SD_SPH_NEWTON) look_at_friction();
   }
   if (needs_velocity) estimate_velocities();
   if (leapfrog && update->setupflag && has_walls()) settle_walls();
@@ -143,7 +144,8 @@ bool PairSph::types_are_alike()
     for (int j = 1; j <= ntypes; j++) {
       if (!(table[H][i][j] > 0.0)) continue;    // two types of another style
       const sd_sph_parameters given_values = {table[H][i][j], table[C][i][j], table[ALPHA][i][j],
-                                              table[BETA][i][j], table[DELTAP][i][j], table[MU][i][j]};
+                                              table[BETA][i][j], table[DELTAP][i][j],
+                                              law == SD_SPH_NEWTON ? table[MU][i][j] : 1.0};
       sd_sph_coefficients &c = coefficients[(size_t) (i - 1) * ntypes + j - 1];
       c = sd_sph_coefficients_of(&model, &given_values);
       if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
@@ -348,12 +350,35 @@ void PairSph::pressures_of_all()
   sd_sph_pack_pressures(&model, n, P.data(), background(), rho, x4.data());
 }
 
+/* The viscosity of each particle from its shear rate, in walls as well: with the velocity that friction sees
+ * there, the rate is about that at the face of the wall, while the first row of fluid is half a spacing
+ * away. x4 and v4 are packed. */
+void PairSph::find_viscosities()
+{
+  const int n = particles.n;
+  sums.assign(SD_SPH_GRADIENTS * (size_t) (n + 1), 0.0);
+  sd_sph_velocity_gradients(&model, &pairs, &particles, sums.data());
+  reverse(sums.data(), SD_SPH_GRADIENTS);
+  std::vector<sd_sph_rheology> fluids(1);
+  for (int type = 1; type <= atom->ntypes; type++) fluids.push_back(rheology(type));
+  viscosities.assign(n + 1, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!used(atom->type[i])) continue;
+    const double G = sd_sph_shear_rate(model.dimension, &sums[SD_SPH_GRADIENTS * (size_t) i]);
+    viscosities[i] = sd_sph_mu(&fluids[atom->type[i]], G);
+  }
+  forward(viscosities.data(), 1);
+  viscosities[n] = 1.0;
+  particles.mu = viscosities.data();
+}
+
 void PairSph::forces(bool rates)
 {
   const int n = particles.n, receivers = shared && force->newton_pair ? n : atom->nlocal;
   const bool pairwise = evflag && vflag_either;
   if (model.artvisc || model.friction || rates || model.scheme != SD_SPH_PLAIN)
     sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
+  if (law != SD_SPH_NEWTON) find_viscosities();
   std::fill(f4.begin(), f4.end(), 0.0);
   if (pairwise) {
     const int *count = corrects ? near.count.data() : pairs.count;

@@ -21,6 +21,7 @@ HOWTOS = {
     "clumps": {"v_drift": 1e-2},
     "cfd": {},
     "overdamped": {},
+    "mud": {"v_front": 0.02, "v_inner": 0.01, "v_outer": 0.01},
     "sph": {"c_kinetic": 0.5},
     "stream": {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35},
     "suspension": {"v_down": 0.04, "f_move[1]": 0.25},

@@ -180,8 +180,9 @@ def test_a_broken_run_is_the_unbroken_one(option, tmp_path):
             close(value, expected)
 
 
-def test_a_restart_file_from_before_mu_is_read(tmp_path):
-    """Its pairs have a flag and five values; now twice the number of values is added to the flag."""
+@pytest.mark.parametrize("values", [5, 6])
+def test_restart_files_from_before_mu_and_rheology_are_read(values, tmp_path):
+    """Pairs had a flag and five values; since mu, the sixth, twice the number of values is added to the flag. Now there are ten."""
     s = Scene(2, tmp_path / "scene.data")
     text = s.commands("wendland 0.02 viscosity 1")
     text = "\n".join(line.split(" mu ")[0] for line in text.splitlines()) + "\n"
@@ -189,10 +190,10 @@ def test_a_restart_file_from_before_mu_is_read(tmp_path):
     expected = trajectory(text + "run 0\nwrite_restart %s" % path)
     data = path.read_bytes()
     at = data.index(b"viscosity\n1\n") + len(b"viscosity\n1\n")
-    rows = np.frombuffer(data[at:at + 3 * 7 * 8]).reshape(3, 7)
-    assert (rows[:, 0] == [13, 12, 13]).all() and np.isnan(rows[:, 6]).all()
-    old = np.concatenate([rows[:, :1] % 2, rows[:, 1:6]], axis=1).tobytes()
-    path.write_bytes(data[:at] + old + data[at + 3 * 7 * 8:])
+    rows = np.frombuffer(data[at:at + 3 * 11 * 8]).reshape(3, 11)
+    assert (rows[:, 0] == [21, 20, 21]).all() and np.isnan(rows[:, 6:]).all()
+    old = np.concatenate([rows[:, :1] % 2 + (12 if values == 6 else 0), rows[:, 1:1 + values]], axis=1).tobytes()
+    path.write_bytes(data[:at] + old + data[at + 3 * 11 * 8:])
     fixes = "\n".join(line for line in text.splitlines() if line.startswith("fix ") or line.startswith("neigh"))
     for value, wanted in zip(trajectory("atom_modify map array\nread_restart %s\n" % path + fixes + "\nrun 0"), expected):
         close(value, wanted)

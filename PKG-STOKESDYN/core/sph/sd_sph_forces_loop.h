@@ -22,6 +22,7 @@ typedef struct {
 /* Particle i, and the pairs of it with j: d = x_i - x_j, u = v_i - v_j, A the last column of x4,
  * grad_i W = g d, m = m_i m_j. */
 typedef struct {
+  int index;
   row4 x, v, du;
   vec m;
   const sd_sph_coefficients *row;
@@ -36,7 +37,8 @@ typedef struct {
 INLINE particle particle_of(const sd_sph_model *model, const sd_sph_particles *p, int i, terms has)
 {
   const int many = has.many;
-  return (particle){.x = load4(p->x4 + 4 * (size_t) i),
+  return (particle){.index = i,
+                    .x = load4(p->x4 + 4 * (size_t) i),
                     .v = load4(p->v4 + 4 * (size_t) i),
                     .du = CARRIES(has) ? load4(p->order + 8 * (size_t) i + 4) : (row4){0},
                     .m = all(many ? p->m[i] : p->mass),
@@ -89,6 +91,14 @@ INLINE vec artificial(vec vd, vec lengths, vec densities, vec a1, vec b1)
   return s * (b1 * s - a1) * (lengths * inverse);
 }
 
+/* The harmonic mean; a fluid that thickens has none at rest. */
+#define MU_OF(k, p) (p)->mu[j[k]]
+INLINE vec mean_viscosity(const sd_sph_particles *p, int i, const int j[LANES])
+{
+  const vec mine = all(p->mu[i]), theirs = (vec) LANEWISE(MU_OF, p);
+  return 2.0 * mine * theirs / larger(mine + theirs, all(1e-300));
+}
+
 /* Friction, with correction's factor (d.B d) / r^2 in ratio. That of central is along d, so it
  * belongs to the bracket, whose force has the factor - m m g; the D + 2 in visc makes up for what
  * lies across d. */
@@ -105,6 +115,9 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
 {
   const int many = has.many;
   const sd_sph_coefficients *row = i->row;
+  vec visc = all(0.0);
+  if (has.friction) visc = COEFFICIENT(visc);
+  if (has.friction && p->mu) visc *= mean_viscosity(p, i->index, j);
   vec bracket = q->A_i + q->A_j;
   if (CORRECTS(has)) bracket = all(0.0);
   if (has.tenscorr) {
@@ -116,11 +129,11 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
   if (has.artvisc)
     bracket += artificial(q->vd, q->r2 + model->eta, q->rho_i + q->rho_j, COEFFICIENT(a1),
                           COEFFICIENT(b1));
-  if (has.friction == SD_SPH_CENTRAL) bracket -= central(q, COEFFICIENT(visc), ratio);
+  if (has.friction == SD_SPH_CENTRAL) bracket -= central(q, visc, ratio);
   const vec along = -q->m * bracket * q->g;
   for (int c = 0; c < 3; c++) F[c] = along * q->d[c];
   if (has.friction == SD_SPH_LAPLACIAN) {
-    const vec rub = q->m * COEFFICIENT(visc) * q->g * ratio * q->inverse;
+    const vec rub = q->m * visc * q->g * ratio * q->inverse;
     for (int c = 0; c < 3; c++) F[c] += rub * q->u[c];
   }
   /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */

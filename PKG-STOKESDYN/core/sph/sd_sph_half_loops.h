@@ -46,6 +46,55 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
   }
 }
 
+/* Both d and u change sign between i and j, so that the two have the same sums but for the volume of the
+ * other one. */
+INLINE void gradients(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+                      double *sums, sd_sph_kernel kernel, int many)
+{
+  const vec zero = all(0.0), two = all(2.0);
+  for (int ii = 0; ii < list->n; ii++) {
+    const int i = list->first[ii], count = list->count[i];
+    const int *neighbor = list->neighbor[i];
+    const row4 xi = load4(p->x4 + 4 * (size_t) i), vi = load4(p->v4 + 4 * (size_t) i);
+    const sd_sph_coefficients *row = ROW_OF(i);
+    const vec mi = all(many ? p->m[i] : p->mass), mine = mi / vi[3];
+    vec sum[SD_SPH_GRADIENTS];
+    for (int c = 0; c < SD_SPH_GRADIENTS; c++) sum[c] = zero;
+
+    for (int at = 0; at < count; at += LANES) {
+      int j[LANES];
+      next(neighbor + at, count - at, list->mask, p->n, j);
+      const places x = from(p->x4, j, xi);
+      vec v[4], part[SD_SPH_GRADIENTS];
+      gather(p->v4, 4, j, v);
+      const vec q = smaller(root(x.r2) * COEFFICIENT(inv_h), two);
+      const vec g = -COEFFICIENT(grad) * G(kernel, q), theirs = MASSES / v[3];
+      const vec gx = g * x.d[0], gy = g * x.d[1], gz = g * x.d[2];
+      part[0] = gx * x.d[0];
+      part[1] = gy * x.d[1];
+      part[2] = gz * x.d[2];
+      part[3] = gx * x.d[1];
+      part[4] = gx * x.d[2];
+      part[5] = gy * x.d[2];
+      for (int a = 0; a < 3; a++) {
+        const vec u = vi[a] - v[a];
+        part[6 + 3 * a] = gx * u;
+        part[7 + 3 * a] = gy * u;
+        part[8 + 3 * a] = gz * u;
+      }
+      part[15] = zero;
+      for (int c = 0; c < SD_SPH_GRADIENTS; c++) {
+        sum[c] += theirs * part[c];
+        part[c] *= mine;
+      }
+      for (int c = 0; c < SD_SPH_GRADIENTS; c += 4)
+        add_to_rows(sums + c, SD_SPH_GRADIENTS, j, part + c);
+    }
+    for (int c = 0; c < SD_SPH_GRADIENTS; c += 4)
+      add4(sums + SD_SPH_GRADIENTS * (size_t) i + c, over_lanes(sum + c));
+  }
+}
+
 /* W is the same for i and j, so each takes the other's row times W. */
 INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   const double *q, double *sums, sd_sph_kernel kernel, int many)

@@ -16,6 +16,7 @@ typedef struct {
   void (*middle)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *,
                  const sd_sph_near *);
   void (*diffusion)(const sd_sph_model *, const sd_sph_both *, const sd_sph_particles *, double *);
+  void (*gradients)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, double *);
   void (*weigh)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *, const double *,
                 double *);
   void (*before_walls)(const sd_sph_model *, const sd_sph_list *, const sd_sph_particles *,

@@ -1,6 +1,7 @@
 #include "sd_sph_order.h"
 
 #include "sd_sph_class.h"
+#include "sd_sph_rheology.h"
 
 #include <math.h>
 #include <string.h>
@@ -107,6 +108,19 @@ static double carry(const double *G, const symmetric *B, const double du[3], dou
     kick[a] = G[3 * a] * Bdu[0] + G[3 * a + 1] * Bdu[1] + G[3 * a + 2] * Bdu[2];
   }
   return trace;
+}
+
+double sd_sph_shear_rate(int dimension, const double sums[SD_SPH_GRADIENTS])
+{
+  const symmetric M = moment(dimension, sums), B = inverse(&M);
+  double L[3][3], square = 0.0;
+  for (int a = 0; a < 3; a++) times(&B, sums + 6 + 3 * a, L[a]);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      const double S = 0.5 * (L[a][b] + L[b][a]);
+      square += 2.0 * S * S;
+    }
+  return sqrt(square);
 }
 
 /* One particle after the other, each from its own row of sums. What the model does not ask for is

@@ -11,6 +11,8 @@
  *   central      m_a m_b 2 (D+2) mu / (rho_a rho_b) (v.d) / (r^2 + 0.001 h^2) g d: Monaghan 2005.
  *                Along d, so it keeps angular momentum and leaves solid rotation alone
  *   rate of a    drho_a = sum m_b g v.d   (the same sum for b: v.d does not change sign)
+ * With a viscosity mu_a of each particle mu is 2 mu_a mu_b / (mu_a + mu_b), for which the stress is continuous
+ * where mu jumps (Cleary & Monaghan 1999).
  * Source: Monaghan 1992, 2000. What a scheme changes:
  *   shift        F_a += V_a V_b g [ rho_a v_a (du_a.d) + rho_b v_b (du_b.d) ]: particles that are
  *                moved with v + du carry their momentum along; still F_b = - F_a
@@ -115,6 +117,9 @@ typedef struct {
   double mass;
   /* [n+1] k: of fluid k; ~k: of a wall before fluid k. NULL: all are of fluid 0 */
   const int *phase;
+  /* [n+1] the viscosity of each particle, sd_sph_rheology.h; row n: > 0. NULL: that of pairs of
+   * classes, mu of sd_sph_parameters, which is 1 otherwise */
+  const double *mu;
   /* [sd_sph_columns (n+1)] made by sd_sph_order.h: grad rho, rho | du, 0 | B xx yy zz xy | B xz yz,
    * 1 for walls, 0. Only with delta, shift and correction */
   const double *order;

@@ -127,6 +127,12 @@ void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
   loops()->diffusion(model, list, p, rate);
 }
 
+void sd_sph_velocity_gradients(const sd_sph_model *model, const sd_sph_list *list,
+                               const sd_sph_particles *p, double *sums)
+{
+  loops()->gradients(model, list, p, sums);
+}
+
 void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   const double *q, double *sums)
 {

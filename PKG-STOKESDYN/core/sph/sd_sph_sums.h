@@ -82,6 +82,15 @@ void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
 double sd_sph_corrected_forces(const sd_sph_model *model, const sd_sph_both *list,
                                const sd_sph_particles *p, double *f4, double *each);
 
+/* What the gradient of the velocity of each particle needs, over a half list: adds to the rows of sums
+ * [SD_SPH_GRADIENTS (n+1)]
+ *   0-5 M: xx yy zz xy xz yz   6-14 G = - sum V_b (v_a - v_b) g d^T, by rows   15 0
+ * over all neighbours, also those of other fluids and walls, which have the velocity that friction sees.
+ * grad v = G M^-1. */
+enum { SD_SPH_GRADIENTS = 16 };
+void sd_sph_velocity_gradients(const sd_sph_model *model, const sd_sph_list *list,
+                               const sd_sph_particles *p, double *sums);
+
 /* Adds sum_b W q_b to the rows of sums, both [4 (n+1)]; row n of q is 0. */
 void sd_sph_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   const double *q, double *sums);

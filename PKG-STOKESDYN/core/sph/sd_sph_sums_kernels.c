@@ -71,6 +71,12 @@ static void all_diffusion(const sd_sph_model *model, const sd_sph_both *list,
   BY_KERNEL(diffusion, model, list, p, rate);
 }
 
+static void all_gradients(const sd_sph_model *model, const sd_sph_list *list,
+                          const sd_sph_particles *p, double *sums)
+{
+  BY_KERNEL(gradients, model, list, p, sums);
+}
+
 static void all_weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                       const double *q, double *sums)
 {
@@ -84,7 +90,7 @@ static void all_before_walls(const sd_sph_model *model, const sd_sph_list *list,
   BY_KERNEL(before_walls, model, list, p, q, spins, sums);
 }
 
-const sd_sph_loops SD_KERNELS(sd_sph_loops) = {all_forces, all_slopes,    all_rates,
-                                               all_middle, all_diffusion, all_weigh,
-                                               all_before_walls};
+const sd_sph_loops SD_KERNELS(sd_sph_loops) = {all_forces,    all_slopes,    all_rates,
+                                               all_middle,    all_diffusion, all_gradients,
+                                               all_weigh,     all_before_walls};
 #endif
