@@ -129,9 +129,10 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
   stand(who, ambient);
   turn_shells();
   if (settings.everybody()) {
-    engine = split() ? &sd_mobility_ewald : &sd_mobility_all_pairs;
+    engine = engine_of_all();
     if (view() == SD_VIEW_NEAR) {
-      somebody_sees = ewald.count > (ewald.box.periodic || settings.wall.sign ? 0.0 : 1.0);
+      const double count = ewald.count + second_level.count;
+      somebody_sees = count > (ewald.box.periodic || settings.wall.sign ? 0.0 : 1.0);
       if (somebody_sees || settings.films > 0.0)
         surround(std::max(ewald.reach + 2.0 * extent() * most, settings.films * most),
                  "far_field: the largest radius, " + text(most));
@@ -200,7 +201,7 @@ void Scene::place(int n_all_or_copies)
 {
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
-  scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr};
+  scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr, &second_level};
   if (shells) {
     std::vector<double> rows = shells->sent(size()), all(10 * (size_t) n_all_or_copies + 10);
     if (cloud)

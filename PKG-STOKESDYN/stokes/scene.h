@@ -220,6 +220,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   int n_all = 0;
 
   sd_ewald ewald = {};
+  sd_ewald_level second_level = {};
   /* its parameters, as they were last told */
   std::string said;
   Since told;
@@ -235,6 +236,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool has_cutoff() const { return std::isfinite(settings.cutoff); }
   bool periodic() const;
   bool split();
+  const sd_mobility_engine *engine_of_all();
   sd_ewald_sizes sizes_of_all(double largest) const;
   sd_ewald_sizes measure(sd_ewald_box &box) const;
   void tell();

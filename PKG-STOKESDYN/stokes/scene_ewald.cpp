@@ -94,29 +94,40 @@ bool Scene::split()
   sd_ewald_box box = ewald.box;
   const sd_ewald_sizes sizes = measure(box);
   ewald.count = sizes.all.count;
+  second_level = {};
   if (sizes.all.count == 0.0) return must;
   const sd_wall &wall = settings.wall;
   const double all_pairs =
       sizes.all.count * sizes.all.count * (wall.sign ? SD_PAIR_AT_WALL : 1.0);
   const double tolerance = settings.far_field_tolerance;
-  const auto choose =
-      settings.positive && box.periodic ? sd_ewald_choose_positive : sd_ewald_choose;
-  const sd_status status = wall.sign
-      ? sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald)
-      : choose(&box, &sizes, width(), tolerance, &ewald);
+  sd_status status;
+  if (wall.sign)
+    status = sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald);
+  else if (settings.positive && box.periodic)
+    status = sd_ewald_choose_positive(&box, &sizes, width(), tolerance, &ewald);
+  else
+    status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
   ewald.box = box;
   if (status != SD_OK && must)
     voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
                " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
                text(box.edge[2]) + " at far_field_tolerance " + text(settings.far_field_tolerance) +
                ": " + sd_status_string(status));
-  const double seen = std::max(pow(ewald.reach, 3), ewald.large.count * pow(ewald.large.range, 3));
+  const double seen =
+      std::max(pow(ewald.reach, 3), second_level.count * pow(second_level.split.range, 3));
   const double images = 8.0 * sizes.all.count * seen / sd_ewald_volume(&box);
   if (box.periodic && !(images < MOST_IMAGES))
     voice.fail("keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
                ", is so large for the periodic box that it would see " + text(images) +
                " images; is it in other units?");
-  return must || (status == SD_OK && sd_ewald_cost(&ewald) < all_pairs);
+  return must || (status == SD_OK && sd_ewald_levels_cost(&ewald, &second_level) < all_pairs);
+}
+
+/* The engine of a scene in which everybody sees everybody */
+const sd_mobility_engine *Scene::engine_of_all()
+{
+  if (!split()) return &sd_mobility_all_pairs;
+  return second_level.from > 0.0 ? &sd_mobility_levels : &sd_mobility_ewald;
 }
 
 static std::string parameters_of(const sd_ewald &e)
@@ -131,12 +142,13 @@ void Scene::tell()
 {
   if (!told.first_in(epochs.run)) return;
   const sd_ewald &e = ewald;
-  std::string now = "Far field by Ewald sums of " + text(e.count) + " spheres in " +
+  std::string now = "Far field by Ewald sums of " + text(e.count + second_level.count) +
+      " spheres in " +
       (e.box.periodic ? "the periodic box" : "an open box around them") +
       (e.images.wall.sign ? " and their images in the wall" : "") + ": " + parameters_of(e);
-  if (e.large.from > 0.0)
-    now += "; " + text(e.large.count) + " spheres of radius " + text(e.large.from) +
-        " and more on a second level: " + parameters_of(sd_ewald_of_large(&e));
+  if (second_level.from > 0.0)
+    now += "; " + text(second_level.count) + " spheres of radius " + text(second_level.from) +
+        " and more on a second level: " + parameters_of(second_level.split);
   now += "; far_field_tolerance " + text(e.tolerance) + "\n";
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;

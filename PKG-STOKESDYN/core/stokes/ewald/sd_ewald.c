@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
-#include "sd_ewald_cost.h"
+#include "sd_ewald_rule_internal.h"
 
 static const double TIGHTEST = 1e-13, LOOSEST = 1e-1;
 
@@ -69,8 +69,8 @@ static int sound(const sd_ewald_box *b, const sd_ewald_class *s, double toleranc
 }
 
 /* How H falls: as a Gaussian, or to 0 at a band (sd_radial.h). For the same error a band needs less than
- * half of the grid. The functions of a Gaussian are known in closed form, which an open box, a second level
- * and the tightest tolerances want. */
+ * half of the grid. The functions of a Gaussian are known in closed form, which an open box, two levels
+ * (sd_ewald_levels.h) and the tightest tolerances want. */
 typedef enum { GAUSSIAN, BAND } fall;
 
 /* xi times the largest radius where the parts need not be positive */
@@ -201,31 +201,6 @@ static void split(sd_ewald *e, const splitting *by, double *y)
   e->spacing = by->fall == BAND ? e->range / band_spacings(by, t) : gaussian_spacing(e->xi, *y);
 }
 
-/* Of the tolerance, for the second level: all spheres are so many more than the large ones that their
- * rms says nothing of those, whose velocities shall be as good. */
-static const double LARGE_TOO = 0.12;
-
-/* The second level has no range of its own: `times` is xi times the largest sphere, or less where two of
- * these that overlap would be beyond the range. */
-static void split_large(sd_ewald *e, const sd_ewald_class *s, int width, double times, double *y)
-{
-  splitting by = splitting_for(GAUSSIAN, s, width, LARGEST);
-  by.equal = 0; /* also if they are: all others are there */
-  double t = LARGE_TOO * e->tolerance;
-  *y = gaussian_y(&e->box, t);
-  for (int k = 0; k < 6; k++) {
-    t = tightened(&by, LARGE_TOO * e->tolerance, times / s->largest * *y);
-    *y = gaussian_y(&e->box, t);
-    times = fmin(times, 0.5 * *y);
-  }
-  e->large.count = s->count;
-  e->large.largest = s->largest;
-  e->large.xi = times / s->largest;
-  e->large.range = *y / e->large.xi;
-  e->large.points = window_points(t);
-  e->large.beta = 2.42 * e->large.points;
-}
-
 /* Spacing at most h. An open box has room for the windows of spheres at its faces; the grid around it
  * is twice as large. */
 static sd_status lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid)
@@ -275,51 +250,40 @@ static sd_status one_level(sd_ewald *e, fall how, const sd_ewald_class *s, int w
   return status;
 }
 
-static sd_status two_levels(sd_ewald *e, const sd_ewald_class *small, const sd_ewald_class *large,
-                            int width, double times)
+sd_status sd_ewald_gaussian(const sd_ewald_box *box, const sd_ewald_class *s, int width,
+                            double tolerance, sd_ewald *out)
 {
-  double y;
-  const sd_status status = one_level(e, GAUSSIAN, small, width, LARGEST);
-  split_large(e, large, width, times, &y);
-  if (status != SD_OK || e->large.xi >= e->xi) return SD_ENOMEMORY;
-  return lay_grid(&e->box, gaussian_spacing(e->large.xi, y), e->large.points, &e->large.spacing,
-                  e->large.grid);
+  start(out, box, s->count, tolerance);
+  return one_level(out, GAUSSIAN, s, width, LARGEST);
 }
 
-static void add_class(sd_ewald_class *sum, const sd_ewald_class *s)
+sd_status sd_ewald_gaussian_at(const sd_ewald_box *box, const sd_ewald_class *s, int width,
+                               double times, double tolerance, sd_ewald *out)
+{
+  splitting by = splitting_for(GAUSSIAN, s, width, LARGEST);
+  by.equal = 0; /* also if they are: there are others */
+  start(out, box, s->count, tolerance);
+  double t = tolerance, y = gaussian_y(box, t);
+  for (int k = 0; k < 6; k++) {
+    t = tightened(&by, tolerance, times / s->largest * y);
+    y = gaussian_y(box, t);
+    times = fmin(times, 0.5 * y);
+  }
+  out->largest = s->largest;
+  out->a_ref = by.a_ref;
+  out->xi = times / s->largest;
+  out->range = out->reach = y / out->xi;
+  out->points = window_points(t);
+  out->beta = 2.42 * out->points;
+  return lay_grid(box, gaussian_spacing(out->xi, y), out->points, &out->spacing, out->grid);
+}
+
+void sd_ewald_add_class(sd_ewald_class *sum, const sd_ewald_class *s)
 {
   sum->count += s->count;
   sum->squares += s->squares;
   sum->fourths += s->fourths;
   sum->largest = fmax(sum->largest, s->largest);
-}
-
-/* Two levels that cost less than the one of `out` take its place. Where they part, and xi times the
- * largest sphere, are those that cost least: a larger xi has fewer pairs and wider windows. */
-static sd_status try_two_levels(const sd_ewald_sizes *sizes, int width, sd_ewald *out,
-                                sd_status status)
-{
-  static const double times[] = {1.5, 2.0};
-  double least = status == SD_OK ? 0.8 * sd_ewald_cost(out) : INFINITY;
-  sd_ewald_class large = {0};
-  for (int k = 0; k + 1 < SD_EWALD_OCTAVES; k++) {
-    add_class(&large, sizes->octave + k);
-    if (!(sizes->octave[k].count > 0.0)) continue;
-    sd_ewald_class small = {0};
-    for (int l = k + 1; l < SD_EWALD_OCTAVES; l++) add_class(&small, sizes->octave + l);
-    for (int m = 0; m < 2 && small.count > 0.0; m++) {
-      sd_ewald e;
-      start(&e, &out->box, out->count, out->tolerance);
-      if (two_levels(&e, &small, &large, width, times[m]) != SD_OK) continue;
-      e.large.from = ldexp(large.largest, -k - 1);
-      const double cost = sd_ewald_cost(&e);
-      if (!(cost < least)) continue;
-      least = cost;
-      status = SD_OK;
-      memcpy(out, &e, sizeof(e));
-    }
-  }
-  return status;
 }
 
 /* Everything but the splitting; *some: are there spheres to split for? */
@@ -337,20 +301,12 @@ static sd_status prepare(const sd_ewald_box *box, const sd_ewald_class *all, dou
   return SD_OK;
 }
 
-/* One level and two are compared as Gaussians, whose costs are known well; two also sum the velocities of the
- * few large spheres as well as those of all. */
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                           double tolerance, sd_ewald *out)
 {
   int some;
-  sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
-  if (!some) return status;
-  status = one_level(out, GAUSSIAN, &sizes->all, width, LARGEST);
-  status = try_two_levels(sizes, width, out, status);
-  if (fall_for(out) == GAUSSIAN || out->large.from > 0.0) return status;
-  const sd_ewald_box own = out->box;
-  start(out, &own, out->count, out->tolerance);
-  return one_level(out, BAND, &sizes->all, width, LARGEST);
+  const sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
+  return some ? one_level(out, fall_for(out), &sizes->all, width, LARGEST) : status;
 }
 
 sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
@@ -507,22 +463,6 @@ sd_status sd_ewald_choose_at_points(const sd_ewald_box *box, const sd_ewald_size
   return SD_OK;
 }
 
-sd_ewald sd_ewald_of_large(const sd_ewald *e)
-{
-  sd_ewald large = *e;
-  const sd_ewald_large *from = &e->large;
-  large.xi = from->xi;
-  large.range = from->range;
-  large.largest = from->largest;
-  large.reach = from->range;
-  large.spacing = from->spacing;
-  large.beta = from->beta;
-  large.points = from->points;
-  memcpy(large.grid, from->grid, sizeof(large.grid));
-  memset(&large.large, 0, sizeof(large.large));
-  return large;
-}
-
 /* Of spheres up to the radius `largest`, which octave is one of radius a > 0? */
 static int octave_of(double largest, double a)
 {
@@ -535,8 +475,8 @@ void sd_ewald_count(sd_ewald_sizes *s, double a)
 {
   const double a2 = a * a;
   const sd_ewald_class one = {1.0, a2, a2 * a2, a};
-  add_class(&s->all, &one);
-  add_class(s->octave + octave_of(s->all.largest, a), &one);
+  sd_ewald_add_class(&s->all, &one);
+  sd_ewald_add_class(s->octave + octave_of(s->all.largest, a), &one);
 }
 
 int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const double *hi,

@@ -6,7 +6,7 @@
  *   wave part = 1/V sum_{k != 0} exp(ik.r) H(k)/(eta k^2) (I - kk/k^2) g_i g_j
  *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = k^2/(4 xi^2),   g_i = 1 - (a_i^2 - a_ref^2) k^2/6
  *
- * In a periodic box of one level x grows faster than that, so that H ends at a wave (sd_radial.h), which
+ * In a periodic box x grows faster than that, so that H ends at a wave (sd_radial.h), which
  * needs less than half of the grid. H is >= 0 with either, and draws noise; and the larger x is, the
  * more positive is the near part.
  *
@@ -44,15 +44,6 @@ static inline double sd_ewald_volume(const sd_ewald_box *box)
 /* 2 pi times the reciprocal edges, 1/length: row d is across the other two edges and has 2 pi along
  * edge d, so that the wave of numbers n has k = n_1 k[0] + n_2 k[1] + n_3 k[2]. */
 void sd_ewald_reciprocal(const sd_ewald_box *box, double k[3][3]);
-
-/* The second level: a splitting for the spheres of radius `from` and larger. They meet each other
- * and all the rest by it, the rest each other by the first. */
-typedef struct {
-  /* 0: there is no such level */
-  double from, count;
-  double xi, range, largest, spacing, beta;
-  int grid[3], points;
-} sd_ewald_large;
 
 /* Images in a plane wall, of an open box: they have a smooth part of their own on the same grid
  * (sd_image_wave.h), and what it leaves of a pair ends at a range, from a sphere to an image. */
@@ -92,9 +83,9 @@ typedef struct {
   double beta;
   /* what was asked for: rms error of U over rms of F/(6 pi eta a) */
   double tolerance;
-  /* With it all that is above, but for count and a_ref, is of the smaller spheres. H of the first
-   * level is then less that of the second, whose waves all spheres make. */
-  sd_ewald_large large;
+  /* xi of a smoother splitting, whose waves these spheres have too: this one's are less by them
+   * (sd_ewald_levels.h). 0: there is none */
+  double taken;
   sd_ewald_images images;
   sd_ewald_slab slab;
 } sd_ewald;
@@ -113,9 +104,9 @@ typedef struct {
   double count, squares, fourths, largest;
 } sd_ewald_class;
 
-/* All of them; and, for a sum of two levels, by octaves: k has those from largest/2^(k + 1) to
- * largest/2^k, that one not included except in octave 0, and the last all that are smaller. Octaves
- * that are left 0: one level. */
+/* All of them; and by octaves, which only sd_ewald_levels.h reads: k has those from
+ * largest/2^(k + 1) to largest/2^k, that one not included except in octave 0, and the last all that
+ * are smaller. */
 typedef struct {
   sd_ewald_class all, octave[SD_EWALD_OCTAVES];
 } sd_ewald_sizes;
@@ -123,26 +114,23 @@ typedef struct {
 /* One more sphere; all.largest is known already. */
 void sd_ewald_count(sd_ewald_sizes *s, double a);
 
-/* The second level as a splitting of its own */
-sd_ewald sd_ewald_of_large(const sd_ewald *e);
-
-/* The rule, for a box and its spheres. Two levels where they cost less (sd_ewald_cost.h).
+/* The rule, for a box and its spheres.
  *   width       3, or 6 with torques
  *   tolerance   1e-13 ... 1e-1; outside of it the nearest of these is taken
- * Waves end at a band in a periodic box of one level, at 1e-10 and looser tolerances.
+ * Waves end at a band in a periodic box, at 1e-10 and looser tolerances.
  * SD_OK, SD_ENOTFINITE for a box without volume, numbers that are not finite or a tolerance that
  * is not > 0, SD_ENOMEMORY for a grid of more than 2^31 points. */
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                           double tolerance, sd_ewald *out);
 
-/* The same for random numbers whose covariance is the sum: one level, and xi times the largest radius
- * at most SD_EWALD_POSITIVE, so that wave part and near part are each positive definite in every
+/* The same for random numbers whose covariance is the sum: xi times the largest radius is at most
+ * SD_EWALD_POSITIVE, so that wave part and near part are each positive definite in every
  * scene that was tried, overlaps too (at 0.7 some were not). */
 sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                                    double tolerance, sd_ewald *out);
 
 /* The same for spheres in an open box above a wall, with their images (sd_image_kernel.h); forces
- * alone, and one level. */
+ * alone. */
 sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out);
 
@@ -155,9 +143,8 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
 sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double span, double gap,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out);
 
-/* The flow at points of a periodic box, which have no size: one level, whose waves end at `band`, for a
- * shorter range on a coarser grid. points: how many; only `all` of the sizes is read, and all radii may
- * be 0. */
+/* The flow at points of a periodic box, which have no size: waves end at `band`, for a shorter range on
+ * a coarser grid. points: how many; only `all` of the sizes is read, and all radii may be 0. */
 sd_status sd_ewald_choose_at_points(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                                     double points, double tolerance, sd_ewald *out);
 

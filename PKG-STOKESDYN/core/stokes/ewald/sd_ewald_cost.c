@@ -9,10 +9,7 @@
  * transforms forth and three back. */
 static const double NEAR_PAIR = 5.8, WINDOW_POINT = 3.0, GRID_POINT = 40.0;
 
-/* A pair with a large sphere is kept as its tensor, made once a solve. */
-static const double LARGE_PAIR = 30.0;
-
-static double pairs(const sd_ewald *e, double targets, double sources, double range)
+double sd_ewald_near_pairs(const sd_ewald *e, double targets, double sources, double range)
 {
   const double ball = 4.0 / 3.0 * SD_PI * range * range * range;
   const double share = ball / sd_ewald_volume(&e->box); /* more than 1: images */
@@ -38,19 +35,19 @@ static const double WALL_GRID = 1.8, IMAGE_PAIR = 8.0;
 static double image_pairs(const sd_ewald *e)
 {
   const double height = fmax(e->box.edge[e->images.wall.axis], 0.5 * e->images.range);
-  return 0.1875 * e->images.range / height * pairs(e, e->count, e->count, e->images.range);
+  return 0.1875 * e->images.range / height * sd_ewald_near_pairs(e, e->count, e->count, e->images.range);
+}
+
+double sd_ewald_grid_cost(const sd_ewald *e)
+{
+  return windows(e->count, e->points) + transforms(e, e->grid);
 }
 
 double sd_ewald_cost(const sd_ewald *e)
 {
-  const sd_ewald_large *large = &e->large;
-  const double first = e->count - large->count;
-  double cost = NEAR_PAIR * pairs(e, first, first, e->range) + windows(first, e->points) +
-                transforms(e, e->grid);
-  if (e->images.wall.sign)
-    cost += (WALL_GRID - 1.0) * transforms(e, e->grid) + IMAGE_PAIR * image_pairs(e);
-  if (large->from > 0.0)
-    cost += LARGE_PAIR * pairs(e, e->count, large->count, large->range) +
-            windows(e->count, large->points) + transforms(e, large->grid);
-  return cost;
+  const double near = NEAR_PAIR * sd_ewald_near_pairs(e, e->count, e->count, e->range);
+  const double cost = near + sd_ewald_grid_cost(e);
+  return e->images.wall.sign
+      ? cost + (WALL_GRID - 1.0) * transforms(e, e->grid) + IMAGE_PAIR * image_pairs(e)
+      : cost;
 }

@@ -14,6 +14,10 @@ SD_BEGIN_C
  * as much, and here the images are in. */
 double sd_ewald_cost(const sd_ewald *e);
 
+/* Of it windows and grid; and how many pairs of so many targets and sources are within a range */
+double sd_ewald_grid_cost(const sd_ewald *e);
+double sd_ewald_near_pairs(const sd_ewald *e, double targets, double sources, double range);
+
 /* With as many spheres or fewer all pairs cost less, whatever the splitting: the smallest windows, of
  * 4^3 points, cost that much a sphere. */
 enum { SD_EWALD_FEWEST = 192 };

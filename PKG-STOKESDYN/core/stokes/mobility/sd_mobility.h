@@ -12,7 +12,7 @@
 
 #include <stddef.h>
 
-#include "sd_ewald.h"
+#include "sd_ewald_levels.h"
 #include "sd_product.h"
 #include "sd_random.h"
 #include "sd_slab.h"
@@ -31,11 +31,12 @@ typedef enum { SD_VIEW_LIST, SD_VIEW_NEAR, SD_VIEW_ALL } sd_view;
 
 /* How the spheres interact: what is known before they are placed. law.range: of the taper. width 3
  * or 6 as in sd_product.h. ewald, slab: of the engines that split the sum, which have no other law than
- * RPY without taper, and walls of their own. */
+ * RPY without taper, and walls of their own; second: of that with two levels. */
 typedef struct {
   sd_law law;
   int width;
   const sd_ewald *ewald;
+  const sd_ewald_level *second;
   const sd_slab *slab;
 } sd_mobility_how;
 
@@ -79,6 +80,9 @@ extern const sd_mobility_engine sd_mobility_list;
  * when that has changed, and otherwise only reads positions; SD_ENOTFINITE on all ranks if a sphere
  * is nowhere, or outside of an open box. */
 extern const sd_mobility_engine sd_mobility_ewald;
+/* The same where few spheres are far larger than the rest (sd_ewald_levels.h): it holds the one above for
+ * the small spheres, and adds what the large ones do and feel. how.second: its second level. */
+extern const sd_mobility_engine sd_mobility_levels;
 /* The same in a box that is periodic in two directions, above a floor, in a slit or with nothing beyond:
  * how.slab, width 3; SD_ENOTFINITE on all ranks if a sphere is nowhere, or at a height that how.slab has no
  * room for. */

@@ -1,5 +1,4 @@
-/* Ewald sums: a near part by pairs, a wave part by FFT, and what both leave out. With two levels
- * (sd_ewald.h) each has a wave part; the first is of the small spheres alone. */
+/* Ewald sums: a near part by pairs, a wave part by FFT, and what both leave out. */
 #include "sd_mobility.h"
 
 #include <math.h>
@@ -7,7 +6,6 @@
 #include <string.h>
 
 #include "sd_ewald_image_pairs.h"
-#include "sd_ewald_large_pairs.h"
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
 #include "sd_room.h"
@@ -17,19 +15,13 @@ typedef struct {
   sd_ewald ewald;
   int width, ready;
   sd_world world;
-  int levels;
-  sd_ewald_waves waves[2];
+  sd_ewald_waves waves;
   sd_ewald_pairs pairs;
-  sd_ewald_large_pairs large_pairs;
   sd_ewald_image_pairs image_pairs;
-  double tail[2][3];
-  /* this rank's spheres with radius: [small] in order of the near part's targets, then those of the
-   * second level */
-  int *sphere, small, own;
+  double tail[3];
+  /* [own] this rank's spheres with radius in order of the near part's targets */
+  int *sphere, own;
   size_t sphere_room;
-  /* [n_all] two levels: radii, 0 of the large ones */
-  double *small_a;
-  size_t small_room;
   /* [3 n_all] wall: centres at heights of at least the radii */
   double *stand;
   size_t stand_room;
@@ -54,15 +46,9 @@ static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
   }
   const struct sd_ewald_kernels *kernels =
       SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
-  const sd_ewald level[2] = {*how, sd_ewald_of_large(how)};
-  e->levels = how->large.from > 0.0 ? 2 : 1;
   sd_ewald_pairs_create(&e->pairs, how, kernels, e->width);
-  if (e->levels == 2) sd_ewald_large_pairs_create(&e->large_pairs, how, e->width);
-  sd_status status = SD_OK;
-  for (int l = 0; l < e->levels && status == SD_OK; l++) {
-    sd_radial_tail(level + l, e->tail[l]);
-    status = sd_ewald_waves_create(e->waves + l, level + l, kernels, e->width, &s->world);
-  }
+  sd_radial_tail(how, e->tail);
+  const sd_status status = sd_ewald_waves_create(&e->waves, how, kernels, e->width, &s->world);
   e->ready = status == SD_OK;
   return status;
 }
@@ -81,18 +67,6 @@ static int make_room(ewald *e, int n, size_t ghost_numbers)
       sd_reserve(&e->ghosts, sizeof(double), ghost_numbers, &e->ghost_room);
 }
 
-/* Without the large spheres, of which the first level knows nothing */
-static int hide_large(ewald *e, const sd_mobility_scene *s, sd_spheres *small)
-{
-  *small = e->spheres;
-  if (e->levels == 1) return 1;
-  if (!sd_reserve(&e->small_a, sizeof(double), (size_t) s->n_all, &e->small_room)) return 0;
-  for (int i = 0; i < s->n_all; i++)
-    e->small_a[i] = s->spheres.a[i] < e->ewald.large.from ? s->spheres.a[i] : 0.0;
-  small->a = e->small_a;
-  return 1;
-}
-
 /* Above a wall the whole matrix is made with heights of at least the radii (sd_wall.h). */
 static int keep_off_wall(ewald *e, const sd_mobility_scene *s)
 {
@@ -108,39 +82,8 @@ static int keep_off_wall(ewald *e, const sd_mobility_scene *s)
 
 static void list_spheres(ewald *e)
 {
-  e->own = e->small = e->pairs.n;
+  e->own = e->pairs.n;
   for (int i = 0; i < e->pairs.n; i++) e->sphere[i] = e->pairs.sphere[e->pairs.target[i]];
-  for (int i = 0; i < e->n && e->levels == 2; i++)
-    if (e->spheres.a[i] >= e->ewald.large.from) e->sphere[e->own++] = i;
-}
-
-/* All bricks, by a sum over the ranks, which also carries who has failed: then all fail. Of all ranks
- * of the world, also where this one has no grid. brick [levels][6] */
-static sd_status share_bricks(ewald *e, const int *brick, sd_status status)
-{
-  const int ranks = sd_world_ranks(&e->world), me = sd_world_me(&e->world), levels = e->levels;
-  const int failed = 6 * ranks * levels, many = failed + 2;
-  double *values = calloc((size_t) many, sizeof(double));
-  int *bricks = calloc((size_t) many, sizeof(int));
-  if (!values || !bricks) status = SD_ENOMEMORY;
-  for (int l = 0; l < levels && values && status == SD_OK; l++)
-    for (int k = 0; k < 6; k++) values[6 * (l * ranks + me) + k] = brick[6 * l + k];
-  if (values) {
-    values[failed] = status == SD_ENOMEMORY;
-    values[failed + 1] = status != SD_OK && status != SD_ENOMEMORY;
-  }
-  if (values && e->world.sum) {
-    const sd_status said = e->world.sum(e->world.ctx, values, many);
-    if (status == SD_OK) status = said;
-  }
-  if (status == SD_OK && values[failed + 1] > 0.0) status = SD_ENOTFINITE;
-  if (status == SD_OK && values[failed] > 0.0) status = SD_ENOMEMORY;
-  for (int k = 0; k < failed && status == SD_OK; k++) bricks[k] = (int) lrint(values[k]);
-  for (int l = 0; l < levels && status == SD_OK; l++)
-    status = sd_ewald_waves_place(e->waves + l, bricks + 6 * ranks * l);
-  free(values);
-  free(bricks);
-  return status;
 }
 
 static int all_finite(const sd_mobility_scene *s)
@@ -160,85 +103,67 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   if (changed(e, s)) status = make_tables(e, s);
   e->world = s->world;
   e->ewald.box = s->how.ewald->box;
-  for (int l = 0; l < 2; l++) {
-    e->waves[l].grid.world = s->world;
-    sd_ewald_waves_stand(e->waves + l, &e->ewald.box);
-  }
+  e->waves.grid.world = s->world;
+  sd_ewald_waves_stand(&e->waves, &e->ewald.box);
   if (!(e->ewald.count > 0.0)) return status;
-  int brick[12] = {0};
-  sd_spheres small;
+  int brick[6] = {0};
   if (status == SD_OK && !all_finite(s)) status = SD_ENOTFINITE;
-  if (status == SD_OK && (!keep_off_wall(e, s) || !hide_large(e, s, &small)))
-    status = SD_ENOMEMORY;
-  if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &small, s->n, s->n_all);
+  if (status == SD_OK && !keep_off_wall(e, s)) status = SD_ENOMEMORY;
+  if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &e->spheres, s->n, s->n_all);
   if (status == SD_OK && e->ewald.images.wall.sign)
     status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald, &e->spheres, s->n, s->n_all);
   if (status == SD_OK && !make_room(e, s->n, (size_t) e->width * (size_t) (s->n_all - s->n)))
     status = SD_ENOMEMORY;
   if (status == SD_OK) list_spheres(e);
-  for (int l = 0; l < e->levels && status == SD_OK; l++)
-    status = sd_ewald_waves_find(e->waves + l, &e->spheres, e->sphere, l == 0 ? e->small : e->own,
-                                 brick + 6 * l);
-  if (e->levels == 2) { /* on all ranks, also where something has failed */
-    const sd_status large = sd_ewald_large_pairs_place(&e->large_pairs, &e->spheres, e->sphere,
-                                                       status == SD_OK ? e->own : 0, &e->world);
-    if (status == SD_OK) status = large;
-  }
-  return share_bricks(e, brick, status);
+  if (status == SD_OK)
+    status = sd_ewald_waves_find(&e->waves, &e->spheres, e->sphere, e->own, brick);
+  return sd_ewald_waves_meet(&e->waves, brick, status, &e->world);
 }
 
 /* --- product --- */
 
-/* Sums over all spheres of w F, b w F and w T: what is far is felt as a mean. Those of the second
- * level apart: sums [2][9]. */
+/* Sums [9] over all spheres of w F, b w F and w T: what is far is felt as a mean. */
 static sd_status sums_of(const ewald *e, const double *F, double *sums)
 {
   const long m = e->width;
-  memset(sums, 0, 18 * sizeof(double));
+  memset(sums, 0, 9 * sizeof(double));
   for (int i = 0; i < e->own; i++) {
     const long j = e->sphere[i];
     const double w = e->spheres.w[j], b = sd_ewald_b(&e->ewald, e->spheres.a[j]);
-    double *s = sums + (i < e->small ? 0 : 9);
     for (int d = 0; d < 3; d++) {
-      s[d] += w * F[m * j + d];
-      s[3 + d] += w * b * F[m * j + d];
-      if (m == 6) s[6 + d] += w * F[m * j + 3 + d];
+      sums[d] += w * F[m * j + d];
+      sums[3 + d] += w * b * F[m * j + d];
+      if (m == 6) sums[6 + d] += w * F[m * j + 3 + d];
     }
   }
-  return e->world.sum ? e->world.sum(e->world.ctx, sums, 9 * e->levels) : SD_OK;
+  return sd_world_sum(&e->world, sums, 9);
 }
 
 /* u += w rows */
-static void add_waves(const ewald *e, int level, const double *rows, double *u)
+static void add_waves(const ewald *e, const double *rows, double *u)
 {
   const long m = e->width;
-  const sd_ewald_waves *waves = e->waves + level;
-  for (int i = 0; i < waves->n; i++) {
+  for (int i = 0; i < e->own; i++) {
     const long j = e->sphere[i];
     for (int d = 0; d < m; d++) u[m * j + d] += e->spheres.w[j] * rows[m * i + d];
   }
 }
 
-/* u += w (mean of what is beyond the range). Two small spheres have the range of the first level, any
- * others that of the second. */
-static void add_means(const ewald *e, const double *sums, double *u)
+/* u += w (mean of what is beyond the range) */
+static void add_means(const ewald *e, const double *S, double *u)
 {
   const long m = e->width;
-  const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box);
+  const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box), *C = e->tail;
   for (int i = 0; i < e->own; i++) {
     const long j = e->sphere[i];
     const double w = e->spheres.w[j], b = sd_ewald_b(&e->ewald, e->spheres.a[j]);
-    for (int l = 0; l < e->levels; l++) {
-      const double *C = e->tail[i < e->small ? l : 1], *S = sums + 9 * l;
-      for (int d = 0; d < 3; d++)
-        u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
-      for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
-    }
+    for (int d = 0; d < 3; d++)
+      u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
+    for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
   }
 }
 
-/* u = what is near, of both levels; and the sums for what is far, of a periodic box. There are
- * spheres. */
+/* u = what is near; and the sums for what is far, of a periodic box. There are spheres. */
 static sd_status near_part(ewald *e, const double *F, double *u, double *sums)
 {
   sd_status status = e->ewald.box.periodic ? sums_of(e, F, sums) : SD_OK;
@@ -248,9 +173,7 @@ static sd_status near_part(ewald *e, const double *F, double *u, double *sums)
   sd_ewald_pairs_apply(&e->pairs, e->n, F, e->ghosts, u);
   if (e->ewald.images.wall.sign)
     sd_ewald_image_pairs_apply(&e->image_pairs, e->n, F, e->ghosts, u);
-  if (e->levels == 2)
-    status = sd_ewald_large_pairs_apply(&e->large_pairs, &e->spheres, e->sphere, &e->world, F, u);
-  return status;
+  return SD_OK;
 }
 
 /* Free between two products of the near part, and longer than a row for each of our spheres */
@@ -267,16 +190,14 @@ static void clear(const ewald *e, double *u)
 static sd_status apply(void *state, const double *F, double *u)
 {
   ewald *e = state;
-  double sums[18], *rows = rows_of_waves(e);
+  double sums[9], *rows = rows_of_waves(e);
   if (!(e->ewald.count > 0.0)) {
     clear(e, u);
     return SD_OK;
   }
   sd_status status = near_part(e, F, u, sums);
-  for (int l = 0; l < e->levels && status == SD_OK; l++) {
-    status = sd_ewald_waves_apply(e->waves + l, &e->spheres, F, rows);
-    if (status == SD_OK) add_waves(e, l, rows, u);
-  }
+  if (status == SD_OK) status = sd_ewald_waves_apply(&e->waves, &e->spheres, F, rows);
+  if (status == SD_OK) add_waves(e, rows, u);
   if (status == SD_OK && e->ewald.box.periodic) add_means(e, sums, u);
   return status;
 }
@@ -286,14 +207,14 @@ static sd_status apply(void *state, const double *F, double *u)
 static int divides(const void *state)
 {
   const ewald *e = state;
-  return e->ewald.count > 0.0 && e->ewald.box.periodic && e->levels == 1 &&
+  return e->ewald.count > 0.0 && e->ewald.box.periodic && e->ewald.taken == 0.0 &&
       e->ewald.xi * e->ewald.largest <= SD_EWALD_POSITIVE * (1.0 + 1e-9);
 }
 
 static sd_status apply_rest(void *state, const double *F, double *u)
 {
   ewald *e = state;
-  double sums[18];
+  double sums[9];
   const sd_status status = near_part(e, F, u, sums);
   if (status == SD_OK) add_means(e, sums, u);
   return status;
@@ -304,8 +225,8 @@ static sd_status draw(void *state, const sd_random_key *key, double *u)
   ewald *e = state;
   clear(e, u);
   double *rows = rows_of_waves(e);
-  const sd_status status = sd_ewald_waves_draw(e->waves, key, rows);
-  if (status == SD_OK) add_waves(e, 0, rows, u);
+  const sd_status status = sd_ewald_waves_draw(&e->waves, key, rows);
+  if (status == SD_OK) add_waves(e, rows, u);
   return status;
 }
 
@@ -313,11 +234,9 @@ static void release(void *state)
 {
   ewald *e = state;
   sd_ewald_pairs_free(&e->pairs);
-  sd_ewald_large_pairs_free(&e->large_pairs);
   sd_ewald_image_pairs_free(&e->image_pairs);
-  for (int l = 0; l < 2; l++) sd_ewald_waves_free(e->waves + l);
+  sd_ewald_waves_free(&e->waves);
   free(e->sphere);
-  free(e->small_a);
   free(e->stand);
   free(e->ghosts);
 }

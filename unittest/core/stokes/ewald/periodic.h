@@ -15,6 +15,7 @@ typedef struct {
   double *x, *a, *w; /* [n_all], images after the spheres */
   int *owner;        /* [n_all] whose image it is */
   sd_ewald ewald;
+  sd_ewald_level second; /* from 0: there is none */
   sd_mobility omega;
 } periodic;
 
@@ -109,22 +110,37 @@ static inline void periodic_images(periodic *p, const double *x, const double *a
         }
 }
 
-/* With a splitting that is given */
-static inline void periodic_place(periodic *p, const double *x, const double *a, const double *w, int n, int width,
-                                  const sd_ewald *how)
+/* The engine of one level or of two */
+static inline const sd_mobility_engine *periodic_engine(const sd_ewald_level *second)
+{
+  return second->from > 0.0 ? &sd_mobility_levels : &sd_mobility_ewald;
+}
+
+/* With two levels that are given */
+static inline void periodic_place_levels(periodic *p, const double *x, const double *a, const double *w, int n, int width,
+                                         const sd_ewald *first, const sd_ewald_level *second)
 {
   memset(p, 0, sizeof(*p));
   p->n = n;
   p->width = width;
-  p->ewald = *how;
+  p->ewald = *first;
+  p->second = *second;
   periodic_images(p, x, a, w);
   sd_mobility_scene scene = {
-      .how = {.law = {.tensor = SD_TENSOR_RPY}, .width = width, .ewald = &p->ewald},
+      .how = {.law = {.tensor = SD_TENSOR_RPY}, .width = width, .ewald = &p->ewald, .second = &p->second},
                              .n = n,
                              .n_all = p->n_all,
                              .spheres = {p->x, p->a, p->w},
                              .world = {.ctx = p, .refresh = periodic_refresh}};
-  assert_int_equal(sd_mobility_place(&p->omega, &sd_mobility_ewald, &scene), SD_OK);
+  assert_int_equal(sd_mobility_place(&p->omega, periodic_engine(second), &scene), SD_OK);
+}
+
+/* With a splitting that is given */
+static inline void periodic_place(periodic *p, const double *x, const double *a, const double *w, int n, int width,
+                                  const sd_ewald *how)
+{
+  const sd_ewald_level none = {0};
+  periodic_place_levels(p, x, a, w, n, width, how, &none);
 }
 
 static inline void periodic_free(periodic *p)

@@ -5,7 +5,7 @@
 #define PREDICTED_H
 
 #include "sd_constants.h"
-#include "sd_ewald.h"
+#include "sd_ewald_levels.h"
 #include "sd_radial.h"
 #include "sd_window.h"
 
@@ -138,22 +138,21 @@ static double wave_error(const sd_ewald *e, const moments *m, double n)
 
 /* What sources do to targets, over the share that these have among all: F = 6 pi a times a bare
  * velocity of 1. */
-static double share_of(const sd_ewald *e, const sd_ewald_class *targets,
+static double share_of(const sd_ewald *e, double all, const sd_ewald_class *targets,
                        const sd_ewald_class *sources, int waves)
 {
   if (!(targets->count > 0.0) || !(sources->count > 0.0)) return 0.0;
   const moments m = moments_of(e, targets, sources);
   const double n = sources->count / sd_ewald_volume(&e->box);
   const double square = waves ? wave_error(e, &m, n) : n * near_error(e, &m);
-  return square * sources->squares / sources->count * targets->count / e->count;
+  return square * sources->squares / sources->count * targets->count / all;
 }
 
-static void divide(const sd_ewald *e, const sd_ewald_sizes *s, sd_ewald_class *small,
-                   sd_ewald_class *large)
+static void divide(double from, const sd_ewald_sizes *s, sd_ewald_class *small, sd_ewald_class *large)
 {
   for (int k = 0; k < SD_EWALD_OCTAVES; k++) {
     const sd_ewald_class *o = s->octave + k;
-    sd_ewald_class *to = ldexp(s->all.largest, -k - 1) < e->large.from ? small : large;
+    sd_ewald_class *to = ldexp(s->all.largest, -k - 1) < from ? small : large;
     to->count += o->count;
     to->squares += o->squares;
     to->fourths += o->fourths;
@@ -161,19 +160,21 @@ static void divide(const sd_ewald *e, const sd_ewald_sizes *s, sd_ewald_class *s
   }
 }
 
-static double predicted_error(const sd_ewald *e, const sd_ewald_sizes *s)
+/* second NULL, or without spheres: of one level */
+static double predicted_error(const sd_ewald *first, const sd_ewald_level *second, const sd_ewald_sizes *s)
 {
-  if (!(e->count > 0.0)) return 0.0;
+  if (!(first->count > 0.0)) return 0.0;
+  const double n = s->all.count;
   double square;
-  if (e->large.from > 0.0) {
-    const sd_ewald coarse = sd_ewald_of_large(e);
+  if (second && second->from > 0.0) {
+    const sd_ewald *coarse = &second->split;
     sd_ewald_class small = {0}, large = {0};
-    divide(e, s, &small, &large);
-    square = share_of(e, &small, &small, 0) + share_of(e, &small, &small, 1) +
-             share_of(&coarse, &s->all, &large, 0) + share_of(&coarse, &large, &small, 0) +
-             share_of(&coarse, &s->all, &s->all, 1);
+    divide(second->from, s, &small, &large);
+    square = share_of(first, n, &small, &small, 0) + share_of(first, n, &small, &small, 1) +
+             share_of(coarse, n, &s->all, &large, 0) + share_of(coarse, n, &large, &small, 0) +
+             share_of(coarse, n, &s->all, &s->all, 1);
   } else {
-    square = share_of(e, &s->all, &s->all, 0) + share_of(e, &s->all, &s->all, 1);
+    square = share_of(first, n, &s->all, &s->all, 0) + share_of(first, n, &s->all, &s->all, 1);
   }
   return 6.0 * SD_PI * sqrt(square);
 }

@@ -40,7 +40,7 @@ static void the_predicted_error_is_the_measured_one(void **state)
     double u[2][3 * N], off = 0.0, bare = 0.0, predicted = 0.0;
     for (int tight = 0; tight < 2; tight++) {
       const sd_ewald how = periodic_choose(&s.box, s.a, N, 3, tight ? 0.01 * s.tolerance : s.tolerance);
-      if (!tight) predicted = predicted_error(&how, &sizes);
+      if (!tight) predicted = predicted_error(&how, NULL, &sizes);
       periodic p;
       periodic_place(&p, s.x, s.a, NULL, N, 3, &how);
       periodic_apply(&p, s.F, u[tight]);

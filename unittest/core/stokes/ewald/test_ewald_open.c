@@ -149,10 +149,11 @@ static void few_spheres_cost_more_than_all_pairs(void **state)
       const double edge = 5.0 * largest;
       const sd_ewald_box box = {.edge = {edge, edge, edge}};
       sd_ewald how;
+      sd_ewald_level second;
       for (int i = 0; i < SD_EWALD_FEWEST; i++) a[i] = i % 20 ? 1.0 : largest;
       const sd_ewald_sizes sizes = periodic_sizes(a, SD_EWALD_FEWEST);
-      if (sd_ewald_choose(&box, &sizes, 3, pow(10.0, -digits), &how) == SD_OK)
-        assert_true(sd_ewald_cost(&how) > all_pairs);
+      if (sd_ewald_levels_choose(&box, &sizes, 3, pow(10.0, -digits), &how, &second) == SD_OK)
+        assert_true(sd_ewald_levels_cost(&how, &second) > all_pairs);
     }
 }
 

@@ -32,7 +32,7 @@ double sd_ewald_wave_screen(const sd_ewald *e, double k2)
 {
   if (e->band > 0.0) return screen_of_band(e, k2);
   const double H = screen(e->xi, e->a_ref, k2);
-  return e->large.from > 0.0 ? H - screen(e->large.xi, e->a_ref, k2) : H;
+  return e->taken > 0.0 ? H - screen(e->taken, e->a_ref, k2) : H;
 }
 
 double sd_ewald_b(const sd_ewald *e, double a)

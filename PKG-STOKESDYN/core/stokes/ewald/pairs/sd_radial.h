@@ -33,7 +33,7 @@ enum { SD_I0, SD_J0, SD_I1, SD_J1, SD_I2, SD_J2, SD_K0, SD_K1, SD_RADIALS };
 /* Terms of the longest polynomial that stands for one of them */
 enum { SD_RADIAL_TERMS = 40 };
 
-/* H(k^2) of the wave part, of which another level may have taken some, and b of a radius */
+/* H(k^2) of the wave part, less what a smoother splitting has taken, and b of a radius */
 double sd_ewald_wave_screen(const sd_ewald *e, double k2);
 double sd_ewald_b(const sd_ewald *e, double a);
 

@@ -233,6 +233,30 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
   return status;
 }
 
+sd_status sd_ewald_waves_meet(sd_ewald_waves *w, const int *brick, sd_status status,
+                              const sd_world *world)
+{
+  const int ranks = sd_world_ranks(world), me = sd_world_me(world);
+  const int failed = 6 * ranks, many = failed + 2;
+  double *values = calloc((size_t) many, sizeof(double));
+  int *bricks = calloc((size_t) many, sizeof(int));
+  if (!values || !bricks) status = SD_ENOMEMORY;
+  for (int k = 0; k < 6 && values && status == SD_OK; k++) values[6 * me + k] = brick[k];
+  if (values) {
+    values[failed] = status == SD_ENOMEMORY;
+    values[failed + 1] = status != SD_OK && status != SD_ENOMEMORY;
+    const sd_status said = sd_world_sum(world, values, many);
+    if (status == SD_OK) status = said;
+  }
+  if (status == SD_OK && values[failed + 1] > 0.0) status = SD_ENOTFINITE;
+  if (status == SD_OK && values[failed] > 0.0) status = SD_ENOMEMORY;
+  for (int k = 0; k < failed && status == SD_OK; k++) bricks[k] = (int) lrint(values[k]);
+  if (status == SD_OK) status = sd_ewald_waves_place(w, bricks);
+  free(values);
+  free(bricks);
+  return status;
+}
+
 sd_status sd_ewald_waves_place_whole(sd_ewald_waves *w)
 {
   const sd_ewald *e = &w->ewald;

@@ -55,11 +55,11 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 
 /* --- open --- */
 
-/* I_0, J_0/r^2 of sd_radial.h, of a level less what another has taken from it */
+/* I_0, J_0/r^2 of sd_radial.h, less what a smoother splitting has taken */
 static void numbers(const sd_ewald *e, double distance, double *number)
 {
-  const sd_filter filter[2] = {{e->xi, e->a_ref}, {e->large.xi, e->a_ref}};
-  for (int l = 0; l < (e->large.from > 0.0 ? 2 : 1); l++) {
+  const sd_filter filter[2] = {{e->xi, e->a_ref}, {e->taken, e->a_ref}};
+  for (int l = 0; l < (e->taken > 0.0 ? 2 : 1); l++) {
     const sd_filtered f = sd_filtered_at(filter + l, distance * distance, 3, 0);
     double I, J;
     sd_filtered_stokeslet(&f, 0, &I, &J);

@@ -1,4 +1,5 @@
-/* The near part of the second level of an Ewald sum: pairs of which at least one sphere is large.
+/* The near part of the second level of an Ewald sum (sd_ewald_levels.h): pairs of which at least one
+ * sphere is large.
  *
  * Large spheres are few: every rank knows those of all, so that ghosts need not reach as far as
  * they do. A rank takes the pairs of its own spheres with large ones and their images, and what its
@@ -11,6 +12,7 @@
 #define SD_EWALD_LARGE_PAIRS_H
 
 #include "sd_cells.h"
+#include "sd_ewald_levels.h"
 #include "sd_product.h"
 #include "sd_radial.h"
 #include "sd_status.h"
@@ -52,8 +54,8 @@ typedef struct {
   size_t begin_room, other_room, tensor_room;
 } sd_ewald_large_pairs;
 
-/* Polynomials for a splitting of two levels */
-void sd_ewald_large_pairs_create(sd_ewald_large_pairs *p, const sd_ewald *e, int width);
+/* Polynomials for a second level */
+void sd_ewald_large_pairs_create(sd_ewald_large_pairs *p, const sd_ewald_level *second, int width);
 
 /* The spheres s, of which list [n] are ours and have a radius. On all ranks together. SD_OK,
  * SD_ENOMEMORY or what a sum said. */

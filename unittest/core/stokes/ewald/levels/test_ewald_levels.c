@@ -1,6 +1,6 @@
 /* Ewald sums of two levels, for few spheres that are far larger than the rest. */
-#include "periodic.h"
-#include "predicted.h"
+#include "ewald/periodic.h"
+#include "ewald/predicted.h"
 
 #include "plain.h"
 #include "sd_ewald_large_pairs.h"
@@ -51,14 +51,19 @@ static scene make(const mixture *m, int periodic, uint64_t seed)
   return s;
 }
 
+typedef struct {
+  sd_ewald first;
+  sd_ewald_level second;
+} splitting;
+
 /* As the rule has it, which must be two levels; or, of octaves that are not told, one. */
-static sd_ewald choose(const scene *s, const mixture *m, double tolerance, int levels)
+static splitting choose(const scene *s, const mixture *m, double tolerance, int levels)
 {
   sd_ewald_sizes sizes = periodic_sizes(s->a, m->n);
-  sd_ewald how;
+  splitting how;
   if (levels == 1) memset(sizes.octave, 0, sizeof(sizes.octave));
-  assert_int_equal(sd_ewald_choose(&s->box, &sizes, m->width, tolerance, &how), SD_OK);
-  assert_int_equal(how.large.from > 0.0, levels == 2);
+  assert_int_equal(sd_ewald_levels_choose(&s->box, &sizes, m->width, tolerance, &how.first, &how.second), SD_OK);
+  assert_int_equal(how.second.from > 0.0, levels == 2);
   return how;
 }
 
@@ -103,9 +108,10 @@ static void open_boxes_agree_with_all_pairs(void **state)
     sd_mobility_scene scene = {.how = {.width = m->width, .law = law}, .n = m->n, .n_all = m->n, .spheres = {s.x, s.a, s.w}};
     product(&sd_mobility_all_pairs, &scene, s.F, expected);
     for (int digits = 3; digits <= 9; digits += 6) {
-      const sd_ewald how = choose(&s, m, pow(10.0, -digits), 2);
-      scene.how.ewald = &how;
-      product(&sd_mobility_ewald, &scene, s.F, u);
+      const splitting how = choose(&s, m, pow(10.0, -digits), 2);
+      scene.how.ewald = &how.first;
+      scene.how.second = &how.second;
+      product(&sd_mobility_levels, &scene, s.F, u);
       const double error = error_of(&s, m, u, expected);
       if (getenv("STOKESDYN_SHOW")) printf("%s open 1e-%d: %.1e\n", m->what, digits, error);
       assert_true(error < 2.0 * pow(10.0, -digits));
@@ -122,14 +128,14 @@ static void periodic_boxes_agree_with_one_level(void **state)
     const scene s = make(m, 1, 30 + k);
     static double expected[6 * MOST], u[6 * MOST];
     for (int digits = 9; digits >= 3; digits -= 3) {
-      const sd_ewald one = choose(&s, m, 1e-11, 1), two = choose(&s, m, pow(10.0, -digits), 2);
+      const splitting one = choose(&s, m, 1e-11, 1), two = choose(&s, m, pow(10.0, -digits), 2);
       periodic p;
       if (digits == 9) {
-        periodic_place(&p, s.x, s.a, s.w, m->n, m->width, &one);
+        periodic_place(&p, s.x, s.a, s.w, m->n, m->width, &one.first);
         periodic_apply(&p, s.F, expected);
         periodic_free(&p);
       }
-      periodic_place(&p, s.x, s.a, s.w, m->n, m->width, &two);
+      periodic_place_levels(&p, s.x, s.a, s.w, m->n, m->width, &two.first, &two.second);
       periodic_apply(&p, s.F, u);
       periodic_free(&p);
       const double error = error_of(&s, m, u, expected);
@@ -150,11 +156,11 @@ static void the_matrix_is_symmetric_and_positive(void **state)
     for (int d = 0; d < 3; d++) m.edge[d] *= 0.3;
     const scene s = make(&m, 1, 50 + k);
     const int n = m.width * N;
-    const sd_ewald how = choose(&s, &m, 1e-2, 2);
+    const splitting how = choose(&s, &m, 1e-2, 2);
     static double A[M * M], e[M], u[M];
     double scale[M];
     periodic p;
-    periodic_place(&p, s.x, s.a, s.w, N, m.width, &how);
+    periodic_place_levels(&p, s.x, s.a, s.w, N, m.width, &how.first, &how.second);
     for (int j = 0; j < n; j++) { /* scaled to what each sphere does alone */
       const double a = s.a[j / m.width];
       scale[j] = s.w[j / m.width] / sqrt(j % m.width < 3 ? 6.0 * SD_PI * a : 8.0 * SD_PI * a * a * a);
@@ -185,10 +191,10 @@ static void the_predicted_error_is_the_measured_one(void **state)
     static double u[2][3 * MOST];
     double off = 0.0, bare = 0.0, predicted = 0.0;
     for (int tight = 0; tight < 2; tight++) {
-      const sd_ewald how = choose(&s, &m, tight ? 0.01 * tolerance : tolerance, 2);
-      if (!tight) predicted = predicted_error(&how, &sizes);
+      const splitting how = choose(&s, &m, tight ? 0.01 * tolerance : tolerance, 2);
+      if (!tight) predicted = predicted_error(&how.first, &how.second, &sizes);
       periodic p;
-      periodic_place(&p, s.x, s.a, NULL, m.n, 3, &how);
+      periodic_place_levels(&p, s.x, s.a, NULL, m.n, 3, &how.first, &how.second);
       periodic_apply(&p, s.F, u[tight]);
       periodic_free(&p);
     }
@@ -219,13 +225,13 @@ static void a_rank_without_room_is_told_before_the_next_sum(void **state)
   (void) state;
   const mixture m = mixtures[0];
   scene s = make(&m, 1, 4);
-  const sd_ewald how = choose(&s, &m, 1e-4, 2);
+  const splitting how = choose(&s, &m, 1e-4, 2);
   sd_ewald_large_pairs p = {0};
   int list[MOST], agreed = 0;
   for (int i = 0; i < m.n; i++) list[i] = i;
   const sd_spheres spheres = {s.x, s.a, s.w};
   const sd_world world = {.ctx = &agreed, .me = 0, .ranks = 2, .sum = sum_with_a_rank_without_room};
-  sd_ewald_large_pairs_create(&p, &how, m.width);
+  sd_ewald_large_pairs_create(&p, &how.second, m.width);
   assert_int_equal(sd_ewald_large_pairs_place(&p, &spheres, list, m.n, &world), SD_ENOMEMORY);
   assert_int_equal(agreed, 2);
   sd_ewald_large_pairs_free(&p);

@@ -14,10 +14,10 @@ static int numbers(const sd_ewald_large_pairs *p)
   return p->width == 6 ? SD_LARGE_PAIR_TORQUES : SD_LARGE_PAIR;
 }
 
-void sd_ewald_large_pairs_create(sd_ewald_large_pairs *p, const sd_ewald *e, int width)
+void sd_ewald_large_pairs_create(sd_ewald_large_pairs *p, const sd_ewald_level *second, int width)
 {
-  p->ewald = sd_ewald_of_large(e);
-  p->from = e->large.from;
+  p->ewald = second->split;
+  p->from = second->from;
   p->width = width;
   p->degree = sd_radial_fit(&p->ewald, width, p->coefficient[0]);
   sd_radial(&p->ewald, 0.0, p->origin);
