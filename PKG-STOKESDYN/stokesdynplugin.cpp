@@ -13,6 +13,7 @@
 #include "fix_check_timestep_sph.h"
 #include "fix_hydro_vans.h"
 #include "fix_nve_sph.h"
+#include "fix_sph_grains.h"
 #include "fix_sph_settings.h"
 #include "fix_sph_opening.h"
 #include "fix_sph_shift.h"
@@ -114,6 +115,7 @@ static std::vector<PluginStyle> sph_styles()
           compute<ComputeSphSurface>("SPH: free surface"),
           fix<FixNveSphStationary>("SPH: density of particles at rest"),
           fix<FixWallAdamiSph>("SPH: walls of particles"),
+          fix<FixSphGrains>("SPH: grains smaller than h in the water"),
           fix<FixSphInlet>("SPH: a layer of particles that flows in"),
           fix<FixSphOutlet>("SPH: a layer that takes particles out"),
           fix<FixWallSph>("SPH: repulsive planes and cylinder"),

@@ -104,6 +104,24 @@ namespace Compat {
 #endif
   }
 
+  inline void forward_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Fix *fix)
+  {
+#if SD_HAVE_COMM_THIS
+    comm->forward_comm(fix);
+#else
+    comm->forward_comm_fix(fix);
+#endif
+  }
+
+  inline void reverse_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Fix *fix)
+  {
+#if SD_HAVE_COMM_THIS
+    comm->reverse_comm(fix);
+#else
+    comm->reverse_comm_fix(fix);
+#endif
+  }
+
   /* the usual half list, each pair once, as newton says, or as if newton were off; instance: the
    * instance_me of the pair style */
   inline void request_half_list(LAMMPS_NS::Neighbor *neighbor, LAMMPS_NS::Pair *pair, int instance,

@@ -45,7 +45,7 @@ const std::vector<Neighbour> &sph_neighbours()
       {N::FIX, "sph", CONTINUITY, N::WARNING,
        "lets sound grow at time steps above {} (3 alpha h/(8 c) in two dimensions, less in three), "
        "until the water boils: use fix nve/sph", lets_sound_grow, WATER},
-      {N::FIX, "nve/sph nve/sph/stationary wall/adami/sph", 0, N::ERROR,
+      {N::FIX, "nve/sph nve/sph/stationary wall/adami/sph sph/grains", 0, N::ERROR,
        "has the dynamic group {}, which is empty when the first forces are computed, and in some LAMMPS "
        "is always that of the step before: use a group of fixed members, made anew between runs",
        is_dynamic, N::ANYWHERE},
@@ -54,7 +54,12 @@ const std::vector<Neighbour> &sph_neighbours()
                "wall/region wall/gran*", 0, N::WARNING,
        "is no wall for water: there is nothing behind it that has a pressure, so that the water boils "
        "beside it: use particles of a wall (fix wall/adami/sph)", nullptr, WATER},
+      // grains
+      {N::FIX, "hydro/vans viscous* langevin* drag", GRAINS, N::ERROR,
+       "drags grains that the water of SPH drags already: take it out, or give it other atoms", nullptr, GRAIN},
       // what goes together
+      {N::FIX, "wall/gran* gravity nve/sphere freeze", GRAINS, N::FINE,
+       "goes with grains in the water; gravity stands before fix sph/grains in the input", nullptr, GRAIN},
       {N::PAIR, "sph/heatconduction", 0, N::FINE, "changes the energy of particles alone"},
       {N::PAIR, "gran/* granular lj/* zero", 0, N::FINE,
        "acts between bodies of wall particles below hybrid or hybrid/overlay"},

@@ -11,10 +11,12 @@ namespace StokesDyn {
 /* Facts of a run; the page says them in the words that stand here. */
 enum SphFact : unsigned {
   CONTINUITY = 1 << 0,    // with fix sph/density/continuity
+  GRAINS = 1 << 1,        // with fix sph/grains
 };
 
-/* Sorts of particles: those of fix wall/adami/sph, and all others that the pair style computes. */
-enum SphSort : unsigned { WATER = 1 << 0, WALL = 1 << 1 };
+/* Sorts of particles: those of fix wall/adami/sph, all others that the pair style computes, and
+ * grains of fix sph/grains. */
+enum SphSort : unsigned { WATER = 1 << 0, WALL = 1 << 1, GRAIN = 1 << 2 };
 
 const std::vector<Neighbour> &sph_neighbours();
 

@@ -20,6 +20,7 @@ class FixNveSph;
 class FixSphDensityContinuity;
 class FixSphDensityCorr;
 class FixSphDensitySummation;
+class FixSphGrains;
 class FixSphInlet;
 class FixSphOpening;
 class FixSphOutlet;
@@ -62,6 +63,8 @@ class PairSph : public LAMMPS_NS::Pair {
   double sound_speed(int itype) const { return table[C][itype][itype]; }
   /* Of particle i, of this rank, in the latest force; with a law of viscosity 0 for walls. */
   double viscosity(int i) const;
+  bool is_newtonian() const { return law == SD_SPH_NEWTON; }
+  bool has_laplacian() const { return model.friction == SD_SPH_LAPLACIAN; }
   bool has_sound_speed(int itype) const;
   /* Of each owned particle: |h v.d / (r^2 + eta)|. Not inside compute. */
   void largest_approach(std::vector<double> &largest);
@@ -71,11 +74,14 @@ class PairSph : public LAMMPS_NS::Pair {
   double dW_dr(int itype, double r) const;
   /* Does particle i, of this rank or a ghost, stand in the layer of a fix sph/inlet or sph/outlet? */
   bool is_held(int i) const;
+  /* Is particle i one of this style; one of a wall? */
+  bool is_particle(int i) const;
+  bool is_of_wall(int i) const { return is_wall(i); }
   bool has_ends() const { return !inlets.empty() || !outlets.empty(); }
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
   /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc
-   * and viscosity): x y z and a number without meaning. Kept while there is a compute sph/energy. */
+   * and viscosity): x y z and a number without meaning. Kept while there is a compute sph/energy, the first also with fix sph/grains. */
   const double *own_forces() const { return own.data(); }
   const double *own_friction() const { return rubs.data(); }
   /* [6 n] of each owned particle: sd_sph_moments. Not inside compute; false: no force has been
@@ -117,6 +123,7 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<FixSphInlet *> inlets;
   std::vector<FixSphOutlet *> outlets;
   FixSphShift *state = nullptr;
+  FixSphGrains *grains = nullptr;
   // all of these, as errors name them when they are gone
   std::vector<std::pair<const LAMMPS_NS::Fix *, std::string>> members;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;

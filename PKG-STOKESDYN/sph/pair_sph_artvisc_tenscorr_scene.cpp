@@ -2,6 +2,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
+#include "fix_sph_grains.h"
 #include "fix_sph_settings.h"
 #include "compute_sph_energy.h"
 #include "fix_sph_opening.h"
@@ -83,6 +84,7 @@ void PairSph::find_fixes()
     voice.fail(
         "fix sph/density/continuity and fix sph/density/summation: only one can set the density");
   filter = only<FixSphDensityCorr>("");
+  grains = only<FixSphGrains>("; put all grains into one group");
   inlets = fixes_of<FixSphInlet>(lmp);
   outlets = fixes_of<FixSphOutlet>(lmp);
   wall = only<FixWallAdamiSph>("; put all wall particles into one group");
@@ -164,6 +166,16 @@ void PairSph::choose_scheme()
       : corrects        ? SD_SPH_CORRECTION
       : shifts          ? SD_SPH_SHIFT
                         : SD_SPH_PLAIN;
+  if (grains && !leapfrog)
+    grains->voice.fail("needs fix sph/density/continuity and fix nve/sph");
+  if (grains && !volume)
+    grains->voice.fail("needs volume yes of fix sph/density/continuity, whose sums go by the volume of a particle: "
+                       "that of water between grains is not its mass over a density");
+  if (grains && (corrects || filter))
+    grains->voice.fail(corrects ? "does not go with correction yes of pair_style sph/artVisc/tensCorr, which knows one "
+                                  "volume of a particle: use shift yes"
+                                : "does not go with fix sph/density/corr, which would smear water into the grains: "
+                                  "use delta of fix sph/density/continuity");
   state = FixSphShift::provide(lmp, shifts, corrects);
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
 }
@@ -183,6 +195,7 @@ void PairSph::remember_members()
   join(filter);
   join(wall);
   join(state);
+  join(grains);
 }
 
 void PairSph::require_prepared() const
@@ -238,8 +251,9 @@ tagint PairSph::in_both(int bits, int more_bits) const
  * hybrid of their types. */
 void PairSph::setup()
 {
-  neighbourhood.look(voice, sph_neighbours(), continuity ? CONTINUITY : 0u, [this](int i) {
-    if (!used(atom->type[i])) return 0u;
+  neighbourhood.look(voice, sph_neighbours(), (continuity ? CONTINUITY : 0u) | (grains ? GRAINS : 0u), [this](int i) {
+    if (!used(atom->type[i]))
+      return grains && (atom->mask[i] & grains->groupbit) ? (unsigned) GRAIN : 0u;
     return (unsigned) (is_wall(i) ? WALL : WATER);
   });
   if (needs_velocity && domain->deform_vremap && !fixes_of(lmp, "sph").empty())

@@ -2,6 +2,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
+#include "fix_sph_grains.h"
 #include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "keywords.h"
@@ -38,6 +39,7 @@ void PairSph::compute(int eflag, int vflag)
     voice.warn("the box has changed since the last run, but the particles have not moved with it: "
                "their densities stay as they are; if these are wrong, use set ... sph/rho");
   look_at_densities(atom->nlocal);
+  if (grains) grains->find_fractions();
   prepare();
   if (update->setupflag) {
     look_at_sound();
@@ -105,6 +107,8 @@ void PairSph::prepare()
     classes.resize(n + 1);
     for (int i = 0; i < n; i++) {
       masses[i] = Sph::mass(lmp, i);
+      // density is that of the water itself; the volume of a particle is that of the mixture
+      if (grains) masses[i] /= 1.0 - grains->fractions()[i];
       classes[i] = atom->type[i] - 1;
     }
     masses[n] = 0.0;
@@ -224,7 +228,7 @@ void PairSph::density_step()
     sd_sph_pack_x(n, rows(atom->x), v, du, -0.5 * dt, x4.data());
   } else
     sd_sph_pack_x(n, rows(atom->x), nullptr, nullptr, 0.0, x4.data());
-  sd_sph_pack_v(n, v, atom->rho, v4.data());
+  sd_sph_pack_v(n, grains ? grains->mixture(v) : v, atom->rho, v4.data());
 
   if (shared)
     sum_rates(margin);
@@ -250,6 +254,7 @@ void PairSph::sum_rates(double margin)
   sd_sph_rates(&model, &raw, &particles, rate.data(), &found);
   pairs = {raw.n, ~0, raw.first, near.own.data(), near.neighbor.data()};
   reverse(rate.data(), 1);
+  if (grains) grains->divide_rates(nullptr, 0, false, rate.data());
 }
 
 /* All sums that delta, shift and correction ask for, of both particles of each pair: a list both
@@ -299,6 +304,7 @@ void PairSph::close_sums()
 
   particles.order = order.data();
   const sd_sph_both close = near.both(atom->nlocal);
+  if (grains) grains->divide_rates(order.data(), columns, shifts, rate.data());
   sd_sph_diffusion(&model, &close, &particles, rate.data());
 }
 
@@ -334,6 +340,11 @@ double PairSph::background() const
   double least = HUGE_VAL;
   for (const auto *fix : pressures) least = std::min(least, fix->state.P0);
   return least;
+}
+
+bool PairSph::is_particle(int i) const
+{
+  return used(atom->type[i]);
 }
 
 /* P of owned and ghost particles from the densities they carry, so both sides of a
@@ -398,7 +409,12 @@ void PairSph::forces(bool rates)
     for (int i = 0; i < receivers; i++)
       if (atom->mask[i] & continuity->groupbit) atom->drho[i] += f4[4 * (size_t) i + 3];
   if (pairwise) tally();
-  if (measured) keep_forces();
+  if (measured)
+    keep_forces();
+  else if (grains) {
+    own = f4;
+    reverse(own.data(), 4);
+  }
 }
 
 /* Over the list of these neighbours both ways, or over the half list; the square of the shortest

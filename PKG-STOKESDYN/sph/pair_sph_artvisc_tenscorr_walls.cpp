@@ -141,6 +141,7 @@ void PairSph::sums_of_other_fluids(const double *spins_of_walls)
   reverse(sums.data(), 8);
   particles.phase = phases.data();
   for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_wall(i) && !is_held(i)) continue;
     double *row = &sums[8 * (size_t) i];
     const bool own_fluid = mine[8 * (size_t) i] != 0.0;
     if (own_fluid || !(row[1] > row[0] * sd_sph_least_pressure(&state_of(i)->state)))

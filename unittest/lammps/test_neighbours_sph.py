@@ -42,7 +42,7 @@ DYNAMIC = ["variable low atom y<0.35", "group low dynamic ours every 1 var low"]
 # (kind and styles of the row, its facts, the input, what is said)
 LAMMPS_SPH = ("PAIR sph/rhosum sph/taitwater* sph/idealgas sph/lj rheo*", "0")
 WALL = ("FIX wall/reflect* wall/lj* wall/harmonic* wall/morse wall/table wall/lepton wall/colloid wall/region wall/gran*", "0")
-GROUP = ("FIX nve/sph nve/sph/stationary wall/adami/sph", "0")
+GROUP = ("FIX nve/sph nve/sph/stationary wall/adami/sph sph/grains", "0")
 BESIDE = [
     (*LAMMPS_SPH, paired("sph/rhosum 1", "IJ sph/rhosum 0.2"), "pair_style sph/rhosum sets the density or adds the pressure"),
     (*LAMMPS_SPH, paired("sph/taitwater", "IJ sph/taitwater 1 20 0.01 0.2"), "pair_style sph/taitwater sets the density"),
@@ -59,7 +59,8 @@ DYNAMICS = [
     (*GROUP, ["fix move ours nve/sph", "unfix floor", "fix floor low wall/adami/sph"], "fix floor of style wall/adami/sph has the dynamic group low"),
 ]
 # of packages and versions that not every LAMMPS has
-ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo")}
+ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo"),
+             ("FIX hydro/vans viscous* langevin* drag", "GRAINS"): ("fix", "viscous")}    # three dimensions: test_sph_grains.py
 
 
 def rows(room):

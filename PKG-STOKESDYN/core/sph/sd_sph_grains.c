@@ -1,0 +1,272 @@
+#include "sd_sph_grains.h"
+
+#include "sd_constants.h"
+
+#include <math.h>
+#include <string.h>
+
+// --- the flow that a grain makes itself ----------------------------------------------------------
+
+/* 1 - sin(x)/x, or 1/3 - j1(x)/x: what friction along a wave, mean of all directions, has of 1 -
+ * cos. */
+static double rubs(int laplacian, double x)
+{
+  const double x2 = x * x;
+  if (x < 0.05) return laplacian ? x2 / 6.0 * (1.0 - x2 / 20.0) : x2 / 30.0 * (1.0 - x2 / 28.0);
+  return laplacian ? 1.0 - sin(x) / x : 1.0 / 3.0 - (sin(x) / x - cos(x)) / x2;
+}
+
+/* W(k) and S of h = 1 by Simpson's rule over the support; W' = r G(r) N. */
+static double transformed(sd_sph_kernel kernel, int laplacian, double k, double *S)
+{
+  enum { PARTS = 64 };
+  const double step = 2.0 / PARTS;
+  double W = 0.0;
+  *S = 0.0;
+  for (int i = 1; i < PARTS; i++) {
+    const double r = step * i, kr = k * r, part = (i % 2 ? 4.0 : 2.0) * step / 3.0;
+    W += part * 4.0 * SD_PI * r * r * sd_sph_W(kernel, 3, r, 1.0) *
+        (kr > 1e-3 ? sin(kr) / kr : 1.0 - kr * kr / 6.0);
+    *S -= part * (laplacian ? 8.0 : 40.0) * SD_PI * r * r * sd_sph_dW_over_r(kernel, 3, r, 1.0) *
+        rubs(laplacian, kr) / (k * k);
+  }
+  return W;
+}
+
+/* A(s), by its series where it cancels. */
+static double mean_of_directions(double s)
+{
+  const double s2 = s * s;
+  if (s < 0.1) return 2.0 / 3.0 - s2 * (2.0 / 15.0 - s2 * (2.0 / 35.0 - s2 * (2.0 / 63.0)));
+  return (1.0 + 1.0 / s2) * atan(s) / s - 1.0 / s2;
+}
+
+/* k = e^y: small k matter at large Re, where A falls off as 1/s. */
+void sd_sph_wake_make(sd_sph_kernel kernel, int laplacian, sd_sph_wake *wake)
+{
+  enum { PARTS = 240 };
+  const double lowest = log(1e-7), highest = log(15.0), step = (highest - lowest) / PARTS;
+  memset(wake, 0, sizeof(*wake));
+  for (int i = 0; i <= PARTS; i++) {
+    double S;
+    const double k = exp(lowest + step * i), W = transformed(kernel, laplacian, k, &S),
+                 part = (i == 0 || i == PARTS ? 0.5 : 1.0) * step * k * W * W / S;
+    wake->T_2 += 2.0 / SD_PI * part * k * k;
+    for (int n = 0; n < SD_SPH_WAKES; n++)
+      wake->T[n] += 3.0 / SD_PI * part * mean_of_directions(0.5 * expm1(0.2 * n) / (k * S));
+  }
+}
+
+double sd_sph_wake_of(const sd_sph_wake *wake, double Re_h, double K)
+{
+  const double at = fmin(log1p(2.0 * Re_h) / 0.2, SD_SPH_WAKES - 1.001), slowest = wake->T[0];
+  const int n = (int) at;
+  return (wake->T[n] + (at - n) * (wake->T[n + 1] - wake->T[n])) /
+      (1.0 + K / slowest + K * K * slowest / wake->T_2);
+}
+
+double sd_sph_structure(double phi)
+{
+  const double e = 1.0 - phi, two = 1.0 + 2.0 * phi;
+  return e * e * e * e / (two * two + phi * phi * phi * (phi - 4.0));
+}
+
+// --- who is around, and with what weight ---------------------------------------------------------
+
+static double square_of_distance(const double *x, const double *y, double d[3])
+{
+  for (int c = 0; c < 3; c++) d[c] = x[c] - y[c];
+  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+}
+
+void sd_sph_look_around(const sd_cells *cells, const double *points, int n, const double *x,
+                        double reach, int *first, int *particle)
+{
+  int count = 0;
+  double d[3];
+  for (int j = 0; j < n; j++) {
+    const double *at = x + 3 * (size_t) j;
+    first[j] = count;
+    for (sd_cells_walk w = sd_cells_near(cells, at, reach); sd_cells_step(cells, &w);)
+      for (int a = w.first; a >= 0; a = cells->next[a]) {
+        if (!(square_of_distance(at, points + 3 * (size_t) a, d) < reach * reach)) continue;
+        if (particle) particle[count] = a;
+        count++;
+      }
+  }
+  first[n] = count;
+}
+
+void sd_sph_grain_weights(sd_sph_kernel kernel, double h, const sd_sph_around *list,
+                          const double *x, const double *points, const double *volume,
+                          const int *wall, double *weight, double *wet)
+{
+  const double scale = sd_sph_W(kernel, 3, 0.0, h) / sd_sph_K(kernel, 0.0);
+  double d[3];
+  for (int j = 0; j < list->n; j++) {
+    double of_water = 0.0, of_walls = 0.0;
+    for (int p = list->first[j]; p < list->first[j + 1]; p++) {
+      const int a = list->particle[p];
+      const double r2 = square_of_distance(x + 3 * (size_t) j, points + 3 * (size_t) a, d),
+                   VW = r2 < 4.0 * h * h ? volume[a] * scale * sd_sph_K(kernel, sqrt(r2) / h) : 0.0;
+      weight[p] = wall[a] ? 0.0 : VW;
+      if (wall[a])
+        of_walls += VW;
+      else
+        of_water += VW;
+    }
+    wet[j] = fmin(1.0, of_water / fmax(1.0 - of_walls, 0.02));
+    for (int p = list->first[j]; of_water > 0.0 && p < list->first[j + 1]; p++)
+      weight[p] /= of_water;
+  }
+}
+
+void sd_sph_grain_fractions(const sd_sph_around *list, const double *V, const double *volume,
+                            const double *weight, const double *wet, double *phi)
+{
+  for (int j = 0; j < list->n; j++)
+    for (int p = list->first[j]; p < list->first[j + 1]; p++)
+      if (weight[p] > 0.0)
+        phi[list->particle[p]] += wet[j] * V[j] * weight[p] / volume[list->particle[p]];
+}
+
+void sd_sph_grain_flux(const sd_sph_around *list, const double *V, const double *volume,
+                       const double *weight, const double *wet, const double *slip, double *flux)
+{
+  for (int j = 0; j < list->n; j++)
+    for (int p = list->first[j]; p < list->first[j + 1]; p++) {
+      if (!(weight[p] > 0.0)) continue;
+      const size_t a = list->particle[p];
+      const double share = wet[j] * V[j] * weight[p] / volume[a];
+      for (int c = 0; c < 3; c++) flux[3 * a + c] -= share * slip[3 * (size_t) j + c];
+    }
+}
+
+void sd_sph_grain_means(const sd_sph_around *list, const double *weight, int columns,
+                        const double *rows, double *means)
+{
+  memset(means, 0, sizeof(double) * columns * (size_t) list->n);
+  for (int j = 0; j < list->n; j++) {
+    double *mean = means + columns * (size_t) j;
+    for (int p = list->first[j]; p < list->first[j + 1]; p++) {
+      const double *row = rows + columns * (size_t) list->particle[p];
+      for (int c = 0; c < columns; c++) mean[c] += weight[p] * row[c];
+    }
+  }
+}
+
+void sd_sph_grain_shares(const sd_sph_around *list, const double *V, const double *volume,
+                         const double *weight, const double *wet, double *own)
+{
+  for (int j = 0; j < list->n; j++) {
+    double sum = 0.0;
+    for (int p = list->first[j]; p < list->first[j + 1]; p++)
+      if (weight[p] > 0.0) sum += weight[p] * weight[p] / volume[list->particle[p]];
+    own[j] = wet[j] * V[j] * sum;
+  }
+}
+
+double sd_sph_sphere(double a)
+{
+  return 4.0 / 3.0 * SD_PI * a * a * a;
+}
+
+// --- forces --------------------------------------------------------------------------------------
+
+/* By iteration from above: s falls by 8 phi for small phi, so that each round leaves 8 own of an
+ * error. */
+void sd_sph_grain_phi(int n, const double *mean, const double *own, double *phi)
+{
+  enum { MOST = 50 };
+  for (int j = 0; j < n; j++) {
+    double before = HUGE_VAL;
+    phi[j] = mean[j];
+    for (int round = 0; round < MOST && fabs(phi[j] - before) > 1e-9; round++) {
+      before = phi[j];
+      phi[j] = fmax(0.0, mean[j] - sd_sph_structure(before) * own[j]);
+    }
+  }
+}
+
+void sd_sph_grain_stresses(int n, const double *means, const double *wet, const double *V,
+                           double *F)
+{
+  for (int j = 0; j < n; j++)
+    for (int c = 0; c < 3; c++) F[3 * (size_t) j + c] = wet[j] * V[j] * means[3 * (size_t) j + c];
+}
+
+/* D/w for the slip w without the own flow, and what of it that flow takes: w = seen/(1 - taken). */
+static double drag_of(const sd_sph_grain_law *law, double rho, double a, double phi,
+                      double hindrance, double slip, double *taken)
+{
+  const double k = (1.0 - phi) * sd_drag_factor(law->drag, rho, law->eta, a, hindrance, slip);
+  *taken = 0.0;
+  if (!law->wake) return k;
+  const double h = law->h, crowd = phi / sd_sph_sphere(a) * k * h * h / law->eta,
+               T = sd_sph_wake_of(law->wake, rho * h * slip / law->eta, sqrt(crowd));
+  *taken = fmin(0.5, sd_sph_structure(phi) * T * k / (6.0 * SD_PI * law->eta * h));
+  return k;
+}
+
+/* The slip by iteration: a step of it changes `taken`, at most a half, by little. */
+void sd_sph_grain_drag(const sd_sph_grain_law *law, int n, const double *a, const double *u,
+                       const double *v, const double *rho, const double *phi, const double *wet,
+                       double *k)
+{
+  enum { MOST = 20 };
+  for (int j = 0; j < n; j++) {
+    k[j] = 0.0;
+    if (!(wet[j] > 0.0)) continue;
+    double d[3], hindrance, taken = 0.0, factor = 0.0;
+    const double seen = sqrt(square_of_distance(u + 3 * (size_t) j, v + 3 * (size_t) j, d));
+    sd_hindrance_of(law->drag, 1, phi + j, law->exponent, &hindrance);
+    for (int round = 0; round < MOST; round++) {
+      const double before = taken;
+      factor = drag_of(law, rho[j], a[j], phi[j], hindrance, seen / (1.0 - before), &taken);
+      if (fabs(taken - before) < 1e-6) break;
+    }
+    k[j] = wet[j] * factor / (1.0 - taken);
+  }
+}
+
+void sd_sph_grain_load(const sd_sph_around *list, const double *weight, const double *k,
+                       double *total)
+{
+  for (int j = 0; j < list->n; j++)
+    for (int p = list->first[j]; p < list->first[j + 1]; p++)
+      total[list->particle[p]] += weight[p] * k[j];
+}
+
+void sd_sph_grain_drags(const sd_sph_around *list, double dt, const double *weight, const double *u,
+                        const double *v, const double *M, const double *k, const double *slowed,
+                        double *D)
+{
+  for (int j = 0; j < list->n; j++) {
+    double rate = k[j] / M[j];
+    for (int p = list->first[j]; p < list->first[j + 1]; p++)
+      rate += weight[p] * slowed[list->particle[p]];
+    for (int c = 0; c < 3; c++) {
+      const size_t at = 3 * (size_t) j + c;
+      D[at] = k[j] * (u[at] - v[at]) / (1.0 + dt * rate);
+    }
+  }
+}
+
+void sd_sph_grain_reactions(const sd_sph_around *list, const double *weight, const double *F,
+                            double *reaction)
+{
+  for (int j = 0; j < list->n; j++)
+    for (int p = list->first[j]; p < list->first[j + 1]; p++)
+      for (int c = 0; c < 3; c++)
+        reaction[3 * (size_t) list->particle[p] + c] -= weight[p] * F[3 * (size_t) j + c];
+}
+
+void sd_sph_grain_rates(int n, const double *phi, const double *order, int columns, int shifts,
+                        double *rate)
+{
+  for (int i = 0; i < n; i++) {
+    const double *row = shifts ? order + (size_t) columns * i : NULL;
+    const double found = shifts ? row[4] * row[0] + row[5] * row[1] + row[6] * row[2] : 0.0;
+    rate[i] = (rate[i] - found) / (1.0 - phi[i]) + found;
+  }
+}

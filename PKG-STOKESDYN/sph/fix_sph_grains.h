@@ -1,0 +1,92 @@
+/* fix sph/grains: grains smaller than h in the water of SPH. Of a step the pair style asks it for
+ * the volume fraction of grains, which the water's state needs, and it puts drag and the water's
+ * stress on the grains when the force of SPH is known. See doc/fix_sph_grains.md. */
+#ifndef SD_FIX_SPH_GRAINS_H
+#define SD_FIX_SPH_GRAINS_H
+
+#include "sd_sph_grains.h"
+#include "sph.h"
+
+#include <vector>
+
+namespace StokesDyn {
+
+class FixSphGrains : public SphFix {
+ public:
+  static constexpr const char *STYLE = "sph/grains";
+
+  FixSphGrains(LAMMPS_NS::LAMMPS *, int, char **);
+  ~FixSphGrains() override;
+  int setmask() override;
+  void init() override;
+  void setup(int vflag) override { post_force(vflag); }
+  void post_force(int) override;
+  double compute_vector(int) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+
+  // --- for the pair style; arrays of particles are of this rank and its ghosts -------------------
+  /* phi of the water where particles are now; in the first setup of the life of the fix water
+   * loses what the grains displace. */
+  void find_fractions();
+  const double *fractions() const { return phi.data(); }
+  /* [3 n] the velocity of the mixture, of that of particles, v [3 n]: what the rate of the density
+   * goes by */
+  const double *mixture(const double *v);
+  /* Rates of the density [nlocal] of that velocity become those of the water itself. */
+  void divide_rates(const double *order, int columns, bool shifts, double *rate);
+
+ protected:
+  bool restored() const override { return filled != 0.0; }
+  std::vector<SavedNumbers> saved() override { return {{"filled", &filled}}; }
+
+ private:
+  // settings
+  double viscosity = 0.0;
+  bool fills = true, own_flow = true, hindrance_given = false;
+  sd_sph_grain_law law = {};
+  sd_sph_wake wake = {};
+  void parse_hindrance(Keywords &in);
+
+  int free_bits = 0, held_bits = 0;
+
+  // kept with atoms: phi; phi, force of the water on grains or of grains on water
+  AtomArray rows, shown;
+  double filled = 0.0;
+
+  // a step
+  sd_cells cells = {};
+  LAMMPS_NS::bigint list_of = -1;
+  // the particles that fill the cells, as atoms; the grains of this rank
+  std::vector<int> points, grains, first, particle, walls;
+  std::vector<double> phi, moved, places, grain_places, volume, weight, wet, own;
+  // radius, volume, mass: HUGE_VAL of those that forces do not move
+  std::vector<double> a, V, M;
+  double total[3] = {0.0, 0.0, 0.0}, largest = 0.0;
+  sd_sph_around around() const { return {(int) grains.size(), first.data(), particle.data()}; }
+  void check_scene();
+  void check_order() const;
+  void find_held();
+  void recall();
+  void displace();
+  void list_particles();
+  void look_at_places();
+  void check_fractions(const std::vector<double> &mean);
+  std::vector<double> at_points(const std::vector<double> &of_atoms, int columns) const;
+  std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
+  std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns) const;
+  std::vector<double> give_back(const std::vector<double> &F);
+  void stresses(std::vector<double> &F);
+  void drags(const std::vector<double> &reaction, std::vector<double> &F);
+
+  // communication of one array at a time
+  double *comm_array = nullptr;
+  int comm_columns = 0;
+  void forward(double *array, int columns);
+  void reverse(double *array, int columns);
+};
+
+}    // namespace StokesDyn
+#endif
