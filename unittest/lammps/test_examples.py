@@ -13,6 +13,7 @@ from system import environment
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
 QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump",
          "rolling", "squeeze", "tumbling", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
+BRIEF = ["shapes"]    # by their option --quick
 
 
 # how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)
@@ -28,12 +29,13 @@ def kept(folder):
     return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", QUICK + BRIEF)
 def test_every_figure_of_an_example_holds(name, tmp_path):
     before = kept(EXAMPLES / name)
     env = dict(environment(), PYTHONDONTWRITEBYTECODE="1", MPLCONFIGDIR=str(tmp_path / "matplotlib"))
-    run = subprocess.run([sys.executable, str(EXAMPLES / name / "run.py"), "--out", str(tmp_path / "out")], env=env, cwd=tmp_path,
-                         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600)
+    command = [sys.executable, str(EXAMPLES / name / "run.py"), "--out", str(tmp_path / "out")] + ["--quick"] * (name in BRIEF)
+    run = subprocess.run(command, env=env, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                         stderr=subprocess.STDOUT, text=True, timeout=600)
     assert run.returncode == 0, run.stdout[-3000:]
     assert not re.search("^MISSED", run.stdout, re.M), run.stdout[-3000:]
     assert len(re.findall("^ok  ", run.stdout, re.M)) >= 5, run.stdout[-3000:]

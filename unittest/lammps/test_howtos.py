@@ -26,6 +26,7 @@ HOWTOS = {
     "stream": {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35},
     "suspension": {"v_down": 0.04, "f_move[1]": 0.25},
     "speed": {},
+    "shapes": {},
     "python": {},
 }
 PASTE = re.compile(r"^    \. build/env\.sh\n(?:    .*\n)+", re.M)
