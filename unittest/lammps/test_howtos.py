@@ -27,6 +27,7 @@ HOWTOS = {
     "suspension": {"v_down": 0.04, "f_move[1]": 0.25},
     "speed": {},
     "shapes": {},
+    "magnetic": {},
     "python": {},
 }
 PASTE = re.compile(r"^    \. build/env\.sh\n(?:    .*\n)+", re.M)
