@@ -22,34 +22,39 @@ ClumpPoses::ClumpPoses(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidC
 /* What clumps must know of their spheres; velocities are those of the images side by side. */
 void ClumpPoses::gather()
 {
-  enum { ETA, RADIUS, X, MOTION = X + 3, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
+  enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   const bool moving = given.velocities, turns = !moving || scene.settings.rotation;
-  const size_t columns = gradients ? GRADIENT + 9 : FLOW, n = rigid.members().size();
-  const std::vector<double> rows = scene.whole.gather((int) columns, [&](int i, double *row) {
-    row[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
-    row[RADIUS] = atom->radius[i];
+  const size_t n = rigid.members().size(), flows = gradients ? 3 * n : 0;
+  for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n + 1);
+  for (auto *vectors : {&spheres.x, &spheres.motion, &spheres.turning}) vectors->resize(3 * n + 3);
+  spheres.flow.resize(flows);
+  spheres.gradient.resize(3 * flows);
+  const auto row = [&](int i, double *out) {
+    out[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
+    out[RADIUS] = atom->radius[i];
     for (size_t d = 0; d < 3; d++) {
-      row[MOTION + d] = moving ? atom->v[i][d] : given.load(i, d);
-      if (turns) row[TURNING + d] = moving ? atom->omega[i][d] : given.load(i, 3 + d);
+      out[MOTION + d] = moving ? atom->v[i][d] : given.load(i, d);
+      if (turns) out[TURNING + d] = moving ? atom->omega[i][d] : given.load(i, 3 + d);
     }
     if (!gradients) return;
-    std::copy_n(ambient.velocity(i), 3, row + FLOW);
-    std::copy_n(gradients + 9 * (size_t) i, 9, row + GRADIENT);
+    std::copy_n(ambient.velocity(i), 3, out + FLOW);
+    std::copy_n(gradients + 9 * (size_t) i, 9, out + GRADIENT);
+  };
+  scene.whole.gather(gradients ? GRADIENT + 9 : FLOW, row, [&](size_t m, const double *of) {
+    const int k = rigid.places()[m], *steps = &scene.whole.steps[3 * m];
+    if (k < 0) return;
+    spheres.eta[k] = of[ETA];
+    spheres.radius[k] = of[RADIUS];
+    std::copy_n(&scene.whole.x[3 * m], 3, &spheres.x[3 * (size_t) k]);
+    std::copy_n(of + MOTION, 3, &spheres.motion[3 * (size_t) k]);
+    std::copy_n(of + TURNING, 3, &spheres.turning[3 * (size_t) k]);
+    if (jumps && moving) sd_add_edges(jumps, steps, &spheres.motion[3 * (size_t) k]);
+    if (!gradients) return;
+    std::copy_n(of + FLOW, 3, &spheres.flow[3 * (size_t) k]);
+    std::copy_n(of + GRADIENT, 9, &spheres.gradient[9 * (size_t) k]);
+    if (jumps) sd_add_edges(jumps, steps, &spheres.flow[3 * (size_t) k]);
   });
-  std::vector<double> ordered(columns * n + 1);
-  for (size_t k = 0; k < n; k++) {
-    const size_t m = rigid.members()[k];
-    const int *steps = &scene.whole.steps[3 * m];
-    double *row = &ordered[columns * k];
-    std::copy_n(&rows[columns * m], columns, row);
-    std::copy_n(&scene.whole.x[3 * m], 3, row + X);
-    if (jumps && moving) sd_add_edges(jumps, steps, row + MOTION);
-    if (jumps && gradients) sd_add_edges(jumps, steps, row + FLOW);
-  }
-  const size_t flows = gradients ? 3 : 0;
-  take_apart(ordered, n, {{&spheres.eta, 1}, {&spheres.radius, 1}, {&spheres.x, 3}, {&spheres.motion, 3},
-                          {&spheres.turning, 3}, {&spheres.flow, flows}, {&spheres.gradient, 3 * flows}});
 }
 
 void ClumpPoses::find()
@@ -74,7 +79,7 @@ void ClumpPoses::find()
     clump.eta /= body.n;
     if (taking_part == 0) continue;
     if (taking_part < body.n) split = std::min(split, body.molecule);
-    if (!rigid.fits(body, &spheres.radius[body.begin], clump.pose))
+    if (!rigid.fits(body, &spheres.radius[body.begin], &spheres.x[3 * (size_t) body.begin], clump.pose))
       bent.push_back(body.molecule);
     all_clumps.push_back(clump);
   }

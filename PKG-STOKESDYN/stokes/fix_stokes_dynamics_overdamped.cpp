@@ -392,29 +392,30 @@ void FixStokesDynamicsOverdamped::advance()
   if (scheme == MIDPOINT)
     move_by_midpoint(hydro);
   else
-    for (int i : hydro.motion().lone()) move_free(i);
+    for (int i : hydro.motion().lone()) move_free(hydro, i);
   if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
   last.dt = update->dt;
   spin.advance();
 }
 
 /* old [6] of the step before (a row of `before`) for a body whose place is now another image */
-void FixStokesDynamicsOverdamped::at_image(const double *row, const double *place, double *old) const
+void FixStokesDynamicsOverdamped::at_image(const Hydrodynamics &hydro, const double *row,
+                                           const double *place, double *old) const
 {
   double shift[3], jump[3];
   for (int d = 0; d < 3; d++) shift[d] = place[d] - row[6 + d];
-  sd_multiply3(hydrodynamics().ambient.box_motion().gradient, shift, jump);
+  sd_multiply3(hydro.ambient.box_motion().gradient, shift, jump);
   std::copy_n(row, 6, old);
   for (int d = 0; d < 3; d++) old[d] += jump[d];
 }
 
-void FixStokesDynamicsOverdamped::move_free(int i)
+void FixStokesDynamicsOverdamped::move_free(const Hydrodynamics &hydro, int i)
 {
   if (is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
   const double scale = noise.on() ? noise.scale(dt) : 0.0;
   double *x = atom->x[i], old[6] = {V[0], V[1], V[2]}, mean[3], step[3];
-  if (before.has(i)) at_image(before[i], x, old);
+  if (before.has(i)) at_image(hydro, before[i], x, old);
   sd_mean_velocity(3, V, old, weight(before.has(i)), mean);
   for (int d = 0; d < 3; d++) {
     step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
@@ -443,18 +444,18 @@ std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
 
 /* The point by which a clump is moved, from its centroid in the axes of its shape: with noise the centre
  * of mobility, where there is no drift. */
-const double *FixStokesDynamicsOverdamped::tracked(const ClumpPoses::Clump &clump) const
+const double *FixStokesDynamicsOverdamped::tracked(const ClumpShape &shape) const
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
-  return noise.on() ? hydrodynamics().motion().shape(clump).noise.centre : CENTROID;
+  return noise.on() ? shape.noise.centre : CENTROID;
 }
 
 /* V [6] of that point and W */
 void FixStokesDynamicsOverdamped::tracked_velocity(const ClumpPoses::Clump &clump,
-                                                   double V[6]) const
+                                                   const ClumpShape &shape, double V[6]) const
 {
   double arm[3], turning[3];
-  sd_multiply3(clump.pose, tracked(clump), arm);
+  sd_multiply3(clump.pose, tracked(shape), arm);
   sd_cross(clump.V + 3, arm, turning);
   std::copy_n(clump.V, 6, V);
   for (int d = 0; d < 3; d++) V[d] += turning[d];
@@ -470,34 +471,34 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
 {
   const WholeClumps &whole = hydro.scene.whole;
   const Lattice now = Lattice::of(domain);
-  std::vector<double> places, rows(COLUMNS * (size_t) whole.size() + COLUMNS, 0.0);
-  double box[6];
+  std::vector<double> places;
+  double box[6], row[COLUMNS];
   for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
-  for (size_t c = 0; c < start.size(); c++) {
-    if (start[c].known == SD_BODY_HELD) continue;
-    const ClumpPoses::Clump &clump = hydro.motion().clumps()[c];
-    const RigidClumps::Body &body = hydro.motion().body(clump);
-    const ClumpStep goes = step(c);
-    double pose[12], turn[9];
-    std::copy_n(start[c].pose, 12, pose);
-    places.resize(3 * (size_t) body.n);
-    sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, turn, places.data());
-    for (int k = 0; k < body.n; k++) {
-      const size_t m = hydro.motion().member_of(clump, k);
-      double *row = &rows[COLUMNS * m];
-      row[MOVES] = 1.0;
-      sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
-      sd_add_edges(box, &whole.steps[3 * m], row + STEP);
+  const auto all = [&](const auto &give) {
+    for (size_t c = 0; c < start.size(); c++) {
+      if (start[c].known == SD_BODY_HELD) continue;
+      const ClumpPoses::Clump &clump = hydro.motion().clumps()[c];
+      const RigidClumps::Body &body = hydro.motion().body(clump);
+      const ClumpStep goes = step(c);
+      double pose[12];
+      std::copy_n(start[c].pose, 12, pose);
+      places.resize(3 * (size_t) body.n);
+      sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, row + TURN,
+                   places.data());
       std::copy_n(goes.V, 6, row + BEFORE_V);
       std::copy_n(pose + 9, 3, row + PLACE);
-      std::copy_n(turn, 9, row + TURN);
+      for (int k = 0; k < body.n; k++) {
+        const size_t m = hydro.motion().member_of(clump, k);
+        sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
+        sd_add_edges(box, &whole.steps[3 * m], row + STEP);
+        give(m, row);
+      }
     }
-  }
-  whole.scatter(COLUMNS, rows.data(), [&](int i, const double *row) {
-    if (row[MOVES] == 0.0) return;
-    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += row[STEP + d];
-    directions.turn(i, row + TURN);
-    take(i, row);
+  };
+  whole.scatter(COLUMNS, all, [&](int i, const double *of) {
+    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += of[STEP + d];
+    directions.turn(i, of + TURN);
+    take(i, of);
   });
 }
 
@@ -517,9 +518,9 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
     const ClumpPoses::Clump &clump = motion.clumps()[number];
     const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
     double old[6], mean[6];
-    ClumpStep s = {tracked(clump), {}, {}};
-    tracked_velocity(clump, s.V);
-    at_image(row + 1, clump.pose + 9, old);
+    ClumpStep s = {tracked(motion.shape(clump)), {}, {}};
+    tracked_velocity(clump, motion.shape(clump), s.V);
+    at_image(hydro, row + 1, clump.pose + 9, old);
     sd_mean_velocity(6, s.V, old, weight(row[0] != 0.0), mean);
     for (int d = 0; d < 6; d++) {
       s.move[d] = update->dt * mean[d];

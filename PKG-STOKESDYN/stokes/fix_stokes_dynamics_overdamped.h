@@ -110,8 +110,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool causes_stand(const Hydrodynamics &) const;
   void set_step(double dt);
   void announce();
-  const double *tracked(const ClumpPoses::Clump &clump) const;
-  void tracked_velocity(const ClumpPoses::Clump &clump, double V[6]) const;
+  const double *tracked(const ClumpShape &shape) const;
+  void tracked_velocity(const ClumpPoses::Clump &clump, const ClumpShape &shape, double V[6]) const;
   void find_velocities(Hydrodynamics &);
   void check_selection(const Hydrodynamics &) const;
   Neighbourhood neighbourhood;
@@ -126,9 +126,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void keep_in_plane(double *V, size_t width) const;
   double weight(bool has) const;
   void advance();
-  void at_image(const double *row, const double *place, double *old) const;
+  void at_image(const Hydrodynamics &, const double *row, const double *place, double *old) const;
   void moves(int i, double distance);
-  void move_free(int i);
+  void move_free(const Hydrodynamics &, int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
   Given given(const std::vector<double> &loads) const;
@@ -144,7 +144,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   };
   using Step = std::function<ClumpStep(size_t c)>;
   /* rows of their atoms; V and the place of the centroid stand side by side, as in `before` */
-  enum { MOVES, STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
+  enum { STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
   void step_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x,
                    const Step &step, const std::function<void(int i, const double *row)> &take);
   void clump_moves(Hydrodynamics &, int i, const double *row);

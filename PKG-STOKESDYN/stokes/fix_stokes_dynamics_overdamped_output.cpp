@@ -67,26 +67,26 @@ double FixStokesDynamicsOverdamped::change_of_velocities() const
   double most = 0.0, old[6];
   for (int i : moving.lone()) {
     if (!before.has(i)) continue;
-    at_image(before[i], atom->x[i], old);
+    at_image(hydro, before[i], atom->x[i], old);
     for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
     most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
   }
   const std::vector<double> all_before =
       hydro.settings.rigid.on ? velocities_before() : std::vector<double>();
   for (const auto &clump : moving.clumps()) {
-    const sd_shape &shape = moving.shape(clump).shape;
-    for (int k = 0; k < shape.n; k++) {
-      const double *row = &all_before[BEFORE * moving.member_of(clump, k)];
-      double now_V[6], from[3], arm[3], change[3];
-      if (row[0] == 0.0) continue;
-      tracked_velocity(clump, now_V);
-      at_image(row + 1, clump.pose + 9, old);
-      for (int d = 0; d < 6; d++) old[d] = now_V[d] - old[d];
-      sd_minus(shape.x + 3 * (size_t) k, tracked(clump), from);
+    const ClumpShape &is = moving.shape(clump);
+    const double *row = &all_before[BEFORE * moving.member_of(clump, 0)];    // all have the same
+    double now_V[6], from[3], arm[3], change[3];
+    if (row[0] == 0.0) continue;
+    tracked_velocity(clump, is, now_V);
+    at_image(hydro, row + 1, clump.pose + 9, old);
+    for (int d = 0; d < 6; d++) old[d] = now_V[d] - old[d];
+    for (int k = 0; k < is.shape.n; k++) {
+      sd_minus(is.shape.x + 3 * (size_t) k, tracked(is), from);
       sd_multiply3(clump.pose, from, arm);
       sd_cross(old + 3, arm, change);
       for (int d = 0; d < 3; d++) change[d] += old[d];
-      most = std::max(most, sqrt(sd_dot(change, change)) / shape.a[k]);
+      most = std::max(most, sqrt(sd_dot(change, change)) / is.shape.a[k]);
     }
   }
   return most;

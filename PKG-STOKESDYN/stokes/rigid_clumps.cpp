@@ -281,6 +281,8 @@ void RigidClumps::arrange()
     for (int p : k.perm) member.push_back(clump.begin + p);
   }
   known.swap(here);
+  place.assign(whole.size(), -1);
+  for (size_t k = 0; k < member.size(); k++) place[member[k]] = (int) k;
 }
 
 // --- as they stand now ------------------------------------------------------------------------------
@@ -292,17 +294,13 @@ const std::vector<RigidClumps::Body> &RigidClumps::find()
   return bodies;
 }
 
-bool RigidClumps::fits(const Body &body, const double *radii, double *pose) const
+bool RigidClumps::fits(const Body &body, const double *radii, const double *x, double *pose) const
 {
   const sd_shape &shape = body.shape->shape;
   const double most = SD_SHAPE_TOLERANCE * shape.size;
-  std::vector<double> x;
-  for (int k = 0; k < body.n; k++) {
-    const size_t m = member[body.begin + k];
+  for (int k = 0; k < body.n; k++)
     if (!(std::fabs(radii[k] - shape.a[k]) <= most)) return false;
-    x.insert(x.end(), &whole.x[3 * m], &whole.x[3 * m] + 3);
-  }
-  return sd_shape_pose(&shape, x.data(), pose, pose + 9) <= most;
+  return sd_shape_pose(&shape, x, pose, pose + 9) <= most;
 }
 
 bool RigidClumps::settle(int64_t split, const std::vector<int64_t> &bent)

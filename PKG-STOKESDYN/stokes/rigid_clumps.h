@@ -58,8 +58,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   /* One of them, by its place there, until they are looked at anew or forgotten */
   const Body &body(int number) const { return bodies[number]; }
   const std::vector<int> &members() const { return member; }
-  /* Do the spheres of a body, with these radii in its order, stand as its shape says? pose [12] out */
-  bool fits(const Body &body, const double *radii, double *pose) const;
+  /* and back: which of members() is a member of whole, -1: it is in none of the bodies */
+  const std::vector<int> &places() const { return place; }
+  /* Do the spheres of a body, with these radii at x [3 n], stand as its shape says? pose [12] out */
+  bool fits(const Body &body, const double *radii, const double *x, double *pose) const;
   /* Molecule IDs of a clump of which not all spheres are selected, NOBODY: there is none, and of
    * those that do not fit. Returns whether these are loose now, and the bodies others; otherwise
    * errors. On all ranks together. */
@@ -85,7 +87,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
 
   /* since the last re-neighbouring */
   std::vector<Body> bodies;
-  std::vector<int> member;
+  std::vector<int> member, place;
 
   std::vector<double> radius;    // by members
 

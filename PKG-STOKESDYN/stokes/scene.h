@@ -115,25 +115,20 @@ class Scene : protected LAMMPS_NS::Pointers {
     std::vector<double> out(width * (tags.size() + 1));
     for (size_t k = 0; k < loose.size(); k++) row(loose[k], &out[width * k]);
     if (!settings.whole) return out;
-    const std::vector<double> members = whole.gather(width, row);
-    for (size_t m = 0; m < row_of.size(); m++)
-      if (row_of[m] >= 0) std::copy_n(&members[width * m], width, &out[width * (size_t) row_of[m]]);
+    whole.gather(width, row, [&](size_t m, const double *of) {
+      if (row_of[m] >= 0) std::copy_n(of, width, &out[width * (size_t) row_of[m]]);
+    });
     return out;
   }
   template <class Take> void to_atoms(int width, const double *rows, const Take &take) const
   {
     for (size_t k = 0; k < loose.size(); k++) take(loose[k], rows + width * k);
     if (!settings.whole) return;
-    const size_t m = width + 1;
-    std::vector<double> members(m * row_of.size() + m, 0.0);
-    for (size_t k = 0; k < row_of.size(); k++) {
-      if (row_of[k] < 0) continue;
-      std::copy_n(rows + width * (size_t) row_of[k], width, &members[m * k]);
-      members[m * k + width] = 1.0;
-    }
-    whole.scatter((int) m, members.data(), [=, &take](int i, const double *row) {
-      if (row[width] != 0.0) take(i, row);
-    });
+    const auto all = [&](const auto &give) {
+      for (size_t m = 0; m < row_of.size(); m++)
+        if (row_of[m] >= 0) give(m, rows + width * (size_t) row_of[m]);
+    };
+    whole.scatter(width, all, take);
   }
   /* Rows [width n] that begin with velocities, from those of atoms to those of the images that the
    * rows stand for; sign -1: back */

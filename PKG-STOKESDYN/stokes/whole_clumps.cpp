@@ -58,10 +58,10 @@ void WholeClumps::route(const std::vector<int> &bound)
 {
   const std::vector<int> owner = owners(bound);
   std::vector<int> to(comm->nprocs, 0), by_owner;
-  at_home.clear();
+  atom_of.clear();
   for (size_t k = 0; k < bound.size(); k++) {
     if (owner[k] == comm->me)
-      at_home.push_back(bound[k]);
+      atom_of.push_back(bound[k]);
     else {
       to[owner[k]]++;
       by_owner.push_back((int) k);
@@ -72,36 +72,36 @@ void WholeClumps::route(const std::vector<int> &bound)
   away.clear();
   for (int k : by_owner) away.push_back(bound[k]);
   post.address(to);
+  for (int k = 0; k < post.rows_in(); k++) atom_of.push_back(~k);
 }
 
-/* The members in order of molecule and tag, as they come from at_home and from others */
+/* The members, in order of molecule and tag */
 void WholeClumps::arrange()
 {
   struct Member {
     int64_t molecule, tag;
-    int slot;
+    int atom;
   };
-  slot.resize(at_home.size() + post.rows_in());
-  for (size_t k = 0; k < slot.size(); k++) slot[k] = (int) k;
-  const std::vector<double> who = gather(2, [this](int i, double *out) {
+  std::vector<Member> members;
+  gather(2, [this](int i, double *out) {
     out[0] = ubuf((int64_t) atom->molecule[i]).d;
     out[1] = ubuf((int64_t) atom->tag[i]).d;
+  }, [&](size_t m, const double *who) {
+    members.push_back({(int64_t) ubuf(who[0]).i, (int64_t) ubuf(who[1]).i, atom_of[m]});
   });
-  std::vector<Member> members;
-  for (size_t k = 0; k < slot.size(); k++)
-    members.push_back({(int64_t) ubuf(who[2 * k]).i, (int64_t) ubuf(who[2 * k + 1]).i, (int) k});
   std::sort(members.begin(), members.end(), [](const Member &p, const Member &q) {
     return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
   });
   clumps.clear();
   tag.clear();
+  steps.assign(3 * members.size() + 3, 0);
   for (size_t k = 0; k < members.size(); k++) {
     const int at = (int) k;
     if (clumps.empty() || clumps.back().molecule != members[k].molecule)
       clumps.push_back({members[k].molecule, at, at});
     clumps.back().end = at + 1;
     tag.push_back(members[k].tag);
-    slot[k] = members[k].slot;
+    atom_of[k] = members[k].atom;
   }
 }
 
@@ -125,8 +125,9 @@ void WholeClumps::stand()
 {
   const Lattice lattice = Lattice::of(domain);
   std::copy_n(lattice.h, 6, h);
-  x = gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); });
-  steps.assign(3 * tag.size() + 3, 0);
+  x.resize(3 * tag.size() + 3);
+  gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); },
+         [this](size_t m, const double *there) { std::copy_n(there, 3, &x[3 * m]); });
   for (const Clump &clump : clumps)
     for (int k = clump.begin + 1; k < clump.end; k++)
       sd_bring_close(lattice.h, lattice.periodic, &x[3 * (size_t) clump.begin], &x[3 * (size_t) k],
@@ -159,8 +160,7 @@ double WholeClumps::memory_usage() const
 {
   return sizeof(double) *
       ((double) x.capacity() + outbox.capacity() + inbox.capacity()) +
-      sizeof(int) * ((double) at_home.capacity() + away.capacity() + slot.capacity() +
-                     steps.capacity()) +
+      sizeof(int) * ((double) away.capacity() + atom_of.capacity() + steps.capacity()) +
       sizeof(int64_t) * (double) tag.capacity();
 }
 

@@ -39,29 +39,49 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   std::vector<int> steps;
   double h[6] = {0.0};
 
-  /* Rows [width size()], at least one: row(i, out) writes what goes of atom i. On all ranks together,
-   * as scatter(), where take(i, row) is called for every atom of this rank that is in a clump. */
-  template <class Row> std::vector<double> gather(int width, const Row &row) const
+  /* Rows of numbers from atoms to members: row(i, out) writes what goes of atom i, over zeros, and
+   * take(m, row) has it for member m. That of an atom that is here stays here. On all ranks together, as
+   * what follows. */
+  template <class Row, class Take> void gather(int width, const Row &row, const Take &take) const
   {
     outbox.assign((size_t) width * away.size() + 1, 0.0);
-    inbox.assign((size_t) width * (at_home.size() + post.rows_in()) + 1, 0.0);
+    inbox.resize((size_t) width * post.rows_in() + width);
     for (size_t k = 0; k < away.size(); k++) row(away[k], &outbox[width * k]);
-    for (size_t k = 0; k < at_home.size(); k++) row(at_home[k], &inbox[width * k]);
-    post.carry(outbox.data(), &inbox[width * at_home.size()], width);
-    std::vector<double> rows((size_t) width * slot.size() + width);
-    for (size_t k = 0; k < slot.size(); k++)
-      std::copy_n(&inbox[width * (size_t) slot[k]], width, &rows[width * k]);
+    post.carry(outbox.data(), inbox.data(), width);
+    double *own = &inbox[(size_t) width * post.rows_in()];
+    for (size_t m = 0; m < atom_of.size(); m++) {
+      if (atom_of[m] < 0) {
+        take(m, &inbox[(size_t) width * ~atom_of[m]]);
+        continue;
+      }
+      std::fill_n(own, width, 0.0);
+      row(atom_of[m], own);
+      take(m, own);
+    }
+  }
+  /* The same as rows [width size()], at least one */
+  template <class Row> std::vector<double> gather(int width, const Row &row) const
+  {
+    std::vector<double> rows((size_t) width * (size() + 1));
+    gather(width, row, [&](size_t m, const double *of) { std::copy_n(of, width, &rows[width * m]); });
     return rows;
   }
-  template <class Take> void scatter(int width, const double *rows, const Take &take) const
+  /* And back: all(give) calls give(m, row) for members that have one, and take(i, row) is called for
+   * their atoms, wherever these are. */
+  template <class All, class Take> void scatter(int width, const All &all, const Take &take) const
   {
-    outbox.resize((size_t) width * away.size() + 1);
-    inbox.resize((size_t) width * (at_home.size() + post.rows_in()) + 1);
-    for (size_t k = 0; k < slot.size(); k++)
-      std::copy_n(rows + width * k, width, &inbox[width * (size_t) slot[k]]);
-    post.reversed().carry(&inbox[width * at_home.size()], outbox.data(), width);
-    for (size_t k = 0; k < at_home.size(); k++) take(at_home[k], &inbox[width * k]);
-    for (size_t k = 0; k < away.size(); k++) take(away[k], &outbox[width * k]);
+    const size_t w = (size_t) width + 1;    // behind each row: is it one?
+    inbox.assign(w * post.rows_in() + 1, 0.0);
+    outbox.resize(w * away.size() + 1);
+    all([&](size_t m, const double *row) {
+      if (atom_of[m] >= 0) return (void) take(atom_of[m], row);
+      double *out = &inbox[w * ~atom_of[m]];
+      std::copy_n(row, width, out);
+      out[width] = 1.0;
+    });
+    post.reversed().carry(inbox.data(), outbox.data(), (int) w);
+    for (size_t k = 0; k < away.size(); k++)
+      if (outbox[w * k + width] != 0.0) take(away[k], &outbox[w * k]);
   }
 
   double memory_usage() const;
@@ -71,10 +91,10 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   Epochs &epochs;
   Since found;
   Post post;
-  /* atoms of this rank in its own clumps, and in those of its partners, one after the other */
-  std::vector<int> at_home, away;
-  /* [members] place among at_home and, after them, the rows that come */
-  std::vector<int> slot;
+  /* atoms of this rank in clumps of its partners, one partner after the other */
+  std::vector<int> away;
+  /* [members] its atom, which is here; or ~k, when it is row k of those that come */
+  std::vector<int> atom_of;
   mutable std::vector<double> outbox, inbox;
 
   std::vector<int> owners(const std::vector<int> &bound) const;
