@@ -16,14 +16,20 @@ bool Directions::on() const
   return atom->mu_flag || atom->ellipsoid_flag || Compat::has_quat(atom);
 }
 
+void Directions::init(bool moved)
+{
+  ellipsoids = atom->ellipsoid_flag ? Compat::ellipsoids(atom) : nullptr;
+  any_moved = moved;
+}
+
 bool Directions::quaternion(int i, double q[4]) const
 {
   if (Compat::has_quat(atom)) {
     std::copy_n(Compat::quat(atom)[i], 4, q);
     return true;
   }
-  if (!atom->ellipsoid_flag || atom->ellipsoid[i] < 0) return false;
-  Compat::ellipsoids(atom)->pack_comm_bonus(1, &i, q);
+  if (!ellipsoids || atom->ellipsoid[i] < 0) return false;
+  ellipsoids->pack_comm_bonus(1, &i, q);
   return true;
 }
 
@@ -35,7 +41,7 @@ void Directions::set_quaternion(int i, const double q[4])
   }
   double buffer[4];
   std::copy_n(q, 4, buffer);
-  Compat::ellipsoids(atom)->unpack_comm_bonus(1, i, buffer);
+  ellipsoids->unpack_comm_bonus(1, i, buffer);
 }
 
 bool Directions::direction(int i, double e[3]) const
@@ -57,7 +63,7 @@ void Directions::look(int i, const double W[3])
   if (!on()) return;
   double *row = turning.give(i);
   std::copy_n(W, 3, row);
-  quaternion(i, row + 6);
+  if (any_moved) quaternion(i, row + 6);
 }
 
 void Directions::step(int i, double dt, double weight, double scale, const double *noise)
@@ -73,10 +79,13 @@ void Directions::step(int i, double dt, double weight, double scale, const doubl
 void Directions::turn(int i, const double W[3], double dt)
 {
   if (!on()) return;
-  double w[3], R[9];
+  double w[3], q[4], R[9];
   for (int d = 0; d < 3; d++) w[d] = dt * W[d];
+  if (has_moment(i)) sd_turn_direction_by(w, atom->mu[i][3], atom->mu[i]);
+  if (!quaternion(i, q)) return;
   sd_rotation(w, R);
-  turn(i, R);
+  sd_turn_quaternion(R, q);
+  set_quaternion(i, q);
 }
 
 void Directions::turn(int i, const double R[9])

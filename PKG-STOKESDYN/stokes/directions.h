@@ -13,14 +13,21 @@
 
 #include <vector>
 
+namespace LAMMPS_NS {
+class AtomVecEllipsoid;
+}
+
 namespace StokesDyn {
 
 class Directions : protected LAMMPS_NS::Pointers {
  public:
-  /* [10] of a sphere: W now, and that of the step before; its quaternion as it was when W was found */
+  /* [10] of a sphere: W now, and that of the step before; where fix move moves some, its quaternion as it
+   * was when W was found */
   AtomRows turning;
 
   explicit Directions(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp), turning(10) {}
+  /* Before a run. moved: are there spheres that fix move moves? */
+  void init(bool moved);
 
   /* Does the atom style have any? */
   bool on() const;
@@ -47,6 +54,10 @@ class Directions : protected LAMMPS_NS::Pointers {
   void restore(const std::vector<double> &from);
 
  private:
+  /* of atom_style ellipsoid; LAMMPS looks it up by name */
+  LAMMPS_NS::AtomVecEllipsoid *ellipsoids = nullptr;
+  bool any_moved = false;
+
   bool has_moment(int i) const { return atom->mu_flag && atom->mu[i][3] > 0.0; }
   void set_quaternion(int i, const double q[4]);
 };

@@ -82,6 +82,7 @@ int FixStokesDynamicsOverdamped::setmask()
 void FixStokesDynamicsOverdamped::init()
 {
   find_groups();
+  directions.init(moved_bits != 0);
   refuse_inertia(voice, hydrodynamics());
   look_at_neighbours();
   spin.init(hydrodynamics(), held_bit | pinned_bit);

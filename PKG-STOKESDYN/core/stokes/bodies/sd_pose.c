@@ -10,12 +10,29 @@ void sd_mean_velocity(int n, const double *v, const double *v_old, double c, dou
   for (int k = 0; k < n; k++) out[k] = v[k] + c * (v[k] - v_old[k]);
 }
 
+/* c = cos(h), s = sin(h)/(2 h), h = |w|/2: the quaternion (c, s w) */
+static void half_turn(const double w[3], double *cosine, double *sine)
+{
+  const double square = 0.25 * sd_dot(w, w);
+  double c, s;
+  if (square < 0.0025) {
+    /* as a step turns: by series, cut where the next term is below 3e-20 */
+    c = 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)));
+    s = 0.5 - square / 12.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0)));
+  } else {
+    const double half = sqrt(square);
+    c = cos(half);
+    s = sin(half) / (2.0 * half);
+  }
+  *cosine = c;
+  *sine = s;
+}
+
 void sd_rotation(const double w[3], double R[9])
 {
-  const double angle = sqrt(sd_dot(w, w));
-  /* sin(a/2)/a, which is 1/2 - a^2/48 + ... near 0 */
-  const double s = angle > 1e-4 ? sin(0.5 * angle) / angle : 0.5 - angle * angle / 48.0;
-  const double q[4] = {cos(0.5 * angle), s * w[0], s * w[1], s * w[2]};
+  double c, s;
+  half_turn(w, &c, &s);
+  const double q[4] = {c, s * w[0], s * w[1], s * w[2]};
   sd_quaternion_rotation(q, R);
 }
 
@@ -35,12 +52,29 @@ void sd_quaternion_rotation(const double q[4], double R[9])
   R[8] = 1.0 - 2.0 * (x * x + y * y);
 }
 
+static void set_length(double length, double v[3])
+{
+  const double norm = sqrt(sd_dot(v, v)), factor = norm > 0.0 ? length / norm : 1.0;
+  for (int d = 0; d < 3; d++) v[d] *= factor;
+}
+
 void sd_turn_direction(const double R[9], double length, double v[3])
 {
   double turned[3];
   sd_multiply3(R, v, turned);
-  const double norm = sqrt(sd_dot(turned, turned));
-  for (int d = 0; d < 3; d++) v[d] = norm > 0.0 ? turned[d] * (length / norm) : turned[d];
+  memcpy(v, turned, sizeof(turned));
+  set_length(length, v);
+}
+
+/* (c^2 - s^2 w.w) v + 2 s^2 (w.v) w + 2 c s w x v of the quaternion (c, s w) */
+void sd_turn_direction_by(const double w[3], double length, double v[3])
+{
+  double c, s, across[3];
+  half_turn(w, &c, &s);
+  const double own = c * c - s * s * sd_dot(w, w), along = 2.0 * s * s * sd_dot(w, v);
+  sd_cross(w, v, across);
+  for (int d = 0; d < 3; d++) v[d] = own * v[d] + along * w[d] + 2.0 * c * s * across[d];
+  set_length(length, v);
 }
 
 /* Unit quaternion of a rotation, by the largest of its four numbers, so that nothing cancels:

@@ -22,6 +22,8 @@ void sd_rotation(const double w[3], double R[9]);
 /* v [3] = R v, a direction of that length, which rounding then does not change however often it turns;
  * R [9] a rotation. The direction 0 stays 0. */
 void sd_turn_direction(const double R[9], double length, double v[3]);
+/* The same by the rotation of the vector w [3], in half the operations */
+void sd_turn_direction_by(const double w[3], double length, double v[3]);
 
 /* q [4], a unit quaternion (real part first, the rotation of body axes to space), becomes that of R after
  * it, with a length of 1 to rounding; R [9] a rotation by any angle. q = 0 stays 0. */

@@ -78,6 +78,25 @@ static void directions_keep_their_length(void **state)
   for (int d = 0; d < 3; d++) CHECK_NEAR(v[d] / length, expected[d] / length, 1e-9);
 }
 
+/* By a vector as by its matrix, of any length, on both sides of where series end. */
+static void directions_turn_by_vectors_as_by_matrices(void **state)
+{
+  (void) state;
+  uint64_t seed = 6;
+  for (double size = 1e-9; size < 10.0; size *= 1.3) {
+    double w[3], R[9], v[3], u[3];
+    for (int d = 0; d < 3; d++) {
+      w[d] = size * uniform(&seed, -1, 1);
+      u[d] = v[d] = uniform(&seed, -1, 1);
+    }
+    const double length = sqrt(sd_dot(v, v));
+    sd_rotation(w, R);
+    sd_turn_direction(R, length, v);
+    sd_turn_direction_by(w, length, u);
+    for (int d = 0; d < 3; d++) CHECK_NEAR(u[d], v[d], 1e-15);
+  }
+}
+
 /* A quaternion that turns is that of the product of the rotations, by any angle about any axis, has length 1
  * to rounding, and turns its body axes as the matrices do; none stays none. */
 static void quaternions_turn_as_matrices_do(void **state)
@@ -313,6 +332,7 @@ int main(void)
       cmocka_unit_test(rotations_are_rotations),
       cmocka_unit_test(steady_turn_is_exact),
       cmocka_unit_test(directions_keep_their_length),
+      cmocka_unit_test(directions_turn_by_vectors_as_by_matrices),
       cmocka_unit_test(quaternions_turn_as_matrices_do),
       cmocka_unit_test(changing_steps_stay_second_order),
       cmocka_unit_test(next_step_follows_the_fastest),
