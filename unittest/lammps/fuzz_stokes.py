@@ -209,7 +209,9 @@ def make_stokes_fix(case):
 
 
 OVERDAMPED = {
-    "scheme": [Choice("ab2", "euler", "midpoint")], "held": [Name("g", "half", "nobody")],
+    "scheme": [Choice("ab2", "euler", "midpoint")], "held": [Name("g", "half", "nobody")], "pin": [Name("g", "half", "nobody")],
+    "torque": [Name("g", "half", "nobody")] + [Field(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 3,
+    "squirm": [Name("g", "half", "nobody")] + [Field(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 2,
     "adapt": [COUNT, positive("1e-6", "1e-5"), positive("1e-5", "1e-4"), positive("0.01", "1")],
     "temperature": [Field(lambda v: v >= 0, ["1", "0.2", "0"], ["-1", "1e300"], atom=False),
                     Integer(lambda v: 0 < v < 2**31, ["1", "4711"], ["0", "-3", "2147483647", "2147483648"])],
@@ -233,6 +235,14 @@ def judge_overdamped(case, words, fluid):
     given, scheme, T = case.settings, case.value("scheme", ""), case.value("temperature", "0")
     case.refuse_if("noise_tolerance" in given and "temperature" not in given, "noise_tolerance")
     case.refuse_if(fluid.startswith("rigid") and case.value("held") == "half", "held")     # a clump in part
+    case.refuse_if(fluid.startswith("rigid") and case.value("pin") == "half", "pin")
+    for one, other in (("held", "pin"), ("pin", "spin"), ("held", "torque")):
+        case.refuse_if({case.value(one), case.value(other)} <= {"g", "half"}, one, other)
+    case.refuse_if("squirm" in given and ("multiblob" not in fluid or case.value("squirm") != "nobody"), "squirm")    # no dipoles
+    if "torque" in given:
+        turns = any(word in fluid for word in ("rotation", "multiblob", "shell"))
+        case.refuse_if(not turns and case.value("torque") != "nobody", "torque")
+        case.says(ODD)
     if "spin" in given:
         case.refuse_if(not any(word in fluid for word in ("rotation", "multiblob", "shell")), "spin", "rotation")
         case.refuse_if(fluid.startswith("rigid") and case.value("spin") != "nobody", "spin")       # no free spheres there
@@ -242,7 +252,7 @@ def judge_overdamped(case, words, fluid):
     if T in ("0", "v_zero"):
         case.says(ODD if "temperature" in given or scheme == "midpoint" else GOOD)
         return
-    drift = "held" in given or "spin" in given or any(word in fluid for word in ("lubrication", "multiblob", "wall", "rigid"))
+    drift = "held" in given or "pin" in given or "spin" in given or any(word in fluid for word in ("lubrication", "multiblob", "wall", "rigid"))
     case.refuse_if("adapt" in given or drift and scheme in ("ab2", "euler"), "temperature", "scheme")
     case.says(ODD)        # a step may be too long for such a temperature
 

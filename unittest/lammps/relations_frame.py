@@ -3,7 +3,7 @@ other units, and its output brought back (for relations.py).
 
 A line of a scene holds marks such as <F 0 0 -1>, a force along -z. `write` puts the words of one frame in their place:
 
-    <KIND a>            a number of the kind (KINDS)        <KIND a b c>        a vector; kinds W and Q are axial ones
+    <KIND a>            a number of the kind (KINDS)        <KIND a b c>        a vector; kinds W, Q and turn are axial
     <at z 1.5>          a coordinate                        <side zlo -8.3>     a face with its place: zlo -8.3
     <face zlo>, <axis z>                                    <each p p f>        a word for each axis
     <block 0 1 INF INF 2 3>                                 <planes x 0 NULL>   xplane 0 NULL
@@ -15,12 +15,12 @@ import re
 import numpy as np
 
 # powers of length, time, mass
-KINDS = {"1": (0, 0, 0), "L": (1, 0, 0), "p": (1, 0, 0), "area": (2, 0, 0), "t": (0, 1, 0), "rate": (0, -1, 0), "m": (0, 0, 1),
+KINDS = {"1": (0, 0, 0), "turn": (0, 0, 0), "L": (1, 0, 0), "p": (1, 0, 0), "area": (2, 0, 0), "t": (0, 1, 0), "rate": (0, -1, 0), "m": (0, 0, 1),
          "V": (1, -1, 0), "V2": (2, -2, 0), "A": (1, -2, 0), "W": (0, -1, 0), "nu": (2, -1, 0), "F": (1, -2, 1), "Q": (2, -2, 1),
          "k": (0, -2, 1), "E": (2, -2, 1), "power": (2, -3, 1), "slope": (-2, -2, 1),
          "rho": (-3, 0, 1), "P": (-1, -2, 1), "stress": (-1, -2, 1), "eta": (-1, -1, 1), "drho": (-3, -1, 1),
          "rho2": (-2, 0, 1), "P2": (0, -2, 1), "stress2": (0, -2, 1), "eta2": (0, -1, 1), "drho2": (-2, -1, 1)}   # in two dimensions
-AXIAL = ("W", "Q")
+AXIAL = ("W", "Q", "turn")
 AXES, SIDES = "xyz", ("lo", "hi")
 
 

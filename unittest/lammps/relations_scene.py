@@ -50,6 +50,9 @@ class Scene:
             if any(a["v"]):
                 v = frame.vector("V", a["v"])
                 words.append("vx {!r} vy {!r} vz {!r}".format(*map(float, v)))
+            if "mu" in a:
+                mu = frame.vector("1", a["mu"])
+                words.append("dipole {!r} {!r} {!r}".format(*map(float, mu)))
             if "rho" in a:
                 words.append(f"sph/rho <{a['kind']} {a['rho']!r}>")
             if words:

@@ -14,6 +14,7 @@ OPTIONS = {
     "rigid": ["no", "yes", "yes", "auto", "shell"],
     "motion": ["forces", "forces inside", "ab2", "ab2", "euler", "midpoint"],
     "noise": ["no", "no", "yes"], "held": ["no", "no", "still", "moved"], "spin": ["no", "no", "no", "all", "slips"],
+    "directions": ["no", "no", "mu"], "drive": ["no", "no", "torque", "pin", "squirm"],
     "adapt": ["no"] * 5 + ["yes"], "flow": ["rest", "uniform", "shear", "time", "box"], "visc": ["number", "number", "formula"],
     "select": ["all", "all", "all", "group", "region"], "every": [1, 1, 2, 3], "guess": ["warm", "warm", "cold"],
     "far": ["auto", "direct", "ewald"], "contacts": ["no", "no", "no", "yes"], "look": ["nothing", "field", "stress"], "skin": [0.3, 0.05],
@@ -38,14 +39,18 @@ def lawful(o, no):
     no(o["pairs"] == "list", films="no", rigid="no", clumps=0, motion=o["motion"] if not overdamped else "forces")
     no(o["pairs"] == "clumps_only" and overdamped and o["rigid"] == "no" and o["noise"] == "no", rigid="yes" if o["clumps"] else "no")
     no(o["pairs"] == "clumps_only" and o["motion"] == "midpoint", motion="ab2")
-    no(not overdamped, noise="no", held="no", spin="no", adapt="no")
+    no(not overdamped, noise="no", held="no", spin="no", adapt="no", directions="no", drive="no")
+    no(o["model"] == "", directions="no", drive="no")
+    no(o["drive"] == "pin" and o["pairs"] != "inf", drive="torque")
+    no(o["drive"] == "squirm" and (not blobs or o["pairs"] != "inf"), drive="torque")
+    no(o["drive"] == "squirm", directions="mu")
     no(overdamped, every=1)
     no(o["look"] != "nothing" and blobs, guess="warm")      # else the forces of points are not kept
     no(o["noise"] == "yes", adapt="no", contacts="no", held="still" if o["held"] == "moved" and o["clumps"] else o["held"])
     no(o["noise"] == "yes" and (o["pairs"] != "inf" or o["space"] == "deform"), noise="no")
     no(o["noise"] == "yes" and o["motion"] in ("ab2", "euler") and (
         o["films"] == "yes" or blobs or o["space"] == "wall" or o["rigid"] != "no" or o["held"] != "no" or o["spin"] != "no"
-        or o["visc"] == "formula"), motion="midpoint")
+        or o["drive"] == "pin" or o["visc"] == "formula"), motion="midpoint")
     no(o["held"] == "moved", adapt="no")      # fix move wants one time step
     no(o["held"] == "moved" and o["motion"] == "midpoint" and o["rigid"] != "no", held="still")
     no(o["spin"] != "no" and (o["model"] == "" or o["rigid"] != "no"), spin="no")
@@ -119,10 +124,11 @@ def build(options, seed):
     drift = {m: [R.uniform(-0.3, 0.3) for _ in range(3)] for m in range(1, 4)}     # a clump moves as one from the start
     for p, a, m in places(o, seed):
         v = drift.get(m) or [R.uniform(-0.3, 0.3) for _ in range(3)]
-        s.atom(p, v if "forces" in o["motion"] else (0, 0, 0), diameter=2 * a, density=1.7, molecule=m)
+        mu = {"mu": [R.gauss(0, 1) for _ in range(3)]} if o["directions"] == "mu" else {}
+        s.atom(p, v if "forces" in o["motion"] else (0, 0, 0), diameter=2 * a, density=1.7, molecule=m, **mu)
     lone = [k + 1 for k, a in enumerate(s.atoms) if not a["molecule"]]
     closed = o["space"] in CLOSED
-    s.head = ["units lj", "atom_style hybrid sphere bond"]
+    s.head = ["units lj", "atom_style hybrid sphere bond" + " dipole" * (o["directions"] == "mu")]
     s.make = [f"boundary <each {dict(open='f f f', wall='f f f', shrink='m m m').get(o['space'], 'p p p')}>"]
     half = "-9 9 -9 9 -9 9" if closed else "-30 30 -30 30 -30 30"
     tilt = " <L 1.5> <L -1.0> <L 2.0>" if o["space"] in CLOSED[1:] else ""
@@ -183,7 +189,7 @@ def inertia(s, o):
 
 
 def without_inertia(s, o, lone, seed):
-    R, words, taken = random.Random(f"held {seed}"), f"scheme {o['motion']}", []
+    R, words, taken, bound = random.Random(f"held {seed}"), f"scheme {o['motion']}", [], []
     if o["noise"] == "yes":
         words += " temperature <E 0.4> 4711 noise_tolerance 1e-7"
     if o["held"] != "no" and lone:
@@ -194,7 +200,16 @@ def without_inertia(s, o, lone, seed):
         if o["held"] == "moved":
             s.groups.append(f"group drag id <ids {taken[0]}>")
             s.fixes.append("fix tug drag move wiggle <L 0.2 0.1 0.3> <t 0.5>")
-    rest = [k for k in lone if k not in taken]
+    rest, all_held = [k for k in lone if k not in taken], taken + bound
+    if o["drive"] == "pin" and rest:
+        s.groups.append(f"group rotor id <ids {rest.pop()}>")
+        words += " pin rotor"
+    free = [k for k in range(1, len(s.atoms) + 1) if k not in all_held]
+    if o["drive"] in ("torque", "pin") and free:
+        s.groups.append(f"group driven id <ids {' '.join(map(str, free[::2] + free[-1:]))}>")
+        words += " torque driven <Q 4 -3 6>"
+    if o["drive"] == "squirm":
+        words += " squirm odd <V 0.9> <V -0.7>"
     if o["spin"] != "no" and rest:
         s.groups.append(f"group whirl id <ids {' '.join(map(str, rest[:2]))}>")
         words += " spin whirl <W 0 3 1>" + " <Q 5>" * (o["spin"] == "slips")
@@ -206,4 +221,6 @@ def without_inertia(s, o, lone, seed):
         s.fixes.append("fix shear all deform 1 xz erate <rate 0.4> remap none")
     s.fixes.append(f"fix move all stokes_dynamics/overdamped {words}")
     s.columns += [("V", "f_move[1] f_move[2] f_move[3]"), ("F", "f_move[4] f_move[5] f_move[6]"), ("Q", "f_move[7] f_move[8] f_move[9]")]
+    s.columns += [("turn", "f_move[11] f_move[12] f_move[13]")] * (o["rigid"] != "no")
+    s.columns += [("1", "mux muy muz")] * (o["directions"] == "mu")
     s.globals += [("power", "f_move"), ("V", "f_move[1]"), ("t", "f_move[9]")]
