@@ -4,7 +4,9 @@
 #include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
+#include "sd_sph_opening.h"
 #include "sph.h"
+#include "table_file.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -100,6 +102,64 @@ void FixSphOpening::check_side() const
                "POSITION must lie between them and it");
 }
 
+void FixSphOpening::find_pressures()
+{
+  pressures.resize(atom->nlocal + 1);
+  pressure.evaluate(lmp, igroup, pressures.data(), 1);
+}
+
+std::array<double, 2> FixSphOpening::across(const double *x) const
+{
+  const int d0 = axis == 0 ? 1 : 0, d1 = axis == 2 ? 1 : 2;
+  return {x[d0], x[d1]};
+}
+
+/* Nodes are about h/2 apart, a spacing or less: twice as far, they blunted the profile of a channel so much that the
+ * pressure gradient before the outlet was 4 % too small. */
+void FixSphOpening::look_at_flow()
+{
+  double h = 0.0;
+  for (int type = 1; type <= atom->ntypes; type++)
+    if (pair->takes(type)) h = std::max(h, pair->smoothing_length(type));
+  const auto lo = across(domain->boxlo), hi = across(domain->boxhi);
+  for (int d = 0; d < 2; d++) {
+    const bool flat = d == 1 && domain->dimension == 2;
+    section.n[d] = flat ? 1 : 1 + std::max(1, (int) (2.0 * (hi[d] - lo[d]) / h));
+    section.lo[d] = lo[d];
+    section.step[d] = flat ? 1.0 : (hi[d] - lo[d]) / (section.n[d] - 1);
+  }
+  std::vector<double> mine(2 * (size_t) section.n[0] * section.n[1], 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double before = -beyond(atom->x[i]);
+    if (before >= 0.0 && before < 2.0 * h)
+      sd_sph_section_add(&section, across(atom->x[i]).data(), Sph::mass(lmp, i), side * atom->v[i][axis],
+                         mine.data());
+  }
+  flow.resize(mine.size());
+  MPI_Allreduce(mine.data(), flow.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
+}
+
+double FixSphOpening::speed_before(const double *x, double otherwise) const
+{
+  return sd_sph_section_speed(&section, across(x).data(), flow.data(), otherwise);
+}
+
+double FixSphOpening::whole_flow() const
+{
+  double all = 0.0;
+  for (size_t k = 1; k < flow.size(); k += 2) all += flow[k];
+  return all;
+}
+
+/* Once. */
+void FixSphOpening::tell_of_backflow(const std::string &what)
+{
+  if (told) return;
+  told = true;
+  voice.at_step().warn(what);
+}
+
 double FixSphOpening::compute_scalar()
 {
   return sum_of_all(world, passed);
@@ -116,32 +176,107 @@ FixSphInlet::FixSphInlet(LAMMPS *lmp, int narg, char **arg) :
        [&] {
          velocity = Field::parse(in);
        }},
+      {"flow_rate",
+       [&] {
+         drive = FLOW_RATE;
+         if (in.take("file"))
+           read_hydrograph(in.word());
+         else
+           flow_rate = Field::parse(in, Field::ONE_FOR_ALL);
+       }},
+      {"pressure",
+       [&] {
+         drive = PRESSURE;
+         pressure = Field::parse(in);
+       }},
       {"gravity",
        [&] {
          gravity.parse(in);
        }},
   });
-  in.require(in.given("velocity"), "keyword velocity is required: the speed into the flow");
+  const int drives = in.given("velocity") + in.given("flow_rate") + in.given("pressure");
+  in.require(drives == 1, "one of the keywords velocity, flow_rate and pressure is required: what drives "
+                          "the fluid in");
+  in.require(drive != PRESSURE || !in.given("gravity"),
+             "keyword gravity does not go with pressure, which may be a variable of the height");
   keep({&marks}, nullptr, true);
+}
+
+/* Rows of a time and a discharge. */
+void FixSphInlet::read_hydrograph(const std::string &file)
+{
+  const Voice what = voice.of("keyword flow_rate: file '" + file + "'");
+  for (const auto &row : read_rows(voice.of("keyword flow_rate"), file)) {
+    if (row.size() != 2)
+      what.fail("row " + std::to_string(times.size() + 1) + " must have two numbers, a time and a discharge");
+    if (!times.empty() && !(row[0] > times.back()))
+      what.fail("the time " + text(row[0]) + " does not lie after " + text(times.back()));
+    times.push_back(row[0]);
+    rates.push_back(row[1]);
+  }
+  if (times.empty()) what.fail("no rows of a time and a discharge");
 }
 
 void FixSphInlet::init()
 {
   FixSphOpening::init();
   velocity.init(lmp);
+  flow_rate.init(lmp);
+  pressure.init(lmp);
   gravity.init(lmp);
+}
+
+double FixSphInlet::discharge()
+{
+  if (times.empty()) return flow_rate.evaluate(lmp);
+  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  return sd_sph_hydrograph((int) times.size(), times.data(), rates.data(), now);
+}
+
+/* Of the whole layer: from the volume that its particles have at rest, which is the same while they come
+ * and go. */
+double FixSphInlet::common_speed()
+{
+  double volume = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && marks[i][STATE] != REPLACED)
+      volume += Sph::mass(lmp, i) / pair->rest_density(i);
+  return discharge() * width / sum_of_all(world, volume);
+}
+
+/* As the fluid before each particle flows, but not backwards. At the beginning of a run, as it is. */
+void FixSphInlet::follow_flow()
+{
+  if (!update->setupflag) look_at_flow();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const bool due = marks[i][STATE] == DUE;
+    const double now = due ? marks[i][SPEED] : -side * atom->v[i][axis];
+    speeds[i] = update->setupflag ? now : std::max(0.0, -speed_before(due ? marks[i] + PLACE : atom->x[i], -now));
+  }
+  if (!update->setupflag && whole_flow() > 0.0)
+    tell_of_backflow("the flow turns back at this inlet, which lets nothing out and holds it there");
 }
 
 /* Of all in the layer, and of those that are due, where they are due: a variable may depend on place
  * and time. */
 void FixSphInlet::find_speeds()
 {
+  speeds.resize(atom->nlocal + 1);
+  if (drive != VELOCITY) {
+    if (drive == PRESSURE)
+      follow_flow();
+    else
+      std::fill(speeds.begin(), speeds.end(), common_speed());
+    for (int i = 0; i < atom->nlocal; i++)
+      if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE) marks.give(i)[SPEED] = speeds[i];
+    return;
+  }
   const auto stand_in = [this] {
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE)
         std::swap_ranges(atom->x[i], atom->x[i] + 3, marks.give(i) + PLACE);
   };
-  speeds.resize(atom->nlocal + 1);
   stand_in();
   velocity.evaluate(lmp, igroup, speeds.data(), 1);
   stand_in();
@@ -289,20 +424,19 @@ void FixSphOutlet::setup_pre_exchange()
   check_side();
 }
 
-const double *FixSphOutlet::find_pressures()
-{
-  pressures.resize(atom->nlocal + 1);
-  pressure.evaluate(lmp, igroup, pressures.data(), 1);
-  return pressures.data();
-}
-
+/* All that are at one place of the section move alike, so that no gap opens in the layer and nothing piles up
+ * there when the flow changes in time or eddies come; and nothing comes back. */
 void FixSphOutlet::post_integrate()
 {
+  look_at_flow();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_held(i)) continue;
-    for (int d = 0; d < 3; d++)
-      if (d != axis) atom->v[i][d] = 0.0;
+    double *v = atom->v[i];
+    const double speed = std::max(0.0, speed_before(atom->x[i], side * v[axis]));
+    for (int d = 0; d < 3; d++) v[d] = d == axis ? side * speed : 0.0;
   }
+  if (whole_flow() < 0.0)
+    tell_of_backflow("the flow turns back at this outlet, which has no fluid to give and holds it there");
 }
 
 void FixSphOutlet::pre_exchange()

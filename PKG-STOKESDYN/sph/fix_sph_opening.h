@@ -4,8 +4,10 @@
 #ifndef SD_FIX_SPH_OPENING_H
 #define SD_FIX_SPH_OPENING_H
 
+#include "sd_sph_opening.h"
 #include "sph.h"
 
+#include <array>
 #include <vector>
 
 namespace StokesDyn {
@@ -19,6 +21,11 @@ class FixSphOpening : public SphFix {
 
   /* Of a particle of the group at x: does it stand in the layer? */
   bool holds(const double *x) const { return beyond(x) > 0.0; }
+  /* Has the layer a pressure that is given to it? */
+  virtual bool gives_pressure() const = 0;
+  /* That of this step; all ranks. Then that of particle i, in the layer. */
+  void find_pressures();
+  double pressure_of(int i) const { return pressures[i]; }
 
  protected:
   std::vector<SavedNumbers> saved() override { return {{"passed", &passed, 1, true}}; }
@@ -35,10 +42,26 @@ class FixSphOpening : public SphFix {
   double plane = 0.0, width = 0.0;
   /* mass that has passed, of this rank */
   double passed = 0.0;
+  Field pressure;
+  /* the flow turns against the opening, which has been said */
+  bool told = false;
+  void tell_of_backflow(const std::string &what);
+  /* The flow before the layer, within 2 h of the plane; all ranks. Then its speed out of the layer, across
+   * from place x, and how the flow goes as a whole. */
+  void look_at_flow();
+  double speed_before(const double *x, double otherwise) const;
+  double whole_flow() const;
+
+ private:
+  sd_sph_section section = {};
+  std::vector<double> flow;
+  std::array<double, 2> across(const double *x) const;
+  std::vector<double> pressures;
 };
 
-/* Particles of its layer move with a given velocity into the flow, their pressure that of the fluid
- * before them. Where one leaves the layer, a new one begins at its back, the width of the layer
+/* Particles of its layer move into the flow with a given velocity, or all with that of a given discharge,
+ * their pressure that of the fluid before them; or they have a given pressure, and move as the fluid before
+ * them does. Where one leaves the layer, a new one begins at its back, the width of the layer
  * behind. */
 class FixSphInlet : public FixSphOpening {
  public:
@@ -49,11 +72,16 @@ class FixSphInlet : public FixSphOpening {
   void setup_pre_exchange() override;
   void pre_exchange() override;
   void post_integrate() override;
+  bool gives_pressure() const override { return drive == PRESSURE; }
 
   BodyForce gravity;
 
  private:
-  Field velocity;
+  enum Drive { VELOCITY, FLOW_RATE, PRESSURE };
+  Drive drive = VELOCITY;
+  Field velocity, flow_rate;
+  /* of a file: discharges at their times */
+  std::vector<double> times, rates;
   std::vector<double> speeds;
   /* state, place of the new particle, its speed, the step in which the old one left. A particle that
    * comes back into the layer from the flow has been replaced and stays so. */
@@ -66,6 +94,10 @@ class FixSphInlet : public FixSphOpening {
     double left, parent, place[3], speed, rho, mass, radius;
     int type, mask;
   };
+  void read_hydrograph(const std::string &file);
+  double discharge();
+  double common_speed();
+  void follow_flow();
   void find_speeds();
   void move_layer();
   std::vector<Newcomer> newcomers();
@@ -73,8 +105,8 @@ class FixSphInlet : public FixSphOpening {
   void create(const Newcomer &like, LAMMPS_NS::tagint tag);
 };
 
-/* Particles of its layer keep the velocity across the plane with which they came, and have a given
- * pressure. They are deleted at its end. */
+/* Particles of its layer move across the plane as the fluid before them does, and have a given pressure.
+ * They are deleted at its end. */
 class FixSphOutlet : public FixSphOpening {
  public:
   static constexpr const char *STYLE = "sph/outlet";
@@ -84,13 +116,7 @@ class FixSphOutlet : public FixSphOpening {
   void setup_pre_exchange() override;
   void pre_exchange() override;
   void post_integrate() override;
-
-  /* [nlocal] Of this step; all ranks. */
-  const double *find_pressures();
-
- private:
-  Field pressure;
-  std::vector<double> pressures;
+  bool gives_pressure() const override { return true; }
 };
 
 }    // namespace StokesDyn

@@ -66,8 +66,11 @@ class PairSph : public LAMMPS_NS::Pair {
   bool is_newtonian() const { return law == SD_SPH_NEWTON; }
   bool has_laplacian() const { return model.friction == SD_SPH_LAPLACIAN; }
   bool has_sound_speed(int itype) const;
+  bool takes(int itype) const { return table[H][itype][itype] > 0.0; }
   /* Of each owned particle: |h v.d / (r^2 + eta)|. Not inside compute. */
   void largest_approach(std::vector<double> &largest);
+  /* rho0 of its equation of state; without one the density that it has. */
+  double rest_density(int i) const;
   /* The smallest sd_sph_growth_limit of particles of these groups that are none of a wall. */
   double growth_limit(int bits) const;
   /* W' for two particles of this type. */
@@ -197,7 +200,7 @@ class PairSph : public LAMMPS_NS::Pair {
   const double *spins_of_walls();
   void sums_of_other_fluids(const double *spins_of_walls);
   void wall_row(int i, const double *sums_i, double *row);
-  void held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row);
+  void held_row(int i, const double *sums_i, double *row);
   [[noreturn]] void no_density(const Voice &of, int i, const std::string &asked) const;
   bool is_wall(int i) const;
   void load_wall(int receivers);

@@ -63,23 +63,30 @@ void PairSph::wall_row(int i, const double *sums_i, double *row)
   if (row[0] == 0.0) no_density(wall->voice, i, text(asked) + " that the fluid asks for");
 }
 
-/* Particles of an inlet have the pressure of the fluid before them, as walls, and their own
- * velocity; those of an outlet have the pressure that it is told. */
-void PairSph::held_row(int i, const double *sums_i, const std::vector<const double *> &given, double *row)
+double PairSph::rest_density(int i) const
 {
   const FixSphPressure *eos = state_of(i);
-  if (auto *inlet = holder(inlets, atom, i)) {
+  return eos && eos->state.rho0 > 0.0 ? eos->state.rho0 : atom->rho[i];
+}
+
+/* Particles of an inlet have the pressure of the fluid before them, as walls, and their own
+ * velocity; those of an outlet, and of an inlet by pressure, have the pressure that it is told. */
+void PairSph::held_row(int i, const double *sums_i, double *row)
+{
+  const FixSphPressure *eos = state_of(i);
+  auto *inlet = holder(inlets, atom, i);
+  if (inlet && !inlet->gives_pressure()) {
     const sd_sph_wall how = {&eos->state, 0, 1};
     const double asked = sd_sph_wall_particle(&how, sums_i, atom->v[i], inlet->gravity.now(), row);
     std::fill_n(row + 1, 3, 0.0);
     if (row[0] == 0.0) no_density(inlet->voice, i, text(asked) + " that the fluid asks for");
     return;
   }
-  const auto *outlet = holder(outlets, atom, i);
-  const size_t k = std::find(outlets.begin(), outlets.end(), outlet) - outlets.begin();
-  row[0] = sd_sph_density_of(&eos->state, given[k][i]);
+  const FixSphOpening *open = inlet ? (const FixSphOpening *) inlet : holder(outlets, atom, i);
+  const double given = open->pressure_of(i);
+  row[0] = sd_sph_density_of(&eos->state, given);
   std::fill_n(row + 1, 3, 0.0);
-  if (row[0] == 0.0) no_density(outlet->voice, i, text(given[k][i]) + " that is asked of it");
+  if (row[0] == 0.0) no_density(open->voice, i, text(given) + " that is asked of it");
 }
 
 void PairSph::no_density(const Voice &of, int i, const std::string &asked) const
@@ -167,15 +174,16 @@ void PairSph::wall_particles()
   wall_rows.resize(4 * (size_t) (n + 1));
   if (wall) wall->gravity.find(lmp);
   for (auto *inlet : inlets) inlet->gravity.find(lmp);
-  std::vector<const double *> given;
-  for (auto *outlet : outlets) given.push_back(outlet->find_pressures());
+  for (auto *inlet : inlets)
+    if (inlet->gives_pressure()) inlet->find_pressures();
+  for (auto *outlet : outlets) outlet->find_pressures();
   for (int i = 0; i < atom->nlocal; i++) {
     double *row = &wall_rows[4 * (size_t) i];
     row[0] = atom->rho[i];
     if (is_wall(i))
       wall_row(i, &sums[8 * (size_t) i], row);
     else if (is_held(i))
-      held_row(i, &sums[8 * (size_t) i], given, row);
+      held_row(i, &sums[8 * (size_t) i], row);
   }
   forward(wall_rows.data(), 4);
   for (int i = 0; i < n; i++) {

@@ -130,6 +130,25 @@ def test_open_ends_on_any_number_of_ranks_and_over_restarts(tmp_path):
     assert np.abs(again - first).max() <= 1e-12 * np.abs(first).max()
 
 
+@pytest.mark.parametrize("drive", ["pressure 0.3", "flow_rate 0.5"])
+def test_what_drives_a_flow_asks_nothing_of_ranks_and_restarts(drive, tmp_path):
+    scene = PIPE + OPEN.replace("velocity {}", drive)
+    dump = "\nwrite_dump all custom end.dump x y vx vy modify format float %.17g"
+    ends = []
+    fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep")))
+    for name, ranks, text in (("one", 1, scene + "run 200"), ("two", 2, scene + "run 200"),
+                              ("restart", 1, scene + "run 123\nwrite_restart half\nclear\nplugin load stokesdynplugin.so\natom_modify map array\n"
+                               "read_restart half\n" + fixes + "\nrun 77")):
+        folder = tmp_path / name
+        folder.mkdir()
+        done = mpirun(ranks, text + dump, folder)
+        assert done.returncode == 0, done.stdout
+        rows = np.loadtxt(folder / "end.dump", skiprows=9)
+        rows = rows[(rows[:, 0] > 0) & (rows[:, 0] < 1)]
+        ends.append(rows[np.lexsort((rows[:, 1].round(7), rows[:, 0].round(7)))])
+    assert max(np.abs(end - ends[0]).max() for end in ends[1:]) < 1e-11
+
+
 @pytest.mark.parametrize("speed", ["equal 0.8+0.3*sin(step*0.07)", "atom 0.8+0.3*sin(step*0.07)*sin(2*PI*y/0.6)"])
 def test_a_speed_that_changes_in_time_asks_nothing_of_lists_and_runs(speed):
     """New particles are made when there is a new list: with a skin of a third of a spacing ten steps later than with a small one, at the same places.
@@ -147,6 +166,65 @@ def test_a_speed_that_changes_in_time_asks_nothing_of_lists_and_runs(speed):
     assert max(np.abs(rows[0] - other).max() for other in rows[1:]) < 1e-11
 
 
+def end_of(scene, steps):
+    """Places and velocities of the flow, along x and y; the mass that has come in."""
+    lmp = start()
+    try:
+        run(lmp, scene + "run %d post no" % steps)
+        x, v = by_id(lmp, "x", 3), by_id(lmp, "v", 3)
+        inside = (x[:, 0] > -0.5) & (x[:, 0] < 1)
+        order = np.lexsort((x[inside, 1].round(7), x[inside, 0].round(7)))
+        return np.hstack([x[inside], v[inside]])[order], lmp.extract_fix("in", 0, 0)
+    finally:
+        lmp.close()
+
+
+def test_a_discharge_is_the_speed_that_brings_it():
+    """0.48 through a width of 0.6 is the speed 0.8. The mass that comes in is the discharge times the time, but for a column."""
+    scene = PIPE.replace("all vx 1", "all vx 0.8")
+    rows, mass = end_of(scene + OPEN.replace("velocity {}", "flow_rate 0.48"), 300)
+    assert np.abs(rows - end_of(scene + OPEN.format(0.8), 300)[0]).max() < 1e-9
+    assert mass == pytest.approx(0.48 * 300 * 0.005, abs=0.061)
+
+
+def test_a_hydrograph_is_the_variable_that_it_describes(tmp_path):
+    path = tmp_path / "flood.txt"
+    path.write_text("# s   m2/s\n0.2, 0.48\n0.7 0.72\n1.2 0.54 # falls\n")
+    scene = PIPE.replace("all vx 1", "all vx 0.8").replace("viscosity 0.05", "artVisc 0.2 0 4e-4 viscosity 0.05")
+    t = "step*dt"
+    formula = f"variable q equal 0.48+0.48*({t}-0.2)*({t}>0.2)-0.84*({t}-0.7)*({t}>0.7)+0.36*({t}-1.2)*({t}>1.2)\n"
+    given = end_of(scene + OPEN.replace("velocity {}", f"flow_rate file {path}"), 200)[0]
+    assert np.abs(given - end_of(scene + formula + OPEN.replace("velocity {}", "flow_rate v_q"), 200)[0]).max() < 1e-9
+    assert given[:, 3].mean() == pytest.approx((0.72 - 0.18 * 0.3 / 0.5) / 0.6, rel=0.03)    # sound is on its way
+
+
+@pytest.mark.parametrize("rows, words", [("", "no rows of a time and a discharge"), ("0 1\n1 2 3\n", "row 2 must have two numbers"),
+                                         ("0 1\n0 2\n", "the time 0 does not lie after 0"), ("0 x\n", "line 1: 'x' is not a finite number")])
+def test_what_is_no_hydrograph(rows, words, tmp_path):
+    path = tmp_path / "flood.txt"
+    path.write_text(rows)
+    text = message(PIPE + OPEN.replace("velocity {}", f"flow_rate file {path}") + "run 1")
+    assert words in text and "keyword flow_rate" in text
+
+
+def test_a_pressure_drives_fluid_in():
+    """Without walls nothing holds it: the difference of both pressures over the length is what accelerates it. The layers follow and weigh nothing.
+    Each of the two pressures acts a spacing behind its plane: du/dt = 0.3/1.2."""
+    rows, mass = end_of(PIPE.replace("all vx 1", "all vx 0.5") + OPEN.replace("velocity {}", "pressure 0.3"), 300)
+    flow = rows[(rows[:, 0] > 0.1) & (rows[:, 0] < 0.9)]
+    assert flow[:, 3].mean() == pytest.approx(0.5 + 0.25 * 1.5, rel=0.01)
+    assert np.abs(flow[:, 4]).max() < 0.02
+    assert mass == pytest.approx(0.6 * (0.5 * 1.5 + 0.25 * 1.5**2 / 2), rel=0.08)
+
+
+def test_flow_that_turns_back_is_stopped_and_said_once(tmp_path):
+    """A pressure that drives it out again: it stands at the inlet."""
+    done = mpirun(1, PIPE.replace("all vx 1", "all vx 0.2") + OPEN.replace("velocity {}", "pressure -0.4") + "run 300", tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert (done.stdout + done.stderr).count("the flow turns back at this inlet, which lets nothing out and holds it there") == 1
+    assert (done.stdout + done.stderr).count("the flow turns back at this outlet, which has no fluid to give and holds it there") == 1
+
+
 def test_new_particles_have_the_size_of_those_that_they_replace():
     lmp = start()
     run(lmp, PIPE.replace("atom_style sph", "atom_style hybrid sph sphere").replace("mass 1 0.01", "set type 1 diameter 0.08\nset type 1 mass 0.01")
@@ -157,7 +235,11 @@ def test_new_particles_have_the_size_of_those_that_they_replace():
 
 
 @pytest.mark.parametrize("change, words", [
-    (("velocity 1", ""), "keyword velocity is required"),
+    (("velocity 1", ""), "one of the keywords velocity, flow_rate and pressure is required"),
+    (("velocity 1", "velocity 1 flow_rate 2"), "one of the keywords velocity, flow_rate and pressure is required"),
+    (("velocity 1", "pressure 1 gravity 0 -1 0"), "keyword gravity does not go with pressure"),
+    (("velocity 1", "flow_rate"), "keyword flow_rate: value missing"),
+    (("velocity 1", "flow_rate file nowhere.txt"), "keyword flow_rate: cannot read file 'nowhere.txt'"),
     (("xlo 0 0.7", "left 0 0.7"), "'left' is none of: xlo, xhi"),
     (("xlo 0 0.7", "xlo 0 0.9"), "does not fit into the box, which ends at -0.7"),
     (("xlo 0 0.7", "xlo 8 0.7"), "POSITION 8 is outside of the box, which goes from -0.7 to 1.7"),
