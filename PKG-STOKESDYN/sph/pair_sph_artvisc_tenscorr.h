@@ -179,6 +179,8 @@ class PairSph : public LAMMPS_NS::Pair {
   void look_at_densities(int n);
   void look_at_walls();
   void tell_of_belts();
+  void look_at_bodies();
+  void look_at_bodies_of(const LAMMPS_NS::Fix *rigid, const int *body, const double *mass);
   void check_turning(const double w2_shear2[2]);
   void look_at_sound();
   void look_at_widths();

@@ -9,11 +9,14 @@
 #include "sd_sph_wall.h"
 
 #include "atom.h"
+#include "domain.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <tuple>
 
 using namespace LAMMPS_NS;
@@ -200,6 +203,51 @@ void PairSph::tell_of_belts()
   if (belts > 0.0)
     wall->voice.tell(text(belts) + " particles of the wall have a velocity, and no fix moves them: they "
                      "stay where they are and rub as a lid or a belt does");
+}
+
+/* Under pressure the arrangement of particles holds bodies back (sd_sph_arrangement). A body that is nearly
+ * as heavy as the water is then held where it is. After the first force, which has made the pressures. */
+void PairSph::look_at_bodies()
+{
+  if (corrects || model.dimension != domain->dimension) return;
+  for (int k = 0; k < lmp->modify->nfix; k++) {
+    Fix *fix = lmp->modify->fix[k];
+    int dim;
+    if (strncmp(fix->style, "rigid", 5) != 0) continue;
+    const auto *body = (const int *) fix->extract("body", dim);
+    const auto *mass = (const double *) fix->extract("masstotal", dim);
+    if (body && mass) look_at_bodies_of(fix, body, mass);
+  }
+}
+
+void PairSph::look_at_bodies_of(const Fix *rigid, const int *body, const double *mass)
+{
+  enum { VOLUME, OF_WATER, PRESSURE, WIDTH, NSUMS };
+  const int bodies = rigid->size_array_rows, D = model.dimension;
+  std::vector<double> mine((size_t) NSUMS * std::max(bodies, 0), 0.0), all(mine.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & rigid->groupbit) || !is_wall(i) || body[i] < 0 || body[i] >= bodies) continue;
+    double *sums = &mine[(size_t) NSUMS * body[i]];
+    const double V = Sph::mass(lmp, i) / rest_density(i);
+    sums[VOLUME] += V;
+    sums[OF_WATER] += Sph::mass(lmp, i);
+    sums[PRESSURE] += V * P[i];
+    sums[WIDTH] += V * smoothing_length(atom->type[i]) / pow(V, 1.0 / D);
+  }
+  MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);
+  const double *g = wall->gravity.now(), fall = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  for (int k = 0; k < bodies; k++) {
+    const double *sums = &all[(size_t) NSUMS * k], V = sums[VOLUME], weight = fabs(sums[OF_WATER] - mass[k]) * fall;
+    if (!(V > 0.0 && fall > 0.0)) continue;
+    const double pressure = sums[PRESSURE] / V, length = pow(V, 1.0 / D);
+    const double resists = length * sd_sph_arrangement(model.kernel, D, sums[WIDTH] / V, 1.0, pressure, V);
+    if (!(weight < resists)) continue;
+    wall->voice.warn("body " + std::to_string(k + 1) + " of fix " + rigid->id + " is moved by " + text(weight) +
+                     ", its weight less that of the water; under the pressure " + text(pressure) +
+                     " the arrangement of the particles resists with " + text(resists) +
+                     " when it goes its own length: it will be too slow, or stay; use h = 3 dx");
+    return;
+  }
 }
 
 // --- in a run --------------------------------------------------------------------------------------

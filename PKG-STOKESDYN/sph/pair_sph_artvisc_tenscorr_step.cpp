@@ -60,6 +60,7 @@ void PairSph::compute(int eflag, int vflag)
   pressures_of_all();
   if (has_walls()) wall_particles();
   forces(continuity && !leapfrog);
+  if (update->setupflag && wall) look_at_bodies();
 
   for (auto *fix : pressures) fix->output(P.data());
   if (continuity) continuity->output(atom->drho);

@@ -200,3 +200,56 @@ def test_rates_of_the_first_set_up_are_those_of_the_next():
     run(lmp, "run 0 post no")
     assert np.abs(first).max() > 0 and np.abs(first - fix_by_id(lmp, "density")).max() < 1e-10 * np.abs(first).max()
     lmp.close()
+
+
+DEEP = """
+    units si
+    dimension 2
+    atom_style sph
+    boundary f f p
+    lattice sq 0.02 origin 0.5 0.5 0
+    region all block -0.08 0.68 -0.08 0.7 -0.01 0.01 units box
+    create_box 3 all
+    region tank block 0 0.6 0 0.7 INF INF units box side out
+    region ball cylinder z 0.3 {y} 0.08 INF INF units box
+    region water block 0 0.6 0 0.6 INF INF units box
+    create_atoms 2 region tank
+    create_atoms 1 region water
+    set region ball type 3
+    mass * 0.4
+    group water type 1
+    group ball type 3
+    group walls type 2 3
+    variable rho atom 1000*(1+7*9.81/30^2*(0.6-y)*(y<0.6))^(1/7)
+    set group all sph/rho v_rho
+    neighbor 0.006 bin
+    neigh_modify delay 0 every 1 exclude type 2 2 exclude type 3 3 exclude type 2 3
+    pair_style sph/artVisc/tensCorr wendland $({h}*0.02) viscosity 1e-3 central shift yes
+    pair_coeff * * c 30
+    fix eos all sph/pressure Tait $(30^2*1000/7) 1000 7 tension no
+    fix density all sph/density/continuity delta 0.1
+    fix wall walls wall/adami/sph gravity 0 -9.81 0 own_acceleration yes
+    fix move water nve/sph
+    fix g water gravity 9.81 vector 0 -1 0
+    variable M equal {s}*0.4*count(ball)
+    print "1" file ball.txt
+    print "1 $M 0.3 {y} 0 $(v_M*0.0016) $(v_M*0.0016) $(v_M*0.0032) 0 0 0 0 0 0 0 0 0 0 0 0" append ball.txt
+    fix float ball rigid single infile ball.txt gravity g force 1 on on off torque 1 off off on
+    timestep 1e-4
+    run 0
+"""
+
+
+@pytest.mark.parametrize("s, y, h, held", [(0.98, 0.2, 2, True), (0.5, 0.2, 2, False), (0.995, 0.2, 3, True), (0.94, 0.2, 3, False), (1.04, 0.2, 2, True),
+                                           (0.9, 0.2, 2, True), (0.9, 0.5, 2, False)])
+def test_a_body_that_the_arrangement_of_particles_holds_is_warned_of(s, y, h, held, tmp_path):
+    """Its weight less that of the water, |1-s| rho g V, is weighed against 2 pi G L, G = 0.01 P (2 dx/h)^3, L^2 = V: at the depth 0.4 the first is less
+    where |1-s| < 0.175 for h of 2 spacings and 0.052 for 3, at the depth 0.1 where it is less than 0.044."""
+    done = mpirun(1, DEEP.format(s=s, y=y, h=h), tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert ("body 1 of fix float is moved by" in done.stdout) is held
+    if held and s == 0.98:
+        weight, pressure, resists = map(float, re.search(r"is moved by (\S+), .*under the pressure (\S+) .*\n?.*resists with (\S+)", done.stdout).groups())
+        V = weight / (0.02 * 9810)
+        assert V == pytest.approx(np.pi * 0.08**2, rel=0.05) and pressure == pytest.approx(9810 * 0.4, rel=0.02)
+        assert resists == pytest.approx(2 * np.pi * 0.01 * pressure * V**0.5, rel=1e-4)

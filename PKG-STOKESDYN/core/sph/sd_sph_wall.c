@@ -176,3 +176,12 @@ double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const do
   }
   return P;
 }
+
+double sd_sph_arrangement(sd_sph_kernel kernel, int dimension, double h, double spacing, double P, double V)
+{
+  const double pi = 3.14159265358979323846;
+  const double smooth = kernel == SD_SPH_WENDLAND ? 2.0 : 1.3, width = smooth * spacing / h;
+  const double part = kernel == SD_SPH_WENDLAND ? (dimension == 3 ? 0.014 : 0.01) : 0.07;
+  const double G = part * P * width * width * width;
+  return dimension == 3 ? 6.0 * pi * G * cbrt(3.0 * V / (4.0 * pi)) : 2.0 * pi * G;
+}

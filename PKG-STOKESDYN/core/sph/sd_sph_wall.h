@@ -66,5 +66,15 @@ typedef struct {
 double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const double v[3],
                             const double b[3], double row[4]);
 
+/* What the arrangement of the particles does to a body of the volume V (an area in two dimensions) in a fluid
+ * with the pressure P: a force against its displacement, per length. Particles in rows are a weak solid of
+ * the shear modulus
+ *   G = 0.01 P (2 dx/h)^3, three dimensions 0.014 P (2 dx/h)^3     wendland
+ *   G = 0.07 P (1.3 dx/h)^3                                        cubicspline
+ * with the measured values at h = 2 dx (2.5 dx: 0.005 P) and 1.3 dx, and an incompressible solid holds a
+ * cylinder with 2 pi G a length of it (measured: 0.07 P, h = 2 dx), a sphere of the radius R with 6 pi G R.
+ * spacing: dx. Correction has no such force. */
+double sd_sph_arrangement(sd_sph_kernel kernel, int dimension, double h, double spacing, double P, double V);
+
 SD_END_C
 #endif

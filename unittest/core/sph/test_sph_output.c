@@ -172,6 +172,18 @@ static void a_wall_that_slides_does_not_turn(void **state)
   }
 }
 
+/* A cylinder with 2 pi G a length of it, a sphere of the radius R with 6 pi G R, G from the page of the pair
+ * style: 0.01 P and 0.014 P with wendland at h of 2 spacings, 0.005 P at 2.5, 0.07 P with the cubic spline. */
+static void particles_hold_a_body_as_a_weak_solid(void **state)
+{
+  (void) state;
+  const double pi = acos(-1.0), P = 4900.0, dx = 0.02, R = 0.3, V = 4.0 / 3.0 * pi * R * R * R;
+  CHECK_NEAR(sd_sph_arrangement(SD_SPH_WENDLAND, 2, 2.0 * dx, dx, P, 0.7), 2.0 * pi * 0.01 * P, 1e-9);
+  CHECK_NEAR(sd_sph_arrangement(SD_SPH_WENDLAND, 2, 2.5 * dx, dx, P, 0.7), 2.0 * pi * 0.005 * P, 0.03 * 154.0);
+  CHECK_NEAR(sd_sph_arrangement(SD_SPH_WENDLAND, 3, 2.0 * dx, dx, P, V), 6.0 * pi * 0.014 * P * R, 1e-9);
+  CHECK_NEAR(sd_sph_arrangement(SD_SPH_CUBICSPLINE, 2, 1.3 * dx, dx, P, 0.7), 2.0 * pi * 0.07 * P, 1e-9);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -182,6 +194,7 @@ int main(void)
       cmocka_unit_test(height_of_the_edge_of_a_lattice),
       cmocka_unit_test(least_eigenvalue_of_turned_matrices),
       cmocka_unit_test(angular_velocity_of_a_rigid_wall),
-      cmocka_unit_test(a_wall_that_slides_does_not_turn)};
+      cmocka_unit_test(a_wall_that_slides_does_not_turn),
+      cmocka_unit_test(particles_hold_a_body_as_a_weak_solid)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
