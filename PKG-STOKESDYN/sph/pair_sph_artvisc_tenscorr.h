@@ -84,7 +84,8 @@ class PairSph : public LAMMPS_NS::Pair {
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
   /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc
-   * and viscosity): x y z and a number without meaning. Kept while there is a compute sph/energy, the first also with fix sph/grains. */
+   * and viscosity): x y z and a number without meaning. Kept while there is a compute sph/energy, the
+   * first also with fix sph/grains. */
   const double *own_forces() const { return own.data(); }
   const double *own_friction() const { return rubs.data(); }
   /* [6 n] of each owned particle: sd_sph_moments. Not inside compute; false: no force has been

@@ -28,6 +28,8 @@ HOWTOS = {
     "speed": {},
     "shapes": {},
     "magnetic": {},
+    "active": {"c_memory": 0.1, "c_square[4]": 0.1},
+    "swimmers": {},
     "python": {},
 }
 PASTE = re.compile(r"^    \. build/env\.sh\n(?:    .*\n)+", re.M)
