@@ -30,6 +30,7 @@ HOWTOS = {
     "magnetic": {},
     "active": {"c_memory": 0.1, "c_square[4]": 0.1},
     "swimmers": {},
+    "fibres": {},
     "python": {},
 }
 PASTE = re.compile(r"^    \. build/env\.sh\n(?:    .*\n)+", re.M)
