@@ -35,6 +35,12 @@ struct Given {
   using Swims = std::function<bool(int i, sd_squirmer_stroke &stroke)>;
   Swims swims;
 
+  void clear()
+  {
+    loads.clear();
+    held = nullptr;
+    swims = nullptr;
+  }
   double load(int i, size_t d) const { return loads.empty() ? 0.0 : loads[6 * (size_t) i + d]; }
 };
 
@@ -75,7 +81,7 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   /* [6 clumps] velocities that a solve has found */
   void moves(const double *V);
 
-  // --- each clump by itself, by the tables of its shape (clumps_alone.cpp)
+  // --- each clump by itself, by the tables of its shape
 
   /* From loads, what becomes of atom i, of clumps and of free spheres: velocity, and force of the
    * fluid on it, [width] each */

@@ -434,13 +434,22 @@ void FixStokesDynamicsOverdamped::moves(int i, double distance)
   displaced = std::max(displaced, distance / atom->radius[i]);
 }
 
-/* By members of clumps: has it a velocity of before? Its row then, of its clump */
-std::vector<double> FixStokesDynamicsOverdamped::velocities_before() const
+/* By clumps: has it a velocity of before? That then: all its spheres have the same row */
+std::vector<double> FixStokesDynamicsOverdamped::velocities_before(const Hydrodynamics &hydro) const
 {
-  return hydrodynamics().scene.whole.gather(BEFORE, [this](int i, double *out) {
+  const WholeClumps &whole = hydro.scene.whole;
+  const std::vector<ClumpPoses::Clump> &clumps = hydro.motion().clumps();
+  std::vector<int> first_of(whole.size(), -1);
+  for (size_t c = 0; c < clumps.size(); c++) first_of[hydro.motion().member_of(clumps[c], 0)] = (int) c;
+  std::vector<double> rows(BEFORE * (clumps.size() + 1));
+  const auto row = [this](int i, double *out) {
     out[0] = before.has(i);
     std::copy_n(before[i], 9, out + 1);
+  };
+  whole.gather(BEFORE, row, [&](size_t m, const double *of) {
+    if (first_of[m] >= 0) std::copy_n(of, BEFORE, &rows[BEFORE * (size_t) first_of[m]]);
   });
+  return rows;
 }
 
 /* The point by which a clump is moved, from its centroid in the axes of its shape: with noise the centre
@@ -514,10 +523,10 @@ void FixStokesDynamicsOverdamped::clump_moves(Hydrodynamics &hydro, int i, const
 void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
 {
   const ClumpPoses &motion = hydro.motion();
-  const std::vector<double> all_before = velocities_before();
+  const std::vector<double> all_before = velocities_before(hydro);
   const auto step = [&](size_t number) {
     const ClumpPoses::Clump &clump = motion.clumps()[number];
-    const double *row = &all_before[BEFORE * motion.member_of(clump, 0)];
+    const double *row = &all_before[BEFORE * number];
     double old[6], mean[6];
     ClumpStep s = {tracked(motion.shape(clump)), {}, {}};
     tracked_velocity(clump, motion.shape(clump), s.V);

@@ -79,7 +79,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
    * was put by it; U is that of the point by which the clump is moved. When LAMMPS has made an image
    * of it since, v_old is that of the image. */
   AtomRows before;
-  /* of a member of a clump: has it such a row, and which? */
+  /* of a clump: has it such a row, and which? */
   enum { BEFORE = 10 };
   /* v less that of the fluid, force, torque; of a sphere of a rigid clump the quaternion by which that has
    * turned since the fix was given: these four are state, from step to step and in restart files */
@@ -150,7 +150,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void clump_moves(Hydrodynamics &, int i, const double *row);
   void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
   void move_by_midpoint(Hydrodynamics &);
-  std::vector<double> velocities_before() const;
+  std::vector<double> velocities_before(const Hydrodynamics &) const;
   void watch();
   double fastest() const;
   double change_of_velocities() const;

@@ -72,10 +72,11 @@ double FixStokesDynamicsOverdamped::change_of_velocities() const
     most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
   }
   const std::vector<double> all_before =
-      hydro.settings.rigid.on ? velocities_before() : std::vector<double>();
-  for (const auto &clump : moving.clumps()) {
+      hydro.settings.rigid.on ? velocities_before(hydro) : std::vector<double>();
+  for (size_t c = 0; c < moving.clumps().size(); c++) {
+    const ClumpPoses::Clump &clump = moving.clumps()[c];
     const ClumpShape &is = moving.shape(clump);
-    const double *row = &all_before[BEFORE * moving.member_of(clump, 0)];    // all have the same
+    const double *row = &all_before[BEFORE * c];
     double now_V[6], from[3], arm[3], change[3];
     if (row[0] == 0.0) continue;
     tracked_velocity(clump, is, now_V);

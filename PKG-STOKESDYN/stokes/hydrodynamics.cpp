@@ -61,7 +61,7 @@ void Hydrodynamics::init()
 {
   ambient.init();
   scene.settings.positive = false;
-  given = {};    // it asks a fix that may be gone
+  given.clear();    // it asks a fix that may be gone
   advance();
   prepared.take(epochs.run);
   find_wall(voice, scene.settings);
@@ -95,7 +95,7 @@ void Hydrodynamics::begin(Moment moment)
     began = update->firststep;
     ambient.select();
   }
-  given = {};
+  given.clear();
   given.velocities = !overdamped;
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
