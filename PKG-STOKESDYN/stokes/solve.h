@@ -1,7 +1,7 @@
 /* The solve of a step: bodies, an engine, films and a preconditioner, and from a guess loads and motions.
  *
- *   bodies          what is known of each: its load, its velocity, or of one that is spun some of both
- *                   (sd_bodies.h)
+ *   run             bodies, and what is known of each: its load, its velocity, or of one that is spun some
+ *                   of both (sd_bodies.h)
  *   substitution    algorithm 1 of the page, of points whose velocities are given (sd_solve.h)
  *   gradients       algorithm 2 of the same. Bodies that are all held have the same forces, but take 1.04 to
  *                   2.5 times the products to the residual that the page promises
@@ -38,7 +38,7 @@ class Solve : protected LAMMPS_NS::Pointers {
     double tolerance;
     int max_iter;
   };
-  /* The bodies have been placed; for bodies() assembled too, with their films. From a guess, which holds
+  /* The bodies have been placed; for run() assembled too, with their films. From a guess, which holds
    * afterwards what was found. SD_OK or the core's. */
   sd_status run(const How &how, Guess &guess, sd_solve_report &report);
   sd_status substitution(const How &how, sd_solve_report &report);

@@ -11,8 +11,8 @@
 static inline int resting_solve(scene *s, const double *slip, int warm, double tolerance, double *F)
 {
   const size_t n = (size_t) s->n, size = 3 * n;
-  int *row = malloc(sizeof(int) * n);
-  char *held = malloc(n);
+  int *row = calloc(n + 1, sizeof(int));
+  char *held = calloc(n + 1, 1);
   double *D = malloc(sizeof(double) * size), *load = calloc(size, sizeof(double));
   double *l = malloc(sizeof(double) * size), *V = malloc(sizeof(double) * 6 * n);
   double *v = malloc(sizeof(double) * size), *exerted = malloc(sizeof(double) * size);
