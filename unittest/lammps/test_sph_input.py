@@ -171,13 +171,16 @@ ADAPT = {"h": ("0.012-0.01*step", "'-0.008' must be > 0"), "c": ("20-10*step", "
          "alpha": ("0.1-0.1*step", "'-0.1' must be >= 0"), "beta": ("-0.5", "'-0.5' must be >= 0"),
          "deltap": ("0.01-0.01*step", "'0' must be > 0"), "viscosity": ("-1", "keyword viscosity: '-1' must be > 0"),
          "eta": ("-2", "keyword artVisc: eta '-2' must be >= 0"),
-         "epsilon": ("-3", "keyword tensCorr: epsilon '-3' must be >= 0")}
+         "epsilon": ("-3", "keyword tensCorr: epsilon '-3' must be >= 0"),
+         "tau": ("0.1-0.1*step", "'-0.1' must be >= 0"), "n": ("1-step", "'0' must be > 0"), "mumax": ("0.0005", "mumax = 0.0005 must not be smaller"),
+         "lambda": ("-1", "'-1' must be > 0")}
 
 
 @pytest.mark.parametrize("name", ADAPT)
 def test_fix_adapt_may_set_no_value_that_the_commands_refuse(name):
     formula, expected = ADAPT[name]
     style = STYLE + "wendland 0.012 artVisc 0.1 0.1 1e-6 viscosity 1e-3" + (" tensCorr 0.2 0.01" if name != "h" else "")
+    style += " rheology bingham 1 2" if name in ("tau", "n", "mumax", "lambda") else ""
     text = message(random_scene() + style + f"\npair_coeff * * c 20\n{MOVE}variable v equal {formula}\n"
                    f"fix adapt all adapt 1 pair sph/artVisc/tensCorr {name} * * v_v\nrun 3")
     assert "Pair style sph/artVisc/tensCorr" in text and expected in text
