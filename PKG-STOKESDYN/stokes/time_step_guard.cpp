@@ -26,7 +26,7 @@ static const double RESIDUAL = 1e-5, NEAR = 40.0, PERIOD = 2000.0;
 static const int PRODUCTS = 200, SOLVES = 12;
 // Spheres in the rigid bodies of LAMMPS are not free. Their bodies weigh as much as many of them:
 // nearly held, they take part in the motion of the others without a limit of their own.
-static const double HELD = 100.0;
+static const double HEAVIER = 100.0;
 
 std::vector<char> TimeStepGuard::held_atoms() const
 {
@@ -46,7 +46,7 @@ std::vector<double> TimeStepGuard::inertia(Scene &scene) const
   const std::vector<char> held = held_atoms();
   return scene.rows(3, [&](int i, double *out) {
     const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-    out[0] = mass / force->ftm2v * (held[i] ? HELD : 1.0);
+    out[0] = mass / force->ftm2v * (held[i] ? HEAVIER : 1.0);
     out[1] = out[0] * 0.4 * atom->radius[i] * atom->radius[i];
     out[2] = held[i];
   });
