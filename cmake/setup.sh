@@ -6,7 +6,8 @@
 #   setup.sh [pypi|openmpi] test     also what unittest/run.sh needs
 #   setup.sh core               the core only, for Python and clump_resistance: without LAMMPS, in about a minute
 # STOKESDYN_PACKAGES: more Debian packages, for an example that needs them. STOKESDYN_CACHE: where LAMMPS goes (provide_ready.sh,
-# provide_lammps.sh). STOKESDYN_BUILD: the folder of the build, unless told build.
+# provide_lammps.sh). STOKESDYN_BUILD: the folder of the build, unless told build. STOKESDYN_CORE_FROM: another such folder, whose
+# compiled core is taken.
 # Leaves there stokesdynplugin.so, with stokesdynstyles.so that belongs to it, and env.sh; core: the latter only.
 set -euo pipefail
 export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither

@@ -78,8 +78,8 @@ END
 
 mkdir -p build
 begin_step "1/6 set-up"
-with_open_mpi() {    # no tests of the core there: only the plugin, and the plugins of the tests
-  STOKESDYN_BUILD=$top/build/openmpi STOKESDYN_PACKAGES="python3-pytest python3-pytest-xdist" cmake/setup.sh openmpi &&
+with_open_mpi() {    # the core is that of build; of the tests only the plugins
+  STOKESDYN_BUILD=$top/build/openmpi STOKESDYN_CORE_FROM=$top/build STOKESDYN_PACKAGES="python3-pytest python3-pytest-xdist" cmake/setup.sh openmpi &&
     cmake -D STOKESDYN_TESTS=ON build/openmpi > build/openmpi/tests.log &&
     cmake --build build/openmpi --target test_plugins >> build/openmpi/tests.log
 }

