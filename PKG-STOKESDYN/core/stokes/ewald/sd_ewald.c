@@ -101,6 +101,9 @@ static splitting splitting_for(fall how, const sd_ewald_class *s, int width, dou
                      .slopes = !equal || width == 6, .a_ref = equal ? s->largest : rms, .most = most};
 }
 
+/* Between two walls most spheres see images in both of them, so that a shorter range costs less. */
+static const double IN_GAP = 0.7;
+
 /* Range of the near part that costs least, as measured: 86 spheres within it at 1e-3, and more at
  * tight tolerances, since the grid gets finer while a near pair costs about the same; in an open box
  * with its padded grid 2.5 times as many. It need not reach the first images, nor beyond an open
@@ -110,7 +113,8 @@ static double natural_range(const sd_ewald_box *box, const splitting *by, double
 {
   const double more = pow(digits / 3.0, by->fall == BAND ? 1.0 : 1.6);
   const double many = 86.0 * fmax(1.0, more) * (box->periodic ? 1.0 : 2.5);
-  const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
+  double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
+  if (by->gap > 0.0) range *= IN_GAP;
   if (by->farthest > 0.0) return fmin(range, by->farthest);
   if (box->periodic) return fmin(range, 0.97 * narrowest(box));
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));

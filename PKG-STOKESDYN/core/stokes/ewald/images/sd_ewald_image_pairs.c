@@ -1,5 +1,6 @@
 #include "sd_ewald_image_pairs.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,7 @@
 void sd_ewald_image_pairs_free(sd_ewald_image_pairs *p)
 {
   free(p->sphere);
+  free(p->order);
   free(p->x);
   free(p->first);
   free(p->pair);
@@ -19,21 +21,49 @@ void sd_ewald_image_pairs_free(sd_ewald_image_pairs *p)
 
 /* --- who is near --- */
 
+/* Side by side along the wall in strips, and within a strip along it: those that see each other are
+ * near in memory, too. */
+static int by_place(const void *one, const void *other)
+{
+  const sd_near_image *a = one, *b = other;
+  if (a->strip != b->strip) return a->strip < b->strip ? -1 : 1;
+  return a->along < b->along ? -1 : a->along > b->along;
+}
+
+static void sort_near(sd_ewald_image_pairs *p, int n)
+{
+  const sd_wall *wall = &p->ewald.images.wall;
+  int axis[3];
+  sd_wall_axes(wall, axis);
+  for (int k = 0; k < p->near; k++) {
+    const double *x = p->spheres.x + 3L * p->sphere[k];
+    p->order[k] =
+        (sd_near_image){floor(2.0 * x[axis[0]] / p->ewald.images.range), x[axis[1]], p->sphere[k]};
+  }
+  qsort(p->order, (size_t) n, sizeof(*p->order), by_place);
+  qsort(p->order + n, (size_t) (p->near - n), sizeof(*p->order), by_place);
+  for (int k = 0; k < p->near; k++) {
+    const long i = p->sphere[k] = p->order[k].sphere;
+    sd_wall_stand(wall, p->spheres.x + 3 * i, p->spheres.a[i], p->x + 3L * k);
+  }
+}
+
 /* Spheres whose own image is within twice the range: others have none that is */
 static sd_status find_near(sd_ewald_image_pairs *p, int n, int n_all)
 {
   const sd_wall *wall = &p->ewald.images.wall;
   p->near = p->ours = 0;
   if (!sd_reserve(&p->sphere, sizeof(int), (size_t) n_all, &p->near_room) ||
+      !sd_reserve(&p->order, sizeof(sd_near_image), (size_t) n_all, &p->order_room) ||
       !sd_reserve(&p->x, 9 * sizeof(double), (size_t) n_all, &p->x_room))
     return SD_ENOMEMORY;
   for (int i = 0; i < n_all; i++) {
     const double *x = p->spheres.x + 3L * i;
     if (!(p->spheres.a[i] > 0.0) || sd_wall_height(wall, x) > p->ewald.images.range) continue;
-    sd_wall_stand(wall, x, p->spheres.a[i], p->x + 3L * p->near);
     p->sphere[p->near++] = i;
     p->ours += i < n;
   }
+  sort_near(p, p->ours);
   p->F = p->x + 3L * p->near;
   p->u = p->F + 3L * p->near;
   return SD_OK;

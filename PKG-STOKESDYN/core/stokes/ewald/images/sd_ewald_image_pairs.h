@@ -16,6 +16,12 @@ typedef struct {
   double c[5];
 } sd_image_pair;
 
+/* Where a sphere stands along the wall, for the order in which they are kept */
+typedef struct {
+  double strip, along;
+  int sphere;
+} sd_near_image;
+
 /* Zero-initialise; sd_ewald_image_pairs_free in the end. */
 typedef struct {
   sd_ewald ewald;
@@ -24,7 +30,8 @@ typedef struct {
    * wall [3 near], w F [3 near], sums [3 near] */
   int near, ours, *sphere;
   double *x, *F, *u;
-  size_t near_room, x_room;
+  sd_near_image *order;
+  size_t near_room, order_room, x_room;
   /* each pair once, by one of ours: [ours + 1] first */
   long *first;
   sd_image_pair *pair;
