@@ -1,5 +1,6 @@
 #include "body_scene.h"
 
+#include "boundary.h"
 #include "keywords.h"
 #include "settings.h"
 
@@ -43,7 +44,9 @@ void BodyScene::place(int numbers)
       ambient.fluid(i, out + m);
   });
   take_apart(rows, scene.size(), {{&F, m}, {&flow, m}, {&resistance, m}});
-  if (!given.velocities) scene.drift(flow.data(), width, 1.0);
+  if (given.velocities) return;
+  refuse_net_force(Voice(lmp, StokesSettings::COMMAND), scene, F, m);
+  scene.drift(flow.data(), width, 1.0);
 }
 
 void BodyScene::assemble()

@@ -1,6 +1,5 @@
-/* Settings that LAMMPS or the solver would do something foolish with; the plane of keyword wall, where
- * it stands and what does not go with it; what does not go with motion without inertia. Free
- * functions, each called with the name of the command that the user is told. */
+/* Settings that LAMMPS or the solver would do something foolish with, and what does not go with motion
+ * without inertia. Free functions, each called with the name of the command that the user is told. */
 #ifndef SD_CHECKS_H
 #define SD_CHECKS_H
 
@@ -12,11 +11,6 @@ class Hydrodynamics;
 
 /* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
 void check_room_of_blas(const Voice &voice);
-
-/* Without a cut-off the box is periodic in all directions or in none; what Ewald sums have not got
- * needs an open one. */
-void check_boundaries(const Voice &voice,
-                      const Scene::Settings &settings);
 
 /* A shear flow, say, does not fit a periodic box, unless that is sheared with it. */
 void warn_of_misfit(const Voice &voice, double misfit);
@@ -34,22 +28,6 @@ void warn_of_short_cutoff(const Voice &voice, const Scene &scene);
 /* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and
  * none of them means anything. */
 void refuse_close_oseen(const Voice &voice, const Scene &scene);
-
-/* "zlo at 0.5", as a user would say it */
-std::string wall_name(const sd_wall &wall);
-
-/* Before a run: puts a wall at the side of the box where that is now. Errors: a periodic direction;
- * a side that moves or leans. */
-void find_wall(const Voice &voice, Scene::Settings &settings);
-
-/* The stream must rest where the wall is. Error: a number for its velocity across the wall; warning:
- * numbers along it. */
-void check_stream_at_wall(const Voice &voice, const sd_wall &wall,
-                          const Ambient::Settings &fluid);
-
-/* Where the rows of the scene stand. Errors: the side of the box has left the wall; a centre that is
- * not in front of it. Returns how many spheres cut it, on all ranks. */
-double spheres_cut_by_wall(const Voice &voice, const Scene &scene);
 
 // --- motion without inertia: errors, that name the other command, and limits of the time step ----
 

@@ -84,6 +84,8 @@ void FixStokesDynamicsOverdamped::init()
   find_groups();
   directions.init(moved_bits != 0);
   refuse_inertia(voice, hydrodynamics());
+  refuse_in_layer(voice, hydrodynamics().settings.scene.boundary,
+                  held_bit ? "keyword held" : pinned_bit ? "keyword pin" : "", noise.on());
   look_at_neighbours();
   spin.init(hydrodynamics(), held_bit | pinned_bit);
   torques.init(hydrodynamics(), groupbit, held_bit);

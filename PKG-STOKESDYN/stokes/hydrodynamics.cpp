@@ -64,8 +64,7 @@ void Hydrodynamics::init()
   given.clear();    // it asks a fix that may be gone
   advance();
   prepared.take(epochs.run);
-  find_wall(voice, scene.settings);
-  check_stream_at_wall(voice, scene.settings.wall, ambient.settings);
+  find_boundary(voice, settings);
 }
 
 /* Other settings, or a run that LAMMPS prepares */
@@ -207,11 +206,14 @@ void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, cons
 
 void Hydrodynamics::look_at_wall()
 {
-  if (!settings.scene.wall.sign) return;
+  if (settings.scene.boundary.walls == 0) return;
   const double cut = spheres_cut_by_wall(voice, scene);
   if (cut == 0.0 || !warned_cut.first_in(epochs.run)) return;
-  voice.warn("keyword wall: " + text(cut) + " spheres cut the wall " +
-             wall_name(scene.settings.wall) + ": they move as if they touched it");
+  const Boundary &boundary = scene.settings.boundary;
+  std::string walls = wall_name(boundary.wall[0]);
+  if (boundary.walls == 2) walls += ", or " + wall_name(boundary.wall[1]);
+  voice.warn("keyword wall: " + text(cut) + " spheres cut the wall " + walls +
+             ": they move as if they touched it");
 }
 
 /* The spheres of this solve, and what may be wrong with how they stand. */

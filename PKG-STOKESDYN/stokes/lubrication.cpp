@@ -63,13 +63,14 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
   scene.noisy = noisy;
   scene.world = where.ranks();
   check(sd_lubrication_place(&near, &scene));
-  if (where.settings.wall.sign) add_wall(where);
+  const Boundary &boundary = where.settings.boundary;
+  for (int k = 0; k < boundary.walls; k++) add_wall(where, boundary.wall[k]);
 }
 
-/* The film of each sphere at its own height; its floor is in radii of the sphere. */
-void Lubrication::add_wall(const Scene &where)
+/* The film of each sphere at its own height (those of two walls add up, since the points of a shell know
+ * both walls already); its floor is in radii of the sphere. */
+void Lubrication::add_wall(const Scene &where, const sd_wall &wall)
 {
-  const sd_wall &wall = where.settings.wall;
   const sd_spheres s = where.local();
   const sd_multiblob *model = shells.on() ? &where.shells->model() : nullptr;
   std::vector<double> r(model ? 3 * model->n : 0);

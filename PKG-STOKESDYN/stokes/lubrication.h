@@ -53,7 +53,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   sd_films films = {};
   std::vector<double> u;
 
-  void add_wall(const Scene &where);
+  void add_wall(const Scene &where, const sd_wall &wall);
   void provide(double largest, double smallest);
   void check(sd_status status) const;
 };

@@ -200,8 +200,8 @@ void PairStokesDynamics::init_style()
   require_atoms();
   single_enable = force->pair != this;    // alone it would say that there are no forces
   const Scene::Settings &scene = hydro.settings.scene;
-  if (scene.everybody() && !scene.wall.sign) check_boundaries(voice, scene);
-  if (hydro.settings.precondition == Preconditioner::WAVES && !domain->xperiodic)
+  if (hydro.settings.precondition == Preconditioner::WAVES &&
+      !(domain->xperiodic && domain->yperiodic && domain->zperiodic))
     voice.fail("keyword precondition: 'waves' requires a periodic box");
   const bool may_precondition = hydro.settings.algorithm == StokesSettings::GRADIENTS &&
       hydro.settings.precondition != Preconditioner::NONE;
@@ -218,6 +218,8 @@ void PairStokesDynamics::init_style()
   const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
   State::provide(lmp, scene.rotation, hydro.settings.history(), points)->settings_are(words_of_now());
   look_for_fixes();
+  check_layer(voice, hydro.settings, hydro.overdamped);
+  refuse_moving_box(voice, scene.boundary);
   check_deform(voice, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
   sorting_bins.limit(range());
   if (!hydro.overdamped) look_at_neighbours();    // the fix does so that moves them
@@ -236,14 +238,17 @@ void PairStokesDynamics::look_at_neighbours()
                      [&](int i) { return chosen[i] && (atom->mask[i] & bits) ? FREE : 0u; });
 }
 
-/* Those of the command, and where a wall at the side of the box stands: that may have changed */
+/* Those of the command, and where walls at sides of the box stand: that may have changed */
 std::vector<std::string> PairStokesDynamics::words_of_now() const
 {
   std::vector<std::string> now = args;
-  if (!hydro.scene.settings.at_edge) return now;
-  char position[40];
-  snprintf(position, sizeof(position), "%.17g", hydro.scene.settings.wall.at);
-  now.push_back(position);
+  const Boundary &boundary = hydro.scene.settings.boundary;
+  for (int w = 0; w < boundary.walls; w++) {
+    if (!boundary.at_edge[w]) continue;
+    char position[40];
+    snprintf(position, sizeof(position), "%.17g", boundary.wall[w].at);
+    now.push_back(position);
+  }
   return now;
 }
 

@@ -201,7 +201,8 @@ void Scene::place(int n_all_or_copies)
 {
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
-  scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr, &second_level};
+  scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr, &second_level,
+               settings.boundary.slab() ? &slab : nullptr};
   if (shells) {
     std::vector<double> rows = shells->sent(size()), all(10 * (size_t) n_all_or_copies + 10);
     if (cloud)

@@ -10,6 +10,7 @@
 #define SD_SCENE_H
 
 #include "ambient.h"
+#include "boundary.h"
 #include "halo.h"
 #include "pointers.h"
 #include "shells.h"
@@ -58,9 +59,9 @@ class Scene : protected LAMMPS_NS::Pointers {
     bool whole = false;
     /* films reach so far, in largest radii, centre to centre; 0: there are none */
     double films = 0.0;
-    /* one plane wall, sign 0: none; at_edge: it is that side of the box, found before a run */
+    /* walls and periods; its first wall, sign 0: none */
+    Boundary boundary;
     sd_wall wall = {};
-    bool at_edge = false;
     /* how everybody sees everybody: all pairs, Ewald sums, or what costs less */
     enum { AUTO, DIRECT, EWALD };
     int far_field = AUTO;
@@ -159,10 +160,13 @@ class Scene : protected LAMMPS_NS::Pointers {
   }
   /* LAMMPS's, which is periodic in all directions or in none */
   static sd_ewald_box box_of(const LAMMPS_NS::Domain *domain);
-  /* View NEAR; else nullptr */
-  const sd_ewald *splitting() const { return view() == SD_VIEW_NEAR ? &ewald : nullptr; }
-  /* The box around an open cloud whose sum is split: six numbers to keep, as the next box depends
-   * on the last one. */
+  /* View NEAR, but for a slab; else nullptr */
+  const sd_ewald *splitting() const
+  {
+    return view() == SD_VIEW_NEAR && !settings.boundary.slab() ? &ewald : nullptr;
+  }
+  /* The box around an open cloud whose sum is split, or the heights of a slab: six numbers to keep, as
+   * the next box depends on the last one. */
   std::vector<double> open_box() const;
   void set_open_box(const std::vector<double> &box);
   sd_law law() const
@@ -214,8 +218,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<int64_t> all_molecule;
   int n_all = 0;
 
+  /* slab: ewald is that of its taller box */
   sd_ewald ewald = {};
   sd_ewald_level second_level = {};
+  sd_slab slab = {};
   /* its parameters, as they were last told */
   std::string said;
   Since told;
@@ -232,6 +238,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool periodic() const;
   bool split();
   const sd_mobility_engine *engine_of_all();
+  void split_slab();
   sd_ewald_sizes sizes_of_all(double largest) const;
   sd_ewald_sizes measure(sd_ewald_box &box) const;
   void tell();

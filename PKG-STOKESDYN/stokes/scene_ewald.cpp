@@ -126,8 +126,61 @@ bool Scene::split()
 /* The engine of a scene in which everybody sees everybody */
 const sd_mobility_engine *Scene::engine_of_all()
 {
+  if (settings.boundary.slab()) {
+    split_slab();
+    return &sd_mobility_slab;
+  }
   if (!split()) return &sd_mobility_all_pairs;
   return second_level.from > 0.0 ? &sd_mobility_levels : &sd_mobility_ewald;
+}
+
+/* The slab of all spheres; there is no other way to sum it. */
+void Scene::split_slab()
+{
+  const sd_slab_walls walls = settings.boundary.slab_walls();
+  refuse_wide_spheres(voice, settings.boundary, most);
+  double bounds[4] = {0.0, 0.0, -INFINITY,
+                      -INFINITY};    // of points: largest radius, 1/smallest; heights
+  for (int k = 0; k < size(); k++) {
+    const double height = sd_slab_height(&walls, &x[3 * (size_t) k]), reach = extent() * a[k];
+    if (!(a[k] > 0.0)) continue;
+    bounds[0] = std::max(bounds[0], grain() * a[k]);
+    bounds[1] = std::max(bounds[1], 1.0 / (grain() * a[k]));
+    bounds[2] = std::max(bounds[2], reach - height);
+    bounds[3] = std::max(bounds[3], reach + height);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 4, MPI_DOUBLE, MPI_MAX, world);
+  const sd_ewald_sizes sizes = sizes_of_all(bounds[0]);
+  const double smallest = bounds[1] > 0.0 ? 1.0 / bounds[1] : 0.0;
+  if (bounds[0] > SD_SLAB_RATIO * (1.0 + 1e-9) * smallest)
+    voice.fail("keyword far_field: " + settings.boundary.where() +
+               ", periodic along it, the largest radius "
+               "must be at most " +
+               text(SD_SLAB_RATIO) + " times the smallest, and they are " +
+               text(bounds[0] / grain()) + " and " + text(smallest / grain()) +
+               ": use group to select spheres");
+  sd_ewald_box box = {};
+  box.periodic = 1;
+  std::copy_n(domain->boxlo, 3, box.origin);
+  for (int d = 0; d < 3; d++) box.edge[d] = domain->boxhi[d] - domain->boxlo[d];
+  const sd_status status = sd_slab_choose(&walls, &box, -bounds[2], bounds[3], smallest, &sizes,
+                                          settings.far_field_tolerance, &slab);
+  ewald = slab.ewald;
+  second_level = {};
+  if (status != SD_OK)
+    voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
+               " spheres " + settings.boundary.where() + ", in a cell of " +
+               text(box.edge[(walls.wall->axis + 1) % 3]) + " x " +
+               text(box.edge[(walls.wall->axis + 2) % 3]) + " and heights from " +
+               text(-bounds[2]) + " to " + text(bounds[3]) + " at far_field_tolerance " +
+               text(settings.far_field_tolerance) + ": " + sd_status_string(status));
+  const double area =
+      ewald.count > 0.0 ? sd_ewald_volume(&ewald.box) / ewald.box.edge[walls.wall->axis] : 1.0;
+  const double images = 4.0 * sizes.all.count * ewald.reach * ewald.reach / area;
+  if (!(images < MOST_IMAGES))
+    voice.fail("keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
+               ", is so large for the periodic box that it would see " + text(images) +
+               " images; is it in other units?");
 }
 
 static std::string parameters_of(const sd_ewald &e)
@@ -143,8 +196,10 @@ void Scene::tell()
   if (!told.first_in(epochs.run)) return;
   const sd_ewald &e = ewald;
   std::string now = "Far field by Ewald sums of " + text(e.count + second_level.count) +
-      " spheres in " +
-      (e.box.periodic ? "the periodic box" : "an open box around them") +
+      " spheres " +
+      (settings.boundary.slab() ? settings.boundary.where() + ", periodic along it"
+           : e.box.periodic     ? "in the periodic box"
+                                : "in an open box around them") +
       (e.images.wall.sign ? " and their images in the wall" : "") + ": " + parameters_of(e);
   if (second_level.from > 0.0)
     now += "; " + text(second_level.count) + " spheres of radius " + text(second_level.from) +
@@ -157,6 +212,7 @@ void Scene::tell()
 std::vector<double> Scene::open_box() const
 {
   const sd_ewald_box &b = ewald.box;
+  if (settings.boundary.slab()) return {slab.lo, slab.hi, slab.ewald.count, 0.0, 0.0, 0.0};
   if (b.periodic || b.edge[0] == 0.0) return {};
   return {b.origin[0], b.origin[1], b.origin[2], b.edge[0], b.edge[1], b.edge[2]};
 }
@@ -164,7 +220,14 @@ std::vector<double> Scene::open_box() const
 void Scene::set_open_box(const std::vector<double> &box)
 {
   ewald.box = {};
+  slab.ewald.count = 0.0;
   if (box.size() != 6) return;
+  if (settings.boundary.slab()) {
+    slab.lo = box[0];
+    slab.hi = box[1];
+    slab.ewald.count = box[2];
+    return;
+  }
   std::copy_n(box.begin(), 3, ewald.box.origin);
   std::copy_n(box.begin() + 3, 3, ewald.box.edge);
 }

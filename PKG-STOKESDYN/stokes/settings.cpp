@@ -9,35 +9,14 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-/* Of the keyword wall */
-static bool names_a_side(const std::string &word)
-{
-  for (const char *side : {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"})
-    if (word == side) return true;
-  return false;
-}
-
-static void refuse_second_wall(const Keywords &in, const std::vector<std::string> &words)
-{
-  int walls = 0;
-  for (size_t k = 0; k + 1 < words.size(); k++) {
-    walls += words[k] == "wall" && names_a_side(words[k + 1]);
-    walls += k > 2 && words[k - 3] == "wall" && names_a_side(words[k - 2]) &&
-        names_a_side(words[k]);
-  }
-  in.require(walls <= 1,
-             "keyword wall: only one plane wall is possible, since the images of two walls, or of a "
-             "corner, do not add up to their flow: leave out the farther one (at 25 radii a wall "
-             "changes velocities by 3 %)");
-}
-
 StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &words)
 {
   Keywords in(lmp, COMMAND, words);
   in.elsewhere("temperature noise_tolerance held spin scheme adapt", "fix stokes_dynamics/overdamped")
       .elsewhere("apply", "fix stokes_dynamics");
-  refuse_second_wall(in, words);
+  Boundary::refuse_second(in, words);
   parse(in);
+  scene.wall = scene.boundary.wall[0];
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   rigid.clumps_only = scene.clumps_only;
   check(in);
@@ -130,12 +109,8 @@ void StokesSettings::parse(Keywords &in)
          in.check(lubrication.range <= SD_TWO_SPHERE_LARGEST_XI,    // of the films that it knows
                   "must be <= 8, in mean radii of a pair");
        }},
-      {"wall", [&] {
-         const size_t side = in.choice({"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"});
-         scene.wall = {(int) side / 2, side % 2 ? -1 : 1, 0.0};
-         scene.at_edge = in.take("EDGE");
-         if (!scene.at_edge) scene.wall.at = in.number();
-       }},
+      {"wall", [&] { scene.boundary.read_wall(in); }},
+      {"flow", [&] { scene.boundary.read_flow(in); }},
       {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
       {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
       {"far_field_tolerance", [&] {
@@ -187,6 +162,9 @@ void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) con
 /* What there is no image for */
 void StokesSettings::check_wall(const Keywords &in) const
 {
+  in.require(!in.given("flow") || scene.boundary.walls == 2,
+             "keyword flow requires two walls (wall zlo ... zhi ...): it says what drives the fluid "
+             "between them");
   if (!scene.wall.sign) return;
   in.require(scene.tensor != SD_TENSOR_OSEEN,
              "keyword wall is not available with tensor oseen: use tensor rpy");

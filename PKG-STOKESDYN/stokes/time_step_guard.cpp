@@ -127,15 +127,17 @@ void TimeStepGuard::compare(double of_velocity)
              text(state.lambda_min) + ")");
 }
 
-/* p.Mp / p.D^-1 p of the lone sphere that the wall takes most from, p across the wall; 1: no wall */
+/* p.Mp / p.D^-1 p of the lone sphere that a wall takes most from, p across the wall; 1: no wall */
 double TimeStepGuard::lone_at_wall(const Scene &scene) const
 {
-  const sd_wall &wall = scene.settings.wall;
+  const Boundary &boundary = scene.settings.boundary;
   const sd_spheres spheres = scene.local();
   double least = 1.0;
-  if (!wall.sign) return least;
-  for (int k = 0; k < scene.size(); k++) {
-    const double a = spheres.a[k], *x = spheres.x + 3 * (size_t) k;
+  if (boundary.walls == 0) return least;
+  for (int k = 0; k < boundary.walls * scene.size(); k++) {
+    const sd_wall &wall = boundary.wall[k / scene.size()];
+    const size_t i = k % scene.size();
+    const double a = spheres.a[i], *x = spheres.x + 3 * i;
     double image[9];
     sd_wall_block(&wall, 3, x, a, x, a, 1.0, image);
     least = std::min(least, 1.0 + 6.0 * SD_PI * a * image[4 * wall.axis]);

@@ -48,7 +48,7 @@ STOKES = {
     "far_field_tolerance": [Number(lambda v: 1e-13 <= v <= 0.1, ["1e-3", "1e-6"], ["0", "-1", "1", "1e-14", "0.11"])],
     "warm_start": [YES_NO], "rotation": [YES_NO], "fluid_vorticity": [U, U, U], "rigid_clumps": [Choice("yes", "no", "auto")],
     "multiblob": [Integer(lambda v: v in (1, 12, 42), ["1", "12", "42"], ["0", "2", "-1", "13", "2147483648"])],
-    "one_body": [YES_NO], "wall": [Choice("zlo", "zlo", "xlo", "ylo"), WALL],
+    "one_body": [YES_NO], "wall": [Choice("zlo", "zlo", "xlo", "ylo"), WALL], "flow": [Choice("pressure", "flux")],
     "shell": [Integer(lambda v: v == 1 or v >= 12, ["1", "12", "13", "42"],
                       ["0", "2", "11", "-1", "2147483647", "2147483646", "2147483648"], odd=lambda v: v > 500)],
 }
@@ -99,6 +99,7 @@ def judge_stokes(case, words, how):
                                    or "precondition" in case.settings or case.level != BAD and lubricated and float(reach) > 2),
                    "multiblob", "lubrication_range")
     case.refuse_if(blobs == 1 and "one_body" in case.settings, "one_body")
+    case.refuse_if("flow" in case.settings, "flow")      # there is one wall at most
     if "wall" in case.settings:
         case.refuse_if(how == "periodic" or s("tensor") == "oseen" or far == "ewald" and turns and blobs == 1
                        or s("precondition") == "waves" or shell != 1 or rigid != "no" and clumps, "wall")

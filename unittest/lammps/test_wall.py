@@ -338,8 +338,7 @@ def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
 # --- what there is no answer for ----------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("words, options, message", [
-    ("wall zlo 0 wall zhi 9", {}, "keyword wall: only one plane wall is possible, since the images of two walls, or of a corner, do not add up"),
-    ("wall zlo 0 zhi 9", {}, "only one plane wall is possible"),
+    ("wall zlo 0 zhi 9", {}, "keyword wall: between two walls the box must be periodic along them: use boundary p p f, or leave out"),
     ("wall zlo", {}, "keyword wall: .*missing|wall"),
     ("wall up 0", {}, "keyword wall: 'up'"),
     ("wall zlo 0 tensor oseen", {}, "keyword wall is not available with tensor oseen: use tensor rpy"),
@@ -347,8 +346,8 @@ def test_lists_of_pairs_do_not_depend_on_ranks(tmp_path, style):
     ("wall zlo 0 precondition waves algorithm 2", {}, "precondition waves is for periodic boxes"),
     ("wall zlo 0 rigid_clumps yes shell 12", {}, "a shell is computed once, without the wall: use multiblob 12"),
     ("wall zlo 0 lubrication yes", {}, "keyword lubrication: yes requires rotation yes"),
-    ("wall zlo 0", dict(boundary="p f f"), "keyword wall: it needs boundary f, s or m in all directions, and x is periodic"),
-    ("wall zlo 0", dict(boundary="p p p"), "and x is periodic"),
+    ("wall zlo 0", dict(boundary="p f f"), "keyword wall: the box is periodic in one of the two directions along it: use boundary p p f, or f f f"),
+    ("wall zlo 0", dict(boundary="p p p"), "keyword wall: it needs boundary f, s or m across it, and z is periodic: use boundary p p f, or f f f"),
     ("wall zlo EDGE", dict(boundary="f f s"), "wall: EDGE: that side of the box follows the spheres"),
     ("wall xlo EDGE", dict(tilt=(1.0, 0, 0)), "wall: EDGE: that side of the box is tilted: give the position of the wall"),
     ("wall zlo 0 fluid_velocity 0 0 0.1", {}, "nothing flows through the wall zlo at 0, and its component z is '0.1' there: give 0"),

@@ -1,0 +1,333 @@
+"""Boxes that are periodic in two directions, through LAMMPS: above a floor, in a slit, in an open layer. Against sums in another code,
+closed forms, and themselves."""
+import csv
+import os
+
+import numpy as np
+import pytest
+
+import model
+from host import allowed, at_most
+from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
+from test_wall import pull
+
+ETA = 1 / (6 * np.pi)                    # 6 pi eta = 1
+MOVE = "fix move all stokes_dynamics/overdamped"
+STYLE = f"cut_off_distance inf visc {ETA!r} far_field_tolerance 1e-12 relative_tolerance 1e-10"
+
+
+def scenes():
+    """{name: rows} of slab/scenes.csv"""
+    of = {}
+    for row in csv.DictReader(line for line in open(os.path.join(model.DATA, "slab", "scenes.csv")) if not line.startswith("#")):
+        of.setdefault(row["scene"], []).append(row)
+    return of
+
+
+def numbers(rows, names):
+    return np.array([[float(row[c]) for c in names.split()] for row in rows])
+
+
+def words_of(row):
+    """Of the pair style, and the box"""
+    H = float(row["H"] or 0)
+    walls = {"open": "", "wall": "wall zlo 0", "slit": f"wall zlo 0 zhi {H!r} flow {row['convention']}"}[row["geometry"]]
+    return walls, [(0.0, float(row["Lx"])), (0.0, float(row["Ly"])), (-1.0, (H or 45.0) + 1.0)]
+
+
+def fall(simulation, spheres, F, style, box, boundary="p p f", steps=0, dt=1e-9, **options):
+    sim = simulation(spheres, style, fix=False, dt=dt, box=box, boundary=boundary, **options)
+    return sim.commands(pull(np.broadcast_to(np.array(F, float), spheres.x.shape)) + [MOVE]).run(steps)
+
+
+@pytest.mark.parametrize("name", scenes())
+def test_velocities_are_those_of_another_code(simulation, name):
+    rows = scenes()[name]
+    walls, box = words_of(rows[0])
+    spheres = Spheres(numbers(rows, "x y z"), numbers(rows, "a")[:, 0])
+    sim = fall(simulation, spheres, numbers(rows, "Fx Fy Fz"), f"{STYLE} {walls}".replace(repr(ETA), "1"), box)
+    U = numbers(rows, "Ux Uy Uz")
+    assert sim.v == pytest.approx(U, abs=1e-10 * np.abs(U).max())
+
+
+# --- against closed forms and other codes -------------------------------------------------------------------------------
+
+def cell(L, lo=-1.0, hi=60.0):
+    return [(0.0, float(L)), (0.0, float(L)), (float(lo), float(hi))]
+
+
+# Of one sphere of one point in a cell L x L, over 1/(6 pi eta a): along, across (self_against_L of the reference)
+@pytest.mark.parametrize("walls, z, L, along, across", [
+    ("wall zlo 0", 1.0, 8, 0.573400, 0.247089), ("wall zlo 0", 1.5, 4, 1.617393, 0.2730165428),
+    ("wall zlo 0", 1.0, 32, 0.501234, 0.249996), ("wall zlo 0 zhi 4", 2.0, 4, 1.031874, 0.291052),
+    ("wall zlo 0 zhi 4 flow flux", 2.0, 4, 0.289428, 0.291052), ("wall zlo 0 zhi 4", 2.0, 16, 0.568103, 0.366159)])
+def test_a_lone_sphere_in_a_cell(simulation, walls, z, L, along, across):
+    for F, d, U in (((1, 0, 0), 0, along), ((0, 0, 1), 2, across)):
+        sim = fall(simulation, Spheres([(0.3, 0.2, z)]), F, f"{STYLE} {walls}", cell(L))
+        assert sim.v[0, d] == pytest.approx(U, abs=1e-6)
+
+
+# Square layers that are pushed along and down, of an area fraction (monolayer of the reference)
+@pytest.mark.parametrize("spacing, along, down", [(3.963327, 1.003626165, 0.200929885), (2.802496, 1.712828339, 0.125531476)])
+def test_a_layer_on_the_floor(simulation, spacing, along, down):
+    for F, d, U in (((1, 0, 0), 0, along), ((0, 0, 1), 2, down)):
+        sim = fall(simulation, Spheres([(0, 0, 1.0)]), F, f"{STYLE} wall zlo 0", cell(spacing))
+        assert sim.v[0, d] == pytest.approx(U, abs=2e-6)
+
+
+# A shell of 12 points with the films of both walls against the exact sphere (mobilities across and along, free to turn). In a wide
+# square cell the flows with and without pressure gradient differ from the lone sphere by the same, with opposite signs.
+@pytest.mark.parametrize("H, z, across, along, off", [(2.2, 1.1, 0.047549, 0.253454, 0.036), (2.5, 1.25, 0.113121, 0.331195, 0.012),
+                                                      (4, 2.0, 0.358527, 0.541784, 0.004), (10, 2.5, 0.564226, 0.744783, 0.003),
+                                                      (10, 5.0, 0.715889, 0.802444, 0.003)])
+def test_a_shell_with_films_in_a_slit(simulation, H, z, across, along, off):
+    style = f"cut_off_distance inf visc {ETA!r} multiblob 12 lubrication yes lubrication_gap 1e-6 relative_tolerance 1e-5 wall zlo 0 zhi {H}"
+    box = cell(6 * H + 12, -1, H + 1)
+    v = [fall(simulation, Spheres([(0.3, 0.2, z)]), F, f"{style} {flow}", box).v[0]
+         for F, flow in (((0, 0, 1), ""), ((1, 0, 0), "flow pressure"), ((1, 0, 0), "flow flux"))]
+    assert v[0][2] == pytest.approx(across, rel=off)
+    assert 0.5 * (v[1][0] + v[2][0]) == pytest.approx(along, rel=off)
+
+
+def test_a_bead_in_a_slit_moves_as_faxen_says(simulation):
+    """In the middle; his series is good to 5e-4 at 10 radii."""
+    H, s = 10.0, 1 / 5.0
+    faxen = 1 - 1.004 * s + 0.418 * s ** 3 + 0.21 * s ** 4 - 0.169 * s ** 5
+    assert faxen == pytest.approx(0.802826, abs=1e-3)
+    v = [fall(simulation, Spheres([(0, 0, 5)]), (1, 0, 0), f"cut_off_distance inf visc {ETA!r} multiblob 12 wall zlo 0 zhi 10 flow {flow} "
+              "relative_tolerance 1e-5", cell(80, -1, 11)).v[0, 0] for flow in ("pressure", "flux")]
+    assert 0.5 * (v[0] + v[1]) == pytest.approx(faxen, abs=1e-3)
+
+
+def test_a_sphere_swims_along_in_a_poiseuille_flow(simulation):
+    """Without a force: with the mean of the stream over its surface, z (H - z) - a^2/3"""
+    style = f"{STYLE} wall zlo 0 zhi 5 fluid_velocity v_u 0 0"
+    sim = fall(simulation, Spheres([(1, 2, 1.7)]), (0, 0, 0), style, cell(12, -1, 6), before_pair="variable u atom z*(5-z)")
+    assert sim.v[0] == pytest.approx((1.7 * 3.3, 0, 0), abs=1e-9)
+
+
+# --- one scene, in other ways -------------------------------------------------------------------------------------------
+
+def heap(n=14, H=6.0, L=11.0, seed=7, clumps=True):
+    """Spheres of unlike radii between 0 and H that do not overlap much; one cuts the floor; a rigid doublet"""
+    rng, x, a = np.random.default_rng(seed), [], []
+    while len(x) < n:
+        r = np.exp(rng.uniform(-0.6, 0.1))
+        p = np.array([*rng.uniform(0, L, 2), rng.uniform(1.03 * r, H - 1.03 * r)])
+        d = [p - q for q in x]
+        if all(np.linalg.norm([*((e[:2] + L / 2) % L - L / 2), e[2]]) > 1.02 * (r + b) for e, b in zip(d, a)):
+            x.append(p)
+            a.append(r)
+    x, a = np.array(x), np.array(a)
+    return Spheres(x, a, molecule=0), rng.normal(size=(n, 3))
+
+
+FLOOR, SLIT = "wall zlo 0", "wall zlo 0 zhi 6 flow flux"
+WAYS = {"floor": FLOOR, "slit": SLIT, "shells in a slit": f"{SLIT} multiblob 12 lubrication yes", "clumps in a slit": f"{SLIT} multiblob 12 lubrication yes rigid_clumps yes"}
+
+
+@pytest.mark.parametrize("walls", [FLOOR, SLIT])
+@pytest.mark.parametrize("algorithm", ["algorithm 1", "algorithm 2", "algorithm 2 precondition clump"])
+def test_forces_for_given_velocities_are_the_inverse(simulation, walls, algorithm):
+    spheres, F = heap()
+    style = f"cut_off_distance inf visc 1 far_field_tolerance 1e-9 relative_tolerance 1e-11 max_iter 300 {walls}"
+    v = fall(simulation, spheres, F, style, cell(11, -1, 9)).v
+    sim = simulation(Spheres(spheres.x, spheres.a, v), f"{style} {algorithm}", box=cell(11, -1, 9), boundary="p p f").run()
+    assert sim.drag == pytest.approx(-F, abs=1e-7)
+
+
+def test_drags_of_shells_are_the_inverse_too(simulation):
+    spheres, F = heap(4)
+    style = f"cut_off_distance inf visc 1 multiblob 12 lubrication yes relative_tolerance 1e-8 far_field_tolerance 1e-8 max_iter 300 {SLIT}"
+    moving = fall(simulation, spheres, F, style, cell(11, -1, 9))
+    v, omega = moving.v, moving.atom("omega")
+    sim = simulation(Spheres(spheres.x, spheres.a, v), style, box=cell(11, -1, 9), boundary="p p f")
+    for i, w in enumerate(omega):
+        sim.set("omega", i + 1, w)
+    assert sim.run().drag == pytest.approx(-F, abs=1e-4)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("walls", ["lo", "hi", "both", ""])
+def test_walls_may_stand_at_any_side(simulation, axis, walls):
+    """The scene and its box turned; below a ceiling it hangs upside down."""
+    spheres, F = heap()
+    F[:, :2] -= F[:, :2].mean(axis=0)
+    sign = -1 if walls == "hi" else 1
+    names = {"lo": f"wall {{}}lo {-0.5!r}", "hi": "wall {}hi 0.5", "both": f"wall {{0}}lo -0.5 {{0}}hi 5.5", "": ""}[walls]
+    expected = fall(simulation, spheres, F, f"{STYLE} {dict(lo=FLOOR, hi=FLOOR, both='wall zlo 0 zhi 6').get(walls, '')}".replace("1e-12", "1e-6"),
+                    cell(11, -9, 9)).v
+    order = [(d - axis - 1) % 3 for d in range(3)]      # component d is that one of the scene
+    shift = [-0.5 * sign if d == axis else 0.0 for d in range(3)]
+    scene = Spheres(np.array([(sign if o == 2 else 1) * spheres.x[:, o] for o in order]).T + shift, spheres.a)
+    box = [(-9.0, 9.0) if d == axis else (0.0, 11.0) for d in range(3)]
+    sim = fall(simulation, scene, np.array([(sign if o == 2 else 1) * F[:, o] for o in order]).T,
+               f"{STYLE} {names.format('xyz'[axis])}".replace("1e-12", "1e-6"), box, " ".join("f" if d == axis else "p" for d in range(3)))
+    got = np.array([(sign if o == 2 else 1) * sim.v[:, d] for d, o in sorted(enumerate(order), key=lambda pair: pair[1])]).T
+    assert got == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+
+
+def test_edges_of_the_box_are_positions(simulation):
+    spheres, F = heap()
+    box = [(0.0, 11.0), (0.0, 11.0), (-0.25, 6.5)]
+    edge, at = (fall(simulation, spheres, F, f"cut_off_distance inf visc 1 wall {where}", box).v
+                for where in ("zlo EDGE zhi EDGE", "zlo -0.25 zhi 6.5"))
+    assert (edge == at).all()
+
+
+def script(folder, way, runs, newton="on", begin=None):
+    spheres, _ = heap(6 if "multiblob" in WAYS[way] else 14)
+    if "clumps" in way:
+        spheres.x[1], spheres.a[1] = spheres.x[0] + (0.9 * spheres.a[0], 0, 0), spheres.a[0]
+        spheres.molecule[:2] = 1
+    pair = f"cut_off_distance inf visc 1 {WAYS[way]} relative_tolerance 1e-10 far_field_tolerance 1e-3 max_iter 400"
+    lines = input_lines(spheres, pair, str(folder / "heap.data"), boundary="p p f", fix=False, dt=0.02, newton=newton, box=cell(11, -1, 9))
+    if begin:                            # from a restart file in place of the data file
+        cut = [i for i, line in enumerate(lines) if line.startswith("read_data")][0]
+        lines = [line for line in lines[:cut] if "boundary" not in line] + [f"read_restart {begin}"] + lines[cut + 1:]
+        lines = [line for line in lines if not line.startswith("pair_")]
+    return lines + ["variable fx atom 2*sin(id)", "fix weight all addforce v_fx 0 -1", MOVE] + runs
+
+
+def end_of(folder, way, runs, ranks=1, **options):
+    lmp(folder, script(folder, way, dump_lines("end.dump", 8, "xu yu zu vx vy vz omegax omegay omegaz") + runs, **options), ranks)
+    return read_dump(str(folder / "end.dump"))[-1][1]
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_ranks_newton_and_restart_do_not_matter(tmp_path, way):
+    whole = end_of(tmp_path, way, ["run 8"])
+    for ranks, newton in allowed((2, "on"), (4, "off")):
+        assert np.abs(end_of(tmp_path, way, ["run 8"], ranks, newton=newton) - whole).max() < 1e-9
+    lmp(tmp_path, script(tmp_path, way, ["run 3", "write_restart half"]))
+    assert np.abs(end_of(tmp_path, way, ["run 5"], begin="half") - whole).max() < 1e-9
+
+
+def test_a_layer_moves_by_forces_that_add_up_to_0(simulation):
+    """Its mean flow is 0 far away; a force across it needs no counterpart."""
+    spheres, F = heap()
+    F[:, :2] -= F[:, :2].mean(axis=0)
+    low, high = (fall(simulation, Spheres(spheres.x + (0, 0, up), spheres.a), F, STYLE, cell(11, -99, 99)).v for up in (0, 31.7))
+    assert low == pytest.approx(high, abs=1e-9)
+    floor = fall(simulation, Spheres(spheres.x + (0, 0, 60), spheres.a), F, f"{STYLE} {FLOOR}", cell(11, -1, 99)).v
+    drift = ((spheres.x[:, 2] + 60)[:, None] * F[:, :2]).sum(axis=0) / (2 * ETA * 121)
+    assert floor[:, :2] - drift == pytest.approx(low[:, :2], abs=1e-8)
+    assert floor[:, 2] == pytest.approx(low[:, 2], abs=1e-8)
+
+
+def test_a_roller_in_a_wide_cell_rolls_as_in_open_fluid(simulation):
+    """What the images of a roller at the floor do falls with the third power of the distance."""
+    style = f"cut_off_distance inf visc {ETA!r} multiblob 12 lubrication yes relative_tolerance 1e-6 {FLOOR}"
+    v = []
+    for boundary in ("f f f", "p p f"):
+        sim = simulation(Spheres([(1, 1, 1.1)]), style, fix=False, dt=1e-9, box=[(-30.0, 30.0), (-30.0, 30.0), (-1.0, 30.0)], boundary=boundary)
+        v.append(sim.commands([f"{MOVE} spin all 0 1 0"]).run().v[0].copy())
+    assert v[0][0] > 0.02
+    assert v[1] == pytest.approx(v[0], abs=0.01 * v[0][0])
+
+
+def matrix(simulation, x, style, box):
+    """Velocities of unit forces"""
+    M = np.empty((3 * len(x), 3 * len(x)))
+    for k in range(3 * len(x)):
+        M[:, k] = fall(simulation, Spheres(x), np.eye(3 * len(x))[k].reshape(-1, 3), style, box).v.ravel()
+    return M
+
+
+@pytest.mark.parametrize("walls", [FLOOR, "wall zlo 0 zhi 3.5"])
+def test_a_held_sphere_is_in_the_way(simulation, walls):
+    x, style = [(1.0, 1.0, 1.2), (3.1, 1.0, 1.9)], f"cut_off_distance inf visc {ETA!r} relative_tolerance 1e-10 far_field_tolerance 1e-9 {walls}"
+    M = matrix(simulation, x, style, cell(8, -1, 4))
+    sim = simulation(Spheres(x), style, fix=False, dt=1e-9, box=cell(8, -1, 4), boundary="p p f")
+    sim.commands(["group still id 2", "group free id 1", "fix pull free addforce 0.3 0.5 -1", f"{MOVE} held still"]).run()
+    free = (M[:3, :3] - M[:3, 3:] @ np.linalg.solve(M[3:, 3:], M[3:, :3])) @ (0.3, 0.5, -1)
+    assert sim.v == pytest.approx(np.array([free, (0, 0, 0)]), abs=1e-8)
+
+
+# --- noise --------------------------------------------------------------------------------------------------------------
+
+def test_noise_in_a_slit_has_the_covariance_of_the_products(simulation):
+    """2 kT dt times the mobility, of 700 independent steps so short that nothing moves"""
+    kT, dt, x = 0.8, 1e-14, [(1.0, 1.0, 1.2), (3.1, 1.0, 1.9)]
+    style = f"cut_off_distance inf visc {ETA!r} relative_tolerance 1e-6 wall zlo 0 zhi 3.5"
+    M = matrix(simulation, x, style, cell(8, -1, 4))
+    sim = simulation(Spheres(x), style, fix=False, dt=dt, box=cell(8, -1, 4), boundary="p p f")
+    sim.commands(f"{MOVE} temperature {kT} 91 noise_tolerance 1e-3 scheme midpoint").run(0)
+    d = []
+    for k in range(700):
+        at = sim.x.ravel()
+        sim.run(1, "pre no post no")
+        d.append(sim.x.ravel() - at)
+    C = np.cov(np.array(d).T, bias=True) / (2 * kT * dt)
+    sigma = np.sqrt((np.outer(np.diag(M), np.diag(M)) + M ** 2) / len(d))
+    assert np.abs((C - M) / sigma).max() < 4.5
+
+
+# --- what there is no answer for ----------------------------------------------------------------------------------------
+
+def bad(words, message, boundary="p p f", **options):
+    return pytest.param(words, boundary, message, options, id=f"{words} {boundary}")
+
+
+@pytest.mark.parametrize("words, boundary, message, options", [
+    bad("wall zlo 0", "keyword wall: it needs boundary f, s or m across it, and z is periodic: use boundary p p f, or f f f", "p p p"),
+    bad("wall zlo 0", "keyword wall: the box is periodic in one of the two directions along it: use boundary p p f", "p f f"),
+    bad("wall xlo 0 xhi 9", "x is periodic: use boundary f p p, or f f f"),
+    bad("wall zlo 0 zhi 9", "between two walls the box must be periodic along them: use boundary p p f, or leave out", "f f f"),
+    bad("wall zlo 9 zhi 0", "keyword wall: zlo at 9 must be below zhi at 0"),
+    bad("wall zlo 0 xhi 9", "keyword wall: 'zlo' and 'xhi' are not opposite sides: give one side, or two opposite ones"),
+    bad("wall zlo 0 zlo 9", "'zlo' and 'zlo' are not opposite sides"),
+    bad("wall zlo 0 zhi 9 xlo 3", "keyword wall: a corner of walls is not possible: give one side, or two opposite ones"),
+    bad("wall zlo 0 wall zhi 9", "keyword wall: two walls are given by two sides after one keyword, such as wall zlo 0 zhi 10"),
+    bad("wall zlo 0 zhi", "keyword wall"),
+    bad("wall zlo 0 flow flux", "keyword flow requires two walls"),
+    bad("flow flux", "keyword flow requires two walls"),
+    bad("wall zlo 0 zhi 9 flow up", "keyword flow: 'up'"),
+    bad("", "boundary: in a box without walls .* drags that follow from velocities have a net force along it"),
+    bad("wall zlo 0 rotation yes", "keyword rotation: yes: above a floor, periodic along it, torques of one-point spheres are not summed: use "
+        "multiblob 12"),
+    bad("wall zlo 0 zhi 9 rotation yes lubrication yes", "in a slit, .* use multiblob 12"),
+    bad("wall zlo 0 far_field direct", "far_field direct and precondition sparse require a box that is not periodic"),
+    bad("wall zlo 0 precondition waves algorithm 2", "precondition waves is for periodic boxes"),
+    bad("wall zlo 2.5", "step 0: keyword wall: the centre of atom 1, radius 1, is 0.5 behind the wall zlo at 2.5"),
+    bad("wall zlo 0 zhi 3", "step 0: keyword wall: the centre of atom 2, radius 1, is 1 behind the wall zhi at 3"),
+    bad("wall zlo 1.5 zhi 3.4", "the largest sphere, radius 1, does not fit between zlo at 1.5 and zhi at 3.4: .* at least 2 apart"),
+    bad("wall zlo 0 fluid_velocity 0 0 0.1", "nothing flows through the wall zlo at 0"),
+    bad("wall zlo 0", "must not be tilted", tilt=(1.0, 0, 0)),
+    bad("wall zlo EDGE", "EDGE: that side of the box follows the spheres", "p p s"),
+])
+def test_what_does_not_go_with_a_slab_is_named(simulation, words, boundary, message, options):
+    with pytest.raises(LammpsError, match=message):
+        simulation(Spheres([(1, 1, 2), (1, 4, 4)]), f"cut_off_distance inf visc 1 {words}", box=cell(12), boundary=boundary, **options).run()
+
+
+def test_a_cut_off_has_no_walls_in_a_periodic_box(simulation):
+    with pytest.raises(LammpsError, match="it requires cut_off_distance inf and clumps_only no"):
+        simulation(Spheres([(1, 1, 2)]), "cut_off_distance 3 visc 1 wall zlo 0", box=cell(12), boundary="p p f").run()
+
+
+def test_radii_that_differ_too_much_are_an_error(simulation):
+    with pytest.raises(LammpsError, match="the largest radius must be at most 10 times the smallest, and they are 1 and 0.09"):
+        simulation(Spheres([(1, 1, 2), (1, 4, 4)], [1, 0.09]), f"cut_off_distance inf visc 1 {FLOOR}", box=cell(12), boundary="p p f").run()
+
+
+@pytest.mark.parametrize("lines, message", [
+    (["fix pull all addforce 1 0 0", MOVE], "the forces along x add up to 2: in a box without walls"),
+    ([f"{MOVE} held all"], "keyword held: in a box without walls"),
+    ([f"{MOVE} temperature 1 7"], "keyword temperature: in a box without walls .* no bound")])
+def test_what_a_layer_cannot_bear_is_named(simulation, lines, message):
+    sim = simulation(Spheres([(1, 1, 2), (1, 4, 4)]), "cut_off_distance inf visc 1", box=cell(12), boundary="p p f", fix=False, dt=0.1)
+    with pytest.raises(LammpsError, match=message):
+        sim.commands(lines).run()
+
+
+def test_a_layer_has_no_shells(simulation):
+    sim = simulation(Spheres([(1, 1, 2)]), "cut_off_distance inf visc 1 multiblob 12", box=cell(12), boundary="p p f", fix=False, dt=0.1)
+    with pytest.raises(LammpsError, match="multiblobs and rigid clumps are not available: give the pair style a wall"):
+        sim.commands([MOVE]).run()
+
+
+def test_a_box_that_changes_is_an_error(simulation):
+    sim = simulation(Spheres([(1, 1, 2)]), f"cut_off_distance inf visc 1 {FLOOR}", box=cell(12), boundary="p p f", fix=False, dt=0.1)
+    with pytest.raises(LammpsError, match="fix grow of style deform changes the box, and above a floor"):
+        sim.commands(["fix grow all deform 1 x scale 1.1", MOVE]).run()
