@@ -291,7 +291,7 @@ void sd_ewald_add_class(sd_ewald_class *sum, const sd_ewald_class *s)
 }
 
 /* Everything but the splitting; *some: are there spheres to split for? */
-static sd_status prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
+static sd_status ew_prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
                          sd_ewald *out, int *some)
 {
   const sd_ewald_box own = *box;
@@ -309,7 +309,7 @@ sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, 
                           double tolerance, sd_ewald *out)
 {
   int some;
-  const sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
+  const sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
   return some ? one_level(out, fall_for(out), &sizes->all, width, LARGEST) : status;
 }
 
@@ -317,7 +317,7 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
                                    double tolerance, sd_ewald *out)
 {
   int some;
-  const sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
+  const sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
   return some ? one_level(out, fall_for(out), &sizes->all, width, SD_EWALD_POSITIVE) : status;
 }
 
@@ -331,7 +331,7 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out)
 {
   int some;
-  sd_status status = prepare(box, &sizes->all, tolerance, out, &some);
+  sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   const double asked = out->tolerance;
   out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
@@ -393,7 +393,7 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
   tall.periodic = 1;
   tall.edge[across] = span + 2.0 * sizes->all.largest;
   if (!(tall.edge[across] > 0.0)) tall.edge[across] = 1.0; /* no spheres */
-  sd_status status = prepare(&tall, &sizes->all, tolerance, out, &some);
+  sd_status status = ew_prepare(&tall, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   splitting by = splitting_for(fall_for(out), &sizes->all, 3, LARGEST);
   by.farthest = 0.97 * fmin(tall.edge[(across + 1) % 3], tall.edge[(across + 2) % 3]);
@@ -438,7 +438,7 @@ sd_status sd_ewald_choose_at_points(const sd_ewald_box *box, const sd_ewald_size
 {
   const sd_ewald_class *all = &sizes->all;
   int some;
-  sd_status status = prepare(box, all, tolerance, out, &some);
+  sd_status status = ew_prepare(box, all, tolerance, out, &some);
   if (status != SD_OK) return status;
   double spread = spread_of(all, &out->a_ref), digits = 5.0, h = 0.0;
   out->count = all->count;

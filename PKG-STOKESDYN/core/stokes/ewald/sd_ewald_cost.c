@@ -16,7 +16,7 @@ double sd_ewald_near_pairs(const sd_ewald *e, double targets, double sources, do
   return targets * sources * (e->box.periodic ? share : fmin(1.0, share));
 }
 
-static double windows(double spheres, int points)
+static double ec_windows(double spheres, int points)
 {
   return WINDOW_POINT * spheres * points * points * points;
 }
@@ -40,7 +40,7 @@ static double image_pairs(const sd_ewald *e)
 
 double sd_ewald_grid_cost(const sd_ewald *e)
 {
-  return windows(e->count, e->points) + transforms(e, e->grid);
+  return ec_windows(e->count, e->points) + transforms(e, e->grid);
 }
 
 double sd_ewald_cost(const sd_ewald *e)

@@ -80,8 +80,9 @@ extern const sd_mobility_engine sd_mobility_list;
  * when that has changed, and otherwise only reads positions; SD_ENOTFINITE on all ranks if a sphere
  * is nowhere, or outside of an open box. */
 extern const sd_mobility_engine sd_mobility_ewald;
-/* The same where few spheres are far larger than the rest (sd_ewald_levels.h): it holds the one above for
- * the small spheres, and adds what the large ones do and feel. how.second: its second level. */
+/* The same where few spheres are far larger than the rest (sd_ewald_levels.h): it holds the one
+ * above for the small spheres, and adds what the large ones do and feel. how.second: its second
+ * level. */
 extern const sd_mobility_engine sd_mobility_levels;
 /* The same in a box that is periodic in two directions, above a floor, in a slit or with nothing beyond:
  * how.slab, width 3; SD_ENOTFINITE on all ranks if a sphere is nowhere, or at a height that how.slab has no

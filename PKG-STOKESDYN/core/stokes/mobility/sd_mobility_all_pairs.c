@@ -18,7 +18,7 @@ typedef struct {
   size_t room;
 } all_pairs;
 
-static sd_status place(void *state, const sd_mobility_scene *s)
+static sd_status ap_place(void *state, const sd_mobility_scene *s)
 {
   all_pairs *e = state;
   const size_t doubles = 2 * (size_t) s->how.width * (size_t) s->n_all;
@@ -30,7 +30,7 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   return sd_packed_all(&e->packed, SD_ISA_BEST, &s->how.law, &s->spheres, s->n_all, s->how.width);
 }
 
-static sd_status apply(void *state, const double *F, double *u)
+static sd_status ap_apply(void *state, const double *F, double *u)
 {
   all_pairs *e = state;
   const sd_world *w = &e->world;
@@ -46,7 +46,7 @@ static sd_status apply(void *state, const double *F, double *u)
   return w->collect(w->ctx, u_all, u, e->width);
 }
 
-static void release(void *state)
+static void ap_release(void *state)
 {
   all_pairs *e = state;
   sd_packed_free(&e->packed);
@@ -57,7 +57,7 @@ const sd_mobility_engine sd_mobility_all_pairs = {
     .name = "all pairs",
     .state = sizeof(all_pairs),
     .view = SD_VIEW_ALL,
-    .place = place,
-    .apply = apply,
-    .free = release,
+    .place = ap_place,
+    .apply = ap_apply,
+    .free = ap_release,
 };

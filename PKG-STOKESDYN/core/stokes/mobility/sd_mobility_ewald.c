@@ -34,7 +34,7 @@ typedef struct {
 
 /* --- tables of a splitting --- */
 
-static sd_status make_tables(ewald *e, const sd_mobility_scene *s)
+static sd_status me_make_tables(ewald *e, const sd_mobility_scene *s)
 {
   const sd_ewald *how = s->how.ewald;
   e->ready = 0;
@@ -61,7 +61,7 @@ static int changed(const ewald *e, const sd_mobility_scene *s)
 
 /* --- where the spheres stand --- */
 
-static int make_room(ewald *e, int n, size_t ghost_numbers)
+static int me_make_room(ewald *e, int n, size_t ghost_numbers)
 {
   return sd_reserve(&e->sphere, sizeof(int), (size_t) n, &e->sphere_room) &&
       sd_reserve(&e->ghosts, sizeof(double), ghost_numbers, &e->ghost_room);
@@ -94,13 +94,13 @@ static int all_finite(const sd_mobility_scene *s)
   return 1;
 }
 
-static sd_status place(void *state, const sd_mobility_scene *s)
+static sd_status me_place(void *state, const sd_mobility_scene *s)
 {
   ewald *e = state;
   e->n = s->n;
   e->n_all = s->n_all;
   sd_status status = SD_OK;
-  if (changed(e, s)) status = make_tables(e, s);
+  if (changed(e, s)) status = me_make_tables(e, s);
   e->world = s->world;
   e->ewald.box = s->how.ewald->box;
   e->waves.grid.world = s->world;
@@ -112,7 +112,7 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &e->spheres, s->n, s->n_all);
   if (status == SD_OK && e->ewald.images.wall.sign)
     status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald, &e->spheres, s->n, s->n_all);
-  if (status == SD_OK && !make_room(e, s->n, (size_t) e->width * (size_t) (s->n_all - s->n)))
+  if (status == SD_OK && !me_make_room(e, s->n, (size_t) e->width * (size_t) (s->n_all - s->n)))
     status = SD_ENOMEMORY;
   if (status == SD_OK) list_spheres(e);
   if (status == SD_OK)
@@ -164,7 +164,7 @@ static void add_means(const ewald *e, const double *S, double *u)
 }
 
 /* u = what is near; and the sums for what is far, of a periodic box. There are spheres. */
-static sd_status near_part(ewald *e, const double *F, double *u, double *sums)
+static sd_status me_near_part(ewald *e, const double *F, double *u, double *sums)
 {
   sd_status status = e->ewald.box.periodic ? sums_of(e, F, sums) : SD_OK;
   if (status == SD_OK && e->world.refresh)
@@ -187,7 +187,7 @@ static void clear(const ewald *e, double *u)
   memset(u, 0, sizeof(double) * (size_t) e->width * (size_t) e->n);
 }
 
-static sd_status apply(void *state, const double *F, double *u)
+static sd_status me_apply(void *state, const double *F, double *u)
 {
   ewald *e = state;
   double sums[9], *rows = rows_of_waves(e);
@@ -195,7 +195,7 @@ static sd_status apply(void *state, const double *F, double *u)
     clear(e, u);
     return SD_OK;
   }
-  sd_status status = near_part(e, F, u, sums);
+  sd_status status = me_near_part(e, F, u, sums);
   if (status == SD_OK) status = sd_ewald_waves_apply(&e->waves, &e->spheres, F, rows);
   if (status == SD_OK) add_waves(e, rows, u);
   if (status == SD_OK && e->ewald.box.periodic) add_means(e, sums, u);
@@ -215,7 +215,7 @@ static sd_status apply_rest(void *state, const double *F, double *u)
 {
   ewald *e = state;
   double sums[9];
-  const sd_status status = near_part(e, F, u, sums);
+  const sd_status status = me_near_part(e, F, u, sums);
   if (status == SD_OK) add_means(e, sums, u);
   return status;
 }
@@ -230,7 +230,7 @@ static sd_status draw(void *state, const sd_random_key *key, double *u)
   return status;
 }
 
-static void release(void *state)
+static void me_release(void *state)
 {
   ewald *e = state;
   sd_ewald_pairs_free(&e->pairs);
@@ -245,9 +245,9 @@ const sd_mobility_engine sd_mobility_ewald = {
     .name = "Ewald sum",
     .state = sizeof(ewald),
     .view = SD_VIEW_NEAR,
-    .place = place,
-    .apply = apply,
-    .free = release,
+    .place = me_place,
+    .apply = me_apply,
+    .free = me_release,
     .divides = divides,
     .apply_rest = apply_rest,
     .draw = draw,

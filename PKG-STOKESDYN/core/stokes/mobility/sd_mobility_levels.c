@@ -1,5 +1,6 @@
-/* Ewald sums of two levels: an engine of one level sums the small spheres, as if there were no others.
- * Here are the pairs with a large sphere, the waves that all make and feel, and what both leave out. */
+/* Ewald sums of two levels: an engine of one level sums the small spheres, as if there were no
+ * others. Here are the pairs with a large sphere, the waves that all make and feel, and what both
+ * leave out. */
 #include "sd_mobility.h"
 
 #include <stdlib.h>
@@ -118,7 +119,8 @@ static sd_status le_sums(const levels *e, const double *F, double *sums)
   return sd_world_sum(&e->world, sums, 18);
 }
 
-/* u += w (waves, and the mean of what is beyond the range): small spheres have that of one another already */
+/* u += w (waves, and the mean of what is beyond the range): small spheres have that of one another
+ * already */
 static void le_add_far(const levels *e, const double *sums, double *u)
 {
   const long m = e->width;

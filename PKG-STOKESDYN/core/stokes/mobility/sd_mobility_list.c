@@ -16,7 +16,7 @@ typedef struct {
   size_t room;
 } list;
 
-static sd_status place(void *state, const sd_mobility_scene *s)
+static sd_status li_place(void *state, const sd_mobility_scene *s)
 {
   list *e = state;
   const size_t doubles = (size_t) s->how.width * (size_t) (s->n_all - s->n);
@@ -27,7 +27,7 @@ static sd_status place(void *state, const sd_mobility_scene *s)
   return sd_packed_list(&e->packed, SD_ISA_BEST, &s->how.law, &s->spheres, s->n_all, s->how.width);
 }
 
-static sd_status apply(void *state, const double *F, double *u)
+static sd_status li_apply(void *state, const double *F, double *u)
 {
   list *e = state;
   const sd_world *w = &e->world;
@@ -39,7 +39,7 @@ static sd_status apply(void *state, const double *F, double *u)
   return SD_OK;
 }
 
-static void release(void *state)
+static void li_release(void *state)
 {
   list *e = state;
   sd_packed_free(&e->packed);
@@ -50,7 +50,7 @@ const sd_mobility_engine sd_mobility_list = {
     .name = "pairs by list",
     .state = sizeof(list),
     .view = SD_VIEW_LIST,
-    .place = place,
-    .apply = apply,
-    .free = release,
+    .place = li_place,
+    .apply = li_apply,
+    .free = li_release,
 };

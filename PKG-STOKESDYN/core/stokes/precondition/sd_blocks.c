@@ -43,7 +43,7 @@ static long fill_blocks(sd_blocks *b, const sd_precondition_case *c)
 }
 
 /* Two steps: what is known from the number of clumps, then what follows from who is in them. */
-static sd_status allocate(sd_blocks *b, const sd_precondition_case *c)
+static sd_status bl_allocate(sd_blocks *b, const sd_precondition_case *c)
 {
   const size_t blocks = (size_t) c->clumps, n = (size_t) c->n;
   b->n = c->n;
@@ -71,7 +71,7 @@ static double root(const sd_blocks *b, int sphere, int p)
 }
 
 /* A clump without spheres that take part has nothing to invert. */
-static sd_status invert(sd_blocks *b, const sd_precondition_case *c, int k)
+static sd_status bl_invert(sd_blocks *b, const sd_precondition_case *c, int k)
 {
   const int m = (int) (b->first[k + 1] - b->first[k]);
   double *A = b->inverse + b->start[k];
@@ -85,9 +85,9 @@ static sd_status invert(sd_blocks *b, const sd_precondition_case *c, int k)
 sd_status sd_blocks_make(void *blocks, const sd_precondition_case *c)
 {
   sd_blocks *b = blocks;
-  sd_status status = allocate(b, c);
+  sd_status status = bl_allocate(b, c);
   if (status == SD_OK) sd_unit_roots(&c->spheres, c->n, b->root);
-  for (int k = b->part; k < b->blocks && status == SD_OK; k += b->parts) status = invert(b, c, k);
+  for (int k = b->part; k < b->blocks && status == SD_OK; k += b->parts) status = bl_invert(b, c, k);
   status = sd_world_agree(&c->world, status);
   if (status != SD_OK) sd_blocks_free(b);
   return status;

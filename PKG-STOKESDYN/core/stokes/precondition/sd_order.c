@@ -32,7 +32,7 @@ typedef struct {
   double *key;
 } heap;
 
-static int above(const heap *h, int i, int j)
+static int or_above(const heap *h, int i, int j)
 {
   return h->key[i] > h->key[j] || (h->key[i] == h->key[j] && h->sphere[i] < h->sphere[j]);
 }
@@ -43,7 +43,7 @@ static void sink(heap *h, int i)
   for (;;) {
     int top = i;
     for (int child = 2 * i + 1; child <= 2 * i + 2; child++)
-      if (child < h->count && above(h, child, top)) top = child;
+      if (child < h->count && or_above(h, child, top)) top = child;
     if (top == i) return;
     const double key = h->key[i];
     const int sphere = h->sphere[i];

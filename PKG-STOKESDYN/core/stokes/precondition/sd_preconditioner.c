@@ -43,7 +43,7 @@ static uint64_t fingerprint(const sd_precondition_case *c)
   return hash(h, c->member, (size_t) c->first[clumps] * sizeof(int));
 }
 
-static sd_status begin(sd_preconditioner *p, const sd_precondition_kind *kind,
+static sd_status pr_begin(sd_preconditioner *p, const sd_precondition_kind *kind,
                        const sd_precondition_case *c, uint64_t made_of)
 {
   sd_preconditioner_free(p);
@@ -78,7 +78,7 @@ sd_status sd_preconditioner_make(sd_preconditioner *p, const sd_precondition_kin
   double others = !(p->state && p->wanted == kind && p->made_of == made_of);
   sd_status status = sd_world_sum(&c->world, &others, 1);
   if (status != SD_OK || others == 0.0) return status;
-  status = sd_world_agree(&c->world, begin(p, kind, c, made_of));
+  status = sd_world_agree(&c->world, pr_begin(p, kind, c, made_of));
   if (status == SD_OK) {
     sd_precondition_case own = *c;
     for (int i = 0; i < c->n; i++) p->scratch[i] = 1.0;

@@ -17,7 +17,7 @@ void sd_sparse_free(void *factor)
 
 /* Sums of products, each lane apart: the same order on every processor. */
 enum { LANES = 8 };
-static inline float dot(const float *x, const float *y, int n)
+static inline float sp_dot(const float *x, const float *y, int n)
 {
   float lane[LANES] = {0.0f}, sum = 0.0f;
   int p = 0;
@@ -40,13 +40,13 @@ static void last_columns(const float *R, int size, int width, float *X)
     for (int q = 0; q < width; q++) {
       float *x = X + (long) size * q;
       const float unit = k - (size - width) == q ? 1.0f : 0.0f;
-      x[k] = (unit - dot(column + k + 1, x + k + 1, size - 1 - k)) / column[k];
+      x[k] = (unit - sp_dot(column + k + 1, x + k + 1, size - 1 - k)) / column[k];
     }
   }
 }
 
 /* The column of blocks of m spheres, its own last in X and first in value. */
-static void store(const float *X, int m, int width, float *value)
+static void sp_store(const float *X, int m, int width, float *value)
 {
   const int size = sd_sparse_floats(width), lda = width == 3 ? 4 : 6;
   memset(value, 0, sizeof(float) * (size_t) (size * m));
@@ -72,7 +72,7 @@ static sd_status local_factor(const sd_law *law, const sd_spheres *s, const int 
 }
 
 /* Each column from the C of the spheres that it sees, its own last. */
-static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
+static sd_status sp_fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
 {
   const sd_rows *rows = &f->rows;
   const size_t blocks = (size_t) rows->first[rows->columns], most = (size_t) rows->largest;
@@ -91,7 +91,7 @@ static sd_status fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
     status = local_factor(law, s, member, m, f->width, rows->largest, A, &in_double);
     if (status != SD_OK) break;
     last_columns(A, f->width * m, f->width, X);
-    store(X, m, f->width, f->value + floats * (size_t) rows->first[k]);
+    sp_store(X, m, f->width, f->value + floats * (size_t) rows->first[k]);
   }
   free(member);
   free(A);
@@ -115,7 +115,7 @@ sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s,
   f->scratch = malloc(sizeof(double) * (16 * (size_t) n + 1));
   sd_status status = f->root && f->scratch ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) status = sd_rows_find(&f->rows, s, n, rho, part, parts);
-  if (status == SD_OK) status = fill(f, law, s);
+  if (status == SD_OK) status = sp_fill(f, law, s);
   if (status == SD_OK) sd_unit_roots(s, n, f->root);
   if (status != SD_OK) sd_sparse_free(f);
   return status;

@@ -32,7 +32,7 @@ static inline void put_cross(double c, const double h[3], double *B)
 }
 
 /* What the wall adds to the block of spheres at xi and xj */
-static void add_image(const sd_law *law, const double xi[3], double ai, const double xj[3],
+static void un_add_image(const sd_law *law, const double xi[3], double ai, const double xj[3],
                       double aj, double taper, int width, double B[36])
 {
   const double root_i[2] = {sqrt(6.0 * SD_PI * ai), sqrt(8.0 * SD_PI * ai) * ai};
@@ -73,11 +73,11 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
     put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, B + 6 * 3);
     put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
   }
-  if (law->wall.sign) add_image(law, xi, ai, xj, aj, taper, width, B);
+  if (law->wall.sign) un_add_image(law, xi, ai, xj, aj, taper, width, B);
 }
 
 /* That of a sphere with itself, and a little on the diagonal */
-static inline void own_block(const sd_law *law, const sd_spheres *s, int i, int width, double extra,
+static inline void un_own_block(const sd_law *law, const sd_spheres *s, int i, int width, double extra,
                              double B[36])
 {
   double x[3];
@@ -85,12 +85,12 @@ static inline void own_block(const sd_law *law, const sd_spheres *s, int i, int 
   for (int p = 0; p < width; p++) B[7 * p] = 1.0 + extra;
   if (!law->wall.sign) return;
   sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, s->a[i], x);
-  add_image(law, x, s->a[i], x, s->a[i], 1.0, width, B);
+  un_add_image(law, x, s->a[i], x, s->a[i], 1.0, width, B);
 }
 
 /* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of
  * A, A_single. */
-static inline void fill(const sd_law *law, const sd_spheres *s, const int *member, int m, int width,
+static inline void un_fill(const sd_law *law, const sd_spheres *s, const int *member, int m, int width,
                         double extra, double *A, float *A_single)
 {
   const long lda = width * (long) m;
@@ -99,7 +99,7 @@ static inline void fill(const sd_law *law, const sd_spheres *s, const int *membe
     for (int i = j; i < m; i++) {
       const long at = width * i + lda * (width * j);
       if (i == j)
-        own_block(law, s, member[i], width, extra, B);
+        un_own_block(law, s, member[i], width, extra, B);
       else
         unit_block(law, s, member[i], member[j], width, B);
       for (int q = 0; q < width; q++)
@@ -120,9 +120,9 @@ sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *me
   static const double extra[] = {0.0, 1e-12, 1e-9, 1e-6};
   for (int k = 0; k < 4; k++) {
     if (width == 3)
-      fill(law, s, member, m, 3, extra[k], A, 0);
+      un_fill(law, s, member, m, 3, extra[k], A, 0);
     else
-      fill(law, s, member, m, 6, extra[k], A, 0);
+      un_fill(law, s, member, m, 6, extra[k], A, 0);
     const sd_status status = sd_cholesky(width * m, A);
     if (status != SD_ESINGULAR) return status;
   }
@@ -136,9 +136,9 @@ sd_status sd_unit_cholesky_single(const sd_law *law, const sd_spheres *s, const 
   const float lost = 0.003f;
   const long size = width * (long) m;
   if (width == 3)
-    fill(law, s, member, m, 3, 0.0, 0, A);
+    un_fill(law, s, member, m, 3, 0.0, 0, A);
   else
-    fill(law, s, member, m, 6, 0.0, 0, A);
+    un_fill(law, s, member, m, 6, 0.0, 0, A);
   const sd_status status = sd_cholesky_single((int) size, A);
   for (long p = 0; p < size && status == SD_OK; p++)
     if (!(A[p * (size + 1)] > lost)) return SD_ESINGULAR;

@@ -61,7 +61,7 @@ static void add_strengths(const sd_waves *p, double *G)
   }
 }
 
-static long largest_block(const sd_blocks *b)
+static long wp_largest_block(const sd_blocks *b)
 {
   long largest = AT_ONCE;
   for (int k = 0; k < b->blocks; k++)
@@ -74,7 +74,7 @@ static long largest_block(const sd_blocks *b)
 static sd_status factorize(sd_waves *p, const sd_precondition_case *c)
 {
   const size_t matrix = (size_t) SD_WAVES_COLUMNS * SD_WAVES_COLUMNS;
-  const size_t rows = (size_t) p->width * (size_t) largest_block(&p->near);
+  const size_t rows = (size_t) p->width * (size_t) wp_largest_block(&p->near);
   double *row = malloc(sizeof(double) * 2 * SD_WAVES_COLUMNS * rows);
   p->factor = calloc(matrix, sizeof(double));
   sd_status status = sd_world_agree(&c->world, row && p->factor ? SD_OK : SD_ENOMEMORY);

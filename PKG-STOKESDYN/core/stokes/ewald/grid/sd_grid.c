@@ -17,7 +17,7 @@ static size_t plane_numbers(const sd_grid *g)
   return (lines > waves ? lines : waves) + 1;
 }
 
-static int allocate(sd_grid *g)
+static int gr_allocate(sd_grid *g)
 {
   const size_t plane = plane_numbers(g);
   int ok = 1;
@@ -70,7 +70,7 @@ sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const
   g->columns = sd_grid_columns(g, 0);
   g->rows = g->ranks / g->columns;
   for (int k = 0; k < 4; k++) sd_grid_range_of(g, k, g->me, g->own[k]);
-  if (allocate(g) && sd_grid_count_turns(g) && plan(g)) return SD_OK;
+  if (gr_allocate(g) && sd_grid_count_turns(g) && plan(g)) return SD_OK;
   sd_grid_free(g);
   return SD_ENOMEMORY;
 }

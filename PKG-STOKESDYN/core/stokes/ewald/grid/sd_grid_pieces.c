@@ -4,7 +4,7 @@
 
 /* Part k of the points lo ... lo + n - 1 that lies within one period and within [begin, end) of it:
  * its offset in the brick, its place, its points; 0: there is no part k. */
-static int part_of(int lo, int n, int period, int begin, int end, int k, int *at, int *to)
+static int gp_part_of(int lo, int n, int period, int begin, int end, int k, int *at, int *to)
 {
   const int first = lo >= 0 ? lo / period : -((period - 1 - lo) / period);
   const int origin = (first + k) * period;
@@ -27,12 +27,12 @@ static int pieces_of(const sd_grid *g, const int *brick, int pencils, int rank, 
   int count = 0;
   sd_piece p = {.rank = rank};
   if (n[0] == 0 || n[1] == 0 || n[2] == 0) return 0;
-  for (int i = 0; (p.n[0] = part_of(lo[0], n[0], g->size[0], x[0], x[1], i, p.at, p.to)) >= 0; i++)
+  for (int i = 0; (p.n[0] = gp_part_of(lo[0], n[0], g->size[0], x[0], x[1], i, p.at, p.to)) >= 0; i++)
     for (int j = 0;
-         (p.n[1] = part_of(lo[1], n[1], g->size[1], y[0], y[1], j, p.at + 1, p.to + 1)) >= 0;
+         (p.n[1] = gp_part_of(lo[1], n[1], g->size[1], y[0], y[1], j, p.at + 1, p.to + 1)) >= 0;
          j++)
       for (int k = 0;
-           (p.n[2] = part_of(lo[2], n[2], g->size[2], 0, g->size[2], k, p.at + 2, p.to + 2)) >= 0;
+           (p.n[2] = gp_part_of(lo[2], n[2], g->size[2], 0, g->size[2], k, p.at + 2, p.to + 2)) >= 0;
            k++) {
         if (p.n[0] == 0 || p.n[1] == 0 || p.n[2] == 0) continue;
         if (list) list[count] = p;
@@ -45,7 +45,7 @@ static int pieces_of(const sd_grid *g, const int *brick, int pencils, int rank, 
 static int points_within(int lo, int n, int period, const int *range)
 {
   int at, to, part, points = 0;
-  for (int k = 0; n > 0 && (part = part_of(lo, n, period, range[0], range[1], k, &at, &to)) >= 0; k++)
+  for (int k = 0; n > 0 && (part = gp_part_of(lo, n, period, range[0], range[1], k, &at, &to)) >= 0; k++)
     points += part;
   return points;
 }

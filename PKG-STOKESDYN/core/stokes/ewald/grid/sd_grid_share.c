@@ -16,7 +16,7 @@ static double most_of(int all, int parts)
 
 /* Of ranks in so many columns, the most numbers that one of them transforms along z, y and x, if the
  * first direction is d */
-static double load(const sd_grid *g, int d, int columns)
+static double gs_load(const sd_grid *g, int d, int columns)
 {
   const int e = (d + 1) % 3, half = g->size[(d + 2) % 3] / 2 + 1, rows = g->ranks / columns;
   const double planes = most_of(g->occupied[d], rows), depth = most_of(half, columns);
@@ -29,10 +29,10 @@ int sd_grid_columns(const sd_grid *g, int d)
 {
   const int most = g->occupied[(d + 1) % 3], half = g->size[(d + 2) % 3] / 2 + 1;
   int best = 1;
-  double least = load(g, d, 1);
+  double least = gs_load(g, d, 1);
   for (int c = 2; c <= g->ranks && c <= most && c <= half; c++)
-    if (1.25 * load(g, d, c) < least) {
-      least = 1.25 * load(g, d, c);
+    if (1.25 * gs_load(g, d, c) < least) {
+      least = 1.25 * gs_load(g, d, c);
       best = c;
     }
   return best;

@@ -60,7 +60,7 @@ static void sample(workspace *s)
       }
 }
 
-static void fill(const workspace *s, int kernel)
+static void pa_fill(const workspace *s, int kernel)
 {
   const sd_padded *k = s->k;
   const double *number = s->number;
@@ -139,7 +139,7 @@ static void keep(const workspace *s)
              sizeof(double) * (size_t) (m[2] - 1));
 }
 
-static void store(const workspace *s, int kernel, const int *y, const int *z, double *table)
+static void pa_store(const workspace *s, int kernel, const int *y, const int *z, double *table)
 {
   const int *m = s->m, half = s->m_period[0] / 2 + 1, depth = z[1] - z[0];
   const int parts = s->k->across ? 2 : 1;
@@ -179,7 +179,7 @@ static int make_direction(workspace *s, int d, int size)
   return s->taper[d] && s->inverse[d];
 }
 
-static int make_room(workspace *s, const int *size)
+static int pa_make_room(workspace *s, const int *size)
 {
   size_t large = 1, wanted = 1;
   int ok = 1;
@@ -194,7 +194,7 @@ static int make_room(workspace *s, const int *size)
   return ok && s->number && s->field && s->kept;
 }
 
-static void give_back(workspace *s)
+static void pa_give_back(workspace *s)
 {
   for (int d = 0; d < 3; d++) {
     free(s->taper[d]);
@@ -211,17 +211,17 @@ sd_status sd_padded_table(const sd_padded *k, const int *size, const int *y, con
                           double *table)
 {
   workspace s = {.k = k};
-  int ok = make_room(&s, size);
+  int ok = pa_make_room(&s, size);
   if (ok) sample(&s);
   for (int c = 0; c < k->kernels && ok; c++) {
-    fill(&s, c);
+    pa_fill(&s, c);
     ok = transform(&s, c, s.field, s.n, 0);
     if (ok) deconvolve(&s);
     ok = ok && transform(&s, c, s.field, s.n, 1);
     if (ok) keep(&s);
     ok = ok && transform(&s, c, s.kept, s.m, 0);
-    if (ok) store(&s, c, y, z, table);
+    if (ok) pa_store(&s, c, y, z, table);
   }
-  give_back(&s);
+  pa_give_back(&s);
   return ok ? SD_OK : SD_ENOMEMORY;
 }

@@ -83,7 +83,7 @@ static sd_image_pair pair_of(const sd_ewald_image_pairs *p, int i, int j)
 
 /* Images within the range of sphere i of ours; those of ours that come earlier have the pair. Returns
  * how many pairs there are then, -1: out of memory. */
-static long pairs_of(sd_ewald_image_pairs *p, int i, long many)
+static long ip_pairs_of(sd_ewald_image_pairs *p, int i, long many)
 {
   const double *x = p->x + 3L * i, range = p->ewald.images.range;
   const double image[3] = {x[0], x[1], -x[2]};
@@ -112,7 +112,7 @@ sd_status sd_ewald_image_pairs_place(sd_ewald_image_pairs *p, const sd_ewald *e,
   long many = 0;
   for (int i = 0; i < p->ours && many >= 0; i++) {
     p->first[i] = many;
-    many = pairs_of(p, i, many);
+    many = ip_pairs_of(p, i, many);
   }
   p->first[p->ours] = many;
   return many >= 0 ? SD_OK : SD_ENOMEMORY;
@@ -121,7 +121,7 @@ sd_status sd_ewald_image_pairs_place(sd_ewald_image_pairs *p, const sd_ewald *e,
 /* --- product --- */
 
 /* U += image of a force F; c4, c5: of this direction of the pair */
-static void add_image(const double *c, double c4, double c5, const double R[3], const double *F,
+static void ip_add_image(const double *c, double c4, double c5, const double R[3], const double *F,
                       double *U)
 {
   const double p = R[0] * F[0] + R[1] * F[1] - R[2] * F[2];
@@ -150,8 +150,8 @@ void sd_ewald_image_pairs_apply(sd_ewald_image_pairs *p, int n, const double *F,
       const double *xi = p->x + 3L * i, *xj = p->x + 3L * j, *c = p->pair[k].c;
       const double R[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] + xj[2]};
       const double back[3] = {-R[0], -R[1], R[2]};
-      add_image(c, c[3], c[4], R, p->F + 3L * j, p->u + 3L * i);
-      if (j != i) add_image(c, c[4], c[3], back, p->F + 3L * i, p->u + 3L * j);
+      ip_add_image(c, c[3], c[4], R, p->F + 3L * j, p->u + 3L * i);
+      if (j != i) ip_add_image(c, c[4], c[3], back, p->F + 3L * i, p->u + 3L * j);
     }
   for (int k = 0; k < p->ours; k++) {
     const long i = p->sphere[k];

@@ -9,7 +9,7 @@
 #include "sd_room.h"
 #include "sd_tensor.h"
 
-static int numbers(const sd_ewald_large_pairs *p)
+static int lp_numbers(const sd_ewald_large_pairs *p)
 {
   return p->width == 6 ? SD_LARGE_PAIR_TORQUES : SD_LARGE_PAIR;
 }
@@ -84,7 +84,7 @@ static sd_status share_larges(sd_ewald_large_pairs *p, const sd_spheres *s, cons
 
 /* --- their images --- */
 
-static int add_image(sd_ewald_large_pairs *p, int large, double x, double y, double z)
+static int lp_add_image(sd_ewald_large_pairs *p, int large, double x, double y, double z)
 {
   const size_t many = (size_t) p->images + 1;
   if (!sd_extend(&p->image, 3 * sizeof(double), many, &p->image_room) ||
@@ -131,7 +131,7 @@ static sd_status find_images(sd_ewald_large_pairs *p, const sd_spheres *s, const
         const double x0 = x[0] + m[2] * b->tilt[1] + m[1] * b->tilt[0];
         steps_into(b, 0, x0, lo[0], hi[0], from, to);
         for (m[0] = from[0]; m[0] <= to[0]; m[0]++)
-          if (!add_image(p, l, x0 + m[0] * b->edge[0], y, z)) return SD_ENOMEMORY;
+          if (!lp_add_image(p, l, x0 + m[0] * b->edge[0], y, z)) return SD_ENOMEMORY;
       }
     }
   }
@@ -170,19 +170,19 @@ static void tensor_of(const sd_ewald_large_pairs *p, const double *r, double ai,
   out[8] = torques * g * over_r * over_r - 0.25 * D[SD_J1];
 }
 
-static int add_pair(sd_ewald_large_pairs *p, int other, const double *r, double ai, double aj)
+static int lp_add_pair(sd_ewald_large_pairs *p, int other, const double *r, double ai, double aj)
 {
-  const size_t many = (size_t) p->pairs + 1, doubles = (size_t) numbers(p);
+  const size_t many = (size_t) p->pairs + 1, doubles = (size_t) lp_numbers(p);
   if (!sd_extend(&p->other, sizeof(int), many, &p->other_room) ||
       !sd_extend(&p->tensor, sizeof(double), many * doubles, &p->tensor_room))
     return 0;
   p->other[p->pairs] = other;
-  tensor_of(p, r, ai, aj, p->tensor + numbers(p) * p->pairs++);
+  tensor_of(p, r, ai, aj, p->tensor + lp_numbers(p) * p->pairs++);
   return 1;
 }
 
 /* mine: of our large spheres the one that i is, or -1 */
-static int pairs_of(sd_ewald_large_pairs *p, const double *x, double a, int mine)
+static int lp_pairs_of(sd_ewald_large_pairs *p, const double *x, double a, int mine)
 {
   const double range2 = p->ewald.range * p->ewald.range;
   for (sd_cells_walk w = sd_cells_near(&p->cells, x, p->ewald.range); sd_cells_step(&p->cells, &w);)
@@ -191,7 +191,7 @@ static int pairs_of(sd_ewald_large_pairs *p, const double *x, double a, int mine
       const double R2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
       const int l = p->image_of[k], itself = mine >= 0 && l == p->first + mine && R2 == 0.0;
       if (R2 > range2 || itself) continue;
-      if (!add_pair(p, l, r, a, p->large[l].a)) return 0;
+      if (!lp_add_pair(p, l, r, a, p->large[l].a)) return 0;
     }
   return 1;
 }
@@ -208,7 +208,7 @@ sd_status sd_ewald_large_pairs_place(sd_ewald_large_pairs *p, const sd_spheres *
   for (int i = 0; i < n; i++) {
     const int j = list[i], mine = s->a[j] >= p->from ? large++ : -1;
     p->begin[i] = p->pairs;
-    if (!pairs_of(p, s->x + 3 * (long) j, s->a[j], mine)) return SD_ENOMEMORY;
+    if (!lp_pairs_of(p, s->x + 3 * (long) j, s->a[j], mine)) return SD_ENOMEMORY;
   }
   p->n = n;
   p->begin[n] = p->pairs;
@@ -240,7 +240,7 @@ static void add_pair_product(const double *t, int width, int turned, const doubl
 }
 
 /* w F of all large spheres */
-static sd_status load(sd_ewald_large_pairs *p, const sd_world *world, const double *F)
+static sd_status lp_load(sd_ewald_large_pairs *p, const sd_world *world, const double *F)
 {
   const long m = p->width;
   memset(p->F, 0, sizeof(double) * 6 * (size_t) p->larges);
@@ -254,8 +254,8 @@ static sd_status load(sd_ewald_large_pairs *p, const sd_world *world, const doub
 sd_status sd_ewald_large_pairs_apply(sd_ewald_large_pairs *p, const sd_spheres *s, const int *list,
                                      const sd_world *world, const double *F, double *u)
 {
-  const long m = p->width, many = numbers(p);
-  sd_status status = load(p, world, F);
+  const long m = p->width, many = lp_numbers(p);
+  sd_status status = lp_load(p, world, F);
   if (status != SD_OK) return status;
   for (int i = 0; i < p->n; i++) {
     const long j = list[i];

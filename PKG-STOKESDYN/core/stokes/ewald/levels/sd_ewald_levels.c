@@ -18,12 +18,13 @@ double sd_ewald_levels_cost(const sd_ewald *first, const sd_ewald_level *second)
   return cost + LARGE_PAIR * pairs + sd_ewald_grid_cost(e);
 }
 
-/* Of the tolerance, for the second level: all spheres are so many more than the large ones that their
- * rms says nothing of those, whose velocities shall be as good. */
+/* Of the tolerance, for the second level: all spheres are so many more than the large ones that
+ * their rms says nothing of those, whose velocities shall be as good. */
 static const double LARGE_TOO = 0.12;
 
-/* All have one a_ref, that of the small ones: it is in the waves that one level takes from the other. */
-static sd_status le_split(const sd_ewald_box *box, const sd_ewald_class *small,
+/* All have one a_ref, that of the small ones: it is in the waves that one level takes from the
+ * other. */
+static sd_status lv_split(const sd_ewald_box *box, const sd_ewald_class *small,
                           const sd_ewald_class *large, int width, double times, double tolerance,
                           sd_ewald *first, sd_ewald_level *second)
 {
@@ -58,7 +59,7 @@ sd_status sd_ewald_levels_best(const sd_ewald_box *box, const sd_ewald_sizes *si
       sd_ewald e;
       sd_ewald_level level;
       memset(&level, 0, sizeof(level));
-      if (le_split(&own, &small, &large, width, times[m], tolerance, &e, &level) != SD_OK) continue;
+      if (lv_split(&own, &small, &large, width, times[m], tolerance, &e, &level) != SD_OK) continue;
       level.from = ldexp(large.largest, -k - 1);
       const double cost = sd_ewald_levels_cost(&e, &level);
       if (!(cost < least)) continue;
@@ -70,8 +71,8 @@ sd_status sd_ewald_levels_best(const sd_ewald_box *box, const sd_ewald_sizes *si
   return least < INFINITY ? SD_OK : SD_ENOMEMORY;
 }
 
-/* One level and two are compared as Gaussians, whose costs are known well; two also sum the velocities of the
- * few large spheres as well as those of all. */
+/* One level and two are compared as Gaussians, whose costs are known well; two also sum the
+ * velocities of the few large spheres as well as those of all. */
 sd_status sd_ewald_levels_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                                  double tolerance, sd_ewald *first, sd_ewald_level *second)
 {

@@ -7,8 +7,8 @@
  * The waves of the second are made by all spheres and felt by all, so that those of the first are
  * less by them (sd_ewald.h: taken).
  *
- * What it is worth: of 3000 spheres with two of 30 radii among them a product takes 0.18 of the time of
- * one level at 1e-3 and 0.22 at 1e-6, and placing them 0.05 (unittest/bench, three-thousand). */
+ * What it is worth: of 3000 spheres with two of 30 radii among them a product takes 0.18 of the time
+ * of one level at 1e-3 and 0.22 at 1e-6, and placing them 0.05 (unittest/bench, three-thousand). */
 #ifndef SD_EWALD_LEVELS_H
 #define SD_EWALD_LEVELS_H
 
@@ -29,8 +29,8 @@ typedef struct {
 sd_status sd_ewald_levels_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                                  double tolerance, sd_ewald *first, sd_ewald_level *second);
 
-/* The one that costs least of all that have two levels, whatever one level costs. SD_ENOMEMORY: there
- * is none, since octaves are 0 or all spheres are in one. */
+/* The one that costs least of all that have two levels, whatever one level costs. SD_ENOMEMORY:
+ * there is none, since octaves are 0, all spheres are in one, or the first would be as smooth. */
 sd_status sd_ewald_levels_best(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                                double tolerance, sd_ewald *first, sd_ewald_level *second);
 

@@ -41,7 +41,7 @@ void sd_ewald_pairs_free(sd_ewald_pairs *p)
 /* --- rows in order of cells --- */
 
 /* The last centres are read in whole vectors. */
-static int make_room(sd_ewald_pairs *p, int n)
+static int ep_make_room(sd_ewald_pairs *p, int n)
 {
   const size_t rows = (size_t) n + 1, doubles = (p->width == 6 ? 20 : 12) * rows + FULL;
   p->row = sd_reserve_lines(&p->memory, doubles, &p->room);
@@ -89,15 +89,15 @@ static cells cells_for(const sd_ewald_pairs *p, const sd_spheres *s, int n_all)
   return c;
 }
 
-static int along(const cells *c, double x, int d)
+static int ep_along(const cells *c, double x, int d)
 {
   const int k = (int) ((x - c->lo[d]) * c->inverse);
   return k < c->n[d] ? k : c->n[d] - 1;
 }
 
-static int cell_of(const cells *c, const double *x)
+static int ep_cell_of(const cells *c, const double *x)
 {
-  return (along(c, x[0], 0) * c->n[1] + along(c, x[1], 1)) * c->n[2] + along(c, x[2], 2);
+  return (ep_along(c, x[0], 0) * c->n[1] + ep_along(c, x[1], 1)) * c->n[2] + ep_along(c, x[2], 2);
 }
 
 /* Counting sort; the targets are ours. */
@@ -110,10 +110,10 @@ static sd_status sort(sd_ewald_pairs *p, const cells *c, int n, int n_all)
   int *first = p->cell_first;
   memset(first, 0, sizeof(int) * ((size_t) all + 2));
   for (int i = 0; i < n_all; i++)
-    if (s->a[i] > 0.0) first[cell_of(c, s->x + 3 * (long) i) + 2]++;
+    if (s->a[i] > 0.0) first[ep_cell_of(c, s->x + 3 * (long) i) + 2]++;
   for (int k = 0; k < all; k++) first[k + 2] += first[k + 1];
   for (int i = 0; i < n_all; i++)
-    if (s->a[i] > 0.0) p->sphere[first[cell_of(c, s->x + 3 * (long) i) + 1]++] = i;
+    if (s->a[i] > 0.0) p->sphere[first[ep_cell_of(c, s->x + 3 * (long) i) + 1]++] = i;
   p->rows = first[all];
   p->n = 0;
   for (int k = 0; k < p->rows; k++)
@@ -224,7 +224,7 @@ static long neighbors_of(sd_ewald_pairs *p, int row, int n, int ranges, long man
   return many + found;
 }
 
-static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, int n)
+static sd_status ep_find_pairs(sd_ewald_pairs *p, const cells *c, int n)
 {
   long many = 0, rows;
   int cell[3], next = 0;
@@ -250,17 +250,17 @@ static sd_status find_pairs(sd_ewald_pairs *p, const cells *c, int n)
 sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, int n, int n_all)
 {
   p->spheres = *s;
-  if (!make_room(p, n_all)) return SD_ENOMEMORY;
+  if (!ep_make_room(p, n_all)) return SD_ENOMEMORY;
   const cells c = cells_for(p, s, n_all);
   sd_status status = sort(p, &c, n, n_all);
   if (status != SD_OK) return status;
   fill_rows(p);
-  return find_pairs(p, &c, n);
+  return ep_find_pairs(p, &c, n);
 }
 
 /* --- product --- */
 
-static void load(sd_ewald_pairs *p, int n, const double *F, const double *ghosts)
+static void ep_load(sd_ewald_pairs *p, int n, const double *F, const double *ghosts)
 {
   const long m = p->width;
   for (long k = 0; k < p->rows; k++) {
@@ -299,7 +299,7 @@ void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const doubl
                           double *u)
 {
   const long m = p->width;
-  load(p, n, F, ghosts);
+  ep_load(p, n, F, ghosts);
   const sd_near_part k = near_part_of(p);
   const long step = m == 6 ? 8 : 4;
   memset(p->u, 0, sizeof(double) * (size_t) (step * (p->rows + 1)));

@@ -124,7 +124,7 @@ static void on_grid(const sd_ewald_waves *w, const double *x, double *s)
 }
 
 /* Within an open box, whose tables know no larger distance; but for rounding */
-static int inside(const sd_ewald_box *b, double x, int d)
+static int wv_inside(const sd_ewald_box *b, double x, int d)
 {
   const double spare = 1e-9 * b->edge[d];
   return x >= b->origin[d] - spare && x <= b->origin[d] + b->edge[d] + spare;
@@ -154,7 +154,7 @@ static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
       const double first = floor(s[d] - 0.5 * points);
       p->at[d] = (int) first + 1;
       p->v[d] = 2.0 * (s[d] - 0.5 * points - first) - 1.0;
-      if (!box->periodic) sound = sound && inside(box, x[d], d);
+      if (!box->periodic) sound = sound && wv_inside(box, x[d], d);
       if (i == 0 || p->at[d] < lo[d]) lo[d] = p->at[d];
       if (i == 0 || p->at[d] + points > hi[d]) hi[d] = p->at[d] + points;
     }

@@ -53,8 +53,8 @@ sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int 
 /* Bricks of all ranks [ranks][6], which are turned if the frame is. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks);
 
-/* From each rank's own brick to those of all, which are placed: on all ranks of the world together, also
- * where this one has failed before (status) and has no grid. Then all fail. */
+/* From each rank's own brick to those of all, which are placed: on all ranks of the world together,
+ * also where this one has failed before (status) and has no grid. Then all fail. */
 sd_status sd_ewald_waves_meet(sd_ewald_waves *w, const int *brick, sd_status status,
                               const sd_world *world);
 

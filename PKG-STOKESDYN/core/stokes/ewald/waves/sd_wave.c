@@ -56,7 +56,7 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 /* --- open --- */
 
 /* I_0, J_0/r^2 of sd_radial.h, less what a smoother splitting has taken */
-static void numbers(const sd_ewald *e, double distance, double *number)
+static void wa_numbers(const sd_ewald *e, double distance, double *number)
 {
   const sd_filter filter[2] = {{e->xi, e->a_ref}, {e->taken, e->a_ref}};
   for (int l = 0; l < (e->taken > 0.0 ? 2 : 1); l++) {
@@ -69,7 +69,7 @@ static void numbers(const sd_ewald *e, double distance, double *number)
 }
 
 /* xx yy zz xy xz yz of I_0 1 + J_0 hh */
-static double value(const sd_ewald *e, int kernel, const double *number, const double *R)
+static double wa_value(const sd_ewald *e, int kernel, const double *number, const double *R)
 {
   static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   (void) e;
@@ -81,7 +81,7 @@ static sd_padded open_kernel(const sd_ewald *e)
 {
   static const int odd[6][3] = {[3] = {1, 1, 0}, [4] = {1, 0, 1}, [5] = {0, 1, 1}};
   return (sd_padded){
-      .ewald = e, .xi = e->xi, .kernels = 6, .numbers = numbers, .value = value, .odd = odd};
+      .ewald = e, .xi = e->xi, .kernels = 6, .numbers = wa_numbers, .value = wa_value, .odd = odd};
 }
 
 static sd_status image_table(sd_wave *w, const sd_ewald *e, const int *y, const int *z)
@@ -146,7 +146,7 @@ static const double *periodic_entry(const sd_wave *w, int x, int y)
 }
 
 /* That row of the three fields, times B and the projection */
-static void periodic_row(const sd_wave *w, int x, int y, const double *B, double *const *row)
+static void wa_periodic_row(const sd_wave *w, int x, int y, const double *B, double *const *row)
 {
   const int mx = wave_number(x, w->size[0]), my = wave_number(y, w->size[1]);
   double k[3];
@@ -164,7 +164,7 @@ void sd_wave_multiply_root(void *ctx, int y, double *const *plane)
     double *row[3];
     for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * w->depth;
     for (int m = 0; m < w->depth; m++) w->roots[m] = sqrt(B[m] / points);
-    periodic_row(w, x, y, w->roots, row);
+    wa_periodic_row(w, x, y, w->roots, row);
   }
 }
 
@@ -199,7 +199,7 @@ void sd_wave_multiply(void *ctx, int y, double *const *plane)
     double *row[3];
     for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * depth;
     if (w->periodic)
-      periodic_row(w, x, y, periodic_entry(w, x, y), row);
+      wa_periodic_row(w, x, y, periodic_entry(w, x, y), row);
     else {
       const double *K = w->table + ((long) (abs(my) - w->first_row) * half_x + abs(mx)) * 6 * depth;
       w->kernels->open_row(row, K, mx < 0 ? -1.0 : 1.0, my < 0 ? -1.0 : 1.0, depth);
