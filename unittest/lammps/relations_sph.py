@@ -8,7 +8,7 @@ OPTIONS = {
     "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "tank", "tank", "column", "channel", "ends", "body"],
     "scheme": ["plain", "delta", "shift", "correction", "summation"], "volume": ["no", "no", "yes"], "fluids": [1, 1, 2],
     "kernel": ["wendland", "cubicspline"], "artVisc": ["no", "yes"], "tensCorr": ["no", "no", "yes"],
-    "viscosity": ["no", "central", "laplacian"], "filter": ["no", "no", "yes"],
+    "viscosity": ["no", "central", "laplacian"], "rheology": ["no", "no", "bingham", "carreau"], "filter": ["no", "no", "yes"],
     "state": ["Tait", "Tait", "tension no", "relativ", "absolut"],
     "wall": ["at rest", "slip", "suction no", "moving", "own"], "plane": ["no", "no", "plane", "region"], "gravity": ["no", "yes"],
     "look": ["nothing", "energy", "probe", "virial", "height"], "skin": [0.3, 0.15], "steps": [2, 5, 9],
@@ -37,6 +37,7 @@ def lawful(o, no):
     no(o["space"] in ("full", "ends", "channel", "body"), plane="no")
     no(o["viscosity"] == "laplacian" and o["wall"] in ("moving", "own"), viscosity="central")
     no(o["look"] == "height" and (o["space"] not in ("tank", "column") or o["gravity"] == "no"), look="probe")
+    no(o["viscosity"] == "no", rheology="no")
     no(o["space"] == "body", gravity="yes")
     no(o["space"] == "body" and o["look"] == "virial", look="energy")     # that of fix rigid depends on where the origin is
 
@@ -116,6 +117,8 @@ def commands(s, o, d, up, lo, hi, each):
     words = f"{o['kernel']} <L 1.3>" + " artVisc 0.1 0.0 <area 0.01>" * (o["artVisc"] == "yes")
     words += " tensCorr 0.2 <L 1.0>" * (o["tensCorr"] == "yes")
     words += f" viscosity <eta{d} 0.05> {o['viscosity']}" * (o["viscosity"] != "no")
+    words += {"bingham": f" rheology bingham <P{d} 0.02> <eta{d} 0.5>",
+              "carreau": f" rheology carreau <t 2.0> 0.4 <eta{d} 0.5>"}.get(o["rheology"], "")
     words += {"shift": " shift yes", "correction": " correction yes"}.get(o["scheme"], "")
     s.pair = [("sph/artVisc/tensCorr", words, "c <V 10>" + " deltap <L 1.0>" * shifts)]
     state = {"Tait": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7", "relativ": f"relativ <V2 100> <rho{d} 1.0>", "absolut": "absolut <V 10>",
