@@ -226,11 +226,27 @@ void FixSphInlet::init()
   gravity.init(lmp);
 }
 
+double FixSphInlet::time() const
+{
+  return time_before + update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
+std::vector<SavedNumbers> FixSphInlet::saved()
+{
+  std::vector<SavedNumbers> all = FixSphOpening::saved();
+  all.push_back({"time", &time_then});
+  return all;
+}
+
+void FixSphInlet::write_state(NamedState &)
+{
+  if (!resumed) time_then = time();
+}
+
 double FixSphInlet::discharge()
 {
   if (times.empty()) return flow_rate.evaluate(lmp);
-  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
-  return sd_sph_hydrograph((int) times.size(), times.data(), rates.data(), now);
+  return sd_sph_hydrograph((int) times.size(), times.data(), rates.data(), time());
 }
 
 /* Of the whole layer: from the volume that its particles have at rest, which is the same while they come
@@ -295,6 +311,8 @@ void FixSphInlet::move_layer()
 /* Particles that it has not met before are its own if they stand in the layer. */
 void FixSphInlet::setup_pre_exchange()
 {
+  if (resumed) time_before += time_then - time();    // LAMMPS sets its own when a run begins
+  resumed = false;
   check_width();
   check_side();
   int mine = 0;
@@ -418,10 +436,13 @@ void FixSphOutlet::init()
   pressure.init(lmp);
 }
 
+/* Those that have passed the end since the last list of neighbours may be outside of the box,
+ * and LAMMPS would lose them. */
 void FixSphOutlet::setup_pre_exchange()
 {
   check_width();
   check_side();
+  pre_exchange();
 }
 
 /* All that are at one place of the section move alike, so that no gap opens in the layer and nothing piles up

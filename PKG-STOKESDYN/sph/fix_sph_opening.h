@@ -76,12 +76,22 @@ class FixSphInlet : public FixSphOpening {
 
   BodyForce gravity;
 
+ protected:
+  std::vector<SavedNumbers> saved() override;
+  void write_state(NamedState &) override;
+  void read_state(const NamedState &in) override { resumed = !in.get("time").empty(); }
+
  private:
   enum Drive { VELOCITY, FLOW_RATE, PRESSURE };
   Drive drive = VELOCITY;
   Field velocity, flow_rate;
   /* of a file: discharges at their times */
   std::vector<double> times, rates;
+  /* Some LAMMPS begin the time at 0 again after a restart: the time of the restart file, whether
+   * this fix has it from there, and what its time is ahead of LAMMPS's. */
+  double time_then = 0.0, time_before = 0.0;
+  bool resumed = false;
+  double time() const;
   std::vector<double> speeds;
   /* state, place of the new particle, its speed, the step in which the old one left. A particle that
    * comes back into the layer from the flow has been replaced and stays so. */

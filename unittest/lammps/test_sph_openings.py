@@ -207,6 +207,28 @@ def test_what_is_no_hydrograph(rows, words, tmp_path):
     assert words in text and "keyword flow_rate" in text
 
 
+def test_a_hydrograph_goes_on_over_a_restart(tmp_path):
+    """Also where LAMMPS begins its time at 0 again; and a second restart does not add the first one's time twice."""
+    (tmp_path / "flood.txt").write_text("0 0.48\n0.4 0.72\n0.8 0.3\n1.2 0.6\n")
+    scene = PIPE.replace("all vx 1", "all vx 0.8") + OPEN.replace("velocity {}", f"flow_rate file {tmp_path}/flood.txt")
+    fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep")))
+    text = scene
+    for part in ("one", "two"):
+        text += (f"run 67\nwrite_restart {tmp_path}/{part}\nclear\nplugin load stokesdynplugin.so\natom_modify map array\n"
+                 f"read_restart {tmp_path}/{part}\n{fixes}\n")
+    assert np.abs(end_of(text, 66)[0] - end_of(scene, 200)[0]).max() < 1e-11
+
+
+@pytest.mark.parametrize("steps", range(8, 14))
+def test_a_run_may_end_while_particles_stand_beyond_the_end_of_the_box(steps):
+    """The outlet deletes them before LAMMPS loses them. Mass that came in and went out is what the box has more."""
+    lmp = start()
+    run(lmp, PIPE + OPEN.format(1) + "run %d\nrun 20" % steps)
+    due = lmp.extract_fix("in", 0, 0) - lmp.extract_fix("out", 0, 0) - 0.01 * (lmp.get_natoms() - 144)
+    assert abs(due) < 0.061    # a column may be on its way
+    lmp.close()
+
+
 def test_a_pressure_drives_fluid_in():
     """Without walls nothing holds it: the difference of both pressures over the length is what accelerates it. The layers follow and weigh nothing.
     Each of the two pressures acts a spacing behind its plane: du/dt = 0.3/1.2."""
