@@ -164,7 +164,7 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
 void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
 {
   const int width = hydro.rotation() ? 6 : 3;
-  double sums[10] = {0.0}, fluid[6], given[6], pushed[6];
+  double sums[CAUSES] = {0.0}, fluid[6], given[6], pushed[6];
   sd_squirmer_stroke stroke;
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
@@ -175,24 +175,36 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
     if (atom->torque_flag) sd_hash_add_row(tag, pushed + 3, 3, sums + 2);
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
-    if (given_velocity(i, given) != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
+    const double kind = given_velocity(i, given);
+    if (kind != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
+    sd_hash_add_row(tag, &kind, 1, sums + KINDS);
     if (squirmers.stroke(i, stroke)) {
       const double row[6] = {stroke.e[0], stroke.e[1], stroke.e[2], stroke.B1, stroke.B2, stroke.beta};
       sd_hash_add_row(tag, row, 6, sums + 8);
     }
   }
-  MPI_Allreduce(sums, causes, 10, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(sums, causes, CAUSES, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */
 bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
 {
-  double now[10];
+  double now[CAUSES];
   find_causes(hydro, now);
   bool same = last.atoms == atom->natoms;
-  for (int k = 0; k < 10; k += 2)
+  for (int k = 0; k < CAUSES; k += 2)
     same = same && fabs(now[k] - last.causes[k]) <= 1e-8 * std::max(now[k + 1], last.causes[k + 1]);
   return same;
+}
+
+/* Spheres that are held, pinned or spun since now, or no longer (a dynamic group), jump to another
+ * velocity: on the line through both those that are pinned would leave their place. */
+void FixStokesDynamicsOverdamped::forget_before_change(const double *causes)
+{
+  const double *now = causes + KINDS, *then = last.causes + KINDS;
+  if (fabs(now[0] - then[0]) <= 1e-8 * std::max(now[1], then[1])) return;
+  before.clear();
+  load.clear();
 }
 
 void FixStokesDynamicsLast::setup(int /*vflag*/)
@@ -282,7 +294,10 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
   check_images(voice, hydro.ambient.jumps());
-  find_causes(hydro, last.causes);
+  double causes[CAUSES];
+  find_causes(hydro, causes);
+  forget_before_change(causes);
+  std::copy_n(causes, (int) CAUSES, last.causes);
   last.atoms = atom->natoms;
   const std::vector<double> pushed = loads(hydro);
   const size_t width = hydro.rotation() ? 6 : 3, turns = directions.on() ? width : 3;

@@ -85,13 +85,14 @@ class FixStokesDynamicsOverdamped : public RowsFix {
    * turned since the fix was given: these four are state, from step to step and in restart files */
   enum { TURNED = 9, OUTPUTS = 13 };
   AtomArray output;
+  enum { KINDS = 10, CAUSES = 12 };
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
    * adapt wants next; atoms there are */
   struct {
     double step = -1, dt = 0.0, next_dt = 0.0, atoms = 0.0;
-    /* fingerprints of what velocities follow from: forces, torques, the fluid, given velocities
-     * (sd_hash_add_row) */
-    double causes[10] = {0.0};
+    /* fingerprints of what velocities follow from: forces, torques, the fluid, viscosities, given
+     * velocities and strokes, who is held, pinned or spun (sd_hash_add_row) */
+    double causes[CAUSES] = {0.0};
   } last;
   bool from_file = false;
 
@@ -108,6 +109,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool goes_on(const Hydrodynamics &) const;
   void find_causes(const Hydrodynamics &, double *causes) const;
   bool causes_stand(const Hydrodynamics &) const;
+  void forget_before_change(const double *causes);
   void set_step(double dt);
   void announce();
   const double *tracked(const ClumpShape &shape) const;

@@ -139,5 +139,5 @@ std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
           {"dt", &last.dt},
           {"next_dt", &last.next_dt},
           {"atoms", &last.atoms},
-          {"causes", last.causes, 10}};
+          {"causes", last.causes, CAUSES}};
 }

@@ -113,6 +113,18 @@ def test_a_held_run_in_pieces_is_the_run_in_one(simulation, tmp_path):
     assert np.abs(again.run(17).x - whole).max() < 1e-10
 
 
+@pytest.mark.parametrize("keyword", ["held", "pin"])
+def test_others_are_held_from_now_on(simulation, keyword):
+    """Their velocities jump: nothing is extrapolated from those of before. Who is held does not leave its place, who is let go begins
+    with a step of Euler."""
+    sim = simulation(Spheres(X), f"cut_off_distance inf visc {ETA} relative_tolerance 1e-12", fix=False, box=BOX, dt=0.05)
+    sim.commands(["group still id 1 4"] + PULL.splitlines() + [f"{FIX} {keyword} still"]).run(5)
+    sim.commands(["group still clear", "group still id 2 7"]).run(0)
+    x, v = sim.x, sim.v
+    assert (v[[1, 6]] == 0).all() and np.abs(v[[0, 3]]).max(axis=1).min() > 0.1
+    assert np.abs(sim.run(1).x - x - 0.05 * v).max() < 1e-13
+
+
 @pytest.mark.parametrize("line, message", [
     (f"{FIX} held nobody", "keyword held: group 'nobody' does not exist"),
     (f"group part id 4\n{FIX} held part", "keyword held: the clump of molecule 1 is only partly in the group"),
