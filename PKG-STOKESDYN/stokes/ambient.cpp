@@ -201,6 +201,7 @@ double Ambient::misfit()
   double most[2] = {0.0, 0.0}, sums[3] = {0.0}, edge[3], of_box[3];
   modify->clearstep_compute();
   for (int q = 0; q < 3; q++) {
+    if (!domain->periodicity[q]) continue;    // along it nobody sees an image
     edge_of_box(domain, q, edge);
     sd_multiply3(motion.gradient, edge, of_box);
     growth_along(edge, of_box, sums, most);

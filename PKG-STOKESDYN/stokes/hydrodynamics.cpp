@@ -5,7 +5,6 @@
 #include "keywords.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "force.h"
 #include "neighbor.h"
 #include "pair.h"
@@ -226,8 +225,7 @@ void Hydrodynamics::place()
   look_at_wall();
   memory->global.open_box = scene.open_box();
   const bool first = looked.first_in(epochs.run);
-  if (scene.view() == SD_VIEW_NEAR && domain->xperiodic && first)
-    warn_of_misfit(voice, ambient.misfit());
+  if (scene.view() == SD_VIEW_NEAR && first) warn_of_misfit(voice, ambient.misfit());
   if (settings.lubrication.on && !shells.settings.on() && first) {
     double spheres = scene.size();
     Scene::sum(&scene, &spheres, 1);

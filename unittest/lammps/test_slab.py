@@ -106,6 +106,13 @@ def test_a_sphere_swims_along_in_a_poiseuille_flow(simulation):
     assert sim.v[0] == pytest.approx((1.7 * 3.3, 0, 0), abs=1e-9)
 
 
+@pytest.mark.parametrize("formula, told", [("0.3*z", False), ("0.3*z*y", True)])
+def test_a_stream_needs_no_period_across_the_walls(simulation, tmp_path, formula, told):
+    lines = input_lines(Spheres([(1, 2, 1.7)]), f"{STYLE} wall zlo 0 fluid_velocity v_u 0 0", str(tmp_path / "data"), fix=False,
+                        box=cell(12), boundary="p p f", before_pair=f"variable u atom {formula}")
+    assert ("does not have the period of the box" in lmp(tmp_path, lines + [MOVE, "run 0"]).log) == told
+
+
 # --- one scene, in other ways -------------------------------------------------------------------------------------------
 
 def heap(n=14, H=6.0, L=11.0, seed=7, clumps=True):
