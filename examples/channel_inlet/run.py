@@ -21,7 +21,7 @@ y, u = [np.concatenate([s[key][(s["x"] > 3) & (s["x"] < 3.9)] for s in shots]) f
 off = np.sqrt(np.mean((u - 6 * y * (1 - y)) ** 2))
 c.below("velocity at x = 3 to 3.9 against the parabola, rms over the mean velocity", off, 0.05 if S.QUICK else 0.03)
 
-figure, (above, below) = plt.subplots(2, 1, figsize=(8, 4.8), gridspec_kw={"height_ratios": (1, 1.6)})
+figure, (above, below) = plt.subplots(2, 1, figsize=(8, 4.8), gridspec_kw={"height_ratios": (1, 1.6), "hspace": 0.45})
 last = shots[-1]
 colours = above.scatter(last["x"], last["y"], s=4, c=last["vx"], cmap="viridis", vmin=0, vmax=1.5)
 for plane in (0, 4):
