@@ -20,7 +20,8 @@
 namespace StokesDyn {
 
 /* What is known of the spheres of a step, and so what is asked: of all spheres the velocity, which
- * atoms have, and forces are asked; or the load, of some the velocity (held, pinned, spun), and motions are. */
+ * atoms have, and forces are asked; or the load, of some the velocity (held, pinned, spun), and motions
+ * are. */
 struct Given {
   bool velocities = false;
   /* [6 nlocal] force and torque on each atom; empty: all are 0 */

@@ -11,8 +11,8 @@
  *   central      m_a m_b 2 (D+2) mu / (rho_a rho_b) (v.d) / (r^2 + 0.001 h^2) g d: Monaghan 2005.
  *                Along d, so it keeps angular momentum and leaves solid rotation alone
  *   rate of a    drho_a = sum m_b g v.d   (the same sum for b: v.d does not change sign)
- * With a viscosity mu_a of each particle mu is 2 mu_a mu_b / (mu_a + mu_b), for which the stress is continuous
- * where mu jumps (Cleary & Monaghan 1999).
+ * With a viscosity mu_a of each particle mu is 2 mu_a mu_b / (mu_a + mu_b), for which the stress is
+ * continuous where mu jumps (Cleary & Monaghan 1999).
  * Source: Monaghan 1992, 2000. What a scheme changes:
  *   shift        F_a += V_a V_b g [ rho_a v_a (du_a.d) + rho_b v_b (du_b.d) ]: particles that are
  *                moved with v + du carry their momentum along; still F_b = - F_a
