@@ -109,22 +109,6 @@ static void list_spheres(slab *s)
   }
 }
 
-/* Bricks of all ranks, by a sum over them */
-static sd_status share_bricks(slab *s, const int *brick)
-{
-  const int ranks = sd_world_ranks(&s->world), me = sd_world_me(&s->world), many = 6 * ranks;
-  double *values = calloc((size_t) many, sizeof(double));
-  int *bricks = calloc((size_t) many, sizeof(int));
-  sd_status status = sd_world_agree(&s->world, values && bricks ? SD_OK : SD_ENOMEMORY);
-  for (int k = 0; k < 6 && status == SD_OK; k++) values[6 * me + k] = brick[k];
-  if (status == SD_OK) status = sd_world_sum(&s->world, values, many);
-  for (int k = 0; k < many && status == SD_OK; k++) bricks[k] = (int) lrint(values[k]);
-  if (status == SD_OK) status = sd_ewald_waves_place(&s->waves, bricks);
-  free(values);
-  free(bricks);
-  return sd_world_agree(&s->world, status);
-}
-
 static sd_status place(void *state, const sd_mobility_scene *scene)
 {
   slab *s = state;
@@ -143,8 +127,7 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
   if (status == SD_OK) list_spheres(s);
   if (status == SD_OK)
     status = sd_ewald_waves_find(&s->waves, &s->spheres, s->sphere, s->own, brick);
-  status = sd_world_agree(&s->world, status);
-  return status == SD_OK ? share_bricks(s, brick) : status;
+  return sd_ewald_waves_meet(&s->waves, brick, status, &s->world);
 }
 
 /* --- product --- */
