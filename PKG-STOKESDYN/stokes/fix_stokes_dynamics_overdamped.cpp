@@ -13,7 +13,6 @@
 #include "atom.h"
 #include "domain.h"
 #include "force.h"
-#include "group.h"
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
@@ -49,8 +48,8 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
            in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" +
                      text(adapt.tmax) + "'");
        }},
-      {"held", [&] { held = in.word(); }},
-      {"pin", [&] { pinned = in.word(); }},
+      {"held", [&] { held.name = in.word(); }},
+      {"pin", [&] { pinned.name = in.word(); }},
       {"spin", [&] { spin.read(in); }},
       {"squirm", [&] { squirmers.read(in); }},
       {"torque", [&] { torques.read(in); }},
@@ -85,13 +84,13 @@ void FixStokesDynamicsOverdamped::init()
   directions.init(moved_bits != 0);
   refuse_inertia(voice, hydrodynamics());
   refuse_in_layer(voice, hydrodynamics().settings.scene.boundary,
-                  held_bit ? "keyword held" : pinned_bit ? "keyword pin" : "", noise.on());
+                  held.bit ? "keyword held" : pinned.bit ? "keyword pin" : "", noise.on());
   look_at_neighbours();
-  spin.init(hydrodynamics(), held_bit | pinned_bit);
-  torques.init(hydrodynamics(), groupbit, held_bit);
+  spin.init(hydrodynamics(), held.bit | pinned.bit);
+  torques.init(hydrodynamics(), groupbit, held.bit);
   squirmers.init(hydrodynamics(), groupbit);
-  const char *holds = held_bit ? "keyword held"
-      : pinned_bit             ? "keyword pin"
+  const char *holds = held.bit ? "keyword held"
+      : pinned.bit             ? "keyword pin"
       : spin.on()              ? "keyword spin"
                                : "";
   if (!scheme_given)
@@ -103,20 +102,14 @@ void FixStokesDynamicsOverdamped::init()
 
 void FixStokesDynamicsOverdamped::find_groups()
 {
-  const auto bit_of = [this](const char *keyword, const std::string &name) {
-    if (name.empty()) return 0;
-    const int which = group->find(name);
-    if (which < 0) voice.of(keyword).fail("group '" + name + "' does not exist");
-    return group->bitmask[which];
-  };
-  held_bit = bit_of("keyword held", held);
-  pinned_bit = bit_of("keyword pin", pinned);
+  held.find(voice.of("keyword held"));
+  pinned.find(voice.of("keyword pin"));
   moved_bits = 0;
   for (const Fix *fix : fixes_of(lmp, "move"))
-    if (held_bit) moved_bits |= fix->groupbit;
-  if (!pinned_bit) return;
+    if (held.bit) moved_bits |= fix->groupbit;
+  if (!pinned.bit) return;
   if (const tagint both = first_atom(lmp, [this](int i) {
-        return is_held(i) && (atom->mask[i] & pinned_bit);
+        return is_held(i) && (atom->mask[i] & pinned.bit);
       }))
     voice.fail("keyword pin: atom " + std::to_string(both) + " is in the group of keyword held as well: "
                "it must be in one of them only");
@@ -274,7 +267,7 @@ void FixStokesDynamicsOverdamped::final_integrate()
 sd_body_known FixStokesDynamicsOverdamped::given_velocity(int i, double *V) const
 {
   std::fill_n(V, 6, 0.0);
-  if (atom->mask[i] & pinned_bit) return SD_BODY_PINNED;
+  if (atom->mask[i] & pinned.bit) return SD_BODY_PINNED;
   if (!is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
   if (!is_moved(i)) return SD_BODY_HELD;
   std::copy_n(dragged.v.empty() ? atom->v[i] : &dragged.v[3 * (size_t) i], 3, V);
@@ -347,7 +340,7 @@ Given FixStokesDynamicsOverdamped::given(const std::vector<double> &of_atoms) co
 {
   Given known;
   known.loads = of_atoms;
-  if (held_bit || pinned_bit || spin.on())
+  if (held.bit || pinned.bit || spin.on())
     known.held = [this](int i, double *V) { return given_velocity(i, V); };
   if (squirmers.on())
     known.swims = [this](int i, sd_squirmer_stroke &stroke) { return squirmers.stroke(i, stroke); };
@@ -387,11 +380,12 @@ void FixStokesDynamicsOverdamped::post_integrate()
   const Hydrodynamics &hydro = hydrodynamics();
   for (int i : hydro.ambient.who()) {
     if (!is_moved(i)) continue;
-    double w[3], R[9];
     directions.turn_moved(i, atom->omega[i], update->dt);
+    if (!in_clump(hydro, i)) continue;
+    double w[3], R[9];
     for (int d = 0; d < 3; d++) w[d] = update->dt * atom->omega[i][d];
     sd_rotation(w, R);
-    if (in_clump(hydro, i)) sd_turn_quaternion(R, output.give(i) + TURNED);
+    sd_turn_quaternion(R, output.give(i) + TURNED);
   }
 }
 

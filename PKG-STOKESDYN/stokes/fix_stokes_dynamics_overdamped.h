@@ -10,6 +10,7 @@
 
 #include "directions.h"
 #include "hydrodynamics.h"
+#include "keyword_group.h"
 #include "neighbours_stokes.h"
 #include "noise.h"
 #include "rows_fix.h"
@@ -68,8 +69,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   AtomRows load;
   /* those whose velocity is given, and those whose place is, empty: nobody; and the groups that fix move
    * moves */
-  std::string held, pinned;
-  int held_bit = 0, pinned_bit = 0, moved_bits = 0;
+  KeywordGroup held, pinned;
+  int moved_bits = 0;
   /* scheme midpoint, of those that fix move moves, [3 nlocal]: where they stood when velocities were
    * found; in the half step, while v is not empty, their velocity in it */
   struct {
@@ -120,7 +121,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void look_at_neighbours();
   void find_groups();
   void find_drives(const Hydrodynamics &);
-  bool is_held(int i) const { return atom->mask[i] & held_bit; }
+  bool is_held(int i) const { return atom->mask[i] & held.bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
   void load_on(int i, double *FT) const;

@@ -7,7 +7,6 @@
 
 #include "atom.h"
 #include "domain.h"
-#include "group.h"
 
 #include <algorithm>
 
@@ -18,7 +17,7 @@ namespace StokesDyn {
 void Spin::read(Keywords &in)
 {
   double unused;
-  group_name = in.word();
+  whom.name = in.word();
   for (double &component : omega) component = in.number();
   if (in.more() && is_number(in.peek(), unused)) most = in.positive();
   std::copy_n(omega, 3, axis);
@@ -33,9 +32,7 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
   if (!on()) return;
   const std::string pair = " of pair_style stokes_dynamics";
   const Voice keyword = voice.of("keyword spin");
-  const int igroup = group->find(group_name);
-  if (igroup < 0) keyword.fail("group '" + group_name + "' does not exist");
-  bit = group->bitmask[igroup];
+  whom.find(keyword);
   if (!hydro.rotation())
     keyword.fail("keyword rotation" + pair + " must be yes, or keyword multiblob given: points "
                  "without torques do not spin");
@@ -45,35 +42,35 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
     keyword.fail("in two dimensions spheres spin about z alone: wx and wy must be 0");
   const bool clumps = hydro.settings.rigid.on;
   if (const tagint bound = first_atom(lmp, [&](int i) {
-        return clumps && (atom->mask[i] & bit) && atom->molecule[i] != 0;
+        return clumps && (atom->mask[i] & whom.bit) && atom->molecule[i] != 0;
       }))
     keyword.fail("atom " + std::to_string(bound) + " is part of a rigid clump: only free spheres spin");
   if (const tagint both = first_atom(lmp, [&](int i) {
-        return (atom->mask[i] & bit) && (atom->mask[i] & held_bit);
+        return (atom->mask[i] & whom.bit) && (atom->mask[i] & held_bit);
       }))
     keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held or pin as well: it must "
                  "be in one of them only");
   for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & bit)) slipping.take(i);    // it may have been in the group before
+    if (!(atom->mask[i] & whom.bit)) slipping.take(i);    // it may have been in the group before
 }
 
 bool Spin::turns(int i, double W[3]) const
 {
-  if (!(atom->mask[i] & bit) || sign(i) != 0.0) return false;
+  if (!(atom->mask[i] & whom.bit) || sign(i) != 0.0) return false;
   std::copy_n(omega, 3, W);
   return true;
 }
 
 void Spin::push(int i, double *torque) const
 {
-  if (!(atom->mask[i] & bit)) return;
+  if (!(atom->mask[i] & whom.bit)) return;
   for (int d = 0; d < 3; d++) torque[d] += sign(i) * most * axis[d];
 }
 
 /* A sphere that slips and has caught up with the field is held again. */
 void Spin::look(int i, const double *W, const double *by_fluid, const double *torque)
 {
-  if (!(atom->mask[i] & bit) || most == 0.0) return;
+  if (!(atom->mask[i] & whom.bit) || most == 0.0) return;
   const double now = sign(i);
   double next = now, needed[3];
   for (int d = 0; d < 3; d++) needed[d] = -by_fluid[d] - torque[d];

@@ -8,11 +8,10 @@
 #ifndef SD_STOKES_SPIN_H
 #define SD_STOKES_SPIN_H
 
-#include "rows_fix.h"
+#include "keyword_group.h"
 #include "keywords.h"
 #include "pointers.h"
-
-#include <string>
+#include "rows_fix.h"
 
 namespace StokesDyn {
 
@@ -27,7 +26,7 @@ class Spin : protected LAMMPS_NS::Pointers {
 
   /* GROUP wx wy wz [most] */
   void read(Keywords &in);
-  bool on() const { return !group_name.empty(); }
+  bool on() const { return whom.on(); }
   /* Before a run. Errors: a group that does not exist; settings under which no sphere spins; spheres
    * of it that are in clumps, or held. */
   void init(const Hydrodynamics &hydro, int held_bit);
@@ -46,8 +45,7 @@ class Spin : protected LAMMPS_NS::Pointers {
 
  private:
   const Voice voice;
-  std::string group_name;
-  int bit = 0;
+  KeywordGroup whom;
   /* most: 0, no limit */
   double omega[3] = {0.0}, axis[3] = {0.0}, most = 0.0;
 

@@ -5,12 +5,12 @@
 
 #include "directions.h"
 #include "field.h"
+#include "keyword_group.h"
 #include "keywords.h"
 #include "pointers.h"
 
 #include "sd_squirmer.h"
 
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
@@ -26,7 +26,7 @@ class Squirmers : protected LAMMPS_NS::Pointers {
 
   /* GROUP B1 B2 [beta] */
   void read(Keywords &in);
-  bool on() const { return !group_name.empty(); }
+  bool on() const { return whom.on(); }
   /* Before a run. Errors: a group or variable that does not exist; spheres without a shell; spheres of it
    * that have no direction, or are not of the fix. */
   void init(const Hydrodynamics &hydro, int groupbit);
@@ -39,8 +39,7 @@ class Squirmers : protected LAMMPS_NS::Pointers {
  private:
   const Voice voice;
   const Directions &directions;
-  std::string group_name;
-  int igroup = 0, bit = 0;
+  KeywordGroup whom;
   Field B1, B2, beta;
   /* [3 nlocal] */
   std::vector<double> now;

@@ -7,7 +7,6 @@
 
 #include "atom.h"
 #include "domain.h"
-#include "group.h"
 #include "modify.h"
 #include "update.h"
 
@@ -20,7 +19,7 @@ namespace StokesDyn {
 
 void Torques::read(Keywords &in)
 {
-  group_name = in.word();
+  whom.name = in.word();
   for (Field &component : T) component = Field::parse(in);
   if (in.take("body")) of_body = in.yes_no();
 }
@@ -28,16 +27,12 @@ void Torques::read(Keywords &in)
 void Torques::init(const Hydrodynamics &hydro, int groupbit, int held_bit)
 {
   if (!on()) return;
-  igroup = group->find(group_name);
-  if (igroup < 0) voice.fail("group '" + group_name + "' does not exist");
-  bit = group->bitmask[igroup];
+  whom.find(voice);
   for (Field &component : T) component.init(lmp);
   const auto first = [this](const std::function<bool(int)> &wrong) {
-    return first_atom(lmp, [&](int i) { return (atom->mask[i] & bit) && wrong(i); });
+    return first_atom(lmp, [&](int i) { return (atom->mask[i] & whom.bit) && wrong(i); });
   };
-  if (const tagint other = first([&](int i) { return !(atom->mask[i] & groupbit); }))
-    voice.fail("atom " + std::to_string(other) + " is not in the group of this fix, which does not "
-               "move it: give a group whose atoms are in both");
+  whom.require_moved(voice, groupbit);
   if (const tagint held = first([&](int i) { return atom->mask[i] & held_bit; }))
     voice.fail("atom " + std::to_string(held) + " is in the group of keyword held as well, whose "
                "velocity is given, so that torques do nothing: take it out of one of them, or use "
@@ -60,11 +55,11 @@ void Torques::find(const Directions &directions, const Turned &turned)
   if (!on()) return;
   now.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   modify->clearstep_compute();
-  for (size_t d = 0; d < 3; d++) T[d].evaluate(lmp, igroup, now.data() + d, 3);
+  for (size_t d = 0; d < 3; d++) T[d].evaluate(lmp, whom.number, now.data() + d, 3);
   modify->addstep_compute(update->ntimestep + 1);
   for (int i = 0; i < atom->nlocal; i++) {
     double *row = &now[3 * (size_t) i];
-    if (!(atom->mask[i] & bit))
+    if (!(atom->mask[i] & whom.bit))
       std::fill_n(row, 3, 0.0);
     else if (of_body)
       turn(i, directions, turned(i));

@@ -9,11 +9,11 @@
 
 #include "directions.h"
 #include "field.h"
+#include "keyword_group.h"
 #include "keywords.h"
 #include "pointers.h"
 
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace StokesDyn {
@@ -26,7 +26,7 @@ class Torques : protected LAMMPS_NS::Pointers {
 
   /* GROUP Tx Ty Tz [body yes|no] */
   void read(Keywords &in);
-  bool on() const { return !group_name.empty(); }
+  bool on() const { return whom.on(); }
   /* Before a run. Errors: a group or variable that does not exist; spheres of it that do not turn, are
    * held, or are not of the fix. */
   void init(const Hydrodynamics &hydro, int groupbit, int held_bit);
@@ -40,8 +40,7 @@ class Torques : protected LAMMPS_NS::Pointers {
 
  private:
   const Voice voice;
-  std::string group_name;
-  int igroup = 0, bit = 0;
+  KeywordGroup whom;
   Field T[3];
   bool of_body = false;
   /* [3 nlocal] */
