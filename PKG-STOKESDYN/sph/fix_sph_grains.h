@@ -45,7 +45,7 @@ class FixSphGrains : public SphFix {
  private:
   // settings
   double viscosity = 0.0;
-  bool fills = true, own_flow = true, hindrance_given = false;
+  bool fills = true, own_flow = true;
   sd_sph_grain_law law = {};
   sd_sph_wake wake = {};
   void parse_hindrance(Keywords &in);
