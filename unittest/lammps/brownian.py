@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from host import allowed
-from system import Spheres, dump_lines, input_lines, lmp, read_dump
+from system import Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
 
 P6 = 6 * np.pi
 ETA, A, KT = 1.3, 0.7, 0.8
@@ -107,15 +107,19 @@ def check_ranks(folder, way, of_x=1e-10, of_v=1e-10):
     assert np.abs(other - one)[:, :3].max() > 0.1 and np.abs(still - one)[:, :3].max() > 0.1
 
 
+def in_pieces(folder, make, END=END):
+    """Ends of a run of 20 steps, of the same in two pieces, and of one that goes on from a restart file. make(lines): the input that ends
+    in these"""
+    whole, two = end(folder, make(END + ["run 20"])), end(folder, make(END + ["run 7", "run 13"]))
+    lmp(folder, make(["run 7", "write_restart half.restart"]))
+    return whole, two, end(folder, from_restart(make(END + ["run 13"])))
+
+
 def check_pieces(folder, way, of_x=1e-10, of_v=1e-10):
     """A run in two, and one that goes on from a restart file"""
-    whole = end(folder, script(folder, way, END + ["run 20"]))
-    check_same(end(folder, script(folder, way, END + ["run 7", "run 13"])), whole, of_x, of_v)
-    lmp(folder, script(folder, way, ["run 7", "write_restart half.restart"]))
-    again = script(folder, way, END + ["run 13"])
-    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
-    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
-    check_same(end(folder, again), whole, of_x, of_v)
+    whole, two, again = in_pieces(folder, lambda runs: script(folder, way, runs))
+    check_same(two, whole, of_x, of_v)
+    check_same(again, whole, of_x, of_v)
 
 
 def check_heights(simulation, side, model, options):

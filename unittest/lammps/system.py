@@ -252,6 +252,12 @@ def dump_lines(path, every=1, columns="x y z vx vy vz f_drag[1] f_drag[2] f_drag
     return [f"dump {name} all custom {every} {path} id {columns}", f"dump_modify {name} sort id format float %.17g"]
 
 
+def from_restart(lines, path="half.restart"):
+    """An input that reads its atoms from a restart file, in place of its read_data"""
+    cut = [k for k, line in enumerate(lines) if line.startswith("read_data")][0]
+    return [line for line in lines[:cut] if "boundary" not in line] + [f"read_restart {path}"] + lines[cut + 1:]
+
+
 def read_dump(path):
     """[(step, rows without the ID)] of a dump sorted by atom ID."""
     frames = []

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import model
-from brownian import A, ETA, KT, L_OF_FOUR, SHORT, TRIO, copies, check_covariance
-from system import LammpsError, dump_lines, lmp, read_dump
+from brownian import A, ETA, KT, L_OF_FOUR, SHORT, TRIO, copies, check_covariance, end, in_pieces
+from system import LammpsError, dump_lines
 from test_loading import lammps_source
 
 SPIN = 8 * np.pi * ETA * A**3
@@ -364,11 +364,6 @@ def script(folder, way, runs):
     return lines + ["fix field all efield 0 4 1", "fix push all propel/self dipole 2.0", *more, f"{MOVE} {options}"] + runs
 
 
-def end(folder, lines, ranks=1):
-    lmp(folder, lines, ranks)
-    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
-
-
 @pytest.mark.ranks(2)
 @pytest.mark.parametrize("way", WAYS)
 def test_ranks_agree(tmp_path, way):
@@ -382,13 +377,9 @@ def test_ranks_agree(tmp_path, way):
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_run_in_pieces_is_the_whole_run(tmp_path, way):
-    whole = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
-    assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 7", "run 13"])) - whole).max() < 1e-12
-    lmp(tmp_path, script(tmp_path, way, ["run 7", "write_restart half.restart"]))
-    again = script(tmp_path, way, END + ["run 13"])
-    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
-    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
-    assert np.abs(end(tmp_path, again) - whole).max() < 1e-12
+    whole, two, again = in_pieces(tmp_path, lambda runs: script(tmp_path, way, runs), END)
+    assert np.abs(two - whole).max() < 1e-12
+    assert np.abs(again - whole).max() < 1e-12
 
 
 # --- what is refused -------------------------------------------------------------------------------------------------------

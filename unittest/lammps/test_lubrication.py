@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from host import allowed
-from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
+from system import LammpsError, Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
 
 P6 = 6 * np.pi
 FIX = "fix move all stokes_dynamics/overdamped"
@@ -112,8 +112,7 @@ def test_periodic_run_in_pieces_is_the_run_in_one(tmp_path, words, ranks):
     lmp(tmp_path, lines + end + ["run 10"], ranks)
     whole = read_dump(tmp_path / "end.dump")[-1][1]
     lmp(tmp_path, lines + ["run 4", "write_restart half.restart"], ranks)
-    cut = [k for k, line in enumerate(lines) if line.startswith("read_data")][0]
-    again = [line for line in lines[:cut] if "boundary" not in line] + ["read_restart half.restart"] + lines[cut + 1:]
+    again = from_restart(lines)
     lmp(tmp_path, again + end + ["run 6"], ranks)
     d = read_dump(tmp_path / "end.dump")[-1][1] - whole
     d[:, :3] -= L * np.round(d[:, :3] / L)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from host import allowed
-from system import Spheres, dump_lines, input_lines, lmp, read_dump
+from system import Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
 from without_inertia import ALL, FIX, P6, THREE, contacts, mixed, weight
 
 WAYS = {"spheres": "cut_off_distance inf visc 1.1 rotation yes", "spheres by list": "cut_off_distance 9 taper wendland visc 1.1",
@@ -61,9 +61,7 @@ def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way, options, ranks):
     lmp(tmp_path, script(tmp_path, way, END + ["run 37", "run 63"], options=options), ranks)
     assert difference(last_frame(tmp_path), whole) < 1e-10
     lmp(tmp_path, script(tmp_path, way, ["run 37", "write_restart half.restart"], options=options), ranks)
-    again = script(tmp_path, way, END + ["run 63"], options=options)
-    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
-    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
+    again = from_restart(script(tmp_path, way, END + ["run 63"], options=options))
     lmp(tmp_path, again, ranks)
     assert difference(last_frame(tmp_path), whole) < 1e-10
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import model
-from system import Spheres, dump_lines, input_lines, lmp, read_dump
+from system import Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
 
 P6 = 6 * np.pi
 FIX = "fix move all stokes_dynamics/overdamped"
@@ -129,8 +129,7 @@ def test_a_sheared_run_in_pieces_on_any_ranks_is_the_run_in_one(tmp_path, ranks,
         (words, options), commands = sheared("box", 0.05, style=style.replace("1e-8", "1e-12"))
         lines = input_lines(cloud(), words, str(tmp_path / "data"), **options)
         if restart:
-            cut = [i for i, line in enumerate(lines) if line.startswith("read_data")][0]
-            lines = [line for line in lines[:cut] if "boundary" not in line] + ["read_restart half.restart"] + lines[cut + 1:]
+            lines = from_restart(lines)
         return lines + commands.splitlines() + dump_lines(tmp_path / "end", every=60, columns="xu yu zu f_move[1] f_move[2] f_move[3]") + runs
 
     def last():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import model
-from brownian import A, ETA, KT, copies
-from system import LammpsError, dump_lines, lmp, read_dump
+from brownian import A, ETA, KT, copies, end, in_pieces
+from system import LammpsError, dump_lines
 from test_directions import CENTRE, MOVE, POINTS, dipole_lines, dipoles, directions, some_quaternions, turned
 
 B1, B2, BETA = 1.3, -2.1, 0.6
@@ -184,11 +184,6 @@ def script(folder, way, runs, x=None, e=None):
     return lines + ["variable b atom 1+0.1*id+step/40", f"{MOVE} {options} squirm all v_b -2 0.5"] + runs
 
 
-def end(folder, lines, ranks=1):
-    lmp(folder, lines, ranks)
-    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
-
-
 @pytest.mark.ranks(2)
 @pytest.mark.parametrize("way", WAYS)
 def test_ranks_agree(tmp_path, way):
@@ -199,13 +194,9 @@ def test_ranks_agree(tmp_path, way):
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_run_in_pieces_is_the_whole_run(tmp_path, way):
-    whole = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
-    assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 7", "run 13"])) - whole).max() < 1e-10
-    lmp(tmp_path, script(tmp_path, way, ["run 7", "write_restart half.restart"]))
-    again = script(tmp_path, way, END + ["run 13"])
-    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
-    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
-    assert np.abs(end(tmp_path, again) - whole).max() < 1e-10
+    whole, two, again = in_pieces(tmp_path, lambda runs: script(tmp_path, way, runs), END)
+    assert np.abs(two - whole).max() < 1e-10
+    assert np.abs(again - whole).max() < 1e-10
 
 
 def test_a_scene_that_is_shifted_is_shifted(tmp_path):

@@ -1,13 +1,11 @@
 """fix stokes_dynamics/overdamped with torque, given torques in the axes of space or of the particle, and with pin, spheres and clumps that
 turn in their place: dense algebra, closed forms, what is found again by LAMMPS's own forces, one run made in several ways."""
-import os
-
 import numpy as np
 import pytest
 
 import model
-from brownian import A, ETA, KT, L_OF_FOUR, copies
-from system import LammpsError, Spheres, dump_lines, lmp, read_dump
+from brownian import A, ETA, KT, L_OF_FOUR, copies, end, in_pieces
+from system import LammpsError, Spheres, dump_lines
 from test_directions import (CENTRE, CLUMPS, MOVE, POINTS, QUATERNIONS, SHELLS, SPIN, dipole_lines, dipoles, directions, quaternions, rotation,
                              some_quaternions, turned)
 from test_spin import BOX, FREE, LOAD, PULL, X, twist
@@ -184,11 +182,6 @@ def script(folder, way, runs):
                     f"{MOVE} {options} pin some torque loaded 0 0 v_t body yes"] + runs
 
 
-def end(folder, lines, ranks=1):
-    lmp(folder, lines, ranks)
-    return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
-
-
 @pytest.mark.ranks(2)
 @pytest.mark.parametrize("way", WAYS)
 def test_ranks_agree(tmp_path, way):
@@ -198,10 +191,6 @@ def test_ranks_agree(tmp_path, way):
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_run_in_pieces_is_the_whole_run(tmp_path, way):
-    whole = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
-    assert np.abs(end(tmp_path, script(tmp_path, way, END + ["run 7", "run 13"])) - whole).max() < 1e-12
-    lmp(tmp_path, script(tmp_path, way, ["run 7", "write_restart half.restart"]))
-    again = script(tmp_path, way, END + ["run 13"])
-    cut = [i for i, line in enumerate(again) if line.startswith("read_data")][0]
-    again = [line for line in again[:cut] if "boundary" not in line] + ["read_restart half.restart"] + again[cut + 1:]
-    assert np.abs(end(tmp_path, again) - whole).max() < 1e-12
+    whole, two, again = in_pieces(tmp_path, lambda runs: script(tmp_path, way, runs), END)
+    assert np.abs(two - whole).max() < 1e-12
+    assert np.abs(again - whole).max() < 1e-12
