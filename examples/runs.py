@@ -107,6 +107,14 @@ def finished(name, command, cwd):
     return said
 
 
+def thermo(said, first):
+    """Rows [samples, columns] of the table of thermo output whose header begins with the words `first`, in what a LAMMPS printed. Older
+    LAMMPS put one space between the words, newer ones pad them to columns."""
+    header = re.search(r"^ *" + r" +".join(first.split()) + r"\b.*\n", said, re.M)
+    rows = said[header.end():said.index("\nLoop time", header.end())].splitlines()
+    return np.array([row.split() for row in rows if re.match(r" *\d", row)], float)
+
+
 def read_table(path):
     """Rows of a table with comments and one line of names, as dictionaries"""
     return list(csv.DictReader(line for line in path.read_text().splitlines() if not line.startswith("#")))

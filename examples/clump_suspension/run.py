@@ -16,7 +16,7 @@ sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 import film  # noqa: E402
 from matplotlib.collections import EllipseCollection  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, save, thermo, values  # noqa: E402
 
 RODS, LENGTH, BOX = 80, 5, np.array([28.0, 28.0, 70.0])
 SHOWN = (0, 10, 20, 30)
@@ -56,9 +56,8 @@ def lammps(out, tag, rods, ranks=1, **variables):
     command = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
     said = finished("clump_suspension", command + ["lmp", "-in", "in.clump_suspension", "-log", str(folder / "log"), "-nocite"] +
                     values(dict(variables, data=folder / "rods.data", out=folder)), HERE)
-    table = said[said.index("\nStep v_now"):said.index("\nLoop time")].strip().splitlines()[1:]
     frames = np.array([rows[:, 2:] for _, rows in dumped(folder / "rods")])
-    return frames.reshape(len(frames), -1, LENGTH, 6), np.array([[float(w) for w in line.split()] for line in table])
+    return frames.reshape(len(frames), -1, LENGTH, 6), thermo(said, "Step v_now")
 
 
 def along(frames):

@@ -7,14 +7,13 @@
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
 import pathlib
-import re
 import shutil
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, thermo, values  # noqa: E402
 import film  # noqa: E402
 
 SPHERES, RADIUS, TIME = 800, 24.0, 4.2
@@ -25,9 +24,7 @@ def fall(out, interactions, **variables):
     command = ["lmp", "-in", "in.falling_cloud", "-log", f"log.{interactions}", "-nocite"]
     said = finished("falling_cloud", command + values(dict(interactions=interactions, out=".", spheres=SPHERES, R=RADIUS, time=TIME,
                                                            **variables)), out)
-    table = said[said.index("Step Time v_speed"):]
-    rows = np.array([line.split() for line in re.findall(r"^ *\d+ .*$", table, re.M)], float)
-    return rows, [frame[:, 1:] for _, frame in dumped(out / f"film.{interactions}")]
+    return thermo(said, "Step Time v_speed"), [frame[:, 1:] for _, frame in dumped(out / f"film.{interactions}")]
 
 
 def frame(positions, upper, time):
