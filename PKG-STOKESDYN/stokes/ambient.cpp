@@ -151,10 +151,16 @@ void Ambient::read_box(bool with_gradients)
  * formula in x, y, z, or a number stored per atom, stays as it is; so does component `but`. */
 std::vector<double> Ambient::velocity_at(const double by[3], bool in_radii, int but)
 {
+  return velocity_at([&](int i, double *x) {
+    for (int d = 0; d < 3; d++) x[d] += by[d] * (in_radii ? atom->radius[i] : 1.0);
+  }, but);
+}
+
+std::vector<double> Ambient::velocity_at(const std::function<void(int, double *)> &move, int but)
+{
   std::vector<double> values = u;
   const Places kept(atom);
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) atom->x[i][d] += by[d] * (in_radii ? atom->radius[i] : 1.0);
+  for (int i = 0; i < atom->nlocal; i++) move(i, atom->x[i]);
   for (int d = 0; d < 3; d++)
     if (settings.velocity[d].is_atom_style() && d != but)
       settings.velocity[d].evaluate(lmp, igroup, values.data() + d, 3);
@@ -209,6 +215,54 @@ double Ambient::misfit()
   modify->addstep_compute(update->ntimestep + 1);
   MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
   return most[0] > 0.0 ? most[0] / std::max(most[0], most[1]) : 0.0;
+}
+
+/* Which components are stored for atoms: they are of atom style, are the same at another place, and are not
+ * one number for all of several spheres, as a constant formula would be. */
+void Ambient::find_stored(const std::vector<double> &elsewhere, bool stored[3]) const
+{
+  double seen[9];    // of each component: is it another one there, largest value, largest -value
+  std::fill_n(seen, 9, -INFINITY);
+  for (size_t i : those)
+    for (size_t d = 0; d < 3; d++) {
+      const double here = u[3 * i + d];
+      seen[d] = std::max(seen[d], here != elsewhere[3 * i + d] ? 1.0 : 0.0);
+      seen[3 + d] = std::max(seen[3 + d], here);
+      seen[6 + d] = std::max(seen[6 + d], -here);
+    }
+  double spheres = (double) those.size();
+  MPI_Allreduce(MPI_IN_PLACE, seen, 9, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(MPI_IN_PLACE, &spheres, 1, MPI_DOUBLE, MPI_SUM, world);
+  for (int d = 0; d < 3; d++)
+    stored[d] = settings.velocity[d].is_atom_style() && seen[d] <= 0.0 &&
+        (spheres < 2.0 || seen[3 + d] > -seen[6 + d]);
+}
+
+void Ambient::look_at_plane(int axis, double at, double of_largest[2])
+{
+  double most[3] = {0.0, 0.0, 0.0};    // along it, across it, and at the spheres
+  std::fill_n(of_largest, 2, 0.0);
+  if (settings.box) return;
+  if (u.empty()) {    // of numbers everybody knows without looking
+    for (int d = 0; d < 3; d++)
+      if (settings.velocity[d].is_variable())
+        most[d == axis] = std::max(most[d == axis], std::fabs(u_uniform[d]));
+  } else {
+    bool stored[3];
+    modify->clearstep_compute();
+    const std::vector<double> there = velocity_at([&](int, double *x) { x[axis] = at; }, -1);
+    modify->addstep_compute(update->ntimestep + 1);
+    find_stored(there, stored);
+    for (size_t i : those)
+      for (int d = 0; d < 3; d++) {
+        if (stored[d] || !std::isfinite(there[3 * i + d])) continue;    // or beyond a grid
+        most[d == axis] = std::max(most[d == axis], std::fabs(there[3 * i + d]));
+        most[2] = std::max(most[2], std::fabs(u[3 * i + d]));
+      }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, world);
+  for (int k = 0; k < 2; k++)
+    if (most[k] > 0.0) of_largest[k] = most[k] / std::max(most[k], most[2]);
 }
 
 /* The mean over all spheres, since in a flow that goes with the box it is the same for each; the

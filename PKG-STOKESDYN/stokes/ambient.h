@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
    * box away, less what the box itself does, relative to the largest velocity: 0 fits a periodic
    * box. On all ranks together. */
   double misfit();
+
+  /* The largest fluid velocity of this step along and across a plane x[axis] = at, at the feet of the
+   * spheres on it, over the largest there and at the spheres: 0 where the fluid rests on it, for variables
+   * and grids. Of values stored for atoms nothing is known there, and they count as 0. On all ranks
+   * together. */
+  void look_at_plane(int axis, double at, double of_largest[2]);
 
   /* By how much the fluid velocity grows from an atom to its images, in a box that fix deform
    * deforms: that of the image one edge away, for each edge, in the order of Lattice::h. So the
@@ -196,6 +203,8 @@ class Ambient : protected LAMMPS_NS::Pointers {
   std::vector<double> values() const;
   void check() const;
   std::vector<double> velocity_at(const double by[3], bool in_radii, int but = -1);
+  std::vector<double> velocity_at(const std::function<void(int, double *)> &move, int but);
+  void find_stored(const std::vector<double> &elsewhere, bool stored[3]) const;
   void growth_along(const double edge[3], const double expected[3], double sums[3], double most[2]);
   void find_jumps();
   void read_box(bool gradients);

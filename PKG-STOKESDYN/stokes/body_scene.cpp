@@ -113,7 +113,7 @@ void BodyScene::add_free(int k)
     const sd_multiblob_shape &shape = scene.shells->free_sphere();
     add_points(shape, {k});
     shaped.push_back({&shape.points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, scene.local().a[k], eta, nullptr});
-  } else if (scene.settings.wall.sign && scene.settings.rotation) {
+  } else if (scene.settings.boundary.walled() && scene.settings.rotation) {
     member.push_back(k);
     shaped.push_back({nullptr, {}, 1.0, eta, nullptr});
   } else
@@ -219,7 +219,6 @@ std::vector<int> BodyScene::spheres_of(const sd_body &body) const
 
 sd_status BodyScene::stand_at_wall(sd_body &body, double count)
 {
-  const sd_wall &wall = scene.settings.wall;
   const sd_spheres spheres = scene.local();
   const std::vector<int> rows = spheres_of(body);
   std::vector<double> x, a, turn;
@@ -234,6 +233,7 @@ sd_status BodyScene::stand_at_wall(sd_body &body, double count)
     turn.insert(turn.end(), scene.shells->turns() + 9 * k, scene.shells->turns() + 9 * k + 9);
     mask.push_back(scene.shells->masks()[k]);
   }
+  const sd_wall &wall = scene.settings.boundary.nearest(centre);
   const double height = sd_wall_height(&wall, centre);
   if (body.shape && !sd_body_wall_pays(body.shape->m, (int) count, height, extent)) return SD_OK;
   standing.emplace_back();
@@ -253,7 +253,7 @@ sd_status BodyScene::stand_at_wall(sd_body &body, double count)
 void BodyScene::stand_at_wall()
 {
   standing.clear();
-  if (!scene.settings.wall.sign || !scene.settings.rotation) return;
+  if (!scene.settings.boundary.walled() || !scene.settings.rotation) return;
   const double count = sum_of_all(world, (double) shaped.size());
   for (sd_body &body : shaped) {
     const sd_status status = stand_at_wall(body, count);
@@ -268,7 +268,7 @@ void BodyScene::stand_at_wall()
 void BodyScene::carry()
 {
   const auto &clumps = poses.clumps();
-  if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.wall.sign) return;
+  if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.boundary.walled()) return;
   std::vector<double> gradient(9 * clumps.size()), work(sd_bodies_work(&bodies));
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) {

@@ -1,5 +1,6 @@
 #include "boundary.h"
 
+#include "ambient.h"
 #include "fixes.h"
 #include "keywords.h"
 #include "ranks.h"
@@ -7,6 +8,8 @@
 #include "settings.h"
 
 #include "domain.h"
+
+#include "sd_constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,6 +89,28 @@ std::string Boundary::where() const
   static const char *const NAMES[] = {"in open fluid", "in the periodic box", "at a wall",
                                       "above a floor", "in a slit",           "in an open layer"};
   return NAMES[kind];
+}
+
+std::string Boundary::wall_names() const
+{
+  return wall_name(wall[0]) + (walls == 2 ? ", or " + wall_name(wall[1]) : "");
+}
+
+const sd_wall &Boundary::nearest(const double x[3]) const
+{
+  const bool other = walls == 2 && sd_wall_height(&wall[1], x) < sd_wall_height(&wall[0], x);
+  return wall[other];
+}
+
+std::vector<std::string> Boundary::edges() const
+{
+  std::vector<std::string> all;
+  for (int w = 0; w < walls; w++) {
+    char position[40];
+    snprintf(position, sizeof(position), "%.17g", wall[w].at);
+    if (at_edge[w]) all.push_back(position);
+  }
+  return all;
 }
 
 // --- before a run --------------------------------------------------------------------------------
@@ -243,8 +268,28 @@ void find_boundary(const Voice &voice, StokesSettings &settings)
   if (boundary.slab()) check_slab(voice, settings);
   if (boundary.kind == Boundary::PERIODIC) check_sums(voice, settings);
   find_edges(voice, boundary);
-  scene.wall = boundary.wall[0];
   for (int w = 0; w < boundary.walls; w++) check_stream(voice, boundary.wall[w], settings.ambient);
+}
+
+/* Less is what interpolation on a grid leaves of nothing. */
+static const double RESTS = 1e-3;
+
+void check_stream_at_walls(const Voice &voice, const Boundary &boundary, Ambient &ambient, bool films)
+{
+  for (int w = 0; w < boundary.walls; w++) {
+    const sd_wall &wall = boundary.wall[w];
+    double part[2];
+    ambient.look_at_plane(wall.axis, wall.at, part);
+    if (part[1] > RESTS)
+      voice.at_step().fail("keyword fluid_velocity: nothing flows through the wall " + wall_name(wall) +
+                           ", and its component " + AXES[wall.axis] + " there is " + text(part[1]) +
+                           " of the largest velocity: give one that is 0 at the wall");
+    if (films && part[0] > RESTS)
+      voice.at_step().fail("keyword fluid_velocity: the fluid moves along the wall " + wall_name(wall) +
+                           ", where its velocity is " + text(part[0]) +
+                           " of the largest, and the films of keyword lubrication are those of walls "
+                           "at rest: give a velocity that is 0 at the wall, or lubrication no");
+  }
 }
 
 /* A force along a layer shears the fluid beyond it without end. */
@@ -334,6 +379,22 @@ double spheres_cut_by_wall(const Voice &voice, const Scene &scene)
   for (int w = 0; w < boundary.walls; w++)
     cut += cut_by(voice, scene, boundary.wall[w], boundary.at_edge[w]);
   return sum_of_all(voice.lmp->world, cut);
+}
+
+double least_lone_mobility(const Scene &scene)
+{
+  const Boundary &boundary = scene.settings.boundary;
+  const sd_spheres spheres = scene.local();
+  double least = 1.0;
+  if (!boundary.walled()) return least;
+  for (int k = 0; k < scene.size(); k++) {
+    const double a = spheres.a[k], *x = spheres.x + 3 * (size_t) k;
+    const sd_wall &wall = boundary.nearest(x);
+    double image[9];
+    sd_wall_block(&wall, 3, x, a, x, a, 1.0, image);
+    least = std::min(least, 1.0 + 6.0 * SD_PI * a * image[4 * wall.axis]);
+  }
+  return least;
 }
 
 void refuse_net_force(const Voice &voice, const Scene &scene, const std::vector<double> &F,

@@ -48,9 +48,18 @@ struct Boundary {
   void read_flow(Keywords &in);
 
   bool slab() const { return kind == FLOOR || kind == SLIT || kind == LAYER; }
+  /* Everybody has an image, and so sees himself */
+  bool walled() const { return walls > 0; }
+  /* That wall whose images pairs have in a law with one at most, and that which matters most to a
+   * body at x when it moves alone. sign 0: there is none */
+  const sd_wall &image() const { return wall[0]; }
+  const sd_wall &nearest(const double x[3]) const;
   sd_slab_walls slab_walls() const;
-  /* "above a floor", as a user would say it */
+  /* "above a floor", as a user would say it; "zlo at 0, or zhi at 5" */
   std::string where() const;
+  std::string wall_names() const;
+  /* Where those at sides of the box stand now, to tell one state from another */
+  std::vector<std::string> edges() const;
 };
 
 /* "zlo at 0.5" */
@@ -61,6 +70,9 @@ std::string wall_name(const sd_wall &wall);
  * leans, settings that do not go with it; a stream that does not rest where a wall is (a number
  * across it; along it a warning). */
 void find_boundary(const Voice &voice, StokesSettings &settings);
+/* In a step, once a run: formulas and grids must not flow through a wall, nor move on it what films
+ * take to be at rest. */
+void check_stream_at_walls(const Voice &voice, const Boundary &boundary, Ambient &ambient, bool films);
 /* When that stands: in a layer velocities follow from forces, of free spheres of one point each */
 void check_layer(const Voice &voice, const StokesSettings &settings, bool overdamped);
 /* and none is held, nor moves by noise. */
@@ -69,6 +81,10 @@ void refuse_in_layer(const Voice &voice, const Boundary &boundary, const std::st
 
 /* A slab's box stays as it is when the run begins. */
 void refuse_moving_box(const Voice &voice, const Boundary &boundary);
+
+/* The mobility across the walls of the lone sphere that they slow down most, over that in open
+ * fluid, of this rank's; 1: there is no wall. */
+double least_lone_mobility(const Scene &scene);
 
 /* Where the rows of the scene stand. Errors: the side of the box has left the wall; a centre
  * that is not in front of it. Returns how many spheres cut a wall, on all ranks. */

@@ -54,7 +54,7 @@ int FixStokesDynamicsField::setmask()
 
 void FixStokesDynamicsField::init()
 {
-  if (hydrodynamics().settings.scene.wall.sign)
+  if (hydrodynamics().settings.scene.boundary.walled())
     voice.fail("the pair style has keyword wall, whose images are not in the flow that this fix "
                "knows; use it without a wall");
   const int directions = domain->xperiodic + domain->yperiodic + domain->zperiodic;

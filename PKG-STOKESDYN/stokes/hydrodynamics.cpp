@@ -205,13 +205,11 @@ void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, cons
 
 void Hydrodynamics::look_at_wall()
 {
-  if (settings.scene.boundary.walls == 0) return;
+  if (!settings.scene.boundary.walled()) return;
   const double cut = spheres_cut_by_wall(voice, scene);
   if (cut == 0.0 || !warned_cut.first_in(epochs.run)) return;
-  const Boundary &boundary = scene.settings.boundary;
-  std::string walls = wall_name(boundary.wall[0]);
-  if (boundary.walls == 2) walls += ", or " + wall_name(boundary.wall[1]);
-  voice.warn("keyword wall: " + text(cut) + " spheres cut the wall " + walls +
+  voice.warn("keyword wall: " + text(cut) + " spheres cut the wall " +
+             scene.settings.boundary.wall_names() +
              ": they move as if they touched it");
 }
 
@@ -226,6 +224,7 @@ void Hydrodynamics::place()
   memory->global.open_box = scene.open_box();
   const bool first = looked.first_in(epochs.run);
   if (scene.view() == SD_VIEW_NEAR && first) warn_of_misfit(voice, ambient.misfit());
+  if (first) check_stream_at_walls(voice, how.boundary, ambient, settings.lubrication.on);
   if (settings.lubrication.on && !shells.settings.on() && first) {
     double spheres = scene.size();
     Scene::sum(&scene, &spheres, 1);
@@ -257,7 +256,7 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
     const sd_status status = solver.substitution(how, report);
     fail_if_alone(where(StokesSettings::SUBSTITUTION), status);
     if (status != SD_EDIVERGED || settings.strict) {
-      if (settings.scene.wall.sign) look_at_step(report, false);
+      if (settings.scene.boundary.walled()) look_at_step(report, false);
       return status;
     }
     memory->global.diverged = 1;

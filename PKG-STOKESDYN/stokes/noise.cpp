@@ -222,7 +222,7 @@ std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) c
   if (s.shells.on()) return "keyword multiblob" + PAIR;
   if (s.lubrication.on) return "keyword lubrication" + PAIR;
   if (s.rigid.on) return "keyword rigid_clumps" + PAIR + " with clumps that feel each other";
-  if (s.scene.wall.sign) return "keyword wall" + PAIR;
+  if (s.scene.boundary.walled()) return "keyword wall" + PAIR;
   if (varies(fluid)) return "keyword visc" + PAIR + ", which varies in space";
   return holds;
 }

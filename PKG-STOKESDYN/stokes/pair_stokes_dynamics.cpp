@@ -242,13 +242,7 @@ void PairStokesDynamics::look_at_neighbours()
 std::vector<std::string> PairStokesDynamics::words_of_now() const
 {
   std::vector<std::string> now = args;
-  const Boundary &boundary = hydro.scene.settings.boundary;
-  for (int w = 0; w < boundary.walls; w++) {
-    if (!boundary.at_edge[w]) continue;
-    char position[40];
-    snprintf(position, sizeof(position), "%.17g", boundary.wall[w].at);
-    now.push_back(position);
-  }
+  for (const std::string &at : hydro.scene.settings.boundary.edges()) now.push_back(at);
   return now;
 }
 

@@ -122,7 +122,7 @@ void Preconditioner::group_by_molecule()
     member.insert(member.end(), clump.second.begin(), clump.second.end());
     first.push_back(member.size());
   }
-  if (scene.settings.wall.sign) add_lone();
+  if (scene.settings.boundary.walled()) add_lone();
 }
 
 /* A sphere near a wall is a clump with its image. */

@@ -132,7 +132,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     engine = engine_of_all();
     if (view() == SD_VIEW_NEAR) {
       const double count = ewald.count + second_level.count;
-      somebody_sees = count > (ewald.box.periodic || settings.wall.sign ? 0.0 : 1.0);
+      somebody_sees = count > (ewald.box.periodic || settings.boundary.walled() ? 0.0 : 1.0);
       if (somebody_sees || settings.films > 0.0)
         surround(std::max(ewald.reach + 2.0 * extent() * most, settings.films * most),
                  "far_field: the largest radius, " + text(most));
@@ -141,7 +141,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
       place(size_with_copies());
     } else {
       gather();
-      somebody_sees = n_all * points() > (settings.wall.sign ? 0 : 1);
+      somebody_sees = n_all * points() > (settings.boundary.walled() ? 0 : 1);
       if (settings.films > 0.0) surround_films();
       place(n_all);
     }
@@ -191,7 +191,7 @@ void Scene::find_pairs()
   } else
     status = sd_neighbors_cutoff(&candidates, x.data(), n, n_all, reach);
   if (status != SD_OK) out_of_memory();
-  const int sees = candidates.first[n] > 0 || (settings.wall.sign && n > 0);
+  const int sees = candidates.first[n] > 0 || (settings.boundary.walled() && n > 0);
   somebody_sees = largest_of_all(world, sees);
   pairs_found.take(epochs.rows);
 }

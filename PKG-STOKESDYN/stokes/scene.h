@@ -59,9 +59,7 @@ class Scene : protected LAMMPS_NS::Pointers {
     bool whole = false;
     /* films reach so far, in largest radii, centre to centre; 0: there are none */
     double films = 0.0;
-    /* walls and periods; its first wall, sign 0: none */
-    Boundary boundary;
-    sd_wall wall = {};
+    Boundary boundary;    // walls and periods
     /* how everybody sees everybody: all pairs, Ewald sums, or what costs less */
     enum { AUTO, DIRECT, EWALD };
     int far_field = AUTO;
@@ -155,7 +153,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool anybody_sees() const { return somebody_sees; }
   bool alone(int k) const
   {
-    if (settings.wall.sign) return false;
+    if (settings.boundary.walled()) return false;
     return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
   /* LAMMPS's, which is periodic in all directions or in none */
@@ -171,7 +169,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void set_open_box(const std::vector<double> &box);
   sd_law law() const
   {
-    return {settings.tensor, settings.taper, settings.cutoff, settings.wall};
+    return {settings.tensor, settings.taper, settings.cutoff, settings.boundary.image()};
   }
 
   /* View ALL: the spheres of all ranks that take part, in order of tag, the same on every rank. */

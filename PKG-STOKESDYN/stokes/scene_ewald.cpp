@@ -75,7 +75,8 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
       hi[d] = most[4 + d];
     }
     if (box.periodic) box = {};
-    sd_ewald_box_around(&box, settings.wall.sign ? settings.wall.axis : -1, lo, hi, most[0]);
+    const sd_wall &wall = settings.boundary.image();
+    sd_ewald_box_around(&box, wall.sign ? wall.axis : -1, lo, hi, most[0]);
   }
   return all;
 }
@@ -96,7 +97,7 @@ bool Scene::split()
   ewald.count = sizes.all.count;
   second_level = {};
   if (sizes.all.count == 0.0) return must;
-  const sd_wall &wall = settings.wall;
+  const sd_wall &wall = settings.boundary.image();
   const double all_pairs =
       sizes.all.count * sizes.all.count * (wall.sign ? SD_PAIR_AT_WALL : 1.0);
   const double tolerance = settings.far_field_tolerance;

@@ -16,7 +16,6 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
       .elsewhere("apply", "fix stokes_dynamics");
   Boundary::refuse_second(in, words);
   parse(in);
-  scene.wall = scene.boundary.wall[0];
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   rigid.clumps_only = scene.clumps_only;
   check(in);
@@ -30,7 +29,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
     scene.far_field_tolerance = std::max(1e-13, 0.1 * tolerance);
   // What Ewald sums have not got.
   if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE ||
-      (scene.wall.sign && scene.rotation && !shells.on()))
+      (scene.boundary.walled() && scene.rotation && !shells.on()))
     scene.far_field = Scene::Settings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1 || shells.on()) scene.rotation = true;
@@ -165,7 +164,7 @@ void StokesSettings::check_wall(const Keywords &in) const
   in.require(!in.given("flow") || scene.boundary.walls == 2,
              "keyword flow requires two walls (wall zlo ... zhi ...): it says what drives the fluid "
              "between them");
-  if (!scene.wall.sign) return;
+  if (!scene.boundary.walled()) return;
   in.require(scene.tensor != SD_TENSOR_OSEEN,
              "keyword wall is not available with tensor oseen: use tensor rpy");
   in.require(scene.far_field != Scene::Settings::EWALD || !scene.rotation || shells.on(),

@@ -127,24 +127,6 @@ void TimeStepGuard::compare(double of_velocity)
              text(state.lambda_min) + ")");
 }
 
-/* p.Mp / p.D^-1 p of the lone sphere that a wall takes most from, p across the wall; 1: no wall */
-double TimeStepGuard::lone_at_wall(const Scene &scene) const
-{
-  const Boundary &boundary = scene.settings.boundary;
-  const sd_spheres spheres = scene.local();
-  double least = 1.0;
-  if (boundary.walls == 0) return least;
-  for (int k = 0; k < boundary.walls * scene.size(); k++) {
-    const sd_wall &wall = boundary.wall[k / scene.size()];
-    const size_t i = k % scene.size();
-    const double a = spheres.a[i], *x = spheres.x + 3 * i;
-    double image[9];
-    sd_wall_block(&wall, 3, x, a, x, a, 1.0, image);
-    least = std::min(least, 1.0 + 6.0 * SD_PI * a * image[4 * wall.axis]);
-  }
-  return smallest_of_all(world, least);
-}
-
 /* Two bounds of mu from above cost nothing: the shortest time of a sphere alone, and that by the
  * Rayleigh quotients lambda = p.Mp / p.D^-1 p of conjugate gradients (Ritz values are such too,
  * but only without preconditioner), p.Mp / p.W^-1 p being at most lambda times the longest time.
@@ -158,7 +140,8 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
   double lambda = report.curvature;
   if (!preconditioned && report.ritz_smallest > 0.0)
     lambda = std::min(lambda, report.ritz_smallest);
-  if (scene.settings.wall.sign) lambda = std::min(lambda > 0.0 ? lambda : 1.0, lone_at_wall(scene));
+  if (scene.settings.boundary.walled())
+    lambda = std::min(lambda > 0.0 ? lambda : 1.0, smallest_of_all(world, least_lone_mobility(scene)));
   if (!(lambda > 0.0)) return;
   if (solves < state.due && state.limit > 0.0 && lambda >= state.lambda_min) return;
   settle(system, scene, lambda, solves, [&] { return compute(system, scene); });

@@ -77,7 +77,6 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   std::vector<char> held_atoms() const;
   /* by rows, three each: force over acceleration of velocity and of spin, is it held? */
   std::vector<double> inertia(Scene &scene) const;
-  double lone_at_wall(const Scene &scene) const;
   double compute(const sd_system &system, Scene &scene);
   double compute_of_shells(const sd_system &system, const Resist &resist, Scene &scene);
   void settle(const sd_system &system, Scene &scene, double lambda, double solves,
