@@ -63,7 +63,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   nevery = adapt.every ? adapt.every : 1;
   restart_global = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 12;
+  size_vector = 15;
   extscalar = 1;
   extvector = 0;
   global_freq = 1;

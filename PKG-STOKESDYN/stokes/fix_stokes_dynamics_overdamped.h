@@ -102,6 +102,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   sd_growth growth = {};    // of error_figure() of all
   bool warned_growth = false, announced = false;
 
+  double pressure_gradient(int d) const;
   bool restored() const override { return last.step >= 0; }
   std::vector<SavedNumbers> saved() override;
   void read_state(const NamedState &) override { from_file = true; }

@@ -43,8 +43,19 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
                                             [&] { return update->dt; },
                                             [&] { return (double) noise.report().products; },
                                             [&] { return noise.report().error; },
-                                            [&] { return spin.slip(); }};
+                                            [&] { return spin.slip(); },
+                                            [&] { return pressure_gradient(0); },
+                                            [&] { return pressure_gradient(1); },
+                                            [&] { return pressure_gradient(2); }};
   return values[k]();
+}
+
+double FixStokesDynamicsOverdamped::pressure_gradient(int d) const
+{
+  Hydrodynamics &hydro = hydrodynamics();
+  double gradient[3] = {0.0};
+  if (hydro.computed_in((double) update->ntimestep)) hydro.pressure_gradient(gradient);
+  return gradient[d];
 }
 
 /* By the velocity of the fluid and that beyond it: nobody else writes to those. */

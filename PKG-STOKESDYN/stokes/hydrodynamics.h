@@ -82,8 +82,12 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   /* In a step that was computed, until its end: what makes the flow, of this rank. [10 n]: place,
    * radius, and force and torque on the fluid, over its viscosity, of each sphere or point of its
-   * shell. On all ranks together. */
-  std::vector<double> on_fluid();
+   * shell. viscosity: becomes that of each, [n]. On all ranks together. */
+  std::vector<double> on_fluid(std::vector<double> *viscosity = nullptr);
+
+  /* In a slit with flow flux: the mean pressure gradient [3] that keeps the flux at 0, in the same
+   * steps; else 0. On all ranks together. */
+  void pressure_gradient(double *gradient);
 
   bool rotation() const { return settings.scene.rotation; }
   /* Of the last step that was computed, by owned atom; zeros for those that take no part. */
@@ -158,7 +162,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   };
   Points points_of_now();
   void add_constraints(double *S) const;
-  std::vector<double> of_points_on_fluid();
+  std::vector<double> of_points_on_fluid(std::vector<double> *viscosity);
   int algorithm() const    // of the next solve
   {
     return memory->global.diverged != 0.0 ? StokesSettings::GRADIENTS : settings.algorithm;

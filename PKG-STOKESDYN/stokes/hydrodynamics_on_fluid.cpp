@@ -6,6 +6,7 @@
 #include "sd_linear.h"
 
 #include "atom.h"
+#include "domain.h"
 
 #include <algorithm>
 
@@ -68,7 +69,7 @@ Hydrodynamics::Points Hydrodynamics::points_of_now()
   return now;
 }
 
-std::vector<double> Hydrodynamics::of_points_on_fluid()
+std::vector<double> Hydrodynamics::of_points_on_fluid(std::vector<double> *viscosity)
 {
   const Points now = points_of_now();
   const size_t P = shells.points();
@@ -80,15 +81,16 @@ std::vector<double> Hydrodynamics::of_points_on_fluid()
     all.push_back(now.b[k]);
     for (int d = 0; d < 6; d++)
       all.push_back(d < 3 ? w[k / P] * w[k / P] * now.l[3 * k + d] : 0.0);
+    if (viscosity) viscosity->push_back(1.0 / (w[k / P] * w[k / P]));
   }
   return all;
 }
 
 /* F is what the mobility knows: without films, which act between two spheres and not on the fluid
  * far from them. */
-std::vector<double> Hydrodynamics::on_fluid()
+std::vector<double> Hydrodynamics::on_fluid(std::vector<double> *viscosity)
 {
-  if (shells.settings.on()) return of_points_on_fluid();
+  if (shells.settings.on()) return of_points_on_fluid(viscosity);
   const bool without_films = settings.lubrication.on && !overdamped;
   const int m = width();
   std::vector<double> all;
@@ -97,6 +99,7 @@ std::vector<double> Hydrodynamics::on_fluid()
     all.insert(all.end(), atom->x[i], atom->x[i] + 3);
     all.push_back(point ? 0.0 : atom->radius[i]);
     for (int d = 0; d < 6; d++) all.push_back(d < m ? -F[d] / ambient.viscosity(i) : 0.0);
+    if (viscosity) viscosity->push_back(ambient.viscosity(i));
   };
   if (overdamped && settings.rigid.apart()) {    // these are not kept
     poses.find();
@@ -113,6 +116,24 @@ std::vector<double> Hydrodynamics::on_fluid()
     add(i, F);
   }
   return all;
+}
+
+void Hydrodynamics::pressure_gradient(double *gradient)
+{
+  std::fill_n(gradient, 3, 0.0);
+  if (!settings.scene.boundary.no_flux) return;
+  std::vector<double> eta, x, a, F;
+  const std::vector<double> rows = on_fluid(&eta);
+  const size_t n = eta.size();
+  for (size_t k = 0; k < n; k++) {
+    const double *row = &rows[10 * k];
+    x.insert(x.end(), row, row + 3);
+    a.push_back(row[3]);
+    for (int d = 0; d < 3; d++) F.push_back(eta[k] * row[4 + d]);
+  }
+  const sd_slab_walls walls = settings.scene.boundary.slab_walls();
+  sd_slab_add_pressure_gradient(&walls, domain->prd, (long) n, x.data(), a.data(), F.data(), gradient);
+  MPI_Allreduce(MPI_IN_PLACE, gradient, 3, MPI_DOUBLE, MPI_SUM, world);
 }
 
 }    // namespace StokesDyn

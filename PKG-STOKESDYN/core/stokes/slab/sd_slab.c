@@ -104,9 +104,17 @@ int sd_slab_same_tables(const sd_slab *made, const sd_slab *wanted)
   return !memcmp(made, wanted, sizeof(*made));
 }
 
-double sd_slab_pressure_gradient(const sd_slab *slab, double sum)
+void sd_slab_add_pressure_gradient(const sd_slab_walls *walls, const double edge[3], long n,
+                                   const double *x, const double *a, const double *F,
+                                   double gradient[3])
 {
-  const double *edge = slab->ewald.box.edge, H = slab->walls.height;
-  const int axis = slab->walls.wall->axis;
-  return 6.0 * sum / (edge[(axis + 1) % 3] * edge[(axis + 2) % 3] * H * H * H);
+  const int along[2] = {(walls->wall->axis + 1) % 3, (walls->wall->axis + 2) % 3};
+  const double H = walls->height, unit = 6.0 / (edge[along[0]] * edge[along[1]] * H * H * H);
+  if (!walls->no_flux) return;
+  for (long i = 0; i < n; i++) {
+    double at[3];
+    sd_slab_keep_off(walls, x + 3 * i, a[i], at);
+    const double z = sd_slab_height(walls, at), shape = z * (H - z) - a[i] * a[i] / 3.0;
+    for (int d = 0; d < 2; d++) gradient[along[d]] += unit * shape * F[3 * i + along[d]];
+  }
 }

@@ -93,9 +93,16 @@ sd_status sd_slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box, do
 /* Do tables made for one serve the other? */
 int sd_slab_same_tables(const sd_slab *made, const sd_slab *wanted);
 
-/* The mean pressure gradient that keeps the flux at 0, from the sum over all spheres of
- * (z (H - z) - 2 a^2/6) F along the walls: pressure/length */
-double sd_slab_pressure_gradient(const sd_slab *slab, double sum);
+/* Between walls without net flux the mean pressure gradient that keeps it at 0, of the forces of n
+ * spheres on the fluid:
+ *   gradient += 6/(S H^3) sum over spheres of (z (H - z) - 2 a^2/6) F,   along the walls; else += 0
+ *   edge [3]      of the box, along the walls         length
+ *   x, F [3n]     centres, forces                     length, force
+ *   a [n]         radii; one that cuts a wall counts where it touches it
+ *   gradient [3]  pressure/length */
+void sd_slab_add_pressure_gradient(const sd_slab_walls *walls, const double edge[3], long n,
+                                   const double *x, const double *a, const double *F,
+                                   double gradient[3]);
 
 SD_END_C
 #endif
