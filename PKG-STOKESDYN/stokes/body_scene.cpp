@@ -34,8 +34,10 @@ void BodyScene::place(int numbers)
   width = numbers;
   const size_t m = width;
   const std::vector<double> rows = scene.rows(3 * width, [&](int i, double *out) {
+    double load[6];
+    given.load(i, load);
     for (size_t d = 0; d < m; d++) {
-      out[d] = given.load(i, d);
+      out[d] = load[d];
       out[2 * m + d] = ambient.resistance(i, d);
     }
     if (given.velocities)

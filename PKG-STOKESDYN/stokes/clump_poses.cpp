@@ -1,5 +1,6 @@
 #include "clump_poses.h"
 
+#include "copy.h"
 #include "keywords.h"
 
 #include "sd_linear.h"
@@ -24,7 +25,7 @@ void ClumpPoses::gather()
 {
   enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
-  const bool moving = given.velocities, turns = !moving || scene.settings.rotation;
+  const bool moving = given.velocities, turns = scene.settings.rotation;
   const size_t n = rigid.members().size(), flows = gradients ? 3 * n : 0;
   for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n + 1);
   for (auto *vectors : {&spheres.x, &spheres.motion, &spheres.turning}) vectors->resize(3 * n + 3);
@@ -33,28 +34,34 @@ void ClumpPoses::gather()
   const auto row = [&](int i, double *out) {
     out[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     out[RADIUS] = atom->radius[i];
-    for (size_t d = 0; d < 3; d++) {
-      out[MOTION + d] = moving ? atom->v[i][d] : given.load(i, d);
-      if (turns) out[TURNING + d] = moving ? atom->omega[i][d] : given.load(i, 3 + d);
+    if (!moving)
+      given.load(i, out + MOTION);
+    else {
+      copy<3>(atom->v[i], out + MOTION);
+      if (turns) copy<3>(atom->omega[i], out + TURNING);
     }
     if (!gradients) return;
-    std::copy_n(ambient.velocity(i), 3, out + FLOW);
-    std::copy_n(gradients + 9 * (size_t) i, 9, out + GRADIENT);
+    copy<3>(ambient.velocity(i), out + FLOW);
+    copy<9>(gradients + 9 * (size_t) i, out + GRADIENT);
   };
-  scene.whole.gather(gradients ? GRADIENT + 9 : FLOW, row, [&](size_t m, const double *of) {
+  const auto take = [&](size_t m, const double *of) {
     const int k = rigid.places()[m], *steps = &scene.whole.steps[3 * m];
     if (k < 0) return;
     spheres.eta[k] = of[ETA];
     spheres.radius[k] = of[RADIUS];
-    std::copy_n(&scene.whole.x[3 * m], 3, &spheres.x[3 * (size_t) k]);
-    std::copy_n(of + MOTION, 3, &spheres.motion[3 * (size_t) k]);
-    std::copy_n(of + TURNING, 3, &spheres.turning[3 * (size_t) k]);
+    copy<3>(&scene.whole.x[3 * m], &spheres.x[3 * (size_t) k]);
+    copy<3>(of + MOTION, &spheres.motion[3 * (size_t) k]);
+    copy<3>(of + TURNING, &spheres.turning[3 * (size_t) k]);
     if (jumps && moving) sd_add_edges(jumps, steps, &spheres.motion[3 * (size_t) k]);
     if (!gradients) return;
-    std::copy_n(of + FLOW, 3, &spheres.flow[3 * (size_t) k]);
-    std::copy_n(of + GRADIENT, 9, &spheres.gradient[9 * (size_t) k]);
+    copy<3>(of + FLOW, &spheres.flow[3 * (size_t) k]);
+    copy<9>(of + GRADIENT, &spheres.gradient[9 * (size_t) k]);
     if (jumps) sd_add_edges(jumps, steps, &spheres.flow[3 * (size_t) k]);
-  });
+  };
+  if (gradients)
+    scene.whole.gather<GRADIENT + 9>(row, take);
+  else
+    scene.whole.gather<FLOW>(row, take);
 }
 
 void ClumpPoses::find()
@@ -158,12 +165,13 @@ sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
 
 void ClumpPoses::velocities(int width, const Take &take)
 {
-  double fluid_there[6], V[6], move[6], by_fluid[6];
+  double fluid_there[6], V[6], move[6], by_fluid[6], load[6];
   for (int i : lone()) {
     const bool known = given.held && given.held(i, V);
     ambient.fluid(i, fluid_there);
+    given.load(i, load);
     for (int d = 0; d < width; d++) {
-      const double k = ambient.resistance(i, d), f = given.load(i, d);
+      const double k = ambient.resistance(i, d), f = load[d];
       move[d] = known ? V[d] : fluid_there[d] + f / k;
       by_fluid[d] = known ? k * (fluid_there[d] - V[d]) : -f;
     }
@@ -186,9 +194,9 @@ void ClumpPoses::velocities(int width, const Take &take)
                       torque.data());
       for (size_t k = 0; k < n; k++) {
         const size_t m = member_of(clump, (int) k);
-        std::copy_n(&v[6 * k], 6, row);
-        std::copy_n(&force[3 * k], 3, row + 6);
-        std::copy_n(&torque[3 * k], 3, row + 9);
+        copy<6>(&v[6 * k], row);
+        copy<3>(&force[3 * k], row + 6);
+        copy<3>(&torque[3 * k], row + 9);
         sd_add_edges(back, &scene.whole.steps[3 * m], row);
         give(m, row);
       }
@@ -211,8 +219,8 @@ void ClumpPoses::drag(const Drag &take, std::vector<char> &loose)
       sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, F.data(),
                     turns ? T.data() : nullptr);
       for (size_t k = 0; k < (size_t) body(clump).n; k++) {
-        std::copy_n(&F[3 * k], 3, row + 1);
-        if (turns) std::copy_n(&T[3 * k], 3, row + 4);
+        copy<3>(&F[3 * k], row + 1);
+        if (turns) copy<3>(&T[3 * k], row + 4);
         give(member_of(clump, (int) k), row);
       }
     }

@@ -14,6 +14,7 @@
 #include "sd_clump_motion.h"
 #include "sd_squirmer.h"
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -24,8 +25,9 @@ namespace StokesDyn {
  * are. */
 struct Given {
   bool velocities = false;
-  /* [6 nlocal] force and torque on each atom; empty: all are 0 */
-  std::vector<double> loads;
+  /* Force and torque FT [6] on atom i. Empty: all are 0 */
+  using Loads = std::function<void(int i, double *FT)>;
+  Loads loads;
   /* Who is held, pinned or spun: what is known of atom i, and that of its velocity and angular
    * velocity [6]. Empty: nobody is. A clump is held, or pinned at its centroid, when all its spheres
    * are. */
@@ -38,11 +40,17 @@ struct Given {
 
   void clear()
   {
-    loads.clear();
+    loads = nullptr;
     held = nullptr;
     swims = nullptr;
   }
-  double load(int i, size_t d) const { return loads.empty() ? 0.0 : loads[6 * (size_t) i + d]; }
+  void load(int i, double *FT) const
+  {
+    if (loads)
+      loads(i, FT);
+    else
+      std::fill_n(FT, 6, 0.0);
+  }
 };
 
 class ClumpPoses : protected LAMMPS_NS::Pointers {

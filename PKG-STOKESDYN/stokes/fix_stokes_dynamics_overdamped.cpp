@@ -1,5 +1,6 @@
 #include "fix_stokes_dynamics_overdamped.h"
 
+#include "copy.h"
 #include "fix_stokes_dynamics_field.h"
 #include "fixes.h"
 #include "keywords.h"
@@ -157,18 +158,23 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
 void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
 {
   const int width = hydro.rotation() ? 6 : 3;
-  double sums[CAUSES] = {0.0}, fluid[6], given[6], pushed[6];
+  double sums[CAUSES] = {0.0}, fluid[6], of_box[3], given[6], pushed[6];
   sd_squirmer_stroke stroke;
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
     const double eta = hydro.ambient.viscosity(i);
     hydro.ambient.fluid(i, fluid);
+    if (hydro.ambient.jumps()) {    // LAMMPS may have made an image of it since
+      hydro.ambient.box_motion().at(atom->x[i], of_box);
+      for (int d = 0; d < 3; d++) fluid[d] -= of_box[d];
+      sd_hash_add_row(tag, hydro.ambient.box_motion().gradient, 9, sums + 4);
+    }
     load_on(i, pushed);
     sd_hash_add_row(tag, pushed, 3, sums);
     if (atom->torque_flag) sd_hash_add_row(tag, pushed + 3, 3, sums + 2);
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
-    const double kind = given_velocity(i, given);
+    const double kind = any_given() ? given_velocity(i, given) : SD_BODY_FREE;
     if (kind != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
     sd_hash_add_row(tag, &kind, 1, sums + KINDS);
     if (squirmers.stroke(i, stroke)) {
@@ -292,12 +298,11 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   forget_before_change(causes);
   std::copy_n(causes, (int) CAUSES, last.causes);
   last.atoms = atom->natoms;
-  const std::vector<double> pushed = loads(hydro);
   const size_t width = hydro.rotation() ? 6 : 3, turns = directions.on() ? width : 3;
   const Solve::Take take = [&, width](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i), V[6];
-    std::copy_n(v, width, V);
+    width == 6 ? copy<6>(v, V) : copy<3>(v, V);
     keep_in_plane(V, width);
     for (size_t d = 0; d < 3; d++) {
       atom->v[i][d] = V[d];
@@ -310,15 +315,18 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       std::fill_n(row + TURNED, 4, 0.0);
     else if (row[TURNED] == 0.0 && sd_dot(row + TURNED + 1, row + TURNED + 1) == 0.0)
       row[TURNED] = 1.0;
-    std::copy_n(V, 3, motion.give(i));
+    if (!in_clump(hydro, i)) copy<3>(V, motion.give(i));
     if (width == 3) return;
     directions.look(i, V + 3);
-    spin.look(i, V + 3, F + 3, &pushed[6 * (size_t) i + 3]);
+    if (!spin.on()) return;
+    double pushed[6];
+    push_on(i, pushed);
+    spin.look(i, V + 3, F + 3, pushed + 3);
   };
   if (scheme == MIDPOINT)
-    begin_midpoint(hydro, take, pushed);
+    begin_midpoint(hydro, take);
   else
-    hydro.velocities(take, given(pushed));
+    hydro.velocities(take, given());
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, turns, [this, turns](int i, const double *y) {
       std::copy_n(y, turns, random.give(i));
@@ -327,20 +335,31 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   last.step = update->ntimestep;
 }
 
-/* For a solve: force and torque on atom i, but for noise, and who is held */
+/* Force and torque on atom i, but for noise */
 void FixStokesDynamicsOverdamped::load_on(int i, double *FT) const
 {
   std::fill_n(FT, 6, 0.0);
-  std::copy_n(atom->f[i], 3, FT);
-  if (atom->torque_flag) std::copy_n(atom->torque[i], 3, FT + 3);
+  copy<3>(atom->f[i], FT);
+  if (atom->torque_flag) copy<3>(atom->torque[i], FT + 3);
   torques.add(i, FT + 3);
 }
 
-Given FixStokesDynamicsOverdamped::given(const std::vector<double> &of_atoms) const
+/* What pushes atom i in this step: the same, extrapolated by scheme midpoint, with the torque on those
+ * that slip */
+void FixStokesDynamicsOverdamped::push_on(int i, double *FT) const
+{
+  load_on(i, FT);
+  const double part = scheme == MIDPOINT ? weight(load.has(i)) : 0.0;
+  for (int d = 0; d < 6 && part > 0.0; d++) FT[d] += part * (FT[d] - load[i][d]);
+  if (spin.on()) spin.push(i, FT + 3);
+}
+
+/* For a solve: what pushes, but for noise, and who is held, and how */
+Given FixStokesDynamicsOverdamped::given() const
 {
   Given known;
-  known.loads = of_atoms;
-  if (held.bit || pinned.bit || spin.on())
+  known.loads = [this](int i, double *FT) { push_on(i, FT); };
+  if (any_given())
     known.held = [this](int i, double *V) { return given_velocity(i, V); };
   if (squirmers.on())
     known.swims = [this](int i, sd_squirmer_stroke &stroke) { return squirmers.stroke(i, stroke); };
@@ -437,30 +456,12 @@ void FixStokesDynamicsOverdamped::move_free(const Hydrodynamics &hydro, int i)
   double *row = before.give(i);
   std::copy_n(V, 3, row);
   std::copy_n(x, 3, row + 6);
-  moves(i, sqrt(sd_dot(step, step)));
+  moves(i, step);
 }
 
-void FixStokesDynamicsOverdamped::moves(int i, double distance)
+void FixStokesDynamicsOverdamped::moves(int i, const double *step)
 {
-  displaced = std::max(displaced, distance / atom->radius[i]);
-}
-
-/* By clumps: has it a velocity of before? That then: all its spheres have the same row */
-std::vector<double> FixStokesDynamicsOverdamped::velocities_before(const Hydrodynamics &hydro) const
-{
-  const WholeClumps &whole = hydro.scene.whole;
-  const std::vector<ClumpPoses::Clump> &clumps = hydro.motion().clumps();
-  std::vector<int> first_of(whole.size(), -1);
-  for (size_t c = 0; c < clumps.size(); c++) first_of[hydro.motion().member_of(clumps[c], 0)] = (int) c;
-  std::vector<double> rows(BEFORE * (clumps.size() + 1));
-  const auto row = [this](int i, double *out) {
-    out[0] = before.has(i);
-    std::copy_n(before[i], 9, out + 1);
-  };
-  whole.gather(BEFORE, row, [&](size_t m, const double *of) {
-    if (first_of[m] >= 0) std::copy_n(of, BEFORE, &rows[BEFORE * (size_t) first_of[m]]);
-  });
-  return rows;
+  displaced = std::max(displaced, sd_dot(step, step) / (atom->radius[i] * atom->radius[i]));
 }
 
 /* The point by which a clump is moved, from its centroid in the axes of its shape: with noise the centre
@@ -502,12 +503,13 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
       const RigidClumps::Body &body = hydro.motion().body(clump);
       const ClumpStep goes = step(c);
       double pose[12];
-      std::copy_n(start[c].pose, 12, pose);
+      copy<12>(start.all[c].pose, pose);
       places.resize(3 * (size_t) body.n);
       sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, row + TURN,
                    places.data());
-      std::copy_n(goes.V, 6, row + BEFORE_V);
-      std::copy_n(pose + 9, 3, row + PLACE);
+      if (goes.place) copy<3>(pose + 9, goes.place);
+      copy<4>(output[body.atom] + TURNED, row + TURNED_NOW);
+      sd_turn_quaternion(row + TURN, row + TURNED_NOW);
       for (int k = 0; k < body.n; k++) {
         const size_t m = hydro.motion().member_of(clump, k);
         sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
@@ -526,23 +528,24 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
 /* A whole step has been made. */
 void FixStokesDynamicsOverdamped::clump_moves(Hydrodynamics &hydro, int i, const double *row)
 {
-  moves(i, sqrt(sd_dot(row + STEP, row + STEP)));
+  moves(i, row + STEP);
   hydro.turn(i, row + TURN);
-  sd_turn_quaternion(row + TURN, output.give(i) + TURNED);
+  copy<4>(row + TURNED_NOW, output.give(i) + TURNED);
 }
 
 void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
 {
-  const ClumpPoses &motion = hydro.motion();
-  const std::vector<double> all_before = velocities_before(hydro);
+  const ClumpPoses &poses = hydro.motion();
   const auto step = [&](size_t number) {
-    const ClumpPoses::Clump &clump = motion.clumps()[number];
-    const double *row = &all_before[BEFORE * number];
-    double old[6], mean[6];
-    ClumpStep s = {tracked(motion.shape(clump)), {}, {}};
-    tracked_velocity(clump, motion.shape(clump), s.V);
-    at_image(hydro, row + 1, clump.pose + 9, old);
-    sd_mean_velocity(6, s.V, old, weight(row[0] != 0.0), mean);
+    const ClumpPoses::Clump &clump = poses.clumps()[number];
+    const int first = poses.body(clump).atom;
+    const bool has = before.has(first);
+    double V[6], old[6], mean[6], *row = before.give(first);
+    ClumpStep s = {tracked(poses.shape(clump)), {}, row + 6};
+    tracked_velocity(clump, poses.shape(clump), V);
+    at_image(hydro, row, clump.pose + 9, old);
+    std::copy_n(V, 6, row);
+    sd_mean_velocity(6, V, old, weight(has), mean);
     for (int d = 0; d < 6; d++) {
       s.move[d] = update->dt * mean[d];
       if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
@@ -550,10 +553,8 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
     keep_in_plane(s.move, 6);
     return s;
   };
-  step_clumps(hydro, motion.clumps(), hydro.scene.whole.x, step, [&](int i, const double *row) {
-    std::copy_n(row + BEFORE_V, 9, before.give(i));
-    clump_moves(hydro, i, row);
-  });
+  step_clumps(hydro, poses.clumps(), hydro.scene.whole.x, step,
+              [&](int i, const double *row) { clump_moves(hydro, i, row); });
 }
 
 /* The next step as long as the fastest sphere allows; what must be told of it, as by fix dt/reset.

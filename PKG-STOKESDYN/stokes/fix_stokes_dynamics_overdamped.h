@@ -59,8 +59,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   Torques torques;
   Squirmers squirmers;
 
-  /* [3] velocity of a free sphere, by which the next step goes: LAMMPS's v is output, and others may
-   * write to it */
+  /* [3] velocity of a free sphere that is in no clump, by which the next step goes: LAMMPS's v is output,
+   * and others may write to it */
   AtomRows motion;
   /* [6] y of a free sphere (noise.h), of its turn only where it has a direction; scheme midpoint:
    * random force and torque */
@@ -78,10 +78,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } dragged;
   /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump,
    * was put by it; U is that of the point by which the clump is moved. When LAMMPS has made an image
-   * of it since, v_old is that of the image. */
+   * of it since, v_old is that of the image. A clump has the row at its atom of lowest tag, which is
+   * always on the rank that moves the clump. */
   AtomRows before;
-  /* of a clump: has it such a row, and which? */
-  enum { BEFORE = 10 };
   /* v less that of the fluid, force, torque; of a sphere of a rigid clump the quaternion by which that has
    * turned since the fix was given: these four are state, from step to step and in restart files */
   enum { TURNED = 9, OUTPUTS = 13 };
@@ -97,7 +96,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } last;
   bool from_file = false;
 
-  /* in the last step, of this rank: the largest displacement over radius; change_of_velocities() */
+  /* in the last step, of this rank: the square of the largest displacement over radius;
+   * change_of_velocities() */
   double displaced = 0.0, velocity_change = 0.0;
   sd_growth growth = {};    // of error_figure() of all
   bool warned_growth = false, announced = false;
@@ -122,6 +122,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void look_at_neighbours();
   void find_groups();
   void find_drives(const Hydrodynamics &);
+  bool any_given() const { return held.bit || pinned.bit || spin.on(); }
   bool is_held(int i) const { return atom->mask[i] & held.bit; }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
@@ -131,30 +132,30 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double weight(bool has) const;
   void advance();
   void at_image(const Hydrodynamics &, const double *row, const double *place, double *old) const;
-  void moves(int i, double distance);
+  void moves(int i, const double *step);
   void move_free(const Hydrodynamics &, int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
-  Given given(const std::vector<double> &loads) const;
-  std::vector<double> loads(const Hydrodynamics &) const;
-  void begin_midpoint(Hydrodynamics &, const Solve::Take &take, const std::vector<double> &loads);
+  void push_on(int i, double *FT) const;
+  Given given() const;
+  void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   using Clumps = std::vector<ClumpPoses::Clump>;
-  /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; its
-   * velocity and that of the turn, for whoever keeps them */
+  /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; place [3]:
+   * where the centroid is put, for whoever wants that, else nullptr */
   struct ClumpStep {
     const double *centre;
-    double move[6], V[6];
+    double move[6], *place;
   };
   using Step = std::function<ClumpStep(size_t c)>;
-  /* rows of their atoms; V and the place of the centroid stand side by side, as in `before` */
-  enum { STEP, BEFORE_V = STEP + 3, PLACE = BEFORE_V + 6, TURN = PLACE + 3, COLUMNS = TURN + 9 };
+  /* rows of their atoms: by how much each moves and turns, and the quaternion by which its clump has
+   * turned in all when this is a whole step */
+  enum { STEP, TURN = STEP + 3, TURNED_NOW = TURN + 9, COLUMNS = TURNED_NOW + 4 };
   void step_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x,
                    const Step &step, const std::function<void(int i, const double *row)> &take);
   void clump_moves(Hydrodynamics &, int i, const double *row);
   void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
   void move_by_midpoint(Hydrodynamics &);
-  std::vector<double> velocities_before(const Hydrodynamics &) const;
   void watch();
   double fastest() const;
   double change_of_velocities() const;

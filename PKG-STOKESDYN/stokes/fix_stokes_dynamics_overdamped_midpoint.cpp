@@ -48,23 +48,7 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
                  " deforms this one: use ab2");
 }
 
-/* [6 nlocal] what pushes spheres in this step, but for noise: extrapolated by scheme midpoint, with the
- * torque on those that slip */
-std::vector<double> FixStokesDynamicsOverdamped::loads(const Hydrodynamics &hydro) const
-{
-  std::vector<double> all(6 * (size_t) atom->nlocal + 6);
-  for (int i : hydro.ambient.who()) {
-    double *now = &all[6 * (size_t) i];
-    load_on(i, now);
-    const double part = scheme == MIDPOINT ? weight(load.has(i)) : 0.0;
-    for (int d = 0; d < 6 && part > 0.0; d++) now[d] += part * (now[d] - load[i][d]);
-    if (spin.on()) spin.push(i, now + 3);
-  }
-  return all;
-}
-
-void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take,
-                                                 const std::vector<double> &pushed)
+void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take)
 {
   const int width = hydro.rotation() ? 6 : 3;
   Solve::Draw draw;
@@ -72,7 +56,7 @@ void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Sol
     draw = noise.forces(hydro, [this, width](int i, const double *f) {
       std::copy_n(f, width, random.give(i));
     });
-  hydro.velocities(take, given(pushed), noise.on() ? &draw : nullptr);
+  hydro.velocities(take, given(), noise.on() ? &draw : nullptr);
   dragged.x.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (int i : hydro.ambient.who())
     if (is_moved(i)) std::copy_n(atom->x[i], 3, &dragged.x[3 * (size_t) i]);
@@ -97,7 +81,7 @@ void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clump
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto step = [&](size_t c) {
-    ClumpStep s = {CENTROID, {}, {}};
+    ClumpStep s = {CENTROID, {}, nullptr};
     for (int d = 0; d < 6; d++) s.move[d] = dt * hydro.motion().clumps()[c].V[d];
     keep_in_plane(s.move, 6);
     return s;
@@ -139,18 +123,22 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   place(0.5 * dt);
   hydro.begin(Hydrodynamics::MIDDLE);
   hydro.ambient.half_a_step_back();
-  std::vector<double> pushed = loads(hydro);
-  for (size_t i : who)
-    for (size_t d = 0; d < 6 && noise.on(); d++) pushed[6 * i + d] += random[i][d];
+  Given known = given();
+  if (noise.on())
+    known.loads = [this](int i, double *FT) {
+      push_on(i, FT);
+      for (int d = 0; d < 6; d++) FT[d] += random[i][d];
+    };
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
     std::copy_n(v, width, &V[6 * (size_t) i]);
     keep_in_plane(&V[6 * (size_t) i], 6);
-  }, given(pushed));
-  place(dt);
+  }, known);
+  if (flow.deforms) box.put(box.end);
+  place(hydro, start, {dt, carried, box.start, box.middle, box.end, hydro.ambient.box_motion()}, there, V);
   dragged.v.clear();
-  for (int i : who) load_on(i, load.give(i));
-  for (int i : lone) {
-    const double *v = &V[6 * (size_t) i];
-    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)));
+  for (int i : start.who) load_on(i, load.give(i));
+  for (int i : start.lone) {
+    const double *v = &V[6 * (size_t) i], step[3] = {dt * v[0], dt * v[1], dt * v[2]};
+    if (!is_held(i)) moves(i, step);
   }
 }

@@ -34,7 +34,7 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
   if (!memory) return 0.0;
   const std::function<double()> values[] = {[&] { return fastest(); },
                                             [&] { return largest_of_all(world, error_figure()); },
-                                            [&] { return largest_of_all(world, displaced); },
+                                            [&] { return sqrt(largest_of_all(world, displaced)); },
                                             [&] { return memory->global.iterations; },
                                             [&] { return memory->global.residual; },
                                             [&] { return memory->global.solves; },
@@ -75,33 +75,30 @@ double FixStokesDynamicsOverdamped::change_of_velocities() const
 {
   const Hydrodynamics &hydro = hydrodynamics();
   const ClumpPoses &moving = hydro.motion();
-  double most = 0.0, old[6];
+  double most = 0.0, old[6];    // a square
   for (int i : moving.lone()) {
     if (!before.has(i)) continue;
     at_image(hydro, before[i], atom->x[i], old);
     for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
-    most = std::max(most, sqrt(sd_dot(old, old)) / atom->radius[i]);
+    most = std::max(most, sd_dot(old, old) / (atom->radius[i] * atom->radius[i]));
   }
-  const std::vector<double> all_before =
-      hydro.settings.rigid.on ? velocities_before(hydro) : std::vector<double>();
-  for (size_t c = 0; c < moving.clumps().size(); c++) {
-    const ClumpPoses::Clump &clump = moving.clumps()[c];
+  for (const ClumpPoses::Clump &clump : moving.clumps()) {
     const ClumpShape &is = moving.shape(clump);
-    const double *row = &all_before[BEFORE * c];
+    const int first = moving.body(clump).atom;
     double now_V[6], from[3], arm[3], change[3];
-    if (row[0] == 0.0) continue;
+    if (!before.has(first)) continue;
     tracked_velocity(clump, is, now_V);
-    at_image(hydro, row + 1, clump.pose + 9, old);
+    at_image(hydro, before[first], clump.pose + 9, old);
     for (int d = 0; d < 6; d++) old[d] = now_V[d] - old[d];
     for (int k = 0; k < is.shape.n; k++) {
       sd_minus(is.shape.x + 3 * (size_t) k, tracked(is), from);
       sd_multiply3(clump.pose, from, arm);
       sd_cross(old + 3, arm, change);
       for (int d = 0; d < 3; d++) change[d] += old[d];
-      most = std::max(most, sqrt(sd_dot(change, change)) / is.shape.a[k]);
+      most = std::max(most, sd_dot(change, change) / (is.shape.a[k] * is.shape.a[k]));
     }
   }
-  return most;
+  return sqrt(most);
 }
 
 /* Largest dt |v - v_old| / (2 a) of this rank: what Euler's step would be off by */

@@ -277,7 +277,8 @@ void RigidClumps::arrange()
     const auto found = known.find(clump.molecule);
     if (found == known.end()) continue;
     const Known &k = here[clump.molecule] = std::move(found->second);
-    bodies.push_back({k.shape, clump.molecule, (int) member.size(), (int) k.perm.size()});
+    bodies.push_back({k.shape, clump.molecule, (int) member.size(), (int) k.perm.size(),
+                      whole.first_atom(clump)});
     for (int p : k.perm) member.push_back(clump.begin + p);
   }
   known.swap(here);

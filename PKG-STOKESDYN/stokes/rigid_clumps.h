@@ -47,11 +47,11 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   bool any_loose() const { return !loose_molecules.empty(); }
 
   /* A clump of this rank's; its spheres, in the order of the shape, are begin ... begin + n - 1 of
-   * members(), which are members of whole */
+   * members(), which are members of whole. atom: the one of them with the lowest tag, which is here */
   struct Body {
     const ClumpShape *shape;
     int64_t molecule;
-    int begin, n;
+    int begin, n, atom;
   };
   /* All of them, looked at anew if LAMMPS has re-neighboured. Errors: one that is not rigid (yes). */
   const std::vector<Body> &find();

@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include "callback.h"
+#include "copy.h"
 #include "keywords.h"
 
 #include "comm.h"
@@ -246,25 +247,29 @@ void Scene::gather()
     int64_t tag, molecule;
   };
   std::vector<Sphere> ours;
+  ours.reserve(tags.size());
   for (size_t k = 0; k < tags.size(); k++)
     ours.push_back({{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, a[k], w[k], tags[k], molecules[k]});
   spheres_of_rank = from_all(world, std::vector<int>(1, size()));
   const std::vector<Sphere> all = from_all(world, ours);
   n_all = all.size();
-  std::vector<int> by_tag(n_all);
-  for (int j = 0; j < n_all; j++) by_tag[j] = j;
-  std::sort(by_tag.begin(), by_tag.end(), [&all](int p, int q) {
-    return all[p].tag < all[q].tag;
-  });
-
+  if (!sorted.is(epochs.rows)) {
+    std::vector<int> by_tag(n_all);
+    for (int j = 0; j < n_all; j++) by_tag[j] = j;
+    std::sort(by_tag.begin(), by_tag.end(), [&all](int p, int q) {
+      return all[p].tag < all[q].tag;
+    });
+    place_of.resize(n_all);
+    for (int k = 0; k < n_all; k++) place_of[by_tag[k]] = k;
+    sorted.take(epochs.rows);
+  }
   all_x.resize(3 * (size_t) n_all);
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);
   all_molecule.resize(n_all);
-  place_of.resize(n_all);
-  for (int k = 0; k < n_all; k++) {
-    const Sphere &s = all[by_tag[k]];
-    place_of[by_tag[k]] = k;
-    std::copy_n(s.x, 3, &all_x[3 * (size_t) k]);
+  for (int j = 0; j < n_all; j++) {
+    const Sphere &s = all[j];
+    const size_t k = place_of[j];
+    copy<3>(s.x, &all_x[3 * k]);
     all_a[k] = s.a;
     all_w[k] = s.w;
     all_molecule[k] = s.molecule;

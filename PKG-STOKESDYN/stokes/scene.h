@@ -114,8 +114,8 @@ class Scene : protected LAMMPS_NS::Pointers {
     std::vector<double> out(width * (tags.size() + 1));
     for (size_t k = 0; k < loose.size(); k++) row(loose[k], &out[width * k]);
     if (!settings.whole) return out;
-    whole.gather(width, row, [&](size_t m, const double *of) {
-      if (row_of[m] >= 0) std::copy_n(of, width, &out[width * (size_t) row_of[m]]);
+    whole.gather_to(width, row, [&](size_t m) {
+      return row_of[m] >= 0 ? &out[width * (size_t) row_of[m]] : nullptr;
     });
     return out;
   }
@@ -192,7 +192,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   const Voice voice;
   Epochs &epochs;
 
-  Since rows_found, pairs_found;
+  Since rows_found, pairs_found, sorted;
   bool somebody_sees = false;
   /* atoms that take part; those whose rows are the first here; rows of the members of whole */
   std::vector<int> own, loose, row_of;

@@ -1,5 +1,6 @@
 #include "whole_clumps.h"
 
+#include "copy.h"
 #include "halo.h"
 #include "keywords.h"
 
@@ -83,12 +84,12 @@ void WholeClumps::arrange()
     int atom;
   };
   std::vector<Member> members;
-  gather(2, [this](int i, double *out) {
+  const std::vector<double> who = gather(2, [this](int i, double *out) {
     out[0] = ubuf((int64_t) atom->molecule[i]).d;
     out[1] = ubuf((int64_t) atom->tag[i]).d;
-  }, [&](size_t m, const double *who) {
-    members.push_back({(int64_t) ubuf(who[0]).i, (int64_t) ubuf(who[1]).i, atom_of[m]});
   });
+  for (size_t m = 0; m < atom_of.size(); m++)
+    members.push_back({(int64_t) ubuf(who[2 * m]).i, (int64_t) ubuf(who[2 * m + 1]).i, atom_of[m]});
   std::sort(members.begin(), members.end(), [](const Member &p, const Member &q) {
     return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
   });
@@ -126,8 +127,8 @@ void WholeClumps::stand()
   const Lattice lattice = Lattice::of(domain);
   std::copy_n(lattice.h, 6, h);
   x.resize(3 * tag.size() + 3);
-  gather(3, [this](int i, double *out) { std::copy_n(atom->x[i], 3, out); },
-         [this](size_t m, const double *there) { std::copy_n(there, 3, &x[3 * m]); });
+  gather_to(3, [this](int i, double *out) { copy<3>(atom->x[i], out); },
+            [this](size_t m) { return &x[3 * m]; });
   for (const Clump &clump : clumps)
     for (int k = clump.begin + 1; k < clump.end; k++)
       sd_bring_close(lattice.h, lattice.periodic, &x[3 * (size_t) clump.begin], &x[3 * (size_t) k],

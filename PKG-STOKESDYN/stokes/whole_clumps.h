@@ -30,6 +30,8 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   std::vector<Clump> clumps;
   std::vector<int64_t> tag;    // of each member
   int size() const { return (int) tag.size(); }
+  /* The atom of a clump's first member, its lowest tag: it is on this rank */
+  int first_atom(const Clump &clump) const { return atom_of[clump.begin]; }
 
   /* Finds them if LAMMPS has re-neighboured, and where the members stand now: x [3 size()], and by how many
    * edges each has been moved; with the box of now, which is kept. On all ranks together. Error: a
@@ -39,32 +41,36 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   std::vector<int> steps;
   double h[6] = {0.0};
 
-  /* Rows of numbers from atoms to members: row(i, out) writes what goes of atom i, over zeros, and
-   * take(m, row) has it for member m. That of an atom that is here stays here. On all ranks together, as
-   * what follows. */
-  template <class Row, class Take> void gather(int width, const Row &row, const Take &take) const
+  /* Rows of numbers from atoms to members: row(i, out) writes what goes of atom i, over zeros, to where
+   * room(m) says for member m, nullptr: nobody wants it. That of an atom that is here stays here. On all
+   * ranks together, as what follows. */
+  template <class Row, class Room> void gather_to(int width, const Row &row, const Room &room) const
   {
-    outbox.assign((size_t) width * away.size() + 1, 0.0);
-    inbox.resize((size_t) width * post.rows_in() + width);
-    for (size_t k = 0; k < away.size(); k++) row(away[k], &outbox[width * k]);
-    post.carry(outbox.data(), inbox.data(), width);
-    double *own = &inbox[(size_t) width * post.rows_in()];
+    bring(width, row);
     for (size_t m = 0; m < atom_of.size(); m++) {
-      if (atom_of[m] < 0) {
-        take(m, &inbox[(size_t) width * ~atom_of[m]]);
-        continue;
-      }
-      std::fill_n(own, width, 0.0);
-      row(atom_of[m], own);
-      take(m, own);
+      double *out = room(m);
+      if (out && atom_of[m] < 0)
+        std::copy_n(&inbox[(size_t) width * ~atom_of[m]], width, out);
+      else if (out)
+        row(atom_of[m], out);
     }
   }
-  /* The same as rows [width size()], at least one */
+  /* The same as rows [width members], at least one */
   template <class Row> std::vector<double> gather(int width, const Row &row) const
   {
-    std::vector<double> rows((size_t) width * (size() + 1));
-    gather(width, row, [&](size_t m, const double *of) { std::copy_n(of, width, &rows[width * m]); });
+    std::vector<double> rows((size_t) width * (atom_of.size() + 1));
+    gather_to(width, row, [&](size_t m) { return &rows[width * m]; });
     return rows;
+  }
+  /* The same where nobody keeps the rows: take(m, row) has one after the other */
+  template <int WIDTH, class Row, class Take> void gather(const Row &row, const Take &take) const
+  {
+    bring(WIDTH, row);
+    for (size_t m = 0; m < atom_of.size(); m++) {
+      double here[WIDTH] = {0.0};
+      if (atom_of[m] >= 0) row(atom_of[m], here);
+      take(m, atom_of[m] >= 0 ? here : &inbox[(size_t) WIDTH * ~atom_of[m]]);
+    }
   }
   /* And back: all(give) calls give(m, row) for members that have one, and take(i, row) is called for
    * their atoms, wherever these are. */
@@ -96,6 +102,15 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
   /* [members] its atom, which is here; or ~k, when it is row k of those that come */
   std::vector<int> atom_of;
   mutable std::vector<double> outbox, inbox;
+
+  /* Rows of atoms of this rank to members elsewhere; in inbox those that come */
+  template <class Row> void bring(int width, const Row &row) const
+  {
+    outbox.assign((size_t) width * away.size() + 1, 0.0);
+    inbox.resize((size_t) width * post.rows_in() + 1);
+    for (size_t k = 0; k < away.size(); k++) row(away[k], &outbox[width * k]);
+    post.carry(outbox.data(), inbox.data(), width);
+  }
 
   std::vector<int> owners(const std::vector<int> &bound) const;
   void route(const std::vector<int> &bound);

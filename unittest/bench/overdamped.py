@@ -25,13 +25,16 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 def loop_time(words, steps, ranks=1):
-    """Seconds a step by the clock, set-up not counted"""
+    """Seconds a step, set-up not counted: of one rank those of the processor, which other programs do not lengthen; of several, by the
+    clock"""
     start = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
     with tempfile.TemporaryDirectory() as folder:
         log = os.path.join(folder, "log")
         subprocess.run(start + ["lmp", "-log", log, "-screen", "none", "-nocite"] + words, check=True, cwd=HERE,
                        stdout=subprocess.DEVNULL, env=environment())
-        return float(re.findall(r"^Loop time of (\S+)", open(log).read(), re.M)[-1]) / steps
+        said = open(log).read()
+    seconds, busy = (float(re.findall(line, said, re.M)[-1]) for line in (r"^Loop time of (\S+)", r"^(\S+)% CPU use"))
+    return seconds / steps * (busy / 100 if ranks == 1 else 1)
 
 
 def cloud(folder, n):

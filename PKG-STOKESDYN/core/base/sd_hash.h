@@ -28,6 +28,7 @@ static inline double sd_hash_unit(uint64_t x)
 static inline void sd_hash_add_row(uint64_t tag, const double *v, int n, double sums[2])
 {
   for (int k = 0; k < n; k++) {
+    if (v[k] == 0.0) continue;    /* adds nothing, and most rows are full of them */
     const uint64_t key = sd_hash_mix(tag * SD_HASH_STEP + (uint64_t) (k + 1));
     sums[0] += (2.0 * sd_hash_unit(key) - 1.0) * v[k];
     sums[1] += v[k] < 0.0 ? -v[k] : v[k];

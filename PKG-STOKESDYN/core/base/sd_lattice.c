@@ -62,8 +62,12 @@ void sd_bring_close(const double h[6], const int periodic[3], const double to[3]
                     int steps[3])
 {
   double before[3], d[3], moved[3], exact[3];
-  for (int k = 0; k < 3; k++) before[k] = d[k] = x[k] - to[k];
+  for (int k = 0; k < 3; k++) {
+    before[k] = d[k] = x[k] - to[k];
+    steps[k] = 0;
+  }
   sd_closest_image(h, periodic, d);
+  if (d[0] == before[0] && d[1] == before[1] && d[2] == before[2]) return;    /* as nearly all are */
   for (int k = 0; k < 3; k++) {
     x[k] = to[k] + d[k];
     moved[k] = d[k] - before[k];
