@@ -88,6 +88,12 @@ target_compile_options(make_film_table PRIVATE -Wall -Wextra -Wshadow)
 target_link_libraries(make_film_table PRIVATE two_sphere_exact)
 add_test(NAME film_table COMMAND make_film_table check 1 4 5)
 add_dependencies(core_tests make_film_table)
+# and the constants of half shells
+add_executable(make_half_shells ${tests}/stokes/multiblob/table/make_half_shells.c)
+target_compile_options(make_half_shells PRIVATE -Wall -Wextra -Wshadow)
+target_link_libraries(make_half_shells PRIVATE stokesdyn_stokes)
+add_test(NAME half_shells COMMAND make_half_shells check)
+add_dependencies(core_tests make_half_shells)
 # The series themselves change once a year; their long tests run then, by hand. Here it is asked whether they are what was tested.
 core_test_program(test_two_sphere_exact stokes ${tests}/stokes/two_sphere/test_two_sphere_exact.c two_sphere_exact)
 set_target_properties(test_two_sphere_exact PROPERTIES EXCLUDE_FROM_ALL ON)
