@@ -87,6 +87,8 @@ add_executable(make_film_table ${table}/make_film_table.c)
 target_compile_options(make_film_table PRIVATE -Wall -Wextra -Wshadow)
 target_link_libraries(make_film_table PRIVATE two_sphere_exact)
 add_test(NAME film_table COMMAND make_film_table check 1 4 5)
+add_test(NAME film_table_half COMMAND make_film_table check half 0 0.44 0.31)
+add_test(NAME film_table_half_large COMMAND make_film_table check half 1 0.44 0.17)
 add_dependencies(core_tests make_film_table)
 # and the constants of half shells
 add_executable(make_half_shells ${tests}/stokes/multiblob/table/make_half_shells.c)

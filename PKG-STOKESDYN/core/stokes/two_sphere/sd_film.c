@@ -12,12 +12,23 @@ const double sd_film_table[SD_FILM_KINDS][SD_FILM_RATIOS][SD_FILM_GAPS][SD_FILM_
 #include "sd_film_table.inc"
 };
 
-enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
+const double sd_film_half_table[SD_FILM_HALF_ROWS][2][SD_FILM_GAPS][SD_FILM_SCALARS] = {
+#include "sd_film_half_table.inc"
+};
 
-static double node_of_ratio(double ratio)
-{
-  return (ratio - 1.0) / (ratio + 1.0) / SD_FILM_LARGEST_V;
-}
+const sd_film_kind sd_film_kinds[SD_FILM_HALF_KINDS] = {
+    {42, 12, 8, 1.0, 10.0},
+    {162, 12, 7, 5.0 / 3.0, 10.0},
+    {642, 12, 6, 10.0 / 3.0, 10.0},
+    {42, 42, 8, 1.0, 20.0 / 3.0},
+    {162, 42, 7, 1.0, 20.0 / 3.0},
+    {642, 42, 6, 2.0, 20.0 / 3.0},
+    {162, 162, 6, 1.0, 4.0},
+    {642, 162, 5, 1.0, 4.0},
+    {642, 642, 3, 1.0, 2.0},
+};
+
+enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
 
 static double node_of_xi(double xi)
 {
@@ -34,27 +45,46 @@ void sd_film_scales(double a1, double a2, double scale[SCALARS])
   scale[4] = 8.0 * SD_PI * c2;
 }
 
-/* out = sum of w over the nodes of the ratio */
-static void at_ratio(const double table[RATIOS][GAPS][SCALARS], double ratio,
-                     double out[GAPS][SCALARS])
+typedef const double gap_table[GAPS][SCALARS];
+
+/* out: between `count` tables, each `step` behind the last one, at t of their nodes */
+static void at_ratio(gap_table *table, int step, int count, double t, double out[GAPS][SCALARS])
 {
   double w[RATIOS];
-  sd_two_sphere_weights(RATIOS, node_of_ratio(ratio), w);
+  sd_two_sphere_weights(count, t, w);
   memset(out, 0, sizeof(double) * GAPS * SCALARS);
-  for (int i = 0; i < RATIOS; i++)
+  for (int i = 0; i < count; i++)
     for (int j = 0; j < GAPS; j++)
-      for (int k = 0; k < SCALARS; k++) out[j][k] += w[i] * table[i][j][k];
+      for (int k = 0; k < SCALARS; k++) out[j][k] += w[i] * table[i * step][j][k];
+}
+
+static void alike_at_ratio(const sd_films *films, double ratio, double out[GAPS][SCALARS])
+{
+  at_ratio(films->shells, 1, RATIOS, sd_film_v(ratio) / SD_FILM_LARGEST_V, out);
+}
+
+static void read_equal(sd_films *films)
+{
+  alike_at_ratio(films, 1.0, films->equal);
+  for (int j = 0; j < GAPS; j++) /* equal spheres do not know which is 1, to the last bit */
+    films->equal[j][2] = films->equal[j][4] = 0.5 * (films->equal[j][2] + films->equal[j][4]);
 }
 
 sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_films *out)
 {
   if (n != 12 && n != 42) return SD_EOUTSIDE;
   out->exact = exact;
+  out->half = NULL;
   out->shells = sd_film_table[2 * (n == 42) + (one_body != 0)];
-  at_ratio(out->shells, 1.0, out->equal);
-  for (int j = 0; j < GAPS; j++) /* equal spheres do not know which is 1, to the last bit */
-    out->equal[j][2] = out->equal[j][4] = 0.5 * (out->equal[j][2] + out->equal[j][4]);
+  read_equal(out);
   return SD_OK;
+}
+
+sd_status sd_films_create_by_radius(int one_body, const sd_two_sphere *exact, sd_films *out)
+{
+  const sd_status status = sd_films_create(12, one_body, exact, out);
+  out->half = &sd_film_half_table[0][one_body != 0];
+  return status;
 }
 
 void sd_film_clip(double *p, double *q, double *r)
@@ -73,19 +103,15 @@ void sd_film_clip(double *p, double *q, double *r)
   *r = 0.5 * most * (1.0 - c);
 }
 
-/* a1 <= a2 */
-static sd_status read_film(const sd_films *films, double a1, double a2, double xi, sd_film *film)
+/* shells: the means of two shells at this ratio, node_of_xi of what their gaps stand for; a1 <= a2 */
+static sd_status film_of(const sd_films *films, const double (*shells)[SCALARS], double node, double a1,
+                         double a2, double xi, sd_film *film)
 {
-  double w[GAPS], sums[SCALARS] = {0.0}, scale[SCALARS], unequal[GAPS][SCALARS];
-  const double(*shells)[SCALARS] = films->equal;
+  double w[GAPS], sums[SCALARS] = {0.0}, scale[SCALARS];
   sd_pair_resistance R;
   const sd_status status = sd_two_sphere_correction(films->exact, a1, a2, xi, 0.0, 1.0, &R);
   if (status != SD_OK) return status;
-  if (a2 > a1) {
-    at_ratio(films->shells, a2 / a1, unequal);
-    shells = unequal;
-  }
-  sd_two_sphere_weights(GAPS, node_of_xi(xi), w);
+  sd_two_sphere_weights(GAPS, node, w);
   for (int j = 0; j < GAPS; j++)
     for (int k = 0; k < SCALARS; k++) sums[k] += w[j] * shells[j][k];
   sd_film_scales(a1, a2, scale);
@@ -101,17 +127,68 @@ static sd_status read_film(const sd_films *films, double a1, double a2, double x
   return SD_OK;
 }
 
+/* a1 <= a2 */
+static sd_status film_alike(const sd_films *films, double a1, double a2, double xi, sd_film *film)
+{
+  double unequal[GAPS][SCALARS];
+  if (!(a2 <= SD_FILM_LARGEST_RATIO * (1.0 + 1e-12) * a1)) return SD_EOUTSIDE;
+  if (!(xi <= SD_FILM_LARGEST_XI)) return SD_EOUTSIDE;
+  if (a2 > a1) alike_at_ratio(films, a2 / a1, unequal);
+  return film_of(films, a2 > a1 ? unequal : films->equal, node_of_xi(xi), a1, a2, xi, film);
+}
+
+static void exchange(sd_film *film)
+{
+  const double B = film->B[0];
+  film->B[0] = film->B[2];
+  film->B[2] = B;
+}
+
 sd_status sd_film_at(const sd_films *films, double a1, double a2, double xi, sd_film *film)
 {
   const double small = a1 < a2 ? a1 : a2, large = a1 < a2 ? a2 : a1;
-  if (!(large <= SD_FILM_LARGEST_RATIO * (1.0 + 1e-12) * small)) return SD_EOUTSIDE;
-  if (!(xi <= SD_FILM_LARGEST_XI)) return SD_EOUTSIDE;
-  const sd_status status = read_film(films, small, large, xi, film);
-  if (a1 > a2) {
-    const double B = film->B[0];
-    film->B[0] = film->B[2];
-    film->B[2] = B;
+  const sd_status status = film_alike(films, small, large, xi, film);
+  if (a1 > a2) exchange(film);
+  return status;
+}
+
+/* The kind of these shells, and its first row; NULL: there is none */
+static const sd_film_kind *find_kind(int small, int large, int *row)
+{
+  *row = 0;
+  for (int k = 0; k < SD_FILM_HALF_KINDS; k++) {
+    const sd_film_kind *kind = sd_film_kinds + k;
+    if (kind->small == small && kind->large == large) return kind;
+    *row += kind->ratios;
   }
+  return NULL;
+}
+
+/* Sphere 1 of n1 points, a1 <= a2 */
+static sd_status film_by_radius(const sd_films *films, int n1, int n2, double a1, double a2, double xi,
+                                sd_film *film)
+{
+  double shells[GAPS][SCALARS];
+  int row;
+  const sd_film_kind *kind = find_kind(n1, n2, &row);
+  const double ratio = a2 / a1, harmonic = xi / sd_film_harmonic(a1, a2), hair = 1e-9;
+  if (!kind || !(ratio >= kind->lowest * (1.0 - hair) && ratio <= kind->highest * (1.0 + hair)))
+    return SD_EOUTSIDE;
+  if (!(harmonic <= SD_FILM_LARGEST_XI * (1.0 + hair))) return SD_EOUTSIDE;
+  const double low = sd_film_v(kind->lowest), high = sd_film_v(kind->highest);
+  at_ratio(films->half + 2 * (long) row, 2, kind->ratios, (sd_film_v(ratio) - low) / (high - low), shells);
+  if (n1 == n2 && a1 == a2)
+    for (int j = 0; j < GAPS; j++) shells[j][2] = shells[j][4] = 0.5 * (shells[j][2] + shells[j][4]);
+  return film_of(films, shells, node_of_xi(harmonic), a1, a2, xi, film);
+}
+
+sd_status sd_film_between(const sd_films *films, int n1, int n2, double a1, double a2, double xi,
+                          sd_film *film)
+{
+  if (!films->half || (n1 == 12 && n2 == 12)) return sd_film_at(films, a1, a2, xi, film);
+  const sd_status status = a1 <= a2 ? film_by_radius(films, n1, n2, a1, a2, xi, film)
+                                    : film_by_radius(films, n2, n1, a2, a1, xi, film);
+  if (a1 > a2 && status == SD_OK) exchange(film);
   return status;
 }
 

@@ -15,8 +15,11 @@
  *
  * A_n goes like 1/xi, B like ln(1/xi), A_t stays finite; xi: gap over the mean radius. The mean
  * shell is a little too stiff between xi 0.25 and 1, by 0.002 Stokes drags, so A_n, A_t and the
- * eigenvalues of B_pq/(8 pi a_p^1.5 a_q^1.5) are clipped at 0: D >= 0. Source: reference of the
- * project, multiblob.md 3; the form is our own. */
+ * eigenvalues of B_pq/(8 pi a_p^1.5 a_q^1.5) are clipped at 0: D >= 0.
+ *
+ * Shells are all alike, or of 12, 42, 162, 642 points by radius, the larger ones half shells
+ * (sd_multiblob_half.h); then each pair of numbers of points has its own means. Source: reference of the
+ * project, multiblob.md 3, unlike-radii.md; the form is our own. */
 #ifndef SD_FILM_H
 #define SD_FILM_H
 
@@ -44,6 +47,8 @@ typedef struct {
   const double (*shells)[SD_FILM_GAPS][5];
   /* those of equal spheres, the commonest */
   double equal[SD_FILM_GAPS][5];
+  /* those by radius, every second one; NULL: all are alike */
+  const double (*half)[SD_FILM_GAPS][5];
 } sd_films;
 
 /* Of shells of n points with or without the one-body addition; `exact` outlives it. SD_OK;
@@ -54,6 +59,16 @@ sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_fi
  * SD_FILM_LARGEST_RATIO or that of `exact`. The means over orientations are within 1e-3 of
  * themselves; a given pair of shells differs from its mean by 1 to 2 % of the shells' share. */
 sd_status sd_film_at(const sd_films *films, double a1, double a2, double xi, sd_film *film);
+
+/* Of shells by radius, with or without the addition; as above. SD_OK. */
+sd_status sd_films_create_by_radius(int one_body, const sd_two_sphere *exact, sd_films *out);
+
+/* The film of sphere 1 of n1 points with sphere 2 of n2; where all are alike that of sd_film_at. xi as
+ * there, but the end is where the gap is SD_FILM_LARGEST_XI harmonic means 2 a1 a2/(a1 + a2) of the
+ * radii. SD_OK; SD_EOUTSIDE: beyond; or numbers of points for which there are no means at this ratio
+ * (sd_film_kinds): the larger sphere never has the fewer points. */
+sd_status sd_film_between(const sd_films *films, int n1, int n2, double a1, double a2, double xi,
+                          sd_film *film);
 
 /* scale times the film, as the resistance of a pair at this distance of the centres: it resists no
  * rigid motion of the pair, to rounding. */

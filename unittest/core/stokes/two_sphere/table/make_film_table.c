@@ -1,191 +1,209 @@
-/* make_film_table > sd_film_table.inc: the mean resistance of two shells of points at the nodes of
- * sd_film_table_internal.h; some minutes.
+/* make_film_table > sd_film_table.inc: the mean resistance of two shells of points, all spheres alike, at
+ * the nodes of sd_film_table_internal.h; some minutes. make_film_table half > sd_film_half_table.inc: the
+ * same of shells by radius; 25 minutes.
  *
  * make_film_table check KIND RATIO GAP: the shipped numbers of one node against those computed here
- * and now; fails if they differ. */
+ * and now; check half KIND T Q: those by radius between the nodes, at T and Q in 0 to 1 of the ranges of
+ * ratio and gap; fails if they differ. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_body_shape.h"
-#include "sd_constants.h"
-#include "sd_film_of.h"
-#include "sd_film_table_internal.h"
-#include "sd_linear.h"
-#include "sd_multiblob.h"
+#include "sd_shell_pair.h"
 #include "sd_two_sphere_table_internal.h"
 
 enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
 
-static double ratio_at_node(double t)
+static double ratio_of_v(double v)
 {
-  return (1.0 + SD_FILM_LARGEST_V * t) / (1.0 - SD_FILM_LARGEST_V * t);
+  return (1.0 + v) / (1.0 - v);
 }
 
-static double xi_at_node(double t)
-{
-  return SD_FILM_LARGEST_XI * t * t;
-}
+/* --- the tables --- */
 
-/* Pairs of orientations: those of 42 points differ less, and cost more. */
-static int pairs_of(int n)
-{
-  return n == 12 ? 2048 : 1024;
-}
-
-/* Orientation of sphere `which` of pair k: even over all rotations, by an additive sequence of six
- * dimensions (multiples of the powers of 1/1.1128, the root of x^7 = x + 1) */
-static void orientation(int k, int which, double Q[9])
-{
-  const double root = 1.1127756842787055;
-  double s[3];
-  for (int d = 0; d < 3; d++) s[d] = fmod(0.5 + (k + 1) * pow(root, -(3 * which + d + 1)), 1.0);
-  const double u = 2.0 * SD_PI * s[1], v = 2.0 * SD_PI * s[2];
-  const double w = sqrt(1.0 - s[0]) * sin(u), x = sqrt(1.0 - s[0]) * cos(u),
-               y = sqrt(s[0]) * sin(v), z = sqrt(s[0]) * cos(v);
-  const double R[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-                       2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                       2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
-  memcpy(Q, R, sizeof R);
-}
-
-/* Two shells on the z axis, sphere 2 above */
+/* Two shells and how they stand */
 typedef struct {
-  const sd_multiblob *m;
-  double a[2], distance;
-  /* [6n] from their own centres, [6n] where they are; [2n] radii */
-  double *r, *x, *b;
-  /* [(6n)^2]; [12][6n] velocities and forces of the motions U1 W1 U2 W2 */
-  double *M, *v, *f;
-} shells;
+  sd_shell_blob one, two;
+  sd_shell_pair *both;
+  int count;
+  sd_shell_way *ways;
+} mean;
 
-static void turn_shells(shells *s, int k)
+static void begin(mean *m, int count)
 {
-  const int n = s->m->n;
-  for (int i = 0; i < 2 * n; i++) {
-    double Q[9];
-    orientation(k, i / n, Q);
-    sd_multiply3(Q, s->m->r + 3 * (i % n), s->r + 3 * i);
-    for (int d = 0; d < 3; d++) s->x[3 * i + d] = s->r[3 * i + d] *= s->a[i / n];
-    s->x[3 * i + 2] += i < n ? 0.0 : s->distance;
-    s->b[i] = s->a[i / n] * s->m->point;
+  m->both = sd_shell_pair_create(&m->one, &m->two);
+  m->count = count;
+  m->ways = malloc(sizeof(sd_shell_way) * (size_t) count);
+  if (!m->ways) exit(EXIT_FAILURE);
+}
+
+/* Of spheres that are all alike: those of 42 points differ less, and cost more. */
+static void begin_alike(mean *m, int n)
+{
+  m->one = sd_shell_blob_alike(n);
+  m->two = sd_shell_blob_alike(n);
+  begin(m, n == 12 ? 2048 : 1024);
+  sd_shell_ways(m->count, m->ways);
+}
+
+/* The more points, the less do orientations differ, and the more does each cost. */
+static void begin_kind(mean *m, const sd_film_kind *kind)
+{
+  static const int counts[SD_FILM_HALF_KINDS] = {512, 512, 128, 512, 512, 64, 64, 16, 8};
+  m->one = sd_shell_blob_by_radius(kind->small);
+  m->two = sd_shell_blob_by_radius(kind->large);
+  begin(m, counts[kind - sd_film_kinds]);
+  sd_shell_ways_of_icosahedra(m->count, m->ways);
+}
+
+static void end(mean *m)
+{
+  sd_shell_pair_free(m->both);
+  free(m->one.r);
+  free(m->two.r);
+  free(m->ways);
+}
+
+static void alike_at(mean *m, int i, int j, double value[2][SCALARS])
+{
+  const double ratio = ratio_of_v(SD_FILM_LARGEST_V * sd_two_sphere_node(RATIOS, i));
+  const double q = sd_two_sphere_node(GAPS, j);
+  sd_shell_pair_means(m->both, ratio, SD_FILM_LARGEST_XI * q * q, m->count, m->ways, value);
+}
+
+/* At t of the nodes of the kind's ratio and q of those of the gap */
+static void by_radius_at(mean *m, const sd_film_kind *kind, double t, double q, double value[2][SCALARS])
+{
+  const double low = sd_film_v(kind->lowest), v = low + (sd_film_v(kind->highest) - low) * t;
+  const double xi = SD_FILM_LARGEST_XI * q * q * (1.0 - v * v);
+  sd_shell_pair_means(m->both, ratio_of_v(v), xi, m->count, m->ways, value);
+}
+
+static void print_rows(double value[GAPS][2][SCALARS], int with, int digits, const char *indent)
+{
+  for (int j = 0; j < GAPS; j++) {
+    printf("%s{", indent);
+    for (int k = 0; k < SCALARS; k++) printf("%s%.*f", k ? ", " : "", digits, value[j][with][k]);
+    printf("},\n");
   }
 }
 
-static void set_motions(shells *s)
-{
-  const int n = s->m->n;
-  memset(s->v, 0, sizeof(double) * 12 * 6 * (size_t) n);
-  for (int i = 0; i < 2 * n; i++)
-    for (int d = 0; d < 3; d++) {
-      const double e[3] = {d == 0, d == 1, d == 2};
-      double *columns = s->v + (size_t) (6 * (i / n)) * 6 * n + 3 * i;
-      memcpy(columns + (size_t) d * 6 * n, e, sizeof e);
-      sd_cross(e, s->r + 3 * i, columns + (size_t) (3 + d) * 6 * n);
-    }
-}
-
-/* sum += the 12x12 of these orientations, without what depends on azimuth and handedness */
-static void add_resistance(shells *s, sd_pair_resistance *sum)
-{
-  const int N = 6 * s->m->n;
-  double R[12][12];
-  sd_wall_matrix(NULL, 2 * s->m->n, 3, s->x, s->b, s->M);
-  for (int q = 0; q < 2 && s->m->delta != 0.0; q++)
-    sd_multiblob_one_body_matrix(s->m, s->a[q], s->r + N / 2 * q, (size_t) N, s->M + N / 2 * q * (N + 1));
-  set_motions(s);
-  memcpy(s->f, s->v, sizeof(double) * 12 * (size_t) N);
-  if (sd_cholesky_solve(N, s->M, 12, s->f) != SD_OK) exit(EXIT_FAILURE);
-  for (int p = 0; p < 12; p++)
-    for (int q = 0; q < 12; q++) {
-      R[p][q] = 0.0;
-      for (int k = 0; k < N; k++) R[p][q] += s->v[(size_t) p * N + k] * s->f[(size_t) q * N + k];
-    }
-  static const int row[3] = {0, 0, 6}, column[3] = {0, 6, 6};
-  for (int b = 0; b < 3; b++) {
-    const int p = row[b], q = column[b];
-    sum->XA[b] += R[p + 2][q + 2];
-    sum->YA[b] += 0.5 * (R[p][q] + R[p + 1][q + 1]);
-    sum->XC[b] += R[p + 5][q + 5];
-    sum->YC[b] += 0.5 * (R[p + 3][q + 3] + R[p + 4][q + 4]);
-  }
-  for (int b = 0; b < 4; b++) { /* T = YB U x d, d along z */
-    const int p = 6 * (b / 2), q = 6 * (b % 2);
-    sum->YB[b] += 0.5 * (R[p + 3][q + 1] - R[p + 4][q]);
-  }
-}
-
-static void at_node(int kind, int i, int j, double value[SCALARS])
-{
-  const int n = kind < 2 ? 12 : 42, pairs = pairs_of(n), N = 6 * n;
-  const double ratio = ratio_at_node(sd_two_sphere_node(RATIOS, i));
-  const double xi = xi_at_node(sd_two_sphere_node(GAPS, j));
-  sd_multiblob m;
-  if (sd_multiblob_create(n, kind % 2, &m) != SD_OK) exit(EXIT_FAILURE);
-  shells s = {.m = &m, .a = {1.0, ratio}, .distance = (1.0 + ratio) * (1.0 + 0.5 * xi)};
-  double *memory = malloc(sizeof(double) * (size_t) N * (size_t) (N + 27));
-  if (!memory) exit(EXIT_FAILURE);
-  s.M = memory;
-  s.v = s.M + N * N;
-  s.f = s.v + 12 * N;
-  s.r = s.f + 12 * N;
-  s.x = s.r + N;
-  s.b = s.x + N;
-  sd_pair_resistance sum = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
-  for (int k = 0; k < pairs; k++) {
-    turn_shells(&s, k);
-    add_resistance(&s, &sum);
-  }
-  free(memory);
-  const sd_pair_resistance model = sd_pair_resistance_rpy(1.0, ratio, s.distance);
-  sum = sd_pair_resistance_sum(1.0 / pairs, &sum, -1.0, &model);
-  const sd_film film = sd_film_of(&sum, 1.0, ratio, s.distance);
-  double scale[SCALARS];
-  sd_film_scales(1.0, ratio, scale);
-  const double numbers[SCALARS] = {film.A_n, film.A_t, film.B[0], film.B[1], film.B[2]};
-  for (int k = 0; k < SCALARS; k++) value[k] = numbers[k] / scale[k];
-}
-
-static void make(void)
+/* The kinds of sd_film_table: of each number of points without the addition, and with it */
+static void make_alike(void)
 {
   printf("/* Made by make_film_table; sd_film_table_internal.h says of what. */\n");
   for (int kind = 0; kind < SD_FILM_KINDS; kind++) {
+    mean m;
+    begin_alike(&m, kind < 2 ? 12 : 42);
     printf("    {\n");
     for (int i = 0; i < RATIOS; i++) {
+      double value[GAPS][2][SCALARS];
+      for (int j = 0; j < GAPS; j++) alike_at(&m, i, j, value[j]);
       printf("        {\n");
-      for (int j = 0; j < GAPS; j++) {
-        double value[SCALARS];
-        at_node(kind, i, j, value);
-        printf("            {");
-        for (int k = 0; k < SCALARS; k++) printf("%s%.9f", k ? ", " : "", value[k]);
-        printf("},\n");
-        fflush(stdout);
-      }
+      print_rows(value, kind % 2, 9, "            ");
       printf("        },\n");
+      fflush(stdout);
     }
     printf("    },\n");
+    end(&m);
   }
 }
 
-static int check(int kind, int i, int j)
+static void make_kind(const sd_film_kind *kind)
 {
-  double value[SCALARS], worst = 0.0;
-  at_node(kind, i, j, value);
-  for (int k = 0; k < SCALARS; k++)
-    worst = fmax(worst, fabs(value[k] - sd_film_table[kind][i][j][k]));
+  mean m;
+  begin_kind(&m, kind);
+  printf("/* %d with %d */\n", kind->large, kind->small);
+  for (int i = 0; i < kind->ratios; i++) {
+    double value[GAPS][2][SCALARS];
+    for (int j = 0; j < GAPS; j++)
+      by_radius_at(&m, kind, sd_two_sphere_node(kind->ratios, i), sd_two_sphere_node(GAPS, j), value[j]);
+    for (int with = 0; with < 2; with++) {
+      printf("%s", with ? "{\n" : "{{\n");
+      print_rows(value, with, 5, "");
+      printf("%s", with ? "}},\n" : "},\n");
+    }
+    fflush(stdout);
+  }
+  end(&m);
+}
+
+static void make_half(void)
+{
+  printf("/* Made by make_film_table half; sd_film_table_internal.h says of what. */\n");
+  for (int k = 0; k < SD_FILM_HALF_KINDS; k++) make_kind(sd_film_kinds + k);
+}
+
+/* --- checks --- */
+
+static int say(double worst, double most)
+{
   printf("largest difference %.2g\n", worst);
-  return worst < 1e-8 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return worst < most ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+static int check_alike(int kind, int i, int j)
+{
+  double value[2][SCALARS], worst = 0.0;
+  mean m;
+  begin_alike(&m, kind < 2 ? 12 : 42);
+  alike_at(&m, i, j, value);
+  end(&m);
+  for (int k = 0; k < SCALARS; k++)
+    worst = fmax(worst, fabs(value[kind % 2][k] - sd_film_table[kind][i][j][k]));
+  return say(worst, 1e-8);
+}
+
+/* The means at t of the nodes of a kind's ratio and q of those of the gap, from its nodes */
+static void between_nodes(int kind, double t, double q, int with, double out[SCALARS])
+{
+  int row = 0;
+  double w[RATIOS], g[GAPS];
+  for (int k = 0; k < kind; k++) row += sd_film_kinds[k].ratios;
+  sd_two_sphere_weights(sd_film_kinds[kind].ratios, t, w);
+  sd_two_sphere_weights(GAPS, q, g);
+  memset(out, 0, sizeof(double) * SCALARS);
+  for (int i = 0; i < sd_film_kinds[kind].ratios; i++)
+    for (int j = 0; j < GAPS; j++)
+      for (int k = 0; k < SCALARS; k++)
+        out[k] += w[i] * g[j] * sd_film_half_table[row + i][with][j][k];
+}
+
+/* Between the nodes as well: to 2e-3 of the approach */
+static int check_half(int number, double t, double q)
+{
+  const sd_film_kind *kind = sd_film_kinds + number;
+  double value[2][SCALARS], worst = 0.0;
+  mean m;
+  begin_kind(&m, kind);
+  by_radius_at(&m, kind, t, q, value);
+  end(&m);
+  for (int with = 0; with < 2; with++) {
+    double shipped[SCALARS];
+    between_nodes(number, t, q, with, shipped);
+    for (int k = 0; k < SCALARS; k++)
+      worst = fmax(worst, fabs(value[with][k] - shipped[k]) / value[with][0]);
+  }
+  return say(worst, 2e-3);
+}
+
+static int usage(void)
+{
+  fprintf(stderr, "usage: make_film_table [half | check KIND RATIO GAP | check half KIND T Q]\n");
+  return EXIT_FAILURE;
 }
 
 int main(int argc, char **argv)
 {
-  if (argc == 5 && !strcmp(argv[1], "check"))
-    return check(atoi(argv[2]), atoi(argv[3]), atoi(argv[4]));
-  if (argc != 1) {
-    fprintf(stderr, "usage: make_film_table [check KIND RATIO GAP]\n");
-    return EXIT_FAILURE;
-  }
-  make();
+  const int checks = argc > 1 && !strcmp(argv[1], "check");
+  if (checks && argc == 5) return check_alike(atoi(argv[2]), atoi(argv[3]), atoi(argv[4]));
+  if (checks && argc == 6) return check_half(atoi(argv[3]), atof(argv[4]), atof(argv[5]));
+  if (argc == 1)
+    make_alike();
+  else if (argc == 2 && !strcmp(argv[1], "half"))
+    make_half();
+  else
+    return usage();
   return EXIT_SUCCESS;
 }
