@@ -98,9 +98,11 @@ void AtomArray::grow(int nmax)
 // --- the fix ---------------------------------------------------------------------------------
 
 void RowsFix::keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts,
-                   Borders borders)
+                   Borders borders, const std::vector<RowsOfAtoms *> &moving)
 {
   kept = all;
+  in_files = all.size();
+  kept.insert(kept.end(), moving.begin(), moving.end());
   shown = output;
   if (shown) {
     peratom_flag = 1;
@@ -163,7 +165,7 @@ int RowsFix::unpack_exchange(int i, double *buf)
 int RowsFix::maxsize_restart()
 {
   int size = 1;
-  for (const RowsOfAtoms *rows : kept) size += rows->most_packed();
+  for (size_t k = 0; k < in_files; k++) size += kept[k]->most_packed();
   return size;
 }
 
@@ -171,7 +173,7 @@ int RowsFix::pack_restart(int i, double *buf)
 {
   record(i);
   buf[0] = maxsize_restart();
-  pack_exchange(i, buf + 1);
+  for (size_t k = 0, m = 1; k < in_files; k++) m += kept[k]->pack(i, buf + m);
   return maxsize_restart();
 }
 
@@ -180,10 +182,9 @@ void RowsFix::unpack_restart(int i, int nth)
   double *extra = atom->extra[i];
   int m = 0;
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  if (restored() && static_cast<int>(extra[m]) == maxsize_restart())
-    unpack_exchange(i, extra + m + 1);
-  else
-    set_arrays(i);
+  if (!restored() || static_cast<int>(extra[m]) != maxsize_restart()) return set_arrays(i);
+  m++;
+  for (size_t k = 0; k < in_files; k++) m += kept[k]->unpack(i, extra + m);
 }
 
 void RowsFix::write_restart(FILE *fp)

@@ -126,10 +126,11 @@ class RowsFix : public LAMMPS_NS::Fix {
     return Keywords(lmp, voice.command, words(narg, arg), 3);
   }
   /* Once, in the constructor: what it keeps, with restarts also in their files. output, one of all
-   * or nullptr, becomes array_atom. With borders ghosts have rows, by pack_border. */
+   * or nullptr, becomes array_atom. With borders ghosts have rows, by pack_border. Those of `moving` follow
+   * their atoms as well, but are not in files: whoever has them writes them otherwise. */
   enum Borders { NO_BORDERS, WITH_BORDERS };
   void keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts,
-            Borders borders = NO_BORDERS);
+            Borders borders = NO_BORDERS, const std::vector<RowsOfAtoms *> &moving = {});
   /* Before the rows of an atom are written to a restart file. */
   virtual void record(int /*i*/) {}
   /* Do the rows of a restart file stand? */
@@ -141,7 +142,9 @@ class RowsFix : public LAMMPS_NS::Fix {
   virtual void read_state(const NamedState &) {}
 
  private:
+  /* all of them, those of files first */
   std::vector<RowsOfAtoms *> kept;
+  size_t in_files = 0;
   AtomArray *shown = nullptr;
   /* of LAMMPS's callbacks: which it wants, and which it has */
   std::vector<int> wanted, added;

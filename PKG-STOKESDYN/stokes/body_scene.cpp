@@ -102,9 +102,16 @@ void BodyScene::arrange()
 
 void BodyScene::add_points(const sd_multiblob_shape &shape, const std::vector<int> &rows)
 {
-  const size_t P = scene.shells->points();
-  for (int k = 0; k < shape.points.m; k++)
-    member.push_back(P * rows[shape.row[k] / P] + shape.row[k] % P);
+  const int *first = scene.shells->first_of_rows();
+  for (int k = 0, s = 0; k < shape.points.m; k++) {
+    while (shape.row[k] >= shape.first[s + 1]) s++;
+    member.push_back(first[rows[s]] + shape.row[k] - shape.first[s]);
+  }
+}
+
+const sd_multiblob_shape &BodyScene::points_of(const ClumpPoses::Clump &clump) const
+{
+  return rigid.shapes.points(poses.shape(clump), *scene.shells);
 }
 
 void BodyScene::add_free(int k)
@@ -112,7 +119,7 @@ void BodyScene::add_free(int k)
   const double w = scene.local().w[k], eta = 1.0 / (w * w);
   whole[k] = k;
   if (scene.shells) {
-    const sd_multiblob_shape &shape = scene.shells->free_sphere();
+    const sd_multiblob_shape &shape = scene.shells->free_sphere(scene.shells->kinds_of_rows()[k]);
     add_points(shape, {k});
     shaped.push_back({&shape.points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, scene.local().a[k], eta, nullptr});
   } else if (scene.settings.boundary.walled() && scene.settings.rotation) {
@@ -134,7 +141,7 @@ void BodyScene::add(const ClumpPoses::Clump &clump)
     sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &arm[3 * (size_t) row]);
   }
   if (scene.shells) {
-    const sd_multiblob_shape &shape = rigid.shapes.points(is, scene.shells->model());
+    const sd_multiblob_shape &shape = points_of(clump);
     double turn[9];
     add_points(shape, rows);
     body.shape = &shape.points;
@@ -212,10 +219,11 @@ void BodyScene::find_known()
 /* Spheres of a body, in the order of its shape */
 std::vector<int> BodyScene::spheres_of(const sd_body &body) const
 {
-  const int points = scene.shells ? scene.shells->points() : 1;
   std::vector<int> rows;
-  for (int k = 0; k < (body.shape ? body.shape->m : 1); k++)
-    if (rows.empty() || rows.back() != body.row[k] / points) rows.push_back(body.row[k] / points);
+  for (int k = 0; k < (body.shape ? body.shape->m : 1); k++) {
+    const int row = scene.shells ? sphere[body.row[k]] : body.row[k];
+    if (rows.empty() || rows.back() != row) rows.push_back(row);
+  }
   return rows;
 }
 
@@ -225,6 +233,7 @@ sd_status BodyScene::stand_at_wall(sd_body &body, double count)
   const std::vector<int> rows = spheres_of(body);
   std::vector<double> x, a, turn;
   std::vector<sd_multiblob_mask> mask;
+  std::vector<int> kind, first(1, 0);
   double centre[3], extent = 0.0;
   sd_minus(spheres.x + 3 * (size_t) rows[0], &arm[3 * (size_t) rows[0]], centre);
   for (size_t k : rows) {
@@ -234,16 +243,18 @@ sd_status BodyScene::stand_at_wall(sd_body &body, double count)
     if (!scene.shells) continue;
     turn.insert(turn.end(), scene.shells->turns() + 9 * k, scene.shells->turns() + 9 * k + 9);
     mask.push_back(scene.shells->masks()[k]);
+    kind.push_back(scene.shells->kinds_of_rows()[k]);
+    first.push_back(first.back() + scene.shells->points_of_row(k));
   }
   const sd_wall &wall = scene.settings.boundary.nearest(centre);
   const double height = sd_wall_height(&wall, centre);
   if (body.shape && !sd_body_wall_pays(body.shape->m, (int) count, height, extent)) return SD_OK;
   standing.emplace_back();
   sd_body_shape *shape = &standing.back();
-  const sd_multiblob_spheres shells = {x.data(), a.data(), turn.data(), mask.data(),
-                                       (int) rows.size()};
+  const sd_multiblob_spheres shells = {x.data(),    a.data(),   turn.data(),
+                                       mask.data(), (int) rows.size(), kind.data(), first.data()};
   const sd_status status = scene.shells
-      ? sd_multiblob_wall_shape(&scene.shells->model(), &wall, &shells, centre, shape)
+      ? sd_multiblob_wall_shape(scene.shells->all_models(), &wall, &shells, centre, shape)
       : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, shape);
   if (status == SD_ESINGULAR && body.shape) return SD_OK;    // those of open space will do
   if (status != SD_OK) return status;
@@ -286,8 +297,7 @@ void BodyScene::carry()
 void BodyScene::orient()
 {
   for (const ClumpPoses::Clump &clump : poses.clumps()) {
-    const sd_multiblob_shape &points =
-        rigid.shapes.points(poses.shape(clump), scene.shells->model());
+    const sd_multiblob_shape &points = points_of(clump);
     double pose[9], turn[9];
     sd_multiblob_shape_stand(&points, clump.pose, pose, turn);
     for (int k = 0; k < poses.body(clump).n; k++)
@@ -300,10 +310,10 @@ void BodyScene::orient()
 void BodyScene::place_points()
 {
   enum { VELOCITY = 0, SLOPE = 3, BEND = 12 };
-  const size_t n = scene.size(), P = scene.shells->points();
+  const size_t n = scene.size(), points = scene.shells->first_of_rows()[n];
   const double *gradients = ambient.gradients(), *curvatures = ambient.curvatures();
   const size_t bends = curvatures ? SD_FLOW_SECOND : 0;
-  std::vector<double> x(3 * P * n + 3), b(P * n + 1);
+  std::vector<double> x(3 * points + 3), b(points + 1);
   std::vector<double> rows = scene.rows(BEND + (int) bends, [&](int i, double *out) {
     std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
     if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
@@ -312,17 +322,18 @@ void BodyScene::place_points()
   scene.drift(rows.data(), BEND + (int) bends, 1.0);
   take_apart(rows, n, {{&velocity, 3}, {&slope, 9}, {&bend, bends}});
   const sd_spheres spheres = scene.local();
-  of_points.model = &scene.shells->model();
-  of_points.spheres = {spheres.x, spheres.a, scene.shells->turns(), scene.shells->masks(), (int) n};
+  of_points.model = scene.shells->all_models();
+  of_points.spheres = scene.shells->spheres(spheres, (int) n);
   of_points.w = spheres.w;
-  r.resize(3 * P * n + 3);
+  r.resize(3 * points + 3);
   of_points.r = r.data();
   sd_multiblob_expand(of_points.model, &of_points.spheres, r.data(), x.data(), b.data());
-  sphere.resize(P * n);
-  D.assign(3 * P * n + 3, 1.0);
-  u.resize(3 * P * n + 3);
-  for (size_t k = 0; k < P * n; k++) {
-    sphere[k] = (int) (k / P);
+  sphere.resize(points);
+  for (size_t k = 0; k < n; k++)
+    std::fill_n(sphere.begin() + of_points.spheres.first[k], scene.shells->points_of_row(k), (int) k);
+  D.assign(3 * points + 3, 1.0);
+  u.resize(3 * points + 3);
+  for (size_t k = 0; k < points; k++) {
     const double w = spheres.w[sphere[k]], drag = 6.0 * SD_PI * b[k] / (w * w);
     for (int d = 0; d < 3 && b[k] > 0.0; d++) D[3 * k + d] = drag;
   }
@@ -337,8 +348,8 @@ void BodyScene::flow_at_points(const double *of_spheres, int stride)
     double change[3];
     sd_multiply3(&slope[9 * i], &r[3 * k], change);
     if (!bend.empty())
-      sd_flow_bend(&bend[SD_FLOW_SECOND * i], &r[3 * k], of_points.model->point * spheres.a[i],
-                   change);
+      sd_flow_bend(&bend[SD_FLOW_SECOND * i], &r[3 * k],
+                   sd_multiblob_of(of_points.model, &spheres, i)->point * spheres.a[i], change);
     for (int d = 0; d < 3; d++) u[3 * k + d] = of_spheres[stride * i + d] + change[d];
   }
 }
@@ -361,14 +372,14 @@ void BodyScene::slip_at_points(const std::vector<double> &slip, bool strained)
 /* Of the bodies: points on spheres */
 void BodyScene::put_points()
 {
-  const int n = scene.size(), all = scene.shells->points() * n;
+  const int n = scene.size(), all = scene.shells->first_of_rows()[n];
   bodies.points = {all, 3, sphere.data(), r.data()};
   bodies.D = D.data();
   whole_shells.resize(n + 1);
   for (int k = 0; k < n; k++)
-    whole_shells[k] = (of_points.spheres.mask[k] & SD_MULTIBLOB_WHOLE) != 0;
-  faces = {scene.shells->points(), scene.shells->free_sphere().faces, of_points.spheres.turn,
-           whole_shells.data()};
+    whole_shells[k] = (char) sd_multiblob_mask_is_whole(of_points.spheres.mask + k);
+  faces = {scene.shells->faces(), of_points.spheres.turn, whole_shells.data(),
+           of_points.spheres.kind, of_points.spheres.first};
   bodies.faces = &faces;
   alone.n = all;
   of_points.pairs = bodies.apply;
@@ -381,7 +392,6 @@ void BodyScene::put_points()
 void BodyScene::slip_of_swimmers()
 {
   enum { B1 = 3, B2, BETA, COLUMNS };
-  const size_t P = scene.shells->points();
   const std::vector<double> rows = scene.rows(COLUMNS, [this](int i, double *out) {
     sd_squirmer_stroke stroke = {};
     if (!given.swims(i, stroke)) return;
@@ -394,8 +404,10 @@ void BodyScene::slip_of_swimmers()
     const double *row = &rows[COLUMNS * k];
     if (sd_dot(row, row) == 0.0) continue;
     const sd_squirmer_stroke stroke = {{row[0], row[1], row[2]}, row[B1], row[B2], row[BETA]};
-    sd_squirmer_slip(&scene.shells->model(), &scene.shells->squirmer(), &stroke,
-                     of_points.spheres.a[k], &r[3 * P * k], &u[3 * P * k]);
+    const size_t first = of_points.spheres.first[k];
+    const int kind = of_points.spheres.kind[k];
+    sd_squirmer_slip(&scene.shells->model(kind), &scene.shells->squirmer(kind), &stroke,
+                     of_points.spheres.a[k], &r[3 * first], &u[3 * first]);
   }
 }
 

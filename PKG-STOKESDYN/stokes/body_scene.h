@@ -92,6 +92,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   void add_free(int row);
   void add(const ClumpPoses::Clump &clump);
   void add_points(const sd_multiblob_shape &shape, const std::vector<int> &rows);
+  const sd_multiblob_shape &points_of(const ClumpPoses::Clump &clump) const;
   void stand_at_wall();
   sd_status stand_at_wall(sd_body &body, double count);
   std::vector<int> spheres_of(const sd_body &body) const;

@@ -1,6 +1,7 @@
 #include "clump_shapes.h"
 
 #include "keywords.h"
+#include "shells.h"
 
 #include "comm.h"
 #include "utils.h"
@@ -182,11 +183,19 @@ const sd_body_shape &ClumpShapes::blocks(const ClumpShape &s, const ClumpModel &
   return s.body;
 }
 
-const sd_multiblob_shape &ClumpShapes::points(const ClumpShape &s, const sd_multiblob &model) const
+const sd_multiblob_shape &ClumpShapes::points(const ClumpShape &s, const Shells &of) const
 {
-  if (s.points.spheres == 0)
-    check_blocks(voice, s, sd_multiblob_shape_create(&model, &s.shape, &s.points));
+  if (s.points.spheres > 0) return s.points;
+  std::vector<int> kind;
+  for (int k = 0; k < s.shape.n; k++) kind.push_back(of.kind(s.shape.a[k]));
+  check_blocks(voice, s,
+               sd_multiblob_shape_create(of.all_models(), &s.shape, kind.data(), &s.points));
   return s.points;
+}
+
+void ClumpShapes::forget_points()
+{
+  for (const auto &s : shapes) sd_multiblob_shape_free(&s.second->points);
 }
 
 void ClumpShapes::take_root(const ClumpShape &s) const

@@ -20,6 +20,8 @@
 
 namespace StokesDyn {
 
+class Shells;
+
 /* How the spheres of a clump are modelled */
 struct ClumpModel {
   int shell = 1;
@@ -72,8 +74,9 @@ class ClumpShapes : protected LAMMPS_NS::Pointers {
                                      sd_status status, double need = 0.0) const;
   /* A shape in a cloud with others. Error: memory. */
   const sd_body_shape &blocks(const ClumpShape &shape, const ClumpModel &model) const;
-  /* The same where all spheres are shells of points */
-  const sd_multiblob_shape &points(const ClumpShape &shape, const sd_multiblob &model) const;
+  /* The same where all spheres are shells of points; until the shells are others than before */
+  const sd_multiblob_shape &points(const ClumpShape &shape, const Shells &of) const;
+  void forget_points();
 
   /* Whichever of the two there is, for noise. Error: memory. */
   void take_root(const ClumpShape &shape) const;

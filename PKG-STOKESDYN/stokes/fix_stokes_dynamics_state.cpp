@@ -2,6 +2,7 @@
 
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "ranks.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -10,6 +11,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -25,14 +27,15 @@ FixStokesDynamicsState *FixStokesDynamicsState::find(LAMMPS *lmp)
 }
 
 FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history,
-                                                        int points)
+                                                        int points, int most)
 {
   FixStokesDynamicsState *fix = find(lmp);
-  if (fix && fix->rotation == rotation && fix->history == history && fix->points == points)
+  if (fix && fix->rotation == rotation && fix->history == history && fix->points == points &&
+      fix->most == most)
     return fix;
   if (fix) lmp->modify->delete_fix(ID);
   lmp->modify->add_fix(std::string(ID) + " all " + STYLE + " " + std::to_string(rotation) + " " +
-                       std::to_string(history) + " " + std::to_string(points));
+                       std::to_string(history) + " " + std::to_string(points) + " " + std::to_string(most));
   return find(lmp);
 }
 
@@ -43,12 +46,39 @@ static int number(int narg, char **arg, int k)
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), rotation(number(narg, arg, 3)), history(number(narg, arg, 4)),
-    points(number(narg, arg, 5)),
-    rows(points > 0 ? of_motion_before() + 6 : of_points()), places(3), resume(lmp, rotation),
-    left(resume.columns())
+    points(number(narg, arg, 5)), most(number(narg, arg, 6)),
+    rows(points > 0 ? of_motion_before() + 6 : of_points()),
+    places(3), larger{AtomRows(6 * 42), AtomRows(6 * 162), AtomRows(6 * 642)},
+    resume(lmp, rotation), left(resume.columns())
 {
   restart_global = 1;
-  keep({&rows, &places, &left}, nullptr, true);
+  std::vector<RowsOfAtoms *> all = {&rows, &places, &left}, moving;
+  if (has_larger()) moving = {&larger[0], &larger[1], &larger[2]};
+  keep(all, nullptr, true, NO_BORDERS, moving);
+}
+
+void FixStokesDynamicsState::take(int i)
+{
+  rows.take(i);
+  places.take(i);
+  for (AtomRows &of : larger)
+    if (has_larger()) of.take(i);
+}
+
+FixStokesDynamicsState::OfPoints<double> FixStokesDynamicsState::give_points(int i, int kind, int n)
+{
+  if (kind == 0) return {rows.give(i) + of_points(), rows.give(i) + of_points_before()};
+  if (!has_larger()) return {nullptr, nullptr};
+  double *row = larger[kind - 1].give(i);
+  return {row, row + 3 * n};
+}
+
+FixStokesDynamicsState::OfPoints<const double> FixStokesDynamicsState::points_of(int i, int kind,
+                                                                                 int n) const
+{
+  if (kind == 0) return {rows[i] + of_points(), rows[i] + of_points_before()};
+  if (!has_larger() || !larger[kind - 1].has(i)) return {nullptr, nullptr};
+  return {larger[kind - 1][i], larger[kind - 1][i] + 3 * n};
 }
 
 void FixStokesDynamicsState::forget()
@@ -59,6 +89,7 @@ void FixStokesDynamicsState::forget()
   global.unconverged = old.unconverged;
   global.time_before = old.time_before;
   rows.clear();
+  for (AtomRows &of : larger) of.clear();
   places.clear();
   left.clear();
 }
@@ -139,8 +170,37 @@ std::vector<SavedNumbers> FixStokesDynamicsState::saved()
           {"lambda_min", &g.guard.lambda_min},
           {"guard_due", &g.guard.due},
           {"dt_limit", &g.guard.limit},
+          {"smallest_radius", &g.shells.smallest},
+          {"unlike_shells", &g.shells.unlike},
           {"numbers", g.numbers, Ambient::NUMBERS},
           {"box", g.box, 6}};
+}
+
+/* ID, kind, and the rows of larger spheres, one after the other, those of all ranks: these are few, and in
+ * the rows of a file every atom would take as much as the largest. */
+std::vector<double> FixStokesDynamicsState::of_larger_spheres() const
+{
+  std::vector<double> mine;
+  for (int kind = 0; kind < 3 && has_larger(); kind++)
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!larger[kind].has(i)) continue;
+      mine.insert(mine.end(), {(double) atom->tag[i], (double) kind});
+      mine.insert(mine.end(), larger[kind][i], larger[kind][i] + larger[kind].columns());
+    }
+  return from_all(world, mine);
+}
+
+void FixStokesDynamicsState::give_larger_spheres(const std::vector<double> &all)
+{
+  std::unordered_map<tagint, int> here;
+  if (!has_larger() || all.empty()) return;
+  for (int i = 0; i < atom->nlocal; i++) here[atom->tag[i]] = i;
+  for (size_t at = 0; at + 2 < all.size();) {
+    AtomRows &of = larger[(int) all[at + 1]];
+    const auto found = here.find((tagint) all[at]);
+    if (found != here.end()) std::copy_n(&all[at + 2], of.columns(), of.give(found->second));
+    at += 2 + of.columns();
+  }
 }
 
 void FixStokesDynamicsState::write_state(NamedState &out)
@@ -151,6 +211,7 @@ void FixStokesDynamicsState::write_state(NamedState &out)
   out.put("loose", global.loose);
   out.put("open_box", global.open_box);
   out.put("in_axes_of_shells", 1.0);
+  out.put("larger_spheres", of_larger_spheres());
   out.put_bits("settings", global.settings);
 }
 
@@ -161,6 +222,7 @@ void FixStokesDynamicsState::read_state(const NamedState &in)
   global.loose = in.get("loose");
   global.open_box = in.get("open_box");
   global.settings = in.get_bits("settings", 0);
+  give_larger_spheres(in.get("larger_spheres"));
   if (points > 0 && in.get("in_axes_of_shells", 0.0) == 0.0)
     global.last_step = -1;    // of a version that kept forces of points in space
 }

@@ -11,6 +11,7 @@
 #include "ambient.h"
 #include "resume.h"
 #include "rows_fix.h"
+#include "shells.h"
 #include "time_step_guard.h"
 
 #include <cstdint>
@@ -27,7 +28,7 @@ class FixStokesDynamicsState : public RowsFix {
   static FixStokesDynamicsState *find(LAMMPS_NS::LAMMPS *lmp);
   /* The same, made anew unless it is of this kind. */
   static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history,
-                                         int points);
+                                         int points, int most);
 
   FixStokesDynamicsState(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }
@@ -43,10 +44,22 @@ class FixStokesDynamicsState : public RowsFix {
   /* of each sphere, whose forces on the fluid are behind that, in the axes of its shell: 3 columns each;
    * 0: none. Then those of the solve before, and the velocities that went with them */
   const int points;
+  /* of any sphere: those of larger spheres, of another shell, have rows of their own, of their points and
+   * those before */
+  const int most;
+  template <class T> struct OfPoints {
+    T *now, *before;
+  };
+  /* Of atom i, whose shell has so many points and is the kind-th of Shells; to write, and to read: nullptr
+   * where there are none */
+  OfPoints<double> give_points(int i, int kind, int n);
+  OfPoints<const double> points_of(int i, int kind, int n) const;
   int of_points() const { return before() + (history ? (rotation ? 6 : 3) : 0); }
   int of_points_before() const { return of_points() + 3 * points; }
   int of_motion_before() const { return of_points() + 6 * points; }
   AtomRows rows;
+  /* Atom i has none of them. */
+  void take(int i);
   /* where spheres stood when the preconditioner was made (preconditioner.h) */
   AtomRows places;
 
@@ -74,6 +87,8 @@ class FixStokesDynamicsState : public RowsFix {
     double line = 0;
     /* periodic lengths and tilts as the last run left them */
     double box[6] = {0};
+    /* which shells the spheres have */
+    Shells::Classes shells;
     /* hash of the words of the pair_style command */
     uint64_t settings = 0;
     /* kept for those who know what they mean */
@@ -90,9 +105,13 @@ class FixStokesDynamicsState : public RowsFix {
   bool moving_as_left(int i) const { return resume.moving(i, left[i]); }
 
  private:
+  AtomRows larger[3];
   Resume resume;
   AtomRows left;
 
+  bool has_larger() const { return points > 0 && most > points; }
+  std::vector<double> of_larger_spheres() const;
+  void give_larger_spheres(const std::vector<double> &all);
   void forget();
   void record(int i) override;
   std::vector<SavedNumbers> saved() override;

@@ -142,9 +142,9 @@ void Guess::turn(int i, const double R[9])
  * are free do not turn */
 void Guess::turn_points(std::vector<double> &of_points, bool back) const
 {
-  const size_t P = shells.points();
+  const int *first = shells.first_of_rows();
   for (size_t k = scene.lone(); k < (size_t) scene.size(); k++)
-    for (size_t p = P * k; p < P * (k + 1); p++) {
+    for (size_t p = first[k]; p < (size_t) first[k + 1]; p++) {
       const double was[3] = {of_points[3 * p], of_points[3 * p + 1], of_points[3 * p + 2]};
       (back ? sd_multiply3t : sd_multiply3)(shells.turns() + 9 * k, was, &of_points[3 * p]);
     }
@@ -154,35 +154,46 @@ void Guess::turn_points(std::vector<double> &of_points, bool back) const
  * none. */
 std::vector<double> Guess::recall_points(double line) const
 {
-  const size_t m = 3 * (size_t) shells.points();
-  if (memory->points == 0) return std::vector<double>(m * scene.size() + m, 0.0);
-  std::vector<double> found_then = scene.rows((int) m, [&](int i, double *out) {
-    const double *row = memory->rows[i], *last = row + memory->of_points(),
-                 *before = row + memory->of_points_before();
-    for (size_t d = 0; d < m; d++) out[d] = last[d] + line * (last[d] - before[d]);
-  });
+  const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
+  std::vector<double> found_then(3 * (size_t) first[scene.size()] + 3, 0.0);
+  for (int kind = 0; kind < shells.kinds() && memory->points > 0; kind++) {
+    const int n = shells.model(kind).n;
+    const auto read = [&](int i, double *out) {
+      const auto of = memory->points_of(i, kind, n);
+      for (int d = 0; d < 3 * n; d++)
+        out[d] = of.now ? of.now[d] + line * (of.now[d] - of.before[d]) : 0.0;
+    };
+    scene.rows_to(3 * n, read, [&](size_t k) {
+      return kinds[k] == kind ? &found_then[3 * (size_t) first[k]] : nullptr;
+    });
+  }
   turn_points(found_then, false);
   return found_then;
 }
 
 void Guess::keep_points()
 {
-  const size_t m = 3 * (size_t) memory->points;
-  if (m == 0) return;
+  if (memory->points == 0) return;
+  const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
   std::vector<double> of_points = l;
   turn_points(of_points, true);
   double off[2] = {0.0, 0.0};    // from the last, from the line
-  scene.to_atoms((int) m, of_points.data(), [&](int i, const double *row) {
-    double *last = memory->rows.give(i) + memory->of_points();
-    double *before = memory->rows.give(i) + memory->of_points_before();
-    for (size_t d = 0; d < m; d++) {
-      const double change = row[d] - last[d], bend = change - (last[d] - before[d]);
-      off[0] += change * change;
-      off[1] += bend * bend;
-      before[d] = last[d];
-      last[d] = row[d];
-    }
-  });
+  for (int kind = 0; kind < shells.kinds(); kind++) {
+    const int n = shells.model(kind).n;
+    const auto at = [&](size_t k) {
+      return kinds[k] == kind ? &of_points[3 * (size_t) first[k]] : nullptr;
+    };
+    scene.some_to_atoms(3 * n, at, [&](int i, const double *row) {
+      const auto of = memory->give_points(i, kind, n);
+      for (int d = 0; d < 3 * n && of.now; d++) {
+        const double change = row[d] - of.now[d], bend = change - (of.now[d] - of.before[d]);
+        off[0] += change * change;
+        off[1] += bend * bend;
+        of.before[d] = of.now[d];
+        of.now[d] = row[d];
+      }
+    });
+  }
   MPI_Allreduce(MPI_IN_PLACE, off, 2, MPI_DOUBLE, MPI_SUM, world);
   memory->global.line = off[1] < off[0];
 }

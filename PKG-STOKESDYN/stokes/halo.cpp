@@ -165,6 +165,23 @@ void Halo::reduce(const double *of_copies, double *rows, int width) const
     for (int d = 0; d < width; d++) rows[width * (size_t) sphere[k] + d] += outbox[width * k + d];
 }
 
+Halo Halo::refined(const std::vector<int> &first) const
+{
+  Halo fine(post.world);
+  size_t gone = 0, come = first.size() - 1 - copies;
+  fine.copies = first.back() - first[come];
+  for (const Post::Partner &p : post.partners) {
+    const size_t before = fine.sphere.size();
+    for (int k = 0; k < p.out; k++, gone++)
+      for (int row = first[sphere[gone]]; row < first[sphere[gone] + 1]; row++)
+        fine.sphere.push_back(row);
+    fine.post.partners.push_back(
+        {p.rank, (int) (fine.sphere.size() - before), first[come + p.in] - first[come]});
+    come += p.in;
+  }
+  return fine;
+}
+
 void Halo::place(const double h[6], const double *x, double *out) const
 {
   outbox.assign(3 * sphere.size() + 1, 0.0);

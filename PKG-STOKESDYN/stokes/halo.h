@@ -58,6 +58,10 @@ class Halo {
   void extend(const double h[6], std::vector<double> &x,
               std::initializer_list<std::vector<double> *> columns) const;
 
+  /* The same for rows of which each sphere has as many as it likes, first [rows + copies + 1] where those of
+   * each begin; for refresh and reduce alone */
+  Halo refined(const std::vector<int> &first) const;
+
   double memory_usage() const;
 
  private:

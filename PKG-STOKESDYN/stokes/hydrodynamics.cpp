@@ -46,6 +46,9 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   if (settings.shells.on()) check_room_of_blas(voice);
   shells.make();
   scene.shells = settings.shells.on() ? &shells : nullptr;
+  scene.fit = [this] {
+    fit_shells();
+  };
   scene.orient = [this] {
     bodies.orient();
   };
@@ -102,10 +105,17 @@ void Hydrodynamics::begin(Moment moment)
   if (scene.settings.whole) scene.whole.find();
   if (!cleared.first_in(epochs.selection)) return;
   for (int i = 0; i < atom->nlocal; i++)
-    if (!ambient.active()[i]) {
-      memory->rows.take(i);
-      memory->places.take(i);
-    }
+    if (!ambient.active()[i]) memory->take(i);
+}
+
+/* Which shells the spheres have: as the run began, or the one that a restart file goes on with. */
+void Hydrodynamics::fit_shells()
+{
+  Shells::Classes &kept = memory->global.shells;
+  if (shells.classes.smallest == 0.0) shells.classes = kept;
+  if (scene.largest() > 0.0 && shells.choose(scene.smallest(), scene.largest(), epochs.run))
+    rigid.shapes.forget_points();
+  kept = shells.classes;
 }
 
 void Hydrodynamics::look_ahead()
@@ -316,7 +326,7 @@ void Hydrodynamics::look_at_shells(const sd_system &system)
 {
   const Solve::How how = {false, 1e-2, settings.max_iter};
   Guess none(lmp, scene, shells, settings, epochs);
-  none.l.resize(3 * (size_t) shells.points() * scene.size() + 3);
+  none.l.resize(3 * (size_t) shells.first_of_rows()[scene.size()] + 3);
   none.v.resize(6 * (size_t) scene.size() + 6);
   sd_solve_report made = {};
   const std::vector<double> found = solver.exerted;

@@ -154,6 +154,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   sd_status find_motions(const Solve::Take &take, const Solve::Draw *draw, sd_solve_report &report);
   void look_at_step(const sd_solve_report &report, bool preconditioned);
   void look_at_shells(const sd_system &system);
+  void fit_shells();
   void judge(sd_status status, const sd_solve_report &report);
   /* by rows: points of the shells as they stand now, from their centre and in space, their radii,
    * and the forces on the fluid that the last solve found */

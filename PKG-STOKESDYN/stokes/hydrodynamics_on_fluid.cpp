@@ -24,7 +24,7 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   const Points now = points_of_now();
   const size_t n = scene.size();
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0);
-  sd_multiblob_moments(shells.points(), (int) n, now.r.data(), now.l.data(), points.data());
+  sd_multiblob_moments((int) n, shells.first_of_rows(), now.r.data(), now.l.data(), points.data());
   if (overdamped) add_constraints(points.data());
   if (settings.lubrication.on) {
     const double *v = overdamped ? solver.v.data() : films_v.data();
@@ -47,7 +47,8 @@ void Hydrodynamics::add_constraints(double *S) const
   std::vector<double> f(3 * n + 3);
   for (size_t k = 0; k < n; k++)
     sd_minus(&solver.exerted[6 * (first + k)], &bodies.F[6 * (first + k)], &f[3 * k]);
-  sd_multiblob_moments(1, (int) n, &bodies.arms()[3 * first], f.data(), S + 6 * first);
+  for (size_t k = 0; k < n; k++)
+    sd_multiblob_moment(1, &bodies.arms()[3 * (first + k)], &f[3 * k], S + 6 * (first + k));
 }
 
 /* Where no solve was needed in this step the rows of the scene may be those of another one. */
@@ -57,14 +58,14 @@ Hydrodynamics::Points Hydrodynamics::points_of_now()
     voice.at_step().fail("the forces of the points are not kept with warm_start no; use warm_start "
                          "yes");
   stand_rows();
-  const size_t n = scene.size(), points = n * shells.points();
-  const sd_spheres s = scene.local();
-  const sd_multiblob_spheres spheres = {s.x, s.a, shells.turns(), shells.masks(), (int) n};
+  const int n = scene.size();
+  const size_t points = shells.first_of_rows()[n];
+  const sd_multiblob_spheres spheres = shells.spheres(scene.local(), n);
   Points now;
   now.r.resize(3 * points + 3);
   now.x.resize(3 * points + 3);
   now.b.resize(points + 1);
-  sd_multiblob_expand(&shells.model(), &spheres, now.r.data(), now.x.data(), now.b.data());
+  sd_multiblob_expand(shells.all_models(), &spheres, now.r.data(), now.x.data(), now.b.data());
   now.l = guess.points_now();
   return now;
 }
@@ -72,17 +73,17 @@ Hydrodynamics::Points Hydrodynamics::points_of_now()
 std::vector<double> Hydrodynamics::of_points_on_fluid(std::vector<double> *viscosity)
 {
   const Points now = points_of_now();
-  const size_t P = shells.points();
+  const int *first = shells.first_of_rows();
   const double *w = scene.local().w;
   std::vector<double> all;
-  for (size_t k = 0; k < scene.size() * P; k++) {
-    if (!(now.b[k] > 0.0)) continue;
-    all.insert(all.end(), &now.x[3 * k], &now.x[3 * k] + 3);
-    all.push_back(now.b[k]);
-    for (int d = 0; d < 6; d++)
-      all.push_back(d < 3 ? w[k / P] * w[k / P] * now.l[3 * k + d] : 0.0);
-    if (viscosity) viscosity->push_back(1.0 / (w[k / P] * w[k / P]));
-  }
+  for (int i = 0; i < scene.size(); i++)
+    for (size_t k = first[i]; k < (size_t) first[i + 1]; k++) {
+      if (!(now.b[k] > 0.0)) continue;
+      all.insert(all.end(), &now.x[3 * k], &now.x[3 * k] + 3);
+      all.push_back(now.b[k]);
+      for (int d = 0; d < 6; d++) all.push_back(d < 3 ? w[i] * w[i] * now.l[3 * k + d] : 0.0);
+      if (viscosity) viscosity->push_back(1.0 / (w[i] * w[i]));
+    }
   return all;
 }
 

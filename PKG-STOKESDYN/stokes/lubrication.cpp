@@ -72,14 +72,15 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
 void Lubrication::add_wall(const Scene &where, const sd_wall &wall)
 {
   const sd_spheres s = where.local();
-  const sd_multiblob *model = shells.on() ? &where.shells->model() : nullptr;
-  std::vector<double> r(model ? 3 * model->n : 0);
+  std::vector<double> r;
   double normal[3] = {0.0};
   normal[wall.axis] = wall.sign;
   for (size_t k = 0; k < (size_t) where.size(); k++) {
     const double *x = s.x + 3 * k, *flow = &u[6 * k], eta = 1.0 / (s.w[k] * s.w[k]);
     double B[36], E[6];
-    if (model) {
+    if (shells.on()) {
+      const sd_multiblob *model = &where.shells->model_of(s.a[k]);
+      r.resize(3 * model->n);
       for (int p = 0; p < model->n; p++) {
         sd_multiply3(where.shells->turns() + 9 * k, model->r + 3 * p, &r[3 * p]);
         for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];

@@ -216,7 +216,9 @@ void PairStokesDynamics::init_style()
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
   const Shells::Settings &shells = hydro.settings.shells;
   const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
-  State::provide(lmp, scene.rotation, hydro.settings.history(), points)->settings_are(words_of_now());
+  const int most = points > 0 && !shells.alike() ? shells.most : 0;
+  State::provide(lmp, scene.rotation, hydro.settings.history(), points, most)
+      ->settings_are(words_of_now());
   look_for_fixes();
   check_layer(voice, hydro.settings, hydro.overdamped);
   refuse_moving_box(voice, scene.boundary);

@@ -16,7 +16,7 @@ namespace StokesDyn {
 
 Scene::Scene(const Voice &voice, Epochs &epochs, Settings &settings) :
     Pointers(voice.lmp), settings(settings), whole(voice, epochs), voice(voice), epochs(epochs),
-    halo(world)
+    halo(world), halo_of_points(world)
 {
 }
 
@@ -135,14 +135,14 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
       const double count = ewald.count + second_level.count;
       somebody_sees = count > (ewald.box.periodic || settings.boundary.walled() ? 0.0 : 1.0);
       if (somebody_sees || settings.films > 0.0)
-        surround(std::max(ewald.reach + 2.0 * extent() * most, settings.films * most),
+        surround(std::max(ewald.reach + 2.0 * extent(most), settings.films * most),
                  "far_field: the largest radius, " + text(most));
       if (!somebody_sees) return;
       tell();
       place(size_with_copies());
     } else {
       gather();
-      somebody_sees = n_all * points() > (settings.boundary.walled() ? 0 : 1);
+      somebody_sees = (shells ? n_all > 0 : n_all > 1) || (settings.boundary.walled() && n_all > 0);
       if (settings.films > 0.0) surround_films();
       place(n_all);
     }
@@ -204,39 +204,49 @@ void Scene::place(int n_all_or_copies)
   sd_mobility_scene scene = {};
   scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr, &second_level,
                settings.boundary.slab() ? &slab : nullptr};
-  if (shells) {
-    std::vector<double> rows = shells->sent(size()), all(10 * (size_t) n_all_or_copies + 10);
-    if (cloud)
-      to_cloud(rows.data(), all.data(), 10);
-    else {
-      std::copy_n(rows.begin(), 10 * (size_t) size(), all.begin());
-      halo.refresh(rows.data(), &all[10 * (size_t) size()], 10);
-    }
-    shells->expand(n_all_or_copies, all, cloud ? this->cloud() : local());
-  }
-  scene.n = points() * size();
-  scene.n_all = points() * n_all_or_copies;
-  scene.spheres = shells ? shells->all() : cloud ? this->cloud() : local();
+  scene.n = size();
+  scene.n_all = n_all_or_copies;
+  scene.spheres = cloud ? this->cloud() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
   scene.world = ranks();
-  scene.world.refresh = [](void *ctx, const double *rows, double *copies, int width) {
-    return refresh(ctx, rows, copies, width * static_cast<Scene *>(ctx)->points());
-  };
   scene.world.spread = [](void *ctx, const double *rows, double *all, int width) {
     return callback([=] {
       Scene *self = static_cast<Scene *>(ctx);
-      self->to_cloud(rows, all, width * self->points());
+      self->to_cloud(rows, all, width, self->first_in_cloud());
     });
   };
   scene.world.collect = [](void *ctx, const double *all, double *rows, int width) {
     return callback([=] {
       Scene *self = static_cast<Scene *>(ctx);
-      self->from_cloud(all, rows, width * self->points());
+      self->from_cloud(all, rows, width, self->first_in_cloud());
     });
   };
+  if (shells) place_points(n_all_or_copies, scene);
   const sd_status status = sd_mobility_place(&omega, engine, &scene);
   if (status != SD_OK)
     fail_by(voice.of("set-up of the matrix-vector product by " + std::string(engine->name)), status);
+}
+
+/* The same with the points of the spheres: their rows go where those of the spheres did. */
+void Scene::place_points(int n_all_or_copies, sd_mobility_scene &scene)
+{
+  const int width = shells->sent_width();
+  std::vector<double> rows = shells->sent(size()), all(width * ((size_t) n_all_or_copies + 1));
+  if (view() == SD_VIEW_ALL)
+    to_cloud(rows.data(), all.data(), width);
+  else {
+    std::copy_n(rows.begin(), width * (size_t) size(), all.begin());
+    halo.refresh(rows.data(), &all[width * (size_t) size()], width);
+  }
+  shells->expand(n_all_or_copies, all, view() == SD_VIEW_ALL ? cloud() : local());
+  scene.n = shells->first_of_rows()[size()];
+  scene.n_all = shells->first_of_all()[n_all_or_copies];
+  scene.spheres = shells->all();
+  if (view() == SD_VIEW_ALL) return;
+  halo_of_points = halo.refined(shells->first_of_all());
+  scene.world.refresh = [](void *ctx, const double *rows, double *copies, int width) {
+    return callback([=] { static_cast<Scene *>(ctx)->halo_of_points.refresh(rows, copies, width); });
+  };
 }
 
 /* The cloud: the spheres of all ranks, sorted by tag. */
@@ -276,24 +286,36 @@ void Scene::gather()
   }
 }
 
-void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width)
+void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width, const int *first)
 {
-  const size_t m = width;
+  const size_t m = width, here = first ? (size_t) points_here() : size();
   std::vector<double> all;
-  if (comm->nprocs > 1) all = from_all(world, std::vector<double>(own_rows, own_rows + m * size()));
+  if (comm->nprocs > 1) all = from_all(world, std::vector<double>(own_rows, own_rows + m * here));
   const double *from = comm->nprocs > 1 ? all.data() : own_rows;
-  for (int j = 0; j < n_all; j++) std::copy_n(from + m * j, m, cloud_rows + m * place_of[j]);
+  for (int j = 0; j < n_all; j++) {
+    const size_t k = place_of[j], at = first ? first[k] : k, count = first ? first[k + 1] - at : 1;
+    std::copy_n(from, m * count, cloud_rows + m * at);
+    from += m * count;
+  }
 }
 
-void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width)
+void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width, const int *first)
 {
   const size_t m = width;
-  in_order_of_rank.resize(m * n_all + 1);
+  in_order_of_rank.resize(m * (first ? first[n_all] : n_all) + 1);
   double *to = comm->nprocs > 1 ? in_order_of_rank.data() : own_rows;
-  for (int j = 0; j < n_all; j++) std::copy_n(cloud_rows + m * place_of[j], m, to + m * j);
-  if (comm->nprocs == 1) return;
   std::vector<int> counts;
-  for (int spheres : spheres_of_rank) counts.push_back(mpi_count((double) width * spheres));
+  int j = 0;
+  for (int spheres : spheres_of_rank) {
+    const double *start = to;
+    for (const int end = j + spheres; j < end; j++) {
+      const size_t k = place_of[j], at = first ? first[k] : k, count = first ? first[k + 1] - at : 1;
+      std::copy_n(cloud_rows + m * at, m * count, to);
+      to += m * count;
+    }
+    counts.push_back(mpi_count((double) (to - start)));
+  }
+  if (comm->nprocs == 1) return;
   MPI_Reduce_scatter(in_order_of_rank.data(), own_rows, counts.data(), MPI_DOUBLE, MPI_SUM, world);
 }
 

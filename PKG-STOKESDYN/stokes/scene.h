@@ -79,12 +79,13 @@ class Scene : protected LAMMPS_NS::Pointers {
   WholeClumps whole;
   /* Spheres are shells of points, which are what the engine sees; nullptr: they are points */
   Shells *shells = nullptr;
-  /* With shells: turns those of clumps, when the rows stand */
-  std::function<void()> orient;
+  /* With shells: finds which each sphere has, and turns those of clumps, when the rows stand */
+  std::function<void()> fit, orient;
   void turn_shells()
   {
     if (!shells) return;
-    shells->free_rows(size());
+    fit();
+    shells->free_rows(size(), a.data());
     orient();
   }
 
@@ -112,20 +113,31 @@ class Scene : protected LAMMPS_NS::Pointers {
   template <class Row> std::vector<double> rows(int width, const Row &row) const
   {
     std::vector<double> out(width * (tags.size() + 1));
-    for (size_t k = 0; k < loose.size(); k++) row(loose[k], &out[width * k]);
-    if (!settings.whole) return out;
-    whole.gather_to(width, row, [&](size_t m) {
-      return row_of[m] >= 0 ? &out[width * (size_t) row_of[m]] : nullptr;
-    });
+    rows_to(width, row, [&](size_t k) { return &out[width * k]; });
     return out;
   }
   template <class Take> void to_atoms(int width, const double *rows, const Take &take) const
   {
-    for (size_t k = 0; k < loose.size(); k++) take(loose[k], rows + width * k);
+    some_to_atoms(width, [=](size_t k) { return rows + width * k; }, take);
+  }
+  /* The same of rows wherever they are: room(k), at(k) [width]; nullptr: that one does not go */
+  template <class Row, class Room> void rows_to(int width, const Row &row, const Room &room) const
+  {
+    for (size_t k = 0; k < loose.size(); k++)
+      if (double *out = room(k)) row(loose[k], out);
+    if (!settings.whole) return;
+    whole.gather_to(width, row, [&](size_t m) {
+      return row_of[m] >= 0 ? room(row_of[m]) : nullptr;
+    });
+  }
+  template <class At, class Take> void some_to_atoms(int width, const At &at, const Take &take) const
+  {
+    for (size_t k = 0; k < loose.size(); k++)
+      if (const double *row = at(k)) take(loose[k], row);
     if (!settings.whole) return;
     const auto all = [&](const auto &give) {
       for (size_t m = 0; m < row_of.size(); m++)
-        if (row_of[m] >= 0) give(m, rows + width * (size_t) row_of[m]);
+        if (const double *row = row_of[m] >= 0 ? at(row_of[m]) : nullptr) give(m, row);
     };
     whole.scatter(width, all, take);
   }
@@ -177,8 +189,14 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_spheres cloud() const { return {all_x.data(), all_a.data(), all_w.data()}; }
   const std::vector<int64_t> &cloud_molecules() const { return all_molecule; }
   /* From rows of this rank's spheres to rows of the cloud, and, summed over the ranks, back. */
-  void to_cloud(const double *own_rows, double *cloud_rows, int width);
-  void from_cloud(const double *cloud_rows, double *own_rows, int width);
+  void to_cloud(const double *own_rows, double *cloud_rows, int width)
+  {
+    to_cloud(own_rows, cloud_rows, width, nullptr);
+  }
+  void from_cloud(const double *cloud_rows, double *own_rows, int width)
+  {
+    from_cloud(cloud_rows, own_rows, width, nullptr);
+  }
 
   /* u = Omega F since the last update(): context of sd_mobility_apply. */
   sd_mobility *mobility() { return &omega; }
@@ -204,7 +222,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   double jumps[6] = {0.0};
   bool jumping = false;
   std::vector<double> of_copies;
-  Halo halo;
+  Halo halo, halo_of_points;
   Owned<sd_neighbors, sd_neighbors_free> candidates, pairs;
 
   // view ALL: the spheres of all ranks in order of tag: nothing depends on the decomposition
@@ -227,11 +245,13 @@ class Scene : protected LAMMPS_NS::Pointers {
   const sd_mobility_engine *engine = &sd_mobility_list;
   Owned<sd_mobility, sd_mobility_free> omega;
 
+  const int *first_in_cloud() const { return shells ? shells->first_of_all().data() : nullptr; }
   int width() const { return settings.rotation && !shells ? 6 : 3; }
-  /* how far a sphere's points are from its centre, over its radius; their radius likewise */
-  double extent() const { return shells ? shells->radius() : 0.0; }
-  double grain() const { return shells ? shells->point() : 1.0; }
-  int points() const { return shells ? shells->points() : 1; }
+  /* how far a sphere's points are from its centre; their radius, and how many there are */
+  double extent(double a) const { return shells ? shells->extent(a) : 0.0; }
+  double grain(double a) const { return shells ? shells->grain(a) : a; }
+  int points(double a) const { return shells ? shells->points(a) : 1; }
+  double points_here() const { return shells ? shells->first_of_rows()[size()] : size(); }
   bool has_cutoff() const { return std::isfinite(settings.cutoff); }
   bool periodic() const;
   bool split();
@@ -245,6 +265,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   void find_pairs();
   void gather();
   void place(int n_all_or_copies);
+  void place_points(int n_all_or_copies, sd_mobility_scene &scene);
+  /* Of each sphere width numbers, or so many for each of its rows, first [n_all + 1] */
+  void to_cloud(const double *own_rows, double *cloud_rows, int width, const int *first);
+  void from_cloud(const double *cloud_rows, double *own_rows, int width, const int *first);
   [[noreturn]] void out_of_memory();
 };
 

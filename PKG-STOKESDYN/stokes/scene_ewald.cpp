@@ -41,7 +41,7 @@ sd_ewald_sizes Scene::sizes_of_all(double largest) const
   sd_ewald_sizes s = {};
   s.all.largest = largest;
   for (int k = 0; k < size(); k++)
-    for (int p = 0; p < points(); p++) sd_ewald_count(&s, grain() * a[k]);
+    for (int p = 0; p < points(a[k]); p++) sd_ewald_count(&s, grain(a[k]));
   static_assert(sizeof(s) == (1 + SD_EWALD_OCTAVES) * 4 * sizeof(double), "numbers alone");
   const int numbers = sizeof(s) / sizeof(double);
   sd_ewald_sizes most = s;
@@ -58,10 +58,10 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
 {
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
   for (int k = 0; k < size(); k++) {
-    most[0] = std::max(most[0], grain() * a[k]);
+    most[0] = std::max(most[0], grain(a[k]));
     for (int d = 0; d < 3; d++) {
-      most[1 + d] = std::max(most[1 + d], extent() * a[k] - x[3 * k + d]);
-      most[4 + d] = std::max(most[4 + d], extent() * a[k] + x[3 * k + d]);
+      most[1 + d] = std::max(most[1 + d], extent(a[k]) - x[3 * k + d]);
+      most[4 + d] = std::max(most[4 + d], extent(a[k]) + x[3 * k + d]);
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
@@ -87,7 +87,7 @@ bool Scene::split()
 {
   if (settings.far_field == Settings::DIRECT) return false;
   const bool must = periodic() || settings.far_field == Settings::EWALD;
-  double points_of_all = (double) points() * size();
+  double points_of_all = points_here();
   if (!must) {
     sum(this, &points_of_all, 1);
     if (points_of_all <= SD_EWALD_FEWEST) return false;
@@ -143,10 +143,10 @@ void Scene::split_slab()
   double bounds[4] = {0.0, 0.0, -INFINITY,
                       -INFINITY};    // of points: largest radius, 1/smallest; heights
   for (int k = 0; k < size(); k++) {
-    const double height = sd_slab_height(&walls, &x[3 * (size_t) k]), reach = extent() * a[k];
+    const double height = sd_slab_height(&walls, &x[3 * (size_t) k]), reach = extent(a[k]);
     if (!(a[k] > 0.0)) continue;
-    bounds[0] = std::max(bounds[0], grain() * a[k]);
-    bounds[1] = std::max(bounds[1], 1.0 / (grain() * a[k]));
+    bounds[0] = std::max(bounds[0], grain(a[k]));
+    bounds[1] = std::max(bounds[1], 1.0 / grain(a[k]));
     bounds[2] = std::max(bounds[2], reach - height);
     bounds[3] = std::max(bounds[3], reach + height);
   }
@@ -158,7 +158,7 @@ void Scene::split_slab()
                ", periodic along it, the largest radius "
                "must be at most " +
                text(SD_SLAB_RATIO) + " times the smallest, and they are " +
-               text(bounds[0] / grain()) + " and " + text(smallest / grain()) +
+               text(most) + " and " + text(least) +
                ": use group to select spheres");
   sd_ewald_box box = {};
   box.periodic = 1;

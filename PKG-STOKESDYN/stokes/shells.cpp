@@ -3,37 +3,119 @@
 #include "keywords.h"
 
 #include <algorithm>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+/* Shells of larger spheres, and radii over the smallest from which on they are needed */
+static const struct {
+  int points;
+  double from;
+} LARGER[] = {{42, 1.5}, {162, 2.5}, {642, 5.0}};
+static const double LARGEST = 10.0;
+
+/* A ratio that is just a bound is not above it. */
+static bool above(double ratio, double bound)
+{
+  return ratio > bound * (1.0 + 1e-9);
+}
+
 void Shells::make()
 {
-  sd_multiblob_shape_free(&lone);
-  if (!settings.on()) return;
-  sd_status status = sd_multiblob_create(settings.points, settings.one_body, &blob);
-  if (status == SD_OK) status = sd_multiblob_shape_create(&blob, nullptr, &lone);
-  if (status != SD_OK)
-    fail_by(voice.of("keyword multiblob: '" + std::to_string(settings.points) + "'"), status);
-  sd_squirmer_create(&blob, lone.points.inverse, &swimmer);
+  models.clear();
+  classes = Classes();
+  chosen.never();
+  if (settings.on()) choose(0.0, 0.0, Epoch());
+}
+
+void Shells::add_model(int n, bool half)
+{
+  models.emplace_back();
+  lone.emplace_back(new Owned<sd_multiblob_shape, sd_multiblob_shape_free>());
+  swimmers.emplace_back();
+  sd_multiblob &model = models.back();
+  sd_multiblob_shape &shape = *lone.back();
+  sd_status status = half ? sd_multiblob_create_half(n, settings.one_body, &model)
+                          : sd_multiblob_create(n, settings.one_body, &model);
+  if (status == SD_OK) status = sd_multiblob_shape_create(&model, nullptr, nullptr, &shape);
+  if (status != SD_OK) fail_by(voice.of("keyword multiblob: '" + std::to_string(n) + "'"), status);
+  sd_squirmer_create(&model, shape.points.inverse, &swimmers.back());
+  patterns.push_back({model.n, shape.faces});
+}
+
+bool Shells::choose(double smallest, double largest, const Epoch &run)
+{
+  const bool first = chosen.first_in(run) || models.empty();
+  const Classes before = classes;
+  if (first && smallest > 0.0) {
+    if (classes.smallest == 0.0 || smallest < classes.smallest ||
+        above(largest, LARGEST * classes.smallest))
+      classes.smallest = smallest;
+    if (!settings.alike() && above(largest, LARGER[0].from * classes.smallest)) classes.unlike = 1.0;
+  }
+  if (unlike() && settings.most == 642 && above(largest, LARGEST * classes.smallest))
+    voice.fail("keyword multiblob: radii from " + text(classes.smallest) + " to " + text(largest) +
+               ": larger spheres have more points up to a ratio of 10; use group to select spheres, or "
+               "multiblob_most 162 (less accurate beside the largest spheres)");
+  const size_t needed = 1 + (unlike() ? kind(largest) : 0);
+  const bool others = models.empty() || before.unlike != classes.unlike;
+  if (others) {
+    models.clear();
+    lone.clear();
+    patterns.clear();
+    swimmers.clear();
+    add_model(settings.points, unlike() && settings.points == 42);
+  }
+  while (models.size() < needed) add_model(LARGER[models.size() - 1].points, true);
+  words = models.back().n < 64 ? 1 : SD_MULTIBLOB_WORDS;
+  return others || (unlike() && before.smallest != classes.smallest);
+}
+
+int Shells::kind(double a) const
+{
+  int kind = 0;
+  if (!unlike()) return 0;
+  for (const auto &larger : LARGER)
+    if (larger.points <= settings.most && above(a, larger.from * classes.smallest)) kind++;
+  return kind;
 }
 
 void Shells::take_root()
 {
-  const sd_status status = sd_body_shape_take_root(&lone.points);
-  if (status != SD_OK) voice.of("keyword multiblob").fail_one(sd_status_string(status));
+  for (const auto &shape : lone) {
+    const sd_status status = sd_body_shape_take_root(&shape->points);
+    if (status != SD_OK) voice.of("keyword multiblob").fail_one(sd_status_string(status));
+  }
 }
 
-void Shells::free_rows(int n)
+void Shells::find(int n, const double *a, Places &places) const
+{
+  places.kind.resize(n + 1);
+  places.first.resize(n + 1);
+  places.first[0] = 0;
+  for (int k = 0; k < n; k++) {
+    places.kind[k] = kind(a[k]);
+    places.first[k + 1] = places.first[k] + models[places.kind[k]].n;
+  }
+}
+
+void Shells::free_rows(int n, const double *a)
 {
   static const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  find(n, a, of_rows);
   turn.resize(9 * (size_t) n + 9);
-  mask.assign(n + 1, sd_multiblob_whole(&blob));
-  for (int k = 0; k < n; k++) std::copy_n(unity, 9, &turn[9 * (size_t) k]);
+  mask.resize(n + 1);
+  std::vector<sd_multiblob_mask> whole;
+  for (const sd_multiblob &model : models) whole.push_back(sd_multiblob_whole(&model));
+  for (int k = 0; k < n; k++) {
+    mask[k] = whole[of_rows.kind[k]];
+    std::copy_n(unity, 9, &turn[9 * (size_t) k]);
+  }
 }
 
-void Shells::turn_row(int k, const double row[9], sd_multiblob_mask there)
+void Shells::turn_row(int k, const double row[9], const sd_multiblob_mask &there)
 {
   std::copy_n(row, 9, &turn[9 * (size_t) k]);
   mask[k] = there;
@@ -41,35 +123,43 @@ void Shells::turn_row(int k, const double row[9], sd_multiblob_mask there)
 
 std::vector<double> Shells::sent(int n) const
 {
-  std::vector<double> rows(10 * (size_t) n + 10);
+  const size_t width = sent_width();
+  std::vector<double> rows(width * (n + 1));
   for (size_t k = 0; k < (size_t) n; k++) {
-    std::copy_n(&turn[9 * k], 9, &rows[10 * k]);
-    rows[10 * k + 9] = (double) mask[k];
+    std::copy_n(&turn[9 * k], 9, &rows[width * k]);
+    std::memcpy(&rows[width * k + 9], mask[k].word, words * sizeof(double));
   }
   return rows;
 }
 
 void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &spheres)
 {
-  const size_t points = (size_t) n * blob.n;
+  const size_t width = sent_width();
   std::vector<double> turns(9 * (size_t) n + 9);
-  std::vector<sd_multiblob_mask> whole(n + 1);
+  std::vector<sd_multiblob_mask> there(n + 1);
+  find(n, spheres.a, of_all);
   for (size_t k = 0; k < (size_t) n; k++) {
-    std::copy_n(&rows[10 * k], 9, &turns[9 * k]);
-    whole[k] = (sd_multiblob_mask) rows[10 * k + 9];
+    std::copy_n(&rows[width * k], 9, &turns[9 * k]);
+    std::memcpy(there[k].word, &rows[width * k + 9], words * sizeof(double));
   }
-  const sd_multiblob_spheres s = {spheres.x, spheres.a, turns.data(), whole.data(), n};
+  const sd_multiblob_spheres s = {spheres.x,    spheres.a, turns.data(),
+                                  there.data(), n,         of_all.kind.data(),
+                                  of_all.first.data()};
+  const size_t points = of_all.first[n];
   x.resize(3 * points + 3);
   b.resize(points + 1);
   w.resize(points + 1);
-  sd_multiblob_expand(&blob, &s, nullptr, x.data(), b.data());
-  for (size_t k = 0; k < points; k++) w[k] = spheres.w[k / blob.n];
+  sd_multiblob_expand(models.data(), &s, nullptr, x.data(), b.data());
+  for (int k = 0; k < n; k++)
+    std::fill(&w[of_all.first[k]], &w[0] + of_all.first[k + 1], spheres.w[k]);
 }
 
 double Shells::memory_usage() const
 {
-  return sizeof(double) *
-      (double) (turn.capacity() + mask.capacity() + x.capacity() + b.capacity() + w.capacity());
+  double bytes = sizeof(double) * ((double) turn.capacity() + x.capacity() + b.capacity() + w.capacity()) +
+      sizeof(sd_multiblob_mask) * (double) mask.capacity();
+  for (const sd_multiblob &model : models) bytes += 9.0 * sizeof(double) * model.n * model.n;
+  return bytes;
 }
 
 }    // namespace StokesDyn

@@ -1,10 +1,16 @@
-/* Spheres as shells of points (keyword multiblob): how the shell of each row stands, and its points,
- * for the scene's engine and for the bodies' loop. Points are made where they are used, from the
- * sphere's row. */
+/* Spheres as shells of points (keyword multiblob): which shell each sphere has, how that of each row
+ * stands, and its points, for the scene's engine and for the bodies' loop. Points are made where they are
+ * used, from the sphere's row.
+ *
+ * All spheres have the same shell, unless the largest radius of a run is more than 1.5 times the smallest.
+ * Then larger spheres have half shells of more points (sd_multiblob_half.h), so that points are about
+ * equally fine everywhere: 42, 162 and 642 up to 2.5, 5 and 10 times the smallest radius. A small sphere
+ * stands among the points of a large one otherwise, and feels these and not the sphere. */
 #ifndef SD_SHELLS_H
 #define SD_SHELLS_H
 
 #include "callback.h"
+#include "epochs.h"
 #include "keywords.h"
 #include "pointers.h"
 
@@ -13,6 +19,7 @@
 #include "sd_product.h"
 #include "sd_squirmer.h"
 
+#include <memory>
 #include <vector>
 
 namespace StokesDyn {
@@ -20,10 +27,14 @@ namespace StokesDyn {
 class Shells : protected LAMMPS_NS::Pointers {
  public:
   struct Settings {
-    /* of each sphere; 1: spheres are points */
+    /* of the smallest spheres; 1: spheres are points */
     int points = 1;
+    /* of any sphere */
+    int most = 0;
     bool one_body = true;
     bool on() const { return points > 1; }
+    /* whatever their radii */
+    bool alike() const { return most <= points; }
   };
   const Settings &settings;
 
@@ -34,39 +45,82 @@ class Shells : protected LAMMPS_NS::Pointers {
 
   /* The settings are new. */
   void make();
-  const sd_multiblob &model() const { return blob; }
-  const sd_multiblob_shape &free_sphere() const { return lone; }
-  const sd_squirmer &squirmer() const { return swimmer; }
+
+  // --- which sphere has which
+
+  /* The radius from which the others are counted, and whether they are of unlike numbers: two numbers to
+   * keep, so that the shells of a run stay what they are. 0, 0: nothing is known yet. */
+  struct Classes {
+    double smallest = 0.0, unlike = 0.0;
+  };
+  Classes classes;
+  /* Once in a run, by all radii of those that take part; later it finds whether they still fit. Returns
+   * whether the shells are others than before. Error: radii that are too different. */
+  bool choose(double smallest, double largest, const Epoch &run);
+  bool unlike() const { return classes.unlike != 0.0; }
+
+  /* Its shell, counted from that of the smallest spheres */
+  int kind(double a) const;
+  int kinds() const { return (int) models.size(); }
+  const sd_multiblob *all_models() const { return models.data(); }
+  const sd_multiblob &model(int kind) const { return models[kind]; }
+  const sd_multiblob &model_of(double a) const { return models[kind(a)]; }
+  const sd_multiblob_shape &free_sphere(int kind) const { return *lone[kind]; }
+  const sd_faces_pattern *faces() const { return patterns.data(); }
+  const sd_squirmer &squirmer(int kind) const { return swimmers[kind]; }
   /* Its root, for noise. Error: memory. */
   void take_root();
-  int points() const { return blob.n; }
-  /* How far points reach from the centre of a unit sphere */
-  double radius() const { return blob.radius; }
-  double point() const { return blob.point; }
+  int points(double a) const { return model_of(a).n; }
+  /* How far points reach from the centre of a sphere, and their radius */
+  double extent(double a) const { return model_of(a).radius * a; }
+  double grain(double a) const { return model_of(a).point * a; }
 
-  /* n rows of this rank, all of them free; then those of clumps are turned. */
-  void free_rows(int n);
-  void turn_row(int k, const double turn[9], sd_multiblob_mask mask);
-  /* Points of n spheres, rows and copies or a cloud, whose rows [10 n] are given as they are sent */
-  void expand(int n, const std::vector<double> &rows, const sd_spheres &spheres);
+  // --- the rows of this rank, and where their points begin
 
-  /* Points of rows and copies, or of the cloud */
-  sd_spheres all() const { return {x.data(), b.data(), w.data()}; }
-  /* Of this rank's rows: turn [9 n], mask [n]; as they are sent: [10 n], turn and mask */
+  /* n rows of this rank with these radii, all of them free; then those of clumps are turned. */
+  void free_rows(int n, const double *a);
+  void turn_row(int k, const double turn[9], const sd_multiblob_mask &mask);
   const double *turns() const { return turn.data(); }
   const sd_multiblob_mask *masks() const { return mask.data(); }
+  const int *kinds_of_rows() const { return of_rows.kind.data(); }
+  const int *first_of_rows() const { return of_rows.first.data(); }
+  int points_of_row(size_t k) const { return of_rows.first[k + 1] - of_rows.first[k]; }
+  sd_multiblob_spheres spheres(const sd_spheres &rows, int n) const
+  {
+    return {rows.x, rows.a, turn.data(), mask.data(), n, kinds_of_rows(), first_of_rows()};
+  }
+
+  // --- the same of rows and copies, or of a cloud
+
+  /* Turn and mask as they are sent: [sent_width() n] */
+  int sent_width() const { return 9 + words; }
   std::vector<double> sent(int n) const;
+  /* Points of n spheres whose rows are given as they are sent */
+  void expand(int n, const std::vector<double> &rows, const sd_spheres &spheres);
+  sd_spheres all() const { return {x.data(), b.data(), w.data()}; }
+  const std::vector<int> &first_of_all() const { return of_all.first; }
 
   double memory_usage() const;
 
  private:
   const Voice voice;
-  sd_multiblob blob = {};
-  Owned<sd_multiblob_shape, sd_multiblob_shape_free> lone;
-  sd_squirmer swimmer = {};
+  Since chosen;
+  std::vector<sd_multiblob> models;
+  std::vector<std::unique_ptr<Owned<sd_multiblob_shape, sd_multiblob_shape_free>>> lone;
+  std::vector<sd_faces_pattern> patterns;
+  std::vector<sd_squirmer> swimmers;
+  /* of a mask, when it is sent */
+  int words = 1;
+  /* [n] which shell, [n + 1] the first point */
+  struct Places {
+    std::vector<int> kind, first;
+  } of_rows, of_all;
   std::vector<double> turn;
   std::vector<sd_multiblob_mask> mask;
   std::vector<double> x, b, w;
+
+  void add_model(int n, bool half);
+  void find(int n, const double *a, Places &places) const;
 };
 
 }    // namespace StokesDyn

@@ -70,11 +70,15 @@ void Solve::tie_films()
 void Solve::draw(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
-  const size_t n = scene.size(), m = sd_bodies_rows(&A) / std::max(n, (size_t) 1);
-  std::vector<double> w(m * n + 1), pushed(sd_bodies_loads(&A) + bodies.width);
+  const size_t n = scene.size();
+  std::vector<double> w(sd_bodies_rows(&A) + 1), pushed(sd_bodies_loads(&A) + bodies.width);
   bodies.take_roots();
-  for (size_t k = 0; k < n; k++)
-    sd_random_normals(&draw.of_spheres, scene.tag((int) k), (int) m, &w[m * k]);
+  double *next = w.data();
+  for (size_t k = 0; k < n; k++) {
+    const int m = scene.shells ? 3 * scene.shells->points_of_row(k) : bodies.width;
+    sd_random_normals(&draw.of_spheres, scene.tag((int) k), m, next);
+    next += m;
+  }
   sd_noise_report report = {};
   sd_status status = sd_bodies_draw(draw.noise, &A, bodies.in_open_space().data(), w.data(),
                                     draw.tolerance, pushed.data(), &report);

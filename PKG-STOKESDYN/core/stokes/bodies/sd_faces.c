@@ -34,37 +34,50 @@ static int has_faces(const sd_faces *faces, int i)
   return !faces->whole || faces->whole[i];
 }
 
+static const sd_faces_pattern *pattern_of(const sd_faces *faces, long i)
+{
+  return faces->kind ? faces->pattern + faces->kind[i] : faces->pattern;
+}
+
+static long rows_of(const sd_faces *faces, long i)
+{
+  return 3 * (faces->first ? faces->first[i] : faces->pattern->n * i);
+}
+
 /* Rows of sphere i in the axes of its points: u itself, or in `scratch` */
 static const double *in_own_axes(const sd_faces *faces, long i, const double *u, double *scratch)
 {
-  const double *rows = u + 3 * (long) faces->n * i;
+  const double *rows = u + rows_of(faces, i);
   if (!faces->turn) return rows;
-  for (int k = 0; k < faces->n; k++)
+  for (int k = 0; k < pattern_of(faces, i)->n; k++)
     sd_multiply3t(faces->turn + 9 * i, rows + 3 * k, scratch + 3 * k);
   return scratch;
 }
 
 void sd_faces_read(const sd_faces *faces, int spheres, const double *u, double *v)
 {
-  const int N = 3 * faces->n;
-  double scratch[3 * 64];
+  double scratch[3 * SD_FACES_MOST];
   memset(v, 0, sizeof(double) * WIDTH * (size_t) spheres);
   for (int i = 0; i < spheres; i++) {
     if (!has_faces(faces, i)) continue;
+    const sd_faces_pattern *of = pattern_of(faces, i);
     const double *own = in_own_axes(faces, i, u, scratch);
+    const int N = 3 * of->n;
     double *to = v + WIDTH * (long) i;
     for (int e = 0; e < WIDTH; e++)
-      for (int j = 0; j < N; j++) to[e] += faces->pattern[(long) e * N + j] * own[j];
+      for (int j = 0; j < N; j++) to[e] += of->G[(long) e * N + j] * own[j];
     if (faces->turn) turn_all(faces->turn + 9 * (long) i, 1.0, to);
   }
 }
 
 void sd_faces_push(const sd_faces *faces, int spheres, const double *f, double *l)
 {
-  const int N = 3 * faces->n;
   for (int i = 0; i < spheres; i++) {
     if (!has_faces(faces, i)) continue;
-    double own[WIDTH], pushed[3 * 64] = {0.0}, *to = l + (long) N * i;
+    const sd_faces_pattern *of = pattern_of(faces, i);
+    const int N = 3 * of->n;
+    double own[WIDTH], pushed[3 * SD_FACES_MOST], *to = l + rows_of(faces, i);
+    memset(pushed, 0, sizeof(double) * (size_t) N);
     memcpy(own, f + WIDTH * (long) i, sizeof own);
     const double *R = faces->turn ? faces->turn + 9 * (long) i : NULL;
     if (R) {
@@ -72,8 +85,8 @@ void sd_faces_push(const sd_faces *faces, int spheres, const double *f, double *
       turn_all(back, 2.0, own);
     }
     for (int e = 0; e < WIDTH; e++)
-      for (int j = 0; j < N; j++) pushed[j] += faces->pattern[(long) e * N + j] * own[e];
-    for (int k = 0; k < faces->n; k++) {
+      for (int j = 0; j < N; j++) pushed[j] += of->G[(long) e * N + j] * own[e];
+    for (int k = 0; k < of->n; k++) {
       double turned[3];
       if (R)
         sd_multiply3(R, pushed + 3 * k, turned);

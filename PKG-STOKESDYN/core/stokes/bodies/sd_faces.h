@@ -7,8 +7,8 @@
  *                                             whose power in its fluid is nearest to that of u
  *   G^T K V = (U, 0):                         a rigid motion has no strain, and turns no face
  *
- * Points of a sphere are rows one after the other, n for each sphere; spheres that lack points have
- * no faces, and are left alone. */
+ * Points of a sphere are rows one after the other, n for each sphere or as many as its shell has; spheres
+ * that lack points have no faces, and are left alone. */
 #ifndef SD_FACES_H
 #define SD_FACES_H
 
@@ -18,22 +18,30 @@
 
 SD_BEGIN_C
 
-enum { SD_FACES_WIDTH = 9 };
+enum { SD_FACES_WIDTH = 9, SD_FACES_MOST = 642 };
+
+/* Of a shell: its points, at most SD_FACES_MOST, and [SD_FACES_WIDTH][3 n] G^T of a sphere of any radius, in
+ * the axes of these */
+typedef struct {
+  int n;
+  const double *G;
+} sd_faces_pattern;
 
 typedef struct {
-  /* points of a sphere */
-  int n;
-  /* [SD_FACES_WIDTH][3 n] G^T of a sphere of any radius, in the axes of its points */
-  const double *pattern;
+  /* of the shells that there are */
+  const sd_faces_pattern *pattern;
   /* [9 spheres] how these stand in space, row-major; NULL: all as they are. [spheres] 0: has no
    * faces; NULL: all have */
   const double *turn;
   const char *whole;
+  /* [spheres] which shell each has, NULL: the first; [spheres + 1] where its rows begin, NULL: all have as
+   * many */
+  const int *kind, *first;
 } sd_faces;
 
-/* v [9 spheres] = G^T u, u [3 n spheres] */
+/* v [9 spheres] = G^T u, u [3 rows] */
 void sd_faces_read(const sd_faces *faces, int spheres, const double *u, double *v);
-/* l [3 n spheres] += G f, f [9 spheres]: force, and the moments that go with e (d.e d: dx dx, dy dy,
+/* l [3 rows] += G f, f [9 spheres]: force, and the moments that go with e (d.e d: dx dx, dy dy,
  * dz dz, 2 dx dy, 2 dx dz, 2 dy dz) */
 void sd_faces_push(const sd_faces *faces, int spheres, const double *f, double *l);
 

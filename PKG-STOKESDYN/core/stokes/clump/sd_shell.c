@@ -71,6 +71,11 @@ static int icosahedral(int n, double *out)
   return count == n;
 }
 
+int sd_shell_points(int n, double *p)
+{
+  return n >= 12 && icosahedral(n, p);
+}
+
 /* Orbits of a point set: fixed ones (6, 8), then m on mirror planes (0, y, z), then k general
  * ones. */
 typedef struct {

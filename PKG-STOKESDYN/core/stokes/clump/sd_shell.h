@@ -39,6 +39,9 @@ typedef struct {
  * that has the symmetry. */
 int sd_shell_size(int n);
 
+/* The points alone of n = 12, 42, 162, 642, ...: p [3n] unit vectors. 0: n is no such number. */
+int sd_shell_points(int n, double *p);
+
 /* Points and calibration; a pure function of n (for n = 1 one point at the centre: radius 0, point
  * 1). The owner frees. Costs memory and time of a dense solve with 3n/8 unknowns. SD_OK;
  * SD_ENOMEMORY; SD_ESINGULAR: no calibration (never met). */

@@ -6,6 +6,7 @@
 #include "sd_body_shape.h"
 #include "sd_constants.h"
 #include "sd_linear.h"
+#include "sd_multiblob_half.h"
 #include "sd_shell.h"
 
 int sd_multiblob_has(int n)
@@ -76,11 +77,39 @@ static void find_addition(double R[MODES][MODES], sd_multiblob *m)
   m->strain = 0.9 * (1.0 - 40.0 / 3.0 * SD_PI / R[STRAIN][STRAIN]);
 }
 
-sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
+/* Unit vectors p [3 n] become the points of the free sphere */
+static void place_points(const double *p, sd_multiblob *m)
 {
   const double s = 1.0 / 15.0; /* rotation of the quaternion (1, 2, 3, 4)/sqrt 30 */
   const double turn[9] = {-10.0 * s, 2.0 * s, 11.0 * s, 10.0 * s, -5.0 * s,
                           10.0 * s,  5.0 * s, 14.0 * s, 2.0 * s};
+  for (int k = 0; k < m->n; k++) {
+    double e[3];
+    sd_multiply3(turn, p + 3 * k, e);
+    for (int d = 0; d < 3; d++) m->r[3 * k + d] = m->radius * e[d];
+  }
+}
+
+sd_status sd_multiblob_create_half(int n, int one_body, sd_multiblob *m)
+{
+  const sd_multiblob_half *half = sd_multiblob_half_of(n);
+  double p[3 * SD_MULTIBLOB_MOST];
+  *m = (sd_multiblob){.n = n};
+  if (!half || !sd_shell_points(n, p)) return SD_EOUTSIDE;
+  m->radius = half->radius;
+  m->point = half->point;
+  place_points(p, m);
+  if (!one_body) return SD_OK;
+  m->alpha = half->alpha;
+  m->beta = half->beta;
+  m->delta = half->delta;
+  m->strain = half->strain;
+  m->rotation = half->rotation;
+  return SD_OK;
+}
+
+sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
+{
   sd_shell shell;
   double R[MODES][MODES];
   *m = (sd_multiblob){.n = n};
@@ -89,11 +118,7 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
   if (status != SD_OK) return status;
   m->radius = shell.radius;
   m->point = shell.point;
-  for (int k = 0; k < n; k++) {
-    double e[3];
-    sd_multiply3(turn, shell.p + 3 * k, e);
-    for (int d = 0; d < 3; d++) m->r[3 * k + d] = m->radius * e[d];
-  }
+  place_points(shell.p, m);
   sd_shell_free(&shell);
   if (!one_body) return SD_OK;
   status = resistance_of_lone(m, R);
@@ -107,7 +132,7 @@ void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const do
                            const double *f, double *u)
 {
   const double unit = 1.0 / (6.0 * SD_PI * eta * a), inverse = 1.0 / a;
-  double A0[3] = {0.0}, A1[3] = {0.0}, S[9] = {0.0}, even[3], odd[3];
+  double A0[3] = {0.0}, A1[3] = {0.0}, S[9] = {0.0}, T[3] = {0.0}, even[3], odd[3];
   for (int k = 0; k < m->n; k++) {
     const double *fk = f + 3 * k;
     double e[3], g[3];
@@ -118,6 +143,11 @@ void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const do
       A1[d] += g[d];
       for (int p = 0; p < 3; p++) S[3 * d + p] += 0.5 * (e[d] * fk[p] + e[p] * fk[d]);
     }
+    if (m->rotation != 0.0) {
+      double couple[3];
+      sd_cross(e, fk, couple);
+      for (int d = 0; d < 3; d++) T[d] += couple[d];
+    }
   }
   const double trace = (S[0] + S[4] + S[8]) / 3.0;
   for (int d = 0; d < 3; d++) {
@@ -126,6 +156,11 @@ void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const do
     odd[d] = unit * (m->beta * A0[d] + m->delta * A1[d]);
   }
   for (int k = 0; k < 9; k++) S[k] *= unit * m->strain;
+  const double spin = unit * m->rotation;
+  if (spin != 0.0) { /* T x r as S r, antisymmetric */
+    S[1] -= spin * T[2], S[2] += spin * T[1], S[5] -= spin * T[0];
+    S[3] += spin * T[2], S[6] -= spin * T[1], S[7] += spin * T[0];
+  }
   for (int k = 0; k < m->n; k++) {
     double e[3], g[3], strain[3];
     for (int d = 0; d < 3; d++) e[d] = inverse * r[3 * k + d];

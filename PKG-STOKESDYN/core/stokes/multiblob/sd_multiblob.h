@@ -3,7 +3,8 @@
  *
  * A sphere of radius a is n points of radius a b on the vertices of an icosahedron (n = 12) or
  * of its first subdivision (n = 42), at the distance a R from its centre. R and b give the lone
- * sphere both its drags (sd_shell.h). Points bear no torques. All free spheres have one
+ * sphere both its drags (sd_shell.h). Larger spheres beside smaller ones are half shells of more points
+ * (sd_multiblob_half.h). Points bear no torques. All free spheres have one
  * orientation, fixed in the laboratory, a generic one: the icosahedron of sd_shell.h turned by
  * the quaternion (1, 2, 3, 4)/sqrt 30.
  *
@@ -13,11 +14,13 @@
  * keeps the flow out. The one-body addition makes the last three exact as well. Viscosity eta,
  * r_k = x_k - X:
  *
- *   u_k += [ alpha A0 + beta A1 + g_k (beta A0 + delta A1) + strain S r_k/a^2 ]/(6 pi eta a)
- *   A0 = sum f_k,  A1 = sum g_k f_k,  S: symmetric traceless part of sum r_k f_k
+ *   u_k += [ alpha A0 + beta A1 + g_k (beta A0 + delta A1) + (strain S r_k + rotation T x r_k)/a^2 ]
+ *          /(6 pi eta a)
+ *   A0 = sum f_k,  A1 = sum g_k f_k,  S: symmetric traceless part of sum r_k f_k,  T = sum r_k x f_k
  *   g_k = (2 r^2 - r r)/(10 a^2) + (b^2 - 1)/6
  *   (alpha beta; beta delta) = 6 pi (exact^-1 - shell^-1), of the resistance to motions U + g_k V:
  *   exact 6 pi diag(1, 1/45), shell that of the points;  strain = 9/10 (1 - 1/stresslet)
+ *   rotation = 3/4 (1 - 1/rotation of the shell): 0, but for half shells
  *
  * 12 points: -9.0e-5, -0.0728, -13.755, -7.6e-4. The mobility of the points alone is positive
  * definite for every configuration; the addition is negative, so there is no theorem with it,
@@ -37,7 +40,7 @@
 
 SD_BEGIN_C
 
-enum { SD_MULTIBLOB_MOST = 42 };
+enum { SD_MULTIBLOB_MOST = 642 };
 
 typedef struct {
   /* points */
@@ -47,15 +50,17 @@ typedef struct {
   /* [3n] r_k of a free sphere of radius 1 */
   double r[3 * SD_MULTIBLOB_MOST];
   /* the constants of the addition: all 0 without it */
-  double alpha, beta, delta, strain;
+  double alpha, beta, delta, strain, rotation;
 } sd_multiblob;
 
-/* Are there shells of n points? */
+/* Are there shells of n points that have both drags of a sphere? */
 int sd_multiblob_has(int n);
 
 /* one_body: with the addition. It owns no memory. SD_OK; SD_EOUTSIDE: another n than 12 and 42;
  * SD_ENOMEMORY. */
 sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *out);
+/* A half shell (sd_multiblob_half.h). SD_OK; SD_EOUTSIDE: another n than 42, 162 and 642. */
+sd_status sd_multiblob_create_half(int n, int one_body, sd_multiblob *out);
 
 /* u [3n] += the addition for the forces f [3n] of one whole sphere, r [3n]: from its centre, turned
  * as it may be. No aliasing. Costs about 60 n multiplications. */

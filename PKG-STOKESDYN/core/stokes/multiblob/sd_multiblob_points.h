@@ -1,7 +1,7 @@
-/* From spheres to their points and back. Every sphere has the same number n of rows, one after the
- * other: rows n i ... n (i + 1) - 1 are the points of sphere i, so that a row of 3 n numbers of a
- * sphere crosses between ranks where one of 6 did. Points that are left out have radius 0, and take
- * no part in any product. */
+/* From spheres to their points and back. The rows of a sphere are its points, one after the other: where
+ * all have n, rows n i ... n (i + 1) - 1 are those of sphere i, and where larger spheres have more
+ * (sd_multiblob_half.h) rows first[i] ... first[i + 1] - 1. Between ranks all of them cross where one of 6
+ * numbers did. Points that are left out have radius 0, and take no part in any product. */
 #ifndef SD_MULTIBLOB_POINTS_H
 #define SD_MULTIBLOB_POINTS_H
 
@@ -12,22 +12,32 @@
 
 SD_BEGIN_C
 
-/* What there is of a sphere's shell: bit k is set if point k is there, and SD_MULTIBLOB_WHOLE if
- * the sphere has the one-body addition. Exact as a double, too. */
-typedef uint64_t sd_multiblob_mask;
-#define SD_MULTIBLOB_WHOLE (UINT64_C(1) << SD_MULTIBLOB_MOST)
+/* What there is of a sphere's shell: bit 1 + k is set if point k is there, and bit 0 if the sphere has
+ * the one-body addition. Those of shells of up to 63 points are in the first word. */
+enum { SD_MULTIBLOB_WORDS = SD_MULTIBLOB_MOST / 64 + 1 };
+typedef struct {
+  uint64_t word[SD_MULTIBLOB_WORDS];
+} sd_multiblob_mask;
 
-/* Of a sphere that is free, or touches others at most */
-static inline sd_multiblob_mask sd_multiblob_whole(const sd_multiblob *m)
+static inline int sd_multiblob_mask_is_whole(const sd_multiblob_mask *mask)
 {
-  return SD_MULTIBLOB_WHOLE | ((UINT64_C(1) << m->n) - 1);
+  return (int) (mask->word[0] & 1);
 }
 
-/* Of the members of a rigid clump, mask [clump->n], whose shells are turned by turn [9] in its axes:
- * points nearer to the centre of another member than the radius of its shell are left out; the
- * addition is for members that overlap no other, by more than the tolerance of shapes. */
-void sd_multiblob_masks(const sd_multiblob *m, const sd_shape *clump, const double turn[9],
-                        sd_multiblob_mask *mask);
+static inline int sd_multiblob_has_point(const sd_multiblob_mask *mask, int k)
+{
+  return (int) (mask->word[(k + 1) / 64] >> (k + 1) % 64 & 1);
+}
+
+/* Of a sphere that is free, or touches others at most */
+sd_multiblob_mask sd_multiblob_whole(const sd_multiblob *m);
+
+/* Of the members of a rigid clump, mask [clump->n], whose shells, of models m[kind[i]] (kind NULL: the
+ * first), are turned by turn [9] in its axes: points nearer to the centre of another member than the
+ * radius of its shell are left out; the addition is for members that overlap no other, by more than the
+ * tolerance of shapes. */
+void sd_multiblob_masks(const sd_multiblob *m, const int *kind, const sd_shape *clump,
+                        const double turn[9], sd_multiblob_mask *mask);
 
 typedef struct {
   /* [3 n], [n] centres and radii */
@@ -36,27 +46,44 @@ typedef struct {
   const double *turn;
   const sd_multiblob_mask *mask;
   int n;
+  /* [n] which of the models it has, NULL: all have the first; [n + 1] where its rows begin, NULL: all have
+   * as many as that has */
+  const int *kind, *first;
 } sd_multiblob_spheres;
+
+/* Of models m */
+static inline const sd_multiblob *sd_multiblob_of(const sd_multiblob *m,
+                                                  const sd_multiblob_spheres *s, long i)
+{
+  return s->kind ? m + s->kind[i] : m;
+}
+
+static inline long sd_multiblob_first(const sd_multiblob *m, const sd_multiblob_spheres *s, long i)
+{
+  return s->first ? s->first[i] : m->n * i;
+}
 
 /* Has sphere i the one-body addition? */
 static inline int sd_multiblob_is_whole(const sd_multiblob_spheres *s, long i)
 {
-  return s->a[i] > 0.0 && (!s->mask || s->mask[i] & SD_MULTIBLOB_WHOLE);
+  return s->a[i] > 0.0 && (!s->mask || sd_multiblob_mask_is_whole(s->mask + i));
 }
 
-/* Points of all of them: r [3 m->n n] from the centre of their sphere (NULL: not wanted), x where
- * they are, b [m->n n] radii */
+/* Points of all of them: r [3 rows] from the centre of their sphere (NULL: not wanted), x where
+ * they are, b [rows] radii */
 void sd_multiblob_expand(const sd_multiblob *m, const sd_multiblob_spheres *s, double *r, double *x,
                          double *b);
 
-/* u [3 m->n n] += the one-body addition of each sphere that has it, w [n] 1/sqrt(eta) */
+/* u [3 rows] += the one-body addition of each sphere that has it, w [n] 1/sqrt(eta) */
 void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *w,
                       const double *r, const double *f, double *u);
 
-/* First moments of the forces f of the points of each sphere, so many a sphere, about its centre,
- * symmetric and traceless, xx yy zz xy xz yz: S [6 spheres] += dev sym sum r_k f_k. f acts on the fluid;
- * the stress of the suspension is 2 eta E - (sum of S)/V. */
-void sd_multiblob_moments(int points, int spheres, const double *r, const double *f, double *S);
+/* First moments of the forces f of the points of a sphere about its centre, symmetric and traceless, xx
+ * yy zz xy xz yz: S [6] += dev sym sum r_k f_k. f acts on the fluid; the stress of the suspension is
+ * 2 eta E - (sum of S)/V. */
+void sd_multiblob_moment(long points, const double *r, const double *f, double S[6]);
+/* Of so many spheres, whose rows begin at first [spheres + 1]: S [6 spheres] */
+void sd_multiblob_moments(int spheres, const int *first, const double *r, const double *f, double *S);
 
 SD_END_C
 #endif

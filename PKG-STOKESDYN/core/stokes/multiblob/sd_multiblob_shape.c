@@ -7,23 +7,31 @@
 #include "sd_linear.h"
 
 /* M [(3 count)^2] += the addition of each sphere that has it, and so all of its points, one after the
- * other; row [count]: which points these are, r [3 all] from the centres of their spheres */
+ * other; row [count]: which points these are, in ascending order, r [3 all] from the centres of their
+ * spheres */
 static void add_one_body(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *r,
                          const int *row, int count, double *M)
 {
   const size_t N = 3 * (size_t) count;
-  for (int p = 0; p < count && m->delta != 0.0; p++) {
-    const int i = row[p] / m->n, first = row[p] == m->n * i;
-    if (first && sd_multiblob_is_whole(s, i))
-      sd_multiblob_one_body_matrix(m, s->a[i], r + 3 * (long) row[p], N,
-                                   M + 3 * (size_t) p * (N + 1));
+  int p = 0;
+  for (long i = 0; i < s->n; i++) {
+    const sd_multiblob *of = sd_multiblob_of(m, s, i);
+    const long first = sd_multiblob_first(m, s, i);
+    while (p < count && row[p] < first) p++;
+    if (of->delta != 0.0 && sd_multiblob_is_whole(s, i))
+      sd_multiblob_one_body_matrix(of, s->a[i], r + 3 * first, N, M + 3 * (size_t) p * (N + 1));
   }
 }
 
-/* Doubles of make_shape's scratch */
-static size_t scratch_of(const sd_multiblob *m, int spheres)
+static size_t points_of(const sd_multiblob *m, const sd_multiblob_spheres *s)
 {
-  return 7 * (size_t) m->n * (size_t) spheres;
+  return (size_t) sd_multiblob_first(m, s, s->n);
+}
+
+/* Doubles of make_shape's scratch */
+static size_t scratch_of(const sd_multiblob *m, const sd_multiblob_spheres *s)
+{
+  return 7 * points_of(m, s);
 }
 
 /* r, x [3 all] and b [all] of the body's points; those that are there, and in row [all], become the
@@ -32,7 +40,7 @@ static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall,
                             const sd_multiblob_spheres *s, const double centre[3], double *r,
                             int *row, sd_body_shape *out)
 {
-  const size_t all = (size_t) m->n * (size_t) s->n;
+  const size_t all = points_of(m, s);
   double *x = r + 3 * all, *b = x + 3 * all;
   int count = 0;
   sd_multiblob_expand(m, s, r, x, b);
@@ -117,37 +125,59 @@ static sd_status find_faces(const sd_multiblob *m, sd_multiblob_shape *s)
   return SD_OK;
 }
 
-sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
-                                    sd_multiblob_shape *out)
+/* How the shells of a clump stand in its own axes */
+static void take_frame(const sd_shape *clump, sd_multiblob_shape *out)
 {
-  const double origin[3] = {0.0}, one = 1.0, unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const size_t n = clump ? (size_t) clump->n : 1, all = n * (size_t) m->n;
-  *out = (sd_multiblob_shape){.spheres = (int) n};
+  const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   out->rank = clump ? clump->rank : 0;
-  memcpy(out->turn, clump ? clump->frame : unity, sizeof unity);
-  if (clump && clump->rank == 0) memcpy(out->turn, unity, sizeof unity);
-  if (clump && clump->rank == 1) {
+  memcpy(out->turn, clump && clump->rank > 0 ? clump->frame : unity, sizeof unity);
+  if (out->rank == 1) {
     const double *E = clump->frame, line[3] = {E[0], E[3], E[6]};
     along_line(line, out->turn);
   }
+}
+
+/* mask and first, and the shape of the spheres s, whose turn [9 spheres] and kinds stand */
+static sd_status fill_shape(const sd_multiblob *m, const sd_shape *clump,
+                            const sd_multiblob_spheres *s, sd_multiblob_shape *out)
+{
+  const double origin[3] = {0.0};
+  if (clump)
+    sd_multiblob_masks(m, s->kind, clump, out->turn, out->mask);
+  else
+    out->mask[0] = sd_multiblob_whole(m);
+  double *scratch = malloc(sizeof(double) * scratch_of(m, s));
+  out->row = malloc(sizeof(int) * points_of(m, s));
+  sd_status status = scratch && out->row
+      ? make_shape(m, NULL, s, origin, scratch, out->row, &out->points)
+      : SD_ENOMEMORY;
+  if (status == SD_OK && !clump) status = find_faces(m, out);
+  free(scratch);
+  return status;
+}
+
+sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump, const int *kind,
+                                    sd_multiblob_shape *out)
+{
+  const double origin[3] = {0.0}, one = 1.0;
+  const size_t n = clump ? (size_t) clump->n : 1;
+  *out = (sd_multiblob_shape){.spheres = (int) n};
+  take_frame(clump, out);
   out->mask = malloc(n * sizeof *out->mask);
-  out->row = malloc(all * sizeof *out->row);
-  double *turn = malloc(n * sizeof unity),
-         *scratch = malloc(sizeof(double) * scratch_of(m, (int) n));
-  sd_status status = out->mask && out->row && turn && scratch ? SD_OK : SD_ENOMEMORY;
+  out->first = malloc((n + 1) * sizeof *out->first);
+  double *turn = malloc(n * sizeof out->turn);
+  sd_status status = out->mask && out->first && turn ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) {
-    if (clump)
-      sd_multiblob_masks(m, clump, out->turn, out->mask);
-    else
-      out->mask[0] = sd_multiblob_whole(m);
-    for (size_t i = 0; i < n; i++) memcpy(turn + 9 * i, out->turn, sizeof unity);
+    out->first[0] = 0;
+    for (size_t i = 0; i < n; i++) {
+      memcpy(turn + 9 * i, out->turn, sizeof out->turn);
+      out->first[i + 1] = out->first[i] + m[kind ? kind[i] : 0].n;
+    }
     const sd_multiblob_spheres s = {clump ? clump->x : origin, clump ? clump->a : &one, turn,
-                                    out->mask, (int) n};
-    status = make_shape(m, NULL, &s, origin, scratch, out->row, &out->points);
-    if (status == SD_OK && !clump) status = find_faces(m, out);
+                                    out->mask, (int) n, kind, out->first};
+    status = fill_shape(m, clump, &s, out);
   }
   free(turn);
-  free(scratch);
   if (status != SD_OK) sd_multiblob_shape_free(out);
   return status;
 }
@@ -156,8 +186,8 @@ sd_status sd_multiblob_wall_shape(const sd_multiblob *m, const sd_wall *wall,
                                   const sd_multiblob_spheres *s, const double centre[3],
                                   sd_body_shape *out)
 {
-  int *row = malloc(sizeof(int) * (size_t) m->n * (size_t) s->n);
-  double *scratch = malloc(sizeof(double) * scratch_of(m, s->n));
+  int *row = malloc(sizeof(int) * points_of(m, s));
+  double *scratch = malloc(sizeof(double) * scratch_of(m, s));
   *out = (sd_body_shape){0};
   const sd_status status = row && scratch
       ? make_shape(m, wall, s, centre, scratch, row, out)
@@ -172,6 +202,7 @@ void sd_multiblob_shape_free(sd_multiblob_shape *s)
   free(s->faces);
   free(s->mask);
   free(s->row);
+  free(s->first);
   sd_body_shape_free(&s->points);
   *s = (sd_multiblob_shape){0};
 }

@@ -21,17 +21,18 @@ typedef struct {
    * rank: of the clump, 0 1 2 (sd_shape.h) */
   double turn[9];
   int rank;
-  /* [points.m] row of each point among the n spheres rows of the body */
-  int *row;
+  /* [points.m] row of each point among those of the spheres of the body, which begin at first [spheres + 1] */
+  int *row, *first;
   sd_body_shape points;
   /* [SD_FACES_WIDTH][3 n] of the lone sphere, for sd_faces.h; NULL: of a clump */
   double *faces;
 } sd_multiblob_shape;
 
 /* The lone sphere of radius 1 (clump NULL), or a rigid clump in the axes and the order of its
- * shape: with the one-body addition where sd_multiblob_masks says so. The owner frees.
- * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: not positive definite. */
-sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump,
+ * shape, whose members have models m[kind[k]] (kind NULL: the first): with the one-body addition where
+ * sd_multiblob_masks says so. The owner frees. SD_OK; SD_ENOMEMORY; SD_ESINGULAR: not positive
+ * definite. */
+sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump, const int *kind,
                                     sd_multiblob_shape *out);
 /* The shape, in axes of space, of the points that there are of spheres s in space, above a wall
  * (sd_body_shape.h); their order is that of the body's own shape. The owner frees. Status as above. */
@@ -49,6 +50,7 @@ void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], do
 /* M without 1/(6 pi eta b): the pairs of points by an engine, and the one-body addition. For
  * sd_bodies.apply; all that it points to outlives it. */
 typedef struct {
+  /* the models of the spheres */
   const sd_multiblob *model;
   /* of this rank */
   sd_multiblob_spheres spheres;

@@ -136,7 +136,7 @@ static double *matrix_of_shells(const climber *row, const cast *s)
   const int points = row->shell * s->n, N = 3 * points, n = 6 * s->n;
   static cast all;
   double *r = malloc(sizeof(double) * (size_t) N), *K = calloc((size_t) n * (size_t) N, sizeof(double));
-  const sd_multiblob_spheres spheres = {s->x, s->a, NULL, NULL, s->n};
+  const sd_multiblob_spheres spheres = {s->x, s->a, NULL, NULL, s->n, NULL, NULL};
   all = (cast){.n = points, .width = 3};
   sd_multiblob_expand(&m, &spheres, r, all.x, all.a);
   for (int k = 0; k < points; k++) all.w[k] = s->w[k / row->shell];

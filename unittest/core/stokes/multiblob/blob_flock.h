@@ -21,6 +21,7 @@ typedef struct {
   periodic p;
   sd_tie tie;
   sd_multiblob_mobility M;
+  sd_faces_pattern pattern;
   sd_faces faces;
   char whole_shell[MOST];
   sd_body body[MOST];
@@ -42,7 +43,7 @@ static inline blob_flock *free_spheres(int points, int n, const double *x, const
 {
   blob_flock *f = calloc(1, sizeof(blob_flock));
   f->s = blobs_create(points, 1, n, x, a);
-  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, &f->lone), SD_OK);
+  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, NULL, &f->lone), SD_OK);
   return f;
 }
 
@@ -75,8 +76,8 @@ static inline blob_flock *clumps_at(int points, int clumps, int m, const double 
   f->clumps = clumps, f->m = m;
   memcpy(f->pose, R, sizeof(double) * 9 * (size_t) clumps);
   memcpy(f->centre, centre, sizeof(double) * 3 * (size_t) clumps);
-  assert_int_equal(sd_multiblob_shape_create(&f->s->m, &f->clump, &f->shape), SD_OK);
-  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, &f->lone), SD_OK);
+  assert_int_equal(sd_multiblob_shape_create(&f->s->m, &f->clump, NULL, &f->shape), SD_OK);
+  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, NULL, &f->lone), SD_OK);
   for (int i = 0; i < clumps * m; i++) {
     f->s->mask[i] = f->shape.mask[i % m];
     f->s->body[i] = 1 + i / m;
@@ -128,8 +129,9 @@ static inline sd_bodies place(blob_flock *f, double side, double tolerance)
     f->sphere[k] = k / own;
     for (int d = 0; d < 3; d++) f->D[3 * k + d] = s->b[k] > 0.0 ? 6.0 * SD_PI * s->b[k] : 1.0;
   }
-  for (int i = 0; i < s->n; i++) f->whole_shell[i] = (s->mask[i] & SD_MULTIBLOB_WHOLE) != 0;
-  f->faces = (sd_faces){own, f->lone.faces, s->turn, f->whole_shell};
+  for (int i = 0; i < s->n; i++) f->whole_shell[i] = (char) sd_multiblob_mask_is_whole(s->mask + i);
+  f->pattern = (sd_faces_pattern){own, f->lone.faces};
+  f->faces = (sd_faces){&f->pattern, s->turn, f->whole_shell, NULL, NULL};
   return (sd_bodies){.shaped = bodies,
                      .body = f->body,
                      .spheres = {s->n, 6, f->whole, f->arm},

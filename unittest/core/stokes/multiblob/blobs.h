@@ -64,7 +64,7 @@ static inline void blobs_free(blobs *s)
 static inline void blobs_expand(blobs *s)
 {
   const size_t points = (size_t) s->N / 3;
-  const sd_multiblob_spheres spheres = {s->x, s->a, s->turn, s->mask, s->n};
+  const sd_multiblob_spheres spheres = {s->x, s->a, s->turn, s->mask, s->n, NULL, NULL};
   s->r = malloc(sizeof(double) * 3 * points), s->at = malloc(sizeof(double) * 3 * points);
   s->b = malloc(sizeof(double) * points),
   s->M = calloc((size_t) s->N * (size_t) s->N, sizeof(double));
@@ -73,7 +73,7 @@ static inline void blobs_expand(blobs *s)
 
 static inline void blobs_add_one_body(blobs *s)
 {
-  const sd_multiblob_spheres spheres = {s->x, s->a, s->turn, s->mask, s->n};
+  const sd_multiblob_spheres spheres = {s->x, s->a, s->turn, s->mask, s->n, NULL, NULL};
   double *f = calloc((size_t) s->N, sizeof(double)), *u = malloc(sizeof(double) * (size_t) s->N);
   const int own = 3 * s->m.n;
   for (int j = 0; j < own;
@@ -288,7 +288,8 @@ static inline void blobs_move(const blobs *s, const double *F, const double *G, 
       l[k] += s->forces[(size_t) j * (size_t) s->N + (size_t) k] * V[j];
   if (S) {
     memset(S, 0, sizeof(double) * (size_t) s->size);
-    sd_multiblob_moments(s->m.n, s->n, s->r, l, S);
+    for (int i = 0; i < s->n; i++)
+      sd_multiblob_moment(s->m.n, s->r + 3 * s->m.n * i, l + 3 * s->m.n * i, S + 6 * i);
     if (s->L.count) assert_int_equal(sd_lubrication_stress(&s->L, V, S), SD_OK);
   }
   for (int i = 0; G && i < s->n; i++) {

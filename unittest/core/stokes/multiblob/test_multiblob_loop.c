@@ -232,7 +232,7 @@ static void lone_clumps(void **state)
       double A[9], w[3], axes[9];
       assert_int_equal(sd_multiblob_create(points, 1, &model), SD_OK);
       assert_int_equal(sd_shape_create(m, x, a, &clump), SD_OK);
-      assert_int_equal(sd_multiblob_shape_create(&model, &clump, &shape), SD_OK);
+      assert_int_equal(sd_multiblob_shape_create(&model, &clump, NULL, &shape), SD_OK);
       for (int p = 0; p < 9; p++)
         A[p] = shape.points.resistance[6 * (p / 3) + p % 3] / (6.0 * SD_PI);
       sd_eigen(3, A, w, axes);

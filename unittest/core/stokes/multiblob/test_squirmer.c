@@ -27,7 +27,7 @@ static sums sums_of(const blob_flock *f, int i, const double e[3])
 {
   const long own = f->s->m.n;
   sums all = {{0}, {0}, {0}, 0, {0}};
-  sd_multiblob_moments((int) own, 1, f->s->r + 3 * own * i, f->l + 3 * own * i, all.moment);
+  sd_multiblob_moment(own, f->s->r + 3 * own * i, f->l + 3 * own * i, all.moment);
   for (long k = own * i; k < own * (i + 1); k++) {
     const double *r = f->s->r + 3 * k, *l = f->l + 3 * k;
     double turning[3];
@@ -48,7 +48,7 @@ static blob_flock *swimmers(int points, int one_body, int n, const double *x, co
   if (one_body) return f;
   sd_multiblob_shape_free(&f->lone);
   assert_int_equal(sd_multiblob_create(points, 0, &f->s->m), SD_OK);
-  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, &f->lone), SD_OK);
+  assert_int_equal(sd_multiblob_shape_create(&f->s->m, NULL, NULL, &f->lone), SD_OK);
   return f;
 }
 
