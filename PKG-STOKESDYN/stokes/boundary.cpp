@@ -96,6 +96,13 @@ std::string Boundary::wall_names() const
   return wall_name(wall[0]) + (walls == 2 ? ", or " + wall_name(wall[1]) : "");
 }
 
+std::string Boundary::letters() const
+{
+  std::string letters = "boundary p p p";
+  letters[9 + 2 * wall[0].axis] = 'f';
+  return letters;
+}
+
 const sd_wall &Boundary::nearest(const double x[3]) const
 {
   const bool other = walls == 2 && sd_wall_height(&wall[1], x) < sd_wall_height(&wall[0], x);
@@ -146,14 +153,6 @@ static void find_edges(const Voice &voice, Boundary &boundary)
                wall_name(boundary.wall[1]));
 }
 
-/* "p p f", as it would be with the direction across not periodic */
-static std::string letters_for(int across)
-{
-  std::string letters = "p p p";
-  letters[2 * across] = 'f';
-  return letters;
-}
-
 static void check_walls(const Voice &voice, const Boundary &boundary, int periodic)
 {
   const Domain *domain = voice.lmp->domain;
@@ -161,16 +160,16 @@ static void check_walls(const Voice &voice, const Boundary &boundary, int period
   const std::string axis(1, AXES[across]);
   if (domain->periodicity[across])
     voice.fail("keyword wall: it needs boundary f, s or m across it, and " + axis +
-               " is periodic: use boundary " +
-               letters_for(across) + ", or f f f");
+               " is periodic: use " +
+               boundary.letters() + ", or f f f");
   if (periodic == 1)
     voice.fail(
-        "keyword wall: the box is periodic in one of the two directions along it: use boundary " +
-        letters_for(across) + ", or f f f");
+        "keyword wall: the box is periodic in one of the two directions along it: use " +
+        boundary.letters() + ", or f f f");
   if (boundary.walls == 2 && periodic == 0)
     voice.fail(
-        "keyword wall: between two walls the box must be periodic along them: use boundary " +
-        letters_for(across) +
+        "keyword wall: between two walls the box must be periodic along them: use " +
+        boundary.letters() +
         ", or leave out the farther wall (at 25 radii a wall changes "
         "velocities by 3 %)");
 }

@@ -58,6 +58,8 @@ struct Boundary {
   /* "above a floor", as a user would say it; "zlo at 0, or zhi at 5" */
   std::string where() const;
   std::string wall_names() const;
+  /* "boundary p p f", of a box that is periodic along the walls */
+  std::string letters() const;
   /* Where those at sides of the box stand now, to tell one state from another */
   std::vector<std::string> edges() const;
 };

@@ -54,13 +54,17 @@ int FixStokesDynamicsField::setmask()
 
 void FixStokesDynamicsField::init()
 {
-  if (hydrodynamics().settings.scene.boundary.walled())
+  const Boundary &boundary = hydrodynamics().settings.scene.boundary;
+  if (boundary.slab()) return;
+  if (boundary.walled())
     voice.fail("the pair style has keyword wall, whose images are not in the flow that this fix "
-               "knows; use it without a wall");
+               "knows in an open box; make the box periodic along the wall (" +
+               boundary.letters() + "), or use it without a wall");
   const int directions = domain->xperiodic + domain->yperiodic + domain->zperiodic;
   if (directions != 0 && directions != 3)
     voice.fail("the box is periodic in " + std::to_string(directions) + " of 3 directions: the "
-               "flow is known for a box that is periodic in all or in none");
+               "flow is known for a box that is periodic in all or in none, and in two of them with "
+               "cut_off_distance inf of the pair style");
 }
 
 /* Without inertia velocities are found when the setup of all fixes is done, and then this is called
@@ -116,7 +120,7 @@ std::vector<double> FixStokesDynamicsField::near_planes(const sd_field_grid &g, 
                                                         const double *jumps) const
 {
   Lattice lattice = Lattice::of(domain);
-  std::fill_n(lattice.periodic, 3, domain->xperiodic);    // in two dimensions, too
+  if (domain->dimension == 2) std::fill_n(lattice.periodic, 3, domain->xperiodic);
   std::vector<double> x;
   for (size_t k = 0; k < rows.size(); k += 10) x.insert(x.end(), &rows[k], &rows[k] + 3);
   double lo[3], hi[3];
@@ -205,10 +209,20 @@ sd_status FixStokesDynamicsField::add_split(Hydrodynamics &hydro, const std::vec
   return sd_field_add_split(&tables, &ours.as, &near.as, &g, &ranks, u);
 }
 
-/* Every rank takes its share of planes, and knows the sources near to these. */
+/* Every rank takes its share of planes. */
 void FixStokesDynamicsField::add_flow(Hydrodynamics &hydro, const sd_field_grid &g, double *u)
 {
   const std::vector<double> rows = hydro.on_fluid();
+  if (hydro.settings.scene.boundary.slab())
+    in_slab.add(voice, hydro.scene, rows, places_of(g), u);
+  else
+    add_sums(hydro, rows, g, u);
+}
+
+/* Where the sources near to these are enough, the rank knows no others. */
+void FixStokesDynamicsField::add_sums(Hydrodynamics &hydro, const std::vector<double> &rows,
+                                      const sd_field_grid &g, double *u)
+{
   const sd_field_cloud all = measure_all(world, rows);
   static const sd_field_sum SUMS[] = {SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT};
   const Scene::Settings &scene = hydro.settings.scene;
@@ -306,5 +320,6 @@ void FixStokesDynamicsField::write(const sd_field_grid &g, const std::vector<dou
 
 double FixStokesDynamicsField::memory_usage()
 {
-  return sizeof(double) * (double) (tables.source_room + tables.scratch_room);
+  return sizeof(double) * (double) (tables.source_room + tables.scratch_room) +
+      in_slab.memory_usage();
 }

@@ -4,6 +4,7 @@
 #define SD_FIX_STOKES_DYNAMICS_FIELD_H
 
 #include "callback.h"
+#include "flow_in_slab.h"
 #include "hydrodynamics.h"
 #include "rows_fix.h"
 
@@ -32,6 +33,7 @@ class FixStokesDynamicsField : public RowsFix {
   bool has_lo = false, has_hi = false;
   double lo[3], hi[3];
   Owned<sd_field, sd_field_free> tables;
+  FlowInSlab in_slab;
 
   const HydrodynamicsOf hydrodynamics{
       voice, "there is no pair_style stokes_dynamics whose flow it could write"};
@@ -40,6 +42,7 @@ class FixStokesDynamicsField : public RowsFix {
   std::vector<double> near_planes(const sd_field_grid &, double reach,
                                   const std::vector<double> &rows, const double *jumps) const;
   void add_flow(Hydrodynamics &, const sd_field_grid &, double *u);
+  void add_sums(Hydrodynamics &, const std::vector<double> &rows, const sd_field_grid &, double *u);
   sd_status add_all_pairs(const std::vector<double> &rows, const sd_field_grid &, double *u);
   sd_status add_split(Hydrodynamics &, const std::vector<double> &rows, double range,
                       const sd_field_grid &, double *u);
