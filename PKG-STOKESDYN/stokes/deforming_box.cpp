@@ -201,7 +201,11 @@ void check_images(const Voice &voice, const double *jump)
 void bring_box_to_this_step(LAMMPS *lmp)
 {
   Fix *deform = deform_of(lmp);
-  if (deform && lmp->update->ntimestep % deform->nevery == 0) deform->end_of_step();
+  if (!deform || lmp->update->ntimestep % deform->nevery != 0) return;
+  // A flip that is due in this step, where LAMMPS has yet to re-neighbour, would be put off to the next.
+  const bigint due = deform->next_reneighbor;
+  deform->end_of_step();
+  if (due == lmp->update->ntimestep) deform->next_reneighbor = due;
 }
 
 }    // namespace StokesDyn

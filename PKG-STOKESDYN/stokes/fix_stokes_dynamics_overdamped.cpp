@@ -163,6 +163,11 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
     const double eta = hydro.ambient.viscosity(i);
+    if (hydro.ambient.jumps()) {    // LAMMPS may have made an image of it since
+      hydro.ambient.box_motion().at(atom->x[i], of_box);
+      for (int d = 0; d < 3; d++) fluid[d] -= of_box[d];
+      sd_hash_add_row(tag, hydro.ambient.box_motion().gradient, 9, sums + 4);
+    }
     hydro.ambient.fluid(i, fluid);
     if (hydro.ambient.jumps()) {    // LAMMPS may have made an image of it since
       hydro.ambient.box_motion().at(atom->x[i], of_box);

@@ -144,6 +144,17 @@ def test_a_sheared_run_in_pieces_on_any_ranks_is_the_run_in_one(tmp_path, ranks,
     assert np.abs(last() - whole).max() < 1e-10 * np.abs(whole).max()
 
 
+def test_the_box_flips_in_the_step_after_half_an_edge(simulation, tmp_path):
+    """Not when LAMMPS re-neighbours for another reason: noise is that of the box as it is, and a run in pieces that of the run in one."""
+    (words, options), commands = sheared("box", 0.05, rate=0.41)
+    sim = simulation(cloud(), words, **options).commands(commands)
+    sim.commands(["neigh_modify delay 100 every 100", "variable tilt equal xy", f"fix tell all print 1 '${{tilt}}' file {tmp_path}/tilts"]).run(28)
+    tilts = np.loadtxt(tmp_path / "tilts")
+    steps = np.arange(len(tilts)) + 28 - len(tilts) + 1
+    expected = 0.41 * 0.05 * 10 * steps
+    assert tilts == pytest.approx(np.where(steps > 25, expected - 10, expected), abs=1e-4) and expected[steps == 25] > 5
+
+
 SHEAR = "fix d all deform 1 xy erate 0.1 remap"
 
 
