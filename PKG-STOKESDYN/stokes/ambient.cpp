@@ -272,6 +272,7 @@ void Ambient::find_jumps()
   static const int OF[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};    // velocity, edge
   static const double NOTHING[3] = {0.0, 0.0, 0.0};
   jumping = false;
+  std::fill_n(jump, 6, 0.0);
   if (!domain->deform_flag || u.empty() || settings.grid) return;
   double sums[3][3] = {{0.0}}, most[2] = {0.0, 0.0}, count = 1.0, edge[3];
   for (int q = 0; q < 3; q++) {

@@ -151,6 +151,10 @@ std::vector<double> Ambient::values() const
   all.push_back(eta_uniform);
   for (const auto *part : {&eta, &u, &w, &gradient, &curvature})
     all.insert(all.end(), part->begin(), part->end());
+  all.insert(all.end(), motion.gradient, motion.gradient + 9);
+  all.insert(all.end(), motion.corner, motion.corner + 3);
+  all.insert(all.end(), motion.corner_velocity, motion.corner_velocity + 3);
+  all.insert(all.end(), jump, jump + 6);
   return all;
 }
 
@@ -175,7 +179,16 @@ void Ambient::half_a_step_back()
   back(eta_uniform);
   for (auto *part : {&eta, &u, &w, &gradient, &curvature})
     for (double &value : *part) back(value);
+  for (double &value : motion.gradient) back(value);
+  for (double &value : motion.corner) back(value);
+  for (double &value : motion.corner_velocity) back(value);
+  for (double &value : jump) back(value);
   change.clear();
+  // the same for an atom and its images, to rounding
+  if (settings.box) {
+    read_box(!gradient.empty());
+    find_jumps();
+  }
   check();
 }
 

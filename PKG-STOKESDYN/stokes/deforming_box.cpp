@@ -2,6 +2,7 @@
 
 #include "deform_settings.h"
 #include "fixes.h"
+#include "halo.h"
 #include "keywords.h"
 #include "ranks.h"
 
@@ -206,6 +207,49 @@ void bring_box_to_this_step(LAMMPS *lmp)
   const bigint due = deform->next_reneighbor;
   deform->end_of_step();
   if (due == lmp->update->ntimestep) deform->next_reneighbor = due;
+}
+
+static sd_box box_of(const Domain *domain)
+{
+  const Lattice lattice = Lattice::of(domain);
+  sd_box box;
+  std::copy_n(lattice.origin, 3, box.lo);
+  std::copy_n(lattice.h, 6, box.h);
+  return box;
+}
+
+BoxInStep::BoxInStep(LAMMPS *lmp) : start(box_of(lmp->domain)), domain(lmp->domain)
+{
+  bring_box_to_this_step(lmp);
+  end = box_of(domain);
+  for (int d = 0; d < 3; d++) middle.lo[d] = 0.5 * (start.lo[d] + end.lo[d]);
+  for (int d = 0; d < 6; d++) middle.h[d] = 0.5 * (start.h[d] + end.h[d]);
+}
+
+void BoxInStep::put(const sd_box &box) const
+{
+  for (int d = 0; d < 3; d++) {
+    domain->boxlo[d] = box.lo[d];
+    domain->boxhi[d] = box.lo[d] + box.h[d];
+  }
+  if (domain->triclinic) {
+    domain->yz = box.h[3];
+    domain->xz = box.h[4];
+    domain->xy = box.h[5];
+  }
+  domain->set_global_box();
+  domain->set_local_box();
+}
+
+void Ride::step(const double *V, const double *place, const double *x, double *step) const
+{
+  for (int d = 0; d < 3; d++) step[d] = t * V[d];
+  if (!carried) return;
+  double of_box[3], end[3] = {x[0], x[1], x[2]};
+  flow.at(place, of_box);
+  for (int d = 0; d < 3; d++) step[d] -= t * of_box[d];
+  sd_box_step(&start, &at, &to, step, end);
+  for (int d = 0; d < 3; d++) step[d] = end[d] - x[d];
 }
 
 }    // namespace StokesDyn

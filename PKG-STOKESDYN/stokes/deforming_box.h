@@ -7,6 +7,12 @@
 
 #include "keywords.h"
 
+#include "sd_lattice.h"
+
+namespace LAMMPS_NS {
+class Domain;
+}
+
 namespace StokesDyn {
 
 struct BoxMotion {
@@ -48,6 +54,35 @@ void check_images(const Voice &voice, const double *jump);
  * before. This does it now, so that positions, box and forces are of one moment; LAMMPS's own turn
  * then finds it done. On all ranks. */
 void bring_box_to_this_step(LAMMPS_NS::LAMMPS *lmp);
+
+/* The box at the start, in the middle and at the end of a step that is computed in its middle. In the
+ * middle it is the mean of the two, as fix deform leads its edges: exact where lengths and tilts change
+ * evenly, else to second order in the step. Brings the box to the end at once; put() makes one of them
+ * LAMMPS's. On all ranks. */
+class BoxInStep {
+ public:
+  explicit BoxInStep(LAMMPS_NS::LAMMPS *lmp);
+  sd_box start, middle, end;
+  void put(const sd_box &box) const;
+
+ private:
+  LAMMPS_NS::Domain *domain;
+};
+
+/* How far bodies go in the half step from the start of a step, or in all of it by velocities of its
+ * middle. */
+struct Ride {
+  double t;    // how long they go
+  /* Does the flow take the box along? Then velocities beyond that of the box count, which are the same for
+   * a body and its images, and the box carries what has been moved (sd_box_step) */
+  bool carried;
+  sd_box start, at, to;
+  /* where velocities are of */
+  BoxMotion flow;
+  /* step [3] of a body that is at x when the step starts, by V [3], which it has at `place` in the box
+   * `at`. Not carried: t V */
+  void step(const double *V, const double *place, const double *x, double *step) const;
+};
 
 }    // namespace StokesDyn
 #endif

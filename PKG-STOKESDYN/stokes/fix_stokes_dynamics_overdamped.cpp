@@ -5,7 +5,6 @@
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
-#include "deforming_box.h"
 #include "checks.h"
 
 #include "sd_hash.h"
@@ -163,11 +162,6 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
     const double eta = hydro.ambient.viscosity(i);
-    if (hydro.ambient.jumps()) {    // LAMMPS may have made an image of it since
-      hydro.ambient.box_motion().at(atom->x[i], of_box);
-      for (int d = 0; d < 3; d++) fluid[d] -= of_box[d];
-      sd_hash_add_row(tag, hydro.ambient.box_motion().gradient, 9, sums + 4);
-    }
     hydro.ambient.fluid(i, fluid);
     if (hydro.ambient.jumps()) {    // LAMMPS may have made an image of it since
       hydro.ambient.box_motion().at(atom->x[i], of_box);
@@ -424,12 +418,13 @@ void FixStokesDynamicsOverdamped::advance()
   hydro.check_prepared();
   displaced = 0.0;
   if (scheme != MIDPOINT && !warned_growth) watch();
-  bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
   if (scheme == MIDPOINT)
     move_by_midpoint(hydro);
-  else
+  else {
+    bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
     for (int i : hydro.motion().lone()) move_free(hydro, i);
-  if (hydro.settings.rigid.on && scheme != MIDPOINT) move_clumps(hydro);
+    if (hydro.settings.rigid.on) move_clumps(hydro);
+  }
   last.dt = update->dt;
   spin.advance();
 }
@@ -488,27 +483,33 @@ void FixStokesDynamicsOverdamped::tracked_velocity(const ClumpPoses::Clump &clum
   for (int d = 0; d < 3; d++) V[d] += turning[d];
 }
 
-/* Clumps from where they stood, start, with spheres at x [3 members]; how each goes is what step(c) says.
- * take(i, row) for each of their atoms, which have been moved. Positions are those of images side by
+FixStokesDynamicsOverdamped::Clumps FixStokesDynamicsOverdamped::clumps_now(const Hydrodynamics &hydro) const
+{
+  const WholeClumps &whole = hydro.scene.whole;
+  Clumps now = {hydro.motion().clumps(), whole.x, whole.steps, {}};
+  std::copy_n(whole.h, 6, now.h);
+  return now;
+}
+
+/* Clumps from where they stood, start; how each goes is what step(c) says. take(i, row) for each of their atoms, which have been moved. Positions are those of images side by
  * side: an atom moves as its image does, less what the edges of the box between them have moved
  * since. */
-void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps &start,
-                                              const std::vector<double> &x, const Step &step,
+void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps &start, const Step &step,
                                               const std::function<void(int, const double *)> &take)
 {
   const WholeClumps &whole = hydro.scene.whole;
   const Lattice now = Lattice::of(domain);
   std::vector<double> places;
   double box[6], row[COLUMNS];
-  for (int d = 0; d < 6; d++) box[d] = whole.h[d] - now.h[d];
+  for (int d = 0; d < 6; d++) box[d] = start.h[d] - now.h[d];
   const auto all = [&](const auto &give) {
-    for (size_t c = 0; c < start.size(); c++) {
-      if (start[c].known == SD_BODY_HELD) continue;
+    for (size_t c = 0; c < start.all.size(); c++) {
+      if (start.all[c].known == SD_BODY_HELD) continue;
       const ClumpPoses::Clump &clump = hydro.motion().clumps()[c];
       const RigidClumps::Body &body = hydro.motion().body(clump);
       const ClumpStep goes = step(c);
       double pose[12];
-      copy<12>(start.all[c].pose, pose);
+      std::copy_n(start.all[c].pose, 12, pose);
       places.resize(3 * (size_t) body.n);
       sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, row + TURN,
                    places.data());
@@ -517,8 +518,8 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
       sd_turn_quaternion(row + TURN, row + TURNED_NOW);
       for (int k = 0; k < body.n; k++) {
         const size_t m = hydro.motion().member_of(clump, k);
-        sd_minus(&places[3 * (size_t) k], &x[3 * m], row + STEP);
-        sd_add_edges(box, &whole.steps[3 * m], row + STEP);
+        sd_minus(&places[3 * (size_t) k], &start.x[3 * m], row + STEP);
+        sd_add_edges(box, &start.steps[3 * m], row + STEP);
         give(m, row);
       }
     }
@@ -558,7 +559,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
     keep_in_plane(s.move, 6);
     return s;
   };
-  step_clumps(hydro, poses.clumps(), hydro.scene.whole.x, step,
+  step_clumps(hydro, clumps_now(hydro), step,
               [&](int i, const double *row) { clump_moves(hydro, i, row); });
 }
 

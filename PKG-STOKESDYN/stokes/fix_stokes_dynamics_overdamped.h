@@ -8,6 +8,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
+#include "deforming_box.h"
 #include "directions.h"
 #include "hydrodynamics.h"
 #include "keyword_group.h"
@@ -124,6 +125,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void find_drives(const Hydrodynamics &);
   bool any_given() const { return held.bit || pinned.bit || spin.on(); }
   bool is_held(int i) const { return atom->mask[i] & held.bit; }
+  /* in its place, or as told */
+  bool stays(int i) const { return atom->mask[i] & (held.bit | pinned.bit); }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
   void load_on(int i, double *FT) const;
@@ -140,7 +143,15 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   Given given() const;
   void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
-  using Clumps = std::vector<ClumpPoses::Clump>;
+  /* Clumps at the start of a step, their spheres x [3 members] side by side, each so many edges h of the box
+   * away from its atom: all as in WholeClumps */
+  struct Clumps {
+    std::vector<ClumpPoses::Clump> all;
+    std::vector<double> x;
+    std::vector<int> steps;
+    double h[6];
+  };
+  Clumps clumps_now(const Hydrodynamics &) const;
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; place [3]:
    * where the centroid is put, for whoever wants that, else nullptr */
   struct ClumpStep {
@@ -151,10 +162,20 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* rows of their atoms: by how much each moves and turns, and the quaternion by which its clump has
    * turned in all when this is a whole step */
   enum { STEP, TURN = STEP + 3, TURNED_NOW = TURN + 9, COLUMNS = TURNED_NOW + 4 };
-  void step_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x,
-                   const Step &step, const std::function<void(int i, const double *row)> &take);
+  void step_clumps(Hydrodynamics &, const Clumps &start, const Step &step,
+                   const std::function<void(int i, const double *row)> &take);
   void clump_moves(Hydrodynamics &, int i, const double *row);
-  void place_clumps(Hydrodynamics &, const Clumps &start, const std::vector<double> &x, double dt);
+  void place_clumps(Hydrodynamics &, const Clumps &start, const Ride &ride);
+  /* A step where it begins: who takes part, and who of them are no clumps; directions, and places
+   * [3 nlocal] */
+  struct Start {
+    std::vector<int> who, lone;
+    Clumps clumps;
+    std::vector<double> mu, x;
+  };
+  void place(Hydrodynamics &, const Start &start, const Ride &ride, const std::vector<double> &there,
+             const std::vector<double> &V);
+  void check_strain(const BoxMotion &flow) const;
   void move_by_midpoint(Hydrodynamics &);
   void watch();
   double fastest() const;

@@ -10,6 +10,13 @@
  * the half step too; who is moved as told is half way there, by the mean velocity of the step. The
  * fluid at x_mid is that of the middle of the step.
  * Forces are extrapolated, so that they are found once per step.
+ *
+ * Where the fluid takes the box along, the step is the same one for coordinates s = H^-1 (x - x_lo) in the
+ * edges H of the box, ds/dt = H^-1 (V - u_box), in which the box stands still: x_mid and its images are
+ * those of the box of the middle, and the flow carries the random displacement for the half step that is
+ * left, x' = S(dt) x + S(dt/2) dt (V - u_box) in a simple shear S. Added at the end of the step instead, the
+ * displacement leaves <xy> of a dumbbell low by half of dt times its rate of relaxation. F_old is kept as it
+ * is in space: it is a force that the step needs at x_mid, not one that goes with the box.
  * Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
 #include "fix_stokes_dynamics_overdamped.h"
 
@@ -38,14 +45,14 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
     keyword.fail("midpoint needs the orientation of clumps in the middle of a step, where fix move "
                  "does not give that of keyword held: let them rest, or move spheres");
   const Fix *deform = fix_like(lmp, "^deform");
-  if (deform && noise.on())
-    voice.of("keyword temperature")
-        .fail("Brownian motion of films, multiblobs, clumps that feel each other and whatever else needs "
-              "scheme midpoint is for boxes that do not change: take " + name_of(deform) + " away, or "
-              "use single points");
-  if (deform)
-    keyword.fail("midpoint is for boxes that do not change, and " + name_of(deform) +
-                 " deforms this one: use ab2");
+  const Ambient::Settings &fluid = hydro.ambient.settings;
+  if (!deform) return;
+  if (!fluid.box && (fluid.grid || !hydro.ambient.varies()))
+    keyword.fail("midpoint needs a fluid that goes with the box, which " + name_of(deform) +
+                 " deforms: use fluid_velocity box of pair_style stokes_dynamics");
+  if (deform->nevery != 1)
+    keyword.fail("midpoint needs a box that moves in every step, and " + name_of(deform) +
+                 " moves it every " + std::to_string(deform->nevery) + " steps: give it 1");
 }
 
 void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take)
@@ -75,70 +82,94 @@ void FixStokesDynamicsOverdamped::find_half_step(const Hydrodynamics &hydro, std
     }
 }
 
-/* By the velocities of now, for dt. Positions of atoms are those of the start. */
-void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clumps &start,
-                                               const std::vector<double> &x, double dt)
+/* By the velocities of now. Positions of atoms are those of the start. */
+void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clumps &start, const Ride &ride)
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto step = [&](size_t c) {
+    const ClumpPoses::Clump &clump = hydro.motion().clumps()[c];
     ClumpStep s = {CENTROID, {}, nullptr};
-    for (int d = 0; d < 6; d++) s.move[d] = dt * hydro.motion().clumps()[c].V[d];
+    for (int d = 0; d < 6; d++) s.move[d] = ride.t * clump.V[d];
+    if (clump.known != SD_BODY_PINNED) ride.step(clump.V, clump.pose + 9, start.all[c].pose + 9, s.move);
     keep_in_plane(s.move, 6);
     return s;
   };
-  step_clumps(hydro, start, x, step, [&](int i, const double *row) {
-    if (dt == update->dt) clump_moves(hydro, i, row);
+  step_clumps(hydro, start, step, [&](int i, const double *row) {
+    if (ride.t == update->dt) clump_moves(hydro, i, row);
   });
 }
 
-/* Half the step by the velocities of now, all of it by those there. Atoms keep their ranks and
- * their numbers: nobody migrates in between. */
+/* fix deform takes the tilt next to that of before, which is another one beyond half an edge. */
+void FixStokesDynamicsOverdamped::check_strain(const BoxMotion &flow) const
+{
+  double largest = 0.0;
+  for (double rate : flow.gradient) largest = std::max(largest, fabs(rate) * update->dt);
+  if (largest > 0.45)
+    voice.at_step().of("keyword scheme").fail("midpoint: the box strains by " + text(largest) +
+                                              " in a step, and fix deform cannot follow: use a shorter time step");
+}
+
+/* All from where they stood at the start, by velocities V [6 nlocal], which those that are free have at the
+ * places `there` [3 nlocal] */
+void FixStokesDynamicsOverdamped::place(Hydrodynamics &hydro, const Start &start, const Ride &ride,
+                                        const std::vector<double> &there, const std::vector<double> &V)
+{
+  const std::vector<double> &x = start.x;
+  for (int i : start.who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
+  directions.restore(start.mu);
+  for (size_t i : start.lone) {
+    const double *v = is_held((int) i) ? &dragged.v[3 * i] : &V[6 * i];
+    double step[3];
+    if (stays((int) i))
+      for (size_t d = 0; d < 3; d++) step[d] = ride.t * v[d];
+    else
+      ride.step(v, &there[3 * i], &x[3 * i], step);
+    for (size_t d = 0; d < 3; d++) atom->x[i][d] += step[d];
+    if (!is_held((int) i)) directions.turn((int) i, v + 3, ride.t);
+  }
+  if (hydro.settings.rigid.on) place_clumps(hydro, start.clumps, ride);
+}
+
+/* Half the step by the velocities of now, all of it by those there, in the frame that goes with the box.
+ * Atoms keep their ranks and their numbers: nobody migrates in between. */
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
   const double dt = update->dt;
-  const std::vector<int> who = hydro.ambient.who(), lone = hydro.motion().lone();
-  const Clumps start = hydro.motion().clumps();
-  const std::vector<double> of_members = hydro.scene.whole.x;
-  const std::vector<double> mu = directions.all();
   const size_t width = hydro.rotation() ? 6 : 3;
-  std::vector<double> x(3 * (size_t) atom->nlocal + 3), V(2 * x.size());
-  for (int i : who) {
-    std::copy_n(atom->x[i], 3, &x[3 * (size_t) i]);
+  const bool carried = hydro.ambient.jumps();
+  const BoxMotion flow = hydro.ambient.box_motion();
+  Start start = {hydro.ambient.who(), hydro.motion().lone(), clumps_now(hydro), directions.all(),
+                 std::vector<double>(3 * (size_t) atom->nlocal + 3)};
+  std::vector<double> V(2 * start.x.size());
+  for (int i : start.who) {
+    std::copy_n(atom->x[i], 3, &start.x[3 * (size_t) i]);
     std::copy_n(motion[i], 3, &V[6 * (size_t) i]);
     if (directions.on()) std::copy_n(directions.turning[i], 3, &V[6 * (size_t) i + 3]);
   }
-  find_half_step(hydro, x);
-  const auto place = [&](double part) {
-    for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
-    directions.restore(mu);
-    for (size_t i : lone) {
-      const double *v = is_held((int) i) ? &dragged.v[3 * i] : &V[6 * i];
-      for (size_t d = 0; d < 3; d++) atom->x[i][d] += part * v[d];
-      if (!is_held((int) i)) directions.turn((int) i, v + 3, part);
-    }
-    if (hydro.settings.rigid.on) place_clumps(hydro, start, of_members, part);
-  };
-  for (int i : who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
+  find_half_step(hydro, start.x);
+  for (int i : start.who) std::copy_n(&start.x[3 * (size_t) i], 3, atom->x[i]);
   hydro.look_ahead();
-  place(0.5 * dt);
+  check_strain(flow);
+  const BoxInStep box(lmp);
+  if (flow.deforms) box.put(box.middle);
+  place(hydro, start, {0.5 * dt, carried, box.start, box.start, box.middle, flow}, start.x, V);
+  std::vector<double> there(start.x.size());
+  for (int i : start.who) std::copy_n(atom->x[i], 3, &there[3 * (size_t) i]);
   hydro.begin(Hydrodynamics::MIDDLE);
   hydro.ambient.half_a_step_back();
-  Given known = given();
-  if (noise.on())
-    known.loads = [this](int i, double *FT) {
-      push_on(i, FT);
-      for (int d = 0; d < 6; d++) FT[d] += random[i][d];
-    };
+  std::vector<double> pushed = loads(hydro);
+  for (size_t i : start.who)
+    for (size_t d = 0; d < 6 && noise.on(); d++) pushed[6 * i + d] += random[i][d];
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
     std::copy_n(v, width, &V[6 * (size_t) i]);
     keep_in_plane(&V[6 * (size_t) i], 6);
-  }, known);
+  }, given(pushed));
   if (flow.deforms) box.put(box.end);
   place(hydro, start, {dt, carried, box.start, box.middle, box.end, hydro.ambient.box_motion()}, there, V);
   dragged.v.clear();
   for (int i : start.who) load_on(i, load.give(i));
   for (int i : start.lone) {
-    const double *v = &V[6 * (size_t) i], step[3] = {dt * v[0], dt * v[1], dt * v[2]};
-    if (!is_held(i)) moves(i, step);
+    const double *v = &V[6 * (size_t) i];
+    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)));
   }
 }

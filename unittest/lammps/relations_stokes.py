@@ -47,14 +47,13 @@ def lawful(o, no):
     no(overdamped, every=1)
     no(o["look"] != "nothing" and blobs, guess="warm")      # else the forces of points are not kept
     no(o["noise"] == "yes", adapt="no", contacts="no", held="still" if o["held"] == "moved" and o["clumps"] else o["held"])
-    no(o["noise"] == "yes" and (o["pairs"] != "inf" or o["space"] == "deform"), noise="no")
+    no(o["noise"] == "yes" and o["pairs"] != "inf", noise="no")
     no(o["noise"] == "yes" and o["motion"] in ("ab2", "euler") and (
         o["films"] == "yes" or blobs or o["space"] == "wall" or o["rigid"] != "no" or o["held"] != "no" or o["spin"] != "no"
         or o["drive"] == "pin" or o["visc"] == "formula"), motion="midpoint")
     no(o["held"] == "moved", adapt="no")      # fix move wants one time step
     no(o["held"] == "moved" and o["motion"] == "midpoint" and o["rigid"] != "no", held="still")
     no(o["spin"] != "no" and (o["model"] == "" or o["rigid"] != "no"), spin="no")
-    no(o["space"] == "deform" and o["motion"] == "midpoint", motion="ab2", noise="no")
     no(o["space"] == "deform", flow="box", adapt="no", held="no", contacts="no")
     no(o["space"] != "deform" and o["flow"] == "box", flow="rest")
     no(o["space"] == "wall" and o["flow"] == "uniform", flow="shear")

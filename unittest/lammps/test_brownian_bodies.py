@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brownian import A, END, ETA, KT, SHORT, UNIT, check_covariance, check_pieces, check_ranks, end, in_a_plane, noise, script, steps_of
-from system import LammpsError, Spheres
+from system import Spheres
 
 INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
 TRIO = A * np.array([(0, 0, 0), (2.1, 0, 0), (0.4, 2.2, 0.6)])
@@ -96,16 +96,6 @@ def test_steps_do_not_depend_on_the_unit_of_length(simulation, words, molecule):
         ends.append(sim.x / unit)
     assert np.abs(ends[0] - DUMBBELLS).max() > 0.01
     assert np.abs(ends[1] - ends[0]).max() < 1e-7
-
-
-@pytest.mark.parametrize("words, message", [
-    ("temperature 1 77", "keyword temperature: Brownian motion of films, multiblobs, .* take fix shear of style deform away"),
-    ("scheme midpoint", "keyword scheme: midpoint is for boxes that do not change, and fix shear of style deform deforms this one: use ab2")])
-def test_a_box_that_deforms_has_no_midpoint(simulation, words, message):
-    sim = simulation(Spheres(TRIO, A), f"{INF} multiblob 12 fluid_velocity box", fix=False, dt=1e-3, boundary="p p p", box=[(-4.0, 4.0)] * 3,
-                     tilt=(0.0, 0.0, 0.0))
-    with pytest.raises(LammpsError, match=message):
-        sim.commands(f"fix shear all deform 1 xy erate 0.1 remap v\nfix move all stokes_dynamics/overdamped {words}").run(0)
 
 
 # --- equilibrium ----------------------------------------------------------------------------------------------------------

@@ -76,6 +76,20 @@ void sd_bring_close(const double h[6], const int periodic[3], const double to[3]
   for (int k = 0; k < 3; k++) steps[k] = fabs(exact[k]) < 1e9 ? (int) lround(exact[k]) : 0;
 }
 
+void sd_box_step(const sd_box *start, const sd_box *at, const sd_box *to, const double move[3],
+                 double x[3])
+{
+  const double *h = to->h;
+  double r[3], f[3], goes[3];
+  for (int d = 0; d < 3; d++) r[d] = x[d] - start->lo[d];
+  sd_in_edges(start->h, r, f);
+  sd_in_edges(at->h, move, goes);
+  for (int d = 0; d < 3; d++) f[d] += goes[d];
+  x[0] = to->lo[0] + h[0] * f[0] + h[5] * f[1] + h[4] * f[2];
+  x[1] = to->lo[1] + h[1] * f[1] + h[3] * f[2];
+  x[2] = to->lo[2] + h[2] * f[2];
+}
+
 double sd_across_faces(const double h[6], int d, double length)
 {
   const double xy = h[5], xz = h[4], yz = h[3], s = xy * yz / h[1] - xz;

@@ -33,6 +33,20 @@ static inline void sd_in_edges(const double h[6], const double r[3], double f[3]
   f[0] = (r[0] - h[5] * f[1] - h[4] * f[2]) / h[0];
 }
 
+/* A box: its lower corner and its edges */
+typedef struct {
+  double lo[3], h[6];
+} sd_box;
+
+/* A move of a point that a box carries along, from where it stands in the box `start` to the box `to`: in
+ * units of the edges, which do not change where the box carries all,
+ *   x <- lo_to + H_to [ H_start^-1 (x - lo_start) + H_at^-1 move ],
+ * move [3]: in space, as it is in the box `at`. For a simple shear, with `at` half a step before `to`, this
+ * is S(dt) x + S(dt/2) move: the shear carries a random displacement for the half step that is left. A
+ * point and its images make moves that differ by what the edges have grown, to rounding. */
+void sd_box_step(const sd_box *start, const sd_box *at, const sd_box *to, const double move[3],
+                 double x[3]);
+
 /* A length across the faces of edge d, which are volume / (their area) apart, in units of that */
 double sd_across_faces(const double h[6], int d, double length);
 

@@ -96,6 +96,50 @@ static void faces_are_volume_over_area_apart(void **state)
   }
 }
 
+static void edges_of(const double h[6], const int steps[3], double x[3])
+{
+  x[0] = x[1] = x[2] = 0.0;
+  sd_add_edges(h, steps, x);
+}
+
+/* A simple shear of rate g moves the fluid by S(dt) x, and a displacement by what the shear does in the half
+ * step that is left: S(dt) x + S(dt/2) move. */
+static void shear_carries_a_move_for_half_a_step(void **state)
+{
+  (void) state;
+  const double g = 0.7, dt = 0.3, move[3] = {0.2, -0.5, 0.4}, lo[3] = {-1.5, 2.0, 0.7};
+  sd_box box[3];
+  for (int k = 0; k < 3; k++) {
+    const double h[6] = {4.0, 5.0, 6.0, 0.0, 0.0, 0.3 + 5.0 * g * 0.5 * k * dt};
+    memcpy(box[k].lo, lo, sizeof(lo));
+    memcpy(box[k].h, h, sizeof(h));
+  }
+  double x[3] = {3.0, -1.1, 2.2};
+  const double height = x[1] - lo[1];
+  sd_box_step(&box[0], &box[1], &box[2], move, x);
+  CHECK_NEAR(x[0], 3.0 + g * dt * height + move[0] + 0.5 * g * dt * move[1], 1e-14);
+  CHECK_NEAR(x[1], -1.1 + move[1], 1e-14);
+  CHECK_NEAR(x[2], 2.2 + move[2], 1e-14);
+}
+
+/* An image stays one: whatever the box does, both go so that the edges between them are those of then. */
+static void image_of_a_point_stays_its_image(void **state)
+{
+  (void) state;
+  const sd_box start = {{0.1, -3.0, 2.0}, {4.0, 5.0, 6.0, 1.1, -0.7, 1.9}},
+               middle = {{0.3, -3.5, 2.1}, {4.2, 4.7, 6.1, 1.3, -0.2, 2.1}},
+               end = {{0.6, -4.1, 1.8}, {4.5, 4.3, 6.3, 1.2, 0.4, 2.5}};
+  const int steps[3] = {2, -1, 3};
+  const double move[3] = {0.4, 0.3, -0.8};
+  double x[3] = {1.7, -0.4, 3.3}, image[3], shift[3];
+  edges_of(start.h, steps, shift);
+  for (int d = 0; d < 3; d++) image[d] = x[d] + shift[d];
+  sd_box_step(&start, &middle, &end, move, x);
+  sd_box_step(&start, &middle, &end, move, image);
+  edges_of(end.h, steps, shift);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(image[d], x[d] + shift[d], 1e-13);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -103,6 +147,8 @@ int main(void)
       cmocka_unit_test(far_away_is_no_loop),
       cmocka_unit_test(steps_and_edges_agree),
       cmocka_unit_test(faces_are_volume_over_area_apart),
+      cmocka_unit_test(shear_carries_a_move_for_half_a_step),
+      cmocka_unit_test(image_of_a_point_stays_its_image),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
