@@ -336,11 +336,11 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
   const double asked = out->tolerance;
   out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
   status = one_level(out, GAUSSIAN, &sizes->all, 3, LARGEST);
-  out->images = (sd_ewald_images){*wall, out->xi, out->range};
+  out->images = (sd_ewald_images){*wall, out->xi, out->range, 0.0};
   if (status == SD_OK && box->edge[wall->axis] > HIGH * out->range) {
     out->tolerance = fmax(TIGHTEST, AT_HIGH_WALL * asked);
     status = one_level(out, GAUSSIAN, &sizes->all, 3, LARGEST);
-    out->images = (sd_ewald_images){*wall, SMOOTHER * out->xi, FARTHER * out->range};
+    out->images = (sd_ewald_images){*wall, SMOOTHER * out->xi, FARTHER * out->range, 0.0};
   }
   out->tolerance = asked;
   out->reach = fmax(out->reach, out->images.range);

@@ -51,6 +51,8 @@ typedef struct {
   /* sign 0: there is no wall */
   sd_wall wall;
   double xi, range;
+  /* 0: the filters are those of a Gaussian; else their waves end here, 1/length (sd_image_wave.h) */
+  double band;
 } sd_ewald_images;
 
 /* A box that is periodic in two directions alone (sd_slab.h), as a periodic one that is taller: the

@@ -3,6 +3,7 @@
 #define SD_EWALD_INTERNAL_H
 
 #include "sd_image_kernel.h"
+#include "sd_image_wave.h"
 #include "sd_product.h"
 #include "sd_radial.h"
 #include "sd_window.h"
@@ -29,6 +30,36 @@ typedef struct {
 
 /* Degrees that there are kernels for: the polynomial is filled up with zeros. */
 #define SD_NEAR_DEGREES(_) _(6) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
+
+/* The first of them that is enough */
+static inline int sd_near_degree(int least)
+{
+#define OF_DEGREE(d) \
+  if ((d) >= least) return d;
+  SD_NEAR_DEGREES(OF_DEGREE)
+#undef OF_DEGREE
+  return SD_RADIAL_TERMS - 1;
+}
+
+/* Near images: each pair of a sphere and an image once, for both its spheres, in the axes of the wall,
+ * lengths scaled. Sums times 8 pi and without w of the sphere. */
+typedef struct {
+  /* spheres near the wall, those of ours first */
+  int rows, targets;
+  /* all radii are alike */
+  int equal;
+  /* [targets + 1] as above */
+  const long *first;
+  const int *neighbor;
+  /* [8 (rows + 1)] x y z a, w F, and which row it is, since that one is its own neighbour */
+  const double *row;
+  /* [4 (rows + 1)] U, and one number more; 0 before */
+  double *u;
+  /* range^2, a_ref^2, and the polynomials of sd_image_wave.h; degree: one of the kernels' */
+  double range2, ref2;
+  int degree;
+  double coefficient[SD_IMAGE_FUNCTIONS][3][SD_RADIAL_TERMS];
+} sd_image_part;
 
 /* What windows need of a sphere: its first point on the grid, v of sd_window.h each way, b of
  * sd_radial.h */
@@ -79,6 +110,7 @@ typedef long sd_near_search(const double *centre, long stride, const int *ranges
 struct sd_ewald_kernels {
   sd_near_search *search;
   void (*near_part)(const sd_near_part *p);
+  void (*image_part)(const sd_image_part *p);
   void (*spread)(const sd_spreading *s);
   void (*interpolate)(const sd_spreading *s);
   /* one row along z of the three transforms, u = B (f - k (k.f)/k^2): B [half], k [3] at its

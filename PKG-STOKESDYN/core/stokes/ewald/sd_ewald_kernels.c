@@ -4,6 +4,7 @@
 
 #include "sd_ewald_near_kernel.h"
 #include "sd_ewald_spread_kernel.h"
+#include "sd_image_pair_kernel.h"
 #include "sd_image_row_kernel.h"
 
 /* k = 0: B is 0 there, and 1e-300 keeps 1/k^2 finite. */
@@ -38,5 +39,5 @@ static void open_row(double *const *f, const double *K, double sx, double sy, in
 }
 
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald) = {
-    search, near_part, spread, interpolate, periodic_row, open_row,
+    search, near_part, image_part, spread, interpolate, periodic_row, open_row,
     image_rows};

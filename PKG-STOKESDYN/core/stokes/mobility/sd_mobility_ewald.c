@@ -47,6 +47,7 @@ static sd_status me_make_tables(ewald *e, const sd_mobility_scene *s)
   const struct sd_ewald_kernels *kernels =
       SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
   sd_ewald_pairs_create(&e->pairs, how, kernels, e->width);
+  if (how->images.wall.sign) sd_ewald_image_pairs_create(&e->image_pairs, how, kernels);
   sd_radial_tail(how, e->tail);
   const sd_status status = sd_ewald_waves_create(&e->waves, how, kernels, e->width, &s->world);
   e->ready = status == SD_OK;
@@ -111,7 +112,7 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
   if (status == SD_OK && !keep_off_wall(e, s)) status = SD_ENOMEMORY;
   if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &e->spheres, s->n, s->n_all);
   if (status == SD_OK && e->ewald.images.wall.sign)
-    status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald, &e->spheres, s->n, s->n_all);
+    status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald.images.wall, &e->spheres, s->n, s->n_all);
   if (status == SD_OK && !me_make_room(e, s->n, (size_t) e->width * (size_t) (s->n_all - s->n)))
     status = SD_ENOMEMORY;
   if (status == SD_OK) list_spheres(e);

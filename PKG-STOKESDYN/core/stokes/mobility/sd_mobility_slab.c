@@ -50,6 +50,8 @@ static sd_status make_tables(slab *s, const sd_mobility_scene *scene)
   const struct sd_columns_kernels *columns =
       SD_KERNELS_OF(sd_columns, plain, sd_isa_of(SD_ISA_BEST));
   sd_ewald_pairs_create(&s->pairs, &how->ewald, kernels, 3);
+  for (int w = 0; w < sd_slab_many_walls(&how->walls); w++)
+    sd_ewald_image_pairs_create(s->images + w, &how->ewald, kernels);
   sd_status status = sd_ewald_waves_create(&s->waves, &how->ewald, kernels, 3, &scene->world);
   const sd_grid *grid = &s->waves.grid;
   if (status == SD_OK)
@@ -92,11 +94,9 @@ static int stand_spheres(slab *s, const sd_spheres *spheres)
 static sd_status place_images(slab *s)
 {
   sd_status status = SD_OK;
-  for (int w = 0; w < sd_slab_many_walls(&s->slab.walls) && status == SD_OK; w++) {
-    sd_ewald at = s->slab.ewald;
-    at.images.wall = s->slab.walls.wall[w];
-    status = sd_ewald_image_pairs_place(s->images + w, &at, &s->spheres, s->n, s->n_all);
-  }
+  for (int w = 0; w < sd_slab_many_walls(&s->slab.walls) && status == SD_OK; w++)
+    status = sd_ewald_image_pairs_place(s->images + w, s->slab.walls.wall + w, &s->spheres, s->n,
+                                        s->n_all);
   return status;
 }
 

@@ -2,11 +2,50 @@
  * against the sum over all pairs. */
 #include "periodic.h"
 
+#include "sd_constants.h"
+#include "sd_ewald_image_pairs.h"
 #include "sd_image_wave.h"
 #include "sd_radial.h"
 #include "sd_window.h"
 
 enum { N = 150 };
+
+/* (1) of sd_image_wave.h for a Gaussian in closed form, in the form of sd_wall.h: with the ends of both spheres, sorted by f, R and z */
+static void smooth_part(const sd_filter *filter, const double xi[3], double a, const double xj[3], double b, double c[5])
+{
+  const double g = xi[2], h = xj[2], x = xi[0] - xj[0], y = xi[1] - xj[1], z = g + h;
+  const double A = a * a / 6.0, B = b * b / 6.0, ref = filter->a_ref * filter->a_ref / 6.0;
+  const double bi = A - ref, bj = B - ref;
+  const int apart = bi != 0.0 || bj != 0.0;
+  const sd_filtered f = sd_filtered_at(filter, x * x + y * y + z * z, 5, apart);
+  double I, J, I1, J1, I2, J2;
+  sd_filtered_stokeslet(&f, 0, &I, &J);
+  if (apart) {
+    sd_filtered_stokeslet(&f, 1, &I1, &J1);
+    sd_filtered_stokeslet(&f, 2, &I2, &J2);
+    I += (bi + bj) * I1 + bi * bj * I2;
+    J += (bi + bj) * J1 + bi * bj * J2;
+  }
+  /* L with 1 + b lap of both, of i, of j, of none */
+  double both[5], of_i[5], of_j[5], X[5], Q[5];
+  const double *L = f.L[0];
+  for (int n = 0; n < 5; n++) {
+    const double L1 = apart ? f.L[1][n] : 0.0, L2 = apart ? f.L[2][n] : 0.0;
+    of_i[n] = L[n] + bi * L1;
+    of_j[n] = L[n] + bj * L1;
+    both[n] = L[n] + (bi + bj) * L1 + bi * bj * L2;
+    /* the derivatives that come with heights, of one end and of both */
+    X[n] = 4.0 * (g * bj * of_i[n] + h * bi * of_j[n] + z * ref * both[n]);
+    Q[n] = 8.0 * (bi * bj * L[n] + ref * (bi * of_j[n] + bj * of_i[n] + ref * both[n]));
+  }
+  const double gh = 2.0 * g * h, sides = X[2] + 2.0 * z * Q[3];
+  const double turn = (g - h) * both[1] + 2.0 * z * (bi * of_j[2] - bj * of_i[2]);
+  c[0] = -I + gh * both[1] + X[2] * z + Q[2] + z * z * Q[3];
+  c[1] = 2.0 * I + 2.0 * Q[2];
+  c[2] = -J + gh * both[2] + X[3] * z + Q[3] + z * z * Q[4];
+  c[3] = J * z - turn + sides;
+  c[4] = J * z + turn + sides;
+}
 
 /* Far from each other an image is all smooth part, for any two radii, whatever a_ref is. */
 static void far_away_the_smooth_part_is_the_image(void **state)
@@ -20,7 +59,7 @@ static void far_away_the_smooth_part_is_the_image(void **state)
     const sd_filter filter = {1.6, uniform(&seed, 0.0, 1.5)};
     const sd_wall_pair whole = sd_wall_pair_of(xi, a, xj, b);
     double c[5];
-    sd_image_wave(&filter, xi, a, xj, b, c);
+    smooth_part(&filter, xi, a, xj, b, c);
     for (int m = 0; m < 5; m++) CHECK_NEAR(c[m], whole.c[m], 3e-14 * fabs(whole.c[0]));
   }
 }
@@ -38,9 +77,71 @@ static void the_smooth_part_is_symmetric(void **state)
     const sd_filter filter = {uniform(&seed, 0.05, 1.0), 0.7};
     double there[5], back[5];
     static const int other[5] = {0, 1, 2, 4, 3};
-    sd_image_wave(&filter, x[0], a, x[1], b, there);
-    sd_image_wave(&filter, x[1], b, x[0], a, back);
+    smooth_part(&filter, x[0], a, x[1], b, there);
+    smooth_part(&filter, x[1], b, x[0], a, back);
     for (int m = 0; m < 5; m++) CHECK_NEAR(there[m], back[other[m]], 1e-13 * fabs(there[0]));
+  }
+}
+
+/* u += the image of w F of sphere j less its smooth part, in the axes of the wall */
+static void add_near_image(const sd_filter *filter, const double *xi, double a, const double *xj, double b, const double *F, double *u)
+{
+  sd_wall_pair pair = sd_wall_pair_of(xi, a, xj, b);
+  double c[5];
+  smooth_part(filter, xi, a, xj, b, c);
+  for (int k = 0; k < 5; k++) pair.c[k] -= c[k];
+  sd_wall_pair_add(&pair, 3, F, u);
+}
+
+/* Of each instruction set, for radii that are alike and others, with ghosts, against sums over all pairs within the range of the
+ * images in closed form */
+static void near_images_are_images_less_their_smooth_part(void **state)
+{
+  (void) state;
+  enum { MANY = 120, OURS = 90 };
+  static const sd_isa sets[] = {SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512};
+  const sd_wall wall = {1, -1, 7.5};
+  int axis[3];
+  sd_wall_axes(&wall, axis);
+  for (int alike = 0; alike < 2; alike++) {
+    uint64_t seed = 11;
+    double x[3 * MANY], at[3 * MANY], a[MANY], w[MANY], F[3 * MANY], expected[3 * OURS] = {0.0}, scale = 0.0;
+    sd_ewald how = {.largest = 1.3, .a_ref = 0.9, .tolerance = 1e-12, .images = {wall, 0.65, 7.0, 0.0}};
+    const sd_filter filter = {how.images.xi, how.a_ref};
+    for (int i = 0; i < MANY; i++) {
+      a[i] = alike ? 1.3 : uniform(&seed, 0.4, 1.3);
+      w[i] = uniform(&seed, 0.6, 1.4);
+      for (int d = 0; d < 3; d++) {
+        x[3 * i + axis[d]] = d == 2 ? wall.at - a[i] - uniform(&seed, 0.0, 6.0) : uniform(&seed, -9.0, 9.0);
+        F[3 * i + d] = uniform(&seed, -1, 1);
+      }
+      sd_wall_stand(&wall, x + 3 * i, a[i], at + 3 * i);
+    }
+    for (int i = 0; i < OURS; i++) {
+      double u[3] = {0.0};
+      for (int j = 0; j < MANY; j++) {
+        const double *xi = at + 3 * i, *xj = at + 3 * j;
+        if (pow(xi[0] - xj[0], 2) + pow(xi[1] - xj[1], 2) + pow(xi[2] + xj[2], 2) > 49.0) continue;
+        double f[3];
+        for (int d = 0; d < 3; d++) f[d] = (d == 2 ? wall.sign : 1) * w[j] * F[3 * j + axis[d]];
+        add_near_image(&filter, xi, a[i], xj, a[j], f, u);
+      }
+      for (int d = 0; d < 3; d++) {
+        expected[3 * i + axis[d]] = (d == 2 ? wall.sign : 1) * w[i] * u[d] / (8.0 * SD_PI);
+        scale = fmax(scale, fabs(expected[3 * i + axis[d]]));
+      }
+    }
+    const sd_spheres spheres = {x, a, w};
+    for (int k = 0; k < 4; k++) {
+      if (!sd_isa_supported(sets[k])) continue;
+      double u[3 * OURS] = {0.0};
+      sd_ewald_image_pairs p = {0};
+      sd_ewald_image_pairs_create(&p, &how, SD_KERNELS_OF(sd_ewald, plain, sets[k]));
+      assert_int_equal(sd_ewald_image_pairs_place(&p, &wall, &spheres, OURS, MANY), SD_OK);
+      sd_ewald_image_pairs_apply(&p, OURS, F, F + 3 * OURS, u);
+      sd_ewald_image_pairs_free(&p);
+      for (int i = 0; i < 3 * OURS; i++) CHECK_NEAR(u[i], expected[i], 1e-11 * scale);
+    }
   }
 }
 
@@ -190,6 +291,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(far_away_the_smooth_part_is_the_image),
       cmocka_unit_test(the_smooth_part_is_symmetric),
+      cmocka_unit_test(near_images_are_images_less_their_smooth_part),
         cmocka_unit_test(the_slope_of_a_window_is_that_of_its_transform),
       cmocka_unit_test(walls_agree_with_all_pairs),
       cmocka_unit_test(the_matrix_is_symmetric),

@@ -5,24 +5,44 @@
 #include <string.h>
 
 #include "sd_constants.h"
-#include "sd_image_wave.h"
 #include "sd_room.h"
+
+/* Vectors of every instruction set are full with so many neighbours. */
+enum { FULL = 8 };
+
+/* A row that stands for nothing: no force, and far from everything. */
+static const double far_away = 1e14;
+
+void sd_ewald_image_pairs_create(sd_ewald_image_pairs *p, const sd_ewald *e,
+                                 const struct sd_ewald_kernels *kernels)
+{
+  p->kernels = kernels;
+  p->ewald = *e;
+  p->scale = ldexp(1.0, -ilogb(e->largest));
+  sd_ewald scaled = *e;
+  scaled.largest *= p->scale;
+  scaled.a_ref *= p->scale;
+  scaled.images.xi /= p->scale;
+  scaled.images.band /= p->scale;
+  scaled.images.range *= p->scale;
+  p->part.range2 = scaled.images.range * scaled.images.range;
+  p->part.ref2 = scaled.a_ref * scaled.a_ref;
+  p->part.degree = sd_near_degree(sd_image_fit(&scaled, p->part.coefficient));
+}
 
 void sd_ewald_image_pairs_free(sd_ewald_image_pairs *p)
 {
   free(p->sphere);
   free(p->order);
-  free(p->x);
+  free(p->strip);
+  free(p->memory);
   free(p->first);
-  free(p->pair);
-  sd_cells_free(&p->cells);
+  free(p->neighbor);
   memset(p, 0, sizeof(*p));
 }
 
 /* --- who is near --- */
 
-/* Side by side along the wall in strips, and within a strip along it: those that see each other are
- * near in memory, too. */
 static int by_place(const void *one, const void *other)
 {
   const sd_near_image *a = one, *b = other;
@@ -30,133 +50,164 @@ static int by_place(const void *one, const void *other)
   return a->along < b->along ? -1 : a->along > b->along;
 }
 
-static void sort_near(sd_ewald_image_pairs *p, int n)
+/* Spheres within the range of the wall: others are not in that of any image. Those that see each other are
+ * near in memory, too. */
+static int list_near(sd_ewald_image_pairs *p, int n, int n_all)
 {
-  const sd_wall *wall = &p->ewald.images.wall;
-  int axis[3];
-  sd_wall_axes(wall, axis);
-  for (int k = 0; k < p->near; k++) {
-    const double *x = p->spheres.x + 3L * p->sphere[k];
-    p->order[k] =
-        (sd_near_image){floor(2.0 * x[axis[0]] / p->ewald.images.range), x[axis[1]], p->sphere[k]};
-  }
-  qsort(p->order, (size_t) n, sizeof(*p->order), by_place);
-  qsort(p->order + n, (size_t) (p->near - n), sizeof(*p->order), by_place);
-  for (int k = 0; k < p->near; k++) {
-    const long i = p->sphere[k] = p->order[k].sphere;
-    sd_wall_stand(wall, p->spheres.x + 3 * i, p->spheres.a[i], p->x + 3L * k);
-  }
-}
-
-/* Spheres whose own image is within twice the range: others have none that is */
-static sd_status find_near(sd_ewald_image_pairs *p, int n, int n_all)
-{
-  const sd_wall *wall = &p->ewald.images.wall;
-  p->near = p->ours = 0;
-  if (!sd_reserve(&p->sphere, sizeof(int), (size_t) n_all, &p->near_room) ||
-      !sd_reserve(&p->order, sizeof(sd_near_image), (size_t) n_all, &p->order_room) ||
-      !sd_reserve(&p->x, 9 * sizeof(double), (size_t) n_all, &p->x_room))
-    return SD_ENOMEMORY;
+  const double range = p->ewald.images.range;
+  int axis[3], near = 0, ours = 0;
+  if (!sd_reserve(&p->sphere, sizeof(int), (size_t) n_all + 1, &p->sphere_room) ||
+      !sd_reserve(&p->order, sizeof(sd_near_image), (size_t) n_all + 1, &p->order_room))
+    return 0;
+  sd_wall_axes(&p->wall, axis);
   for (int i = 0; i < n_all; i++) {
     const double *x = p->spheres.x + 3L * i;
-    if (!(p->spheres.a[i] > 0.0) || sd_wall_height(wall, x) > p->ewald.images.range) continue;
-    p->sphere[p->near++] = i;
-    p->ours += i < n;
+    if (!(p->spheres.a[i] > 0.0) || sd_wall_height(&p->wall, x) > range) continue;
+    p->order[near++] = (sd_near_image){floor(2.0 * x[axis[0]] / range), x[axis[1]], i};
+    ours += i < n;
   }
-  sort_near(p, p->ours);
-  p->F = p->x + 3L * p->near;
-  p->u = p->F + 3L * p->near;
-  return SD_OK;
+  qsort(p->order, (size_t) ours, sizeof(*p->order), by_place);
+  qsort(p->order + ours, (size_t) (near - ours), sizeof(*p->order), by_place);
+  for (int k = 0; k < near; k++) p->sphere[k] = p->order[k].sphere;
+  p->part.rows = near;
+  p->part.targets = ours;
+  return 1;
 }
 
-static sd_image_pair pair_of(const sd_ewald_image_pairs *p, int i, int j)
+/* Centres are read in whole vectors beyond the last. */
+static int fill_rows(sd_ewald_image_pairs *p)
 {
-  const sd_filter filter = {p->ewald.images.xi, p->ewald.a_ref};
-  const double *xi = p->x + 3L * i, *xj = p->x + 3L * j;
-  const double a = p->spheres.a[p->sphere[i]], b = p->spheres.a[p->sphere[j]];
-  const sd_wall_pair whole = sd_wall_pair_of(xi, a, xj, b);
-  sd_image_pair pair = {.other = j};
-  sd_image_wave(&filter, xi, a, xj, b, pair.c);
-  for (int k = 0; k < 5; k++) pair.c[k] = whole.c[k] - pair.c[k];
-  return pair;
-}
-
-/* Images within the range of sphere i of ours; those of ours that come earlier have the pair. Returns
- * how many pairs there are then, -1: out of memory. */
-static long ip_pairs_of(sd_ewald_image_pairs *p, int i, long many)
-{
-  const double *x = p->x + 3L * i, range = p->ewald.images.range;
-  const double image[3] = {x[0], x[1], -x[2]};
-  for (sd_cells_walk w = sd_cells_near(&p->cells, image, range); sd_cells_step(&p->cells, &w);)
-    for (int j = w.first; j >= 0; j = p->cells.next[j]) {
-      const double *y = p->x + 3L * j;
-      const double dx = x[0] - y[0], dy = x[1] - y[1], z = x[2] + y[2];
-      if (j < i || dx * dx + dy * dy + z * z > range * range) continue;
-      if (!sd_extend(&p->pair, sizeof(sd_image_pair), (size_t) many + 1, &p->room)) return -1;
-      p->pair[many++] = pair_of(p, i, j);
+  const size_t rows = (size_t) p->part.rows + 1;
+  p->row = sd_reserve_lines(&p->memory, 12 * rows + FULL, &p->room);
+  if (!p->row) return 0;
+  double *centre = p->row + 8 * rows;
+  p->part.equal = 1;
+  for (int k = 0; k < p->part.rows; k++) {
+    const long i = p->sphere[k];
+    const double a = p->spheres.a[i];
+    double x[3], *row = p->row + 8L * k;
+    sd_wall_stand(&p->wall, p->spheres.x + 3 * i, a, x);
+    for (int d = 0; d < 3; d++) {
+      row[d] = x[d] * p->scale;
+      centre[(long) d * p->part.rows + k] = x[d];
     }
+    row[3] = a * p->scale;
+    row[7] = k;
+    p->part.equal = p->part.equal && row[3] == p->row[3];
+  }
+  const double last[8] = {far_away, far_away, far_away, 0.0, 0.0, 0.0, 0.0, -1.0};
+  memcpy(p->row + 8L * p->part.rows, last, sizeof(last));
+  p->part.row = p->row;
+  p->part.u = centre;
+  return 1;
+}
+
+/* --- pairs --- */
+
+static int list_strips(sd_ewald_image_pairs *p, int from, int end)
+{
+  for (int k = from; k < end; k++) {
+    const double strip = p->order[k].strip;
+    if (k == from || strip != p->order[k - 1].strip) {
+      if (!sd_extend(&p->strip, sizeof(sd_near_strip), (size_t) p->strips + 1, &p->strip_room))
+        return 0;
+      p->strip[p->strips++] = (sd_near_strip){strip, k, k, k, k};
+    }
+    p->strip[p->strips - 1].end = k + 1;
+  }
+  return 1;
+}
+
+/* The strips that a strip of ours sees: from itself on, so that each pair comes once, and those of ghosts on
+ * both sides; [8] */
+static int strips_near(sd_ewald_image_pairs *p, int own, int *ghosts, sd_near_strip **near)
+{
+  const double strip = p->strip[own].strip;
+  int many = 0;
+  for (int s = own; s < p->own_strips && p->strip[s].strip <= strip + 2.0; s++)
+    near[many++] = p->strip + s;
+  while (*ghosts < p->strips && p->strip[*ghosts].strip < strip - 2.0) (*ghosts)++;
+  for (int s = *ghosts; s < p->strips && p->strip[s].strip <= strip + 2.0; s++)
+    near[many++] = p->strip + s;
+  for (int s = 0; s < many; s++) near[s]->lo = near[s]->hi = near[s]->first;
   return many;
 }
 
-sd_status sd_ewald_image_pairs_place(sd_ewald_image_pairs *p, const sd_ewald *e,
+/* Neighbours of row i after the first `many` of all; returns how many there are then, -1: out of memory */
+static long ip_neighbors_of(sd_ewald_image_pairs *p, int i, sd_near_strip **near, int strips, long many)
+{
+  const double range = p->ewald.images.range, along = p->order[i].along;
+  const double *centre = p->part.u;
+  const long rows = p->part.rows;
+  int ranges[2 * 8];
+  long most = many + 2 * FULL;
+  for (int s = 0; s < strips; s++) {
+    sd_near_strip *at = near[s];
+    while (at->lo < at->end && p->order[at->lo].along < along - range) at->lo++;
+    while (at->hi < at->end && p->order[at->hi].along <= along + range) at->hi++;
+    ranges[2 * s] = s == 0 ? i : at->lo;
+    ranges[2 * s + 1] = at->hi;
+    most += at->hi - ranges[2 * s];
+  }
+  if (!sd_extend(&p->neighbor, sizeof(int), (size_t) most, &p->neighbor_room)) return -1;
+  const double image[3] = {centre[i], centre[rows + i], -centre[2 * rows + i]};
+  many += p->kernels->search(centre, rows, ranges, strips, image, range * range, p->neighbor + many);
+  while (many % FULL) p->neighbor[many++] = p->part.rows;
+  return many;
+}
+
+static int ip_find_pairs(sd_ewald_image_pairs *p)
+{
+  const int ours = p->part.targets;
+  p->strips = 0;
+  if (!list_strips(p, 0, ours)) return 0;
+  p->own_strips = p->strips;
+  if (!list_strips(p, ours, p->part.rows) ||
+      !sd_reserve(&p->first, sizeof(long), (size_t) ours + 1, &p->first_room))
+    return 0;
+  int ghosts = p->own_strips;
+  long many = 0;
+  for (int s = 0; s < p->own_strips && many >= 0; s++) {
+    sd_near_strip *near[8];
+    const int strips = strips_near(p, s, &ghosts, near);
+    for (int i = p->strip[s].first; i < p->strip[s].end && many >= 0; i++) {
+      p->first[i] = many;
+      many = ip_neighbors_of(p, i, near, strips, many);
+    }
+  }
+  p->first[ours] = many;
+  p->part.first = p->first;
+  p->part.neighbor = p->neighbor;
+  return many >= 0;
+}
+
+sd_status sd_ewald_image_pairs_place(sd_ewald_image_pairs *p, const sd_wall *wall,
                                      const sd_spheres *s, int n, int n_all)
 {
-  p->ewald = *e;
+  p->wall = *wall;
   p->spheres = *s;
-  sd_status status = find_near(p, n, n_all);
-  if (status == SD_OK) status = sd_cells_fill(&p->cells, p->x, p->near, 0.5 * e->images.range);
-  if (status == SD_OK &&
-      !sd_reserve(&p->first, sizeof(long), (size_t) p->ours + 1, &p->first_room))
-    status = SD_ENOMEMORY;
-  if (status != SD_OK) return status;
-  long many = 0;
-  for (int i = 0; i < p->ours && many >= 0; i++) {
-    p->first[i] = many;
-    many = ip_pairs_of(p, i, many);
-  }
-  p->first[p->ours] = many;
-  return many >= 0 ? SD_OK : SD_ENOMEMORY;
+  return list_near(p, n, n_all) && fill_rows(p) && ip_find_pairs(p) ? SD_OK : SD_ENOMEMORY;
 }
 
 /* --- product --- */
 
-/* U += image of a force F; c4, c5: of this direction of the pair */
-static void ip_add_image(const double *c, double c4, double c5, const double R[3], const double *F,
-                      double *U)
-{
-  const double p = R[0] * F[0] + R[1] * F[1] - R[2] * F[2];
-  const double along = c[2] * p - c4 * F[2], up = c5 * p - c[1] * F[2];
-  U[0] += c[0] * F[0] + along * R[0];
-  U[1] += c[0] * F[1] + along * R[1];
-  U[2] += up - c[0] * F[2] + along * R[2];
-}
-
 void sd_ewald_image_pairs_apply(sd_ewald_image_pairs *p, int n, const double *F,
                                 const double *ghosts, double *u)
 {
-  const sd_wall *wall = &p->ewald.images.wall;
+  const int sign = p->wall.sign;
   int axis[3];
-  sd_wall_axes(wall, axis);
-  for (int k = 0; k < p->near; k++) {
+  sd_wall_axes(&p->wall, axis);
+  for (int k = 0; k < p->part.rows; k++) {
     const long i = p->sphere[k];
     const double *from = i < n ? F + 3 * i : ghosts + 3 * (i - n), w = p->spheres.w[i];
-    for (int d = 0; d < 3; d++)
-      p->F[3L * k + d] = (d == 2 ? wall->sign : 1) * w * from[axis[d]];
+    for (int d = 0; d < 3; d++) p->row[8L * k + 4 + d] = (d == 2 ? sign : 1) * w * from[axis[d]];
   }
-  memset(p->u, 0, 3 * sizeof(double) * (size_t) p->near);
-  for (int i = 0; i < p->ours; i++)
-    for (long k = p->first[i]; k < p->first[i + 1]; k++) {
-      const int j = p->pair[k].other;
-      const double *xi = p->x + 3L * i, *xj = p->x + 3L * j, *c = p->pair[k].c;
-      const double R[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] + xj[2]};
-      const double back[3] = {-R[0], -R[1], R[2]};
-      ip_add_image(c, c[3], c[4], R, p->F + 3L * j, p->u + 3L * i);
-      if (j != i) ip_add_image(c, c[4], c[3], back, p->F + 3L * i, p->u + 3L * j);
-    }
-  for (int k = 0; k < p->ours; k++) {
+  memset(p->part.u, 0, 4 * sizeof(double) * ((size_t) p->part.rows + 1));
+  p->kernels->image_part(&p->part);
+  for (int k = 0; k < p->part.targets; k++) {
     const long i = p->sphere[k];
-    const double unit = p->spheres.w[i] / (8.0 * SD_PI);
+    const double unit = p->spheres.w[i] * p->scale / (8.0 * SD_PI);
     for (int d = 0; d < 3; d++)
-      u[3 * i + axis[d]] += (d == 2 ? wall->sign : 1) * unit * p->u[3L * k + d];
+      u[3 * i + axis[d]] += (d == 2 ? sign : 1) * unit * p->part.u[4L * k + d];
   }
 }

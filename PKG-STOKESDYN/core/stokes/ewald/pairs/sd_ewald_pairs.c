@@ -16,12 +16,7 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
   p->kernels = kernels;
   p->ewald = *e;
   p->width = width;
-  const int least = sd_radial_fit(e, width, p->coefficient[0]);
-  p->degree = SD_RADIAL_TERMS - 1;
-#define OF_DEGREE(d) \
-  if ((d) >= least && (d) < p->degree) p->degree = d;
-  SD_NEAR_DEGREES(OF_DEGREE)
-#undef OF_DEGREE
+  p->degree = sd_near_degree(sd_radial_fit(e, width, p->coefficient[0]));
   sd_radial(e, 0.0, p->origin);
 }
 
