@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_ewald_cost.h"
 #include "sd_ewald_rule_internal.h"
 
 static const double TIGHTEST = 1e-13, LOOSEST = 1e-1;
@@ -89,8 +90,10 @@ typedef struct {
   int width, equal, slopes;
   /* that of H; of xi times the largest radius */
   double a_ref, most;
-  /* in a slab, else 0: the longest range that saves anything; gap of sd_ewald_choose_in_slab */
-  double farthest, gap;
+  /* in a slab, else 0: the longest range that saves anything; gap of sd_ewald_choose_in_slab; the range
+   * that is tried over that of a cube; is the slab a tower? */
+  double farthest, gap, times;
+  int tall;
 } splitting;
 
 static splitting splitting_for(fall how, const sd_ewald_class *s, int width, double most)
@@ -101,9 +104,6 @@ static splitting splitting_for(fall how, const sd_ewald_class *s, int width, dou
                      .slopes = !equal || width == 6, .a_ref = equal ? s->largest : rms, .most = most};
 }
 
-/* Between two walls most spheres see images in both of them, so that a shorter range costs less. */
-static const double IN_GAP = 0.7;
-
 /* Range of the near part that costs least, as measured: 86 spheres within it at 1e-3, and more at
  * tight tolerances, since the grid gets finer while a near pair costs about the same; in an open box
  * with its padded grid 2.5 times as many. It need not reach the first images, nor beyond an open
@@ -113,9 +113,8 @@ static double natural_range(const sd_ewald_box *box, const splitting *by, double
 {
   const double more = pow(digits / 3.0, by->fall == BAND ? 1.0 : 1.6);
   const double many = 86.0 * fmax(1.0, more) * (box->periodic ? 1.0 : 2.5);
-  double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
-  if (by->gap > 0.0) range *= IN_GAP;
-  if (by->farthest > 0.0) return fmin(range, by->farthest);
+  const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
+  if (by->farthest > 0.0) return fmin(by->times * range, by->farthest);
   if (box->periodic) return fmin(range, 0.97 * narrowest(box));
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
@@ -198,7 +197,7 @@ static void split(sd_ewald *e, const splitting *by, double *y)
     e->xi = *y / e->range;
     if (k < 5) t = tightened(by, e->tolerance, e->xi * *y);
   }
-  e->points = window_points(t);
+  e->points = window_points(t) + by->tall;
   /* where windows are differentiated, their jump at the ends must be smaller; twice for unlike radii */
   e->beta = (by->fall == BAND ? by->equal : !by->slopes) ? 2.25 * e->points : 2.42 * e->points;
   e->reach = e->range;
@@ -371,7 +370,7 @@ static sd_status lay_planes(sd_ewald *e, int across, double span)
   double h = 0.0, all = 1.0;
   for (int d = 0; d < 3; d++)
     if (d != across) h = fmax(h, edge_length(&e->box, d) / e->grid[d]);
-  const double cells = (span + fmax(e->range, (e->points + 3) * h)) / h;
+  const double cells = (span + fmax(e->range, (e->points + 2) * h)) / h;
   if (!(cells < 1e6)) return SD_ENOMEMORY;
   e->grid[across] = 2 * sd_ewald_transformable(0.5 * cells);
   e->box.edge[across] = h * e->grid[across];
@@ -381,10 +380,42 @@ static sd_status lay_planes(sd_ewald *e, int across, double span)
   return all < 2147483648.0 ? SD_OK : SD_ENOMEMORY;
 }
 
-/* Images are smoother than the free part and farther in sight: their waves must end with the grid for any
- * window, since nothing makes up for what the range cuts off. Found by errors; see sd_slab.h. */
-static const double IMAGE_SMOOTHER = 0.85, IMAGE_FARTHER = 1.15;
+/* Nothing makes up for what the range of images cuts off, so that it is longer than that of the free part, and
+ * more where it is not much shorter than the gap. A Gaussian's images are smoother, too: their waves must end
+ * with the grid for any window. Found by errors; see sd_slab.h. */
+static const double IMAGES_FARTHER = 1.3, NARROW = 0.8, IMAGES_IN_NARROW = 1.5;
+static const double GAUSSIAN_SMOOTHER = 0.85, GAUSSIAN_FARTHER = 1.15;
 
+static void split_images(sd_ewald *e, const splitting *by, double y)
+{
+  e->images.band = e->band;
+  e->images.xi = GAUSSIAN_SMOOTHER * SD_PI / (2.2 * e->spacing * y);
+  const int narrow = by->gap > 0.0 && e->range > NARROW * by->gap;
+  e->images.range = e->band > 0.0 ? (narrow ? IMAGES_IN_NARROW : IMAGES_FARTHER) * e->range
+                                  : GAUSSIAN_FARTHER * y / e->images.xi;
+  e->reach = fmax(e->range, e->images.range);
+}
+
+/* In a tall cell the mean flow makes spheres a hundred times as fast as alone, and what windows mistake of it is
+ * more than elsewhere: they have one point more. */
+static const double TALL = 3.0;
+
+/* The range over the cell's edges: where it is nearly an edge, errors of unlike spheres that are all pushed along
+ * were above the tolerance. */
+static const double WIDEST = 0.65;
+
+static sd_status try_in_slab(sd_ewald *e, splitting by, int across, double span)
+{
+  double y;
+  by.tall = span > TALL * by.farthest / WIDEST;
+  sd_status status = level_in_slab(e, &by, &y);
+  if (status == SD_OK) status = lay_planes(e, across, span);
+  split_images(e, &by, y);
+  return status;
+}
+
+/* Ranges from 2^(-5/4) to 2^(7/4) times that of a cube are tried: in a thin slab the grid has many points for
+ * each sphere, and a longer range makes it coarser. */
 sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double span, double gap,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out)
 {
@@ -396,14 +427,23 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
   sd_status status = ew_prepare(&tall, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   splitting by = splitting_for(fall_for(out), &sizes->all, 3, LARGEST);
-  by.farthest = 0.97 * fmin(tall.edge[(across + 1) % 3], tall.edge[(across + 2) % 3]);
+  by.farthest = WIDEST * fmin(tall.edge[(across + 1) % 3], tall.edge[(across + 2) % 3]);
   by.gap = isfinite(gap) ? gap : 0.0;
-  double y;
-  status = level_in_slab(out, &by, &y);
-  if (status == SD_OK) status = lay_planes(out, across, span);
-  out->images.xi = IMAGE_SMOOTHER * SD_PI / (2.2 * out->spacing * y);
-  out->images.range = IMAGE_FARTHER * y / out->images.xi;
-  out->reach = fmax(out->range, out->images.range);
+  sd_ewald from;
+  double least = INFINITY;
+  memcpy(&from, out, sizeof(from));
+  status = SD_ENOMEMORY;
+  for (int k = -5; k <= 7; k++) {
+    sd_ewald one;
+    memcpy(&one, &from, sizeof(one)); /* all bytes: the engine compares them */
+    by.times = pow(2.0, 0.25 * k);
+    if (try_in_slab(&one, by, across, span) != SD_OK) continue;
+    const double cost = sd_ewald_slab_cost(&one, span, by.gap > 0.0 ? 2 : 1);
+    if (!(cost < 0.999 * least)) continue;
+    least = cost;
+    status = SD_OK;
+    memcpy(out, &one, sizeof(one));
+  }
   return status;
 }
 

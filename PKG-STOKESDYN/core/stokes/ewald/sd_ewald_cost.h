@@ -18,6 +18,9 @@ double sd_ewald_cost(const sd_ewald *e);
 double sd_ewald_grid_cost(const sd_ewald *e);
 double sd_ewald_near_pairs(const sd_ewald *e, double targets, double sources, double range);
 
+/* In a slab (sd_slab.h) with so many walls, whose centres span so much across it, in the same unit */
+double sd_ewald_slab_cost(const sd_ewald *e, double span, int walls);
+
 /* With as many spheres or fewer all pairs cost less, whatever the splitting: the smallest windows, of
  * 4^3 points, cost that much a sphere. */
 enum { SD_EWALD_FEWEST = 192 };

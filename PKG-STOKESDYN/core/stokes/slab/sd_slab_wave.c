@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_image_wave.h"
 #include "sd_window.h"
 
 /* --- windows --- */
@@ -151,11 +152,12 @@ enum { LAMBDA = 9, GTT = LAMBDA, GZZ, SERIES };
 static void fill_series(sd_slab_corner *c, double k)
 {
   const sd_ewald *e = &c->slab->ewald;
-  const double xi = e->images.xi, ref = e->a_ref * e->a_ref / 3.0;
+  const double ref = e->a_ref * e->a_ref / 3.0;
   const long row = c->waves + 1;
   for (int n = 0; n < row; n++) {
-    const double q = c->q[n], gamma = c->gamma[n], K2 = k * k + q * q, x = K2 / (4.0 * xi * xi);
-    const double filter = exp(-x) * c->window[n], H = (1.0 + x - ref * K2) * filter;
+    const double q = c->q[n], gamma = c->gamma[n], K2 = k * k + q * q;
+    const double x = sd_image_exponent(&e->images, K2), filter = exp(-x) * c->window[n];
+    const double H = filter > 0.0 ? (1.0 + x - ref * K2) * filter : 0.0;
     const double of_q[3] = {1.0, q, q * q}, of_gamma[3] = {1.0, gamma, gamma * gamma};
     for (int d = 0; d < 3; d++)
       for (int g = 0; g < 3; g++) {
@@ -234,7 +236,7 @@ static double moment_of_window(const sd_slab *s)
 void sd_slab_corner_of_mean(sd_slab_corner *c, double *along, double *across, double *beta)
 {
   const sd_ewald *e = &c->slab->ewald;
-  const double xi = e->images.xi, ref = e->a_ref * e->a_ref / 3.0, L = c->period;
+  const double ref = e->a_ref * e->a_ref / 3.0, L = c->period;
   const double w0 = sd_window_transform(e->points, e->beta, 0.0), over = 1.0 / (w0 * w0);
   const double moment = moment_of_window(c->slab);
   const long row = c->waves + 1;
@@ -242,10 +244,9 @@ void sd_slab_corner_of_mean(sd_slab_corner *c, double *along, double *across, do
     const double Z = sum_of_heights(c, m);
     double P = 0.0, Z0 = 0.0, Z1 = 0.0, Z2 = 0.0;
     for (int n = 0; n < row; n++) {
-      const double q2 = c->q[n] * c->q[n], x = q2 / (4.0 * xi * xi),
-                   filter = exp(-x) * c->window[n];
-      const double cosine = filter * c->cosine[m * row + n];
-      if (n > 0) P += (1.0 + x - ref * q2) / q2 * cosine;
+      const double q2 = c->q[n] * c->q[n], x = sd_image_exponent(&e->images, q2);
+      const double filter = exp(-x) * c->window[n], cosine = filter * c->cosine[m * row + n];
+      if (n > 0 && filter > 0.0) P += (1.0 + x - ref * q2) / q2 * cosine;
       Z0 -= 0.5 * cosine;
       Z1 += 0.5 * c->gamma[n] * filter * c->sine[m * row + n];
       Z2 += 0.5 * c->gamma[n] * c->gamma[n] * cosine;
