@@ -1,5 +1,7 @@
 #include "compute_stokes_dynamics_stress.h"
 
+#include "fix_stokes_dynamics_overdamped.h"
+#include "fixes.h"
 #include "hydrodynamics.h"
 #include "keywords.h"
 
@@ -26,9 +28,10 @@ using namespace StokesDyn;
 ComputeStokesDynamicsStress::ComputeStokesDynamicsStress(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), voice(lmp, "Compute stokes_dynamics/stress")
 {
-  if (narg != 3) voice.fail("it has no keywords, but there is '" + std::string(arg[3]) + "'");
+  Keywords in(lmp, voice.command, words(narg, arg), 3);
+  in.parse({{"variance", [&] { low_variance = in.choice({"raw", "low"}) == 1; }}});
   vector_flag = 1;
-  size_vector = 18;
+  size_vector = VALUES;
   extvector = 0;
   vector = sums;
   peratom_flag = 1;
@@ -45,6 +48,14 @@ Hydrodynamics &ComputeStokesDynamicsStress::hydrodynamics() const
   return *hydro;
 }
 
+bool ComputeStokesDynamicsStress::asked_in(bigint step) const
+{
+  // a list that LAMMPS shortens as it is read: the earlier step first
+  auto *self = const_cast<ComputeStokesDynamicsStress *>(this);
+  const bool now = self->matchstep(step), then = self->matchstep(step + 1);
+  return now || then;
+}
+
 void ComputeStokesDynamicsStress::init()
 {
   hydrodynamics();
@@ -56,7 +67,18 @@ void ComputeStokesDynamicsStress::find_moments()
   if (!hydro.computed_in((double) update->ntimestep))
     voice.at_step().fail("the forces of this step have not been computed; use this compute in a "
                          "run");
-  hydro.stress(moments);
+  const auto movers = fixes_of<FixStokesDynamicsOverdamped>(lmp);
+  const BrownianStress *brownian = movers.empty() ? nullptr : movers[0]->brownian_stress();
+  if (!brownian)
+    hydro.stress(moments);
+  else {
+    if (!brownian->known(low_variance))
+      voice.of("keyword variance").at_step().fail("the stress of the noise was not computed for this step; "
+                                                  "name this compute in thermo_style, fix ave/time or a dump");
+    moments.assign(COLUMNS * ((size_t) atom->nlocal + 1), 0.0);
+    for (int i = 0; i < atom->nlocal; i++)
+      std::copy_n(brownian->of(i, low_variance), (int) COLUMNS, &moments[COLUMNS * (size_t) i]);
+  }
   for (int i = 0; i < atom->nlocal; i++)
     if (!(atom->mask[i] & groupbit))
       std::fill_n(&moments[COLUMNS * (size_t) i], (int) COLUMNS, 0.0);
@@ -110,13 +132,16 @@ void ComputeStokesDynamicsStress::compute_vector()
     voice.fail("the virials of other forces were not computed in this step; name this compute in "
                "thermo_style");
   find_moments();
-  double mine[18] = {0.0};
+  double mine[VALUES] = {0.0};
   for (int i = 0; i < atom->nlocal; i++)
     for (int k = 0; k < COLUMNS; k++) mine[k] += moments[COLUMNS * (size_t) i + k];
-  add_others(mine + COLUMNS);
-  MPI_Allreduce(mine, sums, 18, MPI_DOUBLE, MPI_SUM, world);
+  add_others(mine + OTHERS);
+  for (const FixStokesDynamicsOverdamped *mover : fixes_of<FixStokesDynamicsOverdamped>(lmp))
+    mine[PRESSURE] += mover->ideal_pressure();
+  for (int d = 0; d < 3; d++) mine[PRESSURE] += mine[OTHERS + d] / 3.0;
+  MPI_Allreduce(mine, sums, VALUES, MPI_DOUBLE, MPI_SUM, world);
   const double unit = force->nktv2p / (domain->xprd * domain->yprd * domain->zprd);
-  for (int k = 0; k < 18; k++) sums[k] *= unit;
+  for (double &value : sums) value *= unit;
 }
 
 void ComputeStokesDynamicsStress::compute_peratom()

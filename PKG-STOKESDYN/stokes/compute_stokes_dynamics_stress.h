@@ -23,10 +23,17 @@ class ComputeStokesDynamicsStress : public LAMMPS_NS::Compute {
   void compute_peratom() override;
   double memory_usage() override;
 
+  /* With noise: less the stress of the same random numbers at the start of the step? */
+  bool low() const { return low_variance; }
+  /* Has somebody said that this will be asked for in that step, or in the one after it? Who asks in every
+   * step says so at the end of each, when the next one has begun */
+  bool asked_in(LAMMPS_NS::bigint step) const;
+
  private:
   const Voice voice;
-  enum { COLUMNS = 12 };
-  double sums[18] = {0.0};
+  enum { COLUMNS = 12, OTHERS = COLUMNS, PRESSURE = 18, VALUES = 19 };
+  double sums[VALUES] = {0.0};
+  bool low_variance = false;
   std::vector<double> moments;
   /* LAMMPS reads rows through these */
   std::vector<double *> rows;

@@ -25,7 +25,7 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), torques(voice),
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), stress(lmp), spin(voice), directions(lmp), torques(voice),
     squirmers(voice, directions), motion(3), random(6), load(6), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
@@ -67,7 +67,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  std::vector<RowsOfAtoms *> rows = {&motion, &random, &load, &before, &spin.slipping, &output};
+  std::vector<RowsOfAtoms *> rows = {&motion, &random, &load, &before, &spin.slipping, &output, &stress.rows};
   if (directions.on()) rows.push_back(&directions.turning);
   keep(rows, &output, true);
 }
@@ -229,6 +229,7 @@ void FixStokesDynamicsOverdamped::after_setup()
   if (!same_run || !causes_stand(hydro)) {
     before.clear();
     load.clear();
+    stress.forget();
   }
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);

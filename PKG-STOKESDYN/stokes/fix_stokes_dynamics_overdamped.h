@@ -8,6 +8,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
+#include "brownian_stress.h"
 #include "deforming_box.h"
 #include "directions.h"
 #include "hydrodynamics.h"
@@ -42,6 +43,14 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void final_integrate() override;
   void end_of_step() override;
 
+  /* What compute stokes_dynamics/stress shows; nullptr: the last solve, as there is no noise in it */
+  const BrownianStress *brownian_stress() const
+  {
+    return noise.on() && scheme == MIDPOINT ? &stress : nullptr;
+  }
+  /* kT times the bodies of this rank that noise moves */
+  double ideal_pressure() const;
+
   double compute_scalar() override;
   double compute_vector(int) override;
 
@@ -55,6 +64,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } adapt;
 
   Noise noise;
+  BrownianStress stress;
   Spin spin;
   Directions directions;
   Torques torques;
@@ -141,6 +151,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void refuse_midpoint(const Hydrodynamics &) const;
   void push_on(int i, double *FT) const;
   Given given() const;
+  std::vector<double> random_loads(const Hydrodynamics &) const;
   void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
   void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   /* Clumps at the start of a step, their spheres x [3 members] side by side, each so many edges h of the box

@@ -55,6 +55,14 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
                  " moves it every " + std::to_string(deform->nevery) + " steps: give it 1");
 }
 
+/* [6 nlocal] random forces and torques, in whose sum with the others spheres move */
+std::vector<double> FixStokesDynamicsOverdamped::random_loads(const Hydrodynamics &hydro) const
+{
+  std::vector<double> all(6 * (size_t) atom->nlocal + 6, 0.0);
+  for (int i : hydro.ambient.who()) std::copy_n(random[i], 6, &all[6 * (size_t) i]);
+  return all;
+}
+
 void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take)
 {
   const int width = hydro.rotation() ? 6 : 3;
@@ -63,7 +71,12 @@ void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Sol
     draw = noise.forces(hydro, [this, width](int i, const double *f) {
       std::copy_n(f, width, random.give(i));
     });
+  if (noise.on() && stress.wants_low()) {
+    hydro.velocities([](int, const double *, const double *) {}, given());
+    stress.without_noise(hydro);
+  }
   hydro.velocities(take, given(), noise.on() ? &draw : nullptr);
+  if (noise.on()) stress.begin(hydro, random_loads(hydro));
   dragged.x.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (int i : hydro.ambient.who())
     if (is_moved(i)) std::copy_n(atom->x[i], 3, &dragged.x[3 * (size_t) i]);
@@ -163,7 +176,8 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
     std::copy_n(v, width, &V[6 * (size_t) i]);
     keep_in_plane(&V[6 * (size_t) i], 6);
-  }, given(pushed));
+  }, known);
+  if (noise.on()) stress.middle(hydro, random_loads(hydro));
   if (flow.deforms) box.put(box.end);
   place(hydro, start, {dt, carried, box.start, box.middle, box.end, hydro.ambient.box_motion()}, there, V);
   dragged.v.clear();

@@ -139,6 +139,15 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
   return smallest_of_all(world, gap);
 }
 
+double FixStokesDynamicsOverdamped::ideal_pressure() const
+{
+  const ClumpPoses &motion = hydrodynamics().motion();
+  double count = 0.0;
+  for (int i : motion.lone()) count += !stays(i);
+  for (const ClumpPoses::Clump &clump : motion.clumps()) count += clump.known == SD_BODY_FREE;
+  return noise.on() ? count * noise.energy() : 0.0;
+}
+
 // --- restart -------------------------------------------------------------------------------------------------
 
 std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
@@ -147,5 +156,8 @@ std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
           {"dt", &last.dt},
           {"next_dt", &last.next_dt},
           {"atoms", &last.atoms},
+          {"stress", &stress.raw},
+          {"stress_low", &stress.low},
+          {"stress_next", &stress.next},
           {"causes", last.causes, CAUSES}};
 }

@@ -77,8 +77,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   /* With shells, since the last step: first moments of the forces on the fluid, of the spheres'
    * points and of their films, [12 nlocal]: xx yy zz xy xz yz of each. Points about the centre of
-   * their sphere; without inertia also what keeps clumps together. On all ranks together. */
-  void stress(std::vector<double> &of_atoms);
+   * their sphere; without inertia also what keeps clumps together against loads, but for noise [6 nlocal],
+   * or nothing, which is among them. On all ranks together. */
+  void stress(std::vector<double> &of_atoms, const std::vector<double> &noise = {});
 
   /* In a step that was computed, until its end: what makes the flow, of this rank. [10 n]: place,
    * radius, and force and torque on the fluid, over its viscosity, of each sphere or point of its
@@ -162,7 +163,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
     std::vector<double> r, x, b, l;
   };
   Points points_of_now();
-  void add_constraints(double *S) const;
+  void add_constraints(const std::vector<double> &noise, double *S) const;
   std::vector<double> of_points_on_fluid(std::vector<double> *viscosity);
   int algorithm() const    // of the next solve
   {

@@ -16,7 +16,7 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
-void Hydrodynamics::stress(std::vector<double> &of_atoms)
+void Hydrodynamics::stress(std::vector<double> &of_atoms, const std::vector<double> &noise)
 {
   const bool films_stand = standing();
   stand_rows();
@@ -25,7 +25,7 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   const size_t n = scene.size();
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0);
   sd_multiblob_moments((int) n, shells.first_of_rows(), now.r.data(), now.l.data(), points.data());
-  if (overdamped) add_constraints(points.data());
+  if (overdamped) add_constraints(noise, points.data());
   if (settings.lubrication.on) {
     const double *v = overdamped ? solver.v.data() : films_v.data();
     const sd_status status = sd_lubrication_stress(lubrication.matrix(), v, films.data());
@@ -41,12 +41,17 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
 
 /* What keeps member k of a clump in its place is what it exerts on the fluid less what acts on it.
  * S [6 rows] += first moments of that */
-void Hydrodynamics::add_constraints(double *S) const
+void Hydrodynamics::add_constraints(const std::vector<double> &noise, double *S) const
 {
   const size_t first = scene.lone(), n = scene.size() - first;
   std::vector<double> f(3 * n + 3);
   for (size_t k = 0; k < n; k++)
     sd_minus(&solver.exerted[6 * (first + k)], &bodies.F[6 * (first + k)], &f[3 * k]);
+  if (!noise.empty()) {
+    const std::vector<double> random =
+        scene.rows(3, [&](int i, double *out) { std::copy_n(&noise[6 * (size_t) i], 3, out); });
+    for (size_t d = 0; d < 3 * n; d++) f[d] += random[3 * first + d];
+  }
   for (size_t k = 0; k < n; k++)
     sd_multiblob_moment(1, &bodies.arms()[3 * (first + k)], &f[3 * k], S + 6 * (first + k));
 }

@@ -59,6 +59,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   Solve::Draw forces(const Hydrodynamics &hydro, const Take &take);
   /* sqrt(2 kT dt) for a step dt from there */
   double scale(double dt) const;
+  /* kT of this step */
+  double energy() const { return kT; }
   const double *of_clump(size_t c) const { return &of_clumps[6 * c]; }
 
   /* Once: what has been drawn, and how far it moves the smallest sphere, 1/drag its mobility */
