@@ -23,7 +23,7 @@ void Lubrication::check(sd_status status) const
 
 /* Functions for all pairs that there are, made anew when radii become more different, and films of
  * the shells that spheres are now: another pair_style may have come in between. */
-void Lubrication::provide(double largest, double smallest)
+void Lubrication::provide(double largest, double smallest, bool halves)
 {
   const double ratio = largest / smallest;
   if (shells.on() && ratio > SD_FILM_LARGEST_RATIO)
@@ -41,17 +41,25 @@ void Lubrication::provide(double largest, double smallest)
     functions.reset(wider);
     largest_ratio = ratio;
   }
-  if (shells.on()) check(sd_films_create(shells.points, shells.one_body, functions.get(), &films));
+  if (halves)
+    check(sd_films_create_by_radius(shells.one_body, functions.get(), &films));
+  else if (shells.on())
+    check(sd_films_create(shells.points, shells.one_body, functions.get(), &films));
 }
 
 void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
 {
-  if (where.largest() > 0.0) provide(where.largest(), where.smallest());
+  const bool halves = where.shells && where.shells->halves();
+  if (where.largest() > 0.0) provide(where.largest(), where.smallest(), halves);
   u = where.rows(6, [&](int i, double *out) { ambient.fluid(i, out); });
   where.drift(u.data(), 6, 1.0);
   sd_lubrication_scene scene = {};
   scene.functions = functions.get();
   scene.films = shells.on() ? &films : nullptr;
+  points.clear();
+  for (int k = 0; k < where.size_with_copies() && halves; k++)
+    points.push_back(where.shells->points(where.local().a[k]));
+  scene.points = halves ? points.data() : nullptr;
   scene.gap = settings.gap;
   scene.range = settings.range;
   scene.n = where.size();

@@ -52,9 +52,10 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   double largest_ratio = 0.0;
   sd_films films = {};
   std::vector<double> u;
+  std::vector<int> points;
 
   void add_wall(const Scene &where, const sd_wall &wall);
-  void provide(double largest, double smallest);
+  void provide(double largest, double smallest, bool halves);
   void check(sd_status status) const;
 };
 

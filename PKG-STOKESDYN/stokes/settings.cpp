@@ -2,6 +2,8 @@
 
 #include "keywords.h"
 
+#include "sd_multiblob_half.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -95,7 +97,14 @@ void StokesSettings::parse(Keywords &in)
        }},
       {"multiblob", [&] {
          shells.points = in.integer(1);
-         in.check(!shells.on() || sd_multiblob_has(shells.points), "must be 1, 12 or 42");
+         in.check(!shells.on() || sd_multiblob_has(shells.points) || shells.points == 162,
+                  "must be 1, 12, 42 or 162");
+         shells.half = shells.points == 162 || (shells.points == 42 && in.take("half"));
+       }},
+      {"multiblob_most", [&] {
+         shells.most = in.integer(1);
+         in.check(shells.most == 12 || sd_multiblob_half_of(shells.most),
+                  "must be 12, 42, 162 or 642");
        }},
       {"one_body", [&] { shells.one_body = in.yes_no(); }},
       {"lubrication", [&] { lubrication.on = in.yes_no(); }},
@@ -148,6 +157,10 @@ void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) con
   in.require(!shells.on() || lubrication.range <= SD_FILM_LARGEST_XI,
              "keyword lubrication_range: '" + text(lubrication.range) +
                  "' must be <= 2 with multiblob");
+  in.require(!in.given("multiblob_most") || shells.on(), "keyword multiblob_most requires multiblob");
+  in.require(!in.given("multiblob_most") || shells.most >= shells.points,
+             "keyword multiblob_most: '" + std::to_string(shells.most) +
+                 "' must not be less than multiblob, " + std::to_string(shells.points));
   in.require(!in.given("one_body") || shells.on(), "keyword one_body requires multiblob 12 or 42");
   in.require(!in.given("lubrication_gap") || lubrication.on,
              "keyword lubrication_gap requires lubrication yes");

@@ -27,10 +27,11 @@ namespace StokesDyn {
 class Shells : protected LAMMPS_NS::Pointers {
  public:
   struct Settings {
-    /* of the smallest spheres; 1: spheres are points */
+    /* of the smallest spheres; 1: spheres are points. half: of half shells, whatever the radii are */
     int points = 1;
+    bool half = false;
     /* of any sphere */
-    int most = 0;
+    int most = 642;
     bool one_body = true;
     bool on() const { return points > 1; }
     /* whatever their radii */
@@ -58,6 +59,8 @@ class Shells : protected LAMMPS_NS::Pointers {
    * whether the shells are others than before. Error: radii that are too different. */
   bool choose(double smallest, double largest, const Epoch &run);
   bool unlike() const { return classes.unlike != 0.0; }
+  /* Then films are those of pairs of half shells, and of 12 points. */
+  bool halves() const { return unlike() || settings.half; }
 
   /* Its shell, counted from that of the smallest spheres */
   int kind(double a) const;
@@ -119,7 +122,11 @@ class Shells : protected LAMMPS_NS::Pointers {
   std::vector<sd_multiblob_mask> mask;
   std::vector<double> x, b, w;
 
+  /* Of models[0]: a restart file may say that spheres are unlike before these are made by radius. */
+  bool smallest_is_half = false;
+
   void add_model(int n, bool half);
+  void warn_of_alike(double largest) const;
   void find(int n, const double *a, Places &places) const;
 };
 

@@ -118,7 +118,7 @@ def test_rigid_clump_feels_the_curvature_that_free_spheres_feel_in_its_place(sim
 def test_clusters_near_contact(simulation, case, load):
     rows = rows_of("clusters_multiblob.csv", case=case, load=load)
     spheres = Spheres(columns(rows, "x y z"), columns(rows, "a")[:, 0])
-    sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), "12 lubrication yes relative_tolerance 1e-8")
+    sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), "12 multiblob_most 12 lubrication yes relative_tolerance 1e-8")
     assert off(sim.v, columns(rows, "Ux Uy Uz")) < 3e-3
     assert off(sim.atom("omega"), columns(rows, "Wx Wy Wz")) < 3e-3
 
@@ -127,7 +127,7 @@ def test_suspension_of_two_radii_in_a_periodic_box(simulation):
     rows = rows_of("bidisperse.csv", load="random")
     side = float(rows[0]["box"])
     spheres = Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0])
-    sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), "12 lubrication yes relative_tolerance 1e-6", boundary="p p p",
+    sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), "12 multiblob_most 12 lubrication yes relative_tolerance 1e-6", boundary="p p p",
                box=[(0.0, side)] * 3, comm="neighbor 0.1 bin")
     assert off(sim.v, columns(rows, "Ux Uy Uz")) < 3e-3
     assert off(sim.atom("omega"), columns(rows, "Wx Wy Wz")) < 3e-3
@@ -178,7 +178,7 @@ def test_a_solve_begins_where_the_last_one_ended(simulation):
 
 
 def test_radii_too_different_for_films(simulation):
-    sim = simulation(Spheres([(0, 0, 0), (0, 0, 13)], [1.0, 11.0]), "cut_off_distance inf visc 1 multiblob 12 lubrication yes")
+    sim = simulation(Spheres([(0, 0, 0), (0, 0, 13)], [1.0, 11.0]), "cut_off_distance inf visc 1 multiblob 12 multiblob_most 12 lubrication yes")
     with pytest.raises(LammpsError, match="with multiblob lubrication is for ratios of radii up to 10; use group to select spheres, or lubrication no"):
         sim.run()
 
@@ -241,8 +241,8 @@ def sheared(simulation, style="", clump=0):
     rows = rows_of("bidisperse.csv", load="E_xy")
     side, rate = float(rows[0]["box"]), 2**0.5
     spheres = Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0])
-    sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob 12 lubrication yes relative_tolerance 1e-6 fluid_velocity v_u 0 0 "
-                              f"{style}", boundary="p p p", box=[(0.0, side)] * 3, tilt=(0, 0, 0), fix=False, dt=1e-9,
+    sim = simulation(spheres, f"cut_off_distance inf visc 1 multiblob 12 multiblob_most 12 lubrication yes relative_tolerance 1e-6 "
+                              f"fluid_velocity v_u 0 0 {style}", boundary="p p p", box=[(0.0, side)] * 3, tilt=(0, 0, 0), fix=False, dt=1e-9,
                      before_pair=f"variable u atom {rate!r}*y", comm="neighbor 0.1 bin")
     sim.commands([f"fix shear all deform 1 xy erate {rate!r} remap none", MOVE, STRESS,
                   "thermo_style custom step " + " ".join(f"c_S[{k}]" for k in range(1, 19))])

@@ -111,8 +111,7 @@ static void respond(const sd_body *b, sd_body_known known, const double *r, cons
   if (r) {
     read_rows(b, r, y);
     add_rigid(shape, y, -s, load);
-    for (int j = 0; j < N; j++)
-      for (int i = 0; i < N; i++) z[i] += shape->inverse[(long) j * N + i] * y[j];
+    sd_body_shape_answer(shape, y, z);
   }
   if (known == SD_BODY_FREE) {
     multiply6(shape->mobility, 1.0 / s, load, motion);

@@ -16,19 +16,35 @@ static void rigid_row(const double X[3], int p, double row[6])
   sd_cross(X, e, row + 3);
 }
 
-/* rigid = inverse K, and its part that works on the body as a whole, R = K^T rigid */
-static void apply_to_rigid(const sd_body_shape *s, const double *inverse, double *rigid,
-                           double R[36])
+void sd_body_shape_answer(const sd_body_shape *s, const double *y, double *out)
+{
+  const int N = s->width * s->m;
+  if (s->mirrored) {
+    sd_mirrored_apply(s->mirrored, y, out);
+    return;
+  }
+  for (int j = 0; j < N; j++)
+    for (int i = 0; i < N; i++) out[i] += s->inverse[(long) j * N + i] * y[j];
+}
+
+/* rigid = inverse K of a dense inverse */
+static void apply_dense(const sd_body_shape *s, const double *inverse, double *rigid)
 {
   const size_t w = (size_t) s->width, N = w * (size_t) s->m;
   memset(rigid, 0, sizeof(double) * 6 * N);
-  memset(R, 0, 36 * sizeof(double));
   for (size_t j = 0; j < N; j++) {
     double K[6];
     rigid_row(s->x + 3 * (j / w), (int) (j % w), K);
     for (size_t i = 0; i < N; i++)
       for (int c = 0; c < 6; c++) rigid[6 * i + c] += inverse[i * N + j] * K[c];
   }
+}
+
+/* R = K^T rigid: what works on the body as a whole */
+static void collect_rigid(const sd_body_shape *s, const double *rigid, double R[36])
+{
+  const size_t w = (size_t) s->width, N = w * (size_t) s->m;
+  memset(R, 0, 36 * sizeof(double));
   for (size_t i = 0; i < N; i++) {
     double K[6];
     rigid_row(s->x + 3 * (i / w), (int) (i % w), K);
@@ -91,7 +107,8 @@ static sd_status complete(sd_body_shape *s)
 {
   const sd_status status = invert((size_t) s->width * (size_t) s->m, s->inverse);
   if (status != SD_OK) return status;
-  apply_to_rigid(s, s->inverse, s->rigid, s->resistance);
+  apply_dense(s, s->inverse, s->rigid);
+  collect_rigid(s, s->rigid, s->resistance);
   sd_pseudo_inverse6(s->resistance, s->mobility);
   return SD_OK;
 }
@@ -111,6 +128,44 @@ sd_status sd_body_shape_of(int m, int width, const double *x, const double *M,
     status = complete(s);
   }
   if (status != SD_OK) sd_body_shape_free(s);
+  return status;
+}
+
+/* rigid by columns; work [6 m] */
+static void complete_mirrored(sd_body_shape *s, double *work)
+{
+  const size_t N = 3 * (size_t) s->m;
+  double *answer = work + N;
+  for (int c = 0; c < 6; c++) {
+    for (size_t j = 0; j < N; j++) {
+      double K[6];
+      rigid_row(s->x + 3 * (j / 3), (int) (j % 3), K);
+      work[j] = K[c];
+    }
+    sd_mirrored_apply(s->mirrored, work, answer);
+    for (size_t j = 0; j < N; j++) s->rigid[6 * j + (size_t) c] = answer[j];
+  }
+  collect_rigid(s, s->rigid, s->resistance);
+  sd_pseudo_inverse6(s->resistance, s->mobility);
+}
+
+sd_status sd_body_shape_mirrored(int m, const double *x, const double axes[9], const double *M,
+                                 sd_body_shape *s)
+{
+  const size_t N = 3 * (size_t) m;
+  *s = (sd_body_shape){.m = m, .width = 3};
+  s->x = malloc(sizeof(double) * N);
+  s->rigid = malloc(sizeof(double) * 6 * N);
+  s->mirrored = calloc(1, sizeof *s->mirrored);
+  double *work = malloc(sizeof(double) * 2 * N);
+  sd_status status = s->x && s->rigid && s->mirrored && work ? SD_OK : SD_ENOMEMORY;
+  if (status == SD_OK) status = sd_mirrored_create(m, x, axes, M, s->mirrored);
+  if (status == SD_OK) {
+    memcpy(s->x, x, sizeof(double) * N);
+    complete_mirrored(s, work);
+  } else
+    sd_body_shape_free(s);
+  free(work);
   return status;
 }
 
@@ -182,6 +237,8 @@ sd_status sd_body_shape_take_root(sd_body_shape *s)
 
 void sd_body_shape_free(sd_body_shape *s)
 {
+  if (s->mirrored) sd_mirrored_free(s->mirrored);
+  free(s->mirrored);
   free(s->root);
   free(s->x);
   free(s->inverse);

@@ -23,6 +23,7 @@
 #define SD_BODY_SHAPE_H
 
 #include "sd_clump.h"
+#include "sd_mirrored.h"
 #include "sd_wall.h"
 
 SD_BEGIN_C
@@ -32,8 +33,10 @@ typedef struct {
   int m, width;
   /* [3m] X_k, from the centre */
   double *x;
-  /* [(width m)^2] M_b'^-1, symmetric; [(width m) 6] M_b'^-1 K, row-major */
+  /* [(width m)^2] M_b'^-1, symmetric, or in blocks, width 3: then `inverse` is NULL; [(width m) 6] M_b'^-1 K,
+   * row-major */
   double *inverse, *rigid;
+  sd_mirrored *mirrored;
   /* [(width m)^2] the root of M_b'^-1 with torques over a length, symmetric; NULL until
    * sd_body_shape_take_root(); and that length, over which torques are comparable to forces */
   double *root, length;
@@ -50,6 +53,11 @@ typedef struct {
  * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: M is not positive definite (points of equal radii at one
  * place); SD_ENOTFINITE. */
 sd_status sd_body_shape_of(int m, int width, const double *x, const double *M, sd_body_shape *out);
+/* The same of width 3 where mirrors leave M as it is (sd_mirrored.h). */
+sd_status sd_body_shape_mirrored(int m, const double *x, const double axes[9], const double *M,
+                                 sd_body_shape *out);
+/* out [width m] = M_b'^-1 y, on entry 0 */
+void sd_body_shape_answer(const sd_body_shape *s, const double *y, double *out);
 /* A clump of spheres with forces and torques. shells: the clump of this shape with shells; NULL:
  * none. The owner frees. Status as above. */
 sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd_body_shape *out);

@@ -77,6 +77,13 @@ static int one_body(const sd_lubrication *L, int i, int j)
   return who[i].body != 0 && who[i].body == who[j].body;
 }
 
+/* Of a pair, over its mean radius */
+static double range_of(const sd_lubrication_scene *s, double ai, double aj)
+{
+  const double sum = ai + aj;
+  return s->points ? s->range * 4.0 * ai * aj / (sum * sum) : s->range;
+}
+
 /* What there is to know of a pair where it stands; d from sphere i to j */
 static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
 {
@@ -88,7 +95,8 @@ static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
   else
     d[2] = 1.0; /* spheres at one point: any direction */
   const double xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
-  const double q = fmin(fmax(2.0 * xi / s->range - 1.0, 0.0), 1.0);
+  const double range = range_of(s, p->a[i], p->a[j]);
+  const double q = fmin(fmax(2.0 * xi / range - 1.0, 0.0), 1.0);
   closeness close = {xi, 1.0 - q * q * (3.0 - 2.0 * q), R, {0.0, 0.0, 0.0}, j};
   if (s->drift && j >= s->n)
     memcpy(close.drift, s->drift + 3 * (long) (j - s->n), sizeof close.drift);
@@ -251,7 +259,7 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
   const int i = L->pair[k][0];
   const double *n = L->work->neighbours, ai = s->spheres.a[i], aj = s->spheres.a[c->at];
   const double scale = c->t * eta, xi = fmax(c->xi, s->gap), apart = fmax(c->xi, 0.0);
-  const double q = fmin(apart / s->range, 1.0), fading = 1.0 - q * q * (3.0 - 2.0 * q);
+  const double q = fmin(apart / range_of(s, ai, aj), 1.0), fading = 1.0 - q * q * (3.0 - 2.0 * q);
   if (!s->films) {
     *model = fading * sd_rpy_approach((1.0 + 0.5 * apart) * (ai + aj), ai, aj, eta);
     const double share = shared(2.0 * c->t / (n[i] + n[c->at]));
@@ -259,7 +267,9 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
                                     R);
   }
   sd_film film;
-  const sd_status status = sd_film_at(s->films, ai, aj, xi, &film);
+  const sd_status status = s->points
+      ? sd_film_between(s->films, s->points[i], s->points[c->at], ai, aj, xi, &film)
+      : sd_film_at(s->films, ai, aj, xi, &film);
   if (status != SD_OK) return status;
   *R = sd_film_resistance(&film, fmax(c->distance, 0.01 * (ai + aj)), scale);
   *model = fading * eta * film.shells_approach;

@@ -25,6 +25,9 @@
  * its neighbours, nothing is shared: L = sum of t times the films of sd_film.h. These see no motion
  * of the pair as one rigid body, so that the flow takes nothing off where V are the velocities as
  * they are; only the drift of images is in `carried`.
+ * Where larger spheres have more points, films end at a gap of the smaller sphere's size: between a large and
+ * a small sphere more gap than that holds third ones, which their shells know and a film does not. Others
+ * keep the range over the mean radius.
  * Source: reference of the project, motion.md 4.3 and multiblob.md 3; the rule of sharing is our
  * own. */
 #ifndef SD_LUBRICATION_H
@@ -42,7 +45,10 @@ typedef struct {
   const sd_two_sphere *functions;
   /* spheres are shells of points, then range up to SD_FILM_LARGEST_XI; NULL: they are points */
   const sd_films *films;
-  /* gap: the floor, > 0; range > gap: where it ends. Over the mean radius of the pair */
+  /* [n_all] of each sphere, where larger spheres have more; NULL: all films are of one kind */
+  const int *points;
+  /* gap: the floor, > 0; range > gap: where it ends. Over the mean radius of the pair; with points, range
+   * over its harmonic mean, 2 a_1 a_2/(a_1 + a_2) */
   double gap, range;
   /* this rank's spheres, then those of other ranks and periodic images within the range */
   int n, n_all;

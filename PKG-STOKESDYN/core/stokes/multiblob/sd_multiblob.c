@@ -77,12 +77,19 @@ static void find_addition(double R[MODES][MODES], sd_multiblob *m)
   m->strain = 0.9 * (1.0 - 40.0 / 3.0 * SD_PI / R[STRAIN][STRAIN]);
 }
 
+void sd_multiblob_axes(double turn[9])
+{
+  const double s = 1.0 / 15.0; /* of the quaternion (1, 2, 3, 4)/sqrt 30 */
+  const double R[9] = {-10.0 * s, 2.0 * s, 11.0 * s, 10.0 * s, -5.0 * s,
+                       10.0 * s,  5.0 * s, 14.0 * s, 2.0 * s};
+  memcpy(turn, R, sizeof R);
+}
+
 /* Unit vectors p [3 n] become the points of the free sphere */
 static void place_points(const double *p, sd_multiblob *m)
 {
-  const double s = 1.0 / 15.0; /* rotation of the quaternion (1, 2, 3, 4)/sqrt 30 */
-  const double turn[9] = {-10.0 * s, 2.0 * s, 11.0 * s, 10.0 * s, -5.0 * s,
-                          10.0 * s,  5.0 * s, 14.0 * s, 2.0 * s};
+  double turn[9];
+  sd_multiblob_axes(turn);
   for (int k = 0; k < m->n; k++) {
     double e[3];
     sd_multiply3(turn, p + 3 * k, e);

@@ -62,6 +62,9 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *out);
 /* A half shell (sd_multiblob_half.h). SD_OK; SD_EOUTSIDE: another n than 42, 162 and 642. */
 sd_status sd_multiblob_create_half(int n, int one_body, sd_multiblob *out);
 
+/* Rotation of the points of a free sphere from the axes of sd_shell.h, those of its mirrors: row-major */
+void sd_multiblob_axes(double turn[9]);
+
 /* u [3n] += the addition for the forces f [3n] of one whole sphere, r [3n]: from its centre, turned
  * as it may be. No aliasing. Costs about 60 n multiplications. */
 void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const double *r,

@@ -33,16 +33,15 @@ typedef struct {
   double force, moment, twist;
 } answer;
 
-static answer answer_of(const sd_multiblob *m, const double *inverse, const double e[3],
+static answer answer_of(const sd_multiblob *m, const sd_body_shape *lone, const double e[3],
                         const double *v)
 {
-  const int N = 3 * m->n;
+  double forces[3 * SD_MULTIBLOB_MOST] = {0.0};
   answer sum = {0.0, 0.0, 0.0};
+  sd_body_shape_answer(lone, v, forces);
   for (int k = 0; k < m->n; k++) {
-    const double *r = m->r + 3 * k;
-    double f[3] = {0.0}, turning[3];
-    for (int d = 0; d < 3; d++)
-      for (int j = 0; j < N; j++) f[d] += inverse[(long) (3 * k + d) * N + j] * v[j];
+    const double *r = m->r + 3 * k, *f = forces + 3 * k;
+    double turning[3];
     sd_cross(r, f, turning);
     sum.force += sd_dot(e, f);
     sum.moment += sd_dot(e, r) * sd_dot(e, f) - sd_dot(r, f) / 3.0;
@@ -51,7 +50,7 @@ static answer answer_of(const sd_multiblob *m, const double *inverse, const doub
   return sum;
 }
 
-void sd_squirmer_create(const sd_multiblob *m, const double *inverse, sd_squirmer *out)
+void sd_squirmer_create(const sd_multiblob *m, const sd_body_shape *lone, sd_squirmer *out)
 {
   const double e[3] = {0.0, 0.0, 1.0}; /* any */
   double v[4][3 * SD_MULTIBLOB_MOST];
@@ -65,10 +64,10 @@ void sd_squirmer_create(const sd_multiblob *m, const double *inverse, sd_squirme
       v[3][3 * k + d] = p.twist[d];
     }
   }
-  for (int b = 0; b < 4; b++) a[b] = answer_of(m, inverse, e, v[b]);
+  for (int b = 0; b < 4; b++) a[b] = answer_of(m, lone, e, v[b]);
   /* the lone shell's drag is 6 pi exactly; e.(e e - 1/3).e = 2/3 */
   out->uniform = a[0].force / (6.0 * SD_PI);
-  out->tangential = m->n == 42 ? 1.0 : 0.0;
+  out->tangential = m->n >= 42 ? 1.0 : 0.0;
   out->strain = (-8.0 / 3.0 * SD_PI - out->tangential * a[1].moment) / a[2].moment;
   out->twist = 8.0 / 3.0 * SD_PI / a[3].twist;
 }

@@ -17,7 +17,8 @@
  *
  * with constants of the shell, from its own solution when it is alone: m, so that it swims with 2 B1/3
  * exactly; s, so that the moments above are exact; t, so that sum (e.r)(e.(r x f)), the rotlet dipole, is
- * that of a sphere, 8 pi/3 eta a^3 beta; w = 1 of 42 points and 0 of 12, which cannot carry the pattern.
+ * that of a sphere, 8 pi/3 eta a^3 beta; w = 1 of 42 points and more, 0 of 12, which cannot carry
+ * the pattern.
  * With the one-body addition m = 0, and the source dipole of B1 is exact too.
  * What is not exact is the flow close by. Root of the mean square error of the velocity of the fluid at
  * 1.3, 2 and 3 radii over that of the velocity itself, with the addition: B1 0.32 0.33 0.20 (12 points),
@@ -27,6 +28,7 @@
 #ifndef SD_SQUIRMER_H
 #define SD_SQUIRMER_H
 
+#include "sd_body_shape.h"
 #include "sd_multiblob.h"
 
 SD_BEGIN_C
@@ -41,9 +43,9 @@ typedef struct {
   double e[3], B1, B2, beta;
 } sd_squirmer_stroke;
 
-/* inverse [(3 n)^2]: M^-1 of the lone shell of radius 1 and viscosity 1, with the addition if it has
- * it (sd_multiblob_shape.points). Never fails. */
-void sd_squirmer_create(const sd_multiblob *m, const double *inverse, sd_squirmer *out);
+/* lone: the shell of radius 1 and viscosity 1, with the addition if it has it
+ * (sd_multiblob_shape.points). Never fails. */
+void sd_squirmer_create(const sd_multiblob *m, const sd_body_shape *lone, sd_squirmer *out);
 
 /* u [3 n] -= slip at the points r [3 n] from the centre of a sphere of radius a: what the fluid at the
  * points is to the rigid motion of the swimmer (u of sd_bodies.h) */

@@ -63,7 +63,7 @@ static void lone_swimmers_are_exact(void **state)
       const sd_bodies A = place(f, 0.0, 0.0);
       sd_squirmer s;
       sd_squirmer_stroke stroke;
-      sd_squirmer_create(&f->s->m, f->lone.points.inverse, &s);
+      sd_squirmer_create(&f->s->m, &f->lone.points, &s);
       if (one_body) CHECK_NEAR(s.uniform, 0.0, 1e-12);
       stroke.B1 = at_random(&seed, stroke.e), stroke.B2 = -1.7, stroke.beta = 0.9;
       give_stroke(f, &s, 0, &stroke);
@@ -131,7 +131,7 @@ static void flow_around_is_as_told(void **state)
           const sd_bodies A = place(f, 0.0, 0.0);
           sd_squirmer s;
           sd_squirmer_stroke stroke = {{0}, which == 0, which == 1, which == 2};
-          sd_squirmer_create(&f->s->m, f->lone.points.inverse, &s);
+          sd_squirmer_create(&f->s->m, &f->lone.points, &s);
           at_random(&seed, stroke.e);
           give_stroke(f, &s, 0, &stroke);
           assert_int_equal(move(f, &A, none, 0, 1e-12), SD_OK);
