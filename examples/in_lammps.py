@@ -15,13 +15,13 @@ class InLammps:
         for line in lines.strip().splitlines():
             self.lmp.command(line.strip())
 
-    def place(self, x, keywords, edge=None, molecule=0, tolerance=1e-6):
+    def place(self, x, keywords, edge=None, molecule=0, tolerance=1e-6, radius=1.0):
         """Spheres at x [n, 3]; keywords: of the pair style, besides viscosity and tolerance; edge: of the periodic cube, or None: open;
-        molecule: a number, or one for each"""
+        molecule, radius: a number, or one for each"""
         self.n = len(x)
         lo, hi = (0.0, edge) if edge else (x.min() - 5, x.max() + 5)
-        rows = "".join(f"{i + 1} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g} 2.0 1.0 {m}\n"
-                       for i, (p, m) in enumerate(zip(x.tolist(), np.broadcast_to(molecule, self.n))))
+        rows = "".join(f"{i + 1} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g} {2 * a:.17g} 1.0 {m}\n" for i, (p, m, a) in
+                       enumerate(zip(x.tolist(), np.broadcast_to(molecule, self.n), np.broadcast_to(radius, self.n))))
         self.data.write_text(f"spheres\n\n{self.n} atoms\n1 atom types\n\n" + "".join(f"{lo:.17g} {hi:.17g} {c}lo {c}hi\n" for c in "xyz") +
                              ("0 0 0 xy xz yz\n" if edge else "") + "\nAtoms\n\n" + rows)
         self.commands(f"""

@@ -12,11 +12,9 @@
 #include "sd_shell.h"
 #include "sd_tensor.h"
 
-enum { SCALARS = SD_FILM_SCALARS };
+enum { SCALARS = SD_FILM_SCALARS, MODES = SD_SHELL_MODES, BOTH = SD_SHELL_BOTH };
 
-/* What the one-body addition knows of the motions of a sphere: uniform, that of a pressure gradient,
- * rotation, strain (sd_multiblob.h) */
-enum { UNIFORM = 0, PRESSURE = 3, TURN = 6, STRAIN = 9, MODES = 14, BOTH = 2 * MODES };
+enum { PRESSURE = 3, TURN = SD_SHELL_TURN, STRAIN = SD_SHELL_STRAIN };
 
 static void *room(size_t doubles)
 {
@@ -249,23 +247,44 @@ static void add_scalars(const double G[BOTH * BOTH], const double a[2], const do
   }
 }
 
+static void points_alone(sd_shell_pair *p, const double a[2], double distance, const sd_shell_way *way,
+                         double G[BOTH * BOTH])
+{
+  double centre[3];
+  for (int e = 0; e < 3; e++) centre[e] = -distance * way->d[e];
+  put_beside(p, a[0], way->Q, centre);
+  resistance(p, G);
+}
+
+static void set_additions(const sd_shell_pair *p, const double a[2], double D[BOTH * BOTH])
+{
+  memset(D, 0, sizeof(double) * BOTH * BOTH);
+  set_addition(p->one, a[0], 0, D);
+  set_addition(p->two, a[1], MODES, D);
+}
+
+void sd_shell_pair_resistance(sd_shell_pair *p, double ratio, double xi, const sd_shell_way *way,
+                              double G[BOTH * BOTH])
+{
+  const double a[2] = {1.0 / ratio, 1.0}, distance = (a[0] + a[1]) * (1.0 + 0.5 * xi);
+  double D[BOTH * BOTH];
+  points_alone(p, a, distance, way, G);
+  set_additions(p, a, D);
+  add_addition(D, G);
+}
+
 void sd_shell_pair_means(sd_shell_pair *p, double ratio, double xi, int count, const sd_shell_way *ways,
                          double value[2][SCALARS])
 {
   const double a[2] = {1.0 / ratio, 1.0}, distance = (a[0] + a[1]) * (1.0 + 0.5 * xi);
-  double D[BOTH * BOTH] = {0.0}, G[BOTH * BOTH], scale[SCALARS];
+  double D[BOTH * BOTH], G[BOTH * BOTH], scale[SCALARS];
   sd_pair_resistance sum[2] = {{{0.0}, {0.0}, {0.0}, {0.0}, {0.0}}, {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}}};
-  set_addition(p->one, a[0], 0, D);
-  set_addition(p->two, a[1], MODES, D);
+  set_additions(p, a, D);
   for (int k = 0; k < count; k++) {
-    const sd_shell_way *w = ways + k;
-    double centre[3];
-    for (int e = 0; e < 3; e++) centre[e] = -distance * w->d[e];
-    put_beside(p, a[0], w->Q, centre);
-    resistance(p, G);
-    add_scalars(G, a, w->d, &sum[0]);
+    points_alone(p, a, distance, ways + k, G);
+    add_scalars(G, a, ways[k].d, &sum[0]);
     add_addition(D, G);
-    add_scalars(G, a, w->d, &sum[1]);
+    add_scalars(G, a, ways[k].d, &sum[1]);
   }
   const sd_pair_resistance model = sd_pair_resistance_rpy(a[0], a[1], distance);
   sd_film_scales(a[0], a[1], scale);
