@@ -4,6 +4,7 @@
 #ifndef SD_PAIR_SPH_ARTVISC_TENSCORR_H
 #define SD_PAIR_SPH_ARTVISC_TENSCORR_H
 
+#include "atom.h"
 #include "moved_box.h"
 #include "neighbours.h"
 #include "pair.h"

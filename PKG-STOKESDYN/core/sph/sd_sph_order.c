@@ -2,6 +2,7 @@
 
 #include "sd_sph_class.h"
 #include "sd_sph_rheology.h"
+#include "sd_sph_symmetric.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,17 +14,12 @@ void sd_sph_pack_volumes(const sd_sph_model *model, const sd_sph_particles *p, c
   x4[4 * (size_t) p->n + 3] = 0.0;
 }
 
-/* Symmetric 3 x 3: xx yy zz xy xz yz. */
-typedef struct {
-  double a[6];
-} symmetric;
-
 /* M of a row of sums, - sum V_b g d d^T. It would be the unit matrix if sums were integrals; what
  * it lacks is what is wrong with a gradient that is summed, and B = M^-1 puts it right. In two
  * dimensions nothing is summed along z: a unit there keeps the inverse two-dimensional. */
-static symmetric moment(int dimension, const double *sums)
+static sd_sph_symmetric moment(int dimension, const double *sums)
 {
-  symmetric M;
+  sd_sph_symmetric M;
   memcpy(M.a, sums, sizeof(M.a));
   if (dimension == 2) {
     M.a[2] = 1.0;
@@ -32,49 +28,25 @@ static symmetric moment(int dimension, const double *sums)
   return M;
 }
 
-/* M^-1 = cofactors / determinant. */
-static symmetric cofactors(const symmetric *M)
-{
-  const double *a = M->a;
-  return (symmetric){{a[1] * a[2] - a[5] * a[5], a[0] * a[2] - a[4] * a[4],
-                      a[0] * a[1] - a[3] * a[3], a[4] * a[5] - a[3] * a[2],
-                      a[3] * a[5] - a[4] * a[1], a[3] * a[4] - a[0] * a[5]}};
-}
-
-static double determinant(const symmetric *M, const symmetric *cofactor)
-{
-  return M->a[0] * cofactor->a[0] + M->a[3] * cofactor->a[3] + M->a[4] * cofactor->a[4];
-}
-
 /* M is about half the unit matrix at a plane surface, and a quarter in two directions along an
  * edge: det > 1/64. Below 1e-3, a tenth in each of three directions, neighbours are so few that the
  * inverse would raise their noise tenfold: 0 then. */
-static symmetric inverse(const symmetric *M)
+static sd_sph_symmetric inverse(const sd_sph_symmetric *M)
 {
-  const symmetric cofactor = cofactors(M);
-  const double det = determinant(M, &cofactor);
-  symmetric B = {{0.0}};
+  const sd_sph_symmetric cofactor = sd_sph_cofactors(M);
+  const double det = sd_sph_determinant(M, &cofactor);
+  sd_sph_symmetric B = {{0.0}};
   if (det > 1e-3)
     for (int k = 0; k < 6; k++) B.a[k] = cofactor.a[k] / det;
   return B;
 }
 
-static void times(const symmetric *M, const double x[3], double y[3])
+static void times(const sd_sph_symmetric *M, const double x[3], double y[3])
 {
   const double *a = M->a;
   y[0] = a[0] * x[0] + a[3] * x[1] + a[4] * x[2];
   y[1] = a[3] * x[0] + a[1] * x[1] + a[5] * x[2];
   y[2] = a[4] * x[0] + a[5] * x[1] + a[2] * x[2];
-}
-
-/* Is the smallest eigenvalue above the limit? Exactly where M - limit I is positive definite, that
- * is where all its leading minors are positive: no eigenvalue is computed. */
-static int above(const symmetric *M, double limit)
-{
-  symmetric S = *M;
-  for (int d = 0; d < 3; d++) S.a[d] -= limit;
-  const symmetric cofactor = cofactors(&S);
-  return S.a[0] > 0.0 && cofactor.a[2] > 0.0 && determinant(&S, &cofactor) > 0.0;
 }
 
 /* Below 0.9 the support is cut by a free surface: it is 1 in the bulk, disordered or not, and about
@@ -97,7 +69,7 @@ static void shift(int dimension, const double *sums, double support, double du[3
 /* With particles that move with v + du and not v, what one particle carries is no longer that of
  * one piece of fluid: D v / D t along the path has (du . grad) v more, and grad v = G B to second
  * order. Returns tr(G B), the divergence; kick = (G B) du. */
-static double carry(const double *G, const symmetric *B, const double du[3], double kick[3])
+static double carry(const double *G, const sd_sph_symmetric *B, const double du[3], double kick[3])
 {
   double Bdu[3], trace = 0.0;
   times(B, du, Bdu);
@@ -112,7 +84,7 @@ static double carry(const double *G, const symmetric *B, const double du[3], dou
 
 double sd_sph_shear_rate(int dimension, const double sums[SD_SPH_GRADIENTS])
 {
-  const symmetric M = moment(dimension, sums), B = inverse(&M);
+  const sd_sph_symmetric M = moment(dimension, sums), B = inverse(&M);
   double L[3][3], square = 0.0;
   for (int a = 0; a < 3; a++) times(&B, sums + 6 + 3 * a, L[a]);
   for (int a = 0; a < 3; a++)
@@ -135,7 +107,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     c->rate[i] = sums[0];
     if (level == SD_SPH_RATE) continue;
 
-    const symmetric M = moment(model->dimension, sums + 4), B = inverse(&M);
+    const sd_sph_symmetric M = moment(model->dimension, sums + 4), B = inverse(&M);
     double *row = c->order + (size_t) to * i;
     /* exact for a linear density: sum V_b (rho_b - rho_a) g d = M grad rho then */
     times(&B, sums + 1, row);
@@ -146,16 +118,16 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     const int flows = (c->mask[i] & c->moving) && !(p->phase && p->phase[i] < 0);
     memset(du, 0, 4 * sizeof(double));
     /* what is corrected, and where its surface is, goes by all fluids */
-    const symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
-    if (flows && above(&whole, SURFACE))
+    const sd_sph_symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
+    if (flows && sd_sph_above(&whole, SURFACE))
       shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level >= SD_SPH_VELOCITY) {
       memset(row + 8, 0, 8 * sizeof(double));
       memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));
       row[14] = !flows;
       if (!flows) continue;
-      if (!above(&whole, c->least) && stops < 0) stops = i;
-      const symmetric all = level == SD_SPH_MIXTURE ? inverse(&whole) : B;
+      if (!sd_sph_above(&whole, c->least) && stops < 0) stops = i;
+      const sd_sph_symmetric all = level == SD_SPH_MIXTURE ? inverse(&whole) : B;
       memcpy(row + 8, all.a, sizeof(all.a));
       c->rate[i] = -row[3] * carry(sums + 14, &all, du, c->kick + 3 * (size_t) i);
     }

@@ -1,0 +1,114 @@
+#include "sd_sph_drops.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The root of the tree of i; the way there is halved for the next who asks. */
+static int root_of(int *parent, int i)
+{
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+void sd_sph_find_drops(const sd_sph_film *f, int *parent)
+{
+  const sd_sph_both *list = f->list;
+  const double reach = 2.0 * f->surface->h;
+  for (int i = 0; i < f->all; i++) parent[i] = i;
+  for (int i = 0; i < list->n; i++) {
+    if (f->wall && f->wall[i]) continue;
+    const double *x = f->x4 + 4 * (size_t) i;
+    int mine = root_of(parent, i);
+    for (int m = 0; m < list->count[i]; m++) {
+      const int j = list->neighbor[i][m];
+      /* of a pair of this rank one side is enough */
+      if ((j > i && j < list->n) || j >= f->all || parent[j] == mine || (f->wall && f->wall[j])) continue;
+      const double *y = f->x4 + 4 * (size_t) j, d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) continue;
+      const int other = root_of(parent, j);
+      if (other < mine)
+        mine = parent[mine] = other;
+      else
+        parent[other] = mine;
+    }
+  }
+}
+
+int sd_sph_name_drops(int all, int *parent, double *name)
+{
+  int changed = 0;
+  for (int i = 0; i < all; i++) {
+    const int root = root_of(parent, i);
+    if (name[i] < name[root]) name[root] = name[i];
+  }
+  for (int i = 0; i < all; i++) {
+    const double of_drop = name[root_of(parent, i)];
+    changed |= of_drop < name[i];
+    name[i] = of_drop;
+  }
+  return changed;
+}
+
+int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, const double *mass,
+                     const double *held, const double *F, sd_sph_drop *out, int *place)
+{
+  int count = 0;
+  for (int i = 0; i < f->all; i++) place[i] = -1;
+  for (int i = 0; i < f->list->n; i++) {
+    if (f->wall && f->wall[i]) continue;
+    int *at = &place[root_of(parent, i)];
+    if (*at < 0) {
+      *at = count++;
+      out[*at] = (sd_sph_drop){.name = name[i]};
+    }
+    sd_sph_drop *drop = &out[*at];
+    for (int d = 0; d < 3; d++) drop->F[d] += F[3 * (size_t) i + d];
+    drop->mass += mass[i];
+    if (held[i] > drop->held) drop->held = held[i];
+  }
+  return count;
+}
+
+static int by_name(const void *a, const void *b)
+{
+  const double one = ((const sd_sph_drop *) a)->name, two = ((const sd_sph_drop *) b)->name;
+  return (one > two) - (one < two);
+}
+
+/* Parts of one drop, which stand beside each other, become one. */
+static int add_up(int count, sd_sph_drop *drops)
+{
+  int last = -1;
+  for (int k = 0; k < count; k++) {
+    if (last < 0 || drops[last].name != drops[k].name) {
+      drops[++last] = drops[k];
+      continue;
+    }
+    for (int d = 0; d < 3; d++) drops[last].F[d] += drops[k].F[d];
+    drops[last].mass += drops[k].mass;
+    if (drops[k].held > drops[last].held) drops[last].held = drops[k].held;
+  }
+  return last + 1;
+}
+
+int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, const double *mass, int count,
+                         sd_sph_drop *mine, int all_count, sd_sph_drop *everywhere, double *F, double sum[3])
+{
+  qsort(everywhere, (size_t) all_count, sizeof(sd_sph_drop), by_name);
+  const int drops = add_up(all_count, everywhere);
+  memset(sum, 0, 3 * sizeof(double));
+  for (int k = 0; k < drops; k++)
+    for (int d = 0; d < 3 && everywhere[k].held > 0.0; d++) sum[d] += everywhere[k].F[d];
+  /* F of mine becomes the force per mass that is given back */
+  for (int k = 0; k < count; k++) {
+    const sd_sph_drop *whole =
+        bsearch(&mine[k], everywhere, (size_t) drops, sizeof(sd_sph_drop), by_name);
+    for (int d = 0; d < 3; d++) mine[k].F[d] = whole->held > 0.0 ? 0.0 : whole->F[d] / whole->mass;
+  }
+  for (int i = 0; i < f->list->n; i++) {
+    if (f->wall && f->wall[i]) continue;
+    const sd_sph_drop *drop = &mine[place[root_of(parent, i)]];
+    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] -= mass[i] * drop->F[d];
+  }
+  return drops;
+}

@@ -1,0 +1,342 @@
+#include "sd_sph_tension.h"
+
+#include "sd_constants.h"
+#include "sd_linear.h"
+#include "sd_sph_symmetric.h"
+#include "sd_sph_tension_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+static const sd_sph_film_loops *loops_of_films(void)
+{
+  return SD_KERNELS_OF(sd_sph_film_loops, baseline, sd_isa_of(SD_ISA_BEST));
+}
+
+// --- what a plane surface hides --------------------------------------------------------------------
+
+/* Over the plane at z of h = 1, with y from its middle: the integral of W, and that of y^2 W over 2 (D-1). */
+static double of_plane(sd_sph_kernel kernel, int dimension, double z, double *beta)
+{
+  enum { PARTS = 128 };
+  const double edge = sqrt(fmax(4.0 - z * z, 0.0)), step = edge / PARTS;
+  double W1 = 0.0;
+  *beta = 0.0;
+  for (int k = 0; k <= PARTS; k++) {
+    const double y = step * k, part = (k == 0 || k == PARTS ? 1.0 : k % 2 ? 4.0 : 2.0) * step / 3.0,
+                 ring = part * (dimension == 3 ? 2.0 * SD_PI * y : 2.0) *
+        sd_sph_W(kernel, dimension, sqrt(z * z + y * y), 1.0);
+    W1 += ring;
+    *beta += ring * y * y / (2.0 * (dimension - 1));
+  }
+  return W1;
+}
+
+void sd_sph_surface_make(sd_sph_kernel kernel, int dimension, double h, sd_sph_surface *s)
+{
+  const double step = 2.0 / (SD_SPH_DEPTHS - 1);
+  double unused, before = of_plane(kernel, dimension, 0.0, &s->beta[0]);
+  s->kernel = kernel;
+  s->dimension = dimension;
+  s->h = h;
+  s->S0[0] = 0.5;
+  for (int k = 1; k < SD_SPH_DEPTHS; k++) {
+    const double middle = of_plane(kernel, dimension, step * (k - 0.5), &unused),
+                 here = of_plane(kernel, dimension, step * k, &s->beta[k]);
+    s->S0[k] = s->S0[k - 1] + step / 6.0 * (before + 4.0 * middle + here);
+    before = here;
+  }
+}
+
+double sd_sph_depth(const sd_sph_surface *s, double S)
+{
+  int low = 0, high = SD_SPH_DEPTHS - 1;
+  if (!(S > s->S0[low])) return 0.0;
+  if (S >= s->S0[high]) return 2.0 * s->h;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    if (s->S0[middle] <= S)
+      low = middle;
+    else
+      high = middle;
+  }
+  const double part = (S - s->S0[low]) / (s->S0[high] - s->S0[low]);
+  return (low + part) * 2.0 * s->h / (SD_SPH_DEPTHS - 1);
+}
+
+static double beta_at(const sd_sph_surface *s, double z)
+{
+  const double at = z / (2.0 * s->h) * (SD_SPH_DEPTHS - 1);
+  const int low = at < SD_SPH_DEPTHS - 2 ? (int) at : SD_SPH_DEPTHS - 2;
+  return s->beta[low] + (at - low) * (s->beta[low + 1] - s->beta[low]);
+}
+
+/* Near the centre of a curvature 1 + k z vanishes: not below this. */
+static const double LEAST_PART = 0.3;
+
+/* sum of k/(1 + k z) over the eigenvalues of E: tr(E (I + z E)^-1), and one by one only where the bound counts. */
+static double at_surface(const sd_sph_symmetric *E, double z)
+{
+  sd_sph_symmetric whole;
+  for (int c = 0; c < 6; c++) whole.a[c] = z * E->a[c] + (c < 3 ? 1.0 : 0.0);
+  if (sd_sph_above(&whole, LEAST_PART)) {
+    const sd_sph_symmetric C = sd_sph_cofactors(&whole);
+    const double *e = E->a, *c = C.a;
+    return (e[0] * c[0] + e[1] * c[1] + e[2] * c[2] + 2.0 * (e[3] * c[3] + e[4] * c[4] + e[5] * c[5])) /
+        sd_sph_determinant(&whole, &C);
+  }
+  const double *e = E->a, full[9] = {e[0], e[3], e[4], e[3], e[1], e[5], e[4], e[5], e[2]};
+  double k[3], unused[9], kappa = 0.0;
+  sd_eigen(3, full, k, unused);
+  for (int i = 0; i < 3; i++) kappa += k[i] / fmax(1.0 + k[i] * z, LEAST_PART);
+  return kappa;
+}
+
+double sd_sph_surface_curvature(const sd_sph_surface *s, const double *A, double S, int curved)
+{
+  const sd_sph_symmetric E = s->dimension == 3
+      ? (sd_sph_symmetric){{A[0], A[4], A[8], 0.5 * (A[1] + A[3]), 0.5 * (A[2] + A[6]), 0.5 * (A[5] + A[7])}}
+      : (sd_sph_symmetric){{A[0] + A[4]}};
+  double z = sd_sph_depth(s, S), kappa = at_surface(&E, z);
+  for (int round = 0; curved && round < 2; round++) {
+    z = sd_sph_depth(s, S + kappa * s->h * beta_at(s, z));
+    kappa = at_surface(&E, z);
+  }
+  const double most = 2.0 * (s->dimension - 1) / s->h;
+  return fmax(-most, fmin(most, kappa));
+}
+
+// --- sums, walls, normals --------------------------------------------------------------------------
+
+static int is_wall(const sd_sph_film *f, int i)
+{
+  return f->wall && f->wall[i];
+}
+
+/* V W of a particle at its own place */
+static double own_share(const sd_sph_film *f, int i)
+{
+  const sd_sph_surface *s = f->surface;
+  return f->x4[4 * (size_t) i + 3] * sd_sph_W(s->kernel, s->dimension, 0.0, s->h);
+}
+
+void sd_sph_film_sums(const sd_sph_film *f, double *sums)
+{
+  loops_of_films()->sums(f, sums);
+  const double W0 = sd_sph_W(f->surface->kernel, f->surface->dimension, 0.0, f->surface->h);
+  for (int i = 0; i < f->list->n; i++)
+    sums[8 * (size_t) i + (is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
+}
+
+void sd_sph_film_wetness(const sd_sph_film *f, const double *sums, double *wet)
+{
+  for (int i = 0; i < f->list->n; i++) {
+    const double S = sums[8 * (size_t) i], Sw = sums[8 * (size_t) i + 4];
+    wet[i] = is_wall(f, i) && Sw <= 0.98 ? fmin(1.0, S / fmax(1.0 - Sw, 0.02)) : 0.0;
+  }
+}
+
+void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *beside)
+{
+  memset(beside, 0, sizeof(double) * 8 * (size_t) f->list->n);
+  loops_of_films()->wet_walls(f, contact, sums, beside);
+}
+
+static double length3(const double *a)
+{
+  return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+static void make_unit(double *n)
+{
+  const double length = length3(n);
+  for (int d = 0; d < 3; d++) n[d] /= length;
+}
+
+/* sin(theta) t + cos(theta) e, nw; 0 where the fluid shows no direction along the wall, as in the middle of a
+ * wetted one. sums: S Gf | Sw Gw. */
+static void contact_normal(double h, const double *sums, const double *beside, double row[4])
+{
+  memset(row, 0, 4 * sizeof(double));
+  const double *Gf = sums + 1, *Gw = sums + 5, of_walls = beside[6], Gw_size = length3(Gw);
+  if (!(of_walls > 0.0) || !(Gw_size * h > 1e-3)) return;
+  double e[3], t[3], along = 0.0;
+  for (int d = 0; d < 3; d++) {
+    e[d] = -Gw[d] / Gw_size;
+    along -= Gf[d] * e[d];
+  }
+  for (int d = 0; d < 3; d++) t[d] = -Gf[d] - along * e[d];
+  if (!(length3(t) * h > 1e-3)) return;
+  make_unit(t);
+  for (int d = 0; d < 3; d++) row[d] = beside[5] / of_walls * t[d] + beside[4] / of_walls * e[d];
+  make_unit(row);
+  row[3] = fmin(1.0, 2.0 * of_walls);
+}
+
+void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
+                         double *surface, double *at_wall)
+{
+  static const double FROM = 0.1, TO = 0.3;    // of h |G|
+  const double h = f->surface->h;
+  for (int i = 0; i < f->list->n; i++) {
+    const double *of = sums + 8 * (size_t) i;
+    double *S_G = whole + 4 * (size_t) i, *n = surface + 4 * (size_t) i;
+    memcpy(S_G, of, 4 * sizeof(double));
+    memset(n, 0, 4 * sizeof(double));
+    if (at_wall) memset(at_wall + 4 * (size_t) i, 0, 4 * sizeof(double));
+    if (is_wall(f, i)) {
+      n[3] = -1.0;
+      continue;
+    }
+    for (int c = 0; c < 4 && beside; c++) S_G[c] += beside[8 * (size_t) i + c];
+    const double size = length3(S_G + 1);
+    if (!(size * h > FROM)) continue;
+    n[3] = fmin(1.0, (size * h - FROM) / (TO - FROM));
+    for (int d = 0; d < 3; d++) n[d] = -S_G[1 + d] / size;
+    if (!beside) continue;
+    double *contact = at_wall + 4 * (size_t) i;
+    contact_normal(h, of, beside + 8 * (size_t) i, contact);
+    if (!(contact[3] > 0.0)) continue;
+    for (int d = 0; d < 3; d++) n[d] += contact[3] * (contact[d] - n[d]);
+    make_unit(n);
+  }
+}
+
+// --- curvature -------------------------------------------------------------------------------------
+
+/* M^-1, eigenvalues of M kept above 0.05: a particle with few neighbours has a noisy gradient, but a bounded one. */
+static sd_sph_symmetric bounded_inverse(const sd_sph_symmetric *M)
+{
+  static const double LEAST = 0.05;
+  sd_sph_symmetric B = sd_sph_cofactors(M);
+  const double det = sd_sph_determinant(M, &B), *m = M->a;
+  if (sd_sph_above(M, LEAST)) {
+    for (int c = 0; c < 6; c++) B.a[c] /= det;
+    return B;
+  }
+  const double full[9] = {m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2]};
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  double w[3], V[9];
+  sd_eigen(3, full, w, V);
+  for (int c = 0; c < 6; c++) {
+    B.a[c] = 0.0;
+    for (int k = 0; k < 3; k++) B.a[c] += V[3 * row[c] + k] * V[3 * column[c] + k] / fmax(w[k], LEAST);
+  }
+  return B;
+}
+
+/* N M^-1 of a row of turns */
+static void corrected_gradient(int dimension, const double *row, double gradient[9])
+{
+  sd_sph_symmetric M;
+  memcpy(M.a, row, sizeof(M.a));
+  if (dimension == 2) {
+    M.a[2] = 1.0;
+    M.a[4] = M.a[5] = 0.0;
+  }
+  const sd_sph_symmetric B = bounded_inverse(&M);
+  for (int a = 0; a < 3; a++) {
+    const double *N = row + 6 + 3 * a;
+    gradient[3 * a] = N[0] * B.a[0] + N[1] * B.a[3] + N[2] * B.a[4];
+    gradient[3 * a + 1] = N[0] * B.a[3] + N[1] * B.a[1] + N[2] * B.a[5];
+    gradient[3 * a + 2] = N[0] * B.a[4] + N[1] * B.a[5] + N[2] * B.a[2];
+  }
+}
+
+/* P A P, P = I - n n^T: a normal keeps its length, and does not turn along itself. What sums say of that comes from
+ * neighbours that stand deeper the further they are along a bent surface: a circle had 5 % too much by it. */
+static void along_surface(const double *n, double A[9])
+{
+  for (int side = 0; side < 2; side++)
+    for (int k = 0; k < 3; k++) {
+      const int at = side ? 3 * k : k, step = side ? 1 : 3;
+      const double out = n[0] * A[at] + n[1] * A[at + step] + n[2] * A[at + 2 * step];
+      for (int d = 0; d < 3; d++) A[at + d * step] -= out * n[d];
+    }
+}
+
+void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const double *surface,
+                            const double *at_wall, double *rows, double *kappa)
+{
+  double gradient[9];
+  loops_of_films()->turns(f, surface, at_wall, rows);
+  for (int i = 0; i < f->list->n; i++) {
+    kappa[i] = 0.0;
+    if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
+    corrected_gradient(f->surface->dimension, rows + 16 * (size_t) i, gradient);
+    along_surface(surface + 4 * (size_t) i, gradient);
+    const int curved = !at_wall || !(at_wall[4 * (size_t) i + 3] > 0.0);
+    kappa[i] = sd_sph_surface_curvature(f->surface, gradient, whole[4 * (size_t) i], curved);
+  }
+}
+
+void sd_sph_film_means(const sd_sph_film *f, const double *surface, const double *weighed, double *rows,
+                       double *mean)
+{
+  loops_of_films()->means(f, surface, 0.0, weighed, rows);
+  for (int i = 0; i < f->list->n; i++) {
+    mean[i] = 0.0;
+    if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
+    const double own = own_share(f, i) * weighed[2 * (size_t) i + 1];
+    mean[i] = (rows[2 * (size_t) i] + own * weighed[2 * (size_t) i]) / (rows[2 * (size_t) i + 1] + own);
+  }
+}
+
+void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double *once, const double *twice,
+                         const double *at_wall, double *ks)
+{
+  static const double SHARPER = 2.8, DEEPER = 0.16;
+  for (int i = 0; i < f->list->n; i++) {
+    const double nw = at_wall ? at_wall[4 * (size_t) i + 3] : 0.0;
+    const double k = (1.0 - nw) * (once[i] + SHARPER * (once[i] - twice[i])) + nw * kappa[i];
+    ks[i] = k * (1.0 + DEEPER * f->surface->h * k);
+  }
+}
+
+void sd_sph_film_carry(const sd_sph_film *f, const double *surface, const double *ks, const double *carried,
+                       double *next)
+{
+  loops_of_films()->means(f, surface, -0.5, carried, next);
+  for (int i = 0; i < f->list->n; i++) {
+    const double w = surface[4 * (size_t) i + 3], *now = carried + 2 * (size_t) i;
+    double *row = next + 2 * (size_t) i;
+    if (w < 0.0) {
+      row[0] = row[1] = 0.0;
+      continue;
+    }
+    const double own = own_share(f, i) * now[1], around = row[1] + own;
+    row[0] = around > 1e-9 ? w * ks[i] + (1.0 - w) * (row[0] + own * now[0]) / around : now[0];
+    row[1] = fmax(w, fmin(1.0, 2.0 * around));
+  }
+}
+
+// --- force -----------------------------------------------------------------------------------------
+
+double sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
+                             const double *surface, const double *carried, const double *v4, double *F)
+{
+  double area = 0.0;
+  for (int i = 0; i < f->list->n; i++) {
+    const double V = is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = whole + 4 * (size_t) i + 1;
+    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] = 2.0 * t->sigma * V * carried[2 * (size_t) i] * G[d];
+    area += 2.0 * V * length3(G);
+  }
+  const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
+  if (factor > 0.0) loops_of_films()->rubs(f, surface, v4, factor, F);
+  return area;
+}
+
+double sd_sph_capillary_step(double sigma, double rho, double h)
+{
+  return 0.25 * sqrt(rho * h * h * h / (2.0 * SD_PI * sigma));
+}
+
+double sd_sph_surface_friction(double sigma, double rho, double h)
+{
+  return 0.15 * sqrt(sigma * rho * h);
+}
+
+double sd_sph_ohnesorge(double mu, double sigma, double rho, double R)
+{
+  return mu / sqrt(rho * sigma * R);
+}

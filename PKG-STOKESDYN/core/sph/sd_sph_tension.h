@@ -1,0 +1,118 @@
+/* Surface tension of one fluid with a free surface, and its contact angle on walls: the continuum force
+ * F = sigma kappa n delta on the particles that the surface cuts the support of; there is no gas.
+ *
+ * V = m / rho0, constant; g = W'/r, d = x_a - x_b, D dimension; f = fluid, w = wall.
+ *   S_a = V W(0) + sum_f V W              G_a = sum_f V g d          (towards the fluid; 0 in the bulk)
+ *   wetness c_w = min(1, S_w / max(1 - Sw_w, 0.02)), 0 where Sw_w > 0.98, Sw the sum over walls: then
+ *   wall particles count in S and G in the measure c in which they are wet
+ *   weight  w_a rises from 0 to 1 while h |G_a| rises from 0.1 to 0.3: who is at the surface
+ *   normal  n = - G/|G|; beside a wall, with e from the wall into the fluid and t the direction of - Gf
+ *           across e, it goes over to the normal of the contact angle, sin(theta) t + cos(theta) e, with
+ *           nw = min(1, 2 Sw)
+ *   M = - sum w_b V g d d^T,  N = sum w_b V (n_b - n_a) g d^T; a wall particle shows a the normal of the
+ *           contact angle, with w_b = 1. grad n = N M^-1, eigenvalues of M kept above 0.05;
+ *           of it the part along the surface, P grad n P, P = I - n n^T
+ *   depth   a particle at the depth z sees S0(z/h) of the whole; from curvatures k_i at its place follow
+ *           those at the surface, k_i / (1 + k_i z). In 3-D they are the eigenvalues of the symmetric
+ *           part of grad n, in 2-D it is its trace. A curved surface hides less: S0 = S + kappa h beta,
+ *           beta(z) = 1/(2 (D-1) h) times the integral of y^2 W over the plane at z. |kappa| <= 2 (D-1)/h
+ *   means   <k>_a = sum w_b V W k_b / sum w_b V W with a itself; k = <kappa> + 2.8 (<kappa> - <<kappa>>), but
+ *           beside a wall k = (1 - nw) k + nw kappa; ks = k (1 + 0.16 h k)
+ *   inwards k_a = w_a ks_a + (1 - w_a) sum v_b V W k_b / sum v_b V W; v = w, then max(w, min(1, 2 sum v V W))
+ *   force   F_a = 2 sigma V k_a G_a: 2, since the inner half of the smoothed step carries the particles
+ * The force acts at the mean depth 0.37 h, where a wave of the surface moves the fluid less, by
+ * exp(- 0.37 k h). The two numbers of ks give a part of that back: with 1 and 0 the frequency of a drop of 20
+ * particles across is 7 % low and its pressure 1 % high, with these 2 % and 5 %; a uniform ks remains a
+ * pressure.
+ * The noise of the curvature from particle to particle is what drives drops until they break; the means,
+ * and the friction between particles of the surface, take that away:
+ *   F_ab = 2 (D+2) mu_s w_a w_b V_a V_b g (v_ab.d)/r^2 d,    mu_s = 0.15 sqrt(sigma rho h)
+ * which keeps momentum and angular momentum. The force itself does so only to some thousandths of the
+ * sum of its sizes: sd_sph_drops.h.
+ * Uniform kappa and a uniform pressure sigma kappa cancel particle by particle, since the force of the
+ * pressure is - 2 P V G.
+ * Source: Brackbill, Kothe & Zemach 1992 (the continuum force), Morris 2000 (in SPH); depth, means and
+ * friction of the surface: unittest/core/sph/test_sph_tension.c and doc/fix_sph_tension.md. */
+#ifndef SD_SPH_TENSION_H
+#define SD_SPH_TENSION_H
+
+#include "sd_sph_sums.h"
+
+SD_BEGIN_C
+
+/* What a plane surface at z = 2 h k / (SD_SPH_DEPTHS - 1) hides; by quadrature, once. */
+enum { SD_SPH_DEPTHS = 201 };
+typedef struct {
+  sd_sph_kernel kernel;
+  int dimension;
+  double h, S0[SD_SPH_DEPTHS], beta[SD_SPH_DEPTHS];
+} sd_sph_surface;
+void sd_sph_surface_make(sd_sph_kernel kernel, int dimension, double h, sd_sph_surface *s);
+
+/* The depth z, 0 to 2 h, where the sum over neighbours is S. */
+double sd_sph_depth(const sd_sph_surface *s, double S);
+/* Curvature at the surface of that in a particle with the sum S: gradient [9] of n by rows. curved: with
+ * what a curved surface hides. */
+double sd_sph_surface_curvature(const sd_sph_surface *s, const double *gradient, double S, int curved);
+
+/* The particles. Rows 0 .. n - 1 of `list` are those of this rank, rows up to all are neighbours, and the
+ * far-away one. */
+typedef struct {
+  const sd_sph_surface *surface;
+  const sd_sph_both *list;
+  int all;
+  /* [4 (all+1)] x y z V */
+  const double *x4;
+  /* [all+1] 1: of a wall; NULL: there are no walls */
+  const int *wall;
+} sd_sph_film;
+
+/* sums [8 n]: S Gf | Sw Gw, own V W(0) contained. */
+enum { SD_SPH_FILM_SUMS = 8 };
+void sd_sph_film_sums(const sd_sph_film *f, double *sums);
+
+/* c of wall particles, 0 of others: wet [n]. */
+void sd_sph_film_wetness(const sd_sph_film *f, const double *sums, double *wet);
+
+/* Of fluid particles with Sw > 0, with c, cos and sin of the contact angle, and 1 of wall particles, 0 of
+ * others, as rows of contact [4 (all+1)]: rows of beside [8 n]
+ *   sum c V W | sum c V g d | sum V W cos, sum V W sin, sum V W | 0         0 elsewhere */
+void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *beside);
+
+/* whole [4 n]: S G with wet walls. Rows of the surface [4 n]: normal, w; 0 0 0 -1 of wall particles. at_wall
+ * [4 n]: the normal of the contact angle, nw. beside and at_wall are NULL without walls. */
+void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
+                         double *surface, double *at_wall);
+
+/* kappa [n] of particles with w > 0, 0 elsewhere; surface [4 (all+1)]; rows [16 n]: the caller's scratch. */
+void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const double *surface,
+                            const double *at_wall, double *rows, double *kappa);
+
+/* <k>_a [n], 0 where w is 0; weighed [2 (all+1)]: rows k w, 0 0 of walls; rows [2 n]: scratch. */
+void sd_sph_film_means(const sd_sph_film *f, const double *surface, const double *weighed, double *rows,
+                       double *mean);
+
+/* ks [n] of kappa, <kappa> and <<kappa>>. */
+void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double *once, const double *twice,
+                         const double *at_wall, double *ks);
+
+/* One step inwards, from carried [2 (all+1)], rows k v, to next [2 n]. Before the first they are ks w. */
+void sd_sph_film_carry(const sd_sph_film *f, const double *surface, const double *ks, const double *carried,
+                       double *next);
+
+/* F [3 n] of k, rows k v of carried [2 n], with v4 [4 (all+1)] v, unused. Returns the area of the surface of
+ * the fluid, 2 sum V |G|, without that on walls. friction: mu_s. */
+typedef struct {
+  double sigma, friction;
+} sd_sph_tension;
+double sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
+                             const double *surface, const double *carried, const double *v4, double *F);
+
+/* Time step up to which waves of the length 2 h on the surface are resolved, 0.25 sqrt(rho h^3 / (2 pi
+ * sigma)); mu_s; and the Ohnesorge number mu / sqrt(rho sigma R) of a drop. */
+double sd_sph_capillary_step(double sigma, double rho, double h);
+double sd_sph_surface_friction(double sigma, double rho, double h);
+double sd_sph_ohnesorge(double mu, double sigma, double rho, double R);
+
+SD_END_C
+#endif
