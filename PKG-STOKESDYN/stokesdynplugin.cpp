@@ -17,6 +17,7 @@
 #include "fix_sph_settings.h"
 #include "fix_sph_opening.h"
 #include "fix_sph_shift.h"
+#include "fix_sph_tension.h"
 #include "fix_stokes_dynamics.h"
 #include "fix_stokes_dynamics_field.h"
 #include "fix_stokes_dynamics_overdamped.h"
@@ -116,6 +117,7 @@ static std::vector<PluginStyle> sph_styles()
           fix<FixNveSphStationary>("SPH: density of particles at rest"),
           fix<FixWallAdamiSph>("SPH: walls of particles"),
           fix<FixSphGrains>("SPH: grains smaller than h in the water"),
+          fix<FixSphTension>("SPH: surface tension and contact angle"),
           fix<FixSphInlet>("SPH: a layer of particles that flows in"),
           fix<FixSphOutlet>("SPH: a layer that takes particles out"),
           fix<FixWallSph>("SPH: repulsive planes and cylinder"),

@@ -54,6 +54,9 @@ const std::vector<Neighbour> &sph_neighbours()
                "wall/region wall/gran*", 0, N::WARNING,
        "is no wall for water: there is nothing behind it that has a pressure, so that the water boils "
        "beside it: use particles of a wall (fix wall/adami/sph)", nullptr, WATER},
+      {N::FIX, "rigid*", TENSION, N::WARNING,
+       "moves a body that feels the pressure of the water, but not the pull of its surface at the contact line: "
+       "what floats by surface tension sinks", nullptr, WALL},
       // grains
       {N::FIX, "hydro/vans viscous* langevin* drag", GRAINS, N::ERROR,
        "drags grains that the water of SPH drags already: take it out, or give it other atoms", nullptr, GRAIN},

@@ -12,6 +12,7 @@ namespace StokesDyn {
 enum SphFact : unsigned {
   CONTINUITY = 1 << 0,    // with fix sph/density/continuity
   GRAINS = 1 << 1,        // with fix sph/grains
+  TENSION = 1 << 2,       // with fix sph/tension
 };
 
 /* Sorts of particles: those of fix wall/adami/sph, all others that the pair style computes, and

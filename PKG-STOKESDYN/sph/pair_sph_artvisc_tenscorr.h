@@ -82,6 +82,17 @@ class PairSph : public LAMMPS_NS::Pair {
   bool is_particle(int i) const;
   bool is_of_wall(int i) const { return is_wall(i); }
   bool has_ends() const { return !inlets.empty() || !outlets.empty(); }
+  /* Both for fix sph/tension: do particles keep apart by shift, without correction; are there fluids of
+   * different density? */
+  bool finds_surface() const { return shifts && !corrects; }
+  bool has_fluids() const { return sd_sph_of_fluids(&model) != 0; }
+  /* Of particle i that is none of a wall: that of its equation of state at its density, and the viscosity that
+   * shear feels, with that of artVisc: rho alpha c h/(2 (D+2)). */
+  double speed_of_sound(int i) const;
+  double all_viscosity(int i) const;
+  /* With shift or delta: the neighbours of each particle of this rank in the latest force, those nearer than 2 h
+   * and some more. */
+  sd_sph_both neighbours_of_each() { return near.both(atom->nlocal); }
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
   /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc

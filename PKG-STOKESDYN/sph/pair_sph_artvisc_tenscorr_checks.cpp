@@ -89,6 +89,19 @@ double PairSph::growth_limit(int bits) const
   return smallest_of_all(world, mine);
 }
 
+double PairSph::speed_of_sound(int i) const
+{
+  return sd_sph_speed_of_sound(&state_of(i)->state, atom->rho[i]);
+}
+
+double PairSph::all_viscosity(int i) const
+{
+  const int t = atom->type[i];
+  const double artificial =
+      model.artvisc ? atom->rho[i] * table[ALPHA][t][t] * table[C][t][t] * table[H][t][t] : 0.0;
+  return viscosity(i) + artificial / (2.0 * (model.dimension + 2));
+}
+
 /* Among the equations of state with a density rho0; nullptr: there is none. */
 template <class Value>
 static std::pair<const FixSphPressure *, const FixSphPressure *>

@@ -7,6 +7,7 @@
 #include "compute_sph_energy.h"
 #include "fix_sph_opening.h"
 #include "fix_sph_shift.h"
+#include "fix_sph_tension.h"
 #include "fix_wall_sph.h"
 #include "fixes.h"
 #include "keywords.h"
@@ -251,7 +252,8 @@ tagint PairSph::in_both(int bits, int more_bits) const
  * hybrid of their types. */
 void PairSph::setup()
 {
-  neighbourhood.look(voice, sph_neighbours(), (continuity ? CONTINUITY : 0u) | (grains ? GRAINS : 0u), [this](int i) {
+  neighbourhood.look(voice, sph_neighbours(), (continuity ? CONTINUITY : 0u) | (grains ? GRAINS : 0u) |
+                    (fixes_of(lmp, FixSphTension::STYLE).empty() ? 0u : TENSION), [this](int i) {
     if (!used(atom->type[i]))
       return grains && (atom->mask[i] & grains->groupbit) ? (unsigned) GRAIN : 0u;
     return (unsigned) (is_wall(i) ? WALL : WATER);

@@ -60,7 +60,8 @@ DYNAMICS = [
 ]
 # of packages and versions that not every LAMMPS has
 ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo"),
-             ("FIX hydro/vans viscous* langevin* drag", "GRAINS"): ("fix", "viscous")}    # three dimensions: test_sph_grains.py
+             ("FIX hydro/vans viscous* langevin* drag", "GRAINS"): ("fix", "viscous"),    # three dimensions: test_sph_grains.py
+             ("FIX rigid*", "TENSION"): ("fix", "rigid")}    # test_sph_tension.py
 
 
 def rows(room):

@@ -3,6 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Particles of other pair styles, which have no volume here, are in no drop. */
+static int is_fluid(const sd_sph_film *f, int i)
+{
+  return !(f->wall && f->wall[i]) && f->x4[4 * (size_t) i + 3] > 0.0;
+}
+
 /* The root of the tree of i; the way there is halved for the next who asks. */
 static int root_of(int *parent, int i)
 {
@@ -16,13 +22,13 @@ void sd_sph_find_drops(const sd_sph_film *f, int *parent)
   const double reach = 2.0 * f->surface->h;
   for (int i = 0; i < f->all; i++) parent[i] = i;
   for (int i = 0; i < list->n; i++) {
-    if (f->wall && f->wall[i]) continue;
+    if (!is_fluid(f, i)) continue;
     const double *x = f->x4 + 4 * (size_t) i;
     int mine = root_of(parent, i);
     for (int m = 0; m < list->count[i]; m++) {
       const int j = list->neighbor[i][m];
       /* of a pair of this rank one side is enough */
-      if ((j > i && j < list->n) || j >= f->all || parent[j] == mine || (f->wall && f->wall[j])) continue;
+      if ((j > i && j < list->n) || j >= f->all || parent[j] == mine || !is_fluid(f, j)) continue;
       const double *y = f->x4 + 4 * (size_t) j, d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) continue;
       const int other = root_of(parent, j);
@@ -55,7 +61,7 @@ int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, cons
   int count = 0;
   for (int i = 0; i < f->all; i++) place[i] = -1;
   for (int i = 0; i < f->list->n; i++) {
-    if (f->wall && f->wall[i]) continue;
+    if (!is_fluid(f, i)) continue;
     int *at = &place[root_of(parent, i)];
     if (*at < 0) {
       *at = count++;
@@ -106,7 +112,7 @@ int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, co
     for (int d = 0; d < 3; d++) mine[k].F[d] = whole->held > 0.0 ? 0.0 : whole->F[d] / whole->mass;
   }
   for (int i = 0; i < f->list->n; i++) {
-    if (f->wall && f->wall[i]) continue;
+    if (!is_fluid(f, i)) continue;
     const sd_sph_drop *drop = &mine[place[root_of(parent, i)]];
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] -= mass[i] * drop->F[d];
   }

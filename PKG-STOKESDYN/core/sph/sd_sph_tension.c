@@ -289,7 +289,7 @@ void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double
   for (int i = 0; i < f->list->n; i++) {
     const double nw = at_wall ? at_wall[4 * (size_t) i + 3] : 0.0;
     const double k = (1.0 - nw) * (once[i] + SHARPER * (once[i] - twice[i])) + nw * kappa[i];
-    ks[i] = k * (1.0 + DEEPER * f->surface->h * k);
+    ks[i] = k * (1.0 + DEEPER / (f->surface->dimension - 1) * f->surface->h * k);
   }
 }
 

@@ -17,7 +17,7 @@
  *           part of grad n, in 2-D it is its trace. A curved surface hides less: S0 = S + kappa h beta,
  *           beta(z) = 1/(2 (D-1) h) times the integral of y^2 W over the plane at z. |kappa| <= 2 (D-1)/h
  *   means   <k>_a = sum w_b V W k_b / sum w_b V W with a itself; k = <kappa> + 2.8 (<kappa> - <<kappa>>), but
- *           beside a wall k = (1 - nw) k + nw kappa; ks = k (1 + 0.16 h k)
+ *           beside a wall k = (1 - nw) k + nw kappa; ks = k (1 + 0.16 h k/(D-1))
  *   inwards k_a = w_a ks_a + (1 - w_a) sum v_b V W k_b / sum v_b V W; v = w, then max(w, min(1, 2 sum v V W))
  *   force   F_a = 2 sigma V k_a G_a: 2, since the inner half of the smoothed step carries the particles
  * The force acts at the mean depth 0.37 h, where a wave of the surface moves the fluid less, by
@@ -61,7 +61,7 @@ typedef struct {
   const sd_sph_surface *surface;
   const sd_sph_both *list;
   int all;
-  /* [4 (all+1)] x y z V */
+  /* [4 (all+1)] x y z V; V is 0 of atoms that are no particles */
   const double *x4;
   /* [all+1] 1: of a wall; NULL: there are no walls */
   const int *wall;

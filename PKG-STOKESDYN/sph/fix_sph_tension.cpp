@@ -1,0 +1,385 @@
+#include "fix_sph_tension.h"
+
+#include "fix_wall_sph.h"
+#include "fixes.h"
+#include "keywords.h"
+#include "lammps_compat.h"
+#include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
+#include "sd_constants.h"
+
+#include "atom.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+/* How often the curvature goes a support further into the fluid. One reaches all particles that the surface cuts off
+ * from neighbours; with 1, 2 and 4 the frequency of a drop of 20 across is the same to 0.1 %. */
+static constexpr int INWARDS = 1;
+
+/* What the tests of oscillating drops have shown to hold: doc/fix_sph_tension.md. */
+static constexpr double LEAST_OHNESORGE = 0.01, LEAST_STIFFNESS = 12.0;
+static constexpr int ACROSS = 20;    // particles over the smallest drop that is resolved
+
+FixSphTension::FixSphTension(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg), shown(5)
+{
+  Keywords in = keywords(narg, arg);
+  sigma = in.positional("SIGMA").positive();
+  in.parse({
+      {"contact",
+       [&] {
+         parse_contact(in);
+       }},
+      {"force",
+       [&] {
+         forced = in.yes_no();
+       }},
+  });
+  keep({&shown}, &shown, false);
+  peratom_freq = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 5;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  comm_forward = 4;
+}
+
+/* Pairs of a type and its angle in degrees. */
+void FixSphTension::parse_contact(Keywords &in)
+{
+  double number;
+  do {
+    const int type = (int) in.integer(1, atom->ntypes);
+    in.check(!contacts.count(type), "has an angle already");
+    const double angle = in.number();
+    in.check(angle > 0.0 && angle < 180.0, "is no contact angle: it is above 0 and below 180 degrees");
+    contacts[type] = {cos(angle * SD_PI / 180.0), sin(angle * SD_PI / 180.0)};
+  } while (in.more() && is_number(in.peek(), number));
+}
+
+int FixSphTension::setmask()
+{
+  return FixConst::POST_FORCE;
+}
+
+// --- at the beginning of a run -------------------------------------------------------------------
+
+void FixSphTension::init()
+{
+  SphFix::init();
+  if (fixes_of(lmp, STYLE).size() > 1)
+    voice.fail("more than one: there is one fluid, with one surface tension");
+  if (!pair->finds_surface())
+    voice.fail("needs shift yes of pair_style sph/artVisc/tensCorr: without it particles are not spread evenly "
+               "enough to tell a curvature, and correction yes knows no free surface");
+  if (pair->has_fluids())
+    voice.fail("does not go with volume yes of fix sph/density/continuity: it is made for one fluid with a free "
+               "surface, and two fluids have none between them; grains (fix sph/grains) need volume yes");
+  walls = !fixes_of(lmp, FixWallAdamiSph::STYLE).empty();
+  check_particles();
+  check_contacts();
+}
+
+/* All fluid is in the group, and has one h and one rho0. */
+void FixSphTension::check_particles()
+{
+  if (const tagint other = first_atom(lmp, [this](int i) {
+        return pair->is_particle(i) && !pair->is_of_wall(i) && !(atom->mask[i] & groupbit);
+      }))
+    voice.fail("atom " + std::to_string(other) +
+               " is fluid and not in its group: the surface of a part of the fluid would run through its inside; use "
+               "the group of all fluid");
+  double least = HUGE_VAL, most = 0.0, V = 0.0, least_rho = HUGE_VAL, most_rho = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!pair->is_particle(i)) continue;
+    const double h = pair->smoothing_length(atom->type[i]);
+    least = std::min(least, h);
+    most = std::max(most, h);
+    if (pair->is_of_wall(i)) continue;
+    const double rho = pair->rest_density(i);
+    least_rho = std::min(least_rho, rho);
+    most_rho = std::max(most_rho, rho);
+    V = std::max(V, Sph::mass(lmp, i) / rho);
+  }
+  least = smallest_of_all(world, least);
+  most = largest_of_all(world, most);
+  rho0 = smallest_of_all(world, least_rho);
+  most_rho = largest_of_all(world, most_rho);
+  if (most_rho == 0.0) voice.fail("there is no fluid of pair_style sph/artVisc/tensCorr");
+  if (most > least * (1.0 + 1e-9))
+    voice.fail("types of pair_style sph/artVisc/tensCorr have smoothing lengths from " + text(least) + " to " +
+               text(most) + ": it needs one h for all of them");
+  if (most_rho > rho0 * (1.0 + 1e-9))
+    voice.fail("fluids have densities from " + text(rho0) + " to " + text(most_rho) +
+               ": it is made for one fluid with a free surface; use one fix sph/pressure with a rho0");
+  spacing = pow(largest_of_all(world, V), 1.0 / pair->dimension());
+  sd_sph_surface_make(pair->kernel(), pair->dimension(), least, &surface);
+}
+
+void FixSphTension::check_contacts()
+{
+  for (const auto &contact : contacts) {
+    const int type = contact.first;
+    if (first_atom(lmp, [this, type](int i) { return atom->type[i] == type && pair->is_of_wall(i); })) continue;
+    voice.fail("keyword contact: there is no particle of type " + std::to_string(type) +
+               " in a wall: contact angles belong to types of wall particles (fix wall/adami/sph)");
+  }
+}
+
+/* Before the first force of a run, when the speed of sound and the viscosity are known. What does not hold is an
+ * error, with force yes a warning. */
+void FixSphTension::check_range()
+{
+  double mu = HUGE_VAL, sound = HUGE_VAL;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!pair->is_particle(i) || pair->is_of_wall(i)) continue;
+    mu = std::min(mu, pair->all_viscosity(i));
+    sound = std::min(sound, pair->speed_of_sound(i));
+  }
+  mu = smallest_of_all(world, mu);
+  sound = smallest_of_all(world, sound);
+  const double h = surface.h, R = 0.5 * ACROSS * spacing, oh = sd_sph_ohnesorge(mu, sigma, rho0, R),
+               dt = sd_sph_capillary_step(sigma, rho0, h), stiff = sound * sound * rho0 * h / sigma;
+  const std::string line = "the smallest drop that is resolved, " + std::to_string(ACROSS) +
+      " particles across, of radius " + text(R) + ", has the Ohnesorge number " + text(oh) +
+      "; waves on the surface allow time steps up to " + text(dt) + "; c^2 = " + text(stiff) + " sigma/(rho h)";
+  if (told.insert(line).second) voice.tell(line);
+  const std::string way_out = " (force yes makes this a warning)";
+  const auto objects = [&](bool holds, const std::string &why) {
+    if (holds) return;
+    if (!forced) voice.fail(why + way_out);
+    if (told.insert(why).second) voice.warn(why);
+  };
+  objects(oh >= LEAST_OHNESORGE * (1.0 - 1e-9),
+          "the Ohnesorge number " + text(oh) + " of the smallest drop that is resolved is below " +
+              text(LEAST_OHNESORGE) + ", the range in which drops have been shown to ring down as they should: use a "
+              "viscosity of at least " + text(mu * LEAST_OHNESORGE / std::max(oh, 1e-300)) + ", or larger particles");
+  objects(update->whichflag != 1 || update->nsteps == 0 || update->dt <= dt * (1.0 + 1e-9),
+          "the time step " + text(update->dt) + " is above " + text(dt) +
+              ", 0.25 sqrt(rho h^3/(2 pi sigma)): the shortest waves on the surface would grow; use a smaller one");
+  objects(stiff >= LEAST_STIFFNESS * (1.0 - 1e-9),
+          "c^2 = " + text(stiff) + " sigma/(rho h) is below " + text(LEAST_STIFFNESS) +
+              " sigma/(rho h): surface tension would compress the fluid; use a speed of sound of at least " +
+              text(sound * sqrt(LEAST_STIFFNESS / stiff)));
+}
+
+// --- a step --------------------------------------------------------------------------------------
+
+void FixSphTension::post_force(int /*vflag*/)
+{
+  if (update->setupflag) check_range();
+  look_at_particles();
+  find_normals();
+  find_curvatures();
+  add_forces();
+  keep_momentum();
+  show();
+}
+
+void FixSphTension::look_at_particles()
+{
+  const int n = atom->nlocal + atom->nghost, nlocal = atom->nlocal;
+  list = pair->neighbours_of_each();
+  film = {&surface, &list, n, nullptr, nullptr};
+  x4.resize(4 * (size_t) (n + 1));
+  sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, nullptr, 0.0, x4.data());
+  mass.resize(nlocal + 1);
+  x4[4 * (size_t) n + 3] = 0.0;
+  for (int i = 0; i < n; i++) {
+    const double m = pair->is_particle(i) ? Sph::mass(lmp, i) : 0.0;
+    x4[4 * (size_t) i + 3] = m / rho0;
+    if (i < nlocal) mass[i] = m;
+  }
+  film.x4 = x4.data();
+  if (!walls) return;
+  wall.assign(n + 1, 0);
+  for (int i = 0; i < n; i++) wall[i] = pair->is_of_wall(i);
+  film.wall = wall.data();
+}
+
+void FixSphTension::find_normals()
+{
+  const size_t nlocal = atom->nlocal, n = nlocal + atom->nghost;
+  sums.resize(8 * nlocal + 4);
+  sd_sph_film_sums(&film, sums.data());
+  if (walls) {
+    if (update->setupflag) look_at_walls();
+    one.assign(n + 1, 0.0);
+    sd_sph_film_wetness(&film, sums.data(), one.data());
+    forward(one.data(), 1);
+    contact.assign(4 * (n + 1), 0.0);
+    for (size_t i = 0; i < n; i++) {
+      if (!wall[i]) continue;
+      const auto found = contacts.find(atom->type[i]);
+      const std::pair<double, double> angle = found == contacts.end() ? std::make_pair(0.0, 1.0) : found->second;
+      double *row = &contact[4 * i];
+      row[0] = one[i];
+      row[1] = angle.first;
+      row[2] = angle.second;
+      row[3] = 1.0;
+    }
+    beside.resize(8 * nlocal + 4);
+    at_wall.resize(4 * nlocal + 4);
+    sd_sph_film_wet_walls(&film, contact.data(), sums.data(), beside.data());
+  }
+  whole.resize(4 * nlocal + 4);
+  at_surface.assign(4 * (n + 1), 0.0);
+  sd_sph_film_normals(&film, sums.data(), walls ? beside.data() : nullptr, whole.data(), at_surface.data(),
+                      walls ? at_wall.data() : nullptr);
+  forward(at_surface.data(), 4);
+}
+
+/* The wetness of a wall particle needs its neighbours in the wall, which inputs often exclude. */
+void FixSphTension::look_at_walls() const
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *row = &sums[8 * (size_t) i], own = x4[4 * (size_t) i + 3] *
+        sd_sph_W(surface.kernel, surface.dimension, 0.0, surface.h);
+    if (wall[i] && row[0] > 0.0 && row[4] < 1.001 * own)
+      voice.fail_one("wall particle " + std::to_string(atom->tag[i]) +
+                     " sees fluid and no other wall particle: how wet it is goes by both, so walls need two rows or "
+                     "more, and no neigh_modify exclude between their particles");
+  }
+}
+
+/* <k> of particles of this rank, as neighbours see them. */
+const double *FixSphTension::mean_of(const double *k, std::vector<double> &mean)
+{
+  const size_t n = (size_t) film.all;
+  one.assign(n + 1, 0.0);
+  std::copy_n(k, atom->nlocal, one.data());
+  forward(one.data(), 1);
+  carried.assign(2 * (n + 1), 0.0);
+  for (size_t i = 0; i < n; i++) {
+    const double w = at_surface[4 * i + 3];
+    carried[2 * i] = one[i];
+    carried[2 * i + 1] = w > 0.0 ? w : 0.0;
+  }
+  mean.resize(atom->nlocal + 1);
+  sd_sph_film_means(&film, at_surface.data(), carried.data(), scratch.data(), mean.data());
+  return mean.data();
+}
+
+void FixSphTension::find_curvatures()
+{
+  const size_t nlocal = atom->nlocal, n = (size_t) film.all;
+  turns.resize(16 * nlocal + 4);
+  kappa.resize(nlocal + 1);
+  scratch.resize(2 * nlocal + 2);
+  const double *beside_wall = walls ? at_wall.data() : nullptr;
+  sd_sph_film_curvatures(&film, whole.data(), at_surface.data(), beside_wall, turns.data(), kappa.data());
+  mean_of(kappa.data(), once);
+  mean_of(once.data(), twice);
+  sd_sph_film_sharpen(&film, kappa.data(), once.data(), twice.data(), beside_wall, twice.data());
+  // the same rows as those of a mean, with ks in place of k
+  one.assign(n + 1, 0.0);
+  std::copy_n(twice.data(), nlocal, one.data());
+  forward(one.data(), 1);
+  for (size_t i = 0; i < n; i++) carried[2 * i] = one[i];
+  next.resize(2 * (n + 1));
+  for (int round = 0; round < INWARDS; round++) {
+    if (round > 0) forward(carried.data(), 2);
+    sd_sph_film_carry(&film, at_surface.data(), twice.data(), carried.data(), next.data());
+    std::copy_n(next.data(), 2 * nlocal, carried.data());
+  }
+}
+
+/* Friction sees the velocities of the time of the force. */
+void FixSphTension::add_forces()
+{
+  const int n = film.all;
+  v4.resize(4 * (size_t) (n + 1));
+  F.resize(3 * (size_t) atom->nlocal + 1);
+  sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  const sd_sph_tension how = {sigma, sd_sph_surface_friction(sigma, rho0, surface.h)};
+  area = sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), carried.data(), v4.data(), F.data());
+}
+
+/* In every step: drops that meet are one at once, whenever the run began and LAMMPS re-neighboured. */
+void FixSphTension::find_drops()
+{
+  const size_t n = (size_t) film.all;
+  parent.resize(n + 1);
+  name.assign(n + 1, 0.0);
+  sd_sph_find_drops(&film, parent.data());
+  for (size_t i = 0; i < n; i++) name[i] = (double) atom->tag[i];
+  int changed = 1;
+  while (changed) {
+    changed = largest_of_all(world, sd_sph_name_drops(film.all, parent.data(), name.data()));
+    if (changed) forward(name.data(), 1);
+  }
+}
+
+/* Of drops that touch no wall and no open end. */
+void FixSphTension::keep_momentum()
+{
+  const int nlocal = atom->nlocal;
+  const size_t n = (size_t) film.all;
+  find_drops();
+  place.resize(n + 1);
+  held.assign(nlocal + 1, 0.0);
+  drops.resize(nlocal + 1);
+  for (int i = 0; i < nlocal; i++)
+    held[i] = (walls && sums[8 * (size_t) i + 4] > 0.0) || pair->is_held(i) ? 1.0 : 0.0;
+  const int mine = sd_sph_sum_drops(&film, parent.data(), name.data(), mass.data(), held.data(), F.data(),
+                                    drops.data(), place.data());
+  std::vector<sd_sph_drop> all = from_all(world, std::vector<sd_sph_drop>(drops.begin(), drops.begin() + mine));
+  ndrops = sd_sph_keep_momentum(&film, parent.data(), place.data(), mass.data(), mine, drops.data(),
+                                (int) all.size(), all.data(), F.data(), sum);
+  for (int i = 0; i < nlocal; i++)
+    for (int d = 0; d < 3; d++) atom->f[i][d] += F[3 * (size_t) i + d];
+}
+
+void FixSphTension::show()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *n = &at_surface[4 * (size_t) i];
+    double *row = shown.give(i);
+    row[0] = carried[2 * (size_t) i];
+    row[1] = std::max(n[3], 0.0);
+    std::copy_n(n, 3, row + 2);
+  }
+}
+
+double FixSphTension::compute_scalar()
+{
+  return sigma * sum_of_all(world, area);
+}
+
+double FixSphTension::compute_vector(int k)
+{
+  return k < 3 ? sum[k] : k == 3 ? (double) ndrops : sum_of_all(world, area);
+}
+
+double FixSphTension::memory_usage()
+{
+  double bytes = SphFix::memory_usage();
+  for (const auto *rows : {&x4, &v4, &at_surface, &contact, &whole, &at_wall, &sums, &beside, &turns})
+    bytes += (double) rows->capacity() * sizeof(double);
+  return bytes;
+}
+
+// --- communication -------------------------------------------------------------------------------
+
+void FixSphTension::forward(double *array, int columns)
+{
+  comm_array = array;
+  comm_columns = columns;
+  Compat::forward_comm(comm, this);
+}
+
+int FixSphTension::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
+{
+  for (int k = 0; k < n; k++)
+    buf = std::copy_n(comm_array + (size_t) list[k] * comm_columns, comm_columns, buf);
+  return n * comm_columns;
+}
+
+void FixSphTension::unpack_forward_comm(int n, int first, double *buf)
+{
+  std::copy_n(buf, (size_t) n * comm_columns, comm_array + (size_t) first * comm_columns);
+}

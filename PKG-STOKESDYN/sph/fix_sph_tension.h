@@ -1,0 +1,78 @@
+/* fix sph/tension: surface tension of water with a free surface, and its contact angle on walls. All of it is
+ * core/sph/sd_sph_tension.h; here stand the messages between ranks. See doc/fix_sph_tension.md. */
+#ifndef SD_FIX_SPH_TENSION_H
+#define SD_FIX_SPH_TENSION_H
+
+#include "sd_sph_drops.h"
+#include "sd_sph_tension.h"
+#include "sph.h"
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace StokesDyn {
+
+class FixSphTension : public SphFix {
+ public:
+  static constexpr const char *STYLE = "sph/tension";
+
+  FixSphTension(LAMMPS_NS::LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int vflag) override { post_force(vflag); }
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+
+ private:
+  // settings
+  double sigma = 0.0;
+  bool forced = false;
+  // cos and sin by type of wall
+  std::map<int, std::pair<double, double>> contacts;
+  void parse_contact(Keywords &in);
+
+  // of a run
+  sd_sph_surface surface = {};
+  double rho0 = 0.0, spacing = 0.0;
+  bool walls = false;
+  // lines of the log and warnings that have been said
+  std::set<std::string> told;
+  // curvature, w, normal
+  AtomArray shown;
+  void check_particles();
+  void check_contacts();
+  void check_range();
+  void look_at_walls() const;
+
+  // a step; rows of particles of this rank, of their ghosts too, and of the far-away particle
+  sd_sph_both list = {};
+  sd_sph_film film = {};
+  Rows x4, v4, at_surface, contact, whole, at_wall, sums, beside, turns;
+  std::vector<int> wall, parent, place;
+  std::vector<double> one, kappa, once, twice, scratch, carried, next, F, name, mass, held;
+  std::vector<sd_sph_drop> drops;
+  double area = 0.0, sum[3] = {0.0, 0.0, 0.0};
+  int ndrops = 0;
+  void look_at_particles();
+  void find_normals();
+  void find_curvatures();
+  const double *mean_of(const double *k, std::vector<double> &mean);
+  void add_forces();
+  void find_drops();
+  void keep_momentum();
+  void show();
+
+  // communication of one array at a time
+  double *comm_array = nullptr;
+  int comm_columns = 0;
+  void forward(double *array, int columns);
+};
+
+}    // namespace StokesDyn
+#endif
