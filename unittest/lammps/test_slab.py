@@ -192,7 +192,7 @@ def script(folder, way, runs, newton="on", begin=None):
     if "clumps" in way:
         spheres.x[1], spheres.a[1] = spheres.x[0] + (0.9 * spheres.a[0], 0, 0), spheres.a[0]
         spheres.molecule[:2] = 1
-    pair = f"cut_off_distance inf visc 1 {WAYS[way]} relative_tolerance 1e-10 far_field_tolerance 1e-3 max_iter 400"
+    pair = f"cut_off_distance inf visc 1 {WAYS[way]} relative_tolerance 1e-12 far_field_tolerance 1e-3 max_iter 400"
     lines = input_lines(spheres, pair, str(folder / "heap.data"), boundary="p p f", fix=False, dt=0.02, newton=newton, box=cell(11, -1, 9))
     if begin:                            # from a restart file in place of the data file
         cut = [i for i, line in enumerate(lines) if line.startswith("read_data")][0]
@@ -210,9 +210,9 @@ def end_of(folder, way, runs, ranks=1, **options):
 def test_ranks_newton_and_restart_do_not_matter(tmp_path, way):
     whole = end_of(tmp_path, way, ["run 8"])
     for ranks, newton in allowed((2, "on"), (4, "off")):
-        assert np.abs(end_of(tmp_path, way, ["run 8"], ranks, newton=newton) - whole).max() < 1e-9
+        assert np.abs(end_of(tmp_path, way, ["run 8"], ranks, newton=newton) - whole).max() < 1e-10
     lmp(tmp_path, script(tmp_path, way, ["run 3", "write_restart half"]))
-    assert np.abs(end_of(tmp_path, way, ["run 5"], begin="half") - whole).max() < 1e-9
+    assert np.abs(end_of(tmp_path, way, ["run 5"], begin="half") - whole).max() < 1e-10
 
 
 def test_a_layer_moves_by_forces_that_add_up_to_0(simulation):
