@@ -51,17 +51,21 @@ class InLammps:
     def order(self):
         return np.argsort(np.array(self.lmp.numpy.extract_atom("id")).ravel()[:self.n])
 
-    def velocities(self, force):
-        """[n, 3] under the forces [n, 3]"""
+    def push(self, force):
         order = self.order()
         for k, name in enumerate(("d_fx", "d_fy", "d_fz")):
             self.lmp.numpy.extract_atom(name)[:self.n][order] = force[:, k]
+
+    def velocities(self, force):
+        """[n, 3] under the forces [n, 3]"""
+        self.push(force)
         self.lmp.command("run 0")
         return np.array(self.lmp.numpy.extract_atom("v"))[:self.n][self.order()]
 
     def stress(self, plane, rate=1.0):
         """Of a box that is sheared, without forces on the spheres; keyword fluid_velocity box, edge given: 18 numbers of compute
         stokes_dynamics/stress, over the viscosity and the rate"""
+        self.push(np.zeros((self.n, 3)))
         self.commands(f"""
             fix shear all deform 1 {plane} erate {rate} remap none
             compute S all stokes_dynamics/stress
