@@ -24,6 +24,7 @@ HOWTOS = {
     "mud": {"v_front": 0.02, "v_inner": 0.01, "v_outer": 0.01},
     "sph": {"c_kinetic": 0.5},
     "stream": {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35},
+    "rheology": {"f_mean[1]": 0.05, "f_mean[2]": 0.2, "f_mean[3]": 0.2},
     "suspension": {"v_down": 0.04, "f_move[1]": 0.25},
     "speed": {},
     "shapes": {},
